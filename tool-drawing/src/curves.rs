@@ -127,6 +127,7 @@ impl<'m> Curves<'m> {
                 bent.0.get(id)
             }
         };
+        // As in the emitted code, where no test of NaN holds.
         if value.is_nan() { f64::INFINITY } else { value }
     }
 
@@ -169,6 +170,7 @@ impl<'m> Curves<'m> {
         if let CurveEvaluator::Line([a, b, _]) = self.evaluator(curve) {
             return [*a, *b];
         }
+        // A difference across the axis would see the mirror image.
         let low = (u - h).max(self.plane.leftmost());
         let along = (self.value(curve, [u + h, v]) - self.value(curve, [low, v])) / (u + h - low);
         let up = (self.value(curve, [u, v + h]) - self.value(curve, [u, v - h])) / (2.0 * h);
@@ -210,10 +212,12 @@ impl<'m> Curves<'m> {
             });
             let sine = gu[0] * gv[1] - gu[1] * gv[0];
             square = sine.abs() / (norm(gu) * norm(gv));
+            // Nearly parallel curves would meet far away, or anywhere.
             if square.is_nan() || square < 1e-3 {
                 return None;
             }
             p = [p[0] - (u * gv[1] - v * gu[1]) / sine, p[1] - (v * gu[0] - u * gv[0]) / sine];
+            // Beyond the axis there is no section.
             p[0] = p[0].max(self.plane.leftmost());
         }
         (norm(minus(p, from)) <= reach).then_some((square, p))

@@ -58,12 +58,12 @@ impl<'m> Detail<'m> {
         let size = height.max(width);
         let unit = (height / MAX_EXTENT[1]).min(cutting.radius / 60.0);
         let mut curves = Curves::new(whole.model, &tool.extent, Plane::Meridian);
-        let borders = trace(&mut curves, tool, window(cutting.low, corner), [unit, size]);
-        let view = View::new(&borders, MAX_EXTENT);
+        let traced = trace(&mut curves, tool, window(cutting.low, corner), [unit, size]);
+        let view = View::new(&traced.borders, MAX_EXTENT);
         let factor = scale_factor(view.scale / whole.view.scale)?;
         let view = view.rescaled(factor * whole.view.scale);
         let fills = whole.fills.clone();
-        let mut picture = Picture::of(whole.model, whole.content, (borders, size), view, fills);
+        let mut picture = Picture::of(whole.model, whole.content, traced, view, fills);
         picture.part = Part::Detail(corner);
         let View { half, height, .. } = picture.view;
         // No name and no arrow lies on the break line.
@@ -112,9 +112,14 @@ struct CuttingPart {
 
 impl CuttingPart {
     fn new(whole: &Picture<'_>) -> Option<CuttingPart> {
-        let cuts = |side: Side| matches!(side, Side::Region(r) if whole.model.surfaces[whole.surface(r)].cutting);
-        let cutting = || outline(whole).filter(|(side, _)| cuts(*side)).map(|(_, stroke)| stroke);
+        let cutting = || {
+            outline(whole).filter_map(|(side, stroke)| match side {
+                Side::Region(r) if whole.model.surfaces[whole.surface(r)].cutting => Some(stroke),
+                _ => None,
+            })
+        };
         let high = cutting().map(|stroke| stroke.span()[1]).reduce(f64::max)?;
+        // From the tool's lowest point, even if that does not cut.
         let low = outline(whole).map(|(_, stroke)| stroke.span()[0]).fold(high, f64::min);
         let radius = cutting().map(Stroke::widest).fold(radius(whole, high), f64::max);
         Some(CuttingPart { low, high, radius })
@@ -140,7 +145,7 @@ fn outline<'p>(whole: &'p Picture<'_>) -> impl Iterator<Item = (Side, &'p Stroke
 /// Returns the largest radius of the tool below a height.
 fn radius(whole: &Picture<'_>, top: f64) -> f64 {
     let near = 1e-6 * whole.size;
-    let radius = |stroke: &Stroke| {
+    let radii = outline(whole).map(|(_, stroke)| {
         let [low, high] = stroke.span();
         if low >= top - near {
             0.0
@@ -151,8 +156,8 @@ fn radius(whole: &Picture<'_>, top: f64) -> f64 {
             let points = (0..=64).map(|k| stroke.at(f64::from(k) / 64.0));
             points.filter(|p| p[1] <= top).map(|p| p[0]).fold(0.0, f64::max)
         }
-    };
-    outline(whole).map(|(_, stroke)| radius(stroke)).fold(0.0, f64::max)
+    });
+    radii.fold(0.0, f64::max)
 }
 
 /// Returns whether a tool consists of mounted files: their surfaces have names such as `cutter.ball`.

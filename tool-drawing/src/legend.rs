@@ -1,11 +1,9 @@
 //! The legend below the views, which explains their lines, areas and symbols.
 
-use super::Content;
-use super::colours;
 use super::lettering::width;
-use super::marks::head;
-use super::regions::Marks;
+use super::regions::{Marks, head};
 use super::sheet::{Anchor, DEFAULT_COLOUR, Look, Sheet, lines};
+use super::{Content, paint};
 use tool_dsl::model::Model;
 use tool_dsl::vector::Point;
 
@@ -54,7 +52,7 @@ pub(super) fn draw(groups: &[Vec<Entry>], sheet: &mut Sheet) {
 
 /// Returns the entries of a model's surfaces.
 pub(super) fn surfaces(model: &Model) -> Vec<Entry> {
-    let surfaces = model.surfaces.iter().zip(colours::surfaces(model));
+    let surfaces = model.surfaces.iter().zip(paint::surface_colours(model));
     surfaces
         .map(|(surface, colour)| {
             let cutting = surface.cutting;
@@ -121,8 +119,11 @@ fn sample(sign: &Sign, [x, y]: Point, sheet: &mut Sheet) {
         }
         Sign::Break => {
             let wave = |shift: f64| -> Vec<Point> {
-                let turn = |k: i32| (f64::from(k) / 4.0 * std::f64::consts::PI).sin();
-                (0..=8).map(|k| [x + f64::from(k) * 3.0, y + shift + 2.5 * turn(k)]).collect()
+                let points = (0..=8).map(|k| {
+                    let turn = (f64::from(k) / 4.0 * std::f64::consts::PI).sin();
+                    [x + f64::from(k) * 3.0, y + shift + 2.5 * turn]
+                });
+                points.collect()
             };
             sheet.path("fill=\"none\" stroke=\"#6b7280\"", &lines([wave(-2.5), wave(2.5)]));
         }

@@ -18,15 +18,10 @@
 struct Readme;
 
 mod borders;
-mod colours;
-mod contour;
 mod curves;
 mod detail;
-mod glyphs;
 mod legend;
 pub mod lettering;
-mod map;
-mod marks;
 mod notes;
 mod paint;
 mod regions;
@@ -119,6 +114,12 @@ enum Part {
     Detail(Point),
 }
 
+/// The borders of a section, and its size, the scale of tolerances for rounding.
+struct Traced {
+    borders: Vec<Border>,
+    size: f64,
+}
+
 /// Traces the borders in a window of a section. `unit` is a lower bound on one unit of the sheet and `size` the section's
 /// size, both in the tool's unit.
 fn trace(
@@ -126,11 +127,11 @@ fn trace(
     tool: &CheckedTool,
     window: [Point; 2],
     [unit, size]: [f64; 2],
-) -> Vec<Border> {
+) -> Traced {
     let fineness = Fineness { cell: 10.0 * unit, flat: 0.06 * unit, same: 1e-10 * size };
     let pieces = section::divide(curves, &tool.plan.owner, window, fineness);
     let near = Nearness { weld: 1e-9 * size, visible_length: 0.1 * unit, reach: unit };
-    borders::borders(curves, &pieces, near)
+    Traced { borders: borders::borders(curves, &pieces, near), size }
 }
 
 impl<'m> Picture<'m> {
@@ -144,30 +145,31 @@ impl<'m> Picture<'m> {
         let high = [1.0371 * extent.radius, extent.high + 0.0197 * height];
         let mut curves = Curves::new(model, extent, Plane::Meridian);
         let size = height.max(extent.radius);
-        let borders = trace(&mut curves, tool, [low, high], [unit, size]);
-        let view = View::new(&borders, MAX_TOOL_EXTENT);
-        let fills = colours::areas(model.regions.len(), &borders);
-        Picture::of(model, content, (borders, size), view, fills)
+        let traced = trace(&mut curves, tool, [low, high], [unit, size]);
+        let view = View::new(&traced.borders, MAX_TOOL_EXTENT);
+        let fills = paint::area_colours(model.regions.len(), &traced.borders);
+        Picture::of(model, content, traced, view, fills)
     }
 
     fn of(
         model: &'m Model,
         content: Content,
-        (borders, size): (Vec<Border>, f64),
+        Traced { borders, size }: Traced,
         view: View,
         fills: Vec<&'static str>,
     ) -> Picture<'m> {
-        let shape = |region| {
+        let shapes = (0..model.regions.len()).map(|region| {
             let mut shape = Shape::new(&borders, &view, |side| side == Side::Region(region));
             let half = view.half + 1.0;
+            // Marks keep off the break lines.
             for y in view.seams() {
                 shape.keep_off(
                     [-5.0, 0.0, 5.0].map(|shift| [[-half, y + shift], [half, y + shift]]),
                 );
             }
             shape
-        };
-        let shapes = (0..model.regions.len()).map(shape).collect();
+        });
+        let shapes = shapes.collect();
         Picture { model, content, part: Part::Whole, borders, view, shapes, fills, size }
     }
 

@@ -1,15 +1,15 @@
 //! Notes beside the section: names and dimensions of faces on the left, names of small regions and heights on the
-//! right.
+//! right. The dimensions are those of the tool's surface.
 
-use super::Picture;
-use super::colours;
-use super::contour::{Face, faces, heights, tidy};
+use super::borders::{Border, Side};
 use super::lettering::width;
-use super::marks::head;
-use super::regions::Marks;
+use super::regions::{Marks, head};
 use super::sheet::{Anchor, Look, SECONDARY_COLOUR, Sheet, lines};
+use super::stroke::Stroke;
 use super::view::is_outline;
-use tool_dsl::vector::{Point, minus, norm};
+use super::{Picture, paint};
+use tool_dsl::model::{Model, Unit};
+use tool_dsl::vector::{Point, cross, dot, minus, norm};
 
 /// The height of capitals, in sheet units.
 const TEXT_SIZE: f64 = 7.5;
@@ -42,7 +42,7 @@ fn draw_left_notes(picture: &Picture<'_>, sheet: &mut Sheet) {
     let view = &picture.view;
     let capacity = ((view.height + 60.0) / LINE_SPACING) as usize;
     let chosen = chosen(picture, capacity);
-    let colours = colours::surfaces(picture.model);
+    let colours = paint::surface_colours(picture.model);
     let mut notes: Vec<Note> = chosen
         .iter()
         .map(|face| {
@@ -97,13 +97,14 @@ fn chosen(picture: &Picture<'_>, capacity: usize) -> Vec<Face> {
         }
     }
     // The longest face of each surface that has no cylinder and no arc.
-    let best = |surface: usize| -> Option<usize> {
-        let of = |index: &usize| chosen[*index].surface == surface;
-        let is_named = (0..chosen.len()).filter(of).any(|index| chosen[index].is_telling());
-        let longer = |a: &usize, b: &usize| chosen[*a].length.total_cmp(&chosen[*b].length);
-        (0..chosen.len()).filter(of).max_by(longer).filter(|_| !is_named)
-    };
-    let only: Vec<usize> = (0..picture.model.surfaces.len()).filter_map(best).collect();
+    let only = (0..picture.model.surfaces.len()).filter_map(|surface| {
+        let of_surface = || (0..chosen.len()).filter(|index| chosen[*index].surface == surface);
+        let is_named = of_surface().any(|index| chosen[index].is_telling());
+        of_surface()
+            .max_by(|a, b| chosen[*a].length.total_cmp(&chosen[*b].length))
+            .filter(|_| !is_named)
+    });
+    let only: Vec<usize> = only.collect();
     let mut index = 0;
     chosen.retain(|face| {
         index += 1;
@@ -115,6 +116,7 @@ fn chosen(picture: &Picture<'_>, capacity: usize) -> Vec<Face> {
         let least_telling = (0..chosen.len())
             .filter(|index| !alone(&chosen[*index]))
             .min_by(|a, b| chosen[*a].length.total_cmp(&chosen[*b].length));
+        // Every surface keeps one face.
         let Some(least_telling) = least_telling else { break };
         chosen.remove(least_telling);
     }
@@ -170,8 +172,11 @@ fn right(picture: &Picture<'_>, marks: &Marks, levels: &[Point], sheet: &mut She
     let mut first = 0;
     while first < rows.len() {
         // Notes close together begin at the same distance from the section.
-        let is_close = |k: &usize| heights[*k] - heights[*k - 1] < 1.3 * LINE_SPACING;
-        let end = (first + 1..rows.len()).take_while(is_close).last().unwrap_or(first) + 1;
+        let end = (first + 1..rows.len())
+            .take_while(|k| heights[*k] - heights[*k - 1] < 1.3 * LINE_SPACING)
+            .last()
+            .unwrap_or(first)
+            + 1;
         let low = heights[first].min(rows[first].1[1]) - TEXT_SIZE;
         let high = heights[end - 1].max(rows[end - 1].1[1]) + TEXT_SIZE;
         let side = widest(picture, [low, high]);
@@ -219,8 +224,8 @@ fn sheet_height(y: f64, levels: &[f64]) -> f64 {
 /// Returns the heights to note, of which the first is the tip. If there are too many, the most crowded ones are left
 /// out.
 fn steps(picture: &Picture<'_>) -> Vec<Point> {
-    let described = |p: Point| picture.describes(p);
-    let mut steps = heights(picture.model, &picture.borders, picture.size, described);
+    let mut steps =
+        heights(picture.model, &picture.borders, picture.size, |p| picture.describes(p));
     let max_notes = ((picture.view.height + 80.0) / 11.5) as usize;
     while steps.len() > max_notes.max(3) {
         let crowded = |k: &usize| steps[k + 1][1] - steps[k - 1][1];
@@ -290,6 +295,7 @@ fn spread(target_heights: &[f64], gap: f64) -> Vec<f64> {
             if end <= cluster.0 / cluster.1 as f64 {
                 break;
             }
+            // The two clusters would overlap: they become one, centred on all its notes.
             clusters.pop();
             let shifted = cluster.0 - gap * (count * cluster.1) as f64;
             cluster = (sum + shifted, count + cluster.1);
@@ -300,6 +306,191 @@ fn spread(target_heights: &[f64], gap: f64) -> Vec<f64> {
         .into_iter()
         .flat_map(|(sum, count)| (0..count).map(move |k| sum / count as f64 + gap * k as f64))
         .collect()
+}
+
+/// Lengths that differ by less than this fraction of the tool's size are considered equal.
+const LENGTH_TOLERANCE_FRACTION: f64 = 1e-7;
+
+/// The dimension of a face.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Measure {
+    /// A cylinder, by its radius.
+    Cylinder(f64),
+    /// An arc, by its centre and radius.
+    Arc(Point, f64),
+    /// A cone, by its angle to the axis in degrees.
+    Cone(f64),
+    /// No dimension.
+    Other,
+}
+
+/// All parts of a surface on one cylinder or one arc; or a single other stroke of it.
+#[derive(Clone, Debug)]
+struct Face {
+    surface: usize,
+    measure: Measure,
+    /// The total length.
+    length: f64,
+    /// The longest stroke.
+    longest: Stroke,
+}
+
+impl Face {
+    /// Returns the dimension as text.
+    fn figure(&self, unit: Unit) -> Option<String> {
+        match self.measure {
+            Measure::Cylinder(radius) => Some(format!("⌀{}", tidy(2.0 * radius, unit))),
+            Measure::Arc(_, radius) => Some(format!("R{}", tidy(radius, unit))),
+            Measure::Cone(angle) => Some(format!("{}° a side", trimmed(&format!("{angle:.2}")))),
+            Measure::Other => None,
+        }
+    }
+
+    /// Returns whether the dimension is always noted. That of a cone is not, since it is often only a broken edge.
+    fn is_telling(&self) -> bool {
+        matches!(self.measure, Measure::Cylinder(_) | Measure::Arc(..))
+    }
+}
+
+/// Formats a length, with as many decimals as usual in a workshop.
+pub(super) fn tidy(value: f64, unit: Unit) -> String {
+    let decimals = match unit {
+        Unit::Millimetre => 3,
+        Unit::Inch => 4,
+        Unit::Metre => 6,
+    };
+    match trimmed(&format!("{value:.decimals$}")) {
+        // A length too small for that gets as many digits as it needs.
+        text if text == "0" && value.abs() > 1e-12 => tool_dsl::diagnostic::format_number(value),
+        text => text,
+    }
+}
+
+/// Removes trailing zeros of a decimal number.
+fn trimmed(text: &str) -> String {
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    if text == "-0" { "0".to_owned() } else { text.to_owned() }
+}
+
+/// Returns the faces of the surface.
+fn faces(model: &Model, borders: &[Border], size: f64) -> Vec<Face> {
+    let mut faces: Vec<Face> = Vec::new();
+    for border in borders.iter().filter(|border| is_outline(border)) {
+        let Side::Region(region) = border.sides[0] else { continue };
+        let surface = model.regions[region].surface;
+        for stroke in &border.strokes {
+            let measure = measure(stroke, border.exact, size);
+            let length = stroke.length();
+            let known = faces
+                .iter_mut()
+                .find(|face| face.surface == surface && are_equal(face.measure, measure, size));
+            match known {
+                Some(face) => {
+                    face.length += length;
+                    // Of equal strokes the first stays, whatever the rounding of their lengths.
+                    if length > face.longest.length() * (1.0 + LENGTH_TOLERANCE_FRACTION) {
+                        face.longest = *stroke;
+                    }
+                }
+                None => faces.push(Face { surface, measure, length, longest: *stroke }),
+            }
+        }
+    }
+    faces
+}
+
+fn measure(stroke: &Stroke, exact: bool, size: f64) -> Measure {
+    match stroke.circle {
+        // Only an exact arc has a radius that may be printed.
+        Some((centre, radius)) if exact => Measure::Arc(centre, radius),
+        None if (stroke.from[0] - stroke.to[0]).abs() < LENGTH_TOLERANCE_FRACTION * size => {
+            Measure::Cylinder(stroke.from[0] / 2.0 + stroke.to[0] / 2.0)
+        }
+        None if (stroke.from[1] - stroke.to[1]).abs() > LENGTH_TOLERANCE_FRACTION * size => {
+            let [d, z] = [0, 1].map(|k| (stroke.to[k] - stroke.from[k]).abs());
+            Measure::Cone(d.atan2(z).to_degrees())
+        }
+        _ => Measure::Other,
+    }
+}
+
+fn are_equal(a: Measure, b: Measure, size: f64) -> bool {
+    let near = |a: f64, b: f64| (a - b).abs() < LENGTH_TOLERANCE_FRACTION * size;
+    match (a, b) {
+        (Measure::Cylinder(a), Measure::Cylinder(b)) => near(a, b),
+        (Measure::Arc(p, r), Measure::Arc(q, s)) => {
+            near(r, s) && near(p[0], q[0]) && near(p[1], q[1])
+        }
+        _ => false,
+    }
+}
+
+/// Returns the heights at which the surface has a corner, a tangent joint of two faces, or an end, from bottom to top.
+/// Each is given with its outermost point. Except for the lowest, only points that are `described` count.
+pub(super) fn heights(
+    model: &Model,
+    borders: &[Border],
+    size: f64,
+    described: impl Fn(Point) -> bool,
+) -> Vec<Point> {
+    let outline: Vec<&Border> = borders.iter().filter(|border| is_outline(border)).collect();
+    let surface = |border: &Border| match border.sides[0] {
+        Side::Region(region) => model.regions[region].surface,
+        _ => 0,
+    };
+    let mut steps: Vec<Point> = Vec::new();
+    for border in &outline {
+        let Some(first) = border.strokes.first() else { continue };
+        let goes_on = outline.iter().any(|before| {
+            before.ends[1] == border.ends[0]
+                && surface(before) == surface(border)
+                && before.strokes.last().is_some_and(|last| one(last, first, size))
+        });
+        // A joint within one face is no height of its own.
+        if !goes_on {
+            steps.push(first.from);
+        }
+        if !outline.iter().any(|after| after.ends[0] == border.ends[1]) {
+            steps.extend(border.strokes.last().map(|last| last.to));
+        }
+    }
+    // An arc may reach beyond its ends.
+    let strokes = || outline.iter().flat_map(|border| &border.strokes);
+    for (k, of) in [(0, f64::min as fn(f64, f64) -> f64), (1, f64::max)] {
+        let ends = strokes().map(|stroke| (stroke.span()[k], stroke.from[0].max(stroke.to[0])));
+        if let Some((z, d)) = ends.reduce(|a, b| if of(a.0, b.0) == a.0 { a } else { b }) {
+            steps.push([d.min(strokes().map(|s| s.from[0]).fold(0.0, f64::max)), z]);
+        }
+    }
+    steps.sort_by(|a, b| a[1].total_cmp(&b[1]));
+    let mut levels: Vec<Point> = Vec::new();
+    for step in steps {
+        if !levels.is_empty() && !described(step) {
+            continue;
+        }
+        match levels.last_mut() {
+            Some(level) if step[1] - level[1] < LENGTH_TOLERANCE_FRACTION * size => {
+                level[0] = level[0].max(step[0]);
+            }
+            _ => levels.push(step),
+        }
+    }
+    levels
+}
+
+/// Returns whether two strokes continue each other on one line or lie on one circle.
+fn one(a: &Stroke, b: &Stroke, size: f64) -> bool {
+    match (a.circle, b.circle) {
+        (None, None) => {
+            let (u, v) = (minus(a.to, a.from), minus(b.to, b.from));
+            let lengths = norm(u) * norm(v);
+            cross(u, v).abs() < 1e-6 * lengths && dot(u, v) > 0.0
+        }
+        (Some((p, r)), Some((q, s))) => {
+            norm(minus(p, q)) + (r - s).abs() < LENGTH_TOLERANCE_FRACTION * size
+        }
+        _ => false,
+    }
 }
 
 #[cfg(test)]

@@ -1,12 +1,16 @@
 //! Paints a section: areas, hatching, borders between regions, surfaces, break lines, and the axis.
+//!
+//! The colours can be told apart with colour vision deficiency: Paul Tol's "light" scheme for areas with dark text on
+//! them, and his "bright" scheme for more (SRON/EPS/TN/09-002, 2021), reds for cutting surfaces, dark colours for the
+//! others.
 
-use super::borders::Side;
-use super::colours;
+use super::borders::{Border, Side};
 use super::shape::Shape;
 use super::sheet::{Sheet, data, lines};
 use super::stroke::Stroke;
 use super::view::{is_outline, mirrored};
 use super::{Content, Picture};
+use tool_dsl::model::Model;
 use tool_dsl::vector::Point;
 
 /// The look of hatch lines, and their distance in sheet units.
@@ -76,7 +80,7 @@ pub(super) fn splits(picture: &Picture<'_>, sheet: &mut Sheet) -> bool {
 
 /// Draws the surfaces, cutting surfaces on top. Those of a tool are drawn on both halves.
 pub(super) fn outline(picture: &Picture<'_>, both_halves: bool, sheet: &mut Sheet) {
-    let colours = colours::surfaces(picture.model);
+    let colours = surface_colours(picture.model);
     let look = "fill=\"none\" stroke-linecap=\"round\" stroke-linejoin=\"round\"";
     sheet.group(look, |sheet| {
         for cutting in [false, true] {
@@ -145,4 +149,57 @@ pub(super) fn axis_line(picture: &Picture<'_>, sheet: &mut Sheet) {
     let look = "fill=\"none\" stroke=\"#22272e\" stroke-width=\".8\" stroke-dasharray=\"12 3 2 3\"";
     sheet.path(look, &lines([&row]));
     row.into_iter().for_each(|p| sheet.reach(p));
+}
+
+const REGION_FILLS: [&str; 9] = [
+    "#77aadd", "#eedd88", "#ffaabb", "#99ddff", "#44bb99", "#ee8866", "#bbcc33", "#dddddd",
+    "#aaaa00",
+];
+const MORE_REGION_FILLS: [&str; 7] =
+    ["#4477aa", "#ccbb44", "#ee6677", "#66ccee", "#228833", "#aa3377", "#bbbbbb"];
+const CUTTING_STROKES: [&str; 4] = ["#c1121f", "#e8590c", "#a61e6b", "#ff5d5d"];
+const NON_CUTTING_STROKES: [&str; 8] =
+    ["#1f2933", "#1d5fa8", "#6b4a1f", "#2f6f4f", "#6d4aa5", "#0e8a93", "#8a7a00", "#7f8794"];
+
+/// Returns a colour for each region, different for neighbours as far as the palette allows.
+pub(super) fn area_colours(regions: usize, borders: &[Border]) -> Vec<&'static str> {
+    let mut chosen: Vec<usize> = Vec::new();
+    let mut used = [0; REGION_FILLS.len()];
+    for region in 0..regions {
+        let neighbour_colours: Vec<usize> = borders
+            .iter()
+            .filter_map(|border| match border.sides {
+                [Side::Region(a), Side::Region(b)] if a == region => chosen.get(b).copied(),
+                [Side::Region(a), Side::Region(b)] if b == region => chosen.get(a).copied(),
+                _ => None,
+            })
+            .collect();
+        let colour = (0..REGION_FILLS.len())
+            .filter(|colour| !neighbour_colours.contains(colour))
+            // The least used colour, so that the palette is used evenly.
+            .min_by_key(|colour| used[*colour])
+            // Neighbours have all of them.
+            .unwrap_or(region % REGION_FILLS.len());
+        used[colour] += 1;
+        chosen.push(colour);
+    }
+    chosen.into_iter().map(|colour| REGION_FILLS[colour]).collect()
+}
+
+/// Returns a colour for each region, different for all as far as both palettes allow.
+pub(super) fn distinct_area_colours(regions: usize) -> Vec<&'static str> {
+    REGION_FILLS.into_iter().chain(MORE_REGION_FILLS).cycle().take(regions).collect()
+}
+
+/// Returns the colour of each surface.
+pub(super) fn surface_colours(model: &Model) -> Vec<&'static str> {
+    let (mut cutting, mut other) =
+        (CUTTING_STROKES.iter().cycle(), NON_CUTTING_STROKES.iter().cycle());
+    model
+        .surfaces
+        .iter()
+        .map(|s| s.cutting)
+        .map(|cuts| if cuts { cutting.next() } else { other.next() })
+        .map(|c| c.copied().unwrap_or("#000"))
+        .collect()
 }

@@ -12,7 +12,7 @@ use tool_dsl::plan::Tree;
 use tool_dsl::vector::{Point, cross, minus, norm};
 
 /// The plan's tree of owners.
-pub(super) type Owners = Tree<Option<usize>>;
+type Owners = Tree<Option<usize>>;
 
 /// A convex polygon of the section with one owner, counter-clockwise.
 pub(super) struct Piece {
@@ -25,6 +25,13 @@ pub(super) struct Piece {
 pub(super) struct Corner {
     pub(super) at: Point,
     pub(super) curve: Option<CurveIndex>,
+}
+
+/// A point, and a curve's value there.
+#[derive(Clone, Copy)]
+struct Valued {
+    at: Point,
+    value: f64,
 }
 
 /// Length tolerances of the division, in the tool's unit.
@@ -72,6 +79,7 @@ pub(super) fn divide(
     fineness: Fineness,
 ) -> Vec<Piece> {
     let (width, height) = (high[0] - low[0], high[1] - low[1]);
+    // At most 64 root cells in a row, also for a needle.
     let root = width.min(height).max(width.max(height) / 64.0);
     let lattice = Lattice { low, unit: root / f64::from(1 << MAX_HALVINGS) };
     let mut division =
@@ -104,6 +112,7 @@ impl Division<'_, '_> {
         if cell.side == 1 || self.cells.len() > MAX_CELLS || self.is_fine_enough(&tree, low, high) {
             let [i, j] = cell.corner;
             let s = cell.side;
+            // A larger neighbour takes these corners into its sides, so that both cut them alike.
             self.corners.extend([[i, j], [i + s, j], [i + s, j + s], [i, j + s]]);
             self.cells.push((cell, tree));
             return;
@@ -132,6 +141,7 @@ impl Division<'_, '_> {
             return self.subdivide(above, low, high);
         }
         let (below, above) = (self.subdivide(below, low, high), self.subdivide(above, low, high));
+        // The curve separates owners elsewhere only.
         if below == above {
             return below;
         }
@@ -147,8 +157,10 @@ impl Division<'_, '_> {
         let bent: Vec<CurveIndex> =
             splits.iter().copied().filter(|curve| !self.curves.straight(*curve)).collect();
         if bent.is_empty() {
+            // Straight lines cut exactly, but each split may double the polygons.
             return splits.len() <= MAX_SPLITS_PER_CELL || side < self.fineness.flat;
         }
+        // A chord in so small a cell is flat.
         if side < 2.0 * self.fineness.flat {
             return true;
         }
@@ -177,10 +189,10 @@ impl Division<'_, '_> {
         let corners = [low, [high[0], low[1]], high, [low[0], high[1]]];
         let mut crossings = Vec::new();
         for k in 0..4 {
-            let (a, b) = (corners[k], corners[(k + 1) % 4]);
-            let (u, v) = (self.curves.value(curve, a), self.curves.value(curve, b));
-            if (u <= 0.0) != (v <= 0.0) {
-                crossings.push(self.crossing(curve, (a, u), (b, v)));
+            let [a, b] = [corners[k], corners[(k + 1) % 4]]
+                .map(|at| Valued { at, value: self.curves.value(curve, at) });
+            if (a.value <= 0.0) != (b.value <= 0.0) {
+                crossings.push(self.crossing(curve, a, b));
             }
         }
         match crossings.as_slice() {
@@ -200,10 +212,12 @@ impl Division<'_, '_> {
     }
 
     /// Returns the crossing of a curve with a side. The result does not depend on the order of the ends.
-    fn crossing(&mut self, curve: CurveIndex, a: (Point, f64), b: (Point, f64)) -> Point {
-        let (a, b) = if (a.0[1], a.0[0]) <= (b.0[1], b.0[0]) { (a, b) } else { (b, a) };
-        let between = |t: f64| [0, 1].map(|k| a.0[k] + t * (b.0[k] - a.0[k]));
-        let (mut low, mut high) = ((0.0, a.1), (1.0, b.1));
+    fn crossing(&mut self, curve: CurveIndex, a: Valued, b: Valued) -> Point {
+        // Both cells of a side must find the same point to the last bit.
+        let (a, b) = if (a.at[1], a.at[0]) <= (b.at[1], b.at[0]) { (a, b) } else { (b, a) };
+        let between = |t: f64| [0, 1].map(|k| a.at[k] + t * (b.at[k] - a.at[k]));
+        let (mut low, mut high) = ((0.0, a.value), (1.0, b.value));
+        // A secant alone would miss a bent curve; for a line it is exact.
         if !self.curves.straight(curve) {
             for _ in 0..16 {
                 let t = (low.0 + high.0) / 2.0;
@@ -212,6 +226,7 @@ impl Division<'_, '_> {
             }
         }
         let share = low.1 / (low.1 - high.1);
+        // Infinite values, where the curve is undefined, give no share.
         let share = if share.is_finite() { share } else { 0.5 };
         between(low.0 + share * (high.0 - low.0))
     }
@@ -227,6 +242,7 @@ impl Division<'_, '_> {
         }
         let mut pieces = Vec::new();
         self.cut(corners, tree, &mut pieces);
+        // Two polygons meet along one side, with the same ends.
         if pieces.len() > 2 {
             joined(&mut pieces, 1e-9 * (s as f64) * self.lattice.unit);
         }
@@ -252,6 +268,7 @@ impl Division<'_, '_> {
             Tree::Split { curve, below, above, .. } => {
                 let values = self.values(*curve, &corners);
                 let changes = changes(&values);
+                // A bent curve enters twice. The corners of a triangle change signs at most twice.
                 if changes > 2 {
                     for triangle in fan(&corners) {
                         self.cut(triangle, tree, pieces);
@@ -272,6 +289,7 @@ impl Division<'_, '_> {
     fn values(&mut self, curve: CurveIndex, corners: &[Corner]) -> Vec<f64> {
         let values: Vec<f64> =
             corners.iter().map(|corner| self.curves.value(curve, corner.at)).collect();
+        // A vertex that an earlier cut put on the curve must not be cut off as a sliver.
         let largest = values.iter().map(|v| v.abs()).filter(|v| v.is_finite()).fold(0.0, f64::max);
         values.into_iter().map(|v| if v.abs() < 1e-10 * largest { 0.0 } else { v }).collect()
     }
@@ -290,6 +308,7 @@ impl Division<'_, '_> {
         }
         for (k, corner) in corners.iter().enumerate() {
             let next = (k + 1) % corners.len();
+            let [here, after] = [k, next].map(|k| Valued { at: corners[k].at, value: values[k] });
             let (value_here, value_next) = (values[k] * sign, values[next] * sign);
             // A corner on the curve at which the part ends is followed by the chord.
             match (value_here >= 0.0, value_next >= 0.0) {
@@ -298,19 +317,11 @@ impl Division<'_, '_> {
                 }
                 (true, true) => part.push(*corner),
                 (true, false) => {
-                    let at = self.crossing(
-                        curve,
-                        (corner.at, values[k]),
-                        (corners[next].at, values[next]),
-                    );
+                    let at = self.crossing(curve, here, after);
                     part.extend([*corner, Corner { at, curve: Some(curve) }]);
                 }
                 (false, true) if value_next > 0.0 => {
-                    let at = self.crossing(
-                        curve,
-                        (corner.at, values[k]),
-                        (corners[next].at, values[next]),
-                    );
+                    let at = self.crossing(curve, here, after);
                     part.push(Corner { at, curve: corner.curve });
                 }
                 (false, _) => {}
@@ -342,8 +353,11 @@ fn fan(corners: &[Corner]) -> Vec<Vec<Corner>> {
     let count = corners.len() as f64;
     let at = [0, 1].map(|k| corners.iter().map(|corner| corner.at[k]).sum::<f64>() / count);
     let middle = Corner { at, curve: None };
-    let next = |k: usize| Corner { curve: None, ..corners[(k + 1) % corners.len()] };
-    (0..corners.len()).map(|k| vec![middle, corners[k], next(k)]).collect()
+    let triangles = (0..corners.len()).map(|k| {
+        let next = Corner { curve: None, ..corners[(k + 1) % corners.len()] };
+        vec![middle, corners[k], next]
+    });
+    triangles.collect()
 }
 
 /// Inserts the corners of each polygon into the sides of the others on which they lie.

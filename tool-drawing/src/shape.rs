@@ -81,8 +81,9 @@ impl Shape {
             let points: Vec<Point> =
                 row.iter().flat_map(|stroke| stroke.points(CHORD_TOLERANCE)).collect();
             let next = |k: usize| points[(k + 1) % points.len()];
-            let double_area = |k: usize| points[k][0] * next(k)[1] - points[k][1] * next(k)[0];
-            (0..points.len()).map(double_area).sum::<f64>()
+            (0..points.len())
+                .map(|k| points[k][0] * next(k)[1] - points[k][1] * next(k)[0])
+                .sum::<f64>()
         });
         rows.sum::<f64>().abs() / 2.0
     }

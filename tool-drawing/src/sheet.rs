@@ -249,7 +249,7 @@ pub(super) fn lines<R: AsRef<[Point]>>(rows: impl IntoIterator<Item = R>) -> Str
 }
 
 /// Formats a number with at most two decimals.
-pub(super) fn short(value: f64) -> String {
+fn short(value: f64) -> String {
     let text = format!("{value:.2}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
     if text == "-0" { "0".to_owned() } else { text.to_owned() }

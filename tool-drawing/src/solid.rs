@@ -4,15 +4,13 @@
 //! (from +x), and above it the view from above (from +z).
 
 use super::borders::Border;
-use super::colours;
-use super::contour::tidy;
 use super::curves::{Curves, Plane};
 use super::legend::{self, Entry, Sign};
-use super::marks::head;
-use super::regions::name;
+use super::notes::tidy;
+use super::regions::{head, name};
 use super::sheet::{Anchor, Look, SECONDARY_COLOUR, Sheet, lines};
 use super::view::{View, is_outline};
-use super::{Content, Picture, paint, trace};
+use super::{Content, Picture, Traced, paint, trace};
 use tool_dsl::CheckedTool;
 use tool_dsl::expr::interval::Interval;
 use tool_dsl::vector::Point;
@@ -71,23 +69,22 @@ pub(super) fn sections<'m>(tool: &'m CheckedTool, content: Content) -> [Section<
         middle if middle.abs() < 1e-6 * size => 0.0,
         middle => middle,
     });
-    let borders = traced(tool, middle);
-    let sides = extents(&borders, proved);
+    let sections = traced(tool, middle);
+    let sides = extents(&sections, proved);
     let [x, y, z] = sides.map(|side| side.high - side.low);
     let scale = MAX_EXTENT / (x + y).max(z + y);
-    let fills = colours::distinct_areas(tool.model.regions.len());
-    let mut borders = borders.into_iter();
-    NORMALS.map(|normal| {
+    let fills = paint::distinct_area_colours(tool.model.regions.len());
+    let [front, side, top] = sections;
+    [(1, front), (0, side), (2, top)].map(|(normal, traced)| {
         let [u, v] = axes(normal).map(|axis| sides[axis]);
         let view = View::framed([[u.low, v.low], [u.high, v.high]], scale);
-        let borders = borders.next().unwrap_or_default();
-        let picture = Picture::of(&tool.model, content, (borders, size), view, fills.clone());
+        let picture = Picture::of(&tool.model, content, traced, view, fills.clone());
         Section { normal, at: middle[normal], picture }
     })
 }
 
 /// Returns the borders in the planes at these coordinates along x, y and z, in the order of `NORMALS`.
-fn traced(tool: &CheckedTool, at: [f64; 3]) -> [Vec<Border>; 3] {
+fn traced(tool: &CheckedTool, at: [f64; 3]) -> [Traced; 3] {
     let sides = tool.extent.cell().sides;
     let [x, y, z] = sides.map(|side| side.high - side.low);
     let size = x.max(y).max(z);
@@ -112,10 +109,10 @@ fn axes(normal: usize) -> [usize; 2] {
 }
 
 /// Returns the box around three sections; `proved` where there is none.
-fn extents(sections: &[Vec<Border>; 3], proved: [Interval; 3]) -> [Interval; 3] {
+fn extents(sections: &[Traced; 3], proved: [Interval; 3]) -> [Interval; 3] {
     let mut sides: [Option<Interval>; 3] = [None; 3];
-    for (normal, borders) in NORMALS.into_iter().zip(sections) {
-        let Some(bounds) = bounds(borders) else { continue };
+    for (normal, traced) in NORMALS.into_iter().zip(sections) {
+        let Some(bounds) = bounds(&traced.borders) else { continue };
         for (axis, side) in axes(normal).into_iter().zip(bounds) {
             sides[axis] = Some(sides[axis].map_or(side, |known| known.hull(side)));
         }
@@ -176,10 +173,10 @@ impl Section<'_> {
         let Some(bounds) = bounds(borders) else { return };
         for (k, (axis, side)) in axes(self.normal).into_iter().zip(bounds).enumerate() {
             let ends = [side.low, side.high];
-            let same = |(other, known): &Dimension| {
+            let is_known = known.iter().any(|(other, known)| {
                 *other == axis && (0..2).all(|end| (known[end] - ends[end]).abs() < 1e-6 * size)
-            };
-            if known.iter().any(same) {
+            });
+            if is_known {
                 continue;
             }
             known.push((axis, ends));
@@ -245,9 +242,8 @@ impl Section<'_> {
 /// Returns the legend's entries of the regions that appear in a section.
 fn regions(sections: &[Section<'_>; 3]) -> Vec<Entry> {
     let [Section { picture, .. }, ..] = sections;
-    let appears = |region: usize| sections.iter().any(|s| !s.picture.shapes[region].is_empty());
     (0..picture.shapes.len())
-        .filter(|region| appears(*region))
+        .filter(|region| sections.iter().any(|s| !s.picture.shapes[*region].is_empty()))
         .map(|region| {
             let colour = picture.fills[region];
             (Sign::Region { colour }, picture.model.regions[region].name.clone())

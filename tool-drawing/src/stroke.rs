@@ -66,9 +66,9 @@ impl Stroke {
         if let Some((centre, radius)) = self.circle {
             for (k, end) in [(0, centre[1] - radius), (1, centre[1] + radius)] {
                 let top = minus([centre[0], end], centre);
-                let (a, b) = (minus(self.from, centre), minus(self.to, centre));
-                let within = |a: Point, b: Point| cross(a, top) >= 0.0 && cross(top, b) >= 0.0;
-                if if self.left() { within(a, b) } else { within(b, a) } {
+                let ends = [minus(self.from, centre), minus(self.to, centre)];
+                let [a, b] = if self.left() { ends } else { [ends[1], ends[0]] };
+                if cross(a, top) >= 0.0 && cross(top, b) >= 0.0 {
                     span[k] = end;
                 }
             }
@@ -97,6 +97,7 @@ fn circle([a, b, c]: [Point; 3]) -> Option<(Point, f64)> {
     let (uu, vv) = (dot(u, u), dot(v, v));
     let q = [(v[1] * uu - u[1] * vv) / double_cross, (u[0] * vv - v[0] * uu) / double_cross];
     let radius = norm(q);
+    // Nearly collinear points fit a circle of any radius.
     let flat = radius > 1e4 * norm(v).max(norm(u));
     (radius.is_finite() && !flat).then_some(([a[0] + q[0], a[1] + q[1]], radius))
 }
@@ -109,22 +110,22 @@ pub(super) fn round(
 ) -> Option<Vec<Stroke>> {
     let last = row.len() - 1;
     let closed = row[0] == row[last];
-    let at = |share: f64| {
-        let position = (share * last as f64).min(last as f64);
-        let k = (position.floor() as usize).min(last - 1);
-        Stroke::line(row[k], row[k + 1]).at(position - k as f64)
-    };
     // The last point of a closed circle equals the first, so it gives no information.
     let step = if closed { 0.2 } else { 0.25 };
-    let feet = [0.0, 1.0, 2.0, 3.0, 4.0].map(|k| foot(at(k * step)));
+    let feet = [0.0, 1.0, 2.0, 3.0, 4.0].map(|steps| {
+        let position = (steps * step * last as f64).min(last as f64);
+        let k = (position.floor() as usize).min(last - 1);
+        foot(Stroke::line(row[k], row[k + 1]).at(position - k as f64))
+    });
     let (centre, radius) = circle([feet[0], feet[2], feet[4]])?;
-    let is_off = |p: &Point| (norm(minus(*p, centre)) - radius).abs() > 10.0 * near;
-    if feet.iter().any(is_off) {
+    if feet.iter().any(|p| (norm(minus(*p, centre)) - radius).abs() > 10.0 * near) {
         return None;
     }
     let arc = |from: Point, to: Point| Stroke { from, to, circle: Some((centre, radius)) };
     let swept: f64 = row.windows(2).map(|pair| arc(pair[0], pair[1]).turn()).sum();
+    // A stroke is less than half a circle.
     let parts = ((swept.abs() / (0.9 * PI)).ceil() as usize).max(1);
+    // Each arc needs a row of points of its own.
     if parts > last {
         return None;
     }
@@ -146,11 +147,16 @@ pub(super) fn fitted(row: &[Point], tolerance: f64) -> Vec<Stroke> {
         && let Some((centre, radius)) = circle([row[0], row[last / 2], row[last]])
     {
         let stroke = Stroke { circle: Some((centre, radius)), ..line };
-        let is_off = |p: Point| (norm(minus(p, centre)) - radius).abs() > tolerance;
         let middles = row.windows(2).map(|pair| Stroke::line(pair[0], pair[1]).at(0.5));
         let less_than_half = stroke.turn().abs() < 0.9 * PI
             && norm(minus(stroke.at(0.5), row[last / 2])) < 0.5 * length + tolerance;
-        if less_than_half && !row.iter().copied().chain(middles).any(is_off) {
+        if less_than_half
+            && !row
+                .iter()
+                .copied()
+                .chain(middles)
+                .any(|p| (norm(minus(p, centre)) - radius).abs() > tolerance)
+        {
             return vec![stroke];
         }
     }

@@ -12,7 +12,7 @@ const MIN_SHORTENED_LENGTH: f64 = 0.7;
 
 /// An interval of the axis that is left out.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Cut {
+struct Cut {
     low: f64,
     high: f64,
 }
@@ -42,6 +42,7 @@ impl View {
             _ => (0.0, 0.0),
         };
         let length = high - low;
+        // Levels that differ by rounding are one.
         levels.dedup_by(|a, b| *a - *b < 1e-6 * length);
         let plain: Vec<[f64; 2]> = levels
             .windows(2)
@@ -131,11 +132,11 @@ fn cuts(plain: &[[f64; 2]], length: f64, width: f64) -> Vec<Cut> {
 
 /// Returns the mirror image of a stroke.
 pub(super) fn mirrored(stroke: &Stroke) -> Stroke {
-    let turned = |[x, y]: Point| [-x, y];
+    let Stroke { from, to, circle } = *stroke;
     Stroke {
-        from: turned(stroke.from),
-        to: turned(stroke.to),
-        circle: stroke.circle.map(|(centre, radius)| (turned(centre), radius)),
+        from: [-from[0], from[1]],
+        to: [-to[0], to[1]],
+        circle: circle.map(|([x, y], radius)| ([-x, y], radius)),
     }
 }
 

@@ -3,11 +3,10 @@
 use crate::bound::{self, EnvelopeSlab};
 use crate::diagnostic::{CheckKind, Diagnostic, Reported, without_error};
 use crate::expr::{self, Id};
-use crate::lint;
 use crate::model::Model;
 use crate::plan::{self, PlannedTool};
 use crate::prove::Bounds;
-use crate::validate;
+use crate::{lint, validate};
 use std::ops::Deref;
 
 /// A tool in which no error was found, with everything that is emitted about it. Only
@@ -68,11 +67,14 @@ pub(crate) fn check(
     // The plan would only repeat these errors.
     without_error(diagnostics)?;
     let envelope = bound::envelope(&model, &extent);
-    let file_curves: Vec<Id> = model.curves.iter().map(|curve| curve.value).collect();
+    let file_curves: Vec<Id> = model.curve_values().collect();
     let planned =
         plan::plan(model, extent).map_err(|diagnostic| Reported::push(diagnostics, diagnostic))?;
-    let guarantees = || validate::planned(&file_curves, &planned);
-    debug_assert_eq!(guarantees(), Ok(()), "`plan` keeps its guarantees");
+    debug_assert_eq!(
+        validate::planned(&file_curves, &planned),
+        Ok(()),
+        "`plan` keeps its guarantees"
+    );
     let (bounds, found) = Bounds::of(&planned);
     diagnostics.extend(found);
     without_error(diagnostics)?;
@@ -85,7 +87,7 @@ pub(crate) fn check(
 /// [`CheckKind::ConstantOverflow`] if one overflows.
 fn finite(model: &Model) -> Result<(), Diagnostic> {
     let outputs = model.regions.iter().flat_map(|region| region.outputs.roots());
-    let curves = model.curves.iter().map(|curve| curve.value);
+    let curves = model.curve_values();
     let needed = model.graph.dependencies(outputs.chain(curves));
     let beyond =
         |id: &expr::Id| model.graph.constant(*id).is_some_and(|value| !value.to_f64().is_finite());

@@ -5,10 +5,8 @@ use crate::diagnostic::{
     Diagnostic, Kind, Refusal, RegionKind, Reported, Severity, ValueKind, any_error, readable,
     without_error,
 };
-use crate::resolve;
 use crate::source::{Source, Sources, Span};
-use crate::syntax;
-use crate::validate;
+use crate::{resolve, syntax, validate};
 use std::collections::BTreeSet;
 
 /// The result of compiling a text: a tool, or the errors that prevent it.
@@ -92,12 +90,10 @@ fn attach_arguments(sources: &Sources, count: usize, diagnostics: &mut [Diagnost
         return;
     }
     let texts: Vec<String> = given.iter().map(|source| source.text.trim().to_owned()).collect();
-    let is_given = |diagnostic: &Diagnostic| {
-        let (source, _) = sources.locate(diagnostic.span);
-        given.iter().any(|given| given.base == source.base)
-    };
     for diagnostic in diagnostics.iter_mut() {
-        if diagnostic.severity == Severity::Error && !is_given(diagnostic) {
+        let (source, _) = sources.locate(diagnostic.span);
+        let is_given = given.iter().any(|given| given.base == source.base);
+        if diagnostic.severity == Severity::Error && !is_given {
             diagnostic.arguments = texts.clone().into();
         }
     }

@@ -24,7 +24,7 @@ pub fn digest(tool: &CheckedTool) -> u64 {
 /// are needed, so that other definitions in the file do not matter.
 fn meaning(tool: &CheckedTool) -> String {
     let model = &tool.model;
-    let mut needed: Vec<Id> = model.curves.iter().map(|curve| curve.value).collect();
+    let mut needed: Vec<Id> = model.curve_values().collect();
     needed.extend(model.regions.iter().flat_map(|region| region.outputs.roots()));
     needed.extend(tool.plan.clearance.leaves());
     let needed = model.graph.dependencies(needed);

@@ -128,10 +128,11 @@ impl Formula {
         match self {
             Formula::Const(_) => None,
             Formula::Atom { curve, .. } => self.decide(signs).is_none().then_some(*curve),
-            Formula::All(parts) | Formula::Any(parts) => {
-                let open = || parts.iter().find_map(|part| part.first_undecided_curve(signs));
-                self.decide(signs).is_none().then(open).flatten()
-            }
+            Formula::All(parts) | Formula::Any(parts) => self
+                .decide(signs)
+                .is_none()
+                .then(|| parts.iter().find_map(|part| part.first_undecided_curve(signs)))
+                .flatten(),
         }
     }
 

@@ -181,6 +181,20 @@ impl Model {
         self.domain.format_point([x, y, self.frame.to_file(z)])
     }
 
+    /// Returns the expressions of the curves, in their order.
+    pub(crate) fn curve_values(&self) -> impl Iterator<Item = Id> {
+        self.curves.iter().map(|curve| curve.value)
+    }
+
+    /// Returns all expressions that are evaluated at a point: those of the regions, then the curves.
+    pub(crate) fn roots(&self) -> impl Iterator<Item = Id> {
+        let outputs = self.regions.iter().flat_map(|region| {
+            let evaluation = [region.depth, region.magnitude, region.niceness];
+            evaluation.into_iter().chain(region.direction).chain(region.raw_direction.0)
+        });
+        outputs.chain(self.curve_values())
+    }
+
     /// Returns the depths of the regions in their order, followed by the distances of [`Over`] that no region
     /// has.
     pub(crate) fn depths(&self) -> Vec<Id> {

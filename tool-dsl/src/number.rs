@@ -82,8 +82,9 @@ impl Number {
     pub(crate) fn is_double(&self) -> bool {
         // Significands of this type are odd, or 0.
         let significand = i64::try_from(self.exact.repr().significand());
-        let fits = |significand: i64| significand.unsigned_abs() < 1 << f64::MANTISSA_DIGITS;
-        self.exponent().is_some() && significand.is_ok_and(fits)
+        self.exponent().is_some()
+            && significand
+                .is_ok_and(|significand| significand.unsigned_abs() < 1 << f64::MANTISSA_DIGITS)
     }
 
     /// Returns whether a file may contain this number: zero, or a magnitude from 1e-90 to 1e90, so that sums

@@ -1,12 +1,11 @@
 //! The source text of a tool, and locations in it.
 
+use proc_macro2::{Delimiter, Spacing, TokenStream, TokenTree};
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
-
-use proc_macro2::{Delimiter, Spacing, TokenStream, TokenTree};
 
 /// The length of the longest text that is read, in bytes.
 pub const MAX_SOURCE_BYTES: usize = 1 << 20;
@@ -222,15 +221,21 @@ impl Source {
         self.path.as_deref()
     }
 
-    /// Resolves a path that this text mentions: the path to show, and the path to open.
-    fn resolve_path(&self, file: &str) -> Option<(String, PathBuf)> {
+    /// Resolves a path that this text mentions.
+    fn resolve_path(&self, file: &str) -> Option<MentionedFile> {
         let near = |path: &Path| folder(path).join(file);
         let shown = match self.tokens {
             Some(_) => file.to_owned(),
             None => near(Path::new(&self.name)).display().to_string(),
         };
-        Some((shown, near(self.path.as_deref()?)))
+        Some(MentionedFile { shown, path: near(self.path.as_deref()?) })
     }
+}
+
+/// A file that a text mentions: its path to show, and the path to open.
+pub(crate) struct MentionedFile {
+    pub(crate) shown: String,
+    pub(crate) path: PathBuf,
 }
 
 /// All texts that a tool consists of: its own, then the arguments given from outside, then the mounted files.
@@ -298,9 +303,8 @@ impl Sources {
         files.filter_map(|source| source.path.as_deref())
     }
 
-    /// Resolves a path mentioned at a location: the path to show, and the path to open. Returns `None` if the
-    /// mentioning text has no file.
-    pub(crate) fn resolve_path(&self, by: Span, file: &str) -> Option<(String, PathBuf)> {
+    /// Resolves a path mentioned at a location. Returns `None` if the mentioning text has no file.
+    pub(crate) fn resolve_path(&self, by: Span, file: &str) -> Option<MentionedFile> {
         self.locate(by).0.resolve_path(file)
     }
 
@@ -336,17 +340,17 @@ impl Sources {
     pub(crate) fn read(
         &mut self,
         by: Span,
-        (shown, path): (String, PathBuf),
+        MentionedFile { shown, path }: MentionedFile,
     ) -> io::Result<&Source> {
         if let Some(files) = self.main().files.clone() {
             return self.read_from(&files, by, shown, &path);
         }
         let real = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_owned());
         let path_on_disk = real(&path);
-        let same = |source: &Source| {
+        let known = self.0.iter().position(|source| {
             source.tokens.is_none() && source.path().is_some_and(|path| real(path) == path_on_disk)
-        };
-        if let Some(known) = self.0.iter().position(same) {
+        });
+        if let Some(known) = known {
             return Ok(&self.0[known]);
         }
         let source = Source::read_as(shown, &path)?;

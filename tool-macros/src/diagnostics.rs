@@ -25,9 +25,6 @@ pub(crate) fn errors(refusal: &Refusal, sources: &Sources, call_site: Span) -> T
 }
 
 /// Returns a tool's warnings, each at its location. Notes are not shown in a build.
-///
-/// On stable Rust a macro cannot emit warnings. But rustc warns about the use of a deprecated item, and shows
-/// the text of its deprecation note.
 pub(crate) fn warnings(
     diagnostics: &[Diagnostic],
     sources: &Sources,
@@ -36,6 +33,8 @@ pub(crate) fn warnings(
     let warnings = diagnostics.iter().filter(|diagnostic| diagnostic.severity == Severity::Warning);
     located(warnings, sources, call_site)
         .map(|(message, [first, _])| {
+            // On stable Rust a macro cannot emit warnings. But rustc warns about the use of a deprecated item, and shows
+            // the text of its deprecation note.
             quote_spanned! { first =>
                 const _: () = {
                     #[deprecated(note = #message)]

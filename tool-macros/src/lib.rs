@@ -120,6 +120,7 @@ fn library(folder: &LitStr) -> syn::Result<proc_macro2::TokenStream> {
             files.push(path);
         }
     }
+    // The order of a folder's entries differs between platforms.
     files.sort();
     if let Ok(wanted) = std::env::var("TOUCHOFF_TOOLS") {
         files = select_files(&wanted, &files, folder)?;
@@ -194,9 +195,10 @@ fn read(path: &Path, shown: &str, literal: &LitStr) -> syn::Result<Source> {
         .map_err(|error| syn::Error::new(literal.span(), format!("cannot read `{shown}`: {error}")))
 }
 
-/// Emits a tool. Its drawing is made while rustdoc is running only, as rustc discards it.
+/// Emits a tool, with its drawing for its documentation.
 #[cfg(feature = "drawings")]
 fn emitted(tool: &CheckedTool) -> proc_macro2::TokenStream {
+    // rustc discards documentation, so the drawing is made for rustdoc only.
     let program = std::env::current_exe();
     if !program.is_ok_and(|program| program.file_stem().is_some_and(|name| name == "rustdoc")) {
         return emit::emit(tool);

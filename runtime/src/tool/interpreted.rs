@@ -15,7 +15,9 @@ use std::ops::Range;
 use std::path::Path;
 use tool_dsl::bound::lateral_extent;
 use tool_dsl::domain::Domain;
-use tool_dsl::interpret::{BLOCK_POINTS, Lanes, OUTPUT_COUNT, PlanEvaluator, Scratch, Tape, Value};
+use tool_dsl::interpret::{
+    BLOCK_POINTS, Block, Lanes, OUTPUT_COUNT, PlanEvaluator, Scratch, Tape, Value,
+};
 use tool_dsl::prove::Bounds;
 use tool_dsl::source::Source;
 use tool_dsl::{Accepted, CheckedTool, compile_with_arguments, diagnostic, digest, model};
@@ -172,10 +174,11 @@ impl Tool for Interpreted {
         if owner[0] >= 0.0 {
             return 0.0;
         }
-        let block = point.map(|coordinate| [coordinate; BLOCK_POINTS]);
         // A tape runs on blocks, so the point is put in every lane.
+        let points = point.map(|coordinate| [coordinate; BLOCK_POINTS]);
+        let block = Block { points: points.each_ref(), count: 1, length: 1.0 };
         let (mut registers, mut results) = (Vec::new(), [[0.0; BLOCK_POINTS]]);
-        self.clearance_tape.run((block.each_ref(), 1), 1.0, &mut registers, &mut results);
+        self.clearance_tape.run(block, &mut registers, &mut results);
         results[0][0]
     }
 
@@ -378,8 +381,8 @@ impl Interpreted {
         for (component, list) in block.iter_mut().zip(coordinates) {
             component[..count].copy_from_slice(&list[indices.clone()]);
         }
-        let points = (block.each_ref(), count);
-        self.plan.owners(points, length, &mut evaluations.lanes, &mut owners);
+        let points = Block { points: block.each_ref(), count, length };
+        self.plan.owners(points, &mut evaluations.lanes, &mut owners);
         for (index, _) in owners[..count].iter().enumerate().filter(|(_, owner)| **owner >= 0.0) {
             evaluations.inside[(start + index) / LANES] |= 1 << (index % LANES);
         }
@@ -435,12 +438,8 @@ impl Interpreted {
             } else {
                 let tape = &self.evaluations[region as usize];
                 let results = &mut results[1..result_count];
-                tape.run(
-                    (gathered.each_ref(), owned.len()),
-                    length,
-                    &mut evaluations.registers,
-                    results,
-                );
+                let owned = Block { points: gathered.each_ref(), count: owned.len(), length };
+                tape.run(owned, &mut evaluations.registers, results);
             }
             store(evaluations, outputs, |list, result| {
                 for (lane, index) in owned.iter().enumerate() {

@@ -2,7 +2,7 @@
 
 use super::{library, tool};
 use crate::detail::{Detail, scale_factor};
-use crate::{Content, Part, Picture, TextRendering, contour, paint, solid, svg};
+use crate::{Content, Part, Picture, TextRendering, notes, paint, solid, svg};
 use std::f64::consts::PI;
 use tool_dsl::CheckedTool;
 
@@ -61,7 +61,7 @@ fn dimensions_are_divided_between_the_views() {
     let tool = library("ball_er16");
     let mut picture = Picture::new(&tool, Content::Outline);
     let corner = Detail::new(&tool, &picture).expect("a detail").corner;
-    for p in contour::heights(picture.model, &picture.borders, picture.size, |_| true) {
+    for p in notes::heights(picture.model, &picture.borders, picture.size, |_| true) {
         picture.part = Part::OutsideDetail(corner);
         let outside = picture.describes(p);
         picture.part = Part::Detail(corner);

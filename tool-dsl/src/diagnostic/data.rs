@@ -240,10 +240,6 @@ pub enum Statement {
 
 impl fmt::Display for Statement {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let shown = |owner: &Option<String>| match owner {
-            Some(region) => format!("`{region}`"),
-            None => "the outside".to_owned(),
-        };
         match self {
             Statement::SingleOwner(owner) => {
                 write!(f, "whether all points belong to {}", shown(owner))
@@ -260,6 +256,13 @@ impl fmt::Display for Statement {
             Statement::MeetingRegions(count) => write!(f, "which of {count} regions meet"),
             Statement::EndsOnProfile => f.write_str("whether the solid ends on the profile"),
         }
+    }
+}
+
+fn shown(owner: &Option<String>) -> String {
+    match owner {
+        Some(region) => format!("`{region}`"),
+        None => "the outside".to_owned(),
     }
 }
 

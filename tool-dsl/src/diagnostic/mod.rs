@@ -4,9 +4,13 @@
 //! are in one table, family by family, so that rewording one changes no decision. `docs/errors.md` is
 //! generated from it.
 
+use crate::source::{Source, Sources, Span};
+use annotate_snippets::{Annotation, AnnotationKind, Group, Level, Renderer, Snippet};
+use std::borrow::Cow;
+use std::ops::Range;
+
 mod checks;
 mod data;
-mod escape;
 mod kind;
 mod mounts;
 mod profile;
@@ -22,8 +26,6 @@ pub use data::{
     CycleLinks, Expected, FormattedNumber, MountChain, NameRemedy, NameStart, Names, Operation,
     ParamRemedy, Role, Statement, Subject, SurfaceRemedy, format_number, nearest,
 };
-pub use escape::escaped;
-pub(crate) use escape::is_hidden;
 pub use kind::{FAMILIES, Family, Kind, entries, entry, similar_entries};
 pub use mounts::MountKind;
 pub use profile::ProfileKind;
@@ -36,10 +38,6 @@ pub use table::{Entry, Example};
 pub use values::ValueKind;
 
 pub use crate::dimension::Dimension;
-use crate::source::{Source, Sources, Span};
-use annotate_snippets::{Annotation, AnnotationKind, Group, Level, Renderer, Snippet};
-use escape::{escaped_lines, harmless};
-use std::ops::Range;
 
 /// The severity of a diagnostic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -64,7 +62,7 @@ pub struct Diagnostic {
     /// A second location with a label of its own.
     pub secondary: Option<(Span, String)>,
     /// Evidence of the error that this one follows from. Such a diagnostic is not shown.
-    pub(crate) caused_by: Option<Reported>,
+    caused_by: Option<Reported>,
     /// The arguments of params that may have caused it, as they were written.
     pub(crate) arguments: Box<[String]>,
 }
@@ -164,4 +162,46 @@ fn excerpt(source: &Source) -> Snippet<'_, Annotation<'_>> {
 fn visible(source: &Source, span: Span) -> Range<usize> {
     let start = source.text.floor_char_boundary(span.start.min(source.text.len()));
     start..source.text.ceil_char_boundary(span.end.min(source.text.len())).max(start)
+}
+
+/// Returns whether a character is a control character, or a mark that changes the text direction. A name or a
+/// text must not bring either onto a terminal.
+pub(crate) fn is_hidden(c: char) -> bool {
+    c.is_control()
+        || matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{feff}')
+        || matches!(c, '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+}
+
+/// Returns a name or other text with an escape such as `\u{1b}` in place of every control character and every
+/// mark that changes the text direction.
+pub fn escaped(text: &str) -> Cow<'_, str> {
+    if !text.contains(is_hidden) {
+        return Cow::Borrowed(text);
+    }
+    let escaped = text.chars().map(|c| match is_hidden(c) {
+        true => c.escape_unicode().to_string(),
+        false => c.to_string(),
+    });
+    Cow::Owned(escaped.collect())
+}
+
+/// Returns the lines of a text for display, with every byte at its offset. The renderer itself replaces
+/// one-byte control characters.
+fn harmless(text: &str) -> Cow<'_, str> {
+    let replaced = |c: &char| is_hidden(*c) && c.len_utf8() > 1;
+    if !text.chars().any(|c| replaced(&c)) {
+        return Cow::Borrowed(text);
+    }
+    // The replacements have as many bytes as what they replace.
+    let shown = text.chars().map(|c| match c.len_utf8() {
+        _ if !replaced(&c) => c,
+        2 => '\u{bf}',
+        _ => '\u{fffd}',
+    });
+    Cow::Owned(shown.collect())
+}
+
+/// Returns the lines of a message, each escaped.
+fn escaped_lines(text: &str) -> String {
+    text.split('\n').map(escaped).collect::<Vec<_>>().join("\n")
 }

@@ -178,11 +178,13 @@ impl<'m> Variables<'m> {
     }
 
     fn roots(&self) -> Vec<(Id, usize)> {
-        let root = |(variable, index): (&Variable, &usize)| match variable {
-            Variable::Root(root) => Some((*root, *index)),
-            _ => None,
-        };
-        self.indices.iter().filter_map(root).collect()
+        self.indices
+            .iter()
+            .filter_map(|(variable, index)| match variable {
+                Variable::Root(root) => Some((*root, *index)),
+                _ => None,
+            })
+            .collect()
     }
 
     /// Returns the point from which a root is the distance, by coordinate.
@@ -193,6 +195,7 @@ impl<'m> Variables<'m> {
             let form = self.form(part)?;
             let mut factors = form.factors.iter();
             let (variable, factor) = factors.next()?;
+            // A coordinate minus a number, with either sign.
             let is_only = factors.next().is_none() && factor.abs() == Number::int(1);
             point.insert(*variable, is_only.then(|| &-&form.constant * factor)?);
         }
@@ -228,6 +231,7 @@ impl<'m> Variables<'m> {
                         let indices =
                             coordinates.iter().filter_map(|v| self.indices.get(v).copied());
                         parts.extend(indices.map(Form::variable));
+                    // A power with an odd exponent has both signs.
                     } else if monomial[1..].iter().any(|exponent| exponent % 2 == 1) {
                         continue;
                     }
@@ -244,6 +248,8 @@ impl<'m> Variables<'m> {
                     parts.extend(squares.into_iter().filter_map(|part| self.form(part)));
                     parts.retain(|form| form.factors.keys().all(|v| *v < variables));
                     self.indices.retain(|_, at| *at < variables);
+                    // For one square, `|u|` is `u` or `-u`. For several, a root is no more than the sum of their
+                    // absolute values.
                     if is_complete && parts.len() == count && (count == 1 || self.is_space) {
                         let side = |signs: usize| {
                             parts
@@ -279,6 +285,7 @@ fn squares_compared(graph: &Graph, value: Id) -> Option<[Squared; 2]> {
     let Node::Sub(a, b) = *graph.node(graph.proof_form(value)) else { return None };
     let side = |id: Id| match *graph.node(id) {
         Node::Mul(a, b) if a == b => Some(Squared::Of(a)),
+        // The root of that side exists if a depth has it; without one, there is nothing to compare.
         _ => Some(Squared::Root(graph.find(&Node::Sqrt(id))?)),
     };
     Some([side(a)?, side(b)?])
@@ -286,12 +293,14 @@ fn squares_compared(graph: &Graph, value: Id) -> Option<[Squared; 2]> {
 
 /// Returns whether a curve compares squares of expressions that contain roots.
 pub(super) fn compares_roots(graph: &Graph, value: Id) -> bool {
-    let root = |id: &Id| matches!(graph.node(*id), Node::Sqrt(_));
-    let of_root = |side: &Squared| match side {
-        Squared::Of(a) => graph.dependencies([*a]).iter().any(root),
-        Squared::Root(_) => false,
-    };
-    squares_compared(graph, value).is_some_and(|sides| sides.iter().any(of_root))
+    squares_compared(graph, value).is_some_and(|sides| {
+        sides.iter().any(|side| match side {
+            Squared::Of(a) => {
+                graph.dependencies([*a]).iter().any(|id| matches!(graph.node(*id), Node::Sqrt(_)))
+            }
+            Squared::Root(_) => false,
+        })
+    })
 }
 
 /// Returns the terms squared under a root of a sum of squares, and whether the sum has no others. An absolute
@@ -307,6 +316,7 @@ fn squares(graph: &Graph, root: Id) -> (Vec<Id>, bool) {
         match *graph.node(id) {
             Node::Add(a, b) => pending.extend([a, b]),
             Node::Mul(a, b) if a == b => parts.push(a),
+            // `q` is the sum of two squares, and a constant is one: more under the root only makes it larger.
             Node::Coord(Coord::Q) => is_complete = false,
             Node::Const(ref value) if !value.is_negative() => is_complete = false,
             _ => return (Vec::new(), false),

@@ -39,7 +39,7 @@ impl Exact {
 pub(super) struct Condition {
     pub(super) factors: Vec<f64>,
     pub(super) constant: f64,
-    pub(super) strict: bool,
+    strict: bool,
     origin: Origin,
 }
 
@@ -77,8 +77,9 @@ impl Condition {
         }
     }
 
-    pub(super) fn with_strict(self, strict: bool) -> Condition {
-        Condition { strict, ..self }
+    /// Returns the condition with `<` in place of `≤`.
+    pub(super) fn strictly(&self) -> Condition {
+        Condition { strict: true, ..self.clone() }
     }
 
     /// Returns the coefficient of the `wanted` variable, the constant, and the rounding error of the
@@ -90,6 +91,7 @@ impl Condition {
         for (variable, value) in exact.factors.iter().enumerate() {
             let rounding_error = number::ROUNDING * sizes[variable];
             let is_rounding = rounding_error.is_finite() && value.to_f64().abs() <= rounding_error;
+            // A factor that cancels leaves its rounding, which is not a variable left over.
             if Some(variable) == wanted {
                 factor = value.clone();
             } else if !value.is_zero() && !is_rounding {
@@ -132,6 +134,7 @@ fn combined(origin: &Origin, known: &mut HashMap<*const Sum, Rc<Combined>>) -> R
         |n: &Number| scale.as_ref().and_then(|scale| n.checked_div(scale)).unwrap_or(n.clone());
     let (x, y) = (rescale(&x), rescale(&y));
     let mut exact = a.exact.combined(&x, &b.exact, &y);
+    // It cancels by construction, apart from rounding.
     exact.factors[sum.variable] = Number::int(0);
     let combine = |a: f64, b: f64| a * x.to_f64().abs() + b * y.to_f64().abs();
     let sizes = a.sizes.iter().zip(&b.sizes).map(|(a, b)| combine(*a, *b)).collect();
@@ -161,29 +164,29 @@ pub(super) fn without(
 ) -> Option<Vec<Condition>> {
     while !variables.is_empty() {
         // A variable bounded from one side only is eliminated by dropping its conditions.
-        let is_one_sided = |variable: &usize| {
-            let has_sign = |sign: f64| conditions.iter().any(|c| sign * c.factors[*variable] > 0.0);
-            !has_sign(1.0) || !has_sign(-1.0)
-        };
         let (free, bounded): (Vec<usize>, Vec<usize>) =
-            variables.into_iter().partition(is_one_sided);
+            variables.into_iter().partition(|variable| {
+                !conditions.iter().any(|c| c.factors[*variable] > 0.0)
+                    || !conditions.iter().any(|c| c.factors[*variable] < 0.0)
+            });
         variables = bounded;
         if !free.is_empty() {
             conditions.retain(|c| free.iter().all(|variable| c.factors[*variable] == 0.0));
             continue;
         }
-        let growth = |variable: usize| {
-            let count_with_sign = |sign: f64| {
-                let is_bound = |c: &&Condition| sign * c.factors[variable] > ROUNDING;
-                conditions.iter().filter(is_bound).count()
-            };
-            let (upper, lower) = (count_with_sign(1.0), count_with_sign(-1.0));
-            (upper * lower).saturating_sub(upper + lower)
-        };
-        let index = (0..variables.len()).min_by_key(|index| growth(variables[*index]))?;
+        let index =
+            (0..variables.len()).min_by_key(|index| growth(&conditions, variables[*index]))?;
         conditions = eliminate(conditions, variables.swap_remove(index))?;
     }
     Some(conditions)
+}
+
+/// Returns the number of conditions that the elimination of a variable adds: each upper bound is combined with each
+/// lower one, and all of these are dropped.
+fn growth(conditions: &[Condition], variable: usize) -> usize {
+    let upper = conditions.iter().filter(|c| c.factors[variable] > ROUNDING).count();
+    let lower = conditions.iter().filter(|c| c.factors[variable] < -ROUNDING).count();
+    (upper * lower).saturating_sub(upper + lower)
 }
 
 /// Eliminates one variable. Returns `None` if there are too many conditions.
@@ -196,6 +199,7 @@ fn eliminate(conditions: Vec<Condition>, variable: usize) -> Option<Vec<Conditio
             _ => rest.push(condition),
         }
     }
+    // The number may square with each variable. Giving up proves less, but nothing false.
     if rest.len() + upper.len() * lower.len() > MAX_CONDITIONS {
         return None;
     }
@@ -219,10 +223,10 @@ fn tightest(conditions: Vec<Condition>) -> Vec<Condition> {
     let mut tightest_conditions: Vec<Condition> = Vec::new();
     for condition in conditions {
         let condition = scaled(condition);
-        let has_same_factors = |other: &&mut Condition| {
+        let same_factors = tightest_conditions.iter_mut().find(|other| {
             other.factors.iter().zip(&condition.factors).all(|(a, b)| (a - b).abs() <= ROUNDING)
-        };
-        match tightest_conditions.iter_mut().find(has_same_factors) {
+        });
+        match same_factors {
             Some(other) => {
                 let difference = condition.constant - other.constant;
                 // If two conditions differ by rounding only, the strict one is tighter.

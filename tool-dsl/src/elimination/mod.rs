@@ -62,8 +62,8 @@ impl Linear {
     /// If some curve compares squares of expressions with roots, every comparison of squares becomes a
     /// comparison of the squared expressions, where their signs are known in a box that contains the tool.
     pub(crate) fn with_depths(model: &Model, cell: Cell) -> Linear {
-        let mut values = model.curves.iter().map(|curve| curve.value);
-        let roots = values.any(|value| compares_roots(&model.graph, value)).then_some(cell);
+        let compares_roots = model.curve_values().any(|value| compares_roots(&model.graph, value));
+        let roots = compares_roots.then_some(cell);
         Linear::of(model, model.depths(), roots)
     }
 
@@ -73,9 +73,8 @@ impl Linear {
         for (coord, axis, _) in model.domain.coordinates() {
             axes[*axis] = Some(variables.of(Variable::Monomial(monomial_of(*coord))));
         }
-        let curves = model.curves.iter().map(|curve| curve.value);
         let mut forms: Vec<Option<Form>> =
-            curves.chain(depths).map(|value| variables.form(value)).collect();
+            model.curve_values().chain(depths).map(|value| variables.form(value)).collect();
         if let Some(cell) = roots {
             for (form, curve) in forms.iter_mut().zip(&model.curves) {
                 if let Some(compared) = variables.comparison_without_squares(curve.value, cell) {
@@ -85,21 +84,19 @@ impl Linear {
         }
         let (mut facts, choices) = variables.facts();
         if roots.is_some() {
+            // With roots as variables, elimination needs to know how they bound one another.
             facts.extend(variables.projections(forms[model.curves.len()..].iter().flatten()));
         }
         let count = variables.count();
-        let dense = |form: Form| {
-            let factors =
-                (0..count).map(|v| form.factors.get(&v).cloned().unwrap_or(Number::int(0)));
-            Rc::new(Exact { factors: factors.collect(), constant: form.constant })
-        };
-        let with_opposite = |form: Form| {
-            let opposite = Form::default().plus(&form, &Number::int(-1));
-            LinearForm::new([form, opposite].map(dense))
-        };
-        let condition = |form: Form| Condition::from_exact(&dense(form), false);
+        let condition = |form: Form| Condition::from_exact(&dense(form, count), false);
         Linear {
-            forms: forms.into_iter().map(|form| form.map(with_opposite)).collect(),
+            forms: forms
+                .into_iter()
+                .map(|form| {
+                    let opposite = Form::default().plus(form.as_ref()?, &Number::int(-1));
+                    Some(LinearForm::new([form?, opposite].map(|form| dense(form, count))))
+                })
+                .collect(),
             variables: count,
             axes,
             facts: facts.into_iter().map(condition).collect(),
@@ -134,6 +131,7 @@ impl Linear {
                 _ if approximate_factor < -ROUNDING => end > range.low,
                 _ => false,
             };
+            // A repetition with 256 bits is slow, so only bounds that matter are confirmed.
             if !tighter {
                 continue;
             }
@@ -161,18 +159,12 @@ impl Linear {
             let Some(LinearForm { sides: [form, opposite], is_lost: false, .. }) = form else {
                 continue;
             };
-            let mut add = |form: &Condition, strict: bool| {
-                conditions.push(form.clone().with_strict(strict));
-            };
             match *sign {
-                NEGATIVE => add(form, true),
-                POSITIVE => add(opposite, true),
-                ZERO => {
-                    add(form, false);
-                    add(opposite, false);
-                }
-                s if s == NEGATIVE | ZERO => add(form, false),
-                s if s == POSITIVE | ZERO => add(opposite, false),
+                NEGATIVE => conditions.push(form.strictly()),
+                POSITIVE => conditions.push(opposite.strictly()),
+                ZERO => conditions.extend([form.clone(), opposite.clone()]),
+                s if s == NEGATIVE | ZERO => conditions.push(form.clone()),
+                s if s == POSITIVE | ZERO => conditions.push(opposite.clone()),
                 _ => {}
             }
         }
@@ -190,20 +182,22 @@ impl Linear {
         if rest.iter().any(Condition::is_false) {
             return Some(true);
         }
-        let is_straight = |form: &Option<LinearForm>| {
-            form.as_ref().is_some_and(|form| {
-                let factors = &form.sides[0].factors;
-                let is_nonlinear = |v: usize| factors[v] != 0.0 && !self.axes.contains(&Some(v));
-                !(0..self.variables).any(is_nonlinear)
-            })
-        };
         let mut constrained = self.forms.iter().zip(signs).filter(|(_, sign)| **sign != ANY_SIGN);
-        constrained.all(|(form, _)| is_straight(form)).then_some(false)
+        let are_straight =
+            constrained.all(|(form, _)| form.as_ref().is_some_and(|form| self.is_straight(form)));
+        are_straight.then_some(false)
+    }
+
+    /// Returns whether a form is linear in the coordinates themselves.
+    fn is_straight(&self, form: &LinearForm) -> bool {
+        let factors = &form.sides[0].factors;
+        !(0..self.variables).any(|v| factors[v] != 0.0 && !self.axes.contains(&Some(v)))
     }
 
     /// The same as [`Linear::contradictory`] in a region, where its depth is not negative.
     pub(crate) fn contradictory_in(&self, region: Option<usize>, signs: &[Signs]) -> bool {
         let mut conditions = self.conditions(signs);
+        // A point of a region has a depth of 0 or more, which the path does not say.
         let depth = region.and_then(|region| self.forms[signs.len() + region].as_ref());
         conditions.extend(depth.map(|depth| depth.sides[1].clone()));
         self.has_no_solution(conditions)
@@ -219,6 +213,7 @@ impl Linear {
             None => Some(&zero_form),
         };
         let (Some(a), Some(b)) = (form(a), form(b)) else { return false };
+        // `b - a < 0`; a contradiction shows that no such point exists.
         let deeper = b.combined(&Number::int(1), a, &Number::int(-1));
         let mut conditions = self.conditions(signs);
         conditions.push(Condition::from_exact(&Rc::new(deeper), true));
@@ -231,8 +226,8 @@ impl Linear {
         let requested = conditions.split_off(self.facts.len());
         let mentioned: Vec<bool> = (0..self.variables)
             .map(|variable| {
-                let mentions = |condition: &Condition| condition.factors[variable] != 0.0;
-                self.axes.contains(&Some(variable)) || requested.iter().any(mentions)
+                self.axes.contains(&Some(variable))
+                    || requested.iter().any(|condition| condition.factors[variable] != 0.0)
             })
             .collect();
         let is_relevant = |condition: &Condition| {
@@ -246,6 +241,7 @@ impl Linear {
             .filter(|(root, choices)| mentioned[*root] && choices.iter().all(is_relevant))
             .map(|(_, choices)| choices)
             .take_while(|choices| {
+                // All combinations are tried, and their number is a product.
                 count *= choices.len();
                 count <= MAX_CHOICES
             })
@@ -278,6 +274,12 @@ impl Linear {
     fn without_variables(&self, conditions: Vec<Condition>) -> Option<Vec<Condition>> {
         without(rescaled(conditions).0, (0..self.variables).collect())
     }
+}
+
+/// Returns a linear form with a factor for each variable.
+fn dense(form: Form, variables: usize) -> Rc<Exact> {
+    let factors = (0..variables).map(|v| form.factors.get(&v).cloned().unwrap_or(Number::int(0)));
+    Rc::new(Exact { factors: factors.collect(), constant: form.constant })
 }
 
 #[cfg(test)]

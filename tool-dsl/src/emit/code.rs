@@ -1,14 +1,14 @@
-//! Expressions as Rust.
+//! Expressions and trees of splits as Rust. A tree becomes nested `if`s where each leaf is an expression, masks
+//! where it is an owner.
 
 use super::tokens::Tokens;
 use crate::expr::{Coord, Graph, Id, Node};
-use crate::formula::Curve;
-use crate::formula::CurveIndex;
+use crate::formula::{Curve, CurveIndex};
 use crate::number::Number;
 use crate::plan::Tree;
 use proc_macro2::TokenStream;
 use quote::quote;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 /// The two forms of generated code.
 #[derive(Clone, Copy, PartialEq)]
@@ -27,7 +27,7 @@ enum Operand {
 
 /// A writer of the body of one function.
 pub(super) struct Writer<'g> {
-    pub(super) graph: &'g Graph,
+    graph: &'g Graph,
     curves: &'g [Curve],
     form: Form,
     /// The number of uses of each node in this function. A node that is used once is written inline.
@@ -36,7 +36,7 @@ pub(super) struct Writer<'g> {
 
 impl<'g> Writer<'g> {
     /// Makes a writer for a function that computes some roots and tests some curves.
-    pub(super) fn new(
+    fn new(
         graph: &'g Graph,
         curves: &'g [Curve],
         form: Form,
@@ -116,23 +116,26 @@ impl<'g> Writer<'g> {
     /// exactly, so nothing is lost by not adding.
     fn sides(&self, curve: CurveIndex) -> [Operand; 2] {
         let value = self.curves[curve].value;
-        let operand = |id: Id| match self.graph.constant(id) {
+        match *self.graph.node(value) {
+            Node::Sub(a, b) => [self.operand(a), self.operand(b)],
+            Node::Neg(a) => [Operand::Constant(0.0), self.operand(a)],
+            Node::Add(a, b) => match self.graph.constant(b) {
+                Some(shift) => [self.operand(a), Operand::Constant(-shift.to_f64())],
+                None => [self.operand(value), Operand::Constant(0.0)],
+            },
+            _ => [self.operand(value), Operand::Constant(0.0)],
+        }
+    }
+
+    fn operand(&self, id: Id) -> Operand {
+        match self.graph.constant(id) {
             Some(constant) => Operand::Constant(constant.to_f64()),
             None => Operand::Node(id),
-        };
-        match *self.graph.node(value) {
-            Node::Sub(a, b) => [operand(a), operand(b)],
-            Node::Neg(a) => [Operand::Constant(0.0), operand(a)],
-            Node::Add(a, b) => match self.graph.constant(b) {
-                Some(shift) => [operand(a), Operand::Constant(-shift.to_f64())],
-                None => [operand(value), Operand::Constant(0.0)],
-            },
-            _ => [operand(value), Operand::Constant(0.0)],
         }
     }
 
     /// Returns the nodes that a curve's test needs.
-    pub(super) fn compared(&self, curve: CurveIndex) -> impl Iterator<Item = Id> {
+    fn compared(&self, curve: CurveIndex) -> impl Iterator<Item = Id> {
         self.sides(curve).into_iter().filter_map(|operand| match operand {
             Operand::Node(id) => Some(id),
             Operand::Constant(_) => None,
@@ -141,30 +144,34 @@ impl<'g> Writer<'g> {
 
     /// Writes the test of a curve, whose shared operands are already bound. In scalar code a constant is on
     /// the right.
-    pub(super) fn test(&self, code: &mut Tokens, curve: CurveIndex, strict: bool) {
+    fn test(&self, code: &mut Tokens, curve: CurveIndex, strict: bool) {
         let [left, right] = self.sides(curve);
-        let operand = |code: &mut Tokens, side: &Operand| match side {
-            Operand::Node(id) => self.value(code, *id),
-            Operand::Constant(value) => self.constant(code, *value),
-        };
         if self.form == Form::Lanes {
             code.lane(if strict { "lt" } else { "le" }, |code| {
-                operand(code, &left);
+                self.side(code, &left);
                 code.sign(",");
-                operand(code, &right);
+                self.side(code, &right);
             });
             return;
         }
         let mirrored = matches!(left, Operand::Constant(_));
         let (first, second) = if mirrored { (right, left) } else { (left, right) };
-        operand(code, &first);
+        self.side(code, &first);
         code.sign(match (mirrored, strict) {
             (false, false) => "<=",
             (false, true) => "<",
             (true, false) => ">=",
             (true, true) => ">",
         });
-        operand(code, &second);
+        self.side(code, &second);
+    }
+
+    /// Writes one side of a comparison.
+    fn side(&self, code: &mut Tokens, side: &Operand) {
+        match side {
+            Operand::Node(id) => self.value(code, *id),
+            Operand::Constant(value) => self.constant(code, *value),
+        }
     }
 
     /// Writes a constant as an operand of its own.
@@ -190,7 +197,7 @@ impl<'g> Writer<'g> {
     }
 
     /// Writes a node as the value of a block.
-    pub(super) fn leaf(&self, code: &mut Tokens, id: Id) {
+    fn leaf(&self, code: &mut Tokens, id: Id) {
         if self.named(id) { self.value(code, id) } else { self.operation(code, id) }
     }
 
@@ -200,17 +207,24 @@ impl<'g> Writer<'g> {
         !free && self.use_counts.get(&id).is_some_and(|count| *count > 1)
     }
 
+    fn known(&self, id: &Id) -> Option<f64> {
+        self.graph.constant(*id).map(Number::to_f64)
+    }
+
+    /// Writes two operands with a sign between them.
+    fn two(&self, code: &mut Tokens, a: &Id, sign: &str, b: &Id) {
+        self.value(code, *a);
+        code.sign(sign);
+        self.value(code, *b);
+    }
+
+    /// Writes the call of a function of lanes with two arguments.
+    fn call(&self, code: &mut Tokens, name: &str, a: &Id, b: &Id) {
+        code.lane(name, |code| self.two(code, a, ",", b));
+    }
+
     /// Writes a node's operation, even if the node has a name.
     fn operation(&self, code: &mut Tokens, id: Id) {
-        let two = |code: &mut Tokens, a: &Id, sign: &str, b: &Id| {
-            self.value(code, *a);
-            code.sign(sign);
-            self.value(code, *b);
-        };
-        let call = |code: &mut Tokens, name: &str, a: &Id, b: &Id| {
-            code.lane(name, |code| two(code, a, ",", b));
-        };
-        let known = |id: &Id| self.graph.constant(*id).map(Number::to_f64);
         match self.graph.node(id) {
             Node::Const(value) => self.constant(code, value.to_f64()),
             Node::Coord(coord) => {
@@ -228,27 +242,27 @@ impl<'g> Writer<'g> {
                 code.sign("-");
                 self.value(code, *a);
             }
-            Node::Add(a, b) => match known(b) {
+            Node::Add(a, b) => match self.known(b) {
                 Some(shift) => {
                     self.value(code, *a);
                     code.sign(if shift < 0.0 { "-" } else { "+" }).number(shift.abs());
                 }
-                None => two(code, a, "+", b),
+                None => self.two(code, a, "+", b),
             },
-            Node::Sub(a, b) => two(code, a, "-", b),
+            Node::Sub(a, b) => self.two(code, a, "-", b),
             // The graph has a product's constant on the left. It is written on the right, since the trait `Lane`
             // has `Self * f64` but not `f64 * Self`.
-            Node::Mul(a, b) => match known(a) {
+            Node::Mul(a, b) => match self.known(a) {
                 Some(factor) => {
                     self.value(code, *b);
                     code.sign("*").number(factor);
                 }
-                None => two(code, a, "*", b),
+                None => self.two(code, a, "*", b),
             },
-            Node::Div(a, b) => two(code, a, "/", b),
-            Node::Quotient(a, b) => call(code, "quotient", a, b),
-            Node::Min(a, b) => call(code, "min", a, b),
-            Node::Max(a, b) => call(code, "max", a, b),
+            Node::Div(a, b) => self.two(code, a, "/", b),
+            Node::Quotient(a, b) => self.call(code, "quotient", a, b),
+            Node::Min(a, b) => self.call(code, "min", a, b),
+            Node::Max(a, b) => self.call(code, "max", a, b),
             Node::Abs(a) => {
                 self.value(code, *a);
                 code.sign(".").word("abs").paren(|_| {});
@@ -260,15 +274,15 @@ impl<'g> Writer<'g> {
             Node::Select { low, high, then, other } => match self.form {
                 Form::Scalar => {
                     code.word("if");
-                    two(code, low, "<=", high);
+                    self.two(code, low, "<=", high);
                     code.brace(|code| self.value(code, *then));
                     code.word("else").brace(|code| self.value(code, *other));
                 }
                 Form::Lanes => {
                     code.lane("select", |code| {
-                        call(code, "le", low, high);
+                        self.call(code, "le", low, high);
                         code.sign(",");
-                        two(code, then, ",", other);
+                        self.two(code, then, ",", other);
                     });
                 }
             },
@@ -304,4 +318,158 @@ fn tested<L>(tree: &Tree<L>, tests: &mut BTreeSet<(CurveIndex, bool)>) {
 
 fn name(id: Id) -> String {
     format!("t{}", id.index())
+}
+
+impl Writer<'_> {
+    /// Writes a tree of expressions as nested `if`s. Nodes that every path down the tree needs are computed
+    /// before the first test.
+    pub(super) fn nested(&self, code: &mut Tokens, tree: &Tree<Id>) {
+        let mut always = HashMap::new();
+        self.always(tree, &|id| vec![*id], &mut always);
+        self.branch(code, tree, &always, &BTreeSet::new());
+    }
+
+    /// Writes a tree's code, and returns whether it is a single `if`.
+    fn branch(
+        &self,
+        code: &mut Tokens,
+        tree: &Tree<Id>,
+        always: &HashMap<*const Tree<Id>, BTreeSet<Id>>,
+        scope: &BTreeSet<Id>,
+    ) -> bool {
+        let mut scope = scope.clone();
+        let needed = always.get(&std::ptr::from_ref(tree)).into_iter().flatten().copied();
+        let mut lets = Tokens::default();
+        self.lets(&mut lets, needed, &mut scope);
+        let without_lets = lets.is_empty();
+        code.add(lets);
+        let (curve, strict, below, above) = match tree {
+            Tree::Leaf(id) => {
+                self.leaf(code, *id);
+                return false;
+            }
+            Tree::Split { curve, strict, below, above } => (*curve, *strict, below, above),
+        };
+        code.word("if");
+        self.test(code, curve, strict);
+        code.brace(|code| {
+            self.branch(code, below, always, &scope);
+        });
+        let mut other = Tokens::default();
+        let is_chain = self.branch(&mut other, above, always, &scope);
+        code.word("else");
+        if is_chain {
+            code.add(other);
+        } else {
+            code.brace(|code| {
+                code.add(other);
+            });
+        }
+        without_lets
+    }
+
+    /// Records, for each subtree, the nodes that every path down from it needs.
+    fn always<L>(
+        &self,
+        tree: &Tree<L>,
+        needs: &impl Fn(&L) -> Vec<Id>,
+        known: &mut HashMap<*const Tree<L>, BTreeSet<Id>>,
+    ) {
+        let own = match tree {
+            Tree::Leaf(leaf) => self.graph.dependencies(needs(leaf)).into_iter().collect(),
+            Tree::Split { curve, below, above, .. } => {
+                self.always(below, needs, known);
+                self.always(above, needs, known);
+                let [below, above] =
+                    [below, above].map(|side| &known[&std::ptr::from_ref(&**side)]);
+                let compared = self.graph.dependencies(self.compared(*curve));
+                below.intersection(above).copied().chain(compared).collect()
+            }
+        };
+        known.insert(std::ptr::from_ref(tree), own);
+    }
+
+    /// Writes a tree as a traversal by lanes. `leaf` receives the mask of the lanes that reach it. Returns
+    /// the nodes that have a name at the end.
+    pub(super) fn walked<L: PartialEq + Default>(
+        &self,
+        code: &mut Tokens,
+        tree: &Tree<L>,
+        leaf: &impl Fn(&mut Tokens, &str, &L),
+    ) -> BTreeSet<Id> {
+        let mut always = HashMap::new();
+        self.always(tree, &|_| vec![], &mut always);
+        let mut walk = Walk { writer: self, always, masks: 0, leaf };
+        walk.below(code, tree, "present", &BTreeSet::new())
+    }
+}
+
+/// The state while writing a traversal by lanes.
+struct Walk<'w, 'g, L, F> {
+    writer: &'w Writer<'g>,
+    always: HashMap<*const Tree<L>, BTreeSet<Id>>,
+    /// The number of masks named so far.
+    masks: usize,
+    leaf: &'w F,
+}
+
+/// The lanes of a mask on one side of a test, by the names of both; `not` is `!` where the test fails.
+struct LanesOfSide<'n> {
+    mask: &'n str,
+    not: &'n str,
+    test: &'n str,
+}
+
+impl<L: PartialEq + Default, F: Fn(&mut Tokens, &str, &L)> Walk<'_, '_, L, F> {
+    /// Writes the code for the lanes of a mask, and returns the nodes named in it.
+    fn below(
+        &mut self,
+        code: &mut Tokens,
+        tree: &Tree<L>,
+        mask: &str,
+        scope: &BTreeSet<Id>,
+    ) -> BTreeSet<Id> {
+        let mut scope = scope.clone();
+        let needed = self.always.get(&std::ptr::from_ref(tree)).into_iter().flatten().copied();
+        self.writer.lets(code, needed, &mut scope);
+        match tree {
+            Tree::Leaf(own) => (self.leaf)(code, mask, own),
+            Tree::Split { curve, strict, below, above } => {
+                self.masks += 1;
+                let test = format!("test{}", self.masks);
+                code.word("let").word(&test).sign("=");
+                self.writer.test(code, *curve, *strict);
+                code.sign(";");
+                self.side(code, below, LanesOfSide { mask, not: "", test: &test }, &scope);
+                self.side(code, above, LanesOfSide { mask, not: "!", test: &test }, &scope);
+            }
+        }
+        scope
+    }
+
+    /// Writes one side of a split, unless it is the default leaf.
+    fn side(
+        &mut self,
+        code: &mut Tokens,
+        tree: &Tree<L>,
+        LanesOfSide { mask, not, test }: LanesOfSide<'_>,
+        scope: &BTreeSet<Id>,
+    ) {
+        if *tree == Tree::Leaf(L::default()) {
+            return;
+        }
+        self.masks += 1;
+        let own = format!("lanes{}", self.masks);
+        code.word("let").word(&own).sign("=").word(mask).sign("&").sign(not).word(test).sign(";");
+        if let Tree::Leaf(leaf) = tree {
+            (self.leaf)(code, &own, leaf);
+            return;
+        }
+        code.word("if").any(&own);
+        let mut inner = Tokens::default();
+        self.below(&mut inner, tree, &own, scope);
+        code.brace(|code| {
+            code.add(inner);
+        });
+    }
 }

@@ -19,10 +19,10 @@ pub(super) fn evaluator(tool: &CheckedTool) -> TokenStream {
     let model = &tool.model;
     let tree = &tool.plan.owner;
     let owners: BTreeSet<usize> = tree.leaves().into_iter().copied().flatten().collect();
-    let outputs = |region: usize| {
-        OUTPUTS.iter().flat_map(move |output| (output.of)(&model.regions[region].outputs))
-    };
-    let roots: Vec<Id> = owners.iter().flat_map(|region| outputs(*region)).collect();
+    let outputs = owners.iter().map(|region| &model.regions[*region].outputs);
+    let roots: Vec<Id> = outputs
+        .flat_map(|outputs| OUTPUTS.iter().flat_map(|output| (output.of)(outputs)))
+        .collect();
     let writer = Writer::of_tree(&model.graph, &model.curves, Form::Lanes, &roots, tree);
     let mut code = Tokens::default();
     for region in &owners {
@@ -98,21 +98,10 @@ impl Section<'_> {
     fn output(&self, code: &mut Tokens, output: &Output, mask: &str, scope: &mut BTreeSet<Id>) {
         let values = (output.of)(&self.tool.model.regions[self.region].outputs);
         self.writer.lets(code, values.iter().copied(), scope);
-        let field = |code: &mut Tokens| {
-            code.word("evaluation").sign(".").word(output.name);
-        };
-        let select = |code: &mut Tokens, value: &Id, other: &dyn Fn(&mut Tokens)| {
-            code.lane("select", |code| {
-                code.word(mask).sign(",");
-                self.writer.value(code, *value);
-                code.sign(",");
-                other(code);
-            });
-        };
         if let [value] = values[..] {
-            field(code);
+            field(code, output);
             code.sign("=");
-            select(code, &value, &field);
+            self.select(code, mask, value, &|code| field(code, output));
             code.sign(";");
             return;
         }
@@ -123,12 +112,12 @@ impl Section<'_> {
             }
         });
         code.sign("=");
-        field(code);
+        field(code, output);
         code.sign(";");
-        field(code);
+        field(code, output);
         code.sign("=").bracket(|code| {
             for (value, part) in values.iter().zip(parts) {
-                select(code, value, &|code| {
+                self.select(code, mask, *value, &|code| {
                     code.word(part);
                 });
                 code.sign(",");
@@ -136,4 +125,18 @@ impl Section<'_> {
         });
         code.sign(";");
     }
+    /// Writes a value in the lanes of a mask, and another one in the others.
+    fn select(&self, code: &mut Tokens, mask: &str, value: Id, other: &dyn Fn(&mut Tokens)) {
+        code.lane("select", |code| {
+            code.word(mask).sign(",");
+            self.writer.value(code, value);
+            code.sign(",");
+            other(code);
+        });
+    }
+}
+
+/// Writes the field of an evaluation that holds an output.
+fn field(code: &mut Tokens, output: &Output) {
+    code.word("evaluation").sign(".").word(output.name);
 }

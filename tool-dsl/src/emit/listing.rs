@@ -1,10 +1,12 @@
-//! The intermediate stages of a tool as text, which reviewers compare after a change of the compiler.
+//! The intermediate stages of a tool as text, which reviewers compare after a change of the compiler. The tree of
+//! splits is a graph in Graphviz's DOT.
 
 use super::code::Writer;
 use crate::checked::CheckedTool;
 use crate::diagnostic::format_number;
 use crate::expr::Id;
 use crate::formula::Formula;
+use crate::plan::Tree;
 use crate::source::Source;
 use crate::syntax;
 use std::fmt::Write;
@@ -79,21 +81,68 @@ pub fn regions(tool: &CheckedTool) -> String {
 }
 
 fn condition(formula: &Formula) -> String {
-    let all = |parts: &[Formula], word: &str| {
-        let parts: Vec<String> = parts.iter().map(condition).collect();
-        format!("({})", parts.join(word))
-    };
     match formula {
         Formula::Const(value) => value.to_string(),
         Formula::Atom { curve, below, strict } => {
             let sign = if *below { "<" } else { ">" };
             format!("c{curve} {sign}{} 0", if *strict { "" } else { "=" })
         }
-        Formula::All(parts) => all(parts, " and "),
-        Formula::Any(parts) => all(parts, " or "),
+        Formula::All(parts) => joined(parts, " and "),
+        Formula::Any(parts) => joined(parts, " or "),
     }
+}
+
+fn joined(parts: &[Formula], word: &str) -> String {
+    let parts: Vec<String> = parts.iter().map(condition).collect();
+    format!("({})", parts.join(word))
 }
 
 fn expression(tool: &CheckedTool, id: Id) -> String {
     Writer::written(&tool.model.graph, &tool.model.curves, id)
+}
+
+/// Writes the tree of owners: a box per test, whose left branch is taken if it holds, and a leaf per region.
+pub fn dot(tool: &CheckedTool) -> String {
+    let mut graph = Dot { tool, text: String::new(), nodes: 0 };
+    graph.tree(&tool.plan.owner);
+    let name = &tool.model.name;
+    format!("digraph {name} {{\n    node [fontname=\"monospace\", shape=box];\n{}}}\n", graph.text)
+}
+
+struct Dot<'t> {
+    tool: &'t CheckedTool,
+    text: String,
+    nodes: usize,
+}
+
+impl Dot<'_> {
+    fn node(&mut self, label: &str, style: &str) -> usize {
+        let node = self.nodes;
+        self.nodes += 1;
+        // Writing to a String does not fail.
+        let _ = writeln!(self.text, "    n{node} [label=\"{label}\"{style}];");
+        node
+    }
+
+    fn tree(&mut self, tree: &Tree<Option<usize>>) -> usize {
+        match tree {
+            Tree::Leaf(None) => self.node("outside", ", shape=plaintext"),
+            Tree::Leaf(Some(owner)) => {
+                let name = self.tool.model.regions[*owner].name.clone();
+                self.node(&name, ", shape=ellipse")
+            }
+            Tree::Split { curve, strict, below, above } => {
+                let model = &self.tool.model;
+                let test = Writer::shown(&model.graph, &model.curves, *curve, *strict);
+                let name = model.curves[*curve].name.as_ref();
+                let label = name.map_or(test.clone(), |name| format!("{name}\\n{test}"));
+                let node = self.node(&label, "");
+                for (side, label) in [(below, "yes"), (above, "no")] {
+                    let child = self.tree(side);
+                    let _ = writeln!(self.text, "    n{node} -> n{child} [label=\"{label}\"];");
+                }
+                node
+            }
+        }
+    }
 }

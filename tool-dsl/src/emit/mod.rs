@@ -2,14 +2,12 @@
 //! inside have one evaluator, generic over numbers, vectors of numbers, duals and enclosures; the distance from
 //! a point outside is a function of `f64`. Emission cannot fail, since all errors are found earlier.
 
-mod branches;
 mod code;
-mod dot;
 mod lanes;
 mod listing;
 mod tokens;
 
-pub use dot::dot;
+pub use listing::dot;
 pub use listing::{model, regions, tree};
 
 use crate::bound::lateral_extent;

@@ -56,7 +56,7 @@ impl Interval {
     }
 
     /// Rounds outward. A NaN end gives [`ENTIRE`].
-    pub(crate) fn out(low: f64, high: f64) -> Interval {
+    fn out(low: f64, high: f64) -> Interval {
         if low.is_nan() || high.is_nan() {
             return ENTIRE;
         }
@@ -86,8 +86,6 @@ impl Interval {
             (MINUS_ONE, value) | (value, MINUS_ONE) => return value.negated(),
             _ => {}
         }
-        // 0 · ∞ stands for a product of finite numbers with a factor 0.
-        let product = |a: f64, b: f64| if a == 0.0 || b == 0.0 { 0.0 } else { a * b };
         let ends = [
             product(self.low, other.low),
             product(self.low, other.high),
@@ -309,6 +307,17 @@ impl<'g> Encloser<'g> {
             }
         }
     }
+}
+
+/// Returns a product of two ends.
+fn product(a: f64, b: f64) -> f64 {
+    // 0 · ∞ stands for a product of finite numbers with a factor 0.
+    if a == 0.0 || b == 0.0 { 0.0 } else { a * b }
+}
+
+/// Encloses the dot product of two vectors.
+pub(crate) fn dot(a: [Interval; 3], b: [Interval; 3]) -> Interval {
+    (0..3).fold(ZERO, |sum, k| sum.plus(a[k].times(b[k])))
 }
 
 /// Bisects a box across its longest side. A side that spans several orders of magnitude is cut at their

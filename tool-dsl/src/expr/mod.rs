@@ -68,12 +68,10 @@
 //! Nodes are only added. An [`Id`] stays valid, and keeps its meaning, for the lifetime of its graph.
 
 pub mod derive;
-pub(crate) mod enclosed;
 mod graph;
 pub mod interval;
-mod node;
 pub mod polynomial;
 pub mod value;
 
 pub use graph::Graph;
-pub use node::{Coord, Id, Node};
+pub use graph::{Coord, Id, Node};

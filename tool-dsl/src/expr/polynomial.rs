@@ -1,9 +1,8 @@
 //! Expressions as polynomials in the coordinates, where they are polynomials, to recognise curves that are
 //! equal up to a factor.
 
+use super::interval::{Cell, Interval, ZERO};
 use super::{Coord, Graph, Id, Node};
-use crate::expr::enclosed::{EnclosedPolynomial, bases, enclosed_sum};
-use crate::expr::interval::{Cell, Interval, ZERO};
 use crate::number::{Number, ROUNDING};
 use std::collections::{BTreeMap, HashMap};
 
@@ -168,10 +167,10 @@ impl Polynomial {
         const POINT: [f64; 4] = [0.813, 1.377, -0.639, 2.179];
         let mut point = POINT.map(|at| Interval::new(at, at));
         let sloped = line.0.iter().filter(|(monomial, _)| monomial.iter().sum::<u8>() == 1);
-        let steep = |(_, a): &(_, &Number), (_, b): &(_, &Number)| {
-            a.to_f64().abs().total_cmp(&b.to_f64().abs())
-        };
-        let Some((leading, factor)) = sloped.max_by(steep).filter(|_| line.is_linear()) else {
+        let Some((leading, factor)) = sloped
+            .max_by(|(_, a), (_, b)| a.to_f64().abs().total_cmp(&b.to_f64().abs()))
+            .filter(|_| line.is_linear())
+        else {
             return false;
         };
         let Some(axis) = leading.iter().position(|exponent| *exponent == 1) else { return false };
@@ -357,13 +356,13 @@ impl Polynomial {
         }
         // p - m² with the centre m leaves nothing except the squares. Each linear term needs the square of
         // its coordinate.
-        let squared = |monomial: &Monomial| {
+        let is_complete = self.0.keys().all(|monomial| {
             monomial.iter().sum::<u8>() != 1 || self.0.contains_key(&monomial.map(|e| 2 * e))
-        };
+        });
         let constant = self.0.get(&[0; 4]).cloned().unwrap_or_else(|| Number::int(0));
         let middle = sum.checked_div(&four).unwrap_or_else(|| Number::int(0));
         let rounding = (&constant - &middle).to_f64().abs();
-        self.0.keys().all(squared) && rounding <= 2f64.powi(-180) * (1.0 + constant.to_f64().abs())
+        is_complete && rounding <= 2f64.powi(-180) * (1.0 + constant.to_f64().abs())
     }
 
     /// Writes the sum of its terms as an expression, without the terms that cancelled.
@@ -389,12 +388,12 @@ impl Polynomial {
         }
         let leads = (self.0.first_key_value()?.1, other.0.first_key_value()?.1);
         let ratio = leads.0.to_f64() / leads.1.to_f64();
-        let near = |(a, b): (&Number, &Number)| {
+        // A comparison of doubles rejects most curves cheaply.
+        let are_near = self.0.values().zip(other.0.values()).all(|(a, b)| {
             let (a, b) = (a.to_f64(), b.to_f64() * ratio);
             (a - b).abs() <= 1e-9 * (a.abs() + b.abs())
-        };
-        // A comparison of doubles rejects most curves cheaply.
-        if !self.0.values().zip(other.0.values()).all(near) {
+        });
+        if !are_near {
             return None;
         }
         let factor = leads.0.checked_div(leads.1)?;
@@ -421,6 +420,39 @@ impl Polynomial {
     pub fn terms(&self) -> impl Iterator<Item = (Monomial, &Number)> {
         self.0.iter().map(|(monomial, value)| (*monomial, value))
     }
+}
+
+/// A polynomial whose coefficients are enclosed once, to enclose its values over many boxes.
+#[derive(Clone, Debug)]
+pub(crate) struct EnclosedPolynomial(Vec<(Monomial, Interval)>);
+
+impl EnclosedPolynomial {
+    fn new(terms: Vec<(Monomial, Interval)>) -> EnclosedPolynomial {
+        EnclosedPolynomial(terms)
+    }
+
+    /// Encloses the values over a box, as [`Polynomial::over`](Polynomial::over) does.
+    pub(crate) fn over(&self, cell: &Cell) -> Interval {
+        enclosed_sum(self.0.iter().map(|(monomial, value)| (monomial, *value)), bases(cell))
+    }
+}
+
+/// Returns the enclosures of d, x, y and z in a box.
+fn bases(cell: &Cell) -> [Interval; 4] {
+    [cell.radius(), cell.sides[0], cell.sides[1], cell.sides[2]]
+}
+
+/// Encloses a sum of monomials with enclosed coefficients.
+fn enclosed_sum<'t>(
+    terms: impl Iterator<Item = (&'t Monomial, Interval)>,
+    bases: [Interval; 4],
+) -> Interval {
+    terms
+        .map(|(monomial, value)| {
+            let powers = monomial.iter().zip(bases).filter(|(exponent, _)| **exponent > 0);
+            powers.fold(value, |product, (exponent, base)| product.times(base.power(*exponent)))
+        })
+        .fold(ZERO, Interval::plus)
 }
 
 #[cfg(test)]

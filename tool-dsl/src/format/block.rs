@@ -69,10 +69,11 @@ impl<'t> Reader<'t> {
     /// Returns the next comments that are on one line.
     fn comments(&self) -> &'t [Token<'t>] {
         let rest = &self.tokens[self.at..];
-        let belongs = |(at, token): (usize, &Token<'_>)| {
-            token.is_comment() && (at == 0 || token.newlines == 0)
-        };
-        &rest[..rest.iter().enumerate().take_while(|next| belongs(*next)).count()]
+        let run = rest
+            .iter()
+            .enumerate()
+            .take_while(|(at, token)| token.is_comment() && (*at == 0 || token.newlines == 0));
+        &rest[..run.count()]
     }
 
     /// Returns whether there are comments that end their line, except for a `}` after them.
@@ -120,12 +121,11 @@ impl<'t> Reader<'t> {
         let closing_brace = if self.at < self.tokens.len() { "}" } else { "" };
         self.at += closing_brace.len();
         let inside = &self.tokens[start..self.at];
-        let plain = |token: &Token<'_>| token.newlines == 0 && !token.is_comment();
         let one_line = head.first().is_some_and(|word| word.is("region"))
             && nodes.len() == 1
             && !closing_brace.is_empty()
             && trailing_comments.is_empty()
-            && inside.iter().all(plain);
+            && inside.iter().all(|token| token.newlines == 0 && !token.is_comment());
         Body { nodes, closing_brace, trailing_comments: self.trailing_comments(), one_line }
     }
 }

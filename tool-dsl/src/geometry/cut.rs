@@ -1,7 +1,9 @@
-//! Polygons of the section with possibly curved edges, and their division by curves.
+//! Curves of the section in doubles, and polygons with possibly curved edges that these curves divide.
 
 use super::outline::{Point, cross, dot, minus, norm};
-use super::shape::{CurveFunction, ON_CURVE_FRACTION, between};
+use crate::expr::polynomial::Polynomials;
+use crate::expr::value::{EvaluationPoint, Evaluator};
+use crate::expr::{Graph, Id};
 use crate::formula::CurveIndex;
 
 /// The distance below which points coincide, relative to the size of the section.
@@ -63,6 +65,7 @@ impl Piece {
                 let [below, above] = [-1, 1].map(|side| {
                     let (vertices, edges) = cutter.half(&corners, side)?;
                     let part = Piece { vertices, edges, ..*self };
+                    // A part without area has no points to own.
                     (!is_thin(&part.vertices, cutter.size)).then_some(part)
                 });
                 Cut::Both(below, above)
@@ -86,6 +89,7 @@ impl Piece {
             },
         );
         let half = [(high[0] - low[0]) / 2.0, (high[1] - low[1]) / 2.0];
+        // A chord is no longer than the box's diagonal, which is at most twice this sum.
         let bulge = 2.0 * MAX_SAGITTA_IN_CHORDS * (half[0] + half[1]);
         [between(low, high, 0.5), [half[0] + bulge, half[1] + bulge]]
     }
@@ -115,18 +119,16 @@ impl Piece {
     /// Returns whether a point lies on an edge, or may lie on the curve that an edge is a chord of.
     pub(crate) fn has_on_edge(&self, p: Point, shapes: &[CurveFunction<'_>], size: f64) -> bool {
         let tolerance = COINCIDENCE_FRACTION * size;
-        let is_on = |[a, b]: [Point; 2], edge: Edge| {
-            let bulge = MAX_SAGITTA_IN_CHORDS * norm(minus(b, a)) + tolerance;
-            match edge {
-                Edge::Straight => is_along(p, [a, b], tolerance),
-                Edge::Along(curve) => {
-                    shapes[curve].side(p, size) == 0 && is_along(p, [a, b], bulge)
-                }
-                Edge::Chord => is_along(p, [a, b], bulge),
-            }
-        };
         let count = self.vertices.len();
-        (0..count).any(|k| is_on([self.vertices[k], self.vertices[(k + 1) % count]], self.edges[k]))
+        (0..count).any(|k| {
+            let ends @ [a, b] = [self.vertices[k], self.vertices[(k + 1) % count]];
+            let bulge = MAX_SAGITTA_IN_CHORDS * norm(minus(b, a)) + tolerance;
+            match self.edges[k] {
+                Edge::Straight => is_along(p, ends, tolerance),
+                Edge::Along(curve) => shapes[curve].side(p, size) == 0 && is_along(p, ends, bulge),
+                Edge::Chord => is_along(p, ends, bulge),
+            }
+        })
     }
 
     /// Returns twice its area.
@@ -151,18 +153,18 @@ impl<'a, 'g> Cutter<'a, 'g> {
             let next = (k + 1) % count;
             let (a, b, edge) = (piece.vertices[k], piece.vertices[next], piece.edges[k]);
             corners.push((a, sides[k], edge));
-            let mut add = |p: Point, side: i8| corners.push((p, side, edge));
             if sides[k] * sides[next] < 0 {
-                add(self.crossing(a, b, edge), 0);
+                corners.push((self.crossing(a, b, edge), 0, edge));
             } else if let Some((top, side)) =
                 self.farthest_crossing([a, b], [sides[k], sides[next]], edge)
             {
+                // From a vertex on the curve, the crossing is the vertex itself.
                 if sides[k] != 0 {
-                    add(self.crossing(a, top, edge), 0);
+                    corners.push((self.crossing(a, top, edge), 0, edge));
                 }
-                add(top, side);
+                corners.push((top, side, edge));
                 if sides[next] != 0 {
-                    add(self.crossing(top, b, edge), 0);
+                    corners.push((self.crossing(top, b, edge), 0, edge));
                 }
             }
         }
@@ -185,6 +187,7 @@ impl<'a, 'g> Cutter<'a, 'g> {
         let other = match edge {
             Edge::Straight => return on_other_side(between(a, b, self.extremum(a, b)?)),
             Edge::Along(other) if other != self.curve => other,
+            // An edge along the cutting curve does not cross it, and the curve of other chords is not known.
             Edge::Along(_) | Edge::Chord => return None,
         };
         // A curve deviates from its chord and may therefore reach across.
@@ -214,6 +217,7 @@ impl<'a, 'g> Cutter<'a, 'g> {
             let [previous_value, value, next_value] = values;
             let step = DIFFERENCE_STEP_IN_CHORDS / 2.0 * (previous_value - next_value)
                 / (previous_value - 2.0 * value + next_value);
+            // The value does not bend, or the edge has no such point.
             if !step.is_finite() {
                 return None;
             }
@@ -239,6 +243,7 @@ impl<'a, 'g> Cutter<'a, 'g> {
         let (own, along) = (self.shape().at(a).gradient, self.shapes[other].at(a).gradient);
         let (way, chord) = ([-along[1], along[0]], minus(b, a));
         let slope = dot(own, way) * dot(way, chord).signum();
+        // It leaves to the side of its far end, where nothing is cut off.
         if slope * f64::from(far_side) >= -ON_CURVE_FRACTION * norm(own) * norm(along) {
             return None;
         }
@@ -272,6 +277,7 @@ impl<'a, 'g> Cutter<'a, 'g> {
                 edges.push(if own == 0 && next_side != side { along } else { edge });
             }
         }
+        // A part between the curve and its chord has no area until a point of the curve is added.
         if along != Edge::Straight && is_thin(&vertices, self.size) {
             let bend = self.bend(*vertices.last()?, *vertices.first()?, 0.5)?;
             vertices.push(bend);
@@ -296,6 +302,7 @@ impl<'a, 'g> Cutter<'a, 'g> {
                 (other.value * a - own.value * c) / determinant,
             ];
             p = minus(p, step);
+            // Rounding permits no better.
             if norm(step) <= 1e-17 * self.size {
                 break;
             }
@@ -354,23 +361,189 @@ pub(crate) fn is_along(p: Point, [a, b]: [Point; 2], tolerance: f64) -> bool {
     cross(chord_vector, off).abs() / length < tolerance && (0.0..=length).contains(&along)
 }
 
+/// Returns the vertex that is farthest from a point.
+fn farthest_from(a: Point, vertices: &[Point]) -> Point {
+    let (mut most, mut farthest) = (0.0, a);
+    for b in vertices {
+        let offset = minus(*b, a);
+        let square = offset[0] * offset[0] + offset[1] * offset[1];
+        if square > most {
+            (most, farthest) = (square, *b);
+        }
+    }
+    farthest
+}
+
 /// Returns whether all vertices lie on one line, up to rounding.
 fn is_thin(vertices: &[Point], size: f64) -> bool {
     let Some(&first) = vertices.first() else { return true };
-    let farthest_from = |a: Point| {
-        let (mut most, mut farthest) = (0.0, a);
-        for b in vertices {
-            let offset = minus(*b, a);
-            let square = offset[0] * offset[0] + offset[1] * offset[1];
-            if square > most {
-                (most, farthest) = (square, *b);
-            }
-        }
-        farthest
-    };
-    let last = farthest_from(first);
-    let extent = minus(last, farthest_from(last));
+    // The vertex farthest from any one is an end of the longest extent, nearly, and the one farthest from it the other.
+    let last = farthest_from(first, vertices);
+    let extent = minus(last, farthest_from(last, vertices));
     // Points that coincide have no direction, and are thin.
     let min_width = ON_CURVE_FRACTION * size * norm(extent);
     !vertices.iter().any(|p| cross(extent, minus(*p, last)).abs() > min_width)
+}
+
+/// The distance below which a point lies on a curve, relative to the section's size.
+const ON_CURVE_FRACTION: f64 = 1e-10;
+/// The rounding error of a polynomial's value, relative to the sum of the absolute values of its terms.
+const ROUNDING: f64 = 2e-14;
+
+/// A curve as a function on the section.
+pub(crate) enum CurveFunction<'g> {
+    /// `Σ cᵢⱼ uⁱ vʲ` for `i + j ≤ 2`, with `u` and `v` relative to the section's centre.
+    Conic { middle: Point, factors: [f64; 6] },
+    /// Any other curve.
+    Other(std::cell::RefCell<Evaluator<'g>>, Id),
+}
+
+/// A curve's value at a point, its gradient, and the sum of the absolute values of its terms.
+struct Value {
+    value: f64,
+    gradient: Point,
+    terms: f64,
+}
+
+impl<'g> CurveFunction<'g> {
+    pub(crate) fn new(
+        graph: &'g Graph,
+        id: Id,
+        middle: Point,
+        polynomials: &mut Polynomials,
+    ) -> CurveFunction<'g> {
+        let other = || CurveFunction::Other(Evaluator::new(graph, [id]).into(), id);
+        let Some(polynomial) = polynomials.of(graph, id) else { return other() };
+        let mut factors = [0.0; 6];
+        let [m, n] = middle;
+        for (monomial, factor) in polynomial.terms() {
+            let c = factor.to_f64();
+            // The monomial in u = d - m and v = z - n, as terms that are added to the factors.
+            let terms: &[(usize, f64)] = match monomial {
+                [0, 0, 0, 0] => &[(0, c)],
+                [1, 0, 0, 0] => &[(0, c * m), (1, c)],
+                [0, 0, 0, 1] => &[(0, c * n), (2, c)],
+                [2, 0, 0, 0] => &[(0, c * m * m), (1, 2.0 * c * m), (3, c)],
+                [0, 0, 0, 2] => &[(0, c * n * n), (2, 2.0 * c * n), (5, c)],
+                [1, 0, 0, 1] => &[(0, c * m * n), (1, c * n), (2, c * m), (4, c)],
+                _ => return other(),
+            };
+            for (index, value) in terms {
+                factors[*index] += value;
+            }
+        }
+        CurveFunction::Conic { middle, factors }
+    }
+
+    fn is_line(&self) -> bool {
+        matches!(self, CurveFunction::Conic { factors, .. } if factors[3..].iter().all(|c| *c == 0.0))
+    }
+
+    fn at(&self, p: Point) -> Value {
+        match self {
+            CurveFunction::Conic { middle, factors: c } => {
+                let (u, v) = (p[0] - middle[0], p[1] - middle[1]);
+                let (a, b) = (c[1] * u, c[2] * v);
+                let (uu, uv, vv) = (c[3] * u * u, c[4] * u * v, c[5] * v * v);
+                Value {
+                    value: c[0] + a + b + uu + uv + vv,
+                    gradient: [c[1] + 2.0 * c[3] * u + c[4] * v, c[2] + c[4] * u + 2.0 * c[5] * v],
+                    terms: c[0].abs() + a.abs() + b.abs() + uu.abs() + uv.abs() + vv.abs(),
+                }
+            }
+            CurveFunction::Other(evaluator, id) => {
+                let mut evaluator = evaluator.borrow_mut();
+                let mut value = |d: f64, z: f64| {
+                    evaluator.evaluate(EvaluationPoint::on_meridian(d, z));
+                    evaluator.get(*id)
+                };
+                // Without a polynomial, the gradient is that of central differences.
+                let value_here = value(p[0], p[1]);
+                let step = 1e-6 * (norm(p) + 1e-3);
+                let gradient = [0, 1].map(|k| {
+                    let (mut a, mut b) = (p, p);
+                    a[k] -= step;
+                    b[k] += step;
+                    (value(b[0], b[1]) - value(a[0], a[1])) / (2.0 * step)
+                });
+                Value { value: value_here, gradient, terms: norm(p) * norm(gradient) }
+            }
+        }
+    }
+
+    /// Returns the side of the curve on which a point lies: -1 or 1, or 0 if the point is on the curve within
+    /// tolerance.
+    pub(crate) fn side(&self, p: Point, size: f64) -> i8 {
+        let Value { value, gradient, terms } = self.at(p);
+        if value.abs() <= ON_CURVE_FRACTION * size * norm(gradient)
+            || value.abs() <= ROUNDING * terms
+        {
+            return 0;
+        }
+        if value < 0.0 { -1 } else { 1 }
+    }
+
+    pub(crate) fn value(&self, p: Point) -> f64 {
+        match self {
+            CurveFunction::Conic { middle, factors: c } => {
+                let (u, v) = (p[0] - middle[0], p[1] - middle[1]);
+                c[0] + c[1] * u + c[2] * v + c[3] * u * u + c[4] * u * v + c[5] * v * v
+            }
+            CurveFunction::Other(evaluator, id) => {
+                let mut evaluator = evaluator.borrow_mut();
+                evaluator.evaluate(EvaluationPoint::on_meridian(p[0], p[1]));
+                evaluator.get(*id)
+            }
+        }
+    }
+
+    /// Returns the side of the curve on which a whole box lies, if a rough bound proves it: -1 or 1, else 0.
+    pub(crate) fn side_of_box(&self, middle: Point, half: Point) -> i8 {
+        let CurveFunction::Conic { factors: c, .. } = self else { return 0 };
+        let Value { value, gradient: [a, b], terms } = self.at(middle);
+        let [u, v] = half;
+        // By Taylor's formula about the centre, which is exact for a conic.
+        let max_change = a.abs() * u + b.abs() * v;
+        let max_change = max_change + c[3].abs() * u * u + c[4].abs() * u * v + c[5].abs() * v * v;
+        if value.abs() <= 1.001 * max_change + 2.0 * ROUNDING * terms {
+            return 0;
+        }
+        if value < 0.0 { -1 } else { 1 }
+    }
+
+    /// Returns the coefficients of `v0 + slope t + bend t²`, the value along the segment between two points
+    /// for t from 0 to 1. They are exact for a conic and approximate for other curves.
+    fn quadratic_along(&self, a: Point, b: Point) -> [f64; 3] {
+        let [v0, vm, v1] = [a, between(a, b, 0.5), b].map(|p| self.value(p));
+        [v0, 4.0 * vm - 3.0 * v0 - v1, 2.0 * (v0 - 2.0 * vm + v1)]
+    }
+
+    /// Returns the parameter of the zero between two points on different sides.
+    fn zero_between(&self, a: Point, b: Point) -> f64 {
+        if matches!(self, CurveFunction::Conic { .. }) {
+            let [v0, slope, bend] = self.quadratic_along(a, b);
+            let root = (slope * slope - 4.0 * bend * v0).max(0.0).sqrt();
+            // The form of both roots that does not cancel.
+            let q = -(slope + root.copysign(slope)) / 2.0;
+            if let Some(t) = [v0 / q, q / bend].into_iter().find(|t| (0.0..=1.0).contains(t)) {
+                return t;
+            }
+        }
+        let (mut low, mut high) = (0.0, 1.0);
+        let below = self.below(a);
+        for _ in 0..60 {
+            let middle = (low + high) / 2.0;
+            if self.below(between(a, b, middle)) == below { low = middle } else { high = middle }
+        }
+        low
+    }
+
+    /// Returns whether the value is at most 0, without tolerance.
+    pub(crate) fn below(&self, p: Point) -> bool {
+        self.value(p) <= 0.0
+    }
+}
+
+fn between(a: Point, b: Point, t: f64) -> Point {
+    [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])]
 }

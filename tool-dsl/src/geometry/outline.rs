@@ -112,10 +112,11 @@ impl Segment {
 
     /// Returns the mirror image in the axis, traversed so that the material stays on the left.
     pub(crate) fn mirrored(&self) -> Segment {
-        let mirror = |[d, z]: &ExactPoint| [-d, z.clone()];
         let circle = self.circle.clone();
-        let circle = circle.map(|circle| Circle { centre: mirror(&circle.centre), ..circle });
-        Segment::new([mirror(&self.to), mirror(&self.from)], circle, self.surface, self.span)
+        let circle =
+            circle.map(|circle| Circle { centre: mirrored_point(&circle.centre), ..circle });
+        let ends = [mirrored_point(&self.to), mirrored_point(&self.from)];
+        Segment::new(ends, circle, self.surface, self.span)
     }
 
     /// Returns the unit normal into the material at a point of the segment's line or circle.
@@ -343,9 +344,13 @@ pub(crate) fn nearest_span(outline: &[Segment], p: Point) -> Option<Span> {
     nearest.map(|segment| segment.span)
 }
 
+/// Rounds up by more than the rounding errors of a radius that was interpolated or computed by Pythagoras.
+fn rounded_up(d: f64) -> f64 {
+    d * (1.0 + 4.0 * f64::EPSILON)
+}
+
 /// Returns the largest radius of an outline between two heights, rounded up unless it is that of an end.
 pub(crate) fn radius_between(outline: &[Segment], low: f64, high: f64) -> f64 {
-    let rounded_up = |d: f64| d * (1.0 + 4.0 * f64::EPSILON);
     let mut widest = 0.0f64;
     for segment in outline {
         for [d, z] in segment.ends() {
@@ -383,4 +388,14 @@ pub(crate) fn radius_between(outline: &[Segment], low: f64, high: f64) -> f64 {
         }
     }
     widest
+}
+
+fn mirrored_point([d, z]: &ExactPoint) -> ExactPoint {
+    [-d, z.clone()]
+}
+
+/// Returns the direction in which the mirror image of a path with a given direction is passed backward: that in which
+/// an outline comes from the axis, or goes on beyond it.
+pub(crate) fn mirrored_direction([d, z]: Point) -> Point {
+    [d, -z]
 }

@@ -12,7 +12,7 @@
 mod tape;
 mod walk;
 
-pub use tape::{BLOCK_POINTS, Lanes, Tape};
+pub use tape::{BLOCK_POINTS, Block, Lanes, Tape};
 pub use walk::{PlanEvaluator, Registers, Scratch, Value};
 
 use crate::checked::CheckedTool;
@@ -52,7 +52,7 @@ impl<'t> Interpreter<'t> {
             .regions
             .iter()
             .flat_map(|region| region.outputs.roots())
-            .chain(model.curves.iter().map(|curve| curve.value));
+            .chain(model.curve_values());
         Interpreter { tool, evaluator: Evaluator::new(&model.graph, roots) }
     }
 
@@ -61,8 +61,9 @@ impl<'t> Interpreter<'t> {
     pub fn evaluate(&mut self, [x, y, z]: [f64; 3], length: f64) -> Option<Evaluation> {
         self.evaluator.evaluate(EvaluationPoint { length, ..EvaluationPoint::new(x, y, z) });
         let model = &self.tool.model;
-        let value = |curve: CurveIndex| self.evaluator.get(model.curves[curve].value);
-        let region = model.regions.iter().position(|region| region.inside.holds(&value))?;
+        let region = model.regions.iter().position(|region| {
+            region.inside.holds(&|curve: CurveIndex| self.evaluator.get(model.curves[curve].value))
+        })?;
         let get = |id: Id| self.evaluator.get(id);
         let outputs = &model.regions[region].outputs;
         Some(Evaluation {

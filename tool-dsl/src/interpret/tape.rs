@@ -14,6 +14,17 @@ pub const BLOCK_POINTS: usize = 64;
 /// One value per point of a block.
 pub type Lanes = [f64; BLOCK_POINTS];
 
+/// The first `count` points of a block, by their coordinates in the tool's frame and the file's unit.
+#[derive(Clone, Copy, Debug)]
+pub struct Block<'a> {
+    /// The x, y and z of the points.
+    pub points: [&'a Lanes; 3],
+    /// The number of points. The lanes after them have no meaning.
+    pub count: usize,
+    /// The length of the file's unit in units of the part.
+    pub length: f64,
+}
+
 /// A part of a tool's plan as a list of operations on blocks of points.
 #[derive(Clone, Debug)]
 pub struct Tape {
@@ -48,26 +59,18 @@ impl Tape {
         }
     }
 
-    /// Evaluates the first `results.len()` outputs at the first `count` points of a block. Points are in the
-    /// tool's frame and the file's unit; `length` is the length of the file's unit in units of the part.
-    /// `registers` are kept between calls. The function is inlined so that its loops are compiled for the
+    /// Evaluates the first `results.len()` outputs at the points of a block. `registers` are kept between calls. The function is inlined so that its loops are compiled for the
     /// caller's vector instructions.
     #[inline(always)]
-    pub fn run(
-        &self,
-        (points, count): ([&Lanes; 3], usize),
-        length: f64,
-        registers: &mut Vec<Lanes>,
-        results: &mut [Lanes],
-    ) {
+    pub fn run(&self, block: Block<'_>, registers: &mut Vec<Lanes>, results: &mut [Lanes]) {
         let output_count = results.len().min(self.outputs.len());
         let Some((_, end)) = self.outputs[..output_count].last() else { return };
         self.reserve(registers);
-        let count = padded_lanes(count);
+        let block = block.padded();
         for (at, operation) in self.operations[..*end].iter().enumerate() {
             let (done, rest) = registers.split_at_mut(at);
             if let Some(result) = rest.first_mut() {
-                perform(operation, (points, count), length, done, result);
+                perform(operation, block, done, result);
             }
         }
         for (result, (slot, _)) in results.iter_mut().zip(&self.outputs) {
@@ -76,9 +79,11 @@ impl Tape {
     }
 }
 
-/// Rounds up to a number of lanes that fills vectors.
-pub(super) fn padded_lanes(count: usize) -> usize {
-    count.next_multiple_of(8).min(BLOCK_POINTS)
+impl Block<'_> {
+    /// Rounds the number of points up to a number of lanes that fills vectors.
+    pub(super) fn padded(self) -> Self {
+        Block { count: self.count.next_multiple_of(8).min(BLOCK_POINTS), ..self }
+    }
 }
 
 /// Performs one operation on a block. The loops are written out here, since closures would be compiled
@@ -86,13 +91,12 @@ pub(super) fn padded_lanes(count: usize) -> usize {
 #[inline(always)]
 pub(super) fn perform(
     operation: &Operation,
-    (p, count): ([&Lanes; 3], usize),
-    length: f64,
+    Block { points, count, length }: Block<'_>,
     done: &[Lanes],
     result: &mut Lanes,
 ) {
     let result = &mut result[..count];
-    let p = p.map(|list| &list[..count]);
+    let p = points.map(|list| &list[..count]);
     macro_rules! each {
         ($(let $name:ident = $slot:expr;)* $value:expr) => {{
             $(let $name = &done[$slot as usize][..count];)*
@@ -161,8 +165,7 @@ impl TapeWriter<'_> {
             if self.slots.contains_key(&id) {
                 continue;
             }
-            let s = |id: &Id| self.slots[id];
-            let operation = Operation::of(self.tool.model.graph.node(id), s);
+            let operation = Operation::of(self.tool.model.graph.node(id), |id| self.slots[id]);
             let slot = self.put(operation);
             self.slots.insert(id, slot);
         }

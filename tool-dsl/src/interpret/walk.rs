@@ -1,6 +1,6 @@
 //! Evaluation of the plan for one point at a time.
 
-use super::tape::{padded_lanes, perform as block};
+use super::tape::{Block, perform as perform_on_block};
 use super::{BLOCK_POINTS, Lanes, OUTPUT_COUNT, Operation, Slot};
 use crate::checked::CheckedTool;
 use crate::expr::{Coord, Id};
@@ -198,9 +198,10 @@ impl PlanEvaluator {
         while let Some((at, test)) = pending.pop() {
             match &self.forks[at] {
                 PlanNode::Owner(owner) => {
-                    let depth = |owner: usize| &self.regions[owner][0];
-                    let owner = owner
-                        .map(|owner| (owner, self.value(depth(owner), point, length, scratch)));
+                    let owner = owner.map(|owner| {
+                        let depth = &self.regions[owner][0];
+                        (owner, self.value(depth, point, length, scratch))
+                    });
                     visit(owner, test);
                 }
                 PlanNode::Test { curve, strict, above } => {
@@ -222,15 +223,10 @@ impl PlanEvaluator {
     /// some point needs is computed. The function is inlined so that its loops are compiled for the caller's
     /// vector instructions.
     #[inline(always)]
-    pub fn owners(
-        &self,
-        (points, count): ([&Lanes; 3], usize),
-        length: f64,
-        registers: &mut Registers,
-        owners: &mut Lanes,
-    ) {
+    pub fn owners(&self, block: Block<'_>, registers: &mut Registers, owners: &mut Lanes) {
         registers.start(self.operations.len());
-        let lanes = padded_lanes(count);
+        let block = block.padded();
+        let lanes = block.count;
         let Registers { values, done, now, pending } = registers;
         pending.clear();
         pending.push((0, u64::MAX >> (64 - lanes)));
@@ -252,7 +248,7 @@ impl PlanEvaluator {
                             done[value] = *now;
                             let (before, rest) = values.split_at_mut(value);
                             let operation = &self.operations[value];
-                            block(operation, (points, lanes), length, before, &mut rest[0]);
+                            perform_on_block(operation, block, before, &mut rest[0]);
                         }
                     }
                     let mut below = 0;

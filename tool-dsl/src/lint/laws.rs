@@ -1,8 +1,7 @@
 //! Checks of `magnitude` and `niceness` at points that samples of the inside do not reach: toward the
 //! surface, at its corners and on the axis.
 
-use super::fault::Fault;
-use super::{Linter, norm};
+use super::{Fault, Linter, norm};
 use crate::bound::Extent;
 use crate::diagnostic::{CheckKind, Diagnostic, FormattedNumber, Subject};
 use crate::expr::Id;
@@ -62,10 +61,9 @@ impl Linter<'_> {
     /// it. `inward` points into the material and has any nonzero length.
     pub(super) fn check_toward_surface(&mut self, surface_point: [f64; 3], inward: [f64; 3]) {
         let length = norm(inward);
-        let inside = |fraction: f64| {
+        let [near, far] = [NEAR_SURFACE_FRACTION, INSIDE_FRACTION].map(|fraction| {
             [0, 1, 2].map(|k| surface_point[k] + inward[k] / length * fraction * self.size)
-        };
-        let [near, far] = [NEAR_SURFACE_FRACTION, INSIDE_FRACTION].map(inside);
+        });
         let Some(owner) = self.owner(near) else { return };
         self.report_missing_values(owner, near);
         let values = self.laws(owner).map(|(_, id, _)| self.evaluator.get(id).abs());

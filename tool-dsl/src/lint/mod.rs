@@ -1,20 +1,17 @@
 //! A search for errors at many sample points of a tool's domain: regions that overlap, are never reached or
 //! give invalid values. Each diagnostic names the point where it was found.
 
-mod fault;
-mod laws;
-
-use crate::bound::Extent;
-use crate::bound::spread;
+use crate::bound::{Extent, spread};
 use crate::diagnostic::{CheckKind, Diagnostic, FormattedNumber, Subject, any_error};
 use crate::domain::Domain;
-use crate::expr::Id;
 use crate::expr::value::{EvaluationPoint, Evaluator};
+use crate::expr::{Graph, Id, Node};
 use crate::formula::{Curve, CurveIndex, Formula};
 use crate::model::{Model, Region};
 use crate::resolve::{never_wins, off_tip, overlapping};
 use crate::source::Span;
-use fault::Fault;
+
+mod laws;
 
 /// The number of sample points.
 const SAMPLES: usize = 12_000;
@@ -37,6 +34,7 @@ pub(crate) fn undefined_curves(model: &Model) -> Vec<Diagnostic> {
     for power in -20..=20 {
         let size = 2f64.powi(power);
         let extent = Extent::of(model.domain.bounding_cell(size), size);
+        // Each size by itself, so that the nearest fault is reported.
         let mut linter = Linter::new(model, &extent);
         for point in spread(model.domain, &extent, 50, 0.0) {
             linter.set_point(point);
@@ -88,6 +86,7 @@ pub(crate) fn lint(model: &Model, extent: &Extent) -> Vec<Diagnostic> {
     }
     linter.report_idle_regions();
     if !any_error(&linter.found) {
+        // Steps without a common factor pair points from all over.
         let pairs = inside.iter().cycle().step_by(7).zip(outside.iter().cycle().step_by(5));
         for (a, b) in pairs.take(if outside.is_empty() { 0 } else { SURFACE_SEGMENTS }) {
             linter.check_crossing(*a, *b);
@@ -118,20 +117,10 @@ struct Linter<'m> {
 
 impl<'m> Linter<'m> {
     fn new(model: &'m Model, extent: &Extent) -> Linter<'m> {
-        let roots = model
-            .regions
-            .iter()
-            .flat_map(|r| {
-                [r.depth, r.magnitude, r.niceness]
-                    .into_iter()
-                    .chain(r.raw_direction.0)
-                    .chain(r.direction)
-            })
-            .chain(model.curves.iter().map(|curve| curve.value));
         Linter {
             model,
             size: extent.scale(),
-            evaluator: Evaluator::new(&model.graph, roots),
+            evaluator: Evaluator::new(&model.graph, model.roots()),
             found: Vec::new(),
             owned_points: vec![0; model.regions.len()],
             holds: vec![0; model.regions.len()],
@@ -148,6 +137,7 @@ impl<'m> Linter<'m> {
             self.set_point(point);
             for curve in 0..self.scales.len() {
                 let size = self.value(curve).abs();
+                // An undefined value is reported elsewhere.
                 if size.is_finite() {
                     self.scales[curve] = self.scales[curve].max(size);
                 }
@@ -162,8 +152,9 @@ impl<'m> Linter<'m> {
 
     fn format_point(&self, [x, y, z]: [f64; 3]) -> String {
         // A coordinate that is rounding relative to the tool's size is shown as 0.
-        let without_rounding = |v: f64| if v.abs() < ROUNDING * self.size { 0.0 } else { v };
-        self.model.domain.format_point([x, y, self.model.frame.to_file(z)].map(without_rounding))
+        let point = [x, y, self.model.frame.to_file(z)]
+            .map(|v| if v.abs() < ROUNDING * self.size { 0.0 } else { v });
+        self.model.domain.format_point(point)
     }
 
     /// Reports at most one diagnostic per location and severity.
@@ -183,8 +174,10 @@ impl<'m> Linter<'m> {
 
     fn owner(&mut self, point: [f64; 3]) -> Option<usize> {
         self.set_point(point);
-        let value = |curve: CurveIndex| self.value(curve);
-        self.model.regions.iter().position(|region| region.inside.holds(&value))
+        self.model
+            .regions
+            .iter()
+            .position(|region| region.inside.holds(&|curve: CurveIndex| self.value(curve)))
     }
 
     /// Returns the lowest z found inside.
@@ -202,6 +195,7 @@ impl<'m> Linter<'m> {
                 let point = |z: f64| [d.max(0.0), 0.0, z];
                 let inside = (0..=COLUMNS).find(|step| self.owner(point(at(*step))).is_some());
                 let Some(step) = inside else { continue };
+                // One step lower is outside, or below the box.
                 let (mut inside_z, mut outside_z) = (at(step), at(step - 1));
                 for _ in 0..50 {
                     let middle = inside_z / 2.0 + outside_z / 2.0;
@@ -245,6 +239,7 @@ impl<'m> Linter<'m> {
         let claims: Vec<usize> = (0..self.model.regions.len())
             .filter(|r| self.model.regions[*r].inside.holds(&value))
             .collect();
+        // Neighbours share their border, so only points clearly in both count as an overlap.
         let is_well_inside =
             |r: usize| holds_with_margin(&self.model.regions[r].inside, &value, &self.scales);
         let overlap = match claims.as_slice() {
@@ -331,8 +326,11 @@ impl<'m> Linter<'m> {
 
     /// Returns the location of a region whose conditions mention a curve.
     fn reader_of(&self, curve: CurveIndex) -> Span {
-        let reads = |region: &&Region| mentions(&region.inside, curve);
-        self.model.regions.iter().find(reads).map_or(self.model.name_span, |region| region.span)
+        self.model
+            .regions
+            .iter()
+            .find(|region| mentions(&region.inside, curve))
+            .map_or(self.model.name_span, |region| region.span)
     }
 
     fn report_idle_regions(&mut self) {
@@ -434,6 +432,48 @@ fn mentions(formula: &Formula, sought: CurveIndex) -> bool {
         Formula::Atom { curve, .. } => *curve == sought,
         Formula::All(parts) | Formula::Any(parts) => {
             parts.iter().any(|part| mentions(part, sought))
+        }
+    }
+}
+
+/// The reason why a value is not a finite number.
+enum Fault {
+    Root,
+    Quotient,
+    Size,
+}
+
+impl Fault {
+    /// Returns the first operation, from the operands up, whose result is not finite.
+    fn of(graph: &Graph, evaluator: &Evaluator<'_>, mut id: Id) -> Fault {
+        loop {
+            let node = graph.node(id);
+            let operands: Vec<Id> = match *node {
+                Node::Select { low, high, then, other } => {
+                    let [low, high] = [low, high].map(|id| evaluator.get(id));
+                    vec![if low <= high { then } else { other }]
+                }
+                _ => node.operands().collect(),
+            };
+            match operands.into_iter().find(|id| !evaluator.get(*id).is_finite()) {
+                Some(operand) => id = operand,
+                None => {
+                    return match *node {
+                        Node::Sqrt(_) => Fault::Root,
+                        Node::Div(_, by) if evaluator.get(by) == 0.0 => Fault::Quotient,
+                        _ => Fault::Size,
+                    };
+                }
+            }
+        }
+    }
+
+    /// Returns the diagnostic for an expression that has no value at a point.
+    fn kind(&self, location: String, subject: Subject) -> CheckKind {
+        match self {
+            Fault::Root => CheckKind::RootOfNegative { location, subject },
+            Fault::Quotient => CheckKind::DivisionByZero { location, subject },
+            Fault::Size => CheckKind::NumericOverflow { location, subject },
         }
     }
 }

@@ -7,21 +7,20 @@
 //! the information that tests give about samples of the domain, with cheap curves preferred and the curves of
 //! `bsp` first.
 
-mod corners;
-mod empty;
 mod samples;
 mod section;
 mod signs;
-mod zero_set;
 
 use crate::bound::Extent;
 use crate::diagnostic::{CheckKind, Diagnostic};
-use crate::expr::{Coord, Id};
+use crate::expr::{Coord, Graph, Id, Node};
 use crate::formula::{Curve, CurveIndex};
 use crate::model::Model;
 use crate::number::Number;
 use signs::by_signs;
 
+/// The information, in bits, that must justify one addition.
+const BITS_PER_ADDITION: f64 = 0.01;
 /// The largest number of tests in one tree.
 pub(crate) const MAX_TESTS: usize = 20_000;
 
@@ -46,6 +45,7 @@ pub enum Tree<L> {
 impl<L: Clone + PartialEq> Tree<L> {
     /// Returns a split, or the common subtree if both sides are equal.
     fn split(curve: CurveIndex, strict: bool, below: Tree<L>, above: Tree<L>) -> Tree<L> {
+        // The test decides nothing.
         if below == above {
             return below;
         }
@@ -175,17 +175,17 @@ fn limited_to_box(
 ) -> Tree<Option<usize>> {
     let graph = &mut model.graph;
     let [d, z] = [Coord::D, Coord::Z].map(|coord| graph.coord(coord));
-    let [radius, low, high] = [extent.radius, extent.low, extent.high].map(|value| {
-        let number = Number::from_f64(value).unwrap_or_else(|| Number::int(0));
-        graph.number(number)
-    });
+    let [radius, low, high] =
+        [extent.radius, extent.low, extent.high].map(|value| constant(graph, value));
     let sides = [graph.sub(d, radius), graph.sub(low, z), graph.sub(z, high)];
     sides.into_iter().fold(tree, |tree, value| {
+        // The file may have the side as a curve.
         let known = model.curves.iter().position(|curve| curve.value == value);
         let curve = known.unwrap_or_else(|| {
             model.curves.push(Curve { name: None, value });
             model.curves.len() - 1
         });
+        // Inside the side, the tree need not test it again.
         Tree::split(curve, false, tree.simplified(curve, false, true), Tree::Leaf(None))
     })
 }
@@ -199,11 +199,11 @@ const OUTSIDE_RANGE_IN_SIZES: f64 = 48.0;
 fn limited_outside(model: &mut Model, extent: &Extent, tree: Tree<Id>) -> Tree<Id> {
     let bound = distance_to_box(model, extent);
     let graph = &mut model.graph;
-    let number = |value: f64| Number::from_f64(value).unwrap_or_else(|| Number::int(0));
     let (height, middle) = (extent.high - extent.low, extent.high / 2.0 + extent.low / 2.0);
     let limit = OUTSIDE_RANGE_IN_SIZES * height.hypot(extent.radius);
     let (z, q) = (graph.coord(Coord::Z), graph.coord(Coord::Q));
-    let (middle, limit) = (graph.number(number(middle)), graph.number(number(limit * limit)));
+    // Squares, so that the test needs no root.
+    let (middle, limit) = (constant(graph, middle), constant(graph, limit * limit));
     let up = graph.sub(z, middle);
     let up = graph.mul(up, up);
     let squared_distance = graph.add(q, up);
@@ -220,10 +220,7 @@ fn distance_to_box(model: &mut Model, extent: &Extent) -> Id {
     for (coord, axis, _) in model.domain.coordinates().iter().rev() {
         let coordinate = graph.coord(*coord);
         let side = extent.cell().sides[*axis];
-        let [low, high] = [side.low, side.high].map(|value| {
-            let number = Number::from_f64(value).unwrap_or_else(|| Number::int(0));
-            graph.number(number)
-        });
+        let [low, high] = [side.low, side.high].map(|value| constant(graph, value));
         let mut excess = graph.sub(coordinate, high);
         // The half plane has no points beyond the axis.
         if *coord != Coord::D {
@@ -244,21 +241,23 @@ fn too_large(model: &Model) -> Diagnostic {
 
 /// Returns the cost of evaluating each curve, in additions.
 fn costs(model: &Model) -> Vec<f64> {
-    use crate::expr::{Coord, Node};
-    let cost = |node: &Node| match node {
+    let graph = &model.graph;
+    let nodes = model.curves.iter().map(|curve| graph.dependencies([curve.value]));
+    nodes.map(|nodes| nodes.into_iter().map(|id| cost(graph.node(id))).sum()).collect()
+}
+
+/// Returns the cost of a node, in additions. A root or a quotient takes about eight times as long as a sum.
+fn cost(node: &Node) -> f64 {
+    match node {
         Node::Const(_) | Node::Coord(Coord::X | Coord::Y | Coord::Z) => 0.0,
         Node::Sqrt(_) | Node::Div(..) | Node::Quotient(..) => 8.0,
         _ => 1.0,
-    };
-    let curve = |curve: &Curve| {
-        model
-            .graph
-            .dependencies([curve.value])
-            .into_iter()
-            .map(|id| cost(model.graph.node(id)))
-            .sum()
-    };
-    model.curves.iter().map(curve).collect()
+    }
+}
+
+/// Adds the constant of an extent to a graph.
+fn constant(graph: &mut Graph, value: f64) -> Id {
+    graph.number(Number::from_f64(value).unwrap_or_else(|| Number::int(0)))
 }
 
 /// Returns the information content of a part of a whole in bits, multiplied by the part's weight.

@@ -1,10 +1,9 @@
 //! Points of the section with known owners, and the information that curves give about them.
 
-use super::bits;
-use super::section::BITS_PER_ADDITION;
+use super::{BITS_PER_ADDITION, bits};
 use crate::formula::CurveIndex;
+use crate::geometry::cut::CurveFunction;
 use crate::geometry::outline::Point;
-use crate::geometry::shape::CurveFunction;
 
 /// The least cost, in additions, of a side on which several owners remain.
 const MIN_SIDE_COST: f64 = 8.0;
@@ -45,16 +44,6 @@ impl Samples {
     pub(super) fn new(all: &[Sample], shapes: &[CurveFunction<'_>]) -> Samples {
         let runs: Vec<&[Sample]> =
             all.chunk_by(|a, b| a.owner == b.owner).flat_map(|run| run.chunks(64)).collect();
-        let below = |shape: &CurveFunction<'_>| {
-            let bits = |run: &&[Sample]| {
-                let mut bits = 0;
-                for (k, sample) in run.iter().enumerate() {
-                    bits |= u64::from(shape.below(sample.point)) << k;
-                }
-                bits
-            };
-            runs.iter().map(bits).collect()
-        };
         let owners: Vec<usize> =
             runs.iter().map(|run| run[0].owner.map_or(0, |owner| owner + 1)).collect();
         Samples {
@@ -63,18 +52,21 @@ impl Samples {
                 .iter()
                 .map(|run| run.iter().map(|sample| sample.weight).collect())
                 .collect(),
-            below: shapes.iter().map(below).collect(),
+            below: shapes
+                .iter()
+                .map(|shape| runs.iter().map(|run| bits_below(run, shape)).collect())
+                .collect(),
             owners,
         }
     }
 
     pub(super) fn all(&self) -> SampleSubset {
-        let whole = |(word, weights): (usize, &Vec<f64>)| WordPart {
+        let words = self.weights.iter().enumerate().map(|(word, weights)| WordPart {
             word,
             bits: u64::MAX >> (64 - weights.len()),
             weight: weights.iter().sum(),
-        };
-        SampleSubset(self.weights.iter().enumerate().map(whole).collect())
+        });
+        SampleSubset(words.collect())
     }
 
     /// Returns the samples below a curve, and those above.
@@ -94,6 +86,7 @@ impl Samples {
     fn sides(&self, part: WordPart, curve: CurveIndex) -> [WordPart; 2] {
         let none = WordPart { bits: 0, weight: 0.0, ..part };
         let below = part.bits & self.below[curve][part.word];
+        // The weight of a whole part is known.
         if below == part.bits {
             return [part, none];
         }
@@ -157,4 +150,13 @@ impl Samples {
             owners.map(|owners| if owners > 1 { BITS_PER_ADDITION * MIN_SIDE_COST } else { 0.0 });
         entropy - remaining_bits / (totals[0] + totals[1]) - side_cost[0] - side_cost[1] - penalty
     }
+}
+
+/// Returns a bit for each sample of a word that is below a curve.
+fn bits_below(word: &[Sample], shape: &CurveFunction<'_>) -> u64 {
+    let mut bits = 0;
+    for (k, sample) in word.iter().enumerate() {
+        bits |= u64::from(shape.below(sample.point)) << k;
+    }
+    bits
 }

@@ -1,21 +1,21 @@
 //! The plan of a tool with a profile. Its partition is known as polygons, and splits cut them until one owner
-//! is left.
+//! is left. Points on a splitting curve go to one side, or to a tree of their own if both sides need them. Leaves
+//! return points that rounding may bring astray near a corner to one of its owners.
 
-use super::corners::{Corner, corners};
 use super::samples::{Sample, SampleSubset, Samples};
-use super::zero_set::Zeros;
-use super::{MAX_TESTS, Tree, costs};
+use super::{BITS_PER_ADDITION, MAX_TESTS, Tree, costs};
 use crate::diagnostic::{CheckKind, Diagnostic};
 use crate::expr::Id;
 use crate::formula::{CurveIndex, Formula};
-use crate::geometry::cut::{Cut, Cutter, Piece};
+use crate::geometry::cut::{
+    COINCIDENCE_FRACTION, CurveFunction, Cut, Cutter, Edge, Piece, is_along,
+};
 use crate::geometry::outline::{self, Point, minus, norm};
-use crate::geometry::shape::CurveFunction;
 use crate::model::{Model, Over, Section};
-use crate::regionalise::ROUNDING;
-use crate::regionalise::cells;
 use crate::regionalise::overlay::{self, ConditionedPart};
+use crate::regionalise::{ROUNDING, cells};
 use std::cell::Cell;
+use std::cmp::Ordering;
 use std::rc::Rc;
 
 /// The number of chords per curved edge: at first, and on retries after coarser polygons gave a wrong tree.
@@ -24,16 +24,15 @@ const CHORDS_PER_EDGE: [u32; 3] = [8, 40, 200];
 /// The number of curves that may be passed over because their zeros belong to both sides.
 const MAX_SKIPPED_CURVES: usize = 6;
 
-pub(super) type Owners = Tree<Option<usize>>;
+type Owners = Tree<Option<usize>>;
 
-/// The information, in bits, that must justify one addition.
-pub(super) const BITS_PER_ADDITION: f64 = 0.01;
 /// The relative cost of a test that the tree also makes elsewhere: code for lanes computes it once.
 const REPEATED_TEST_COST_FACTOR: f64 = 0.3;
 
 /// Returns the tree of owners, and that of the distances to the features that are nearest outside.
 pub(super) fn trees(model: &Model, section: &Section) -> Result<(Owners, Tree<Id>), Diagnostic> {
     let mut result = try_trees(model, section, CHORDS_PER_EDGE[0]);
+    // More chords cost time in every cut, and few tools need them.
     for chords in &CHORDS_PER_EDGE[1..] {
         if result.is_err() {
             result = try_trees(model, section, *chords);
@@ -101,6 +100,7 @@ fn try_trees(
     let outer = section.outer.cells(chords);
     let polygons = Polygons { model, section, chords, outer, shapes: &shapes, size };
     let owners = polygons.plan_inside()?;
+    // The division of the outside is checked where no region owns the point.
     let clearances = polygons.plan_outside(&owners)?;
     Ok((owners, clearances))
 }
@@ -142,6 +142,7 @@ impl Polygons<'_> {
             for (piece, holding) in overlay::divided(whole, &over.conditions, shapes, size) {
                 let first = holding.first().copied();
                 let region = first.and_then(|condition| over.region(cell.part, condition));
+                // Only slivers beside a curved edge can be without a region.
                 if region.is_some() {
                     input.add_piece(Piece { owner: region, ..piece });
                 }
@@ -154,12 +155,11 @@ impl Polygons<'_> {
         let inside = model.regions.iter().map(|region| &region.inside).collect();
         let owners = plan(model, shapes, size, input, inside)?;
         // A sliver between a curve and its chord may have been given to the wrong owner.
-        let part_of = |region: usize| match &section.over {
-            Some(over) => over.regions[region].part,
-            None => region,
-        };
-        let part_at = |p, _| self.leaf_at(&owners, p).map(part_of);
-        match section.inner.wrongly_assigned_point(part_at) {
+        let wrong = section.inner.wrongly_assigned_point(|p, _| {
+            let region = self.leaf_at(&owners, p)?;
+            Some(section.over.as_ref().map_or(region, |over| over.regions[region].part))
+        });
+        match wrong {
             Some(p) => Err(inseparable_owners(model, p)),
             None => Ok(owners),
         }
@@ -182,16 +182,16 @@ impl Polygons<'_> {
         }
         let conditions = section.outside.iter().map(|part| &part.condition).collect();
         let nearest = plan(model, shapes, size, input, conditions)?;
-        let part_at = |p, distance| {
+        let wrong = section.outer.wrongly_assigned_point(|p, distance| {
             // A region may own an outside point only within rounding of the surface.
             let is_free = distance <= ROUNDING * size || self.leaf_at(owners, p).is_none();
             self.leaf_at(&nearest, p).filter(|_| is_free)
-        };
-        if let Some(p) = section.outer.wrongly_assigned_point(part_at) {
+        });
+        if let Some(p) = wrong {
             return Err(inseparable_owners(model, p));
         }
-        let clearance = |part: &Option<usize>| part.map(|part| section.outside[part].clearance);
-        let clearances = nearest.map(&clearance);
+        let clearances =
+            nearest.map(&|part: &Option<usize>| part.map(|part| section.outside[part].clearance));
         Ok(clearances.unwrap_or(Tree::Leaf(section.outside[0].clearance)))
     }
 }
@@ -206,11 +206,11 @@ enum OwnerAt {
 
 /// The input of a plan: pieces to separate, weighted sample points, and points to check the tree with.
 #[derive(Default)]
-pub(super) struct PlanInput {
-    pub(super) pieces: Vec<Rc<Piece>>,
+struct PlanInput {
+    pieces: Vec<Rc<Piece>>,
     samples: Vec<Sample>,
     witnesses: Vec<(Point, Option<usize>)>,
-    pub(super) corners: Vec<Point>,
+    corners: Vec<Point>,
 }
 
 impl PlanInput {
@@ -252,18 +252,20 @@ impl Over {
     fn owner_at(&self, part: usize, p: Point, shapes: &[CurveFunction<'_>], size: f64) -> OwnerAt {
         let on_border = Cell::new(false);
         let first_condition = |sign_on_border: f64| {
-            let value = |curve: CurveIndex| match shapes[curve].side(p, size) {
-                0 => {
-                    on_border.set(true);
-                    sign_on_border
-                }
-                _ => shapes[curve].value(p),
-            };
-            self.conditions.iter().position(|condition| condition.holds(&value))
+            self.conditions.iter().position(|condition| {
+                condition.holds(&|curve: CurveIndex| match shapes[curve].side(p, size) {
+                    0 => {
+                        on_border.set(true);
+                        sign_on_border
+                    }
+                    _ => shapes[curve].value(p),
+                })
+            })
         };
         let low = first_condition(-1.0);
         // Away from every curve that was evaluated, the sign does not matter.
         let high = if on_border.get() { first_condition(1.0) } else { low };
+        // Whatever the sign on the border, the same condition is first, or the point is undecided.
         let decided = low.filter(|_| low == high);
         match decided.and_then(|condition| self.region(part, condition)) {
             Some(region) => OwnerAt::Known(Some(region)),
@@ -285,8 +287,7 @@ fn plan<'m>(
 ) -> Result<Owners, Diagnostic> {
     let samples = Samples::new(&input.samples, shapes);
     let all = samples.all();
-    let with_bounding_box = |piece: &Rc<Piece>| (Rc::clone(piece), piece.bounding_box());
-    let whole_pieces: Vec<_> = input.pieces.iter().map(with_bounding_box).collect();
+    let whole_pieces: Vec<WholePiece> = input.pieces.iter().map(WholePiece::new).collect();
     let corners = corners(input.corners, &whole_pieces, shapes, size);
     let all_corners: Vec<usize> = (0..corners.len()).collect();
     let mut planner = Planner {
@@ -312,19 +313,18 @@ fn plan<'m>(
     Ok(tree)
 }
 
-pub(super) struct Planner<'m> {
+struct Planner<'m> {
     model: &'m Model,
-    pub(super) shapes: &'m [CurveFunction<'m>],
-    pub(super) costs: Vec<f64>,
+    shapes: &'m [CurveFunction<'m>],
+    costs: Vec<f64>,
     samples: Samples,
-    pub(super) corners: Vec<Corner>,
+    corners: Vec<Corner>,
     inside: Vec<&'m Formula>,
     used: Vec<bool>,
-    /// The pieces before any cut, each with its bounding box.
-    whole_pieces: Vec<(Rc<Piece>, [Point; 2])>,
+    whole_pieces: Vec<WholePiece>,
     /// For each curve that was tried, the side of each whole piece.
     sides: Vec<Vec<Option<Side>>>,
-    pub(super) size: f64,
+    size: f64,
     tests: usize,
 }
 
@@ -337,9 +337,9 @@ enum Side {
 }
 
 /// The pieces on the two sides of a curve.
-pub(super) struct Halves {
-    pub(super) below: Vec<Rc<Piece>>,
-    pub(super) above: Vec<Rc<Piece>>,
+struct Halves {
+    below: Vec<Rc<Piece>>,
+    above: Vec<Rc<Piece>>,
 }
 
 /// A curve to split by, its division of the pieces, and the side to which its own points go.
@@ -350,7 +350,7 @@ struct Choice {
 }
 
 impl Planner<'_> {
-    pub(super) fn tree(
+    fn tree(
         &mut self,
         pieces: &[Rc<Piece>],
         samples: &SampleSubset,
@@ -362,6 +362,7 @@ impl Planner<'_> {
             return Ok(self.leaf(first, pieces, corners));
         }
         let Some(choice) = self.choose(pieces, samples, &mut candidates) else {
+            // No curve separates these pieces: they differ by slivers along chords.
             return Ok(self.leaf(self.largest_owner(pieces), pieces, corners));
         };
         let Choice { curve, halves, zeros } = choice;
@@ -381,6 +382,7 @@ impl Planner<'_> {
         let below = self.tree(&halves.below, &low, &corners_below, candidates.clone())?;
         let above = self.tree(&halves.above, &high, &corners_above, candidates)?;
         Ok(match on_curve {
+            // A test with `<` sends the zeros above; otherwise a second test singles them out.
             Some(on_curve) if on_curve == above => Tree::split(curve, true, below, above),
             Some(on_curve) if on_curve != below => {
                 let below = Tree::split(curve, true, below, on_curve);
@@ -407,14 +409,13 @@ impl Planner<'_> {
                 (gain - BITS_PER_ADDITION * cost_factor * self.costs[*curve], *curve)
             })
             .collect();
-        let listed_rank = |curve: CurveIndex| {
-            let listed = self.model.first_curves.iter().position(|first| *first == curve);
-            listed.unwrap_or(usize::MAX)
-        };
-        ranked.sort_by(|a, b| listed_rank(a.1).cmp(&listed_rank(b.1)).then(b.0.total_cmp(&a.0)));
+        ranked.sort_by(|a, b| {
+            self.listed_rank(a.1).cmp(&self.listed_rank(b.1)).then(b.0.total_cmp(&a.0))
+        });
         let (mut fallback, mut with_double_zeros, mut skipped_count) = (None, None, 0);
         for (_, curve) in ranked {
             let halves = self.halves(curve, pieces);
+            // It divides nothing here, and so nothing below.
             if halves.below.is_empty() || halves.above.is_empty() {
                 candidates.retain(|other| *other != curve);
                 continue;
@@ -443,10 +444,17 @@ impl Planner<'_> {
         })
     }
 
+    /// Returns the position of a curve in the list of `bsp`. Curves that are not listed come last.
+    fn listed_rank(&self, curve: CurveIndex) -> usize {
+        let listed = self.model.first_curves.iter().position(|first| *first == curve);
+        listed.unwrap_or(usize::MAX)
+    }
+
     /// Returns the owner of pieces that no curve separates. All but one owner's pieces are slivers between a
     /// curve and its chord.
     fn largest_owner(&self, pieces: &[Rc<Piece>]) -> Option<usize> {
         let true_pieces: Vec<&Rc<Piece>> = pieces.iter().filter(|piece| self.owns(piece)).collect();
+        // If no centre tells, all pieces are slivers.
         let candidates = if true_pieces.is_empty() { pieces.iter().collect() } else { true_pieces };
         let largest = candidates.into_iter().max_by(|a, b| a.area().total_cmp(&b.area()));
         largest.and_then(|piece| piece.owner)
@@ -464,25 +472,15 @@ impl Planner<'_> {
 
     fn halves(&mut self, curve: CurveIndex, pieces: &[Rc<Piece>]) -> Halves {
         let cutter = Cutter { shapes: self.shapes, curve, size: self.size };
-        let (whole_piece, shape) = (&self.whole_pieces, &self.shapes[curve]);
+        let whole_pieces = &self.whole_pieces;
         let sides = &mut self.sides[curve];
-        sides.resize(whole_piece.len(), None);
-        let side = |origin: usize| {
-            let (piece, [middle, half]) = &whole_piece[origin];
-            match shape.side_of_box(*middle, *half) {
-                -1 => return Side::Below,
-                1 => return Side::Above,
-                _ => {}
-            }
-            match piece.cut(cutter) {
-                Cut::Below => Side::Below,
-                Cut::Above => Side::Above,
-                Cut::Nothing | Cut::Both(..) => Side::Torn,
-            }
-        };
+        sides.resize(whole_pieces.len(), None);
         let mut halves = Halves { below: Vec::new(), above: Vec::new() };
         for piece in pieces {
-            let cut = match *sides[piece.origin].get_or_insert_with(|| side(piece.origin)) {
+            let origin = piece.origin;
+            // What is cut from a piece lies where the piece does, so the side is found once.
+            let side = sides[origin].get_or_insert_with(|| whole_pieces[origin].side(cutter));
+            let cut = match *side {
                 Side::Below => Cut::Below,
                 Side::Above => Cut::Above,
                 Side::Torn => piece.cut(cutter),
@@ -515,4 +513,251 @@ fn inseparable_owners(model: &Model, [d, z]: Point) -> Diagnostic {
     let span = outline::nearest_span(&outline, [d, z]).unwrap_or(model.name_span);
     let z = model.frame.to_file(z);
     Diagnostic::new(span, CheckKind::Inseparable { d, z })
+}
+
+/// A point where pieces meet, with the owners of these pieces.
+struct Corner {
+    at: Point,
+    owners: Vec<Option<usize>>,
+}
+
+/// A piece before any cut, with the centre and half the sides of a box that contains it.
+struct WholePiece {
+    piece: Rc<Piece>,
+    middle: Point,
+    half: Point,
+}
+
+impl WholePiece {
+    fn new(piece: &Rc<Piece>) -> WholePiece {
+        let [middle, half] = piece.bounding_box();
+        WholePiece { piece: Rc::clone(piece), middle, half }
+    }
+
+    fn side(&self, cutter: Cutter<'_, '_>) -> Side {
+        // A bound over the box decides most pieces without a cut.
+        match cutter.shapes[cutter.curve].side_of_box(self.middle, self.half) {
+            -1 => return Side::Below,
+            1 => return Side::Above,
+            _ => {}
+        }
+        match self.piece.cut(cutter) {
+            Cut::Below => Side::Below,
+            Cut::Above => Side::Above,
+            // No side holds for everything that is cut from it.
+            Cut::Nothing | Cut::Both(..) => Side::Torn,
+        }
+    }
+}
+
+/// Returns the points where whole pieces meet.
+fn corners(
+    mut points: Vec<Point>,
+    whole: &[WholePiece],
+    shapes: &[CurveFunction<'_>],
+    size: f64,
+) -> Vec<Corner> {
+    let tolerance = COINCIDENCE_FRACTION * size;
+    // Every cell gives the corners that it shares, and these differ by rounding.
+    points.sort_by(|p, q| p[0].total_cmp(&q[0]).then(p[1].total_cmp(&q[1])));
+    points.dedup_by(|p, q| are_near(*p, *q, tolerance));
+    let mut corners = Vec::new();
+    for at in points {
+        let mut owners = Vec::new();
+        for WholePiece { piece, middle, half } in whole {
+            let [u, v] = minus(at, *middle);
+            // The box rules out most pieces before their vertices and edges are compared.
+            if u.abs() <= half[0] + tolerance
+                && v.abs() <= half[1] + tolerance
+                && !owners.contains(&piece.owner)
+                && (piece.vertices.iter().any(|p| are_near(*p, at, tolerance))
+                    || piece.has_on_edge(at, shapes, size))
+            {
+                owners.push(piece.owner);
+            }
+        }
+        corners.push(Corner { at, owners });
+    }
+    corners
+}
+
+/// Returns whether two points differ by less than a tolerance in each coordinate.
+fn are_near(p: Point, q: Point, tolerance: f64) -> bool {
+    (p[0] - q[0]).abs() < tolerance && (p[1] - q[1]).abs() < tolerance
+}
+
+impl Planner<'_> {
+    /// Returns the corners that rounding may place on a side of a curve.
+    fn corners_on(&self, side: i8, curve: CurveIndex, corners: &[usize]) -> Vec<usize> {
+        let is_on_side =
+            |at: &usize| self.shapes[curve].side(self.corners[*at].at, self.size) != -side;
+        corners.iter().copied().filter(is_on_side).collect()
+    }
+
+    /// Returns a leaf for an owner, with the corners split off at which only pieces of other owners meet.
+    /// Rounding may bring a point near such a corner here, where its owner has no piece.
+    fn leaf(&self, owner: Option<usize>, pieces: &[Rc<Piece>], corners: &[usize]) -> Owners {
+        let foreign = corners.iter().find(|at| !self.corners[**at].owners.contains(&owner));
+        let Some(corner) = foreign.map(|at| &self.corners[*at]) else {
+            return Tree::Leaf(owner);
+        };
+        let Some(first) = corner.owners.first() else { return Tree::Leaf(owner) };
+        // On the corner's own side of the splitting curve there is no piece to keep.
+        if pieces.is_empty() {
+            return Tree::Leaf(*first);
+        }
+        let mut curves: Vec<(CurveIndex, i8)> = (0..self.shapes.len())
+            .map(|curve| (curve, self.shapes[curve].side(corner.at, self.size)))
+            .filter(|(_, side)| *side != 0)
+            .collect();
+        // The cheapest curve that keeps the corner away from all pieces.
+        curves.sort_by(|a, b| self.costs[a.0].total_cmp(&self.costs[b.0]));
+        let separating = curves.into_iter().find(|(curve, side)| {
+            let cutter = Cutter { shapes: self.shapes, curve: *curve, size: self.size };
+            pieces.iter().all(|piece| match piece.cut(cutter) {
+                Cut::Below => *side > 0,
+                Cut::Above => *side < 0,
+                Cut::Nothing => true,
+                Cut::Both(..) => false,
+            })
+        });
+        let Some((curve, side)) = separating else { return Tree::Leaf(owner) };
+        let [corners_here, corners_beyond] =
+            [side, -side].map(|side| self.corners_on(side, curve, corners));
+        let (corners_here, corners_beyond) =
+            (self.leaf(*first, &[], &corners_here), self.leaf(owner, pieces, &corners_beyond));
+        let (below, above) =
+            if side < 0 { (corners_here, corners_beyond) } else { (corners_beyond, corners_here) };
+        Tree::split(curve, side < 0, below, above)
+    }
+}
+
+/// The side to which a curve's own points go.
+#[derive(Clone, Copy, PartialEq)]
+enum Zeros {
+    Below,
+    Above,
+    Both,
+}
+
+impl Planner<'_> {
+    /// Returns the side to which the points on a curve go: the side of the solid, so that it includes its
+    /// surface. Where the solid is on both sides, it is the side of the owner listed first, if that is the
+    /// same side along the whole curve; otherwise the side below.
+    fn zeros(&self, curve: CurveIndex, halves: &Halves) -> Zeros {
+        let [below, above] =
+            [&halves.below, &halves.above].map(|half| self.border_points(curve, half));
+        // For the sides below and above: a point that belongs to the solid on this side only; a point whose first
+        // listed owner is on this side.
+        let (mut is_required, mut is_preferred) = ([false; 2], [false; 2]);
+        let mut points: Vec<Point> =
+            below.points.iter().chain(&above.points).map(|(p, _)| *p).collect();
+        points.sort_by(|p, q| p[0].total_cmp(&q[0]).then(p[1].total_cmp(&q[1])));
+        // Vertices that pieces share agree except for their last bits.
+        let tolerance = 1e-12 * self.size;
+        points.dedup_by(|p, q| are_near(*p, *q, tolerance));
+        for p in points {
+            let [b, a] = [&below, &above]
+                .map(|border_points| border_points.first_at(p, COINCIDENCE_FRACTION * self.size));
+            let inside = [b, a].map(|rank| rank != usize::MAX);
+            match (inside, b.cmp(&a)) {
+                ([true, false], _) => is_required[0] = true,
+                ([false, true], _) => is_required[1] = true,
+                (_, Ordering::Less) => is_preferred[0] = true,
+                (_, Ordering::Greater) => is_preferred[1] = true,
+                _ => {}
+            }
+        }
+        match (is_required, is_preferred) {
+            // Some points belong to the solid below only, and others to the solid above only.
+            ([true, true], _) => Zeros::Both,
+            ([false, true], _) | ([false, false], [false, true]) => Zeros::Above,
+            _ => Zeros::Below,
+        }
+    }
+
+    /// Returns the points and edges of some pieces that lie on a curve.
+    fn border_points(&self, curve: CurveIndex, pieces: &[Rc<Piece>]) -> BorderPoints {
+        let shape = &self.shapes[curve];
+        let mut border_points = BorderPoints::default();
+        for piece in pieces {
+            let rank = rank(piece.owner);
+            let is_on_curve: Vec<bool> =
+                piece.vertices.iter().map(|p| shape.side(*p, self.size) == 0).collect();
+            for (k, p) in piece.vertices.iter().enumerate().filter(|(k, _)| is_on_curve[*k]) {
+                border_points.points.push((*p, rank));
+                let next = (k + 1) % is_on_curve.len();
+                // The chord of a curved edge is on the curve only at its ends.
+                if is_on_curve[next] && piece.edges[k] == Edge::Straight {
+                    border_points.edges.push(([*p, piece.vertices[next]], rank));
+                }
+            }
+        }
+        border_points
+    }
+
+    /// Returns the owners of the points on a curve: at each, the first listed of those on both sides.
+    fn zero_set_tree(
+        &mut self,
+        curve: CurveIndex,
+        halves: &Halves,
+        corners: &[usize],
+        open: &[CurveIndex],
+    ) -> Result<Owners, Diagnostic> {
+        let shape = &self.shapes[curve];
+        // Only pieces that reach the curve can own its points.
+        let touches =
+            |piece: &&Rc<Piece>| piece.vertices.iter().any(|p| shape.side(*p, self.size) == 0);
+        let [below, above] = [&halves.below, &halves.above]
+            .map(|pieces| pieces.iter().filter(touches).cloned().collect::<Vec<_>>());
+        let [corners_below, corners_above] =
+            [-1, 1].map(|side| self.corners_on(side, curve, corners));
+        // Samples lie beside curves, so they say nothing about points on this one.
+        let none = SampleSubset::default();
+        let below = self.tree(&below, &none, &corners_below, open.to_vec())?;
+        let above = self.tree(&above, &none, &corners_above, open.to_vec())?;
+        Ok(first(&below, &above))
+    }
+}
+
+/// Points and straight edges on a curve, with the rank of their owner: its index in the list of regions, or
+/// `usize::MAX` for the outside.
+#[derive(Default)]
+struct BorderPoints {
+    points: Vec<(Point, usize)>,
+    edges: Vec<([Point; 2], usize)>,
+}
+
+impl BorderPoints {
+    /// Returns the rank of the first listed owner that touches a point.
+    fn first_at(&self, p: Point, tolerance: f64) -> usize {
+        let points = self.points.iter().filter(|(q, _)| are_near(p, *q, tolerance));
+        let points = points.map(|(_, rank)| *rank);
+        let edges = self
+            .edges
+            .iter()
+            .filter(|(edge, _)| is_along(p, *edge, tolerance))
+            .map(|(_, rank)| *rank);
+        points.chain(edges).min().unwrap_or(usize::MAX)
+    }
+}
+
+/// Returns an owner's index in the list of regions, or `usize::MAX` for the outside.
+fn rank(owner: Option<usize>) -> usize {
+    owner.unwrap_or(usize::MAX)
+}
+
+/// Returns a tree whose leaves are the first listed of the owners in two trees.
+fn first(a: &Owners, b: &Owners) -> Owners {
+    match a {
+        Tree::Leaf(own) => {
+            let first_listed =
+                |other: &Option<usize>| Some(if rank(*other) < rank(*own) { *other } else { *own });
+            b.map(&first_listed).unwrap_or(Tree::Leaf(*own))
+        }
+        Tree::Split { curve, strict, below, above } => {
+            let [low, high] = [true, false].map(|holds| b.simplified(*curve, *strict, holds));
+            Tree::split(*curve, *strict, first(below, &low), first(above, &high))
+        }
+    }
 }

@@ -1,9 +1,14 @@
 //! The plan of regions written by hand. Only their conditions are known, and splits decide them by signs.
+//!
+//! A side without samples is proved to have no point: by elimination where curves are linear, otherwise by boxes
+//! that cover the domain.
 
-use super::empty::EmptinessProver;
-use super::{MAX_TESTS, Tree, bits, costs, too_large};
-use crate::bound::{Extent, spread};
+use super::{BITS_PER_ADDITION, MAX_TESTS, Tree, bits, costs, too_large};
+use crate::bound::{Extent, Prover, spread};
 use crate::diagnostic::Diagnostic;
+use crate::domain::Domain;
+use crate::elimination::Linear;
+use crate::expr::interval::halves;
 use crate::expr::value::{EvaluationPoint, Evaluator};
 use crate::formula::{ANY_SIGN, CurveIndex, NEGATIVE, POSITIVE, Signs, ZERO};
 use crate::model::Model;
@@ -33,8 +38,7 @@ struct Sample {
 }
 
 fn samples(model: &Model, extent: &Extent) -> Vec<Sample> {
-    let values = model.curves.iter().map(|curve| curve.value);
-    let mut evaluator = Evaluator::new(&model.graph, values);
+    let mut evaluator = Evaluator::new(&model.graph, model.curve_values());
     spread(model.domain, extent, 2000, 0.05)
         .map(|[x, y, z]| {
             evaluator.evaluate(EvaluationPoint::new(x, y, z));
@@ -69,6 +73,7 @@ impl Planner<'_> {
     ) -> Result<Tree<Option<usize>>, Diagnostic> {
         loop {
             let possible = self.possible(&signs);
+            // All regions but one are excluded, or one contains every such point.
             if let [only] = possible.as_slice() {
                 return Ok(Tree::Leaf(*only));
             }
@@ -111,6 +116,7 @@ impl Planner<'_> {
         let mut possible = Vec::new();
         for (index, region) in self.model.regions.iter().enumerate() {
             match region.inside.decide(signs) {
+                // Regions listed later do not matter: the first that contains a point owns it.
                 Some(true) => {
                     possible.push(Some(index));
                     return possible;
@@ -143,7 +149,7 @@ impl Planner<'_> {
                 continue;
             }
             tried.push(*curve);
-            let gain = self.gain(*curve, samples) - 0.01 * self.costs[*curve];
+            let gain = self.gain(*curve, samples) - BITS_PER_ADDITION * self.costs[*curve];
             if best.is_none_or(|(best_gain, _)| gain > best_gain) {
                 best = Some((gain, *curve));
             }
@@ -152,6 +158,7 @@ impl Planner<'_> {
         // The zeros go to the side of the region listed earlier.
         let below = atoms.iter().find(|(c, _)| *c == curve).is_none_or(|(_, below)| *below);
         let strict = match signs[curve] {
+            // Only one open side and the zeros are left, and the test must separate these two.
             s if s & (NEGATIVE | POSITIVE) == NEGATIVE => true,
             s if s & (NEGATIVE | POSITIVE) == POSITIVE => false,
             _ => !below,
@@ -195,4 +202,63 @@ fn information(counts: impl Iterator<Item = [f64; 2]> + Clone) -> f64 {
 fn sides(signs: Signs, strict: bool) -> (Signs, Signs) {
     let below = if strict { NEGATIVE } else { NEGATIVE | ZERO };
     (signs & below, signs & !below)
+}
+
+/// The largest number of boxes in one proof, in the half plane and in space.
+const MAX_BOXES_IN_HALF_PLANE: usize = 96;
+const MAX_BOXES_IN_SPACE: usize = 400;
+
+/// The size of a box, relative to the tool's, at which a proof is given up: it mostly has a point with the signs. Boxes are divided
+/// depth first, so such a box is reached soon.
+const SMALLEST_BOX: f64 = 1.0 / 4096.0;
+
+/// A prover that combinations of signs are impossible.
+struct EmptinessProver<'m> {
+    linear: Linear,
+    domain: Domain,
+    prover: Prover<'m>,
+    /// The size of boxes that are not divided further.
+    smallest: f64,
+}
+
+impl<'m> EmptinessProver<'m> {
+    fn new(model: &'m Model, extent: &Extent) -> EmptinessProver<'m> {
+        EmptinessProver {
+            linear: Linear::new(model),
+            domain: model.domain,
+            prover: Prover::new(model),
+            smallest: SMALLEST_BOX * extent.scale(),
+        }
+    }
+
+    /// Returns whether provably no point has these signs.
+    fn is_empty(&mut self, signs: &[Signs]) -> bool {
+        self.linear.is_contradictory(signs).unwrap_or_else(|| self.is_excluded_by_boxes(signs))
+    }
+
+    /// Returns whether no box of a cover of the domain can have the signs.
+    fn is_excluded_by_boxes(&mut self, signs: &[Signs]) -> bool {
+        // All points that a query can have.
+        let mut pending = vec![self.domain.bounding_cell(2f64.powi(300))];
+        let mut boxes_left = match self.domain {
+            Domain::HalfPlane => MAX_BOXES_IN_HALF_PLANE,
+            Domain::Space => MAX_BOXES_IN_SPACE,
+        };
+        while let Some(cell) = pending.pop() {
+            self.prover.set_box(cell);
+            let mut constrained =
+                signs.iter().enumerate().filter(|(_, allowed)| **allowed != ANY_SIGN);
+            if constrained.any(|(curve, allowed)| self.prover.signs(curve) & allowed == 0) {
+                continue;
+            }
+            let size =
+                cell.sides.iter().fold(0.0, |size: f64, side| size.max(side.high - side.low));
+            if boxes_left == 0 || size < self.smallest {
+                return false;
+            }
+            boxes_left -= 1;
+            pending.extend(halves(cell));
+        }
+        true
+    }
 }

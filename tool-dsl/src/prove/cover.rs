@@ -1,10 +1,8 @@
 //! The domain as boxes, each with the regions that it may have points of, according to the tests of the
 //! emitted tree.
 
-use crate::expr::interval::halves;
-use crate::expr::interval::{Cell, Encloser};
-use crate::formula::possible;
-use crate::formula::{ANY_SIGN, CurveIndex, NEGATIVE, Signs, ZERO};
+use crate::expr::interval::{Cell, Encloser, halves};
+use crate::formula::{ANY_SIGN, CurveIndex, NEGATIVE, Signs, ZERO, possible};
 use crate::model::Model;
 use crate::plan::Tree;
 
@@ -35,13 +33,12 @@ const NO_CONTINUATIONS: Continuations = [[0; ANY_SIGN as usize + 1]; 2];
 
 impl<'m> Cover<'m> {
     pub(super) fn new(model: &'m Model, tree: &'m Tree<Option<usize>>) -> Cover<'m> {
-        let values = model.curves.iter().map(|curve| curve.value);
-        let encloser = Encloser::new(&model.graph, values);
+        let encloser = Encloser::new(&model.graph, model.curve_values());
         Cover { model, tree, encloser, paths: vec![NO_CONTINUATIONS] }
     }
 
     /// Returns the signs that a curve can have in the current box.
-    pub(super) fn sign(&mut self, curve: CurveIndex) -> Signs {
+    fn sign(&mut self, curve: CurveIndex) -> Signs {
         possible(self.encloser.get(self.model.curves[curve].value))
     }
 
@@ -73,8 +70,10 @@ impl<'m> Cover<'m> {
             }
             return;
         };
+        // A path may test a curve more than once.
         let known = path.iter().filter(|(known, _)| known == curve).map(|(_, signs)| *signs);
         let possible_signs = known.fold(self.sign(*curve), |allowed, signs| allowed & signs);
+        // The test is `c < 0` or `c ≤ 0`, and the curve itself belongs to one side only.
         let low = if *strict { NEGATIVE } else { NEGATIVE | ZERO };
         let sides = [(below, possible_signs & low), (above, possible_signs & !low & ANY_SIGN)];
         for (is_above, (side, signs)) in sides.into_iter().enumerate() {

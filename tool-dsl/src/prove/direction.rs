@@ -1,10 +1,9 @@
 //! Directions: their angle to the steepest descent of depth, and the points where they vanish.
 
-use super::nonsmooth::angle;
 use super::root::RootForm;
-use super::slope::Slope;
+use super::slope::{Slope, angle};
 use crate::domain::Domain;
-use crate::expr::interval::{Cell, Interval, ZERO};
+use crate::expr::interval::{Cell, Interval, ZERO, dot};
 use crate::expr::polynomial::{Polynomial, Polynomials, monomial_of};
 use crate::expr::{Graph, Id, Node};
 use crate::model::{Model, Region};
@@ -45,12 +44,14 @@ impl DirectionFacts {
                     Some(self.angle_to_descent.map_or(angle, |known| known.hull(angle)));
             }
             None if vanishes(direction) => {
+                // Neighbouring boxes around one point become one box.
                 let near = self.singular.iter().position(|known| known.meets(&cell));
                 let known = near.map(|at| self.singular.swap_remove(at));
                 self.singular.push(known.map_or(cell, |known| known.hull(&cell)));
             }
             None => {}
         }
+        // The component along `d` has the azimuth of the point, which is undefined on the axis.
         let axis = domain == Domain::HalfPlane && cell.sides[0].low <= 0.0;
         self.on_axis |= axis && direction[0] != ZERO;
         angle_here.map(|angle| angle.high)
@@ -64,9 +65,12 @@ pub(super) fn is_parallel(model: &Model, region: &Region, depth: Option<&RootFor
     let mut polynomials = Polynomials::default();
     let without_root: Vec<(Id, i64, Option<Id>)> =
         region.raw_direction.0.iter().map(|part| without_root(&model.graph, *part)).collect();
-    let is_zero = |id: Id| model.graph.constant(id).is_some_and(Number::is_zero);
-    let mut divisors = without_root.iter().filter(|(part, ..)| !is_zero(*part)).map(|(.., by)| by);
+    let mut divisors = without_root
+        .iter()
+        .filter(|(part, ..)| !model.graph.constant(*part).is_some_and(Number::is_zero))
+        .map(|(.., by)| by);
     let first = divisors.next();
+    // Components divided by different roots have another direction without them.
     if !divisors.all(|by| Some(by) == first) {
         return false;
     }
@@ -115,23 +119,26 @@ pub(super) fn angle_to_descent(
     is_parallel: bool,
 ) -> Option<Interval> {
     let descent = depth.partials.map(Interval::negated);
-    let dot_product = (0..3).fold(ZERO, |sum, k| sum.plus(direction[k].times(descent[k])));
-    match dot_product {
+    match dot(direction, descent) {
         _ if vanishes(direction) => None,
+        // Parallel by an identity: the sign of the product decides between 0 and half a turn, exactly.
         Interval { low, .. } if is_parallel && low > 0.0 => Some(ZERO),
         Interval { high, .. } if is_parallel && high < 0.0 => Some(Interval { low: PI, high: PI }),
+        // The sign is open, so the angle is one of the two, and a hull of both would say nothing.
         _ if is_parallel => None,
         _ => {
-            let unit = |vector: [Interval; 3], length: Interval| {
-                let reciprocal = length.reciprocal();
-                let unit_range = Interval { low: -1.0, high: 1.0 };
-                vector.map(|part| part.times(reciprocal).common(unit_range))
-            };
             let squares = direction.map(Interval::square);
             let length = squares[0].plus(squares[1]).plus(squares[2]).sqrt();
             Some(angle(unit(direction, length), unit(descent, depth.length)))
         }
     }
+}
+
+/// Encloses the unit vector along a vector of a given length.
+fn unit(vector: [Interval; 3], length: Interval) -> [Interval; 3] {
+    let reciprocal = length.reciprocal();
+    let unit_range = Interval { low: -1.0, high: 1.0 };
+    vector.map(|part| part.times(reciprocal).common(unit_range))
 }
 
 /// Returns whether a vector may be 0.

@@ -2,19 +2,14 @@
 //! corner of its region.
 //!
 //! Depth, being the distance to the foot, is then at least the distance to the surface, whatever the borders
-//! of regions are. A point that is beyond the normal at a segment's end by `o` is as near to that end as to
-//! the line or circle, up to `2 o`. For an arc this holds on the end's side of the centre. A point on the
-//! other side, at the distance `ρ` from the centre, is as near up to `2 ρ`. If the arc turns by `T`, that
-//! point is beyond the normal at one end by at least `ρ sin (T/2)`, and `sin (T/2)` is half the chord divided
-//! by the radius.
+//! of regions are.
 
 use super::cover::{Claim, Cover};
 use super::root::{Forms, RootForm};
 use crate::expr::Coord;
-use crate::expr::enclosed::EnclosedPolynomial;
 use crate::expr::interval::Cell;
-use crate::expr::polynomial::{ClearSide, Polynomial};
-use crate::formula::{Curve, CurveIndex, one_side};
+use crate::expr::polynomial::{ClearSide, EnclosedPolynomial, Polynomial};
+use crate::formula::{CurveIndex, one_side};
 use crate::geometry::outline::{ExactPoint, Segment, unit_between};
 use crate::number::Number;
 use crate::plan::PlannedTool;
@@ -69,6 +64,7 @@ impl ProfileFeet {
         let (features, whole) = (section.inner.features(), tool.extent.cell());
         let mut max_difference = 0.0f64;
         let ends = model.regions.iter().enumerate().map(|(index, region)| {
+            // With regions from `over`, several may belong to one part of the profile.
             let part = section.over.as_ref().map_or(index, |over| over.regions[index].part);
             let (distance, ends) = match *features.get(part)? {
                 Feature::Piece(piece) => {
@@ -85,8 +81,7 @@ impl ProfileFeet {
             (difference <= DISTANCE_TOLERANCE_FRACTION * size).then_some(ends)
         });
         let ends: Vec<Ends> = ends.collect::<Option<_>>()?;
-        let curve = |curve: &Curve| forms.polynomial(curve.value);
-        let curves = model.curves.iter().map(curve).collect();
+        let curves = model.curves.iter().map(|curve| forms.polynomial(curve.value)).collect();
         let bounds = ends.iter().map(|ends| vec![Vec::new(); ends.len()]).collect();
         Some(ProfileFeet { ends, curves, max_difference, bounds })
     }
@@ -99,6 +94,7 @@ impl ProfileFeet {
         for end in 0..self.ends[owner].len() {
             let mut overshoot = -self.ends[owner][end].enclosed.over(&cell).low;
             for (curve, _) in &claim.signs {
+                // The box alone proves it, as for most boxes inside a region.
                 if overshoot <= 0.0 {
                     break;
                 }
@@ -107,6 +103,10 @@ impl ProfileFeet {
                     overshoot = overshoot.min(-min_distance);
                 }
             }
+            // A point that is beyond the normal at an end by `o` is as near to that end as to the line or circle, up to
+            // `2 o`. Behind the centre of an arc, at a distance `ρ` from it, the bound is `2 ρ`; if the arc turns by `T`,
+            // such a point is beyond the normal at one end by at least `ρ sin (T/2)`, and `sin (T/2)` is half the chord
+            // divided by the radius.
             let side = self.ends[owner][end].side.as_ref();
             let far_side = side.filter(|(side, _)| side.over(&cell).low < 0.0);
             max_overshoot =
@@ -126,7 +126,9 @@ impl ProfileFeet {
         cell: Cell,
     ) -> Option<f64> {
         let (curves, ends) = (&self.curves, &self.ends);
-        let bound = || {
+        let known = &mut self.bounds[owner][end];
+        known.resize(curves.len(), Bounds::default());
+        let bound = known[curve][usize::from(below)].get_or_init(|| {
             let curve = curves[curve].as_ref()?;
             let end = &ends[owner][end].inside;
             if !curve.is_linear() {
@@ -136,11 +138,10 @@ impl ProfileFeet {
                 return is_clear.then(|| Polynomial::zero().enclosed());
             }
             let sign = Number::int(if below { 1 } else { -1 });
+            // With this sign the line is at most 0 on its side, so the end's function is at least the sum of the
+            // two. That is nearly constant if the line is the normal up to rounding.
             Some(curve.with_unit_slope()?.scaled(&sign).plus(end).enclosed())
-        };
-        let known = &mut self.bounds[owner][end];
-        known.resize(curves.len(), Bounds::default());
-        let bound = known[curve][usize::from(below)].get_or_init(bound);
+        });
         bound.as_ref().map(|min_distance| min_distance.over(&cell).low)
     }
 }
@@ -172,10 +173,9 @@ fn ends(segment: &Segment) -> Option<Ends> {
     let Some(circle) = &segment.circle else {
         let forward = segment.direction()?;
         let backward = forward.each_ref().map(|part| -part);
-        let end = |inside: Polynomial| End::new(inside, None);
         return Some(vec![
-            end(linear_function(&forward, &segment.from)),
-            end(linear_function(&backward, &segment.to)),
+            End::new(linear_function(&forward, &segment.from), None),
+            End::new(linear_function(&backward, &segment.to), None),
         ]);
     };
     // To the left of the ray to one end and to the right of that to the other, or vice versa. Arcs span at

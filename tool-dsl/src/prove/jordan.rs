@@ -1,27 +1,9 @@
 //! A proof that the solid is the set that its profile encloses.
 //!
-//! Let depth be at most `s` where the solid ends, and at least the distance to the profile minus `s`. The
-//! solid then ends only within `ρ = 2 s` of the profile. The profile with its mirror image is a simple closed
-//! curve. The points farther from it than `ρ` form two connected sets, one enclosed and one outside (Jordan),
-//! if the distance from the curve has no critical value up to `ρ`. Its level sets are then isotopic (Grove,
-//! *Critical point theory for distance functions*, 1993). Each of the two sets is entirely solid or entirely
-//! empty, and one point of it decides which.
-//!
-//! A critical point is in the convex hull of the points of the curve that are nearest to it. These are two
-//! points, possibly corners, that face each other, or three, not all on consecutive segments. Any two are at
-//! most `2 ρ` apart and see each other through the empty ball. Shortening the connection between two of them
-//! ends at an end of a segment, at facing normals, or at a third segment, to which it is shorter still.
-//! [`Profile::narrowest`] is a lower bound of the distance between such points: from ends to segments that do
-//! not contain them, along facing normals, and across circles. The rounding errors of doubles are far smaller
-//! than the additional factor of 2 that is required.
-//!
-//! Starting from a point of the profile that is nearest to an inside point, there is an outside point that is
-//! `ρ` or more from the profile, at the distance `x = 2 ρ / sin(β/2)` on the bisector of the outside angle `β`.
-//! It is `x sin(β/2) = 2 ρ` from a straight side or from an arc that bends away. From an arc of radius `R` that
-//! bends toward the bisector it is `R - √(R² - 2 R x sin(β/2) + x²)`, which is at least `ρ` if
-//! `R ≥ 2 ρ / sin²(β/2)`. From all other segments it is at least as far as the narrowest passage less `x`,
-//! which is more than `x`. For points beside a corner and on arcs it is a little farther: the surface of the
-//! solid is at most `X = 9/8 x = 4.5 s / sin(β/2)` from that point (Theorem 3 of `docs/proofs.md`).
+//! The solid ends only within `ρ = 2 s` of the profile, where `s` bounds depth. The points farther from the profile and
+//! its mirror image form two connected sets, one enclosed and one outside, and one point of each decides which is
+//! solid. Theorem 3 of `docs/proofs.md` has the proof, and a bound `X = 4.5 s / sin(β/2)` of the distance between the
+//! two surfaces, where `β` is the least outside angle at a corner. This module has the profile's measures that it needs.
 
 use crate::geometry::outline::{Point, Segment, cross, dot, minus, norm};
 
@@ -49,9 +31,11 @@ impl Profile {
         let mirrored: Vec<Segment> = outline.iter().map(Segment::mirrored).collect();
         let radii = outline.iter().filter_map(|piece| Some(piece.round()?.1));
         let min_radius = radii.fold(f64::INFINITY, f64::min);
+        // Points of one arc face each other across its circle.
         let mut narrowest = 2.0 * min_radius;
         for (index, piece) in outline.iter().enumerate() {
             for (other, other_segment) in outline.iter().enumerate().skip(index + 1) {
+                // At a common end the distance is 0, but consecutive segments do not face each other there.
                 let joints: &[_] = if other == index + 1 { &[[1, 0]] } else { &[] };
                 narrowest = narrowest.min(facing_distance(piece, other_segment, joints));
             }
@@ -60,6 +44,7 @@ impl Profile {
             for (other, image) in mirrored.iter().enumerate().skip(index) {
                 let mut joints = Vec::new();
                 if other == index && index == 0 {
+                    // Where the profile begins and ends on the axis, it continues as its image.
                     joints.push([0, 1]);
                 }
                 if other == index && index + 1 == outline.len() {
@@ -95,6 +80,9 @@ impl Profile {
 /// Returns a lower bound of the distance between points of two segments that face each other. `joints` are
 /// the ends that the segments share, as pairs of indices of an end of each.
 fn facing_distance(one: &Segment, other: &Segment, joints: &[[usize; 2]]) -> f64 {
+    // Shortening the connection of two points that face each other ends at an end of a segment, at facing normals, or
+    // at a third segment, to which it is shorter still. The rounding of doubles is far smaller than the factor of 2
+    // that `max_distance` demands.
     let mut min_distance = f64::INFINITY;
     for (side, from, to) in [(0, one, other), (1, other, one)] {
         for (end, point) in from.ends().into_iter().enumerate() {
@@ -107,6 +95,7 @@ fn facing_distance(one: &Segment, other: &Segment, joints: &[[usize; 2]]) -> f64
         |segment: &Segment, p| segment.sector(p).iter().all(|side| *side >= 0.0);
     for [p, q] in normals(one, other) {
         let inward_sides_oppose = dot(one.inward(p), other.inward(q)) < 0.0;
+        // On the same normal, but facing only if the material is on opposite sides of the two points.
         if inward_sides_oppose && is_between_normals(one, p) && is_between_normals(other, q) {
             min_distance = min_distance.min(norm(minus(p, q)));
         }
@@ -117,15 +106,13 @@ fn facing_distance(one: &Segment, other: &Segment, joints: &[[usize; 2]]) -> f64
 /// Returns the pairs of points, one on each line or circle, that lie on a common normal. Two lines and two
 /// concentric circles have none: the distances from their ends suffice.
 fn normals(one: &Segment, other: &Segment) -> Vec<[Point; 2]> {
-    let point_along = |from: Point, direction: Point, by: f64| {
-        [from[0] + by * direction[0], from[1] + by * direction[1]]
-    };
     match (one.round(), other.round()) {
         (None, None) => Vec::new(),
         (None, Some((centre, radius, _))) => {
             let (start, along) = (one.ends()[0], one.tangent(false));
             let foot = point_along(start, along, dot(minus(centre, start), along));
             let across = [-along[1], along[0]];
+            // The common normal passes through the centre and meets the circle on both sides of it.
             [radius, -radius].map(|by| [foot, point_along(centre, across, by)]).to_vec()
         }
         (Some(_), None) => normals(other, one).into_iter().map(|[p, q]| [q, p]).collect(),
@@ -141,6 +128,10 @@ fn normals(one: &Segment, other: &Segment) -> Vec<[Point; 2]> {
                 .to_vec()
         }
     }
+}
+
+fn point_along(from: Point, direction: Point, by: f64) -> Point {
+    [from[0] + by * direction[0], from[1] + by * direction[1]]
 }
 
 #[cfg(test)]

@@ -53,6 +53,7 @@ impl Meridian {
         let model = in_half_plane(&tool.model, axis, perpendicular)?;
         let sides = tool.extent.cell().sides;
         let reach = perpendicular.map(|axis| sides[axis].abs().high);
+        // The solid turns, so it reaches no farther than along its shorter side.
         let radius = reach[0].min(reach[1]);
         let cell = Cell::half_plane(Interval::new(0.0, radius), sides[axis]);
         let extent = Extent::of(cell, radius);
@@ -69,6 +70,7 @@ impl Meridian {
         let facts = proved.regions.into_iter().zip(&model.regions).zip(shares);
         let regions = facts.map(|((facts, region), share)| RegionFacts {
             share,
+            // Angles and rates are the same at the point of the half plane in space.
             oblique_witness: facts.oblique_witness.map(|(angle, point)| (angle, self.point(point))),
             rising_witness: facts.rising_witness.map(|(rate, point)| (rate, self.point(point))),
             singular_cells: facts.singular_cells.iter().map(|cell| self.cell(cell)).collect(),
@@ -98,6 +100,7 @@ impl Meridian {
         let [d, _, z] = cell.sides;
         let mut sides = [ZERO; 3];
         sides[self.axis] = z;
+        // Rotation takes a point at the distance `d` from the axis to any place within `d` of it.
         for axis in self.perpendicular {
             sides[axis] = Interval { low: -d.high, high: d.high };
         }
@@ -147,9 +150,8 @@ impl<'g> RotationBehaviour<'g> {
     /// multiplied by a common invariant factor.
     fn rotates(&mut self, [a, b]: [Id; 2]) -> bool {
         let graph = self.graph;
-        let is_zero = |id: Id| graph.constant(id).is_some_and(|value| value.is_zero());
         match (graph.node(a), graph.node(b)) {
-            _ if is_zero(a) && is_zero(b) => true,
+            (Node::Const(a), Node::Const(b)) if a.is_zero() && b.is_zero() => true,
             (Node::Coord(a), Node::Coord(b)) => [*a, *b] == self.perpendicular,
             (Node::Neg(a), Node::Neg(b)) => self.rotates([*a, *b]),
             (Node::Add(a, b), Node::Add(c, d)) => {
@@ -173,6 +175,7 @@ impl<'g> RotationBehaviour<'g> {
                 Node::Select { low, high, then: a, other: b },
                 Node::Select { low: lower, high: higher, then: c, other: d },
             ) => {
+                // Both must choose alike, and so wherever the point turns to.
                 [low, high] == [lower, higher]
                     && self.is_invariant(*low)
                     && self.is_invariant(*high)
@@ -211,6 +214,7 @@ fn is_invariant_polynomial(polynomial: &Polynomial, perpendicular: [Coord; 2]) -
         let index = monomial_of(by).iter().position(|exponent| *exponent > 0)?;
         polynomial.derivative(index).times(&Polynomial::coordinate(times))
     };
+    // The derivative by the angle of rotation is 0.
     let Some((first_term, second_term)) = term(z, y).zip(term(y, z)) else { return false };
     first_term.plus(&second_term.scaled(&crate::number::Number::int(-1))).is_zero()
 }
@@ -225,19 +229,14 @@ fn in_half_plane(model: &Model, axis: usize, perpendicular: [usize; 2]) -> Optio
     coordinates[perpendicular[0]] = graph.coord(Coord::D);
     let squares = [0, 1].map(|axis| graph.mul(coordinates[axis], coordinates[axis]));
     let square = graph.add(squares[0], squares[1]);
-    let evaluation = model.regions.iter().flat_map(|region| {
-        let evaluation = [region.depth, region.magnitude, region.niceness];
-        evaluation.into_iter().chain(region.direction).chain(region.raw_direction.0)
-    });
-    for id in
-        model.graph.dependencies(evaluation.chain(model.curves.iter().map(|curve| curve.value)))
-    {
+    for id in model.graph.dependencies(model.roots()) {
         let at = |id: &Id| mapped[id];
         let image = match model.graph.node(id) {
             Node::Const(value) => graph.number(value.clone()),
             Node::Coord(Coord::X) => coordinates[0],
             Node::Coord(Coord::Y) => coordinates[1],
             Node::Coord(Coord::Z) => coordinates[2],
+            // `d` and `q` belong to the z axis of space, whatever the axis of the solid is.
             Node::Coord(Coord::Q) => square,
             Node::Coord(Coord::D) => graph.sqrt(square)?,
             Node::Coord(coord) => graph.coord(*coord),

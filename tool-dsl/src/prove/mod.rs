@@ -4,47 +4,31 @@
 //! A *claim* is a leaf of the emitted tree that a box may have points of, with the signs that the tests on
 //! the path to it demand. A *point box* is so small that it is not divided further. `docs/proofs.md` has the
 //! other terms and the mathematics.
-//!
-//! The submodules:
-//!
-//! - `cover`: the regions that may have points in a box.
-//! - `slope`: the steepness of expressions in a box.
-//! - `rounding`: the error of computed depths.
-//! - `root`: agreement of depths on a curve.
-//! - `sum`: curves that are differences of depths.
-//! - `tangency`: implications between conics that touch.
-//! - `excess`: the largest excess of one distance over another.
-//! - `tangent`: the difference of distances where a profile is nearly smooth.
-//! - `jordan`: whether a profile encloses the solid.
-//! - `borders`: the curves that separate two regions.
-//! - `survey`: the traversal of all boxes.
-//! - `meridian`: the half plane in which a solid of revolution is surveyed.
+
+use crate::diagnostic::{CheckKind, Diagnostic, FormattedNumber, Statement};
+use crate::expr::interval::{Cell, Interval, ZERO};
+use crate::formula::CurveIndex;
+use crate::lint::deep_on_surface;
+use crate::model::{DirectionSource, Model, Region};
+use crate::plan::PlannedTool;
+use crate::source::Span;
+use meridian::Meridian;
+use std::f64::consts::PI;
 
 mod borders;
 mod cover;
-mod diagnostics;
 mod direction;
-mod excess;
+mod distances;
 mod foot;
 mod jordan;
 mod meridian;
-mod nonsmooth;
 mod range;
 mod root;
 mod rounding;
 mod slope;
-mod sum;
 mod survey;
 mod tangency;
-mod tangent;
 mod witness;
-
-use crate::diagnostic::{Diagnostic, Statement};
-use crate::expr::interval::{Cell, Interval, ZERO};
-use crate::formula::CurveIndex;
-use crate::model::{DirectionSource, Region};
-use crate::plan::PlannedTool;
-use meridian::Meridian;
 
 /// At points where three or more regions meet, depths are proved to agree to this part of the tool's size,
 /// and inside a region depth is at most this far below 0: see [`Certificate::tolerance`]. The actual
@@ -56,7 +40,7 @@ const TOLERANCE: f64 = 1e-6;
 const SMALL_BOX_FRACTION: f64 = 1.0 / 1024.0;
 
 /// The relative tolerance within which both bounds must be 1 for depth to count as the distance, see
-/// [`Certificate::is_exact`]. `c` of a distance is lowered by a tenth of it ([`nonsmooth::SLOPE_MARGIN`]).
+/// [`Certificate::is_exact`]. `c` of a distance is lowered by a tenth of it ([`slope::SLOPE_MARGIN`]).
 const EXACT_TOLERANCE: f64 = 1e-8;
 
 /// The number of boxes that a proof may use, and that a proof during compilation may use.
@@ -211,20 +195,19 @@ pub struct Bounds {
 
 impl Bounds {
     /// Returns the bounds that can be proved quickly, and diagnostics for the errors found.
-    ///
-    /// The depth of a profile is the distance by construction, which [`Certificate::prove`] proves
-    /// independently. Regions by hand are examined in a few thousand boxes, except for their owners, which
-    /// planning proves. So are the regions of a profile for which a direction is written.
     pub(crate) fn of(tool: &PlannedTool) -> (Bounds, Vec<Diagnostic>) {
         let rounding_error = rounding::bound_over_tool(tool);
-        let is_written = |region: &Region| region.source == DirectionSource::Written;
         let exact = Bounds { lower_slope: Some(1.0), lipschitz: Some(1.0), rounding_error };
-        if tool.model.is_exact() && !tool.model.regions.iter().any(is_written) {
+        let mut sources = tool.model.regions.iter().map(|region| region.source);
+        // Depth and directions then follow from the construction, so no point can show an error.
+        if tool.model.is_exact() && sources.all(|source| source != DirectionSource::Written) {
             return (exact, Vec::new());
         }
+        // Whether regions overlap is left to [`Certificate::prove`].
         let certificate = prove_with_budget(tool, MAX_BOXES_IN_COMPILATION, false);
         // A statement that is undecided here may be provable with more boxes.
         let diagnostics = certificate.certain_diagnostics(tool);
+        // A proof that stays open does not weaken what the construction gives; only its errors count.
         if tool.model.is_exact() {
             return (exact, diagnostics);
         }
@@ -253,8 +236,8 @@ impl Certificate {
 
     /// Returns whether depth is continuous and 0 on the surface, within [`Certificate::tolerance`].
     pub fn is_continuous(&self) -> bool {
-        let joined = |border: &Border| border.depth_jump.high <= self.tolerance;
-        self.undecided.is_empty() && self.borders.iter().all(joined)
+        self.undecided.is_empty()
+            && self.borders.iter().all(|border| border.depth_jump.high <= self.tolerance)
     }
 
     /// Returns `L`, if it is proved: depth is at most `L` times the distance to the surface, and changes by
@@ -262,6 +245,7 @@ impl Certificate {
     pub fn lipschitz(&self) -> Option<f64> {
         let steepest =
             self.regions.iter().map(|region| region.gradient_length.high).fold(0.0, f64::max);
+        // The slopes bound the changes within regions only; a jump would be a change along a path of no length.
         (self.is_continuous() && steepest.is_finite()).then_some(steepest)
     }
 
@@ -274,7 +258,127 @@ impl Certificate {
     /// Returns whether depth is proved to be the distance to the surface, to a part in 10^8 and up to the
     /// [slack](Certificate::slack).
     pub fn is_exact(&self) -> bool {
-        let is_one = |bound: Option<f64>| bound.is_some_and(|b| (b - 1.0).abs() < EXACT_TOLERANCE);
-        is_one(self.lipschitz()) && is_one(self.lower_slope())
+        let bounds = [self.lipschitz(), self.lower_slope()];
+        bounds.iter().all(|b| b.is_some_and(|b| (b - 1.0).abs() < EXACT_TOLERANCE))
     }
+}
+
+impl Certificate {
+    /// Returns all diagnostics: errors with a counterexample, warnings with a point or a box.
+    pub fn diagnostics(&self, tool: &PlannedTool) -> Vec<Diagnostic> {
+        let mut diagnostics = self.certain_diagnostics(tool);
+        diagnostics.extend(self.undecided_diagnostics(tool));
+        diagnostics
+    }
+
+    /// Returns the diagnostics that rest on single points, which more boxes would not change.
+    fn certain_diagnostics(&self, tool: &PlannedTool) -> Vec<Diagnostic> {
+        let model = &tool.model;
+        let mut diagnostics: Vec<Diagnostic> = Vec::new();
+        // One diagnostic per pair of regions, and one per region next to the outside.
+        for diagnostic in self.borders.iter().filter_map(|border| jump(model, border)) {
+            let is_known = diagnostics.iter().any(|other| {
+                other.span == diagnostic.span && other.secondary == diagnostic.secondary
+            });
+            if !is_known {
+                diagnostics.push(diagnostic);
+            }
+        }
+        let facts = || model.regions.iter().zip(&self.regions);
+        let oblique =
+            facts().filter(|(region, _)| region.source != DirectionSource::Oblique).filter_map(
+                |(region, facts)| Some((region.raw_direction.1, (region, facts.oblique_witness?))),
+            );
+        for (region, (angle, point)) in largest_by_span(oblique) {
+            diagnostics.push(oblique_direction(region, angle, model.format_point(point)));
+        }
+        let rises =
+            facts().filter(|(region, _)| !region.allow_rising).filter_map(|(region, facts)| {
+                Some((region.law_spans.niceness, (region, facts.rising_witness?)))
+            });
+        for (region, (rate, point)) in largest_by_span(rises) {
+            let kind = CheckKind::RisingNiceness {
+                region: region.name.clone(),
+                location: model.format_point(point),
+                rate: FormattedNumber(rate),
+                unit: model.unit.symbol(),
+            };
+            diagnostics.push(Diagnostic::new(region.law_spans.niceness, kind));
+        }
+        diagnostics
+    }
+
+    /// Returns the diagnostics of proofs that did not finish; more boxes might finish them.
+    fn undecided_diagnostics(&self, tool: &PlannedTool) -> Vec<Diagnostic> {
+        let model = &tool.model;
+        let mut diagnostics = Vec::new();
+        if let Some(open_proof) = self.undecided.first() {
+            let kind = CheckKind::Undecided {
+                statement: open_proof.statement.clone(),
+                location: model.format_point(open_proof.cell.middle()),
+                more: self.undecided.len() - 1,
+                exact: model.is_exact(),
+                factor: Bounds::of(tool).0.lipschitz.map(FormattedNumber),
+            };
+            diagnostics.push(Diagnostic::new(model.name_span, kind));
+        } else if model.is_exact() && self.is_continuous() && !self.is_exact() {
+            // Every proof is finished, and yet the depth is not proved to be the distance.
+            diagnostics.push(Diagnostic::new(model.name_span, CheckKind::DepthNotProvedExact));
+        }
+        diagnostics
+    }
+}
+
+/// Returns the error for a border with a point where depth jumps.
+fn jump(model: &Model, border: &Border) -> Option<Diagnostic> {
+    let (point, [own, other]) = border.jump_point?;
+    let (region, neighbour) = border.sides;
+    let region = &model.regions[region];
+    let location = model.format_point(point);
+    Some(match neighbour.map(|neighbour| &model.regions[neighbour]) {
+        None => deep_on_surface(region, own, location),
+        Some(neighbour) => {
+            let kind = CheckKind::DiscontinuousDepth {
+                depth: FormattedNumber(own),
+                other_depth: FormattedNumber(other),
+                location,
+                region: region.name.clone(),
+                other_region: neighbour.name.clone(),
+            };
+            Diagnostic::new(region.law_spans.depth, kind)
+                .with_label(neighbour.law_spans.depth, "other depth")
+        }
+    })
+}
+
+/// A value at a point of a region.
+type Fact<'t> = (&'t Region, (f64, [f64; 3]));
+
+/// Returns the largest fact at each location of the text, since several regions may share a law or come from
+/// one region.
+fn largest_by_span<'t>(
+    facts: impl Iterator<Item = (Span, Fact<'t>)>,
+) -> impl Iterator<Item = Fact<'t>> {
+    let mut largest: Vec<(Span, Fact<'t>)> = Vec::new();
+    for (span, fact) in facts {
+        match largest.iter_mut().find(|(known, _)| *known == span) {
+            Some((_, known)) if known.1.0 >= fact.1.0 => {}
+            Some((_, known)) => *known = fact,
+            None => largest.push((span, fact)),
+        }
+    }
+    largest.into_iter().map(|(_, fact)| fact)
+}
+
+/// Returns the warning for a direction that is certainly not that of steepest descent.
+fn oblique_direction(region: &Region, angle: f64, location: String) -> Diagnostic {
+    let kind = CheckKind::ObliqueDirection {
+        region: region.name.clone(),
+        degrees: FormattedNumber(angle.to_degrees()),
+        // The tolerance covers the rounding of the angle, a few units in the last place.
+        inward: angle > PI - 1e-6,
+        derived: region.source == DirectionSource::Derived,
+        location,
+    };
+    Diagnostic::new(region.raw_direction.1, kind)
 }

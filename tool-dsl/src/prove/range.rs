@@ -2,16 +2,11 @@
 //!
 //! An enclosure over a box that extends beyond the region also holds for points outside the tool, where
 //! `1 - depth/r` is more than 1. Boxes are therefore divided by branch and bound, and in each the niceness is
-//! enclosed together with the depth. Let `λ` be the rate at which niceness falls with depth at the centre of
-//! the box. The sum `s = niceness + λ depth` hardly changes in the box. By the mean value theorem it is
-//! within `s(centre) + (∇niceness + λ ∇depth)·(box - centre)`. No point of the region has a depth below 0. If
-//! `λ` is not negative, niceness is therefore at most the upper end of that minus `λ` times the least depth.
-//! For a niceness that is affine in depth, the overestimate falls with the square of the box's size.
+//! enclosed together with the depth.
 
 use super::cover::Cover;
 use super::slope::{Slope, Slopes};
-use crate::expr::interval::halves;
-use crate::expr::interval::{Cell, Interval};
+use crate::expr::interval::{Cell, Interval, halves};
 use crate::model::Region;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -69,6 +64,7 @@ impl Ranges<'_, '_> {
         let mut largest = f64::NEG_INFINITY;
         for _ in 0..MAX_BOXES {
             let Some(OpenBox { bound, cell }) = open.pop() else { return largest };
+            // The largest bound of all open boxes is near a value that is attained: boxes come in that order.
             if bound - largest <= RELATIVE_ACCURACY * bound.abs().max(1.0) {
                 return bound;
             }
@@ -84,6 +80,7 @@ impl Ranges<'_, '_> {
                 if is_owned {
                     largest = largest.max(middle);
                 }
+                // A part of a box is bounded by the whole, too.
                 open.push(OpenBox { bound: box_bound.min(bound), cell });
             }
         }
@@ -99,6 +96,7 @@ impl Ranges<'_, '_> {
         self.slopes.set(cell);
         let (depth_slope, niceness_slope) =
             (self.slopes.get(region.depth), self.slopes.get(region.niceness));
+        // Depth is at least 0 inside.
         if depth_slope.value.high < 0.0 {
             return None;
         }
@@ -106,6 +104,10 @@ impl Ranges<'_, '_> {
         let direct_bound = signed(niceness_slope.value).high;
         let rate = -sign * rate(&depth_slope, &niceness_slope);
         let rate_interval = Interval::new(rate, rate);
+        // With the rate `λ` at which niceness falls with depth, `s = niceness + λ depth` hardly changes in the box. By the
+        // mean value theorem it is within `s(centre) + (∇niceness + λ ∇depth)·(box - centre)`. If `λ` is not negative,
+        // niceness is at most the upper end of that minus `λ` times the least depth. For a niceness that is affine in
+        // depth, the overestimate falls with the square of the box's size.
         let mut sum = signed(centre_niceness).plus(rate_interval.times(depth));
         for axis in 0..3 {
             let slope = signed(niceness_slope.partials[axis])
@@ -113,8 +115,10 @@ impl Ranges<'_, '_> {
             let middle = cell.middle()[axis];
             sum = sum.plus(slope.times(cell.sides[axis].plus(Interval::new(-middle, -middle))));
         }
+        // Points of the box with a depth below 0 are not in the region.
         let inside = Interval { low: depth_slope.value.low.max(0.0), high: depth_slope.value.high };
         let bound = sum.plus(rate_interval.times(inside).negated()).high;
+        // Infinite slopes cancel to NaN; the direct enclosure still holds.
         let bound = if bound.is_nan() { direct_bound } else { bound.min(direct_bound) };
         Some((bound, signed(centre_niceness).middle()))
     }
@@ -123,11 +127,12 @@ impl Ranges<'_, '_> {
 /// Returns the rate at which niceness changes with depth, from the midpoints of their slopes; 0 where that is
 /// not finite.
 fn rate(depth: &Slope, niceness: &Slope) -> f64 {
-    let dot_product = |one: &Slope, other: &Slope| -> f64 {
-        (0..3).map(|k| one.partials[k].middle() * other.partials[k].middle()).sum()
-    };
     let rate = dot_product(depth, niceness) / dot_product(depth, depth);
     if rate.is_finite() { rate } else { 0.0 }
+}
+
+fn dot_product(one: &Slope, other: &Slope) -> f64 {
+    (0..3).map(|k| one.partials[k].middle() * other.partials[k].middle()).sum()
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! Depths in their usual form, a polynomial and at most one root: `l + k √P`. Whether they vanish or agree on
-//! a curve can then be decided exactly, up to the 256 bits of constants.
+//! a curve can then be decided exactly, up to the 256 bits of constants. Curves that compare two depths with
+//! different roots are sums of a polynomial and several roots.
 
 use crate::expr::interval::{Cell, Interval};
 use crate::expr::polynomial::{Polynomial, Polynomials};
@@ -37,7 +38,7 @@ impl RootTerm {
         self.radicand.scaled(&(&self.factor * &self.factor))
     }
 
-    pub(super) fn has_radicand_of(&self, other: &RootTerm) -> bool {
+    fn has_radicand_of(&self, other: &RootTerm) -> bool {
         let ratio = self.radicand.ratio(&other.radicand);
         ratio.is_some_and(|ratio| ratio.nearly_equals(&Number::int(1)))
     }
@@ -87,21 +88,21 @@ pub(super) struct Difference {
 impl Difference {
     /// Returns how the two forms agree wherever a curve's polynomial is zero, if they do. `square` is that
     /// polynomial's square, if it has one.
-    ///
-    /// Squaring the roots also finds where a form agrees with another's opposite branch. The result therefore
-    /// includes a polynomial that is at least 0 where it is this branch.
     pub(super) fn agreement_on(
         &self,
         curve: &Polynomial,
         square: Option<&Polynomial>,
     ) -> Option<Agreement> {
         let Difference { squared, branch, is_opposite, positive } = self;
+        // A difference that is a multiple of the curve's square has a slope of 0 on the curve.
         let is_square = square.is_some_and(|square| squared.ratio(square).is_some());
         let (smooth, ratio) = (squared.is_zero() || is_square, squared.ratio(curve));
         let agrees = smooth || ratio.is_some() || squared.vanishes_on_line(curve);
         agrees.then(|| Agreement {
             smooth,
+            // Squaring also finds where a form agrees with another's opposite branch.
             branch: branch.clone(),
+            // Only a simple multiple of the curve changes its sign there.
             order: ratio.map(|ratio| Order {
                 falls: ratio.is_negative() != *is_opposite,
                 positive: branch
@@ -185,6 +186,7 @@ impl RootForm {
                 // |√P - √Q| is at most √|P - Q|.
                 let squares =
                     a.radicand.clone().plus(&b.radicand.scaled(&minus_one)).over(cell).abs();
+                // Roots of opposite sign add up, whatever their radicands.
                 a.factor.nearly_equals(&b.factor).then(|| polynomial.plus(squares.sqrt()).high)
             }
             _ => None,
@@ -230,6 +232,7 @@ impl RootForm {
 
     /// `(c + k √P)² = c² + k² P + 2 c k √P`
     fn square(&self) -> Option<RootForm> {
+        // With a polynomial for `c`, the product `2 c k` would not be a constant factor of the root.
         let (c, root) = (self.polynomial.constant()?, self.root.as_ref()?);
         let polynomial = Polynomial::from_constant(&(&c * &c)).plus(&root.square());
         let doubled = &(&Number::int(2) * &c) * &root.factor;
@@ -240,6 +243,7 @@ impl RootForm {
     fn over(&self, divisor: &RootForm) -> Option<RootForm> {
         let dividend = self.polynomial()?;
         let Some(root) = &divisor.root else {
+            // A quotient by a polynomial that is not constant has no such form.
             let divisor = divisor.polynomial.constant()?;
             return Some(self.scaled(&Number::int(1).checked_div(&divisor)?));
         };
@@ -264,6 +268,7 @@ impl RootForm {
         let squares_difference = a.square().plus(&b.square().scaled(&minus));
         if constant_difference.is_zero() {
             let is_opposite = a.factor.is_negative();
+            // `k √P - m √Q` with factors of opposite sign is 0 only where both roots are.
             let same_sign = is_opposite == b.factor.is_negative();
             return same_sign.then_some(Difference {
                 squared: squares_difference,
@@ -307,6 +312,7 @@ impl RootForm {
     pub(super) fn gradient_direction(&self) -> Option<[Polynomial; 4]> {
         let radicand = match &self.root {
             None => &self.polynomial,
+            // The gradient of `c + k √P` is that of `P`, up to a factor that is not 0.
             Some(root) => self.polynomial.constant().map(|_| &root.radicand)?,
         };
         Some([0, 1, 2, 3].map(|by| radicand.derivative(by)))
@@ -347,5 +353,74 @@ impl RootForm {
                     && root.radicand.is_squared_distance()
             }
         }
+    }
+}
+
+/// `l + k √P + m √Q + …`
+#[derive(Clone)]
+pub(super) struct RootSum {
+    polynomial: Polynomial,
+    roots: Vec<RootTerm>,
+}
+
+impl RootSum {
+    /// Returns a node as such a sum, if it is one.
+    pub(super) fn of(graph: &Graph, forms: &mut Forms<'_>, id: Id) -> Option<RootSum> {
+        if let Some(form) = forms.of(id) {
+            return Some(RootSum::from(&form));
+        }
+        let mut of = |id: Id| RootSum::of(graph, forms, id);
+        match *graph.node(id) {
+            Node::Neg(a) => Some(of(a)?.scaled(&Number::int(-1))),
+            Node::Add(a, b) => Some(of(a)?.plus(of(b)?)),
+            Node::Sub(a, b) => Some(of(a)?.plus(of(b)?.scaled(&Number::int(-1)))),
+            Node::Mul(a, b) => match (graph.constant(a), graph.constant(b)) {
+                (Some(factor), _) => Some(of(b)?.scaled(factor)),
+                (_, Some(factor)) => Some(of(a)?.scaled(factor)),
+                _ => None,
+            },
+            _ => None,
+        }
+    }
+
+    fn from(form: &RootForm) -> RootSum {
+        let roots = form.root().cloned().into_iter().collect();
+        RootSum { polynomial: form.part().clone(), roots }
+    }
+
+    /// Returns the factor by which this is a multiple of the first depth minus the second.
+    pub(super) fn ratio_to_difference(&self, a: &RootForm, b: &RootForm) -> Option<Number> {
+        let difference = RootSum::from(a).plus(RootSum::from(b).scaled(&Number::int(-1)));
+        let root = self.roots.first()?;
+        // The factors of one common root give the only possible ratio.
+        let other = difference.roots.iter().find(|other| other.has_radicand_of(root))?;
+        let ratio = root.factor.checked_div(&other.factor)?;
+        let rest = difference.scaled(&-&ratio).plus(self.clone());
+        (rest.polynomial.is_zero() && rest.roots.is_empty()).then_some(ratio)
+    }
+
+    fn scaled(self, by: &Number) -> RootSum {
+        let roots = self
+            .roots
+            .into_iter()
+            .map(|root| RootTerm { factor: &root.factor * by, ..root })
+            .collect();
+        RootSum { polynomial: self.polynomial.scaled(by), roots }
+    }
+
+    fn plus(mut self, other: RootSum) -> RootSum {
+        for root in other.roots {
+            match self.roots.iter_mut().find(|own| own.has_radicand_of(&root)) {
+                // A sum that cancels in 256 bits is 0.
+                Some(own) if own.factor.nearly_equals(&-&root.factor) => {
+                    own.factor = Number::int(0);
+                }
+                Some(own) => own.factor = &own.factor + &root.factor,
+                None => self.roots.push(root),
+            }
+        }
+        // So that a sum that cancels is recognised as 0.
+        self.roots.retain(|root| !root.factor.is_zero());
+        RootSum { polynomial: self.polynomial.plus(&other.polynomial), roots: self.roots }
     }
 }

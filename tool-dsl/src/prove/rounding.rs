@@ -36,6 +36,14 @@ struct Rounded {
     error: f64,
 }
 
+impl Rounded {
+    /// Returns the result of an operation that rounds once.
+    fn of(value: Interval, propagated: f64) -> Rounded {
+        // What is rounded is the value with the propagated error.
+        Rounded { value, error: propagated + (value.abs().high + propagated * UNIT_ROUNDOFF) }
+    }
+}
+
 /// Returns a bound of the error of any region's computed depth over a tool's whole box.
 pub(super) fn bound_over_tool(tool: &PlannedTool) -> f64 {
     let model = &tool.model;
@@ -70,6 +78,7 @@ impl<'g> RoundingErrors<'g> {
         for &id in self.needed.get(&root).into_iter().flatten() {
             let Rounded { value, error } = self.node(id, cell);
             let error = error * ERROR_BOUND_FACTOR;
+            // A value that may overflow is computed as infinity.
             let computed = value.abs().high + error * UNIT_ROUNDOFF;
             let error = if computed <= f64::MAX { error } else { f64::INFINITY };
             self.values[id.index()] = Rounded { value, error };
@@ -79,15 +88,10 @@ impl<'g> RoundingErrors<'g> {
 
     fn node(&self, id: Id, cell: &Cell) -> Rounded {
         let v = |id: &Id| self.values[id.index()];
-        let size = |value: Interval| value.abs().high;
-        // The operation's own rounding, on a value that includes the propagated error.
-        let rounded = |value: Interval, propagated: f64| Rounded {
-            value,
-            error: propagated + (size(value) + propagated * UNIT_ROUNDOFF),
-        };
         match self.graph.node(id) {
             Node::Const(number) => {
                 let value = Interval::enclosing(number);
+                // A number that is no double is emitted as the nearest one.
                 let exact = value.low == value.high;
                 Rounded { value, error: if exact { 0.0 } else { number.to_f64().abs() } }
             }
@@ -96,30 +100,34 @@ impl<'g> RoundingErrors<'g> {
             Node::Abs(a) => Rounded { value: v(a).value.abs(), ..v(a) },
             Node::Add(a, b) => {
                 let (a, b) = (v(a), v(b));
-                rounded(a.value.plus(b.value), a.error + b.error)
+                Rounded::of(a.value.plus(b.value), a.error + b.error)
             }
             Node::Sub(a, b) => {
                 let (a, b) = (v(a), v(b));
-                rounded(a.value.plus(b.value.negated()), a.error + b.error)
+                Rounded::of(a.value.plus(b.value.negated()), a.error + b.error)
             }
             Node::Mul(a, b) => {
                 let value = if a == b { v(a).value.square() } else { v(a).value.times(v(b).value) };
                 let (a, b) = (v(a), v(b));
-                let first = product(a.error, size(b.value)) + product(b.error, size(a.value));
+                let first =
+                    product(a.error, b.value.abs().high) + product(b.error, a.value.abs().high);
                 let propagated = first + product(a.error, product(b.error, UNIT_ROUNDOFF));
                 let exact = [a.value, b.value].iter().any(|factor| is_power_of_two(*factor));
                 if exact {
                     Rounded { value, error: propagated }
                 } else {
-                    rounded(value, propagated)
+                    Rounded::of(value, propagated)
                 }
             }
             Node::Div(a, b) | Node::Quotient(a, b) => {
                 let (a, b) = (v(a), v(b));
                 let value = a.value.times(b.value.reciprocal());
                 let min_value = b.value.abs().low - b.error * UNIT_ROUNDOFF;
-                let numerator = a.error + product(b.error, size(value));
-                rounded(value, if min_value > 0.0 { numerator / min_value } else { f64::INFINITY })
+                let numerator = a.error + product(b.error, value.abs().high);
+                Rounded::of(
+                    value,
+                    if min_value > 0.0 { numerator / min_value } else { f64::INFINITY },
+                )
             }
             Node::Min(a, b) | Node::Max(a, b) => {
                 let smaller = matches!(self.graph.node(id), Node::Min(..));
@@ -131,13 +139,15 @@ impl<'g> RoundingErrors<'g> {
                 if let Some(parts) = self.graph.squares_of(*a) {
                     // As part of a length, x² + y² contributes like its root, but without the root's own
                     // rounding.
-                    let axis = || {
-                        let value = cell.radius();
-                        // Two roundings below the root count as one of it.
-                        Rounded { value, error: value.abs().high }
-                    };
-                    let part = |part: &Option<Id>| part.as_ref().map_or_else(axis, v);
-                    let parts: Vec<Rounded> = parts.iter().map(part).collect();
+                    let parts = parts.iter().map(|part| match part {
+                        Some(part) => v(part),
+                        None => {
+                            let value = cell.radius();
+                            // Two roundings below the root count as one of it.
+                            Rounded { value, error: value.abs().high }
+                        }
+                    });
+                    let parts: Vec<Rounded> = parts.collect();
                     let sum =
                         parts.iter().map(|part| part.value.square()).fold(ZERO, Interval::plus);
                     let value = sum.sqrt();
@@ -146,7 +156,7 @@ impl<'g> RoundingErrors<'g> {
                     let propagated = propagated.sum::<f64>().sqrt();
                     let own_rounding = gamma(parts.len() as f64 / 2.0 + 1.0);
                     let error =
-                        propagated + own_rounding * (size(value) + propagated * UNIT_ROUNDOFF);
+                        propagated + own_rounding * (value.abs().high + propagated * UNIT_ROUNDOFF);
                     return Rounded { value, error };
                 }
                 let a = v(a);
@@ -158,7 +168,7 @@ impl<'g> RoundingErrors<'g> {
                     _ if min_value < 0.0 => f64::INFINITY,
                     error => error / (value.low + min_value.sqrt()),
                 };
-                rounded(value, propagated)
+                Rounded::of(value, propagated)
             }
             Node::Select { low, high, then, other } => {
                 let (low, high) = (v(low).value, v(high).value);

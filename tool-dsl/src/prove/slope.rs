@@ -1,7 +1,9 @@
-//! Enclosures of expressions together with their slopes, which bound the steepness of a function over a box.
+//! Enclosures of expressions together with their slopes, which bound the steepness of a function over a box, and
+//! of depth on the two sides of a border.
 
+use super::borders::MAX_TANGENT_SLOPE;
 use crate::domain::Domain;
-use crate::expr::interval::{Cell, ENTIRE, Interval, ONE, ZERO};
+use crate::expr::interval::{Cell, ENTIRE, Interval, ONE, ZERO, dot};
 use crate::expr::{Coord, Graph, Id, Node};
 
 /// A function over a box: its values, its partial derivatives by x (for a tool, by the distance from the
@@ -43,10 +45,9 @@ impl Slope {
 
     /// Returns a lower bound of the rate at which the function falls in some direction, from any point of the
     /// box.
-    ///
-    /// At a kink that points up, every adjacent slope leads down. At one that points down, the relevant slope
-    /// is a mean of the adjacent slopes (Clarke 1983), and therefore lies in their enclosure.
     pub(super) fn fall(&self) -> f64 {
+        // At a kink that points up, every adjacent slope leads down. At one that points down, the relevant slope is a
+        // mean of the adjacent slopes (Clarke 1983), and therefore lies in their enclosure.
         if self.kinks[0] { length(self.partials).low } else { self.length.low }
     }
 
@@ -80,11 +81,13 @@ impl Slope {
     fn plus(self, other: Slope, sign: Interval) -> Slope {
         let other = other.scaled(sign);
         let value = self.value.plus(other.value);
+        // The length of the other's gradient may be known better than its components give it.
         if self.is_constant() || other.is_constant() {
             let varying = if self.is_constant() { other } else { self };
             return Slope { value, ..varying };
         }
         let partials = [0, 1, 2].map(|k| self.partials[k].plus(other.partials[k]));
+        // By the triangle inequality, where the enclosures of components are wide.
         let max_length = self.length.plus(other.length).high;
         let kinks = union(self.kinks, other.kinks);
         Slope::new(value, partials, kinks).with(Interval { low: 0.0, high: max_length })
@@ -97,11 +100,14 @@ impl Slope {
         if other.is_constant() {
             return other.times(self);
         }
-        let part = |k: usize| {
-            self.partials[k].times(other.value).plus(other.partials[k].times(self.value))
-        };
         let kinks = nonlinear(self.kinks, other.kinks);
-        Slope::new(self.value.times(other.value), [0, 1, 2].map(part), kinks)
+        Slope::new(
+            self.value.times(other.value),
+            [0, 1, 2].map(|k| {
+                self.partials[k].times(other.value).plus(other.partials[k].times(self.value))
+            }),
+            kinks,
+        )
     }
 
     fn square(self) -> Slope {
@@ -121,11 +127,14 @@ impl Slope {
             return Slope { value: self.value.times(reciprocal), ..self.scaled(reciprocal) };
         }
         let value = self.value.times(reciprocal);
-        let part = |k: usize| {
-            let down = value.times(other.partials[k]);
-            self.partials[k].plus(down.negated()).times(reciprocal)
-        };
-        Slope::new(value, [0, 1, 2].map(part), nonlinear(self.kinks, other.kinks))
+        Slope::new(
+            value,
+            [0, 1, 2].map(|k| {
+                let down = value.times(other.partials[k]);
+                self.partials[k].plus(down.negated()).times(reciprocal)
+            }),
+            nonlinear(self.kinks, other.kinks),
+        )
     }
 
     fn sqrt(self) -> Slope {
@@ -170,18 +179,19 @@ fn length(partials: [Interval; 3]) -> Interval {
 fn norm(partials: &[Slope]) -> Slope {
     let squares = partials.iter().map(|part| part.value.square());
     let value = squares.fold(ZERO, Interval::plus).sqrt();
+    // No component of a unit vector is longer than it.
     let unit_range = Interval { low: -1.0, high: 1.0 };
     // A length is not negative.
     let per_length =
         Interval { low: (1.0 / value.high).next_down(), high: (1.0 / value.low).next_up() };
     let unit_vector: Vec<Interval> =
         partials.iter().map(|part| part.value.times(per_length).common(unit_range)).collect();
-    let slope = |k: usize| {
+    let gradient = [0, 1, 2].map(|k| {
         partials
             .iter()
             .zip(&unit_vector)
             .fold(ZERO, |sum, (part, way)| sum.plus(part.partials[k].times(*way)))
-    };
+    });
     // The squares of the singular values lie around the diagonal of J Jᵀ, within its row sums (Gershgorin
     // 1931).
     let mut singular: Option<Interval> = None;
@@ -200,10 +210,12 @@ fn norm(partials: &[Slope]) -> Slope {
         singular = Some(singular.map_or(circle, |hull| hull.hull(circle)));
     }
     let squared = singular.unwrap_or(ZERO);
+    // The gradient is the image of a unit vector, so its length lies between the singular values.
     let known = Interval { low: squared.low.max(0.0), ..squared }.sqrt();
+    // A length is a nonlinear function of its parts. It has a kink of its own, pointing down, where it is 0.
     let component_kinks = partials.iter().fold(NO_KINKS, |hull, part| nonlinear(hull, part.kinks));
     let kinks = if value.low > 0.0 { component_kinks } else { union(component_kinks, KINK_DOWN) };
-    Slope::new(value, [0, 1, 2].map(slope), kinks).with(known)
+    Slope::new(value, gradient, kinks).with(known)
 }
 
 /// Encloses chosen nodes of a graph with their slopes, over one box after another. For each box only the
@@ -231,6 +243,7 @@ impl<'g> Slopes<'g> {
         let mut needed = vec![Vec::new(); values.len()];
         for root in roots {
             let mut order = graph.dependencies([root]);
+            // Constants are the same in every box.
             order.retain(|id| match graph.constant(*id) {
                 Some(value) => {
                     values[id.index()] = Slope::constant(Interval::enclosing(value));
@@ -259,6 +272,7 @@ impl<'g> Slopes<'g> {
         for k in 0..self.needed[root.index()].len() {
             let id = self.needed[root.index()][k];
             let index = id.index();
+            // Roots share nodes, and only some roots are asked for in a box.
             if self.computed_for[index] != self.box_number {
                 self.computed_for[index] = self.box_number;
                 self.values[index] = self.node(id, self.cell);
@@ -275,9 +289,11 @@ impl<'g> Slopes<'g> {
             Node::Neg(a) => v(a).scaled(ONE.negated()),
             Node::Add(a, b) => v(a).plus(v(b), ONE),
             Node::Sub(a, b) => v(a).plus(v(b), ONE.negated()),
+            // The two factors are the same number, which a product of intervals would not know.
             Node::Mul(a, b) if a == b => v(a).square(),
             Node::Mul(a, b) => v(a).times(v(b)),
             Node::Div(a, b) | Node::Quotient(a, b) => v(a).over(v(b)),
+            // Where one is the smaller throughout the box there is no kink.
             Node::Min(a, b) if v(a).value.high <= v(b).value.low => v(a),
             Node::Min(a, b) if v(b).value.high <= v(a).value.low => v(b),
             Node::Max(a, b) if v(a).value.low >= v(b).value.high => v(a),
@@ -300,10 +316,12 @@ impl<'g> Slopes<'g> {
                 }
             }
             Node::Sqrt(a) => match self.graph.squares_of(*a) {
-                Some(partials) => {
-                    let axis = || self.coordinate(Coord::D, cell);
-                    let part = |part: &Option<Id>| part.as_ref().map_or_else(axis, v);
-                    norm(&partials.iter().map(part).collect::<Vec<_>>())
+                Some(parts) => {
+                    let parts = parts.iter().map(|part| match part {
+                        Some(part) => v(part),
+                        None => self.coordinate(Coord::D, cell),
+                    });
+                    norm(&parts.collect::<Vec<_>>())
                 }
                 None => v(a).sqrt(),
             },
@@ -313,6 +331,7 @@ impl<'g> Slopes<'g> {
                 } else if v(low).value.low > v(high).value.high {
                     v(other)
                 } else {
+                    // The two may differ where they meet, so nothing is known about the kink.
                     v(then).hull(v(other)).kinked([true; 2])
                 }
             }
@@ -333,9 +352,116 @@ impl<'g> Slopes<'g> {
             Coord::D => norm(&[coordinate_slope(0), coordinate_slope(1)]),
             Coord::Q => {
                 let d = self.coordinate(Coord::D, cell);
+                // `d²` is smooth on the axis, where `d` is not.
                 Slope { value: cell.squared_radius(), kinks: NO_KINKS, ..d.square() }
             }
             Coord::Length | Coord::PerLength => Slope { value: ENTIRE, ..Slope::constant(ZERO) },
         }
+    }
+}
+
+/// The tolerance for neglected slopes, by which `c` is lowered. Niceness also counts as falling with depth if
+/// the product of both gradients is at most this part of the product of their lengths.
+///
+/// Neglected are, at a point with an owner whose depth has a slope of at least `c`:
+///
+/// - on a border, a difference of two slopes up to [`SLOPE_TOLERANCE`]: a combination of them is shorter than either by
+///   at most that, and by twice that where a third region lies between;
+/// - on the axis, a slope away from it up to [`SLOPE_TOLERANCE`]: the remaining slope along the axis is shorter by at
+///   most that;
+/// - on a border of distances that is nearly smooth, the slope across it: `1 - √(1 - t²) ≤ t²`, with
+///   [`MAX_TANGENT_SLOPE`] for `t`.
+///
+/// The sum is `3 SLOPE_TOLERANCE + t²`.
+pub(super) const SLOPE_MARGIN: f64 = 1e-9;
+
+/// The difference up to which two slopes count as equal; slopes have no unit.
+pub(super) const SLOPE_TOLERANCE: f64 = 2.5e-10;
+
+const _: () =
+    assert!(3.0 * SLOPE_TOLERANCE + MAX_TANGENT_SLOPE * MAX_TANGENT_SLOPE <= SLOPE_MARGIN);
+
+/// A bound of the error of `acos`. On common platforms it is one or two ulps of the result; no angle has a
+/// larger ulp than π, 2^-51. This is four of these.
+const ACOS_ERROR: f64 = 8.0 * f64::EPSILON;
+
+/// Encloses the angle between two unit vectors, in radians.
+pub(super) fn angle(a: [Interval; 3], b: [Interval; 3]) -> Interval {
+    let product = dot(a, b);
+    let [low, high] = [product.high, product.low].map(|cos| cos.clamp(-1.0, 1.0).acos());
+    Interval { low: (low - ACOS_ERROR).max(0.0), high: high + ACOS_ERROR }
+}
+
+/// Returns a lower bound of the rate at which depth falls toward one of the sides of a border on which two
+/// depths agree, and its uncertainty.
+pub(super) fn fall_rate_across(own: Slope, other: Slope, curve: Slope, below: bool) -> (f64, f64) {
+    let products = [0, 1, 2]
+        .map(|k| own.partials[k].plus(other.partials[k].negated()).times(curve.partials[k]));
+    let rise = products.into_iter().fold(ZERO, Interval::plus);
+    let components = [0, 1, 2].map(|k| [own.partials[k].middle(), other.partials[k].middle()]);
+    let widths = own.partials.iter().chain(&other.partials).map(|part| part.high - part.low);
+    let slack = widths.fold(0.0, f64::max);
+    let falls = if below { rise.low } else { -rise.high };
+    // The two slopes differ only along the curve's gradient, since depths agree on the curve: by -falls
+    // divided by its length.
+    // Each depth is then the smaller on its own side, and both sides lead down.
+    if falls >= 0.0 || falls >= -SLOPE_TOLERANCE * curve.length.low {
+        return (f64::INFINITY, 0.0);
+    }
+    // Depth falls along every combination of the two slopes, and therefore at least at the rate of the shortest
+    // (Clarke 1983).
+    let difference = components.map(|[a, b]| b - a);
+    let [start, squared_length] = [components.map(|[a, _]| a), difference]
+        .map(|v| v.iter().zip(difference).map(|(a, b)| a * b).sum::<f64>());
+    // The shortest vector of the segment from one slope to the other.
+    let part = if squared_length > 0.0 { (-start / squared_length).clamp(0.0, 1.0) } else { 0.0 };
+    let nearest = components.map(|[a, b]| a + part * (b - a));
+    // Each component is known to half its width, and the vector to √3 times that.
+    let shortest = nearest.iter().map(|part| part * part).sum::<f64>().sqrt() - slack;
+    (shortest.min(shortest_along(nearest, [own, other])), slack)
+}
+
+/// Returns a lower bound of the length of any combination of slopes, from their components along a direction.
+/// The bound holds for any direction, so rounding in its choice does no harm.
+fn shortest_along(direction: [f64; 3], slopes: [Slope; 2]) -> f64 {
+    let direction = direction.map(|part| Interval::new(part, part));
+    let squares = direction.map(Interval::square);
+    let per_length = squares.into_iter().fold(ZERO, Interval::plus).sqrt().reciprocal();
+    slopes
+        .map(|slope| {
+            let parts = [0, 1, 2].map(|k| slope.partials[k].times(direction[k]));
+            parts.into_iter().fold(ZERO, Interval::plus).times(per_length).low
+        })
+        .into_iter()
+        .fold(f64::INFINITY, f64::min)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::domain::Domain;
+    use crate::expr::interval::Cell;
+    use crate::expr::{Coord, Graph};
+    use crate::number::Number;
+
+    /// Two depths whose slopes differ by 2e-7 along z, and a curve whose gradient is a thousand times smaller
+    /// where it points along z than elsewhere in the box. Each depth is the smaller on the other's side, and
+    /// the shortest combination counts.
+    #[test]
+    fn slopes_are_compared_by_the_flattest_part_of_a_curve() {
+        let mut graph = Graph::default();
+        let mut number = |text: &str| graph.number(Number::parse_decimal(text).expect("a number"));
+        let [less, more, flat] = ["0.9999999", "1.0000001", "0.001"].map(&mut number);
+        let [d, z] = [Coord::D, Coord::Z].map(|coord| graph.coord(coord));
+        let [own, other, linear_part] = [less, more, flat].map(|factor| graph.mul(factor, z));
+        let square = graph.mul(d, d);
+        let curve = graph.add(square, linear_part);
+        let mut slopes = Slopes::new(&graph, Domain::HalfPlane, [own, other, curve]);
+        slopes.set(Cell::half_plane(Interval::new(0.0, 1.0), Interval::new(-1.0, 1.0)));
+        let [own, other, curve] = [own, other, curve].map(|id| slopes.get(id));
+        let (fall, _) = fall_rate_across(own, other, curve, true);
+        assert!((0.99..1.0).contains(&fall), "{fall}");
+        // With the sides exchanged each is the smaller on its own.
+        assert_eq!(fall_rate_across(own, other, curve, false).0, f64::INFINITY);
     }
 }

@@ -68,6 +68,7 @@ fn newton_step([a, b]: [&Conic<f64>; 2], p: [f64; 2], [first, second]: [f64; 2])
     let ([ad, az], [bd, bz]) = (a.gradient(p), b.gradient(p));
     let d_derivative = 2.0 * a.dd * bz + ad * b.dz - a.dz * bd - az * 2.0 * b.dd;
     let z_derivative = a.dz * bz + ad * 2.0 * b.zz - 2.0 * a.zz * bd - az * b.dz;
+    // The inverse of the 2 × 2 matrix of the derivatives, by Cramer's rule.
     let determinant = bd * z_derivative - bz * d_derivative;
     [
         (first * z_derivative - bz * second) / determinant,
@@ -109,6 +110,7 @@ impl Contact {
             let [[ad, az], [bd, bz]] = conics.each_ref().map(|conic| conic.gradient(&exact));
             let cross = &(&ad * &bz) - &(&az * &bd);
             let values = [conics[1].value(&exact).0.to_f64(), cross.to_f64()];
+            // The residuals have 256 bits; the matrix needs only a double's accuracy to gain a double's digits.
             let step = newton_step([&a, &b], [d.to_f64(), z.to_f64()], values);
             at = [0, 1].map(|k| Some(&exact[k] - &Number::from_f64(step[k])?));
         }
@@ -117,13 +119,13 @@ impl Contact {
         let is_zero = |(value, size): (Number, f64)| value.to_f64().abs() <= ROUNDING * size;
         let gradients = conics.each_ref().map(|conic| conic.gradient(&point));
         let [[ad, az], [bd, bz]] = &gradients;
+        // The search is in doubles and may stop anywhere, so the contact is checked.
         let touches = conics.iter().all(|conic| is_zero(conic.value(&point)))
             && is_zero(Number::sum(&[ad * bz, -&(az * bd)]));
         touches.then_some(Contact { gradients, conics })
     }
 
-    /// Returns whether `from · a ≥ 0` implies `to · b ≥ 0`, for `from` and `to` of 1 or -1. Then `to b` is a
-    /// positive multiple of `from a` plus a sum of squares that is 0 at the point of contact.
+    /// Returns whether `from · a ≥ 0` implies `to · b ≥ 0`, for `from` and `to` of 1 or -1.
     pub(super) fn implies(&self, from: i64, to: i64) -> bool {
         let [a, b] = &self.conics;
         let [[ad, az], [bd, bz]] = &self.gradients;
@@ -132,6 +134,7 @@ impl Contact {
         let Some(ratio) = (&Number::int(to * from) * &dot_product).checked_div(&length) else {
             return false;
         };
+        // The S-lemma needs a positive multiple: of parallel gradients, the sides on which they point must agree.
         if ratio.is_zero() || ratio.is_negative() {
             return false;
         }
@@ -141,10 +144,17 @@ impl Contact {
         let (dz, dz_size) = rest(&a.dz, &b.dz);
         let (zz, zz_size) = rest(&a.zz, &b.zz);
         let size = dd_size.max(dz_size).max(zz_size);
+        // `to b - ratio · from a` is 0 at the point of contact with its gradient, so it is its quadratic part there, and
+        // has to be a sum of squares.
+        // A quadratic form is not negative if its diagonal and its determinant are not.
         let (discriminant, _) = Number::sum(&[&(&Number::int(4) * &dd) * &zz, -&(&dz * &dz)]);
-        let is_not_negative = |value: &Number, size: f64| value.to_f64() >= -ROUNDING * size;
         is_not_negative(&dd, size)
             && is_not_negative(&zz, size)
             && is_not_negative(&discriminant, size * size)
     }
+}
+
+/// Returns whether a sum of terms of a given size is not negative, up to rounding.
+fn is_not_negative(value: &Number, size: f64) -> bool {
+    value.to_f64() >= -ROUNDING * size
 }

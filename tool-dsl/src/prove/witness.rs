@@ -29,7 +29,7 @@ impl<'t> Witness<'t> {
     pub(super) fn new(tool: &'t PlannedTool, size: f64) -> Witness<'t> {
         let model = &tool.model;
         let depths = model.regions.iter().map(|region| region.depth);
-        let outputs = depths.chain(model.curves.iter().map(|curve| curve.value));
+        let outputs = depths.chain(model.curve_values());
         Witness { tool, values: LazyEvaluator::new(&model.graph, outputs), size }
     }
 
@@ -47,12 +47,8 @@ impl<'t> Witness<'t> {
 
     /// Returns a point in a box with two owners side by side and a jump of depth between them, if a few test
     /// points find one.
-    pub(super) fn find_jump(&mut self, (own, other): Pair, cell: Cell) -> Option<JumpPoint> {
+    pub(super) fn find_jump(&mut self, Pair { own, other }: Pair, cell: Cell) -> Option<JumpPoint> {
         let steps = 6;
-        let at = |axis: usize, k: u32| {
-            let side = cell.sides[axis];
-            side.low + (side.high - side.low) * f64::from(k) / f64::from(steps)
-        };
         let axes: &[usize] = match self.tool.model.domain {
             Domain::HalfPlane => &[0, 2],
             Domain::Space => &[0, 1, 2],
@@ -63,9 +59,12 @@ impl<'t> Witness<'t> {
             for second in 0..=steps {
                 let mut p = cell.middle();
                 for (k, axis) in axes.iter().enumerate() {
-                    p[*axis] = at(*axis, if k == 0 { first } else { second });
+                    let (step, side) = (if k == 0 { first } else { second }, cell.sides[*axis]);
+                    p[*axis] =
+                        side.low + (side.high - side.low) * f64::from(step) / f64::from(steps);
                 }
                 let owner_here = self.owner(p);
+                // Side by side in either order.
                 if let Some((last, owner)) = previous
                     && [[owner, owner_here], [owner_here, owner]].contains(&[Some(own), other])
                 {
@@ -75,6 +74,7 @@ impl<'t> Witness<'t> {
                         return jump_point;
                     }
                 }
+                // The last point of a row is no neighbour of the next row's first.
                 previous = (second < steps).then_some((p, owner_here));
             }
         }
@@ -87,27 +87,33 @@ impl<'t> Witness<'t> {
         [mut a, mut b]: [[f64; 3]; 2],
         owners: [Option<usize>; 2],
     ) -> Option<JumpPoint> {
+        // More halvings than a double has bits: the ends become neighbours on the two sides of the border.
         for _ in 0..60 {
             let middle = [0, 1, 2].map(|k| a[k] / 2.0 + b[k] / 2.0);
             match self.owner(middle) {
                 owner if owner == owners[0] => a = middle,
                 owner if owner == owners[1] => b = middle,
+                // A third owner lies between: the two do not meet on this line.
                 _ => return None,
             }
         }
         let regions = &self.tool.model.regions;
+        // Selects the point for the values below.
         self.owner(a);
         let [first, second] =
             owners.map(|owner| owner.map_or(0.0, |owner| self.values.get(regions[owner].depth)));
         ((first - second).abs() > TOLERANCE * self.size).then_some((a, [first, second]))
     }
 
-    pub(super) fn owner(&mut self, [x, y, z]: [f64; 3]) -> Option<usize> {
+    fn owner(&mut self, [x, y, z]: [f64; 3]) -> Option<usize> {
         self.values.set(EvaluationPoint::new(x, y, z));
         let curves = &self.tool.model.curves;
         let values = RefCell::new(&mut self.values);
-        let value = |curve: CurveIndex| values.borrow_mut().get(curves[curve].value);
-        *self.tool.plan.owner.leaf_at(&value)
+        *self
+            .tool
+            .plan
+            .owner
+            .leaf_at(&|curve: CurveIndex| values.borrow_mut().get(curves[curve].value))
     }
 
     /// Returns points of a profile beside which the solid does not end, from a few per segment, and whether
@@ -117,10 +123,12 @@ impl<'t> Witness<'t> {
         let (mut off_points, mut ends) = (Vec::new(), false);
         for (index, segment) in outline.iter().enumerate() {
             for [at, inward] in points_with_normals(segment, POINTS_PER_SEGMENT) {
-                let others = || outline.iter().enumerate().filter(|(k, _)| *k != index);
                 // Where another segment is as near, either side may belong to it.
                 if at[0] < 3.0 * test_offset
-                    || others().any(|(_, other)| other.distance_to(at) < 3.0 * test_offset)
+                    || outline
+                        .iter()
+                        .enumerate()
+                        .any(|(k, other)| k != index && other.distance_to(at) < 3.0 * test_offset)
                 {
                     continue;
                 }

@@ -30,7 +30,7 @@ const SHELL_FRACTION: f64 = 0.05;
 
 impl Cell {
     /// Returns twice the area.
-    pub(crate) fn area(&self) -> f64 {
+    fn area(&self) -> f64 {
         let Some(first) = self.vertices.first() else { return 0.0 };
         let fan = self.vertices.windows(2);
         fan.map(|pair| cross(minus(pair[0], *first), minus(pair[1], *first))).sum::<f64>().abs()
@@ -70,7 +70,8 @@ pub(super) fn surface_layer(
     chords: u32,
 ) -> Vec<Cell> {
     let min_area = 1e-16 * section.size * section.size * LAYER_FRACTION;
-    let layer = |slice: &&Slice| {
+    let mut cells = Vec::new();
+    for slice in slices.iter().flatten() {
         let steps = match section.features[slice.feature] {
             Feature::Piece(piece) if section.outline[piece].circle.is_none() => 1,
             _ => chords,
@@ -81,17 +82,17 @@ pub(super) fn surface_layer(
             let depth = slice.radius(section, part).min(LAYER_FRACTION * section.size);
             (foot_point.foot, foot_point.at(depth))
         };
-        let quad = |k: u32| {
+        let quads = (0..steps).map(|k| {
             let ((a, c), (b, d)) = (ends_at(k), ends_at(k + 1));
             let straight = [steps == 1, true, true, true];
             let (vertices, straight) =
                 without_short_edges(&[a, b, d, c], &straight, 1e-14 * section.size);
             let (samples, witnesses) = (vec![], vec![]);
             Cell { part: slice.feature, vertices, straight, corners: vec![], samples, witnesses }
-        };
-        (0..steps).map(quad).filter(|cell| cell.area() > min_area).collect::<Vec<_>>()
-    };
-    slices.iter().flatten().collect::<Vec<_>>().iter().flat_map(layer).collect()
+        });
+        cells.extend(quads.filter(|cell| cell.area() > min_area));
+    }
+    cells
 }
 
 fn far_end(section: &Section<'_>, slice: &Slice, chords: u32) -> Vec<Point> {
@@ -146,7 +147,6 @@ fn quads(section: &Section<'_>, slice: &Slice, far_end: &[Point], chords: u32) -
     };
     let straight_rim = is_straight(section, slice);
     let steps = if curved { chords as usize } else { far_end.len().max(2) - 1 };
-    let point_of = |list: &[Point], k: usize| list[(k * (list.len() - 1)) / steps];
     let feet: Vec<Point> = (0..=steps)
         .map(|k| {
             let t = slice.from + (slice.to - slice.from) * k as f64 / steps as f64;
@@ -157,7 +157,7 @@ fn quads(section: &Section<'_>, slice: &Slice, far_end: &[Point], chords: u32) -
     let far_end: Vec<Point> = if far_end.len() == 2 && steps > 1 {
         slice.far_end(section, chords)
     } else {
-        (0..=steps).map(|k| point_of(far_end, k)).collect()
+        (0..=steps).map(|k| far_end[(k * (far_end.len() - 1)) / steps]).collect()
     };
     let (mut samples, mut witnesses) = (samples(section, slice), witnesses(section, slice));
     (0..steps)
@@ -198,15 +198,14 @@ fn samples(section: &Section<'_>, slice: &Slice) -> Vec<(Point, f64)> {
     for part in SAMPLE_FRACTIONS {
         let foot_point = slice.foot_at(section, part);
         let radius = slice.radius(section, part).min(2.0 * section.size);
-        let wide = |r: f64| {
-            let ends = [slice.from, slice.to].map(|t| section.foot_point(slice.feature, t).at(r));
-            norm(minus(ends[0], ends[1]))
-        };
         let mut before = 0.0;
         for (k, share) in SAMPLE_DEPTH_FRACTIONS.iter().enumerate() {
             let after = SAMPLE_DEPTH_FRACTIONS.get(k + 1).map_or(1.0, |next| (share + next) / 2.0);
             let depth = share * radius;
-            let area = wide(depth) * (after - before) * radius / SAMPLE_FRACTIONS.len() as f64;
+            let [from, to] =
+                [slice.from, slice.to].map(|t| section.foot_point(slice.feature, t).at(depth));
+            let width = norm(minus(from, to));
+            let area = width * (after - before) * radius / SAMPLE_FRACTIONS.len() as f64;
             let weight = area * ((-depth / layer_thickness).exp() + SHELL_FRACTION);
             samples.push((foot_point.at(depth), weight));
             before = after;

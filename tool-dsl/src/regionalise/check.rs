@@ -1,9 +1,8 @@
 //! Checks of a profile before regions are derived from it.
 
 use crate::diagnostic::{Diagnostic, ProfileKind, enough};
-use crate::geometry::crossing::common_point;
 use crate::geometry::outline::{
-    Point, Segment, TANGENT_SINE, bounding_box, cross, dot, minus, norm, sample_points,
+    Point, Segment, TANGENT_SINE, bounding_box, cross, dot, doubles, minus, norm, sample_points,
 };
 
 /// Checks a profile that runs from the axis to the axis: contact with the axis, orientation, turns between neighbours,
@@ -20,12 +19,9 @@ pub(crate) fn check(outline: &[Segment], show: impl Fn(Point) -> String) -> Vec<
             segment.sector([centre[0] - radius, centre[1]]).iter().all(|side| *side > 0.0)
         });
         let lowest = arc_near_axis.map_or(f64::INFINITY, |(centre, radius, _)| centre[0] - radius);
+        // Only the last segment may end on the axis.
         let touches =
             lowest <= 1e-12 * high[0] || (to <= 1e-12 * high[0] && index + 1 < outline.len());
-        let lies_on_axis = |segment: &Segment| {
-            let [[from, _], [to, _]] = segment.ends();
-            segment.round().is_none() && from == 0.0 && to == 0.0
-        };
         if lies_on_axis(segment) {
             diagnostics.push(Diagnostic::new(segment.span, ProfileKind::OnAxis));
         } else if lowest < -1e-12 * high[0] || to < 0.0 {
@@ -38,6 +34,7 @@ pub(crate) fn check(outline: &[Segment], show: impl Fn(Point) -> String) -> Vec<
         return diagnostics;
     }
     let area: f64 = points.windows(2).map(|pair| cross(pair[0], pair[1])).sum();
+    // Twice the area, with arcs as chords; the closing side on the axis adds nothing.
     if area <= 0.0 {
         diagnostics.push(Diagnostic::new(first.span, ProfileKind::Clockwise));
         return diagnostics;
@@ -109,6 +106,11 @@ pub(crate) fn check(outline: &[Segment], show: impl Fn(Point) -> String) -> Vec<
     diagnostics
 }
 
+fn lies_on_axis(segment: &Segment) -> bool {
+    let [[from, _], [to, _]] = segment.ends();
+    segment.round().is_none() && from == 0.0 && to == 0.0
+}
+
 /// Returns whether a line follows another at an angle that is not 0 and yet small enough to count as tangent. Points
 /// between the normals of the two would be assigned to the wrong line.
 fn hardly_turns(before: &Segment, after: &Segment) -> bool {
@@ -121,4 +123,69 @@ fn hardly_turns(before: &Segment, after: &Segment) -> bool {
     // The rounding error in 256 bits is far below the lower limit.
     let sine = (&(&ad * &bz) - &(&az * &bd)).to_f64().abs();
     (1e-60..TANGENT_SINE).contains(&sine)
+}
+
+/// Returns a common point of two segments. For neighbours, the start of `b` that they share does not count.
+fn common_point(a: &Segment, b: &Segment, neighbours: bool) -> Option<Point> {
+    let candidates = match (&a.circle, &b.circle) {
+        (None, None) => line_line(a, b),
+        (None, Some(_)) => line_circle(a, b),
+        (Some(_), None) => line_circle(b, a),
+        (Some(_), Some(_)) => circle_circle(a, b),
+    };
+    let size = [&a.from, &a.to, &b.from, &b.to]
+        .into_iter()
+        .map(|point| norm(doubles(point)))
+        .fold(0.0, f64::max);
+    let slack = 1e-9 * size;
+    let is_on = |s: &Segment, p: Point| {
+        s.signed(p).abs() <= slack && s.sector(p).iter().all(|side| *side >= -slack)
+    };
+    let ends = [doubles(&a.from), doubles(&a.to), doubles(&b.from), doubles(&b.to)];
+    candidates.into_iter().chain(ends).find(|p| {
+        let shared = neighbours && norm(minus(*p, doubles(&b.from))) <= 2.0 * slack;
+        !shared && is_on(a, *p) && is_on(b, *p)
+    })
+}
+
+fn line_line(a: &Segment, b: &Segment) -> Vec<Point> {
+    let (p, r) = (doubles(&a.from), minus(doubles(&a.to), doubles(&a.from)));
+    let (q, s) = (doubles(&b.from), minus(doubles(&b.to), doubles(&b.from)));
+    let sine = cross(r, s);
+    if sine == 0.0 {
+        return Vec::new();
+    }
+    let t = cross(minus(q, p), s) / sine;
+    vec![[p[0] + t * r[0], p[1] + t * r[1]]]
+}
+
+fn line_circle(line: &Segment, arc: &Segment) -> Vec<Point> {
+    let Some(circle) = &arc.circle else { return Vec::new() };
+    let (centre, radius) = (doubles(&circle.centre), circle.radius.to_f64());
+    let direction = line.tangent(false);
+    let from = minus(doubles(&line.from), centre);
+    let foot = -dot(direction, from);
+    let distance = cross(direction, from);
+    // A tangent may miss the circle by rounding.
+    let half_chord = (radius * radius - distance * distance).max(0.0).sqrt();
+    [foot - half_chord, foot + half_chord]
+        .map(|t| [centre[0] + from[0] + t * direction[0], centre[1] + from[1] + t * direction[1]])
+        .to_vec()
+}
+
+fn circle_circle(a: &Segment, b: &Segment) -> Vec<Point> {
+    let (Some(ca), Some(cb)) = (&a.circle, &b.circle) else { return Vec::new() };
+    let (p, q) = (doubles(&ca.centre), doubles(&cb.centre));
+    let (r, s) = (ca.radius.to_f64(), cb.radius.to_f64());
+    let between = minus(q, p);
+    let distance = norm(between);
+    if distance == 0.0 {
+        return Vec::new();
+    }
+    let along = (distance * distance + r * r - s * s) / (2.0 * distance);
+    let half_chord = (r * r - along * along).max(0.0).sqrt();
+    let unit = [between[0] / distance, between[1] / distance];
+    [half_chord, -half_chord]
+        .map(|h| [p[0] + along * unit[0] - h * unit[1], p[1] + along * unit[1] + h * unit[0]])
+        .to_vec()
 }

@@ -88,35 +88,36 @@ impl Border {
 
     /// Returns the condition of this side; `None` where a constant has no value.
     pub(super) fn test(&self, section: &Section<'_>, graph: &mut Graph) -> Option<Test> {
-        let at_most = |id: Id| Some(Test::AtMost(id));
         match *self {
             Border::Inside { piece } => match &section.outline[piece].circle {
                 Some(circle) if !section.is_flat(circle) => {
                     let square = graph.number(&circle.radius * &circle.radius);
                     let squared_distance = outline::squared_distance(graph, &circle.centre);
-                    at_most(if circle.convex {
+                    Some(Test::AtMost(if circle.convex {
                         graph.sub(squared_distance, square)
                     } else {
                         graph.sub(square, squared_distance)
-                    })
+                    }))
                 }
                 _ => {
                     let depth = section.piece_depth(graph, piece)?;
-                    at_most(graph.neg(depth))
+                    Some(Test::AtMost(graph.neg(depth)))
                 }
             },
             Border::Before { piece, end } => {
                 let side = section.outline[piece].sides(graph)?[end];
-                at_most(graph.neg(side))
+                Some(Test::AtMost(graph.neg(side)))
             }
-            Border::Past { piece, end } => at_most(section.outline[piece].sides(graph)?[end]),
+            Border::Past { piece, end } => {
+                Some(Test::AtMost(section.outline[piece].sides(graph)?[end]))
+            }
             Border::Nearer { this, other } => section.nearer(graph, this, other),
             Border::UpTo { feature, parameter } => {
-                at_most(section.normal_function(graph, feature, parameter)?)
+                Some(Test::AtMost(section.normal_function(graph, feature, parameter)?))
             }
             Border::From { feature, parameter } => {
                 let side = section.normal_function(graph, feature, parameter)?;
-                at_most(graph.neg(side))
+                Some(Test::AtMost(graph.neg(side)))
             }
         }
     }
@@ -200,11 +201,16 @@ impl Section<'_> {
 
     fn normal_function(&self, graph: &mut Graph, feature: usize, parameter: f64) -> Option<Id> {
         let (from, direction) = self.normal_line(feature, parameter);
-        let number = |value: f64| Number::from_f64(value);
-        let (from, direction) =
-            ([number(from[0])?, number(from[1])?], [number(direction[0])?, number(direction[1])?]);
-        outline::linear(graph, direction, &from)
+        let [from, direction] =
+            [from, direction].map(|[d, z]| Some([Number::from_f64(d)?, Number::from_f64(z)?]));
+        outline::linear(graph, direction?, &from?)
     }
+}
+
+fn offset_from(graph: &mut Graph, point: &ExactPoint) -> [Id; 2] {
+    let coordinates = [Coord::D, Coord::Z].map(|coord| graph.coord(coord));
+    let constants = point.clone().map(|part| graph.number(part));
+    [graph.sub(coordinates[0], constants[0]), graph.sub(coordinates[1], constants[1])]
 }
 
 /// Returns the direction to a feature's surface, not normalised.
@@ -213,11 +219,6 @@ pub(crate) fn direction_to_surface(
     outline: &[outline::Segment],
     feature: Feature,
 ) -> Option<[Id; 2]> {
-    let from = |graph: &mut Graph, point: &ExactPoint| {
-        let coordinates = [Coord::D, Coord::Z].map(|coord| graph.coord(coord));
-        let constants = point.clone().map(|part| graph.number(part));
-        [graph.sub(coordinates[0], constants[0]), graph.sub(coordinates[1], constants[1])]
-    };
     Some(match feature {
         Feature::Piece(index) => match &outline[index].circle {
             None => {
@@ -225,7 +226,7 @@ pub(crate) fn direction_to_surface(
                 [graph.number(z), graph.number(-&d)]
             }
             Some(circle) => {
-                let offset = from(graph, &circle.centre);
+                let offset = offset_from(graph, &circle.centre);
                 if circle.convex { offset } else { offset.map(|part| graph.neg(part)) }
             }
         },
@@ -234,7 +235,7 @@ pub(crate) fn direction_to_surface(
                 Some(piece) => &outline[piece].to,
                 None => &outline.first()?.from,
             };
-            from(graph, point).map(|part| graph.neg(part))
+            offset_from(graph, point).map(|part| graph.neg(part))
         }
     })
 }

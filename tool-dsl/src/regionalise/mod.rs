@@ -82,12 +82,12 @@ impl Partition {
     /// lies or which its corner follows.
     pub(crate) fn shell(&self, chords: u32) -> Vec<(usize, cells::Cell)> {
         let section = Section::new(&self.outline, self.outer);
-        let piece = |part: usize| match section.features[part] {
-            Feature::Piece(piece) => piece,
-            Feature::Corner(previous) => previous.unwrap_or(0),
-        };
         let shell = cells::surface_layer(&section, &self.slices, chords);
-        shell.into_iter().map(|cell| (piece(cell.part), cell)).collect()
+        let with_segments = shell.into_iter().map(|cell| match section.features[cell.part] {
+            Feature::Piece(piece) => (piece, cell),
+            Feature::Corner(previous) => (previous.unwrap_or(0), cell),
+        });
+        with_segments.collect()
     }
 
     /// Returns the number of segments of the outline.
@@ -109,8 +109,8 @@ impl Partition {
             let distances = self.outline.iter().map(|segment| segment.distance_to(*p));
             let distance = distances.fold(f64::INFINITY, f64::min);
             let slack = ROUNDING * section.size.max(distance);
-            let error = |part| (section.depth_at(part, *p) - distance).abs();
-            part_at(*p, distance).is_none_or(|part| error(part) > slack)
+            part_at(*p, distance)
+                .is_none_or(|part| (section.depth_at(part, *p) - distance).abs() > slack)
         })
     }
 
@@ -237,22 +237,25 @@ impl Section<'_> {
         bounds
     }
 
+    fn is_within(&self, bounds: &[Bound], p: Point) -> bool {
+        bounds.iter().all(|bound| bound.holds(self, p))
+    }
+
     /// Returns a point that the borders to neighbours assign wrongly to the cell, or wrongly cut off.
     fn wrong_point(&self, bounds: &[Bound], slices: &[Slice]) -> Option<Point> {
-        let holds = |p: &Point| bounds.iter().all(|bound| bound.holds(self, *p));
         for slice in slices.iter().filter(|slice| !slice.is_thin(self)) {
             for fraction in SAMPLE_FRACTIONS {
                 let foot_point = slice.foot_at(self, fraction);
                 let radius = slice.radius(self, fraction);
                 let own =
                     [0.0, 0.2, 0.5, 0.8, 1.0 - 1e-6].map(|share| foot_point.at(share * radius));
-                if let Some(p) = own.into_iter().find(|p| !holds(p)) {
+                if let Some(p) = own.into_iter().find(|p| !self.is_within(bounds, *p)) {
                     return Some(p);
                 }
                 if let Obstacle::Feature(_) = slice.obstacle {
                     let max_distance = self.focus(slice.feature);
                     let beyond = self.points_beyond(&foot_point, radius, max_distance, bounds);
-                    if let Some(p) = beyond.into_iter().find(holds) {
+                    if let Some(p) = beyond.into_iter().find(|p| self.is_within(bounds, *p)) {
                         return Some(p);
                     }
                 }
@@ -330,14 +333,13 @@ impl Section<'_> {
             return if end == 1 { mirrored_turn >= 0.0 } else { mirrored_turn <= 0.0 };
         };
         let [low, high] = [&self.outline[piece.min(next)], &self.outline[piece.max(next)]];
-        let is_bisector = |bound: &Bound| match bound.border {
-            Border::Nearer { other, .. } => {
-                bound.unless.is_empty() && self.features[other] == Feature::Piece(next)
-            }
-            _ => false,
-        };
         turn(low.tangent(true), high.tangent(false)) > 0.0
             && self.outline[next].circle.is_none()
-            && neighbours.iter().any(is_bisector)
+            && neighbours.iter().any(|bound| match bound.border {
+                Border::Nearer { other, .. } => {
+                    bound.unless.is_empty() && self.features[other] == Feature::Piece(next)
+                }
+                _ => false,
+            })
     }
 }

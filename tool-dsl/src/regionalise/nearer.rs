@@ -31,15 +31,8 @@ impl Section<'_> {
     /// Returns the condition for one feature to be no farther than another, for points inside.
     ///
     /// Squares are compared instead of roots, in coordinates about the corner or centre, so that nothing large cancels.
-    /// Let `A = |p - c|²` for the first corner or centre, `B` the same for the other, `l` the distance to a line, and
-    /// `r` a radius.
-    ///
-    /// - A corner is nearer than a line where `A ≤ l²`.
-    /// - A concave arc is nearer than a line where `A ≤ (l + r)²`.
-    /// - A convex arc is nearer than a line where `l ≥ r` or `(r - l)² ≤ A`. If the two are adjacent, this is computed
-    ///   from their common corner ([`difference_from_common_corner`]).
-    /// - An arc is nearer than a corner where `L = r² + A - B ≤ 0` or `L² ≤ 4 r² A`.
-    /// - [`compare_arcs`] has the condition for two arcs.
+    /// Below, `A = |p - c|²` for the first corner or centre, `B` is the same for the other, `l` the distance to a line,
+    /// and `r` a radius.
     pub(super) fn nearer(&self, graph: &mut Graph, this: usize, other: usize) -> Option<Test> {
         Some(match (self.kind(this), self.kind(other)) {
             (Kind::Line(a), Kind::Line(b)) => Test::AtMost(self.bisector(graph, a, b)?),
@@ -49,11 +42,13 @@ impl Section<'_> {
                 let difference = graph.sub(a, b);
                 Test::AtMost(expanded(graph, difference))
             }
+            // A corner is nearer than a line where `A ≤ l²`.
             (Kind::Point(q), Kind::Line(line)) => Test::AtMost(self.parabola(graph, q, line)?),
             (Kind::Line(line), Kind::Point(q)) => {
                 let parabola = self.parabola(graph, q, line)?;
                 Test::AtMost(graph.neg(parabola))
             }
+            // A concave arc is nearer than a line where `A ≤ (l + r)²`, a convex one where `l ≥ r` or `(r - l)² ≤ A`.
             (Kind::Arc(arc), Kind::Line(line)) => {
                 let corner = self.joint(this, other);
                 self.compare_arc_and_line(graph, arc, line, corner, true)?
@@ -62,6 +57,7 @@ impl Section<'_> {
                 let corner = self.joint(this, other);
                 self.compare_arc_and_line(graph, arc, line, corner, false)?
             }
+            // An arc is nearer than a corner where `L = r² + A - B ≤ 0` or `L² ≤ 4 r² A`.
             (Kind::Arc(arc), Kind::Point(q)) if self.is_accurate_by_squares(arc, q) => {
                 compare_arc_and_point(graph, arc, q, true)?
             }
@@ -154,9 +150,11 @@ impl Section<'_> {
             if arc.convex { graph.sub(radius, depth) } else { graph.add(depth, radius) };
         let square = graph.mul(offset_distance, offset_distance);
         let mut difference = graph.sub(squared_distance, square);
+        // Near the common corner both squares are nearly equal, and their difference would be rounding.
         if let Some(joint) = joint {
             let from_corner =
                 difference_from_common_corner(graph, arc, self.outline[line].direction()?, joint);
+            // The proof recognises the comparison of squares, which the emitted form hides.
             graph.add_proof_alias(from_corner, difference);
             difference = from_corner;
         }
@@ -166,6 +164,8 @@ impl Section<'_> {
             return Some(Test::AtMost(less));
         }
         let edge = if nearer { offset_distance } else { graph.neg(offset_distance) };
+        // Squares compare `r - l` with the root only where it is not negative; elsewhere `l > r`, and the arc is
+        // nearer.
         let tests = vec![Test::AtMost(edge), Test::AtMost(more)];
         Some(if nearer { Test::Any(tests) } else { Test::All(tests) })
     }
@@ -205,15 +205,14 @@ fn compare_nearby_arc(
 }
 
 /// Returns `A - (r ∓ l)²` of a convex or concave arc and a line along `t` that begins or ends at the arc's end `q`.
-///
-/// With `w = p - q` and the line's normal `n` it is `(t · w)² + 2 (q - c ± r n) · w`. Near the corner its rounding
-/// error is negligible, whatever the radius.
 fn difference_from_common_corner(
     graph: &mut Graph,
     arc: &Circle,
     [td, tz]: [Number; 2],
     q: &ExactPoint,
 ) -> Id {
+    // With `w = p - q` and the line's normal `n` it is `(t · w)² + 2 (q - c ± r n) · w`. Near the corner its rounding
+    // error is negligible, whatever the radius.
     let radius = if arc.convex { arc.radius.clone() } else { -&arc.radius };
     // The normal is the direction turned left.
     let normal = [-&tz, td.clone()];
@@ -286,11 +285,6 @@ fn comparison_of_squares(
 }
 
 /// Returns the condition for one arc to be no farther than another.
-///
-/// - Both convex, with `D = r₂ - r₁ ≥ 0` and `M = B - A - D²`: the second is nearer where `M ≥ 0` and `M² ≥ 4 D² A`.
-/// - Both concave: the second is nearer where `M ≤ 0` or `M² ≤ 4 D² A`.
-/// - The first convex, the second concave, with `T = r₁ + r₂` and `L = T² + A - B`: the second is nearer where `L ≥ 0`
-///   and `L² ≥ 4 T² A`.
 fn compare_arcs(graph: &mut Graph, this: &Circle, other: &Circle) -> Option<Test> {
     if this.convex != other.convex {
         let (first, second) = if this.convex { (this, other) } else { (other, this) };
@@ -298,7 +292,7 @@ fn compare_arcs(graph: &mut Graph, this: &Circle, other: &Circle) -> Option<Test
         let linear_difference =
             linear_difference(graph, &first.centre, &second.centre, &(&sum * &sum))?;
         let (left, right) = comparison_of_squares(graph, linear_difference, &sum, &first.centre);
-        // The first is nearer where L ≤ 0 or L² ≤ 4 T² A.
+        // With `T = r₁ + r₂` and `L = T² + A - B`, the convex one is nearer where `L ≤ 0` or `L² ≤ 4 T² A`.
         return Some(any_or_all(graph, linear_difference, left, right, this.convex));
     }
     let swapped = this.radius > other.radius;
@@ -306,8 +300,10 @@ fn compare_arcs(graph: &mut Graph, this: &Circle, other: &Circle) -> Option<Test
     let difference = &second.radius - &first.radius;
     let square = &difference * &difference;
     let linear_difference = linear_difference(graph, &second.centre, &first.centre, &-&square)?;
-    // Where M ≤ 0, the second is nearer if both are concave, the first if both are convex.
+    // With `D = r₂ - r₁ ≥ 0` and `M = B - A - D²`, the second of two convex arcs is nearer where `M ≥ 0` and
+    // `M² ≥ 4 D² A`, the second of two concave ones where `M ≤ 0` or `M² ≤ 4 D² A`.
     let positive = swapped != this.convex;
+    // With equal radii the bisector is a line.
     if difference.is_zero() {
         return Some(Test::AtMost(if positive {
             linear_difference

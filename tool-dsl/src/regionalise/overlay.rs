@@ -3,11 +3,9 @@
 use super::cells::Cell;
 use crate::expr::Graph;
 use crate::expr::polynomial::Polynomials;
-use crate::formula::Curve;
-use crate::formula::{ANY_SIGN, Formula, NEGATIVE, POSITIVE, Signs};
-use crate::geometry::cut::{Cut, Cutter, Edge, Piece};
+use crate::formula::{ANY_SIGN, Curve, Formula, NEGATIVE, POSITIVE, Signs};
+use crate::geometry::cut::{CurveFunction, Cut, Cutter, Edge, Piece};
 use crate::geometry::outline::{Point, Segment, bounding_box, minus, norm};
-use crate::geometry::shape::CurveFunction;
 
 /// Returns a cell as a polygon whose curved edges refer to their curves.
 pub(crate) fn piece(
@@ -23,12 +21,16 @@ pub(crate) fn piece(
         if k < count && !cell.straight[k] {
             curved_edges.push(k);
         } else if !curved_edges.is_empty() {
-            let is_on_curve = |shape: &CurveFunction<'_>| {
-                curved_edges.iter().all(|k| {
-                    [*k, (*k + 1) % count].iter().all(|v| shape.side(cell.vertices[*v], size) == 0)
+            let edge = shapes
+                .iter()
+                .position(|shape| {
+                    curved_edges.iter().all(|k| {
+                        [*k, (*k + 1) % count]
+                            .iter()
+                            .all(|v| shape.side(cell.vertices[*v], size) == 0)
+                    })
                 })
-            };
-            let edge = shapes.iter().position(is_on_curve).map_or(Edge::Chord, Edge::Along);
+                .map_or(Edge::Chord, Edge::Along);
             curved_edges.drain(..).for_each(|k| edges[k] = edge);
         }
     }
@@ -44,45 +46,56 @@ pub(crate) fn divided(
     size: f64,
 ) -> Vec<(Piece, Vec<usize>)> {
     let mut parts = Vec::new();
-    divide(piece, (vec![ANY_SIGN; shapes.len()], 0), conditions, shapes, size, &mut parts);
+    let nothing = Decided { signs: vec![ANY_SIGN; shapes.len()], conditions: 0 };
+    divide(piece, nothing, conditions, shapes, size, &mut parts);
     parts
 }
 
-/// The signs of the curves on a whole polygon, and the number of conditions, from the first on, that they decide. Signs
-/// are only added, so decided conditions stay decided.
-type DecidedSigns = (Vec<Signs>, usize);
+/// What is known of a whole polygon.
+#[derive(Clone)]
+struct Decided {
+    /// The signs of the curves on it.
+    signs: Vec<Signs>,
+    /// The number of conditions, from the first on, that the signs decide. Signs are only added, so decided conditions
+    /// stay decided.
+    conditions: usize,
+}
 
 fn divide(
     piece: Piece,
-    (mut signs, mut decided): DecidedSigns,
+    mut decided: Decided,
     conditions: &[Formula],
     shapes: &[CurveFunction<'_>],
     size: f64,
     parts: &mut Vec<(Piece, Vec<usize>)>,
 ) {
     loop {
-        let undecided = conditions[decided..].iter().enumerate();
-        let mut undecided = undecided
-            .filter_map(|(k, condition)| Some((k, condition.first_undecided_curve(&signs)?)));
+        let undecided = conditions[decided.conditions..].iter().enumerate();
+        let mut undecided = undecided.filter_map(|(k, condition)| {
+            Some((k, condition.first_undecided_curve(&decided.signs)?))
+        });
         let Some((before, curve)) = undecided.next() else {
-            let holds = |k: &usize| conditions[*k].decide(&signs) == Some(true);
-            parts.push((piece, (0..conditions.len()).filter(holds).collect()));
+            let all = 0..conditions.len();
+            // No condition is undecided any more in this piece.
+            let holding = all.filter(|k| conditions[*k].decide(&decided.signs) == Some(true));
+            parts.push((piece, holding.collect()));
             return;
         };
-        decided += before;
+        decided.conditions += before;
         match piece.cut(Cutter { shapes, curve, size }) {
             Cut::Both(below, above) => {
                 for (part, sign) in [(below, NEGATIVE), (above, POSITIVE)] {
-                    signs[curve] = sign;
+                    decided.signs[curve] = sign;
                     if let Some(part) = part {
-                        divide(part, (signs.clone(), decided), conditions, shapes, size, parts);
+                        divide(part, decided.clone(), conditions, shapes, size, parts);
                     }
                 }
                 return;
             }
+            // No area, so nothing to own.
             Cut::Nothing => return,
-            Cut::Above => signs[curve] = POSITIVE,
-            Cut::Below => signs[curve] = NEGATIVE,
+            Cut::Above => decided.signs[curve] = POSITIVE,
+            Cut::Below => decided.signs[curve] = NEGATIVE,
         }
     }
 }
@@ -104,6 +117,16 @@ pub(crate) struct Overlay {
     pub(crate) doubly_covered: Option<(usize, usize, Point)>,
 }
 
+/// Returns whether a point satisfies a formula, whatever the signs of curves within rounding of it.
+fn is_clearly_inside(formula: &Formula, p: Point, shapes: &[CurveFunction<'_>], size: f64) -> bool {
+    [-1.0, 1.0].into_iter().all(|sign| {
+        formula.holds(&|curve: usize| match shapes[curve].side(p, size) {
+            0 => sign,
+            _ => shapes[curve].value(p),
+        })
+    })
+}
+
 /// Intersects conditions with the cells of parts. The area between a curve and its chord counts only if a point of it
 /// is clearly inside.
 pub(crate) fn overlay(
@@ -114,14 +137,6 @@ pub(crate) fn overlay(
     size: f64,
 ) -> Overlay {
     let mut result = Overlay { parts: Vec::new(), uncovered: None, doubly_covered: None };
-    // A point within rounding of a curve counts as inside only if it is so for both signs of the curve.
-    let inside = |formula: &Formula, p: Point| {
-        let value = |curve: usize, sign: f64| match shapes[curve].side(p, size) {
-            0 => sign,
-            _ => shapes[curve].value(p),
-        };
-        [-1.0, 1.0].into_iter().all(|sign| formula.holds(&|curve| value(curve, sign)))
-    };
     for cell in cells {
         let cell_piece = piece(cell, Some(cell.part), shapes, size);
         for (part, holding) in divided(cell_piece, conditions, shapes, size) {
@@ -129,9 +144,10 @@ pub(crate) fn overlay(
             if part.is_sliver() {
                 let Some(first) = holding.first() else { continue };
                 let formulas = [parts[cell.part], &conditions[*first]];
-                let is_clearly_inside =
-                    |p: &Point| formulas.into_iter().all(|formula| inside(formula, *p));
-                if !part.chords().any(|p| is_clearly_inside(&p)) {
+                let any_inside = part.chords().any(|p| {
+                    formulas.into_iter().all(|formula| is_clearly_inside(formula, p, shapes, size))
+                });
+                if !any_inside {
                     continue;
                 }
             }
@@ -162,6 +178,7 @@ pub(crate) fn shapes<'g>(
     let [low, high] = bounding_box(outline);
     let middle = [0, 1].map(|k| low[k] / 2.0 + high[k] / 2.0);
     let mut polynomials = Polynomials::default();
-    let shape = |curve: &Curve| CurveFunction::new(graph, curve.value, middle, &mut polynomials);
-    (curves.iter().map(shape).collect(), norm(minus(high, low)))
+    let shapes =
+        curves.iter().map(|curve| CurveFunction::new(graph, curve.value, middle, &mut polynomials));
+    (shapes.collect(), norm(minus(high, low)))
 }

@@ -1,7 +1,9 @@
 //! One side of an outline, as features to which points can be nearest, and the radius to which a ball that touches one
 //! feature grows before it touches another.
 
-use crate::geometry::outline::{Point, Segment, bounding_box, cross, dot, minus, norm, turn};
+use crate::geometry::outline::{
+    Point, Segment, bounding_box, cross, dot, minus, mirrored_direction, norm, turn,
+};
 use std::f64::consts::PI;
 
 /// A feature to which a point can be nearest.
@@ -78,27 +80,29 @@ impl<'o> Section<'o> {
     /// Collects the segments of the outline and the reflex corners between them. At the axis the outline meets its own
     /// mirror image, and only half of a corner's fan lies on this side.
     fn find_features(&mut self) {
-        let mirrored = |t: Point| [t[0], -t[1]];
         let (Some(first), Some(last)) = (self.outline.first(), self.outline.last()) else { return };
         let start = first.tangent(false);
-        self.add_corner(None, mirrored(start), start);
+        self.add_corner(None, mirrored_direction(start), start);
         for (index, segment) in self.outline.iter().enumerate() {
             self.features.push(Feature::Piece(index));
             self.fans.push([0.0; 2]);
             let end = segment.tangent(true);
             let next = self.outline.get(index + 1);
-            let next = next.map_or(mirrored(last.tangent(true)), |next| next.tangent(false));
+            let next =
+                next.map_or(mirrored_direction(last.tangent(true)), |next| next.tangent(false));
             self.add_corner(Some(index), end, next);
         }
     }
 
     fn add_corner(&mut self, previous: Option<usize>, incoming: Point, outgoing: Point) {
+        // At a convex corner, or none, a segment is always nearer than the corner.
         if turn(incoming, outgoing) >= 0.0 {
             return;
         }
         let normal = [-incoming[1], incoming[0]];
         let mut from = normal[1].atan2(normal[0]);
         let mut sweep = cross(incoming, outgoing).atan2(dot(incoming, outgoing));
+        // On the axis the other half of the fan belongs to the mirror image.
         if previous.is_none() {
             (from, sweep) = (from + sweep / 2.0, sweep / 2.0);
         } else if previous == Some(self.outline.len() - 1) {
@@ -109,7 +113,7 @@ impl<'o> Section<'o> {
     }
 
     /// Returns the position of a corner.
-    pub(super) fn corner_at(&self, previous: Option<usize>) -> Point {
+    fn corner_at(&self, previous: Option<usize>) -> Point {
         match previous {
             Some(piece) => self.outline[piece].ends()[1],
             None => self.outline[0].ends()[0],
@@ -161,6 +165,7 @@ impl<'o> Section<'o> {
     pub(super) fn parameter(&self, feature: usize, p: Point) -> f64 {
         let wrapped_parameter = |from: f64, sweep: f64, offset: Point| {
             let angle = offset[1].atan2(offset[0]) - from;
+            // Into the turn about the middle of the sweep, so that points beyond either end stay on their side.
             let wrapped = angle - 2.0 * PI * ((angle - sweep / 2.0) / (2.0 * PI)).round();
             wrapped / sweep
         };
@@ -223,6 +228,7 @@ impl<'o> Section<'o> {
     ) -> f64 {
         match obstacle {
             Obstacle::Far if self.outer => OUTER_DISTANCE_IN_SIZES * self.size,
+            // The ball meets its mirror image when its centre reaches the axis.
             Obstacle::Axis if foot_point.normal[0] < 0.0 => {
                 -foot_point.foot[0] / foot_point.normal[0]
             }
@@ -250,6 +256,7 @@ impl<'o> Section<'o> {
         let ball_radius = match self.features[other] {
             Feature::Corner(previous) => {
                 let offset = minus(self.corner_at(previous), p);
+                // The centre `p + r n` is as far from the corner as from `p`.
                 dot(offset, offset) / (2.0 * dot(n, offset))
             }
             Feature::Piece(piece) => {
@@ -257,11 +264,14 @@ impl<'o> Section<'o> {
                 match segment.round() {
                     None => {
                         let along = segment.tangent(false);
+                        // The centre of a ball of radius `r` at `p + r n` is `r` from the line too: `r = signed(p)
+                        // + r n·m`, with `|n - m|² = 2 (1 - n·m)`.
                         let normal_difference = minus(n, [-along[1], along[0]]);
                         2.0 * segment.signed(p) / dot(normal_difference, normal_difference)
                     }
                     Some((centre, radius, convex)) => {
                         let a = minus(p, centre);
+                        // `|a + r n| = R - r` for a convex circle and `R + r` for a concave one, squared.
                         let (power, radial) = (radius * radius - dot(a, a), dot(a, n));
                         if convex {
                             power / (2.0 * (radius + radial))
@@ -318,17 +328,16 @@ impl<'o> Section<'o> {
 
     /// Returns whether two features touch only where they join, as far as a ball at `foot_point` can tell.
     fn shares_end(&self, feature: usize, foot_point: &FootPoint, other: usize) -> bool {
-        let are_joined = |piece: usize, previous: Option<usize>| {
-            self.adjacent_segments(previous)
-                .into_iter()
-                .flatten()
-                .any(|(adjacent, _)| adjacent == piece)
-        };
         match (self.features[feature], self.features[other]) {
             (Feature::Piece(piece), Feature::Corner(previous))
-            | (Feature::Corner(previous), Feature::Piece(piece)) => are_joined(piece, previous),
+            | (Feature::Corner(previous), Feature::Piece(piece)) => self
+                .adjacent_segments(previous)
+                .into_iter()
+                .flatten()
+                .any(|(adjacent, _)| adjacent == piece),
             (Feature::Piece(a), Feature::Piece(b)) if a.abs_diff(b) == 1 => {
                 let (low, high) = (&self.outline[a.min(b)], &self.outline[a.max(b)]);
+                // At a corner the two face each other, and a ball may touch both.
                 if turn(low.tangent(true), high.tangent(false)) != 0.0 {
                     return false;
                 }

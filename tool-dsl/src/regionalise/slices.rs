@@ -55,10 +55,12 @@ pub(super) fn slices(section: &Section<'_>) -> Vec<Vec<Slice>> {
                 let foot_point = section.foot_point(slice.feature, t);
                 let stop = section.grow_ball(slice.feature, &foot_point);
                 let parameter = section.parameter(other, foot_point.at(stop.radius));
+                // The vertex seen from the other side, with its neighbourhood.
                 samples[other].extend([parameter - 1e-7, parameter, parameter + 1e-7]);
             }
         }
         slices = envelope(section, &mut samples);
+        // No new vertex: the samples found all.
         if slices.iter().map(Vec::len).sum::<usize>() == count_before {
             break;
         }
@@ -79,6 +81,7 @@ fn envelope(section: &Section<'_>, samples: &mut [Vec<f64>]) -> Vec<Vec<Slice>> 
             parameters.dedup();
             let mut walk = EnvelopeWalk { section, feature, slices: Vec::new() };
             let mut previous = walk.sampled(parameters[0]);
+            // The ball at the very end of a feature is a limit, so the first sample stands for it.
             walk.append(0.0, previous.t, previous.obstacle);
             for &t in &parameters[1..] {
                 let current = walk.sampled(t);
@@ -152,6 +155,7 @@ impl EnvelopeWalk<'_> {
             let foot_point = self.section.foot_point(self.feature, middle);
             let [to_first, to_last] = [first, last]
                 .map(|sampled| self.section.growth_to(self.feature, &foot_point, sampled.obstacle));
+            // The nearer of the two is the one that stops the ball.
             if to_first < to_last {
                 low = middle;
             } else {
@@ -203,14 +207,21 @@ impl Slice {
 
     /// Returns points along the slice's normals.
     pub(super) fn points_on_normals(&self, section: &Section<'_>, steps: u32) -> Vec<Point> {
-        let points_along = |k: u32| {
-            let fraction = f64::from(k) / f64::from(steps);
-            let foot_point = self.foot_at(section, fraction);
-            let radius = self.radius(section, fraction);
-            [0.02, 0.1, 0.3, 0.5, 0.7, 0.9, 1.0]
-                .map(|radius_fraction| foot_point.at(radius_fraction * radius))
-        };
-        (0..=steps).flat_map(points_along).collect()
+        let fractions = (0..=steps).map(|k| f64::from(k) / f64::from(steps));
+        let depths = [0.02, 0.1, 0.3, 0.5, 0.7, 0.9, 1.0];
+        fractions.flat_map(|fraction| self.points_along(section, fraction, depths)).collect()
+    }
+
+    /// Returns the points of a normal at fractions of its length.
+    fn points_along<const N: usize>(
+        &self,
+        section: &Section<'_>,
+        fraction: f64,
+        radius_fractions: [f64; N],
+    ) -> [Point; N] {
+        let foot_point = self.foot_at(section, fraction);
+        let radius = self.radius(section, fraction);
+        radius_fractions.map(|radius_fraction| foot_point.at(radius_fraction * radius))
     }
 
     /// Returns points along the slice's normals, most densely near its ends.
@@ -220,13 +231,11 @@ impl Slice {
         let fractions = (1..INNER_STEPS).map(|k| f64::from(k) / f64::from(INNER_STEPS));
         let fractions =
             fractions.chain(near_end.clone()).chain(near_end.map(|fraction| 1.0 - fraction));
-        let points_along = |fraction: f64| {
-            let foot_point = self.foot_at(section, fraction);
-            let radius = self.radius(section, fraction);
-            [0.1, 0.5, 0.9, 0.99, 1.0]
-                .map(|radius_fraction| foot_point.at(radius_fraction * radius))
-        };
-        fractions.flat_map(points_along).filter(|p| p[0] >= 0.0).collect()
+        let depths = [0.1, 0.5, 0.9, 0.99, 1.0];
+        fractions
+            .flat_map(|fraction| self.points_along(section, fraction, depths))
+            .filter(|p| p[0] >= 0.0)
+            .collect()
     }
 
     fn parameter_at(&self, fraction: f64) -> f64 {

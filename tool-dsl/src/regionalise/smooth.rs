@@ -7,7 +7,9 @@
 //! the surface.
 
 use crate::diagnostic::format_number;
-use crate::geometry::outline::{Circle, ExactPoint, Segment, cross, dot, doubles, minus, turn};
+use crate::geometry::outline::{
+    Circle, ExactPoint, Segment, cross, dot, doubles, minus, mirrored_direction, turn,
+};
 use crate::number::Number;
 use std::f64::consts::PI;
 
@@ -40,13 +42,11 @@ pub(crate) fn rounded(
     // Corner `k` precedes segment `k`; the last corner follows all segments.
     let corners: Vec<Option<Corner>> =
         (0..=count).map(|k| corner(outline, k, length)).collect::<Result<_, _>>()?;
-    let taken = |k: usize| {
-        let [before, after] = [&corners[k], &corners[k + 1]];
-        let [before, after] =
-            [before.as_ref().map(|c| c.taken[1]), after.as_ref().map(|c| c.taken[0])];
-        before.unwrap_or(0.0) + after.unwrap_or(0.0)
+    let fraction_available = |k: &usize| {
+        let before = corners[*k].as_ref().map_or(0.0, |corner| corner.taken[1]);
+        let after = corners[*k + 1].as_ref().map_or(0.0, |corner| corner.taken[0]);
+        size(&outline[*k]) / (before + after)
     };
-    let fraction_available = |k: &usize| size(&outline[*k]) / taken(*k);
     if let Some(tightest) =
         (0..count).min_by(|a, b| fraction_available(a).total_cmp(&fraction_available(b)))
         && 1.0 > fraction_available(&tightest) * (1.0 + ROUNDING)
@@ -62,6 +62,7 @@ pub(crate) fn rounded(
         {
             pieces.push((corner.arc(segment), Origin::Fan(None)));
         }
+        // Two corners may take a segment wholly.
         if fraction_available(&k) * (1.0 - ROUNDING) > 1.0 {
             let from = before.as_ref().map_or(&segment.from, |corner| &corner.to);
             let to = after.as_ref().map_or(&segment.to, |corner| &corner.from);
@@ -89,6 +90,7 @@ pub(crate) fn largest_fitting_length(outline: &[Segment], length: &Number) -> Op
         let middle = f64::midpoint(low, high);
         if is_roundable(middle) { low = middle } else { high = middle }
     }
+    // The six digits that are shown may be rounded up beyond the limit.
     let shown = [low, low * (1.0 - 1e-5)].map(format_number);
     shown.into_iter().find(|text| text.parse().is_ok_and(is_roundable))
 }
@@ -121,15 +123,16 @@ fn corner(outline: &[Segment], k: usize, length: &Number) -> Result<Option<Corne
     let behind = k.checked_sub(1);
     let (before, after) = (behind.map(|k| &outline[k]), outline.get(k));
     // At the axis the outline meets its mirror image.
-    let mirrored = |t: [f64; 2]| [t[0], -t[1]];
     let incoming = before.map(|s| s.tangent(true));
     let outgoing = after.map(|s| s.tangent(false));
-    let (Some(a), Some(b)) =
-        (incoming.or(outgoing.map(mirrored)), outgoing.or(incoming.map(mirrored)))
-    else {
+    let (Some(a), Some(b)) = (
+        incoming.or(outgoing.map(mirrored_direction)),
+        outgoing.or(incoming.map(mirrored_direction)),
+    ) else {
         return Ok(None);
     };
     let turned = turn(a, b);
+    // A smooth joint is rounded already.
     if turned == 0.0 {
         return Ok(None);
     }
@@ -139,6 +142,7 @@ fn corner(outline: &[Segment], k: usize, length: &Number) -> Result<Option<Corne
         (Some(before), Some(after)) => {
             let (before, after) = (arm(before, true), arm(after, false));
             fan(&before, &after, length)
+                // The arc touches one of the segments at `length`, and which one is not known before.
                 .or_else(|| fan(&after, &before, length).map(Corner::turned))
         }
         (None, Some(after)) => arm(after, false).half_arc_on_axis(length),
@@ -263,6 +267,7 @@ impl Arm<'_> {
             ));
         };
         let signed_radius = if self.is_alike(circle) { -radius } else { radius.clone() };
+        // Circles that touch do so on the line through their centres.
         let ratio = circle.radius.checked_div(&(&circle.radius + &signed_radius))?;
         Some(point_along(&circle.centre, &offset(centre, &circle.centre), &ratio))
     }
@@ -277,7 +282,9 @@ impl Arm<'_> {
     fn half_arc_on_axis(&self, length: &Number) -> Option<Corner> {
         let to = self.point(length)?;
         let normal = self.normal(&to)?;
+        // The centre is on the axis.
         let radius = (-&to[0]).checked_div(&normal[0])?;
+        // The circle would be on the other side of the segment, or around the segment's own circle.
         if radius.to_f64() <= 0.0 || !self.admits_radius(&radius) {
             return None;
         }

@@ -2,8 +2,7 @@
 
 use crate::expr::polynomial::Polynomials;
 use crate::expr::{Graph, Id, Node};
-use crate::formula::Curve;
-use crate::formula::{CurveIndex, Formula};
+use crate::formula::{Curve, CurveIndex, Formula};
 use std::collections::BTreeMap;
 
 /// The maximum number of times that one condition may be split at `min`, `max` and `abs`.

@@ -1,20 +1,28 @@
-//! Derives the regions of a profile, names them, and applies their laws.
+//! Derives the regions of a profile, names them, and applies their laws. Its inside may be divided further: by regions
+//! that are written, or by the fans of smoothed corners.
 
 use super::condition::Curves;
-use super::direction::RawDirection;
-use super::law::Laws;
 use super::lower::Lowering;
-use super::over::{Conditions, Divider};
-use super::region::{LawValues, Placed, RegionHead, RegionResolver, or_report};
-use crate::diagnostic::{Diagnostic, ProfileKind};
+use super::outputs;
+use super::profile::Outline;
+use super::region::{
+    self, LawValues, Laws, Placed, RawDirection, RegionHead, RegionResolver, first_mention,
+    or_report,
+};
+use crate::diagnostic::{
+    CheckKind, Diagnostic, FormattedNumber, ProfileKind, RegionKind, Role, SurfaceRemedy,
+    any_error, enough, nearest,
+};
 use crate::domain::Domain;
 use crate::expr::{Graph, Id};
 use crate::formula::Formula;
 use crate::geometry::outline::{Segment, nearest_span};
 use crate::model::{DirectionSource, OutsidePart, Over, Region, Section, Surface};
-use crate::regionalise::overlay::ConditionedPart;
+use crate::regionalise::overlay::{self, ConditionedPart, Overlay};
+use crate::regionalise::smooth::{self, Origin, Rough};
 use crate::regionalise::{self, Derived, Feature, Partition, Test, Undivided};
 use crate::source::Span;
+use crate::syntax::tree::{self, Expr, Quantity};
 
 /// The surfaces, regions and section that result from a profile.
 #[derive(Default)]
@@ -25,63 +33,71 @@ pub(super) struct FromProfile {
 }
 
 /// A part of the inside, in which one feature is nearest.
-pub(super) struct DerivedPart {
-    pub(super) feature: Feature,
-    pub(super) inside: Formula,
-    pub(super) depth: Id,
-    pub(super) direction: [Id; 3],
-    pub(super) name: String,
+struct DerivedPart {
+    feature: Feature,
+    inside: Formula,
+    depth: Id,
+    direction: [Id; 3],
+    name: String,
     /// Index of its surface.
-    pub(super) owner: usize,
-    pub(super) span: Span,
+    owner: usize,
+    span: Span,
 }
 
 impl DerivedPart {
     /// Returns the shortest direction to the feature.
-    pub(super) fn own_direction(&self) -> RawDirection {
+    fn own_direction(&self) -> RawDirection {
         RawDirection { parts: self.direction, span: self.span, source: DirectionSource::Derived }
     }
 }
 
+/// The inside of an outline, divided into the parts of its nearest features.
+struct Inside<'a> {
+    outline: &'a Outline,
+    inner: &'a Partition,
+    parts: &'a [DerivedPart],
+}
+
 /// Derives the regions of an outline.
 pub(super) fn derived(
-    (outline, surfaces, span): (Vec<Segment>, Vec<Surface>, Span),
+    outline: Outline,
     divider: &Divider<'_>,
     laws: &Laws<'_>,
     lowering: &mut Lowering,
     curves: &mut Curves,
     diagnostics: &mut Vec<Diagnostic>,
 ) -> FromProfile {
-    laws.check(&surfaces, &lowering.left_out, diagnostics);
-    if let Err(diagnostic) = divider.check_limits(&outline) {
+    laws.check(&outline.surfaces, &lowering.left_out, diagnostics);
+    if let Err(diagnostic) = divider.check_limits(&outline.segments) {
         diagnostics.push(diagnostic);
         return FromProfile::default();
     }
-    let reversed: Vec<Segment> = outline.iter().rev().map(Segment::reversed).collect();
-    let inner = Partition::new(outline.clone(), false);
+    let reversed: Vec<Segment> = outline.segments.iter().rev().map(Segment::reversed).collect();
+    let inner = Partition::new(outline.segments.clone(), false);
     let outer = Partition::new(reversed, true);
     let graph = &mut lowering.graph;
     let divided = inner.parts(graph).and_then(|parts| Ok((parts, outer.parts(graph)?)));
     let (derived, beside) = match divided {
         Ok(both) => both,
         Err(Undivided([d, z])) => {
-            let at = nearest_span(&outline, [d, z]).unwrap_or(span);
+            let at = nearest_span(&outline.segments, [d, z]).unwrap_or(outline.span);
             let z = lowering.frame.to_file(z);
             let diagnostic = Diagnostic::new(at, ProfileKind::DivisionFailed { d, z });
             diagnostics.push(diagnostic);
             return FromProfile::default();
         }
     };
-    let parts = parts(&derived, &outline, &surfaces, lowering, curves);
-    let profile = (outline.as_slice(), &inner);
+    let parts = parts(&derived, &outline, lowering, curves);
+    let inside = Inside { outline: &outline, inner: &inner, parts: &parts };
     let mut regions = Vec::new();
     let before = diagnostics.len();
-    let conditions = divider.conditions(profile, &surfaces, lowering, curves, diagnostics);
+    let conditions = divider.conditions(&inside, lowering, curves, diagnostics);
     let mut over = None;
     match conditions {
         None => {
             for part in &parts {
-                let evaluation = RegionResolver { laws, lowering, surface: &surfaces[part.owner] };
+                let evaluation =
+                    RegionResolver { laws, lowering, surface: &outline.surfaces[part.owner] };
                 let (name, inside) = (part.name.clone(), part.inside.clone());
                 let head = RegionHead { name, span: part.span, owner: part.owner, inside };
                 let direction = part.own_direction();
@@ -89,13 +105,17 @@ pub(super) fn derived(
             }
         }
         Some(conditions) if diagnostics.len() == before => {
-            let whole = (outline.as_slice(), &inner, parts.as_slice());
-            let divided =
-                conditions.conditioned_parts(whole, (curves, lowering), span, diagnostics);
+            let divided = conditions.conditioned_parts(&inside, curves, lowering, diagnostics);
             for ConditionedPart { part, condition } in &divided {
                 let (part, condition) = (&parts[*part], *condition);
-                let region =
-                    conditions.region(part, condition, &surfaces, laws, lowering, diagnostics);
+                let region = conditions.region(
+                    part,
+                    condition,
+                    &outline.surfaces,
+                    laws,
+                    lowering,
+                    diagnostics,
+                );
                 regions.extend(region);
             }
             let Conditions { conditions, distances, .. } = conditions;
@@ -111,19 +131,19 @@ pub(super) fn derived(
             clearance: lowering.graph.max(zero, part.depth),
         })
         .collect();
-    let section = Section { outline, inner, outer, outside, over };
+    let Outline { segments, surfaces, .. } = outline;
+    let section = Section { outline: segments, inner, outer, outside, over };
     FromProfile { surfaces, regions, section: Some(section) }
 }
 
 /// Returns the parts of the inside with their names and directions.
 fn parts(
     derived: &[Derived],
-    outline: &[Segment],
-    surfaces: &[Surface],
+    outline: &Outline,
     lowering: &mut Lowering,
     curves: &mut Curves,
 ) -> Vec<DerivedPart> {
-    let names = names(outline, surfaces, derived);
+    let names = names(outline, derived);
     let graph = &mut lowering.graph;
     let zero = graph.int(0);
     derived
@@ -131,8 +151,9 @@ fn parts(
         .zip(names)
         .map(|(part, (name, owner, span))| {
             let inside = formula(&part.inside, curves, graph);
-            let direction = regionalise::direction_to_surface(graph, outline, part.feature)
-                .unwrap_or([zero, zero]);
+            let direction =
+                regionalise::direction_to_surface(graph, &outline.segments, part.feature)
+                    .unwrap_or([zero, zero]);
             let direction = Domain::HalfPlane.vector(graph, &direction);
             DerivedPart {
                 feature: part.feature,
@@ -148,7 +169,7 @@ fn parts(
 }
 
 /// Converts a test to a formula over curves.
-pub(super) fn formula(test: &Test, curves: &mut Curves, graph: &mut Graph) -> Formula {
+fn formula(test: &Test, curves: &mut Curves, graph: &mut Graph) -> Formula {
     let zero = graph.int(0);
     match test {
         Test::AtMost(value) => curves.at_most(graph, *value, zero),
@@ -170,23 +191,25 @@ pub(super) fn formula(test: &Test, curves: &mut Curves, graph: &mut Graph) -> Fo
 /// several. `shank/nut.1` is the fan of a reflex corner, which belongs to the adjacent surface that does not cut,
 /// otherwise to the first one.
 fn names(
-    outline: &[Segment],
-    surfaces: &[Surface],
+    Outline { segments: outline, surfaces, .. }: &Outline,
     parts: &[Derived],
 ) -> Vec<(String, usize, Span)> {
-    let name = |piece: usize| {
-        let surface = outline[piece].surface;
-        let of_surface = |other: &&Segment| other.surface == surface;
-        let segment_count = outline.iter().filter(of_surface).count();
-        let before = outline[..=piece].iter().filter(of_surface).count();
-        let word = &surfaces[surface].name;
-        if segment_count > 1 { format!("{word}.{before}") } else { word.clone() }
-    };
     let mut fans = std::collections::BTreeMap::new();
     parts
         .iter()
         .map(|part| match part.feature {
-            Feature::Piece(piece) => (name(piece), outline[piece].surface, outline[piece].span),
+            Feature::Piece(piece) => {
+                let Segment { surface, span, .. } = outline[piece];
+                let count = |segments: &[Segment]| {
+                    segments.iter().filter(|other| other.surface == surface).count()
+                };
+                let word = &surfaces[surface].name;
+                let name = match count(outline) {
+                    1 => word.clone(),
+                    _ => format!("{word}.{}", count(&outline[..=piece])),
+                };
+                (name, surface, span)
+            }
             Feature::Corner(behind) => {
                 let first = behind.unwrap_or(0);
                 let second = behind.map_or(0, |piece| (piece + 1).min(outline.len() - 1));
@@ -203,7 +226,7 @@ fn names(
 
 impl RegionResolver<'_> {
     /// Returns the region of a part, with the laws for its surface.
-    pub(super) fn of_part(
+    fn of_part(
         mut self,
         part: &DerivedPart,
         head: RegionHead,
@@ -214,4 +237,324 @@ impl RegionResolver<'_> {
         let depth = Placed { value: part.depth, span: head.span };
         self.finish(head, depth, LawValues { magnitude, niceness }, direction)
     }
+}
+
+/// The further division of a profile's inside, in addition to its nearest features.
+pub(super) enum Divider<'t> {
+    /// No further division.
+    Features,
+    /// Regions written by hand.
+    Hand(Vec<&'t tree::Region>),
+    /// Directions of the outline with its corners rounded over this tangent length.
+    Smooth(&'t Expr),
+}
+
+/// Conditions over the parts of a partition, and their effects.
+struct Conditions<'t> {
+    conditions: Vec<Formula>,
+    /// The distances from the segments of the rounded outline.
+    distances: Vec<Id>,
+    kinds: Vec<Kind<'t>>,
+}
+
+impl Conditions<'_> {
+    const NONE: Conditions<'static> =
+        Conditions { conditions: Vec::new(), distances: Vec::new(), kinds: Vec::new() };
+}
+
+enum Kind<'t> {
+    Hand(&'t tree::Region, Option<usize>),
+    /// The direction to the rounded outline, not normalised, and the origin of its segment.
+    Smooth([Id; 3], Origin),
+}
+
+impl Divider<'_> {
+    /// Rejects an outline that would take minutes to divide.
+    fn check_limits(&self, outline: &[Segment]) -> Result<(), Diagnostic> {
+        match self {
+            Divider::Smooth(length) if outline.len() > MAX_SMOOTH_SEGMENTS => Err(Diagnostic::new(
+                length.span,
+                RegionKind::TooManySmoothSegments { limit: MAX_SMOOTH_SEGMENTS },
+            )),
+            _ => Ok(()),
+        }
+    }
+
+    /// Returns the conditions, if there is a further division.
+    fn conditions(
+        &self,
+        inside: &Inside<'_>,
+        lowering: &mut Lowering,
+        curves: &mut Curves,
+        diagnostics: &mut Vec<Diagnostic>,
+    ) -> Option<Conditions<'_>> {
+        match self {
+            Divider::Features => None,
+            Divider::Hand(regions) => {
+                let mut conditions = Conditions::NONE;
+                for region in regions {
+                    let surface = or_report(
+                        written(region, &regions[..], &inside.outline.surfaces),
+                        diagnostics,
+                    );
+                    let condition = region::inside(region, lowering, curves, diagnostics);
+                    if let (Some(surface), Some(condition)) = (surface, condition) {
+                        conditions.conditions.push(condition);
+                        conditions.kinds.push(Kind::Hand(region, surface));
+                    }
+                    if enough(diagnostics) {
+                        break;
+                    }
+                }
+                Some(conditions)
+            }
+            Divider::Smooth(length) => match fans(length, inside, lowering, curves) {
+                Ok(conditions) => Some(conditions),
+                Err(diagnostic) => {
+                    diagnostics.push(diagnostic);
+                    None
+                }
+            },
+        }
+    }
+}
+
+/// Returns the surface that a written region names, if any.
+fn written(
+    region: &tree::Region,
+    regions: &[&tree::Region],
+    surfaces: &[Surface],
+) -> Result<Option<usize>, Diagnostic> {
+    let name = &region.name;
+    if let Some(first) = regions.iter().find(|r| r.name.text == name.text)
+        && first.name.span != name.span
+    {
+        let diagnostic =
+            Diagnostic::new(name.span, RegionKind::DuplicateRegion { name: name.text.clone() });
+        return Err(diagnostic.with_label(first.name.span, "first region of this name"));
+    }
+    if let Some(depth) = region.scalars.iter().find(|s| s.quantity == Quantity::Depth) {
+        return Err(Diagnostic::new(depth.value.span, RegionKind::DepthBesideProfile));
+    }
+    match &region.surface {
+        None => Ok(None),
+        Some(surface_name) => {
+            if let Some(cutting) = region.cutting {
+                return Err(Diagnostic::new(cutting, RegionKind::CuttingBesideProfile));
+            }
+            let found = surfaces.iter().position(|surface| surface.name == surface_name.text);
+            found.map(Some).ok_or_else(|| {
+                let known = surfaces.iter().map(|surface| surface.name.as_str());
+                let remedy = match nearest(&surface_name.text, known) {
+                    Some(suggestion) => SurfaceRemedy::Similar(suggestion.to_owned()),
+                    None => SurfaceRemedy::OfProfile,
+                };
+                let kind = RegionKind::UnknownSurface { name: surface_name.text.clone(), remedy };
+                Diagnostic::new(surface_name.span, kind)
+            })
+        }
+    }
+}
+
+/// The maximum number of segments of a profile with `regions smooth`: the cells of each corner are intersected with
+/// those of each segment.
+const MAX_SMOOTH_SEGMENTS: usize = 128;
+
+/// Returns the cells of the outline with rounded corners, from which directions are taken.
+fn fans<'t>(
+    length: &Expr,
+    Inside { outline: Outline { segments: outline, .. }, inner, .. }: &Inside<'_>,
+    lowering: &mut Lowering,
+    curves: &mut Curves,
+) -> Result<Conditions<'t>, Diagnostic> {
+    let span = length.span;
+    let width = lowering.length(length, Role::Smooth)?;
+    if width.to_f64() <= 0.0 {
+        return Err(Diagnostic::new(span, RegionKind::SmoothNotPositive));
+    }
+    let formatted = |behind: Option<usize>, lowering: &Lowering| {
+        let [d, z] = match behind {
+            Some(piece) => outline[piece].ends()[1],
+            None => outline[0].ends()[0],
+        };
+        Domain::HalfPlane.format_point([d, 0.0, lowering.frame.to_file(z)])
+    };
+    let pieces = smooth::rounded(outline, &width).map_err(|rough| {
+        let max_length = smooth::largest_fitting_length(outline, &width);
+        match rough {
+            Rough::Untouched(behind) => Diagnostic::new(
+                span,
+                RegionKind::NoTangentArc { location: formatted(behind, lowering), max_length },
+            ),
+            Rough::Short(piece, size, count) => {
+                let [from, to] =
+                    [piece.checked_sub(1), Some(piece)].map(|behind| formatted(behind, lowering));
+                let corners = (count == 2).then_some([from, to]);
+                Diagnostic::new(
+                    span,
+                    RegionKind::FansTooWide {
+                        corners,
+                        segment_length: FormattedNumber(size),
+                        max_length,
+                    },
+                )
+                .with_label(outline[piece].span, "segment too short")
+            }
+        }
+    })?;
+    let (rounded, origins): (Vec<Segment>, Vec<Origin>) = pieces.into_iter().unzip();
+    let (graph, frame) = (&mut lowering.graph, &lowering.frame);
+    let parts = Partition::new(rounded.clone(), false).parts(graph);
+    let parts = parts.map_err(|Undivided([d, z])| {
+        let location = Domain::HalfPlane.format_point([d, 0.0, frame.to_file(z)]);
+        Diagnostic::new(span, RegionKind::SmoothDivisionFailed { location })
+    })?;
+    let mut conditions = Conditions::NONE;
+    for part in &parts {
+        let Feature::Piece(piece) = part.feature else { continue };
+        let mut inside = part.inside.clone();
+        if let Origin::Fan(behind) = origins[piece]
+            && rounded[piece].round().is_some_and(|(_, _, convex)| convex)
+        {
+            // A convex corner protrudes beyond its arc; there the corner's edges bound the fan.
+            let adjacent = [behind, Some(behind.map_or(0, |k| k + 1))];
+            let edges = adjacent.into_iter().flatten().filter(|k| *k < outline.len());
+            let edges = edges.filter_map(|k| inner.inside(graph, k)).collect();
+            inside = inside.without_own(edges);
+        }
+        conditions.conditions.push(formula(&inside, curves, graph));
+        conditions.distances.push(part.depth);
+        let zero = graph.int(0);
+        let direction = regionalise::direction_to_surface(graph, &rounded, part.feature)
+            .unwrap_or([zero, zero]);
+        let direction = Domain::HalfPlane.vector(graph, &direction);
+        conditions.kinds.push(Kind::Smooth(direction, origins[piece]));
+    }
+    Ok(conditions)
+}
+
+impl Conditions<'_> {
+    /// Returns the parts and conditions that have points in common, and reports gaps, overlaps and regions without points.
+    fn conditioned_parts(
+        &self,
+        Inside { outline, inner, parts }: &Inside<'_>,
+        curves: &Curves,
+        lowering: &Lowering,
+        diagnostics: &mut Vec<Diagnostic>,
+    ) -> Vec<ConditionedPart> {
+        let (shapes, size) = overlay::shapes(&lowering.graph, &curves.list, &outline.segments);
+        let insides: Vec<&Formula> = parts.iter().map(|part| &part.inside).collect();
+        let Overlay { parts, uncovered, doubly_covered } =
+            overlay::overlay(&inner.cells(8), &insides, &self.conditions, &shapes, size);
+        let formatted =
+            |[d, z]: [f64; 2]| Domain::HalfPlane.format_point([d, 0.0, lowering.frame.to_file(z)]);
+        if let Some(p) = uncovered {
+            diagnostics.push(Diagnostic::new(
+                outline.span,
+                RegionKind::UncoveredPoint { location: formatted(p) },
+            ));
+        }
+        if let Some((first, second, p)) = doubly_covered
+            && let (Kind::Hand(a, _), Kind::Hand(b, _)) = (&self.kinds[first], &self.kinds[second])
+        {
+            let (a, b) = (&a.name, &b.name);
+            let is_left = parts.iter().any(|part| part.condition == second);
+            diagnostics.push(match is_left {
+                true => overlapping(&a.text, &b.text, b.span, formatted(p), a.span),
+                false => never_wins(&b.text, b.span, &a.text, a.span, 0),
+            });
+        }
+        for (k, kind) in self.kinds.iter().enumerate() {
+            if let Kind::Hand(region, _) = kind
+                && !any_error(diagnostics)
+                && parts.iter().all(|part| part.condition != k)
+            {
+                let name = &region.name;
+                diagnostics.push(Diagnostic::new(
+                    name.span,
+                    RegionKind::RegionOutsideProfile { region: name.text.clone() },
+                ));
+            }
+        }
+        parts
+    }
+
+    /// Returns the region of a part in which a condition holds.
+    fn region(
+        &self,
+        part: &DerivedPart,
+        condition: usize,
+        surfaces: &[Surface],
+        laws: &Laws<'_>,
+        lowering: &mut Lowering,
+        diagnostics: &mut Vec<Diagnostic>,
+    ) -> Option<Region> {
+        let inside = Formula::All(vec![self.conditions[condition].clone(), part.inside.clone()]);
+        let depth = part.depth;
+        match &self.kinds[condition] {
+            Kind::Smooth(direction, origin) => {
+                let own = matches!((part.feature, origin), (Feature::Piece(a), Origin::Piece(b)) if a == *b);
+                let name = match origin {
+                    _ if own => part.name.clone(),
+                    Origin::Piece(piece) => format!("{} by {}", part.name, piece + 1),
+                    Origin::Fan(behind) => {
+                        format!("{} by fan {}", part.name, behind.map_or(0, |k| k + 1))
+                    }
+                };
+                let evaluation = RegionResolver { laws, lowering, surface: &surfaces[part.owner] };
+                let head = RegionHead { name, span: part.span, owner: part.owner, inside };
+                let source = DirectionSource::Oblique;
+                let direction = RawDirection { parts: *direction, span: part.span, source };
+                or_report(evaluation.of_part(part, head, direction), diagnostics)
+            }
+            Kind::Hand(region, surface) => {
+                let owner = surface.unwrap_or(part.owner);
+                let mut evaluation = RegionResolver { laws, lowering, surface: &surfaces[owner] };
+                let law_values = evaluation.law_values(region, depth, diagnostics);
+                let written = or_report(evaluation.resolve_direction(region), diagnostics)?;
+                let law_values = law_values?;
+                let own =
+                    or_report(evaluation.scalar_of(region, Quantity::Magnitude), diagnostics)?;
+                let free = own
+                    .filter(|own| first_mention(&own.value, Quantity::Depth.keyword()).is_none());
+                let direction = match (written, free, law_values.magnitude) {
+                    (Some(direction), ..) => direction,
+                    (None, Some(own), Some(magnitude)) => {
+                        let graph = &mut evaluation.lowering.graph;
+                        let slope = outputs::gradient(graph, Domain::HalfPlane, magnitude.value);
+                        let parts = slope.map(|slope| graph.neg(slope));
+                        let (span, source) = (own.value.span, DirectionSource::Written);
+                        RawDirection { parts, span, source }
+                    }
+                    (None, ..) => part.own_direction(),
+                };
+                let (name, span) = (region.name.text.clone(), region.name.span);
+                let head = RegionHead { name, span, owner, inside };
+                let depth = Placed { value: depth, span };
+                or_report(evaluation.finish(head, depth, law_values, direction), diagnostics)
+            }
+        }
+    }
+}
+
+/// Returns the warning or error for a region that is entirely covered by one or more regions listed before it.
+pub(crate) fn never_wins(name: &str, span: Span, first: &str, at: Span, more: usize) -> Diagnostic {
+    Diagnostic::new(
+        span,
+        CheckKind::CoveredRegion { region: name.to_owned(), covering: first.to_owned(), more },
+    )
+    .with_label(at, "region listed before it")
+}
+
+/// Returns the error for two regions that have points in common, for instance at `location`. The first region is at `at`.
+pub(crate) fn overlapping(
+    first: &str,
+    second: &str,
+    span: Span,
+    location: String,
+    at: Span,
+) -> Diagnostic {
+    let (first, second) = (first.to_owned(), second.to_owned());
+    Diagnostic::new(span, CheckKind::Overlap { first, second, location })
+        .with_label(at, "overlapping region")
 }

@@ -1,7 +1,5 @@
 //! Lowers expressions of the syntax tree to nodes of the graph, with their dimensions.
 
-use super::call::FUNCTIONS;
-use super::cycle::mentioned;
 use crate::diagnostic::{
     Diagnostic, Kind, NameRemedy, Names, Operation, Reported, Role, ValueKind, nearest,
 };
@@ -23,7 +21,7 @@ const UNITS: [&str; 5] = ["mm", "inch", "m", "deg", "rad"];
 #[derive(Clone, Debug)]
 pub(super) struct Value {
     pub(super) id: Id,
-    pub(super) dimension: Dimension,
+    dimension: Dimension,
     pub(super) span: Span,
     pub(super) used: bool,
 }
@@ -68,7 +66,13 @@ pub(super) struct Lowering {
 /// The largest intermediate constant, 2^1000, large enough for powers of lengths.
 const MAX_CONSTANT: f64 = 1.071508607186267e301;
 
-pub(super) type Lowered = Result<(Id, Dimension), Diagnostic>;
+/// A lowered expression.
+pub(super) struct Lowered {
+    pub(super) id: Id,
+    pub(super) dimension: Dimension,
+}
+
+type LoweringResult = Result<Lowered, Diagnostic>;
 
 impl Lowering {
     /// Defines a name.
@@ -79,7 +83,7 @@ impl Lowering {
     pub(super) fn define(
         &mut self,
         name: &Name,
-        (id, dimension): (Id, Dimension),
+        Lowered { id, dimension }: Lowered,
     ) -> Result<(), Diagnostic> {
         let word = name.text.as_str();
         if let Some(meaning) = self.domain.meaning(word) {
@@ -126,7 +130,7 @@ impl Lowering {
 
     /// Lowers an expression that has to be constant, in this role.
     pub(super) fn constant(&mut self, expr: &Expr, role: Role) -> Result<Constant, Diagnostic> {
-        let (id, dimension) = self.lower(expr, Allowed::Constants(role))?;
+        let Lowered { id, dimension } = self.lower(expr, Allowed::Constants(role))?;
         match self.graph.constant(id) {
             Some(value) => Ok(Constant { value: value.clone(), dimension }),
             None => Err(not_constant(expr.span, None, role)),
@@ -144,8 +148,8 @@ impl Lowering {
     }
 
     /// Lowers any expression.
-    pub(super) fn lower(&mut self, expr: &Expr, may: Allowed) -> Lowered {
-        let (id, dimension) = self.node(expr, may)?;
+    pub(super) fn lower(&mut self, expr: &Expr, may: Allowed) -> LoweringResult {
+        let Lowered { id, dimension } = self.node(expr, may)?;
         // Constants are checked at every step, before anything overflows.
         let size = self.graph.constant(id).map_or(0.0, |value| value.to_f64().abs());
         if size > MAX_CONSTANT {
@@ -157,19 +161,20 @@ impl Lowering {
                 ValueKind::ExpressionTooDeep { limit: MAX_EXPRESSION_HEIGHT },
             ));
         }
-        Ok((id, dimension))
+        Ok(Lowered { id, dimension })
     }
 
-    fn node(&mut self, expr: &Expr, may: Allowed) -> Lowered {
+    fn node(&mut self, expr: &Expr, may: Allowed) -> LoweringResult {
         match &expr.kind {
-            ExprKind::Number(value, None) => {
-                Ok((self.graph.number(value.clone()), Dimension::Dimensionless))
-            }
+            ExprKind::Number(value, None) => Ok(Lowered {
+                id: self.graph.number(value.clone()),
+                dimension: Dimension::Dimensionless,
+            }),
             ExprKind::Number(value, Some(unit)) => self.measured(value, unit, expr.span),
             ExprKind::Name(word) => self.name(word, expr.span, may),
             ExprKind::Neg(inner) => {
-                let (id, dimension) = self.lower(inner, may)?;
-                Ok((self.graph.neg(id), dimension))
+                let Lowered { id, dimension } = self.lower(inner, may)?;
+                Ok(Lowered { id: self.graph.neg(id), dimension })
             }
             ExprKind::Binary(Binary::Pow, base, exponent) => {
                 self.power(base, exponent, expr.span, may)
@@ -181,17 +186,19 @@ impl Lowering {
         }
     }
 
-    fn measured(&mut self, value: &Number, unit: &Name, span: Span) -> Lowered {
+    fn measured(&mut self, value: &Number, unit: &Name, span: Span) -> LoweringResult {
         let word = unit.text.as_str();
         if let Some(from) = Unit::from_symbol(word) {
             let value = value * &from.factor_to(self.unit);
-            return Ok((self.graph.number(value), LENGTH));
+            return Ok(Lowered { id: self.graph.number(value), dimension: LENGTH });
         }
         match word {
-            "rad" => Ok((self.graph.number(value.clone()), Dimension::Angle)),
+            "rad" => {
+                Ok(Lowered { id: self.graph.number(value.clone()), dimension: Dimension::Angle })
+            }
             "deg" => {
                 let radians = &(value * &Number::pi()) / &Number::int(180);
-                Ok((self.graph.number(radians), Dimension::Angle))
+                Ok(Lowered { id: self.graph.number(radians), dimension: Dimension::Angle })
             }
             _ if COORDINATES.contains(&word) || self.values.contains_key(word) || word == "pi" => {
                 let number = value.to_f64();
@@ -217,12 +224,17 @@ impl Lowering {
         }
     }
 
-    fn name(&mut self, word: &str, span: Span, may: Allowed) -> Lowered {
+    fn name(&mut self, word: &str, span: Span, may: Allowed) -> LoweringResult {
         let coordinate = match word {
-            "pi" => return Ok((self.graph.number(Number::pi()), Dimension::Dimensionless)),
+            "pi" => {
+                return Ok(Lowered {
+                    id: self.graph.number(Number::pi()),
+                    dimension: Dimension::Dimensionless,
+                });
+            }
             "depth" => {
                 return match may {
-                    Allowed::Depth(depth) => Ok((depth, LENGTH)),
+                    Allowed::Depth(depth) => Ok(Lowered { id: depth, dimension: LENGTH }),
                     Allowed::Coordinates => {
                         Err(Diagnostic::new(span, ValueKind::DepthNotAvailable))
                     }
@@ -241,7 +253,7 @@ impl Lowering {
             if let Allowed::Constants(role) = may {
                 return Err(not_constant(span, Some(word), role));
             }
-            return Ok((self.coordinate_here(coordinate), LENGTH));
+            return Ok(Lowered { id: self.coordinate_here(coordinate), dimension: LENGTH });
         }
         let Some(value) = self.values.get_mut(word) else {
             if let Some(reported) = self.broken.get(word) {
@@ -278,7 +290,7 @@ impl Lowering {
         {
             return Err(not_constant(span, Some(word), role));
         }
-        Ok((value.id, value.dimension))
+        Ok(Lowered { id: value.id, dimension: value.dimension })
     }
 
     fn binary(
@@ -288,18 +300,19 @@ impl Lowering {
         right: &Expr,
         span: Span,
         may: Allowed,
-    ) -> Lowered {
+    ) -> LoweringResult {
         let glued = operator == Binary::Sub && left.span.end + 1 == right.span.start;
-        let (a, da) = self.lower(left, may).map_err(|mut diagnostic| {
-            if let Kind::ValueKind(ValueKind::UnknownName { remedy, .. }) = &mut diagnostic.kind
-                && glued
-                && matches!(left.kind, ExprKind::Name(_))
-            {
-                *remedy = NameRemedy::Dash;
-            }
-            diagnostic
-        })?;
-        let (b, db) = self.lower(right, may)?;
+        let Lowered { id: a, dimension: da } =
+            self.lower(left, may).map_err(|mut diagnostic| {
+                if let Kind::ValueKind(ValueKind::UnknownName { remedy, .. }) = &mut diagnostic.kind
+                    && glued
+                    && matches!(left.kind, ExprKind::Name(_))
+                {
+                    *remedy = NameRemedy::Dash;
+                }
+                diagnostic
+            })?;
+        let Lowered { id: b, dimension: db } = self.lower(right, may)?;
         let (dimension, operation) = match operator {
             Binary::Add => (da.common(db), Operation::Add),
             Binary::Sub => (da.common(db), Operation::Subtract),
@@ -318,11 +331,11 @@ impl Lowering {
                 .div(a, b)
                 .ok_or_else(|| Diagnostic::new(right.span, ValueKind::DivisionByZero))?,
         };
-        Ok((id, dimension))
+        Ok(Lowered { id, dimension })
     }
 
-    fn power(&mut self, base: &Expr, exponent: &Expr, span: Span, may: Allowed) -> Lowered {
-        let (base_id, dimension) = self.lower(base, may)?;
+    fn power(&mut self, base: &Expr, exponent: &Expr, span: Span, may: Allowed) -> LoweringResult {
+        let Lowered { id: base_id, dimension } = self.lower(base, may)?;
         let Constant { value, dimension: of_exponent } = self.constant(exponent, Role::Exponent)?;
         let halves =
             value
@@ -336,8 +349,24 @@ impl Lowering {
             .graph
             .power(base_id, halves)
             .ok_or_else(|| Diagnostic::new(span, ValueKind::UndefinedPower))?;
-        Ok((id, dimension))
+        Ok(Lowered { id, dimension })
     }
+}
+
+/// Returns the names that an expression mentions, in the order of the text.
+pub(super) fn mentioned(expr: &Expr) -> Vec<(&str, Span)> {
+    let mut names = Vec::new();
+    let mut pending = vec![expr];
+    while let Some(expr) = pending.pop() {
+        match &expr.kind {
+            ExprKind::Number(..) => {}
+            ExprKind::Name(word) => names.push((word.as_str(), expr.span)),
+            ExprKind::Call(_, arguments) => pending.extend(arguments.iter().rev()),
+            ExprKind::Neg(inner) => pending.push(inner),
+            ExprKind::Binary(_, left, right) => pending.extend([&**right, &**left]),
+        }
+    }
+    names
 }
 
 /// Checks that the compiler can work with the size of a constant.
@@ -356,4 +385,114 @@ fn not_constant(span: Span, word: Option<&str>, role: Role) -> Diagnostic {
 pub(super) fn without_value(span: Span, word: &str, refused: Reported) -> Diagnostic {
     let kind = ValueKind::NameWithoutValue { name: word.to_owned() };
     Diagnostic::new(span, kind).caused_by(refused)
+}
+
+static FUNCTIONS: [&str; 8] = ["min", "max", "hypot", "sqrt", "abs", "sin", "cos", "tan"];
+
+impl Lowering {
+    fn call(
+        &mut self,
+        name: &Name,
+        arguments: &[Expr],
+        span: Span,
+        may: Allowed,
+    ) -> LoweringResult {
+        let word = name.text.as_str();
+        let expected_count = match word {
+            "min" | "max" | "hypot" => 2..=usize::MAX,
+            "sqrt" | "abs" | "sin" | "cos" | "tan" => 1..=1,
+            _ => {
+                let kind = ValueKind::UnknownFunction {
+                    name: word.to_owned(),
+                    suggestion: nearest(word, FUNCTIONS),
+                    known: &FUNCTIONS,
+                };
+                return Err(Diagnostic::new(name.span, kind));
+            }
+        };
+        if !expected_count.contains(&arguments.len()) {
+            let (function, variadic) = (word.to_owned(), *expected_count.start() == 2);
+            let kind = ValueKind::WrongArgumentCount { function, variadic, count: arguments.len() };
+            return Err(Diagnostic::new(span, kind));
+        }
+        if matches!(word, "sin" | "cos" | "tan") {
+            return self.trigonometric(word, &arguments[0], span, may);
+        }
+        let Lowered { mut id, mut dimension } = self.lower(&arguments[0], may)?;
+        match word {
+            "abs" => return Ok(Lowered { id: self.graph.abs(id), dimension }),
+            "sqrt" => {
+                let dimension = dimension
+                    .power(1)
+                    .ok_or_else(|| Diagnostic::new(span, ValueKind::RootOfAngle))?;
+                let root = self
+                    .graph
+                    .sqrt(id)
+                    .ok_or_else(|| Diagnostic::new(arguments[0].span, ValueKind::RootOfNegative))?;
+                return Ok(Lowered { id: root, dimension });
+            }
+            "hypot" => id = self.graph.mul(id, id),
+            _ => {}
+        }
+        for argument in &arguments[1..] {
+            let Lowered { id: other, dimension: of_other } = self.lower(argument, may)?;
+            dimension = dimension.common(of_other).ok_or_else(|| {
+                Diagnostic::new(
+                    argument.span,
+                    ValueKind::MixedArguments {
+                        function: word.to_owned(),
+                        first: dimension,
+                        second: of_other,
+                    },
+                )
+            })?;
+            id = match word {
+                "min" => self.graph.min(id, other),
+                "max" => self.graph.max(id, other),
+                _ => {
+                    let square = self.graph.mul(other, other);
+                    self.graph.add(id, square)
+                }
+            };
+        }
+        if word == "hypot" {
+            id = self.graph.sqrt(id).unwrap_or(id);
+        }
+        Ok(Lowered { id, dimension })
+    }
+
+    fn trigonometric(
+        &mut self,
+        word: &str,
+        argument: &Expr,
+        span: Span,
+        may: Allowed,
+    ) -> LoweringResult {
+        let Lowered { id, dimension } = self.lower(argument, may)?;
+        let Some(angle) = self.graph.constant(id).cloned() else {
+            return Err(Diagnostic::new(
+                span,
+                ValueKind::TrigonometryOfVariable { function: word.to_owned() },
+            ));
+        };
+        if dimension != Dimension::Angle {
+            return Err(Diagnostic::new(
+                argument.span,
+                ValueKind::NotAngle { function: word.to_owned(), dimension, value: angle.to_f64() },
+            ));
+        }
+        if angle.to_f64().abs() > 1e6 {
+            return Err(Diagnostic::new(argument.span, ValueKind::HugeAngle));
+        }
+        let cos = angle.cos();
+        let value = match word {
+            "sin" => angle.sin(),
+            "cos" => cos,
+            _ if cos.to_f64().abs() < 2f64.powi(-200) => {
+                return Err(Diagnostic::new(span, ValueKind::TanOfRightAngle));
+            }
+            _ => &angle.sin() / &cos,
+        };
+        Ok(Lowered { id: self.graph.number(value), dimension: Dimension::Dimensionless })
+    }
 }

@@ -1,39 +1,30 @@
 //! Resolves the syntax tree to the model: names, dimensions, the coordinate frame, the laws of each region.
 
-mod arguments;
-mod call;
 mod condition;
-mod cycle;
 mod derived;
-mod direction;
-mod join;
-mod law;
 mod lower;
 mod mount;
 mod outputs;
-mod over;
 mod profile;
 mod region;
 mod scope;
 
+pub(crate) use derived::{never_wins, overlapping};
 pub(crate) use mount::off_tip;
-pub(crate) use over::{never_wins, overlapping};
 
 use crate::diagnostic::{
     Diagnostic, MountKind, RegionKind, Reported, Role, ValueKind, enough, nearest,
 };
 use crate::domain::Domain;
-use crate::geometry::outline::Segment;
-use crate::model::{Model, Surface, Unit};
+use crate::model::{Model, Unit};
 use crate::source::{Sources, Span};
 use crate::syntax::tree::{Definition, Expr, Item, Law, Mount, Name, Profile, Region, Tool};
-use arguments::Argument;
 use condition::Curves;
-use derived::FromProfile;
-use law::Laws;
-use lower::{Constant, Lowering, in_range};
-use mount::MountedNiceness;
-use over::Divider;
+use derived::{Divider, FromProfile};
+use lower::{Constant, Lowered, Lowering, in_range};
+use profile::Outline;
+use region::{Laws, MountedNiceness};
+use scope::Argument;
 use std::collections::BTreeMap;
 
 /// Resolves a tool with the arguments of its parameters. The files that it mounts are read on the way.
@@ -49,8 +40,8 @@ pub fn resolve(
 ) -> Result<Model, Reported> {
     let unit = unit(tool).map_err(|diagnostic| Reported::push(diagnostics, diagnostic))?;
     let mut lowering = Lowering::of(tool, unit);
-    let given = arguments::from_outside(given, tool.domain, unit, diagnostics);
-    arguments::report_unknown_params(tool, &given, diagnostics);
+    let given = scope::arguments_from_outside(given, tool.domain, unit, diagnostics);
+    scope::report_unknown_params(tool, &given, diagnostics);
     constants(tool, &given, &mut lowering, diagnostics);
     let misplaced_item = match tool.domain {
         Domain::Space => report_items_of_axis(tool, diagnostics),
@@ -80,12 +71,7 @@ pub fn resolve(
     let outlined = shape.map(|shape| match shape {
         Shape::Profile(profile) => {
             let outline = profile::outline(profile, &mut lowering, diagnostics);
-            outline.map(|(outline, surfaces)| Outlined {
-                outline,
-                surfaces,
-                niceness_by_surface: BTreeMap::new(),
-                span: profile.span,
-            })
+            outline.map(|outline| Outlined { outline, niceness_by_surface: BTreeMap::new() })
         }
         Shape::Mounts(mounts) => {
             mount::assemble_mounts(&mounts, tool.name.span, &mut lowering, sources, diagnostics)
@@ -93,18 +79,10 @@ pub fn resolve(
     });
     let mut without_shape = misplaced_item;
     let FromProfile { surfaces, regions, section } = match outlined {
-        Some(Ok(Outlined { outline, surfaces, niceness_by_surface, span })) => {
+        Some(Ok(Outlined { outline, niceness_by_surface })) => {
             let laws = Laws::new(&laws, niceness_by_surface);
-            let profile_parts = (outline, surfaces, span);
             let divider = divider(tool, diagnostics);
-            derived::derived(
-                profile_parts,
-                &divider,
-                &laws,
-                &mut lowering,
-                &mut curves,
-                diagnostics,
-            )
+            derived::derived(outline, &divider, &laws, &mut lowering, &mut curves, diagnostics)
         }
         Some(Err(reported)) => {
             without_shape = Some(reported);
@@ -203,14 +181,10 @@ enum Shape<'t> {
     Mounts(Vec<&'t Mount>),
 }
 
-/// A tool's outline, in its frame and unit.
+/// A tool's outline, and the niceness laws that come with the surfaces of mounted files, by surface.
 struct Outlined {
-    outline: Vec<Segment>,
-    surfaces: Vec<Surface>,
-    /// The niceness laws that come with the surfaces of mounted files, by surface.
+    outline: Outline,
     niceness_by_surface: BTreeMap<String, MountedNiceness>,
-    /// The span of the profile or, for mounts, of the tool's name.
-    span: Span,
 }
 
 /// Returns the profile or the mounts, if there are any, and reports items that conflict with them.
@@ -268,7 +242,6 @@ fn definitions(
 
 /// Returns the file's unit, which has to be the first item and stated exactly once.
 fn unit(tool: &Tool) -> Result<Unit, Diagnostic> {
-    let missing = |span: Span| Diagnostic::new(span, ValueKind::MissingUnit);
     let Some(Item::Units(name)) = tool.items.first() else {
         let later = tool.items.iter().find_map(|item| match item {
             Item::Units(name) => Some(name.span),
@@ -276,7 +249,7 @@ fn unit(tool: &Tool) -> Result<Unit, Diagnostic> {
         });
         return Err(match later {
             Some(span) => Diagnostic::new(span, ValueKind::UnitNotFirst),
-            None => missing(tool.name.span),
+            None => Diagnostic::new(tool.name.span, ValueKind::MissingUnit),
         });
     };
     if let Some(Item::Units(second_unit)) =
@@ -306,7 +279,7 @@ fn constants(
     lowering: &mut Lowering,
     diagnostics: &mut Vec<Diagnostic>,
 ) {
-    lowering.broken = cycle::refused(definitions(tool, |_| true), diagnostics);
+    lowering.broken = scope::report_cycles(definitions(tool, |_| true), diagnostics);
     for item in &tool.items {
         let (definition, is_param) = match item {
             Item::Let(definition) => (definition, false),
@@ -322,12 +295,12 @@ fn constants(
         let mut constant = lowering.constant(&definition.value, Role::Let);
         if is_param {
             constant = constant
-                .and_then(|default| arguments::value_of(definition, default, given, lowering.unit));
+                .and_then(|default| scope::param_value(definition, default, given, lowering.unit));
         }
         let defined = constant.and_then(|Constant { value, dimension }| {
             in_range(&value, definition.value.span)?;
             let id = lowering.graph.number(value);
-            lowering.define(&definition.name, (id, dimension))
+            lowering.define(&definition.name, Lowered { id, dimension })
         });
         lowering.report(&definition.name, defined, diagnostics);
         if enough(diagnostics) {

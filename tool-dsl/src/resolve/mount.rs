@@ -1,17 +1,16 @@
-//! Joins several files into one profile.
+//! Joins several files into one profile: each outline onto the one below it at a plane, with the ring between them.
 
-use super::arguments::{self, Argument};
-use super::join::{JoinError, TIP_TOLERANCE_FRACTION, highest_above, join, transformed_outline};
-use super::law::Laws;
-use super::lower::{Allowed, Lowering};
-use super::region::{Niceness, quantity};
-use super::{Outlined, Shape, constants, definitions, frame, profile, shape, unit};
+use super::lower::Lowering;
+use super::profile::{self, Outline};
+use super::region::{Laws, MountedNiceness};
+use super::scope::{self, Argument};
+use super::{Outlined, Shape, constants, definitions, frame, shape, unit};
 use crate::diagnostic::{
     CheckKind, Diagnostic, FormattedNumber, MountChain, MountKind, Reported, Role,
 };
 use crate::domain::Domain;
-use crate::expr::{Graph, Id};
-use crate::geometry::outline::{Segment, bounding_box};
+use crate::expr::Graph;
+use crate::geometry::outline::{Circle, ExactPoint, Segment, bounding_box, doubles};
 use crate::model::{Frame, Surface, Unit};
 use crate::number::Number;
 use crate::regionalise::check::check;
@@ -24,9 +23,9 @@ use std::collections::{BTreeMap, BTreeSet};
 const MAX_MOUNTS: usize = 64;
 
 /// A file's solid in its tool's frame and unit, with its niceness laws.
-pub(super) struct MountedPart {
-    pub(super) outline: Vec<Segment>,
-    pub(super) surfaces: Vec<Surface>,
+struct MountedPart {
+    outline: Vec<Segment>,
+    surfaces: Vec<Surface>,
     /// The law of each surface: the index of the scope in which it is written, its expression, and whether it may rise
     /// with depth.
     niceness: Vec<Option<(usize, Expr, bool)>>,
@@ -39,24 +38,6 @@ pub(super) struct MountedPart {
 struct Scope {
     lowering: Lowering,
     curves: Vec<Definition>,
-}
-
-/// A niceness law of a mounted file, in that file's own names, unit and frame.
-pub(super) struct MountedNiceness {
-    lowering: Lowering,
-    value: Expr,
-    rising: bool,
-}
-
-impl MountedNiceness {
-    /// Lowers the law at a point of the whole tool with the given depth.
-    pub(super) fn lower(&self, graph: &mut Graph, depth: Id) -> Result<Niceness, Diagnostic> {
-        self.lowering.clone().on(graph, |lowering| {
-            let depth = lowering.length_here(depth);
-            let value = quantity(lowering, &self.value, Allowed::Depth(depth))?;
-            Ok(Niceness { value, span: self.value.span, rising: self.rising })
-        })
-    }
 }
 
 /// Returns the profile of the joined files, and the niceness laws that come with its surfaces.
@@ -88,7 +69,8 @@ pub(super) fn assemble_mounts(
             ))
         });
     let niceness_by_surface = niceness_by_surface.collect();
-    Ok(Outlined { outline: part.outline, surfaces: part.surfaces, niceness_by_surface, span })
+    let outline = Outline { segments: part.outline, surfaces: part.surfaces, span };
+    Ok(Outlined { outline, niceness_by_surface })
 }
 
 /// The state of mounting files.
@@ -123,7 +105,7 @@ impl Mounting<'_> {
                 );
             }
             let at = self.mount_height(mount, index, lowering);
-            let given = arguments::from_mount(&mount.arguments, lowering, self.diagnostics);
+            let given = scope::arguments_of_mount(&mount.arguments, lowering, self.diagnostics);
             let part = self.resolve_mount(mount, &given, &mut lowering.graph);
             match (at, part) {
                 (Ok(at), Ok((part, unit))) => {
@@ -158,8 +140,9 @@ impl Mounting<'_> {
             (last, height) = (mount, at);
         }
         assembly.drop_unused_surfaces();
-        let shown = |[d, z]: [f64; 2]| format!("({}, {})", FormattedNumber(d), FormattedNumber(z));
-        self.diagnostics.extend(check(&assembly.outline, shown));
+        self.diagnostics.extend(check(&assembly.outline, |[d, z]| {
+            format!("({}, {})", FormattedNumber(d), FormattedNumber(z))
+        }));
         Reported::among(&self.diagnostics[previous_count..]).map_or(Ok(assembly), Err)
     }
 
@@ -252,14 +235,14 @@ impl Mounting<'_> {
             .sources
             .resolve_path(by, written)
             .ok_or_else(|| Diagnostic::new(by, MountKind::NoFolder { file: written.to_owned() }))?;
-        if !self.sources.may_mount(&location.1) {
+        if !self.sources.may_mount(&location.path) {
             let root = self.sources.given_root().map(|root| root.display().to_string());
             return Err(Diagnostic::new(
                 by,
                 MountKind::OutsideRoot { file: written.to_owned(), root },
             ));
         }
-        let shown = location.0.clone();
+        let shown = location.shown.clone();
         let source = self.sources.read(by, location).cloned().map_err(|error| {
             Diagnostic::new(by, MountKind::Unreadable { file: shown, error: error.to_string() })
         })?;
@@ -293,7 +276,7 @@ impl Mounting<'_> {
             );
             return Err(Reported::push(self.diagnostics, diagnostic));
         }
-        arguments::report_unknown_params(tree, given, self.diagnostics);
+        scope::report_unknown_params(tree, given, self.diagnostics);
         constants(tree, given, lowering, self.diagnostics);
         frame(tree, lowering, self.diagnostics);
         if let Some(reported) = Reported::among(&self.diagnostics[previous_count..]) {
@@ -301,7 +284,8 @@ impl Mounting<'_> {
         }
         let mut part = match shape(tree, self.diagnostics) {
             Some(Shape::Profile(profile)) => {
-                let (outline, surfaces) = profile::outline(profile, lowering, self.diagnostics)?;
+                let Outline { segments: outline, surfaces, .. } =
+                    profile::outline(profile, lowering, self.diagnostics)?;
                 self.diagnostics.extend(check_tip(&outline, &lowering.frame));
                 let niceness = vec![None; surfaces.len()];
                 MountedPart {
@@ -377,8 +361,8 @@ impl MountedPart {
         if part.surfaces.iter().any(|surface| surface.cutting) {
             return None;
         }
-        let cuts = |surface: usize| self.surfaces[surface].cutting;
-        let (surface, end) = highest_above(&self.outline, at, cuts)?;
+        let (surface, end) =
+            highest_above(&self.outline, at, |surface| self.surfaces[surface].cutting)?;
         let kind = MountKind::ClampedEdge {
             name: mount.name.text.clone(),
             z: FormattedNumber(at.to_f64()),
@@ -477,4 +461,180 @@ pub(crate) fn off_tip(frame: &Frame, [end, other]: [f64; 2]) -> Diagnostic {
         frame.tip_span,
         CheckKind::TipNotAtEnd { end: FormattedNumber(frame.to_file(end)), tip, spindle },
     )
+}
+
+/// Lengths below this fraction of the tool's size are rounding errors.
+const ROUNDING: f64 = 1e-12;
+/// The largest distance of a tool's end from its stated tip, in sizes of the tool.
+const TIP_TOLERANCE_FRACTION: f64 = 1e-6;
+
+/// The reason why two outlines cannot be joined at a plane.
+#[derive(Debug)]
+enum JoinError {
+    /// The lower outline ends below the plane.
+    Short,
+    /// The lower outline meets the axis at the plane.
+    Point,
+    /// The lower outline crosses the plane again, with this segment.
+    Back(Box<Segment>),
+    /// The upper outline begins not with a flat face but with this segment.
+    NoFace(Box<Segment>),
+}
+
+/// Returns an outline with its lengths multiplied by `scale`, then moved along the axis by `by`. Surface indices are
+/// increased by `first`.
+fn transformed_outline(
+    outline: &[Segment],
+    scale: &Number,
+    by: &Number,
+    first: usize,
+) -> Vec<Segment> {
+    let transformed = |[d, z]: &ExactPoint| [d * scale, &(z * scale) + by];
+    let segments = outline.iter().map(|segment| {
+        let circle = segment.circle.as_ref().map(|circle| Circle {
+            centre: transformed(&circle.centre),
+            radius: &circle.radius * scale,
+            convex: circle.convex,
+        });
+        let ends = [transformed(&segment.from), transformed(&segment.to)];
+        Segment::new(ends, circle, segment.surface + first, segment.span)
+    });
+    segments.collect()
+}
+
+/// Returns the outline of the solid `lower` below a plane across the axis and of the solid `upper` above it. `upper`
+/// has to begin at the plane. The ring between their radii at the plane belongs to the wider solid.
+///
+/// # Errors
+///
+/// If `lower` does not cross the plane exactly once away from the axis, or if `upper` has no flat face there.
+fn join(lower: &[Segment], upper: &[Segment], plane: &Number) -> Result<Vec<Segment>, JoinError> {
+    let slack = ROUNDING * size(lower).max(size(upper));
+    let mut joined = below(lower, plane, slack)?;
+    let Some(last) = joined.last() else { return Err(JoinError::Short) };
+    let (radius, ring) = (last.to[0].clone(), (last.surface, last.span));
+    if radius.to_f64() <= slack {
+        return Err(JoinError::Point);
+    }
+    let (height, off_tip) = (plane.to_f64(), TIP_TOLERANCE_FRACTION * size(upper));
+    let faces = upper
+        .iter()
+        .take_while(|segment| {
+            let [[inner, a], [outer, b]] = segment.ends();
+            let level = [a, b].into_iter().all(|z| (z - height).abs() <= off_tip);
+            segment.circle.is_none() && level && inner < outer
+        })
+        .count();
+    let (face, rest) = upper.split_at(faces);
+    let (Some(rim), Some((wall, rest))) = (face.last(), rest.split_first()) else {
+        return Err(JoinError::NoFace(Box::new(upper.first().unwrap_or(last).clone())));
+    };
+    let on_plane = |d: &Number| [d.clone(), plane.clone()];
+    let mut at = on_plane(&radius);
+    let (inner, outer) = (radius.to_f64(), rim.to[0].to_f64());
+    if inner > outer + slack {
+        let to = on_plane(&rim.to[0]);
+        joined.push(Segment::new([at, to.clone()], None, ring.0, ring.1));
+        at = to;
+    }
+    for segment in face.iter().filter(|segment| segment.to[0].to_f64() > inner + slack) {
+        let to = on_plane(&segment.to[0]);
+        joined.push(Segment::new([at, to.clone()], None, segment.surface, segment.span));
+        at = to;
+    }
+    let ends = [at, wall.to.clone()];
+    joined.push(Segment::new(ends, wall.circle.clone(), wall.surface, wall.span));
+    joined.extend(rest.iter().cloned());
+    Ok(joined)
+}
+
+/// Returns the surface that rises highest above a plane, and the height of its end, among those for which `counts` holds.
+fn highest_above(
+    outline: &[Segment],
+    plane: &Number,
+    counts: impl Fn(usize) -> bool,
+) -> Option<(usize, f64)> {
+    let slack = ROUNDING * size(outline);
+    outline
+        .iter()
+        .filter(|segment| counts(segment.surface))
+        .map(|segment| (segment.surface, segment.ends()[1][1]))
+        .filter(|(_, end)| *end > plane.to_f64() + slack)
+        .max_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+fn size(outline: &[Segment]) -> f64 {
+    let ends = outline.iter().flat_map(|segment| segment.ends());
+    ends.flatten().fold(0.0, |size, part| size.max(part.abs()))
+}
+
+/// Returns the part of an outline up to a plane, which it has to cross exactly once.
+fn below(outline: &[Segment], plane: &Number, slack: f64) -> Result<Vec<Segment>, JoinError> {
+    let height = plane.to_f64();
+    let side = |z: f64| match z - height {
+        off if off.abs() <= slack => 0,
+        off if off < 0.0 => -1,
+        _ => 1,
+    };
+    let mut lower_outline: Vec<Segment> = Vec::new();
+    let mut reached = false;
+    for segment in outline {
+        let turning_heights = turning_heights(segment);
+        if reached {
+            if turning_heights.iter().any(|z| side(*z) < 0) {
+                return Err(JoinError::Back(Box::new(segment.clone())));
+            }
+            continue;
+        }
+        match turning_heights.iter().position(|z| side(*z) >= 0) {
+            None => lower_outline.push(segment.clone()),
+            // The plane goes through the first corner of the outline, so nothing lies below it.
+            Some(0) => return Err(JoinError::Point),
+            Some(stop) => {
+                if turning_heights[stop..].iter().any(|z| side(*z) < 0) {
+                    return Err(JoinError::Back(Box::new(segment.clone())));
+                }
+                let at_end = stop + 1 == turning_heights.len() && side(turning_heights[stop]) == 0;
+                let d = if at_end { segment.to[0].clone() } else { crossing(segment, plane) };
+                let ends = [segment.from.clone(), [d, plane.clone()]];
+                let circle = segment.circle.clone();
+                lower_outline.push(Segment::new(ends, circle, segment.surface, segment.span));
+                reached = true;
+            }
+        }
+    }
+    if reached { Ok(lower_outline) } else { Err(JoinError::Short) }
+}
+
+/// Returns the z of a segment's ends and, between them, the z at which an arc reverses along the axis.
+fn turning_heights(segment: &Segment) -> Vec<f64> {
+    let [from, to] = segment.ends().map(|end| end[1]);
+    let turns = segment.circle.as_ref().and_then(|circle| {
+        let ([_, centre], radius) = (doubles(&circle.centre), circle.radius.to_f64());
+        [centre - radius, centre + radius].into_iter().find(|z| {
+            let strictly = [from, to].iter().all(|end| (end - z).abs() > ROUNDING * radius);
+            let point = [doubles(&circle.centre)[0], *z];
+            strictly && segment.sector(point).iter().all(|side| *side > 0.0)
+        })
+    });
+    [Some(from), turns, Some(to)].into_iter().flatten().collect()
+}
+
+/// Returns the distance from the axis at which a segment rises through a plane.
+fn crossing(segment: &Segment, plane: &Number) -> Number {
+    let [[d, z], [to_d, to_z]] = [&segment.from, &segment.to];
+    match &segment.circle {
+        None => {
+            let part = (plane - z).checked_div(&(to_z - z)).unwrap_or_else(|| Number::int(0));
+            d + &(&part * &(to_d - d))
+        }
+        Some(circle) => {
+            let height = plane - &circle.centre[1];
+            let square = &(&circle.radius * &circle.radius) - &(&height * &height);
+            let offset = square.sqrt().unwrap_or_else(|| Number::int(0));
+            // The material is on the left, which is toward the axis where the outline rises.
+            let offset = if circle.convex { offset } else { -&offset };
+            &circle.centre[0] + &offset
+        }
+    }
 }

@@ -18,12 +18,21 @@ const MAX_RADIUS_IN_CHORDS: f64 = 1e6;
 /// The largest distance of an arc's ends from its circle, in radii.
 const MAX_CIRCLE_DEVIATION_IN_RADII: f64 = 1e-9;
 
-/// Returns the outline of a profile, counter-clockwise in the tool's frame, and its surfaces.
+/// The outline of a tool's section, in the tool's frame and unit.
+pub(super) struct Outline {
+    /// Its segments, counter-clockwise.
+    pub(super) segments: Vec<Segment>,
+    pub(super) surfaces: Vec<Surface>,
+    /// The span of the profile or, for mounts, of the tool's name.
+    pub(super) span: Span,
+}
+
+/// Returns the outline of a profile.
 pub(super) fn outline(
     profile: &Profile,
     lowering: &mut Lowering,
     diagnostics: &mut Vec<Diagnostic>,
-) -> Result<(Vec<Segment>, Vec<Surface>), Reported> {
+) -> Result<Outline, Reported> {
     let before = diagnostics.len();
     if let Some(beyond) = profile.segments.get(MAX_SEGMENTS) {
         let diagnostic =
@@ -67,7 +76,7 @@ pub(super) fn outline(
     without_error(&diagnostics[before..])?;
     // The map to the tool's frame may reverse the orientation; the order of the segments is then reversed too.
     let to_tool = |point: &ExactPoint| [point[0].clone(), frame.to_tool(&point[1])];
-    let mut outline: Vec<Segment> = segments
+    let mut segments: Vec<Segment> = segments
         .into_iter()
         .map(|segment| {
             let [from, to] = [to_tool(&segment.from), to_tool(&segment.to)];
@@ -78,31 +87,30 @@ pub(super) fn outline(
         })
         .collect();
     if frame.spindle_down {
-        outline.reverse();
+        segments.reverse();
     }
-    Ok((outline, surfaces))
+    Ok(Outline { segments, surfaces, span: profile.span })
 }
 
 fn shown([d, z]: [f64; 2]) -> String {
-    let tidy = |v: f64| if v.abs() < 1e-12 { "0".to_owned() } else { format_number(v) };
-    format!("({}, {})", tidy(d), tidy(z))
+    let [d, z] = [d, z].map(|v| if v.abs() < 1e-12 { "0".to_owned() } else { format_number(v) });
+    format!("({d}, {z})")
 }
 
 /// Reports a profile that does not begin or does not end on the axis.
 fn off_axis(profile: &Profile, segments: &[Segment], diagnostics: &mut Vec<Diagnostic>) {
     let (Some(first), Some(last)) = (segments.first(), segments.last()) else { return };
     let [start, end] = [first.ends()[0], last.ends()[1]];
-    let axis_point = |[_, z]: [f64; 2]| shown([0.0, z]);
     if start[0] != 0.0 {
         diagnostics.push(Diagnostic::new(
             profile.start.span,
-            ProfileKind::StartsOffAxis { start: shown(start), axis_point: axis_point(start) },
+            ProfileKind::StartsOffAxis { start: shown(start), axis_point: shown([0.0, start[1]]) },
         ));
     }
     if end[0] != 0.0 {
         diagnostics.push(Diagnostic::new(
             last.span,
-            ProfileKind::EndsOffAxis { end: shown(end), axis_point: axis_point(end) },
+            ProfileKind::EndsOffAxis { end: shown(end), axis_point: shown([0.0, end[1]]) },
         ));
     }
 }
@@ -113,7 +121,7 @@ fn is_parametric(ends: [&Tuple; 2], lowering: &Lowering) -> bool {
 }
 
 fn exact_point(tuple: &Tuple, lowering: &mut Lowering) -> Result<ExactPoint, Diagnostic> {
-    let [d, z] = super::direction::pair(tuple, Role::Point)?;
+    let [d, z] = super::region::pair(tuple, Role::Point)?;
     let mut length = |expr: &Expr| lowering.length(expr, Role::Point);
     Ok([length(d)?, length(z)?])
 }
@@ -195,6 +203,10 @@ fn circle(
     }
 }
 
+fn dot(a: &ExactPoint, b: &ExactPoint) -> Number {
+    &(&a[0] * &b[0]) + &(&a[1] * &b[1])
+}
+
 fn distance(a: &ExactPoint, b: &ExactPoint) -> Number {
     let [d, z] = [0, 1].map(|k| &a[k] - &b[k]);
     (&(&d * &d) + &(&z * &z)).sqrt().unwrap_or_else(|| Number::int(0))
@@ -204,7 +216,6 @@ fn distance(a: &ExactPoint, b: &ExactPoint) -> Number {
 /// centre is the nearest one to the given centre; if that is on the axis, the nearest one on the axis.
 fn midway([from, to]: [&ExactPoint; 2], centre: &ExactPoint) -> (ExactPoint, Number) {
     let chord = [0, 1].map(|k| &to[k] - &from[k]);
-    let dot = |a: &ExactPoint, b: &ExactPoint| &(&a[0] * &b[0]) + &(&a[1] * &b[1]);
     let middle = [0, 1].map(|k| &(&from[k] + &to[k]) / &Number::int(2));
     let offset = dot(&chord, &[0, 1].map(|k| &middle[k] - &centre[k]));
     let rises = chord[1].to_f64().abs() > 1e-6 * norm(doubles(&chord));
@@ -223,8 +234,7 @@ fn by_radius(
     concave: bool,
     span: Span,
 ) -> Result<ExactPoint, Diagnostic> {
-    let half = |a: &Number, b: &Number| &(a + b) / &Number::int(2);
-    let middle = [0, 1].map(|k| half(&from[k], &to[k]));
+    let middle = [0, 1].map(|k| &(&from[k] + &to[k]) / &Number::int(2));
     let [d, z] = [0, 1].map(|k| &to[k] - &from[k]);
     let chord = (&(&d * &d) + &(&z * &z)).sqrt().unwrap_or_else(|| Number::int(0));
     let short = &(radius * radius) - &(&(&chord * &chord) / &Number::int(4));

@@ -1,17 +1,20 @@
-//! Resolves regions: points, depth, direction, magnitude and niceness, from their own properties or the laws.
+//! Resolves regions: points, depth, direction, magnitude and niceness, from their own properties or from the laws that
+//! are stated for their surfaces.
 
 use super::condition::Curves;
-use super::direction::RawDirection;
-use super::law::{Laws, idle_niceness};
-use super::lower::{Allowed, Lowering};
+use super::lower::{Allowed, Lowered, Lowering};
 use super::outputs;
-use crate::diagnostic::{Diagnostic, RegionKind, enough};
+use crate::diagnostic::{Diagnostic, Names, RegionKind, Role, SurfaceRemedy, enough, nearest};
 use crate::dimension::Dimension;
-use crate::expr::Id;
+use crate::domain::Domain;
+use crate::expr::{Coord, Graph, Id};
 use crate::formula::Formula;
 use crate::model::{DirectionSource, LawSpans, Region, Surface};
 use crate::source::Span;
-use crate::syntax::tree::{self, Compare, Expr, Item, Quantity, ScalarProperty, Tool};
+use crate::syntax::tree::{
+    self, Compare, Direction, Expr, Item, Law, Quantity, ScalarProperty, Tool, Tuple,
+};
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The maximum number of regions of a tool. Planning more would take minutes.
 const MAX_REGIONS_OR_CONDITIONS: usize = 256;
@@ -136,9 +139,9 @@ pub(super) struct LawValues {
 /// A niceness, its span, and whether it may rise with depth.
 #[derive(Clone, Copy)]
 pub(super) struct Niceness {
-    pub(super) value: Id,
-    pub(super) span: Span,
-    pub(super) rising: bool,
+    value: Id,
+    span: Span,
+    rising: bool,
 }
 
 /// Returns the value of a result, and reports its error.
@@ -150,12 +153,8 @@ pub(super) fn or_report<T>(
 }
 
 /// Lowers a magnitude or a niceness.
-pub(super) fn quantity(
-    lowering: &mut Lowering,
-    value: &Expr,
-    may: Allowed,
-) -> Result<Id, Diagnostic> {
-    let (id, dimension) = lowering.lower(value, may)?;
+fn quantity(lowering: &mut Lowering, value: &Expr, may: Allowed) -> Result<Id, Diagnostic> {
+    let Lowered { id, dimension } = lowering.lower(value, may)?;
     if dimension == Dimension::Angle {
         return Err(Diagnostic::new(value.span, RegionKind::AngleAsQuantity));
     }
@@ -306,7 +305,7 @@ impl RegionResolver<'_> {
                 RegionKind::UndefinedDepth { region: written.name.text.clone() },
             ));
         }
-        let (id, dimension) = self.lowering.lower(value, Allowed::Coordinates)?;
+        let Lowered { id, dimension } = self.lowering.lower(value, Allowed::Coordinates)?;
         if by == Quantity::Depth && !dimension.is_length() {
             return Err(Diagnostic::new(value.span, RegionKind::DepthNotLength { dimension }));
         }
@@ -386,16 +385,16 @@ fn condition(
     let mut left = lowering.lower(&condition.first, Allowed::Coordinates)?;
     for (compare, right) in &condition.rest {
         let right = lowering.lower(right, Allowed::Coordinates)?;
-        if left.1.common(right.1).is_none_or(|d| d == Dimension::Angle) {
+        if left.dimension.common(right.dimension).is_none_or(|d| d == Dimension::Angle) {
             return Err(Diagnostic::new(
                 condition.span,
-                RegionKind::MixedComparison { left: left.1, right: right.1 },
+                RegionKind::MixedComparison { left: left.dimension, right: right.dimension },
             ));
         }
         let graph = &mut lowering.graph;
         sides.push(match compare {
-            Compare::AtMost => curves.at_most(graph, left.0, right.0),
-            Compare::AtLeast => curves.at_most(graph, right.0, left.0),
+            Compare::AtMost => curves.at_most(graph, left.id, right.id),
+            Compare::AtLeast => curves.at_most(graph, right.id, left.id),
         });
         left = right;
     }
@@ -415,4 +414,233 @@ pub(super) fn first_mention(expr: &Expr, word: &str) -> Option<Span> {
             matching.iter().find_map(|part| first_mention(part, word))
         }
     }
+}
+
+/// A direction that is not yet normalised, with its span and its source.
+#[derive(Clone, Copy)]
+pub(super) struct RawDirection {
+    pub(super) parts: [Id; 3],
+    pub(super) span: Span,
+    pub(super) source: DirectionSource,
+}
+
+impl RegionResolver<'_> {
+    /// Returns the direction that a region writes, if it does.
+    pub(super) fn resolve_direction(
+        &mut self,
+        written: &tree::Region,
+    ) -> Result<Option<RawDirection>, Diagnostic> {
+        match written.direction.as_slice() {
+            [] => Ok(None),
+            [resolve_direction] => Ok(Some(RawDirection {
+                parts: self.direction(&resolve_direction.direction)?,
+                span: resolve_direction.span,
+                source: match resolve_direction.allow_oblique {
+                    true => DirectionSource::Oblique,
+                    false => DirectionSource::Written,
+                },
+            })),
+            [first, second, ..] => {
+                Err(Diagnostic::new(second.span, RegionKind::DuplicateDirection)
+                    .with_label(first.span, "first direction"))
+            }
+        }
+    }
+
+    /// Returns the vector of a direction, not normalised.
+    fn direction(&mut self, direction: &Direction) -> Result<[Id; 3], Diagnostic> {
+        match direction {
+            Direction::Vector(tuple) => self.along(tuple),
+            Direction::AwayFrom(tuple) => self.direction_from_point(tuple),
+            Direction::Toward(tuple) => {
+                let from_point = self.direction_from_point(tuple)?;
+                Ok(from_point.map(|part| self.lowering.graph.neg(part)))
+            }
+        }
+    }
+
+    fn along(&mut self, tuple: &Tuple) -> Result<[Id; 3], Diagnostic> {
+        let domain = self.lowering.domain;
+        let (mut parts, mut dimension) = (Vec::new(), Dimension::Dimensionless);
+        for part in components(tuple, domain, Role::Direction)? {
+            let Lowered { id, dimension: of_part } =
+                self.lowering.lower(part, Allowed::Coordinates)?;
+            let common_dimension = dimension.common(of_part).filter(|d| *d != Dimension::Angle);
+            dimension = common_dimension.ok_or_else(|| {
+                Diagnostic::new(
+                    tuple.span,
+                    RegionKind::MixedDirection { first: dimension, second: of_part },
+                )
+            })?;
+            parts.push(id);
+        }
+        let down = self.lowering.frame.spindle_down;
+        let graph = &mut self.lowering.graph;
+        let [x, y, z] = domain.vector(graph, &parts);
+        Ok([x, y, if down { graph.neg(z) } else { z }])
+    }
+
+    /// Returns the vector from a fixed point to the evaluated point.
+    fn direction_from_point(&mut self, tuple: &Tuple) -> Result<[Id; 3], Diagnostic> {
+        let domain = self.lowering.domain;
+        let mut parts = Vec::new();
+        for (part, (coord, ..)) in
+            components(tuple, domain, Role::Point)?.into_iter().zip(domain.coordinates())
+        {
+            let constant = self.lowering.length(part, Role::Point)?;
+            let constant = match coord {
+                Coord::Z => self.lowering.frame.to_tool(&constant),
+                _ => constant,
+            };
+            let graph = &mut self.lowering.graph;
+            let (coordinate, constant) = (graph.coord(*coord), graph.number(constant));
+            parts.push(graph.sub(coordinate, constant));
+        }
+        Ok(domain.vector(&mut self.lowering.graph, &parts))
+    }
+}
+
+/// Returns the components of a tuple, which has to have as many as the domain has coordinates.
+fn components(tuple: &Tuple, domain: Domain, role: Role) -> Result<Vec<&Expr>, Diagnostic> {
+    let (count, expected) = (tuple.components.len(), domain.coordinates().len());
+    if count == expected {
+        return Ok(tuple.components.iter().collect());
+    }
+    let (domain, coordinates) = (domain.keyword(), domain.tuple());
+    let kind = RegionKind::WrongComponentCount { role, domain, expected, count, coordinates };
+    Err(Diagnostic::new(tuple.span, kind))
+}
+
+/// Returns the two components of a point of a tool.
+pub(super) fn pair(tuple: &Tuple, role: Role) -> Result<[&Expr; 2], Diagnostic> {
+    components(tuple, Domain::HalfPlane, role).map(|_| [&tuple.components[0], &tuple.components[1]])
+}
+
+/// A niceness law of a mounted file, in that file's own names, unit and frame.
+pub(super) struct MountedNiceness {
+    pub(super) lowering: Lowering,
+    pub(super) value: Expr,
+    pub(super) rising: bool,
+}
+
+impl MountedNiceness {
+    /// Lowers the law at a point of the whole tool with the given depth.
+    fn lower(&self, graph: &mut Graph, depth: Id) -> Result<Niceness, Diagnostic> {
+        self.lowering.clone().on(graph, |lowering| {
+            let depth = lowering.length_here(depth);
+            let value = quantity(lowering, &self.value, Allowed::Depth(depth))?;
+            Ok(Niceness { value, span: self.value.span, rising: self.rising })
+        })
+    }
+}
+
+/// A tool's laws.
+pub(super) struct Laws<'t> {
+    own: &'t [&'t Law],
+    /// The niceness laws that come with the surfaces of mounted files, by surface.
+    niceness_by_surface: BTreeMap<String, MountedNiceness>,
+}
+
+impl<'t> Laws<'t> {
+    pub(super) fn new(
+        own: &'t [&'t Law],
+        niceness_by_surface: BTreeMap<String, MountedNiceness>,
+    ) -> Laws<'t> {
+        Laws { own, niceness_by_surface }
+    }
+
+    /// Returns the law for a surface: one for the surface itself, otherwise one for `cutting`, otherwise one for all
+    /// surfaces.
+    pub(super) fn find(&self, quantity: Quantity, surface: &Surface) -> Option<&'t Law> {
+        let for_word = |word: &str| {
+            self.own
+                .iter()
+                .filter(is(quantity))
+                .find(|law| law.surfaces.iter().any(|name| name.text == word))
+        };
+        for_word(&surface.name)
+            .or_else(|| if surface.cutting { for_word("cutting") } else { None })
+            .or_else(|| self.own.iter().filter(is(quantity)).find(|law| law.surfaces.is_empty()))
+            .copied()
+    }
+
+    /// Reports errors in the laws themselves. A law may be for a surface that is left out.
+    pub(super) fn check(
+        &self,
+        surfaces: &[Surface],
+        left_out: &BTreeSet<String>,
+        diagnostics: &mut Vec<Diagnostic>,
+    ) {
+        let mut known_laws: Vec<(Quantity, &str, Span)> = Vec::new();
+        for law in self.own {
+            if enough(diagnostics) {
+                return;
+            }
+            let what = law.quantity.keyword();
+            if law.quantity == Quantity::Niceness && law.surfaces.is_empty() {
+                diagnostics.push(Diagnostic::new(law.span, RegionKind::NicenessWithoutSurface));
+            }
+            let words: Vec<(&str, Span)> = if law.surfaces.is_empty() {
+                vec![("", law.span)]
+            } else {
+                law.surfaces.iter().map(|name| (name.text.as_str(), name.span)).collect()
+            };
+            for (word, span) in words {
+                if let Some((.., first)) =
+                    known_laws.iter().find(|(q, w, _)| *q == law.quantity && *w == word)
+                {
+                    let surface = (!word.is_empty()).then(|| word.to_owned());
+                    diagnostics.push(
+                        Diagnostic::new(span, RegionKind::DuplicateLaw { quantity: what, surface })
+                            .with_label(*first, "first law"),
+                    );
+                }
+                known_laws.push((law.quantity, word, span));
+                let surface = surfaces.iter().find(|surface| surface.name == word);
+                if word.is_empty() || word == "cutting" {
+                    continue;
+                }
+                match surface {
+                    None if left_out.contains(word) => {}
+                    None => {
+                        let known = surfaces.iter().map(|s| s.name.as_str());
+                        // The part may have been omitted from the name of a part's surface.
+                        let of_part = format!(".{word}");
+                        let qualified_name = known.clone().find(|name| name.ends_with(&of_part));
+                        let remedy = match qualified_name.or(nearest(word, known)) {
+                            Some(suggestion) => SurfaceRemedy::Similar(suggestion.to_owned()),
+                            None => named(word, surfaces),
+                        };
+                        let kind = RegionKind::UnknownSurface { name: word.to_owned(), remedy };
+                        diagnostics.push(Diagnostic::new(span, kind));
+                    }
+                    Some(s) if law.quantity == Quantity::Niceness && !s.cutting => {
+                        diagnostics.push(idle_niceness(span, s));
+                    }
+                    Some(_) => {}
+                }
+            }
+        }
+    }
+}
+
+/// Lists the surfaces of the mounted part with this name, or some of all surfaces if there is no such part.
+fn named(word: &str, surfaces: &[Surface]) -> SurfaceRemedy {
+    let of = format!("{word}.");
+    let names = || surfaces.iter().map(|surface| surface.name.as_str());
+    if names().any(|name| name.starts_with(&of)) {
+        SurfaceRemedy::OfMount(Names::new(names().filter(|name| name.starts_with(&of))))
+    } else {
+        SurfaceRemedy::List(Names::new(names().take(8)))
+    }
+}
+
+fn idle_niceness(span: Span, surface: &Surface) -> Diagnostic {
+    Diagnostic::new(span, RegionKind::NicenessOfNonCutting { surface: surface.name.clone() })
+        .with_label(surface.span, "not marked `cutting` here")
+}
+
+/// Returns a filter of laws by quantity.
+fn is(quantity: Quantity) -> impl Fn(&&&Law) -> bool {
+    move |law| law.quantity == quantity
 }

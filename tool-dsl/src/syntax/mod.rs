@@ -3,19 +3,16 @@
 //! The grammar accepts slightly more than the language. The excess is rejected with a specific error and a remedy
 //! (`refuse`). Items are parsed independently, so that one mistake does not hide the next.
 
-mod expression;
 mod lexeme;
-mod limits;
-mod mount;
 mod parse;
 mod refuse;
 pub mod tree;
 
 use grammar::Grammar;
 pub(crate) use grammar::Rule;
+pub(crate) use lexeme::MAX_EXPRESSION_HEIGHT;
 pub(crate) use lexeme::begins_a_tool;
-pub(crate) use limits::MAX_EXPRESSION_HEIGHT;
-pub use mount::parse_argument;
+pub use parse::parse_argument;
 pub(crate) use parse::tokens;
 pub use parse::{is_type_name, parse};
 

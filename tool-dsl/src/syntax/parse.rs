@@ -1,14 +1,16 @@
 //! Converts pairs of pest to the syntax tree.
 
-use super::limits::{too_much, within_limits};
-use super::refuse::{self, OBLIQUE_KEYWORD, RISING_KEYWORD, in_name};
+use super::lexeme::{MAX_EXPRESSION_HEIGHT, in_name, too_much, within_limits};
+use super::refuse::{self, OBLIQUE_KEYWORD, RISING_KEYWORD};
 use super::tree::*;
 use super::{Grammar, Rule};
 use crate::diagnostic::{Diagnostic, Reported, SyntaxKind, enough};
 use crate::domain::Domain;
+use crate::number::Number;
 use crate::source::{Source, Span};
 use pest::Parser;
 use pest::iterators::{Pair, Pairs};
+use std::str::FromStr;
 
 /// Names that generated code or Rust itself uses.
 const RESERVED_NAMES: [&str; 21] = [
@@ -50,9 +52,13 @@ pub fn parse(source: &Source, diagnostics: &mut Vec<Diagnostic>) -> Result<Tool,
             Grammar::parse(Rule::file, text).map_err(|error| refuse::syntax(text, 0, &error))
         })
         .and_then(|pairs| too_much(pairs.clone()).map_or(Ok(pairs), Err));
-    let is_root = |pair: &Pair<'_, Rule>| matches!(pair.as_rule(), Rule::tool | Rule::solid);
     let pair = pairs
-        .and_then(|pairs| pairs.flatten().find(is_root).ok_or_else(|| refuse::nothing(text)))
+        .and_then(|pairs| {
+            pairs
+                .flatten()
+                .find(|pair| matches!(pair.as_rule(), Rule::tool | Rule::solid))
+                .ok_or_else(|| refuse::nothing(text))
+        })
         .map_err(|diagnostic| Reported::push(diagnostics, diagnostic.offset_by(source.base)))?;
     let mut broken = Vec::new();
     let mut reader = Reader { offset: source.base, diagnostics, broken: &mut broken };
@@ -60,16 +66,16 @@ pub fn parse(source: &Source, diagnostics: &mut Vec<Diagnostic>) -> Result<Tool,
     Ok(Tool { unparsed: broken, ..tool })
 }
 
-pub(super) struct Reader<'a> {
+struct Reader<'a> {
     /// The offset of the parsed text among all sources.
-    pub(super) offset: usize,
-    pub(super) diagnostics: &'a mut Vec<Diagnostic>,
+    offset: usize,
+    diagnostics: &'a mut Vec<Diagnostic>,
     /// The first words of items that could not be read, and the names that they define.
-    pub(super) broken: &'a mut Vec<String>,
+    broken: &'a mut Vec<String>,
 }
 
 impl Reader<'_> {
-    pub(super) fn span(&self, pair: &Pair<'_, Rule>) -> Span {
+    fn span(&self, pair: &Pair<'_, Rule>) -> Span {
         let text = pair.as_str().trim_end();
         let start = pair.as_span().start() + self.offset;
         Span { start, end: start + text.len() }
@@ -124,8 +130,9 @@ impl Reader<'_> {
                 let words: Vec<&str> =
                     text.split(|c| !in_name(c)).filter(|w| !w.is_empty()).collect();
                 self.broken.extend(words.first().map(|word| (*word).to_owned()));
-                let defines = |word: &str| ["let", "param", "curve", "region"].contains(&word);
-                let defined = words.windows(2).filter(|pair| defines(pair[0]));
+                let defined = words
+                    .windows(2)
+                    .filter(|pair| ["let", "param", "curve", "region"].contains(&pair[0]));
                 self.broken.extend(defined.map(|pair| pair[1].to_owned()));
                 None
             }
@@ -173,11 +180,11 @@ impl Reader<'_> {
         })
     }
 
-    pub(super) fn name(&self, pair: &Pair<'_, Rule>) -> Name {
+    fn name(&self, pair: &Pair<'_, Rule>) -> Name {
         Name { text: pair.as_str().to_owned(), span: self.span(pair) }
     }
 
-    pub(super) fn definition<'i>(
+    fn definition<'i>(
         &mut self,
         mut inner: impl Iterator<Item = Pair<'i, Rule>>,
     ) -> Option<Definition> {
@@ -252,7 +259,7 @@ impl Reader<'_> {
     }
 
     /// Parses `as NAME cutting`.
-    pub(super) fn surface(&self, pair: Pair<'_, Rule>) -> (Option<Name>, Option<Span>) {
+    fn surface(&self, pair: Pair<'_, Rule>) -> (Option<Name>, Option<Span>) {
         let (mut name, mut cutting) = (None, None);
         for part in pair.into_inner() {
             match part.as_rule() {
@@ -361,7 +368,7 @@ pub(crate) fn tokens(text: &str) -> Result<Pairs<'_, Rule>, Diagnostic> {
 }
 
 /// Returns whether a rule is a keyword that carries no information.
-pub(super) fn is_word(rule: Rule) -> bool {
+fn is_word(rule: Rule) -> bool {
     matches!(
         rule,
         Rule::k_units
@@ -384,4 +391,238 @@ pub(super) fn is_word(rule: Rule) -> bool {
             | Rule::k_at
             | Rule::k_allow
     )
+}
+
+/// The maximum number of operands of one sum or product.
+const MAX_OPERANDS: usize = 64;
+
+/// An expression and its height in operations.
+type Measured = (Expr, u32);
+
+impl Reader<'_> {
+    /// Parses an expression. If it is higher than the limit it is truncated and reported.
+    fn expr(&mut self, pair: Pair<'_, Rule>) -> Expr {
+        let mut beyond = None;
+        let (expr, _) = self.tree(pair, &mut beyond);
+        if let Some(span) = beyond {
+            self.diagnostics.push(Diagnostic::new(
+                span,
+                SyntaxKind::ExpressionTooDeep { limit: MAX_EXPRESSION_HEIGHT },
+            ));
+        }
+        expr
+    }
+
+    /// Parses an expression recursively. The depth is that of nested brackets, which is limited. `beyond` receives the
+    /// span at which the expression was truncated.
+    fn tree(&mut self, pair: Pair<'_, Rule>, beyond: &mut Option<Span>) -> Measured {
+        let span = self.span(&pair);
+        let nothing = || (ExprKind::Name(String::new()), 0);
+        let (kind, height) = match pair.as_rule() {
+            Rule::expr | Rule::product => return self.chain(pair.into_inner(), beyond),
+            Rule::group => match pair.into_inner().next() {
+                Some(inner) => {
+                    let (inner, height) = self.tree(inner, beyond);
+                    (inner.kind, height)
+                }
+                None => nothing(),
+            },
+            Rule::signed | Rule::signed_atom => {
+                let mut inner = pair.into_inner();
+                match (inner.next(), inner.next()) {
+                    (Some(_), Some(operand)) => {
+                        let (operand, height) = self.tree(operand, beyond);
+                        if height == MAX_EXPRESSION_HEIGHT {
+                            *beyond = beyond.or(Some(span));
+                            return (operand, height);
+                        }
+                        (ExprKind::Neg(Box::new(operand)), height + 1)
+                    }
+                    (Some(operand), None) => return self.tree(operand, beyond),
+                    _ => nothing(),
+                }
+            }
+            Rule::power => {
+                let mut inner = pair.into_inner();
+                match (inner.next(), inner.next()) {
+                    (Some(base), Some(exponent)) => {
+                        let base = self.tree(base, beyond);
+                        let exponent = self.tree(exponent, beyond);
+                        return binary(Binary::Pow, base, exponent, span, beyond);
+                    }
+                    (Some(base), None) => return self.tree(base, beyond),
+                    _ => nothing(),
+                }
+            }
+            Rule::number => (self.number(pair.as_str(), span), 0),
+            Rule::call => {
+                let mut inner = pair.into_inner();
+                match inner.next() {
+                    Some(name) => {
+                        let name = self.name(&name);
+                        let (mut arguments, mut tallest) = (Vec::new(), 0);
+                        for part in inner {
+                            let (argument, height) = self.tree(part, beyond);
+                            tallest = tallest.max(height);
+                            arguments.push(argument);
+                        }
+                        if tallest == MAX_EXPRESSION_HEIGHT {
+                            *beyond = beyond.or(Some(span));
+                            return (
+                                Expr { kind: ExprKind::Number(Number::int(1), None), span },
+                                0,
+                            );
+                        }
+                        (ExprKind::Call(name, arguments), tallest + 1)
+                    }
+                    None => nothing(),
+                }
+            }
+            _ => (ExprKind::Name(pair.as_str().trim().to_owned()), 0),
+        };
+        (Expr { kind, span }, height.min(MAX_EXPRESSION_HEIGHT))
+    }
+
+    /// Parses `a + b - c` or `a * b / c`, both left-associative.
+    fn chain(&mut self, mut inner: Pairs<'_, Rule>, beyond: &mut Option<Span>) -> Measured {
+        let mut left = match inner.next() {
+            Some(first) => self.tree(first, beyond),
+            None => {
+                let span = Span { start: 0, end: 0 };
+                (Expr { kind: ExprKind::Name(String::new()), span }, 0)
+            }
+        };
+        let mut operands = 1;
+        while let (Some(operator), Some(right)) = (inner.next(), inner.next()) {
+            operands += 1;
+            if operands > MAX_OPERANDS {
+                let diagnostic = Diagnostic::new(self.span(&right), SyntaxKind::ExpressionTooLong);
+                self.diagnostics.push(diagnostic);
+                break;
+            }
+            let operator = match operator.as_str() {
+                "+" => Binary::Add,
+                "-" => Binary::Sub,
+                "*" => Binary::Mul,
+                _ => Binary::Div,
+            };
+            let right = self.tree(right, beyond);
+            let span = left.0.span.to(right.0.span);
+            left = binary(operator, left, right, span, beyond);
+        }
+        left
+    }
+
+    fn number(&mut self, text: &str, span: Span) -> ExprKind {
+        let digits = digits(text);
+        // Longer numbers and exponents far out of range would take too long to convert.
+        let exponent = text[..digits].rsplit_once(['e', 'E']).map_or("0", |(_, exponent)| exponent);
+        let sane = digits <= 400 && exponent.parse::<i32>().is_ok_and(|e| e.abs() <= 400);
+        let value = match sane.then(|| Number::parse_decimal(&text[..digits])).flatten() {
+            Some(value) if value.is_in_range() => value,
+            _ => {
+                self.diagnostics.push(Diagnostic::new(span, SyntaxKind::NumberOutOfRange));
+                Number::int(1)
+            }
+        };
+        let suffix = (digits < text.len()).then(|| Name {
+            text: text[digits..].to_owned(),
+            span: Span { start: span.start + digits, end: span.end },
+        });
+        ExprKind::Number(value, suffix)
+    }
+}
+
+/// Returns the operation on two operands, or the first operand alone if the limit is reached.
+fn binary(
+    operator: Binary,
+    left: Measured,
+    right: Measured,
+    span: Span,
+    beyond: &mut Option<Span>,
+) -> Measured {
+    let tallest = left.1.max(right.1);
+    if tallest == MAX_EXPRESSION_HEIGHT {
+        *beyond = beyond.or(Some(right.0.span));
+        return left;
+    }
+    let kind = ExprKind::Binary(operator, Box::new(left.0), Box::new(right.0));
+    (Expr { kind, span }, tallest + 1)
+}
+
+/// Returns the length of the number in a number token; the rest is its unit.
+fn digits(text: &str) -> usize {
+    let bytes = text.as_bytes();
+    let run = |mut at: usize| {
+        while bytes.get(at).is_some_and(u8::is_ascii_digit) {
+            at += 1;
+        }
+        at
+    };
+    let mut end = run(0);
+    if bytes.get(end) == Some(&b'.') && bytes.get(end + 1).is_some_and(u8::is_ascii_digit) {
+        end = run(end + 1);
+    }
+    if matches!(bytes.get(end), Some(b'e' | b'E')) {
+        let sign = usize::from(matches!(bytes.get(end + 1), Some(b'+' | b'-')));
+        if bytes.get(end + 1 + sign).is_some_and(u8::is_ascii_digit) {
+            end = run(end + 1 + sign);
+        }
+    }
+    // An exponent too long for any number is left to the range check.
+    if f64::from_str(&text[..end]).is_err() { text.len() } else { end }
+}
+
+/// Parses the arguments of a tool's parameters given from outside its file: `D = 0.25inch, flute = 18`. Errors are
+/// added to the diagnostics.
+pub fn parse_argument(source: &Source, diagnostics: &mut Vec<Diagnostic>) -> Vec<Definition> {
+    pest::set_error_detail(true);
+    let text = &source.text;
+    let pairs = within_limits(text).and_then(|()| {
+        Grammar::parse(Rule::given, text).map_err(|error| refuse::given(text, &error))
+    });
+    let pairs = match pairs {
+        Ok(pairs) => pairs,
+        Err(diagnostic) => {
+            diagnostics.push(diagnostic.offset_by(source.base));
+            return Vec::new();
+        }
+    };
+    let mut broken = Vec::new();
+    let mut reader = Reader { offset: source.base, diagnostics, broken: &mut broken };
+    let settings = pairs.flatten().filter(|pair| pair.as_rule() == Rule::setting);
+    settings.filter_map(|pair| reader.definition(pair.into_inner())).collect()
+}
+
+impl Reader<'_> {
+    fn mount<'i>(
+        &mut self,
+        mut inner: impl Iterator<Item = Pair<'i, Rule>>,
+        span: Span,
+    ) -> Option<Mount> {
+        let mut file = self.name(&inner.next()?);
+        self.diagnostics.extend(refuse::hidden(&file.text, file.span));
+        file.text = file.text.trim_matches('"').to_owned();
+        let (name, cutting) = self.surface(inner.next()?);
+        let mut mount =
+            Mount { file, name: name?, cutting, arguments: Vec::new(), position: None, span };
+        for pair in inner {
+            let rule = pair.as_rule();
+            let parts = pair.into_inner().filter(|part| !is_word(part.as_rule()));
+            for part in parts {
+                match rule {
+                    Rule::with => mount.arguments.extend(self.definition(part.into_inner())),
+                    _ => mount.position = Some(self.expr(part)),
+                }
+            }
+        }
+        Some(mount)
+    }
+
+    /// Parses a path such as `cutter.ball`, whose tokens are separated by blanks in an inline tool.
+    fn path(&self, pair: Pair<'_, Rule>) -> Name {
+        let span = self.span(&pair);
+        let names: Vec<&str> = pair.into_inner().map(|part| part.as_str()).collect();
+        Name { text: names.join("."), span }
+    }
 }

@@ -2,7 +2,7 @@
 //! feet of a profile.
 
 use super::super::cover::half_diagonal;
-use super::super::nonsmooth::{SLOPE_MARGIN, SLOPE_TOLERANCE};
+use super::super::slope::{SLOPE_MARGIN, SLOPE_TOLERANCE};
 use super::{BoxSize, Survey};
 use crate::domain::Domain;
 use crate::expr::interval::{Cell, Interval, ZERO as NOTHING};
@@ -42,16 +42,17 @@ impl Survey<'_> {
 
     /// Returns whether the points of a box at which a region's depth is 0 are proved to be next to points outside the
     /// solid. Their distance from these is recorded.
-    ///
-    /// This is for edges in space, which have too many point boxes. It succeeds for edges along an axis: the box
-    /// shrinks to the edge, and the shrunk box is outside if it is moved a little.
     fn is_zero_on_surface_only(&mut self, owner: usize, cell: Cell) -> bool {
+        // In the half plane a length is 0 at points, which a few point boxes cover.
         if self.tool.model.domain != Domain::Space {
             return false;
         }
+        // An edge along an axis has too many point boxes. But the box shrinks to the edge, and the shrunk box is outside
+        // if it is moved a little.
         let zeros = self.shrunk_to_zeros(owner, cell);
         self.slopes.set(cell);
         let step = ZERO_OFFSET_FRACTION * self.size;
+        // To all neighbours of the box: an edge along an axis is left by one of them.
         for direction in 0..27 {
             let offset = [direction % 3, direction / 3 % 3, direction / 9].map(|k: i32| k - 1);
             let moved = (0..3).fold(zeros, |moved, axis| {
@@ -70,10 +71,6 @@ impl Survey<'_> {
     /// Returns a part of a box that contains all its points at which a region's depth is 0.
     fn shrunk_to_zeros(&mut self, owner: usize, mut cell: Cell) -> Cell {
         let depth = self.tool.model.regions[owner].depth;
-        let has_zeros = |survey: &mut Survey<'_>, part: Cell| {
-            survey.slopes.set(part);
-            survey.slopes.get(depth).value.low <= 0.0
-        };
         for axis in 0..3 {
             for _ in 0..MAX_SHRINKS {
                 let side = cell.sides[axis];
@@ -81,7 +78,12 @@ impl Survey<'_> {
                 let split = side.low + 0.382 * (side.high - side.low);
                 let lower = cell.with_side(axis, Interval::new(side.low, split));
                 let upper = cell.with_side(axis, Interval::new(split, side.high));
-                cell = match [lower, upper].map(|part| has_zeros(self, part)) {
+                let may_be_zero = [lower, upper].map(|part| {
+                    self.slopes.set(part);
+                    self.slopes.get(depth).value.low <= 0.0
+                });
+                cell = match may_be_zero {
+                    // Only one part may have zeros. With both, or none for want of accuracy, the box stays.
                     [true, false] => lower,
                     [false, true] => upper,
                     _ => break,
@@ -120,6 +122,7 @@ impl Survey<'_> {
         if self.tool.model.domain != Domain::HalfPlane || cell.sides[0].low > 0.0 {
             return;
         }
+        // On the axis, depth meets its mirror image.
         let axis = cell.with_side(0, NOTHING);
         self.slopes.set(axis);
         for owner in self.cover.claims(axis).iter().filter_map(|claim| claim.owner) {
@@ -137,11 +140,14 @@ impl Survey<'_> {
         let depths = owners.iter().flatten().map(|owner| regions[*owner].depth);
         let low = depths.map(|id| self.slopes.get(id).value.low).fold(f64::INFINITY, f64::min);
         self.slopes.set(Cell::point(middle));
-        let slope = |owner: &usize| {
-            let slope = self.slopes.get(regions[*owner].depth);
-            slope.partials.map(Interval::middle)
-        };
-        let slopes: Vec<[f64; 3]> = owners.iter().flatten().map(slope).collect();
+        let slopes: Vec<[f64; 3]> = owners
+            .iter()
+            .flatten()
+            .map(|owner| {
+                let slope = self.slopes.get(regions[*owner].depth);
+                slope.partials.map(Interval::middle)
+            })
+            .collect();
         let half_diagonal_of_box = half_diagonal(&cell);
         let mut best = Descent { steepest: 0.0, step: None };
         let extra_directions = (0..EXTRA_DIRECTIONS).map(|k| {
@@ -149,6 +155,7 @@ impl Survey<'_> {
             [angle.cos(), 0.0, angle.sin()]
         });
         for (k, gradient) in slopes.iter().copied().chain(extra_directions).enumerate() {
+            // Other directions cost many evaluations, and this box no longer decides the slope.
             if k >= slopes.len() && (best.step.is_some() || best.steepest >= self.min_slope) {
                 break;
             }
@@ -156,12 +163,15 @@ impl Survey<'_> {
             let steps = STEPS_IN_HALF_DIAGONALS.map(|part| part * half_diagonal_of_box).into_iter();
             for step_length in steps.clone().chain(STEP_FRACTIONS.map(|part| part * self.size)) {
                 let end_point = [0, 1, 2].map(|k| middle[k] - step_length * gradient[k] / length);
+                // A gradient of 0 has no direction either: the end is not a number then.
                 let Some(high) = self.deepest_at(end_point) else { continue };
+                // The rate must hold for every point of the box, the farthest from the end included.
                 let farthest =
                     farthest(&cell, end_point).max(step_length + 2.0 * half_diagonal_of_box);
                 let is_near = step_length
                     <= STEPS_IN_HALF_DIAGONALS[STEPS_IN_HALF_DIAGONALS.len() - 1]
                         * half_diagonal_of_box;
+                // The end is outside: the surface is nearer than it.
                 if high == 0.0 && is_near {
                     self.surface_distance = self.surface_distance.max(farthest);
                     return Descent { steepest: f64::INFINITY, step: None };
@@ -169,6 +179,7 @@ impl Survey<'_> {
                 let decrease = Interval::new(low, low).plus(Interval::new(-high, -high));
                 let per_distance = Interval::new(farthest, farthest).reciprocal();
                 best.steepest = best.steepest.max(decrease.times(per_distance).low);
+                // Less deep than anywhere in the box, so no descent returns to it.
                 if high < low && is_near && best.step.is_none_or(|step| farthest < step) {
                     best.step = Some(farthest);
                 }
@@ -186,8 +197,9 @@ impl Survey<'_> {
         }
         let claims = self.cover.claims(Cell::point(point));
         self.slopes.set(Cell::point(point));
-        let depth = |owner: usize| self.slopes.get(self.tool.model.regions[owner].depth).value.high;
-        Some(claims.iter().filter_map(|claim| claim.owner).map(depth).fold(0.0, f64::max))
+        let owners = claims.iter().filter_map(|claim| claim.owner);
+        let depths = owners.map(|owner| self.tool.model.regions[owner].depth);
+        Some(depths.map(|depth| self.slopes.get(depth).value.high).fold(0.0, f64::max))
     }
 
     /// Returns a lower bound of the rate at which depth falls toward the surface, and the distance by which
@@ -219,7 +231,7 @@ impl Survey<'_> {
 
 /// Returns an upper bound of the distance between a point and the points of a box.
 fn farthest(cell: &Cell, from: [f64; 3]) -> f64 {
-    let offset = |axis: usize| cell.sides[axis].plus(Interval::new(-from[axis], -from[axis]));
-    let squares = [0, 1, 2].map(|axis| offset(axis).square());
+    let squares = [0, 1, 2]
+        .map(|axis| cell.sides[axis].plus(Interval::new(-from[axis], -from[axis])).square());
     squares.into_iter().fold(NOTHING, Interval::plus).sqrt().high
 }

@@ -2,7 +2,7 @@
 
 use super::super::borders::{Joint, Pair, Separation};
 use super::super::cover::{Claim, half_diagonal};
-use super::super::nonsmooth::{angle, fall_rate_across};
+use super::super::slope::{angle, fall_rate_across};
 use super::super::{Border, JumpPoint, OpenProof, SMALL_BOX_FRACTION, TOLERANCE};
 use super::{BoxSize, MAX_SLOPE_UNCERTAINTY, STEEP_SLOPE, Survey, sum_rounded_up};
 use crate::diagnostic::Statement;
@@ -45,6 +45,8 @@ impl Survey<'_> {
                 && (is_small || box_size.is_last())
                 && !self.jump_points.contains_key(&key)
             {
+                // Only in small boxes: there a few test points suffice, and a jump is not that of a larger box's
+                // corner.
                 let jump_point = self.witness.find_jump(meeting.pair, cell);
                 self.jump_points.extend(jump_point.map(|jump_point| (key, jump_point)));
             }
@@ -59,6 +61,7 @@ impl Survey<'_> {
             // In a point box other regions may lie between the two.
             if box_size != BoxSize::Point && self.feet.is_none() {
                 let (fall, slack) = self.fall_across(meeting);
+                // A smaller box may show that both sides lead down.
                 any_vague |= fall < STEEP_SLOPE && slack > MAX_SLOPE_UNCERTAINTY;
                 min_fall = min_fall.min(fall);
             }
@@ -66,11 +69,11 @@ impl Survey<'_> {
         // Small boxes resolve the turn of directions on the surface.
         let is_plane = self.tool.model.domain == Domain::HalfPlane;
         if is_plane && !box_size.is_last() {
-            let is_vague = |meeting: &Meeting| {
+            let any_vague = meetings.iter().any(|meeting| {
                 let turn_angle = self.turn_angle(meeting.pair);
                 turn_angle.high - turn_angle.low > TURN_ACCURACY && self.is_on_surface(meeting.pair)
-            };
-            if meetings.iter().any(is_vague) {
+            });
+            if any_vague {
                 return false;
             }
         }
@@ -99,7 +102,7 @@ impl Survey<'_> {
                     _ => (a, b),
                 };
                 let Some(own) = a.owner else { continue };
-                let pair = (own, b.owner);
+                let pair = Pair { own, other: b.owner };
                 let depths_differ = self.jump(pair).low > 0.0;
                 let (prover, cover) = (&mut self.border_prover, &mut self.cover);
                 let separation = prover.separation(pair, [a, b], cover, cell, depths_differ);
@@ -132,7 +135,10 @@ impl Survey<'_> {
     /// uncertainty.
     fn fall_across(&mut self, meeting: &Meeting) -> (f64, f64) {
         let regions = &self.tool.model.regions;
-        let (Joint::Kinked, (own, Some(other))) = (meeting.separation.joint, meeting.pair) else {
+        let (Joint::Kinked, Pair { own, other: Some(other) }) =
+            (meeting.separation.joint, meeting.pair)
+        else {
+            // Otherwise each side leads down by its own slope, or both slopes agree.
             return (f64::INFINITY, 0.0);
         };
         let [own, other] = [own, other].map(|owner| self.slopes.get(regions[owner].depth));
@@ -146,7 +152,11 @@ impl Survey<'_> {
     }
 
     /// Returns the absolute difference of a quantity of two regions in the current box; it is 0 outside.
-    fn difference(&mut self, (own, other): Pair, quantity: impl Fn(&Region) -> Id) -> Interval {
+    fn difference(
+        &mut self,
+        Pair { own, other }: Pair,
+        quantity: impl Fn(&Region) -> Id,
+    ) -> Interval {
         let regions = &self.tool.model.regions;
         let mut value = |owner: usize| self.slopes.get(quantity(&regions[owner])).value;
         let (own, other) = (value(own), other.map_or(NOTHING, value));
@@ -154,13 +164,13 @@ impl Survey<'_> {
     }
 
     /// Returns whether a region may reach the surface in the current box.
-    fn is_on_surface(&mut self, (own, _): Pair) -> bool {
-        self.slopes.get(self.tool.model.regions[own].depth).value.low <= 0.0
+    fn is_on_surface(&mut self, pair: Pair) -> bool {
+        self.slopes.get(self.tool.model.regions[pair.own].depth).value.low <= 0.0
     }
 
     /// Encloses the angle between the directions of two regions in the current box.
-    fn turn_angle(&mut self, (own, other): Pair) -> Interval {
-        let Some(other) = other else { return NOTHING };
+    fn turn_angle(&mut self, pair: Pair) -> Interval {
+        let Pair { own, other: Some(other) } = pair else { return NOTHING };
         let regions = &self.tool.model.regions;
         let [a, b] =
             [own, other].map(|owner| regions[owner].direction.map(|id| self.slopes.get(id).value));
@@ -169,7 +179,7 @@ impl Survey<'_> {
 
     fn record_border(&mut self, meeting: &Meeting, cell: Cell) {
         let regions = &self.tool.model.regions;
-        let (own, other) = meeting.pair;
+        let Pair { own, other } = meeting.pair;
         let jump = match meeting.separation.joint {
             Joint::None => self.jump(meeting.pair),
             _ => Interval { low: 0.0, high: meeting.separation.difference },
@@ -185,14 +195,15 @@ impl Survey<'_> {
             let statement = Statement::ContinuousDepth(from, to);
             self.undecided.push(OpenProof { cell, statement });
         }
-        let magnitude_is_depth = |owner: &usize| regions[*owner].magnitude == regions[*owner].depth;
-        let magnitude_jump = if [Some(own), other].iter().flatten().all(magnitude_is_depth) {
+        // Where magnitude is depth, the two differ as exactly as depths do; enclosures would show a difference.
+        let mut sides = [Some(own), other].into_iter().flatten();
+        let magnitude_jump = if sides.all(|side| regions[side].magnitude == regions[side].depth) {
             jump
         } else {
             self.difference(meeting.pair, |region| region.magnitude)
         };
         let border = Border {
-            sides: meeting.pair,
+            sides: (own, other),
             curve: meeting.separation.curve,
             depth_jump: jump,
             magnitude_jump,

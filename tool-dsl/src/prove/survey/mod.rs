@@ -1,32 +1,30 @@
 //! The traversal of boxes: bounds of the quantities in each region, and of their changes from one region to
-//! the next.
-
-mod certain;
-mod conclude;
-mod descent;
-mod meet;
+//! the next; and the certificate that follows from all boxes.
 
 use super::borders::{BorderProver, Pair};
 use super::cover::{Boxes, Claim, Cover, half_diagonal};
-use super::direction::{self, DirectionFacts};
+use super::direction::{self, DirectionFacts, angle_to_descent};
 use super::foot::ProfileFeet;
-use super::nonsmooth::SLOPE_MARGIN;
+use super::jordan::Profile;
+use super::range::Ranges;
 use super::root::Forms;
 use super::rounding::RoundingErrors;
-use super::slope::Slopes;
-use super::witness::Witness;
+use super::slope::{SLOPE_MARGIN, Slopes};
+use super::witness::{TEST_OFFSET_FRACTION, Witness};
 use super::{
     Border, Certificate, JumpPoint, MAX_BOXES_IN_COMPILATION, OpenProof, RegionFacts,
     SMALL_BOX_FRACTION, TOLERANCE,
 };
 use crate::diagnostic::Statement;
 use crate::domain::Domain;
-use crate::expr::interval::{Cell, Interval, ZERO as NOTHING};
+use crate::expr::interval::{Cell, Interval, dot};
 use crate::formula::CurveIndex;
 use crate::number;
 use crate::plan::PlannedTool;
-use certain::CertainFacts;
 use std::collections::BTreeMap;
+
+mod descent;
+mod meet;
 
 /// The size to which boxes on a border are divided, relative to the tool's size, in the half plane and in
 /// space.
@@ -60,6 +58,7 @@ const MAX_SLOPE_UNCERTAINTY: f64 = 0.1;
 /// `check_overlaps` is set, that no two of them overlap.
 pub(super) fn survey(tool: &PlannedTool, boxes: usize, check_overlaps: bool) -> Certificate {
     let boxes = boxes.min(MAX_BOXES_TIMES_REGIONS / tool.model.regions.len().max(1));
+    // During compilation there are boxes for one try only.
     let single_try = [(POINT_BOX_FRACTIONS_AND_BUDGET_THIRDS[0].0, 3)];
     for (point_box_fraction, thirds) in if boxes > MAX_BOXES_IN_COMPILATION {
         &POINT_BOX_FRACTIONS_AND_BUDGET_THIRDS[..]
@@ -67,6 +66,7 @@ pub(super) fn survey(tool: &PlannedTool, boxes: usize, check_overlaps: bool) -> 
         &single_try
     } {
         let mut survey = Survey::new(tool, *point_box_fraction, check_overlaps);
+        // With an open proof, larger point boxes may still finish it, at the price of more slack.
         if survey.run(thirds * boxes / 3, false) && survey.undecided.is_empty() {
             return survey.certificate();
         }
@@ -151,24 +151,24 @@ struct Survey<'t> {
 impl<'t> Survey<'t> {
     fn new(tool: &'t PlannedTool, point_box_fraction: f64, check_overlaps: bool) -> Survey<'t> {
         let model = &tool.model;
-        let outputs = model.regions.iter().flat_map(|region| {
-            let evaluation = [region.depth, region.magnitude, region.niceness];
-            evaluation.into_iter().chain(region.direction).chain(region.raw_direction.0)
-        });
-        let roots = outputs.chain(model.curves.iter().map(|curve| curve.value));
         let whole = tool.extent.cell();
         let mut forms = Forms::new(&model.graph);
         let feet = ProfileFeet::of(tool, &mut forms, half_diagonal(&whole));
         let border_prover =
             BorderProver::new(model, whole, &mut forms, feet.is_some(), point_box_fraction);
-        let direction_facts = |(index, region)| {
-            DirectionFacts::new(direction::is_parallel(model, region, border_prover.depth(index)))
-        };
-        let directions = model.regions.iter().enumerate().map(direction_facts).collect();
+        let directions = model
+            .regions
+            .iter()
+            .enumerate()
+            .map(|(index, region)| {
+                let depth = border_prover.depth(index);
+                DirectionFacts::new(direction::is_parallel(model, region, depth))
+            })
+            .collect();
         Survey {
             tool,
             cover: Cover::new(model, &tool.plan.owner),
-            slopes: Slopes::new(&model.graph, model.domain, roots),
+            slopes: Slopes::new(&model.graph, model.domain, model.roots()),
             errors: RoundingErrors::new(
                 &model.graph,
                 model.domain,
@@ -215,17 +215,21 @@ impl<'t> Survey<'t> {
             owners.dedup();
             let box_size = match half_diagonal(&cell) / self.size {
                 reach if reach <= self.point_box_fraction => BoxSize::Point,
+                // What is not proved in such a box stays open.
                 _ if boxes.count > budget => BoxSize::Last,
                 reach if reach <= self.border_box_fraction => BoxSize::Fine,
                 _ => BoxSize::Coarse,
             };
             let done = match owners.as_slice() {
+                // Outside there is no depth, but no region of the list may contain the box either.
                 [None] => self.check_owners(cell, &claims, box_size),
                 [Some(owner)] => {
                     self.check_owners(cell, &claims, box_size)
                         && self.examine_interior(*owner, cell, box_size)
                 }
+                // A border in a large box encloses too wide ranges of depths and turns.
                 _ if box_size == BoxSize::Coarse => false,
+                // Division leaves fewer claims; their pairs would be too many here.
                 _ if claims.len() > MAX_CLAIMS && box_size == BoxSize::Fine => false,
                 _ => {
                     self.check_owners(cell, &claims, box_size)
@@ -247,6 +251,7 @@ impl<'t> Survey<'t> {
             return self.check_feet(cell, claims, box_size);
         }
         // If depth is the distance, the owner is the nearest.
+        // In a point box, borders that touch cannot be told apart; its depths are compared instead.
         if self.tool.model.is_exact() || box_size == BoxSize::Point {
             return true;
         }
@@ -290,8 +295,10 @@ impl<'t> Survey<'t> {
     fn examine_interior(&mut self, owner: usize, cell: Cell, box_size: BoxSize) -> bool {
         self.slopes.set(cell);
         let depth = self.slopes.get(self.tool.model.regions[owner].depth);
+        // Wide slopes would make `L` too large and `c` too small.
         let known = depth.length.high - depth.length.low <= SLOPE_ACCURACY * depth.length.high;
         let is_positive = depth.value.low >= -TOLERANCE * self.size;
+        // The feet of a profile prove `c` without descents.
         let falls = self.feet.is_some() || self.fall_rate(owner, &[Some(owner)], cell) > 0.0;
         // In the half plane a direction vanishes at points, which small boxes locate well.
         let is_plane = self.tool.model.domain == Domain::HalfPlane;
@@ -303,6 +310,7 @@ impl<'t> Survey<'t> {
         if !box_size.is_last() && !(is_positive && falls && (known || box_size == BoxSize::Fine)) {
             return false;
         }
+        // Only a box that is not divided further comes here with a depth that may be below 0.
         if !is_positive {
             let statement = Statement::NonNegativeDepth(self.region_name(Some(owner)));
             self.undecided.push(OpenProof { cell, statement });
@@ -348,12 +356,10 @@ impl<'t> Survey<'t> {
         let region = &self.tool.model.regions[owner];
         let depth = self.slopes.get(region.depth);
         let niceness = self.slopes.get(region.niceness);
-        let dot_product =
-            (0..3).fold(NOTHING, |sum, k| sum.plus(depth.partials[k].times(niceness.partials[k])));
-        // A point of the region is not outside.
-        let clamp_at_zero = |value: Interval| Interval { low: value.low.max(0.0), ..value };
+        let dot_product = dot(depth.partials, niceness.partials);
         let facts_here = RegionFacts {
-            depth: clamp_at_zero(depth.value),
+            // A point of the region is not outside.
+            depth: Interval { low: depth.value.low.max(0.0), ..depth.value },
             gradient_length: depth.length,
             magnitude: self.slopes.get(region.magnitude).value,
             niceness: niceness.value,
@@ -383,5 +389,175 @@ impl<'t> Survey<'t> {
 
     fn raw_direction(&mut self, owner: usize) -> [Interval; 3] {
         self.tool.model.regions[owner].raw_direction.0.map(|part| self.slopes.get(part).value)
+    }
+}
+
+/// The largest angle, in radians, at which a direction counts as that of steepest descent. Components written
+/// with four decimals turn it by no more.
+const ANGLE_TOLERANCE: f64 = 1e-4;
+
+/// A value that is certain at a point, and the point.
+type CertainValue = (f64, [f64; 3]);
+
+/// The facts about a region that are certain at single points.
+#[derive(Clone, Default)]
+struct CertainFacts {
+    /// The largest angle between the direction and that of steepest descent, in radians.
+    oblique: Option<CertainValue>,
+    /// The largest rate at which niceness rises per unit of depth.
+    rises: Option<CertainValue>,
+}
+
+fn keep_larger(known: &mut Option<CertainValue>, value: f64, point: [f64; 3]) {
+    if known.is_none_or(|(largest, _)| value > largest) {
+        *known = Some((value, point));
+    }
+}
+
+impl Survey<'_> {
+    /// Examines the centre of the current box, if it belongs to `owner` and the box may contain more than is
+    /// known: a larger angle, or a niceness that rises.
+    fn examine_centre(&mut self, owner: usize, cell: Cell, angle: f64, may_rise: bool) {
+        let known =
+            self.certain_facts[owner].oblique.map_or(ANGLE_TOLERANCE, |(largest, _)| largest);
+        if angle <= known && !may_rise {
+            return;
+        }
+        let middle = cell.middle();
+        let point = Cell::point(middle);
+        let claims = self.cover.claims(point);
+        // The point would prove nothing about the region if it might be another's.
+        if !matches!(claims.as_slice(), [claim] if claim.owner == Some(owner)) {
+            return;
+        }
+        self.slopes.set(point);
+        let region = &self.tool.model.regions[owner];
+        let depth = self.slopes.get(region.depth);
+        let niceness = self.slopes.get(region.niceness);
+        let direction = self.raw_direction(owner);
+        // An enclosure over a point is nearly a value, so its lower end is certain.
+        let certain = &mut self.certain_facts[owner];
+        if let Some(angle) = angle_to_descent(direction, depth, self.directions[owner].is_parallel)
+            && angle.low > ANGLE_TOLERANCE
+        {
+            keep_larger(&mut certain.oblique, angle.low, middle);
+        }
+        let dot_product = dot(depth.partials, niceness.partials);
+        // Niceness below 0 counts as 0.
+        if dot_product.low > SLOPE_MARGIN * depth.length.high * niceness.length.high
+            && niceness.value.low > 0.0
+        {
+            // Along the gradient of depth, over a length of 1/|∇depth| per unit of depth.
+            let rate = dot_product.low / (depth.length.high * depth.length.high);
+            keep_larger(&mut certain.rises, rate, middle);
+        }
+        self.slopes.set(cell);
+    }
+}
+
+impl Survey<'_> {
+    /// Returns the certificate that follows from all boxes.
+    fn certificate(mut self) -> Certificate {
+        let shares = self.witness.shares();
+        let (min_slope, missed_distance) = self.min_slope();
+        let slack = [
+            self.jump_bound(),
+            // Twice, by Theorem 2 of `docs/proofs.md`.
+            2.0 * self.overshoot,
+            sum_rounded_up(0.0, min_slope.max(0.0) * missed_distance),
+        ];
+        let slack = slack.into_iter().fold(0.0, sum_rounded_up);
+        let slack = sum_rounded_up(slack, self.distance_to_profile(slack));
+        let mut ranges = Ranges {
+            cover: &mut self.cover,
+            slopes: &mut self.slopes,
+            whole: self.tool.extent.cell(),
+        };
+        if self.check_overlaps {
+            for (index, region) in self.tool.model.regions.iter().enumerate() {
+                if let Some(facts) = &mut self.regions[index] {
+                    facts.niceness = ranges.niceness(index, region, facts.niceness);
+                }
+            }
+        }
+        let mut regions = Vec::new();
+        for (region, direction) in self.directions.into_iter().enumerate() {
+            let facts = self.regions[region].take().unwrap_or(RegionFacts::NONE);
+            let is_distance = self.border_prover.is_distance(region);
+            // The identity is exact, where enclosures of the slope have rounding.
+            let exact_length = Interval::new(1.0, 1.0);
+            regions.push(RegionFacts {
+                share: shares[region],
+                is_distance,
+                gradient_length: if is_distance { exact_length } else { facts.gradient_length },
+                direction_error: direction.angle_to_descent,
+                oblique_witness: self.certain_facts[region].oblique,
+                rising_witness: self.certain_facts[region].rises,
+                singular_cells: direction.singular,
+                turns_on_axis: direction.on_axis,
+                ..facts
+            });
+        }
+        Certificate {
+            min_slope,
+            slack,
+            regions,
+            borders: self.borders.into_values().collect(),
+            undecided: self.undecided,
+            tolerance: TOLERANCE * self.size,
+            examined_boxes: self.boxes,
+        }
+    }
+
+    /// Returns an upper bound of the amount that depth may gain by jumps along a straight path, and by
+    /// differing from an exact distance.
+    fn jump_bound(&self) -> f64 {
+        let steps = self.smooth_border_jumps.values().copied().fold(0.0, sum_rounded_up);
+        let Some(feet) = &self.feet else {
+            // Depths of regions by hand may be steep outside their regions, so every jump counts. A straight path
+            // in space is a branch of a hyperbola in the half plane, on which `z` is linear and `d` convex. It
+            // passes a box at most twice, since `d` is below an upper end on one interval and above a lower end on
+            // two. It crosses a line at most twice, too.
+            let passes = match self.tool.model.domain {
+                Domain::HalfPlane => 2.0,
+                Domain::Space => 1.0,
+            };
+            return passes * sum_rounded_up(self.jumps, 2.0 * steps);
+        };
+        let deviation = unless_rounding(feet.max_difference, self.size);
+        // Along a path, a distance grows by no more than the path's length, inside or outside its own region. When
+        // the path returns to a region, it has therefore gained nothing since it left, and such loops can be removed.
+        // Each pair of neighbours is crossed once after loops are removed, and each adds twice the deviation.
+        let pairs = (self.largest_jumps.len() + self.smooth_border_jumps.len()) as f64;
+        self.largest_jumps.values().copied().fold(
+            sum_rounded_up(steps, sum_rounded_up(deviation, 2.0 * pairs * deviation)),
+            sum_rounded_up,
+        )
+    }
+
+    /// Returns an upper bound of the distance from the solid's surface to its profile, given the slack of
+    /// depth.
+    fn distance_to_profile(&mut self, slack: f64) -> f64 {
+        let Some(section) = &self.tool.model.section else { return 0.0 };
+        let (deviation, ends) = self.witness.points_off_profile(&section.outline);
+        let open_proofs = deviation.into_iter().map(|point| OpenProof {
+            cell: Cell::point(point),
+            statement: Statement::EndsOnProfile,
+        });
+        self.undecided.extend(open_proofs);
+        // Nothing follows if a proof is open, or if depth is not the distance to the profile.
+        if self.feet.is_none() || !self.undecided.is_empty() {
+            return 0.0;
+        }
+        let max_distance = Profile::new(&section.outline)
+            .max_distance(slack, TEST_OFFSET_FRACTION * self.size)
+            .filter(|_| ends);
+        max_distance.unwrap_or_else(|| {
+            self.undecided.push(OpenProof {
+                cell: self.tool.extent.cell(),
+                statement: Statement::EndsOnProfile,
+            });
+            0.0
+        })
     }
 }

@@ -1,7 +1,8 @@
 //! Spelling mistakes: foreign characters, and constructs of other languages.
 
-use super::{BLANK_CHARACTERS, FILE_KEYWORDS, StopPosition, ends_a_value, in_name, word};
+use super::{BLANK_CHARACTERS, StopPosition, ends_a_value, word};
 use crate::diagnostic::{Diagnostic, NameStart, SpellingKind, SyntaxKind};
+use crate::syntax::lexeme::{FILE_KEYWORDS, in_name};
 
 /// Typographic characters, each with the ASCII that replaces it.
 const REPLACEMENTS: [(char, &str); 13] = [

@@ -1,15 +1,84 @@
-//! Depths that agree up to rounding on a straight border, where a profile is smooth: lines and arcs whose
-//! ends were written with the digits of a double are not exactly tangent.
+//! Bounds of the difference of two distances: everywhere, and on a straight border.
 //!
-//! Along a line, the distance from a point is `√(t² + e²)`, with `t` measured from the foot of the point and
-//! `e` its distance from the line. It differs from `|t|` by at most `e`. The difference of two depths on the
-//! line is therefore affine in `t`, up to these `e`.
+//! *Everywhere*, over the plane or space, they follow from `|p - a| + |p - b| ≥ |a - b| ≥ |p - a| - |p - b|`.
+//! Along any path from a point, a linear function with a gradient of length 1 grows by at most the distance
+//! from that point.
+//!
+//! *On a straight border* where a profile is smooth, depths agree up to rounding: lines and arcs whose ends were
+//! written with the digits of a double are not exactly tangent. The difference is affine along the line, up to that.
 
 use super::root::{RootForm, RootTerm};
 use crate::expr::Coord;
 use crate::expr::interval::{Cell, Interval};
 use crate::expr::polynomial::{Monomial, Polynomial, monomial_of};
-use crate::number::Number;
+use crate::number::{Number, ROUNDING};
+
+/// `sign · |p - centre| + rest`
+struct FromPoint {
+    sign: i64,
+    centre: [Number; 3],
+    rest: Number,
+}
+
+impl FromPoint {
+    fn of(depth: &RootForm) -> Option<FromPoint> {
+        let root = depth.root().filter(|_| depth.is_distance())?;
+        let half = |coord| &root.radicand.exact_factor(monomial_of(coord)) / &Number::int(-2);
+        // The half plane has D and Z, space has the other three; an absent coordinate is 0.
+        let radial = half(Coord::D);
+        let [x, y, z] = [Coord::X, Coord::Y, Coord::Z].map(half);
+        let first = if radial.is_zero() { x } else { radial };
+        Some(FromPoint {
+            sign: if root.factor.is_negative() { -1 } else { 1 },
+            centre: [first, y, z],
+            rest: depth.part().exact_factor([0; 4]),
+        })
+    }
+
+    fn distance(&self, other: &FromPoint) -> Option<Number> {
+        let squares = self.centre.iter().zip(&other.centre).map(|(a, b)| &(a - b) * &(a - b));
+        squares.fold(Number::int(0), |sum, square| &sum + &square).sqrt()
+    }
+}
+
+/// Returns the terms of a linear function's value at a point.
+fn linear_at(depth: &RootForm, [first, y, z]: &[Number; 3]) -> [Number; 5] {
+    let term = |coord, value: &Number| &depth.part().exact_factor(monomial_of(coord)) * value;
+    let rest = depth.part().exact_factor([0; 4]);
+    [rest, term(Coord::D, first), term(Coord::X, first), term(Coord::Y, y), term(Coord::Z, z)]
+}
+
+/// Returns an upper bound of `a - b` everywhere, if one can be proved; 0 if it is not positive.
+pub(super) fn excess(a: &RootForm, b: &RootForm) -> Option<f64> {
+    if !a.is_distance() || !b.is_distance() {
+        return None;
+    }
+    // A linear function minus a distance from a point is largest at that point. So is the negative of a
+    // distance minus a linear function.
+    let terms: Vec<Number> = match (FromPoint::of(a), FromPoint::of(b)) {
+        (None, Some(b)) if b.sign > 0 => {
+            linear_at(a, &b.centre).into_iter().chain([-&b.rest]).collect()
+        }
+        (Some(a), None) if a.sign < 0 => {
+            linear_at(b, &a.centre).map(|term| -&term).into_iter().chain([a.rest]).collect()
+        }
+        (Some(a), Some(b)) => {
+            let distance = a.distance(&b)?;
+            let signed = match (a.sign, b.sign) {
+                (-1, 1) => -&distance,
+                (1, 1) | (-1, -1) => distance,
+                // A sum of two distances grows without bound.
+                _ => return None,
+            };
+            vec![a.rest, -&b.rest, signed]
+        }
+        _ => return None,
+    };
+    // The terms may cancel, as for a circle within another that it touches. What then remains is rounding.
+    let (max_excess, size) = Number::sum(&terms);
+    let max_excess = max_excess.to_f64();
+    Some(if max_excess <= ROUNDING * size { 0.0 } else { max_excess.next_up() })
+}
 
 /// The difference of two depths on a straight line, whose points are identified by one coordinate.
 #[derive(Clone, Debug)]
@@ -62,6 +131,7 @@ impl Tangency {
         let axis_and_monomial =
             [(0, Coord::D), (2, Coord::Z)].into_iter().find_map(|(axis, coord)| {
                 let monomial_of_axis = monomial_of(coord);
+                // The coordinate is free if the line's equation, solved for one of the two, leaves it.
                 let remainder =
                     Polynomial::from_constant(&Number::int(1)).plus(&Polynomial::coordinate(coord));
                 let is_free = remainder
@@ -86,6 +156,7 @@ impl Tangency {
             && of_a.factor.nearly_equals(&of_b.factor)
             && tangency.rest.is_zero()
         {
+            // The difference is then that of the roots alone, which `by_roots` bounds.
             let [p, q] = [of_a.radicand.on_line(line)?, of_b.radicand.on_line(line)?];
             let difference = p.clone().plus(&q.scaled(&Number::int(-1)));
             tangency.radicands = Some([p, q, difference]);
@@ -107,12 +178,14 @@ impl Tangency {
         }
         let signed = |n: Number| if is_subtracted { -&n } else { n };
         let [rest, slope, square] = coefficients(&depth.part().on_line(line)?, monomial_of_axis)?;
+        // The part without the root is linear for a distance.
         if !square.is_zero() {
             return None;
         }
         self.slope = &self.slope + &signed(slope);
         self.rest = &self.rest + &signed(rest);
         let Some(RootTerm { factor, radicand }) = depth.root() else {
+            // The depth's slope across the line is its product with the line's unit normal.
             let size = line.slope_squared()?.to_f64().sqrt();
             let slopes = [Coord::D, Coord::Z].map(|coord| {
                 let by = monomial_of(coord);
@@ -125,6 +198,8 @@ impl Tangency {
             return Some(());
         };
         let [rest, slope, square] = coefficients(&radicand.on_line(line)?, monomial_of_axis)?;
+        // With `square · t² + slope · t + rest`, this is the least value's place, and what is left over is the
+        // squared distance from the line.
         let foot = -&slope.checked_div(&(&Number::int(2) * &square))?;
         let squared_distance = &rest - &(&(&foot * &foot) * &square);
         let scale = square.sqrt()?;
@@ -132,6 +207,7 @@ impl Tangency {
             factor: signed(factor * &scale),
             enclosed_foot: Interval::enclosing(&foot),
             foot,
+            // Rounding may make a square of 0 negative.
             distance: squared_distance.to_f64().max(0.0).sqrt().next_up(),
             scale: scale.to_f64(),
         });
@@ -153,8 +229,10 @@ impl Tangency {
         let [p, q, difference] = self.radicands.as_ref()?;
         let difference = difference.over(cell).abs();
         let lengths = p.over(cell).sqrt().plus(q.over(cell).sqrt());
+        // At a common foot both roots are 0, and the quotient says nothing.
         (lengths.low > 0.0).then(|| DepthDifference {
             jump: difference.times(lengths.reciprocal()).high,
+            // No slope of a distance is more than 1.
             slope_across: 1.0,
         })
     }
@@ -165,12 +243,13 @@ impl Tangency {
         let mut before_feet = 0;
         for (k, root) in self.roots.iter().enumerate() {
             let from_foot = t.plus(root.enclosed_foot.negated());
+            // At the foot, `|t - foot|` has a kink, so the difference is not affine.
             if from_foot.low <= 0.0 && from_foot.high >= 0.0 {
                 return None;
             }
             before_feet |= usize::from(from_foot.high < 0.0) << k;
-            // A root differs from the form without `distance` by at most `distance`. Twice that also covers the
-            // rounding of `distance` and of the sum.
+            // `√(t² + e²)` differs from `|t|` by at most `e`, the distance of the root's point from the line. Twice that
+            // also covers the rounding of `distance` and of the sum.
             error += 2.0 * root.distance;
             slope_across =
                 slope_across.max(2.0 * root.distance / (root.scale * from_foot.abs().low));
@@ -211,9 +290,79 @@ fn coefficients(polynomial: &Polynomial, monomial_of_axis: Monomial) -> Option<[
 
 #[cfg(test)]
 mod tests {
-    use super::super::root::Forms;
     use super::*;
     use crate::expr::Graph;
+    use crate::expr::polynomial::Polynomial;
+    use crate::prove::root::Forms;
+
+    /// A distance in the half plane: from a point, with a sign and a constant, or along a unit vector.
+    #[derive(Clone, Copy)]
+    enum Distance {
+        Point(i64, [f64; 2], f64),
+        Line([f64; 2], f64),
+    }
+
+    impl Distance {
+        fn form(self) -> RootForm {
+            let number = |value: f64| Number::from_f64(value).expect("finite");
+            let [d, z] = [Coord::D, Coord::Z].map(Polynomial::coordinate);
+            match self {
+                Distance::Line([x, y], rest) => RootForm::from_polynomial(
+                    &d.scaled(&number(x))
+                        .plus(&z.scaled(&number(y)))
+                        .plus(&Polynomial::from_constant(&number(rest))),
+                ),
+                Distance::Point(sign, point, rest) => {
+                    let rest = Polynomial::from_constant(&number(rest));
+                    let under = Polynomial::squared_distance(&point.map(number));
+                    RootForm::new(rest, Number::int(sign), under)
+                }
+            }
+        }
+
+        fn value_at(self, [d, z]: [f64; 2]) -> f64 {
+            match self {
+                Distance::Line([x, y], rest) => x * d + y * z + rest,
+                Distance::Point(sign, point, rest) => {
+                    sign as f64 * (d - point[0]).hypot(z - point[1]) + rest
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_bound_holds_on_a_grid_and_is_nearly_attained() {
+        let [a, b] = [[1.0, 2.0], [4.0, -2.0]];
+        let distances = [
+            Distance::Point(1, a, -0.5),
+            Distance::Point(-1, a, 3.0),
+            Distance::Point(1, b, 1.0),
+            Distance::Point(-1, b, 2.0),
+            Distance::Line([0.0, 1.0], -1.0),
+            Distance::Line([-1.0, 0.0], 2.5),
+        ];
+        let mut bounded = 0;
+        for less in distances {
+            for more in distances {
+                let Some(max_excess) = excess(&less.form(), &more.form()) else { continue };
+                bounded += 1;
+                let mut largest = 0.0f64;
+                for k in 0..400 * 400 {
+                    let point = [k % 400, k / 400].map(|k| f64::from(k) * 0.05 - 10.0);
+                    largest = largest.max(less.value_at(point) - more.value_at(point));
+                }
+                // On the line through both points, far away, differences of distances are largest.
+                for t in [-1e6, -2.0, 0.0, 0.5, 1.0, 2.0, 1e6] {
+                    let point = [0, 1].map(|k| a[k] + t * (b[k] - a[k]));
+                    largest = largest.max(less.value_at(point) - more.value_at(point));
+                }
+                assert!(largest <= max_excess + 1e-9, "{largest} of {max_excess}");
+                assert!(largest >= max_excess - 0.1, "{largest} of {max_excess}");
+            }
+        }
+        // Twelve pairs of points, and pairs of a line and a point in both orders.
+        assert_eq!(bounded, 12 + 4 + 4);
+    }
 
     /// Returns the largest difference between an arc's depth and a line's, on the arc's normal at the line's
     /// end in a box on it, and its proved bound. The arc's centre is `distance` beside the normal.

@@ -1,17 +1,15 @@
 //! Proved bounds of the solid by interval branch and bound: its extent, and its largest radius over intervals
 //! of the axis. The runtime skips everything that these rule out.
 
-mod envelope;
-
-pub use envelope::{EnvelopeSlab, envelope, lateral_extent};
-
 use crate::diagnostic::{CheckKind, Diagnostic};
 use crate::domain::Domain;
 use crate::elimination::Linear;
+use crate::expr::Id;
 use crate::expr::interval::{Cell, ENTIRE, Encloser, Interval, halves};
-use crate::formula::{ANY_SIGN, CurveIndex, Formula, Signs, possible};
+use crate::expr::polynomial::Polynomial;
+use crate::formula::{ANY_SIGN, CurveIndex, Signs, possible};
 use crate::geometry::outline;
-use crate::model::{Model, Region};
+use crate::model::Model;
 
 /// The exponent of the power of two that bounds the extent of a solid.
 const MAX_EXTENT_EXPONENT: i32 = 280;
@@ -48,8 +46,7 @@ impl std::fmt::Debug for Prover<'_> {
 impl<'m> Prover<'m> {
     /// Makes a prover that uses the curves only.
     pub fn new(model: &'m Model) -> Prover<'m> {
-        let values = model.curves.iter().map(|curve| curve.value);
-        let encloser = Encloser::new(&model.graph, values);
+        let encloser = Encloser::new(&model.graph, model.curve_values());
         let everywhere = Cell { sides: [ENTIRE; 3] };
         Prover { model, encloser, reaches: vec![everywhere; model.regions.len()] }
     }
@@ -58,22 +55,25 @@ impl<'m> Prover<'m> {
     /// would find slowly.
     fn of_regions(model: &'m Model) -> Prover<'m> {
         let linear = Linear::new(model);
-        let reach = |region: &Region| {
+        let reaches = model.regions.iter().map(|region| {
             let mut signs = vec![ANY_SIGN; model.curves.len()];
             region.inside.narrow_signs(&mut signs);
             let mut reach = linear.bounding_box(&signs);
             for choices in region.inside.disjunctions() {
-                let one = |choice: &Formula| {
-                    let mut signs = signs.clone();
-                    choice.narrow_signs(&mut signs);
-                    linear.bounding_box(&signs)
-                };
-                let hull = choices.iter().map(one).reduce(|a, b| a.hull(&b));
+                // A point of the region satisfies one of the choices.
+                let hull = choices
+                    .iter()
+                    .map(|choice| {
+                        let mut signs = signs.clone();
+                        choice.narrow_signs(&mut signs);
+                        linear.bounding_box(&signs)
+                    })
+                    .reduce(|a, b| a.hull(&b));
                 reach = hull.map_or(reach, |hull| reach.common(&hull));
             }
             reach
-        };
-        Prover { reaches: model.regions.iter().map(reach).collect(), ..Prover::new(model) }
+        });
+        Prover { reaches: reaches.collect(), ..Prover::new(model) }
     }
 
     /// Selects a box.
@@ -91,12 +91,14 @@ impl<'m> Prover<'m> {
         let model = self.model;
         let mut position = BoxPosition::Outside;
         for (index, region) in model.regions.iter().enumerate() {
+            // The linear curves exclude the region here.
             if !self.reaches[index].meets(&cell) {
                 continue;
             }
             match region.inside.decide_with(&mut |curve| self.signs(curve)) {
                 Some(true) => return BoxPosition::Inside,
                 Some(false) => {}
+                // A later region may still contain the whole box.
                 None => position = BoxPosition::Unknown,
             }
         }
@@ -122,6 +124,7 @@ impl<'m> Prover<'m> {
         let mut pending = vec![cell];
         let mut remaining = budget;
         while let Some(cell) = pending.pop() {
+            // The box is nearer to the axis than the points in question.
             if cell.radius().high < radius {
                 continue;
             }
@@ -170,6 +173,7 @@ impl Extent {
         let sides = self.cell().sides;
         let largest = sides.iter().fold(0.0, |m: f64, s| m.max(s.high.abs()).max(s.low.abs()));
         let mut scale = 2f64.powi(largest.log2().floor() as i32);
+        // Once, and again if the logarithm was rounded down.
         while scale <= largest {
             scale *= 2.0;
         }
@@ -229,22 +233,25 @@ pub fn extent(model: &Model) -> Result<Extent, Diagnostic> {
     for pass in 0..2 {
         for (axis, high) in domain.axis_directions() {
             let side = cell.sides[*axis];
+            // In the second pass the other end is already near the solid.
             let opposite = if pass == 0 { domain_box.sides[*axis] } else { side };
             let end = if *high {
-                let beyond = |v| cell.with_side(*axis, Interval::new(v, side.high));
-                inward(side.high, opposite.low, 52, |v| prover.empty(beyond(v)))
+                inward(side.high, opposite.low, 52, |v| {
+                    prover.empty(cell.with_side(*axis, Interval::new(v, side.high)))
+                })
             } else {
-                let beyond = |v| cell.with_side(*axis, Interval::new(side.low, v));
-                inward(side.low, opposite.high, 52, |v| prover.empty(beyond(v)))
+                inward(side.low, opposite.high, 52, |v| {
+                    prover.empty(cell.with_side(*axis, Interval::new(side.low, v)))
+                })
             };
             let side_to_move = &mut cell.sides[*axis];
             if *high { side_to_move.high = end } else { side_to_move.low = end }
         }
-        let is_empty = |(_, axis, _): &(_, usize, _)| {
+        let is_empty = domain.coordinates().iter().any(|(_, axis, _)| {
             let side = cell.sides[*axis];
             side.low >= side.high
-        };
-        if domain.coordinates().iter().any(is_empty) {
+        });
+        if is_empty {
             return Err(Diagnostic::new(
                 model.name_span,
                 CheckKind::NoPoints { domain: domain.keyword() },
@@ -266,6 +273,7 @@ fn reach(domain: Domain, prover: &mut Prover<'_>) -> Option<i32> {
     if !beyond(2f64.powi(power)) {
         return None;
     }
+    // Large steps first: each costs a proof for all directions.
     for step in [64, 16, 4, 1] {
         while power - step > -280 && beyond(2f64.powi(power - step)) {
             power -= step;
@@ -299,6 +307,7 @@ fn endless(model: &Model) -> Diagnostic {
     let domain = model.domain;
     let mut alone = model.clone();
     for region in &model.regions {
+        // One region by itself shows which of them is unbounded.
         alone.regions = vec![region.clone()];
         let out = unbounded_direction(
             domain,
@@ -331,4 +340,170 @@ fn inward(outer: f64, inner: f64, halvings: usize, mut empty: impl FnMut(f64) ->
         if empty(middle) { good = middle } else { bad = middle }
     }
     good
+}
+
+/// The largest number of slabs in an envelope.
+const MAX_SLABS: usize = 24;
+/// The number of additional slabs before neighbours are merged.
+const SPARE_SLABS: usize = 8;
+/// The number of equal intervals of the axis whose ends are ends of the first slabs.
+const EVEN_INTERVALS: u32 = 8;
+/// The distance within which two ends count as one, relative to the solid's length.
+const SAME_END_FRACTION: f64 = 1e-6;
+/// The number of halvings in the search for a slab's radius, if there is no profile.
+const RADIUS_HALVINGS: usize = 12;
+/// The area that halving a slab must save, relative to the slab's.
+const MIN_SAVED_FRACTION: f64 = 0.01;
+/// The area that merging two slabs may add while there are few enough, relative to the lower slab's.
+const MAX_ADDED_FRACTION: f64 = 0.001;
+
+/// An interval of the axis with the largest radius of the solid in it, in the tool's frame and the file's unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EnvelopeSlab {
+    /// The lower end.
+    pub low: f64,
+    /// The upper end.
+    pub high: f64,
+    /// An upper bound of the distance from the axis, for points of the solid between the ends.
+    pub radius: f64,
+}
+
+impl EnvelopeSlab {
+    /// Returns its area in the section, the cost that splitting and merging minimise.
+    fn area(&self) -> f64 {
+        self.radius * (self.high - self.low)
+    }
+
+    /// Merges two neighbours into one slab.
+    fn merged(&self, above: &EnvelopeSlab) -> EnvelopeSlab {
+        EnvelopeSlab { low: self.low, high: above.high, radius: self.radius.max(above.radius) }
+    }
+}
+
+/// Returns the envelope: at most `MAX_SLABS` slabs from the tip up, which together cover the solid. Each begins
+/// where the one before ends, or below by rounding, since all are rounded outward as in `ToolInfo`.
+pub fn envelope(model: &Model, extent: &Extent) -> Vec<EnvelopeSlab> {
+    let mut prover = Prover::of_regions(model);
+    let mut slabs: Vec<EnvelopeSlab> = first_ends(model, extent)
+        .windows(2)
+        .map(|ends| slab_between(&mut prover, extent, ends[0], ends[1], extent.radius))
+        .collect();
+    split_until_full(&mut slabs, &mut prover, extent);
+    merge_neighbours(&mut slabs);
+    let steps = extent.steps();
+    for slab in &mut slabs {
+        slab.low = -rounded_up(-slab.low, steps);
+        slab.high = rounded_up(slab.high, steps);
+        slab.radius = rounded_up(slab.radius, steps);
+    }
+    slabs
+}
+
+/// Returns the ends of the first slabs, in ascending order: equidistant heights, and those where the radius may jump.
+fn first_ends(model: &Model, extent: &Extent) -> Vec<f64> {
+    let length = extent.high - extent.low;
+    let even = (0..=EVEN_INTERVALS)
+        .map(|k| extent.low + length * f64::from(k) / f64::from(EVEN_INTERVALS));
+    let all = even.chain(levels(model));
+    let mut ends: Vec<f64> = all.filter(|z| (extent.low..=extent.high).contains(z)).collect();
+    ends.sort_by(f64::total_cmp);
+    ends.dedup_by(|a, b| *a - *b < SAME_END_FRACTION * length);
+    // `dedup_by` drops the later of two ends that nearly coincide, but the last one must remain.
+    if let Some(last) = ends.last_mut() {
+        *last = extent.high;
+    }
+    ends
+}
+
+/// Returns the slab between two heights, where no point of the solid is farther from the axis than `widest`.
+fn slab_between(
+    prover: &mut Prover<'_>,
+    extent: &Extent,
+    low: f64,
+    high: f64,
+    widest: f64,
+) -> EnvelopeSlab {
+    if let Some(section) = &prover.model.section {
+        let radius = outline::radius_between(&section.outline, low, high);
+        return EnvelopeSlab { low, high, radius };
+    }
+    let within = extent.cell().with_side(2, Interval::new(low, high));
+    let radius =
+        inward(widest, 0.0, RADIUS_HALVINGS, |radius| prover.none_beyond(radius, widest, within));
+    EnvelopeSlab { low, high, radius }
+}
+
+/// Halves the slab whose halving saves most area, while that is enough, up to [`SPARE_SLABS`] slabs too many.
+fn split_until_full(slabs: &mut Vec<EnvelopeSlab>, prover: &mut Prover<'_>, extent: &Extent) {
+    let mut halves: Vec<Option<[EnvelopeSlab; 2]>> = vec![None; slabs.len()];
+    while slabs.len() < MAX_SLABS + SPARE_SLABS {
+        for (slab, halves) in slabs.iter().zip(&mut halves) {
+            // A proof per half: those of other slabs are kept.
+            halves.get_or_insert_with(|| {
+                let ends = [slab.low, slab.low / 2.0 + slab.high / 2.0, slab.high];
+                [0, 1].map(|k| slab_between(prover, extent, ends[k], ends[k + 1], slab.radius))
+            });
+        }
+        let saved =
+            |i: usize| halves[i].map_or(0.0, |[a, b]| slabs[i].area() - a.area() - b.area());
+        let best = (0..slabs.len()).max_by(|&i, &j| saved(i).total_cmp(&saved(j)));
+        let best = best.filter(|&i| saved(i) > MIN_SAVED_FRACTION * slabs[i].area());
+        let Some(best) = best else { return };
+        let Some(best_halves) = halves[best].take() else { return };
+        slabs.splice(best..=best, best_halves);
+        halves.insert(best + 1, None);
+    }
+}
+
+/// Merges the neighbours whose common slab adds least area, while there are too many slabs or it adds little.
+fn merge_neighbours(slabs: &mut Vec<EnvelopeSlab>) {
+    while slabs.len() > 1 {
+        let added = |i: usize| {
+            slabs[i].merged(&slabs[i + 1]).area() - slabs[i].area() - slabs[i + 1].area()
+        };
+        let best = (0..slabs.len() - 1).min_by(|&i, &j| added(i).total_cmp(&added(j)));
+        let Some(best) = best else { return };
+        // With few enough slabs, only mergers that add next to nothing.
+        if slabs.len() <= MAX_SLABS && added(best) > MAX_ADDED_FRACTION * slabs[best].area() {
+            return;
+        }
+        slabs[best] = slabs[best].merged(&slabs[best + 1]);
+        slabs.remove(best + 1);
+    }
+}
+
+/// Returns the ranges of x and y of a solid without an axis, rounded outward as in `ToolInfo`.
+pub fn lateral_extent(extent: &Extent) -> [[f64; 2]; 2] {
+    let steps = extent.steps();
+    extent.lateral.map(|side| [-rounded_up(-side.low, steps), rounded_up(side.high, steps)])
+}
+
+/// Returns a short decimal that is at least `value`: a multiple of `1 / steps`.
+fn rounded_up(value: f64, steps: f64) -> f64 {
+    let count = (value * steps).ceil();
+    // A quotient by a power of ten is the nearest double to the decimal; `1 / steps` is an integer otherwise.
+    let short = if steps >= 1.0 { count / steps } else { count * (1.0 / steps) };
+    if short >= value { short } else { (count + 1.0) / steps }
+}
+
+/// Returns heights at which the radius may jump.
+fn levels(model: &Model) -> Vec<f64> {
+    match &model.section {
+        Some(section) => section.outline.iter().flat_map(|s| s.ends()).map(|end| end[1]).collect(),
+        None => model.curves.iter().filter_map(|curve| level(model, curve.value)).collect(),
+    }
+}
+
+/// Returns the z of a curve that is a plane perpendicular to the axis.
+fn level(model: &Model, value: Id) -> Option<f64> {
+    let polynomial = Polynomial::from_expression(&model.graph, value)?;
+    let (mut slope, mut constant) = (None, 0.0);
+    for (monomial, factor) in polynomial.terms() {
+        match monomial {
+            [0, 0, 0, 1] => slope = Some(factor.to_f64()),
+            [0, 0, 0, 0] => constant = factor.to_f64(),
+            _ => return None,
+        }
+    }
+    slope.map(|slope| -constant / slope)
 }
