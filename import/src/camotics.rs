@@ -5,19 +5,16 @@
 //! cone whose tip has the diameter `snub_diameter`.
 
 use super::entry::{Entry, Note};
-use super::fusion::{number_of, text};
+use super::json::{Object, number_of, text};
 use super::shape::{Cutter, Shape};
 use super::{Found, Problem};
-use serde_json::{Map, Value};
+use serde_json::Value;
 use touchoff::Unit;
-
-type Object = Map<String, Value>;
 
 /// Returns true for a table of CAMotics.
 pub(super) fn is_table(value: &Object) -> bool {
-    let is_tool =
-        |(key, tool): (&String, &Value)| key.parse::<u32>().is_ok() && tool.get("shape").is_some();
-    !value.is_empty() && value.iter().all(is_tool)
+    !value.is_empty()
+        && value.iter().all(|(key, tool)| key.parse::<u32>().is_ok() && tool.get("shape").is_some())
 }
 
 /// Reads the tools of a table, by their numbers.

@@ -1,7 +1,7 @@
 //! The tools of a library, in one form for all formats.
 
+use super::outline::decimal;
 use super::shape::{Cutter, Shape, ShapeError};
-use super::term::decimal;
 use std::fmt;
 use touchoff::Unit;
 

@@ -4,14 +4,12 @@
 //! point or a comma. A bit whose shape was changed by its user cannot be told from one of FreeCAD's own.
 
 use super::entry::{Entry, Holder, Note, Section, Stated};
-use super::fusion::tool_number;
+use super::json::{Object, tool_number};
 use super::shape::{Cutter, Shape};
 use super::{Found, Problem, bytes, text};
-use serde_json::{Map, Value};
+use serde_json::Value;
 use std::path::{Component, Path, PathBuf};
 use touchoff::Unit;
-
-type Object = Map<String, Value>;
 
 /// Reads a tool bit.
 pub(super) fn bit(content: &str) -> Result<Vec<Found>, String> {
@@ -156,7 +154,7 @@ fn cutter(stated: &str, of: &Parameters<'_>, notes: &mut Vec<Note>) -> Result<Cu
                     first: Stated { what: "diameter", value: diameter },
                     second: Stated {
                         what: "diameter at the end of the cone",
-                        value: super::term::rounded(wide),
+                        value: super::outline::rounded(wide),
                     },
                     taken: "cone",
                 });
@@ -167,13 +165,13 @@ fn cutter(stated: &str, of: &Parameters<'_>, notes: &mut Vec<Note>) -> Result<Cu
             let tip_diameter = of.length_or("TipDiameter", "tip diameter", 0.0, notes)?;
             let point_angle = of.angle("CuttingEdgeAngle")?;
             let cone = (diameter - tip_diameter) / 2.0 / (point_angle / 2.0).to_radians().tan();
-            let flute_length = super::term::rounded(cone + flutes()?);
+            let flute_length = super::outline::rounded(cone + flutes()?);
             (Shape::Drill { tip_diameter, point_angle }, flute_length)
         }
         "dovetail" => {
             let neck = of.length("NeckDiameter")?;
             shoulder =
-                Some((super::term::rounded(flutes()? + of.length("NeckHeight")?), Some(neck)));
+                Some((super::outline::rounded(flutes()? + of.length("NeckHeight")?), Some(neck)));
             (
                 Shape::Dovetail { corner: 0.0, half_angle: of.angle("CuttingEdgeAngle")? / 2.0 },
                 flutes()?,
@@ -191,7 +189,7 @@ fn cutter(stated: &str, of: &Parameters<'_>, notes: &mut Vec<Note>) -> Result<Cu
         "tap" => {
             let point_angle = of.angle("TipAngle")?;
             let cone = diameter / 2.0 / (point_angle / 2.0).to_radians().tan();
-            let flute_length = super::term::rounded(cone + of.length("CuttingEdgeLength")?);
+            let flute_length = super::outline::rounded(cone + of.length("CuttingEdgeLength")?);
             (Shape::Drill { tip_diameter: 0.0, point_angle }, flute_length)
         }
         "taperedballnose" => {
@@ -216,8 +214,8 @@ fn cutter(stated: &str, of: &Parameters<'_>, notes: &mut Vec<Note>) -> Result<Cu
             return Ok(Cutter {
                 shape: saw,
                 diameter,
-                flute_length: super::term::rounded(thickness + cap_height),
-                length: super::term::rounded(length + cap_height),
+                flute_length: super::outline::rounded(thickness + cap_height),
+                length: super::outline::rounded(length + cap_height),
                 shoulder: None,
                 shank_diameter,
             });
@@ -244,7 +242,7 @@ fn corner(of: &Parameters<'_>, diameter: f64) -> Result<f64, String> {
         return Ok(corner);
     }
     match of.optional_length("FlatRadius")? {
-        Some(flat) => Ok(super::term::rounded(diameter / 2.0 - flat)),
+        Some(flat) => Ok(super::outline::rounded(diameter / 2.0 - flat)),
         None => Err("it does not state its `CornerRadius`".to_owned()),
     }
 }
@@ -330,7 +328,7 @@ impl Parameters<'_> {
         };
         match (value.filter(|value| value.is_finite()), factor(unit.trim())) {
             (Some(value), Some(1.0)) => Ok(Some(value)),
-            (Some(value), Some(factor)) => Ok(Some(super::term::rounded(value * factor))),
+            (Some(value), Some(factor)) => Ok(Some(super::outline::rounded(value * factor))),
             _ => Err(format!("its `{key}` is `{text}`, no number with a unit")),
         }
     }

@@ -4,13 +4,11 @@
 //! above them. `taper_tip` is the diameter of a tapered mill's tip.
 
 use super::entry::{Entry, Note};
-use super::fusion::{number_of, text, tool_number};
+use super::json::{Object, number_of, text, tool_number};
 use super::shape::{Cutter, Shape};
 use super::{Found, Problem};
-use serde_json::{Map, Value};
+use serde_json::Value;
 use touchoff::Unit;
-
-type Object = Map<String, Value>;
 
 /// Returns true for a tool of Kiri:Moto.
 pub(super) fn is_tool(value: &Value) -> bool {
@@ -53,7 +51,7 @@ fn read_tool(tool: &Object) -> Result<Entry, String> {
         shape,
         diameter,
         flute_length,
-        length: super::term::rounded(flute_length + shaft_length),
+        length: super::outline::rounded(flute_length + shaft_length),
         shoulder: None,
         shank_diameter: Some(shank).filter(|shank| *shank > 0.0),
     });

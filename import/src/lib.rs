@@ -26,16 +26,14 @@ mod entry;
 mod error;
 pub mod export;
 mod files;
-mod form;
 mod freecad;
 mod fusion;
 mod hsm;
+mod json;
 mod kiri;
 mod linuxcnc;
-mod name;
 mod outline;
 mod shape;
-mod term;
 #[cfg(test)]
 mod tests;
 
@@ -234,11 +232,10 @@ impl ImportedTool {
 
 /// Reads a file, up to the limit.
 fn bytes(file: &Path) -> Result<Vec<u8>, ImportError> {
-    let unreadable = |source| ImportError::Unreadable { file: file.to_owned(), source };
     let mut content = Vec::new();
     fs::File::open(file)
         .and_then(|opened| opened.take(MAX_BYTES + 1).read_to_end(&mut content))
-        .map_err(unreadable)?;
+        .map_err(|source| ImportError::Unreadable { file: file.to_owned(), source })?;
     if content.len() as u64 > MAX_BYTES {
         return Err(ImportError::TooLarge { file: file.to_owned(), limit: MAX_BYTES });
     }
@@ -270,8 +267,10 @@ fn json(text: &str) -> Result<Vec<Found>, String> {
         _ => value.get("data").or_else(|| value.get("tools")).and_then(Value::as_array),
     };
     let tools = tools.ok_or("there is no list of tools, neither `data` nor `tools`")?;
-    let tool = |tool| if kiri::is_tool(tool) { kiri::tool(tool) } else { fusion::tool(tool) };
-    Ok(tools.iter().map(tool).collect())
+    Ok(tools
+        .iter()
+        .map(|tool| if kiri::is_tool(tool) { kiri::tool(tool) } else { fusion::tool(tool) })
+        .collect())
 }
 
 /// Returns the JSON file of an archive.

@@ -1,7 +1,6 @@
 //! `CUTTER` statements of APT: the cutting part of a tool.
 
-use super::cutter::{Type, recognise};
-use super::section::{HalfSection, tidy};
+use super::section::{HalfSection, Type, recognise, tidy};
 use super::{Written, description, is_same};
 use touchoff::Unit;
 use touchoff::tool::ToolInfo;

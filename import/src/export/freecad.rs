@@ -1,7 +1,6 @@
 //! Tool bits of FreeCAD, without a holder.
 
-use super::cutter::{Type, recognise};
-use super::section::{HalfSection, tidy};
+use super::section::{HalfSection, Type, recognise, tidy};
 use super::{Written, description, is_same};
 use serde_json::{Map, json};
 use touchoff::tool::ToolInfo;

@@ -1,7 +1,6 @@
 //! Tools of Fusion 360, as JSON.
 
-use super::cutter::{Type, recognise};
-use super::section::{Cone, HalfSection, tidy};
+use super::section::{Cone, HalfSection, Type, recognise, tidy};
 use super::{Written, description, is_same};
 use serde_json::{Map, Value, json};
 use touchoff::Unit;
@@ -137,11 +136,10 @@ fn add_body(
 }
 
 fn segments(cones: &[Cone], length: &impl Fn(f64) -> Value) -> Vec<Value> {
-    let segment = |cone: &Cone| {
+    cones.iter().map(|cone| {
         json!({ "height": length(cone.high[1] - cone.low[1]),
             "lower-diameter": length(2.0 * cone.low[0]), "upper-diameter": length(2.0 * cone.high[0]) })
-    };
-    cones.iter().map(segment).collect()
+    }).collect()
 }
 
 /// Returns an outline as the profile of a form mill.

@@ -9,7 +9,6 @@
 //! regions have no place in these formats.
 
 mod apt;
-mod cutter;
 mod freecad;
 mod fusion;
 mod section;

@@ -1,6 +1,7 @@
-//! The half section of a tool, divided into the parts that libraries know: cutter, shaft and holder.
+//! The half section of a tool, divided into the parts that libraries know: cutter, shaft and holder; and the type of a cutter that
+//! libraries share, found in its outline.
 
-use crate::term::rounded;
+use crate::outline::rounded;
 use touchoff::Unit;
 use touchoff::tool::{Circle, ProfileSegment, ToolInfo};
 
@@ -52,9 +53,10 @@ impl HalfSection {
         let is_cutting = |segment: &ProfileSegment| tool.surface(segment.surface).cutting;
         let first = part(&outline[0]);
         // The parts of an assembly: the cutter, its shaft, and what holds them.
-        let is_holder =
-            |segment: &ProfileSegment| part(segment) != first && part(segment) != "shaft";
-        let holder_from = outline.iter().position(is_holder).unwrap_or(outline.len());
+        let holder_from = outline
+            .iter()
+            .position(|segment| part(segment) != first && part(segment) != "shaft")
+            .unwrap_or(outline.len());
         let (lower, upper) = outline.split_at(holder_from);
         // The plane that closes the outline at its end does not cut, whatever its surface.
         let open = match lower.split_last() {
@@ -98,10 +100,16 @@ impl HalfSection {
 
     /// Returns what lies below the holder as a solid, closed by a plane across the axis.
     pub(super) fn closed_below_holder(&self) -> Vec<ProfileSegment> {
-        let is_below = |segment: &&ProfileSegment| {
-            segment.from[1].max(segment.to[1]) <= self.end + self.tolerance
-        };
-        closed(self.outline.iter().take_while(is_below).copied().collect(), self.tolerance)
+        closed(
+            self.outline
+                .iter()
+                .take_while(|segment| {
+                    segment.from[1].max(segment.to[1]) <= self.end + self.tolerance
+                })
+                .copied()
+                .collect(),
+            self.tolerance,
+        )
     }
 }
 
@@ -198,4 +206,111 @@ fn cones(segments: &[ProfileSegment], tolerance: f64) -> Result<Vec<Cone>, Strin
         }
     }
     Ok(cones)
+}
+
+/// A cutting part as its type and its dimensions, in the tool's unit; angles in degrees.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Type {
+    /// A cylinder whose lower edge has this radius.
+    End {
+        diameter: f64,
+        corner: f64,
+    },
+    Ball {
+        diameter: f64,
+    },
+    /// A point with its whole angle, which may be truncated.
+    Point {
+        diameter: f64,
+        tip_diameter: f64,
+        angle: f64,
+    },
+    /// A cone above a tip of this diameter with a rounded edge, with half its angle.
+    Taper {
+        tip_diameter: f64,
+        corner: f64,
+        half_angle: f64,
+    },
+    /// A cone above a ball, with half its angle.
+    TaperedBall {
+        radius: f64,
+        half_angle: f64,
+    },
+}
+
+/// A segment of a cutting part, with its upper end.
+enum Side {
+    Line {
+        to: [f64; 2],
+    },
+    /// A convex arc.
+    Arc {
+        to: [f64; 2],
+        radius: f64,
+    },
+    /// A concave arc, which no type has.
+    Other,
+}
+
+impl Side {
+    fn of(segment: &ProfileSegment) -> Side {
+        let to = segment.to;
+        match segment.circle {
+            None => Side::Line { to },
+            Some(Circle { radius, convex: true, .. }) => Side::Arc { to, radius },
+            Some(Circle { convex: false, .. }) => Side::Other,
+        }
+    }
+}
+
+/// Returns the type of a cutting part, as its segments suggest it. The caller has to compare the outlines.
+pub(super) fn recognise(cutting: &[ProfileSegment]) -> Option<Type> {
+    use Side::{Arc, Line};
+    let sides: Vec<Side> = cutting.iter().map(Side::of).collect();
+    match *sides {
+        [Arc { radius, .. }] => Some(Type::Ball { diameter: 2.0 * radius }),
+        [Line { to: edge }] | [Line { to: edge }, Line { .. }] if edge[1] > 0.0 => {
+            Some(point(edge, 0.0, cone_half_angle([0.0; 2], edge)))
+        }
+        [Arc { to: edge, radius }, Line { to: end }] => Some(if is_straight(edge, end) {
+            Type::Ball { diameter: 2.0 * radius }
+        } else {
+            Type::TaperedBall { radius, half_angle: cone_half_angle(edge, end) }
+        }),
+        [Line { to: edge }, Line { to: end }] => Some(if is_straight(edge, end) {
+            Type::End { diameter: 2.0 * edge[0], corner: 0.0 }
+        } else {
+            let half_angle = cone_half_angle(edge, end);
+            Type::Taper { tip_diameter: 2.0 * edge[0], corner: 0.0, half_angle }
+        }),
+        [Line { to: face }, Line { to: wide }, Line { .. }] => {
+            Some(point(wide, 2.0 * face[0], cone_half_angle(face, wide)))
+        }
+        [Line { to: face }, Arc { to: edge, radius }, Line { to: end }] => {
+            if is_straight(edge, end) {
+                return Some(Type::End { diameter: 2.0 * end[0], corner: radius });
+            }
+            let half_angle = cone_half_angle(edge, end);
+            // The side, continued, meets the plane of the tip there.
+            let (sin, cos) = half_angle.to_radians().sin_cos();
+            let tip_diameter = 2.0 * (face[0] + radius * (1.0 - sin) / cos);
+            Some(Type::Taper { tip_diameter, corner: radius, half_angle })
+        }
+        _ => None,
+    }
+}
+
+/// Returns a point with its largest circle at `wide`, from half its angle in degrees.
+fn point(wide: [f64; 2], tip_diameter: f64, half_angle: f64) -> Type {
+    Type::Point { diameter: 2.0 * wide[0], tip_diameter, angle: 2.0 * half_angle }
+}
+
+/// Returns whether the line from one point up to another is parallel to the axis, to within 1e-9 of the upper one's height.
+fn is_straight(from: [f64; 2], to: [f64; 2]) -> bool {
+    (from[0] - to[0]).abs() <= 1e-9 * to[1].abs()
+}
+
+/// Returns half the angle of the cone from one point up to another, in degrees.
+fn cone_half_angle(from: [f64; 2], to: [f64; 2]) -> f64 {
+    ((to[0] - from[0]) / (to[1] - from[1])).atan().to_degrees()
 }

@@ -1,15 +1,12 @@
 //! The shapes of cutters, from their dimensions in a tool library.
 
-mod drills;
 mod mills;
-mod other;
 mod segments;
 mod threads;
 
-use super::outline::{Outline, SAME, Surface, cutting, plain};
-use super::term::Term;
-use other::form;
-pub(super) use threads::Crest;
+use super::outline::{Outline, SAME, Surface, Term, cutting, plain};
+use mills::form;
+pub(crate) use threads::Crest;
 
 /// The dimensions of a cutter, in the unit of its tool. Lengths are from the tip.
 #[derive(Clone, Debug, PartialEq)]
@@ -147,11 +144,11 @@ pub(super) enum Shape {
         crest: f64,
         angle: f64,
     },
-    /// APT's general cutter: a line from the tip that rises by `end_angle`, an arc, and a line that leaves the axis by
-    /// `side_angle`.
+    /// APT's general cutter: a line from the tip that rises by `end_angle`, an arc about the point `[d, z]`, and a line that
+    /// leaves the axis by `side_angle`.
     General {
         corner: f64,
-        centre: (f64, f64),
+        centre: [f64; 2],
         end_angle: f64,
         side_angle: f64,
     },
@@ -257,7 +254,7 @@ impl Cutter {
                 self.saw(outline, radius, thickness, cap_diameter, cap_height)
             }
             Shape::General { corner, centre, end_angle, side_angle } => {
-                self.general(outline, radius, (corner, centre), [end_angle, side_angle])
+                self.general(outline, radius, corner, centre, [end_angle, side_angle])
             }
             Shape::Probe => self.probe(outline, radius),
         }

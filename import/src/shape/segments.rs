@@ -1,8 +1,7 @@
 //! Face mills and circle-segment mills.
 
-use super::super::outline::{Outline, SAME, cutting};
-use super::super::term::Term;
 use super::{CORNER, Cutter, FACE, FLUTE, Shape, ShapeError, flat_tip, positive};
+use crate::outline::{Outline, SAME, Term, cutting};
 
 impl Cutter {
     /// Draws a face mill. Its cone goes on to the largest diameter, however long the flutes are.
@@ -197,7 +196,7 @@ impl Cutter {
 
     /// Returns the diameter of an oval at the end of its flutes, if they end below its widest point; else, and for other
     /// shapes, `None`.
-    pub(in super::super) fn width_of_short_oval(&self) -> Option<f64> {
+    pub(crate) fn width_of_short_oval(&self) -> Option<f64> {
         let Shape::Oval { ball, flank } = self.shape else { return None };
         let back = flank - self.diameter / 2.0;
         let centre_z = ball + ((flank - ball).powi(2) - back.powi(2)).sqrt();
@@ -292,7 +291,7 @@ impl Cutter {
     ///
     /// If a flank with that angle at the lower end does not reach the diameter, the second height is that of the flank
     /// that is parallel to the axis where it reaches it.
-    pub(in super::super) fn heights_of_diameter(&self) -> Option<[f64; 2]> {
+    pub(crate) fn heights_of_diameter(&self) -> Option<[f64; 2]> {
         let Shape::SegmentTaper { tip_diameter, lower, flank, upper, half_angle } = self.shape
         else {
             return None;

@@ -4,9 +4,8 @@
 //! the 0.04 mm to which heights and radii can be read from its pictures: a cutter of several teeth has roots of the form
 //! of its crests, and a cutter of one tooth has none.
 
-use super::super::outline::{Outline, SAME, Surface, cutting};
-use super::super::term::Term;
 use super::{Cutter, NECK, ShapeError, positive};
+use crate::outline::{Outline, SAME, Surface, Term, cutting};
 
 /// The number of teeth of a thread mill that are drawn.
 const MAX_TEETH: f64 = 60.0;
@@ -16,7 +15,7 @@ const THREAD: Surface = cutting("thread");
 
 /// The crests of a thread mill's teeth.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in super::super) enum Crest {
+pub(crate) enum Crest {
     /// A sharp edge, where the flanks meet.
     Point,
     /// A cylinder of this height.
@@ -63,7 +62,7 @@ struct Arcs {
 
 impl Cutter {
     /// Returns the number of whole pitches in the length of the flutes; one that fits up to rounding counts.
-    pub(in super::super) fn whole_pitches(&self, pitch: f64) -> f64 {
+    pub(crate) fn whole_pitches(&self, pitch: f64) -> f64 {
         (self.flute_length / pitch * (1.0 + 1e-9)).floor().max(0.0)
     }
 

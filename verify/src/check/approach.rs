@@ -5,7 +5,7 @@ use super::moves::{self, Move, MovePath, RapidBox};
 use super::{Finding, FindingKind, Verifier, VerifyError};
 use nalgebra::Point3;
 use touchoff::certify::Certifier;
-use touchoff::tool::{ProfileSegment, Symmetry};
+use touchoff::tool::Symmetry;
 use touchoff::{Interval, Pose};
 
 /// Location of a program relative to the part. Lengths are in the part's unit, points in its frame.
@@ -74,12 +74,13 @@ impl<'a> ApproachSearch<'a> {
     pub(crate) fn new(verifier: &'a Verifier<'a>) -> Result<ApproachSearch<'a>, VerifyError> {
         let info = verifier.tool.info();
         let cutting = info.outline.iter().filter(|segment| info.surface(segment.surface).cutting);
-        let widest = |segment: &ProfileSegment| {
-            let bulge = segment.circle.filter(|circle| circle.convex);
-            let bulge = bulge.map_or(0.0, |circle| circle.centre[0] + circle.radius);
-            segment.from[0].max(segment.to[0]).max(bulge)
-        };
-        let radius = cutting.map(widest).fold(0.0, f64::max);
+        let radius = cutting
+            .map(|segment| {
+                let bulge = segment.circle.filter(|circle| circle.convex);
+                let bulge = bulge.map_or(0.0, |circle| circle.centre[0] + circle.radius);
+                segment.from[0].max(segment.to[0]).max(bulge)
+            })
+            .fold(0.0, f64::max);
         let radius = if radius > 0.0 { radius } else { info.radius() };
         Ok(ApproachSearch {
             certifier: Certifier::new(verifier.bvh, verifier.tool)?.with_budget(verifier.budget),
@@ -114,10 +115,12 @@ impl<'a> ApproachSearch<'a> {
         if self.line == 0 {
             self.line = moves.first().map_or(0, |step| step.line);
         }
-        let touches = |found: &&Finding| {
-            matches!(found.kind, FindingKind::Deep { .. } | FindingKind::Inside { .. })
-        };
-        if let (true, Some(found)) = (self.distance > 0.0, findings.iter().find(touches)) {
+        if let (true, Some(found)) = (
+            self.distance > 0.0,
+            findings.iter().find(|found| {
+                matches!(found.kind, FindingKind::Deep { .. } | FindingKind::Inside { .. })
+            }),
+        ) {
             (self.distance, self.line) = (0.0, found.line);
             self.clearance = None;
         }
@@ -293,5 +296,5 @@ fn unit_factor(part: [Point3<f64>; 2], feed: [Point3<f64>; 2], diameter: f64) ->
 struct Span {
     times: [f64; 2],
     lower_bounds: [f64; 2],
-    max_travel: f64,
+    pub(super) max_travel: f64,
 }

@@ -9,12 +9,9 @@
 
 use super::moves::{JointPath, Move, MovePath, RapidBox};
 use crate::gcode::{
-    Choice, ControlRules, ControlSetup, GcodeError, Interpreter, LengthOffset, ProgramNote, Rule,
-    Spindle, Step, WorkOffset,
+    Choice, ControlRules, ControlSetup, GcodeError, Interpreter, LengthOffset, Rule, Step,
 };
-use crate::machine::{
-    JointError, JointMotion, Letter, LimitViolation, Machine, Setup, SingularPass,
-};
+use crate::machine::{JointError, JointMotion, Letter, Machine, Setup};
 use nalgebra::Vector3;
 use resolve::{AnyRapid, Resolved, Resolver};
 use std::collections::BTreeMap;
@@ -22,14 +19,12 @@ use std::sync::Arc;
 use touchoff::{Motion, Unit};
 
 mod fault;
-mod gap;
 mod path;
-mod rapid;
 mod resolve;
+mod summary;
 
 pub use fault::{MachineProgramError, StepFault};
-pub use gap::Gap;
-pub use resolve::UnknownCause;
+pub use summary::{Gap, MachineSummary, ToolUse, UnknownCause, UnknownMotions};
 
 /// Largest number of readings of a program.
 pub const MAX_READINGS: usize = 8;
@@ -47,73 +42,6 @@ pub struct MachineProgram {
     /// The register of the first length offset before a tool is named: the tool in the spindle.
     unnamed_tool: Option<u32>,
     summary: MachineSummary,
-}
-
-/// Summary of a program on its machine.
-#[derive(Clone, Debug, Default, PartialEq)]
-#[non_exhaustive]
-pub struct MachineSummary {
-    /// The tools in the order of their first motion that is checked.
-    pub tools: Vec<ToolUse>,
-    /// Tools with motions of which none is checked, each with the line of its first. The tool that is in the spindle before
-    /// the first change is not among them.
-    pub unchecked_tools: Vec<(u32, usize)>,
-    /// Motions that are not checked, by their cause.
-    pub unknown: Vec<UnknownMotions>,
-    /// The line of the first motion in rapid traverse of several axes at rates that are not known.
-    pub any_rapid: Option<usize>,
-    /// As before, for a motion of which one axis is rotary. Only its straight path is checked.
-    pub any_rotary_rapid: Option<usize>,
-    /// The spindle during motions at feed rate, without those of taps: the line of the first by tool and spindle.
-    pub spindle: Vec<(usize, Option<u32>, Spindle)>,
-    /// The line of the first feed without a tool length offset, in a program that names no tool or has no offset at all:
-    /// positions are taken as those of the tip.
-    pub no_offset: Option<usize>,
-    /// The line of the first motion under tool centre point control, or in an aligned plane, without a tool length offset, and with
-    /// a tool whose length is not stated.
-    pub tcp_without_length: Option<usize>,
-    /// The work offsets of motions at feed rate, each with the line of the first.
-    pub work_offsets: Vec<(WorkOffset, usize)>,
-    /// Rules of the control on which the program depends and which are not stated, each with the first line.
-    pub open_rules: BTreeMap<Rule, usize>,
-    /// Feed motions with the length offset of another tool: the line of the first, the register and the tool.
-    pub other_lengths: Vec<(usize, u32, u32)>,
-    /// Axes that leave their limits, each with its line: the worst per axis and limit. Those of X, Y and Z are checked if the
-    /// origin of the part on the machine is given.
-    pub limits: Vec<(usize, LimitViolation)>,
-    /// Set if the machine states limits of X, Y or Z that are not checked.
-    pub limits_unchecked: bool,
-    /// Singular passes, each with its line.
-    pub singular: Vec<(usize, SingularPass)>,
-    /// Notes of the interpreter.
-    pub notes: Vec<ProgramNote>,
-}
-
-/// Motions that are not checked for one cause.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct UnknownMotions {
-    /// The cause.
-    pub cause: UnknownCause,
-    /// Their number.
-    pub count: usize,
-    /// The line of the first.
-    pub line: usize,
-    /// The line of the first that allows no verdict: one in feed, or one between positions that the program states. The way
-    /// to its first position is the operator's, and that to the reference position the machine's.
-    pub open_line: Option<usize>,
-}
-
-/// A tool's use in a program.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct ToolUse {
-    /// The tool's number; `None` before the first tool change.
-    pub number: Option<u32>,
-    /// Line of its first motion.
-    pub line: usize,
-    /// Number of motions.
-    pub motions: usize,
 }
 
 /// A selection of the motions of a program by their tool.
@@ -174,9 +102,10 @@ impl MachineProgram {
         loop {
             let mut assumed = vec![ControlRules::default()];
             for rule in branched.keys() {
-                let choices =
-                    |rules: ControlRules| rule.choices().map(move |c| rules.clone().with(*rule, c));
-                assumed = assumed.into_iter().flat_map(choices).collect();
+                assumed = assumed
+                    .into_iter()
+                    .flat_map(|rules| rule.choices().map(move |c| rules.clone().with(*rule, c)))
+                    .collect();
             }
             if assumed.len() > MAX_READINGS {
                 let rules =
@@ -184,11 +113,13 @@ impl MachineProgram {
                 let rules = rules.collect::<Vec<_>>().join(", ");
                 return Err(MachineProgramError::Readings { file: name.to_owned(), rules });
             }
-            let read = |assumed: ControlRules| {
-                let read = (Arc::clone(&text), Arc::clone(&machine));
-                MachineProgram::reading(name, read, setup.clone(), assumed)
-            };
-            let programs = assumed.into_iter().map(read).collect::<Result<Vec<_>, _>>()?;
+            let programs = assumed
+                .into_iter()
+                .map(|assumed| {
+                    let read = (Arc::clone(&text), Arc::clone(&machine));
+                    MachineProgram::reading(name, read, setup.clone(), assumed)
+                })
+                .collect::<Result<Vec<_>, _>>()?;
             let known = branched.len();
             for program in &programs {
                 let open = program.summary.open_rules.iter().filter(|(rule, _)| rule.is_branched());
@@ -237,9 +168,11 @@ impl MachineProgram {
         };
         let mut result = program.run(is_placed);
         if let Ok((summary, offsets)) = &result {
-            let is_off =
-                |unknown: &UnknownMotions| matches!(unknown.cause, UnknownCause::NoOffset { .. });
-            program.off_is_tip = !offsets.any && summary.unknown.iter().any(is_off);
+            program.off_is_tip = !offsets.any
+                && summary
+                    .unknown
+                    .iter()
+                    .any(|unknown| matches!(unknown.cause, UnknownCause::NoOffset { .. }));
             program.unnamed_tool = offsets.unnamed;
             if program.off_is_tip || program.unnamed_tool.is_some() {
                 result = program.run(is_placed);
@@ -418,7 +351,7 @@ impl MachineProgram {
             }
             for (motion, _) in &motions {
                 for violation in motion.check_limits() {
-                    add_violation(&mut summary.limits, step.line, violation);
+                    summary.add_violation(step.line, violation);
                 }
                 let pass = motion.singular_pass();
                 if let (false, Some(pass)) = (is_last_singular, pass) {
@@ -446,56 +379,6 @@ struct LengthOffsets {
     any: bool,
     /// The register of the first that is in force before a tool is named.
     unnamed: Option<u32>,
-}
-
-impl MachineSummary {
-    /// Notes what a motion at feed rate needs.
-    fn add_feed(&mut self, step: &Step, off_is_tip: bool) {
-        let tool = step.state.tool;
-        if step.spindle != Spindle::Tapping
-            && !self
-                .spindle
-                .iter()
-                .any(|(_, known, spindle)| (*known, *spindle) == (tool, step.spindle))
-        {
-            self.spindle.push((step.line, tool, step.spindle));
-        }
-        if (tool.is_none() || off_is_tip) && step.state.length == LengthOffset::Off {
-            self.no_offset.get_or_insert(step.line);
-        }
-        let offset = step.state.work_offset;
-        if !self.work_offsets.iter().any(|(known, _)| *known == offset) {
-            self.work_offsets.push((offset, step.line));
-        }
-    }
-
-    fn add_unknown(&mut self, step: &Step, cause: UnknownCause) {
-        let position = self.unknown.iter().position(|known| known.cause == cause);
-        let position = position.unwrap_or_else(|| {
-            let motions = UnknownMotions { cause, count: 0, line: step.line, open_line: None };
-            self.unknown.push(motions);
-            self.unknown.len() - 1
-        });
-        let unknown = &mut self.unknown[position];
-        unknown.count += 1;
-        let is_said = matches!(cause, UnknownCause::Start | UnknownCause::Home);
-        if !step.rapid || !is_said {
-            unknown.open_line.get_or_insert(step.line);
-        }
-    }
-}
-
-/// Adds a violation, or keeps the worse one of the same axis and limit.
-fn add_violation(found: &mut Vec<(usize, LimitViolation)>, line: usize, violation: LimitViolation) {
-    let same = |(_, known): &&mut (usize, LimitViolation)| {
-        known.letter == violation.letter && known.limit == violation.limit
-    };
-    let excess = |violation: &LimitViolation| (violation.value - violation.limit).abs();
-    match found.iter_mut().find(same) {
-        None => found.push((line, violation)),
-        Some(known) if excess(&violation) > excess(&known.1) => *known = (line, violation),
-        Some(_) => (),
-    }
 }
 
 /// The frame of moves.
@@ -544,8 +427,8 @@ fn moves_of(step: &Step, resolved: &Resolved, frame: MoveFrame, from: Option<usi
                 return moves_of(step, &Resolved::Motions(vec![(straight, 0.0)]), frame, from);
             };
             let corner = path(straight, 0.0).pose(0.0);
-            let way = |edge: &JointMotion| path(*edge, 0.0).pose(1.0).tip() - corner.tip();
-            let ways = edges.iter().map(way).collect();
+            let ways =
+                edges.iter().map(|edge| path(*edge, 0.0).pose(1.0).tip() - corner.tip()).collect();
             let all = MovePath::Box(Box::new(RapidBox::new(corner, ways)));
             start(straight).into_iter().chain([arriving(all)]).collect()
         }

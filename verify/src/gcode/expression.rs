@@ -139,8 +139,10 @@ impl Parameters {
     }
 
     fn get(&self, parameter: &Parameter) -> Result<f64, ExpressionFault> {
-        let unassigned = || ExpressionFault::Unassigned { parameter: parameter.shown() };
-        self.values.get(parameter).copied().ok_or_else(unassigned)
+        self.values
+            .get(parameter)
+            .copied()
+            .ok_or_else(|| ExpressionFault::Unassigned { parameter: parameter.shown() })
     }
 }
 
@@ -221,7 +223,7 @@ pub(super) fn value(cursor: &mut Cursor, known: &Parameters) -> Result<f64, Expr
 }
 
 /// Reads a sum of products, as after `=` and in brackets.
-pub(super) fn sum(cursor: &mut Cursor, known: &Parameters) -> Result<f64, ExpressionFault> {
+fn sum(cursor: &mut Cursor, known: &Parameters) -> Result<f64, ExpressionFault> {
     nested_sum(cursor, known, 0)
 }
 
@@ -316,7 +318,7 @@ fn bracket(cursor: &mut Cursor, known: &Parameters, depth: usize) -> Result<f64,
 }
 
 /// Reads a parameter, which begins with `#`.
-pub(super) fn parameter(
+fn parameter(
     cursor: &mut Cursor,
     known: &Parameters,
     depth: usize,

@@ -1,23 +1,15 @@
 //! The interpreter: reads blocks, executes them in order, and returns their motions.
 
-use super::Plane;
-use super::block::Block;
-use super::code::{Code, Group};
-use super::coordinates::is_programmed;
+use super::block::{Block, Code, Group, Label, Role};
+use super::control::Control;
 use super::expression::Parameters;
-use super::flow::Flow;
-use super::label::{Label, Role};
+use super::flow::{self, Flow};
 use super::linuxcnc;
-use super::modal::{FeedMode, Motion};
-use super::motion::Control;
-use super::next_run;
-use super::note::{ProgramNote, Subject};
+use super::note::Subject;
 use super::rules::{Choice, Rule};
-use super::state::Tcp;
-use super::{ControlSetup, GcodeError, GcodeFault, Step, text};
+use super::{ControlSetup, GcodeError, GcodeFault, Step};
 use std::collections::BTreeMap;
 use std::mem;
-use touchoff::Unit;
 
 /// An interpreter of a program: an iterator over its steps.
 ///
@@ -33,9 +25,9 @@ pub struct Interpreter<'a> {
     switch: Option<String>,
     finished: bool,
     /// The end of the program, once it was executed.
-    end: Option<End>,
+    pub(super) end: Option<End>,
     /// Itself before the first block.
-    first: Option<Box<Interpreter<'a>>>,
+    pub(super) first: Option<Box<Interpreter<'a>>>,
 }
 
 /// The word that ends a program.
@@ -53,10 +45,10 @@ impl<'a> Interpreter<'a> {
     /// # Errors
     /// If two subprograms have one label, or a `sub` and its `endsub` do not match.
     pub fn new(text: &'a str, setup: &ControlSetup) -> Result<Interpreter<'a>, GcodeError> {
-        if let Some(line) = text::lone_return(text) {
+        if let Some(line) = flow::lone_return(text) {
             return Err(GcodeError { line, fault: GcodeFault::LoneReturn });
         }
-        let extent = text::extent(text);
+        let extent = flow::extent(text);
         let located = |(line, fault)| GcodeError { line, fault };
         let flow = Flow::new(&extent).map_err(located)?;
         if setup.rules.get(Rule::Dialect) == Some(Choice::Rs274Ngc) && flow.has_subprograms() {
@@ -88,16 +80,6 @@ impl<'a> Interpreter<'a> {
         Ok(Interpreter { first: Some(Box::new(first.clone())), ..first })
     }
 
-    /// Returns the notes about the blocks that were executed so far, by line.
-    pub fn notes(&self) -> Vec<ProgramNote> {
-        let mut notes = self.control.notes.list();
-        if let (Some(first), Some(end)) = (&self.first, self.end) {
-            notes.extend(next_run::note(first, &self.control, end));
-        }
-        notes.sort_by_key(|note| note.line);
-        notes
-    }
-
     /// Returns the rules of the control on which the blocks depend that were executed so far, each with the first line.
     pub fn asked(&self) -> &BTreeMap<Rule, usize> {
         &self.control.asked
@@ -105,8 +87,9 @@ impl<'a> Interpreter<'a> {
 
     /// Executes the next line.
     fn advance(&mut self) -> Result<(), GcodeError> {
-        let located = |(line, fault)| GcodeError { line, fault };
-        let Some((line, text)) = self.flow.next_line().map_err(located)? else {
+        let Some((line, text)) =
+            self.flow.next_line().map_err(|(line, fault)| GcodeError { line, fault })?
+        else {
             self.finish(End::Percent);
             return Ok(());
         };
@@ -312,218 +295,4 @@ fn could_be_block(text: &str) -> bool {
     };
     let name = rest.split(|c: char| !c.is_ascii_alphabetic()).next().unwrap_or_default();
     is_word || ["GOTO", "IF", "WHILE", "TRAORI", "TRAFOOF"].contains(&&*name.to_ascii_uppercase())
-}
-
-impl Control {
-    /// Executes a block, in the order of RS274/NGC, table 8.
-    pub(super) fn execute(&mut self, line: usize, block: &mut Block) -> Result<(), GcodeFault> {
-        self.line = line;
-        self.note_words(block);
-        self.check_dialect(block)?;
-        self.check_words(block)?;
-        self.feed(block)?;
-        self.tool(block)?;
-        self.dwell(block)?;
-        let turned = self.spindle_words(block);
-        self.motion_mode(block);
-        if let Some(word) = turned.filter(|_| is_programmed(block) && self.modal.is_feed()) {
-            return Err(GcodeFault::Combination {
-                word,
-                condition: "its block has a motion at feed rate",
-                remedy: "write it in a block before or after",
-            });
-        }
-        self.settings(block)?;
-        self.numbers(block);
-        self.coordinates(block)?;
-        self.returned_length(block);
-        if self.depends_on_length(block) {
-            self.length_without_word();
-        }
-        if self.modal.plane != Plane::Xy
-            && is_programmed(block)
-            && (self.length_implicit || self.state.tcp == Tcp::Transformation)
-        {
-            return Err(GcodeFault::Combination {
-                word: "a position".to_owned(),
-                condition: "G18 or G19 is in force and the length of the tool counts without G43, across the plane",
-                remedy: "post the program in G17",
-            });
-        }
-        self.check_offset(block)?;
-        self.motion(block)
-    }
-
-    /// Takes the word with the time of G4: P, or X in ISO programs, or F, which is no feed rate then.
-    fn dwell(&self, block: &mut Block) -> Result<(), GcodeFault> {
-        if block.code_of(Group::Dwell).is_none() {
-            return Ok(());
-        }
-        if block.has('S') {
-            return Err(GcodeFault::Combination {
-                word: "S".to_owned(),
-                condition: "its block has G4, of which it is the time in turns of the spindle",
-                remedy: "write it in a block before",
-            });
-        }
-        let dialect = self.stated(Rule::Dialect);
-        let has_time_in_x = !matches!(dialect, Some(Choice::Sinumerik | Choice::Heidenhain));
-        if block.take('P').is_none() && block.code_of(Group::Motion).is_none() && has_time_in_x {
-            block.take('X');
-        }
-        Ok(())
-    }
-
-    /// Gives the numbers of a block the unit that the control gives them.
-    fn numbers(&mut self, block: &mut Block) {
-        let has_length = block.is_nonzero("XYZIJKRQ");
-        self.unit_used |= has_length;
-        if !self.modal.unit_stated && has_length {
-            self.modal.unit = match self.choice(Rule::Unit) {
-                Choice::Inch => Unit::Inch,
-                _ => Unit::Millimetre,
-            };
-        }
-        if block.has_whole() && self.choice(Rule::WholeNumbers) == Choice::Increments {
-            let has_angles = block.code_of(Group::Rotation).is_some();
-            let (length, motion) = (self.modal.increment(), self.modal.motion);
-            let has_whole_radius = block.is_whole('R') || block.is_whole('Q');
-            let keeps_radii = has_whole_radius && self.choice(Rule::WholeRadii) == Choice::Units;
-            block.scale_whole(|letter| match letter {
-                'R' | 'Q' if keeps_radii => 1.0,
-                'A' | 'B' | 'C' => 1e-3,
-                // The number of repeats of a cycle.
-                'K' if matches!(motion, Some(Motion::Cycle(_))) => 1.0,
-                'I' | 'J' | 'K' | 'R' if has_angles => 1e-3,
-                _ => length,
-            });
-        }
-    }
-
-    /// Notes the words that are passed over.
-    fn note_words(&mut self, block: &Block) {
-        for code in &block.passed_over {
-            self.notes.add(self.line, Subject::PassedOver(*code));
-        }
-        if block.has('S') {
-            self.notes.add(self.line, Subject::PassedOver(Code { letter: 'S', tenths: 0 }));
-        }
-    }
-
-    /// Reads the feed mode and F.
-    fn feed(&mut self, block: &mut Block) -> Result<(), GcodeFault> {
-        if let Some(code) = block.code_of(Group::FeedMode) {
-            let mode = match code.tenths {
-                930 => FeedMode::InverseTime,
-                940 => FeedMode::PerMinute,
-                _ => FeedMode::PerRevolution,
-            };
-            // LinuxCNC asks for F again after each word.
-            if mode != self.modal.feed_mode || self.stated(Rule::Dialect) == Some(Choice::Rs274Ngc)
-            {
-                self.modal.feed = None;
-            }
-            self.modal.feed_mode = mode;
-        }
-        if self.modal.feed_mode == FeedMode::InverseTime {
-            self.modal.feed = None;
-        }
-        // F of a dwell is its time on some controls.
-        let is_dwell = block.code_of(Group::Dwell).is_some();
-        match block.take('F') {
-            Some(value) if value < 0.0 => {
-                let expected = "a positive number";
-                return Err(GcodeFault::NotAllowed { word: 'F', value, expected });
-            }
-            Some(feed) if !is_dwell => self.modal.feed = Some(feed).filter(|feed| *feed > 0.0),
-            _ => {}
-        }
-        // LinuxCNC asks for a feed rate also where no axis moves (`convert_straight`).
-        match block.code_of(Group::Motion) {
-            Some(Code { tenths: 10, .. })
-                if self.stated(Rule::Dialect) == Some(Choice::Rs274Ngc) =>
-            {
-                self.check_feed("G1")
-            }
-            _ => Ok(()),
-        }
-    }
-
-    /// Reads the settings that convert and interpret the other words.
-    fn settings(&mut self, block: &mut Block) -> Result<(), GcodeFault> {
-        let takes_p = |code: &Code| *code == READ_AHEAD || code.letter == 'M' && is_output(*code);
-        if block.passed_over.iter().any(takes_p) {
-            block.take('P');
-        }
-        let tenths = |group| block.code_of(group).map(|code| code.tenths);
-        if let Some(unit) = tenths(Group::Units) {
-            let is_inch = matches!(unit, 200 | 700 | 7000);
-            let unit = if is_inch { Unit::Inch } else { Unit::Millimetre };
-            let switches = self.unit_used && unit != self.modal.unit;
-            if switches && matches!(self.stated(Rule::Dialect), None | Some(Choice::Iso)) {
-                return Err(GcodeFault::Combination {
-                    word: if is_inch { "G20" } else { "G21" }.to_owned(),
-                    condition: "the program has lengths in another unit",
-                    remedy: "select the unit once, at the start",
-                });
-            }
-            self.modal.unit = unit;
-            self.modal.unit_stated = true;
-        }
-        if let Some(distance) = tenths(Group::Distance) {
-            self.modal.incremental = distance == 910;
-        }
-        if let Some(distance) = tenths(Group::ArcDistance) {
-            self.modal.absolute_centres = Some(distance == 901);
-        }
-        if let Some(retract) = tenths(Group::Retract) {
-            self.modal.retract_to_r = Some(retract == 990);
-        }
-        if let Some(plane) = tenths(Group::Plane) {
-            self.select(match plane {
-                170 => Plane::Xy,
-                180 => Plane::Zx,
-                _ => Plane::Yz,
-            })?;
-        }
-        if let Some(code) = block.code_of(Group::PathControl) {
-            path_control(block, code)?;
-            self.modal.exact_path = matches!(code.tenths, 610 | 611);
-            self.notes.add(self.line, Subject::PassedOver(code));
-        }
-        Ok(())
-    }
-}
-
-/// The number of blocks that a Haas reads ahead (G103 P).
-const READ_AHEAD: Code = Code { letter: 'G', tenths: 1030 };
-
-/// Returns whether an M word sets an output of LinuxCNC (M62 to M65).
-fn is_output(code: Code) -> bool {
-    matches!(code.tenths, 620 | 630 | 640 | 650)
-}
-
-/// Takes the words of a path mode.
-fn path_control(block: &mut Block, code: Code) -> Result<(), GcodeFault> {
-    let switch = match code.tenths {
-        640 | 1870 => {
-            block.take('P');
-            if code.tenths == 640 {
-                block.take('Q');
-            }
-            return Ok(());
-        }
-        610 | 611 => return Ok(()),
-        51 => 'Q',
-        _ => 'P',
-    };
-    // Fanuc's modes G5 P, G5.1 Q and G8 P. With axis words they are splines, without any a mode of a lathe.
-    match block.take(switch) {
-        Some(_) if !block.has_any("XYZIJK") => Ok(()),
-        _ => {
-            let meaning = "a spline, or a mode of a lathe, without the word of its path mode";
-            let remedy = "post the program with lines and arcs";
-            Err(GcodeFault::NotRead { word: code.to_string(), meaning, remedy })
-        }
-    }
 }

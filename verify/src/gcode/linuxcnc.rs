@@ -3,10 +3,8 @@
 //! Each was run with its interpreter (`rs274`). M428 and M429 of its configurations for five axes are read.
 
 use super::GcodeFault;
-use super::block::{Block, begins};
-use super::code::{Code, Group};
-use super::label::Place;
-use super::text::{before_semicolon, line};
+use super::block::{Block, Code, Group, begins};
+use super::flow::{Place, before_semicolon, line};
 
 /// The longest line, in bytes without its end (`LINELEN` of the interpreter).
 const MAX_LINE: usize = 251;
@@ -121,9 +119,10 @@ pub(super) fn check_words(block: &Block) -> Result<(), GcodeFault> {
     if block.has('D') {
         return Err(GcodeFault::Unused { word: 'D' });
     }
-    let is_return = |code: &Code| matches!(code.tenths, 280 | 300);
     let motion = block.code_of(Group::Motion);
-    if let Some((code, motion)) = block.code_of(Group::OneShot).filter(is_return).zip(motion) {
+    if let Some((code, motion)) =
+        block.code_of(Group::OneShot).filter(|code| matches!(code.tenths, 280 | 300)).zip(motion)
+    {
         return Err(same_group(code, motion));
     }
     let codes = || block.codes().filter_map(|code| m_group(code).map(|group| (group, code)));

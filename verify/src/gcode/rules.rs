@@ -660,10 +660,10 @@ impl ControlRules {
             };
             stated.insert(entry.rule, *choice);
         }
-        let is_missing = |entry: &&Entry| {
-            entry.rule != Rule::OptionalBlocks && !stated.contains_key(&entry.rule)
-        };
-        match RULES.iter().find(is_missing) {
+        match RULES
+            .iter()
+            .find(|entry| entry.rule != Rule::OptionalBlocks && !stated.contains_key(&entry.rule))
+        {
             None => Ok(ControlRules { stated }),
             Some(Entry { key, about, .. }) => {
                 Err(ControlError::Missing { file: file.to_owned(), key, about })
@@ -694,22 +694,25 @@ impl ControlRules {
 
     /// Writes the rules as a control's file. One that is not stated is a comment with its choices.
     pub fn to_toml(&self) -> String {
-        let line = |rule: Rule| {
-            let (key, about) = (rule.key(), rule.about());
-            match self.get(rule) {
-                Some(choice) => {
-                    let [word, meaning] = rule.describe(choice);
-                    format!("# {about}: {meaning}\n{key} = \"{word}\"\n")
+        Rule::all()
+            .filter(|rule| *rule != Rule::OptionalBlocks)
+            .map(|rule| {
+                let (key, about) = (rule.key(), rule.about());
+                match self.get(rule) {
+                    Some(choice) => {
+                        let [word, meaning] = rule.describe(choice);
+                        format!("# {about}: {meaning}\n{key} = \"{word}\"\n")
+                    }
+                    None => {
+                        let words = rule
+                            .choices()
+                            .map(|choice| format!("\"{}\"", rule.describe(choice)[0]));
+                        let words = words.collect::<Vec<_>>().join(" or ");
+                        format!("# {about}: state {key} = {words}\n")
+                    }
                 }
-                None => {
-                    let words =
-                        rule.choices().map(|choice| format!("\"{}\"", rule.describe(choice)[0]));
-                    let words = words.collect::<Vec<_>>().join(" or ");
-                    format!("# {about}: state {key} = {words}\n")
-                }
-            }
-        };
-        Rule::all().filter(|rule| *rule != Rule::OptionalBlocks).map(line).collect()
+            })
+            .collect()
     }
 }
 

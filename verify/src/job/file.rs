@@ -1,9 +1,9 @@
 //! Job files: TOML, with paths relative to the folder of the file.
 
-use super::{Hand, JobError, Program};
+use super::program::{Program, read_control};
+use super::{Hand, JobError};
 use crate::ToolSelection;
 use crate::gcode::{Choice, ControlRules, ControlSetup, Rule};
-use crate::machine::Machine;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::ffi::OsString;
@@ -339,24 +339,30 @@ impl JobFile {
             }
             JobTools::Numbered { library, entries } => (library, entries),
         };
-        let tool = |number: Option<u32>| {
-            // A program without numbers needs no choice if there is one tool.
-            let known = match (number, entries.iter().next()) {
-                (Some(number), _) => number,
-                (None, Some((only, _))) if entries.len() == 1 => *only,
-                (None, _) => return Err(JobError::NoTool { number: None }),
-            };
-            let entry = entries.get(&known).cloned().unwrap_or_default();
-            let (name, library) = match (&entry.tool, library) {
-                (Some(name), _) => (OsString::from(name), None),
-                (None, Some(library)) => (format!("T{known}").into(), Some(library.clone())),
-                (None, None) => return Err(JobError::NoTool { number }),
-            };
-            let named = NamedTool { name, library, params: entry.params(), root: None };
-            let allow = entry.allow.into_iter().collect();
-            Ok(UsedTool { motions: ToolSelection::Number(number), named, hand: entry.hand, allow })
-        };
-        used.into_iter().map(tool).collect()
+        used.into_iter()
+            .map(|number| {
+                // A program without numbers needs no choice if there is one tool.
+                let known = match (number, entries.iter().next()) {
+                    (Some(number), _) => number,
+                    (None, Some((only, _))) if entries.len() == 1 => *only,
+                    (None, _) => return Err(JobError::NoTool { number: None }),
+                };
+                let entry = entries.get(&known).cloned().unwrap_or_default();
+                let (name, library) = match (&entry.tool, library) {
+                    (Some(name), _) => (OsString::from(name), None),
+                    (None, Some(library)) => (format!("T{known}").into(), Some(library.clone())),
+                    (None, None) => return Err(JobError::NoTool { number }),
+                };
+                let named = NamedTool { name, library, params: entry.params(), root: None };
+                let allow = entry.allow.into_iter().collect();
+                Ok(UsedTool {
+                    motions: ToolSelection::Number(number),
+                    named,
+                    hand: entry.hand,
+                    allow,
+                })
+            })
+            .collect()
     }
 }
 
@@ -399,42 +405,5 @@ impl ToolEntry {
             ParamValue::Text(text) => text.clone(),
         };
         self.set.iter().map(|(name, value)| format!("{name}={}", text(value))).collect()
-    }
-}
-
-/// Reads a control by its name, or from a file in TOML.
-///
-/// # Errors
-/// If there is no such control, or its file is refused.
-pub fn read_control(name: &Path) -> Result<ControlRules, JobError> {
-    Ok(match toml_text(name)? {
-        Some((text, file)) => ControlRules::parse(&text, &file)?,
-        None => ControlRules::named(&name.to_string_lossy())?,
-    })
-}
-
-/// Reads a machine by its name, or from a file in TOML.
-///
-/// # Errors
-/// If there is no such machine, or its file is refused.
-pub fn read_machine(name: &Path) -> Result<Machine, JobError> {
-    Ok(match toml_text(name)? {
-        Some((text, file)) => Machine::parse(&text, &file)?,
-        None => Machine::named(&name.to_string_lossy())?,
-    })
-}
-
-/// Returns the text of a TOML file that is named, and its name for messages; `None` for another name.
-///
-/// # Errors
-/// If the file cannot be read.
-fn toml_text(name: &Path) -> Result<Option<(String, String)>, JobError> {
-    if name.extension().is_none_or(|extension| extension != "toml") {
-        return Ok(None);
-    }
-    let file = name.display().to_string();
-    match std::fs::read_to_string(name) {
-        Ok(text) => Ok(Some((text, file))),
-        Err(source) => Err(JobError::Unreadable { file, source }),
     }
 }

@@ -1,6 +1,6 @@
 //! Findings about the machine: spindle, length offsets, limits of axes, singular passes.
 
-use super::{Hand, Job, Severity};
+use super::{Hand, Job};
 use crate::MachineProgram;
 use crate::gcode::Spindle;
 use crate::machine::Letter;
@@ -86,11 +86,15 @@ fn unit(letter: Letter) -> &'static str {
 impl MachineFinding {
     /// Returns the findings of all readings, each with the index of its reading.
     pub(super) fn all(job: &Job<'_>) -> Vec<(usize, MachineFinding)> {
-        let of = |(index, program): (usize, &MachineProgram)| {
-            let findings = MachineFinding::of_reading(program, job);
-            findings.into_iter().map(move |finding| (index, finding))
-        };
-        job.program.readings().iter().enumerate().flat_map(of).collect()
+        job.program
+            .readings()
+            .iter()
+            .enumerate()
+            .flat_map(|(index, program)| {
+                let findings = MachineFinding::of_reading(program, job);
+                findings.into_iter().map(move |finding| (index, finding))
+            })
+            .collect()
     }
 
     /// Returns the findings of a program on its machine: the spindle, length offsets, limits, then singular passes.
@@ -136,14 +140,6 @@ impl MachineFinding {
             MachineFindingKind::Length { .. } => "length",
             MachineFindingKind::Limit { .. } => "limit",
             MachineFindingKind::Singular { .. } => "singular",
-        }
-    }
-
-    /// Returns the severity. The machine cannot keep a limit, but a singular pass only slows it down.
-    pub(super) fn severity(&self) -> Severity {
-        match self.kind {
-            MachineFindingKind::Singular { .. } => Severity::Remark,
-            _ => Severity::Violation,
         }
     }
 

@@ -108,7 +108,7 @@ impl JointMotion {
     }
 
     /// Returns the angular rates of the rotary axes of a chain to a body, in radians, in the chain's order.
-    pub(super) fn rates(&self, chain: &Chain) -> [f64; 2] {
+    fn rates(&self, chain: &Chain) -> [f64; 2] {
         let mut rates = [0.0; 2];
         for (rate, axis) in rates.iter_mut().zip(chain.rotary()) {
             let [start, end] = self.rotary_ends(axis.letter);

@@ -1,7 +1,6 @@
 //! Inverse kinematics: joint values for a tip and a tool axis in the frame of the workpiece.
 
-use super::chain::{Chain, RotaryAxis};
-use super::rotation::{angle_about, angle_between, radians_to_degrees, rotation};
+use super::chain::{Chain, RotaryAxis, angle_about, angle_between, radians_to_degrees, rotation};
 use super::{InverseError, Joints, Letter};
 use nalgebra::{Point3, Vector3};
 use std::f64::consts::{PI, TAU};

@@ -74,13 +74,17 @@ fn check_end(text: &str) -> Result<(), Located> {
 
 /// Returns whether a first row has the columns' names; a row of other names is refused.
 fn is_names(row: &str, cells: &[&str]) -> Result<bool, ProgramFault> {
-    let numeric = |cell: &&str| cell.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c));
-    if cells.iter().any(numeric) || cells.iter().any(|cell| cell.parse::<f64>().is_ok()) {
+    if cells.iter().any(|cell| cell.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c)))
+        || cells.iter().any(|cell| cell.parse::<f64>().is_ok())
+    {
         return Ok(false);
     }
     let named = |names: &[&str]| {
-        let same = |(cell, name): (&&str, &&str)| cell.trim_matches('"').eq_ignore_ascii_case(name);
-        cells.len() == names.len() && cells.iter().zip(names).all(same)
+        cells.len() == names.len()
+            && cells
+                .iter()
+                .zip(names)
+                .all(|(cell, name)| cell.trim_matches('"').eq_ignore_ascii_case(name))
     };
     if named(&AXIS) || named(&QUATERNION) {
         Ok(true)

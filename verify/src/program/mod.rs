@@ -14,14 +14,12 @@
 mod apt;
 mod csv;
 mod cutter;
-mod decimals;
 mod error;
-mod words;
 mod write;
 
-pub use decimals::Decimals;
+pub use cutter::Cutter;
 pub use error::{ProgramError, ProgramFault};
-pub use write::{AptHeader, Cutter, WriteError, apt_unit};
+pub use write::{AptHeader, Decimals, WriteError, apt_unit};
 
 use std::path::Path;
 
@@ -108,8 +106,10 @@ impl ClData {
         unit: Option<Unit>,
         poses: impl IntoIterator<Item = (Pose, bool)>,
     ) -> Result<ClData, ProgramError> {
-        let location = |(line, (pose, rapid))| CutterLocation { line, pose, rapid };
-        let locations: Vec<CutterLocation> = (1..).zip(poses).map(location).collect();
+        let locations: Vec<CutterLocation> = (1..)
+            .zip(poses)
+            .map(|(line, (pose, rapid))| CutterLocation { line, pose, rapid })
+            .collect();
         let file = name.to_owned();
         if locations.is_empty() {
             return Err(ProgramError::NoPosition { file });
@@ -169,16 +169,18 @@ impl ClData {
         if tapes.is_empty() {
             return Err(ProgramError::NoPosition { file });
         }
-        let program = |tape: Tape| ClData {
-            unit: tape.unit.map(|(unit, _)| unit),
-            unit_line: tape.unit.map(|(_, line)| line),
-            locations: tape.locations,
-            ignored: tape.ignored,
-            tool: tape.tool,
-            cutters: tape.cutters,
-            file: file.clone(),
-        };
-        Ok(tapes.into_iter().map(program).collect())
+        Ok(tapes
+            .into_iter()
+            .map(|tape| ClData {
+                unit: tape.unit.map(|(unit, _)| unit),
+                unit_line: tape.unit.map(|(_, line)| line),
+                locations: tape.locations,
+                ignored: tape.ignored,
+                tool: tape.tool,
+                cutters: tape.cutters,
+                file: file.clone(),
+            })
+            .collect())
     }
 
     /// Returns the program's name in messages.
@@ -305,10 +307,9 @@ fn decode(bytes: &[u8]) -> Result<&str, Located> {
 
 /// Returns the text, if no character in it hides a line from a reader or shows a line that is none.
 fn check_characters(text: &str) -> Result<&str, Located> {
-    let is_hidden = |c: char| {
+    match text.find(|c: char| {
         c.is_control() && !matches!(c, '\t' | '\r' | '\n') || matches!(c, '\u{2028}' | '\u{2029}')
-    };
-    match text.find(is_hidden) {
+    }) {
         None => Ok(text),
         Some(byte) => {
             let line = lines(&text[..byte]).count();
@@ -338,7 +339,7 @@ fn begins_table(line: &str) -> bool {
     line.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c))
         || first.parse::<f64>().is_ok()
         || first.trim_matches('"').eq_ignore_ascii_case("x")
-        || separated && !words::is_prose(line)
+        || separated && !apt::is_prose(line)
 }
 
 const PLAIN_NUMBER: &str = "write a plain number with a decimal point";

@@ -53,22 +53,16 @@
 //! nor removed.
 
 mod advance;
-mod bits;
-mod cells;
-mod columns;
-mod comparison;
-mod contact;
 mod error;
 mod lattice;
+mod remaining;
 
-pub use advance::MotionMode;
-pub use comparison::{DeviationPoint, PartComparison};
-pub use contact::StockContact;
+pub use advance::{MotionMode, StockContact};
 pub use error::StockError;
+pub use remaining::{DeviationPoint, PartComparison};
 
-use bits::BitSet;
-use contact::OpenContacts;
-use lattice::Lattice;
+use advance::OpenContacts;
+use lattice::{BitSet, Lattice, nodes_inside};
 use nalgebra::{Point3, Vector3};
 use std::fmt;
 use touchoff::mesh::{LARGEST_COORDINATE, Mesh};
@@ -159,7 +153,7 @@ impl Stock {
         }
         let lattice = Lattice::new(mesh.bounds(), spacing)?;
         let triangles = mesh.corners().map(|corners| corners.map(|corner| corner.into()));
-        let inside = columns::nodes_inside(triangles, &lattice)?;
+        let inside = nodes_inside(triangles, &lattice)?;
         Stock::new(lattice, inside, mesh.unit())
     }
 
@@ -336,15 +330,6 @@ fn check_count(points: usize, spacing: f64) -> Result<(), StockError> {
             Err(StockError::TooManyPoints { spacing, points, coarser })
         }
     }
-}
-
-/// Returns whether a node has a neighbour that is not in a set.
-fn is_at_boundary(lattice: &Lattice, nodes: &BitSet, node: [usize; 3]) -> bool {
-    (0..3).any(|axis| {
-        [false, true].into_iter().any(|up| {
-            lattice.neighbour(node, axis, up).is_none_or(|neighbour| !nodes.contains(neighbour))
-        })
-    })
 }
 
 #[cfg(test)]

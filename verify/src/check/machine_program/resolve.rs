@@ -1,8 +1,7 @@
 //! Steps in program coordinates, resolved to joint motions.
 
-use super::StepFault;
 use super::path::{self, Map};
-use super::rapid;
+use super::{StepFault, UnknownCause};
 use crate::gcode::{
     self, Choice, ControlSetup, ControlState, LengthOffset, Position, Rotation, Rule, Step,
     StepPath, Tcp, WorkOffset,
@@ -10,7 +9,6 @@ use crate::gcode::{
 use crate::machine::{Chain, InverseSolution, JointMotion, Joints, Letter, Machine, Setup, Side};
 use nalgebra::{Matrix3, Point3, Vector3};
 use std::collections::BTreeMap;
-use std::fmt;
 
 /// The increment of angles, in degrees: nearer to half a turn a control may take either way.
 const ANGLE_INCREMENT: f64 = 1e-3;
@@ -39,111 +37,6 @@ pub(super) struct AnyRapid {
     /// The motions of each axis by itself from the start, if no rotary axis moves: the axes' positions at any rates are
     /// those of the box that they span.
     pub(super) edges: Option<Vec<JointMotion>>,
-}
-
-/// The reason for which only the machine knows where a motion starts or ends.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum UnknownCause {
-    /// The program has not stated a position before.
-    Start,
-    /// The program has not stated the position of another axis before.
-    Axis,
-    /// A tool change moved the axes.
-    ToolChange,
-    /// A motion to machine coordinates that are not known.
-    Return,
-    /// The way of axes from known positions to machine coordinates that are not known.
-    Home,
-    /// A shift by G92 at an unknown position.
-    Shift,
-    /// No tool length offset is in force, and the length of the tool is not stated.
-    NoOffset {
-        /// The tool.
-        tool: u32,
-    },
-    /// The length offset is that of another tool, and one of both lengths is not stated.
-    OtherOffset {
-        /// The tool.
-        tool: u32,
-        /// The register.
-        register: u32,
-    },
-    /// The head turns, and the length of the tool is not stated.
-    NoLever,
-    /// The table turns, and the position of the part on it is not stated.
-    NoPartPosition,
-    /// The way of an axis that turns by half a turn.
-    HalfTurn,
-    /// The tool axis is reached by two positions of the rotary axes, of which controls choose in different ways.
-    TwoPositions,
-    /// A rotary axis without limits returns to its reference position, in a direction of the machine's.
-    ReturnWay,
-    /// The tool axis turns on a great circle, which is not followed.
-    GreatCircle,
-    /// Tool centre point control or a tilted plane began while the table was turned, and the control takes the part as it stood
-    /// then.
-    TurnedTable,
-    /// Tool centre point control, or an aligned plane, without a tool length offset.
-    TcpWithoutLength,
-}
-
-impl fmt::Display for UnknownCause {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            UnknownCause::Start => f.write_str("the program states no position before"),
-            UnknownCause::Axis => f.write_str(
-                "the position of another axis is not stated before: write all axes of the machine in the first blocks",
-            ),
-            UnknownCause::ToolChange => f.write_str(
-                "only the machine knows where the tool change leaves its axes: state `tool_change` in the machine's file, or \
-                 the control",
-            ),
-            UnknownCause::Return | UnknownCause::Home => f.write_str(
-                "only the machine knows where its coordinates and its reference position are: state the origin of G54 in \
-                 `work_offsets`, and `home` of its axes",
-            ),
-            UnknownCause::Shift => f.write_str("G92 shifts a position that is not known"),
-            UnknownCause::NoOffset { tool } => write!(
-                f,
-                "T{tool} moves without a tool length offset: write G43 H{tool}, or state the length of tool {tool} in the \
-                 job (0 if Z of the work offset is that of its tip)"
-            ),
-            UnknownCause::OtherOffset { tool, register } => write!(
-                f,
-                "T{tool} moves with the length offset H{register} of another tool: state the lengths of both in the job"
-            ),
-            UnknownCause::NoLever => {
-                f.write_str("the head turns the tool, whose length is not stated: state it in the job")
-            }
-            UnknownCause::NoPartPosition => f.write_str(
-                "the table turns the part, whose position is not stated: state the origin of G54 in `work_offsets`",
-            ),
-            UnknownCause::TwoPositions => f.write_str(
-                "two positions of the rotary axes give the tool axis, and controls choose in different ways: turn the axes near to \
-                 one of them before",
-            ),
-            UnknownCause::ReturnWay => f.write_str(
-                "a rotary axis without limits returns to its reference position in a direction of the machine's: turn it there by \
-                 G0 before",
-            ),
-            UnknownCause::GreatCircle => f.write_str(
-                "the tool axis turns on a great circle under TRAORI (ORIVECT): state `tool_orientation` of the control, if it turns \
-                 each axis in proportion (ORIAXES)",
-            ),
-            UnknownCause::TurnedTable => f.write_str(
-                "the table is turned where tool centre point control or a tilted plane begins, and positions are those of the \
-                 part as it stands: turn it to 0 before, or state `tcp_start` of the control",
-            ),
-            UnknownCause::TcpWithoutLength => f.write_str(
-                "tool centre point control or an aligned plane (G53.1) is in force, and no length offset: write H with the \
-                 number of the length, or G43 H before",
-            ),
-            UnknownCause::HalfTurn => {
-                f.write_str("an axis turns by half a turn, for which both ways are as short: write an angle between")
-            }
-        }
-    }
 }
 
 /// Resolves the steps of a program in their order.
@@ -243,7 +136,7 @@ impl<'a> Resolver<'a> {
             setup,
             off_is_tip,
             origin,
-            rapid: match (setup.rules.get(Rule::Rapid), rapid::rates(machine)) {
+            rapid: match (setup.rules.get(Rule::Rapid), path::rates(machine)) {
                 (Some(Choice::Straight), _) => RapidPath::Straight,
                 (_, Some(rates)) => RapidPath::Rates(rates),
                 (_, None) => RapidPath::Any,
@@ -457,20 +350,24 @@ impl<'a> Resolver<'a> {
         let rates = match &self.rapid {
             RapidPath::Rates(rates) => Some(rates),
             RapidPath::Any if moving.len() > 1 => {
-                let straight = rapid::line(chain, joints)?;
-                let edge = |k: &usize| {
-                    let mut to = start;
-                    to[*k] = end[*k];
-                    rapid::line(chain, [start, to])
-                };
+                let straight = path::line(chain, joints)?;
                 let is_linear = moving.iter().all(|k| *k < 3);
-                let edges = is_linear.then(|| moving.iter().map(edge).collect());
+                let edges = is_linear.then(|| {
+                    moving
+                        .iter()
+                        .map(|k| {
+                            let mut to = start;
+                            to[*k] = end[*k];
+                            path::line(chain, [start, to])
+                        })
+                        .collect()
+                });
                 let edges = edges.transpose()?;
                 return Ok(Resolved::AnyRapid(Box::new(AnyRapid { straight, edges })));
             }
             RapidPath::Any | RapidPath::Straight => None,
         };
-        let motions = rapid::motions(chain, rates, joints)?;
+        let motions = path::rapid(chain, rates, joints)?;
         Ok(Resolved::Motions(motions.into_iter().map(|motion| (motion, 0.0)).collect()))
     }
 
@@ -503,12 +400,11 @@ impl<'a> Resolver<'a> {
         } else if turning != self.turning {
             // A table that turns in the block counts at its end, but for the alignment with a plane.
             let aligns = matches!(step.path, StepPath::Align);
-            let is_turned = |k: usize| {
+            self.is_turned_table = self.rotary(Side::Table).any(|k| {
                 self.joints[k] != Some(self.origin[k])
                     || !aligns && step.commanded[k] && step.end[k] != Some(0.0)
-            };
-            self.is_turned_table = self.rotary(Side::Table).any(is_turned)
-                && self.ask(Rule::TcpStart, step) == Some(Choice::TableAsItStands);
+            }) && self.ask(Rule::TcpStart, step)
+                == Some(Choice::TableAsItStands);
         }
         self.turning = turning;
         self.is_turned_table
@@ -519,23 +415,25 @@ impl<'a> Resolver<'a> {
     fn is_one_choice(&self, solutions: &[InverseSolution]) -> bool {
         let [first, others @ ..] = solutions else { return true };
         let turn = |of: &InverseSolution, k: usize| Some((of.joints[k] - self.joints[k]?).abs());
-        let differs = |other: &&InverseSolution| {
-            (3..6).any(|k| (first.joints[k] - other.joints[k]).abs() > ANGLE_INCREMENT)
-        };
-        others.iter().filter(differs).all(|other| {
-            let turns = (3..6).map(|k| turn(first, k).zip(turn(other, k)));
-            let mut is_less = false;
-            for turns in turns {
-                match turns {
-                    Some((first, other)) if first <= other + ANGLE_INCREMENT => {
-                        is_less |= first < other - ANGLE_INCREMENT;
+        others
+            .iter()
+            .filter(|other| {
+                (3..6).any(|k| (first.joints[k] - other.joints[k]).abs() > ANGLE_INCREMENT)
+            })
+            .all(|other| {
+                let turns = (3..6).map(|k| turn(first, k).zip(turn(other, k)));
+                let mut is_less = false;
+                for turns in turns {
+                    match turns {
+                        Some((first, other)) if first <= other + ANGLE_INCREMENT => {
+                            is_less |= first < other - ANGLE_INCREMENT;
+                        }
+                        _ => return false,
                     }
-                    _ => return false,
                 }
-            }
-            // By equal turns Fanuc takes the axes nearer to 0.
-            is_less
-        })
+                // By equal turns Fanuc takes the axes nearer to 0.
+                is_less
+            })
     }
 
     /// Counts the angles at the start so that the ways of endless axes to stated angles are those of the control. Returns
@@ -645,11 +543,12 @@ impl<'a> Resolver<'a> {
         };
         let offset_name = || state.work_offset.to_string();
         let origin = if state.work_offset == WorkOffset::Standard(1) {
-            let differs = |k: usize| match state.origin[k] {
-                Some(value) => !self.is_placed || value != self.origin[k],
-                None => false,
-            };
-            if state.origin_rotation != 0.0 || (0..6).any(differs) {
+            if state.origin_rotation != 0.0
+                || (0..6).any(|k| match state.origin[k] {
+                    Some(value) => !self.is_placed || value != self.origin[k],
+                    None => false,
+                })
+            {
                 return Err(StepFault::MovedPart);
             }
             self.origin
@@ -799,21 +698,23 @@ impl Frame {
         [start, end]: [Joints; 2],
     ) -> Result<Vec<(JointMotion, f64)>, StepFault> {
         let linear = [start, end].map(|position| [position[0], position[1], position[2]]);
-        let angles = |at: f64| {
-            [3, 4, 5].map(|k| {
-                let value = if at == 1.0 { end[k] } else { start[k] + at * (end[k] - start[k]) };
-                value + self.rotary[k - 3]
+        path::map(path, linear, &self.map)?
+            .into_iter()
+            .map(|segment: path::Segment| {
+                let rotary = segment.fractions.map(|at| {
+                    [3, 4, 5].map(|k| {
+                        let value =
+                            if at == 1.0 { end[k] } else { start[k] + at * (end[k] - start[k]) };
+                        value + self.rotary[k - 3]
+                    })
+                });
+                let motion = match self.is_tip {
+                    true => JointMotion::with_tcp(&self.chain, rotary, &segment.path)?,
+                    false => JointMotion::new(&self.chain, rotary, &segment.path)?,
+                };
+                Ok((motion, segment.error))
             })
-        };
-        let motion = |segment: path::Segment| {
-            let rotary = segment.fractions.map(angles);
-            let motion = match self.is_tip {
-                true => JointMotion::with_tcp(&self.chain, rotary, &segment.path)?,
-                false => JointMotion::new(&self.chain, rotary, &segment.path)?,
-            };
-            Ok((motion, segment.error))
-        };
-        path::map(path, linear, &self.map)?.into_iter().map(motion).collect()
+            .collect()
     }
 }
 

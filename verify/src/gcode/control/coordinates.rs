@@ -1,14 +1,14 @@
 //! Words that change what positions mean: tools and their lengths, work offsets, shifts, tool centre point
 //! control, rotated and tilted planes.
 
-use super::block::{Block, Keyword};
-use super::code::{Code, Group};
-use super::modal::Motion;
-use super::motion::{AXES, Control};
-use super::note::Subject;
-use super::rules::{Choice, Rule};
-use super::state::{ControlState, Frame, LengthOffset, Position, Rotation, Tcp, WorkOffset, about};
-use super::{GcodeFault, Plane, StepPath};
+use super::{AXES, Control, Motion};
+use crate::gcode::block::{Block, Code, Group, Keyword};
+use crate::gcode::note::Subject;
+use crate::gcode::rules::{Choice, Rule};
+use crate::gcode::state::{
+    ControlState, Frame, LengthOffset, Position, Rotation, Tcp, WorkOffset, about,
+};
+use crate::gcode::{GcodeFault, Plane, StepPath};
 use nalgebra::Vector3;
 use std::sync::Arc;
 
@@ -200,7 +200,7 @@ impl Control {
         let is_cycle = matches!(self.modal.motion, Some(Motion::Cycle(_)));
         let normal = AXES[self.modal.plane.normal()];
         let is_moved = block.has('Z') || block.has(normal);
-        is_programmed(block) && (is_moved || is_cycle || self.state.rotation != Rotation::Off)
+        block.is_programmed() && (is_moved || is_cycle || self.state.rotation != Rotation::Off)
     }
 
     /// Gives the length offset the value that the control gives it without a word, before a motion to which it matters.
@@ -579,8 +579,8 @@ impl Control {
         if axes.iter().all(Option::is_none) {
             return Err(GcodeFault::Missing { word: code.to_string(), needed: "an axis word" });
         }
-        let keeps = |axis: usize| axes[axis].is_none() && self.local[axis] != 0.0;
-        if matches!(self.stated(Rule::Dialect), None | Some(Choice::Sinumerik)) && (0..6).any(keeps)
+        if matches!(self.stated(Rule::Dialect), None | Some(Choice::Sinumerik))
+            && (0..6).any(|axis| axes[axis].is_none() && self.local[axis] != 0.0)
         {
             let remedy = "name them, too";
             return Err(combination(
@@ -681,11 +681,12 @@ impl Control {
             return Err(combination(code, "G91 is in force", "write G90 before"));
         }
         block.take_whole('P', 0, 0, "P0, or no P: the angles are Euler's")?;
-        let missing = || {
-            let needed = "X Y Z and the Euler angles I J K";
-            GcodeFault::Missing { word: code.to_string(), needed }
+        let mut number = |letter| {
+            block.take(letter).ok_or_else(|| {
+                let needed = "X Y Z and the Euler angles I J K";
+                GcodeFault::Missing { word: code.to_string(), needed }
+            })
         };
-        let mut number = |letter| block.take(letter).ok_or_else(missing);
         let origin = [number('X')?, number('Y')?, number('Z')?];
         let [i, j, k] = [number('I')?, number('J')?, number('K')?];
         let origin = Vector3::from(origin.map(|value| self.modal.millimetres(value)));
@@ -737,18 +738,11 @@ impl Control {
         let is_absolute = !self.modal.incremental && block.has_any("XYZABC");
         let one_shot = block.code_of(Group::OneShot).map(|code| code.tenths);
         let rotation = block.code_of(Group::Rotation).map(|code| code.tenths);
-        is_programmed(block)
+        block.is_programmed()
             || matches!(one_shot, Some(520 | 531 | 920))
             || matches!(rotation, Some(680 | 682))
             || is_absolute && matches!(one_shot, Some(280 | 300))
     }
-}
-
-/// Returns whether a block has a position in program coordinates for a motion.
-pub(super) fn is_programmed(block: &Block) -> bool {
-    block.has_any("XYZABCIJK")
-        && block.code_of(Group::OneShot).is_none()
-        && block.code_of(Group::Machine).is_none()
 }
 
 fn combination(code: Code, condition: &'static str, remedy: &'static str) -> GcodeFault {

@@ -2,15 +2,18 @@
 //!
 //! `docs/controls.md` lists them with what each control does.
 
-use super::GcodeFault;
-use super::block::Block;
-use super::code::{Code, Group};
-use super::linuxcnc;
-use super::modal::Motion;
-use super::motion::{AXES, Control};
-use super::rules::{Choice, Rule};
-use super::state::{LengthOffset, Rotation, Tcp};
-use super::text::before_semicolon;
+use super::{AXES, Control, Motion};
+use crate::gcode::block::{Block, Code, Group};
+use crate::gcode::flow::before_semicolon;
+use crate::gcode::linuxcnc;
+use crate::gcode::note::Subject;
+use crate::gcode::rules::{Choice, Rule};
+use crate::gcode::state::{LengthOffset, Position, Rotation, Tcp};
+use crate::gcode::{GcodeFault, StepPath};
+
+/// Distance between the paths of controls on an arc with two radii, in mm, up to which it is rounding: of I and J with three
+/// decimals, or four in inches.
+const RADII_TOLERANCE: f64 = 5e-3;
 
 impl Control {
     /// Refuses words that mean something else in the dialect of the control.
@@ -60,12 +63,12 @@ impl Control {
     }
 
     /// Refuses a line that the control does not read, whatever its words.
-    pub(super) fn check_line(&self, text: &str) -> Result<(), GcodeFault> {
+    pub(crate) fn check_line(&self, text: &str) -> Result<(), GcodeFault> {
         match self.stated(Rule::Dialect) {
             Some(Choice::Rs274Ngc) => linuxcnc::check_line(text),
             Some(Choice::Heidenhain) => {
-                let is_other = |c: &char| matches!(c, '(' | '#');
-                let Some(found) = before_semicolon(text).chars().find(is_other) else {
+                let Some(found) = before_semicolon(text).chars().find(|c| matches!(c, '(' | '#'))
+                else {
                     return Ok(());
                 };
                 let meaning = "no word of DIN/ISO programs of Heidenhain";
@@ -78,7 +81,7 @@ impl Control {
     }
 
     /// Refuses values that depend on when the assignment of their block takes effect.
-    pub(super) fn check_assignment(&self, block: &Block) -> Result<(), GcodeFault> {
+    pub(crate) fn check_assignment(&self, block: &Block) -> Result<(), GcodeFault> {
         match block.assigns_beside_value && self.stated(Rule::Dialect) != Some(Choice::Rs274Ngc) {
             true => Err(GcodeFault::Combination {
                 word: "an assignment".to_owned(),
@@ -93,10 +96,12 @@ impl Control {
     pub(super) fn check_words(&self, block: &Block) -> Result<(), GcodeFault> {
         let dialect = self.stated(Rule::Dialect);
         let is_m = |code: &Code| code.letter == 'M';
-        let acts = |code: &Code| matches!(code.tenths, 0..=60 | 290 | 300 | 980 | 990);
         if matches!(dialect, None | Some(Choice::Iso))
             && block.codes().filter(is_m).nth(1).is_some()
-            && let Some(code) = block.codes().filter(is_m).find(acts)
+            && let Some(code) = block
+                .codes()
+                .filter(is_m)
+                .find(|code| matches!(code.tenths, 0..=60 | 290 | 300 | 980 | 990))
         {
             return Err(GcodeFault::Combination {
                 word: code.to_string(),
@@ -104,8 +109,8 @@ impl Control {
                 remedy: "write them in two blocks",
             });
         }
-        let is_spindle = |code: &Code| is_m(code) && matches!(code.tenths, 30 | 40 | 50 | 190);
-        let mut spindle = block.codes().filter(is_spindle);
+        let mut spindle =
+            block.codes().filter(|code| is_m(code) && matches!(code.tenths, 30 | 40 | 50 | 190));
         if let (Some(first), Some(second)) = (spindle.next(), spindle.next()) {
             return Err(GcodeFault::SameGroup {
                 first: first.to_string(),
@@ -247,8 +252,10 @@ impl Control {
     /// Refuses the first position after G68 or G69, if it is not that of both axes of the plane.
     fn check_after_rotation(&mut self, block: &Block) -> Result<(), GcodeFault> {
         let is_absolute = !self.modal.incremental;
-        let moves = |value: f64| is_absolute || value != 0.0;
-        let given = self.modal.plane.axes().map(|axis| block.value(AXES[axis]).is_some_and(moves));
+        let given =
+            self.modal.plane.axes().map(|axis| {
+                block.value(AXES[axis]).is_some_and(|value| is_absolute || value != 0.0)
+            });
         // An arc or a cycle without them is at the present position.
         let is_straight = matches!(self.modal.motion, Some(Motion::Rapid | Motion::Feed));
         if !self.rotation_changed || given == [false; 2] && is_straight {
@@ -293,6 +300,66 @@ impl Control {
         }
         Ok(())
     }
+
+    /// Refuses an arc that is a full circle where coordinates are rounded, and notes one that is no circle.
+    pub(super) fn check_radii(
+        &mut self,
+        path: &StepPath,
+        end: &Position,
+    ) -> Result<(), GcodeFault> {
+        let StepPath::Arc { plane, centre, .. } = path else { return Ok(()) };
+        let [first, second] = plane.axes();
+        let (Some([x, y]), Some([u, v])) =
+            (in_plane(&self.position, [first, second]), in_plane(end, [first, second]))
+        else {
+            return Ok(());
+        };
+        let chord = (u - x).hypot(v - y);
+        let [across, along] = [(u - x).abs(), (v - y).abs()];
+        if chord > 0.0 && across.max(along) < 2.0 * self.modal.millimetres(self.modal.increment()) {
+            return Err(GcodeFault::Combination {
+                word: "an arc".to_owned(),
+                condition: "its end is less than two increments from its start, and can be the same where coordinates are rounded",
+                remedy: "leave the end out for a full circle, or leave out the arc",
+            });
+        }
+        // A control that moves the centre across the chord turns the arc about its start by the difference over the chord.
+        let [from, to] = [[x, y], [u, v]].map(|[x, y]| (x - centre[0]).hypot(y - centre[1]));
+        let turn = if chord > 0.0 { from.max(to) / chord } else { 0.0 };
+        if (from - to).abs() * turn.max(1.0) > RADII_TOLERANCE {
+            self.notes.add(self.line, Subject::TwoRadii);
+        }
+        Ok(())
+    }
+
+    /// Notes an arc by its radius whose path depends on digits below the least increment: one near a half circle, or near a full one.
+    /// A radius below 0 is that of an arc of more than a half circle.
+    pub(super) fn check_radius_digits(&mut self, radius: f64, end: &Position) {
+        let axes = self.modal.plane.axes();
+        let (Some([x, y]), Some([u, v])) = (in_plane(&self.position, axes), in_plane(end, axes))
+        else {
+            return;
+        };
+        let increment = self.modal.millimetres(self.modal.increment());
+        if [x, y, u, v, radius].into_iter().all(|value| is_multiple(value, increment)) {
+            return;
+        }
+        let is_major = radius < 0.0;
+        // If every number changes by an increment, the chord changes by √8 increments, and its middle stays within one of them.
+        let chord = (u - x).hypot(v - y);
+        let sagitta = |change: f64| {
+            let (radius, half) = (radius.abs() + change, 0.5 * chord - f64::sqrt(2.0) * change);
+            let height = (radius * radius - half * half).max(0.0).sqrt();
+            if is_major { radius + height } else { radius - height }
+        };
+        let farthest = if is_major { 2.0 * radius.abs() } else { chord };
+        let turn = farthest / chord.max(increment) * f64::sqrt(8.0) * increment;
+        if (sagitta(increment) - sagitta(-increment)).abs() + turn
+            > RADII_TOLERANCE.max(8.0 * increment)
+        {
+            self.notes.add(self.line, Subject::RoundedRadius);
+        }
+    }
 }
 
 /// Returns whether a word takes the number after a letter.
@@ -329,7 +396,7 @@ fn is_other_on_heidenhain(code: Code) -> bool {
 }
 
 /// Returns whether a value is a multiple of an increment, but for rounding in doubles.
-pub(super) fn is_multiple(value: f64, increment: f64) -> bool {
+fn is_multiple(value: f64, increment: f64) -> bool {
     let steps = value / increment;
     (steps - steps.round()).abs() <= 1e-6
 }
@@ -358,4 +425,9 @@ fn check_axis_words(block: &Block) -> Result<(), GcodeFault> {
         }
         _ => Ok(()),
     }
+}
+
+/// Returns two coordinates of a position, if both are known.
+fn in_plane(position: &Position, axes: [usize; 2]) -> Option<[f64; 2]> {
+    Some([position[axes[0]]?, position[axes[1]]?])
 }

@@ -5,14 +5,12 @@
 //! motions are the same, the program depends on none of these modes. The runs end at the block from which on both controls agree.
 //! They are executed at both positions of the switch for optional blocks, which the operator can turn between runs.
 
-use super::Plane;
-use super::interpreter::{End, Interpreter};
-use super::modal::Motion;
-use super::motion::Control;
-use super::note::{NoteKind, ProgramNote};
-use super::rules::{Choice, Rule};
-use super::state::{LengthOffset, Rotation, Tcp};
-use super::{Step, StepPath};
+use super::{Control, Motion};
+use crate::gcode::interpreter::{End, Interpreter};
+use crate::gcode::note::{NoteKind, ProgramNote};
+use crate::gcode::rules::{Choice, Rule};
+use crate::gcode::state::{LengthOffset, Rotation, Tcp};
+use crate::gcode::{Plane, Step, StepPath};
 use std::sync::Arc;
 use touchoff::Unit;
 
@@ -59,10 +57,22 @@ const MODES: [Mode; 14] = [
     Mode::Series,
 ];
 
+impl Interpreter<'_> {
+    /// Returns the notes about the blocks that were executed so far, by line.
+    pub fn notes(&self) -> Vec<ProgramNote> {
+        let mut notes = self.control.notes.list();
+        if let (Some(first), Some(end)) = (&self.first, self.end) {
+            notes.extend(note(first, &self.control, end));
+        }
+        notes.sort_by_key(|note| note.line);
+        notes
+    }
+}
+
 /// Notes the first block that the next run of a program executes otherwise, because the control keeps what it `left`.
 ///
 /// `first` is the program before its first block.
-pub(super) fn note(first: &Interpreter, left: &Control, end: End) -> Option<ProgramNote> {
+fn note(first: &Interpreter, left: &Control, end: End) -> Option<ProgramNote> {
     let end = left.stated(Rule::ProgramEnd).filter(|_| end == End::Stop);
     let is_reset = |mode: Mode| match end {
         Some(Choice::SetsModes) => matches!(mode, Mode::Plane | Mode::Distance | Mode::WorkOffset),
@@ -70,8 +80,10 @@ pub(super) fn note(first: &Interpreter, left: &Control, end: End) -> Option<Prog
         Some(Choice::ResetsModes) => mode != Mode::Origins,
         _ => false,
     };
-    let keeps = |mode: &Mode| mode.differs(&first.control, left) && !is_reset(*mode);
-    let kept: Vec<Mode> = MODES.into_iter().filter(keeps).collect();
+    let kept: Vec<Mode> = MODES
+        .into_iter()
+        .filter(|mode| mode.differs(&first.control, left) && !is_reset(*mode))
+        .collect();
     if kept.is_empty() {
         return None;
     }
@@ -108,8 +120,9 @@ fn first_difference(first: &Interpreter, left: &Control, kept: &[Mode]) -> Optio
             return line;
         }
         let mut asked = run.control.asked.keys().chain(next.control.asked.keys());
-        let is_open = |rule: &&Rule| rule.is_branched() && start.control.stated(**rule).is_none();
-        if let Some(rule) = asked.find(is_open) {
+        if let Some(rule) =
+            asked.find(|rule| rule.is_branched() && start.control.stated(**rule).is_none())
+        {
             starts.extend(under_each(&start, *rule));
         }
     }
@@ -118,12 +131,13 @@ fn first_difference(first: &Interpreter, left: &Control, kept: &[Mode]) -> Optio
 
 /// Returns a program under each choice of a rule.
 fn under_each<'a>(start: &Interpreter<'a>, rule: Rule) -> Vec<Interpreter<'a>> {
-    let under = |choice: Choice| {
-        let mut start = start.clone();
-        start.control.state_rule(rule, choice);
-        start
-    };
-    rule.choices().map(under).collect()
+    rule.choices()
+        .map(|choice| {
+            let mut start = start.clone();
+            start.control.state_rule(rule, choice);
+            start
+        })
+        .collect()
 }
 
 /// Executes two runs until they agree, and returns the line of the first block that they execute in different ways.

@@ -9,32 +9,13 @@
 //! drill. G83 returns to its last depth in rapid traverse; the clearance that a control keeps there is taken
 //! as zero.
 
-use super::block::Block;
-use super::code::Group;
-use super::linuxcnc;
-use super::modal::FeedMode;
-use super::motion::{AXES, Control};
-use super::rules::{Choice, Rule};
-use super::spindle::Spindle;
-use super::state::{ControlState, Position, Tcp};
-use super::{GcodeFault, MAX_CYCLE_STEPS, Plane, StepPath};
+use super::{AXES, Control, Cycle, FeedMode, Spindle};
+use crate::gcode::block::{Block, Group};
+use crate::gcode::linuxcnc;
+use crate::gcode::rules::{Choice, Rule};
+use crate::gcode::state::{Position, Tcp};
+use crate::gcode::{GcodeFault, MAX_CYCLE_STEPS, Plane, StepPath};
 use std::sync::Arc;
-use touchoff::Unit;
-
-/// Words that stay in force from one cycle to the next, lengths in millimetres as given.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Cycle {
-    number: u32,
-    retract: f64,
-    depth: f64,
-    peck: Option<f64>,
-    /// Distance mode under which retract and depth were given.
-    incremental: bool,
-    /// Level at the start of the series.
-    initial: Option<f64>,
-    unit: Unit,
-    state: Arc<ControlState>,
-}
 
 /// Returns whether a level is below another.
 fn is_below(level: Option<f64>, other: Option<f64>) -> bool {
@@ -168,8 +149,10 @@ impl Control {
 
     fn check_cycle(&self, block: &Block, word: &str) -> Result<(), GcodeFault> {
         let rotary = AXES[3..].iter().find(|letter| block.has(**letter));
-        let is_other = |cycle: &Cycle| *cycle.state != *self.state || cycle.unit != self.modal.unit;
-        let changed = self.cycle.as_ref().is_some_and(is_other);
+        let changed = self
+            .cycle
+            .as_ref()
+            .is_some_and(|cycle| *cycle.state != *self.state || cycle.unit != self.modal.unit);
         let (word, condition, remedy) = match rotary {
             Some(letter) => (
                 letter.to_string(),
