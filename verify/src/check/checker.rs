@@ -57,16 +57,6 @@ impl<'a> Checker<'a> {
         verifier: &'a Verifier<'a>,
         max_depths: &'a [f64],
     ) -> Result<Checker<'a>, VerifyError> {
-        let mode = |rapid| {
-            let limits = verifier.limits(rapid);
-            let mut certifier =
-                Certifier::new(verifier.bvh, verifier.tool)?.with_budget(verifier.budget);
-            for (surface, limit) in verifier.tool.info().surfaces.iter().zip(&limits) {
-                certifier = certifier.with_allowance(&surface.name, *limit)?;
-            }
-            let margin = limits.iter().fold(0.0f64, |margin, limit| margin.max(-limit));
-            Ok::<_, VerifyError>(Mode { certifier, limits, max_depths, margin })
-        };
         let certifier = Certifier::new(verifier.bvh, verifier.tool)?.with_budget(verifier.budget);
         let free_space = FreeSpace {
             certifier,
@@ -77,7 +67,14 @@ impl<'a> Checker<'a> {
             misses: 0,
             wait: 0,
         };
-        Ok(Checker { verifier, modes: [mode(false)?, mode(true)?], free_space })
+        Ok(Checker {
+            verifier,
+            modes: [
+                Mode::new(verifier, false, max_depths)?,
+                Mode::new(verifier, true, max_depths)?,
+            ],
+            free_space,
+        })
     }
 
     /// Returns the findings of a motion, `index` being its number in the program.
@@ -264,7 +261,22 @@ fn merge(found: &mut Vec<TimedFinding>, mut new: TimedFinding) {
     known.kind.include_bound(&new.kind);
 }
 
-impl Mode<'_> {
+impl<'a> Mode<'a> {
+    fn new(
+        verifier: &Verifier<'a>,
+        rapid: bool,
+        max_depths: &'a [f64],
+    ) -> Result<Mode<'a>, VerifyError> {
+        let limits = verifier.limits(rapid);
+        let mut certifier =
+            Certifier::new(verifier.bvh, verifier.tool)?.with_budget(verifier.budget);
+        for (surface, limit) in verifier.tool.info().surfaces.iter().zip(&limits) {
+            certifier = certifier.with_allowance(&surface.name, *limit)?;
+        }
+        let margin = limits.iter().fold(0.0f64, |margin, limit| margin.max(-limit));
+        Ok(Mode { certifier, limits, max_depths, margin })
+    }
+
     /// Returns the findings of a motion. Depths differ from those of the true motion by at most `slack`.
     fn motion(&mut self, motion: &Motion, resolution: f64, slack: f64) -> Vec<TimedFinding> {
         // One query for all surfaces proves most motions clear. Only the others are queried surface by surface.
@@ -353,21 +365,23 @@ impl FreeSpace<'_> {
             return false;
         }
         let needed = max_travel + margin;
+        // An ambiguous motion may travel any distance, of which no clearance is proved.
         let distance = if needed.is_finite() {
             self.certifier.clearance(&middle, 0.25 * needed).distance.low
         } else {
             0.0
         };
-        let is_outside = |this: &mut Self| {
-            this.is_within(&middle, 0.0)
-                || !this.has_inside
-                || this.certifier.is_buried(&middle) == Some(false)
-        };
-        if distance > needed && is_outside(self) {
+        // A tool that is far from all triangles may be buried in the material, but not within the free space of before.
+        if distance > needed
+            && (self.is_within(&middle, 0.0)
+                || !self.has_inside
+                || self.certifier.is_buried(&middle) == Some(false))
+        {
             self.ball = Some((middle, distance));
             self.misses = 0;
         } else {
             self.misses += 1;
+            // Motions in contact follow each other, so each miss in a row doubles the wait.
             self.wait = MAX_WAIT.min(1 << self.misses.min(4)) - 1;
         }
         self.is_within(&middle, needed)

@@ -82,8 +82,8 @@ impl MachineProgram {
         machine: Machine,
         setup: ControlSetup,
     ) -> Result<MachineProgram, MachineProgramError> {
-        let read = (Arc::from(text), Arc::new(machine));
-        MachineProgram::reading(name, read, setup, ControlRules::default())
+        let (text, machine) = (Arc::from(text), Arc::new(machine));
+        MachineProgram::reading(name, text, machine, setup, ControlRules::default())
     }
 
     /// Interprets a program in every way in which a control does, as far as its rules are not stated: a program per
@@ -113,13 +113,12 @@ impl MachineProgram {
                 let rules = rules.collect::<Vec<_>>().join(", ");
                 return Err(MachineProgramError::Readings { file: name.to_owned(), rules });
             }
-            let programs = assumed
-                .into_iter()
-                .map(|assumed| {
-                    let read = (Arc::clone(&text), Arc::clone(&machine));
-                    MachineProgram::reading(name, read, setup.clone(), assumed)
-                })
-                .collect::<Result<Vec<_>, _>>()?;
+            let programs = assumed.into_iter().map(|assumed| {
+                let (text, machine) = (Arc::clone(&text), Arc::clone(&machine));
+                MachineProgram::reading(name, text, machine, setup.clone(), assumed)
+            });
+            let programs = programs.collect::<Result<Vec<_>, _>>()?;
+            // A choice can lead to blocks that depend on further rules. Without such, every reading is known.
             let known = branched.len();
             for program in &programs {
                 let open = program.summary.open_rules.iter().filter(|(rule, _)| rule.is_branched());
@@ -136,12 +135,14 @@ impl MachineProgram {
     /// Interprets a program under the rules of the setup and those that are assumed besides.
     fn reading(
         name: &str,
-        (text, machine): (Arc<str>, Arc<Machine>),
+        text: Arc<str>,
+        machine: Arc<Machine>,
         mut setup: ControlSetup,
         assumed: ControlRules,
     ) -> Result<MachineProgram, MachineProgramError> {
         let stated = setup.rules.clone();
         setup.rules = stated.clone().and(&assumed);
+        // Whatever the control does, the axes are somewhere: that nobody knows where includes all choices.
         if setup.rules.get(Rule::ToolChange).is_none() {
             setup.rules = setup.rules.with(Rule::ToolChange, Choice::Moves);
         }
@@ -153,26 +154,22 @@ impl MachineProgram {
         if is_placed && machine.axes().iter().all(|axis| axis.home.is_some()) {
             setup.home = Some(machine.home().map(Option::unwrap_or_default));
         }
-        let file = name.to_owned();
-        let summary = MachineSummary::default();
-        let (off_is_tip, unnamed_tool) = (false, None);
         let mut program = MachineProgram {
-            file,
+            file: name.to_owned(),
             text,
             machine,
             setup,
             assumed,
-            off_is_tip,
-            unnamed_tool,
-            summary,
+            off_is_tip: false,
+            unnamed_tool: None,
+            summary: MachineSummary::default(),
         };
         let mut result = program.run(is_placed);
+        // Both facts hold for the whole program and follow from all of its steps, so that the first run cannot use them.
         if let Ok((summary, offsets)) = &result {
-            program.off_is_tip = !offsets.any
-                && summary
-                    .unknown
-                    .iter()
-                    .any(|unknown| matches!(unknown.cause, UnknownCause::NoOffset { .. }));
+            let mut causes = summary.unknown.iter().map(|unknown| unknown.cause);
+            program.off_is_tip =
+                !offsets.any && causes.any(|cause| matches!(cause, UnknownCause::NoOffset { .. }));
             program.unnamed_tool = offsets.unnamed;
             if program.off_is_tip || program.unnamed_tool.is_some() {
                 result = program.run(is_placed);
@@ -185,9 +182,11 @@ impl MachineProgram {
                 MachineProgramError::Under { error: Box::new(error), rules: assumed.to_string() }
             }
         })?;
-        let is_open =
-            |rule: &Rule| stated.get(*rule).is_none() && program.assumed.get(*rule).is_none();
-        program.summary.open_rules.retain(|rule, _| is_open(rule));
+        let assumed = &program.assumed;
+        program
+            .summary
+            .open_rules
+            .retain(|rule, _| stated.get(*rule).is_none() && assumed.get(*rule).is_none());
         Ok(program)
     }
 
@@ -268,7 +267,7 @@ impl MachineProgram {
             }
             let start = from.map(|(line, _)| line);
             let moves: Vec<Vec<Move>> =
-                frames.iter().map(|frame| moves_of(&step, &resolved, *frame, start)).collect();
+                frames.iter().map(|frame| frame.moves(&step, &resolved, start)).collect();
             if moves.iter().any(|moves| !moves.is_empty()) {
                 from = Some((step.line, tool));
             }
@@ -354,6 +353,7 @@ impl MachineProgram {
                     summary.add_violation(step.line, violation);
                 }
                 let pass = motion.singular_pass();
+                // A pass of several blocks is one.
                 if let (false, Some(pass)) = (is_last_singular, pass) {
                     summary.singular.push((step.line, pass));
                 }
@@ -391,56 +391,72 @@ struct MoveFrame {
     unit: Unit,
 }
 
-/// Returns the moves of a step. `from` is the line of the move before, if there is one.
-fn moves_of(step: &Step, resolved: &Resolved, frame: MoveFrame, from: Option<usize>) -> Vec<Move> {
-    let path = |motion: JointMotion, error: f64| match frame.link {
-        Some(link) => {
-            let related = motion.relative_to(link).expect("a link of the machine");
-            JointPath::new(related, frame.unit, error).relative_to(frame.origin)
+impl MoveFrame {
+    /// Returns the path of a joint motion that differs from that of the control by at most `error`, in mm.
+    fn path(&self, motion: JointMotion, error: f64) -> JointPath {
+        match self.link {
+            Some(link) => {
+                let related = motion.relative_to(link).expect("a link of the machine");
+                JointPath::new(related, self.unit, error).relative_to(self.origin)
+            }
+            None => JointPath::new(motion, self.unit, error),
         }
-        None => JointPath::new(motion, frame.unit, error),
-    };
-    let as_move = |from: Option<usize>, path: MovePath| Move {
+    }
+
+    /// Returns a rest at a pose of a joint motion.
+    fn rest(&self, motion: JointMotion, at: f64) -> Option<MovePath> {
+        let pose = self.path(motion, 0.0).pose(at);
+        Motion::with_spin(&pose, &pose).ok().map(MovePath::Straight)
+    }
+
+    /// Returns the moves of a step. `from` is the line of the move before, if there is one.
+    fn moves(&self, step: &Step, resolved: &Resolved, from: Option<usize>) -> Vec<Move> {
+        // Where no move comes before, the tool is checked at rest first.
+        let start = |motion: JointMotion| match from {
+            None => self.rest(motion, 0.0).map(|path| move_along(step, None, path)),
+            Some(_) => None,
+        };
+        // A move after a rest of its own begins at its own line.
+        let arriving = |path: MovePath| move_along(step, Some(from.unwrap_or(step.line)), path);
+        match resolved {
+            Resolved::Unknown(_) | Resolved::ToolChange => Vec::new(),
+            Resolved::AnyRapid(any) => {
+                let AnyRapid { straight, edges } = &**any;
+                let straight = *straight;
+                let Some(edges) = edges else {
+                    return self.moves(step, &Resolved::Motions(vec![(straight, 0.0)]), from);
+                };
+                let corner = self.path(straight, 0.0).pose(0.0);
+                let ways = edges.iter().map(|edge| {
+                    let end = self.path(*edge, 0.0).pose(1.0);
+                    end.tip() - corner.tip()
+                });
+                let all = MovePath::Box(Box::new(RapidBox::new(corner, ways.collect())));
+                start(straight).into_iter().chain([arriving(all)]).collect()
+            }
+            Resolved::Arrival(motion, _) => {
+                let rest = self.rest(**motion, 1.0);
+                rest.map(|path| move_along(step, None, path)).into_iter().collect()
+            }
+            Resolved::Motions(motions) => {
+                let first = motions.first().and_then(|(motion, _)| start(*motion));
+                let motions = motions.iter().map(|(motion, error)| {
+                    arriving(MovePath::Joints(Box::new(self.path(*motion, *error))))
+                });
+                first.into_iter().chain(motions).collect()
+            }
+        }
+    }
+}
+
+/// Returns the move of a step along a path, which begins at a line.
+fn move_along(step: &Step, from: Option<usize>, path: MovePath) -> Move {
+    Move {
         line: step.line,
         from,
         rapid: step.rapid,
         tool: step.state.tool,
         work_offset: Some(step.state.work_offset),
         path,
-    };
-    let rest = |motion: JointMotion, at: f64| {
-        let pose = path(motion, 0.0).pose(at);
-        Motion::with_spin(&pose, &pose).ok().map(MovePath::Straight)
-    };
-    // Where no move comes before, the tool is checked at rest first.
-    let start = |motion: JointMotion| match from {
-        None => rest(motion, 0.0).map(|path| as_move(None, path)),
-        Some(_) => None,
-    };
-    let arriving = |path: MovePath| as_move(Some(from.unwrap_or(step.line)), path);
-    match resolved {
-        Resolved::Unknown(_) | Resolved::ToolChange => Vec::new(),
-        Resolved::AnyRapid(any) => {
-            let AnyRapid { straight, edges } = &**any;
-            let straight = *straight;
-            let Some(edges) = edges else {
-                return moves_of(step, &Resolved::Motions(vec![(straight, 0.0)]), frame, from);
-            };
-            let corner = path(straight, 0.0).pose(0.0);
-            let ways =
-                edges.iter().map(|edge| path(*edge, 0.0).pose(1.0).tip() - corner.tip()).collect();
-            let all = MovePath::Box(Box::new(RapidBox::new(corner, ways)));
-            start(straight).into_iter().chain([arriving(all)]).collect()
-        }
-        Resolved::Arrival(motion, _) => {
-            rest(**motion, 1.0).map(|path| as_move(None, path)).into_iter().collect()
-        }
-        Resolved::Motions(motions) => {
-            let first = motions.first().and_then(|(motion, _)| start(*motion));
-            let motions = motions
-                .iter()
-                .map(|(motion, error)| arriving(MovePath::Joints(Box::new(path(*motion, *error)))));
-            first.into_iter().chain(motions).collect()
-        }
     }
 }

@@ -227,13 +227,11 @@ impl<'a> Verifier<'a> {
     /// Returns the greatest depth that each surface can have.
     fn max_depths(&self) -> Result<Vec<f64>, VerifyError> {
         let certifier = Certifier::new(self.bvh, self.tool)?;
-        Ok((0..self.allowed.len())
-            .map(SurfaceId)
-            .map(|surface| {
-                let depth = certifier.max_possible_depth(surface).expect("a surface of the tool");
-                depth.unwrap_or(f64::INFINITY)
-            })
-            .collect())
+        let max_depths = (0..self.allowed.len()).map(|index| {
+            let depth = certifier.max_possible_depth(SurfaceId(index));
+            depth.expect("a surface of the tool").unwrap_or(f64::INFINITY)
+        });
+        Ok(max_depths.collect())
     }
 
     /// Returns whether a surface of the tool could violate its limit or its margin in feed or in rapid traverse, as far
@@ -257,13 +255,11 @@ impl<'a> Verifier<'a> {
 
     /// Returns the depth that each surface is allowed.
     fn limits(&self, rapid: bool) -> Vec<f64> {
-        self.allowed
-            .iter()
-            .map(|allowed| {
-                let allowed = allowed.unwrap_or(self.tolerance);
-                if rapid { allowed.min(self.tolerance) } else { allowed }
-            })
-            .collect()
+        let limits = self.allowed.iter().map(|allowed| {
+            let allowed = allowed.unwrap_or(self.tolerance);
+            if rapid { allowed.min(self.tolerance) } else { allowed }
+        });
+        limits.collect()
     }
 }
 

@@ -82,7 +82,8 @@ impl Block {
         self.clear();
         let (deletable, mut cursor) = begin(line);
         self.deletable = deletable;
-        // The assignments whose value depends on a parameter.
+        // The assignments whose value depends on a parameter: with another assignment in the block, it depends on the control
+        // whether that is in force yet.
         let mut uses = 0;
         while let Some(byte) = next(&mut cursor)? {
             match byte {
@@ -100,10 +101,14 @@ impl Block {
                 }
                 _ if byte.is_ascii_alphabetic() => self.word(&mut cursor, parameters)?,
                 b',' => {
-                    let (meaning, remedy) =
-                        ("a rounded or chamfered corner", "post the program with its motions");
-                    let word = cursor.rest().chars().take(2).flat_map(char::escape_debug).collect();
-                    return Err(GcodeFault::NotRead { word, meaning, remedy });
+                    let word: String =
+                        cursor.rest().chars().take(2).flat_map(char::escape_debug).collect();
+                    let meaning = "a rounded or chamfered corner";
+                    return Err(GcodeFault::not_read(
+                        word,
+                        meaning,
+                        "post the program with its motions",
+                    ));
                 }
                 b'0'..=b'9' if self.is_empty() => return Err(numbered_line(cursor)),
                 _ => return Err(unexpected(&cursor)),
@@ -112,6 +117,7 @@ impl Block {
         self.assigns = !self.assignments.is_empty();
         self.assigns_beside_value =
             self.assigns && self.computed != 0 || uses > 0 && self.assignments.len() > 1;
+        // All values of the block were computed with the parameters before it (RS274/NGC, section 3.3.3.4).
         for (parameter, value) in self.assignments.drain(..) {
             parameters.assign(parameter, value);
         }
@@ -162,6 +168,7 @@ impl Block {
                 }
                 self.unused |= bit;
                 self.values[usize::from(letter as u8 - b'A')] = value;
+                // Only these are counted in increments (`whole_numbers`).
                 let is_coordinate = "XYZABCIJKRQ".contains(letter);
                 let is_whole = !written.contains(['.', '[', '#']);
                 if is_coordinate && is_whole && value != 0.0 {
@@ -190,8 +197,7 @@ impl Block {
             Group::PassedOver => self.passed_over.push(code),
             group => match &mut self.codes[group as usize] {
                 Some(first) => {
-                    let (first, second) = (first.to_string(), code.to_string());
-                    return Err(GcodeFault::SameGroup { first, second });
+                    return Err(GcodeFault::same_group(first, code));
                 }
                 empty => *empty = Some(code),
             },
@@ -234,6 +240,7 @@ impl Block {
             }
         };
         if self.keyword.replace(keyword).is_some() {
+            // Both keywords begin with it.
             return Err(GcodeFault::Repeated { word: 'T' });
         }
         // Parameters of the transformation, and no comment: offsets of the axes, or another data set than the first.
@@ -256,6 +263,11 @@ impl Block {
     /// Returns the word of a group.
     pub(super) fn code_of(&self, group: Group) -> Option<Code> {
         self.codes[group as usize]
+    }
+
+    /// Returns the number of the word of a group, in tenths.
+    pub(super) fn tenths_of(&self, group: Group) -> Option<u32> {
+        self.code_of(group).map(|code| code.tenths)
     }
 
     /// Returns whether the block has a letter that no word has used.
@@ -289,8 +301,7 @@ impl Block {
 
     /// Returns whether one of the letters has a number other than 0.
     pub(super) fn is_nonzero(&self, letters: &str) -> bool {
-        let value = |letter: char| self.values[usize::from(letter as u8 - b'A')];
-        letters.chars().any(|letter| self.has(letter) && value(letter) != 0.0)
+        letters.chars().any(|letter| self.value(letter).is_some_and(|value| value != 0.0))
     }
 
     /// Returns whether a block with M98 has words that are no part of the call, or numbers that are computed: a control that
@@ -307,11 +318,12 @@ impl Block {
     /// Returns whether a word of the block can name axes without moving them, or by a path of its own. What it leaves of the axis
     /// words moves on some controls.
     pub(super) fn owns_axis_words(&self) -> bool {
-        let names_axes = |code: &Code| matches!(code.tenths, 150 | 230 | 500 | 501 | 670);
         let owners = [Group::OneShot, Group::Machine, Group::Dwell];
         owners.into_iter().any(|group| self.code_of(group).is_some())
             || self.code_of(Group::Rotation).is_some_and(|code| code.tenths != 690)
-            || self.passed_over.iter().any(|code| code.letter == 'G' && names_axes(code))
+            || self.passed_over.iter().any(|code| {
+                code.letter == 'G' && matches!(code.tenths, 150 | 230 | 500 | 501 | 670)
+            })
     }
 
     /// Returns whether the block has a position in program coordinates for a motion.
@@ -338,9 +350,8 @@ impl Block {
 
     /// Returns the number after a letter, which counts as used.
     pub(super) fn take(&mut self, letter: char) -> Option<f64> {
-        let index = usize::from(letter as u8 - b'A');
-        let found = self.has(letter).then_some(self.values[index]);
-        self.unused &= !(1 << index);
+        let found = self.value(letter);
+        self.unused &= !(1 << (letter as u8 - b'A'));
         found
     }
 
@@ -411,7 +422,7 @@ fn check_comment(comment: &str) -> Result<(), GcodeFault> {
     if begins(comment, "py,") || begins(comment, "pyrun,") {
         let meaning = "a comment whose Python LinuxCNC executes";
         let remedy = "remove it, or write a blank before the comma";
-        return Err(GcodeFault::NotRead { word: "py,".to_owned(), meaning, remedy });
+        return Err(GcodeFault::not_read("py,", meaning, remedy));
     }
     Ok(())
 }
@@ -512,7 +523,7 @@ pub(super) fn o_word(cursor: &mut Cursor, parameters: &Parameters) -> Result<OWo
         Some(b'[') if role != Role::Title => {
             let remedy = "assign parameters from #31 on before the call instead";
             let meaning = "a word with arguments";
-            Err(GcodeFault::NotRead { word: word.to_ascii_lowercase(), meaning, remedy })
+            Err(GcodeFault::not_read(word.to_ascii_lowercase(), meaning, remedy))
         }
         Some(_) => Err(unexpected(cursor)),
     }
@@ -523,6 +534,12 @@ pub(super) fn o_word(cursor: &mut Cursor, parameters: &Parameters) -> Result<OWo
 pub(super) struct Code {
     pub(super) letter: char,
     pub(super) tenths: u32,
+}
+
+impl Code {
+    pub(super) fn is_m(&self) -> bool {
+        self.letter == 'M'
+    }
 }
 
 impl fmt::Display for Code {
@@ -657,7 +674,7 @@ fn refused_g(code: Code, tenths: u32) -> GcodeFault {
         }
         _ => return GcodeFault::UnknownCode { word: code.to_string() },
     };
-    GcodeFault::NotRead { word: code.to_string(), meaning, remedy }
+    GcodeFault::not_read(code, meaning, remedy)
 }
 
 fn refused_m(code: Code, tenths: u32) -> GcodeFault {
@@ -678,5 +695,5 @@ fn refused_m(code: Code, tenths: u32) -> GcodeFault {
         970 => ("a call of a block number", "write M98 with an O-number"),
         _ => return GcodeFault::UnknownCode { word: code.to_string() },
     };
-    GcodeFault::NotRead { word: code.to_string(), meaning, remedy }
+    GcodeFault::not_read(code, meaning, remedy)
 }

@@ -255,16 +255,19 @@ impl Control {
         self.check_words(block)?;
         self.feed(block)?;
         self.tool(block)?;
+        // S beside G4 is a time on Sinumerik, so it is refused before it is read as a speed.
         self.dwell(block)?;
         let turned = self.spindle_words(block);
         self.motion_mode(block);
+        // The spindle changes before such a motion or after it, by the control.
         if let Some(word) = turned.filter(|_| block.is_programmed() && self.modal.is_feed()) {
-            return Err(GcodeFault::Combination {
+            return Err(GcodeFault::combination(
                 word,
-                condition: "its block has a motion at feed rate",
-                remedy: "write it in a block before or after",
-            });
+                "its block has a motion at feed rate",
+                "write it in a block before or after",
+            ));
         }
+        // The unit and the distance mode hold for the numbers of their own block.
         self.settings(block)?;
         self.numbers(block);
         self.coordinates(block)?;
@@ -276,11 +279,11 @@ impl Control {
             && block.is_programmed()
             && (self.length_implicit || self.state.tcp == Tcp::Transformation)
         {
-            return Err(GcodeFault::Combination {
-                word: "a position".to_owned(),
-                condition: "G18 or G19 is in force and the length of the tool counts without G43, across the plane",
-                remedy: "post the program in G17",
-            });
+            return Err(GcodeFault::combination(
+                "a position",
+                "G18 or G19 is in force and the length of the tool counts without G43, across the plane",
+                "post the program in G17",
+            ));
         }
         self.check_offset(block)?;
         self.motion(block)
@@ -292,13 +295,14 @@ impl Control {
             return Ok(());
         }
         if block.has('S') {
-            return Err(GcodeFault::Combination {
-                word: "S".to_owned(),
-                condition: "its block has G4, of which it is the time in turns of the spindle",
-                remedy: "write it in a block before",
-            });
+            return Err(GcodeFault::combination(
+                "S",
+                "its block has G4, of which it is the time in turns of the spindle",
+                "write it in a block before",
+            ));
         }
         let dialect = self.stated(Rule::Dialect);
+        // Native programs of Sinumerik and of Heidenhain have the time in F.
         let has_time_in_x = !matches!(dialect, Some(Choice::Sinumerik | Choice::Heidenhain));
         if block.take('P').is_none() && block.code_of(Group::Motion).is_none() && has_time_in_x {
             block.take('X');
@@ -308,6 +312,7 @@ impl Control {
 
     /// Gives the numbers of a block the unit that the control gives them.
     fn numbers(&mut self, block: &mut Block) {
+        // Zeros are the same in every unit.
         let has_length = block.is_nonzero("XYZIJKRQ");
         self.unit_used |= has_length;
         if !self.modal.unit_stated && has_length {
@@ -319,13 +324,16 @@ impl Control {
         if block.has_whole() && self.choice(Rule::WholeNumbers) == Choice::Increments {
             let has_angles = block.code_of(Group::Rotation).is_some();
             let (length, motion) = (self.modal.increment(), self.modal.motion);
+            // The rule is asked only where it matters: each that is not stated doubles the readings.
             let has_whole_radius = block.is_whole('R') || block.is_whole('Q');
             let keeps_radii = has_whole_radius && self.choice(Rule::WholeRadii) == Choice::Units;
             block.scale_whole(|letter| match letter {
                 'R' | 'Q' if keeps_radii => 1.0,
+                // The least increment of an angle, whatever the unit.
                 'A' | 'B' | 'C' => 1e-3,
                 // The number of repeats of a cycle.
                 'K' if matches!(motion, Some(Motion::Cycle(_))) => 1.0,
+                // The angles of G68 and G68.2.
                 'I' | 'J' | 'K' | 'R' if has_angles => 1e-3,
                 _ => length,
             });
@@ -357,6 +365,7 @@ impl Control {
             }
             self.modal.feed_mode = mode;
         }
+        // F of G93 is the time of one block.
         if self.modal.feed_mode == FeedMode::InverseTime {
             self.modal.feed = None;
         }
@@ -383,38 +392,37 @@ impl Control {
 
     /// Reads the settings that convert and interpret the other words.
     fn settings(&mut self, block: &mut Block) -> Result<(), GcodeFault> {
-        if block
-            .passed_over
-            .iter()
-            .any(|code| *code == READ_AHEAD || code.letter == 'M' && is_output(*code))
-        {
+        // P is the number of blocks that Haas reads ahead (G103), or of an output of LinuxCNC (M62 to M65).
+        if block.passed_over.iter().any(|code| {
+            matches!((code.letter, code.tenths), ('G', 1030) | ('M', 620 | 630 | 640 | 650))
+        }) {
             block.take('P');
         }
-        let tenths = |group| block.code_of(group).map(|code| code.tenths);
-        if let Some(unit) = tenths(Group::Units) {
+        if let Some(unit) = block.tenths_of(Group::Units) {
             let is_inch = matches!(unit, 200 | 700 | 7000);
             let unit = if is_inch { Unit::Inch } else { Unit::Millimetre };
+            // Fanuc then reads its offsets in the other unit, too.
             let switches = self.unit_used && unit != self.modal.unit;
             if switches && matches!(self.stated(Rule::Dialect), None | Some(Choice::Iso)) {
-                return Err(GcodeFault::Combination {
-                    word: if is_inch { "G20" } else { "G21" }.to_owned(),
-                    condition: "the program has lengths in another unit",
-                    remedy: "select the unit once, at the start",
-                });
+                return Err(GcodeFault::combination(
+                    if is_inch { "G20" } else { "G21" },
+                    "the program has lengths in another unit",
+                    "select the unit once, at the start",
+                ));
             }
             self.modal.unit = unit;
             self.modal.unit_stated = true;
         }
-        if let Some(distance) = tenths(Group::Distance) {
+        if let Some(distance) = block.tenths_of(Group::Distance) {
             self.modal.incremental = distance == 910;
         }
-        if let Some(distance) = tenths(Group::ArcDistance) {
+        if let Some(distance) = block.tenths_of(Group::ArcDistance) {
             self.modal.absolute_centres = Some(distance == 901);
         }
-        if let Some(retract) = tenths(Group::Retract) {
+        if let Some(retract) = block.tenths_of(Group::Retract) {
             self.modal.retract_to_r = Some(retract == 990);
         }
-        if let Some(plane) = tenths(Group::Plane) {
+        if let Some(plane) = block.tenths_of(Group::Plane) {
             self.select(match plane {
                 170 => Plane::Xy,
                 180 => Plane::Zx,
@@ -443,12 +451,14 @@ impl Control {
                 tenths => Motion::Cycle(tenths / 10),
             });
         }
-        if !matches!(self.modal.motion, Some(Motion::Cycle(_))) {
+        // Another motion word, or G80, ends the series with its initial level.
+        if self.modal.cycle().is_none() {
             self.cycle = None;
         }
         let is_tapping = matches!(self.modal.motion, Some(Motion::Cycle(74 | 84)));
         let has_motion =
             [Group::CycleOff, Group::Motion].map(|group| block.code_of(group).is_some());
+        // M29 holds until G80 or another motion word.
         if has_motion.contains(&true) && !is_tapping {
             self.spindle.end_rigid();
         }
@@ -459,11 +469,11 @@ impl Control {
         if plane != self.modal.plane {
             let is_rotated = matches!(self.state.rotation, Rotation::Plane { .. });
             if is_rotated || self.cycle.is_some() {
-                return Err(GcodeFault::Combination {
-                    word: "another plane".to_owned(),
-                    condition: "a rotation (G68) or a canned cycle is in force",
-                    remedy: "end it with G69 or G80 before",
-                });
+                return Err(GcodeFault::combination(
+                    "another plane",
+                    "a rotation (G68) or a canned cycle is in force",
+                    "end it with G69 or G80 before",
+                ));
             }
         }
         self.modal.plane = plane;
@@ -477,6 +487,11 @@ impl Control {
             *value = value.map(|value| self.modal.millimetres(value));
         }
         axes
+    }
+
+    /// Takes the number after a letter, a length in millimetres.
+    fn take_length(&self, block: &mut Block, letter: char) -> Option<f64> {
+        block.take(letter).map(|length| self.modal.millimetres(length))
     }
 
     /// Checks that there is a feed rate.
@@ -525,6 +540,11 @@ impl Control {
     }
 }
 
+/// Returns two coordinates of a position, if both are known.
+fn in_plane(position: &Position, axes: [usize; 2]) -> Option<[f64; 2]> {
+    Some([position[axes[0]]?, position[axes[1]]?])
+}
+
 impl Modal {
     fn new() -> Modal {
         Modal {
@@ -538,6 +558,14 @@ impl Modal {
             feed: None,
             exact_path: false,
             retract_to_r: None,
+        }
+    }
+
+    /// Returns the number of the canned cycle in force.
+    fn cycle(&self) -> Option<u32> {
+        match self.motion {
+            Some(Motion::Cycle(number)) => Some(number),
+            _ => None,
         }
     }
 
@@ -555,14 +583,6 @@ impl Modal {
     fn millimetres(&self, length: f64) -> f64 {
         length * self.unit.millimetres()
     }
-}
-
-/// The number of blocks that a Haas reads ahead (G103 P).
-const READ_AHEAD: Code = Code { letter: 'G', tenths: 1030 };
-
-/// Returns whether an M word sets an output of LinuxCNC (M62 to M65).
-fn is_output(code: Code) -> bool {
-    matches!(code.tenths, 620 | 630 | 640 | 650)
 }
 
 /// Takes the words of a path mode.
@@ -585,7 +605,7 @@ fn path_control(block: &mut Block, code: Code) -> Result<(), GcodeFault> {
         _ => {
             let meaning = "a spline, or a mode of a lathe, without the word of its path mode";
             let remedy = "post the program with lines and arcs";
-            Err(GcodeFault::NotRead { word: code.to_string(), meaning, remedy })
+            Err(GcodeFault::not_read(code, meaning, remedy))
         }
     }
 }
@@ -614,6 +634,7 @@ impl Control {
         let mut word = None;
         if let Some(speed) = block.take('S') {
             self.spindle.speed = Some(speed);
+            // From one speed to another it turns on. S0 stops it, and S after that starts it.
             let stood = before.speed.is_none_or(|speed| speed == 0.0);
             let is_on = matches!(before.turn, Spindle::Clockwise | Spindle::CounterClockwise);
             word = (is_on && stood != (speed == 0.0)).then(|| "S".to_owned());
@@ -670,6 +691,7 @@ impl Control {
     fn stop_spindle(&mut self) {
         self.spindle.end_rigid();
         self.spindle.tapping = None;
+        // A program that leaves the spindle to the operator does so after the change, too.
         if self.spindle.turn != Spindle::NotStated {
             self.spindle.turn = Spindle::Stopped;
         }
@@ -683,6 +705,7 @@ impl Control {
         ) {
             return self.spindle.turn;
         }
+        // What the stop has left matters at the next feed, and the rule is asked there only.
         if self.spindle.paused && !rapid {
             self.spindle.paused = false;
             if self.choice(Rule::Stop) == Choice::StopsSpindle {

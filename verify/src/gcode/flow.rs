@@ -2,7 +2,7 @@
 
 use super::block::{Block, Group, Label, OWord, Role, begin, next, o_word};
 use super::expression::Parameters;
-use super::{GcodeFault, MAX_CALLS, MAX_REPEATED};
+use super::{GcodeError, GcodeFault, MAX_CALLS, MAX_REPEATED};
 use std::collections::{HashMap, HashSet};
 use touchoff::Unit;
 
@@ -149,7 +149,7 @@ impl Subprograms {
     ///
     /// # Errors
     /// A label that stands twice, a `sub` in another, a `sub` without `endsub`; each with its line.
-    fn find(text: &str) -> Result<Subprograms, (usize, GcodeFault)> {
+    fn find(text: &str) -> Result<Subprograms, GcodeError> {
         let mut found = Subprograms::default();
         let mut lines: HashMap<Label, usize> = HashMap::new();
         let mut open: Option<(Label, usize)> = None;
@@ -165,22 +165,16 @@ impl Subprograms {
             let Ok(OWord { label, role }) = o_word(&mut cursor, &Parameters::default()) else {
                 continue;
             };
-            let nesting = |word, problem| {
-                let label = label.to_string();
-                Err((at, GcodeFault::Nesting { label, word, problem }))
-            };
             match (role, &open) {
                 (Role::Call, _) => {}
                 (Role::Sub, Some(_)) => {
-                    return nesting(
-                        "sub",
-                        "it stands in another subprogram: end that with endsub before",
-                    );
+                    let problem = "it stands in another subprogram: end that with endsub before";
+                    return Err(nesting(at, &label, "sub", problem));
                 }
                 (Role::Sub | Role::Title, _) => {
                     if let Some(first) = lines.insert(label.clone(), at) {
-                        let label = label.to_string();
-                        return Err((at, GcodeFault::SecondLabel { label, first }));
+                        let fault = GcodeFault::SecondLabel { label: label.to_string(), first };
+                        return Err(GcodeError { line: at, fault });
                     }
                     if role == Role::Sub {
                         open = Some((label.clone(), at));
@@ -194,17 +188,15 @@ impl Subprograms {
                     open = None;
                 }
                 (Role::EndSub, Some(_)) => {
-                    return nesting("endsub", "another subprogram is open: end that before");
+                    let problem = "another subprogram is open: end that before";
+                    return Err(nesting(at, &label, "endsub", problem));
                 }
                 // The end of a subprogram that has a title is refused where it is executed.
                 (Role::EndSub, None) => {}
             }
         }
         match open {
-            Some((label, at)) => {
-                let problem = "it has no endsub: add it";
-                Err((at, GcodeFault::Nesting { label: label.to_string(), word: "sub", problem }))
-            }
+            Some((label, at)) => Err(nesting(at, &label, "sub", "it has no endsub: add it")),
             None => Ok(found),
         }
     }
@@ -217,6 +209,11 @@ impl Subprograms {
     fn get(&self, label: &Label) -> Option<&Subprogram> {
         self.known.get(label)
     }
+}
+
+/// Returns the error of a `sub` or `endsub` at a wrong place.
+fn nesting(line: usize, label: &Label, word: &'static str, problem: &'static str) -> GcodeError {
+    GcodeError { line, fault: GcodeFault::Nesting { label: label.to_string(), word, problem } }
 }
 
 /// A subprogram that is being executed.
@@ -249,7 +246,7 @@ pub(super) struct Flow<'a> {
 }
 
 impl<'a> Flow<'a> {
-    pub(super) fn new(extent: &Extent<'a>) -> Result<Flow<'a>, (usize, GcodeFault)> {
+    pub(super) fn new(extent: &Extent<'a>) -> Result<Flow<'a>, GcodeError> {
         Ok(Flow {
             text: extent.text,
             place: extent.start,
@@ -267,15 +264,19 @@ impl<'a> Flow<'a> {
     ///
     /// # Errors
     /// If the text ends without an end of the program, with its last line; if too many blocks are repeated.
-    pub(super) fn next_line(&mut self) -> Result<Option<(usize, &'a str)>, (usize, GcodeFault)> {
+    pub(super) fn next_line(&mut self) -> Result<Option<(usize, &'a str)>, GcodeError> {
         let Some((line, after)) = line(self.text, self.place) else {
             let is_whole = self.closed && self.calls.is_empty();
+            // The place is after the last line. An empty text has its fault in line 1.
             let last = self.place.line.max(2) - 1;
-            return if is_whole { Ok(None) } else { Err((last, GcodeFault::Unfinished)) };
+            return match is_whole {
+                true => Ok(None),
+                false => Err(GcodeError { line: last, fault: GcodeFault::Unfinished }),
+            };
         };
         let number = self.place.line;
         self.place = after;
-        self.count(1).map_err(|fault| (number, fault))?;
+        self.count(1).map_err(|fault| GcodeError { line: number, fault })?;
         Ok(Some((number, line)))
     }
 
@@ -370,7 +371,7 @@ impl<'a> Flow<'a> {
         }
     }
 
-    /// Calls a subprogram with a title (M98) or of O-words (`call`).
+    /// Calls a subprogram with a title (M98) or of O-words (`call`), once at least.
     pub(super) fn call(
         &mut self,
         label: Label,
@@ -391,9 +392,6 @@ impl<'a> Flow<'a> {
         }
         if self.calls.len() >= MAX_CALLS {
             return Err(GcodeFault::TooDeep);
-        }
-        if times == 0 {
-            return Ok(());
         }
         self.found.insert(label.clone());
         let locals = parameters.take_locals(role == Role::Sub);

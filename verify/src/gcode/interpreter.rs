@@ -49,10 +49,9 @@ impl<'a> Interpreter<'a> {
             return Err(GcodeError { line, fault: GcodeFault::LoneReturn });
         }
         let extent = flow::extent(text);
-        let located = |(line, fault)| GcodeError { line, fault };
-        let flow = Flow::new(&extent).map_err(located)?;
+        let flow = Flow::new(&extent)?;
         if setup.rules.get(Rule::Dialect) == Some(Choice::Rs274Ngc) && flow.has_subprograms() {
-            linuxcnc::check_text(extent.text).map_err(located)?;
+            linuxcnc::check_text(extent.text)?;
         }
         let mut control = Control::new(setup);
         let dialect = setup.rules.get(Rule::Dialect);
@@ -87,9 +86,7 @@ impl<'a> Interpreter<'a> {
 
     /// Executes the next line.
     fn advance(&mut self) -> Result<(), GcodeError> {
-        let Some((line, text)) =
-            self.flow.next_line().map_err(|(line, fault)| GcodeError { line, fault })?
-        else {
+        let Some((line, text)) = self.flow.next_line()? else {
             self.finish(End::Percent);
             return Ok(());
         };
@@ -113,6 +110,7 @@ impl<'a> Interpreter<'a> {
     /// Executes the block of a line, and those after semicolons if they end a block.
     fn blocks(&mut self, line: usize, text: &str, block: &mut Block) -> Result<(), GcodeFault> {
         self.control.line = line;
+        // Prose is taken for a comment, so that the rule is asked about blocks only.
         let after = after_semicolon(text).filter(|after| after.split(';').any(could_be_block));
         self.line(line, text, block)?;
         let Some(after) = after else { return Ok(()) };
@@ -124,11 +122,11 @@ impl<'a> Interpreter<'a> {
                 break;
             }
             if block.code_of(Group::Subprogram).is_some() {
-                return Err(GcodeFault::Combination {
-                    word: "`;`".to_owned(),
-                    condition: "its block calls or ends a subprogram",
-                    remedy: "write the block after it on a line of its own",
-                });
+                return Err(GcodeFault::combination(
+                    "`;`",
+                    "its block calls or ends a subprogram",
+                    "write the block after it on a line of its own",
+                ));
             }
             self.line(line, text, block)?;
         }
@@ -140,15 +138,15 @@ impl<'a> Interpreter<'a> {
         let expected = "the number of a program after P";
         let Some(number) = block.take_whole('P', 0, 99_999_999, expected)? else {
             let needed = "P with the number of a program";
-            return Err(GcodeFault::Missing { word: "M98".to_owned(), needed });
+            return Err(GcodeFault::missing("M98", needed));
         };
         // Older controls take the last four digits as the number, and those before as repeats.
         if number > 9999 && self.flow.has(&Label::Number(number % 10_000)) {
-            return Err(GcodeFault::Combination {
-                word: format!("M98 P{number}"),
-                condition: "its last four digits are the number of a program, too",
-                remedy: "give the program another number, and write repeats after L",
-            });
+            return Err(GcodeFault::combination(
+                format!("M98 P{number}"),
+                "its last four digits are the number of a program, too",
+                "give the program another number, and write repeats after L",
+            ));
         }
         let times = block.take_whole('L', 1, 99_999_999, "a number of repeats from 1 after L")?;
         Ok((Label::Number(number), times.unwrap_or(1)))
@@ -160,11 +158,11 @@ impl<'a> Interpreter<'a> {
         match self.control.stated(Rule::Dialect) == Some(Choice::Rs274Ngc)
             && self.flow.has_passed(label)
         {
-            true => Err(GcodeFault::Combination {
-                word: format!("a call of {label}"),
-                condition: "it stands before the call and was not called before",
-                remedy: "move it to the end of the file: LinuxCNC seeks it after the call only",
-            }),
+            true => Err(GcodeFault::combination(
+                format!("a call of {label}"),
+                "it stands before the call and was not called before",
+                "move it to the end of the file: LinuxCNC seeks it after the call only",
+            )),
             false => Ok(()),
         }
     }
@@ -175,6 +173,7 @@ impl<'a> Interpreter<'a> {
         if let Some(text) = switch {
             let digits = text.bytes().take_while(u8::is_ascii_digit).count();
             let first = self.switch.get_or_insert_with(|| text[..digits].to_owned());
+            // `/2` is a switch of its own on Fanuc and Siemens.
             if *first != text[..digits] {
                 self.control.notes.add(line, Subject::OptionalSwitches);
             }
@@ -189,6 +188,7 @@ impl<'a> Interpreter<'a> {
         if is_optional {
             self.control.notes.add(line, Subject::ExecutedOptionalBlock);
         }
+        // A line with an O-word has no other word.
         if let Some(word) = block.label.take() {
             if word.role == Role::Call {
                 self.check_order(&word.label)?;
@@ -206,13 +206,14 @@ impl<'a> Interpreter<'a> {
             && (is_call || self.control.stated(Rule::Dialect) != Some(Choice::Iso))
         {
             // LinuxCNC reads P and L, and executes no other word of the block.
-            return Err(GcodeFault::Combination {
-                word: code.to_string(),
-                condition: "its block has other words",
-                remedy: "write them in a block before",
-            });
+            return Err(GcodeFault::combination(
+                code,
+                "its block has other words",
+                "write them in a block before",
+            ));
         }
         self.control.execute(line, block)?;
+        // A canned cycle in a repeated subprogram has many steps per block.
         self.flow.count(self.control.pending.len())?;
         let call = if is_call { Some(self.called(block)?) } else { None };
         block.check_used()?;
@@ -224,7 +225,7 @@ impl<'a> Interpreter<'a> {
             (None, Some(_)) => self.flow.end_subprogram(&mut self.parameters)?,
             (None, None) => {}
         }
-        match block.code_of(Group::Stop).map(|code| code.tenths) {
+        match block.tenths_of(Group::Stop) {
             Some(20 | 300) => {
                 self.finish(End::Stop);
                 if let Some(line) = self.flow.text_after_end() {
@@ -276,14 +277,18 @@ fn after_semicolon(text: &str) -> Option<&str> {
     Some(&text[position + 1..])
 }
 
+/// Returns whether a character may stand before the first word: of `/`, of a number of its switch, or a blank.
+fn can_precede_block(c: char) -> bool {
+    c == '/' || c.is_ascii_digit() || c.is_whitespace()
+}
+
 /// Returns whether a text begins as a block does, and not as prose: with a word, an assignment or a statement.
 fn could_be_block(text: &str) -> bool {
-    let begin = |c: char| c == '/' || c.is_ascii_digit() || c.is_whitespace();
-    let mut rest = text.trim_start_matches(begin);
+    let mut rest = text.trim_start_matches(can_precede_block);
     while let Some(comment) = rest.strip_prefix('(') {
         // A comment without an end is refused as on a line of its own.
         let Some((_, after)) = comment.split_once(')') else { return true };
-        rest = after.trim_start_matches(begin);
+        rest = after.trim_start_matches(can_precede_block);
     }
     let mut letters = rest.chars().filter(|c| !c.is_whitespace());
     let is_word = match letters.next() {

@@ -244,6 +244,7 @@ impl MachineSummary {
         });
         let unknown = &mut self.unknown[position];
         unknown.count += 1;
+        // The way to the first position is the operator's, and that to the reference position the machine's.
         let is_said = matches!(cause, UnknownCause::Start | UnknownCause::Home);
         if !step.rapid || !is_said {
             unknown.open_line.get_or_insert(step.line);
@@ -262,95 +263,92 @@ impl MachineSummary {
             Some(_) => (),
         }
     }
-}
 
-impl MachineSummary {
     /// Returns what this reading leaves open.
     fn gaps(&self) -> Vec<Gap> {
         let mut gaps = Vec::new();
-        let mut add = |line: usize, is_open: bool, reason: String| {
-            gaps.push(Gap { line, is_open, reason });
-        };
         for UnknownMotions { cause, count, line, open_line } in &self.unknown {
             let plural = if *count == 1 { "" } else { "s" };
             let reason =
                 format!("{count} motion{plural} not checked, first at line {line}: {cause}");
-            add(open_line.unwrap_or(*line), open_line.is_some(), reason);
+            gaps.push(match open_line {
+                Some(open_line) => Gap::open(*open_line, reason),
+                None => Gap::said(*line, reason),
+            });
         }
         for (tool, line) in &self.unchecked_tools {
-            add(*line, true, format!("no motion of T{tool} is checked"));
+            gaps.push(Gap::open(*line, format!("no motion of T{tool} is checked")));
         }
         if let Some(line) = self.any_rotary_rapid {
             let reason = "the path of several axes in rapid traverse, one of them rotary, is checked on the straight line \
                           only: state `rapid` of the control, or the `rapid` rates of the machine's axes";
-            add(line, true, reason.to_owned());
+            gaps.push(Gap::open(line, reason.to_owned()));
         }
         if let Some(line) = self.open_rules.get(&Rule::Unit) {
             let reason = "no G20 or G21 before a length, which is read in mm: write one, or state `unit` of the control";
-            add(*line, true, reason.to_owned());
+            gaps.push(Gap::open(*line, reason.to_owned()));
         }
         if let Some(line) = self.open_rules.get(&Rule::StartOffset) {
             let reason = "no work offset before a position, which is taken in G54: write G54, or state `start_offset` of the \
                           control";
-            add(*line, true, reason.to_owned());
+            gaps.push(Gap::open(*line, reason.to_owned()));
         }
-        let first_feed = |turn: Spindle| self.spindle.iter().find(|(.., spindle)| *spindle == turn);
-        if let (Some((line, ..)), false) = (first_feed(Spindle::NotStated), self.states_spindle()) {
+        if let (Some(line), false) = (self.first_feed(Spindle::NotStated), self.states_spindle()) {
             let reason = "the program feeds and never starts the spindle: write M3 with S before";
-            add(*line, true, reason.to_owned());
+            gaps.push(Gap::open(line, reason.to_owned()));
         }
-        if let Some((line, ..)) = first_feed(Spindle::AfterTapping) {
+        if let Some(line) = self.first_feed(Spindle::AfterTapping) {
             let reason = "a tapping cycle before a feed leaves the spindle standing or turning, by the control: write M3 after G80";
-            add(*line, true, reason.to_owned());
+            gaps.push(Gap::open(line, reason.to_owned()));
         }
         if let Some(line) = self.no_offset {
-            let names_tool = self.tools.iter().any(|tool| tool.number.is_some());
-            let remedy = match names_tool {
-                true => {
-                    ": write G43, or state the lengths of the tools in the job (0 if Z of the work offset is that of the tip)"
-                }
-                false => "",
-            };
-            let reason = format!(
-                "no tool length offset (G43) is in force: positions are taken as those of the tip, as if the work offset were \
-                 set with the tool{remedy}"
-            );
-            add(line, names_tool, reason);
+            let reason = "no tool length offset (G43) is in force: positions are taken as those of the tip, as if the work offset \
+                          were set with the tool";
+            let remedy = "write G43, or state the lengths of the tools in the job (0 if Z of the work offset is that of the tip)";
+            // A program that names no tool is set up with the one that is in the spindle.
+            gaps.push(match self.tools.iter().any(|tool| tool.number.is_some()) {
+                true => Gap::open(line, format!("{reason}: {remedy}")),
+                false => Gap::said(line, reason.to_owned()),
+            });
         }
         if let Some(line) = self.tcp_without_length {
             let reason =
                 format!("tips are taken as programmed, but {}", UnknownCause::TcpWithoutLength);
-            add(line, true, reason);
+            gaps.push(Gap::open(line, reason));
         }
         if self.limits_unchecked {
             let reason = "the limits of X, Y and Z are not checked: state the origin of G54 in `work_offsets`";
-            add(0, false, reason.to_owned());
+            gaps.push(Gap::said(0, reason.to_owned()));
         }
         for note in &self.notes {
-            let is_open = matches!(
-                note.kind,
+            let is_open = match note.kind {
+                NoteKind::PassedOver { .. } => continue,
                 NoteKind::OtherProgram
-                    | NoteKind::OptionalSwitches
-                    | NoteKind::TwoRadii
-                    | NoteKind::RoundedRadius
-                    | NoteKind::OffsetOrShift
-                    | NoteKind::LeftModes { .. }
-            );
+                | NoteKind::OptionalSwitches
+                | NoteKind::TwoRadii
+                | NoteKind::RoundedRadius
+                | NoteKind::OffsetOrShift
+                | NoteKind::LeftModes { .. } => true,
+                _ => false,
+            };
             let times =
                 if note.count > 1 { format!(" ({} times)", note.count) } else { String::new() };
-            if !matches!(note.kind, NoteKind::PassedOver { .. }) {
-                add(note.line, is_open, format!("{}{times}", note.kind));
-            }
+            let reason = format!("{}{times}", note.kind);
+            gaps.push(Gap { line: note.line, is_open, reason });
         }
         gaps
+    }
+
+    /// Returns the line of the first feed with a spindle.
+    fn first_feed(&self, wanted: Spindle) -> Option<usize> {
+        self.spindle.iter().find(|(.., spindle)| *spindle == wanted).map(|(line, ..)| *line)
     }
 
     /// Returns whether the program says something about the spindle before some feed. Otherwise it leaves the spindle to the
     /// operator.
     pub fn states_spindle(&self) -> bool {
-        let is_stated =
-            |spindle: Spindle| !matches!(spindle, Spindle::NotStated | Spindle::AfterTapping);
-        self.spindle.iter().any(|(.., spindle)| is_stated(*spindle))
+        let mut spindles = self.spindle.iter().map(|(.., spindle)| spindle);
+        spindles.any(|spindle| !matches!(spindle, Spindle::NotStated | Spindle::AfterTapping))
     }
 }
 
@@ -366,15 +364,13 @@ impl MachineProgram {
                 }
             }
         }
-        let mut gaps: Vec<Gap> = gaps
-            .into_iter()
-            .map(|(mut gap, rules)| {
-                if let Some(under) = MachineProgram::under(readings, &rules) {
-                    gap.reason = format!("{} ({under})", gap.reason);
-                }
-                gap
-            })
-            .collect();
+        let gaps = gaps.into_iter().map(|(mut gap, rules)| {
+            if let Some(under) = MachineProgram::under(readings, &rules) {
+                gap.reason = format!("{} ({under})", gap.reason);
+            }
+            gap
+        });
+        let mut gaps: Vec<Gap> = gaps.collect();
         gaps.sort_by_key(|gap| (!gap.is_open, gap.line));
         gaps
     }

@@ -43,55 +43,56 @@ impl Control {
         if is_linuxcnc {
             linuxcnc::check_cycle(block, number)?;
             if self.modal.feed_mode == FeedMode::InverseTime {
-                return Err(GcodeFault::Combination {
+                return Err(GcodeFault::combination(
                     word,
-                    condition: "G93 is in force, which LinuxCNC does not allow",
-                    remedy: "write G94 before",
-                });
+                    "G93 is in force, which LinuxCNC does not allow",
+                    "write G94 before",
+                ));
             }
         }
         // LinuxCNC taps along another axis there (`convert_cycle_g74_g84` of its interpreter).
         let in_plane = self.modal.plane.axes().map(|axis| AXES[axis]);
         if self.cycle.is_some() && !is_linuxcnc && !in_plane.iter().any(|letter| block.has(*letter))
         {
-            return Err(GcodeFault::Combination {
+            return Err(GcodeFault::combination(
                 word,
-                condition: "its block goes on with a series and has no place of a hole, and is executed or not",
-                remedy: "write X or Y",
-            });
+                "its block goes on with a series and has no place of a hole, and is executed or not",
+                "write X or Y",
+            ));
         }
+        // LinuxCNC drills along the normal of the plane; Fanuc by a parameter along Z.
         let is_across = self.modal.plane != Plane::Xy;
         if is_across && (!is_linuxcnc || matches!(number, 74 | 84)) {
-            return Err(GcodeFault::Combination {
+            return Err(GcodeFault::combination(
                 word,
-                condition: "G18 or G19 is in force, where a cycle is along Z or along the normal of the plane",
-                remedy: "write G17 before, or state `dialect = \"rs274ngc\"` of the control",
-            });
+                "G18 or G19 is in force, where a cycle is along Z or along the normal of the plane",
+                "write G17 before, or state `dialect = \"rs274ngc\"` of the control",
+            ));
         }
         if block.code_of(Group::Length).is_some() {
-            return Err(GcodeFault::Combination {
+            return Err(GcodeFault::combination(
                 word,
-                condition: "its block changes the length offset, before or after its initial level is taken",
-                remedy: "write G43 or G49 in a block before",
-            });
+                "its block changes the length offset, before or after its initial level is taken",
+                "write G43 or G49 in a block before",
+            ));
         }
         if matches!(number, 74 | 84) && !self.can_tap(number) {
-            return Err(GcodeFault::Combination {
+            return Err(GcodeFault::combination(
                 word,
-                condition: "the spindle does not turn into the thread, which some controls start themselves",
-                remedy: "write M3 before G84, M4 before G74, or M29 for rigid tapping",
-            });
+                "the spindle does not turn into the thread, which some controls start themselves",
+                "write M3 before G84, M4 before G74, or M29 for rigid tapping",
+            ));
         }
         // Fanuc ends G86 by turning the spindle clockwise (parameter 5112).
         if number == 86
             && self.spindle(false) == Spindle::CounterClockwise
             && matches!(self.stated(Rule::Dialect), None | Some(Choice::Iso))
         {
-            return Err(GcodeFault::Combination {
+            return Err(GcodeFault::combination(
                 word,
-                condition: "the spindle turns counter-clockwise, which it does not do after it on Fanuc",
-                remedy: "post the hole with its motions",
-            });
+                "the spindle turns counter-clockwise, which it does not do after it on Fanuc",
+                "post the hole with its motions",
+            ));
         }
         self.check_feed(&word)?;
         self.check_tilted(block)?;
@@ -104,6 +105,7 @@ impl Control {
             (83, Some(peck), Some((retract, depth))) => ((retract - depth) / peck).ceil().max(1.0),
             _ => 1.0,
         };
+        // The way to a hole takes three steps at most, and each stroke as many.
         if f64::from(repeats) * (3.0 * strokes + 3.0) > MAX_CYCLE_STEPS as f64 {
             return Err(GcodeFault::CycleTooLong);
         }
@@ -132,11 +134,11 @@ impl Control {
         let by_l = block.take_whole('L', 0, 1_000_000, "a number of repeats after L")?.unwrap_or(1);
         let by_k = block.take_whole('K', 0, 1_000_000, "a number of repeats after K")?.unwrap_or(1);
         if by_l == 0 || by_k == 0 {
-            return Err(GcodeFault::Combination {
-                word: if by_l == 0 { "L0" } else { "K0" }.to_owned(),
-                condition: "its block has a canned cycle, to whose place Haas moves",
-                remedy: "write G80 and G0, and the cycle again",
-            });
+            return Err(GcodeFault::combination(
+                if by_l == 0 { "L0" } else { "K0" },
+                "its block has a canned cycle, to whose place Haas moves",
+                "write G80 and G0, and the cycle again",
+            ));
         }
         if by_l == by_k {
             return Ok(by_l);
@@ -169,7 +171,7 @@ impl Control {
             ),
             None => return Ok(()),
         };
-        Err(GcodeFault::Combination { word, condition, remedy })
+        Err(GcodeFault::combination(word, condition, remedy))
     }
 
     /// Takes the words of the cycle. Those that are missing are the ones of the cycle before.
@@ -178,24 +180,27 @@ impl Control {
         let incremental = self.modal.incremental;
         // LinuxCNC asks for R and the depth again after another cycle.
         let is_linuxcnc = self.stated(Rule::Dialect) == Some(Choice::Rs274Ngc);
+        // Under the other distance mode the numbers had another meaning.
         let usable = known.filter(|cycle| cycle.incremental == incremental);
         let usable = usable.filter(|cycle| !is_linuxcnc || cycle.number == number);
         let normal = self.modal.plane.normal();
-        let length = |value: f64| self.modal.millimetres(value);
-        let missing = |needed| GcodeFault::Missing { word: word.to_owned(), needed };
-        let depth = block.take(AXES[normal]).map(length).or(usable.map(|cycle| cycle.depth));
-        let retract = block.take('R').map(length).or(usable.map(|cycle| cycle.retract));
+        let depth = self.take_length(block, AXES[normal]).or(usable.map(|cycle| cycle.depth));
+        let retract = self.take_length(block, 'R').or(usable.map(|cycle| cycle.retract));
         let peck = match number {
-            73 | 74 | 83 | 84 => block.take('Q').map(length).or(known.and_then(|cycle| cycle.peck)),
+            73 | 74 | 83 | 84 => {
+                self.take_length(block, 'Q').or(known.and_then(|cycle| cycle.peck))
+            }
             _ => known.and_then(|cycle| cycle.peck),
         };
         // The time of the dwell.
         block.take('P');
-        let depth = depth.ok_or_else(|| missing("the depth: Z in G17, Y in G18, X in G19"))?;
-        let retract = retract.ok_or_else(|| missing("the retract plane R"))?;
+        let depth = depth
+            .ok_or_else(|| GcodeFault::missing(word, "the depth: Z in G17, Y in G18, X in G19"))?;
+        let retract = retract.ok_or_else(|| GcodeFault::missing(word, "the retract plane R"))?;
         if matches!(number, 73 | 83) && !peck.is_some_and(|peck| peck > 0.0) {
-            return Err(missing("a positive depth of peck Q"));
+            return Err(GcodeFault::missing(word, "a positive depth of peck Q"));
         }
+        // G98 returns to the level before the first cycle of the series, whatever the others have left.
         let initial = known.map_or(self.position[normal], |cycle| cycle.initial);
         let (unit, state) = (self.modal.unit, Arc::clone(&self.state));
         Ok(Cycle { number, retract, depth, peck, incremental, initial, unit, state })

@@ -1,6 +1,6 @@
 //! Motions: lines, arcs, returns to reference positions, machine coordinates.
 
-use super::{AXES, Control, Motion};
+use super::{AXES, Control, Motion, in_plane};
 use crate::gcode::block::{Block, Group};
 use crate::gcode::error::ArcFault;
 use crate::gcode::rules::{Choice, Rule};
@@ -31,7 +31,7 @@ impl Control {
             None if has_axes => Err(GcodeFault::NoMotionMode),
             Some(Motion::Cycle(number)) if explicit => {
                 let word = format!("G{number}");
-                Err(GcodeFault::Missing { word, needed: "X, Y or Z" })
+                Err(GcodeFault::missing(word, "X, Y or Z"))
             }
             _ => Ok(()),
         }
@@ -62,6 +62,7 @@ impl Control {
         let turns = self.take_vector(block)?;
         self.check_position(block)?;
         let (mut end, _, mut commanded) = self.take_end(block);
+        // The machine turns its axes to the tool vector: the angles are not the program's.
         if turns {
             end[3..].fill(None);
             commanded[3..].fill(true);
@@ -77,11 +78,11 @@ impl Control {
         }
         let given = AXES[3..].iter().find(|letter| block.has(**letter));
         if let Some(letter) = given {
-            return Err(GcodeFault::Combination {
-                word: letter.to_string(),
-                condition: "G43.5 is in force",
-                remedy: "write the tool vector I J K, or select G43.4",
-            });
+            return Err(GcodeFault::combination(
+                letter,
+                "G43.5 is in force",
+                "write the tool vector I J K, or select G43.4",
+            ));
         }
         if !block.has_any("IJK") {
             return Ok(false);
@@ -98,35 +99,33 @@ impl Control {
     fn arc(&mut self, block: &mut Block, clockwise: bool) -> Result<(), GcodeFault> {
         let word = if clockwise { "G2" } else { "G3" };
         if self.state.tcp == Tcp::Vector {
-            return Err(GcodeFault::Combination {
-                word: word.to_owned(),
-                condition: "G43.5 gives I J K another meaning",
-                remedy: "post the arc as lines, or select G43.4",
-            });
+            return Err(GcodeFault::combination(
+                word,
+                "G43.5 gives I J K another meaning",
+                "post the arc as lines, or select G43.4",
+            ));
         }
         self.check_feed(word)?;
         self.check_tilted(block)?;
-        let modal = self.modal;
-        let length = |value: f64| modal.millimetres(value);
         let in_plane = self.modal.plane.axes().map(|axis| ['I', 'J', 'K'][axis]);
         if self.stated(Rule::Dialect) == Some(Choice::Heidenhain)
             && block.has(in_plane[0]) != block.has(in_plane[1])
         {
-            return Err(GcodeFault::Combination {
-                word: word.to_owned(),
-                condition: "one coordinate of its pole is left out, which keeps it on Heidenhain",
-                remedy: "write both",
-            });
+            return Err(GcodeFault::combination(
+                word,
+                "one coordinate of its pole is left out, which keeps it on Heidenhain",
+                "write both",
+            ));
         }
         let words = ArcWords {
             clockwise,
             plane: self.modal.plane,
-            offsets: ['I', 'J', 'K'].map(|letter| block.take(letter).map(length)),
+            offsets: ['I', 'J', 'K'].map(|letter| self.take_length(block, letter)),
             absolute: match self.modal.absolute_centres {
                 Some(absolute) => absolute,
                 None => self.choice(Rule::Dialect) == Choice::Heidenhain && !self.modal.incremental,
             },
-            radius: block.take('R').map(length),
+            radius: self.take_length(block, 'R'),
             turns: self.turns(block)?,
             unit: self.modal.unit,
         };
@@ -151,37 +150,49 @@ impl Control {
         {
             let meaning = "a number of turns on LinuxCNC alone";
             let remedy = "write an arc per turn, or state `dialect = \"rs274ngc\"` of the control";
-            return Err(GcodeFault::NotRead { word: "P of an arc".to_owned(), meaning, remedy });
+            return Err(GcodeFault::not_read("P of an arc", meaning, remedy));
         }
         Ok(turns.unwrap_or(1))
     }
 
     /// Executes G53.
     fn machine_coordinates(&mut self, block: &mut Block) -> Result<(), GcodeFault> {
-        let refused = |condition, remedy| {
-            Err(GcodeFault::Combination { word: "G53".to_owned(), condition, remedy })
-        };
         if self.modal.incremental {
-            return refused("G91 is in force", "write G90 before");
+            return Err(GcodeFault::combination("G53", "G91 is in force", "write G90 before"));
         }
         if self.state.tcp != Tcp::Off {
-            return refused("tool centre point control is on", self.tcp_remedy());
+            return Err(GcodeFault::combination(
+                "G53",
+                "tool centre point control is on",
+                self.tcp_remedy(),
+            ));
         }
         if matches!(self.state.rotation, Rotation::Plane { .. }) {
-            return refused("a plane is rotated", "end it with G69 before");
+            return Err(GcodeFault::combination(
+                "G53",
+                "a plane is rotated",
+                "end it with G69 before",
+            ));
         }
         match self.modal.motion {
             None if self.stated(Rule::Dialect) == Some(Choice::Rs274Ngc) => {
                 return Err(GcodeFault::NoMotionMode);
             }
+            // Elsewhere G53 alone moves in rapid traverse.
             None | Some(Motion::Rapid) => {}
             // Positioned in rapid traverse on Fanuc, at feed rate elsewhere.
-            Some(Motion::Feed) => return refused("G1 is in force", "write G0 in the block"),
-            _ => return refused("an arc or a canned cycle is in force", "write G0 in the block"),
+            Some(Motion::Feed) => {
+                let remedy = "write G0 in the block";
+                return Err(GcodeFault::combination("G53", "G1 is in force", remedy));
+            }
+            _ => {
+                let condition = "an arc or a canned cycle is in force";
+                return Err(GcodeFault::combination("G53", condition, "write G0 in the block"));
+            }
         }
         let axes = self.take_axes(block);
         if axes.iter().all(Option::is_none) {
-            return Err(GcodeFault::Missing { word: "G53".to_owned(), needed: "an axis word" });
+            return Err(GcodeFault::missing("G53", "an axis word"));
         }
         let mut target = axes;
         // Without the place of the part on the machine its coordinates lead nowhere that is known.
@@ -197,6 +208,7 @@ impl Control {
         let is_homeward = axes[2].map_or(self.position[2].is_none(), |z| z == 0.0);
         self.move_machine(axes.map(|value| value.is_some()), target, StepPath::Line);
         self.pending.back_mut().expect("the step that was added").is_homeward = is_homeward;
+        // G53 can cancel the length offset as G28 does, by a parameter of Fanuc (5001, EVO).
         if axes[2].is_some() && self.state.length != LengthOffset::Off {
             self.returned = self.returned.or(Some(true));
         }
@@ -209,17 +221,26 @@ impl Control {
         block: &mut Block,
         word: &str,
     ) -> Result<(), GcodeFault> {
-        let refused = |condition, remedy| {
-            Err(GcodeFault::Combination { word: word.to_owned(), condition, remedy })
-        };
         if self.state.tcp != Tcp::Off {
-            return refused("tool centre point control is on", self.tcp_remedy());
+            return Err(GcodeFault::combination(
+                word,
+                "tool centre point control is on",
+                self.tcp_remedy(),
+            ));
         }
-        if matches!(self.modal.motion, Some(Motion::Cycle(_))) {
-            return refused("a canned cycle is in force", "write G80 before");
+        if self.modal.cycle().is_some() {
+            return Err(GcodeFault::combination(
+                word,
+                "a canned cycle is in force",
+                "write G80 before",
+            ));
         }
         if matches!(self.state.rotation, Rotation::Plane { .. }) {
-            return refused("a plane is rotated", "end it with G69 before");
+            return Err(GcodeFault::combination(
+                word,
+                "a plane is rotated",
+                "end it with G69 before",
+            ));
         }
         if word == "G30" {
             block.take_whole('P', 2, 2, "P2, or no P")?;
@@ -234,10 +255,15 @@ impl Control {
         } else {
             // All axes on LinuxCNC and Haas, none on Fanuc.
             let needed = "the axes that return";
-            return Err(GcodeFault::Missing { word: word.to_owned(), needed });
+            return Err(GcodeFault::missing(word, needed));
         }
+        // LinuxCNC returns along the axis that is rotated.
         if self.state.origin_rotation != 0.0 && named[0] != named[1] {
-            return refused("the work offset is rotated", "name X and Y, or neither");
+            return Err(GcodeFault::combination(
+                word,
+                "the work offset is rotated",
+                "name X and Y, or neither",
+            ));
         }
         let home = if word == "G28" { self.home } else { self.second_home };
         let target = home.map_or([None; 6], |home| home.map(Some));
@@ -338,11 +364,9 @@ fn path(words: &ArcWords, start: Position, end: Position) -> Result<StepPath, Ar
         return Err(ArcFault::OtherPlane { letter: ['I', 'J', 'K'][normal], centre: letters });
     }
     let offsets = [words.offsets[first], words.offsets[second]];
-    let at = |position: Position| Some([position[first]?, position[second]?]);
-    let known = at(start).zip(at(end));
+    let known = in_plane(&start, [first, second]).zip(in_plane(&end, [first, second]));
     match (words.radius, offsets) {
         (None, [None, None]) => Err(ArcFault::NoCentre { centre: letters }),
-        (Some(_), [None, None]) if known.is_none() => Ok(StepPath::Undetermined),
         (Some(radius), [None, None]) => match known {
             Some((start, end)) => by_radius(words, radius, start, end),
             None => Ok(StepPath::Undetermined),
@@ -421,6 +445,7 @@ fn counterclockwise(from: [f64; 2], to: [f64; 2], clockwise: bool) -> f64 {
     let cross = from[0] * to[1] - from[1] * to[0];
     let dot = from[0] * to[0] + from[1] * to[1];
     let angle = if clockwise { (-cross).atan2(dot) } else { cross.atan2(dot) };
+    // The end of a spiral in the direction of its start is a whole turn away: a full circle was told apart before.
     if angle <= 0.0 { angle + TAU } else { angle }
 }
 

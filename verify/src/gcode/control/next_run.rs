@@ -74,15 +74,9 @@ impl Interpreter<'_> {
 /// `first` is the program before its first block.
 fn note(first: &Interpreter, left: &Control, end: End) -> Option<ProgramNote> {
     let end = left.stated(Rule::ProgramEnd).filter(|_| end == End::Stop);
-    let is_reset = |mode: Mode| match end {
-        Some(Choice::SetsModes) => matches!(mode, Mode::Plane | Mode::Distance | Mode::WorkOffset),
-        Some(Choice::CancelsLength) => mode == Mode::Length,
-        Some(Choice::ResetsModes) => mode != Mode::Origins,
-        _ => false,
-    };
     let kept: Vec<Mode> = MODES
         .into_iter()
-        .filter(|mode| mode.differs(&first.control, left) && !is_reset(*mode))
+        .filter(|mode| mode.differs(&first.control, left) && !mode.is_reset(end))
         .collect();
     if kept.is_empty() {
         return None;
@@ -92,9 +86,12 @@ fn note(first: &Interpreter, left: &Control, end: End) -> Option<ProgramNote> {
     if all.is_none() && end == Some(Choice::SetsModes) {
         return None;
     }
-    let alone = |mode: Mode| Some((mode, first_difference(first, left, &[mode])?));
-    let alone: Vec<(Mode, usize)> = kept.iter().copied().filter_map(alone).collect();
+    let mut alone: Vec<(Mode, usize)> = Vec::new();
+    for mode in &kept {
+        alone.extend(first_difference(first, left, &[*mode]).map(|line| (*mode, line)));
+    }
     let line = alone.iter().map(|(_, line)| *line).chain(all).min()?;
+    // Modes that differ only together are named together.
     let guilty: Vec<Mode> = match alone.is_empty() {
         true => kept,
         false => alone.into_iter().map(|(mode, _)| mode).collect(),
@@ -123,6 +120,7 @@ fn first_difference(first: &Interpreter, left: &Control, kept: &[Mode]) -> Optio
         if let Some(rule) =
             asked.find(|rule| rule.is_branched() && start.control.stated(**rule).is_none())
         {
+            // From here on a rule decides which the first run has not asked: each of its choices is a run of its own.
             starts.extend(under_each(&start, *rule));
         }
     }
@@ -171,6 +169,18 @@ fn run_beside(run: &mut Interpreter, next: &mut Interpreter) -> Option<usize> {
 }
 
 impl Mode {
+    /// Returns whether a control that states `end` sets it at M2 and M30 as it is at the start.
+    fn is_reset(self, end: Option<Choice>) -> bool {
+        match end {
+            Some(Choice::SetsModes) => {
+                matches!(self, Mode::Plane | Mode::Distance | Mode::WorkOffset)
+            }
+            Some(Choice::CancelsLength) => self == Mode::Length,
+            Some(Choice::ResetsModes) => self != Mode::Origins,
+            _ => false,
+        }
+    }
+
     /// Returns whether two controls differ in it.
     fn differs(self, first: &Control, second: &Control) -> bool {
         let [(modal, state), (other, others)] =
@@ -195,12 +205,7 @@ impl Mode {
             Mode::Register => first.last_register != second.last_register,
             Mode::Tcp => (state.tcp, first.transformed) != (others.tcp, second.transformed),
             Mode::Staged => first.staged != second.staged,
-            Mode::Series => {
-                let cycle = |motion: Option<Motion>| {
-                    motion.filter(|motion| matches!(motion, Motion::Cycle(_)))
-                };
-                (&first.cycle, cycle(modal.motion)) != (&second.cycle, cycle(other.motion))
-            }
+            Mode::Series => (&first.cycle, modal.cycle()) != (&second.cycle, other.cycle()),
         }
     }
 
@@ -302,42 +307,49 @@ impl Control {
     /// Returns whether all blocks that follow are executed as another control executes them. The words about the spindle have
     /// no part in it, and what was stated may be more than on the other one.
     fn agrees(&self, next: &Control) -> bool {
-        let changed = |control: &Control| {
-            let axes = control.origin_changed;
-            [control.length_changed, control.rotation_changed].into_iter().chain(axes)
-        };
         MODES.iter().all(|mode| !mode.differs(self, next))
             && self.state == next.state
             && self.position == next.position
             && self.vector == next.vector
             && self.returned == next.returned
             && (self.tcp_position_needed || !next.tcp_position_needed)
-            && changed(self).zip(changed(next)).all(|(changed, next)| changed || !next)
+            && self.changed().zip(next.changed()).all(|(changed, next)| changed || !next)
+    }
+
+    /// Returns whether the length offset, a rotation, and the origin or the shift of each axis have changed since a position was
+    /// stated.
+    fn changed(&self) -> impl Iterator<Item = bool> {
+        [self.length_changed, self.rotation_changed].into_iter().chain(self.origin_changed)
     }
 }
 
 /// Returns whether two steps are one motion of the machine.
 fn is_same_motion(step: &Step, other: &Step) -> bool {
-    let kind = |step: &Step| (step.rapid, step.commanded, step.is_return, step.tool_vector);
-    let path = |step: &Step| match step.path {
+    manner(step) == manner(other) && is_same_end(step, other)
+}
+
+/// Returns all that makes a motion but its ends.
+fn manner(step: &Step) -> impl PartialEq + use<> {
+    let path = match step.path {
         // Set by the rules and the machine alone.
         StepPath::ToolChange(_) => StepPath::ToolChange([None; 6]),
         path => path,
     };
-    let turns = |step: &Step| (step.state.tcp, step.state.turns_with_workpiece());
-    kind(step) == kind(other)
-        && path(step) == path(other)
-        && turns(step) == turns(other)
-        && is_same_end(step, other)
+    let turns = (step.state.tcp, step.state.turns_with_workpiece());
+    (step.rapid, step.commanded, step.is_return, step.tool_vector, path, turns)
+}
+
+/// Returns whether two coordinates are the same, or both unknown.
+fn is_near(first: Option<f64>, second: Option<f64>) -> bool {
+    match (first, second) {
+        (Some(first), Some(second)) => (first - second).abs() <= TOLERANCE,
+        (first, second) => first == second,
+    }
 }
 
 /// Returns whether two steps end at one position of the machine, along the axes that they move. Where its coordinates are not
 /// known, all that they depend on has to be the same.
 fn is_same_end(step: &Step, other: &Step) -> bool {
-    let is_near = |first: Option<f64>, second: Option<f64>| match (first, second) {
-        (Some(first), Some(second)) => (first - second).abs() <= TOLERANCE,
-        (first, second) => first == second,
-    };
     let [state, other_state] = [step, other].map(|step| &*step.state);
     let machine = [step, other].map(|step| step.state.to_machine(step.end));
     let workpiece = [step, other].map(|step| step.state.to_workpiece(step.end));
