@@ -153,22 +153,23 @@ impl Statement {
     }
 
     fn tool(&self) -> Found {
-        let read = || -> Result<Entry, String> {
-            let unit = self
-                .unit
-                .ok_or("the program states no `UNITS/`: add `UNITS/MM` or `UNITS/INCHES`")?;
-            let names: &[&str] = match self.keyword.as_str() {
-                "" => &CUTTER,
-                "MILL" => &MILL,
-                "DRILL" => &DRILL,
-                "TURN" | "GROOVE" | "THREAD" => {
-                    return Err("it is a turning tool, which is no solid of revolution".to_owned());
-                }
-                kind => return Err(format!("`TLDATA/{kind}` cannot be read yet")),
-            };
-            self.entry(unit, &self.numbers(names)?)
+        self.read()
+            .map_err(|reason| Problem::new(&format!("cutter of line {}", self.line), &reason))
+    }
+
+    fn read(&self) -> Result<Entry, String> {
+        let unit =
+            self.unit.ok_or("the program states no `UNITS/`: add `UNITS/MM` or `UNITS/INCHES`")?;
+        let names: &[&str] = match self.keyword.as_str() {
+            "" => &CUTTER,
+            "MILL" => &MILL,
+            "DRILL" => &DRILL,
+            "TURN" | "GROOVE" | "THREAD" => {
+                return Err("it is a turning tool, which is no solid of revolution".to_owned());
+            }
+            kind => return Err(format!("`TLDATA/{kind}` cannot be read yet")),
         };
-        read().map_err(|reason| Problem::new(&format!("cutter of line {}", self.line), &reason))
+        self.entry(unit, &self.numbers(names)?)
     }
 
     /// Returns the value of each field, `None` for one that is left empty.

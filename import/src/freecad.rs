@@ -91,17 +91,18 @@ fn read_holder(holder: &Object, title: &str) -> Result<Entry, String> {
 
 fn read_bit(bit: &Object, number: Option<u32>) -> Found {
     let title = string(bit, "name");
-    let read = || -> Result<Entry, String> {
-        let shape = string(bit, "shape").rsplit(['/', '\\']).next().unwrap_or("").to_lowercase();
-        let shape = shape.trim_end_matches(".fcstd");
-        let mut entry = entry(Unit::Millimetre, shape, title, bit);
-        entry.number = number;
-        let empty = Object::new();
-        let parameters = bit.get("parameter").and_then(Value::as_object).unwrap_or(&empty);
-        entry.cutter = Some(cutter(shape, &Parameters(parameters), &mut entry.notes)?);
-        Ok(entry)
-    };
-    read().map_err(|error| Problem::new(title, &error))
+    read_shape(bit, title, number).map_err(|error| Problem::new(title, &error))
+}
+
+fn read_shape(bit: &Object, title: &str, number: Option<u32>) -> Result<Entry, String> {
+    let shape = string(bit, "shape").rsplit(['/', '\\']).next().unwrap_or("").to_lowercase();
+    let shape = shape.trim_end_matches(".fcstd");
+    let mut entry = entry(Unit::Millimetre, shape, title, bit);
+    entry.number = number;
+    let empty = Object::new();
+    let parameters = bit.get("parameter").and_then(Value::as_object).unwrap_or(&empty);
+    entry.cutter = Some(cutter(shape, &Parameters(parameters), &mut entry.notes)?);
+    Ok(entry)
 }
 
 fn entry(unit: Unit, kind: &str, title: &str, object: &Object) -> Entry {

@@ -85,7 +85,6 @@ fn cutter(
     geometry: &Geometry<'_>,
     notes: &mut Vec<Note>,
 ) -> Result<Cutter, String> {
-    let diameter = || geometry.require("DC", "diameter");
     if kind.starts_with("circle segment") {
         let drawn = "they are drawn tangent to each other".to_owned();
         notes.push(Note::Unstated("construction of its arcs", drawn));
@@ -94,7 +93,8 @@ fn cutter(
         "flat end mill" => Shape::Flat { corner: 0.0 },
         "bull nose end mill" => Shape::Flat { corner: geometry.require("RE", "corner radius")? },
         "ball end mill" => {
-            let (radius, diameter) = (geometry.get("RE")?.unwrap_or(0.0), diameter()?);
+            let (radius, diameter) =
+                (geometry.get("RE")?.unwrap_or(0.0), geometry.require("DC", "diameter")?);
             if radius > 0.0 && (2.0 * radius - diameter).abs() > 1e-6 * diameter {
                 notes.push(Note::Contradiction {
                     first: Stated { what: "corner radius", value: radius },
@@ -199,7 +199,7 @@ fn cutter(
         }
         other => return Err(format!("the type `{other}` cannot be read yet")),
     };
-    let diameter = diameter()?;
+    let diameter = geometry.require("DC", "diameter")?;
     let shoulder_diameter = geometry.get("shoulder-diameter")?.filter(|diameter| *diameter > 0.0);
     let shoulder = geometry.get("shoulder-length")?.map(|length| (length, shoulder_diameter));
     let shank_diameter = geometry.get("SFDM")?;

@@ -180,13 +180,14 @@ impl Library {
     /// Returns the tools with this name; without one, those with this title, and then those with this number.
     pub fn find(&self, wanted: &str) -> Vec<&ImportedTool> {
         let number: Option<u32> = wanted.trim_start_matches(['T', 't']).parse().ok();
-        let all = |is_wanted: &dyn Fn(&ImportedTool) -> bool| -> Vec<&ImportedTool> {
-            self.tools.iter().filter(|tool| is_wanted(tool)).collect()
-        };
-        let named = all(&|tool| tool.name == wanted);
-        let titled = all(&|tool| tool.entry.title == wanted);
-        let numbered = all(&|tool| number.is_some() && tool.entry.number == number);
-        [named, titled, numbered].into_iter().find(|found| !found.is_empty()).unwrap_or_default()
+        let is_wanted: [&dyn Fn(&ImportedTool) -> bool; 3] =
+            [&|tool| tool.name == wanted, &|tool| tool.entry.title == wanted, &|tool| {
+                number.is_some() && tool.entry.number == number
+            }];
+        let mut found = is_wanted
+            .into_iter()
+            .map(|is_wanted| self.tools.iter().filter(|tool| is_wanted(tool)).collect::<Vec<_>>());
+        found.find(|found| !found.is_empty()).unwrap_or_default()
     }
 }
 

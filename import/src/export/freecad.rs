@@ -14,8 +14,6 @@ pub(super) fn write(
     if number > 1 {
         return Err("a FreeCAD bit is one tool: export each to a file of its own".to_owned());
     }
-    let mm = |value: f64| format!("{} mm", tidy(value));
-    let deg = |value: f64| format!("{} \u{b0}", tidy(value));
     let flutes = section.cutting_end()[1];
     let refused = || "no shape of FreeCAD has its outline".to_owned();
     let (shape, own) = match recognise(&section.cutting).ok_or_else(refused)? {
@@ -69,4 +67,12 @@ pub(super) fn write(
         gaps.push("a bit has no holder; the tool ends where it begins".to_owned());
     }
     Ok(Written { entry: text, kind: shape.to_owned(), gaps })
+}
+
+fn mm(value: f64) -> String {
+    format!("{} mm", tidy(value))
+}
+
+fn deg(value: f64) -> String {
+    format!("{} \u{b0}", tidy(value))
 }

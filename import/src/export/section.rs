@@ -133,19 +133,25 @@ pub(super) fn tidy(value: f64) -> f64 {
 pub(super) fn same(a: &[ProfileSegment], b: &[ProfileSegment]) -> bool {
     let tolerance = SAME * size(a).max(size(b));
     let [a, b] = [a, b].map(|outline| merged(outline, tolerance));
-    let near = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).abs().max((a[1] - b[1]).abs()) <= tolerance;
-    let same_circle = |a: Option<Circle>, b: Option<Circle>| match (a, b) {
+    a.len() == b.len()
+        && a.iter().zip(&b).all(|(a, b)| {
+            let is_near = [(a.from, b.from), (a.to, b.to)]
+                .iter()
+                .all(|(a, b)| (a[0] - b[0]).abs().max((a[1] - b[1]).abs()) <= tolerance);
+            is_near && is_same_circle(a.circle, b.circle)
+        })
+}
+
+/// Returns whether two arcs of the same ends, or two lines, are the same.
+fn is_same_circle(a: Option<Circle>, b: Option<Circle>) -> bool {
+    match (a, b) {
         (None, None) => true,
         // The centre of a shallow arc moves more than the arc.
         (Some(a), Some(b)) => {
             a.convex == b.convex && (a.radius - b.radius).abs() <= 1e-6 * a.radius
         }
         _ => false,
-    };
-    a.len() == b.len()
-        && a.iter().zip(&b).all(|(a, b)| {
-            near(a.from, b.from) && near(a.to, b.to) && same_circle(a.circle, b.circle)
-        })
+    }
 }
 
 fn scaled(segment: &ProfileSegment, factor: f64) -> ProfileSegment {

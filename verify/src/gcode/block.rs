@@ -4,6 +4,7 @@
 //! value. Comments are `( … )` and `; …`. Case does not matter, and blanks may stand between words and
 //! between a letter and its value. A character that belongs to none of these stops the interpreter.
 
+use super::error::{not_read, same_group};
 use super::expression::{Cursor, Parameter, Parameters, assignment, begins_value, value};
 use super::{ExpressionFault, GcodeFault, MAX_ASSIGNMENTS};
 use std::fmt;
@@ -104,11 +105,7 @@ impl Block {
                     let word: String =
                         cursor.rest().chars().take(2).flat_map(char::escape_debug).collect();
                     let meaning = "a rounded or chamfered corner";
-                    return Err(GcodeFault::not_read(
-                        word,
-                        meaning,
-                        "post the program with its motions",
-                    ));
+                    return Err(not_read(word, meaning, "post the program with its motions"));
                 }
                 b'0'..=b'9' if self.is_empty() => return Err(numbered_line(cursor)),
                 _ => return Err(unexpected(&cursor)),
@@ -197,7 +194,7 @@ impl Block {
             Group::PassedOver => self.passed_over.push(code),
             group => match &mut self.codes[group as usize] {
                 Some(first) => {
-                    return Err(GcodeFault::same_group(first, code));
+                    return Err(same_group(first, code));
                 }
                 empty => *empty = Some(code),
             },
@@ -422,7 +419,7 @@ fn check_comment(comment: &str) -> Result<(), GcodeFault> {
     if begins(comment, "py,") || begins(comment, "pyrun,") {
         let meaning = "a comment whose Python LinuxCNC executes";
         let remedy = "remove it, or write a blank before the comma";
-        return Err(GcodeFault::not_read("py,", meaning, remedy));
+        return Err(not_read("py,", meaning, remedy));
     }
     Ok(())
 }
@@ -523,7 +520,7 @@ pub(super) fn o_word(cursor: &mut Cursor, parameters: &Parameters) -> Result<OWo
         Some(b'[') if role != Role::Title => {
             let remedy = "assign parameters from #31 on before the call instead";
             let meaning = "a word with arguments";
-            Err(GcodeFault::not_read(word.to_ascii_lowercase(), meaning, remedy))
+            Err(not_read(word.to_ascii_lowercase(), meaning, remedy))
         }
         Some(_) => Err(unexpected(cursor)),
     }
@@ -674,7 +671,7 @@ fn refused_g(code: Code, tenths: u32) -> GcodeFault {
         }
         _ => return GcodeFault::UnknownCode { word: code.to_string() },
     };
-    GcodeFault::not_read(code, meaning, remedy)
+    not_read(code, meaning, remedy)
 }
 
 fn refused_m(code: Code, tenths: u32) -> GcodeFault {
@@ -695,5 +692,5 @@ fn refused_m(code: Code, tenths: u32) -> GcodeFault {
         970 => ("a call of a block number", "write M98 with an O-number"),
         _ => return GcodeFault::UnknownCode { word: code.to_string() },
     };
-    GcodeFault::not_read(code, meaning, remedy)
+    not_read(code, meaning, remedy)
 }

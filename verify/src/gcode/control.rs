@@ -7,6 +7,7 @@ mod next_run;
 mod refuse;
 
 use super::block::{Block, Code, Group};
+use super::error::{combination, not_read};
 use super::note::{Notes, Subject};
 use super::rules::{Choice, ControlRules, Rule};
 use super::state::{ControlState, LengthOffset, Position, Rotation, Tcp, WorkOffset};
@@ -261,7 +262,7 @@ impl Control {
         self.motion_mode(block);
         // The spindle changes before such a motion or after it, by the control.
         if let Some(word) = turned.filter(|_| block.is_programmed() && self.modal.is_feed()) {
-            return Err(GcodeFault::combination(
+            return Err(combination(
                 word,
                 "its block has a motion at feed rate",
                 "write it in a block before or after",
@@ -279,7 +280,7 @@ impl Control {
             && block.is_programmed()
             && (self.length_implicit || self.state.tcp == Tcp::Transformation)
         {
-            return Err(GcodeFault::combination(
+            return Err(combination(
                 "a position",
                 "G18 or G19 is in force and the length of the tool counts without G43, across the plane",
                 "post the program in G17",
@@ -295,7 +296,7 @@ impl Control {
             return Ok(());
         }
         if block.has('S') {
-            return Err(GcodeFault::combination(
+            return Err(combination(
                 "S",
                 "its block has G4, of which it is the time in turns of the spindle",
                 "write it in a block before",
@@ -404,7 +405,7 @@ impl Control {
             // Fanuc then reads its offsets in the other unit, too.
             let switches = self.unit_used && unit != self.modal.unit;
             if switches && matches!(self.stated(Rule::Dialect), None | Some(Choice::Iso)) {
-                return Err(GcodeFault::combination(
+                return Err(combination(
                     if is_inch { "G20" } else { "G21" },
                     "the program has lengths in another unit",
                     "select the unit once, at the start",
@@ -469,7 +470,7 @@ impl Control {
         if plane != self.modal.plane {
             let is_rotated = matches!(self.state.rotation, Rotation::Plane { .. });
             if is_rotated || self.cycle.is_some() {
-                return Err(GcodeFault::combination(
+                return Err(combination(
                     "another plane",
                     "a rotation (G68) or a canned cycle is in force",
                     "end it with G69 or G80 before",
@@ -605,7 +606,7 @@ fn path_control(block: &mut Block, code: Code) -> Result<(), GcodeFault> {
         _ => {
             let meaning = "a spline, or a mode of a lathe, without the word of its path mode";
             let remedy = "post the program with lines and arcs";
-            Err(GcodeFault::not_read(code, meaning, remedy))
+            Err(not_read(code, meaning, remedy))
         }
     }
 }

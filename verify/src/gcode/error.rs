@@ -254,30 +254,32 @@ pub enum GcodeFault {
     TooLong,
 }
 
-impl GcodeFault {
-    pub(super) fn combination(
-        word: impl ToString,
-        condition: &'static str,
-        remedy: &'static str,
-    ) -> GcodeFault {
-        GcodeFault::Combination { word: word.to_string(), condition, remedy }
-    }
+/// Returns [`GcodeFault::Combination`].
+pub(super) fn combination(
+    word: impl ToString,
+    condition: &'static str,
+    remedy: &'static str,
+) -> GcodeFault {
+    GcodeFault::Combination { word: word.to_string(), condition, remedy }
+}
 
-    pub(super) fn not_read(
-        word: impl ToString,
-        meaning: &'static str,
-        remedy: &'static str,
-    ) -> GcodeFault {
-        GcodeFault::NotRead { word: word.to_string(), meaning, remedy }
-    }
+/// Returns [`GcodeFault::NotRead`].
+pub(super) fn not_read(
+    word: impl ToString,
+    meaning: &'static str,
+    remedy: &'static str,
+) -> GcodeFault {
+    GcodeFault::NotRead { word: word.to_string(), meaning, remedy }
+}
 
-    pub(super) fn missing(word: impl ToString, needed: &'static str) -> GcodeFault {
-        GcodeFault::Missing { word: word.to_string(), needed }
-    }
+/// Returns [`GcodeFault::Missing`].
+pub(super) fn missing(word: impl ToString, needed: &'static str) -> GcodeFault {
+    GcodeFault::Missing { word: word.to_string(), needed }
+}
 
-    pub(super) fn same_group(first: impl ToString, second: impl ToString) -> GcodeFault {
-        GcodeFault::SameGroup { first: first.to_string(), second: second.to_string() }
-    }
+/// Returns [`GcodeFault::SameGroup`].
+pub(super) fn same_group(first: impl ToString, second: impl ToString) -> GcodeFault {
+    GcodeFault::SameGroup { first: first.to_string(), second: second.to_string() }
 }
 
 /// A fault in an arc.

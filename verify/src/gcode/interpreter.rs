@@ -2,6 +2,7 @@
 
 use super::block::{Block, Code, Group, Label, Role};
 use super::control::Control;
+use super::error::{combination, missing};
 use super::expression::Parameters;
 use super::flow::{self, Flow};
 use super::linuxcnc;
@@ -122,7 +123,7 @@ impl<'a> Interpreter<'a> {
                 break;
             }
             if block.code_of(Group::Subprogram).is_some() {
-                return Err(GcodeFault::combination(
+                return Err(combination(
                     "`;`",
                     "its block calls or ends a subprogram",
                     "write the block after it on a line of its own",
@@ -138,11 +139,11 @@ impl<'a> Interpreter<'a> {
         let expected = "the number of a program after P";
         let Some(number) = block.take_whole('P', 0, 99_999_999, expected)? else {
             let needed = "P with the number of a program";
-            return Err(GcodeFault::missing("M98", needed));
+            return Err(missing("M98", needed));
         };
         // Older controls take the last four digits as the number, and those before as repeats.
         if number > 9999 && self.flow.has(&Label::Number(number % 10_000)) {
-            return Err(GcodeFault::combination(
+            return Err(combination(
                 format!("M98 P{number}"),
                 "its last four digits are the number of a program, too",
                 "give the program another number, and write repeats after L",
@@ -158,7 +159,7 @@ impl<'a> Interpreter<'a> {
         match self.control.stated(Rule::Dialect) == Some(Choice::Rs274Ngc)
             && self.flow.has_passed(label)
         {
-            true => Err(GcodeFault::combination(
+            true => Err(combination(
                 format!("a call of {label}"),
                 "it stands before the call and was not called before",
                 "move it to the end of the file: LinuxCNC seeks it after the call only",
@@ -206,7 +207,7 @@ impl<'a> Interpreter<'a> {
             && (is_call || self.control.stated(Rule::Dialect) != Some(Choice::Iso))
         {
             // LinuxCNC reads P and L, and executes no other word of the block.
-            return Err(GcodeFault::combination(
+            return Err(combination(
                 code,
                 "its block has other words",
                 "write them in a block before",

@@ -3,6 +3,7 @@
 //! Each was run with its interpreter (`rs274`). M428 and M429 of its configurations for five axes are read.
 
 use super::block::{Block, Code, Group, begins};
+use super::error::{combination, missing, not_read, same_group};
 use super::flow::{Place, before_semicolon, line};
 use super::{GcodeError, GcodeFault};
 
@@ -23,7 +24,7 @@ pub(super) fn check_line(text: &str) -> Result<(), GcodeFault> {
     } else {
         return Ok(());
     };
-    Err(GcodeFault::not_read(word, meaning, remedy))
+    Err(not_read(word, meaning, remedy))
 }
 
 /// Refuses lines at which LinuxCNC stops also where it only seeks a subprogram after them.
@@ -51,7 +52,7 @@ fn check_sought(text: &str) -> Result<(), GcodeFault> {
         }
     };
     match can_fail {
-        true => Err(GcodeFault::combination(
+        true => Err(combination(
             word,
             "it depends on a name, a quotient or a root, which LinuxCNC computes also where it passes the line",
             "write a number",
@@ -74,7 +75,7 @@ fn check_spelling(code: &str) -> Result<(), GcodeFault> {
         if is_call && number.len() > 2 {
             let word = format!("M{number}");
             let (meaning, remedy) = ("no word of LinuxCNC", "write M98 or M99");
-            return Err(GcodeFault::not_read(word, meaning, remedy));
+            return Err(not_read(word, meaning, remedy));
         }
     }
     Ok(())
@@ -100,7 +101,7 @@ fn code(text: &str) -> Result<String, GcodeFault> {
 pub(super) fn check_words(block: &Block) -> Result<(), GcodeFault> {
     if let Some(code) = block.codes().find(is_unknown) {
         let (meaning, remedy) = ("no word of LinuxCNC", "remove it, or state another `dialect`");
-        return Err(GcodeFault::not_read(code, meaning, remedy));
+        return Err(not_read(code, meaning, remedy));
     }
     for code in block.codes() {
         let (is_missing, needed) = match (code.letter, code.tenths) {
@@ -113,7 +114,7 @@ pub(super) fn check_words(block: &Block) -> Result<(), GcodeFault> {
             _ => continue,
         };
         if is_missing {
-            return Err(GcodeFault::missing(code, needed));
+            return Err(missing(code, needed));
         }
     }
     // -1 stands for a word that is not there.
@@ -127,13 +128,13 @@ pub(super) fn check_words(block: &Block) -> Result<(), GcodeFault> {
     if let Some((code, motion)) =
         block.code_of(Group::OneShot).filter(|code| matches!(code.tenths, 280 | 300)).zip(motion)
     {
-        return Err(GcodeFault::same_group(code, motion));
+        return Err(same_group(code, motion));
     }
     for (index, code) in block.codes().enumerate() {
         let Some(group) = m_group(code) else { continue };
         let mut others = block.codes().skip(index + 1);
         if let Some(other) = others.find(|other| m_group(*other) == Some(group)) {
-            return Err(GcodeFault::same_group(code, other));
+            return Err(same_group(code, other));
         }
     }
     Ok(())

@@ -137,14 +137,12 @@ impl Notes {
 
     /// Returns the notes.
     pub(super) fn list(&self) -> Vec<ProgramNote> {
-        self.found
-            .iter()
-            .map(|(subject, (line, count)): (&Subject, &(usize, usize))| ProgramNote {
-                line: *line,
-                count: *count,
-                kind: subject.kind(),
-            })
-            .collect()
+        let notes = self.found.iter().map(|(subject, (line, count))| ProgramNote {
+            line: *line,
+            count: *count,
+            kind: subject.kind(),
+        });
+        notes.collect()
     }
 }
 

@@ -189,7 +189,6 @@ impl JobFile {
     pub fn files(&self) -> Vec<(String, &Path)> {
         let mut files =
             vec![("part".to_owned(), &*self.part), ("program".to_owned(), &*self.program)];
-        let has_ending = |file: &&Path, ending| file.extension().is_some_and(|end| end == ending);
         for (role, name) in [("machine", &self.machine), ("control", &self.control)] {
             let file = name.as_deref().map(Path::new).filter(|file| has_ending(file, "toml"));
             files.extend(file.map(|file| (role.to_owned(), file)));
@@ -339,30 +338,26 @@ impl JobFile {
             }
             JobTools::Numbered { library, entries } => (library, entries),
         };
-        used.into_iter()
-            .map(|number| {
-                // A program without numbers needs no choice if there is one tool.
-                let known = match (number, entries.iter().next()) {
-                    (Some(number), _) => number,
-                    (None, Some((only, _))) if entries.len() == 1 => *only,
-                    (None, _) => return Err(JobError::NoTool { number: None }),
-                };
-                let entry = entries.get(&known).cloned().unwrap_or_default();
-                let (name, library) = match (&entry.tool, library) {
-                    (Some(name), _) => (OsString::from(name), None),
-                    (None, Some(library)) => (format!("T{known}").into(), Some(library.clone())),
-                    (None, None) => return Err(JobError::NoTool { number }),
-                };
-                let named = NamedTool { name, library, params: entry.params(), root: None };
-                let allow = entry.allow.into_iter().collect();
-                Ok(UsedTool {
-                    motions: ToolSelection::Number(number),
-                    named,
-                    hand: entry.hand,
-                    allow,
-                })
-            })
-            .collect()
+        let mut tools = Vec::new();
+        for number in used {
+            // A program without numbers needs no choice if there is one tool.
+            let known = match (number, entries.iter().next()) {
+                (Some(number), _) => number,
+                (None, Some((only, _))) if entries.len() == 1 => *only,
+                (None, _) => return Err(JobError::NoTool { number: None }),
+            };
+            let entry = entries.get(&known).cloned().unwrap_or_default();
+            let (name, library) = match (&entry.tool, library) {
+                (Some(name), _) => (OsString::from(name), None),
+                (None, Some(library)) => (format!("T{known}").into(), Some(library.clone())),
+                (None, None) => return Err(JobError::NoTool { number }),
+            };
+            let named = NamedTool { name, library, params: entry.params(), root: None };
+            let allow = entry.allow.into_iter().collect();
+            let motions = ToolSelection::Number(number);
+            tools.push(UsedTool { motions, named, hand: entry.hand, allow });
+        }
+        Ok(tools)
     }
 }
 
@@ -377,6 +372,10 @@ impl JobTools {
                 .collect(),
         }
     }
+}
+
+fn has_ending(file: &Path, ending: &str) -> bool {
+    file.extension().is_some_and(|end| end == ending)
 }
 
 /// Returns the origins of G54 to G59.3 by their names.
@@ -400,10 +399,10 @@ fn work_offsets(named: &BTreeMap<String, Vec<f64>>) -> Result<[Option<[f64; 6]>;
 impl ToolEntry {
     /// Returns the values of the params as `name=value`.
     fn params(&self) -> Vec<String> {
-        let text = |value: &ParamValue| match value {
-            ParamValue::Number(number) => number.to_string(),
-            ParamValue::Text(text) => text.clone(),
-        };
-        self.set.iter().map(|(name, value)| format!("{name}={}", text(value))).collect()
+        let params = self.set.iter().map(|(name, value)| match value {
+            ParamValue::Number(number) => format!("{name}={number}"),
+            ParamValue::Text(text) => format!("{name}={text}"),
+        });
+        params.collect()
     }
 }

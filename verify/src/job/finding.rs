@@ -53,48 +53,40 @@ pub(super) fn all(report: &JobReport<'_>) -> Vec<JobFinding> {
     let is_same =
         |one: &JobFinding, other: &JobFinding| (one.line, &one.text) == (other.line, &other.text);
     let joined = by_reading(found.into_iter(), is_same);
-    joined
-        .into_iter()
-        .map(|(mut finding, readings)| {
-            if let Some(under) = report.job.program.under(&readings) {
-                finding.text = format!("{}; {under}", finding.text);
-                finding.under = Some(under);
-            }
-            finding
-        })
-        .collect()
+    let named = joined.into_iter().map(|(mut finding, readings)| {
+        if let Some(under) = report.job.program.under(&readings) {
+            finding.text = format!("{}; {under}", finding.text);
+            finding.under = Some(under);
+        }
+        finding
+    });
+    named.collect()
 }
 
 /// Returns the findings of surfaces, the worst first, each with the index of its reading.
 fn surfaces(report: &JobReport<'_>) -> Vec<(usize, JobFinding)> {
-    let mut surfaces: Vec<_> = report
-        .pairs
-        .iter()
-        .enumerate()
-        .flat_map(|(index, pair)| {
-            let groups = pair.groups.iter().zip(&pair.remedies);
-            groups.map(|(group, remedy)| (index, *group, *remedy)).collect::<Vec<_>>()
-        })
-        .collect();
+    let mut surfaces: Vec<(usize, FindingGroup, Remedy)> = Vec::new();
+    for (index, pair) in report.pairs.iter().enumerate() {
+        let groups = pair.groups.iter().zip(&pair.remedies);
+        surfaces.extend(groups.map(|(group, remedy)| (index, *group, *remedy)));
+    }
     surfaces.sort_by(|one, other| other.1.worst.kind.severity(&one.1.worst.kind));
-    surfaces
-        .into_iter()
-        .map(|(index, group, remedy)| {
-            let pair = &report.pairs[index];
-            let kind = &group.worst.kind;
-            let open = matches!(kind, FindingKind::Undecided { .. } | FindingKind::Ambiguous(_));
-            let finding = JobFinding {
-                rule: rule(kind),
-                severity: if open { Severity::Undecided } else { Severity::Violation },
-                line: group.worst.line,
-                lines: [group.first.line, group.last.line],
-                text: describe(report, pair, &group, remedy),
-                under: None,
-                detail: FindingDetail::Surface { pair: index, group: Box::new(group), remedy },
-            };
-            (pair.reading, finding)
-        })
-        .collect()
+    let findings = surfaces.into_iter().map(|(index, group, remedy)| {
+        let pair = &report.pairs[index];
+        let kind = &group.worst.kind;
+        let open = matches!(kind, FindingKind::Undecided { .. } | FindingKind::Ambiguous(_));
+        let finding = JobFinding {
+            rule: rule(kind),
+            severity: if open { Severity::Undecided } else { Severity::Violation },
+            line: group.worst.line,
+            lines: [group.first.line, group.last.line],
+            text: describe(report, pair, &group, remedy),
+            under: None,
+            detail: FindingDetail::Surface { pair: index, group: Box::new(group), remedy },
+        };
+        (pair.reading, finding)
+    });
+    findings.collect()
 }
 
 /// Joins what several readings have alike: each with the readings that have it, in the order of the first.
@@ -118,13 +110,12 @@ impl JobReport<'_> {
     /// Summarises the findings of each tool at each body, those of several readings in one line if they are alike.
     pub fn summaries(&self) -> Vec<String> {
         let texts = self.pairs.iter().map(|pair| (pair.reading, summary(self, pair)));
-        by_reading(texts, |known, text| known == text)
-            .into_iter()
-            .map(|(text, readings)| match self.job.program.under(&readings) {
-                Some(under) => format!("{under}: {text}"),
-                None => text,
-            })
-            .collect()
+        let joined = by_reading(texts, |known, text| known == text).into_iter();
+        let named = joined.map(|(text, readings)| match self.job.program.under(&readings) {
+            Some(under) => format!("{under}: {text}"),
+            None => text,
+        });
+        named.collect()
     }
 }
 
@@ -242,12 +233,15 @@ fn format_small(value: f64, unit: Unit) -> String {
     }
 }
 
+fn plural(count: usize) -> &'static str {
+    if count == 1 { "" } else { "s" }
+}
+
 /// Summarises the findings of a tool at a body: per surface, the number of motions and the deepest.
 fn summary(report: &JobReport<'_>, pair: &PairReport) -> String {
     let (info, unit, body) = (report.info(pair), report.job.unit(), report.body(pair));
     let number = report.tool(pair).number();
     let PairReport { report, groups, .. } = pair;
-    let plural = |count: usize| if count == 1 { "" } else { "s" };
     let motions = report.motions;
     let tool = match number {
         Some(number) => format!("T{number} at {}: ", body.name),
@@ -260,18 +254,23 @@ fn summary(report: &JobReport<'_>, pair: &PairReport) -> String {
     }
     let mut each = Vec::new();
     for (index, surface) in info.surfaces.iter().enumerate() {
-        let of = || {
-            report
-                .findings
-                .iter()
-                .filter(|finding| finding.kind.surface() == Some(SurfaceId(index)))
-        };
-        let deepest = of().filter_map(|finding| match finding.kind {
-            FindingKind::Deep { through: true, .. } => Some((f64::INFINITY, finding.line)),
-            FindingKind::Deep { depth, .. } => Some((depth.high, finding.line)),
-            _ => None,
-        });
-        let deepest = deepest.max_by(|(one, _), (other, _)| one.total_cmp(other));
+        let mut on = 0;
+        let mut deepest: Option<(f64, usize)> = None;
+        for finding in &report.findings {
+            if finding.kind.surface() != Some(SurfaceId(index)) {
+                continue;
+            }
+            on += 1;
+            let depth = match finding.kind {
+                FindingKind::Deep { through: true, .. } => f64::INFINITY,
+                FindingKind::Deep { depth, .. } => depth.high,
+                _ => continue,
+            };
+            // Of equal depths the last one is named.
+            if deepest.is_none_or(|(known, _)| depth >= known) {
+                deepest = Some((depth, finding.line));
+            }
+        }
         let deepest = match deepest {
             None => String::new(),
             Some((f64::INFINITY, line)) => format!(" (right through, line {line})"),
@@ -279,16 +278,13 @@ fn summary(report: &JobReport<'_>, pair: &PairReport) -> String {
                 format!(" (deepest {}, line {line})", unit.format(depth))
             }
         };
-        let on = of().count();
         if on > 0 {
             each.push(format!("{} on {on} motion{}{deepest}", surface.name, plural(on)));
         }
     }
-    let count_of = |is: fn(&FindingKind) -> bool| {
-        report.findings.iter().filter(|finding| is(&finding.kind)).count()
-    };
-    let inside = count_of(|kind| *kind == FindingKind::Inside { surface: None });
-    let ambiguous = count_of(|kind| matches!(kind, FindingKind::Ambiguous(_)));
+    let kinds = || report.findings.iter().map(|finding| finding.kind);
+    let inside = kinds().filter(|kind| *kind == FindingKind::Inside { surface: None }).count();
+    let ambiguous = kinds().filter(|kind| matches!(kind, FindingKind::Ambiguous(_))).count();
     for (word, count) in [("wholly inside", inside), ("ambiguous", ambiguous)] {
         if count > 0 {
             each.push(format!("{word} on {count} motion{}", plural(count)));

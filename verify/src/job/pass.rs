@@ -10,7 +10,6 @@ use super::{Job, JobError, JobTool};
 use crate::check::{ApproachSearch, MoveCheck};
 use crate::gcode::WorkOffset;
 use crate::{FindingGroup, Gap, Verifier};
-use touchoff::tool::Symmetry;
 
 impl Job<'_> {
     /// Checks the program in every reading. `progress` is called with the number of motions checked since the last call, from any
@@ -25,9 +24,9 @@ impl Job<'_> {
         }
         let (mut pairs, mut cuts) = (Vec::new(), Vec::new());
         let mut gaps = self.program.gaps();
-        let summaries = || self.program.readings().iter().map(|reading| reading.summary());
+        let mut readings = self.program.readings().iter();
         if let (Some(line), Some(_)) =
-            (summaries().find_map(|summary| summary.any_rapid), &self.stock)
+            (readings.find_map(|reading| reading.summary().any_rapid), &self.stock)
         {
             let reason = "the path of several axes in rapid traverse is checked against the stock on the straight line only: \
                           state `rapid` of the control, or the `rapid` rates of the machine's axes";
@@ -124,11 +123,11 @@ impl<'a> Job<'a> {
             None => None,
         };
 
-        let symmetry = |number: Option<u32>| -> Option<Symmetry> {
-            Some(self.tool_of(number)?.tool.info().symmetry)
-        };
+        // A tool that makes all motions is not changed, whatever numbers the program has.
         let restarts = !self.tools.iter().any(|tool| tool.motions == crate::ToolSelection::All);
-        let blocks = self.program.blocks(reading, &links, self.unit(), restarts, symmetry)?;
+        let blocks = self.program.blocks(reading, &links, self.unit(), restarts, |number| {
+            Some(self.tool_of(number)?.tool.info().symmetry)
+        })?;
         for BlockMoves { tool: number, frames } in blocks {
             let Some(index) = self.tool_index(number) else { continue };
             for (frame, check) in frame_of.iter().zip(&mut checks[index * self.bodies.len()..]) {
@@ -166,6 +165,7 @@ impl<'a> Job<'a> {
             let (tool, body) = (index / self.bodies.len(), index % self.bodies.len());
             pairs.push(PairReport { tool, body, reading, report, groups, remedies });
         }
+        // An offset of another part, or with a wrong origin, is one under which no tool comes near this part.
         let near = approaches.into_iter().filter(|approach| approach.has_moves);
         let near = near.map(|approach| (approach.offset, approach.search.finish()));
         let near: Vec<WorkOffset> =

@@ -241,8 +241,8 @@ impl Program {
                 moves.map(move |step| BlockMoves { tool, frames: vec![vec![step]] })
             })),
             Program::Machine(readings) => {
-                let is_wanted = move |number| symmetry(number).is_some();
-                let blocks = readings[reading].blocks(links, unit, restarts, is_wanted)?;
+                let blocks = readings[reading]
+                    .blocks(links, unit, restarts, move |number| symmetry(number).is_some())?;
                 Box::new(blocks.map(|(tool, frames)| BlockMoves { tool, frames }))
             }
         })

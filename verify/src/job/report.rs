@@ -93,6 +93,7 @@ impl JobReport<'_> {
         let has =
             |severity: Severity| self.findings.iter().any(|finding| finding.severity == severity);
         match self.refusals().is_empty() {
+            // A violation is proved whatever is left open, unless the program seems to be in another unit.
             _ if has(Severity::Violation) && !self.is_misplaced() => Verdict::Findings,
             false => Verdict::None,
             true if has(Severity::Undecided) => Verdict::Findings,

@@ -134,8 +134,9 @@ impl StockCut {
         let mode = if step.rapid { MotionMode::Rapid } else { MotionMode::Feed };
         let contacts =
             stock.advance(tool.tool, &|time| step.path.pose(time), max_speed, mode, *tolerance)?;
-        let goes_on = |surface: usize| contacts.iter().any(|contact| contact.surface.0 == surface);
-        self.open.retain(|(surface, _)| goes_on(*surface));
+        // A surface that touches nothing on this motion begins another finding when it touches again.
+        self.open
+            .retain(|(surface, _)| contacts.iter().any(|contact| contact.surface.0 == *surface));
         for StockContact { surface, depth, point, continued, .. } in contacts {
             let known = self.open.iter().find(|(known, _)| *known == surface.0);
             if let Some((_, index)) = known.filter(|_| continued) {

@@ -110,10 +110,11 @@ impl Chain {
                 Err(limit) => fault = fault.or(Some(limit)),
             }
         }
-        let turn = |solution: &InverseSolution| -> f64 {
-            (3..6).map(|k| (solution.joints[k] - near[k]).abs()).sum()
-        };
-        solutions.sort_by(|a, b| turn(a).total_cmp(&turn(b)));
+        solutions.sort_by(|a, b| {
+            let [a, b] = [a, b]
+                .map(|solution| (3..6).map(|k| (solution.joints[k] - near[k]).abs()).sum::<f64>());
+            a.total_cmp(&b)
+        });
         match fault {
             Some(fault) if solutions.is_empty() => Err(fault),
             _ => Ok(solutions),

@@ -36,11 +36,11 @@ impl LimitViolation {
     }
 }
 
-/// An interval of time with the linear joint values at both ends.
+/// An interval of time with the values of a linear joint at both ends.
 #[derive(Clone, Copy)]
 struct TimeSpan {
     times: [f64; 2],
-    values: [[f64; 3]; 2],
+    values: [f64; 2],
 }
 
 impl JointMotion {
@@ -64,6 +64,7 @@ impl JointMotion {
             let values = self.rotary_ends(letter);
             let [low, high] = self.chain.limits[letter.index()];
             for (limit, sign) in [(low, -1.0), (high, 1.0)] {
+                // A rotary joint is monotone, so that it is farthest at an end.
                 let last = usize::from(sign * values[1] > sign * values[0]);
                 if sign * (values[last] - limit) > 0.0 {
                     violations.push(LimitViolation {
@@ -83,42 +84,39 @@ impl JointMotion {
     /// lower.
     fn linear_violation(&self, index: usize, limit: f64, sign: f64) -> Option<LimitViolation> {
         let excess = |value: f64| sign * (value - limit);
-        let values = |t: f64| -> [f64; 3] {
-            let [x, y, z, ..] = self.joints(t);
-            [x, y, z]
-        };
-        let found = |fraction: f64, value: f64, is_reached: bool| LimitViolation {
+        let none = LimitViolation {
             letter: Letter::ALL[index],
-            fraction,
-            value,
+            fraction: 0.0,
+            value: limit,
             limit,
-            is_reached,
+            is_reached: false,
         };
-        let mut spans = vec![TimeSpan { times: [0.0, 1.0], values: [values(0.0), values(1.0)] }];
+        let ends = [0.0, 1.0].map(|t| self.joints(t)[index]);
+        let mut spans = vec![TimeSpan { times: [0.0, 1.0], values: ends }];
         let mut worst: Option<LimitViolation> = None;
         // An excess within rounding is none.
-        let least = |worst: Option<LimitViolation>| {
-            worst.map_or(self.position_error, |worst| excess(worst.value))
-        };
+        let mut least = self.position_error;
         let mut examined = 0;
         while let Some(TimeSpan { times, values: ends }) = spans.pop() {
-            for (time, end) in times.iter().zip(&ends) {
-                if excess(end[index]) > least(worst) {
-                    worst = Some(found(*time, end[index], true));
+            for (fraction, value) in times.into_iter().zip(ends) {
+                if excess(value) > least {
+                    least = excess(value);
+                    worst = Some(LimitViolation { fraction, value, is_reached: true, ..none });
                 }
             }
             let duration = times[1] - times[0];
             let bulge = self.linear_acceleration(times[0], times[1]) * duration * duration / 8.0;
-            let bound = excess(ends[0][index]).max(excess(ends[1][index])) + bulge;
-            if bound <= least(worst) + TOLERANCE {
+            let bound = excess(ends[0]).max(excess(ends[1])) + bulge;
+            if bound <= least + TOLERANCE {
                 continue;
             }
             let middle = 0.5 * (times[0] + times[1]);
             examined += 1;
             if examined > MAX_INTERVALS {
-                return worst.or(Some(found(middle, limit + sign * bound, false)));
+                let value = limit + sign * bound;
+                return worst.or(Some(LimitViolation { fraction: middle, value, ..none }));
             }
-            let centre = values(middle);
+            let centre = self.joints(middle)[index];
             spans.push(TimeSpan { times: [times[0], middle], values: [ends[0], centre] });
             spans.push(TimeSpan { times: [middle, times[1]], values: [centre, ends[1]] });
         }
@@ -186,10 +184,11 @@ impl JointMotion {
             } else {
                 radians_to_degrees(ratio.min(1.0).acos())
             };
-            let is_near = |whole: f64| (start - centre - whole).abs() <= half_width;
             let whole = |angle: f64| 360.0 * ((angle - centre) / 360.0).round();
             if tilt == 0.0 || half_width.is_infinite() {
-                if half_width.is_infinite() || is_near(whole(start)) {
+                // The angle between both axes is constant, or small enough at any angle: the whole motion is the pass, or none.
+                let away = (start - centre - whole(start)).abs();
+                if half_width.is_infinite() || away <= half_width {
                     longest = longer(longest, [0.0, 1.0]);
                 }
                 continue;

@@ -235,6 +235,11 @@ impl Machine {
         self.axes.iter().find(|axis| axis.letter == letter)
     }
 
+    /// Returns whether a rotary axis carries a side.
+    pub(crate) fn has_rotary(&self, side: Side) -> bool {
+        self.axes.iter().any(|axis| axis.letter.is_rotary() && axis.side == side)
+    }
+
     /// Returns the joint values of the reference position, in mm and degrees, as far as the file states them.
     pub fn home(&self) -> [Option<f64>; 6] {
         Letter::ALL.map(|letter| self.axis(letter).and_then(|axis| axis.home))

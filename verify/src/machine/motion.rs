@@ -301,18 +301,27 @@ impl LinearPath {
     /// instance.
     #[must_use]
     pub fn translated(self, displacement: [f64; 3]) -> LinearPath {
-        let moved = |position: [f64; 3]| [0, 1, 2].map(|k| position[k] + displacement[k]);
         match self {
             LinearPath::Line { start, end } => {
-                LinearPath::Line { start: moved(start), end: moved(end) }
+                LinearPath::Line { start: sum(start, displacement), end: sum(end, displacement) }
             }
             LinearPath::Arc { start, end, plane, centre, sweep } => {
                 let [first, second, _] = plane.indices();
                 let centre = [centre[0] + displacement[first], centre[1] + displacement[second]];
-                LinearPath::Arc { start: moved(start), end: moved(end), plane, centre, sweep }
+                LinearPath::Arc {
+                    start: sum(start, displacement),
+                    end: sum(end, displacement),
+                    plane,
+                    centre,
+                    sweep,
+                }
             }
         }
     }
+}
+
+fn sum(position: [f64; 3], displacement: [f64; 3]) -> [f64; 3] {
+    [0, 1, 2].map(|k| position[k] + displacement[k])
 }
 
 /// A path, prepared for evaluation: p(t) = (1 − t) start + t end + [R(t · sweep) (arm + t · arm_rate)] in the

@@ -18,7 +18,7 @@
 use super::{CutterLocation, Located, ProgramFault, Tape, Tapes, axis_pose, lines, number, shown};
 use std::collections::BTreeMap;
 use std::mem;
-use touchoff::Unit;
+use touchoff::{Pose, Unit};
 
 /// The axis of a tool along +Z.
 const UPRIGHT: [f64; 3] = [0.0, 0.0, 1.0];
@@ -156,15 +156,14 @@ impl Reader {
                 end: if self.finished { "FINI" } else { "END-OF-PATH" },
             });
         }
-        let as_unfinished = |fault| if is_last { ProgramFault::Unfinished } else { fault };
         match word {
             "GOTO" => {
                 let rapid = mem::take(&mut self.rapid);
                 self.has_moved = true;
-                self.position(line, "GOTO", rest, rapid).map_err(as_unfinished)?;
+                self.position(line, "GOTO", rest, rapid, is_last)?;
             }
             "FROM" if self.tape.locations.is_empty() => {
-                self.position(line, "FROM", rest, true).map_err(as_unfinished)?;
+                self.position(line, "FROM", rest, true, is_last)?;
             }
             "FROM" => return Err(ProgramFault::LateFrom),
             "RAPID" if rest.is_empty() => self.rapid = true,
@@ -194,13 +193,26 @@ impl Reader {
         Ok(())
     }
 
+    /// Reads a position. One that is the last of the file and cannot be read was truncated.
     fn position(
         &mut self,
         line: usize,
         word: &'static str,
         rest: &str,
         rapid: bool,
+        is_last: bool,
     ) -> Result<(), ProgramFault> {
+        match self.pose(word, rest) {
+            Ok(pose) => {
+                self.tape.locations.push(CutterLocation { line, pose, rapid });
+                Ok(())
+            }
+            Err(_) if is_last => Err(ProgramFault::Unfinished),
+            Err(fault) => Err(fault),
+        }
+    }
+
+    fn pose(&mut self, word: &'static str, rest: &str) -> Result<Pose, ProgramFault> {
         if rest.is_empty() {
             return Err(ProgramFault::Count { word, found: 0 });
         }
@@ -209,16 +221,13 @@ impl Reader {
             [_, _, _] if self.is_axis_open => return Err(ProgramFault::OpenAxis),
             [x, y, z] => ([x, y, z], self.axis.unwrap_or(UPRIGHT)),
             [x, y, z, i, j, k] => ([x, y, z], [i, j, k]),
-            _ => {
-                return Err(ProgramFault::Count { word, found: values.len() });
-            }
+            _ => return Err(ProgramFault::Count { word, found: values.len() }),
         };
         let pose = axis_pose(tip, axis)?;
         // NX leaves an axis out that stays, Creo one that is +Z.
         self.is_axis_open = !self.is_nx && axis != UPRIGHT;
         self.axis = Some(axis);
-        self.tape.locations.push(CutterLocation { line, pose, rapid });
-        Ok(())
+        Ok(pose)
     }
 
     fn multax(&mut self, argument: &str) -> Result<(), ProgramFault> {
@@ -445,15 +454,13 @@ fn skip_statement(word: &str, arguments: &str) -> Result<String, ProgramFault> {
         return Err(ProgramFault::GCode { block: shown(word) });
     }
     // `TLLFT,GOFWD/...` and `L1) GOTO/...` are motions as well.
-    let known = |list: &[&str]| {
+    let [frame, motion] = [&FRAME_WORDS[..], &MOTION_WORDS].map(|list| {
         word.split([' ', ')', ',', '=']).find(|part| list.contains(part)).map(str::to_owned)
-    };
-    if let Some(word) = known(&FRAME_WORDS) {
-        return Err(ProgramFault::Frame { word });
-    }
-    match known(&MOTION_WORDS) {
-        Some(word) => Err(ProgramFault::Moves { word }),
-        None => Err(ProgramFault::UnknownWord { word: shown(word) }),
+    });
+    match (frame, motion) {
+        (Some(word), _) => Err(ProgramFault::Frame { word }),
+        (None, Some(word)) => Err(ProgramFault::Moves { word }),
+        (None, None) => Err(ProgramFault::UnknownWord { word: shown(word) }),
     }
 }
 

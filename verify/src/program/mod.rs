@@ -106,10 +106,9 @@ impl ClData {
         unit: Option<Unit>,
         poses: impl IntoIterator<Item = (Pose, bool)>,
     ) -> Result<ClData, ProgramError> {
-        let locations: Vec<CutterLocation> = (1..)
-            .zip(poses)
-            .map(|(line, (pose, rapid))| CutterLocation { line, pose, rapid })
-            .collect();
+        let numbered = (1..).zip(poses);
+        let locations: Vec<CutterLocation> =
+            numbered.map(|(line, (pose, rapid))| CutterLocation { line, pose, rapid }).collect();
         let file = name.to_owned();
         if locations.is_empty() {
             return Err(ProgramError::NoPosition { file });
@@ -169,18 +168,16 @@ impl ClData {
         if tapes.is_empty() {
             return Err(ProgramError::NoPosition { file });
         }
-        Ok(tapes
-            .into_iter()
-            .map(|tape| ClData {
-                unit: tape.unit.map(|(unit, _)| unit),
-                unit_line: tape.unit.map(|(_, line)| line),
-                locations: tape.locations,
-                ignored: tape.ignored,
-                tool: tape.tool,
-                cutters: tape.cutters,
-                file: file.clone(),
-            })
-            .collect())
+        let programs = tapes.into_iter().map(|tape| ClData {
+            unit: tape.unit.map(|(unit, _)| unit),
+            unit_line: tape.unit.map(|(_, line)| line),
+            locations: tape.locations,
+            ignored: tape.ignored,
+            tool: tape.tool,
+            cutters: tape.cutters,
+            file: file.clone(),
+        });
+        Ok(programs.collect())
     }
 
     /// Returns the program's name in messages.
@@ -264,16 +261,18 @@ fn is_gcode(text: &str) -> bool {
     });
     code.next().is_some_and(|line| {
         let line = line.trim_start_matches(|c: char| c == '/' || c.is_whitespace());
-        let is_word = |line: &str| {
-            let mut characters = line.chars();
-            characters.next().is_some_and(|c| c.is_ascii_alphabetic())
-                && characters
-                    .as_str()
-                    .trim_start()
-                    .starts_with(|c: char| c.is_ascii_digit() || "+-.#[<".contains(c))
-        };
-        line.starts_with(['%', '(']) || line.contains("BEGIN PGM") || is_word(line)
+        line.starts_with(['%', '(']) || line.contains("BEGIN PGM") || begins_word(line)
     })
+}
+
+/// Returns whether a line begins with a letter and a number, as a word of G-code.
+fn begins_word(line: &str) -> bool {
+    let mut characters = line.chars();
+    characters.next().is_some_and(|c| c.is_ascii_alphabetic())
+        && characters
+            .as_str()
+            .trim_start()
+            .starts_with(|c: char| c.is_ascii_digit() || "+-.#[<".contains(c))
 }
 
 /// Decodes bytes as text, and reads its positions.
@@ -307,9 +306,10 @@ fn decode(bytes: &[u8]) -> Result<&str, Located> {
 
 /// Returns the text, if no character in it hides a line from a reader or shows a line that is none.
 fn check_characters(text: &str) -> Result<&str, Located> {
-    match text.find(|c: char| {
+    let hidden = text.find(|c: char| {
         c.is_control() && !matches!(c, '\t' | '\r' | '\n') || matches!(c, '\u{2028}' | '\u{2029}')
-    }) {
+    });
+    match hidden {
         None => Ok(text),
         Some(byte) => {
             let line = lines(&text[..byte]).count();

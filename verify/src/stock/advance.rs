@@ -137,6 +137,7 @@ impl Sampler<'_> {
             let Stock { query, tree, .. } = &mut *self.stock;
             if !query.is_out_of_reach(tree, &levels[level], &pose) {
                 let middle = first + span / 2;
+                // The earlier half is taken first: what it cuts is not there for the later one.
                 ranges.push((middle + 1, last, level + 1));
                 ranges.push((first, middle, level + 1));
             }
@@ -278,6 +279,7 @@ impl OpenContacts {
                 .collect();
             left.iter().for_each(|slot| open.slots.remove(*slot));
             ended.extend(left);
+            // Without a point the contact has ended.
             open.slots.iter().next().is_some()
         });
         contacts.sort_unstable_by_key(|contact| contact.surface);

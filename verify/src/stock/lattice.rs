@@ -12,7 +12,7 @@
 //! surface counts as the point just above it.
 
 use super::StockError;
-use nalgebra::Point3;
+use nalgebra::{Point3, Vector3};
 use robust::{Coord, Coord3D, orient2d, orient3d};
 
 /// The greatest number of nodes of a lattice: an index fits 32 bits, and a set of nodes half a gigabyte.
@@ -51,22 +51,16 @@ impl Lattice {
             return Err(StockError::Resolution { spacing, coordinate, limit });
         }
         let size = high - low;
-        let counts = |spacing: f64| [0, 1, 2].map(|axis| (size[axis] / spacing).round().max(1.0));
-        let nodes = |spacing: f64| counts(spacing).iter().product::<f64>();
-        if nodes(spacing) > MAX_NODES as f64 {
+        let counts = layers(&size, spacing);
+        let nodes = counts.iter().product::<f64>();
+        if nodes > MAX_NODES as f64 {
             let mut coarser = (size.iter().product::<f64>() / MAX_NODES as f64).cbrt().max(spacing);
             // A thin box needs more than its volume tells, at most a node per spacing along its longest side.
-            while nodes(coarser) > MAX_NODES as f64 {
+            while layers(&size, coarser).iter().product::<f64>() > MAX_NODES as f64 {
                 coarser *= 1.01;
             }
-            return Err(StockError::TooManyNodes {
-                spacing,
-                nodes: nodes(spacing),
-                limit: MAX_NODES,
-                coarser,
-            });
+            return Err(StockError::TooManyNodes { spacing, nodes, limit: MAX_NODES, coarser });
         }
-        let counts = counts(spacing);
         let origin = [0, 1, 2].map(|axis| {
             let margin = 0.5 * (size[axis] - (counts[axis] - 1.0) * spacing);
             low[axis] + margin
@@ -77,8 +71,10 @@ impl Lattice {
 
     /// Returns the largest absolute value of a node's coordinate.
     pub(super) fn largest_coordinate(&self) -> f64 {
-        let last = |axis: usize| self.origin[axis] + (self.counts[axis] as f64) * self.spacing;
-        (0..3).fold(self.origin.coords.amax(), |largest, axis| largest.max(last(axis).abs()))
+        (0..3).fold(self.origin.coords.amax(), |largest, axis| {
+            let last = self.origin[axis] + (self.counts[axis] as f64) * self.spacing;
+            largest.max(last.abs())
+        })
     }
 
     pub(super) fn spacing(&self) -> f64 {
@@ -120,11 +116,12 @@ impl Lattice {
     /// Returns the numbers along an axis of the nodes between two coordinates. Rounding may add one at either
     /// end.
     fn between(&self, axis: usize, low: f64, high: f64) -> std::ops::Range<usize> {
-        let number = |coordinate: f64| (coordinate - self.origin[axis]) / self.spacing;
+        let [low, high] =
+            [low, high].map(|coordinate| (coordinate - self.origin[axis]) / self.spacing);
         let count = self.counts[axis];
         // A conversion to an integer saturates.
-        let first = ((number(low).ceil() - 1.0).max(0.0) as usize).min(count);
-        let end = (number(high).floor() + 2.0).max(0.0) as usize;
+        let first = ((low.ceil() - 1.0).max(0.0) as usize).min(count);
+        let end = (high.floor() + 2.0).max(0.0) as usize;
         first..end.clamp(first, count)
     }
 
@@ -139,6 +136,11 @@ impl Lattice {
         };
         Some(self.index(neighbour))
     }
+}
+
+/// Returns the number of layers of nodes along each axis of a box.
+fn layers(size: &Vector3<f64>, spacing: f64) -> [f64; 3] {
+    [0, 1, 2].map(|axis| (size[axis] / spacing).round().max(1.0))
 }
 
 /// A set of integers from 0 up to a fixed limit.
@@ -213,6 +215,7 @@ pub(super) fn nodes_inside(
     let height = lattice.counts()[2];
     for column in crossings.chunk_by(|a, b| a.column == b.column) {
         let first = column[0].column * height;
+        // From above the surface, where it is 0, down to each node.
         let mut winding = 0;
         for (position, crossing) in column.iter().enumerate().rev() {
             winding += if crossing.faces_up { 1 } else { -1 };
@@ -234,29 +237,26 @@ pub(super) fn nodes_inside(
 fn cross(lattice: &Lattice, corners: [[f64; 3]; 3], crossings: &mut Vec<Crossing>) {
     let [a, b, c] = corners.map(|[x, y, _]| Coord { x, y });
     let area = orient2d(a, b, c);
+    // No column crosses a vertical triangle.
     if area == 0.0 {
         return;
     }
     let faces_up = area > 0.0;
-    let range = |axis: usize| {
+    let [rows, columns, heights] = [0, 1, 2].map(|axis| {
         let [a, b, c] = corners.map(|corner| corner[axis]);
         lattice.between(axis, a.min(b).min(c), a.max(b).max(c))
-    };
-    let heights = range(2);
-    for i in range(0) {
-        for j in range(1) {
+    });
+    for i in rows {
+        for j in columns.clone() {
             let at =
                 Coord { x: lattice.coordinate(0, i as f64), y: lattice.coordinate(1, j as f64) };
             if [(a, b), (b, c), (c, a)].iter().all(|(p, q)| is_left(*p, *q, at) == faces_up) {
-                let is_below = |k: &usize| {
-                    let node = Coord3D { x: at.x, y: at.y, z: lattice.coordinate(2, *k as f64) };
+                let above = first_not(heights.clone(), |k| {
+                    let node = Coord3D { x: at.x, y: at.y, z: lattice.coordinate(2, k as f64) };
                     is_below(corners, faces_up, node)
-                };
-                crossings.push(Crossing {
-                    column: i * lattice.counts()[1] + j,
-                    above: first_not(heights.clone(), is_below) as u32,
-                    faces_up,
                 });
+                let column = i * lattice.counts()[1] + j;
+                crossings.push(Crossing { column, above: above as u32, faces_up });
             }
         }
     }
@@ -283,11 +283,11 @@ fn is_below(corners: [[f64; 3]; 3], faces_up: bool, node: Coord3D<f64>) -> bool 
 
 /// Returns the first number of a range for which a condition fails that holds up to some number; the range's
 /// end if it never fails.
-fn first_not(range: std::ops::Range<usize>, holds: impl Fn(&usize) -> bool) -> usize {
+fn first_not(range: std::ops::Range<usize>, holds: impl Fn(usize) -> bool) -> usize {
     let (mut low, mut high) = (range.start, range.end);
     while low < high {
         let middle = low + (high - low) / 2;
-        if holds(&middle) { low = middle + 1 } else { high = middle }
+        if holds(middle) { low = middle + 1 } else { high = middle }
     }
     low
 }

@@ -184,13 +184,12 @@ impl Stock {
 
     fn new(lattice: Lattice, initial: BitSet, unit: Unit) -> Result<Stock, StockError> {
         check_count(initial.len(), lattice.spacing())?;
-        let nodes = || initial.iter();
         let count = initial.len();
         // A node of the lattice is a point whose triangle id is its index; normals and weights are not used.
         let cloud = Cloud::new(
-            nodes().map(|node| Point3::from(lattice.position(node))).collect(),
+            initial.iter().map(|node| Point3::from(lattice.position(node))).collect(),
             vec![Vector3::z(); count],
-            nodes().map(|node| TriangleId(node as u32)).collect(),
+            initial.iter().map(|node| TriangleId(node as u32)).collect(),
             vec![1.0; count],
             unit,
         )?;

@@ -90,9 +90,8 @@ fn chords(
     map: &Map,
 ) -> Result<Vec<Segment>, StepFault> {
     let ([first, second], normal) = (plane.axes(), plane.normal());
-    let [start_radius, end_radius] = [start, end].map(|position: [f64; 3]| {
-        (position[first] - centre[0]).hypot(position[second] - centre[1])
-    });
+    let [start_radius, end_radius] =
+        [start, end].map(|end| (end[first] - centre[0]).hypot(end[second] - centre[1]));
     let max_radius = start_radius.max(end_radius);
     let angle = (8.0 * CHORD_TOLERANCE / max_radius).sqrt().clamp(MIN_CHORD_ANGLE, MAX_CHORD_ANGLE);
     let count = (sweep.abs() / angle).ceil().max(1.0);
@@ -101,13 +100,13 @@ fn chords(
         return Err(StepFault::LongArc { degrees, limit });
     }
     let chords = count as u32;
-    let fraction = |k: u32| f64::from(k) / count;
     let start_angle = (start[second] - centre[1]).atan2(start[first] - centre[0]);
     let position = |k: u32| {
+        // The last chord ends at the stated end, without the rounding of the angle.
         if k == chords {
             return map.apply(end);
         }
-        let at = fraction(k);
+        let at = f64::from(k) / count;
         let (sine, cosine) = (start_angle + at * sweep).sin_cos();
         let radius = start_radius + at * (end_radius - start_radius);
         let mut position = start;
@@ -119,13 +118,12 @@ fn chords(
     // The change of the radius adds 2 |r'| Δ to the second derivative.
     let step = sweep.abs() / count;
     let error = step * (max_radius * step + 2.0 * (end_radius - start_radius).abs() / count) / 8.0;
-    Ok((0..chords)
-        .map(|k| Segment {
-            fractions: [fraction(k), fraction(k + 1)],
-            path: LinearPath::Line { start: position(k), end: position(k + 1) },
-            error,
-        })
-        .collect())
+    let chord = (0..chords).map(|k| Segment {
+        fractions: [k, k + 1].map(|k| f64::from(k) / count),
+        path: LinearPath::Line { start: position(k), end: position(k + 1) },
+        error,
+    });
+    Ok(chord.collect())
 }
 
 /// Returns the rates of the axes in mm and degrees per minute, if the machine states them. Axes that it lacks do not
@@ -177,9 +175,7 @@ pub(super) fn rapid(
 ///
 /// # Errors
 /// As for [`JointMotion::new`].
-pub(super) fn line(chain: &Chain, [start, end]: [Joints; 2]) -> Result<JointMotion, JointError> {
-    let linear = |joints: Joints| [joints[0], joints[1], joints[2]];
-    let rotary = |joints: Joints| [joints[3], joints[4], joints[5]];
-    let path = LinearPath::Line { start: linear(start), end: linear(end) };
-    JointMotion::new(chain, [rotary(start), rotary(end)], &path)
+pub(super) fn line(chain: &Chain, ends: [Joints; 2]) -> Result<JointMotion, JointError> {
+    let [(start, from), (end, to)] = ends.map(|[x, y, z, a, b, c]| ([x, y, z], [a, b, c]));
+    JointMotion::new(chain, [from, to], &LinearPath::Line { start, end })
 }

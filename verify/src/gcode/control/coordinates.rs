@@ -3,6 +3,7 @@
 
 use super::{AXES, Control, Motion};
 use crate::gcode::block::{Block, Code, Group, Keyword};
+use crate::gcode::error::{combination, missing, not_read, same_group};
 use crate::gcode::note::Subject;
 use crate::gcode::rules::{Choice, Rule};
 use crate::gcode::state::{
@@ -48,7 +49,7 @@ impl Control {
                 && (has_tool || has_change || is_staged)
                 && self.choice(Rule::ToolLength) == Choice::Always
             {
-                return Err(GcodeFault::combination(
+                return Err(combination(
                     format!("D{edge}"),
                     "a tool is about to be changed, for which it counts",
                     "write it after the change",
@@ -67,10 +68,10 @@ impl Control {
         let mut groups = [Group::OneShot, Group::Machine, Group::Length].into_iter();
         if has_change && let Some(code) = groups.find_map(|group| block.code_of(group)) {
             let remedy = "write it in a block before or after";
-            return Err(GcodeFault::combination(code, "its block has M6", remedy));
+            return Err(combination(code, "its block has M6", remedy));
         }
         if (has_change || changes) && block.has_any("XYZABCIJK") {
-            return Err(GcodeFault::combination(
+            return Err(combination(
                 if has_change { "M6" } else { "T" },
                 "its block has axis words",
                 "write them in a block before or after",
@@ -82,7 +83,7 @@ impl Control {
             && before != tool
             && self.state.tool != Some(before)
         {
-            return Err(GcodeFault::combination(
+            return Err(combination(
                 format!("T{tool} M6"),
                 "another tool is staged",
                 "write T in a block before M6",
@@ -95,7 +96,7 @@ impl Control {
             Some(tool) if changes => self.change_tool(tool),
             None if changes => {
                 let needed = "the number of a tool (T) in this block or before";
-                return Err(GcodeFault::missing("M6", needed));
+                return Err(missing("M6", needed));
             }
             _ => {}
         }
@@ -120,7 +121,7 @@ impl Control {
         let Some(tool) = self.state.tool else {
             if edge != 1 && self.choice(Rule::ToolLength) == Choice::Always {
                 let needed = "a tool in the spindle (T M6) before";
-                return Err(GcodeFault::missing(format!("D{edge}"), needed));
+                return Err(missing(format!("D{edge}"), needed));
             }
             return Ok(());
         };
@@ -240,7 +241,7 @@ impl Control {
                 if is_return || is_rotated || block.has_any("XYABC") {
                     let condition = "the length offset changes, and moves Z";
                     let remedy = "write it in a block of its own, without a rotation";
-                    return Err(GcodeFault::combination(code, condition, remedy));
+                    return Err(combination(code, condition, remedy));
                 }
                 self.move_along_z(height);
             }
@@ -261,7 +262,7 @@ impl Control {
         let at_zero = self.position[3..].iter().all(|angle| *angle == Some(0.0));
         if self.transformed && self.state.tcp == Tcp::Rotary && !at_zero {
             let condition = "M428 is in force with turned axes, which LinuxCNC moves by it";
-            return Err(GcodeFault::combination(code, condition, "write it before M428, or at 0"));
+            return Err(combination(code, condition, "write it before M428, or at 0"));
         }
         // From here on the offset is what the program says, whatever a return or the tool change has done to it.
         (self.returned, self.length_implicit) = (None, false);
@@ -271,11 +272,7 @@ impl Control {
             let is_return = block.code_of(Group::OneShot).is_some();
             if self.state.tcp != kept && !is_return && block.has_any("XYZABC") {
                 let condition = "its block has a position, and it ends tool centre point control";
-                return Err(GcodeFault::combination(
-                    code,
-                    condition,
-                    "write it in a block of its own",
-                ));
+                return Err(combination(code, condition, "write it in a block of its own"));
             }
             self.vector = None;
             self.length_cancelled = true;
@@ -285,40 +282,32 @@ impl Control {
         let tcp = match code.tenths {
             430 => kept,
             _ if self.transformed => {
-                return Err(GcodeFault::combination(
-                    code,
-                    "M428 or TRAORI is in force",
-                    "end it before",
-                ));
+                return Err(combination(code, "M428 or TRAORI is in force", "end it before"));
             }
             435 => Tcp::Vector,
             _ => Tcp::Rotary,
         };
         if tcp == Tcp::Vector && self.state.rotation != Rotation::Off {
-            return Err(GcodeFault::combination(
-                code,
-                "a plane is rotated",
-                "end it with G69 before",
-            ));
+            return Err(combination(code, "a plane is rotated", "end it with G69 before"));
         }
         let is_tcp = matches!(self.state.tcp, Tcp::Rotary | Tcp::Vector);
         if code.tenths == 430 && is_tcp && !self.transformed {
             let condition = "tool centre point control is on, which it ends on some controls";
-            return Err(GcodeFault::combination(code, condition, "write G49 before"));
+            return Err(combination(code, condition, "write G49 before"));
         }
         let is_across = code.tenths == 430 && self.modal.plane != Plane::Xy;
         if is_across && self.stated(Rule::Dialect) != Some(Choice::Rs274Ngc) {
             let condition =
                 "G18 or G19 is in force, across which Fanuc can count the length (TLB, TLC)";
-            return Err(GcodeFault::combination(code, condition, "write it while G17 is in force"));
+            return Err(combination(code, condition, "write it while G17 is in force"));
         }
         if code.tenths == 2340 && !block.has('H') {
             let needed = "H in its block, since Haas cancels the one before";
-            return Err(GcodeFault::missing(code, needed));
+            return Err(missing(code, needed));
         }
         if code.tenths != 430 && block.has_any("ABCIJK") {
             let condition = "its block turns the axes, without tool centre point control on Fanuc";
-            return Err(GcodeFault::combination(code, condition, "write it in a block before"));
+            return Err(combination(code, condition, "write it in a block before"));
         }
         // With turned axes the offset moves X and Y too, on Fanuc and Haas, unless the block states where to.
         self.tcp_position_needed = code.tenths != 430 && !at_zero;
@@ -338,11 +327,7 @@ impl Control {
                 None => {
                     let condition =
                         "it ends the length offset, or takes that of the tool on LinuxCNC";
-                    return Err(GcodeFault::combination(
-                        code,
-                        condition,
-                        "write G49, or name the control",
-                    ));
+                    return Err(combination(code, condition, "write G49, or name the control"));
                 }
                 Some(_) => {}
             }
@@ -356,7 +341,7 @@ impl Control {
             (None, _, Some(tool)) => self.registered(tool),
             (None, _, None) => {
                 let needed = "H with the number of a length, or a tool in the spindle (T M6)";
-                return Err(GcodeFault::missing(code, needed));
+                return Err(missing(code, needed));
             }
         };
         self.vector = None;
@@ -398,7 +383,7 @@ impl Control {
         let word = match (kinematics, block.keyword) {
             (Some(code), Some(_)) => {
                 let (first, second) = (code.to_string(), "TRAORI or TRAFOOF".to_owned());
-                return Err(GcodeFault::same_group(first, second));
+                return Err(same_group(first, second));
             }
             (Some(code), None) => code.to_string(),
             (None, Some(Keyword::TransformationOn)) => "TRAORI".to_owned(),
@@ -406,7 +391,7 @@ impl Control {
             (None, None) => return self.check_edge(),
         };
         if self.state.tcp != Tcp::Off && !self.transformed {
-            return Err(GcodeFault::combination(
+            return Err(combination(
                 word,
                 "G43.4, G43.5 or G234 is in force",
                 "end it with G49 before",
@@ -414,7 +399,7 @@ impl Control {
         }
         if block.keyword.is_some() {
             if block.has_words() {
-                return Err(GcodeFault::combination(
+                return Err(combination(
                     word,
                     "its block has other words, before or after which the transformation changes",
                     "write it in a block of its own",
@@ -432,7 +417,7 @@ impl Control {
         // Sinumerik applies the length of the tool in the spindle without a word.
         if block.keyword.is_some() && length == LengthOffset::Off {
             let Some(tool) = self.state.tool else {
-                return Err(GcodeFault::missing(word, "a tool in the spindle (T M6)"));
+                return Err(missing(word, "a tool in the spindle (T M6)"));
             };
             length = self.registered(tool);
         }
@@ -466,7 +451,7 @@ impl Control {
                     Some(number) => WorkOffset::Additional(number as u16),
                     None => {
                         let needed = "P with the number of the offset";
-                        return Err(GcodeFault::missing(code, needed));
+                        return Err(missing(code, needed));
                     }
                 }
             }
@@ -479,7 +464,7 @@ impl Control {
                 Some(Choice::Sinumerik) => {
                     let meaning = "a shift in native programs of Sinumerik";
                     let remedy = "write G54 to G57, or state `dialect = \"iso\"` of the control";
-                    return Err(GcodeFault::not_read(code, meaning, remedy));
+                    return Err(not_read(code, meaning, remedy));
                 }
                 Some(_) => {}
             }
@@ -510,7 +495,7 @@ impl Control {
     fn check_unrotated(&self, code: Code) -> Result<(), GcodeFault> {
         match self.state.rotation {
             Rotation::Off => Ok(()),
-            _ => Err(GcodeFault::combination(code, "a plane is rotated", "end it with G69 before")),
+            _ => Err(combination(code, "a plane is rotated", "end it with G69 before")),
         }
     }
 
@@ -531,7 +516,7 @@ impl Control {
             923 => {
                 let meaning = "a shift that another program may have left";
                 let remedy = "write G92 with its axes";
-                Err(GcodeFault::not_read(code, meaning, remedy))
+                Err(not_read(code, meaning, remedy))
             }
             _ => self.end_preset(code),
         }
@@ -541,25 +526,25 @@ impl Control {
     fn set_origin(&mut self, block: &mut Block, code: Code) -> Result<(), GcodeFault> {
         block
             .take_whole('L', 2, 2, "L2, which sets the origin of a work offset")?
-            .ok_or_else(|| GcodeFault::missing(code, "L2"))?;
+            .ok_or_else(|| missing(code, "L2"))?;
         let number = block
             .take_whole('P', 1, 9, "a work offset from P1 (G54) to P9 (G59.3)")?
-            .ok_or_else(|| GcodeFault::missing(code, "P with the number of the work offset"))?;
+            .ok_or_else(|| missing(code, "P with the number of the work offset"))?;
         if self.modal.incremental {
-            return Err(GcodeFault::combination(code, "G91 is in force", "write G90 before"));
+            return Err(combination(code, "G91 is in force", "write G90 before"));
         }
         let turn = block.take('R');
         if turn.is_some() && self.stated(Rule::Dialect) != Some(Choice::Rs274Ngc) {
             let meaning = "a rotation of the work offset on LinuxCNC alone";
             let remedy = "write G68, or state `dialect = \"rs274ngc\"` of the control";
-            return Err(GcodeFault::not_read("R of G10", meaning, remedy));
+            return Err(not_read("R of G10", meaning, remedy));
         }
         let axes = self.take_axes(block);
         let offset = WorkOffset::Standard(number as u8);
         let is_turned = self.origins.get(&offset).is_some_and(|(_, rotation)| *rotation != 0.0);
         let is_shifted = self.state.shift != [Some(0.0); 6];
         if self.state.work_offset == offset && is_shifted && (turn.is_some() || is_turned) {
-            return Err(GcodeFault::combination(
+            return Err(combination(
                 code,
                 "G52 or G92 is in force, and it rotates",
                 "end it before",
@@ -573,7 +558,7 @@ impl Control {
             && matches!(self.stated(Rule::Dialect), None | Some(Choice::Rs274Ngc))
         {
             let needed = "R0, since LinuxCNC keeps a rotation of the work offset; or state its origin in `work_offsets`";
-            return Err(GcodeFault::missing(code, needed));
+            return Err(missing(code, needed));
         }
         let (origin, rotation) = self.origins.entry(offset).or_insert(([None; 6], 0.0));
         for (coordinate, value) in origin.iter_mut().zip(axes) {
@@ -593,24 +578,20 @@ impl Control {
     /// Executes G52.
     fn set_local(&mut self, block: &mut Block, code: Code) -> Result<(), GcodeFault> {
         if self.preset != [Some(0.0); 6] {
-            return Err(GcodeFault::combination(
-                code,
-                "G92 is in force",
-                "end G92 with G92.1 before",
-            ));
+            return Err(combination(code, "G92 is in force", "end G92 with G92.1 before"));
         }
         if self.modal.incremental && self.stated(Rule::Dialect) != Some(Choice::Rs274Ngc) {
-            return Err(GcodeFault::combination(code, "G91 is in force", "write G90 before"));
+            return Err(combination(code, "G91 is in force", "write G90 before"));
         }
         let axes = self.take_axes(block);
         if axes.iter().all(Option::is_none) {
-            return Err(GcodeFault::missing(code, "an axis word"));
+            return Err(missing(code, "an axis word"));
         }
         if matches!(self.stated(Rule::Dialect), None | Some(Choice::Sinumerik))
             && (0..6).any(|axis| axes[axis].is_none() && self.local[axis] != 0.0)
         {
             let remedy = "name them, too";
-            return Err(GcodeFault::combination(
+            return Err(combination(
                 code,
                 "it leaves axes out that an earlier one has shifted",
                 remedy,
@@ -627,12 +608,12 @@ impl Control {
     fn preset(&mut self, block: &mut Block, code: Code) -> Result<(), GcodeFault> {
         self.check_local(code)?;
         if self.modal.incremental {
-            return Err(GcodeFault::combination(code, "G91 is in force", "write G90 before"));
+            return Err(combination(code, "G91 is in force", "write G90 before"));
         }
         self.check_preset(block)?;
         let axes = self.take_axes(block);
         if axes.iter().all(Option::is_none) {
-            return Err(GcodeFault::missing(code, "an axis word"));
+            return Err(missing(code, "an axis word"));
         }
         let workpiece = self.state.to_workpiece(self.position);
         for axis in 0..AXES.len() {
@@ -661,11 +642,7 @@ impl Control {
     fn check_local(&self, code: Code) -> Result<(), GcodeFault> {
         match self.local == [0.0; 6] {
             true => Ok(()),
-            false => Err(GcodeFault::combination(
-                code,
-                "G52 is in force",
-                "end it with G52 X0 Y0 Z0 before",
-            )),
+            false => Err(combination(code, "G52 is in force", "end it with G52 X0 Y0 Z0 before")),
         }
     }
 
@@ -682,24 +659,17 @@ impl Control {
     fn rotate(&mut self, block: &mut Block, code: Code) -> Result<(), GcodeFault> {
         self.check_unrotated(code)?;
         if self.state.tcp != Tcp::Off {
-            return Err(GcodeFault::combination(
-                code,
-                "tool centre point control is on",
-                "write G68.2",
-            ));
+            return Err(combination(code, "tool centre point control is on", "write G68.2"));
         }
         if self.modal.incremental {
-            return Err(GcodeFault::combination(code, "G91 is in force", "write G90 before"));
+            return Err(combination(code, "G91 is in force", "write G90 before"));
         }
-        let angle = block.take('R').ok_or_else(|| GcodeFault::missing(code, "the angle R"))?;
+        let angle = block.take('R').ok_or_else(|| missing(code, "the angle R"))?;
         let mut centre = Vector3::zeros();
         for axis in self.modal.plane.axes() {
             let given = self.take_length(block, AXES[axis]);
             centre[axis] = given.or(self.position[axis]).ok_or_else(|| {
-                GcodeFault::missing(
-                    code,
-                    "both coordinates of the centre, since the position is not known",
-                )
+                missing(code, "both coordinates of the centre, since the position is not known")
             })?;
         }
         // p ↦ R (p − c) + c for the centre c.
@@ -714,20 +684,16 @@ impl Control {
     fn tilt(&mut self, block: &mut Block, code: Code) -> Result<(), GcodeFault> {
         self.check_unrotated(code)?;
         if self.state.tcp == Tcp::Vector {
-            return Err(GcodeFault::combination(
-                code,
-                "G43.5 is in force",
-                "end it with G49 before",
-            ));
+            return Err(combination(code, "G43.5 is in force", "end it with G49 before"));
         }
         if self.modal.incremental {
-            return Err(GcodeFault::combination(code, "G91 is in force", "write G90 before"));
+            return Err(combination(code, "G91 is in force", "write G90 before"));
         }
         block.take_whole('P', 0, 0, "P0, or no P: the angles are Euler's")?;
         let mut numbers = [0.0; 6];
         for (number, letter) in numbers.iter_mut().zip(['X', 'Y', 'Z', 'I', 'J', 'K']) {
             let needed = "X Y Z and the Euler angles I J K";
-            *number = block.take(letter).ok_or_else(|| GcodeFault::missing(code, needed))?;
+            *number = block.take(letter).ok_or_else(|| missing(code, needed))?;
         }
         let [x, y, z, i, j, k] = numbers;
         let origin = Vector3::new(x, y, z).map(|length| self.modal.millimetres(length));
@@ -741,18 +707,14 @@ impl Control {
     fn align(&mut self, code: Code) -> Result<(), GcodeFault> {
         let Rotation::Tilted { frame, .. } = self.state.rotation else {
             let needed = "a tilted plane (G68.2) in a block before";
-            return Err(GcodeFault::missing(code, needed));
+            return Err(missing(code, needed));
         };
         if self.modal.cycle().is_some() {
-            return Err(GcodeFault::combination(
-                code,
-                "a canned cycle is in force",
-                "write G80 before",
-            ));
+            return Err(combination(code, "a canned cycle is in force", "write G80 before"));
         }
         if matches!(self.modal.motion, Some(Motion::Feed | Motion::Arc { .. })) {
             let condition = "a motion at feed rate is in force, at which Fanuc turns the axes";
-            return Err(GcodeFault::combination(code, condition, "write G0 before"));
+            return Err(combination(code, condition, "write G0 before"));
         }
         let mut end = self.position;
         end[3..].fill(None);
@@ -773,7 +735,7 @@ impl Control {
                 .get_or_insert("a work offset (G54) before, since this control starts without one");
         }
         let Some(needed) = needed else { return Ok(()) };
-        Err(GcodeFault::missing("a position", needed))
+        Err(missing("a position", needed))
     }
 
     /// Returns whether a block has a position that depends on the work offset.

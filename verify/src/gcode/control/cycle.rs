@@ -11,6 +11,7 @@
 
 use super::{AXES, Control, Cycle, FeedMode, Spindle};
 use crate::gcode::block::{Block, Group};
+use crate::gcode::error::{combination, missing};
 use crate::gcode::linuxcnc;
 use crate::gcode::rules::{Choice, Rule};
 use crate::gcode::state::{Position, Tcp};
@@ -43,7 +44,7 @@ impl Control {
         if is_linuxcnc {
             linuxcnc::check_cycle(block, number)?;
             if self.modal.feed_mode == FeedMode::InverseTime {
-                return Err(GcodeFault::combination(
+                return Err(combination(
                     word,
                     "G93 is in force, which LinuxCNC does not allow",
                     "write G94 before",
@@ -54,7 +55,7 @@ impl Control {
         let in_plane = self.modal.plane.axes().map(|axis| AXES[axis]);
         if self.cycle.is_some() && !is_linuxcnc && !in_plane.iter().any(|letter| block.has(*letter))
         {
-            return Err(GcodeFault::combination(
+            return Err(combination(
                 word,
                 "its block goes on with a series and has no place of a hole, and is executed or not",
                 "write X or Y",
@@ -63,21 +64,21 @@ impl Control {
         // LinuxCNC drills along the normal of the plane; Fanuc by a parameter along Z.
         let is_across = self.modal.plane != Plane::Xy;
         if is_across && (!is_linuxcnc || matches!(number, 74 | 84)) {
-            return Err(GcodeFault::combination(
+            return Err(combination(
                 word,
                 "G18 or G19 is in force, where a cycle is along Z or along the normal of the plane",
                 "write G17 before, or state `dialect = \"rs274ngc\"` of the control",
             ));
         }
         if block.code_of(Group::Length).is_some() {
-            return Err(GcodeFault::combination(
+            return Err(combination(
                 word,
                 "its block changes the length offset, before or after its initial level is taken",
                 "write G43 or G49 in a block before",
             ));
         }
         if matches!(number, 74 | 84) && !self.can_tap(number) {
-            return Err(GcodeFault::combination(
+            return Err(combination(
                 word,
                 "the spindle does not turn into the thread, which some controls start themselves",
                 "write M3 before G84, M4 before G74, or M29 for rigid tapping",
@@ -88,7 +89,7 @@ impl Control {
             && self.spindle(false) == Spindle::CounterClockwise
             && matches!(self.stated(Rule::Dialect), None | Some(Choice::Iso))
         {
-            return Err(GcodeFault::combination(
+            return Err(combination(
                 word,
                 "the spindle turns counter-clockwise, which it does not do after it on Fanuc",
                 "post the hole with its motions",
@@ -134,7 +135,7 @@ impl Control {
         let by_l = block.take_whole('L', 0, 1_000_000, "a number of repeats after L")?.unwrap_or(1);
         let by_k = block.take_whole('K', 0, 1_000_000, "a number of repeats after K")?.unwrap_or(1);
         if by_l == 0 || by_k == 0 {
-            return Err(GcodeFault::combination(
+            return Err(combination(
                 if by_l == 0 { "L0" } else { "K0" },
                 "its block has a canned cycle, to whose place Haas moves",
                 "write G80 and G0, and the cycle again",
@@ -171,7 +172,7 @@ impl Control {
             ),
             None => return Ok(()),
         };
-        Err(GcodeFault::combination(word, condition, remedy))
+        Err(combination(word, condition, remedy))
     }
 
     /// Takes the words of the cycle. Those that are missing are the ones of the cycle before.
@@ -194,11 +195,11 @@ impl Control {
         };
         // The time of the dwell.
         block.take('P');
-        let depth = depth
-            .ok_or_else(|| GcodeFault::missing(word, "the depth: Z in G17, Y in G18, X in G19"))?;
-        let retract = retract.ok_or_else(|| GcodeFault::missing(word, "the retract plane R"))?;
+        let depth =
+            depth.ok_or_else(|| missing(word, "the depth: Z in G17, Y in G18, X in G19"))?;
+        let retract = retract.ok_or_else(|| missing(word, "the retract plane R"))?;
         if matches!(number, 73 | 83) && !peck.is_some_and(|peck| peck > 0.0) {
-            return Err(GcodeFault::missing(word, "a positive depth of peck Q"));
+            return Err(missing(word, "a positive depth of peck Q"));
         }
         // G98 returns to the level before the first cycle of the series, whatever the others have left.
         let initial = known.map_or(self.position[normal], |cycle| cycle.initial);

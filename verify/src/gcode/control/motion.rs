@@ -2,7 +2,7 @@
 
 use super::{AXES, Control, Motion, in_plane};
 use crate::gcode::block::{Block, Group};
-use crate::gcode::error::ArcFault;
+use crate::gcode::error::{ArcFault, combination, missing, not_read};
 use crate::gcode::rules::{Choice, Rule};
 use crate::gcode::state::{LengthOffset, Position, Rotation, Tcp};
 use crate::gcode::{GcodeFault, Plane, StepPath};
@@ -31,7 +31,7 @@ impl Control {
             None if has_axes => Err(GcodeFault::NoMotionMode),
             Some(Motion::Cycle(number)) if explicit => {
                 let word = format!("G{number}");
-                Err(GcodeFault::missing(word, "X, Y or Z"))
+                Err(missing(word, "X, Y or Z"))
             }
             _ => Ok(()),
         }
@@ -78,7 +78,7 @@ impl Control {
         }
         let given = AXES[3..].iter().find(|letter| block.has(**letter));
         if let Some(letter) = given {
-            return Err(GcodeFault::combination(
+            return Err(combination(
                 letter,
                 "G43.5 is in force",
                 "write the tool vector I J K, or select G43.4",
@@ -99,7 +99,7 @@ impl Control {
     fn arc(&mut self, block: &mut Block, clockwise: bool) -> Result<(), GcodeFault> {
         let word = if clockwise { "G2" } else { "G3" };
         if self.state.tcp == Tcp::Vector {
-            return Err(GcodeFault::combination(
+            return Err(combination(
                 word,
                 "G43.5 gives I J K another meaning",
                 "post the arc as lines, or select G43.4",
@@ -111,7 +111,7 @@ impl Control {
         if self.stated(Rule::Dialect) == Some(Choice::Heidenhain)
             && block.has(in_plane[0]) != block.has(in_plane[1])
         {
-            return Err(GcodeFault::combination(
+            return Err(combination(
                 word,
                 "one coordinate of its pole is left out, which keeps it on Heidenhain",
                 "write both",
@@ -150,7 +150,7 @@ impl Control {
         {
             let meaning = "a number of turns on LinuxCNC alone";
             let remedy = "write an arc per turn, or state `dialect = \"rs274ngc\"` of the control";
-            return Err(GcodeFault::not_read("P of an arc", meaning, remedy));
+            return Err(not_read("P of an arc", meaning, remedy));
         }
         Ok(turns.unwrap_or(1))
     }
@@ -158,21 +158,13 @@ impl Control {
     /// Executes G53.
     fn machine_coordinates(&mut self, block: &mut Block) -> Result<(), GcodeFault> {
         if self.modal.incremental {
-            return Err(GcodeFault::combination("G53", "G91 is in force", "write G90 before"));
+            return Err(combination("G53", "G91 is in force", "write G90 before"));
         }
         if self.state.tcp != Tcp::Off {
-            return Err(GcodeFault::combination(
-                "G53",
-                "tool centre point control is on",
-                self.tcp_remedy(),
-            ));
+            return Err(combination("G53", "tool centre point control is on", self.tcp_remedy()));
         }
         if matches!(self.state.rotation, Rotation::Plane { .. }) {
-            return Err(GcodeFault::combination(
-                "G53",
-                "a plane is rotated",
-                "end it with G69 before",
-            ));
+            return Err(combination("G53", "a plane is rotated", "end it with G69 before"));
         }
         match self.modal.motion {
             None if self.stated(Rule::Dialect) == Some(Choice::Rs274Ngc) => {
@@ -183,16 +175,16 @@ impl Control {
             // Positioned in rapid traverse on Fanuc, at feed rate elsewhere.
             Some(Motion::Feed) => {
                 let remedy = "write G0 in the block";
-                return Err(GcodeFault::combination("G53", "G1 is in force", remedy));
+                return Err(combination("G53", "G1 is in force", remedy));
             }
             _ => {
                 let condition = "an arc or a canned cycle is in force";
-                return Err(GcodeFault::combination("G53", condition, "write G0 in the block"));
+                return Err(combination("G53", condition, "write G0 in the block"));
             }
         }
         let axes = self.take_axes(block);
         if axes.iter().all(Option::is_none) {
-            return Err(GcodeFault::missing("G53", "an axis word"));
+            return Err(missing("G53", "an axis word"));
         }
         let mut target = axes;
         // Without the place of the part on the machine its coordinates lead nowhere that is known.
@@ -222,25 +214,13 @@ impl Control {
         word: &str,
     ) -> Result<(), GcodeFault> {
         if self.state.tcp != Tcp::Off {
-            return Err(GcodeFault::combination(
-                word,
-                "tool centre point control is on",
-                self.tcp_remedy(),
-            ));
+            return Err(combination(word, "tool centre point control is on", self.tcp_remedy()));
         }
         if self.modal.cycle().is_some() {
-            return Err(GcodeFault::combination(
-                word,
-                "a canned cycle is in force",
-                "write G80 before",
-            ));
+            return Err(combination(word, "a canned cycle is in force", "write G80 before"));
         }
         if matches!(self.state.rotation, Rotation::Plane { .. }) {
-            return Err(GcodeFault::combination(
-                word,
-                "a plane is rotated",
-                "end it with G69 before",
-            ));
+            return Err(combination(word, "a plane is rotated", "end it with G69 before"));
         }
         if word == "G30" {
             block.take_whole('P', 2, 2, "P2, or no P")?;
@@ -255,11 +235,11 @@ impl Control {
         } else {
             // All axes on LinuxCNC and Haas, none on Fanuc.
             let needed = "the axes that return";
-            return Err(GcodeFault::missing(word, needed));
+            return Err(missing(word, needed));
         }
         // LinuxCNC returns along the axis that is rotated.
         if self.state.origin_rotation != 0.0 && named[0] != named[1] {
-            return Err(GcodeFault::combination(
+            return Err(combination(
                 word,
                 "the work offset is rotated",
                 "name X and Y, or neither",

@@ -4,6 +4,7 @@
 
 use super::{AXES, Control, Motion, in_plane};
 use crate::gcode::block::{Block, Code, Group};
+use crate::gcode::error::{combination, not_read, same_group};
 use crate::gcode::flow::before_semicolon;
 use crate::gcode::linuxcnc;
 use crate::gcode::note::Subject;
@@ -25,7 +26,7 @@ impl Control {
         {
             let meaning = "a unit in programs of Sinumerik and Heidenhain, and a cycle elsewhere";
             let remedy = "write G20 or G21";
-            return Err(GcodeFault::not_read(code, meaning, remedy));
+            return Err(not_read(code, meaning, remedy));
         }
         // The dialect is asked only if the block has such a word.
         let other = block.codes().find(|code| is_other_on_heidenhain(*code));
@@ -34,7 +35,7 @@ impl Control {
         {
             let meaning = "another word in DIN/ISO programs of Heidenhain";
             let remedy = "post the program for this control, or state another `dialect`";
-            return Err(GcodeFault::not_read(code, meaning, remedy));
+            return Err(not_read(code, meaning, remedy));
         }
         let dialect = self.stated(Rule::Dialect);
         if dialect == Some(Choice::Rs274Ngc) {
@@ -45,17 +46,17 @@ impl Control {
         {
             let meaning = "a word of LinuxCNC alone";
             let remedy = "post the program for this control, or state another `dialect`";
-            return Err(GcodeFault::not_read(code, meaning, remedy));
+            return Err(not_read(code, meaning, remedy));
         }
         if let Some(code) = block.code_of(Group::Kinematics)
             && dialect != Some(Choice::Rs274Ngc)
         {
             let meaning = "tool centre point control of LinuxCNC's five-axis configurations alone";
             let remedy = "write G43.4 H and G49, or state `dialect = \"rs274ngc\"` of the control";
-            return Err(GcodeFault::not_read(code, meaning, remedy));
+            return Err(not_read(code, meaning, remedy));
         }
         if block.distance_after_coordinate && dialect == Some(Choice::Heidenhain) {
-            return Err(GcodeFault::combination(
+            return Err(combination(
                 "G90 or G91",
                 "a coordinate stands before it in the block",
                 "write it first: on Heidenhain it holds for the coordinates after it",
@@ -76,7 +77,7 @@ impl Control {
                 let meaning = "no word of DIN/ISO programs of Heidenhain";
                 let remedy =
                     "write comments after `;` and numbers as such, or state another `dialect`";
-                Err(GcodeFault::not_read(format!("`{found}`"), meaning, remedy))
+                Err(not_read(format!("`{found}`"), meaning, remedy))
             }
             _ => Ok(()),
         }
@@ -85,7 +86,7 @@ impl Control {
     /// Refuses values that depend on when the assignment of their block takes effect.
     pub(crate) fn check_assignment(&self, block: &Block) -> Result<(), GcodeFault> {
         match block.assigns_beside_value && self.stated(Rule::Dialect) != Some(Choice::Rs274Ngc) {
-            true => Err(GcodeFault::combination(
+            true => Err(combination(
                 "an assignment",
                 "its block has another computed value, which LinuxCNC computes before it",
                 "write it in a block before",
@@ -104,7 +105,7 @@ impl Control {
                 .filter(Code::is_m)
                 .find(|code| matches!(code.tenths, 0..=60 | 290 | 300 | 980 | 990))
         {
-            return Err(GcodeFault::combination(
+            return Err(combination(
                 code,
                 "its block has another M word, of which Haas and Fanuc as delivered execute one",
                 "write them in two blocks",
@@ -113,7 +114,7 @@ impl Control {
         let mut spindle =
             block.codes().filter(|code| code.is_m() && matches!(code.tenths, 30 | 40 | 50 | 190));
         if let (Some(first), Some(second)) = (spindle.next(), spindle.next()) {
-            return Err(GcodeFault::same_group(first, second));
+            return Err(same_group(first, second));
         }
         if let Some(value) = block.value('S').filter(|speed| *speed < 0.0) {
             let expected = "a number from 0";
@@ -123,7 +124,7 @@ impl Control {
         if block.has('P')
             && let Some(code) = block.code_of(Group::WorkOffset).filter(|code| code.tenths != 541)
         {
-            return Err(GcodeFault::combination(
+            return Err(combination(
                 format!("P beside {code}"),
                 "it selects another work offset on Fanuc and Siemens",
                 "write it in a block of its own",
@@ -134,7 +135,7 @@ impl Control {
         if let Some((cycle, end)) = cycle.zip(block.code_of(Group::CycleOff))
             && dialect != Some(Choice::Rs274Ngc)
         {
-            return Err(GcodeFault::same_group(cycle, end));
+            return Err(same_group(cycle, end));
         }
         check_axis_words(block)?;
         self.check_shared(block)
@@ -155,7 +156,7 @@ impl Control {
         for letter in "PQLR".chars().filter(|letter| block.has(*letter)) {
             let mut users = block.codes().chain(in_force).filter(|code| takes(*code, letter));
             if let (Some(first), Some(second)) = (users.next(), users.next()) {
-                return Err(GcodeFault::combination(
+                return Err(combination(
                     format!("{letter} beside {first} and {second}"),
                     "some controls give its number to both",
                     "write them in two blocks",
@@ -171,7 +172,7 @@ impl Control {
         if std::mem::take(&mut self.tcp_position_needed)
             && (is_incremental || !"XYZ".chars().all(|letter| block.has(letter)))
         {
-            return Err(GcodeFault::combination(
+            return Err(combination(
                 "a position",
                 "it is the first of tool centre point control that began with turned axes, and has not X, Y and Z in G90",
                 "write all three",
@@ -182,7 +183,7 @@ impl Control {
         if length_changed && is_incremental {
             let condition = "G91 is in force and the length offset has changed";
             let remedy = "write it in G90";
-            return Err(GcodeFault::combination("Z", condition, remedy));
+            return Err(combination("Z", condition, remedy));
         }
         self.check_shifted(block)?;
         for (axis, letter) in AXES.into_iter().enumerate() {
@@ -190,7 +191,7 @@ impl Control {
             // An increment of 0 states no position: the axis still stands where the change has found it.
             self.origin_changed[axis] &= is_incremental && value == 0.0;
             if is_incremental && self.is_rounded(axis, value) {
-                return Err(GcodeFault::combination(
+                return Err(combination(
                     format!("{letter}{value}"),
                     "G91 is in force, and it is no multiple of the least increment, to which controls round each",
                     "write it in G90",
@@ -207,7 +208,7 @@ impl Control {
             block.has(AXES[axis]) && (self.origin_changed[axis] || axis == 2 && self.length_changed)
         });
         match changed {
-            Some(axis) if self.modal.incremental && is_sinumerik => Err(GcodeFault::combination(
+            Some(axis) if self.modal.incremental && is_sinumerik => Err(combination(
                 AXES[axis],
                 "G91 is in force and its work offset, shift or length has changed, which Sinumerik adds",
                 "write it in G90",
@@ -228,7 +229,7 @@ impl Control {
                 .flatten()
                 .any(|value| self.is_rounded(axis, value))
             {
-                return Err(GcodeFault::combination(
+                return Err(combination(
                     format!("G92 {letter}{value}"),
                     "it or the position is no multiple of the least increment, to which controls round",
                     "move to such a position before",
@@ -264,7 +265,7 @@ impl Control {
             return Ok(());
         }
         if self.modal.incremental || given != [true; 2] {
-            return Err(GcodeFault::combination(
+            return Err(combination(
                 "a position",
                 "it is the first after G68 or G69, and not of both axes of the plane in G90",
                 "write both in G90",
@@ -280,7 +281,7 @@ impl Control {
         let has_length = self.state.tcp == Tcp::Off && self.state.length != LengthOffset::Off;
         // Along Z of the machine, or of the plane: the same where the plane keeps Z.
         if !aligned && has_length && frame.rotation[(2, 2)] != 1.0 && block.has_any("XYZ") {
-            return Err(GcodeFault::combination(
+            return Err(combination(
                 "a position",
                 "a length offset is in force in a tilted plane that is not aligned",
                 "write G53.1 after G68.2, or G49 before",
@@ -299,7 +300,7 @@ impl Control {
                 }
                 _ => continue,
             };
-            return Err(GcodeFault::combination(letter, condition, remedy));
+            return Err(combination(letter, condition, remedy));
         }
         Ok(())
     }
@@ -320,7 +321,7 @@ impl Control {
         let chord = (u - x).hypot(v - y);
         let [across, along] = [(u - x).abs(), (v - y).abs()];
         if chord > 0.0 && across.max(along) < 2.0 * self.modal.millimetres(self.modal.increment()) {
-            return Err(GcodeFault::combination(
+            return Err(combination(
                 "an arc",
                 "its end is less than two increments from its start, and can be the same where coordinates are rounded",
                 "leave the end out for a full circle, or leave out the arc",
@@ -424,7 +425,7 @@ fn check_axis_words(block: &Block) -> Result<(), GcodeFault> {
     let motion = motion.filter(|_| !(is_plain && (is_return || machine.is_some())));
     let mut users = [one_shot, rotation, machine, motion].into_iter().flatten();
     match (users.next(), users.next()) {
-        (Some(first), Some(second)) => Err(GcodeFault::same_group(first, second)),
+        (Some(first), Some(second)) => Err(same_group(first, second)),
         _ => Ok(()),
     }
 }
