@@ -57,7 +57,6 @@ pub(super) fn read(text: &str) -> Result<Vec<Found>, String> {
         }
         let code = std::mem::take(&mut continued) + code;
         let Some((word, rest)) = code.split_once('/') else { continue };
-        let at_line = |what: &str| format!("line {}: {what}", index + 1);
         let mut fields = rest.split(',').map(str::trim);
         let mut next = || fields.next().unwrap_or_default();
         match word.trim().to_ascii_uppercase().as_str() {
@@ -65,7 +64,7 @@ pub(super) fn read(text: &str) -> Result<Vec<Found>, String> {
                 unit = Some(match rest.trim().to_ascii_uppercase().as_str() {
                     "MM" | "MMS" => Unit::Millimetre,
                     "INCHES" | "INCH" | "IN" => Unit::Inch,
-                    other => return Err(at_line(&format!("unit `{other}`"))),
+                    other => return Err(format!("line {}: unit `{other}`", index + 1)),
                 });
             }
             "TOOL PATH" => {

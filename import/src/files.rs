@@ -44,8 +44,10 @@ impl Writer {
             return Ok((path.trim_end_matches(".tool").to_owned(), files));
         };
         let name = self.tools.file(&entry.title, &otherwise);
+        // It is the length to a holder: without one it says nothing.
         let stickout = entry.stickout.filter(|_| entry.holder.is_some());
         let mut cutter = cutter.clone();
+        // A shank that does not reach its holder is drawn up to it, and a note says so.
         if let Some(stickout) = stickout {
             cutter.length = cutter.length.max(stickout);
         }
@@ -182,6 +184,7 @@ fn clipped(sections: &[Section], height: f64) -> Vec<Section> {
         }
         let rest = height - z;
         z += section.height;
+        // A cone that is cut off ends at the diameter that it has there.
         if section.height > rest {
             let part = rest / section.height;
             let change = section.upper_diameter - section.lower_diameter;

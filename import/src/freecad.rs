@@ -4,7 +4,7 @@
 //! point or a comma. A bit whose shape was changed by its user cannot be told from one of FreeCAD's own.
 
 use super::entry::{Entry, Holder, Note, Section, Stated};
-use super::json::{Object, tool_number};
+use super::json::{Object, pair, tool_number};
 use super::shape::{Cutter, Shape};
 use super::{Found, Problem, bytes, text};
 use serde_json::Value;
@@ -63,11 +63,7 @@ fn read_holder(holder: &Object, title: &str) -> Result<Entry, String> {
         other => return Err(format!("its unit is `{other}`, not `mm` or `inch`")),
     };
     let profile = holder.get("profile").and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
-    let point = |value: &Value| {
-        let number = |k: usize| value.get(k)?.as_f64().filter(|number| number.is_finite());
-        Some([number(0)?, number(1)?])
-    };
-    let points: Option<Vec<[f64; 2]>> = profile.iter().map(point).collect();
+    let points: Option<Vec<[f64; 2]>> = profile.iter().map(pair).collect();
     let points = points.ok_or("a point of its profile is no pair of numbers")?;
     let mut sections = Vec::new();
     for pair in points.windows(2) {
@@ -75,6 +71,7 @@ fn read_holder(holder: &Object, title: &str) -> Result<Entry, String> {
         if high < low {
             return Err("its profile runs back toward the tip".to_owned());
         }
+        // A step across the axis is the change of diameter from one section to the next.
         if high > low {
             sections.push(Section {
                 height: high - low,
@@ -95,6 +92,7 @@ fn read_bit(bit: &Object, number: Option<u32>) -> Found {
 }
 
 fn read_shape(bit: &Object, title: &str, number: Option<u32>) -> Result<Entry, String> {
+    // The shape is named by a path, of either kind of system.
     let shape = string(bit, "shape").rsplit(['/', '\\']).next().unwrap_or("").to_lowercase();
     let shape = shape.trim_end_matches(".fcstd");
     let mut entry = entry(Unit::Millimetre, shape, title, bit);
@@ -165,6 +163,7 @@ fn cutter(stated: &str, of: &Parameters<'_>, notes: &mut Vec<Note>) -> Result<Cu
         "vbit" => {
             let tip_diameter = of.length_or("TipDiameter", "tip diameter", 0.0, notes)?;
             let point_angle = of.angle("CuttingEdgeAngle")?;
+            // The height of the edge counts from the end of the point.
             let cone = (diameter - tip_diameter) / 2.0 / (point_angle / 2.0).to_radians().tan();
             let flute_length = super::outline::rounded(cone + flutes()?);
             (Shape::Drill { tip_diameter, point_angle }, flute_length)

@@ -5,7 +5,7 @@
 //! the shank, `SIG` a whole angle, `TA` the angle between the axis and a side.
 
 use super::entry::{Entry, Holder, Note, Section, Stated};
-use super::json::{Object, number, number_of, object, text, tool_number};
+use super::json::{Object, number, number_of, object, pair, text, tool_number};
 use super::shape::{Crest, Cutter, FormSegment, Shape, ShapeError};
 use super::{Found, Problem};
 use serde_json::Value;
@@ -61,6 +61,7 @@ fn read_tool(tool: &Object, kind: &str, title: &str) -> Result<Entry, String> {
             entry.notes.push(Note::Unstated("segments of the holder", drawn));
             return Ok(entry);
         };
+        // Without it nothing says where the holder begins.
         entry.stickout = Some(geometry.require("LB", "length below the holder")?);
         let gauge = number_of(value, "gaugeLength");
         let stated = geometry.get("assemblyGaugeLength")?;
@@ -168,6 +169,7 @@ fn cutter(
         "thread mill" => Shape::Thread {
             pitch: pitch(geometry, notes)?,
             angle: geometry.or("thread-profile-angle", "angle of the thread", 60.0, notes)?,
+            // Teeth that do not fit the length of the flutes are not drawn.
             teeth: geometry.or("NT", "number of teeth", 1.0, notes)?.clamp(1.0, 1e6) as u32,
             crest: crest(geometry, notes)?,
         },
@@ -375,13 +377,9 @@ struct Corner {
 }
 
 fn corner(value: &Value) -> Result<Corner, String> {
-    let point = |key: &str| -> Result<[f64; 2], String> {
-        let list = value.get(key).and_then(Value::as_array);
-        let number = |k: usize| list?.get(k)?.as_f64().filter(|number| number.is_finite());
-        match (number(0), number(1)) {
-            (Some(d), Some(z)) => Ok([d, z]),
-            _ => Err(format!("a segment of its profile has no point `{key}`")),
-        }
+    let point = |key: &str| {
+        let point = value.get(key).and_then(pair);
+        point.ok_or_else(|| format!("a segment of its profile has no point `{key}`"))
     };
     let flag = |key: &str| match value.get(key) {
         None => Ok(None),
@@ -426,6 +424,7 @@ fn push(segments: &mut Vec<FormSegment>, from: [f64; 2], corner: &Corner) -> Res
     let turn = turn.rem_euclid(std::f64::consts::TAU);
     let concave = !ccw;
     let mut stops = vec![end];
+    // By its radius, an arc of a `.tool` file has at most half a turn. Ends that coincide are those of a full circle.
     if turn > std::f64::consts::PI || turn == 0.0 {
         let full = if turn == 0.0 { std::f64::consts::TAU } else { turn };
         let middle = start + if ccw { full / 2.0 } else { -full / 2.0 };

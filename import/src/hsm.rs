@@ -205,6 +205,7 @@ impl Tool {
     fn end(&mut self, name: &str) {
         let text = self.text.trim().to_owned();
         match name {
+            // Inside of a shaft or a holder it is not the tool's.
             "description" if self.stack.is_none() => {
                 self.object.insert("description".to_owned(), json!(text));
             }
@@ -234,6 +235,7 @@ impl Tool {
     fn finish(mut self) -> Value {
         let kind = self.object.get("type").and_then(Value::as_str).unwrap_or("");
         let is_center_drill = kind == "center drill";
+        // Their `taper-angle` is the whole angle of the point, and that of a centre drill's body has a name of its own.
         if HOLE_MAKING.contains(&kind)
             && let Some(angle) = self.geometry.remove("TA")
         {

@@ -33,3 +33,10 @@ pub(super) fn number(value: &Value) -> Option<f64> {
 pub(super) fn text<'a>(object: &'a Object, key: &str) -> &'a str {
     object.get(key).and_then(Value::as_str).unwrap_or("").trim()
 }
+
+/// Returns the first two numbers of a list.
+pub(super) fn pair(value: &Value) -> Option<[f64; 2]> {
+    let list = value.as_array()?;
+    let [first, second] = [0, 1].map(|k| list.get(k)?.as_f64().filter(|number| number.is_finite()));
+    Some([first?, second?])
+}

@@ -207,6 +207,7 @@ impl ImportedTool {
             let file = folder.join(path);
             let unwritable = |source| ImportError::Unwritable { file: file.clone(), source };
             match fs::read(&file) {
+                // Tools share files of holders, and a library can be imported again.
                 Ok(known) if known == text.as_bytes() => continue,
                 Ok(_) => return Err(ImportError::Exists { file }),
                 Err(_) => {}
@@ -234,6 +235,7 @@ impl ImportedTool {
 /// Reads a file, up to the limit.
 fn bytes(file: &Path) -> Result<Vec<u8>, ImportError> {
     let mut content = Vec::new();
+    // A byte beyond the limit tells a file that is longer.
     fs::File::open(file)
         .and_then(|opened| opened.take(MAX_BYTES + 1).read_to_end(&mut content))
         .map_err(|source| ImportError::Unreadable { file: file.to_owned(), source })?;

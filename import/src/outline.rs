@@ -253,6 +253,7 @@ enum Strength {
 impl Term {
     /// Returns a number.
     pub(super) fn number(value: f64) -> Term {
+        // Its minus binds as that of a difference.
         let strength = if value < 0.0 { Strength::Sum } else { Strength::Atom };
         Term { text: decimal(value), value, strength }
     }
@@ -267,6 +268,7 @@ impl Term {
     }
 
     pub(super) fn plus(&self, other: &Term) -> Term {
+        // A term that says nothing is not written.
         if other.is("0") {
             return self.clone();
         }

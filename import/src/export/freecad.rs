@@ -5,6 +5,9 @@ use super::{Written, description, is_same};
 use serde_json::{Map, json};
 use touchoff::tool::ToolInfo;
 
+/// The reason for which a tool is left out.
+const REFUSED: &str = "no shape of FreeCAD has its outline";
+
 /// Writes a tool as one of FreeCAD's shapes.
 pub(super) fn write(
     tool: &ToolInfo,
@@ -15,8 +18,7 @@ pub(super) fn write(
         return Err("a FreeCAD bit is one tool: export each to a file of its own".to_owned());
     }
     let flutes = section.cutting_end()[1];
-    let refused = || "no shape of FreeCAD has its outline".to_owned();
-    let (shape, own) = match recognise(&section.cutting).ok_or_else(refused)? {
+    let (shape, own) = match recognise(&section.cutting).ok_or(REFUSED)? {
         Type::End { diameter, corner: 0.0 } => ("endmill", vec![("Diameter", mm(diameter))]),
         Type::End { diameter, corner } => {
             ("bullnose", vec![("Diameter", mm(diameter)), ("CornerRadius", mm(corner))])
@@ -42,7 +44,7 @@ pub(super) fn write(
             ];
             ("taperedballnose", own)
         }
-        Type::Taper { .. } => return Err(refused()),
+        Type::Taper { .. } => return Err(REFUSED.to_owned()),
     };
     let body = section.body.as_ref().map_err(Clone::clone)?;
     let shank = body.last().map_or(section.cutting_end()[0], |cone| cone.high[0]);
@@ -60,7 +62,7 @@ pub(super) fn write(
         "parameter": parameters, "attribute": {} });
     let text = format!("{bit:#}\n");
     if !is_same("tool.fctb", &text, &section.closed_below_holder()) {
-        return Err(refused());
+        return Err(REFUSED.to_owned());
     }
     let mut gaps = Vec::new();
     if !matches!(&section.holder, Ok(holder) if holder.is_empty()) {

@@ -123,13 +123,13 @@ fn add_body(
     geometry: &mut Map<String, Value>,
     entry: &mut Value,
 ) {
-    let is_cylinder = |cone: &Cone| (cone.high[0] - cone.low[0]).abs() <= section.tolerance;
+    let tolerance = section.tolerance;
     let top = body.last().map_or(section.cutting_end()[0], |cone| cone.high[0]);
     geometry.insert("SFDM".to_owned(), length(2.0 * top));
     match body {
         [] => {}
-        [shank] if is_cylinder(shank) => {}
-        [neck, shank] if is_cylinder(neck) && is_cylinder(shank) => {
+        [shank] if shank.is_cylinder(tolerance) => {}
+        [neck, shank] if neck.is_cylinder(tolerance) && shank.is_cylinder(tolerance) => {
             geometry.insert("shoulder-length".to_owned(), length(neck.high[1]));
             geometry.insert("shoulder-diameter".to_owned(), length(2.0 * neck.low[0]));
         }
@@ -146,12 +146,12 @@ fn segments(cones: &[Cone]) -> Vec<Value> {
 
 /// Returns an outline as the profile of a form mill.
 fn profile(outline: &[ProfileSegment]) -> Value {
-    let end = |segment: &ProfileSegment| match segment.circle {
+    let start = outline.first().map(|first| json!({ "end": first.from, "arc": false }));
+    let ends = outline.iter().map(|segment| match segment.circle {
         None => json!({ "end": segment.to, "arc": false }),
         Some(circle) => {
             json!({ "end": segment.to, "arc": true, "ccw": circle.convex, "center": circle.centre })
         }
-    };
-    let start = outline.first().map(|first| json!({ "end": first.from, "arc": false }));
-    start.into_iter().chain(outline.iter().map(end)).collect()
+    });
+    start.into_iter().chain(ends).collect()
 }

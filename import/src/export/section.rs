@@ -15,6 +15,12 @@ pub(super) struct Cone {
     pub(super) high: [f64; 2],
 }
 
+impl Cone {
+    pub(super) fn is_cylinder(&self, tolerance: f64) -> bool {
+        (self.high[0] - self.low[0]).abs() <= tolerance
+    }
+}
+
 /// A tool's outline in parts, in the tool's frame.
 pub(super) struct HalfSection {
     /// The unit of all lengths.
@@ -177,24 +183,28 @@ fn size(outline: &[ProfileSegment]) -> f64 {
 fn merged(outline: &[ProfileSegment], tolerance: f64) -> Vec<ProfileSegment> {
     let mut merged: Vec<ProfileSegment> = Vec::new();
     for segment in outline {
-        let continues = |last: &ProfileSegment| match (last.circle, segment.circle) {
-            (None, None) => {
-                let [a, b] = [last, segment].map(|s| [s.to[0] - s.from[0], s.to[1] - s.from[1]]);
-                let (cross, dot) = (a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]);
-                dot > 0.0 && cross.abs() <= tolerance * a[0].hypot(a[1]).max(b[0].hypot(b[1]))
-            }
-            (Some(a), Some(b)) => {
-                let apart = (a.centre[0] - b.centre[0]).hypot(a.centre[1] - b.centre[1]);
-                a.convex == b.convex && apart.max((a.radius - b.radius).abs()) <= tolerance
-            }
-            _ => false,
-        };
-        match merged.last_mut().filter(|last| continues(last)) {
+        match merged.last_mut().filter(|last| continues(last, segment, tolerance)) {
             Some(last) => last.to = segment.to,
             None => merged.push(*segment),
         }
     }
     merged
+}
+
+/// Returns whether a segment goes on as the one before it.
+fn continues(last: &ProfileSegment, segment: &ProfileSegment, tolerance: f64) -> bool {
+    match (last.circle, segment.circle) {
+        (None, None) => {
+            let [a, b] = [last, segment].map(|s| [s.to[0] - s.from[0], s.to[1] - s.from[1]]);
+            let (cross, dot) = (a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]);
+            dot > 0.0 && cross.abs() <= tolerance * a[0].hypot(a[1]).max(b[0].hypot(b[1]))
+        }
+        (Some(a), Some(b)) => {
+            let apart = (a.centre[0] - b.centre[0]).hypot(a.centre[1] - b.centre[1]);
+            a.convex == b.convex && apart.max((a.radius - b.radius).abs()) <= tolerance
+        }
+        _ => false,
+    }
 }
 
 /// Returns straight segments as conical pieces; steps across the axis lie between them.

@@ -1,5 +1,6 @@
 //! Cutters of lines, edges and balls: mills, drills, saws and probes, outlines drawn by hand, and the general cutter of APT.
 
+use super::ShapeError::{Contradiction, OutOfRange};
 use super::{
     CORNER, Cutter, FACE, FLUTE, FormSegment, NECK, ShapeError, ball_on_neck, flat_tip, positive,
 };
@@ -62,6 +63,7 @@ impl Cutter {
         self.check_angle("taper angle", half_angle)?;
         let angle = outline.angle("taper_angle", half_angle);
         let ball = outline.param("ball_radius", ball);
+        // Where the cone touches the ball, both have one normal.
         let to_d = ball.times(&angle.cos());
         let to_z = ball.minus(&ball.times(&angle.sin()));
         outline.arc([&to_d, &to_z], [&zero, &ball], cutting("ball"));
@@ -116,7 +118,7 @@ impl Cutter {
         self.check_tip(tip_diameter)?;
         self.check_angle("taper angle", half_angle)?;
         if half_angle == 0.0 {
-            return Err(ShapeError::OutOfRange("taper angle", half_angle));
+            return Err(OutOfRange("taper angle", half_angle));
         }
         let tip = outline.param("tip_diameter", tip_diameter).half();
         let angle = outline.angle("taper_angle", half_angle);
@@ -181,7 +183,7 @@ impl Cutter {
         let flute = self.flute_param(outline)?;
         let narrow = edge.minus(&flute.minus(&from).times(&angle.tan()));
         if narrow.value() <= 0.0 {
-            return Err(ShapeError::Contradiction(
+            return Err(Contradiction(
                 "flute length",
                 self.flute_length,
                 "dovetail angle",
@@ -195,6 +197,7 @@ impl Cutter {
     pub(super) fn lollipop(&self, outline: &mut Outline, radius: &Term) -> Result<(), ShapeError> {
         let zero = Term::number(0.0);
         let neck = self.neck_diameter();
+        // A neck as wide as the ball leaves its lower half.
         if neck >= self.diameter {
             outline.arc([radius, radius], [&zero, radius], cutting("ball"));
             return self.flutes(outline, radius);
@@ -255,18 +258,14 @@ impl Cutter {
         }
         let corner = outline.param("corner_radius", corner);
         let centre = outline.define("wide", radius.plus(&corner));
+        // The whole quarter of the circle is below the largest diameter.
         if max_diameter / 2.0 >= centre.value() {
             outline.hollow([&centre, &corner], [&centre, &zero], CORNER);
             return self.flutes(outline, &centre);
         }
         let wide = outline.param("max_diameter", max_diameter).half();
         if wide.value() <= radius.value() {
-            return Err(ShapeError::Contradiction(
-                "diameter",
-                max_diameter,
-                "tip diameter",
-                self.diameter,
-            ));
+            return Err(Contradiction("diameter", max_diameter, "tip diameter", self.diameter));
         }
         let up = corner.squared().minus(&centre.minus(&wide).squared()).sqrt();
         outline.hollow([&wide, &up], [&centre, &zero], CORNER);
@@ -283,7 +282,7 @@ impl Cutter {
     ) -> Result<(), ShapeError> {
         self.check_tip(tip_diameter)?;
         if !(0.0..=180.0).contains(&point_angle) || point_angle == 0.0 {
-            return Err(ShapeError::OutOfRange("point angle", point_angle));
+            return Err(OutOfRange("point angle", point_angle));
         }
         if point_angle == 180.0 {
             return self.flat(outline, radius, 0.0);
@@ -309,7 +308,7 @@ impl Cutter {
         self.check_tip(tip_diameter)?;
         for (name, angle) in [("point angle", point_angle), ("body angle", body_angle)] {
             if !(0.0..180.0).contains(&angle) || angle == 0.0 {
-                return Err(ShapeError::OutOfRange(name, angle));
+                return Err(OutOfRange(name, angle));
             }
         }
         let pilot = outline.param("tip_diameter", tip_diameter).half();
@@ -318,7 +317,7 @@ impl Cutter {
         let body = outline.angle("body_angle", body_angle).half();
         let high = pilot.over(&point.tan());
         if high.value() > tip_length {
-            return Err(ShapeError::Contradiction(
+            return Err(Contradiction(
                 "tip length",
                 tip_length,
                 "point of the pilot",
@@ -384,7 +383,7 @@ impl Cutter {
         self.check_angle("angle of the end", end)?;
         self.check_angle("angle of the side", side)?;
         if !(corner >= 0.0 && corner.is_finite() && centre_d.is_finite() && centre_z.is_finite()) {
-            return Err(ShapeError::OutOfRange("corner radius", corner));
+            return Err(OutOfRange("corner radius", corner));
         }
         let end = outline.angle("end_angle", end);
         let side = outline.angle("side_angle", side);
@@ -398,6 +397,7 @@ impl Cutter {
         let corner = outline.param("corner_radius", corner);
         let d = outline.param("center_radius", centre_d);
         let z = outline.param("center_height", centre_z);
+        // Where a line touches the arc, both have one normal.
         let low = [d.plus(&corner.times(&end.sin())), z.minus(&corner.times(&end.cos()))];
         let high = [d.plus(&corner.times(&side.cos())), z.minus(&corner.times(&side.sin()))];
         // The end's line has to touch the arc, and the side's line to meet the end's at the stated diameter.
@@ -407,7 +407,7 @@ impl Cutter {
         let side_at_edge =
             high[0].value() + (at_edge - high[1].value()) * side.value().to_radians().tan();
         if low[0].value() < 0.0 || end_misses.abs() > tolerance {
-            return Err(ShapeError::Contradiction(
+            return Err(Contradiction(
                 "height of the corner's centre",
                 centre_z,
                 "corner radius",
@@ -415,12 +415,7 @@ impl Cutter {
             ));
         }
         if (side_at_edge - radius.value()).abs() > tolerance {
-            return Err(ShapeError::Contradiction(
-                "corner's centre",
-                centre_d,
-                "diameter",
-                self.diameter,
-            ));
+            return Err(Contradiction("corner's centre", centre_d, "diameter", self.diameter));
         }
         outline.line(&low[0], &low[0].times(&end.tan()), FACE);
         outline.arc([&high[0], &high[1]], [&d, &z], CORNER);

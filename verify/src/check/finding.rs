@@ -167,6 +167,7 @@ impl FindingGroup {
             let position = open.iter().position(|(known, _)| *known == key);
             if let Some(position) = position {
                 let group = &mut groups[open[position].1];
+                // A motion without such a finding between them ends the group.
                 if finding.location <= group.last.location + 1 {
                     group.add(finding);
                     continue;

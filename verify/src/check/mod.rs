@@ -257,6 +257,7 @@ impl<'a> Verifier<'a> {
     fn limits(&self, rapid: bool) -> Vec<f64> {
         let limits = self.allowed.iter().map(|allowed| {
             let allowed = allowed.unwrap_or(self.tolerance);
+            // An allowance is for cutting: in rapid traverse no surface may be deeper than the tolerance.
             if rapid { allowed.min(self.tolerance) } else { allowed }
         });
         limits.collect()
@@ -313,6 +314,7 @@ impl<'a> MoveCheck<'a> {
     fn check_batch(&mut self, progress: &(dyn Fn(usize) + Sync)) -> Result<(), VerifyError> {
         let (verifier, max_depths, count) = (self.verifier, &self.max_depths, self.count);
         let found = map_tasks(&self.batch, |first, moves| {
+            // A checker remembers free space. One per task makes results independent of the number of cores.
             let mut checker = Checker::new(verifier, max_depths)?;
             let numbered = (count + first..).zip(moves);
             let findings = numbered.flat_map(|(index, step)| checker.check(index, step)).collect();

@@ -72,6 +72,7 @@ impl RapidBox {
         let mut half = self.clone();
         let longest =
             half.edges.iter_mut().max_by(|one, other| one.norm().total_cmp(&other.norm()));
+        // A box without ways is a pose, which has no halves.
         let Some(longest) = longest else { return [half.clone(), half] };
         *longest *= 0.5;
         let middle = self.start.tip() + *longest;

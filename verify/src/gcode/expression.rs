@@ -204,6 +204,7 @@ impl<'a> Cursor<'a> {
 pub(super) fn begins_value(cursor: &mut Cursor) -> bool {
     match cursor.peek() {
         Some(b'0'..=b'9' | b'.' | b'+' | b'-' | b'[' | b'#') => true,
+        // `X SQRT[2]` has a value; any other letter begins the next word.
         Some(byte) if byte.is_ascii_alphabetic() => begins_function(*cursor).is_some(),
         _ => false,
     }
@@ -273,6 +274,7 @@ fn signed(cursor: &mut Cursor, known: &Parameters, depth: usize) -> Result<f64, 
 }
 
 fn unsigned(cursor: &mut Cursor, known: &Parameters, depth: usize) -> Result<f64, ExpressionFault> {
+    // Brackets and references recurse, as deep as the program has them.
     if depth > MAX_DEPTH {
         return Err(ExpressionFault::TooDeep);
     }
@@ -309,6 +311,7 @@ fn bracket(cursor: &mut Cursor, known: &Parameters, depth: usize) -> Result<f64,
         return Ok(value);
     }
     match cursor.peek() {
+        // An operator that is a word, such as `MOD`.
         Some(byte) if byte.is_ascii_alphabetic() => {
             let name = cursor.take_while(|byte| byte.is_ascii_alphabetic());
             Err(ExpressionFault::Operation { name: name.to_ascii_uppercase() })
@@ -338,6 +341,7 @@ fn parameter(
         return Err(ExpressionFault::Index { index });
     }
     let numbered = Parameter::Numbered(index as u16);
+    // By these a control reports its state, which is not known here.
     match index >= f64::from(FIRST_SYSTEM) {
         true => Err(ExpressionFault::System { parameter: numbered.shown() }),
         false => Ok(numbered),

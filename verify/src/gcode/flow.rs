@@ -121,6 +121,7 @@ pub(super) fn extent(text: &str) -> Extent<'_> {
                 extent.closed = true;
             }
         }
+        // Comments may stand before the head.
         is_first &= is_empty(found);
         place = after;
     }
@@ -311,6 +312,7 @@ impl<'a> Flow<'a> {
         while let Some((line, after)) = line(self.text, place) {
             let (_, mut cursor) = begin(line);
             match next(&mut cursor) {
+                // Subprograms are read before, and another program has a note of its own.
                 Ok(Some(b'O' | b'o')) => return None,
                 Ok(None) => place = after,
                 _ => return Some(place.line),
@@ -394,6 +396,7 @@ impl<'a> Flow<'a> {
             return Err(GcodeFault::TooDeep);
         }
         self.found.insert(label.clone());
+        // Those that the subprogram has of its own begin without values.
         let locals = parameters.take_locals(role == Role::Sub);
         let return_to = self.place;
         self.place = subprogram.body;

@@ -270,6 +270,7 @@ impl<'a> Job<'a> {
                     verifier = verifier.with_allowance(&surface.name, -margin)?;
                 }
             }
+            // What may be touched has the allowance 0, that of every surface without another.
             Some(_) => (),
             None => {
                 verifier = verifier.with_tolerance(self.tolerance)?;

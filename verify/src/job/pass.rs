@@ -96,6 +96,7 @@ impl<'a> Job<'a> {
                 links.push(body.link);
             }
         }
+        // Tool by tool, each at every body: the index of a pair follows from those of both.
         let mut verifiers: Vec<Verifier<'a>> = Vec::new();
         for tool in &self.tools {
             for body in &self.bodies {

@@ -256,12 +256,14 @@ impl Program {
         let Some(program) = self.readings().first() else {
             return Err(JobError::Mismatch("`moves_with` is for programs on a machine"));
         };
+        // Links are numbered from the base on.
         let axes = program.machine().axes().iter().filter(|axis| axis.side == Side::Table);
         let links: Vec<String> =
             iter::once("base".to_owned()).chain(axes.map(|axis| axis.letter.to_string())).collect();
         match links.iter().position(|link| link == axis) {
             // The last link carries the part.
             Some(link) if link + 1 == links.len() => Ok(None),
+            // The frame of another link is that of the machine, in which the part has to have a place.
             Some(link) => match program.part_origin() {
                 Some(origin) if origin[3..] == [0.0; 3] => Ok(Some(link)),
                 _ => Err(JobError::Mismatch(

@@ -120,6 +120,7 @@ impl JobReport<'_> {
         for reading in 0..self.job.program.reading_count() {
             let pairs: Vec<&PairReport> =
                 self.pairs.iter().filter(|pair| pair.reading == reading).collect();
+            // Without motions the approach says nothing.
             if pairs.iter().all(|pair| pair.report.moves == 0) {
                 is_checked = false;
                 continue;

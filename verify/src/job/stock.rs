@@ -106,6 +106,7 @@ impl StockCut {
         let info = tool.tool.info();
         let layer = stock.found_layer_of(tool.tool, *tolerance);
         *found_layer = found_layer.max(layer.unwrap_or(f64::INFINITY));
+        // A wide tool finds the thinnest layer that the spacing allows.
         if layer.is_none_or(|layer| layer > 2.0 * stock.found_layer(*tolerance)) {
             let name = tool.number().map_or(info.name.to_string(), |number| format!("T{number}"));
             let unit = self.unit;
@@ -141,6 +142,7 @@ impl StockCut {
             let known = self.open.iter().find(|(known, _)| *known == surface.0);
             if let Some((_, index)) = known.filter(|_| continued) {
                 let finding = &mut findings[*index];
+                // A block may have several moves.
                 finding.motions += usize::from(finding.last_line != step.line);
                 finding.last_line = step.line;
                 if depth > finding.depth {

@@ -154,12 +154,14 @@ impl Chain {
         chain.check(offset)?;
         check_length("the tool length", setup.tool_length)?;
         let (mut rotation, mut translation) = (Matrix3::identity(), Vector3::zeros());
+        // The factors of G, the rightmost first.
         for axis in chain.axes[..chain.table].iter().rev() {
             let turn = axis.turn(offset);
             rotation = turn * rotation;
             translation = axis.apply(&turn, &translation);
             chain.frame.turned += usize::from(offset[axis.letter.index()] != 0.0);
         }
+        // Without an offset of a rotary axis the frame stays the exact identity.
         if chain.frame.turned > 0 {
             (chain.frame.rotation, chain.frame.translation) = (rotation, translation);
         }
@@ -178,6 +180,7 @@ impl Chain {
             return Err(JointError::NoLink { link, last: self.link });
         }
         let mut chain = Chain { frame: Frame::IDENTITY, link, ..*self };
+        // Axes of the table beyond the link move the workpiece, and not the tool relative to the link.
         while chain.table > 0 && chain.axes[0].link > link {
             chain.axes.rotate_left(1);
             chain.table -= 1;
@@ -242,6 +245,7 @@ impl Chain {
     pub(super) fn place(&self, joints: &Joints) -> Pose {
         let turns = self.turns(joints);
         let linear = Vector3::new(joints[0], joints[1], joints[2]).component_mul(&self.slides);
+        // The factors of P, the rightmost first: the axes of the tool, the linear ones, those of the table.
         let mut tip = self.swivelled_tip(&turns) + linear;
         for (axis, turn) in self.rotary().iter().zip(&turns).take(self.table).rev() {
             tip = axis.apply(turn, &tip);

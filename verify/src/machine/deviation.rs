@@ -130,6 +130,7 @@ impl Interval<'_> {
     /// both rotations.
     fn bound(&self, rotation: f64, reach: f64) -> f64 {
         let rounding = self.motion.rounding;
+        // The chord bound.
         let tip = self.tip_bounds().1 * self.duration.powi(2) / 8.0 + rounding.tip;
         (tip + reach * (rotation.min(2.0) + 2.0 * rounding.rotation)) * (1.0 + RELATIVE_ERROR)
     }

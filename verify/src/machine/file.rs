@@ -134,6 +134,7 @@ fn axes(text: &str, entries: &[Spanned<AxisEntry>]) -> Result<Vec<Axis>, Located
             if rotary.next().is_some() {
                 return Err((span, MachineFault::ThirdRotary { letter }));
             }
+            // Parallel axes turn the tool about one direction only.
             if first.direction.cross(&axis.direction).norm() < SMALLEST_SINE {
                 return Err((span, MachineFault::Parallel { first: first.letter, letter }));
             }

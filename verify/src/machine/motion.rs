@@ -113,6 +113,7 @@ impl JointMotion {
     pub fn pose(&self, t: f64) -> Pose {
         let t = checked_time(t);
         let mut joints = self.rotary(t);
+        // The tip is on its path, without the rounding of the kinematics.
         if self.tcp && self.body == self.chain {
             let turns = self.chain.turns(&joints);
             return Pose::from_computed(self.chain.rotation(&turns), Point3::from(self.path.at(t)));
@@ -207,6 +208,7 @@ impl JointMotion {
         let pose = self.body.rounding_at(linear);
         let placed = pose.tip + angles * self.body.size(linear);
         let tip = match (self.tcp, self.body == self.chain) {
+            // The tip is the path itself.
             (true, true) => 0.0,
             (true, false) => follow + placed,
             (false, _) => placed,
@@ -372,6 +374,7 @@ impl PreparedPath {
         let indices @ [first, second, _] = plane.indices();
         let arm = [start[first] - centre[0], start[second] - centre[1]];
         let last = rotated(-sweep, [end[first] - centre[0], end[second] - centre[1]]);
+        // The centre moves along the normal, from the height of the start to that of the end.
         let on_axis = |position: Vector3<f64>| {
             let mut foot = position;
             (foot[first], foot[second]) = (centre[0], centre[1]);

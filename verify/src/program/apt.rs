@@ -35,6 +35,7 @@ pub(super) fn read(text: &str) -> Result<Tapes, Located> {
         end = *line;
     }
     reader.change_tool()?;
+    // A file without positions is refused as such, whether it ends or not.
     let whole = (reader.finished || reader.path_ended) && unfinished_line.is_none();
     let is_empty = reader.tapes.is_empty() && reader.tape.locations.is_empty();
     if whole || is_empty && unfinished_line.is_none() {
@@ -78,6 +79,7 @@ fn statements(text: &str) -> (Vec<(usize, String)>, Option<usize>) {
             statements.push((line, raw.to_owned()));
             continue;
         }
+        // A comment is no continuation, though it begins with the same sign.
         let code = raw.split_once("$$").map_or(raw, |(code, _)| code.trim_end());
         if code.is_empty() {
             continue;
@@ -171,6 +173,7 @@ impl Reader {
             "UNITS" => self.units(line, rest)?,
             "LOADTL" | "TOOLNO" | "CUTTER" | "TLDATA" | "TOOL PATH" => {
                 refuse_motions(word, rest)?;
+                // Only NX has it, whose positions without an axis keep the last one.
                 self.is_nx |= word == "TOOL PATH";
                 if mem::take(&mut self.path_ended) {
                     let after = ProgramFault::AfterEnd { end: "END-OF-PATH" };

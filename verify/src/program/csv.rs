@@ -76,6 +76,7 @@ fn is_mark(line: &str, mark: &str) -> bool {
 /// Returns whether a first row has the columns' names; a row of other names is refused.
 fn is_names(row: &str, cells: &[&str]) -> Result<bool, ProgramFault> {
     if cells.iter().any(|cell| cell.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c)))
+        // `inf` and `nan` are refused as numbers.
         || cells.iter().any(|cell| cell.parse::<f64>().is_ok())
     {
         return Ok(false);

@@ -26,6 +26,7 @@ impl Cutter {
             .take_while(|segment| info.surface(segment.surface).cutting)
             .peekable();
         let (mut corner_end, mut corner) = ([0.0; 2], 0.0);
+        // The end begins at the tip, on the axis.
         segments.peek().filter(|segment| segment.from == corner_end)?;
         if let Some(face) = segments.next_if(|p| p.circle.is_none() && p.from[1] == p.to[1]) {
             corner_end = face.to;
@@ -77,6 +78,7 @@ impl ClData {
         let Some(Cutter { diameter, corner }) = Cutter::of(info, unit) else {
             return Ok(Some(*first));
         };
+        // The end of such a cutter is across the axis and its side along it: both angles are 0.
         let expected = [diameter, corner, 0.5 * diameter - corner, corner, 0.0, 0.0];
         let other = self.cutters.iter().find(|(_, stated)| {
             !stated

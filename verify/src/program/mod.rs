@@ -164,6 +164,7 @@ impl ClData {
             Err((line, fault)) => return Err(ProgramError::Line { file, line, fault }),
             Ok(tapes) => tapes,
         };
+        // A tool that is loaded and never moved makes no program.
         tapes.retain(|tape| !tape.locations.is_empty());
         if tapes.is_empty() {
             return Err(ProgramError::NoPosition { file });
@@ -256,11 +257,13 @@ struct Tape {
 
 /// Returns whether a text is a program of blocks for a control.
 fn is_gcode(text: &str) -> bool {
+    // Without blank lines, and without comments of any of the formats.
     let mut code = lines(text).map(|(_, line)| line).filter(|line| {
         !line.is_empty() && !line.starts_with([';', '#']) && !line.starts_with("$$")
     });
     code.next().is_some_and(|line| {
         let line = line.trim_start_matches(|c: char| c == '/' || c.is_whitespace());
+        // Klartext is refused by the interpreter, by its name.
         line.starts_with(['%', '(']) || line.contains("BEGIN PGM") || begins_word(line)
     })
 }
@@ -335,6 +338,7 @@ fn is_comment(line: &str) -> bool {
 fn begins_table(line: &str) -> bool {
     let separators = [',', ';', '\t', ' '];
     let first = line.split(separators).next().unwrap_or(line);
+    // A row of names that the table does not have is refused as one, not as a word of APT.
     let separated = line.matches([',', ';']).count() >= 5 && !line.contains('/');
     line.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c))
         || first.parse::<f64>().is_ok()
@@ -348,6 +352,7 @@ const PLAIN_NUMBER: &str = "write a plain number with a decimal point";
 fn number(cell: &str) -> Result<f64, ProgramFault> {
     match cell.trim().parse::<f64>() {
         Ok(value) if value.is_finite() => Ok(value),
+        // `inf` and `nan` are numbers to the parser.
         Ok(_) => Err(ProgramFault::NotFinite { cell: shown(cell.trim()) }),
         Err(_) => Err(ProgramFault::NotNumber { cell: shown(cell.trim()), remedy: PLAIN_NUMBER }),
     }

@@ -174,6 +174,7 @@ fn statement(pose: &Pose, decimals: Option<Decimals>) -> String {
             Some(Decimals { axis, .. }) => rounded(*number, axis),
         };
         let number = format!("{number}{}", if k < 5 { "," } else { "" });
+        // The `$` takes a column, too.
         if columns + number.len() >= MAX_COLUMNS {
             statement.push_str("$\n");
             columns = 0;

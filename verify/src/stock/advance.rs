@@ -163,6 +163,7 @@ impl Sampler<'_> {
                 contacts.record(surface, point.slot, tree.slots(), time, point.depth, place);
             }
         }
+        // Points that are still inside at the end keep their contact, all others end theirs.
         if is_last && !contacts.is_empty() {
             let slots = inside.iter().filter(|point| !cuts(point)).map(|point| point.slot);
             self.still_inside = slots.filter(|slot| contacts.contains(*slot)).collect();

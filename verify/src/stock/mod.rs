@@ -312,6 +312,7 @@ impl Stock {
     /// Returns the nodes that are left.
     fn remaining(&self) -> BitSet {
         let mut remaining = BitSet::new(self.lattice.len());
+        // Removed points leave empty slots.
         for slot in (0..self.tree.slots()).filter(|slot| self.tree.has_point(*slot)) {
             remaining.insert(self.tree.triangle(slot).0 as usize);
         }

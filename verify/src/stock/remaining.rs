@@ -68,6 +68,7 @@ impl Corners<'_> {
             corner[third] += along_third;
             self.vertex(corner)
         });
+        // Seen from outside, the lower face turns the other way round.
         if !up {
             face.reverse();
         }

@@ -218,6 +218,7 @@ impl MachineSummary {
     /// Notes what a motion at feed rate needs.
     pub(super) fn add_feed(&mut self, step: &Step, off_is_tip: bool) {
         let tool = step.state.tool;
+        // The interpreter has refused a tap whose spindle does not turn into the thread.
         if step.spindle != Spindle::Tapping
             && !self
                 .spindle

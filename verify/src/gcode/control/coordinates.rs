@@ -110,6 +110,7 @@ impl Control {
         self.leave_for_change(self.state.tool.is_none_or(|before| before == tool));
         self.length_cancelled = false;
         self.change(|state| state.tool = Some(tool));
+        // Not asked: whether the length counts matters at the next motion only.
         let is_always = self.stated(Rule::ToolLength) == Some(Choice::Always);
         if self.length_implicit || is_always && self.state.length == LengthOffset::Off {
             self.imply_length(tool);
@@ -125,6 +126,7 @@ impl Control {
             }
             return Ok(());
         };
+        // D1 is in force without a word, unless the offset was cancelled.
         let is_first = edge == 1 && !self.length_cancelled;
         if is_first || self.choice(Rule::ToolLength) != Choice::Always {
             return Ok(());
@@ -456,6 +458,7 @@ impl Control {
                 }
             }
             tenths @ 540..=590 => WorkOffset::Standard((tenths / 10 - 53) as u8),
+            // G59.1 to G59.3 go on from G59.
             tenths => WorkOffset::Standard((tenths - 590 + 6) as u8),
         };
         if matches!(code.tenths, 580 | 590) {

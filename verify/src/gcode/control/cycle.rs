@@ -39,7 +39,66 @@ impl Control {
         number: u32,
     ) -> Result<(), GcodeFault> {
         let word = format!("G{number}");
-        self.check_cycle(block, &word)?;
+        self.check_cycle(block, number, &word)?;
+        self.check_feed(&word)?;
+        self.check_tilted(block)?;
+        self.check_position(block)?;
+        let normal = self.modal.plane.normal();
+        let cycle = self.cycle_words(block, number, &word)?;
+        let levels = self.levels(&cycle)?;
+        let repeats = self.repeats(block)?;
+        // Only G83 leaves the hole between its pecks.
+        let strokes = match (number, cycle.peck, levels.retract.zip(levels.depth)) {
+            (83, Some(peck), Some((retract, depth))) => ((retract - depth) / peck).ceil().max(1.0),
+            _ => 1.0,
+        };
+        // The way to a hole takes three steps at most, and each stroke as many.
+        if f64::from(repeats) * (3.0 * strokes + 3.0) > MAX_CYCLE_STEPS as f64 {
+            return Err(GcodeFault::CycleTooLong);
+        }
+        let axes = self.take_axes(block);
+        // LinuxCNC compares the initial level, and not the present one, with R.
+        if is_below(cycle.initial, levels.retract)
+            && self.position[normal] != levels.retract
+            && self.choice(Rule::CycleBelowR) == Choice::RaisesFirst
+        {
+            self.move_along(normal, true, levels.retract);
+        }
+        for _ in 0..repeats {
+            self.move_over(axes, levels);
+            if self.position[normal] != levels.retract || levels.retract.is_none() {
+                self.move_along(normal, true, levels.retract);
+            }
+            self.stroke(number, normal, cycle.peck, levels, strokes);
+        }
+        self.cycle = Some(cycle);
+        Ok(())
+    }
+
+    /// Returns how often the cycle is executed. The word that is not that of the control says nothing.
+    fn repeats(&mut self, block: &mut Block) -> Result<u32, GcodeFault> {
+        let by_l = block.take_whole('L', 0, 1_000_000, "a number of repeats after L")?.unwrap_or(1);
+        let by_k = block.take_whole('K', 0, 1_000_000, "a number of repeats after K")?.unwrap_or(1);
+        if by_l == 0 || by_k == 0 {
+            return Err(combination(
+                if by_l == 0 { "L0" } else { "K0" },
+                "its block has a canned cycle, to whose place Haas moves",
+                "write G80 and G0, and the cycle again",
+            ));
+        }
+        // One number, whichever word the control reads.
+        if by_l == by_k {
+            return Ok(by_l);
+        }
+        Ok(match self.choice(Rule::CycleRepeats) {
+            Choice::RepeatsByK => by_k,
+            _ => by_l,
+        })
+    }
+
+    /// Refuses a cycle that controls execute in different ways.
+    fn check_cycle(&mut self, block: &Block, number: u32, word: &str) -> Result<(), GcodeFault> {
+        self.check_series(block, word)?;
         let is_linuxcnc = self.stated(Rule::Dialect) == Some(Choice::Rs274Ngc);
         if is_linuxcnc {
             linuxcnc::check_cycle(block, number)?;
@@ -51,7 +110,7 @@ impl Control {
                 ));
             }
         }
-        // LinuxCNC taps along another axis there (`convert_cycle_g74_g84` of its interpreter).
+        // LinuxCNC drills again at Z, R or Q alone, Haas does not.
         let in_plane = self.modal.plane.axes().map(|axis| AXES[axis]);
         if self.cycle.is_some() && !is_linuxcnc && !in_plane.iter().any(|letter| block.has(*letter))
         {
@@ -61,7 +120,8 @@ impl Control {
                 "write X or Y",
             ));
         }
-        // LinuxCNC drills along the normal of the plane; Fanuc by a parameter along Z.
+        // LinuxCNC drills along the normal of the plane, but taps along another axis (`convert_cycle_g74_g84` of its interpreter).
+        // Fanuc drills along Z by a parameter.
         let is_across = self.modal.plane != Plane::Xy;
         if is_across && (!is_linuxcnc || matches!(number, 74 | 84)) {
             return Err(combination(
@@ -95,62 +155,11 @@ impl Control {
                 "post the hole with its motions",
             ));
         }
-        self.check_feed(&word)?;
-        self.check_tilted(block)?;
-        self.check_position(block)?;
-        let normal = self.modal.plane.normal();
-        let cycle = self.cycle_words(block, number, &word)?;
-        let levels = self.levels(&cycle)?;
-        let repeats = self.repeats(block)?;
-        let strokes = match (number, cycle.peck, levels.retract.zip(levels.depth)) {
-            (83, Some(peck), Some((retract, depth))) => ((retract - depth) / peck).ceil().max(1.0),
-            _ => 1.0,
-        };
-        // The way to a hole takes three steps at most, and each stroke as many.
-        if f64::from(repeats) * (3.0 * strokes + 3.0) > MAX_CYCLE_STEPS as f64 {
-            return Err(GcodeFault::CycleTooLong);
-        }
-        let axes = self.take_axes(block);
-        // LinuxCNC compares the initial level, and not the present one, with R.
-        if repeats > 0
-            && is_below(cycle.initial, levels.retract)
-            && self.position[normal] != levels.retract
-            && self.choice(Rule::CycleBelowR) == Choice::RaisesFirst
-        {
-            self.move_along(normal, true, levels.retract);
-        }
-        for _ in 0..repeats {
-            self.move_over(axes, levels);
-            if self.position[normal] != levels.retract || levels.retract.is_none() {
-                self.move_along(normal, true, levels.retract);
-            }
-            self.stroke(number, normal, cycle.peck, levels, strokes);
-        }
-        self.cycle = Some(cycle);
         Ok(())
     }
 
-    /// Returns how often the cycle is executed. The word that is not that of the control says nothing.
-    fn repeats(&mut self, block: &mut Block) -> Result<u32, GcodeFault> {
-        let by_l = block.take_whole('L', 0, 1_000_000, "a number of repeats after L")?.unwrap_or(1);
-        let by_k = block.take_whole('K', 0, 1_000_000, "a number of repeats after K")?.unwrap_or(1);
-        if by_l == 0 || by_k == 0 {
-            return Err(combination(
-                if by_l == 0 { "L0" } else { "K0" },
-                "its block has a canned cycle, to whose place Haas moves",
-                "write G80 and G0, and the cycle again",
-            ));
-        }
-        if by_l == by_k {
-            return Ok(by_l);
-        }
-        Ok(match self.choice(Rule::CycleRepeats) {
-            Choice::RepeatsByK => by_k,
-            _ => by_l,
-        })
-    }
-
-    fn check_cycle(&self, block: &Block, word: &str) -> Result<(), GcodeFault> {
+    /// Refuses a cycle under another state than that of its series.
+    fn check_series(&self, block: &Block, word: &str) -> Result<(), GcodeFault> {
         let rotary = AXES[3..].iter().find(|letter| block.has(**letter));
         let changed = self
             .cycle

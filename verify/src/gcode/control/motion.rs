@@ -23,6 +23,7 @@ impl Control {
         let has_vector = self.state.tcp == Tcp::Vector && block.has_any("IJK");
         let has_axes = block.has_any("XYZABC") || has_vector;
         match self.modal.motion {
+            // A full circle has no end: its word and a centre are enough.
             Some(Motion::Arc { clockwise }) if has_axes || explicit && block.has_any("IJKR") => {
                 self.arc(block, clockwise)
             }
