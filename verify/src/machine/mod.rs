@@ -236,7 +236,7 @@ impl Machine {
     }
 
     /// Returns whether a rotary axis carries a side.
-    pub(crate) fn has_rotary(&self, side: Side) -> bool {
+    pub(super) fn has_rotary(&self, side: Side) -> bool {
         self.axes.iter().any(|axis| axis.letter.is_rotary() && axis.side == side)
     }
 
