@@ -194,7 +194,7 @@ impl Block {
             Group::PassedOver => self.passed_over.push(code),
             group => match &mut self.codes[group as usize] {
                 Some(first) => {
-                    return Err(same_group(first, code));
+                    return Err(same_group(*first, code));
                 }
                 empty => *empty = Some(code),
             },
@@ -531,6 +531,12 @@ pub(super) fn o_word(cursor: &mut Cursor, parameters: &Parameters) -> Result<OWo
 pub(super) struct Code {
     pub(super) letter: char,
     pub(super) tenths: u32,
+}
+
+impl From<Code> for String {
+    fn from(code: Code) -> String {
+        code.to_string()
+    }
 }
 
 impl Code {

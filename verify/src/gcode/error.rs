@@ -256,30 +256,30 @@ pub enum GcodeFault {
 
 /// Returns [`GcodeFault::Combination`].
 pub(super) fn combination(
-    word: impl ToString,
+    word: impl Into<String>,
     condition: &'static str,
     remedy: &'static str,
 ) -> GcodeFault {
-    GcodeFault::Combination { word: word.to_string(), condition, remedy }
+    GcodeFault::Combination { word: word.into(), condition, remedy }
 }
 
 /// Returns [`GcodeFault::NotRead`].
 pub(super) fn not_read(
-    word: impl ToString,
+    word: impl Into<String>,
     meaning: &'static str,
     remedy: &'static str,
 ) -> GcodeFault {
-    GcodeFault::NotRead { word: word.to_string(), meaning, remedy }
+    GcodeFault::NotRead { word: word.into(), meaning, remedy }
 }
 
 /// Returns [`GcodeFault::Missing`].
-pub(super) fn missing(word: impl ToString, needed: &'static str) -> GcodeFault {
-    GcodeFault::Missing { word: word.to_string(), needed }
+pub(super) fn missing(word: impl Into<String>, needed: &'static str) -> GcodeFault {
+    GcodeFault::Missing { word: word.into(), needed }
 }
 
 /// Returns [`GcodeFault::SameGroup`].
-pub(super) fn same_group(first: impl ToString, second: impl ToString) -> GcodeFault {
-    GcodeFault::SameGroup { first: first.to_string(), second: second.to_string() }
+pub(super) fn same_group(first: impl Into<String>, second: impl Into<String>) -> GcodeFault {
+    GcodeFault::SameGroup { first: first.into(), second: second.into() }
 }
 
 /// A fault in an arc.

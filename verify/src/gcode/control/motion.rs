@@ -80,7 +80,7 @@ impl Control {
         let given = AXES[3..].iter().find(|letter| block.has(**letter));
         if let Some(letter) = given {
             return Err(combination(
-                letter,
+                *letter,
                 "G43.5 is in force",
                 "write the tool vector I J K, or select G43.4",
             ));
