@@ -5,7 +5,7 @@
 //! cone whose tip has the diameter `snub_diameter`.
 
 use super::entry::{Entry, Note};
-use super::json::{Object, number_of, text};
+use super::json::{Object, number_of, string};
 use super::shape::{Cutter, Shape};
 use super::{Found, Problem};
 use serde_json::Value;
@@ -34,7 +34,7 @@ fn read_tool(number: u32, value: &Value) -> Found {
 }
 
 fn entry(number: u32, tool: &Object) -> Result<Entry, String> {
-    let unit = match text(tool, "units").to_ascii_lowercase().as_str() {
+    let unit = match string(tool, "units").to_ascii_lowercase().as_str() {
         "metric" | "mm" => Unit::Millimetre,
         "imperial" | "inch" => Unit::Inch,
         "" => return Err("it states no units".to_owned()),
@@ -42,14 +42,15 @@ fn entry(number: u32, tool: &Object) -> Result<Entry, String> {
     };
     let stated = |key: &str| number_of(tool, key).ok_or_else(|| format!("it states no `{key}`"));
     let (diameter, length) = (stated("diameter")?, stated("length")?);
-    let shape = match text(tool, "shape").to_ascii_lowercase().as_str() {
+    let shape = match string(tool, "shape").to_ascii_lowercase().as_str() {
         "cylindrical" => Shape::Flat { corner: 0.0 },
         "ballnose" => Shape::Ball,
         "conical" => Shape::TruncatedCone { tip_diameter: 0.0 },
         "snubnose" => Shape::TruncatedCone { tip_diameter: stated("snub_diameter")? },
         other => return Err(format!("the shape `{other}` cannot be read yet")),
     };
-    let mut entry = Entry::new(unit, text(tool, "shape"), text(tool, "description"), Vec::new());
+    let mut entry =
+        Entry::new(unit, string(tool, "shape"), string(tool, "description"), Vec::new());
     entry.number = Some(number);
     let drawn = "the tool ends with its length".to_owned();
     entry.notes.push(Note::Unstated("shank and the holder", drawn));

@@ -4,7 +4,7 @@
 //! point or a comma. A bit whose shape was changed by its user cannot be told from one of FreeCAD's own.
 
 use super::entry::{Entry, Holder, Note, Section, Stated};
-use super::json::{Object, pair, tool_number};
+use super::json::{Object, pair, string, tool_number};
 use super::shape::{Cutter, Shape};
 use super::{Found, Problem, bytes, text};
 use serde_json::Value;
@@ -340,8 +340,4 @@ fn object(content: &str) -> Result<Object, String> {
         Ok(_) => Err("it is no JSON object".to_owned()),
         Err(error) => Err(error.to_string()),
     }
-}
-
-fn string<'a>(object: &'a Object, key: &str) -> &'a str {
-    object.get(key).and_then(Value::as_str).unwrap_or("").trim()
 }

@@ -5,7 +5,7 @@
 //! the shank, `SIG` a whole angle, `TA` the angle between the axis and a side.
 
 use super::entry::{Entry, Holder, Note, Section, Stated};
-use super::json::{Object, number, number_of, object, pair, text, tool_number};
+use super::json::{Object, number, number_of, object, pair, string, tool_number};
 use super::shape::{Crest, Cutter, FormSegment, Shape, ShapeError};
 use super::{Found, Problem};
 use serde_json::Value;
@@ -16,8 +16,8 @@ pub(super) fn tool(value: &Value) -> Found {
     let Some(tool) = value.as_object() else {
         return Err(Problem::new("entry", "it is no object"));
     };
-    let kind = text(tool, "type");
-    let title = text(tool, "description");
+    let kind = string(tool, "type");
+    let title = string(tool, "description");
     let label = if title.is_empty() { kind } else { title };
     read_tool(tool, kind, title).map_err(|error| Problem::new(label, &error))
 }
@@ -108,7 +108,7 @@ fn cutter(
         "tapered mill" => {
             let corner = geometry.or("RE", "corner radius", 0.0, notes)?;
             let half_angle = geometry.require("TA", "taper angle")?;
-            match text(tool, "tapered-type") {
+            match string(tool, "tapered-type") {
                 "tapered_ball" => Shape::TaperedBall { radius: corner, half_angle, cone_to: 0.0 },
                 "" | "tapered_bull_nose" => Shape::Tapered { corner, half_angle },
                 other => return Err(format!("the taper `{other}` cannot be read yet")),
@@ -233,7 +233,7 @@ fn pitch(geometry: &Geometry<'_>, notes: &mut Vec<Note>) -> Result<f64, String> 
 fn crest(geometry: &Geometry<'_>, notes: &mut Vec<Note>) -> Result<Crest, String> {
     let width = geometry.get("thread-tip-width")?.filter(|width| *width != 0.0);
     let radius = geometry.get("thread-tip-radius")?.filter(|radius| *radius != 0.0);
-    let form = text(geometry.0, "thread-tip-type");
+    let form = string(geometry.0, "thread-tip-type");
     let unstated = match (form, width, radius) {
         ("point", ..) | ("", None, None) => return Ok(Crest::Point),
         ("flat", Some(width), _) => return Ok(Crest::Flat { width }),
@@ -267,7 +267,7 @@ fn holder(value: &Object) -> Result<Option<Holder>, String> {
         return Ok(None);
     }
     Ok(Some(Holder {
-        title: text(value, "description").to_owned(),
+        title: string(value, "description").to_owned(),
         origin: origin(value),
         unit: unit(value).map_err(|error| format!("its holder: {error}"))?,
         sections,
@@ -327,14 +327,14 @@ impl Geometry<'_> {
 
 fn origin(object: &Object) -> Vec<(&'static str, String)> {
     [("vendor", "vendor"), ("product", "product-id"), ("id", "guid")]
-        .map(|(name, key)| (name, text(object, key).to_owned()))
+        .map(|(name, key)| (name, string(object, key).to_owned()))
         .into_iter()
         .filter(|(_, value)| !value.is_empty())
         .collect()
 }
 
 fn unit(object: &Object) -> Result<Unit, String> {
-    match text(object, "unit") {
+    match string(object, "unit") {
         "millimeters" => Ok(Unit::Millimetre),
         "inches" => Ok(Unit::Inch),
         "" => Err("it states no unit".to_owned()),

@@ -30,7 +30,7 @@ pub(super) fn number(value: &Value) -> Option<f64> {
 }
 
 /// Returns a text of an object without blanks around it; empty if there is none.
-pub(super) fn text<'a>(object: &'a Object, key: &str) -> &'a str {
+pub(super) fn string<'a>(object: &'a Object, key: &str) -> &'a str {
     object.get(key).and_then(Value::as_str).unwrap_or("").trim()
 }
 

@@ -4,7 +4,7 @@
 //! above them. `taper_tip` is the diameter of a tapered mill's tip.
 
 use super::entry::{Entry, Note};
-use super::json::{Object, number_of, text, tool_number};
+use super::json::{Object, number_of, string, tool_number};
 use super::shape::{Cutter, Shape};
 use super::{Found, Problem};
 use serde_json::Value;
@@ -19,7 +19,7 @@ pub(super) fn tool(value: &Value) -> Found {
     let Some(tool) = value.as_object() else {
         return Err(Problem::new("entry", "it is no object"));
     };
-    read_tool(tool).map_err(|reason| Problem::new(text(tool, "name"), &reason))
+    read_tool(tool).map_err(|reason| Problem::new(string(tool, "name"), &reason))
 }
 
 fn read_tool(tool: &Object) -> Result<Entry, String> {
@@ -32,8 +32,8 @@ fn read_tool(tool: &Object) -> Result<Entry, String> {
         |key: &str| number_of(tool, key).ok_or_else(|| format!("it states no length `{key}`"));
     let (diameter, flute_length) = (length("flute_diam")?, length("flute_len")?);
     let shaft_length = length("shaft_len")?;
-    let kind = text(tool, "type");
-    let mut entry = Entry::new(unit, kind, text(tool, "name"), Vec::new());
+    let kind = string(tool, "type");
+    let mut entry = Entry::new(unit, kind, string(tool, "name"), Vec::new());
     entry.number = tool.get("number").and_then(tool_number);
     let shape = match kind {
         "endmill" => Shape::Flat { corner: 0.0 },

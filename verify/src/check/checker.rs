@@ -130,10 +130,8 @@ impl<'a> Checker<'a> {
                 found.extend(at_end.map(|found| TimedFinding { time: 1.0, ..found }));
             }
         }
-        found
-            .into_iter()
-            .map(|found| finding(found.time, step.path.pose(found.time), found.kind))
-            .collect()
+        let at = |TimedFinding { time, kind }| finding(time, step.path.pose(time), kind);
+        found.into_iter().map(at).collect()
     }
 
     /// Returns the findings of rapid traverse through any poses of a box, each with its pose.

@@ -225,15 +225,8 @@ impl Control {
         }
     }
 
-    /// States the dialect of a program with the head of Heidenhain, which no other control reads, if no other is stated.
-    pub(super) fn read_heidenhain(&mut self) {
-        if self.stated(Rule::Dialect).is_none() {
-            self.state_rule(Rule::Dialect, Choice::Heidenhain);
-        }
-    }
-
     /// States what the control does under a rule.
-    fn state_rule(&mut self, rule: Rule, choice: Choice) {
+    pub(super) fn state_rule(&mut self, rule: Rule, choice: Choice) {
         self.rules = std::mem::take(&mut self.rules).with(rule, choice);
     }
 
@@ -262,11 +255,9 @@ impl Control {
         self.motion_mode(block);
         // The spindle changes before such a motion or after it, by the control.
         if let Some(word) = turned.filter(|_| block.is_programmed() && self.modal.is_feed()) {
-            return Err(combination(
-                word,
-                "its block has a motion at feed rate",
-                "write it in a block before or after",
-            ));
+            let condition = "its block has a motion at feed rate";
+            let remedy = "write it in a block before or after";
+            return Err(combination(word, condition, remedy));
         }
         // The unit and the distance mode hold for the numbers of their own block.
         self.settings(block)?;
@@ -280,11 +271,9 @@ impl Control {
             && block.is_programmed()
             && (self.length_implicit || self.state.tcp == Tcp::Transformation)
         {
-            return Err(combination(
-                "a position",
-                "G18 or G19 is in force and the length of the tool counts without G43, across the plane",
-                "post the program in G17",
-            ));
+            let condition = "G18 or G19 is in force and the length of the tool counts without G43, across the plane";
+            let remedy = "post the program in G17";
+            return Err(combination("a position", condition, remedy));
         }
         self.check_offset(block)?;
         self.motion(block)
@@ -296,11 +285,9 @@ impl Control {
             return Ok(());
         }
         if block.has('S') {
-            return Err(combination(
-                "S",
-                "its block has G4, of which it is the time in turns of the spindle",
-                "write it in a block before",
-            ));
+            let condition = "its block has G4, of which it is the time in turns of the spindle";
+            let remedy = "write it in a block before";
+            return Err(combination("S", condition, remedy));
         }
         let dialect = self.stated(Rule::Dialect);
         // Native programs of Sinumerik and of Heidenhain have the time in F.
@@ -405,11 +392,9 @@ impl Control {
             // Fanuc then reads its offsets in the other unit, too.
             let switches = self.unit_used && unit != self.modal.unit;
             if switches && matches!(self.stated(Rule::Dialect), None | Some(Choice::Iso)) {
-                return Err(combination(
-                    if is_inch { "G20" } else { "G21" },
-                    "the program has lengths in another unit",
-                    "select the unit once, at the start",
-                ));
+                let condition = "the program has lengths in another unit";
+                let remedy = "select the unit once, at the start";
+                return Err(combination(if is_inch { "G20" } else { "G21" }, condition, remedy));
             }
             self.modal.unit = unit;
             self.modal.unit_stated = true;
@@ -461,7 +446,7 @@ impl Control {
             [Group::CycleOff, Group::Motion].map(|group| block.code_of(group).is_some());
         // M29 holds until G80 or another motion word.
         if has_motion.contains(&true) && !is_tapping {
-            self.spindle.end_rigid();
+            self.spindle.rigid = false;
         }
     }
 
@@ -470,11 +455,9 @@ impl Control {
         if plane != self.modal.plane {
             let is_rotated = matches!(self.state.rotation, Rotation::Plane { .. });
             if is_rotated || self.cycle.is_some() {
-                return Err(combination(
-                    "another plane",
-                    "a rotation (G68) or a canned cycle is in force",
-                    "end it with G69 or G80 before",
-                ));
+                let condition = "a rotation (G68) or a canned cycle is in force";
+                let remedy = "end it with G69 or G80 before";
+                return Err(combination("another plane", condition, remedy));
             }
         }
         self.modal.plane = plane;
@@ -621,11 +604,6 @@ impl SpindleWords {
             tapping: None,
         }
     }
-
-    /// Ends rigid tapping.
-    fn end_rigid(&mut self) {
-        self.rigid = false;
-    }
 }
 
 impl Control {
@@ -648,7 +626,7 @@ impl Control {
                 ('M', 30) => Spindle::Clockwise,
                 ('M', 40) => Spindle::CounterClockwise,
                 ('M', 50 | 190) => {
-                    self.spindle.end_rigid();
+                    self.spindle.rigid = false;
                     Spindle::Stopped
                 }
                 // Haas stops it before M89 (coolant through the spindle off), and does not start it again.
@@ -690,7 +668,7 @@ impl Control {
 
     /// Stops the spindle for a tool change. It stays unstated if it was.
     fn stop_spindle(&mut self) {
-        self.spindle.end_rigid();
+        self.spindle.rigid = false;
         self.spindle.tapping = None;
         // A program that leaves the spindle to the operator does so after the change, too.
         if self.spindle.turn != Spindle::NotStated {

@@ -224,15 +224,7 @@ pub(super) fn value(cursor: &mut Cursor, known: &Parameters) -> Result<f64, Expr
 }
 
 /// Reads a sum of products, as after `=` and in brackets.
-fn sum(cursor: &mut Cursor, known: &Parameters) -> Result<f64, ExpressionFault> {
-    nested_sum(cursor, known, 0)
-}
-
-fn nested_sum(
-    cursor: &mut Cursor,
-    known: &Parameters,
-    depth: usize,
-) -> Result<f64, ExpressionFault> {
+fn sum(cursor: &mut Cursor, known: &Parameters, depth: usize) -> Result<f64, ExpressionFault> {
     let mut total = product(cursor, known, depth)?;
     loop {
         if cursor.take(b'+') {
@@ -306,7 +298,7 @@ fn unsigned(cursor: &mut Cursor, known: &Parameters, depth: usize) -> Result<f64
 /// Reads an expression in brackets.
 fn bracket(cursor: &mut Cursor, known: &Parameters, depth: usize) -> Result<f64, ExpressionFault> {
     cursor.take(b'[');
-    let value = nested_sum(cursor, known, depth + 1)?;
+    let value = sum(cursor, known, depth + 1)?;
     if cursor.take(b']') {
         return Ok(value);
     }
@@ -355,7 +347,7 @@ pub(super) fn assignment(
 ) -> Result<(Parameter, f64), ExpressionFault> {
     let target = parameter(cursor, known, 0)?;
     match cursor.take(b'=') {
-        true => Ok((target, sum(cursor, known)?)),
+        true => Ok((target, sum(cursor, known, 0)?)),
         false => Err(ExpressionFault::NoAssignment { parameter: target.shown() }),
     }
 }

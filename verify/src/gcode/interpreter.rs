@@ -56,12 +56,12 @@ impl<'a> Interpreter<'a> {
         }
         let mut control = Control::new(setup);
         let dialect = setup.rules.get(Rule::Dialect);
-        // The head of a program of Heidenhain is a title elsewhere.
+        // The head of a program of Heidenhain is a title elsewhere. No other control reads it.
         if let Some(unit) = extent.unit
             && matches!(dialect, None | Some(Choice::Heidenhain))
         {
             (control.modal.unit, control.modal.unit_stated) = (unit, true);
-            control.read_heidenhain();
+            control.state_rule(Rule::Dialect, Choice::Heidenhain);
         }
         if let Some((line, has_blocks)) = extent.left_out {
             let subject = if has_blocks { Subject::OtherProgram } else { Subject::TextAfterEnd };
@@ -85,21 +85,16 @@ impl<'a> Interpreter<'a> {
         &self.control.asked
     }
 
-    /// Executes the next line.
-    fn advance(&mut self) -> Result<(), GcodeError> {
+    /// Executes the next line, and returns whether the program goes on.
+    pub(super) fn execute_line(&mut self) -> Result<bool, GcodeError> {
         let Some((line, text)) = self.flow.next_line()? else {
             self.finish(End::Percent);
-            return Ok(());
+            return Ok(false);
         };
         let mut block = mem::take(&mut self.block);
         let result = self.blocks(line, text, &mut block);
         self.block = block;
-        result.map_err(|fault| GcodeError { line, fault })
-    }
-
-    /// Executes the next line, and returns whether the program goes on.
-    pub(super) fn execute_line(&mut self) -> Result<bool, GcodeError> {
-        self.advance()?;
+        result.map_err(|fault| GcodeError { line, fault })?;
         Ok(!self.finished)
     }
 
@@ -123,11 +118,9 @@ impl<'a> Interpreter<'a> {
                 break;
             }
             if block.code_of(Group::Subprogram).is_some() {
-                return Err(combination(
-                    "`;`",
-                    "its block calls or ends a subprogram",
-                    "write the block after it on a line of its own",
-                ));
+                let condition = "its block calls or ends a subprogram";
+                let remedy = "write the block after it on a line of its own";
+                return Err(combination("`;`", condition, remedy));
             }
             self.line(line, text, block)?;
         }
@@ -143,11 +136,9 @@ impl<'a> Interpreter<'a> {
         };
         // Older controls take the last four digits as the number, and those before as repeats.
         if number > 9999 && self.flow.has(&Label::Number(number % 10_000)) {
-            return Err(combination(
-                format!("M98 P{number}"),
-                "its last four digits are the number of a program, too",
-                "give the program another number, and write repeats after L",
-            ));
+            let condition = "its last four digits are the number of a program, too";
+            let remedy = "give the program another number, and write repeats after L";
+            return Err(combination(format!("M98 P{number}"), condition, remedy));
         }
         let times = block.take_whole('L', 1, 99_999_999, "a number of repeats from 1 after L")?;
         Ok((Label::Number(number), times.unwrap_or(1)))
@@ -207,11 +198,9 @@ impl<'a> Interpreter<'a> {
             && (is_call || self.control.stated(Rule::Dialect) != Some(Choice::Iso))
         {
             // LinuxCNC reads P and L, and executes no other word of the block.
-            return Err(combination(
-                code,
-                "its block has other words",
-                "write them in a block before",
-            ));
+            let condition = "its block has other words";
+            let remedy = "write them in a block before";
+            return Err(combination(code, condition, remedy));
         }
         self.control.execute(line, block)?;
         // A canned cycle in a repeated subprogram has many steps per block.
@@ -257,7 +246,7 @@ impl Iterator for Interpreter<'_> {
             if self.finished {
                 return None;
             }
-            if let Err(error) = self.advance() {
+            if let Err(error) = self.execute_line() {
                 self.finished = true;
                 self.control.pending.clear();
                 return Some(Err(error));

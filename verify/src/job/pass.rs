@@ -11,7 +11,24 @@ use crate::check::{ApproachSearch, MoveCheck};
 use crate::gcode::WorkOffset;
 use crate::{FindingGroup, Gap, Verifier};
 
-impl Job<'_> {
+/// The results of one reading.
+struct ReadingResult {
+    /// Each tool at each body.
+    pairs: Vec<PairReport>,
+    /// The stock after it, if the job has one.
+    cut: Option<CutStock>,
+    /// The work offsets under which no tool comes near the part, with their lines, if the reading has several.
+    far_offsets: Vec<(WorkOffset, usize)>,
+}
+
+/// The closest approach to the part under one work offset, of one tool.
+struct OffsetApproach<'a> {
+    offset: WorkOffset,
+    search: ApproachSearch<'a>,
+    has_moves: bool,
+}
+
+impl<'a> Job<'a> {
     /// Checks the program in every reading. `progress` is called with the number of motions checked since the last call, from any
     /// thread; the numbers add up to [`Program::motions`](super::Program::motions) times the number of bodies.
     ///
@@ -57,26 +74,7 @@ impl Job<'_> {
         report.findings = finding::all(&report);
         Ok(report)
     }
-}
 
-/// The results of one reading.
-struct ReadingResult {
-    /// Each tool at each body.
-    pairs: Vec<PairReport>,
-    /// The stock after it, if the job has one.
-    cut: Option<CutStock>,
-    /// The work offsets under which no tool comes near the part, with their lines, if the reading has several.
-    far_offsets: Vec<(WorkOffset, usize)>,
-}
-
-/// The closest approach to the part under one work offset, of one tool.
-struct OffsetApproach<'a> {
-    offset: WorkOffset,
-    search: ApproachSearch<'a>,
-    has_moves: bool,
-}
-
-impl<'a> Job<'a> {
     /// Checks one reading of the program.
     ///
     /// # Errors

@@ -81,10 +81,8 @@ impl ClData {
         // The end of such a cutter is across the axis and its side along it: both angles are 0.
         let expected = [diameter, corner, 0.5 * diameter - corner, corner, 0.0, 0.0];
         let other = self.cutters.iter().find(|(_, stated)| {
-            !stated
-                .iter()
-                .zip(&expected)
-                .all(|(stated, expected)| (stated - expected).abs() <= ROUNDED * diameter)
+            let mut pairs = stated.iter().zip(&expected);
+            pairs.any(|(stated, expected)| (stated - expected).abs() > ROUNDED * diameter)
         });
         let Some((line, stated)) = other else { return Ok(None) };
         let list: Vec<String> = stated.iter().map(f64::to_string).collect();

@@ -49,11 +49,9 @@ impl Control {
                 && (has_tool || has_change || is_staged)
                 && self.choice(Rule::ToolLength) == Choice::Always
             {
-                return Err(combination(
-                    format!("D{edge}"),
-                    "a tool is about to be changed, for which it counts",
-                    "write it after the change",
-                ));
+                let condition = "a tool is about to be changed, for which it counts";
+                let remedy = "write it after the change";
+                return Err(combination(format!("D{edge}"), condition, remedy));
             }
             self.edge = Some(edge);
             self.notes.add(self.line, Subject::PassedOver(Code { letter: 'D', tenths: 0 }));
@@ -64,18 +62,16 @@ impl Control {
             Some(Choice::Heidenhain) => has_tool || has_change && self.staged != self.state.tool,
             _ => has_change,
         };
-        // They act before the change on some controls, and after it on others.
+        // These words act before the change on some controls, and after it on others.
         let mut groups = [Group::OneShot, Group::Machine, Group::Length].into_iter();
         if has_change && let Some(code) = groups.find_map(|group| block.code_of(group)) {
             let remedy = "write it in a block before or after";
             return Err(combination(code, "its block has M6", remedy));
         }
         if (has_change || changes) && block.has_any("XYZABCIJK") {
-            return Err(combination(
-                if has_change { "M6" } else { "T" },
-                "its block has axis words",
-                "write them in a block before or after",
-            ));
+            let condition = "its block has axis words";
+            let remedy = "write them in a block before or after";
+            return Err(combination(if has_change { "M6" } else { "T" }, condition, remedy));
         }
         // Some changers take T in the block of M6 for the tool after this one.
         if has_change
@@ -83,11 +79,9 @@ impl Control {
             && before != tool
             && self.state.tool != Some(before)
         {
-            return Err(combination(
-                format!("T{tool} M6"),
-                "another tool is staged",
-                "write T in a block before M6",
-            ));
+            let condition = "another tool is staged";
+            let remedy = "write T in a block before M6";
+            return Err(combination(format!("T{tool} M6"), condition, remedy));
         }
         if has_change || changes {
             self.stop_spindle();
@@ -235,6 +229,7 @@ impl Control {
             self.length(block, code)?;
             let one_shot = block.tenths_of(Group::OneShot);
             let is_return = matches!(one_shot, Some(280 | 300));
+            // At a reference position the offset is suspended, so that its change moves nothing.
             if (is_return || !block.has('Z'))
                 && !has_returned
                 && self.moves_by_length(&before, height)
@@ -355,8 +350,7 @@ impl Control {
         Ok(())
     }
 
-    /// Returns whether the control moves Z by a change of the length offset without a word for Z: as by an increment of 0. At a
-    /// reference position the offset is suspended, and its change moves nothing.
+    /// Returns whether the control moves Z by a change of the length offset without a word for Z: as by an increment of 0.
     fn moves_by_length(&mut self, before: &ControlState, height: Option<f64>) -> bool {
         height.is_some()
             && before.length != self.state.length
@@ -393,19 +387,16 @@ impl Control {
             (None, None) => return self.check_edge(),
         };
         if self.state.tcp != Tcp::Off && !self.transformed {
-            return Err(combination(
-                word,
-                "G43.4, G43.5 or G234 is in force",
-                "end it with G49 before",
-            ));
+            let condition = "G43.4, G43.5 or G234 is in force";
+            let remedy = "end it with G49 before";
+            return Err(combination(word, condition, remedy));
         }
         if block.keyword.is_some() {
             if block.has_words() {
-                return Err(combination(
-                    word,
-                    "its block has other words, before or after which the transformation changes",
-                    "write it in a block of its own",
-                ));
+                let condition =
+                    "its block has other words, before or after which the transformation changes";
+                let remedy = "write it in a block of its own";
+                return Err(combination(word, condition, remedy));
             }
             let needed = "a work offset (G54) before, since TRAORI and TRAFOOF deselect it";
             self.needs_offset = Some(needed);
@@ -547,11 +538,9 @@ impl Control {
         let is_turned = self.origins.get(&offset).is_some_and(|(_, rotation)| *rotation != 0.0);
         let is_shifted = self.state.shift != [Some(0.0); 6];
         if self.state.work_offset == offset && is_shifted && (turn.is_some() || is_turned) {
-            return Err(combination(
-                code,
-                "G52 or G92 is in force, and it rotates",
-                "end it before",
-            ));
+            let condition = "G52 or G92 is in force, and it rotates";
+            let remedy = "end it before";
+            return Err(combination(code, condition, remedy));
         }
         let is_known = self.origins.get(&offset).is_some_and(|(origin, _)| *origin != [None; 6]);
         // A program that sets G54 moves the part, and is refused on a machine.

@@ -80,11 +80,9 @@ impl Control {
         let by_l = block.take_whole('L', 0, 1_000_000, "a number of repeats after L")?.unwrap_or(1);
         let by_k = block.take_whole('K', 0, 1_000_000, "a number of repeats after K")?.unwrap_or(1);
         if by_l == 0 || by_k == 0 {
-            return Err(combination(
-                if by_l == 0 { "L0" } else { "K0" },
-                "its block has a canned cycle, to whose place Haas moves",
-                "write G80 and G0, and the cycle again",
-            ));
+            let condition = "its block has a canned cycle, to whose place Haas moves";
+            let remedy = "write G80 and G0, and the cycle again";
+            return Err(combination(if by_l == 0 { "L0" } else { "K0" }, condition, remedy));
         }
         // One number, whichever word the control reads.
         if by_l == by_k {
@@ -103,57 +101,49 @@ impl Control {
         if is_linuxcnc {
             linuxcnc::check_cycle(block, number)?;
             if self.modal.feed_mode == FeedMode::InverseTime {
-                return Err(combination(
-                    word,
-                    "G93 is in force, which LinuxCNC does not allow",
-                    "write G94 before",
-                ));
+                let condition = "G93 is in force, which LinuxCNC does not allow";
+                let remedy = "write G94 before";
+                return Err(combination(word, condition, remedy));
             }
         }
         // LinuxCNC drills again at Z, R or Q alone, Haas does not.
         let in_plane = self.modal.plane.axes().map(|axis| AXES[axis]);
         if self.cycle.is_some() && !is_linuxcnc && !in_plane.iter().any(|letter| block.has(*letter))
         {
-            return Err(combination(
-                word,
-                "its block goes on with a series and has no place of a hole, and is executed or not",
-                "write X or Y",
-            ));
+            let condition = "its block goes on with a series and has no place of a hole, and is executed or not";
+            let remedy = "write X or Y";
+            return Err(combination(word, condition, remedy));
         }
         // LinuxCNC drills along the normal of the plane, but taps along another axis (`convert_cycle_g74_g84` of its interpreter).
         // Fanuc drills along Z by a parameter.
         let is_across = self.modal.plane != Plane::Xy;
         if is_across && (!is_linuxcnc || matches!(number, 74 | 84)) {
-            return Err(combination(
-                word,
-                "G18 or G19 is in force, where a cycle is along Z or along the normal of the plane",
-                "write G17 before, or state `dialect = \"rs274ngc\"` of the control",
-            ));
+            let condition =
+                "G18 or G19 is in force, where a cycle is along Z or along the normal of the plane";
+            let remedy = "write G17 before, or state `dialect = \"rs274ngc\"` of the control";
+            return Err(combination(word, condition, remedy));
         }
         if block.code_of(Group::Length).is_some() {
-            return Err(combination(
-                word,
-                "its block changes the length offset, before or after its initial level is taken",
-                "write G43 or G49 in a block before",
-            ));
+            let condition =
+                "its block changes the length offset, before or after its initial level is taken";
+            let remedy = "write G43 or G49 in a block before";
+            return Err(combination(word, condition, remedy));
         }
         if matches!(number, 74 | 84) && !self.can_tap(number) {
-            return Err(combination(
-                word,
-                "the spindle does not turn into the thread, which some controls start themselves",
-                "write M3 before G84, M4 before G74, or M29 for rigid tapping",
-            ));
+            let condition =
+                "the spindle does not turn into the thread, which some controls start themselves";
+            let remedy = "write M3 before G84, M4 before G74, or M29 for rigid tapping";
+            return Err(combination(word, condition, remedy));
         }
         // Fanuc ends G86 by turning the spindle clockwise (parameter 5112).
         if number == 86
             && self.spindle(false) == Spindle::CounterClockwise
             && matches!(self.stated(Rule::Dialect), None | Some(Choice::Iso))
         {
-            return Err(combination(
-                word,
-                "the spindle turns counter-clockwise, which it does not do after it on Fanuc",
-                "post the hole with its motions",
-            ));
+            let condition =
+                "the spindle turns counter-clockwise, which it does not do after it on Fanuc";
+            let remedy = "post the hole with its motions";
+            return Err(combination(word, condition, remedy));
         }
         Ok(())
     }

@@ -79,11 +79,9 @@ impl Control {
         }
         let given = AXES[3..].iter().find(|letter| block.has(**letter));
         if let Some(letter) = given {
-            return Err(combination(
-                *letter,
-                "G43.5 is in force",
-                "write the tool vector I J K, or select G43.4",
-            ));
+            let condition = "G43.5 is in force";
+            let remedy = "write the tool vector I J K, or select G43.4";
+            return Err(combination(*letter, condition, remedy));
         }
         if !block.has_any("IJK") {
             return Ok(false);
@@ -100,11 +98,9 @@ impl Control {
     fn arc(&mut self, block: &mut Block, clockwise: bool) -> Result<(), GcodeFault> {
         let word = if clockwise { "G2" } else { "G3" };
         if self.state.tcp == Tcp::Vector {
-            return Err(combination(
-                word,
-                "G43.5 gives I J K another meaning",
-                "post the arc as lines, or select G43.4",
-            ));
+            let condition = "G43.5 gives I J K another meaning";
+            let remedy = "post the arc as lines, or select G43.4";
+            return Err(combination(word, condition, remedy));
         }
         self.check_feed(word)?;
         self.check_tilted(block)?;
@@ -112,11 +108,9 @@ impl Control {
         if self.stated(Rule::Dialect) == Some(Choice::Heidenhain)
             && block.has(in_plane[0]) != block.has(in_plane[1])
         {
-            return Err(combination(
-                word,
-                "one coordinate of its pole is left out, which keeps it on Heidenhain",
-                "write both",
-            ));
+            let condition = "one coordinate of its pole is left out, which keeps it on Heidenhain";
+            let remedy = "write both";
+            return Err(combination(word, condition, remedy));
         }
         let words = ArcWords {
             clockwise,
@@ -240,11 +234,9 @@ impl Control {
         }
         // LinuxCNC returns along the axis that is rotated.
         if self.state.origin_rotation != 0.0 && named[0] != named[1] {
-            return Err(combination(
-                word,
-                "the work offset is rotated",
-                "name X and Y, or neither",
-            ));
+            let condition = "the work offset is rotated";
+            let remedy = "name X and Y, or neither";
+            return Err(combination(word, condition, remedy));
         }
         let home = if word == "G28" { self.home } else { self.second_home };
         let target = home.map_or([None; 6], |home| home.map(Some));

@@ -56,11 +56,9 @@ impl Control {
             return Err(not_read(code, meaning, remedy));
         }
         if block.distance_after_coordinate && dialect == Some(Choice::Heidenhain) {
-            return Err(combination(
-                "G90 or G91",
-                "a coordinate stands before it in the block",
-                "write it first: on Heidenhain it holds for the coordinates after it",
-            ));
+            let condition = "a coordinate stands before it in the block";
+            let remedy = "write it first: on Heidenhain it holds for the coordinates after it";
+            return Err(combination("G90 or G91", condition, remedy));
         }
         Ok(())
     }
@@ -105,11 +103,10 @@ impl Control {
                 .filter(Code::is_m)
                 .find(|code| matches!(code.tenths, 0..=60 | 290 | 300 | 980 | 990))
         {
-            return Err(combination(
-                code,
-                "its block has another M word, of which Haas and Fanuc as delivered execute one",
-                "write them in two blocks",
-            ));
+            let condition =
+                "its block has another M word, of which Haas and Fanuc as delivered execute one";
+            let remedy = "write them in two blocks";
+            return Err(combination(code, condition, remedy));
         }
         let mut spindle =
             block.codes().filter(|code| code.is_m() && matches!(code.tenths, 30 | 40 | 50 | 190));
@@ -124,11 +121,9 @@ impl Control {
         if block.has('P')
             && let Some(code) = block.code_of(Group::WorkOffset).filter(|code| code.tenths != 541)
         {
-            return Err(combination(
-                format!("P beside {code}"),
-                "it selects another work offset on Fanuc and Siemens",
-                "write it in a block of its own",
-            ));
+            let condition = "it selects another work offset on Fanuc and Siemens";
+            let remedy = "write it in a block of its own";
+            return Err(combination(format!("P beside {code}"), condition, remedy));
         }
         // The last word of the group counts on Fanuc, and the cycle on LinuxCNC (run: `rs274`).
         let cycle = block.code_of(Group::Motion).filter(|code| code.tenths >= 730);
@@ -156,10 +151,12 @@ impl Control {
         for letter in "PQLR".chars().filter(|letter| block.has(*letter)) {
             let mut users = block.codes().chain(in_force).filter(|code| takes(*code, letter));
             if let (Some(first), Some(second)) = (users.next(), users.next()) {
+                let condition = "some controls give its number to both";
+                let remedy = "write them in two blocks";
                 return Err(combination(
                     format!("{letter} beside {first} and {second}"),
-                    "some controls give its number to both",
-                    "write them in two blocks",
+                    condition,
+                    remedy,
                 ));
             }
         }
@@ -172,11 +169,9 @@ impl Control {
         if std::mem::take(&mut self.tcp_position_needed)
             && (is_incremental || !"XYZ".chars().all(|letter| block.has(letter)))
         {
-            return Err(combination(
-                "a position",
-                "it is the first of tool centre point control that began with turned axes, and has not X, Y and Z in G90",
-                "write all three",
-            ));
+            let condition = "it is the first of tool centre point control that began with turned axes, and has not X, Y and Z in G90";
+            let remedy = "write all three";
+            return Err(combination("a position", condition, remedy));
         }
         // On Fanuc the change of the length acts on an increment, too.
         let length_changed = block.has('Z') && std::mem::take(&mut self.length_changed);
@@ -191,11 +186,9 @@ impl Control {
             // An increment of 0 states no position: the axis still stands where the change has found it.
             self.origin_changed[axis] &= is_incremental && value == 0.0;
             if is_incremental && self.is_rounded(axis, value) {
-                return Err(combination(
-                    format!("{letter}{value}"),
-                    "G91 is in force, and it is no multiple of the least increment, to which controls round each",
-                    "write it in G90",
-                ));
+                let condition = "G91 is in force, and it is no multiple of the least increment, to which controls round each";
+                let remedy = "write it in G90";
+                return Err(combination(format!("{letter}{value}"), condition, remedy));
             }
         }
         self.check_after_rotation(block)
@@ -229,11 +222,9 @@ impl Control {
                 .flatten()
                 .any(|value| self.is_rounded(axis, value))
             {
-                return Err(combination(
-                    format!("G92 {letter}{value}"),
-                    "it or the position is no multiple of the least increment, to which controls round",
-                    "move to such a position before",
-                ));
+                let condition = "it or the position is no multiple of the least increment, to which controls round";
+                let remedy = "move to such a position before";
+                return Err(combination(format!("G92 {letter}{value}"), condition, remedy));
             }
         }
         Ok(())
@@ -265,11 +256,10 @@ impl Control {
             return Ok(());
         }
         if self.modal.incremental || given != [true; 2] {
-            return Err(combination(
-                "a position",
-                "it is the first after G68 or G69, and not of both axes of the plane in G90",
-                "write both in G90",
-            ));
+            let condition =
+                "it is the first after G68 or G69, and not of both axes of the plane in G90";
+            let remedy = "write both in G90";
+            return Err(combination("a position", condition, remedy));
         }
         self.rotation_changed = false;
         Ok(())
@@ -281,11 +271,9 @@ impl Control {
         let has_length = self.state.tcp == Tcp::Off && self.state.length != LengthOffset::Off;
         // Along Z of the machine, or of the plane: the same where the plane keeps Z.
         if !aligned && has_length && frame.rotation[(2, 2)] != 1.0 && block.has_any("XYZ") {
-            return Err(combination(
-                "a position",
-                "a length offset is in force in a tilted plane that is not aligned",
-                "write G53.1 after G68.2, or G49 before",
-            ));
+            let condition = "a length offset is in force in a tilted plane that is not aligned";
+            let remedy = "write G53.1 after G68.2, or G49 before";
+            return Err(combination("a position", condition, remedy));
         }
         let moved = AXES.into_iter().filter(|letter| block.has(*letter));
         let at_zero = self.position[3..].iter().all(|angle| *angle == Some(0.0));
@@ -321,11 +309,9 @@ impl Control {
         let chord = (u - x).hypot(v - y);
         let [across, along] = [(u - x).abs(), (v - y).abs()];
         if chord > 0.0 && across.max(along) < 2.0 * self.modal.millimetres(self.modal.increment()) {
-            return Err(combination(
-                "an arc",
-                "its end is less than two increments from its start, and can be the same where coordinates are rounded",
-                "leave the end out for a full circle, or leave out the arc",
-            ));
+            let condition = "its end is less than two increments from its start, and can be the same where coordinates are rounded";
+            let remedy = "leave the end out for a full circle, or leave out the arc";
+            return Err(combination("an arc", condition, remedy));
         }
         // A control that moves the centre across the chord turns the arc about its start by the difference over the chord.
         let [from, to] = [[x, y], [u, v]].map(|[x, y]| (x - centre[0]).hypot(y - centre[1]));
