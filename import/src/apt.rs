@@ -57,7 +57,6 @@ pub(super) fn read(text: &str) -> Result<Vec<Found>, String> {
         }
         let code = std::mem::take(&mut continued) + code;
         let Some((word, rest)) = code.split_once('/') else { continue };
-        let at_line = |what: &str| format!("line {}: {what}", index + 1);
         let mut fields = rest.split(',').map(str::trim);
         let mut next = || fields.next().unwrap_or_default();
         match word.trim().to_ascii_uppercase().as_str() {
@@ -65,7 +64,7 @@ pub(super) fn read(text: &str) -> Result<Vec<Found>, String> {
                 unit = Some(match rest.trim().to_ascii_uppercase().as_str() {
                     "MM" | "MMS" => Unit::Millimetre,
                     "INCHES" | "INCH" | "IN" => Unit::Inch,
-                    other => return Err(at_line(&format!("unit `{other}`"))),
+                    other => return Err(format!("line {}: unit `{other}`", index + 1)),
                 });
             }
             "TOOL PATH" => {
@@ -153,22 +152,23 @@ impl Statement {
     }
 
     fn tool(&self) -> Found {
-        let read = || -> Result<Entry, String> {
-            let unit = self
-                .unit
-                .ok_or("the program states no `UNITS/`: add `UNITS/MM` or `UNITS/INCHES`")?;
-            let names: &[&str] = match self.keyword.as_str() {
-                "" => &CUTTER,
-                "MILL" => &MILL,
-                "DRILL" => &DRILL,
-                "TURN" | "GROOVE" | "THREAD" => {
-                    return Err("it is a turning tool, which is no solid of revolution".to_owned());
-                }
-                kind => return Err(format!("`TLDATA/{kind}` cannot be read yet")),
-            };
-            self.entry(unit, &self.numbers(names)?)
+        self.read()
+            .map_err(|reason| Problem::new(&format!("cutter of line {}", self.line), &reason))
+    }
+
+    fn read(&self) -> Result<Entry, String> {
+        let unit =
+            self.unit.ok_or("the program states no `UNITS/`: add `UNITS/MM` or `UNITS/INCHES`")?;
+        let names: &[&str] = match self.keyword.as_str() {
+            "" => &CUTTER,
+            "MILL" => &MILL,
+            "DRILL" => &DRILL,
+            "TURN" | "GROOVE" | "THREAD" => {
+                return Err("it is a turning tool, which is no solid of revolution".to_owned());
+            }
+            kind => return Err(format!("`TLDATA/{kind}` cannot be read yet")),
         };
-        read().map_err(|reason| Problem::new(&format!("cutter of line {}", self.line), &reason))
+        self.entry(unit, &self.numbers(names)?)
     }
 
     /// Returns the value of each field, `None` for one that is left empty.
@@ -177,16 +177,21 @@ impl Statement {
             let (fields, most) = (self.fields.len(), names.len());
             return Err(format!("it has {fields} fields, more than {most}"));
         }
-        let number = |(field, name): (&String, &&str)| {
-            if field.is_empty() {
-                return Ok(None);
-            }
-            let value: Option<f64> = field.parse().ok();
-            let value = value.filter(|value| value.is_finite());
-            value.map(Some).ok_or_else(|| format!("its {name} is `{field}`, which is no number"))
-        };
-        let mut numbers =
-            self.fields.iter().zip(names).map(number).collect::<Result<Vec<_>, _>>()?;
+        let mut numbers = self
+            .fields
+            .iter()
+            .zip(names)
+            .map(|(field, name)| {
+                if field.is_empty() {
+                    return Ok(None);
+                }
+                let value: Option<f64> = field.parse().ok();
+                let value = value.filter(|value| value.is_finite());
+                value
+                    .map(Some)
+                    .ok_or_else(|| format!("its {name} is `{field}`, which is no number"))
+            })
+            .collect::<Result<Vec<_>, _>>()?;
         numbers.resize(names.len(), None);
         Ok(numbers)
     }
@@ -203,7 +208,7 @@ impl Statement {
                 notes.push(Note::Unstated("centre of the corner", drawn));
             }
             let [d, z] = if is_unstated { [None; 2] } else { [d, z] };
-            (d.unwrap_or(diameter / 2.0 - corner), z.unwrap_or(corner))
+            [d.unwrap_or(diameter / 2.0 - corner), z.unwrap_or(corner)]
         };
         let (shape, flute_length, length) = match self.keyword.as_str() {
             "DRILL" => {
@@ -253,9 +258,9 @@ impl Statement {
 }
 
 /// Returns the shape of APT's general cutter. The simple ones keep their simple names.
-fn general(diameter: f64, corner: f64, centre: (f64, f64), [end, side]: [f64; 2]) -> Shape {
+fn general(diameter: f64, corner: f64, centre: [f64; 2], [end, side]: [f64; 2]) -> Shape {
     let same = |a: f64, b: f64| (a - b).abs() <= 1e-6 * diameter;
-    let plain = same(centre.0, diameter / 2.0 - corner) && same(centre.1, corner);
+    let plain = same(centre[0], diameter / 2.0 - corner) && same(centre[1], corner);
     match (plain, end == 0.0, side == 0.0) {
         (true, true, true) if corner > 0.0 && same(corner, diameter / 2.0) => Shape::Ball,
         (true, true, true) => Shape::Flat { corner },

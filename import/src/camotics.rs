@@ -5,19 +5,16 @@
 //! cone whose tip has the diameter `snub_diameter`.
 
 use super::entry::{Entry, Note};
-use super::fusion::{number_of, text};
+use super::json::{Object, number_of, string};
 use super::shape::{Cutter, Shape};
 use super::{Found, Problem};
-use serde_json::{Map, Value};
+use serde_json::Value;
 use touchoff::Unit;
-
-type Object = Map<String, Value>;
 
 /// Returns true for a table of CAMotics.
 pub(super) fn is_table(value: &Object) -> bool {
-    let is_tool =
-        |(key, tool): (&String, &Value)| key.parse::<u32>().is_ok() && tool.get("shape").is_some();
-    !value.is_empty() && value.iter().all(is_tool)
+    !value.is_empty()
+        && value.iter().all(|(key, tool)| key.parse::<u32>().is_ok() && tool.get("shape").is_some())
 }
 
 /// Reads the tools of a table, by their numbers.
@@ -33,37 +30,37 @@ fn read_tool(number: u32, value: &Value) -> Found {
     let Some(tool) = value.as_object() else {
         return Err(Problem::new(&label, "it is no object"));
     };
-    let read = || -> Result<Entry, String> {
-        let unit = match text(tool, "units").to_ascii_lowercase().as_str() {
-            "metric" | "mm" => Unit::Millimetre,
-            "imperial" | "inch" => Unit::Inch,
-            "" => return Err("it states no units".to_owned()),
-            other => return Err(format!("its units are `{other}`, not `metric` or `imperial`")),
-        };
-        let stated =
-            |key: &str| number_of(tool, key).ok_or_else(|| format!("it states no `{key}`"));
-        let (diameter, length) = (stated("diameter")?, stated("length")?);
-        let shape = match text(tool, "shape").to_ascii_lowercase().as_str() {
-            "cylindrical" => Shape::Flat { corner: 0.0 },
-            "ballnose" => Shape::Ball,
-            "conical" => Shape::TruncatedCone { tip_diameter: 0.0 },
-            "snubnose" => Shape::TruncatedCone { tip_diameter: stated("snub_diameter")? },
-            other => return Err(format!("the shape `{other}` cannot be read yet")),
-        };
-        let mut entry =
-            Entry::new(unit, text(tool, "shape"), text(tool, "description"), Vec::new());
-        entry.number = Some(number);
-        let drawn = "the tool ends with its length".to_owned();
-        entry.notes.push(Note::Unstated("shank and the holder", drawn));
-        entry.cutter = Some(Cutter {
-            shape,
-            diameter,
-            flute_length: length,
-            length,
-            shoulder: None,
-            shank_diameter: None,
-        });
-        Ok(entry)
+    entry(number, tool).map_err(|reason| Problem::new(&label, &reason))
+}
+
+fn entry(number: u32, tool: &Object) -> Result<Entry, String> {
+    let unit = match string(tool, "units").to_ascii_lowercase().as_str() {
+        "metric" | "mm" => Unit::Millimetre,
+        "imperial" | "inch" => Unit::Inch,
+        "" => return Err("it states no units".to_owned()),
+        other => return Err(format!("its units are `{other}`, not `metric` or `imperial`")),
     };
-    read().map_err(|reason| Problem::new(&label, &reason))
+    let stated = |key: &str| number_of(tool, key).ok_or_else(|| format!("it states no `{key}`"));
+    let (diameter, length) = (stated("diameter")?, stated("length")?);
+    let shape = match string(tool, "shape").to_ascii_lowercase().as_str() {
+        "cylindrical" => Shape::Flat { corner: 0.0 },
+        "ballnose" => Shape::Ball,
+        "conical" => Shape::TruncatedCone { tip_diameter: 0.0 },
+        "snubnose" => Shape::TruncatedCone { tip_diameter: stated("snub_diameter")? },
+        other => return Err(format!("the shape `{other}` cannot be read yet")),
+    };
+    let mut entry =
+        Entry::new(unit, string(tool, "shape"), string(tool, "description"), Vec::new());
+    entry.number = Some(number);
+    let drawn = "the tool ends with its length".to_owned();
+    entry.notes.push(Note::Unstated("shank and the holder", drawn));
+    entry.cutter = Some(Cutter {
+        shape,
+        diameter,
+        flute_length: length,
+        length,
+        shoulder: None,
+        shank_diameter: None,
+    });
+    Ok(entry)
 }

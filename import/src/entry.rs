@@ -1,7 +1,7 @@
 //! The tools of a library, in one form for all formats.
 
+use super::outline::decimal;
 use super::shape::{Cutter, Shape, ShapeError};
-use super::term::decimal;
 use std::fmt;
 use touchoff::Unit;
 
@@ -226,6 +226,7 @@ impl Entry {
     pub(super) fn add_notes(&mut self) {
         let Some(cutter) = &self.cutter else { return };
         let mut notes = Vec::new();
+        // Up to a holder the shank is drawn in any case.
         let reach = self.stickout.filter(|_| self.holder.is_some()).unwrap_or(0.0);
         let has_other_shank = cutter.shank_diameter.is_some_and(|shank| shank != cutter.diameter);
         if has_other_shank && cutter.flute_length == cutter.length.max(reach) {
@@ -242,6 +243,7 @@ impl Entry {
             let nose = holder.sections.first().map(|section| section.lower_diameter);
             let factor = holder.unit.factor_to(self.unit);
             if let (Some(nose), Some(shank)) = (nose, self.shank_diameter())
+                // The conversion of units rounds.
                 && shank > nose * factor * (1.0 + 1e-9)
             {
                 notes.push(Note::ShankTooWide { shank, nose: nose * factor });

@@ -4,14 +4,12 @@
 //! point or a comma. A bit whose shape was changed by its user cannot be told from one of FreeCAD's own.
 
 use super::entry::{Entry, Holder, Note, Section, Stated};
-use super::fusion::tool_number;
+use super::json::{Object, pair, string, tool_number};
 use super::shape::{Cutter, Shape};
 use super::{Found, Problem, bytes, text};
-use serde_json::{Map, Value};
+use serde_json::Value;
 use std::path::{Component, Path, PathBuf};
 use touchoff::Unit;
-
-type Object = Map<String, Value>;
 
 /// Reads a tool bit.
 pub(super) fn bit(content: &str) -> Result<Vec<Found>, String> {
@@ -65,11 +63,7 @@ fn read_holder(holder: &Object, title: &str) -> Result<Entry, String> {
         other => return Err(format!("its unit is `{other}`, not `mm` or `inch`")),
     };
     let profile = holder.get("profile").and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
-    let point = |value: &Value| {
-        let number = |k: usize| value.get(k)?.as_f64().filter(|number| number.is_finite());
-        Some([number(0)?, number(1)?])
-    };
-    let points: Option<Vec<[f64; 2]>> = profile.iter().map(point).collect();
+    let points: Option<Vec<[f64; 2]>> = profile.iter().map(pair).collect();
     let points = points.ok_or("a point of its profile is no pair of numbers")?;
     let mut sections = Vec::new();
     for pair in points.windows(2) {
@@ -77,6 +71,7 @@ fn read_holder(holder: &Object, title: &str) -> Result<Entry, String> {
         if high < low {
             return Err("its profile runs back toward the tip".to_owned());
         }
+        // A step across the axis is the change of diameter from one section to the next.
         if high > low {
             sections.push(Section {
                 height: high - low,
@@ -93,17 +88,19 @@ fn read_holder(holder: &Object, title: &str) -> Result<Entry, String> {
 
 fn read_bit(bit: &Object, number: Option<u32>) -> Found {
     let title = string(bit, "name");
-    let read = || -> Result<Entry, String> {
-        let shape = string(bit, "shape").rsplit(['/', '\\']).next().unwrap_or("").to_lowercase();
-        let shape = shape.trim_end_matches(".fcstd");
-        let mut entry = entry(Unit::Millimetre, shape, title, bit);
-        entry.number = number;
-        let empty = Object::new();
-        let parameters = bit.get("parameter").and_then(Value::as_object).unwrap_or(&empty);
-        entry.cutter = Some(cutter(shape, &Parameters(parameters), &mut entry.notes)?);
-        Ok(entry)
-    };
-    read().map_err(|error| Problem::new(title, &error))
+    read_shape(bit, title, number).map_err(|error| Problem::new(title, &error))
+}
+
+fn read_shape(bit: &Object, title: &str, number: Option<u32>) -> Result<Entry, String> {
+    // The shape is named by a path, of either kind of system.
+    let shape = string(bit, "shape").rsplit(['/', '\\']).next().unwrap_or("").to_lowercase();
+    let shape = shape.trim_end_matches(".fcstd");
+    let mut entry = entry(Unit::Millimetre, shape, title, bit);
+    entry.number = number;
+    let empty = Object::new();
+    let parameters = bit.get("parameter").and_then(Value::as_object).unwrap_or(&empty);
+    entry.cutter = Some(cutter(shape, &Parameters(parameters), &mut entry.notes)?);
+    Ok(entry)
 }
 
 fn entry(unit: Unit, kind: &str, title: &str, object: &Object) -> Entry {
@@ -156,7 +153,7 @@ fn cutter(stated: &str, of: &Parameters<'_>, notes: &mut Vec<Note>) -> Result<Cu
                     first: Stated { what: "diameter", value: diameter },
                     second: Stated {
                         what: "diameter at the end of the cone",
-                        value: super::term::rounded(wide),
+                        value: super::outline::rounded(wide),
                     },
                     taken: "cone",
                 });
@@ -166,14 +163,15 @@ fn cutter(stated: &str, of: &Parameters<'_>, notes: &mut Vec<Note>) -> Result<Cu
         "vbit" => {
             let tip_diameter = of.length_or("TipDiameter", "tip diameter", 0.0, notes)?;
             let point_angle = of.angle("CuttingEdgeAngle")?;
+            // The height of the edge counts from the end of the point.
             let cone = (diameter - tip_diameter) / 2.0 / (point_angle / 2.0).to_radians().tan();
-            let flute_length = super::term::rounded(cone + flutes()?);
+            let flute_length = super::outline::rounded(cone + flutes()?);
             (Shape::Drill { tip_diameter, point_angle }, flute_length)
         }
         "dovetail" => {
             let neck = of.length("NeckDiameter")?;
             shoulder =
-                Some((super::term::rounded(flutes()? + of.length("NeckHeight")?), Some(neck)));
+                Some((super::outline::rounded(flutes()? + of.length("NeckHeight")?), Some(neck)));
             (
                 Shape::Dovetail { corner: 0.0, half_angle: of.angle("CuttingEdgeAngle")? / 2.0 },
                 flutes()?,
@@ -191,7 +189,7 @@ fn cutter(stated: &str, of: &Parameters<'_>, notes: &mut Vec<Note>) -> Result<Cu
         "tap" => {
             let point_angle = of.angle("TipAngle")?;
             let cone = diameter / 2.0 / (point_angle / 2.0).to_radians().tan();
-            let flute_length = super::term::rounded(cone + of.length("CuttingEdgeLength")?);
+            let flute_length = super::outline::rounded(cone + of.length("CuttingEdgeLength")?);
             (Shape::Drill { tip_diameter: 0.0, point_angle }, flute_length)
         }
         "taperedballnose" => {
@@ -216,8 +214,8 @@ fn cutter(stated: &str, of: &Parameters<'_>, notes: &mut Vec<Note>) -> Result<Cu
             return Ok(Cutter {
                 shape: saw,
                 diameter,
-                flute_length: super::term::rounded(thickness + cap_height),
-                length: super::term::rounded(length + cap_height),
+                flute_length: super::outline::rounded(thickness + cap_height),
+                length: super::outline::rounded(length + cap_height),
                 shoulder: None,
                 shank_diameter,
             });
@@ -244,7 +242,7 @@ fn corner(of: &Parameters<'_>, diameter: f64) -> Result<f64, String> {
         return Ok(corner);
     }
     match of.optional_length("FlatRadius")? {
-        Some(flat) => Ok(super::term::rounded(diameter / 2.0 - flat)),
+        Some(flat) => Ok(super::outline::rounded(diameter / 2.0 - flat)),
         None => Err("it does not state its `CornerRadius`".to_owned()),
     }
 }
@@ -330,7 +328,7 @@ impl Parameters<'_> {
         };
         match (value.filter(|value| value.is_finite()), factor(unit.trim())) {
             (Some(value), Some(1.0)) => Ok(Some(value)),
-            (Some(value), Some(factor)) => Ok(Some(super::term::rounded(value * factor))),
+            (Some(value), Some(factor)) => Ok(Some(super::outline::rounded(value * factor))),
             _ => Err(format!("its `{key}` is `{text}`, no number with a unit")),
         }
     }
@@ -342,8 +340,4 @@ fn object(content: &str) -> Result<Object, String> {
         Ok(_) => Err("it is no JSON object".to_owned()),
         Err(error) => Err(error.to_string()),
     }
-}
-
-fn string<'a>(object: &'a Object, key: &str) -> &'a str {
-    object.get(key).and_then(Value::as_str).unwrap_or("").trim()
 }

@@ -5,20 +5,19 @@
 //! the shank, `SIG` a whole angle, `TA` the angle between the axis and a side.
 
 use super::entry::{Entry, Holder, Note, Section, Stated};
-use super::shape::{Crest, Cutter, Shape, ShapeError};
-use super::{Found, Problem, form};
-use serde_json::{Map, Value};
+use super::json::{Object, number, number_of, object, pair, string, tool_number};
+use super::shape::{Crest, Cutter, FormSegment, Shape, ShapeError};
+use super::{Found, Problem};
+use serde_json::Value;
 use touchoff::Unit;
-
-type Object = Map<String, Value>;
 
 /// Reads a tool.
 pub(super) fn tool(value: &Value) -> Found {
     let Some(tool) = value.as_object() else {
         return Err(Problem::new("entry", "it is no object"));
     };
-    let kind = text(tool, "type");
-    let title = text(tool, "description");
+    let kind = string(tool, "type");
+    let title = string(tool, "description");
     let label = if title.is_empty() { kind } else { title };
     read_tool(tool, kind, title).map_err(|error| Problem::new(label, &error))
 }
@@ -62,6 +61,7 @@ fn read_tool(tool: &Object, kind: &str, title: &str) -> Result<Entry, String> {
             entry.notes.push(Note::Unstated("segments of the holder", drawn));
             return Ok(entry);
         };
+        // Without it nothing says where the holder begins.
         entry.stickout = Some(geometry.require("LB", "length below the holder")?);
         let gauge = number_of(value, "gaugeLength");
         let stated = geometry.get("assemblyGaugeLength")?;
@@ -86,7 +86,6 @@ fn cutter(
     geometry: &Geometry<'_>,
     notes: &mut Vec<Note>,
 ) -> Result<Cutter, String> {
-    let diameter = || geometry.require("DC", "diameter");
     if kind.starts_with("circle segment") {
         let drawn = "they are drawn tangent to each other".to_owned();
         notes.push(Note::Unstated("construction of its arcs", drawn));
@@ -95,7 +94,8 @@ fn cutter(
         "flat end mill" => Shape::Flat { corner: 0.0 },
         "bull nose end mill" => Shape::Flat { corner: geometry.require("RE", "corner radius")? },
         "ball end mill" => {
-            let (radius, diameter) = (geometry.get("RE")?.unwrap_or(0.0), diameter()?);
+            let (radius, diameter) =
+                (geometry.get("RE")?.unwrap_or(0.0), geometry.require("DC", "diameter")?);
             if radius > 0.0 && (2.0 * radius - diameter).abs() > 1e-6 * diameter {
                 notes.push(Note::Contradiction {
                     first: Stated { what: "corner radius", value: radius },
@@ -108,7 +108,7 @@ fn cutter(
         "tapered mill" => {
             let corner = geometry.or("RE", "corner radius", 0.0, notes)?;
             let half_angle = geometry.require("TA", "taper angle")?;
-            match text(tool, "tapered-type") {
+            match string(tool, "tapered-type") {
                 "tapered_ball" => Shape::TaperedBall { radius: corner, half_angle, cone_to: 0.0 },
                 "" | "tapered_bull_nose" => Shape::Tapered { corner, half_angle },
                 other => return Err(format!("the taper `{other}` cannot be read yet")),
@@ -164,11 +164,12 @@ fn cutter(
                 "part of the profile that cuts",
                 "all of it counts as cutting".to_owned(),
             ));
-            Shape::Form(form::profile(geometry.0.get("profile"))?)
+            Shape::Form(profile(geometry.0.get("profile"))?)
         }
         "thread mill" => Shape::Thread {
             pitch: pitch(geometry, notes)?,
             angle: geometry.or("thread-profile-angle", "angle of the thread", 60.0, notes)?,
+            // Teeth that do not fit the length of the flutes are not drawn.
             teeth: geometry.or("NT", "number of teeth", 1.0, notes)?.clamp(1.0, 1e6) as u32,
             crest: crest(geometry, notes)?,
         },
@@ -200,7 +201,7 @@ fn cutter(
         }
         other => return Err(format!("the type `{other}` cannot be read yet")),
     };
-    let diameter = diameter()?;
+    let diameter = geometry.require("DC", "diameter")?;
     let shoulder_diameter = geometry.get("shoulder-diameter")?.filter(|diameter| *diameter > 0.0);
     let shoulder = geometry.get("shoulder-length")?.map(|length| (length, shoulder_diameter));
     let shank_diameter = geometry.get("SFDM")?;
@@ -232,7 +233,7 @@ fn pitch(geometry: &Geometry<'_>, notes: &mut Vec<Note>) -> Result<f64, String> 
 fn crest(geometry: &Geometry<'_>, notes: &mut Vec<Note>) -> Result<Crest, String> {
     let width = geometry.get("thread-tip-width")?.filter(|width| *width != 0.0);
     let radius = geometry.get("thread-tip-radius")?.filter(|radius| *radius != 0.0);
-    let form = text(geometry.0, "thread-tip-type");
+    let form = string(geometry.0, "thread-tip-type");
     let unstated = match (form, width, radius) {
         ("point", ..) | ("", None, None) => return Ok(Crest::Point),
         ("flat", Some(width), _) => return Ok(Crest::Flat { width }),
@@ -266,7 +267,7 @@ fn holder(value: &Object) -> Result<Option<Holder>, String> {
         return Ok(None);
     }
     Ok(Some(Holder {
-        title: text(value, "description").to_owned(),
+        title: string(value, "description").to_owned(),
         origin: origin(value),
         unit: unit(value).map_err(|error| format!("its holder: {error}"))?,
         sections,
@@ -324,49 +325,118 @@ impl Geometry<'_> {
     }
 }
 
-/// Returns the object of a key, if there is one.
-fn object<'a>(value: &'a Object, key: &str) -> Result<Option<&'a Object>, String> {
-    match value.get(key) {
-        None | Some(Value::Null) => Ok(None),
-        Some(Value::Object(object)) => Ok(Some(object)),
-        Some(_) => Err(format!("its `{key}` is no object")),
-    }
-}
-
-/// Returns a tool number.
-pub(super) fn tool_number(value: &Value) -> Option<u32> {
-    value.as_u64().and_then(|number| u32::try_from(number).ok())
-}
-
-/// Returns a finite number of an object.
-pub(super) fn number_of(object: &Object, key: &str) -> Option<f64> {
-    object.get(key).and_then(number)
-}
-
-/// Returns a finite number. Some libraries have numbers as texts.
-fn number(value: &Value) -> Option<f64> {
-    let stated = value.as_f64().or_else(|| value.as_str()?.trim().parse().ok());
-    stated.filter(|number| number.is_finite())
-}
-
-/// Returns a text of an object without blanks around it; empty if there is none.
-pub(super) fn text<'a>(object: &'a Object, key: &str) -> &'a str {
-    object.get(key).and_then(Value::as_str).unwrap_or("").trim()
-}
-
 fn origin(object: &Object) -> Vec<(&'static str, String)> {
     [("vendor", "vendor"), ("product", "product-id"), ("id", "guid")]
-        .map(|(name, key)| (name, text(object, key).to_owned()))
+        .map(|(name, key)| (name, string(object, key).to_owned()))
         .into_iter()
         .filter(|(_, value)| !value.is_empty())
         .collect()
 }
 
 fn unit(object: &Object) -> Result<Unit, String> {
-    match text(object, "unit") {
+    match string(object, "unit") {
         "millimeters" => Ok(Unit::Millimetre),
         "inches" => Ok(Unit::Inch),
         "" => Err("it states no unit".to_owned()),
         other => Err(format!("its unit is `{other}`, not `millimeters` or `inches`")),
     }
+}
+
+/// Ends of arcs are stated with few digits: their distances from the centre may differ by this part of the radius.
+const ARC_TOLERANCE: f64 = 1e-2;
+
+/// Returns the segments of a profile: a list of ends, each with `arc`, `ccw` and `center` if it ends an arc. The
+/// first is the start. The outline begins and ends on the axis, from the tip upward or the other way.
+fn profile(value: Option<&Value>) -> Result<Vec<FormSegment>, String> {
+    let list = value.and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
+    let mut corners = list.iter().map(corner).collect::<Result<Vec<_>, _>>()?;
+    let (Some(first), Some(last)) = (corners.first(), corners.last()) else {
+        return Err("its profile has no segments".to_owned());
+    };
+    if first.end[0] != 0.0 || last.end[0] != 0.0 {
+        return Err("its profile does not begin and end on the axis".to_owned());
+    }
+    if first.end[1] > last.end[1] {
+        corners = reversed(&corners);
+    }
+    if corners[0].end[1] != 0.0 || corners.iter().any(|corner| corner.end[1] < 0.0) {
+        return Err("its profile does not begin at the tip, z = 0".to_owned());
+    }
+    let mut segments = Vec::new();
+    for pair in corners.windows(2) {
+        push(&mut segments, pair[0].end, &pair[1])?;
+    }
+    Ok(segments)
+}
+
+/// The end of a segment, and for an arc its centre and whether it runs counter-clockwise.
+#[derive(Clone, Copy)]
+struct Corner {
+    end: [f64; 2],
+    arc: Option<([f64; 2], bool)>,
+}
+
+fn corner(value: &Value) -> Result<Corner, String> {
+    let point = |key: &str| {
+        let point = value.get(key).and_then(pair);
+        point.ok_or_else(|| format!("a segment of its profile has no point `{key}`"))
+    };
+    let flag = |key: &str| match value.get(key) {
+        None => Ok(None),
+        Some(Value::Bool(flag)) => Ok(Some(*flag)),
+        Some(_) => Err(format!("`{key}` of a segment of its profile is neither true nor false")),
+    };
+    let arc = match (flag("arc")?, flag("ccw")?) {
+        (Some(true), Some(ccw)) => Some((point("center")?, ccw)),
+        (Some(true), None) => return Err("an arc of its profile has no `ccw`".to_owned()),
+        (None, _) if value.get("center").is_some() => {
+            return Err("a segment of its profile has a `center`, but no `arc`".to_owned());
+        }
+        _ => None,
+    };
+    Ok(Corner { end: point("end")?, arc })
+}
+
+fn reversed(corners: &[Corner]) -> Vec<Corner> {
+    let mut reversed = Vec::new();
+    for (k, corner) in corners.iter().enumerate().rev() {
+        // The arc that ended at the next corner now ends at this one.
+        let arc = corners.get(k + 1).and_then(|next| next.arc);
+        reversed.push(Corner { end: corner.end, arc: arc.map(|(centre, ccw)| (centre, !ccw)) });
+    }
+    reversed
+}
+
+/// Adds a segment. An arc of more than half a turn becomes two.
+fn push(segments: &mut Vec<FormSegment>, from: [f64; 2], corner: &Corner) -> Result<(), String> {
+    let Corner { end, arc } = *corner;
+    let Some((centre, ccw)) = arc else {
+        segments.push(FormSegment { to: end, arc: None });
+        return Ok(());
+    };
+    let radii = [from, end].map(|[d, z]| (d - centre[0]).hypot(z - centre[1]));
+    let radius = (radii[0] + radii[1]) / 2.0;
+    if !(radius > 0.0 && (radii[0] - radii[1]).abs() <= ARC_TOLERANCE * radius) {
+        return Err("the ends of an arc of its profile are not on one circle".to_owned());
+    }
+    let [start, stop] = [from, end].map(|[d, z]| (z - centre[1]).atan2(d - centre[0]));
+    let turn = if ccw { stop - start } else { start - stop };
+    let turn = turn.rem_euclid(std::f64::consts::TAU);
+    let concave = !ccw;
+    let mut stops = vec![end];
+    // By its radius, an arc of a `.tool` file has at most half a turn. Ends that coincide are those of a full circle.
+    if turn > std::f64::consts::PI || turn == 0.0 {
+        let full = if turn == 0.0 { std::f64::consts::TAU } else { turn };
+        let middle = start + if ccw { full / 2.0 } else { -full / 2.0 };
+        let at = [centre[0] + radius * middle.cos(), centre[1] + radius * middle.sin()];
+        stops.insert(0, at.map(super::outline::rounded));
+    }
+    let mut last = from;
+    for to in stops {
+        // Rounded ends may be farther apart than the diameter.
+        let chord = (to[0] - last[0]).hypot(to[1] - last[1]);
+        segments.push(FormSegment { to, arc: Some((radius.max(chord / 2.0), concave)) });
+        last = to;
+    }
+    Ok(())
 }

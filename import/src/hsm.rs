@@ -5,12 +5,11 @@
 //! centre drill's body; and a `section` of a shaft or holder gives the diameter that the outline reaches after its
 //! length, so that the first one is the lower end.
 
+use super::json::Object;
 use super::{Found, fusion};
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
-use serde_json::{Map, Value, json};
-
-type Object = Map<String, Value>;
+use serde_json::{Value, json};
 
 /// The names of dimensions in HSM and in Fusion 360.
 const DIMENSIONS: [(&str, &str); 25] = [
@@ -132,16 +131,22 @@ struct Stack {
     /// Its name among the tool's keys.
     key: &'static str,
     object: Object,
-    /// The diameter that each section reaches, and its length.
-    sections: Vec<(f64, f64)>,
+    sections: Vec<Section>,
+}
+
+/// A section of a shaft or a holder.
+struct Section {
+    /// The diameter that the outline reaches after the length.
+    diameter: f64,
+    length: f64,
 }
 
 impl Tool {
     fn new(element: &BytesStart<'_>) -> Result<Tool, String> {
-        let attributes = attributes(element)?;
+        let attributes = Attributes::of(element)?;
         let mut object = Object::new();
         for (from, to) in [("type", "type"), ("unit", "unit"), ("guid", "guid")] {
-            if let Some(value) = attribute(&attributes, from) {
+            if let Some(value) = attributes.get(from) {
                 object.insert(to.to_owned(), json!(value));
             }
         }
@@ -150,24 +155,24 @@ impl Tool {
 
     fn begin(&mut self, name: &str, element: &BytesStart<'_>) -> Result<(), String> {
         self.text.clear();
-        let attributes = attributes(element)?;
+        let attributes = Attributes::of(element)?;
         match name {
             "nc" => {
-                let number = attribute(&attributes, "number").and_then(|n| n.parse::<u32>().ok());
+                let number = attributes.get("number").and_then(|n| n.parse::<u32>().ok());
                 self.object.insert("post-process".to_owned(), json!({ "number": number }));
             }
             "body" => {
                 for (from, to) in DIMENSIONS {
-                    let Some(text) = attribute(&attributes, from) else { continue };
+                    let Some(text) = attributes.get(from) else { continue };
                     let value: f64 =
                         text.parse().map_err(|_| format!("`{from}` is `{text}`, no number"))?;
                     self.geometry.insert(to.to_owned(), json!(value));
                 }
                 // Fusion 360 has the first among the tool's keys, and the second among its dimensions.
-                if let Some(value) = attribute(&attributes, "tapered-type") {
+                if let Some(value) = attributes.get("tapered-type") {
                     self.object.insert("tapered-type".to_owned(), json!(value));
                 }
-                if let Some(value) = attribute(&attributes, "thread-tip-type") {
+                if let Some(value) = attributes.get("thread-tip-type") {
                     self.geometry.insert("thread-tip-type".to_owned(), json!(value));
                 }
             }
@@ -176,7 +181,7 @@ impl Tool {
                 let mut object = Object::new();
                 let keys = ["description", "guid", "vendor", "product-id", "unit"];
                 for key in keys {
-                    if let Some(value) = attribute(&attributes, key) {
+                    if let Some(value) = attributes.get(key) {
                         object.insert(key.to_owned(), json!(value));
                     }
                 }
@@ -185,10 +190,11 @@ impl Tool {
             "section" => {
                 if let Some(Stack { sections, .. }) = &mut self.stack {
                     let number = |key: &str| {
-                        let text = attribute(&attributes, key).unwrap_or("");
+                        let text = attributes.get(key).unwrap_or("");
                         text.parse::<f64>().map_err(|_| format!("`{key}` is `{text}`, no number"))
                     };
-                    sections.push((number("diameter")?, number("length")?));
+                    sections
+                        .push(Section { diameter: number("diameter")?, length: number("length")? });
                 }
             }
             _ => {}
@@ -199,6 +205,7 @@ impl Tool {
     fn end(&mut self, name: &str) {
         let text = self.text.trim().to_owned();
         match name {
+            // Inside of a shaft or a holder it is not the tool's.
             "description" if self.stack.is_none() => {
                 self.object.insert("description".to_owned(), json!(text));
             }
@@ -228,6 +235,7 @@ impl Tool {
     fn finish(mut self) -> Value {
         let kind = self.object.get("type").and_then(Value::as_str).unwrap_or("");
         let is_center_drill = kind == "center drill";
+        // Their `taper-angle` is the whole angle of the point, and that of a centre drill's body has a name of its own.
         if HOLE_MAKING.contains(&kind)
             && let Some(angle) = self.geometry.remove("TA")
         {
@@ -243,11 +251,11 @@ impl Tool {
     }
 }
 
-/// Returns the outline of `(diameter, length)` sections as Fusion's segments.
-fn segments(sections: &[(f64, f64)]) -> Value {
-    let mut below = sections[0].0;
+/// Returns the outline of sections, of which there is one at least, as Fusion's segments.
+fn segments(sections: &[Section]) -> Value {
+    let mut below = sections[0].diameter;
     let mut segments = Vec::new();
-    for (diameter, length) in sections {
+    for Section { diameter, length } in sections {
         segments.push(json!({
             "height": length,
             "lower-diameter": below,
@@ -267,20 +275,23 @@ fn local_name(element: &BytesStart<'_>) -> String {
     String::from_utf8_lossy(element.local_name().as_ref()).into_owned()
 }
 
-fn attributes(element: &BytesStart<'_>) -> Result<Vec<(String, String)>, String> {
-    element
-        .attributes()
-        .map(|attribute| {
+/// The attributes of an element, by their names.
+struct Attributes(Vec<(String, String)>);
+
+impl Attributes {
+    fn of(element: &BytesStart<'_>) -> Result<Attributes, String> {
+        let attributes = element.attributes().map(|attribute| {
             let attribute = attribute.map_err(|error| error.to_string())?;
             let key = String::from_utf8_lossy(attribute.key.local_name().as_ref()).into_owned();
             let value = attribute
                 .normalized_value(quick_xml::XmlVersion::Implicit1_0)
                 .map_err(|error| error.to_string())?;
             Ok((key, value.into_owned()))
-        })
-        .collect()
-}
+        });
+        Ok(Attributes(attributes.collect::<Result<_, String>>()?))
+    }
 
-fn attribute<'a>(attributes: &'a [(String, String)], key: &str) -> Option<&'a str> {
-    attributes.iter().find(|(known, _)| known == key).map(|(_, value)| value.as_str())
+    fn get(&self, name: &str) -> Option<&str> {
+        self.0.iter().find(|(known, _)| known == name).map(|(_, value)| value.as_str())
+    }
 }

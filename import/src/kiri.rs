@@ -4,13 +4,11 @@
 //! above them. `taper_tip` is the diameter of a tapered mill's tip.
 
 use super::entry::{Entry, Note};
-use super::fusion::{number_of, text, tool_number};
+use super::json::{Object, number_of, string, tool_number};
 use super::shape::{Cutter, Shape};
 use super::{Found, Problem};
-use serde_json::{Map, Value};
+use serde_json::Value;
 use touchoff::Unit;
-
-type Object = Map<String, Value>;
 
 /// Returns true for a tool of Kiri:Moto.
 pub(super) fn is_tool(value: &Value) -> bool {
@@ -21,7 +19,7 @@ pub(super) fn tool(value: &Value) -> Found {
     let Some(tool) = value.as_object() else {
         return Err(Problem::new("entry", "it is no object"));
     };
-    read_tool(tool).map_err(|reason| Problem::new(text(tool, "name"), &reason))
+    read_tool(tool).map_err(|reason| Problem::new(string(tool, "name"), &reason))
 }
 
 fn read_tool(tool: &Object) -> Result<Entry, String> {
@@ -34,8 +32,8 @@ fn read_tool(tool: &Object) -> Result<Entry, String> {
         |key: &str| number_of(tool, key).ok_or_else(|| format!("it states no length `{key}`"));
     let (diameter, flute_length) = (length("flute_diam")?, length("flute_len")?);
     let shaft_length = length("shaft_len")?;
-    let kind = text(tool, "type");
-    let mut entry = Entry::new(unit, kind, text(tool, "name"), Vec::new());
+    let kind = string(tool, "type");
+    let mut entry = Entry::new(unit, kind, string(tool, "name"), Vec::new());
     entry.number = tool.get("number").and_then(tool_number);
     let shape = match kind {
         "endmill" => Shape::Flat { corner: 0.0 },
@@ -53,7 +51,7 @@ fn read_tool(tool: &Object) -> Result<Entry, String> {
         shape,
         diameter,
         flute_length,
-        length: super::term::rounded(flute_length + shaft_length),
+        length: super::outline::rounded(flute_length + shaft_length),
         shoulder: None,
         shank_diameter: Some(shank).filter(|shank| *shank > 0.0),
     });

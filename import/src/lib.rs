@@ -26,16 +26,14 @@ mod entry;
 mod error;
 pub mod export;
 mod files;
-mod form;
 mod freecad;
 mod fusion;
 mod hsm;
+mod json;
 mod kiri;
 mod linuxcnc;
-mod name;
 mod outline;
 mod shape;
-mod term;
 #[cfg(test)]
 mod tests;
 
@@ -182,13 +180,14 @@ impl Library {
     /// Returns the tools with this name; without one, those with this title, and then those with this number.
     pub fn find(&self, wanted: &str) -> Vec<&ImportedTool> {
         let number: Option<u32> = wanted.trim_start_matches(['T', 't']).parse().ok();
-        let all = |is_wanted: &dyn Fn(&ImportedTool) -> bool| -> Vec<&ImportedTool> {
-            self.tools.iter().filter(|tool| is_wanted(tool)).collect()
-        };
-        let named = all(&|tool| tool.name == wanted);
-        let titled = all(&|tool| tool.entry.title == wanted);
-        let numbered = all(&|tool| number.is_some() && tool.entry.number == number);
-        [named, titled, numbered].into_iter().find(|found| !found.is_empty()).unwrap_or_default()
+        let is_wanted: [&dyn Fn(&ImportedTool) -> bool; 3] =
+            [&|tool| tool.name == wanted, &|tool| tool.entry.title == wanted, &|tool| {
+                number.is_some() && tool.entry.number == number
+            }];
+        let mut found = is_wanted
+            .into_iter()
+            .map(|is_wanted| self.tools.iter().filter(|tool| is_wanted(tool)).collect::<Vec<_>>());
+        found.find(|found| !found.is_empty()).unwrap_or_default()
     }
 }
 
@@ -208,6 +207,7 @@ impl ImportedTool {
             let file = folder.join(path);
             let unwritable = |source| ImportError::Unwritable { file: file.clone(), source };
             match fs::read(&file) {
+                // Tools share files of holders, and a library can be imported again.
                 Ok(known) if known == text.as_bytes() => continue,
                 Ok(_) => return Err(ImportError::Exists { file }),
                 Err(_) => {}
@@ -234,11 +234,11 @@ impl ImportedTool {
 
 /// Reads a file, up to the limit.
 fn bytes(file: &Path) -> Result<Vec<u8>, ImportError> {
-    let unreadable = |source| ImportError::Unreadable { file: file.to_owned(), source };
     let mut content = Vec::new();
+    // A byte beyond the limit tells a file that is longer.
     fs::File::open(file)
         .and_then(|opened| opened.take(MAX_BYTES + 1).read_to_end(&mut content))
-        .map_err(unreadable)?;
+        .map_err(|source| ImportError::Unreadable { file: file.to_owned(), source })?;
     if content.len() as u64 > MAX_BYTES {
         return Err(ImportError::TooLarge { file: file.to_owned(), limit: MAX_BYTES });
     }
@@ -270,8 +270,10 @@ fn json(text: &str) -> Result<Vec<Found>, String> {
         _ => value.get("data").or_else(|| value.get("tools")).and_then(Value::as_array),
     };
     let tools = tools.ok_or("there is no list of tools, neither `data` nor `tools`")?;
-    let tool = |tool| if kiri::is_tool(tool) { kiri::tool(tool) } else { fusion::tool(tool) };
-    Ok(tools.iter().map(tool).collect())
+    Ok(tools
+        .iter()
+        .map(|tool| if kiri::is_tool(tool) { kiri::tool(tool) } else { fusion::tool(tool) })
+        .collect())
 }
 
 /// Returns the JSON file of an archive.

@@ -33,6 +33,7 @@ pub(super) fn read(text: &str) -> Result<Vec<Found>, String> {
         found.push(Err(problem));
     }
     match unreadable.first() {
+        // A file without a readable line is no tool table.
         Some(first) if unreadable.len() == found.len() => Err(first.clone()),
         _ => Ok(found),
     }

@@ -1,10 +1,12 @@
 //! Tool bits of FreeCAD, without a holder.
 
-use super::cutter::{Type, recognise};
-use super::section::{HalfSection, tidy};
+use super::section::{HalfSection, Type, recognise, tidy};
 use super::{Written, description, is_same};
 use serde_json::{Map, json};
 use touchoff::tool::ToolInfo;
+
+/// The reason for which a tool is left out.
+const REFUSED: &str = "no shape of FreeCAD has its outline";
 
 /// Writes a tool as one of FreeCAD's shapes.
 pub(super) fn write(
@@ -15,11 +17,8 @@ pub(super) fn write(
     if number > 1 {
         return Err("a FreeCAD bit is one tool: export each to a file of its own".to_owned());
     }
-    let mm = |value: f64| format!("{} mm", tidy(value));
-    let deg = |value: f64| format!("{} \u{b0}", tidy(value));
     let flutes = section.cutting_end()[1];
-    let refused = || "no shape of FreeCAD has its outline".to_owned();
-    let (shape, own) = match recognise(&section.cutting).ok_or_else(refused)? {
+    let (shape, own) = match recognise(&section.cutting).ok_or(REFUSED)? {
         Type::End { diameter, corner: 0.0 } => ("endmill", vec![("Diameter", mm(diameter))]),
         Type::End { diameter, corner } => {
             ("bullnose", vec![("Diameter", mm(diameter)), ("CornerRadius", mm(corner))])
@@ -45,7 +44,7 @@ pub(super) fn write(
             ];
             ("taperedballnose", own)
         }
-        Type::Taper { .. } => return Err(refused()),
+        Type::Taper { .. } => return Err(REFUSED.to_owned()),
     };
     let body = section.body.as_ref().map_err(Clone::clone)?;
     let shank = body.last().map_or(section.cutting_end()[0], |cone| cone.high[0]);
@@ -63,11 +62,19 @@ pub(super) fn write(
         "parameter": parameters, "attribute": {} });
     let text = format!("{bit:#}\n");
     if !is_same("tool.fctb", &text, &section.closed_below_holder()) {
-        return Err(refused());
+        return Err(REFUSED.to_owned());
     }
     let mut gaps = Vec::new();
     if !matches!(&section.holder, Ok(holder) if holder.is_empty()) {
         gaps.push("a bit has no holder; the tool ends where it begins".to_owned());
     }
     Ok(Written { entry: text, kind: shape.to_owned(), gaps })
+}
+
+fn mm(value: f64) -> String {
+    format!("{} mm", tidy(value))
+}
+
+fn deg(value: f64) -> String {
+    format!("{} \u{b0}", tidy(value))
 }

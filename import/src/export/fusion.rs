@@ -1,7 +1,6 @@
 //! Tools of Fusion 360, as JSON.
 
-use super::cutter::{Type, recognise};
-use super::section::{Cone, HalfSection, tidy};
+use super::section::{Cone, HalfSection, Type, recognise, tidy};
 use super::{Written, description, is_same};
 use serde_json::{Map, Value, json};
 use touchoff::Unit;
@@ -80,7 +79,6 @@ fn entry(
     number: usize,
 ) -> Result<Value, String> {
     let unit = if section.unit == Unit::Inch { "inches" } else { "millimeters" };
-    let length = |value: f64| json!(tidy(value));
     let [end, flutes] = [section.end, section.cutting_end()[1]];
     let mut geometry = Map::new();
     geometry.insert("LCF".to_owned(), length(flutes));
@@ -102,56 +100,58 @@ fn entry(
         geometry.insert("SFDM".to_owned(), length(2.0 * widest));
     } else {
         let body = section.body.clone()?;
-        add_body(&body, section, &length, &mut geometry, &mut entry);
+        add_body(&body, section, &mut geometry, &mut entry);
     }
     entry["geometry"] = Value::Object(geometry);
     let holder = section.holder.clone()?;
     if let (Some(first), Some(last)) = (holder.first(), holder.last()) {
         let height = last.high[1] - first.low[1];
         entry["holder"] = json!({ "type": "holder", "unit": unit, "description": "holder",
-            "gaugeLength": length(height), "segments": segments(&holder, &length) });
+            "gaugeLength": length(height), "segments": segments(&holder) });
     }
     Ok(entry)
+}
+
+fn length(value: f64) -> Value {
+    json!(tidy(value))
 }
 
 /// Adds neck and shank: as the shoulder and the shank if they are cylinders, otherwise as segments of a shaft.
 fn add_body(
     body: &[Cone],
     section: &HalfSection,
-    length: &impl Fn(f64) -> Value,
     geometry: &mut Map<String, Value>,
     entry: &mut Value,
 ) {
-    let is_cylinder = |cone: &Cone| (cone.high[0] - cone.low[0]).abs() <= section.tolerance;
+    let tolerance = section.tolerance;
     let top = body.last().map_or(section.cutting_end()[0], |cone| cone.high[0]);
     geometry.insert("SFDM".to_owned(), length(2.0 * top));
     match body {
         [] => {}
-        [shank] if is_cylinder(shank) => {}
-        [neck, shank] if is_cylinder(neck) && is_cylinder(shank) => {
+        [shank] if shank.is_cylinder(tolerance) => {}
+        [neck, shank] if neck.is_cylinder(tolerance) && shank.is_cylinder(tolerance) => {
             geometry.insert("shoulder-length".to_owned(), length(neck.high[1]));
             geometry.insert("shoulder-diameter".to_owned(), length(2.0 * neck.low[0]));
         }
-        _ => entry["shaft"] = json!({ "type": "shaft", "segments": segments(body, length) }),
+        _ => entry["shaft"] = json!({ "type": "shaft", "segments": segments(body) }),
     }
 }
 
-fn segments(cones: &[Cone], length: &impl Fn(f64) -> Value) -> Vec<Value> {
-    let segment = |cone: &Cone| {
+fn segments(cones: &[Cone]) -> Vec<Value> {
+    cones.iter().map(|cone| {
         json!({ "height": length(cone.high[1] - cone.low[1]),
             "lower-diameter": length(2.0 * cone.low[0]), "upper-diameter": length(2.0 * cone.high[0]) })
-    };
-    cones.iter().map(segment).collect()
+    }).collect()
 }
 
 /// Returns an outline as the profile of a form mill.
 fn profile(outline: &[ProfileSegment]) -> Value {
-    let end = |segment: &ProfileSegment| match segment.circle {
+    let start = outline.first().map(|first| json!({ "end": first.from, "arc": false }));
+    let ends = outline.iter().map(|segment| match segment.circle {
         None => json!({ "end": segment.to, "arc": false }),
         Some(circle) => {
             json!({ "end": segment.to, "arc": true, "ccw": circle.convex, "center": circle.centre })
         }
-    };
-    let start = outline.first().map(|first| json!({ "end": first.from, "arc": false }));
-    start.into_iter().chain(outline.iter().map(end)).collect()
+    });
+    start.into_iter().chain(ends).collect()
 }

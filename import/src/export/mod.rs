@@ -1,7 +1,7 @@
 //! Export of tools to the libraries of CAM systems.
 //!
 //! ```text
-//! ToolInfo ──section──▶ cutter, shaft, holder ──cutter──▶ dimensions ──format──▶ text ──import──▶ the same outline?
+//! ToolInfo ──section──▶ cutter, shaft, holder ──recognise──▶ dimensions ──format──▶ text ──import──▶ the same outline?
 //! ```
 //!
 //! Formats state types and dimensions, not outlines. So an outline is compared with those of the types, and what was
@@ -9,7 +9,6 @@
 //! regions have no place in these formats.
 
 mod apt;
-mod cutter;
 mod freecad;
 mod fusion;
 mod section;
@@ -68,6 +67,7 @@ struct Written<T> {
 pub fn export(tools: &[&ToolInfo], format: Format) -> Export {
     match format {
         Format::Fusion => collect(tools, true, fusion::write, |entries| fusion::text(&entries)),
+        // FreeCAD's lengths are written in mm.
         Format::FreeCad => collect(tools, false, freecad::write, |entries| entries.concat()),
         Format::Apt => collect(tools, true, apt::write, |entries| apt::text(&entries)),
     }

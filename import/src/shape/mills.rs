@@ -1,8 +1,10 @@
-//! End mills and other milling cutters of lines and edges.
+//! Cutters of lines, edges and balls: mills, drills, saws and probes, outlines drawn by hand, and the general cutter of APT.
 
-use super::super::outline::{Outline, cutting};
-use super::super::term::Term;
-use super::{CORNER, Cutter, FACE, FLUTE, NECK, ShapeError, ball_on_neck, flat_tip, positive};
+use super::ShapeError::{Contradiction, OutOfRange};
+use super::{
+    CORNER, Cutter, FACE, FLUTE, FormSegment, NECK, ShapeError, ball_on_neck, flat_tip, positive,
+};
+use crate::outline::{Outline, Term, cutting, plain};
 
 impl Cutter {
     /// Draws a cylinder; its lower edge may be rounded.
@@ -61,6 +63,7 @@ impl Cutter {
         self.check_angle("taper angle", half_angle)?;
         let angle = outline.angle("taper_angle", half_angle);
         let ball = outline.param("ball_radius", ball);
+        // Where the cone touches the ball, both have one normal.
         let to_d = ball.times(&angle.cos());
         let to_z = ball.minus(&ball.times(&angle.sin()));
         outline.arc([&to_d, &to_z], [&zero, &ball], cutting("ball"));
@@ -115,7 +118,7 @@ impl Cutter {
         self.check_tip(tip_diameter)?;
         self.check_angle("taper angle", half_angle)?;
         if half_angle == 0.0 {
-            return Err(ShapeError::OutOfRange("taper angle", half_angle));
+            return Err(OutOfRange("taper angle", half_angle));
         }
         let tip = outline.param("tip_diameter", tip_diameter).half();
         let angle = outline.angle("taper_angle", half_angle);
@@ -180,7 +183,7 @@ impl Cutter {
         let flute = self.flute_param(outline)?;
         let narrow = edge.minus(&flute.minus(&from).times(&angle.tan()));
         if narrow.value() <= 0.0 {
-            return Err(ShapeError::Contradiction(
+            return Err(Contradiction(
                 "flute length",
                 self.flute_length,
                 "dovetail angle",
@@ -194,6 +197,7 @@ impl Cutter {
     pub(super) fn lollipop(&self, outline: &mut Outline, radius: &Term) -> Result<(), ShapeError> {
         let zero = Term::number(0.0);
         let neck = self.neck_diameter();
+        // A neck as wide as the ball leaves its lower half.
         if neck >= self.diameter {
             outline.arc([radius, radius], [&zero, radius], cutting("ball"));
             return self.flutes(outline, radius);
@@ -254,21 +258,182 @@ impl Cutter {
         }
         let corner = outline.param("corner_radius", corner);
         let centre = outline.define("wide", radius.plus(&corner));
+        // The whole quarter of the circle is below the largest diameter.
         if max_diameter / 2.0 >= centre.value() {
             outline.hollow([&centre, &corner], [&centre, &zero], CORNER);
             return self.flutes(outline, &centre);
         }
         let wide = outline.param("max_diameter", max_diameter).half();
         if wide.value() <= radius.value() {
-            return Err(ShapeError::Contradiction(
-                "diameter",
-                max_diameter,
-                "tip diameter",
-                self.diameter,
-            ));
+            return Err(Contradiction("diameter", max_diameter, "tip diameter", self.diameter));
         }
         let up = corner.squared().minus(&centre.minus(&wide).squared()).sqrt();
         outline.hollow([&wide, &up], [&centre, &zero], CORNER);
         self.flutes(outline, &wide)
+    }
+
+    /// Draws a point.
+    pub(super) fn drill(
+        &self,
+        outline: &mut Outline,
+        radius: &Term,
+        tip_diameter: f64,
+        point_angle: f64,
+    ) -> Result<(), ShapeError> {
+        self.check_tip(tip_diameter)?;
+        if !(0.0..=180.0).contains(&point_angle) || point_angle == 0.0 {
+            return Err(OutOfRange("point angle", point_angle));
+        }
+        if point_angle == 180.0 {
+            return self.flat(outline, radius, 0.0);
+        }
+        let angle = outline.angle("point_angle", point_angle);
+        let tip = flat_tip(outline, tip_diameter);
+        let high = radius.minus(&tip).over(&angle.half().tan());
+        outline.line(radius, &high, cutting("point"));
+        self.flutes(outline, radius)
+    }
+
+    /// Draws a pilot and the cone of the body.
+    pub(super) fn center_drill(
+        &self,
+        outline: &mut Outline,
+        radius: &Term,
+        tip_diameter: f64,
+        tip_length: f64,
+        point_angle: f64,
+        body_angle: f64,
+    ) -> Result<(), ShapeError> {
+        positive("tip diameter", tip_diameter)?;
+        self.check_tip(tip_diameter)?;
+        for (name, angle) in [("point angle", point_angle), ("body angle", body_angle)] {
+            if !(0.0..180.0).contains(&angle) || angle == 0.0 {
+                return Err(OutOfRange(name, angle));
+            }
+        }
+        let pilot = outline.param("tip_diameter", tip_diameter).half();
+        let length = outline.param("tip_length", tip_length);
+        let point = outline.angle("point_angle", point_angle).half();
+        let body = outline.angle("body_angle", body_angle).half();
+        let high = pilot.over(&point.tan());
+        if high.value() > tip_length {
+            return Err(Contradiction(
+                "tip length",
+                tip_length,
+                "point of the pilot",
+                high.value(),
+            ));
+        }
+        outline.line(&pilot, &high, cutting("point"));
+        outline.line(&pilot, &length, cutting("pilot"));
+        let up = length.plus(&radius.minus(&pilot).over(&body.tan()));
+        outline.line(radius, &up, cutting("cone"));
+        self.flutes(outline, radius)
+    }
+
+    /// Draws a blade with a clamping screw below.
+    pub(super) fn saw(
+        &self,
+        outline: &mut Outline,
+        radius: &Term,
+        thickness: f64,
+        cap_diameter: f64,
+        cap_height: f64,
+    ) -> Result<(), ShapeError> {
+        let zero = Term::number(0.0);
+        positive("blade thickness", thickness)?;
+        let thickness = outline.param("blade_thickness", thickness);
+        if cap_diameter > 0.0 && cap_height > 0.0 {
+            let cap = outline.param("cap_diameter", cap_diameter).half();
+            let height = outline.param("cap_height", cap_height);
+            outline.line(&cap, &zero, plain("cap"));
+            outline.line(&cap, &height, plain("cap"));
+            outline.line(radius, &height, FACE);
+            let top = height.plus(&thickness);
+            outline.line(radius, &top, FLUTE);
+            return Ok(());
+        }
+        outline.line(radius, &zero, FACE);
+        outline.line(radius, &thickness, FLUTE);
+        Ok(())
+    }
+
+    /// Draws the ball of a probe.
+    pub(super) fn probe(&self, outline: &mut Outline, radius: &Term) -> Result<(), ShapeError> {
+        let zero = Term::number(0.0);
+        let stem = self.shank_diameter.unwrap_or(self.diameter);
+        if stem >= self.diameter {
+            outline.arc([radius, radius], [&zero, radius], plain("ball"));
+            return Ok(());
+        }
+        let stem = outline.param("shank_diameter", stem).half();
+        ball_on_neck(outline, radius, &stem, plain("ball"));
+        Ok(())
+    }
+
+    /// Draws APT's general cutter. The lines touch the arc where they meet it.
+    pub(super) fn general(
+        &self,
+        outline: &mut Outline,
+        radius: &Term,
+        corner: f64,
+        [centre_d, centre_z]: [f64; 2],
+        [end, side]: [f64; 2],
+    ) -> Result<(), ShapeError> {
+        self.check_angle("angle of the end", end)?;
+        self.check_angle("angle of the side", side)?;
+        if !(corner >= 0.0 && corner.is_finite() && centre_d.is_finite() && centre_z.is_finite()) {
+            return Err(OutOfRange("corner radius", corner));
+        }
+        let end = outline.angle("end_angle", end);
+        let side = outline.angle("side_angle", side);
+        let flute = self.flute_param(outline)?;
+        if corner == 0.0 {
+            let high = radius.times(&end.tan());
+            outline.line(radius, &high, FACE);
+            let wide = radius.plus(&flute.minus(&high).times(&side.tan()));
+            return self.cone(outline, &wide, &flute);
+        }
+        let corner = outline.param("corner_radius", corner);
+        let d = outline.param("center_radius", centre_d);
+        let z = outline.param("center_height", centre_z);
+        // Where a line touches the arc, both have one normal.
+        let low = [d.plus(&corner.times(&end.sin())), z.minus(&corner.times(&end.cos()))];
+        let high = [d.plus(&corner.times(&side.cos())), z.minus(&corner.times(&side.sin()))];
+        // The end's line has to touch the arc, and the side's line to meet the end's at the stated diameter.
+        let tolerance = 1e-3 * self.diameter;
+        let end_misses = low[1].value() - low[0].value() * end.value().to_radians().tan();
+        let at_edge = radius.value() * end.value().to_radians().tan();
+        let side_at_edge =
+            high[0].value() + (at_edge - high[1].value()) * side.value().to_radians().tan();
+        if low[0].value() < 0.0 || end_misses.abs() > tolerance {
+            return Err(Contradiction(
+                "height of the corner's centre",
+                centre_z,
+                "corner radius",
+                corner.value(),
+            ));
+        }
+        if (side_at_edge - radius.value()).abs() > tolerance {
+            return Err(Contradiction("corner's centre", centre_d, "diameter", self.diameter));
+        }
+        outline.line(&low[0], &low[0].times(&end.tan()), FACE);
+        outline.arc([&high[0], &high[1]], [&d, &z], CORNER);
+        let wide = high[0].plus(&flute.minus(&high[1]).times(&side.tan()));
+        self.cone(outline, &wide, &flute)
+    }
+}
+
+/// Draws an outline that was drawn by hand.
+pub(super) fn form(outline: &mut Outline, segments: &[FormSegment]) {
+    for segment in segments {
+        let [d, z] = segment.to.map(Term::number);
+        match segment.arc {
+            None => outline.line(&d, &z, cutting("form")),
+            Some((radius, concave)) => {
+                let radius = Term::number(radius);
+                outline.arc_of_radius([&d, &z], &radius, concave, cutting("form"));
+            }
+        }
     }
 }

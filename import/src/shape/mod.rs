@@ -1,15 +1,13 @@
 //! The shapes of cutters, from their dimensions in a tool library.
 
-mod drills;
 mod mills;
-mod other;
 mod segments;
 mod threads;
 
-use super::outline::{Outline, SAME, Surface, cutting, plain};
-use super::term::Term;
-use other::form;
-pub(super) use threads::Crest;
+use super::outline::{Outline, SAME, Surface, Term, cutting, plain};
+use ShapeError::{Contradiction, OutOfRange};
+use mills::form;
+pub(crate) use threads::Crest;
 
 /// The dimensions of a cutter, in the unit of its tool. Lengths are from the tip.
 #[derive(Clone, Debug, PartialEq)]
@@ -147,11 +145,11 @@ pub(super) enum Shape {
         crest: f64,
         angle: f64,
     },
-    /// APT's general cutter: a line from the tip that rises by `end_angle`, an arc, and a line that leaves the axis by
-    /// `side_angle`.
+    /// APT's general cutter: a line from the tip that rises by `end_angle`, an arc about the point `[d, z]`, and a line that
+    /// leaves the axis by `side_angle`.
     General {
         corner: f64,
-        centre: (f64, f64),
+        centre: [f64; 2],
         end_angle: f64,
         side_angle: f64,
     },
@@ -257,7 +255,7 @@ impl Cutter {
                 self.saw(outline, radius, thickness, cap_diameter, cap_height)
             }
             Shape::General { corner, centre, end_angle, side_angle } => {
-                self.general(outline, radius, (corner, centre), [end_angle, side_angle])
+                self.general(outline, radius, corner, centre, [end_angle, side_angle])
             }
             Shape::Probe => self.probe(outline, radius),
         }
@@ -299,13 +297,9 @@ impl Cutter {
         let corner = outline.param("corner_radius", corner);
         let one = Term::number(1.0);
         let inner = radius.minus(&corner.times(&one.minus(&angle.sin())).over(&angle.cos()));
+        // The edge's centre would be beyond the axis.
         if inner.value() < 0.0 {
-            return Err(ShapeError::Contradiction(
-                "corner radius",
-                corner.value(),
-                "diameter",
-                self.diameter,
-            ));
+            return Err(Contradiction("corner radius", corner.value(), "diameter", self.diameter));
         }
         let inner = outline.define("inner", inner);
         outline.line(&inner, &zero, FACE);
@@ -322,7 +316,7 @@ impl Cutter {
             Ok(())
         } else {
             let tip = outline.end().z.value();
-            Err(ShapeError::Contradiction("flute length", self.flute_length, "tip", tip))
+            Err(Contradiction("flute length", self.flute_length, "tip", tip))
         }
     }
 
@@ -333,8 +327,9 @@ impl Cutter {
             return Ok(());
         }
         let top = outline.end().z.value();
+        // Both are sums that were rounded.
         if top > self.length * (1.0 + 1e-9) {
-            return Err(ShapeError::Contradiction(
+            return Err(Contradiction(
                 "overall length",
                 self.length,
                 "end of the cutting part",
@@ -342,6 +337,7 @@ impl Cutter {
             ));
         }
         let length = outline.param("length", self.length);
+        // A shoulder that ends in the cutting part, or at the tool's end, leaves no neck.
         if let Some((shoulder, diameter)) = self.shoulder
             && shoulder > outline.end().z.value()
             && shoulder < self.length
@@ -394,31 +390,26 @@ impl Cutter {
 
     fn check_corner(&self, corner: f64) -> Result<(), ShapeError> {
         if !(corner >= 0.0 && corner.is_finite()) {
-            return Err(ShapeError::OutOfRange("corner radius", corner));
+            return Err(OutOfRange("corner radius", corner));
         }
         if corner > self.diameter / 2.0 {
-            return Err(ShapeError::Contradiction(
-                "corner radius",
-                corner,
-                "diameter",
-                self.diameter,
-            ));
+            return Err(Contradiction("corner radius", corner, "diameter", self.diameter));
         }
         Ok(())
     }
 
     fn check_tip(&self, tip: f64) -> Result<(), ShapeError> {
         if !(tip >= 0.0 && tip.is_finite()) {
-            return Err(ShapeError::OutOfRange("tip diameter", tip));
+            return Err(OutOfRange("tip diameter", tip));
         }
         if tip > self.diameter {
-            return Err(ShapeError::Contradiction("tip diameter", tip, "diameter", self.diameter));
+            return Err(Contradiction("tip diameter", tip, "diameter", self.diameter));
         }
         Ok(())
     }
 
     fn check_angle(&self, name: &'static str, angle: f64) -> Result<(), ShapeError> {
-        if (0.0..90.0).contains(&angle) { Ok(()) } else { Err(ShapeError::OutOfRange(name, angle)) }
+        if (0.0..90.0).contains(&angle) { Ok(()) } else { Err(OutOfRange(name, angle)) }
     }
 }
 
@@ -442,5 +433,5 @@ fn ball_on_neck(outline: &mut Outline, radius: &Term, neck: &Term, surface: Surf
 }
 
 fn positive(name: &'static str, value: f64) -> Result<(), ShapeError> {
-    if value > 0.0 && value.is_finite() { Ok(()) } else { Err(ShapeError::OutOfRange(name, value)) }
+    if value > 0.0 && value.is_finite() { Ok(()) } else { Err(OutOfRange(name, value)) }
 }

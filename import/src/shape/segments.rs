@@ -1,8 +1,8 @@
 //! Face mills and circle-segment mills.
 
-use super::super::outline::{Outline, SAME, cutting};
-use super::super::term::Term;
+use super::ShapeError::{Contradiction, OutOfRange};
 use super::{CORNER, Cutter, FACE, FLUTE, Shape, ShapeError, flat_tip, positive};
+use crate::outline::{Outline, SAME, Term, cutting};
 
 impl Cutter {
     /// Draws a face mill. Its cone goes on to the largest diameter, however long the flutes are.
@@ -16,6 +16,7 @@ impl Cutter {
     ) -> Result<(), ShapeError> {
         self.check_corner(corner)?;
         self.check_angle("taper angle", half_angle)?;
+        // There is no cone between both diameters.
         if half_angle == 0.0 || max_diameter <= self.diameter {
             return self.flat(outline, radius, corner);
         }
@@ -28,8 +29,9 @@ impl Cutter {
             let touch_d = centre_d.plus(&upper.times(&angle.cos()));
             let touch_z = z.plus(&touch_d.minus(&d).over(&angle.tan()));
             let centre_z = touch_z.plus(&upper.times(&angle.sin()));
+            // The upper edge would begin below the end of the lower one.
             if touch_d.value() < d.value() {
-                return Err(ShapeError::Contradiction(
+                return Err(Contradiction(
                     "upper radius",
                     upper.value(),
                     "diameter",
@@ -56,7 +58,7 @@ impl Cutter {
         positive("radius of the flank", flank)?;
         let (top, widest) = (self.flute_length, self.diameter / 2.0);
         if !(waist > 0.0 && waist < top) {
-            return Err(ShapeError::Contradiction("axial distance", waist, "flute length", top));
+            return Err(Contradiction("axial distance", waist, "flute length", top));
         }
         let zero = Term::number(0.0);
         let flank = outline.param("flank_radius", flank);
@@ -65,6 +67,7 @@ impl Cutter {
         // The flank's centre is beyond the axis, or short of it.
         let axis = outline.define("axis", radius.minus(&flank));
         // At an edge: the distance from the axis of the centre of its arc, and the point where the arc meets the flank.
+        // It touches the flank from inside, so that the centres of both are the difference of the radii apart.
         let edge = |edge_radius: &Term, from_waist: &Term| {
             let apart = flank.minus(edge_radius);
             let inner = axis.plus(&apart.squared().minus(&from_waist.squared()).sqrt());
@@ -76,15 +79,11 @@ impl Cutter {
             ("lower radius", lower, waist.value()),
             ("upper radius", upper, top.value() - waist.value()),
         ] {
+            // The square of the distance of both centres across the axis.
             let reach = (flank.value() - edge_radius).powi(2) - (half - edge_radius).powi(2);
             let fits = edge_radius >= 0.0 && edge_radius < half && reach > 0.0;
             if !fits || widest - flank.value() + reach.sqrt() <= 0.0 {
-                return Err(ShapeError::Contradiction(
-                    name,
-                    edge_radius,
-                    "radius of the flank",
-                    flank.value(),
-                ));
+                return Err(Contradiction(name, edge_radius, "radius of the flank", flank.value()));
             }
         }
         if lower > 0.0 {
@@ -125,12 +124,7 @@ impl Cutter {
         let zero = Term::number(0.0);
         self.check_corner(corner)?;
         if face <= corner || face < self.diameter / 2.0 {
-            return Err(ShapeError::Contradiction(
-                "radius of the face",
-                face,
-                "diameter",
-                self.diameter,
-            ));
+            return Err(Contradiction("radius of the face", face, "diameter", self.diameter));
         }
         // The corner touches the face from inside.
         let face = outline.param("face_radius", face);
@@ -157,12 +151,7 @@ impl Cutter {
         let zero = Term::number(0.0);
         positive("radius of the tip", ball)?;
         if flank <= ball || flank < self.diameter / 2.0 || ball > self.diameter / 2.0 {
-            return Err(ShapeError::Contradiction(
-                "radius of the flank",
-                flank,
-                "diameter",
-                self.diameter,
-            ));
+            return Err(Contradiction("radius of the flank", flank, "diameter", self.diameter));
         }
         // The ball touches the flank from inside. The flank's centre lies beyond the axis.
         let ball = outline.param("tip_radius", ball);
@@ -181,7 +170,7 @@ impl Cutter {
             let rest = centre_z.minus(&flute);
             let wide = flank.squared().minus(&rest.squared()).sqrt().minus(&back);
             if flute.value() <= touch_z.value() {
-                return Err(ShapeError::Contradiction(
+                return Err(Contradiction(
                     "flute length",
                     self.flute_length,
                     "tip",
@@ -197,7 +186,7 @@ impl Cutter {
 
     /// Returns the diameter of an oval at the end of its flutes, if they end below its widest point; else, and for other
     /// shapes, `None`.
-    pub(in super::super) fn width_of_short_oval(&self) -> Option<f64> {
+    pub(crate) fn width_of_short_oval(&self) -> Option<f64> {
         let Shape::Oval { ball, flank } = self.shape else { return None };
         let back = flank - self.diameter / 2.0;
         let centre_z = ball + ((flank - ball).powi(2) - back.powi(2)).sqrt();
@@ -224,10 +213,10 @@ impl Cutter {
         self.check_angle("taper angle", half_angle)?;
         for (name, edge) in [("lower radius", lower), ("upper radius", upper)] {
             if !(edge >= 0.0 && edge.is_finite()) {
-                return Err(ShapeError::OutOfRange(name, edge));
+                return Err(OutOfRange(name, edge));
             }
             if edge >= flank {
-                return Err(ShapeError::Contradiction(name, edge, "radius of the flank", flank));
+                return Err(Contradiction(name, edge, "radius of the flank", flank));
             }
         }
         // Lengths below the precision of the library's numbers are none.
@@ -242,11 +231,12 @@ impl Cutter {
             });
         let below = flank.minus(&lower);
         let above = flank.minus(&upper);
-        // The cosine of the flank's angle from the axis at its lower end.
+        // From the tip's centre it is `below` back to the flank's, and `above` out to the upper edge's, at the flank's angles there.
+        // Their distances across the axis give the cosine of the angle at the flank's lower end.
         let cos = tip.minus(radius).plus(&upper).plus(&above.times(&angle.cos())).over(&below);
         // A flank that begins across the axis and still does not reach the diameter.
         if cos.value() < 0.0 {
-            return Err(ShapeError::Contradiction(
+            return Err(Contradiction(
                 "radius of the flank",
                 flank.value(),
                 "diameter",
@@ -256,12 +246,7 @@ impl Cutter {
         // A tip that reaches it before the flank begins. Then the cosine may be above 1.
         let turn = cos.value().min(1.0).acos() - half_angle.to_radians();
         if flank.value() * turn <= SAME * self.diameter {
-            return Err(ShapeError::Contradiction(
-                "lower radius",
-                lower.value(),
-                "diameter",
-                self.diameter,
-            ));
+            return Err(Contradiction("lower radius", lower.value(), "diameter", self.diameter));
         }
         let cos = outline.define("low_cos", cos);
         let sin = outline.define("low_sin", one.minus(&cos.squared()).sqrt());
@@ -277,7 +262,7 @@ impl Cutter {
         let end = outline.define("high", centre_z.minus(&above.times(&angle.sin())));
         outline.arc([radius, &end], [&edge, &end], CORNER);
         if end.value() > self.flute_length * (1.0 + SAME) {
-            return Err(ShapeError::Contradiction(
+            return Err(Contradiction(
                 "flute length",
                 self.flute_length,
                 "height of the full diameter",
@@ -292,7 +277,7 @@ impl Cutter {
     ///
     /// If a flank with that angle at the lower end does not reach the diameter, the second height is that of the flank
     /// that is parallel to the axis where it reaches it.
-    pub(in super::super) fn heights_of_diameter(&self) -> Option<[f64; 2]> {
+    pub(crate) fn heights_of_diameter(&self) -> Option<[f64; 2]> {
         let Shape::SegmentTaper { tip_diameter, lower, flank, upper, half_angle } = self.shape
         else {
             return None;

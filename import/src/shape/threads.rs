@@ -4,9 +4,9 @@
 //! the 0.04 mm to which heights and radii can be read from its pictures: a cutter of several teeth has roots of the form
 //! of its crests, and a cutter of one tooth has none.
 
-use super::super::outline::{Outline, SAME, Surface, cutting};
-use super::super::term::Term;
+use super::ShapeError::{Contradiction, OutOfRange};
 use super::{Cutter, NECK, ShapeError, positive};
+use crate::outline::{Outline, SAME, Surface, Term, cutting};
 
 /// The number of teeth of a thread mill that are drawn.
 const MAX_TEETH: f64 = 60.0;
@@ -16,7 +16,7 @@ const THREAD: Surface = cutting("thread");
 
 /// The crests of a thread mill's teeth.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in super::super) enum Crest {
+pub(crate) enum Crest {
     /// A sharp edge, where the flanks meet.
     Point,
     /// A cylinder of this height.
@@ -45,7 +45,7 @@ impl Teeth {
 
     /// Returns the error of a crest that does not fit the pitch.
     fn too_large(&self, name: &'static str, crest: f64) -> ShapeError {
-        ShapeError::Contradiction(name, crest, "thread pitch", self.pitch.value())
+        Contradiction(name, crest, "thread pitch", self.pitch.value())
     }
 }
 
@@ -63,7 +63,7 @@ struct Arcs {
 
 impl Cutter {
     /// Returns the number of whole pitches in the length of the flutes; one that fits up to rounding counts.
-    pub(in super::super) fn whole_pitches(&self, pitch: f64) -> f64 {
+    pub(crate) fn whole_pitches(&self, pitch: f64) -> f64 {
         (self.flute_length / pitch * (1.0 + 1e-9)).floor().max(0.0)
     }
 
@@ -78,7 +78,7 @@ impl Cutter {
         crest: Crest,
     ) -> Result<(), ShapeError> {
         if !(0.0..180.0).contains(&angle) || angle == 0.0 {
-            return Err(ShapeError::OutOfRange("thread profile angle", angle));
+            return Err(OutOfRange("thread profile angle", angle));
         }
         if pitch == 0.0 {
             return self.flat(outline, radius, 0.0);
@@ -86,12 +86,7 @@ impl Cutter {
         positive("thread pitch", pitch)?;
         let count = self.whole_pitches(pitch).min(f64::from(teeth.max(1)));
         if count > MAX_TEETH {
-            return Err(ShapeError::Contradiction(
-                "thread pitch",
-                pitch,
-                "flute length",
-                self.flute_length,
-            ));
+            return Err(Contradiction("thread pitch", pitch, "flute length", self.flute_length));
         }
         let pitch = outline.param("pitch", pitch);
         let half_angle = outline.angle("thread_angle", angle).half();
@@ -115,6 +110,7 @@ impl Cutter {
         outline.line(&root, &Term::number(0.0), NECK);
         for tooth in 0..teeth.count {
             let k = Term::number(f64::from(tooth));
+            // Roots are at whole pitches, and crests between them.
             outline.line(radius, &p.times(&k.plus(&Term::number(0.5))), THREAD);
             outline.line(&root, &teeth.pitches(f64::from(tooth) + 1.0), THREAD);
         }
@@ -141,6 +137,7 @@ impl Cutter {
         if flank.value() < -same {
             return Err(teeth.too_large("width of the crests", width));
         }
+        // Crests without flanks between them are a cylinder.
         if flank.value() <= same {
             return self.flat(outline, radius, 0.0);
         }
@@ -241,7 +238,7 @@ impl Cutter {
     /// Names the radius of the roots, which has to be positive.
     fn root(&self, outline: &mut Outline, root: Term, teeth: &Teeth) -> Result<Term, ShapeError> {
         if root.value() <= 0.0 {
-            return Err(ShapeError::Contradiction(
+            return Err(Contradiction(
                 "thread pitch",
                 teeth.pitch.value(),
                 "diameter",
@@ -268,12 +265,7 @@ impl Cutter {
         let zero = Term::number(0.0);
         positive("neck diameter", neck_diameter)?;
         if neck_diameter >= self.diameter || crest < 0.0 {
-            return Err(ShapeError::Contradiction(
-                "neck diameter",
-                neck_diameter,
-                "diameter",
-                self.diameter,
-            ));
+            return Err(Contradiction("neck diameter", neck_diameter, "diameter", self.diameter));
         }
         self.check_angle("half of the cutting angle", angle / 2.0)?;
         let neck = outline.param("neck_diameter", neck_diameter).half();

@@ -5,7 +5,7 @@ use super::moves::{self, Move, MovePath, RapidBox};
 use super::{Finding, FindingKind, Verifier, VerifyError};
 use nalgebra::Point3;
 use touchoff::certify::Certifier;
-use touchoff::tool::{ProfileSegment, Symmetry};
+use touchoff::tool::Symmetry;
 use touchoff::{Interval, Pose};
 
 /// Location of a program relative to the part. Lengths are in the part's unit, points in its frame.
@@ -74,12 +74,13 @@ impl<'a> ApproachSearch<'a> {
     pub(crate) fn new(verifier: &'a Verifier<'a>) -> Result<ApproachSearch<'a>, VerifyError> {
         let info = verifier.tool.info();
         let cutting = info.outline.iter().filter(|segment| info.surface(segment.surface).cutting);
-        let widest = |segment: &ProfileSegment| {
+        let widest = cutting.map(|segment| {
+            // A convex arc may be wider than its ends.
             let bulge = segment.circle.filter(|circle| circle.convex);
             let bulge = bulge.map_or(0.0, |circle| circle.centre[0] + circle.radius);
             segment.from[0].max(segment.to[0]).max(bulge)
-        };
-        let radius = cutting.map(widest).fold(0.0, f64::max);
+        });
+        let radius = widest.fold(0.0, f64::max);
         let radius = if radius > 0.0 { radius } else { info.radius() };
         Ok(ApproachSearch {
             certifier: Certifier::new(verifier.bvh, verifier.tool)?.with_budget(verifier.budget),
@@ -114,14 +115,15 @@ impl<'a> ApproachSearch<'a> {
         if self.line == 0 {
             self.line = moves.first().map_or(0, |step| step.line);
         }
-        let touches = |found: &&Finding| {
+        let touching = findings.iter().find(|found| {
             matches!(found.kind, FindingKind::Deep { .. } | FindingKind::Inside { .. })
-        };
-        if let (true, Some(found)) = (self.distance > 0.0, findings.iter().find(touches)) {
+        });
+        if let (true, Some(found)) = (self.distance > 0.0, touching) {
             (self.distance, self.line) = (0.0, found.line);
             self.clearance = None;
         }
         for step in moves {
+            // No motion comes nearer than one that touches.
             if self.distance == 0.0 {
                 return;
             }
@@ -136,6 +138,7 @@ impl<'a> ApproachSearch<'a> {
         let last = self.last.filter(|_| step.from.is_some());
         let bound =
             last.map_or(0.0, |(low, _)| low - max_travel - 4.0 * f64::EPSILON * (low + max_travel));
+        // A motion that cannot come nearer than the nearest so far needs no query.
         let bound = if bound > self.distance { bound } else { self.query(&end, step.line) };
         if let Some(clearance) = self.clearance {
             let over_motion = match (&step.path, last) {
@@ -268,10 +271,13 @@ const MIN_FEEDS: usize = 4;
 /// A box that fits after a change of unit fills at least this fraction of the part's largest extent.
 const FILLED_FRACTION: f64 = 0.25;
 
+fn extent([low, high]: [Point3<f64>; 2]) -> f64 {
+    (high - low).max()
+}
+
 /// Returns the factor of a unit by which a box of positions fits into the part's box widened by the tool's diameter, if
 /// it does not fit without.
 fn unit_factor(part: [Point3<f64>; 2], feed: [Point3<f64>; 2], diameter: f64) -> Option<f64> {
-    let extent = |[low, high]: [Point3<f64>; 2]| (high - low).max();
     let fits = |factor: f64| {
         let [low, high] = feed.map(|corner| corner * factor);
         let margin = diameter.max(0.1 * extent(part));
@@ -293,5 +299,5 @@ fn unit_factor(part: [Point3<f64>; 2], feed: [Point3<f64>; 2], diameter: f64) ->
 struct Span {
     times: [f64; 2],
     lower_bounds: [f64; 2],
-    max_travel: f64,
+    pub(super) max_travel: f64,
 }

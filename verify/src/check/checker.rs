@@ -7,7 +7,7 @@ use std::collections::VecDeque;
 use std::mem;
 use touchoff::certify::{Certifier, MotionDepth, MotionVerdict};
 use touchoff::tool::Symmetry;
-use touchoff::{Interval, Motion, Pose, SurfaceId};
+use touchoff::{Interval, Motion, MotionError, Pose, SurfaceId};
 
 /// Checks motions one after another.
 pub(super) struct Checker<'a> {
@@ -27,6 +27,19 @@ struct Mode<'a> {
     margin: f64,
 }
 
+/// A finding at a time of its motion, from 0 to 1.
+struct TimedFinding {
+    time: f64,
+    kind: FindingKind,
+}
+
+/// A joint motion that is checked span by span, in one mode and at one resolution.
+struct JointTask<'p> {
+    path: &'p JointPath,
+    rapid: bool,
+    resolution: f64,
+}
+
 /// Fraction of a surface's greatest possible depth from which on it counts as passing right through the part.
 const THROUGH_FRACTION: f64 = 0.98;
 
@@ -44,16 +57,6 @@ impl<'a> Checker<'a> {
         verifier: &'a Verifier<'a>,
         max_depths: &'a [f64],
     ) -> Result<Checker<'a>, VerifyError> {
-        let mode = |rapid| {
-            let limits = verifier.limits(rapid);
-            let mut certifier =
-                Certifier::new(verifier.bvh, verifier.tool)?.with_budget(verifier.budget);
-            for (surface, limit) in verifier.tool.info().surfaces.iter().zip(&limits) {
-                certifier = certifier.with_allowance(&surface.name, *limit)?;
-            }
-            let margin = limits.iter().fold(0.0f64, |margin, limit| margin.max(-limit));
-            Ok::<_, VerifyError>(Mode { certifier, limits, max_depths, margin })
-        };
         let certifier = Certifier::new(verifier.bvh, verifier.tool)?.with_budget(verifier.budget);
         let free_space = FreeSpace {
             certifier,
@@ -64,20 +67,27 @@ impl<'a> Checker<'a> {
             misses: 0,
             wait: 0,
         };
-        Ok(Checker { verifier, modes: [mode(false)?, mode(true)?], free_space })
+        Ok(Checker {
+            verifier,
+            modes: [
+                Mode::new(verifier, false, max_depths)?,
+                Mode::new(verifier, true, max_depths)?,
+            ],
+            free_space,
+        })
     }
 
     /// Returns the findings of a motion, `index` being its number in the program.
     pub(super) fn check(&mut self, index: usize, step: &Move) -> Vec<Finding> {
         let mut found = Vec::new();
-        let finding = |time, pose, kind, any_rates| Finding {
+        let finding = |time, pose, kind| Finding {
             location: index,
             line: step.line,
             from: step.from,
             rapid: step.rapid,
             time,
             pose,
-            any_rates,
+            any_rates: false,
             kind,
         };
         match &step.path {
@@ -90,35 +100,38 @@ impl<'a> Checker<'a> {
                     found = self.motion(step.rapid, motion);
                 }
             }
-            MovePath::Joints(joints) => {
+            MovePath::Joints(path) => {
                 // A resolution below the part of the deviation that halving does not reduce is taken as that.
-                let floor =
-                    joints.deviation_floor(self.free_space.reach) * self.verifier.lipschitz();
+                let floor = path.deviation_floor(self.free_space.reach) * self.verifier.lipschitz();
                 let resolution = self.verifier.resolution.max(2.0 * floor / DEVIATION_SHARE);
-                let task = (step.rapid, resolution);
-                self.joints(task, joints, ([0.0, 1.0], MAX_HALVINGS), &mut found);
+                let task = JointTask { path, rapid: step.rapid, resolution };
+                self.joints(&task, [0.0, 1.0], MAX_HALVINGS, &mut found);
             }
             MovePath::Box(path) => match Motion::with_spin(&path.pose(0.0), &path.pose(1.0)) {
                 Ok(straight) => {
                     found = self.motion(true, &straight);
                     // No pose of the box is farther from the straight line than from its middle.
                     let spread = path.radius() * self.verifier.lipschitz();
-                    found.iter_mut().for_each(|(_, kind)| widen(kind, spread));
+                    found.iter_mut().for_each(|found| widen(&mut found.kind, spread));
+                    // A finding on the straight line is one at some rates already: the box is searched if there is none.
                     if found.is_empty() {
-                        let found = self.rapid_box(path).into_iter();
-                        return found.map(|(pose, kind)| finding(0.5, pose, kind, true)).collect();
+                        let found = self.rapid_box(path).into_iter().map(|(pose, kind)| Finding {
+                            any_rates: true,
+                            ..finding(0.5, pose, kind)
+                        });
+                        return found.collect();
                     }
                 }
-                Err(error) => found.push((1.0, FindingKind::Ambiguous(error))),
+                Err(error) => found.push(TimedFinding::ambiguous(error)),
             },
             MovePath::Ambiguous(error, rest) => {
-                found.push((1.0, FindingKind::Ambiguous(*error)));
-                found
-                    .extend(self.motion(step.rapid, rest).into_iter().map(|(_, kind)| (1.0, kind)));
+                found.push(TimedFinding::ambiguous(*error));
+                let at_end = self.motion(step.rapid, rest).into_iter();
+                found.extend(at_end.map(|found| TimedFinding { time: 1.0, ..found }));
             }
         }
-        let on_path = |(time, kind)| finding(time, step.path.pose(time), kind, false);
-        found.into_iter().map(on_path).collect()
+        let at = |TimedFinding { time, kind }| finding(time, step.path.pose(time), kind);
+        found.into_iter().map(at).collect()
     }
 
     /// Returns the findings of rapid traverse through any poses of a box, each with its pose.
@@ -136,77 +149,88 @@ impl<'a> Checker<'a> {
             // Every pose is within the radius of the middle; its coordinates are rounded.
             let size = middle.tip().coords.norm() + 2.0 * piece.radius();
             let radius = piece.radius() + 16.0 * f64::EPSILON * size;
+            // A piece that is free needs no halving, so the query is worth its price here.
             self.free_space.wait = 0;
             if self.free_space.contains([middle, middle], radius, margin) {
                 continue;
             }
             let found = match Motion::with_spin(&middle, &middle) {
                 Ok(rest) => self.motion(true, &rest),
-                Err(error) => vec![(0.5, FindingKind::Ambiguous(error))],
+                Err(error) => vec![TimedFinding::ambiguous(error)],
             };
             if !found.is_empty() {
                 // No pose of the box is farther from the middle of a piece than the box's diagonal.
                 let spread = 2.0 * path.radius() * lipschitz;
-                let over_box = |(_, mut kind): (f64, FindingKind)| {
-                    widen(&mut kind, spread);
-                    (middle, kind)
-                };
-                return found.into_iter().map(over_box).collect();
+                let over_box = found.into_iter().map(|mut found| {
+                    widen(&mut found.kind, spread);
+                    (middle, found.kind)
+                });
+                return over_box.collect();
             }
             if radius * lipschitz <= self.verifier.resolution {
                 continue;
             }
             count += 1;
             if count > MAX_PIECES {
-                let undecided = |k| (middle, FindingKind::Undecided { surface: SurfaceId(k) });
-                return (0..self.verifier.allowed.len()).map(undecided).collect();
+                return self.undecided().map(|kind| (middle, kind)).collect();
             }
             open.extend(piece.halves());
         }
         Vec::new()
     }
 
-    fn motion(&mut self, rapid: bool, motion: &Motion) -> Vec<(f64, FindingKind)> {
+    fn motion(&mut self, rapid: bool, motion: &Motion) -> Vec<TimedFinding> {
         self.modes[usize::from(rapid)].motion(motion, self.verifier.resolution, 0.0)
+    }
+
+    /// Returns the findings where nothing is known about any surface.
+    fn undecided(&self) -> impl Iterator<Item = FindingKind> + use<> {
+        let surfaces = (0..self.verifier.allowed.len()).map(SurfaceId);
+        surfaces.map(|surface| FindingKind::Undecided { surface })
     }
 
     /// Adds the findings of a span of a joint motion, the deepest per kind and surface.
     ///
     /// The span is halved until nothing is near it, or until the motion between its ends deviates so little that the
-    /// deviation can be counted within the resolution. The task is the mode and the resolution.
+    /// deviation can be counted within the resolution.
     fn joints(
         &mut self,
-        task @ (rapid, resolution): (bool, f64),
-        joints: &JointPath,
-        ([from, to], halvings): ([f64; 2], u32),
-        found: &mut Vec<(f64, FindingKind)>,
+        task: &JointTask<'_>,
+        [from, to]: [f64; 2],
+        halvings: u32,
+        found: &mut Vec<TimedFinding>,
     ) {
+        let JointTask { path, rapid, resolution } = *task;
         let FreeSpace { reach, symmetry, .. } = self.free_space;
-        let Span { motion, deviation, max_travel } =
-            moves::span(joints, [from, to], reach, symmetry);
+        let Span { motion, deviation, max_travel } = moves::span(path, [from, to], reach, symmetry);
         let middle = f64::midpoint(from, to);
         let margin = self.modes[usize::from(rapid)].margin;
-        let poses = [from, middle].map(|at| joints.pose(at));
-        if self.free_space.contains(poses, max_travel, margin) {
+        if self.free_space.contains([from, middle].map(|at| path.pose(at)), max_travel, margin) {
             return;
         }
         let slack = deviation * self.verifier.lipschitz();
         match motion {
             Ok(motion) if slack <= DEVIATION_SHARE * resolution => {
                 let mode = &mut self.modes[usize::from(rapid)];
-                for (time, kind) in mode.motion(&motion, resolution, slack) {
-                    merge(found, (from + time * (to - from), kind));
+                for TimedFinding { time, kind } in mode.motion(&motion, resolution, slack) {
+                    merge(found, TimedFinding { time: from + time * (to - from), kind });
                 }
             }
             _ if halvings == 0 => {
-                let undecided = |k| (from, FindingKind::Undecided { surface: SurfaceId(k) });
-                (0..self.verifier.allowed.len()).for_each(|k| merge(found, undecided(k)));
+                self.undecided().for_each(|kind| merge(found, TimedFinding { time: from, kind }));
             }
             _ => {
-                self.joints(task, joints, ([from, middle], halvings - 1), found);
-                self.joints(task, joints, ([middle, to], halvings - 1), found);
+                self.joints(task, [from, middle], halvings - 1, found);
+                self.joints(task, [middle, to], halvings - 1, found);
             }
         }
+    }
+}
+
+impl TimedFinding {
+    /// Returns the finding of a motion whose rotation is ambiguous, of which only the end is known.
+    fn ambiguous(error: MotionError) -> TimedFinding {
+        TimedFinding { time: 1.0, kind: FindingKind::Ambiguous(error) }
     }
 }
 
@@ -220,24 +244,40 @@ fn widen(kind: &mut FindingKind, spread: f64) {
 }
 
 /// Adds a finding, or keeps the worse one of the same kind and surface, with a bound over both.
-fn merge(found: &mut Vec<(f64, FindingKind)>, mut new: (f64, FindingKind)) {
-    let same = |(_, kind): &&mut (f64, FindingKind)| {
-        mem::discriminant(kind) == mem::discriminant(&new.1) && kind.surface() == new.1.surface()
-    };
-    let Some(known) = found.iter_mut().find(same) else {
+fn merge(found: &mut Vec<TimedFinding>, mut new: TimedFinding) {
+    let Some(known) = found.iter_mut().find(|known| {
+        mem::discriminant(&known.kind) == mem::discriminant(&new.kind)
+            && known.kind.surface() == new.kind.surface()
+    }) else {
         found.push(new);
         return;
     };
-    if new.1.severity(&known.1) == Ordering::Greater {
+    if new.kind.severity(&known.kind) == Ordering::Greater {
         mem::swap(known, &mut new);
     }
-    known.1.include_bound(&new.1);
+    // The bound has to hold over both, whichever is the worse.
+    known.kind.include_bound(&new.kind);
 }
 
-impl Mode<'_> {
-    /// Returns the findings of a motion, each with its time on the motion from 0 to 1. Depths differ from those of
-    /// the true motion by at most `slack`.
-    fn motion(&mut self, motion: &Motion, resolution: f64, slack: f64) -> Vec<(f64, FindingKind)> {
+impl<'a> Mode<'a> {
+    fn new(
+        verifier: &Verifier<'a>,
+        rapid: bool,
+        max_depths: &'a [f64],
+    ) -> Result<Mode<'a>, VerifyError> {
+        let limits = verifier.limits(rapid);
+        let mut certifier =
+            Certifier::new(verifier.bvh, verifier.tool)?.with_budget(verifier.budget);
+        for (surface, limit) in verifier.tool.info().surfaces.iter().zip(&limits) {
+            certifier = certifier.with_allowance(&surface.name, *limit)?;
+        }
+        let margin = limits.iter().fold(0.0f64, |margin, limit| margin.max(-limit));
+        Ok(Mode { certifier, limits, max_depths, margin })
+    }
+
+    /// Returns the findings of a motion. Depths differ from those of the true motion by at most `slack`.
+    fn motion(&mut self, motion: &Motion, resolution: f64, slack: f64) -> Vec<TimedFinding> {
+        // One query for all surfaces proves most motions clear. Only the others are queried surface by surface.
         let swept = self.certifier.check_motion(motion, resolution - slack);
         if matches!(swept, MotionVerdict::Clear | MotionVerdict::SurfaceOnly) {
             return Vec::new();
@@ -253,41 +293,43 @@ impl Mode<'_> {
             // allowance by at most the resolution.
             let (limit, tolerance) = (allowed + slack, resolution - 2.0 * slack);
             let depth = self.certifier.motion_depth(surface, motion, limit, tolerance);
-            match depth.expect("a surface of the tool") {
-                MotionDepth::Within => (),
+            let (time, kind) = match depth.expect("a surface of the tool") {
+                MotionDepth::Within => continue,
                 MotionDepth::Deeper { at, depth: Interval { low, high }, max_depth, witness }
                     if low < 0.0 =>
                 {
+                    // Below 0 a depth is a distance: the nearest place is the deepest one.
                     let [from, to, min_distance] =
                         [-high - slack, -low + slack, -max_depth - slack]
                             .map(|distance| distance.max(0.0));
                     let (margin, distance) = (-allowed, Interval::new(from, to));
-                    found.push((
-                        at,
-                        FindingKind::Near { surface, margin, distance, min_distance, witness },
-                    ));
+                    (at, FindingKind::Near { surface, margin, distance, min_distance, witness })
                 }
                 MotionDepth::Deeper { at, depth, max_depth, witness } => {
                     let through = depth.high >= THROUGH_FRACTION * self.max_depths[index];
                     let depth = Interval::new((depth.low - slack).max(0.0), depth.high + slack);
                     let max_depth = max_depth + slack;
-                    found.push((
-                        at,
-                        FindingKind::Deep { surface, allowed, depth, max_depth, through, witness },
-                    ));
+                    (at, FindingKind::Deep { surface, allowed, depth, max_depth, through, witness })
                 }
-                MotionDepth::Inside => inside.push(surface),
-                MotionDepth::Undecided(at) => found.push((at, FindingKind::Undecided { surface })),
-            }
+                MotionDepth::Inside => {
+                    inside.push(surface);
+                    continue;
+                }
+                MotionDepth::Undecided(at) => (at, FindingKind::Undecided { surface }),
+            };
+            found.push(TimedFinding { time, kind });
         }
         if let (MotionVerdict::Inside(surface), []) = (swept, &inside[..]) {
             inside.push(surface);
         }
+        // A tool that is buried as a whole is one finding, not one per surface.
         if !inside.is_empty() && self.certifier.is_buried(&motion.pose(0.0)) == Some(true) {
-            found.push((0.0, FindingKind::Inside { surface: None }));
+            found.push(TimedFinding { time: 0.0, kind: FindingKind::Inside { surface: None } });
         } else {
-            let finding = |surface| (0.0, FindingKind::Inside { surface: Some(surface) });
-            found.extend(inside.into_iter().map(finding));
+            found.extend(inside.into_iter().map(|surface| TimedFinding {
+                time: 0.0,
+                kind: FindingKind::Inside { surface: Some(surface) },
+            }));
         }
         found
     }
@@ -321,21 +363,23 @@ impl FreeSpace<'_> {
             return false;
         }
         let needed = max_travel + margin;
+        // An ambiguous motion may travel any distance, of which no clearance is proved.
         let distance = if needed.is_finite() {
             self.certifier.clearance(&middle, 0.25 * needed).distance.low
         } else {
             0.0
         };
-        let is_outside = |this: &mut Self| {
-            this.is_within(&middle, 0.0)
-                || !this.has_inside
-                || this.certifier.is_buried(&middle) == Some(false)
-        };
-        if distance > needed && is_outside(self) {
+        // A tool that is far from all triangles may be buried in the material, but not within the free space of before.
+        if distance > needed
+            && (self.is_within(&middle, 0.0)
+                || !self.has_inside
+                || self.certifier.is_buried(&middle) == Some(false))
+        {
             self.ball = Some((middle, distance));
             self.misses = 0;
         } else {
             self.misses += 1;
+            // Motions in contact follow each other, so each miss in a row doubles the wait.
             self.wait = MAX_WAIT.min(1 << self.misses.min(4)) - 1;
         }
         self.is_within(&middle, needed)

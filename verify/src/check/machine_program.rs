@@ -9,12 +9,9 @@
 
 use super::moves::{JointPath, Move, MovePath, RapidBox};
 use crate::gcode::{
-    Choice, ControlRules, ControlSetup, GcodeError, Interpreter, LengthOffset, ProgramNote, Rule,
-    Spindle, Step, WorkOffset,
+    Choice, ControlRules, ControlSetup, GcodeError, Interpreter, LengthOffset, Rule, Step,
 };
-use crate::machine::{
-    JointError, JointMotion, Letter, LimitViolation, Machine, Setup, SingularPass,
-};
+use crate::machine::{JointError, JointMotion, Letter, Machine, Setup};
 use nalgebra::Vector3;
 use resolve::{AnyRapid, Resolved, Resolver};
 use std::collections::BTreeMap;
@@ -22,14 +19,12 @@ use std::sync::Arc;
 use touchoff::{Motion, Unit};
 
 mod fault;
-mod gap;
 mod path;
-mod rapid;
 mod resolve;
+mod summary;
 
 pub use fault::{MachineProgramError, StepFault};
-pub use gap::Gap;
-pub use resolve::UnknownCause;
+pub use summary::{Gap, MachineSummary, ToolUse, UnknownCause, UnknownMotions};
 
 /// Largest number of readings of a program.
 pub const MAX_READINGS: usize = 8;
@@ -47,73 +42,6 @@ pub struct MachineProgram {
     /// The register of the first length offset before a tool is named: the tool in the spindle.
     unnamed_tool: Option<u32>,
     summary: MachineSummary,
-}
-
-/// Summary of a program on its machine.
-#[derive(Clone, Debug, Default, PartialEq)]
-#[non_exhaustive]
-pub struct MachineSummary {
-    /// The tools in the order of their first motion that is checked.
-    pub tools: Vec<ToolUse>,
-    /// Tools with motions of which none is checked, each with the line of its first. The tool that is in the spindle before
-    /// the first change is not among them.
-    pub unchecked_tools: Vec<(u32, usize)>,
-    /// Motions that are not checked, by their cause.
-    pub unknown: Vec<UnknownMotions>,
-    /// The line of the first motion in rapid traverse of several axes at rates that are not known.
-    pub any_rapid: Option<usize>,
-    /// As before, for a motion of which one axis is rotary. Only its straight path is checked.
-    pub any_rotary_rapid: Option<usize>,
-    /// The spindle during motions at feed rate, without those of taps: the line of the first by tool and spindle.
-    pub spindle: Vec<(usize, Option<u32>, Spindle)>,
-    /// The line of the first feed without a tool length offset, in a program that names no tool or has no offset at all:
-    /// positions are taken as those of the tip.
-    pub no_offset: Option<usize>,
-    /// The line of the first motion under tool centre point control, or in an aligned plane, without a tool length offset, and with
-    /// a tool whose length is not stated.
-    pub tcp_without_length: Option<usize>,
-    /// The work offsets of motions at feed rate, each with the line of the first.
-    pub work_offsets: Vec<(WorkOffset, usize)>,
-    /// Rules of the control on which the program depends and which are not stated, each with the first line.
-    pub open_rules: BTreeMap<Rule, usize>,
-    /// Feed motions with the length offset of another tool: the line of the first, the register and the tool.
-    pub other_lengths: Vec<(usize, u32, u32)>,
-    /// Axes that leave their limits, each with its line: the worst per axis and limit. Those of X, Y and Z are checked if the
-    /// origin of the part on the machine is given.
-    pub limits: Vec<(usize, LimitViolation)>,
-    /// Set if the machine states limits of X, Y or Z that are not checked.
-    pub limits_unchecked: bool,
-    /// Singular passes, each with its line.
-    pub singular: Vec<(usize, SingularPass)>,
-    /// Notes of the interpreter.
-    pub notes: Vec<ProgramNote>,
-}
-
-/// Motions that are not checked for one cause.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct UnknownMotions {
-    /// The cause.
-    pub cause: UnknownCause,
-    /// Their number.
-    pub count: usize,
-    /// The line of the first.
-    pub line: usize,
-    /// The line of the first that allows no verdict: one in feed, or one between positions that the program states. The way
-    /// to its first position is the operator's, and that to the reference position the machine's.
-    pub open_line: Option<usize>,
-}
-
-/// A tool's use in a program.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct ToolUse {
-    /// The tool's number; `None` before the first tool change.
-    pub number: Option<u32>,
-    /// Line of its first motion.
-    pub line: usize,
-    /// Number of motions.
-    pub motions: usize,
 }
 
 /// A selection of the motions of a program by their tool.
@@ -154,8 +82,8 @@ impl MachineProgram {
         machine: Machine,
         setup: ControlSetup,
     ) -> Result<MachineProgram, MachineProgramError> {
-        let read = (Arc::from(text), Arc::new(machine));
-        MachineProgram::reading(name, read, setup, ControlRules::default())
+        let (text, machine) = (Arc::from(text), Arc::new(machine));
+        MachineProgram::reading(name, text, machine, setup, ControlRules::default())
     }
 
     /// Interprets a program in every way in which a control does, as far as its rules are not stated: a program per
@@ -174,9 +102,10 @@ impl MachineProgram {
         loop {
             let mut assumed = vec![ControlRules::default()];
             for rule in branched.keys() {
-                let choices =
-                    |rules: ControlRules| rule.choices().map(move |c| rules.clone().with(*rule, c));
-                assumed = assumed.into_iter().flat_map(choices).collect();
+                assumed = assumed
+                    .into_iter()
+                    .flat_map(|rules| rule.choices().map(move |c| rules.clone().with(*rule, c)))
+                    .collect();
             }
             if assumed.len() > MAX_READINGS {
                 let rules =
@@ -184,11 +113,12 @@ impl MachineProgram {
                 let rules = rules.collect::<Vec<_>>().join(", ");
                 return Err(MachineProgramError::Readings { file: name.to_owned(), rules });
             }
-            let read = |assumed: ControlRules| {
-                let read = (Arc::clone(&text), Arc::clone(&machine));
-                MachineProgram::reading(name, read, setup.clone(), assumed)
-            };
-            let programs = assumed.into_iter().map(read).collect::<Result<Vec<_>, _>>()?;
+            let programs = assumed.into_iter().map(|assumed| {
+                let (text, machine) = (Arc::clone(&text), Arc::clone(&machine));
+                MachineProgram::reading(name, text, machine, setup.clone(), assumed)
+            });
+            let programs = programs.collect::<Result<Vec<_>, _>>()?;
+            // A choice can lead to blocks that depend on further rules. Without such, every reading is known.
             let known = branched.len();
             for program in &programs {
                 let open = program.summary.open_rules.iter().filter(|(rule, _)| rule.is_branched());
@@ -205,12 +135,14 @@ impl MachineProgram {
     /// Interprets a program under the rules of the setup and those that are assumed besides.
     fn reading(
         name: &str,
-        (text, machine): (Arc<str>, Arc<Machine>),
+        text: Arc<str>,
+        machine: Arc<Machine>,
         mut setup: ControlSetup,
         assumed: ControlRules,
     ) -> Result<MachineProgram, MachineProgramError> {
         let stated = setup.rules.clone();
         setup.rules = stated.clone().and(&assumed);
+        // Whatever the control does, the axes are somewhere: that nobody knows where includes all choices.
         if setup.rules.get(Rule::ToolChange).is_none() {
             setup.rules = setup.rules.with(Rule::ToolChange, Choice::Moves);
         }
@@ -222,24 +154,22 @@ impl MachineProgram {
         if is_placed && machine.axes().iter().all(|axis| axis.home.is_some()) {
             setup.home = Some(machine.home().map(Option::unwrap_or_default));
         }
-        let file = name.to_owned();
-        let summary = MachineSummary::default();
-        let (off_is_tip, unnamed_tool) = (false, None);
         let mut program = MachineProgram {
-            file,
+            file: name.to_owned(),
             text,
             machine,
             setup,
             assumed,
-            off_is_tip,
-            unnamed_tool,
-            summary,
+            off_is_tip: false,
+            unnamed_tool: None,
+            summary: MachineSummary::default(),
         };
         let mut result = program.run(is_placed);
+        // Both facts hold for the whole program and follow from all of its steps, so that the first run cannot use them.
         if let Ok((summary, offsets)) = &result {
-            let is_off =
-                |unknown: &UnknownMotions| matches!(unknown.cause, UnknownCause::NoOffset { .. });
-            program.off_is_tip = !offsets.any && summary.unknown.iter().any(is_off);
+            let mut causes = summary.unknown.iter().map(|unknown| unknown.cause);
+            program.off_is_tip =
+                !offsets.any && causes.any(|cause| matches!(cause, UnknownCause::NoOffset { .. }));
             program.unnamed_tool = offsets.unnamed;
             if program.off_is_tip || program.unnamed_tool.is_some() {
                 result = program.run(is_placed);
@@ -252,9 +182,11 @@ impl MachineProgram {
                 MachineProgramError::Under { error: Box::new(error), rules: assumed.to_string() }
             }
         })?;
-        let is_open =
-            |rule: &Rule| stated.get(*rule).is_none() && program.assumed.get(*rule).is_none();
-        program.summary.open_rules.retain(|rule, _| is_open(rule));
+        let assumed = &program.assumed;
+        program
+            .summary
+            .open_rules
+            .retain(|rule, _| stated.get(*rule).is_none() && assumed.get(*rule).is_none());
         Ok(program)
     }
 
@@ -335,7 +267,7 @@ impl MachineProgram {
             }
             let start = from.map(|(line, _)| line);
             let moves: Vec<Vec<Move>> =
-                frames.iter().map(|frame| moves_of(&step, &resolved, *frame, start)).collect();
+                frames.iter().map(|frame| frame.moves(&step, &resolved, start)).collect();
             if moves.iter().any(|moves| !moves.is_empty()) {
                 from = Some((step.line, tool));
             }
@@ -418,9 +350,10 @@ impl MachineProgram {
             }
             for (motion, _) in &motions {
                 for violation in motion.check_limits() {
-                    add_violation(&mut summary.limits, step.line, violation);
+                    summary.add_violation(step.line, violation);
                 }
                 let pass = motion.singular_pass();
+                // A pass of several blocks is one.
                 if let (false, Some(pass)) = (is_last_singular, pass) {
                     summary.singular.push((step.line, pass));
                 }
@@ -448,56 +381,6 @@ struct LengthOffsets {
     unnamed: Option<u32>,
 }
 
-impl MachineSummary {
-    /// Notes what a motion at feed rate needs.
-    fn add_feed(&mut self, step: &Step, off_is_tip: bool) {
-        let tool = step.state.tool;
-        if step.spindle != Spindle::Tapping
-            && !self
-                .spindle
-                .iter()
-                .any(|(_, known, spindle)| (*known, *spindle) == (tool, step.spindle))
-        {
-            self.spindle.push((step.line, tool, step.spindle));
-        }
-        if (tool.is_none() || off_is_tip) && step.state.length == LengthOffset::Off {
-            self.no_offset.get_or_insert(step.line);
-        }
-        let offset = step.state.work_offset;
-        if !self.work_offsets.iter().any(|(known, _)| *known == offset) {
-            self.work_offsets.push((offset, step.line));
-        }
-    }
-
-    fn add_unknown(&mut self, step: &Step, cause: UnknownCause) {
-        let position = self.unknown.iter().position(|known| known.cause == cause);
-        let position = position.unwrap_or_else(|| {
-            let motions = UnknownMotions { cause, count: 0, line: step.line, open_line: None };
-            self.unknown.push(motions);
-            self.unknown.len() - 1
-        });
-        let unknown = &mut self.unknown[position];
-        unknown.count += 1;
-        let is_said = matches!(cause, UnknownCause::Start | UnknownCause::Home);
-        if !step.rapid || !is_said {
-            unknown.open_line.get_or_insert(step.line);
-        }
-    }
-}
-
-/// Adds a violation, or keeps the worse one of the same axis and limit.
-fn add_violation(found: &mut Vec<(usize, LimitViolation)>, line: usize, violation: LimitViolation) {
-    let same = |(_, known): &&mut (usize, LimitViolation)| {
-        known.letter == violation.letter && known.limit == violation.limit
-    };
-    let excess = |violation: &LimitViolation| (violation.value - violation.limit).abs();
-    match found.iter_mut().find(same) {
-        None => found.push((line, violation)),
-        Some(known) if excess(&violation) > excess(&known.1) => *known = (line, violation),
-        Some(_) => (),
-    }
-}
-
 /// The frame of moves.
 #[derive(Clone, Copy)]
 struct MoveFrame {
@@ -508,56 +391,72 @@ struct MoveFrame {
     unit: Unit,
 }
 
-/// Returns the moves of a step. `from` is the line of the move before, if there is one.
-fn moves_of(step: &Step, resolved: &Resolved, frame: MoveFrame, from: Option<usize>) -> Vec<Move> {
-    let path = |motion: JointMotion, error: f64| match frame.link {
-        Some(link) => {
-            let related = motion.relative_to(link).expect("a link of the machine");
-            JointPath::new(related, frame.unit, error).relative_to(frame.origin)
+impl MoveFrame {
+    /// Returns the path of a joint motion that differs from that of the control by at most `error`, in mm.
+    fn path(&self, motion: JointMotion, error: f64) -> JointPath {
+        match self.link {
+            Some(link) => {
+                let related = motion.relative_to(link).expect("a link of the machine");
+                JointPath::new(related, self.unit, error).relative_to(self.origin)
+            }
+            None => JointPath::new(motion, self.unit, error),
         }
-        None => JointPath::new(motion, frame.unit, error),
-    };
-    let as_move = |from: Option<usize>, path: MovePath| Move {
+    }
+
+    /// Returns a rest at a pose of a joint motion.
+    fn rest(&self, motion: JointMotion, at: f64) -> Option<MovePath> {
+        let pose = self.path(motion, 0.0).pose(at);
+        Motion::with_spin(&pose, &pose).ok().map(MovePath::Straight)
+    }
+
+    /// Returns the moves of a step. `from` is the line of the move before, if there is one.
+    fn moves(&self, step: &Step, resolved: &Resolved, from: Option<usize>) -> Vec<Move> {
+        // Where no move comes before, the tool is checked at rest first.
+        let start = |motion: JointMotion| match from {
+            None => self.rest(motion, 0.0).map(|path| move_along(step, None, path)),
+            Some(_) => None,
+        };
+        // A move after a rest of its own begins at its own line.
+        let arriving = |path: MovePath| move_along(step, Some(from.unwrap_or(step.line)), path);
+        match resolved {
+            Resolved::Unknown(_) | Resolved::ToolChange => Vec::new(),
+            Resolved::AnyRapid(any) => {
+                let AnyRapid { straight, edges } = &**any;
+                let straight = *straight;
+                let Some(edges) = edges else {
+                    return self.moves(step, &Resolved::Motions(vec![(straight, 0.0)]), from);
+                };
+                let corner = self.path(straight, 0.0).pose(0.0);
+                let ways = edges.iter().map(|edge| {
+                    let end = self.path(*edge, 0.0).pose(1.0);
+                    end.tip() - corner.tip()
+                });
+                let all = MovePath::Box(Box::new(RapidBox::new(corner, ways.collect())));
+                start(straight).into_iter().chain([arriving(all)]).collect()
+            }
+            Resolved::Arrival(motion, _) => {
+                let rest = self.rest(**motion, 1.0);
+                rest.map(|path| move_along(step, None, path)).into_iter().collect()
+            }
+            Resolved::Motions(motions) => {
+                let first = motions.first().and_then(|(motion, _)| start(*motion));
+                let motions = motions.iter().map(|(motion, error)| {
+                    arriving(MovePath::Joints(Box::new(self.path(*motion, *error))))
+                });
+                first.into_iter().chain(motions).collect()
+            }
+        }
+    }
+}
+
+/// Returns the move of a step along a path, which begins at a line.
+fn move_along(step: &Step, from: Option<usize>, path: MovePath) -> Move {
+    Move {
         line: step.line,
         from,
         rapid: step.rapid,
         tool: step.state.tool,
         work_offset: Some(step.state.work_offset),
         path,
-    };
-    let rest = |motion: JointMotion, at: f64| {
-        let pose = path(motion, 0.0).pose(at);
-        Motion::with_spin(&pose, &pose).ok().map(MovePath::Straight)
-    };
-    // Where no move comes before, the tool is checked at rest first.
-    let start = |motion: JointMotion| match from {
-        None => rest(motion, 0.0).map(|path| as_move(None, path)),
-        Some(_) => None,
-    };
-    let arriving = |path: MovePath| as_move(Some(from.unwrap_or(step.line)), path);
-    match resolved {
-        Resolved::Unknown(_) | Resolved::ToolChange => Vec::new(),
-        Resolved::AnyRapid(any) => {
-            let AnyRapid { straight, edges } = &**any;
-            let straight = *straight;
-            let Some(edges) = edges else {
-                return moves_of(step, &Resolved::Motions(vec![(straight, 0.0)]), frame, from);
-            };
-            let corner = path(straight, 0.0).pose(0.0);
-            let way = |edge: &JointMotion| path(*edge, 0.0).pose(1.0).tip() - corner.tip();
-            let ways = edges.iter().map(way).collect();
-            let all = MovePath::Box(Box::new(RapidBox::new(corner, ways)));
-            start(straight).into_iter().chain([arriving(all)]).collect()
-        }
-        Resolved::Arrival(motion, _) => {
-            rest(**motion, 1.0).map(|path| as_move(None, path)).into_iter().collect()
-        }
-        Resolved::Motions(motions) => {
-            let first = motions.first().and_then(|(motion, _)| start(*motion));
-            let motions = motions
-                .iter()
-                .map(|(motion, error)| arriving(MovePath::Joints(Box::new(path(*motion, *error)))));
-            first.into_iter().chain(motions).collect()
-        }
     }
 }

@@ -26,14 +26,12 @@
 mod approach;
 mod checker;
 mod finding;
-mod group;
 mod machine_program;
 mod moves;
 mod remedy;
 
 pub use approach::Approach;
-pub use finding::{Finding, FindingKind, VerifyError, VerifyReport};
-pub use group::FindingGroup;
+pub use finding::{Finding, FindingGroup, FindingKind, VerifyError, VerifyReport};
 pub use machine_program::{
     Gap, MAX_READINGS, MachineProgram, MachineProgramError, MachineSummary, StepFault,
     ToolSelection, ToolUse, UnknownCause, UnknownMotions,
@@ -229,11 +227,11 @@ impl<'a> Verifier<'a> {
     /// Returns the greatest depth that each surface can have.
     fn max_depths(&self) -> Result<Vec<f64>, VerifyError> {
         let certifier = Certifier::new(self.bvh, self.tool)?;
-        let max_depth = |surface| {
-            let depth = certifier.max_possible_depth(surface).expect("a surface of the tool");
-            depth.unwrap_or(f64::INFINITY)
-        };
-        Ok((0..self.allowed.len()).map(SurfaceId).map(max_depth).collect())
+        let max_depths = (0..self.allowed.len()).map(|index| {
+            let depth = certifier.max_possible_depth(SurfaceId(index));
+            depth.expect("a surface of the tool").unwrap_or(f64::INFINITY)
+        });
+        Ok(max_depths.collect())
     }
 
     /// Returns whether a surface of the tool could violate its limit or its margin in feed or in rapid traverse, as far
@@ -257,16 +255,17 @@ impl<'a> Verifier<'a> {
 
     /// Returns the depth that each surface is allowed.
     fn limits(&self, rapid: bool) -> Vec<f64> {
-        let limit = |allowed: &Option<f64>| {
+        let limits = self.allowed.iter().map(|allowed| {
             let allowed = allowed.unwrap_or(self.tolerance);
+            // An allowance is for cutting: in rapid traverse no surface may be deeper than the tolerance.
             if rapid { allowed.min(self.tolerance) } else { allowed }
-        };
-        self.allowed.iter().map(limit).collect()
+        });
+        limits.collect()
     }
 }
 
 /// A check of motions that are added one by one, in the order of the program.
-pub(crate) struct MoveCheck<'a> {
+pub(super) struct MoveCheck<'a> {
     verifier: &'a Verifier<'a>,
     max_depths: Vec<f64>,
     approach: ApproachSearch<'a>,
@@ -284,7 +283,7 @@ impl<'a> MoveCheck<'a> {
     ///
     /// # Errors
     /// If the tool cannot be certified.
-    pub(crate) fn new(verifier: &'a Verifier<'a>) -> Result<MoveCheck<'a>, VerifyError> {
+    pub(super) fn new(verifier: &'a Verifier<'a>) -> Result<MoveCheck<'a>, VerifyError> {
         Ok(MoveCheck {
             verifier,
             max_depths: verifier.max_depths()?,
@@ -300,7 +299,7 @@ impl<'a> MoveCheck<'a> {
     ///
     /// # Errors
     /// If the tool cannot be certified.
-    pub(crate) fn add(
+    pub(super) fn add(
         &mut self,
         step: Move,
         progress: &(dyn Fn(usize) + Sync),
@@ -315,6 +314,7 @@ impl<'a> MoveCheck<'a> {
     fn check_batch(&mut self, progress: &(dyn Fn(usize) + Sync)) -> Result<(), VerifyError> {
         let (verifier, max_depths, count) = (self.verifier, &self.max_depths, self.count);
         let found = map_tasks(&self.batch, |first, moves| {
+            // A checker remembers free space. One per task makes results independent of the number of cores.
             let mut checker = Checker::new(verifier, max_depths)?;
             let numbered = (count + first..).zip(moves);
             let findings = numbered.flat_map(|(index, step)| checker.check(index, step)).collect();
@@ -335,7 +335,7 @@ impl<'a> MoveCheck<'a> {
     ///
     /// # Errors
     /// If the tool cannot be certified.
-    pub(crate) fn finish(
+    pub(super) fn finish(
         mut self,
         progress: &(dyn Fn(usize) + Sync),
     ) -> Result<VerifyReport, VerifyError> {

@@ -72,6 +72,7 @@ impl RapidBox {
         let mut half = self.clone();
         let longest =
             half.edges.iter_mut().max_by(|one, other| one.norm().total_cmp(&other.norm()));
+        // A box without ways is a pose, which has no halves.
         let Some(longest) = longest else { return [half.clone(), half] };
         *longest *= 0.5;
         let middle = self.start.tip() + *longest;
@@ -207,13 +208,16 @@ pub(super) struct Span {
 /// A tool of revolution may turn on a great circle or about one fixed axis, whichever is nearer to the truth: the first if
 /// the spin about the tool axis is most of the rotation, the second otherwise.
 pub(super) fn span(path: &JointPath, times: [f64; 2], reach: f64, symmetry: Symmetry) -> Span {
-    let [from, to] = times.map(|time| path.pose(time));
+    let ([start, end], [from, to]) = (times, times.map(|time| path.pose(time)));
     let unscaled = reach / path.scale;
-    let deviation = path.motion.deviation_with_spin(times[0], times[1], unscaled);
-    let mut span = Span::new(path, Motion::with_spin(&from, &to), deviation, (&from.tip(), reach));
+    let deviation = path.motion.deviation_with_spin(start, end, unscaled);
+    let deviation = path.scaled(deviation, &from.tip(), reach);
+    let mut span = Span::new(Motion::with_spin(&from, &to), deviation, reach);
     if symmetry == Symmetry::Revolved {
-        let deviation = path.motion.deviation(times[0], times[1], unscaled);
-        let revolved = Span::new(path, Motion::new(&from, &to), deviation, (&from.tip(), reach));
+        let deviation = path.motion.deviation(start, end, unscaled);
+        let deviation = path.scaled(deviation, &from.tip(), reach);
+        let revolved = Span::new(Motion::new(&from, &to), deviation, reach);
+        // Both bound the travel of the same true motion, whichever approximates it better.
         let max_travel = span.max_travel.min(revolved.max_travel);
         if span.motion.is_err() || revolved.deviation < span.deviation {
             span = revolved;
@@ -224,14 +228,9 @@ pub(super) fn span(path: &JointPath, times: [f64; 2], reach: f64, symmetry: Symm
 }
 
 impl Span {
-    fn new(
-        path: &JointPath,
-        motion: Result<Motion, MotionError>,
-        deviation: f64,
-        (tip, reach): (&Point3<f64>, f64),
-    ) -> Span {
-        let deviation = path.scaled(deviation, tip, reach);
+    fn new(motion: Result<Motion, MotionError>, deviation: f64, reach: f64) -> Span {
         let max_travel = match &motion {
+            // A point may deviate at both ends of its way.
             Ok(motion) => travel(motion, reach) + 2.0 * deviation,
             Err(_) => f64::INFINITY,
         };
@@ -241,7 +240,7 @@ impl Span {
 
 /// Returns the motion between two poses: about the common normal of both axes for a tool of revolution, about one
 /// fixed axis for a solid.
-pub(super) fn between(from: &Pose, to: &Pose, symmetry: Symmetry) -> Result<Motion, MotionError> {
+fn between(from: &Pose, to: &Pose, symmetry: Symmetry) -> Result<Motion, MotionError> {
     match symmetry {
         Symmetry::Revolved => Motion::new(from, to),
         Symmetry::Solid { .. } => Motion::with_spin(from, to),

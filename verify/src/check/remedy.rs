@@ -40,6 +40,7 @@ impl Verifier<'_> {
             certifier = certifier.with_allowance(&surface.name, limit).ok()?;
         }
         let (tip, axis) = (finding.pose.tip(), finding.pose.axis());
+        // Across the least component of the axis, which is never near to parallel.
         let across = axis.cross(&Vector3::ith(axis.iamin(), 1.0)).normalize();
         let along = axis.cross(&across);
         let tilted = |turn: f64, angle: f64| {
@@ -55,18 +56,9 @@ impl Verifier<'_> {
             let turns =
                 (0..TILT_DIRECTIONS).map(|k| TAU * f64::from(k) / f64::from(TILT_DIRECTIONS));
             let clear: Vec<f64> = turns.filter(|turn| is_clear(*turn, enough)).collect();
-            let least = clear.into_iter().map(|turn| {
-                let (mut short, mut enough) = (below, enough);
-                for _ in 0..HALVINGS {
-                    let middle = f64::midpoint(short, enough);
-                    if is_clear(turn, middle) {
-                        enough = middle;
-                    } else {
-                        short = middle;
-                    }
-                }
-                (turn, enough)
-            });
+            let least = clear
+                .into_iter()
+                .map(|turn| (turn, bisected(below, enough, |angle| is_clear(turn, angle))));
             if let Some((turn, angle)) = least.min_by(|one, other| one.1.total_cmp(&other.1)) {
                 return Some(Tilt { angle, axis: tilted(turn, angle).normalize() });
             }
@@ -109,15 +101,21 @@ impl Verifier<'_> {
                 return None;
             }
         }
-        let mut short = if enough > excess { 0.5 * enough } else { 0.0 };
-        for _ in 0..HALVINGS {
-            let middle = f64::midpoint(short, enough);
-            if is_clear(middle) {
-                enough = middle;
-            } else {
-                short = middle;
-            }
-        }
-        Some(enough)
+        // Half of it was tried and is too short, unless the excess itself is enough.
+        let short = if enough > excess { 0.5 * enough } else { 0.0 };
+        Some(bisected(short, enough, is_clear))
     }
+}
+
+/// Returns nearly the least value that is clear, between one that is not, or may not be, and one that is.
+fn bisected(mut short: f64, mut enough: f64, mut is_clear: impl FnMut(f64) -> bool) -> f64 {
+    for _ in 0..HALVINGS {
+        let middle = f64::midpoint(short, enough);
+        if is_clear(middle) {
+            enough = middle;
+        } else {
+            short = middle;
+        }
+    }
+    enough
 }

@@ -1,6 +1,5 @@
 //! Errors of the interpreter.
 
-use super::arc::ArcFault;
 use super::expression::ExpressionFault;
 
 /// A line that stops the interpreter.
@@ -244,7 +243,7 @@ pub enum GcodeFault {
     /// More assignments in a block than LinuxCNC keeps.
     #[error(
         "a block has more than {} assignments, which LinuxCNC mixes up: write them in several blocks",
-        super::block::MAX_ASSIGNMENTS
+        super::MAX_ASSIGNMENTS
     )]
     Assignments,
     /// Subprograms that take too many blocks and steps.
@@ -253,4 +252,93 @@ pub enum GcodeFault {
         super::MAX_REPEATED
     )]
     TooLong,
+}
+
+/// Returns [`GcodeFault::Combination`].
+pub(super) fn combination(
+    word: impl Into<String>,
+    condition: &'static str,
+    remedy: &'static str,
+) -> GcodeFault {
+    GcodeFault::Combination { word: word.into(), condition, remedy }
+}
+
+/// Returns [`GcodeFault::NotRead`].
+pub(super) fn not_read(
+    word: impl Into<String>,
+    meaning: &'static str,
+    remedy: &'static str,
+) -> GcodeFault {
+    GcodeFault::NotRead { word: word.into(), meaning, remedy }
+}
+
+/// Returns [`GcodeFault::Missing`].
+pub(super) fn missing(word: impl Into<String>, needed: &'static str) -> GcodeFault {
+    GcodeFault::Missing { word: word.into(), needed }
+}
+
+/// Returns [`GcodeFault::SameGroup`].
+pub(super) fn same_group(first: impl Into<String>, second: impl Into<String>) -> GcodeFault {
+    GcodeFault::SameGroup { first: first.into(), second: second.into() }
+}
+
+/// A fault in an arc.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ArcFault {
+    /// Neither a centre nor a radius.
+    #[error("the arc has neither a centre nor a radius: write {centre}, or R")]
+    NoCentre {
+        /// The letters of the centre.
+        centre: &'static str,
+    },
+    /// A centre and a radius.
+    #[error("the arc has a centre and a radius: write one of them")]
+    CentreAndRadius,
+    /// A coordinate of the centre that is not in the plane of the arc.
+    #[error("{letter} is not in the plane of the arc: write {centre}, or select another plane")]
+    OtherPlane {
+        /// The letter.
+        letter: char,
+        /// The letters of the centre.
+        centre: &'static str,
+    },
+    /// An absolute centre (G90.1) with one coordinate.
+    #[error("under G90.1 the centre needs both coordinates: write {centre}")]
+    HalfCentre {
+        /// The letters of the centre.
+        centre: &'static str,
+    },
+    /// Start and end have different distances from the centre.
+    #[error(
+        "start and end have the distances {start} and {end} (mm) from the centre, which differ by more than \
+         {tolerance:.4}: correct the end or the centre"
+    )]
+    Radii {
+        /// Distance of the start, in millimetres.
+        start: f64,
+        /// Distance of the end, in millimetres.
+        end: f64,
+        /// The tolerance, in millimetres.
+        tolerance: f64,
+    },
+    /// A centre on the start or the end, or a radius of zero.
+    #[error("the arc has the radius zero: correct its centre or its radius")]
+    ZeroRadius,
+    /// A radius that does not reach the end.
+    #[error(
+        "the radius {radius} is less than half the distance from start to end, {half} (mm): correct it"
+    )]
+    TooShort {
+        /// The radius, in millimetres.
+        radius: f64,
+        /// Half of the chord, in millimetres.
+        half: f64,
+    },
+    /// A radius with an end that is the start.
+    #[error("the arc ends where it starts, so its radius leaves the centre open: write {centre}")]
+    SamePoint {
+        /// The letters of the centre.
+        centre: &'static str,
+    },
 }

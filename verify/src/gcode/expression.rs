@@ -139,8 +139,10 @@ impl Parameters {
     }
 
     fn get(&self, parameter: &Parameter) -> Result<f64, ExpressionFault> {
-        let unassigned = || ExpressionFault::Unassigned { parameter: parameter.shown() };
-        self.values.get(parameter).copied().ok_or_else(unassigned)
+        self.values
+            .get(parameter)
+            .copied()
+            .ok_or_else(|| ExpressionFault::Unassigned { parameter: parameter.shown() })
     }
 }
 
@@ -202,6 +204,7 @@ impl<'a> Cursor<'a> {
 pub(super) fn begins_value(cursor: &mut Cursor) -> bool {
     match cursor.peek() {
         Some(b'0'..=b'9' | b'.' | b'+' | b'-' | b'[' | b'#') => true,
+        // `X SQRT[2]` has a value; any other letter begins the next word.
         Some(byte) if byte.is_ascii_alphabetic() => begins_function(*cursor).is_some(),
         _ => false,
     }
@@ -221,15 +224,7 @@ pub(super) fn value(cursor: &mut Cursor, known: &Parameters) -> Result<f64, Expr
 }
 
 /// Reads a sum of products, as after `=` and in brackets.
-pub(super) fn sum(cursor: &mut Cursor, known: &Parameters) -> Result<f64, ExpressionFault> {
-    nested_sum(cursor, known, 0)
-}
-
-fn nested_sum(
-    cursor: &mut Cursor,
-    known: &Parameters,
-    depth: usize,
-) -> Result<f64, ExpressionFault> {
+fn sum(cursor: &mut Cursor, known: &Parameters, depth: usize) -> Result<f64, ExpressionFault> {
     let mut total = product(cursor, known, depth)?;
     loop {
         if cursor.take(b'+') {
@@ -271,6 +266,7 @@ fn signed(cursor: &mut Cursor, known: &Parameters, depth: usize) -> Result<f64, 
 }
 
 fn unsigned(cursor: &mut Cursor, known: &Parameters, depth: usize) -> Result<f64, ExpressionFault> {
+    // Brackets and references recurse, as deep as the program has them.
     if depth > MAX_DEPTH {
         return Err(ExpressionFault::TooDeep);
     }
@@ -302,11 +298,12 @@ fn unsigned(cursor: &mut Cursor, known: &Parameters, depth: usize) -> Result<f64
 /// Reads an expression in brackets.
 fn bracket(cursor: &mut Cursor, known: &Parameters, depth: usize) -> Result<f64, ExpressionFault> {
     cursor.take(b'[');
-    let value = nested_sum(cursor, known, depth + 1)?;
+    let value = sum(cursor, known, depth + 1)?;
     if cursor.take(b']') {
         return Ok(value);
     }
     match cursor.peek() {
+        // An operator that is a word, such as `MOD`.
         Some(byte) if byte.is_ascii_alphabetic() => {
             let name = cursor.take_while(|byte| byte.is_ascii_alphabetic());
             Err(ExpressionFault::Operation { name: name.to_ascii_uppercase() })
@@ -316,7 +313,7 @@ fn bracket(cursor: &mut Cursor, known: &Parameters, depth: usize) -> Result<f64,
 }
 
 /// Reads a parameter, which begins with `#`.
-pub(super) fn parameter(
+fn parameter(
     cursor: &mut Cursor,
     known: &Parameters,
     depth: usize,
@@ -336,6 +333,7 @@ pub(super) fn parameter(
         return Err(ExpressionFault::Index { index });
     }
     let numbered = Parameter::Numbered(index as u16);
+    // By these a control reports its state, which is not known here.
     match index >= f64::from(FIRST_SYSTEM) {
         true => Err(ExpressionFault::System { parameter: numbered.shown() }),
         false => Ok(numbered),
@@ -349,7 +347,7 @@ pub(super) fn assignment(
 ) -> Result<(Parameter, f64), ExpressionFault> {
     let target = parameter(cursor, known, 0)?;
     match cursor.take(b'=') {
-        true => Ok((target, sum(cursor, known)?)),
+        true => Ok((target, sum(cursor, known, 0)?)),
         false => Err(ExpressionFault::NoAssignment { parameter: target.shown() }),
     }
 }

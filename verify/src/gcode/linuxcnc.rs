@@ -2,11 +2,10 @@
 //!
 //! Each was run with its interpreter (`rs274`). M428 and M429 of its configurations for five axes are read.
 
-use super::GcodeFault;
-use super::block::{Block, begins};
-use super::code::{Code, Group};
-use super::label::Place;
-use super::text::{before_semicolon, line};
+use super::block::{Block, Code, Group, begins};
+use super::error::{combination, missing, not_read, same_group};
+use super::flow::{Place, before_semicolon, line};
+use super::{GcodeError, GcodeFault};
 
 /// The longest line, in bytes without its end (`LINELEN` of the interpreter).
 const MAX_LINE: usize = 251;
@@ -20,19 +19,20 @@ pub(super) fn check_line(text: &str) -> Result<(), GcodeFault> {
     } else if text.split('(').skip(1).any(|comment| begins(comment, "abort,")) {
         ("(abort,", "a comment at which LinuxCNC stops", "remove it")
     } else if text.contains("98") || text.contains("99") {
+        // Only such a line can have M98 or M99: others are not worth a copy.
         return check_spelling(&code(text)?);
     } else {
         return Ok(());
     };
-    Err(GcodeFault::NotRead { word: word.to_owned(), meaning, remedy })
+    Err(not_read(word, meaning, remedy))
 }
 
 /// Refuses lines at which LinuxCNC stops also where it only seeks a subprogram after them.
-pub(super) fn check_text(text: &str) -> Result<(), (usize, GcodeFault)> {
+pub(super) fn check_text(text: &str) -> Result<(), GcodeError> {
     let mut place = Place { offset: 0, line: 1 };
     while let Some((line, after)) = line(text, place) {
         let checked = check_line(line).and_then(|()| check_sought(line));
-        checked.map_err(|fault| (place.line, fault))?;
+        checked.map_err(|fault| GcodeError { line: place.line, fault })?;
         place = after;
     }
     Ok(())
@@ -44,8 +44,6 @@ fn check_sought(text: &str) -> Result<(), GcodeFault> {
     let code = code(text)?;
     let code = code.trim_start_matches('/');
     let label = code.trim_start_matches(|c: char| c == 'N' || c.is_ascii_digit() || c == '.');
-    // Numbered parameters have a value always.
-    let can_fail = |text: &str| text.contains("#<") || text.contains('/') || text.contains("SQRT");
     let (word, can_fail) = match code.split_once("M98") {
         Some((_, call)) => ("P of M98", can_fail(call)),
         None => {
@@ -54,13 +52,18 @@ fn check_sought(text: &str) -> Result<(), GcodeFault> {
         }
     };
     match can_fail {
-        true => Err(GcodeFault::Combination {
-            word: word.to_owned(),
-            condition: "it depends on a name, a quotient or a root, which LinuxCNC computes also where it passes the line",
-            remedy: "write a number",
-        }),
+        true => Err(combination(
+            word,
+            "it depends on a name, a quotient or a root, which LinuxCNC computes also where it passes the line",
+            "write a number",
+        )),
         false => Ok(()),
     }
+}
+
+/// Returns whether an expression may have no value. Numbered parameters always have one.
+fn can_fail(text: &str) -> bool {
+    text.contains("#<") || text.contains('/') || text.contains("SQRT")
 }
 
 /// Refuses M98 and M99 in another spelling, of which LinuxCNC reads three characters.
@@ -72,7 +75,7 @@ fn check_spelling(code: &str) -> Result<(), GcodeFault> {
         if is_call && number.len() > 2 {
             let word = format!("M{number}");
             let (meaning, remedy) = ("no word of LinuxCNC", "write M98 or M99");
-            return Err(GcodeFault::NotRead { word, meaning, remedy });
+            return Err(not_read(word, meaning, remedy));
         }
     }
     Ok(())
@@ -98,7 +101,7 @@ fn code(text: &str) -> Result<String, GcodeFault> {
 pub(super) fn check_words(block: &Block) -> Result<(), GcodeFault> {
     if let Some(code) = block.codes().find(is_unknown) {
         let (meaning, remedy) = ("no word of LinuxCNC", "remove it, or state another `dialect`");
-        return Err(GcodeFault::NotRead { word: code.to_string(), meaning, remedy });
+        return Err(not_read(code, meaning, remedy));
     }
     for code in block.codes() {
         let (is_missing, needed) = match (code.letter, code.tenths) {
@@ -111,7 +114,7 @@ pub(super) fn check_words(block: &Block) -> Result<(), GcodeFault> {
             _ => continue,
         };
         if is_missing {
-            return Err(GcodeFault::Missing { word: code.to_string(), needed });
+            return Err(missing(code, needed));
         }
     }
     // -1 stands for a word that is not there.
@@ -121,14 +124,16 @@ pub(super) fn check_words(block: &Block) -> Result<(), GcodeFault> {
     if block.has('D') {
         return Err(GcodeFault::Unused { word: 'D' });
     }
-    let is_return = |code: &Code| matches!(code.tenths, 280 | 300);
     let motion = block.code_of(Group::Motion);
-    if let Some((code, motion)) = block.code_of(Group::OneShot).filter(is_return).zip(motion) {
+    if let Some((code, motion)) =
+        block.code_of(Group::OneShot).filter(|code| matches!(code.tenths, 280 | 300)).zip(motion)
+    {
         return Err(same_group(code, motion));
     }
-    let codes = || block.codes().filter_map(|code| m_group(code).map(|group| (group, code)));
-    for (index, (group, code)) in codes().enumerate() {
-        if let Some((_, other)) = codes().skip(index + 1).find(|(other, _)| *other == group) {
+    for (index, code) in block.codes().enumerate() {
+        let Some(group) = m_group(code) else { continue };
+        let mut others = block.codes().skip(index + 1);
+        if let Some(other) = others.find(|other| m_group(*other) == Some(group)) {
             return Err(same_group(code, other));
         }
     }
@@ -154,10 +159,6 @@ pub(super) fn check_cycle(block: &Block, number: u32) -> Result<(), GcodeFault> 
         }
         _ => Ok(()),
     }
-}
-
-fn same_group(first: Code, second: Code) -> GcodeFault {
-    GcodeFault::SameGroup { first: first.to_string(), second: second.to_string() }
 }
 
 /// Returns whether a word is read for other controls only.

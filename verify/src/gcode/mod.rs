@@ -49,34 +49,23 @@
 //! values are G17 G90 G91.1 G94 G98 G54, and no motion mode. Subprograms share the parameters of their
 //! caller, except those of O-words, whose #1 to #30 and names are their own.
 
-mod arc;
 mod block;
-mod code;
-mod coordinates;
-mod cycle;
+mod control;
 mod error;
 mod expression;
 mod flow;
 mod interpreter;
-mod label;
 mod linuxcnc;
-mod modal;
-mod motion;
-mod next_run;
 mod note;
-mod refuse;
 mod rules;
-mod spindle;
 mod state;
-mod text;
 
-pub use arc::ArcFault;
-pub use error::{GcodeError, GcodeFault};
+pub use control::Spindle;
+pub use error::{ArcFault, GcodeError, GcodeFault};
 pub use expression::ExpressionFault;
 pub use interpreter::Interpreter;
 pub use note::{NoteKind, ProgramNote};
 pub use rules::{Choice, ControlError, ControlRules, Rule};
-pub use spindle::Spindle;
 pub(crate) use state::about;
 pub use state::{ControlState, Frame, LengthOffset, Position, Rotation, Tcp, WorkOffset};
 
@@ -89,6 +78,9 @@ use std::sync::Arc;
 pub const LARGEST_NUMBER: f64 = 1e9;
 /// Largest nesting of calls of subprograms: LinuxCNC's (`INTERP_SUB_ROUTINE_LEVELS` counts the main program too).
 pub const MAX_CALLS: usize = 9;
+/// The largest number of assignments in a block: LinuxCNC writes those beyond it over the values of the first ones
+/// (`MAX_NAMED_PARAMETERS` of its interpreter).
+const MAX_ASSIGNMENTS: usize = 50;
 /// Largest number of blocks and steps in subprograms, with all repeats.
 pub const MAX_REPEATED: usize = 10_000_000;
 /// Largest number of motions of one block with a canned cycle.

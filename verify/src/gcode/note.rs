@@ -1,6 +1,6 @@
 //! Notes: what a program leaves to the control, and words that were passed over.
 
-use super::code::Code;
+use super::block::Code;
 use std::collections::BTreeMap;
 use std::fmt;
 
@@ -137,12 +137,12 @@ impl Notes {
 
     /// Returns the notes.
     pub(super) fn list(&self) -> Vec<ProgramNote> {
-        let note = |(subject, (line, count)): (&Subject, &(usize, usize))| ProgramNote {
+        let notes = self.found.iter().map(|(subject, (line, count))| ProgramNote {
             line: *line,
             count: *count,
             kind: subject.kind(),
-        };
-        self.found.iter().map(note).collect()
+        });
+        notes.collect()
     }
 }
 

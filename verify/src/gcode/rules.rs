@@ -380,146 +380,37 @@ const RULES: [Entry; 23] = [
     },
 ];
 
-/// The controls that are known by name, with their choices in the order of [`RULES`], without the operator's switch. Each is the control as delivered:
-/// a builder can set most of them otherwise.
-const CONTROLS: [(&str, [Choice; 22]); 5] = {
+/// The controls that are known by name.
+const CONTROLS: [&str; 5] = ["fanuc", "haas", "linuxcnc", "siemens", "heidenhain"];
+
+/// Their choices, a column per control, in the order of [`RULES`] without the operator's switch. Each is the control as
+/// delivered: a builder can set most of them otherwise.
+#[rustfmt::skip]
+const CONTROL_CHOICES: [[Choice; 5]; 22] = {
     use Choice::*;
     [
-        (
-            "fanuc",
-            [
-                Moves,
-                SidewaysFirst,
-                Shortest,
-                EachAxis,
-                Increments,
-                EndOfBlock,
-                Millimetre,
-                KeepsLength,
-                WithG43,
-                KeepsSpindle,
-                InitialLevel,
-                WithoutLength,
-                FirstOffset,
-                Iso,
-                LastH,
-                KeepsPreset,
-                MovesZ,
-                RepeatsByK,
-                Increments,
-                TableAsItStands,
-                ByAxes,
-                KeepsModes,
-            ],
-        ),
-        (
-            "haas",
-            [
-                Retracts,
-                SidewaysFirst,
-                Counts,
-                EachAxis,
-                Increments,
-                EndOfBlock,
-                Inch,
-                CancelsLength,
-                WithG43,
-                StopsSpindle,
-                InitialLevel,
-                WithoutLength,
-                FirstOffset,
-                Iso,
-                LastH,
-                KeepsPreset,
-                MovesZ,
-                RepeatsByL,
-                Units,
-                TableAtZero,
-                ByAxes,
-                KeepsModes,
-            ],
-        ),
-        (
-            "linuxcnc",
-            [
-                Stays,
-                RaisesFirst,
-                Counts,
-                Straight,
-                Units,
-                Comment,
-                Millimetre,
-                KeepsLength,
-                WithG43,
-                KeepsSpindle,
-                PlaneR,
-                WithoutLength,
-                FirstOffset,
-                Rs274Ngc,
-                OfTool,
-                EndsPreset,
-                WithNextZ,
-                RepeatsByL,
-                Units,
-                TableAtZero,
-                ByAxes,
-                SetsModes,
-            ],
-        ),
-        (
-            "siemens",
-            [
-                Moves,
-                SidewaysFirst,
-                WithinTurn,
-                Straight,
-                Units,
-                Comment,
-                Millimetre,
-                KeepsLength,
-                Always,
-                KeepsSpindle,
-                InitialLevel,
-                WithLength,
-                NoOffset,
-                Sinumerik,
-                OfTool,
-                EndsPreset,
-                WithNextZ,
-                RepeatsByK,
-                Units,
-                TableAtZero,
-                ByAxes,
-                KeepsModes,
-            ],
-        ),
-        (
-            "heidenhain",
-            [
-                Moves,
-                SidewaysFirst,
-                Counts,
-                Straight,
-                Units,
-                Comment,
-                Millimetre,
-                KeepsLength,
-                Always,
-                StopsSpindle,
-                InitialLevel,
-                WithoutLength,
-                FirstOffset,
-                Heidenhain,
-                OfTool,
-                EndsPreset,
-                WithNextZ,
-                RepeatsByL,
-                Units,
-                TableAtZero,
-                ByAxes,
-                KeepsModes,
-            ],
-        ),
+        [Moves,           Retracts,      Stays,         Moves,         Moves],
+        [SidewaysFirst,   SidewaysFirst, RaisesFirst,   SidewaysFirst, SidewaysFirst],
+        [Shortest,        Counts,        Counts,        WithinTurn,    Counts],
+        [EachAxis,        EachAxis,      Straight,      Straight,      Straight],
+        [Increments,      Increments,    Units,         Units,         Units],
+        [EndOfBlock,      EndOfBlock,    Comment,       Comment,       Comment],
+        [Millimetre,      Inch,          Millimetre,    Millimetre,    Millimetre],
+        [KeepsLength,     CancelsLength, KeepsLength,   KeepsLength,   KeepsLength],
+        [WithG43,         WithG43,       WithG43,       Always,        Always],
+        [KeepsSpindle,    StopsSpindle,  KeepsSpindle,  KeepsSpindle,  StopsSpindle],
+        [InitialLevel,    InitialLevel,  PlaneR,        InitialLevel,  InitialLevel],
+        [WithoutLength,   WithoutLength, WithoutLength, WithLength,    WithoutLength],
+        [FirstOffset,     FirstOffset,   FirstOffset,   NoOffset,      FirstOffset],
+        [Iso,             Iso,           Rs274Ngc,      Sinumerik,     Heidenhain],
+        [LastH,           LastH,         OfTool,        OfTool,        OfTool],
+        [KeepsPreset,     KeepsPreset,   EndsPreset,    EndsPreset,    EndsPreset],
+        [MovesZ,          MovesZ,        WithNextZ,     WithNextZ,     WithNextZ],
+        [RepeatsByK,      RepeatsByL,    RepeatsByL,    RepeatsByK,    RepeatsByL],
+        [Increments,      Units,         Units,         Units,         Units],
+        [TableAsItStands, TableAtZero,   TableAtZero,   TableAtZero,   TableAtZero],
+        [ByAxes,          ByAxes,        ByAxes,        ByAxes,        ByAxes],
+        [KeepsModes,      KeepsModes,    SetsModes,     KeepsModes,    KeepsModes],
     ]
 };
 
@@ -594,7 +485,7 @@ pub struct ControlRules {
 impl ControlRules {
     /// Returns the names of the controls that are known.
     pub fn names() -> impl Iterator<Item = &'static str> {
-        CONTROLS.iter().map(|(name, _)| *name)
+        CONTROLS.into_iter()
     }
 
     /// Returns a control that is known by name: it states every rule but the operator's switch for
@@ -603,16 +494,16 @@ impl ControlRules {
     /// # Errors
     /// [`ControlError::UnknownName`] for another name.
     pub fn named(name: &str) -> Result<ControlRules, ControlError> {
-        let known = CONTROLS.iter().find(|(known, _)| *known == name);
-        let Some((_, choices)) = known else {
+        let Some(control) = CONTROLS.iter().position(|known| *known == name) else {
             return Err(ControlError::UnknownName {
                 name: shown(name),
                 nearest: closest(name, ControlRules::names()),
             });
         };
-        let stated = Rule::all().zip(choices.iter().copied());
-        let is_open = |rule: Rule| OPEN.contains(&(name, rule));
-        Ok(ControlRules { stated: stated.filter(|(rule, _)| !is_open(*rule)).collect() })
+        let stated = Rule::all().zip(CONTROL_CHOICES.map(|choices| choices[control]));
+        Ok(ControlRules {
+            stated: stated.filter(|(rule, _)| !OPEN.contains(&(name, *rule))).collect(),
+        })
     }
 
     /// Parses a control from TOML: every rule by its key, but for the operator's switch. `file` is the file's name in errors.
@@ -660,10 +551,10 @@ impl ControlRules {
             };
             stated.insert(entry.rule, *choice);
         }
-        let is_missing = |entry: &&Entry| {
-            entry.rule != Rule::OptionalBlocks && !stated.contains_key(&entry.rule)
-        };
-        match RULES.iter().find(is_missing) {
+        match RULES
+            .iter()
+            .find(|entry| entry.rule != Rule::OptionalBlocks && !stated.contains_key(&entry.rule))
+        {
             None => Ok(ControlRules { stated }),
             Some(Entry { key, about, .. }) => {
                 Err(ControlError::Missing { file: file.to_owned(), key, about })
@@ -694,7 +585,8 @@ impl ControlRules {
 
     /// Writes the rules as a control's file. One that is not stated is a comment with its choices.
     pub fn to_toml(&self) -> String {
-        let line = |rule: Rule| {
+        let rules = Rule::all().filter(|rule| *rule != Rule::OptionalBlocks);
+        let lines = rules.map(|rule| {
             let (key, about) = (rule.key(), rule.about());
             match self.get(rule) {
                 Some(choice) => {
@@ -708,8 +600,8 @@ impl ControlRules {
                     format!("# {about}: state {key} = {words}\n")
                 }
             }
-        };
-        Rule::all().filter(|rule| *rule != Rule::OptionalBlocks).map(line).collect()
+        });
+        lines.collect()
     }
 }
 

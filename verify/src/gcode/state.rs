@@ -191,6 +191,7 @@ impl ControlState {
         let mut result = position;
         result[2] = result[2].zip(self.length.length()).map(|(z, length)| z - length);
         let mut result = add(result, self.origin, -1.0);
+        // The inverse of the map to the machine, from its end.
         let turn = about(2, -self.origin_rotation);
         let turned = rotated(&turn, linear(result));
         result[..3].copy_from_slice(&turned);
@@ -236,6 +237,7 @@ impl ControlState {
         }
         let mut workpiece = self.to_workpiece(position);
         let at_zero = workpiece[3..].iter().all(|angle| *angle == Some(0.0));
+        // The kinematics of the machine have no part in it only while the rotary axes stand at 0.
         if (turns[0] != turns[1] || turns[0] && changes_machine) && !at_zero {
             workpiece[..3].fill(None);
         }
@@ -251,6 +253,7 @@ impl ControlState {
     /// Converts a position from one work offset to another: w' = Q'⁻¹ (Q w + w₀ − w₀').
     fn change_offset(&self, new: &ControlState, workpiece: Position) -> Position {
         let is_same = self.work_offset == new.work_offset;
+        // An origin that stays changes nothing, also where it is unknown.
         let mut change = [Some(0.0); 6];
         for (change, (before, after)) in
             change.iter_mut().zip(self.origin.into_iter().zip(new.origin))
@@ -260,6 +263,7 @@ impl ControlState {
             }
         }
         let back = about(2, -new.origin_rotation);
+        // Then Q cancels: the position needs no turn, by which an unknown coordinate would spread to others.
         if self.origin_rotation == new.origin_rotation {
             let turned = rotated(&back, linear(change));
             change[..3].copy_from_slice(&turned);

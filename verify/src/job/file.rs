@@ -1,9 +1,9 @@
 //! Job files: TOML, with paths relative to the folder of the file.
 
-use super::{Hand, JobError, Program};
+use super::program::{Program, read_control};
+use super::{Hand, JobError};
 use crate::ToolSelection;
 use crate::gcode::{Choice, ControlRules, ControlSetup, Rule};
-use crate::machine::Machine;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::ffi::OsString;
@@ -189,7 +189,6 @@ impl JobFile {
     pub fn files(&self) -> Vec<(String, &Path)> {
         let mut files =
             vec![("part".to_owned(), &*self.part), ("program".to_owned(), &*self.program)];
-        let has_ending = |file: &&Path, ending| file.extension().is_some_and(|end| end == ending);
         for (role, name) in [("machine", &self.machine), ("control", &self.control)] {
             let file = name.as_deref().map(Path::new).filter(|file| has_ending(file, "toml"));
             files.extend(file.map(|file| (role.to_owned(), file)));
@@ -339,7 +338,8 @@ impl JobFile {
             }
             JobTools::Numbered { library, entries } => (library, entries),
         };
-        let tool = |number: Option<u32>| {
+        let mut tools = Vec::new();
+        for number in used {
             // A program without numbers needs no choice if there is one tool.
             let known = match (number, entries.iter().next()) {
                 (Some(number), _) => number,
@@ -354,9 +354,10 @@ impl JobFile {
             };
             let named = NamedTool { name, library, params: entry.params(), root: None };
             let allow = entry.allow.into_iter().collect();
-            Ok(UsedTool { motions: ToolSelection::Number(number), named, hand: entry.hand, allow })
-        };
-        used.into_iter().map(tool).collect()
+            let motions = ToolSelection::Number(number);
+            tools.push(UsedTool { motions, named, hand: entry.hand, allow });
+        }
+        Ok(tools)
     }
 }
 
@@ -371,6 +372,10 @@ impl JobTools {
                 .collect(),
         }
     }
+}
+
+fn has_ending(file: &Path, ending: &str) -> bool {
+    file.extension().is_some_and(|end| end == ending)
 }
 
 /// Returns the origins of G54 to G59.3 by their names.
@@ -394,47 +399,10 @@ fn work_offsets(named: &BTreeMap<String, Vec<f64>>) -> Result<[Option<[f64; 6]>;
 impl ToolEntry {
     /// Returns the values of the params as `name=value`.
     fn params(&self) -> Vec<String> {
-        let text = |value: &ParamValue| match value {
-            ParamValue::Number(number) => number.to_string(),
-            ParamValue::Text(text) => text.clone(),
-        };
-        self.set.iter().map(|(name, value)| format!("{name}={}", text(value))).collect()
-    }
-}
-
-/// Reads a control by its name, or from a file in TOML.
-///
-/// # Errors
-/// If there is no such control, or its file is refused.
-pub fn read_control(name: &Path) -> Result<ControlRules, JobError> {
-    Ok(match toml_text(name)? {
-        Some((text, file)) => ControlRules::parse(&text, &file)?,
-        None => ControlRules::named(&name.to_string_lossy())?,
-    })
-}
-
-/// Reads a machine by its name, or from a file in TOML.
-///
-/// # Errors
-/// If there is no such machine, or its file is refused.
-pub fn read_machine(name: &Path) -> Result<Machine, JobError> {
-    Ok(match toml_text(name)? {
-        Some((text, file)) => Machine::parse(&text, &file)?,
-        None => Machine::named(&name.to_string_lossy())?,
-    })
-}
-
-/// Returns the text of a TOML file that is named, and its name for messages; `None` for another name.
-///
-/// # Errors
-/// If the file cannot be read.
-fn toml_text(name: &Path) -> Result<Option<(String, String)>, JobError> {
-    if name.extension().is_none_or(|extension| extension != "toml") {
-        return Ok(None);
-    }
-    let file = name.display().to_string();
-    match std::fs::read_to_string(name) {
-        Ok(text) => Ok(Some((text, file))),
-        Err(source) => Err(JobError::Unreadable { file, source }),
+        let params = self.set.iter().map(|(name, value)| match value {
+            ParamValue::Number(number) => format!("{name}={number}"),
+            ParamValue::Text(text) => format!("{name}={text}"),
+        });
+        params.collect()
     }
 }

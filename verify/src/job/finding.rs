@@ -1,61 +1,10 @@
-//! Findings of all kinds, as they are printed.
+//! The findings of a report, joined over its readings, and their text.
 
-use super::json::SurfaceRow;
-use super::machine::{MachineFinding, MachineRow};
-use super::report::{JobReport, PairReport, Remedy, by_reading};
-use super::stock::{StockFinding, StockRow};
-use super::text::describe;
-use crate::{FindingGroup, FindingKind};
-use serde::Serialize;
-
-/// A finding of a job.
-#[derive(Clone, Debug)]
-#[non_exhaustive]
-pub struct JobFinding {
-    /// The keyword of its kind: `deep`, `near`, `inside`, `undecided`, `ambiguous`, `spindle`, `length`, `limit`, `singular` or `stock`.
-    pub rule: &'static str,
-    /// Its consequence.
-    pub severity: Severity,
-    /// The line of the worst motion.
-    pub line: usize,
-    /// The lines of the first and the last motion.
-    pub lines: [usize; 2],
-    /// A sentence without a full stop, with the readings for which it holds.
-    pub text: String,
-    /// The readings of the program under which it holds, if not under all.
-    pub under: Option<String>,
-    /// The finding itself.
-    pub detail: FindingDetail,
-}
-
-/// Subject of a finding.
-#[derive(Clone, Debug)]
-pub enum FindingDetail {
-    /// A surface of a tool at the part or at a fixture.
-    Surface {
-        /// Index of the tool and the body in the report's pairs.
-        pair: usize,
-        /// The consecutive motions.
-        group: Box<FindingGroup>,
-        /// The changes that clear the worst.
-        remedy: Remedy,
-    },
-    /// The machine.
-    Machine(MachineFinding),
-    /// The stock.
-    Stock(StockFinding),
-}
-
-/// The consequence of a finding.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Severity {
-    /// A rule is violated.
-    Violation,
-    /// A motion could not be checked in full.
-    Undecided,
-    /// The verdict does not depend on it.
-    Remark,
-}
+use super::machine::MachineFindingKind;
+use super::report::{FindingDetail, JobFinding, JobReport, PairReport, Remedy, Severity};
+use crate::{Finding, FindingGroup, FindingKind, Tilt};
+use std::fmt::Write as _;
+use touchoff::{Interval, SurfaceId, Unit};
 
 /// Returns the keyword of a finding's kind.
 pub(super) fn rule(kind: &FindingKind) -> &'static str {
@@ -74,7 +23,11 @@ pub(super) fn all(report: &JobReport<'_>) -> Vec<JobFinding> {
     for (reading, finding) in &report.machine {
         let finding = JobFinding {
             rule: finding.rule(),
-            severity: finding.severity(),
+            // The machine cannot keep a limit, but a singular pass only slows it down.
+            severity: match finding.kind {
+                MachineFindingKind::Singular { .. } => Severity::Remark,
+                _ => Severity::Violation,
+            },
             line: finding.line,
             lines: [finding.line; 2],
             text: finding.to_string(),
@@ -100,25 +53,25 @@ pub(super) fn all(report: &JobReport<'_>) -> Vec<JobFinding> {
     let is_same =
         |one: &JobFinding, other: &JobFinding| (one.line, &one.text) == (other.line, &other.text);
     let joined = by_reading(found.into_iter(), is_same);
-    let named = |(mut finding, readings): (JobFinding, Vec<usize>)| {
+    let named = joined.into_iter().map(|(mut finding, readings)| {
         if let Some(under) = report.job.program.under(&readings) {
             finding.text = format!("{}; {under}", finding.text);
             finding.under = Some(under);
         }
         finding
-    };
-    joined.into_iter().map(named).collect()
+    });
+    named.collect()
 }
 
 /// Returns the findings of surfaces, the worst first, each with the index of its reading.
 fn surfaces(report: &JobReport<'_>) -> Vec<(usize, JobFinding)> {
-    let groups = |(index, pair): (usize, &PairReport)| {
+    let mut surfaces: Vec<(usize, FindingGroup, Remedy)> = Vec::new();
+    for (index, pair) in report.pairs.iter().enumerate() {
         let groups = pair.groups.iter().zip(&pair.remedies);
-        groups.map(|(group, remedy)| (index, *group, *remedy)).collect::<Vec<_>>()
-    };
-    let mut surfaces: Vec<_> = report.pairs.iter().enumerate().flat_map(groups).collect();
+        surfaces.extend(groups.map(|(group, remedy)| (index, *group, *remedy)));
+    }
     surfaces.sort_by(|one, other| other.1.worst.kind.severity(&one.1.worst.kind));
-    let finding = |(index, group, remedy): (usize, FindingGroup, Remedy)| {
+    let findings = surfaces.into_iter().map(|(index, group, remedy)| {
         let pair = &report.pairs[index];
         let kind = &group.worst.kind;
         let open = matches!(kind, FindingKind::Undecided { .. } | FindingKind::Ambiguous(_));
@@ -132,39 +85,211 @@ fn surfaces(report: &JobReport<'_>) -> Vec<(usize, JobFinding)> {
             detail: FindingDetail::Surface { pair: index, group: Box::new(group), remedy },
         };
         (pair.reading, finding)
-    };
-    surfaces.into_iter().map(finding).collect()
+    });
+    findings.collect()
 }
 
-/// A finding as a JSON object.
-#[derive(Serialize)]
-pub(super) struct FindingRow<'a> {
-    #[serde(flatten)]
-    kind: KindRow<'a>,
-    /// The readings of the program under which it holds, if not under all.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    under: Option<&'a str>,
-}
-
-#[derive(Serialize)]
-#[serde(untagged)]
-enum KindRow<'a> {
-    Surface(Box<SurfaceRow<'a>>),
-    Machine(MachineRow<'a>),
-    Stock(StockRow<'a>),
-}
-
-impl<'a> FindingRow<'a> {
-    pub(super) fn of(report: &'a JobReport<'_>, finding: &'a JobFinding) -> FindingRow<'a> {
-        let file = report.job.program.name();
-        let kind = match &finding.detail {
-            FindingDetail::Surface { pair, group, remedy } => {
-                let pair = &report.pairs[*pair];
-                KindRow::Surface(Box::new(SurfaceRow::of(report, pair, group, *remedy)))
-            }
-            FindingDetail::Machine(finding) => KindRow::Machine(finding.row(file)),
-            FindingDetail::Stock(finding) => KindRow::Stock(finding.row(file, report.job.unit())),
-        };
-        FindingRow { kind, under: finding.under.as_deref() }
+/// Joins what several readings have alike: each with the readings that have it, in the order of the first.
+fn by_reading<T>(
+    found: impl Iterator<Item = (usize, T)>,
+    is_same: impl Fn(&T, &T) -> bool,
+) -> Vec<(T, Vec<usize>)> {
+    let mut joined: Vec<(T, Vec<usize>)> = Vec::new();
+    for (reading, item) in found {
+        // The first reading has nothing to be joined with.
+        let mut known = joined.iter_mut().filter(|_| reading > 0);
+        match known.find(|(known, _)| is_same(known, &item)) {
+            Some((_, readings)) if !readings.contains(&reading) => readings.push(reading),
+            _ => joined.push((item, vec![reading])),
+        }
     }
+    joined
+}
+
+impl JobReport<'_> {
+    /// Summarises the findings of each tool at each body, those of several readings in one line if they are alike.
+    pub fn summaries(&self) -> Vec<String> {
+        let texts = self.pairs.iter().map(|pair| (pair.reading, summary(self, pair)));
+        let joined = by_reading(texts, |known, text| known == text).into_iter();
+        let named = joined.map(|(text, readings)| match self.job.program.under(&readings) {
+            Some(under) => format!("{under}: {text}"),
+            None => text,
+        });
+        named.collect()
+    }
+}
+
+/// Describes the findings of consecutive motions.
+///
+/// The remedy is that of the worst motion.
+fn describe(
+    report: &JobReport<'_>,
+    pair: &PairReport,
+    group: &FindingGroup,
+    remedy: Remedy,
+) -> String {
+    let (info, unit) = (report.info(pair), report.job.unit());
+    let body = &report.body(pair).name;
+    let finding = &group.worst;
+    let name = |surface: SurfaceId| &*info.surface(surface).name;
+    let at = place(group);
+    let text = match &finding.kind {
+        FindingKind::Deep { surface, through: true, witness, .. } => {
+            let point = unit.format_point(&witness.point);
+            format!("{} passes right through {body} at {point}, {at}", name(*surface))
+        }
+        FindingKind::Deep {
+            surface, depth: Interval { low, high }, max_depth, witness, ..
+        } => {
+            let bound = if max_depth > high && finding.from.is_some() {
+                format!("; at most {} {unit}", format_small(*max_depth, unit))
+            } else {
+                String::new()
+            };
+            let (name, depth) = (name(*surface), format_interval(*low, *high, unit));
+            let point = unit.format_point(&witness.point);
+            format!("{name} is {depth} {unit} deep in {body} at {point}, {at}{bound}")
+        }
+        FindingKind::Near {
+            surface, margin, distance: Interval { low, high }, witness, ..
+        } => format!(
+            "{} is {} {unit} from {body} at {}, less than its margin of {margin} {unit}, {at}",
+            name(*surface),
+            format_interval(*low, *high, unit),
+            unit.format_point(&witness.point),
+        ),
+        FindingKind::Inside { surface: None } => {
+            format!("the tool is wholly inside {body}, {at}")
+        }
+        FindingKind::Inside { surface: Some(surface) } => {
+            format!("{} is inside {body}, away from its surface, {at}", name(*surface))
+        }
+        FindingKind::Undecided { surface } => format!(
+            "it is not decided whether {} is too deep in {body} from here on, {at}: try a larger `--resolution`",
+            name(*surface)
+        ),
+        FindingKind::Ambiguous(error) => format!("{error}; only this position was checked"),
+    };
+    let cutting = finding.kind.surface().is_some_and(|surface| info.surface(surface).cutting);
+    let mut text = match remedy.lift {
+        // A gouge of a flank is not mended by a lift.
+        Some(_) if cutting => text,
+        Some(lift) => {
+            format!("{text}; with {} more reach it is clear", unit.format(lift))
+        }
+        None => text,
+    };
+    if let Some(Tilt { angle, axis }) = remedy.tilt {
+        // Adding 0 to a rounded value makes -0 a 0.
+        let [i, j, k] = [axis.x, axis.y, axis.z].map(|value| (value * 1e5).round() * 1e-5 + 0.0);
+        // Writing to a String does not fail.
+        let _ = write!(
+            text,
+            "; with the axis tilted by {:.2}° to ({i:.5}, {j:.5}, {k:.5}) no surface is too deep there",
+            angle.to_degrees()
+        );
+    }
+    match report.tool(pair).number() {
+        Some(number) => format!("T{number} {text}"),
+        None => text,
+    }
+}
+
+/// Describes the motions of a group.
+fn place(group: &FindingGroup) -> String {
+    let Finding { from, time, rapid, .. } = group.worst;
+    let rapid = if rapid { ", in rapid traverse" } else { "" };
+    match (group.motions, from) {
+        (1, Some(from)) if group.worst.any_rates => format!(
+            "in rapid traverse from line {from} at some rates of its axes (the straight line is clear; `rapid` of the \
+             control or of the machine's axes states the path)"
+        ),
+        (1, Some(from)) => {
+            format!("at fraction {time:.2} of the motion from line {from}{rapid}")
+        }
+        (1, None) => format!("at the first position{rapid}"),
+        (motions, _) => format!(
+            "on {motions} motions, lines {} to {}{rapid}",
+            group.first.line, group.last.line
+        ),
+    }
+}
+
+/// Formats an interval, as one number if both ends print alike.
+fn format_interval(low: f64, high: f64, unit: Unit) -> String {
+    let [low, high] = [low, high].map(|value| format_small(value, unit));
+    if low == high { high } else { format!("{low} to {high}") }
+}
+
+/// Formats a length with the usual decimals. A length below 0.01 mm of which these show fewer than two nonzero
+/// digits is written with an exponent.
+fn format_small(value: f64, unit: Unit) -> String {
+    let text = unit.format_number(value);
+    let digits = text.chars().filter(|c| ('1'..='9').contains(c)).count();
+    if value == 0.0 || digits > 1 || value.abs() >= 0.01 / unit.millimetres() {
+        text
+    } else {
+        format!("{value:.2e}")
+    }
+}
+
+fn plural(count: usize) -> &'static str {
+    if count == 1 { "" } else { "s" }
+}
+
+/// Summarises the findings of a tool at a body: per surface, the number of motions and the deepest.
+fn summary(report: &JobReport<'_>, pair: &PairReport) -> String {
+    let (info, unit, body) = (report.info(pair), report.job.unit(), report.body(pair));
+    let number = report.tool(pair).number();
+    let PairReport { report, groups, .. } = pair;
+    let motions = report.motions;
+    let tool = match number {
+        Some(number) => format!("T{number} at {}: ", body.name),
+        None if body.is_part() => String::new(),
+        None => format!("{}: ", body.name),
+    };
+    let count = groups.len();
+    if count == 0 {
+        return format!("{tool}no findings in {motions} motion{}", plural(motions));
+    }
+    let mut each = Vec::new();
+    for (index, surface) in info.surfaces.iter().enumerate() {
+        let mut on = 0;
+        let mut deepest: Option<(f64, usize)> = None;
+        for finding in &report.findings {
+            if finding.kind.surface() != Some(SurfaceId(index)) {
+                continue;
+            }
+            on += 1;
+            let depth = match finding.kind {
+                FindingKind::Deep { through: true, .. } => f64::INFINITY,
+                FindingKind::Deep { depth, .. } => depth.high,
+                _ => continue,
+            };
+            // Of equal depths the last one is named.
+            if deepest.is_none_or(|(known, _)| depth >= known) {
+                deepest = Some((depth, finding.line));
+            }
+        }
+        let deepest = match deepest {
+            None => String::new(),
+            Some((f64::INFINITY, line)) => format!(" (right through, line {line})"),
+            Some((depth, line)) => {
+                format!(" (deepest {}, line {line})", unit.format(depth))
+            }
+        };
+        if on > 0 {
+            each.push(format!("{} on {on} motion{}{deepest}", surface.name, plural(on)));
+        }
+    }
+    let kinds = || report.findings.iter().map(|finding| finding.kind);
+    let inside = kinds().filter(|kind| *kind == FindingKind::Inside { surface: None }).count();
+    let ambiguous = kinds().filter(|kind| matches!(kind, FindingKind::Ambiguous(_))).count();
+    for (word, count) in [("wholly inside", inside), ("ambiguous", ambiguous)] {
+        if count > 0 {
+            each.push(format!("{word} on {count} motion{}", plural(count)));
+        }
+    }
+    let each = each.join(", ");
+    format!("{tool}{count} finding{} in {motions} motion{}: {each}", plural(count), plural(motions))
 }

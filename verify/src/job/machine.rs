@@ -1,6 +1,6 @@
 //! Findings about the machine: spindle, length offsets, limits of axes, singular passes.
 
-use super::{Hand, Job, Severity};
+use super::{Hand, Job};
 use crate::MachineProgram;
 use crate::gcode::Spindle;
 use crate::machine::Letter;
@@ -86,20 +86,18 @@ fn unit(letter: Letter) -> &'static str {
 impl MachineFinding {
     /// Returns the findings of all readings, each with the index of its reading.
     pub(super) fn all(job: &Job<'_>) -> Vec<(usize, MachineFinding)> {
-        let of = |(index, program): (usize, &MachineProgram)| {
+        let mut all = Vec::new();
+        for (index, program) in job.program.readings().iter().enumerate() {
             let findings = MachineFinding::of_reading(program, job);
-            findings.into_iter().map(move |finding| (index, finding))
-        };
-        job.program.readings().iter().enumerate().flat_map(of).collect()
+            all.extend(findings.into_iter().map(|finding| (index, finding)));
+        }
+        all
     }
 
     /// Returns the findings of a program on its machine: the spindle, length offsets, limits, then singular passes.
     fn of_reading(program: &MachineProgram, job: &Job<'_>) -> Vec<MachineFinding> {
         let summary = program.summary();
         let mut findings = Vec::new();
-        let mut add = |line: usize, kind: MachineFindingKind| {
-            findings.push(MachineFinding { line, kind });
-        };
         // A program that never starts the spindle has a gap instead.
         let starts = summary.states_spindle();
         for &(line, tool_number, spindle) in &summary.spindle {
@@ -113,18 +111,26 @@ impl MachineFinding {
                 }
                 _ => continue,
             };
-            add(line, MachineFindingKind::Spindle { fault, tool_number });
+            findings.push(MachineFinding {
+                line,
+                kind: MachineFindingKind::Spindle { fault, tool_number },
+            });
         }
         for &(line, register, tool_number) in &summary.other_lengths {
-            add(line, MachineFindingKind::Length { register, tool_number });
+            findings.push(MachineFinding {
+                line,
+                kind: MachineFindingKind::Length { register, tool_number },
+            });
         }
         for (line, violation) in &summary.limits {
             let (joint, value, limit) = (violation.letter, violation.value, violation.limit);
-            add(*line, MachineFindingKind::Limit { joint, unit: unit(joint), value, limit });
+            let kind = MachineFindingKind::Limit { joint, unit: unit(joint), value, limit };
+            findings.push(MachineFinding { line: *line, kind });
         }
         for (line, pass) in &summary.singular {
             let joint = pass.letter;
-            add(*line, MachineFindingKind::Singular { joint, unit: unit(joint), turn: pass.turn });
+            let kind = MachineFindingKind::Singular { joint, unit: unit(joint), turn: pass.turn };
+            findings.push(MachineFinding { line: *line, kind });
         }
         findings
     }
@@ -136,14 +142,6 @@ impl MachineFinding {
             MachineFindingKind::Length { .. } => "length",
             MachineFindingKind::Limit { .. } => "limit",
             MachineFindingKind::Singular { .. } => "singular",
-        }
-    }
-
-    /// Returns the severity. The machine cannot keep a limit, but a singular pass only slows it down.
-    pub(super) fn severity(&self) -> Severity {
-        match self.kind {
-            MachineFindingKind::Singular { .. } => Severity::Remark,
-            _ => Severity::Violation,
         }
     }
 

@@ -15,18 +15,16 @@ mod machine;
 mod pass;
 mod program;
 mod report;
-mod sarif;
 mod stock;
-mod text;
 
 pub use file::{
     FixtureEntry, JobFile, JobTools, NamedTool, ParamValue, StockEntry, ToolEntry, UsedTool,
-    read_control, read_machine,
 };
-pub use finding::{FindingDetail, JobFinding, Severity};
 pub use machine::{MachineFinding, MachineFindingKind, SpindleFault};
-pub use program::{DEFAULT_MACHINE, Program};
-pub use report::{JobReport, NO_INSIDE, PairReport, Remedy, Verdict};
+pub use program::{DEFAULT_MACHINE, Program, read_control, read_machine};
+pub use report::{
+    FindingDetail, JobFinding, JobReport, NO_INSIDE, PairReport, Remedy, Severity, Verdict,
+};
 pub use stock::{CutStock, StockFinding};
 
 use crate::gcode::ControlError;
@@ -272,6 +270,7 @@ impl<'a> Job<'a> {
                     verifier = verifier.with_allowance(&surface.name, -margin)?;
                 }
             }
+            // What may be touched has the allowance 0, that of every surface without another.
             Some(_) => (),
             None => {
                 verifier = verifier.with_tolerance(self.tolerance)?;

@@ -1,22 +1,24 @@
-//! One pass over a reading of the program: each motion goes to its tool at every body, and to the stock.
+//! The check of a job: one pass over each reading of the program, in which each motion goes to its tool at every body, and to the
+//! stock.
 
+use super::finding;
+use super::machine::MachineFinding;
 use super::program::BlockMoves;
-use super::report::{PairReport, Remedy};
+use super::report::{JobReport, PairReport, Remedy};
 use super::stock::{CutStock, StockCut};
 use super::{Job, JobError, JobTool};
 use crate::check::{ApproachSearch, MoveCheck};
 use crate::gcode::WorkOffset;
-use crate::{FindingGroup, Move, Verifier};
-use touchoff::tool::Symmetry;
+use crate::{FindingGroup, Gap, Verifier};
 
 /// The results of one reading.
-pub(super) struct ReadingResult {
+struct ReadingResult {
     /// Each tool at each body.
-    pub(super) pairs: Vec<PairReport>,
+    pairs: Vec<PairReport>,
     /// The stock after it, if the job has one.
-    pub(super) cut: Option<CutStock>,
+    cut: Option<CutStock>,
     /// The work offsets under which no tool comes near the part, with their lines, if the reading has several.
-    pub(super) far_offsets: Vec<(WorkOffset, usize)>,
+    far_offsets: Vec<(WorkOffset, usize)>,
 }
 
 /// The closest approach to the part under one work offset, of one tool.
@@ -27,11 +29,57 @@ struct OffsetApproach<'a> {
 }
 
 impl<'a> Job<'a> {
+    /// Checks the program in every reading. `progress` is called with the number of motions checked since the last call, from any
+    /// thread; the numbers add up to [`Program::motions`](super::Program::motions) times the number of bodies.
+    ///
+    /// # Errors
+    /// If the program states another unit or cutter than the job, a tool cannot be certified or has not a surface that is allowed a
+    /// depth, or the stock cannot be made or cut.
+    pub fn check(&self, progress: &(dyn Fn(usize) + Sync)) -> Result<JobReport<'_>, JobError> {
+        for JobTool { motions, tool, .. } in &self.tools {
+            self.program.check_tool(*motions, tool.info(), self.unit())?;
+        }
+        let (mut pairs, mut cuts) = (Vec::new(), Vec::new());
+        let mut gaps = self.program.gaps();
+        let mut readings = self.program.readings().iter();
+        if let (Some(line), Some(_)) =
+            (readings.find_map(|reading| reading.summary().any_rapid), &self.stock)
+        {
+            let reason = "the path of several axes in rapid traverse is checked against the stock on the straight line only: \
+                          state `rapid` of the control, or the `rapid` rates of the machine's axes";
+            gaps.push(Gap::open(line, reason.to_owned()));
+        }
+        for reading in 0..self.program.reading_count() {
+            let result = self.check_reading(reading, progress)?;
+            pairs.extend(result.pairs);
+            let far = result.far_offsets.into_iter().map(|(offset, line)| {
+                let reason = format!(
+                    "under {offset} the tool never comes within its diameter of the part: check {offset} in `work_offsets`, \
+                     or give a job per part"
+                );
+                (line, reason)
+            });
+            let thin = result.cut.iter().flat_map(|cut| cut.too_thin.iter().cloned());
+            for (line, reason) in far.chain(thin) {
+                let gap = Gap::open(line, reason);
+                if !gaps.contains(&gap) {
+                    gaps.push(gap);
+                }
+            }
+            cuts.extend(result.cut);
+        }
+        gaps.sort_by_key(|gap| (!gap.is_open, gap.line));
+        let machine = MachineFinding::all(self);
+        let mut report = JobReport { job: self, pairs, machine, cuts, gaps, findings: Vec::new() };
+        report.findings = finding::all(&report);
+        Ok(report)
+    }
+
     /// Checks one reading of the program.
     ///
     /// # Errors
     /// If a tool cannot be certified, a body's link is not the machine's, or the stock cannot be made or cut.
-    pub(super) fn check_reading(
+    fn check_reading(
         &self,
         reading: usize,
         progress: &(dyn Fn(usize) + Sync),
@@ -46,6 +94,7 @@ impl<'a> Job<'a> {
                 links.push(body.link);
             }
         }
+        // Tool by tool, each at every body: the index of a pair follows from those of both.
         let mut verifiers: Vec<Verifier<'a>> = Vec::new();
         for tool in &self.tools {
             for body in &self.bodies {
@@ -73,11 +122,11 @@ impl<'a> Job<'a> {
             None => None,
         };
 
-        let symmetry = |number: Option<u32>| -> Option<Symmetry> {
-            Some(self.tool_of(number)?.tool.info().symmetry)
-        };
+        // A tool that makes all motions is not changed, whatever numbers the program has.
         let restarts = !self.tools.iter().any(|tool| tool.motions == crate::ToolSelection::All);
-        let blocks = self.program.blocks(reading, &links, self.unit(), restarts, symmetry)?;
+        let blocks = self.program.blocks(reading, &links, self.unit(), restarts, |number| {
+            Some(self.tool_of(number)?.tool.info().symmetry)
+        })?;
         for BlockMoves { tool: number, frames } in blocks {
             let Some(index) = self.tool_index(number) else { continue };
             for (frame, check) in frame_of.iter().zip(&mut checks[index * self.bodies.len()..]) {
@@ -87,8 +136,9 @@ impl<'a> Job<'a> {
             }
             let of_tool = approaches.iter_mut().skip(index).step_by(self.tools.len());
             for approach in of_tool {
-                let is_its = |step: &&Move| step.work_offset == Some(approach.offset);
-                for step in frames[0].iter().filter(is_its) {
+                for step in
+                    frames[0].iter().filter(|step| step.work_offset == Some(approach.offset))
+                {
                     approach.search.add(std::slice::from_ref(step), &[]);
                     approach.has_moves = true;
                 }
@@ -104,14 +154,17 @@ impl<'a> Job<'a> {
         for (index, (verifier, check)) in verifiers.iter().zip(checks).enumerate() {
             let report = check.finish(progress)?;
             let groups = FindingGroup::join(&report.findings);
-            let remedy = |group: &FindingGroup| Remedy {
-                lift: verifier.lift(&group.worst),
-                tilt: verifier.tilt(&group.worst).filter(|_| self.program.turns_axis()),
-            };
-            let remedies = groups.iter().map(remedy).collect();
+            let remedies = groups
+                .iter()
+                .map(|group| Remedy {
+                    lift: verifier.lift(&group.worst),
+                    tilt: verifier.tilt(&group.worst).filter(|_| self.program.turns_axis()),
+                })
+                .collect();
             let (tool, body) = (index / self.bodies.len(), index % self.bodies.len());
             pairs.push(PairReport { tool, body, reading, report, groups, remedies });
         }
+        // An offset of another part, or with a wrong origin, is one under which no tool comes near this part.
         let near = approaches.into_iter().filter(|approach| approach.has_moves);
         let near = near.map(|approach| (approach.offset, approach.search.finish()));
         let near: Vec<WorkOffset> =

@@ -1,6 +1,6 @@
 //! A program of any kind: CL data, or G-code on a machine.
 
-use super::{JobError, read_machine};
+use super::JobError;
 use crate::gcode::{ControlRules, ControlSetup};
 use crate::machine::{Machine, Side};
 use crate::program::ProgramFile;
@@ -241,8 +241,8 @@ impl Program {
                 moves.map(move |step| BlockMoves { tool, frames: vec![vec![step]] })
             })),
             Program::Machine(readings) => {
-                let is_wanted = move |number| symmetry(number).is_some();
-                let blocks = readings[reading].blocks(links, unit, restarts, is_wanted)?;
+                let blocks = readings[reading]
+                    .blocks(links, unit, restarts, move |number| symmetry(number).is_some())?;
                 Box::new(blocks.map(|(tool, frames)| BlockMoves { tool, frames }))
             }
         })
@@ -256,12 +256,14 @@ impl Program {
         let Some(program) = self.readings().first() else {
             return Err(JobError::Mismatch("`moves_with` is for programs on a machine"));
         };
+        // Links are numbered from the base on.
         let axes = program.machine().axes().iter().filter(|axis| axis.side == Side::Table);
         let links: Vec<String> =
             iter::once("base".to_owned()).chain(axes.map(|axis| axis.letter.to_string())).collect();
         match links.iter().position(|link| link == axis) {
             // The last link carries the part.
             Some(link) if link + 1 == links.len() => Ok(None),
+            // The frame of another link is that of the machine, in which the part has to have a place.
             Some(link) => match program.part_origin() {
                 Some(origin) if origin[3..] == [0.0; 3] => Ok(Some(link)),
                 _ => Err(JobError::Mismatch(
@@ -287,4 +289,41 @@ fn tool_changes(programs: &[ClData]) -> Option<Gap> {
          knows where they start"
     );
     Some(Gap::said(line, reason))
+}
+
+/// Reads a control by its name, or from a file in TOML.
+///
+/// # Errors
+/// If there is no such control, or its file is refused.
+pub fn read_control(name: &Path) -> Result<ControlRules, JobError> {
+    Ok(match toml_text(name)? {
+        Some((text, file)) => ControlRules::parse(&text, &file)?,
+        None => ControlRules::named(&name.to_string_lossy())?,
+    })
+}
+
+/// Reads a machine by its name, or from a file in TOML.
+///
+/// # Errors
+/// If there is no such machine, or its file is refused.
+pub fn read_machine(name: &Path) -> Result<Machine, JobError> {
+    Ok(match toml_text(name)? {
+        Some((text, file)) => Machine::parse(&text, &file)?,
+        None => Machine::named(&name.to_string_lossy())?,
+    })
+}
+
+/// Returns the text of a TOML file that is named, and its name for messages; `None` for another name.
+///
+/// # Errors
+/// If the file cannot be read.
+fn toml_text(name: &Path) -> Result<Option<(String, String)>, JobError> {
+    if name.extension().is_none_or(|extension| extension != "toml") {
+        return Ok(None);
+    }
+    let file = name.display().to_string();
+    match std::fs::read_to_string(name) {
+        Ok(text) => Ok(Some((text, file))),
+        Err(source) => Err(JobError::Unreadable { file, source }),
+    }
 }

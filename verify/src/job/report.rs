@@ -1,11 +1,9 @@
-//! The result of checking a job.
+//! The result of checking a job: its findings, and the verdict.
 
 use super::machine::MachineFinding;
-use super::stock::CutStock;
-use super::text::summary;
-use super::{Body, Job, JobError, JobFinding, JobTool, Severity, finding, sarif};
+use super::stock::{CutStock, StockFinding};
+use super::{Body, Job, JobTool};
 use crate::{FindingGroup, Gap, Tilt, VerifyReport};
-use serde::Serialize;
 use touchoff::tool::ToolInfo;
 
 /// The verdict about a job.
@@ -61,66 +59,7 @@ pub struct JobReport<'a> {
     pub cuts: Vec<CutStock>,
     /// Everything that the program leaves open: first what allows no verdict, each in the order of lines.
     pub gaps: Vec<Gap>,
-    findings: Vec<JobFinding>,
-}
-
-/// A gap as a JSON object.
-#[derive(Serialize)]
-struct GapRow<'a> {
-    file: &'a str,
-    line: usize,
-    kind: &'static str,
-    /// Set if it allows no verdict.
-    open: bool,
-    reason: &'a str,
-}
-
-impl Job<'_> {
-    /// Checks the program in every reading. `progress` is called with the number of motions checked since the last call, from any
-    /// thread; the numbers add up to [`Program::motions`](super::Program::motions) times the number of bodies.
-    ///
-    /// # Errors
-    /// If the program states another unit or cutter than the job, a tool cannot be certified or has not a surface that is allowed a
-    /// depth, or the stock cannot be made or cut.
-    pub fn check(&self, progress: &(dyn Fn(usize) + Sync)) -> Result<JobReport<'_>, JobError> {
-        for JobTool { motions, tool, .. } in &self.tools {
-            self.program.check_tool(*motions, tool.info(), self.unit())?;
-        }
-        let (mut pairs, mut cuts) = (Vec::new(), Vec::new());
-        let mut gaps = self.program.gaps();
-        let summaries = || self.program.readings().iter().map(|reading| reading.summary());
-        if let (Some(line), Some(_)) =
-            (summaries().find_map(|summary| summary.any_rapid), &self.stock)
-        {
-            let reason = "the path of several axes in rapid traverse is checked against the stock on the straight line only: \
-                          state `rapid` of the control, or the `rapid` rates of the machine's axes";
-            gaps.push(Gap::open(line, reason.to_owned()));
-        }
-        for reading in 0..self.program.reading_count() {
-            let result = self.check_reading(reading, progress)?;
-            pairs.extend(result.pairs);
-            let far = result.far_offsets.into_iter().map(|(offset, line)| {
-                let reason = format!(
-                    "under {offset} the tool never comes within its diameter of the part: check {offset} in `work_offsets`, \
-                     or give a job per part"
-                );
-                (line, reason)
-            });
-            let thin = result.cut.iter().flat_map(|cut| cut.too_thin.iter().cloned());
-            for (line, reason) in far.chain(thin) {
-                let gap = Gap::open(line, reason);
-                if !gaps.contains(&gap) {
-                    gaps.push(gap);
-                }
-            }
-            cuts.extend(result.cut);
-        }
-        gaps.sort_by_key(|gap| (!gap.is_open, gap.line));
-        let machine = MachineFinding::all(self);
-        let mut report = JobReport { job: self, pairs, machine, cuts, gaps, findings: Vec::new() };
-        report.findings = finding::all(&report);
-        Ok(report)
-    }
+    pub(super) findings: Vec<JobFinding>,
 }
 
 impl JobReport<'_> {
@@ -149,22 +88,12 @@ impl JobReport<'_> {
         self.cuts.first()
     }
 
-    /// Summarises the findings of each tool at each body, those of several readings in one line if they are alike.
-    pub fn summaries(&self) -> Vec<String> {
-        let texts = self.pairs.iter().map(|pair| (pair.reading, summary(self, pair)));
-        let named = |(text, readings): (String, Vec<usize>)| match self.job.program.under(&readings)
-        {
-            Some(under) => format!("{under}: {text}"),
-            None => text,
-        };
-        by_reading(texts, |known, text| known == text).into_iter().map(named).collect()
-    }
-
     /// Returns the verdict. A violation is one whatever else is left open.
     pub fn verdict(&self) -> Verdict {
         let has =
             |severity: Severity| self.findings.iter().any(|finding| finding.severity == severity);
         match self.refusals().is_empty() {
+            // A violation is proved whatever is left open, unless the program seems to be in another unit.
             _ if has(Severity::Violation) && !self.is_misplaced() => Verdict::Findings,
             false => Verdict::None,
             true if has(Severity::Undecided) => Verdict::Findings,
@@ -191,6 +120,7 @@ impl JobReport<'_> {
         for reading in 0..self.job.program.reading_count() {
             let pairs: Vec<&PairReport> =
                 self.pairs.iter().filter(|pair| pair.reading == reading).collect();
+            // Without motions the approach says nothing.
             if pairs.iter().all(|pair| pair.report.moves == 0) {
                 is_checked = false;
                 continue;
@@ -245,46 +175,57 @@ impl JobReport<'_> {
         }
         reasons
     }
-
-    /// Returns a finding as an object for JSON.
-    pub fn row<'r>(&'r self, finding: &'r JobFinding) -> impl Serialize + 'r {
-        finding::FindingRow::of(self, finding)
-    }
-
-    /// Returns what is left open as objects for JSON.
-    pub fn gap_rows(&self) -> impl Iterator<Item = impl Serialize + '_> {
-        self.gaps.iter().map(|Gap { line, is_open, reason, .. }| GapRow {
-            file: self.job.program.name(),
-            line: *line,
-            kind: "not-checked",
-            open: *is_open,
-            reason,
-        })
-    }
-
-    /// Returns the findings in SARIF 2.1.0, for services of continuous integration.
-    pub fn sarif(&self) -> impl Serialize {
-        sarif::log(self)
-    }
 }
 
 /// The reason for which nothing inside a mesh can be found.
 pub const NO_INSIDE: &str = "the part's inside is undefined: its mesh leaks, is not consistently oriented, or \
                              is inside out, as a whole or in one connected component";
 
-/// Joins what several readings have alike: each with the readings that have it, in the order of the first.
-pub(super) fn by_reading<T>(
-    found: impl Iterator<Item = (usize, T)>,
-    is_same: impl Fn(&T, &T) -> bool,
-) -> Vec<(T, Vec<usize>)> {
-    let mut joined: Vec<(T, Vec<usize>)> = Vec::new();
-    for (reading, item) in found {
-        // The first reading has nothing to be joined with.
-        let mut known = joined.iter_mut().filter(|_| reading > 0);
-        match known.find(|(known, _)| is_same(known, &item)) {
-            Some((_, readings)) if !readings.contains(&reading) => readings.push(reading),
-            _ => joined.push((item, vec![reading])),
-        }
-    }
-    joined
+/// A finding of a job.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct JobFinding {
+    /// The keyword of its kind: `deep`, `near`, `inside`, `undecided`, `ambiguous`, `spindle`, `length`, `limit`, `singular` or `stock`.
+    pub rule: &'static str,
+    /// Its consequence.
+    pub severity: Severity,
+    /// The line of the worst motion.
+    pub line: usize,
+    /// The lines of the first and the last motion.
+    pub lines: [usize; 2],
+    /// A sentence without a full stop, with the readings for which it holds.
+    pub text: String,
+    /// The readings of the program under which it holds, if not under all.
+    pub under: Option<String>,
+    /// The finding itself.
+    pub detail: FindingDetail,
+}
+
+/// Subject of a finding.
+#[derive(Clone, Debug)]
+pub enum FindingDetail {
+    /// A surface of a tool at the part or at a fixture.
+    Surface {
+        /// Index of the tool and the body in the report's pairs.
+        pair: usize,
+        /// The consecutive motions.
+        group: Box<FindingGroup>,
+        /// The changes that clear the worst.
+        remedy: Remedy,
+    },
+    /// The machine.
+    Machine(MachineFinding),
+    /// The stock.
+    Stock(StockFinding),
+}
+
+/// The consequence of a finding.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Severity {
+    /// A rule is violated.
+    Violation,
+    /// A motion could not be checked in full.
+    Undecided,
+    /// The verdict does not depend on it.
+    Remark,
 }

@@ -106,6 +106,7 @@ impl StockCut {
         let info = tool.tool.info();
         let layer = stock.found_layer_of(tool.tool, *tolerance);
         *found_layer = found_layer.max(layer.unwrap_or(f64::INFINITY));
+        // A wide tool finds the thinnest layer that the spacing allows.
         if layer.is_none_or(|layer| layer > 2.0 * stock.found_layer(*tolerance)) {
             let name = tool.number().map_or(info.name.to_string(), |number| format!("T{number}"));
             let unit = self.unit;
@@ -134,12 +135,14 @@ impl StockCut {
         let mode = if step.rapid { MotionMode::Rapid } else { MotionMode::Feed };
         let contacts =
             stock.advance(tool.tool, &|time| step.path.pose(time), max_speed, mode, *tolerance)?;
-        let goes_on = |surface: usize| contacts.iter().any(|contact| contact.surface.0 == surface);
-        self.open.retain(|(surface, _)| goes_on(*surface));
+        // A surface that touches nothing on this motion begins another finding when it touches again.
+        self.open
+            .retain(|(surface, _)| contacts.iter().any(|contact| contact.surface.0 == *surface));
         for StockContact { surface, depth, point, continued, .. } in contacts {
             let known = self.open.iter().find(|(known, _)| *known == surface.0);
             if let Some((_, index)) = known.filter(|_| continued) {
                 let finding = &mut findings[*index];
+                // A block may have several moves.
                 finding.motions += usize::from(finding.last_line != step.line);
                 finding.last_line = step.line;
                 if depth > finding.depth {

@@ -1,8 +1,8 @@
 //! Forward kinematics: the pose of the tool relative to the workpiece or to another body of the machine.
 
-use super::rotation::{ROTATION_ERROR, rotation};
 use super::{JointError, Joints, Letter, MAX_DEGREES, MAX_LENGTH, Machine, Setup, Side};
 use nalgebra::{Matrix3, Point3, Vector3};
+use std::f64::consts::PI;
 use std::ops::Range;
 use touchoff::Pose;
 
@@ -67,7 +67,7 @@ pub struct RoundingBound {
 
 impl RotaryAxis {
     /// Returns the rotation matrix at joint values.
-    pub(super) fn turn(&self, joints: &Joints) -> Matrix3<f64> {
+    fn turn(&self, joints: &Joints) -> Matrix3<f64> {
         rotation(&self.direction, joints[self.letter.index()])
     }
 
@@ -154,12 +154,14 @@ impl Chain {
         chain.check(offset)?;
         check_length("the tool length", setup.tool_length)?;
         let (mut rotation, mut translation) = (Matrix3::identity(), Vector3::zeros());
+        // The factors of G, the rightmost first.
         for axis in chain.axes[..chain.table].iter().rev() {
             let turn = axis.turn(offset);
             rotation = turn * rotation;
             translation = axis.apply(&turn, &translation);
             chain.frame.turned += usize::from(offset[axis.letter.index()] != 0.0);
         }
+        // Without an offset of a rotary axis the frame stays the exact identity.
         if chain.frame.turned > 0 {
             (chain.frame.rotation, chain.frame.translation) = (rotation, translation);
         }
@@ -178,6 +180,7 @@ impl Chain {
             return Err(JointError::NoLink { link, last: self.link });
         }
         let mut chain = Chain { frame: Frame::IDENTITY, link, ..*self };
+        // Axes of the table beyond the link move the workpiece, and not the tool relative to the link.
         while chain.table > 0 && chain.axes[0].link > link {
             chain.axes.rotate_left(1);
             chain.table -= 1;
@@ -242,6 +245,7 @@ impl Chain {
     pub(super) fn place(&self, joints: &Joints) -> Pose {
         let turns = self.turns(joints);
         let linear = Vector3::new(joints[0], joints[1], joints[2]).component_mul(&self.slides);
+        // The factors of P, the rightmost first: the axes of the tool, the linear ones, those of the table.
         let mut tip = self.swivelled_tip(&turns) + linear;
         for (axis, turn) in self.rotary().iter().zip(&turns).take(self.table).rev() {
             tip = axis.apply(turn, &tip);
@@ -270,7 +274,7 @@ impl Chain {
     }
 
     /// Returns the tip after the motions of the tool's rotary axes, with the linear axes at 0.
-    pub(super) fn swivelled_tip(&self, turns: &[Matrix3<f64>; 2]) -> Vector3<f64> {
+    fn swivelled_tip(&self, turns: &[Matrix3<f64>; 2]) -> Vector3<f64> {
         let mut tip = Vector3::new(0.0, 0.0, -self.tool_length);
         for at in self.tool_axes().rev() {
             tip = self.axes[at].apply(&turns[at], &tip);
@@ -384,4 +388,69 @@ pub(super) fn check_length(what: &str, value: f64) -> Result<(), JointError> {
         true => Ok(()),
         false => Err(JointError::Range { what: what.to_owned(), value, limit: MAX_LENGTH }),
     }
+}
+
+/// Bound on the error of [`rotation`] as an operator, in units of 2⁻⁵³, relative to the rotation about the
+/// exact unit vector by the exact angle.
+///
+/// With u = 2⁻⁵³: the angle in radians errs by 3u · π/4. Sine and cosine err by one ulp each, hence by 2u,
+/// which changes the matrix by √8 u. Rounding its entries changes it by 8.2u (Frobenius norm). The stored
+/// direction errs by 3.5u, which changes the matrix by (|sin θ| + 2 (1 − cos θ)) · 3.5u ≤ (2 + √5) · 3.5u.
+/// The sum is below 30u.
+const ROTATION_ERROR: f64 = 30.0;
+
+/// Returns sine and cosine of an angle in degrees of magnitude up to 2⁴⁰. Each errs by at most 2⁻⁵² plus an
+/// ulp of the library's function, and is exact at multiples of 90°.
+///
+/// The angle is reduced to ±45° in degrees. The reduction is exact: the difference of the angle and the
+/// nearest multiple of 90° is a multiple of the angle's ulp and no larger than the angle, or both are within
+/// a factor of 2.
+pub(crate) fn sin_cos_degrees(degrees: f64) -> (f64, f64) {
+    let quarters = (degrees / 90.0).round();
+    let (sine, cosine) = (degrees - 90.0 * quarters).to_radians().sin_cos();
+    match quarters as i64 & 3 {
+        0 => (sine, cosine),
+        1 => (cosine, -sine),
+        2 => (-sine, -cosine),
+        _ => (-cosine, sine),
+    }
+}
+
+/// Returns the rotation about a unit vector by an angle in degrees, counter-clockwise seen from its head
+/// (Rodrigues' formula). [`ROTATION_ERROR`] bounds its error.
+pub(super) fn rotation(direction: &Vector3<f64>, degrees: f64) -> Matrix3<f64> {
+    let (sine, cosine) = sin_cos_degrees(degrees);
+    let (d, versine) = (direction, 1.0 - cosine);
+    let (xy, yz, zx) = (versine * d.x * d.y, versine * d.y * d.z, versine * d.z * d.x);
+    let s = sine * d;
+    Matrix3::new(
+        versine * d.x * d.x + cosine,
+        xy - s.z,
+        zx + s.y,
+        xy + s.z,
+        versine * d.y * d.y + cosine,
+        yz - s.x,
+        zx - s.y,
+        yz + s.x,
+        versine * d.z * d.z + cosine,
+    )
+}
+
+/// Returns the angle in degrees, from −180 to 180, by which the plane through a unit vector `axis` and `from`
+/// turns about `axis` to the plane through `axis` and `to`. Neither vector may be parallel to the axis: the
+/// angle of a vector that is errs without bound (Murray, Li, Sastry, *A mathematical introduction to robotic
+/// manipulation*, 1994, subproblem 1).
+pub(super) fn angle_about(axis: &Vector3<f64>, from: &Vector3<f64>, to: &Vector3<f64>) -> f64 {
+    let (from, to) = (from - axis * axis.dot(from), to - axis * axis.dot(to));
+    radians_to_degrees(axis.dot(&from.cross(&to)).atan2(from.dot(&to)))
+}
+
+/// Returns the angle between two unit vectors in radians, with an error of some 2⁻⁵¹ at any angle.
+pub(super) fn angle_between(a: &Vector3<f64>, b: &Vector3<f64>) -> f64 {
+    a.cross(b).norm().atan2(a.dot(b))
+}
+
+/// Returns an angle in degrees.
+pub(super) fn radians_to_degrees(radians: f64) -> f64 {
+    radians * (180.0 / PI)
 }

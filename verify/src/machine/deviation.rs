@@ -108,7 +108,7 @@ impl JointMotion {
     }
 
     /// Returns the angular rates of the rotary axes of a chain to a body, in radians, in the chain's order.
-    pub(super) fn rates(&self, chain: &Chain) -> [f64; 2] {
+    fn rates(&self, chain: &Chain) -> [f64; 2] {
         let mut rates = [0.0; 2];
         for (rate, axis) in rates.iter_mut().zip(chain.rotary()) {
             let [start, end] = self.rotary_ends(axis.letter);
@@ -130,6 +130,7 @@ impl Interval<'_> {
     /// both rotations.
     fn bound(&self, rotation: f64, reach: f64) -> f64 {
         let rounding = self.motion.rounding;
+        // The chord bound.
         let tip = self.tip_bounds().1 * self.duration.powi(2) / 8.0 + rounding.tip;
         (tip + reach * (rotation.min(2.0) + 2.0 * rounding.rotation)) * (1.0 + RELATIVE_ERROR)
     }

@@ -134,6 +134,7 @@ fn axes(text: &str, entries: &[Spanned<AxisEntry>]) -> Result<Vec<Axis>, Located
             if rotary.next().is_some() {
                 return Err((span, MachineFault::ThirdRotary { letter }));
             }
+            // Parallel axes turn the tool about one direction only.
             if first.direction.cross(&axis.direction).norm() < SMALLEST_SINE {
                 return Err((span, MachineFault::Parallel { first: first.letter, letter }));
             }
@@ -141,9 +142,8 @@ fn axes(text: &str, entries: &[Spanned<AxisEntry>]) -> Result<Vec<Axis>, Located
         axes.push(axis);
     }
     // Without the rate of one axis, the path of all is unknown.
-    let is_stated = |axis: &&Axis| axis.rapid.is_some();
     if let (Some(_), Some((axis, entry))) = (
-        axes.iter().find(is_stated),
+        axes.iter().find(|axis| axis.rapid.is_some()),
         axes.iter().zip(entries).find(|(axis, _)| axis.rapid.is_none()),
     ) {
         let (letter, key, example) = (axis.letter, "rapid", "30000");

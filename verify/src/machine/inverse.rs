@@ -1,7 +1,6 @@
 //! Inverse kinematics: joint values for a tip and a tool axis in the frame of the workpiece.
 
-use super::chain::{Chain, RotaryAxis};
-use super::rotation::{angle_about, angle_between, radians_to_degrees, rotation};
+use super::chain::{Chain, RotaryAxis, angle_about, angle_between, radians_to_degrees, rotation};
 use super::{InverseError, Joints, Letter};
 use nalgebra::{Point3, Vector3};
 use std::f64::consts::{PI, TAU};
@@ -93,6 +92,7 @@ impl Chain {
         self.check(near)?;
         self.check(&[tip.x, tip.y, tip.z, 0.0, 0.0, 0.0])?;
         self.check_slides()?;
+        // Scaled first: the square of a tiny component underflows.
         let scale = axis.amax();
         if !(scale > 0.0 && scale < f64::INFINITY) || axis.iter().any(|value| value.is_nan()) {
             return Err(InverseError::NoDirection);
@@ -108,13 +108,15 @@ impl Chain {
                     let axis_error = angle_between(&turned, &asked);
                     solutions.push(InverseSolution { joints, axis_error });
                 }
+                // It is told only if the other solution is beyond limits, too.
                 Err(limit) => fault = fault.or(Some(limit)),
             }
         }
-        let turn = |solution: &InverseSolution| -> f64 {
-            (3..6).map(|k| (solution.joints[k] - near[k]).abs()).sum()
-        };
-        solutions.sort_by(|a, b| turn(a).total_cmp(&turn(b)));
+        solutions.sort_by(|a, b| {
+            let [a, b] = [a, b]
+                .map(|solution| (3..6).map(|k| (solution.joints[k] - near[k]).abs()).sum::<f64>());
+            a.total_cmp(&b)
+        });
         match fault {
             Some(fault) if solutions.is_empty() => Err(fault),
             _ => Ok(solutions),
@@ -142,6 +144,7 @@ impl Chain {
             [first, second, ..] => (first, second),
         };
         let (d1, d2) = (first.direction, second.direction);
+        // The inner axis only spins the tool, so that it keeps its value.
         if d2.cross(&z).norm() < SMALLEST_TILT {
             let value = near_value(second);
             let spindle = rotation(&d2, value) * z;
@@ -152,6 +155,7 @@ impl Chain {
         let c = angle_between(&d1, direction);
         let (least, greatest) = ((a - b).abs(), (a + b).min(TAU - a - b));
         check_gap((least - c).max(c - greatest))?;
+        // A direction that is missed within the tolerance is taken as the nearest one that the axes reach.
         let c = c.clamp(least, greatest);
         let s = 0.5 * (a + b + c);
         let squares = [(s - a).sin() * (s - b).sin(), s.sin() * (s - c).sin()];
@@ -161,6 +165,7 @@ impl Chain {
         Ok([half, -half].map(|half| {
             let value = middle + 2.0 * radians_to_degrees(half);
             let tilted = rotation(&d2, value) * z;
+            // Near the outer axis any value of it gives the direction.
             let turned = match c.min(PI - c) < SINGULAR {
                 true => near_value(first),
                 false => angle_about(&d1, &tilted, direction),
@@ -231,5 +236,6 @@ fn nearest_turn(
         let value = angle + 360.0 * nearest;
         return Err(InverseError::Limit { letter, value, low, high });
     }
+    // Rounding may have put it beyond a limit.
     Ok((angle + 360.0 * nearest.clamp(least, greatest)).clamp(low, high))
 }

@@ -64,20 +64,15 @@ mod file;
 mod inverse;
 mod limits;
 mod motion;
-mod path;
-mod rotation;
-mod singular;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use chain::sin_cos_degrees;
 pub use chain::{Chain, RoundingBound};
 pub use error::{InverseError, JointError, MachineError, MachineFault};
 pub use inverse::{InverseSolution, REACH_TOLERANCE};
-pub use limits::LimitViolation;
-pub use motion::JointMotion;
-pub use path::{LinearPath, Plane};
-pub(crate) use rotation::sin_cos_degrees;
-pub use singular::{SINGULAR_ANGLE, SINGULAR_TURN, SingularPass};
+pub use limits::{LimitViolation, SINGULAR_ANGLE, SINGULAR_TURN, SingularPass};
+pub use motion::{JointMotion, LinearPath, Plane};
 
 use nalgebra::{Point3, Vector3};
 use serde::{Deserialize, Serialize};
@@ -238,6 +233,11 @@ impl Machine {
     /// Returns the axis of a letter.
     pub fn axis(&self, letter: Letter) -> Option<&Axis> {
         self.axes.iter().find(|axis| axis.letter == letter)
+    }
+
+    /// Returns whether a rotary axis carries a side.
+    pub(super) fn has_rotary(&self, side: Side) -> bool {
+        self.axes.iter().any(|axis| axis.letter.is_rotary() && axis.side == side)
     }
 
     /// Returns the joint values of the reference position, in mm and degrees, as far as the file states them.

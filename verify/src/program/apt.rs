@@ -12,13 +12,13 @@
 //! `TOOL PATH` after `END-OF-PATH` begins another operation.
 //!
 //! Words that can neither move the tool nor change the meaning of positions are listed in
-//! [`ClData::ignored`](super::ClData::ignored). Every other word is refused (`words` has the lists).
+//! [`ClData::ignored`](super::ClData::ignored), with any arguments or with those given. Every other word is refused: an unknown
+//! one could be a motion.
 
-use super::words::{is_prose, refuse_motions, skip_statement};
 use super::{CutterLocation, Located, ProgramFault, Tape, Tapes, axis_pose, lines, number, shown};
 use std::collections::BTreeMap;
 use std::mem;
-use touchoff::Unit;
+use touchoff::{Pose, Unit};
 
 /// The axis of a tool along +Z.
 const UPRIGHT: [f64; 3] = [0.0, 0.0, 1.0];
@@ -35,6 +35,7 @@ pub(super) fn read(text: &str) -> Result<Tapes, Located> {
         end = *line;
     }
     reader.change_tool()?;
+    // A file without positions is refused as such, whether it ends or not.
     let whole = (reader.finished || reader.path_ended) && unfinished_line.is_none();
     let is_empty = reader.tapes.is_empty() && reader.tape.locations.is_empty();
     if whole || is_empty && unfinished_line.is_none() {
@@ -78,6 +79,7 @@ fn statements(text: &str) -> (Vec<(usize, String)>, Option<usize>) {
             statements.push((line, raw.to_owned()));
             continue;
         }
+        // A comment is no continuation, though it begins with the same sign.
         let code = raw.split_once("$$").map_or(raw, |(code, _)| code.trim_end());
         if code.is_empty() {
             continue;
@@ -156,15 +158,14 @@ impl Reader {
                 end: if self.finished { "FINI" } else { "END-OF-PATH" },
             });
         }
-        let as_unfinished = |fault| if is_last { ProgramFault::Unfinished } else { fault };
         match word {
             "GOTO" => {
                 let rapid = mem::take(&mut self.rapid);
                 self.has_moved = true;
-                self.position(line, "GOTO", rest, rapid).map_err(as_unfinished)?;
+                self.position(line, "GOTO", rest, rapid, is_last)?;
             }
             "FROM" if self.tape.locations.is_empty() => {
-                self.position(line, "FROM", rest, true).map_err(as_unfinished)?;
+                self.position(line, "FROM", rest, true, is_last)?;
             }
             "FROM" => return Err(ProgramFault::LateFrom),
             "RAPID" if rest.is_empty() => self.rapid = true,
@@ -172,6 +173,7 @@ impl Reader {
             "UNITS" => self.units(line, rest)?,
             "LOADTL" | "TOOLNO" | "CUTTER" | "TLDATA" | "TOOL PATH" => {
                 refuse_motions(word, rest)?;
+                // Only NX has it, whose positions without an axis keep the last one.
                 self.is_nx |= word == "TOOL PATH";
                 if mem::take(&mut self.path_ended) {
                     let after = ProgramFault::AfterEnd { end: "END-OF-PATH" };
@@ -194,13 +196,26 @@ impl Reader {
         Ok(())
     }
 
+    /// Reads a position. One that is the last of the file and cannot be read was truncated.
     fn position(
         &mut self,
         line: usize,
         word: &'static str,
         rest: &str,
         rapid: bool,
+        is_last: bool,
     ) -> Result<(), ProgramFault> {
+        match self.pose(word, rest) {
+            Ok(pose) => {
+                self.tape.locations.push(CutterLocation { line, pose, rapid });
+                Ok(())
+            }
+            Err(_) if is_last => Err(ProgramFault::Unfinished),
+            Err(fault) => Err(fault),
+        }
+    }
+
+    fn pose(&mut self, word: &'static str, rest: &str) -> Result<Pose, ProgramFault> {
         if rest.is_empty() {
             return Err(ProgramFault::Count { word, found: 0 });
         }
@@ -209,16 +224,13 @@ impl Reader {
             [_, _, _] if self.is_axis_open => return Err(ProgramFault::OpenAxis),
             [x, y, z] => ([x, y, z], self.axis.unwrap_or(UPRIGHT)),
             [x, y, z, i, j, k] => ([x, y, z], [i, j, k]),
-            _ => {
-                return Err(ProgramFault::Count { word, found: values.len() });
-            }
+            _ => return Err(ProgramFault::Count { word, found: values.len() }),
         };
         let pose = axis_pose(tip, axis)?;
         // NX leaves an axis out that stays, Creo one that is +Z.
         self.is_axis_open = !self.is_nx && axis != UPRIGHT;
         self.axis = Some(axis);
-        self.tape.locations.push(CutterLocation { line, pose, rapid });
-        Ok(())
+        Ok(pose)
     }
 
     fn multax(&mut self, argument: &str) -> Result<(), ProgramFault> {
@@ -368,6 +380,138 @@ impl ToolStatement {
 /// Returns the text as [`shown`] quotes it, without the quotes; empty for empty text.
 fn unquoted(text: &str) -> String {
     if text.is_empty() { String::new() } else { shown(text).trim_matches('`').to_owned() }
+}
+
+/// Words whose line is prose to its end: neither `$` nor `;` has a meaning in it.
+const PROSE_WORDS: [&str; 3] = ["PARTNO", "PPRINT", "REMARK"];
+
+/// Words that write text to the control verbatim, to the end of the line. The text may contain any motion.
+const VERBATIM_WORDS: [&str; 2] = ["INSERT", "LETTER"];
+
+/// Words that can neither move the tool nor change the meaning of positions: names and messages, tolerances
+/// that were used in computing the positions, speeds and feeds, coolant, stops and waits, the block numbers and
+/// the file of the post-processor, planes that only other words use, displays.
+#[rustfmt::skip]
+const IGNORED_WORDS: [&str; 35] = [
+    "PARTNO", "PPRINT", "REMARK", "TITLES", "MACHIN", "ISN", "SEQNO", "LEADER", "TMARK", "CLPRNT",
+    "INTOL", "OUTTOL", "TOLER", "LINTOL", "MCHTOL", "CUT",
+    "FEDRAT", "FEDTO", "SPINDL", "COOLNT", "OPSTOP", "STOP", "DELAY", "DWELL", "END", "REWIND",
+    "CLEARP", "CLRSRF", "SELCTL", "PAINT", "DISPLY", "PLOT", "NOPLOT", "NOPOST", "VERIFY",
+
+];
+
+/// Words that move the tool, or decide whether and how often it moves.
+#[rustfmt::skip]
+const MOTION_WORDS: [&str; 49] = [
+    "GODLTA", "GO", "GOFWD", "GOBACK", "GOLFT", "GORGT", "GOUP", "GODOWN", "GOHOME", "GOCLER",
+    "GOABS", "INDIRP", "INDIRV", "LINEAR", "MOVE", "MOVETO", "ARC", "CIRC", "ARCDAT", "DRILL",
+    "TLON", "TLLFT", "TLRGT", "CIRCLE", "MOVARC", "HELIX", "NURBS", "SPLINE", "THREAD", "TAP",
+    "BORE", "REAM", "CYCLE", "POCKET", "SCURV", "RETRCT", "RETURN", "PROBE", "CALL", "MACRO",
+    "TERMAC", "LOOPST", "LOOPND", "JUMPTO", "RUN", "COPY", "DNTCUT", "OPSKIP", "DELETE",
+];
+
+/// Words that change the meaning of positions: their frame, the point of the tool that they refer to, absolute
+/// or incremental mode, or the tool and the spindle in use.
+#[rustfmt::skip]
+const FRAME_WORDS: [&str; 21] = [
+    "MSYS", "CSYS", "TRACUT", "TRANS", "ORIGIN", "ROTABL", "ROTHED", "ROTATE", "TLAXIS", "TILT",
+    "PLANE", "SCALE", "MIRROR", "CUTCOM", "OFSTNO", "FIXOFF", "THICK", "OFFSET", "MODE", "HEAD",
+    "TURRET",
+];
+
+/// Words of motions that are read. No argument may be one of them, or a motion that begins with `GO`.
+const POSITION_WORDS: [&str; 3] = ["GOTO", "FROM", "RAPID"];
+
+/// Returns whether a line is prose to its end.
+pub(super) fn is_prose(line: &str) -> bool {
+    PROSE_WORDS
+        .iter()
+        .chain(&VERBATIM_WORDS)
+        .any(|prose| line.get(..prose.len()).is_some_and(|word| word.eq_ignore_ascii_case(prose)))
+}
+
+/// Decides whether a statement may be passed over, and returns its word. `word` is in capitals, with one space
+/// between its parts.
+///
+/// # Errors
+/// If the word moves the tool, changes the meaning of positions, or is not known to do neither; if its
+/// arguments contain another statement.
+fn skip_statement(word: &str, arguments: &str) -> Result<String, ProgramFault> {
+    // Prose need not have a `/`.
+    if let Some(prose) = PROSE_WORDS.iter().find(|prose| word.starts_with(**prose)) {
+        return Ok((*prose).to_owned());
+    }
+    if let Some(verbatim) = VERBATIM_WORDS.iter().find(|verbatim| word.starts_with(**verbatim)) {
+        return Err(ProgramFault::Verbatim { word: (*verbatim).to_owned() });
+    }
+    if IGNORED_WORDS.contains(&word) || is_inert_with(word, arguments) {
+        refuse_motions(word, arguments)?;
+        return match parts(&arguments.to_ascii_uppercase())
+            .any(|part| MOTION_WORDS.contains(&part) || FRAME_WORDS.contains(&part))
+        {
+            true => Err(ProgramFault::Swallowed { word: word.to_owned() }),
+            false => Ok(word.to_owned()),
+        };
+    }
+    if is_g_code(word) {
+        return Err(ProgramFault::GCode { block: shown(word) });
+    }
+    // `TLLFT,GOFWD/...` and `L1) GOTO/...` are motions as well.
+    let [frame, motion] = [&FRAME_WORDS[..], &MOTION_WORDS].map(|list| {
+        word.split([' ', ')', ',', '=']).find(|part| list.contains(part)).map(str::to_owned)
+    });
+    match (frame, motion) {
+        (Some(word), _) => Err(ProgramFault::Frame { word }),
+        (None, Some(word)) => Err(ProgramFault::Moves { word }),
+        (None, None) => Err(ProgramFault::UnknownWord { word: shown(word) }),
+    }
+}
+
+/// Returns the words and numbers among arguments.
+fn parts(arguments: &str) -> impl Iterator<Item = &str> {
+    arguments.split([' ', ',', '\t', '(', ')', '=']).filter(|part| !part.is_empty())
+}
+
+/// Refuses a motion among the arguments of a word. It stands there if the end of a line was lost.
+///
+/// # Errors
+/// If there is a motion.
+fn refuse_motions(word: &str, arguments: &str) -> Result<(), ProgramFault> {
+    let upper = arguments.to_ascii_uppercase();
+    match upper.contains('/')
+        || parts(&upper).any(|part| {
+            POSITION_WORDS.contains(&part) || part.starts_with("GO") && MOTION_WORDS.contains(&part)
+        }) {
+        true => Err(ProgramFault::Swallowed { word: word.to_owned() }),
+        false => Ok(()),
+    }
+}
+
+/// Returns whether a statement is a block of G-code: letters, each with a number.
+fn is_g_code(statement: &str) -> bool {
+    statement.split(' ').all(|word| {
+        let number = word.strip_prefix(|c: char| c.is_ascii_alphabetic());
+        number.is_some_and(|number| number.parse::<f64>().is_ok())
+    })
+}
+
+/// Returns whether a word that could have an effect has none with these arguments.
+fn is_inert_with(word: &str, arguments: &str) -> bool {
+    let is = |word: &str| arguments.eq_ignore_ascii_case(word);
+    let numbers = || arguments.split(',').map(number).collect::<Result<Vec<f64>, ProgramFault>>();
+    match word {
+        "CYCLE" | "CUTCOM" | "OPSKIP" => is("OFF"),
+        "TRACUT" | "COPY" => is("NOMORE"),
+        "MODE" => is("ABSOL"),
+        "ORIGIN" | "TRANS" | "THICK" => {
+            numbers().is_ok_and(|values| values.iter().all(|v| *v == 0.0))
+        }
+        // The part's own coordinates: origin, x axis, y axis.
+        "MSYS" => {
+            numbers().is_ok_and(|values| values == [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0])
+        }
+        _ => false,
+    }
 }
 
 #[cfg(test)]

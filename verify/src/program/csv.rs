@@ -57,10 +57,6 @@ fn separator_of(row: &str) -> char {
 
 /// Refuses a table that announces an end mark and does not end with it.
 fn check_end(text: &str) -> Result<(), Located> {
-    // Spreadsheets pad the line with separators and may put it in quotes.
-    let is_mark = |line: &str, mark: &str| {
-        line.trim_end_matches([',', ';', '\t', ' ']).trim_matches('"') == mark
-    };
     let mut filled = lines(text).filter(|(_, line)| !line.is_empty());
     let Some((first, head)) = filled.next() else { return Ok(()) };
     if !is_mark(head, HEAD) {
@@ -72,21 +68,27 @@ fn check_end(text: &str) -> Result<(), Located> {
     }
 }
 
+/// Returns whether a line is a mark. Spreadsheets pad it with separators and may put it in quotes.
+fn is_mark(line: &str, mark: &str) -> bool {
+    line.trim_end_matches([',', ';', '\t', ' ']).trim_matches('"') == mark
+}
+
 /// Returns whether a first row has the columns' names; a row of other names is refused.
 fn is_names(row: &str, cells: &[&str]) -> Result<bool, ProgramFault> {
-    let numeric = |cell: &&str| cell.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c));
-    if cells.iter().any(numeric) || cells.iter().any(|cell| cell.parse::<f64>().is_ok()) {
+    if cells.iter().any(|cell| cell.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c)))
+        // `inf` and `nan` are refused as numbers.
+        || cells.iter().any(|cell| cell.parse::<f64>().is_ok())
+    {
         return Ok(false);
     }
-    let named = |names: &[&str]| {
-        let same = |(cell, name): (&&str, &&str)| cell.trim_matches('"').eq_ignore_ascii_case(name);
-        cells.len() == names.len() && cells.iter().zip(names).all(same)
-    };
-    if named(&AXIS) || named(&QUATERNION) {
-        Ok(true)
-    } else {
-        Err(ProgramFault::Names { names: shown(row) })
-    }
+    let is_named = [&AXIS[..], &QUATERNION].into_iter().any(|names| {
+        cells.len() == names.len()
+            && cells
+                .iter()
+                .zip(names)
+                .all(|(cell, name)| cell.trim_matches('"').eq_ignore_ascii_case(name))
+    });
+    if is_named { Ok(true) } else { Err(ProgramFault::Names { names: shown(row) }) }
 }
 
 /// Returns the pose of a row, which must have `columns` cells if an earlier row has set that number.

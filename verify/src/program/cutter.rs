@@ -1,8 +1,62 @@
-//! Comparison of the cutter that a program states with the tool at hand.
+//! The cutter that a program states, compared with the tool at hand.
 
-use super::{ClData, Cutter, ProgramError};
+use super::{ClData, ProgramError};
 use touchoff::Unit;
 use touchoff::tool::ToolInfo;
+
+/// A cutter as described by APT's `CUTTER/diameter,radius`, in the program's unit: a flat end with rounded
+/// corners below a cylinder. The corner radius is half the diameter for a ball, and 0 for an end mill.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cutter {
+    /// The diameter.
+    pub diameter: f64,
+    /// The radius of the corners.
+    pub corner: f64,
+}
+
+impl Cutter {
+    /// Returns the cutting end of a tool in a unit of length; `None` if two numbers do not describe it. The
+    /// profile has to begin with a flat end, a rounded corner and a straight flute, or with some of them in
+    /// this order. Above the first surface that does not cut it may have any shape. A tool without a profile
+    /// has no cutter.
+    pub fn of(info: &ToolInfo, unit: Unit) -> Option<Cutter> {
+        let mut segments = info
+            .outline
+            .iter()
+            .take_while(|segment| info.surface(segment.surface).cutting)
+            .peekable();
+        let (mut corner_end, mut corner) = ([0.0; 2], 0.0);
+        // The end begins at the tip, on the axis.
+        segments.peek().filter(|segment| segment.from == corner_end)?;
+        if let Some(face) = segments.next_if(|p| p.circle.is_none() && p.from[1] == p.to[1]) {
+            corner_end = face.to;
+        }
+        if let Some(segment) = segments.next_if(|segment| segment.circle.is_some()) {
+            let circle = segment.circle?;
+            let round = circle.convex
+                && points_agree(circle.centre, [corner_end[0], corner_end[1] + circle.radius])
+                && points_agree(
+                    segment.to,
+                    [corner_end[0] + circle.radius, corner_end[1] + circle.radius],
+                );
+            (corner_end, corner) = round.then_some((segment.to, circle.radius))?;
+        }
+        let straight = segments
+            .all(|segment| segment.circle.is_none() && agrees(segment.to[0], corner_end[0]));
+        let length = info.unit.factor_to(unit);
+        let is_one = straight && corner_end[0] > 0.0;
+        is_one.then_some(Cutter { diameter: 2.0 * corner_end[0] * length, corner: corner * length })
+    }
+}
+
+fn points_agree(one: [f64; 2], other: [f64; 2]) -> bool {
+    agrees(one[0], other[0]) && agrees(one[1], other[1])
+}
+
+/// Returns whether two lengths of a profile differ by no more than the rounding of its constants.
+fn agrees(one: f64, other: f64) -> bool {
+    (one - other).abs() <= 1e-12 * (one.abs() + other.abs())
+}
 
 /// Tolerance of lengths as a fraction of the diameter: cutters are written with few digits.
 const ROUNDED: f64 = 1e-3;
@@ -24,11 +78,12 @@ impl ClData {
         let Some(Cutter { diameter, corner }) = Cutter::of(info, unit) else {
             return Ok(Some(*first));
         };
+        // The end of such a cutter is across the axis and its side along it: both angles are 0.
         let expected = [diameter, corner, 0.5 * diameter - corner, corner, 0.0, 0.0];
-        let alike =
-            |(stated, expected): (&f64, &f64)| (stated - expected).abs() <= ROUNDED * diameter;
-        let other =
-            self.cutters.iter().find(|(_, stated)| !stated.iter().zip(&expected).all(alike));
+        let other = self.cutters.iter().find(|(_, stated)| {
+            let mut pairs = stated.iter().zip(&expected);
+            pairs.any(|(stated, expected)| (stated - expected).abs() > ROUNDED * diameter)
+        });
         let Some((line, stated)) = other else { return Ok(None) };
         let list: Vec<String> = stated.iter().map(f64::to_string).collect();
         Err(ProgramError::Cutter {

@@ -14,14 +14,12 @@
 mod apt;
 mod csv;
 mod cutter;
-mod decimals;
 mod error;
-mod words;
 mod write;
 
-pub use decimals::Decimals;
+pub use cutter::Cutter;
 pub use error::{ProgramError, ProgramFault};
-pub use write::{AptHeader, Cutter, WriteError, apt_unit};
+pub use write::{AptHeader, Decimals, WriteError, apt_unit};
 
 use std::path::Path;
 
@@ -108,8 +106,9 @@ impl ClData {
         unit: Option<Unit>,
         poses: impl IntoIterator<Item = (Pose, bool)>,
     ) -> Result<ClData, ProgramError> {
-        let location = |(line, (pose, rapid))| CutterLocation { line, pose, rapid };
-        let locations: Vec<CutterLocation> = (1..).zip(poses).map(location).collect();
+        let numbered = (1..).zip(poses);
+        let locations: Vec<CutterLocation> =
+            numbered.map(|(line, (pose, rapid))| CutterLocation { line, pose, rapid }).collect();
         let file = name.to_owned();
         if locations.is_empty() {
             return Err(ProgramError::NoPosition { file });
@@ -165,11 +164,12 @@ impl ClData {
             Err((line, fault)) => return Err(ProgramError::Line { file, line, fault }),
             Ok(tapes) => tapes,
         };
+        // A tool that is loaded and never moved makes no program.
         tapes.retain(|tape| !tape.locations.is_empty());
         if tapes.is_empty() {
             return Err(ProgramError::NoPosition { file });
         }
-        let program = |tape: Tape| ClData {
+        let programs = tapes.into_iter().map(|tape| ClData {
             unit: tape.unit.map(|(unit, _)| unit),
             unit_line: tape.unit.map(|(_, line)| line),
             locations: tape.locations,
@@ -177,8 +177,8 @@ impl ClData {
             tool: tape.tool,
             cutters: tape.cutters,
             file: file.clone(),
-        };
-        Ok(tapes.into_iter().map(program).collect())
+        });
+        Ok(programs.collect())
     }
 
     /// Returns the program's name in messages.
@@ -257,21 +257,25 @@ struct Tape {
 
 /// Returns whether a text is a program of blocks for a control.
 fn is_gcode(text: &str) -> bool {
+    // Without blank lines, and without comments of any of the formats.
     let mut code = lines(text).map(|(_, line)| line).filter(|line| {
         !line.is_empty() && !line.starts_with([';', '#']) && !line.starts_with("$$")
     });
     code.next().is_some_and(|line| {
         let line = line.trim_start_matches(|c: char| c == '/' || c.is_whitespace());
-        let is_word = |line: &str| {
-            let mut characters = line.chars();
-            characters.next().is_some_and(|c| c.is_ascii_alphabetic())
-                && characters
-                    .as_str()
-                    .trim_start()
-                    .starts_with(|c: char| c.is_ascii_digit() || "+-.#[<".contains(c))
-        };
-        line.starts_with(['%', '(']) || line.contains("BEGIN PGM") || is_word(line)
+        // Klartext is refused by the interpreter, by its name.
+        line.starts_with(['%', '(']) || line.contains("BEGIN PGM") || begins_word(line)
     })
+}
+
+/// Returns whether a line begins with a letter and a number, as a word of G-code.
+fn begins_word(line: &str) -> bool {
+    let mut characters = line.chars();
+    characters.next().is_some_and(|c| c.is_ascii_alphabetic())
+        && characters
+            .as_str()
+            .trim_start()
+            .starts_with(|c: char| c.is_ascii_digit() || "+-.#[<".contains(c))
 }
 
 /// Decodes bytes as text, and reads its positions.
@@ -305,10 +309,10 @@ fn decode(bytes: &[u8]) -> Result<&str, Located> {
 
 /// Returns the text, if no character in it hides a line from a reader or shows a line that is none.
 fn check_characters(text: &str) -> Result<&str, Located> {
-    let is_hidden = |c: char| {
+    let hidden = text.find(|c: char| {
         c.is_control() && !matches!(c, '\t' | '\r' | '\n') || matches!(c, '\u{2028}' | '\u{2029}')
-    };
-    match text.find(is_hidden) {
+    });
+    match hidden {
         None => Ok(text),
         Some(byte) => {
             let line = lines(&text[..byte]).count();
@@ -334,11 +338,12 @@ fn is_comment(line: &str) -> bool {
 fn begins_table(line: &str) -> bool {
     let separators = [',', ';', '\t', ' '];
     let first = line.split(separators).next().unwrap_or(line);
+    // A row of names that the table does not have is refused as one, not as a word of APT.
     let separated = line.matches([',', ';']).count() >= 5 && !line.contains('/');
     line.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c))
         || first.parse::<f64>().is_ok()
         || first.trim_matches('"').eq_ignore_ascii_case("x")
-        || separated && !words::is_prose(line)
+        || separated && !apt::is_prose(line)
 }
 
 const PLAIN_NUMBER: &str = "write a plain number with a decimal point";
@@ -347,6 +352,7 @@ const PLAIN_NUMBER: &str = "write a plain number with a decimal point";
 fn number(cell: &str) -> Result<f64, ProgramFault> {
     match cell.trim().parse::<f64>() {
         Ok(value) if value.is_finite() => Ok(value),
+        // `inf` and `nan` are numbers to the parser.
         Ok(_) => Err(ProgramFault::NotFinite { cell: shown(cell.trim()) }),
         Err(_) => Err(ProgramFault::NotNumber { cell: shown(cell.trim()), remedy: PLAIN_NUMBER }),
     }

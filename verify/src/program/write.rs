@@ -6,10 +6,9 @@
 
 use super::ClData;
 use super::csv::{END, HEAD};
-use super::decimals::{Decimals, rounded};
+use super::cutter::Cutter;
 use std::fmt::{self, Display, Formatter};
 use std::io::{self, Write};
-use touchoff::tool::{ProfileSegment, ToolInfo};
 use touchoff::{Pose, Unit};
 
 /// A reason for which a program cannot be written.
@@ -60,56 +59,6 @@ pub struct AptHeader<'a> {
     pub feed: Option<f64>,
     /// The decimals to which positions are rounded; `None` for the shortest that give back the same bits.
     pub decimals: Option<Decimals>,
-}
-
-/// A cutter as described by APT's `CUTTER/diameter,radius`, in the program's unit: a flat end with rounded
-/// corners below a cylinder. The corner radius is half the diameter for a ball, and 0 for an end mill.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Cutter {
-    /// The diameter.
-    pub diameter: f64,
-    /// The radius of the corners.
-    pub corner: f64,
-}
-
-impl Cutter {
-    /// Returns the cutting end of a tool in a unit of length; `None` if two numbers do not describe it. The
-    /// profile has to begin with a flat end, a rounded corner and a straight flute, or with some of them in
-    /// this order. Above the first surface that does not cut it may have any shape. A tool without a profile
-    /// has no cutter.
-    pub fn of(info: &ToolInfo, unit: Unit) -> Option<Cutter> {
-        let cutting = |segment: &&ProfileSegment| info.surface(segment.surface).cutting;
-        let mut segments = info.outline.iter().take_while(cutting).peekable();
-        let (mut corner_end, mut corner) = ([0.0; 2], 0.0);
-        segments.peek().filter(|segment| segment.from == corner_end)?;
-        if let Some(face) = segments.next_if(|p| p.circle.is_none() && p.from[1] == p.to[1]) {
-            corner_end = face.to;
-        }
-        if let Some(segment) = segments.next_if(|segment| segment.circle.is_some()) {
-            let circle = segment.circle?;
-            let round = circle.convex
-                && points_agree(circle.centre, [corner_end[0], corner_end[1] + circle.radius])
-                && points_agree(
-                    segment.to,
-                    [corner_end[0] + circle.radius, corner_end[1] + circle.radius],
-                );
-            (corner_end, corner) = round.then_some((segment.to, circle.radius))?;
-        }
-        let straight = segments
-            .all(|segment| segment.circle.is_none() && agrees(segment.to[0], corner_end[0]));
-        let length = info.unit.factor_to(unit);
-        let is_one = straight && corner_end[0] > 0.0;
-        is_one.then_some(Cutter { diameter: 2.0 * corner_end[0] * length, corner: corner * length })
-    }
-}
-
-fn points_agree(one: [f64; 2], other: [f64; 2]) -> bool {
-    agrees(one[0], other[0]) && agrees(one[1], other[1])
-}
-
-/// Returns whether two lengths of a profile differ by no more than the rounding of its constants.
-fn agrees(one: f64, other: f64) -> bool {
-    (one - other).abs() <= 1e-12 * (one.abs() + other.abs())
 }
 
 /// Columns of a line, as on a punched card. A longer statement is continued on the next line.
@@ -225,6 +174,7 @@ fn statement(pose: &Pose, decimals: Option<Decimals>) -> String {
             Some(Decimals { axis, .. }) => rounded(*number, axis),
         };
         let number = format!("{number}{}", if k < 5 { "," } else { "" });
+        // The `$` takes a column, too.
         if columns + number.len() >= MAX_COLUMNS {
             statement.push_str("$\n");
             columns = 0;
@@ -253,5 +203,58 @@ impl Display for Listed<'_> {
             write!(f, "{}{number}", if k == 0 { "" } else { "," })?;
         }
         Ok(())
+    }
+}
+
+/// Numbers of decimals to which a program is rounded. A coordinate changes by at most half a unit of its last
+/// decimal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Decimals {
+    /// Decimals of the tip's coordinates, in the program's unit.
+    pub tip: usize,
+    /// Decimals of the components of the tool axis, a unit vector.
+    pub axis: usize,
+}
+
+impl Decimals {
+    /// Returns the decimals that suit a unit: tips to 1e-5 mm, 1e-7 inch or 1e-8 m, axes to 1e-9. Such an axis
+    /// errs by less than 1e-9 rad, which is 3e-7 mm at 300 mm from the tip.
+    pub fn of(unit: Unit) -> Decimals {
+        let tip = match unit {
+            Unit::Millimetre => 5,
+            Unit::Inch => 7,
+            Unit::Metre => 8,
+        };
+        Decimals { tip, axis: 9 }
+    }
+}
+
+/// Formats a number with at most the given decimals, without exponent, trailing zeros, and the sign of zero.
+fn rounded(number: f64, decimals: usize) -> String {
+    let fixed = format!("{number:.decimals$}");
+    let short = match fixed.contains('.') {
+        true => fixed.trim_end_matches('0').trim_end_matches('.'),
+        false => &fixed,
+    };
+    if short == "-0" { "0".to_owned() } else { short.to_owned() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::rounded;
+
+    #[test]
+    fn rounds_without_exponent_trailing_zeros_and_negative_zero() {
+        for (number, decimals, text) in [
+            (12.345_678, 5, "12.34568"),
+            (-0.000_004, 5, "0"),
+            (-0.000_006, 5, "-0.00001"),
+            (100.0, 5, "100"),
+            (1e9, 0, "1000000000"),
+            (0.1 + 0.2, 9, "0.3"),
+            (-1.0, 9, "-1"),
+        ] {
+            assert_eq!(rounded(number, decimals), text);
+        }
     }
 }

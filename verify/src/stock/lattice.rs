@@ -1,10 +1,22 @@
-//! The lattice of a stock: a regular grid of nodes in a box.
+//! The lattice of a stock: a regular grid of nodes in a box, and the nodes inside a closed surface.
+//!
+//! **Inside.** A column is a line along z. The winding number of the surface about a node is the number of triangles that
+//! the column crosses above it, counted 1 if they face up and −1 if they face down. Signs are those of exact
+//! predicates (Shewchuk, *Adaptive precision floating-point arithmetic and fast robust geometric predicates*,
+//! 1997), so the result is exact for the doubles of corners and nodes, unless products of three lengths
+//! overflow or underflow.
+//!
+//! **Ties.** Columns through edges and corners are common: lattice and part are often symmetric. All nodes
+//! count as if they were moved by `(ε², ε³, ε)`, with ε infinitely small (simulation of simplicity:
+//! Edelsbrunner and Mücke 1990). A column then crosses no edge and no vertical triangle. A node on the
+//! surface counts as the point just above it.
 
 use super::StockError;
-use nalgebra::Point3;
+use nalgebra::{Point3, Vector3};
+use robust::{Coord, Coord3D, orient2d, orient3d};
 
 /// The greatest number of nodes of a lattice: an index fits 32 bits, and a set of nodes half a gigabyte.
-pub(super) const MAX_NODES: usize = u32::MAX as usize;
+const MAX_NODES: usize = u32::MAX as usize;
 
 /// The smallest spacing as a fraction (2^-40) of the greatest coordinate: nodes are then rounded by less than
 /// a thousandth of the spacing.
@@ -39,22 +51,16 @@ impl Lattice {
             return Err(StockError::Resolution { spacing, coordinate, limit });
         }
         let size = high - low;
-        let counts = |spacing: f64| [0, 1, 2].map(|axis| (size[axis] / spacing).round().max(1.0));
-        let nodes = |spacing: f64| counts(spacing).iter().product::<f64>();
-        if nodes(spacing) > MAX_NODES as f64 {
+        let counts = layers(&size, spacing);
+        let nodes = counts.iter().product::<f64>();
+        if nodes > MAX_NODES as f64 {
             let mut coarser = (size.iter().product::<f64>() / MAX_NODES as f64).cbrt().max(spacing);
             // A thin box needs more than its volume tells, at most a node per spacing along its longest side.
-            while nodes(coarser) > MAX_NODES as f64 {
+            while layers(&size, coarser).iter().product::<f64>() > MAX_NODES as f64 {
                 coarser *= 1.01;
             }
-            return Err(StockError::TooManyNodes {
-                spacing,
-                nodes: nodes(spacing),
-                limit: MAX_NODES,
-                coarser,
-            });
+            return Err(StockError::TooManyNodes { spacing, nodes, limit: MAX_NODES, coarser });
         }
-        let counts = counts(spacing);
         let origin = [0, 1, 2].map(|axis| {
             let margin = 0.5 * (size[axis] - (counts[axis] - 1.0) * spacing);
             low[axis] + margin
@@ -65,8 +71,10 @@ impl Lattice {
 
     /// Returns the largest absolute value of a node's coordinate.
     pub(super) fn largest_coordinate(&self) -> f64 {
-        let last = |axis: usize| self.origin[axis] + (self.counts[axis] as f64) * self.spacing;
-        (0..3).fold(self.origin.coords.amax(), |largest, axis| largest.max(last(axis).abs()))
+        (0..3).fold(self.origin.coords.amax(), |largest, axis| {
+            let last = self.origin[axis] + (self.counts[axis] as f64) * self.spacing;
+            largest.max(last.abs())
+        })
     }
 
     pub(super) fn spacing(&self) -> f64 {
@@ -107,12 +115,13 @@ impl Lattice {
 
     /// Returns the numbers along an axis of the nodes between two coordinates. Rounding may add one at either
     /// end.
-    pub(super) fn between(&self, axis: usize, low: f64, high: f64) -> std::ops::Range<usize> {
-        let number = |coordinate: f64| (coordinate - self.origin[axis]) / self.spacing;
+    fn between(&self, axis: usize, low: f64, high: f64) -> std::ops::Range<usize> {
+        let [low, high] =
+            [low, high].map(|coordinate| (coordinate - self.origin[axis]) / self.spacing);
         let count = self.counts[axis];
         // A conversion to an integer saturates.
-        let first = ((number(low).ceil() - 1.0).max(0.0) as usize).min(count);
-        let end = (number(high).floor() + 2.0).max(0.0) as usize;
+        let first = ((low.ceil() - 1.0).max(0.0) as usize).min(count);
+        let end = (high.floor() + 2.0).max(0.0) as usize;
         first..end.clamp(first, count)
     }
 
@@ -127,4 +136,158 @@ impl Lattice {
         };
         Some(self.index(neighbour))
     }
+}
+
+/// Returns the number of layers of nodes along each axis of a box.
+fn layers(size: &Vector3<f64>, spacing: f64) -> [f64; 3] {
+    [0, 1, 2].map(|axis| (size[axis] / spacing).round().max(1.0))
+}
+
+/// A set of integers from 0 up to a fixed limit.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct BitSet {
+    words: Vec<u64>,
+}
+
+impl BitSet {
+    /// Creates an empty set of integers below `limit`.
+    pub(super) fn new(limit: usize) -> BitSet {
+        BitSet { words: vec![0; limit.div_ceil(64)] }
+    }
+
+    /// Adds an integer. Returns whether it is new.
+    pub(super) fn insert(&mut self, member: usize) -> bool {
+        let (word, bit) = (&mut self.words[member / 64], 1 << (member % 64));
+        let is_new = *word & bit == 0;
+        *word |= bit;
+        is_new
+    }
+
+    pub(super) fn remove(&mut self, member: usize) {
+        self.words[member / 64] &= !(1 << (member % 64));
+    }
+
+    pub(super) fn contains(&self, member: usize) -> bool {
+        self.words[member / 64] & (1 << (member % 64)) != 0
+    }
+
+    /// Returns the number of members.
+    pub(super) fn len(&self) -> usize {
+        self.words.iter().map(|word| word.count_ones() as usize).sum()
+    }
+
+    /// Iterates over the members in ascending order.
+    pub(super) fn iter(&self) -> impl Iterator<Item = usize> + Clone {
+        self.words.iter().enumerate().filter(|(_, word)| **word != 0).flat_map(|(index, word)| {
+            let mut left = *word;
+            std::iter::from_fn(move || {
+                let bit = (left != 0).then(|| left.trailing_zeros() as usize)?;
+                left &= left - 1;
+                Some(64 * index + bit)
+            })
+        })
+    }
+}
+
+/// A crossing of a column and a triangle.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Crossing {
+    /// The column's number.
+    column: usize,
+    /// The number of the lowest node above the triangle.
+    above: u32,
+    faces_up: bool,
+}
+
+/// Returns the nodes about which the winding number of a closed and oriented surface is positive. `triangles`
+/// are its corners.
+///
+/// # Errors
+/// [`StockError::InsideOut`] if the winding number about a node is negative.
+pub(super) fn nodes_inside(
+    triangles: impl Iterator<Item = [[f64; 3]; 3]>,
+    lattice: &Lattice,
+) -> Result<BitSet, StockError> {
+    let mut crossings = Vec::new();
+    triangles.for_each(|corners| cross(lattice, corners, &mut crossings));
+    crossings.sort_unstable();
+    let mut inside = BitSet::new(lattice.len());
+    let height = lattice.counts()[2];
+    for column in crossings.chunk_by(|a, b| a.column == b.column) {
+        let first = column[0].column * height;
+        // From above the surface, where it is 0, down to each node.
+        let mut winding = 0;
+        for (position, crossing) in column.iter().enumerate().rev() {
+            winding += if crossing.faces_up { 1 } else { -1 };
+            let from = position.checked_sub(1).map_or(0, |below| column[below].above as usize);
+            let nodes = first + from..first + crossing.above as usize;
+            if winding > 0 {
+                nodes.for_each(|node| {
+                    inside.insert(node);
+                });
+            } else if winding < 0 && !nodes.is_empty() {
+                return Err(StockError::InsideOut { point: lattice.position(nodes.start) });
+            }
+        }
+    }
+    Ok(inside)
+}
+
+/// Appends the crossings of a triangle.
+fn cross(lattice: &Lattice, corners: [[f64; 3]; 3], crossings: &mut Vec<Crossing>) {
+    let [a, b, c] = corners.map(|[x, y, _]| Coord { x, y });
+    let area = orient2d(a, b, c);
+    // No column crosses a vertical triangle.
+    if area == 0.0 {
+        return;
+    }
+    let faces_up = area > 0.0;
+    let [rows, columns, heights] = [0, 1, 2].map(|axis| {
+        let [a, b, c] = corners.map(|corner| corner[axis]);
+        lattice.between(axis, a.min(b).min(c), a.max(b).max(c))
+    });
+    for i in rows {
+        for j in columns.clone() {
+            let at =
+                Coord { x: lattice.coordinate(0, i as f64), y: lattice.coordinate(1, j as f64) };
+            if [(a, b), (b, c), (c, a)].iter().all(|(p, q)| is_left(*p, *q, at) == faces_up) {
+                let above = first_not(heights.clone(), |k| {
+                    let node = Coord3D { x: at.x, y: at.y, z: lattice.coordinate(2, k as f64) };
+                    is_below(corners, faces_up, node)
+                });
+                let column = i * lattice.counts()[1] + j;
+                crossings.push(Crossing { column, above: above as u32, faces_up });
+            }
+        }
+    }
+}
+
+/// Returns whether a column, moved by `(ε², ε³)`, is on the left of a line. The line has two different
+/// points.
+fn is_left(from: Coord<f64>, to: Coord<f64>, at: Coord<f64>) -> bool {
+    let side = orient2d(from, to, at);
+    if side != 0.0 {
+        return side > 0.0;
+    }
+    // The cross product of the line's direction with the displacement of the column.
+    if from.y != to.y { to.y < from.y } else { to.x > from.x }
+}
+
+/// Returns whether a node is below a triangle that is not vertical. A node in its plane is above it.
+fn is_below(corners: [[f64; 3]; 3], faces_up: bool, node: Coord3D<f64>) -> bool {
+    let [a, b, c] = corners.map(|[x, y, z]| Coord3D { x, y, z });
+    // Positive on the side from which the corners are seen clockwise.
+    let side = orient3d(a, b, c, node);
+    if faces_up { side > 0.0 } else { side < 0.0 }
+}
+
+/// Returns the first number of a range for which a condition fails that holds up to some number; the range's
+/// end if it never fails.
+fn first_not(range: std::ops::Range<usize>, holds: impl Fn(usize) -> bool) -> usize {
+    let (mut low, mut high) = (range.start, range.end);
+    while low < high {
+        let middle = low + (high - low) / 2;
+        if holds(middle) { low = middle + 1 } else { high = middle }
+    }
+    low
 }

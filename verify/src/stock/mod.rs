@@ -53,22 +53,16 @@
 //! nor removed.
 
 mod advance;
-mod bits;
-mod cells;
-mod columns;
-mod comparison;
-mod contact;
 mod error;
 mod lattice;
+mod remaining;
 
-pub use advance::MotionMode;
-pub use comparison::{DeviationPoint, PartComparison};
-pub use contact::StockContact;
+pub use advance::{MotionMode, StockContact};
 pub use error::StockError;
+pub use remaining::{DeviationPoint, PartComparison};
 
-use bits::BitSet;
-use contact::OpenContacts;
-use lattice::Lattice;
+use advance::OpenContacts;
+use lattice::{BitSet, Lattice, nodes_inside};
 use nalgebra::{Point3, Vector3};
 use std::fmt;
 use touchoff::mesh::{LARGEST_COORDINATE, Mesh};
@@ -159,7 +153,7 @@ impl Stock {
         }
         let lattice = Lattice::new(mesh.bounds(), spacing)?;
         let triangles = mesh.corners().map(|corners| corners.map(|corner| corner.into()));
-        let inside = columns::nodes_inside(triangles, &lattice)?;
+        let inside = nodes_inside(triangles, &lattice)?;
         Stock::new(lattice, inside, mesh.unit())
     }
 
@@ -190,13 +184,12 @@ impl Stock {
 
     fn new(lattice: Lattice, initial: BitSet, unit: Unit) -> Result<Stock, StockError> {
         check_count(initial.len(), lattice.spacing())?;
-        let nodes = || initial.iter();
         let count = initial.len();
         // A node of the lattice is a point whose triangle id is its index; normals and weights are not used.
         let cloud = Cloud::new(
-            nodes().map(|node| Point3::from(lattice.position(node))).collect(),
+            initial.iter().map(|node| Point3::from(lattice.position(node))).collect(),
             vec![Vector3::z(); count],
-            nodes().map(|node| TriangleId(node as u32)).collect(),
+            initial.iter().map(|node| TriangleId(node as u32)).collect(),
             vec![1.0; count],
             unit,
         )?;
@@ -319,6 +312,7 @@ impl Stock {
     /// Returns the nodes that are left.
     fn remaining(&self) -> BitSet {
         let mut remaining = BitSet::new(self.lattice.len());
+        // Removed points leave empty slots.
         for slot in (0..self.tree.slots()).filter(|slot| self.tree.has_point(*slot)) {
             remaining.insert(self.tree.triangle(slot).0 as usize);
         }
@@ -336,15 +330,6 @@ fn check_count(points: usize, spacing: f64) -> Result<(), StockError> {
             Err(StockError::TooManyPoints { spacing, points, coarser })
         }
     }
-}
-
-/// Returns whether a node has a neighbour that is not in a set.
-fn is_at_boundary(lattice: &Lattice, nodes: &BitSet, node: [usize; 3]) -> bool {
-    (0..3).any(|axis| {
-        [false, true].into_iter().any(|up| {
-            lattice.neighbour(node, axis, up).is_none_or(|neighbour| !nodes.contains(neighbour))
-        })
-    })
 }
 
 #[cfg(test)]

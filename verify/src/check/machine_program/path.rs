@@ -1,8 +1,13 @@
-//! Paths of steps, mapped to joints or to the part's frame.
+//! Paths of steps as motions of joints or of the tip: lines, arcs, and rapid traverse in which each axis moves at its own rate.
+//!
+//! **Rapid traverse.** Without rapid interpolation a control starts all axes together, and each stops when it arrives: the path is straight
+//! between two arrivals. Acceleration is not modelled. At rates that are not known the axes can be at any positions between
+//! their ends: let u be the fraction that each axis has travelled. It is the least of 1 and t over the axis's time, and for
+//! given u > 0 there are times for which all are reached at t = 1.
 
 use super::StepFault;
 use crate::gcode::StepPath;
-use crate::machine::{LinearPath, Plane};
+use crate::machine::{Chain, JointError, JointMotion, Joints, Letter, LinearPath, Machine, Plane};
 use nalgebra::{Matrix3, Vector3};
 
 /// Distance between an arc and its chords that their angle is chosen for, in mm, where the arc's plane is not parallel to two
@@ -85,9 +90,8 @@ fn chords(
     map: &Map,
 ) -> Result<Vec<Segment>, StepFault> {
     let ([first, second], normal) = (plane.axes(), plane.normal());
-    let radius_at =
-        |position: [f64; 3]| (position[first] - centre[0]).hypot(position[second] - centre[1]);
-    let [start_radius, end_radius] = [start, end].map(radius_at);
+    let [start_radius, end_radius] =
+        [start, end].map(|end| (end[first] - centre[0]).hypot(end[second] - centre[1]));
     let max_radius = start_radius.max(end_radius);
     let angle = (8.0 * CHORD_TOLERANCE / max_radius).sqrt().clamp(MIN_CHORD_ANGLE, MAX_CHORD_ANGLE);
     let count = (sweep.abs() / angle).ceil().max(1.0);
@@ -96,13 +100,13 @@ fn chords(
         return Err(StepFault::LongArc { degrees, limit });
     }
     let chords = count as u32;
-    let fraction = |k: u32| f64::from(k) / count;
     let start_angle = (start[second] - centre[1]).atan2(start[first] - centre[0]);
     let position = |k: u32| {
+        // The last chord ends at the stated end, without the rounding of the angle.
         if k == chords {
             return map.apply(end);
         }
-        let at = fraction(k);
+        let at = f64::from(k) / count;
         let (sine, cosine) = (start_angle + at * sweep).sin_cos();
         let radius = start_radius + at * (end_radius - start_radius);
         let mut position = start;
@@ -114,10 +118,64 @@ fn chords(
     // The change of the radius adds 2 |r'| Δ to the second derivative.
     let step = sweep.abs() / count;
     let error = step * (max_radius * step + 2.0 * (end_radius - start_radius).abs() / count) / 8.0;
-    let chord = |k: u32| Segment {
-        fractions: [fraction(k), fraction(k + 1)],
+    let chord = (0..chords).map(|k| Segment {
+        fractions: [k, k + 1].map(|k| f64::from(k) / count),
         path: LinearPath::Line { start: position(k), end: position(k + 1) },
         error,
+    });
+    Ok(chord.collect())
+}
+
+/// Returns the rates of the axes in mm and degrees per minute, if the machine states them. Axes that it lacks do not
+/// move.
+pub(super) fn rates(machine: &Machine) -> Option<Joints> {
+    let rates = Letter::ALL.map(|letter| match machine.axis(letter) {
+        None => Some(f64::INFINITY),
+        Some(axis) => axis.rapid,
+    });
+    let mut known = [0.0; 6];
+    for (known, rate) in known.iter_mut().zip(rates) {
+        *known = rate?;
+    }
+    Some(known)
+}
+
+/// Returns the motions from one joint position to another: one up to each time at which an axis arrives. Without rates,
+/// all axes arrive together.
+///
+/// # Errors
+/// As for [`JointMotion::new`].
+pub(super) fn rapid(
+    chain: &Chain,
+    rates: Option<&Joints>,
+    [start, end]: [Joints; 2],
+) -> Result<Vec<JointMotion>, JointError> {
+    let durations: Joints = match rates {
+        None => [1.0; 6],
+        Some(rates) => std::array::from_fn(|k| (end[k] - start[k]).abs() / rates[k]),
     };
-    Ok((0..chords).map(chord).collect())
+    let mut times = durations.to_vec();
+    times.sort_by(f64::total_cmp);
+    times.dedup();
+    // Where some axis moves, the time at which resting axes arrive ends no motion.
+    if times.len() > 1 && times[0] == 0.0 {
+        times.remove(0);
+    }
+    let ends = times.into_iter().map(|time| -> Joints {
+        std::array::from_fn(|k| match time < durations[k] {
+            true => start[k] + (end[k] - start[k]) * (time / durations[k]),
+            false => end[k],
+        })
+    });
+    let mut from = start;
+    ends.map(|to| line(chain, [std::mem::replace(&mut from, to), to])).collect()
+}
+
+/// Returns the motion in which all axes move from one joint position to another in proportion.
+///
+/// # Errors
+/// As for [`JointMotion::new`].
+pub(super) fn line(chain: &Chain, ends: [Joints; 2]) -> Result<JointMotion, JointError> {
+    let [(start, from), (end, to)] = ends.map(|[x, y, z, a, b, c]| ([x, y, z], [a, b, c]));
+    JointMotion::new(chain, [from, to], &LinearPath::Line { start, end })
 }

@@ -1,8 +1,7 @@
 //! Steps in program coordinates, resolved to joint motions.
 
-use super::StepFault;
 use super::path::{self, Map};
-use super::rapid;
+use super::{StepFault, UnknownCause};
 use crate::gcode::{
     self, Choice, ControlSetup, ControlState, LengthOffset, Position, Rotation, Rule, Step,
     StepPath, Tcp, WorkOffset,
@@ -10,7 +9,6 @@ use crate::gcode::{
 use crate::machine::{Chain, InverseSolution, JointMotion, Joints, Letter, Machine, Setup, Side};
 use nalgebra::{Matrix3, Point3, Vector3};
 use std::collections::BTreeMap;
-use std::fmt;
 
 /// The increment of angles, in degrees: nearer to half a turn a control may take either way.
 const ANGLE_INCREMENT: f64 = 1e-3;
@@ -39,111 +37,6 @@ pub(super) struct AnyRapid {
     /// The motions of each axis by itself from the start, if no rotary axis moves: the axes' positions at any rates are
     /// those of the box that they span.
     pub(super) edges: Option<Vec<JointMotion>>,
-}
-
-/// The reason for which only the machine knows where a motion starts or ends.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum UnknownCause {
-    /// The program has not stated a position before.
-    Start,
-    /// The program has not stated the position of another axis before.
-    Axis,
-    /// A tool change moved the axes.
-    ToolChange,
-    /// A motion to machine coordinates that are not known.
-    Return,
-    /// The way of axes from known positions to machine coordinates that are not known.
-    Home,
-    /// A shift by G92 at an unknown position.
-    Shift,
-    /// No tool length offset is in force, and the length of the tool is not stated.
-    NoOffset {
-        /// The tool.
-        tool: u32,
-    },
-    /// The length offset is that of another tool, and one of both lengths is not stated.
-    OtherOffset {
-        /// The tool.
-        tool: u32,
-        /// The register.
-        register: u32,
-    },
-    /// The head turns, and the length of the tool is not stated.
-    NoLever,
-    /// The table turns, and the position of the part on it is not stated.
-    NoPartPosition,
-    /// The way of an axis that turns by half a turn.
-    HalfTurn,
-    /// The tool axis is reached by two positions of the rotary axes, of which controls choose in different ways.
-    TwoPositions,
-    /// A rotary axis without limits returns to its reference position, in a direction of the machine's.
-    ReturnWay,
-    /// The tool axis turns on a great circle, which is not followed.
-    GreatCircle,
-    /// Tool centre point control or a tilted plane began while the table was turned, and the control takes the part as it stood
-    /// then.
-    TurnedTable,
-    /// Tool centre point control, or an aligned plane, without a tool length offset.
-    TcpWithoutLength,
-}
-
-impl fmt::Display for UnknownCause {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            UnknownCause::Start => f.write_str("the program states no position before"),
-            UnknownCause::Axis => f.write_str(
-                "the position of another axis is not stated before: write all axes of the machine in the first blocks",
-            ),
-            UnknownCause::ToolChange => f.write_str(
-                "only the machine knows where the tool change leaves its axes: state `tool_change` in the machine's file, or \
-                 the control",
-            ),
-            UnknownCause::Return | UnknownCause::Home => f.write_str(
-                "only the machine knows where its coordinates and its reference position are: state the origin of G54 in \
-                 `work_offsets`, and `home` of its axes",
-            ),
-            UnknownCause::Shift => f.write_str("G92 shifts a position that is not known"),
-            UnknownCause::NoOffset { tool } => write!(
-                f,
-                "T{tool} moves without a tool length offset: write G43 H{tool}, or state the length of tool {tool} in the \
-                 job (0 if Z of the work offset is that of its tip)"
-            ),
-            UnknownCause::OtherOffset { tool, register } => write!(
-                f,
-                "T{tool} moves with the length offset H{register} of another tool: state the lengths of both in the job"
-            ),
-            UnknownCause::NoLever => {
-                f.write_str("the head turns the tool, whose length is not stated: state it in the job")
-            }
-            UnknownCause::NoPartPosition => f.write_str(
-                "the table turns the part, whose position is not stated: state the origin of G54 in `work_offsets`",
-            ),
-            UnknownCause::TwoPositions => f.write_str(
-                "two positions of the rotary axes give the tool axis, and controls choose in different ways: turn the axes near to \
-                 one of them before",
-            ),
-            UnknownCause::ReturnWay => f.write_str(
-                "a rotary axis without limits returns to its reference position in a direction of the machine's: turn it there by \
-                 G0 before",
-            ),
-            UnknownCause::GreatCircle => f.write_str(
-                "the tool axis turns on a great circle under TRAORI (ORIVECT): state `tool_orientation` of the control, if it turns \
-                 each axis in proportion (ORIAXES)",
-            ),
-            UnknownCause::TurnedTable => f.write_str(
-                "the table is turned where tool centre point control or a tilted plane begins, and positions are those of the \
-                 part as it stands: turn it to 0 before, or state `tcp_start` of the control",
-            ),
-            UnknownCause::TcpWithoutLength => f.write_str(
-                "tool centre point control or an aligned plane (G53.1) is in force, and no length offset: write H with the \
-                 number of the length, or G43 H before",
-            ),
-            UnknownCause::HalfTurn => {
-                f.write_str("an axis turns by half a turn, for which both ways are as short: write an angle between")
-            }
-        }
-    }
 }
 
 /// Resolves the steps of a program in their order.
@@ -235,15 +128,12 @@ impl<'a> Resolver<'a> {
         for (joint, (start, origin)) in joints.iter_mut().zip(setup.start.iter().zip(origin)) {
             *joint = start.map(|start| start + origin);
         }
-        let has_rotary = |side: Side| {
-            machine.axes().iter().any(|axis| axis.letter.is_rotary() && axis.side == side)
-        };
         Resolver {
             machine,
             setup,
             off_is_tip,
             origin,
-            rapid: match (setup.rules.get(Rule::Rapid), rapid::rates(machine)) {
+            rapid: match (setup.rules.get(Rule::Rapid), path::rates(machine)) {
                 (Some(Choice::Straight), _) => RapidPath::Straight,
                 (_, Some(rates)) => RapidPath::Rates(rates),
                 (_, None) => RapidPath::Any,
@@ -254,9 +144,10 @@ impl<'a> Resolver<'a> {
             is_turned_table: false,
             unnamed_tool,
             asked: BTreeMap::new(),
-            has_head: has_rotary(Side::Tool),
+            has_head: machine.has_rotary(Side::Tool),
             is_placed: setup.work_offsets[0].is_some(),
-            part_position_unknown: setup.work_offsets[0].is_none() && has_rotary(Side::Table),
+            part_position_unknown: setup.work_offsets[0].is_none()
+                && machine.has_rotary(Side::Table),
             chain: None,
             joints,
             cause: UnknownCause::Start,
@@ -270,6 +161,7 @@ impl<'a> Resolver<'a> {
     pub(super) fn resolve(&mut self, step: &Step) -> Result<Resolved, StepFault> {
         if let StepPath::ToolChange(target) = step.path {
             for k in (0..6).filter(|k| step.commanded[*k]) {
+                // Without the place of the part, machine coordinates lead nowhere that is known.
                 self.joints[k] = target[k].filter(|_| self.is_placed);
                 if self.joints[k].is_none() {
                     self.cause = UnknownCause::ToolChange;
@@ -308,6 +200,7 @@ impl<'a> Resolver<'a> {
         let is_determined = !matches!(step.path, StepPath::Undetermined) && unknown_path.is_none();
         let resolved = match start.filter(|_| is_determined) {
             Some(start) => self.motion(step, &frame, [start, end])?,
+            // The way is not known, but its end: the tool is checked at rest there.
             None => {
                 let (rest, _) = frame.motions(&StepPath::Line, [end, end])?.swap_remove(0);
                 Resolved::Arrival(Box::new(rest), unknown_path.unwrap_or(self.cause))
@@ -389,6 +282,7 @@ impl<'a> Resolver<'a> {
         frame: &Frame,
         ends: [Joints; 2],
     ) -> Result<Resolved, StepFault> {
+        // Under tool centre point control rapid traverse is straight: Fanuc asks for that (parameter 1401).
         if !step.rapid || step.state.tcp != Tcp::Off {
             return Ok(Resolved::Motions(frame.motions(&step.path, ends)?));
         }
@@ -420,6 +314,7 @@ impl<'a> Resolver<'a> {
         if let Some(last) = last {
             self.joints = last.joints(1.0).map(Some);
         }
+        // The path of the tip is known without the length of the tool, the linear joints are not.
         if frame.is_tip && frame.has_unknown_lever {
             self.joints[..3].fill(None);
             self.cause = UnknownCause::NoLever;
@@ -436,6 +331,7 @@ impl<'a> Resolver<'a> {
         if lost().next().is_some() && (!is_start || knows_axis) {
             self.cause = UnknownCause::Return;
         } else if is_start {
+            // The block states its own axes: the unknown one is another axis of the machine.
             let mut commanded = (0..6).filter(|k| step.commanded[*k]).peekable();
             if commanded.peek().is_some() && commanded.all(|k| current[k].is_some()) {
                 return UnknownCause::Axis;
@@ -456,21 +352,22 @@ impl<'a> Resolver<'a> {
         let moving: Vec<usize> = (0..6).filter(|k| start[*k] != end[*k]).collect();
         let rates = match &self.rapid {
             RapidPath::Rates(rates) => Some(rates),
+            // One axis alone moves straight at any rate.
             RapidPath::Any if moving.len() > 1 => {
-                let straight = rapid::line(chain, joints)?;
-                let edge = |k: &usize| {
+                let straight = path::line(chain, joints)?;
+                let is_linear = moving.iter().all(|k| *k < 3);
+                let edges = moving.iter().map(|k| {
                     let mut to = start;
                     to[*k] = end[*k];
-                    rapid::line(chain, [start, to])
-                };
-                let is_linear = moving.iter().all(|k| *k < 3);
-                let edges = is_linear.then(|| moving.iter().map(edge).collect());
-                let edges = edges.transpose()?;
+                    path::line(chain, [start, to])
+                });
+                // Ways that are straight span a box, the turn of a rotary axis does not.
+                let edges = is_linear.then(|| edges.collect()).transpose()?;
                 return Ok(Resolved::AnyRapid(Box::new(AnyRapid { straight, edges })));
             }
             RapidPath::Any | RapidPath::Straight => None,
         };
-        let motions = rapid::motions(chain, rates, joints)?;
+        let motions = path::rapid(chain, rates, joints)?;
         Ok(Resolved::Motions(motions.into_iter().map(|motion| (motion, 0.0)).collect()))
     }
 
@@ -503,12 +400,12 @@ impl<'a> Resolver<'a> {
         } else if turning != self.turning {
             // A table that turns in the block counts at its end, but for the alignment with a plane.
             let aligns = matches!(step.path, StepPath::Align);
-            let is_turned = |k: usize| {
+            let is_turned = self.rotary(Side::Table).any(|k| {
                 self.joints[k] != Some(self.origin[k])
                     || !aligns && step.commanded[k] && step.end[k] != Some(0.0)
-            };
-            self.is_turned_table = self.rotary(Side::Table).any(is_turned)
-                && self.ask(Rule::TcpStart, step) == Some(Choice::TableAsItStands);
+            });
+            self.is_turned_table =
+                is_turned && self.ask(Rule::TcpStart, step) == Some(Choice::TableAsItStands);
         }
         self.turning = turning;
         self.is_turned_table
@@ -519,13 +416,14 @@ impl<'a> Resolver<'a> {
     fn is_one_choice(&self, solutions: &[InverseSolution]) -> bool {
         let [first, others @ ..] = solutions else { return true };
         let turn = |of: &InverseSolution, k: usize| Some((of.joints[k] - self.joints[k]?).abs());
-        let differs = |other: &&InverseSolution| {
+        let mut others = others.iter().filter(|other| {
             (3..6).any(|k| (first.joints[k] - other.joints[k]).abs() > ANGLE_INCREMENT)
-        };
-        others.iter().filter(differs).all(|other| {
-            let turns = (3..6).map(|k| turn(first, k).zip(turn(other, k)));
+        });
+        // Controls take the least sum of turns, or the least turn of the first axis. Both are the first solution if it turns no axis
+        // by more than another does.
+        others.all(|other| {
             let mut is_less = false;
-            for turns in turns {
+            for turns in (3..6).map(|k| turn(first, k).zip(turn(other, k))) {
                 match turns {
                     Some((first, other)) if first <= other + ANGLE_INCREMENT => {
                         is_less |= first < other - ANGLE_INCREMENT;
@@ -550,6 +448,7 @@ impl<'a> Resolver<'a> {
         for k in (3..6).filter(|k| step.absolute && step.commanded[*k] && endless[k - 3]) {
             let (Some(from), Some(to)) = (start[k], end[k]) else { continue };
             let turn = to - from;
+            // Fanuc turns it in the direction of the reference position.
             if step.is_return
                 && turn.abs() >= ANGLE_INCREMENT
                 && self.ask(Rule::Rotary, step) != Some(Choice::Counts)
@@ -558,6 +457,7 @@ impl<'a> Resolver<'a> {
                 continue;
             }
             let within = to.rem_euclid(360.0) - from.rem_euclid(360.0);
+            // Every choice is the same way.
             if turn.abs() < 180.0 - ANGLE_INCREMENT && (within - turn).abs() < ANGLE_INCREMENT {
                 continue;
             }
@@ -593,6 +493,7 @@ impl<'a> Resolver<'a> {
         }
         let found = found[0].joints;
         let before = known(&self.joints);
+        // The angles are known also where the way to them is not.
         (3..6).for_each(|k| self.joints[k] = Some(found[k]));
         let Some(joints) = before else { return Ok(Resolved::Unknown(self.cause)) };
         if self.part_position_unknown {
@@ -643,20 +544,21 @@ impl<'a> Resolver<'a> {
                 chain
             }
         };
-        let offset_name = || state.work_offset.to_string();
         let origin = if state.work_offset == WorkOffset::Standard(1) {
-            let differs = |k: usize| match state.origin[k] {
-                Some(value) => !self.is_placed || value != self.origin[k],
-                None => false,
-            };
-            if state.origin_rotation != 0.0 || (0..6).any(differs) {
+            // G54 is the frame of the part: the program may set it to the same values, and to no others.
+            let mut origin = state.origin.iter().zip(&self.origin);
+            let is_moved = origin
+                .any(|(set, stated)| set.is_some_and(|value| !self.is_placed || value != *stated));
+            if state.origin_rotation != 0.0 || is_moved {
                 return Err(StepFault::MovedPart);
             }
             self.origin
         } else {
             match self.known_in_machine(&state.origin).filter(|_| self.is_placed) {
                 Some(origin) => origin,
-                None => return Err(StepFault::NoOrigin { offset: offset_name() }),
+                None => {
+                    return Err(StepFault::NoOrigin { offset: state.work_offset.to_string() });
+                }
             }
         };
         let (turn, about) = match state.rotation.frame() {
@@ -671,8 +573,9 @@ impl<'a> Resolver<'a> {
             let is_table_turned = self.rotary(Side::Table).any(|k| origin[k] != 0.0)
                 && self.ask(Rule::TcpStart, step) != Some(Choice::TableAsItStands);
             if state.origin_rotation != 0.0 || has_rotary_offset || is_table_turned {
-                return Err(StepFault::TurnedOffset { offset: offset_name() });
+                return Err(StepFault::TurnedOffset { offset: state.work_offset.to_string() });
             }
+            // The origin of the part's frame is that of G54.
             linear -= Vector3::new(self.origin[0], self.origin[1], self.origin[2]);
         } else {
             linear.z += offset;
@@ -705,27 +608,29 @@ impl<'a> Resolver<'a> {
     fn lengths(&self, state: &ControlState) -> Result<Located<Lengths>, StepFault> {
         let tool = state.tool.or(self.unnamed_tool);
         let known = tool.and_then(|tool| self.setup.lengths.get(&tool).copied());
-        let of = |length: f64, offset: f64, is_known: bool| Lengths { length, offset, is_known };
         let lengths = match (state.length, known) {
+            // The tip would be that of a tool without length.
             (LengthOffset::Off, Some(length)) if state.turns_with_workpiece() && length != 0.0 => {
                 return Ok(Located::Unknown(UnknownCause::TcpWithoutLength));
             }
-            (LengthOffset::Off, Some(length)) => of(length, 0.0, true),
+            (LengthOffset::Off, Some(length)) => Lengths { length, offset: 0.0, is_known: true },
             (LengthOffset::Off, None) => match tool {
                 Some(tool) if !self.off_is_tip => {
                     return Ok(Located::Unknown(UnknownCause::NoOffset { tool }));
                 }
-                _ => of(0.0, 0.0, false),
+                _ => Lengths { length: 0.0, offset: 0.0, is_known: false },
             },
             (LengthOffset::On { length: Some(offset), .. }, Some(length)) => {
-                of(length, offset, true)
+                Lengths { length, offset, is_known: true }
             }
             (LengthOffset::On { register, length: offset }, length) => {
                 if let Some(tool) = tool.filter(|tool| *tool != register) {
                     return Ok(Located::Unknown(UnknownCause::OtherOffset { tool, register }));
                 }
+                // The offset in the tool's own register is its length, so that one of them tells both.
                 let known = offset.or(length);
-                of(known.unwrap_or(0.0), known.unwrap_or(0.0), known.is_some())
+                let length = known.unwrap_or(0.0);
+                Lengths { length, offset: length, is_known: known.is_some() }
             }
         };
         let Lengths { length, offset, .. } = lengths;
@@ -751,23 +656,30 @@ impl<'a> Resolver<'a> {
 
     /// Returns the position of the machine in program coordinates, as far as it is known.
     fn current_position(&self, frame: &Frame) -> Position {
-        let angle = |k: usize| self.joints[k].map(|angle| angle - frame.rotary[k - 3]);
-        let with_linear = |[x, y, z]: [Option<f64>; 3]| [x, y, z, angle(3), angle(4), angle(5)];
-        let back = |position: Vector3<f64>| -> [Option<f64>; 3] {
-            let linear = frame.map.rotation.transpose() * (position - frame.map.origin);
-            [0, 1, 2].map(|k| Some(linear[k]))
-        };
-        if frame.is_tip {
-            let joints = known(&self.joints).filter(|_| !frame.has_unknown_lever);
-            let pose = joints.and_then(|joints| frame.chain.pose(&joints).ok());
-            return with_linear(pose.map_or([None; 3], |pose| back(pose.tip().coords)));
+        let mut position = self.joints;
+        for (k, angle) in position.iter_mut().enumerate().skip(3) {
+            *angle = angle.map(|angle| angle - frame.rotary[k - 3]);
         }
         if frame.is_plain() {
-            let linear = |k: usize| self.joints[k].map(|value| value - frame.map.origin[k]);
-            return with_linear([0, 1, 2].map(linear));
+            // Each axis is known by itself.
+            for (k, value) in position.iter_mut().enumerate().take(3) {
+                *value = value.map(|value| value - frame.map.origin[k]);
+            }
+            return position;
         }
-        let linear = linear_only(&self.joints);
-        with_linear(linear.map_or([None; 3], |[x, y, z, ..]| back(Vector3::new(x, y, z))))
+        let mapped = if frame.is_tip {
+            let joints = known(&self.joints).filter(|_| !frame.has_unknown_lever);
+            let pose = joints.and_then(|joints| frame.chain.pose(&joints).ok());
+            pose.map(|pose| pose.tip().coords)
+        } else {
+            linear_only(&self.joints).map(|[x, y, z, ..]| Vector3::new(x, y, z))
+        };
+        let linear =
+            mapped.map(|mapped| frame.map.rotation.transpose() * (mapped - frame.map.origin));
+        for k in 0..3 {
+            position[k] = linear.map(|linear| linear[k]);
+        }
+        position
     }
 
     /// Keeps the joints that are known at an end that is not known in all axes.
@@ -799,21 +711,23 @@ impl Frame {
         [start, end]: [Joints; 2],
     ) -> Result<Vec<(JointMotion, f64)>, StepFault> {
         let linear = [start, end].map(|position| [position[0], position[1], position[2]]);
-        let angles = |at: f64| {
-            [3, 4, 5].map(|k| {
-                let value = if at == 1.0 { end[k] } else { start[k] + at * (end[k] - start[k]) };
-                value + self.rotary[k - 3]
-            })
-        };
-        let motion = |segment: path::Segment| {
-            let rotary = segment.fractions.map(angles);
+        let segments = path::map(path, linear, &self.map)?.into_iter();
+        let motions = segments.map(|segment| {
+            let rotary = segment.fractions.map(|at| {
+                [3, 4, 5].map(|k| {
+                    // The end is exactly the one that is stated.
+                    let value =
+                        if at == 1.0 { end[k] } else { start[k] + at * (end[k] - start[k]) };
+                    value + self.rotary[k - 3]
+                })
+            });
             let motion = match self.is_tip {
                 true => JointMotion::with_tcp(&self.chain, rotary, &segment.path)?,
                 false => JointMotion::new(&self.chain, rotary, &segment.path)?,
             };
             Ok((motion, segment.error))
-        };
-        path::map(path, linear, &self.map)?.into_iter().map(motion).collect()
+        });
+        motions.collect()
     }
 }
 

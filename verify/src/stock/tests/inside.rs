@@ -135,7 +135,7 @@ fn nodes_on_the_surface_are_moved_up() {
             let around = around.map(|corner| corner + shift);
             let lattice = Lattice::new(around, spacing).expect("a lattice");
             let triangles = mesh.corners().map(|corners| corners.map(|corner| corner.into()));
-            let inside = columns::nodes_inside(triangles, &lattice).expect("an inside");
+            let inside = nodes_inside(triangles, &lattice).expect("an inside");
             for node in 0..lattice.len() {
                 let at = lattice.position(node);
                 let expected = (0..3).all(|axis| low[axis] <= at[axis] && at[axis] < high[axis]);

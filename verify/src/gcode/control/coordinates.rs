@@ -1,14 +1,15 @@
 //! Words that change what positions mean: tools and their lengths, work offsets, shifts, tool centre point
 //! control, rotated and tilted planes.
 
-use super::block::{Block, Keyword};
-use super::code::{Code, Group};
-use super::modal::Motion;
-use super::motion::{AXES, Control};
-use super::note::Subject;
-use super::rules::{Choice, Rule};
-use super::state::{ControlState, Frame, LengthOffset, Position, Rotation, Tcp, WorkOffset, about};
-use super::{GcodeFault, Plane, StepPath};
+use super::{AXES, Control, Motion};
+use crate::gcode::block::{Block, Code, Group, Keyword};
+use crate::gcode::error::{combination, missing, not_read, same_group};
+use crate::gcode::note::Subject;
+use crate::gcode::rules::{Choice, Rule};
+use crate::gcode::state::{
+    ControlState, Frame, LengthOffset, Position, Rotation, Tcp, WorkOffset, about,
+};
+use crate::gcode::{GcodeFault, Plane, StepPath};
 use nalgebra::Vector3;
 use std::sync::Arc;
 
@@ -20,6 +21,7 @@ impl Control {
     fn change(&mut self, edit: impl FnOnce(&mut ControlState)) {
         let mut new = (*self.state).clone();
         edit(&mut new);
+        // Steps share the state until it changes.
         if new != *self.state {
             self.length_changed |= new.length != self.state.length;
             self.rotation_changed |= new.rotation != self.state.rotation;
@@ -41,16 +43,15 @@ impl Control {
             self.staged = Some(tool);
         }
         if let Some(edge) = block.take_whole('D', 0, MAX_REGISTER, expected)? {
+            // D holds for the tool after the change, where D1 is in force anyway.
             let is_staged = self.staged.is_some() && self.staged != self.state.tool;
             if (edge != 1 || self.length_cancelled)
                 && (has_tool || has_change || is_staged)
                 && self.choice(Rule::ToolLength) == Choice::Always
             {
-                return Err(GcodeFault::Combination {
-                    word: format!("D{edge}"),
-                    condition: "a tool is about to be changed, for which it counts",
-                    remedy: "write it after the change",
-                });
+                let condition = "a tool is about to be changed, for which it counts";
+                let remedy = "write it after the change";
+                return Err(combination(format!("D{edge}"), condition, remedy));
             }
             self.edge = Some(edge);
             self.notes.add(self.line, Subject::PassedOver(Code { letter: 'D', tenths: 0 }));
@@ -61,28 +62,26 @@ impl Control {
             Some(Choice::Heidenhain) => has_tool || has_change && self.staged != self.state.tool,
             _ => has_change,
         };
+        // These words act before the change on some controls, and after it on others.
         let mut groups = [Group::OneShot, Group::Machine, Group::Length].into_iter();
         if has_change && let Some(code) = groups.find_map(|group| block.code_of(group)) {
             let remedy = "write it in a block before or after";
             return Err(combination(code, "its block has M6", remedy));
         }
         if (has_change || changes) && block.has_any("XYZABCIJK") {
-            return Err(GcodeFault::Combination {
-                word: if has_change { "M6" } else { "T" }.to_owned(),
-                condition: "its block has axis words",
-                remedy: "write them in a block before or after",
-            });
+            let condition = "its block has axis words";
+            let remedy = "write them in a block before or after";
+            return Err(combination(if has_change { "M6" } else { "T" }, condition, remedy));
         }
+        // Some changers take T in the block of M6 for the tool after this one.
         if has_change
             && let (Some(before), Some(tool)) = (before, self.staged)
             && before != tool
             && self.state.tool != Some(before)
         {
-            return Err(GcodeFault::Combination {
-                word: format!("T{tool} M6"),
-                condition: "another tool is staged",
-                remedy: "write T in a block before M6",
-            });
+            let condition = "another tool is staged";
+            let remedy = "write T in a block before M6";
+            return Err(combination(format!("T{tool} M6"), condition, remedy));
         }
         if has_change || changes {
             self.stop_spindle();
@@ -91,7 +90,7 @@ impl Control {
             Some(tool) if changes => self.change_tool(tool),
             None if changes => {
                 let needed = "the number of a tool (T) in this block or before";
-                return Err(GcodeFault::Missing { word: "M6".to_owned(), needed });
+                return Err(missing("M6", needed));
             }
             _ => {}
         }
@@ -105,6 +104,7 @@ impl Control {
         self.leave_for_change(self.state.tool.is_none_or(|before| before == tool));
         self.length_cancelled = false;
         self.change(|state| state.tool = Some(tool));
+        // Not asked: whether the length counts matters at the next motion only.
         let is_always = self.stated(Rule::ToolLength) == Some(Choice::Always);
         if self.length_implicit || is_always && self.state.length == LengthOffset::Off {
             self.imply_length(tool);
@@ -116,10 +116,11 @@ impl Control {
         let Some(tool) = self.state.tool else {
             if edge != 1 && self.choice(Rule::ToolLength) == Choice::Always {
                 let needed = "a tool in the spindle (T M6) before";
-                return Err(GcodeFault::Missing { word: format!("D{edge}"), needed });
+                return Err(missing(format!("D{edge}"), needed));
             }
             return Ok(());
         };
+        // D1 is in force without a word, unless the offset was cancelled.
         let is_first = edge == 1 && !self.length_cancelled;
         if is_first || self.choice(Rule::ToolLength) != Choice::Always {
             return Ok(());
@@ -152,6 +153,8 @@ impl Control {
             Some(target) => (target.map(|value| value.is_some()), target),
             None => match self.choice(Rule::ToolChange) {
                 Choice::Retracts => {
+                    // A change to the tool in the spindle may leave Z on Haas: its height is unknown then, unless it stands at
+                    // its home.
                     let height = self.home.map(|home| home[2]);
                     let present = self.state.to_machine(self.position)[2];
                     if is_same && present.is_none() {
@@ -173,7 +176,7 @@ impl Control {
 
     /// Ends the length offset that a return has cancelled, before a block to which it matters.
     pub(super) fn returned_length(&mut self, block: &Block) {
-        let one_shot = block.code_of(Group::OneShot).map(|code| code.tenths);
+        let one_shot = block.tenths_of(Group::OneShot);
         let matters = match one_shot {
             // By increments of 0 the intermediate position is where the machine stands.
             Some(280 | 300) => block.is_nonzero("Z") || block.has('Z') && !self.modal.incremental,
@@ -197,10 +200,10 @@ impl Control {
     /// Returns whether the length offset matters to the motion of a block in program coordinates. It moves Z alone, but in a
     /// rotated plane, or the normal of the plane where it counts without a word.
     pub(super) fn depends_on_length(&self, block: &Block) -> bool {
-        let is_cycle = matches!(self.modal.motion, Some(Motion::Cycle(_)));
+        let is_cycle = self.modal.cycle().is_some();
         let normal = AXES[self.modal.plane.normal()];
         let is_moved = block.has('Z') || block.has(normal);
-        is_programmed(block) && (is_moved || is_cycle || self.state.rotation != Rotation::Off)
+        block.is_programmed() && (is_moved || is_cycle || self.state.rotation != Rotation::Off)
     }
 
     /// Gives the length offset the value that the control gives it without a word, before a motion to which it matters.
@@ -224,8 +227,9 @@ impl Control {
             let (before, height) = (Arc::clone(&self.state), self.position[2]);
             let has_returned = self.returned.is_some();
             self.length(block, code)?;
-            let one_shot = block.code_of(Group::OneShot).map(|code| code.tenths);
+            let one_shot = block.tenths_of(Group::OneShot);
             let is_return = matches!(one_shot, Some(280 | 300));
+            // At a reference position the offset is suspended, so that its change moves nothing.
             if (is_return || !block.has('Z'))
                 && !has_returned
                 && self.moves_by_length(&before, height)
@@ -257,6 +261,7 @@ impl Control {
             let condition = "M428 is in force with turned axes, which LinuxCNC moves by it";
             return Err(combination(code, condition, "write it before M428, or at 0"));
         }
+        // From here on the offset is what the program says, whatever a return or the tool change has done to it.
         (self.returned, self.length_implicit) = (None, false);
         // G43 and G49 do not end a transformation.
         let kept = if self.transformed { self.state.tcp } else { Tcp::Off };
@@ -295,7 +300,7 @@ impl Control {
         }
         if code.tenths == 2340 && !block.has('H') {
             let needed = "H in its block, since Haas cancels the one before";
-            return Err(GcodeFault::Missing { word: code.to_string(), needed });
+            return Err(missing(code, needed));
         }
         if code.tenths != 430 && block.has_any("ABCIJK") {
             let condition = "its block turns the axes, without tool centre point control on Fanuc";
@@ -333,7 +338,7 @@ impl Control {
             (None, _, Some(tool)) => self.registered(tool),
             (None, _, None) => {
                 let needed = "H with the number of a length, or a tool in the spindle (T M6)";
-                return Err(GcodeFault::Missing { word: code.to_string(), needed });
+                return Err(missing(code, needed));
             }
         };
         self.vector = None;
@@ -345,8 +350,7 @@ impl Control {
         Ok(())
     }
 
-    /// Returns whether the control moves Z by a change of the length offset without a word for Z: as by an increment of 0. At a
-    /// reference position the offset is suspended, and its change moves nothing.
+    /// Returns whether the control moves Z by a change of the length offset without a word for Z: as by an increment of 0.
     fn moves_by_length(&mut self, before: &ControlState, height: Option<f64>) -> bool {
         height.is_some()
             && before.length != self.state.length
@@ -375,7 +379,7 @@ impl Control {
         let word = match (kinematics, block.keyword) {
             (Some(code), Some(_)) => {
                 let (first, second) = (code.to_string(), "TRAORI or TRAFOOF".to_owned());
-                return Err(GcodeFault::SameGroup { first, second });
+                return Err(same_group(first, second));
             }
             (Some(code), None) => code.to_string(),
             (None, Some(Keyword::TransformationOn)) => "TRAORI".to_owned(),
@@ -383,19 +387,16 @@ impl Control {
             (None, None) => return self.check_edge(),
         };
         if self.state.tcp != Tcp::Off && !self.transformed {
-            return Err(GcodeFault::Combination {
-                word,
-                condition: "G43.4, G43.5 or G234 is in force",
-                remedy: "end it with G49 before",
-            });
+            let condition = "G43.4, G43.5 or G234 is in force";
+            let remedy = "end it with G49 before";
+            return Err(combination(word, condition, remedy));
         }
         if block.keyword.is_some() {
             if block.has_words() {
-                return Err(GcodeFault::Combination {
-                    word,
-                    condition: "its block has other words, before or after which the transformation changes",
-                    remedy: "write it in a block of its own",
-                });
+                let condition =
+                    "its block has other words, before or after which the transformation changes";
+                let remedy = "write it in a block of its own";
+                return Err(combination(word, condition, remedy));
             }
             let needed = "a work offset (G54) before, since TRAORI and TRAFOOF deselect it";
             self.needs_offset = Some(needed);
@@ -409,7 +410,7 @@ impl Control {
         // Sinumerik applies the length of the tool in the spindle without a word.
         if block.keyword.is_some() && length == LengthOffset::Off {
             let Some(tool) = self.state.tool else {
-                return Err(GcodeFault::Missing { word, needed: "a tool in the spindle (T M6)" });
+                return Err(missing(word, "a tool in the spindle (T M6)"));
             };
             length = self.registered(tool);
         }
@@ -443,11 +444,12 @@ impl Control {
                     Some(number) => WorkOffset::Additional(number as u16),
                     None => {
                         let needed = "P with the number of the offset";
-                        return Err(GcodeFault::Missing { word: code.to_string(), needed });
+                        return Err(missing(code, needed));
                     }
                 }
             }
             tenths @ 540..=590 => WorkOffset::Standard((tenths / 10 - 53) as u8),
+            // G59.1 to G59.3 go on from G59.
             tenths => WorkOffset::Standard((tenths - 590 + 6) as u8),
         };
         if matches!(code.tenths, 580 | 590) {
@@ -456,13 +458,14 @@ impl Control {
                 Some(Choice::Sinumerik) => {
                     let meaning = "a shift in native programs of Sinumerik";
                     let remedy = "write G54 to G57, or state `dialect = \"iso\"` of the control";
-                    return Err(GcodeFault::NotRead { word: code.to_string(), meaning, remedy });
+                    return Err(not_read(code, meaning, remedy));
                 }
                 Some(_) => {}
             }
         }
         self.offset_stated = true;
         self.needs_offset = None;
+        // The centre of a rotation is in coordinates of the work offset before.
         if offset != self.state.work_offset {
             self.check_unrotated(code)?;
         }
@@ -507,7 +510,7 @@ impl Control {
             923 => {
                 let meaning = "a shift that another program may have left";
                 let remedy = "write G92 with its axes";
-                Err(GcodeFault::NotRead { word: code.to_string(), meaning, remedy })
+                Err(not_read(code, meaning, remedy))
             }
             _ => self.end_preset(code),
         }
@@ -515,13 +518,12 @@ impl Control {
 
     /// Executes `G10 L2 P`: sets the origin of a work offset.
     fn set_origin(&mut self, block: &mut Block, code: Code) -> Result<(), GcodeFault> {
-        let missing = |needed| GcodeFault::Missing { word: code.to_string(), needed };
         block
             .take_whole('L', 2, 2, "L2, which sets the origin of a work offset")?
-            .ok_or_else(|| missing("L2"))?;
+            .ok_or_else(|| missing(code, "L2"))?;
         let number = block
             .take_whole('P', 1, 9, "a work offset from P1 (G54) to P9 (G59.3)")?
-            .ok_or_else(|| missing("P with the number of the work offset"))?;
+            .ok_or_else(|| missing(code, "P with the number of the work offset"))?;
         if self.modal.incremental {
             return Err(combination(code, "G91 is in force", "write G90 before"));
         }
@@ -529,18 +531,16 @@ impl Control {
         if turn.is_some() && self.stated(Rule::Dialect) != Some(Choice::Rs274Ngc) {
             let meaning = "a rotation of the work offset on LinuxCNC alone";
             let remedy = "write G68, or state `dialect = \"rs274ngc\"` of the control";
-            return Err(GcodeFault::NotRead { word: "R of G10".to_owned(), meaning, remedy });
+            return Err(not_read("R of G10", meaning, remedy));
         }
         let axes = self.take_axes(block);
         let offset = WorkOffset::Standard(number as u8);
         let is_turned = self.origins.get(&offset).is_some_and(|(_, rotation)| *rotation != 0.0);
         let is_shifted = self.state.shift != [Some(0.0); 6];
         if self.state.work_offset == offset && is_shifted && (turn.is_some() || is_turned) {
-            return Err(combination(
-                code,
-                "G52 or G92 is in force, and it rotates",
-                "end it before",
-            ));
+            let condition = "G52 or G92 is in force, and it rotates";
+            let remedy = "end it before";
+            return Err(combination(code, condition, remedy));
         }
         let is_known = self.origins.get(&offset).is_some_and(|(origin, _)| *origin != [None; 6]);
         // A program that sets G54 moves the part, and is refused on a machine.
@@ -550,7 +550,7 @@ impl Control {
             && matches!(self.stated(Rule::Dialect), None | Some(Choice::Rs274Ngc))
         {
             let needed = "R0, since LinuxCNC keeps a rotation of the work offset; or state its origin in `work_offsets`";
-            return Err(GcodeFault::Missing { word: code.to_string(), needed });
+            return Err(missing(code, needed));
         }
         let (origin, rotation) = self.origins.entry(offset).or_insert(([None; 6], 0.0));
         for (coordinate, value) in origin.iter_mut().zip(axes) {
@@ -577,10 +577,10 @@ impl Control {
         }
         let axes = self.take_axes(block);
         if axes.iter().all(Option::is_none) {
-            return Err(GcodeFault::Missing { word: code.to_string(), needed: "an axis word" });
+            return Err(missing(code, "an axis word"));
         }
-        let keeps = |axis: usize| axes[axis].is_none() && self.local[axis] != 0.0;
-        if matches!(self.stated(Rule::Dialect), None | Some(Choice::Sinumerik)) && (0..6).any(keeps)
+        if matches!(self.stated(Rule::Dialect), None | Some(Choice::Sinumerik))
+            && (0..6).any(|axis| axes[axis].is_none() && self.local[axis] != 0.0)
         {
             let remedy = "name them, too";
             return Err(combination(
@@ -605,7 +605,7 @@ impl Control {
         self.check_preset(block)?;
         let axes = self.take_axes(block);
         if axes.iter().all(Option::is_none) {
-            return Err(GcodeFault::Missing { word: code.to_string(), needed: "an axis word" });
+            return Err(missing(code, "an axis word"));
         }
         let workpiece = self.state.to_workpiece(self.position);
         for axis in 0..AXES.len() {
@@ -614,6 +614,7 @@ impl Control {
             }
         }
         self.update_shift();
+        // The position is stated by the word, also where it was not known.
         for (coordinate, value) in self.position.iter_mut().zip(axes) {
             *coordinate = value.or(*coordinate);
         }
@@ -655,15 +656,15 @@ impl Control {
         if self.modal.incremental {
             return Err(combination(code, "G91 is in force", "write G90 before"));
         }
-        let missing = |needed| GcodeFault::Missing { word: code.to_string(), needed };
-        let angle = block.take('R').ok_or_else(|| missing("the angle R"))?;
+        let angle = block.take('R').ok_or_else(|| missing(code, "the angle R"))?;
         let mut centre = Vector3::zeros();
         for axis in self.modal.plane.axes() {
-            let given = block.take(AXES[axis]).map(|value| self.modal.millimetres(value));
+            let given = self.take_length(block, AXES[axis]);
             centre[axis] = given.or(self.position[axis]).ok_or_else(|| {
-                missing("both coordinates of the centre, since the position is not known")
+                missing(code, "both coordinates of the centre, since the position is not known")
             })?;
         }
+        // p ↦ R (p − c) + c for the centre c.
         let rotation = about(self.modal.plane.normal(), angle);
         let frame = Frame { rotation, origin: centre - rotation * centre };
         self.change(|state| state.rotation = Rotation::Plane { frame });
@@ -681,14 +682,13 @@ impl Control {
             return Err(combination(code, "G91 is in force", "write G90 before"));
         }
         block.take_whole('P', 0, 0, "P0, or no P: the angles are Euler's")?;
-        let missing = || {
+        let mut numbers = [0.0; 6];
+        for (number, letter) in numbers.iter_mut().zip(['X', 'Y', 'Z', 'I', 'J', 'K']) {
             let needed = "X Y Z and the Euler angles I J K";
-            GcodeFault::Missing { word: code.to_string(), needed }
-        };
-        let mut number = |letter| block.take(letter).ok_or_else(missing);
-        let origin = [number('X')?, number('Y')?, number('Z')?];
-        let [i, j, k] = [number('I')?, number('J')?, number('K')?];
-        let origin = Vector3::from(origin.map(|value| self.modal.millimetres(value)));
+            *number = block.take(letter).ok_or_else(|| missing(code, needed))?;
+        }
+        let [x, y, z, i, j, k] = numbers;
+        let origin = Vector3::new(x, y, z).map(|length| self.modal.millimetres(length));
         let rotation = about(2, i) * about(0, j) * about(2, k);
         let frame = Frame { rotation, origin };
         self.change(|state| state.rotation = Rotation::Tilted { frame, aligned: false });
@@ -699,9 +699,9 @@ impl Control {
     fn align(&mut self, code: Code) -> Result<(), GcodeFault> {
         let Rotation::Tilted { frame, .. } = self.state.rotation else {
             let needed = "a tilted plane (G68.2) in a block before";
-            return Err(GcodeFault::Missing { word: code.to_string(), needed });
+            return Err(missing(code, needed));
         };
-        if matches!(self.modal.motion, Some(Motion::Cycle(_))) {
+        if self.modal.cycle().is_some() {
             return Err(combination(code, "a canned cycle is in force", "write G80 before"));
         }
         if matches!(self.modal.motion, Some(Motion::Feed | Motion::Arc { .. })) {
@@ -715,9 +715,7 @@ impl Control {
         self.change(|state| state.rotation = Rotation::Tilted { frame, aligned: true });
         Ok(())
     }
-}
 
-impl Control {
     /// Refuses a position before the work offset that it depends on is selected.
     pub(super) fn check_offset(&mut self, block: &Block) -> Result<(), GcodeFault> {
         if !self.uses_offset(block) {
@@ -729,28 +727,17 @@ impl Control {
                 .get_or_insert("a work offset (G54) before, since this control starts without one");
         }
         let Some(needed) = needed else { return Ok(()) };
-        Err(GcodeFault::Missing { word: "a position".to_owned(), needed })
+        Err(missing("a position", needed))
     }
 
     /// Returns whether a block has a position that depends on the work offset.
     fn uses_offset(&self, block: &Block) -> bool {
         let is_absolute = !self.modal.incremental && block.has_any("XYZABC");
-        let one_shot = block.code_of(Group::OneShot).map(|code| code.tenths);
-        let rotation = block.code_of(Group::Rotation).map(|code| code.tenths);
-        is_programmed(block)
+        let one_shot = block.tenths_of(Group::OneShot);
+        let rotation = block.tenths_of(Group::Rotation);
+        block.is_programmed()
             || matches!(one_shot, Some(520 | 531 | 920))
             || matches!(rotation, Some(680 | 682))
             || is_absolute && matches!(one_shot, Some(280 | 300))
     }
-}
-
-/// Returns whether a block has a position in program coordinates for a motion.
-pub(super) fn is_programmed(block: &Block) -> bool {
-    block.has_any("XYZABCIJK")
-        && block.code_of(Group::OneShot).is_none()
-        && block.code_of(Group::Machine).is_none()
-}
-
-fn combination(code: Code, condition: &'static str, remedy: &'static str) -> GcodeFault {
-    GcodeFault::Combination { word: code.to_string(), condition, remedy }
 }

@@ -2,15 +2,20 @@
 //!
 //! `docs/controls.md` lists them with what each control does.
 
-use super::GcodeFault;
-use super::block::Block;
-use super::code::{Code, Group};
-use super::linuxcnc;
-use super::modal::Motion;
-use super::motion::{AXES, Control};
-use super::rules::{Choice, Rule};
-use super::state::{LengthOffset, Rotation, Tcp};
-use super::text::before_semicolon;
+use super::{AXES, Control, Motion, in_plane};
+use crate::gcode::block::{Block, Code, Group};
+use crate::gcode::error::{combination, not_read, same_group};
+use crate::gcode::flow::before_semicolon;
+use crate::gcode::linuxcnc;
+use crate::gcode::note::Subject;
+use crate::gcode::rules::{Choice, Rule};
+use crate::gcode::state::{LengthOffset, Position, Rotation, Tcp};
+use crate::gcode::{GcodeFault, StepPath};
+use std::f64::consts::SQRT_2;
+
+/// Distance between the paths of controls on an arc with two radii, in mm, up to which it is rounding: of I and J with three
+/// decimals, or four in inches.
+const RADII_TOLERANCE: f64 = 5e-3;
 
 impl Control {
     /// Refuses words that mean something else in the dialect of the control.
@@ -21,15 +26,16 @@ impl Control {
         {
             let meaning = "a unit in programs of Sinumerik and Heidenhain, and a cycle elsewhere";
             let remedy = "write G20 or G21";
-            return Err(GcodeFault::NotRead { word: code.to_string(), meaning, remedy });
+            return Err(not_read(code, meaning, remedy));
         }
+        // The dialect is asked only if the block has such a word.
         let other = block.codes().find(|code| is_other_on_heidenhain(*code));
         if let Some(code) = other
             && self.choice(Rule::Dialect) == Choice::Heidenhain
         {
             let meaning = "another word in DIN/ISO programs of Heidenhain";
             let remedy = "post the program for this control, or state another `dialect`";
-            return Err(GcodeFault::NotRead { word: code.to_string(), meaning, remedy });
+            return Err(not_read(code, meaning, remedy));
         }
         let dialect = self.stated(Rule::Dialect);
         if dialect == Some(Choice::Rs274Ngc) {
@@ -40,51 +46,49 @@ impl Control {
         {
             let meaning = "a word of LinuxCNC alone";
             let remedy = "post the program for this control, or state another `dialect`";
-            return Err(GcodeFault::NotRead { word: code.to_string(), meaning, remedy });
+            return Err(not_read(code, meaning, remedy));
         }
         if let Some(code) = block.code_of(Group::Kinematics)
             && dialect != Some(Choice::Rs274Ngc)
         {
             let meaning = "tool centre point control of LinuxCNC's five-axis configurations alone";
             let remedy = "write G43.4 H and G49, or state `dialect = \"rs274ngc\"` of the control";
-            return Err(GcodeFault::NotRead { word: code.to_string(), meaning, remedy });
+            return Err(not_read(code, meaning, remedy));
         }
         if block.distance_after_coordinate && dialect == Some(Choice::Heidenhain) {
-            return Err(GcodeFault::Combination {
-                word: "G90 or G91".to_owned(),
-                condition: "a coordinate stands before it in the block",
-                remedy: "write it first: on Heidenhain it holds for the coordinates after it",
-            });
+            let condition = "a coordinate stands before it in the block";
+            let remedy = "write it first: on Heidenhain it holds for the coordinates after it";
+            return Err(combination("G90 or G91", condition, remedy));
         }
         Ok(())
     }
 
     /// Refuses a line that the control does not read, whatever its words.
-    pub(super) fn check_line(&self, text: &str) -> Result<(), GcodeFault> {
+    pub(crate) fn check_line(&self, text: &str) -> Result<(), GcodeFault> {
         match self.stated(Rule::Dialect) {
             Some(Choice::Rs274Ngc) => linuxcnc::check_line(text),
             Some(Choice::Heidenhain) => {
-                let is_other = |c: &char| matches!(c, '(' | '#');
-                let Some(found) = before_semicolon(text).chars().find(is_other) else {
+                let Some(found) = before_semicolon(text).chars().find(|c| matches!(c, '(' | '#'))
+                else {
                     return Ok(());
                 };
                 let meaning = "no word of DIN/ISO programs of Heidenhain";
                 let remedy =
                     "write comments after `;` and numbers as such, or state another `dialect`";
-                Err(GcodeFault::NotRead { word: format!("`{found}`"), meaning, remedy })
+                Err(not_read(format!("`{found}`"), meaning, remedy))
             }
             _ => Ok(()),
         }
     }
 
     /// Refuses values that depend on when the assignment of their block takes effect.
-    pub(super) fn check_assignment(&self, block: &Block) -> Result<(), GcodeFault> {
+    pub(crate) fn check_assignment(&self, block: &Block) -> Result<(), GcodeFault> {
         match block.assigns_beside_value && self.stated(Rule::Dialect) != Some(Choice::Rs274Ngc) {
-            true => Err(GcodeFault::Combination {
-                word: "an assignment".to_owned(),
-                condition: "its block has another computed value, which LinuxCNC computes before it",
-                remedy: "write it in a block before",
-            }),
+            true => Err(combination(
+                "an assignment",
+                "its block has another computed value, which LinuxCNC computes before it",
+                "write it in a block before",
+            )),
             false => Ok(()),
         }
     }
@@ -92,46 +96,41 @@ impl Control {
     /// Refuses words of a block that controls combine in different ways.
     pub(super) fn check_words(&self, block: &Block) -> Result<(), GcodeFault> {
         let dialect = self.stated(Rule::Dialect);
-        let is_m = |code: &Code| code.letter == 'M';
-        let acts = |code: &Code| matches!(code.tenths, 0..=60 | 290 | 300 | 980 | 990);
         if matches!(dialect, None | Some(Choice::Iso))
-            && block.codes().filter(is_m).nth(1).is_some()
-            && let Some(code) = block.codes().filter(is_m).find(acts)
+            && block.codes().filter(Code::is_m).nth(1).is_some()
+            && let Some(code) = block
+                .codes()
+                .filter(Code::is_m)
+                .find(|code| matches!(code.tenths, 0..=60 | 290 | 300 | 980 | 990))
         {
-            return Err(GcodeFault::Combination {
-                word: code.to_string(),
-                condition: "its block has another M word, of which Haas and Fanuc as delivered execute one",
-                remedy: "write them in two blocks",
-            });
+            let condition =
+                "its block has another M word, of which Haas and Fanuc as delivered execute one";
+            let remedy = "write them in two blocks";
+            return Err(combination(code, condition, remedy));
         }
-        let is_spindle = |code: &Code| is_m(code) && matches!(code.tenths, 30 | 40 | 50 | 190);
-        let mut spindle = block.codes().filter(is_spindle);
+        let mut spindle =
+            block.codes().filter(|code| code.is_m() && matches!(code.tenths, 30 | 40 | 50 | 190));
         if let (Some(first), Some(second)) = (spindle.next(), spindle.next()) {
-            return Err(GcodeFault::SameGroup {
-                first: first.to_string(),
-                second: second.to_string(),
-            });
+            return Err(same_group(first, second));
         }
         if let Some(value) = block.value('S').filter(|speed| *speed < 0.0) {
             let expected = "a number from 0";
             return Err(GcodeFault::NotAllowed { word: 'S', value, expected });
         }
+        // G54.1 has its own P.
         if block.has('P')
             && let Some(code) = block.code_of(Group::WorkOffset).filter(|code| code.tenths != 541)
         {
-            return Err(GcodeFault::Combination {
-                word: format!("P beside {code}"),
-                condition: "it selects another work offset on Fanuc and Siemens",
-                remedy: "write it in a block of its own",
-            });
+            let condition = "it selects another work offset on Fanuc and Siemens";
+            let remedy = "write it in a block of its own";
+            return Err(combination(format!("P beside {code}"), condition, remedy));
         }
         // The last word of the group counts on Fanuc, and the cycle on LinuxCNC (run: `rs274`).
         let cycle = block.code_of(Group::Motion).filter(|code| code.tenths >= 730);
         if let Some((cycle, end)) = cycle.zip(block.code_of(Group::CycleOff))
             && dialect != Some(Choice::Rs274Ngc)
         {
-            let (first, second) = (cycle.to_string(), end.to_string());
-            return Err(GcodeFault::SameGroup { first, second });
+            return Err(same_group(cycle, end));
         }
         check_axis_words(block)?;
         self.check_shared(block)
@@ -140,6 +139,7 @@ impl Control {
     /// Refuses a letter that two words of the block take: LinuxCNC gives its number to both, as P to G64 and to the turns of an
     /// arc (`interp_check.cc`, `interp_arc.cc`).
     fn check_shared(&self, block: &Block) -> Result<(), GcodeFault> {
+        // The motion in force takes the letters of a block without a motion word.
         let is_executed = block.has_any("XYZIJKR") && block.code_of(Group::Motion).is_none();
         let in_force = match self.modal.motion.filter(|_| is_executed) {
             Some(Motion::Arc { clockwise: true }) => Some(20),
@@ -151,11 +151,13 @@ impl Control {
         for letter in "PQLR".chars().filter(|letter| block.has(*letter)) {
             let mut users = block.codes().chain(in_force).filter(|code| takes(*code, letter));
             if let (Some(first), Some(second)) = (users.next(), users.next()) {
-                return Err(GcodeFault::Combination {
-                    word: format!("{letter} beside {first} and {second}"),
-                    condition: "some controls give its number to both",
-                    remedy: "write them in two blocks",
-                });
+                let condition = "some controls give its number to both";
+                let remedy = "write them in two blocks";
+                return Err(combination(
+                    format!("{letter} beside {first} and {second}"),
+                    condition,
+                    remedy,
+                ));
             }
         }
         Ok(())
@@ -167,28 +169,26 @@ impl Control {
         if std::mem::take(&mut self.tcp_position_needed)
             && (is_incremental || !"XYZ".chars().all(|letter| block.has(letter)))
         {
-            return Err(GcodeFault::Combination {
-                word: "a position".to_owned(),
-                condition: "it is the first of tool centre point control that began with turned axes, and has not X, Y and Z in G90",
-                remedy: "write all three",
-            });
+            let condition = "it is the first of tool centre point control that began with turned axes, and has not X, Y and Z in G90";
+            let remedy = "write all three";
+            return Err(combination("a position", condition, remedy));
         }
+        // On Fanuc the change of the length acts on an increment, too.
         let length_changed = block.has('Z') && std::mem::take(&mut self.length_changed);
         if length_changed && is_incremental {
             let condition = "G91 is in force and the length offset has changed";
             let remedy = "write it in G90";
-            return Err(GcodeFault::Combination { word: "Z".to_owned(), condition, remedy });
+            return Err(combination("Z", condition, remedy));
         }
         self.check_shifted(block)?;
         for (axis, letter) in AXES.into_iter().enumerate() {
             let Some(value) = block.value(letter) else { continue };
+            // An increment of 0 states no position: the axis still stands where the change has found it.
             self.origin_changed[axis] &= is_incremental && value == 0.0;
             if is_incremental && self.is_rounded(axis, value) {
-                return Err(GcodeFault::Combination {
-                    word: format!("{letter}{value}"),
-                    condition: "G91 is in force, and it is no multiple of the least increment, to which controls round each",
-                    remedy: "write it in G90",
-                });
+                let condition = "G91 is in force, and it is no multiple of the least increment, to which controls round each";
+                let remedy = "write it in G90";
+                return Err(combination(format!("{letter}{value}"), condition, remedy));
             }
         }
         self.check_after_rotation(block)
@@ -196,16 +196,16 @@ impl Control {
 
     /// Refuses increments along axes whose work offset, shift or length has changed, which Sinumerik adds to them, also to 0.
     pub(super) fn check_shifted(&self, block: &Block) -> Result<(), GcodeFault> {
-        let is_changed = |axis: usize| {
-            block.has(AXES[axis]) && (self.origin_changed[axis] || axis == 2 && self.length_changed)
-        };
         let is_sinumerik = matches!(self.stated(Rule::Dialect), None | Some(Choice::Sinumerik));
-        match (0..AXES.len()).find(|axis| is_changed(*axis)) {
-            Some(axis) if self.modal.incremental && is_sinumerik => Err(GcodeFault::Combination {
-                word: AXES[axis].to_string(),
-                condition: "G91 is in force and its work offset, shift or length has changed, which Sinumerik adds",
-                remedy: "write it in G90",
-            }),
+        let changed = (0..AXES.len()).find(|&axis| {
+            block.has(AXES[axis]) && (self.origin_changed[axis] || axis == 2 && self.length_changed)
+        });
+        match changed {
+            Some(axis) if self.modal.incremental && is_sinumerik => Err(combination(
+                AXES[axis],
+                "G91 is in force and its work offset, shift or length has changed, which Sinumerik adds",
+                "write it in G90",
+            )),
             _ => Ok(()),
         }
     }
@@ -214,6 +214,7 @@ impl Control {
     pub(super) fn check_preset(&self, block: &Block) -> Result<(), GcodeFault> {
         for (axis, letter) in AXES.into_iter().enumerate() {
             let Some(value) = block.value(letter) else { continue };
+            // The value is in the unit of the program, the position in mm.
             let unit = if axis < 3 { self.modal.millimetres(1.0) } else { 1.0 };
             let position = self.position[axis].map(|position| position / unit);
             if [Some(value), position]
@@ -221,11 +222,9 @@ impl Control {
                 .flatten()
                 .any(|value| self.is_rounded(axis, value))
             {
-                return Err(GcodeFault::Combination {
-                    word: format!("G92 {letter}{value}"),
-                    condition: "it or the position is no multiple of the least increment, to which controls round",
-                    remedy: "move to such a position before",
-                });
+                let condition = "it or the position is no multiple of the least increment, to which controls round";
+                let remedy = "move to such a position before";
+                return Err(combination(format!("G92 {letter}{value}"), condition, remedy));
             }
         }
         Ok(())
@@ -247,19 +246,20 @@ impl Control {
     /// Refuses the first position after G68 or G69, if it is not that of both axes of the plane.
     fn check_after_rotation(&mut self, block: &Block) -> Result<(), GcodeFault> {
         let is_absolute = !self.modal.incremental;
-        let moves = |value: f64| is_absolute || value != 0.0;
-        let given = self.modal.plane.axes().map(|axis| block.value(AXES[axis]).is_some_and(moves));
+        let given =
+            self.modal.plane.axes().map(|axis| {
+                block.value(AXES[axis]).is_some_and(|value| is_absolute || value != 0.0)
+            });
         // An arc or a cycle without them is at the present position.
         let is_straight = matches!(self.modal.motion, Some(Motion::Rapid | Motion::Feed));
         if !self.rotation_changed || given == [false; 2] && is_straight {
             return Ok(());
         }
         if self.modal.incremental || given != [true; 2] {
-            return Err(GcodeFault::Combination {
-                word: "a position".to_owned(),
-                condition: "it is the first after G68 or G69, and not of both axes of the plane in G90",
-                remedy: "write both in G90",
-            });
+            let condition =
+                "it is the first after G68 or G69, and not of both axes of the plane in G90";
+            let remedy = "write both in G90";
+            return Err(combination("a position", condition, remedy));
         }
         self.rotation_changed = false;
         Ok(())
@@ -269,12 +269,11 @@ impl Control {
     pub(super) fn check_tilted(&self, block: &Block) -> Result<(), GcodeFault> {
         let Rotation::Tilted { aligned, frame } = self.state.rotation else { return Ok(()) };
         let has_length = self.state.tcp == Tcp::Off && self.state.length != LengthOffset::Off;
+        // Along Z of the machine, or of the plane: the same where the plane keeps Z.
         if !aligned && has_length && frame.rotation[(2, 2)] != 1.0 && block.has_any("XYZ") {
-            return Err(GcodeFault::Combination {
-                word: "a position".to_owned(),
-                condition: "a length offset is in force in a tilted plane that is not aligned",
-                remedy: "write G53.1 after G68.2, or G49 before",
-            });
+            let condition = "a length offset is in force in a tilted plane that is not aligned";
+            let remedy = "write G53.1 after G68.2, or G49 before";
+            return Err(combination("a position", condition, remedy));
         }
         let moved = AXES.into_iter().filter(|letter| block.has(*letter));
         let at_zero = self.position[3..].iter().all(|angle| *angle == Some(0.0));
@@ -289,10 +288,69 @@ impl Control {
                 }
                 _ => continue,
             };
-            return Err(GcodeFault::Combination { word: letter.to_string(), condition, remedy });
+            return Err(combination(letter, condition, remedy));
         }
         Ok(())
     }
+
+    /// Refuses an arc that is a full circle where coordinates are rounded, and notes one that is no circle.
+    pub(super) fn check_radii(
+        &mut self,
+        path: &StepPath,
+        end: &Position,
+    ) -> Result<(), GcodeFault> {
+        let StepPath::Arc { plane, centre, .. } = path else { return Ok(()) };
+        let [first, second] = plane.axes();
+        let (Some([x, y]), Some([u, v])) =
+            (in_plane(&self.position, [first, second]), in_plane(end, [first, second]))
+        else {
+            return Ok(());
+        };
+        let chord = (u - x).hypot(v - y);
+        let [across, along] = [(u - x).abs(), (v - y).abs()];
+        if chord > 0.0 && across.max(along) < 2.0 * self.modal.millimetres(self.modal.increment()) {
+            let condition = "its end is less than two increments from its start, and can be the same where coordinates are rounded";
+            let remedy = "leave the end out for a full circle, or leave out the arc";
+            return Err(combination("an arc", condition, remedy));
+        }
+        // A control that moves the centre across the chord turns the arc about its start by the difference over the chord.
+        let [from, to] = [[x, y], [u, v]].map(|[x, y]| (x - centre[0]).hypot(y - centre[1]));
+        let turn = if chord > 0.0 { from.max(to) / chord } else { 0.0 };
+        if (from - to).abs() * turn.max(1.0) > RADII_TOLERANCE {
+            self.notes.add(self.line, Subject::TwoRadii);
+        }
+        Ok(())
+    }
+
+    /// Notes an arc by its radius whose path depends on digits below the least increment: one near a half circle, or near a full one.
+    /// A radius below 0 is that of an arc of more than a half circle.
+    pub(super) fn check_radius_digits(&mut self, radius: f64, end: &Position) {
+        let axes = self.modal.plane.axes();
+        let (Some([x, y]), Some([u, v])) = (in_plane(&self.position, axes), in_plane(end, axes))
+        else {
+            return;
+        };
+        let increment = self.modal.millimetres(self.modal.increment());
+        if [x, y, u, v, radius].into_iter().all(|value| is_multiple(value, increment)) {
+            return;
+        }
+        let is_major = radius < 0.0;
+        // If every number changes by an increment, the chord changes by √8 increments, and its middle stays within one of them.
+        let chord = (u - x).hypot(v - y);
+        let [shallow, deep] = [-increment, increment]
+            .map(|change| sagitta(radius.abs() + change, 0.5 * chord - SQRT_2 * change, is_major));
+        let farthest = if is_major { 2.0 * radius.abs() } else { chord };
+        let turn = farthest / chord.max(increment) * f64::sqrt(8.0) * increment;
+        if (deep - shallow).abs() + turn > RADII_TOLERANCE.max(8.0 * increment) {
+            self.notes.add(self.line, Subject::RoundedRadius);
+        }
+    }
+}
+
+/// Returns the height of an arc over its chord: over the shorter arc, or over the longer one.
+fn sagitta(radius: f64, half_chord: f64, is_major: bool) -> f64 {
+    let height = (radius * radius - half_chord * half_chord).max(0.0).sqrt();
+    if is_major { radius + height } else { radius - height }
 }
 
 /// Returns whether a word takes the number after a letter.
@@ -329,7 +387,7 @@ fn is_other_on_heidenhain(code: Code) -> bool {
 }
 
 /// Returns whether a value is a multiple of an increment, but for rounding in doubles.
-pub(super) fn is_multiple(value: f64, increment: f64) -> bool {
+fn is_multiple(value: f64, increment: f64) -> bool {
     let steps = value / increment;
     (steps - steps.round()).abs() <= 1e-6
 }
@@ -353,9 +411,7 @@ fn check_axis_words(block: &Block) -> Result<(), GcodeFault> {
     let motion = motion.filter(|_| !(is_plain && (is_return || machine.is_some())));
     let mut users = [one_shot, rotation, machine, motion].into_iter().flatten();
     match (users.next(), users.next()) {
-        (Some(first), Some(second)) => {
-            Err(GcodeFault::SameGroup { first: first.to_string(), second: second.to_string() })
-        }
+        (Some(first), Some(second)) => Err(same_group(first, second)),
         _ => Ok(()),
     }
 }

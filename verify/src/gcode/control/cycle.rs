@@ -9,32 +9,14 @@
 //! drill. G83 returns to its last depth in rapid traverse; the clearance that a control keeps there is taken
 //! as zero.
 
-use super::block::Block;
-use super::code::Group;
-use super::linuxcnc;
-use super::modal::FeedMode;
-use super::motion::{AXES, Control};
-use super::rules::{Choice, Rule};
-use super::spindle::Spindle;
-use super::state::{ControlState, Position, Tcp};
-use super::{GcodeFault, MAX_CYCLE_STEPS, Plane, StepPath};
+use super::{AXES, Control, Cycle, FeedMode, Spindle};
+use crate::gcode::block::{Block, Group};
+use crate::gcode::error::{combination, missing};
+use crate::gcode::linuxcnc;
+use crate::gcode::rules::{Choice, Rule};
+use crate::gcode::state::{Position, Tcp};
+use crate::gcode::{GcodeFault, MAX_CYCLE_STEPS, Plane, StepPath};
 use std::sync::Arc;
-use touchoff::Unit;
-
-/// Words that stay in force from one cycle to the next, lengths in millimetres as given.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Cycle {
-    number: u32,
-    retract: f64,
-    depth: f64,
-    peck: Option<f64>,
-    /// Distance mode under which retract and depth were given.
-    incremental: bool,
-    /// Level at the start of the series.
-    initial: Option<f64>,
-    unit: Unit,
-    state: Arc<ControlState>,
-}
 
 /// Returns whether a level is below another.
 fn is_below(level: Option<f64>, other: Option<f64>) -> bool {
@@ -57,61 +39,7 @@ impl Control {
         number: u32,
     ) -> Result<(), GcodeFault> {
         let word = format!("G{number}");
-        self.check_cycle(block, &word)?;
-        let is_linuxcnc = self.stated(Rule::Dialect) == Some(Choice::Rs274Ngc);
-        if is_linuxcnc {
-            linuxcnc::check_cycle(block, number)?;
-            if self.modal.feed_mode == FeedMode::InverseTime {
-                return Err(GcodeFault::Combination {
-                    word,
-                    condition: "G93 is in force, which LinuxCNC does not allow",
-                    remedy: "write G94 before",
-                });
-            }
-        }
-        // LinuxCNC taps along another axis there (`convert_cycle_g74_g84` of its interpreter).
-        let in_plane = self.modal.plane.axes().map(|axis| AXES[axis]);
-        if self.cycle.is_some() && !is_linuxcnc && !in_plane.iter().any(|letter| block.has(*letter))
-        {
-            return Err(GcodeFault::Combination {
-                word,
-                condition: "its block goes on with a series and has no place of a hole, and is executed or not",
-                remedy: "write X or Y",
-            });
-        }
-        let is_across = self.modal.plane != Plane::Xy;
-        if is_across && (!is_linuxcnc || matches!(number, 74 | 84)) {
-            return Err(GcodeFault::Combination {
-                word,
-                condition: "G18 or G19 is in force, where a cycle is along Z or along the normal of the plane",
-                remedy: "write G17 before, or state `dialect = \"rs274ngc\"` of the control",
-            });
-        }
-        if block.code_of(Group::Length).is_some() {
-            return Err(GcodeFault::Combination {
-                word,
-                condition: "its block changes the length offset, before or after its initial level is taken",
-                remedy: "write G43 or G49 in a block before",
-            });
-        }
-        if matches!(number, 74 | 84) && !self.can_tap(number) {
-            return Err(GcodeFault::Combination {
-                word,
-                condition: "the spindle does not turn into the thread, which some controls start themselves",
-                remedy: "write M3 before G84, M4 before G74, or M29 for rigid tapping",
-            });
-        }
-        // Fanuc ends G86 by turning the spindle clockwise (parameter 5112).
-        if number == 86
-            && self.spindle(false) == Spindle::CounterClockwise
-            && matches!(self.stated(Rule::Dialect), None | Some(Choice::Iso))
-        {
-            return Err(GcodeFault::Combination {
-                word,
-                condition: "the spindle turns counter-clockwise, which it does not do after it on Fanuc",
-                remedy: "post the hole with its motions",
-            });
-        }
+        self.check_cycle(block, number, &word)?;
         self.check_feed(&word)?;
         self.check_tilted(block)?;
         self.check_position(block)?;
@@ -119,17 +47,18 @@ impl Control {
         let cycle = self.cycle_words(block, number, &word)?;
         let levels = self.levels(&cycle)?;
         let repeats = self.repeats(block)?;
+        // Only G83 leaves the hole between its pecks.
         let strokes = match (number, cycle.peck, levels.retract.zip(levels.depth)) {
             (83, Some(peck), Some((retract, depth))) => ((retract - depth) / peck).ceil().max(1.0),
             _ => 1.0,
         };
+        // The way to a hole takes three steps at most, and each stroke as many.
         if f64::from(repeats) * (3.0 * strokes + 3.0) > MAX_CYCLE_STEPS as f64 {
             return Err(GcodeFault::CycleTooLong);
         }
         let axes = self.take_axes(block);
         // LinuxCNC compares the initial level, and not the present one, with R.
-        if repeats > 0
-            && is_below(cycle.initial, levels.retract)
+        if is_below(cycle.initial, levels.retract)
             && self.position[normal] != levels.retract
             && self.choice(Rule::CycleBelowR) == Choice::RaisesFirst
         {
@@ -151,12 +80,11 @@ impl Control {
         let by_l = block.take_whole('L', 0, 1_000_000, "a number of repeats after L")?.unwrap_or(1);
         let by_k = block.take_whole('K', 0, 1_000_000, "a number of repeats after K")?.unwrap_or(1);
         if by_l == 0 || by_k == 0 {
-            return Err(GcodeFault::Combination {
-                word: if by_l == 0 { "L0" } else { "K0" }.to_owned(),
-                condition: "its block has a canned cycle, to whose place Haas moves",
-                remedy: "write G80 and G0, and the cycle again",
-            });
+            let condition = "its block has a canned cycle, to whose place Haas moves";
+            let remedy = "write G80 and G0, and the cycle again";
+            return Err(combination(if by_l == 0 { "L0" } else { "K0" }, condition, remedy));
         }
+        // One number, whichever word the control reads.
         if by_l == by_k {
             return Ok(by_l);
         }
@@ -166,10 +94,67 @@ impl Control {
         })
     }
 
-    fn check_cycle(&self, block: &Block, word: &str) -> Result<(), GcodeFault> {
+    /// Refuses a cycle that controls execute in different ways.
+    fn check_cycle(&mut self, block: &Block, number: u32, word: &str) -> Result<(), GcodeFault> {
+        self.check_series(block, word)?;
+        let is_linuxcnc = self.stated(Rule::Dialect) == Some(Choice::Rs274Ngc);
+        if is_linuxcnc {
+            linuxcnc::check_cycle(block, number)?;
+            if self.modal.feed_mode == FeedMode::InverseTime {
+                let condition = "G93 is in force, which LinuxCNC does not allow";
+                let remedy = "write G94 before";
+                return Err(combination(word, condition, remedy));
+            }
+        }
+        // LinuxCNC drills again at Z, R or Q alone, Haas does not.
+        let in_plane = self.modal.plane.axes().map(|axis| AXES[axis]);
+        if self.cycle.is_some() && !is_linuxcnc && !in_plane.iter().any(|letter| block.has(*letter))
+        {
+            let condition = "its block goes on with a series and has no place of a hole, and is executed or not";
+            let remedy = "write X or Y";
+            return Err(combination(word, condition, remedy));
+        }
+        // LinuxCNC drills along the normal of the plane, but taps along another axis (`convert_cycle_g74_g84` of its interpreter).
+        // Fanuc drills along Z by a parameter.
+        let is_across = self.modal.plane != Plane::Xy;
+        if is_across && (!is_linuxcnc || matches!(number, 74 | 84)) {
+            let condition =
+                "G18 or G19 is in force, where a cycle is along Z or along the normal of the plane";
+            let remedy = "write G17 before, or state `dialect = \"rs274ngc\"` of the control";
+            return Err(combination(word, condition, remedy));
+        }
+        if block.code_of(Group::Length).is_some() {
+            let condition =
+                "its block changes the length offset, before or after its initial level is taken";
+            let remedy = "write G43 or G49 in a block before";
+            return Err(combination(word, condition, remedy));
+        }
+        if matches!(number, 74 | 84) && !self.can_tap(number) {
+            let condition =
+                "the spindle does not turn into the thread, which some controls start themselves";
+            let remedy = "write M3 before G84, M4 before G74, or M29 for rigid tapping";
+            return Err(combination(word, condition, remedy));
+        }
+        // Fanuc ends G86 by turning the spindle clockwise (parameter 5112).
+        if number == 86
+            && self.spindle(false) == Spindle::CounterClockwise
+            && matches!(self.stated(Rule::Dialect), None | Some(Choice::Iso))
+        {
+            let condition =
+                "the spindle turns counter-clockwise, which it does not do after it on Fanuc";
+            let remedy = "post the hole with its motions";
+            return Err(combination(word, condition, remedy));
+        }
+        Ok(())
+    }
+
+    /// Refuses a cycle under another state than that of its series.
+    fn check_series(&self, block: &Block, word: &str) -> Result<(), GcodeFault> {
         let rotary = AXES[3..].iter().find(|letter| block.has(**letter));
-        let is_other = |cycle: &Cycle| *cycle.state != *self.state || cycle.unit != self.modal.unit;
-        let changed = self.cycle.as_ref().is_some_and(is_other);
+        let changed = self
+            .cycle
+            .as_ref()
+            .is_some_and(|cycle| *cycle.state != *self.state || cycle.unit != self.modal.unit);
         let (word, condition, remedy) = match rotary {
             Some(letter) => (
                 letter.to_string(),
@@ -186,7 +171,7 @@ impl Control {
             ),
             None => return Ok(()),
         };
-        Err(GcodeFault::Combination { word, condition, remedy })
+        Err(combination(word, condition, remedy))
     }
 
     /// Takes the words of the cycle. Those that are missing are the ones of the cycle before.
@@ -195,24 +180,27 @@ impl Control {
         let incremental = self.modal.incremental;
         // LinuxCNC asks for R and the depth again after another cycle.
         let is_linuxcnc = self.stated(Rule::Dialect) == Some(Choice::Rs274Ngc);
+        // Under the other distance mode the numbers had another meaning.
         let usable = known.filter(|cycle| cycle.incremental == incremental);
         let usable = usable.filter(|cycle| !is_linuxcnc || cycle.number == number);
         let normal = self.modal.plane.normal();
-        let length = |value: f64| self.modal.millimetres(value);
-        let missing = |needed| GcodeFault::Missing { word: word.to_owned(), needed };
-        let depth = block.take(AXES[normal]).map(length).or(usable.map(|cycle| cycle.depth));
-        let retract = block.take('R').map(length).or(usable.map(|cycle| cycle.retract));
+        let depth = self.take_length(block, AXES[normal]).or(usable.map(|cycle| cycle.depth));
+        let retract = self.take_length(block, 'R').or(usable.map(|cycle| cycle.retract));
         let peck = match number {
-            73 | 74 | 83 | 84 => block.take('Q').map(length).or(known.and_then(|cycle| cycle.peck)),
+            73 | 74 | 83 | 84 => {
+                self.take_length(block, 'Q').or(known.and_then(|cycle| cycle.peck))
+            }
             _ => known.and_then(|cycle| cycle.peck),
         };
         // The time of the dwell.
         block.take('P');
-        let depth = depth.ok_or_else(|| missing("the depth: Z in G17, Y in G18, X in G19"))?;
-        let retract = retract.ok_or_else(|| missing("the retract plane R"))?;
+        let depth =
+            depth.ok_or_else(|| missing(word, "the depth: Z in G17, Y in G18, X in G19"))?;
+        let retract = retract.ok_or_else(|| missing(word, "the retract plane R"))?;
         if matches!(number, 73 | 83) && !peck.is_some_and(|peck| peck > 0.0) {
-            return Err(missing("a positive depth of peck Q"));
+            return Err(missing(word, "a positive depth of peck Q"));
         }
+        // G98 returns to the level before the first cycle of the series, whatever the others have left.
         let initial = known.map_or(self.position[normal], |cycle| cycle.initial);
         let (unit, state) = (self.modal.unit, Arc::clone(&self.state));
         Ok(Cycle { number, retract, depth, peck, incremental, initial, unit, state })

@@ -5,14 +5,12 @@
 //! motions are the same, the program depends on none of these modes. The runs end at the block from which on both controls agree.
 //! They are executed at both positions of the switch for optional blocks, which the operator can turn between runs.
 
-use super::Plane;
-use super::interpreter::{End, Interpreter};
-use super::modal::Motion;
-use super::motion::Control;
-use super::note::{NoteKind, ProgramNote};
-use super::rules::{Choice, Rule};
-use super::state::{LengthOffset, Rotation, Tcp};
-use super::{Step, StepPath};
+use super::{Control, Motion};
+use crate::gcode::interpreter::{End, Interpreter};
+use crate::gcode::note::{NoteKind, ProgramNote};
+use crate::gcode::rules::{Choice, Rule};
+use crate::gcode::state::{LengthOffset, Rotation, Tcp};
+use crate::gcode::{Plane, Step, StepPath};
 use std::sync::Arc;
 use touchoff::Unit;
 
@@ -59,19 +57,27 @@ const MODES: [Mode; 14] = [
     Mode::Series,
 ];
 
+impl Interpreter<'_> {
+    /// Returns the notes about the blocks that were executed so far, by line.
+    pub fn notes(&self) -> Vec<ProgramNote> {
+        let mut notes = self.control.notes.list();
+        if let (Some(first), Some(end)) = (&self.first, self.end) {
+            notes.extend(note(first, &self.control, end));
+        }
+        notes.sort_by_key(|note| note.line);
+        notes
+    }
+}
+
 /// Notes the first block that the next run of a program executes otherwise, because the control keeps what it `left`.
 ///
 /// `first` is the program before its first block.
-pub(super) fn note(first: &Interpreter, left: &Control, end: End) -> Option<ProgramNote> {
+fn note(first: &Interpreter, left: &Control, end: End) -> Option<ProgramNote> {
     let end = left.stated(Rule::ProgramEnd).filter(|_| end == End::Stop);
-    let is_reset = |mode: Mode| match end {
-        Some(Choice::SetsModes) => matches!(mode, Mode::Plane | Mode::Distance | Mode::WorkOffset),
-        Some(Choice::CancelsLength) => mode == Mode::Length,
-        Some(Choice::ResetsModes) => mode != Mode::Origins,
-        _ => false,
-    };
-    let keeps = |mode: &Mode| mode.differs(&first.control, left) && !is_reset(*mode);
-    let kept: Vec<Mode> = MODES.into_iter().filter(keeps).collect();
+    let kept: Vec<Mode> = MODES
+        .into_iter()
+        .filter(|mode| mode.differs(&first.control, left) && !mode.is_reset(end))
+        .collect();
     if kept.is_empty() {
         return None;
     }
@@ -80,9 +86,12 @@ pub(super) fn note(first: &Interpreter, left: &Control, end: End) -> Option<Prog
     if all.is_none() && end == Some(Choice::SetsModes) {
         return None;
     }
-    let alone = |mode: Mode| Some((mode, first_difference(first, left, &[mode])?));
-    let alone: Vec<(Mode, usize)> = kept.iter().copied().filter_map(alone).collect();
+    let mut alone: Vec<(Mode, usize)> = Vec::new();
+    for mode in &kept {
+        alone.extend(first_difference(first, left, &[*mode]).map(|line| (*mode, line)));
+    }
     let line = alone.iter().map(|(_, line)| *line).chain(all).min()?;
+    // Modes that differ only together are named together.
     let guilty: Vec<Mode> = match alone.is_empty() {
         true => kept,
         false => alone.into_iter().map(|(mode, _)| mode).collect(),
@@ -108,8 +117,10 @@ fn first_difference(first: &Interpreter, left: &Control, kept: &[Mode]) -> Optio
             return line;
         }
         let mut asked = run.control.asked.keys().chain(next.control.asked.keys());
-        let is_open = |rule: &&Rule| rule.is_branched() && start.control.stated(**rule).is_none();
-        if let Some(rule) = asked.find(is_open) {
+        if let Some(rule) =
+            asked.find(|rule| rule.is_branched() && start.control.stated(**rule).is_none())
+        {
+            // From here on a rule decides which the first run has not asked: each of its choices is a run of its own.
             starts.extend(under_each(&start, *rule));
         }
     }
@@ -118,12 +129,13 @@ fn first_difference(first: &Interpreter, left: &Control, kept: &[Mode]) -> Optio
 
 /// Returns a program under each choice of a rule.
 fn under_each<'a>(start: &Interpreter<'a>, rule: Rule) -> Vec<Interpreter<'a>> {
-    let under = |choice: Choice| {
-        let mut start = start.clone();
-        start.control.state_rule(rule, choice);
-        start
-    };
-    rule.choices().map(under).collect()
+    rule.choices()
+        .map(|choice| {
+            let mut start = start.clone();
+            start.control.state_rule(rule, choice);
+            start
+        })
+        .collect()
 }
 
 /// Executes two runs until they agree, and returns the line of the first block that they execute in different ways.
@@ -157,6 +169,18 @@ fn run_beside(run: &mut Interpreter, next: &mut Interpreter) -> Option<usize> {
 }
 
 impl Mode {
+    /// Returns whether a control that states `end` sets it at M2 and M30 as it is at the start.
+    fn is_reset(self, end: Option<Choice>) -> bool {
+        match end {
+            Some(Choice::SetsModes) => {
+                matches!(self, Mode::Plane | Mode::Distance | Mode::WorkOffset)
+            }
+            Some(Choice::CancelsLength) => self == Mode::Length,
+            Some(Choice::ResetsModes) => self != Mode::Origins,
+            _ => false,
+        }
+    }
+
     /// Returns whether two controls differ in it.
     fn differs(self, first: &Control, second: &Control) -> bool {
         let [(modal, state), (other, others)] =
@@ -181,12 +205,7 @@ impl Mode {
             Mode::Register => first.last_register != second.last_register,
             Mode::Tcp => (state.tcp, first.transformed) != (others.tcp, second.transformed),
             Mode::Staged => first.staged != second.staged,
-            Mode::Series => {
-                let cycle = |motion: Option<Motion>| {
-                    motion.filter(|motion| matches!(motion, Motion::Cycle(_)))
-                };
-                (&first.cycle, cycle(modal.motion)) != (&second.cycle, cycle(other.motion))
-            }
+            Mode::Series => (&first.cycle, modal.cycle()) != (&second.cycle, other.cycle()),
         }
     }
 
@@ -288,42 +307,49 @@ impl Control {
     /// Returns whether all blocks that follow are executed as another control executes them. The words about the spindle have
     /// no part in it, and what was stated may be more than on the other one.
     fn agrees(&self, next: &Control) -> bool {
-        let changed = |control: &Control| {
-            let axes = control.origin_changed;
-            [control.length_changed, control.rotation_changed].into_iter().chain(axes)
-        };
         MODES.iter().all(|mode| !mode.differs(self, next))
             && self.state == next.state
             && self.position == next.position
             && self.vector == next.vector
             && self.returned == next.returned
             && (self.tcp_position_needed || !next.tcp_position_needed)
-            && changed(self).zip(changed(next)).all(|(changed, next)| changed || !next)
+            && self.changed().zip(next.changed()).all(|(changed, next)| changed || !next)
+    }
+
+    /// Returns whether the length offset, a rotation, and the origin or the shift of each axis have changed since a position was
+    /// stated.
+    fn changed(&self) -> impl Iterator<Item = bool> {
+        [self.length_changed, self.rotation_changed].into_iter().chain(self.origin_changed)
     }
 }
 
 /// Returns whether two steps are one motion of the machine.
 fn is_same_motion(step: &Step, other: &Step) -> bool {
-    let kind = |step: &Step| (step.rapid, step.commanded, step.is_return, step.tool_vector);
-    let path = |step: &Step| match step.path {
+    manner(step) == manner(other) && is_same_end(step, other)
+}
+
+/// Returns all that makes a motion but its ends.
+fn manner(step: &Step) -> impl PartialEq + use<> {
+    let path = match step.path {
         // Set by the rules and the machine alone.
         StepPath::ToolChange(_) => StepPath::ToolChange([None; 6]),
         path => path,
     };
-    let turns = |step: &Step| (step.state.tcp, step.state.turns_with_workpiece());
-    kind(step) == kind(other)
-        && path(step) == path(other)
-        && turns(step) == turns(other)
-        && is_same_end(step, other)
+    let turns = (step.state.tcp, step.state.turns_with_workpiece());
+    (step.rapid, step.commanded, step.is_return, step.tool_vector, path, turns)
+}
+
+/// Returns whether two coordinates are the same, or both unknown.
+fn is_near(first: Option<f64>, second: Option<f64>) -> bool {
+    match (first, second) {
+        (Some(first), Some(second)) => (first - second).abs() <= TOLERANCE,
+        (first, second) => first == second,
+    }
 }
 
 /// Returns whether two steps end at one position of the machine, along the axes that they move. Where its coordinates are not
 /// known, all that they depend on has to be the same.
 fn is_same_end(step: &Step, other: &Step) -> bool {
-    let is_near = |first: Option<f64>, second: Option<f64>| match (first, second) {
-        (Some(first), Some(second)) => (first - second).abs() <= TOLERANCE,
-        (first, second) => first == second,
-    };
     let [state, other_state] = [step, other].map(|step| &*step.state);
     let machine = [step, other].map(|step| step.state.to_machine(step.end));
     let workpiece = [step, other].map(|step| step.state.to_workpiece(step.end));

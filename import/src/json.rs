@@ -1,0 +1,42 @@
+//! Values of JSON libraries: objects, numbers and texts by their keys.
+
+use serde_json::{Map, Value};
+
+pub(super) type Object = Map<String, Value>;
+
+/// Returns the object of a key, if there is one.
+pub(super) fn object<'a>(value: &'a Object, key: &str) -> Result<Option<&'a Object>, String> {
+    match value.get(key) {
+        None | Some(Value::Null) => Ok(None),
+        Some(Value::Object(object)) => Ok(Some(object)),
+        Some(_) => Err(format!("its `{key}` is no object")),
+    }
+}
+
+/// Returns a tool number.
+pub(super) fn tool_number(value: &Value) -> Option<u32> {
+    value.as_u64().and_then(|number| u32::try_from(number).ok())
+}
+
+/// Returns a finite number of an object.
+pub(super) fn number_of(object: &Object, key: &str) -> Option<f64> {
+    object.get(key).and_then(number)
+}
+
+/// Returns a finite number. Some libraries have numbers as texts.
+pub(super) fn number(value: &Value) -> Option<f64> {
+    let stated = value.as_f64().or_else(|| value.as_str()?.trim().parse().ok());
+    stated.filter(|number| number.is_finite())
+}
+
+/// Returns a text of an object without blanks around it; empty if there is none.
+pub(super) fn string<'a>(object: &'a Object, key: &str) -> &'a str {
+    object.get(key).and_then(Value::as_str).unwrap_or("").trim()
+}
+
+/// Returns the first two numbers of a list.
+pub(super) fn pair(value: &Value) -> Option<[f64; 2]> {
+    let list = value.as_array()?;
+    let [first, second] = [0, 1].map(|k| list.get(k)?.as_f64().filter(|number| number.is_finite()));
+    Some([first?, second?])
+}

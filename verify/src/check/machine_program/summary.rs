@@ -1,0 +1,403 @@
+//! Summary of a program on its machine: what it uses, and the gaps, which are everything that a verdict about it leaves open.
+
+use super::MachineProgram;
+use crate::gcode::{
+    ControlRules, LengthOffset, NoteKind, ProgramNote, Rule, Spindle, Step, WorkOffset,
+};
+use crate::machine::{LimitViolation, SingularPass};
+use std::collections::BTreeMap;
+use std::fmt;
+
+/// Summary of a program on its machine.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct MachineSummary {
+    /// The tools in the order of their first motion that is checked.
+    pub tools: Vec<ToolUse>,
+    /// Tools with motions of which none is checked, each with the line of its first. The tool that is in the spindle before
+    /// the first change is not among them.
+    pub unchecked_tools: Vec<(u32, usize)>,
+    /// Motions that are not checked, by their cause.
+    pub unknown: Vec<UnknownMotions>,
+    /// The line of the first motion in rapid traverse of several axes at rates that are not known.
+    pub any_rapid: Option<usize>,
+    /// As before, for a motion of which one axis is rotary. Only its straight path is checked.
+    pub any_rotary_rapid: Option<usize>,
+    /// The spindle during motions at feed rate, without those of taps: the line of the first by tool and spindle.
+    pub spindle: Vec<(usize, Option<u32>, Spindle)>,
+    /// The line of the first feed without a tool length offset, in a program that names no tool or has no offset at all:
+    /// positions are taken as those of the tip.
+    pub no_offset: Option<usize>,
+    /// The line of the first motion under tool centre point control, or in an aligned plane, without a tool length offset, and with
+    /// a tool whose length is not stated.
+    pub tcp_without_length: Option<usize>,
+    /// The work offsets of motions at feed rate, each with the line of the first.
+    pub work_offsets: Vec<(WorkOffset, usize)>,
+    /// Rules of the control on which the program depends and which are not stated, each with the first line.
+    pub open_rules: BTreeMap<Rule, usize>,
+    /// Feed motions with the length offset of another tool: the line of the first, the register and the tool.
+    pub other_lengths: Vec<(usize, u32, u32)>,
+    /// Axes that leave their limits, each with its line: the worst per axis and limit. Those of X, Y and Z are checked if the
+    /// origin of the part on the machine is given.
+    pub limits: Vec<(usize, LimitViolation)>,
+    /// Set if the machine states limits of X, Y or Z that are not checked.
+    pub limits_unchecked: bool,
+    /// Singular passes, each with its line.
+    pub singular: Vec<(usize, SingularPass)>,
+    /// Notes of the interpreter.
+    pub notes: Vec<ProgramNote>,
+}
+
+/// Motions that are not checked for one cause.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct UnknownMotions {
+    /// The cause.
+    pub cause: UnknownCause,
+    /// Their number.
+    pub count: usize,
+    /// The line of the first.
+    pub line: usize,
+    /// The line of the first that allows no verdict: one in feed, or one between positions that the program states. The way
+    /// to its first position is the operator's, and that to the reference position the machine's.
+    pub open_line: Option<usize>,
+}
+
+/// A tool's use in a program.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct ToolUse {
+    /// The tool's number; `None` before the first tool change.
+    pub number: Option<u32>,
+    /// Line of its first motion.
+    pub line: usize,
+    /// Number of motions.
+    pub motions: usize,
+}
+
+/// The reason for which only the machine knows where a motion starts or ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum UnknownCause {
+    /// The program has not stated a position before.
+    Start,
+    /// The program has not stated the position of another axis before.
+    Axis,
+    /// A tool change moved the axes.
+    ToolChange,
+    /// A motion to machine coordinates that are not known.
+    Return,
+    /// The way of axes from known positions to machine coordinates that are not known.
+    Home,
+    /// A shift by G92 at an unknown position.
+    Shift,
+    /// No tool length offset is in force, and the length of the tool is not stated.
+    NoOffset {
+        /// The tool.
+        tool: u32,
+    },
+    /// The length offset is that of another tool, and one of both lengths is not stated.
+    OtherOffset {
+        /// The tool.
+        tool: u32,
+        /// The register.
+        register: u32,
+    },
+    /// The head turns, and the length of the tool is not stated.
+    NoLever,
+    /// The table turns, and the position of the part on it is not stated.
+    NoPartPosition,
+    /// The way of an axis that turns by half a turn.
+    HalfTurn,
+    /// The tool axis is reached by two positions of the rotary axes, of which controls choose in different ways.
+    TwoPositions,
+    /// A rotary axis without limits returns to its reference position, in a direction of the machine's.
+    ReturnWay,
+    /// The tool axis turns on a great circle, which is not followed.
+    GreatCircle,
+    /// Tool centre point control or a tilted plane began while the table was turned, and the control takes the part as it stood
+    /// then.
+    TurnedTable,
+    /// Tool centre point control, or an aligned plane, without a tool length offset.
+    TcpWithoutLength,
+}
+
+impl fmt::Display for UnknownCause {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            UnknownCause::Start => f.write_str("the program states no position before"),
+            UnknownCause::Axis => f.write_str(
+                "the position of another axis is not stated before: write all axes of the machine in the first blocks",
+            ),
+            UnknownCause::ToolChange => f.write_str(
+                "only the machine knows where the tool change leaves its axes: state `tool_change` in the machine's file, or \
+                 the control",
+            ),
+            UnknownCause::Return | UnknownCause::Home => f.write_str(
+                "only the machine knows where its coordinates and its reference position are: state the origin of G54 in \
+                 `work_offsets`, and `home` of its axes",
+            ),
+            UnknownCause::Shift => f.write_str("G92 shifts a position that is not known"),
+            UnknownCause::NoOffset { tool } => write!(
+                f,
+                "T{tool} moves without a tool length offset: write G43 H{tool}, or state the length of tool {tool} in the \
+                 job (0 if Z of the work offset is that of its tip)"
+            ),
+            UnknownCause::OtherOffset { tool, register } => write!(
+                f,
+                "T{tool} moves with the length offset H{register} of another tool: state the lengths of both in the job"
+            ),
+            UnknownCause::NoLever => {
+                f.write_str("the head turns the tool, whose length is not stated: state it in the job")
+            }
+            UnknownCause::NoPartPosition => f.write_str(
+                "the table turns the part, whose position is not stated: state the origin of G54 in `work_offsets`",
+            ),
+            UnknownCause::TwoPositions => f.write_str(
+                "two positions of the rotary axes give the tool axis, and controls choose in different ways: turn the axes near to \
+                 one of them before",
+            ),
+            UnknownCause::ReturnWay => f.write_str(
+                "a rotary axis without limits returns to its reference position in a direction of the machine's: turn it there by \
+                 G0 before",
+            ),
+            UnknownCause::GreatCircle => f.write_str(
+                "the tool axis turns on a great circle under TRAORI (ORIVECT): state `tool_orientation` of the control, if it turns \
+                 each axis in proportion (ORIAXES)",
+            ),
+            UnknownCause::TurnedTable => f.write_str(
+                "the table is turned where tool centre point control or a tilted plane begins, and positions are those of the \
+                 part as it stands: turn it to 0 before, or state `tcp_start` of the control",
+            ),
+            UnknownCause::TcpWithoutLength => f.write_str(
+                "tool centre point control or an aligned plane (G53.1) is in force, and no length offset: write H with the \
+                 number of the length, or G43 H before",
+            ),
+            UnknownCause::HalfTurn => {
+                f.write_str("an axis turns by half a turn, for which both ways are as short: write an angle between")
+            }
+        }
+    }
+}
+
+/// Something that was not checked, or that was taken for granted.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Gap {
+    /// The line of its first occurrence, 1-based.
+    pub line: usize,
+    /// Set if there is no verdict with it: a collision could be missed that the program alone makes.
+    pub is_open: bool,
+    /// The subject that was not checked, the cause, and the remedy. A sentence without a full stop.
+    pub reason: String,
+}
+
+impl Gap {
+    /// Creates a gap that leaves a verdict possible.
+    pub fn said(line: usize, reason: String) -> Gap {
+        Gap { line, is_open: false, reason }
+    }
+
+    /// Creates a gap that allows no verdict.
+    pub fn open(line: usize, reason: String) -> Gap {
+        Gap { line, is_open: true, reason }
+    }
+}
+
+/// The reason with its line.
+impl fmt::Display for Gap {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.line {
+            0 => f.write_str(&self.reason),
+            line => write!(f, "line {line}: {}", self.reason),
+        }
+    }
+}
+
+impl MachineSummary {
+    /// Notes what a motion at feed rate needs.
+    pub(super) fn add_feed(&mut self, step: &Step, off_is_tip: bool) {
+        let tool = step.state.tool;
+        // The interpreter has refused a tap whose spindle does not turn into the thread.
+        if step.spindle != Spindle::Tapping
+            && !self
+                .spindle
+                .iter()
+                .any(|(_, known, spindle)| (*known, *spindle) == (tool, step.spindle))
+        {
+            self.spindle.push((step.line, tool, step.spindle));
+        }
+        if (tool.is_none() || off_is_tip) && step.state.length == LengthOffset::Off {
+            self.no_offset.get_or_insert(step.line);
+        }
+        let offset = step.state.work_offset;
+        if !self.work_offsets.iter().any(|(known, _)| *known == offset) {
+            self.work_offsets.push((offset, step.line));
+        }
+    }
+
+    pub(super) fn add_unknown(&mut self, step: &Step, cause: UnknownCause) {
+        let position = self.unknown.iter().position(|known| known.cause == cause);
+        let position = position.unwrap_or_else(|| {
+            let motions = UnknownMotions { cause, count: 0, line: step.line, open_line: None };
+            self.unknown.push(motions);
+            self.unknown.len() - 1
+        });
+        let unknown = &mut self.unknown[position];
+        unknown.count += 1;
+        // The way to the first position is the operator's, and that to the reference position the machine's.
+        let is_said = matches!(cause, UnknownCause::Start | UnknownCause::Home);
+        if !step.rapid || !is_said {
+            unknown.open_line.get_or_insert(step.line);
+        }
+    }
+
+    /// Adds a violation, or keeps the worse one of the same axis and limit.
+    pub(super) fn add_violation(&mut self, line: usize, violation: LimitViolation) {
+        let known = self
+            .limits
+            .iter_mut()
+            .find(|(_, known)| known.letter == violation.letter && known.limit == violation.limit);
+        match known {
+            None => self.limits.push((line, violation)),
+            Some(known) if violation.excess() > known.1.excess() => *known = (line, violation),
+            Some(_) => (),
+        }
+    }
+
+    /// Returns what this reading leaves open.
+    fn gaps(&self) -> Vec<Gap> {
+        let mut gaps = Vec::new();
+        for UnknownMotions { cause, count, line, open_line } in &self.unknown {
+            let plural = if *count == 1 { "" } else { "s" };
+            let reason =
+                format!("{count} motion{plural} not checked, first at line {line}: {cause}");
+            gaps.push(match open_line {
+                Some(open_line) => Gap::open(*open_line, reason),
+                None => Gap::said(*line, reason),
+            });
+        }
+        for (tool, line) in &self.unchecked_tools {
+            gaps.push(Gap::open(*line, format!("no motion of T{tool} is checked")));
+        }
+        if let Some(line) = self.any_rotary_rapid {
+            let reason = "the path of several axes in rapid traverse, one of them rotary, is checked on the straight line \
+                          only: state `rapid` of the control, or the `rapid` rates of the machine's axes";
+            gaps.push(Gap::open(line, reason.to_owned()));
+        }
+        if let Some(line) = self.open_rules.get(&Rule::Unit) {
+            let reason = "no G20 or G21 before a length, which is read in mm: write one, or state `unit` of the control";
+            gaps.push(Gap::open(*line, reason.to_owned()));
+        }
+        if let Some(line) = self.open_rules.get(&Rule::StartOffset) {
+            let reason = "no work offset before a position, which is taken in G54: write G54, or state `start_offset` of the \
+                          control";
+            gaps.push(Gap::open(*line, reason.to_owned()));
+        }
+        if let (Some(line), false) = (self.first_feed(Spindle::NotStated), self.states_spindle()) {
+            let reason = "the program feeds and never starts the spindle: write M3 with S before";
+            gaps.push(Gap::open(line, reason.to_owned()));
+        }
+        if let Some(line) = self.first_feed(Spindle::AfterTapping) {
+            let reason = "a tapping cycle before a feed leaves the spindle standing or turning, by the control: write M3 after G80";
+            gaps.push(Gap::open(line, reason.to_owned()));
+        }
+        if let Some(line) = self.no_offset {
+            let reason = "no tool length offset (G43) is in force: positions are taken as those of the tip, as if the work offset \
+                          were set with the tool";
+            let remedy = "write G43, or state the lengths of the tools in the job (0 if Z of the work offset is that of the tip)";
+            // A program that names no tool is set up with the one that is in the spindle.
+            gaps.push(match self.tools.iter().any(|tool| tool.number.is_some()) {
+                true => Gap::open(line, format!("{reason}: {remedy}")),
+                false => Gap::said(line, reason.to_owned()),
+            });
+        }
+        if let Some(line) = self.tcp_without_length {
+            let reason =
+                format!("tips are taken as programmed, but {}", UnknownCause::TcpWithoutLength);
+            gaps.push(Gap::open(line, reason));
+        }
+        if self.limits_unchecked {
+            let reason = "the limits of X, Y and Z are not checked: state the origin of G54 in `work_offsets`";
+            gaps.push(Gap::said(0, reason.to_owned()));
+        }
+        for note in &self.notes {
+            let is_open = match note.kind {
+                NoteKind::PassedOver { .. } => continue,
+                NoteKind::OtherProgram
+                | NoteKind::OptionalSwitches
+                | NoteKind::TwoRadii
+                | NoteKind::RoundedRadius
+                | NoteKind::OffsetOrShift
+                | NoteKind::LeftModes { .. } => true,
+                _ => false,
+            };
+            let times =
+                if note.count > 1 { format!(" ({} times)", note.count) } else { String::new() };
+            let reason = format!("{}{times}", note.kind);
+            gaps.push(Gap { line: note.line, is_open, reason });
+        }
+        gaps
+    }
+
+    /// Returns the line of the first feed with a spindle.
+    fn first_feed(&self, wanted: Spindle) -> Option<usize> {
+        self.spindle.iter().find(|(.., spindle)| *spindle == wanted).map(|(line, ..)| *line)
+    }
+
+    /// Returns whether the program says something about the spindle before some feed. Otherwise it leaves the spindle to the
+    /// operator.
+    pub fn states_spindle(&self) -> bool {
+        let mut spindles = self.spindle.iter().map(|(.., spindle)| spindle);
+        spindles.any(|spindle| !matches!(spindle, Spindle::NotStated | Spindle::AfterTapping))
+    }
+}
+
+impl MachineProgram {
+    /// Returns what the readings of a program leave open: first what allows no verdict, each in the order of lines.
+    pub fn gaps(readings: &[MachineProgram]) -> Vec<Gap> {
+        let mut gaps: Vec<(Gap, Vec<&ControlRules>)> = Vec::new();
+        for program in readings {
+            for gap in program.summary.gaps() {
+                match gaps.iter_mut().find(|(known, _)| *known == gap) {
+                    Some((_, rules)) => rules.push(&program.assumed),
+                    None => gaps.push((gap, vec![&program.assumed])),
+                }
+            }
+        }
+        let gaps = gaps.into_iter().map(|(mut gap, rules)| {
+            if let Some(under) = MachineProgram::under(readings, &rules) {
+                gap.reason = format!("{} ({under})", gap.reason);
+            }
+            gap
+        });
+        let mut gaps: Vec<Gap> = gaps.collect();
+        gaps.sort_by_key(|gap| (!gap.is_open, gap.line));
+        gaps
+    }
+
+    /// Names the readings for which something holds, by what they assume: `under rotary = "shortest"`. `None` if it holds for
+    /// all.
+    pub fn under(readings: &[MachineProgram], holds: &[&ControlRules]) -> Option<String> {
+        if holds.len() == readings.len() {
+            return None;
+        }
+        // A rule with one choice in all of these, and with another elsewhere, is a condition.
+        let first = holds.first()?;
+        let mut common = ControlRules::default();
+        for rule in Rule::all() {
+            let Some(choice) = first.get(rule) else { continue };
+            if holds.iter().all(|rules| rules.get(rule) == Some(choice)) {
+                common = common.with(rule, choice);
+            }
+        }
+        match common == ControlRules::default() {
+            false => Some(format!("under {common}")),
+            true if holds.len() <= 3 => {
+                let each: Vec<String> = holds.iter().map(|rules| rules.to_string()).collect();
+                Some(format!("under {}", each.join(", or ")))
+            }
+            true => Some(format!("under {} of {} readings", holds.len(), readings.len())),
+        }
+    }
+}

@@ -1,0 +1,701 @@
+//! The control: everything that blocks change and motions depend on, and the order in which it executes the words of a block.
+
+mod coordinates;
+mod cycle;
+mod motion;
+mod next_run;
+mod refuse;
+
+use super::block::{Block, Code, Group};
+use super::error::{combination, not_read};
+use super::note::{Notes, Subject};
+use super::rules::{Choice, ControlRules, Rule};
+use super::state::{ControlState, LengthOffset, Position, Rotation, Tcp, WorkOffset};
+use super::{ControlSetup, GcodeFault, Plane, Step, StepPath};
+use std::collections::{BTreeMap, VecDeque};
+use std::sync::Arc;
+use touchoff::Unit;
+
+/// Letters of the axes.
+const AXES: [char; 6] = ['X', 'Y', 'Z', 'A', 'B', 'C'];
+
+/// A control: everything that blocks change and motions depend on.
+#[derive(Clone, Debug)]
+pub(super) struct Control {
+    pub(super) line: usize,
+    pub(super) modal: Modal,
+    state: Arc<ControlState>,
+    /// Position in program coordinates.
+    position: Position,
+    /// Origin and rotation of the work offsets.
+    origins: BTreeMap<WorkOffset, (Position, f64)>,
+    lengths: BTreeMap<u32, f64>,
+    home: Option<[f64; 6]>,
+    second_home: Option<[f64; 6]>,
+    /// Shift by G52.
+    local: [f64; 6],
+    /// Shift by G92.
+    preset: Position,
+    /// The tool that the next M6 changes to.
+    staged: Option<u32>,
+    /// The last D.
+    edge: Option<u32>,
+    /// Set if tool centre point control was switched on by M428 or `TRAORI`, which G43 and G49 do not end.
+    transformed: bool,
+    cycle: Option<Cycle>,
+    /// The last tool vector of G43.5.
+    vector: Option<[f64; 3]>,
+    pub(super) notes: Notes,
+    rules: ControlRules,
+    /// The rules that the program depends on, each with the first line.
+    pub(super) asked: BTreeMap<Rule, usize>,
+    axes: [bool; 6],
+    /// Position in which M6 leaves the axes, if the machine states it.
+    change_position: Option<Position>,
+    /// Set once a work offset was selected.
+    offset_stated: bool,
+    /// Set by a return to a reference position (`false`) or by G53 along Z (`true`) under a length offset, until the next word or
+    /// motion to which the offset matters.
+    returned: Option<bool>,
+    /// The last H.
+    last_register: Option<u32>,
+    /// Set by a change of the length offset, until Z is stated.
+    length_changed: bool,
+    /// Set by a change of a work offset or a shift for its axes, until each is stated.
+    origin_changed: [bool; 6],
+    /// Set by G68 and G69, until a position in the plane is stated.
+    rotation_changed: bool,
+    /// The reason for which a work offset has to be selected before a position.
+    needs_offset: Option<&'static str>,
+    /// Set if tool centre point control has begun with turned axes, until a position is stated.
+    tcp_position_needed: bool,
+    /// Set once the program has a length.
+    unit_used: bool,
+    /// Set if the length offset is that of the tool in the spindle without a word.
+    length_implicit: bool,
+    /// Set by G49, until the next tool change.
+    length_cancelled: bool,
+    spindle: SpindleWords,
+    /// Steps that were not yet returned.
+    pub(super) pending: VecDeque<Step>,
+}
+
+/// Modal settings.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Modal {
+    /// `None` at the start and after G80.
+    motion: Option<Motion>,
+    plane: Plane,
+    pub(super) unit: Unit,
+    /// Set by G20 and G21.
+    pub(super) unit_stated: bool,
+    /// G91.
+    incremental: bool,
+    /// G90.1 or G91.1; `None` before either.
+    absolute_centres: Option<bool>,
+    feed_mode: FeedMode,
+    feed: Option<f64>,
+    /// Set where the path goes through the corners (G61).
+    exact_path: bool,
+    /// G99: canned cycles end in the plane R; `None` before G98 or G99.
+    retract_to_r: Option<bool>,
+}
+
+/// The word that a block with axis words obeys.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Motion {
+    Rapid,
+    Feed,
+    Arc {
+        clockwise: bool,
+    },
+    /// A canned cycle, by its number.
+    Cycle(u32),
+}
+
+/// Meaning of F.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum FeedMode {
+    PerMinute,
+    /// G93: every block with a feed has its own F.
+    InverseTime,
+    PerRevolution,
+}
+
+/// Words that stay in force from one cycle to the next, lengths in millimetres as given.
+#[derive(Clone, Debug, PartialEq)]
+struct Cycle {
+    number: u32,
+    retract: f64,
+    depth: f64,
+    peck: Option<f64>,
+    /// Distance mode under which retract and depth were given.
+    incremental: bool,
+    /// Level at the start of the series.
+    initial: Option<f64>,
+    unit: Unit,
+    state: Arc<ControlState>,
+}
+
+/// The spindle during a motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Spindle {
+    /// The program has not said yet whether it turns.
+    NotStated,
+    /// It stands: before M3 or M4, after M5, M19, M6 or a stop that stops it, or at S0.
+    Stopped,
+    /// M3 or M4 is in force, and the program has given no speed S.
+    WithoutSpeed,
+    /// It turns clockwise, seen from the spindle (M3).
+    Clockwise,
+    /// It turns counter-clockwise (M4).
+    CounterClockwise,
+    /// A tapping cycle turns it.
+    Tapping,
+    /// A tapping cycle has ended, which leaves it standing or turning, by the control and by rigid tapping.
+    AfterTapping,
+}
+
+/// The words of the program about the spindle.
+#[derive(Clone, Copy, Debug)]
+struct SpindleWords {
+    /// The last word, without regard to the speed.
+    turn: Spindle,
+    speed: Option<f64>,
+    /// Set from a stop on, until the next word about the spindle.
+    paused: bool,
+    /// Set by M29: the tapping cycles after it turn the spindle themselves.
+    rigid: bool,
+    /// The tapping cycle (G74 or G84) that left the spindle, and found it turning.
+    tapping: Option<u32>,
+}
+
+impl Control {
+    pub(super) fn new(setup: &ControlSetup) -> Control {
+        let offsets = (1..).map(WorkOffset::Standard).zip(setup.work_offsets);
+        let known =
+            |origin: Option<[f64; 6]>| (origin.map_or([None; 6], |origin| origin.map(Some)), 0.0);
+        let origins: BTreeMap<_, _> =
+            offsets.map(|(offset, origin)| (offset, known(origin))).collect();
+        let state = ControlState {
+            tool: None,
+            length: LengthOffset::Off,
+            work_offset: WorkOffset::Standard(1),
+            origin: origins.get(&WorkOffset::Standard(1)).map_or([None; 6], |(origin, _)| *origin),
+            origin_rotation: 0.0,
+            shift: [Some(0.0); 6],
+            tcp: Tcp::Off,
+            tcp_starts: 0,
+            rotation: Rotation::Off,
+        };
+        Control {
+            line: 0,
+            modal: Modal::new(),
+            state: Arc::new(state),
+            position: setup.start,
+            origins,
+            lengths: setup.lengths.clone(),
+            home: setup.home,
+            second_home: setup.second_home,
+            local: [0.0; 6],
+            preset: [Some(0.0); 6],
+            staged: None,
+            edge: None,
+            transformed: false,
+            cycle: None,
+            vector: None,
+            notes: Notes::default(),
+            rules: setup.rules.clone(),
+            asked: BTreeMap::new(),
+            axes: setup.axes,
+            change_position: setup.tool_change,
+            offset_stated: false,
+            returned: None,
+            last_register: None,
+            length_changed: false,
+            origin_changed: [false; 6],
+            rotation_changed: false,
+            needs_offset: None,
+            tcp_position_needed: false,
+            unit_used: false,
+            length_implicit: false,
+            length_cancelled: false,
+            spindle: SpindleWords::new(),
+            pending: VecDeque::new(),
+        }
+    }
+
+    /// States what the control does under a rule.
+    pub(super) fn state_rule(&mut self, rule: Rule, choice: Choice) {
+        self.rules = std::mem::take(&mut self.rules).with(rule, choice);
+    }
+
+    /// Returns what the control does under a rule, if that is stated.
+    pub(super) fn stated(&self, rule: Rule) -> Option<Choice> {
+        self.rules.get(rule)
+    }
+
+    /// Returns what the control does under a rule, and notes that the program depends on it.
+    pub(super) fn choice(&mut self, rule: Rule) -> Choice {
+        self.asked.entry(rule).or_insert(self.line);
+        self.rules.get(rule).unwrap_or_else(|| rule.choices().next().expect("a rule has choices"))
+    }
+
+    /// Executes a block, in the order of RS274/NGC, table 8.
+    pub(super) fn execute(&mut self, line: usize, block: &mut Block) -> Result<(), GcodeFault> {
+        self.line = line;
+        self.note_words(block);
+        self.check_dialect(block)?;
+        self.check_words(block)?;
+        self.feed(block)?;
+        self.tool(block)?;
+        // S beside G4 is a time on Sinumerik, so it is refused before it is read as a speed.
+        self.dwell(block)?;
+        let turned = self.spindle_words(block);
+        self.motion_mode(block);
+        // The spindle changes before such a motion or after it, by the control.
+        if let Some(word) = turned.filter(|_| block.is_programmed() && self.modal.is_feed()) {
+            let condition = "its block has a motion at feed rate";
+            let remedy = "write it in a block before or after";
+            return Err(combination(word, condition, remedy));
+        }
+        // The unit and the distance mode hold for the numbers of their own block.
+        self.settings(block)?;
+        self.numbers(block);
+        self.coordinates(block)?;
+        self.returned_length(block);
+        if self.depends_on_length(block) {
+            self.length_without_word();
+        }
+        if self.modal.plane != Plane::Xy
+            && block.is_programmed()
+            && (self.length_implicit || self.state.tcp == Tcp::Transformation)
+        {
+            let condition = "G18 or G19 is in force and the length of the tool counts without G43, across the plane";
+            let remedy = "post the program in G17";
+            return Err(combination("a position", condition, remedy));
+        }
+        self.check_offset(block)?;
+        self.motion(block)
+    }
+
+    /// Takes the word with the time of G4: P, or X in ISO programs, or F, which is no feed rate then.
+    fn dwell(&self, block: &mut Block) -> Result<(), GcodeFault> {
+        if block.code_of(Group::Dwell).is_none() {
+            return Ok(());
+        }
+        if block.has('S') {
+            let condition = "its block has G4, of which it is the time in turns of the spindle";
+            let remedy = "write it in a block before";
+            return Err(combination("S", condition, remedy));
+        }
+        let dialect = self.stated(Rule::Dialect);
+        // Native programs of Sinumerik and of Heidenhain have the time in F.
+        let has_time_in_x = !matches!(dialect, Some(Choice::Sinumerik | Choice::Heidenhain));
+        if block.take('P').is_none() && block.code_of(Group::Motion).is_none() && has_time_in_x {
+            block.take('X');
+        }
+        Ok(())
+    }
+
+    /// Gives the numbers of a block the unit that the control gives them.
+    fn numbers(&mut self, block: &mut Block) {
+        // Zeros are the same in every unit.
+        let has_length = block.is_nonzero("XYZIJKRQ");
+        self.unit_used |= has_length;
+        if !self.modal.unit_stated && has_length {
+            self.modal.unit = match self.choice(Rule::Unit) {
+                Choice::Inch => Unit::Inch,
+                _ => Unit::Millimetre,
+            };
+        }
+        if block.has_whole() && self.choice(Rule::WholeNumbers) == Choice::Increments {
+            let has_angles = block.code_of(Group::Rotation).is_some();
+            let (length, motion) = (self.modal.increment(), self.modal.motion);
+            // The rule is asked only where it matters: each that is not stated doubles the readings.
+            let has_whole_radius = block.is_whole('R') || block.is_whole('Q');
+            let keeps_radii = has_whole_radius && self.choice(Rule::WholeRadii) == Choice::Units;
+            block.scale_whole(|letter| match letter {
+                'R' | 'Q' if keeps_radii => 1.0,
+                // The least increment of an angle, whatever the unit.
+                'A' | 'B' | 'C' => 1e-3,
+                // The number of repeats of a cycle.
+                'K' if matches!(motion, Some(Motion::Cycle(_))) => 1.0,
+                // The angles of G68 and G68.2.
+                'I' | 'J' | 'K' | 'R' if has_angles => 1e-3,
+                _ => length,
+            });
+        }
+    }
+
+    /// Notes the words that are passed over.
+    fn note_words(&mut self, block: &Block) {
+        for code in &block.passed_over {
+            self.notes.add(self.line, Subject::PassedOver(*code));
+        }
+        if block.has('S') {
+            self.notes.add(self.line, Subject::PassedOver(Code { letter: 'S', tenths: 0 }));
+        }
+    }
+
+    /// Reads the feed mode and F.
+    fn feed(&mut self, block: &mut Block) -> Result<(), GcodeFault> {
+        if let Some(code) = block.code_of(Group::FeedMode) {
+            let mode = match code.tenths {
+                930 => FeedMode::InverseTime,
+                940 => FeedMode::PerMinute,
+                _ => FeedMode::PerRevolution,
+            };
+            // LinuxCNC asks for F again after each word.
+            if mode != self.modal.feed_mode || self.stated(Rule::Dialect) == Some(Choice::Rs274Ngc)
+            {
+                self.modal.feed = None;
+            }
+            self.modal.feed_mode = mode;
+        }
+        // F of G93 is the time of one block.
+        if self.modal.feed_mode == FeedMode::InverseTime {
+            self.modal.feed = None;
+        }
+        // F of a dwell is its time on some controls.
+        let is_dwell = block.code_of(Group::Dwell).is_some();
+        match block.take('F') {
+            Some(value) if value < 0.0 => {
+                let expected = "a positive number";
+                return Err(GcodeFault::NotAllowed { word: 'F', value, expected });
+            }
+            Some(feed) if !is_dwell => self.modal.feed = Some(feed).filter(|feed| *feed > 0.0),
+            _ => {}
+        }
+        // LinuxCNC asks for a feed rate also where no axis moves (`convert_straight`).
+        match block.code_of(Group::Motion) {
+            Some(Code { tenths: 10, .. })
+                if self.stated(Rule::Dialect) == Some(Choice::Rs274Ngc) =>
+            {
+                self.check_feed("G1")
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Reads the settings that convert and interpret the other words.
+    fn settings(&mut self, block: &mut Block) -> Result<(), GcodeFault> {
+        // P is the number of blocks that Haas reads ahead (G103), or of an output of LinuxCNC (M62 to M65).
+        if block.passed_over.iter().any(|code| {
+            matches!((code.letter, code.tenths), ('G', 1030) | ('M', 620 | 630 | 640 | 650))
+        }) {
+            block.take('P');
+        }
+        if let Some(unit) = block.tenths_of(Group::Units) {
+            let is_inch = matches!(unit, 200 | 700 | 7000);
+            let unit = if is_inch { Unit::Inch } else { Unit::Millimetre };
+            // Fanuc then reads its offsets in the other unit, too.
+            let switches = self.unit_used && unit != self.modal.unit;
+            if switches && matches!(self.stated(Rule::Dialect), None | Some(Choice::Iso)) {
+                let condition = "the program has lengths in another unit";
+                let remedy = "select the unit once, at the start";
+                return Err(combination(if is_inch { "G20" } else { "G21" }, condition, remedy));
+            }
+            self.modal.unit = unit;
+            self.modal.unit_stated = true;
+        }
+        if let Some(distance) = block.tenths_of(Group::Distance) {
+            self.modal.incremental = distance == 910;
+        }
+        if let Some(distance) = block.tenths_of(Group::ArcDistance) {
+            self.modal.absolute_centres = Some(distance == 901);
+        }
+        if let Some(retract) = block.tenths_of(Group::Retract) {
+            self.modal.retract_to_r = Some(retract == 990);
+        }
+        if let Some(plane) = block.tenths_of(Group::Plane) {
+            self.select(match plane {
+                170 => Plane::Xy,
+                180 => Plane::Zx,
+                _ => Plane::Yz,
+            })?;
+        }
+        if let Some(code) = block.code_of(Group::PathControl) {
+            path_control(block, code)?;
+            self.modal.exact_path = matches!(code.tenths, 610 | 611);
+            self.notes.add(self.line, Subject::PassedOver(code));
+        }
+        Ok(())
+    }
+
+    /// Reads the motion mode.
+    fn motion_mode(&mut self, block: &Block) {
+        if block.code_of(Group::CycleOff).is_some() {
+            self.modal.motion = None;
+        }
+        if let Some(code) = block.code_of(Group::Motion) {
+            self.modal.motion = Some(match code.tenths {
+                0 => Motion::Rapid,
+                10 => Motion::Feed,
+                20 => Motion::Arc { clockwise: true },
+                30 => Motion::Arc { clockwise: false },
+                tenths => Motion::Cycle(tenths / 10),
+            });
+        }
+        // Another motion word, or G80, ends the series with its initial level.
+        if self.modal.cycle().is_none() {
+            self.cycle = None;
+        }
+        let is_tapping = matches!(self.modal.motion, Some(Motion::Cycle(74 | 84)));
+        let has_motion =
+            [Group::CycleOff, Group::Motion].map(|group| block.code_of(group).is_some());
+        // M29 holds until G80 or another motion word.
+        if has_motion.contains(&true) && !is_tapping {
+            self.spindle.rigid = false;
+        }
+    }
+
+    /// Selects a plane.
+    fn select(&mut self, plane: Plane) -> Result<(), GcodeFault> {
+        if plane != self.modal.plane {
+            let is_rotated = matches!(self.state.rotation, Rotation::Plane { .. });
+            if is_rotated || self.cycle.is_some() {
+                let condition = "a rotation (G68) or a canned cycle is in force";
+                let remedy = "end it with G69 or G80 before";
+                return Err(combination("another plane", condition, remedy));
+            }
+        }
+        self.modal.plane = plane;
+        Ok(())
+    }
+
+    /// Takes the axis words of a block, in millimetres and degrees.
+    fn take_axes(&self, block: &mut Block) -> Position {
+        let mut axes = AXES.map(|letter| block.take(letter));
+        for value in &mut axes[..3] {
+            *value = value.map(|value| self.modal.millimetres(value));
+        }
+        axes
+    }
+
+    /// Takes the number after a letter, a length in millimetres.
+    fn take_length(&self, block: &mut Block, letter: char) -> Option<f64> {
+        block.take(letter).map(|length| self.modal.millimetres(length))
+    }
+
+    /// Checks that there is a feed rate.
+    fn check_feed(&self, word: &str) -> Result<(), GcodeFault> {
+        let inverse = self.modal.feed_mode == FeedMode::InverseTime;
+        match self.modal.feed {
+            Some(_) => Ok(()),
+            None => Err(GcodeFault::NoFeed { word: word.to_owned(), inverse }),
+        }
+    }
+
+    /// Returns the remedy that ends tool centre point control.
+    fn tcp_remedy(&self) -> &'static str {
+        match self.transformed {
+            true => "end it with M429 or TRAFOOF before",
+            false => "end it with G49 before",
+        }
+    }
+
+    /// Adds a step from the present position, and moves there.
+    fn push(&mut self, rapid: bool, end: Position, commanded: [bool; 6], path: StepPath) {
+        if !self.modal.exact_path && !matches!(path, StepPath::ToolChange(_)) {
+            self.notes.add_once(self.line, Subject::RoundedCorners);
+        }
+        let start = std::mem::replace(&mut self.position, end);
+        let spindle = match self.modal.motion {
+            Some(Motion::Cycle(74 | 84)) => Spindle::Tapping,
+            _ => self.spindle(rapid),
+        };
+        let state = Arc::clone(&self.state);
+        let (line, tool_vector) = (self.line, self.vector);
+        self.pending.push_back(Step {
+            line,
+            rapid,
+            start,
+            end,
+            commanded,
+            path,
+            tool_vector,
+            spindle,
+            absolute: !self.modal.incremental,
+            is_homeward: false,
+            is_return: false,
+            state,
+        });
+    }
+}
+
+/// Returns two coordinates of a position, if both are known.
+fn in_plane(position: &Position, axes: [usize; 2]) -> Option<[f64; 2]> {
+    Some([position[axes[0]]?, position[axes[1]]?])
+}
+
+impl Modal {
+    fn new() -> Modal {
+        Modal {
+            motion: None,
+            plane: Plane::Xy,
+            unit: Unit::Millimetre,
+            unit_stated: false,
+            incremental: false,
+            absolute_centres: None,
+            feed_mode: FeedMode::PerMinute,
+            feed: None,
+            exact_path: false,
+            retract_to_r: None,
+        }
+    }
+
+    /// Returns the number of the canned cycle in force.
+    fn cycle(&self) -> Option<u32> {
+        match self.motion {
+            Some(Motion::Cycle(number)) => Some(number),
+            _ => None,
+        }
+    }
+
+    /// Returns whether axis words move at feed rate, at last.
+    fn is_feed(&self) -> bool {
+        !matches!(self.motion, None | Some(Motion::Rapid))
+    }
+
+    /// Returns the least increment of a length, in the unit of the program.
+    fn increment(&self) -> f64 {
+        if self.unit == Unit::Inch { 1e-4 } else { 1e-3 }
+    }
+
+    /// Converts a length of the program to millimetres.
+    fn millimetres(&self, length: f64) -> f64 {
+        length * self.unit.millimetres()
+    }
+}
+
+/// Takes the words of a path mode.
+fn path_control(block: &mut Block, code: Code) -> Result<(), GcodeFault> {
+    let switch = match code.tenths {
+        640 | 1870 => {
+            block.take('P');
+            if code.tenths == 640 {
+                block.take('Q');
+            }
+            return Ok(());
+        }
+        610 | 611 => return Ok(()),
+        51 => 'Q',
+        _ => 'P',
+    };
+    // Fanuc's modes G5 P, G5.1 Q and G8 P. With axis words they are splines, without any a mode of a lathe.
+    match block.take(switch) {
+        Some(_) if !block.has_any("XYZIJK") => Ok(()),
+        _ => {
+            let meaning = "a spline, or a mode of a lathe, without the word of its path mode";
+            let remedy = "post the program with lines and arcs";
+            Err(not_read(code, meaning, remedy))
+        }
+    }
+}
+
+impl SpindleWords {
+    fn new() -> SpindleWords {
+        SpindleWords {
+            turn: Spindle::NotStated,
+            speed: None,
+            paused: false,
+            rigid: false,
+            tapping: None,
+        }
+    }
+}
+
+impl Control {
+    /// Reads S and the words of the spindle, and returns the word that changes whether and how it turns, if there is one.
+    fn spindle_words(&mut self, block: &mut Block) -> Option<String> {
+        let before = self.spindle;
+        let mut word = None;
+        if let Some(speed) = block.take('S') {
+            self.spindle.speed = Some(speed);
+            // From one speed to another it turns on. S0 stops it, and S after that starts it.
+            let stood = before.speed.is_none_or(|speed| speed == 0.0);
+            let is_on = matches!(before.turn, Spindle::Clockwise | Spindle::CounterClockwise);
+            word = (is_on && stood != (speed == 0.0)).then(|| "S".to_owned());
+        }
+        let dialect = self.stated(Rule::Dialect);
+        let stops_at_m89 =
+            matches!(dialect, None | Some(Choice::Iso)) && self.spindle.turn != Spindle::NotStated;
+        for code in &block.passed_over {
+            let turn = match (code.letter, code.tenths) {
+                ('M', 30) => Spindle::Clockwise,
+                ('M', 40) => Spindle::CounterClockwise,
+                ('M', 50 | 190) => {
+                    self.spindle.rigid = false;
+                    Spindle::Stopped
+                }
+                // Haas stops it before M89 (coolant through the spindle off), and does not start it again.
+                ('M', 890) if !stops_at_m89 => continue,
+                ('M', 890) => Spindle::Stopped,
+                ('M', 290) => {
+                    self.spindle.rigid = true;
+                    continue;
+                }
+                _ => continue,
+            };
+            (self.spindle.turn, self.spindle.paused) = (turn, false);
+            self.spindle.tapping = None;
+            if (turn, false) != (before.turn, before.paused) {
+                word = Some(code.to_string());
+            }
+        }
+        word
+    }
+
+    /// Notes a stop of the program (M0, M1).
+    pub(super) fn pause_spindle(&mut self) {
+        self.spindle.paused = true;
+    }
+
+    /// Returns whether a tapping cycle finds the spindle as it needs it: turning into its thread, unless the cycle turns it itself
+    /// (M29), or the same cycle was before.
+    fn can_tap(&mut self, number: u32) -> bool {
+        let wanted = if number == 84 { Spindle::Clockwise } else { Spindle::CounterClockwise };
+        let spindle = self.spindle(false);
+        self.spindle.rigid || spindle == wanted || self.spindle.tapping == Some(number)
+    }
+
+    /// Notes the end of a tapping cycle.
+    fn end_tapping(&mut self, number: u32) {
+        self.spindle.turn = Spindle::AfterTapping;
+        self.spindle.tapping = Some(number).filter(|_| !self.spindle.rigid);
+    }
+
+    /// Stops the spindle for a tool change. It stays unstated if it was.
+    fn stop_spindle(&mut self) {
+        self.spindle.rigid = false;
+        self.spindle.tapping = None;
+        // A program that leaves the spindle to the operator does so after the change, too.
+        if self.spindle.turn != Spindle::NotStated {
+            self.spindle.turn = Spindle::Stopped;
+        }
+    }
+
+    /// Returns the spindle for a motion at feed rate or in rapid traverse.
+    fn spindle(&mut self, rapid: bool) -> Spindle {
+        if matches!(
+            self.spindle.turn,
+            Spindle::NotStated | Spindle::Stopped | Spindle::AfterTapping
+        ) {
+            return self.spindle.turn;
+        }
+        // What the stop has left matters at the next feed, and the rule is asked there only.
+        if self.spindle.paused && !rapid {
+            self.spindle.paused = false;
+            if self.choice(Rule::Stop) == Choice::StopsSpindle {
+                self.spindle.turn = Spindle::Stopped;
+                return Spindle::Stopped;
+            }
+        }
+        match self.spindle.speed {
+            None => Spindle::WithoutSpeed,
+            Some(0.0) => Spindle::Stopped,
+            Some(_) => self.spindle.turn,
+        }
+    }
+}

@@ -1,0 +1,438 @@
+//! Motions: lines, arcs, returns to reference positions, machine coordinates.
+
+use super::{AXES, Control, Motion, in_plane};
+use crate::gcode::block::{Block, Group};
+use crate::gcode::error::{ArcFault, combination, missing, not_read};
+use crate::gcode::rules::{Choice, Rule};
+use crate::gcode::state::{LengthOffset, Position, Rotation, Tcp};
+use crate::gcode::{GcodeFault, Plane, StepPath};
+use std::f64::consts::{SQRT_2, TAU};
+use touchoff::Unit;
+
+impl Control {
+    /// Executes the motion of a block.
+    pub(super) fn motion(&mut self, block: &mut Block) -> Result<(), GcodeFault> {
+        let explicit = block.code_of(Group::Motion).is_some();
+        self.one_shot(block)?;
+        if block.code_of(Group::Machine).is_some() {
+            return self.machine_coordinates(block);
+        }
+        if block.owns_axis_words() {
+            return Ok(());
+        }
+        let has_vector = self.state.tcp == Tcp::Vector && block.has_any("IJK");
+        let has_axes = block.has_any("XYZABC") || has_vector;
+        match self.modal.motion {
+            // A full circle has no end: its word and a centre are enough.
+            Some(Motion::Arc { clockwise }) if has_axes || explicit && block.has_any("IJKR") => {
+                self.arc(block, clockwise)
+            }
+            Some(Motion::Cycle(number)) if has_axes => self.canned_cycle(block, number),
+            Some(Motion::Rapid | Motion::Feed) if has_axes => self.straight(block),
+            None if has_axes => Err(GcodeFault::NoMotionMode),
+            Some(Motion::Cycle(number)) if explicit => {
+                let word = format!("G{number}");
+                Err(missing(word, "X, Y or Z"))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Takes the axis words of a block as the end of a motion, with the axes that they name and those that they command.
+    /// An increment of 0 commands nothing.
+    fn take_end(&self, block: &mut Block) -> (Position, [bool; 6], [bool; 6]) {
+        let axes = self.take_axes(block);
+        let mut end = self.position;
+        for (coordinate, value) in end.iter_mut().zip(axes) {
+            if let Some(value) = value {
+                let origin = if self.modal.incremental { *coordinate } else { Some(0.0) };
+                *coordinate = origin.map(|origin| origin + value);
+            }
+        }
+        let incremental = self.modal.incremental;
+        let commanded = axes.map(|value| value.is_some_and(|value| !incremental || value != 0.0));
+        (end, axes.map(|value| value.is_some()), commanded)
+    }
+
+    fn straight(&mut self, block: &mut Block) -> Result<(), GcodeFault> {
+        let rapid = self.modal.motion == Some(Motion::Rapid);
+        if !rapid {
+            self.check_feed("G1")?;
+        }
+        self.check_tilted(block)?;
+        let turns = self.take_vector(block)?;
+        self.check_position(block)?;
+        let (mut end, _, mut commanded) = self.take_end(block);
+        // The machine turns its axes to the tool vector: the angles are not the program's.
+        if turns {
+            end[3..].fill(None);
+            commanded[3..].fill(true);
+        }
+        self.push(rapid, end, commanded, StepPath::Line);
+        Ok(())
+    }
+
+    /// Takes the tool vector under G43.5, and returns whether the block has one.
+    fn take_vector(&mut self, block: &mut Block) -> Result<bool, GcodeFault> {
+        if self.state.tcp != Tcp::Vector {
+            return Ok(false);
+        }
+        let given = AXES[3..].iter().find(|letter| block.has(**letter));
+        if let Some(letter) = given {
+            let condition = "G43.5 is in force";
+            let remedy = "write the tool vector I J K, or select G43.4";
+            return Err(combination(*letter, condition, remedy));
+        }
+        if !block.has_any("IJK") {
+            return Ok(false);
+        }
+        let vector = ['I', 'J', 'K'].map(|letter| block.take(letter).unwrap_or(0.0));
+        let norm = vector.iter().map(|value| value * value).sum::<f64>().sqrt();
+        if norm < 1e-6 {
+            return Err(GcodeFault::NoDirection);
+        }
+        self.vector = Some(vector.map(|value| value / norm));
+        Ok(true)
+    }
+
+    fn arc(&mut self, block: &mut Block, clockwise: bool) -> Result<(), GcodeFault> {
+        let word = if clockwise { "G2" } else { "G3" };
+        if self.state.tcp == Tcp::Vector {
+            let condition = "G43.5 gives I J K another meaning";
+            let remedy = "post the arc as lines, or select G43.4";
+            return Err(combination(word, condition, remedy));
+        }
+        self.check_feed(word)?;
+        self.check_tilted(block)?;
+        let in_plane = self.modal.plane.axes().map(|axis| ['I', 'J', 'K'][axis]);
+        if self.stated(Rule::Dialect) == Some(Choice::Heidenhain)
+            && block.has(in_plane[0]) != block.has(in_plane[1])
+        {
+            let condition = "one coordinate of its pole is left out, which keeps it on Heidenhain";
+            let remedy = "write both";
+            return Err(combination(word, condition, remedy));
+        }
+        let words = ArcWords {
+            clockwise,
+            plane: self.modal.plane,
+            offsets: ['I', 'J', 'K'].map(|letter| self.take_length(block, letter)),
+            absolute: match self.modal.absolute_centres {
+                Some(absolute) => absolute,
+                None => self.choice(Rule::Dialect) == Choice::Heidenhain && !self.modal.incremental,
+            },
+            radius: self.take_length(block, 'R'),
+            turns: self.turns(block)?,
+            unit: self.modal.unit,
+        };
+        self.check_position(block)?;
+        let (end, _, commanded) = self.take_end(block);
+        let path = path(&words, self.position, end)?;
+        self.check_radii(&path, &end)?;
+        if let Some(radius) = words.radius
+            && self.stated(Rule::Dialect) != Some(Choice::Rs274Ngc)
+        {
+            self.check_radius_digits(radius, &end);
+        }
+        self.push(false, end, commanded, path);
+        Ok(())
+    }
+
+    /// Takes the number of turns of an arc.
+    fn turns(&self, block: &mut Block) -> Result<u32, GcodeFault> {
+        let turns = block.take_whole('P', 1, 1_000_000, "a number of turns from 1 after P")?;
+        if turns.is_some_and(|turns| turns > 1)
+            && self.stated(Rule::Dialect) != Some(Choice::Rs274Ngc)
+        {
+            let meaning = "a number of turns on LinuxCNC alone";
+            let remedy = "write an arc per turn, or state `dialect = \"rs274ngc\"` of the control";
+            return Err(not_read("P of an arc", meaning, remedy));
+        }
+        Ok(turns.unwrap_or(1))
+    }
+
+    /// Executes G53.
+    fn machine_coordinates(&mut self, block: &mut Block) -> Result<(), GcodeFault> {
+        if self.modal.incremental {
+            return Err(combination("G53", "G91 is in force", "write G90 before"));
+        }
+        if self.state.tcp != Tcp::Off {
+            return Err(combination("G53", "tool centre point control is on", self.tcp_remedy()));
+        }
+        if matches!(self.state.rotation, Rotation::Plane { .. }) {
+            return Err(combination("G53", "a plane is rotated", "end it with G69 before"));
+        }
+        match self.modal.motion {
+            None if self.stated(Rule::Dialect) == Some(Choice::Rs274Ngc) => {
+                return Err(GcodeFault::NoMotionMode);
+            }
+            // Elsewhere G53 alone moves in rapid traverse.
+            None | Some(Motion::Rapid) => {}
+            // Positioned in rapid traverse on Fanuc, at feed rate elsewhere.
+            Some(Motion::Feed) => {
+                let remedy = "write G0 in the block";
+                return Err(combination("G53", "G1 is in force", remedy));
+            }
+            _ => {
+                let condition = "an arc or a canned cycle is in force";
+                return Err(combination("G53", condition, "write G0 in the block"));
+            }
+        }
+        let axes = self.take_axes(block);
+        if axes.iter().all(Option::is_none) {
+            return Err(missing("G53", "an axis word"));
+        }
+        let mut target = axes;
+        // Without the place of the part on the machine its coordinates lead nowhere that is known.
+        let length = self.state.length.length();
+        if let Some(z) = axes[2]
+            && length != Some(0.0)
+            && self.state.origin[2].is_some()
+            && self.choice(Rule::MachineCoordinates) == Choice::WithLength
+        {
+            target[2] = length.map(|length| z + length);
+        }
+        // Home of Z is the top of its travel; from there on the other axes are free.
+        let is_homeward = axes[2].map_or(self.position[2].is_none(), |z| z == 0.0);
+        self.move_machine(axes.map(|value| value.is_some()), target, StepPath::Line);
+        self.pending.back_mut().expect("the step that was added").is_homeward = is_homeward;
+        // G53 can cancel the length offset as G28 does, by a parameter of Fanuc (5001, EVO).
+        if axes[2].is_some() && self.state.length != LengthOffset::Off {
+            self.returned = self.returned.or(Some(true));
+        }
+        Ok(())
+    }
+
+    /// Executes G28 or G30: to the intermediate position, then to the reference position.
+    pub(super) fn reference_return(
+        &mut self,
+        block: &mut Block,
+        word: &str,
+    ) -> Result<(), GcodeFault> {
+        if self.state.tcp != Tcp::Off {
+            return Err(combination(word, "tool centre point control is on", self.tcp_remedy()));
+        }
+        if self.modal.cycle().is_some() {
+            return Err(combination(word, "a canned cycle is in force", "write G80 before"));
+        }
+        if matches!(self.state.rotation, Rotation::Plane { .. }) {
+            return Err(combination(word, "a plane is rotated", "end it with G69 before"));
+        }
+        if word == "G30" {
+            block.take_whole('P', 2, 2, "P2, or no P")?;
+        }
+        self.check_tilted(block)?;
+        self.check_shifted(block)?;
+        let (end, mut named, commanded) = self.take_end(block);
+        if named.contains(&true) {
+            self.push(true, end, commanded, StepPath::Line);
+        } else if self.stated(Rule::Dialect) == Some(Choice::Rs274Ngc) {
+            named = self.axes;
+        } else {
+            // All axes on LinuxCNC and Haas, none on Fanuc.
+            let needed = "the axes that return";
+            return Err(missing(word, needed));
+        }
+        // LinuxCNC returns along the axis that is rotated.
+        if self.state.origin_rotation != 0.0 && named[0] != named[1] {
+            let condition = "the work offset is rotated";
+            let remedy = "name X and Y, or neither";
+            return Err(combination(word, condition, remedy));
+        }
+        let home = if word == "G28" { self.home } else { self.second_home };
+        let target = home.map_or([None; 6], |home| home.map(Some));
+        self.move_machine(named, target, StepPath::Line);
+        let step = self.pending.back_mut().expect("the step that was added");
+        (step.is_return, step.is_homeward) = (true, true);
+        self.returned = (self.state.length != LengthOffset::Off).then_some(false);
+        Ok(())
+    }
+
+    /// Moves axes to machine coordinates in rapid traverse. An unknown coordinate leads where only the machine knows.
+    pub(super) fn move_machine(
+        &mut self,
+        mut commanded: [bool; 6],
+        target: Position,
+        path: StepPath,
+    ) {
+        let mut machine = self.state.to_machine(self.position);
+        for axis in 0..6 {
+            if commanded[axis] {
+                machine[axis] = target[axis];
+            }
+        }
+        let mut end = self.state.from_machine(machine);
+        // A rotation makes program axes depend on several machine axes.
+        let is_coupled = match (self.state.rotation, self.state.origin_rotation == 0.0) {
+            (Rotation::Off, true) => [false; 6],
+            (Rotation::Off, false) => [true, true, false, false, false, false],
+            _ => [true, true, true, false, false, false],
+        };
+        let moves_coupled = (0..6).any(|axis| commanded[axis] && is_coupled[axis]);
+        for axis in 0..6 {
+            if is_coupled[axis] && moves_coupled {
+                commanded[axis] = true;
+            } else if !commanded[axis] {
+                end[axis] = self.position[axis];
+            }
+        }
+        self.push(true, end, commanded, path);
+        // Machine coordinates are stated in G91, too.
+        self.pending.back_mut().expect("the step that was added").absolute = true;
+    }
+}
+
+/// Words of an arc, lengths in millimetres.
+#[derive(Clone, Copy, Debug)]
+struct ArcWords {
+    clockwise: bool,
+    plane: Plane,
+    /// Numbers after I, J and K.
+    offsets: [Option<f64>; 3],
+    /// Set by G90.1: I J K are coordinates, not distances from the start.
+    absolute: bool,
+    radius: Option<f64>,
+    /// Number of turns, a begun one included.
+    turns: u32,
+    /// The unit of the program, in which the tolerances are defined.
+    unit: Unit,
+}
+
+/// Distance below which start and end are the same point, in millimetres. It is a hundredth of the least
+/// increment of a control, and far above the rounding of a position.
+const SAME_POINT: f64 = 1e-5;
+/// Smallest radius, in millimetres.
+const LEAST_RADIUS: f64 = 1e-7;
+/// Largest relative difference of the radii of start and end: LinuxCNC's.
+const RELATIVE_TOLERANCE: f64 = 1e-3;
+/// LinuxCNC's absolute tolerance is a hundred times as large as the one that it allows beyond the relative
+/// one.
+const LARGEST_FACTOR: f64 = 100.0;
+
+/// Returns the difference of radii that is always allowed, in millimetres. A centre that is rounded to 0.01
+/// mm or 0.001 inch in both coordinates differs by as much (LinuxCNC's `CENTER_ARC_RADIUS_TOLERANCE`).
+fn radius_tolerance(unit: Unit) -> f64 {
+    match unit {
+        Unit::Inch => 2.0 * 0.001 * SQRT_2 * Unit::Inch.millimetres(),
+        _ => 2.0 * 0.01 * SQRT_2,
+    }
+}
+
+/// Returns the largest excess of half the chord over a radius R, in millimetres: LinuxCNC's 0.00005 inch.
+const CHORD_TOLERANCE: f64 = 0.00005 * 25.4;
+
+/// Computes the path of an arc between two positions in program coordinates.
+///
+/// The arc is in the plane's coordinates (first axis, second axis), in which a positive sweep is from the
+/// first to the second. With a centre, an end within 1e-5 mm of the start is a full circle. With a radius R,
+/// the sweep is at most half a turn for R > 0, and at least half a turn for R < 0. Near half a turn, the
+/// centre is ill-conditioned: an error δ of the end moves it by up to √(2 R δ). With a centre, the sweep of
+/// one turn is within 2⁻⁴⁹ (1 + D / r) of exact, for the radius r and the largest coordinate D.
+fn path(words: &ArcWords, start: Position, end: Position) -> Result<StepPath, ArcFault> {
+    let [first, second] = words.plane.axes();
+    let letters = centre_letters(words.plane);
+    let normal = words.plane.normal();
+    // Posts that always write I, J and K give 0 for the third.
+    let other = words.offsets[normal].filter(|offset| words.absolute || *offset != 0.0);
+    if other.is_some() {
+        return Err(ArcFault::OtherPlane { letter: ['I', 'J', 'K'][normal], centre: letters });
+    }
+    let offsets = [words.offsets[first], words.offsets[second]];
+    let known = in_plane(&start, [first, second]).zip(in_plane(&end, [first, second]));
+    match (words.radius, offsets) {
+        (None, [None, None]) => Err(ArcFault::NoCentre { centre: letters }),
+        (Some(radius), [None, None]) => match known {
+            Some((start, end)) => by_radius(words, radius, start, end),
+            None => Ok(StepPath::Undetermined),
+        },
+        (Some(_), _) => Err(ArcFault::CentreAndRadius),
+        (None, [None, _] | [_, None]) if words.absolute => {
+            Err(ArcFault::HalfCentre { centre: letters })
+        }
+        (None, [i, j]) => match known {
+            Some((start, end)) => {
+                let [i, j] = [i.unwrap_or(0.0), j.unwrap_or(0.0)];
+                let centre = if words.absolute { [i, j] } else { [start[0] + i, start[1] + j] };
+                by_centre(words, centre, start, end)
+            }
+            None => Ok(StepPath::Undetermined),
+        },
+    }
+}
+
+fn by_centre(
+    words: &ArcWords,
+    centre: [f64; 2],
+    start: [f64; 2],
+    end: [f64; 2],
+) -> Result<StepPath, ArcFault> {
+    let [from, to] = [start, end].map(|point| [point[0] - centre[0], point[1] - centre[1]]);
+    let [start_radius, end_radius] = [from, to].map(|[u, v]| u.hypot(v));
+    if start_radius < LEAST_RADIUS || end_radius < LEAST_RADIUS {
+        return Err(ArcFault::ZeroRadius);
+    }
+    let difference = (start_radius - end_radius).abs();
+    let tolerance = radius_tolerance(words.unit);
+    let relative = RELATIVE_TOLERANCE * start_radius.max(end_radius);
+    let allowed = relative.clamp(tolerance, LARGEST_FACTOR * tolerance);
+    if difference > allowed {
+        let (start, end, tolerance) = (start_radius, end_radius, allowed);
+        return Err(ArcFault::Radii { start, end, tolerance });
+    }
+    let is_full = (start[0] - end[0]).hypot(start[1] - end[1]) < SAME_POINT;
+    let sweep = if is_full { TAU } else { counterclockwise(from, to, words.clockwise) };
+    Ok(arc(words, centre, sweep))
+}
+
+fn by_radius(
+    words: &ArcWords,
+    radius: f64,
+    start: [f64; 2],
+    end: [f64; 2],
+) -> Result<StepPath, ArcFault> {
+    let chord = [end[0] - start[0], end[1] - start[1]];
+    let half = 0.5 * chord[0].hypot(chord[1]);
+    if 2.0 * half < SAME_POINT {
+        return Err(ArcFault::SamePoint { centre: centre_letters(words.plane) });
+    }
+    if radius.abs() < LEAST_RADIUS {
+        return Err(ArcFault::ZeroRadius);
+    }
+    if half - radius.abs() > CHORD_TOLERANCE {
+        return Err(ArcFault::TooShort { radius: radius.abs(), half });
+    }
+    // The product of sum and difference keeps its digits near half a turn.
+    let squared = (radius.abs() - half) * (radius.abs() + half);
+    let height = squared.max(0.0).sqrt();
+    // The centre of a counter-clockwise arc of less than half a turn is left of its chord.
+    let side = if words.clockwise == (radius > 0.0) { -height } else { height };
+    let scale = side / (2.0 * half);
+    let middle = [0.5 * (start[0] + end[0]), 0.5 * (start[1] + end[1])];
+    let centre = [middle[0] - chord[1] * scale, middle[1] + chord[0] * scale];
+    let half_angle = half.atan2(height);
+    let sweep = if radius > 0.0 { 2.0 * half_angle } else { TAU - 2.0 * half_angle };
+    Ok(arc(words, centre, sweep))
+}
+
+/// Returns the angle, from 0 to a full turn, from one direction to another, in the direction of the arc.
+fn counterclockwise(from: [f64; 2], to: [f64; 2], clockwise: bool) -> f64 {
+    let cross = from[0] * to[1] - from[1] * to[0];
+    let dot = from[0] * to[0] + from[1] * to[1];
+    let angle = if clockwise { (-cross).atan2(dot) } else { cross.atan2(dot) };
+    // The end of a spiral in the direction of its start is a whole turn away: a full circle was told apart before.
+    if angle <= 0.0 { angle + TAU } else { angle }
+}
+
+fn arc(words: &ArcWords, centre: [f64; 2], sweep: f64) -> StepPath {
+    let sweep = sweep + TAU * f64::from(words.turns - 1);
+    let sweep = if words.clockwise { -sweep } else { sweep };
+    StepPath::Arc { plane: words.plane, centre, sweep }
+}
+
+/// Returns the letters of a centre in a plane.
+const fn centre_letters(plane: Plane) -> &'static str {
+    match plane {
+        Plane::Xy => "I and J",
+        Plane::Zx => "I and K",
+        Plane::Yz => "J and K",
+    }
+}
