@@ -81,7 +81,7 @@ impl Spacenav {
     ///
     /// # Errors
     /// Fails if nothing listens at the socket. Fails with [`InvalidInput`](io::ErrorKind::InvalidInput),
-    /// with a [`SettingError`](super::SettingError) inside, if the rate or a speed is out of its range.
+    /// with a [`SettingError`] inside, if the rate or a speed is out of its range.
     pub fn open(
         socket: &Path,
         start: Pose,
