@@ -14,7 +14,8 @@ fn a_program_is_checked_and_the_table_has_its_rows() {
     assert!(gouge.contains("deep in the part"), "{gouge}");
     assert!(text.contains("\nFindings: "), "{text}");
 
-    let rows: Vec<&str> = text.lines().filter(|line| line.contains("side  |")).collect();
+    let rows: Vec<&str> =
+        text.lines().filter(|line| line.contains("side ") && line.contains(" | ")).collect();
     assert_eq!(rows.len(), 8, "{text}");
     // 20,000 points, outside: the thesis has 11.8 contacts a pose on a path of the same kind.
     let contacts = rows[6].split_whitespace().nth(3).expect("the mean number of contacts");
