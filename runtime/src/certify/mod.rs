@@ -25,12 +25,14 @@ mod search;
 mod space;
 mod sweep;
 mod tool_model;
+mod trajectory;
 mod triangle;
 mod verdict;
 
 pub use containment::Containment;
 pub use nearest::NearestTriangle;
 pub use part::{BoxVisitor, Location, TriangleBvh};
+pub use trajectory::{Approximation, Trajectory};
 pub use verdict::{
     AllowanceError, Clearance, MotionDepth, MotionVerdict, NoSuchSurface, NotCertifiable,
     Penetration, PoseVerdict, Witness,

@@ -9,26 +9,35 @@ use super::containment::{Containment, CorePoints};
 use super::search::{MARGIN, QuerySetting, SearchState};
 use super::sweep::{SweepEnd, SweepTask, Sweeper};
 use super::tool_model::ToolModel;
+use super::trajectory::Trajectory;
 use super::triangle::line_search::Goal;
 use super::verdict::{MotionDepth, MotionVerdict, Witness};
 use super::{Certifier, ContactVerdict, NoSuchSurface, penetration, rounding};
 use crate::certify::search::DepthQuery;
 use crate::id::SurfaceId;
 use crate::interval::Interval;
-use crate::motion::Motion;
 use crate::tool::{Symmetry, ToolInfo};
 use std::slice;
 
-/// Returns the error bound of a point of the tool along a motion, in the tool's unit: `rounding` derives it.
-fn motion_error(setting: &QuerySetting<'_>, motion: &Motion) -> f64 {
+/// Returns the rounding error bound of a point of the tool along a motion, in the tool's unit: `rounding` derives it.
+fn motion_error(setting: &QuerySetting<'_>, motion: &dyn Trajectory) -> f64 {
     let turned = if motion.has_spin() { setting.error } else { 0.5 * setting.error };
-    setting.error
-        + turned
-        + rounding::distance_error_bound(motion.displacement().norm() / setting.length)
+    setting.error + turned + rounding::distance_error_bound(motion.max_speed(0.0) / setting.length)
+}
+
+/// Returns how much depths differ at most from those in the motion that is meant, in the tool's unit.
+fn trajectory_error(setting: &QuerySetting<'_>, motion: &dyn Trajectory) -> f64 {
+    setting.tool_model.lipschitz() * motion.error() / setting.length
+}
+
+/// Returns the least tolerance of a sweep.
+fn min_sweep_tolerance(setting: &QuerySetting<'_>, motion: &dyn Trajectory) -> f64 {
+    MIN_SWEEP_TOLERANCE * motion_error(setting, motion)
+        + MIN_SWEEP_ERRORS * trajectory_error(setting, motion)
 }
 
 /// Returns whether a motion determines the tool's position. For a tool without an axis it has to include the spin.
-fn determines_pose(info: &ToolInfo, motion: &Motion) -> bool {
+fn determines_pose(info: &ToolInfo, motion: &dyn Trajectory) -> bool {
     info.symmetry == Symmetry::Revolved || motion.has_spin()
 }
 
@@ -37,12 +46,15 @@ fn determines_pose(info: &ToolInfo, motion: &Motion) -> bool {
 /// for the displacements in an interval of time, which need not become as short as the errors.
 const MIN_SWEEP_TOLERANCE: f64 = 16.0;
 
-/// The tolerance of a motion's greatest depth is at least this times the error bound of a point: half of it is the
-/// tolerance of a sweep.
-const MIN_DEPTH_TOLERANCE: f64 = 2.0 * MIN_SWEEP_TOLERANCE;
+/// To that comes this number of times the error of the trajectory. A point is found to be too deep from 1 error above the
+/// limit, as it is that far from where the approximating motion has it, and it is ruled out up to 1 below the tolerance.
+const MIN_SWEEP_ERRORS: f64 = 8.0;
+
+/// The tolerance of a motion's greatest depth is at least this times that of a sweep: half of it is for the sweep.
+const MIN_DEPTH_TOLERANCE: f64 = 2.0;
 
 /// Depths at single times are computed to within the tolerance divided by this: no finer than the error bound of a point.
-const CLIMB_DIVISOR: f64 = MIN_DEPTH_TOLERANCE;
+const CLIMB_DIVISOR: f64 = MIN_DEPTH_TOLERANCE * MIN_SWEEP_TOLERANCE;
 
 /// The maximum number of sweeps for something deeper than the deepest point known.
 const MAX_ROUNDS: u32 = 16;
@@ -62,9 +74,10 @@ const MIN_TIME_STEP: f64 = 1e-12;
 impl Certifier<'_> {
     /// Checks whether the tool stays clear of the part along a whole motion, or exceeds the depth that is
     /// [allowed](Certifier::with_allowance) by no more than a tolerance, in the part's unit. A tolerance below 16
-    /// times the rounding error bound, or NaN, is replaced by that.
+    /// times the rounding error bound, or NaN, is replaced by that; to the bound comes half the [error](Trajectory::error)
+    /// of a trajectory. The motion is a [`Motion`](crate::Motion) or any other [`Trajectory`].
     ///
-    /// The verdict is undecided for a solid without an axis on a motion without [spin](Motion::with_spin), and for
+    /// The verdict is undecided for a solid without an axis on a motion without [spin](crate::Motion::with_spin), and for
     /// tools and parts larger than some 1e15 of the tool's unit.
     ///
     /// ```
@@ -98,7 +111,7 @@ impl Certifier<'_> {
     /// assert!(matches!(certifier.check_motion(&lower, 1e-6), MotionVerdict::Touching(at, _) if at >= 0.5));
     /// # Ok(()) }
     /// ```
-    pub fn check_motion(&mut self, motion: &Motion, tolerance: f64) -> MotionVerdict {
+    pub fn check_motion(&mut self, motion: &dyn Trajectory, tolerance: f64) -> MotionVerdict {
         if !determines_pose(self.info, motion) || self.setting.margin() > MARGIN {
             return MotionVerdict::Undecided(0.0);
         }
@@ -107,14 +120,14 @@ impl Certifier<'_> {
             self.allowance_queries.as_deref().unwrap_or(slice::from_ref(&self.whole_query));
         let error = motion_error(setting, motion);
         // Written so that a NaN tolerance is replaced.
-        let tolerance = (MIN_SWEEP_TOLERANCE * error).max(tolerance / setting.length);
+        let tolerance = min_sweep_tolerance(setting, motion).max(tolerance / setting.length);
         let mut first: Option<SweepEnd> = None;
         // A margin no larger than the tolerance requires no check.
         for query in
             queries.iter().filter(|query| query.limit >= 0.0 || query.limit + tolerance < 0.0)
         {
             let limit = query.limit;
-            let task = SweepTask { setting, query, motion, limit, error, tolerance };
+            let task = SweepTask { setting, query, trajectory: motion, limit, error, tolerance };
             if let Some(end) = self.sweeper.run(&task, self.budget)
                 && first.as_ref().is_none_or(|first| end.before(first))
             {
@@ -122,8 +135,8 @@ impl Certifier<'_> {
             }
         }
         match first {
-            Some(SweepEnd::Deeper { at, best }) => {
-                MotionVerdict::Touching(at, setting.witness(&best, &motion.pose(at)))
+            Some(SweepEnd::Deeper { at, pose, best }) => {
+                MotionVerdict::Touching(at, setting.witness(&best, &pose))
             }
             // A proof is out of reach, but a contact later in the motion may still be found.
             Some(SweepEnd::Spent { at }) => self.touches_from(motion, at),
@@ -141,7 +154,7 @@ impl Certifier<'_> {
 
     /// Probes a motion for contact at some times after the one at which the budget was spent. A sweep takes longest
     /// just before contact, whereas deep contact is found at once.
-    fn touches_from(&mut self, motion: &Motion, from: f64) -> MotionVerdict {
+    fn touches_from(&mut self, motion: &dyn Trajectory, from: f64) -> MotionVerdict {
         for step in 1..=INITIAL_TIMES {
             let at = from + (1.0 - from) * f64::from(step) / f64::from(INITIAL_TIMES);
             if let ContactVerdict::Yes(witness) = self.touches(&motion.pose(at)) {
@@ -153,11 +166,12 @@ impl Certifier<'_> {
 
     /// Computes the greatest depth of a surface along a motion, at points to which it is the nearest surface. If it
     /// exceeds `allowed` by more than a tolerance, the result has the deepest point found and an upper bound. Both
-    /// lengths are in the part's unit; a tolerance below 32 times the rounding error bound, or NaN, is replaced by that.
-    /// A negative `allowed` is a margin: the distance that the surface has to keep from all of the part.
+    /// lengths are in the part's unit; a tolerance below twice the least of [`Certifier::check_motion`], or NaN, is
+    /// replaced by that. The depths of a [`Trajectory`] are widened by its error. A negative `allowed` is a margin: the
+    /// distance that the surface has to keep from all of the part.
     ///
     /// [Allowances](Certifier::with_allowance) of the certifier do not count, and an `allowed` of NaN counts as 0.
-    /// The result is undecided for a solid without an axis on a motion without [spin](Motion::with_spin), and for a
+    /// The result is undecided for a solid without an axis on a motion without [spin](crate::Motion::with_spin), and for a
     /// margin of a tool without a profile.
     ///
     /// ```
@@ -188,7 +202,7 @@ impl Certifier<'_> {
     pub fn motion_depth(
         &mut self,
         surface: SurfaceId,
-        motion: &Motion,
+        motion: &dyn Trajectory,
         allowed: f64,
         tolerance: f64,
     ) -> Result<MotionDepth, NoSuchSurface> {
@@ -197,7 +211,7 @@ impl Certifier<'_> {
             return Ok(MotionDepth::Undecided(0.0));
         }
         let setting = &self.setting;
-        let min_tolerance = MIN_DEPTH_TOLERANCE * motion_error(setting, motion);
+        let min_tolerance = MIN_DEPTH_TOLERANCE * min_sweep_tolerance(setting, motion);
         // Written so that a NaN tolerance is replaced.
         let tolerance = min_tolerance.max(tolerance / setting.length);
         let allowed = if allowed.is_nan() { 0.0 } else { allowed / setting.length };
@@ -249,7 +263,7 @@ struct MotionSearch<'a, 's> {
     core_points: &'a mut CorePoints,
     state: &'a mut SearchState,
     sweeper: &'a mut Sweeper,
-    motion: &'a Motion,
+    motion: &'a dyn Trajectory,
     query: &'a DepthQuery,
     tolerance: f64,
     budget: u32,
@@ -272,8 +286,8 @@ impl MotionSearch<'_, '_> {
             None => match self.sweep(allowed, self.tolerance, self.budget) {
                 None => return self.within(),
                 Some(SweepEnd::Spent { at }) => return MotionDepth::Undecided(at),
-                Some(SweepEnd::Deeper { at, best }) => {
-                    let witness = self.setting.witness(&best, &self.motion.pose(at));
+                Some(SweepEnd::Deeper { at, pose, best }) => {
+                    let witness = self.setting.witness(&best, &pose);
                     let depth = Interval::new(allowed, allowed + self.tolerance);
                     // A sweep proves no more than that the point exceeds the allowance; a probe at that time may tell
                     // its depth.
@@ -326,7 +340,7 @@ impl MotionSearch<'_, '_> {
             return None;
         }
         let error = motion_error(setting, motion);
-        let task = SweepTask { setting, query, motion, limit, error, tolerance };
+        let task = SweepTask { setting, query, trajectory: motion, limit, error, tolerance };
         self.sweeper.run(&task, budget)
     }
 
@@ -345,7 +359,7 @@ impl MotionSearch<'_, '_> {
     fn climb(&mut self, from: DepthPeak) -> DepthPeak {
         let QuerySetting { size, length, .. } = *self.setting;
         // No depth changes faster than the farthest point of the tool moves.
-        let pace = self.motion.displacement().norm() / length + self.motion.angle() * size;
+        let pace = self.motion.max_speed(size * length) / length;
         let mut best = from;
         let mut step = 0.5 / f64::from(INITIAL_TIMES);
         while step * pace > self.climb_tolerance() && step > MIN_TIME_STEP {
@@ -371,20 +385,22 @@ impl MotionSearch<'_, '_> {
         let tolerance = self.climb_tolerance();
         let MotionSearch { setting, query, ref mut state, budget, .. } = *self;
         let pose = self.motion.pose(at);
+        let off = trajectory_error(setting, self.motion);
         if query.limit >= 0.0 {
             // `penetration` takes and returns lengths in the part's unit.
             let tolerance = tolerance * setting.length;
             let found = penetration(setting, query, state, &pose, tolerance, budget);
             let Interval { low, high } = found.depth;
-            let depth = Interval::new(low / setting.length, high / setting.length);
+            let low = (low / setting.length - off).max(0.0);
+            let depth = Interval::new(low, high / setting.length + off);
             return found.witness.map(|witness| DepthPeak { depth, at, witness });
         }
         setting.set_pose(state, &pose);
         let goal = Goal { min_depth: query.limit, tolerance, stop_depth: f64::INFINITY, budget };
         state.outside(setting, query, &pose, goal);
         let best = state.best?;
-        let (found, more) =
-            (state.search.best, motion_error(setting, self.motion) + state.search.skew);
+        let found = state.search.best;
+        let more = motion_error(setting, self.motion) + off + state.search.skew;
         let high = (found + tolerance).max(state.search.open_bound) + more;
         Some(DepthPeak {
             depth: Interval::new(found - more, high),

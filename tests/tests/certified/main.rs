@@ -34,6 +34,7 @@ mod ring_of_ties;
 mod rounding;
 mod spinning;
 mod sweeps;
+mod trajectories;
 mod zoomed;
 
 use nalgebra::{Point3, Vector3};

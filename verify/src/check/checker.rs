@@ -1,11 +1,9 @@
 //! The check of motions one after another.
 
-use super::moves::{self, JointPath, Move, MovePath, RapidBox, Span};
+use super::moves::{JointTrajectory, Move, MovePath, RapidBox, displacement};
 use super::{Finding, FindingKind, Verifier, VerifyError};
-use std::cmp::Ordering;
 use std::collections::VecDeque;
-use std::mem;
-use touchoff::certify::{Certifier, MotionDepth, MotionVerdict};
+use touchoff::certify::{Certifier, MotionDepth, MotionVerdict, Trajectory};
 use touchoff::tool::Symmetry;
 use touchoff::{Interval, Motion, MotionError, Pose, SurfaceId};
 
@@ -33,21 +31,8 @@ struct TimedFinding {
     kind: FindingKind,
 }
 
-/// A joint motion that is checked span by span, in one mode and at one resolution.
-struct JointTask<'p> {
-    path: &'p JointPath,
-    rapid: bool,
-    resolution: f64,
-}
-
 /// Fraction of a surface's greatest possible depth from which on it counts as passing right through the part.
 const THROUGH_FRACTION: f64 = 0.98;
-
-/// Share of the resolution that the approximation of a joint motion may use.
-const DEVIATION_SHARE: f64 = 0.25;
-
-/// Largest number of halvings of a joint motion. A span that is still too inaccurate is undecided.
-const MAX_HALVINGS: u32 = 24;
 
 /// Largest number of pieces of a box that are halved.
 const MAX_PIECES: usize = 1 << 14;
@@ -91,25 +76,14 @@ impl<'a> Checker<'a> {
             kind,
         };
         match &step.path {
-            MovePath::Straight(motion) => {
-                let margin = self.modes[usize::from(step.rapid)].margin;
-                let max_travel =
-                    step.path.max_travel(self.free_space.reach, self.free_space.symmetry);
-                let poses = [0.0, 0.5].map(|at| motion.pose(at));
-                if !self.free_space.contains(poses, max_travel, margin) {
-                    found = self.motion(step.rapid, motion);
-                }
-            }
+            MovePath::Straight(motion) => found = self.motion(step, motion),
             MovePath::Joints(path) => {
-                // A resolution below the part of the deviation that halving does not reduce is taken as that.
-                let floor = path.deviation_floor(self.free_space.reach) * self.verifier.lipschitz();
-                let resolution = self.verifier.resolution.max(2.0 * floor / DEVIATION_SHARE);
-                let task = JointTask { path, rapid: step.rapid, resolution };
-                self.joints(&task, [0.0, 1.0], MAX_HALVINGS, &mut found);
+                let FreeSpace { reach, symmetry, .. } = self.free_space;
+                found = self.motion(step, &JointTrajectory::new(path, symmetry, reach));
             }
             MovePath::Box(path) => match Motion::with_spin(&path.pose(0.0), &path.pose(1.0)) {
                 Ok(straight) => {
-                    found = self.motion(true, &straight);
+                    found = self.contacts(true, &straight);
                     // No pose of the box is farther from the straight line than from its middle.
                     let spread = path.radius() * self.verifier.lipschitz();
                     found.iter_mut().for_each(|found| widen(&mut found.kind, spread));
@@ -126,7 +100,7 @@ impl<'a> Checker<'a> {
             },
             MovePath::Ambiguous(error, rest) => {
                 found.push(TimedFinding::ambiguous(*error));
-                let at_end = self.motion(step.rapid, rest).into_iter();
+                let at_end = self.contacts(step.rapid, rest).into_iter();
                 found.extend(at_end.map(|found| TimedFinding { time: 1.0, ..found }));
             }
         }
@@ -155,7 +129,7 @@ impl<'a> Checker<'a> {
                 continue;
             }
             let found = match Motion::with_spin(&middle, &middle) {
-                Ok(rest) => self.motion(true, &rest),
+                Ok(rest) => self.contacts(true, &rest),
                 Err(error) => vec![TimedFinding::ambiguous(error)],
             };
             if !found.is_empty() {
@@ -179,51 +153,25 @@ impl<'a> Checker<'a> {
         Vec::new()
     }
 
-    fn motion(&mut self, rapid: bool, motion: &Motion) -> Vec<TimedFinding> {
-        self.modes[usize::from(rapid)].motion(motion, self.verifier.resolution, 0.0)
+    /// Returns the findings of a motion that may be in free space.
+    fn motion(&mut self, step: &Move, motion: &dyn Trajectory) -> Vec<TimedFinding> {
+        let margin = self.modes[usize::from(step.rapid)].margin;
+        let max_travel = step.path.max_travel(self.free_space.reach, self.free_space.symmetry);
+        let poses = [0.0, 0.5].map(|at| motion.pose(at));
+        match self.free_space.contains(poses, max_travel, margin) {
+            true => Vec::new(),
+            false => self.contacts(step.rapid, motion),
+        }
+    }
+
+    fn contacts(&mut self, rapid: bool, motion: &dyn Trajectory) -> Vec<TimedFinding> {
+        self.modes[usize::from(rapid)].contacts(motion, self.verifier.resolution)
     }
 
     /// Returns the findings where nothing is known about any surface.
     fn undecided(&self) -> impl Iterator<Item = FindingKind> + use<> {
         let surfaces = (0..self.verifier.allowed.len()).map(SurfaceId);
         surfaces.map(|surface| FindingKind::Undecided { surface })
-    }
-
-    /// Adds the findings of a span of a joint motion, the deepest per kind and surface.
-    ///
-    /// The span is halved until nothing is near it, or until the motion between its ends deviates so little that the
-    /// deviation can be counted within the resolution.
-    fn joints(
-        &mut self,
-        task: &JointTask<'_>,
-        [from, to]: [f64; 2],
-        halvings: u32,
-        found: &mut Vec<TimedFinding>,
-    ) {
-        let JointTask { path, rapid, resolution } = *task;
-        let FreeSpace { reach, symmetry, .. } = self.free_space;
-        let Span { motion, deviation, max_travel } = moves::span(path, [from, to], reach, symmetry);
-        let middle = f64::midpoint(from, to);
-        let margin = self.modes[usize::from(rapid)].margin;
-        if self.free_space.contains([from, middle].map(|at| path.pose(at)), max_travel, margin) {
-            return;
-        }
-        let slack = deviation * self.verifier.lipschitz();
-        match motion {
-            Ok(motion) if slack <= DEVIATION_SHARE * resolution => {
-                let mode = &mut self.modes[usize::from(rapid)];
-                for TimedFinding { time, kind } in mode.motion(&motion, resolution, slack) {
-                    merge(found, TimedFinding { time: from + time * (to - from), kind });
-                }
-            }
-            _ if halvings == 0 => {
-                self.undecided().for_each(|kind| merge(found, TimedFinding { time: from, kind }));
-            }
-            _ => {
-                self.joints(task, [from, middle], halvings - 1, found);
-                self.joints(task, [middle, to], halvings - 1, found);
-            }
-        }
     }
 }
 
@@ -243,22 +191,6 @@ fn widen(kind: &mut FindingKind, spread: f64) {
     }
 }
 
-/// Adds a finding, or keeps the worse one of the same kind and surface, with a bound over both.
-fn merge(found: &mut Vec<TimedFinding>, mut new: TimedFinding) {
-    let Some(known) = found.iter_mut().find(|known| {
-        mem::discriminant(&known.kind) == mem::discriminant(&new.kind)
-            && known.kind.surface() == new.kind.surface()
-    }) else {
-        found.push(new);
-        return;
-    };
-    if new.kind.severity(&known.kind) == Ordering::Greater {
-        mem::swap(known, &mut new);
-    }
-    // The bound has to hold over both, whichever is the worse.
-    known.kind.include_bound(&new.kind);
-}
-
 impl<'a> Mode<'a> {
     fn new(
         verifier: &Verifier<'a>,
@@ -275,10 +207,10 @@ impl<'a> Mode<'a> {
         Ok(Mode { certifier, limits, max_depths, margin })
     }
 
-    /// Returns the findings of a motion. Depths differ from those of the true motion by at most `slack`.
-    fn motion(&mut self, motion: &Motion, resolution: f64, slack: f64) -> Vec<TimedFinding> {
+    /// Returns the findings of a motion.
+    fn contacts(&mut self, motion: &dyn Trajectory, resolution: f64) -> Vec<TimedFinding> {
         // One query for all surfaces proves most motions clear. Only the others are queried surface by surface.
-        let swept = self.certifier.check_motion(motion, resolution - slack);
+        let swept = self.certifier.check_motion(motion, resolution);
         if matches!(swept, MotionVerdict::Clear | MotionVerdict::SurfaceOnly) {
             return Vec::new();
         }
@@ -289,10 +221,7 @@ impl<'a> Mode<'a> {
                 continue;
             }
             let surface = SurfaceId(index);
-            // A point deeper than this limit in the approximation is deeper than allowed in truth. Any other exceeds the
-            // allowance by at most the resolution.
-            let (limit, tolerance) = (allowed + slack, resolution - 2.0 * slack);
-            let depth = self.certifier.motion_depth(surface, motion, limit, tolerance);
+            let depth = self.certifier.motion_depth(surface, motion, allowed, resolution);
             let (time, kind) = match depth.expect("a surface of the tool") {
                 MotionDepth::Within => continue,
                 MotionDepth::Deeper { at, depth: Interval { low, high }, max_depth, witness }
@@ -300,15 +229,12 @@ impl<'a> Mode<'a> {
                 {
                     // Below 0 a depth is a distance: the nearest place is the deepest one.
                     let [from, to, min_distance] =
-                        [-high - slack, -low + slack, -max_depth - slack]
-                            .map(|distance| distance.max(0.0));
+                        [-high, -low, -max_depth].map(|distance| distance.max(0.0));
                     let (margin, distance) = (-allowed, Interval::new(from, to));
                     (at, FindingKind::Near { surface, margin, distance, min_distance, witness })
                 }
                 MotionDepth::Deeper { at, depth, max_depth, witness } => {
                     let through = depth.high >= THROUGH_FRACTION * self.max_depths[index];
-                    let depth = Interval::new((depth.low - slack).max(0.0), depth.high + slack);
-                    let max_depth = max_depth + slack;
                     (at, FindingKind::Deep { surface, allowed, depth, max_depth, through, witness })
                 }
                 MotionDepth::Inside => {
@@ -389,7 +315,7 @@ impl FreeSpace<'_> {
     /// this length from it.
     fn is_within(&self, pose: &Pose, travel: f64) -> bool {
         let Some((known, distance)) = &self.ball else { return false };
-        let far = moves::displacement(known, pose, self.reach, self.symmetry) + travel;
+        let far = displacement(known, pose, self.reach, self.symmetry) + travel;
         // Covers the rounding of the displacement, whose terms are differences of coordinates.
         let size = pose.tip().coords.norm() + known.tip().coords.norm() + self.reach + far;
         far + 16.0 * f64::EPSILON * size < *distance

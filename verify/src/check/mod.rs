@@ -18,10 +18,9 @@
 //! tool's profile at rest: neither runout nor deflection counts. Motions are taken as [`Motion`](touchoff::Motion) defines
 //! them, rapid ones too.
 //!
-//! **Joint motions.** A motion in which a control interpolates the axes of a machine is split until each piece deviates
-//! from a [`Motion`](touchoff::Motion) by at most a quarter of the resolution, or until nothing is near. Depth changes by
-//! at most the deviation, since its Lipschitz constant is 1, and the allowances are lowered by that. A point within the
-//! deviation of the border between two surfaces may count for either.
+//! **Joint motions.** A motion in which a control interpolates the axes of a machine is a
+//! [`Trajectory`](touchoff::certify::Trajectory): the sweep halves it until motions at constant speed decide, whose
+//! deviation is bounded. Depths are those at the true poses, to within the error that the control's own path may have.
 
 mod approach;
 mod checker;

@@ -5,6 +5,7 @@ use crate::machine::JointMotion;
 use crate::program::{ClData, CutterLocation};
 use nalgebra::{Point3, Vector3};
 use std::iter;
+use touchoff::certify::{Approximation, Trajectory};
 use touchoff::tool::{Symmetry, ToolInfo};
 use touchoff::{Motion, MotionError, Pose, Unit};
 
@@ -114,9 +115,14 @@ impl JointPath {
         Pose::from_computed(*pose.rotation(), (pose.tip() - self.origin) * self.scale)
     }
 
+    /// Returns an upper bound on the speed of points within `reach` of the tip, per unit of the motion's time.
+    fn max_speed(&self, reach: f64) -> f64 {
+        self.motion.max_speed(reach / self.scale) * self.scale
+    }
+
     /// Returns the part of the deviation that does not decrease with the length of a span: the error of the motion, and
     /// rounding.
-    pub(super) fn deviation_floor(&self, reach: f64) -> f64 {
+    fn error(&self, reach: f64) -> f64 {
         let rounding = self.motion.rounding();
         let unscaled = rounding.tip + 2.0 * rounding.rotation * reach / self.scale;
         let [from, to] = [0.0, 1.0].map(|at| self.scaled(unscaled, &self.pose(at).tip(), reach));
@@ -178,7 +184,7 @@ impl MovePath {
         let reach = tool.max_distance_from_tip(unit);
         match self {
             MovePath::Straight(motion) | MovePath::Ambiguous(_, motion) => travel(motion, reach),
-            MovePath::Joints(path) => path.motion.max_speed(reach / path.scale) * path.scale,
+            MovePath::Joints(path) => path.max_speed(reach),
             MovePath::Box(path) => 2.0 * path.radius(),
         }
     }
@@ -235,6 +241,44 @@ impl Span {
             Err(_) => f64::INFINITY,
         };
         Span { motion, deviation, max_travel }
+    }
+}
+
+/// A joint motion of a tool, as its check takes it.
+pub(super) struct JointTrajectory<'a> {
+    path: &'a JointPath,
+    symmetry: Symmetry,
+    /// Bound on the error of a point of the tool.
+    error: f64,
+}
+
+impl JointTrajectory<'_> {
+    /// Takes a path for the points within `reach` of the tip.
+    pub(super) fn new(path: &JointPath, symmetry: Symmetry, reach: f64) -> JointTrajectory<'_> {
+        JointTrajectory { path, symmetry, error: path.error(reach) }
+    }
+}
+
+impl Trajectory for JointTrajectory<'_> {
+    fn pose(&self, at: f64) -> Pose {
+        self.path.pose(at)
+    }
+
+    fn approximation(&self, times: [f64; 2], reach: f64) -> Option<Approximation> {
+        let Span { motion, deviation, .. } = span(self.path, times, reach, self.symmetry);
+        motion.ok().map(|motion| Approximation { motion, times: [0.0, 1.0], deviation })
+    }
+
+    fn error(&self) -> f64 {
+        self.error
+    }
+
+    fn max_speed(&self, reach: f64) -> f64 {
+        self.path.max_speed(reach)
+    }
+
+    fn has_spin(&self) -> bool {
+        true
     }
 }
 

@@ -127,7 +127,7 @@ fn joint_motions_agree_with_brute_force() {
     let mesh = block([-8.0, -8.0, -8.0], [8.0, 8.0, 8.0]);
     let (bvh, points) = (TriangleBvh::new(&mesh), sample_points(&mesh, 0.6));
     let allowances: [&[(&str, f64)]; 3] =
-        [&[], &[("ball", f64::INFINITY), ("flute", 1.5)], &[("nut", -1.0), ("shank", -0.3)]];
+        [&[], &[("ball", f64::INFINITY), ("flute", 1.5)], &[("nut", -4.0), ("shank", -1.5)]];
     let [mut deep, mut near, mut clear, mut judged] = [0; 4];
     let mut seed = 0;
     while judged < motions() {
@@ -193,10 +193,9 @@ fn joint_motions_agree_with_brute_force() {
                             actual > allowed.max(0.0) || actual == 0.0,
                             "{actual}: {finding:?}"
                         );
-                        // On the border to another surface the deviation may decide which is the nearest.
+                        // On the border to another surface rounding may decide which is the nearest.
                         if actual > 0.0 {
-                            let slack = RESOLUTION / 2.0;
-                            assert!(depth.low <= actual + slack && actual <= depth.high + slack);
+                            assert!(depth.low <= actual + 1e-9 && actual <= depth.high + 1e-9);
                         }
                         assert!(*max_depth >= depth.high);
                         deep += 1;

@@ -127,6 +127,8 @@ pub(crate) struct Displacement {
     pub(crate) turn: f32,
     /// The largest relevant distance of a point from the axis of the rotation.
     pub(crate) reach: f32,
+    /// Bound on the distance of points from the approximating motion.
+    pub(crate) deviation: f32,
 }
 
 impl Displacement {
@@ -135,7 +137,7 @@ impl Displacement {
     #[inline(always)]
     pub(crate) fn deviation_bound<S: Simd>(&self, simd: S, far: f32x16<S>) -> f32x16<S> {
         let reach = f32x16::splat(simd, self.reach).min(far + self.length);
-        (reach * (0.5 * self.turn) + self.length) * self.turn
+        (reach * (0.5 * self.turn) + self.length) * self.turn + self.deviation
     }
 }
 

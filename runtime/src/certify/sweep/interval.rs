@@ -1,15 +1,15 @@
-//! An interval of a motion: the part's positions in the tool's frame, and bounds on how far its paths are from
+//! An interval of a trajectory: the part's positions in the tool's frame, and bounds on how far its paths are from
 //! straight.
 
 use crate::certify::bounds::descent::Displacement;
 use crate::certify::search::QuerySetting;
 use crate::certify::space::Point;
+use crate::certify::trajectory::Approximation;
 use crate::certify::triangle::SubTriangle;
-use crate::motion::Motion;
 use crate::pose::Pose;
 use nalgebra::{Matrix3, Vector3};
 
-/// An interval of a motion, in the tool's frame and unit.
+/// An interval of a trajectory, in the tool's frame and unit. Positions are those of the approximating motion.
 pub(crate) struct MotionInterval {
     pub(crate) from: f64,
     to: f64,
@@ -23,6 +23,8 @@ pub(crate) struct MotionInterval {
     bounds: MotionBounds,
     /// The axis of the rotation, in the tool's frame.
     axis: Vector3<f64>,
+    /// A bound on the coordinates of the tip, in the part's unit.
+    pub(crate) tip_size: f64,
 }
 
 /// The tool's frame at one time.
@@ -40,38 +42,50 @@ struct MotionBounds {
     turn: f64,
     /// The largest relevant distance of a point from the axis of the rotation.
     reach: f64,
+    /// Bound on the distance of the trajectory from the approximating motion.
+    deviation: f64,
 }
 
 impl MotionInterval {
-    /// Creates the interval `[from, to]`. Points farther from the tool than `required_clearance` are irrelevant.
+    /// Creates the interval `[from, to]` of a trajectory. Points farther from the tool than `required_clearance` are
+    /// irrelevant.
     pub(crate) fn new(
         setting: &QuerySetting<'_>,
-        motion: &Motion,
         [from, to]: [f64; 2],
+        approximation: &Approximation,
         required_clearance: f64,
     ) -> MotionInterval {
+        let Approximation { motion, times: [start, end], deviation } = approximation;
         let per_length = 1.0 / setting.length;
-        let parts = [from, from / 2.0 + to / 2.0, to];
+        let parts = [*start, start / 2.0 + end / 2.0, *end];
         // The middle halves the displacement: bounds hold from there to both ends.
         let poses = parts.map(|part| motion.pose(part));
         let views = [0, 1, 2].map(|k| MovedFrame {
             displacement: motion.displacement() * parts[k],
             back: poses[k].rotation().transpose() * per_length,
         });
-        let half = 0.5 * (to - from);
+        let half = 0.5 * (end - start);
         let straight = views[1].back * motion.displacement() * half;
         let (length, turn) = (straight.norm(), motion.angle() * half);
+        let deviation = deviation * per_length;
         // A rotation preserves the distance from the tip, so a point that comes that near is never farther away in
         // this interval. No point of the tool is farther from its tip than √2 of its size.
-        let reach = 1.5 * setting.size + required_clearance + 2.0 * length;
+        let reach = 1.5 * setting.size + required_clearance + 2.0 * length + deviation;
         MotionInterval {
             from,
             to,
             start: motion.start() - setting.bvh.frame.origin,
             poses,
             views,
-            bounds: MotionBounds { straight: straight.abs().into(), length, turn, reach },
+            bounds: MotionBounds {
+                straight: straight.abs().into(),
+                length,
+                turn,
+                reach,
+                deviation,
+            },
             axis: motion.rotation_axis(),
+            tip_size: motion.start().coords.norm() + motion.displacement().norm(),
         }
     }
 
@@ -106,6 +120,11 @@ impl MotionInterval {
         self.bounds.turn > 0.0
     }
 
+    /// Returns a bound on the distance of the trajectory from the approximating motion.
+    pub(crate) fn deviation(&self) -> f64 {
+        self.bounds.deviation
+    }
+
     pub(crate) fn middle(&self) -> f64 {
         self.from / 2.0 + self.to / 2.0
     }
@@ -113,10 +132,10 @@ impl MotionInterval {
     /// Returns a bound on how far a path is from straight, for a point whose distance from the axis of the rotation
     /// is at most `radius` in the middle of the interval. [`Displacement::deviation_bound`] is the same in `f32`.
     pub(crate) fn deviation_bound(&self, radius: f64) -> f64 {
-        let MotionBounds { length, turn, .. } = self.bounds;
+        let MotionBounds { length, turn, deviation, .. } = self.bounds;
         // Theorem 4 of `docs/certified.md`: ½ h² (2 ω v + ω² ρ), with `turn` for h ω and `length` for h v. During the
-        // interval ρ grows by at most the length.
-        turn * (length + 0.5 * turn * self.bounds.reach.min(radius + length))
+        // interval ρ grows by at most the length. The true point is within the deviation of the approximating motion's.
+        turn * (length + 0.5 * turn * self.bounds.reach.min(radius + length)) + deviation
     }
 
     /// Returns a bound on the displacement of such a point from the middle of the interval.
@@ -127,13 +146,14 @@ impl MotionInterval {
 
     /// Returns the displacement in `f32`, rounded up, with `required_clearance` added to its translation.
     pub(crate) fn shift(&self, required_clearance: f64) -> Displacement {
-        let MotionBounds { straight, length, turn, reach } = self.bounds;
+        let MotionBounds { straight, length, turn, reach, deviation } = self.bounds;
         Displacement {
             axis: self.axis.map(|part| part as f32).into(),
             straight: straight.map(|part| rounded_up(part + required_clearance)),
             length: rounded_up(length),
             turn: rounded_up(turn),
             reach: rounded_up(reach),
+            deviation: rounded_up(deviation),
         }
     }
 }

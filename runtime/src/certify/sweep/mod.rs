@@ -1,4 +1,4 @@
-//! Proof that a tool stays clear of a part along a motion, by intervals of time.
+//! Proof that a tool stays clear of a part along a trajectory, by intervals of time.
 //!
 //! An interval keeps a list of candidates: nodes and triangles that may be in the way. Bounds hold for the whole
 //! interval, from the direction and length of the part's displacement in the tool's frame. Candidates that the
@@ -16,20 +16,21 @@ use crate::certify::sweep::interval::MotionInterval;
 use crate::certify::tool_model::field::Scratch;
 use crate::certify::tool_model::section::{Owners, Section};
 use crate::certify::tool_model::{Surroundings, ToolModel};
+use crate::certify::trajectory::Trajectory;
 use crate::certify::triangle::line_search::{DeepestCandidate, DepthSearch, Goal};
 use crate::certify::triangle::{LocalTriangle, SubTriangle, TrianglePiece};
-use crate::motion::Motion;
+use crate::pose::Pose;
 use crate::tool::LANES;
 
-/// The query, motion and limits of a sweep. Lengths are in the tool's unit.
+/// The query, trajectory and limits of a sweep. Lengths are in the tool's unit.
 pub(crate) struct SweepTask<'a> {
     pub(crate) setting: &'a QuerySetting<'a>,
     pub(crate) query: &'a DepthQuery,
-    pub(crate) motion: &'a Motion,
+    pub(crate) trajectory: &'a dyn Trajectory,
     /// The allowed depth of the query's owners. If negative, its magnitude is the distance that they have to keep. It
     /// is the query's own limit or, if that is at least 0, any larger value.
     pub(crate) limit: f64,
-    /// The rounding error bound of a point along this motion.
+    /// The error bound of a point along this trajectory.
     pub(crate) error: f64,
     /// The excess over the limit that need not be reported.
     pub(crate) tolerance: f64,
@@ -64,9 +65,11 @@ impl SweepTask<'_> {
         DeepPoint { point, depth: depth.value, feature: depth.feature }
     }
 
-    /// Returns whether a point exceeds the limit even after all rounding errors.
-    fn too_deep(&self, found: &DeepPoint) -> bool {
-        found.depth > self.limit + 2.0 * self.error
+    /// Returns whether a point of the approximating motion exceeds the limit even after all rounding errors, and within
+    /// its deviation from the trajectory.
+    fn too_deep(&self, found: &DeepPoint, deviation: f64) -> bool {
+        let steep = self.setting.tool_model.lipschitz();
+        found.depth > self.limit + 2.0 * self.error + steep * deviation
     }
 }
 
@@ -86,8 +89,9 @@ impl DeepPoint {
 
 /// The reason a sweep ends before the whole motion is proved clear.
 pub(crate) enum SweepEnd {
-    /// A point exceeds the limit at this fraction of the motion.
-    Deeper { at: f64, best: DeepestCandidate },
+    /// A point exceeds the limit at this fraction of the motion. The pose is that of the approximating motion, in which
+    /// the point is on the part.
+    Deeper { at: f64, pose: Pose, best: DeepestCandidate },
     /// The budget was spent at this fraction of the motion.
     Spent { at: f64 },
 }
@@ -102,6 +106,15 @@ impl SweepEnd {
             | (SweepEnd::Spent { at }, SweepEnd::Spent { at: other }) => at < other,
         }
     }
+}
+
+/// How far a triangle's points may be from where the approximating motion has them in the middle of an interval.
+#[derive(Clone, Copy)]
+struct Spread {
+    /// At any time of the interval.
+    displacement: f64,
+    /// At that time itself.
+    deviation: f64,
 }
 
 /// A candidate that may be in the way.
@@ -145,18 +158,29 @@ impl Sweeper {
         [from, to]: [f64; 2],
         first: usize,
     ) -> Option<SweepEnd> {
-        let interval =
-            MotionInterval::new(task.setting, task.motion, [from, to], task.required_clearance());
         let last = self.pending.len();
-        if let Some(stop) = self.examine(task, &interval, first..last) {
-            return Some(stop);
+        let reach = (1.5 * task.setting.size + task.required_clearance()) * task.setting.length;
+        match task.trajectory.approximation([from, to], reach) {
+            Some(approximation) => {
+                let interval = MotionInterval::new(
+                    task.setting,
+                    [from, to],
+                    &approximation,
+                    task.required_clearance(),
+                );
+                if let Some(stop) = self.examine(task, &interval, first..last) {
+                    return Some(stop);
+                }
+            }
+            // Nothing is known on so long an interval.
+            None => self.pending.extend_from_within(first..last),
         }
         // Nothing was left undecided.
         if self.pending.len() == last {
             return None;
         }
         // An interval that cannot be halved any more counts as a spent budget: its candidates stay undecided.
-        let middle = interval.middle();
+        let middle = from / 2.0 + to / 2.0;
         if middle <= from || middle >= to || to - from < MIN_DURATION {
             return Some(SweepEnd::Spent { at: from });
         }
@@ -185,11 +209,10 @@ impl Sweeper {
         setting.setup.set_pose(frame, last, &mut self.ends[1]);
         // 2^-18 of the displacement covers the rounding of `Displacement`'s bounds in `f32`, whose terms are no
         // larger. The tips of poses are rounded relative to their world coordinates.
-        let tip = task.motion.start().coords.norm() + task.motion.displacement().norm();
         let margin = setting.margin()
             + (interval.displacement_bound(f64::INFINITY) + task.required_clearance())
                 / f64::from(1 << 18)
-            + 2.0 * f64::EPSILON * tip / setting.length;
+            + 2.0 * f64::EPSILON * interval.tip_size / setting.length;
         let threshold = (task.above() - margin) as f32;
         let (required_clearance, shift) =
             (task.required_clearance() as f32, interval.shift(task.required_clearance()));
@@ -291,17 +314,20 @@ impl Sweeper {
             }
             let corners = self.swept_batch.middle.corners(lane);
             let point = self.swept_batch.middle.point(lane);
-            let at = interval.middle();
+            let (at, pose) = (interval.middle(), interval.poses[1]);
+            let spread = Spread {
+                displacement: interval.displacement_bound(interval.rotation_radius(&corners)),
+                deviation: interval.deviation(),
+            };
             let sample = task.depth(&mut self.scratch, point);
-            if task.too_deep(&sample) {
-                return Some(SweepEnd::Deeper { at, best: sample.best(index) });
+            if task.too_deep(&sample, spread.deviation) {
+                return Some(SweepEnd::Deeper { at, pose, best: sample.best(index) });
             }
-            let displacement = interval.displacement_bound(interval.rotation_radius(&corners));
             let steep = setting.tool_model.lipschitz();
-            let undecided = sample.depth + steep * displacement > task.threshold()
-                || match self.check_triangle(task, corners, displacement) {
+            let undecided = sample.depth + steep * spread.displacement > task.threshold()
+                || match self.check_triangle(task, corners, spread) {
                     TriangleVerdict::TooDeep(deep) => {
-                        return Some(SweepEnd::Deeper { at, best: deep.best(index) });
+                        return Some(SweepEnd::Deeper { at, pose, best: deep.best(index) });
                     }
                     TriangleVerdict::Clear => false,
                     TriangleVerdict::Undecided | TriangleVerdict::OtherOwner => true,
@@ -314,24 +340,24 @@ impl Sweeper {
         None
     }
 
-    /// Examines a triangle: no point of it may be so deep, or so near, that this displacement could make it too deep.
+    /// Examines a triangle: no point of it may be so deep, or so near, that its displacement could make it too deep.
     fn check_triangle(
         &mut self,
         task: &SweepTask<'_>,
         corners: [Point; 3],
-        displacement: f64,
+        spread: Spread,
     ) -> TriangleVerdict {
         let SweepTask { setting, query, .. } = *task;
         let ToolModel::Profile(section) = &setting.tool_model else {
-            return self.check_subdivided(task, corners, displacement);
+            return self.check_subdivided(task, corners, spread);
         };
         let triangle = LocalTriangle::new(corners);
         if query.owners.all() || task.limit < 0.0 {
-            return self.check_lines(task, section, &query.owners, &triangle, displacement);
+            return self.check_lines(task, section, &query.owners, &triangle, spread);
         }
         // If no surface at all is too deep, the owners need not be told apart.
-        match self.check_lines(task, section, &Owners::default(), &triangle, displacement) {
-            TriangleVerdict::OtherOwner => self.check_subdivided(task, corners, displacement),
+        match self.check_lines(task, section, &Owners::default(), &triangle, spread) {
+            TriangleVerdict::OtherOwner => self.check_subdivided(task, corners, spread),
             decided => decided,
         }
     }
@@ -343,9 +369,9 @@ impl Sweeper {
         section: &Section,
         owners: &Owners,
         triangle: &LocalTriangle,
-        displacement: f64,
+        spread: Spread,
     ) -> TriangleVerdict {
-        let displacement = displacement + triangle.skew + task.error;
+        let displacement = spread.displacement + triangle.skew + task.error;
         // A point less deep than that does not become too deep in what is left of the interval.
         let min_depth = task.threshold() - displacement;
         self.search.begin(Goal {
@@ -375,7 +401,7 @@ impl Sweeper {
             };
         };
         let sample = task.depth(&mut self.scratch, point);
-        if task.too_deep(&sample) {
+        if task.too_deep(&sample, spread.deviation) {
             TriangleVerdict::TooDeep(sample)
         } else if sample.depth > min_depth {
             TriangleVerdict::Undecided
@@ -390,9 +416,10 @@ impl Sweeper {
         &mut self,
         task: &SweepTask<'_>,
         corners: [Point; 3],
-        displacement: f64,
+        spread: Spread,
     ) -> TriangleVerdict {
         let (tool_model, owners) = (&task.setting.tool_model, &task.query.owners);
+        let Spread { displacement, deviation } = spread;
         self.pieces.clear();
         self.pieces.push(SubTriangle::new(corners));
         let mut count = 0;
@@ -412,7 +439,7 @@ impl Sweeper {
                 continue;
             }
             let sample = task.depth(&mut self.scratch, centre);
-            if task.too_deep(&sample) {
+            if task.too_deep(&sample, deviation) {
                 return TriangleVerdict::TooDeep(sample);
             }
             if reach < MIN_PIECE_FRACTION * displacement {
