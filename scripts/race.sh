@@ -14,6 +14,8 @@ mkdir -p "$race/src" "$folder/other"
 git archive "$other" | tar -x -C "$folder/other"
 # Packages with the same name must differ in version.
 sed -i 's/^version = .*/version = "0.0.9"/; s/\(path = "[^"]*", version = \)"[^"]*"/\1"0.0.9"/' "$folder/other/Cargo.toml"
+# Before 0.2.0 the package in tools-library/ had another name.
+other_tools=$(sed -n 's/^name = "\(.*\)"/\1/p' "$folder/other/tools-library/Cargo.toml")
 cp scripts/race/main.rs "$race/src/main.rs"
 cat > "$race/Cargo.toml" <<END
 [package]
@@ -23,8 +25,8 @@ edition = "2024"
 [workspace]
 [dependencies]
 this = { package = "touchoff", path = "$here/runtime" }
-this-tools = { package = "tools-library", path = "$here/tools-library" }
+this-tools = { package = "touchoff-tools", path = "$here/tools-library" }
 other = { package = "touchoff", path = "../other/runtime", version = "0.0.9" }
-other-tools = { package = "tools-library", path = "../other/tools-library", version = "0.0.9" }
+other-tools = { package = "$other_tools", path = "../other/tools-library", version = "0.0.9" }
 END
 cargo run --release --quiet --manifest-path "$race/Cargo.toml" --target-dir target/race

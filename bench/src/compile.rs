@@ -2,10 +2,10 @@
 
 use std::time::Instant;
 use syn::visit::{self, Visit};
-use tool_dsl::expr::value::{EvaluationPoint, Evaluator};
-use tool_dsl::plan::Tree;
-use tool_dsl::source::Source;
-use tool_dsl::{CheckedTool, compile, emit};
+use touchoff_dsl::expr::value::{EvaluationPoint, Evaluator};
+use touchoff_dsl::plan::Tree;
+use touchoff_dsl::source::Source;
+use touchoff_dsl::{CheckedTool, compile, emit};
 use touchoff_tests::library::{folder, library};
 use touchoff_tests::oracle::rng::Rng;
 

@@ -8,7 +8,7 @@ use crate::picture::pixels;
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::{Options, Tree};
 use std::io::Write;
-use tool_drawing::{Content, TextRendering, svg};
+use touchoff_drawing::{Content, TextRendering, svg};
 
 /// Pixels per unit of the drawing, fine enough to print; fewer if the image would have more pixels than `MAX_PIXELS`.
 const PIXELS: f32 = 2.0;

@@ -6,7 +6,7 @@ use crate::loaded_tool::compile_file;
 use crate::output::{Output, refuse_inputs, write_file};
 use std::fmt::Write as _;
 use std::io::Write as _;
-use tool_dsl::emit;
+use touchoff_dsl::emit;
 
 /// Prints a stage of the compilation of files, or writes it to a file.
 pub(crate) fn expand(arguments: &Expand) -> Result<(), Failure> {

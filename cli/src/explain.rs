@@ -4,7 +4,9 @@ use crate::failure::Failure;
 use crate::output::Output;
 use serde::Serialize;
 use std::io::Write;
-use tool_dsl::diagnostic::{Entry, Example, FAMILIES, Severity, entries, entry, similar_entries};
+use touchoff_dsl::diagnostic::{
+    Entry, Example, FAMILIES, Severity, entries, entry, similar_entries,
+};
 
 /// Prints the explanation of a code, or lists all codes with their titles.
 ///

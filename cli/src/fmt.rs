@@ -7,10 +7,10 @@ use serde::Serialize;
 use std::borrow::Cow;
 use std::io::{self, Read, Write};
 use std::path::Path;
-use tool_dsl::format::format;
-use tool_dsl::source::{MAX_SOURCE_BYTES, Source, Sources};
 use touchoff::AtomicFile;
 use touchoff::tool::ToolError;
+use touchoff_dsl::format::format;
+use touchoff_dsl::source::{MAX_SOURCE_BYTES, Source, Sources};
 
 /// Formats files in place, or with `--check` only names those that would change, and reports the rewritten files on
 /// standard error. A file with syntax errors stays as it is. With `json`, writes one object per file to standard output, except for formatted text that goes there

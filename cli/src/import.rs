@@ -12,10 +12,10 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
-use tool_dsl::compile;
-use tool_dsl::prove::Certificate;
-use tool_dsl::source::Source;
 use touchoff::Escaped;
+use touchoff_dsl::compile;
+use touchoff_dsl::prove::Certificate;
+use touchoff_dsl::source::Source;
 use touchoff_import::{ImportError, ImportedTool, Library};
 
 /// The exit status if a tool was left out; `check` has the same for warnings.

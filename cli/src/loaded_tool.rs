@@ -6,13 +6,13 @@ use crate::import::{find, find_in_folder};
 use crate::output::show;
 use std::ffi::OsStr;
 use std::path::Path;
-use tool_dsl::diagnostic::escaped;
-use tool_dsl::source::Source;
-use tool_dsl::{Compiled, compile_with_arguments};
-use tools_library::{SOURCES, TOOLS};
 use touchoff::tool::Interpreted;
 use touchoff::{Escaped, Tool};
+use touchoff_dsl::diagnostic::escaped;
+use touchoff_dsl::source::Source;
+use touchoff_dsl::{Compiled, compile_with_arguments};
 use touchoff_import::Library;
+use touchoff_tools::{SOURCES, TOOLS};
 
 /// A built-in tool, or one from a `.tool` file.
 pub(crate) enum LoadedTool {
@@ -127,7 +127,7 @@ fn in_library<R>(
 /// # Errors
 /// [`Failure::UnknownTool`], with a hint at what may be meant.
 fn built_in(name: &str) -> Result<&'static dyn Tool, Failure> {
-    tools_library::find(name).ok_or_else(|| {
+    touchoff_tools::find(name).ok_or_else(|| {
         let near = TOOLS.iter().map(|tool| {
             let known = &*tool.info().name;
             let distance = strsim::damerau_levenshtein(&known.to_lowercase(), &name.to_lowercase());
@@ -157,7 +157,7 @@ fn built_in(name: &str) -> Result<&'static dyn Tool, Failure> {
 /// If it cannot be read; with a hint if a built-in tool is named instead.
 pub(crate) fn read_source(file: &Path, params: &ParamArguments) -> Result<Source, Failure> {
     params.source(file).map_err(|error| {
-        let tool = file.to_str().and_then(tools_library::find).filter(|_| !file.exists());
+        let tool = file.to_str().and_then(touchoff_tools::find).filter(|_| !file.exists());
         match tool {
             Some(tool) => Failure::FileExpected(tool.info().name.to_string()),
             None => error.into(),

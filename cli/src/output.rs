@@ -6,9 +6,9 @@ use anstyle::Style;
 use serde::Serialize;
 use std::io::{self, BufWriter, IsTerminal, StdoutLock, Write};
 use std::path::{Path, PathBuf};
-use tool_dsl::diagnostic::Diagnostic;
-use tool_dsl::source::{Source, Sources};
 use touchoff::{AtomicFile, EscapedLines};
+use touchoff_dsl::diagnostic::Diagnostic;
+use touchoff_dsl::source::{Source, Sources};
 
 /// A writer to standard output.
 ///
@@ -176,7 +176,7 @@ fn mounted(tool: &Path) -> Vec<PathBuf> {
         return Vec::new();
     }
     let Ok(source) = Source::read(tool) else { return Vec::new() };
-    let compiled = tool_dsl::compile(&source);
+    let compiled = touchoff_dsl::compile(&source);
     compiled.sources.all().iter().filter_map(|source| source.path().map(Path::to_owned)).collect()
 }
 

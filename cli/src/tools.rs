@@ -8,9 +8,9 @@ use crate::output::{Output, extension, unwritable, write_file};
 use serde::Serialize;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
-use tools_library::TOOLS;
 use touchoff::tool::{Interpreted, Symmetry, ToolInfo};
 use touchoff::{Escaped, Tool};
+use touchoff_tools::TOOLS;
 
 /// One line of `tools list --json`.
 #[derive(Serialize)]

@@ -13,9 +13,9 @@ use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use tool_dsl::Compiled;
 use touchoff::certify::TriangleBvh;
 use touchoff::{Mesh, Unit};
+use touchoff_dsl::Compiled;
 use touchoff_verify::job::{
     Body, CutStock, JobStock, JobTools, NO_INSIDE, NamedTool, Severity, StockEntry, StockShape,
     UsedTool,

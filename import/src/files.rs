@@ -5,9 +5,9 @@ use super::outline::{Outline, Term, decimal, plain, rounded};
 use super::shape::{Cutter, ShapeError};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
-use tool_dsl::format::format;
-use tool_dsl::source::Source;
 use touchoff::Unit;
+use touchoff_dsl::format::format;
+use touchoff_dsl::source::Source;
 
 /// A file of an imported tool.
 #[derive(Clone, Debug, PartialEq)]

@@ -14,7 +14,7 @@
 //! **Load.** [`Mesh::read_stl`] and [`mesh::Geometry`] read files; the caller states the unit. [`Part::from_mesh`]
 //! samples a mesh; [`Part::save`] and [`Part::open`] keep the result.
 //!
-//! **Write a tool**, or take one from the package `tools-library`.
+//! **Write a tool**, or take one from the package `touchoff-tools`.
 //!
 //! **Query.** A [`Probe`] evaluates a tool at the points of a part.
 //!
@@ -157,5 +157,5 @@ pub use probe::{
 pub use scene::{PartId, Scene, SceneError, ToolId};
 pub use storage::SavedError;
 pub use tool::Tool;
-pub use tool_macros::{include_tool, tool, tool_library};
+pub use touchoff_macros::{include_tool, tool, tool_library};
 pub use unit::{ParseUnitError, Unit};

@@ -14,7 +14,7 @@ pub const TOOLS: [&str; 4] = ["D2Ball", "Fig73", "Fig73Exact", "BullNoseHsk63"];
 /// # Panics
 /// If there is none of that name.
 pub fn tool(name: &str) -> &'static dyn Tool {
-    tools_library::find(name).expect("a tool of the library")
+    touchoff_tools::find(name).expect("a tool of the library")
 }
 
 /// Returns points within 5 % of the tool's radius of its outline, inside or not, such as the tree leaves of a

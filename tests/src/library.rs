@@ -1,9 +1,9 @@
 //! The texts of the library's tools.
 
 use std::path::{Path, PathBuf};
-use tool_dsl::CheckedTool;
-use tool_dsl::source::Source;
 use touchoff::tool::Interpreted;
+use touchoff_dsl::CheckedTool;
+use touchoff_dsl::source::Source;
 
 /// Returns the folder of the library's `.tool` files.
 pub fn folder() -> PathBuf {
@@ -38,7 +38,7 @@ pub fn library() -> Vec<Source> {
 pub fn read(name: &str) -> (Interpreted, CheckedTool) {
     for source in library() {
         let compiled =
-            tool_dsl::compile(&source).into_tool().expect("a tool of the library has no error");
+            touchoff_dsl::compile(&source).into_tool().expect("a tool of the library has no error");
         if compiled.model.name == name {
             let interpreted = Interpreted::parse(&source).expect("it has none");
             return (interpreted, *compiled);

@@ -7,7 +7,7 @@ use touchoff::Tool;
 /// Returns the tools of the library that are profiles, with their restatements.
 pub fn tools() -> Vec<(&'static dyn Tool, Restated)> {
     let restated = restated::all().into_iter();
-    restated.filter_map(|tool| Some((tools_library::find(tool.name)?, tool))).collect()
+    restated.filter_map(|tool| Some((touchoff_tools::find(tool.name)?, tool))).collect()
 }
 
 /// Returns the oracle's owners for each region of a tool: those of its name, or else all of the surface of that

@@ -5,8 +5,8 @@ use super::curves::Curves;
 use super::section::Piece;
 use super::stroke::{Stroke, fitted, round};
 use std::collections::{BTreeMap, HashMap};
-use tool_dsl::formula::CurveIndex;
-use tool_dsl::vector::{Point, cross, minus, norm};
+use touchoff_dsl::formula::CurveIndex;
+use touchoff_dsl::vector::{Point, cross, minus, norm};
 
 /// The area on one side of a border.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

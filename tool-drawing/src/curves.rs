@@ -1,12 +1,12 @@
 //! Evaluates the splitting curves in the plane of a section, each prepared when it is first used.
 
-use tool_dsl::bound::Extent;
-use tool_dsl::expr::interval::{Cell, Encloser, Interval};
-use tool_dsl::expr::polynomial::{Monomial, Polynomial};
-use tool_dsl::expr::value::{EvaluationPoint, Evaluator};
-use tool_dsl::formula::{ANY_SIGN, CurveIndex, NEGATIVE, POSITIVE, Signs, ZERO};
-use tool_dsl::model::Model;
-use tool_dsl::vector::{Point, dot, minus, norm};
+use touchoff_dsl::bound::Extent;
+use touchoff_dsl::expr::interval::{Cell, Encloser, Interval};
+use touchoff_dsl::expr::polynomial::{Monomial, Polynomial};
+use touchoff_dsl::expr::value::{EvaluationPoint, Evaluator};
+use touchoff_dsl::formula::{ANY_SIGN, CurveIndex, NEGATIVE, POSITIVE, Signs, ZERO};
+use touchoff_dsl::model::Model;
+use touchoff_dsl::vector::{Point, dot, minus, norm};
 
 /// The plane of a section, which has two coordinates.
 #[derive(Clone, Copy, Debug)]

@@ -7,9 +7,9 @@ use super::sheet::{Anchor, DEFAULT_COLOUR, Look, Sheet, lines};
 use super::stroke::Stroke;
 use super::view::{View, is_outline};
 use super::{Content, Part, Picture, trace};
-use tool_dsl::CheckedTool;
-use tool_dsl::model::Model;
-use tool_dsl::vector::Point;
+use touchoff_dsl::CheckedTool;
+use touchoff_dsl::model::Model;
+use touchoff_dsl::vector::Point;
 
 /// The largest extent of the detail on the sheet: full width and height, in sheet units.
 const MAX_EXTENT: [f64; 2] = [240.0, 500.0];

@@ -4,8 +4,8 @@ use super::lettering::width;
 use super::regions::{Marks, head};
 use super::sheet::{Anchor, DEFAULT_COLOUR, Look, Sheet, lines};
 use super::{Content, paint};
-use tool_dsl::model::Model;
-use tool_dsl::vector::Point;
+use touchoff_dsl::model::Model;
+use touchoff_dsl::vector::Point;
 
 /// The height of capitals; `LINE_HEIGHT` is the height of a line. Sheet units.
 const TEXT_SIZE: f64 = 7.5;

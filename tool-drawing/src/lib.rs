@@ -40,10 +40,10 @@ use section::Fineness;
 use shape::Shape;
 pub use sheet::TextRendering;
 use sheet::{Anchor, Look, Sheet};
-use tool_dsl::CheckedTool;
-use tool_dsl::domain::Domain;
-use tool_dsl::model::Model;
-use tool_dsl::vector::Point;
+use touchoff_dsl::CheckedTool;
+use touchoff_dsl::domain::Domain;
+use touchoff_dsl::model::Model;
+use touchoff_dsl::vector::Point;
 use view::View;
 
 /// The largest extent of a tool on the sheet: full width and height, in sheet units.

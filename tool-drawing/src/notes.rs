@@ -8,8 +8,8 @@ use super::sheet::{Anchor, Look, SECONDARY_COLOUR, Sheet, lines};
 use super::stroke::Stroke;
 use super::view::is_outline;
 use super::{Picture, paint};
-use tool_dsl::model::{Model, Unit};
-use tool_dsl::vector::{Point, cross, dot, minus, norm};
+use touchoff_dsl::model::{Model, Unit};
+use touchoff_dsl::vector::{Point, cross, dot, minus, norm};
 
 /// The height of capitals, in sheet units.
 const TEXT_SIZE: f64 = 7.5;
@@ -361,7 +361,9 @@ pub(super) fn tidy(value: f64, unit: Unit) -> String {
     };
     match trimmed(&format!("{value:.decimals$}")) {
         // A length too small for that gets as many digits as it needs.
-        text if text == "0" && value.abs() > 1e-12 => tool_dsl::diagnostic::format_number(value),
+        text if text == "0" && value.abs() > 1e-12 => {
+            touchoff_dsl::diagnostic::format_number(value)
+        }
         text => text,
     }
 }

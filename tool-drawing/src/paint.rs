@@ -10,8 +10,8 @@ use super::sheet::{Sheet, data, lines};
 use super::stroke::Stroke;
 use super::view::{is_outline, mirrored};
 use super::{Content, Picture};
-use tool_dsl::model::Model;
-use tool_dsl::vector::Point;
+use touchoff_dsl::model::Model;
+use touchoff_dsl::vector::Point;
 
 /// The look of hatch lines, and their distance in sheet units.
 const HATCH: &str = "fill=\"none\" stroke=\"#c3c9d2\" stroke-width=\".6\"";

@@ -6,9 +6,9 @@ use super::shape::{Frame, Shape};
 use super::sheet::{Anchor, DEFAULT_COLOUR, Look, Sheet, lines};
 use super::view::View;
 use super::{Content, Part, Picture, paint};
-use tool_dsl::expr::value::{EvaluationPoint, Evaluator};
-use tool_dsl::model::Model;
-use tool_dsl::vector::{Point, cross, minus, norm};
+use touchoff_dsl::expr::value::{EvaluationPoint, Evaluator};
+use touchoff_dsl::model::Model;
+use touchoff_dsl::vector::{Point, cross, minus, norm};
 
 /// Results of drawing the section that the notes and the legend need.
 #[derive(Default)]

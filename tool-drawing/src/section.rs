@@ -7,9 +7,9 @@
 
 use super::curves::Curves;
 use std::collections::HashSet;
-use tool_dsl::formula::{CurveIndex, NEGATIVE, ZERO};
-use tool_dsl::plan::Tree;
-use tool_dsl::vector::{Point, cross, minus, norm};
+use touchoff_dsl::formula::{CurveIndex, NEGATIVE, ZERO};
+use touchoff_dsl::plan::Tree;
+use touchoff_dsl::vector::{Point, cross, minus, norm};
 
 /// The plan's tree of owners.
 type Owners = Tree<Option<usize>>;

@@ -3,7 +3,7 @@
 use super::borders::{Border, Side};
 use super::stroke::Stroke;
 use super::view::View;
-use tool_dsl::vector::{Point, dot, minus, norm};
+use touchoff_dsl::vector::{Point, dot, minus, norm};
 
 /// The chord tolerance of the outline that distances are measured from, in sheet units.
 const CHORD_TOLERANCE: f64 = 0.3;

@@ -11,9 +11,9 @@ use super::regions::{head, name};
 use super::sheet::{Anchor, Look, SECONDARY_COLOUR, Sheet, lines};
 use super::view::{View, is_outline};
 use super::{Content, Picture, Traced, paint, trace};
-use tool_dsl::CheckedTool;
-use tool_dsl::expr::interval::Interval;
-use tool_dsl::vector::Point;
+use touchoff_dsl::CheckedTool;
+use touchoff_dsl::expr::interval::Interval;
+use touchoff_dsl::vector::Point;
 
 /// The axes, and those perpendicular to the front view, the side view and the top view.
 const AXES: [&str; 3] = ["x", "y", "z"];

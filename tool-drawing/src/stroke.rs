@@ -1,7 +1,7 @@
 //! Strokes: the lines and arcs of a drawing.
 
 use std::f64::consts::PI;
-use tool_dsl::vector::{Point, cross, dot, minus, norm};
+use touchoff_dsl::vector::{Point, cross, dot, minus, norm};
 
 /// A line, or an arc of less than half a circle.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,7 +3,7 @@
 
 use super::borders::{Border, Side};
 use super::stroke::Stroke;
-use tool_dsl::vector::Point;
+use touchoff_dsl::vector::Point;
 
 /// The height of a shortened section, as a multiple of its width.
 const MAX_ASPECT_RATIO: f64 = 4.8;

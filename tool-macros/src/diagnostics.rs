@@ -2,8 +2,8 @@
 
 use proc_macro2::{Delimiter, Group, Span, TokenStream, TokenTree};
 use quote::quote_spanned;
-use tool_dsl::diagnostic::{Diagnostic, Kind, Refusal, Severity};
-use tool_dsl::source::Sources;
+use touchoff_dsl::diagnostic::{Diagnostic, Kind, Refusal, Severity};
+use touchoff_dsl::source::Sources;
 
 /// Returns message, code and remedy of an error that the arguments of a macro cause.
 pub(crate) fn with_help(kind: &Kind) -> String {

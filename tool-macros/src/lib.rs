@@ -10,9 +10,9 @@ use quote::quote;
 use std::path::{Path, PathBuf};
 use syn::parse::{Parse, ParseStream};
 use syn::{Ident, LitStr, Token};
-use tool_dsl::diagnostic::{Kind, SyntaxKind};
-use tool_dsl::source::Source;
-use tool_dsl::{CheckedTool, Compiled, compile, compile_with_arguments, emit, syntax};
+use touchoff_dsl::diagnostic::{Kind, SyntaxKind};
+use touchoff_dsl::source::Source;
+use touchoff_dsl::{CheckedTool, Compiled, compile, compile_with_arguments, emit, syntax};
 
 /// `include_tool!("tools/ball.tool")` expands to the type that the file's tool describes. The path is
 /// relative to the package's folder. A change of the file, or of one that it mounts, triggers a rebuild.
@@ -203,8 +203,9 @@ fn emitted(tool: &CheckedTool) -> proc_macro2::TokenStream {
     if !program.is_ok_and(|program| program.file_stem().is_some_and(|name| name == "rustdoc")) {
         return emit::emit(tool);
     }
-    let (content, text) = (tool_drawing::Content::Regions, tool_drawing::TextRendering::Page);
-    emit::with_drawing(tool, &tool_drawing::svg(tool, content, text))
+    let (content, text) =
+        (touchoff_drawing::Content::Regions, touchoff_drawing::TextRendering::Page);
+    emit::with_drawing(tool, &touchoff_drawing::svg(tool, content, text))
 }
 
 /// Emits a tool, without its drawing.

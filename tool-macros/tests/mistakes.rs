@@ -2,13 +2,13 @@
 //! case. One mistake gives one error, though the tool is used; each error states a remedy, and the terminal shows
 //! the same.
 //!
-//! After a change of the wording, run `TRYBUILD=overwrite cargo test -p tool-macros --test mistakes` and read the
+//! After a change of the wording, run `TRYBUILD=overwrite cargo test -p touchoff-macros --test mistakes` and read the
 //! difference.
 
 use std::path::{Path, PathBuf};
-use tool_dsl::compile;
-use tool_dsl::diagnostic::Severity;
-use tool_dsl::source::Source;
+use touchoff_dsl::compile;
+use touchoff_dsl::diagnostic::Severity;
+use touchoff_dsl::source::Source;
 
 /// Returns the folder in which trybuild builds its cases, to which `include_tool!` is relative.
 fn package() -> PathBuf {

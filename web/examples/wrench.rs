@@ -3,9 +3,9 @@
 
 use std::hint::black_box;
 use std::time::Instant;
-use tools_library::{BallEr16, D2Ball};
 use touchoff::tool::{BatchEvaluator, Interpreted};
 use touchoff::{Law, Level, Part, Pose, Probe, Sampling, scenes};
+use touchoff_tools::{BallEr16, D2Ball};
 
 const POSES: usize = 2000;
 

@@ -227,8 +227,8 @@ fn difference(to: [f64; 3], from: [f64; 3]) -> Vector3<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use tool_dsl::source::Source;
     use touchoff::tool::Interpreted;
+    use touchoff_dsl::source::Source;
 
     const BALL: &str = "tool Ball { units mm; profile { start (0, 0); arc to (3, 3) center (0, 3) as ball cutting; \
                         line to (3, 10), (0, 10) as shank; } niceness cutting: 1; }";

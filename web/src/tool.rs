@@ -6,12 +6,12 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use tool_drawing::{Content, TextRendering, svg};
-use tool_dsl::compile;
-use tool_dsl::diagnostic::{Diagnostic, Severity};
-use tool_dsl::source::{Source, Sources, Span};
 use touchoff::Tool;
 use touchoff::tool::{Interpreted, Symmetry};
+use touchoff_drawing::{Content, TextRendering, svg};
+use touchoff_dsl::compile;
+use touchoff_dsl::diagnostic::{Diagnostic, Severity};
+use touchoff_dsl::source::{Source, Sources, Span};
 
 static TOOLS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../tools-library/tools");
 

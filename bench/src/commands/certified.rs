@@ -5,7 +5,6 @@ use nalgebra::{Point3, Vector3};
 use std::error::Error;
 use std::f64::consts::PI;
 use std::fmt::Write;
-use tools_library::{Fig73Exact, Flat};
 use touchoff::certify::{Certifier, MotionVerdict, PoseVerdict, TriangleBvh};
 use touchoff::mesh::shapes;
 use touchoff::scenes::{BALL, HEIGHT, INNER, POSES, ScenePath, pose_at_gap};
@@ -15,6 +14,7 @@ use touchoff_bench::page::{Page, Section};
 use touchoff_bench::peers::parry_contact::ParryContact;
 use touchoff_bench::race::clock::{self, Times};
 use touchoff_bench::race::contender::{Answer, Contender};
+use touchoff_tools::{Fig73Exact, Flat};
 
 /// Tolerance of certified depths, mm.
 const TOLERANCE: f64 = 1e-9;

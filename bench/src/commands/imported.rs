@@ -3,10 +3,10 @@
 use rayon::prelude::*;
 use std::error::Error;
 use std::time::Instant;
-use tool_dsl::compile;
-use tool_dsl::prove::Certificate;
-use tool_dsl::source::Source;
 use touchoff_bench::page::Section;
+use touchoff_dsl::compile;
+use touchoff_dsl::prove::Certificate;
+use touchoff_dsl::source::Source;
 use touchoff_import::{ImportedTool, Library};
 use touchoff_tests::libraries::fusion_library;
 

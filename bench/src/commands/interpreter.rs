@@ -27,7 +27,7 @@ The forces are equal to the bit.
     let mut ratios = Vec::new();
     for source in library() {
         let Ok(loaded) = Interpreted::parse(&source) else { continue };
-        let Some(compiled) = tools_library::find(&loaded.info().name) else { continue };
+        let Some(compiled) = touchoff_tools::find(&loaded.info().name) else { continue };
         let name = &loaded.info().name;
         eprintln!("{name}");
         for path in [ScenePath::Outside, ScenePath::Inside] {

@@ -3,11 +3,11 @@
 use std::error::Error;
 use std::fmt::Write;
 use std::time::Instant;
-use tool_dsl::compile;
-use tool_dsl::diagnostic::format_number;
-use tool_dsl::prove::Certificate;
 use touchoff_bench::compile::sources;
 use touchoff_bench::page::Section;
+use touchoff_dsl::compile;
+use touchoff_dsl::diagnostic::format_number;
+use touchoff_dsl::prove::Certificate;
 
 /// Returns the section about all library tools.
 pub(super) fn section() -> Result<Section, Box<dyn Error>> {

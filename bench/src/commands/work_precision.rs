@@ -87,7 +87,7 @@ impl WorkPrecision {
             return Ok(tool);
         }
         let name = self.tool.as_deref().unwrap_or_default().to_string_lossy();
-        let tool = tools_library::find(&name);
+        let tool = touchoff_tools::find(&name);
         Ok(tool.ok_or_else(|| format!("the library has no tool `{name}`"))?)
     }
 }

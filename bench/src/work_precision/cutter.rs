@@ -1,7 +1,7 @@
 //! Tools of the measurements.
 
-use tools_library::{Fig73, Fig73Exact, UnitSphere};
 use touchoff::Tool;
+use touchoff_tools::{Fig73, Fig73Exact, UnitSphere};
 
 /// A tool.
 #[derive(Clone, Copy)]

@@ -322,8 +322,8 @@ fn bisect(corners: &Corners) -> [Corners; 2] {
 mod tests {
     use super::*;
     use crate::work_precision::contact::Contact;
-    use tools_library::Fig73Exact;
     use touchoff_tests::oracle::rng::Rng;
+    use touchoff_tools::Fig73Exact;
 
     #[test]
     fn division_shortens_triangles_and_keeps_their_area() {

@@ -3,9 +3,9 @@
 use super::values::{count, point_count, positive_length};
 use clap::Args;
 use std::path::{Path, PathBuf};
-use tool_dsl::source::Source;
 use touchoff::tool::{Interpreted, ToolError};
 use touchoff::{SamplingMethod, Unit};
+use touchoff_dsl::source::Source;
 
 /// Values for the params of `.tool` files, and the root of their mounts.
 #[derive(Args, Clone, Default)]

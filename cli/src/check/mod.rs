@@ -11,12 +11,12 @@ use serde::Serialize;
 use std::io::Write;
 use std::path::Path;
 use std::process::ExitCode;
-use tool_dsl::diagnostic::{self, Diagnostic, Severity};
-use tool_dsl::domain::Domain;
-use tool_dsl::expr::interval::{Cell, Interval};
-use tool_dsl::model::Model;
-use tool_dsl::prove::{Border, Certificate, RegionFacts};
-use tool_dsl::{CheckedTool, Compiled, compile_with_arguments};
+use touchoff_dsl::diagnostic::{self, Diagnostic, Severity};
+use touchoff_dsl::domain::Domain;
+use touchoff_dsl::expr::interval::{Cell, Interval};
+use touchoff_dsl::model::Model;
+use touchoff_dsl::prove::{Border, Certificate, RegionFacts};
+use touchoff_dsl::{CheckedTool, Compiled, compile_with_arguments};
 
 /// The exit status if there are only warnings; files with errors give 1, wrong options 2.
 const WARNED: u8 = 3;

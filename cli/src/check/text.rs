@@ -2,10 +2,10 @@
 
 use super::{niceness, sides};
 use std::io::Write;
-use tool_dsl::CheckedTool;
-use tool_dsl::diagnostic::format_number;
-use tool_dsl::expr::interval::Interval;
-use tool_dsl::prove::{Border, Certificate, RegionFacts};
+use touchoff_dsl::CheckedTool;
+use touchoff_dsl::diagnostic::format_number;
+use touchoff_dsl::expr::interval::Interval;
+use touchoff_dsl::prove::{Border, Certificate, RegionFacts};
 
 /// Writes the certificate in four lines: the verdict, the regions, the borders, and direction and niceness.
 pub(super) fn write_summary(

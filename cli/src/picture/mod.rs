@@ -9,8 +9,8 @@ use render::{Camera, Facet, Image, VIEWS, render};
 use resvg::tiny_skia::{Pixmap, PremultipliedColorU8, Transform};
 use resvg::usvg::{Options, Tree};
 use std::fmt::Write;
-use tool_drawing::lettering::{scale, strokes, width};
 use touchoff::Unit;
+use touchoff_drawing::lettering::{scale, strokes, width};
 use touchoff_postures::colormap;
 
 pub(crate) use scale::{Measure, Scale};

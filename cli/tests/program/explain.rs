@@ -2,7 +2,7 @@
 
 use super::bench::{stderr, stdout, touchoff};
 use std::process::Output;
-use tool_dsl::diagnostic::entries;
+use touchoff_dsl::diagnostic::entries;
 
 fn explain(arguments: &[&str]) -> Output {
     touchoff(&[&["explain"], arguments].concat())

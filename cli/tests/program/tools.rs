@@ -2,9 +2,9 @@
 
 use crate::bench::{rows, stderr, stdout, touchoff};
 use std::fs;
-use tools_library::{SOURCES, TOOLS};
 use touchoff::Tool;
 use touchoff::tool::Interpreted;
+use touchoff_tools::{SOURCES, TOOLS};
 
 /// Every built-in tool, written to a file, has the same digest as the one that is compiled into the program.
 #[test]

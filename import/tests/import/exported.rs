@@ -38,7 +38,7 @@ fn library_tools_return_from_fusion() {
 fn cutters_return_from_freecad_and_apt() {
     let cutter = |profile: &str| {
         let text = format!("tool T {{ units mm; profile {{ start (0, 0); {profile} }} }}");
-        let tool = Interpreted::parse(&tool_dsl::source::Source::new("t.tool", &text));
+        let tool = Interpreted::parse(&touchoff_dsl::source::Source::new("t.tool", &text));
         tool.unwrap_or_else(|error| panic!("{error}"))
     };
     let (sin, cos) = 10f64.to_radians().sin_cos();
@@ -75,7 +75,7 @@ fn cutters_return_from_freecad_and_apt() {
 #[test]
 fn tools_without_an_equal_are_left_out() {
     let parse = |text: &str| {
-        Interpreted::parse(&tool_dsl::source::Source::new("t.tool", text)).expect("a tool")
+        Interpreted::parse(&touchoff_dsl::source::Source::new("t.tool", text)).expect("a tool")
     };
     let reason = |text: &str, format| {
         let exported = write(&parse(text), format);

@@ -1,9 +1,9 @@
 //! One tool in all notations is one solid, and fig. 7.3 of Ho (1999) from a tool library is the tool by hand.
 
 use serde_json::{Value, json};
-use tool_dsl::source::Source;
 use touchoff::Level;
 use touchoff::tool::{Evaluations, Interpreted, Outputs, PointBatch, Tool};
+use touchoff_dsl::source::Source;
 use touchoff_import::Library;
 use touchoff_tests::count::case_count;
 use touchoff_tests::libraries;

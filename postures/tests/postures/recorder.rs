@@ -235,6 +235,6 @@ fn interpreted(niceness: &str) -> Interpreted {
          line to (9, 20), (9, 40), (0, 40) as holder; }}
          niceness cutting: {niceness}; }}"
     );
-    let source = tool_dsl::source::Source::new("mill.tool", text);
+    let source = touchoff_dsl::source::Source::new("mill.tool", text);
     Interpreted::parse(&source).expect("a tool")
 }

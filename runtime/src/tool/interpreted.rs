@@ -13,14 +13,14 @@ use fearless_simd::{Level, Simd, dispatch};
 use std::borrow::Cow;
 use std::ops::Range;
 use std::path::Path;
-use tool_dsl::bound::lateral_extent;
-use tool_dsl::domain::Domain;
-use tool_dsl::interpret::{
+use touchoff_dsl::bound::lateral_extent;
+use touchoff_dsl::domain::Domain;
+use touchoff_dsl::interpret::{
     BLOCK_POINTS, Block, Lanes, OUTPUT_COUNT, PlanEvaluator, Scratch, Tape, Value,
 };
-use tool_dsl::prove::Bounds;
-use tool_dsl::source::Source;
-use tool_dsl::{Accepted, CheckedTool, compile_with_arguments, diagnostic, digest, model};
+use touchoff_dsl::prove::Bounds;
+use touchoff_dsl::source::Source;
+use touchoff_dsl::{Accepted, CheckedTool, compile_with_arguments, diagnostic, digest, model};
 
 /// A tool from a `.tool` file, evaluated by the interpreter.
 pub struct Interpreted {

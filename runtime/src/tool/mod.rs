@@ -299,19 +299,19 @@ pub struct Evaluations {
     pub region: Vec<f64>,
     /// Registers of the interpreter's tapes.
     #[cfg(feature = "interpreter")]
-    registers: Vec<tool_dsl::interpret::Lanes>,
+    registers: Vec<touchoff_dsl::interpret::Lanes>,
     /// Scratch memory of the interpreter for a point.
     #[cfg(feature = "interpreter")]
-    scratch: tool_dsl::interpret::Scratch,
+    scratch: touchoff_dsl::interpret::Scratch,
     /// Scratch memory of the interpreter for a point with derivatives.
     #[cfg(feature = "interpreter")]
-    duals: tool_dsl::interpret::Scratch<Dual>,
+    duals: touchoff_dsl::interpret::Scratch<Dual>,
     /// Scratch memory of the interpreter for a box.
     #[cfg(feature = "interpreter")]
-    enclosures: tool_dsl::interpret::Scratch<Enclosure>,
+    enclosures: touchoff_dsl::interpret::Scratch<Enclosure>,
     /// Scratch memory of the interpreter for a block of points.
     #[cfg(feature = "interpreter")]
-    lanes: tool_dsl::interpret::Registers,
+    lanes: touchoff_dsl::interpret::Registers,
 }
 
 impl Evaluations {

@@ -25,5 +25,5 @@ pub fn upright(z: f64) -> Pose {
 /// # Panics
 /// If there is none of that name.
 pub fn tool(name: &str) -> &'static dyn touchoff::Tool {
-    tools_library::find(name).expect("a tool of the library")
+    touchoff_tools::find(name).expect("a tool of the library")
 }

@@ -115,6 +115,6 @@ fn questions<'a, T: BatchEvaluator + ?Sized + 'a>(part: &Part, probe: impl Fn() 
     assert!(bytes_per_point < 310.0, "{bytes_per_point}");
 }
 
-fn source(text: &str) -> tool_dsl::source::Source {
-    tool_dsl::source::Source::new("cone.tool", text)
+fn source(text: &str) -> touchoff_dsl::source::Source {
+    touchoff_dsl::source::Source::new("cone.tool", text)
 }

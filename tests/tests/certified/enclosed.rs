@@ -7,12 +7,12 @@
 use crate::depth_oracle::{DepthOracle, FIELDS, PROFILES};
 use crate::{block, pose, tool};
 use nalgebra::{Point3, Vector3};
-use tools_library::TOOLS;
 use touchoff::certify::{Certifier, MotionVerdict, PoseVerdict, TriangleBvh};
 use touchoff::mesh::shapes;
 use touchoff::{Mesh, Motion, Pose, SurfaceId, Tool, Unit};
 use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::{Nearest, Oracle};
+use touchoff_tools::TOOLS;
 
 /// The verdicts on poses of one kind.
 #[derive(Clone, Copy, Debug, Default)]

@@ -1,10 +1,10 @@
 //! A tool whose end is in a part within its tolerance or allowance is beside the part, not inside it.
 
 use crate::{UP, block, motion, plate, pose, tool};
-use tool_dsl::source::Source;
 use touchoff::Pose;
 use touchoff::certify::{Certifier, MotionVerdict, PoseVerdict, TriangleBvh};
 use touchoff::tool::Interpreted;
+use touchoff_dsl::source::Source;
 
 /// Returns a pose upside down, with the tool's upper end (z = 40) at this depth below the plate's face.
 fn upside_down(depth: f64) -> Pose {

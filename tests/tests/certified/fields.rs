@@ -2,13 +2,13 @@
 
 use crate::{UP, block, motion, plate, pose, tool};
 use nalgebra::{Point3, Vector3};
-use tool_dsl::source::Source;
 use touchoff::certify::{
     AllowanceError, Certifier, MotionDepth, MotionVerdict, PoseVerdict, TriangleBvh,
 };
 use touchoff::mesh::shapes;
 use touchoff::tool::Interpreted;
 use touchoff::{Interval, Mesh, Pose, SurfaceId, TriangleId, Unit};
+use touchoff_dsl::source::Source;
 use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::{Block, Cylinder, Fig73, LBracket, Oracle, UnitSphere};
 
@@ -214,7 +214,7 @@ fn allowances_apply_to_each_surface_of_a_field() {
 #[test]
 fn every_tool_of_the_library_is_certified() {
     let bvh = TriangleBvh::new(&plate());
-    for tool in tools_library::TOOLS {
+    for tool in touchoff_tools::TOOLS {
         assert!(Certifier::new(&bvh, *tool).is_ok(), "{}", tool.info().name);
     }
 }

@@ -46,7 +46,7 @@ const UP: [f64; 3] = [0.0, 0.0, 1.0];
 
 /// Returns a tool of the library, or one of [`overhang`].
 fn tool(name: &str) -> &'static dyn Tool {
-    tools_library::find(name).or_else(|| overhang::tool(name)).expect("a tool")
+    touchoff_tools::find(name).or_else(|| overhang::tool(name)).expect("a tool")
 }
 
 /// Returns the oracle of the tool, from the dimensions of its drawing.

@@ -3,10 +3,10 @@
 //! neither on an edge nor on its meridian.
 
 use crate::{UP, motion, pose, soup, tool};
-use tool_dsl::source::Source;
 use touchoff::certify::{Certifier, MotionVerdict, PoseVerdict, TriangleBvh};
 use touchoff::tool::Interpreted;
 use touchoff::{Interval, Mesh, Pose, SurfaceId, Tool};
+use touchoff_dsl::source::Source;
 
 /// Returns a wall at y = 3 that is larger than the tool.
 fn wall() -> Mesh {

@@ -2,9 +2,9 @@
 //! once with a clear message; an input that took long would be noticed here.
 
 use std::path::PathBuf;
-use tool_dsl::diagnostic::{Diagnostic, Severity};
-use tool_dsl::source::Source;
-use tool_dsl::{Compiled, compile};
+use touchoff_dsl::diagnostic::{Diagnostic, Severity};
+use touchoff_dsl::source::Source;
+use touchoff_dsl::{Compiled, compile};
 
 const BALL: &str = "region ball where hypot(d, z - 3) <= 3 { depth: 3 - hypot(d, z - 3); }";
 

@@ -2,12 +2,12 @@
 //! wrong.
 
 use std::path::Path;
-use tool_dsl::interpret::Interpreter;
-use tool_dsl::prove::Certificate;
-use tool_dsl::source::Source;
-use tool_dsl::{CheckedTool, compile};
 use touchoff::Level;
 use touchoff::tool::PointEvaluation;
+use touchoff_dsl::interpret::Interpreter;
+use touchoff_dsl::prove::Certificate;
+use touchoff_dsl::source::Source;
+use touchoff_dsl::{CheckedTool, compile};
 use touchoff_tests::evaluations::evaluate_points;
 use touchoff_tests::library::library;
 use touchoff_tests::oracle::Nearest;
@@ -84,10 +84,10 @@ fn the_thesis_magnitudes_are_up_to_root_5_of_the_distance() {
 #[test]
 fn info_has_the_proved_bounds() {
     use touchoff::Tool;
-    let info = tools_library::Fig73.info();
+    let info = touchoff_tools::Fig73.info();
     assert!(info.depth.lipschitz.is_some_and(|most| (most - 5f64.sqrt()).abs() < 1e-12));
     assert!(info.depth.lower_slope.is_some_and(|slope| (slope - 1.0).abs() < 1e-8));
-    for tool in tools_library::TOOLS.iter().filter(|tool| tool.info().is_exact()) {
+    for tool in touchoff_tools::TOOLS.iter().filter(|tool| tool.info().is_exact()) {
         let depth = tool.info().depth;
         assert_eq!([depth.lower_slope, depth.lipschitz], [Some(1.0); 2], "{}", tool.info().name);
     }

@@ -51,11 +51,11 @@ fn at(tool: &dyn Tool, point: [f64; 3], length: f64) -> Option<(usize, Evaluatio
 
 #[test]
 fn a_tool_from_a_file_equals_the_library_tool() {
-    assert_eq!(D2Ball.info(), tools_library::D2Ball.info());
+    assert_eq!(D2Ball.info(), touchoff_tools::D2Ball.info());
     let p = [0.3, -0.4, 2.0];
     let own = D2Ball::evaluate_point(p, 1.0).expect("a point inside");
     assert_eq!(own.region, 1);
-    assert_eq!(Some(own), tools_library::D2Ball::evaluate_point(p, 1.0));
+    assert_eq!(Some(own), touchoff_tools::D2Ball::evaluate_point(p, 1.0));
 }
 
 #[test]

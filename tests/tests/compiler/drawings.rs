@@ -2,9 +2,9 @@
 //! the bytes are the same every time. One is kept as a snapshot.
 
 use std::path::Path;
-use tool_drawing::{Content, TextRendering, svg};
-use tool_dsl::source::Source;
-use tool_dsl::{CheckedTool, compile, emit};
+use touchoff_drawing::{Content, TextRendering, svg};
+use touchoff_dsl::source::Source;
+use touchoff_dsl::{CheckedTool, compile, emit};
 
 fn tool(name: &str, text: &str) -> Box<CheckedTool> {
     let compiled = compile(&Source::new(name, text));

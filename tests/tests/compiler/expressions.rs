@@ -2,12 +2,12 @@
 //! evaluated by itself, so folding cannot hide a mistake.
 
 use proptest::prelude::*;
-use tool_dsl::expr::derive::derivative;
-use tool_dsl::expr::interval::{Cell, Encloser, Interval};
-use tool_dsl::expr::polynomial::Polynomial;
-use tool_dsl::expr::value::{EvaluationPoint, Evaluator};
-use tool_dsl::expr::{Coord, Graph, Id};
-use tool_dsl::number::Number;
+use touchoff_dsl::expr::derive::derivative;
+use touchoff_dsl::expr::interval::{Cell, Encloser, Interval};
+use touchoff_dsl::expr::polynomial::Polynomial;
+use touchoff_dsl::expr::value::{EvaluationPoint, Evaluator};
+use touchoff_dsl::expr::{Coord, Graph, Id};
+use touchoff_dsl::number::Number;
 
 /// An expression as it would be written.
 #[derive(Clone, Debug)]

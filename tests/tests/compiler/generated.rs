@@ -6,8 +6,8 @@
 
 use std::path::Path;
 use syn::visit::{self, Visit};
-use tool_dsl::source::Source;
-use tool_dsl::{compile, emit};
+use touchoff_dsl::source::Source;
+use touchoff_dsl::{compile, emit};
 use touchoff_tests::library::library;
 
 /// Methods that generated code may call: none panics, none is a libm function.
@@ -102,7 +102,7 @@ fn every_tool_of_the_library_is_straight_line_code() {
         assert_eq!(refused.0, Vec::<String>::new(), "{file}");
         seen += 1;
     }
-    assert_eq!(seen, tools_library::TOOLS.len());
+    assert_eq!(seen, touchoff_tools::TOOLS.len());
 }
 
 #[test]

@@ -5,9 +5,9 @@
 //! A first line such as `// ball.tool` gives the file's name, by which other examples mount it.
 
 use std::path::{Path, PathBuf};
-use tool_dsl::compile;
-use tool_dsl::diagnostic::{Diagnostic, Severity};
-use tool_dsl::source::Source;
+use touchoff_dsl::compile;
+use touchoff_dsl::diagnostic::{Diagnostic, Severity};
+use touchoff_dsl::source::Source;
 
 const LANGUAGE_PAGE: &str = include_str!("../../../docs/language.md");
 const ERROR_PREFIX: &str = "// error: ";

@@ -6,15 +6,15 @@
 
 use rayon::prelude::*;
 use std::path::Path;
-use tool_dsl::diagnostic::any_error;
-use tool_dsl::expr::Id;
-use tool_dsl::expr::value::{EvaluationPoint, Evaluator};
-use tool_dsl::interpret::Interpreter;
-use tool_dsl::number::Number;
-use tool_dsl::plan::{PlannedTool, Tree};
-use tool_dsl::prove::Certificate;
-use tool_dsl::source::Source;
-use tool_dsl::{CheckedTool, compile};
+use touchoff_dsl::diagnostic::any_error;
+use touchoff_dsl::expr::Id;
+use touchoff_dsl::expr::value::{EvaluationPoint, Evaluator};
+use touchoff_dsl::interpret::Interpreter;
+use touchoff_dsl::number::Number;
+use touchoff_dsl::plan::{PlannedTool, Tree};
+use touchoff_dsl::prove::Certificate;
+use touchoff_dsl::source::Source;
+use touchoff_dsl::{CheckedTool, compile};
 use touchoff_tests::count::case_count;
 use touchoff_tests::library::library;
 use touchoff_tests::oracle::rng::Rng;
@@ -120,7 +120,7 @@ fn mutant(original: &PlannedTool, kind: usize, rng: &mut Rng) -> Option<Mutant> 
                 8 => graph.number(number(0.01 * size)),
                 _ => {
                     let factor = graph.number(number(0.03));
-                    let z = graph.coord(tool_dsl::expr::Coord::Z);
+                    let z = graph.coord(touchoff_dsl::expr::Coord::Z);
                     graph.mul(factor, z)
                 }
             };
@@ -176,7 +176,7 @@ fn evaluation(
 }
 
 fn evaluator(tool: &PlannedTool) -> Evaluator<'_> {
-    let outputs = |region: &tool_dsl::model::Region| -> Vec<Id> {
+    let outputs = |region: &touchoff_dsl::model::Region| -> Vec<Id> {
         region.raw_direction.0.into_iter().chain([region.depth]).collect()
     };
     let model = &tool.model;

@@ -1,9 +1,9 @@
 //! Texts that once were accepted wrongly, took forever or took the process down.
 
-use tool_dsl::diagnostic::{Diagnostic, any_error};
-use tool_dsl::source::Source;
-use tool_dsl::{Compiled, compile, emit};
 use touchoff::{Pose, PoseError};
+use touchoff_dsl::diagnostic::{Diagnostic, any_error};
+use touchoff_dsl::source::Source;
+use touchoff_dsl::{Compiled, compile, emit};
 
 fn compiled(items: &str) -> Compiled {
     compile(&Source::new("t.tool", format!("tool T {{ units mm; {items} }}")))

@@ -2,10 +2,10 @@
 
 use nalgebra::{Point3, Vector3};
 use std::collections::BTreeSet;
-use tools_library::{Ball, Fig73, Fig73Exact};
 use touchoff::scenes::{ScenePath, tube};
 use touchoff::{Cloud, Law, LodProbe, Mesh, Part, Pose, Probe, Sampling, Wrench};
 use touchoff_tests::oracle::rng::Rng;
+use touchoff_tools::{Ball, Fig73, Fig73Exact};
 
 const POSES: usize = 2_000;
 

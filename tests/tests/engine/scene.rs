@@ -7,7 +7,7 @@ use touchoff::{Part, Pose, Probe, Sampling, Scene, Tool, Unit};
 use touchoff_tests::fixtures::{part, poses};
 
 fn fig73() -> &'static dyn Tool {
-    tools_library::find("Fig73").expect("a tool of the library")
+    touchoff_tools::find("Fig73").expect("a tool of the library")
 }
 
 fn near(what: &str, found: Vector3<f64>, expected: Vector3<f64>) {
@@ -120,7 +120,7 @@ fn a_part_in_another_unit_is_converted() {
 fn batched_poses_equal_successive_ones() {
     let part = part(5_000);
     let poses = poses(ScenePath::Outside, 3_000);
-    let mut probe = Probe::new(&part, &tools_library::Fig73);
+    let mut probe = Probe::new(&part, &touchoff_tools::Fig73);
     let together = probe.par_map(&poses, |probe, pose| probe.wrench(pose));
     for (pose, found) in poses.iter().zip(together) {
         assert_eq!(probe.wrench(pose), found);

@@ -1,16 +1,16 @@
 //! Solids without an axis: evaluations of the library's at stated points, and refusals of others.
 
 use std::path::Path;
-use tool_dsl::diagnostic::any_error;
-use tool_dsl::interpret::Interpreter;
-use tool_dsl::source::Source;
-use tool_dsl::{CheckedTool, compile, compile_with_arguments};
-use tools_library::{Block, LBracket};
 use touchoff::Interval;
 use touchoff::Unit;
 use touchoff::tool::{Evaluators, PointEvaluation, Symmetry};
+use touchoff_dsl::diagnostic::any_error;
+use touchoff_dsl::interpret::Interpreter;
+use touchoff_dsl::source::Source;
+use touchoff_dsl::{CheckedTool, compile, compile_with_arguments};
 use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::{self, Oracle};
+use touchoff_tools::{Block, LBracket};
 
 /// Returns the region and the depth at a point.
 fn at<T: Evaluators>(p: [f64; 3]) -> Option<(&'static str, f64)> {
@@ -99,7 +99,7 @@ fn a_bracket_at_its_hole_and_edges() {
 #[test]
 fn clearance_is_that_of_the_box() {
     for oracle in [&oracle::Block as &dyn Oracle, &oracle::LBracket] {
-        let tool = tools_library::find(oracle.name()).expect("in the library");
+        let tool = touchoff_tools::find(oracle.name()).expect("in the library");
         assert!(!tool.info().is_exact());
         let mut rng = Rng::new(8);
         for _ in 0..20_000 {
@@ -160,10 +160,10 @@ fn info_has_the_extents_of_solids() {
     // The standing leg is slimmer than the lying one.
     let top = info.envelope.last().expect("slabs");
     assert!(top.low < 6.01 && top.radius >= 200f64.sqrt() && top.radius < 14.2, "{top:?}");
-    assert_eq!(tools_library::Cylinder::info().symmetry, Symmetry::Revolved);
+    assert_eq!(touchoff_tools::Cylinder::info().symmetry, Symmetry::Revolved);
 }
 
-fn solid(items: &str) -> tool_dsl::Compiled {
+fn solid(items: &str) -> touchoff_dsl::Compiled {
     compile(&Source::new("t.tool", format!("solid S {{ units mm; {items} }}")))
 }
 
@@ -178,7 +178,7 @@ fn refused(items: &str) -> String {
     let compiled = solid(items);
     assert!(any_error(compiled.diagnostics()) && compiled.tool().is_none(), "{items} was taken");
     let format_diagnostic =
-        |r: &tool_dsl::diagnostic::Diagnostic| format!("{}: {}", r.message(), r.help());
+        |r: &touchoff_dsl::diagnostic::Diagnostic| format!("{}: {}", r.message(), r.help());
     compiled.diagnostics().iter().map(format_diagnostic).collect::<Vec<_>>().join("; ")
 }
 

@@ -53,7 +53,7 @@ touchoff::tool! {
 const UNITS: [Unit; 3] = [Unit::Millimetre, Unit::Inch, Unit::Metre];
 
 fn tool(name: &str) -> &'static dyn Tool {
-    tools_library::find(name).expect("in the library")
+    touchoff_tools::find(name).expect("in the library")
 }
 
 /// Returns the scenes' tube, given in mm and scaled to a unit.

@@ -20,7 +20,7 @@ fn every_profile_keeps_the_contract() {
     let count = case_count("POINTS", 6_000);
     let tools = tools();
     // All tools but the thesis's own, whose magnitudes are not distances, and the two solids.
-    assert_eq!(tools.len(), tools_library::TOOLS.len() - 3);
+    assert_eq!(tools.len(), touchoff_tools::TOOLS.len() - 3);
     let results: Vec<Checks> = tools
         .par_iter()
         .with_max_len(1)

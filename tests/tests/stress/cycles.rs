@@ -13,7 +13,7 @@ use touchoff_tests::oracle::rng::Rng;
 
 #[test]
 fn cycles_have_the_same_bits_on_all_threads_and_levels() {
-    let count = extent(100, 10_000_000 / tools_library::TOOLS.len());
+    let count = extent(100, 10_000_000 / touchoff_tools::TOOLS.len());
     check_tools(12, |subject, rng, checks| {
         let part = PointSet::near_tool(subject, 96, 2f64.powi(-20), rng).part();
         let cycles = Cycles { subject, part: &part, seed: rng.bits() };

@@ -107,7 +107,7 @@ fn extreme_input_is_accepted() {
     let ids = (0..20).map(TriangleId).collect();
     let cloud = Cloud::new(points, vec![Vector3::z(); 20], ids, vec![1e300; 20], MM);
     let part = Part::from_cloud(&cloud.expect("finite weights"));
-    let tool = tools_library::find("D2Ball").expect("a tool of the library");
+    let tool = touchoff_tools::find("D2Ball").expect("a tool of the library");
     let wrench = Probe::new(&part, tool).wrench(&Pose::default());
     assert!(wrench.colliding == 20, "{wrench:?}");
     assert!(wrench.force.iter().chain(&wrench.torque).all(|c| c.is_finite()), "{wrench:?}");

@@ -102,7 +102,7 @@ impl ComparisonSettings<'_> {
         let tools: Vec<&dyn Tool> = self
             .tools
             .iter()
-            .map(|name| tools_library::find(name).expect("a tool of the library") as &dyn Tool)
+            .map(|name| touchoff_tools::find(name).expect("a tool of the library") as &dyn Tool)
             .collect();
         let models = tools.iter().zip(self.tools).map(|(tool, name)| {
             let length = tool.info().unit.factor_to(mesh.unit());
@@ -401,7 +401,7 @@ fn a_plate_is_reached_from_the_upper_hemisphere() {
     let bvh = TriangleBvh::new(&plate);
     let directions = Directions::spread(400);
     let rules = Rules { tolerance: 0.01, niceness: 0.5, allowed: Vec::new() };
-    let tool = tools_library::find("D2Ball").expect("a tool");
+    let tool = touchoff_tools::find("D2Ball").expect("a tool");
     let sweep = PostureSweep::new(&plate, &bvh, vec![tool], &directions, rules, NonZeroU16::MIN)
         .expect("a sweep");
     let mut solid_angles = Vec::new();
@@ -439,7 +439,7 @@ fn required_stick_out_is_at_most_that_of_the_tool() {
     let bvh = TriangleBvh::new(&mesh);
     let directions = Directions::spread(200);
     let rules = Rules { tolerance: 0.01, niceness: 0.1, allowed: Vec::new() };
-    let tool = tools_library::find("BallEr16").expect("a tool");
+    let tool = touchoff_tools::find("BallEr16").expect("a tool");
     let sweep = PostureSweep::new(&mesh, &bvh, vec![tool], &directions, rules, NonZeroU16::MIN)
         .expect("a sweep");
     let mut needed = Vec::new();

@@ -3,7 +3,7 @@
 use super::{folder, library};
 use crate::lettering::width;
 use crate::{Content, TextRendering, svg};
-use tool_dsl::vector::Point;
+use touchoff_dsl::vector::Point;
 
 /// The height of capitals at scale 1.
 const CAPITAL_HEIGHT: f64 = 14.0;

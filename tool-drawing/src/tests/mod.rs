@@ -6,8 +6,8 @@ mod views;
 
 use super::{Content, Picture};
 use std::path::{Path, PathBuf};
-use tool_dsl::source::Source;
-use tool_dsl::{CheckedTool, compile};
+use touchoff_dsl::source::Source;
+use touchoff_dsl::{CheckedTool, compile};
 
 fn checked(source: &Source) -> Box<CheckedTool> {
     compile(source).outcome.unwrap_or_else(|refusal| panic!("{refusal:?}")).tool

@@ -4,7 +4,7 @@ use super::{library, tool};
 use crate::detail::{Detail, scale_factor};
 use crate::{Content, Part, Picture, TextRendering, notes, paint, solid, svg};
 use std::f64::consts::PI;
-use tool_dsl::CheckedTool;
+use touchoff_dsl::CheckedTool;
 
 fn profile(segments: &str) -> Box<CheckedTool> {
     tool(&format!("tool T {{ units mm; profile {{ start (0, 0); {segments} }} }}"))

@@ -1,15 +1,15 @@
 //! Tests of every code of a diagnostic: it is unique, explained, caused by an example text, and listed in
 //! `docs/errors.md`.
 //!
-//! After a change: run `UPDATE_ERRORS=1 cargo test -p tool-dsl --test texts errors`, and review the
+//! After a change: run `UPDATE_ERRORS=1 cargo test -p touchoff-dsl --test texts errors`, and review the
 //! difference.
 
 use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
-use tool_dsl::diagnostic::{Diagnostic, Entry, Example, FAMILIES, Severity, entries, entry};
-use tool_dsl::source::Source;
-use tool_dsl::{Compiled, compile};
+use touchoff_dsl::diagnostic::{Diagnostic, Entry, Example, FAMILIES, Severity, entries, entry};
+use touchoff_dsl::source::Source;
+use touchoff_dsl::{Compiled, compile};
 
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/errors")
@@ -97,7 +97,7 @@ fn page() -> String {
 
 The compiler of `.tool` files says what is wrong by these codes. A code keeps its meaning; the words of a message may
 change. `touchoff explain T0201` prints a section of this page. It is generated:
-`UPDATE_ERRORS=1 cargo test -p tool-dsl --test texts errors`.
+`UPDATE_ERRORS=1 cargo test -p touchoff-dsl --test texts errors`.
 ",
     );
     for family in FAMILIES {
@@ -138,7 +138,7 @@ fn section(page: &mut String, entry: &Entry) -> std::fmt::Result {
 
 /// Replaces each invisible character of a text with an escape.
 fn visible(text: &str) -> String {
-    let lines = text.lines().map(|line| tool_dsl::diagnostic::escaped(line).into_owned());
+    let lines = text.lines().map(|line| touchoff_dsl::diagnostic::escaped(line).into_owned());
     lines.collect::<Vec<_>>().join("\n")
 }
 

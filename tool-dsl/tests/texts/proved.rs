@@ -1,8 +1,8 @@
 //! Tools whose depth is proved to be the distance to the surface, and some similar ones whose depth is not.
 
-use tool_dsl::prove::Certificate;
-use tool_dsl::source::Source;
-use tool_dsl::{CheckedTool, compile};
+use touchoff_dsl::prove::Certificate;
+use touchoff_dsl::source::Source;
+use touchoff_dsl::{CheckedTool, compile};
 
 fn tool(text: &str) -> Option<Box<CheckedTool>> {
     compile(&Source::new("t.tool", text)).into_tool()

@@ -1,8 +1,8 @@
 //! Texts that the compiler refuses: each gives an error with the reason, on a small stack and without delay.
 
 use std::path::PathBuf;
-use tool_dsl::source::Source;
-use tool_dsl::{Compiled, compile, compile_with_arguments, emit, format};
+use touchoff_dsl::source::Source;
+use touchoff_dsl::{Compiled, compile, compile_with_arguments, emit, format};
 
 const BALL: &str = "region ball where hypot(d, z - 3) <= 3 { depth: 3 - hypot(d, z - 3); }";
 
@@ -56,7 +56,7 @@ fn read(text: String) -> Result<(), String> {
 fn codes(text: &str) -> Vec<&'static str> {
     let compiled = compile(&Source::new("t.tool", text));
     let Err(refusal) = &compiled.outcome else { panic!("{text}: accepted") };
-    refusal.errors().map(tool_dsl::diagnostic::Diagnostic::code).collect()
+    refusal.errors().map(touchoff_dsl::diagnostic::Diagnostic::code).collect()
 }
 
 /// A diagnostic of a spelling mistake is for that mistake only, not for similar text elsewhere.
@@ -358,7 +358,7 @@ fn what_cannot_be_seen_is_refused_or_escaped() {
             );
         }
     }
-    assert_eq!(tool_dsl::diagnostic::escaped("a\u{1b}\u{202e}é"), "a\\u{1b}\\u{202e}é");
+    assert_eq!(touchoff_dsl::diagnostic::escaped("a\u{1b}\u{202e}é"), "a\\u{1b}\\u{202e}é");
 }
 
 #[test]
@@ -400,7 +400,7 @@ fn a_proof_that_ends_early_takes_nothing_back() {
     );
     let compiled = compile(&Source::new("t.tool", text));
     let tool = compiled.tool().expect("a tool");
-    let certificate = tool_dsl::prove::Certificate::prove(tool);
+    let certificate = touchoff_dsl::prove::Certificate::prove(tool);
     assert!(certificate.examined_boxes < 35_000, "{}", certificate.examined_boxes);
     assert_eq!((certificate.lipschitz(), tool.bounds().lipschitz), (None, Some(1.0)));
     let reports = certificate.diagnostics(tool);

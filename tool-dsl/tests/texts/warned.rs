@@ -2,10 +2,10 @@
 //! warning where they are certain, unless the file states that they are intended.
 
 use std::path::PathBuf;
-use tool_dsl::diagnostic::Severity;
-use tool_dsl::prove::Certificate;
-use tool_dsl::source::Source;
-use tool_dsl::{CheckedTool, Compiled, compile};
+use touchoff_dsl::diagnostic::Severity;
+use touchoff_dsl::prove::Certificate;
+use touchoff_dsl::source::Source;
+use touchoff_dsl::{CheckedTool, Compiled, compile};
 
 /// Returns a pin of 3 mm radius; its side is the nearest surface everywhere except at its ends.
 fn pin(side: &str) -> String {

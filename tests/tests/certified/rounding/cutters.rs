@@ -4,8 +4,8 @@
 //! evaluated in doubles and in 256 bits. The tool under test is compiled from text with the same numbers.
 
 use std::fmt::Write;
-use tool_dsl::source::Source;
 use touchoff::tool::{Interpreted, ToolError};
+use touchoff_dsl::source::Source;
 use touchoff_tests::oracle::big::Big;
 use touchoff_tests::oracle::outline::{MeridianPoint, Outline, Segment};
 use touchoff_tests::oracle::reference::Reference;

@@ -1,8 +1,8 @@
 //! Values that are given to a tool's params.
 
 use super::{mounts, said, source, tool};
-use tool_dsl::source::Source;
-use tool_dsl::{Compiled, compile_with_arguments};
+use touchoff_dsl::source::Source;
+use touchoff_dsl::{Compiled, compile_with_arguments};
 
 const BALL: &str = include_str!("tools/ball.tool");
 
@@ -78,7 +78,8 @@ fn a_mount_gives_lengths_in_its_own_unit() {
     let thin = tool(&mounts(
         "let thick = 2mm; mount \"inch_flat.tool\" as a with R = thick/2; mount \"er16.tool\" as b at z = 20;",
     ));
-    let evaluation = tool_dsl::interpret::Interpreter::new(&thin).evaluate([0.75, 0.0, 10.0], 1.0);
+    let evaluation =
+        touchoff_dsl::interpret::Interpreter::new(&thin).evaluate([0.75, 0.0, 10.0], 1.0);
     assert!((evaluation.expect("inside").depth - 0.25).abs() < 1e-15);
     // A bare number is in the unit of the file that gives it, where the default is a length.
     let evaluation = |given: &str| {
@@ -95,7 +96,8 @@ fn a_mount_gives_lengths_in_its_own_unit() {
     );
     // A ratio is a mere number.
     let ratio = mounts("mount \"inch_flat.tool\" as a with edge = 0.25mm/1mm;");
-    let face = tool_dsl::interpret::Interpreter::new(&tool(&ratio)).evaluate([0.0, 0.0, 0.1], 1.0);
+    let face =
+        touchoff_dsl::interpret::Interpreter::new(&tool(&ratio)).evaluate([0.0, 0.0, 0.1], 1.0);
     assert_eq!(face.expect("inside").niceness, 0.25);
 }
 

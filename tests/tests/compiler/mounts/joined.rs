@@ -2,7 +2,7 @@
 
 use super::{mounts, same, tool};
 
-fn names(tool: &tool_dsl::CheckedTool) -> Vec<&str> {
+fn names(tool: &touchoff_dsl::CheckedTool) -> Vec<&str> {
     tool.model.regions.iter().map(|region| region.name.as_str()).collect()
 }
 
@@ -67,7 +67,7 @@ fn an_inch_cutter_in_a_metric_nut() {
     let mut order: Vec<&str> = joined.model.surfaces.iter().map(|s| s.name.as_str()).collect();
     order.sort_unstable();
     assert_eq!(order, ["cutter.face", "cutter.flute", "cutter.shank", "nut.nut"]);
-    let regions = |tool: &tool_dsl::CheckedTool| -> Vec<String> {
+    let regions = |tool: &touchoff_dsl::CheckedTool| -> Vec<String> {
         names(tool)
             .iter()
             .map(|name| name.replace("cutter.", "").replace("nut.nut", "nut"))
@@ -75,8 +75,8 @@ fn an_inch_cutter_in_a_metric_nut() {
     };
     assert_eq!(regions(&joined), regions(&written));
     let (mut a, mut b) = (
-        tool_dsl::interpret::Interpreter::new(&joined),
-        tool_dsl::interpret::Interpreter::new(&written),
+        touchoff_dsl::interpret::Interpreter::new(&joined),
+        touchoff_dsl::interpret::Interpreter::new(&written),
     );
     for k in 0..4000 {
         let p = [f64::from(k % 40) * 0.4, 0.01, f64::from(k / 40) * 0.61 - 1.0];
@@ -227,8 +227,8 @@ fn the_plane_cuts_a_concave_arc() {
     let nut = include_str!("tools/er16.tool");
     std::fs::write(folder.path().join("er16.tool"), nut).expect("a writable folder");
     let text = mounts("mount \"neck.tool\" as neck; mount \"er16.tool\" as nut at z = 2;");
-    let source = tool_dsl::source::Source::new("own.tool", text);
-    let compiled = tool_dsl::compile(&source.with_path(folder.path().join("own.tool")));
+    let source = touchoff_dsl::source::Source::new("own.tool", text);
+    let compiled = touchoff_dsl::compile(&source.with_path(folder.path().join("own.tool")));
     let joined = compiled.into_tool().expect("a tool without errors");
     let written = tool(&mounts(
         "profile {
@@ -254,7 +254,7 @@ fn mounted_files_mount_files() {
          niceness cutter.flute: 0.75;",
     ));
     same(&joined, &flat, 0.0);
-    let surfaces = |tool: &tool_dsl::CheckedTool| -> Vec<String> {
+    let surfaces = |tool: &touchoff_dsl::CheckedTool| -> Vec<String> {
         tool.model.surfaces.iter().map(|s| s.name.clone()).collect()
     };
     assert_eq!(

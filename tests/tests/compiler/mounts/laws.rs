@@ -1,7 +1,7 @@
 //! The niceness that comes with a mounted file.
 
 use super::{mounts, tool};
-use tool_dsl::interpret::Interpreter;
+use touchoff_dsl::interpret::Interpreter;
 
 fn evaluation(text: &str, p: [f64; 3]) -> (f64, f64) {
     let tool = tool(text);

@@ -7,9 +7,9 @@ mod macros;
 mod refused;
 
 use std::path::Path;
-use tool_dsl::interpret::Interpreter;
-use tool_dsl::source::Source;
-use tool_dsl::{CheckedTool, Compiled, compile};
+use touchoff_dsl::interpret::Interpreter;
+use touchoff_dsl::source::Source;
+use touchoff_dsl::{CheckedTool, Compiled, compile};
 use touchoff_tests::oracle::rng::Rng;
 
 /// Returns a text that lies among the tools beside these tests.

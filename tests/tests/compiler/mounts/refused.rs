@@ -2,8 +2,8 @@
 
 use super::{mounts, said, source};
 use std::path::Path;
-use tool_dsl::compile;
-use tool_dsl::source::Source;
+use touchoff_dsl::compile;
+use touchoff_dsl::source::Source;
 
 /// Asserts that there is one error, with all of `words`.
 #[track_caller]

@@ -4,8 +4,8 @@ use super::compare::compare;
 use super::outline::{Outline, P2, Piece, len, sub};
 use super::{said, tool};
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use tool_dsl::source::Source;
 use touchoff::tool::{Interpreted, Tool};
+use touchoff_dsl::source::Source;
 use touchoff_tests::oracle::rng::Rng;
 
 fn text(profile: &str) -> String {
@@ -284,7 +284,7 @@ fn refused_or_exact(outline: &Outline) -> Option<bool> {
     }
     let planned = Interpreted::parse(&Source::new("t.tool", &text)).expect("nothing was said");
     let tool = tool(&text).expect("nothing was said");
-    let mut reference = tool_dsl::interpret::Interpreter::new(&tool);
+    let mut reference = touchoff_dsl::interpret::Interpreter::new(&tool);
     let size = outline.size();
     let near = 1e-8 * size;
     for p in super::compare::points(outline, 160, &mut Rng::new(42)) {

@@ -1,10 +1,10 @@
 //! One compiled profile against brute force.
 
 use super::outline::{Feature, Outline, P2, add, len, sub, unit};
-use tool_dsl::CheckedTool;
-use tool_dsl::interpret::{Evaluation, Interpreter};
 use touchoff::Level;
 use touchoff::tool::{Evaluations, Interpreted, Outputs, PointBatch, Tool};
+use touchoff_dsl::CheckedTool;
+use touchoff_dsl::interpret::{Evaluation, Interpreter};
 use touchoff_tests::oracle::rng::Rng;
 
 /// The results of a comparison.

@@ -2,8 +2,8 @@
 
 use super::tool;
 use std::collections::BTreeSet;
-use tool_dsl::formula::Formula;
-use tool_dsl::interpret::Interpreter;
+use touchoff_dsl::formula::Formula;
+use touchoff_dsl::interpret::Interpreter;
 use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::{Oracle, d2_ball, fig_7_3_exact, half_sphere_cylinder};
 

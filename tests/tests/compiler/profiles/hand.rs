@@ -2,11 +2,11 @@
 
 use super::outline::{Outline, P2, Piece, add, len, sub, unit};
 use super::{said, tool, warned};
-use tool_dsl::CheckedTool;
-use tool_dsl::interpret::{Evaluation, Interpreter};
-use tool_dsl::source::Source;
 use touchoff::Level;
 use touchoff::tool::{Interpreted, Outputs, PointBatch, Tool};
+use touchoff_dsl::CheckedTool;
+use touchoff_dsl::interpret::{Evaluation, Interpreter};
+use touchoff_dsl::source::Source;
 use touchoff_tests::oracle::rng::Rng;
 
 const PROFILE: &str = "profile {

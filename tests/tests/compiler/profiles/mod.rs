@@ -11,8 +11,8 @@ mod rounded;
 mod smooth;
 mod valid;
 
-use tool_dsl::source::Source;
-use tool_dsl::{CheckedTool, compile};
+use touchoff_dsl::source::Source;
+use touchoff_dsl::{CheckedTool, compile};
 use touchoff_tests::count::case_count;
 
 /// Returns the tool of a text, or its diagnostics.
@@ -35,8 +35,9 @@ fn warned(text: &str) -> Option<Box<CheckedTool>> {
 /// Returns the diagnostics of a text, each with the text of its place.
 fn said(text: &str) -> Vec<(String, String)> {
     let compiled = compile(&Source::new("t.tool", text));
-    let place =
-        |report: &tool_dsl::diagnostic::Diagnostic| compiled.sources.text(report.span).to_owned();
+    let place = |report: &touchoff_dsl::diagnostic::Diagnostic| {
+        compiled.sources.text(report.span).to_owned()
+    };
     let said = compiled.diagnostics().iter();
     let said: Vec<_> = said.map(|report| (report.message(), place(report))).collect();
     assert!(compiled.tool().is_some() || !said.is_empty(), "refused without a word: {text}");

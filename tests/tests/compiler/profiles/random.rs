@@ -9,10 +9,10 @@ use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use tool_dsl::compile;
-use tool_dsl::prove::Certificate;
-use tool_dsl::source::Source;
 use touchoff::tool::Interpreted;
+use touchoff_dsl::compile;
+use touchoff_dsl::prove::Certificate;
+use touchoff_dsl::source::Source;
 use touchoff_tests::oracle::rng::Rng;
 
 /// Points per profile.

@@ -5,8 +5,8 @@ use super::outline::{Outline, P2, Piece, add, cross, dot, len, sub};
 use super::rounded::{lowered, rounded, size};
 use super::tool;
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
-use tool_dsl::CheckedTool;
-use tool_dsl::interpret::{Evaluation, Interpreter};
+use touchoff_dsl::CheckedTool;
+use touchoff_dsl::interpret::{Evaluation, Interpreter};
 use touchoff_tests::oracle::rng::Rng;
 
 /// A smoothed tool, and the same tool by nearest features.

@@ -16,7 +16,7 @@ use touchoff_tests::oracle::closed_forms::{
 const UNIT: Unit = Unit::Millimetre;
 
 fn tool(name: &str) -> &'static dyn Tool {
-    tools_library::find(name).expect("in the library")
+    touchoff_tools::find(name).expect("in the library")
 }
 
 /// A contact to be measured: a pose, the expected result, the axis of the forces, and the point about which there

@@ -2,10 +2,10 @@
 
 use super::points::{format_point, scale};
 use super::{LENGTHS, evaluate};
-use tool_dsl::CheckedTool;
-use tool_dsl::interpret::Interpreter;
 use touchoff::Level;
 use touchoff::tool::{Evaluations, Interpreted, Outputs, PointBatch, PointEvaluation, Tool};
+use touchoff_dsl::CheckedTool;
+use touchoff_dsl::interpret::Interpreter;
 use touchoff_tests::evaluations::{at, batch, is_inside, levels};
 use touchoff_tests::oracle::Oracle;
 
@@ -84,7 +84,7 @@ fn numbers(answer: Answer) -> Option<(usize, [f64; 9])> {
     answer.map(|(region, bits)| (region, bits.map(f64::from_bits)))
 }
 
-fn answer_of(evaluation: Option<tool_dsl::interpret::Evaluation>) -> Answer {
+fn answer_of(evaluation: Option<touchoff_dsl::interpret::Evaluation>) -> Answer {
     evaluation.map(|f| (f.region, bits(f.depth, f.magnitude, f.niceness, f.direction, f.gradient)))
 }
 

@@ -9,13 +9,13 @@ mod info;
 mod partitions;
 mod points;
 
-use tool_dsl::source::Source;
-use tool_dsl::{CheckedTool, compile};
-use tools_library::TOOLS;
 use touchoff::Level;
 use touchoff::tool::{Evaluations, Interpreted, Outputs, PointBatch, Tool};
+use touchoff_dsl::source::Source;
+use touchoff_dsl::{CheckedTool, compile};
 use touchoff_tests::library;
 use touchoff_tests::oracle::{self, Nearest, Oracle, restated};
+use touchoff_tools::TOOLS;
 
 /// Lengths of the file's unit in the part's that are tested: the same unit, and mm in inches.
 const LENGTHS: [f64; 2] = [1.0, 1.0 / 25.4];

@@ -1,9 +1,9 @@
 //! Artificial tools of many regions: the plan finds the owner that the list of regions has, however the regions
 //! lie.
 
-use tool_dsl::interpret::Interpreter;
-use tool_dsl::source::Source;
 use touchoff::Level;
+use touchoff_dsl::interpret::Interpreter;
+use touchoff_dsl::source::Source;
 use touchoff_tests::evaluations::evaluate_points;
 use touchoff_tests::oracle::rng::Rng;
 

@@ -97,7 +97,7 @@ fn compiled_and_interpreted_tools_give_the_same_bits() {
     for file in files.filter(|path| path.extension().is_some_and(|end| end == "tool")) {
         let interpreted = Interpreted::load(file).expect("a tool");
         let name = &interpreted.info().name;
-        let tool = tools_library::find(name).expect("compiled too");
+        let tool = touchoff_tools::find(name).expect("compiled too");
         let oracle = oracles.iter().find(|oracle| oracle.name() == *name).expect("it has one");
         assert_eq!(interpreted.info(), tool.info());
         count += 1;
@@ -114,5 +114,5 @@ fn compiled_and_interpreted_tools_give_the_same_bits() {
             }
         }
     }
-    assert_eq!(count, tools_library::TOOLS.len());
+    assert_eq!(count, touchoff_tools::TOOLS.len());
 }

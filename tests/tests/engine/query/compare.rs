@@ -20,7 +20,7 @@ use touchoff_tests::oracle::{Oracle, thesis};
 pub(crate) fn tools() -> Vec<(&'static dyn Tool, Box<dyn Oracle>)> {
     thesis()
         .into_iter()
-        .map(|oracle| (tools_library::find(oracle.name()).expect("in the library"), oracle))
+        .map(|oracle| (touchoff_tools::find(oracle.name()).expect("in the library"), oracle))
         .collect()
 }
 

@@ -2,10 +2,10 @@
 
 use super::{parts, poses};
 use nalgebra::{Point3, Vector3};
-use tools_library::{Block, LBracket};
 use touchoff::mesh::shapes;
 use touchoff::{Law, Part, Pose, Probe, Sampling, Unit};
 use touchoff_tests::oracle::rng::Rng;
+use touchoff_tools::{Block, LBracket};
 
 /// Returns the plane z = 0 of a pose's own frame, 60 by 60 in squares of a quarter, facing up.
 fn plane(pose: &Pose) -> Part {
@@ -117,7 +117,7 @@ fn a_bracket_around_a_rail() {
     assert!(!probe.detect(&at(0.0, 0.0).expect("a pose")));
     let mut surfaces = |x: f64, z: f64| {
         let contacts = probe.contacts(&at(x, z).expect("a pose")).to_vec();
-        let name = |id| &*tools_library::find("LBracket").expect("there").info().surface(id).name;
+        let name = |id| &*touchoff_tools::find("LBracket").expect("there").info().surface(id).name;
         let deepest = contacts.iter().map(|c| c.depth).fold(0.0, f64::max);
         let mut names: Vec<String> = contacts.iter().map(|c| name(c.surface).to_owned()).collect();
         names.sort();

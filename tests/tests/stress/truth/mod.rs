@@ -80,7 +80,7 @@ pub(crate) fn to_exact(p: [f64; 3]) -> ExactPoint {
 /// # Panics
 /// If the library lacks a tool that is restated.
 pub(crate) fn subjects() -> Vec<Subject> {
-    let find = |name: &str| tools_library::find(name).expect("a tool of the library");
+    let find = |name: &str| touchoff_tools::find(name).expect("a tool of the library");
     let mut subjects: Vec<Subject> = profiles::tools()
         .into_iter()
         .map(|(tool, restated)| Subject {
@@ -118,7 +118,7 @@ mod tests {
     #[test]
     fn agrees_with_the_oracles_in_doubles() {
         let subjects = subjects();
-        assert_eq!(subjects.len(), tools_library::TOOLS.len());
+        assert_eq!(subjects.len(), touchoff_tools::TOOLS.len());
         for subject in &subjects {
             let (oracle, scale) = (&subject.oracle, subject.scale());
             let [radius, height] = oracle.extent();
