@@ -194,10 +194,6 @@ pub(crate) fn job_file(
 fn bodies(file: &JobFile, program: &Program) -> Result<Vec<LoadedBody>, Failure> {
     let mut bodies = vec![LoadedBody::read(touchoff_verify::job::PART, &file.part, file.unit)?];
     for fixture in &file.fixtures {
-        // NaN is in no range.
-        if !(0.0..f64::INFINITY).contains(&fixture.margin) {
-            return Err(Failure::Usage("the margin of a fixture is a length of 0 or more"));
-        }
         let link = match &fixture.moves_with {
             None => None,
             Some(axis) => program.link(axis)?,

@@ -28,6 +28,11 @@ pub enum PoseError {
     /// A coordinate is NaN, infinite, or beyond the largest one allowed.
     #[error("the pose has a coordinate that is not a number within {LARGEST_COORDINATE:e}")]
     NotFinite,
+    /// A matrix is no rotation, even after a correction of small errors.
+    #[error(
+        "the matrix is not a rotation: give one whose columns are perpendicular unit vectors, right-handed"
+    )]
+    NotRotation,
     /// The norm of the axis or the quaternion is not 1 within the tolerance.
     #[error(
         "the {what} has norm {norm}: give a unit {} (within {AXIS_TOLERANCE} of 1)",
@@ -165,17 +170,20 @@ impl Pose {
         Pose::finite(self.rotation, self.tip + displacement, self.has_spin)
     }
 
-    /// Returns the pose rotated by `rotation`, with its tip at `tip`.
+    /// Returns the pose rotated by `rotation` in the world frame, with its tip at `tip`. Errors of the matrix up to some
+    /// 1e-6 are corrected.
     ///
     /// # Errors
-    /// Fails if the tip is out of bounds or `rotation` is not a rotation.
+    /// [`PoseError::NotFinite`] if the tip is out of bounds, [`PoseError::NotRotation`] if the matrix is still no rotation
+    /// then.
     pub fn rotated_to(&self, rotation: Matrix3<f64>, tip: Point3<f64>) -> Result<Pose, PoseError> {
         let rotation = orthonormal(rotation * self.rotation);
         match orthonormality_error(&rotation) {
             error if error <= ORTHONORMALITY_TOLERANCE => {
                 Pose::finite(rotation, tip, self.has_spin)
             }
-            _ => Err(PoseError::NotFinite),
+            // NaN compares as false with everything.
+            _ => Err(PoseError::NotRotation),
         }
     }
 
@@ -343,7 +351,7 @@ mod tests {
         // The Newton step corrects errors below the square root of the tolerance.
         assert!(pose.rotated_to(scaled(1.0 + 1e-6), origin).is_ok());
         for matrix in [scaled(f64::NAN), scaled(1.01), scaled(0.0), scaled(f64::INFINITY)] {
-            assert_eq!(pose.rotated_to(matrix, origin), Err(PoseError::NotFinite));
+            assert_eq!(pose.rotated_to(matrix, origin), Err(PoseError::NotRotation));
         }
         let nan_tip = Point3::new(0.0, f64::NAN, 0.0);
         assert_eq!(pose.rotated_to(scaled(1.0), nan_tip), Err(PoseError::NotFinite));

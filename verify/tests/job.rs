@@ -176,3 +176,23 @@ fn job_files_are_read_with_their_paths_beside_them() {
         assert!(error.as_deref().is_some_and(|error| error.contains(message)), "{error:?}");
     }
 }
+
+#[test]
+fn a_margin_that_is_no_length_is_refused() {
+    let setup = ControlSetup {
+        rules: ControlRules::named("linuxcnc").expect("a control"),
+        ..ControlSetup::default()
+    };
+    let machine = Machine::named("3-axis").expect("a machine");
+    let text = "G21 G90 G54\nT1 M6\nS900 M3\nG0 X0. Y0.\nG43 H1 Z40.\nM30\n";
+    let program = Program::parse(text, "up.nc", machine, &setup).expect("a program");
+    let part = cuboid([-10.0, -10.0, -10.0], [10.0, 10.0, 0.0]);
+    for margin in [-1.0, f64::NAN, f64::INFINITY] {
+        let mut job = Job::new(&program, &part);
+        job.tools.push(JobTool::numbered(1, &Mill));
+        let mut clamp = Body::fixture("the clamp", &part);
+        clamp.margin = Some(margin);
+        job.bodies.push(clamp);
+        assert!(matches!(job.check(&|_| ()), Err(JobError::Mismatch(_))), "{margin}");
+    }
+}

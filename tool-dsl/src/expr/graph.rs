@@ -12,7 +12,7 @@ pub struct Graph {
     heights: Vec<u32>,
     known: HashMap<Node, Id>,
     /// Alternative forms of expressions, for proofs.
-    also: HashMap<Id, Id>,
+    proof_forms: HashMap<Id, Id>,
 }
 
 impl Graph {
@@ -73,15 +73,15 @@ impl Graph {
     /// States that two expressions are the same function: one that is computed, since it rounds little, and
     /// one whose form proofs can use.
     pub(crate) fn add_proof_alias(&mut self, computed: Id, seen: Id) {
-        self.also.insert(computed, seen);
+        self.proof_forms.insert(computed, seen);
         let opposite = [computed, seen].map(|id| self.neg(id));
-        self.also.insert(opposite[0], opposite[1]);
+        self.proof_forms.insert(opposite[0], opposite[1]);
     }
 
     /// Returns the form of an expression that proofs use: the expression itself, unless
-    /// [another form](Graph::also) was stated.
+    /// [another form](Graph::add_proof_alias) was stated.
     pub(crate) fn proof_form(&self, id: Id) -> Id {
-        self.also.get(&id).copied().unwrap_or(id)
+        self.proof_forms.get(&id).copied().unwrap_or(id)
     }
 
     /// Returns the id of a node, if it is in the graph.

@@ -57,10 +57,10 @@
 //!    shift and the numbers of a text meet in 256 bits and are rounded once. Folding keeps the meaning
 //!    wherever the unfolded expression is defined, and may define it elsewhere: `a / a` is 1 at a zero of
 //!    `a`.
-//! 4. **Radius.** `d · d` is `Q`, `√Q` is `D`, `x² + y²` is `Q`: no root is computed where none is needed.
+//! 4. **Radius.** `d · d` is `Q`, `√Q` is `D`, `x² + y²`, in this order, is `Q`: no root is computed where none is needed.
 //! 5. **Height.** At most 300 operations lie between an expression of a text and a coordinate
 //!    (`resolve::lower` refuses more), so a recursive walk does not exhaust the stack.
-//! 6. **Aliases.** `Graph::also(a, b)` states that `a` and `b` are the same real function wherever both are
+//! 6. **Aliases.** `Graph::add_proof_alias(a, b)` states that `a` and `b` are the same real function wherever both are
 //!    defined. Code computes `a`, which rounds less; proofs read `b`, whose form they can use. The caller
 //!    must derive the identity: `regionalise::nearer` is the only caller and has the derivation next to each
 //!    statement.

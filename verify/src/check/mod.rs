@@ -42,9 +42,9 @@ use crate::program::ClData;
 pub(crate) use approach::ApproachSearch;
 use checker::Checker;
 use std::fmt;
-use touchoff::SurfaceId;
 use touchoff::certify::{Certifier, TriangleBvh};
 use touchoff::tool::{Tool, ToolInfo};
+use touchoff::{SurfaceId, Unit};
 
 /// Checks programs of a tool against a part.
 ///
@@ -118,7 +118,7 @@ impl<'a> Verifier<'a> {
             bvh,
             tool,
             tolerance: 0.0,
-            resolution: RESOLUTION / bvh.unit().millimetres(),
+            resolution: Verifier::default_resolution(bvh.unit()),
             allowed: vec![None; info.surfaces.len()],
             budget: 1 << 20,
         })
@@ -152,6 +152,11 @@ impl<'a> Verifier<'a> {
             self.allowed[index] = Some(allowed);
         }
         Ok(self)
+    }
+
+    /// Returns the resolution where none is set, 0.001 mm.
+    pub fn default_resolution(unit: Unit) -> f64 {
+        RESOLUTION / unit.millimetres()
     }
 
     /// Sets the resolution: an excess of depth up to this length may or may not be found. A resolution below

@@ -223,10 +223,7 @@ impl JobFile {
     pub fn read(file: &Path) -> Result<JobFile, JobError> {
         match std::fs::read_to_string(file) {
             Ok(text) => JobFile::parse(&text, file),
-            Err(error) => Err(JobError::File {
-                file: file.display().to_string(),
-                message: format!("cannot be read ({error}): check the path"),
-            }),
+            Err(source) => Err(JobError::Unreadable { file: file.display().to_string(), source }),
         }
     }
 
@@ -245,6 +242,9 @@ impl JobFile {
         let lengths = [Some(job.tolerance), job.resolution];
         if lengths.into_iter().flatten().any(|length| !(0.0..f64::INFINITY).contains(&length)) {
             return Err(fault("`tolerance` and `resolution` are lengths of 0 or more".to_owned()));
+        }
+        if job.fixture.iter().any(|fixture| !(0.0..f64::INFINITY).contains(&fixture.margin)) {
+            return Err(fault("the margin of a fixture is a length of 0 or more".to_owned()));
         }
         let folder = file.parent().unwrap_or(Path::new(""));
         let beside = |path: PathBuf| folder.join(path);

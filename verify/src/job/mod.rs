@@ -265,6 +265,10 @@ impl<'a> Job<'a> {
         let info = tool.tool.info();
         let mut verifier = Verifier::new(body.bvh, tool.tool)?;
         match body.margin {
+            // NaN is in no range.
+            Some(margin) if !(0.0..f64::INFINITY).contains(&margin) => {
+                return Err(JobError::Mismatch("the margin of a fixture is a length of 0 or more"));
+            }
             Some(margin) if margin > 0.0 => {
                 for surface in info.surfaces.iter() {
                     verifier = verifier.with_allowance(&surface.name, -margin)?;

@@ -16,7 +16,7 @@ use touchoff::{Escaped, Unit};
 use touchoff_drawing::{Content as Drawn, TextRendering, svg};
 use touchoff_verify::job::{PairReport, Severity};
 use touchoff_verify::machine::Machine;
-use touchoff_verify::{Program, Verdict};
+use touchoff_verify::{Program, Verdict, Verifier};
 
 const STYLE: &str = include_str!("style.css");
 const SCRIPT: &str = include_str!("viewer.js");
@@ -182,7 +182,7 @@ fn facts(content: &Content<'_>) -> Vec<(&'static str, Vec<String>)> {
             ],
         ));
     }
-    let gaps = checked.gaps.iter().map(|gap| plain(&format!("not checked: {gap}")));
+    let gaps = checked.gaps.iter().map(|gap| plain(&gap.to_string()));
     let gaps: Vec<String> = gaps.collect();
     if !gaps.is_empty() {
         rows.push(("Not checked", gaps));
@@ -414,7 +414,7 @@ fn assumptions(content: &Content<'_>) -> Markup {
 fn assumed(content: &Content<'_>) -> Vec<String> {
     let inputs = content.inputs;
     let (job, unit) = (&inputs.file, inputs.file.unit);
-    let resolution = job.resolution.unwrap_or(1e-3 * Unit::Millimetre.factor_to(unit));
+    let resolution = job.resolution.unwrap_or_else(|| Verifier::default_resolution(unit));
     let mut lines = vec![
         format!(
             "Lengths are in {unit}. The part's file was read in this unit, and the program is in the frame of the part."
