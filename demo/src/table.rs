@@ -43,7 +43,7 @@ const TABLE_7_1: [Printed; 4] = [
     },
 ];
 
-/// What was measured on a path.
+/// Contacts and times measured on a path.
 struct Measured {
     contacts_mean: f64,
     contacts_max: usize,

@@ -1,4 +1,4 @@
-//! What the README's first command prints.
+//! The output of the README's first command.
 
 use std::process::Command;
 

@@ -347,7 +347,7 @@ impl Weld {
             .filter(|k| corners[*k] != next(*k))
             .map(|k| (corners[k], next(k), piece.corners[k].curve))
             .collect();
-        // What is left of a sliver encloses nothing.
+        // The rest of a sliver encloses nothing.
         if sides.len() < 3 { Vec::new() } else { sides }
     }
 }

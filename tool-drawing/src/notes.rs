@@ -389,7 +389,7 @@ fn faces(model: &Model, borders: &[Border], size: f64) -> Vec<Face> {
             match known {
                 Some(face) => {
                     face.length += length;
-                    // Of equal strokes the first stays, whatever the rounding of their lengths.
+                    // The first of equal strokes stays, whatever the rounding of their lengths.
                     if length > face.longest.length() * (1.0 + LENGTH_TOLERANCE_FRACTION) {
                         face.longest = *stroke;
                     }

@@ -198,7 +198,7 @@ impl HapticRun<'_> {
             }
             looped.join().expect("the loop panics at nothing")
         });
-        // What came after the last look.
+        // The states recorded after the last look.
         recordings.take(&mut states);
         let recorded = recordings.end();
         // The report is printed even if a recording failed.

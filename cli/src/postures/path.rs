@@ -120,7 +120,7 @@ fn accessibility(map: &PostureMap, tool: u16) -> Result<Vec<Vec<u64>>, Failure> 
     let identity = map.identity();
     let mut access = vec![Vec::new(); identity.part.triangles as usize];
     map.for_each_triangle(|triangle, pieces| {
-        // Of a divided triangle, a point may take the directions of all pieces: each posture is proved at its own point.
+        // A point of a divided triangle may take the directions of all pieces: each posture is proved at its own point.
         let row = MapRow::joined(&pieces, identity.keep);
         if let Some(reach) = row.access.into_iter().find(|access| access.tool == tool) {
             access[triangle.index()] = reach.directions;

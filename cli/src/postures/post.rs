@@ -404,7 +404,7 @@ fn candidates(
     if let (true, Some(fault)) = (all.is_empty(), fault) {
         return Err(fault);
     }
-    // Of candidates with the same joint values the cheapest is kept: what follows is the same for all of them.
+    // The cheapest of the candidates with the same joint values is kept: all of them go on alike.
     all.sort_by(|one, other| one.cost.total_cmp(&other.cost));
     let mut kept: Vec<Candidate> = Vec::new();
     for candidate in all {

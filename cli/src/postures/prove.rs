@@ -55,7 +55,7 @@ impl<'a> Prover<'a> {
             .with_tolerance(rules.tolerance - resolution)?
             .with_resolution(resolution)?;
         for surface in tool.info().surfaces.iter() {
-            // Of several allowances for a surface the last holds, as in a sweep.
+            // The last of several allowances for a surface holds, as in a sweep.
             let stated = rules.allowed.iter().rev().find(|(name, _)| *name == surface.name);
             let allowed = match stated {
                 Some((_, allowed)) => allowed + motion,

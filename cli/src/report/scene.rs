@@ -68,7 +68,7 @@ impl Place {
                 let normal = normal.unwrap_or(axis);
                 // From the side of the tool, a little from above, and more from outside the material.
                 let side = axis.cross(&normal).try_normalize(1e-3);
-                // Where the end of the tool touches, the axis is the normal, and any side will do.
+                // The axis is the normal where the end of the tool touches, and any side will do.
                 let side = side.unwrap_or_else(|| axis.cross(&Vector3::x()));
                 let toward = above_horizon(normal + 0.7 * side + 0.35 * axis);
                 let target = witness.map_or(finding.pose.tip(), |witness| witness.point);

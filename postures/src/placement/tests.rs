@@ -3,6 +3,7 @@
 use super::*;
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
+
 touchoff::tool! {
     tool Ball "a ball on a straight shank" {
         units mm;

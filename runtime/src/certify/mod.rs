@@ -423,7 +423,7 @@ fn distance(
         let distance = Interval::new(0.0, high * setting.length);
         return Clearance { distance, witness: Some(witness) };
     }
-    // What was left open may be inside: then no distance above 0 is proved.
+    // Nodes left open may be inside: then no distance above 0 is proved.
     let unsure = state.search.has_open();
     // The rounding error grows with the distance.
     let error = setting.error + rounding::distance_error_bound(state.max_distance());

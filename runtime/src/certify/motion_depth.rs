@@ -19,21 +19,29 @@ use crate::interval::Interval;
 use crate::tool::{Symmetry, ToolInfo};
 use std::slice;
 
-/// Returns the rounding error bound of a point of the tool along a motion, in the tool's unit: `rounding` derives it.
-fn motion_error(setting: &QuerySetting<'_>, motion: &dyn Trajectory) -> f64 {
-    let turned = if motion.has_spin() { setting.error } else { 0.5 * setting.error };
-    setting.error + turned + rounding::distance_error_bound(motion.max_speed(0.0) / setting.length)
+/// The errors of a point of the tool along a motion, in the tool's unit.
+#[derive(Clone, Copy)]
+struct MotionErrors {
+    /// The rounding error bound of the point: `rounding` derives it.
+    rounding: f64,
+    /// The greatest difference of depths from those in the motion that is meant.
+    trajectory: f64,
 }
 
-/// Returns how much depths differ at most from those in the motion that is meant, in the tool's unit.
-fn trajectory_error(setting: &QuerySetting<'_>, motion: &dyn Trajectory) -> f64 {
-    setting.tool_model.lipschitz() * motion.error() / setting.length
-}
+impl MotionErrors {
+    fn new(setting: &QuerySetting<'_>, motion: &dyn Trajectory) -> MotionErrors {
+        let turned = if motion.has_spin() { setting.error } else { 0.5 * setting.error };
+        let moved = rounding::distance_error_bound(motion.max_speed(0.0) / setting.length);
+        MotionErrors {
+            rounding: setting.error + turned + moved,
+            trajectory: setting.tool_model.lipschitz() * motion.error() / setting.length,
+        }
+    }
 
-/// Returns the least tolerance of a sweep.
-fn min_sweep_tolerance(setting: &QuerySetting<'_>, motion: &dyn Trajectory) -> f64 {
-    MIN_SWEEP_TOLERANCE * motion_error(setting, motion)
-        + MIN_SWEEP_ERRORS * trajectory_error(setting, motion)
+    /// Returns the least tolerance of a sweep.
+    fn min_sweep_tolerance(&self) -> f64 {
+        MIN_SWEEP_TOLERANCE * self.rounding + MIN_SWEEP_ERRORS * self.trajectory
+    }
 }
 
 /// Returns whether a motion determines the tool's position. For a tool without an axis it has to include the spin.
@@ -118,9 +126,10 @@ impl Certifier<'_> {
         let setting = &self.setting;
         let queries =
             self.allowance_queries.as_deref().unwrap_or(slice::from_ref(&self.whole_query));
-        let error = motion_error(setting, motion);
+        let errors = MotionErrors::new(setting, motion);
+        let error = errors.rounding;
         // Written so that a NaN tolerance is replaced.
-        let tolerance = min_sweep_tolerance(setting, motion).max(tolerance / setting.length);
+        let tolerance = errors.min_sweep_tolerance().max(tolerance / setting.length);
         let mut first: Option<SweepEnd> = None;
         // A margin no larger than the tolerance requires no check.
         for query in
@@ -211,7 +220,8 @@ impl Certifier<'_> {
             return Ok(MotionDepth::Undecided(0.0));
         }
         let setting = &self.setting;
-        let min_tolerance = MIN_DEPTH_TOLERANCE * min_sweep_tolerance(setting, motion);
+        let errors = MotionErrors::new(setting, motion);
+        let min_tolerance = MIN_DEPTH_TOLERANCE * errors.min_sweep_tolerance();
         // Written so that a NaN tolerance is replaced.
         let tolerance = min_tolerance.max(tolerance / setting.length);
         let allowed = if allowed.is_nan() { 0.0 } else { allowed / setting.length };
@@ -233,6 +243,7 @@ impl Certifier<'_> {
             state: &mut self.state,
             sweeper: &mut self.sweeper,
             motion,
+            errors,
             query: inside_query,
             tolerance,
             budget: self.budget,
@@ -264,6 +275,7 @@ struct MotionSearch<'a, 's> {
     state: &'a mut SearchState,
     sweeper: &'a mut Sweeper,
     motion: &'a dyn Trajectory,
+    errors: MotionErrors,
     query: &'a DepthQuery,
     tolerance: f64,
     budget: u32,
@@ -339,7 +351,7 @@ impl MotionSearch<'_, '_> {
         if self.query.limit < 0.0 && limit + tolerance >= 0.0 {
             return None;
         }
-        let error = motion_error(setting, motion);
+        let error = self.errors.rounding;
         let task = SweepTask { setting, query, trajectory: motion, limit, error, tolerance };
         self.sweeper.run(&task, budget)
     }
@@ -385,7 +397,7 @@ impl MotionSearch<'_, '_> {
         let tolerance = self.climb_tolerance();
         let MotionSearch { setting, query, ref mut state, budget, .. } = *self;
         let pose = self.motion.pose(at);
-        let off = trajectory_error(setting, self.motion);
+        let MotionErrors { rounding, trajectory: off } = self.errors;
         if query.limit >= 0.0 {
             // `penetration` takes and returns lengths in the part's unit.
             let tolerance = tolerance * setting.length;
@@ -400,7 +412,7 @@ impl MotionSearch<'_, '_> {
         state.outside(setting, query, &pose, goal);
         let best = state.best?;
         let found = state.search.best;
-        let more = motion_error(setting, self.motion) + off + state.search.skew;
+        let more = rounding + off + state.search.skew;
         let high = (found + tolerance).max(state.search.open_bound) + more;
         Some(DepthPeak {
             depth: Interval::new(found - more, high),

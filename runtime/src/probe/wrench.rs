@@ -218,7 +218,7 @@ fn totals<S: Simd>(simd: S, state: &QueryState<'_>, pose: &Pose) -> Totals {
         }
     }
     let depth = sums.depth.reduce_max();
-    // Of equally deep points the first: the least index in any lane, as if the points were taken one by one.
+    // The first of equally deep points: the least index in any lane, as if the points were taken one by one.
     let last = f64x8::splat(simd, f64::INFINITY);
     let deepest = sums.depth.simd_ge(depth).select(sums.deepest, last);
     Totals {

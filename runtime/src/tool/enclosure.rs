@@ -88,7 +88,7 @@ impl Enclosure {
     /// Returns the value as an alternative that holds where `gap` is at most 0.
     fn choices(self, gap: Option<LinearEnclosure>) -> Choices {
         match (self.choices, gap) {
-            // What is selected from nothing is the other value alone.
+            // A selection from nothing is the other value alone.
             _ if self == Enclosure::EMPTY => Choices::None,
             (Choices::None, Some(gap)) => Choices::One(Choice { value: self.linear, gap }),
             (Choices::None, None) => Choices::Many,

@@ -478,7 +478,7 @@ impl Planner<'_> {
         let mut halves = Halves { below: Vec::new(), above: Vec::new() };
         for piece in pieces {
             let origin = piece.origin;
-            // What is cut from a piece lies where the piece does, so the side is found once.
+            // A piece cut from another lies on the same side, so the side is found once.
             let side = sides[origin].get_or_insert_with(|| whole_pieces[origin].side(cutter));
             let cut = match *side {
                 Side::Below => Cut::Below,

@@ -203,7 +203,7 @@ impl Bounds {
         if tool.model.is_exact() && sources.all(|source| source != DirectionSource::Written) {
             return (exact, Vec::new());
         }
-        // Whether regions overlap is left to [`Certificate::prove`].
+        // Overlaps of regions are left to [`Certificate::prove`].
         let certificate = prove_with_budget(tool, MAX_BOXES_IN_COMPILATION, false);
         // A statement that is undecided here may be provable with more boxes.
         let diagnostics = certificate.certain_diagnostics(tool);

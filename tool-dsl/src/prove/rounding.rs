@@ -39,7 +39,7 @@ struct Rounded {
 impl Rounded {
     /// Returns the result of an operation that rounds once.
     fn of(value: Interval, propagated: f64) -> Rounded {
-        // What is rounded is the value with the propagated error.
+        // The value with the propagated error is rounded.
         Rounded { value, error: propagated + (value.abs().high + propagated * UNIT_ROUNDOFF) }
     }
 }

@@ -51,7 +51,7 @@ pub(crate) fn divided(
     parts
 }
 
-/// What is known of a whole polygon.
+/// The facts known of a whole polygon.
 #[derive(Clone)]
 struct Decided {
     /// The signs of the curves on it.

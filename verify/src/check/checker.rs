@@ -76,10 +76,17 @@ impl<'a> Checker<'a> {
             kind,
         };
         match &step.path {
-            MovePath::Straight(motion) => found = self.motion(step, motion),
+            MovePath::Straight(motion) => {
+                if !self.is_free(step) {
+                    found = self.contacts(step.rapid, motion);
+                }
+            }
             MovePath::Joints(path) => {
-                let FreeSpace { reach, symmetry, .. } = self.free_space;
-                found = self.motion(step, &JointTrajectory::new(path, symmetry, reach));
+                if !self.is_free(step) {
+                    let FreeSpace { reach, symmetry, .. } = self.free_space;
+                    let trajectory = JointTrajectory::new(path, symmetry, reach);
+                    found = self.contacts(step.rapid, &trajectory);
+                }
             }
             MovePath::Box(path) => match Motion::with_spin(&path.pose(0.0), &path.pose(1.0)) {
                 Ok(straight) => {
@@ -153,17 +160,15 @@ impl<'a> Checker<'a> {
         Vec::new()
     }
 
-    /// Returns the findings of a motion that may be in free space.
-    fn motion(&mut self, step: &Move, motion: &dyn Trajectory) -> Vec<TimedFinding> {
+    /// Returns whether a motion is proved to stay in free space.
+    fn is_free(&mut self, step: &Move) -> bool {
         let margin = self.modes[usize::from(step.rapid)].margin;
         let max_travel = step.path.max_travel(self.free_space.reach, self.free_space.symmetry);
-        let poses = [0.0, 0.5].map(|at| motion.pose(at));
-        match self.free_space.contains(poses, max_travel, margin) {
-            true => Vec::new(),
-            false => self.contacts(step.rapid, motion),
-        }
+        let poses = [0.0, 0.5].map(|at| step.path.pose(at));
+        self.free_space.contains(poses, max_travel, margin)
     }
 
+    /// Returns the findings of a motion near the part.
     fn contacts(&mut self, rapid: bool, motion: &dyn Trajectory) -> Vec<TimedFinding> {
         self.modes[usize::from(rapid)].contacts(motion, self.verifier.resolution)
     }

@@ -183,7 +183,7 @@ impl MovePath {
     pub fn max_speed(&self, tool: &ToolInfo, unit: Unit) -> f64 {
         let reach = tool.max_distance_from_tip(unit);
         match self {
-            MovePath::Straight(motion) | MovePath::Ambiguous(_, motion) => travel(motion, reach),
+            MovePath::Straight(motion) | MovePath::Ambiguous(_, motion) => motion.max_speed(reach),
             MovePath::Joints(path) => path.max_speed(reach),
             MovePath::Box(path) => 2.0 * path.radius(),
         }
@@ -192,7 +192,7 @@ impl MovePath {
     /// Returns an upper bound on the travel of any point of the tool within `reach` of the tip.
     pub(super) fn max_travel(&self, reach: f64, symmetry: Symmetry) -> f64 {
         match self {
-            MovePath::Straight(motion) => travel(motion, reach),
+            MovePath::Straight(motion) => motion.max_speed(reach),
             MovePath::Joints(path) => span(path, [0.0, 1.0], reach, symmetry).max_travel,
             MovePath::Box(path) => 2.0 * path.radius(),
             MovePath::Ambiguous(..) => f64::INFINITY,
@@ -237,7 +237,7 @@ impl Span {
     fn new(motion: Result<Motion, MotionError>, deviation: f64, reach: f64) -> Span {
         let max_travel = match &motion {
             // A point may deviate at both ends of its way.
-            Ok(motion) => travel(motion, reach) + 2.0 * deviation,
+            Ok(motion) => motion.max_speed(reach) + 2.0 * deviation,
             Err(_) => f64::INFINITY,
         };
         Span { motion, deviation, max_travel }
@@ -289,11 +289,6 @@ fn between(from: &Pose, to: &Pose, symmetry: Symmetry) -> Result<Motion, MotionE
         Symmetry::Revolved => Motion::new(from, to),
         Symmetry::Solid { .. } => Motion::with_spin(from, to),
     }
-}
-
-/// Returns an upper bound on the travel of any point of the tool within `reach` of the tip.
-fn travel(motion: &Motion, reach: f64) -> f64 {
-    motion.displacement().norm() + motion.angle() * reach
 }
 
 /// Returns an upper bound on the distance between the places of any point of the tool within `reach` of the tip at

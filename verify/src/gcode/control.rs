@@ -684,7 +684,7 @@ impl Control {
         ) {
             return self.spindle.turn;
         }
-        // What the stop has left matters at the next feed, and the rule is asked there only.
+        // The state after the stop matters at the next feed, and the rule is asked there only.
         if self.spindle.paused && !rapid {
             self.spindle.paused = false;
             if self.choice(Rule::Stop) == Choice::StopsSpindle {

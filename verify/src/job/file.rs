@@ -1,7 +1,7 @@
 //! Job files: TOML, with paths relative to the folder of the file.
 
 use super::program::{Program, read_control};
-use super::{Hand, JobError};
+use super::{Hand, JobError, checked_margin};
 use crate::ToolSelection;
 use crate::gcode::{Choice, ControlRules, ControlSetup, Rule};
 use serde::Deserialize;
@@ -243,8 +243,8 @@ impl JobFile {
         if lengths.into_iter().flatten().any(|length| !(0.0..f64::INFINITY).contains(&length)) {
             return Err(fault("`tolerance` and `resolution` are lengths of 0 or more".to_owned()));
         }
-        if job.fixture.iter().any(|fixture| !(0.0..f64::INFINITY).contains(&fixture.margin)) {
-            return Err(fault("the margin of a fixture is a length of 0 or more".to_owned()));
+        for fixture in &job.fixture {
+            checked_margin(fixture.margin).map_err(|error| fault(error.to_string()))?;
         }
         let folder = file.parent().unwrap_or(Path::new(""));
         let beside = |path: PathBuf| folder.join(path);

@@ -266,7 +266,7 @@ fn summary(report: &JobReport<'_>, pair: &PairReport) -> String {
                 FindingKind::Deep { depth, .. } => depth.high,
                 _ => continue,
             };
-            // Of equal depths the last one is named.
+            // The last one of equal depths is named.
             if deepest.is_none_or(|(known, _)| depth >= known) {
                 deepest = Some((depth, finding.line));
             }

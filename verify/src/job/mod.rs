@@ -238,6 +238,15 @@ fn no_tool(number: Option<u32>) -> String {
     }
 }
 
+/// Returns the margin of a fixture if it is a length of 0 or more.
+fn checked_margin(margin: f64) -> Result<f64, JobError> {
+    // NaN is in no range.
+    match (0.0..f64::INFINITY).contains(&margin) {
+        true => Ok(margin),
+        false => Err(JobError::Mismatch("the margin of a fixture is a length of 0 or more")),
+    }
+}
+
 impl<'a> Job<'a> {
     /// Creates a job without tools, fixtures and stock, in which nothing may be deeper in the part than 0.
     pub fn new(program: &'a Program, part: &'a TriangleBvh) -> Job<'a> {
@@ -264,17 +273,13 @@ impl<'a> Job<'a> {
     fn verifier(&self, tool: &JobTool<'a>, body: &Body<'a>) -> Result<Verifier<'a>, JobError> {
         let info = tool.tool.info();
         let mut verifier = Verifier::new(body.bvh, tool.tool)?;
-        match body.margin {
-            // NaN is in no range.
-            Some(margin) if !(0.0..f64::INFINITY).contains(&margin) => {
-                return Err(JobError::Mismatch("the margin of a fixture is a length of 0 or more"));
-            }
+        match body.margin.map(checked_margin).transpose()? {
             Some(margin) if margin > 0.0 => {
                 for surface in info.surfaces.iter() {
                     verifier = verifier.with_allowance(&surface.name, -margin)?;
                 }
             }
-            // What may be touched has the allowance 0, that of every surface without another.
+            // A fixture that may be touched has the allowance 0, that of every surface without another.
             Some(_) => (),
             None => {
                 verifier = verifier.with_tolerance(self.tolerance)?;

@@ -8,6 +8,7 @@
 use super::lattice::BitSet;
 use super::{Stock, StockError};
 use nalgebra::Point3;
+use touchoff::certify::Trajectory;
 use touchoff::tool::{Symmetry, Tool};
 use touchoff::{InsidePoint, Motion, Pose, SurfaceId, ToolEnvelope};
 
@@ -36,7 +37,7 @@ impl Stock {
     /// of the tool's points from the tip.
     pub fn max_travel(&self, tool: &dyn Tool, motion: &Motion) -> f64 {
         let lever = tool.info().max_distance_from_tip(self.unit);
-        (motion.displacement().norm() + motion.angle() * lever) * WIDENING
+        motion.max_speed(lever) * WIDENING
     }
 
     /// Moves a tool through the stock: removes the points that it cuts, and returns its contacts, at most one

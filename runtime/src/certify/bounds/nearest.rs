@@ -221,7 +221,7 @@ pub(crate) struct Clip<V, M> {
     cuts: [[Crossing<V, M>; 2]; 3],
 }
 
-/// Where a linear function takes a value between two points.
+/// The place between two points at which a linear function takes a value.
 #[derive(Clone, Copy)]
 struct Crossing<V, M> {
     /// The parameter, from 0 to 1.

@@ -262,7 +262,7 @@ impl NodeBounds {
     fn extent(&self, direction: Point, origin: f64) -> [f64; 2] {
         let NodeBounds { centre, half, plane: Plane { normal, ends } } = *self;
         let part = dot(direction, normal);
-        // What the plane does not bound is left to the box.
+        // The box bounds the directions that the plane leaves open.
         let rest = [0, 1, 2].map(|k| direction[k] - part * normal[k]);
         let wide = dot(rest.map(f64::abs), half);
         let middle = origin + dot(rest, centre);

@@ -4,7 +4,7 @@
 use crate::certify::bounds::descent::Displacement;
 use crate::certify::search::QuerySetting;
 use crate::certify::space::Point;
-use crate::certify::trajectory::Approximation;
+use crate::certify::trajectory::{Approximation, Trajectory};
 use crate::certify::triangle::SubTriangle;
 use crate::pose::Pose;
 use nalgebra::{Matrix3, Vector3};
@@ -47,17 +47,20 @@ struct MotionBounds {
 }
 
 impl MotionInterval {
-    /// Creates the interval `[from, to]` of a trajectory. Points farther from the tool than `required_clearance` are
-    /// irrelevant.
+    /// Creates the interval `[from, to]` of a trajectory, unless it is too long for an approximation. Points farther from
+    /// the tool than `required_clearance` are irrelevant.
     pub(crate) fn new(
         setting: &QuerySetting<'_>,
+        trajectory: &dyn Trajectory,
         [from, to]: [f64; 2],
-        approximation: &Approximation,
         required_clearance: f64,
-    ) -> MotionInterval {
-        let Approximation { motion, times: [start, end], deviation } = approximation;
+    ) -> Option<MotionInterval> {
+        // No point of the tool is farther from its tip than √2 of its size.
+        let near = 1.5 * setting.size + required_clearance;
+        let Approximation { motion, times: [start, end], deviation } =
+            trajectory.approximation([from, to], near * setting.length)?;
         let per_length = 1.0 / setting.length;
-        let parts = [*start, start / 2.0 + end / 2.0, *end];
+        let parts = [start, start / 2.0 + end / 2.0, end];
         // The middle halves the displacement: bounds hold from there to both ends.
         let poses = parts.map(|part| motion.pose(part));
         let views = [0, 1, 2].map(|k| MovedFrame {
@@ -69,9 +72,9 @@ impl MotionInterval {
         let (length, turn) = (straight.norm(), motion.angle() * half);
         let deviation = deviation * per_length;
         // A rotation preserves the distance from the tip, so a point that comes that near is never farther away in
-        // this interval. No point of the tool is farther from its tip than √2 of its size.
-        let reach = 1.5 * setting.size + required_clearance + 2.0 * length + deviation;
-        MotionInterval {
+        // this interval.
+        let reach = near + 2.0 * length + deviation;
+        Some(MotionInterval {
             from,
             to,
             start: motion.start() - setting.bvh.frame.origin,
@@ -86,7 +89,7 @@ impl MotionInterval {
             },
             axis: motion.rotation_axis(),
             tip_size: motion.start().coords.norm() + motion.displacement().norm(),
-        }
+        })
     }
 
     /// Returns a corner of the part, given relative to the part's origin, at the start, the middle and the end.

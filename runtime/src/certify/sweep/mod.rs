@@ -108,7 +108,7 @@ impl SweepEnd {
     }
 }
 
-/// How far a triangle's points may be from where the approximating motion has them in the middle of an interval.
+/// Bounds on the distance of a triangle's points from where the approximating motion has them in the middle of an interval.
 #[derive(Clone, Copy)]
 struct Spread {
     /// At any time of the interval.
@@ -159,15 +159,9 @@ impl Sweeper {
         first: usize,
     ) -> Option<SweepEnd> {
         let last = self.pending.len();
-        let reach = (1.5 * task.setting.size + task.required_clearance()) * task.setting.length;
-        match task.trajectory.approximation([from, to], reach) {
-            Some(approximation) => {
-                let interval = MotionInterval::new(
-                    task.setting,
-                    [from, to],
-                    &approximation,
-                    task.required_clearance(),
-                );
+        let (times, clearance) = ([from, to], task.required_clearance());
+        match MotionInterval::new(task.setting, task.trajectory, times, clearance) {
+            Some(interval) => {
                 if let Some(stop) = self.examine(task, &interval, first..last) {
                     return Some(stop);
                 }

@@ -215,7 +215,7 @@ impl<'t> Survey<'t> {
             owners.dedup();
             let box_size = match half_diagonal(&cell) / self.size {
                 reach if reach <= self.point_box_fraction => BoxSize::Point,
-                // What is not proved in such a box stays open.
+                // Statements that are not proved in such a box stay open.
                 _ if boxes.count > budget => BoxSize::Last,
                 reach if reach <= self.border_box_fraction => BoxSize::Fine,
                 _ => BoxSize::Coarse,
