@@ -93,10 +93,9 @@ pub struct Certifier<'a> {
     whole_query: DepthQuery,
     /// The query for the depth of each surface, made on first use.
     surface_queries: Vec<Option<DepthQuery>>,
-    /// The allowance of each surface in the part's unit, and the queries that check them; `None` if no allowance was
-    /// set.
-    allowed: Vec<f64>,
-    allowance_queries: Option<Vec<DepthQuery>>,
+    /// An upper bound on the depth that each surface can have, in the tool's unit, computed on first use.
+    surface_max_depths: Vec<Option<f64>>,
+    allowances: Allowances,
     /// Points of the restricted interior of the tool, the region that may not be inside the part: by the allowances,
     /// of the whole tool, and of each surface with its allowed depth in the tool's unit.
     core_points: CorePoints,
@@ -110,8 +109,34 @@ pub struct Certifier<'a> {
 }
 
 debug!([] Certifier<'_>, "Certifier", |this| {
-    tool: this.info.name, allowed: this.allowed, budget: this.budget,
+    tool: this.info.name, allowed: this.allowances.depths, budget: this.budget,
 });
+
+/// The allowance of each surface.
+struct Allowances {
+    /// The allowed depths, in the part's unit.
+    depths: Vec<f64>,
+    /// The queries that check them, made on first use.
+    queries: Option<Vec<DepthQuery>>,
+}
+
+impl Allowances {
+    /// Returns the queries that check them. `whole_query` is that of the whole tool with the limit 0.
+    fn queries<'q>(
+        &'q mut self,
+        setting: &QuerySetting<'_>,
+        whole_query: &'q DepthQuery,
+    ) -> &'q [DepthQuery] {
+        if self.depths.iter().all(|depth| *depth == 0.0) {
+            return slice::from_ref(whole_query);
+        }
+        let Allowances { depths, queries } = self;
+        queries.get_or_insert_with(|| {
+            let depths: Vec<f64> = depths.iter().map(|depth| depth / setting.length).collect();
+            DepthQuery::all(setting, &depths)
+        })
+    }
+}
 
 impl<'a> Certifier<'a> {
     /// Creates a certifier for a tool at a part.
@@ -135,8 +160,8 @@ impl<'a> Certifier<'a> {
         Ok(Certifier {
             whole_query,
             surface_queries: (0..surfaces).map(|_| None).collect(),
-            allowed: vec![0.0; surfaces],
-            allowance_queries: None,
+            surface_max_depths: vec![None; surfaces],
+            allowances: Allowances { depths: vec![0.0; surfaces], queries: None },
             core_points: CorePoints::whole(info),
             whole_core_points: CorePoints::whole(info),
             surface_core_points: (0..surfaces).map(|_| None).collect(),
@@ -197,11 +222,11 @@ impl<'a> Certifier<'a> {
             let (tool, surface) = (self.info.name.to_string(), surface.to_owned());
             return Err(AllowanceError::NoMargin { tool, surface });
         }
-        self.allowed[index] = allowed;
+        self.allowances.depths[index] = allowed;
+        self.allowances.queries = None;
         let length = self.setting.length;
-        let allowed: Vec<f64> = self.allowed.iter().map(|allowed| allowed / length).collect();
-        self.allowance_queries = Some(DepthQuery::all(&self.setting, &allowed));
-        self.core_points = CorePoints::new(allowed);
+        self.core_points =
+            CorePoints::new(self.allowances.depths.iter().map(|depth| depth / length));
         Ok(self)
     }
 
@@ -280,20 +305,8 @@ impl<'a> Certifier<'a> {
     /// If there is no such surface.
     pub fn max_possible_depth(&self, surface: SurfaceId) -> Result<Option<f64>, NoSuchSurface> {
         let surface = self.checked(surface)?;
-        let depth = match &self.setting.tool_model {
-            ToolModel::Profile(section) => {
-                Owners::of(section, |other| other == surface).greatest_depth(section)
-            }
-            ToolModel::Field(field) => {
-                let owners = Owners::of_regions(self.info, |_, of| of.surface.0 == surface);
-                match field.deepest(&owners, 0.0, 1.01) {
-                    DeepestPoint::Found { max_depth, .. } => max_depth,
-                    DeepestPoint::NoneDeeper => 0.0,
-                    DeepestPoint::BudgetSpent => return Ok(None),
-                }
-            }
-        };
-        Ok(Some(depth * self.setting.length))
+        let depth = max_possible_depth(&self.setting, self.info, surface);
+        Ok(depth.map(|depth| depth * self.setting.length))
     }
 
     /// Returns a surface's position in the tool's list, if the tool has it.
@@ -320,10 +333,8 @@ impl<'a> Certifier<'a> {
     /// Checks whether a triangle of the part is deeper in the tool than is [allowed](Certifier::with_allowance). A tool wholly
     /// inside the material touches none.
     pub fn touches(&mut self, pose: &Pose) -> ContactVerdict {
-        let Certifier { setting, whole_query, allowance_queries, state, budget, .. } = self;
-        let allowance_queries =
-            allowance_queries.as_deref().unwrap_or(slice::from_ref(whole_query));
-        touches(setting, allowance_queries, state, pose, *budget)
+        let Certifier { setting, whole_query, allowances, state, budget, .. } = self;
+        touches(setting, allowances.queries(setting, whole_query), state, pose, *budget)
     }
 
     /// Returns whether a point in world coordinates is certainly deeper than is [allowed](Certifier::with_allowance), in a tool
@@ -334,13 +345,11 @@ impl<'a> Certifier<'a> {
         axis: &Vector3<f64>,
         point: &Point3<f64>,
     ) -> bool {
-        let Certifier { setting, whole_query, allowance_queries, state, .. } = self;
-        let allowance_queries =
-            allowance_queries.as_deref().unwrap_or(slice::from_ref(whole_query));
+        let Certifier { setting, whole_query, allowances, state, .. } = self;
         let offset = (point - tip) / setting.length;
         let z = offset.dot(axis);
         let d = (offset.norm_squared() - z * z).max(0.0).sqrt();
-        allowance_queries.iter().any(|query| {
+        allowances.queries(setting, whole_query).iter().any(|query| {
             query.limit >= 0.0
                 && state.depth(setting, query, [d, 0.0, z]) > query.limit + 2.0 * setting.error
         })
@@ -400,6 +409,23 @@ impl Certifier<'_> {
             }));
         let queries = [&*inside, &*outside];
         Ok(distance(&self.setting, queries, &mut self.state, pose, tolerance, self.budget))
+    }
+}
+
+/// Returns an upper bound on the depth that a surface can have, in the tool's unit.
+fn max_possible_depth(setting: &QuerySetting<'_>, info: &ToolInfo, surface: usize) -> Option<f64> {
+    match &setting.tool_model {
+        ToolModel::Profile(section) => {
+            Some(Owners::of(section, |other| other == surface).greatest_depth(section))
+        }
+        ToolModel::Field(field) => {
+            let owners = Owners::of_regions(info, |_, region| region.surface.0 == surface);
+            match field.deepest(&owners, 0.0, 1.01) {
+                DeepestPoint::Found { max_depth, .. } => Some(max_depth),
+                DeepestPoint::NoneDeeper => Some(0.0),
+                DeepestPoint::BudgetSpent => None,
+            }
+        }
     }
 }
 

@@ -12,12 +12,11 @@ use super::tool_model::ToolModel;
 use super::trajectory::Trajectory;
 use super::triangle::line_search::Goal;
 use super::verdict::{MotionDepth, MotionVerdict, Witness};
-use super::{Certifier, ContactVerdict, NoSuchSurface, penetration, rounding};
+use super::{Certifier, ContactVerdict, NoSuchSurface, max_possible_depth, penetration, rounding};
 use crate::certify::search::DepthQuery;
 use crate::id::SurfaceId;
 use crate::interval::Interval;
 use crate::tool::{Symmetry, ToolInfo};
-use std::slice;
 
 /// The errors of a point of the tool along a motion, in the tool's unit.
 #[derive(Clone, Copy)]
@@ -73,8 +72,11 @@ const INITIAL_TIMES: u32 = 8;
 /// The greatest depth along a motion is bounded to within this fraction of the excess over the allowance.
 const GAP_FRACTION: f64 = 0.125;
 
-/// Each sweep for that bound gets this fraction of the budget (1/16): the bound is not needed to prove a motion clear.
-const BUDGET_DIVISOR: u32 = 16;
+/// Each sweep for that bound gets this fraction of the budget (1/64): the bound is not needed to prove a motion clear.
+const BUDGET_DIVISOR: u32 = 64;
+
+/// From this fraction of a surface's greatest possible depth on, nothing deeper is searched for.
+const THROUGH_FRACTION: f64 = 0.98;
 
 /// Time steps shorter than this fraction of a motion are not resolved.
 const MIN_TIME_STEP: f64 = 1e-12;
@@ -124,8 +126,7 @@ impl Certifier<'_> {
             return MotionVerdict::Undecided(0.0);
         }
         let setting = &self.setting;
-        let queries =
-            self.allowance_queries.as_deref().unwrap_or(slice::from_ref(&self.whole_query));
+        let queries = self.allowances.queries(setting, &self.whole_query);
         let errors = MotionErrors::new(setting, motion);
         let error = errors.rounding;
         // Written so that a NaN tolerance is replaced.
@@ -227,6 +228,12 @@ impl Certifier<'_> {
         let allowed = if allowed.is_nan() { 0.0 } else { allowed / setting.length };
         let inside_query = self.surface_queries[surface]
             .get_or_insert_with(|| setting.depth_query(0.0, |other| other == surface));
+        // No point is farther from the surface than the largest radius.
+        let max_depth = *self.surface_max_depths[surface].get_or_insert_with(|| {
+            let radius = self.info.radius();
+            max_possible_depth(setting, self.info, surface)
+                .map_or(radius, |depth| depth.min(radius))
+        });
         let depth = allowed.max(0.0);
         let core_points = match &mut self.surface_core_points[surface] {
             Some((known, core_points)) if *known == depth => core_points,
@@ -245,6 +252,7 @@ impl Certifier<'_> {
             motion,
             errors,
             query: inside_query,
+            max_depth,
             tolerance,
             budget: self.budget,
         };
@@ -259,6 +267,7 @@ impl Certifier<'_> {
         }
         let margin_query = setting.depth_query(allowed, |other| other == surface);
         search.query = &margin_query;
+        search.max_depth = 0.0;
         Ok(match search.deepest(allowed) {
             MotionDepth::Within => found,
             nearer => nearer,
@@ -277,6 +286,8 @@ struct MotionSearch<'a, 's> {
     motion: &'a dyn Trajectory,
     errors: MotionErrors,
     query: &'a DepthQuery,
+    /// An upper bound on the depth that the query can find.
+    max_depth: f64,
     tolerance: f64,
     budget: u32,
 }
@@ -308,8 +319,12 @@ impl MotionSearch<'_, '_> {
                 }
             },
         };
-        let top = self.climb(first);
-        let (best, max_depth) = self.bounded(top, allowed);
+        let (best, max_depth) = if self.is_through(&first) {
+            (first, self.max_depth.max(first.depth.high))
+        } else {
+            let top = self.climb(first);
+            self.bounded(top, allowed)
+        };
         let length = self.setting.length;
         let depth = best.depth.scaled_by(length);
         MotionDepth::Deeper {
@@ -320,18 +335,27 @@ impl MotionSearch<'_, '_> {
         }
     }
 
+    /// Returns whether hardly anything can be deeper.
+    fn is_through(&self, peak: &DepthPeak) -> bool {
+        self.query.limit >= 0.0 && peak.depth.low >= THROUGH_FRACTION * self.max_depth
+    }
+
     /// Returns the deepest point found and an upper bound on the depth over the motion.
     fn bounded(&mut self, mut best: DepthPeak, allowed: f64) -> (DepthPeak, f64) {
-        // No point is farther from the surface than the largest radius.
-        let any = if self.query.limit < 0.0 { 0.0 } else { self.info.radius() };
         let mut gap_fraction = GAP_FRACTION;
         for _ in 0..MAX_ROUNDS {
+            if self.is_through(&best) {
+                break;
+            }
             let Interval { low, high } = best.depth;
             let gap = self.tolerance.max(gap_fraction * (high - allowed));
             // One half is for the tolerance of the sweep, the other for the gain of each round.
             let limit = (low + 0.5 * gap).max(allowed);
+            if limit + 0.5 * gap >= self.max_depth {
+                break;
+            }
             match self.sweep(limit, 0.5 * gap, self.budget / BUDGET_DIVISOR) {
-                None => return (best, high.max(any.min(limit + 0.5 * gap))),
+                None => return (best, high.max(limit + 0.5 * gap)),
                 // Near the limit a sweep is slow: a coarser limit needs less of the budget.
                 Some(SweepEnd::Spent { .. }) => gap_fraction *= 4.0,
                 Some(SweepEnd::Deeper { at, .. }) => match self.peak_at(at) {
@@ -341,7 +365,7 @@ impl MotionSearch<'_, '_> {
                 },
             }
         }
-        (best, any.max(best.depth.high))
+        (best, self.max_depth.max(best.depth.high))
     }
 
     /// Sweeps the motion: returns a point that exceeds a limit, if any point exceeds it by more than a tolerance.

@@ -25,6 +25,8 @@ pub(crate) struct DepthQuery {
     pub(crate) hull: Hull<f32>,
     pub(crate) exact: Hull<f64>,
     shell: Shell,
+    /// The heights between which the owners can own a point deeper than the limit, if that is at least 0.
+    pub(crate) heights: [f64; 2],
     /// The allowed depth of the owners. If negative, its magnitude is the distance that they have to keep.
     pub(crate) limit: f64,
 }
@@ -43,6 +45,7 @@ impl DepthQuery {
                 hull: Hull::holding(section, &owners, margin),
                 exact: Hull::holding(section, &owners, section.error),
                 shell: Shell::new(section, &owners),
+                heights: ANY_HEIGHT,
                 owners,
                 limit,
             };
@@ -50,10 +53,15 @@ impl DepthQuery {
         let owners = Owners::of(section, surfaces);
         // The search begins two errors below the limit; the zones have room for the errors of heights and distances, too.
         let zones = owners.zones(section, limit - 8.0 * section.error);
+        let none = [f64::INFINITY, f64::NEG_INFINITY];
+        let heights = zones.iter().flatten().fold(none, |[low, high], [from, to]| {
+            [low.min(from - section.error), high.max(to + section.error)]
+        });
         DepthQuery {
             hull: Hull::new(section, &zones, margin),
             exact: Hull::new(section, &zones, section.error),
             shell: Shell::new(section, &owners),
+            heights,
             owners,
             limit,
         }
@@ -73,6 +81,7 @@ impl DepthQuery {
             hull: Hull::about(info, field.steep, errors[0]),
             exact: Hull::about(info, field.steep, errors[1]),
             shell: Shell::about(info),
+            heights: ANY_HEIGHT,
             limit,
         }
     }
@@ -99,6 +108,8 @@ impl DepthQuery {
             .collect()
     }
 }
+
+const ANY_HEIGHT: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 
 /// The data that all queries of a tool at a part share. Lengths are in the tool's unit.
 pub(crate) struct QuerySetting<'a> {

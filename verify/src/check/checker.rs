@@ -12,6 +12,8 @@ pub(super) struct Checker<'a> {
     verifier: &'a Verifier<'a>,
     /// The certifiers for feed and for rapid traverse, in this order.
     modes: [Mode<'a>; 2],
+    /// The greatest possible depth of each surface.
+    max_depths: Vec<f64>,
     free_space: FreeSpace<'a>,
 }
 
@@ -19,8 +21,6 @@ pub(super) struct Checker<'a> {
 struct Mode<'a> {
     certifier: Certifier<'a>,
     limits: Vec<f64>,
-    /// The greatest possible depth of each surface.
-    max_depths: &'a [f64],
     /// The largest margin of any surface.
     margin: f64,
 }
@@ -40,7 +40,7 @@ const MAX_PIECES: usize = 1 << 14;
 impl<'a> Checker<'a> {
     pub(super) fn new(
         verifier: &'a Verifier<'a>,
-        max_depths: &'a [f64],
+        max_depths: Vec<f64>,
     ) -> Result<Checker<'a>, VerifyError> {
         let certifier = Certifier::new(verifier.bvh, verifier.tool)?.with_budget(verifier.budget);
         let free_space = FreeSpace {
@@ -54,12 +54,16 @@ impl<'a> Checker<'a> {
         };
         Ok(Checker {
             verifier,
-            modes: [
-                Mode::new(verifier, false, max_depths)?,
-                Mode::new(verifier, true, max_depths)?,
-            ],
+            modes: [Mode::new(verifier, false)?, Mode::new(verifier, true)?],
+            max_depths,
             free_space,
         })
+    }
+
+    /// Forgets the motions before: equal motions after it have equal findings.
+    pub(super) fn clear_caches(&mut self) {
+        self.modes.iter_mut().for_each(|mode| mode.certifier.clear_caches());
+        self.free_space.clear();
     }
 
     /// Returns the findings of a motion, `index` being its number in the program.
@@ -170,7 +174,8 @@ impl<'a> Checker<'a> {
 
     /// Returns the findings of a motion near the part.
     fn contacts(&mut self, rapid: bool, motion: &dyn Trajectory) -> Vec<TimedFinding> {
-        self.modes[usize::from(rapid)].contacts(motion, self.verifier.resolution)
+        let Checker { verifier, modes, max_depths, .. } = self;
+        modes[usize::from(rapid)].contacts(motion, max_depths, verifier.resolution)
     }
 
     /// Returns the findings where nothing is known about any surface.
@@ -197,11 +202,7 @@ fn widen(kind: &mut FindingKind, spread: f64) {
 }
 
 impl<'a> Mode<'a> {
-    fn new(
-        verifier: &Verifier<'a>,
-        rapid: bool,
-        max_depths: &'a [f64],
-    ) -> Result<Mode<'a>, VerifyError> {
+    fn new(verifier: &Verifier<'a>, rapid: bool) -> Result<Mode<'a>, VerifyError> {
         let limits = verifier.limits(rapid);
         let mut certifier =
             Certifier::new(verifier.bvh, verifier.tool)?.with_budget(verifier.budget);
@@ -209,11 +210,16 @@ impl<'a> Mode<'a> {
             certifier = certifier.with_allowance(&surface.name, *limit)?;
         }
         let margin = limits.iter().fold(0.0f64, |margin, limit| margin.max(-limit));
-        Ok(Mode { certifier, limits, max_depths, margin })
+        Ok(Mode { certifier, limits, margin })
     }
 
-    /// Returns the findings of a motion.
-    fn contacts(&mut self, motion: &dyn Trajectory, resolution: f64) -> Vec<TimedFinding> {
+    /// Returns the findings of a motion. `max_depths` has the greatest possible depth of each surface.
+    fn contacts(
+        &mut self,
+        motion: &dyn Trajectory,
+        max_depths: &[f64],
+        resolution: f64,
+    ) -> Vec<TimedFinding> {
         // One query for all surfaces proves most motions clear. Only the others are queried surface by surface.
         let swept = self.certifier.check_motion(motion, resolution);
         if matches!(swept, MotionVerdict::Clear | MotionVerdict::SurfaceOnly) {
@@ -239,7 +245,7 @@ impl<'a> Mode<'a> {
                     (at, FindingKind::Near { surface, margin, distance, min_distance, witness })
                 }
                 MotionDepth::Deeper { at, depth, max_depth, witness } => {
-                    let through = depth.high >= THROUGH_FRACTION * self.max_depths[index];
+                    let through = depth.high >= THROUGH_FRACTION * max_depths[index];
                     (at, FindingKind::Deep { surface, allowed, depth, max_depth, through, witness })
                 }
                 MotionDepth::Inside => {
@@ -283,6 +289,12 @@ struct FreeSpace<'a> {
 const MAX_WAIT: u32 = 15;
 
 impl FreeSpace<'_> {
+    /// Forgets the known free space.
+    fn clear(&mut self) {
+        self.certifier.clear_caches();
+        (self.ball, self.misses, self.wait) = (None, 0, 0);
+    }
+
     /// Returns whether a motion is proved to keep more than a margin from all triangles, outside the material. It has a
     /// pose at its start and in its middle, and no point of the tool travels farther than `max_travel`.
     fn contains(&mut self, [start, middle]: [Pose; 2], max_travel: f64, margin: f64) -> bool {

@@ -42,6 +42,7 @@ use crate::program::ClData;
 pub(crate) use approach::ApproachSearch;
 use checker::Checker;
 use std::fmt;
+use std::sync::Mutex;
 use touchoff::certify::{Certifier, TriangleBvh};
 use touchoff::tool::{Tool, ToolInfo};
 use touchoff::{SurfaceId, Unit};
@@ -120,7 +121,7 @@ impl<'a> Verifier<'a> {
             tolerance: 0.0,
             resolution: Verifier::default_resolution(bvh.unit()),
             allowed: vec![None; info.surfaces.len()],
-            budget: 1 << 20,
+            budget: 1 << 17,
         })
     }
 
@@ -272,6 +273,8 @@ impl<'a> Verifier<'a> {
 pub(super) struct MoveCheck<'a> {
     verifier: &'a Verifier<'a>,
     max_depths: Vec<f64>,
+    /// The checkers that no task uses: one per core in the end.
+    checkers: Mutex<Vec<Checker<'a>>>,
     approach: ApproachSearch<'a>,
     findings: Vec<Finding>,
     /// The motions that wait for the next batch.
@@ -291,6 +294,7 @@ impl<'a> MoveCheck<'a> {
         Ok(MoveCheck {
             verifier,
             max_depths: verifier.max_depths()?,
+            checkers: Mutex::default(),
             approach: ApproachSearch::new(verifier)?,
             findings: Vec::new(),
             batch: Vec::new(),
@@ -316,12 +320,19 @@ impl<'a> MoveCheck<'a> {
     }
 
     fn check_batch(&mut self, progress: &(dyn Fn(usize) + Sync)) -> Result<(), VerifyError> {
-        let (verifier, max_depths, count) = (self.verifier, &self.max_depths, self.count);
+        let MoveCheck { verifier, max_depths, checkers, count, .. } = &*self;
         let found = map_tasks(&self.batch, |first, moves| {
-            // A checker remembers free space. One per task makes results independent of the number of cores.
-            let mut checker = Checker::new(verifier, max_depths)?;
+            // The queries of a tool take longer to prepare than most tasks, so that a checker is used again.
+            let free = checkers.lock().expect("no task panics with it").pop();
+            let mut checker = match free {
+                Some(checker) => checker,
+                None => Checker::new(verifier, max_depths.clone())?,
+            };
+            // Without memory of the task before, results are independent of the number of cores.
+            checker.clear_caches();
             let numbered = (count + first..).zip(moves);
             let findings = numbered.flat_map(|(index, step)| checker.check(index, step)).collect();
+            checkers.lock().expect("no task panics with it").push(checker);
             progress(moves.len());
             Ok::<Vec<Finding>, VerifyError>(findings)
         });

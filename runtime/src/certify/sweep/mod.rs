@@ -318,13 +318,16 @@ impl Sweeper {
                 return Some(SweepEnd::Deeper { at, pose, best: sample.best(index) });
             }
             let steep = setting.tool_model.lipschitz();
-            let undecided = sample.depth + steep * spread.displacement > task.threshold()
+            // Another's point says nothing about the owners.
+            let may_become_too_deep = query.owners.is_owned(sample.feature)
+                && sample.depth + steep * spread.displacement > task.threshold();
+            let undecided = may_become_too_deep
                 || match self.check_triangle(task, corners, spread) {
                     TriangleVerdict::TooDeep(deep) => {
                         return Some(SweepEnd::Deeper { at, pose, best: deep.best(index) });
                     }
                     TriangleVerdict::Clear => false,
-                    TriangleVerdict::Undecided | TriangleVerdict::OtherOwner => true,
+                    TriangleVerdict::Undecided | TriangleVerdict::OtherOwner(_) => true,
                 };
             if undecided {
                 self.pending.push(Undecided::Part(self.some[lane]));
@@ -342,29 +345,27 @@ impl Sweeper {
         spread: Spread,
     ) -> TriangleVerdict {
         let SweepTask { setting, query, .. } = *task;
-        let ToolModel::Profile(section) = &setting.tool_model else {
-            return self.check_subdivided(task, corners, spread);
-        };
-        let triangle = LocalTriangle::new(corners);
-        if query.owners.all() || task.limit < 0.0 {
-            return self.check_lines(task, section, &query.owners, &triangle, spread);
-        }
-        // If no surface at all is too deep, the owners need not be told apart.
-        match self.check_lines(task, section, &Owners::default(), &triangle, spread) {
-            TriangleVerdict::OtherOwner => self.check_subdivided(task, corners, spread),
-            decided => decided,
+        match &setting.tool_model {
+            ToolModel::Profile(section) if query.owners.all() || task.limit < 0.0 => {
+                let part = TrianglePart::whole(corners);
+                self.check_lines(task, section, &query.owners, &part, spread)
+            }
+            ToolModel::Profile(_) | ToolModel::Field(_) => {
+                self.check_subdivided(task, corners, spread)
+            }
         }
     }
 
-    /// Examines a triangle by searching its lines on which the depth is greatest or the distance least.
+    /// Examines a part of a triangle by searching its lines on which the depth is greatest or the distance least.
     fn check_lines(
         &mut self,
         task: &SweepTask<'_>,
         section: &Section,
         owners: &Owners,
-        triangle: &LocalTriangle,
+        part: &TrianglePart,
         spread: Spread,
     ) -> TriangleVerdict {
+        let TrianglePart { triangle, heights } = part;
         let displacement = spread.displacement + triangle.skew + task.error;
         // A point less deep than that does not become too deep in what is left of the interval.
         let min_depth = task.threshold() - displacement;
@@ -376,9 +377,12 @@ impl Sweeper {
             budget: self.budget,
         });
         let mut found = None;
-        let heights = section.circles.iter().chain(&owners.peaks);
-        let peaks = heights.filter_map(|height| triangle.level(*height));
-        for line in triangle.search_lines().chain(peaks) {
+        // What is farther from these heights does not come between them in what is left of the interval.
+        let heights = [heights[0] - displacement, heights[1] + displacement];
+        let peaks = section.circles.iter().chain(&owners.peaks);
+        let levels = peaks.chain(&heights).filter_map(|height| triangle.level(*height));
+        for line in triangle.search_lines().chain(levels) {
+            let Some(line) = line.between(heights) else { continue };
             let maximum = if min_depth < 0.0 {
                 self.search.outside(section, owners, &line)
             } else {
@@ -400,7 +404,21 @@ impl Sweeper {
         } else if sample.depth > min_depth {
             TriangleVerdict::Undecided
         } else {
-            TriangleVerdict::OtherOwner
+            TriangleVerdict::OtherOwner(point)
+        }
+    }
+
+    /// Searches a part of a triangle, which stays undecided, for a point that is too deep in the owners' region.
+    fn check_owned(
+        &mut self,
+        task: &SweepTask<'_>,
+        section: &Section,
+        part: &TrianglePart,
+        spread: Spread,
+    ) -> TriangleVerdict {
+        match self.check_lines(task, section, &task.query.owners, part, spread) {
+            TriangleVerdict::TooDeep(deep) => TriangleVerdict::TooDeep(deep),
+            _ => TriangleVerdict::Undecided,
         }
     }
 
@@ -432,6 +450,29 @@ impl Sweeper {
             if tool_model.clears(&mut self.scratch, owners, &points, task.threshold()) {
                 continue;
             }
+            if let ToolModel::Profile(section) = tool_model {
+                // Where no surface at all is too deep, the owners need not be told apart.
+                let part = TrianglePart {
+                    triangle: LocalTriangle::new(*piece.corners()),
+                    heights: task.query.heights,
+                };
+                let other = match self.check_lines(task, section, &Owners::default(), &part, spread)
+                {
+                    TriangleVerdict::OtherOwner(other) => other,
+                    TriangleVerdict::Clear => continue,
+                    decided => return decided,
+                };
+                // Halving tells nothing about a point as near to the border of another's region as the part's ends are.
+                let near = displacement + part.triangle.skew + 4.0 * task.error;
+                let points = Surroundings {
+                    centre: other,
+                    displacement: near,
+                    rectangle: SubTriangle::new([other; 3]).rectangle(near),
+                };
+                if !tool_model.clears(&mut self.scratch, owners, &points, task.threshold()) {
+                    return self.check_owned(task, section, &part, spread);
+                }
+            }
             let sample = task.depth(&mut self.scratch, centre);
             if task.too_deep(&sample, deviation) {
                 return TriangleVerdict::TooDeep(sample);
@@ -451,8 +492,21 @@ enum TriangleVerdict {
     /// The triangle is too deep at this point.
     TooDeep(DeepPoint),
     Undecided,
-    /// Points that may be too deep are nearer to other features than to the owners.
-    OtherOwner,
+    /// A point that may be too deep is nearer to other features than to the owners: that point.
+    OtherOwner(Point),
+}
+
+/// The part of a triangle between two heights.
+struct TrianglePart {
+    triangle: LocalTriangle,
+    heights: [f64; 2],
+}
+
+impl TrianglePart {
+    fn whole(corners: [Point; 3]) -> TrianglePart {
+        let heights = [f64::NEG_INFINITY, f64::INFINITY];
+        TrianglePart { triangle: LocalTriangle::new(corners), heights }
+    }
 }
 
 /// The number of pieces of a triangle that are examined before the interval is halved instead.

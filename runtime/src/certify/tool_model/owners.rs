@@ -54,6 +54,20 @@ impl Rectangle {
         second.low[longer] = middle[longer];
         [first, second]
     }
+
+    /// Returns it without strips of some height along the bottom and the top of a slab, and the strips that it has.
+    fn without_seams(&self, slab: &SectionSlab, height: f64) -> (Rectangle, Vec<Rectangle>) {
+        let (mut inner, mut strips) = (*self, Vec::new());
+        if self.low[1] == slab.low {
+            inner.low[1] += height;
+            strips.push(Rectangle { high: [self.high[0], inner.low[1]], ..*self });
+        }
+        if self.high[1] == slab.high {
+            inner.high[1] -= height;
+            strips.push(Rectangle { low: [self.low[0], inner.high[1]], ..*self });
+        }
+        (inner, strips)
+    }
 }
 
 impl Owners {
@@ -119,6 +133,7 @@ impl Owners {
     /// or in none of it, or until the rectangle is too small to matter.
     fn zone(&self, section: &Section, slab: &SectionSlab, deeper: f64) -> Option<[f64; 2]> {
         let min_size = section.size / f64::from(ZONE_DIVISIONS);
+        let strip = 0.25 * section.error.min(slab.high - slab.low);
         let mut zone: Option<[f64; 2]> = None;
         let mut stack = vec![Rectangle::of(slab)];
         while let Some(rectangle) = stack.pop() {
@@ -127,30 +142,47 @@ impl Owners {
             if zone.is_some_and(|[from, to]| from <= low[1] && high[1] <= to) {
                 continue;
             }
-            let (middle, reach) = rectangle.ball();
-            let (mut owner, mut other) = (f64::INFINITY, f64::INFINITY);
-            let corners = rectangle.corners();
-            for (index, feature) in section.features.iter().enumerate() {
-                if section.hidden_by_neighbours(index, &corners) {
-                    continue;
+            let is_owned = match self.own_rectangle(section, &rectangle, deeper) {
+                Some(false) => continue,
+                owned => owned.is_some(),
+            };
+            // Where features of equal direction meet at the height of a seam, that height is the border between their
+            // points, and only a strip along it is not certain to belong to one of them.
+            let (inner, strips) = rectangle.without_seams(slab, strip);
+            if !strips.is_empty() && self.own_rectangle(section, &inner, deeper) == Some(false) {
+                for strip in strips {
+                    if self.own_rectangle(section, &strip, deeper) != Some(false) {
+                        zone = widened(zone, [strip.low[1], strip.high[1]]);
+                    }
                 }
-                let nearest = if self.is_owned(index) { &mut owner } else { &mut other };
-                *nearest = nearest.min(feature.distance(middle));
+            } else if is_owned || rectangle.ball().1 <= min_size {
+                zone = widened(zone, [low[1], high[1]]);
+            } else {
+                stack.extend(rectangle.halves());
             }
-            // A distance has the Lipschitz constant 1, and two of them are compared.
-            let uncertainty = 2.0 * reach + section.error;
-            if owner > other + uncertainty || owner.min(other) + reach <= deeper {
-                continue;
-            }
-            let surely = owner + uncertainty < other && owner - reach > deeper;
-            if surely || reach <= min_size {
-                let [from, to] = zone.unwrap_or([low[1], high[1]]);
-                zone = Some([from.min(low[1]), to.max(high[1])]);
-                continue;
-            }
-            stack.extend(rectangle.halves());
         }
         zone
+    }
+
+    /// Returns whether the owners own all points of a rectangle and these are deeper than `deeper`, or own none of them
+    /// that is; `None` if that is not certain.
+    fn own_rectangle(&self, section: &Section, rectangle: &Rectangle, deeper: f64) -> Option<bool> {
+        let (middle, reach) = rectangle.ball();
+        let (mut owner, mut other) = (f64::INFINITY, f64::INFINITY);
+        let corners = rectangle.corners();
+        for (index, feature) in section.features.iter().enumerate() {
+            if section.hidden_by_neighbours(index, &corners) {
+                continue;
+            }
+            let nearest = if self.is_owned(index) { &mut owner } else { &mut other };
+            *nearest = nearest.min(feature.distance(middle));
+        }
+        // A distance has the Lipschitz constant 1, and two of them are compared.
+        let uncertainty = 2.0 * reach + section.error;
+        if owner > other + uncertainty || owner.min(other) + reach <= deeper {
+            return Some(false);
+        }
+        (owner + uncertainty < other && owner - reach > deeper).then_some(true)
     }
 
     /// Returns an upper bound on the depth of the points that the owners own, at most 1 % above the depth of one of
@@ -265,6 +297,12 @@ impl Owners {
         }
         nearby.len() > 2 && (owner_kinds == [true, true] || !others)
     }
+}
+
+/// Returns the range of heights that contains a zone and another range.
+fn widened(zone: Option<[f64; 2]>, [low, high]: [f64; 2]) -> Option<[f64; 2]> {
+    let [from, to] = zone.unwrap_or([low, high]);
+    Some([from.min(low), to.max(high)])
 }
 
 /// The resolution of zones: the tool's size divided by this.

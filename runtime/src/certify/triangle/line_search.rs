@@ -87,6 +87,11 @@ impl SearchLine {
         }
     }
 
+    /// Returns the portion of the segment between two heights.
+    pub(crate) fn between(&self, heights: [f64; 2]) -> Option<SearchLine> {
+        Some(SearchLine { span: self.within(self.span, heights)?, ..*self })
+    }
+
     /// Returns the portion of a span between two heights.
     fn within(&self, [from, to]: [f64; 2], [low, high]: [f64; 2]) -> Option<[f64; 2]> {
         let (height, rise) = (self.base[2], self.direction[2]);
