@@ -10,9 +10,10 @@ use crate::certify::part::{TriangleBvh, flat};
 use crate::certify::space::Point;
 use crate::certify::tool_model::ToolModel;
 use crate::certify::tool_model::field::{Field, Scratch};
+use crate::certify::tool_model::owners::Rectangle;
 use crate::certify::tool_model::section::{Owners, Section};
 use crate::certify::triangle::line_search::{DeepestCandidate, DepthSearch, Goal, LineMaximum};
-use crate::certify::triangle::{LocalTriangle, nearest};
+use crate::certify::triangle::{LocalTriangle, SubTriangle, nearest};
 use crate::certify::verdict::Witness;
 use crate::pose::Pose;
 use crate::tool::LANES;
@@ -25,8 +26,9 @@ pub(crate) struct DepthQuery {
     pub(crate) hull: Hull<f32>,
     pub(crate) exact: Hull<f64>,
     shell: Shell,
-    /// The heights between which the owners can own a point deeper than the limit, if that is at least 0.
-    pub(crate) heights: [f64; 2],
+    /// Rectangles of the half plane that hold all points deeper than the limit that the owners can own, if it is at least 0
+    /// and the tool has a profile.
+    pub(crate) zones: Vec<Rectangle>,
     /// The allowed depth of the owners. If negative, its magnitude is the distance that they have to keep.
     pub(crate) limit: f64,
 }
@@ -45,7 +47,7 @@ impl DepthQuery {
                 hull: Hull::holding(section, &owners, margin),
                 exact: Hull::holding(section, &owners, section.error),
                 shell: Shell::new(section, &owners),
-                heights: ANY_HEIGHT,
+                zones: Vec::new(),
                 owners,
                 limit,
             };
@@ -53,15 +55,11 @@ impl DepthQuery {
         let owners = Owners::of(section, surfaces);
         // The search begins two errors below the limit; the zones have room for the errors of heights and distances, too.
         let zones = owners.zones(section, limit - 8.0 * section.error);
-        let none = [f64::INFINITY, f64::NEG_INFINITY];
-        let heights = zones.iter().flatten().fold(none, |[low, high], [from, to]| {
-            [low.min(from - section.error), high.max(to + section.error)]
-        });
         DepthQuery {
             hull: Hull::new(section, &zones, margin),
             exact: Hull::new(section, &zones, section.error),
             shell: Shell::new(section, &owners),
-            heights,
+            zones: zones.into_iter().flatten().collect(),
             owners,
             limit,
         }
@@ -81,9 +79,18 @@ impl DepthQuery {
             hull: Hull::about(info, field.steep, errors[0]),
             exact: Hull::about(info, field.steep, errors[1]),
             shell: Shell::about(info),
-            heights: ANY_HEIGHT,
+            zones: Vec::new(),
             limit,
         }
+    }
+
+    /// Returns the heights between which points of a triangle come within a distance of the owners' zones; `None` if none
+    /// does.
+    pub(crate) fn heights(&self, triangle: &SubTriangle, distance: f64) -> Option<[f64; 2]> {
+        let rectangle = triangle.rectangle(distance);
+        let near = self.zones.iter().filter(|zone| zone.meets(&rectangle));
+        let heights = near.map(|zone| [zone.low[1] - distance, zone.high[1] + distance]);
+        heights.reduce(|one, other| [one[0].min(other[0]), one[1].max(other[1])])
     }
 
     /// Returns the queries that check the allowances of all surfaces, given in the order of the tool's list: one query
@@ -108,8 +115,6 @@ impl DepthQuery {
             .collect()
     }
 }
-
-const ANY_HEIGHT: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 
 /// The data that all queries of a tool at a part share. Lengths are in the tool's unit.
 pub(crate) struct QuerySetting<'a> {

@@ -8,6 +8,7 @@ use crate::certify::bounds::nearest::{
 };
 use crate::certify::part::NodeRing;
 use crate::certify::tool_model::feature::MeridianPoint;
+use crate::certify::tool_model::owners::Rectangle;
 use crate::certify::tool_model::section::{Owners, Section};
 use crate::interval::Interval;
 use crate::tool::ToolInfo;
@@ -37,10 +38,10 @@ pub(crate) struct HullSlab<R> {
 impl<R: Real> Hull<R> {
     /// Creates a hull for points inside the tool. The slabs lie between the heights of their zones, and reach farther
     /// by the error bound of heights.
-    pub(crate) fn new(section: &Section, zones: &[Option<[f64; 2]>], error: f64) -> Hull<R> {
+    pub(crate) fn new(section: &Section, zones: &[Option<Rectangle>], error: f64) -> Hull<R> {
         let slabs =
             section.slabs.iter().enumerate().zip(zones).filter_map(|((index, slab), zone)| {
-                let [from, to] = (*zone)?;
+                let Rectangle { low: [_, from], high: [_, to] } = (*zone)?;
                 let side = &section.features[slab.side];
                 let [[d0, z0], [d1, z1]] = side.ends;
                 // The radial distance to the surface.
@@ -103,7 +104,7 @@ impl<R: Real> Hull<R> {
         let zones: Vec<_> = section
             .slabs
             .iter()
-            .map(|slab| owners.is_owned(slab.side).then_some([slab.low, slab.high]))
+            .map(|slab| owners.is_owned(slab.side).then_some(Rectangle::of(slab)))
             .collect();
         let mut hull = Hull::new(section, &zones, error);
         // A level feature is the side of no slab.

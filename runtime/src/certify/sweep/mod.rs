@@ -377,12 +377,10 @@ impl Sweeper {
             budget: self.budget,
         });
         let mut found = None;
-        // What is farther from these heights does not come between them in what is left of the interval.
-        let heights = [heights[0] - displacement, heights[1] + displacement];
         let peaks = section.circles.iter().chain(&owners.peaks);
-        let levels = peaks.chain(&heights).filter_map(|height| triangle.level(*height));
+        let levels = peaks.chain(heights).filter_map(|height| triangle.level(*height));
         for line in triangle.search_lines().chain(levels) {
-            let Some(line) = line.between(heights) else { continue };
+            let Some(line) = line.between(*heights) else { continue };
             let maximum = if min_depth < 0.0 {
                 self.search.outside(section, owners, &line)
             } else {
@@ -445,17 +443,17 @@ impl Sweeper {
             let points = Surroundings {
                 centre,
                 displacement: displacement + reach + task.error,
-                rectangle: piece.rectangle(displacement + task.error),
+                rectangle: piece.rectangle(displacement + task.error).corners(),
             };
             if tool_model.clears(&mut self.scratch, owners, &points, task.threshold()) {
                 continue;
             }
             if let ToolModel::Profile(section) = tool_model {
+                let triangle = LocalTriangle::new(*piece.corners());
+                let near = displacement + triangle.skew + 4.0 * task.error;
+                let Some(heights) = task.query.heights(&piece, near) else { continue };
                 // Where no surface at all is too deep, the owners need not be told apart.
-                let part = TrianglePart {
-                    triangle: LocalTriangle::new(*piece.corners()),
-                    heights: task.query.heights,
-                };
+                let part = TrianglePart { triangle, heights };
                 let other = match self.check_lines(task, section, &Owners::default(), &part, spread)
                 {
                     TriangleVerdict::OtherOwner(other) => other,
@@ -463,11 +461,10 @@ impl Sweeper {
                     decided => return decided,
                 };
                 // Halving tells nothing about a point as near to the border of another's region as the part's ends are.
-                let near = displacement + part.triangle.skew + 4.0 * task.error;
                 let points = Surroundings {
                     centre: other,
                     displacement: near,
-                    rectangle: SubTriangle::new([other; 3]).rectangle(near),
+                    rectangle: SubTriangle::new([other; 3]).rectangle(near).corners(),
                 };
                 if !tool_model.clears(&mut self.scratch, owners, &points, task.threshold()) {
                     return self.check_owned(task, section, &part, spread);

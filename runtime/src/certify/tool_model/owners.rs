@@ -19,20 +19,30 @@ use std::collections::BinaryHeap;
 
 /// A rectangle of the half plane.
 #[derive(Clone, Copy)]
-struct Rectangle {
-    low: MeridianPoint,
-    high: MeridianPoint,
+pub(crate) struct Rectangle {
+    pub(crate) low: MeridianPoint,
+    pub(crate) high: MeridianPoint,
 }
 
 impl Rectangle {
     /// Returns the bounding rectangle of a slab.
-    fn of(slab: &SectionSlab) -> Rectangle {
+    pub(crate) fn of(slab: &SectionSlab) -> Rectangle {
         Rectangle { low: [slab.hole, slab.low], high: [slab.radius, slab.high] }
     }
 
-    fn corners(&self) -> [MeridianPoint; 4] {
+    pub(crate) fn corners(&self) -> [MeridianPoint; 4] {
         let Rectangle { low, high } = *self;
         [low, [high[0], low[1]], high, [low[0], high[1]]]
+    }
+
+    /// Returns whether it has points in common with another.
+    pub(crate) fn meets(&self, other: &Rectangle) -> bool {
+        (0..2).all(|k| self.low[k] <= other.high[k] && other.low[k] <= self.high[k])
+    }
+
+    /// Returns whether another lies within it.
+    fn contains(&self, other: &Rectangle) -> bool {
+        (0..2).all(|k| self.low[k] <= other.low[k] && other.high[k] <= self.high[k])
     }
 
     fn size(&self) -> MeridianPoint {
@@ -120,26 +130,24 @@ impl Owners {
         }
     }
 
-    /// Returns, per slab, the heights between which the owners can own a point deeper than `deeper`.
-    pub(crate) fn zones(&self, section: &Section, deeper: f64) -> Vec<Option<[f64; 2]>> {
+    /// Returns, per slab, a rectangle that holds all points deeper than `deeper` that the owners can own.
+    pub(crate) fn zones(&self, section: &Section, deeper: f64) -> Vec<Option<Rectangle>> {
         let slabs = section.slabs.iter();
         if self.all() {
-            return slabs.map(|slab| Some([slab.low, slab.high])).collect();
+            return slabs.map(|slab| Some(Rectangle::of(slab))).collect();
         }
         slabs.map(|slab| self.zone(section, slab, deeper)).collect()
     }
 
     /// Computes the zone of a slab. Rectangles of it are halved until an owner is the nearest feature in all of one
     /// or in none of it, or until the rectangle is too small to matter.
-    fn zone(&self, section: &Section, slab: &SectionSlab, deeper: f64) -> Option<[f64; 2]> {
+    fn zone(&self, section: &Section, slab: &SectionSlab, deeper: f64) -> Option<Rectangle> {
         let min_size = section.size / f64::from(ZONE_DIVISIONS);
         let strip = 0.25 * section.error.min(slab.high - slab.low);
-        let mut zone: Option<[f64; 2]> = None;
+        let mut zone: Option<Rectangle> = None;
         let mut stack = vec![Rectangle::of(slab)];
         while let Some(rectangle) = stack.pop() {
-            let Rectangle { low, high } = rectangle;
-            // Only the range of heights is asked for: what is inside it already cannot widen it.
-            if zone.is_some_and(|[from, to]| from <= low[1] && high[1] <= to) {
+            if zone.is_some_and(|zone| zone.contains(&rectangle)) {
                 continue;
             }
             let is_owned = match self.own_rectangle(section, &rectangle, deeper) {
@@ -152,11 +160,11 @@ impl Owners {
             if !strips.is_empty() && self.own_rectangle(section, &inner, deeper) == Some(false) {
                 for strip in strips {
                     if self.own_rectangle(section, &strip, deeper) != Some(false) {
-                        zone = widened(zone, [strip.low[1], strip.high[1]]);
+                        zone = widened(zone, strip);
                     }
                 }
             } else if is_owned || rectangle.ball().1 <= min_size {
-                zone = widened(zone, [low[1], high[1]]);
+                zone = widened(zone, rectangle);
             } else {
                 stack.extend(rectangle.halves());
             }
@@ -299,10 +307,13 @@ impl Owners {
     }
 }
 
-/// Returns the range of heights that contains a zone and another range.
-fn widened(zone: Option<[f64; 2]>, [low, high]: [f64; 2]) -> Option<[f64; 2]> {
-    let [from, to] = zone.unwrap_or([low, high]);
-    Some([from.min(low), to.max(high)])
+/// Returns the rectangle about a zone and another rectangle.
+fn widened(zone: Option<Rectangle>, other: Rectangle) -> Option<Rectangle> {
+    let Rectangle { low, high } = zone.unwrap_or(other);
+    Some(Rectangle {
+        low: [0, 1].map(|k| low[k].min(other.low[k])),
+        high: [0, 1].map(|k| high[k].max(other.high[k])),
+    })
 }
 
 /// The resolution of zones: the tool's size divided by this.

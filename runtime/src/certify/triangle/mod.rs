@@ -11,6 +11,7 @@ pub(crate) mod line_search;
 
 use crate::certify::rounding;
 use crate::certify::space::{Point, cross, dot, minus, norm};
+use crate::certify::tool_model::owners::Rectangle;
 use crate::certify::triangle::line_search::SearchLine;
 
 /// A triangle in the tool's frame and unit.
@@ -211,15 +212,36 @@ impl SubTriangle {
         if half.1 < mean.1 { half } else { mean }
     }
 
-    /// Returns the corners of a rectangle of the half plane with all points within `displacement` of the triangle.
-    pub(crate) fn rectangle(&self, displacement: f64) -> [[f64; 2]; 4] {
+    /// Returns a rectangle of the half plane with all points within `displacement` of the triangle.
+    pub(crate) fn rectangle(&self, displacement: f64) -> Rectangle {
         let (mut far, mut low, mut high) = (0.0f64, f64::INFINITY, f64::NEG_INFINITY);
         for [x, y, z] in self.corners {
             far = far.max((x * x + y * y).sqrt());
             (low, high) = (low.min(z), high.max(z));
         }
-        let (low, high, far) = (low - displacement, high + displacement, far + displacement);
-        [[0.0, low], [far, low], [far, high], [0.0, high]]
+        Rectangle {
+            low: [(self.distance_from_axis() - displacement).max(0.0), low - displacement],
+            high: [far + displacement, high + displacement],
+        }
+    }
+
+    /// Returns the distance of its nearest point from the axis.
+    fn distance_from_axis(&self) -> f64 {
+        // Seen along the axis: that of the origin from a triangle, which is 0 if the origin is on the same side of all edges.
+        let mut near = f64::INFINITY;
+        let mut sides = [false; 2];
+        for k in 0..3 {
+            let ([x, y, _], [to_x, to_y, _]) = (self.corners[k], self.corners[(k + 1) % 3]);
+            let (across, up) = (to_x - x, to_y - y);
+            let side = x * up - y * across;
+            sides[0] |= side <= 0.0;
+            sides[1] |= side >= 0.0;
+            let along = -(x * across + y * up) / (across * across + up * up);
+            // An edge parallel to the axis is one point.
+            let part = if along.is_nan() { 0.0 } else { along.clamp(0.0, 1.0) };
+            near = near.min((x + part * across).hypot(y + part * up));
+        }
+        if sides == [true, true] { near } else { 0.0 }
     }
 
     /// Returns both halves, cut at the middle of its longest side; none if that is too short to be halved.
