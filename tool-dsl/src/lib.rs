@@ -24,6 +24,8 @@ pub mod format;
 pub mod formula;
 mod geometry;
 pub mod interpret;
+#[cfg(test)]
+mod library;
 mod lint;
 pub mod model;
 pub mod number;
