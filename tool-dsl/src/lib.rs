@@ -11,6 +11,7 @@
 #![deny(missing_docs, missing_debug_implementations, unnameable_types)]
 
 pub mod bound;
+mod boxes;
 mod checked;
 mod compile;
 pub mod diagnostic;
