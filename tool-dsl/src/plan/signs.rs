@@ -42,8 +42,8 @@ fn samples(model: &Model, extent: &Extent) -> Vec<Sample> {
     spread(model.domain, extent, 2000, 0.05)
         .map(|[x, y, z]| {
             evaluator.evaluate(EvaluationPoint::new(x, y, z));
-            let value = |curve: CurveIndex| evaluator.get(model.curves[curve].value);
-            let owner = model.regions.iter().position(|region| region.inside.holds(&value));
+            let mut value = |curve: CurveIndex| evaluator.get(model.curves[curve].value);
+            let owner = model.regions.iter().position(|region| region.inside.holds(&mut value));
             let signs = (0..model.curves.len())
                 .map(|curve| match value(curve) {
                     v if v < 0.0 => NEGATIVE,
