@@ -1,14 +1,15 @@
 //! Proved bounds of the solid by interval branch and bound: its extent, and its largest radius over intervals
 //! of the axis. The runtime skips everything that these rule out.
 
+use crate::boxes::BoxTree;
 use crate::diagnostic::{CheckKind, Diagnostic};
 use crate::domain::Domain;
 use crate::elimination::Linear;
 use crate::expr::Id;
-use crate::expr::interval::{Cell, ENTIRE, Encloser, Interval, halves};
+use crate::expr::interval::{Cell, Interval};
 use crate::expr::polynomial::Polynomial;
-use crate::formula::{ANY_SIGN, CurveIndex, Signs, possible};
-use crate::geometry::outline;
+use crate::formula::ANY_SIGN;
+use crate::geometry::outline::{self, Segment};
 use crate::model::Model;
 
 /// The exponent of the power of two that bounds the extent of a solid.
@@ -20,6 +21,14 @@ const MAX_COORDINATE: f64 = 2.037035976334486e90;
 const BOXES_PER_QUERY: usize = 100;
 /// The number of boxes for a cylinder about the axis of space, which boxes fit badly: again a few percent.
 const BOXES_PER_CYLINDER_QUERY: usize = 400;
+/// The number of halvings in the search for a radius, if there is no profile.
+const RADIUS_HALVINGS: usize = 12;
+
+/// The distance of points from the sides of a box whose corner they stand for, relative to these sides: more than the rounding
+/// of the box, and little enough for the halvings of a bound.
+const CORNER_INSET: f64 = 1e-9;
+/// The largest number of corners that are tried for the radius of a slab.
+const MAX_CORNERS: usize = 16;
 
 /// The position of a box relative to the solid.
 #[derive(Clone, Copy, PartialEq)]
@@ -30,30 +39,29 @@ enum BoxPosition {
 }
 
 /// Decides whether the solid reaches into boxes.
-pub struct Prover<'m> {
+struct Prover<'m> {
     model: &'m Model,
-    encloser: Encloser<'m>,
-    /// A box that contains each region.
+    /// A box that contains each region, according to linear curves, which boxes would find slowly.
     reaches: Vec<Cell>,
+    /// The boxes of queries about one cell.
+    boxes: BoxTree<'m>,
+    /// What is known about each of them.
+    known: Vec<KnownBox>,
 }
 
-impl std::fmt::Debug for Prover<'_> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Prover").field("reaches", &self.reaches).finish_non_exhaustive()
-    }
+/// What queries know about a box.
+struct KnownBox {
+    /// An upper bound of the distance of its points from the axis.
+    widest: f64,
+    /// Its position, once a query has asked for it.
+    position: Option<BoxPosition>,
+    /// The regions that may have points of it. They decide its halves, since those that are decided here are decided in the
+    /// same way there.
+    regions: Vec<usize>,
 }
 
 impl<'m> Prover<'m> {
-    /// Makes a prover that uses the curves only.
-    pub fn new(model: &'m Model) -> Prover<'m> {
-        let encloser = Encloser::new(&model.graph, model.curve_values());
-        let everywhere = Cell { sides: [ENTIRE; 3] };
-        Prover { model, encloser, reaches: vec![everywhere; model.regions.len()] }
-    }
-
-    /// Makes a prover that also knows the extent of regions according to their linear curves, which boxes
-    /// would find slowly.
-    fn of_regions(model: &'m Model) -> Prover<'m> {
+    fn new(model: &'m Model) -> Prover<'m> {
         let linear = Linear::new(model);
         let reaches = model.regions.iter().map(|region| {
             let mut signs = vec![ANY_SIGN; model.curves.len()];
@@ -73,72 +81,143 @@ impl<'m> Prover<'m> {
             }
             reach
         });
-        Prover { reaches: reaches.collect(), ..Prover::new(model) }
+        Prover { model, reaches: reaches.collect(), boxes: BoxTree::new(model), known: Vec::new() }
     }
 
-    /// Selects a box.
-    pub fn set_box(&mut self, cell: Cell) {
-        self.encloser.set(cell);
+    /// Selects the cell of the next queries.
+    fn set_cell(&mut self, cell: Cell) {
+        self.boxes.restart(cell);
+        self.known.clear();
+        self.add_box((0..self.model.regions.len()).collect());
     }
 
-    /// Returns the signs that a curve can have in the selected box.
-    pub fn signs(&mut self, curve: CurveIndex) -> Signs {
-        possible(self.encloser.get(self.model.curves[curve].value))
+    /// Adds what is known about the next box: the regions that may have points of it.
+    fn add_box(&mut self, regions: Vec<usize>) {
+        let widest = self.boxes.cell(self.known.len()).radius().high;
+        self.known.push(KnownBox { widest, position: None, regions });
     }
 
-    fn classify(&mut self, cell: Cell) -> BoxPosition {
-        self.set_box(cell);
-        let model = self.model;
-        let mut position = BoxPosition::Outside;
-        for (index, region) in model.regions.iter().enumerate() {
-            // The linear curves exclude the region here.
-            if !self.reaches[index].meets(&cell) {
-                continue;
-            }
-            match region.inside.decide_with(&mut |curve| self.signs(curve)) {
-                Some(true) => return BoxPosition::Inside,
-                Some(false) => {}
-                // A later region may still contain the whole box.
-                None => position = BoxPosition::Unknown,
-            }
+    fn position(&mut self, index: usize) -> BoxPosition {
+        if let Some(position) = self.known[index].position {
+            return position;
         }
+        let position = self.classify(index);
+        self.known[index].position = Some(position);
         position
     }
 
-    /// Returns whether the solid provably does not reach into a box.
-    fn empty(&mut self, cell: Cell) -> bool {
-        self.empty_within(cell, BOXES_PER_QUERY, 0.0)
-    }
-
-    /// Returns whether the solid provably has no point in a box at this distance from the axis or farther. No
-    /// point of the box is farther than `widest`.
-    fn none_beyond(&mut self, radius: f64, widest: f64, within: Cell) -> bool {
-        match self.model.domain {
-            Domain::HalfPlane => self.empty(within.with_side(0, Interval::new(radius, widest))),
-            Domain::Space => self.empty_within(within, BOXES_PER_CYLINDER_QUERY, radius),
-        }
-    }
-
-    /// The same with a budget of boxes. Points nearer to the axis than `radius` are ignored.
-    fn empty_within(&mut self, cell: Cell, budget: usize, radius: f64) -> bool {
-        let mut pending = vec![cell];
-        let mut remaining = budget;
-        while let Some(cell) = pending.pop() {
-            // The box is nearer to the axis than the points in question.
-            if cell.radius().high < radius {
+    fn classify(&mut self, index: usize) -> BoxPosition {
+        let (model, cell) = (self.model, *self.boxes.cell(index));
+        let mut undecided = Vec::new();
+        for &region in &self.known[index].regions {
+            // The linear curves exclude the region here.
+            if !self.reaches[region].meets(&cell) {
                 continue;
             }
-            match self.classify(cell) {
+            let mut signs = |curve| self.boxes.signs(index, curve);
+            match model.regions[region].inside.decide_with(&mut signs) {
+                Some(true) => return BoxPosition::Inside,
+                Some(false) => {}
+                // A later region may still contain the whole box.
+                None => undecided.push(region),
+            }
+        }
+        let is_empty = undecided.is_empty();
+        self.known[index].regions = undecided;
+        if is_empty { BoxPosition::Outside } else { BoxPosition::Unknown }
+    }
+
+    /// Returns the halves of a box whose position is known.
+    fn halves(&mut self, index: usize) -> [usize; 2] {
+        let halves = self.boxes.halves(index);
+        while self.known.len() <= halves[1] {
+            self.add_box(self.known[index].regions.clone());
+        }
+        halves
+    }
+
+    /// Returns whether the solid provably does not reach into a cell.
+    fn is_empty(&mut self, cell: Cell) -> bool {
+        self.set_cell(cell);
+        self.none_beyond(0.0, BOXES_PER_QUERY)
+    }
+
+    /// Returns whether the solid provably has no point in the selected cell at this distance from the axis or farther, with
+    /// a budget of boxes.
+    fn none_beyond(&mut self, radius: f64, budget: usize) -> bool {
+        let mut pending = vec![0];
+        let mut remaining = budget;
+        while let Some(index) = pending.pop() {
+            // The box is nearer to the axis than the points in question.
+            if self.known[index].widest < radius {
+                continue;
+            }
+            match self.position(index) {
                 BoxPosition::Outside => {}
                 BoxPosition::Inside => return false,
                 BoxPosition::Unknown if remaining == 0 => return false,
                 BoxPosition::Unknown => {
                     remaining -= 1;
-                    pending.extend(halves(cell));
+                    pending.extend(self.halves(index));
                 }
             }
         }
         true
+    }
+
+    /// Returns the least radius found, at most `widest`, beyond which the solid provably has no point in a cell. No point of
+    /// the cell is farther from the axis than `widest`.
+    fn radius_within(&mut self, widest: f64, cell: Cell) -> f64 {
+        if self.model.domain == Domain::HalfPlane {
+            return inward(widest, 0.0, RADIUS_HALVINGS, |radius| {
+                self.is_empty(cell.with_side(0, Interval::new(radius, widest)))
+            });
+        }
+        // No proof can succeed up to a point of the solid, so none is tried: it would use up its budget.
+        let reached = self.farthest_corner(cell);
+        // A cylinder about the axis does not change the boxes, so all proofs share them.
+        self.set_cell(cell);
+        inward(widest, 0.0, RADIUS_HALVINGS, |radius| {
+            radius > reached && self.none_beyond(radius, BOXES_PER_CYLINDER_QUERY)
+        })
+    }
+
+    /// Returns a distance from the axis at which the solid provably has a point in a cell: that of the farthest corner of a
+    /// region's box that is in the solid. Returns 0 if none is found.
+    fn farthest_corner(&mut self, cell: Cell) -> f64 {
+        let reached = |corner: &Cell| corner.radius().low;
+        let mut corners = self.corners(cell);
+        corners.sort_by(|a, b| reached(b).total_cmp(&reached(a)));
+        corners.truncate(MAX_CORNERS);
+        corners.iter().find(|corner| self.is_inside(**corner)).map_or(0.0, reached)
+    }
+
+    /// Returns points in a cell near the corners of the boxes that contain the regions.
+    fn corners(&self, cell: Cell) -> Vec<Cell> {
+        let mut corners: Vec<Cell> = Vec::new();
+        for sides in self.reaches.iter().map(|reach| reach.common(&cell).sides) {
+            // Unequal insets, since regions that share a corner often meet on its diagonal.
+            let [x, y, z] = [0, 1, 2].map(|axis| {
+                let (side, fraction) = (sides[axis], CORNER_INSET * (axis + 1) as f64);
+                let inset = fraction * (side.high - side.low);
+                [side.low + inset, side.high - inset]
+            });
+            for index in 0..8 {
+                let corner = Cell::point([x[index & 1], y[index >> 1 & 1], z[index >> 2]]);
+                // An unbounded box has no corners, and one outside the cell has none in it.
+                let is_finite = corner.sides.iter().all(|side| side.low.is_finite());
+                if is_finite && cell.meets(&corner) && !corners.contains(&corner) {
+                    corners.push(corner);
+                }
+            }
+        }
+        corners
+    }
+
+    /// Returns whether a point is provably in the solid.
+    fn is_inside(&mut self, point: Cell) -> bool {
+        self.set_cell(point);
+        self.position(0) == BoxPosition::Inside
     }
 }
 
@@ -224,10 +303,13 @@ pub fn extent(model: &Model) -> Result<Extent, Diagnostic> {
         let (d, z) = (Interval::new(0.0, high[0]), Interval::new(low[1], high[1]));
         return Ok(Extent::of(Cell::half_plane(d, z), high[0]));
     }
-    let (domain, mut prover) = (model.domain, Prover::of_regions(model));
+    let (domain, mut prover) = (model.domain, Prover::new(model));
     let power = reach(domain, &mut prover).ok_or_else(|| endless(model))?;
     let domain_box = domain.bounding_cell(2f64.powi(power));
     let mut cell = domain_box;
+    // No proof can succeed beyond an end if one of these points of the solid is beyond it, so none is tried.
+    let mut points = prover.corners(domain_box);
+    points.retain(|corner| prover.is_inside(*corner));
     // Each end moves inward while the rest stays provably empty. The second pass tightens them, since the
     // solid is easier to bound between its ends.
     for pass in 0..2 {
@@ -235,14 +317,16 @@ pub fn extent(model: &Model) -> Result<Extent, Diagnostic> {
             let side = cell.sides[*axis];
             // In the second pass the other end is already near the solid.
             let opposite = if pass == 0 { domain_box.sides[*axis] } else { side };
+            let mut is_empty_beyond = |end: Interval| {
+                let beyond = cell.with_side(*axis, end);
+                !points.iter().any(|point| beyond.meets(point)) && prover.is_empty(beyond)
+            };
             let end = if *high {
                 inward(side.high, opposite.low, 52, |v| {
-                    prover.empty(cell.with_side(*axis, Interval::new(v, side.high)))
+                    is_empty_beyond(Interval::new(v, side.high))
                 })
             } else {
-                inward(side.low, opposite.high, 52, |v| {
-                    prover.empty(cell.with_side(*axis, Interval::new(side.low, v)))
-                })
+                inward(side.low, opposite.high, 52, |v| is_empty_beyond(Interval::new(side.low, v)))
             };
             let side_to_move = &mut cell.sides[*axis];
             if *high { side_to_move.high = end } else { side_to_move.low = end }
@@ -261,7 +345,7 @@ pub fn extent(model: &Model) -> Result<Extent, Diagnostic> {
     let widest = cell.radius().high;
     let radius = match domain {
         Domain::HalfPlane => cell.sides[0].high,
-        Domain::Space => inward(widest, 0.0, 12, |r| prover.none_beyond(r, widest, cell)),
+        Domain::Space => prover.radius_within(widest, cell),
     };
     Ok(Extent::of(cell, radius))
 }
@@ -294,11 +378,8 @@ fn unbounded_direction(
         } else {
             Interval::new(-MAX_COORDINATE, -size)
         };
-        !prover.empty_within(
-            domain.bounding_cell(MAX_COORDINATE).with_side(*axis, outer),
-            20 * BOXES_PER_QUERY,
-            0.0,
-        )
+        prover.set_cell(domain.bounding_cell(MAX_COORDINATE).with_side(*axis, outer));
+        !prover.none_beyond(0.0, 20 * BOXES_PER_QUERY)
     })
 }
 
@@ -309,11 +390,8 @@ fn endless(model: &Model) -> Diagnostic {
     for region in &model.regions {
         // One region by itself shows which of them is unbounded.
         alone.regions = vec![region.clone()];
-        let out = unbounded_direction(
-            domain,
-            &mut Prover::of_regions(&alone),
-            2f64.powi(MAX_EXTENT_EXPONENT),
-        );
+        let out =
+            unbounded_direction(domain, &mut Prover::new(&alone), 2f64.powi(MAX_EXTENT_EXPONENT));
         let Some((axis, high)) = out else { continue };
         let coordinate = domain.coordinates().iter().find(|c| c.1 == axis).map_or("z", |c| c.2);
         let direction = if high { "large" } else { "small" };
@@ -350,8 +428,6 @@ const SPARE_SLABS: usize = 8;
 const EVEN_INTERVALS: u32 = 8;
 /// The distance within which two ends count as one, relative to the solid's length.
 const SAME_END_FRACTION: f64 = 1e-6;
-/// The number of halvings in the search for a slab's radius, if there is no profile.
-const RADIUS_HALVINGS: usize = 12;
 /// The area that halving a slab must save, relative to the slab's.
 const MIN_SAVED_FRACTION: f64 = 0.01;
 /// The area that merging two slabs may add while there are few enough, relative to the lower slab's.
@@ -383,12 +459,15 @@ impl EnvelopeSlab {
 /// Returns the envelope: at most `MAX_SLABS` slabs from the tip up, which together cover the solid. Each begins
 /// where the one before ends, or below by rounding, since all are rounded outward as in `ToolInfo`.
 pub fn envelope(model: &Model, extent: &Extent) -> Vec<EnvelopeSlab> {
-    let mut prover = Prover::of_regions(model);
+    let mut radii = match &model.section {
+        Some(section) => Radii::Outline(&section.outline),
+        None => Radii::Proved(Box::new(Prover::new(model)), extent.cell()),
+    };
     let mut slabs: Vec<EnvelopeSlab> = first_ends(model, extent)
         .windows(2)
-        .map(|ends| slab_between(&mut prover, extent, ends[0], ends[1], extent.radius))
+        .map(|ends| radii.slab_between(ends[0], ends[1], extent.radius))
         .collect();
-    split_until_full(&mut slabs, &mut prover, extent);
+    split_until_full(&mut slabs, &mut radii);
     merge_neighbours(&mut slabs);
     let steps = extent.steps();
     for slab in &mut slabs {
@@ -415,33 +494,36 @@ fn first_ends(model: &Model, extent: &Extent) -> Vec<f64> {
     ends
 }
 
-/// Returns the slab between two heights, where no point of the solid is farther from the axis than `widest`.
-fn slab_between(
-    prover: &mut Prover<'_>,
-    extent: &Extent,
-    low: f64,
-    high: f64,
-    widest: f64,
-) -> EnvelopeSlab {
-    if let Some(section) = &prover.model.section {
-        let radius = outline::radius_between(&section.outline, low, high);
-        return EnvelopeSlab { low, high, radius };
+/// The largest radius of a solid between two heights.
+enum Radii<'m> {
+    /// That of its outline.
+    Outline(&'m [Segment]),
+    /// The least for which a proof is found, in the solid's box.
+    Proved(Box<Prover<'m>>, Cell),
+}
+
+impl Radii<'_> {
+    /// Returns the slab between two heights, where no point of the solid is farther from the axis than `widest`.
+    fn slab_between(&mut self, low: f64, high: f64, widest: f64) -> EnvelopeSlab {
+        let radius = match self {
+            Radii::Outline(outline) => outline::radius_between(outline, low, high),
+            Radii::Proved(prover, cell) => {
+                prover.radius_within(widest, cell.with_side(2, Interval::new(low, high)))
+            }
+        };
+        EnvelopeSlab { low, high, radius }
     }
-    let within = extent.cell().with_side(2, Interval::new(low, high));
-    let radius =
-        inward(widest, 0.0, RADIUS_HALVINGS, |radius| prover.none_beyond(radius, widest, within));
-    EnvelopeSlab { low, high, radius }
 }
 
 /// Halves the slab whose halving saves most area, while that is enough, up to [`SPARE_SLABS`] slabs too many.
-fn split_until_full(slabs: &mut Vec<EnvelopeSlab>, prover: &mut Prover<'_>, extent: &Extent) {
+fn split_until_full(slabs: &mut Vec<EnvelopeSlab>, radii: &mut Radii<'_>) {
     let mut halves: Vec<Option<[EnvelopeSlab; 2]>> = vec![None; slabs.len()];
     while slabs.len() < MAX_SLABS + SPARE_SLABS {
         for (slab, halves) in slabs.iter().zip(&mut halves) {
             // A proof per half: those of other slabs are kept.
             halves.get_or_insert_with(|| {
                 let ends = [slab.low, slab.low / 2.0 + slab.high / 2.0, slab.high];
-                [0, 1].map(|k| slab_between(prover, extent, ends[k], ends[k + 1], slab.radius))
+                [0, 1].map(|k| radii.slab_between(ends[k], ends[k + 1], slab.radius))
             });
         }
         let saved =
@@ -506,4 +588,94 @@ fn level(model: &Model, value: Id) -> Option<f64> {
         }
     }
     slope.map(|slope| -constant / slope)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::expr::interval::{Encloser, halves};
+    use crate::formula::possible;
+    use crate::library;
+
+    /// Proves the same as [`Prover::none_beyond`] with new boxes that share and inherit nothing.
+    fn none_beyond_without_memory(
+        prover: &Prover<'_>,
+        cell: Cell,
+        radius: f64,
+        budget: usize,
+    ) -> bool {
+        let model = prover.model;
+        let mut encloser = Encloser::new(&model.graph, model.curve_values());
+        let (mut pending, mut remaining) = (vec![cell], budget);
+        while let Some(cell) = pending.pop() {
+            if cell.radius().high < radius {
+                continue;
+            }
+            encloser.set(cell);
+            let mut sign = |curve: usize| possible(encloser.get(model.curves[curve].value));
+            let mut regions = model.regions.iter().zip(&prover.reaches);
+            let decided: Vec<Option<bool>> = regions
+                .by_ref()
+                .filter(|(_, reach)| reach.meets(&cell))
+                .map(|(region, _)| region.inside.decide_with(&mut sign))
+                .collect();
+            if decided.contains(&Some(true)) || decided.contains(&None) && remaining == 0 {
+                return false;
+            }
+            if decided.contains(&None) {
+                remaining -= 1;
+                pending.extend(halves(cell));
+            }
+        }
+        true
+    }
+
+    #[test]
+    fn shared_boxes_prove_what_new_ones_prove() {
+        for tool in library::tools_by_hand() {
+            let (extent, domain) = (tool.extent, tool.model.domain);
+            let mut prover = Prover::new(&tool.model);
+            for slab in 0..6 {
+                let end = |k: i32| extent.low + (extent.high - extent.low) * f64::from(k) / 6.0;
+                let cell = extent.cell().with_side(2, Interval::new(end(slab), end(slab + 1)));
+                let found = prover.radius_within(extent.radius, cell);
+                let expected = inward(extent.radius, 0.0, RADIUS_HALVINGS, |radius| match domain {
+                    Domain::HalfPlane => {
+                        let beyond = cell.with_side(0, Interval::new(radius, extent.radius));
+                        none_beyond_without_memory(&prover, beyond, 0.0, BOXES_PER_QUERY)
+                    }
+                    Domain::Space => {
+                        none_beyond_without_memory(&prover, cell, radius, BOXES_PER_CYLINDER_QUERY)
+                    }
+                });
+                assert_eq!(found.to_bits(), expected.to_bits(), "{} {slab}", tool.model.name);
+            }
+        }
+    }
+
+    #[test]
+    fn ends_are_those_found_without_known_points() {
+        for tool in library::tools_by_hand() {
+            let (extent, model) = (extent(&tool.model).expect("a bounded tool"), &tool.model);
+            let mut prover = Prover::new(model);
+            let power = reach(model.domain, &mut prover).expect("a bounded tool");
+            let mut cell = model.domain.bounding_cell(2f64.powi(power));
+            for pass in 0..2 {
+                for &(axis, high) in model.domain.axis_directions() {
+                    let side = cell.sides[axis];
+                    let whole = model.domain.bounding_cell(2f64.powi(power)).sides[axis];
+                    let opposite = if pass == 0 { whole } else { side };
+                    let [outer, inner] =
+                        if high { [side.high, opposite.low] } else { [side.low, opposite.high] };
+                    let end = inward(outer, inner, 52, |v| {
+                        let beyond = Interval::new(v.min(outer), v.max(outer));
+                        prover.is_empty(cell.with_side(axis, beyond))
+                    });
+                    let side = &mut cell.sides[axis];
+                    *(if high { &mut side.high } else { &mut side.low }) = end;
+                }
+            }
+            assert_eq!(cell, extent.cell(), "{}", model.name);
+        }
+    }
 }

@@ -58,7 +58,7 @@ pub(crate) fn one_side(signs: Signs) -> Option<bool> {
 
 impl Formula {
     /// Returns whether the formula holds where the curves have these values. A NaN is on no side.
-    pub fn holds(&self, value: &impl Fn(CurveIndex) -> f64) -> bool {
+    pub fn holds(&self, value: &mut impl FnMut(CurveIndex) -> f64) -> bool {
         match self {
             Formula::Const(constant) => *constant,
             Formula::Atom { curve, below: true, strict: false } => value(*curve) <= 0.0,

@@ -11,6 +11,7 @@
 #![deny(missing_docs, missing_debug_implementations, unnameable_types)]
 
 pub mod bound;
+mod boxes;
 mod checked;
 mod compile;
 pub mod diagnostic;
@@ -24,6 +25,8 @@ pub mod format;
 pub mod formula;
 mod geometry;
 pub mod interpret;
+#[cfg(test)]
+mod library;
 mod lint;
 pub mod model;
 pub mod number;

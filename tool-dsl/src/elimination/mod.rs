@@ -2,6 +2,7 @@
 //! coordinates, or in monomials and roots of them, each taken as a separate variable. Elimination recognises
 //! borders that meet in a corner. Its results are confirmed with the 256 bits of constants.
 
+mod answers;
 mod forms;
 mod fourier_motzkin;
 
@@ -11,8 +12,12 @@ use crate::expr::polynomial::monomial_of;
 use crate::formula::{ANY_SIGN, NEGATIVE, POSITIVE, Signs, ZERO};
 use crate::model::Model;
 use crate::number::Number;
+use answers::{Addition, Answers};
 use forms::{Form, Variable, Variables, compares_roots};
-use fourier_motzkin::{Condition, Exact, ROUNDING, rescaled, scaled, without};
+use fourier_motzkin::{
+    Condition, Contradiction, Exact, ROUNDING, Source, rescaled, scaled, without,
+};
+use std::cell::RefCell;
 use std::rc::Rc;
 
 /// The largest number of combinations of choices.
@@ -29,6 +34,8 @@ pub(crate) struct Linear {
     facts: Vec<Condition>,
     /// For several roots, alternatives of which at least one holds at every point.
     choices: Vec<(usize, Vec<Condition>)>,
+    /// What queries have found so far.
+    answers: RefCell<Answers>,
 }
 
 /// The linear form of a curve or a depth.
@@ -42,8 +49,11 @@ struct LinearForm {
 }
 
 impl LinearForm {
-    fn new([exact, opposite]: [Rc<Exact>; 2]) -> LinearForm {
-        let sides = [&exact, &opposite].map(|form| Condition::from_exact(form, false));
+    /// Makes the linear form of an index from itself and its negative.
+    fn new(form: usize, [exact, opposite]: [Rc<Exact>; 2]) -> LinearForm {
+        let sides = [(&exact, false), (&opposite, true)].map(|(exact, is_opposite)| {
+            Condition::from_exact(exact, false, Source::Sign { form, is_opposite })
+        });
         let sizes = || sides[0].factors.iter().map(|factor| factor.abs());
         let largest = sizes().fold(0.0, f64::max);
         let is_lost = sizes().any(|size| size != 0.0 && size < 1e3 * ROUNDING * largest);
@@ -88,13 +98,15 @@ impl Linear {
             facts.extend(variables.projections(forms[model.curves.len()..].iter().flatten()));
         }
         let count = variables.count();
-        let condition = |form: Form| Condition::from_exact(&dense(form, count), false);
+        let condition =
+            |form: Form| Condition::from_exact(&dense(form, count), false, Source::Fact);
         Linear {
             forms: forms
                 .into_iter()
-                .map(|form| {
+                .enumerate()
+                .map(|(index, form)| {
                     let opposite = Form::default().plus(form.as_ref()?, &Number::int(-1));
-                    Some(LinearForm::new([form?, opposite].map(|form| dense(form, count))))
+                    Some(LinearForm::new(index, [form?, opposite].map(|form| dense(form, count))))
                 })
                 .collect(),
             variables: count,
@@ -104,6 +116,7 @@ impl Linear {
                 .into_iter()
                 .map(|(root, choices)| (root, choices.into_iter().map(condition).collect()))
                 .collect(),
+            answers: RefCell::default(),
         }
     }
 
@@ -172,14 +185,18 @@ impl Linear {
     }
 
     pub(crate) fn contradictory(&self, signs: &[Signs]) -> bool {
-        self.has_no_solution(self.conditions(signs))
+        self.has_no_solution(signs, Addition::None)
     }
 
     /// Returns whether these signs contradict one another, if the linear part of the curves decides it. For
     /// straight lines elimination is complete.
     pub(super) fn is_contradictory(&self, signs: &[Signs]) -> Option<bool> {
+        if self.answers.borrow().contradict(signs, Addition::None) {
+            return Some(true);
+        }
         let rest = self.without_variables(self.conditions(signs))?;
-        if rest.iter().any(Condition::is_false) {
+        if let Some(contradiction) = rest.iter().find_map(Condition::contradiction) {
+            self.answers.borrow_mut().add_contradiction(signs, Addition::None, &contradiction);
             return Some(true);
         }
         let mut constrained = self.forms.iter().zip(signs).filter(|(_, sign)| **sign != ANY_SIGN);
@@ -196,49 +213,87 @@ impl Linear {
 
     /// The same as [`Linear::contradictory`] in a region, where its depth is not negative.
     pub(crate) fn contradictory_in(&self, region: Option<usize>, signs: &[Signs]) -> bool {
-        let mut conditions = self.conditions(signs);
         // A point of a region has a depth of 0 or more, which the path does not say.
-        let depth = region.and_then(|region| self.forms[signs.len() + region].as_ref());
-        conditions.extend(depth.map(|depth| depth.sides[1].clone()));
-        self.has_no_solution(conditions)
+        let known = region.filter(|region| self.forms[signs.len() + region].is_some());
+        self.has_no_solution(signs, known.map_or(Addition::None, Addition::NonNegativeDepth))
     }
 
     /// Returns whether one region is nowhere deeper than another, or than the outside, where curves have
     /// these signs.
     pub(crate) fn no_deeper(&self, signs: &[Signs], a: Option<usize>, b: Option<usize>) -> bool {
-        let zero = Number::int(0);
-        let zero_form = Exact { factors: vec![zero.clone(); self.variables], constant: zero };
-        let form = |region: Option<usize>| match region {
-            Some(region) => self.forms[signs.len() + region].as_ref().map(|form| &*form.exact),
-            None => Some(&zero_form),
-        };
-        let (Some(a), Some(b)) = (form(a), form(b)) else { return false };
-        // `b - a < 0`; a contradiction shows that no such point exists.
-        let deeper = b.combined(&Number::int(1), a, &Number::int(-1));
-        let mut conditions = self.conditions(signs);
-        conditions.push(Condition::from_exact(&Rc::new(deeper), true));
-        self.has_no_solution(conditions)
+        let has_form =
+            |region: Option<usize>| region.is_none_or(|r| self.forms[signs.len() + r].is_some());
+        // A contradiction shows that no point is deeper.
+        has_form(a) && has_form(b) && self.has_no_solution(signs, Addition::Deeper([a, b]))
     }
 
-    /// Returns whether no point satisfies the conditions, whichever alternative holds for each root in them.
-    fn has_no_solution(&self, mut conditions: Vec<Condition>) -> bool {
-        // Facts about variables that nothing else mentions have no consequences.
+    /// Returns the condition that a query adds to those of the signs of so many curves.
+    fn added_condition(&self, curves: usize, addition: Addition) -> Option<Condition> {
+        match addition {
+            Addition::None => None,
+            Addition::NonNegativeDepth(region) => {
+                self.forms[curves + region].as_ref().map(|depth| depth.sides[1].clone())
+            }
+            Addition::Deeper(regions) => {
+                let zero = Number::int(0);
+                let zero_form =
+                    Exact { factors: vec![zero.clone(); self.variables], constant: zero };
+                let [a, b] = regions.map(|region| match region {
+                    Some(region) => self.forms[curves + region].as_ref().map(|form| &*form.exact),
+                    None => Some(&zero_form),
+                });
+                // `b - a < 0`
+                let deeper = b?.combined(&Number::int(1), a?, &Number::int(-1));
+                Some(Condition::from_exact(&Rc::new(deeper), true, Source::Query))
+            }
+        }
+    }
+
+    /// Returns whether no point has these signs and satisfies the added condition.
+    fn has_no_solution(&self, signs: &[Signs], addition: Addition) -> bool {
+        if let Some(known) = self.answers.borrow().has_no_solution(signs, addition) {
+            return known;
+        }
+        let mut conditions = self.conditions(signs);
+        conditions.extend(self.added_condition(signs.len(), addition));
+        let contradiction = self.contradiction(conditions);
+        let mut answers = self.answers.borrow_mut();
+        match &contradiction {
+            Some(contradiction) => answers.add_contradiction(signs, addition, contradiction),
+            None => answers.add_consistent(signs, addition),
+        }
+        contradiction.is_some()
+    }
+
+    /// Returns, for each variable, whether it is a coordinate or a condition other than the facts mentions it.
+    fn mentioned(&self, conditions: &[Condition]) -> Vec<bool> {
+        let mut mentioned: Vec<bool> =
+            (0..self.variables).map(|variable| self.axes.contains(&Some(variable))).collect();
+        for condition in &conditions[self.facts.len()..] {
+            for (mentioned, factor) in mentioned.iter_mut().zip(&condition.factors) {
+                *mentioned |= *factor != 0.0;
+            }
+        }
+        mentioned
+    }
+
+    /// Drops the facts about variables that nothing else mentions, which have no consequences.
+    fn relevant(&self, mut conditions: Vec<Condition>, mentioned: &[bool]) -> Vec<Condition> {
         let requested = conditions.split_off(self.facts.len());
-        let mentioned: Vec<bool> = (0..self.variables)
-            .map(|variable| {
-                self.axes.contains(&Some(variable))
-                    || requested.iter().any(|condition| condition.factors[variable] != 0.0)
-            })
-            .collect();
-        let is_relevant = |condition: &Condition| {
-            let mut used = condition.factors.iter().zip(&mentioned);
-            used.all(|(factor, mentioned)| *factor == 0.0 || *mentioned)
-        };
-        conditions.retain(is_relevant);
+        conditions.retain(|condition| condition.is_about(mentioned));
         conditions.extend(requested);
+        conditions
+    }
+
+    /// Returns a contradiction among conditions, whichever alternative holds for each root in them.
+    fn contradiction(&self, conditions: Vec<Condition>) -> Option<Contradiction> {
+        let mentioned = self.mentioned(&conditions);
+        let conditions = self.relevant(conditions, &mentioned);
         let mut count = 1;
         let choices: Vec<&Vec<Condition>> = (self.choices.iter())
-            .filter(|(root, choices)| mentioned[*root] && choices.iter().all(is_relevant))
+            .filter(|(root, choices)| {
+                mentioned[*root] && choices.iter().all(|choice| choice.is_about(&mentioned))
+            })
             .map(|(_, choices)| choices)
             .take_while(|choices| {
                 // All combinations are tried, and their number is a product.
@@ -246,28 +301,35 @@ impl Linear {
                 count <= MAX_CHOICES
             })
             .collect();
-        self.is_unsatisfiable(conditions.clone())
-            || !choices.is_empty() && self.is_unsatisfiable_for_all(conditions, &choices)
+        let found = self.contradiction_by_elimination(conditions.clone());
+        if found.is_some() || choices.is_empty() {
+            return found;
+        }
+        self.contradiction_for_all(conditions, &choices)
     }
 
-    /// Returns whether every combination of alternatives is contradictory.
-    fn is_unsatisfiable_for_all(
+    /// Returns the contradictions of all combinations of alternatives, if every one is contradictory.
+    fn contradiction_for_all(
         &self,
         conditions: Vec<Condition>,
         choices: &[&Vec<Condition>],
-    ) -> bool {
+    ) -> Option<Contradiction> {
         let Some((first, rest)) = choices.split_first() else {
-            return self.is_unsatisfiable(conditions);
+            return self.contradiction_by_elimination(conditions);
         };
-        first.iter().all(|choice| {
+        let mut all = Contradiction::default();
+        for choice in *first {
             let mut conditions = conditions.clone();
             conditions.push(choice.clone());
-            self.is_unsatisfiable_for_all(conditions, rest)
-        })
+            let one = self.contradiction_for_all(conditions, rest)?;
+            all.sources.extend(one.sources);
+            all.needs_strictness |= one.needs_strictness;
+        }
+        Some(all)
     }
 
-    fn is_unsatisfiable(&self, conditions: Vec<Condition>) -> bool {
-        self.without_variables(conditions).is_some_and(|rest| rest.iter().any(Condition::is_false))
+    fn contradiction_by_elimination(&self, conditions: Vec<Condition>) -> Option<Contradiction> {
+        self.without_variables(conditions)?.iter().find_map(Condition::contradiction)
     }
 
     /// Eliminates all variables from conditions, in their own unit.
@@ -285,8 +347,42 @@ fn dense(form: Form, variables: usize) -> Rc<Exact> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::compile;
     use crate::source::Source;
+    use crate::{compile, library};
+
+    /// Every answer that rests on earlier ones is that of elimination by itself.
+    #[test]
+    fn remembered_answers_are_those_of_elimination() {
+        for tool in library::tools_by_hand() {
+            let model = &tool.model;
+            let (curves, regions) = (model.curves.len(), model.regions.len());
+            let linear = Linear::with_depths(model, tool.extent.cell());
+            let mut counts = [0; 2];
+            for number in 0..400u32 {
+                // The signs at a point, some of them forgotten, so that queries resemble one another; or opposite ones.
+                let signs: Vec<Signs> = (0..curves as u32)
+                    .map(|curve| {
+                        let mixed = (number / 3 + 1).wrapping_mul(0x9E37_79B9 ^ curve << 7) >> 9;
+                        let choices = [NEGATIVE, POSITIVE, NEGATIVE | ZERO, POSITIVE | ZERO, ZERO];
+                        choices.get((mixed % 11) as usize).copied().unwrap_or(ANY_SIGN)
+                    })
+                    .collect();
+                let region = number as usize % regions;
+                let other = Some((region + 1) % regions).filter(|_| number % 2 == 0);
+                let ask = || {
+                    let contradictory = linear.contradictory(&signs);
+                    let in_region = linear.contradictory_in(Some(region), &signs);
+                    [contradictory, in_region, linear.no_deeper(&signs, Some(region), other)]
+                };
+                let found = ask();
+                let known = linear.answers.take();
+                assert_eq!(found, ask(), "{} {signs:?}", model.name);
+                linear.answers.replace(known);
+                counts[usize::from(found[2])] += 1;
+            }
+            assert!(!counts.contains(&0), "{} {counts:?}", model.name);
+        }
+    }
 
     /// `d < 1` and `d > 1 - 1e-13` hold in a thin ring, which doubles cannot distinguish from the empty set.
     #[test]

@@ -2,7 +2,12 @@
 //! during construction.
 
 use crate::number::Number;
-use std::collections::{BTreeSet, HashMap};
+use std::collections::HashMap;
+
+/// For each node that is a root, the nodes that it needs, operands first and without constants; an empty list for the others.
+///
+/// Boxed slices, since evaluation indexes them all the time: without optimisation, every index into a `Vec` is a call.
+pub(crate) type EvaluationOrders = Box<[Box<[Id]>]>;
 
 /// Expressions with shared subexpressions.
 #[derive(Clone, Debug, Default)]
@@ -34,13 +39,40 @@ impl Graph {
     /// Returns the nodes that some roots need, operands first.
     pub fn dependencies(&self, roots: impl IntoIterator<Item = Id>) -> Vec<Id> {
         let mut pending: Vec<Id> = roots.into_iter().collect();
-        let mut needed_ids = BTreeSet::new();
+        let mut is_needed = vec![false; self.nodes.len()];
+        let mut needed_ids = Vec::new();
         while let Some(id) = pending.pop() {
-            if needed_ids.insert(id) {
+            if !is_needed[id.index()] {
+                is_needed[id.index()] = true;
+                needed_ids.push(id);
                 pending.extend(self.node(id).operands());
             }
         }
-        needed_ids.into_iter().collect()
+        needed_ids.sort_unstable();
+        needed_ids
+    }
+
+    /// Returns the orders in which some roots are evaluated, and the constants that they need, each once.
+    pub(crate) fn evaluation_orders(
+        &self,
+        roots: impl IntoIterator<Item = Id>,
+    ) -> (EvaluationOrders, Vec<Id>) {
+        let mut orders = vec![Box::default(); self.nodes.len()].into_boxed_slice();
+        let mut is_known_constant = vec![false; self.nodes.len()];
+        let mut constants = Vec::new();
+        for root in roots {
+            let mut order = self.dependencies([root]);
+            order.retain(|id| {
+                let is_constant = self.constant(*id).is_some();
+                if is_constant && !is_known_constant[id.index()] {
+                    is_known_constant[id.index()] = true;
+                    constants.push(*id);
+                }
+                !is_constant
+            });
+            orders[root.index()] = order.into_boxed_slice();
+        }
+        (orders, constants)
     }
 
     /// Returns the nodes whose squares a node is the sum of, if it visibly is such a sum. `None` in the list
@@ -483,20 +515,18 @@ pub enum Node {
 impl Node {
     /// Returns the node's operands.
     pub fn operands(&self) -> impl Iterator<Item = Id> {
-        let four = match *self {
-            Node::Const(_) | Node::Coord(_) => [None; 4],
-            Node::Neg(a) | Node::Abs(a) | Node::Sqrt(a) => [Some(a), None, None, None],
+        let (ids, count) = match *self {
+            Node::Const(_) | Node::Coord(_) => ([Id(0); 4], 0),
+            Node::Neg(a) | Node::Abs(a) | Node::Sqrt(a) => ([a; 4], 1),
             Node::Add(a, b)
             | Node::Sub(a, b)
             | Node::Mul(a, b)
             | Node::Div(a, b)
             | Node::Quotient(a, b)
             | Node::Min(a, b)
-            | Node::Max(a, b) => [Some(a), Some(b), None, None],
-            Node::Select { low, high, then, other } => {
-                [Some(low), Some(high), Some(then), Some(other)]
-            }
+            | Node::Max(a, b) => ([a, b, b, b], 2),
+            Node::Select { low, high, then, other } => ([low, high, then, other], 4),
         };
-        four.into_iter().flatten()
+        ids.into_iter().take(count)
     }
 }

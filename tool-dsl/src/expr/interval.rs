@@ -1,7 +1,7 @@
 //! Interval enclosures. Every operation rounds outward by one unit in the last place, so that the exact value
 //! over a box lies between the ends.
 
-use super::{Coord, Graph, Id, Node};
+use super::{Coord, EvaluationOrders, Graph, Id, Node};
 use crate::number::Number;
 
 /// The numbers between two ends, which are included. A quantity that may be undefined is enclosed by
@@ -221,10 +221,10 @@ impl Cell {
 pub struct Encloser<'g> {
     graph: &'g Graph,
     /// The nodes that each root needs, operands first, without constants; empty for nodes that are not roots.
-    needed: Vec<Vec<Id>>,
-    values: Vec<Interval>,
+    needed: EvaluationOrders,
+    values: Box<[Interval]>,
     /// The number of the box for which each value was last computed.
-    done: Vec<u32>,
+    done: Box<[u32]>,
     now: u32,
     cell: Cell,
 }
@@ -232,20 +232,12 @@ pub struct Encloser<'g> {
 impl<'g> Encloser<'g> {
     /// Makes an encloser for some nodes.
     pub fn new(graph: &'g Graph, roots: impl IntoIterator<Item = Id>) -> Encloser<'g> {
-        let mut values = vec![ENTIRE; graph.nodes().len()];
-        let mut needed = vec![Vec::new(); values.len()];
-        for root in roots {
-            let mut order = graph.dependencies([root]);
-            order.retain(|id| match graph.constant(*id) {
-                Some(value) => {
-                    values[id.index()] = Interval::enclosing(value);
-                    false
-                }
-                None => true,
-            });
-            needed[root.index()] = order;
+        let (needed, constants) = graph.evaluation_orders(roots);
+        let mut values = vec![ENTIRE; graph.nodes().len()].into_boxed_slice();
+        for id in constants {
+            values[id.index()] = graph.constant(id).map_or(ENTIRE, Interval::enclosing);
         }
-        let done = vec![0; values.len()];
+        let done = vec![0; values.len()].into_boxed_slice();
         Encloser { graph, needed, values, done, now: 0, cell: Cell { sides: [ZERO; 3] } }
     }
 

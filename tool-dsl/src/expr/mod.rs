@@ -73,5 +73,6 @@ pub mod interval;
 pub mod polynomial;
 pub mod value;
 
+pub(crate) use graph::EvaluationOrders;
 pub use graph::Graph;
 pub use graph::{Coord, Id, Node};

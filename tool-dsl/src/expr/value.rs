@@ -1,7 +1,8 @@
 //! Evaluates expressions at a point, in `f64`: one IEEE operation per node, in the order of ids. Emitted code and the
 //! interpreter compute the same values. Their tests of a curve that is a difference compare its terms, with the same result.
 
-use super::{Coord, Graph, Id, Node};
+use super::{Coord, EvaluationOrders, Graph, Id, Node};
+use crate::number::Number;
 
 /// Evaluates chosen nodes of a graph at one point after another.
 #[derive(Clone, Debug)]
@@ -62,9 +63,9 @@ impl<'g> Evaluator<'g> {
 
     /// Evaluates all nodes that the roots need, at a point.
     pub fn evaluate(&mut self, at: EvaluationPoint) {
+        let nodes = self.graph.nodes();
         for &id in &self.order {
-            self.values[id.index()] =
-                node_value(self.graph.node(id), at, |id| self.values[id.index()]);
+            self.values[id.index()] = node_value(&nodes[id.index()], at, &self.values);
         }
     }
 
@@ -81,10 +82,10 @@ impl<'g> Evaluator<'g> {
 pub(crate) struct LazyEvaluator<'g> {
     graph: &'g Graph,
     /// The nodes that each root needs, operands first, without constants; empty for nodes that are not roots.
-    needed: Vec<Vec<Id>>,
-    values: Vec<f64>,
+    needed: EvaluationOrders,
+    values: Box<[f64]>,
     /// The number of the point for which each value was last computed.
-    computed_for: Vec<u64>,
+    computed_for: Box<[u64]>,
     point_number: u64,
     point: EvaluationPoint,
 }
@@ -92,20 +93,12 @@ pub(crate) struct LazyEvaluator<'g> {
 impl<'g> LazyEvaluator<'g> {
     /// Creates an evaluator of `roots`.
     pub(crate) fn new(graph: &'g Graph, roots: impl IntoIterator<Item = Id>) -> LazyEvaluator<'g> {
-        let mut values = vec![0.0; graph.nodes().len()];
-        let mut needed = vec![Vec::new(); values.len()];
-        for root in roots {
-            let mut order = graph.dependencies([root]);
-            order.retain(|id| match graph.constant(*id) {
-                Some(value) => {
-                    values[id.index()] = value.to_f64();
-                    false
-                }
-                None => true,
-            });
-            needed[root.index()] = order;
+        let (needed, constants) = graph.evaluation_orders(roots);
+        let mut values = vec![0.0; graph.nodes().len()].into_boxed_slice();
+        for id in constants {
+            values[id.index()] = graph.constant(id).map_or(0.0, Number::to_f64);
         }
-        let computed_for = vec![0; values.len()];
+        let computed_for = vec![0; values.len()].into_boxed_slice();
         let point = EvaluationPoint::new(0.0, 0.0, 0.0);
         LazyEvaluator { graph, needed, values, computed_for, point_number: 0, point }
     }
@@ -121,20 +114,21 @@ impl<'g> LazyEvaluator<'g> {
         if self.computed_for[root.index()] == self.point_number {
             return self.values[root.index()];
         }
+        let nodes = self.graph.nodes();
         for &id in &self.needed[root.index()] {
             let index = id.index();
             if self.computed_for[index] != self.point_number {
                 self.computed_for[index] = self.point_number;
-                self.values[index] =
-                    node_value(self.graph.node(id), self.point, |id| self.values[id.index()]);
+                self.values[index] = node_value(&nodes[index], self.point, &self.values);
             }
         }
         self.values[root.index()]
     }
 }
 
-/// Returns the value of a node at a point where its operands have the values `v`.
-fn node_value(node: &Node, at: EvaluationPoint, v: impl Fn(Id) -> f64) -> f64 {
+/// Returns the value of a node at a point where its operands have the given values, by their ids.
+fn node_value(node: &Node, at: EvaluationPoint, values: &[f64]) -> f64 {
+    let v = |id: Id| values[id.index()];
     match node {
         Node::Const(value) => value.to_f64(),
         Node::Coord(Coord::X) => at.x,

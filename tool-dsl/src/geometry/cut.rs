@@ -44,6 +44,16 @@ pub(crate) enum Cut {
     Both(Option<Piece>, Option<Piece>),
 }
 
+/// The position of a piece relative to a curve.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Position {
+    Below,
+    Above,
+    Across,
+    /// The piece is degenerate: its border has no interior.
+    Degenerate,
+}
+
 /// A vertex with its side and the edge that follows it.
 type Corner = (Point, i8, Edge);
 
@@ -59,9 +69,11 @@ impl Piece {
     /// Divides the piece into the parts on the two sides of a curve.
     pub(crate) fn cut(&self, cutter: Cutter<'_, '_>) -> Cut {
         let corners = cutter.corners(self);
-        let has = |side: i8| corners.iter().any(|corner| corner.1 == side);
-        match (has(-1), has(1)) {
-            (true, true) => {
+        match self.position(cutter, &corners) {
+            Position::Below => Cut::Below,
+            Position::Above => Cut::Above,
+            Position::Degenerate => Cut::Nothing,
+            Position::Across => {
                 let [below, above] = [-1, 1].map(|side| {
                     let (vertices, edges) = cutter.half(&corners, side)?;
                     let part = Piece { vertices, edges, ..*self };
@@ -70,12 +82,24 @@ impl Piece {
                 });
                 Cut::Both(below, above)
             }
-            (true, false) => Cut::Below,
-            (false, true) => Cut::Above,
+        }
+    }
+
+    /// Returns the position of the piece relative to a curve: that of a cut, without its parts.
+    pub(crate) fn position_to(&self, cutter: Cutter<'_, '_>) -> Position {
+        self.position(cutter, &cutter.corners(self))
+    }
+
+    fn position(&self, cutter: Cutter<'_, '_>, corners: &[Corner]) -> Position {
+        let has = |side: i8| corners.iter().any(|corner| corner.1 == side);
+        match (has(-1), has(1)) {
+            (true, true) => Position::Across,
+            (true, false) => Position::Below,
+            (false, true) => Position::Above,
             // No vertex is clearly on a side: the centre decides, unless the piece is degenerate.
-            (false, false) if is_thin(&self.vertices, cutter.size) => Cut::Nothing,
-            (false, false) if cutter.shape().below(self.middle()) => Cut::Below,
-            (false, false) => Cut::Above,
+            (false, false) if is_thin(&self.vertices, cutter.size) => Position::Degenerate,
+            (false, false) if cutter.shape().below(self.middle()) => Position::Below,
+            (false, false) => Position::Above,
         }
     }
 
@@ -270,7 +294,8 @@ impl<'a, 'g> Cutter<'a, 'g> {
         let start = corners.iter().position(|corner| corner.1 == -side)?;
         for k in 1..=count {
             let (p, own, edge) = corners[(start + k) % count];
-            let [previous_side, next_side] = [k - 1, k + 1].map(|k| corners[(start + k) % count].1);
+            let previous_side = corners[(start + k - 1) % count].1;
+            let next_side = corners[(start + k + 1) % count].1;
             // A vertex that only touches the curve does not belong to this side.
             if own == side || (own == 0 && (previous_side == side || next_side == side)) {
                 vertices.push(p);
@@ -514,7 +539,7 @@ impl<'g> CurveFunction<'g> {
     /// Returns the coefficients of `v0 + slope t + bend t²`, the value along the segment between two points
     /// for t from 0 to 1. They are exact for a conic and approximate for other curves.
     fn quadratic_along(&self, a: Point, b: Point) -> [f64; 3] {
-        let [v0, vm, v1] = [a, between(a, b, 0.5), b].map(|p| self.value(p));
+        let (v0, vm, v1) = (self.value(a), self.value(between(a, b, 0.5)), self.value(b));
         [v0, 4.0 * vm - 3.0 * v0 - v1, 2.0 * (v0 - 2.0 * vm + v1)]
     }
 

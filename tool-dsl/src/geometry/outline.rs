@@ -151,8 +151,11 @@ impl Segment {
     /// Returns the distance of a point from the segment.
     pub(crate) fn distance_to(&self, p: Point) -> f64 {
         let [before, after] = self.sector(p);
-        let [from, to] = self.ends().map(|end| norm(minus(p, end)));
-        if before < 0.0 || after < 0.0 { from.min(to) } else { self.signed(p).abs() }
+        if before < 0.0 || after < 0.0 {
+            let (from, to) = (norm(minus(p, self.flat.from)), norm(minus(p, self.flat.to)));
+            return from.min(to);
+        }
+        self.signed(p).abs()
     }
 
     /// Returns the distances of a point past the normal at the start and ahead of the normal at the end. Both

@@ -62,7 +62,9 @@ impl<'t> Interpreter<'t> {
         self.evaluator.evaluate(EvaluationPoint { length, ..EvaluationPoint::new(x, y, z) });
         let model = &self.tool.model;
         let region = model.regions.iter().position(|region| {
-            region.inside.holds(&|curve: CurveIndex| self.evaluator.get(model.curves[curve].value))
+            region
+                .inside
+                .holds(&mut |curve: CurveIndex| self.evaluator.get(model.curves[curve].value))
         })?;
         let get = |id: Id| self.evaluator.get(id);
         let outputs = &model.regions[region].outputs;

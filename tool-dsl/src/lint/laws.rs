@@ -1,7 +1,7 @@
 //! Checks of `magnitude` and `niceness` at points that samples of the inside do not reach: toward the
 //! surface, at its corners and on the axis.
 
-use super::{Fault, Linter, norm};
+use super::{Linter, norm};
 use crate::bound::Extent;
 use crate::diagnostic::{CheckKind, Diagnostic, FormattedNumber, Subject};
 use crate::expr::Id;
@@ -51,7 +51,7 @@ impl Linter<'_> {
     /// Updates the largest values of the laws at the current point.
     pub(super) fn measure(&mut self, owner: usize) {
         for (law, (_, id, _)) in self.laws(owner).into_iter().enumerate() {
-            let value = self.evaluator.get(id).abs();
+            let value = self.get(id).abs();
             let largest = &mut self.largest[owner][law];
             *largest = largest.max(if value.is_finite() { value } else { 0.0 });
         }
@@ -66,12 +66,12 @@ impl Linter<'_> {
         });
         let Some(owner) = self.owner(near) else { return };
         self.report_missing_values(owner, near);
-        let values = self.laws(owner).map(|(_, id, _)| self.evaluator.get(id).abs());
+        let values = self.laws(owner).map(|(_, id, _)| self.get(id).abs());
         if self.owner(far) != Some(owner) {
             return;
         }
         for (law, (quantity, id, span)) in self.laws(owner).into_iter().enumerate() {
-            let (near, far) = (values[law], self.evaluator.get(id).abs());
+            let (near, far) = (values[law], self.get(id).abs());
             if near > MIN_GROWTH_RATIO * far
                 && near > MIN_RATIO_TO_SAMPLES * self.largest[owner][law]
             {
@@ -100,7 +100,7 @@ impl Linter<'_> {
     /// Reports laws that have no value at the current point.
     fn report_missing_values(&mut self, owner: usize, point: [f64; 3]) {
         for (quantity, id, span) in self.laws(owner) {
-            if !self.evaluator.get(id).is_finite() {
+            if !self.get(id).is_finite() {
                 let diagnostic =
                     self.not_finite(owner, quantity, id, span, self.format_point(point));
                 self.report(diagnostic);
@@ -118,8 +118,7 @@ impl Linter<'_> {
         place: String,
     ) -> Diagnostic {
         let subject = Subject::Quantity(quantity, self.model.regions[owner].name.clone());
-        let fault = Fault::of(&self.model.graph, &self.evaluator, id);
-        Diagnostic::new(span, fault.kind(place, subject))
+        Diagnostic::new(span, self.fault(id).kind(place, subject))
     }
 }
 

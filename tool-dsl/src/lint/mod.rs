@@ -4,12 +4,13 @@
 use crate::bound::{Extent, spread};
 use crate::diagnostic::{CheckKind, Diagnostic, FormattedNumber, Subject, any_error};
 use crate::domain::Domain;
-use crate::expr::value::{EvaluationPoint, Evaluator};
-use crate::expr::{Graph, Id, Node};
+use crate::expr::value::{EvaluationPoint, LazyEvaluator};
+use crate::expr::{Id, Node};
 use crate::formula::{Curve, CurveIndex, Formula};
 use crate::model::{Model, Region};
 use crate::resolve::{never_wins, off_tip, overlapping};
 use crate::source::Span;
+use std::cell::RefCell;
 
 mod laws;
 
@@ -101,7 +102,10 @@ pub(crate) fn lint(model: &Model, extent: &Extent) -> Vec<Diagnostic> {
 struct Linter<'m> {
     model: &'m Model,
     size: f64,
-    evaluator: Evaluator<'m>,
+    /// Computes what is asked for at the current point; most points are asked for the signs of a few curves only.
+    evaluator: RefCell<LazyEvaluator<'m>>,
+    /// The region that was last found by [`Linter::is_inside`].
+    last_region: usize,
     found: Vec<Diagnostic>,
     owned_points: Vec<usize>,
     holds: Vec<usize>,
@@ -120,7 +124,8 @@ impl<'m> Linter<'m> {
         Linter {
             model,
             size: extent.scale(),
-            evaluator: Evaluator::new(&model.graph, model.roots()),
+            evaluator: RefCell::new(LazyEvaluator::new(&model.graph, model.roots())),
+            last_region: 0,
             found: Vec::new(),
             owned_points: vec![0; model.regions.len()],
             holds: vec![0; model.regions.len()],
@@ -147,7 +152,12 @@ impl<'m> Linter<'m> {
 
     /// Selects a point.
     fn set_point(&mut self, [x, y, z]: [f64; 3]) {
-        self.evaluator.evaluate(EvaluationPoint::new(x, y, z));
+        self.evaluator.get_mut().set(EvaluationPoint::new(x, y, z));
+    }
+
+    /// Returns the value of one of the model's roots at the current point.
+    fn get(&self, id: Id) -> f64 {
+        self.evaluator.borrow_mut().get(id)
     }
 
     fn format_point(&self, [x, y, z]: [f64; 3]) -> String {
@@ -169,15 +179,31 @@ impl<'m> Linter<'m> {
     }
 
     fn value(&self, curve: CurveIndex) -> f64 {
-        self.evaluator.get(self.model.curves[curve].value)
+        self.get(self.model.curves[curve].value)
+    }
+
+    /// Returns whether the current point satisfies a region's conditions.
+    fn is_in_region(&mut self, region: usize) -> bool {
+        let (model, evaluator) = (self.model, self.evaluator.get_mut());
+        let mut value = |curve: CurveIndex| evaluator.get(model.curves[curve].value);
+        model.regions[region].inside.holds(&mut value)
     }
 
     fn owner(&mut self, point: [f64; 3]) -> Option<usize> {
         self.set_point(point);
-        self.model
-            .regions
-            .iter()
-            .position(|region| region.inside.holds(&|curve: CurveIndex| self.value(curve)))
+        (0..self.model.regions.len()).find(|region| self.is_in_region(*region))
+    }
+
+    /// Returns whether some region has a point.
+    fn is_inside(&mut self, point: [f64; 3]) -> bool {
+        self.set_point(point);
+        // In a search for the surface, the last region that had a point mostly has the next one too.
+        if self.is_in_region(self.last_region) {
+            return true;
+        }
+        let region = (0..self.model.regions.len()).find(|region| self.is_in_region(*region));
+        self.last_region = region.unwrap_or(self.last_region);
+        region.is_some()
     }
 
     /// Returns the lowest z found inside.
@@ -193,13 +219,13 @@ impl<'m> Linter<'m> {
             for column in columns {
                 let d: f64 = from + width * f64::from(column);
                 let point = |z: f64| [d.max(0.0), 0.0, z];
-                let inside = (0..=COLUMNS).find(|step| self.owner(point(at(*step))).is_some());
+                let inside = (0..=COLUMNS).find(|step| self.is_inside(point(at(*step))));
                 let Some(step) = inside else { continue };
                 // One step lower is outside, or below the box.
                 let (mut inside_z, mut outside_z) = (at(step), at(step - 1));
                 for _ in 0..50 {
                     let middle = inside_z / 2.0 + outside_z / 2.0;
-                    if self.owner(point(middle)).is_some() {
+                    if self.is_inside(point(middle)) {
                         inside_z = middle;
                     } else {
                         outside_z = middle;
@@ -221,7 +247,7 @@ impl<'m> Linter<'m> {
     fn reaches_lower_side(&mut self, extent: &Extent, found: f64) -> bool {
         let lowest = Extent { high: extent.low + STRIP_FRACTION * self.size, ..*extent };
         extent.low < found - STRIP_FRACTION * self.size
-            && spread(self.model.domain, &lowest, SAMPLES, 0.0).any(|p| self.owner(p).is_some())
+            && spread(self.model.domain, &lowest, SAMPLES, 0.0).any(|p| self.is_inside(p))
     }
 
     /// Reports a tool whose end is not its tip, at z = 0.
@@ -233,12 +259,12 @@ impl<'m> Linter<'m> {
 
     /// Checks one point, and returns its owner.
     fn point(&mut self, point: [f64; 3]) -> Option<usize> {
-        let owner = self.owner(point);
+        self.set_point(point);
         self.report_undefined_curves(point);
+        let claims: Vec<usize> =
+            (0..self.model.regions.len()).filter(|region| self.is_in_region(*region)).collect();
+        let owner = claims.first().copied();
         let value = |curve: CurveIndex| self.value(curve);
-        let claims: Vec<usize> = (0..self.model.regions.len())
-            .filter(|r| self.model.regions[*r].inside.holds(&value))
-            .collect();
         // Neighbours share their border, so only points clearly in both count as an overlap.
         let is_well_inside =
             |r: usize| holds_with_margin(&self.model.regions[r].inside, &value, &self.scales);
@@ -271,7 +297,7 @@ impl<'m> Linter<'m> {
         let region = &self.model.regions[owner];
         self.measure(owner);
         let (name, location) = (&region.name, self.format_point(point));
-        let get = |id: Id| self.evaluator.get(id);
+        let get = |id: Id| self.get(id);
         let spans = region.law_spans;
         let laws = [
             ("depth", region.depth, spans.depth, self.size * ROUNDING),
@@ -318,8 +344,7 @@ impl<'m> Linter<'m> {
                 Some(name) => Subject::Curve(name.clone()),
                 None => Subject::Condition,
             };
-            let fault = Fault::of(&self.model.graph, &self.evaluator, *value);
-            let kind = fault.kind(self.format_point(point), subject);
+            let kind = self.fault(*value).kind(self.format_point(point), subject);
             self.report(Diagnostic::new(self.reader_of(curve), kind));
         }
     }
@@ -364,7 +389,7 @@ impl<'m> Linter<'m> {
         let at = |t: f64| [0, 1, 2].map(|k| inside[k] + (outside[k] - inside[k]) * t);
         for _ in 0..50 {
             let middle = (inside_fraction + outside_fraction) / 2.0;
-            if self.owner(at(middle)).is_some() {
+            if self.is_inside(at(middle)) {
                 inside_fraction = middle;
             } else {
                 outside_fraction = middle;
@@ -373,7 +398,7 @@ impl<'m> Linter<'m> {
         let point = at(inside_fraction);
         let Some(owner) = self.owner(point) else { return };
         let region = &self.model.regions[owner];
-        let depth = self.evaluator.get(region.depth);
+        let depth = self.get(region.depth);
         if depth.abs() > 1e-6 * self.size {
             let diagnostic = deep_on_surface(region, depth, self.format_point(point));
             self.report(diagnostic);
@@ -384,7 +409,7 @@ impl<'m> Linter<'m> {
         let mut slope = |step: f64| {
             let inner_point = at((inside_fraction - step / relative_length).max(0.0));
             let is_same_owner = self.owner(inner_point) == Some(owner);
-            is_same_owner.then(|| self.evaluator.get(region.depth) / (step * self.size))
+            is_same_owner.then(|| self.get(region.depth) / (step * self.size))
         };
         // The slope of a root grows a hundredfold here; a finite one does not.
         if let (Some(near), Some(far)) = (slope(1e-10), slope(1e-6))
@@ -419,7 +444,7 @@ fn holds_with_margin(
     value: &impl Fn(CurveIndex) -> f64,
     scales: &[f64],
 ) -> bool {
-    formula.holds(&|curve| {
+    formula.holds(&mut |curve| {
         let value = value(curve);
         // A value near 0 is on no side.
         if value.abs() < ROUNDING * scales[curve] { f64::NAN } else { value }
@@ -443,37 +468,58 @@ enum Fault {
     Size,
 }
 
-impl Fault {
-    /// Returns the first operation, from the operands up, whose result is not finite.
-    fn of(graph: &Graph, evaluator: &Evaluator<'_>, mut id: Id) -> Fault {
+impl Linter<'_> {
+    /// Returns the reason why one of the model's roots is not finite at the current point: the first operation, from the
+    /// operands up, whose result is not.
+    fn fault(&self, mut id: Id) -> Fault {
+        // The root's operands are computed with it.
+        self.get(id);
         loop {
-            let node = graph.node(id);
+            let node = self.model.graph.node(id);
             let operands: Vec<Id> = match *node {
                 Node::Select { low, high, then, other } => {
-                    let [low, high] = [low, high].map(|id| evaluator.get(id));
+                    let [low, high] = [low, high].map(|id| self.get(id));
                     vec![if low <= high { then } else { other }]
                 }
                 _ => node.operands().collect(),
             };
-            match operands.into_iter().find(|id| !evaluator.get(*id).is_finite()) {
+            match operands.into_iter().find(|id| !self.get(*id).is_finite()) {
                 Some(operand) => id = operand,
                 None => {
                     return match *node {
                         Node::Sqrt(_) => Fault::Root,
-                        Node::Div(_, by) if evaluator.get(by) == 0.0 => Fault::Quotient,
+                        Node::Div(_, by) if self.get(by) == 0.0 => Fault::Quotient,
                         _ => Fault::Size,
                     };
                 }
             }
         }
     }
+}
 
+impl Fault {
     /// Returns the diagnostic for an expression that has no value at a point.
     fn kind(&self, location: String, subject: Subject) -> CheckKind {
         match self {
             Fault::Root => CheckKind::RootOfNegative { location, subject },
             Fault::Quotient => CheckKind::DivisionByZero { location, subject },
             Fault::Size => CheckKind::NumericOverflow { location, subject },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::library;
+
+    #[test]
+    fn a_point_is_inside_if_it_has_an_owner() {
+        for tool in library::tools_by_hand() {
+            let mut linter = Linter::new(&tool.model, &tool.extent);
+            for point in spread(tool.model.domain, &tool.extent, 3000, 0.1) {
+                assert_eq!(linter.is_inside(point), linter.owner(point).is_some(), "{point:?}");
+            }
         }
     }
 }

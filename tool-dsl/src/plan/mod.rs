@@ -97,10 +97,14 @@ impl<L: Clone + PartialEq> Tree<L> {
 
     /// Returns the leaves, those below a test first.
     pub fn leaves(&self) -> Vec<&L> {
-        match self {
-            Tree::Leaf(leaf) => vec![leaf],
-            Tree::Split { below, above, .. } => [below, above].map(|side| side.leaves()).concat(),
+        let (mut leaves, mut pending) = (Vec::new(), vec![self]);
+        while let Some(tree) = pending.pop() {
+            match tree {
+                Tree::Leaf(leaf) => leaves.push(leaf),
+                Tree::Split { below, above, .. } => pending.extend([&**above, &**below]),
+            }
         }
+        leaves
     }
 
     /// Returns the number of tests.

@@ -7,6 +7,8 @@ use crate::geometry::outline::Point;
 
 /// The least cost, in additions, of a side on which several owners remain.
 const MIN_SIDE_COST: f64 = 8.0;
+/// The gain of a curve with all samples on one side of it, in bits: the cost of a side.
+pub(super) const ONE_SIDED_GAIN: f64 = -BITS_PER_ADDITION * MIN_SIDE_COST;
 /// The penalty, in bits, for each owner that remains on both sides. Without it, trees grow by half.
 const SHARED_OWNER_PENALTY_BITS: f64 = 0.2;
 
@@ -120,35 +122,59 @@ impl Samples {
     }
 
     /// Returns the information, in bits, that a curve's side gives about the owners of some samples of the
-    /// given `entropy`, less the cost of the tests that remain.
-    pub(super) fn gain(&self, subset: &SampleSubset, entropy: f64, curve: CurveIndex) -> f64 {
+    /// given `entropy`, less the cost of the tests that remain. Returns `None` if all samples are on one side.
+    pub(super) fn gain(
+        &self,
+        subset: &SampleSubset,
+        entropy: f64,
+        curve: CurveIndex,
+    ) -> Option<f64> {
         let mut counts = vec![[0.0; 2]; self.count];
         let mut totals = [0.0; 2];
+        let (owners, below) = (&self.owners[..], &self.below[curve][..]);
         for part in &subset.0 {
-            let count = &mut counts[self.owners[part.word]];
-            for (side, half) in self.sides(*part, curve).into_iter().enumerate() {
-                count[side] += half.weight;
-                totals[side] += half.weight;
+            let count = &mut counts[owners[part.word]];
+            let bits = part.bits & below[part.word];
+            // The weight of a whole part is known.
+            if bits == part.bits {
+                count[0] += part.weight;
+                totals[0] += part.weight;
+            } else if bits == 0 {
+                count[1] += part.weight;
+                totals[1] += part.weight;
+            } else {
+                let (low, high) =
+                    (self.weight(part.word, bits), self.weight(part.word, part.bits & !bits));
+                *count = [count[0] + low, count[1] + high];
+                totals = [totals[0] + low, totals[1] + high];
             }
         }
         if totals[0] == 0.0 || totals[1] == 0.0 {
-            return -BITS_PER_ADDITION * MIN_SIDE_COST;
+            return None;
         }
         let (mut owners, mut penalty, mut remaining_bits) = ([0, 0], 0.0, 0.0);
-        for count in counts {
-            for side in [0, 1] {
-                if count[side] > 0.0 {
-                    owners[side] += 1;
-                    remaining_bits += bits(count[side], totals[side]);
-                }
+        for [below, above] in counts {
+            if below > 0.0 {
+                owners[0] += 1;
+                remaining_bits += bits(below, totals[0]);
             }
-            if count[0] > 0.0 && count[1] > 0.0 {
+            if above > 0.0 {
+                owners[1] += 1;
+                remaining_bits += bits(above, totals[1]);
+            }
+            if below > 0.0 && above > 0.0 {
                 penalty += SHARED_OWNER_PENALTY_BITS;
             }
         }
         let side_cost =
             owners.map(|owners| if owners > 1 { BITS_PER_ADDITION * MIN_SIDE_COST } else { 0.0 });
-        entropy - remaining_bits / (totals[0] + totals[1]) - side_cost[0] - side_cost[1] - penalty
+        Some(
+            entropy
+                - remaining_bits / (totals[0] + totals[1])
+                - side_cost[0]
+                - side_cost[1]
+                - penalty,
+        )
     }
 }
 

@@ -2,13 +2,13 @@
 //! is left. Points on a splitting curve go to one side, or to a tree of their own if both sides need them. Leaves
 //! return points that rounding may bring astray near a corner to one of its owners.
 
-use super::samples::{Sample, SampleSubset, Samples};
+use super::samples::{ONE_SIDED_GAIN, Sample, SampleSubset, Samples};
 use super::{BITS_PER_ADDITION, MAX_TESTS, Tree, costs};
 use crate::diagnostic::{CheckKind, Diagnostic};
 use crate::expr::Id;
 use crate::formula::{CurveIndex, Formula};
 use crate::geometry::cut::{
-    COINCIDENCE_FRACTION, CurveFunction, Cut, Cutter, Edge, Piece, is_along,
+    COINCIDENCE_FRACTION, CurveFunction, Cut, Cutter, Edge, Piece, Position, is_along,
 };
 use crate::geometry::outline::{self, Point, minus, norm};
 use crate::model::{Model, Over, Section};
@@ -253,7 +253,7 @@ impl Over {
         let on_border = Cell::new(false);
         let first_condition = |sign_on_border: f64| {
             self.conditions.iter().position(|condition| {
-                condition.holds(&|curve: CurveIndex| match shapes[curve].side(p, size) {
+                condition.holds(&mut |curve: CurveIndex| match shapes[curve].side(p, size) {
                     0 => {
                         on_border.set(true);
                         sign_on_border
@@ -303,7 +303,7 @@ fn plan<'m>(
         size,
         tests: 0,
     };
-    let candidates = (0..model.curves.len()).collect();
+    let candidates = (0..model.curves.len()).map(Candidate::new).collect();
     let tree = planner.tree(&input.pieces, &all, &all_corners, candidates)?;
     for (p, owner) in input.witnesses {
         if *tree.leaf_at(&|curve| shapes[curve].value(p)) != owner {
@@ -336,6 +336,41 @@ enum Side {
     Torn,
 }
 
+/// A curve that may separate the pieces that are left.
+#[derive(Clone, Copy)]
+struct Candidate {
+    curve: CurveIndex,
+    /// True if all samples are known to be on one side of it, as are then all samples of a part.
+    is_one_sided: bool,
+}
+
+/// A candidate with its rank: the least in the list of `bsp`, and then the one of greatest gain.
+struct Ranked {
+    listed: usize,
+    gain: f64,
+    curve: CurveIndex,
+}
+
+/// Removes and returns the best curve of a list, the first of equals.
+fn take_best(remaining: &mut Vec<Ranked>) -> Option<CurveIndex> {
+    let mut best = 0;
+    for (index, candidate) in remaining.iter().enumerate() {
+        let Ranked { listed, gain, .. } = remaining[best];
+        if candidate.listed < listed
+            || candidate.listed == listed && candidate.gain.total_cmp(&gain).is_gt()
+        {
+            best = index;
+        }
+    }
+    (!remaining.is_empty()).then(|| remaining.remove(best).curve)
+}
+
+impl Candidate {
+    fn new(curve: CurveIndex) -> Candidate {
+        Candidate { curve, is_one_sided: false }
+    }
+}
+
 /// The pieces on the two sides of a curve.
 struct Halves {
     below: Vec<Rc<Piece>>,
@@ -355,7 +390,7 @@ impl Planner<'_> {
         pieces: &[Rc<Piece>],
         samples: &SampleSubset,
         corners: &[usize],
-        mut candidates: Vec<CurveIndex>,
+        mut candidates: Vec<Candidate>,
     ) -> Result<Owners, Diagnostic> {
         let first = pieces.first().and_then(|piece| piece.owner);
         if pieces.iter().all(|piece| piece.owner == first) {
@@ -371,7 +406,7 @@ impl Planner<'_> {
         if self.tests > MAX_TESTS {
             return Err(super::too_large(self.model));
         }
-        candidates.retain(|other| *other != curve);
+        candidates.retain(|other| other.curve != curve);
         let [low, high] = self.samples.divided(samples, curve);
         let on_curve = match zeros {
             Zeros::Both => Some(self.zero_set_tree(curve, &halves, corners, &candidates)?),
@@ -398,26 +433,26 @@ impl Planner<'_> {
         &mut self,
         pieces: &[Rc<Piece>],
         samples: &SampleSubset,
-        candidates: &mut Vec<CurveIndex>,
+        candidates: &mut Vec<Candidate>,
     ) -> Option<Choice> {
         let uncertain = self.samples.entropy(samples);
-        let mut ranked: Vec<(f64, CurveIndex)> = candidates
-            .iter()
-            .map(|curve| {
-                let cost_factor = if self.used[*curve] { REPEATED_TEST_COST_FACTOR } else { 1.0 };
-                let gain = self.samples.gain(samples, uncertain, *curve);
-                (gain - BITS_PER_ADDITION * cost_factor * self.costs[*curve], *curve)
-            })
-            .collect();
-        ranked.sort_by(|a, b| {
-            self.listed_rank(a.1).cmp(&self.listed_rank(b.1)).then(b.0.total_cmp(&a.0))
-        });
+        let mut remaining: Vec<Ranked> = Vec::with_capacity(candidates.len());
+        for Candidate { curve, is_one_sided } in &mut *candidates {
+            let cost_factor = if self.used[*curve] { REPEATED_TEST_COST_FACTOR } else { 1.0 };
+            let gain =
+                if *is_one_sided { None } else { self.samples.gain(samples, uncertain, *curve) };
+            *is_one_sided = gain.is_none();
+            let cost = BITS_PER_ADDITION * cost_factor * self.costs[*curve];
+            let gain = gain.unwrap_or(ONE_SIDED_GAIN) - cost;
+            remaining.push(Ranked { listed: self.listed_rank(*curve), gain, curve: *curve });
+        }
         let (mut fallback, mut with_double_zeros, mut skipped_count) = (None, None, 0);
-        for (_, curve) in ranked {
+        // One of the first few is mostly chosen, so they are not sorted.
+        while let Some(curve) = take_best(&mut remaining) {
             let halves = self.halves(curve, pieces);
             // It divides nothing here, and so nothing below.
             if halves.below.is_empty() || halves.above.is_empty() {
-                candidates.retain(|other| *other != curve);
+                candidates.retain(|other| other.curve != curve);
                 continue;
             }
             // A curve that cuts through cells without separating owners is kept as a last resort.
@@ -463,10 +498,10 @@ impl Planner<'_> {
     /// Returns whether the centre of a piece satisfies its owner's condition.
     fn owns(&self, piece: &Piece) -> bool {
         let middle = piece.middle();
-        let value = |curve: CurveIndex| self.shapes[curve].value(middle);
+        let mut value = |curve: CurveIndex| self.shapes[curve].value(middle);
         match piece.owner {
-            Some(owner) => self.inside[owner].holds(&value),
-            None => !self.inside.iter().any(|inside| inside.holds(&value)),
+            Some(owner) => self.inside[owner].holds(&mut value),
+            None => !self.inside.iter().any(|inside| inside.holds(&mut value)),
         }
     }
 
@@ -541,11 +576,11 @@ impl WholePiece {
             1 => return Side::Above,
             _ => {}
         }
-        match self.piece.cut(cutter) {
-            Cut::Below => Side::Below,
-            Cut::Above => Side::Above,
+        match self.piece.position_to(cutter) {
+            Position::Below => Side::Below,
+            Position::Above => Side::Above,
             // No side holds for everything that is cut from it.
-            Cut::Nothing | Cut::Both(..) => Side::Torn,
+            Position::Degenerate | Position::Across => Side::Torn,
         }
     }
 }
@@ -614,11 +649,11 @@ impl Planner<'_> {
         curves.sort_by(|a, b| self.costs[a.0].total_cmp(&self.costs[b.0]));
         let separating = curves.into_iter().find(|(curve, side)| {
             let cutter = Cutter { shapes: self.shapes, curve: *curve, size: self.size };
-            pieces.iter().all(|piece| match piece.cut(cutter) {
-                Cut::Below => *side > 0,
-                Cut::Above => *side < 0,
-                Cut::Nothing => true,
-                Cut::Both(..) => false,
+            pieces.iter().all(|piece| match piece.position_to(cutter) {
+                Position::Below => *side > 0,
+                Position::Above => *side < 0,
+                Position::Degenerate => true,
+                Position::Across => false,
             })
         });
         let Some((curve, side)) = separating else { return Tree::Leaf(owner) };
@@ -667,10 +702,12 @@ impl Planner<'_> {
                 (_, Ordering::Greater) => is_preferred[1] = true,
                 _ => {}
             }
+            if is_required == [true, true] {
+                // Some points belong to the solid below only, and others to the solid above only.
+                return Zeros::Both;
+            }
         }
         match (is_required, is_preferred) {
-            // Some points belong to the solid below only, and others to the solid above only.
-            ([true, true], _) => Zeros::Both,
             ([false, true], _) | ([false, false], [false, true]) => Zeros::Above,
             _ => Zeros::Below,
         }
@@ -702,7 +739,7 @@ impl Planner<'_> {
         curve: CurveIndex,
         halves: &Halves,
         corners: &[usize],
-        open: &[CurveIndex],
+        open: &[Candidate],
     ) -> Result<Owners, Diagnostic> {
         let shape = &self.shapes[curve];
         // Only pieces that reach the curve can own its points.
@@ -759,5 +796,26 @@ fn first(a: &Owners, b: &Owners) -> Owners {
             let [low, high] = [true, false].map(|holds| b.simplified(*curve, *strict, holds));
             Tree::split(*curve, *strict, first(below, &low), first(above, &high))
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_best_candidates_are_taken_in_the_order_of_a_stable_sort() {
+        let candidate = |curve: usize| Ranked {
+            listed: if curve.is_multiple_of(5) { curve % 3 } else { usize::MAX },
+            gain: (curve * 7 % 11) as f64 - 4.0,
+            curve,
+        };
+        let mut sorted: Vec<Ranked> = (0..60).map(candidate).collect();
+        sorted.sort_by(|a, b| a.listed.cmp(&b.listed).then(b.gain.total_cmp(&a.gain)));
+        let mut remaining: Vec<Ranked> = (0..60).map(candidate).collect();
+        for expected in sorted {
+            assert_eq!(take_best(&mut remaining), Some(expected.curve));
+        }
+        assert_eq!(take_best(&mut remaining), None);
     }
 }

@@ -4,11 +4,11 @@
 //! that cover the domain.
 
 use super::{BITS_PER_ADDITION, MAX_TESTS, Tree, bits, costs, too_large};
-use crate::bound::{Extent, Prover, spread};
+use crate::bound::{Extent, spread};
+use crate::boxes::BoxTree;
 use crate::diagnostic::Diagnostic;
 use crate::domain::Domain;
 use crate::elimination::Linear;
-use crate::expr::interval::halves;
 use crate::expr::value::{EvaluationPoint, Evaluator};
 use crate::formula::{ANY_SIGN, CurveIndex, NEGATIVE, POSITIVE, Signs, ZERO};
 use crate::model::Model;
@@ -42,8 +42,8 @@ fn samples(model: &Model, extent: &Extent) -> Vec<Sample> {
     spread(model.domain, extent, 2000, 0.05)
         .map(|[x, y, z]| {
             evaluator.evaluate(EvaluationPoint::new(x, y, z));
-            let value = |curve: CurveIndex| evaluator.get(model.curves[curve].value);
-            let owner = model.regions.iter().position(|region| region.inside.holds(&value));
+            let mut value = |curve: CurveIndex| evaluator.get(model.curves[curve].value);
+            let owner = model.regions.iter().position(|region| region.inside.holds(&mut value));
             let signs = (0..model.curves.len())
                 .map(|curve| match value(curve) {
                     v if v < 0.0 => NEGATIVE,
@@ -216,18 +216,25 @@ const SMALLEST_BOX: f64 = 1.0 / 4096.0;
 struct EmptinessProver<'m> {
     linear: Linear,
     domain: Domain,
-    prover: Prover<'m>,
+    /// The boxes of a cover of the domain, which all proofs share.
+    boxes: BoxTree<'m>,
     /// The size of boxes that are not divided further.
     smallest: f64,
+    /// The boxes of this size at which proofs were given up.
+    smallest_boxes: Vec<usize>,
 }
 
 impl<'m> EmptinessProver<'m> {
     fn new(model: &'m Model, extent: &Extent) -> EmptinessProver<'m> {
+        let mut boxes = BoxTree::new(model);
+        // All points that a query can have.
+        boxes.restart(model.domain.bounding_cell(2f64.powi(300)));
         EmptinessProver {
             linear: Linear::new(model),
             domain: model.domain,
-            prover: Prover::new(model),
+            boxes,
             smallest: SMALLEST_BOX * extent.scale(),
+            smallest_boxes: Vec::new(),
         }
     }
 
@@ -238,27 +245,77 @@ impl<'m> EmptinessProver<'m> {
 
     /// Returns whether no box of a cover of the domain can have the signs.
     fn is_excluded_by_boxes(&mut self, signs: &[Signs]) -> bool {
-        // All points that a query can have.
-        let mut pending = vec![self.domain.bounding_cell(2f64.powi(300))];
+        let constrained: Vec<(CurveIndex, Signs)> =
+            signs.iter().copied().enumerate().filter(|(_, allowed)| *allowed != ANY_SIGN).collect();
+        // A proof that has to be given up at a box has been given up by then, whichever boxes come before it: the signs that
+        // the box can have are among those of each box that contains it.
+        let mut smallest = self.smallest_boxes.iter();
+        if smallest.any(|index| has_signs(&mut self.boxes, *index, &constrained)) {
+            return false;
+        }
+        let mut pending = vec![0];
         let mut boxes_left = match self.domain {
             Domain::HalfPlane => MAX_BOXES_IN_HALF_PLANE,
             Domain::Space => MAX_BOXES_IN_SPACE,
         };
-        while let Some(cell) = pending.pop() {
-            self.prover.set_box(cell);
-            let mut constrained =
-                signs.iter().enumerate().filter(|(_, allowed)| **allowed != ANY_SIGN);
-            if constrained.any(|(curve, allowed)| self.prover.signs(curve) & allowed == 0) {
+        while let Some(index) = pending.pop() {
+            if !has_signs(&mut self.boxes, index, &constrained) {
                 continue;
             }
+            let cell = self.boxes.cell(index);
             let size =
                 cell.sides.iter().fold(0.0, |size: f64, side| size.max(side.high - side.low));
-            if boxes_left == 0 || size < self.smallest {
+            if size < self.smallest {
+                self.smallest_boxes.push(index);
+                return false;
+            }
+            if boxes_left == 0 {
                 return false;
             }
             boxes_left -= 1;
-            pending.extend(halves(cell));
+            pending.extend(self.boxes.halves(index));
         }
         true
+    }
+}
+
+/// Returns whether curves can have the given signs in a box, each by itself.
+fn has_signs(boxes: &mut BoxTree<'_>, index: usize, demands: &[(CurveIndex, Signs)]) -> bool {
+    demands.iter().all(|(curve, allowed)| boxes.signs(index, *curve) & allowed != 0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::library;
+
+    /// Returns signs that are any for most curves, and vary with a number.
+    fn varied_signs(count: usize, number: usize) -> Vec<Signs> {
+        let mut state = 0x9E37_79B9_7F4A_7C15u64.wrapping_mul(number as u64 + 1);
+        let choices = [NEGATIVE, NEGATIVE | ZERO, POSITIVE, POSITIVE | ZERO, ZERO];
+        let sign = |_| {
+            state ^= state << 13;
+            state ^= state >> 7;
+            state ^= state << 17;
+            choices.get((state >> 32) as usize % 12).copied().unwrap_or(ANY_SIGN)
+        };
+        (0..count).map(sign).collect()
+    }
+
+    #[test]
+    fn proofs_that_share_boxes_and_contradictions_prove_what_new_ones_prove() {
+        let mut excluded = 0;
+        for tool in library::tools_by_hand() {
+            let mut shared = EmptinessProver::new(&tool.model, &tool.extent);
+            for number in 0..300 {
+                let signs = varied_signs(tool.model.curves.len(), number);
+                let mut new = EmptinessProver::new(&tool.model, &tool.extent);
+                let expected = [new.is_empty(&signs), new.is_excluded_by_boxes(&signs)];
+                let found = [shared.is_empty(&signs), shared.is_excluded_by_boxes(&signs)];
+                assert_eq!(found, expected, "{} {signs:?}", tool.model.name);
+                excluded += usize::from(found[1]);
+            }
+        }
+        assert!(excluded > 0);
     }
 }

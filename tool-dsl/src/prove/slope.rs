@@ -4,7 +4,7 @@
 use super::borders::MAX_TANGENT_SLOPE;
 use crate::domain::Domain;
 use crate::expr::interval::{Cell, ENTIRE, Interval, ONE, ZERO, dot};
-use crate::expr::{Coord, Graph, Id, Node};
+use crate::expr::{Coord, EvaluationOrders, Graph, Id, Node};
 
 /// A function over a box: its values, its partial derivatives by x (for a tool, by the distance from the
 /// axis), y and z, and the length of its gradient, which is often known more accurately.
@@ -224,10 +224,10 @@ pub(super) struct Slopes<'g> {
     graph: &'g Graph,
     domain: Domain,
     /// The nodes that each root needs, operands first, without constants; empty for nodes that are not roots.
-    needed: Vec<Vec<Id>>,
-    values: Vec<Slope>,
+    needed: EvaluationOrders,
+    values: Box<[Slope]>,
     /// The number of the box for which each value was last computed.
-    computed_for: Vec<u32>,
+    computed_for: Box<[u32]>,
     box_number: u32,
     cell: Cell,
 }
@@ -239,21 +239,14 @@ impl<'g> Slopes<'g> {
         roots: impl IntoIterator<Item = Id>,
     ) -> Slopes<'g> {
         let unknown = Slope::new(ENTIRE, [ENTIRE; 3], [true; 2]);
-        let mut values = vec![unknown; graph.nodes().len()];
-        let mut needed = vec![Vec::new(); values.len()];
-        for root in roots {
-            let mut order = graph.dependencies([root]);
-            // Constants are the same in every box.
-            order.retain(|id| match graph.constant(*id) {
-                Some(value) => {
-                    values[id.index()] = Slope::constant(Interval::enclosing(value));
-                    false
-                }
-                None => true,
-            });
-            needed[root.index()] = order;
+        let (needed, constants) = graph.evaluation_orders(roots);
+        let mut values = vec![unknown; graph.nodes().len()].into_boxed_slice();
+        // Constants are the same in every box.
+        for id in constants {
+            let value = graph.constant(id).map_or(ENTIRE, Interval::enclosing);
+            values[id.index()] = Slope::constant(value);
         }
-        let computed_for = vec![0; values.len()];
+        let computed_for = vec![0; values.len()].into_boxed_slice();
         let cell = Cell { sides: [ZERO; 3] };
         Slopes { graph, domain, needed, values, computed_for, box_number: 0, cell }
     }

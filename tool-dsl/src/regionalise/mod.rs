@@ -103,15 +103,19 @@ impl Partition {
         part_at: impl Fn(Point, f64) -> Option<usize>,
     ) -> Option<Point> {
         let section = Section::new(&self.outline, self.outer);
-        let mut probes =
-            self.slices.iter().flatten().flat_map(|slice| slice.sample_points(&section));
-        probes.find(|p| {
-            let distances = self.outline.iter().map(|segment| segment.distance_to(*p));
-            let distance = distances.fold(f64::INFINITY, f64::min);
-            let slack = ROUNDING * section.size.max(distance);
-            part_at(*p, distance)
-                .is_none_or(|part| (section.depth_at(part, *p) - distance).abs() > slack)
-        })
+        for slice in self.slices.iter().flatten() {
+            let points = slice.sample_points(&section);
+            let distances = section.distances_to_outline(&points, slice.feature);
+            for (p, distance) in points.into_iter().zip(distances) {
+                let slack = ROUNDING * section.size.max(distance);
+                let is_right = part_at(p, distance)
+                    .is_some_and(|part| (section.depth_at(part, p) - distance).abs() <= slack);
+                if !is_right {
+                    return Some(p);
+                }
+            }
+        }
+        None
     }
 
     /// Returns polygons that cover the partition up to its outer limit, with `chords` chords per curved edge.

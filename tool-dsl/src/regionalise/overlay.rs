@@ -120,7 +120,7 @@ pub(crate) struct Overlay {
 /// Returns whether a point satisfies a formula, whatever the signs of curves within rounding of it.
 fn is_clearly_inside(formula: &Formula, p: Point, shapes: &[CurveFunction<'_>], size: f64) -> bool {
     [-1.0, 1.0].into_iter().all(|sign| {
-        formula.holds(&|curve: usize| match shapes[curve].side(p, size) {
+        formula.holds(&mut |curve: usize| match shapes[curve].side(p, size) {
             0 => sign,
             _ => shapes[curve].value(p),
         })

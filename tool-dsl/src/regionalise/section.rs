@@ -25,7 +25,8 @@ pub(super) struct FootPoint {
 impl FootPoint {
     /// Returns the point at distance `r` along the normal.
     pub(super) fn at(&self, r: f64) -> Point {
-        [0, 1].map(|k| self.foot[k] + r * self.normal[k])
+        let ([d, z], [normal_d, normal_z]) = (self.foot, self.normal);
+        [d + r * normal_d, z + r * normal_z]
     }
 }
 
@@ -66,15 +67,41 @@ pub(super) struct Section<'o> {
     pub(super) size: f64,
     /// True if the left side is the outside, which is unbounded.
     outer: bool,
+    /// A box of each feature, by centre and half the sides, with a margin above the tolerances of contact.
+    boxes: Vec<[Point; 2]>,
 }
+
+/// The margin of a feature's box, relative to the section's size.
+const BOX_MARGIN_FRACTION: f64 = 10.0 * COINCIDENCE_FRACTION;
 
 impl<'o> Section<'o> {
     pub(super) fn new(outline: &'o [Segment], outer: bool) -> Section<'o> {
         let [low, high] = bounding_box(outline);
         let size = norm(minus(high, low));
-        let mut section = Section { outline, features: Vec::new(), fans: Vec::new(), size, outer };
+        let (features, fans, boxes) = (Vec::new(), Vec::new(), Vec::new());
+        let mut section = Section { outline, features, fans, size, outer, boxes };
         section.find_features();
+        section.boxes =
+            section.features.iter().map(|feature| section.feature_box(*feature)).collect();
         section
+    }
+
+    /// Returns the box of a feature by its centre and half its sides.
+    fn feature_box(&self, feature: Feature) -> [Point; 2] {
+        let [low, high] = match feature {
+            Feature::Piece(piece) => bounding_box(&self.outline[piece..=piece]),
+            Feature::Corner(previous) => [self.corner_at(previous); 2],
+        };
+        let centre = [0, 1].map(|k| low[k] / 2.0 + high[k] / 2.0);
+        let half = [0, 1].map(|k| (high[k] - low[k]) / 2.0 + BOX_MARGIN_FRACTION * self.size);
+        [centre, half]
+    }
+
+    /// Returns whether the box of a feature reaches into a square about a point, given half the square's side.
+    pub(super) fn is_box_within(&self, feature: usize, p: Point, distance: f64) -> bool {
+        let [centre, half] = self.boxes[feature];
+        (p[0] - centre[0]).abs() - half[0] <= distance
+            && (p[1] - centre[1]).abs() - half[1] <= distance
     }
 
     /// Collects the segments of the outline and the reflex corners between them. At the axis the outline meets its own
@@ -141,7 +168,8 @@ impl<'o> Section<'o> {
                 match segment.round() {
                     None => {
                         let along = segment.tangent(false);
-                        let foot = [0, 1].map(|k| from[k] + t * (to[k] - from[k]));
+                        let foot =
+                            [from[0] + t * (to[0] - from[0]), from[1] + t * (to[1] - from[1])];
                         FootPoint { foot, normal: [-along[1], along[0]] }
                     }
                     Some((centre, radius, convex)) => {
@@ -199,6 +227,32 @@ impl<'o> Section<'o> {
         }
     }
 
+    /// Returns the distances of points from the outline, which is fastest if most of them are nearest to the given feature.
+    pub(super) fn distances_to_outline(&self, points: &[Point], nearest: usize) -> Vec<f64> {
+        let first = match self.features[nearest] {
+            Feature::Piece(piece) => &self.outline[piece],
+            Feature::Corner(previous) => &self.outline[previous.unwrap_or(0)],
+        };
+        let mut distances: Vec<f64> = points.iter().map(|p| first.distance_to(*p)).collect();
+        let farthest = distances.iter().copied().fold(0.0, f64::max);
+        let [low, high] = box_of(points);
+        let middle = [0, 1].map(|k| low[k] / 2.0 + high[k] / 2.0);
+        let half = norm(minus(high, low)) / 2.0;
+        for (index, feature) in self.features.iter().enumerate() {
+            let Feature::Piece(piece) = *feature else { continue };
+            // No segment is nearer than its box.
+            if !self.is_box_within(index, middle, half + farthest) {
+                continue;
+            }
+            for (p, distance) in points.iter().zip(&mut distances) {
+                if self.is_box_within(index, *p, *distance) {
+                    *distance = distance.min(self.outline[piece].distance_to(*p));
+                }
+            }
+        }
+        distances
+    }
+
     /// Returns where the growth of a ball that touches a feature at `foot_point` stops.
     pub(super) fn grow_ball(&self, feature: usize, foot_point: &FootPoint) -> Stop {
         let mut stop = Stop { radius: f64::INFINITY, obstacle: Obstacle::Far };
@@ -210,7 +264,11 @@ impl<'o> Section<'o> {
                 stop = Stop { radius, obstacle };
             }
         }
-        for other in (0..self.features.len()).filter(|other| *other != feature) {
+        for other in 0..self.features.len() {
+            // A ball that touches its foot reaches no farther from there than its diameter.
+            if other == feature || !self.is_box_within(other, foot_point.foot, 2.0 * stop.radius) {
+                continue;
+            }
             let radius = self.growth_to_extension(foot_point, other);
             if radius < stop.radius && self.touches(feature, foot_point, other, radius) {
                 stop = Stop { radius, obstacle: Obstacle::Feature(other) };
@@ -351,6 +409,56 @@ impl<'o> Section<'o> {
                 }
             }
             _ => false,
+        }
+    }
+}
+
+/// Returns the corners of the smallest box around some points.
+fn box_of(points: &[Point]) -> [Point; 2] {
+    let mut corners = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
+    for p in points {
+        for k in 0..2 {
+            corners[0][k] = corners[0][k].min(p[k]);
+            corners[1][k] = corners[1][k].max(p[k]);
+        }
+    }
+    corners
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::library;
+
+    /// The boxes of features only spare work.
+    #[test]
+    fn balls_and_distances_are_those_of_all_features() {
+        for tool in library::tools() {
+            let Some(profile) = &tool.model.section else { continue };
+            let mut section = Section::new(&profile.outline, false);
+            for feature in 0..section.features.len() {
+                for k in 0..=20 {
+                    let foot_point = section.foot_point(feature, f64::from(k) / 20.0);
+                    let stop = section.grow_ball(feature, &foot_point);
+                    let points = [0.1, 0.5, 1.0].map(|part| foot_point.at(part * stop.radius));
+                    let found = section.distances_to_outline(&points, feature);
+                    for (p, found) in points.iter().zip(found) {
+                        let all = section.outline.iter().map(|segment| segment.distance_to(*p));
+                        assert_eq!(found, all.fold(f64::INFINITY, f64::min), "{p:?}");
+                    }
+                    // With boxes that contain everything, no feature is passed over.
+                    let boxes = vec![[[0.0; 2], [f64::INFINITY; 2]]; section.features.len()];
+                    let boxes = std::mem::replace(&mut section.boxes, boxes);
+                    let expected = section.grow_ball(feature, &foot_point);
+                    section.boxes = boxes;
+                    assert_eq!(
+                        (stop.radius, stop.obstacle),
+                        (expected.radius, expected.obstacle),
+                        "{} {feature} {k}",
+                        tool.model.name
+                    );
+                }
+            }
         }
     }
 }

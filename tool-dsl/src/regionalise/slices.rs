@@ -153,8 +153,8 @@ impl EnvelopeWalk<'_> {
                 break;
             }
             let foot_point = self.section.foot_point(self.feature, middle);
-            let [to_first, to_last] = [first, last]
-                .map(|sampled| self.section.growth_to(self.feature, &foot_point, sampled.obstacle));
+            let to_first = self.section.growth_to(self.feature, &foot_point, first.obstacle);
+            let to_last = self.section.growth_to(self.feature, &foot_point, last.obstacle);
             // The nearer of the two is the one that stops the ball.
             if to_first < to_last {
                 low = middle;
