@@ -173,7 +173,7 @@ impl<'a> Verifier<'a> {
         Ok(self)
     }
 
-    /// Sets the [budget](Certifier::with_budget) of each query.
+    /// Sets the [budget](Certifier::with_budget) of each query. The default is 2^17, some 50 ms.
     #[must_use]
     pub fn with_budget(mut self, budget: u32) -> Verifier<'a> {
         self.budget = budget;

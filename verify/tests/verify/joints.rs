@@ -9,7 +9,7 @@ use touchoff::certify::TriangleBvh;
 use touchoff::{Tool, Unit};
 use touchoff_verify::gcode::ControlSetup;
 use touchoff_verify::machine::Machine;
-use touchoff_verify::{Finding, FindingKind, MachineProgram, ToolSelection, Verifier};
+use touchoff_verify::{Finding, FindingKind, MachineProgram, Move, ToolSelection, Verifier};
 
 /// Number of time steps per motion.
 const TIME_STEPS: u32 = 48;
@@ -122,6 +122,22 @@ fn motions() -> usize {
     }
 }
 
+/// Number of consecutive moves that one checker examines.
+const MOVES_PER_TASK: usize = 32;
+
+/// Returns the findings of moves if each task has checkers of its own.
+fn by_tasks(verifier: &Verifier<'_>, moves: &[Move]) -> Vec<Finding> {
+    let tasks = moves.chunks(MOVES_PER_TASK).enumerate().flat_map(|(task, moves)| {
+        let report = verifier.check_moves(moves.to_vec(), &|_| ()).expect("it can be checked");
+        let first = task * MOVES_PER_TASK;
+        report.findings.into_iter().map(move |mut finding| {
+            finding.location += first;
+            finding
+        })
+    });
+    tasks.collect()
+}
+
 #[test]
 fn joint_motions_agree_with_brute_force() {
     let mesh = block([-8.0, -8.0, -8.0], [8.0, 8.0, 8.0]);
@@ -161,7 +177,8 @@ fn joint_motions_agree_with_brute_force() {
             lines
         };
         assert_eq!((lines.len(), first_line), (blocks.len(), 4));
-        let report = verifier.check_moves(moves, &|_| ()).expect("it can be checked");
+        let report = verifier.check_moves(moves.clone(), &|_| ()).expect("it can be checked");
+        assert_eq!(report.findings, by_tasks(&verifier, &moves), "a checker is used again");
         for (k, to) in blocks.iter().enumerate().skip(1) {
             let from = &blocks[k - 1];
             // After a change of tool centre point control, the position is that of the other kind of coordinates.

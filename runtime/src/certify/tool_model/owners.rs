@@ -403,3 +403,96 @@ fn common(line: &Feature, circle: &Circle) -> [[MeridianPoint; 2]; 2] {
     let normal = [-line.along[1], line.along[0]];
     [radius, -radius].map(|radius| [foot, [0, 1].map(|k| centre[k] + radius * normal[k])])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::SurfaceId;
+    use crate::tool::Tool;
+
+    crate::tool! {
+        tool Held "a ball end mill in a nut" {
+            units mm;
+            profile {
+                start (0, 0);
+                arc to (3, 3) center (0, 3) as ball cutting;
+                line to (3, 18) as flute cutting;
+                line to (3, 30) as shank;
+                line to (8.5, 30), (14, 31), (14, 47), (0, 47) as nut;
+            }
+            niceness cutting: 1;
+        }
+    }
+
+    crate::tool! {
+        tool Waisted "an overhang, and borders that are not level" {
+            units mm;
+            profile {
+                start (0, 0);
+                line to (4, 0) as face cutting;
+                line to (5, 6) as side cutting;
+                line to (2, 9), (2, 15) as neck;
+                line to (6, 18), (0, 20) as head;
+            }
+            niceness cutting: 1;
+        }
+    }
+
+    const ERROR: f64 = 1e-12;
+
+    #[test]
+    fn every_point_that_a_surface_owns_lies_in_a_zone() {
+        for info in [Held.info(), Waisted.info()] {
+            let section = Section::new(info, ERROR).and_then(Section::with_circles);
+            let section = section.expect("a profile");
+            for surface in 0..info.surfaces.len() {
+                for deeper in [0.0, 0.5, 2.0] {
+                    let owners = Owners::of(&section, |other| other == surface);
+                    let zones = owners.zones(&section, deeper);
+                    for (k, slab) in
+                        (0..200 * zones.len()).map(|k| (k, &section.slabs[k % zones.len()]))
+                    {
+                        let fraction = |step: f64| (0.5 + step * k as f64).fract();
+                        let p = [
+                            slab.hole + fraction(0.618_033_988_7) * (slab.radius - slab.hole),
+                            slab.low + fraction(0.754_877_666_2) * (slab.high - slab.low),
+                        ];
+                        // The nearest feature by the distances of all, which the zones are not computed from.
+                        let distances = section.features.iter().map(|feature| feature.distance(p));
+                        let nearest = distances.clone().fold(f64::INFINITY, f64::min);
+                        let mut nearby = section.features.iter().zip(distances);
+                        let owns = nearby.any(|(f, d)| d == nearest && f.surface == surface);
+                        if !owns || !section.contains(p) || nearest <= deeper {
+                            continue;
+                        }
+                        let in_zone = zones
+                            .iter()
+                            .flatten()
+                            .any(|zone| zone.contains(&Rectangle { low: p, high: p }));
+                        assert!(in_zone, "{} surface {surface}, {p:?} at {nearest}", info.name);
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn zones_end_at_the_height_where_surfaces_of_equal_direction_meet() {
+        let section = Section::new(Held.info(), ERROR).expect("a profile");
+        let ends = |name: &str| {
+            let SurfaceId(surface) = Held.info().surface_named(name).expect("a surface");
+            let zones = Owners::of(&section, |other| other == surface).zones(&section, 0.0);
+            let bounds = zones.into_iter().flatten().map(|zone| [zone.low[1], zone.high[1]]);
+            bounds
+                .reduce(|one, other| [one[0].min(other[0]), one[1].max(other[1])])
+                .expect("a zone")
+        };
+        for (name, [low, high]) in [("ball", [0.0, 3.0]), ("flute", [3.0, 18.0])] {
+            let [from, to] = ends(name);
+            assert!(
+                (from - low).abs() <= ERROR && (to - high).abs() <= ERROR,
+                "{name}: {from} {to}"
+            );
+        }
+    }
+}
