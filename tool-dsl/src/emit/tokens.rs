@@ -1,7 +1,7 @@
 //! An append-only list of tokens, so that tokens once written are never copied.
 
 use proc_macro2::{Delimiter, Group, Ident, Literal, Punct, Spacing, Span, TokenStream};
-use quote::TokenStreamExt;
+use quote::{TokenStreamExt, quote};
 
 /// Code under construction.
 #[derive(Default)]
@@ -91,8 +91,11 @@ impl Tokens {
     }
 }
 
-/// Returns a double as a literal.
+/// Returns a double as a literal, or infinity as its constant.
 pub(super) fn literal(value: f64) -> TokenStream {
+    if value == f64::INFINITY {
+        return quote! { f64::INFINITY };
+    }
     let mut tokens = Tokens::default();
     tokens.number(value);
     tokens.done()

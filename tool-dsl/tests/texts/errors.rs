@@ -8,6 +8,7 @@ use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use touchoff_dsl::diagnostic::{Diagnostic, Entry, Example, FAMILIES, Severity, entries, entry};
+use touchoff_dsl::emit::emit;
 use touchoff_dsl::source::Source;
 use touchoff_dsl::{Compiled, compile};
 
@@ -34,6 +35,14 @@ fn codes_are_unique_and_ordered_and_of_their_family() {
             assert!(code.starts_with(family.prefix) && code.len() == 5, "{code}");
         }
     }
+}
+
+/// Whatever a warning says, a tool that compiles has an evaluator.
+#[test]
+fn code_is_written_for_every_example_that_compiles() {
+    let tools = with_examples().filter_map(|entry| compiled(entry.code).into_tool());
+    let written = tools.map(|tool| emit(&tool).to_string());
+    assert!(written.filter(|code| code.contains("ToolInfo")).count() > 5);
 }
 
 #[test]
