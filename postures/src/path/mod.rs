@@ -10,21 +10,25 @@
 //! reachable, in the directions that turn least from point to point. Every posture and every motion between two
 //! of them is proved. Where a straight motion is too deep, the tool is led over the edges between the two
 //! points, with as many intermediate cutter locations as needed. Points that cannot be joined on the surface
-//! are joined above it: a little back along the axis, across, and in along the next axis. Where that fails too,
-//! the tool moves out, around the part, and in.
+//! are joined off it, by the shortest proved way of several: out along the axis, across or around the part, and in
+//! along the next axis. The runs of all planes are followed by nearness, so that few such ways are needed.
 
 mod axes;
 mod drawn;
+mod order;
+mod retract;
 mod slice;
 mod tilt;
 
 use super::placement::{CandidatePosture, SurfacePoint, ToolPlacement};
 use super::{Directions, Rules, Validator, ValidatorError};
 use axes::PathPosture;
-use drawn::{DrawnPath, RetractSphere};
+use drawn::DrawnPath;
 use nalgebra::{Point3, Vector3};
+use order::OpenRuns;
 use rayon::prelude::*;
-use slice::{SlicePoint, length_of_lines, slices};
+use retract::RetractSphere;
+use slice::{Planes, SlicePoint, length_of_lines, slices};
 use std::fmt;
 use tilt::TiltLimit;
 use touchoff::certify::{MotionVerdict, TriangleBvh};
@@ -97,7 +101,7 @@ pub struct ToolPath {
     pub contact_points: usize,
     /// The points on the lines that are left out.
     pub left_out: Vec<LeftOut>,
-    /// Number of times that the tool leaves the surface.
+    /// Number of times that the tool leaves the surface and comes back.
     pub retracts: usize,
     /// Root mean square turn of the axis from point to point along the lines, in radians, before and after
     /// smoothing.
@@ -220,8 +224,9 @@ impl PathRequest<'_> {
         let accessibility = within_tilt.as_deref().unwrap_or(accessibility);
         let mut planner = PathPlanner::new(bvh, tool, rules, tilt)?;
         let sphere = RetractSphere::new(mesh, planner.placement.reach());
-        let planes = slices(mesh, &normal, [pattern.stepover, pattern.step]);
-        let lines: Vec<(usize, &Vec<SlicePoint>)> = planes
+        let planes = Planes::new(mesh, &normal, pattern.stepover);
+        let slices = slices(mesh, &planes, pattern.step);
+        let lines: Vec<(usize, &Vec<SlicePoint>)> = slices
             .iter()
             .enumerate()
             .flat_map(|(k, lines)| lines.iter().map(move |line| (k, line)))
@@ -240,22 +245,14 @@ impl PathRequest<'_> {
         });
         let runs: Vec<Vec<_>> = runs.collect();
         let mut path = DrawnPath::default();
-        let mut runs = runs.into_iter().flatten().peekable();
-        while let Some((plane, (mut plane_runs, unreached))) = runs.next() {
+        let mut open = OpenRuns::new(planes, planner.placement.reach());
+        for (plane, (runs, unreached)) in runs.into_iter().flatten() {
             path.leave_out(unreached);
-            while let Some((_, (more, unreached))) = runs.next_if(|(other, _)| *other == plane) {
-                plane_runs.extend(more);
-                path.leave_out(unreached);
-            }
-            plane_runs.iter().for_each(|run| path.count(run));
-            // Continue with the remaining run whose end is nearest.
-            while let Some((next, reverse)) = path.nearest(&plane_runs) {
-                let mut run = plane_runs.swap_remove(next);
-                if reverse {
-                    run.reverse();
-                }
-                path.follow(&mut planner, &sphere, &run, 3.0 * pattern.stepover);
-            }
+            runs.iter().for_each(|run| path.count(run));
+            open.extend(plane, runs);
+        }
+        while let Some(run) = open.take_nearest(path.last()) {
+            path.follow(&mut planner, &sphere, &run, 3.0 * pattern.stepover);
         }
         path.end(&mut planner, &sphere)
     }
@@ -313,5 +310,15 @@ impl<'a> PathPlanner<'a> {
     /// Returns whether the tool is proved to be no deeper than the tolerance during a motion.
     fn is_clear(&mut self, from: &Pose, to: &Pose) -> bool {
         self.check_motion(from, to) == Some(true)
+    }
+
+    /// Returns whether the motions from a pose along others to a last one are proved.
+    fn is_way_clear(&mut self, from: &Pose, way: &[Pose], to: &Pose) -> bool {
+        let mut current = from;
+        way.iter().chain([to]).all(|next| {
+            let clear = self.is_clear(current, next);
+            current = next;
+            clear
+        })
     }
 }

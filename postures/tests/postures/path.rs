@@ -105,15 +105,18 @@ fn sample_mesh(mesh: &Mesh, spacing: f64) -> Vec<Point3<f64>> {
 /// Returns the largest depth of a [`Mill`]'s cutting surfaces and of its other surfaces over a path, in mm: on
 /// feed moves, and on rapid moves.
 fn max_depths(case: &Case, path: &ToolPath) -> [[f64; 2]; 2] {
-    const TIME_STEPS: u32 = 6;
+    /// Least number of steps in a motion.
+    const TIME_STEPS: f64 = 6.0;
     let points = sample_mesh(&case.mesh, 0.5 * case.scale);
     let mut depths = [[0f64; 2]; 2];
     for pair in path.locations.windows(2) {
         let (from, to, rapid) = (pair[0].0, pair[1].0, usize::from(pair[1].1));
         let axis_of_rotation = from.axis().cross(&to.axis());
         let angle = from.axis().angle(&to.axis());
-        for k in 0..=TIME_STEPS {
-            let fraction = f64::from(k) / f64::from(TIME_STEPS);
+        // The tip moves at most 0.5 mm per step, so that long links are sampled as densely as short motions.
+        let steps = (2.0 * (to.tip() - from.tip()).norm() / case.scale).ceil().max(TIME_STEPS);
+        for k in 0..=steps as u32 {
+            let fraction = f64::from(k) / steps;
             let tip = from.tip() + (to.tip() - from.tip()) * fraction;
             let axis = match axis_of_rotation.try_normalize(1e-12) {
                 Some(axis_of_rotation) => {
@@ -142,6 +145,15 @@ fn max_depths(case: &Case, path: &ToolPath) -> [[f64; 2]; 2] {
         }
     }
     depths
+}
+
+/// Returns the length of the tip's path in feed and in rapid traverse.
+fn lengths(path: &ToolPath) -> [f64; 2] {
+    let mut lengths = [0.0; 2];
+    for pair in path.locations.windows(2) {
+        lengths[usize::from(pair[1].1)] += (pair[1].0.tip() - pair[0].0.tip()).norm();
+    }
+    lengths
 }
 
 /// Returns a block with a step along y. Its corners are given as `[x, z]`.
@@ -185,6 +197,9 @@ fn plan_and_check(mesh: Mesh, normal: [f64; 3], spacing: [f64; 2]) -> ToolPath {
     );
     assert!(feed[0] <= TOLERANCE + 1e-9 && feed[1] <= TOLERANCE / 8.0 + 1e-9, "{feed:?}");
     assert!(rapid[0] <= TOLERANCE + 1e-9 && rapid[1] <= TOLERANCE / 8.0 + 1e-9, "{rapid:?}");
+    let [feed, rapid] = lengths(&path);
+    println!("{feed:.1} in feed, {rapid:.1} in rapid traverse");
+    assert!(rapid <= 1.5 * feed, "links stay near the part: {rapid} of {feed}");
     assert!(path.contact_points > 100 && path.turns[1] <= path.turns[0], "{path:?}");
     let [low, high] = case.mesh.bounds();
     for (end, rapid) in [path.locations[0], path.locations[path.locations.len() - 1]] {
