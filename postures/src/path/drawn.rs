@@ -44,6 +44,10 @@ impl DrawnPath {
         self.locations.push((pose, rapid));
     }
 
+    fn push_rapids(&mut self, poses: &[Pose]) {
+        poses.iter().for_each(|pose| self.push_location(*pose, true));
+    }
+
     /// Moves to a run and along it. Two points that cannot be joined on the surface are joined off it; a point that
     /// cannot be joined at all is dropped.
     pub(super) fn follow(
@@ -108,18 +112,18 @@ impl DrawnPath {
         let Some(leg) = sphere.leg(planner, &posture.pose) else { return false };
         let location_count = self.locations.len();
         if let Some(from) = self.leave(planner, sphere) {
-            let locations = sphere
-                .between(planner, &from, &leg.outer)
-                .filter(|way| planner.is_way_clear(&from, way, &leg.outer));
-            let Some(locations) = locations else {
+            let Some(way) = sphere.way(planner, &from, &leg.outer) else {
                 // The way out leads nowhere, so the tool stays where it was.
                 self.locations.truncate(location_count);
                 return false;
             };
-            locations.into_iter().for_each(|pose| self.push_location(pose, true));
+            self.push_rapids(&way[1..]);
             self.retracts += 1;
+        } else {
+            // The machine comes from above, so that the first approach is proved from there on.
+            let way = sphere.top().and_then(|top| sphere.way(planner, &top, &leg.outer));
+            self.push_rapids(&way.unwrap_or_else(|| vec![leg.outer]));
         }
-        self.push_location(leg.outer, true);
         self.push_location(leg.lead_end, true);
         self.last_approach = Some((self.locations.len(), leg));
         true
@@ -146,12 +150,16 @@ impl DrawnPath {
         Some(leg.outer)
     }
 
+    /// Leaves the part, and ends above it if the way there is proved.
     pub(super) fn end(
         mut self,
         planner: &mut PathPlanner<'_>,
         sphere: &RetractSphere,
     ) -> Result<ToolPath, PathError> {
-        self.leave(planner, sphere).ok_or(PathError::NoPosture)?;
+        let outer = self.leave(planner, sphere).ok_or(PathError::NoPosture)?;
+        if let Some(way) = sphere.top().and_then(|top| sphere.way(planner, &outer, &top)) {
+            self.push_rapids(&way[1..]);
+        }
         let steps = self.steps.max(1) as f64;
         Ok(ToolPath {
             contact_points: self.contact_points,

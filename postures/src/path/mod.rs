@@ -16,6 +16,7 @@
 mod axes;
 mod drawn;
 mod order;
+mod range;
 mod retract;
 mod slice;
 mod tilt;
@@ -26,6 +27,8 @@ use axes::PathPosture;
 use drawn::DrawnPath;
 use nalgebra::{Point3, Vector3};
 use order::OpenRuns;
+use range::AxisRange;
+pub use range::ToolAxisLimits;
 use rayon::prelude::*;
 use retract::RetractSphere;
 use slice::{Planes, SlicePoint, length_of_lines, slices};
@@ -82,6 +85,12 @@ pub enum PathError {
     /// The rules are invalid, or the tool cannot be validated.
     #[error(transparent)]
     Validator(#[from] ValidatorError),
+    /// No direction that was swept is one that the tool axis may take.
+    #[error(
+        "none of the directions that were swept is within the limits of the tool axis: allow a larger tilt, sweep with \
+         more directions, or take a machine that tilts the tool farther"
+    )]
+    NoDirection,
     /// No posture was found for the path.
     #[error(
         "the tool reaches none of the places where the planes cut the part: sweep with it first, take planes \
@@ -95,7 +104,8 @@ pub enum PathError {
 #[non_exhaustive]
 pub struct ToolPath {
     /// Cutter locations, each with a flag that is set if the tool arrives in rapid traverse. The first and the
-    /// last are away from the part.
+    /// last are above the part, with the axis along +z, if the axis may point there and the way is proved, and
+    /// otherwise away from the part in another direction.
     pub locations: Vec<(Pose, bool)>,
     /// Number of points at which the part is touched.
     pub contact_points: usize,
@@ -120,7 +130,7 @@ pub struct LeftOut {
 /// The reason for which a path leaves out a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LeftOutReason {
-    /// No posture at the point is proved acceptable, within the largest tilt.
+    /// No posture at the point is proved acceptable, within the limits of the tool axis.
     NotReached,
     /// No motion to the point is proved acceptable.
     NoMotion,
@@ -154,7 +164,7 @@ pub(super) struct PathPlanner<'a> {
     placement: ToolPlacement<'a>,
     validator: Validator<'a>,
     rules: &'a Rules,
-    tilt: TiltLimit,
+    range: AxisRange<'a>,
     postures: Vec<CandidatePosture>,
 }
 
@@ -179,6 +189,8 @@ pub struct PathRequest<'a> {
     /// Largest angle of the tool axis from +z of the part, in radians, at cutter locations and between them:
     /// above 0; π for any axis.
     pub max_tilt: f64,
+    /// The limits of a machine's rotary axes; `None` for any axis. Every cutter location is within them.
+    pub axis_limits: Option<&'a dyn ToolAxisLimits>,
 }
 
 impl fmt::Debug for PathRequest<'_> {
@@ -199,8 +211,7 @@ impl PathRequest<'_> {
     /// # Errors
     /// If the pattern or the rules are invalid, or no point can be reached; see [`PathError`].
     pub fn plan(&self) -> Result<ToolPath, PathError> {
-        let PathRequest { mesh, bvh, tool, rules, directions, accessibility, pattern, max_tilt } =
-            *self;
+        let PathRequest { mesh, bvh, tool, rules, directions, accessibility, pattern, .. } = *self;
         for (what, value) in [("a stepover", pattern.stepover), ("a step", pattern.step)] {
             if !(value > 0.0 && value.is_finite()) {
                 return Err(PathError::Pattern { what, value });
@@ -219,10 +230,13 @@ impl PathRequest<'_> {
         if points > MAX_POINTS as f64 {
             return Err(PathError::TooFine { points, limit: MAX_POINTS });
         }
-        let tilt = TiltLimit::new(max_tilt).ok_or(PathError::Tilt(max_tilt))?;
-        let within_tilt = tilt.is_limited().then(|| tilt.filter(directions, accessibility));
-        let accessibility = within_tilt.as_deref().unwrap_or(accessibility);
-        let mut planner = PathPlanner::new(bvh, tool, rules, tilt)?;
+        let tilt = TiltLimit::new(self.max_tilt).ok_or(PathError::Tilt(self.max_tilt))?;
+        let range = AxisRange { tilt, machine: self.axis_limits };
+        let (accessibility, any_direction) = range.filter(directions, accessibility);
+        if !any_direction {
+            return Err(PathError::NoDirection);
+        }
+        let mut planner = PathPlanner::new(bvh, tool, rules, range)?;
         let sphere = RetractSphere::new(mesh, planner.placement.reach());
         let planes = Planes::new(mesh, &normal, pattern.stepover);
         let slices = slices(mesh, &planes, pattern.step);
@@ -233,13 +247,13 @@ impl PathRequest<'_> {
             .collect();
         let runs = lines.par_chunks(LINES_PER_TASK).map(|lines| {
             // Errors were reported for the planner above.
-            let Ok(mut planner) = PathPlanner::new(bvh, tool, rules, tilt) else {
+            let Ok(mut planner) = PathPlanner::new(bvh, tool, rules, range) else {
                 return Vec::new();
             };
             let runs = lines.iter().map(|(plane, line)| {
                 // So that the runs of a line do not depend on the lines before it.
                 planner.validator.certifier.clear_caches();
-                (*plane, planner.runs(mesh, directions, accessibility, line))
+                (*plane, planner.runs(mesh, directions, &accessibility, line))
             });
             runs.collect::<Vec<_>>()
         });
@@ -263,7 +277,7 @@ impl<'a> PathPlanner<'a> {
         bvh: &'a TriangleBvh,
         tool: &'a dyn Tool,
         rules: &'a Rules,
-        tilt: TiltLimit,
+        range: AxisRange<'a>,
     ) -> Result<PathPlanner<'a>, ValidatorError> {
         // The rest of the tolerance is for motions, which are deeper between cutter locations than at them.
         let location_rules = Rules {
@@ -273,7 +287,7 @@ impl<'a> PathPlanner<'a> {
         let mut validator = Validator::new(bvh, tool, &location_rules)?;
         validator.certifier = validator.certifier.with_budget(QUERY_BUDGET);
         let placement = ToolPlacement::new(tool, bvh.unit());
-        Ok(PathPlanner { placement, validator, rules, tilt, postures: Vec::new() })
+        Ok(PathPlanner { placement, validator, rules, range, postures: Vec::new() })
     }
 
     /// Returns the posture at a surface point with a given axis, if it is proved acceptable.
@@ -282,7 +296,7 @@ impl<'a> PathPlanner<'a> {
         surface_point: &SurfacePoint,
         axis: Vector3<f64>,
     ) -> Option<PathPosture> {
-        if !self.tilt.allows(&axis) {
+        if !self.range.allows(&axis) {
             return None;
         }
         self.placement.list(*surface_point, [axis], &mut self.postures);
@@ -293,9 +307,9 @@ impl<'a> PathPlanner<'a> {
     }
 
     /// Returns whether the tool is proved to be no deeper than the tolerance during a motion (`true`), or to be
-    /// deeper (`false`); `None` if neither is proved, the motion is ambiguous, or the axis exceeds the largest tilt.
+    /// deeper (`false`); `None` if neither is proved, the motion is ambiguous, or the axis leaves its range.
     fn check_motion(&mut self, from: &Pose, to: &Pose) -> Option<bool> {
-        if !self.tilt.allows_turn(&from.axis(), &to.axis()) {
+        if !self.range.allows_turn(&from.axis(), &to.axis()) {
             return None;
         }
         let motion = Motion::new(from, to).ok()?;
@@ -310,15 +324,5 @@ impl<'a> PathPlanner<'a> {
     /// Returns whether the tool is proved to be no deeper than the tolerance during a motion.
     fn is_clear(&mut self, from: &Pose, to: &Pose) -> bool {
         self.check_motion(from, to) == Some(true)
-    }
-
-    /// Returns whether the motions from a pose along others to a last one are proved.
-    fn is_way_clear(&mut self, from: &Pose, way: &[Pose], to: &Pose) -> bool {
-        let mut current = from;
-        way.iter().chain([to]).all(|next| {
-            let clear = self.is_clear(current, next);
-            current = next;
-            clear
-        })
     }
 }

@@ -112,8 +112,8 @@ impl RetractSphere {
     }
 
     /// Returns the link around the part on a sphere: out along the first axis, upright along a great circle, and in
-    /// along the second axis. Where the outward direction exceeds the largest tilt, the axis stays at that tilt, and
-    /// the way leads over the top.
+    /// along the second axis. Where the axis may not point outward, it tilts as far as it may, and the way
+    /// leads over the top.
     fn around(
         &self,
         planner: &PathPlanner<'_>,
@@ -153,25 +153,39 @@ impl RetractSphere {
         chord.min(FRAC_PI_3)
     }
 
-    /// Returns the poses between two poses on a sphere, without these: upright, around, and over to the second axis.
-    pub(super) fn between(
+    /// Returns the pose above the part, with the axis along +z, on the sphere to which the tool retracts in full.
+    pub(super) fn top(&self) -> Option<Pose> {
+        let tip = self.centre + Vector3::z() * (OUTER_RADIUS * self.tip_radius);
+        Pose::from_axis(tip, Vector3::z()).ok()
+    }
+
+    /// Returns the poses from one pose on the sphere to another, both included, if the way is proved; see `between`.
+    pub(super) fn way(
         &self,
-        planner: &PathPlanner<'_>,
+        planner: &mut PathPlanner<'_>,
         from: &Pose,
         to: &Pose,
     ) -> Option<Vec<Pose>> {
+        let mut way = vec![*from];
+        way.extend(self.between(planner, from, to)?);
+        way.push(*to);
+        way.windows(2).all(|ends| planner.is_clear(&ends[0], &ends[1])).then_some(way)
+    }
+
+    /// Returns the poses between two poses on a sphere, without these: upright, around, and over to the second axis.
+    fn between(&self, planner: &PathPlanner<'_>, from: &Pose, to: &Pose) -> Option<Vec<Pose>> {
         let radius = (from.tip() - self.centre).norm();
         let [first, last] = [from, to].map(|pose| (pose.tip() - self.centre) / radius);
         let chord = self.longest_chord(radius);
         let mut directions = around(first, last, chord);
-        if !directions.iter().all(|direction| planner.tilt.allows(direction)) {
+        if !directions.iter().all(|direction| planner.range.allows(direction)) {
             let top = Vector3::z();
             directions = around(first, top, chord);
             directions.extend(around(top, last, chord).into_iter().skip(1));
         }
         let poses = directions.iter().map(|direction| {
             let tip = self.centre + direction * radius;
-            Pose::from_axis(tip, planner.tilt.clamped(direction)).ok()
+            Pose::from_axis(tip, planner.range.clamped(direction)?).ok()
         });
         poses.collect()
     }
@@ -217,6 +231,7 @@ fn around(first: Vector3<f64>, last: Vector3<f64>, chord: f64) -> Vec<Vector3<f6
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::path::range::AxisRange;
     use crate::path::tilt::TiltLimit;
     use crate::{Directions, Rules};
     use std::f64::consts::PI;
@@ -245,7 +260,8 @@ mod tests {
         let bvh = TriangleBvh::new(&mesh);
         let rules = Rules { tolerance: 0.01, niceness: 0.0, allowed: Vec::new() };
         let tilt = TiltLimit::new(PI).expect("an angle");
-        let mut planner = PathPlanner::new(&bvh, &Mill, &rules, tilt).expect("a planner");
+        let range = AxisRange { tilt, machine: None };
+        let mut planner = PathPlanner::new(&bvh, &Mill, &rules, range).expect("a planner");
         let sphere = RetractSphere::new(&mesh, planner.placement.reach());
         // The ball is a little off the part, inside and outside.
         let mut poses = Vec::new();

@@ -8,7 +8,9 @@ use std::ops::ControlFlow;
 use touchoff::certify::TriangleBvh;
 use touchoff::mesh::shapes;
 use touchoff::{Mesh, Tool, TriangleId, Unit};
-use touchoff_postures::path::{LeftOutReason, PathError, PathRequest, Pattern, ToolPath};
+use touchoff_postures::path::{
+    LeftOutReason, PathError, PathRequest, Pattern, ToolAxisLimits, ToolPath,
+};
 use touchoff_postures::sweep::PostureSweep;
 use touchoff_postures::{Directions, Rules};
 
@@ -66,6 +68,7 @@ impl Case {
             accessibility: &self.access,
             pattern,
             max_tilt: PI,
+            axis_limits: None,
         }
     }
 
@@ -205,6 +208,7 @@ fn plan_and_check(mesh: Mesh, normal: [f64; 3], spacing: [f64; 2]) -> ToolPath {
     for (end, rapid) in [path.locations[0], path.locations[path.locations.len() - 1]] {
         assert!(rapid);
         assert!((end.tip() - nalgebra::center(&low, &high)).norm() > 0.9 * (high - low).norm());
+        assert!((end.axis() - Vector3::z()).norm() < 1e-12, "above the part: {end:?}");
     }
     path
 }
@@ -392,4 +396,42 @@ fn no_axis_exceeds_the_largest_tilt() {
         let error = plan(invalid).expect_err("no limit");
         assert!(matches!(error, PathError::Tilt(_)), "{error}");
     }
+}
+
+/// Axes as a trunnion that leans to one side reaches them.
+struct Trunnion;
+
+impl ToolAxisLimits for Trunnion {
+    fn allow(&self, axis: &Vector3<f64>) -> bool {
+        axis.x.abs() < 0.8 && (-0.5..=1.6).contains(&axis.y.atan2(axis.z))
+    }
+}
+
+/// A machine that does not tilt.
+struct ThreeAxes;
+
+impl ToolAxisLimits for ThreeAxes {
+    fn allow(&self, axis: &Vector3<f64>) -> bool {
+        *axis == Vector3::z()
+    }
+}
+
+#[test]
+fn all_axes_are_within_the_limits_of_a_machine() {
+    let case = Case::new(step(), &Mill);
+    let pattern = Pattern { normal: [0.0, 1.0, 0.0], stepover: 2.0, step: 1.0 };
+    let plan = |axis_limits| PathRequest { axis_limits, ..case.request(&Mill, &pattern) }.plan();
+    let [free, limited] = [None, Some(&Trunnion as &dyn ToolAxisLimits)].map(|limits| {
+        let path = plan(limits).expect("a path");
+        let outside = path.locations.windows(2).filter(|pair| {
+            let [from, to] = [pair[0].0.axis(), pair[1].0.axis()];
+            (0..=20).any(|k| !Trunnion.allow(&from.slerp(&to, f64::from(k) / 20.0)))
+        });
+        println!("{} contact points, {} outside", path.contact_points, outside.clone().count());
+        (path.contact_points, outside.count())
+    });
+    assert!(free.1 > 50 && limited.1 == 0, "{free:?} {limited:?}");
+    // The step is reached from the side to which the trunnion leans, and from above.
+    assert!(limited.0 * 3 > free.0, "{free:?} {limited:?}");
+    assert_eq!(plan(Some(&ThreeAxes)).expect_err("no direction"), PathError::NoDirection);
 }
