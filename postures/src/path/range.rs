@@ -26,6 +26,10 @@ const TURN_STEP: f64 = PI / 90.0;
 /// Number of directions between one and +z that are tried in its place: every 4° at most.
 const CLAMP_STEPS: u32 = 45;
 
+/// Angle in radians, 5°, by which a direction is turned farther: two axes at the largest tilt have a lower great circle
+/// between them.
+const CLAMP_MARGIN: f64 = PI / 36.0;
+
 impl AxisRange<'_> {
     /// Returns whether the axis may take a direction.
     pub(super) fn allows(&self, axis: &Vector3<f64>) -> bool {
@@ -43,20 +47,21 @@ impl AxisRange<'_> {
         (0..=steps as u32).all(|k| machine.allow(&from.slerp(to, f64::from(k) / steps)))
     }
 
-    /// Returns a direction turned toward +z as far as the range requires; `None` if none on the way is allowed.
+    /// Returns a direction that is allowed, or one turned from it toward +z until the axis may take it, and a little
+    /// farther, so that it may also turn to the next such direction. Returns `None` if none on the way is allowed.
     pub(super) fn clamped(&self, direction: &Vector3<f64>) -> Option<Vector3<f64>> {
-        let tilted = self.tilt.clamped(direction);
-        if self.allows(&tilted) {
-            return Some(tilted);
+        if self.allows(direction) {
+            return Some(*direction);
         }
+        let top = Vector3::z();
         // From -z every great circle leads to +z: the one by +x is taken.
-        let first = match tilted.z.clamp(-1.0, 1.0).acos() > PI - TURN_STEP {
-            true => Vector3::x(),
-            false => tilted,
-        };
-        let mut tried = (0..=CLAMP_STEPS)
-            .map(|k| first.slerp(&Vector3::z(), f64::from(k) / f64::from(CLAMP_STEPS)));
-        tried.find(|axis| self.allows(axis))
+        let is_bottom = direction.angle(&top) > PI - TURN_STEP;
+        let first = if is_bottom { Vector3::x() } else { *direction };
+        let angle = first.angle(&top);
+        let mut turns = (0..=CLAMP_STEPS).map(|k| f64::from(k) / f64::from(CLAMP_STEPS));
+        let turned = turns.find(|turn| self.allows(&first.slerp(&top, *turn)))?;
+        let farther = first.slerp(&top, (turned + CLAMP_MARGIN / angle).min(1.0));
+        Some(if self.allows(&farther) { farther } else { first.slerp(&top, turned) })
     }
 
     /// Returns sets of directions without those beyond the range, and whether any direction is left. A set of another

@@ -66,8 +66,8 @@ impl RetractSphere {
     pub(super) fn leg(&self, planner: &mut PathPlanner<'_>, pose: &Pose) -> Option<RetractLeg> {
         let exit = self.exit(pose, OUTER_RADIUS * self.tip_radius)?;
         // The lead ends before the sphere, so that both motions have a length.
-        let lead_end = pose.translated(pose.axis() * self.lead.min(0.5 * exit)).ok()?;
-        let outer = pose.translated(pose.axis() * exit).ok()?;
+        let lead_end = lifted(pose, self.lead.min(0.5 * exit))?;
+        let outer = lifted(pose, exit)?;
         (planner.is_clear(pose, &lead_end) && planner.is_clear(&lead_end, &outer))
             .then_some(RetractLeg { lead_end, outer })
     }
@@ -90,7 +90,7 @@ impl RetractSphere {
     fn links(&self, planner: &PathPlanner<'_>, from: &Pose, to: &Pose) -> Vec<RapidLink> {
         let mut links = self.hops(from, to);
         for radius in LINK_RADII {
-            links.extend(self.around(planner, from, to, radius * self.tip_radius));
+            links.extend(self.links_around(planner, from, to, radius * self.tip_radius));
         }
         links
     }
@@ -111,28 +111,27 @@ impl RetractSphere {
         hops
     }
 
-    /// Returns the link around the part on a sphere: out along the first axis, upright along a great circle, and in
-    /// along the second axis. Where the axis may not point outward, it tilts as far as it may, and the way
-    /// leads over the top.
-    fn around(
+    /// Returns the links around the part on a sphere: out along the first axis, around, and in along the second axis.
+    fn links_around(
         &self,
         planner: &PathPlanner<'_>,
         from: &Pose,
         to: &Pose,
         radius: f64,
-    ) -> Option<RapidLink> {
-        let heights = [self.exit(from, radius)?, self.exit(to, radius)?];
-        let outer = [(from, heights[0]), (to, heights[1])]
-            .map(|(pose, height)| pose.translated(pose.axis() * height));
-        let [first, last] = outer;
-        let way = self.between(planner, &first.ok()?, &last.ok()?)?;
-        self.raised(from, to, heights, &way)
+    ) -> Vec<RapidLink> {
+        let Some((out, back)) = self.exit(from, radius).zip(self.exit(to, radius)) else {
+            return Vec::new();
+        };
+        let (Some(first), Some(last)) = (lifted(from, out), lifted(to, back)) else {
+            return Vec::new();
+        };
+        let ways = self.ways_between(planner, &first, &last);
+        ways.iter().filter_map(|way| self.raised(from, to, [out, back], way)).collect()
     }
 
     /// Returns the link that lifts its ends by heights along their axes, with the cutter locations of the way between
     /// the lifted ends.
     fn raised(&self, from: &Pose, to: &Pose, heights: [f64; 2], way: &[Pose]) -> Option<RapidLink> {
-        let lifted = |pose: &Pose, height: f64| pose.translated(pose.axis() * height).ok();
         let mut locations = Vec::with_capacity(way.len() + 4);
         if heights[0] > self.lead {
             locations.push((lifted(from, self.lead)?, false));
@@ -159,35 +158,45 @@ impl RetractSphere {
         Pose::from_axis(tip, Vector3::z()).ok()
     }
 
-    /// Returns the poses from one pose on the sphere to another, both included, if the way is proved; see `between`.
+    /// Returns the poses from one pose on a sphere to another, both included, on a way that is proved.
     pub(super) fn way(
         &self,
         planner: &mut PathPlanner<'_>,
         from: &Pose,
         to: &Pose,
     ) -> Option<Vec<Pose>> {
-        let mut way = vec![*from];
-        way.extend(self.between(planner, from, to)?);
-        way.push(*to);
-        way.windows(2).all(|ends| planner.is_clear(&ends[0], &ends[1])).then_some(way)
+        let ways = self.ways_between(planner, from, to).into_iter().map(|between| {
+            let mut way = vec![*from];
+            way.extend(between);
+            way.push(*to);
+            way
+        });
+        let ways: Vec<Vec<Pose>> = ways.collect();
+        ways.into_iter().find(|way| way.windows(2).all(|ends| planner.is_clear(&ends[0], &ends[1])))
     }
 
-    /// Returns the poses between two poses on a sphere, without these: upright, around, and over to the second axis.
-    fn between(&self, planner: &PathPlanner<'_>, from: &Pose, to: &Pose) -> Option<Vec<Pose>> {
+    /// Returns ways between two poses on a sphere, as the poses between them: upright, around on a great circle, and
+    /// over to the second axis. Where the axis may not point outward, it points as near to that as it may, and a second
+    /// way leads over the top.
+    fn ways_between(&self, planner: &PathPlanner<'_>, from: &Pose, to: &Pose) -> Vec<Vec<Pose>> {
         let radius = (from.tip() - self.centre).norm();
         let [first, last] = [from, to].map(|pose| (pose.tip() - self.centre) / radius);
         let chord = self.longest_chord(radius);
-        let mut directions = around(first, last, chord);
-        if !directions.iter().all(|direction| planner.range.allows(direction)) {
+        let mut ways = vec![great_circle(first, last, chord)];
+        if !ways[0].iter().all(|direction| planner.range.allows(direction)) {
             let top = Vector3::z();
-            directions = around(first, top, chord);
-            directions.extend(around(top, last, chord).into_iter().skip(1));
+            let mut over = great_circle(first, top, chord);
+            over.extend(great_circle(top, last, chord).into_iter().skip(1));
+            ways.push(over);
         }
-        let poses = directions.iter().map(|direction| {
-            let tip = self.centre + direction * radius;
-            Pose::from_axis(tip, planner.range.clamped(direction)?).ok()
+        let poses = ways.iter().map(|directions| {
+            let poses = directions.iter().map(|direction| {
+                let axis = planner.range.clamped(direction)?;
+                Pose::from_axis(self.centre + direction * radius, axis).ok()
+            });
+            poses.collect::<Option<Vec<Pose>>>()
         });
-        poses.collect()
+        poses.flatten().collect()
     }
 }
 
@@ -215,8 +224,13 @@ impl RapidLink {
     }
 }
 
+/// Returns a pose moved along its axis, toward the spindle.
+fn lifted(pose: &Pose, height: f64) -> Option<Pose> {
+    pose.translated(pose.axis() * height).ok()
+}
+
 /// Returns directions on a great circle from one to another, at most an angle apart, both ends included.
-fn around(first: Vector3<f64>, last: Vector3<f64>, chord: f64) -> Vec<Vector3<f64>> {
+fn great_circle(first: Vector3<f64>, last: Vector3<f64>, chord: f64) -> Vec<Vector3<f64>> {
     let turn = first.angle(&last);
     // Between opposite directions any great circle will do, and between equal ones there is no turn.
     let axis = Unit::try_new(first.cross(&last), 1e-9)
@@ -312,7 +326,7 @@ mod tests {
         for (first, last) in directions.list().iter().zip(directions.list().iter().rev()) {
             for radius in LINK_RADII {
                 let chord = sphere.longest_chord(radius * sphere.tip_radius);
-                let way = around(Vector3::from(*first), Vector3::from(*last), chord);
+                let way = great_circle(Vector3::from(*first), Vector3::from(*last), chord);
                 for ends in way.windows(2) {
                     let middle = 0.5 * (ends[0] + ends[1]);
                     assert!(middle.norm() * radius > 1.0 - 1e-9, "{middle:?} at {radius}");

@@ -40,19 +40,6 @@ impl TiltLimit {
             from.cross(&lowest).dot(&normal) > 0.0 && lowest.cross(to).dot(&normal) > 0.0;
         !is_between || self.allows(&lowest)
     }
-
-    /// Returns a direction turned toward +z as far as the limit requires; +z for a direction along -z.
-    pub(super) fn clamped(self, direction: &Vector3<f64>) -> Vector3<f64> {
-        if self.allows(direction) {
-            return *direction;
-        }
-        let across = Vector3::new(direction.x, direction.y, 0.0);
-        let z = self.least + ROUNDING;
-        match across.try_normalize(ROUNDING) {
-            Some(across) => across * (1.0 - z * z).max(0.0).sqrt() + Vector3::z() * z,
-            None => Vector3::z(),
-        }
-    }
 }
 
 #[cfg(test)]
@@ -94,7 +81,6 @@ mod tests {
                     let ends = tilt.allows(from) && tilt.allows(to);
                     refused_between += usize::from(ends && lowest < angle.cos());
                 }
-                assert!(tilt.allows(&tilt.clamped(from)));
             }
         }
         assert!(refused_between > 10, "{refused_between}");
