@@ -41,6 +41,10 @@ const OUTER_RADIUS: f64 = 2.0;
 /// Radii of the spheres on which links lead around the part, in the same unit.
 const LINK_RADII: [f64; 3] = [1.05, 1.4, OUTER_RADIUS];
 
+/// Difference of tips, as a fraction of their coordinates, and of axes in radians that is rounding: an angle near 0
+/// rounds to 1e-8.
+const SAME: f64 = 1e-7;
+
 impl RetractSphere {
     /// Creates the sphere about a mesh. `reach` is the largest distance between the tip and a contact.
     pub(super) fn new(mesh: &Mesh, reach: f64) -> RetractSphere {
@@ -196,7 +200,11 @@ impl RetractSphere {
             });
             poses.collect::<Option<Vec<Pose>>>()
         });
-        poses.flatten().collect()
+        let mut ways: Vec<Vec<Pose>> = poses.flatten().collect();
+        // An end that is upright already is no way to go.
+        ways.iter_mut()
+            .for_each(|way| way.retain(|pose| !is_same(pose, from) && !is_same(pose, to)));
+        ways
     }
 }
 
@@ -222,6 +230,12 @@ impl RapidLink {
         motions.rotate_left(middle);
         motions.into_iter().all(|ends| planner.is_clear(ends[0], ends[1]))
     }
+}
+
+/// Returns whether two poses away from the part are the same but for rounding.
+fn is_same(one: &Pose, other: &Pose) -> bool {
+    let distance = (one.tip() - other.tip()).norm();
+    distance <= SAME * one.tip().coords.norm() && one.axis().angle(&other.axis()) <= SAME
 }
 
 /// Returns a pose moved along its axis, toward the spindle.

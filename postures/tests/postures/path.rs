@@ -200,6 +200,10 @@ fn plan_and_check(mesh: Mesh, normal: [f64; 3], spacing: [f64; 2]) -> ToolPath {
     );
     assert!(feed[0] <= TOLERANCE + 1e-9 && feed[1] <= TOLERANCE / 8.0 + 1e-9, "{feed:?}");
     assert!(rapid[0] <= TOLERANCE + 1e-9 && rapid[1] <= TOLERANCE / 8.0 + 1e-9, "{rapid:?}");
+    let distinct = path.locations.windows(2).all(|pair| {
+        pair[0].0.tip() != pair[1].0.tip() || pair[0].0.axis().angle(&pair[1].0.axis()) > 1e-6
+    });
+    assert!(distinct, "every motion moves the tool");
     let [feed, rapid] = lengths(&path);
     println!("{feed:.1} in feed, {rapid:.1} in rapid traverse");
     assert!(rapid <= 1.5 * feed, "links stay near the part: {rapid} of {feed}");
