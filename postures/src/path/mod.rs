@@ -259,7 +259,7 @@ impl PathRequest<'_> {
         });
         let runs: Vec<Vec<_>> = runs.collect();
         let mut path = DrawnPath::default();
-        let mut open = OpenRuns::new(planes, planner.placement.reach());
+        let mut open = OpenRuns::new(planes, planner.placement.reach(), sphere.lead());
         for (plane, (runs, unreached)) in runs.into_iter().flatten() {
             path.leave_out(unreached);
             runs.iter().for_each(|run| path.count(run));

@@ -57,6 +57,11 @@ impl RetractSphere {
         }
     }
 
+    /// Returns the lowest lift of a link, in the part's unit.
+    pub(super) fn lead(&self) -> f64 {
+        self.lead
+    }
+
     /// Returns the distance along its axis at which a pose leaves the sphere of a radius about the part; `None` for a
     /// pose outside.
     fn exit(&self, pose: &Pose, radius: f64) -> Option<f64> {
