@@ -72,9 +72,9 @@ pub(super) fn slices(mesh: &Mesh, planes: &Planes, step: f64) -> Vec<Vec<Vec<Sli
         // Rounded outward: a plane too many is crossed nowhere, and one too few would leave a gap in a line.
         let first = planes.position(lowest).floor().max(0.0) as usize;
         let last = planes.position(highest).ceil().max(0.0) as usize;
-        for k in first..=last.min(planes.count - 1) {
+        for (k, plane) in segments.iter_mut().enumerate().take(last + 1).skip(first) {
             if let Some(ends) = crossed(corners, heights, planes.height(k)) {
-                segments[k].push(SliceSegment { triangle: id, ends });
+                plane.push(SliceSegment { triangle: id, ends });
             }
         }
     }
