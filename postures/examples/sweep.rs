@@ -83,6 +83,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         accessibility: &access,
         pattern: &pattern,
         max_tilt: std::f64::consts::PI,
+        axis_limits: None,
     }
     .plan()?;
     println!(

@@ -114,7 +114,7 @@ pub(crate) struct Path {
     #[arg(long, value_name = "LENGTH", value_parser = positive_length)]
     pub(crate) forward_step: Option<f64>,
     /// Largest angle between the tool axis and +z of the part, in degrees, above 0 and up to 180 [default: 180, any
-    /// axis]. With 90 no tool axis points below the table.
+    /// axis]. With 90 no tool axis points below the table. The limits of the rotary axes of `--machine` hold as well.
     #[arg(long, value_name = "DEGREES", value_parser = tilt)]
     pub(crate) max_tilt: Option<f64>,
     /// Number of the tool: `LOADTL` in `.apt`, `T`, `M6` and `H` in `.nc`, which needs it.

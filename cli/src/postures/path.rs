@@ -16,7 +16,7 @@ use std::mem;
 use std::path::Path;
 use touchoff::certify::TriangleBvh;
 use touchoff::{Motion, Unit};
-use touchoff_postures::path::{LeftOutReason, PathRequest, Pattern, ToolPath};
+use touchoff_postures::path::{LeftOutReason, PathRequest, Pattern, ToolAxisLimits, ToolPath};
 use touchoff_postures::{Directions, MapRow, PostureMap, Rules};
 use touchoff_verify::ClData;
 use touchoff_verify::program::{AptHeader, Cutter, Decimals, apt_unit};
@@ -178,6 +178,7 @@ pub(crate) fn path(arguments: &Arguments, json: bool) -> Result<(), Failure> {
         accessibility: &access,
         pattern: &pattern,
         max_tilt: arguments.max_tilt.unwrap_or(180.0).to_radians(),
+        axis_limits: post.as_ref().map(|post| post as &dyn ToolAxisLimits),
     };
     let mut path = request.plan()?;
     let planned = path.locations.len();

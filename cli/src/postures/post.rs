@@ -10,6 +10,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::Path;
 use touchoff::{Motion, Pose, Unit};
+use touchoff_postures::path::ToolAxisLimits;
 use touchoff_verify::gcode::{Choice, ControlRules, ControlSetup, Rule};
 use touchoff_verify::job::read_machine;
 use touchoff_verify::machine::{Chain, InverseError, Joints, Letter, Machine, Setup};
@@ -31,6 +32,9 @@ const REWIND_TRAVEL: f64 = 60.0;
 /// Decimals of rotary words: half of 1e-6° moves a point at 300 mm from the tip by 3e-6 mm.
 const ANGLE_DECIMALS: usize = 6;
 
+/// Angle in radians from +z below which the tool axis at the end of a path counts as upright.
+const UPRIGHT: f64 = 1e-6;
+
 /// Words of a program besides its motions.
 pub(super) struct Words {
     pub(super) tool_number: u32,
@@ -45,6 +49,8 @@ pub(super) struct Post {
     machine: Machine,
     /// The chain of the inverse kinematics.
     chain: Chain,
+    /// The same without the limits of the linear axes.
+    rotary_chain: Chain,
     control: ControlSetup,
     unit: Unit,
     words: Words,
@@ -126,7 +132,8 @@ impl Post {
             }
             _ => machine.chain(&Setup::default())?.without_linear_limits(),
         };
-        Ok(Post { machine, chain, control, unit, words })
+        let rotary_chain = chain.without_linear_limits();
+        Ok(Post { machine, chain, rotary_chain, control, unit, words })
     }
 
     /// Returns the text of the program for cutter locations, and the cutter locations that it has.
@@ -252,9 +259,36 @@ impl Post {
             }
             text.push('\n');
         }
-        // A control can keep tool centre point control for its next program.
-        text += if rotary.is_empty() { "M30\n" } else { "G49\nM30\n" };
+        // A control can keep the length offset and tool centre point control for its next program, and G53 is refused
+        // under the latter.
+        text += "G49\nM5\n";
+        // Above the part the way home is along the tool axis. From elsewhere it is the operator's.
+        let last = locations.last().map(|location| location.pose.axis());
+        if last.is_some_and(|axis| axis.angle(&Vector3::z()) < UPRIGHT) {
+            self.write_home(&mut text, unit);
+        }
+        text += "M30\n";
         PostedText { text, header_lines, locations: locations.len() }
+    }
+
+    /// Writes the way home: Z first, then X and Y together. The rotary axes stay: one without limits can have many turns
+    /// to unwind.
+    fn write_home(&self, text: &mut String, unit: Unit) {
+        let scale = Unit::Millimetre.factor_to(unit);
+        let [x, y, z] = [Letter::X, Letter::Y, Letter::Z].map(|letter| {
+            let home = self.machine.home()[letter.index()];
+            let number = home.map(|value| word(value * scale, Decimals::of(unit).tip));
+            number.map_or_else(String::new, |number| format!(" {letter}{number}"))
+        });
+        if z.is_empty() {
+            // The machine's file does not state it, but the control knows its reference position.
+            *text += "G91 G28 Z0.\nG90\n";
+            return;
+        }
+        let _ = writeln!(text, "G53 G0{z}");
+        if !(x.is_empty() && y.is_empty()) {
+            let _ = writeln!(text, "G53 G0{x}{y}");
+        }
     }
 
     /// Returns the joint values of cutter locations.
@@ -272,6 +306,13 @@ impl Post {
             axis: targets[index].axis.into(),
             source,
         })
+    }
+}
+
+impl ToolAxisLimits for Post {
+    fn allow(&self, axis: &Vector3<f64>) -> bool {
+        // Without limits of the linear axes the tip does not matter, and limits of rotary axes count whole turns.
+        self.rotary_chain.solutions(&Point3::origin(), axis, &[0.0; 6]).is_ok()
     }
 }
 

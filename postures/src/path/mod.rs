@@ -10,21 +10,28 @@
 //! reachable, in the directions that turn least from point to point. Every posture and every motion between two
 //! of them is proved. Where a straight motion is too deep, the tool is led over the edges between the two
 //! points, with as many intermediate cutter locations as needed. Points that cannot be joined on the surface
-//! are joined above it: a little back along the axis, across, and in along the next axis. Where that fails too,
-//! the tool moves out, around the part, and in.
+//! are joined off it, by the shortest proved way of several: out along the axis, across or around the part, and in
+//! along the next axis. The runs of all planes are followed by nearness, so that few such ways are needed.
 
 mod axes;
 mod drawn;
+mod order;
+mod range;
+mod retract;
 mod slice;
 mod tilt;
 
 use super::placement::{CandidatePosture, SurfacePoint, ToolPlacement};
 use super::{Directions, Rules, Validator, ValidatorError};
 use axes::PathPosture;
-use drawn::{DrawnPath, RetractSphere};
+use drawn::DrawnPath;
 use nalgebra::{Point3, Vector3};
+use order::OpenRuns;
+use range::AxisRange;
+pub use range::ToolAxisLimits;
 use rayon::prelude::*;
-use slice::{SlicePoint, length_of_lines, slices};
+use retract::RetractSphere;
+use slice::{Planes, SlicePoint, length_of_lines, slices};
 use std::fmt;
 use tilt::TiltLimit;
 use touchoff::certify::{MotionVerdict, TriangleBvh};
@@ -78,6 +85,12 @@ pub enum PathError {
     /// The rules are invalid, or the tool cannot be validated.
     #[error(transparent)]
     Validator(#[from] ValidatorError),
+    /// No direction that was swept is one that the tool axis may take.
+    #[error(
+        "none of the directions that were swept is within the limits of the tool axis: allow a larger tilt, sweep with \
+         more directions, or take a machine that tilts the tool farther"
+    )]
+    NoDirection,
     /// No posture was found for the path.
     #[error(
         "the tool reaches none of the places where the planes cut the part: sweep with it first, take planes \
@@ -91,13 +104,14 @@ pub enum PathError {
 #[non_exhaustive]
 pub struct ToolPath {
     /// Cutter locations, each with a flag that is set if the tool arrives in rapid traverse. The first and the
-    /// last are away from the part.
+    /// last are above the part, with the axis along +z, if the axis may point there and the way is proved, and
+    /// otherwise away from the part in another direction.
     pub locations: Vec<(Pose, bool)>,
     /// Number of points at which the part is touched.
     pub contact_points: usize,
     /// The points on the lines that are left out.
     pub left_out: Vec<LeftOut>,
-    /// Number of times that the tool leaves the surface.
+    /// Number of times that the tool leaves the surface and comes back.
     pub retracts: usize,
     /// Root mean square turn of the axis from point to point along the lines, in radians, before and after
     /// smoothing.
@@ -116,7 +130,7 @@ pub struct LeftOut {
 /// The reason for which a path leaves out a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LeftOutReason {
-    /// No posture at the point is proved acceptable, within the largest tilt.
+    /// No posture at the point is proved acceptable, within the limits of the tool axis.
     NotReached,
     /// No motion to the point is proved acceptable.
     NoMotion,
@@ -150,7 +164,7 @@ pub(super) struct PathPlanner<'a> {
     placement: ToolPlacement<'a>,
     validator: Validator<'a>,
     rules: &'a Rules,
-    tilt: TiltLimit,
+    range: AxisRange<'a>,
     postures: Vec<CandidatePosture>,
 }
 
@@ -175,6 +189,8 @@ pub struct PathRequest<'a> {
     /// Largest angle of the tool axis from +z of the part, in radians, at cutter locations and between them:
     /// above 0; π for any axis.
     pub max_tilt: f64,
+    /// The limits of a machine's rotary axes; `None` for any axis. Every cutter location is within them.
+    pub axis_limits: Option<&'a dyn ToolAxisLimits>,
 }
 
 impl fmt::Debug for PathRequest<'_> {
@@ -195,8 +211,7 @@ impl PathRequest<'_> {
     /// # Errors
     /// If the pattern or the rules are invalid, or no point can be reached; see [`PathError`].
     pub fn plan(&self) -> Result<ToolPath, PathError> {
-        let PathRequest { mesh, bvh, tool, rules, directions, accessibility, pattern, max_tilt } =
-            *self;
+        let PathRequest { mesh, bvh, tool, rules, directions, accessibility, pattern, .. } = *self;
         for (what, value) in [("a stepover", pattern.stepover), ("a step", pattern.step)] {
             if !(value > 0.0 && value.is_finite()) {
                 return Err(PathError::Pattern { what, value });
@@ -215,47 +230,43 @@ impl PathRequest<'_> {
         if points > MAX_POINTS as f64 {
             return Err(PathError::TooFine { points, limit: MAX_POINTS });
         }
-        let tilt = TiltLimit::new(max_tilt).ok_or(PathError::Tilt(max_tilt))?;
-        let within_tilt = tilt.is_limited().then(|| tilt.filter(directions, accessibility));
-        let accessibility = within_tilt.as_deref().unwrap_or(accessibility);
-        let mut planner = PathPlanner::new(bvh, tool, rules, tilt)?;
+        let tilt = TiltLimit::new(self.max_tilt).ok_or(PathError::Tilt(self.max_tilt))?;
+        let range = AxisRange { tilt, machine: self.axis_limits };
+        let (accessibility, any_direction) = range.filter(directions, accessibility);
+        if !any_direction {
+            return Err(PathError::NoDirection);
+        }
+        let mut planner = PathPlanner::new(bvh, tool, rules, range)?;
         let sphere = RetractSphere::new(mesh, planner.placement.reach());
-        let planes = slices(mesh, &normal, [pattern.stepover, pattern.step]);
-        let lines: Vec<(usize, &Vec<SlicePoint>)> = planes
+        let planes = Planes::new(mesh, &normal, pattern.stepover);
+        let slices = slices(mesh, &planes, pattern.step);
+        let lines: Vec<(usize, &Vec<SlicePoint>)> = slices
             .iter()
             .enumerate()
             .flat_map(|(k, lines)| lines.iter().map(move |line| (k, line)))
             .collect();
         let runs = lines.par_chunks(LINES_PER_TASK).map(|lines| {
             // Errors were reported for the planner above.
-            let Ok(mut planner) = PathPlanner::new(bvh, tool, rules, tilt) else {
+            let Ok(mut planner) = PathPlanner::new(bvh, tool, rules, range) else {
                 return Vec::new();
             };
             let runs = lines.iter().map(|(plane, line)| {
                 // So that the runs of a line do not depend on the lines before it.
                 planner.validator.certifier.clear_caches();
-                (*plane, planner.runs(mesh, directions, accessibility, line))
+                (*plane, planner.runs(mesh, directions, &accessibility, line))
             });
             runs.collect::<Vec<_>>()
         });
         let runs: Vec<Vec<_>> = runs.collect();
         let mut path = DrawnPath::default();
-        let mut runs = runs.into_iter().flatten().peekable();
-        while let Some((plane, (mut plane_runs, unreached))) = runs.next() {
+        let mut open = OpenRuns::new(planes, planner.placement.reach(), sphere.lead());
+        for (plane, (runs, unreached)) in runs.into_iter().flatten() {
             path.leave_out(unreached);
-            while let Some((_, (more, unreached))) = runs.next_if(|(other, _)| *other == plane) {
-                plane_runs.extend(more);
-                path.leave_out(unreached);
-            }
-            plane_runs.iter().for_each(|run| path.count(run));
-            // Continue with the remaining run whose end is nearest.
-            while let Some((next, reverse)) = path.nearest(&plane_runs) {
-                let mut run = plane_runs.swap_remove(next);
-                if reverse {
-                    run.reverse();
-                }
-                path.follow(&mut planner, &sphere, &run, 3.0 * pattern.stepover);
-            }
+            runs.iter().for_each(|run| path.count(run));
+            open.extend(plane, runs);
+        }
+        while let Some(run) = open.take_nearest(path.last()) {
+            path.follow(&mut planner, &sphere, &run, 3.0 * pattern.stepover);
         }
         path.end(&mut planner, &sphere)
     }
@@ -266,7 +277,7 @@ impl<'a> PathPlanner<'a> {
         bvh: &'a TriangleBvh,
         tool: &'a dyn Tool,
         rules: &'a Rules,
-        tilt: TiltLimit,
+        range: AxisRange<'a>,
     ) -> Result<PathPlanner<'a>, ValidatorError> {
         // The rest of the tolerance is for motions, which are deeper between cutter locations than at them.
         let location_rules = Rules {
@@ -276,7 +287,7 @@ impl<'a> PathPlanner<'a> {
         let mut validator = Validator::new(bvh, tool, &location_rules)?;
         validator.certifier = validator.certifier.with_budget(QUERY_BUDGET);
         let placement = ToolPlacement::new(tool, bvh.unit());
-        Ok(PathPlanner { placement, validator, rules, tilt, postures: Vec::new() })
+        Ok(PathPlanner { placement, validator, rules, range, postures: Vec::new() })
     }
 
     /// Returns the posture at a surface point with a given axis, if it is proved acceptable.
@@ -285,7 +296,7 @@ impl<'a> PathPlanner<'a> {
         surface_point: &SurfacePoint,
         axis: Vector3<f64>,
     ) -> Option<PathPosture> {
-        if !self.tilt.allows(&axis) {
+        if !self.range.allows(&axis) {
             return None;
         }
         self.placement.list(*surface_point, [axis], &mut self.postures);
@@ -296,9 +307,9 @@ impl<'a> PathPlanner<'a> {
     }
 
     /// Returns whether the tool is proved to be no deeper than the tolerance during a motion (`true`), or to be
-    /// deeper (`false`); `None` if neither is proved, the motion is ambiguous, or the axis exceeds the largest tilt.
+    /// deeper (`false`); `None` if neither is proved, the motion is ambiguous, or the axis leaves its range.
     fn check_motion(&mut self, from: &Pose, to: &Pose) -> Option<bool> {
-        if !self.tilt.allows_turn(&from.axis(), &to.axis()) {
+        if !self.range.allows_turn(&from.axis(), &to.axis()) {
             return None;
         }
         let motion = Motion::new(from, to).ok()?;

@@ -23,36 +23,62 @@ pub(super) struct SlicePoint {
     pub(super) crossed: Vec<SurfacePoint>,
 }
 
-/// Returns the lines in which parallel planes cut a mesh, per plane, as points at most a step apart. A line begins
-/// within half a step of its end and ends within a step of it; closed lines end where they begin.
-pub(super) fn slices(
-    mesh: &Mesh,
-    normal: &Vector3<f64>,
-    [stepover, step]: [f64; 2],
-) -> Vec<Vec<Vec<SlicePoint>>> {
-    let [low, high] = range(mesh, normal);
-    // A mesh thinner than half a stepover is still cut once.
-    let count = ((high - low) / stepover).round().max(1.0);
-    let mut planes: Vec<Vec<SliceSegment>> = vec![Vec::new(); count as usize];
+/// Parallel planes in the middles of equal layers of a mesh, so that none lies in a face at the mesh's end.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Planes {
+    /// Unit normal.
+    normal: Vector3<f64>,
+    /// Lowest coordinate of the mesh along the normal.
+    low: f64,
+    /// Extent of the mesh along the normal.
+    extent: f64,
+    count: usize,
+}
+
+impl Planes {
+    /// Creates the planes that are nearest to a distance apart.
+    pub(super) fn new(mesh: &Mesh, normal: &Vector3<f64>, stepover: f64) -> Planes {
+        let [low, high] = range(mesh, normal);
+        // A mesh thinner than half a stepover is still cut once.
+        let count = ((high - low) / stepover).round().max(1.0);
+        Planes { normal: *normal, low, extent: high - low, count: count as usize }
+    }
+
+    /// Returns the coordinate of a plane along the normal.
+    pub(super) fn height(&self, plane: usize) -> f64 {
+        self.low + self.extent * (plane as f64 + 0.5) / self.count as f64
+    }
+
+    /// Returns the coordinate along the normal of a point.
+    pub(super) fn height_of(&self, point: &Point3<f64>) -> f64 {
+        point.coords.dot(&self.normal)
+    }
+
+    /// Returns the position of a coordinate among the planes: `k` at plane `k`.
+    pub(super) fn position(&self, height: f64) -> f64 {
+        (height - self.low) / self.extent * self.count as f64 - 0.5
+    }
+}
+
+/// Returns the lines in which planes cut a mesh, per plane, as points at most a step apart. A line begins within half a
+/// step of its end and ends within a step of it; closed lines end where they begin.
+pub(super) fn slices(mesh: &Mesh, planes: &Planes, step: f64) -> Vec<Vec<Vec<SlicePoint>>> {
+    let mut segments: Vec<Vec<SliceSegment>> = vec![Vec::new(); planes.count];
     for id in mesh.ids() {
         let corners = mesh.triangle(id);
-        let heights = heights(mesh, normal, id);
+        let heights = heights(mesh, &planes.normal, id);
         let lowest = heights.into_iter().fold(f64::INFINITY, f64::min);
         let highest = heights.into_iter().fold(f64::NEG_INFINITY, f64::max);
         // Rounded outward: a plane too many is crossed nowhere, and one too few would leave a gap in a line.
-        let [lowest, highest] =
-            [lowest, highest].map(|height| (height - low) / (high - low) * count - 0.5);
-        let first = lowest.floor().max(0.0) as usize;
-        let last = highest.ceil().max(0.0) as usize;
-        for k in first..=last.min(planes.len() - 1) {
-            // Planes are in the middles of equal layers, so that none lies in a face at the part's end.
-            let plane = low + (high - low) * (k as f64 + 0.5) / count;
-            if let Some(ends) = crossed(corners, heights, plane) {
-                planes[k].push(SliceSegment { triangle: id, ends });
+        let first = planes.position(lowest).floor().max(0.0) as usize;
+        let last = planes.position(highest).ceil().max(0.0) as usize;
+        for (k, plane) in segments.iter_mut().enumerate().take(last + 1).skip(first) {
+            if let Some(ends) = crossed(corners, heights, planes.height(k)) {
+                plane.push(SliceSegment { triangle: id, ends });
             }
         }
     }
-    planes
+    segments
         .iter()
         .map(|segments| {
             join_segments(segments).iter().map(|line| sample_line(mesh, line, step)).collect()
@@ -189,7 +215,7 @@ mod tests {
     #[test]
     fn a_sphere_is_cut_in_circles() {
         let sphere = shapes::sphere(10.0, 5, Unit::Millimetre).expect("a sphere");
-        let slices = slices(&sphere, &Vector3::z(), [1.0, 0.5]);
+        let slices = slices(&sphere, &Planes::new(&sphere, &Vector3::z(), 1.0), 0.5);
         assert_eq!(slices.len(), 20);
         for (k, lines) in slices.iter().enumerate() {
             let height = -9.5 + k as f64;
@@ -217,7 +243,7 @@ mod tests {
     fn a_face_in_the_plane_is_on_one_side_of_it() {
         let (low, high) = (Point3::new(0.0, 0.0, 0.0), Point3::new(4.0, 4.0, 2.0));
         let block = shapes::cuboid(low, high, Unit::Millimetre).expect("a block");
-        let slices = slices(&block, &Vector3::x(), [4.0, 1.0]);
+        let slices = slices(&block, &Planes::new(&block, &Vector3::x(), 4.0), 1.0);
         assert_eq!((slices.len(), slices[0].len()), (1, 1));
         let displacement: f64 =
             slices[0][0].windows(2).map(|pair| (pair[1].point - pair[0].point).norm()).sum();

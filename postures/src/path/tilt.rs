@@ -1,6 +1,5 @@
 //! The largest angle of the tool axis from +z of the part.
 
-use crate::Directions;
 use nalgebra::Vector3;
 use std::f64::consts::PI;
 
@@ -18,11 +17,6 @@ impl TiltLimit {
     /// Creates the limit from an angle in radians; `None` unless it is above 0 and at most π.
     pub(super) fn new(max_tilt: f64) -> Option<TiltLimit> {
         (max_tilt > 0.0 && max_tilt <= PI).then(|| TiltLimit { least: max_tilt.cos() - ROUNDING })
-    }
-
-    /// Returns whether some axis exceeds the limit.
-    pub(super) fn is_limited(self) -> bool {
-        self.least > -1.0
     }
 
     /// Returns whether an axis is within the limit.
@@ -46,40 +40,12 @@ impl TiltLimit {
             from.cross(&lowest).dot(&normal) > 0.0 && lowest.cross(to).dot(&normal) > 0.0;
         !is_between || self.allows(&lowest)
     }
-
-    /// Returns a direction turned toward +z as far as the limit requires; +z for a direction along -z.
-    pub(super) fn clamped(self, direction: &Vector3<f64>) -> Vector3<f64> {
-        if self.allows(direction) {
-            return *direction;
-        }
-        let across = Vector3::new(direction.x, direction.y, 0.0);
-        let z = self.least + ROUNDING;
-        match across.try_normalize(ROUNDING) {
-            Some(across) => across * (1.0 - z * z).max(0.0).sqrt() + Vector3::z() * z,
-            None => Vector3::z(),
-        }
-    }
-
-    /// Returns sets of directions without those beyond the limit. A set of another length belongs to other
-    /// directions, and becomes empty.
-    pub(super) fn filter(self, directions: &Directions, sets: &[Vec<u64>]) -> Vec<Vec<u64>> {
-        let mut within = vec![0u64; directions.words()];
-        for (index, direction) in directions.list().iter().enumerate() {
-            if self.allows(&Vector3::from(*direction)) {
-                within[index / 64] |= 1 << (index % 64);
-            }
-        }
-        let filtered = sets.iter().map(|set| match set.len() == within.len() {
-            true => set.iter().zip(&within).map(|(word, within)| word & within).collect(),
-            false => Vec::new(),
-        });
-        filtered.collect()
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Directions;
     use std::f64::consts::FRAC_PI_2;
 
     #[test]
@@ -87,8 +53,8 @@ mod tests {
         for angle in [0.0, -1.0, 3.2, f64::NAN, f64::INFINITY] {
             assert!(TiltLimit::new(angle).is_none(), "{angle}");
         }
-        assert!(!TiltLimit::new(PI).expect("an angle").is_limited());
-        assert!(TiltLimit::new(3.1).expect("an angle").is_limited());
+        assert!(TiltLimit::new(PI).expect("an angle").allows(&-Vector3::z()));
+        assert!(!TiltLimit::new(3.1).expect("an angle").allows(&-Vector3::z()));
     }
 
     /// The lowest direction of a turn, by sampling it.
@@ -115,7 +81,6 @@ mod tests {
                     let ends = tilt.allows(from) && tilt.allows(to);
                     refused_between += usize::from(ends && lowest < angle.cos());
                 }
-                assert!(tilt.allows(&tilt.clamped(from)));
             }
         }
         assert!(refused_between > 10, "{refused_between}");

@@ -8,7 +8,9 @@ use std::ops::ControlFlow;
 use touchoff::certify::TriangleBvh;
 use touchoff::mesh::shapes;
 use touchoff::{Mesh, Tool, TriangleId, Unit};
-use touchoff_postures::path::{LeftOutReason, PathError, PathRequest, Pattern, ToolPath};
+use touchoff_postures::path::{
+    LeftOutReason, PathError, PathRequest, Pattern, ToolAxisLimits, ToolPath,
+};
 use touchoff_postures::sweep::PostureSweep;
 use touchoff_postures::{Directions, Rules};
 
@@ -66,6 +68,7 @@ impl Case {
             accessibility: &self.access,
             pattern,
             max_tilt: PI,
+            axis_limits: None,
         }
     }
 
@@ -105,15 +108,18 @@ fn sample_mesh(mesh: &Mesh, spacing: f64) -> Vec<Point3<f64>> {
 /// Returns the largest depth of a [`Mill`]'s cutting surfaces and of its other surfaces over a path, in mm: on
 /// feed moves, and on rapid moves.
 fn max_depths(case: &Case, path: &ToolPath) -> [[f64; 2]; 2] {
-    const TIME_STEPS: u32 = 6;
+    /// Least number of steps in a motion.
+    const TIME_STEPS: f64 = 6.0;
     let points = sample_mesh(&case.mesh, 0.5 * case.scale);
     let mut depths = [[0f64; 2]; 2];
     for pair in path.locations.windows(2) {
         let (from, to, rapid) = (pair[0].0, pair[1].0, usize::from(pair[1].1));
         let axis_of_rotation = from.axis().cross(&to.axis());
         let angle = from.axis().angle(&to.axis());
-        for k in 0..=TIME_STEPS {
-            let fraction = f64::from(k) / f64::from(TIME_STEPS);
+        // The tip moves at most 0.5 mm per step, so that long links are sampled as densely as short motions.
+        let steps = (2.0 * (to.tip() - from.tip()).norm() / case.scale).ceil().max(TIME_STEPS);
+        for k in 0..=steps as u32 {
+            let fraction = f64::from(k) / steps;
             let tip = from.tip() + (to.tip() - from.tip()) * fraction;
             let axis = match axis_of_rotation.try_normalize(1e-12) {
                 Some(axis_of_rotation) => {
@@ -142,6 +148,15 @@ fn max_depths(case: &Case, path: &ToolPath) -> [[f64; 2]; 2] {
         }
     }
     depths
+}
+
+/// Returns the length of the tip's path in feed and in rapid traverse.
+fn lengths(path: &ToolPath) -> [f64; 2] {
+    let mut lengths = [0.0; 2];
+    for pair in path.locations.windows(2) {
+        lengths[usize::from(pair[1].1)] += (pair[1].0.tip() - pair[0].0.tip()).norm();
+    }
+    lengths
 }
 
 /// Returns a block with a step along y. Its corners are given as `[x, z]`.
@@ -185,11 +200,19 @@ fn plan_and_check(mesh: Mesh, normal: [f64; 3], spacing: [f64; 2]) -> ToolPath {
     );
     assert!(feed[0] <= TOLERANCE + 1e-9 && feed[1] <= TOLERANCE / 8.0 + 1e-9, "{feed:?}");
     assert!(rapid[0] <= TOLERANCE + 1e-9 && rapid[1] <= TOLERANCE / 8.0 + 1e-9, "{rapid:?}");
+    let distinct = path.locations.windows(2).all(|pair| {
+        pair[0].0.tip() != pair[1].0.tip() || pair[0].0.axis().angle(&pair[1].0.axis()) > 1e-6
+    });
+    assert!(distinct, "every motion moves the tool");
+    let [feed, rapid] = lengths(&path);
+    println!("{feed:.1} in feed, {rapid:.1} in rapid traverse");
+    assert!(rapid <= 1.5 * feed, "links stay near the part: {rapid} of {feed}");
     assert!(path.contact_points > 100 && path.turns[1] <= path.turns[0], "{path:?}");
     let [low, high] = case.mesh.bounds();
     for (end, rapid) in [path.locations[0], path.locations[path.locations.len() - 1]] {
         assert!(rapid);
         assert!((end.tip() - nalgebra::center(&low, &high)).norm() > 0.9 * (high - low).norm());
+        assert!((end.axis() - Vector3::z()).norm() < 1e-12, "above the part: {end:?}");
     }
     path
 }
@@ -377,4 +400,42 @@ fn no_axis_exceeds_the_largest_tilt() {
         let error = plan(invalid).expect_err("no limit");
         assert!(matches!(error, PathError::Tilt(_)), "{error}");
     }
+}
+
+/// Axes as a trunnion that leans to one side reaches them.
+struct Trunnion;
+
+impl ToolAxisLimits for Trunnion {
+    fn allow(&self, axis: &Vector3<f64>) -> bool {
+        axis.x.abs() < 0.8 && (-0.5..=1.6).contains(&axis.y.atan2(axis.z))
+    }
+}
+
+/// A machine that does not tilt.
+struct ThreeAxes;
+
+impl ToolAxisLimits for ThreeAxes {
+    fn allow(&self, axis: &Vector3<f64>) -> bool {
+        *axis == Vector3::z()
+    }
+}
+
+#[test]
+fn all_axes_are_within_the_limits_of_a_machine() {
+    let case = Case::new(step(), &Mill);
+    let pattern = Pattern { normal: [0.0, 1.0, 0.0], stepover: 2.0, step: 1.0 };
+    let plan = |axis_limits| PathRequest { axis_limits, ..case.request(&Mill, &pattern) }.plan();
+    let [free, limited] = [None, Some(&Trunnion as &dyn ToolAxisLimits)].map(|limits| {
+        let path = plan(limits).expect("a path");
+        let outside = path.locations.windows(2).filter(|pair| {
+            let [from, to] = [pair[0].0.axis(), pair[1].0.axis()];
+            (0..=20).any(|k| !Trunnion.allow(&from.slerp(&to, f64::from(k) / 20.0)))
+        });
+        println!("{} contact points, {} outside", path.contact_points, outside.clone().count());
+        (path.contact_points, outside.count())
+    });
+    assert!(free.1 > 50 && limited.1 == 0, "{free:?} {limited:?}");
+    // The step is reached from the side to which the trunnion leans, and from above.
+    assert!(limited.0 * 3 > free.0, "{free:?} {limited:?}");
+    assert_eq!(plan(Some(&ThreeAxes)).expect_err("no direction"), PathError::NoDirection);
 }

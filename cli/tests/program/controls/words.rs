@@ -126,6 +126,13 @@ fn other_words_on_which_controls_differ_are_refused() {
     ] {
         Scene::new(&format!("{begin}{blocks}")).gives(&LINUXCNC, 2, &[word]);
     }
+    // The way home after G49 is the machine's, as that before it is. Other motions without the offset are not.
+    let home = format!("T1 M6\nS900 M3\nG43 H1 {begin}G0 Z20.\nG49\nG53 G0 Z0.\n");
+    let reference = ["only the machine knows where its coordinates"];
+    Scene::new(&home).gives(&LINUXCNC, 0, &reference);
+    Scene::new(&format!("{home}G53 G0 X0. Y0.\n")).gives(&LINUXCNC, 0, &reference);
+    let low = home.replace("G53 G0 Z0.", "G53 G0 Z-30.");
+    Scene::new(&low).gives(&LINUXCNC, 2, &["moves without a tool length offset"]);
     // Text after a semicolon, in ways that do not look like a block at first sight.
     for text in ["X0. ;;Z-1.", "X0. ; (a) Z-1.", "X0. ; /Z-1.", "X0. ; #1=2 ; Z-1. ; NOTE A"] {
         let scene = Scene::new(&format!("G0 X-6. Y0. Z20.\nG1 X-4. Z1.\n{text}\nG0 Z20."));

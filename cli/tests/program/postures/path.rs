@@ -33,6 +33,41 @@ fn verified(tube: &Tube, program: &str, more: &[&str]) {
     assert_eq!(checked.status.code(), Some(0), "{}{}", stdout(&checked), stderr(&checked));
 }
 
+/// The axes of the built-in trunnion end at 120° from +z. Postures beyond them are not chosen, without `--max-tilt`.
+#[test]
+fn a_path_keeps_to_the_limits_of_the_machine_and_goes_home() {
+    let tube = Tube::new();
+    assert!(tube.sweep("D2Ball", &[]).status.success());
+    let output = tube.place("limits.nc");
+    let words = ["--tool-number", "3", "--feed", "20", "--spindle", "9000"];
+    let free = object(&path_across("1,0,0", &tube, &tube.place("free.apt"), &[]));
+    assert!(free["upside_down_locations"].as_u64() > Some(50), "{free}");
+    let told = object(&path_across(
+        "1,0,0",
+        &tube,
+        &output,
+        &[&words[..], &["--machine", "A-C trunnion"]].concat(),
+    ));
+    assert!(told["contact_points"].as_u64() > Some(50), "{told}");
+    verified(&tube, &output, &["--machine", "A-C trunnion"]);
+    let text = std::fs::read_to_string(&output).expect("a program");
+    let tilts =
+        text.lines().flat_map(|line| line.split(' ')).filter_map(|word| word.strip_prefix('A'));
+    let tilts: Vec<f64> = tilts.map(|angle| angle.parse().expect("an angle")).collect();
+    let lowest = tilts.iter().copied().fold(0.0, f64::min);
+    assert!(tilts.len() > 50 && (-120.0..-95.0).contains(&lowest), "{lowest} of {}", tilts.len());
+    // With the place of the part known, the way home is proved as well.
+    let job = format!(
+        "part = {:?}\nunit = \"mm\"\nprogram = {output:?}\nmachine = \"A-C trunnion\"\ncontrol = {:?}\ntolerance = 0.05\n\
+         [work_offsets]\nG54 = [0, 0, -480]\n[tool.3]\ntool = \"D2Ball\"\nlength = 100\nallow = {{ shank = 0.00625 }}\n",
+        tube.part,
+        tube.place("control.toml"),
+    );
+    let checked = touchoff(&["verify", &tube.bench.write("job.toml", &job), "--json"]);
+    assert_eq!(checked.status.code(), Some(0), "{}{}", stdout(&checked), stderr(&checked));
+    assert!(!stdout(&checked).contains("reference position"), "{}", stdout(&checked));
+}
+
 /// Checks that a picture shows points of the colours of the reasons for which a path leaves points out.
 fn assert_picture_has_points(file: &str, summary: &Value) {
     let picture = Pixmap::load_png(file).expect("a picture");
@@ -141,7 +176,8 @@ fn a_path_for_a_machine_is_proved_on_its_joints() {
         let told = object(&path(&tube, &output, &[&words[..], &["--machine", machine]].concat()));
         let text = std::fs::read_to_string(&output).expect("a program");
         assert!(text.starts_with("G21 G90 G94 G54\nT3 M6\nS9000 M3\nG43.4 H3\nG0 X"), "{text}");
-        assert!(text.ends_with("\nM30\n") && text.contains(" F500.\n"), "{text}");
+        assert!(text.ends_with("\nG49\nM5\nG53 G0 Z0.\nG53 G0 X0. Y0.\nM30\n"), "{text}");
+        assert!(text.contains(" F500.\n"), "{text}");
         let motions =
             text.lines().filter(|line| line.starts_with("G0 X") || line.starts_with("G1 X"));
         assert_eq!(told["locations"].as_u64(), Some(motions.count() as u64), "{told}");
@@ -170,7 +206,7 @@ fn a_path_for_a_machine_is_proved_on_its_joints() {
     let more = |more: &[&'static str]| path(&tube, &output, &[&words[..], more].concat());
     refused(
         &more(&["--machine", "3-axis"]),
-        &["`3-axis` does not reach cutter location", "the axis"],
+        &["none of the directions that were swept is within the limits", "tilts the tool farther"],
     );
     let far = ["--machine", "A-C trunnion", "--work-offset", "0,0,-2000", "--tool-length", "100"];
     refused(&more(&far), &["`A-C trunnion` does not reach cutter location", "outside its limits"]);

@@ -174,7 +174,16 @@ impl<'a> Resolver<'a> {
         }
         let frame = match self.frame(step)? {
             Located::Known(frame) => frame,
-            Located::Unknown(cause) => return Ok(self.lose_linear(step, cause)),
+            Located::Unknown(cause) => {
+                let lost = self.lose_linear(step, cause);
+                // The way home of machine coordinates is the same with and without the length offset.
+                return Ok(match cause {
+                    UnknownCause::NoOffset { .. } if step.is_homeward => {
+                        Resolved::Unknown(UnknownCause::Home)
+                    }
+                    _ => lost,
+                });
+            }
         };
         if matches!(step.path, StepPath::Align) {
             return self.align(&frame, &step.state);
