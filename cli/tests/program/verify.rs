@@ -191,6 +191,15 @@ fn unknown_statements_are_refused() {
     assert!(
         stderr(&output).contains("wide.apt:3: CUTTER/50,25 is not `D2Ball`, which is CUTTER/2,1")
     );
+    // All arguments that are stated are shown, and an angle counts whatever the diameter.
+    bench.write("cone.apt", PROGRAM.replace("UNITS/MM", "UNITS/MM\nCUTTER/2,1,0,1,0.1"));
+    let output = verify(&bench, "cone.apt", "D2Ball", &["--tolerance", "0.5"]);
+    assert!(
+        stderr(&output)
+            .contains("CUTTER/2,1,0,1,0.1 is not `D2Ball`, which is CUTTER/2,1,0,1,0 in"),
+        "{}",
+        stderr(&output)
+    );
     bench.write(
         "passed.apt",
         PROGRAM.replace("UNITS/MM", "UNITS/MM\nCOOLNT/ON\nFEDRAT/9\nFEDRAT/8"),

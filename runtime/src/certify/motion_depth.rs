@@ -399,9 +399,10 @@ impl MotionSearch<'_, '_> {
         let mut best = from;
         let mut step = 0.5 / f64::from(INITIAL_TIMES);
         while step * pace > self.climb_tolerance() && step > MIN_TIME_STEP {
+            // At an end of the motion there is one side.
             let sides = [best.at - step, best.at + step].map(|at| at.clamp(0.0, 1.0));
-            let found = sides.map(|at| self.peak_at(at)).into_iter().flatten();
-            let found = found.fold(best, deeper);
+            let sides = sides.into_iter().filter(|at| *at != best.at);
+            let found = sides.filter_map(|at| self.peak_at(at)).fold(best, deeper);
             if found.depth.low > best.depth.low {
                 best = found;
             } else {

@@ -9,6 +9,7 @@ mod diagnostics;
 mod faces;
 mod location;
 mod obj;
+mod outlier;
 mod ply;
 mod read;
 pub mod shapes;
@@ -25,9 +26,9 @@ use crate::unit::Unit;
 
 pub use diagnostics::MeshDiagnostics;
 pub(crate) use diagnostics::inverted;
-pub use faces::Outlier;
 pub use location::SourceLocation;
 pub use obj::ObjError;
+pub use outlier::Outlier;
 pub use ply::{OrientedPoints, PlyError};
 pub use read::{Geometry, GeometryError};
 pub use stl::StlError;

@@ -4,8 +4,8 @@
 use nalgebra::Point3;
 
 use super::faces::Faces;
-use super::faces::Outlier;
 use super::location::{SourceLocation, Tokens, number, printable};
+use super::outlier::Outlier;
 use super::{LARGEST_COORDINATE, Mesh, MeshError, is_valid_coordinate};
 use crate::unit::Unit;
 

@@ -5,8 +5,8 @@ use std::io::{self, Write};
 
 use nalgebra::{Point3, Vector3};
 
-use super::faces::{Outlier, OutlyingVertex, find_outlier};
 use super::location::{SourceLocation, Tokens, number, printable};
+use super::outlier::{Outlier, OutlyingVertex, find_outlier};
 use super::{LARGEST_COORDINATE, Mesh, MeshError, area_and_normal, is_valid_coordinate};
 
 /// Bytes of a binary file before its first triangle: 80 of header, 4 of count.

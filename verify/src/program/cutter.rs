@@ -58,7 +58,12 @@ fn agrees(one: f64, other: f64) -> bool {
     (one - other).abs() <= 1e-12 * (one.abs() + other.abs())
 }
 
-/// Tolerance of lengths as a fraction of the diameter: cutters are written with few digits.
+fn joined(numbers: &[f64]) -> String {
+    let numbers: Vec<String> = numbers.iter().map(f64::to_string).collect();
+    numbers.join(",")
+}
+
+/// Tolerance of lengths as a fraction of the diameter, and of angles in radians: cutters are written with few digits.
 const ROUNDED: f64 = 1e-3;
 
 impl ClData {
@@ -80,18 +85,21 @@ impl ClData {
         };
         // The end of such a cutter is across the axis and its side along it: both angles are 0.
         let expected = [diameter, corner, 0.5 * diameter - corner, corner, 0.0, 0.0];
+        let lengths = [ROUNDED * diameter; 4];
+        let tolerances = lengths.into_iter().chain([ROUNDED.to_degrees(); 2]);
         let other = self.cutters.iter().find(|(_, stated)| {
-            let mut pairs = stated.iter().zip(&expected);
-            pairs.any(|(stated, expected)| (stated - expected).abs() > ROUNDED * diameter)
+            let mut pairs = stated.iter().zip(&expected).zip(tolerances.clone());
+            pairs.any(|((stated, expected), tolerance)| (stated - expected).abs() > tolerance)
         });
         let Some((line, stated)) = other else { return Ok(None) };
-        let list: Vec<String> = stated.iter().map(f64::to_string).collect();
+        // The arguments after those that are stated would explain nothing, and two always describe the tool.
+        let shown = stated.len().clamp(2, expected.len());
         Err(ProgramError::Cutter {
             file: self.file.clone(),
             line: *line,
-            stated: list.join(","),
+            stated: joined(stated),
             tool: info.name.to_string(),
-            expected: format!("{diameter},{corner}"),
+            expected: joined(&expected[..shown]),
             unit,
         })
     }

@@ -11,8 +11,9 @@ use crate::id::TriangleId;
 use nalgebra::{Point3, Vector3};
 
 use self::reader::{Body, Element, Header, Record, read_header, to_u32};
-use super::faces::{Faces, Outlier, find_outlier};
+use super::faces::Faces;
 use super::location::{SourceLocation, printable};
+use super::outlier::{Outlier, find_outlier};
 use super::{Mesh, is_valid_coordinate};
 use crate::unit::Unit;
 
