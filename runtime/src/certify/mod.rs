@@ -235,7 +235,8 @@ impl<'a> Certifier<'a> {
     /// by it. The interval is wider where triangles are thinner than the tolerance, or if the budget is spent.
     pub fn deepest(&mut self, pose: &Pose, tolerance: f64) -> Penetration {
         let Certifier { setting, whole_query, state, budget, .. } = self;
-        penetration(setting, whole_query, state, pose, tolerance, *budget)
+        let goal = PenetrationGoal { tolerance, known: 0.0, budget: *budget };
+        penetration(setting, whole_query, state, pose, goal)
     }
 
     /// Computes the deepest penetration where one surface is the nearest.
@@ -254,7 +255,8 @@ impl<'a> Certifier<'a> {
         let Certifier { setting, surface_queries, state, budget, .. } = self;
         let query = surface_queries[surface]
             .get_or_insert_with(|| setting.depth_query(0.0, |other| other == surface));
-        Ok(penetration(setting, query, state, pose, tolerance, *budget))
+        let goal = PenetrationGoal { tolerance, known: 0.0, budget: *budget };
+        Ok(penetration(setting, query, state, pose, goal))
     }
 
     /// Checks whether the tool is clear of the part, or at most as deep in it as is
@@ -513,24 +515,35 @@ fn touches(
     undecided.map_or(ContactVerdict::No, |high| ContactVerdict::Undecided(high * setting.length))
 }
 
-/// Computes the deepest penetration of a query. The tolerance is in the part's unit.
+/// The goal of a search for the deepest point.
+#[derive(Clone, Copy)]
+struct PenetrationGoal {
+    /// The tolerance of the depth, in the part's unit.
+    tolerance: f64,
+    /// A depth that is known already, in the tool's unit: only deeper points are searched for.
+    known: f64,
+    budget: u32,
+}
+
+/// Computes the deepest penetration of a query.
 fn penetration(
     setting: &QuerySetting<'_>,
     query: &DepthQuery,
     state: &mut SearchState,
     pose: &Pose,
-    tolerance: f64,
-    budget: u32,
+    goal: PenetrationGoal,
 ) -> Penetration {
+    let PenetrationGoal { tolerance, known, budget } = goal;
     // Written so that a NaN tolerance is replaced.
     let tolerance = (4.0 * setting.error).max(tolerance / setting.length);
-    let goal = Goal { min_depth: setting.error, tolerance, stop_depth: f64::INFINITY, budget };
+    let min_depth = setting.error.max(known);
+    let goal = Goal { min_depth, tolerance, stop_depth: f64::INFINITY, budget };
     state.inside(setting, query, pose, goal);
     let more = setting.error + state.search.skew;
     let (low, high) = match state.best {
         // Slabs are widened by the error, so a point outside may be measured as that deep.
         Some(_) => (state.search.best - more - setting.error, state.search.best + tolerance),
-        None => (0.0, setting.error),
+        None => (0.0, min_depth),
     };
     let high = if state.descent.started() { high.max(state.search.open_bound) + more } else { 0.0 };
     Penetration {

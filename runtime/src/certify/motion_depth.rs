@@ -12,7 +12,10 @@ use super::tool_model::ToolModel;
 use super::trajectory::Trajectory;
 use super::triangle::line_search::Goal;
 use super::verdict::{MotionDepth, MotionVerdict, Witness};
-use super::{Certifier, ContactVerdict, NoSuchSurface, max_possible_depth, penetration, rounding};
+use super::{
+    Certifier, ContactVerdict, NoSuchSurface, PenetrationGoal, max_possible_depth, penetration,
+    rounding,
+};
 use crate::certify::search::DepthQuery;
 use crate::id::SurfaceId;
 use crate::interval::Interval;
@@ -302,9 +305,13 @@ struct DepthPeak {
 
 impl MotionSearch<'_, '_> {
     fn deepest(&mut self, allowed: f64) -> MotionDepth {
-        let times = (0..=INITIAL_TIMES).map(|k| f64::from(k) / f64::from(INITIAL_TIMES));
-        let probed = times.filter_map(|at| self.peak_at(at));
-        let first = match probed.filter(|peak| peak.depth.low > allowed).reduce(deeper) {
+        let mut deepest: Option<DepthPeak> = None;
+        for k in 0..=INITIAL_TIMES {
+            let known = deepest.map_or(allowed, |peak| peak.depth.low);
+            let probed = self.peak_at(f64::from(k) / f64::from(INITIAL_TIMES), known);
+            deepest = probed.filter(|peak| peak.depth.low > known).or(deepest);
+        }
+        let first = match deepest {
             Some(peak) => peak,
             None => match self.sweep(allowed, self.tolerance, self.budget) {
                 None => return self.within(),
@@ -315,7 +322,7 @@ impl MotionSearch<'_, '_> {
                     // A sweep proves no more than that the point exceeds the allowance; a probe at that time may tell
                     // its depth.
                     let swept = DepthPeak { depth, at, witness };
-                    self.peak_at(at).map_or(swept, |probed| deeper(swept, probed))
+                    self.peak_at(at, allowed).map_or(swept, |probed| deeper(swept, probed))
                 }
             },
         };
@@ -358,7 +365,7 @@ impl MotionSearch<'_, '_> {
                 None => return (best, high.max(limit + 0.5 * gap)),
                 // Near the limit a sweep is slow: a coarser limit needs less of the budget.
                 Some(SweepEnd::Spent { .. }) => gap_fraction *= 4.0,
-                Some(SweepEnd::Deeper { at, .. }) => match self.peak_at(at) {
+                Some(SweepEnd::Deeper { at, .. }) => match self.peak_at(at, low) {
                     Some(peak) if peak.depth.low > low => best = self.climb(peak),
                     // The point found is no deeper at its time: the bound, not the depth, is too coarse.
                     _ => gap_fraction *= 4.0,
@@ -402,7 +409,9 @@ impl MotionSearch<'_, '_> {
             // At an end of the motion there is one side.
             let sides = [best.at - step, best.at + step].map(|at| at.clamp(0.0, 1.0));
             let sides = sides.into_iter().filter(|at| *at != best.at);
-            let found = sides.filter_map(|at| self.peak_at(at)).fold(best, deeper);
+            // A gain of less is not worth the search among points that are nearly as deep.
+            let known = best.depth.low + self.climb_tolerance();
+            let found = sides.filter_map(|at| self.peak_at(at, known)).fold(best, deeper);
             if found.depth.low > best.depth.low {
                 best = found;
             } else {
@@ -417,8 +426,9 @@ impl MotionSearch<'_, '_> {
         self.tolerance / CLIMB_DIVISOR
     }
 
-    /// Returns the depth at a fraction of the motion, if there is any.
-    fn peak_at(&mut self, at: f64) -> Option<DepthPeak> {
+    /// Returns the depth at a fraction of the motion, if any point is deeper than `known`. Nothing else is searched, which is
+    /// much less.
+    fn peak_at(&mut self, at: f64, known: f64) -> Option<DepthPeak> {
         let tolerance = self.climb_tolerance();
         let MotionSearch { setting, query, ref mut state, budget, .. } = *self;
         let pose = self.motion.pose(at);
@@ -426,14 +436,16 @@ impl MotionSearch<'_, '_> {
         if query.limit >= 0.0 {
             // `penetration` takes and returns lengths in the part's unit.
             let tolerance = tolerance * setting.length;
-            let found = penetration(setting, query, state, &pose, tolerance, budget);
+            let goal = PenetrationGoal { tolerance, known, budget };
+            let found = penetration(setting, query, state, &pose, goal);
             let Interval { low, high } = found.depth;
             let low = (low / setting.length - off).max(0.0);
             let depth = Interval::new(low, high / setting.length + off);
             return found.witness.map(|witness| DepthPeak { depth, at, witness });
         }
         setting.set_pose(state, &pose);
-        let goal = Goal { min_depth: query.limit, tolerance, stop_depth: f64::INFINITY, budget };
+        let min_depth = query.limit.max(known);
+        let goal = Goal { min_depth, tolerance, stop_depth: f64::INFINITY, budget };
         state.outside(setting, query, &pose, goal);
         let best = state.best?;
         let found = state.search.best;

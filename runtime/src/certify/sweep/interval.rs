@@ -98,6 +98,12 @@ impl MotionInterval {
         self.views.each_ref().map(|view| (view.back * (from_start - view.displacement)).into())
     }
 
+    /// Returns a corner of the part, given as before, in the middle.
+    pub(crate) fn in_the_middle(&self, corner: &Point) -> Point {
+        let MovedFrame { displacement, back } = &self.views[1];
+        (back * (Vector3::from(*corner) - self.start - displacement)).into()
+    }
+
     /// Returns whether a piece comes near enough to be relevant.
     pub(crate) fn reaches(&self, piece: &SubTriangle, length: f64) -> bool {
         let (centre, reach) = piece.ball();

@@ -321,39 +321,41 @@ impl Sweeper {
             // Another's point says nothing about the owners.
             let may_become_too_deep = query.owners.is_owned(sample.feature)
                 && sample.depth + steep * spread.displacement > task.threshold();
-            let undecided = may_become_too_deep
-                || match self.check_triangle(task, corners, spread) {
-                    TriangleVerdict::TooDeep(deep) => {
-                        return Some(SweepEnd::Deeper { at, pose, best: deep.best(index) });
-                    }
-                    TriangleVerdict::Clear => false,
-                    TriangleVerdict::Undecided | TriangleVerdict::OtherOwner(_) => true,
-                };
-            if undecided {
-                self.pending.push(Undecided::Part(self.some[lane]));
+            let part = self.some[lane];
+            if may_become_too_deep {
+                self.pending.push(Undecided::Part(part));
+            } else if let Some(deep) = self.check_part(task, interval, &part, spread) {
+                return Some(SweepEnd::Deeper { at, pose, best: deep.best(index) });
             }
         }
         self.some.clear();
         None
     }
 
-    /// Examines a triangle: no point of it may be so deep, or so near, that its displacement could make it too deep.
-    fn check_triangle(
+    /// Examines a triangle or a piece of one: no point of it may be so deep, or so near, that its displacement could make it
+    /// too deep. Appends what remains of it, or returns a point that is too deep.
+    fn check_part(
         &mut self,
         task: &SweepTask<'_>,
-        corners: [Point; 3],
+        interval: &MotionInterval,
+        part: &TrianglePiece,
         spread: Spread,
-    ) -> TriangleVerdict {
+    ) -> Option<DeepPoint> {
         let SweepTask { setting, query, .. } = *task;
-        match &setting.tool_model {
-            ToolModel::Profile(section) if query.owners.all() || task.limit < 0.0 => {
-                let part = TrianglePart::whole(corners);
-                self.check_lines(task, section, &query.owners, &part, spread)
-            }
-            ToolModel::Profile(_) | ToolModel::Field(_) => {
-                self.check_subdivided(task, corners, spread)
+        let section = match &setting.tool_model {
+            ToolModel::Profile(section) if query.owners.all() || task.limit < 0.0 => section,
+            _ => return self.check_subdivided(task, interval, part, spread),
+        };
+        let corners = part.piece.corners().map(|corner| interval.in_the_middle(&corner));
+        match self.check_lines(task, section, &query.owners, &TrianglePart::whole(corners), spread)
+        {
+            TriangleVerdict::TooDeep(deep) => return Some(deep),
+            TriangleVerdict::Clear => {}
+            TriangleVerdict::Undecided | TriangleVerdict::OtherOwner(_) => {
+                self.pending.push(Undecided::Part(*part));
             }
         }
+        None
     }
 
     /// Examines a part of a triangle by searching its lines on which the depth is greatest or the distance least.
@@ -406,80 +408,101 @@ impl Sweeper {
         }
     }
 
-    /// Searches a part of a triangle, which stays undecided, for a point that is too deep in the owners' region.
-    fn check_owned(
-        &mut self,
-        task: &SweepTask<'_>,
-        section: &Section,
-        part: &TrianglePart,
-        spread: Spread,
-    ) -> TriangleVerdict {
-        match self.check_lines(task, section, &task.query.owners, part, spread) {
-            TriangleVerdict::TooDeep(deep) => TriangleVerdict::TooDeep(deep),
-            _ => TriangleVerdict::Undecided,
-        }
-    }
-
-    /// Examines a triangle by subdivision: it is halved until all pieces pass, or a piece that does not is small
-    /// compared with the displacement.
+    /// Examines a part by subdivision: it is halved until all pieces pass, or one does not that is small compared with the
+    /// displacement. That piece remains, with those that were not examined: pieces that pass do so in both halves of the
+    /// interval, too.
     fn check_subdivided(
         &mut self,
         task: &SweepTask<'_>,
-        corners: [Point; 3],
+        interval: &MotionInterval,
+        part: &TrianglePiece,
+        spread: Spread,
+    ) -> Option<DeepPoint> {
+        self.pieces.clear();
+        self.pieces.push(part.piece);
+        let mut count = 0;
+        while let Some(piece) = self.pieces.pop() {
+            count += 1;
+            let verdict = if self.budget == 0 || count > MAX_PIECES {
+                TriangleVerdict::Undecided
+            } else {
+                self.budget -= 1;
+                let corners = piece.corners().map(|corner| interval.in_the_middle(&corner));
+                self.check_piece(task, SubTriangle::new(corners), spread)
+            };
+            match verdict {
+                TriangleVerdict::TooDeep(deep) => return Some(deep),
+                TriangleVerdict::Clear => {}
+                TriangleVerdict::OtherOwner(_) => {
+                    let before = self.pieces.len();
+                    self.pieces.extend(piece.halves());
+                    // A piece without halves is too small to be told apart.
+                    if self.pieces.len() == before {
+                        self.pending.push(Undecided::Part(TrianglePiece { piece, ..*part }));
+                    }
+                }
+                TriangleVerdict::Undecided => {
+                    self.pieces.push(piece);
+                    let remaining = self.pieces.drain(..);
+                    let remaining = remaining.map(|piece| TrianglePiece { piece, ..*part });
+                    self.pending.extend(remaining.map(Undecided::Part));
+                }
+            }
+        }
+        None
+    }
+
+    /// Examines a piece as a whole. It is to be halved if the owners may own no point that is too deep, and others do.
+    fn check_piece(
+        &mut self,
+        task: &SweepTask<'_>,
+        piece: SubTriangle,
         spread: Spread,
     ) -> TriangleVerdict {
         let (tool_model, owners) = (&task.setting.tool_model, &task.query.owners);
         let Spread { displacement, deviation } = spread;
-        self.pieces.clear();
-        self.pieces.push(SubTriangle::new(corners));
-        let mut count = 0;
-        while let Some(piece) = self.pieces.pop() {
-            count += 1;
-            if self.budget == 0 || count > MAX_PIECES {
-                return TriangleVerdict::Undecided;
-            }
-            self.budget -= 1;
-            let (centre, reach) = piece.ball();
-            let points = Surroundings {
-                centre,
-                displacement: displacement + reach + task.error,
-                rectangle: piece.rectangle(displacement + task.error).corners(),
-            };
-            if tool_model.clears(&mut self.scratch, owners, &points, task.threshold()) {
-                continue;
-            }
-            if let ToolModel::Profile(section) = tool_model {
-                let triangle = LocalTriangle::new(*piece.corners());
-                let near = displacement + triangle.skew + 4.0 * task.error;
-                let Some(heights) = task.query.heights(&piece, near) else { continue };
-                // Where no surface at all is too deep, the owners need not be told apart.
-                let part = TrianglePart { triangle, heights };
-                let other = match self.check_lines(task, section, &Owners::default(), &part, spread)
-                {
-                    TriangleVerdict::OtherOwner(other) => other,
-                    TriangleVerdict::Clear => continue,
-                    decided => return decided,
-                };
-                // Halving tells nothing about a point as near to the border of another's region as the part's ends are.
-                let points = Surroundings {
-                    centre: other,
-                    displacement: near,
-                    rectangle: SubTriangle::new([other; 3]).rectangle(near).corners(),
-                };
-                if !tool_model.clears(&mut self.scratch, owners, &points, task.threshold()) {
-                    return self.check_owned(task, section, &part, spread);
-                }
-            }
-            let sample = task.depth(&mut self.scratch, centre);
-            if task.too_deep(&sample, deviation) {
-                return TriangleVerdict::TooDeep(sample);
-            }
-            if reach < MIN_PIECE_FRACTION * displacement {
-                return TriangleVerdict::Undecided;
-            }
-            self.pieces.extend(piece.halves());
+        let (centre, reach) = piece.ball();
+        let points = Surroundings {
+            centre,
+            displacement: displacement + reach + task.error,
+            rectangle: piece.rectangle(displacement + task.error).corners(),
+        };
+        if tool_model.clears(&mut self.scratch, owners, &points, task.threshold()) {
+            return TriangleVerdict::Clear;
         }
-        TriangleVerdict::Clear
+        if let ToolModel::Profile(section) = tool_model {
+            let triangle = LocalTriangle::new(*piece.corners());
+            let near = displacement + triangle.skew + 4.0 * task.error;
+            let Some(heights) = task.query.heights(&piece, near) else {
+                return TriangleVerdict::Clear;
+            };
+            // Where no surface at all is too deep, the owners need not be told apart.
+            let part = TrianglePart { triangle, heights };
+            let other = match self.check_lines(task, section, &Owners::default(), &part, spread) {
+                TriangleVerdict::OtherOwner(other) => other,
+                decided => return decided,
+            };
+            // Halving tells nothing about a point as near to the border of another's region as the part's ends are.
+            let points = Surroundings {
+                centre: other,
+                displacement: near,
+                rectangle: SubTriangle::new([other; 3]).rectangle(near).corners(),
+            };
+            if !tool_model.clears(&mut self.scratch, owners, &points, task.threshold()) {
+                return match self.check_lines(task, section, owners, &part, spread) {
+                    TriangleVerdict::TooDeep(deep) => TriangleVerdict::TooDeep(deep),
+                    _ => TriangleVerdict::Undecided,
+                };
+            }
+        }
+        let sample = task.depth(&mut self.scratch, centre);
+        if task.too_deep(&sample, deviation) {
+            TriangleVerdict::TooDeep(sample)
+        } else if reach < MIN_PIECE_FRACTION * displacement {
+            TriangleVerdict::Undecided
+        } else {
+            TriangleVerdict::OtherOwner(centre)
+        }
     }
 }
 
