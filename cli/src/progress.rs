@@ -77,7 +77,7 @@ impl Lines {
 
     /// Returns the line that is due when some steps are done at a time since the start.
     fn due(&self, done: u64, elapsed: Duration) -> Option<String> {
-        // Of several threads, the first one writes the line.
+        // The first of several threads writes the line.
         let mut next = self.next.try_lock().ok()?;
         if elapsed < *next {
             return None;

@@ -45,11 +45,11 @@ struct Prover<'m> {
     reaches: Vec<Cell>,
     /// The boxes of queries about one cell.
     boxes: BoxTree<'m>,
-    /// What is known about each of them.
+    /// Knowledge about each of them.
     known: Vec<KnownBox>,
 }
 
-/// What queries know about a box.
+/// Knowledge of queries about a box.
 struct KnownBox {
     /// An upper bound of the distance of its points from the axis.
     widest: f64,

@@ -48,7 +48,8 @@ impl OpenRuns {
         }
     }
 
-    /// Removes and returns the run with the end nearest to the last posture, so that it begins there; without a last posture, the first run. Returns `None` if no run remains.
+    /// Removes and returns the run with the end nearest to the last posture, so that it begins there; without a last
+    /// posture, the first run. Returns `None` if no run remains.
     pub(super) fn take_nearest(&mut self, last: Option<&PathPosture>) -> Option<PostureRun> {
         let nearest = match last {
             Some(last) => self.nearest(last)?,

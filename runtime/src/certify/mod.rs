@@ -30,6 +30,7 @@ mod triangle;
 mod verdict;
 
 pub use containment::Containment;
+pub use motion_depth::THROUGH_FRACTION;
 pub use nearest::NearestTriangle;
 pub use part::{BoxVisitor, Location, TriangleBvh};
 pub use trajectory::{Approximation, Trajectory};

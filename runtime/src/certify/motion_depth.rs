@@ -78,8 +78,9 @@ const GAP_FRACTION: f64 = 0.125;
 /// Each sweep for that bound gets this fraction of the budget (1/64): the bound is not needed to prove a motion clear.
 const BUDGET_DIVISOR: u32 = 64;
 
-/// From this fraction of a surface's greatest possible depth on, nothing deeper is searched for.
-const THROUGH_FRACTION: f64 = 0.98;
+/// The fraction of a surface's [greatest possible depth](Certifier::max_possible_depth) from which on it passes right through the
+/// part: [`Certifier::motion_depth`] searches for nothing deeper.
+pub const THROUGH_FRACTION: f64 = 0.98;
 
 /// Time steps shorter than this fraction of a motion are not resolved.
 const MIN_TIME_STEP: f64 = 1e-12;

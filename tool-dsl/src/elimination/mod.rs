@@ -34,7 +34,7 @@ pub(crate) struct Linear {
     facts: Vec<Condition>,
     /// For several roots, alternatives of which at least one holds at every point.
     choices: Vec<(usize, Vec<Condition>)>,
-    /// What queries have found so far.
+    /// Answers that queries have found so far.
     answers: RefCell<Answers>,
 }
 

@@ -3,7 +3,7 @@
 use super::moves::{JointTrajectory, Move, MovePath, RapidBox, displacement};
 use super::{Finding, FindingKind, Verifier, VerifyError};
 use std::collections::VecDeque;
-use touchoff::certify::{Certifier, MotionDepth, MotionVerdict, Trajectory};
+use touchoff::certify::{Certifier, MotionDepth, MotionVerdict, THROUGH_FRACTION, Trajectory};
 use touchoff::tool::Symmetry;
 use touchoff::{Interval, Motion, MotionError, Pose, SurfaceId};
 
@@ -30,9 +30,6 @@ struct TimedFinding {
     time: f64,
     kind: FindingKind,
 }
-
-/// Fraction of a surface's greatest possible depth from which on it counts as passing right through the part.
-const THROUGH_FRACTION: f64 = 0.98;
 
 /// Largest number of pieces of a box that are halved.
 const MAX_PIECES: usize = 1 << 14;

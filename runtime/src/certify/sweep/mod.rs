@@ -476,7 +476,7 @@ impl Sweeper {
             let Some(heights) = task.query.heights(&piece, near) else {
                 return TriangleVerdict::Clear;
             };
-            // Where no surface at all is too deep, the owners need not be told apart.
+            // Owners need not be told apart where no surface at all is too deep.
             let part = TrianglePart { triangle, heights };
             let other = match self.check_lines(task, section, &Owners::default(), &part, spread) {
                 TriangleVerdict::OtherOwner(other) => other,

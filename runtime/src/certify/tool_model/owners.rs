@@ -154,8 +154,8 @@ impl Owners {
                 Some(false) => continue,
                 owned => owned.is_some(),
             };
-            // Where features of equal direction meet at the height of a seam, that height is the border between their
-            // points, and only a strip along it is not certain to belong to one of them.
+            // The height of a seam at which features of equal direction meet is the border between their points, and only
+            // a strip along it is not certain to belong to one of them.
             let (inner, strips) = rectangle.without_seams(slab, strip);
             if !strips.is_empty() && self.own_rectangle(section, &inner, deeper) == Some(false) {
                 for strip in strips {
