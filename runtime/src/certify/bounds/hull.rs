@@ -4,10 +4,10 @@ use crate::bvh::{Boxes, LaneVector, PoseTransform};
 use crate::certify::bounds::descent::{Bounds, BoxBounds, BoxRings, rings};
 use crate::certify::bounds::nearest::{
     AxisDistances, Clip, NearestPoint, Real, Ring, choose, direction_from_axis, distances,
-    extents_from, from_ring, max3, min3, radial_extents, under_both,
+    extents_from, from_ring, max3, min3, radial_extents, under_both, under_both_of_ring,
 };
 use crate::certify::part::NodeRing;
-use crate::certify::tool_model::feature::MeridianPoint;
+use crate::certify::tool_model::feature::{Feature, MeridianPoint};
 use crate::certify::tool_model::owners::Rectangle;
 use crate::certify::tool_model::section::{Owners, Section};
 use crate::interval::Interval;
@@ -26,6 +26,8 @@ pub(crate) struct HullSlab<R> {
     /// The distance of a point on the tool's side of each plane, `c - n_d d - n_z z`, stored as `[n_d, n_z, c]`. The
     /// first plane is upright.
     pub(crate) planes: Vec<[R; 3]>,
+    /// Planes that bound the depth of some points only.
+    pub(crate) guarded: Vec<GuardedPlane<R>>,
     /// The radius of the hole about the axis, if there is one. A point is at most as deep as its distance beyond the
     /// hole.
     pub(crate) hole: Option<R>,
@@ -33,6 +35,13 @@ pub(crate) struct HullSlab<R> {
     pub(crate) ball: Option<[R; 2]>,
     /// Circles on the tool's surface: the bound is the distance from them.
     pub(crate) rings: Vec<Ring<R>>,
+}
+
+/// A plane, and the points whose depth is at most their distance under it: those on the far side of all `guards`, each a
+/// plane as in [`HullSlab::planes`] with a normal of length 1.
+pub(crate) struct GuardedPlane<R> {
+    pub(crate) plane: [R; 3],
+    pub(crate) guards: Vec<[R; 3]>,
 }
 
 impl<R: Real> Hull<R> {
@@ -46,13 +55,23 @@ impl<R: Real> Hull<R> {
                 let [[d0, z0], [d1, z1]] = side.ends;
                 // The radial distance to the surface.
                 let mut planes = vec![plane([1.0, 0.0], [slab.radius, 0.0])];
+                let mut guarded = Vec::new();
                 let slope = (d1 - d0) / (z1 - z0);
                 let convex = side.circle.is_some_and(|circle| circle.convex);
                 let line = side.tangent();
-                if line.as_ref().is_some_and(|line| section.tangent_bounds_slab(line, index)) {
-                    planes.extend(
-                        line.map(|line| plane([line.along[1], -line.along[0]], line.ends[0])),
-                    );
+                if let Some(line) = &line
+                    && !section.tangent_bounds_slab(line, index)
+                {
+                    guarded.push(GuardedPlane::new(line, section.feet(line, index)));
+                }
+                for line in section.lines_beside(slab) {
+                    let feet = section.outside_feet(line);
+                    guarded.push(GuardedPlane::new(&section.features[line], feet));
+                }
+                if let Some(line) = &line
+                    && section.tangent_bounds_slab(line, index)
+                {
+                    planes.push(under(line));
                 } else if slope != 0.0 && slope.abs() <= 2.0 && !convex {
                     // Radially under the chord of the side, beyond which neither a line nor a concave arc reaches.
                     // Steeper planes have larger errors than `margin` in `search` allows for.
@@ -76,7 +95,7 @@ impl<R: Real> Hull<R> {
                 });
                 let [low, high] = [from - error, to + error].map(R::of);
                 let hole = (slab.hole > 0.0).then(|| R::of(slab.hole));
-                Some(HullSlab { low, high, planes, hole, ball, rings: rings.collect() })
+                Some(HullSlab { low, high, planes, guarded, hole, ball, rings: rings.collect() })
             });
         Hull { slabs: slabs.collect() }
     }
@@ -91,6 +110,7 @@ impl<R: Real> Hull<R> {
             planes: [[1.0, 0.0, slab.radius], [0.0, -1.0, -bottom], [0.0, 1.0, top]]
                 .map(|plane| plane.map(|part| R::of(steep * part)))
                 .to_vec(),
+            guarded: Vec::new(),
             hole: None,
             ball: None,
             rings: Vec::new(),
@@ -116,6 +136,7 @@ impl<R: Real> Hull<R> {
                     low: R::of(z0.min(z1) - error),
                     high: R::of(z0.max(z1) + error),
                     planes: vec![[1.0, 0.0, d0.max(d1)].map(R::of)],
+                    guarded: Vec::new(),
                     hole: None,
                     ball: None,
                     rings: Vec::new(),
@@ -174,6 +195,25 @@ fn plane<R: Real>(n: MeridianPoint, [d, z]: MeridianPoint) -> [R; 3] {
     [n[0], n[1], n[0] * d + n[1] * z].map(R::of)
 }
 
+/// Returns the plane of which a feature's line is the meridian.
+fn under<R: Real>(line: &Feature) -> [R; 3] {
+    plane([line.along[1], -line.along[0]], line.ends[0])
+}
+
+impl<R: Real> GuardedPlane<R> {
+    /// Creates the plane of a line of the profile, for points whose feet are in a range along the line, where it is on the
+    /// surface or outside the tool.
+    fn new(line: &Feature, [from, to]: [f64; 2]) -> GuardedPlane<R> {
+        let [u, v] = line.along;
+        let ends = [([u, v], from), ([-u, -v], to)];
+        let finite = ends.into_iter().filter(|(_, at)| at.is_finite());
+        GuardedPlane {
+            plane: under(line),
+            guards: finite.map(|(normal, at)| plane(normal, line.line_point(at))).collect(),
+        }
+    }
+}
+
 /// The maximum number of linear bounds of a slab for a triangle.
 const MAX_BOUNDS: usize = 8;
 
@@ -194,6 +234,11 @@ impl<R: Real> HullSlab<R> {
         for plane in &self.planes {
             depth = depth.min(max_over(simd, part, under_plane(simd, corners, out, *plane)));
         }
+        for guarded in &self.guarded {
+            let holds = guarded.holds(simd, corners, out, part);
+            let under = max_over(simd, part, under_plane(simd, corners, out, guarded.plane));
+            depth = holds.select(depth.min(under), depth);
+        }
         depth
     }
 
@@ -212,11 +257,16 @@ impl<R: Real> HullSlab<R> {
         // If the point nearest to the axis is beyond the slab, the piece in the slab is nearest at that end.
         let (mut deepest, mut direction, mut part) = (near.point, near.direction, None);
         let beyond_it = open & (deepest[2].simd_lt(from) | deepest[2].simd_gt(to));
-        if beyond_it.any_true() {
+        let beyond = beyond_it.any_true();
+        let [a, b, c] = corners;
+        let (lowest, highest) = (min3(a[2], b[2], c[2]), max3(a[2], b[2], c[2]));
+        if beyond || (open & (lowest.simd_lt(from) | highest.simd_gt(to))).any_true() {
             let clip = Clip::new(simd, corners, [self.low, self.high]);
-            let end = clip.at_end(simd, corners, deepest[2].simd_gt(to));
-            deepest = choose(beyond_it, &end, &deepest);
-            direction = direction_from_axis(simd, &[deepest[0], deepest[1], zero], zero);
+            if beyond {
+                let end = clip.at_end(simd, corners, deepest[2].simd_gt(to));
+                deepest = choose(beyond_it, &end, &deepest);
+                direction = direction_from_axis(simd, &[deepest[0], deepest[1], zero], zero);
+            }
             part = Some(clip);
         }
         if let Some(point) = refine_at {
@@ -272,10 +322,6 @@ impl<R: Real> HullSlab<R> {
                 let from_axis = AxisDistances { least: &out, greatest: &far };
                 let in_slab = from_ring(simd, corners, &from_axis, *ring);
                 depth = depth.min(max_over(simd, &part, in_slab));
-                if refine_at.is_some() && count < MAX_BOUNDS {
-                    bounds[count] = in_slab;
-                    count += 1;
-                }
             }
         }
         // Where one bound grows and another falls, the least of both is greatest between the corners: pairs of bounds are
@@ -287,9 +333,24 @@ impl<R: Real> HullSlab<R> {
                     count += 1;
                 }
             }
-            for first in 0..count - 1 {
+            for guarded in &self.guarded {
+                if count < MAX_BOUNDS {
+                    let holds = guarded.holds(simd, corners, &out, &part);
+                    let [under, other] = [guarded.plane, self.planes[0]]
+                        .map(|plane| under_plane(simd, corners, &out, plane));
+                    bounds[count] = choose(holds, &under, &other);
+                    count += 1;
+                }
+            }
+            for first in 0..count {
                 for second in first + 1..count {
                     let (both, point) = under_both(zero, corners, &bounds[first], &bounds[second]);
+                    let under = both.simd_lt(depth);
+                    depth = under.select(both, depth);
+                    deepest = choose(under, &point, &deepest);
+                }
+                for ring in &self.rings {
+                    let (both, point) = under_both_of_ring(simd, corners, &out, &bounds[first], *ring);
                     let under = both.simd_lt(depth);
                     depth = under.select(both, depth);
                     deepest = choose(under, &point, &deepest);
@@ -297,6 +358,26 @@ impl<R: Real> HullSlab<R> {
             }
         }
         (depth, deepest)
+    }
+}
+
+impl<R: Real> GuardedPlane<R> {
+    /// Returns the lanes in which all of the triangle, or of its cut, is beyond the guards.
+    #[inline(always)]
+    fn holds<S: Simd, V: SimdFloat<S, Element = R>>(
+        &self,
+        simd: S,
+        corners: &[LaneVector<V>; 3],
+        out: &[V; 3],
+        part: &Part<V, V::Mask>,
+    ) -> V::Mask {
+        let mut short = V::splat(simd, R::of(f64::NEG_INFINITY));
+        for guard in &self.guards {
+            // The distance from the axis is at least `out`, and at most that of the corners.
+            let radial = if guard[0] < R::of(0.0) { &distances(corners) } else { out };
+            short = short.max(max_over(simd, part, under_plane(simd, corners, radial, *guard)));
+        }
+        short.simd_le(V::splat(simd, R::of(0.0)))
     }
 }
 
@@ -324,9 +405,13 @@ impl Hull<f64> {
         let depths = in_slab.map(|slab| {
             // Only the part of the ring between the slab's heights.
             let (low, high) = (ring.low.max(slab.low), ring.high.min(slab.high));
-            let planes = slab.planes.iter().map(|[nd, nz, max3]| {
-                max3 - nd * ring.near - nz * if *nz > 0.0 { low } else { high }
+            let under =
+                |[nd, nz, c]: &[f64; 3]| c - nd * ring.near - nz * if *nz > 0.0 { low } else { high };
+            let planes = slab.planes.iter().map(under);
+            let holding = slab.guarded.iter().filter(|guarded| {
+                guarded.guards.iter().all(|guard| guard[0] >= 0.0 && under(guard) <= 0.0)
             });
+            let planes = planes.chain(holding.map(|guarded| under(&guarded.plane)));
             let ball = slab.ball.map(|[z, radius]| {
                 let along = z.max(low).min(high) - z;
                 radius - (ring.near * ring.near + along * along).sqrt()
@@ -363,6 +448,19 @@ impl Hull<f32> {
             for &[nd, nz, max3] in &slab.planes[1..] {
                 let z = if nz > 0.0 { low } else { high };
                 depth = depth.min(f32x16::splat(simd, max3) - near * nd - z * nz);
+            }
+            for GuardedPlane { plane, guards } in &slab.guarded {
+                let under = |&[nd, nz, c]: &[f32; 3]| {
+                    let d = if nd > 0.0 { near } else { far };
+                    let z = if nz > 0.0 { low } else { high };
+                    f32x16::splat(simd, c) - d * nd - z * nz
+                };
+                let mut short = f32x16::splat(simd, f32::NEG_INFINITY);
+                for guard in guards {
+                    short = short.max(under(guard));
+                }
+                let holds = short.simd_le(zero);
+                depth = holds.select(depth.min(under(plane)), depth);
             }
             if let Some([z, radius]) = slab.ball {
                 let centre = f32x16::splat(simd, z);

@@ -447,6 +447,88 @@ pub(crate) fn under_both<S: Simd, V: SimdFloat<S>>(
     (max, point)
 }
 
+/// Returns the point between two others at a parameter from 0 to 1.
+#[inline(always)]
+fn between<S: Simd, V: SimdFloat<S>>(
+    from: &LaneVector<V>,
+    to: &LaneVector<V>,
+    at: V,
+) -> LaneVector<V> {
+    let direction = minus(to, from);
+    [from[0] + at * direction[0], from[1] + at * direction[1], from[2] + at * direction[2]]
+}
+
+/// Returns an upper bound, up to rounding, on the lesser of a linear function and the distance from a ring at every point
+/// of each triangle, and the point where it may occur. `out` are lower bounds of the corners' distances from the axis,
+/// linear on the triangle.
+///
+/// The lesser is greatest on an edge: along a line on which the linear function is constant, the distance is convex. On
+/// an edge on which the distance grows beyond the function, the excess is convex, so a chord of it ends before the two
+/// are equal. Chords from there to the end of the edge come nearer.
+#[inline(always)]
+pub(crate) fn under_both_of_ring<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
+    simd: S,
+    corners: &[LaneVector<V>; 3],
+    out: &[V; 3],
+    linear: &[V; 3],
+    ring: Ring<R>,
+) -> (V, LaneVector<V>) {
+    let zero = V::splat(simd, R::of(0.0));
+    let far = distances(corners);
+    let distance = from_ring(simd, corners, &AxisDistances { least: out, greatest: &far }, ring);
+    let mut max = linear[0].min(distance[0]);
+    let mut point = corners[0];
+    for k in 1..3 {
+        let here = linear[k].min(distance[k]);
+        let more = here.simd_gt(max);
+        max = more.select(here, max);
+        point = choose(more, &corners[k], &point);
+    }
+    for k in 0..3 {
+        let next = (k + 1) % 3;
+        let (first, last) = (distance[k] - linear[k], distance[next] - linear[next]);
+        let crosses = (first.simd_lt(zero) & last.simd_gt(zero))
+            | (first.simd_gt(zero) & last.simd_lt(zero));
+        if !crosses.any_true() {
+            continue;
+        }
+        // From the corner at which the ring is nearer than the function tells.
+        let swap = first.simd_gt(zero);
+        let (start, end) = (
+            choose(swap, &corners[next], &corners[k]),
+            choose(swap, &corners[k], &corners[next]),
+        );
+        let pick = |values: &[V; 3]| {
+            (swap.select(values[next], values[k]), swap.select(values[k], values[next]))
+        };
+        let (out, linear) = (pick(out), pick(linear));
+        let (mut excess, end_excess) = (swap.select(last, first), swap.select(first, last));
+        let mut at = zero;
+        let mut nearer = max;
+        for _ in 0..CHORDS {
+            let one = V::splat(simd, R::of(1.0));
+            at = at + (one - at) * (excess / (excess - end_excess));
+            let [x, y, z] = between(&start, &end, at);
+            let far = (x * x + y * y).sqrt();
+            let here = to_ring(simd, [out.0 + at * (out.1 - out.0), far, z], ring);
+            excess = here - (linear.0 + at * (linear.1 - linear.0));
+            nearer = nearer.max(here);
+            // Rounding may have found the end of the chord beyond the place of equality; then it is near enough.
+            excess = excess.min(zero);
+        }
+        let one = V::splat(simd, R::of(1.0));
+        at = at + (one - at) * (excess / (excess - end_excess));
+        let here = nearer.max(linear.0 + at * (linear.1 - linear.0));
+        let more = crosses & here.simd_gt(max);
+        max = more.select(here, max);
+        point = choose(more, &between(&start, &end, at), &point);
+    }
+    (max, point)
+}
+
+/// The number of chords by which the place of equality is enclosed.
+const CHORDS: usize = 2;
+
 /// Returns the bound of [`from_ring`] for one point: its least and greatest distance from the axis, and its height.
 #[inline(always)]
 pub(crate) fn to_ring<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(

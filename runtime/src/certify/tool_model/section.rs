@@ -117,7 +117,7 @@ impl Section {
 
     /// Returns the range along a line in which its feet are outside the tool, provided that they are between the
     /// heights of a slab.
-    fn feet(&self, line: &Feature, slab: usize) -> [f64; 2] {
+    pub(crate) fn feet(&self, line: &Feature, slab: usize) -> [f64; 2] {
         let SectionSlab { low, high, .. } = self.slabs[slab];
         let mut below = self.slabs[..slab].iter().rev();
         let below = below.find(|other| !self.outside(line, other));
@@ -131,6 +131,16 @@ impl Section {
             above
                 .map_or(f64::INFINITY, |other| line.position_at_height(other.low).max(line.length)),
         ]
+    }
+
+    /// Returns the range along a line of the profile, other than a level one, in which its feet are on the surface or outside
+    /// the tool.
+    pub(crate) fn outside_feet(&self, index: usize) -> [f64; 2] {
+        let line = &self.features[index];
+        match self.slabs.iter().position(|slab| slab.side == index) {
+            Some(slab) => self.feet(line, slab),
+            None => [0.0, line.length],
+        }
     }
 
     /// Returns whether a line stays outside the tool between a slab's heights.
@@ -151,6 +161,24 @@ impl Section {
         let corners = [[hole, low], [hole, high], [radii[0], low], [radii[1], high]];
         // Positions along the line are linear, so the corners of the slab are the extremes.
         corners.into_iter().all(|p| (from..=to).contains(&line.position(p)))
+    }
+
+    /// Returns the lines of the profile, other than level ones and the slab's side, that have the slab on the tool's side
+    /// and feet of some of its points.
+    pub(crate) fn lines_beside(&self, slab: &SectionSlab) -> impl Iterator<Item = usize> {
+        let [low, high] = [slab.low, slab.high];
+        let corners =
+            [[slab.hole, low], [slab.hole, high], [slab.radii[0], low], [slab.radii[1], high]];
+        let near = slab.near.iter().filter(|near| **near != slab.side);
+        near.copied().filter(move |near| {
+            let line = &self.features[*near];
+            let positions = corners.map(|corner| line.position(corner));
+            line.circle.is_none()
+                && line.along[1] != 0.0
+                && corners.iter().all(|corner| line.signed_distance(*corner) >= 0.0)
+                && positions.iter().any(|at| *at > 0.0)
+                && positions.iter().any(|at| *at < line.length)
+        })
     }
 
     /// Returns the lowest and the highest z of the section.
