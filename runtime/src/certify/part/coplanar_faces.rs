@@ -7,12 +7,13 @@ use crate::bvh::WIDTH;
 use crate::certify::space::{Point, cross, dot, minus, norm};
 use crate::id::TriangleId;
 use crate::mesh::Mesh;
+use std::slice;
 
 /// The smallest number of triangles of a face.
 const MIN_FACE_TRIANGLES: usize = 8;
 
 /// The largest number of faces over a node's triangles for which the faces are used to rule it out.
-const MAX_NODE_FACES: usize = 16;
+const MAX_NODE_FACES: usize = 256;
 
 /// The index that stands for no face.
 const NONE: u32 = u32::MAX;
@@ -23,8 +24,46 @@ pub(crate) struct CoplanarFaces {
     pub(crate) faces: Vec<Face>,
     /// The face of each triangle.
     of: Vec<u32>,
-    /// Per node the faces that contain all of its triangles, if these are few. The last list is for the leaves.
-    nodes: Vec<Vec<[u32; MAX_NODE_FACES]>>,
+    /// The faces of the nodes of each level. The last are the leaves.
+    levels: Vec<NodeFaces>,
+}
+
+/// The faces that contain all triangles of each node of a level; none if a triangle is in no face, or the faces are many.
+#[derive(Clone, Debug, Default)]
+struct NodeFaces {
+    faces: Vec<u32>,
+    /// The end of each node's faces in the list.
+    ends: Vec<u32>,
+}
+
+impl NodeFaces {
+    /// Creates the lists of nodes that each have up to 16 of these children, given by their faces.
+    fn above<'a>(children: impl Iterator<Item = &'a [u32]>) -> NodeFaces {
+        let children: Vec<&[u32]> = children.collect();
+        let mut nodes = NodeFaces::default();
+        let mut distinct = Vec::new();
+        for node in children.chunks(WIDTH) {
+            distinct.clear();
+            distinct.extend(node.iter().copied().flatten());
+            distinct.sort_unstable();
+            distinct.dedup();
+            let is_covered = node.iter().all(|child| !child.is_empty());
+            if is_covered && distinct.len() <= MAX_NODE_FACES {
+                nodes.faces.append(&mut distinct);
+            }
+            nodes.ends.push(nodes.faces.len() as u32);
+        }
+        nodes
+    }
+
+    fn len(&self) -> usize {
+        self.ends.len()
+    }
+
+    fn of(&self, node: usize) -> &[u32] {
+        let start = if node == 0 { 0 } else { self.ends[node - 1] };
+        &self.faces[start as usize..self.ends[node] as usize]
+    }
 }
 
 /// The rectangle around a flat face, in the part's frame and unit.
@@ -104,45 +143,25 @@ impl CoplanarFaces {
             face.iter().for_each(|k| of[*k as usize] = faces.len() as u32);
             faces.push(Face::around(&face, corners, normal));
         }
-        let mut nodes =
-            vec![of.chunks(WIDTH).map(|some| node_faces(some.iter().copied())).collect()];
-        while let Some(last) = nodes.last().filter(|last: &&Vec<_>| last.len() > 1) {
-            nodes.push(
-                last.chunks(WIDTH).map(|some| node_faces(some.iter().flatten().copied())).collect(),
-            );
+        let triangles = of.iter().map(|face| if *face == NONE { &[] } else { slice::from_ref(face) });
+        let mut levels = vec![NodeFaces::above(triangles)];
+        while let Some(below) = levels.last().filter(|below| below.len() > 1) {
+            levels.push(NodeFaces::above((0..below.len()).map(|node| below.of(node))));
         }
-        nodes.reverse();
-        CoplanarFaces { faces, of, nodes }
+        levels.reverse();
+        CoplanarFaces { faces, of, levels }
     }
 
     /// Returns the faces that contain all triangles of a node; `None` if some triangle is in no face, or the faces
     /// are many.
     pub(crate) fn of_node(&self, level: usize, index: usize) -> Option<&[u32]> {
-        let faces = &self.nodes.get(level)?[index];
-        let count = faces.iter().take_while(|face| **face != NONE).count();
-        (count > 0).then_some(&faces[..count])
+        Some(self.levels.get(level)?.of(index)).filter(|faces| !faces.is_empty())
     }
 
     /// Returns the face of a triangle.
     pub(crate) fn of_triangle(&self, index: u32) -> Option<u32> {
         Some(self.of[index as usize]).filter(|face| *face != NONE)
     }
-}
-
-/// Returns the distinct faces of a list, the existing ones first; none at all if one is missing or they are too many.
-fn node_faces(some: impl Iterator<Item = u32>) -> [u32; MAX_NODE_FACES] {
-    let (mut faces, mut count) = ([NONE; MAX_NODE_FACES], 0);
-    for face in some {
-        if faces[..count].contains(&face) {
-            continue;
-        }
-        if face == NONE || count == MAX_NODE_FACES {
-            return [NONE; MAX_NODE_FACES];
-        }
-        faces[count] = face;
-        count += 1;
-    }
-    faces
 }
 
 /// Returns the neighbours of each triangle across edges that exactly two triangles share.
