@@ -499,7 +499,7 @@ impl SearchState {
 const PLANE_CHECK_NODES: usize = 24;
 
 /// A query that opened more nodes than these is likely to have equal depths along flat faces.
-const FACE_CHECK_NODES: usize = 128;
+const FACE_CHECK_NODES: usize = 24;
 
 /// With a larger margin `f32` decides nothing, and squares overflow in it.
 pub(crate) const MARGIN: f64 = 1e9;
