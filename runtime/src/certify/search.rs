@@ -346,7 +346,7 @@ impl SearchState {
             if node.is_triangle(of.bvh) {
                 let indices = self.descent.triangles(of.bvh, node, threshold);
                 if let Side::Inside = side
-                    && opened > FACE_CHECK_NODES
+                    && opened > 8 * FACE_CHECK_NODES
                 {
                     indices.retain(|index| {
                         of.bvh.coplanar_faces.of_triangle(*index).is_none_or(|face| {
@@ -370,8 +370,8 @@ impl SearchState {
             // The plane of a node may decide where `f32` or the boxes cannot.
             opened += 1;
             if let Side::Inside = side
-                && opened > FACE_CHECK_NODES
                 && let Some(faces) = node.faces(bvh)
+                && opened > FACE_CHECK_NODES * faces.len()
                 && self.faces.depth(of, query, placed, faces) <= self.search.threshold()
             {
                 continue;
@@ -499,7 +499,7 @@ impl SearchState {
 const PLANE_CHECK_NODES: usize = 24;
 
 /// A query that opened more nodes than these is likely to have equal depths along flat faces.
-const FACE_CHECK_NODES: usize = 24;
+const FACE_CHECK_NODES: usize = 8;
 
 /// With a larger margin `f32` decides nothing, and squares overflow in it.
 pub(crate) const MARGIN: f64 = 1e9;
