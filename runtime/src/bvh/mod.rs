@@ -11,7 +11,7 @@ use bytemuck::{Pod, Zeroable};
 use nalgebra::Point3;
 
 pub(crate) use view::{
-    LANE_INDICES, LaneVector, PoseTransform, QuerySetup, ReachBounds, SLABS, extent, load,
+    LANE_INDICES, LaneVector, PoseTransform, QuerySetup, ReachBounds, SLABS, dot, extent, load,
     transform,
 };
 

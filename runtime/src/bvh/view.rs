@@ -98,6 +98,7 @@ impl QuerySetup {
             view.rows[axis] = row.map(|part| (part * self.unit) as f32);
         }
         view.scale = self.scale;
+        view.unit = self.unit as f32;
         let [x, y, z] = tool_origin;
         // Written so that NaN counts as reachable.
         !(z < self.along[0] || z > self.along[1] || x * x + y * y > self.across)
@@ -157,6 +158,8 @@ pub(crate) struct PoseTransform {
     /// The vector from the tip to the part's origin, and the tree's unit, both in the part's frame and unit.
     from_tip: [f64; 3],
     pub(crate) scale: f64,
+    /// The tree's unit in the tool's unit.
+    pub(crate) unit: f32,
     /// Rotation and scale from the part's frame and unit to the tool's.
     pub(crate) exact_rows: [[f64; 3]; 3],
 }
@@ -210,7 +213,7 @@ pub(crate) fn load<S: Simd>(simd: S, lists: &[[f32; WIDTH]; 3]) -> LaneVector<f3
 }
 
 #[inline(always)]
-fn dot<S: Simd>(v: &LaneVector<f32x16<S>>, row: [f32; 3]) -> f32x16<S> {
+pub(crate) fn dot<S: Simd>(v: &LaneVector<f32x16<S>>, row: [f32; 3]) -> f32x16<S> {
     v[0] * row[0] + v[1] * row[1] + v[2] * row[2]
 }
 

@@ -1,9 +1,9 @@
 //! The depth-first traversal of the triangle tree, deepest children first.
 
-use crate::bvh::{Boxes, LaneVector, PoseTransform, WIDTH, extent, load, transform};
-use crate::certify::part::{Corners, NodeRing, TriangleBvh};
+use crate::bvh::{Boxes, LaneVector, PoseTransform, WIDTH, dot, extent, load, transform};
+use crate::certify::part::{Corners, NodeRing, PlaneLanes, TriangleBvh};
 use crate::tool::{LANES, on_vectors};
-use fearless_simd::{Level, Simd, SimdBase, SimdFloat, SimdMask, dispatch, f32x16};
+use fearless_simd::{Level, Select, Simd, SimdBase, SimdFloat, SimdMask, dispatch, f32x16};
 
 /// A node of the tree, a leaf or a triangle, and an upper bound of the tool's depth in it.
 #[derive(Clone, Copy)]
@@ -85,13 +85,20 @@ pub(crate) struct Descent {
     started: bool,
 }
 
+/// The boxes and the planes of a node's children.
+#[derive(Clone, Copy)]
+pub(crate) struct Children<'a> {
+    pub(crate) boxes: &'a Boxes,
+    pub(crate) planes: &'a PlaneLanes,
+}
+
 /// An upper bound of depth, or of a negative distance, in boxes.
 pub(crate) trait BoxBounds {
     /// Returns the bounds of 16 boxes; absent boxes have NaN centres. A bound of at most `threshold` need not be tight.
     fn of_boxes<S: Simd>(
         &self,
         simd: S,
-        boxes: &Boxes,
+        children: Children<'_>,
         view: &PoseTransform,
         threshold: f32,
     ) -> f32x16<S>;
@@ -107,6 +114,62 @@ pub(crate) trait Bounds: BoxBounds {
         threshold: f32,
     ) -> f32x16<S>;
 }
+
+/// Slabs between two planes in the tool's frame, one per lane, that contain nodes.
+pub(crate) struct PlaneSlabs<V> {
+    /// The direction across the slab, no longer than 1.
+    normal: LaneVector<V>,
+    /// The range of positions along the direction.
+    low: V,
+    high: V,
+    /// The reciprocal of the length of the direction's part across the axis; 0 if that is short.
+    per_radial: V,
+}
+
+impl<S: Simd> PlaneSlabs<f32x16<S>> {
+    /// Transforms planes to the tool's frame. `margin` is the rounding error bound of a point in `f32`.
+    ///
+    /// With u the unit roundoff, the direction errs by less than 8u in each part, its product with the origin by less than
+    /// 16u of the origin's coordinates, and the ends by 4u of the part. Both are less than two margins, which are
+    /// 32u of the tool's size and 128u of the part's. Positions of other points along it err by another margin.
+    #[inline(always)]
+    pub(crate) fn new(
+        simd: S,
+        planes: &PlaneLanes,
+        view: &PoseTransform,
+        margin: f32,
+    ) -> PlaneSlabs<f32x16<S>> {
+        let turned = transform(&load(simd, &planes.normal), &view.rows, [0.0; 3]);
+        let per_unit = 1.0 / view.unit;
+        let normal = [turned[0] * per_unit, turned[1] * per_unit, turned[2] * per_unit];
+        let middle = dot(&normal, view.origin);
+        let low = f32x16::from_slice(simd, &planes.low) * view.unit + (middle - 4.0 * margin);
+        let high = f32x16::from_slice(simd, &planes.high) * view.unit + (middle + 4.0 * margin);
+        let radial = (normal[0] * normal[0] + normal[1] * normal[1]).sqrt();
+        let one = f32x16::splat(simd, 1.0);
+        let per_radial =
+            radial.simd_gt(MIN_RADIAL).select(one / radial, f32x16::splat(simd, 0.0));
+        PlaneSlabs { normal, low, high, per_radial }
+    }
+
+    /// Returns at most the distance from the axis of each point of the slab between two heights.
+    #[inline(always)]
+    pub(crate) fn from_axis(&self, low: f32x16<S>, high: f32x16<S>) -> f32x16<S> {
+        let (a, b) = (self.normal[2] * low, self.normal[2] * high);
+        let (least, greatest) = (self.low - a.max(b), self.high - a.min(b));
+        least.max(-greatest) * self.per_radial
+    }
+
+    /// Returns at most the distance of each point of the slab from a point of the axis.
+    #[inline(always)]
+    pub(crate) fn from_axis_point(&self, z: f32) -> f32x16<S> {
+        let at = self.normal[2] * z;
+        (self.low - at).max(at - self.high)
+    }
+}
+
+/// The length of a direction's part across the axis from which it bounds the distance from the axis.
+const MIN_RADIAL: f32 = 0.25;
 
 /// Rings about the axis that contain boxes: the least and greatest distance from the axis, and the range of heights.
 pub(crate) struct BoxRings<V> {
@@ -300,8 +363,12 @@ fn of_boxes<S: Simd, B: BoxBounds>(
     threshold: f32,
     bounds: &mut [f32; WIDTH],
 ) -> u32 {
-    let boxes = &tree.bvh.levels[node.level as usize][node.index as usize];
-    let bound = tree.bounds.of_boxes(simd, boxes, tree.view, threshold);
+    let (level, index) = (node.level as usize, node.index as usize);
+    let children = Children {
+        boxes: &tree.bvh.levels[level][index],
+        planes: &tree.bvh.plane_lanes[level][index],
+    };
+    let bound = tree.bounds.of_boxes(simd, children, tree.view, threshold);
     bound.store_slice(bounds);
     above(bound, threshold)
 }

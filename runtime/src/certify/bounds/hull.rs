@@ -1,7 +1,7 @@
 //! Upper bounds of the depth of a tool in boxes and triangles, in SIMD lanes.
 
-use crate::bvh::{Boxes, LaneVector, PoseTransform};
-use crate::certify::bounds::descent::{Bounds, BoxBounds, BoxRings, rings};
+use crate::bvh::{LaneVector, PoseTransform};
+use crate::certify::bounds::descent::{Bounds, BoxBounds, BoxRings, Children, PlaneSlabs, rings};
 use crate::certify::bounds::nearest::{
     AxisDistances, Clip, NearestPoint, Real, Ring, choose, direction_from_axis, distances,
     extents_from, from_ring, max3, min3, radial_extents, under_both, under_both_of_ring,
@@ -16,6 +16,8 @@ use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask, f32x16};
 
 /// The slabs of a tool, for upper bounds of depth.
 pub(crate) struct Hull<R> {
+    /// The rounding error bound of a point.
+    margin: R,
     pub(crate) slabs: Vec<HullSlab<R>>,
 }
 
@@ -97,7 +99,7 @@ impl<R: Real> Hull<R> {
                 let hole = (slab.hole > 0.0).then(|| R::of(slab.hole));
                 Some(HullSlab { low, high, planes, guarded, hole, ball, rings: rings.collect() })
             });
-        Hull { slabs: slabs.collect() }
+        Hull { slabs: slabs.collect(), margin: R::of(error) }
     }
 
     /// Creates a hull for a tool whose depth has the Lipschitz constant `steep`: depth is at most `steep` times the
@@ -115,7 +117,7 @@ impl<R: Real> Hull<R> {
             ball: None,
             rings: Vec::new(),
         });
-        Hull { slabs: slabs.collect() }
+        Hull { slabs: slabs.collect(), margin: R::of(error) }
     }
 
     /// Creates a hull of the regions that some features bound, for points no farther from these features than the
@@ -429,6 +431,7 @@ impl Hull<f32> {
         &self,
         simd: S,
         rings: &BoxRings<f32x16<S>>,
+        planes: Option<&PlaneSlabs<f32x16<S>>>,
         threshold: f32,
     ) -> f32x16<S> {
         let BoxRings { near, far, low, high } = *rings;
@@ -438,6 +441,10 @@ impl Hull<f32> {
             let in_slab = low.simd_le(slab.high) & high.simd_ge(slab.low);
             let low = low.max(f32x16::splat(simd, slab.low));
             let high = high.min(f32x16::splat(simd, slab.high));
+            let near = match planes {
+                Some(planes) => near.max(planes.from_axis(low, high)),
+                None => near,
+            };
             // The upright plane rules out most slabs for all rings.
             let [nd, _, max3] = slab.planes[0];
             let mut depth = f32x16::splat(simd, max3) - near * nd;
@@ -465,7 +472,10 @@ impl Hull<f32> {
             if let Some([z, radius]) = slab.ball {
                 let centre = f32x16::splat(simd, z);
                 let along = centre.max(low).min(high) - centre;
-                let beyond = (near * near + along * along).sqrt();
+                let mut beyond = (near * near + along * along).sqrt();
+                if let Some(planes) = planes {
+                    beyond = beyond.max(planes.from_axis_point(z));
+                }
                 depth = depth.min(f32x16::splat(simd, radius) - beyond);
             }
             if let Some(hole) = slab.hole {
@@ -490,11 +500,12 @@ impl BoxBounds for Hull<f32> {
     fn of_boxes<S: Simd>(
         &self,
         simd: S,
-        boxes: &Boxes,
+        Children { boxes, planes }: Children<'_>,
         view: &PoseTransform,
         threshold: f32,
     ) -> f32x16<S> {
-        self.of_rings(simd, &rings(simd, boxes, view, None), threshold)
+        let planes = PlaneSlabs::new(simd, planes, view, self.margin);
+        self.of_rings(simd, &rings(simd, boxes, view, None), Some(&planes), threshold)
     }
 }
 

@@ -1,7 +1,7 @@
 //! Lower bounds of the distance of a tool from boxes and triangles, 16 at a time, in `f32`.
 
-use crate::bvh::{Boxes, LaneVector, PoseTransform};
-use crate::certify::bounds::descent::{Bounds, BoxBounds, BoxRings, rings};
+use crate::bvh::{LaneVector, PoseTransform};
+use crate::certify::bounds::descent::{Bounds, BoxBounds, BoxRings, Children, rings};
 use crate::certify::bounds::nearest::{NearestPoint, max3, min3, radial_extents};
 use crate::certify::tool_model::section::{Owners, Section};
 use crate::tool::ToolInfo;
@@ -77,7 +77,7 @@ impl BoxBounds for Shell {
     fn of_boxes<S: Simd>(
         &self,
         simd: S,
-        boxes: &Boxes,
+        Children { boxes, .. }: Children<'_>,
         view: &PoseTransform,
         _threshold: f32,
     ) -> f32x16<S> {

@@ -1,9 +1,11 @@
 //! Upper bounds of the depth of a tool in moving boxes and triangles, in SIMD lanes. A moving triangle stays in the
 //! convex hull of both positions, grown by the deviation of its paths from straight.
 
-use crate::bvh::{Boxes, LaneVector, PoseTransform};
+use crate::bvh::{LaneVector, PoseTransform};
 use crate::certify::bounds::batch::{Batch, Lanes, load};
-use crate::certify::bounds::descent::{BoundedTree, BoxBounds, Displacement, Node, above, rings};
+use crate::certify::bounds::descent::{
+    BoundedTree, BoxBounds, Children, Displacement, Node, above, rings,
+};
 use crate::certify::bounds::hull::{Hull, HullSlab};
 use crate::certify::bounds::nearest::{
     Clip, NearestPoint, Real, choose, direction_from_axis, max3, radial_extents, to_ring,
@@ -285,11 +287,11 @@ impl BoxBounds for Moving<'_> {
     fn of_boxes<S: Simd>(
         &self,
         simd: S,
-        boxes: &Boxes,
+        Children { boxes, .. }: Children<'_>,
         view: &PoseTransform,
         threshold: f32,
     ) -> f32x16<S> {
-        self.hull.of_rings(simd, &rings(simd, boxes, view, Some(&self.shift)), threshold)
+        self.hull.of_rings(simd, &rings(simd, boxes, view, Some(&self.shift)), None, threshold)
     }
 }
 

@@ -6,7 +6,9 @@
 mod coplanar_faces;
 mod winding;
 
-use crate::bvh::{Bounds, Boxes, BuildItem, Frame, PoseTransform, WIDTH, levels, order};
+use crate::bvh::{
+    Bounds, Boxes, BuildItem, Frame, PoseTransform, WIDTH, levels, order, outward,
+};
 use crate::certify::part::coplanar_faces::CoplanarFaces;
 use crate::certify::space::{Point, dot};
 use crate::id::TriangleId;
@@ -28,6 +30,8 @@ pub struct TriangleBvh {
     pub(crate) levels: Vec<Vec<Boxes>>,
     /// A plane per node of each level; the last list is for the leaves.
     planes: Vec<Vec<Plane>>,
+    /// The same planes of the children of each node, for `f32`: list by list as in `levels`.
+    pub(crate) plane_lanes: Vec<Vec<PlaneLanes>>,
     pub(crate) coplanar_faces: CoplanarFaces,
     /// The corners of the 16 triangles of each leaf.
     pub(crate) leaves: Vec<Corners>,
@@ -105,15 +109,21 @@ impl TriangleBvh {
             corners.iter().map(|triangle| triangle.map(|corner| frame.inside(corner))).collect();
         let depth = levels.len() as u32;
         // A node of this level holds the triangles of all leaves below it, which are consecutive.
-        let planes = (0..=depth).map(|level| {
-            let below = WIDTH.pow(depth + 1 - level);
-            inside.chunks(below).map(Plane::of).collect()
+        let planes: Vec<Vec<Plane>> = (0..=depth)
+            .map(|level| {
+                let below = WIDTH.pow(depth + 1 - level);
+                inside.chunks(below).map(Plane::of).collect()
+            })
+            .collect();
+        let plane_lanes = planes[1..].iter().map(|planes| {
+            planes.chunks(WIDTH).map(|children| PlaneLanes::of(children, &frame)).collect()
         });
         let ids: Vec<TriangleId> = items.iter().map(|item| TriangleId(item.index)).collect();
         let survey = mesh.diagnostics();
         let mut bvh = TriangleBvh {
             coplanar_faces: CoplanarFaces::new(mesh, &ids, &corners, flat(&frame)),
-            planes: planes.collect(),
+            plane_lanes: plane_lanes.collect(),
+            planes,
             leaves: leaves.collect(),
             levels,
             corners,
@@ -217,6 +227,33 @@ impl TriangleBvh {
 struct Plane {
     normal: Point,
     ends: [f64; 2],
+}
+
+/// The planes of sixteen nodes: a direction no longer than 1, and the extent of the node along it from the frame's origin.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PlaneLanes {
+    pub(crate) normal: [[f32; WIDTH]; 3],
+    pub(crate) low: [f32; WIDTH],
+    pub(crate) high: [f32; WIDTH],
+}
+
+impl PlaneLanes {
+    fn of(planes: &[Plane], frame: &Frame) -> PlaneLanes {
+        let mut lanes =
+            PlaneLanes { normal: [[0.0; WIDTH]; 3], low: [0.0; WIDTH], high: [0.0; WIDTH] };
+        // With u = ε/2 the stored direction differs by 8u, which makes it no longer than 1, and √3 u for rounding it. A point
+        // of the part is less than its size from the origin.
+        let unit = f64::from(f32::EPSILON) / 2.0;
+        let slack = 10.0 * unit * f64::from(frame.size);
+        for (lane, Plane { normal, ends: [low, high] }) in planes.iter().enumerate() {
+            for (list, part) in lanes.normal.iter_mut().zip(normal) {
+                list[lane] = ((1.0 - 8.0 * unit) * part) as f32;
+            }
+            lanes.low[lane] = -outward(slack - low);
+            lanes.high[lane] = outward(slack + high);
+        }
+        lanes
+    }
 }
 
 /// A ring about the tool's axis that contains a node: the least distance from the axis, and the range of heights,
