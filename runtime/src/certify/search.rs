@@ -346,7 +346,7 @@ impl SearchState {
             if node.is_triangle(of.bvh) {
                 let indices = self.descent.triangles(of.bvh, node, threshold);
                 if let Side::Inside = side
-                    && opened > 8 * FACE_CHECK_NODES
+                    && opened > 32
                 {
                     indices.retain(|index| {
                         of.bvh.coplanar_faces.of_triangle(*index).is_none_or(|face| {
@@ -377,7 +377,7 @@ impl SearchState {
                 continue;
             }
             if let Side::Inside = side
-                && (bound - 2.0 * margin <= self.search.threshold() || opened > PLANE_CHECK_NODES)
+                && (bound - 2.0 * margin <= self.search.threshold())
                 && let Some(ring) = node.ring(bvh, view)
                 && query.exact.of_ring(&ring) <= self.search.threshold()
             {
@@ -499,7 +499,7 @@ impl SearchState {
 const PLANE_CHECK_NODES: usize = 24;
 
 /// A query that opened more nodes than these is likely to have equal depths along flat faces.
-const FACE_CHECK_NODES: usize = 8;
+const FACE_CHECK_NODES: usize = 10;
 
 /// With a larger margin `f32` decides nothing, and squares overflow in it.
 pub(crate) const MARGIN: f64 = 1e9;
