@@ -333,6 +333,7 @@ impl SearchState {
         self.faces.begin(of.bvh);
         self.scratch.clear();
         let mut opened = 0;
+        let mut per_face = FACE_CHECK_NODES;
         while let Some(node) = self.descent.pop() {
             if self.search.is_done() {
                 break;
@@ -371,10 +372,13 @@ impl SearchState {
             opened += 1;
             if let Side::Inside = side
                 && let Some(faces) = node.faces(bvh)
-                && opened > FACE_CHECK_NODES * faces.len()
-                && self.faces.depth(of, query, placed, faces) <= self.search.threshold()
+                && opened > per_face * faces.len()
             {
-                continue;
+                if self.faces.depth(of, query, placed, faces) <= self.search.threshold() {
+                    per_face = (per_face - 1).max(1);
+                    continue;
+                }
+                per_face = (per_face + 1).min(16);
             }
             if let Side::Inside = side
                 && (bound - 2.0 * margin <= self.search.threshold())
