@@ -116,6 +116,7 @@ pub(crate) trait Bounds: BoxBounds {
 }
 
 /// Slabs between two planes in the tool's frame, one per lane, that contain nodes.
+#[derive(Clone, Copy)]
 pub(crate) struct PlaneSlabs<V> {
     /// The direction across the slab, no longer than 1.
     normal: LaneVector<V>,
@@ -152,6 +153,11 @@ impl<S: Simd> PlaneSlabs<f32x16<S>> {
         PlaneSlabs { normal, low, high, per_radial }
     }
 
+    fn widen(&mut self, distance: f32x16<S>) {
+        self.low = self.low - distance;
+        self.high += distance;
+    }
+
     /// Returns at most the distance from the axis of each point of the slab between two heights.
     #[inline(always)]
     pub(crate) fn from_axis(&self, low: f32x16<S>, high: f32x16<S>) -> f32x16<S> {
@@ -177,6 +183,8 @@ pub(crate) struct BoxRings<V> {
     pub(crate) far: V,
     pub(crate) low: V,
     pub(crate) high: V,
+    /// The planes between which the nodes lie, too.
+    pub(crate) planes: Option<PlaneSlabs<V>>,
 }
 
 /// A bound on the displacement of points in the tool's frame: a translation, and a rotation about an axis through
@@ -185,8 +193,12 @@ pub(crate) struct BoxRings<V> {
 pub(crate) struct Displacement {
     /// The axis of the rotation.
     pub(crate) axis: [f32; 3],
+    /// The translation, without its sign.
     pub(crate) straight: [f32; 3],
+    pub(crate) translation: [f32; 3],
     pub(crate) length: f32,
+    /// The distance to be kept.
+    pub(crate) clearance: f32,
     pub(crate) turn: f32,
     /// The largest relevant distance of a point from the axis of the rotation.
     pub(crate) reach: f32,
@@ -204,14 +216,17 @@ impl Displacement {
     }
 }
 
-/// Returns the rings that contain boxes, and their whole paths if a displacement is given.
+/// Returns the rings that contain nodes, and their whole paths if a displacement is given. `margin` is the rounding error
+/// bound of a point in `f32`.
 #[inline(always)]
 pub(crate) fn rings<S: Simd>(
     simd: S,
-    boxes: &Boxes,
+    Children { boxes, planes }: Children<'_>,
     view: &PoseTransform,
+    margin: f32,
     shift: Option<&Displacement>,
 ) -> BoxRings<f32x16<S>> {
+    let mut planes = PlaneSlabs::new(simd, planes, view, margin);
     let centre = load(simd, &boxes.centre);
     let half = load(simd, &boxes.half);
     let [x, y, z] = transform(&centre, &view.rows, view.origin);
@@ -231,6 +246,13 @@ pub(crate) fn rings<S: Simd>(
             let turned = reach.min(across[axis]) * shift.turn;
             wide[axis] = wide[axis] + turned + shift.straight[axis] + curve;
         }
+        // The same for the component along the planes' normals: `n · (axis × p)` is `(n × axis) · p`.
+        let ([a, b, c], [u, v, w]) = (planes.normal, shift.axis);
+        let across = (b * w - c * v).abs() * far[0]
+            + (c * u - a * w).abs() * far[1]
+            + (a * v - b * u).abs() * far[2];
+        let moved = dot(&planes.normal, shift.translation).abs();
+        planes.widen(moved + reach.min(across) * shift.turn + curve + shift.clearance);
     }
     let (near_x, near_y) = ((x - wide[0]).max(zero), (y - wide[1]).max(zero));
     let (far_x, far_y) = (x + wide[0], y + wide[1]);
@@ -239,6 +261,7 @@ pub(crate) fn rings<S: Simd>(
         far: (far_x * far_x + far_y * far_y).sqrt(),
         low: z - wide[2],
         high: z + wide[2],
+        planes: Some(planes),
     }
 }
 

@@ -1,7 +1,7 @@
 //! Upper bounds of the depth of a tool in boxes and triangles, in SIMD lanes.
 
 use crate::bvh::{LaneVector, PoseTransform};
-use crate::certify::bounds::descent::{Bounds, BoxBounds, BoxRings, Children, PlaneSlabs, rings};
+use crate::certify::bounds::descent::{Bounds, BoxBounds, BoxRings, Children, rings};
 use crate::certify::bounds::nearest::{
     AxisDistances, Clip, NearestPoint, Real, Ring, choose, direction_from_axis, distances,
     extents_from, from_ring, max3, min3, radial_extents, under_both, under_both_of_ring,
@@ -17,7 +17,7 @@ use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask, f32x16};
 /// The slabs of a tool, for upper bounds of depth.
 pub(crate) struct Hull<R> {
     /// The rounding error bound of a point.
-    margin: R,
+    pub(crate) margin: R,
     pub(crate) slabs: Vec<HullSlab<R>>,
 }
 
@@ -431,10 +431,9 @@ impl Hull<f32> {
         &self,
         simd: S,
         rings: &BoxRings<f32x16<S>>,
-        planes: Option<&PlaneSlabs<f32x16<S>>>,
         threshold: f32,
     ) -> f32x16<S> {
-        let BoxRings { near, far, low, high } = *rings;
+        let BoxRings { near, far, low, high, planes } = *rings;
         let zero = f32x16::splat(simd, 0.0);
         let mut bound = f32x16::splat(simd, f32::NEG_INFINITY);
         for slab in &self.slabs {
@@ -500,12 +499,11 @@ impl BoxBounds for Hull<f32> {
     fn of_boxes<S: Simd>(
         &self,
         simd: S,
-        Children { boxes, planes }: Children<'_>,
+        children: Children<'_>,
         view: &PoseTransform,
         threshold: f32,
     ) -> f32x16<S> {
-        let planes = PlaneSlabs::new(simd, planes, view, self.margin);
-        self.of_rings(simd, &rings(simd, boxes, view, None), Some(&planes), threshold)
+        self.of_rings(simd, &rings(simd, children, view, self.margin, None), threshold)
     }
 }
 

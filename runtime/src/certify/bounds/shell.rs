@@ -77,11 +77,11 @@ impl BoxBounds for Shell {
     fn of_boxes<S: Simd>(
         &self,
         simd: S,
-        Children { boxes, .. }: Children<'_>,
+        children: Children<'_>,
         view: &PoseTransform,
         _threshold: f32,
     ) -> f32x16<S> {
-        self.bound(simd, &rings(simd, boxes, view, None))
+        self.bound(simd, &rings(simd, children, view, 0.0, None))
     }
 }
 
@@ -98,6 +98,6 @@ impl Bounds for Shell {
         let [out_a, out_b, out_c] = radial_extents(corners, &near.direction);
         let near = min3(out_a, out_b, out_c).max(f32x16::splat(simd, 0.0));
         let (low, high) = (min3(a[2], b[2], c[2]), max3(a[2], b[2], c[2]));
-        self.bound(simd, &BoxRings { near, far: near, low, high })
+        self.bound(simd, &BoxRings { near, far: near, low, high, planes: None })
     }
 }

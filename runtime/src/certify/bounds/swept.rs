@@ -287,11 +287,12 @@ impl BoxBounds for Moving<'_> {
     fn of_boxes<S: Simd>(
         &self,
         simd: S,
-        Children { boxes, .. }: Children<'_>,
+        children: Children<'_>,
         view: &PoseTransform,
         threshold: f32,
     ) -> f32x16<S> {
-        self.hull.of_rings(simd, &rings(simd, boxes, view, Some(&self.shift)), None, threshold)
+        let rings = rings(simd, children, view, self.hull.margin, Some(&self.shift));
+        self.hull.of_rings(simd, &rings, threshold)
     }
 }
 

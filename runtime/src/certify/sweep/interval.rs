@@ -37,6 +37,7 @@ struct MovedFrame {
 
 #[derive(Clone, Copy)]
 struct MotionBounds {
+    /// The translation from the middle to the end.
     straight: [f64; 3],
     length: f64,
     turn: f64,
@@ -81,7 +82,7 @@ impl MotionInterval {
             poses,
             views,
             bounds: MotionBounds {
-                straight: straight.abs().into(),
+                straight: straight.into(),
                 length,
                 turn,
                 reach,
@@ -158,8 +159,10 @@ impl MotionInterval {
         let MotionBounds { straight, length, turn, reach, deviation } = self.bounds;
         Displacement {
             axis: self.axis.map(|part| part as f32).into(),
-            straight: straight.map(|part| rounded_up(part + required_clearance)),
+            straight: straight.map(|part| rounded_up(part.abs() + required_clearance)),
+            translation: straight.map(|part| part as f32),
             length: rounded_up(length),
+            clearance: rounded_up(required_clearance),
             turn: rounded_up(turn),
             reach: rounded_up(reach),
             deviation: rounded_up(deviation),
