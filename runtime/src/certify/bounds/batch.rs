@@ -63,11 +63,12 @@ impl Batch {
     }
 
     pub(crate) fn point(&self, lane: usize) -> [f64; 3] {
-        [0, 1, 2].map(|axis| self.points[axis][lane])
+        corner(&self.points, lane)
     }
 
     pub(crate) fn corners(&self, lane: usize) -> [[f64; 3]; 3] {
-        [0, 1, 2].map(|k| [0, 1, 2].map(|axis| self.corners[k][axis][lane]))
+        let [a, b, c] = &self.corners;
+        [corner(a, lane), corner(b, lane), corner(c, lane)]
     }
 
     pub(crate) fn any_above(&self, depth: f64) -> bool {
@@ -123,6 +124,10 @@ impl Batch {
         let [a, b, c] = &self.corners;
         [load(simd, a), load(simd, b), load(simd, c)]
     }
+}
+
+fn corner([x, y, z]: &[Lanes; 3], lane: usize) -> [f64; 3] {
+    [x[lane], y[lane], z[lane]]
 }
 
 #[inline(always)]

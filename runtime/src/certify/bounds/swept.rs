@@ -8,7 +8,7 @@ use crate::certify::bounds::descent::{
 };
 use crate::certify::bounds::hull::{Hull, HullSlab};
 use crate::certify::bounds::nearest::{
-    Clip, NearestPoint, Real, choose, direction_from_axis, max3, radial_extents, to_ring,
+    Clip, NearestPoint, Real, choose, direction_from_axis, max3, min3, radial_extents, to_ring,
 };
 use crate::certify::sweep::interval::MotionInterval;
 use crate::certify::triangle::TrianglePiece;
@@ -260,6 +260,12 @@ fn min_at<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
 ) -> V {
     let mut min_extent = V::splat(simd, R::of(SENTINEL));
     let zero = V::splat(simd, R::of(0.0));
+    let [a, b, c, d, e, f] = *heights;
+    let lowest = min3(a, b, c).min(min3(d, e, f));
+    let highest = max3(a, b, c).max(max3(d, e, f));
+    if !(lowest.simd_lt(at) & highest.simd_gt(at)).any_true() {
+        return min_extent;
+    }
     for i in 0..6 {
         for j in i + 1..6 {
             let (low, high) = (heights[i] - at, heights[j] - at);

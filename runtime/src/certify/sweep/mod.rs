@@ -11,7 +11,7 @@ use crate::bvh::{PoseTransform, WIDTH};
 use crate::certify::bounds::descent::{BoundedTree, Node, of_children};
 use crate::certify::bounds::swept::{Moving, SweptBatch, of_leaf};
 use crate::certify::search::{DepthQuery, MARGIN, QuerySetting};
-use crate::certify::space::Point;
+use crate::certify::space::{Point, minus};
 use crate::certify::sweep::interval::MotionInterval;
 use crate::certify::tool_model::field::Scratch;
 use crate::certify::tool_model::section::{Owners, Section};
@@ -228,10 +228,10 @@ impl Sweeper {
                 }
                 self.budget -= 1;
                 if node.is_triangle(bvh) {
-                    let origin = bvh.frame.origin;
-                    let corners = bvh.corners[node.index as usize];
+                    let origin = bvh.frame.origin.into();
+                    let [a, b, c] = bvh.corners[node.index as usize];
                     let piece =
-                        SubTriangle::new(corners.map(|p| [0, 1, 2].map(|k| p[k] - origin[k])));
+                        SubTriangle::new([minus(a, origin), minus(b, origin), minus(c, origin)]);
                     let part = TrianglePiece { index: node.index, piece };
                     if let Some(stop) = self.add(task, interval, part) {
                         return Some(stop);
