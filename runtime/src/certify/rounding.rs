@@ -26,7 +26,9 @@
 //! | the distance from it | 14 uS |
 //!
 //! A triangle whose corners move has all of its points moved by no more than the corners, and depth changes by no
-//! more than the displacement. An upper bound has all of these errors, `61 uM + 5 uW + 18 uS`, which is less than
+//! more than the displacement. A plane that bounds depth only beyond its guards has the errors of a corner and of the
+//! distance from a segment twice, `40 uM + 36 uS`: a point that is beyond them only by rounding is deeper by no more.
+//! An upper bound along a line has all of these errors, `61 uM + 5 uW + 18 uS`, which is less than
 //! `105 uS + 115 uP`. [`point_error_bound`] allows 128 u for both.
 //!
 //! **Motions.** A motion turns by the exact fraction of its stored angle, starting from the rotation nearest to

@@ -333,7 +333,7 @@ impl SearchState {
         self.faces.begin(of.bvh);
         self.scratch.clear();
         let mut opened = 0;
-        let mut per_face = FACE_CHECK_NODES;
+        let mut nodes_per_face = NODES_PER_FACE;
         while let Some(node) = self.descent.pop() {
             if self.search.is_done() {
                 break;
@@ -347,7 +347,7 @@ impl SearchState {
             if node.is_triangle(of.bvh) {
                 let indices = self.descent.triangles(of.bvh, node, threshold);
                 if let Side::Inside = side
-                    && opened > 32
+                    && opened > NODES_BEFORE_FACES
                 {
                     indices.retain(|index| {
                         of.bvh.coplanar_faces.of_triangle(*index).is_none_or(|face| {
@@ -368,20 +368,20 @@ impl SearchState {
             }
             let (level, bvh, view) = (of.level, of.bvh, &self.view);
             let placed = PlacedTool { pose, view };
-            // The plane of a node may decide where `f32` or the boxes cannot.
             opened += 1;
             if let Side::Inside = side
                 && let Some(faces) = node.faces(bvh)
-                && opened > per_face * faces.len()
+                && opened > nodes_per_face * faces.len()
             {
                 if self.faces.depth(of, query, placed, faces) <= self.search.threshold() {
-                    per_face = (per_face - 1).max(1);
+                    nodes_per_face = (nodes_per_face - 1).max(1);
                     continue;
                 }
-                per_face = (per_face + 1).min(16);
+                nodes_per_face = (nodes_per_face + 1).min(MAX_NODES_PER_FACE);
             }
+            // The plane of a node in `f64` may decide where `f32` cannot.
             if let Side::Inside = side
-                && (bound - 2.0 * margin <= self.search.threshold())
+                && bound - 2.0 * margin <= self.search.threshold()
                 && let Some(ring) = node.ring(bvh, view)
                 && query.exact.of_ring(&ring) <= self.search.threshold()
             {
@@ -499,11 +499,14 @@ impl SearchState {
     }
 }
 
-/// A query that opened more nodes than these has many of equal depth.
-const PLANE_CHECK_NODES: usize = 24;
+/// The number of nodes that are opened per face of a node before its faces are bounded: those bounds pay off where many
+/// triangles are equally deep, and such a query opens many nodes. Each node that its faces rule out lowers the number by
+/// one, each that they do not raises it.
+const NODES_PER_FACE: usize = 10;
+const MAX_NODES_PER_FACE: usize = 16;
 
-/// A query that opened more nodes than these is likely to have equal depths along flat faces.
-const FACE_CHECK_NODES: usize = 10;
+/// The number of opened nodes before each triangle's face is bounded.
+const NODES_BEFORE_FACES: usize = 32;
 
 /// With a larger margin `f32` decides nothing, and squares overflow in it.
 pub(crate) const MARGIN: f64 = 1e9;

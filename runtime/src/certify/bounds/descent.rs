@@ -148,8 +148,7 @@ impl<S: Simd> PlaneSlabs<f32x16<S>> {
         let high = f32x16::from_slice(simd, &planes.high) * view.unit + (middle + 4.0 * margin);
         let radial = (normal[0] * normal[0] + normal[1] * normal[1]).sqrt();
         let one = f32x16::splat(simd, 1.0);
-        let per_radial =
-            radial.simd_gt(MIN_RADIAL).select(one / radial, f32x16::splat(simd, 0.0));
+        let per_radial = radial.simd_gt(MIN_RADIAL).select(one / radial, f32x16::splat(simd, 0.0));
         PlaneSlabs { normal, low, high, per_radial }
     }
 

@@ -61,23 +61,23 @@ impl<R: Real> Hull<R> {
                 let slope = (d1 - d0) / (z1 - z0);
                 let convex = side.circle.is_some_and(|circle| circle.convex);
                 let line = side.tangent();
-                if let Some(line) = &line
-                    && !section.tangent_bounds_slab(line, index)
-                {
-                    guarded.push(GuardedPlane::new(line, section.feet(line, index)));
+                let is_bound =
+                    line.as_ref().is_some_and(|line| section.tangent_bounds_slab(line, index));
+                if let Some(line) = &line {
+                    if is_bound {
+                        planes.push(under(line));
+                    } else {
+                        guarded.push(GuardedPlane::new(line, section.feet(line, index)));
+                    }
+                }
+                if !is_bound && slope != 0.0 && slope.abs() <= 2.0 && !convex {
+                    // Radially under the chord of the side, beyond which neither a line nor a concave arc reaches.
+                    // Steeper planes have larger errors than `margin` in `search` allows for.
+                    planes.push(plane([1.0, -slope], side.ends[0]));
                 }
                 for line in section.lines_beside(slab) {
                     let feet = section.outside_feet(line);
                     guarded.push(GuardedPlane::new(&section.features[line], feet));
-                }
-                if let Some(line) = &line
-                    && section.tangent_bounds_slab(line, index)
-                {
-                    planes.push(under(line));
-                } else if slope != 0.0 && slope.abs() <= 2.0 && !convex {
-                    // Radially under the chord of the side, beyond which neither a line nor a concave arc reaches.
-                    // Steeper planes have larger errors than `margin` in `search` allows for.
-                    planes.push(plane([1.0, -slope], side.ends[0]));
                 }
                 // The tool's lower and upper end bound depth too, where they are as near as the side can be.
                 let [low, high] = section.reach();
@@ -352,7 +352,8 @@ impl<R: Real> HullSlab<R> {
                     deepest = choose(under, &point, &deepest);
                 }
                 for ring in &self.rings {
-                    let (both, point) = under_both_of_ring(simd, corners, &out, &bounds[first], *ring);
+                    let (both, point) =
+                        under_both_of_ring(simd, corners, &out, &bounds[first], *ring);
                     let under = both.simd_lt(depth);
                     depth = under.select(both, depth);
                     deepest = choose(under, &point, &deepest);
@@ -407,8 +408,9 @@ impl Hull<f64> {
         let depths = in_slab.map(|slab| {
             // Only the part of the ring between the slab's heights.
             let (low, high) = (ring.low.max(slab.low), ring.high.min(slab.high));
-            let under =
-                |[nd, nz, c]: &[f64; 3]| c - nd * ring.near - nz * if *nz > 0.0 { low } else { high };
+            let under = |[nd, nz, c]: &[f64; 3]| {
+                c - nd * ring.near - nz * if *nz > 0.0 { low } else { high }
+            };
             let planes = slab.planes.iter().map(under);
             let holding = slab.guarded.iter().filter(|guarded| {
                 guarded.guards.iter().all(|guard| guard[0] >= 0.0 && under(guard) <= 0.0)
@@ -536,5 +538,215 @@ fn max_over<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
     match part {
         Some(clip) => clip.max_linear(simd, [a, b, c]),
         None => max3(a, b, c),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bvh::QuerySetup;
+    use crate::certify::bounds::descent::{BoundedTree, Node, of_children};
+    use crate::certify::part::TriangleBvh;
+    use crate::certify::space::Point;
+    use crate::mesh::Mesh;
+    use crate::pose::Pose;
+    use crate::tool::Tool;
+    use crate::unit::Unit;
+    use fearless_simd::{Level, dispatch, f64x8};
+    use nalgebra::{Point3, Vector3};
+
+    const ERROR: f64 = 1e-12;
+
+    crate::tool! {
+        tool Necked "reflex corners between lines, and a convex corner above one" {
+            units mm;
+            profile {
+                start (0, 0);
+                arc to (1, 1) center (0, 1) as nose cutting;
+                line to (1, 5) as flute cutting;
+                line to (3, 7), (3, 9) as neck;
+                line to (5, 9), (5, 20), (0, 20) as housing;
+            }
+            niceness cutting: 1;
+        }
+    }
+
+    crate::tool! {
+        tool Waisted "a waist between cones" {
+            units mm;
+            profile {
+                start (0, 0);
+                line to (4, 0) as face cutting;
+                line to (5, 6) as side cutting;
+                line to (2, 9), (2, 15) as neck;
+                line to (6, 18), (0, 20) as head;
+            }
+            niceness cutting: 1;
+        }
+    }
+
+    crate::tool! {
+        tool Rounded "convex and concave arcs beside lines" {
+            units mm;
+            profile {
+                start (0, 0);
+                line to (2, 0) as face cutting;
+                arc to (4, 2) center (2, 2) as edge cutting;
+                line to (3, 8) as side cutting;
+                arc to (5, 10) center (5, 8) concave as fillet;
+                line to (7, 14), (7, 16), (0, 16) as shank;
+            }
+            niceness cutting: 1;
+        }
+    }
+
+    crate::tool! {
+        tool Hollow "a cone from below, so that the profile runs downward first" {
+            units mm;
+            profile {
+                start (0, 4);
+                line to (4, 0) as cup cutting;
+                line to (6, 0), (6, 12), (0, 12) as body;
+            }
+            niceness cutting: 1;
+        }
+    }
+
+    /// Returns the tools of these tests.
+    fn tools() -> [&'static ToolInfo; 4] {
+        [Necked.info(), Waisted.info(), Rounded.info(), Hollow.info()]
+    }
+
+    /// A sequence of numbers from 0 to 1 that looks random.
+    struct Numbers(u64);
+
+    impl Numbers {
+        fn next(&mut self) -> f64 {
+            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            (self.0 >> 11) as f64 / (1u64 << 53) as f64
+        }
+
+        fn between(&mut self, low: f64, high: f64) -> f64 {
+            low + (high - low) * self.next()
+        }
+
+        /// Returns a triangle of some size near the tool.
+        fn triangle(&mut self, section: &Section) -> [Point; 3] {
+            let [low, high] = section.reach();
+            let size = 8.0 * self.next().powi(3);
+            let middle = [
+                self.between(-5.0, 5.0),
+                self.between(-5.0, 5.0),
+                self.between(low - 1.0, high + 1.0),
+            ];
+            [(); 3].map(|()| middle.map(|at| at + size * self.between(-1.0, 1.0)))
+        }
+    }
+
+    /// Returns the greatest depth of some points of a triangle, by the distances from all segments.
+    fn sampled(section: &Section, [a, b, c]: &[Point; 3]) -> f64 {
+        const STEPS: u32 = 24;
+        let mut deepest = f64::NEG_INFINITY;
+        for i in 0..=STEPS {
+            for j in 0..=STEPS - i {
+                let (u, v) = (f64::from(i) / f64::from(STEPS), f64::from(j) / f64::from(STEPS));
+                let [x, y, z] = [0, 1, 2].map(|k| a[k] + u * (b[k] - a[k]) + v * (c[k] - a[k]));
+                let p = [x.hypot(y), z];
+                if section.contains(p) {
+                    deepest = deepest.max(section.unsigned_distance(p));
+                }
+            }
+        }
+        deepest
+    }
+
+    #[test]
+    fn no_sampled_point_of_a_triangle_is_deeper_than_its_bounds() {
+        let mut numbers = Numbers(1);
+        let (mut inside, mut refined) = (0, 0);
+        for info in tools() {
+            let section = Section::new(info, ERROR).expect("a profile");
+            let zones: Vec<_> =
+                section.slabs.iter().map(|slab| Some(Rectangle::of(slab))).collect();
+            let hull = Hull::<f64>::new(&section, &zones, ERROR);
+            for _ in 0..3000 {
+                let triangle = numbers.triangle(&section);
+                let deepest = sampled(&section, &triangle);
+                let [first, second] =
+                    dispatch!(Level::new(), simd => both_bounds(simd, &hull, &triangle));
+                assert!(deepest <= first + 1e-9, "{}: {triangle:?} {deepest} {first}", info.name);
+                assert!(deepest <= second + 1e-9, "{}: {triangle:?} {deepest} {second}", info.name);
+                inside += usize::from(deepest > 0.0);
+                refined += usize::from(second < first);
+            }
+        }
+        assert!(inside > 3000 && refined > 1000, "{inside} {refined}");
+    }
+
+    /// Returns the bound of a triangle, and that at its likely deepest point.
+    fn both_bounds<S: Simd>(simd: S, hull: &Hull<f64>, triangle: &[Point; 3]) -> [f64; 2] {
+        let corners = triangle.map(|p| p.map(|at| f64x8::splat(simd, at)));
+        let (first, point) = hull.triangles(simd, &corners, 0.0, None);
+        let (second, _) = hull.triangles(simd, &corners, 0.0, Some(&point));
+        [first[0], second[0]]
+    }
+
+    #[test]
+    fn no_sampled_point_of_a_node_is_deeper_than_its_bound() {
+        let mut numbers = Numbers(2);
+        let mut inside = 0;
+        for info in tools() {
+            let section = Section::new(info, ERROR).expect("a profile");
+            let zones: Vec<_> =
+                section.slabs.iter().map(|slab| Some(Rectangle::of(slab))).collect();
+            for _ in 0..60 {
+                // A strip of triangles that is almost plane, in places flat.
+                let [at, across, up] = [(); 3].map(|()| {
+                    Vector3::new(
+                        numbers.between(-3.0, 3.0),
+                        numbers.between(-3.0, 3.0),
+                        numbers.between(-3.0, 3.0),
+                    )
+                });
+                let at = Point3::new(0.0, 0.0, numbers.between(0.0, 16.0)) + at;
+                let bend = numbers.between(-0.02, 0.02);
+                let vertices = (0..20 * 20).map(|k| {
+                    let [u, v] = [k / 20, k % 20].map(|k| f64::from(k) / 10.0 - 1.0);
+                    at + across * u + up * v + across.cross(&up) * (bend * u * u)
+                });
+                let triangles = (0..19 * 19).flat_map(|k: u32| {
+                    let corner = k / 19 * 20 + k % 19;
+                    [[corner, corner + 1, corner + 20], [corner + 1, corner + 21, corner + 20]]
+                });
+                let mesh = Mesh::new(vertices.collect(), triangles.collect(), Unit::Millimetre)
+                    .expect("a mesh");
+                let bvh = TriangleBvh::new(&mesh);
+                let setup = QuerySetup::new(&bvh.frame, info, 1.0);
+                let margin = setup.margin;
+                let hull = Hull::<f32>::new(&section, &zones, margin);
+                let mut view = PoseTransform::default();
+                let pose = Pose::from_axis(Point3::origin(), Vector3::z()).expect("a unit vector");
+                if !setup.set_pose(&bvh.frame, &pose, &mut view) {
+                    continue;
+                }
+                let tree = BoundedTree { bvh: &bvh, bounds: &hull, view: &view };
+                let root = Node { level: 0, index: 0, bound: f32::INFINITY };
+                let mut bounds = [0.0f32; 16];
+                of_children(Level::new(), &tree, root, f32::NEG_INFINITY, &mut bounds);
+                let below = 16usize.pow(bvh.levels.len() as u32);
+                for (child, triangles) in bvh.corners.chunks(below).enumerate() {
+                    let axes = pose.rotation().transpose();
+                    let deepest = triangles.iter().map(|corners| {
+                        let corners = corners.map(|p| (axes * Vector3::from(p)).into());
+                        sampled(&section, &corners)
+                    });
+                    let deepest = deepest.fold(f64::NEG_INFINITY, f64::max);
+                    let bound = f64::from(bounds[child]) + 4.0 * margin;
+                    assert!(deepest <= bound, "{}: {deepest} {bound}", info.name);
+                    inside += usize::from(deepest > 0.0);
+                }
+            }
+        }
+        assert!(inside > 200, "{inside}");
     }
 }

@@ -487,17 +487,15 @@ pub(crate) fn under_both_of_ring<S: Simd, R: Real, V: SimdFloat<S, Element = R>>
     for k in 0..3 {
         let next = (k + 1) % 3;
         let (first, last) = (distance[k] - linear[k], distance[next] - linear[next]);
-        let crosses = (first.simd_lt(zero) & last.simd_gt(zero))
-            | (first.simd_gt(zero) & last.simd_lt(zero));
+        let crosses =
+            (first.simd_lt(zero) & last.simd_gt(zero)) | (first.simd_gt(zero) & last.simd_lt(zero));
         if !crosses.any_true() {
             continue;
         }
         // From the corner at which the ring is nearer than the function tells.
         let swap = first.simd_gt(zero);
-        let (start, end) = (
-            choose(swap, &corners[next], &corners[k]),
-            choose(swap, &corners[k], &corners[next]),
-        );
+        let (start, end) =
+            (choose(swap, &corners[next], &corners[k]), choose(swap, &corners[k], &corners[next]));
         let pick = |values: &[V; 3]| {
             (swap.select(values[next], values[k]), swap.select(values[k], values[next]))
         };

@@ -143,7 +143,8 @@ impl CoplanarFaces {
             face.iter().for_each(|k| of[*k as usize] = faces.len() as u32);
             faces.push(Face::around(&face, corners, normal));
         }
-        let triangles = of.iter().map(|face| if *face == NONE { &[] } else { slice::from_ref(face) });
+        let triangles =
+            of.iter().map(|face| if *face == NONE { &[] } else { slice::from_ref(face) });
         let mut levels = vec![NodeFaces::above(triangles)];
         while let Some(below) = levels.last().filter(|below| below.len() > 1) {
             levels.push(NodeFaces::above((0..below.len()).map(|node| below.of(node))));

@@ -6,9 +6,7 @@
 mod coplanar_faces;
 mod winding;
 
-use crate::bvh::{
-    Bounds, Boxes, BuildItem, Frame, PoseTransform, WIDTH, levels, order, outward,
-};
+use crate::bvh::{Bounds, Boxes, BuildItem, Frame, PoseTransform, WIDTH, levels, order, outward};
 use crate::certify::part::coplanar_faces::CoplanarFaces;
 use crate::certify::space::{Point, dot};
 use crate::id::TriangleId;

@@ -81,13 +81,7 @@ impl MotionInterval {
             start: motion.start() - setting.bvh.frame.origin,
             poses,
             views,
-            bounds: MotionBounds {
-                straight: straight.into(),
-                length,
-                turn,
-                reach,
-                deviation,
-            },
+            bounds: MotionBounds { straight: straight.into(), length, turn, reach, deviation },
             axis: motion.rotation_axis(),
             tip_size: motion.start().coords.norm() + motion.displacement().norm(),
         })

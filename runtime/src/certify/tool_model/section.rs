@@ -163,18 +163,20 @@ impl Section {
         corners.into_iter().all(|p| (from..=to).contains(&line.position(p)))
     }
 
-    /// Returns the lines of the profile, other than level ones and the slab's side, that have the slab on the tool's side
-    /// and feet of some of its points.
+    /// Returns the lines of the profile that run upward, other than the slab's side, and have all of the slab on the tool's
+    /// side and feet of some of its points.
     pub(crate) fn lines_beside(&self, slab: &SectionSlab) -> impl Iterator<Item = usize> {
         let [low, high] = [slab.low, slab.high];
-        let corners =
-            [[slab.hole, low], [slab.hole, high], [slab.radii[0], low], [slab.radii[1], high]];
+        // An arc may bulge beyond the line between its ends.
+        let is_line = self.features[slab.side].circle.is_none();
+        let radii = if is_line { slab.radii } else { [slab.radius; 2] };
+        let corners = [[slab.hole, low], [slab.hole, high], [radii[0], low], [radii[1], high]];
         let near = slab.near.iter().filter(|near| **near != slab.side);
         near.copied().filter(move |near| {
             let line = &self.features[*near];
             let positions = corners.map(|corner| line.position(corner));
             line.circle.is_none()
-                && line.along[1] != 0.0
+                && line.along[1] > 0.0
                 && corners.iter().all(|corner| line.signed_distance(*corner) >= 0.0)
                 && positions.iter().any(|at| *at > 0.0)
                 && positions.iter().any(|at| *at < line.length)
