@@ -46,7 +46,7 @@ impl DepthQuery {
             return DepthQuery {
                 hull: Hull::holding(section, &owners, margin),
                 exact: Hull::holding(section, &owners, section.error),
-                shell: Shell::new(section, &owners),
+                shell: Shell::new(section, &owners, margin),
                 zones: Vec::new(),
                 owners,
                 limit,
@@ -58,7 +58,7 @@ impl DepthQuery {
         DepthQuery {
             hull: Hull::new(section, &zones, margin),
             exact: Hull::new(section, &zones, section.error),
-            shell: Shell::new(section, &owners),
+            shell: Shell::new(section, &owners, margin),
             zones: zones.into_iter().flatten().collect(),
             owners,
             limit,
@@ -78,7 +78,7 @@ impl DepthQuery {
             owners: Owners::of_regions(info, |_, region| surfaces(region.surface.0)),
             hull: Hull::about(info, field.steep, errors[0]),
             exact: Hull::about(info, field.steep, errors[1]),
-            shell: Shell::about(info),
+            shell: Shell::about(info, errors[0]),
             zones: Vec::new(),
             limit,
         }

@@ -130,9 +130,11 @@ pub(crate) struct PlaneSlabs<V> {
 impl<S: Simd> PlaneSlabs<f32x16<S>> {
     /// Transforms planes to the tool's frame. `margin` is the rounding error bound of a point in `f32`.
     ///
-    /// With u the unit roundoff, the direction errs by less than 8u in each part, its product with the origin by less than
-    /// 16u of the origin's coordinates, and the ends by 4u of the part. Both are less than two margins, which are
-    /// 32u of the tool's size and 128u of the part's. Positions of other points along it err by another margin.
+    /// With u = 2⁻²⁴ each part of the direction errs by less than 8u, its product with the origin by less than 13u of the sum
+    /// of the origin's coordinates, and the ends by 4u of the part's size. A height to which the direction is applied errs
+    /// by the margin, and its product by 9u of the height, which is at most the part's size from the origin's or within the
+    /// tool. The margin is 16u of the tool's size and more than 64u of the part's, so all of these are less than two margins
+    /// and 32u of the origin's coordinates.
     #[inline(always)]
     pub(crate) fn new(
         simd: S,
@@ -144,8 +146,10 @@ impl<S: Simd> PlaneSlabs<f32x16<S>> {
         let per_unit = 1.0 / view.unit;
         let normal = [turned[0] * per_unit, turned[1] * per_unit, turned[2] * per_unit];
         let middle = dot(&normal, view.origin);
-        let low = f32x16::from_slice(simd, &planes.low) * view.unit + (middle - 4.0 * margin);
-        let high = f32x16::from_slice(simd, &planes.high) * view.unit + (middle + 4.0 * margin);
+        let [x, y, z] = view.origin.map(f32::abs);
+        let error = 2.0 * margin + (x + y + z) * (16.0 * f32::EPSILON);
+        let low = f32x16::from_slice(simd, &planes.low) * view.unit + (middle - error);
+        let high = f32x16::from_slice(simd, &planes.high) * view.unit + (middle + error);
         let radial = (normal[0] * normal[0] + normal[1] * normal[1]).sqrt();
         let one = f32x16::splat(simd, 1.0);
         let per_radial = radial.simd_gt(MIN_RADIAL).select(one / radial, f32x16::splat(simd, 0.0));

@@ -10,6 +10,8 @@ use fearless_simd::{Simd, SimdBase, SimdFloat, f32x16};
 /// A set of solids that contain a tool: a cylinder per slab, and a ball where the slab's side is an arc about the axis.
 pub(crate) struct Shell {
     slabs: Vec<ShellSlab>,
+    /// The rounding error bound of a point.
+    margin: f32,
 }
 
 struct ShellSlab {
@@ -21,19 +23,20 @@ struct ShellSlab {
 }
 
 impl Shell {
-    /// Creates the shell of a tool that is known by its depth field, from its envelope.
-    pub(crate) fn about(info: &ToolInfo) -> Shell {
+    /// Creates the shell of a tool that is known by its depth field, from its envelope. `margin` is the rounding error bound of
+    /// a point in `f32`.
+    pub(crate) fn about(info: &ToolInfo, margin: f64) -> Shell {
         let slabs = info.envelope.iter().map(|slab| ShellSlab {
             low: slab.low as f32,
             high: slab.high as f32,
             radius: slab.radius as f32,
             ball: None,
         });
-        Shell { slabs: slabs.collect() }
+        Shell { slabs: slabs.collect(), margin: margin as f32 }
     }
 
     /// Creates the shell of the owners.
-    pub(crate) fn new(section: &Section, owners: &Owners) -> Shell {
+    pub(crate) fn new(section: &Section, owners: &Owners, margin: f64) -> Shell {
         let features = section.features.iter().enumerate();
         let owned = features.filter(|(index, _)| owners.is_owned(*index));
         let slabs = owned.filter_map(|(index, feature)| {
@@ -48,14 +51,17 @@ impl Shell {
                 ball: ball.map(|ball| ball.map(|part| part as f32)),
             })
         });
-        Shell { slabs: slabs.collect() }
+        Shell { slabs: slabs.collect(), margin: margin as f32 }
     }
 
     /// Returns at least the negative distance of every point of the rings.
     #[inline(always)]
     fn bound<S: Simd>(&self, simd: S, rings: &BoxRings<f32x16<S>>) -> f32x16<S> {
-        let BoxRings { near, low, high, .. } = *rings;
+        let BoxRings { mut near, low, high, planes, .. } = *rings;
         let zero = f32x16::splat(simd, 0.0);
+        if let Some(planes) = &planes {
+            near = near.max(planes.from_axis(low, high));
+        }
         let mut nearest = f32x16::splat(simd, f32::INFINITY);
         for slab in &self.slabs {
             let gap = (low - slab.high).max(f32x16::splat(simd, slab.low) - high).max(zero);
@@ -64,7 +70,11 @@ impl Shell {
             if let Some([z, radius]) = slab.ball {
                 // The ball lies around its part of the tool, so the larger of both distances is still a lower bound.
                 let along = (low - z).max(f32x16::splat(simd, z) - high).max(zero);
-                distance = distance.max((near * near + along * along).sqrt() - radius);
+                let mut beyond = (near * near + along * along).sqrt();
+                if let Some(planes) = &planes {
+                    beyond = beyond.max(planes.from_axis_point(z));
+                }
+                distance = distance.max(beyond - radius);
             }
             nearest = nearest.min(distance);
         }
@@ -81,7 +91,7 @@ impl BoxBounds for Shell {
         view: &PoseTransform,
         _threshold: f32,
     ) -> f32x16<S> {
-        self.bound(simd, &rings(simd, children, view, 0.0, None))
+        self.bound(simd, &rings(simd, children, view, self.margin, None))
     }
 }
 
