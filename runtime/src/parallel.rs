@@ -22,6 +22,19 @@ pub(crate) fn ranges<R: Send>(
     }
 }
 
+/// Applies `map` to each index below `count`, in tasks of many, and returns the results in order.
+pub(crate) fn each<R: Send>(count: usize, map: impl Fn(usize) -> R + Send + Sync) -> Vec<R> {
+    #[cfg(feature = "parallel")]
+    {
+        use rayon::prelude::*;
+        (0..count).into_par_iter().with_min_len(64).map(map).collect()
+    }
+    #[cfg(not(feature = "parallel"))]
+    {
+        (0..count).map(map).collect()
+    }
+}
+
 /// Sorts unstably; equal items must be indistinguishable.
 pub(crate) fn sort<T: Ord + Send>(list: &mut [T]) {
     #[cfg(feature = "parallel")]

@@ -1,7 +1,8 @@
 //! Diagnostics of a mesh as numbers and sentences: closed or open, orientation, shells, and irregularities.
 
-use crate::mesh::{CompensatedSum, Mesh, area_and_normal};
+use crate::mesh::{CompensatedSum, Mesh, area_and_normal, bounds};
 use crate::unit::Unit;
+use nalgebra::Point3;
 use std::fmt;
 
 /// The result of [`Mesh::diagnostics`].
@@ -285,31 +286,64 @@ fn edge_uses(mesh: &Mesh) -> impl Iterator<Item = [u32; 2]> {
         .flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]])
 }
 
-/// Returns the triangles of pieces with a negative volume: voids, or pieces that are inside out. A piece continues only
-/// across edges of exactly two triangles, so pieces that touch in a vertex or along an edge are separate.
-pub(crate) fn inverted(mesh: &Mesh) -> Vec<u32> {
-    let [low, high] = mesh.bounds();
+/// The number that stands for no triangle.
+pub(crate) const NO_TRIANGLE: u32 = u32::MAX;
+
+/// Returns the neighbours of each triangle across its sides, from its first corner on, where exactly two triangles share the
+/// edge; elsewhere [`NO_TRIANGLE`]. Triangles are given by their vertices, which are fewer than `vertices`.
+pub(crate) fn neighbours(triangles: &[[u32; 3]], vertices: usize) -> Vec<[u32; 3]> {
+    let sides = |[a, b, c]: [u32; 3]| [[a, b], [b, c], [c, a]];
+    // As in `Edges::of`, the uses of an edge meet in the bucket of its lower vertex.
+    let mut starts = vec![0usize; vertices + 1];
+    for [from, to] in triangles.iter().flat_map(|triangle| sides(*triangle)) {
+        starts[from.min(to) as usize + 1] += 1;
+    }
+    for vertex in 1..starts.len() {
+        starts[vertex] += starts[vertex - 1];
+    }
+    // The higher vertex, the triangle and its side.
+    let mut uses = vec![(0, 0, 0u8); starts[vertices]];
+    let mut next_slots = starts.clone();
+    for (index, triangle) in (0..).zip(triangles) {
+        for (side, [from, to]) in (0..).zip(sides(*triangle)) {
+            let slot = &mut next_slots[from.min(to) as usize];
+            uses[*slot] = (from.max(to), index, side);
+            *slot += 1;
+        }
+    }
+    let mut neighbours = vec![[NO_TRIANGLE; 3]; triangles.len()];
+    for bucket in starts.windows(2) {
+        let bucket = &mut uses[bucket[0]..bucket[1]];
+        bucket.sort_unstable();
+        for edge in bucket.chunk_by(|a, b| a.0 == b.0) {
+            if let [(_, first, side), (_, second, other)] = *edge {
+                neighbours[first as usize][side as usize] = second;
+                neighbours[second as usize][other as usize] = first;
+            }
+        }
+    }
+    neighbours
+}
+
+/// Returns the triangles of pieces with a negative volume: voids, or pieces that are inside out. Triangles are given by
+/// their corners and their [`neighbours`]. A piece continues only to neighbours, so pieces that touch in a vertex or along
+/// an edge of more triangles are separate.
+pub(crate) fn inverted(corners: &[[Point3<f64>; 3]], neighbours: &[[u32; 3]]) -> Vec<u32> {
+    let [low, high] = bounds(corners.iter().flatten().copied());
     let origin = nalgebra::center(&low, &high);
-    let mut parent: Vec<u32> = (0..mesh.triangles().len() as u32).collect();
-    let mut uses: Vec<([u32; 2], u32)> = (0..)
-        .zip(mesh.triangles())
-        .flat_map(|(id, [a, b, c])| {
-            [[a, b], [b, c], [c, a]].map(|[x, y]| ([*x.min(y), *x.max(y)], id))
-        })
-        .collect();
-    uses.sort_unstable();
-    for edge in uses.chunk_by(|a, b| a.0 == b.0) {
-        if let [(_, first), (_, second)] = edge {
-            let [first, second] = [first, second].map(|id| root(&mut parent, *id));
+    let mut parent: Vec<u32> = (0..corners.len() as u32).collect();
+    for (index, others) in (0..).zip(neighbours) {
+        for other in others.iter().copied().filter(|other| *other < index) {
+            let [first, second] = [index, other].map(|triangle| root(&mut parent, triangle));
             // Toward the lower number, so that a root is the lowest of its piece.
             parent[first.max(second) as usize] = first.min(second);
         }
     }
     let mut volumes = vec![0.0; parent.len()];
-    for (id, corners) in (0..).zip(mesh.corners()) {
-        if let Some((area, normal)) = area_and_normal(&corners) {
-            let component = root(&mut parent, id) as usize;
-            volumes[component] += normal.dot(&(corners[0] - origin)) * area / 3.0;
+    for (index, corners) in (0..).zip(corners) {
+        if let Some((area, normal)) = area_and_normal(corners) {
+            let piece = root(&mut parent, index) as usize;
+            volumes[piece] += normal.dot(&(corners[0] - origin)) * area / 3.0;
         }
     }
     (0..parent.len() as u32).filter(|id| volumes[root(&mut parent, *id) as usize] < 0.0).collect()
@@ -364,7 +398,6 @@ fn root(parent: &mut [u32], mut vertex: u32) -> u32 {
 mod tests {
     use super::super::shapes;
     use super::*;
-    use nalgebra::Point3;
 
     fn cube(low: f64, high: f64) -> Mesh {
         let [low, high] = [low, high].map(|c| Point3::new(c, c, c));
@@ -439,6 +472,38 @@ mod tests {
             "{text}"
         );
         assert!(text.contains("1 inward-facing shell: a void"), "{text}");
+    }
+
+    #[test]
+    fn neighbours_share_an_edge_with_no_third_triangle() {
+        let cube = cube(0.0, 1.0);
+        let mut triangles = cube.triangles().to_vec();
+        // A fin on the edge from 0 to 4, and a triangle that names a vertex twice.
+        triangles.extend([[0, 4, 7], [5, 5, 6]]);
+        let found = neighbours(&triangles, cube.vertices().len());
+        let uses = |from: u32, to: u32| {
+            let has = |[a, b, c]: &[u32; 3]| {
+                let sides = [[*a, *b], [*b, *c], [*c, *a]];
+                sides
+                    .into_iter()
+                    .filter(|[x, y]| [*x, *y] == [from, to] || [*y, *x] == [from, to])
+                    .count()
+            };
+            let users = (0..).zip(&triangles).flat_map(|(id, triangle)| vec![id; has(triangle)]);
+            users.collect::<Vec<u32>>()
+        };
+        let mut alone = 0;
+        for (id, [a, b, c]) in (0..).zip(&triangles) {
+            for (side, [from, to]) in [[*a, *b], [*b, *c], [*c, *a]].into_iter().enumerate() {
+                let expected = match uses(from, to)[..] {
+                    [first, second] => first + second - id,
+                    _ => NO_TRIANGLE,
+                };
+                alone += usize::from(expected == NO_TRIANGLE);
+                assert_eq!(found[id as usize][side], expected, "triangle {id}, side {side}");
+            }
+        }
+        assert!(alone > 3 && alone < 15, "{alone}");
     }
 
     #[test]

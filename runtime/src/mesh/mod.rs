@@ -25,7 +25,7 @@ use crate::input;
 use crate::unit::Unit;
 
 pub use diagnostics::MeshDiagnostics;
-pub(crate) use diagnostics::inverted;
+pub(crate) use diagnostics::{NO_TRIANGLE, inverted, neighbours};
 pub use location::SourceLocation;
 pub use obj::ObjError;
 pub use outlier::Outlier;

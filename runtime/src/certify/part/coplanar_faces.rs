@@ -5,8 +5,7 @@
 
 use crate::bvh::WIDTH;
 use crate::certify::space::{Point, cross, dot, minus, norm};
-use crate::id::TriangleId;
-use crate::mesh::Mesh;
+use crate::mesh::NO_TRIANGLE;
 use std::slice;
 
 /// The smallest number of triangles of a face.
@@ -96,19 +95,13 @@ fn unit(a: Point) -> Option<Point> {
 }
 
 impl CoplanarFaces {
-    /// Finds the faces of a mesh, whose triangles are in the order of `ids`. Points no farther than `flat` from a
-    /// triangle's plane count as in it.
-    pub(crate) fn new(
-        mesh: &Mesh,
-        ids: &[TriangleId],
-        corners: &[[Point; 3]],
-        flat: f64,
-    ) -> CoplanarFaces {
-        let neighbours = neighbours(mesh, ids);
-        let (mut of, mut faces) = (vec![NONE; ids.len()], Vec::new());
-        let mut used = vec![false; ids.len()];
+    /// Finds the faces of triangles, given by their corners and their [`neighbours`](crate::mesh::neighbours). Points no farther than
+    /// `flat` from a triangle's plane count as in it.
+    pub(crate) fn new(corners: &[[Point; 3]], neighbours: &[[u32; 3]], flat: f64) -> CoplanarFaces {
+        let (mut of, mut faces) = (vec![NONE; corners.len()], Vec::new());
+        let mut used = vec![false; corners.len()];
         let mut face = Vec::new();
-        for seed in 0..ids.len() {
+        for seed in 0..corners.len() {
             let [a, b, c] = corners[seed];
             let Some(normal) = unit(cross(minus(b, a), minus(c, a))).filter(|_| !used[seed]) else {
                 continue;
@@ -125,7 +118,7 @@ impl CoplanarFaces {
             // Breadth first, across edges of exactly two triangles.
             while next < face.len() {
                 for other in neighbours[face[next] as usize] {
-                    if other != NONE
+                    if other != NO_TRIANGLE
                         && !used[other as usize]
                         && plane.contains(&corners[other as usize])
                     {
@@ -163,27 +156,6 @@ impl CoplanarFaces {
     pub(crate) fn of_triangle(&self, index: u32) -> Option<u32> {
         Some(self.of[index as usize]).filter(|face| *face != NONE)
     }
-}
-
-/// Returns the neighbours of each triangle across edges that exactly two triangles share.
-fn neighbours(mesh: &Mesh, ids: &[TriangleId]) -> Vec<[u32; 3]> {
-    let mut edges: Vec<([u32; 2], u32, usize)> = Vec::with_capacity(3 * ids.len());
-    for (index, id) in (0u32..).zip(ids) {
-        let [a, b, c] = mesh.triangles()[id.index()];
-        for (side, [p, q]) in [[a, b], [b, c], [c, a]].into_iter().enumerate() {
-            edges.push(([p.min(q), p.max(q)], index, side));
-        }
-    }
-    edges.sort_unstable();
-    let mut neighbours = vec![[NONE; 3]; ids.len()];
-    for group in edges.chunk_by(|a, b| a.0 == b.0) {
-        // Where more than two triangles meet, a face may end or branch.
-        if let [(_, first, side), (_, second, other)] = group {
-            neighbours[*first as usize][*side] = *second;
-            neighbours[*second as usize][*other] = *first;
-        }
-    }
-    neighbours
 }
 
 impl Face {

@@ -10,7 +10,8 @@ use crate::bvh::{Bounds, Boxes, BuildItem, Frame, PoseTransform, WIDTH, levels, 
 use crate::certify::part::coplanar_faces::CoplanarFaces;
 use crate::certify::space::{Point, dot};
 use crate::id::TriangleId;
-use crate::mesh::{self, Mesh, inverted};
+use crate::mesh::{self, Mesh, area_and_normal, inverted, neighbours};
+use crate::parallel;
 use crate::unit::Unit;
 use nalgebra::{Point3, Vector3};
 
@@ -57,6 +58,23 @@ pub trait BoxVisitor {
 #[derive(Clone, Debug)]
 pub(crate) struct Corners(pub(crate) [[[f32; WIDTH]; 3]; 3]);
 
+impl Corners {
+    /// Stores the corners of a leaf's triangles relative to the centre of its box.
+    fn of(triangles: &[[Point; 3]], centre: Point, frame: &Frame) -> Corners {
+        let mut corners = Corners([[[f32::NAN; WIDTH]; 3]; 3]);
+        for (lane, triangle) in triangles.iter().enumerate() {
+            for (list, corner) in corners.0.iter_mut().zip(triangle) {
+                let point = frame.inside(*corner);
+                for axis in 0..3 {
+                    // Relative to the box as it is stored, so that only this difference is rounded.
+                    list[axis][lane] = (point[axis] - centre[axis]) as f32;
+                }
+            }
+        }
+        corners
+    }
+}
+
 /// Returns the distance from a plane, in the part's unit, up to which a point counts as in it. It adds to the
 /// depth of a face, so any value would be correct. With `32 u` of the part's extent (`u = ε/2`), triangles of a
 /// plane whose corners were rounded once form one face. The test itself errs by less than `10 u` of a face's
@@ -88,20 +106,11 @@ impl TriangleBvh {
             .collect();
         let levels = levels(boxes);
         let above = &levels[levels.len() - 1];
-        let leaves = corners.chunks(WIDTH).enumerate().map(|(leaf, triangles)| {
-            let mut corners = Corners([[[f32::NAN; WIDTH]; 3]; 3]);
-            let boxes = &above[leaf / WIDTH];
-            for (lane, triangle) in triangles.iter().enumerate() {
-                for (list, corner) in corners.0.iter_mut().zip(triangle) {
-                    let point = frame.inside(*corner);
-                    for axis in 0..3 {
-                        let middle = f64::from(boxes.centre[axis][leaf % WIDTH]);
-                        // Relative to the box as it is stored, so that only this difference is rounded.
-                        list[axis][lane] = (point[axis] - middle) as f32;
-                    }
-                }
-            }
-            corners
+        let leaves = parallel::each(corners.len().div_ceil(WIDTH), |leaf| {
+            let triangles = corners.chunks(WIDTH).nth(leaf).unwrap_or_default();
+            let (boxes, lane) = (&above[leaf / WIDTH], leaf % WIDTH);
+            let centre = boxes.centre.map(|list| f64::from(list[lane]));
+            Corners::of(triangles, centre, &frame)
         });
         let inside: Vec<_> =
             corners.iter().map(|triangle| triangle.map(|corner| frame.inside(corner))).collect();
@@ -110,19 +119,29 @@ impl TriangleBvh {
         let planes: Vec<Vec<Plane>> = (0..=depth)
             .map(|level| {
                 let below = WIDTH.pow(depth + 1 - level);
-                inside.chunks(below).map(Plane::of).collect()
+                parallel::each(inside.len().div_ceil(below), |node| {
+                    Plane::of(inside.chunks(below).nth(node).unwrap_or_default())
+                })
             })
             .collect();
         let plane_lanes = planes[1..].iter().map(|planes| {
             planes.chunks(WIDTH).map(|children| PlaneLanes::of(children, &frame)).collect()
         });
         let ids: Vec<TriangleId> = items.iter().map(|item| TriangleId(item.index)).collect();
-        let survey = mesh.diagnostics();
+        let triangles: Vec<_> = ids.iter().map(|id| mesh.triangles()[id.index()]).collect();
+        let (survey, (neighbours, coplanar_faces)) = parallel::both(
+            || mesh.diagnostics(),
+            || {
+                let neighbours = neighbours(&triangles, mesh.vertices().len());
+                let faces = CoplanarFaces::new(&corners, &neighbours, flat(&frame));
+                (neighbours, faces)
+            },
+        );
         let mut bvh = TriangleBvh {
-            coplanar_faces: CoplanarFaces::new(mesh, &ids, &corners, flat(&frame)),
+            coplanar_faces,
             plane_lanes: plane_lanes.collect(),
             planes,
-            leaves: leaves.collect(),
+            leaves,
             levels,
             corners,
             ids,
@@ -131,21 +150,17 @@ impl TriangleBvh {
             solid: survey.is_solid(),
         };
         // The rays that decide this need the finished tree.
-        bvh.solid = bvh.solid && bvh.voids_are_voids(mesh);
+        bvh.solid = bvh.solid && bvh.voids_are_voids(&neighbours);
         bvh
     }
 
     /// Returns whether pieces that face inward are voids in the material. Next to none of their triangles is the
     /// winding number of the surface negative, as it is inside a piece that is inside out.
-    fn voids_are_voids(&self, mesh: &Mesh) -> bool {
-        let inverted = inverted(mesh);
-        let mut places = vec![0; if inverted.is_empty() { 0 } else { self.len() }];
-        if !inverted.is_empty() {
-            self.ids.iter().enumerate().for_each(|(point, id)| places[id.index()] = point);
-        }
-        inverted.into_iter().all(|id| {
-            let has_sides = mesh.normal(TriangleId(id)).is_some();
-            !has_sides || !self.is_negative_beside(places[id as usize])
+    fn voids_are_voids(&self, neighbours: &[[u32; 3]]) -> bool {
+        let corners: Vec<_> = self.corners().collect();
+        inverted(&corners, neighbours).into_iter().all(|index| {
+            let has_sides = area_and_normal(&corners[index as usize]).is_some();
+            !has_sides || !self.is_negative_beside(index as usize)
         })
     }
 
