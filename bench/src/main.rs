@@ -35,6 +35,7 @@ enum Command {
     Compile(commands::Compile),
     Haptics(commands::Haptics),
     Programs(commands::Programs),
+    Speed(commands::Speed),
     WorkPrecision(commands::WorkPrecision),
 }
 
@@ -46,6 +47,7 @@ impl Command {
             Command::Compile(command) => command.run(),
             Command::Haptics(command) => command.run(),
             Command::Programs(command) => command.run(),
+            Command::Speed(command) => command.run(),
             Command::WorkPrecision(command) => command.run(),
         }
     }

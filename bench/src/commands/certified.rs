@@ -62,7 +62,7 @@ impl Certified {
 
 /// A scene: a mesh, a tool and poses.
 #[derive(Clone, Copy)]
-enum Scene {
+pub(crate) enum Scene {
     /// The tube, with a path of [`touchoff::scenes`].
     Along(ScenePath),
     /// The ball at this distance from the tube, mm.
@@ -87,7 +87,7 @@ impl Scene {
         Scene::Bore,
     ];
 
-    fn name(self) -> String {
+    pub(crate) fn name(self) -> String {
         match self {
             Scene::Along(path) => path.name().to_owned(),
             Scene::Apart(gap) => format!("apart {gap}"),
@@ -97,7 +97,7 @@ impl Scene {
         }
     }
 
-    fn tool(self) -> &'static dyn Tool {
+    pub(crate) fn tool(self) -> &'static dyn Tool {
         match self {
             Scene::Along(_) | Scene::Apart(_) => &Fig73Exact,
             Scene::Flat | Scene::Line | Scene::Bore => &Flat,
@@ -105,7 +105,7 @@ impl Scene {
     }
 
     /// Returns a mesh of about this many triangles.
-    fn mesh(self, triangles: usize) -> Mesh {
+    pub(crate) fn mesh(self, triangles: usize) -> Mesh {
         let root = (triangles as f64).sqrt();
         let tube = |inner: f64, height: f64| {
             // The triangles of a wall come out about as wide as high.
@@ -130,7 +130,7 @@ impl Scene {
         .expect("a shape by construction")
     }
 
-    fn pose(self, k: usize, n: usize) -> Pose {
+    pub(crate) fn pose(self, k: usize, n: usize) -> Pose {
         let u = k as f64 / n as f64;
         let [x, y] = [3.0 * (2.0 * PI * u).cos(), 3.0 * (6.0 * PI * u).sin()];
         let pose_at = |tip: Point3<f64>, axis: Vector3<f64>| {

@@ -7,12 +7,14 @@ mod imported;
 mod interpreter;
 mod programs;
 mod proofs;
+mod speed;
 mod work_precision;
 
 pub(crate) use certified::Certified;
 pub(crate) use compile::Compile;
 pub(crate) use haptics::Haptics;
 pub(crate) use programs::Programs;
+pub(crate) use speed::Speed;
 pub(crate) use work_precision::WorkPrecision;
 
 /// Parses a finite number of 0 or more.

@@ -157,13 +157,13 @@ impl<S: Simd> PlaneSlabs<f32x16<S>> {
     }
 
     fn widen(&mut self, distance: f32x16<S>) {
-        self.low = self.low - distance;
+        self.low -= distance;
         self.high += distance;
     }
 
     /// Returns at most the distance from the axis of each point of the slab between two heights.
     #[inline(always)]
-    pub(crate) fn from_axis(&self, low: f32x16<S>, high: f32x16<S>) -> f32x16<S> {
+    pub(crate) fn distance_of_axis(&self, low: f32x16<S>, high: f32x16<S>) -> f32x16<S> {
         let (a, b) = (self.normal[2] * low, self.normal[2] * high);
         let (least, greatest) = (self.low - a.max(b), self.high - a.min(b));
         least.max(-greatest) * self.per_radial
@@ -171,7 +171,7 @@ impl<S: Simd> PlaneSlabs<f32x16<S>> {
 
     /// Returns at most the distance of each point of the slab from a point of the axis.
     #[inline(always)]
-    pub(crate) fn from_axis_point(&self, z: f32) -> f32x16<S> {
+    pub(crate) fn distance_of_point(&self, z: f32) -> f32x16<S> {
         let at = self.normal[2] * z;
         (self.low - at).max(at - self.high)
     }

@@ -443,7 +443,7 @@ impl Hull<f32> {
             let low = low.max(f32x16::splat(simd, slab.low));
             let high = high.min(f32x16::splat(simd, slab.high));
             let near = match planes {
-                Some(planes) => near.max(planes.from_axis(low, high)),
+                Some(planes) => near.max(planes.distance_of_axis(low, high)),
                 None => near,
             };
             // The upright plane rules out most slabs for all rings.
@@ -475,7 +475,7 @@ impl Hull<f32> {
                 let along = centre.max(low).min(high) - centre;
                 let mut beyond = (near * near + along * along).sqrt();
                 if let Some(planes) = planes {
-                    beyond = beyond.max(planes.from_axis_point(z));
+                    beyond = beyond.max(planes.distance_of_point(z));
                 }
                 depth = depth.min(f32x16::splat(simd, radius) - beyond);
             }

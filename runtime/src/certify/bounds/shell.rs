@@ -60,7 +60,7 @@ impl Shell {
         let BoxRings { mut near, low, high, planes, .. } = *rings;
         let zero = f32x16::splat(simd, 0.0);
         if let Some(planes) = &planes {
-            near = near.max(planes.from_axis(low, high));
+            near = near.max(planes.distance_of_axis(low, high));
         }
         let mut nearest = f32x16::splat(simd, f32::INFINITY);
         for slab in &self.slabs {
@@ -72,7 +72,7 @@ impl Shell {
                 let along = (low - z).max(f32x16::splat(simd, z) - high).max(zero);
                 let mut beyond = (near * near + along * along).sqrt();
                 if let Some(planes) = &planes {
-                    beyond = beyond.max(planes.from_axis_point(z));
+                    beyond = beyond.max(planes.distance_of_point(z));
                 }
                 distance = distance.max(beyond - radius);
             }
