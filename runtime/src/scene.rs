@@ -1,7 +1,7 @@
 //! A scene of several parts, fixtures and tools in one world.
 //!
 //! If neither member of a pair has moved since its last query, the stored answer is returned. A pair
-//! that is far apart is rejected after some thirty operations.
+//! that is far apart is rejected by the distance of the tool's tip from the part's middle.
 
 use crate::debug::debug;
 use crate::part::Part;
@@ -9,6 +9,8 @@ use crate::pose::Pose;
 use crate::probe::{DeepestPoint, Law, Probe, Weights, Wrench};
 use crate::tool::Tool;
 use crate::unit::Unit;
+use nalgebra::Point3;
+use std::f64::consts::SQRT_2;
 
 /// Parts and tools in one world frame.
 ///
@@ -73,6 +75,10 @@ struct SceneTool<'a> {
 /// A tool and a part, with the last wrench.
 struct Pair<'a> {
     probe: Probe<'a>,
+    /// The middle of the part, in its frame.
+    middle: Point3<f64>,
+    /// The distance of the tool's tip from there beyond which the tool cannot reach the part.
+    reach: f64,
     /// The pose of the last query and its wrench, in the part's frame.
     last_query: Option<(Pose, Wrench)>,
 }
@@ -137,7 +143,9 @@ impl<'a> Scene<'a> {
         let scene_tool = &mut self.tools[tool.0];
         let pairs = scene_tool.pairs.iter_mut().zip(&self.parts).enumerate();
         let mut touched = pairs.filter_map(|(index, (pair, (_, part_pose)))| {
-            pair.probe.detect(&scene_tool.pose.relative_to(part_pose)).then_some(PartId(index))
+            let is_touched = pair.reaches(&scene_tool.pose, part_pose)
+                && pair.probe.detect(&scene_tool.pose.relative_to(part_pose));
+            is_touched.then_some(PartId(index))
         });
         touched.next()
     }
@@ -180,10 +188,31 @@ impl<'a> Scene<'a> {
 
 impl<'a> Pair<'a> {
     fn new(part: &'a Part, tool: &'a dyn Tool, law: Law, weights: Weights) -> Pair<'a> {
-        Pair { probe: Probe::new(part, tool).with_law(law).with_weights(weights), last_query: None }
+        let (frame, info) = (&part.tree().frame, tool.info());
+        // No point of a tool is farther from its tip than √2 of its size; half the diagonal of a cube is √3/2 of its side.
+        let size = SQRT_2 * info.size() * info.unit.factor_to(part.unit());
+        let radius = 0.5 * 3f64.sqrt() * f64::from(frame.size) * frame.scale;
+        Pair {
+            probe: Probe::new(part, tool).with_law(law).with_weights(weights),
+            middle: frame.origin,
+            // Larger than by the rounding of the stored boxes.
+            reach: (1.0 + 1e-6) * (size + radius),
+            last_query: None,
+        }
+    }
+
+    /// Returns whether the tool may reach the part. That is told without the relative pose, which costs more.
+    fn reaches(&self, pose: &Pose, part_pose: &Pose) -> bool {
+        let middle = part_pose.tip() + part_pose.rotation() * self.middle.coords;
+        // The difference errs by a few units of roundoff of the coordinates.
+        let error = 16.0 * f64::EPSILON * (pose.tip().coords.amax() + middle.coords.amax());
+        (pose.tip() - middle).norm() <= self.reach + error
     }
 
     fn wrench(&mut self, pose: &Pose, part_pose: &Pose) -> Wrench {
+        if !self.reaches(pose, part_pose) {
+            return self.probe.zero_wrench();
+        }
         let relative = pose.relative_to(part_pose);
         match &self.last_query {
             // Both may have moved: what counts is their relative pose, in whose frame the answer is kept.

@@ -248,7 +248,7 @@ impl<'a, T: BatchEvaluator + ?Sized> Probe<'a, T> {
     }
 
     /// Returns the wrench without contact.
-    fn zero_wrench(&self) -> Wrench {
+    pub(crate) fn zero_wrench(&self) -> Wrench {
         Wrench::nothing(self.state.law, self.state.weights)
     }
 
