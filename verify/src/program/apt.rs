@@ -23,9 +23,15 @@ use touchoff::{Pose, Unit};
 /// The axis of a tool along +Z.
 const UPRIGHT: [f64; 3] = [0.0, 0.0, 1.0];
 
+/// The comment with which CATIA writes the machining axis.
+const CATIA_AXIS: &str = "$$*CATIA0";
+
+/// The comment with which Creo writes its coordinate system. As a statement, it is continued by a trailing `$`.
+const CREO_SYSTEM: &str = "$$-> CSYS";
+
 /// Reads an APT-CL program.
 pub(super) fn read(text: &str) -> Result<Tapes, Located> {
-    check_frames(text)?;
+    check_catia_axes(text)?;
     let (statements, unfinished_line) = statements(text);
     let mut reader = Reader::default();
     let mut end = 0;
@@ -46,24 +52,18 @@ pub(super) fn read(text: &str) -> Result<Tapes, Located> {
     }
 }
 
-/// Refuses a second frame among the comments: CATIA writes the machining axis after `$$*CATIA0` (a name, then three rows), Creo
-/// its coordinate system after `$$-> CSYS`.
-fn check_frames(text: &str) -> Result<(), Located> {
-    let mut first: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+/// Refuses a second machining axis of CATIA, which stands among the comments: `$$*CATIA0`, then a name and three rows.
+fn check_catia_axes(text: &str) -> Result<(), Located> {
+    let mut first: Option<Vec<&str>> = None;
     let mut lines = lines(text).peekable();
     while let Some((line, comment)) = lines.next() {
-        let (word, skipped) = if comment.starts_with("$$*CATIA0") {
-            ("$$*CATIA0", 1)
-        } else if comment.starts_with("$$-> CSYS") {
-            ("$$-> CSYS", 0)
-        } else {
+        if !comment.starts_with(CATIA_AXIS) {
             continue;
-        };
-        let mut frame = if skipped == 0 { vec![comment] } else { Vec::new() };
-        let mut rest = std::iter::from_fn(|| lines.next_if(|(_, next)| next.starts_with("$$")));
-        frame.extend(rest.by_ref().skip(skipped).take(3).map(|(_, row)| row));
-        if first.entry(word).or_insert_with(|| frame.clone()) != &frame {
-            return Err((line, ProgramFault::Frame { word: word.to_owned() }));
+        }
+        let rest = std::iter::from_fn(|| lines.next_if(|(_, next)| next.starts_with("$$")));
+        let rows: Vec<&str> = rest.skip(1).take(3).map(|(_, row)| row).collect();
+        if first.get_or_insert_with(|| rows.clone()) != &rows {
+            return Err((line, ProgramFault::Frame { word: CATIA_AXIS.to_owned() }));
         }
     }
     Ok(())
@@ -80,7 +80,10 @@ fn statements(text: &str) -> (Vec<(usize, String)>, Option<usize>) {
             continue;
         }
         // A comment is no continuation, though it begins with the same sign.
-        let code = raw.split_once("$$").map_or(raw, |(code, _)| code.trim_end());
+        let code = match raw.split_once("$$") {
+            Some((code, _)) if !raw.starts_with(CREO_SYSTEM) => code.trim_end(),
+            _ => raw,
+        };
         if code.is_empty() {
             continue;
         }
@@ -116,6 +119,8 @@ struct Reader {
     tool: BTreeMap<String, (usize, Vec<String>)>,
     /// Statements about the tool since the last position.
     pending: Vec<ToolStatement>,
+    /// Creo's coordinate system, as [`Reader::coordinate_system`] writes it.
+    system: Option<Vec<String>>,
     /// The first statement that a program of one tool and one operation cannot have.
     several: Option<Located>,
     path_ended: bool,
@@ -152,6 +157,9 @@ impl Reader {
         rest: &str,
         is_last: bool,
     ) -> Result<(), ProgramFault> {
+        if word == CREO_SYSTEM {
+            return self.coordinate_system(rest);
+        }
         let ended = self.finished || self.path_ended && !matches!(word, "FINI" | "TOOL PATH");
         if ended && !is_prose(text) {
             return Err(ProgramFault::AfterEnd {
@@ -246,6 +254,22 @@ impl Reader {
             }
         }
         Ok(())
+    }
+
+    /// Reads a coordinate system of Creo, in which the positions after it are given. Another one than the first is refused.
+    fn coordinate_system(&mut self, rest: &str) -> Result<(), ProgramFault> {
+        // A motion stands here if the last line of the system was lost.
+        refuse_motions(CREO_SYSTEM, rest)?;
+        // Equal numbers may be written with different digits, and 0 with a sign.
+        let cells = rest.split(',').map(|cell| match number(cell) {
+            Ok(value) => (value + 0.0).to_string(),
+            Err(_) => cell.trim().to_owned(),
+        });
+        let system: Vec<String> = cells.collect();
+        match *self.system.get_or_insert_with(|| system.clone()) == system {
+            true => Ok(()),
+            false => Err(ProgramFault::Frame { word: CREO_SYSTEM.to_owned() }),
+        }
     }
 
     fn units(&mut self, line: usize, word: &str) -> Result<(), ProgramFault> {
