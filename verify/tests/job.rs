@@ -162,7 +162,7 @@ fn job_files_are_read_with_their_paths_beside_them() {
     let of = |text: &str| Program::parse(text, "a.nc", machine(), &setup).expect("a program");
     let used = job.used_tools(&of("G21 T3 M6\nG0 X1.\nX2.\nM30\n")).expect("its tool");
     assert_eq!(used[0].motions, ToolSelection::Number(Some(3)));
-    assert_eq!(used[0].named.params, ["D=6"]);
+    assert_eq!(used[0].params, ["D=6"]);
     let missing = job.used_tools(&of("G21 T4 M6\nG0 X1.\nX2.\nM30\n")).err();
     assert!(matches!(missing, Some(JobError::NoTool { number: Some(4) })), "{missing:?}");
 

@@ -17,9 +17,7 @@ mod program;
 mod report;
 mod stock;
 
-pub use file::{
-    FixtureEntry, JobFile, JobTools, NamedTool, ParamValue, StockEntry, ToolEntry, UsedTool,
-};
+pub use file::{FixtureEntry, JobFile, JobTools, NamedTool, StockEntry, ToolEntry};
 pub use machine::{MachineFinding, MachineFindingKind, SpindleFault};
 pub use program::{DEFAULT_MACHINE, Program, read_control, read_machine};
 pub use report::{
