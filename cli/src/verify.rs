@@ -17,8 +17,8 @@ use touchoff::certify::TriangleBvh;
 use touchoff::{Mesh, Unit};
 use touchoff_dsl::Compiled;
 use touchoff_verify::job::{
-    Body, CutStock, Hand, JobStock, JobTools, NO_INSIDE, NamedTool, Severity, StockEntry,
-    StockShape,
+    Body, BodyRole, CutStock, Hand, JobStock, JobTools, NO_INSIDE, NamedTool, PART, Severity,
+    StockEntry, StockShape,
 };
 use touchoff_verify::machine::Machine;
 use touchoff_verify::{Job, JobFile, JobReport, JobTool, Program, ToolSelection, Verdict};
@@ -32,15 +32,15 @@ pub(crate) struct LoadedBody {
     pub(crate) mesh: Mesh,
     pub(crate) bvh: TriangleBvh,
     link: Option<usize>,
-    margin: Option<f64>,
+    role: BodyRole,
 }
 
 impl LoadedBody {
     /// Reads a body that moves with the workpiece.
-    fn read(name: &str, file: &Path, unit: Unit) -> Result<LoadedBody, Failure> {
+    fn read(name: &str, file: &Path, unit: Unit, role: BodyRole) -> Result<LoadedBody, Failure> {
         let mesh = part::mesh(file, unit, "verify")?;
         let bvh = TriangleBvh::new(&mesh);
-        Ok(LoadedBody { name: name.to_owned(), mesh, bvh, link: None, margin: None })
+        Ok(LoadedBody { name: name.to_owned(), mesh, bvh, link: None, role })
     }
 
     /// Returns whether it moves with another axis than the workpiece. The tool's poses at it are then in its own frame.
@@ -106,7 +106,7 @@ impl Inputs {
         let mut job = Job::new(&self.program, &self.bodies[0].bvh);
         for body in &self.bodies[1..] {
             let mut fixture = Body::fixture(&body.name, &body.bvh);
-            (fixture.link, fixture.margin) = (body.link, body.margin);
+            (fixture.link, fixture.role) = (body.link, body.role);
             job.bodies.push(fixture);
         }
         for ProgramTool { named, loaded } in &self.tools {
@@ -193,14 +193,15 @@ pub(crate) fn job_file(
 
 /// Reads the part and the fixtures.
 fn bodies(file: &JobFile, program: &Program) -> Result<Vec<LoadedBody>, Failure> {
-    let mut bodies = vec![LoadedBody::read(touchoff_verify::job::PART, &file.part, file.unit)?];
+    let mut bodies = vec![LoadedBody::read(PART, &file.part, file.unit, BodyRole::Part)?];
     for fixture in &file.fixtures {
         let link = match &fixture.moves_with {
             None => None,
             Some(axis) => program.link(axis)?,
         };
-        let body = LoadedBody::read(&fixture.name, &fixture.mesh, file.unit)?;
-        bodies.push(LoadedBody { link, margin: Some(fixture.margin), ..body });
+        let role = BodyRole::Fixture { margin: fixture.margin };
+        let body = LoadedBody::read(&fixture.name, &fixture.mesh, file.unit, role)?;
+        bodies.push(LoadedBody { link, ..body });
     }
     Ok(bodies)
 }
