@@ -4,7 +4,7 @@ use crate::bench::{Bench, rows, stderr, stdout, touchoff};
 use std::process::Output;
 
 fn haptic(bench: &Bench, more: &[&str]) -> Output {
-    let part = bench.folder.path().join("block.stl").display().to_string();
+    let part = bench.place("block.stl");
     let mut all = vec!["haptic", "--part", &part, "--unit", "mm", "--tool", "D2Ball"];
     all.extend(["--points", "5000", "--duration", "0.5"]);
     all.extend(more);
@@ -14,8 +14,8 @@ fn haptic(bench: &Bench, more: &[&str]) -> Output {
 #[test]
 fn a_program_is_played_and_recorded() {
     let bench = Bench::new();
-    let path = bench.folder.path().join("path.csv").display().to_string();
-    let table = bench.folder.path().join("record.csv").display().to_string();
+    let path = bench.place("path.csv");
+    let table = bench.place("record.csv");
     let output =
         haptic(&bench, &["--device", "playback", "--program", &path, "--record", &table, "--json"]);
     let said = &rows(&output)[0];
@@ -55,12 +55,11 @@ fn a_full_disk_is_reported_at_once() {
     use std::io::{BufRead, BufReader};
     use std::process::{Command, Stdio};
     let bench = Bench::new();
-    let place = |name: &str| bench.folder.path().join(name).display().to_string();
     let table = bench.write("record.csv", "old");
     let script = "trap '' XFSZ; ulimit -f 40; exec \"$@\"";
     let mut child = Command::new("sh")
         .args(["-c", script, "sh", env!("CARGO_BIN_EXE_touchoff")])
-        .args(["haptic", "--part", &place("block.stl"), "--unit", "mm", "--tool", "D2Ball"])
+        .args(["haptic", "--part", &bench.place("block.stl"), "--unit", "mm", "--tool", "D2Ball"])
         .args(["--points", "2000", "--duration", "3", "--record", &table])
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
@@ -96,7 +95,7 @@ fn missing_cores_are_refused_with_a_list_of_others() {
 #[test]
 fn invalid_devices_are_refused() {
     let bench = Bench::new();
-    let nowhere = bench.folder.path().join("no/record.csv").display().to_string();
+    let nowhere = bench.place("no/record.csv");
     for (more, status, words) in [
         (&["--device", "glove"][..], 2, "[possible values: hand, playback, spacenav]"),
         (&["--device", "playback"], 2, "--program <FILE>"),
@@ -120,11 +119,18 @@ fn an_interrupted_session_keeps_its_recording() {
     use std::io::{BufRead, BufReader};
     use std::process::{Command, Stdio};
     let bench = Bench::new();
-    let place = |name: &str| bench.folder.path().join(name).display().to_string();
-    let table = place("record.csv");
+    let table = bench.place("record.csv");
     for signal in ["INT", "TERM"] {
         let mut child = Command::new(env!("CARGO_BIN_EXE_touchoff"))
-            .args(["haptic", "--part", &place("block.stl"), "--unit", "mm", "--tool", "D2Ball"])
+            .args([
+                "haptic",
+                "--part",
+                &bench.place("block.stl"),
+                "--unit",
+                "mm",
+                "--tool",
+                "D2Ball",
+            ])
             .args(["--points", "2000", "--duration", "600", "--record", &table])
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())

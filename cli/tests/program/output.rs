@@ -36,20 +36,19 @@ fn closed() -> io::PipeWriter {
 
 /// Returns commands that write to standard output, and their exit statuses.
 fn commands(bench: &Bench) -> Vec<(Vec<String>, i32)> {
-    let place = |name: &str| bench.folder.path().join(name).display().to_string();
     bench.write("gouges.apt", GOUGES);
     bench.write("clear.apt", CLEAR);
     bench.write("good.tool", GOOD);
     bench.write("loose.tool", GOOD.replace("    ", " "));
     bench.write("warned.tool", GOOD.replace("profile", "param unused = 3; profile"));
     bench.write("bad.tool", "tool Bad { units mm; region r where d < 1 { depth: 1 - d; } }");
-    let block = place("block.stl");
+    let block = bench.place("block.stl");
     let words = |words: &str| -> Vec<String> {
         words
             .split(' ')
             .map(|word| match word {
                 "PART" => block.clone(),
-                word if word.contains('.') && word.parse::<f64>().is_err() => place(word),
+                word if word.contains('.') && word.parse::<f64>().is_err() => bench.place(word),
                 word => word.to_owned(),
             })
             .collect()
@@ -85,9 +84,8 @@ fn the_status_does_not_depend_on_the_reader() {
         assert_eq!(code, Some(status), "{words:?}: {said}");
         assert!(!said.contains("panicked") && !said.contains("could not be written"), "{said}");
     }
-    let place = |name: &str| bench.folder.path().join(name).display().to_string();
     let verify = |program: &str| {
-        let (block, program) = (place("block.stl"), place(program));
+        let (block, program) = (bench.place("block.stl"), bench.place(program));
         let words = ["verify", "--part", &block, "--unit", "mm", "--tool", "D2Ball", "--program"];
         into(closed(), &[&words[..], &[&program]].concat()).0
     };
@@ -138,8 +136,7 @@ fn content(folder: &Path) -> Vec<(String, Vec<u8>)> {
 
 /// Sweeps the block into the map `block.postures`, and returns its path.
 fn swept(bench: &Bench) -> String {
-    let place = |name: &str| bench.folder.path().join(name).display().to_string();
-    let (part, map) = (place("block.stl"), place("block.postures"));
+    let (part, map) = (bench.place("block.stl"), bench.place("block.postures"));
     let words = ["sweep", "--part", &part, "--unit", "mm", "--tool", "D2Ball"];
     let more = ["--directions", "30", "--tolerance", "0.05", "--output", &map];
     let output = touchoff(&[&words[..], &more].concat());
@@ -151,8 +148,7 @@ fn swept(bench: &Bench) -> String {
 #[test]
 fn a_full_disk_leaves_old_files_and_no_others() {
     let bench = Bench::new();
-    let place = |name: &str| bench.folder.path().join(name).display().to_string();
-    let (part, map) = (place("block.stl"), swept(&bench));
+    let (part, map) = (bench.place("block.stl"), swept(&bench));
     let tool = bench.write("good.tool", GOOD);
     let loose = GOOD.replace("    ", " ") + &"// a comment\n".repeat(400);
     let loose = bench.write("loose.tool", loose);
@@ -163,41 +159,24 @@ fn a_full_disk_leaves_old_files_and_no_others() {
     let before = || content(bench.folder.path());
     let kept = before();
     let [csv, json, ply, png, svg, saved, apt] =
-        ["o.csv", "o.json", "o.ply", "o.png", "o.svg", "o.touchoff", "o.apt"].map(place);
-    let path = |to: &str| -> Vec<String> {
-        ["path", &map, "--part", &part, "--tool", "D2Ball", "--stepover", "0.3", "-o", to]
-            .map(str::to_owned)
-            .into()
-    };
-    let words = |words: &[&str]| -> Vec<String> { words.iter().map(|w| (*w).to_owned()).collect() };
+        ["o.csv", "o.json", "o.ply", "o.png", "o.svg", "o.touchoff", "o.apt"]
+            .map(|name| bench.place(name));
+    let path = |to: &str| format!("path {map} --part {part} --tool D2Ball --stepover 0.3 -o {to}");
     let commands = [
-        words(&["map", &map, "-o", &csv]),
-        words(&["map", &map, "-o", &json]),
-        words(&["map", &map, "--part", &part, "-o", &ply]),
-        words(&["map", &map, "--part", &part, "-o", &png]),
+        format!("map {map} -o {csv}"),
+        format!("map {map} -o {json}"),
+        format!("map {map} --part {part} -o {ply}"),
+        format!("map {map} --part {part} -o {png}"),
         path(&apt),
         path(&csv),
-        words(&["draw", &tool, "-o", &svg]),
-        words(&["draw", &tool, "-o", &png]),
-        words(&["sample", "--part", &part, "--unit", "mm", "-o", &saved]),
-        words(&["fmt", &loose]),
-        words(&[
-            "haptic",
-            "--part",
-            &part,
-            "--unit",
-            "mm",
-            "--tool",
-            "D2Ball",
-            "--duration",
-            "0.2",
-            "--record",
-            &csv,
-        ]),
+        format!("draw {tool} -o {svg}"),
+        format!("draw {tool} -o {png}"),
+        format!("sample --part {part} --unit mm -o {saved}"),
+        format!("fmt {loose}"),
+        format!("haptic --part {part} --unit mm --tool D2Ball --duration 0.2 --record {csv}"),
     ];
     for command in &commands {
-        let command: Vec<&str> = command.iter().map(String::as_str).collect();
-        let output = with_room(0, &command);
+        let output = with_room(0, &command.split(' ').collect::<Vec<_>>());
         let said = stderr(&output);
         assert_eq!(output.status.code(), Some(1), "{command:?}: {said}");
         assert!(said.contains("File too large") && said.contains("error: "), "{command:?}: {said}");
@@ -217,13 +196,12 @@ fn a_full_disk_leaves_old_files_and_no_others() {
 #[test]
 fn an_output_that_is_an_input_is_refused() {
     let bench = Bench::new();
-    let place = |name: &str| bench.folder.path().join(name).display().to_string();
     let map = swept(&bench);
-    let (part, path) = (place("block.stl"), place("path.csv"));
+    let (part, path) = (bench.place("block.stl"), bench.place("path.csv"));
     let tool = bench.write("good.tool", GOOD);
     let drawn = bench.write("tool.svg", GOOD);
     let [to_map, to_part, to_tool, to_saved] =
-        ["y.csv", "part.csv", "tool.csv", "s.touchoff"].map(place);
+        ["y.csv", "part.csv", "tool.csv", "s.touchoff"].map(|name| bench.place(name));
     fs::hard_link(&map, &to_map).expect("a link");
     fs::hard_link(&part, &to_part).expect("a link");
     fs::hard_link(&tool, &to_tool).expect("a link");
@@ -259,8 +237,7 @@ fn an_output_that_is_an_input_is_refused() {
 #[test]
 fn a_program_that_is_cut_short_is_refused() {
     let bench = Bench::new();
-    let place = |name: &str| bench.folder.path().join(name).display().to_string();
-    let (map, part, to) = (swept(&bench), place("block.stl"), place("led.csv"));
+    let (map, part, to) = (swept(&bench), bench.place("block.stl"), bench.place("led.csv"));
     let words = ["path", &map, "--part", &part, "--tool", "D2Ball", "--stepover", "1", "-o", &to];
     assert!(touchoff(&words).status.success());
     let run = |name: &str| bench.run("block.stl", name, "D2Ball", &[]);
@@ -304,8 +281,7 @@ fn control_characters_of_names_are_escaped() {
 #[test]
 fn negative_numbers_are_read_and_judged() {
     let bench = Bench::new();
-    let place = |name: &str| bench.folder.path().join(name).display().to_string();
-    let (part, apt) = (place("block.stl"), bench.write("clear.apt", CLEAR));
+    let (part, apt) = (bench.place("block.stl"), bench.write("clear.apt", CLEAR));
     let refused = |words: &[&str], more: &[&str]| {
         for (option, remedy) in more.iter().zip(more.iter().skip(1)).step_by(2) {
             for value in ["-0.01", "-5", "-.5", "-1e-3"] {

@@ -82,13 +82,13 @@ fn mounted_files_are_found_and_shown() {
 #[test]
 fn sweeps_and_paths_take_values() {
     let bench = Bench::new();
-    let place = |name: &str| bench.folder.path().join(name).display().to_string();
     let cutter = bench.write(
         "ball.tool",
         "tool Own { units mm; param D = 9; let r = D/2; profile { start (0, 0); arc to (r, r) center (0, r) as \
          ball cutting; line to (r, 40), (0, 40) as shank; } niceness cutting: 1; }",
     );
-    let (part, map, program) = (place("block.stl"), place("own.postures"), place("own.csv"));
+    let (part, map, program) =
+        (bench.place("block.stl"), bench.place("own.postures"), bench.place("own.csv"));
     let sweep = ["sweep", "--part", &part, "--unit", "mm", "--tool", &cutter, "--set", "D=2"];
     let more = ["--directions", "20", "--tolerance", "0.05", "-o", &map];
     let output = touchoff(&[&sweep[..], &more].concat());

@@ -104,9 +104,8 @@ fn points_without_triangles_have_an_estimated_error() {
 #[test]
 fn saved_parts_have_the_same_contacts() {
     let bench = Bench::new();
-    let file = |name: &str| bench.folder.path().join(name).display().to_string();
     let sample = |out: &str, more: &[&str]| {
-        let (part, out) = (file("block.stl"), file(out));
+        let (part, out) = (bench.place("block.stl"), bench.place(out));
         let given = ["sample", "--part", &part, "--unit", "mm", "-o", &out];
         touchoff(&[&given[..], more].concat())
     };
@@ -125,13 +124,13 @@ fn saved_parts_have_the_same_contacts() {
     assert!(stderr(&refused).contains("block.touchoff` instead of"), "{}", stderr(&refused));
     let nowhere = sample("no/such/folder/block.touchoff", &[]);
     assert_eq!(nowhere.status.code(), Some(1), "{}", stderr(&nowhere));
-    let mut bytes = std::fs::read(file("block.touchoff")).expect("saved");
+    let mut bytes = std::fs::read(bench.place("block.touchoff")).expect("saved");
     bytes[5_000] ^= 1;
     bench.write("flipped.touchoff", &bytes);
     bench.refused("flipped.touchoff", "path.csv", "D2Ball", &["flipped.touchoff"]);
     bench.write("short.touchoff", &bytes[..4_000]);
     bench.refused("short.touchoff", "path.csv", "D2Ball", &["short.touchoff"]);
-    let stl = std::fs::read(file("block.stl")).expect("the block");
+    let stl = std::fs::read(bench.place("block.stl")).expect("the block");
     bench.write("foreign.touchoff", stl);
     bench.refused("foreign.touchoff", "path.csv", "D2Ball", &["foreign.touchoff"]);
     let certified = run(&bench, "block.touchoff", &["--certify", "1e-6"]);

@@ -22,7 +22,7 @@ struct Page {
 impl Page {
     /// Writes a report into the folder of a bench.
     fn write(bench: &Bench, arguments: &[&str]) -> Page {
-        let file = bench.folder.path().join("report.html").display().to_string();
+        let file = bench.place("report.html");
         let output = touchoff(&[&["report"], arguments, &["-o", &file]].concat());
         let text = std::fs::read_to_string(&file);
         let text = text.unwrap_or_else(|error| panic!("{error}: {}", stderr(&output)));
@@ -208,8 +208,7 @@ fn a_job_has_tools_fixtures_and_stock() {
 #[test]
 fn files_have_their_digests() {
     let bench = Bench::new();
-    let place = |name: &str| bench.folder.path().join(name).display().to_string();
-    let (part, program) = (place("block.stl"), place("path.csv"));
+    let (part, program) = (bench.place("block.stl"), bench.place("path.csv"));
     let options = ["--unit", "mm", "--tool", "D2Ball", "--program", &program, "--tolerance", "0.6"];
     let page = Page::write(&bench, &[&[&*part], &options[..]].concat());
     assert_eq!(page.output.status.code(), Some(0), "{}", stderr(&page.output));
@@ -256,23 +255,13 @@ fn text_of_files_is_not_markup() {
 #[test]
 fn a_map_adds_its_quantities() {
     let bench = Bench::new();
-    let place = |name: &str| bench.folder.path().join(name).display().to_string();
-    let (part, map, program) = (place("block.stl"), place("block.postures"), place("path.csv"));
+    let (part, map, program) =
+        (bench.place("block.stl"), bench.place("block.postures"), bench.place("path.csv"));
     let swept = ["--tool", "BallEr16", "--directions", "20", "-o", &map];
     let swept = touchoff(&[&["sweep", "--part", &part, "--unit", "mm"], &swept[..]].concat());
     assert!(swept.status.success(), "{}", stderr(&swept));
-    let options = [
-        "--unit",
-        "mm",
-        "--tool",
-        "D2Ball",
-        "--program",
-        &program,
-        "--tolerance",
-        "0.6",
-        "--map",
-        &map,
-    ];
+    let tool = ["--unit", "mm", "--tool", "D2Ball", "--tolerance", "0.6"];
+    let options = [&tool[..], &["--program", &program, "--map", &map]].concat();
     let page = Page::write(&bench, &[&[&*part], &options[..]].concat());
     let scene = page.data("scene");
     let layers = scene["layers"].as_array().expect("a list").iter();
@@ -288,18 +277,17 @@ fn a_map_adds_its_quantities() {
     // A map of another part is refused.
     let other = shapes::sphere(4.0, 2, Unit::Millimetre).expect("a sphere");
     bench.part("other.stl", &other);
-    let other = place("other.stl");
+    let other = bench.place("other.stl");
     let refused =
-        touchoff(&[&["report", &other], &options[..], &["-o", &place("no.html")]].concat());
+        touchoff(&[&["report", &other], &options[..], &["-o", &bench.place("no.html")]].concat());
     assert_eq!(refused.status.code(), Some(2), "{}", stderr(&refused));
-    assert!(!Path::new(&place("no.html")).exists());
+    assert!(!Path::new(&bench.place("no.html")).exists());
 }
 
 #[test]
 fn inputs_are_never_overwritten() {
     let bench = Bench::new();
-    let place = |name: &str| bench.folder.path().join(name).display().to_string();
-    let part = std::fs::read(place("block.stl")).expect("a part");
+    let part = std::fs::read(bench.place("block.stl")).expect("a part");
     let part = bench.write("part.html", part);
     let program = bench.write("program.html", "0,0,1,0,0,1\n0,0,-0.5,0,0,1\n");
     for output in [&part, &program] {
@@ -328,11 +316,10 @@ fn inputs_are_never_overwritten() {
 #[test]
 fn an_implausible_program_is_not_verified() {
     let bench = Bench::new();
-    let place = |name: &str| bench.folder.path().join(name).display().to_string();
     let far = bench.write("far.csv", "900,0,1,0,0,1\n900,0,-0.5,0,0,1\n");
     let page = Page::write(
         &bench,
-        &[&place("block.stl"), "--unit", "mm", "--tool", "D2Ball", "--program", &far],
+        &[&bench.place("block.stl"), "--unit", "mm", "--tool", "D2Ball", "--program", &far],
     );
     assert_eq!(page.output.status.code(), Some(2), "{}", stderr(&page.output));
     assert!(page.text.contains("<strong>Not verified</strong>"), "the verdict");
@@ -352,7 +339,7 @@ fn a_large_part_makes_a_bounded_file() {
             let sphere: Mesh = shapes::sphere(20.0, 6, Unit::Millimetre).expect("a sphere");
             bench.part("sphere.stl", &sphere);
             let program = bench.write("path.csv", "0,0,22,0,0,1\n0,0,19.8,0,0,1\n9,0,19.8,0,0,1\n");
-            (bench.folder.path().join("sphere.stl").display().to_string(), program)
+            (bench.place("sphere.stl"), program)
         }
     };
     let options =

@@ -31,13 +31,9 @@ impl Pocket {
         let mesh = Mesh::new(vertices.collect(), triangles, Unit::Millimetre).expect("a mesh");
         let mut stl = Vec::new();
         mesh.write_stl(&mut stl).expect("memory");
-        let part = bench.folder.path().join("pocket.stl").display().to_string();
+        let part = bench.place("pocket.stl");
         std::fs::write(&part, stl).expect("a writable folder");
         Pocket { bench, part }
-    }
-
-    fn place(&self, name: &str) -> String {
-        self.bench.folder.path().join(name).display().to_string()
     }
 
     fn sweep(&self, map: &str, more: &[&str]) -> Output {
@@ -48,7 +44,7 @@ impl Pocket {
 
     /// Writes a map in another format, and returns the bytes.
     fn export(&self, map: &str, name: &str, more: &[&str]) -> Vec<u8> {
-        let file = self.place(name);
+        let file = self.bench.place(name);
         let all = ["map", map, "--part", &self.part, "-o", &file];
         let done = touchoff(&[&all[..], more].concat());
         assert!(done.status.success(), "{}", stderr(&done));
@@ -59,7 +55,7 @@ impl Pocket {
 #[test]
 fn pieces_show_what_a_tool_does_not_reach() {
     let pocket = Pocket::new();
-    let map = pocket.place("refined.postures");
+    let map = pocket.bench.place("refined.postures");
     let told = object(&pocket.sweep(&map, &["--refine"]));
     let refinement = &told["refinement"];
     assert_eq!((&refinement["finest"], &told["triangles_reached"]), (&0.25.into(), &28.into()));
@@ -106,7 +102,7 @@ fn pieces_show_what_a_tool_does_not_reach() {
     let faces = format!("element face {}\n", pieces + 28 - divided);
     assert!(String::from_utf8_lossy(&ply[..400]).contains(&faces), "{faces}");
 
-    let program = pocket.place("pocket.apt");
+    let program = pocket.bench.place("pocket.apt");
     let path = ["path", &map, "--part", &pocket.part, "--tool", "D2Ball", "--stepover", "3"];
     let led = object(&touchoff(&[&path[..], &["-o", &program, "--json"]].concat()));
     assert!(led["contact_points"].as_u64() > Some(40), "{led}");
@@ -132,7 +128,8 @@ fn pixels(bytes: &[u8]) -> [usize; 2] {
 #[test]
 fn a_picture_has_the_colours_of_pieces() {
     let pocket = Pocket::new();
-    let [plain, refined] = ["plain.postures", "refined.postures"].map(|name| pocket.place(name));
+    let [plain, refined] =
+        ["plain.postures", "refined.postures"].map(|name| pocket.bench.place(name));
     assert!(pocket.sweep(&plain, &[]).status.success());
     assert!(pocket.sweep(&refined, &["--refine", "0.5"]).status.success());
     let picture =
@@ -145,7 +142,7 @@ fn a_picture_has_the_colours_of_pieces() {
     let by_tool = ["--color-by", "stick-out", "--tool", "BallEr16"];
     let [_, one] = pixels(&pocket.export(&refined, "m.png", &by_tool));
     assert!(one > 1000);
-    let file = pocket.place("m.png");
+    let file = pocket.bench.place("m.png");
     let map = ["map", &refined, "--part", &pocket.part, "-o", &file, "--tool"];
     refused(
         &touchoff(&[&map[..], &["Flat", "--color-by", "stick-out"]].concat()),
@@ -161,7 +158,7 @@ fn a_picture_has_the_colours_of_pieces() {
 fn a_refinement_continues_where_it_ended() {
     let pocket = Pocket::new();
     let [whole, later, killed] =
-        ["a.postures", "b.postures", "c.postures"].map(|name| pocket.place(name));
+        ["a.postures", "b.postures", "c.postures"].map(|name| pocket.bench.place(name));
     let refine = ["--refine", "0.5"];
     let told = object(&pocket.sweep(&whole, &refine));
     assert!(pocket.sweep(&later, &[]).status.success());

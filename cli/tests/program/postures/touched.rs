@@ -9,8 +9,7 @@ use touchoff_postures::PostureMap;
 #[test]
 fn touched_postures_are_proved_before_they_are_recorded() {
     let bench = Bench::new();
-    let [part, map] = ["block.stl", "block.postures"]
-        .map(|name| bench.folder.path().join(name).display().to_string());
+    let [part, map] = ["block.stl", "block.postures"].map(|name| bench.place(name));
     // The block of the bench.
     let (low, high) = (Point3::new(-3.0, -3.0, -2.0), Point3::new(3.0, 3.0, 0.0));
     let mesh = shapes::cuboid(low, high, Unit::Millimetre).expect("a block");
