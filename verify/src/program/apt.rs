@@ -5,7 +5,8 @@
 //! (for the next `GOTO`), `MULTAX`, `UNITS`, `LOADTL`, `CUTTER`, and `FINI` or NX's `END-OF-PATH`.
 //! One of the last two has to end the program, so that a truncated file is never taken for a whole one. `$$`
 //! opens a comment, a trailing `$` continues the statement, `;` separates two statements, and case does not
-//! matter.
+//! matter. Two comments state the frame of the positions, which may be repeated and not changed: CATIA's machining axis and
+//! Creo's coordinate system.
 //!
 //! Statements about the tool hold for the positions that follow them: `LOADTL` between two positions changes the tool,
 //! and the cutters stated before or after it, up to the next position, are those of the new one. In NX's files,
@@ -26,7 +27,7 @@ const UPRIGHT: [f64; 3] = [0.0, 0.0, 1.0];
 /// The comment with which CATIA writes the machining axis.
 const CATIA_AXIS: &str = "$$*CATIA0";
 
-/// The comment with which Creo writes its coordinate system. As a statement, it is continued by a trailing `$`.
+/// The comment with which Creo begins its coordinate system. Rows of numbers may follow.
 const CREO_SYSTEM: &str = "$$-> CSYS";
 
 /// Reads an APT-CL program.
@@ -74,16 +75,24 @@ fn check_catia_axes(text: &str) -> Result<(), Located> {
 fn statements(text: &str) -> (Vec<(usize, String)>, Option<usize>) {
     let mut statements = Vec::new();
     let mut open: Option<(usize, String)> = None;
-    for (line, raw) in lines(text) {
+    let mut lines = lines(text).peekable();
+    while let Some((line, raw)) = lines.next() {
+        if raw.starts_with(CREO_SYSTEM) {
+            // Its rows may be comments or not, and end in `$` or not.
+            let mut system = raw.trim_end_matches('$').to_owned();
+            while let Some(row) = lines.peek().and_then(|(_, row)| numbers_of(row)) {
+                system = format!("{system}, {row}");
+                lines.next();
+            }
+            statements.push((line, system));
+            continue;
+        }
         if open.is_none() && is_prose(raw) {
             statements.push((line, raw.to_owned()));
             continue;
         }
         // A comment is no continuation, though it begins with the same sign.
-        let code = match raw.split_once("$$") {
-            Some((code, _)) if !raw.starts_with(CREO_SYSTEM) => code.trim_end(),
-            _ => raw,
-        };
+        let code = raw.split_once("$$").map_or(raw, |(code, _)| code.trim_end());
         if code.is_empty() {
             continue;
         }
@@ -99,6 +108,13 @@ fn statements(text: &str) -> (Vec<(usize, String)>, Option<usize>) {
         }
     }
     (statements, open.map(|(start, _)| start))
+}
+
+/// Returns a row of numbers, without the signs of a comment and of a continuation; `None` for any other line.
+fn numbers_of(row: &str) -> Option<&str> {
+    let numbers = row.trim_start_matches("$$").trim_start_matches("->").trim_end_matches('$');
+    let mut cells = parts(numbers).peekable();
+    (cells.peek().is_some() && cells.all(|cell| number(cell).is_ok())).then_some(numbers)
 }
 
 /// State of the reader after some statements.
@@ -258,12 +274,10 @@ impl Reader {
 
     /// Reads a coordinate system of Creo, in which the positions after it are given. Another one than the first is refused.
     fn coordinate_system(&mut self, rest: &str) -> Result<(), ProgramFault> {
-        // A motion stands here if the last line of the system was lost.
-        refuse_motions(CREO_SYSTEM, rest)?;
         // Equal numbers may be written with different digits, and 0 with a sign.
-        let cells = rest.split(',').map(|cell| match number(cell) {
+        let cells = parts(rest).map(|cell| match number(cell) {
             Ok(value) => (value + 0.0).to_string(),
-            Err(_) => cell.trim().to_owned(),
+            Err(_) => cell.to_owned(),
         });
         let system: Vec<String> = cells.collect();
         match *self.system.get_or_insert_with(|| system.clone()) == system {
