@@ -46,18 +46,8 @@ fn a_small_sampling_error_is_certified() {
     let bound = number(&found[1]["depth_bound"]);
     assert!((0.5..=0.5 + 2e-6).contains(&bound), "{bound}");
     assert!(number(&found[1]["certified_depth"][1]) <= bound + 1e-12);
-    let block = bench.folder.path().join("block.stl");
-    let output = touchoff(&[
-        "sample",
-        "--part",
-        block.to_str().expect("a path"),
-        "--unit",
-        "mm",
-        "--sampling-error",
-        "1e-6",
-        "-o",
-        "fine.touchoff",
-    ]);
+    let output =
+        bench.touchoff("sample --part block.stl --unit mm --sampling-error 1e-6 -o fine.touchoff");
     let said = stderr(&output);
     assert_eq!(output.status.code(), Some(1));
     assert!(said.contains("more than 20000000") && said.contains("certify"), "{said}");

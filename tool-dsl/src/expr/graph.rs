@@ -33,8 +33,8 @@ pub(crate) type EvaluationOrders = Box<[Box<[Id]>]>;
 /// second, and stays where it is.
 ///
 /// Every rule is an identity of real numbers, so it keeps values exactly. Only arithmetic between constants rounds, to 256 bits. The
-/// rules that drop an operand (`e - e`, `e / e`, `0 · e`, `0 / e`) may define an expression at more points. Recursion ends, since every
-/// rule takes its operands from inside those of the expression, or removes a `Neg`.
+/// rules that drop an operand (`e - e`, `e / e`, `0 · e`, `0 / e`) may define an expression at more points. Recursion ends: apart from
+/// a swap of the operands, every rule computes with constants, removes a `Neg`, or takes an operand apart.
 #[derive(Clone, Debug, Default)]
 pub struct Graph {
     nodes: Vec<Node>,

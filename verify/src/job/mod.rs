@@ -285,7 +285,7 @@ impl<'a> Job<'a> {
         let mut verifier = Verifier::new(body.bvh, tool.tool)?;
         match body.role {
             BodyRole::Fixture { margin } => {
-                // 0 is the allowance of every surface without another.
+                // Surfaces without another allowance have 0.
                 if checked_margin(margin)? > 0.0 {
                     for surface in info.surfaces.iter() {
                         verifier = verifier.with_allowance(&surface.name, -margin)?;

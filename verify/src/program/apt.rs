@@ -78,7 +78,7 @@ fn statements(text: &str) -> (Vec<(usize, String)>, Option<usize>) {
     let mut lines = lines(text).peekable();
     while let Some((line, raw)) = lines.next() {
         if raw.starts_with(CREO_SYSTEM) {
-            // Its rows may be comments or not, and end in `$` or not.
+            // Rows may be comments or not, and end in `$` or not.
             let mut system = raw.trim_end_matches('$').to_owned();
             while let Some(row) = lines.peek().and_then(|(_, row)| numbers_of(row)) {
                 system = format!("{system}, {row}");

@@ -41,10 +41,9 @@ fn a_sweep_fills_a_map_that_becomes_a_program_without_findings() {
 
     let to: Vec<String> =
         ["m.csv", "m.json", "m.ply", "m.png"].iter().map(|name| tube.bench.place(name)).collect();
-    let shown = touchoff(&[
-        "map", &tube.map, "--part", &tube.part, "-o", &to[0], "-o", &to[1], "-o", &to[2], "-o",
-        &to[3],
-    ]);
+    let shown = tube
+        .bench
+        .touchoff("map tube.postures --part tube.stl -o m.csv -o m.json -o m.ply -o m.png");
     assert!(stdout(&shown).contains("384 of 384 triangles have a posture"), "{}", stderr(&shown));
     let csv = std::fs::read_to_string(&to[0]).expect("a table");
     assert!(csv.lines().count() > 384, "{csv}");

@@ -77,7 +77,7 @@ fn another_frame_among_the_comments_is_refused() {
         )
     };
     let creo = |x: &str| format!("$$-> CSYS / 1, 0, 0, {x}\n");
-    // The rows of Creo's are no comments. The offset may be in any of them.
+    // Rows of Creo are no comments in its own files. Every row counts.
     let continued = |x: &str| {
         format!(
             "$$-> CSYS / 1.0, 0.0, 0.0, {x},  $\n  0.0, 1.0, 0.0, 0.0,  $\n  0.0, 0.0, 1.0, 0.0\n"
