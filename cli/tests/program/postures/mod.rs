@@ -22,10 +22,8 @@ impl Tube {
     fn new() -> Tube {
         let bench = Bench::new();
         let tube = shapes::tube(6.0, 9.0, 12.0, 24, 3, Unit::Millimetre).expect("a tube");
-        let mut stl = Vec::new();
-        tube.write_stl(&mut stl).expect("memory");
+        bench.part("tube.stl", &tube);
         let (part, map) = (bench.place("tube.stl"), bench.place("tube.postures"));
-        std::fs::write(&part, stl).expect("a writable folder");
         Tube { bench, part, map }
     }
 
