@@ -60,11 +60,16 @@ impl Bench {
         bench
     }
 
-    /// Runs the program in this folder, with the words of a line.
-    pub(super) fn touchoff(&self, line: &str) -> Output {
+    /// Returns the command that runs the program in this folder, with the words of a line.
+    pub(super) fn command(&self, line: &str) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_touchoff"));
         command.args(line.split(' ')).current_dir(&self.folder);
-        command.output().expect("the program runs")
+        command
+    }
+
+    /// Runs the program in this folder, with the words of a line.
+    pub(super) fn touchoff(&self, line: &str) -> Output {
+        self.command(line).output().expect("the program runs")
     }
 
     /// Returns the path of a file in this folder.
