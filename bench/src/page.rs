@@ -70,10 +70,13 @@ fn head_line(command: &str, covers: &[&str]) -> String {
     let cpus = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let model = cpus.lines().find_map(|line| line.strip_prefix("model name")?.split_once(": "));
     let model = model.map_or("an unknown processor", |(_, model)| model);
-    let cores = std::thread::available_parallelism().map_or(0, usize::from);
+    let cores = match std::thread::available_parallelism().map_or(1, usize::from) {
+        1 => "1 core".to_owned(),
+        several => format!("{several} cores"),
+    };
     let covers = covers.iter().map(|path| format!("`{path}`")).collect::<Vec<_>>().join(", ");
     format!(
-        "*Made at commit {} by `{command}` on {cores} cores of {model}; covers {covers}.*",
+        "*Made at commit {} by `{command}` on {cores} of {model}; covers {covers}.*",
         commit.trim()
     )
 }

@@ -67,6 +67,37 @@ impl Row<'_> {
     }
 }
 
+impl Row<'_> {
+    /// Returns whether a point or a triangle is inside the tool, or the tool inside the material.
+    fn is_in_contact(&self) -> bool {
+        let is_proved = |c: &Certified<'_>| c.triangle.is_some() || c.inside == Some(true);
+        self.contacts > 0 || self.certified.as_ref().is_some_and(is_proved)
+    }
+
+    /// Prints the row for people.
+    fn print(&self, out: &mut impl Write, unit: Unit) -> std::io::Result<()> {
+        let Row { line, contacts, .. } = self;
+        let depth = unit.format_number(self.depth);
+        let proved = self.certified.as_ref().map(|c| format!("{}; ", c.format(unit)));
+        let surfaces = self.surface_depths.iter();
+        let each = surfaces.map(|(name, depth)| format!("{name} {}", unit.format_number(*depth)));
+        let (proved, each) = (proved.unwrap_or_default(), each.collect::<Vec<_>>().join(", "));
+        writeln!(out, "{line:>8} {contacts:>7} {depth:>12}  {proved}{each}")
+    }
+}
+
+/// Returns the lower of the upper bounds on the depth of the whole surface, since both hold: the depth of the points plus the
+/// sampling error, and the proved depth.
+fn depth_bound(
+    evaluation: &Wrench,
+    sampling_error: Option<f64>,
+    certified: Option<&Certified<'_>>,
+) -> Option<f64> {
+    let sampled = sampling_error.map(|sampling_error| evaluation.depth() + sampling_error);
+    let proved = certified.map(|certified| certified.certified_depth[1]);
+    [sampled, proved].into_iter().flatten().reduce(f64::min)
+}
+
 /// Proved results at a pose.
 #[derive(Serialize)]
 struct Certified<'a> {
@@ -162,32 +193,19 @@ pub(crate) fn run(arguments: &Run, json: bool) -> Result<(), Failure> {
             summary.certify(location.line, &penetration, inside, ns);
             Certified::new(&penetration, inside, tool.info())
         });
+        let row = Row {
+            location: index,
+            line: location.line,
+            depth_bound: depth_bound(&evaluation, sampling_error, certified.as_ref()),
+            query_time_ns: ns,
+            surface_depths: surfaces,
+            certified,
+            ..Row::of(&evaluation, unit)
+        };
         if json {
-            let sampled = sampling_error.map(|sampling_error| evaluation.depth() + sampling_error);
-            let proved = certified.as_ref().map(|certified| certified.certified_depth[1]);
-            let row = Row {
-                location: index,
-                line: location.line,
-                // Both hold, so the lower one does.
-                depth_bound: [sampled, proved].into_iter().flatten().reduce(f64::min),
-                query_time_ns: ns,
-                surface_depths: surfaces,
-                certified,
-                ..Row::of(&evaluation, unit)
-            };
             out.json(&row)?;
-        } else if evaluation.colliding > 0
-            || certified.as_ref().is_some_and(|c| c.triangle.is_some() || c.inside == Some(true))
-        {
-            let proved = certified.map(|c| format!("{}; ", c.format(unit)));
-            let each: Vec<String> = surfaces
-                .iter()
-                .map(|(name, depth)| format!("{name} {}", unit.format_number(*depth)))
-                .collect();
-            let depth = unit.format_number(evaluation.depth());
-            let (line, points) = (location.line, evaluation.colliding);
-            let (proved, each) = (proved.unwrap_or_default(), each.join(", "));
-            writeln!(out, "{line:>8} {points:>7} {depth:>12}  {proved}{each}")?;
+        } else if row.is_in_contact() {
+            row.print(&mut out, unit)?;
         }
     }
     out.flush()?;
@@ -317,16 +335,8 @@ impl Summary {
                 deepest.line
             );
         }
-        let timing = Timing::of(&mut self.times);
-        message!(
-            "query time: mean {:.2} µs, median {:.2}, p99 {:.2}, max {:.2}",
-            timing.mean / 1e3,
-            timing.p50 as f64 / 1e3,
-            timing.p99 as f64 / 1e3,
-            timing.max as f64 / 1e3,
-        );
+        message!("query time: {}", Timing::of(&mut self.times));
         if let Some(mut proved) = self.proved {
-            let timing = Timing::of(&mut proved.times);
             if proved.inside > 0 {
                 message!(
                     "proved: wholly inside the material at {} of {} poses, first at line {}",
@@ -337,17 +347,13 @@ impl Summary {
             }
             let Interval { low, high } = proved.depth;
             message!(
-                "proved: {} of {} poses in contact, deepest {} to {} at line {}; time: mean {:.2} µs, \
-                 median {:.2}, p99 {:.2}, max {:.2}",
+                "proved: {} of {} poses in contact, deepest {} to {} at line {}; time: {}",
                 proved.in_contact,
                 self.poses,
                 unit.format_number(low),
                 unit.format(high),
                 proved.deepest_line,
-                timing.mean / 1e3,
-                timing.p50 as f64 / 1e3,
-                timing.p99 as f64 / 1e3,
-                timing.max as f64 / 1e3,
+                Timing::of(&mut proved.times),
             );
         }
     }

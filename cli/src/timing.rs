@@ -1,10 +1,9 @@
 //! Statistics of times.
 
-use serde::Serialize;
+use std::fmt;
 use std::time::Duration;
 
 /// Mean, median, 99th percentile and maximum, in nanoseconds.
-#[derive(Serialize)]
 pub(crate) struct Timing {
     pub(crate) mean: f64,
     pub(crate) p50: u64,
@@ -23,6 +22,14 @@ impl Timing {
             .map(|fraction| all[((all.len() - 1) as f64 * fraction).round() as usize]);
         let sum: u64 = all.iter().sum();
         Timing { mean: sum as f64 / all.len() as f64, p50, p99, max }
+    }
+}
+
+impl fmt::Display for Timing {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [p50, p99, max] = [self.p50, self.p99, self.max].map(|ns| ns as f64 / 1e3);
+        let mean = self.mean / 1e3;
+        write!(f, "mean {mean:.2} µs, median {p50:.2}, p99 {p99:.2}, max {max:.2}")
     }
 }
 

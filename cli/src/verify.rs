@@ -17,11 +17,11 @@ use touchoff::certify::TriangleBvh;
 use touchoff::{Mesh, Unit};
 use touchoff_dsl::Compiled;
 use touchoff_verify::job::{
-    Body, CutStock, JobStock, JobTools, NO_INSIDE, NamedTool, Severity, StockEntry, StockShape,
-    UsedTool,
+    Body, BodyRole, CutStock, Hand, JobStock, JobTools, NO_INSIDE, NamedTool, PART, Severity,
+    StockEntry, StockShape,
 };
 use touchoff_verify::machine::Machine;
-use touchoff_verify::{Job, JobFile, JobReport, JobTool, Program, Verdict};
+use touchoff_verify::{Job, JobFile, JobReport, JobTool, Program, ToolSelection, Verdict};
 
 /// The exit status if there is no verdict, even with findings; the same as for wrong options.
 pub(crate) const NOT_CHECKED: u8 = 2;
@@ -32,15 +32,15 @@ pub(crate) struct LoadedBody {
     pub(crate) mesh: Mesh,
     pub(crate) bvh: TriangleBvh,
     link: Option<usize>,
-    margin: Option<f64>,
+    role: BodyRole,
 }
 
 impl LoadedBody {
     /// Reads a body that moves with the workpiece.
-    fn read(name: &str, file: &Path, unit: Unit) -> Result<LoadedBody, Failure> {
+    fn read(name: &str, file: &Path, unit: Unit, role: BodyRole) -> Result<LoadedBody, Failure> {
         let mesh = part::mesh(file, unit, "verify")?;
         let bvh = TriangleBvh::new(&mesh);
-        Ok(LoadedBody { name: name.to_owned(), mesh, bvh, link: None, margin: None })
+        Ok(LoadedBody { name: name.to_owned(), mesh, bvh, link: None, role })
     }
 
     /// Returns whether it moves with another axis than the workpiece. The tool's poses at it are then in its own frame.
@@ -51,7 +51,7 @@ impl LoadedBody {
 
 /// A tool that the program uses, loaded.
 pub(crate) struct ProgramTool {
-    used: UsedTool,
+    named: NamedTool,
     loaded: LoadedTool,
 }
 
@@ -61,7 +61,7 @@ impl ProgramTool {
     /// # Errors
     /// If its file cannot be read any more.
     pub(crate) fn compile(&self) -> Result<Compiled, Failure> {
-        compile_named(&self.used.named.name, &arguments(&self.used.named))
+        compile_named(&self.named.name, &arguments(&self.named))
     }
 }
 
@@ -83,13 +83,13 @@ impl Inputs {
     pub(crate) fn read(file: JobFile) -> Result<Inputs, Failure> {
         let program = file.program()?;
         let mut tools = Vec::new();
-        for used in file.used_tools(&program)? {
-            let loaded = LoadedTool::load(&used.named.name, &arguments(&used.named))?;
-            tools.push(ProgramTool { used, loaded });
+        for named in file.used_tools(&program)? {
+            let loaded = LoadedTool::load(&named.name, &arguments(&named))?;
+            tools.push(ProgramTool { named, loaded });
         }
-        for ProgramTool { used, loaded } in &tools {
+        for ProgramTool { named, loaded } in &tools {
             let info = loaded.tool().info();
-            if let Some(line) = program.check_tool(used.motions, info, file.unit)? {
+            if let Some(line) = program.check_tool(named.motions, info, file.unit)? {
                 warn_of_cutter(&program.name(), line, info);
             }
         }
@@ -106,13 +106,13 @@ impl Inputs {
         let mut job = Job::new(&self.program, &self.bodies[0].bvh);
         for body in &self.bodies[1..] {
             let mut fixture = Body::fixture(&body.name, &body.bvh);
-            (fixture.link, fixture.margin) = (body.link, body.margin);
+            (fixture.link, fixture.role) = (body.link, body.role);
             job.bodies.push(fixture);
         }
-        for ProgramTool { used, loaded } in &self.tools {
+        for ProgramTool { named, loaded } in &self.tools {
             let mut tool = JobTool::of_all(loaded.tool());
-            (tool.motions, tool.hand) = (used.motions, used.hand);
-            tool.allow.clone_from(&used.allow);
+            (tool.motions, tool.hand) = (named.motions, named.hand);
+            tool.allow.clone_from(&named.allow);
             job.tools.push(tool);
         }
         job.stock.clone_from(&self.stock);
@@ -161,7 +161,8 @@ pub(crate) fn job_file(
     let tools = match (options.tool, library) {
         (Some(name), library) => {
             let (params, root) = params.into_parts();
-            JobTools::One(NamedTool { name, library, params, root })
+            let (motions, hand, allow) = (ToolSelection::All, Hand::Right, Vec::new());
+            JobTools::One(NamedTool { motions, name, library, params, root, hand, allow })
         }
         (None, Some(library)) if params.is_empty() => {
             JobTools::Numbered { library: Some(library), entries: BTreeMap::new() }
@@ -192,14 +193,15 @@ pub(crate) fn job_file(
 
 /// Reads the part and the fixtures.
 fn bodies(file: &JobFile, program: &Program) -> Result<Vec<LoadedBody>, Failure> {
-    let mut bodies = vec![LoadedBody::read(touchoff_verify::job::PART, &file.part, file.unit)?];
+    let mut bodies = vec![LoadedBody::read(PART, &file.part, file.unit, BodyRole::Part)?];
     for fixture in &file.fixtures {
         let link = match &fixture.moves_with {
             None => None,
             Some(axis) => program.link(axis)?,
         };
-        let body = LoadedBody::read(&fixture.name, &fixture.mesh, file.unit)?;
-        bodies.push(LoadedBody { link, margin: Some(fixture.margin), ..body });
+        let role = BodyRole::Fixture { margin: fixture.margin };
+        let body = LoadedBody::read(&fixture.name, &fixture.mesh, file.unit, role)?;
+        bodies.push(LoadedBody { link, ..body });
     }
     Ok(bodies)
 }

@@ -227,7 +227,9 @@ fn cutter(stated: &str, of: &Parameters<'_>, notes: &mut Vec<Note>) -> Result<Cu
             let crest = of.length_or("Crest", "width of the crest", 0.0, notes)?;
             let key =
                 if of.0.contains_key("CuttingAngle") { "CuttingAngle" } else { "cuttingAngle" };
-            let angle = of.angle_or(key, "angle of the thread", 60.0, notes)?;
+            let angle = of.optional_angle(key)?;
+            let angle =
+                angle.unwrap_or_else(|| Note::default_taken(notes, "angle of the thread", 60.0));
             (Shape::Tooth { neck_diameter, crest, angle }, diameter / 2.0)
         }
         _ => return Err(format!("the shape `{stated}` is none of FreeCAD's own")),
@@ -291,18 +293,6 @@ impl Parameters<'_> {
             "rad" => Some(180.0 / std::f64::consts::PI),
             _ => None,
         })
-    }
-
-    /// Returns an angle in degrees, or a default with a note.
-    fn angle_or(
-        &self,
-        key: &str,
-        name: &'static str,
-        default: f64,
-        notes: &mut Vec<Note>,
-    ) -> Result<f64, String> {
-        let angle = self.optional_angle(key)?;
-        Ok(angle.unwrap_or_else(|| Note::default_taken(notes, name, default)))
     }
 
     fn quantity(

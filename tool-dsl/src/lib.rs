@@ -1,12 +1,7 @@
 //! The compiler of `.tool` files, an ordinary library.
 //!
-//! ```text
-//! text ──syntax──▶ AST ──resolve──▶ model ──bound, lint, plan──▶ planned tool ──prove──▶ checked tool
-//!                                                                                            │
-//!                                         Rust tokens ◀──emit────────────────────────────────┼─interpret──▶ values
-//! ```
-//!
-//! A [`CheckedTool`] contains no errors: [`emit::emit`] and [`interpret::Interpreter`] cannot fail.
+//! [`compile()`] runs the passes, whose order and guarantees [`model`] states. A [`CheckedTool`] contains no errors, so [`emit::emit`] and
+//! [`interpret::Interpreter`] cannot fail.
 
 #![deny(missing_docs, missing_debug_implementations, unnameable_types)]
 

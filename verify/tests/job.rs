@@ -8,7 +8,7 @@ use touchoff::certify::TriangleBvh;
 use touchoff::mesh::shapes;
 use touchoff::{Tool, Unit};
 use touchoff_verify::gcode::{ControlRules, ControlSetup};
-use touchoff_verify::job::{Body, FindingDetail, JobStock, StockShape};
+use touchoff_verify::job::{Body, BodyRole, FindingDetail, JobStock, StockShape};
 use touchoff_verify::machine::Machine;
 use touchoff_verify::{
     FindingGroup, Job, JobError, JobFile, JobTool, Program, ToolSelection, Verdict, Verifier,
@@ -81,7 +81,7 @@ fn one_pass_gives_what_each_check_gives_by_itself() {
         job.tools.extend([JobTool::numbered(1, &Mill), JobTool::numbered(2, &Ball)]);
         job.tolerance = 0.5;
         let mut fixture = Body::fixture("the clamp", &clamp);
-        fixture.margin = Some(0.25);
+        fixture.role = BodyRole::Fixture { margin: 0.25 };
         job.bodies.push(fixture);
         let corners = [[-22.0, -22.0, -10.0], [22.0, 22.0, 2.0]].map(Point3::from);
         job.stock =
@@ -162,7 +162,7 @@ fn job_files_are_read_with_their_paths_beside_them() {
     let of = |text: &str| Program::parse(text, "a.nc", machine(), &setup).expect("a program");
     let used = job.used_tools(&of("G21 T3 M6\nG0 X1.\nX2.\nM30\n")).expect("its tool");
     assert_eq!(used[0].motions, ToolSelection::Number(Some(3)));
-    assert_eq!(used[0].named.params, ["D=6"]);
+    assert_eq!(used[0].params, ["D=6"]);
     let missing = job.used_tools(&of("G21 T4 M6\nG0 X1.\nX2.\nM30\n")).err();
     assert!(matches!(missing, Some(JobError::NoTool { number: Some(4) })), "{missing:?}");
 
@@ -191,7 +191,7 @@ fn a_margin_that_is_no_length_is_refused() {
         let mut job = Job::new(&program, &part);
         job.tools.push(JobTool::numbered(1, &Mill));
         let mut clamp = Body::fixture("the clamp", &part);
-        clamp.margin = Some(margin);
+        clamp.role = BodyRole::Fixture { margin };
         job.bodies.push(clamp);
         assert!(matches!(job.check(&|_| ()), Err(JobError::Mismatch(_))), "{margin}");
     }

@@ -90,6 +90,28 @@ impl<'a> Format<'a> {
     }
 }
 
+impl Format<'_> {
+    /// Writes a program, and returns it as it is read again, with its text.
+    ///
+    /// G-code has no text yet: [`Post::program`] writes it, where each motion of the machine is proved again.
+    fn write(
+        &self,
+        program: ClData,
+        header: &AptHeader<'_>,
+        output: &Path,
+    ) -> Result<(ClData, Vec<u8>), Failure> {
+        let mut text = Vec::new();
+        match self {
+            Format::Gcode(..) => return Ok((program, text)),
+            Format::Apt => program.write_apt(&mut text, header)?,
+            Format::Table => {
+                program.write_csv(&mut text).map_err(|source| unwritable(output, source))?;
+            }
+        }
+        Ok((ClData::parse(&text, &output.display().to_string())?, text))
+    }
+}
+
 impl Summary {
     /// Summarises a path, with the cutter locations of its program.
     fn new(path: &ToolPath, locations: &[Location], unit: Unit) -> Summary {
@@ -141,7 +163,6 @@ pub(crate) fn path(arguments: &Arguments, json: bool) -> Result<(), Failure> {
     )?;
     let map = PostureMap::read(&arguments.map)?;
     let unit = map.identity().part.unit;
-    let is_apt = matches!(format, Format::Apt);
     let post = match format {
         Format::Apt => apt_unit(unit).map(|_| None)?,
         Format::Table => None,
@@ -193,17 +214,7 @@ pub(crate) fn path(arguments: &Arguments, json: bool) -> Result<(), Failure> {
     };
     let (locations, text) = prover.settle(mem::take(&mut path.locations), |locations| {
         let program = ClData::new(&name, Some(unit), locations.iter().copied())?;
-        let mut text = Vec::new();
-        // Its text follows below, where each motion of the machine is proved again.
-        if post.is_some() {
-            return Ok((program, text));
-        }
-        if is_apt {
-            program.write_apt(&mut text, &header)?;
-        } else {
-            program.write_csv(&mut text).map_err(|source| unwritable(&arguments.output, source))?;
-        }
-        Ok((ClData::parse(&text, &name)?, text))
+        format.write(program, &header, &arguments.output)
     })?;
     let (text, locations) = match &post {
         Some(post) => {

@@ -36,6 +36,7 @@ const ANGLE_DECIMALS: usize = 6;
 const UPRIGHT: f64 = 1e-6;
 
 /// Words of a program besides its motions.
+#[derive(Clone, Copy)]
 pub(super) struct Words {
     pub(super) tool_number: u32,
     /// Feed per minute, in the part's unit.

@@ -67,6 +67,20 @@ struct PostureCounts {
     acceptable: u64,
 }
 
+impl PostureCounts {
+    fn of(stats: &SweepStats) -> PostureCounts {
+        PostureCounts {
+            total: stats.postures(),
+            not_facing: stats.not_facing,
+            below_niceness: stats.below_niceness,
+            cached_obstruction: stats.cached_obstruction,
+            obstructed: stats.obstructed,
+            undecided: stats.undecided,
+            acceptable: stats.acceptable,
+        }
+    }
+}
+
 #[derive(Serialize)]
 struct ToolSummary {
     name: String,
@@ -154,19 +168,58 @@ impl<'a> Count<'a> {
     }
 }
 
-/// The sweep whose triangles are divided, and the map of their pieces.
-struct Pieces<'a> {
+/// A sweep and the map of its rows.
+struct SweepRun<'a> {
     sweep: &'a PostureSweep<'a>,
     map: Option<&'a PostureMap>,
     json: bool,
 }
 
-impl Pieces<'_> {
+impl SweepRun<'_> {
+    /// Judges the triangles of some batches, and counts them with those that are in the map already.
+    ///
+    /// # Errors
+    /// If the map cannot be read or written.
+    fn judge_triangles(
+        &self,
+        batches: &[usize],
+        count: &mut Count<'_>,
+    ) -> Result<SweepStats, Failure> {
+        let mut stats = SweepStats::default();
+        let progress = Progress::steps(batches.len(), "batches", self.json);
+        let stopped = self.sweep.run(batches, |batch: Batch| {
+            stats += batch.stats;
+            progress.advance(1);
+            // With a map the rows are read from it at the end, together with those of earlier sweeps.
+            match self.map {
+                Some(map) => {
+                    if let Err(error) = map.record(&batch.rows) {
+                        return ControlFlow::Break(error);
+                    }
+                }
+                None => batch.rows.iter().for_each(|(id, row)| count.add(*id, row)),
+            }
+            ControlFlow::Continue(())
+        });
+        // Cleared before anything is printed.
+        drop(progress);
+        if let ControlFlow::Break(error) = stopped {
+            return Err(error.into());
+        }
+        if let Some(map) = self.map {
+            for entry in map.rows()? {
+                let (triangle, row) = entry?;
+                count.add(triangle, &row);
+            }
+        }
+        Ok(stats)
+    }
+
     /// Judges pieces until the refiner, which has the rows of all triangles, asks for no more.
     ///
     /// # Errors
     /// If there are too many pieces, or the map cannot be read or written.
-    fn judge(
+    fn judge_pieces(
         &self,
         refiner: &mut Refiner<'_>,
         count: &mut Count<'_>,
@@ -279,38 +332,12 @@ pub(crate) fn sweep(arguments: &Sweep, json: bool) -> Result<(), Failure> {
     let refiner = refinement.map(|how| Refiner::new(&mesh, tools.len(), how)).transpose()?;
     let mut count = Count::new(&mesh, &tools, refiner);
     let open = open_batches(&sweep, map.as_ref())?;
-    let progress = Progress::steps(open.len(), "batches", json);
     let start = Instant::now();
-    let mut stats = SweepStats::default();
-    let stopped = sweep.run(&open, |batch: Batch| {
-        stats += batch.stats;
-        progress.advance(1);
-        // With a map the rows are read from it at the end, together with those of earlier sweeps.
-        match &map {
-            Some(map) => {
-                if let Err(error) = map.record(&batch.rows) {
-                    return ControlFlow::Break(error);
-                }
-            }
-            None => batch.rows.iter().for_each(|(id, row)| count.add(*id, row)),
-        }
-        ControlFlow::Continue(())
-    });
-    // Cleared before anything is printed.
-    drop(progress);
-    if let ControlFlow::Break(error) = stopped {
-        return Err(error.into());
-    }
-    if let Some(map) = &map {
-        for entry in map.rows()? {
-            let (triangle, row) = entry?;
-            count.add(triangle, &row);
-        }
-    }
+    let run = SweepRun { sweep: &sweep, map: map.as_ref(), json };
+    let mut stats = run.judge_triangles(&open, &mut count)?;
     let refinement = match count.refiner.take().zip(refinement) {
         Some((mut refiner, Refinement { finest, .. })) => {
-            let pieces = Pieces { sweep: &sweep, map: map.as_ref(), json };
-            stats += pieces.judge(&mut refiner, &mut count)?;
+            stats += run.judge_pieces(&mut refiner, &mut count)?;
             Some(count.refine(&refiner, finest))
         }
         None => None,
@@ -330,15 +357,7 @@ pub(crate) fn sweep(arguments: &Sweep, json: bool) -> Result<(), Failure> {
         earlier_batches: sweep.batches() - open.len(),
         batches: sweep.batches(),
         time_s,
-        postures: PostureCounts {
-            total: stats.postures(),
-            not_facing: stats.not_facing,
-            below_niceness: stats.below_niceness,
-            cached_obstruction: stats.cached_obstruction,
-            obstructed: stats.obstructed,
-            undecided: stats.undecided,
-            acceptable: stats.acceptable,
-        },
+        postures: PostureCounts::of(&stats),
     };
     let mut out = Output::lines();
     if json {

@@ -1,5 +1,6 @@
 //! The test bench: runs the program, reads its words and rows, and provides a folder.
 
+use nalgebra::Point3;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -28,6 +29,24 @@ pub(super) fn objects(output: &Output) -> Vec<Value> {
     stdout(output).lines().map(|line| serde_json::from_str(line).expect("a JSON object")).collect()
 }
 
+/// A tool of one param, as a user writes it.
+pub(super) const TOOL: &str = "tool My {
+    units mm;
+    param D = 4;
+    profile {
+        start (0, 0);
+        arc to (D/2, D/2) center (0, D/2) as ball cutting;
+        line to (D/2, 20), (0, 20) as shank;
+    }
+    niceness cutting: 1;
+}
+";
+
+/// Returns a box as a mesh in mm.
+pub(super) fn cuboid(low: [f64; 3], high: [f64; 3]) -> Mesh {
+    shapes::cuboid(Point3::from(low), Point3::from(high), Unit::Millimetre).expect("a cuboid")
+}
+
 /// A folder with a block of 6 × 6 × 2 below z = 0, and a path into it.
 pub(super) struct Bench {
     pub(super) folder: tempfile::TempDir,
@@ -36,11 +55,26 @@ pub(super) struct Bench {
 impl Bench {
     pub(super) fn new() -> Bench {
         let bench = Bench { folder: tempfile::tempdir().expect("a folder") };
-        let low = nalgebra::Point3::new(-3.0, -3.0, -2.0);
-        let high = nalgebra::Point3::new(3.0, 3.0, 0.0);
-        bench.part("block.stl", &shapes::cuboid(low, high, Unit::Millimetre).expect("a block"));
+        bench.part("block.stl", &cuboid([-3.0, -3.0, -2.0], [3.0, 3.0, 0.0]));
         bench.write("path.csv", "# a comment\n0,0,1,0,0,1\n0,0,-0.5,0,0,1\n");
         bench
+    }
+
+    /// Returns the command that runs the program in this folder, with the words of a line.
+    pub(super) fn command(&self, line: &str) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_touchoff"));
+        command.args(line.split(' ')).current_dir(&self.folder);
+        command
+    }
+
+    /// Runs the program in this folder, with the words of a line.
+    pub(super) fn touchoff(&self, line: &str) -> Output {
+        self.command(line).output().expect("the program runs")
+    }
+
+    /// Returns the path of a file in this folder.
+    pub(super) fn place(&self, name: &str) -> String {
+        self.folder.path().join(name).display().to_string()
     }
 
     pub(super) fn part(&self, name: &str, mesh: &Mesh) {
@@ -57,9 +91,8 @@ impl Bench {
 
     /// Runs `touchoff run` with a part, a path and a tool of this folder, and more arguments.
     pub(super) fn run(&self, part: &str, path: &str, tool: &str, more: &[&str]) -> Output {
-        let place = |name: &str| self.folder.path().join(name).display().to_string();
-        let (part, path) = (place(part), place(path));
-        let tool = if tool.ends_with(".tool") { place(tool) } else { tool.to_owned() };
+        let (part, path) = (self.place(part), self.place(path));
+        let tool = if tool.ends_with(".tool") { self.place(tool) } else { tool.to_owned() };
         let mut all = vec!["run", "--part", &part, "--program", &path, "--tool", &tool];
         if !more.contains(&"--unit") {
             all.extend(["--unit", "mm"]);
@@ -116,7 +149,7 @@ impl Bench {
             text += &format!("GOTO/{:.6},{:.6},2,0,0,1\n", out * cosine, out * sine);
         }
         let program = self.write("flank.apt", text + "RAPID\nGOTO/9,0,2,0,0,1\nFINI\n");
-        Gouging { part: self.folder.path().join("tube.stl").display().to_string(), program }
+        Gouging { part: self.place("tube.stl"), program }
     }
 }
 

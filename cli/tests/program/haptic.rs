@@ -1,23 +1,17 @@
 //! `touchoff haptic` from the user's side.
 
-use crate::bench::{Bench, rows, stderr, stdout, touchoff};
+use crate::bench::{Bench, rows, stderr, stdout};
 use std::process::Output;
 
-fn haptic(bench: &Bench, more: &[&str]) -> Output {
-    let part = bench.folder.path().join("block.stl").display().to_string();
-    let mut all = vec!["haptic", "--part", &part, "--unit", "mm", "--tool", "D2Ball"];
-    all.extend(["--points", "5000", "--duration", "0.5"]);
-    all.extend(more);
-    touchoff(&all)
+fn haptic(bench: &Bench, more: &str) -> Output {
+    let inputs = "--part block.stl --unit mm --tool D2Ball --points 5000";
+    bench.touchoff(&format!("haptic {inputs} --duration 0.5 {more}"))
 }
 
 #[test]
 fn a_program_is_played_and_recorded() {
     let bench = Bench::new();
-    let path = bench.folder.path().join("path.csv").display().to_string();
-    let table = bench.folder.path().join("record.csv").display().to_string();
-    let output =
-        haptic(&bench, &["--device", "playback", "--program", &path, "--record", &table, "--json"]);
+    let output = haptic(&bench, "--device playback --program path.csv --record record.csv --json");
     let said = &rows(&output)[0];
     let count = |key: &str| said[key].as_u64().unwrap_or_else(|| panic!("{key} in {said}"));
     assert!(count("cycles") + count("skipped_cycles") == 500 && count("cycles") > 100, "{said}");
@@ -25,7 +19,7 @@ fn a_program_is_played_and_recorded() {
     assert!(said["peak_force"].as_f64().is_some_and(|force| force > 0.01), "{said}");
     assert!(count("cycles") >= 1 && said["cycle_time_ns"]["p50"].as_u64().is_some_and(|ns| ns > 0));
 
-    let record = std::fs::read_to_string(&table).expect("a record");
+    let record = std::fs::read_to_string(bench.place("record.csv")).expect("a record");
     let mut lines = record.lines();
     let columns = lines.next().expect("a head").split(',').count();
     assert_eq!(columns, 24);
@@ -41,7 +35,7 @@ fn a_program_is_played_and_recorded() {
 #[test]
 fn a_session_of_the_hand_is_summarised() {
     let bench = Bench::new();
-    let output = haptic(&bench, &["--rate", "500"]);
+    let output = haptic(&bench, "--rate 500");
     assert!(output.status.success(), "{}", stderr(&output));
     for word in ["cycles at 500 Hz", "cycle time, µs", "energy", "law gradient"] {
         assert!(stdout(&output).contains(word), "{}", stdout(&output));
@@ -55,12 +49,11 @@ fn a_full_disk_is_reported_at_once() {
     use std::io::{BufRead, BufReader};
     use std::process::{Command, Stdio};
     let bench = Bench::new();
-    let place = |name: &str| bench.folder.path().join(name).display().to_string();
     let table = bench.write("record.csv", "old");
     let script = "trap '' XFSZ; ulimit -f 40; exec \"$@\"";
     let mut child = Command::new("sh")
         .args(["-c", script, "sh", env!("CARGO_BIN_EXE_touchoff")])
-        .args(["haptic", "--part", &place("block.stl"), "--unit", "mm", "--tool", "D2Ball"])
+        .args(["haptic", "--part", &bench.place("block.stl"), "--unit", "mm", "--tool", "D2Ball"])
         .args(["--points", "2000", "--duration", "3", "--record", &table])
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
@@ -86,7 +79,7 @@ fn a_full_disk_is_reported_at_once() {
 fn missing_cores_are_refused_with_a_list_of_others() {
     let bench = Bench::new();
     for core in ["1024", "18446744073709551615"] {
-        let output = haptic(&bench, &["--core", core]);
+        let output = haptic(&bench, &format!("--core {core}"));
         assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
         let words = format!("not kept on core {core}: this process may run on core ");
         assert!(stderr(&output).contains(&words), "{}", stderr(&output));
@@ -96,21 +89,19 @@ fn missing_cores_are_refused_with_a_list_of_others() {
 #[test]
 fn invalid_devices_are_refused() {
     let bench = Bench::new();
-    let nowhere = bench.folder.path().join("no/record.csv").display().to_string();
     for (more, status, words) in [
-        (&["--device", "glove"][..], 2, "[possible values: hand, playback, spacenav]"),
-        (&["--device", "playback"], 2, "--program <FILE>"),
-        (&["--program", "path.csv"], 2, "`--device playback`"),
-        (&["--device", "playback", "--program", "nowhere.csv"], 2, "nowhere.csv"),
-        (&["--record", &nowhere], 1, "record.csv"),
+        ("--device glove", 2, "[possible values: hand, playback, spacenav]"),
+        ("--device playback", 2, "--program <FILE>"),
+        ("--program path.csv", 2, "`--device playback`"),
+        ("--device playback --program nowhere.csv", 2, "nowhere.csv"),
+        ("--record no/record.csv", 1, "record.csv"),
     ] {
         let output = haptic(&bench, more);
-        assert_eq!(output.status.code(), Some(status), "{more:?}");
+        assert_eq!(output.status.code(), Some(status), "{more}");
         assert!(stderr(&output).contains(words), "{}", stderr(&output));
     }
-    for wrong in [["--rate", "0"], ["--rate", "1e9"], ["--stiffness", "-1"], ["--duration", "NaN"]]
-    {
-        assert_eq!(haptic(&bench, &wrong).status.code(), Some(2), "{wrong:?}");
+    for wrong in ["--rate 0", "--rate 1e9", "--stiffness -1", "--duration NaN"] {
+        assert_eq!(haptic(&bench, wrong).status.code(), Some(2), "{wrong}");
     }
 }
 
@@ -120,12 +111,12 @@ fn an_interrupted_session_keeps_its_recording() {
     use std::io::{BufRead, BufReader};
     use std::process::{Command, Stdio};
     let bench = Bench::new();
-    let place = |name: &str| bench.folder.path().join(name).display().to_string();
-    let table = place("record.csv");
+    let inputs = "--part block.stl --unit mm --tool D2Ball --points 2000";
+    let line = format!("haptic {inputs} --duration 600 --record record.csv");
+    let table = bench.place("record.csv");
     for signal in ["INT", "TERM"] {
-        let mut child = Command::new(env!("CARGO_BIN_EXE_touchoff"))
-            .args(["haptic", "--part", &place("block.stl"), "--unit", "mm", "--tool", "D2Ball"])
-            .args(["--points", "2000", "--duration", "600", "--record", &table])
+        let mut child = bench
+            .command(&line)
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
             .spawn()

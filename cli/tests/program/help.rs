@@ -1,6 +1,6 @@
 //! Help texts: every command has two examples that work as they stand.
 
-use crate::bench::{Bench, stderr, stdout, touchoff};
+use crate::bench::{Bench, TOOL, stderr, stdout, touchoff};
 use crate::import::LIBRARY;
 use std::process::{Command, Output};
 
@@ -9,18 +9,6 @@ const COMMANDS: [&str; 19] = [
     "sweep", "map", "path", "run", "verify", "report", "haptic", "live", "sample", "import",
     "export", "tools", "controls", "machines", "check", "explain", "fmt", "expand", "draw",
 ];
-
-const TOOL: &str = "tool My {
-    units mm;
-    param D = 4;
-    profile {
-        start (0, 0);
-        arc to (D/2, D/2) center (0, D/2) as ball cutting;
-        line to (D/2, 20), (0, 20) as shank;
-    }
-    niceness cutting: 1;
-}
-";
 
 const PROGRAM: &str =
     "UNITS/MM\nGOTO/-9,0,3,0,0,1\nGOTO/-9,0,-0.5,0,0,1\nGOTO/9,0,-0.5,0,0,1\nFINI\n";

@@ -19,9 +19,8 @@ pub(super) const LIBRARY: &str = r#"{ "version": 33, "data": [
 #[test]
 fn an_imported_tool_checks_a_program() {
     let bench = Bench::new();
-    let place = |name: &str| bench.folder.path().join(name).display().to_string();
     let library = bench.write("library.json", LIBRARY);
-    let (folder, part) = (place("tools"), place("block.stl"));
+    let (folder, part) = (bench.place("tools"), bench.place("block.stl"));
     let output = touchoff(&["import", &library, "-o", &folder, "--json"]);
     let rows: Vec<Value> =
         stdout(&output).lines().map(|row| serde_json::from_str(row).expect("an object")).collect();
@@ -30,7 +29,7 @@ fn an_imported_tool_checks_a_program() {
     assert_eq!(rows[0]["stickout"], 30.0);
     // The gauge lengths of holder and stick-out are 47.5, not 47.
     assert!(rows[0]["notes"][0].as_str().is_some_and(|note| note.contains("47.5")), "{rows:?}");
-    let tool = place("tools/d4_ball.tool");
+    let tool = bench.place("tools/d4_ball.tool");
     let checked = touchoff(&["check", &tool]);
     assert!(checked.status.success(), "{}", stderr(&checked));
     // The flutes end at 10.
@@ -39,7 +38,8 @@ fn an_imported_tool_checks_a_program() {
     assert!(stderr(&clamped).contains("cuts up to z = 10"), "{}", stderr(&clamped));
     let text = std::fs::read_to_string(&tool).expect("the tool's file");
     assert!(text.contains("mount \"holders/er16_nut.tool\" as holder at z = stickout;"), "{text}");
-    let formatted = touchoff(&["fmt", "--check", &tool, &place("tools/cutters/d4_ball.tool")]);
+    let formatted =
+        touchoff(&["fmt", "--check", &tool, &bench.place("tools/cutters/d4_ball.tool")]);
     assert!(formatted.status.success(), "{}", stderr(&formatted));
     // The ball's centre is 2 above the tip: at a depth of 0.5 the program gouges.
     let program = bench.write(
@@ -64,7 +64,7 @@ fn an_imported_tool_checks_a_program() {
 fn importing_again_changes_nothing() {
     let bench = Bench::new();
     let library = bench.write("library.json", LIBRARY);
-    let folder = bench.folder.path().join("tools").display().to_string();
+    let folder = bench.place("tools");
     let import = || touchoff(&["import", &library, "-o", &folder]);
     assert!(import().status.success());
     assert!(import().status.success());
@@ -98,7 +98,7 @@ fn the_commands_of_the_page_work() {
 fn exported_tools_are_listed_as_before() {
     let bench = Bench::new();
     let library = bench.write("library.json", LIBRARY);
-    let exported = bench.folder.path().join("exported.json").display().to_string();
+    let exported = bench.place("exported.json");
     let tools = ["--tools", &library, "T3", "T4", "-o", &exported];
     let output = touchoff(&[&["export", "--json"][..], &tools].concat());
     assert!(output.status.success(), "{}", stderr(&output));

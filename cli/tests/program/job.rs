@@ -1,12 +1,10 @@
 //! Job files: G-code on a machine, with several tools, fixtures and stock.
 
-use crate::bench::{Bench, objects, stderr, stdout, touchoff};
+use crate::bench::{Bench, cuboid, objects, stderr, stdout, touchoff};
 use crate::help::page_commands;
-use nalgebra::Point3;
 use std::process::Output;
 use touchoff::Mesh;
 use touchoff::Unit;
-use touchoff::mesh::shapes;
 
 /// A posted program: it faces the bracket, mills its ends, and runs a ball along an edge, tilted by 80 degrees.
 const PROGRAM: &str = "%
@@ -75,10 +73,6 @@ fn end_mill(name: &str, diameter: f64) -> String {
         "tool {name} \"{diameter} mm end mill\" {{ units mm; profile {{ start (0, 0); line to ({radius}, 0) as face cutting; \
          line to ({radius}, 22) as flute cutting; line to ({radius}, 60), (0, 60) as shank; }} niceness cutting: 1; }}"
     )
-}
-
-fn cuboid(low: [f64; 3], high: [f64; 3]) -> Mesh {
-    shapes::cuboid(Point3::from(low), Point3::from(high), Unit::Millimetre).expect("a cuboid")
 }
 
 /// Returns meshes as one.
@@ -175,7 +169,7 @@ fn cutter_locations_change_tools() {
         );
     }
     let program = bench.write("two.apt", program(-12.0));
-    let part = bench.folder.path().join("bracket.stl").display().to_string();
+    let part = bench.place("bracket.stl");
     let options = ["--part", &part, "--unit", "mm", "--tool", "D2Ball", "--program", &program];
     for (command, expected) in [
         ("verify", "the program uses T1 and T3: give its tools by number in a job file"),
@@ -237,8 +231,7 @@ fn a_wrong_job_is_refused() {
 fn g_code_runs_without_a_job() {
     let bench = Bench::new();
     bench.part("block.stl", &cuboid([-3.0, -3.0, -2.0], [3.0, 3.0, 0.0]));
-    let place = |name: &str| bench.folder.path().join(name).display().to_string();
-    let part = place("block.stl");
+    let part = bench.place("block.stl");
     let program = bench.write(
         "slot.nc",
         "G21 G90 G54 S9000 M3 G0 X-4 Y0 Z3\nG1 Z-0.5 F100\nX4\nG1 Y1\nX-4\nG0 Z3\nM30\n",

@@ -27,8 +27,8 @@ fn all_keys_are_documented() {
     let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/cli.md");
     let page = std::fs::read_to_string(page).expect("the page");
     let bench = Bench::new();
-    let place = |name: &str| bench.folder.path().join(name).display().to_string();
-    let (part, map, path) = (place("block.stl"), place("map.postures"), place("path.apt"));
+    let (part, map, path) =
+        (bench.place("block.stl"), bench.place("map.postures"), bench.place("path.apt"));
     let gouge = "UNITS/MM\nGOTO/-9,0,3,0,0,1\nGOTO/-9,0,-0.5,0,0,1\nGOTO/9,0,-0.5,0,0,1\nFINI\n";
     let program = bench.write("gouge.apt", gouge);
     let library = bench.write("library.json", crate::import::LIBRARY);
@@ -43,7 +43,7 @@ fn all_keys_are_documented() {
         format!("sweep PART --tool D2Ball --directions 20 --tolerance 0.05 -o {map}"),
         format!("map {map}"),
         format!("path {map} --part {part} --tool D2Ball --stepover 1 -o {path}"),
-        format!("import {library} -o {}", place("tools")),
+        format!("import {library} -o {}", bench.place("tools")),
         "tools".to_owned(),
         "tools show D2Ball".to_owned(),
         format!("check {tool}"),

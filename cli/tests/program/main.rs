@@ -156,8 +156,7 @@ fn files_are_checked_and_expanded() {
 #[test]
 fn wrong_usage_ends_with_two() {
     let bench = Bench::new();
-    let place = |name: &str| bench.folder.path().join(name).display().to_string();
-    let (part, path) = (place("block.stl"), place("path.csv"));
+    let (part, path) = (bench.place("block.stl"), bench.place("path.csv"));
     let missing = touchoff(&["run", "--part", &part, "--program", &path, "--tool", "D2Ball"]);
     assert_eq!(missing.status.code(), Some(2));
     assert!(stderr(&missing).contains("--unit"), "{}", stderr(&missing));
@@ -228,20 +227,8 @@ fn invalid_programs_are_refused() {
 
 /// Returns the rows of a 2 mm ball cutter along a program.
 fn evaluation(part: &str, path: &str, points: &str) -> Vec<Value> {
-    rows(&touchoff(&[
-        "run",
-        "--part",
-        part,
-        "--unit",
-        "mm",
-        "--tool",
-        "D2Ball",
-        "--program",
-        path,
-        "--points",
-        points,
-        "--json",
-    ]))
+    let inputs = ["--part", part, "--unit", "mm", "--tool", "D2Ball", "--program", path];
+    rows(&touchoff(&[&["run", "--points", points, "--json"], &inputs[..]].concat()))
 }
 
 /// The stand-in gouges by 0.03 mm, and near its 280th position by up to 0.15 mm. The impeller's program gouges too:
@@ -288,13 +275,12 @@ fn files_are_drawn() {
     assert!(svg.status.success(), "{}", stderr(&svg));
     assert!(stdout(&svg).starts_with("<svg "), "{}", stdout(&svg));
     assert!(stdout(&svg).contains("ball R3"));
-    let place = |name: &str| bench.folder.path().join(name).display().to_string();
-    assert!(touchoff(&["draw", &good, "-o", &place("good.svg")]).status.success());
-    let written = std::fs::read_to_string(place("good.svg")).expect("the drawing");
+    assert!(touchoff(&["draw", &good, "-o", &bench.place("good.svg")]).status.success());
+    let written = std::fs::read_to_string(bench.place("good.svg")).expect("the drawing");
     assert_eq!(written, stdout(&svg).trim_end());
-    let png = touchoff(&["draw", &good, "--output", &place("good.PNG")]);
+    let png = touchoff(&["draw", &good, "--output", &bench.place("good.PNG")]);
     assert!(png.status.success() && png.stdout.is_empty(), "{}", stderr(&png));
-    let bytes = std::fs::read(place("good.PNG")).expect("the picture");
+    let bytes = std::fs::read(bench.place("good.PNG")).expect("the picture");
     assert!(bytes.starts_with(b"\x89PNG") && bytes.len() > 10_000, "{} bytes", bytes.len());
 
     let refused = |output: &str, words: &[&str]| {
@@ -305,9 +291,9 @@ fn files_are_drawn() {
             assert!(said.contains(word), "`{word}` is missing in:\n{said}");
         }
     };
-    refused(&place("good.pdf"), &["`.svg`", "`.png`", "good.svg"]);
-    refused(&place("good"), &["is neither", "good.svg"]);
-    refused(&place("nowhere/good.svg"), &["cannot write", "nowhere", "folder"]);
+    refused(&bench.place("good.pdf"), &["`.svg`", "`.png`", "good.svg"]);
+    refused(&bench.place("good"), &["is neither", "good.svg"]);
+    refused(&bench.place("nowhere/good.svg"), &["cannot write", "nowhere", "folder"]);
     let bad = bench.write("bad.tool", "tool Bad { units mm; }");
     assert_eq!(touchoff(&["draw", &bad]).status.code(), Some(1));
 }

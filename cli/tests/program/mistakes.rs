@@ -1,22 +1,10 @@
 //! Mistakes that users make, with the exit status and the message of each. Every message says what is wrong, where,
 //! and what to do.
 
-use crate::bench::{Bench, stdout};
+use crate::bench::{Bench, TOOL, stdout};
 use std::fmt::Write;
 use std::process::{Command, Output};
 use touchoff::{Mesh, Unit};
-
-const TOOL: &str = "tool My {
-    units mm;
-    param D = 4;
-    profile {
-        start (0, 0);
-        arc to (D/2, D/2) center (0, D/2) as ball cutting;
-        line to (D/2, 20), (0, 20) as shank;
-    }
-    niceness cutting: 1;
-}
-";
 
 const PROGRAM: &str =
     "UNITS/MM\nGOTO/-9,0,3,0,0,1\nGOTO/-9,0,0.5,0,0,1\nGOTO/9,0,0.5,0,0,1\nFINI\n";

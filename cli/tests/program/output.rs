@@ -17,13 +17,9 @@ const GOOD: &str = "tool Good {
 ";
 
 /// Runs the program with its standard output going to `out`, and returns its exit status and messages.
-fn into(out: impl Into<Stdio>, arguments: &[&str]) -> (Option<i32>, String) {
-    let output = Command::new(env!("CARGO_BIN_EXE_touchoff"))
-        .args(arguments)
-        .stdout(out)
-        .stderr(Stdio::piped())
-        .output()
-        .expect("the program runs");
+fn into(out: impl Into<Stdio>, bench: &Bench, line: &str) -> (Option<i32>, String) {
+    let mut command = bench.command(line);
+    let output = command.stdout(out).stderr(Stdio::piped()).output().expect("the program runs");
     (output.status.code(), stderr(&output))
 }
 
@@ -35,30 +31,18 @@ fn closed() -> io::PipeWriter {
 }
 
 /// Returns commands that write to standard output, and their exit statuses.
-fn commands(bench: &Bench) -> Vec<(Vec<String>, i32)> {
-    let place = |name: &str| bench.folder.path().join(name).display().to_string();
+fn commands(bench: &Bench) -> [(&'static str, i32); 16] {
     bench.write("gouges.apt", GOUGES);
     bench.write("clear.apt", CLEAR);
     bench.write("good.tool", GOOD);
     bench.write("loose.tool", GOOD.replace("    ", " "));
     bench.write("warned.tool", GOOD.replace("profile", "param unused = 3; profile"));
     bench.write("bad.tool", "tool Bad { units mm; region r where d < 1 { depth: 1 - d; } }");
-    let block = place("block.stl");
-    let words = |words: &str| -> Vec<String> {
-        words
-            .split(' ')
-            .map(|word| match word {
-                "PART" => block.clone(),
-                word if word.contains('.') && word.parse::<f64>().is_err() => place(word),
-                word => word.to_owned(),
-            })
-            .collect()
-    };
     [
-        ("verify --part PART --unit mm --tool D2Ball --program gouges.apt", 1),
-        ("verify --part PART --unit mm --tool D2Ball --program gouges.apt --json", 1),
-        ("run --part PART --unit mm --tool D2Ball --program gouges.apt", 0),
-        ("run --part PART --unit mm --tool D2Ball --program gouges.apt --json", 0),
+        ("verify --part block.stl --unit mm --tool D2Ball --program gouges.apt", 1),
+        ("verify --part block.stl --unit mm --tool D2Ball --program gouges.apt --json", 1),
+        ("run --part block.stl --unit mm --tool D2Ball --program gouges.apt", 0),
+        ("run --part block.stl --unit mm --tool D2Ball --program gouges.apt --json", 0),
         ("check good.tool bad.tool", 1),
         ("check good.tool", 0),
         ("check --json good.tool", 0),
@@ -68,28 +52,23 @@ fn commands(bench: &Bench) -> Vec<(Vec<String>, i32)> {
         ("expand good.tool", 0),
         ("expand --stage plan good.tool", 0),
         ("draw good.tool", 0),
-        ("sweep --part PART --unit mm --tool D2Ball --directions 4", 0),
-        ("haptic --part PART --unit mm --tool D2Ball --duration 0.01", 0),
-        ("haptic --part PART --unit mm --tool D2Ball --duration 0.01 --json", 0),
+        ("sweep --part block.stl --unit mm --tool D2Ball --directions 4", 0),
+        ("haptic --part block.stl --unit mm --tool D2Ball --duration 0.01", 0),
+        ("haptic --part block.stl --unit mm --tool D2Ball --duration 0.01 --json", 0),
     ]
-    .map(|(line, status)| (words(line), status))
-    .into()
 }
 
 #[test]
 fn the_status_does_not_depend_on_the_reader() {
     let bench = Bench::new();
-    for (words, status) in commands(&bench) {
-        let words: Vec<&str> = words.iter().map(String::as_str).collect();
-        let (code, said) = into(closed(), &words);
-        assert_eq!(code, Some(status), "{words:?}: {said}");
+    for (line, status) in commands(&bench) {
+        let (code, said) = into(closed(), &bench, line);
+        assert_eq!(code, Some(status), "{line}: {said}");
         assert!(!said.contains("panicked") && !said.contains("could not be written"), "{said}");
     }
-    let place = |name: &str| bench.folder.path().join(name).display().to_string();
     let verify = |program: &str| {
-        let (block, program) = (place("block.stl"), place(program));
-        let words = ["verify", "--part", &block, "--unit", "mm", "--tool", "D2Ball", "--program"];
-        into(closed(), &[&words[..], &[&program]].concat()).0
+        let inputs = format!("--part block.stl --unit mm --tool D2Ball --program {program}");
+        into(closed(), &bench, &format!("verify {inputs}")).0
     };
     assert_eq!((verify("clear.apt"), verify("nowhere.apt")), (Some(0), Some(2)));
 }
@@ -99,27 +78,26 @@ fn the_status_does_not_depend_on_the_reader() {
 fn a_full_disk_under_standard_output_is_an_error() {
     let bench = Bench::new();
     let full = || fs::OpenOptions::new().write(true).open("/dev/full").expect("a device");
-    for (words, _) in commands(&bench) {
-        let words: Vec<&str> = words.iter().map(String::as_str).collect();
-        let (code, said) = into(full(), &words);
-        let status = if words[0] == "verify" { 2 } else { 1 };
-        assert_eq!(code, Some(status), "{words:?}: {said}");
-        let bad_tool = words.contains(&"check") && words.len() == 3;
+    for (line, _) in commands(&bench) {
+        let (code, said) = into(full(), &bench, line);
+        let status = if line.starts_with("verify") { 2 } else { 1 };
+        assert_eq!(code, Some(status), "{line}: {said}");
+        let bad_tool = line == "check good.tool bad.tool";
         assert!(
             bad_tool || said.contains("standard output could not be written"),
-            "{words:?}: {said}"
+            "{line}: {said}"
         );
     }
 }
 
-/// Runs the program with room for `blocks` blocks of 512 bytes in each file.
+/// Runs the program with room for no byte in any file.
 #[cfg(target_os = "linux")]
-fn with_room(blocks: u32, arguments: &[&str]) -> Output {
+fn without_room(bench: &Bench, line: &str) -> Output {
     // The signal that would end the program is ignored, so that writing fails as on a full disk.
-    let script = format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$@\"");
-    let program = env!("CARGO_BIN_EXE_touchoff");
-    let shell = ["-c", &script, "sh", program];
-    Command::new("sh").args(shell).args(arguments).output().expect("a shell")
+    let script = "trap '' XFSZ; ulimit -f 0; exec \"$@\"";
+    let mut shell = Command::new("sh");
+    shell.args(["-c", script, "sh", env!("CARGO_BIN_EXE_touchoff")]).args(line.split(' '));
+    shell.current_dir(&bench.folder).output().expect("a shell")
 }
 
 /// Returns the names of the files in a folder, and their contents.
@@ -136,79 +114,49 @@ fn content(folder: &Path) -> Vec<(String, Vec<u8>)> {
     all
 }
 
-/// Sweeps the block into the map `block.postures`, and returns its path.
-fn swept(bench: &Bench) -> String {
-    let place = |name: &str| bench.folder.path().join(name).display().to_string();
-    let (part, map) = (place("block.stl"), place("block.postures"));
-    let words = ["sweep", "--part", &part, "--unit", "mm", "--tool", "D2Ball"];
-    let more = ["--directions", "30", "--tolerance", "0.05", "--output", &map];
-    let output = touchoff(&[&words[..], &more].concat());
+/// Sweeps the block into the map `block.postures`.
+fn swept(bench: &Bench) {
+    let inputs = "--part block.stl --unit mm --tool D2Ball --directions 30 --tolerance 0.05";
+    let output = bench.touchoff(&format!("sweep {inputs} --output block.postures"));
     assert!(output.status.success(), "{}", stderr(&output));
-    map
 }
 
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_leaves_old_files_and_no_others() {
     let bench = Bench::new();
-    let place = |name: &str| bench.folder.path().join(name).display().to_string();
-    let (part, map) = (place("block.stl"), swept(&bench));
-    let tool = bench.write("good.tool", GOOD);
-    let loose = GOOD.replace("    ", " ") + &"// a comment\n".repeat(400);
-    let loose = bench.write("loose.tool", loose);
-    let outputs = ["o.csv", "o.json", "o.ply", "o.png", "o.svg", "o.touchoff", "o.apt"];
-    for name in outputs {
+    swept(&bench);
+    bench.write("good.tool", GOOD);
+    bench.write("loose.tool", GOOD.replace("    ", " ") + &"// a comment\n".repeat(400));
+    for name in ["o.csv", "o.json", "o.ply", "o.png", "o.svg", "o.touchoff", "o.apt"] {
         bench.write(name, "old");
     }
     let before = || content(bench.folder.path());
     let kept = before();
-    let [csv, json, ply, png, svg, saved, apt] =
-        ["o.csv", "o.json", "o.ply", "o.png", "o.svg", "o.touchoff", "o.apt"].map(place);
-    let path = |to: &str| -> Vec<String> {
-        ["path", &map, "--part", &part, "--tool", "D2Ball", "--stepover", "0.3", "-o", to]
-            .map(str::to_owned)
-            .into()
-    };
-    let words = |words: &[&str]| -> Vec<String> { words.iter().map(|w| (*w).to_owned()).collect() };
-    let commands = [
-        words(&["map", &map, "-o", &csv]),
-        words(&["map", &map, "-o", &json]),
-        words(&["map", &map, "--part", &part, "-o", &ply]),
-        words(&["map", &map, "--part", &part, "-o", &png]),
-        path(&apt),
-        path(&csv),
-        words(&["draw", &tool, "-o", &svg]),
-        words(&["draw", &tool, "-o", &png]),
-        words(&["sample", "--part", &part, "--unit", "mm", "-o", &saved]),
-        words(&["fmt", &loose]),
-        words(&[
-            "haptic",
-            "--part",
-            &part,
-            "--unit",
-            "mm",
-            "--tool",
-            "D2Ball",
-            "--duration",
-            "0.2",
-            "--record",
-            &csv,
-        ]),
-    ];
-    for command in &commands {
-        let command: Vec<&str> = command.iter().map(String::as_str).collect();
-        let output = with_room(0, &command);
+    for line in [
+        "map block.postures -o o.csv",
+        "map block.postures -o o.json",
+        "map block.postures --part block.stl -o o.ply",
+        "map block.postures --part block.stl -o o.png",
+        "path block.postures --part block.stl --tool D2Ball --stepover 0.3 -o o.apt",
+        "path block.postures --part block.stl --tool D2Ball --stepover 0.3 -o o.csv",
+        "draw good.tool -o o.svg",
+        "draw good.tool -o o.png",
+        "sample --part block.stl --unit mm -o o.touchoff",
+        "fmt loose.tool",
+        "haptic --part block.stl --unit mm --tool D2Ball --duration 0.2 --record o.csv",
+    ] {
+        let output = without_room(&bench, line);
         let said = stderr(&output);
-        assert_eq!(output.status.code(), Some(1), "{command:?}: {said}");
-        assert!(said.contains("File too large") && said.contains("error: "), "{command:?}: {said}");
-        assert!(before() == kept, "{command:?}: something is changed or left");
+        assert_eq!(output.status.code(), Some(1), "{line}: {said}");
+        assert!(said.contains("File too large") && said.contains("error: "), "{line}: {said}");
+        assert!(before() == kept, "{line}: something is changed or left");
     }
     // A link to a device is followed, and the device written to.
     #[cfg(unix)]
     {
-        let link = bench.folder.path().join("full.svg");
-        std::os::unix::fs::symlink("/dev/full", &link).expect("a link");
-        let output = touchoff(&["draw", &tool, "-o", &link.display().to_string()]);
+        std::os::unix::fs::symlink("/dev/full", bench.place("full.svg")).expect("a link");
+        let output = bench.touchoff("draw good.tool -o full.svg");
         assert_eq!(output.status.code(), Some(1));
         assert!(stderr(&output).contains("No space left"), "{}", stderr(&output));
     }
@@ -217,55 +165,49 @@ fn a_full_disk_leaves_old_files_and_no_others() {
 #[test]
 fn an_output_that_is_an_input_is_refused() {
     let bench = Bench::new();
-    let place = |name: &str| bench.folder.path().join(name).display().to_string();
-    let map = swept(&bench);
-    let (part, path) = (place("block.stl"), place("path.csv"));
-    let tool = bench.write("good.tool", GOOD);
-    let drawn = bench.write("tool.svg", GOOD);
-    let [to_map, to_part, to_tool, to_saved] =
-        ["y.csv", "part.csv", "tool.csv", "s.touchoff"].map(place);
-    fs::hard_link(&map, &to_map).expect("a link");
-    fs::hard_link(&part, &to_part).expect("a link");
-    fs::hard_link(&tool, &to_tool).expect("a link");
-    fs::hard_link(&part, &to_saved).expect("a link");
-    let mounting =
-        bench.write("mounting.tool", "tool Mounting { units mm; mount \"tool.svg\" as c; }");
+    swept(&bench);
+    bench.write("good.tool", GOOD);
+    bench.write("tool.svg", GOOD);
+    for (file, link) in [
+        ("block.postures", "y.csv"),
+        ("block.stl", "part.csv"),
+        ("good.tool", "tool.csv"),
+        ("block.stl", "s.touchoff"),
+    ] {
+        fs::hard_link(bench.place(file), bench.place(link)).expect("a link");
+    }
+    bench.write("mounting.tool", "tool Mounting { units mm; mount \"tool.svg\" as c; }");
     let kept = content(bench.folder.path());
-    let haptic =
-        ["haptic", "--part", &part, "--unit", "mm", "--tool", "D2Ball", "--duration", "0.1"];
-    let leads = ["path", &map, "--part", &part, "--tool"];
-    let commands: [&[&str]; 11] = [
-        &["draw", &mounting, "-o", &drawn],
-        &["map", &map, "-o", &to_map],
-        &["map", &map, "--part", &part, "-o", &to_part],
-        &[&leads[..], &["D2Ball", "--stepover", "1", "-o", &to_map]].concat(),
-        &[&leads[..], &["D2Ball", "--stepover", "1", "-o", &to_part]].concat(),
-        &[&leads[..], &[&tool, "--stepover", "1", "-o", &to_tool]].concat(),
-        &["draw", &drawn, "-o", &drawn],
-        &["sample", "--part", &part, "--unit", "mm", "-o", &to_saved],
-        &["sweep", "--part", &part, "--unit", "mm", "--tool", "D2Ball", "--output", &part],
-        &[&haptic[..], &["--device", "playback", "--program", &path, "--record", &path]].concat(),
-        &[&haptic[..], &["--postures", &map, "--record", &to_map]].concat(),
-    ];
-    for command in commands {
-        let output = touchoff(command);
+    for line in [
+        "draw mounting.tool -o tool.svg",
+        "map block.postures -o y.csv",
+        "map block.postures --part block.stl -o part.csv",
+        "path block.postures --part block.stl --tool D2Ball --stepover 1 -o y.csv",
+        "path block.postures --part block.stl --tool D2Ball --stepover 1 -o part.csv",
+        "path block.postures --part block.stl --tool good.tool --stepover 1 -o tool.csv",
+        "draw tool.svg -o tool.svg",
+        "sample --part block.stl --unit mm -o s.touchoff",
+        "sweep --part block.stl --unit mm --tool D2Ball --output block.stl",
+        "haptic --part block.stl --unit mm --tool D2Ball --device playback --program path.csv --record path.csv",
+        "haptic --part block.stl --unit mm --tool D2Ball --postures block.postures --record y.csv",
+    ] {
+        let output = bench.touchoff(line);
         let said = stderr(&output);
-        assert_eq!(output.status.code(), Some(2), "{command:?}: {said}");
-        assert!(said.contains("is also an input"), "{command:?}: {said}");
-        assert!(output.stdout.is_empty() && content(bench.folder.path()) == kept, "{command:?}");
+        assert_eq!(output.status.code(), Some(2), "{line}: {said}");
+        assert!(said.contains("is also an input"), "{line}: {said}");
+        assert!(output.stdout.is_empty() && content(bench.folder.path()) == kept, "{line}");
     }
 }
 
 #[test]
 fn a_program_that_is_cut_short_is_refused() {
     let bench = Bench::new();
-    let place = |name: &str| bench.folder.path().join(name).display().to_string();
-    let (map, part, to) = (swept(&bench), place("block.stl"), place("led.csv"));
-    let words = ["path", &map, "--part", &part, "--tool", "D2Ball", "--stepover", "1", "-o", &to];
-    assert!(touchoff(&words).status.success());
+    swept(&bench);
+    let line = "path block.postures --part block.stl --tool D2Ball --stepover 1 -o led.csv";
+    assert!(bench.touchoff(line).status.success());
     let run = |name: &str| bench.run("block.stl", name, "D2Ball", &[]);
     assert!(run("led.csv").status.success());
-    let whole = fs::read_to_string(&to).expect("a program");
+    let whole = fs::read_to_string(bench.place("led.csv")).expect("a program");
     let half = whole.lines().take(whole.lines().count() / 2).collect::<Vec<_>>().join("\n");
     bench.write("cut.csv", &half);
     let line = half.lines().count();
@@ -304,58 +246,42 @@ fn control_characters_of_names_are_escaped() {
 #[test]
 fn negative_numbers_are_read_and_judged() {
     let bench = Bench::new();
-    let place = |name: &str| bench.folder.path().join(name).display().to_string();
-    let (part, apt) = (place("block.stl"), bench.write("clear.apt", CLEAR));
-    let refused = |words: &[&str], more: &[&str]| {
-        for (option, remedy) in more.iter().zip(more.iter().skip(1)).step_by(2) {
-            for value in ["-0.01", "-5", "-.5", "-1e-3"] {
-                let output = touchoff(&[words, &[option, value]].concat());
-                let said = stderr(&output);
-                assert_eq!(output.status.code(), Some(2), "{option} {value}: {said}");
-                assert!(said.contains(&format!("invalid value '{value}'")), "{option}: {said}");
-                assert!(said.contains(remedy), "{option} {value}: {said}");
-            }
+    bench.write("clear.apt", CLEAR);
+    let block = "--part block.stl --unit mm --tool D2Ball";
+    let [length, length_above, above] =
+        ["finite length of 0 or more", "finite length above 0", "finite number above 0"];
+    for (command, option, remedy) in [
+        ("verify --program clear.apt", "--tolerance", length),
+        ("verify --program clear.apt", "--resolution", length),
+        ("run --program clear.apt", "--sampling-error", length_above),
+        ("run --program clear.apt", "--certify", length),
+        ("run --program clear.apt", "--points", ""),
+        ("run --program clear.apt", "--seed", ""),
+        ("haptic", "--rate", "a rate of 1 to 100000"),
+        ("haptic", "--duration", above),
+        ("haptic", "--stiffness", above),
+        ("haptic", "--device-stiffness", above),
+        ("haptic", "--max-force", above),
+        ("haptic", "--core", ""),
+        ("haptic", "--spin", ""),
+        ("sweep", "--tolerance", length_above),
+        ("sweep", "--directions", ""),
+        ("sweep", "--keep", ""),
+        ("path block.postures -o a.csv", "--tolerance", length_above),
+        ("path block.postures -o a.csv", "--stepover", length_above),
+        ("path block.postures -o a.csv", "--forward-step", length_above),
+    ] {
+        let inputs =
+            if command.starts_with("path") { "--part block.stl --tool D2Ball" } else { block };
+        for value in ["-0.01", "-5", "-.5", "-1e-3"] {
+            let output = bench.touchoff(&format!("{command} {inputs} {option} {value}"));
+            let said = stderr(&output);
+            assert_eq!(output.status.code(), Some(2), "{option} {value}: {said}");
+            assert!(said.contains(&format!("invalid value '{value}'")), "{option}: {said}");
+            assert!(said.contains(remedy), "{option} {value}: {said}");
         }
-    };
-    let (length, length_above) = ("finite length of 0 or more", "finite length above 0");
-    let above = "finite number above 0";
-    refused(
-        &["verify", "--part", &part, "--unit", "mm", "--tool", "D2Ball", "--program", &apt],
-        &["--tolerance", length, "--resolution", length],
-    );
-    refused(
-        &["run", "--part", &part, "--unit", "mm", "--tool", "D2Ball", "--program", &apt],
-        &["--sampling-error", length_above, "--certify", length, "--points", "", "--seed", ""],
-    );
-    refused(
-        &["haptic", "--part", &part, "--unit", "mm", "--tool", "D2Ball"],
-        &[
-            "--rate",
-            "a rate of 1 to 100000",
-            "--duration",
-            above,
-            "--stiffness",
-            above,
-            "--device-stiffness",
-            above,
-            "--max-force",
-            above,
-            "--core",
-            "",
-            "--spin",
-            "",
-        ],
-    );
-    refused(
-        &["sweep", "--part", &part, "--unit", "mm", "--tool", "D2Ball"],
-        &["--tolerance", length_above, "--directions", "", "--keep", ""],
-    );
-    refused(
-        &["path", "map", "--part", &part, "--tool", "D2Ball", "-o", "a.csv"],
-        &["--tolerance", length_above, "--stepover", length_above, "--forward-step", length_above],
-    );
-    let verify = ["verify", "--part", &part, "--unit", "mm", "--tool", "D2Ball", "--program", &apt];
-    let allowed = touchoff(&[&verify[..], &["--allow", "shank=-0.5"]].concat());
+    }
+    let allowed = bench.touchoff(&format!("verify --program clear.apt {block} --allow shank=-0.5"));
     assert_eq!(allowed.status.code(), Some(0), "{}", stderr(&allowed));
 }
 

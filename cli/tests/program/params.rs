@@ -82,24 +82,24 @@ fn mounted_files_are_found_and_shown() {
 #[test]
 fn sweeps_and_paths_take_values() {
     let bench = Bench::new();
-    let place = |name: &str| bench.folder.path().join(name).display().to_string();
-    let cutter = bench.write(
+    bench.write(
         "ball.tool",
         "tool Own { units mm; param D = 9; let r = D/2; profile { start (0, 0); arc to (r, r) center (0, r) as \
          ball cutting; line to (r, 40), (0, 40) as shank; } niceness cutting: 1; }",
     );
-    let (part, map, program) = (place("block.stl"), place("own.postures"), place("own.csv"));
-    let sweep = ["sweep", "--part", &part, "--unit", "mm", "--tool", &cutter, "--set", "D=2"];
-    let more = ["--directions", "20", "--tolerance", "0.05", "-o", &map];
-    let output = touchoff(&[&sweep[..], &more].concat());
+    let sweep = |more: &str| {
+        let inputs = "--part block.stl --unit mm --tool ball.tool --set D=2";
+        bench.touchoff(&format!("sweep {inputs} {more}"))
+    };
+    let output = sweep("--directions 20 --tolerance 0.05 -o own.postures");
     assert!(output.status.success(), "{}", stderr(&output));
     let path = |set: &str| {
-        let path = ["path", &map, "--part", &part, "--tool", &cutter, "--set", set];
-        touchoff(&[&path[..], &["--stepover", "1", "-o", &program]].concat())
+        let tool = format!("--tool ball.tool --set {set} --stepover 1");
+        bench.touchoff(&format!("path own.postures --part block.stl {tool} -o own.csv"))
     };
     let other = path("D=3");
     assert!(stderr(&other).contains("was not swept with this `Own`"), "{}", stderr(&other));
     assert!(path("D=2").status.success());
-    let mixed = touchoff(&[&sweep[..], &["--tool", "D2Ball"]].concat());
+    let mixed = sweep("--tool D2Ball");
     assert!(stderr(&mixed).contains("`D2Ball` is a built-in tool"), "{}", stderr(&mixed));
 }

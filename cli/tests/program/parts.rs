@@ -46,18 +46,8 @@ fn a_small_sampling_error_is_certified() {
     let bound = number(&found[1]["depth_bound"]);
     assert!((0.5..=0.5 + 2e-6).contains(&bound), "{bound}");
     assert!(number(&found[1]["certified_depth"][1]) <= bound + 1e-12);
-    let block = bench.folder.path().join("block.stl");
-    let output = touchoff(&[
-        "sample",
-        "--part",
-        block.to_str().expect("a path"),
-        "--unit",
-        "mm",
-        "--sampling-error",
-        "1e-6",
-        "-o",
-        "fine.touchoff",
-    ]);
+    let output =
+        bench.touchoff("sample --part block.stl --unit mm --sampling-error 1e-6 -o fine.touchoff");
     let said = stderr(&output);
     assert_eq!(output.status.code(), Some(1));
     assert!(said.contains("more than 20000000") && said.contains("certify"), "{said}");
@@ -104,9 +94,8 @@ fn points_without_triangles_have_an_estimated_error() {
 #[test]
 fn saved_parts_have_the_same_contacts() {
     let bench = Bench::new();
-    let file = |name: &str| bench.folder.path().join(name).display().to_string();
     let sample = |out: &str, more: &[&str]| {
-        let (part, out) = (file("block.stl"), file(out));
+        let (part, out) = (bench.place("block.stl"), bench.place(out));
         let given = ["sample", "--part", &part, "--unit", "mm", "-o", &out];
         touchoff(&[&given[..], more].concat())
     };
@@ -125,13 +114,13 @@ fn saved_parts_have_the_same_contacts() {
     assert!(stderr(&refused).contains("block.touchoff` instead of"), "{}", stderr(&refused));
     let nowhere = sample("no/such/folder/block.touchoff", &[]);
     assert_eq!(nowhere.status.code(), Some(1), "{}", stderr(&nowhere));
-    let mut bytes = std::fs::read(file("block.touchoff")).expect("saved");
+    let mut bytes = std::fs::read(bench.place("block.touchoff")).expect("saved");
     bytes[5_000] ^= 1;
     bench.write("flipped.touchoff", &bytes);
     bench.refused("flipped.touchoff", "path.csv", "D2Ball", &["flipped.touchoff"]);
     bench.write("short.touchoff", &bytes[..4_000]);
     bench.refused("short.touchoff", "path.csv", "D2Ball", &["short.touchoff"]);
-    let stl = std::fs::read(file("block.stl")).expect("the block");
+    let stl = std::fs::read(bench.place("block.stl")).expect("the block");
     bench.write("foreign.touchoff", stl);
     bench.refused("foreign.touchoff", "path.csv", "D2Ball", &["foreign.touchoff"]);
     let certified = run(&bench, "block.touchoff", &["--certify", "1e-6"]);

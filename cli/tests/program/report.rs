@@ -1,11 +1,10 @@
 //! Reports: one HTML file with every finding, which loads nothing and survives the names of files.
 
-use crate::bench::{Bench, objects, shared, stderr, touchoff};
+use crate::bench::{Bench, Gouging, objects, shared, stderr};
 use crate::job::bracket;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::Value;
-use std::path::Path;
 use std::process::Output;
 use touchoff::mesh::shapes;
 use touchoff::{Mesh, Unit};
@@ -21,10 +20,9 @@ struct Page {
 
 impl Page {
     /// Writes a report into the folder of a bench.
-    fn write(bench: &Bench, arguments: &[&str]) -> Page {
-        let file = bench.folder.path().join("report.html").display().to_string();
-        let output = touchoff(&[&["report"], arguments, &["-o", &file]].concat());
-        let text = std::fs::read_to_string(&file);
+    fn write(bench: &Bench, arguments: &str) -> Page {
+        let output = bench.touchoff(&format!("report {arguments} -o report.html"));
+        let text = std::fs::read_to_string(bench.place("report.html"));
         let text = text.unwrap_or_else(|error| panic!("{error}: {}", stderr(&output)));
         assert!(text.len() < MAX_BYTES, "{} bytes", text.len());
         Page { text, output }
@@ -133,17 +131,15 @@ fn assert_same_findings(page: &Page, verified: &Output) {
 #[test]
 fn every_finding_has_a_row_and_a_camera() {
     let bench = Bench::new();
-    let gouging = bench.gouging();
-    let options =
-        ["--unit", "mm", "--tool", "D2Ball", "--program", &gouging.program, "--tolerance", "0.01"];
-    let page = Page::write(&bench, &[&[&*gouging.part], &options[..]].concat());
-    let part = ["verify", "--part", &gouging.part, "--json"];
-    assert_same_findings(&page, &touchoff(&[&part[..], &options[..]].concat()));
+    let Gouging { part, program } = bench.gouging();
+    let options = format!("--unit mm --tool D2Ball --program {program} --tolerance 0.01");
+    let page = Page::write(&bench, &format!("{part} {options}"));
+    let verified = bench.touchoff(&format!("verify --part {part} --json {options}"));
+    assert_same_findings(&page, &verified);
     assert_self_contained(&page);
 
     // The text of each finding, as `verify` prints it after file and line.
-    let part = ["verify", "--part", &gouging.part];
-    let printed = touchoff(&[&part[..], &options[..]].concat());
+    let printed = bench.touchoff(&format!("verify --part {part} {options}"));
     let printed = String::from_utf8(printed.stdout).expect("UTF-8");
     assert!(printed.lines().count() > 0);
     for (line, row) in printed.lines().zip(page.rows()) {
@@ -182,9 +178,9 @@ fn every_finding_has_a_row_and_a_camera() {
 #[test]
 fn a_job_has_tools_fixtures_and_stock() {
     let (bench, job) = bracket();
-    let file = bench.write("bracket.toml", job);
-    let page = Page::write(&bench, &[&file]);
-    assert_same_findings(&page, &touchoff(&["verify", &file, "--json"]));
+    bench.write("bracket.toml", job);
+    let page = Page::write(&bench, "bracket.toml");
+    assert_same_findings(&page, &bench.touchoff("verify bracket.toml --json"));
     assert_self_contained(&page);
     let scene = page.data("scene");
     let names = |list: &str, key: &str| -> Vec<String> {
@@ -208,10 +204,8 @@ fn a_job_has_tools_fixtures_and_stock() {
 #[test]
 fn files_have_their_digests() {
     let bench = Bench::new();
-    let place = |name: &str| bench.folder.path().join(name).display().to_string();
-    let (part, program) = (place("block.stl"), place("path.csv"));
-    let options = ["--unit", "mm", "--tool", "D2Ball", "--program", &program, "--tolerance", "0.6"];
-    let page = Page::write(&bench, &[&[&*part], &options[..]].concat());
+    let options = "--unit mm --tool D2Ball --program path.csv --tolerance 0.6";
+    let page = Page::write(&bench, &format!("block.stl {options}"));
     assert_eq!(page.output.status.code(), Some(0), "{}", stderr(&page.output));
     assert!(page.text.contains("No findings: every motion is proved"), "the verdict");
     // By `sha256sum`.
@@ -233,8 +227,7 @@ fn text_of_files_is_not_markup() {
     );
     let program = "UNITS/MM\nGOTO/-9,0,3,0,0,1\nGOTO/-9,0,-0.5,0,0,1\nGOTO/9,0,-0.5,0,0,1\nFINI\n";
     let program = bench.write("<script>alert(1)<!--\u{202e}.apt", program);
-    let page =
-        Page::write(&bench, &[&part, "--unit", "mm", "--tool", &tool, "--program", &program]);
+    let page = Page::write(&bench, &format!("{part} --unit mm --tool {tool} --program {program}"));
     assert_eq!(page.output.status.code(), Some(1), "{}", stderr(&page.output));
     assert_self_contained(&page);
     let findings = page.data("findings");
@@ -256,24 +249,12 @@ fn text_of_files_is_not_markup() {
 #[test]
 fn a_map_adds_its_quantities() {
     let bench = Bench::new();
-    let place = |name: &str| bench.folder.path().join(name).display().to_string();
-    let (part, map, program) = (place("block.stl"), place("block.postures"), place("path.csv"));
-    let swept = ["--tool", "BallEr16", "--directions", "20", "-o", &map];
-    let swept = touchoff(&[&["sweep", "--part", &part, "--unit", "mm"], &swept[..]].concat());
+    let swept =
+        "sweep --part block.stl --unit mm --tool BallEr16 --directions 20 -o block.postures";
+    let swept = bench.touchoff(swept);
     assert!(swept.status.success(), "{}", stderr(&swept));
-    let options = [
-        "--unit",
-        "mm",
-        "--tool",
-        "D2Ball",
-        "--program",
-        &program,
-        "--tolerance",
-        "0.6",
-        "--map",
-        &map,
-    ];
-    let page = Page::write(&bench, &[&[&*part], &options[..]].concat());
+    let options = "--unit mm --tool D2Ball --tolerance 0.6 --program path.csv --map block.postures";
+    let page = Page::write(&bench, &format!("block.stl {options}"));
     let scene = page.data("scene");
     let layers = scene["layers"].as_array().expect("a list").iter();
     let layers: Vec<&str> = layers.filter_map(|layer| layer["quantity"].as_str()).collect();
@@ -288,52 +269,42 @@ fn a_map_adds_its_quantities() {
     // A map of another part is refused.
     let other = shapes::sphere(4.0, 2, Unit::Millimetre).expect("a sphere");
     bench.part("other.stl", &other);
-    let other = place("other.stl");
-    let refused =
-        touchoff(&[&["report", &other], &options[..], &["-o", &place("no.html")]].concat());
+    let refused = bench.touchoff(&format!("report other.stl {options} -o no.html"));
     assert_eq!(refused.status.code(), Some(2), "{}", stderr(&refused));
-    assert!(!Path::new(&place("no.html")).exists());
+    assert!(!bench.folder.path().join("no.html").exists());
 }
 
 #[test]
 fn inputs_are_never_overwritten() {
     let bench = Bench::new();
-    let place = |name: &str| bench.folder.path().join(name).display().to_string();
-    let part = std::fs::read(place("block.stl")).expect("a part");
-    let part = bench.write("part.html", part);
-    let program = bench.write("program.html", "0,0,1,0,0,1\n0,0,-0.5,0,0,1\n");
-    for output in [&part, &program] {
-        let before = std::fs::read(output).expect("a file");
-        let options = ["--unit", "mm", "--tool", "D2Ball", "--program", &program, "-o", output];
-        let refused = touchoff(&[&["report", &part], &options[..]].concat());
+    let part = std::fs::read(bench.place("block.stl")).expect("a part");
+    bench.write("part.html", part);
+    bench.write("program.html", "0,0,1,0,0,1\n0,0,-0.5,0,0,1\n");
+    let inputs = "part.html --unit mm --tool D2Ball --program program.html";
+    for output in ["part.html", "program.html"] {
+        let before = std::fs::read(bench.place(output)).expect("a file");
+        let refused = bench.touchoff(&format!("report {inputs} -o {output}"));
         assert_eq!(refused.status.code(), Some(2), "{}", stderr(&refused));
         assert!(stderr(&refused).contains("is also an input"), "{}", stderr(&refused));
-        assert_eq!(std::fs::read(output).expect("a file"), before);
+        assert_eq!(std::fs::read(bench.place(output)).expect("a file"), before);
     }
-    let refused = |arguments: &[&str], word: &str| {
-        let output = touchoff(&[&["report"], arguments].concat());
+    let refused = |arguments: &str, word: &str| {
+        let output = bench.touchoff(&format!("report {arguments}"));
         assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
         assert!(stderr(&output).contains(word), "{word}: {}", stderr(&output));
     };
-    let file = bench.write("job.toml", "part = \"part.html\"\n");
-    refused(&[&part, "--unit", "mm", "-o", "r.html"], "`--program`");
-    refused(
-        &[&part, "--unit", "mm", "--tool", "D2Ball", "--program", &program, "-o", "r.pdf"],
-        "`-o r.html`",
-    );
-    refused(&[&file, "--tool", "D2Ball", "-o", "r.html"], "leave out these options");
+    bench.write("job.toml", "part = \"part.html\"\n");
+    refused("part.html --unit mm -o r.html", "`--program`");
+    refused(&format!("{inputs} -o r.pdf"), "`-o r.html`");
+    refused("job.toml --tool D2Ball -o r.html", "leave out these options");
 }
 
 /// The verdict is that of `verify`, also where there is none.
 #[test]
 fn an_implausible_program_is_not_verified() {
     let bench = Bench::new();
-    let place = |name: &str| bench.folder.path().join(name).display().to_string();
-    let far = bench.write("far.csv", "900,0,1,0,0,1\n900,0,-0.5,0,0,1\n");
-    let page = Page::write(
-        &bench,
-        &[&place("block.stl"), "--unit", "mm", "--tool", "D2Ball", "--program", &far],
-    );
+    bench.write("far.csv", "900,0,1,0,0,1\n900,0,-0.5,0,0,1\n");
+    let page = Page::write(&bench, "block.stl --unit mm --tool D2Ball --program far.csv");
     assert_eq!(page.output.status.code(), Some(2), "{}", stderr(&page.output));
     assert!(page.text.contains("<strong>Not verified</strong>"), "the verdict");
     assert!(page.text.contains("never comes within the tool's diameter"), "the reason");
@@ -352,12 +323,11 @@ fn a_large_part_makes_a_bounded_file() {
             let sphere: Mesh = shapes::sphere(20.0, 6, Unit::Millimetre).expect("a sphere");
             bench.part("sphere.stl", &sphere);
             let program = bench.write("path.csv", "0,0,22,0,0,1\n0,0,19.8,0,0,1\n9,0,19.8,0,0,1\n");
-            (bench.folder.path().join("sphere.stl").display().to_string(), program)
+            (bench.place("sphere.stl"), program)
         }
     };
-    let options =
-        ["--unit", "mm", "--tool", "D2Ball", "--program", &program, "--tolerance", "0.01"];
-    let page = Page::write(&bench, &[&[&*part], &options[..]].concat());
+    let options = format!("--unit mm --tool D2Ball --program {program} --tolerance 0.01");
+    let page = Page::write(&bench, &format!("{part} {options}"));
     assert_eq!(page.output.status.code(), Some(1), "{}", stderr(&page.output));
     assert!(page.rows().len() == page.data("findings").as_array().expect("a list").len());
     assert_self_contained(&page);

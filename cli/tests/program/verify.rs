@@ -1,10 +1,8 @@
 //! `touchoff verify`: one line or object per finding, and exit statuses for scripts.
 
-use crate::bench::{Bench, shared, stderr, stdout, touchoff};
-use nalgebra::Point3;
+use crate::bench::{Bench, cuboid, objects, shared, stderr, stdout, touchoff};
 use serde_json::Value;
 use std::process::Output;
-use touchoff::mesh::shapes;
 use touchoff::{Mesh, Unit};
 
 /// Starts clear, goes 0.5 deep into the block between two points that are clear of it, and leaves in rapid
@@ -12,14 +10,9 @@ use touchoff::{Mesh, Unit};
 const PROGRAM: &str = "PARTNO/BLOCK\nUNITS/MM\nGOTO/-9,0,3,0,0,1\nGOTO/-9,0,-0.5,0,0,1\n\
                        GOTO/9,0,-0.5,0,0,1\nRAPID\nGOTO/9,0,3,0,0,1\nFINI\n";
 
-fn cuboid(low: [f64; 3], high: [f64; 3]) -> Mesh {
-    shapes::cuboid(Point3::from(low), Point3::from(high), Unit::Millimetre).expect("a cuboid")
-}
-
 fn verify(bench: &Bench, program: &str, tool: &str, more: &[&str]) -> Output {
-    let place = |name: &str| bench.folder.path().join(name).display().to_string();
-    let (part, program) = (place("block.stl"), place(program));
-    let tool = if tool.ends_with(".tool") { place(tool) } else { tool.to_owned() };
+    let (part, program) = (bench.place("block.stl"), bench.place(program));
+    let tool = if tool.ends_with(".tool") { bench.place(tool) } else { tool.to_owned() };
     let all = ["verify", "--part", &part, "--unit", "mm", "--tool", &tool, "--program", &program];
     touchoff(&[&all, more].concat())
 }
@@ -56,7 +49,7 @@ fn a_finding_is_an_object_for_programs() {
     let rows = |more: &[&str]| -> Vec<Value> {
         let output = verify(&bench, "block.apt", "D2Ball", &[&["--json"], more].concat());
         assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
-        stdout(&output).lines().map(|line| serde_json::from_str(line).expect("JSON")).collect()
+        objects(&output)
     };
     let found = rows(&["--tolerance", "0.01"]);
     let [row] = &found[..] else { panic!("{found:?}") };
@@ -158,31 +151,20 @@ fn motions_of_a_solid_are_proved_with_their_spin() {
 #[test]
 fn unknown_statements_are_refused() {
     let bench = Bench::new();
-    let part = bench.folder.path().join("block.stl").display().to_string();
     let words = "GOTOX/1,2,3|GO TO/1,2,3|LINEAR/1,2,3|ARC/1,2,3|DRILL/1|ORIGIN/0,0,35|CUTCOM/LEFT|MODE/INCR|\
                  THICK/-5|HEAD/2|CUTTER/50|INSERT G0 Z-5";
     for word in words.split('|') {
         let text = PROGRAM
             .replace("RAPID\n", &format!("{word}\n"))
             .replace("UNITS/MM", "UNITS/MM\nLOADTL/1\nCUTTER/2,1");
-        let file = bench.write("word.apt", text);
+        bench.write("word.apt", text);
         let output = verify(&bench, "word.apt", "D2Ball", &["--tolerance", "0.5"]);
         let said = stderr(&output);
         assert_eq!(output.status.code(), Some(2), "{word}: {said}");
         assert!(said.contains("word.apt:8: "), "{word}: {said}");
-        let run = touchoff(&[
-            "run",
-            "--part",
-            &part,
-            "--unit",
-            "mm",
-            "--tool",
-            "D2Ball",
-            "--program",
-            &file,
-            "--points",
-            "100",
-        ]);
+        let run = bench.touchoff(
+            "run --part block.stl --unit mm --tool D2Ball --program word.apt --points 100",
+        );
         assert_eq!(run.status.code(), Some(2), "{word}: {}", stderr(&run));
     }
     bench.write("wide.apt", PROGRAM.replace("UNITS/MM", "UNITS/MM\nCUTTER/50,25"));
@@ -262,29 +244,17 @@ fn a_part_without_an_inside_is_not_verified() {
     let inside_out = made(block.triangles().iter().map(|[a, b, c]| [*b, *a, *c]).collect());
     for (name, mesh) in [("leaky.stl", leaky), ("inside_out.stl", inside_out)] {
         bench.part(name, &mesh);
-        let part = bench.folder.path().join(name).display().to_string();
-        let program = bench.folder.path().join("block.apt").display().to_string();
-        let all =
-            ["verify", "--part", &part, "--unit", "mm", "--tool", "D2Ball", "--program", &program];
-        let status = |more: &[&str]| {
-            let output = touchoff(&[&all, more].concat());
+        let inputs = format!("--part {name} --unit mm --tool D2Ball");
+        let status = |more: &str| {
+            let line = format!("verify {inputs} --program block.apt --tolerance 0.5{more}");
+            let output = bench.touchoff(&line);
             (output.status.code(), stderr(&output))
         };
-        let (code, said) = status(&["--tolerance", "0.5"]);
+        let (code, said) = status("");
         assert_eq!(code, Some(2), "{name}: {said}");
         assert!(said.contains("inside is undefined"), "{name}: {said}");
-        assert_eq!(status(&["--tolerance", "0.5", "--surface-only"]).0, Some(0), "{name}");
-        let output = touchoff(&[
-            "sweep",
-            "--part",
-            &part,
-            "--unit",
-            "mm",
-            "--tool",
-            "D2Ball",
-            "--directions",
-            "8",
-        ]);
+        assert_eq!(status(" --surface-only").0, Some(0), "{name}");
+        let output = bench.touchoff(&format!("sweep {inputs} --directions 8"));
         assert_eq!(output.status.code(), Some(2), "{name}: {}", stderr(&output));
     }
 }
@@ -294,37 +264,15 @@ fn a_buried_tool_is_reported_inside() {
     let bench = Bench::new();
     bench.write("deep.csv", "0,0,-80,0,0,1\n0.5,0,-80,0,0,1\n");
     bench.part("large.stl", &cuboid([-100.0; 3], [100.0; 3]));
-    let part = bench.folder.path().join("large.stl").display().to_string();
-    let program = bench.folder.path().join("deep.csv").display().to_string();
-    let tool = ["--unit", "mm", "--tool", "D2Ball"];
-    let all = [&["verify", "--part", &part, "--program", &program][..], &tool].concat();
-    let rows = |more: &[&str]| -> Vec<Value> {
-        let output = touchoff(&[&all[..], &["--json"], more].concat());
-        assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
-        stdout(&output).lines().map(|line| serde_json::from_str(line).expect("JSON")).collect()
-    };
-    let whole = rows(&[]);
+    let inputs = "--part large.stl --program deep.csv --unit mm --tool D2Ball";
+    let output = bench.touchoff(&format!("verify {inputs} --json"));
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    let whole = objects(&output);
     assert!(
         whole.iter().all(|row| row["kind"] == "inside" && row["surface"].is_null()),
         "{whole:?}"
     );
-    let run =
-        [
-            &[
-                "run",
-                "--part",
-                &part,
-                "--program",
-                &program,
-                "--certify",
-                "1e-6",
-                "--points",
-                "100",
-            ][..],
-            &tool,
-        ]
-        .concat();
-    let output = touchoff(&run);
+    let output = bench.touchoff(&format!("run {inputs} --certify 1e-6 --points 100"));
     let said = stderr(&output);
     assert!(said.contains("wholly inside the material at 2 of 2 poses, first at line 1"), "{said}");
     assert!(stdout(&output).contains("wholly inside the material"), "{}", stdout(&output));
@@ -335,8 +283,7 @@ fn found(part: &str, program: &str) -> (u64, f64) {
     let all = ["verify", "--part", part, "--unit", "mm", "--tool", "D2Ball", "--program", program];
     let output = touchoff(&[&all[..], &["--tolerance", "0.01", "--json"]].concat());
     assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
-    let found: Vec<Value> =
-        stdout(&output).lines().map(|line| serde_json::from_str(line).expect("JSON")).collect();
+    let found = objects(&output);
     let deep = found.iter().filter(|row| row["kind"] == "deep");
     let depths = deep.clone().filter_map(|row| row["depth"][0].as_f64());
     (deep.filter_map(|row| row["motions"].as_u64()).sum(), depths.fold(0.0, f64::max))

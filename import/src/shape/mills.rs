@@ -2,7 +2,8 @@
 
 use super::ShapeError::{Contradiction, OutOfRange};
 use super::{
-    CORNER, Cutter, FACE, FLUTE, FormSegment, NECK, ShapeError, ball_on_neck, flat_tip, positive,
+    CORNER, Cutter, FACE, FLUTE, FormSegment, NECK, ShapeError, ball_on_neck, flat_end, flat_tip,
+    positive,
 };
 use crate::outline::{Outline, Term, cutting, plain};
 
@@ -14,14 +15,13 @@ impl Cutter {
         radius: &Term,
         corner: f64,
     ) -> Result<(), ShapeError> {
-        let zero = Term::number(0.0);
         self.check_corner(corner)?;
         if corner == 0.0 {
-            outline.line(radius, &zero, FACE);
+            flat_end(outline, radius);
         } else {
             let corner = outline.param("corner_radius", corner);
             let inner = radius.minus(&corner);
-            outline.line(&inner, &zero, FACE);
+            flat_end(outline, &inner);
             outline.arc([radius, &corner], [&inner, &corner], CORNER);
         }
         self.flutes(outline, radius)
@@ -114,7 +114,6 @@ impl Cutter {
         tip_diameter: f64,
         half_angle: f64,
     ) -> Result<(), ShapeError> {
-        let zero = Term::number(0.0);
         self.check_tip(tip_diameter)?;
         self.check_angle("taper angle", half_angle)?;
         if half_angle == 0.0 {
@@ -123,7 +122,7 @@ impl Cutter {
         let tip = outline.param("tip_diameter", tip_diameter).half();
         let angle = outline.angle("taper_angle", half_angle);
         if tip_diameter > 0.0 {
-            outline.line(&tip, &zero, FACE);
+            flat_end(outline, &tip);
         }
         let high = outline.define("high", radius.minus(&tip).over(&angle.tan()));
         outline.line(radius, &high, cutting("cone"));
@@ -145,12 +144,11 @@ impl Cutter {
         width: f64,
         angle: f64,
     ) -> Result<(), ShapeError> {
-        let zero = Term::number(0.0);
         self.check_corner(width)?;
         self.check_angle("chamfer angle", angle)?;
         let width = outline.param("chamfer_width", width);
         let angle = outline.angle("chamfer_angle", angle);
-        outline.line(&radius.minus(&width), &zero, FACE);
+        flat_end(outline, &radius.minus(&width));
         outline.line(radius, &width.times(&angle.tan()), cutting("chamfer"));
         self.flutes(outline, radius)
     }
@@ -170,12 +168,12 @@ impl Cutter {
         let mut edge = radius.clone();
         let mut from = zero.clone();
         if corner == 0.0 {
-            outline.line(radius, &zero, FACE);
+            flat_end(outline, radius);
         } else {
             // The arc passes the widest point before it meets the cone, which narrows upward.
             let corner = outline.param("corner_radius", corner);
             let inner = radius.minus(&corner);
-            outline.line(&inner, &zero, FACE);
+            flat_end(outline, &inner);
             edge = inner.plus(&corner.times(&angle.cos()));
             from = corner.plus(&corner.times(&angle.sin()));
             outline.arc([&edge, &from], [&inner, &corner], CORNER);
@@ -195,12 +193,10 @@ impl Cutter {
 
     /// Draws a ball on a neck.
     pub(super) fn lollipop(&self, outline: &mut Outline, radius: &Term) -> Result<(), ShapeError> {
-        let zero = Term::number(0.0);
         let neck = self.neck_diameter();
         // A neck as wide as the ball leaves its lower half.
         if neck >= self.diameter {
-            outline.arc([radius, radius], [&zero, radius], cutting("ball"));
-            return self.flutes(outline, radius);
+            return self.ball(outline, radius);
         }
         positive("neck's diameter", neck)?;
         let name = if self.has_neck() { "shoulder_diameter" } else { "shank_diameter" };
@@ -216,10 +212,9 @@ impl Cutter {
         radius: &Term,
         corner: f64,
     ) -> Result<(), ShapeError> {
-        let zero = Term::number(0.0);
         self.check_corner(corner)?;
         if corner == 0.0 {
-            outline.line(radius, &zero, FACE);
+            flat_end(outline, radius);
             return self.flutes(outline, radius);
         }
         let corner = outline.param("corner_radius", corner);
@@ -231,7 +226,7 @@ impl Cutter {
         };
         let inner = radius.minus(&corner);
         let upper = high.minus(&corner);
-        outline.line(&inner, &zero, FACE);
+        flat_end(outline, &inner);
         outline.arc([radius, &corner], [&inner, &corner], CORNER);
         // Below a wider neck a rounded edge would leave a gap that narrows to nothing.
         if self.neck_diameter() / 2.0 > inner.value() {
@@ -252,7 +247,7 @@ impl Cutter {
         max_diameter: f64,
     ) -> Result<(), ShapeError> {
         let zero = Term::number(0.0);
-        outline.line(radius, &zero, FACE);
+        flat_end(outline, radius);
         if corner <= 0.0 {
             return self.flutes(outline, radius);
         }
@@ -353,7 +348,7 @@ impl Cutter {
             outline.line(radius, &top, FLUTE);
             return Ok(());
         }
-        outline.line(radius, &zero, FACE);
+        flat_end(outline, radius);
         outline.line(radius, &thickness, FLUTE);
         Ok(())
     }

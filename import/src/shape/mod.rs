@@ -291,7 +291,7 @@ impl Cutter {
     ) -> Result<[Term; 2], ShapeError> {
         let zero = Term::number(0.0);
         if corner == 0.0 {
-            outline.line(radius, &zero, FACE);
+            flat_end(outline, radius);
             return Ok([radius.clone(), zero]);
         }
         let corner = outline.param("corner_radius", corner);
@@ -302,7 +302,7 @@ impl Cutter {
             return Err(Contradiction("corner radius", corner.value(), "diameter", self.diameter));
         }
         let inner = outline.define("inner", inner);
-        outline.line(&inner, &zero, FACE);
+        flat_end(outline, &inner);
         let d = inner.plus(&corner.times(&angle.cos()));
         let z = corner.minus(&corner.times(&angle.sin()));
         outline.arc([&d, &z], [&inner, &corner], CORNER);
@@ -413,14 +413,18 @@ impl Cutter {
     }
 }
 
+/// Draws the flat end of a cutter, from the axis to a radius.
+fn flat_end(outline: &mut Outline, radius: &Term) {
+    outline.line(radius, &Term::number(0.0), FACE);
+}
+
 /// Draws the flat tip of a cone, and returns its radius.
 fn flat_tip(outline: &mut Outline, diameter: f64) -> Term {
-    let zero = Term::number(0.0);
     if diameter == 0.0 {
-        return zero;
+        return Term::number(0.0);
     }
     let tip = outline.param("tip_diameter", diameter).half();
-    outline.line(&tip, &zero, FACE);
+    flat_end(outline, &tip);
     tip
 }
 

@@ -1,7 +1,7 @@
 //! Face mills and circle-segment mills.
 
 use super::ShapeError::{Contradiction, OutOfRange};
-use super::{CORNER, Cutter, FACE, FLUTE, Shape, ShapeError, flat_tip, positive};
+use super::{CORNER, Cutter, FACE, FLUTE, Shape, ShapeError, flat_end, flat_tip, positive};
 use crate::outline::{Outline, SAME, Term, cutting};
 
 impl Cutter {
@@ -90,11 +90,11 @@ impl Cutter {
             let lower = outline.param("lower_radius", lower);
             let (inner, touch, along) = edge(&lower, &waist.minus(&lower));
             let inner = outline.define("low", inner);
-            outline.line(&inner, &zero, FACE);
+            flat_end(outline, &inner);
             outline.arc([&touch, &waist.minus(&along)], [&inner, &lower], CORNER);
         } else {
             let (inner, ..) = edge(&zero, &waist);
-            outline.line(&inner, &zero, FACE);
+            flat_end(outline, &inner);
         }
         // Below a wider neck a rounded edge would leave a gap that narrows to nothing.
         let end = radius.value() - flank.value()

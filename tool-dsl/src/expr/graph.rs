@@ -10,6 +10,31 @@ use std::collections::HashMap;
 pub(crate) type EvaluationOrders = Box<[Box<[Id]>]>;
 
 /// Expressions with shared subexpressions.
+///
+/// # Normal form
+///
+/// Expressions are rewritten while they are built, so that constants meet, and that one function seldom has two forms. The nodes
+/// have these forms, where `x` is a constant and `e` and `f` are other nodes:
+///
+/// | node | form |
+/// |---|---|
+/// | `Neg` | `-e`, where `e` is no `Neg`, no `Sub`, and neither `f + x` nor `x · f` |
+/// | `Add` | `e + x` with `x ≠ 0`, or `e + f`. No operand is a `Neg` |
+/// | `Sub` | `x - e` with `x ≠ 0`, where `e` is no `Sub`, or `e - f` with `e ≠ f`. The second operand is no `Neg` |
+/// | `Add`, `Sub` | Operands have no constant of their own: they are neither `f + x` nor `x - f` |
+/// | `Mul` | Operands are in the order of ids. One of them may be a constant other than 0, 1 and -1. None is a `Neg` or `x · f`. A square is not `d · d` and not `(x - e)²` |
+/// | `Div`, `Quotient` | The divisor is no constant, the dividend is not 0. `e / e` is a `Quotient` only |
+/// | `Min`, `Max` | Operands differ and are in the order of ids. One of them may be a constant |
+/// | `Abs` | The operand is no constant, `Neg`, `Abs`, `Sqrt`, `D` or `Q` |
+/// | `Sqrt` | The operand is no constant and not `Q` |
+/// | `Select` | The sides differ. One of the compared expressions may be a constant |
+///
+/// Here `x · e` is a product whose first operand is the constant. A constant that was added later than the other operand stands
+/// second, and stays where it is.
+///
+/// Every rule is an identity of real numbers, so it keeps values exactly. Only arithmetic between constants rounds, to 256 bits. The
+/// rules that drop an operand (`e - e`, `e / e`, `0 · e`, `0 / e`) may define an expression at more points. Recursion ends: apart from
+/// a swap of the operands, every rule computes with constants, removes a `Neg`, or takes an operand apart.
 #[derive(Clone, Debug, Default)]
 pub struct Graph {
     nodes: Vec<Node>,
@@ -148,78 +173,86 @@ impl Graph {
         self.put(Node::Coord(coord))
     }
 
+    /// Reads the form of a node.
+    fn form(&self, id: Id) -> Form {
+        let constant = |id| self.constant(id).cloned();
+        match *self.node(id) {
+            Node::Const(ref x) => Form::Constant(x.clone()),
+            Node::Neg(e) => Form::Opposite(e),
+            Node::Add(e, c) if let Some(x) = constant(c) => Form::Shifted(e, x),
+            Node::Sub(c, e) if let Some(x) = constant(c) => Form::Mirrored(x, e),
+            Node::Mul(c, e) if let Some(x) = constant(c) => Form::Scaled(x, e),
+            _ => Form::Other,
+        }
+    }
+
+    /// `e + x`
+    fn shifted(&mut self, e: Id, x: Number) -> Id {
+        let c = self.number(x);
+        self.add(e, c)
+    }
+
+    /// `x - e`
+    fn mirrored(&mut self, x: Number, e: Id) -> Id {
+        let c = self.number(x);
+        self.sub(c, e)
+    }
+
+    /// `x · e`
+    fn scaled(&mut self, x: Number, e: Id) -> Id {
+        let c = self.number(x);
+        self.mul(c, e)
+    }
+
     /// `-a`
     pub fn neg(&mut self, a: Id) -> Id {
-        match self.node(a).clone() {
-            Node::Const(value) => self.number(-&value),
-            Node::Neg(inner) => inner,
-            Node::Sub(u, v) => self.sub(v, u),
-            Node::Add(u, v) if self.constant(v).is_some() => {
-                let shift = self.neg(v);
-                self.sub(shift, u)
-            }
-            Node::Mul(c, v) if self.constant(c).is_some() => {
-                let factor = self.neg(c);
-                self.mul(factor, v)
-            }
-            _ => self.put(Node::Neg(a)),
+        match self.form(a) {
+            Form::Constant(x) => self.number(-&x),
+            Form::Opposite(e) => e,
+            Form::Shifted(e, x) => self.mirrored(-&x, e),
+            Form::Scaled(x, e) => self.scaled(-&x, e),
+            Form::Mirrored(..) | Form::Other => match *self.node(a) {
+                Node::Sub(u, v) => self.sub(v, u),
+                _ => self.put(Node::Neg(a)),
+            },
         }
     }
 
-    /// Splits a node into `rest + constant`, if it visibly is such a sum.
-    fn split(&self, id: Id) -> Option<(Id, Number)> {
-        match self.node(id) {
-            Node::Add(rest, shift) => Some((*rest, self.constant(*shift)?.clone())),
-            _ => None,
-        }
-    }
-
-    /// `a + b`. Constants move outward, so that the frame's shift and the file's own numbers meet and are
-    /// rounded once.
+    /// `a + b`. Constants move outward, so that the frame's shift and the file's own numbers meet and are rounded once.
     pub fn add(&mut self, a: Id, b: Id) -> Id {
-        match (self.node(a).clone(), self.node(b).clone()) {
-            (Node::Const(x), Node::Const(y)) => return self.number(&x + &y),
-            (Node::Const(x), _) if x.is_zero() => return b,
-            (_, Node::Const(y)) if y.is_zero() => return a,
-            (Node::Const(_), _) => return self.add(b, a),
-            (Node::Sub(c, v), Node::Const(y)) => {
-                if let Some(x) = self.constant(c).cloned() {
-                    let shift = self.number(&x + &y);
-                    return self.sub(shift, v);
-                }
+        use Form::{Constant, Mirrored, Opposite, Shifted};
+        match (self.form(a), self.form(b)) {
+            (Constant(x), Constant(y)) => self.number(&x + &y),
+            (Constant(x), _) if x.is_zero() => b,
+            (_, Constant(y)) if y.is_zero() => a,
+            (Constant(_), _) => self.add(b, a),
+            (Mirrored(x, e), Constant(y)) => self.mirrored(&x + &y, e),
+            (_, Opposite(f)) => self.sub(a, f),
+            (Opposite(e), _) => self.sub(b, e),
+            (Shifted(e, x), Constant(y)) => self.shifted(e, &x + &y),
+            (Shifted(e, x), Shifted(f, y)) => {
+                let sum = self.add(e, f);
+                self.shifted(sum, &x + &y)
             }
-            (_, Node::Neg(v)) => return self.sub(a, v),
-            (Node::Neg(v), _) => return self.sub(b, v),
-            _ => {}
-        }
-        if let Some((rest, shift)) = self.split(a) {
-            let (sum, shift) = match (self.constant(b).cloned(), self.split(b)) {
-                (Some(more), _) => (rest, &shift + &more),
-                (None, Some((other, more))) => (self.add(rest, other), &shift + &more),
-                (None, None) => (self.add(rest, b), shift),
-            };
-            let shift = self.number(shift);
-            return self.add(sum, shift);
-        }
-        if let Some((rest, shift)) = self.split(b) {
-            let sum = self.add(a, rest);
-            let shift = self.number(shift);
-            return self.add(sum, shift);
-        }
-        if self.is_square(a, Coord::X) && self.is_square(b, Coord::Y) {
-            return self.coord(Coord::Q);
-        }
-        // (c - v) + b = (b - v) + c
-        for (difference, other) in [(a, b), (b, a)] {
-            if let Node::Sub(c, v) = *self.node(difference)
-                && self.constant(c).is_some()
-                && self.constant(other).is_none()
-            {
-                let rest = self.sub(other, v);
-                return self.add(rest, c);
+            (Shifted(e, x), _) => {
+                let sum = self.add(e, b);
+                self.shifted(sum, x)
             }
+            (_, Shifted(f, y)) => {
+                let sum = self.add(a, f);
+                self.shifted(sum, y)
+            }
+            (Mirrored(x, e), _) => {
+                let difference = self.sub(b, e);
+                self.shifted(difference, x)
+            }
+            (_, Mirrored(y, f)) => {
+                let difference = self.sub(a, f);
+                self.shifted(difference, y)
+            }
+            _ if self.is_square(a, Coord::X) && self.is_square(b, Coord::Y) => self.coord(Coord::Q),
+            _ => self.put(Node::Add(a, b)),
         }
-        self.put(Node::Add(a, b))
     }
 
     fn is_square(&self, id: Id, of: Coord) -> bool {
@@ -228,140 +261,101 @@ impl Graph {
 
     /// `a - b`
     pub fn sub(&mut self, a: Id, b: Id) -> Id {
-        if a == b {
-            return self.int(0);
-        }
-        match (self.node(a).clone(), self.node(b).clone()) {
-            (Node::Const(x), Node::Const(y)) => return self.number(&x - &y),
-            (_, Node::Const(y)) => {
-                let shift = self.number(-&y);
-                return self.add(a, shift);
+        use Form::{Constant, Mirrored, Opposite, Shifted};
+        match (self.form(a), self.form(b)) {
+            _ if a == b => self.int(0),
+            (Constant(x), Constant(y)) => self.number(&x - &y),
+            (_, Constant(y)) => self.shifted(a, -&y),
+            (_, Opposite(f)) => self.add(a, f),
+            (Constant(x), Shifted(f, y)) => self.mirrored(&x - &y, f),
+            (Constant(x), Mirrored(y, f)) => self.shifted(f, &x - &y),
+            (Constant(x), _) if x.is_zero() => self.neg(b),
+            (Constant(x), _) => match *self.node(b) {
+                Node::Sub(u, v) => {
+                    let opposite = self.sub(v, u);
+                    self.shifted(opposite, x)
+                }
+                _ => self.put(Node::Sub(a, b)),
+            },
+            (Shifted(e, x), Shifted(f, y)) => {
+                let difference = self.sub(e, f);
+                self.shifted(difference, &x - &y)
             }
-            (_, Node::Neg(v)) => return self.add(a, v),
-            (Node::Const(x), _) => {
-                if let Some((rest, shift)) = self.split(b) {
-                    let shift = self.number(&x - &shift);
-                    return self.sub(shift, rest);
-                }
-                if let Node::Sub(c, v) = *self.node(b)
-                    && let Some(y) = self.constant(c).cloned()
-                {
-                    let shift = self.number(&x - &y);
-                    return self.add(v, shift);
-                }
-                if x.is_zero() {
-                    return self.neg(b);
-                }
-                if let Node::Sub(u, v) = *self.node(b) {
-                    // c - (u - v) = (v - u) + c
-                    let rest = self.sub(v, u);
-                    return self.add(rest, a);
-                }
-                return self.put(Node::Sub(a, b));
+            (Shifted(e, x), _) => {
+                let difference = self.sub(e, b);
+                self.shifted(difference, x)
             }
-            _ => {}
+            (_, Shifted(f, y)) => {
+                let difference = self.sub(a, f);
+                self.shifted(difference, -&y)
+            }
+            (Mirrored(x, e), _) => {
+                let sum = self.add(e, b);
+                self.mirrored(x, sum)
+            }
+            (_, Mirrored(y, f)) => {
+                let sum = self.add(a, f);
+                let c = self.number(y);
+                self.sub(sum, c)
+            }
+            _ => self.put(Node::Sub(a, b)),
         }
-        if let Some((rest, shift)) = self.split(a) {
-            let (difference, shift) = match self.split(b) {
-                Some((other, less)) => (self.sub(rest, other), &shift - &less),
-                None => (self.sub(rest, b), shift),
-            };
-            let shift = self.number(shift);
-            return self.add(difference, shift);
-        }
-        if let Some((rest, shift)) = self.split(b) {
-            let difference = self.sub(a, rest);
-            let shift = self.number(-&shift);
-            return self.add(difference, shift);
-        }
-        if let Node::Sub(c, v) = *self.node(a)
-            && self.constant(c).is_some()
-        {
-            // (c - v) - b = c - (v + b)
-            let sum = self.add(v, b);
-            return self.sub(c, sum);
-        }
-        if let Node::Sub(c, v) = *self.node(b)
-            && self.constant(c).is_some()
-        {
-            // a - (c - v) = (a + v) - c
-            let sum = self.add(a, v);
-            return self.sub(sum, c);
-        }
-        self.put(Node::Sub(a, b))
     }
 
-    /// `a · b`, with a constant factor first. `d · d` becomes `Q`, which needs no root.
+    /// `a · b`. `d · d` becomes `Q`, which needs no root, and `(x - e)²` becomes `(e - x)²`, so that a square has one form only.
     pub fn mul(&mut self, a: Id, b: Id) -> Id {
-        match (self.node(a).clone(), self.node(b).clone()) {
-            (Node::Const(x), Node::Const(y)) => return self.number(&x * &y),
-            (_, Node::Const(_)) => return self.mul(b, a),
-            (Node::Const(x), _) if x.is_zero() => return a,
-            (Node::Const(x), _) if x == Number::int(1) => return b,
-            (Node::Const(x), _) if x == Number::int(-1) => return self.neg(b),
-            (Node::Const(x), Node::Mul(c, v)) => {
-                if let Some(y) = self.constant(c).cloned() {
-                    let factor = self.number(&x * &y);
-                    return self.mul(factor, v);
-                }
+        use Form::{Constant, Mirrored, Opposite, Scaled};
+        match (self.form(a), self.form(b)) {
+            (Constant(x), Constant(y)) => self.number(&x * &y),
+            (_, Constant(_)) => self.mul(b, a),
+            (Constant(x), _) if x.is_zero() => a,
+            (Constant(x), _) if x == Number::int(1) => b,
+            (Constant(x), _) if x == Number::int(-1) => self.neg(b),
+            (Constant(x), Scaled(y, f)) => self.scaled(&x * &y, f),
+            (Constant(x), Opposite(f)) => self.scaled(-&x, f),
+            (Opposite(e), Opposite(f)) => self.mul(e, f),
+            (Opposite(e), _) => {
+                let product = self.mul(e, b);
+                self.neg(product)
             }
-            (Node::Const(x), Node::Neg(v)) => {
-                let factor = self.number(-&x);
-                return self.mul(factor, v);
+            (_, Opposite(f)) => {
+                let product = self.mul(a, f);
+                self.neg(product)
             }
-            (Node::Neg(u), Node::Neg(v)) => return self.mul(u, v),
-            (Node::Sub(c, v), _) if a == b && self.constant(c).is_some() => {
-                // (c - v)² = (v - c)², so that a square has one form only.
-                let root = self.sub(v, c);
-                return self.mul(root, root);
+            (Scaled(x, e), _) => {
+                let product = self.mul(e, b);
+                self.scaled(x, product)
             }
-            (Node::Neg(u), _) => {
-                let product = self.mul(u, b);
-                return self.neg(product);
+            (_, Scaled(y, f)) => {
+                let product = self.mul(a, f);
+                self.scaled(y, product)
             }
-            (_, Node::Neg(v)) => {
-                let product = self.mul(a, v);
-                return self.neg(product);
+            (Mirrored(x, e), _) if a == b => {
+                let root = self.shifted(e, -&x);
+                self.mul(root, root)
             }
-            (Node::Coord(Coord::D), Node::Coord(Coord::D)) => return self.coord(Coord::Q),
-            (Node::Mul(c, v), _) if self.constant(c).is_some() => {
-                let product = self.mul(v, b);
-                return self.mul(c, product);
-            }
-            (_, Node::Mul(c, v)) if self.constant(c).is_some() => {
-                let product = self.mul(a, v);
-                return self.mul(c, product);
-            }
-            _ => {}
+            _ if a == b && *self.node(a) == Node::Coord(Coord::D) => self.coord(Coord::Q),
+            _ => self.put(Node::Mul(a.min(b), a.max(b))),
         }
-        let (a, b) = (a.min(b), a.max(b));
-        self.put(Node::Mul(a, b))
     }
 
-    /// `a / b`; `None` if `b` is the constant 0. A constant divisor becomes a factor.
+    /// `a / b`; `None` if `b` is the constant 0. Another constant divisor becomes a factor.
     pub fn div(&mut self, a: Id, b: Id) -> Option<Id> {
-        if let Some(divisor) = self.constant(b).cloned() {
-            let factor = Number::int(1).checked_div(&divisor)?;
-            if let Some(value) = self.constant(a).cloned() {
-                return Some(self.number(&value / &divisor));
-            }
-            let factor = self.number(factor);
-            return Some(self.mul(factor, a));
-        }
-        if self.is_int(a, 0) {
-            return Some(a);
-        }
-        Some(if a == b { self.int(1) } else { self.put(Node::Div(a, b)) })
+        Some(match (self.constant(a), self.constant(b)) {
+            (_, Some(y)) if y.is_zero() => return None,
+            (Some(x), Some(y)) => self.number(x / y),
+            (None, Some(y)) => self.scaled(&Number::int(1) / y, a),
+            (Some(x), None) if x.is_zero() => a,
+            _ if a == b => self.int(1),
+            _ => self.put(Node::Div(a, b)),
+        })
     }
 
     /// `a / b`, and 0 where `b` is 0.
     pub fn quotient(&mut self, a: Id, b: Id) -> Id {
         match self.constant(b).cloned() {
             Some(divisor) if divisor.is_zero() => self.int(0),
-            Some(divisor) => {
-                let factor = self.number(&Number::int(1) / &divisor);
-                self.mul(factor, a)
-            }
+            Some(divisor) => self.scaled(&Number::int(1) / &divisor, a),
             None if self.is_int(a, 0) => a,
             None => self.put(Node::Quotient(a, b)),
         }
@@ -440,6 +434,21 @@ impl Graph {
             _ => self.put(Node::Select { low, high, then, other }),
         }
     }
+}
+
+/// The form of a node, as far as the rules for sums and products tell forms apart.
+enum Form {
+    /// `x`
+    Constant(Number),
+    /// `-e`
+    Opposite(Id),
+    /// `e + x`
+    Shifted(Id, Number),
+    /// `x - e`
+    Mirrored(Number, Id),
+    /// `x · e`
+    Scaled(Number, Id),
+    Other,
 }
 
 /// The id of a node of a [`Graph`](super::Graph). A node's operands have smaller ids than the node.

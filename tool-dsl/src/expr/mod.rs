@@ -52,11 +52,9 @@
 //! 1. **Order.** An operand's id is less than its node's. A walk in the order of ids needs no recursion.
 //! 2. **Sharing.** Equal nodes are one node: `a == b` for ids means that two expressions have the same form.
 //!    Two expressions with different ids may still be the same function.
-//! 3. **Folding.** A node whose operands are constants is a constant; `0 + a`, `1 · a`, `a - a`, `a / a` and
-//!    a double negation do not exist. Constants move outward through sums and products, so that the frame's
-//!    shift and the numbers of a text meet in 256 bits and are rounded once. Folding keeps the meaning
-//!    wherever the unfolded expression is defined, and may define it elsewhere: `a / a` is 1 at a zero of
-//!    `a`.
+//! 3. **Normal form.** A node has the form that [`Graph`] states. A node whose operands are constants is a constant. Rewriting
+//!    keeps the meaning wherever the expression is defined as it was written, and may define it elsewhere: `a / a` is 1 at a zero
+//!    of `a`.
 //! 4. **Radius.** `d · d` is `Q`, `√Q` is `D`, `x² + y²`, in this order, is `Q`: no root is computed where none is needed.
 //! 5. **Height.** At most 300 operations lie between an expression of a text and a coordinate
 //!    (`resolve::lower` refuses more), so a recursive walk does not exhaust the stack.

@@ -251,15 +251,13 @@ impl MachineProgram {
         let origin = Vector3::new(x, y, z);
         let frames: Vec<_> =
             links.iter().map(|link| MoveFrame { link: *link, origin, unit }).collect();
-        let steps = Interpreter::new(&self.text, &self.setup).into_iter().flatten();
-        let mut resolver =
-            Resolver::new(&self.machine, &self.setup, self.off_is_tip, self.unnamed_tool);
+        // The program exists because an execution had no error, and every execution has the same steps.
+        let reason = "the execution that created the program had no error";
+        let steps = self.execute().expect(reason);
         // The line at which the tool stands, and the tool.
         let mut from: Option<(usize, Option<u32>)> = None;
-        // The first run has read and resolved every step.
-        let steps = steps.map(|step| step.expect("a step that was read before"));
         Ok(steps.map(move |step| {
-            let resolved = resolver.resolve(&step).expect("a step that was resolved before");
+            let (step, resolved) = step.expect(reason);
             let tool = step.state.tool;
             from = from.filter(|(_, before)| !restarts || *before == tool);
             if !is_wanted(tool) {
@@ -280,6 +278,15 @@ impl MachineProgram {
         MachineProgramError::Gcode { file: self.file.clone(), line, fault }
     }
 
+    /// Begins an execution of the program.
+    fn execute(&self) -> Result<Execution<'_>, MachineProgramError> {
+        let interpreter =
+            Interpreter::new(&self.text, &self.setup).map_err(|error| self.error(error))?;
+        let resolver =
+            Resolver::new(&self.machine, &self.setup, self.off_is_tip, self.unnamed_tool);
+        Ok(Execution { program: self, interpreter, resolver })
+    }
+
     /// Runs the program once. `is_placed` is set if the origin of the part is known.
     fn run(&self, is_placed: bool) -> Result<(MachineSummary, LengthOffsets), MachineProgramError> {
         let mut offsets = LengthOffsets::default();
@@ -287,17 +294,9 @@ impl MachineProgram {
         let mut uses: BTreeMap<Option<u32>, usize> = BTreeMap::new();
         let mut seen: Vec<(Option<u32>, usize)> = Vec::new();
         let mut is_last_singular = false;
-        let mut interpreter =
-            Interpreter::new(&self.text, &self.setup).map_err(|error| self.error(error))?;
-        let mut resolver =
-            Resolver::new(&self.machine, &self.setup, self.off_is_tip, self.unnamed_tool);
-        for step in interpreter.by_ref() {
-            let step = step.map_err(|error| self.error(error))?;
-            let resolved = resolver.resolve(&step).map_err(|fault| MachineProgramError::Step {
-                file: self.file.clone(),
-                line: step.line,
-                fault,
-            })?;
+        let mut execution = self.execute()?;
+        while let Some(step) = execution.next() {
+            let (step, resolved) = step?;
             let number = step.state.tool;
             if !matches!(resolved, Resolved::ToolChange)
                 && !seen.iter().any(|(tool, _)| *tool == number)
@@ -342,7 +341,7 @@ impl MachineProgram {
                 summary.tools.len() - 1
             });
             summary.tools[index].motions += 1;
-            let other = resolver.other_length(&step.state).filter(|_| !step.rapid);
+            let other = execution.resolver.other_length(&step.state).filter(|_| !step.rapid);
             if let Some((register, tool)) = other
                 && !summary.other_lengths.iter().any(|known| (known.1, known.2) == (register, tool))
             {
@@ -360,15 +359,39 @@ impl MachineProgram {
                 is_last_singular = pass.is_some();
             }
         }
-        summary.notes = interpreter.notes();
-        summary.open_rules.clone_from(interpreter.asked());
-        summary.open_rules.extend(resolver.asked);
+        summary.notes = execution.interpreter.notes();
+        summary.open_rules.clone_from(execution.interpreter.asked());
+        summary.open_rules.extend(execution.resolver.asked);
         let unchecked = seen.into_iter().filter(|(tool, _)| !uses.contains_key(tool));
         summary.unchecked_tools =
             unchecked.filter_map(|(tool, line)| Some((tool?, line))).collect();
         let mut linear = self.machine.axes().iter().filter(|axis| !axis.letter.is_rotary());
         summary.limits_unchecked = !is_placed && linear.any(|axis| axis.limits.is_some());
         Ok((summary, offsets))
+    }
+}
+
+/// An execution of a program: its steps, with what the machine makes of each.
+struct Execution<'a> {
+    program: &'a MachineProgram,
+    interpreter: Interpreter<'a>,
+    resolver: Resolver<'a>,
+}
+
+impl Iterator for Execution<'_> {
+    type Item = Result<(Step, Resolved), MachineProgramError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let program = self.program;
+        let step = self.interpreter.next()?.map_err(|error| program.error(error));
+        Some(step.and_then(|step| {
+            let (file, line) = (&program.file, step.line);
+            let resolved = self
+                .resolver
+                .resolve(&step)
+                .map_err(|fault| MachineProgramError::Step { file: file.clone(), line, fault })?;
+            Ok((step, resolved))
+        }))
     }
 }
 

@@ -527,7 +527,7 @@ pub(super) fn o_word(cursor: &mut Cursor, parameters: &Parameters) -> Result<OWo
 }
 
 /// A G or M word: its letter, and its number in tenths (`G43.4` is 434).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Code {
     pub(super) letter: char,
     pub(super) tenths: u32,

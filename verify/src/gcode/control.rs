@@ -8,7 +8,7 @@ mod refuse;
 
 use super::block::{Block, Code, Group};
 use super::error::{combination, not_read};
-use super::note::{Notes, Subject};
+use super::note::{NoteKind, Notes};
 use super::rules::{Choice, ControlRules, Rule};
 use super::state::{ControlState, LengthOffset, Position, Rotation, Tcp, WorkOffset};
 use super::{ControlSetup, GcodeFault, Plane, Step, StepPath};
@@ -331,10 +331,10 @@ impl Control {
     /// Notes the words that are passed over.
     fn note_words(&mut self, block: &Block) {
         for code in &block.passed_over {
-            self.notes.add(self.line, Subject::PassedOver(*code));
+            self.notes.add(self.line, NoteKind::PassedOver { word: code.to_string() });
         }
         if block.has('S') {
-            self.notes.add(self.line, Subject::PassedOver(Code { letter: 'S', tenths: 0 }));
+            self.notes.add(self.line, NoteKind::PassedOver { word: "S".to_owned() });
         }
     }
 
@@ -418,7 +418,7 @@ impl Control {
         if let Some(code) = block.code_of(Group::PathControl) {
             path_control(block, code)?;
             self.modal.exact_path = matches!(code.tenths, 610 | 611);
-            self.notes.add(self.line, Subject::PassedOver(code));
+            self.notes.add(self.line, NoteKind::PassedOver { word: code.to_string() });
         }
         Ok(())
     }
@@ -498,7 +498,7 @@ impl Control {
     /// Adds a step from the present position, and moves there.
     fn push(&mut self, rapid: bool, end: Position, commanded: [bool; 6], path: StepPath) {
         if !self.modal.exact_path && !matches!(path, StepPath::ToolChange(_)) {
-            self.notes.add_once(self.line, Subject::RoundedCorners);
+            self.notes.add_once(self.line, NoteKind::RoundedCorners);
         }
         let start = std::mem::replace(&mut self.position, end);
         let spindle = match self.modal.motion {

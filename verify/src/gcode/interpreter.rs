@@ -6,7 +6,7 @@ use super::error::{combination, missing};
 use super::expression::Parameters;
 use super::flow::{self, Flow};
 use super::linuxcnc;
-use super::note::Subject;
+use super::note::NoteKind;
 use super::rules::{Choice, Rule};
 use super::{ControlSetup, GcodeError, GcodeFault, Step};
 use std::collections::BTreeMap;
@@ -64,8 +64,8 @@ impl<'a> Interpreter<'a> {
             control.state_rule(Rule::Dialect, Choice::Heidenhain);
         }
         if let Some((line, has_blocks)) = extent.left_out {
-            let subject = if has_blocks { Subject::OtherProgram } else { Subject::TextAfterEnd };
-            control.notes.add(line, subject);
+            let kind = if has_blocks { NoteKind::OtherProgram } else { NoteKind::TextAfterEnd };
+            control.notes.add(line, kind);
         }
         let first = Interpreter {
             flow,
@@ -167,18 +167,18 @@ impl<'a> Interpreter<'a> {
             let first = self.switch.get_or_insert_with(|| text[..digits].to_owned());
             // `/2` is a switch of its own on Fanuc and Siemens.
             if *first != text[..digits] {
-                self.control.notes.add(line, Subject::OptionalSwitches);
+                self.control.notes.add(line, NoteKind::OptionalSwitches);
             }
         }
         if is_optional && self.control.choice(Rule::OptionalBlocks) == Choice::LeftOut {
-            self.control.notes.add(line, Subject::OmittedOptionalBlock);
+            self.control.notes.add(line, NoteKind::OmittedOptionalBlock);
             return Ok(());
         }
         self.control.check_line(text)?;
         block.parse(text, &mut self.parameters)?;
         self.control.check_assignment(block)?;
         if is_optional {
-            self.control.notes.add(line, Subject::ExecutedOptionalBlock);
+            self.control.notes.add(line, NoteKind::ExecutedOptionalBlock);
         }
         // A line with an O-word has no other word.
         if let Some(word) = block.label.take() {
@@ -219,15 +219,15 @@ impl<'a> Interpreter<'a> {
             Some(20 | 300) => {
                 self.finish(End::Stop);
                 if let Some(line) = self.flow.text_after_end() {
-                    self.control.notes.add(line, Subject::TextAfterEnd);
+                    self.control.notes.add(line, NoteKind::TextAfterEnd);
                 }
                 if let Some(line) = self.flow.other_program() {
-                    self.control.notes.add(line, Subject::OtherProgram);
+                    self.control.notes.add(line, NoteKind::OtherProgram);
                 }
             }
             Some(_) => {
                 self.control.pause_spindle();
-                self.control.notes.add(line, Subject::Stop);
+                self.control.notes.add(line, NoteKind::Stop);
             }
             None => {}
         }

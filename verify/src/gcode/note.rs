@@ -1,6 +1,5 @@
 //! Notes: what a program leaves to the control, and words that were passed over.
 
-use super::block::Code;
 use std::collections::BTreeMap;
 use std::fmt;
 
@@ -22,7 +21,7 @@ pub struct ProgramNote {
 pub enum NoteKind {
     /// A word that can neither move the tool nor change what positions mean.
     PassedOver {
-        /// The word.
+        /// A G or M word, or the letter of another.
         word: String,
     },
     /// A motion without G61: the control may round its corners, by a tolerance of its own.
@@ -101,70 +100,31 @@ impl fmt::Display for NoteKind {
     }
 }
 
-/// A subject that is compared without allocating.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Subject {
-    PassedOver(Code),
-    RoundedCorners,
-    OffsetOrShift,
-    ToolChange,
-    Stop,
-    ExecutedOptionalBlock,
-    OmittedOptionalBlock,
-    TextAfterEnd,
-    OtherProgram,
-    OptionalSwitches,
-    TwoRadii,
-    RoundedRadius,
-}
-
 /// The notes of a program.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Notes {
     /// First line and number.
-    found: BTreeMap<Subject, (usize, usize)>,
+    found: BTreeMap<NoteKind, (usize, usize)>,
 }
 
 impl Notes {
-    pub(super) fn add(&mut self, line: usize, subject: Subject) {
-        self.found.entry(subject).or_insert((line, 0)).1 += 1;
+    /// Adds a note.
+    pub(super) fn add(&mut self, line: usize, kind: NoteKind) {
+        self.found.entry(kind).or_insert((line, 0)).1 += 1;
     }
 
     /// Adds a subject whose number says nothing.
-    pub(super) fn add_once(&mut self, line: usize, subject: Subject) {
-        self.found.entry(subject).or_insert((line, 1));
+    pub(super) fn add_once(&mut self, line: usize, kind: NoteKind) {
+        self.found.entry(kind).or_insert((line, 1));
     }
 
     /// Returns the notes.
     pub(super) fn list(&self) -> Vec<ProgramNote> {
-        let notes = self.found.iter().map(|(subject, (line, count))| ProgramNote {
+        let notes = self.found.iter().map(|(kind, (line, count))| ProgramNote {
             line: *line,
             count: *count,
-            kind: subject.kind(),
+            kind: kind.clone(),
         });
         notes.collect()
-    }
-}
-
-impl Subject {
-    fn kind(self) -> NoteKind {
-        match self {
-            // A tool, a speed or an edge is noted by its letter alone.
-            Subject::PassedOver(Code { letter, .. }) if !"GM".contains(letter) => {
-                NoteKind::PassedOver { word: letter.to_string() }
-            }
-            Subject::PassedOver(code) => NoteKind::PassedOver { word: code.to_string() },
-            Subject::RoundedCorners => NoteKind::RoundedCorners,
-            Subject::OffsetOrShift => NoteKind::OffsetOrShift,
-            Subject::ToolChange => NoteKind::ToolChange,
-            Subject::Stop => NoteKind::Stop,
-            Subject::ExecutedOptionalBlock => NoteKind::ExecutedOptionalBlock,
-            Subject::OmittedOptionalBlock => NoteKind::OmittedOptionalBlock,
-            Subject::TextAfterEnd => NoteKind::TextAfterEnd,
-            Subject::OtherProgram => NoteKind::OtherProgram,
-            Subject::OptionalSwitches => NoteKind::OptionalSwitches,
-            Subject::TwoRadii => NoteKind::TwoRadii,
-            Subject::RoundedRadius => NoteKind::RoundedRadius,
-        }
     }
 }

@@ -4,7 +4,7 @@ use super::program::{Program, read_control};
 use super::{Hand, JobError, checked_margin};
 use crate::ToolSelection;
 use crate::gcode::{Choice, ControlRules, ControlSetup, Rule};
-use serde::Deserialize;
+use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -60,9 +60,11 @@ pub enum JobTools {
     },
 }
 
-/// A tool by its name, for a loader of tools.
-#[derive(Clone, Debug, Default)]
+/// A tool by its name, for a loader of tools, and its use in a job.
+#[derive(Clone, Debug)]
 pub struct NamedTool {
+    /// The motions that it makes.
+    pub motions: ToolSelection,
     /// A built-in tool, a `.tool` file, or a tool of the library.
     pub name: OsString,
     /// The library.
@@ -71,16 +73,6 @@ pub struct NamedTool {
     pub params: Vec<String>,
     /// The folder below which the file may mount others, if not its own.
     pub root: Option<PathBuf>,
-}
-
-/// A tool that a program uses.
-#[derive(Clone, Debug)]
-#[non_exhaustive]
-pub struct UsedTool {
-    /// The motions that it makes.
-    pub motions: ToolSelection,
-    /// Its name.
-    pub named: NamedTool,
     /// The hand of its cutting edges.
     pub hand: Hand,
     /// Depths that its surfaces may have in the part, beside those of the job.
@@ -93,9 +85,9 @@ pub struct UsedTool {
 pub struct ToolEntry {
     /// A `.tool` file or a built-in tool, instead of the library's tool with this number.
     pub tool: Option<String>,
-    /// Values for the params of the file.
-    #[serde(default)]
-    pub set: BTreeMap<String, ParamValue>,
+    /// Values of the params of the file: `name=value`.
+    #[serde(default, rename = "set", deserialize_with = "assignments")]
+    pub params: Vec<String>,
     /// Distance from the tip to the gauge point of the spindle, in mm.
     pub length: Option<f64>,
     /// The hand of its cutting edges, `right` if absent: that of the spindle's turn.
@@ -106,14 +98,21 @@ pub struct ToolEntry {
     pub allow: BTreeMap<String, f64>,
 }
 
-/// The value of a param: a number in the tool's unit, or an expression of the language.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(untagged)]
-pub enum ParamValue {
-    /// A number, in the tool's unit.
-    Number(f64),
-    /// An expression of the language.
-    Text(String),
+/// Reads the table of params as `name=value`, in the order of the names. A value is a number in the tool's unit, or an
+/// expression of the language.
+fn assignments<'de, D: Deserializer<'de>>(table: D) -> Result<Vec<String>, D::Error> {
+    #[derive(Deserialize)]
+    #[serde(untagged)]
+    enum ParamValue {
+        Number(f64),
+        Expression(String),
+    }
+    let params = BTreeMap::<String, ParamValue>::deserialize(table)?;
+    let params = params.into_iter().map(|(name, value)| match value {
+        ParamValue::Number(number) => format!("{name}={number}"),
+        ParamValue::Expression(text) => format!("{name}={text}"),
+    });
+    Ok(params.collect())
 }
 
 /// A mesh that no surface of a tool may touch.
@@ -325,16 +324,15 @@ impl JobFile {
     ///
     /// # Errors
     /// If no tool is given for a number, or one for several.
-    pub fn used_tools(&self, program: &Program) -> Result<Vec<UsedTool>, JobError> {
+    pub fn used_tools(&self, program: &Program) -> Result<Vec<NamedTool>, JobError> {
         let used: Vec<Option<u32>> = program.tools().iter().map(|tool| tool.number).collect();
         let (library, entries) = match &self.tools {
-            JobTools::One(named) => {
+            JobTools::One(tool) => {
                 let mut numbers = used.iter().flatten();
                 if let (Some(first), Some(second)) = (numbers.next(), numbers.next()) {
                     return Err(JobError::SeveralTools { first: *first, second: *second });
                 }
-                let (motions, named) = (ToolSelection::All, named.clone());
-                return Ok(vec![UsedTool { motions, named, hand: Hand::Right, allow: Vec::new() }]);
+                return Ok(vec![tool.clone()]);
             }
             JobTools::Numbered { library, entries } => (library, entries),
         };
@@ -347,15 +345,20 @@ impl JobFile {
                 (None, _) => return Err(JobError::NoTool { number: None }),
             };
             let entry = entries.get(&known).cloned().unwrap_or_default();
-            let (name, library) = match (&entry.tool, library) {
+            let (name, library) = match (entry.tool, library) {
                 (Some(name), _) => (OsString::from(name), None),
                 (None, Some(library)) => (format!("T{known}").into(), Some(library.clone())),
                 (None, None) => return Err(JobError::NoTool { number }),
             };
-            let named = NamedTool { name, library, params: entry.params(), root: None };
-            let allow = entry.allow.into_iter().collect();
-            let motions = ToolSelection::Number(number);
-            tools.push(UsedTool { motions, named, hand: entry.hand, allow });
+            tools.push(NamedTool {
+                motions: ToolSelection::Number(number),
+                name,
+                library,
+                params: entry.params,
+                root: None,
+                hand: entry.hand,
+                allow: entry.allow.into_iter().collect(),
+            });
         }
         Ok(tools)
     }
@@ -394,15 +397,4 @@ fn work_offsets(named: &BTreeMap<String, Vec<f64>>) -> Result<[Option<[f64; 6]>;
         offsets[position] = Some(origin);
     }
     Ok(offsets)
-}
-
-impl ToolEntry {
-    /// Returns the values of the params as `name=value`.
-    fn params(&self) -> Vec<String> {
-        let params = self.set.iter().map(|(name, value)| match value {
-            ParamValue::Number(number) => format!("{name}={number}"),
-            ParamValue::Text(text) => format!("{name}={text}"),
-        });
-        params.collect()
-    }
 }

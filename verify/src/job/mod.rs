@@ -17,9 +17,7 @@ mod program;
 mod report;
 mod stock;
 
-pub use file::{
-    FixtureEntry, JobFile, JobTools, NamedTool, ParamValue, StockEntry, ToolEntry, UsedTool,
-};
+pub use file::{FixtureEntry, JobFile, JobTools, NamedTool, StockEntry, ToolEntry};
 pub use machine::{MachineFinding, MachineFindingKind, SpindleFault};
 pub use program::{DEFAULT_MACHINE, Program, read_control, read_machine};
 pub use report::{
@@ -109,8 +107,20 @@ pub struct Body<'a> {
     pub bvh: &'a TriangleBvh,
     /// The link of the table that it moves with; `None` for the workpiece ([`Program::link`]).
     pub link: Option<usize>,
-    /// Distance that every surface has to keep, for a fixture.
-    pub margin: Option<f64>,
+    /// How near the surfaces of a tool may come.
+    pub role: BodyRole,
+}
+
+/// The role of a body in a job, which decides how near the surfaces of a tool may come.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum BodyRole {
+    /// The part: surfaces may be as deep in it as the job's tolerance and allowances state.
+    Part,
+    /// A fixture: every surface keeps a distance from it.
+    Fixture {
+        /// The distance, 0 or more; at 0 surfaces may touch.
+        margin: f64,
+    },
 }
 
 /// A tool of a job.
@@ -250,7 +260,7 @@ fn checked_margin(margin: f64) -> Result<f64, JobError> {
 impl<'a> Job<'a> {
     /// Creates a job without tools, fixtures and stock, in which nothing may be deeper in the part than 0.
     pub fn new(program: &'a Program, part: &'a TriangleBvh) -> Job<'a> {
-        let part = Body { name: PART.to_owned(), bvh: part, link: None, margin: None };
+        let part = Body { name: PART.to_owned(), bvh: part, link: None, role: BodyRole::Part };
         Job {
             program,
             bodies: vec![part],
@@ -273,15 +283,16 @@ impl<'a> Job<'a> {
     fn verifier(&self, tool: &JobTool<'a>, body: &Body<'a>) -> Result<Verifier<'a>, JobError> {
         let info = tool.tool.info();
         let mut verifier = Verifier::new(body.bvh, tool.tool)?;
-        match body.margin.map(checked_margin).transpose()? {
-            Some(margin) if margin > 0.0 => {
-                for surface in info.surfaces.iter() {
-                    verifier = verifier.with_allowance(&surface.name, -margin)?;
+        match body.role {
+            BodyRole::Fixture { margin } => {
+                // Surfaces without another allowance have 0.
+                if checked_margin(margin)? > 0.0 {
+                    for surface in info.surfaces.iter() {
+                        verifier = verifier.with_allowance(&surface.name, -margin)?;
+                    }
                 }
             }
-            // A fixture that may be touched has the allowance 0, that of every surface without another.
-            Some(_) => (),
-            None => {
+            BodyRole::Part => {
                 verifier = verifier.with_tolerance(self.tolerance)?;
                 for (surface, allowed) in &self.allow {
                     // An allowance of a job holds for the tools that have the surface, and one has to have it.
@@ -306,12 +317,13 @@ impl<'a> Job<'a> {
 impl<'a> Body<'a> {
     /// Creates a fixture that moves with the workpiece and may be touched, and not be entered.
     pub fn fixture(name: &str, bvh: &'a TriangleBvh) -> Body<'a> {
-        Body { name: name.to_owned(), bvh, link: None, margin: Some(0.0) }
+        let role = BodyRole::Fixture { margin: 0.0 };
+        Body { name: name.to_owned(), bvh, link: None, role }
     }
 
     /// Returns whether it is the part, and no fixture.
     pub fn is_part(&self) -> bool {
-        self.margin.is_none()
+        self.role == BodyRole::Part
     }
 }
 

@@ -9,7 +9,7 @@ use super::stock::{CutStock, StockCut};
 use super::{Job, JobError, JobTool};
 use crate::check::{ApproachSearch, MoveCheck};
 use crate::gcode::WorkOffset;
-use crate::{FindingGroup, Gap, Verifier};
+use crate::{FindingGroup, Gap, Move, Verifier};
 
 /// The results of one reading.
 struct ReadingResult {
@@ -24,8 +24,25 @@ struct ReadingResult {
 /// The closest approach to the part under one work offset, of one tool.
 struct OffsetApproach<'a> {
     offset: WorkOffset,
+    /// The index of the tool.
+    tool: usize,
     search: ApproachSearch<'a>,
     has_moves: bool,
+}
+
+impl OffsetApproach<'_> {
+    /// Returns the offset, if the tool comes near the part under it.
+    fn finish_near(self) -> Option<WorkOffset> {
+        (self.has_moves && !self.search.finish().is_far()).then_some(self.offset)
+    }
+
+    /// Adds the moves under the offset.
+    fn add(&mut self, moves: &[Move]) {
+        for step in moves.iter().filter(|step| step.work_offset == Some(self.offset)) {
+            self.search.add(std::slice::from_ref(step), &[]);
+            self.has_moves = true;
+        }
+    }
 }
 
 impl<'a> Job<'a> {
@@ -109,12 +126,12 @@ impl<'a> Job<'a> {
             }
             _ => Vec::new(),
         };
-        // By offset, and of each tool at the part, the first body.
         let mut approaches: Vec<OffsetApproach<'_>> = Vec::new();
         for (offset, _) in &offsets {
-            for verifier in verifiers.iter().step_by(self.bodies.len()) {
+            // The part is the first body.
+            for (tool, verifier) in verifiers.iter().step_by(self.bodies.len()).enumerate() {
                 let search = ApproachSearch::new(verifier)?;
-                approaches.push(OffsetApproach { offset: *offset, search, has_moves: false });
+                approaches.push(OffsetApproach { offset: *offset, tool, search, has_moves: false });
             }
         }
         let mut cut = match &self.stock {
@@ -134,14 +151,8 @@ impl<'a> Job<'a> {
                     check.add(step.clone(), progress)?;
                 }
             }
-            let of_tool = approaches.iter_mut().skip(index).step_by(self.tools.len());
-            for approach in of_tool {
-                for step in
-                    frames[0].iter().filter(|step| step.work_offset == Some(approach.offset))
-                {
-                    approach.search.add(std::slice::from_ref(step), &[]);
-                    approach.has_moves = true;
-                }
+            for approach in approaches.iter_mut().filter(|approach| approach.tool == index) {
+                approach.add(&frames[0]);
             }
             if let Some(cut) = &mut cut {
                 for step in &frames[0] {
@@ -165,10 +176,8 @@ impl<'a> Job<'a> {
             pairs.push(PairReport { tool, body, reading, report, groups, remedies });
         }
         // An offset of another part, or with a wrong origin, is one under which no tool comes near this part.
-        let near = approaches.into_iter().filter(|approach| approach.has_moves);
-        let near = near.map(|approach| (approach.offset, approach.search.finish()));
-        let near: Vec<WorkOffset> =
-            near.filter(|(_, approach)| !approach.is_far()).map(|(offset, _)| offset).collect();
+        let near = approaches.into_iter().filter_map(OffsetApproach::finish_near);
+        let near: Vec<WorkOffset> = near.collect();
         let far_offsets =
             offsets.into_iter().filter(|(offset, _)| !near.contains(offset)).collect();
         Ok(ReadingResult { pairs, cut: cut.map(StockCut::finish), far_offsets })

@@ -5,7 +5,8 @@
 //! (for the next `GOTO`), `MULTAX`, `UNITS`, `LOADTL`, `CUTTER`, and `FINI` or NX's `END-OF-PATH`.
 //! One of the last two has to end the program, so that a truncated file is never taken for a whole one. `$$`
 //! opens a comment, a trailing `$` continues the statement, `;` separates two statements, and case does not
-//! matter.
+//! matter. Two comments state the frame of the positions, which may be repeated and not changed: CATIA's machining axis and
+//! Creo's coordinate system.
 //!
 //! Statements about the tool hold for the positions that follow them: `LOADTL` between two positions changes the tool,
 //! and the cutters stated before or after it, up to the next position, are those of the new one. In NX's files,
@@ -23,9 +24,15 @@ use touchoff::{Pose, Unit};
 /// The axis of a tool along +Z.
 const UPRIGHT: [f64; 3] = [0.0, 0.0, 1.0];
 
+/// The comment with which CATIA writes the machining axis.
+const CATIA_AXIS: &str = "$$*CATIA0";
+
+/// The comment with which Creo begins its coordinate system. Rows of numbers may follow.
+const CREO_SYSTEM: &str = "$$-> CSYS";
+
 /// Reads an APT-CL program.
 pub(super) fn read(text: &str) -> Result<Tapes, Located> {
-    check_frames(text)?;
+    check_catia_axes(text)?;
     let (statements, unfinished_line) = statements(text);
     let mut reader = Reader::default();
     let mut end = 0;
@@ -46,24 +53,18 @@ pub(super) fn read(text: &str) -> Result<Tapes, Located> {
     }
 }
 
-/// Refuses a second frame among the comments: CATIA writes the machining axis after `$$*CATIA0` (a name, then three rows), Creo
-/// its coordinate system after `$$-> CSYS`.
-fn check_frames(text: &str) -> Result<(), Located> {
-    let mut first: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+/// Refuses a second machining axis of CATIA, which stands among the comments: `$$*CATIA0`, then a name and three rows.
+fn check_catia_axes(text: &str) -> Result<(), Located> {
+    let mut first: Option<Vec<&str>> = None;
     let mut lines = lines(text).peekable();
     while let Some((line, comment)) = lines.next() {
-        let (word, skipped) = if comment.starts_with("$$*CATIA0") {
-            ("$$*CATIA0", 1)
-        } else if comment.starts_with("$$-> CSYS") {
-            ("$$-> CSYS", 0)
-        } else {
+        if !comment.starts_with(CATIA_AXIS) {
             continue;
-        };
-        let mut frame = if skipped == 0 { vec![comment] } else { Vec::new() };
-        let mut rest = std::iter::from_fn(|| lines.next_if(|(_, next)| next.starts_with("$$")));
-        frame.extend(rest.by_ref().skip(skipped).take(3).map(|(_, row)| row));
-        if first.entry(word).or_insert_with(|| frame.clone()) != &frame {
-            return Err((line, ProgramFault::Frame { word: word.to_owned() }));
+        }
+        let rest = std::iter::from_fn(|| lines.next_if(|(_, next)| next.starts_with("$$")));
+        let rows: Vec<&str> = rest.skip(1).take(3).map(|(_, row)| row).collect();
+        if first.get_or_insert_with(|| rows.clone()) != &rows {
+            return Err((line, ProgramFault::Frame { word: CATIA_AXIS.to_owned() }));
         }
     }
     Ok(())
@@ -74,7 +75,18 @@ fn check_frames(text: &str) -> Result<(), Located> {
 fn statements(text: &str) -> (Vec<(usize, String)>, Option<usize>) {
     let mut statements = Vec::new();
     let mut open: Option<(usize, String)> = None;
-    for (line, raw) in lines(text) {
+    let mut lines = lines(text).peekable();
+    while let Some((line, raw)) = lines.next() {
+        if raw.starts_with(CREO_SYSTEM) {
+            // Rows may be comments or not, and end in `$` or not.
+            let mut system = raw.trim_end_matches('$').to_owned();
+            while let Some(row) = lines.peek().and_then(|(_, row)| numbers_of(row)) {
+                system = format!("{system}, {row}");
+                lines.next();
+            }
+            statements.push((line, system));
+            continue;
+        }
         if open.is_none() && is_prose(raw) {
             statements.push((line, raw.to_owned()));
             continue;
@@ -98,6 +110,13 @@ fn statements(text: &str) -> (Vec<(usize, String)>, Option<usize>) {
     (statements, open.map(|(start, _)| start))
 }
 
+/// Returns a row of numbers, without the signs of a comment and of a continuation; `None` for any other line.
+fn numbers_of(row: &str) -> Option<&str> {
+    let numbers = row.trim_start_matches("$$").trim_start_matches("->").trim_end_matches('$');
+    let mut cells = parts(numbers).peekable();
+    (cells.peek().is_some() && cells.all(|cell| number(cell).is_ok())).then_some(numbers)
+}
+
 /// State of the reader after some statements.
 #[derive(Default)]
 struct Reader {
@@ -116,6 +135,8 @@ struct Reader {
     tool: BTreeMap<String, (usize, Vec<String>)>,
     /// Statements about the tool since the last position.
     pending: Vec<ToolStatement>,
+    /// Creo's coordinate system, as [`Reader::coordinate_system`] writes it.
+    system: Option<Vec<String>>,
     /// The first statement that a program of one tool and one operation cannot have.
     several: Option<Located>,
     path_ended: bool,
@@ -152,6 +173,9 @@ impl Reader {
         rest: &str,
         is_last: bool,
     ) -> Result<(), ProgramFault> {
+        if word == CREO_SYSTEM {
+            return self.coordinate_system(rest);
+        }
         let ended = self.finished || self.path_ended && !matches!(word, "FINI" | "TOOL PATH");
         if ended && !is_prose(text) {
             return Err(ProgramFault::AfterEnd {
@@ -246,6 +270,20 @@ impl Reader {
             }
         }
         Ok(())
+    }
+
+    /// Reads a coordinate system of Creo, in which the positions after it are given. Another one than the first is refused.
+    fn coordinate_system(&mut self, rest: &str) -> Result<(), ProgramFault> {
+        // Equal numbers may be written with different digits, and 0 with a sign.
+        let cells = parts(rest).map(|cell| match number(cell) {
+            Ok(value) => (value + 0.0).to_string(),
+            Err(_) => cell.to_owned(),
+        });
+        let system: Vec<String> = cells.collect();
+        match *self.system.get_or_insert_with(|| system.clone()) == system {
+            true => Ok(()),
+            false => Err(ProgramFault::Frame { word: CREO_SYSTEM.to_owned() }),
+        }
     }
 
     fn units(&mut self, line: usize, word: &str) -> Result<(), ProgramFault> {

@@ -1,22 +1,22 @@
 //! The page: sections in reading order, with style, script and data inside.
 
-use super::along::{self, POINTS};
+mod assumptions;
+mod summary;
+
+use super::along;
 use super::scene::{base64, json};
 use super::{Content, Picture, prefix};
 use crate::check::{Proved, prove};
 use crate::failure::Failure;
 use crate::output::file_name;
-use crate::postures::picture::describe;
-use crate::program::{extent, ignored_words};
 use crate::timing::Timing;
+use assumptions::assumptions;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use sha2::{Digest, Sha256};
-use std::collections::BTreeMap;
-use touchoff::{Escaped, Unit};
+use summary::summary;
+use touchoff::Escaped;
 use touchoff_drawing::{Content as Drawn, TextRendering, svg};
-use touchoff_verify::job::{PairReport, Severity};
-use touchoff_verify::machine::Machine;
-use touchoff_verify::{Program, Verdict, Verifier};
+use touchoff_verify::job::Severity;
 
 const STYLE: &str = include_str!("style.css");
 const SCRIPT: &str = include_str!("viewer.js");
@@ -81,144 +81,6 @@ fn image(kind: &str, bytes: &[u8], description: &str) -> Markup {
 
 fn picture(picture: &Picture) -> Markup {
     image("png", &picture.png, &plain(&picture.caption))
-}
-
-/// Returns the verdict, and what it is about.
-fn summary(content: &Content<'_>, title: &str) -> Markup {
-    html! {
-        header {
-            h1 { (title) }
-            (verdict(content))
-        }
-        section {
-            h2 { "Summary" }
-            table.plain {
-                @for (key, values) in facts(content) {
-                    tr { th { (key) } td.text { @for value in &values { div { (value) } } } }
-                }
-            }
-        }
-    }
-}
-
-/// Returns the ending of a noun after a count.
-fn plural(count: usize) -> &'static str {
-    if count == 1 { "" } else { "s" }
-}
-
-/// Returns the verdict, as the exit status of `verify` states it.
-fn verdict(content: &Content<'_>) -> Markup {
-    let refusals = content.checked.refusals();
-    let [violations, undecided, remarks] =
-        [Severity::Violation, Severity::Undecided, Severity::Remark].map(|severity| {
-            content.checked.findings().iter().filter(|finding| finding.severity == severity).count()
-        });
-    let (class, text) = if content.checked.verdict() == Verdict::None {
-        ("open", "Not verified".to_owned())
-    } else if violations > 0 {
-        ("bad", format!("{violations} violation{}", plural(violations)))
-    } else if undecided > 0 {
-        ("open", format!("No violation found, {undecided} finding{} undecided", plural(undecided)))
-    } else {
-        ("good", "No findings: every motion is proved to stay within its limits".to_owned())
-    };
-    html! {
-        p.verdict.(class) {
-            strong { (text) }
-            @if violations > 0 && undecided > 0 { " and " (undecided) " undecided" }
-            @if remarks > 0 { "; " (remarks) " warning" (plural(remarks)) }
-        }
-        @for reason in &refusals { p.reason { "Not verified: " (plain(reason)) } }
-    }
-}
-
-/// Returns the rows of the summary: a key and its values.
-fn facts(content: &Content<'_>) -> Vec<(&'static str, Vec<String>)> {
-    let (inputs, checked) = (content.inputs, content.checked);
-    let (job, unit) = (&inputs.file, inputs.file.unit);
-    let part = &inputs.bodies[0];
-    let sides = {
-        let [low, high] = part.mesh.bounds();
-        let [x, y, z]: [f64; 3] = (high - low).into();
-        format!(
-            "{} x {} x {}, {} triangles",
-            unit.format(x),
-            unit.format(y),
-            unit.format(z),
-            part.mesh.triangles().len()
-        )
-    };
-    let mut rows = vec![("Part", vec![plain(&job.part.display().to_string()), sides])];
-    // Once per tool: at every body and in every reading it goes the same way.
-    let pairs = checked
-        .pairs
-        .iter()
-        .filter(|pair| pair.body == 0 && pair.reading == 0 && pair.report.moves > 0);
-    let mut program = vec![plain(&job.program.display().to_string())];
-    program.extend(pairs.flat_map(|pair| travel(pair, checked.tool(pair).number(), unit)));
-    rows.push(("Program", program));
-    let tools = checked.job.tools.iter().map(|tool| {
-        let info = tool.tool.info();
-        let number = prefix(tool.number());
-        plain(&format!("{number}{} {}", info.name, info.title))
-    });
-    rows.push(("Tools", tools.collect()));
-    let fixtures = inputs.bodies.iter().skip(1).map(|body| plain(&body.name));
-    let fixtures: Vec<String> = fixtures.collect();
-    if !fixtures.is_empty() {
-        rows.push(("Fixtures", fixtures));
-    }
-    let summaries = checked.summaries().into_iter().map(|summary| plain(&summary));
-    rows.push(("Checked", summaries.collect()));
-    if let (Some(cut), Some(comparison)) = (checked.cut(), &content.comparison) {
-        let stock = &cut.stock;
-        rows.push((
-            "Stock",
-            vec![
-                format!("{} of {} points remain", stock.len(), stock.initial_len()),
-                cut.farthest("most material over the part", comparison.greatest_excess()),
-                cut.farthest("most cut from the part", comparison.deepest_gouge()),
-                cut.resolution(),
-            ],
-        ));
-    }
-    let gaps = checked.gaps.iter().map(|gap| plain(&gap.to_string()));
-    let gaps: Vec<String> = gaps.collect();
-    if !gaps.is_empty() {
-        rows.push(("Not checked", gaps));
-    }
-    let mut rules: BTreeMap<&str, usize> = BTreeMap::new();
-    for finding in checked.findings() {
-        *rules.entry(finding.rule).or_default() += 1;
-    }
-    if !rules.is_empty() {
-        let counts = rules.iter().map(|(rule, count)| format!("{count} {rule}"));
-        rows.push(("Findings", vec![counts.collect::<Vec<_>>().join(", ")]));
-    }
-    rows
-}
-
-/// Describes where a program goes.
-fn travel(pair: &PairReport, number: Option<u32>, unit: Unit) -> [String; 3] {
-    let report = &pair.report;
-    let approach = &report.approach;
-    let nearest = match (approach.distance, approach.line) {
-        (0.0, line) => format!("the tool touches the part, first at line {line}"),
-        (distance, line) => {
-            format!("the tool comes within {} of the part, line {line}", unit.format(distance))
-        }
-    };
-    let tool = number.map_or(String::new(), |number| format!("T{number}: "));
-    let [feed, rapid] = approach.travel;
-    [
-        format!(
-            "{tool}{} positions, tips in {} in {unit}",
-            report.moves,
-            extent(approach.program, unit)
-        ),
-        format!("{tool}{} in feed and {} in rapid traverse", unit.format(feed), unit.format(rapid)),
-        format!("{tool}{nearest}"),
-    ]
 }
 
 /// Returns the 3-D view, and the pictures that stand in for it in print and without a script.
@@ -384,117 +246,6 @@ fn tools(content: &Content<'_>) -> Result<Markup, Failure> {
         });
     }
     Ok(html! { section { h2 { "Tools" } @for tool in &shown { (tool) } } })
-}
-
-/// Returns the assumptions of the check, and its files.
-fn assumptions(content: &Content<'_>) -> Markup {
-    html! {
-        section {
-            h2 { "What was assumed" }
-            ul { @for line in assumed(content) { li { (plain(&line)) } } }
-            h3 { "Files" }
-            table.files {
-                thead { tr { th { "role" } th { "file" } th { "bytes" } th { "SHA-256" } } }
-                tbody {
-                    @for file in &content.files {
-                        tr {
-                            td.name { (plain(&file.role)) }
-                            td.text { (plain(&file.name)) }
-                            td.number { (file.bytes) }
-                            td { code { (file.digest) } }
-                        }
-                    }
-                }
-            }
-            p.note { "Written by touchoff " (env!("CARGO_PKG_VERSION")) ". Built-in tools are those of this version." }
-        }
-    }
-}
-
-fn assumed(content: &Content<'_>) -> Vec<String> {
-    let inputs = content.inputs;
-    let (job, unit) = (&inputs.file, inputs.file.unit);
-    let resolution = job.resolution.unwrap_or_else(|| Verifier::default_resolution(unit));
-    let mut lines = vec![
-        format!(
-            "Lengths are in {unit}. The part's file was read in this unit, and the program is in the frame of the part."
-        ),
-        format!(
-            "No surface may be deeper in the part than {} (the tolerance), in rapid traverse whatever its allowance. An excess \
-             of up to {} (the resolution) may be left unreported.",
-            unit.format(job.tolerance),
-            unit.format(resolution)
-        ),
-    ];
-    let allowed = job.allow.iter().map(|(surface, depth)| match depth {
-        depth if *depth == f64::INFINITY => format!("{surface} may be any depth"),
-        depth if *depth < 0.0 => format!("{surface} keeps {}", unit.format(-depth)),
-        depth => format!("{surface} may be {} deep", unit.format(*depth)),
-    });
-    let allowed: Vec<String> = allowed.collect();
-    if !allowed.is_empty() {
-        lines.push(format!("Allowances: {}.", allowed.join("; ")));
-    }
-    match &inputs.program {
-        Program::Locations(programs) => {
-            lines.push(
-                "Between two positions the tip moves on a straight line and the axis turns evenly about the common normal of \
-                 both axes."
-                    .to_owned(),
-            );
-            if let Some(words) = ignored_words(programs) {
-                lines.push(format!("Words that move nothing were ignored: {words}."));
-            }
-        }
-        Program::Machine(readings) => {
-            let control = match &job.control {
-                Some(control) => format!("Control: {}.", control.display()),
-                None => "No control is named: what every control does that is known is checked."
-                    .to_owned(),
-            };
-            lines.push(format!(
-                "Machine: {}. {control} Between two blocks the control interpolates its axes. G54 is the frame of the part.",
-                inputs.program.machine().map_or("", Machine::name)
-            ));
-            if readings.len() > 1 {
-                let each = readings.iter().map(|reading| reading.assumed().to_string());
-                lines.push(format!(
-                    "Readings of the program: {}.",
-                    each.collect::<Vec<_>>().join("; ")
-                ));
-            }
-        }
-    }
-    if job.anyway {
-        lines.push("What is left open was accepted (`anyway`).".to_owned());
-    }
-    if content.checked.is_surface_only() {
-        lines.push("The inside of a mesh is undefined; only its surface was checked.".to_owned());
-    }
-    lines.push(
-        "The tool is its profile as drawn, turned about its axis. Deflection, runout, the rounding of corners by the control \
-         and acceleration are not modelled."
-            .to_owned(),
-    );
-    lines.push(match content.scene_rounding {
-        Some(error) => format!("The 3-D view rounds coordinates by at most {error:.1e} {unit}."),
-        None => {
-            "The part has too many triangles for a 3-D view; pictures stand in for it.".to_owned()
-        }
-    });
-    lines.push(
-        "Long triangles are divided for colouring. The depth of findings is coloured by samples: the centre of each triangle, \
-         points near its corners, and the deepest points found."
-            .to_owned(),
-    );
-    lines.push(format!(
-        "Depth and clearance along the program hold at the positions, not between them; findings hold for whole motions. \
-         Forces are sums over {POINTS} sampled points."
-    ));
-    if let Some(named) = content.map {
-        lines.push(format!("Posture map {}: {}.", named.file.display(), describe(named.map)));
-    }
-    lines
 }
 
 /// Returns how long the work took.

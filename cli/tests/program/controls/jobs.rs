@@ -31,8 +31,7 @@ fn a_number_that_two_tools_of_a_library_have_is_refused() {
     };
     let library = format!("{{\"version\": 1, \"data\": [{}, {}]}}", bit("one"), bit("two"));
     let library = scene.bench.write("two.json", library);
-    let place = |name: &str| scene.bench.folder.path().join(name).display().to_string();
-    let (part, program) = (place("block.stl"), place("a.nc"));
+    let (part, program) = (scene.bench.place("block.stl"), scene.bench.place("a.nc"));
     let common = ["verify", "--part", &part, "--unit", "mm", "--program", &program];
     let verify = |more: &[&str]| touchoff(&[&common, &LINUXCNC[..], more].concat());
     let output = verify(&["--tools", &library]);
@@ -40,7 +39,7 @@ fn a_number_that_two_tools_of_a_library_have_is_refused() {
     assert_eq!(output.status.code(), Some(2), "{said}");
     assert!(said.contains("has 2 tools `T1`: `one`, `two`"), "{said}");
     // A folder keeps the numbers of the tools that were imported into it.
-    let folder = place("tools");
+    let folder = scene.bench.place("tools");
     for (only, expected) in [("one", 0), ("two", 2)] {
         let imported = touchoff(&["import", &library, "-o", &folder, "--only", only]);
         assert!(imported.status.success(), "{}", stderr(&imported));
@@ -122,7 +121,7 @@ fn a_collision_far_from_the_part_has_status_1() {
 #[test]
 fn a_mesh_in_place_of_a_job_is_named() {
     let bench = Bench::new();
-    let part = bench.folder.path().join("block.stl").display().to_string();
+    let part = bench.place("block.stl");
     let output = touchoff(&["verify", &part]);
     assert_eq!(output.status.code(), Some(2));
     assert!(
@@ -163,7 +162,7 @@ fn a_wrong_control_is_refused_with_the_nearest_key() {
     let scene = Scene::new("G0 X-6. Y0. Z20.\nG1 X4. Z1.");
     scene.gives(&["--control", "fanac"], 2, &["did you mean `fanuc`?"]);
     let file = ControlRules::named("linuxcnc").expect("a control").to_toml();
-    let control = scene.bench.folder.path().join("c.toml").display().to_string();
+    let control = scene.bench.place("c.toml");
     for (from, to, word) in [
         (
             "whole_numbers",

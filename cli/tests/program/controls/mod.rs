@@ -5,11 +5,8 @@ mod jobs;
 mod motions;
 mod words;
 
-use crate::bench::{Bench, stderr, stdout, touchoff};
-use nalgebra::Point3;
+use crate::bench::{Bench, cuboid, stderr, stdout, touchoff};
 use std::process::Output;
-use touchoff::mesh::shapes;
-use touchoff::{Mesh, Unit};
 use touchoff_verify::gcode::{Choice, ControlRules, Rule};
 
 /// A block of 6 × 6 × 2 below z = 0, a tool of 2 mm that ends in a ball, and what is added by a test.
@@ -21,10 +18,6 @@ struct Scene {
 /// A program that states its unit and its offset, and turns the spindle.
 fn program(blocks: &str) -> String {
     format!("G21 G90 G54 G94 S9000 M3 F100.\n{blocks}\nM30\n")
-}
-
-fn cuboid(low: [f64; 3], high: [f64; 3]) -> Mesh {
-    shapes::cuboid(Point3::from(low), Point3::from(high), Unit::Millimetre).expect("a cuboid")
 }
 
 impl Scene {

@@ -22,16 +22,9 @@ impl Tube {
     fn new() -> Tube {
         let bench = Bench::new();
         let tube = shapes::tube(6.0, 9.0, 12.0, 24, 3, Unit::Millimetre).expect("a tube");
-        let mut stl = Vec::new();
-        tube.write_stl(&mut stl).expect("memory");
-        let place = |name: &str| bench.folder.path().join(name).display().to_string();
-        let (part, map) = (place("tube.stl"), place("tube.postures"));
-        std::fs::write(&part, stl).expect("a writable folder");
+        bench.part("tube.stl", &tube);
+        let (part, map) = (bench.place("tube.stl"), bench.place("tube.postures"));
         Tube { bench, part, map }
-    }
-
-    fn place(&self, name: &str) -> String {
-        self.bench.folder.path().join(name).display().to_string()
     }
 
     fn sweep(&self, tools: &str, more: &[&str]) -> Output {

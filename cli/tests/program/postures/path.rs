@@ -38,9 +38,9 @@ fn verified(tube: &Tube, program: &str, more: &[&str]) {
 fn a_path_keeps_to_the_limits_of_the_machine_and_goes_home() {
     let tube = Tube::new();
     assert!(tube.sweep("D2Ball", &[]).status.success());
-    let output = tube.place("limits.nc");
+    let output = tube.bench.place("limits.nc");
     let words = ["--tool-number", "3", "--feed", "20", "--spindle", "9000"];
-    let free = object(&path_across("1,0,0", &tube, &tube.place("free.apt"), &[]));
+    let free = object(&path_across("1,0,0", &tube, &tube.bench.place("free.apt"), &[]));
     assert!(free["upside_down_locations"].as_u64() > Some(50), "{free}");
     let told = object(&path_across(
         "1,0,0",
@@ -61,7 +61,7 @@ fn a_path_keeps_to_the_limits_of_the_machine_and_goes_home() {
         "part = {:?}\nunit = \"mm\"\nprogram = {output:?}\nmachine = \"A-C trunnion\"\ncontrol = {:?}\ntolerance = 0.05\n\
          [work_offsets]\nG54 = [0, 0, -480]\n[tool.3]\ntool = \"D2Ball\"\nlength = 100\nallow = {{ shank = 0.00625 }}\n",
         tube.part,
-        tube.place("control.toml"),
+        tube.bench.place("control.toml"),
     );
     let checked = touchoff(&["verify", &tube.bench.write("job.toml", &job), "--json"]);
     assert_eq!(checked.status.code(), Some(0), "{}{}", stdout(&checked), stderr(&checked));
@@ -88,7 +88,7 @@ fn assert_picture_has_points(file: &str, summary: &Value) {
 fn a_path_states_tool_feed_and_spindle_and_keeps_to_a_tilt() {
     let tube = Tube::new();
     assert!(tube.sweep("D2Ball", &[]).status.success());
-    let output = tube.place("words.apt");
+    let output = tube.bench.place("words.apt");
     let words = ["--tool-number", "7", "--feed", "600.5", "--spindle", "8000"];
     let free = object(&path(&tube, &output, &words));
     let text = std::fs::read_to_string(&output).expect("a program");
@@ -135,7 +135,7 @@ fn a_path_states_tool_feed_and_spindle_and_keeps_to_a_tilt() {
         let refused = path(&tube, &output, &["--max-tilt", angle]);
         assert_eq!(refused.status.code(), Some(2), "{angle}: {}", stderr(&refused));
     }
-    let table = path(&tube, &tube.place("words.csv"), &words);
+    let table = path(&tube, &tube.bench.place("words.csv"), &words);
     assert_eq!(table.status.code(), Some(2), "{}", stderr(&table));
     assert!(stderr(&table).contains("a table has no place"), "{}", stderr(&table));
 }
@@ -145,9 +145,9 @@ fn a_path_states_tool_feed_and_spindle_and_keeps_to_a_tilt() {
 fn a_picture_shows_the_points_left_out() {
     let tube = Tube::new();
     assert!(tube.sweep("D2Ball", &[]).status.success());
-    let picture = tube.place("left.png");
+    let picture = tube.bench.place("left.png");
     let more = ["--max-tilt", "60", "--picture", &picture];
-    let summary = object(&path_across("1,0,0", &tube, &tube.place("across.apt"), &more));
+    let summary = object(&path_across("1,0,0", &tube, &tube.bench.place("across.apt"), &more));
     assert_picture_has_points(&picture, &summary);
 }
 
@@ -155,7 +155,7 @@ fn a_picture_shows_the_points_left_out() {
 fn a_path_that_rounding_ruins_is_not_written() {
     let tube = Tube::new();
     assert!(tube.sweep("D2Ball", &[]).status.success());
-    let output = tube.place("kept.apt");
+    let output = tube.bench.place("kept.apt");
     std::fs::write(&output, "kept").expect("a writable folder");
     // Tips are rounded to 1e-5 mm, so that the ball is up to 5e-6 mm deep where it touches a plane.
     let fine = ["--tolerance", "1e-6", "--max-tilt", "90", "--forward-step", "12"];
@@ -170,7 +170,7 @@ fn a_path_that_rounding_ruins_is_not_written() {
 fn a_path_for_a_machine_is_proved_on_its_joints() {
     let tube = Tube::new();
     assert!(tube.sweep("D2Ball", &[]).status.success());
-    let output = tube.place("tube.nc");
+    let output = tube.bench.place("tube.nc");
     let words = ["--tool-number", "3", "--feed", "500", "--spindle", "9000", "--max-tilt", "90"];
     for machine in ["A-C trunnion", "A-C fork head"] {
         let told = object(&path(&tube, &output, &[&words[..], &["--machine", machine]].concat()));
@@ -217,7 +217,7 @@ fn a_path_for_a_machine_is_proved_on_its_joints() {
     for (wrong, words) in [
         (path(&tube, &output, &["--feed", "5", "--tool-number", "1"]), "name one with `--machine`"),
         (path(&tube, &output, &["--machine", "3-axis"]), "give `--tool-number` and `--feed`"),
-        (path(&tube, &tube.place("t.apt"), &["--machine", "3-axis"]), "ends in `.nc`"),
+        (path(&tube, &tube.bench.place("t.apt"), &["--machine", "3-axis"]), "ends in `.nc`"),
         (more(&["--machine", "lathe"]), "`lathe` is no machine"),
         (more(&["--machine", "3-axis", "--work-offset", "0,0,0"]), "--tool-length"),
     ] {

@@ -1,7 +1,7 @@
 //! Sweeps that divide triangles, and maps of their pieces.
 
 use super::{object, refused};
-use crate::bench::{Bench, stderr, stdout, touchoff};
+use crate::bench::{Bench, stderr, stdout};
 use resvg::tiny_skia::Pixmap;
 use serde_json::Value;
 use std::process::Output;
@@ -11,7 +11,6 @@ use touchoff_postures::PostureMap;
 /// A box of 30 by 24 by 12 mm with a pocket of 16 by 10 by 6, in 28 triangles.
 struct Pocket {
     bench: Bench,
-    part: String,
 }
 
 impl Pocket {
@@ -29,38 +28,28 @@ impl Pocket {
             }
         }
         let mesh = Mesh::new(vertices.collect(), triangles, Unit::Millimetre).expect("a mesh");
-        let mut stl = Vec::new();
-        mesh.write_stl(&mut stl).expect("memory");
-        let part = bench.folder.path().join("pocket.stl").display().to_string();
-        std::fs::write(&part, stl).expect("a writable folder");
-        Pocket { bench, part }
+        bench.part("pocket.stl", &mesh);
+        Pocket { bench }
     }
 
-    fn place(&self, name: &str) -> String {
-        self.bench.folder.path().join(name).display().to_string()
-    }
-
-    fn sweep(&self, map: &str, more: &[&str]) -> Output {
-        let all = ["sweep", "--part", &self.part, "--unit", "mm", "--tool", "D2Ball,BallEr16"];
-        let rules = ["--directions", "20", "--json", "--output", map];
-        touchoff(&[&all[..], &rules, more].concat())
+    fn sweep(&self, options: &str) -> Output {
+        let inputs = "--part pocket.stl --unit mm --tool D2Ball,BallEr16 --directions 20";
+        self.bench.touchoff(&format!("sweep {inputs} {options}"))
     }
 
     /// Writes a map in another format, and returns the bytes.
-    fn export(&self, map: &str, name: &str, more: &[&str]) -> Vec<u8> {
-        let file = self.place(name);
-        let all = ["map", map, "--part", &self.part, "-o", &file];
-        let done = touchoff(&[&all[..], more].concat());
+    fn export(&self, map: &str, output: &str) -> Vec<u8> {
+        let done = self.bench.touchoff(&format!("map {map} --part pocket.stl -o {output}"));
         assert!(done.status.success(), "{}", stderr(&done));
-        std::fs::read(&file).expect("a file")
+        let name = output.split(' ').next().expect("a name");
+        std::fs::read(self.bench.place(name)).expect("a file")
     }
 }
 
 #[test]
 fn pieces_show_what_a_tool_does_not_reach() {
     let pocket = Pocket::new();
-    let map = pocket.place("refined.postures");
-    let told = object(&pocket.sweep(&map, &["--refine"]));
+    let told = object(&pocket.sweep("--refine --json -o refined.postures"));
     let refinement = &told["refinement"];
     assert_eq!((&refinement["finest"], &told["triangles_reached"]), (&0.25.into(), &28.into()));
     // The floor and the walls have strips of 1 mm at concave edges, outside of which all is reached.
@@ -74,41 +63,40 @@ fn pieces_show_what_a_tool_does_not_reach() {
     assert_eq!(refinement["triangles_partly_reached"], 10, "{told}");
     let pieces = refinement["pieces"].as_u64().expect("a number");
 
-    let again = object(&pocket.sweep(&map, &["--refine"]));
+    let again = object(&pocket.sweep("--refine --json -o refined.postures"));
     assert_eq!(again["postures"]["total"], 0);
     for key in ["refinement", "tools", "area_fraction_reached"] {
         assert_eq!(again[key], told[key], "{key}");
     }
-    let all = ["sweep", "--part", &pocket.part, "--unit", "mm", "--tool", "D2Ball,BallEr16"];
-    let unsaved = touchoff(&[&all[..], &["--directions", "20", "--refine", "--json"]].concat());
+    let unsaved = pocket.sweep("--refine --json");
     for key in ["refinement", "tools", "area_fraction_reached", "postures"] {
         assert_eq!(object(&unsaved)[key], told[key], "{key}");
     }
-    let words = touchoff(&[&all[..], &["--directions", "20", "--refine", "0.5"]].concat());
+    let words = pocket.sweep("--refine 0.5");
     assert!(
         stdout(&words).contains("down to 0.5000 mm; 10 are reached in part"),
         "{}",
         stdout(&words)
     );
 
-    let shown = stdout(&touchoff(&["map", &map]));
+    let shown = stdout(&pocket.bench.touchoff("map refined.postures"));
     let divided = refinement["triangles_divided"].as_u64().expect("a number");
     let line = format!("{divided} are divided into {pieces} pieces");
     assert!(shown.contains(&line), "{line}: {shown}");
-    let table = String::from_utf8(pocket.export(&map, "m.csv", &[])).expect("text");
+    let table = String::from_utf8(pocket.export("refined.postures", "m.csv")).expect("text");
     // The floor is made of triangles 2 and 3.
     let fraction = |line: &str| line.rsplit(',').next().and_then(|last| last.parse::<f64>().ok());
     for triangle in ["2,D2Ball", "3,D2Ball"] {
         let line = table.lines().find(|line| line.starts_with(triangle)).expect("a line");
         assert!((fraction(line).expect("a number") - 0.7).abs() < 0.03, "{line}");
     }
-    let ply = pocket.export(&map, "m.ply", &[]);
+    let ply = pocket.export("refined.postures", "m.ply");
     let faces = format!("element face {}\n", pieces + 28 - divided);
     assert!(String::from_utf8_lossy(&ply[..400]).contains(&faces), "{faces}");
 
-    let program = pocket.place("pocket.apt");
-    let path = ["path", &map, "--part", &pocket.part, "--tool", "D2Ball", "--stepover", "3"];
-    let led = object(&touchoff(&[&path[..], &["-o", &program, "--json"]].concat()));
+    let path =
+        "path refined.postures --part pocket.stl --tool D2Ball --stepover 3 -o pocket.apt --json";
+    let led = object(&pocket.bench.touchoff(path));
     assert!(led["contact_points"].as_u64() > Some(40), "{led}");
 }
 
@@ -132,26 +120,24 @@ fn pixels(bytes: &[u8]) -> [usize; 2] {
 #[test]
 fn a_picture_has_the_colours_of_pieces() {
     let pocket = Pocket::new();
-    let [plain, refined] = ["plain.postures", "refined.postures"].map(|name| pocket.place(name));
-    assert!(pocket.sweep(&plain, &[]).status.success());
-    assert!(pocket.sweep(&refined, &["--refine", "0.5"]).status.success());
-    let picture =
-        |map: &str| pixels(&pocket.export(map, "m.png", &["--color-by", "accessibility"]));
-    let ([grey, coloured], [more_grey, less_coloured]) = (picture(&plain), picture(&refined));
+    assert!(pocket.sweep("-o plain.postures").status.success());
+    assert!(pocket.sweep("--refine 0.5 -o refined.postures").status.success());
+    let picture = |map: &str| pixels(&pocket.export(map, "m.png --color-by accessibility"));
+    let [grey, coloured] = picture("plain.postures");
+    let [more_grey, less_coloured] = picture("refined.postures");
     // Every triangle has its centroid reached, but the strips at the pocket's edges are not.
     assert!(more_grey > grey + 1500, "{grey}, {more_grey}");
     assert!(less_coloured < coloured, "{coloured}, {less_coloured}");
     // A tool alone has pictures of its own.
-    let by_tool = ["--color-by", "stick-out", "--tool", "BallEr16"];
-    let [_, one] = pixels(&pocket.export(&refined, "m.png", &by_tool));
+    let by_tool = "m.png --color-by stick-out --tool BallEr16";
+    let [_, one] = pixels(&pocket.export("refined.postures", by_tool));
     assert!(one > 1000);
-    let file = pocket.place("m.png");
-    let map = ["map", &refined, "--part", &pocket.part, "-o", &file, "--tool"];
-    refused(
-        &touchoff(&[&map[..], &["Flat", "--color-by", "stick-out"]].concat()),
-        &["not swept with this `Flat`"],
-    );
-    let wrong = touchoff(&[&map[..], &["D2Ball"]].concat());
+    let map = |tool: &str| {
+        let line = format!("map refined.postures --part pocket.stl -o m.png --tool {tool}");
+        pocket.bench.touchoff(&line)
+    };
+    refused(&map("Flat --color-by stick-out"), &["not swept with this `Flat`"]);
+    let wrong = map("D2Ball");
     assert_eq!(wrong.status.code(), Some(2), "{}", stderr(&wrong));
     assert!(stderr(&wrong).contains("--color-by stick-out"), "{}", stderr(&wrong));
 }
@@ -161,27 +147,26 @@ fn a_picture_has_the_colours_of_pieces() {
 fn a_refinement_continues_where_it_ended() {
     let pocket = Pocket::new();
     let [whole, later, killed] =
-        ["a.postures", "b.postures", "c.postures"].map(|name| pocket.place(name));
-    let refine = ["--refine", "0.5"];
-    let told = object(&pocket.sweep(&whole, &refine));
-    assert!(pocket.sweep(&later, &[]).status.success());
+        ["a.postures", "b.postures", "c.postures"].map(|name| pocket.bench.place(name));
+    let told = object(&pocket.sweep("--refine 0.5 --json -o a.postures"));
+    assert!(pocket.sweep("-o b.postures").status.success());
     std::fs::copy(&later, &killed).expect("a copy");
-    let after = object(&pocket.sweep(&later, &refine));
+    let after = object(&pocket.sweep("--refine 0.5 --json -o b.postures"));
     assert_eq!(after["refinement"], told["refinement"]);
     let rows = PostureMap::read(&whole).expect("a map").piece_rows().expect("rows");
     let some: Vec<_> = rows.clone().into_iter().take(rows.len() / 2).collect();
     let map = PostureMap::resume(&killed).expect("a map");
     map.record_pieces(&some).expect("room");
     drop(map);
-    let continued = object(&pocket.sweep(&killed, &refine));
+    let continued = object(&pocket.sweep("--refine 0.5 --json -o c.postures"));
     assert_eq!(continued["refinement"], told["refinement"]);
     let postures = |told: &Value| told["postures"]["total"].as_u64();
     assert!(postures(&continued) < postures(&told), "{continued}");
-    let exports = [&whole, &later, &killed].map(|map| pocket.export(map, "m.json", &[]));
+    let exports = [&whole, &later, &killed].map(|map| pocket.export(map, "m.json"));
     assert!(exports[0] == exports[1] && exports[0] == exports[2]);
     for wrong in ["0", "-1", "nan"] {
-        let refused = pocket.sweep(&whole, &[&format!("--refine={wrong}")]);
+        let refused = pocket.sweep(&format!("--refine={wrong} -o a.postures"));
         assert_eq!(refused.status.code(), Some(2), "{}", stderr(&refused));
     }
-    refused(&pocket.sweep(&whole, &["--refine=1e-6"]), &["0.000001", "larger"]);
+    refused(&pocket.sweep("--refine=1e-6 -o a.postures"), &["0.000001", "larger"]);
 }

@@ -40,11 +40,10 @@ fn a_sweep_fills_a_map_that_becomes_a_program_without_findings() {
     );
 
     let to: Vec<String> =
-        ["m.csv", "m.json", "m.ply", "m.png"].iter().map(|name| tube.place(name)).collect();
-    let shown = touchoff(&[
-        "map", &tube.map, "--part", &tube.part, "-o", &to[0], "-o", &to[1], "-o", &to[2], "-o",
-        &to[3],
-    ]);
+        ["m.csv", "m.json", "m.ply", "m.png"].iter().map(|name| tube.bench.place(name)).collect();
+    let shown = tube
+        .bench
+        .touchoff("map tube.postures --part tube.stl -o m.csv -o m.json -o m.ply -o m.png");
     assert!(stdout(&shown).contains("384 of 384 triangles have a posture"), "{}", stderr(&shown));
     let csv = std::fs::read_to_string(&to[0]).expect("a table");
     assert!(csv.lines().count() > 384, "{csv}");
@@ -55,37 +54,13 @@ fn a_sweep_fills_a_map_that_becomes_a_program_without_findings() {
     assert!(std::fs::read(&to[3]).expect("a file").starts_with(b"\x89PNG"));
 
     for name in ["tube.apt", "tube.csv"] {
-        let program = tube.place(name);
-        let led = touchoff(&[
-            "path",
-            &tube.map,
-            "--part",
-            &tube.part,
-            "--tool",
-            "D2Ball",
-            "--plane-normal",
-            "0,0,1",
-            "--stepover",
-            "3",
-            "-o",
-            &program,
-            "--json",
-        ]);
-        let led = object(&led);
+        let led = object(&tube.bench.touchoff(&format!(
+            "path tube.postures --part tube.stl --tool D2Ball --plane-normal 0,0,1 --stepover 3 -o {name} --json"
+        )));
         assert!(led["contact_points"].as_u64() > Some(40), "{led}");
-        let checked = touchoff(&[
-            "verify",
-            "--part",
-            &tube.part,
-            "--unit",
-            "mm",
-            "--tool",
-            "D2Ball",
-            "--program",
-            &program,
-            "--tolerance",
-            "0.05",
-        ]);
+        let checked = tube.bench.touchoff(&format!(
+            "verify --part tube.stl --unit mm --tool D2Ball --program {name} --tolerance 0.05"
+        ));
         assert_eq!(checked.status.code(), Some(0), "{}{}", stdout(&checked), stderr(&checked));
     }
 }
@@ -116,32 +91,21 @@ fn a_map_of_something_else_is_refused() {
     let before = rows();
     refused(&tube.sweep("BallEr16", &[]), &["tools", "D2Ball", "BallEr16"]);
     refused(&tube.sweep("D2Ball", &["--min-niceness", "0.5"]), &["rules"]);
-    let block = tube.bench.folder.path().join("block.stl").display().to_string();
+    let block = tube.bench.place("block.stl");
     let other =
         ["sweep", "--part", &block, "--unit", "mm", "--tool", "D2Ball", "--directions", "40"];
     let more = ["--tolerance", "0.05", "--output", &tube.map];
     refused(&touchoff(&[&other[..], &more].concat()), &["another part"]);
-    let picture = tube.place("m.png");
+    let picture = tube.bench.place("m.png");
     refused(&touchoff(&["map", &tube.map, "-o", &picture]), &["--part"]);
     refused(&touchoff(&["map", &tube.map, "--part", &block, "-o", &picture]), &["another part"]);
-    refused(&touchoff(&["map", &tube.map, "-o", &tube.place("m.pdf")]), &[".csv", "m.pdf"]);
-    let program = tube.place("p.apt");
+    refused(&touchoff(&["map", &tube.map, "-o", &tube.bench.place("m.pdf")]), &[".csv", "m.pdf"]);
     let path = |tool: &str, to: &str| {
-        touchoff(&[
-            "path",
-            &tube.map,
-            "--part",
-            &tube.part,
-            "--tool",
-            tool,
-            "--stepover",
-            "3",
-            "-o",
-            to,
-        ])
+        let part = format!("--part tube.stl --tool {tool} --stepover 3");
+        tube.bench.touchoff(&format!("path tube.postures {part} -o {to}"))
     };
-    refused(&path("BallEr16", &program), &["not swept with this `BallEr16`"]);
-    refused(&path("D2Ball", &tube.place("p.txt")), &[".apt", "p.txt"]);
+    refused(&path("BallEr16", "p.apt"), &["not swept with this `BallEr16`"]);
+    refused(&path("D2Ball", "p.txt"), &[".apt", "p.txt"]);
     assert!(rows() == before, "a refusal changes nothing");
 }
 
@@ -158,7 +122,7 @@ fn a_map_that_is_damaged_or_in_use_is_refused() {
     assert!(tube.sweep("D2Ball", &[]).status.success());
     std::fs::write(&tube.map, "not a map").expect("a writable file");
     refused(&tube.sweep("D2Ball", &[]), &["tube.postures"]);
-    let missing = tube.place("missing.postures");
+    let missing = tube.bench.place("missing.postures");
     refused(&touchoff(&["map", &missing]), &["missing.postures"]);
 }
 
@@ -179,7 +143,7 @@ fn a_program_that_cannot_be_written_leaves_the_file_as_it_was() {
     let all = ["sweep", "--part", &tube.part, "--unit", "m", "--tool", "D2Ball"];
     let more = ["--directions", "5", "--tolerance", "0.001", "--output", &tube.map];
     assert!(touchoff(&[&all[..], &more].concat()).status.success());
-    let program = tube.place("kept.apt");
+    let program = tube.bench.place("kept.apt");
     std::fs::write(&program, "GOTO/1,2,3\n").expect("a writable folder");
     let path = ["path", &tube.map, "--part", &tube.part, "--tool", "D2Ball", "--stepover", "1"];
     refused(&touchoff(&[&path[..], &["-o", &program]].concat()), &["no word for m", "table"]);

@@ -1,32 +1,26 @@
 //! Postures that were touched in the page, added to a map.
 
-use crate::bench::{Bench, stderr, stdout, touchoff};
-use nalgebra::Point3;
-use touchoff::mesh::shapes;
-use touchoff::{TriangleId, Unit};
+use crate::bench::{Bench, cuboid, stderr, stdout};
+use touchoff::TriangleId;
 use touchoff_postures::PostureMap;
 
 #[test]
 fn touched_postures_are_proved_before_they_are_recorded() {
     let bench = Bench::new();
-    let [part, map] = ["block.stl", "block.postures"]
-        .map(|name| bench.folder.path().join(name).display().to_string());
-    // The block of the bench.
-    let (low, high) = (Point3::new(-3.0, -3.0, -2.0), Point3::new(3.0, 3.0, 0.0));
-    let mesh = shapes::cuboid(low, high, Unit::Millimetre).expect("a block");
-    let is_top = |id: &TriangleId| mesh.triangle(*id).iter().all(|corner| corner.z == high.z);
+    // The block of the bench, whose top is at 0.
+    let mesh = cuboid([-3.0, -3.0, -2.0], [3.0, 3.0, 0.0]);
+    let is_top = |id: &TriangleId| mesh.triangle(*id).iter().all(|corner| corner.z == 0.0);
     let top: Vec<_> = mesh.ids().filter(is_top).collect();
     let row = |id: TriangleId, depth: f64| {
         let [a, b, c] = mesh.triangle(id);
         let at = (a.coords + b.coords + c.coords) / 3.0;
-        format!("{},1,D2Ball,{},{},{},0,0,0,1\n", id.0, at.x, at.y, high.z - depth)
+        format!("{},1,D2Ball,{},{},{},0,0,0,1\n", id.0, at.x, at.y, -depth)
     };
     let head = "triangle,niceness,tool,x,y,z,qx,qy,qz,qw\n";
     let run = |table: &str| {
-        let file = bench.write("touched.csv", format!("{head}{table}"));
-        let arguments =
-            ["sweep", "--part", &part, "--unit", "mm", "--tool", "D2Ball", "--directions", "9"];
-        touchoff(&[&arguments[..], &["--touched", &file, "-o", &map]].concat())
+        bench.write("touched.csv", format!("{head}{table}"));
+        let inputs = "--part block.stl --unit mm --tool D2Ball --directions 9";
+        bench.touchoff(&format!("sweep {inputs} --touched touched.csv -o block.postures"))
     };
     // One is 0.009 mm deep, which is allowed; one too deep; and one does not touch.
     let done = run(&(row(top[0], 0.009) + &row(top[1], 0.05) + &row(top[1], -0.05)));
@@ -38,7 +32,7 @@ fn touched_postures_are_proved_before_they_are_recorded() {
         "{said}{}",
         stderr(&done)
     );
-    let stored = PostureMap::read(&map).expect("a map");
+    let stored = PostureMap::read(bench.place("block.postures")).expect("a map");
     let best = stored.row(top[0]).expect("rows").expect("a row").best;
     let [record] = &best[..] else { panic!("{best:?}") };
     assert!(record.depth >= 0.009 && record.depth < 0.0095, "{record:?}");

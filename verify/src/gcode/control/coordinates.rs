@@ -4,7 +4,7 @@
 use super::{AXES, Control, Motion};
 use crate::gcode::block::{Block, Code, Group, Keyword};
 use crate::gcode::error::{combination, missing, not_read, same_group};
-use crate::gcode::note::Subject;
+use crate::gcode::note::NoteKind;
 use crate::gcode::rules::{Choice, Rule};
 use crate::gcode::state::{
     ControlState, Frame, LengthOffset, Position, Rotation, Tcp, WorkOffset, about,
@@ -54,7 +54,7 @@ impl Control {
                 return Err(combination(format!("D{edge}"), condition, remedy));
             }
             self.edge = Some(edge);
-            self.notes.add(self.line, Subject::PassedOver(Code { letter: 'D', tenths: 0 }));
+            self.notes.add(self.line, NoteKind::PassedOver { word: "D".to_owned() });
             self.edge_length(edge)?;
         }
         let changes = match self.stated(Rule::Dialect) {
@@ -99,7 +99,7 @@ impl Control {
 
     /// Changes the tool.
     fn change_tool(&mut self, tool: u32) {
-        self.notes.add(self.line, Subject::ToolChange);
+        self.notes.add(self.line, NoteKind::ToolChange);
         // The tool before the first change may be the same.
         self.leave_for_change(self.state.tool.is_none_or(|before| before == tool));
         self.length_cancelled = false;
@@ -454,7 +454,7 @@ impl Control {
         };
         if matches!(code.tenths, 580 | 590) {
             match self.stated(Rule::Dialect) {
-                None => self.notes.add(self.line, Subject::OffsetOrShift),
+                None => self.notes.add(self.line, NoteKind::OffsetOrShift),
                 Some(Choice::Sinumerik) => {
                     let meaning = "a shift in native programs of Sinumerik";
                     let remedy = "write G54 to G57, or state `dialect = \"iso\"` of the control";

@@ -7,7 +7,7 @@ use crate::gcode::block::{Block, Code, Group};
 use crate::gcode::error::{combination, not_read, same_group};
 use crate::gcode::flow::before_semicolon;
 use crate::gcode::linuxcnc;
-use crate::gcode::note::Subject;
+use crate::gcode::note::NoteKind;
 use crate::gcode::rules::{Choice, Rule};
 use crate::gcode::state::{LengthOffset, Position, Rotation, Tcp};
 use crate::gcode::{GcodeFault, StepPath};
@@ -317,7 +317,7 @@ impl Control {
         let [from, to] = [[x, y], [u, v]].map(|[x, y]| (x - centre[0]).hypot(y - centre[1]));
         let turn = if chord > 0.0 { from.max(to) / chord } else { 0.0 };
         if (from - to).abs() * turn.max(1.0) > RADII_TOLERANCE {
-            self.notes.add(self.line, Subject::TwoRadii);
+            self.notes.add(self.line, NoteKind::TwoRadii);
         }
         Ok(())
     }
@@ -342,7 +342,7 @@ impl Control {
         let farthest = if is_major { 2.0 * radius.abs() } else { chord };
         let turn = farthest / chord.max(increment) * f64::sqrt(8.0) * increment;
         if (deep - shallow).abs() + turn > RADII_TOLERANCE.max(8.0 * increment) {
-            self.notes.add(self.line, Subject::RoundedRadius);
+            self.notes.add(self.line, NoteKind::RoundedRadius);
         }
     }
 }

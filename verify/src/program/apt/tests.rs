@@ -77,11 +77,28 @@ fn another_frame_among_the_comments_is_refused() {
         )
     };
     let creo = |x: &str| format!("$$-> CSYS / 1, 0, 0, {x}\n");
-    for frame in [&catia as &dyn Fn(&str) -> String, &creo] {
-        let text = |x: &str| format!("{}GOTO/1,2,3\n{}GOTO/4,5,6\nFINI\n", frame("0.0"), frame(x));
+    // Rows of Creo are no comments in its own files. Every row counts.
+    let continued = |x: &str| {
+        format!(
+            "$$-> CSYS / 1.0, 0.0, 0.0, {x},  $\n  0.0, 1.0, 0.0, 0.0,  $\n  0.0, 0.0, 1.0, 0.0\n"
+        )
+    };
+    let rows = |x: &str| format!("$$-> CSYS / 1, 0, 0, 0\n$$-> 0, 1, 0, {x}\n$$-> 0, 0, 1, 0\n");
+    for frame in [&catia as &dyn Fn(&str) -> String, &creo, &continued, &rows] {
+        let text = |x: &str| {
+            format!("UNITS/MM\n{}GOTO/1,2,3\n{}GOTO/4,5,6\nFINI\n", frame("0.0"), frame(x))
+        };
         assert_eq!(program(&text("0.0")).locations.len(), 2);
         assert!(refusal(text("100.0")).contains("changes what positions mean"));
     }
+}
+
+/// Creo repeats its coordinate system at each operation, among other comments and with other digits.
+#[test]
+fn a_coordinate_system_may_be_repeated() {
+    let text = "$$-> CSYS / 1.0, 0.0, 0.0, 25.40\n$$-> CUTTER / 16.0\nGOTO/1,2,3\n\
+                $$-> CSYS / 1, -0.0, 0, 25.4\n$$-> FEATNO / 12\nGOTO/4,5,6\nFINI\n$$-> CSYS / 1,0,0,25.4\n";
+    assert_eq!(program(text).locations.len(), 2);
 }
 
 #[test]

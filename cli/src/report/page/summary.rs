@@ -1,0 +1,155 @@
+//! The summary of the page: the verdict, and what it is about.
+
+use super::super::{Content, prefix};
+use super::plain;
+use crate::program::extent;
+use maud::{Markup, html};
+use std::collections::BTreeMap;
+use touchoff::Unit;
+use touchoff_verify::Verdict;
+use touchoff_verify::job::{PairReport, Severity};
+
+/// Returns the verdict, and what it is about.
+pub(super) fn summary(content: &Content<'_>, title: &str) -> Markup {
+    html! {
+        header {
+            h1 { (title) }
+            (verdict(content))
+        }
+        section {
+            h2 { "Summary" }
+            table.plain {
+                @for Fact { key, values } in facts(content) {
+                    tr { th { (key) } td.text { @for value in &values { div { (value) } } } }
+                }
+            }
+        }
+    }
+}
+
+/// Returns the ending of a noun after a count.
+fn plural(count: usize) -> &'static str {
+    if count == 1 { "" } else { "s" }
+}
+
+/// Returns the verdict, as the exit status of `verify` states it.
+fn verdict(content: &Content<'_>) -> Markup {
+    let refusals = content.checked.refusals();
+    let [violations, undecided, remarks] =
+        [Severity::Violation, Severity::Undecided, Severity::Remark].map(|severity| {
+            content.checked.findings().iter().filter(|finding| finding.severity == severity).count()
+        });
+    let (class, text) = if content.checked.verdict() == Verdict::None {
+        ("open", "Not verified".to_owned())
+    } else if violations > 0 {
+        ("bad", format!("{violations} violation{}", plural(violations)))
+    } else if undecided > 0 {
+        ("open", format!("No violation found, {undecided} finding{} undecided", plural(undecided)))
+    } else {
+        ("good", "No findings: every motion is proved to stay within its limits".to_owned())
+    };
+    html! {
+        p.verdict.(class) {
+            strong { (text) }
+            @if violations > 0 && undecided > 0 { " and " (undecided) " undecided" }
+            @if remarks > 0 { "; " (remarks) " warning" (plural(remarks)) }
+        }
+        @for reason in &refusals { p.reason { "Not verified: " (plain(reason)) } }
+    }
+}
+
+/// A row of the summary.
+struct Fact {
+    key: &'static str,
+    values: Vec<String>,
+}
+
+/// Returns the rows of the summary that have values.
+fn facts(content: &Content<'_>) -> Vec<Fact> {
+    let checked = content.checked;
+    let tools = checked.job.tools.iter().map(|tool| {
+        let info = tool.tool.info();
+        plain(&format!("{}{} {}", prefix(tool.number()), info.name, info.title))
+    });
+    let fixtures = content.inputs.bodies.iter().skip(1).map(|body| plain(&body.name));
+    let summaries = checked.summaries().into_iter().map(|summary| plain(&summary));
+    let gaps = checked.gaps.iter().map(|gap| plain(&gap.to_string()));
+    let facts = [
+        Fact { key: "Part", values: part(content) },
+        Fact { key: "Program", values: program(content) },
+        Fact { key: "Tools", values: tools.collect() },
+        Fact { key: "Fixtures", values: fixtures.collect() },
+        Fact { key: "Checked", values: summaries.collect() },
+        Fact { key: "Stock", values: stock(content) },
+        Fact { key: "Not checked", values: gaps.collect() },
+        Fact { key: "Findings", values: counts(content) },
+    ];
+    facts.into_iter().filter(|fact| !fact.values.is_empty()).collect()
+}
+
+/// Describes the part: its file, and its size.
+fn part(content: &Content<'_>) -> Vec<String> {
+    let (job, mesh) = (&content.inputs.file, &content.inputs.bodies[0].mesh);
+    let [low, high] = mesh.bounds();
+    let [x, y, z] = <[f64; 3]>::from(high - low).map(|side| job.unit.format(side));
+    let size = format!("{x} x {y} x {z}, {} triangles", mesh.triangles().len());
+    vec![plain(&job.part.display().to_string()), size]
+}
+
+/// Describes the program: its file, and where it goes.
+fn program(content: &Content<'_>) -> Vec<String> {
+    let (job, checked) = (&content.inputs.file, content.checked);
+    // Once per tool: at every body and in every reading it goes the same way.
+    let pairs = checked
+        .pairs
+        .iter()
+        .filter(|pair| pair.body == 0 && pair.reading == 0 && pair.report.moves > 0);
+    let travels = pairs.flat_map(|pair| travel(pair, checked.tool(pair).number(), job.unit));
+    std::iter::once(plain(&job.program.display().to_string())).chain(travels).collect()
+}
+
+/// Describes what is left of the stock, if there is one.
+fn stock(content: &Content<'_>) -> Vec<String> {
+    let (Some(cut), Some(comparison)) = (content.checked.cut(), &content.comparison) else {
+        return Vec::new();
+    };
+    vec![
+        format!("{} of {} points remain", cut.stock.len(), cut.stock.initial_len()),
+        cut.farthest("most material over the part", comparison.greatest_excess()),
+        cut.farthest("most cut from the part", comparison.deepest_gouge()),
+        cut.resolution(),
+    ]
+}
+
+/// Counts the findings by their rules, if there are any.
+fn counts(content: &Content<'_>) -> Vec<String> {
+    let mut rules: BTreeMap<&str, usize> = BTreeMap::new();
+    for finding in content.checked.findings() {
+        *rules.entry(finding.rule).or_default() += 1;
+    }
+    let counts: Vec<_> = rules.iter().map(|(rule, count)| format!("{count} {rule}")).collect();
+    if counts.is_empty() { counts } else { vec![counts.join(", ")] }
+}
+
+/// Describes where a program goes.
+fn travel(pair: &PairReport, number: Option<u32>, unit: Unit) -> [String; 3] {
+    let report = &pair.report;
+    let approach = &report.approach;
+    let nearest = match (approach.distance, approach.line) {
+        (0.0, line) => format!("the tool touches the part, first at line {line}"),
+        (distance, line) => {
+            format!("the tool comes within {} of the part, line {line}", unit.format(distance))
+        }
+    };
+    let tool = number.map_or(String::new(), |number| format!("T{number}: "));
+    let [feed, rapid] = approach.travel;
+    [
+        format!(
+            "{tool}{} positions, tips in {} in {unit}",
+            report.moves,
+            extent(approach.program, unit)
+        ),
+        format!("{tool}{} in feed and {} in rapid traverse", unit.format(feed), unit.format(rapid)),
+        format!("{tool}{nearest}"),
+    ]
+}
