@@ -2,6 +2,7 @@
 
 use crate::commands::certified::Scene;
 use clap::Args;
+use cpu_time::ProcessTime;
 use nalgebra::{Point3, Vector3};
 use std::error::Error;
 use std::fmt::Write;
@@ -11,11 +12,11 @@ use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 use touchoff::certify::{Certifier, TriangleBvh};
-use touchoff::mesh::{OrientedPoints, shapes};
+use touchoff::mesh::shapes;
 use touchoff::scenes::{POSES, ScenePath, tube};
 use touchoff::tool::{Evaluations, Outputs, PointBatch};
 use touchoff::{
-    Cloud, Level, Mesh, Motion, Part, Pose, Probe, Sampling, Scene as Parts, SurfaceId, Tool, Unit,
+    Cloud, Level, Mesh, Part, Pose, Probe, Sampling, Scene as Parts, SurfaceId, Tool, Unit,
 };
 use touchoff_bench::page::{Page, Section};
 #[cfg(feature = "peers")]
@@ -28,7 +29,7 @@ use touchoff_tools::{BallEr16, D2Ball, Fig73Exact};
 use touchoff_verify::gcode::{Choice, ControlRules, ControlSetup, Rule};
 use touchoff_verify::job::{Body, Job, JobTool, Program};
 use touchoff_verify::machine::Machine;
-use touchoff_verify::{ClData, MachineProgram, Verifier};
+use touchoff_verify::{MachineProgram, ToolSelection, Verifier};
 
 /// Times work with and without what is skipped, and the slowest uses beside their goals.
 #[derive(Args)]
@@ -124,7 +125,7 @@ impl Speed {
         let rows = on_one_core.into_iter().chain([self.free_space()?, self.readings()?]);
         let mut body = String::from(
             "Each row does the same work in two ways, in turns, both with this library: as it does it, and as if it could not skip this. \
-             The answers are equal. Medians, µs per step.\n\n\
+             Medians on one core, µs per step; motions and readings in CPU time.\n\n\
              | stage | what is skipped | step | skipping | not skipping | saves |\n|---|---|---|--:|--:|--:|\n",
         );
         for Skip { stage, skipped, step, times: [with, without] } in rows {
@@ -220,38 +221,32 @@ impl Speed {
         }
     }
 
-    /// A tool at one of 64 parts in a row, which are parts of a scene or one cloud.
+    /// A tool at one of 64 parts in a row, in a scene or with a probe at each.
     fn parts(&self) -> Result<Skip, Box<dyn Error>> {
         const PARTS: usize = 64;
-        let cloud = Cloud::sample(&tube(), Sampling::monte_carlo(20_000))?;
-        let part = Part::from_cloud(&cloud);
+        let part = points_of(&tube(), 20_000)?;
         let poses = poses(ScenePath::Outside);
+        let frames: Vec<Pose> = (0..PARTS).map(|index| shift(50.0 * index as f64)).collect();
         let mut scene = Parts::new(Unit::Millimetre);
-        let mut row = OrientedPoints {
-            points: Vec::new(),
-            normals: Vec::new(),
-            triangles: None,
-            areas: None,
-        };
-        for index in 0..PARTS {
-            let frame = shift(50.0 * index as f64);
-            scene.add_part(&part, frame)?;
-            row.points.extend(cloud.points().iter().map(|point| point + frame.tip().coords));
-            row.normals.extend(cloud.normals());
+        for frame in &frames {
+            scene.add_part(&part, *frame)?;
         }
         let tool = scene.add_tool(&Fig73Exact);
-        let all = Part::from_cloud(&Cloud::from_points(row, Unit::Millimetre)?);
-        let mut probe = Probe::new(&all, &Fig73Exact);
+        let mut probe = Probe::new(&part, &Fig73Exact);
         let times = self.race(
             |k| {
                 scene.move_tool(tool, poses[k]);
-                scene.wrench(tool)
+                scene.wrench(tool).colliding
             },
-            |k| probe.wrench(&poses[k]),
+            |k| {
+                let wrenches =
+                    frames.iter().map(|frame| probe.wrench(&poses[k].relative_to(frame)));
+                wrenches.map(|wrench| wrench.colliding).sum::<usize>()
+            },
         );
         Ok(Skip {
             stage: "parts",
-            skipped: "parts that are out of reach as a whole, instead of one tree of all points",
+            skipped: "relative poses of parts that are out of reach as a whole",
             step: "wrench at one of 64 parts",
             times,
         })
@@ -314,73 +309,85 @@ impl Speed {
         })
     }
 
-    /// Motions in free space known from an earlier one, and each proved by itself.
+    /// Joint motions in free space known from an earlier one, and the same motions just above the part, where none is known.
     fn free_space(&self) -> Result<Skip, Box<dyn Error>> {
-        let bvh = TriangleBvh::new(&tube());
-        let poses: Vec<Pose> = (0..10_001)
-            .map(|k| {
-                let (sine, cosine) = (1e-3 * f64::from(k)).sin_cos();
-                Pose::from_axis(Point3::new(60.0 * cosine, 60.0 * sine, 45.0), Vector3::z())
-            })
-            .collect::<Result<_, _>>()?;
-        let program = ClData::new("circle", None, poses.iter().map(|pose| (*pose, false)))?;
-        let motions: Vec<Motion> = poses
-            .windows(2)
-            .map(|pair| Motion::new(&pair[0], &pair[1]))
-            .collect::<Result<_, _>>()?;
-        let verifier = Verifier::new(&bvh, &BallEr16)?;
-        let mut certifier = Certifier::new(&bvh, &BallEr16)?;
+        const MOTIONS: u32 = 20_000;
+        let part = TriangleBvh::new(&Contact::Random(0).mesh()?);
+        let verifier = Verifier::new(&part, &BallEr16)?;
         let mut times = [f64::INFINITY; 2];
-        for _ in 0..5 {
-            let start = Instant::now();
-            let findings = verifier.check(&program)?.findings.len();
-            times[0] = times[0].min(start.elapsed().as_secs_f64());
-            let start = Instant::now();
-            for motion in &motions {
-                black_box(certifier.check_motion(motion, 1e-3));
-            }
-            times[1] = times[1].min(start.elapsed().as_secs_f64());
-            if findings > 0 {
-                return Err("a motion far from the part has a finding".into());
+        for _ in 0..3 {
+            for (way, height) in [60.0, 30.05].into_iter().enumerate() {
+                let program = fork_head("fanuc", &circles(MOTIONS, height)?)?.swap_remove(0);
+                let moves = program.moves(ToolSelection::All, None, Unit::Millimetre)?;
+                let start = ProcessTime::now();
+                let report = verifier.check_moves(moves, &|_| ())?;
+                times[way] = times[way].min(start.elapsed().as_secs_f64());
+                if !report.findings.is_empty() {
+                    return Err("a motion above the part has a finding".into());
+                }
             }
         }
         Ok(Skip {
             stage: "motions",
-            skipped: "motions in free space known from an earlier one (reading and both cores included)",
-            step: "motion of a program above the part",
-            times: times.map(|time| time * 1e6 / motions.len() as f64),
+            skipped: "motions in free space known from an earlier one; the others are the same motions 0.05 mm above the part",
+            step: "joint motion of a fork head, read again",
+            times: times.map(|time| time * 1e6 / f64::from(MOTIONS)),
         })
     }
 
-    /// A program on a control of which one asked rule is not stated, and on one of which it is.
+    /// A program on a control whose rules are stated, and on one of which nothing is known.
     fn readings(&self) -> Result<Skip, Box<dyn Error>> {
-        let text = Contact::Random(200).program()?;
-        let read = |rules: ControlRules| -> Result<(usize, f64), Box<dyn Error>> {
-            let machine = Machine::named("A-C fork head")?;
-            let mut setup = ControlSetup { rules, ..ControlSetup::default() };
-            setup.lengths.insert(1, 150.0);
-            let start = Instant::now();
-            let readings = MachineProgram::readings("program", text.clone(), machine, &setup)?;
-            Ok((readings.len(), start.elapsed().as_secs_f64()))
-        };
-        let known = ControlRules::named("fanuc")?;
-        let iso = ControlRules::default().with(Rule::Dialect, Choice::Iso);
+        const MOTIONS: u32 = 2_000;
+        let text = circles(MOTIONS, 60.0)?;
         let (mut times, mut counts) = ([f64::INFINITY; 2], [0; 2]);
         for _ in 0..5 {
-            for (way, rules) in [&known, &iso].into_iter().enumerate() {
-                let (count, time) = read(rules.clone())?;
-                counts[way] = count;
-                times[way] = times[way].min(time);
+            for (way, control) in ["fanuc", "unknown"].into_iter().enumerate() {
+                let start = ProcessTime::now();
+                counts[way] = fork_head(control, &text)?.len();
+                times[way] = times[way].min(start.elapsed().as_secs_f64());
             }
         }
-        eprintln!("readings: {} and {}", counts[0], counts[1]);
+        if counts[0] != 1 || counts[1] < 2 {
+            return Err(format!("{counts:?} readings").into());
+        }
         Ok(Skip {
             stage: "readings",
-            skipped: "readings of a rule that the program does not ask for or the control states",
-            step: "block of a fork-head program, control stated or not",
-            times: times.map(|time| time * 1e6 / 200.0),
+            skipped: "readings that the control excludes; of an unknown one those of rules that the program does not ask for",
+            step: "block of a fork head's program",
+            times: times.map(|time| time * 1e6 / f64::from(MOTIONS)),
         })
     }
+}
+
+/// Interprets a program of a fork head on a control, in all readings. The control is a known one's, or unknown.
+fn fork_head(control: &str, text: &str) -> Result<Vec<MachineProgram>, Box<dyn Error>> {
+    let rules = match control {
+        "unknown" => ControlRules::default().with(Rule::Dialect, Choice::Iso),
+        _ => ControlRules::named(control)?,
+    };
+    let mut setup = ControlSetup { rules, ..ControlSetup::default() };
+    setup.lengths.insert(1, 150.0);
+    let machine = Machine::named("A-C fork head")?;
+    Ok(MachineProgram::readings("program", text.to_owned(), machine, &setup)?)
+}
+
+/// Returns a program of motions of all axes on circles above a height. It has one whole number, whose unit controls
+/// differ in.
+fn circles(motions: u32, height: f64) -> Result<String, std::fmt::Error> {
+    let mut text = String::from("G21 G90 G54 G61\nT1 M6\nS12000 M3\nG94 G0 X0. Y0. A0. C0.\n");
+    writeln!(text, "G43.4 H1 X0. Y0. Z150.\nG1 X20 Y0. Z{height:.4} F6000.")?;
+    for index in 0..motions {
+        let (sine, cosine) = (1e-3 * f64::from(index)).sin_cos();
+        let [x, y, tilt] = [20.0 * cosine, 20.0 * sine, 2.0 * sine];
+        writeln!(
+            text,
+            "G1 X{x:.4} Y{y:.4} Z{:.4} A{tilt:.3} C{:.3}",
+            height + 0.001,
+            5.0 * cosine
+        )?;
+    }
+    text += "G0 Z150.\nG49\nM30\n";
+    Ok(text)
 }
 
 /// A row of the table of run times.
@@ -436,7 +443,7 @@ impl Speed {
                 let [wide, narrow] =
                     self.race(|k| probe.wrench(&poses[k]), |k| narrow.wrench(&poses[k]));
                 rows.push(Measured {
-                    what: format!("the same, AVX2 by {:?}", Level::new()),
+                    what: "the same: AVX2 by this machine's best".to_owned(),
                     value: format!("{:.2}", narrow / wide),
                     goal: "1.6",
                     limit: "two registers for a vector, and a table instead of one instruction to compress it",
@@ -489,13 +496,12 @@ impl Speed {
             let sweep = PostureSweep::new(&mesh, &bvh, tools, &directions, rules, NonZeroU16::MIN)?;
             let batches: Vec<usize> = (0..sweep.batches()).collect();
             let mut stats = SweepStats::default();
-            let start = Instant::now();
+            let start = ProcessTime::now();
             let flow: ControlFlow<()> = sweep.run(&batches, |batch| {
                 stats += batch.stats;
                 ControlFlow::Continue(())
             });
-            let cores = std::thread::available_parallelism().map_or(1, usize::from);
-            let time = start.elapsed().as_secs_f64() * cores as f64;
+            let time = start.elapsed().as_secs_f64();
             if flow.is_break() {
                 return Err("a sweep ended early".into());
             }

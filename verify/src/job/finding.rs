@@ -119,6 +119,21 @@ impl JobReport<'_> {
     }
 }
 
+/// A bound on depth is sought within an eighth of the depth found. It is not finished if it exceeds the depth by more than
+/// this fraction, since the budget of a sweep was spent.
+const MAX_BOUND_EXCESS: f64 = 0.25;
+
+/// Formats a bound on the depth over a whole motion, given the depth at its deepest known point; nothing if that is the
+/// bound.
+fn format_bound(depth: f64, max_depth: f64, unit: Unit) -> String {
+    if max_depth <= depth {
+        return String::new();
+    }
+    let is_finished = max_depth <= (1.0 + MAX_BOUND_EXCESS) * depth;
+    let rest = if is_finished { "" } else { ", a bound that is not finished" };
+    format!("; at most {} {unit}{rest}", format_small(max_depth, unit))
+}
+
 /// Describes the findings of consecutive motions.
 ///
 /// The remedy is that of the worst motion.
@@ -141,10 +156,9 @@ fn describe(
         FindingKind::Deep {
             surface, depth: Interval { low, high }, max_depth, witness, ..
         } => {
-            let bound = if max_depth > high && finding.from.is_some() {
-                format!("; at most {} {unit}", format_small(*max_depth, unit))
-            } else {
-                String::new()
+            let bound = match finding.from {
+                Some(_) => format_bound(*high, *max_depth, unit),
+                None => String::new(),
             };
             let (name, depth) = (name(*surface), format_interval(*low, *high, unit));
             let point = unit.format_point(&witness.point);
@@ -292,4 +306,17 @@ fn summary(report: &JobReport<'_>, pair: &PairReport) -> String {
     }
     let each = each.join(", ");
     format!("{tool}{count} finding{} in {motions} motion{}: {each}", plural(count), plural(motions))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_bound_far_above_the_depth_is_not_finished() {
+        let text = |max_depth| format_bound(2.0, max_depth, Unit::Millimetre);
+        assert_eq!(text(2.0), "");
+        assert_eq!(text(2.25), "; at most 2.2500 mm");
+        assert_eq!(text(2.51), "; at most 2.5100 mm, a bound that is not finished");
+    }
 }
