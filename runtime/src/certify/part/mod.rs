@@ -287,9 +287,15 @@ impl Plane {
             sum[1] += u[2] * v[0] - u[0] * v[2];
             sum[2] += u[0] * v[1] - u[1] * v[0];
         }
-        let length = dot(sum, sum).sqrt();
-        // Any direction is correct.
-        let normal = if length > 0.0 { sum.map(|part| part / length) } else { [0.0, 0.0, 1.0] };
+        // Any direction of length 1 is correct. Scaled, so that the squares of a short sum are not subnormal.
+        let largest = sum.iter().fold(0.0f64, |largest, part| largest.max(part.abs()));
+        let normal = if largest > 0.0 {
+            let scaled = sum.map(|part| part / largest);
+            let length = dot(scaled, scaled).sqrt();
+            scaled.map(|part| part / length)
+        } else {
+            [0.0, 0.0, 1.0]
+        };
         let heights = triangles.iter().flatten().map(|corner| dot(normal, *corner));
         let ends = heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], height| {
             [low.min(height), high.max(height)]
@@ -360,5 +366,23 @@ impl TriangleBvh {
             0.0
         };
         Some(NodeRing { near: (x * x + y * y).sqrt().max(inward), low, high })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn directions_of_planes_have_length_1_however_thin_the_triangles() {
+        for exponent in -1080..1 {
+            // Squares of such a normal are subnormal or 0 below 2⁻⁵¹¹.
+            let thin = 1.3 * 2f64.powi(exponent);
+            let triangle = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, thin, -0.7 * thin]];
+            let Plane { normal, ends } = Plane::of(&[triangle]);
+            let length = dot(normal, normal).sqrt();
+            assert!((length - 1.0).abs() < 1e-15, "2^{exponent}: {length}");
+            assert!(ends[1] - ends[0] < 1e-15 + thin, "2^{exponent}: {ends:?}");
+        }
     }
 }

@@ -540,3 +540,54 @@ const MIN_DURATION: f64 = f64::EPSILON;
 
 /// Nodes larger than this fraction of the displacement are opened.
 const MAX_NODE_FRACTION: f64 = 0.3;
+
+#[cfg(test)]
+mod tests {
+    use crate::certify::{Certifier, MotionVerdict, TriangleBvh};
+    use crate::mesh::Mesh;
+    use crate::motion::Motion;
+    use crate::pose::Pose;
+    use crate::unit::Unit;
+    use nalgebra::{Point3, Vector3};
+
+    crate::tool! {
+        tool Held "a flute that cuts, below a shank" {
+            units mm;
+            profile {
+                start (0, 0);
+                line to (6, 0) as face cutting;
+                line to (6, 20) as flute cutting;
+                line to (6, 60), (0, 60) as shank;
+            }
+            niceness cutting: 1;
+        }
+    }
+
+    #[test]
+    fn a_triangle_inside_the_tool_is_followed_from_the_flute_to_the_shank() {
+        // It is deeper than its displacement, so it stays inside.
+        let corners = [[2.5, -0.5, 20.0], [2.5, 0.5, 20.0], [2.5, 0.0, 20.5]].map(Point3::from);
+        let mesh =
+            Mesh::new(corners.to_vec(), vec![[0, 1, 2]], Unit::Millimetre).expect("a triangle");
+        let bvh = TriangleBvh::new(&mesh);
+        let pose = |z: f64| {
+            Pose::from_axis(Point3::new(0.0, 0.0, z), Vector3::z()).expect("a unit vector")
+        };
+        let mut certifier = Certifier::new(&bvh, &Held)
+            .expect("a profile")
+            .with_allowance("face", f64::INFINITY)
+            .expect("a surface")
+            .with_allowance("flute", f64::INFINITY)
+            .expect("a surface");
+        for drop in [0.3, 1.0, 3.0, 5.0, 40.0] {
+            let motion = Motion::new(&pose(2.0), &pose(2.0 - drop)).expect("a motion");
+            let verdict = certifier.check_motion(&motion, 1e-6);
+            let is_expected = match verdict {
+                MotionVerdict::SurfaceOnly => drop < 1.5,
+                MotionVerdict::Touching(..) => drop > 1.5,
+                _ => false,
+            };
+            assert!(is_expected, "{drop} mm down: {verdict:?}");
+        }
+    }
+}

@@ -322,7 +322,12 @@ impl DepthSearch {
             self.run(
                 line,
                 line.interval(from, to),
-                |triangle, threshold| section.negative_distance_bound(owners, triangle, threshold),
+                |triangle, threshold| {
+                    let bound = section.negative_distance_bound(owners, triangle, threshold);
+                    // What meets no feature is inside as a whole or not at all.
+                    let is_inside = bound < 0.0 && owners.all() && section.contains(triangle[0]);
+                    if is_inside { 0.0 } else { bound }
+                },
                 |point| {
                     if owners.all() && section.contains(point) {
                         Depth { value: 0.0, gradient: [0.0; 2], feature: 0 }
