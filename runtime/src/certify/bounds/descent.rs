@@ -118,7 +118,7 @@ pub(crate) trait Bounds: BoxBounds {
 /// Slabs between two planes in the tool's frame, one per lane, that contain nodes.
 #[derive(Clone, Copy)]
 pub(crate) struct PlaneSlabs<V> {
-    /// The direction across the slab, no longer than 1.
+    /// The direction across the slab, no longer than 1 but for rounding, for which the ends have room.
     normal: LaneVector<V>,
     /// The range of positions along the direction.
     low: V,
