@@ -129,7 +129,8 @@ impl Speed {
              | stage | what is skipped | step | skipping | not skipping | saves |\n|---|---|---|--:|--:|--:|\n",
         );
         for Skip { stage, skipped, step, times: [with, without] } in rows {
-            let saved = 100.0 * (1.0 - with / without);
+            // A sum with 0 turns -0 into 0.
+            let saved = (100.0 * (1.0 - with / without)).round() + 0.0;
             writeln!(
                 body,
                 "| {stage} | {skipped} | {step} | {with:.3} | {without:.3} | {saved:.0} % |"
