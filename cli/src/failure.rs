@@ -120,47 +120,6 @@ pub(crate) enum Failure {
         "`{file}` has no tool with the name, title or number `{name}`: `touchoff import {file} --list` lists them"
     )]
     NoSuchEntry { name: String, file: String },
-    /// A program is not proved as it would be written.
-    #[error(
-        "{file}: the motion to cutter location {location} is not proved as it would be written, so nothing was \
-         written: {reason}: raise `--tolerance`, or sweep and plan again with another stepover or `--max-tilt`"
-    )]
-    NotProved {
-        /// The file that would be written, with the line if there is one.
-        file: String,
-        /// The planned cutter location, from 1.
-        location: usize,
-        reason: String,
-    },
-    /// The machine does not reach a cutter location.
-    #[error(
-        "`{machine}` does not reach cutter location {location}, with the axis {:.6},{:.6},{:.6}: {source}",
-        .axis[0], .axis[1], .axis[2]
-    )]
-    Unreachable {
-        machine: String,
-        /// The planned cutter location, from 1.
-        location: usize,
-        /// The tool axis.
-        axis: [f64; 3],
-        source: touchoff_verify::machine::InverseError,
-    },
-    /// An axis of the machine leaves its limits on the way to a cutter location.
-    #[error(
-        "`{machine}`: {letter} goes to {value:.4} on the way to cutter location {location}, beyond its limit of {limit}: \
-         correct `--work-offset`, or limit the axis with `--max-tilt`"
-    )]
-    AxisLimit {
-        machine: String,
-        /// The planned cutter location, from 1.
-        location: usize,
-        /// The axis.
-        letter: touchoff_verify::machine::Letter,
-        /// The joint value, in mm or degrees.
-        value: f64,
-        /// The limit, in mm or degrees.
-        limit: f64,
-    },
     /// The requested output shows the part, which was not given.
     #[error("`{file}` shows the part: give its mesh with `--part FILE`")]
     PartMissing { file: String },
@@ -313,6 +272,7 @@ converted! {
     touchoff_postures::RecorderError,
     touchoff_postures::RulesError,
     touchoff_postures::path::PathError,
+    touchoff_postures::post::PostError,
     touchoff_postures::sweep::SweepError,
     touchoff_verify::VerifyError,
     touchoff_verify::machine::JointError,

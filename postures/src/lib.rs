@@ -7,6 +7,7 @@ mod map;
 pub mod path;
 mod piece;
 mod placement;
+pub mod post;
 mod record;
 mod recorder;
 pub mod sweep;

@@ -2,9 +2,7 @@
 
 use super::map::read_part;
 use super::picture;
-use super::post::{Post, Words};
-use super::prove::{Location, Prover, planning_rules};
-use crate::arguments::postures::Path as Arguments;
+use crate::arguments::postures::{MachineArguments, Path as Arguments};
 use crate::failure::Failure;
 use crate::loaded_tool::LoadedTool;
 use crate::output::{Output, extension, refuse_inputs, unwritable, write_file};
@@ -17,8 +15,10 @@ use std::path::Path;
 use touchoff::certify::TriangleBvh;
 use touchoff::{Motion, Unit};
 use touchoff_postures::path::{LeftOutReason, PathRequest, Pattern, ToolAxisLimits, ToolPath};
+use touchoff_postures::post::{Location, PathProver, Placed, Post, Words, planning_rules};
 use touchoff_postures::{Directions, MapRow, PostureMap, Rules};
 use touchoff_verify::ClData;
+use touchoff_verify::job::read_machine;
 use touchoff_verify::program::{AptHeader, Cutter, Decimals, apt_unit};
 
 #[derive(Serialize)]
@@ -166,7 +166,13 @@ pub(crate) fn path(arguments: &Arguments, json: bool) -> Result<(), Failure> {
     let post = match format {
         Format::Apt => apt_unit(unit).map(|_| None)?,
         Format::Table => None,
-        Format::Gcode(machine, words) => Some(Post::new(&arguments.machine, machine, words, unit)?),
+        Format::Gcode(machine, words) => {
+            let MachineArguments { work_offset, tool_length, .. } = arguments.machine;
+            let placed = work_offset
+                .zip(tool_length)
+                .map(|(work_offset, tool_length)| Placed { work_offset, tool_length });
+            Some(Post::new(read_machine(machine)?, placed, words, unit)?)
+        }
     };
     let loaded = LoadedTool::load(&arguments.tool, &arguments.params)?;
     let (tool, identity) = (loaded.tool(), map.identity());
@@ -189,7 +195,7 @@ pub(crate) fn path(arguments: &Arguments, json: bool) -> Result<(), Failure> {
     let progress = Progress::spinner("planning", json);
     let name = arguments.output.display().to_string();
     // Created before the path is planned, so that a tool that cannot be proved is refused at once.
-    let prover = Prover::new(&bvh, tool, &rules, &name)?;
+    let prover = PathProver::new(&bvh, tool, &rules, &name)?;
     let request = PathRequest {
         mesh: &mesh,
         bvh: &bvh,
@@ -212,10 +218,11 @@ pub(crate) fn path(arguments: &Arguments, json: bool) -> Result<(), Failure> {
         feed: arguments.feed,
         decimals: Some(Decimals::of(unit)),
     };
-    let (locations, text) = prover.settle(mem::take(&mut path.locations), |locations| {
-        let program = ClData::new(&name, Some(unit), locations.iter().copied())?;
-        format.write(program, &header, &arguments.output)
-    })?;
+    let (locations, text) =
+        prover.settle::<_, Failure>(mem::take(&mut path.locations), |locations| {
+            let program = ClData::new(&name, Some(unit), locations.iter().copied())?;
+            format.write(program, &header, &arguments.output)
+        })?;
     let (text, locations) = match &post {
         Some(post) => {
             let (text, locations) = post.program(&prover, &locations, &name)?;

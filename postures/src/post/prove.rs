@@ -1,16 +1,16 @@
 //! Proof of a program as it is written: its text is read back, and every motion is checked with the allowances of the
 //! planner.
 
-use crate::failure::Failure;
+use super::PostError;
+use crate::Rules;
+use crate::path::MOTION_TOLERANCE_FRACTION;
 use nalgebra::Point3;
 use touchoff::certify::TriangleBvh;
 use touchoff::{Pose, SurfaceId, Tool};
-use touchoff_postures::Rules;
-use touchoff_postures::path::MOTION_TOLERANCE_FRACTION;
 use touchoff_verify::{ClData, Finding, FindingKind, Move, Verifier};
 
 /// A cutter location, with a flag that is set if the tool arrives in rapid traverse.
-pub(super) type Location = (Pose, bool);
+pub type Location = (Pose, bool);
 
 /// Fraction of the tolerance that the planner leaves to the rounding of coordinates.
 const ROUNDING_FRACTION: f64 = 1.0 / 16.0;
@@ -23,12 +23,13 @@ const LEAD: f64 = 1.0 / 32.0;
 const RESOLUTION_FRACTION: f64 = 1.0 / 256.0;
 
 /// Returns the rules for the planner, so that its path meets `rules` after rounding.
-pub(super) fn planning_rules(rules: &Rules) -> Rules {
+pub fn planning_rules(rules: &Rules) -> Rules {
     Rules { tolerance: rules.tolerance * (1.0 - ROUNDING_FRACTION), ..rules.clone() }
 }
 
 /// Proves programs of a tool.
-pub(super) struct Prover<'a> {
+#[derive(Debug)]
+pub struct PathProver<'a> {
     verifier: Verifier<'a>,
     /// The centre of the part's box.
     centre: Point3<f64>,
@@ -40,15 +41,18 @@ pub(super) struct Prover<'a> {
     file: &'a str,
 }
 
-impl<'a> Prover<'a> {
+impl<'a> PathProver<'a> {
     /// Creates a prover with the rules of a path. A cutting surface may be as deep as the tolerance. During motions any
-    /// other surface may exceed its allowance by the planner's share of the tolerance.
-    pub(super) fn new(
+    /// other surface may exceed its allowance by the planner's share of the tolerance. `file` is the program's name in errors.
+    ///
+    /// # Errors
+    /// If the tool or a rule is refused.
+    pub fn new(
         bvh: &'a TriangleBvh,
         tool: &'a dyn Tool,
         rules: &Rules,
         file: &'a str,
-    ) -> Result<Prover<'a>, Failure> {
+    ) -> Result<PathProver<'a>, PostError> {
         let resolution = rules.tolerance * RESOLUTION_FRACTION;
         let motion = rules.tolerance * MOTION_TOLERANCE_FRACTION - resolution;
         let mut verifier = Verifier::new(bvh, tool)?
@@ -68,7 +72,7 @@ impl<'a> Prover<'a> {
         let half_diagonal = 0.5 * (high - low).norm();
         let tip_radius = half_diagonal + verifier.reach();
         let centre = nalgebra::center(&low, &high);
-        Ok(Prover { verifier, centre, half_diagonal, tip_radius, file })
+        Ok(PathProver { verifier, centre, half_diagonal, tip_radius, file })
     }
 
     /// Proves a program, which `write` makes of cutter locations and reads back. In rapid traverse no surface may be
@@ -76,19 +80,19 @@ impl<'a> Prover<'a> {
     ///
     /// # Errors
     /// If a motion is not proved in feed either.
-    pub(super) fn settle<T>(
+    pub fn settle<T, E: From<PostError>>(
         &self,
         mut locations: Vec<Location>,
-        write: impl Fn(&[Location]) -> Result<(ClData, T), Failure>,
-    ) -> Result<(Vec<Location>, T), Failure> {
+        write: impl Fn(&[Location]) -> Result<(ClData, T), E>,
+    ) -> Result<(Vec<Location>, T), E> {
         loop {
             let (program, written) = write(&locations)?;
-            let findings = self.verifier.check(&program)?.findings;
+            let findings = self.verifier.check(&program).map_err(PostError::from)?.findings;
             let Some(first) = findings.first() else { return Ok((locations, written)) };
             // Each round changes a motion to feed, so the loop ends.
             let rapid: Vec<&Finding> = findings.iter().filter(|finding| finding.rapid).collect();
             if rapid.is_empty() {
-                return Err(self.failure(first, first.location));
+                return Err(self.failure(first, first.location).into());
             }
             rapid.iter().for_each(|finding| locations[finding.location].1 = false);
         }
@@ -98,7 +102,7 @@ impl<'a> Prover<'a> {
     pub(super) fn findings(
         &self,
         moves: impl IntoIterator<Item = Move>,
-    ) -> Result<Vec<Finding>, Failure> {
+    ) -> Result<Vec<Finding>, PostError> {
         Ok(self.verifier.check_moves(moves, &|_| ())?.findings)
     }
 
@@ -120,7 +124,7 @@ impl<'a> Prover<'a> {
     }
 
     /// Returns the failure for a finding in the motion to a cutter location.
-    pub(super) fn failure(&self, finding: &Finding, location: usize) -> Failure {
+    pub(super) fn failure(&self, finding: &Finding, location: usize) -> PostError {
         let reason = match finding.kind {
             FindingKind::Deep { surface, allowed, max_depth, .. } => {
                 format!(
@@ -146,11 +150,16 @@ impl<'a> Prover<'a> {
     }
 
     /// Returns the failure for the motion to a cutter location, with its line in the program if it has one.
-    pub(super) fn refusal(&self, line: Option<usize>, location: usize, reason: String) -> Failure {
+    pub(super) fn refusal(
+        &self,
+        line: Option<usize>,
+        location: usize,
+        reason: String,
+    ) -> PostError {
         let file = match line {
             Some(line) => format!("{}:{line}", self.file),
             None => self.file.to_owned(),
         };
-        Failure::NotProved { file, location: location + 1, reason }
+        PostError::NotProved { file, location: location + 1, reason }
     }
 }

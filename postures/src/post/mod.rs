@@ -2,20 +2,19 @@
 //! the part, with tool centre point control. Of both solutions at each cutter location those are taken whose rotary axes
 //! travel least along the path.
 
-use super::prove::{Location, Prover};
-use crate::arguments::postures::MachineArguments;
-use crate::failure::Failure;
+mod prove;
+
+pub use prove::{Location, PathProver, planning_rules};
+
+use crate::path::ToolAxisLimits;
 use nalgebra::{Point3, Vector3};
 use std::collections::BTreeMap;
 use std::fmt::Write;
-use std::path::Path;
-use touchoff::{Motion, Pose, Unit};
-use touchoff_postures::path::ToolAxisLimits;
+use touchoff::{Motion, MotionError, Pose, Unit};
 use touchoff_verify::gcode::{Choice, ControlRules, ControlSetup, Rule};
-use touchoff_verify::job::read_machine;
-use touchoff_verify::machine::{Chain, InverseError, Joints, Letter, Machine, Setup};
+use touchoff_verify::machine::{Chain, InverseError, JointError, Joints, Letter, Machine, Setup};
 use touchoff_verify::program::Decimals;
-use touchoff_verify::{Finding, MachineProgram, ToolSelection};
+use touchoff_verify::{Finding, MachineProgram, MachineProgramError, ToolSelection, VerifyError};
 
 /// Largest number of times that the motion between two cutter locations is halved.
 const MAX_HALVINGS: u32 = 8;
@@ -36,17 +35,91 @@ const ANGLE_DECIMALS: usize = 6;
 const UPRIGHT: f64 = 1e-6;
 
 /// Words of a program besides its motions.
-#[derive(Clone, Copy)]
-pub(super) struct Words {
-    pub(super) tool_number: u32,
+#[derive(Clone, Copy, Debug)]
+pub struct Words {
+    /// The tool's number.
+    pub tool_number: u32,
     /// Feed per minute, in the part's unit.
-    pub(super) feed: f64,
+    pub feed: f64,
     /// Revolutions per minute.
-    pub(super) spindle: Option<f64>,
+    pub spindle: Option<f64>,
+}
+
+/// The place of the part and of the tool on a machine. Lengths are in the part's unit.
+#[derive(Clone, Copy, Debug)]
+pub struct Placed {
+    /// The origin of the part in machine coordinates (G54).
+    pub work_offset: Point3<f64>,
+    /// The distance from the tip to the gauge point of the spindle.
+    pub tool_length: f64,
+}
+
+/// A reason for which a path is not written as a program.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum PostError {
+    /// A motion is not proved as it would be written.
+    #[error(
+        "{file}: the motion to cutter location {location} is not proved as it would be written, so nothing was \
+         written: {reason}: raise `--tolerance`, or sweep and plan again with another stepover or `--max-tilt`"
+    )]
+    NotProved {
+        /// The file that would be written, with the line if there is one.
+        file: String,
+        /// The planned cutter location, from 1.
+        location: usize,
+        /// The finding.
+        reason: String,
+    },
+    /// The machine does not reach a cutter location.
+    #[error(
+        "`{machine}` does not reach cutter location {location}, with the axis {:.6},{:.6},{:.6}: {source}",
+        .axis[0], .axis[1], .axis[2]
+    )]
+    Unreachable {
+        /// The machine's name.
+        machine: String,
+        /// The planned cutter location, from 1.
+        location: usize,
+        /// The tool axis.
+        axis: [f64; 3],
+        /// The reason.
+        source: InverseError,
+    },
+    /// An axis of the machine leaves its limits on the way to a cutter location.
+    #[error(
+        "`{machine}`: {letter} goes to {value:.4} on the way to cutter location {location}, beyond its limit of {limit}: \
+         correct `--work-offset`, or limit the axis with `--max-tilt`"
+    )]
+    AxisLimit {
+        /// The machine's name.
+        machine: String,
+        /// The planned cutter location, from 1.
+        location: usize,
+        /// The axis.
+        letter: Letter,
+        /// The joint value, in mm or degrees.
+        value: f64,
+        /// The limit, in mm or degrees.
+        limit: f64,
+    },
+    /// The path cannot be verified.
+    #[error(transparent)]
+    Verify(#[from] VerifyError),
+    /// An offset is out of range.
+    #[error(transparent)]
+    Joint(#[from] JointError),
+    /// A motion is ambiguous.
+    #[error(transparent)]
+    Motion(#[from] MotionError),
+    /// The program is refused when it is read again.
+    #[error(transparent)]
+    Program(#[from] MachineProgramError),
 }
 
 /// A post-processor for a machine.
-pub(super) struct Post {
+#[derive(Debug)]
+pub struct Post {
     machine: Machine,
     /// The chain of the inverse kinematics.
     chain: Chain,
@@ -93,7 +166,7 @@ enum Fault<'f> {
 
 impl Fault<'_> {
     /// Returns the failure for a motion that cannot be divided any further.
-    fn failure(&self, prover: &Prover<'_>, location: &PostedLocation) -> Failure {
+    fn failure(&self, prover: &PathProver<'_>, location: &PostedLocation) -> PostError {
         match self {
             Fault::Astray => {
                 let reason =
@@ -106,32 +179,32 @@ impl Fault<'_> {
 }
 
 impl Post {
-    /// Creates a post-processor for a part in a unit of length.
+    /// Creates a post-processor for a part in a unit of length. Without a place the limits of the linear axes are not
+    /// checked.
     ///
     /// # Errors
-    /// If there is no such machine, its file is refused, or an offset is out of range.
-    pub(super) fn new(
-        arguments: &MachineArguments,
-        name: &Path,
+    /// If an offset is out of range.
+    pub fn new(
+        machine: Machine,
+        placed: Option<Placed>,
         words: Words,
         unit: Unit,
-    ) -> Result<Post, Failure> {
-        let machine = read_machine(name)?;
+    ) -> Result<Post, PostError> {
         // The program leaves one choice to the control: that rapid traverse is a straight line is part of what is proved.
         let rules = ControlRules::default()
             .with(Rule::Rapid, Choice::Straight)
             .with(Rule::ToolChange, Choice::Moves);
         let mut control = ControlSetup { rules, ..ControlSetup::default() };
         let in_mm = unit.millimetres();
-        let chain = match (&arguments.work_offset, arguments.tool_length) {
-            (Some(offset), Some(length)) => {
+        let chain = match placed {
+            Some(Placed { work_offset: offset, tool_length: length }) => {
                 let [x, y, z] = [offset.x, offset.y, offset.z].map(|value| value * in_mm);
                 let work_offset = [x, y, z, 0.0, 0.0, 0.0];
                 control.work_offsets[0] = Some(work_offset);
                 control.lengths = BTreeMap::from([(words.tool_number, length * in_mm)]);
                 machine.chain(&Setup { work_offset, tool_length: length * in_mm })?
             }
-            _ => machine.chain(&Setup::default())?.without_linear_limits(),
+            None => machine.chain(&Setup::default())?.without_linear_limits(),
         };
         let rotary_chain = chain.without_linear_limits();
         Ok(Post { machine, chain, rotary_chain, control, unit, words })
@@ -146,12 +219,12 @@ impl Post {
     /// # Errors
     /// If the machine does not reach a cutter location, if a motion leaves the limits of an axis, or if a motion is not
     /// proved.
-    pub(super) fn program(
+    pub fn program(
         &self,
-        prover: &Prover<'_>,
+        prover: &PathProver<'_>,
         locations: &[Location],
         file: &str,
-    ) -> Result<(String, Vec<Location>), Failure> {
+    ) -> Result<(String, Vec<Location>), PostError> {
         let posted = locations.iter().enumerate().map(|(planned, (pose, rapid))| PostedLocation {
             pose: *pose,
             rapid: *rapid,
@@ -175,7 +248,7 @@ impl Post {
                 self.control.clone(),
             )?;
             if let Some((line, violation)) = program.summary().limits.first() {
-                return Err(Failure::AxisLimit {
+                return Err(PostError::AxisLimit {
                     machine: self.machine.name().to_owned(),
                     location: locations[posted.location(*line)].planned + 1,
                     letter: violation.letter,
@@ -205,8 +278,8 @@ impl Post {
         &self,
         locations: &[PostedLocation],
         joints: &[Joints],
-        prover: &Prover<'_>,
-    ) -> Result<BTreeMap<usize, Fault<'static>>, Failure> {
+        prover: &PathProver<'_>,
+    ) -> Result<BTreeMap<usize, Fault<'static>>, PostError> {
         let mut astray = BTreeMap::new();
         for index in 1..locations.len() {
             let [from, to] = [&locations[index - 1], &locations[index]];
@@ -293,7 +366,7 @@ impl Post {
     }
 
     /// Returns the joint values of cutter locations.
-    fn joints(&self, locations: &[PostedLocation]) -> Result<Vec<Joints>, Failure> {
+    fn joints(&self, locations: &[PostedLocation]) -> Result<Vec<Joints>, PostError> {
         let targets = locations.iter().map(|location| Target {
             tip: location.pose.tip() * self.unit.millimetres(),
             axis: location.pose.axis(),
@@ -301,7 +374,7 @@ impl Post {
         });
         let targets: Vec<Target> = targets.collect();
         let home = self.machine.home().map(|value| value.unwrap_or(0.0));
-        sequence(&self.chain, &targets, home).map_err(|(index, source)| Failure::Unreachable {
+        sequence(&self.chain, &targets, home).map_err(|(index, source)| PostError::Unreachable {
             machine: self.machine.name().to_owned(),
             location: locations[index].planned + 1,
             axis: targets[index].axis.into(),
@@ -325,8 +398,8 @@ fn refined(
     locations: &[PostedLocation],
     joints: &[Joints],
     faults: &BTreeMap<usize, Fault<'_>>,
-    prover: &Prover<'_>,
-) -> Result<Vec<PostedLocation>, Failure> {
+    prover: &PathProver<'_>,
+) -> Result<Vec<PostedLocation>, PostError> {
     let mut refined = Vec::with_capacity(locations.len() + faults.len());
     for (index, location) in locations.iter().enumerate() {
         let Some(fault) = faults.get(&index) else {
