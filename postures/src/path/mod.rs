@@ -30,7 +30,7 @@ use order::OpenRuns;
 use range::AxisRange;
 pub use range::ToolAxisLimits;
 use rayon::prelude::*;
-use retract::RetractSphere;
+pub(crate) use retract::RetractSphere;
 use slice::{Planes, SlicePoint, length_of_lines, slices};
 use std::fmt;
 use tilt::TiltLimit;
@@ -237,7 +237,7 @@ impl PathRequest<'_> {
             return Err(PathError::NoDirection);
         }
         let mut planner = PathPlanner::new(bvh, tool, rules, range)?;
-        let sphere = RetractSphere::new(mesh, planner.placement.reach());
+        let sphere = RetractSphere::new(mesh.bounds(), planner.placement.reach());
         let planes = Planes::new(mesh, &normal, pattern.stepover);
         let slices = slices(mesh, &planes, pattern.step);
         let lines: Vec<(usize, &Vec<SlicePoint>)> = slices

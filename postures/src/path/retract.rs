@@ -3,12 +3,13 @@
 use super::PathPlanner;
 use nalgebra::{Point3, Unit, Vector3};
 use std::f64::consts::FRAC_PI_3;
-use touchoff::{Mesh, Pose};
+use touchoff::Pose;
 
 /// A sphere about the part, twice as large as one that holds the tips of all tools that touch the part. A tool
 /// that has moved there along its axis has that axis within 30 degrees of the outward direction, and the whole
 /// part below its tip.
-pub(super) struct RetractSphere {
+#[derive(Debug)]
+pub(crate) struct RetractSphere {
     centre: Point3<f64>,
     /// Radius of the sphere that holds the tips of all tools that touch the part.
     tip_radius: f64,
@@ -46,9 +47,9 @@ const LINK_RADII: [f64; 3] = [1.05, 1.4, OUTER_RADIUS];
 const SAME: f64 = 1e-7;
 
 impl RetractSphere {
-    /// Creates the sphere about a mesh. `reach` is the largest distance between the tip and a contact.
-    pub(super) fn new(mesh: &Mesh, reach: f64) -> RetractSphere {
-        let [low, high] = mesh.bounds();
+    /// Creates the sphere about a part, given by the corners of its box. `reach` is the largest distance between the tip and
+    /// a contact.
+    pub(crate) fn new([low, high]: [Point3<f64>; 2], reach: f64) -> RetractSphere {
         let half = 0.5 * (high - low).norm();
         RetractSphere {
             centre: low + 0.5 * (high - low),
@@ -58,7 +59,7 @@ impl RetractSphere {
     }
 
     /// Returns the lowest lift of a link, in the part's unit.
-    pub(super) fn lead(&self) -> f64 {
+    pub(crate) fn lead(&self) -> f64 {
         self.lead
     }
 
@@ -71,9 +72,19 @@ impl RetractSphere {
         (within > 0.0).then(|| (height * height + within).sqrt() - height)
     }
 
+    /// Returns the distance along its axis at which a pose leaves the sphere of full retracts; `None` for a pose outside.
+    pub(crate) fn outer_exit(&self, pose: &Pose) -> Option<f64> {
+        self.exit(pose, OUTER_RADIUS * self.tip_radius)
+    }
+
+    /// Returns whether the tool reaches the part in no direction of its axis.
+    pub(crate) fn is_away(&self, pose: &Pose) -> bool {
+        (pose.tip() - self.centre).norm() > self.tip_radius
+    }
+
     /// Returns the move off the surface from a posture, if it is proved.
     pub(super) fn leg(&self, planner: &mut PathPlanner<'_>, pose: &Pose) -> Option<RetractLeg> {
-        let exit = self.exit(pose, OUTER_RADIUS * self.tip_radius)?;
+        let exit = self.outer_exit(pose)?;
         // The lead ends before the sphere, so that both motions have a length.
         let lead_end = lifted(pose, self.lead.min(0.5 * exit))?;
         let outer = lifted(pose, exit)?;
@@ -295,7 +306,7 @@ mod tests {
         let tilt = TiltLimit::new(PI).expect("an angle");
         let range = AxisRange { tilt, machine: None };
         let mut planner = PathPlanner::new(&bvh, &Mill, &rules, range).expect("a planner");
-        let sphere = RetractSphere::new(&mesh, planner.placement.reach());
+        let sphere = RetractSphere::new(mesh.bounds(), planner.placement.reach());
         // The ball is a little off the part, inside and outside.
         let mut poses = Vec::new();
         for direction in Directions::spread(12).list() {
@@ -339,7 +350,7 @@ mod tests {
     #[test]
     fn the_way_around_stays_off_the_tips() {
         let mesh = shapes::sphere(10.0, 3, touchoff::Unit::Millimetre).expect("a sphere");
-        let sphere = RetractSphere::new(&mesh, 3.0);
+        let sphere = RetractSphere::new(mesh.bounds(), 3.0);
         let directions = Directions::spread(20);
         let mut chords = 0;
         for (first, last) in directions.list().iter().zip(directions.list().iter().rev()) {

@@ -3,8 +3,7 @@
 
 use super::PostError;
 use crate::Rules;
-use crate::path::MOTION_TOLERANCE_FRACTION;
-use nalgebra::Point3;
+use crate::path::{MOTION_TOLERANCE_FRACTION, RetractSphere};
 use touchoff::certify::TriangleBvh;
 use touchoff::{Pose, SurfaceId, Tool};
 use touchoff_verify::{ClData, Finding, FindingKind, Move, Verifier};
@@ -14,9 +13,6 @@ pub type Location = (Pose, bool);
 
 /// Fraction of the tolerance that the planner leaves to the rounding of coordinates.
 const ROUNDING_FRACTION: f64 = 1.0 / 16.0;
-
-/// Length of a lead off the part in feed, as a fraction of half the diagonal of the part's box.
-const LEAD: f64 = 1.0 / 32.0;
 
 /// Resolution of the proof, as a fraction of the tolerance. The limits of the proof are lower by this, so that no
 /// excess below the resolution exceeds the rules.
@@ -31,12 +27,7 @@ pub fn planning_rules(rules: &Rules) -> Rules {
 #[derive(Debug)]
 pub struct PathProver<'a> {
     verifier: Verifier<'a>,
-    /// The centre of the part's box.
-    centre: Point3<f64>,
-    /// Half the diagonal of the part's box.
-    half_diagonal: f64,
-    /// The radius of the sphere about the centre that holds the tips of all tools that touch the part.
-    tip_radius: f64,
+    sphere: RetractSphere,
     /// Name of the output file.
     file: &'a str,
 }
@@ -68,11 +59,8 @@ impl<'a> PathProver<'a> {
             };
             verifier = verifier.with_allowance(&surface.name, allowed)?;
         }
-        let [low, high] = bvh.bounds();
-        let half_diagonal = 0.5 * (high - low).norm();
-        let tip_radius = half_diagonal + verifier.reach();
-        let centre = nalgebra::center(&low, &high);
-        Ok(PathProver { verifier, centre, half_diagonal, tip_radius, file })
+        let sphere = RetractSphere::new(bvh.bounds(), verifier.reach());
+        Ok(PathProver { verifier, sphere, file })
     }
 
     /// Proves a program, which `write` makes of cutter locations and reads back. In rapid traverse no surface may be
@@ -110,17 +98,14 @@ impl<'a> PathProver<'a> {
     /// part in no direction. The latter is on a sphere about the part, twice as large as one that holds the tips of all
     /// tools that touch it. `None` for a pose beyond that.
     pub(super) fn away(&self, pose: &Pose) -> Option<[Pose; 2]> {
-        let radius = 2.0 * self.tip_radius;
-        let (from, axis) = (pose.tip() - self.centre, pose.axis());
-        let height = from.dot(&axis);
-        let exit = (height * height + radius * radius - from.norm_squared()).sqrt() - height;
-        let lead = pose.translated(axis * exit.min(LEAD * self.half_diagonal)).ok()?;
+        let (exit, axis) = (self.sphere.outer_exit(pose)?, pose.axis());
+        let lead = pose.translated(axis * exit.min(self.sphere.lead())).ok()?;
         Some([lead, pose.translated(axis * exit).ok()?])
     }
 
     /// Returns whether the tool reaches the part in no direction of its axis.
     pub(super) fn is_away(&self, pose: &Pose) -> bool {
-        (pose.tip() - self.centre).norm() > self.tip_radius
+        self.sphere.is_away(pose)
     }
 
     /// Returns the failure for a finding in the motion to a cutter location.
