@@ -161,20 +161,20 @@ impl Speed {
         })
     }
 
-    /// The same wrench with the points in one box, which the tool always reaches.
+    /// The deepest point with a tree, and with an evaluation of all points.
     fn points(&self) -> Result<Skip, Box<dyn Error>> {
-        let part = points_of(&tube(), 20_000)?;
+        let cloud = Cloud::sample(&tube(), Sampling::monte_carlo(20_000))?;
+        let part = Part::from_cloud(&cloud);
         let poses = poses(ScenePath::Outside);
         let mut probe = Probe::new(&part, &Fig73Exact);
         let mut batch = PointBatch::default();
         let mut evaluations = Evaluations::default();
-        let positions: Vec<Point3<f64>> = tube_points(20_000)?;
         let outputs = Outputs { depth: true, ..Outputs::INSIDE };
         let times = self.race(
             |k| probe.deepest(&poses[k]),
             |k| {
                 batch.clear();
-                for point in &positions {
+                for point in cloud.points() {
                     let local = poses[k].rotation().tr_mul(&(point - poses[k].tip()));
                     batch.push(local.into());
                 }
@@ -366,10 +366,15 @@ fn fork_head(control: &str, text: &str) -> Result<Vec<MachineProgram>, Box<dyn E
         "unknown" => ControlRules::default().with(Rule::Dialect, Choice::Iso),
         _ => ControlRules::named(control)?,
     };
+    let machine = Machine::named("A-C fork head")?;
+    Ok(MachineProgram::readings("program", text.to_owned(), machine, &with_tool(rules))?)
+}
+
+/// Returns the setup of a control with a tool of 150 mm.
+fn with_tool(rules: ControlRules) -> ControlSetup {
     let mut setup = ControlSetup { rules, ..ControlSetup::default() };
     setup.lengths.insert(1, 150.0);
-    let machine = Machine::named("A-C fork head")?;
-    Ok(MachineProgram::readings("program", text.to_owned(), machine, &setup)?)
+    setup
 }
 
 /// Returns a program of motions of all axes on circles above a height. It has one whole number, whose unit controls
@@ -612,9 +617,7 @@ impl Contact {
     /// Times the check of the job.
     fn row(self) -> Result<Measured, Box<dyn Error>> {
         let part = TriangleBvh::new(&self.mesh()?);
-        let mut setup =
-            ControlSetup { rules: ControlRules::named("fanuc")?, ..ControlSetup::default() };
-        setup.lengths.insert(1, 150.0);
+        let setup = with_tool(ControlRules::named("fanuc")?);
         let machine = Machine::named("A-C fork head")?;
         let program = Program::parse(self.program()?, "contact.nc", machine, &setup)?;
         let mut job = Job::new(&program, &part);
@@ -654,10 +657,4 @@ fn poses(path: ScenePath) -> Vec<Pose> {
 
 fn points_of(mesh: &Mesh, count: usize) -> Result<Part, Box<dyn Error>> {
     Ok(Part::from_cloud(&Cloud::sample(mesh, Sampling::monte_carlo(count))?))
-}
-
-/// Returns the points of [`points_of`] the tube.
-fn tube_points(count: usize) -> Result<Vec<Point3<f64>>, Box<dyn Error>> {
-    let cloud = Cloud::sample(&tube(), Sampling::monte_carlo(count))?;
-    Ok(cloud.points().to_vec())
 }
