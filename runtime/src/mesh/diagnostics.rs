@@ -243,43 +243,55 @@ struct Edges {
 }
 
 impl Edges {
-    /// Counts edges by sorting. All uses of an edge go into the bucket of its lower vertex; each bucket,
-    /// with a handful of entries, is sorted by the higher vertex.
+    /// Counts edges by their uses.
     fn of(mesh: &Mesh) -> Edges {
-        let mut starts = vec![0usize; mesh.vertices().len() + 1];
-        for [from, to] in edge_uses(mesh) {
-            starts[from.min(to) as usize + 1] += 1;
-        }
-        for vertex in 1..starts.len() {
-            starts[vertex] += starts[vertex - 1];
-        }
-        let mut uses = vec![0u64; starts[starts.len() - 1]];
-        // Counting sort: the starts themselves stay, as the bounds of the buckets.
-        let mut next_slots = starts.clone();
-        for [from, to] in edge_uses(mesh) {
-            let slot = &mut next_slots[from.min(to) as usize];
-            // The direction in the last bit: sorting brings the uses of an edge together.
-            uses[*slot] = u64::from(from.max(to)) << 1 | u64::from(from < to);
-            *slot += 1;
-        }
+        let uses = edge_uses(mesh).map(|[from, to]| ([from, to], from < to));
         let mut edges = Edges { open: 0, crossed: 0, shared: 0 };
-        for bucket in starts.windows(2) {
-            let bucket = &mut uses[bucket[0]..bucket[1]];
-            bucket.sort_unstable();
-            for edge in bucket.chunk_by(|a, b| a >> 1 == b >> 1) {
-                let upward = edge.iter().filter(|&&entry| entry & 1 == 1).count();
-                edges.open += usize::from(edge.len() % 2 == 1);
-                edges.crossed += usize::from(edge.len() % 2 == 0 && 2 * upward != edge.len());
-                edges.shared += usize::from(edge.len() > 2);
-            }
-        }
+        for_each_edge(uses, mesh.vertices().len(), |uses| {
+            let upward = uses.iter().filter(|(_, upward)| *upward).count();
+            edges.open += usize::from(uses.len() % 2 == 1);
+            edges.crossed += usize::from(uses.len() % 2 == 0 && 2 * upward != uses.len());
+            edges.shared += usize::from(uses.len() > 2);
+        });
         edges
+    }
+}
+
+/// Passes the uses of each edge to a function: those of an edge together, each with its higher vertex and what it was given.
+/// Vertices are less than `vertices`.
+///
+/// All uses of an edge go into the bucket of its lower vertex; each bucket, with a handful of entries, is sorted by the higher
+/// vertex.
+fn for_each_edge<T: Copy + Default + Ord>(
+    uses: impl Iterator<Item = ([u32; 2], T)> + Clone,
+    vertices: usize,
+    mut each: impl FnMut(&[(u32, T)]),
+) {
+    let mut starts = vec![0usize; vertices + 1];
+    for ([from, to], _) in uses.clone() {
+        starts[from.min(to) as usize + 1] += 1;
+    }
+    for vertex in 1..starts.len() {
+        starts[vertex] += starts[vertex - 1];
+    }
+    let mut sorted = vec![(0, T::default()); starts[vertices]];
+    // Counting sort: the starts themselves stay, as the bounds of the buckets.
+    let mut next_slots = starts.clone();
+    for ([from, to], given) in uses {
+        let slot = &mut next_slots[from.min(to) as usize];
+        sorted[*slot] = (from.max(to), given);
+        *slot += 1;
+    }
+    for bucket in starts.windows(2) {
+        let bucket = &mut sorted[bucket[0]..bucket[1]];
+        bucket.sort_unstable();
+        bucket.chunk_by(|a, b| a.0 == b.0).for_each(&mut each);
     }
 }
 
 /// Iterates over the directed edges of all triangles, except triangles that name a vertex twice. These
 /// have collapsed into an edge or a point, and their contributions would cancel.
-fn edge_uses(mesh: &Mesh) -> impl Iterator<Item = [u32; 2]> {
+fn edge_uses(mesh: &Mesh) -> impl Iterator<Item = [u32; 2]> + Clone {
     mesh.triangles()
         .iter()
         .filter(|[a, b, c]| a != b && b != c && c != a)
@@ -292,36 +304,16 @@ pub(crate) const NO_TRIANGLE: u32 = u32::MAX;
 /// Returns the neighbours of each triangle across its sides, from its first corner on, where exactly two triangles share the
 /// edge; elsewhere [`NO_TRIANGLE`]. Triangles are given by their vertices, which are fewer than `vertices`.
 pub(crate) fn neighbours(triangles: &[[u32; 3]], vertices: usize) -> Vec<[u32; 3]> {
-    let sides = |[a, b, c]: [u32; 3]| [[a, b], [b, c], [c, a]];
-    // As in `Edges::of`, the uses of an edge meet in the bucket of its lower vertex.
-    let mut starts = vec![0usize; vertices + 1];
-    for [from, to] in triangles.iter().flat_map(|triangle| sides(*triangle)) {
-        starts[from.min(to) as usize + 1] += 1;
-    }
-    for vertex in 1..starts.len() {
-        starts[vertex] += starts[vertex - 1];
-    }
-    // The higher vertex, the triangle and its side.
-    let mut uses = vec![(0, 0, 0u8); starts[vertices]];
-    let mut next_slots = starts.clone();
-    for (index, triangle) in (0..).zip(triangles) {
-        for (side, [from, to]) in (0..).zip(sides(*triangle)) {
-            let slot = &mut next_slots[from.min(to) as usize];
-            uses[*slot] = (from.max(to), index, side);
-            *slot += 1;
-        }
-    }
+    let uses = (0u32..).zip(triangles).flat_map(|(index, &[a, b, c])| {
+        [([a, b], (index, 0u8)), ([b, c], (index, 1)), ([c, a], (index, 2))]
+    });
     let mut neighbours = vec![[NO_TRIANGLE; 3]; triangles.len()];
-    for bucket in starts.windows(2) {
-        let bucket = &mut uses[bucket[0]..bucket[1]];
-        bucket.sort_unstable();
-        for edge in bucket.chunk_by(|a, b| a.0 == b.0) {
-            if let [(_, first, side), (_, second, other)] = *edge {
-                neighbours[first as usize][side as usize] = second;
-                neighbours[second as usize][other as usize] = first;
-            }
+    for_each_edge(uses, vertices, |uses| {
+        if let [(_, (first, side)), (_, (second, other))] = *uses {
+            neighbours[first as usize][usize::from(side)] = second;
+            neighbours[second as usize][usize::from(other)] = first;
         }
-    }
+    });
     neighbours
 }
 

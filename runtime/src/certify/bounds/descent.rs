@@ -156,6 +156,7 @@ impl<S: Simd> PlaneSlabs<f32x16<S>> {
         PlaneSlabs { normal, low, high, per_radial }
     }
 
+    #[inline(always)]
     fn widen(&mut self, distance: f32x16<S>) {
         self.low -= distance;
         self.high += distance;
@@ -196,8 +197,6 @@ pub(crate) struct BoxRings<V> {
 pub(crate) struct Displacement {
     /// The axis of the rotation.
     pub(crate) axis: [f32; 3],
-    /// The translation, without its sign.
-    pub(crate) straight: [f32; 3],
     pub(crate) translation: [f32; 3],
     pub(crate) length: f32,
     /// The distance to be kept.
@@ -247,7 +246,8 @@ pub(crate) fn rings<S: Simd>(
         for axis in 0..3 {
             // A component of `axis × p` is no longer than the distance from the axis of the rotation.
             let turned = reach.min(across[axis]) * shift.turn;
-            wide[axis] = wide[axis] + turned + shift.straight[axis] + curve;
+            let straight = shift.translation[axis].abs() + shift.clearance;
+            wide[axis] = wide[axis] + turned + straight + curve;
         }
         // The same for the component along the planes' normals: `n · (axis × p)` is `(n × axis) · p`.
         let ([a, b, c], [u, v, w]) = (planes.normal, shift.axis);

@@ -3,8 +3,8 @@
 use crate::bvh::{LaneVector, PoseTransform};
 use crate::certify::bounds::descent::{Bounds, BoxBounds, BoxRings, Children, rings};
 use crate::certify::bounds::nearest::{
-    AxisDistances, Clip, NearestPoint, Real, Ring, choose, direction_from_axis, distances,
-    extents_from, from_ring, max3, min3, radial_extents, under_both, under_both_of_ring,
+    AxisDistances, Clip, NearestPoint, Real, Ring, RingDistances, choose, direction_from_axis,
+    distances, extents_from, from_ring, max3, min3, radial_extents, under_both, under_both_of_ring,
 };
 use crate::certify::part::NodeRing;
 use crate::certify::tool_model::feature::{Feature, MeridianPoint};
@@ -259,12 +259,11 @@ impl<R: Real> HullSlab<R> {
         // If the point nearest to the axis is beyond the slab, the piece in the slab is nearest at that end.
         let (mut deepest, mut direction, mut part) = (near.point, near.direction, None);
         let beyond_it = open & (deepest[2].simd_lt(from) | deepest[2].simd_gt(to));
-        let beyond = beyond_it.any_true();
         let [a, b, c] = corners;
         let (lowest, highest) = (min3(a[2], b[2], c[2]), max3(a[2], b[2], c[2]));
-        if beyond || (open & (lowest.simd_lt(from) | highest.simd_gt(to))).any_true() {
+        if (open & (lowest.simd_lt(from) | highest.simd_gt(to))).any_true() {
             let clip = Clip::new(simd, corners, [self.low, self.high]);
-            if beyond {
+            if beyond_it.any_true() {
                 let end = clip.at_end(simd, corners, deepest[2].simd_gt(to));
                 deepest = choose(beyond_it, &end, &deepest);
                 direction = direction_from_axis(simd, &[deepest[0], deepest[1], zero], zero);
@@ -286,15 +285,12 @@ impl<R: Real> HullSlab<R> {
             let ball = NearestPoint::to_axis_point(simd, corners, z);
             let (mut foot, mut direction) = (ball.point, ball.direction);
             let beyond_it = open & (foot[2].simd_lt(from) | foot[2].simd_gt(to));
-            if beyond_it.any_true() {
-                if part.is_none() {
-                    part = Some(Clip::new(simd, corners, [self.low, self.high]));
-                }
-                if let Some(clip) = &part {
-                    let end = clip.at_end(simd, corners, foot[2].simd_gt(to));
-                    foot = choose(beyond_it, &end, &foot);
-                    direction = direction_from_axis(simd, &foot, centre);
-                }
+            if let Some(clip) = &part
+                && beyond_it.any_true()
+            {
+                let end = clip.at_end(simd, corners, foot[2].simd_gt(to));
+                foot = choose(beyond_it, &end, &foot);
+                direction = direction_from_axis(simd, &foot, centre);
             }
             if let Some(point) = refine_at {
                 let within = point[2].simd_ge(from) & point[2].simd_le(to);
@@ -338,8 +334,8 @@ impl<R: Real> HullSlab<R> {
             for guarded in &self.guarded {
                 if count < MAX_BOUNDS {
                     let holds = guarded.holds(simd, corners, &out, &part);
-                    let [under, other] = [guarded.plane, self.planes[0]]
-                        .map(|plane| under_plane(simd, corners, &out, plane));
+                    let under = under_plane(simd, corners, &out, guarded.plane);
+                    let other = under_plane(simd, corners, &out, self.planes[0]);
                     bounds[count] = choose(holds, &under, &other);
                     count += 1;
                 }
@@ -351,9 +347,14 @@ impl<R: Real> HullSlab<R> {
                     depth = under.select(both, depth);
                     deepest = choose(under, &point, &deepest);
                 }
-                for ring in &self.rings {
-                    let (both, point) =
-                        under_both_of_ring(simd, corners, &out, &bounds[first], *ring);
+            }
+            let far = distances(corners);
+            for ring in &self.rings {
+                let from_axis = AxisDistances { least: &out, greatest: &far };
+                let distance = from_ring(simd, corners, &from_axis, *ring);
+                let ring = RingDistances { ring: *ring, distance };
+                for linear in &bounds[..count] {
+                    let (both, point) = under_both_of_ring(simd, corners, &out, linear, &ring);
                     let under = both.simd_lt(depth);
                     depth = under.select(both, depth);
                     deepest = choose(under, &point, &deepest);
@@ -426,6 +427,16 @@ impl Hull<f64> {
     }
 }
 
+impl<S: Simd> BoxRings<f32x16<S>> {
+    /// Returns the greatest distance under a plane, given as in [`HullSlab::planes`].
+    #[inline(always)]
+    fn under_plane(&self, simd: S, [nd, nz, c]: [f32; 3]) -> f32x16<S> {
+        let d = if nd < 0.0 { self.far } else { self.near };
+        let z = if nz > 0.0 { self.low } else { self.high };
+        f32x16::splat(simd, c) - d * nd - z * nz
+    }
+}
+
 impl Hull<f32> {
     /// Returns at least the depth of every point of the rings. A bound of at most `threshold` need not be tight.
     #[inline(always)]
@@ -453,22 +464,17 @@ impl Hull<f32> {
                 bound = in_slab.select(bound.max(depth), bound);
                 continue;
             }
-            for &[nd, nz, max3] in &slab.planes[1..] {
-                let z = if nz > 0.0 { low } else { high };
-                depth = depth.min(f32x16::splat(simd, max3) - near * nd - z * nz);
+            let ends = BoxRings { near, far, low, high, planes: None };
+            for plane in &slab.planes[1..] {
+                depth = depth.min(ends.under_plane(simd, *plane));
             }
             for GuardedPlane { plane, guards } in &slab.guarded {
-                let under = |&[nd, nz, c]: &[f32; 3]| {
-                    let d = if nd > 0.0 { near } else { far };
-                    let z = if nz > 0.0 { low } else { high };
-                    f32x16::splat(simd, c) - d * nd - z * nz
-                };
                 let mut short = f32x16::splat(simd, f32::NEG_INFINITY);
                 for guard in guards {
-                    short = short.max(under(guard));
+                    short = short.max(ends.under_plane(simd, *guard));
                 }
                 let holds = short.simd_le(zero);
-                depth = holds.select(depth.min(under(plane)), depth);
+                depth = holds.select(depth.min(ends.under_plane(simd, *plane)), depth);
             }
             if let Some([z, radius]) = slab.ball {
                 let centre = f32x16::splat(simd, z);

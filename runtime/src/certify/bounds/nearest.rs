@@ -309,9 +309,7 @@ fn cut_at<S: Simd, V: SimdBase<S>>(
     [low, high]: &[Crossing<V, V::Mask>; 2],
     upper: V::Mask,
 ) -> (LaneVector<V>, V::Mask) {
-    let (at, direction) = (upper.select(high.at, low.at), minus(to, from));
-    let point =
-        [from[0] + at * direction[0], from[1] + at * direction[1], from[2] + at * direction[2]];
+    let point = between(from, to, upper.select(high.at, low.at));
     (point, (upper & high.exists) | (!upper & low.exists))
 }
 
@@ -394,6 +392,12 @@ pub(crate) struct AxisDistances<'a, V> {
     pub(crate) greatest: &'a [V; 3],
 }
 
+/// A ring, and upper bounds on its distances from the corners of triangles.
+pub(crate) struct RingDistances<R, V> {
+    pub(crate) ring: Ring<R>,
+    pub(crate) distance: [V; 3],
+}
+
 /// Returns upper bounds, up to rounding, on the distances of corners from a ring. The bound is convex over a triangle, so
 /// its linear interpolation between corners bounds it.
 #[inline(always)]
@@ -421,6 +425,26 @@ pub(crate) fn under_both<S: Simd, V: SimdFloat<S>>(
 ) -> (V, LaneVector<V>) {
     // The lesser of two linear functions is concave: along an edge it is greatest at a corner, or where both are
     // equal. Inside it is no greater, since the line on which both are equal ends on edges.
+    let (mut max, mut point) = lesser_at_corners(corners, first, second);
+    for k in 0..3 {
+        let next = (k + 1) % 3;
+        let (from, to) = (first[k] - second[k], first[next] - second[next]);
+        let Crossing { at, exists } = crossing(zero, from, to, zero);
+        let here = exists.select(first[k] + at * (first[next] - first[k]), max);
+        let more = here.simd_gt(max);
+        max = more.select(here, max);
+        point = choose(more, &between(&corners[k], &corners[next], at), &point);
+    }
+    (max, point)
+}
+
+/// Returns the maximum at the corners of the lesser of two functions, and the corner.
+#[inline(always)]
+fn lesser_at_corners<S: Simd, V: SimdFloat<S>>(
+    corners: &[LaneVector<V>; 3],
+    first: &[V; 3],
+    second: &[V; 3],
+) -> (V, LaneVector<V>) {
     let mut max = first[0].min(second[0]);
     let mut point = corners[0];
     for k in 1..3 {
@@ -429,27 +453,18 @@ pub(crate) fn under_both<S: Simd, V: SimdFloat<S>>(
         max = more.select(here, max);
         point = choose(more, &corners[k], &point);
     }
-    for k in 0..3 {
-        let next = (k + 1) % 3;
-        let (from, to) = (first[k] - second[k], first[next] - second[next]);
-        let Crossing { at, exists } = crossing(zero, from, to, zero);
-        let here = exists.select(first[k] + at * (first[next] - first[k]), max);
-        let more = here.simd_gt(max);
-        max = more.select(here, max);
-        let direction = minus(&corners[next], &corners[k]);
-        let on_edge_point = [
-            corners[k][0] + at * direction[0],
-            corners[k][1] + at * direction[1],
-            corners[k][2] + at * direction[2],
-        ];
-        point = choose(more, &on_edge_point, &point);
-    }
     (max, point)
+}
+
+/// Returns two values, exchanged where the mask is set.
+#[inline(always)]
+fn ordered<S: Simd, V: SimdBase<S>>(swap: V::Mask, first: V, last: V) -> (V, V) {
+    (swap.select(last, first), swap.select(first, last))
 }
 
 /// Returns the point between two others at a parameter from 0 to 1.
 #[inline(always)]
-fn between<S: Simd, V: SimdFloat<S>>(
+fn between<S: Simd, V: SimdBase<S>>(
     from: &LaneVector<V>,
     to: &LaneVector<V>,
     at: V,
@@ -471,19 +486,10 @@ pub(crate) fn under_both_of_ring<S: Simd, R: Real, V: SimdFloat<S, Element = R>>
     corners: &[LaneVector<V>; 3],
     out: &[V; 3],
     linear: &[V; 3],
-    ring: Ring<R>,
+    RingDistances { ring, distance }: &RingDistances<R, V>,
 ) -> (V, LaneVector<V>) {
-    let zero = V::splat(simd, R::of(0.0));
-    let far = distances(corners);
-    let distance = from_ring(simd, corners, &AxisDistances { least: out, greatest: &far }, ring);
-    let mut max = linear[0].min(distance[0]);
-    let mut point = corners[0];
-    for k in 1..3 {
-        let here = linear[k].min(distance[k]);
-        let more = here.simd_gt(max);
-        max = more.select(here, max);
-        point = choose(more, &corners[k], &point);
-    }
+    let (zero, one) = (V::splat(simd, R::of(0.0)), V::splat(simd, R::of(1.0)));
+    let (mut max, mut point) = lesser_at_corners(corners, linear, distance);
     for k in 0..3 {
         let next = (k + 1) % 3;
         let (first, last) = (distance[k] - linear[k], distance[next] - linear[next]);
@@ -496,25 +502,21 @@ pub(crate) fn under_both_of_ring<S: Simd, R: Real, V: SimdFloat<S, Element = R>>
         let swap = first.simd_gt(zero);
         let (start, end) =
             (choose(swap, &corners[next], &corners[k]), choose(swap, &corners[k], &corners[next]));
-        let pick = |values: &[V; 3]| {
-            (swap.select(values[next], values[k]), swap.select(values[k], values[next]))
-        };
-        let (out, linear) = (pick(out), pick(linear));
-        let (mut excess, end_excess) = (swap.select(last, first), swap.select(first, last));
+        let out = ordered(swap, out[k], out[next]);
+        let linear = ordered(swap, linear[k], linear[next]);
+        let (mut excess, end_excess) = ordered(swap, first, last);
         let mut at = zero;
         let mut nearer = max;
         for _ in 0..CHORDS {
-            let one = V::splat(simd, R::of(1.0));
             at = at + (one - at) * (excess / (excess - end_excess));
             let [x, y, z] = between(&start, &end, at);
             let far = (x * x + y * y).sqrt();
-            let here = to_ring(simd, [out.0 + at * (out.1 - out.0), far, z], ring);
+            let here = to_ring(simd, [out.0 + at * (out.1 - out.0), far, z], *ring);
             excess = here - (linear.0 + at * (linear.1 - linear.0));
             nearer = nearer.max(here);
             // Rounding may have found the end of the chord beyond the place of equality; then it is near enough.
             excess = excess.min(zero);
         }
-        let one = V::splat(simd, R::of(1.0));
         at = at + (one - at) * (excess / (excess - end_excess));
         let here = nearer.max(linear.0 + at * (linear.1 - linear.0));
         let more = crosses & here.simd_gt(max);

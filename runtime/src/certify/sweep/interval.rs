@@ -148,13 +148,12 @@ impl MotionInterval {
         length + turn * radius.min(self.bounds.reach) + self.deviation_bound(radius)
     }
 
-    /// Returns the displacement in `f32`, rounded up, with `required_clearance` added to its translation.
+    /// Returns the displacement in `f32`, rounded up, and the distance to be kept.
     pub(crate) fn shift(&self, required_clearance: f64) -> Displacement {
         let MotionBounds { straight, length, turn, reach, deviation } = self.bounds;
         Displacement {
             axis: self.axis.map(|part| part as f32).into(),
-            straight: straight.map(|part| rounded_up(part.abs() + required_clearance)),
-            translation: straight.map(|part| part as f32),
+            translation: straight.map(rounded_up),
             length: rounded_up(length),
             clearance: rounded_up(required_clearance),
             turn: rounded_up(turn),
@@ -164,7 +163,7 @@ impl MotionInterval {
     }
 }
 
-/// Returns a length or an angle in `f32`, larger by some units of roundoff.
+/// Returns a length or an angle in `f32`, larger in magnitude by some units of roundoff.
 fn rounded_up(value: f64) -> f32 {
     (value * (1.0 + 1e-6)) as f32
 }
