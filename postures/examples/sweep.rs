@@ -77,6 +77,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let path = PathRequest {
         mesh: &tube,
         bvh: &bvh,
+        stock: None,
         tool: &Slim,
         rules: &rules,
         directions: &directions,

@@ -128,6 +128,10 @@ pub(crate) struct Path {
     pub(crate) spindle: Option<f64>,
     #[command(flatten)]
     pub(crate) machine: MachineArguments,
+    /// Stock that the program starts with, in the frame of the part and the map's unit: a mesh in STL, PLY or OBJ. Rapid
+    /// traverse keeps clear of it, and the tool moves through it in feed.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) stock: Option<PathBuf>,
     /// Check only the part's surface where its mesh leaks or is inside out, so that its inside is unknown. Without
     /// this option, such a part ends with status 2.
     #[arg(long)]

@@ -159,6 +159,7 @@ pub(crate) fn path(arguments: &Arguments, json: bool) -> Result<(), Failure> {
         [&*arguments.output].into_iter().chain(arguments.picture.as_deref()),
         [&*arguments.map, &arguments.part, Path::new(&arguments.tool)]
             .into_iter()
+            .chain(arguments.stock.as_deref())
             .chain(arguments.machine.machine.as_deref()),
     )?;
     let map = PostureMap::read(&arguments.map)?;
@@ -191,14 +192,20 @@ pub(crate) fn path(arguments: &Arguments, json: bool) -> Result<(), Failure> {
     };
     let bvh = TriangleBvh::new(&mesh);
     part::require_inside(&bvh, &arguments.part, arguments.surface_only)?;
+    let stock = arguments.stock.as_deref().map(|file| {
+        let stock = TriangleBvh::new(&part::mesh(file, unit, "--stock")?);
+        part::require_inside(&stock, file, false).map(|()| stock)
+    });
+    let stock = stock.transpose()?;
     let directions = Directions::from(identity.directions.clone());
     let progress = Progress::spinner("planning", json);
     let name = arguments.output.display().to_string();
     // Created before the path is planned, so that a tool that cannot be proved is refused at once.
-    let prover = PathProver::new(&bvh, tool, &rules, &name)?;
+    let prover = PathProver::new(&bvh, stock.as_ref(), tool, &rules, &name)?;
     let request = PathRequest {
         mesh: &mesh,
         bvh: &bvh,
+        stock: stock.as_ref(),
         tool,
         rules: &planning_rules(&rules),
         directions: &directions,

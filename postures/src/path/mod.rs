@@ -34,7 +34,7 @@ pub(crate) use retract::RetractSphere;
 use slice::{Planes, SlicePoint, length_of_lines, slices};
 use std::fmt;
 use tilt::TiltLimit;
-use touchoff::certify::{MotionVerdict, TriangleBvh};
+use touchoff::certify::{Certifier, MotionVerdict, PoseVerdict, TriangleBvh};
 use touchoff::{Mesh, Motion, Pose, Tool};
 
 /// The pattern of lines that covers a surface.
@@ -163,6 +163,8 @@ const QUERY_BUDGET: u32 = 1 << 18;
 pub(super) struct PathPlanner<'a> {
     placement: ToolPlacement<'a>,
     validator: Validator<'a>,
+    /// The stock, which no surface may touch in rapid traverse.
+    stock: Option<Certifier<'a>>,
     rules: &'a Rules,
     range: AxisRange<'a>,
     postures: Vec<CandidatePosture>,
@@ -175,6 +177,9 @@ pub struct PathRequest<'a> {
     pub mesh: &'a Mesh,
     /// The mesh's triangles in a hierarchy.
     pub bvh: &'a TriangleBvh,
+    /// The stock in the frame of the part, a solid: the tool moves through it in feed and keeps clear of it in rapid
+    /// traverse. `None` if there is nothing but the part.
+    pub stock: Option<&'a TriangleBvh>,
     /// The tool.
     pub tool: &'a dyn Tool,
     /// The limits of acceptable postures.
@@ -211,7 +216,9 @@ impl PathRequest<'_> {
     /// # Errors
     /// If the pattern or the rules are invalid, or no point can be reached; see [`PathError`].
     pub fn plan(&self) -> Result<ToolPath, PathError> {
-        let PathRequest { mesh, bvh, tool, rules, directions, accessibility, pattern, .. } = *self;
+        let PathRequest {
+            mesh, bvh, stock, tool, rules, directions, accessibility, pattern, ..
+        } = *self;
         for (what, value) in [("a stepover", pattern.stepover), ("a step", pattern.step)] {
             if !(value > 0.0 && value.is_finite()) {
                 return Err(PathError::Pattern { what, value });
@@ -236,8 +243,8 @@ impl PathRequest<'_> {
         if !any_direction {
             return Err(PathError::NoDirection);
         }
-        let mut planner = PathPlanner::new(bvh, tool, rules, range)?;
-        let sphere = RetractSphere::new(mesh.bounds(), planner.placement.reach());
+        let mut planner = PathPlanner::new(bvh, stock, tool, rules, range)?;
+        let sphere = RetractSphere::new(bvh, stock, planner.placement.reach());
         let planes = Planes::new(mesh, &normal, pattern.stepover);
         let slices = slices(mesh, &planes, pattern.step);
         let lines: Vec<(usize, &Vec<SlicePoint>)> = slices
@@ -247,7 +254,7 @@ impl PathRequest<'_> {
             .collect();
         let runs = lines.par_chunks(LINES_PER_TASK).map(|lines| {
             // Errors were reported for the planner above.
-            let Ok(mut planner) = PathPlanner::new(bvh, tool, rules, range) else {
+            let Ok(mut planner) = PathPlanner::new(bvh, stock, tool, rules, range) else {
                 return Vec::new();
             };
             let runs = lines.iter().map(|(plane, line)| {
@@ -275,6 +282,7 @@ impl PathRequest<'_> {
 impl<'a> PathPlanner<'a> {
     fn new(
         bvh: &'a TriangleBvh,
+        stock: Option<&'a TriangleBvh>,
         tool: &'a dyn Tool,
         rules: &'a Rules,
         range: AxisRange<'a>,
@@ -286,8 +294,10 @@ impl<'a> PathPlanner<'a> {
         };
         let mut validator = Validator::new(bvh, tool, &location_rules)?;
         validator.certifier = validator.certifier.with_budget(QUERY_BUDGET);
+        let stock = stock.map(|stock| Certifier::new(stock, tool)).transpose()?;
+        let stock = stock.map(|certifier| certifier.with_budget(QUERY_BUDGET));
         let placement = ToolPlacement::new(tool, bvh.unit());
-        Ok(PathPlanner { placement, validator, rules, range, postures: Vec::new() })
+        Ok(PathPlanner { placement, validator, stock, rules, range, postures: Vec::new() })
     }
 
     /// Returns the posture at a surface point with a given axis, if it is proved acceptable.
@@ -324,5 +334,23 @@ impl<'a> PathPlanner<'a> {
     /// Returns whether the tool is proved to be no deeper than the tolerance during a motion.
     fn is_clear(&mut self, from: &Pose, to: &Pose) -> bool {
         self.check_motion(from, to) == Some(true)
+    }
+
+    /// Returns whether a motion is proved for rapid traverse: it is clear, and touches no stock.
+    fn is_free(&mut self, from: &Pose, to: &Pose) -> bool {
+        let off_stock = match (&mut self.stock, Motion::new(from, to)) {
+            (None, _) => true,
+            (Some(stock), Ok(motion)) => {
+                matches!(stock.check_motion(&motion, 0.0), MotionVerdict::Clear)
+            }
+            (Some(_), Err(_)) => false,
+        };
+        off_stock && self.is_clear(from, to)
+    }
+
+    /// Returns whether the tool is proved to touch no stock.
+    fn is_off_stock(&mut self, pose: &Pose) -> bool {
+        let stock = self.stock.as_mut();
+        stock.is_none_or(|stock| matches!(stock.check_pose(pose), PoseVerdict::Clear))
     }
 }

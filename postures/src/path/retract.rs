@@ -4,6 +4,7 @@ use super::PathPlanner;
 use nalgebra::{Point3, Unit, Vector3};
 use std::f64::consts::FRAC_PI_3;
 use touchoff::Pose;
+use touchoff::certify::TriangleBvh;
 
 /// A sphere about the part, twice as large as one that holds the tips of all tools that touch the part. A tool
 /// that has moved there along its axis has that axis within 30 degrees of the outward direction, and the whole
@@ -13,7 +14,7 @@ pub(crate) struct RetractSphere {
     centre: Point3<f64>,
     /// Radius of the sphere that holds the tips of all tools that touch the part.
     tip_radius: f64,
-    /// Distance from a surface at which feed changes to rapid traverse, in the part's unit.
+    /// Least distance from a surface at which feed changes to rapid traverse, in the part's unit.
     lead: f64,
 }
 
@@ -22,6 +23,13 @@ pub(crate) struct RetractSphere {
 pub(super) struct RetractLeg {
     pub(super) lead_end: Pose,
     pub(super) outer: Pose,
+}
+
+/// The ends of a link: postures on the surface, each with the height along its axis up to which it moves in feed.
+struct LinkEnds<'a> {
+    from: &'a Pose,
+    to: &'a Pose,
+    leads: [f64; 2],
 }
 
 /// A way between two postures off the surface. The last motion, to the second posture, is in feed.
@@ -47,14 +55,20 @@ const LINK_RADII: [f64; 3] = [1.05, 1.4, OUTER_RADIUS];
 const SAME: f64 = 1e-7;
 
 impl RetractSphere {
-    /// Creates the sphere about a part, given by the corners of its box. `reach` is the largest distance between the tip and
-    /// a contact.
-    pub(crate) fn new([low, high]: [Point3<f64>; 2], reach: f64) -> RetractSphere {
+    /// Creates the sphere about a part and its stock. `reach` is the largest distance between the tip and a contact.
+    pub(crate) fn new(
+        part: &TriangleBvh,
+        stock: Option<&TriangleBvh>,
+        reach: f64,
+    ) -> RetractSphere {
+        let [part_low, part_high] = part.bounds();
+        let [stock_low, stock_high] = stock.map_or([part_low, part_high], TriangleBvh::bounds);
+        let [low, high] = [part_low.inf(&stock_low), part_high.sup(&stock_high)];
         let half = 0.5 * (high - low).norm();
         RetractSphere {
             centre: low + 0.5 * (high - low),
             tip_radius: half + reach,
-            lead: LEAD * half,
+            lead: LEAD * 0.5 * (part_high - part_low).norm(),
         }
     }
 
@@ -82,13 +96,26 @@ impl RetractSphere {
         (pose.tip() - self.centre).norm() > self.tip_radius
     }
 
+    /// Returns the height along its axis at which a pose changes from feed to rapid traverse: the lead, or the least of
+    /// twice the lead, four times the lead and so on at which the tool touches no stock.
+    fn lead_of(&self, planner: &mut PathPlanner<'_>, pose: &Pose) -> f64 {
+        let exit = self.outer_exit(pose).unwrap_or(0.0);
+        let mut height = self.lead;
+        while height < exit && !lifted(pose, height).is_some_and(|pose| planner.is_off_stock(&pose))
+        {
+            height *= 2.0;
+        }
+        height
+    }
+
     /// Returns the move off the surface from a posture, if it is proved.
     pub(super) fn leg(&self, planner: &mut PathPlanner<'_>, pose: &Pose) -> Option<RetractLeg> {
         let exit = self.outer_exit(pose)?;
+        let lead = self.lead_of(planner, pose);
         // The lead ends before the sphere, so that both motions have a length.
-        let lead_end = lifted(pose, self.lead.min(0.5 * exit))?;
+        let lead_end = lifted(pose, if lead < exit { lead } else { 0.5 * exit })?;
         let outer = lifted(pose, exit)?;
-        (planner.is_clear(pose, &lead_end) && planner.is_clear(&lead_end, &outer))
+        (planner.is_clear(pose, &lead_end) && planner.is_free(&lead_end, &outer))
             .then_some(RetractLeg { lead_end, outer })
     }
 
@@ -107,25 +134,24 @@ impl RetractSphere {
     }
 
     /// Returns the ways between two postures that are worth a proof, in no order.
-    fn links(&self, planner: &PathPlanner<'_>, from: &Pose, to: &Pose) -> Vec<RapidLink> {
-        let mut links = self.hops(from, to);
+    fn links(&self, planner: &mut PathPlanner<'_>, from: &Pose, to: &Pose) -> Vec<RapidLink> {
+        let leads = [from, to].map(|pose| self.lead_of(planner, pose));
+        let ends = LinkEnds { from, to, leads };
+        let mut links = self.hops(&ends);
         for radius in LINK_RADII {
-            links.extend(self.links_around(planner, from, to, radius * self.tip_radius));
+            links.extend(self.links_around(planner, &ends, radius * self.tip_radius));
         }
         links
     }
 
     /// Returns the links that lift both ends along their axes and lead straight across, lift by lift.
-    fn hops(&self, from: &Pose, to: &Pose) -> Vec<RapidLink> {
-        let radius = OUTER_RADIUS * self.tip_radius;
-        let Some((out, back)) = self.exit(from, radius).zip(self.exit(to, radius)) else {
-            return Vec::new();
-        };
+    fn hops(&self, ends: &LinkEnds<'_>) -> Vec<RapidLink> {
+        let [out, back] = [ends.from, ends.to].map(|pose| self.outer_exit(pose).unwrap_or(0.0));
         let mut hops = Vec::new();
         // Each lift is twice the one before, so that the lowest clear one is found to within a factor of two.
-        let mut height = self.lead;
+        let mut height = ends.leads[0].max(ends.leads[1]);
         while height < out.min(back) {
-            hops.extend(self.raised(from, to, [height; 2], &[]));
+            hops.extend(ends.raised([height; 2], &[]));
             height *= 2.0;
         }
         hops
@@ -135,10 +161,10 @@ impl RetractSphere {
     fn links_around(
         &self,
         planner: &PathPlanner<'_>,
-        from: &Pose,
-        to: &Pose,
+        ends: &LinkEnds<'_>,
         radius: f64,
     ) -> Vec<RapidLink> {
+        let LinkEnds { from, to, .. } = *ends;
         let Some((out, back)) = self.exit(from, radius).zip(self.exit(to, radius)) else {
             return Vec::new();
         };
@@ -146,23 +172,7 @@ impl RetractSphere {
             return Vec::new();
         };
         let ways = self.ways_between(planner, &first, &last);
-        ways.iter().filter_map(|way| self.raised(from, to, [out, back], way)).collect()
-    }
-
-    /// Returns the link that lifts its ends by heights along their axes, with the cutter locations of the way between
-    /// the lifted ends.
-    fn raised(&self, from: &Pose, to: &Pose, heights: [f64; 2], way: &[Pose]) -> Option<RapidLink> {
-        let mut locations = Vec::with_capacity(way.len() + 4);
-        if heights[0] > self.lead {
-            locations.push((lifted(from, self.lead)?, false));
-        }
-        locations.push((lifted(from, heights[0])?, heights[0] > self.lead));
-        locations.extend(way.iter().map(|pose| (*pose, true)));
-        locations.push((lifted(to, heights[1])?, true));
-        if heights[1] > self.lead {
-            locations.push((lifted(to, self.lead)?, true));
-        }
-        Some(RapidLink::new(from, locations, to))
+        ways.iter().filter_map(|way| ends.raised([out, back], way)).collect()
     }
 
     /// Returns the angle, up to 60°, of the longest chord of a sphere that comes no nearer to the centre than the tips of
@@ -192,7 +202,7 @@ impl RetractSphere {
             way
         });
         let ways: Vec<Vec<Pose>> = ways.collect();
-        ways.into_iter().find(|way| way.windows(2).all(|ends| planner.is_clear(&ends[0], &ends[1])))
+        ways.into_iter().find(|way| way.windows(2).all(|ends| planner.is_free(&ends[0], &ends[1])))
     }
 
     /// Returns ways between two poses on a sphere, as the poses between them: upright, around on a great circle, and
@@ -224,6 +234,25 @@ impl RetractSphere {
     }
 }
 
+impl LinkEnds<'_> {
+    /// Returns the link that lifts its ends by heights along their axes, with the cutter locations of the way between
+    /// the lifted ends.
+    fn raised(&self, heights: [f64; 2], way: &[Pose]) -> Option<RapidLink> {
+        let LinkEnds { from, to, leads } = *self;
+        let mut locations = Vec::with_capacity(way.len() + 4);
+        if heights[0] > leads[0] {
+            locations.push((lifted(from, leads[0])?, false));
+        }
+        locations.push((lifted(from, heights[0])?, heights[0] > leads[0]));
+        locations.extend(way.iter().map(|pose| (*pose, true)));
+        locations.push((lifted(to, heights[1])?, true));
+        if heights[1] > leads[1] {
+            locations.push((lifted(to, leads[1])?, true));
+        }
+        Some(RapidLink::new(from, locations, to))
+    }
+}
+
 impl RapidLink {
     fn new(from: &Pose, locations: Vec<(Pose, bool)>, to: &Pose) -> RapidLink {
         let mut length = 0.0;
@@ -237,14 +266,17 @@ impl RapidLink {
 
     /// Returns whether all motions of the link are proved.
     fn is_clear(&self, planner: &mut PathPlanner<'_>, from: &Pose, to: &Pose) -> bool {
-        let mut poses = vec![from];
-        poses.extend(self.locations.iter().map(|(pose, _)| pose));
-        poses.push(to);
+        let mut stops = vec![(*from, false)];
+        stops.extend(&self.locations);
+        stops.push((*to, false));
         // From the middle on: a way across is obstructed more often than the retracts at its ends.
-        let mut motions: Vec<&[&Pose]> = poses.windows(2).collect();
+        let mut motions: Vec<&[(Pose, bool)]> = stops.windows(2).collect();
         let middle = motions.len() / 2;
         motions.rotate_left(middle);
-        motions.into_iter().all(|ends| planner.is_clear(ends[0], ends[1]))
+        motions.into_iter().all(|ends| match (&ends[0].0, &ends[1]) {
+            (from, (to, true)) => planner.is_free(from, to),
+            (from, (to, false)) => planner.is_clear(from, to),
+        })
     }
 }
 
@@ -279,7 +311,6 @@ mod tests {
     use crate::path::tilt::TiltLimit;
     use crate::{Directions, Rules};
     use std::f64::consts::PI;
-    use touchoff::certify::TriangleBvh;
     use touchoff::mesh::shapes;
 
     touchoff::tool! {
@@ -305,8 +336,8 @@ mod tests {
         let rules = Rules { tolerance: 0.01, niceness: 0.0, allowed: Vec::new() };
         let tilt = TiltLimit::new(PI).expect("an angle");
         let range = AxisRange { tilt, machine: None };
-        let mut planner = PathPlanner::new(&bvh, &Mill, &rules, range).expect("a planner");
-        let sphere = RetractSphere::new(mesh.bounds(), planner.placement.reach());
+        let mut planner = PathPlanner::new(&bvh, None, &Mill, &rules, range).expect("a planner");
+        let sphere = RetractSphere::new(&bvh, None, planner.placement.reach());
         // The ball is a little off the part, inside and outside.
         let mut poses = Vec::new();
         for direction in Directions::spread(12).list() {
@@ -326,7 +357,7 @@ mod tests {
             .chain(poses.iter().zip(poses.iter().skip(17)))
             .collect();
         for (from, to) in &pairs {
-            let links = sphere.links(&planner, from, to);
+            let links = sphere.links(&mut planner, from, to);
             let full = links.iter().map(|link| link.length).fold(0.0, f64::max);
             let proved = links.into_iter().filter(|link| {
                 let poses = link.locations.iter().map(|(pose, _)| pose).chain([*to]);
@@ -350,7 +381,7 @@ mod tests {
     #[test]
     fn the_way_around_stays_off_the_tips() {
         let mesh = shapes::sphere(10.0, 3, touchoff::Unit::Millimetre).expect("a sphere");
-        let sphere = RetractSphere::new(mesh.bounds(), 3.0);
+        let sphere = RetractSphere::new(&TriangleBvh::new(&mesh), None, 3.0);
         let directions = Directions::spread(20);
         let mut chords = 0;
         for (first, last) in directions.list().iter().zip(directions.list().iter().rev()) {

@@ -258,7 +258,9 @@ impl Post {
             }
             let findings =
                 prover.findings(program.moves(ToolSelection::All, None, self.unit)?)?;
-            if findings.is_empty() {
+            let in_stock =
+                prover.findings_in_stock(program.moves(ToolSelection::All, None, self.unit)?)?;
+            if findings.is_empty() && in_stock.is_empty() {
                 let locations =
                     locations.iter().map(|location| (location.pose, location.rapid)).collect();
                 return Ok((posted.text, locations));
@@ -266,6 +268,13 @@ impl Post {
             let mut found = BTreeMap::new();
             for finding in &findings {
                 found.entry(posted.location(finding.line)).or_insert(Fault::Found(finding));
+            }
+            for finding in &in_stock {
+                let location = &mut locations[posted.location(finding.line)];
+                // Each round changes a motion to feed. The way home is none of them, and stays a finding.
+                if !std::mem::replace(&mut location.rapid, false) && findings.is_empty() {
+                    return Err(prover.failure(finding, location.planned));
+                }
             }
             locations = refined(&locations, &joints, &found, prover)?;
         }

@@ -27,6 +27,8 @@ pub fn planning_rules(rules: &Rules) -> Rules {
 #[derive(Debug)]
 pub struct PathProver<'a> {
     verifier: Verifier<'a>,
+    /// The verifier of rapid traverse at the stock, if there is one. In feed it allows any depth.
+    stock: Option<Verifier<'a>>,
     sphere: RetractSphere,
     /// Name of the output file.
     file: &'a str,
@@ -34,22 +36,31 @@ pub struct PathProver<'a> {
 
 impl<'a> PathProver<'a> {
     /// Creates a prover with the rules of a path. A cutting surface may be as deep as the tolerance. During motions any
-    /// other surface may exceed its allowance by the planner's share of the tolerance. `file` is the program's name in errors.
+    /// other surface may exceed its allowance by the planner's share of the tolerance. In rapid traverse no surface may be
+    /// deeper than the tolerance in the part or in its stock. `file` is the program's name in errors.
     ///
     /// # Errors
     /// If the tool or a rule is refused.
     pub fn new(
         bvh: &'a TriangleBvh,
+        stock: Option<&'a TriangleBvh>,
         tool: &'a dyn Tool,
         rules: &Rules,
         file: &'a str,
     ) -> Result<PathProver<'a>, PostError> {
         let resolution = rules.tolerance * RESOLUTION_FRACTION;
         let motion = rules.tolerance * MOTION_TOLERANCE_FRACTION - resolution;
-        let mut verifier = Verifier::new(bvh, tool)?
-            .with_tolerance(rules.tolerance - resolution)?
-            .with_resolution(resolution)?;
+        let limited = |body| {
+            Verifier::new(body, tool)?
+                .with_tolerance(rules.tolerance - resolution)?
+                .with_resolution(resolution)
+        };
+        let mut verifier = limited(bvh)?;
+        let mut stock_verifier = stock.map(limited).transpose()?;
         for surface in tool.info().surfaces.iter() {
+            let any_depth =
+                |stock: Verifier<'a>| stock.with_allowance(&surface.name, f64::INFINITY);
+            stock_verifier = stock_verifier.map(any_depth).transpose()?;
             // The last of several allowances for a surface holds, as in a sweep.
             let stated = rules.allowed.iter().rev().find(|(name, _)| *name == surface.name);
             let allowed = match stated {
@@ -59,12 +70,13 @@ impl<'a> PathProver<'a> {
             };
             verifier = verifier.with_allowance(&surface.name, allowed)?;
         }
-        let sphere = RetractSphere::new(bvh.bounds(), verifier.reach());
-        Ok(PathProver { verifier, sphere, file })
+        let sphere = RetractSphere::new(bvh, stock, verifier.reach());
+        Ok(PathProver { verifier, stock: stock_verifier, sphere, file })
     }
 
     /// Proves a program, which `write` makes of cutter locations and reads back. In rapid traverse no surface may be
-    /// deeper than the tolerance, whatever its allowance. A motion in which one is changes to feed.
+    /// deeper than the tolerance, in the part or in the stock, whatever its allowance. A motion in which one is changes to
+    /// feed.
     ///
     /// # Errors
     /// If a motion is not proved in feed either.
@@ -75,7 +87,10 @@ impl<'a> PathProver<'a> {
     ) -> Result<(Vec<Location>, T), E> {
         loop {
             let (program, written) = write(&locations)?;
-            let findings = self.verifier.check(&program).map_err(PostError::from)?.findings;
+            let mut findings = self.verifier.check(&program).map_err(PostError::from)?.findings;
+            if let Some(stock) = &self.stock {
+                findings.extend(stock.check(&program).map_err(PostError::from)?.findings);
+            }
             let Some(first) = findings.first() else { return Ok((locations, written)) };
             // Each round changes a motion to feed, so the loop ends.
             let rapid: Vec<&Finding> = findings.iter().filter(|finding| finding.rapid).collect();
@@ -86,12 +101,21 @@ impl<'a> PathProver<'a> {
         }
     }
 
-    /// Returns the findings in motions.
+    /// Returns the findings of motions at the part.
     pub(super) fn findings(
         &self,
         moves: impl IntoIterator<Item = Move>,
     ) -> Result<Vec<Finding>, PostError> {
         Ok(self.verifier.check_moves(moves, &|_| ())?.findings)
+    }
+
+    /// Returns the findings of rapid traverse at the stock.
+    pub(super) fn findings_in_stock(
+        &self,
+        moves: impl IntoIterator<Item = Move>,
+    ) -> Result<Vec<Finding>, PostError> {
+        let Some(stock) = &self.stock else { return Ok(Vec::new()) };
+        Ok(stock.check_moves(moves, &|_| ())?.findings)
     }
 
     /// Returns two poses on the way off the part along the tool axis: a lead, and one from which the tool reaches the

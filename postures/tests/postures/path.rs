@@ -62,6 +62,7 @@ impl Case {
         PathRequest {
             mesh: &self.mesh,
             bvh: &self.bvh,
+            stock: None,
             tool,
             rules: &self.rules,
             directions: &self.directions,
@@ -105,19 +106,20 @@ fn sample_mesh(mesh: &Mesh, spacing: f64) -> Vec<Point3<f64>> {
     points
 }
 
-/// Returns the largest depth of a [`Mill`]'s cutting surfaces and of its other surfaces over a path, in mm: on
+/// Returns the largest depth of a [`Mill`]'s cutting surfaces and of its other surfaces in a mesh over a path, in mm: on
 /// feed moves, and on rapid moves.
-fn max_depths(case: &Case, path: &ToolPath) -> [[f64; 2]; 2] {
+fn max_depths(mesh: &Mesh, path: &ToolPath) -> [[f64; 2]; 2] {
     /// Least number of steps in a motion.
     const TIME_STEPS: f64 = 6.0;
-    let points = sample_mesh(&case.mesh, 0.5 * case.scale);
+    let scale = Unit::Millimetre.factor_to(mesh.unit());
+    let points = sample_mesh(mesh, 0.5 * scale);
     let mut depths = [[0f64; 2]; 2];
     for pair in path.locations.windows(2) {
         let (from, to, rapid) = (pair[0].0, pair[1].0, usize::from(pair[1].1));
         let axis_of_rotation = from.axis().cross(&to.axis());
         let angle = from.axis().angle(&to.axis());
         // The tip moves at most 0.5 mm per step, so that long links are sampled as densely as short motions.
-        let steps = (2.0 * (to.tip() - from.tip()).norm() / case.scale).ceil().max(TIME_STEPS);
+        let steps = (2.0 * (to.tip() - from.tip()).norm() / scale).ceil().max(TIME_STEPS);
         for k in 0..=steps as u32 {
             let fraction = f64::from(k) / steps;
             let tip = from.tip() + (to.tip() - from.tip()) * fraction;
@@ -129,7 +131,7 @@ fn max_depths(case: &Case, path: &ToolPath) -> [[f64; 2]; 2] {
                 None => from.axis(),
             };
             for point in &points {
-                let offset = (point - tip) / case.scale;
+                let offset = (point - tip) / scale;
                 let z = offset.dot(&axis);
                 if !(0.0..=40.0).contains(&z) {
                     continue;
@@ -189,7 +191,7 @@ fn sphere() -> Mesh {
 fn plan_and_check(mesh: Mesh, normal: [f64; 3], spacing: [f64; 2]) -> ToolPath {
     let case = Case::new(mesh, &Mill);
     let path = case.plan_over_planes(&Mill, normal, spacing);
-    let [feed, rapid] = max_depths(&case, &path);
+    let [feed, rapid] = max_depths(&case.mesh, &path);
     println!(
         "{} locations, {} contact points, {} left out, {} retracts, turns {:?}, feed {feed:?}, rapid {rapid:?}",
         path.locations.len(),
@@ -258,6 +260,38 @@ fn covers_an_open_sheet_and_a_bore() {
     assert!(path.retracts > 0);
 }
 
+/// The stock is 3 mm larger than the part on all sides but the lowest. Rapid traverse has to leave
+/// no trace in it: the oracle samples its surface, and locates the tips.
+#[test]
+fn rapid_traverse_keeps_clear_of_the_stock() {
+    let case = Case::new(step(), &Mill);
+    let [low, high] = [Point3::new(-15.0, -13.0, 0.0), Point3::new(15.0, 13.0, 17.0)];
+    let stock = shapes::cuboid(low, high, Unit::Millimetre).expect("a stock");
+    let bvh = TriangleBvh::new(&stock);
+    let pattern = Pattern { normal: [0.0, 1.0, 0.0], stepover: 2.0, step: 1.0 };
+    let request = case.request(&Mill, &pattern);
+    let without = request.plan().expect("a path");
+    let path = PathRequest { stock: Some(&bvh), ..request }.plan().expect("a path");
+    let in_stock = |path: &ToolPath| {
+        let [feed, rapid] = max_depths(&stock, path);
+        let stops = path.locations.windows(2).filter(|pair| pair[1].1);
+        let tips = stops.flat_map(|pair| [pair[0].0.tip(), pair[1].0.tip()]);
+        let inside = tips.filter(|tip| (0..3).all(|k| low[k] < tip[k] && tip[k] < high[k]));
+        (feed[0], rapid[0].max(rapid[1]), inside.count())
+    };
+    let ((feed, rapid, inside), (_, other_rapid, other_inside)) =
+        (in_stock(&path), in_stock(&without));
+    println!(
+        "in the stock: {feed} in feed, {rapid} in rapid traverse, {inside} tips; without it {other_rapid}, {other_inside}"
+    );
+    assert!(feed > 1.0 && other_rapid > 1.0 && other_inside > 0);
+    assert!(rapid < 1e-9 && inside == 0, "{rapid}, {inside}");
+    let [feed, rapid] = max_depths(&case.mesh, &path);
+    assert!(feed[0].max(rapid[0]) <= TOLERANCE + 1e-9, "{feed:?} {rapid:?}");
+    // The stock hides no point from the tool.
+    assert_eq!(path.contact_points, without.contact_points);
+}
+
 #[test]
 fn paths_are_reproducible_in_every_unit_and_position() {
     let plan_on_sphere = |scale: f64, unit: Unit, offset: f64| {
@@ -267,7 +301,7 @@ fn paths_are_reproducible_in_every_unit_and_position() {
         let mesh = Mesh::new(vertices.collect(), mesh.triangles().to_vec(), unit).expect("a mesh");
         let case = Case::new(mesh, &Mill);
         let path = case.plan_over_planes(&Mill, [0.0, 0.0, 1.0], [4.0, 2.0]);
-        let [feed, rapid] = max_depths(&case, &path);
+        let [feed, rapid] = max_depths(&case.mesh, &path);
         let rounding = 1e-9 + 1e-13 * offset;
         let max_depth = feed.into_iter().chain(rapid).fold(0.0, f64::max);
         assert!(max_depth <= TOLERANCE + rounding, "{unit} at {offset}: {max_depth}");
@@ -378,7 +412,7 @@ fn no_axis_exceeds_the_largest_tilt() {
     let mut unreached = 0;
     for degrees in [120.0f64, 90.0, 45.0] {
         let tilted = plan(degrees.to_radians()).expect("a path");
-        let [feed, rapid] = max_depths(&case, &tilted);
+        let [feed, rapid] = max_depths(&case.mesh, &tilted);
         let max_depth = feed.into_iter().chain(rapid).fold(0.0, f64::max);
         println!(
             "{degrees}: {} contact points, {} unreached, {} unlinked, lowest axis {}",

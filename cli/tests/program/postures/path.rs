@@ -1,10 +1,12 @@
 //! Paths: their files, pictures and error messages.
 
 use super::{Tube, object, refused};
-use crate::bench::{stderr, stdout, touchoff};
+use crate::bench::{cuboid, objects, stderr, stdout, touchoff};
+use nalgebra::Point3;
 use resvg::tiny_skia::{Pixmap, PremultipliedColorU8};
 use serde_json::Value;
 use std::process::Output;
+use touchoff::{Mesh, Unit};
 
 /// Plans a path over the tube with the ball, in planes of a normal.
 fn path_across(normal: &str, tube: &Tube, output: &str, more: &[&str]) -> Output {
@@ -69,6 +71,42 @@ fn a_path_keeps_to_the_limits_of_the_machine_and_goes_home() {
 }
 
 /// Checks that a picture shows points of the colours of the reasons for which a path leaves points out.
+/// A check of the written program with its stock is the oracle: it removes material, and knows nothing of the planner.
+#[test]
+fn rapid_traverse_keeps_clear_of_stock() {
+    let tube = Tube::new();
+    assert!(tube.sweep("D2Ball", &[]).status.success());
+    let output = tube.bench.place("stock.apt");
+    tube.bench.part("stock.stl", &cuboid([-13.0, -13.0, -2.0], [13.0, 13.0, 14.0]));
+    let stock = tube.bench.place("stock.stl");
+    let job = format!(
+        "part = {:?}\nunit = \"mm\"\nprogram = {output:?}\ntolerance = 0.05\n[stock]\nmesh = {stock:?}\nspacing = 0.5\n\
+         [tool.3]\ntool = \"D2Ball\"\nallow = {{ shank = 0.00625 }}\n",
+        tube.part,
+    );
+    let job = tube.bench.write("stock.toml", &job);
+    let in_stock = |more: &[&str]| {
+        let all = [&["--tool-number", "3", "--max-tilt", "90"], more].concat();
+        let told = object(&path_across("0,0,1", &tube, &output, &all));
+        let findings = objects(&touchoff(&["verify", &job, "--json"]));
+        let found = findings.iter().filter(|found| found["kind"] == "stock");
+        let rapid = found.clone().filter(|found| found["rapid"] == true).count();
+        (told["contact_points"].as_u64(), rapid, found.count())
+    };
+    let (points, rapid, _) = in_stock(&[]);
+    let (points_in_stock, rapid_in_stock, all) = in_stock(&["--stock", &stock]);
+    assert!(rapid > 0 && rapid_in_stock == 0, "{rapid} {rapid_in_stock}");
+    // The shank is in the stock nevertheless, in feed: the tool is short.
+    assert!(points == points_in_stock && all > 0, "{points:?} {points_in_stock:?} {all}");
+    let open = Mesh::new(
+        vec![Point3::origin(), Point3::new(1.0, 0.0, 0.0), Point3::new(0.0, 1.0, 0.0)],
+        vec![[0, 1, 2]],
+        Unit::Millimetre,
+    );
+    tube.bench.part("stock.stl", &open.expect("a triangle"));
+    refused(&path(&tube, &output, &["--stock", &stock]), &["stock.stl", "inside"]);
+}
+
 fn assert_picture_has_points(file: &str, summary: &Value) {
     let picture = Pixmap::load_png(file).expect("a picture");
     let keys = [("points_not_reached", [204, 60, 50]), ("points_without_motion", [40, 90, 200])];
