@@ -3,6 +3,7 @@
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use touchoff::tool::ToolError;
+use touchoff_verify::stock::StockError;
 
 /// The exit status of a session that a signal ended, by the shells' convention.
 pub(crate) const INTERRUPTED: u8 = 130;
@@ -140,6 +141,9 @@ pub(crate) enum Failure {
         touchoff_verify::job::NO_INSIDE
     )]
     NoInside { file: String },
+    /// The inside of the stock is unknown.
+    #[error("{file}: {}", StockError::NoInside { what: "stock" })]
+    StockNoInside { file: String },
     /// The request needs a mesh.
     #[error(
         "`{what}` needs triangles, and {file} has only points: give the mesh that they were sampled from"

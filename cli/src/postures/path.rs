@@ -194,7 +194,10 @@ pub(crate) fn path(arguments: &Arguments, json: bool) -> Result<(), Failure> {
     part::require_inside(&bvh, &arguments.part, arguments.surface_only)?;
     let stock = arguments.stock.as_deref().map(|file| {
         let stock = TriangleBvh::new(&part::mesh(file, unit, "--stock")?);
-        part::require_inside(&stock, file, false).map(|()| stock)
+        match stock.has_inside() {
+            true => Ok(stock),
+            false => Err(Failure::StockNoInside { file: file.display().to_string() }),
+        }
     });
     let stock = stock.transpose()?;
     let directions = Directions::from(identity.directions.clone());
