@@ -120,6 +120,7 @@ pub mod certify;
 pub mod cloud;
 mod debug;
 mod escape;
+mod handle;
 mod id;
 mod input;
 mod interval;

@@ -1,14 +1,16 @@
 //! The workpiece, prepared for queries.
 
 use crate::cloud::{Cloud, CloudError, CoveringRadius, Sampling, check_position, unit_normal};
+use crate::handle::Handle;
 use crate::mesh::{Geometry, GeometryError, Mesh, MeshDiagnostics};
 use crate::point_bvh::{PointBvh, TreePoint};
 use crate::pose::Pose;
-use crate::probe::{BudgetError, Law, LodProbe, Probe};
+use crate::probe::{BudgetError, Law, LodProbe, PartPoints, Probe};
 use crate::tool::{BatchEvaluator, Tool};
 use crate::unit::Unit;
 use nalgebra::{Point3, Vector3};
 use std::path::Path;
+use std::sync::Arc;
 
 /// Minimum number of points of a part's coarsest level.
 const MIN_LEVEL_POINTS: usize = 100;
@@ -94,7 +96,7 @@ impl Part {
     pub fn cut(&mut self, tool: &dyn Tool, pose: &Pose) -> usize {
         let mut removed = 0;
         for tree in &mut self.levels {
-            let mut probe = Probe::of(tree, self.unit, tool);
+            let mut probe = Probe::of(PartPoints::Level(tree), self.unit, Handle::Borrowed(tool));
             let error_bound = probe.sampling_error_bound();
             let indices = probe.deeper(pose, error_bound.unwrap_or(-1.0));
             removed += indices.len();
@@ -186,7 +188,26 @@ impl Part {
 impl<'a, T: BatchEvaluator + ?Sized> Probe<'a, T> {
     /// Creates a probe with the thesis's law, area weights and the tip as compliance centre.
     pub fn new(part: &'a Part, tool: &'a T) -> Probe<'a, T> {
-        Probe::of(part.tree(), part.unit(), tool)
+        Probe::of(PartPoints::Level(part.tree()), part.unit(), Handle::Borrowed(tool))
+    }
+
+    /// Creates the same probe, which shares its part and its tool, so that a struct or a thread can hold all three.
+    ///
+    /// ```
+    /// # use std::sync::Arc;
+    /// # use touchoff::{Part, Probe, Sampling, Tool, scenes};
+    /// struct Hand {
+    ///     probe: Probe<'static>,
+    /// }
+    ///
+    /// # fn grasp(tool: Arc<dyn Tool>) -> Result<Hand, touchoff::CloudError> {
+    /// let part = Part::from_mesh(&scenes::tube(), Sampling::new(1_000))?;
+    /// let hand = Hand { probe: Probe::shared(Arc::new(part), tool) };
+    /// # Ok(hand) }
+    /// ```
+    pub fn shared(part: Arc<Part>, tool: Arc<T>) -> Probe<'a, T> {
+        let unit = part.unit();
+        Probe::of(PartPoints::Shared(part), unit, Handle::Shared(tool))
     }
 }
 

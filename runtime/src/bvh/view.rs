@@ -149,7 +149,7 @@ fn above(value: f64, margin: f64) -> f32 {
 }
 
 /// The transform from a part to the frame of a tool at a pose.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(crate) struct PoseTransform {
     /// Rotation and scale from the tree's frame and unit to the tool's.
     pub(crate) rows: [[f32; 3]; 3],

@@ -28,6 +28,7 @@ pub enum Containment {
 
 /// A point of each connected piece of the restricted interior of a tool, with its nearest surface. The points for
 /// the last tolerance are kept.
+#[derive(Clone)]
 pub(crate) struct CorePoints {
     /// The allowed depth of each surface, in the tool's unit; infinity for any depth.
     limits: Vec<f64>,
@@ -119,12 +120,12 @@ impl QuerySetting<'_> {
     /// surface's limit by more than `tolerance`, in the tool's unit.
     pub(crate) fn containment(
         &self,
-        info: &ToolInfo,
         core_points: &mut CorePoints,
         pose: &Pose,
         tolerance: f64,
     ) -> Containment {
-        let Some(core_points) = core_points.deeper_than(&self.tool_model, info, tolerance) else {
+        let Some(core_points) = core_points.deeper_than(&self.tool_model, self.info(), tolerance)
+        else {
             return Containment::Undecided;
         };
         let mut found = Containment::Outside;
@@ -142,14 +143,9 @@ impl QuerySetting<'_> {
     }
 
     /// Returns whether the restricted interior is one connected piece.
-    pub(crate) fn is_one_piece(
-        &self,
-        info: &ToolInfo,
-        core_points: &mut CorePoints,
-        tolerance: f64,
-    ) -> bool {
+    pub(crate) fn is_one_piece(&self, core_points: &mut CorePoints, tolerance: f64) -> bool {
         core_points
-            .deeper_than(&self.tool_model, info, tolerance)
+            .deeper_than(&self.tool_model, self.info(), tolerance)
             .is_some_and(|core_points| core_points.len() == 1)
     }
 }

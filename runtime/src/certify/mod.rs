@@ -36,20 +36,22 @@ pub use part::{BoxVisitor, Location, TriangleBvh};
 pub use trajectory::{Approximation, Trajectory};
 pub use verdict::{
     AllowanceError, Clearance, MotionDepth, MotionVerdict, NoSuchSurface, NotCertifiable,
-    Penetration, PoseVerdict, Witness,
+    Penetration, PoseVerdict, ToolPoint, Witness,
 };
 
 use crate::bvh::QuerySetup;
 use crate::debug::debug;
+use crate::handle::Handle;
 use crate::id::SurfaceId;
 use crate::interval::Interval;
 use crate::pose::Pose;
-use crate::tool::{Tool, ToolInfo};
+use crate::tool::Tool;
 use containment::CorePoints;
 use fearless_simd::Level;
 use nalgebra::{Point3, Vector3};
 use search::{DepthQuery, QuerySetting, SearchState};
 use std::slice;
+use std::sync::Arc;
 use sweep::Sweeper;
 use tool_model::ToolModel;
 use tool_model::field::DeepestPoint;
@@ -87,9 +89,11 @@ use triangle::line_search::Goal;
 /// assert!(low <= 0.5 && 0.5 <= high && high - low < 2e-9);
 /// # Ok(()) }
 /// ```
+///
+/// A clone has the same settings, and memory of its own: both may answer at the same time.
+#[derive(Clone)]
 pub struct Certifier<'a> {
     setting: QuerySetting<'a>,
-    info: &'a ToolInfo,
     /// The query for the depth of the whole tool.
     whole_query: DepthQuery,
     /// The query for the depth of each surface, made on first use.
@@ -110,10 +114,11 @@ pub struct Certifier<'a> {
 }
 
 debug!([] Certifier<'_>, "Certifier", |this| {
-    tool: this.info.name, allowed: this.allowances.depths, budget: this.budget,
+    tool: this.setting.info().name, allowed: this.allowances.depths, budget: this.budget,
 });
 
 /// The allowance of each surface.
+#[derive(Clone)]
 struct Allowances {
     /// The allowed depths, in the part's unit.
     depths: Vec<f64>,
@@ -145,32 +150,51 @@ impl<'a> Certifier<'a> {
     /// # Errors
     /// [`NotCertifiable`] if the tool has no profile and no bound is proved on the rate at which its depth changes.
     pub fn new(bvh: &'a TriangleBvh, tool: &'a dyn Tool) -> Result<Certifier<'a>, NotCertifiable> {
+        Certifier::of(Handle::Borrowed(bvh), Handle::Borrowed(tool))
+    }
+
+    /// Creates a certifier that shares its part and its tool, so that a struct or a thread can hold all three.
+    ///
+    /// # Errors
+    /// As for [`Certifier::new`].
+    pub fn shared(
+        bvh: Arc<TriangleBvh>,
+        tool: Arc<dyn Tool>,
+    ) -> Result<Certifier<'static>, NotCertifiable> {
+        Certifier::of(Handle::Shared(bvh), Handle::Shared(tool))
+    }
+
+    fn of(
+        bvh: Handle<'a, TriangleBvh>,
+        tool: Handle<'a, dyn Tool + 'a>,
+    ) -> Result<Certifier<'a>, NotCertifiable> {
         let (info, level) = (tool.info(), Level::new());
         let length = info.unit.factor_to(bvh.unit());
         let setup = QuerySetup::new(&bvh.frame, info, length);
         let part = f64::from(bvh.frame.size) * bvh.frame.scale / length;
         let point_error = rounding::point_error_bound(info, part);
-        let Some(tool_model) = ToolModel::new(tool, level, point_error) else {
+        let Some(tool_model) = ToolModel::new(&tool, level, point_error) else {
             return Err(NotCertifiable { tool: info.name.to_string() });
         };
         let error = tool_model.depth_error(point_error);
         let surfaces = info.surfaces.len();
         let (size, exact) = (info.size(), info.is_exact());
-        let setting = QuerySetting { bvh, tool_model, size, exact, setup, level, length, error };
+        let core_points = CorePoints::whole(info);
+        let setting =
+            QuerySetting { bvh, tool, tool_model, size, exact, setup, level, length, error };
         let whole_query = setting.depth_query(0.0, |_| true);
         Ok(Certifier {
             whole_query,
             surface_queries: (0..surfaces).map(|_| None).collect(),
             surface_max_depths: vec![None; surfaces],
             allowances: Allowances { depths: vec![0.0; surfaces], queries: None },
-            core_points: CorePoints::whole(info),
-            whole_core_points: CorePoints::whole(info),
+            core_points: core_points.clone(),
+            whole_core_points: core_points,
             surface_core_points: (0..surfaces).map(|_| None).collect(),
             clearance_query: None,
             budget: 1 << 20,
             state: SearchState::default(),
             sweeper: Sweeper::default(),
-            info,
             setting,
         })
     }
@@ -210,17 +234,17 @@ impl<'a> Certifier<'a> {
         if allowed.is_nan() || allowed / self.setting.length == f64::NEG_INFINITY {
             return Err(AllowanceError::NoLength { surface: surface.to_owned(), allowed });
         }
-        let Some(SurfaceId(index)) = self.info.surface_named(surface) else {
-            let surfaces = self.info.surfaces.iter();
+        let Some(SurfaceId(index)) = self.setting.info().surface_named(surface) else {
+            let surfaces = self.setting.info().surfaces.iter();
             let known: Vec<String> = surfaces.map(|s| format!("`{}`", s.name)).collect();
             return Err(AllowanceError::NoSurface {
-                tool: self.info.name.to_string(),
+                tool: self.setting.info().name.to_string(),
                 surface: surface.to_owned(),
                 known: known.join(", "),
             });
         };
         if let (ToolModel::Field(_), true) = (&self.setting.tool_model, allowed < 0.0) {
-            let (tool, surface) = (self.info.name.to_string(), surface.to_owned());
+            let (tool, surface) = (self.setting.info().name.to_string(), surface.to_owned());
             return Err(AllowanceError::NoMargin { tool, surface });
         }
         self.allowances.depths[index] = allowed;
@@ -279,18 +303,18 @@ impl<'a> Certifier<'a> {
     /// [allowed](Certifier::with_allowance). The answer holds only if [`Certifier::touches`] finds no triangle in contact.
     pub fn containment(&mut self, pose: &Pose) -> Containment {
         let error = 4.0 * self.setting.error;
-        self.setting.containment(self.info, &mut self.core_points, pose, error)
+        self.setting.containment(&mut self.core_points, pose, error)
     }
 
     /// Returns whether the whole tool is inside the material and touches no triangle, whatever the allowances.
     /// Returns `None` if that is unknown: the part has no inside, rounding decides, or the budget is spent.
     pub fn is_buried(&mut self, pose: &Pose) -> Option<bool> {
-        let Certifier { setting, info, whole_query, whole_core_points, state, budget, .. } = self;
+        let Certifier { setting, whole_query, whole_core_points, state, budget, .. } = self;
         match touches(setting, slice::from_ref(whole_query), state, pose, *budget) {
             ContactVerdict::Yes(_) => Some(false),
             ContactVerdict::Undecided(_) => None,
             ContactVerdict::No => {
-                match setting.containment(info, whole_core_points, pose, 4.0 * setting.error) {
+                match setting.containment(whole_core_points, pose, 4.0 * setting.error) {
                     Containment::Inside(_) => Some(true),
                     Containment::Outside => Some(false),
                     Containment::Unknown | Containment::Undecided => None,
@@ -308,23 +332,23 @@ impl<'a> Certifier<'a> {
     /// If there is no such surface.
     pub fn max_possible_depth(&self, surface: SurfaceId) -> Result<Option<f64>, NoSuchSurface> {
         let surface = self.checked(surface)?;
-        let depth = max_possible_depth(&self.setting, self.info, surface);
+        let depth = max_possible_depth(&self.setting, surface);
         Ok(depth.map(|depth| depth * self.setting.length))
     }
 
     /// Returns a surface's position in the tool's list, if the tool has it.
     fn checked(&self, surface: SurfaceId) -> Result<usize, NoSuchSurface> {
-        let count = self.info.surfaces.len();
+        let count = self.setting.info().surfaces.len();
         if surface.0 < count {
             return Ok(surface.0);
         }
-        Err(NoSuchSurface { tool: self.info.name.to_string(), count, surface })
+        Err(NoSuchSurface { tool: self.setting.info().name.to_string(), count, surface })
     }
 
     /// Returns whether the restricted interior is one connected piece: the points deeper than their limit by more
     /// than twice the rounding error, as in [`Certifier::is_too_deep`].
     pub fn is_one_piece(&mut self) -> bool {
-        self.setting.is_one_piece(self.info, &mut self.core_points, self.setting.error)
+        self.setting.is_one_piece(&mut self.core_points, self.setting.error)
     }
 
     /// Resets the starting triangle, as if no query had been made. Answers within the tolerance may depend on it, so equal
@@ -338,6 +362,30 @@ impl<'a> Certifier<'a> {
     pub fn touches(&mut self, pose: &Pose) -> ContactVerdict {
         let Certifier { setting, whole_query, allowances, state, budget, .. } = self;
         touches(setting, allowances.queries(setting, whole_query), state, pose, *budget)
+    }
+
+    /// Runs a query for each item of a list, such as a pose or a motion, on all cores, and returns the results in its
+    /// order. Answers within a tolerance may depend on the query before: each stretch of 64 items begins
+    /// [without one](Certifier::clear_caches), so that equal lists have equal results on any number of cores.
+    #[cfg(feature = "parallel")]
+    pub fn par_map<I: Sync, R: Send>(
+        &self,
+        items: &[I],
+        query: impl Fn(&mut Certifier<'a>, &I) -> R + Sync,
+    ) -> Vec<R> {
+        use rayon::prelude::*;
+        const ITEMS_PER_TASK: usize = 64;
+        items
+            .par_chunks(ITEMS_PER_TASK)
+            .map_init(
+                || self.clone(),
+                |certifier, items| {
+                    certifier.clear_caches();
+                    items.iter().map(|item| query(certifier, item)).collect::<Vec<R>>()
+                },
+            )
+            .flatten_iter()
+            .collect()
     }
 
     /// Returns whether a point in world coordinates is certainly deeper than is [allowed](Certifier::with_allowance), in a tool
@@ -361,6 +409,7 @@ impl<'a> Certifier<'a> {
 
 /// The queries for the distance of some surfaces: the depth of points inside the tool, and the distance of those
 /// outside.
+#[derive(Clone)]
 struct ClearanceQuery {
     surfaces: Vec<SurfaceId>,
     inside: DepthQuery,
@@ -374,6 +423,54 @@ impl Certifier<'_> {
     pub fn clearance(&mut self, pose: &Pose, tolerance: f64) -> Clearance {
         let Certifier { setting, whole_query, state, budget, .. } = self;
         distance(setting, [whole_query, whole_query], state, pose, tolerance, *budget)
+    }
+
+    /// Computes the signed distance of the tool from the part: the distance where they are apart, and below 0 the depth of
+    /// the deepest point of the part's triangles in the tool. Both bounds are proved, and as wide as those of
+    /// [`Certifier::deepest`] and [`Certifier::clearance`]; 0 is between them where rounding decides.
+    ///
+    /// A tool that is wholly inside the material touches no triangle: it has to move at least by its distance from the
+    /// surface to come out, which is the upper bound, and there is no lower one. Of a part without an inside only the
+    /// surface counts.
+    ///
+    /// ```
+    /// use nalgebra::{Point3, Vector3};
+    /// use touchoff::certify::{Certifier, TriangleBvh};
+    /// use touchoff::{Pose, Unit, mesh::shapes};
+    /// # touchoff::tool! {
+    /// #     tool Ball "6 mm ball" {
+    /// #         units mm;
+    /// #         profile { start (0, 0); arc to (0, 6) center (0, 3) as ball cutting; }
+    /// #         niceness cutting: 1;
+    /// #     }
+    /// # }
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let block = shapes::cuboid(Point3::new(-20., -20., -10.), Point3::new(20., 20., 0.), Unit::Millimetre)?;
+    /// let bvh = TriangleBvh::new(&block);
+    /// let mut certifier = Certifier::new(&bvh, &Ball)?;
+    /// for height in [-0.5, 0.25] {
+    ///     let pose = Pose::from_axis(Point3::new(1.0, 2.0, height), Vector3::z())?;
+    ///     let distance = certifier.signed_distance(&pose, 1e-9);
+    ///     assert!(distance.contains(height) && distance.width() < 2e-9);
+    /// }
+    /// # Ok(()) }
+    /// ```
+    pub fn signed_distance(&mut self, pose: &Pose, tolerance: f64) -> Interval {
+        let depth = self.deepest(pose, tolerance).depth;
+        if depth.low > 0.0 {
+            return Interval::new(-depth.high, -depth.low);
+        }
+        let distance = self.clearance(pose, tolerance).distance;
+        if distance.low == 0.0 {
+            return Interval::new(-depth.high, distance.high);
+        }
+        let Certifier { setting, whole_core_points, .. } = self;
+        match setting.containment(whole_core_points, pose, 4.0 * setting.error) {
+            Containment::Outside | Containment::Unknown => distance,
+            Containment::Inside(_) => Interval::new(f64::NEG_INFINITY, -distance.low),
+            Containment::Undecided => Interval::new(f64::NEG_INFINITY, distance.high),
+        }
     }
 
     /// Computes the distance of the part's triangles from some surfaces of the tool. The interval is that of
@@ -395,11 +492,12 @@ impl Certifier<'_> {
         }
         if surfaces.is_empty() {
             let distance = Interval::new(f64::INFINITY, f64::INFINITY);
-            return Ok(Clearance { distance, witness: None });
+            return Ok(Clearance { distance, witness: None, on_tool: None });
         }
         if let ToolModel::Field(_) = &self.setting.tool_model {
             let Interval { low, .. } = self.clearance(pose, tolerance).distance;
-            return Ok(Clearance { distance: Interval::new(low, f64::INFINITY), witness: None });
+            let distance = Interval::new(low, f64::INFINITY);
+            return Ok(Clearance { distance, witness: None, on_tool: None });
         }
         let known = self.clearance_query.take().filter(|known| known.surfaces == surfaces);
         let ClearanceQuery { inside, outside, .. } =
@@ -416,13 +514,14 @@ impl Certifier<'_> {
 }
 
 /// Returns an upper bound on the depth that a surface can have, in the tool's unit.
-fn max_possible_depth(setting: &QuerySetting<'_>, info: &ToolInfo, surface: usize) -> Option<f64> {
+fn max_possible_depth(setting: &QuerySetting<'_>, surface: usize) -> Option<f64> {
     match &setting.tool_model {
         ToolModel::Profile(section) => {
             Some(Owners::of(section, |other| other == surface).greatest_depth(section))
         }
         ToolModel::Field(field) => {
-            let owners = Owners::of_regions(info, |_, region| region.surface.0 == surface);
+            let owners =
+                Owners::of_regions(setting.info(), |_, region| region.surface.0 == surface);
             match field.deepest(&owners, 0.0, 1.01) {
                 DeepestPoint::Found { max_depth, .. } => Some(max_depth),
                 DeepestPoint::NoneDeeper => Some(0.0),
@@ -447,10 +546,10 @@ fn distance(
     let goal = Goal { min_depth: -touch, tolerance: touch, stop_depth: touch, budget };
     state.inside(setting, inside, pose, goal);
     if let Some(best) = &state.best {
-        let witness = setting.witness(best, pose);
+        let (witness, on_tool) = (setting.witness(best, pose), setting.tool_point(best, pose));
         let high = if state.search.is_done() { 0.0 } else { 2.0 * touch + state.search.skew };
         let distance = Interval::new(0.0, high * setting.length);
-        return Clearance { distance, witness: Some(witness) };
+        return Clearance { distance, witness: Some(witness), on_tool };
     }
     // Nodes left open may be inside: then no distance above 0 is proved.
     let unsure = state.search.has_open();
@@ -468,6 +567,7 @@ fn distance(
     Clearance {
         distance: Interval::new(low, high).scaled_by(setting.length),
         witness: state.best.as_ref().map(|best| setting.witness(best, pose)),
+        on_tool: state.best.as_ref().and_then(|best| setting.tool_point(best, pose)),
     }
 }
 

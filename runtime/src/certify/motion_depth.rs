@@ -126,7 +126,7 @@ impl Certifier<'_> {
     /// # Ok(()) }
     /// ```
     pub fn check_motion(&mut self, motion: &dyn Trajectory, tolerance: f64) -> MotionVerdict {
-        if !determines_pose(self.info, motion) || self.setting.margin() > MARGIN {
+        if !determines_pose(self.setting.info(), motion) || self.setting.margin() > MARGIN {
             return MotionVerdict::Undecided(0.0);
         }
         let setting = &self.setting;
@@ -156,7 +156,7 @@ impl Certifier<'_> {
             Some(SweepEnd::Spent { at }) => self.touches_from(motion, at),
             None => {
                 let start = motion.pose(0.0);
-                match setting.containment(self.info, &mut self.core_points, &start, tolerance) {
+                match setting.containment(&mut self.core_points, &start, tolerance) {
                     Containment::Inside(surface) => MotionVerdict::Inside(surface),
                     Containment::Outside => MotionVerdict::Clear,
                     Containment::Unknown => MotionVerdict::SurfaceOnly,
@@ -221,7 +221,7 @@ impl Certifier<'_> {
         tolerance: f64,
     ) -> Result<MotionDepth, NoSuchSurface> {
         let surface = self.checked(surface)?;
-        if !determines_pose(self.info, motion) {
+        if !determines_pose(self.setting.info(), motion) {
             return Ok(MotionDepth::Undecided(0.0));
         }
         let setting = &self.setting;
@@ -234,22 +234,20 @@ impl Certifier<'_> {
             .get_or_insert_with(|| setting.depth_query(0.0, |other| other == surface));
         // No point is farther from the surface than the largest radius.
         let max_depth = *self.surface_max_depths[surface].get_or_insert_with(|| {
-            let radius = self.info.radius();
-            max_possible_depth(setting, self.info, surface)
-                .map_or(radius, |depth| depth.min(radius))
+            let radius = setting.info().radius();
+            max_possible_depth(setting, surface).map_or(radius, |depth| depth.min(radius))
         });
         let depth = allowed.max(0.0);
         let core_points = match &mut self.surface_core_points[surface] {
             Some((known, core_points)) if *known == depth => core_points,
             other => {
-                let surfaces = 0..self.info.surfaces.len();
+                let surfaces = 0..setting.info().surfaces.len();
                 let limits = surfaces.map(|k| if k == surface { depth } else { f64::INFINITY });
                 &mut other.insert((depth, CorePoints::new(limits))).1
             }
         };
         let mut search = MotionSearch {
             setting,
-            info: self.info,
             core_points,
             state: &mut self.state,
             sweeper: &mut self.sweeper,
@@ -282,7 +280,6 @@ impl Certifier<'_> {
 /// The search for the greatest depth of one surface along one motion; lengths are in the tool's unit.
 struct MotionSearch<'a, 's> {
     setting: &'a QuerySetting<'s>,
-    info: &'a ToolInfo,
     /// Points of the region that the surface owns and that may not be inside the part.
     core_points: &'a mut CorePoints,
     state: &'a mut SearchState,
@@ -390,8 +387,8 @@ impl MotionSearch<'_, '_> {
 
     /// Returns the result if no triangle is too deep.
     fn within(&mut self) -> MotionDepth {
-        let MotionSearch { setting, info, motion, tolerance, .. } = *self;
-        match setting.containment(info, self.core_points, &motion.pose(0.0), tolerance) {
+        let MotionSearch { setting, motion, tolerance, .. } = *self;
+        match setting.containment(self.core_points, &motion.pose(0.0), tolerance) {
             Containment::Inside(_) => MotionDepth::Inside,
             Containment::Outside | Containment::Unknown => MotionDepth::Within,
             Containment::Undecided => MotionDepth::Undecided(0.0),

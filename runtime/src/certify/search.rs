@@ -9,18 +9,21 @@ use crate::certify::bounds::shell::Shell;
 use crate::certify::part::{TriangleBvh, flat};
 use crate::certify::space::Point;
 use crate::certify::tool_model::ToolModel;
+use crate::certify::tool_model::feature::MeridianPoint;
 use crate::certify::tool_model::field::{Field, Scratch};
 use crate::certify::tool_model::owners::Rectangle;
 use crate::certify::tool_model::section::{Owners, Section};
 use crate::certify::triangle::line_search::{DeepestCandidate, DepthSearch, Goal, LineMaximum};
 use crate::certify::triangle::{LocalTriangle, SubTriangle, nearest};
-use crate::certify::verdict::Witness;
+use crate::certify::verdict::{ToolPoint, Witness};
+use crate::handle::Handle;
 use crate::pose::Pose;
-use crate::tool::LANES;
+use crate::tool::{LANES, Tool, ToolInfo};
 use fearless_simd::Level;
 use nalgebra::Vector3;
 
 /// A set of surfaces and the structures that bound their depth. Lengths are in the tool's unit.
+#[derive(Clone)]
 pub(crate) struct DepthQuery {
     pub(crate) owners: Owners,
     pub(crate) hull: Hull<f32>,
@@ -117,8 +120,10 @@ impl DepthQuery {
 }
 
 /// The data that all queries of a tool at a part share. Lengths are in the tool's unit.
+#[derive(Clone)]
 pub(crate) struct QuerySetting<'a> {
-    pub(crate) bvh: &'a TriangleBvh,
+    pub(crate) bvh: Handle<'a, TriangleBvh>,
+    pub(crate) tool: Handle<'a, dyn Tool + 'a>,
     pub(crate) tool_model: ToolModel<'a>,
     /// The extent of the tool from its tip, along the axis or away from it.
     pub(crate) size: f64,
@@ -133,6 +138,10 @@ pub(crate) struct QuerySetting<'a> {
 }
 
 impl QuerySetting<'_> {
+    pub(crate) fn info(&self) -> &ToolInfo {
+        self.tool.info()
+    }
+
     /// Makes the query for some surfaces, given by their indices in the tool's list. For a tool without a profile the
     /// limit must be at least 0.
     pub(crate) fn depth_query(&self, limit: f64, surfaces: impl Fn(usize) -> bool) -> DepthQuery {
@@ -159,6 +168,21 @@ impl QuerySetting<'_> {
         }
     }
 
+    /// Returns the point of the tool's surface that is the nearest to a candidate; `None` without a profile.
+    pub(crate) fn tool_point(&self, best: &DeepestCandidate, pose: &Pose) -> Option<ToolPoint> {
+        let ToolModel::Profile(section) = &self.tool_model else { return None };
+        let [x, y, z] = best.point;
+        let d = x.hypot(y);
+        let [cosine, sine] = if d > 0.0 { [x / d, y / d] } else { [1.0, 0.0] };
+        let to_tool = |[d, z]: MeridianPoint| Vector3::new(cosine * d, sine * d, z);
+        let feature = &section.features[best.feature];
+        let foot = to_tool(feature.foot([d, z]));
+        Some(ToolPoint {
+            point: pose.tip() + pose.rotation() * foot * self.length,
+            normal: pose.rotation() * to_tool(feature.normal([d, z])),
+        })
+    }
+
     /// Returns the largest error of a bound in `f32`: planes have slopes of at most 2, so their errors are three
     /// times those of a point, plus a few roundings.
     pub(crate) fn margin(&self) -> f64 {
@@ -171,7 +195,7 @@ impl QuerySetting<'_> {
 }
 
 /// The state and the result of a search.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(crate) struct SearchState {
     view: PoseTransform,
     pub(crate) search: DepthSearch,
@@ -192,7 +216,7 @@ struct PlacedTool<'a> {
 }
 
 /// The depth bounds of the part's flat faces, computed on first use in a query.
-#[derive(Default)]
+#[derive(Clone, Default)]
 struct Faces {
     batch: Batch,
     /// The number of the query, and per face the last query that asked for it and its bound.
@@ -276,7 +300,7 @@ impl SearchState {
         }
         // The triangle that was deepest last time is likely to be deep again.
         if let Some(last) = self.last {
-            self.batch.begin(of.bvh, pose, &[last]);
+            self.batch.begin(&of.bvh, pose, &[last]);
             self.bound_batch(of, query);
         }
         self.descend(of, query, pose, Side::Inside, of.margin());
@@ -295,7 +319,7 @@ impl SearchState {
         self.best = None;
         self.search.begin(goal);
         if let Some(last) = self.last {
-            self.batch.begin(of.bvh, pose, &[last]);
+            self.batch.begin(&of.bvh, pose, &[last]);
             self.search_outside(of, query);
         }
         self.descend(of, query, pose, Side::Outside, margin);
@@ -330,7 +354,7 @@ impl SearchState {
         margin: f64,
     ) {
         self.descent.begin();
-        self.faces.begin(of.bvh);
+        self.faces.begin(&of.bvh);
         self.scratch.clear();
         let mut opened = 0;
         let mut nodes_per_face = NODES_PER_FACE;
@@ -344,8 +368,8 @@ impl SearchState {
             }
             // Bounds in `f32` may be too low by the margin.
             let threshold = (self.search.threshold() - margin) as f32;
-            if node.is_triangle(of.bvh) {
-                let indices = self.descent.triangles(of.bvh, node, threshold);
+            if node.is_triangle(&of.bvh) {
+                let indices = self.descent.triangles(&of.bvh, node, threshold);
                 if let Side::Inside = side
                     && opened > NODES_BEFORE_FACES
                 {
@@ -359,14 +383,14 @@ impl SearchState {
                 if indices.is_empty() {
                     continue;
                 }
-                self.batch.begin(of.bvh, pose, indices);
+                self.batch.begin(&of.bvh, pose, indices);
                 match side {
                     Side::Inside => self.search_batch(of, query),
                     Side::Outside => self.search_outside(of, query),
                 }
                 continue;
             }
-            let (level, bvh, view) = (of.level, of.bvh, &self.view);
+            let (level, bvh, view) = (of.level, &*of.bvh, &self.view);
             let placed = PlacedTool { pose, view };
             opened += 1;
             if let Side::Inside = side

@@ -2,7 +2,7 @@
 
 use crate::id::{SurfaceId, TriangleId};
 use crate::interval::Interval;
-use nalgebra::Point3;
+use nalgebra::{Point3, Vector3};
 
 /// The error for a tool that cannot be certified. Without a profile its distance is unknown, and no bound is
 /// proved on the rate at which the depth of its file changes.
@@ -187,4 +187,18 @@ pub struct Clearance {
     pub distance: Interval,
     /// The nearest point found on the part.
     pub witness: Option<Witness>,
+    /// The point of the tool's surface that is the nearest to it; `None` without a witness, and for a tool without a
+    /// profile.
+    pub on_tool: Option<ToolPoint>,
+}
+
+/// A point of a tool's surface, in world coordinates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct ToolPoint {
+    /// The point. Any point of a circle about the axis is as near to a witness on the axis; this is one of them.
+    pub point: Point3<f64>,
+    /// The unit normal of the tool there, outward. Where a point outside is nearest to an edge of the tool, it points to
+    /// that point.
+    pub normal: Vector3<f64>,
 }

@@ -120,14 +120,28 @@ impl Mesh {
     /// Builds a mesh from vertices (n × 3, in `unit`) and triangles (m × 3 indices into them, from 0,
     /// counter-clockwise seen from outside the material).
     ///
+    /// ```
+    /// # use touchoff::{Mesh, Unit};
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let tetrahedron = Mesh::new(
+    ///     [[0.0, 0.0, 0.0], [10.0, 0.0, 0.0], [0.0, 10.0, 0.0], [0.0, 0.0, 10.0]],
+    ///     [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]],
+    ///     Unit::Millimetre,
+    /// )?;
+    /// assert!(tetrahedron.diagnostics().is_solid());
+    /// # Ok(()) }
+    /// ```
+    ///
     /// # Errors
     /// Fails if there are too many triangles or vertices, an index is out of range, a coordinate is not
     /// finite or too large, there is no triangle, or no triangle has an area.
     pub fn new(
-        vertices: Vec<Point3<f64>>,
-        triangles: Vec<[u32; 3]>,
+        vertices: impl IntoIterator<Item = impl Into<Point3<f64>>>,
+        triangles: impl IntoIterator<Item = [u32; 3]>,
         unit: Unit,
     ) -> Result<Mesh, MeshError> {
+        let vertices: Vec<Point3<f64>> = vertices.into_iter().map(Into::into).collect();
+        let triangles: Vec<[u32; 3]> = triangles.into_iter().collect();
         if triangles.is_empty() {
             return Err(MeshError::NoTriangle);
         }

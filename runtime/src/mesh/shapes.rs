@@ -76,19 +76,17 @@ pub fn cuboid(min: Point3<f64>, max: Point3<f64>, unit: Unit) -> Result<Mesh, Me
         let rule = "its lowest corner must be below its highest in x, in y and in z";
         return Err(MeshError::Shape { shape: "cuboid", rule });
     }
-    let vertices = (0..8usize)
-        .map(|corner| {
-            // Each bit of the number decides along one axis.
-            Point3::from([0, 1, 2].map(
-                |axis| {
-                    if corner >> axis & 1 == 0 { min[axis] } else { max[axis] }
-                },
-            ))
-        })
-        .collect();
+    let vertices = (0..8usize).map(|corner| {
+        // Each bit of the number decides along one axis.
+        Point3::from([0, 1, 2].map(
+            |axis| {
+                if corner >> axis & 1 == 0 { min[axis] } else { max[axis] }
+            },
+        ))
+    });
     let sides =
         [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
-    Mesh::new(vertices, sides.into_iter().flat_map(split_quad).collect(), unit)
+    Mesh::new(vertices, sides.into_iter().flat_map(split_quad), unit)
 }
 
 /// Generates an open square sheet in z = 0 about the origin, with edges of length `2 half_width` and
@@ -105,14 +103,12 @@ pub fn plane(half_width: f64, divisions: u32, unit: Unit) -> Result<Mesh, MeshEr
     let n = f64::from(divisions);
     let coordinate = |i: u32| half_width * ((2.0 * f64::from(i) - n) / n);
     let rows = (0..=divisions).flat_map(|j| (0..=divisions).map(move |i| (i, j)));
-    let vertices = rows.map(|(i, j)| Point3::new(coordinate(i), coordinate(j), 0.0)).collect();
+    let vertices = rows.map(|(i, j)| Point3::new(coordinate(i), coordinate(j), 0.0));
     let vertex = |i: u32, j: u32| j * (divisions + 1) + i;
     let squares = (0..divisions).flat_map(|j| (0..divisions).map(move |i| (i, j)));
-    let triangles = squares
-        .flat_map(|(i, j)| {
-            split_quad([vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1), vertex(i, j + 1)])
-        })
-        .collect();
+    let triangles = squares.flat_map(|(i, j)| {
+        split_quad([vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1), vertex(i, j + 1)])
+    });
     Mesh::new(vertices, triangles, unit)
 }
 
@@ -151,7 +147,7 @@ pub fn sphere(radius: f64, subdivisions: u32, unit: Unit) -> Result<Mesh, MeshEr
         }
         triangles = finer;
     }
-    let vertices = directions.iter().map(|direction| Point3::from(radius * direction)).collect();
+    let vertices = directions.iter().map(|direction| Point3::from(radius * direction));
     Mesh::new(vertices, triangles, unit)
 }
 

@@ -43,7 +43,7 @@ pub(super) fn collect(
     pose: &Pose,
     contacts: &mut Vec<Contact>,
 ) {
-    let (evaluations, tree) = (&state.evaluations, state.tree);
+    let (evaluations, tree) = (&state.evaluations, &*state.tree);
     let rotation = pose.rotation();
     for candidate in evaluations.inside_indices() {
         let index = state.candidates.indices()[candidate] as usize;
@@ -150,7 +150,7 @@ pub(super) fn deepest_point(
     depth: f64,
 ) -> DeepestPoint {
     let index = state.candidates.indices()[candidate] as usize;
-    let tree = state.tree;
+    let tree = &*state.tree;
     let point = pose.tip() + tree.relative_to_tip(&state.view, index);
     DeepestPoint { depth: depth * state.length, point, triangle: tree.triangle(index) }
 }

@@ -1,7 +1,8 @@
 //! Queries at the finest level of detail that a budget allows.
 
-use super::{Law, Probe, Wrench};
+use super::{Law, PartPoints, Probe, Wrench};
 use crate::debug::debug;
+use crate::handle::Handle;
 use crate::point_bvh::PointBvh;
 use crate::pose::Pose;
 use crate::tool::{BatchEvaluator, Tool};
@@ -84,7 +85,11 @@ impl<'a, T: BatchEvaluator + ?Sized> LodProbe<'a, T> {
         if budget < needed {
             return Err(BudgetError { budget, needed });
         }
-        let probes = trees.map(|tree| Probe::of(tree, unit, tool).with_law(law)).collect();
+        let probes = trees
+            .map(|tree| {
+                Probe::of(PartPoints::Level(tree), unit, Handle::Borrowed(tool)).with_law(law)
+            })
+            .collect();
         Ok(LodProbe { probes, budget, last: None })
     }
 

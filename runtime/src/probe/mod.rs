@@ -20,12 +20,13 @@ pub use wrench::{Stiffness, Wrench, WrenchRounding};
 
 use crate::bvh::WIDTH;
 use crate::debug::debug;
-use crate::point_bvh::PointBvh;
+use crate::handle::Handle;
 use crate::pose::Pose;
 use crate::tool::{BatchEvaluator, OutputSelection, Outputs, Tool, reserve};
 use crate::unit::Unit;
 use fearless_simd::Level;
 use nalgebra::Point3;
+pub(crate) use state::PartPoints;
 use state::QueryState;
 
 /// A tool paired with a part, ready for queries at one pose after another. A solid without an axis needs poses
@@ -41,7 +42,7 @@ use state::QueryState;
 /// Only the outputs that a query needs are computed. For a tool whose type is known, as in `Probe::new(&part, &Ball)`,
 /// a program has code only for the queries that it uses; for a `&dyn Tool` it has code for all of them.
 pub struct Probe<'a, T: ?Sized = dyn Tool + 'a> {
-    tool: &'a T,
+    tool: Handle<'a, T>,
     state: QueryState<'a>,
     /// Memory of [`Probe::contacts`].
     contacts: Vec<Contact>,
@@ -54,8 +55,8 @@ debug!([T: ?Sized] Probe<'_, T>, "Probe", |this| {
 /// The clone has the same settings, and memory of its own: queries of both may run at the same time.
 impl<T: BatchEvaluator + ?Sized> Clone for Probe<'_, T> {
     fn clone(&self) -> Self {
-        let QueryState { tree, unit, law, weights, centre, level, .. } = self.state;
-        Probe::of(tree, unit, self.tool)
+        let QueryState { ref tree, unit, law, weights, centre, level, .. } = self.state;
+        Probe::of(tree.clone(), unit, self.tool.clone())
             .with_law(law)
             .with_weights(weights)
             .with_centre(centre)
@@ -93,8 +94,9 @@ impl OutputSelection for Everything {
 
 impl<'a, T: BatchEvaluator + ?Sized> Probe<'a, T> {
     /// Makes a probe of a part's points in their tree, whose lengths are in `unit`.
-    pub(crate) fn of(tree: &'a PointBvh, unit: Unit, tool: &'a T) -> Probe<'a, T> {
-        Probe { tool, state: QueryState::new(tree, unit, tool.info()), contacts: Vec::new() }
+    pub(crate) fn of(tree: PartPoints<'a>, unit: Unit, tool: Handle<'a, T>) -> Probe<'a, T> {
+        let state = QueryState::new(tree, unit, tool.info());
+        Probe { tool, state, contacts: Vec::new() }
     }
 
     /// Sets the force law.
@@ -163,7 +165,7 @@ impl<'a, T: BatchEvaluator + ?Sized> Probe<'a, T> {
     /// the depth is proved for the tool ([`crate::tool::DepthBounds::lipschitz`]).
     pub fn rounding_error_bound(&self) -> Option<f64> {
         const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
-        let (info, tree, length) = (self.tool.info(), self.state.tree, self.state.length);
+        let (info, tree, length) = (self.tool.info(), &self.state.tree, self.state.length);
         let tool = length * info.size();
         let frame = &tree.frame;
         let [leaf, part] = [tree.leaf_size, frame.size].map(|half| frame.scale * f64::from(half));
@@ -256,8 +258,8 @@ impl<'a, T: BatchEvaluator + ?Sized> Probe<'a, T> {
     fn reduce(&mut self, pose: &Pose) -> Wrench {
         self.state.filter(true);
         let is_inside = match self.state.law {
-            Law::Gradient => self.state.evaluate::<AlongGradients, T>(self.tool),
-            Law::Thesis | Law::Facing => self.state.evaluate::<AlongDirections, T>(self.tool),
+            Law::Gradient => self.state.evaluate::<AlongGradients, T>(&self.tool),
+            Law::Thesis | Law::Facing => self.state.evaluate::<AlongDirections, T>(&self.tool),
         };
         if is_inside { self.state.reduce(pose) } else { self.zero_wrench() }
     }
@@ -323,6 +325,6 @@ impl<'a, T: BatchEvaluator + ?Sized> Probe<'a, T> {
     /// Evaluates the tool at the points of the leaves found last. Returns whether any point is inside.
     fn filter_and_evaluate<W: OutputSelection>(&mut self) -> bool {
         self.state.filter(false);
-        self.state.evaluate::<W, T>(self.tool)
+        self.state.evaluate::<W, T>(&self.tool)
     }
 }

@@ -9,12 +9,15 @@
 
 use crate::bvh::{PoseTransform, QuerySetup, WIDTH};
 use crate::keywords::keyword_enum;
+use crate::part::Part;
 use crate::point_bvh::{Candidates, PointBvh, Traversal, TraversalInput, filter};
 use crate::pose::Pose;
 use crate::tool::{BatchEvaluator, Evaluations, OutputSelection, ToolInfo};
 use crate::unit::Unit;
 use fearless_simd::Level;
 use nalgebra::Point3;
+use std::ops::Deref;
+use std::sync::Arc;
 
 /// The force on the tool as a function of a contact's magnitude. `m` is the magnitude, `w` the weight, `n` the part's
 /// outward normal, `u` the direction to the tool's nearest surface.
@@ -42,9 +45,28 @@ pub enum Weights {
 keyword_enum!(Law, "thesis, gradient, facing", Thesis "thesis", Gradient "gradient", Facing "facing");
 keyword_enum!(Weights, "area, unit", Area "area", Unit "unit");
 
+/// A part's points: those of one of its levels, or the finest of a part that is shared.
+#[derive(Clone)]
+pub(crate) enum PartPoints<'a> {
+    Level(&'a PointBvh),
+    Shared(Arc<Part>),
+}
+
+impl Deref for PartPoints<'_> {
+    type Target = PointBvh;
+
+    #[inline]
+    fn deref(&self) -> &PointBvh {
+        match self {
+            PartPoints::Level(tree) => tree,
+            PartPoints::Shared(part) => part.tree(),
+        }
+    }
+}
+
 /// A part, the settings of a query, and memory for the results.
 pub(super) struct QueryState<'a> {
-    pub(super) tree: &'a PointBvh,
+    pub(super) tree: PartPoints<'a>,
     /// The part's unit of length.
     pub(super) unit: Unit,
     /// The length of the tool's unit in the part's unit.
@@ -68,10 +90,9 @@ pub(super) struct QueryState<'a> {
 
 impl<'a> QueryState<'a> {
     /// Makes the state of queries on a part's points in their tree, whose lengths are in `unit`.
-    pub(super) fn new(tree: &'a PointBvh, unit: Unit, info: &ToolInfo) -> QueryState<'a> {
+    pub(super) fn new(tree: PartPoints<'a>, unit: Unit, info: &ToolInfo) -> QueryState<'a> {
         let length = info.unit.factor_to(unit);
         QueryState {
-            tree,
             unit,
             length,
             tool_size: info.size(),
@@ -80,6 +101,7 @@ impl<'a> QueryState<'a> {
             centre: Point3::origin(),
             level: Level::new(),
             setup: QuerySetup::new(&tree.frame, info, length),
+            tree,
             view: PoseTransform::default(),
             traversal: Traversal::default(),
             candidates: Candidates::default(),
@@ -91,7 +113,7 @@ impl<'a> QueryState<'a> {
 
     /// Reserves memory for a contact of all points, without touching it.
     pub(super) fn reserve(&mut self) {
-        self.traversal.reserve(self.tree);
+        self.traversal.reserve(&self.tree);
         self.candidates.reserve(self.tree.leaves.len(), true);
     }
 
@@ -104,32 +126,32 @@ impl<'a> QueryState<'a> {
     /// Finds the leaves that the tool may reach, visiting at most `max_nodes` nodes and leaves. Returns their number;
     /// `None` if that limit does not suffice.
     pub(super) fn traverse(&mut self, max_nodes: usize) -> Option<usize> {
-        let input = TraversalInput { tree: self.tree, setup: &self.setup, view: &self.view };
+        let input = TraversalInput { tree: &self.tree, setup: &self.setup, view: &self.view };
         self.traversal.leaves(self.level, input, max_nodes)
     }
 
     /// Finds the nodes above the leaves that the tool may reach. Returns the number of these nodes.
     pub(super) fn traverse_to_nodes(&mut self) -> usize {
-        let input = TraversalInput { tree: self.tree, setup: &self.setup, view: &self.view };
+        let input = TraversalInput { tree: &self.tree, setup: &self.setup, view: &self.view };
         self.traversal.nodes(self.level, input)
     }
 
     /// Finds the leaves that the tool may reach under one of these nodes.
     pub(super) fn traverse_under(&mut self, node: usize) {
-        let input = TraversalInput { tree: self.tree, setup: &self.setup, view: &self.view };
+        let input = TraversalInput { tree: &self.tree, setup: &self.setup, view: &self.view };
         self.traversal.under(self.level, input, node);
     }
 
     /// Selects the leaf that was hit last, and no other.
     pub(super) fn traverse_to_last_hit(&mut self) {
-        let input = TraversalInput { tree: self.tree, setup: &self.setup, view: &self.view };
+        let input = TraversalInput { tree: &self.tree, setup: &self.setup, view: &self.view };
         self.traversal.only(self.hit, input);
     }
 
     /// Finds the points that may be inside among those of the leaves found last; with `attributes`, their normals and
     /// weights too.
     pub(super) fn filter(&mut self, attributes: bool) {
-        let input = TraversalInput { tree: self.tree, setup: &self.setup, view: &self.view };
+        let input = TraversalInput { tree: &self.tree, setup: &self.setup, view: &self.view };
         filter(self.level, input, self.traversal.found(), attributes, &mut self.candidates);
     }
 

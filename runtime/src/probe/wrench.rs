@@ -381,11 +381,11 @@ impl<T: BatchEvaluator + ?Sized> Probe<'_, T> {
         }
         self.state.traverse(usize::MAX);
         self.state.filter(true);
-        if !self.state.evaluate::<Everything, T>(self.tool) {
+        if !self.state.evaluate::<Everything, T>(&self.tool) {
             return self.zero_stiffness();
         }
         let wrench = self.state.reduce(pose);
-        Stiffness { wrench, matrix: self.state.matrix(self.tool, pose) }
+        Stiffness { wrench, matrix: self.state.matrix(&*self.tool, pose) }
     }
 
     /// Returns the stiffness without contact.

@@ -13,6 +13,7 @@ use fearless_simd::{Level, Simd, dispatch};
 use std::borrow::Cow;
 use std::ops::Range;
 use std::path::Path;
+use std::str::FromStr;
 use touchoff_dsl::bound::lateral_extent;
 use touchoff_dsl::domain::Domain;
 use touchoff_dsl::interpret::{
@@ -70,7 +71,29 @@ impl Interpreted {
         Source::read(path).map_err(|source| ToolError::Unreadable { file, source })
     }
 
-    /// Compiles a tool's text.
+    /// Compiles a tool's text. `name` stands for a file's in diagnostics; `str::parse` gives `tool`.
+    ///
+    /// ```
+    /// use touchoff::tool::{Interpreted, Tool};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let text = "tool Ball \"6 mm ball\" { units mm; profile { start (0, 0); arc to (0, 6) center (0, 3) as ball; } }";
+    /// let tool: Interpreted = text.parse()?;
+    /// assert_eq!(tool.info().name, "Ball");
+    ///
+    /// let error = Interpreted::from_text("ball.tool", &text.replace("(0, 3)", "(0, 2)")).expect_err("no circle");
+    /// assert!(error.to_string().contains("ball.tool:1:"));
+    /// # Ok(()) }
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`ToolError::Invalid`] with all diagnostics if the text does not compile.
+    pub fn from_text(name: &str, text: &str) -> Result<Interpreted, ToolError> {
+        Interpreted::parse(&Source::new(name, text))
+    }
+
+    /// Compiles the text of a source.
     ///
     /// # Errors
     ///
@@ -106,6 +129,15 @@ impl Interpreted {
     /// Returns the compiler's warnings; empty if there are none.
     pub fn warnings(&self) -> &str {
         &self.warnings
+    }
+}
+
+/// Compiles a tool's text, which its diagnostics call `tool`.
+impl FromStr for Interpreted {
+    type Err = ToolError;
+
+    fn from_str(text: &str) -> Result<Interpreted, ToolError> {
+        Interpreted::from_text("tool", text)
     }
 }
 

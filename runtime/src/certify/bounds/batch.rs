@@ -11,7 +11,7 @@ use fearless_simd::{Level, Simd, SimdBase, f64x8};
 pub(crate) type Lanes = [f64; LANES];
 
 /// Up to eight triangles, an upper bound of the depth of each, and the point where it may be reached.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(crate) struct Batch {
     pub(crate) indices: Vec<u32>,
     /// First relative to the tip in the part's frame and unit, then in the tool's frame and unit.

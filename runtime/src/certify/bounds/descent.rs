@@ -77,7 +77,7 @@ impl Node {
 }
 
 /// The traversal stack. The children of the node opened last are on top, the deepest first.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(crate) struct Descent {
     stack: Vec<Node>,
     indices: Vec<u32>,

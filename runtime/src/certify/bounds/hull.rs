@@ -15,6 +15,7 @@ use crate::tool::ToolInfo;
 use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask, f32x16};
 
 /// The slabs of a tool, for upper bounds of depth.
+#[derive(Clone)]
 pub(crate) struct Hull<R> {
     /// The rounding error bound of a point.
     pub(crate) margin: R,
@@ -22,6 +23,7 @@ pub(crate) struct Hull<R> {
 }
 
 /// A slab between two heights: the depth of a point in it is at most each of these bounds.
+#[derive(Clone)]
 pub(crate) struct HullSlab<R> {
     pub(crate) low: R,
     pub(crate) high: R,
@@ -41,6 +43,7 @@ pub(crate) struct HullSlab<R> {
 
 /// A plane, and the points whose depth is at most their distance under it: those on the far side of all `guards`, each a
 /// plane as in [`HullSlab::planes`] with a normal of length 1.
+#[derive(Clone)]
 pub(crate) struct GuardedPlane<R> {
     pub(crate) plane: [R; 3],
     pub(crate) guards: Vec<[R; 3]>,

@@ -8,12 +8,14 @@ use crate::tool::ToolInfo;
 use fearless_simd::{Simd, SimdBase, SimdFloat, f32x16};
 
 /// A set of solids that contain a tool: a cylinder per slab, and a ball where the slab's side is an arc about the axis.
+#[derive(Clone)]
 pub(crate) struct Shell {
     slabs: Vec<ShellSlab>,
     /// The rounding error bound of a point.
     margin: f32,
 }
 
+#[derive(Clone)]
 struct ShellSlab {
     low: f32,
     high: f32,

@@ -343,7 +343,7 @@ fn squared_distance<S: Simd>(&[x, y, z]: &LaneVector<f32x16<S>>, [u, v, w]: [f32
 }
 
 /// Up to eight triangles at both ends of a motion interval and in its middle.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(crate) struct SweptBatch {
     pub(crate) middle: Batch,
     ends: [[Lanes; 3]; 6],

@@ -125,7 +125,7 @@ enum Undecided {
 }
 
 /// The search along a motion, with its memory.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(crate) struct Sweeper {
     view: PoseTransform,
     ends: [PoseTransform; 2],
@@ -195,7 +195,7 @@ impl Sweeper {
         list: std::ops::Range<usize>,
     ) -> Option<SweepEnd> {
         let SweepTask { setting, query, .. } = *task;
-        let bvh = setting.bvh;
+        let bvh = &*setting.bvh;
         let frame = &bvh.frame;
         let [first, middle, last] = &interval.poses;
         setting.setup.set_pose(frame, first, &mut self.ends[0]);

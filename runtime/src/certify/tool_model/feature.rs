@@ -295,6 +295,19 @@ impl Feature {
         if length > 0.0 { vector.map(|part| part / length) } else { self.signed_gradient(p) }
     }
 
+    /// Returns the outward unit normal at the foot of a point. For a point beyond an end it points away from the foot.
+    pub(crate) fn normal(&self, p: MeridianPoint) -> MeridianPoint {
+        let inward = self.signed_gradient(p);
+        let away = minus(p, self.foot(p));
+        let length = norm(away);
+        if length == 0.0 {
+            return inward.map(|part| -part);
+        }
+        // Away from the foot is outward or inward, whichever is on the gradient's side.
+        let sense = if dot(inward, away) > 0.0 { -1.0 } else { 1.0 };
+        away.map(|part| sense * part / length)
+    }
+
     /// Returns at least the distance of every point in a triangle.
     #[inline]
     pub(crate) fn at_most(&self, triangle: &Triangle) -> f64 {

@@ -9,6 +9,7 @@ use crate::certify::space::Point;
 use crate::certify::tool_model::section::{Depth, Owners};
 use crate::certify::triangle::line_search::{DeepestCandidate, DepthSearch};
 use crate::certify::triangle::{SubTriangle, TrianglePiece};
+use crate::handle::Handle;
 use crate::interval::Interval;
 use crate::tool::{
     EvaluationEnclosure, Evaluations, LANES, Outputs, PointBatch, Symmetry, Tool, ToolInfo,
@@ -18,8 +19,9 @@ use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 /// A depth function with its bounds.
+#[derive(Clone)]
 pub(crate) struct Field<'a> {
-    tool: &'a dyn Tool,
+    tool: Handle<'a, dyn Tool + 'a>,
     /// The Lipschitz constant `L` of depth, at least 1.
     pub(crate) steep: f64,
     /// The error bound of a depth.
@@ -55,7 +57,7 @@ impl<T> PartialEq for Bounded<T> {
 impl<T> Eq for Bounded<T> {}
 
 /// Memory that a search keeps between triangles.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(crate) struct Scratch {
     /// The pieces that are still open, the deepest on top.
     pieces: BinaryHeap<Bounded<TrianglePiece>>,
@@ -78,7 +80,7 @@ impl Scratch {
 
 impl<'a> Field<'a> {
     /// Creates the field of a tool; `None` if no Lipschitz constant of its depth is proved.
-    pub(crate) fn new(tool: &'a dyn Tool, level: Level) -> Option<Field<'a>> {
+    pub(crate) fn new(tool: Handle<'a, dyn Tool + 'a>, level: Level) -> Option<Field<'a>> {
         let info = tool.info();
         let steep = info.depth.lipschitz?.max(1.0);
         // Let u be the unit roundoff. Halving rounds a midpoint by u of its distance from the tip. A relevant piece of

@@ -170,7 +170,7 @@ pub(crate) struct DeepestCandidate {
 }
 
 /// The search for the greatest depth.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(crate) struct DepthSearch {
     /// The greatest depth found, or else the least depth searched for.
     pub(crate) best: f64,
