@@ -211,7 +211,7 @@ pub(crate) fn run(arguments: &Run, json: bool) -> Result<(), Failure> {
     out.flush()?;
     drop(progress);
     summary.print(unit);
-    if bvh.is_some_and(|(bvh, _)| !bvh.has_inside()) {
+    if bvh.as_ref().is_some_and(|(bvh, _)| !bvh.has_inside()) {
         message!("{NO_INSIDE}");
     }
     Ok(())

@@ -31,9 +31,8 @@ pub(crate) fn check() -> Result<(), Box<dyn Error>> {
     let vertices = [0., 20.].map(|x| [-60., 60.].map(|y| [0., 30.].map(|z| Point3::new(x, y, z))));
     let triangles = [[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1]];
     let others = [[2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3]];
-    let triangles = triangles.into_iter().chain(others).collect();
-    let wall =
-        Mesh::new(vertices.into_iter().flatten().flatten().collect(), triangles, Unit::Millimetre)?;
+    let triangles = triangles.into_iter().chain(others);
+    let wall = Mesh::new(vertices.into_iter().flatten().flatten(), triangles, Unit::Millimetre)?;
     let clamp = [Point3::new(30., -10., 0.), Point3::new(50., 10., 40.)];
     let [wall, clamp] = [wall, shapes::cuboid(clamp[0], clamp[1], Unit::Millimetre)?]
         .map(|mesh| TriangleBvh::new(&mesh));

@@ -166,9 +166,8 @@ impl Contact {
                     let (a, b) = (2 * i, 2 * ((i + 1) % BORE_FACES));
                     [[a, a + 1, b], [b, a + 1, b + 1]]
                 };
-                let corners = (0..BORE_FACES).flat_map(rim_points).collect();
-                Mesh::new(corners, (0..BORE_FACES).flat_map(face_triangles).collect(), UNIT)
-                    .expect(VALID)
+                let corners = (0..BORE_FACES).flat_map(rim_points);
+                Mesh::new(corners, (0..BORE_FACES).flat_map(face_triangles), UNIT).expect(VALID)
             }
         }
     }

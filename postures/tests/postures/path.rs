@@ -165,8 +165,7 @@ fn lengths(path: &ToolPath) -> [f64; 2] {
 fn step() -> Mesh {
     let outline = [[-12.0, 0.0], [12.0, 0.0], [12.0, 8.0], [0.0, 8.0], [0.0, 14.0], [-12.0, 14.0]];
     let point_at = |y: f64| move |[x, z]: [f64; 2]| Point3::new(x, y, z);
-    let vertices =
-        outline.map(point_at(-10.0)).into_iter().chain(outline.map(point_at(10.0))).collect();
+    let vertices = outline.map(point_at(-10.0)).into_iter().chain(outline.map(point_at(10.0)));
     let mut triangles = Vec::new();
     for k in 0..6u32 {
         let next = (k + 1) % 6;
@@ -177,7 +176,7 @@ fn step() -> Mesh {
         triangles.extend([[3, b, a], [9, a + 6, b + 6]]);
     }
     let mesh = Mesh::new(vertices, triangles, Unit::Millimetre).expect("a mesh");
-    let turned = mesh.triangles().iter().map(|[a, b, c]| [*a, *c, *b]).collect();
+    let turned = mesh.triangles().iter().map(|[a, b, c]| [*a, *c, *b]);
     match mesh.diagnostics().is_solid() {
         true => mesh,
         false => Mesh::new(mesh.vertices().to_vec(), turned, Unit::Millimetre).expect("a mesh"),
@@ -298,7 +297,7 @@ fn paths_are_reproducible_in_every_unit_and_position() {
         let mesh = sphere();
         let vertices =
             mesh.vertices().iter().map(|vertex| vertex * scale + Vector3::repeat(offset));
-        let mesh = Mesh::new(vertices.collect(), mesh.triangles().to_vec(), unit).expect("a mesh");
+        let mesh = Mesh::new(vertices, mesh.triangles().to_vec(), unit).expect("a mesh");
         let case = Case::new(mesh, &Mill);
         let path = case.plan_over_planes(&Mill, [0.0, 0.0, 1.0], [4.0, 2.0]);
         let [feed, rapid] = max_depths(&case.mesh, &path);

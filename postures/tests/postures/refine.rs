@@ -33,7 +33,7 @@ fn pocket() -> Mesh {
     let outer = [[0.0, 0.0], [60.0, 0.0], [60.0, 40.0], [0.0, 40.0]];
     let inner = [[10.0, 10.0], [50.0, 10.0], [50.0, 30.0], [10.0, 30.0]];
     let rings = [(outer, 0.0), (outer, 20.0), (inner, 20.0), (inner, 8.0)];
-    let vertices = rings.iter().flat_map(|(ring, z)| ring.map(|at| corner(at, *z))).collect();
+    let vertices = rings.iter().flat_map(|(ring, z)| ring.map(|at| corner(at, *z)));
     let mut triangles = vec![[0, 3, 2], [0, 2, 1], [12, 13, 14], [12, 14, 15]];
     for ring in 0..3 {
         for k in 0..4 {
@@ -233,7 +233,7 @@ fn pieces_are_judged_like_triangles() {
     assert!(pieces.len() > 300, "{}", pieces.len());
     let corners: Vec<Point3<f64>> =
         pieces.iter().flat_map(|(piece, _)| piece.corners(&mesh)).collect();
-    let triangles = (0..pieces.len() as u32).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
+    let triangles = (0..pieces.len() as u32).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]);
     let cut = Mesh::new(corners, triangles, mesh.unit()).expect("a mesh");
     let (alone, _) = Case::new(&cut, &Slim, 15).rows();
     let tip = |record: &PostureRecord| Point3::from(record.tip);

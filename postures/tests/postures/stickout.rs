@@ -66,7 +66,7 @@ fn step(height: f64) -> Mesh {
     let [low, wall] = [low, wall].map(|mesh| mesh.expect("a cuboid"));
     let vertices = [low.vertices(), wall.vertices()].concat();
     let moved = wall.triangles().iter().map(|corners| corners.map(|corner| corner + 8));
-    let triangles = low.triangles().iter().copied().chain(moved).collect();
+    let triangles = low.triangles().iter().copied().chain(moved);
     Mesh::new(vertices, triangles, Unit::Millimetre).expect("a mesh")
 }
 

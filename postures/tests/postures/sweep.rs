@@ -84,12 +84,12 @@ fn block(low: [f64; 3], high: [f64; 3]) -> Mesh {
 /// Returns two meshes as one, with the second one's triangles reversed if `reverse` is set.
 fn joined(first: &Mesh, second: &Mesh, reverse: bool) -> Mesh {
     let offset = first.vertices().len() as u32;
-    let vertices = first.vertices().iter().chain(second.vertices()).copied().collect();
+    let vertices = first.vertices().iter().chain(second.vertices()).copied();
     let moved = second.triangles().iter().map(|[a, b, c]| {
         let [a, b, c] = [a + offset, b + offset, c + offset];
         if reverse { [a, c, b] } else { [a, b, c] }
     });
-    let triangles = first.triangles().iter().copied().chain(moved).collect();
+    let triangles = first.triangles().iter().copied().chain(moved);
     Mesh::new(vertices, triangles, first.unit()).expect("a mesh")
 }
 
@@ -234,7 +234,7 @@ fn only_a_lollipop_reaches_an_undercut() {
 }
 
 fn reversed(mesh: &Mesh) -> Mesh {
-    let turned = mesh.triangles().iter().map(|[a, b, c]| [*a, *c, *b]).collect();
+    let turned = mesh.triangles().iter().map(|[a, b, c]| [*a, *c, *b]);
     Mesh::new(mesh.vertices().to_vec(), turned, mesh.unit()).expect("a mesh")
 }
 
@@ -291,7 +291,7 @@ fn accessibility_does_not_depend_on_the_unit() {
     let sets = [Unit::Millimetre, Unit::Inch, Unit::Metre].map(|unit| {
         let scale = Unit::Millimetre.factor_to(unit);
         let scaled = |mesh: Mesh| {
-            let vertices = mesh.vertices().iter().map(|vertex| vertex * scale).collect();
+            let vertices = mesh.vertices().iter().map(|vertex| vertex * scale);
             Mesh::new(vertices, mesh.triangles().to_vec(), unit).expect("a mesh")
         };
         let mesh = scaled(shapes::tube(4.0, 6.0, 25.0, 24, 3, Unit::Millimetre).expect("a tube"));

@@ -420,8 +420,8 @@ fn points_that_repeat_share_their_cells() {
 // Surfaces and points as damaged files and scanners produce them: long, coincident, crowded.
 
 fn mesh(triangles: &[[[f64; 3]; 3]]) -> Mesh {
-    let vertices = triangles.as_flattened().iter().map(|corner| Point3::from(*corner)).collect();
-    let ids = (0..triangles.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+    let vertices = triangles.as_flattened().iter().map(|corner| Point3::from(*corner));
+    let ids = (0..triangles.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]);
     Mesh::new(vertices, ids, UNIT).expect("a mesh")
 }
 
@@ -470,7 +470,7 @@ fn coincident_triangles_are_divided_once() {
     let tube = shapes::tube(3.0, 5.0, 13.116, 24, 2, UNIT).expect("a tube");
     let turned = |[a, b, c]: [u32; 3], copy: usize| [[a, b, c], [b, c, a], [c, a, b]][copy % 3];
     let copies = (0..30).flat_map(|copy| tube.triangles().iter().map(move |t| turned(*t, copy)));
-    let copies = Mesh::new(tube.vertices().to_vec(), copies.collect(), UNIT).expect("a mesh");
+    let copies = Mesh::new(tube.vertices().to_vec(), copies, UNIT).expect("a mesh");
     assert_eq!(pieces(&copies, 2_000), pieces(&tube, 2_000));
     let [one, all] =
         [&tube, &copies].map(|mesh| Cloud::sample(mesh, Sampling::new(2_000)).expect("a cloud"));

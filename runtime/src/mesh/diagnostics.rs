@@ -451,7 +451,7 @@ mod tests {
         let (outer, inner) = (cube(0.0, 3.0), cube(1.0, 2.0));
         let vertices = [outer.vertices(), inner.vertices()].concat();
         let hollow = inner.triangles().iter().map(|&[a, b, c]| [a + 8, c + 8, b + 8]);
-        let triangles = outer.triangles().iter().copied().chain(hollow).collect();
+        let triangles = outer.triangles().iter().copied().chain(hollow);
         let diagnostics = Mesh::new(vertices, triangles, Unit::Inch).expect("a mesh").diagnostics();
         assert_eq!(
             (diagnostics.shells, diagnostics.inverted_shells, diagnostics.volume),

@@ -30,7 +30,9 @@ fn refusal(bytes: &[u8]) -> String {
 #[test]
 fn rejects_invalid_meshes() {
     let [a, b, c] = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(Point3::from);
-    let mesh = |vertices: &[_], triangles: &[_]| Mesh::new(vertices.into(), triangles.into(), UNIT);
+    let mesh = |vertices: &[Point3<f64>], triangles: &[_]| {
+        Mesh::new(vertices.to_vec(), triangles.to_vec(), UNIT)
+    };
     assert_eq!(mesh(&[a, b, c], &[]), Err(MeshError::NoTriangle));
     assert_eq!(mesh(&[a, b, c], &[[0, 1, 1]]), Err(MeshError::NoArea { triangles: 1 }));
     let index = MeshError::Index { triangle: 1, index: 3, vertices: 3 };

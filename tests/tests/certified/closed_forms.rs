@@ -74,7 +74,7 @@ fn depth_of_a_ball_in_a_faceted_bore() {
 fn depth_is_valid_far_from_the_origin() {
     let translate = |p: &Point3<f64>| p + Vector3::new(1e6, -1e6, 1e6);
     let original = plate();
-    let vertices = original.vertices().iter().map(translate).collect();
+    let vertices = original.vertices().iter().map(translate);
     let moved =
         Mesh::new(vertices, original.triangles().to_vec(), Unit::Millimetre).expect("a mesh");
     for depth in [0.0, 1.0 / 1024.0, 0.5] {
@@ -123,7 +123,7 @@ fn pose_verdicts_tell_inside_from_outside() {
 #[test]
 fn inverted_parts_and_holes_are_not_material() {
     let solid = block([-200.0; 3], [200.0; 3]);
-    let turned = solid.triangles().iter().map(|[a, b, c]| [*a, *c, *b]).collect();
+    let turned = solid.triangles().iter().map(|[a, b, c]| [*a, *c, *b]);
     let inverted = Mesh::new(solid.vertices().to_vec(), turned, Unit::Millimetre).expect("a mesh");
     let bvh = TriangleBvh::new(&inverted);
     let mut certifier = Certifier::new(&bvh, tool("D2Ball")).expect("a profile");

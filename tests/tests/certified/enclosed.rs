@@ -83,7 +83,7 @@ fn check_blocks(name: &str, blocks: usize) -> BlockVerdicts {
 /// Transforms a mesh from the tool's frame to the world frame.
 fn to_world(mesh: &Mesh, pose: &Pose) -> Mesh {
     let transform = |p: &Point3<f64>| pose.tip() + pose.rotation() * p.coords;
-    let vertices = mesh.vertices().iter().map(transform).collect();
+    let vertices = mesh.vertices().iter().map(transform);
     Mesh::new(vertices, mesh.triangles().to_vec(), mesh.unit()).expect("a mesh as before")
 }
 

@@ -74,7 +74,7 @@ fn plate() -> Mesh {
 
 /// Returns a mesh of these triangles, which share no vertices.
 fn soup(triangles: &[[[f64; 3]; 3]]) -> Mesh {
-    let vertices = triangles.iter().flatten().map(|corner| Point3::from(*corner)).collect();
-    let ids = (0..triangles.len() as u32).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
+    let vertices = triangles.iter().flatten().map(|corner| Point3::from(*corner));
+    let ids = (0..triangles.len() as u32).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]);
     Mesh::new(vertices, ids, Unit::Millimetre).expect("a mesh")
 }

@@ -15,7 +15,7 @@ pub(crate) fn bumpy(half: f64, divisions: u32) -> Mesh {
         let wave = 1.5 * (0.4 * p.x).sin() * (0.3 * p.y).cos();
         Point3::new(p.x, p.y, wave + rng.between(-0.3, 0.3))
     };
-    let vertices = flat.vertices().iter().map(raise).collect();
+    let vertices = flat.vertices().iter().map(raise);
     Mesh::new(vertices, flat.triangles().to_vec(), Unit::Millimetre).expect("a sheet")
 }
 

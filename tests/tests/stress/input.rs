@@ -164,7 +164,7 @@ fn with_face(face: [u32; 3]) -> Vec<[u32; 3]> {
 
 /// Makes a mesh and samples points on it, whose numbers must be sensible.
 fn mesh(vertices: &[[f64; 3]], triangles: &[[u32; 3]]) -> Result<(), Box<dyn Error>> {
-    let vertices = vertices.iter().copied().map(Point3::from).collect();
+    let vertices = vertices.iter().copied().map(Point3::from);
     let mesh = Mesh::new(vertices, triangles.to_vec(), MM)?;
     for sampling in [Sampling::monte_carlo(50), Sampling::new(50)] {
         let cloud = Cloud::sample(&mesh, sampling)?;

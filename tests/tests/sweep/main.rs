@@ -434,7 +434,7 @@ fn required_stick_out_is_at_most_that_of_the_tool() {
         let [a, b, c] = offset_corners(corners, 16);
         [b, a, c]
     });
-    let triangles = plate.triangles().iter().copied().chain(outside).chain(inside).collect();
+    let triangles = plate.triangles().iter().copied().chain(outside).chain(inside);
     let mesh = Mesh::new(vertices, triangles, Unit::Millimetre).expect("a mesh");
     let bvh = TriangleBvh::new(&mesh);
     let directions = Directions::spread(200);

@@ -19,7 +19,7 @@ impl Pocket {
         let outer = [[0.0, 0.0], [30.0, 0.0], [30.0, 24.0], [0.0, 24.0]];
         let inner = [[7.0, 7.0], [23.0, 7.0], [23.0, 17.0], [7.0, 17.0]];
         let rings = [(outer, 0.0), (outer, 12.0), (inner, 12.0), (inner, 6.0)];
-        let vertices = rings.iter().flat_map(|(ring, z)| ring.map(|[x, y]| [x, y, *z].into()));
+        let vertices = rings.iter().flat_map(|(ring, z)| ring.map(|[x, y]| [x, y, *z]));
         let mut triangles = vec![[0, 3, 2], [0, 2, 1], [12, 13, 14], [12, 14, 15]];
         for ring in 0..3 {
             for k in 0..4 {
@@ -27,7 +27,7 @@ impl Pocket {
                 triangles.extend([[a, b, b + 4], [a, b + 4, a + 4]]);
             }
         }
-        let mesh = Mesh::new(vertices.collect(), triangles, Unit::Millimetre).expect("a mesh");
+        let mesh = Mesh::new(vertices, triangles, Unit::Millimetre).expect("a mesh");
         bench.part("pocket.stl", &mesh);
         Pocket { bench }
     }

@@ -727,8 +727,7 @@ mod tests {
                     let corner = k / 19 * 20 + k % 19;
                     [[corner, corner + 1, corner + 20], [corner + 1, corner + 21, corner + 20]]
                 });
-                let mesh = Mesh::new(vertices.collect(), triangles.collect(), Unit::Millimetre)
-                    .expect("a mesh");
+                let mesh = Mesh::new(vertices, triangles, Unit::Millimetre).expect("a mesh");
                 let bvh = TriangleBvh::new(&mesh);
                 let setup = QuerySetup::new(&bvh.frame, info, 1.0);
                 let margin = setup.margin;

@@ -229,7 +229,7 @@ mod tests {
             let vertices = [large.vertices(), small.vertices()].concat();
             let turn = |[a, b, c]: [u32; 3]| if turned { [b, a, c] } else { [a, b, c] };
             let more = small.triangles().iter().map(|corners| turn(corners.map(|k| k + after)));
-            let triangles = large.triangles().iter().copied().chain(more).collect();
+            let triangles = large.triangles().iter().copied().chain(more);
             crate::Mesh::new(vertices, triangles, Unit::Millimetre).expect("a mesh")
         };
         let has_inside = |small, turned| TriangleBvh::new(&with(small, turned)).has_inside();
@@ -251,7 +251,7 @@ mod tests {
             let place = mesh.vertices()[*k as usize];
             mesh.vertices().iter().position(|other| *other == place).unwrap_or_default() as u32
         };
-        let welded = mesh.triangles().iter().map(|corners| corners.each_ref().map(first)).collect();
+        let welded = mesh.triangles().iter().map(|corners| corners.each_ref().map(first));
         let welded = crate::Mesh::new(mesh.vertices().to_vec(), welded, Unit::Millimetre);
         assert!(!TriangleBvh::new(&welded.expect("a mesh")).has_inside());
     }

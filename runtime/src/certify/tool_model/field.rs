@@ -459,7 +459,8 @@ mod tests {
 
     #[test]
     fn a_search_that_discards_every_box_proves_that_no_point_is_deeper() {
-        let field = Field::new(&Sphere, Level::new()).expect("a Lipschitz constant");
+        let field =
+            Field::new(Handle::Borrowed(&Sphere), Level::new()).expect("a Lipschitz constant");
         let of_regions = |is_owned: bool| Owners::of_regions(field.info(), |_, _| is_owned);
         let DeepestPoint::Found { depth, max_depth, .. } =
             field.deepest(&of_regions(true), 0.5, 1.01)

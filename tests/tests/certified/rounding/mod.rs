@@ -92,7 +92,7 @@ impl RoundingCheck {
         let vertices = case.triangles.iter().flatten().map(|corner| Point3::from(*corner));
         let ids = (0..case.triangles.len() as u32).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]);
         // A mesh needs a positive area; a sliver may have none.
-        let Ok(mesh) = Mesh::new(vertices.collect(), ids.collect(), Unit::Millimetre) else {
+        let Ok(mesh) = Mesh::new(vertices, ids, Unit::Millimetre) else {
             return results;
         };
         let bvh = TriangleBvh::new(&mesh);

@@ -128,12 +128,12 @@ fn wall(bore: f64, height: f64) -> Mesh {
         let (sin, cos) = (TAU * f64::from(i) / f64::from(SIDES)).sin_cos();
         Point3::new(bore * cos, bore * sin, z)
     };
-    let vertices = (0..SIDES).flat_map(|i| [at(i, 0.0), at(i, height)]).collect();
+    let vertices = (0..SIDES).flat_map(|i| [at(i, 0.0), at(i, height)]);
     let triangles = (0..SIDES).flat_map(|i| {
         let (a, b) = (2 * i, 2 * ((i + 1) % SIDES));
         [[a, a + 1, b], [b, a + 1, b + 1]]
     });
-    Mesh::new(vertices, triangles.collect(), UNIT).expect("a wall")
+    Mesh::new(vertices, triangles, UNIT).expect("a wall")
 }
 
 #[test]

@@ -234,7 +234,7 @@ fn a_layer_of_the_stated_thickness_is_found() {
         let rotation = Rotation3::from_euler_angles(turn, 0.61 * turn, 0.29 * turn);
         let shift = Vector3::new(0.13, 0.29, 0.41) * f64::from(k);
         let place = |point: Point3<f64>| rotation * point + shift;
-        let vertices = mesh.vertices().iter().map(|vertex| place(*vertex)).collect();
+        let vertices = mesh.vertices().iter().map(|vertex| place(*vertex));
         let turned = Mesh::new(vertices, mesh.triangles().to_vec(), UNIT).expect("a block");
         let found = |depth: f64| {
             let mut stock = Stock::from_mesh(&turned, 1.0).expect("a stock");

@@ -29,13 +29,13 @@ fn joined(one: &Mesh, other: &Mesh, turned: bool) -> Mesh {
     let after = one.vertices().len() as u32;
     let turn = |[a, b, c]: [u32; 3]| if turned { [b, a, c] } else { [a, b, c] };
     let more = other.triangles().iter().map(|corners| turn(corners.map(|k| k + after)));
-    let triangles = one.triangles().iter().copied().chain(more).collect();
+    let triangles = one.triangles().iter().copied().chain(more);
     Mesh::new([one.vertices(), other.vertices()].concat(), triangles, UNIT).expect("a mesh")
 }
 
 fn turned(mesh: &Mesh, angles: [f64; 3]) -> Mesh {
     let rotation = Rotation3::from_euler_angles(angles[0], angles[1], angles[2]);
-    let vertices = mesh.vertices().iter().map(|vertex| rotation * vertex).collect();
+    let vertices = mesh.vertices().iter().map(|vertex| rotation * vertex);
     Mesh::new(vertices, mesh.triangles().to_vec(), UNIT).expect("a mesh")
 }
 
