@@ -148,6 +148,21 @@ impl Motion {
         self.frame.is_some()
     }
 
+    /// Returns the motion relative to `frame`, to some units in the last place of the coordinates.
+    #[must_use]
+    pub fn relative_to(&self, frame: &Pose) -> Motion {
+        if *frame == Pose::default() {
+            return *self;
+        }
+        let inverse = frame.rotation().transpose();
+        Motion {
+            tip: Point3::from(inverse * (self.tip - frame.tip())),
+            displacement: inverse * self.displacement,
+            start: orthonormal(inverse * self.start),
+            ..*self
+        }
+    }
+
     /// Returns the axis of rotation in the tool frame, a unit vector that is constant over the motion.
     /// For [`Motion::new`] it is y, by the choice of the spin.
     pub(crate) fn rotation_axis(&self) -> Vector3<f64> {

@@ -21,6 +21,7 @@ mod motion_depth;
 mod nearest;
 mod part;
 mod rounding;
+mod scene;
 mod search;
 mod space;
 mod sweep;
@@ -33,6 +34,7 @@ pub use containment::Containment;
 pub use motion_depth::THROUGH_FRACTION;
 pub use nearest::NearestTriangle;
 pub use part::{BoxVisitor, Location, TriangleBvh};
+pub use scene::{BodyAnswer, CertifiedScene};
 pub use trajectory::{Approximation, Trajectory};
 pub use verdict::{
     AllowanceError, Clearance, MotionDepth, MotionVerdict, NoSuchSurface, NotCertifiable,
@@ -41,7 +43,7 @@ pub use verdict::{
 
 use crate::bvh::QuerySetup;
 use crate::debug::debug;
-use crate::handle::Handle;
+use crate::handle::{Handle, ToolHandle};
 use crate::id::SurfaceId;
 use crate::interval::Interval;
 use crate::pose::Pose;
@@ -150,7 +152,7 @@ impl<'a> Certifier<'a> {
     /// # Errors
     /// [`NotCertifiable`] if the tool has no profile and no bound is proved on the rate at which its depth changes.
     pub fn new(bvh: &'a TriangleBvh, tool: &'a dyn Tool) -> Result<Certifier<'a>, NotCertifiable> {
-        Certifier::of(Handle::Borrowed(bvh), Handle::Borrowed(tool))
+        Certifier::of(Handle::Borrowed(bvh), ToolHandle::Borrowed(tool))
     }
 
     /// Creates a certifier that shares its part and its tool, so that a struct or a thread can hold all three.
@@ -161,12 +163,12 @@ impl<'a> Certifier<'a> {
         bvh: Arc<TriangleBvh>,
         tool: Arc<dyn Tool>,
     ) -> Result<Certifier<'static>, NotCertifiable> {
-        Certifier::of(Handle::Shared(bvh), Handle::Shared(tool))
+        Certifier::of(Handle::Shared(bvh), ToolHandle::Shared(tool))
     }
 
     fn of(
         bvh: Handle<'a, TriangleBvh>,
-        tool: Handle<'a, dyn Tool + 'a>,
+        tool: ToolHandle<'a>,
     ) -> Result<Certifier<'a>, NotCertifiable> {
         let (info, level) = (tool.info(), Level::new());
         let length = info.unit.factor_to(bvh.unit());

@@ -16,9 +16,9 @@ use crate::certify::tool_model::section::{Owners, Section};
 use crate::certify::triangle::line_search::{DeepestCandidate, DepthSearch, Goal, LineMaximum};
 use crate::certify::triangle::{LocalTriangle, SubTriangle, nearest};
 use crate::certify::verdict::{ToolPoint, Witness};
-use crate::handle::Handle;
+use crate::handle::{Handle, ToolHandle};
 use crate::pose::Pose;
-use crate::tool::{LANES, Tool, ToolInfo};
+use crate::tool::{LANES, ToolInfo};
 use fearless_simd::Level;
 use nalgebra::Vector3;
 
@@ -123,7 +123,7 @@ impl DepthQuery {
 #[derive(Clone)]
 pub(crate) struct QuerySetting<'a> {
     pub(crate) bvh: Handle<'a, TriangleBvh>,
-    pub(crate) tool: Handle<'a, dyn Tool + 'a>,
+    pub(crate) tool: ToolHandle<'a>,
     pub(crate) tool_model: ToolModel<'a>,
     /// The extent of the tool from its tip, along the axis or away from it.
     pub(crate) size: f64,

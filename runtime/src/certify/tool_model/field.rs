@@ -9,10 +9,10 @@ use crate::certify::space::Point;
 use crate::certify::tool_model::section::{Depth, Owners};
 use crate::certify::triangle::line_search::{DeepestCandidate, DepthSearch};
 use crate::certify::triangle::{SubTriangle, TrianglePiece};
-use crate::handle::Handle;
+use crate::handle::ToolHandle;
 use crate::interval::Interval;
 use crate::tool::{
-    EvaluationEnclosure, Evaluations, LANES, Outputs, PointBatch, Symmetry, Tool, ToolInfo,
+    EvaluationEnclosure, Evaluations, LANES, Outputs, PointBatch, Symmetry, ToolInfo,
 };
 use fearless_simd::Level;
 use std::cmp::Ordering;
@@ -21,7 +21,7 @@ use std::collections::BinaryHeap;
 /// A depth function with its bounds.
 #[derive(Clone)]
 pub(crate) struct Field<'a> {
-    tool: Handle<'a, dyn Tool + 'a>,
+    tool: ToolHandle<'a>,
     /// The Lipschitz constant `L` of depth, at least 1.
     pub(crate) steep: f64,
     /// The error bound of a depth.
@@ -80,7 +80,7 @@ impl Scratch {
 
 impl<'a> Field<'a> {
     /// Creates the field of a tool; `None` if no Lipschitz constant of its depth is proved.
-    pub(crate) fn new(tool: Handle<'a, dyn Tool + 'a>, level: Level) -> Option<Field<'a>> {
+    pub(crate) fn new(tool: ToolHandle<'a>, level: Level) -> Option<Field<'a>> {
         let info = tool.info();
         let steep = info.depth.lipschitz?.max(1.0);
         // Let u be the unit roundoff. Halving rounds a midpoint by u of its distance from the tip. A relevant piece of
@@ -460,7 +460,7 @@ mod tests {
     #[test]
     fn a_search_that_discards_every_box_proves_that_no_point_is_deeper() {
         let field =
-            Field::new(Handle::Borrowed(&Sphere), Level::new()).expect("a Lipschitz constant");
+            Field::new(ToolHandle::Borrowed(&Sphere), Level::new()).expect("a Lipschitz constant");
         let of_regions = |is_owned: bool| Owners::of_regions(field.info(), |_, _| is_owned);
         let DeepestPoint::Found { depth, max_depth, .. } =
             field.deepest(&of_regions(true), 0.5, 1.01)

@@ -10,9 +10,8 @@ use crate::certify::space::Point;
 use crate::certify::tool_model::feature::MeridianPoint;
 use crate::certify::tool_model::field::{Field, Scratch};
 use crate::certify::tool_model::section::{Depth, Owners, Section};
-use crate::handle::Handle;
+use crate::handle::ToolHandle;
 use crate::id::SurfaceId;
-use crate::tool::Tool;
 use fearless_simd::Level;
 
 /// Points of the half plane, within a distance of a point.
@@ -35,11 +34,7 @@ pub(crate) enum ToolModel<'a> {
 impl<'a> ToolModel<'a> {
     /// Creates the model of a tool; `error` is the error bound of a point. A tool whose overhangs are too many to
     /// resolve is known by its depth alone. Returns `None` if no Lipschitz constant of that is proved either.
-    pub(crate) fn new(
-        tool: &Handle<'a, dyn Tool + 'a>,
-        level: Level,
-        error: f64,
-    ) -> Option<ToolModel<'a>> {
+    pub(crate) fn new(tool: &ToolHandle<'a>, level: Level, error: f64) -> Option<ToolModel<'a>> {
         match Section::new(tool.info(), error).and_then(Section::with_circles) {
             Some(section) => Some(ToolModel::Profile(section)),
             None => Some(ToolModel::Field(Field::new(tool.clone(), level)?)),
