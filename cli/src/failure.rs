@@ -3,6 +3,7 @@
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use touchoff::tool::ToolError;
+use touchoff_import::FindError;
 use touchoff_verify::stock::StockError;
 
 /// The exit status of a session that a signal ended, by the shells' convention.
@@ -21,9 +22,8 @@ impl Failure {
             Failure::Usage(_)
             | Failure::IsInput { .. }
             | Failure::Refused(_)
-            | Failure::Numbers { .. }
             | Failure::MeshForJob { .. }
-            | Failure::SeveralEntries { .. }
+            | Failure::Find(FindError::Several { .. } | FindError::Numbers { .. })
             | Failure::NoInside { .. } => 2,
             Failure::Interrupted => INTERRUPTED,
             _ => 1,
@@ -89,13 +89,6 @@ pub(crate) enum Failure {
     /// A recording of the session is incomplete; the reason was reported when it happened.
     #[error("the recording is incomplete: make room on the disk, and run the session again")]
     RecordingFailed,
-    /// The list of numbers in a folder of tools is refused.
-    #[error("{file}: {message}")]
-    Numbers {
-        /// The list.
-        file: String,
-        message: String,
-    },
     /// A mesh stands where a job file does.
     #[error(
         "`{file}` is a mesh, and `verify` takes a job file: name a mesh by `--part`, with `--unit`, `--tool` and `--program`"
@@ -104,23 +97,12 @@ pub(crate) enum Failure {
         /// The mesh.
         file: String,
     },
-    /// Several tools of a library have one number.
-    #[error("`{file}` has {} tools `{name}`: {}; name one, in a job by `[tool.N] tool = \"FILE.tool\"`", tools.len(), tools.join(", "))]
-    SeveralEntries {
-        /// The number, as it was asked for.
-        name: String,
-        file: String,
-        /// The tools with this number.
-        tools: Vec<String>,
-    },
+    /// No tool of a library or a folder is selected.
+    #[error(transparent)]
+    Find(#[from] FindError),
     /// A file could not be read.
     #[error("{file}: cannot be read ({source}): check the path and its permissions")]
     Unreadable { file: String, source: std::io::Error },
-    /// A tool library has no such tool.
-    #[error(
-        "`{file}` has no tool with the name, title or number `{name}`: `touchoff import {file} --list` lists them"
-    )]
-    NoSuchEntry { name: String, file: String },
     /// The requested output shows the part, which was not given.
     #[error("`{file}` shows the part: give its mesh with `--part FILE`")]
     PartMissing { file: String },

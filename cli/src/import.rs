@@ -2,11 +2,9 @@
 
 use crate::arguments::Import;
 use crate::failure::Failure;
-use crate::output::{Output, unreadable, write_file};
+use crate::output::Output;
 use crate::progress::Progress;
 use serde::Serialize;
-use std::collections::BTreeMap;
-use std::ffi::OsStr;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -16,7 +14,7 @@ use touchoff::Escaped;
 use touchoff_dsl::compile;
 use touchoff_dsl::prove::Certificate;
 use touchoff_dsl::source::Source;
-use touchoff_import::{ImportError, ImportedTool, Library};
+use touchoff_import::{ImportError, ImportedTool, Library, write_numbers};
 
 /// The exit status if a tool was left out; `check` has the same for warnings.
 pub(crate) const LEFT_OUT: u8 = 3;
@@ -136,7 +134,7 @@ impl Run<'_> {
     /// Returns the tools to import.
     fn wanted<'l>(&self, library: &'l Library) -> Result<Vec<&'l ImportedTool>, Failure> {
         let Some(only) = self.only else { return Ok(library.tools().iter().collect()) };
-        Ok(vec![find(library, only, self.file)?])
+        Ok(vec![library.select(only)?])
     }
 
     fn print(
@@ -220,89 +218,6 @@ fn line(out: &mut Output, cells: [&str; 10]) -> Result<(), Failure> {
 /// Formats a length of the table.
 fn length(length: Option<f64>) -> String {
     length.map_or_else(|| "-".to_owned(), |length| format!("{}", (length * 1e4).round() / 1e4))
-}
-
-/// Returns the tool of a library by its name or number.
-///
-/// # Errors
-/// [`Failure::NoSuchEntry`], and [`Failure::SeveralEntries`] for a number or a title that several tools have.
-pub(crate) fn find<'l>(
-    library: &'l Library,
-    name: &str,
-    file: &Path,
-) -> Result<&'l ImportedTool, Failure> {
-    let (name, file) = (name.to_owned(), file.display().to_string());
-    match &library.find(&name)[..] {
-        [] => Err(Failure::NoSuchEntry { name, file }),
-        [tool] => Ok(tool),
-        several => {
-            let tools = several.iter().map(|tool| format!("`{}`", tool.name)).collect();
-            Err(Failure::SeveralEntries { name, file, tools })
-        }
-    }
-}
-
-/// The file of a folder that lists the numbers of its tools.
-const NUMBERS: &str = "tools.toml";
-
-/// The tools of a folder: file names by the number of the tool, as `T1`.
-type Numbers = BTreeMap<String, Vec<String>>;
-
-/// Adds the numbers of tools to the list of a folder.
-fn write_numbers(folder: &Path, tools: &[&ImportedTool]) -> Result<(), Failure> {
-    let mut numbers = read_numbers(folder)?;
-    for tool in tools {
-        let Some(number) = tool.entry.number else { continue };
-        let files = numbers.entry(format!("T{number}")).or_default();
-        // A second import of the library lists each file once.
-        if !files.contains(&tool.path()) {
-            files.push(tool.path());
-        }
-    }
-    if numbers.is_empty() {
-        return Ok(());
-    }
-    let mut text = "# The numbers of the tools in this folder.\n".to_owned();
-    for (number, files) in &numbers {
-        text += &format!("{number} = {files:?}\n");
-    }
-    write_file(&folder.join(NUMBERS), text)
-}
-
-fn read_numbers(folder: &Path) -> Result<Numbers, Failure> {
-    let file = folder.join(NUMBERS);
-    match std::fs::read_to_string(&file) {
-        Ok(text) => toml::from_str(&text).map_err(|error| Failure::Numbers {
-            file: file.display().to_string(),
-            message: error.message().to_owned(),
-        }),
-        // A folder of tools without numbers has no list.
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(Numbers::new()),
-        Err(source) => Err(unreadable(&file, source)),
-    }
-}
-
-/// Returns the file of a tool in a folder of `.tool` files, by its name or by its number in the folder's list.
-///
-/// # Errors
-/// [`Failure::SeveralEntries`] for a number that several tools have, or if the list cannot be read.
-pub(crate) fn find_in_folder(folder: &Path, name: &OsStr) -> Result<PathBuf, Failure> {
-    let file = folder.join(name);
-    if file.is_file() {
-        return Ok(file);
-    }
-    // A file with the tool's name goes before a number of the list.
-    let file = file.with_extension("tool");
-    let name = name.to_string_lossy().to_ascii_uppercase();
-    match read_numbers(folder)?.get(&name).map(Vec::as_slice) {
-        Some([listed]) if !file.is_file() => Ok(folder.join(listed)),
-        Some(several) if !file.is_file() => Err(Failure::SeveralEntries {
-            name,
-            file: folder.display().to_string(),
-            tools: several.iter().map(|tool| format!("`{tool}`")).collect(),
-        }),
-        _ => Ok(file),
-    }
 }
 
 /// The proof of a tool: whether depth is proved to be the distance, or why it does not compile.

@@ -2,7 +2,6 @@
 
 use crate::arguments::{ParamArguments, ToolArguments};
 use crate::failure::Failure;
-use crate::import::{find, find_in_folder};
 use crate::output::show;
 use std::ffi::OsStr;
 use std::path::Path;
@@ -11,7 +10,7 @@ use touchoff::{Escaped, Tool};
 use touchoff_dsl::diagnostic::escaped;
 use touchoff_dsl::source::Source;
 use touchoff_dsl::{Compiled, compile_with_arguments};
-use touchoff_import::Library;
+use touchoff_import::{Library, find_in_folder};
 use touchoff_tools::{SOURCES, TOOLS};
 
 /// A built-in tool, or one from a `.tool` file.
@@ -43,6 +42,12 @@ impl LoadedTool {
     }
 
     pub(crate) fn tool(&self) -> &dyn Tool {
+        self.as_ref()
+    }
+}
+
+impl AsRef<dyn Tool> for LoadedTool {
+    fn as_ref(&self) -> &(dyn Tool + 'static) {
         match self {
             LoadedTool::BuiltIn(tool) => *tool,
             LoadedTool::File(tool) => &**tool,
@@ -112,7 +117,7 @@ fn in_library<R>(
     let name = name.to_string_lossy();
     let imported = Library::read(library)?;
     let folder = tempfile::tempdir()?;
-    let tool = find(&imported, &name, library)?;
+    let tool = imported.select(&name)?;
     let tool_file = tool.write_to(folder.path())?;
     if notes {
         for note in &tool.entry.notes {

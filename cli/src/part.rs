@@ -59,11 +59,16 @@ pub(crate) fn no_triangles(part: &Path, what: &'static str) -> Failure {
 fn read_geometry(part: &Path, unit: Unit) -> Result<Geometry, Failure> {
     let geometry = Geometry::read(part, unit)?;
     if let Geometry::Mesh(mesh) = &geometry {
-        for finding in mesh.diagnostics().findings() {
-            message!("{}: {finding}", part.display());
-        }
+        print_findings(part, mesh);
     }
     Ok(geometry)
+}
+
+/// Prints the findings about a mesh.
+pub(crate) fn print_findings(file: &Path, mesh: &Mesh) {
+    for finding in mesh.diagnostics().findings() {
+        message!("{}: {finding}", file.display());
+    }
 }
 
 /// Reads a part and samples its points. `--sampling-error` bounds the error of depth for the tool `info`; without a

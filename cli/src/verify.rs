@@ -8,119 +8,56 @@ use crate::part;
 use crate::program::{print_approach, print_ignored, warn_of_cutter};
 use crate::progress::Progress;
 use anstyle::{AnsiColor, Style};
-use nalgebra::Point3;
 use std::collections::BTreeMap;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 use touchoff::certify::TriangleBvh;
-use touchoff::{Mesh, Unit};
 use touchoff_dsl::Compiled;
 use touchoff_verify::job::{
-    Body, BodyRole, CutStock, Hand, JobStock, JobTools, NO_INSIDE, NamedTool, PART, Severity,
-    StockEntry, StockShape,
+    CutStock, Hand, JobInputs, JobStock, JobTools, NO_INSIDE, NamedTool, Severity, StockEntry,
+    StockShape,
 };
 use touchoff_verify::machine::Machine;
-use touchoff_verify::{Job, JobFile, JobReport, JobTool, Program, ToolSelection, Verdict};
+use touchoff_verify::{Job, JobFile, JobReport, Program, ToolSelection, Verdict};
 
 /// The exit status if there is no verdict, even with findings; the same as for wrong options.
 pub(crate) const NOT_CHECKED: u8 = 2;
 
-/// A part or a fixture, read from its file.
-pub(crate) struct LoadedBody {
-    pub(crate) name: String,
-    pub(crate) mesh: Mesh,
-    pub(crate) bvh: TriangleBvh,
-    link: Option<usize>,
-    role: BodyRole,
-}
-
-impl LoadedBody {
-    /// Reads a body that moves with the workpiece.
-    fn read(name: &str, file: &Path, unit: Unit, role: BodyRole) -> Result<LoadedBody, Failure> {
-        let mesh = part::mesh(file, unit, "verify")?;
-        let bvh = TriangleBvh::new(&mesh);
-        Ok(LoadedBody { name: name.to_owned(), mesh, bvh, link: None, role })
-    }
-
-    /// Returns whether it moves with another axis than the workpiece. The tool's poses at it are then in its own frame.
-    pub(crate) fn has_own_frame(&self) -> bool {
-        self.link.is_some()
-    }
-}
-
-/// A tool that the program uses, loaded.
-pub(crate) struct ProgramTool {
-    named: NamedTool,
-    loaded: LoadedTool,
-}
-
-impl ProgramTool {
-    /// Compiles the tool again, for its drawing and its proof.
-    ///
-    /// # Errors
-    /// If its file cannot be read any more.
-    pub(crate) fn compile(&self) -> Result<Compiled, Failure> {
-        compile_named(&self.named.name, &arguments(&self.named))
-    }
-}
-
 /// A job and the files that it names, read.
-pub(crate) struct Inputs {
-    pub(crate) file: JobFile,
-    pub(crate) program: Program,
-    pub(crate) tools: Vec<ProgramTool>,
-    /// The part, then the fixtures.
-    pub(crate) bodies: Vec<LoadedBody>,
-    stock: Option<JobStock>,
+pub(crate) type Inputs = JobInputs<LoadedTool>;
+
+/// Reads program, tools, part, fixtures and stock of a job, and prints what is noteworthy about them.
+///
+/// # Errors
+/// If one of them cannot be read, or they do not fit.
+pub(crate) fn read(file: JobFile) -> Result<Inputs, Failure> {
+    let inputs = JobInputs::read::<Failure>(file, |named| {
+        LoadedTool::load(&named.name, &arguments(named))
+    })?;
+    for (named, loaded) in &inputs.tools {
+        let info = loaded.tool().info();
+        if let Some(line) = inputs.program.check_tool(named.motions, info, inputs.file.unit)? {
+            warn_of_cutter(&inputs.program.name(), line, info);
+        }
+    }
+    for body in &inputs.bodies {
+        part::print_findings(&body.file, &body.mesh);
+    }
+    let entry = inputs.file.stock.as_ref().and_then(|entry| entry.mesh.as_ref());
+    if let (Some(file), Some(JobStock { shape: StockShape::Mesh(mesh), .. })) = (entry, &inputs.stock)
+    {
+        part::print_findings(file, mesh);
+    }
+    Ok(inputs)
 }
 
-impl Inputs {
-    /// Reads program, tools, part, fixtures and stock of a job.
-    ///
-    /// # Errors
-    /// If one of them cannot be read, or they do not fit.
-    pub(crate) fn read(file: JobFile) -> Result<Inputs, Failure> {
-        let program = file.program()?;
-        let mut tools = Vec::new();
-        for named in file.used_tools(&program)? {
-            let loaded = LoadedTool::load(&named.name, &arguments(&named))?;
-            tools.push(ProgramTool { named, loaded });
-        }
-        for ProgramTool { named, loaded } in &tools {
-            let info = loaded.tool().info();
-            if let Some(line) = program.check_tool(named.motions, info, file.unit)? {
-                warn_of_cutter(&program.name(), line, info);
-            }
-        }
-        let bodies = bodies(&file, &program)?;
-        let stock = match &file.stock {
-            Some(entry) => Some(stock(entry, &file)?),
-            None => None,
-        };
-        Ok(Inputs { file, program, tools, bodies, stock })
-    }
-
-    /// Returns the job.
-    pub(crate) fn job(&self) -> Job<'_> {
-        let mut job = Job::new(&self.program, &self.bodies[0].bvh);
-        for body in &self.bodies[1..] {
-            let mut fixture = Body::fixture(&body.name, &body.bvh);
-            (fixture.link, fixture.role) = (body.link, body.role);
-            job.bodies.push(fixture);
-        }
-        for ProgramTool { named, loaded } in &self.tools {
-            let mut tool = JobTool::of_all(loaded.tool());
-            (tool.motions, tool.hand) = (named.motions, named.hand);
-            tool.allow.clone_from(&named.allow);
-            job.tools.push(tool);
-        }
-        job.stock.clone_from(&self.stock);
-        (job.tolerance, job.resolution) = (self.file.tolerance, self.file.resolution);
-        job.allow.clone_from(&self.file.allow);
-        (job.surface_only, job.anyway) = (self.file.surface_only, self.file.anyway);
-        job
-    }
+/// Compiles a tool of a job again, for its drawing and its proof.
+///
+/// # Errors
+/// If its file cannot be read any more.
+pub(crate) fn compile(named: &NamedTool) -> Result<Compiled, Failure> {
+    compile_named(&named.name, &arguments(named))
 }
 
 /// Returns the arguments with which a named tool is loaded.
@@ -191,31 +128,6 @@ pub(crate) fn job_file(
     })
 }
 
-/// Reads the part and the fixtures.
-fn bodies(file: &JobFile, program: &Program) -> Result<Vec<LoadedBody>, Failure> {
-    let mut bodies = vec![LoadedBody::read(PART, &file.part, file.unit, BodyRole::Part)?];
-    for fixture in &file.fixtures {
-        let link = match &fixture.moves_with {
-            None => None,
-            Some(axis) => program.link(axis)?,
-        };
-        let role = BodyRole::Fixture { margin: fixture.margin };
-        let body = LoadedBody::read(&fixture.name, &fixture.mesh, file.unit, role)?;
-        bodies.push(LoadedBody { link, ..body });
-    }
-    Ok(bodies)
-}
-
-/// Reads the stock.
-fn stock(entry: &StockEntry, file: &JobFile) -> Result<JobStock, Failure> {
-    let shape = match (&entry.mesh, entry.corners) {
-        (Some(mesh), None) => StockShape::Mesh(part::mesh(mesh, file.unit, "stock")?),
-        (None, Some(corners)) => StockShape::Box(corners.map(Point3::from)),
-        _ => return Err(Failure::Usage("a stock has a `mesh` or a `box`, and not both")),
-    };
-    Ok(JobStock { shape, spacing: entry.spacing, tolerance: entry.tolerance })
-}
-
 /// Checks a job. `json` suppresses the progress display.
 ///
 /// # Errors
@@ -227,7 +139,7 @@ pub(crate) fn check<'a>(job: &'a Job<'_>, json: bool) -> Result<JobReport<'a>, F
 
 /// Checks a program, and returns the exit status.
 pub(crate) fn verify(arguments: Verify, json: bool) -> Result<ExitCode, Failure> {
-    let inputs = Inputs::read(job_file(arguments.job, arguments.part, arguments.check)?)?;
+    let inputs = read(job_file(arguments.job, arguments.part, arguments.check)?)?;
     let job = inputs.job();
     let report = check(&job, json)?;
     let mut out = Output::rows();

@@ -75,7 +75,7 @@ impl Default for DeviceLimits {
 }
 
 /// Reasons why a device could not report its pose or apply a wrench.
-#[derive(Debug, thiserror::Error)]
+#[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum DeviceError {
     /// The reported data is not a valid pose.
@@ -88,6 +88,8 @@ pub enum DeviceError {
     #[error("the device has played all it had")]
     Ended,
 }
+
+touchoff::debug_as_sentence!(DeviceError);
 
 /// A haptic device: reports the tool pose that the hand commands, and applies a wrench to the hand. The loop calls both
 /// functions once per cycle, so neither may block: a device without new data returns the previous pose.

@@ -234,7 +234,7 @@ pub struct Realtime {
 }
 
 /// A request that the system refused. The loop runs without it.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RealtimeError {
     /// The priority was refused.
@@ -252,6 +252,8 @@ pub enum RealtimeError {
     #[error("memory is not locked ({0}): start as root, or allow it with `ulimit -l`")]
     Memory(String),
 }
+
+touchoff::debug_as_sentence!(RealtimeError);
 
 impl Realtime {
     /// Applies the requests to the calling thread. Returns those that were refused; the others take effect.

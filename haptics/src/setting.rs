@@ -8,7 +8,7 @@ use std::ops::RangeInclusive;
 
 /// A number that a haptic loop cannot run with. It is returned by the constructors of
 /// [`Session`](super::Session) and [`SimulatedHand`](super::SimulatedHand).
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Copy, PartialEq, thiserror::Error)]
 #[error("the {what} is {value}: give {range}")]
 pub struct SettingError {
     /// The name and the unit of the number.
@@ -18,6 +18,8 @@ pub struct SettingError {
     /// The range of valid values.
     pub range: &'static str,
 }
+
+touchoff::debug_as_sentence!(SettingError);
 
 /// Rates of a loop, Hz. The fastest has a period of a microsecond, which clocks and deadlines still resolve.
 const RATES: RangeInclusive<f64> = 1e-3..=1e6;

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 /// A file that is not a tool library that can be read.
-#[derive(Debug, thiserror::Error)]
+#[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum ImportError {
     /// The file could not be read.
@@ -68,3 +68,5 @@ pub enum ImportError {
     #[error(transparent)]
     Tool(#[from] touchoff::tool::ToolError),
 }
+
+touchoff::debug_as_sentence!(ImportError);

@@ -26,6 +26,7 @@ mod entry;
 mod error;
 pub mod export;
 mod files;
+mod find;
 mod freecad;
 mod fusion;
 mod hsm;
@@ -40,6 +41,7 @@ mod tests;
 pub use entry::{Entry, Note, Skipped, Stated};
 pub use error::ImportError;
 pub use files::ToolFile;
+pub use find::{FindError, find_in_folder, write_numbers};
 
 use entry::reason;
 use files::Writer;
@@ -57,6 +59,7 @@ const MAX_TOOLS: usize = 20_000;
 /// A tool library.
 #[derive(Clone, Debug)]
 pub struct Library {
+    file: PathBuf,
     tools: Vec<ImportedTool>,
     skipped: Vec<Skipped>,
 }
@@ -142,7 +145,8 @@ impl Library {
     fn of(file: &Path, found: Vec<Found>) -> Library {
         let source = file.file_name().map(|name| name.to_string_lossy()).unwrap_or_default();
         let mut writer = Writer::default();
-        let mut library = Library { tools: Vec::new(), skipped: Vec::new() };
+        let mut library =
+            Library { file: file.to_owned(), tools: Vec::new(), skipped: Vec::new() };
         for (index, found) in found.into_iter().enumerate() {
             let position = index + 1;
             match found {

@@ -56,7 +56,7 @@ pub struct RecorderStats {
 }
 
 /// A reason for which a recorder cannot be created.
-#[derive(Debug, thiserror::Error)]
+#[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum RecorderError {
     /// The tool is not one of the map's.
@@ -84,6 +84,8 @@ pub enum RecorderError {
     #[error(transparent)]
     Map(#[from] MapError),
 }
+
+touchoff::debug_as_sentence!(RecorderError);
 
 /// Number of records at which a batch is written to disk.
 const MAX_BATCH_RECORDS: usize = 4096;

@@ -23,7 +23,7 @@ pub struct Rules {
 }
 
 /// An error in [`Rules`].
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RulesError {
     /// The tolerance is not a finite length above 0.
@@ -54,6 +54,8 @@ pub enum RulesError {
         known: String,
     },
 }
+
+touchoff::debug_as_sentence!(RulesError);
 
 impl Rules {
     /// Returns the tolerance that is taken if none is stated, 0.01 mm, in a unit.
@@ -100,7 +102,7 @@ impl fmt::Display for Rules {
 }
 
 /// A reason for which postures of a tool cannot be validated.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ValidatorError {
     /// The tool cannot be certified.
@@ -119,6 +121,8 @@ pub enum ValidatorError {
     #[error(transparent)]
     Rules(#[from] RulesError),
 }
+
+touchoff::debug_as_sentence!(ValidatorError);
 
 /// Validates postures of a tool at a part.
 pub struct Validator<'a> {

@@ -15,3 +15,16 @@ macro_rules! debug {
 }
 
 pub(crate) use debug;
+
+/// Implements `Debug` of an error by its sentence, since that is what `main` prints of an error that it returns.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! debug_as_sentence {
+    ($error:ty) => {
+        impl std::fmt::Debug for $error {
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                std::fmt::Display::fmt(self, f)
+            }
+        }
+    };
+}

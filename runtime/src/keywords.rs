@@ -1,7 +1,7 @@
 //! Enumerations that are written as keywords.
 
 /// A word that is not one of the known keywords.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, PartialEq, Eq, thiserror::Error)]
 #[error("`{word}` is not one of {known}")]
 pub struct ParseEnumError {
     /// The word.
@@ -9,6 +9,8 @@ pub struct ParseEnumError {
     /// The keywords that are known.
     pub known: &'static str,
 }
+
+crate::debug_as_sentence!(ParseEnumError);
 
 /// Implements `Display` and `FromStr` for an enumeration, with a keyword per variant.
 macro_rules! keyword_enum {

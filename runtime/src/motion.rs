@@ -20,7 +20,7 @@ pub struct Motion {
 }
 
 /// Reasons why a motion between two poses is ambiguous.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MotionError {
     /// The axes are antiparallel.
@@ -37,6 +37,8 @@ pub enum MotionError {
     )]
     NoSpin,
 }
+
+crate::debug_as_sentence!(MotionError);
 
 /// Tolerance, approximately in radians, within which a rotation counts as half a turn and is ambiguous:
 /// rounding would decide its direction.

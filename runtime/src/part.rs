@@ -25,7 +25,7 @@ pub struct Part {
 }
 
 /// Reasons why a part could not be built.
-#[derive(Debug, thiserror::Error)]
+#[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum PartError {
     /// The file could not be read.
@@ -35,6 +35,8 @@ pub enum PartError {
     #[error(transparent)]
     Cloud(#[from] CloudError),
 }
+
+crate::debug_as_sentence!(PartError);
 
 impl Part {
     /// Reads a part from a file whose lengths are in `unit`. A mesh in STL, PLY or OBJ is sampled as by

@@ -22,7 +22,7 @@ pub struct Pose {
 }
 
 /// Reasons why a pose is invalid.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PoseError {
     /// A coordinate is NaN, infinite, or beyond the largest one allowed.
@@ -45,6 +45,8 @@ pub enum PoseError {
         norm: f64,
     },
 }
+
+crate::debug_as_sentence!(PoseError);
 
 /// Returns the kind of unit value that a pose takes as its axis or quaternion.
 fn unit_kind(what: &str) -> &'static str {
@@ -179,7 +181,8 @@ impl Pose {
     pub fn rotated_to(&self, rotation: Matrix3<f64>, tip: Point3<f64>) -> Result<Pose, PoseError> {
         let rotation = orthonormal(rotation * self.rotation);
         match orthonormality_error(&rotation) {
-            error if error <= ORTHONORMALITY_TOLERANCE => {
+            // A reflection is orthonormal, too.
+            error if error <= ORTHONORMALITY_TOLERANCE && rotation.determinant() > 0.0 => {
                 Pose::finite(rotation, tip, self.has_spin)
             }
             // NaN compares as false with everything.

@@ -55,7 +55,7 @@ pub struct PartId(usize);
 pub struct ToolId(usize);
 
 /// A part whose unit differs from the scene's.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("the part is in {part} and the scene in {scene}: convert it by `Part::converted_to`")]
 #[non_exhaustive]
 pub struct SceneError {
@@ -64,6 +64,8 @@ pub struct SceneError {
     /// The scene's unit.
     pub scene: Unit,
 }
+
+crate::debug_as_sentence!(SceneError);
 
 /// A tool, its pose, and its contact with every part.
 struct SceneTool<'a> {

@@ -73,9 +73,11 @@ impl fmt::Display for Unit {
 }
 
 /// A word that is not the symbol of a unit.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, PartialEq, Eq, thiserror::Error)]
 #[error("`{0}` is not a unit: write `mm`, `inch` or `m`")]
 pub struct ParseUnitError(pub String);
+
+crate::debug_as_sentence!(ParseUnitError);
 
 impl FromStr for Unit {
     type Err = ParseUnitError;

@@ -17,6 +17,10 @@
 #[doc = include_str!("../../docs/verify.md")]
 struct VerifyPage;
 
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/rust.md")]
+struct RustPage;
+
 mod check;
 pub mod gcode;
 pub mod job;

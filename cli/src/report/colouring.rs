@@ -5,12 +5,11 @@ use crate::arguments::postures::Quantity;
 use crate::failure::Failure;
 use crate::picture::{Measure, Scale};
 use crate::postures::picture::MapQuantity;
-use crate::verify::LoadedBody;
 use nalgebra::Point3;
 use std::collections::HashMap;
 use touchoff::{Cloud, Escaped, Mesh, Part, Probe, TriangleId, Unit};
 use touchoff_postures::PostureMap;
-use touchoff_verify::job::CutStock;
+use touchoff_verify::job::{CutStock, JobBody};
 use touchoff_verify::stock::PartComparison;
 use touchoff_verify::{FindingKind, JobReport};
 
@@ -36,7 +35,7 @@ impl ColouredBodies {
     /// If the points of a body cannot be made ready for queries.
     pub(super) fn new(
         checked: &JobReport<'_>,
-        bodies: &[LoadedBody],
+        bodies: &[JobBody],
     ) -> Result<ColouredBodies, Failure> {
         let shown = bodies.iter().enumerate().map(|(index, body)| Shown {
             is_fixture: index > 0,

@@ -69,7 +69,7 @@ pub(crate) fn report(arguments: Report, json: bool) -> Result<ExitCode, Failure>
         Some(file) => Some((PostureMap::read(&file)?, file)),
         None => None,
     };
-    let inputs = Inputs::read(job)?;
+    let inputs = verify::read(job)?;
     if let Some((map, file)) = &map {
         check_part(map, file, &inputs.bodies[0].mesh, &inputs.file.part)?;
     }

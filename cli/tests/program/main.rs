@@ -8,6 +8,7 @@ mod fmt;
 mod haptic;
 mod help;
 mod import;
+mod integrations;
 mod job;
 mod keys;
 mod live;

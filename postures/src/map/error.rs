@@ -5,7 +5,7 @@ use std::io;
 use touchoff::TriangleId;
 
 /// A reason for which a posture map cannot be opened, read or written.
-#[derive(Debug, thiserror::Error)]
+#[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum MapError {
     /// The file cannot be opened or read.
@@ -133,6 +133,8 @@ pub enum MapError {
         source: io::Error,
     },
 }
+
+touchoff::debug_as_sentence!(MapError);
 
 impl MapError {
     /// Converts an error of the store.

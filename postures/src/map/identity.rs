@@ -203,7 +203,7 @@ impl MapIdentity {
 }
 
 /// A difference between a map's file and the identity that it is opened for.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, PartialEq, thiserror::Error)]
 pub enum Difference {
     /// Another part.
     #[error("it is of another part, {stored}, and this one has {requested}")]
@@ -249,3 +249,5 @@ pub enum Difference {
         first: usize,
     },
 }
+
+touchoff::debug_as_sentence!(Difference);

@@ -49,7 +49,7 @@ pub struct Pattern {
 }
 
 /// A reason for which there is no path.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PathError {
     /// A length of the pattern is not finite or not above 0.
@@ -98,6 +98,8 @@ pub enum PathError {
     )]
     NoPosture,
 }
+
+touchoff::debug_as_sentence!(PathError);
 
 /// A path and its statistics.
 #[derive(Clone, Debug)]

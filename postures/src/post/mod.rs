@@ -55,7 +55,7 @@ pub struct Placed {
 }
 
 /// A reason for which a path is not written as a program.
-#[derive(Debug, thiserror::Error)]
+#[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum PostError {
     /// A motion is not proved as it would be written.
@@ -116,6 +116,8 @@ pub enum PostError {
     #[error(transparent)]
     Program(#[from] MachineProgramError),
 }
+
+touchoff::debug_as_sentence!(PostError);
 
 /// A post-processor for a machine.
 #[derive(Debug)]

@@ -49,7 +49,7 @@ impl fmt::Debug for PostureSweep<'_> {
 }
 
 /// A reason for which a sweep cannot run.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SweepError {
     /// A tool has no cutting surface.
@@ -75,6 +75,8 @@ pub enum SweepError {
         limit: usize,
     },
 }
+
+touchoff::debug_as_sentence!(SweepError);
 
 /// Number of postures by the rule that decided them. A posture is a triangle, a tool and a direction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

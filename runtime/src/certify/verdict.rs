@@ -3,10 +3,11 @@
 use crate::id::{SurfaceId, TriangleId};
 use crate::interval::Interval;
 use nalgebra::{Point3, Vector3};
+use std::fmt;
 
 /// The error for a tool that cannot be certified. Without a profile its distance is unknown, and no bound is
 /// proved on the rate at which the depth of its file changes.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, PartialEq, Eq, thiserror::Error)]
 #[error(
     "{tool} cannot be certified: it has no profile, and how fast its depth changes is not \
      proved; write it as a `profile {{ … }}`, or see `touchoff check`"
@@ -17,8 +18,10 @@ pub struct NotCertifiable {
     pub tool: String,
 }
 
+crate::debug_as_sentence!(NotCertifiable);
+
 /// The error for a surface that the tool does not have.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{tool} has {count} surfaces: there is none of number {}", .surface.0)]
 #[non_exhaustive]
 pub struct NoSuchSurface {
@@ -30,8 +33,10 @@ pub struct NoSuchSurface {
     pub surface: SurfaceId,
 }
 
+crate::debug_as_sentence!(NoSuchSurface);
+
 /// The error for an invalid allowance.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum AllowanceError {
     /// The tool has no surface of that name.
@@ -66,6 +71,8 @@ pub enum AllowanceError {
         allowed: f64,
     },
 }
+
+crate::debug_as_sentence!(AllowanceError);
 
 /// The deepest penetration of a part's triangles into a tool.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -110,6 +117,34 @@ pub enum PoseVerdict {
     Undecided(f64),
 }
 
+/// The point with its triangle, and the surface by its number.
+impl fmt::Display for Witness {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [x, y, z]: [f64; 3] = self.point.into();
+        let Witness { triangle, surface, .. } = self;
+        write!(f, "triangle {triangle} at ({x:.4}, {y:.4}, {z:.4}) and surface {}", surface.0)
+    }
+}
+
+/// The sentence of the verdict. Surfaces have the numbers of the tool's list.
+impl fmt::Display for PoseVerdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            PoseVerdict::Clear => f.write_str("clear"),
+            PoseVerdict::SurfaceOnly => {
+                f.write_str("no triangle is too deep, and the part has no inside: repair its mesh")
+            }
+            PoseVerdict::Touching(witness) => write!(f, "too deep: {witness}"),
+            PoseVerdict::Inside(surface) => {
+                write!(f, "inside the material, with surface {}", surface.0)
+            }
+            PoseVerdict::Undecided(excess) => {
+                write!(f, "undecided: no more than {excess} deeper than allowed")
+            }
+        }
+    }
+}
+
 impl PoseVerdict {
     /// Returns whether it is proved that the tool is clear: no allowance is exceeded, and the tool is outside the
     /// part. It is not if only the part's surface could be checked ([`PoseVerdict::SurfaceOnly`]).
@@ -135,6 +170,27 @@ pub enum MotionVerdict {
     /// The budget is spent, or rounding decides. The motion is clear up to this fraction of it, from 0 to 1; the rest
     /// is unknown.
     Undecided(f64),
+}
+
+/// The sentence of the verdict. Surfaces have the numbers of the tool's list.
+impl fmt::Display for MotionVerdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            MotionVerdict::Clear => f.write_str("clear"),
+            MotionVerdict::SurfaceOnly => {
+                f.write_str("no triangle is too deep, and the part has no inside: repair its mesh")
+            }
+            MotionVerdict::Touching(at, witness) => {
+                write!(f, "too deep at {:.1} % of the motion: {witness}", 100.0 * at)
+            }
+            MotionVerdict::Inside(surface) => {
+                write!(f, "begins inside the material, with surface {}", surface.0)
+            }
+            MotionVerdict::Undecided(at) => {
+                write!(f, "undecided after {:.1} % of the motion", 100.0 * at)
+            }
+        }
+    }
 }
 
 impl MotionVerdict {

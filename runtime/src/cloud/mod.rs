@@ -53,7 +53,7 @@ pub struct CoveringRadius {
 }
 
 /// Reasons why lists do not form a cloud, or why a requested cloud cannot be built.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CloudError {
     /// The cloud would have no points.
@@ -141,6 +141,8 @@ pub enum CloudError {
         weight: f64,
     },
 }
+
+crate::debug_as_sentence!(CloudError);
 
 impl Cloud {
     /// Samples points of a mesh. Points that are not drawn by [`SamplingMethod::MonteCarlo`] have the areas of their

@@ -59,7 +59,7 @@ pub struct Mesh {
 }
 
 /// Reasons why vertices and triangles do not form a mesh.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MeshError {
     /// There are no triangles.
@@ -115,6 +115,8 @@ pub enum MeshError {
         rule: &'static str,
     },
 }
+
+crate::debug_as_sentence!(MeshError);
 
 impl Mesh {
     /// Builds a mesh from vertices (n × 3, in `unit`) and triangles (m × 3 indices into them, from 0,

@@ -10,7 +10,7 @@ use super::{LARGEST_COORDINATE, Mesh, MeshError, is_valid_coordinate};
 use crate::unit::Unit;
 
 /// Reasons why an OBJ file could not be read. Lines count from 1.
-#[derive(Debug, thiserror::Error)]
+#[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum ObjError {
     /// A line does not match the grammar.
@@ -108,6 +108,8 @@ pub enum ObjError {
         source: MeshError,
     },
 }
+
+crate::debug_as_sentence!(ObjError);
 
 /// Keywords whose lines hold no surface: attributes of vertices, points and lines, names, materials, and
 /// the shading of faces.

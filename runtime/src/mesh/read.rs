@@ -17,7 +17,7 @@ pub enum Geometry {
 }
 
 /// Reasons why a file could not be read.
-#[derive(Debug, thiserror::Error)]
+#[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum GeometryError {
     /// The file system refused to read the file.
@@ -47,6 +47,8 @@ pub enum GeometryError {
     #[error(transparent)]
     Obj(#[from] ObjError),
 }
+
+crate::debug_as_sentence!(GeometryError);
 
 impl Geometry {
     /// Reads a file whose lengths are in `unit`. A file that begins with `ply` is read as PLY; otherwise the file

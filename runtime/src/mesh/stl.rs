@@ -15,7 +15,7 @@ const HEADER: usize = 84;
 const RECORD: usize = 50;
 
 /// Reasons why an STL file could not be read. Lines count from 1, triangles and bytes from 0.
-#[derive(Debug, thiserror::Error)]
+#[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum StlError {
     /// The file system refused to read the file.
@@ -152,6 +152,8 @@ pub enum StlError {
         source: MeshError,
     },
 }
+
+crate::debug_as_sentence!(StlError);
 
 impl Mesh {
     /// Writes the mesh as binary STL, in its own unit, which is named in the header text. Coordinates

@@ -55,7 +55,7 @@ pub struct LodWrench {
 }
 
 /// A budget too small for the coarsest level.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error(
     "a budget of {budget} nodes is too small: the coarsest level of this part may take {needed}; give as many, \
      or a part with coarser levels"
@@ -67,6 +67,8 @@ pub struct BudgetError {
     /// The number of nodes that may be needed.
     pub needed: usize,
 }
+
+crate::debug_as_sentence!(BudgetError);
 
 impl<'a, T: BatchEvaluator + ?Sized> LodProbe<'a, T> {
     /// Makes a probe of trees, the coarsest first, whose lengths are in `unit`.

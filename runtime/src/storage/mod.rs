@@ -22,7 +22,7 @@ use std::io::{self, Write};
 use std::path::Path;
 
 /// Reasons why a saved part could not be opened, or why a part could not be saved. Byte offsets count from 0.
-#[derive(Debug, thiserror::Error)]
+#[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum SavedError {
     /// The file system refused to read the file.
@@ -130,6 +130,8 @@ pub enum SavedError {
         file: String,
     },
 }
+
+crate::debug_as_sentence!(SavedError);
 
 impl Part {
     /// Writes the part to a file for [`Part::open`], replacing an existing file: completely or, if

@@ -35,7 +35,7 @@ pub struct Interpreted {
 debug!([] Interpreted, "Interpreted", |this| { name: this.info.name });
 
 /// A `.tool` file that could not be loaded. The message is meant for people, and has the position and the remedy.
-#[derive(Debug, thiserror::Error)]
+#[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum ToolError {
     /// The file could not be read.
@@ -50,6 +50,8 @@ pub enum ToolError {
     #[error("{0}")]
     Invalid(String),
 }
+
+crate::debug_as_sentence!(ToolError);
 
 impl Interpreted {
     /// Loads a `.tool` file.

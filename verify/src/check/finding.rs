@@ -8,7 +8,7 @@ use touchoff::certify::{AllowanceError, NotCertifiable, Witness};
 use touchoff::{Interval, MotionError, Pose, SurfaceId};
 
 /// A reason for which a program cannot be checked.
-#[derive(Debug, thiserror::Error)]
+#[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum VerifyError {
     /// The tool cannot be certified.
@@ -27,6 +27,8 @@ pub enum VerifyError {
         tolerance: f64,
     },
 }
+
+touchoff::debug_as_sentence!(VerifyError);
 
 /// The result of checking a program.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,7 +3,7 @@
 use super::expression::ExpressionFault;
 
 /// A line that stops the interpreter.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, PartialEq, thiserror::Error)]
 #[error("line {line}: {fault}")]
 pub struct GcodeError {
     /// The line, 1-based.
@@ -12,8 +12,10 @@ pub struct GcodeError {
     pub fault: GcodeFault,
 }
 
+touchoff::debug_as_sentence!(GcodeError);
+
 /// A fault in a line of a G-code program.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum GcodeFault {
     /// A character that begins no word.
@@ -254,6 +256,8 @@ pub enum GcodeFault {
     TooLong,
 }
 
+touchoff::debug_as_sentence!(GcodeFault);
+
 /// Returns [`GcodeFault::Combination`].
 pub(super) fn combination(
     word: impl Into<String>,
@@ -283,7 +287,7 @@ pub(super) fn same_group(first: impl Into<String>, second: impl Into<String>) ->
 }
 
 /// A fault in an arc.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ArcFault {
     /// Neither a centre nor a radius.
@@ -342,3 +346,5 @@ pub enum ArcFault {
         centre: &'static str,
     },
 }
+
+touchoff::debug_as_sentence!(ArcFault);

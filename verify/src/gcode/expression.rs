@@ -17,7 +17,7 @@ const FIRST_SYSTEM: u16 = 1000;
 const FIRST_SHARED: u16 = 31;
 
 /// A fault in a parameter or an expression.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ExpressionFault {
     /// A number that is not one.
@@ -83,6 +83,8 @@ pub enum ExpressionFault {
     #[error("brackets are nested more than {MAX_DEPTH} deep: write the expression in steps")]
     TooDeep,
 }
+
+touchoff::debug_as_sentence!(ExpressionFault);
 
 fn place(shown: &str) -> String {
     if shown.is_empty() { "at the end of the line".to_owned() } else { format!("before {shown}") }

@@ -617,7 +617,7 @@ impl fmt::Display for ControlRules {
 }
 
 /// A control that cannot be read.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ControlError {
     /// No control of this name is known.
@@ -654,6 +654,8 @@ pub enum ControlError {
         about: &'static str,
     },
 }
+
+touchoff::debug_as_sentence!(ControlError);
 
 /// Returns the known word with the fewest changes of letters.
 fn closest(word: &str, known: impl Iterator<Item = &'static str>) -> &'static str {

@@ -1,8 +1,7 @@
 //! The verified job: a program with its tools, against the part, fixtures and stock.
 //!
 //! ```text
-//! JobFile (TOML) ──program──▶ Program ─┐
-//! tools, meshes ───────────────────────┴─▶ Job ──check──▶ JobReport ──▶ findings, verdict, SARIF
+//! JobFile (TOML) ──JobInputs::read──▶ program, tools, meshes ──job──▶ Job ──check──▶ JobReport ──▶ findings, verdict, SARIF
 //! ```
 //!
 //! Each reading of the program is executed once more than its summary needs: the blocks of one pass go to every tool at every
@@ -10,6 +9,7 @@
 
 mod file;
 mod finding;
+mod inputs;
 mod json;
 mod machine;
 mod pass;
@@ -18,6 +18,7 @@ mod report;
 mod stock;
 
 pub use file::{FixtureEntry, JobFile, JobTools, NamedTool, StockEntry, ToolEntry};
+pub use inputs::{JobBody, JobInputs};
 pub use machine::{MachineFinding, MachineFindingKind, SpindleFault};
 pub use program::{DEFAULT_MACHINE, Program, read_control, read_machine};
 pub use report::{
@@ -32,8 +33,10 @@ use crate::stock::{Stock, StockError};
 use crate::{MachineProgramError, ToolSelection, Verifier, VerifyError};
 use nalgebra::Point3;
 use serde::Deserialize;
+use std::convert::Infallible;
 use touchoff::certify::TriangleBvh;
-use touchoff::{Mesh, Tool, Unit};
+use touchoff::mesh::GeometryError;
+use touchoff::{Mesh, PoseError, Tool, Unit};
 
 /// The name of the part in findings.
 pub const PART: &str = "the part";
@@ -169,7 +172,7 @@ pub enum StockShape {
 }
 
 /// A reason for which a job cannot be read or checked.
-#[derive(Debug, thiserror::Error)]
+#[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum JobError {
     /// The job's file is refused.
@@ -234,6 +237,27 @@ pub enum JobError {
     /// The stock cannot be made or cut.
     #[error(transparent)]
     Stock(#[from] StockError),
+    /// An isometry is no pose.
+    #[error(transparent)]
+    Pose(#[from] PoseError),
+    /// A body of the job is no mesh.
+    #[error(transparent)]
+    Geometry(#[from] GeometryError),
+    /// A body of the job is a cloud of points.
+    #[error("{file}: the job needs triangles, and this has only points: give the mesh that they were sampled from")]
+    NoTriangles {
+        /// The file.
+        file: String,
+    },
+}
+
+touchoff::debug_as_sentence!(JobError);
+
+// A pose needs no conversion.
+impl From<Infallible> for JobError {
+    fn from(never: Infallible) -> JobError {
+        match never {}
+    }
 }
 
 fn no_tool(number: Option<u32>) -> String {

@@ -7,7 +7,7 @@ use crate::program::ProgramFile;
 use crate::{ClData, Gap, MachineProgram, Move, ProgramError, ToolSelection, ToolUse};
 use std::iter;
 use std::path::Path;
-use touchoff::Unit;
+use touchoff::{Pose, Unit};
 use touchoff::tool::{Symmetry, ToolInfo};
 
 /// The machine of G-code for which none is named.
@@ -31,6 +31,37 @@ pub(super) struct BlockMoves {
 }
 
 impl Program {
+    /// Makes a program of poses, one after the other in feed, in the frame of the part and in `unit`. Findings count them as
+    /// lines from 1. Poses and isometries are both taken:
+    ///
+    /// ```
+    /// # use nalgebra::{Isometry3, Translation3};
+    /// # use touchoff_verify::Program;
+    /// # use touchoff::Unit;
+    /// let down = [10.0, 5.0, 0.0].map(|z| Isometry3::translation(0.0, 0.0, z));
+    /// let program = Program::from_poses("plunge", Unit::Millimetre, down)?;
+    /// assert_eq!(program.motions(), 2);
+    /// # Ok::<(), touchoff_verify::job::JobError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If there are fewer than two poses, if an isometry is no pose, or if the motion between two of them is ambiguous.
+    pub fn from_poses<P>(
+        name: &str,
+        unit: Unit,
+        poses: impl IntoIterator<Item = P>,
+    ) -> Result<Program, JobError>
+    where
+        P: TryInto<Pose>,
+        P::Error: Into<JobError>,
+    {
+        let poses = poses.into_iter().map(|pose| pose.try_into().map(|pose| (pose, false)));
+        let poses: Vec<(Pose, bool)> = poses.collect::<Result<_, _>>().map_err(Into::into)?;
+        let program = ClData::new(name, Some(unit), poses)?;
+        program.check_motions()?;
+        Ok(Program::Locations(vec![program]))
+    }
+
     /// Reads a program from its file. G-code without a machine runs on three axes.
     ///
     /// # Errors

@@ -4,6 +4,7 @@ use super::machine::MachineFinding;
 use super::stock::{CutStock, StockFinding};
 use super::{Body, Job, JobTool};
 use crate::{FindingGroup, Gap, Tilt, VerifyReport};
+use std::fmt;
 use touchoff::tool::ToolInfo;
 
 /// The verdict about a job.
@@ -15,6 +16,17 @@ pub enum Verdict {
     Findings,
     /// A result without findings would prove nothing: [`JobReport::refusals`] has the reasons.
     None,
+}
+
+/// The sentence of the verdict.
+impl fmt::Display for Verdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Verdict::Clean => "every motion is proved to stay within its limits",
+            Verdict::Findings => "a rule is violated, or it is not decided whether one is",
+            Verdict::None => "no verdict: something stands in the way of a proof",
+        })
+    }
 }
 
 /// The changes that clear the worst motion of a group of findings at its pose.
@@ -199,6 +211,13 @@ pub struct JobFinding {
     pub under: Option<String>,
     /// The finding itself.
     pub detail: FindingDetail,
+}
+
+/// The sentence of the finding.
+impl fmt::Display for JobFinding {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.text)
+    }
 }
 
 /// Subject of a finding.

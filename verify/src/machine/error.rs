@@ -4,7 +4,7 @@ use super::Letter;
 
 /// A reason for which a machine cannot be used. The message names the file, the line, the reason and the
 /// remedy.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MachineError {
     /// No machine of this name comes with the library.
@@ -35,8 +35,10 @@ pub enum MachineError {
     },
 }
 
+touchoff::debug_as_sentence!(MachineError);
+
 /// A fault in a line of a machine's file.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MachineFault {
     /// The text is not TOML, or a key is unknown, missing or of the wrong type.
@@ -169,8 +171,10 @@ pub enum MachineFault {
     },
 }
 
+touchoff::debug_as_sentence!(MachineFault);
+
 /// A reason for which joint values are refused.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum JointError {
     /// A value that is not finite or too large.
@@ -211,8 +215,10 @@ pub enum JointError {
     },
 }
 
+touchoff::debug_as_sentence!(JointError);
+
 /// A reason for which no joint values place the tool.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum InverseError {
     /// A coordinate of the tip, the tool length or a nearby joint value is out of range.
@@ -244,3 +250,5 @@ pub enum InverseError {
         high: f64,
     },
 }
+
+touchoff::debug_as_sentence!(InverseError);

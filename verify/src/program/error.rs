@@ -5,7 +5,7 @@ use std::io;
 use touchoff::{PoseError, Unit};
 
 /// A reason for which a program is refused. The message names the file, the line, the reason and the remedy.
-#[derive(Debug, thiserror::Error)]
+#[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum ProgramError {
     /// The file could not be read at all.
@@ -92,8 +92,10 @@ pub enum ProgramError {
     },
 }
 
+touchoff::debug_as_sentence!(ProgramError);
+
 /// A fault in a line of a program.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ProgramFault {
     /// A byte that is no part of a UTF-8 text, or is NUL.
@@ -281,6 +283,8 @@ pub enum ProgramFault {
         end: &'static str,
     },
 }
+
+touchoff::debug_as_sentence!(ProgramFault);
 
 /// Returns the plural's ending for a number of things.
 fn plural(count: usize) -> &'static str {

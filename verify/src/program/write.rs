@@ -12,7 +12,7 @@ use std::io::{self, Write};
 use touchoff::{Pose, Unit};
 
 /// A reason for which a program cannot be written.
-#[derive(Debug, thiserror::Error)]
+#[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum WriteError {
     /// APT-CL has no word for the unit.
@@ -42,6 +42,8 @@ pub enum WriteError {
     #[error("the program could not be written whole: {0}")]
     Output(#[from] io::Error),
 }
+
+touchoff::debug_as_sentence!(WriteError);
 
 /// The statements before the positions of an APT-CL program, and the decimals of the positions. Nothing is
 /// written for a statement that is `None`.

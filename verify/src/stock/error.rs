@@ -5,7 +5,7 @@ use touchoff::mesh::{LARGEST_COORDINATE, MeshError};
 use touchoff::{CloudError, Unit};
 
 /// A reason for which a stock cannot be built, advanced or compared.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum StockError {
     /// The spacing is not a finite length above 0.
@@ -138,3 +138,5 @@ pub enum StockError {
         stock: Unit,
     },
 }
+
+touchoff::debug_as_sentence!(StockError);

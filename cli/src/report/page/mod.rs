@@ -10,6 +10,7 @@ use crate::check::{Proved, prove};
 use crate::failure::Failure;
 use crate::output::file_name;
 use crate::timing::Timing;
+use crate::verify;
 use assumptions::assumptions;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use sha2::{Digest, Sha256};
@@ -218,9 +219,9 @@ fn along_program(content: &Content<'_>) -> Result<Markup, Failure> {
 fn tools(content: &Content<'_>) -> Result<Markup, Failure> {
     let mut shown = Vec::new();
     let tools_of_job = content.inputs.tools.iter().zip(&content.checked.job.tools);
-    for ((source, tool), shape) in tools_of_job.zip(&content.shapes) {
+    for (((named, _), tool), shape) in tools_of_job.zip(&content.shapes) {
         let info = tool.tool.info();
-        let compiled = source.compile()?;
+        let compiled = verify::compile(named)?;
         let drawing = compiled.tool().map(|tool| svg(tool, Drawn::Outline, TextRendering::Strokes));
         let proof = prove(compiled)?;
         let number = prefix(tool.number());

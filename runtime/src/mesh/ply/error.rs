@@ -3,7 +3,7 @@
 use crate::mesh::{MeshError, Outlier, SourceLocation};
 
 /// Reasons why a PLY file could not be read. Lines count from 1, elements and bytes from 0.
-#[derive(Debug, thiserror::Error)]
+#[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum PlyError {
     /// The first line is not `ply`.
@@ -221,3 +221,5 @@ pub enum PlyError {
         source: MeshError,
     },
 }
+
+crate::debug_as_sentence!(PlyError);

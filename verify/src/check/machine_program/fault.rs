@@ -4,7 +4,7 @@ use crate::gcode::GcodeFault;
 use crate::machine::{InverseError, JointError};
 
 /// A program that cannot be checked on its machine.
-#[derive(Debug, thiserror::Error)]
+#[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum MachineProgramError {
     /// A control reads the program in this way, and is stopped by it.
@@ -50,8 +50,10 @@ pub enum MachineProgramError {
     },
 }
 
+touchoff::debug_as_sentence!(MachineProgramError);
+
 /// A reason for which a motion is not possible on a machine.
-#[derive(Debug, thiserror::Error)]
+#[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum StepFault {
     /// A joint value is out of range, or of an axis that the machine lacks.
@@ -118,3 +120,5 @@ pub enum StepFault {
         offset: String,
     },
 }
+
+touchoff::debug_as_sentence!(StepFault);

@@ -1,0 +1,147 @@
+//! Tools by their names and numbers, in a library or in a folder of `.tool` files.
+
+use super::{ImportedTool, Library};
+use std::collections::BTreeMap;
+use std::ffi::OsStr;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+use touchoff::AtomicFile;
+
+/// A reason for which no tool is selected, or no number is listed.
+#[derive(thiserror::Error)]
+#[non_exhaustive]
+pub enum FindError {
+    /// The library has no such tool.
+    #[error(
+        "`{file}` has no tool with the name, title or number `{name}`: `touchoff import {file} --list` lists them"
+    )]
+    NotFound {
+        /// The name, title or number.
+        name: String,
+        /// The library.
+        file: String,
+    },
+    /// Several tools have the number or the title.
+    #[error("`{file}` has {} tools `{name}`: {}; name one, in a job by `[tool.N] tool = \"FILE.tool\"`", tools.len(), tools.join(", "))]
+    Several {
+        /// The title or number, as it was asked for.
+        name: String,
+        /// The library or the folder.
+        file: String,
+        /// The tools, each in backquotes.
+        tools: Vec<String>,
+    },
+    /// The list of numbers in a folder is refused.
+    #[error("{file}: {message}")]
+    Numbers {
+        /// The list.
+        file: String,
+        /// The reason.
+        message: String,
+    },
+    /// The list of numbers cannot be written.
+    #[error("cannot write {file}: {source}: check the folder, its permissions and the room on the disk")]
+    Unwritable {
+        /// The list.
+        file: String,
+        /// The cause.
+        source: io::Error,
+    },
+    /// The list of numbers cannot be read.
+    #[error("{file}: cannot be read ({source}): check the path and its permissions")]
+    Unreadable {
+        /// The list.
+        file: String,
+        /// The cause.
+        source: io::Error,
+    },
+}
+
+touchoff::debug_as_sentence!(FindError);
+
+/// The file of a folder that lists the numbers of its tools.
+const NUMBERS: &str = "tools.toml";
+
+/// The tools of a folder: file names by the number of the tool, as `T1`.
+type Numbers = BTreeMap<String, Vec<String>>;
+
+impl Library {
+    /// Returns the one tool with this name, title or number; see [`Library::find`].
+    ///
+    /// # Errors
+    /// If there is none, or if several tools have the title or the number.
+    pub fn select(&self, wanted: &str) -> Result<&ImportedTool, FindError> {
+        let (name, file) = (wanted.to_owned(), self.file.display().to_string());
+        match &self.find(wanted)[..] {
+            [] => Err(FindError::NotFound { name, file }),
+            [tool] => Ok(tool),
+            several => {
+                let tools = several.iter().map(|tool| format!("`{}`", tool.name)).collect();
+                Err(FindError::Several { name, file, tools })
+            }
+        }
+    }
+}
+
+/// Returns the file of a tool in a folder of `.tool` files, by its name or by its number in the folder's list. The file may
+/// not exist.
+///
+/// # Errors
+/// If several tools have the number, or the list cannot be read.
+pub fn find_in_folder(folder: &Path, name: &OsStr) -> Result<PathBuf, FindError> {
+    let file = folder.join(name);
+    if file.is_file() {
+        return Ok(file);
+    }
+    // A file with the tool's name goes before a number of the list.
+    let file = file.with_extension("tool");
+    let name = name.to_string_lossy().to_ascii_uppercase();
+    match read_numbers(folder)?.get(&name).map(Vec::as_slice) {
+        Some([listed]) if !file.is_file() => Ok(folder.join(listed)),
+        Some(several) if !file.is_file() => Err(FindError::Several {
+            name,
+            file: folder.display().to_string(),
+            tools: several.iter().map(|tool| format!("`{tool}`")).collect(),
+        }),
+        _ => Ok(file),
+    }
+}
+
+/// Adds the numbers of imported tools to the list of a folder.
+///
+/// # Errors
+/// If the list that is there cannot be read, or the new one cannot be written.
+pub fn write_numbers(folder: &Path, tools: &[&ImportedTool]) -> Result<(), FindError> {
+    let mut numbers = read_numbers(folder)?;
+    for tool in tools {
+        let Some(number) = tool.entry.number else { continue };
+        let files = numbers.entry(format!("T{number}")).or_default();
+        // A second import of the library lists each file once.
+        if !files.contains(&tool.path()) {
+            files.push(tool.path());
+        }
+    }
+    if numbers.is_empty() {
+        return Ok(());
+    }
+    let mut text = "# The numbers of the tools in this folder.\n".to_owned();
+    for (number, files) in &numbers {
+        text += &format!("{number} = {files:?}\n");
+    }
+    let path = folder.join(NUMBERS);
+    AtomicFile::write(&path, text)
+        .map_err(|source| FindError::Unwritable { file: path.display().to_string(), source })
+}
+
+fn read_numbers(folder: &Path) -> Result<Numbers, FindError> {
+    let path = folder.join(NUMBERS);
+    let file = path.display().to_string();
+    match fs::read_to_string(&path) {
+        Ok(text) => toml::from_str(&text)
+            .map_err(|error| FindError::Numbers { file, message: error.message().to_owned() }),
+        // A folder of tools without numbers has no list.
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(Numbers::new()),
+        Err(source) => Err(FindError::Unreadable { file, source }),
+    }
+}

@@ -1,0 +1,33 @@
+//! Python bindings: arrays of poses in, arrays out.
+//!
+//! ```text
+//! touchoff/*.py ──arrays, checked──▶ _touchoff (this crate) ──▶ touchoff, touchoff-verify, touchoff-postures, touchoff-import
+//! ```
+//!
+//! The Python package `touchoff` checks shapes and types and names its results; this extension module converts poses, runs
+//! the queries on all cores without the interpreter's lock, and fills arrays. Nothing is computed here.
+
+mod error;
+mod job;
+mod part;
+mod poses;
+mod queries;
+mod sweep;
+mod tool;
+
+/// The extension module of the Python package `touchoff`.
+#[pyo3::pymodule]
+mod _touchoff {
+    #[pymodule_export]
+    use crate::error::{JobError, ToolError};
+    #[pymodule_export]
+    use crate::job::check_job;
+    #[pymodule_export]
+    use crate::part::Part;
+    #[pymodule_export]
+    use crate::queries::{certified_depth, clearance, contacts, detect, signed_distance, wrench};
+    #[pymodule_export]
+    use crate::sweep::{read_map, sweep};
+    #[pymodule_export]
+    use crate::tool::{Tool, import_library, tool_names};
+}

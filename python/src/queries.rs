@@ -1,0 +1,257 @@
+//! Queries at many poses: on all cores, without the interpreter's lock.
+
+use crate::error::refused;
+use crate::part::{Part, rows};
+use crate::poses::Poses;
+use crate::tool::Tool;
+use nalgebra::{Point3, Vector3};
+use numpy::{Element, PyArray1, PyReadonlyArray2};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use touchoff::certify::{Certifier, Clearance, Penetration, TriangleBvh, Witness};
+use touchoff::{Interval, Law, Pose, Probe, Weights};
+
+/// The number that stands for no triangle or no surface.
+const NONE: i64 = -1;
+
+const NAN: [f64; 3] = [f64::NAN; 3];
+
+/// The arrays of a result, by their names.
+struct Arrays<'py> {
+    py: Python<'py>,
+    dict: Bound<'py, PyDict>,
+}
+
+impl<'py> Arrays<'py> {
+    fn new(py: Python<'py>) -> Arrays<'py> {
+        Arrays { py, dict: PyDict::new(py) }
+    }
+
+    /// Adds an array of a number per pose or contact.
+    fn numbers<T: Element>(
+        &self,
+        name: &str,
+        values: impl Iterator<Item = T>,
+    ) -> PyResult<&Arrays<'py>> {
+        self.dict.set_item(name, PyArray1::from_vec(self.py, values.collect()))?;
+        Ok(self)
+    }
+
+    /// Adds an array of a vector per pose or contact.
+    fn vectors(
+        &self,
+        name: &str,
+        values: impl Iterator<Item = [f64; 3]>,
+    ) -> PyResult<&Arrays<'py>> {
+        self.dict.set_item(name, rows(self.py, values.flatten().collect(), 3)?)?;
+        Ok(self)
+    }
+}
+
+/// Makes the probe of a tool at the points of a part.
+fn probe<'a>(
+    tool: &'a Tool,
+    part: &'a Part,
+    law: &str,
+    weights: &str,
+    centre: [f64; 3],
+) -> PyResult<Probe<'a>> {
+    let law: Law = law.parse().map_err(|error| refused(format!("law: {error}")))?;
+    let weights: Weights =
+        weights.parse().map_err(|error| refused(format!("weights: {error}")))?;
+    let centre = Point3::from(centre);
+    let probe: Probe<'a> = Probe::new(part.points()?, tool.get());
+    Ok(probe.with_law(law).with_weights(weights).with_centre(centre))
+}
+
+/// Refuses poses without a spin for a solid without an axis.
+fn check_spin(tool: &Tool, poses: &[Pose]) -> PyResult<()> {
+    let is_solid =
+        matches!(tool.get().info().symmetry, touchoff::tool::Symmetry::Solid { .. });
+    match poses.iter().position(|pose| is_solid && !pose.has_spin()) {
+        Some(index) => Err(refused(format!(
+            "poses[{index}]: a solid without an axis needs its full rotation: give quaternions or matrices"
+        ))),
+        None => Ok(()),
+    }
+}
+
+/// Force, torque and depth of the whole contact at each pose.
+#[pyfunction]
+pub(crate) fn wrench<'py>(
+    py: Python<'py>,
+    tool: &Tool,
+    part: &Part,
+    poses: PyReadonlyArray2<'py, f64>,
+    law: &str,
+    weights: &str,
+    centre: [f64; 3],
+) -> PyResult<Bound<'py, PyDict>> {
+    let Poses(poses) = Poses::of(&poses)?;
+    check_spin(tool, &poses)?;
+    let found = py.detach(|| {
+        let probe = probe(tool, part, law, weights, centre)?;
+        Ok::<_, PyErr>(probe.par_map(&poses, |probe, pose| probe.wrench(pose)))
+    })?;
+    let arrays = Arrays::new(py);
+    arrays
+        .vectors("force", found.iter().map(|one| one.force.into()))?
+        .vectors("torque", found.iter().map(|one| one.torque.into()))?
+        .numbers("depth", found.iter().map(|one| one.depth()))?
+        .numbers("niceness", found.iter().map(|one| one.niceness.unwrap_or(f64::NAN)))?
+        .numbers("colliding", found.iter().map(|one| one.colliding as u64))?
+        .numbers("energy", found.iter().map(|one| one.energy))?
+        .vectors("point", found.iter().map(|one| one.deepest.map_or(NAN, |deepest| deepest.point.into())))?
+        .numbers("triangle", found.iter().map(|one| one.deepest.map_or(NONE, |deepest| i64::from(deepest.triangle.0))))?
+        .numbers("force_error", found.iter().map(|one| one.rounding.force))?
+        .numbers("torque_error", found.iter().map(|one| one.rounding.torque))?;
+    Ok(arrays.dict)
+}
+
+/// Every point of the part inside the tool, at each pose.
+#[pyfunction]
+pub(crate) fn contacts<'py>(
+    py: Python<'py>,
+    tool: &Tool,
+    part: &Part,
+    poses: PyReadonlyArray2<'py, f64>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let Poses(poses) = Poses::of(&poses)?;
+    check_spin(tool, &poses)?;
+    let found = py.detach(|| {
+        let probe: Probe<'_> = Probe::new(part.points()?, tool.get());
+        Ok::<_, PyErr>(probe.par_map(&poses, |probe, pose| probe.contacts(pose).to_vec()))
+    })?;
+    let arrays = Arrays::new(py);
+    let mut offset = 0;
+    let ends = found.iter().map(|contacts| {
+        offset += contacts.len() as i64;
+        offset
+    });
+    arrays.numbers("offsets", [0].into_iter().chain(ends))?;
+    let counted = found.iter().zip(0i64..);
+    arrays.numbers("pose", counted.flat_map(|(contacts, pose)| contacts.iter().map(move |_| pose)))?;
+    let all = || found.iter().flatten();
+    arrays
+        .vectors("point", all().map(|one| one.point.into()))?
+        .vectors("normal", all().map(|one| one.normal.into()))?
+        .vectors("direction", all().map(|one| one.direction.into()))?
+        .vectors("gradient", all().map(|one| one.gradient.into()))?
+        .numbers("triangle", all().map(|one| i64::from(one.triangle.0)))?
+        .numbers("surface", all().map(|one| one.surface.0 as i64))?
+        .numbers("region", all().map(|one| one.region as i64))?
+        .numbers("depth", all().map(|one| one.depth))?
+        .numbers("magnitude", all().map(|one| one.magnitude))?
+        .numbers("niceness", all().map(|one| one.niceness))?
+        .numbers("weight", all().map(|one| one.weight))?;
+    Ok(arrays.dict)
+}
+
+/// Whether any point of the part is inside the tool, at each pose.
+#[pyfunction]
+pub(crate) fn detect<'py>(
+    py: Python<'py>,
+    tool: &Tool,
+    part: &Part,
+    poses: PyReadonlyArray2<'py, f64>,
+) -> PyResult<Bound<'py, PyArray1<bool>>> {
+    let Poses(poses) = Poses::of(&poses)?;
+    check_spin(tool, &poses)?;
+    let found = py.detach(|| {
+        let probe: Probe<'_> = Probe::new(part.points()?, tool.get());
+        Ok::<_, PyErr>(probe.par_map(&poses, Probe::detect))
+    })?;
+    Ok(PyArray1::from_vec(py, found))
+}
+
+/// Runs a query of a certifier at each pose.
+fn certified<R: Send>(
+    py: Python<'_>,
+    tool: &Tool,
+    part: &Part,
+    poses: &PyReadonlyArray2<'_, f64>,
+    query: impl Fn(&mut Certifier<'_>, &Pose) -> R + Sync,
+) -> PyResult<Vec<R>> {
+    let Poses(poses) = Poses::of(poses)?;
+    check_spin(tool, &poses)?;
+    // The interpreter's lock is not held for the triangles, either.
+    py.detach(|| {
+        let bvh: &TriangleBvh = part.triangles()?;
+        let certifier = Certifier::new(bvh, tool.get()).map_err(refused)?;
+        Ok(certifier.par_map(&poses, |certifier, pose| query(certifier, pose)))
+    })
+}
+
+impl Arrays<'_> {
+    fn interval(&self, intervals: impl Iterator<Item = Interval> + Clone) -> PyResult<&Self> {
+        self.numbers("low", intervals.clone().map(|interval| interval.low))?
+            .numbers("high", intervals.map(|interval| interval.high))
+    }
+
+    fn witnesses(&self, witnesses: impl Iterator<Item = Option<Witness>> + Clone) -> PyResult<&Self> {
+        let of = |number: fn(Witness) -> i64| {
+            witnesses.clone().map(move |witness| witness.map_or(NONE, number))
+        };
+        self.vectors("point", witnesses.clone().map(|one| one.map_or(NAN, |one| one.point.into())))?
+            .numbers("triangle", of(|witness| i64::from(witness.triangle.0)))?
+            .numbers("surface", of(|witness| witness.surface.0 as i64))
+    }
+}
+
+/// Proved bounds on the greatest depth of the part's triangles in the tool, at each pose.
+#[pyfunction]
+pub(crate) fn certified_depth<'py>(
+    py: Python<'py>,
+    tool: &Tool,
+    part: &Part,
+    poses: PyReadonlyArray2<'py, f64>,
+    tolerance: f64,
+) -> PyResult<Bound<'py, PyDict>> {
+    let found: Vec<Penetration> =
+        certified(py, tool, part, &poses, |certifier, pose| certifier.deepest(pose, tolerance))?;
+    let arrays = Arrays::new(py);
+    arrays
+        .interval(found.iter().map(|one| one.depth))?
+        .witnesses(found.iter().map(|one| one.witness))?;
+    Ok(arrays.dict)
+}
+
+/// Proved bounds on the distance between part and tool, with the nearest points of both, at each pose.
+#[pyfunction]
+pub(crate) fn clearance<'py>(
+    py: Python<'py>,
+    tool: &Tool,
+    part: &Part,
+    poses: PyReadonlyArray2<'py, f64>,
+    tolerance: f64,
+) -> PyResult<Bound<'py, PyDict>> {
+    let found: Vec<Clearance> =
+        certified(py, tool, part, &poses, |certifier, pose| certifier.clearance(pose, tolerance))?;
+    let arrays = Arrays::new(py);
+    let on_tool = |of: fn(&touchoff::certify::ToolPoint) -> [f64; 3]| {
+        found.iter().map(move |one| one.on_tool.as_ref().map_or(NAN, of))
+    };
+    arrays
+        .interval(found.iter().map(|one| one.distance))?
+        .witnesses(found.iter().map(|one| one.witness))?
+        .vectors("tool_point", on_tool(|point| point.point.into()))?
+        .vectors("normal", on_tool(|point| Vector3::into(point.normal)))?;
+    Ok(arrays.dict)
+}
+
+/// Proved bounds on the signed distance between part and tool, at each pose.
+#[pyfunction]
+pub(crate) fn signed_distance<'py>(
+    py: Python<'py>,
+    tool: &Tool,
+    part: &Part,
+    poses: PyReadonlyArray2<'py, f64>,
+    tolerance: f64,
+) -> PyResult<Bound<'py, PyDict>> {
+    let found: Vec<Interval> = certified(py, tool, part, &poses, |certifier, pose| {
+        certifier.signed_distance(pose, tolerance)
+    })?;
+    let arrays = Arrays::new(py);
+    arrays.interval(found.iter().copied())?;
+    Ok(arrays.dict)
+}

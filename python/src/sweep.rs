@@ -1,0 +1,139 @@
+//! Sweeps and posture maps.
+
+use crate::error::refused;
+use crate::part::{Part, rows};
+use crate::tool::Tool;
+use numpy::{PyArray1, PyArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::num::NonZeroU16;
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+use touchoff_postures::sweep::{PostureSweep, SweepStats};
+use touchoff_postures::{Accessibility, Directions, MapRow, PostureMap, Rules};
+
+/// What was found at one triangle.
+type TriangleRow = (usize, MapRow);
+
+/// Tries tools at every triangle of a part, from many directions.
+#[pyfunction]
+#[allow(clippy::too_many_arguments)]
+pub(crate) fn sweep<'py>(
+    py: Python<'py>,
+    part: &Part,
+    tools: Vec<PyRef<'py, Tool>>,
+    directions: usize,
+    tolerance: Option<f64>,
+    min_niceness: f64,
+    allow: Vec<(String, f64)>,
+) -> PyResult<Bound<'py, PyDict>> {
+    if !(1..=Directions::MAX_HEMISPHERE).contains(&directions) {
+        let limit = Directions::MAX_HEMISPHERE;
+        return Err(refused(format!("directions: {directions} per hemisphere: give 1 to {limit}")));
+    }
+    let tools: Vec<&Tool> = tools.iter().map(|tool| &**tool).collect();
+    let directions = Directions::spread(directions);
+    let (rows, stats) = py.detach(|| {
+        let (mesh, bvh) = (part.mesh()?, part.triangles()?);
+        let rules = Rules {
+            tolerance: tolerance.unwrap_or_else(|| Rules::default_tolerance(mesh.unit())),
+            niceness: min_niceness,
+            allowed: allow,
+        };
+        let tools = tools.iter().map(|tool| tool.get() as &dyn touchoff::Tool).collect();
+        let sweep = PostureSweep::new(mesh, bvh, tools, &directions, rules, NonZeroU16::MIN);
+        let sweep = sweep.map_err(refused)?;
+        let batches: Vec<usize> = (0..sweep.batches()).collect();
+        let (mut rows, mut stats) = (Vec::new(), SweepStats::default());
+        let _: ControlFlow<()> = sweep.run(&batches, |batch| {
+            stats += batch.stats;
+            rows.extend(batch.rows.into_iter().map(|(id, row)| (id.index(), row)));
+            ControlFlow::Continue(())
+        });
+        Ok::<_, PyErr>((rows, stats))
+    })?;
+    let count = part.mesh()?.triangles().len();
+    let names = tools.iter().map(|tool| tool.get().info().name.to_string()).collect();
+    let dict = Map { count, tools: names, directions, rows }.arrays(py)?;
+    dict.set_item("postures", stats.postures())?;
+    dict.set_item("acceptable", stats.acceptable)?;
+    dict.set_item("undecided", stats.undecided)?;
+    Ok(dict)
+}
+
+/// Reads a posture map.
+#[pyfunction]
+pub(crate) fn read_map(py: Python<'_>, path: PathBuf) -> PyResult<Bound<'_, PyDict>> {
+    let read = py.detach(|| {
+        let map = PostureMap::read(&path)?;
+        let identity = map.identity();
+        let keep = identity.keep;
+        let mut rows = Vec::new();
+        map.for_each_triangle(|triangle, pieces| {
+            rows.push((triangle.index(), MapRow::joined(&pieces, keep)));
+            Ok::<(), touchoff_postures::MapError>(())
+        })?;
+        Ok::<_, touchoff_postures::MapError>(Map {
+            count: identity.part.triangles as usize,
+            tools: identity.tools.iter().map(|tool| tool.name.clone()).collect(),
+            directions: Directions::from(identity.directions.clone()),
+            rows,
+        })
+    });
+    read.map_err(refused)?.arrays(py)
+}
+
+struct Map {
+    /// The number of triangles.
+    count: usize,
+    tools: Vec<String>,
+    directions: Directions,
+    rows: Vec<TriangleRow>,
+}
+
+impl Map {
+    /// Returns the arrays: per triangle and tool the directions that reach it, and per triangle the best posture.
+    fn arrays(self, py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
+        let Map { count, tools, directions, rows: found } = self;
+        let (tool_count, direction_count) = (tools.len(), directions.list().len());
+        let mut reached = vec![false; count * tool_count * direction_count];
+        let mut stickout = vec![f64::NAN; count * tool_count];
+        let mut best_tool = vec![-1i64; count];
+        let (mut tips, mut axes) = (vec![[f64::NAN; 3]; count], vec![[f64::NAN; 3]; count]);
+        let [mut niceness, mut depth, mut clearance] = [(); 3].map(|()| vec![f64::NAN; count]);
+        for (triangle, row) in &found {
+            for Accessibility { tool, directions: set, stickout: needed } in &row.access {
+                let at = triangle * tool_count + usize::from(*tool);
+                if let Some(needed) = needed {
+                    stickout[at] = *needed;
+                }
+                let of_tool = &mut reached[at * direction_count..(at + 1) * direction_count];
+                for (direction, is_reached) in of_tool.iter_mut().enumerate() {
+                    let word = set.get(direction / 64).copied().unwrap_or(0);
+                    *is_reached = word >> (direction % 64) & 1 == 1;
+                }
+            }
+            if let Some(best) = row.best.first() {
+                best_tool[*triangle] = i64::from(best.tool);
+                (tips[*triangle], axes[*triangle]) = (best.tip, best.axis);
+                niceness[*triangle] = best.niceness;
+                depth[*triangle] = best.depth;
+                clearance[*triangle] = best.clearance;
+            }
+        }
+        let dict = PyDict::new(py);
+        let flat = |vectors: &[[f64; 3]]| rows(py, vectors.as_flattened().to_vec(), 3);
+        let shape = [count, tool_count, direction_count];
+        dict.set_item("tools", tools)?;
+        dict.set_item("directions", flat(directions.list())?)?;
+        dict.set_item("reached", PyArray1::from_vec(py, reached).reshape(shape)?)?;
+        dict.set_item("stickout", rows(py, stickout, tool_count)?)?;
+        dict.set_item("tool", PyArray1::from_vec(py, best_tool))?;
+        dict.set_item("tip", flat(&tips)?)?;
+        dict.set_item("axis", flat(&axes)?)?;
+        dict.set_item("niceness", PyArray1::from_vec(py, niceness))?;
+        dict.set_item("depth", PyArray1::from_vec(py, depth))?;
+        dict.set_item("clearance", PyArray1::from_vec(py, clearance))?;
+        Ok(dict)
+    }
+}

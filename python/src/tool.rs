@@ -1,0 +1,245 @@
+//! Tools: built in, from a text or a file, or from a library of a CAM system.
+
+use crate::error::{refused, tool as tool_error};
+use pyo3::exceptions::{PyOSError, PyValueError};
+use pyo3::prelude::*;
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+use touchoff::tool::{Interpreted, ToolError, ToolInfo};
+use touchoff_drawing::{Content, TextRendering, svg};
+use touchoff_dsl::compile_with_arguments;
+use touchoff_dsl::source::Source;
+use touchoff_import::{ImportError, Library, find_in_folder};
+use touchoff_tools::{SOURCES, TOOLS};
+
+/// A cutting tool.
+#[pyclass(frozen, module = "touchoff._touchoff")]
+pub(crate) struct Tool {
+    loaded: LoadedTool,
+}
+
+pub(crate) enum LoadedTool {
+    BuiltIn(&'static dyn touchoff::Tool),
+    Interpreted {
+        tool: Box<Interpreted>,
+        /// The text and the arguments, for the drawing.
+        source: Source,
+        arguments: Vec<Source>,
+    },
+}
+
+impl AsRef<dyn touchoff::Tool> for LoadedTool {
+    fn as_ref(&self) -> &(dyn touchoff::Tool + 'static) {
+        match self {
+            LoadedTool::BuiltIn(tool) => *tool,
+            LoadedTool::Interpreted { tool, .. } => &**tool,
+        }
+    }
+}
+
+impl LoadedTool {
+    pub(crate) fn compile(source: Source, params: &[String]) -> Result<LoadedTool, ToolError> {
+        let arguments: Vec<Source> =
+            params.iter().map(|text| Source::new("params", text)).collect();
+        let tool = Box::new(Interpreted::parse_with(&source, &arguments)?);
+        Ok(LoadedTool::Interpreted { tool, source, arguments })
+    }
+
+    /// Loads a tool by the name of a built-in tool, by its file, or from a library.
+    pub(crate) fn named(
+        name: &OsStr,
+        library: Option<&Path>,
+        params: &[String],
+    ) -> Result<LoadedTool, LoadError> {
+        let read = |file: &Path| {
+            LoadedTool::compile(Interpreted::source(file)?, params).map_err(LoadError::Tool)
+        };
+        if let Some(library) = library {
+            if library.is_dir() {
+                return read(&find_in_folder(library, name)?);
+            }
+            let imported = Library::read(library)?;
+            let tool = imported.select(&name.to_string_lossy())?;
+            let tool = Box::new(tool.load()?);
+            let source = Source::new("library", "");
+            return Ok(LoadedTool::Interpreted { tool, source, arguments: Vec::new() });
+        }
+        if Path::new(name).extension().is_some_and(|extension| extension == "tool") {
+            return read(Path::new(name));
+        }
+        let name = name.to_string_lossy().into_owned();
+        match touchoff_tools::find(&name) {
+            Some(_) if !params.is_empty() => Err(LoadError::Fixed { name }),
+            Some(tool) => Ok(LoadedTool::BuiltIn(tool)),
+            None => Err(LoadError::Unknown { name }),
+        }
+    }
+
+    fn info(&self) -> &ToolInfo {
+        self.as_ref().info()
+    }
+}
+
+/// A reason for which a tool cannot be loaded.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum LoadError {
+    #[error(transparent)]
+    Tool(#[from] ToolError),
+    #[error(transparent)]
+    Import(#[from] ImportError),
+    #[error(transparent)]
+    Find(#[from] touchoff_import::FindError),
+    #[error("no built-in tool is called `{name}`: `touchoff.tool_names()` lists them; a file ends in `.tool`")]
+    Unknown { name: String },
+    #[error("the built-in tool `{name}` takes no params: load it from its file")]
+    Fixed { name: String },
+}
+
+impl From<LoadError> for PyErr {
+    fn from(error: LoadError) -> PyErr {
+        match error {
+            LoadError::Tool(error) => tool_error(error),
+            LoadError::Import(ImportError::Unreadable { .. }) => PyOSError::new_err(error.to_string()),
+            other => PyValueError::new_err(other.to_string()),
+        }
+    }
+}
+
+impl Tool {
+    pub(crate) fn get(&self) -> &(dyn touchoff::Tool + 'static) {
+        self.loaded.as_ref()
+    }
+}
+
+#[pymethods]
+impl Tool {
+    /// A built-in tool.
+    #[staticmethod]
+    fn library(name: &str) -> PyResult<Tool> {
+        Ok(Tool { loaded: LoadedTool::named(name.as_ref(), None, &[])? })
+    }
+
+    /// A tool from its text.
+    #[staticmethod]
+    fn parse(py: Python<'_>, text: &str, params: Vec<String>, name: &str) -> PyResult<Tool> {
+        let source = Source::new(name, text);
+        let loaded = py.detach(|| LoadedTool::compile(source, &params)).map_err(tool_error)?;
+        Ok(Tool { loaded })
+    }
+
+    /// A tool from its file.
+    #[staticmethod]
+    fn load(py: Python<'_>, path: PathBuf, params: Vec<String>) -> PyResult<Tool> {
+        let loaded = py.detach(|| {
+            let source = Interpreted::source(&path)?;
+            LoadedTool::compile(source, &params)
+        });
+        Ok(Tool { loaded: loaded.map_err(tool_error)? })
+    }
+
+    #[getter]
+    fn name(&self) -> &str {
+        &self.loaded.info().name
+    }
+
+    #[getter]
+    fn title(&self) -> &str {
+        &self.loaded.info().title
+    }
+
+    #[getter]
+    fn unit(&self) -> &'static str {
+        self.loaded.info().unit.symbol()
+    }
+
+    /// The surfaces in the order of their indices, each with whether it cuts.
+    #[getter]
+    fn surfaces(&self) -> Vec<(String, bool)> {
+        let surfaces = self.loaded.info().surfaces.iter();
+        surfaces.map(|surface| (surface.name.to_string(), surface.cutting)).collect()
+    }
+
+    /// The largest distance from the axis, in the tool's unit.
+    #[getter]
+    fn radius(&self) -> f64 {
+        self.loaded.info().radius()
+    }
+
+    /// Whether depth is proved to be the distance to the tool's surface.
+    #[getter]
+    fn is_exact(&self) -> bool {
+        self.loaded.info().is_exact()
+    }
+
+    /// The compiler's warnings; empty if there are none.
+    #[getter]
+    fn warnings(&self) -> &str {
+        match &self.loaded {
+            LoadedTool::BuiltIn(_) => "",
+            LoadedTool::Interpreted { tool, .. } => tool.warnings(),
+        }
+    }
+
+    /// The drawing of the tool, as SVG.
+    fn svg(&self) -> PyResult<String> {
+        let compiled = match &self.loaded {
+            LoadedTool::BuiltIn(tool) => {
+                let position = TOOLS.iter().position(|known| known.info().name == tool.info().name);
+                let files = position.map(|position| SOURCES[position]);
+                let Some([(file, text)]) = files else {
+                    return Err(refused("the drawing of a built-in assembly needs its files: load it from its `.tool` file"));
+                };
+                compile_with_arguments(&Source::new(*file, *text), &[])
+            }
+            LoadedTool::Interpreted { source, arguments, .. } => {
+                compile_with_arguments(source, arguments)
+            }
+        };
+        match compiled.tool() {
+            Some(tool) => Ok(svg(tool, Content::Regions, TextRendering::Page)),
+            None => Err(refused("the tool has no text to draw from: load it from its `.tool` file")),
+        }
+    }
+}
+
+/// The names of the built-in tools.
+#[pyfunction]
+pub(crate) fn tool_names() -> Vec<&'static str> {
+    TOOLS.iter().map(|tool| &*tool.info().name).collect()
+}
+
+/// A tool of a library, with its number, its title and the notes of the import.
+type ImportedEntry = (Tool, Option<u32>, String, Vec<String>);
+
+/// The tools of a library of a CAM system, and the names and reasons of those that are left out.
+#[pyfunction]
+pub(crate) fn import_library(
+    py: Python<'_>,
+    path: PathBuf,
+) -> PyResult<(Vec<ImportedEntry>, Vec<(String, String)>)> {
+    let read = py.detach(|| {
+        let library = Library::read(&path)?;
+        let mut skipped: Vec<(String, String)> =
+            library.skipped().iter().map(|one| (one.name.clone(), one.reason.clone())).collect();
+        let mut tools = Vec::new();
+        for imported in library.tools() {
+            match imported.load() {
+                Ok(tool) => {
+                    let text = imported.files.last().map_or("", |file| &file.text);
+                    let source = Source::new(imported.path(), text);
+                    let loaded = LoadedTool::Interpreted {
+                        tool: Box::new(tool),
+                        source,
+                        arguments: Vec::new(),
+                    };
+                    let entry = &imported.entry;
+                    let notes = entry.notes.iter().map(ToString::to_string).collect();
+                    tools.push((Tool { loaded }, entry.number, entry.label().to_owned(), notes));
+                }
+                Err(error) => skipped.push((imported.name.clone(), error.to_string())),
+            }
+        }
+        Ok((tools, skipped))
+    });
+    read.map_err(|error: ImportError| LoadError::Import(error).into())
+}

@@ -1,0 +1,98 @@
+"""Checks of what users pass: each error names the argument, the index and the remedy."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Floats = NDArray[np.float64]
+
+
+def numbers(name: str, values: ArrayLike) -> Floats:
+    """Return values as a C-contiguous array of doubles.
+
+    Raises
+    ------
+    TypeError
+        If they are not real numbers.
+    """
+    try:
+        array = np.asarray(values)
+    except ValueError as error:
+        # Rows of different lengths.
+        raise ValueError(f"{name}: {error}: give an array whose rows are equally long") from None
+    if array.dtype.kind not in "fiu":
+        raise TypeError(f"{name}: numbers are expected, and this has the dtype {array.dtype}")
+    return np.ascontiguousarray(array, dtype=np.float64)
+
+
+def length(name: str, value: object, *, least: float = 0.0) -> float:
+    """Return a length as a float.
+
+    Raises
+    ------
+    TypeError
+        If it is no number.
+    ValueError
+        If it is not finite, or below the least one.
+    """
+    if isinstance(value, bool) or not isinstance(value, (int, float, np.integer, np.floating)):
+        raise TypeError(f"{name}: a number is expected, not {type(value).__name__}")
+    number = float(value)
+    if not least <= number < float("inf"):
+        raise ValueError(f"{name}: {number} is no length of {least:g} or more")
+    return number
+
+
+def count(name: str, value: object) -> int:
+    """Return a count as an int, at least 1.
+
+    Raises
+    ------
+    TypeError
+        If it is no whole number.
+    ValueError
+        If it is below 1 or beyond 10⁸.
+    """
+    if isinstance(value, bool) or not isinstance(value, (int, np.integer)):
+        raise TypeError(f"{name}: a whole number is expected, not {type(value).__name__}")
+    number = int(value)
+    if not 1 <= number <= 100_000_000:
+        raise ValueError(f"{name}: {number} is not between 1 and 100,000,000")
+    return number
+
+
+def vector(name: str, values: ArrayLike) -> tuple[float, float, float]:
+    """Return three finite numbers."""
+    array = numbers(name, values)
+    if array.shape != (3,):
+        raise ValueError(f"{name}: three numbers are expected, and this has the shape {array.shape}")
+    if not np.isfinite(array).all():
+        raise ValueError(f"{name}: {array} is not finite")
+    x, y, z = array.tolist()
+    return x, y, z
+
+
+def poses(values: ArrayLike) -> Floats:
+    """Return poses as rows of 6, 7 or 16 numbers.
+
+    Raises
+    ------
+    TypeError
+        If they are not real numbers.
+    ValueError
+        If they have another shape, or there are none.
+    """
+    array = numbers("poses", values)
+    if array.shape[-2:] == (4, 4) and array.ndim in (2, 3):
+        array = array.reshape(-1, 16)
+    elif array.ndim == 1 and array.shape[0] in (6, 7):
+        array = array.reshape(1, -1)
+    if array.ndim != 2 or array.shape[1] not in (6, 7, 16):
+        raise ValueError(
+            f"poses: the shape {array.shape} is none of (n, 6) for tips and axes, (n, 7) for tips and quaternions "
+            "x, y, z, w, and (n, 4, 4) for matrices"
+        )
+    if array.shape[0] == 0:
+        raise ValueError("poses: the array is empty: give one pose or more")
+    return array

@@ -1,0 +1,186 @@
+"""Queries at many poses."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _arrays, _touchoff
+from ._arrays import Floats
+from .part import Part
+from .tool import Tool
+
+Ints = NDArray[np.int64]
+
+
+@dataclass(frozen=True, slots=True)
+class Wrench:
+    """Force and torque of the whole contact at n poses, in the world's frame."""
+
+    #: Force, n × 3.
+    force: Floats
+    #: Torque about the compliance centre, n × 3.
+    torque: Floats
+    #: Depth of the deepest point; 0 without contact.
+    depth: Floats
+    #: Least niceness of the contact; NaN without contact.
+    niceness: Floats
+    #: Number of points inside.
+    colliding: NDArray[np.uint64]
+    #: Energy of the contact, half the weighted sum of squared magnitudes.
+    energy: Floats
+    #: The deepest point, n × 3; NaN without contact.
+    point: Floats
+    #: Its triangle; -1 without contact.
+    triangle: Ints
+    #: Bound on the rounding error of the force.
+    force_error: Floats
+    #: Bound on the rounding error of the torque.
+    torque_error: Floats
+
+
+@dataclass(frozen=True, slots=True)
+class Contacts:
+    """The points of the part inside the tool at n poses, one after the other.
+
+    Those of pose k are from `offsets[k]` to `offsets[k + 1]`.
+    """
+
+    #: n + 1 positions.
+    offsets: Ints
+    #: The index of the pose.
+    pose: Ints
+    #: The point, and the part's outward normal there.
+    point: Floats
+    normal: Floats
+    #: Unit vector to the tool's nearest surface.
+    direction: Floats
+    #: The gradient of the magnitude.
+    gradient: Floats
+    triangle: Ints
+    #: Index in `Tool.surfaces`.
+    surface: Ints
+    region: Ints
+    depth: Floats
+    magnitude: Floats
+    niceness: Floats
+    #: The point's share of the surface.
+    weight: Floats
+
+    def __len__(self) -> int:
+        return len(self.pose)
+
+
+@dataclass(frozen=True, slots=True)
+class Depth:
+    """Proved bounds on the greatest depth of the part's triangles in the tool, at n poses."""
+
+    low: Floats
+    high: Floats
+    #: A point at least as deep as the lower bound, n × 3; NaN if none was found inside.
+    point: Floats
+    #: Its triangle, and the index of the nearest surface of the tool; -1 without a point.
+    triangle: Ints
+    surface: Ints
+
+
+@dataclass(frozen=True, slots=True)
+class Clearance:
+    """Proved bounds on the distance between part and tool at n poses; 0 in contact."""
+
+    low: Floats
+    high: Floats
+    #: The nearest point of the part, n × 3.
+    point: Floats
+    triangle: Ints
+    surface: Ints
+    #: The nearest point of the tool, and the tool's outward unit normal there, n × 3.
+    tool_point: Floats
+    normal: Floats
+
+
+@dataclass(frozen=True, slots=True)
+class Distance:
+    """Proved bounds on the signed distance between part and tool at n poses: below 0 the depth in contact."""
+
+    low: Floats
+    high: Floats
+
+
+def wrench(
+    tool: Tool,
+    part: Part,
+    poses: ArrayLike,
+    *,
+    law: Literal["thesis", "gradient", "facing"] = "thesis",
+    weights: Literal["area", "unit"] = "area",
+    centre: ArrayLike = (0.0, 0.0, 0.0),
+) -> Wrench:
+    """Compute force, torque and depth of the whole contact at the part's points.
+
+    Parameters
+    ----------
+    tool, part
+        The tool, and the part with its points.
+    poses
+        Tips and axes (n, 6), tips and quaternions x, y, z, w (n, 7), or matrices (n, 4, 4); or one pose.
+    law
+        The force of a contact: that of Ho's thesis, the gradient of an energy, or the thesis's without points that face away.
+    weights
+        A point's weight: its share of the surface, or 1.
+    centre
+        The compliance centre, in the tool's frame and the part's unit.
+    """
+    rows = _arrays.poses(poses)
+    middle = _arrays.vector("centre", centre)
+    return Wrench(**_touchoff.wrench(_tool(tool), _part(part), rows, law, weights, middle))
+
+
+def contacts(tool: Tool, part: Part, poses: ArrayLike) -> Contacts:
+    """List the points of the part inside the tool, with all outputs there."""
+    return Contacts(**_touchoff.contacts(_tool(tool), _part(part), _arrays.poses(poses)))
+
+
+def detect(tool: Tool, part: Part, poses: ArrayLike) -> NDArray[np.bool_]:
+    """Tell whether any point of the part is inside the tool."""
+    return _touchoff.detect(_tool(tool), _part(part), _arrays.poses(poses))
+
+
+def certified_depth(tool: Tool, part: Part, poses: ArrayLike, *, tolerance: float = 1e-6) -> Depth:
+    """Prove bounds on the greatest depth of the part's triangles in the tool.
+
+    The interval is at most as wide as the tolerance and the rounding error.
+    """
+    rows, within = _arrays.poses(poses), _arrays.length("tolerance", tolerance)
+    return Depth(**_touchoff.certified_depth(_tool(tool), _part(part), rows, within))
+
+
+def clearance(tool: Tool, part: Part, poses: ArrayLike, *, tolerance: float = 1e-6) -> Clearance:
+    """Prove bounds on the distance between part and tool, with the nearest points of both."""
+    rows, within = _arrays.poses(poses), _arrays.length("tolerance", tolerance)
+    return Clearance(**_touchoff.clearance(_tool(tool), _part(part), rows, within))
+
+
+def signed_distance(tool: Tool, part: Part, poses: ArrayLike, *, tolerance: float = 1e-6) -> Distance:
+    """Prove bounds on the signed distance between part and tool.
+
+    It is the distance where they are apart, and below 0 the depth of the deepest point in contact. A tool that is wholly inside
+    the material has no lower bound: -inf.
+    """
+    rows, within = _arrays.poses(poses), _arrays.length("tolerance", tolerance)
+    return Distance(**_touchoff.signed_distance(_tool(tool), _part(part), rows, within))
+
+
+def _tool(tool: object) -> _touchoff.Tool:
+    if not isinstance(tool, Tool):
+        raise TypeError(f"tool: a Tool is expected, not {type(tool).__name__}: see Tool.library and Tool.load")
+    return tool._rust
+
+
+def _part(part: object) -> _touchoff.Part:
+    if not isinstance(part, Part):
+        raise TypeError(f"part: a Part is expected, not {type(part).__name__}: see Part and Part.read")
+    return part._rust
