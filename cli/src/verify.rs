@@ -32,9 +32,8 @@ pub(crate) type Inputs = JobInputs<LoadedTool>;
 /// # Errors
 /// If one of them cannot be read, or they do not fit.
 pub(crate) fn read(file: JobFile) -> Result<Inputs, Failure> {
-    let inputs = JobInputs::read::<Failure>(file, |named| {
-        LoadedTool::load(&named.name, &arguments(named))
-    })?;
+    let inputs =
+        JobInputs::read::<Failure>(file, |named| LoadedTool::load(&named.name, &arguments(named)))?;
     for (named, loaded) in &inputs.tools {
         let info = loaded.tool().info();
         if let Some(line) = inputs.program.check_tool(named.motions, info, inputs.file.unit)? {
@@ -45,7 +44,8 @@ pub(crate) fn read(file: JobFile) -> Result<Inputs, Failure> {
         part::print_findings(&body.file, &body.mesh);
     }
     let entry = inputs.file.stock.as_ref().and_then(|entry| entry.mesh.as_ref());
-    if let (Some(file), Some(JobStock { shape: StockShape::Mesh(mesh), .. })) = (entry, &inputs.stock)
+    if let (Some(file), Some(JobStock { shape: StockShape::Mesh(mesh), .. })) =
+        (entry, &inputs.stock)
     {
         part::print_findings(file, mesh);
     }

@@ -41,7 +41,9 @@ pub enum FindError {
         message: String,
     },
     /// The list of numbers cannot be written.
-    #[error("cannot write {file}: {source}: check the folder, its permissions and the room on the disk")]
+    #[error(
+        "cannot write {file}: {source}: check the folder, its permissions and the room on the disk"
+    )]
     Unwritable {
         /// The list.
         file: String,

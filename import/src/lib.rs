@@ -145,8 +145,7 @@ impl Library {
     fn of(file: &Path, found: Vec<Found>) -> Library {
         let source = file.file_name().map(|name| name.to_string_lossy()).unwrap_or_default();
         let mut writer = Writer::default();
-        let mut library =
-            Library { file: file.to_owned(), tools: Vec::new(), skipped: Vec::new() };
+        let mut library = Library { file: file.to_owned(), tools: Vec::new(), skipped: Vec::new() };
         for (index, found) in found.into_iter().enumerate() {
             let position = index + 1;
             match found {

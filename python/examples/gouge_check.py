@@ -9,8 +9,10 @@ PROGRAM = """G21 G90 G54 G0 X-30. Y0. Z5.
 T1 M6
 S9000 M3
 G43 H1 Z5.
-G1 X30. Z{depth} F500.
+G0 Z{depth}
+G1 X30. F500.
 G0 Z5.
+G49
 M30
 """
 

@@ -34,8 +34,9 @@ pub(crate) fn tool(error: touchoff::tool::ToolError) -> PyErr {
 pub(crate) fn geometry(error: GeometryError) -> PyErr {
     let message = error.to_string();
     match error {
-        GeometryError::Unreadable { .. }
-        | GeometryError::Stl(StlError::Unreadable { .. }) => PyOSError::new_err(message),
+        GeometryError::Unreadable { .. } | GeometryError::Stl(StlError::Unreadable { .. }) => {
+            PyOSError::new_err(message)
+        }
         _ => PyValueError::new_err(message),
     }
 }

@@ -59,7 +59,8 @@ pub(crate) fn check_job(py: Python<'_>, path: PathBuf, keys: Option<String>) -> 
             Some(keys) => {
                 let keys: toml::Table = serde_json::from_str(&keys)
                     .map_err(|error| CheckError::Keys(error.to_string()))?;
-                let text = toml::to_string(&keys).map_err(|error| CheckError::Keys(error.to_string()))?;
+                let text =
+                    toml::to_string(&keys).map_err(|error| CheckError::Keys(error.to_string()))?;
                 JobFile::parse(&text, &path)?
             }
         };

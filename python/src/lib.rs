@@ -7,6 +7,9 @@
 //! The Python package `touchoff` checks shapes and types and names its results; this extension module converts poses, runs
 //! the queries on all cores without the interpreter's lock, and fills arrays. Nothing is computed here.
 
+// The interpreter hands arguments over by value.
+#![allow(clippy::needless_pass_by_value)]
+
 mod error;
 mod job;
 mod part;

@@ -105,7 +105,7 @@ impl Part {
     /// The vertices, n × 3.
     #[getter]
     fn vertices<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let vertices = self.mesh()?.vertices().iter().flat_map(|vertex| vertex.coords);
+        let vertices = self.mesh()?.vertices().iter().flat_map(|vertex| <[f64; 3]>::from(*vertex));
         rows(py, vertices.collect(), 3)
     }
 
@@ -125,7 +125,7 @@ impl Part {
     #[getter]
     fn bounds<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let corners = self.mesh()?.bounds();
-        rows(py, corners.iter().flat_map(|corner| corner.coords).collect(), 3)
+        rows(py, corners.iter().flat_map(|corner| <[f64; 3]>::from(*corner)).collect(), 3)
     }
 
     /// Whether the mesh is closed and oriented outward, so that it has an inside.

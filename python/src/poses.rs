@@ -25,7 +25,9 @@ impl Poses {
             6 => axis,
             7 => quaternion,
             16 => matrix,
-            _ => return Err(refused("poses: an array with rows of 6, 7 or 16 numbers is expected")),
+            _ => {
+                return Err(refused("poses: an array with rows of 6, 7 or 16 numbers is expected"));
+            }
         };
         let poses = rows.chunks_exact(columns).enumerate().map(|(index, row)| {
             read(row).map_err(|reason| PyValueError::new_err(format!("poses[{index}]: {reason}")))
@@ -47,7 +49,10 @@ fn quaternion(row: &[f64]) -> Result<Pose, String> {
 fn matrix(row: &[f64]) -> Result<Pose, String> {
     let is_last = |(value, expected): (&f64, f64)| (value - expected).abs() <= LAST_ROW;
     if !row[12..].iter().zip([0.0, 0.0, 0.0, 1.0]).all(is_last) {
-        return Err("the last row of a matrix is 0, 0, 0, 1: transpose it if its translation is there".to_owned());
+        return Err(
+            "the last row of a matrix is 0, 0, 0, 1: transpose it if its translation is there"
+                .to_owned(),
+        );
     }
     let rotation =
         Matrix3::new(row[0], row[1], row[2], row[4], row[5], row[6], row[8], row[9], row[10]);

@@ -16,6 +16,11 @@ const NONE: i64 = -1;
 
 const NAN: [f64; 3] = [f64::NAN; 3];
 
+/// Returns a position as numpy has it.
+fn index(position: usize) -> i64 {
+    i64::try_from(position).expect("a position in memory")
+}
+
 /// The arrays of a result, by their names.
 struct Arrays<'py> {
     py: Python<'py>,
@@ -57,8 +62,7 @@ fn probe<'a>(
     centre: [f64; 3],
 ) -> PyResult<Probe<'a>> {
     let law: Law = law.parse().map_err(|error| refused(format!("law: {error}")))?;
-    let weights: Weights =
-        weights.parse().map_err(|error| refused(format!("weights: {error}")))?;
+    let weights: Weights = weights.parse().map_err(|error| refused(format!("weights: {error}")))?;
     let centre = Point3::from(centre);
     let probe: Probe<'a> = Probe::new(part.points()?, tool.get());
     Ok(probe.with_law(law).with_weights(weights).with_centre(centre))
@@ -66,8 +70,7 @@ fn probe<'a>(
 
 /// Refuses poses without a spin for a solid without an axis.
 fn check_spin(tool: &Tool, poses: &[Pose]) -> PyResult<()> {
-    let is_solid =
-        matches!(tool.get().info().symmetry, touchoff::tool::Symmetry::Solid { .. });
+    let is_solid = matches!(tool.get().info().symmetry, touchoff::tool::Symmetry::Solid { .. });
     match poses.iter().position(|pose| is_solid && !pose.has_spin()) {
         Some(index) => Err(refused(format!(
             "poses[{index}]: a solid without an axis needs its full rotation: give quaternions or matrices"
@@ -101,8 +104,16 @@ pub(crate) fn wrench<'py>(
         .numbers("niceness", found.iter().map(|one| one.niceness.unwrap_or(f64::NAN)))?
         .numbers("colliding", found.iter().map(|one| one.colliding as u64))?
         .numbers("energy", found.iter().map(|one| one.energy))?
-        .vectors("point", found.iter().map(|one| one.deepest.map_or(NAN, |deepest| deepest.point.into())))?
-        .numbers("triangle", found.iter().map(|one| one.deepest.map_or(NONE, |deepest| i64::from(deepest.triangle.0))))?
+        .vectors(
+            "point",
+            found.iter().map(|one| one.deepest.map_or(NAN, |deepest| deepest.point.into())),
+        )?
+        .numbers(
+            "triangle",
+            found
+                .iter()
+                .map(|one| one.deepest.map_or(NONE, |deepest| i64::from(deepest.triangle.0))),
+        )?
         .numbers("force_error", found.iter().map(|one| one.rounding.force))?
         .numbers("torque_error", found.iter().map(|one| one.rounding.torque))?;
     Ok(arrays.dict)
@@ -125,12 +136,13 @@ pub(crate) fn contacts<'py>(
     let arrays = Arrays::new(py);
     let mut offset = 0;
     let ends = found.iter().map(|contacts| {
-        offset += contacts.len() as i64;
+        offset += index(contacts.len());
         offset
     });
     arrays.numbers("offsets", [0].into_iter().chain(ends))?;
     let counted = found.iter().zip(0i64..);
-    arrays.numbers("pose", counted.flat_map(|(contacts, pose)| contacts.iter().map(move |_| pose)))?;
+    arrays
+        .numbers("pose", counted.flat_map(|(contacts, pose)| contacts.iter().map(move |_| pose)))?;
     let all = || found.iter().flatten();
     arrays
         .vectors("point", all().map(|one| one.point.into()))?
@@ -138,8 +150,8 @@ pub(crate) fn contacts<'py>(
         .vectors("direction", all().map(|one| one.direction.into()))?
         .vectors("gradient", all().map(|one| one.gradient.into()))?
         .numbers("triangle", all().map(|one| i64::from(one.triangle.0)))?
-        .numbers("surface", all().map(|one| one.surface.0 as i64))?
-        .numbers("region", all().map(|one| one.region as i64))?
+        .numbers("surface", all().map(|one| index(one.surface.0)))?
+        .numbers("region", all().map(|one| index(one.region)))?
         .numbers("depth", all().map(|one| one.depth))?
         .numbers("magnitude", all().map(|one| one.magnitude))?
         .numbers("niceness", all().map(|one| one.niceness))?
@@ -188,13 +200,16 @@ impl Arrays<'_> {
             .numbers("high", intervals.map(|interval| interval.high))
     }
 
-    fn witnesses(&self, witnesses: impl Iterator<Item = Option<Witness>> + Clone) -> PyResult<&Self> {
+    fn witnesses(
+        &self,
+        witnesses: impl Iterator<Item = Option<Witness>> + Clone,
+    ) -> PyResult<&Self> {
         let of = |number: fn(Witness) -> i64| {
             witnesses.clone().map(move |witness| witness.map_or(NONE, number))
         };
         self.vectors("point", witnesses.clone().map(|one| one.map_or(NAN, |one| one.point.into())))?
             .numbers("triangle", of(|witness| i64::from(witness.triangle.0)))?
-            .numbers("surface", of(|witness| witness.surface.0 as i64))
+            .numbers("surface", of(|witness| index(witness.surface.0)))
     }
 }
 

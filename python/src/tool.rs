@@ -5,11 +5,11 @@ use pyo3::exceptions::{PyOSError, PyValueError};
 use pyo3::prelude::*;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
-use touchoff::tool::{Interpreted, ToolError, ToolInfo};
+use touchoff::tool::{Circle, Interpreted, ProfileSegment, ToolError, ToolInfo};
 use touchoff_drawing::{Content, TextRendering, svg};
 use touchoff_dsl::compile_with_arguments;
 use touchoff_dsl::source::Source;
-use touchoff_import::{ImportError, Library, find_in_folder};
+use touchoff_import::{ImportError, ImportedTool, Library, find_in_folder};
 use touchoff_tools::{SOURCES, TOOLS};
 
 /// A cutting tool.
@@ -22,10 +22,36 @@ pub(crate) enum LoadedTool {
     BuiltIn(&'static dyn touchoff::Tool),
     Interpreted {
         tool: Box<Interpreted>,
-        /// The text and the arguments, for the drawing.
-        source: Source,
-        arguments: Vec<Source>,
+        /// What it was compiled from, for the drawing.
+        text: ToolText,
+        params: Vec<String>,
     },
+}
+
+/// The text of a tool.
+pub(crate) enum ToolText {
+    File(PathBuf),
+    Text {
+        name: String,
+        text: String,
+    },
+    /// Of several files that are not kept.
+    Mounted,
+}
+
+impl ToolText {
+    /// Returns the source to compile. A source is bound to a thread, so it is made where it is needed.
+    fn source(&self) -> Result<Source, ToolError> {
+        match self {
+            ToolText::File(path) => Interpreted::source(path),
+            ToolText::Text { name, text } => Ok(Source::new(name, text)),
+            ToolText::Mounted => Ok(Source::new("tool", "")),
+        }
+    }
+}
+
+fn arguments(params: &[String]) -> Vec<Source> {
+    params.iter().map(|text| Source::new("params", text)).collect()
 }
 
 impl AsRef<dyn touchoff::Tool> for LoadedTool {
@@ -38,11 +64,9 @@ impl AsRef<dyn touchoff::Tool> for LoadedTool {
 }
 
 impl LoadedTool {
-    pub(crate) fn compile(source: Source, params: &[String]) -> Result<LoadedTool, ToolError> {
-        let arguments: Vec<Source> =
-            params.iter().map(|text| Source::new("params", text)).collect();
-        let tool = Box::new(Interpreted::parse_with(&source, &arguments)?);
-        Ok(LoadedTool::Interpreted { tool, source, arguments })
+    fn compile(text: ToolText, params: &[String]) -> Result<LoadedTool, ToolError> {
+        let tool = Box::new(Interpreted::parse_with(&text.source()?, &arguments(params))?);
+        Ok(LoadedTool::Interpreted { tool, text, params: params.to_vec() })
     }
 
     /// Loads a tool by the name of a built-in tool, by its file, or from a library.
@@ -52,7 +76,7 @@ impl LoadedTool {
         params: &[String],
     ) -> Result<LoadedTool, LoadError> {
         let read = |file: &Path| {
-            LoadedTool::compile(Interpreted::source(file)?, params).map_err(LoadError::Tool)
+            LoadedTool::compile(ToolText::File(file.to_owned()), params).map_err(LoadError::Tool)
         };
         if let Some(library) = library {
             if library.is_dir() {
@@ -60,9 +84,7 @@ impl LoadedTool {
             }
             let imported = Library::read(library)?;
             let tool = imported.select(&name.to_string_lossy())?;
-            let tool = Box::new(tool.load()?);
-            let source = Source::new("library", "");
-            return Ok(LoadedTool::Interpreted { tool, source, arguments: Vec::new() });
+            return Ok(LoadedTool::imported(tool)?);
         }
         if Path::new(name).extension().is_some_and(|extension| extension == "tool") {
             return read(Path::new(name));
@@ -73,6 +95,14 @@ impl LoadedTool {
             Some(tool) => Ok(LoadedTool::BuiltIn(tool)),
             None => Err(LoadError::Unknown { name }),
         }
+    }
+
+    fn imported(imported: &ImportedTool) -> Result<LoadedTool, ImportError> {
+        let text = match &imported.files[..] {
+            [file] => ToolText::Text { name: imported.path(), text: file.text.clone() },
+            _ => ToolText::Mounted,
+        };
+        Ok(LoadedTool::Interpreted { tool: Box::new(imported.load()?), text, params: Vec::new() })
     }
 
     fn info(&self) -> &ToolInfo {
@@ -89,7 +119,9 @@ pub(crate) enum LoadError {
     Import(#[from] ImportError),
     #[error(transparent)]
     Find(#[from] touchoff_import::FindError),
-    #[error("no built-in tool is called `{name}`: `touchoff.tool_names()` lists them; a file ends in `.tool`")]
+    #[error(
+        "no built-in tool is called `{name}`: `touchoff.tool_names()` lists them; a file ends in `.tool`"
+    )]
     Unknown { name: String },
     #[error("the built-in tool `{name}` takes no params: load it from its file")]
     Fixed { name: String },
@@ -99,7 +131,9 @@ impl From<LoadError> for PyErr {
     fn from(error: LoadError) -> PyErr {
         match error {
             LoadError::Tool(error) => tool_error(error),
-            LoadError::Import(ImportError::Unreadable { .. }) => PyOSError::new_err(error.to_string()),
+            LoadError::Import(ImportError::Unreadable { .. }) => {
+                PyOSError::new_err(error.to_string())
+            }
             other => PyValueError::new_err(other.to_string()),
         }
     }
@@ -122,18 +156,15 @@ impl Tool {
     /// A tool from its text.
     #[staticmethod]
     fn parse(py: Python<'_>, text: &str, params: Vec<String>, name: &str) -> PyResult<Tool> {
-        let source = Source::new(name, text);
-        let loaded = py.detach(|| LoadedTool::compile(source, &params)).map_err(tool_error)?;
+        let text = ToolText::Text { name: name.to_owned(), text: text.to_owned() };
+        let loaded = py.detach(|| LoadedTool::compile(text, &params)).map_err(tool_error)?;
         Ok(Tool { loaded })
     }
 
     /// A tool from its file.
     #[staticmethod]
     fn load(py: Python<'_>, path: PathBuf, params: Vec<String>) -> PyResult<Tool> {
-        let loaded = py.detach(|| {
-            let source = Interpreted::source(&path)?;
-            LoadedTool::compile(source, &params)
-        });
+        let loaded = py.detach(|| LoadedTool::compile(ToolText::File(path), &params));
         Ok(Tool { loaded: loaded.map_err(tool_error)? })
     }
 
@@ -159,10 +190,23 @@ impl Tool {
         surfaces.map(|surface| (surface.name.to_string(), surface.cutting)).collect()
     }
 
-    /// The largest distance from the axis, in the tool's unit.
+    /// The largest distance from the axis, in the tool's unit; of a solid, an upper bound.
     #[getter]
     fn radius(&self) -> f64 {
-        self.loaded.info().radius()
+        let info = self.loaded.info();
+        let widest = info.outline.iter().map(|ProfileSegment { from, to, circle, .. }| {
+            let ends = from[0].max(to[0]);
+            match circle {
+                // An arc is widest at the height of its centre.
+                Some(Circle { centre, radius, convex: true })
+                    if from[1].min(to[1]) <= centre[1] && centre[1] <= from[1].max(to[1]) =>
+                {
+                    ends.max(centre[0] + radius)
+                }
+                _ => ends,
+            }
+        });
+        widest.reduce(f64::max).unwrap_or_else(|| info.radius())
     }
 
     /// Whether depth is proved to be the distance to the tool's surface.
@@ -187,17 +231,21 @@ impl Tool {
                 let position = TOOLS.iter().position(|known| known.info().name == tool.info().name);
                 let files = position.map(|position| SOURCES[position]);
                 let Some([(file, text)]) = files else {
-                    return Err(refused("the drawing of a built-in assembly needs its files: load it from its `.tool` file"));
+                    return Err(refused(
+                        "the drawing of a built-in assembly needs its files: load it from its `.tool` file",
+                    ));
                 };
                 compile_with_arguments(&Source::new(*file, *text), &[])
             }
-            LoadedTool::Interpreted { source, arguments, .. } => {
-                compile_with_arguments(source, arguments)
+            LoadedTool::Interpreted { text, params, .. } => {
+                compile_with_arguments(&text.source().map_err(tool_error)?, &arguments(params))
             }
         };
         match compiled.tool() {
             Some(tool) => Ok(svg(tool, Content::Regions, TextRendering::Page)),
-            None => Err(refused("the tool has no text to draw from: load it from its `.tool` file")),
+            None => {
+                Err(refused("the tool has no text to draw from: load it from its `.tool` file"))
+            }
         }
     }
 }
@@ -211,27 +259,20 @@ pub(crate) fn tool_names() -> Vec<&'static str> {
 /// A tool of a library, with its number, its title and the notes of the import.
 type ImportedEntry = (Tool, Option<u32>, String, Vec<String>);
 
+/// The tools, and the names and reasons of those that are left out.
+type Imported = (Vec<ImportedEntry>, Vec<(String, String)>);
+
 /// The tools of a library of a CAM system, and the names and reasons of those that are left out.
 #[pyfunction]
-pub(crate) fn import_library(
-    py: Python<'_>,
-    path: PathBuf,
-) -> PyResult<(Vec<ImportedEntry>, Vec<(String, String)>)> {
+pub(crate) fn import_library(py: Python<'_>, path: PathBuf) -> PyResult<Imported> {
     let read = py.detach(|| {
         let library = Library::read(&path)?;
         let mut skipped: Vec<(String, String)> =
             library.skipped().iter().map(|one| (one.name.clone(), one.reason.clone())).collect();
         let mut tools = Vec::new();
         for imported in library.tools() {
-            match imported.load() {
-                Ok(tool) => {
-                    let text = imported.files.last().map_or("", |file| &file.text);
-                    let source = Source::new(imported.path(), text);
-                    let loaded = LoadedTool::Interpreted {
-                        tool: Box::new(tool),
-                        source,
-                        arguments: Vec::new(),
-                    };
+            match LoadedTool::imported(imported) {
+                Ok(loaded) => {
                     let entry = &imported.entry;
                     let notes = entry.notes.iter().map(ToString::to_string).collect();
                     tools.push((Tool { loaded }, entry.number, entry.label().to_owned(), notes));

@@ -111,7 +111,7 @@ def test_non_contiguous_arrays_and_other_numbers_are_taken(ball, block):
     reverse = touchoff.certified_depth(ball, block, poses[::-1]).low
     assert np.allclose(reverse, expected[::-1], atol=2e-6)
     whole = touchoff.certified_depth(ball, block, np.array([DOWN, [0, 0, -1, 0, 0, 1]], dtype=np.int32))
-    assert whole.high[0] == 0 and whole.low[1] > 0.9
+    assert whole.high[0] < 1e-9 and whole.low[1] > 0.9
 
 
 def test_ten_million_poses_need_no_copy_per_pose(ball, block):

@@ -14,8 +14,10 @@ PROGRAM = """G21 G90 G54 G0 X-30. Y0. Z5.
 T1 M6
 S900 M3
 G43 H1 Z5.
-G1 X30. Z{depth} F100.
+G0 Z{depth}
+G1 X30. F100.
 G0 Z5.
+G49
 M30
 """
 
@@ -50,7 +52,7 @@ def test_a_gouge_is_found_and_a_clean_program_is_proved(folder):
     report = job(folder, -0.5).check()
     assert report.verdict == "findings" and not report.refusals
     finding = report.findings[0]
-    assert finding.kind == "deep" and finding.line == 5 and "0.5000 mm" in finding.text
+    assert finding.kind == "deep" and finding.line == 6 and "0.5000 mm" in finding.text
     assert finding.depth is not None and finding.depth[0] <= 0.5 <= finding.depth[1] + 1e-3
     assert finding.point is not None and abs(finding.point[2]) < 1e-9
     assert report.sarif["version"] == "2.1.0" and "0.5000 mm" in report._repr_html_()
@@ -78,9 +80,12 @@ def test_fixtures_stock_and_built_in_tools(folder):
     held = touchoff.Job(folder=folder, tool={1: {"tool": "mill.tool"}}, fixture=clamp, **keys).check()
     assert {finding.kind for finding in held.findings} == {"near"}
     assert all(finding.row["body"] == "clamp" for finding in held.findings)
-    stock = {"box": [[-22, -22, -10], [22, 22, 3]], "spacing": 1.0}
-    cut = touchoff.Job(folder=folder, tool={1: {"tool": "mill.tool"}}, stock=stock, **keys).check()
-    assert cut.verdict in ("clean", "findings") and any("stock" in line for line in cut.summaries + [f.text for f in cut.findings] + cut.refusals)
+    # The flute is 20 mm long: of a stock of 40 mm the shank meets the upper part.
+    for height, verdict, kinds in ((3, "clean", set()), (40, "findings", {"stock"})):
+        stock = {"box": [[-22, -22, -10], [22, 22, height]], "spacing": 1.0}
+        cut = touchoff.Job(folder=folder, tool={1: {"tool": "mill.tool"}}, stock=stock, **keys).check()
+        assert cut.verdict == verdict and {finding.kind for finding in cut.findings} == kinds
+        assert all(finding.row["surface"] == "shank" for finding in cut.findings)
 
 
 def test_findings_become_a_table(folder):

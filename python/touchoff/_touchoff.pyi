@@ -5,27 +5,45 @@ from typing import TypedDict, final, type_check_only
 import numpy as np
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
+_Floats = NDArray[np.float64]
+_Ints = NDArray[np.int64]
+
+__all__ = [
+    "JobError",
+    "Part",
+    "Tool",
+    "ToolError",
+    "certified_depth",
+    "check_job",
+    "clearance",
+    "contacts",
+    "detect",
+    "import_library",
+    "read_map",
+    "signed_distance",
+    "sweep",
+    "tool_names",
+    "wrench",
+]
 
 class ToolError(ValueError): ...
 class JobError(ValueError): ...
 
 @final
 class Part:
-    def __new__(cls, vertices: Floats, faces: NDArray[np.uint32], unit_name: str, points: int) -> Part: ...
+    def __new__(cls, vertices: _Floats, faces: NDArray[np.uint32], unit_name: str, points: int) -> Part: ...
     @staticmethod
     def read(path: str, unit_name: str, points: int) -> Part: ...
     @property
     def unit(self) -> str: ...
     @property
-    def vertices(self) -> Floats: ...
+    def vertices(self) -> _Floats: ...
     @property
     def faces(self) -> NDArray[np.uint32]: ...
     @property
     def triangle_count(self) -> int: ...
     @property
-    def bounds(self) -> Floats: ...
+    def bounds(self) -> _Floats: ...
     @property
     def is_solid(self) -> bool: ...
     @property
@@ -59,74 +77,74 @@ class Tool:
 
 @type_check_only
 class WrenchArrays(TypedDict):
-    force: Floats
-    torque: Floats
-    depth: Floats
-    niceness: Floats
+    force: _Floats
+    torque: _Floats
+    depth: _Floats
+    niceness: _Floats
     colliding: NDArray[np.uint64]
-    energy: Floats
-    point: Floats
-    triangle: Ints
-    force_error: Floats
-    torque_error: Floats
+    energy: _Floats
+    point: _Floats
+    triangle: _Ints
+    force_error: _Floats
+    torque_error: _Floats
 
 @type_check_only
 class ContactArrays(TypedDict):
-    offsets: Ints
-    pose: Ints
-    point: Floats
-    normal: Floats
-    direction: Floats
-    gradient: Floats
-    triangle: Ints
-    surface: Ints
-    region: Ints
-    depth: Floats
-    magnitude: Floats
-    niceness: Floats
-    weight: Floats
+    offsets: _Ints
+    pose: _Ints
+    point: _Floats
+    normal: _Floats
+    direction: _Floats
+    gradient: _Floats
+    triangle: _Ints
+    surface: _Ints
+    region: _Ints
+    depth: _Floats
+    magnitude: _Floats
+    niceness: _Floats
+    weight: _Floats
 
 @type_check_only
 class DistanceArrays(TypedDict):
-    low: Floats
-    high: Floats
+    low: _Floats
+    high: _Floats
 
 @type_check_only
 class DepthArrays(DistanceArrays):
-    point: Floats
-    triangle: Ints
-    surface: Ints
+    point: _Floats
+    triangle: _Ints
+    surface: _Ints
 
 @type_check_only
 class ClearanceArrays(DepthArrays):
-    tool_point: Floats
-    normal: Floats
+    tool_point: _Floats
+    normal: _Floats
 
 @type_check_only
 class MapArrays(TypedDict):
     tools: list[str]
-    directions: Floats
+    directions: _Floats
     reached: NDArray[np.bool_]
-    stickout: Floats
-    tool: Ints
-    tip: Floats
-    axis: Floats
-    niceness: Floats
-    depth: Floats
-    clearance: Floats
+    stickout: _Floats
+    tool: _Ints
+    tip: _Floats
+    axis: _Floats
+    niceness: _Floats
+    depth: _Floats
+    clearance: _Floats
 
 def tool_names() -> list[str]: ...
 def import_library(
     path: str,
 ) -> tuple[list[tuple[Tool, int | None, str, list[str]]], list[tuple[str, str]]]: ...
 def wrench(
-    tool: Tool, part: Part, poses: Floats, law: str, weights: str, centre: tuple[float, float, float]
+    tool: Tool, part: Part, poses: _Floats, law: str, weights: str, centre: tuple[float, float, float]
 ) -> WrenchArrays: ...
-def contacts(tool: Tool, part: Part, poses: Floats) -> ContactArrays: ...
-def detect(tool: Tool, part: Part, poses: Floats) -> NDArray[np.bool_]: ...
-def certified_depth(tool: Tool, part: Part, poses: Floats, tolerance: float) -> DepthArrays: ...
-def clearance(tool: Tool, part: Part, poses: Floats, tolerance: float) -> ClearanceArrays: ...
-def signed_distance(tool: Tool, part: Part, poses: Floats, tolerance: float) -> DistanceArrays: ...
+def contacts(tool: Tool, part: Part, poses: _Floats) -> ContactArrays: ...
+def detect(tool: Tool, part: Part, poses: _Floats) -> NDArray[np.bool_]: ...
+def certified_depth(tool: Tool, part: Part, poses: _Floats, tolerance: float) -> DepthArrays: ...
+def clearance(tool: Tool, part: Part, poses: _Floats, tolerance: float) -> ClearanceArrays: ...
+def signed_distance(tool: Tool, part: Part, poses: _Floats, tolerance: float) -> DistanceArrays: ...
 def sweep(
     part: Part,
     tools: list[Tool],

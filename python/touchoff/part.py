@@ -61,8 +61,9 @@ class Part:
         if faces is None:
             if not isinstance(vertices, MeshLike):
                 raise TypeError("faces: give the triangles, or a mesh with `vertices` and `faces` in place of the vertices")
-            unit = unit if unit is not None else getattr(vertices, "units", None)
-            vertices, faces = vertices.vertices, vertices.faces
+            mesh = vertices
+            unit = unit if unit is not None else getattr(mesh, "units", None)
+            vertices, faces = mesh.vertices, mesh.faces
         elif isinstance(vertices, MeshLike):
             raise TypeError("faces: the mesh has its own: leave them out")
         corners = _arrays.numbers("vertices", vertices)

@@ -83,7 +83,8 @@ fn the_action_and_the_hook_verify_jobs() {
     let folder = tempfile::tempdir().expect("a folder");
     let clean = script("integrations/verify-jobs out", folder.path(), &[job("clean")]);
     assert_eq!(clean.status.code(), Some(0), "{}", stderr(&clean));
-    let missing = script("integrations/verify-jobs out", folder.path(), &[job("clean"), job("none")]);
+    let missing =
+        script("integrations/verify-jobs out", folder.path(), &[job("clean"), job("none")]);
     assert_eq!(missing.status.code(), Some(2), "{}", stderr(&missing));
     let none = script("integrations/verify-jobs out", folder.path(), &[]);
     assert!(none.status.code() == Some(2) && stderr(&none).contains("usage"));

@@ -155,7 +155,7 @@ impl<'a> CertifiedScene<'a> {
             if let Some(witness) = &mut answer.witness {
                 witness.point = to_world(&frame, witness.point);
             }
-            BodyAnswer { body: &*body.name, answer }
+            BodyAnswer { body: &body.name, answer }
         });
         answers.reduce(|one, other| {
             let [a, b] = [one.answer.depth, other.answer.depth];
@@ -177,7 +177,7 @@ impl<'a> CertifiedScene<'a> {
                 on_tool.point = to_world(&frame, on_tool.point);
                 on_tool.normal = frame.rotation() * on_tool.normal;
             }
-            BodyAnswer { body: &*body.name, answer }
+            BodyAnswer { body: &body.name, answer }
         });
         answers.reduce(|one, other| {
             let [a, b] = [one.answer.distance, other.answer.distance];
@@ -196,7 +196,7 @@ impl<'a> CertifiedScene<'a> {
         let answers = self.bodies.iter_mut().map(|body| {
             let pose = pose.relative_to(&body.frame);
             let answer = body.certifier.signed_distance(&pose, tolerance);
-            BodyAnswer { body: &*body.name, answer }
+            BodyAnswer { body: &body.name, answer }
         });
         answers.reduce(|one, other| {
             let answer = lesser(one.answer, other.answer);

@@ -244,7 +244,9 @@ pub enum JobError {
     #[error(transparent)]
     Geometry(#[from] GeometryError),
     /// A body of the job is a cloud of points.
-    #[error("{file}: the job needs triangles, and this has only points: give the mesh that they were sampled from")]
+    #[error(
+        "{file}: the job needs triangles, and this has only points: give the mesh that they were sampled from"
+    )]
     NoTriangles {
         /// The file.
         file: String,

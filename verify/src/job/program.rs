@@ -7,8 +7,8 @@ use crate::program::ProgramFile;
 use crate::{ClData, Gap, MachineProgram, Move, ProgramError, ToolSelection, ToolUse};
 use std::iter;
 use std::path::Path;
-use touchoff::{Pose, Unit};
 use touchoff::tool::{Symmetry, ToolInfo};
+use touchoff::{Pose, Unit};
 
 /// The machine of G-code for which none is named.
 pub const DEFAULT_MACHINE: &str = "3-axis";
