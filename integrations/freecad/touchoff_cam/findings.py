@@ -10,7 +10,8 @@ def show(document, report, program):
     """Replace the findings of an earlier check by those of a report, and return the group."""
     clear(document)
     group = document.addObject("App::DocumentObjectGroup", GROUP)
-    group.Label = f"Touchoff: {report.verdict} ({len(report.findings)} findings)"
+    count = len(report.findings)
+    group.Label = f"Touchoff: {report.verdict}" if count == 0 else f"Touchoff: {count} finding{'' if count == 1 else 's'}"
     for finding in report.findings:
         point = finding.point
         kind = "Part::Sphere" if point is not None else "App::FeaturePython"
