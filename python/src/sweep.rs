@@ -12,6 +12,9 @@ use std::path::PathBuf;
 use touchoff_postures::sweep::{PostureSweep, SweepStats};
 use touchoff_postures::{Accessibility, Directions, MapRow, PostureMap, Rules};
 
+/// The largest table of triangles, tools and directions, in bytes.
+const MAX_ENTRIES: usize = 4 << 30;
+
 /// What was found at one triangle.
 type TriangleRow = (usize, MapRow);
 
@@ -96,6 +99,12 @@ impl Map {
     fn arrays(self, py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
         let Map { count, tools, directions, rows: found } = self;
         let (tool_count, direction_count) = (tools.len(), directions.list().len());
+        if count.saturating_mul(tool_count).saturating_mul(direction_count) > MAX_ENTRIES {
+            return Err(refused(format!(
+                "the table of {count} triangles, {tool_count} tools and {direction_count} directions is longer than \
+                 {MAX_ENTRIES} entries: take fewer tools or directions at a time"
+            )));
+        }
         let mut reached = vec![false; count * tool_count * direction_count];
         let mut stickout = vec![f64::NAN; count * tool_count];
         let mut best_tool = vec![-1i64; count];

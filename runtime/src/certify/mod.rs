@@ -37,8 +37,8 @@ pub use part::{BoxVisitor, Location, TriangleBvh};
 pub use scene::{BodyAnswer, CertifiedScene};
 pub use trajectory::{Approximation, Trajectory};
 pub use verdict::{
-    AllowanceError, Clearance, MotionDepth, MotionVerdict, NoSuchSurface, NotCertifiable,
-    Penetration, PoseVerdict, ToolPoint, Witness,
+    AllowanceError, AllowanceErrors, Clearance, MotionDepth, MotionVerdict, NoSuchSurface,
+    NotCertifiable, Penetration, PoseVerdict, ToolPoint, Witness,
 };
 
 use crate::bvh::QuerySetup;
@@ -233,6 +233,25 @@ impl<'a> Certifier<'a> {
         surface: &str,
         allowed: f64,
     ) -> Result<Certifier<'a>, AllowanceError> {
+        self.allow(surface, allowed)?;
+        Ok(self)
+    }
+
+    /// Sets the allowances of several surfaces, as [`Certifier::with_allowance`] does. The last one of a surface holds.
+    ///
+    /// # Errors
+    /// All that are wrong.
+    pub fn with_allowances<'n>(
+        mut self,
+        allowances: impl IntoIterator<Item = (&'n str, f64)>,
+    ) -> Result<Certifier<'a>, AllowanceErrors> {
+        let allowances = allowances.into_iter();
+        let errors = allowances.filter_map(|(surface, allowed)| self.allow(surface, allowed).err());
+        let errors: Vec<AllowanceError> = errors.collect();
+        if errors.is_empty() { Ok(self) } else { Err(AllowanceErrors(errors)) }
+    }
+
+    fn allow(&mut self, surface: &str, allowed: f64) -> Result<(), AllowanceError> {
         if allowed.is_nan() || allowed / self.setting.length == f64::NEG_INFINITY {
             return Err(AllowanceError::NoLength { surface: surface.to_owned(), allowed });
         }
@@ -254,7 +273,7 @@ impl<'a> Certifier<'a> {
         let length = self.setting.length;
         self.core_points =
             CorePoints::new(self.allowances.depths.iter().map(|depth| depth / length));
-        Ok(self)
+        Ok(())
     }
 
     /// Computes the deepest penetration of the part's triangles into the tool. The interval is at most as wide as the

@@ -74,6 +74,21 @@ pub enum AllowanceError {
 
 crate::debug_as_sentence!(AllowanceError);
 
+/// Several invalid allowances, a sentence each.
+#[derive(Clone, PartialEq)]
+pub struct AllowanceErrors(pub Vec<AllowanceError>);
+
+impl fmt::Display for AllowanceErrors {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let sentences: Vec<String> = self.0.iter().map(ToString::to_string).collect();
+        f.write_str(&sentences.join("\n"))
+    }
+}
+
+crate::debug_as_sentence!(AllowanceErrors);
+
+impl std::error::Error for AllowanceErrors {}
+
 /// The deepest penetration of a part's triangles into a tool.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]

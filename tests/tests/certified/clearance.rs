@@ -2,9 +2,11 @@
 
 use crate::{block, plate, pose, tool};
 use nalgebra::{Point3, Vector3};
+use std::sync::Arc;
 use touchoff::certify::{Certifier, TriangleBvh};
 use touchoff::mesh::shapes;
-use touchoff::{Interval, Mesh, Pose, TriangleId, Unit};
+use touchoff::tool::Interpreted;
+use touchoff::{Interval, Mesh, Pose, Tool, TriangleId, Unit};
 use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::{Nearest, Oracle};
 
@@ -83,4 +85,109 @@ fn raster_points_are_within_the_certified_clearance() {
             }
         }
     }
+}
+
+/// The oracle locates the tool's point: on the surface, as far from the witness as is said, and with the normal along which
+/// the distance grows.
+#[test]
+fn the_nearest_points_are_on_both_surfaces() {
+    let tube = shapes::tube(3.0, 5.0, 13.0, 24, 3, Unit::Millimetre).expect("a tube");
+    let bvh = TriangleBvh::new(&tube);
+    let mut rng = Rng::new(11);
+    let (mut apart, mut contacts) = (0, 0);
+    for name in ["Fig73Exact", "BullNose", "Lollipop", "TSlot", "BallEr16", "TaperedBall"] {
+        let oracle = Nearest::of(name);
+        let mut certifier = Certifier::new(&bvh, tool(name)).expect("a profile");
+        for _ in 0..200 {
+            let axis = Vector3::from_fn(|_, _| rng.between(-1.0, 1.0)).normalize();
+            let tip = Point3::from(Vector3::from_fn(|_, _| rng.between(-12.0, 12.0)));
+            let Ok(pose) = Pose::from_axis(tip, axis) else { continue };
+            let to_tool = |point: Point3<f64>| -> [f64; 3] {
+                (pose.rotation().transpose() * (point - pose.tip())).into()
+            };
+            let nearest = certifier.clearance(&pose, 1e-9);
+            let (on_tool, witness) = (nearest.on_tool.expect("a point"), nearest.witness);
+            let text = format!("{name} at {tip}, {axis}: {nearest:?}");
+            // Both are known to the rounding error of the certifier, far below this.
+            assert!(oracle.signed_distance(to_tool(on_tool.point)).abs() < 1e-9, "{text}");
+            assert!((on_tool.normal.norm() - 1.0).abs() < 1e-12, "{text}");
+            let between = witness.expect("a point").point - on_tool.point;
+            let signed = certifier.signed_distance(&pose, 1e-9);
+            if nearest.distance.low > 0.0 {
+                apart += 1;
+                assert!((between.norm() - nearest.distance.low).abs() < 1e-8, "{text}");
+                assert!((between / between.norm() - on_tool.normal).norm() < 1e-6, "{text}");
+                // The search before decides which triangle comes first, and so the bits.
+                assert!((signed.low - nearest.distance.low).abs() < 1e-8, "{text}");
+            } else {
+                contacts += 1;
+                let depth = certifier.deepest(&pose, 1e-9).depth;
+                assert!(signed.low <= -depth.low && -depth.high <= signed.high, "{text}: {signed}");
+                assert!(signed.width() < 1e-8, "{text}: {signed}");
+                // The witness of a contact is inside: the normal leads from it to the surface.
+                assert!(between.dot(&on_tool.normal) <= 1e-12, "{text}");
+            }
+        }
+    }
+    println!("{apart} apart, {contacts} contacts");
+    assert!(apart > 100 && contacts > 300, "{apart} {contacts}");
+}
+
+#[test]
+fn a_signed_distance_is_below_zero_in_the_material() {
+    let bvh = TriangleBvh::new(&block([-90.0; 3], [90.0; 3]));
+    let mut certifier = Certifier::new(&bvh, tool("D2Ball")).expect("a profile");
+    let buried = certifier.signed_distance(&pose([0.0, 0.0, -85.0], [0.0, 0.0, 1.0]), 1e-9);
+    assert_eq!(buried.low, f64::NEG_INFINITY);
+    assert!((-5.0..-5.0 + 1e-8).contains(&buried.high), "{buried}");
+    // An open sheet has no inside.
+    let sheet = shapes::plane(20.0, 4, Unit::Millimetre).expect("a sheet");
+    let sheet = TriangleBvh::new(&sheet);
+    let mut certifier = Certifier::new(&sheet, tool("D2Ball")).expect("a profile");
+    let above = certifier.signed_distance(&pose([0.0, 0.0, 2.0], [0.0, 0.0, 1.0]), 1e-9);
+    assert!(above.contains(2.0) && above.width() < 2e-8, "{above}");
+}
+
+/// Certifiers that share their part and tool, clones and threads answer with the bits of the first.
+#[test]
+fn shared_and_cloned_certifiers_have_the_same_bits() {
+    let tube = shapes::tube(3.0, 5.0, 13.0, 24, 3, Unit::Millimetre).expect("a tube");
+    let bvh = Arc::new(TriangleBvh::new(&tube));
+    let mut rng = Rng::new(5);
+    let poses = (0..300).map(|_| {
+        let axis: [f64; 3] = Vector3::from_fn(|_, _| rng.between(-1.0, 1.0)).normalize().into();
+        pose([0, 1, 2].map(|_| rng.between(-12.0, 12.0)), axis)
+    });
+    let poses: Vec<Pose> = poses.collect();
+    struct Held(Certifier<'static>);
+    let interpreted: Interpreted =
+        "tool Pin { units mm; profile { start (0, 0); line to (1, 0), (1, 9), (0, 9) as pin; } }"
+            .parse()
+            .expect("a tool");
+    let interpreted: Arc<dyn Tool> = Arc::new(interpreted);
+    let mut held =
+        Held(Certifier::shared(Arc::clone(&bvh), Arc::clone(&interpreted)).expect("a profile"));
+    let mut borrowed = Certifier::new(&bvh, &*interpreted).expect("a profile");
+    let mut cloned = borrowed.clone();
+    // In stretches of 64, as on all cores.
+    let mut alone = Vec::new();
+    for stretch in poses.chunks(64) {
+        borrowed.clear_caches();
+        cloned.clear_caches();
+        held.0.clear_caches();
+        for pose in stretch {
+            let answers = [
+                borrowed.signed_distance(pose, 1e-7),
+                cloned.signed_distance(pose, 1e-7),
+                held.0.signed_distance(pose, 1e-7),
+            ];
+            assert!(answers[1] == answers[0] && answers[2] == answers[0], "{answers:?}");
+            alone.push(answers[0]);
+        }
+    }
+    let many = held.0.par_map(&poses, |certifier, pose| certifier.signed_distance(pose, 1e-7));
+    assert_eq!(many, alone);
+    // A thread of its own.
+    let answers = std::thread::spawn(move || held.0.signed_distance(&poses[0], 1e-7)).join();
+    assert_eq!(answers.expect("no panic").low, alone[0].low);
 }

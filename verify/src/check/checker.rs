@@ -201,11 +201,11 @@ fn widen(kind: &mut FindingKind, spread: f64) {
 impl<'a> Mode<'a> {
     fn new(verifier: &Verifier<'a>, rapid: bool) -> Result<Mode<'a>, VerifyError> {
         let limits = verifier.limits(rapid);
-        let mut certifier =
-            Certifier::new(verifier.bvh, verifier.tool)?.with_budget(verifier.budget);
-        for (surface, limit) in verifier.tool.info().surfaces.iter().zip(&limits) {
-            certifier = certifier.with_allowance(&surface.name, *limit)?;
-        }
+        let surfaces = verifier.tool.info().surfaces.iter().zip(&limits);
+        let certifier =
+            Certifier::new(verifier.bvh, verifier.tool)?
+                .with_budget(verifier.budget)
+                .with_allowances(surfaces.map(|(surface, limit)| (&*surface.name, *limit)))?;
         let margin = limits.iter().fold(0.0f64, |margin, limit| margin.max(-limit));
         Ok(Mode { certifier, limits, margin })
     }

@@ -4,7 +4,7 @@ use super::Approach;
 use crate::program::ProgramError;
 use std::cmp::Ordering;
 use std::mem::{self, Discriminant};
-use touchoff::certify::{AllowanceError, NotCertifiable, Witness};
+use touchoff::certify::{AllowanceErrors, NotCertifiable, Witness};
 use touchoff::{Interval, MotionError, Pose, SurfaceId};
 
 /// A reason for which a program cannot be checked.
@@ -14,9 +14,9 @@ pub enum VerifyError {
     /// The tool cannot be certified.
     #[error(transparent)]
     NotCertifiable(#[from] NotCertifiable),
-    /// An allowance is invalid.
+    /// Some allowances are invalid.
     #[error(transparent)]
-    Allowance(#[from] AllowanceError),
+    Allowances(#[from] AllowanceErrors),
     /// The program does not fit the part or the tool: its unit, its cutter, or its poses.
     #[error(transparent)]
     Program(#[from] ProgramError),

@@ -142,15 +142,25 @@ impl<'a> Verifier<'a> {
     ///
     /// # Errors
     /// If there is no such surface, or it cannot have this allowance.
-    pub fn with_allowance(
+    pub fn with_allowance(self, surface: &str, allowed: f64) -> Result<Verifier<'a>, VerifyError> {
+        self.with_allowances([(surface, allowed)])
+    }
+
+    /// Sets the depths that several surfaces are allowed, as [`Verifier::with_allowance`] does. The last one of a surface
+    /// holds.
+    ///
+    /// # Errors
+    /// All that are wrong.
+    pub fn with_allowances<'n>(
         mut self,
-        surface: &str,
-        allowed: f64,
+        allowances: impl IntoIterator<Item = (&'n str, f64)> + Clone,
     ) -> Result<Verifier<'a>, VerifyError> {
         // Accept exactly what a certifier accepts.
-        Certifier::new(self.bvh, self.tool)?.with_allowance(surface, allowed)?;
-        if let Some(SurfaceId(index)) = self.tool.info().surface_named(surface) {
-            self.allowed[index] = Some(allowed);
+        Certifier::new(self.bvh, self.tool)?.with_allowances(allowances.clone())?;
+        for (surface, allowed) in allowances {
+            if let Some(SurfaceId(index)) = self.tool.info().surface_named(surface) {
+                self.allowed[index] = Some(allowed);
+            }
         }
         Ok(self)
     }

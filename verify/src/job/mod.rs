@@ -313,24 +313,22 @@ impl<'a> Job<'a> {
             BodyRole::Fixture { margin } => {
                 // Surfaces without another allowance have 0.
                 if checked_margin(margin)? > 0.0 {
-                    for surface in info.surfaces.iter() {
-                        verifier = verifier.with_allowance(&surface.name, -margin)?;
-                    }
+                    let surfaces = info.surfaces.iter();
+                    verifier = verifier
+                        .with_allowances(surfaces.map(|surface| (&*surface.name, -margin)))?;
                 }
             }
             BodyRole::Part => {
-                verifier = verifier.with_tolerance(self.tolerance)?;
-                for (surface, allowed) in &self.allow {
-                    // An allowance of a job holds for the tools that have the surface, and one has to have it.
+                // An allowance of a job holds for the tools that have the surface, and one has to have it.
+                let of_job = self.allow.iter().filter(|(surface, _)| {
                     let has =
                         |tool: &JobTool<'_>| tool.tool.info().surface_named(surface).is_some();
-                    if has(tool) || !self.tools.iter().any(has) {
-                        verifier = verifier.with_allowance(surface, *allowed)?;
-                    }
-                }
-                for (surface, allowed) in &tool.allow {
-                    verifier = verifier.with_allowance(surface, *allowed)?;
-                }
+                    has(tool) || !self.tools.iter().any(has)
+                });
+                let allowances = of_job.chain(&tool.allow);
+                verifier = verifier
+                    .with_tolerance(self.tolerance)?
+                    .with_allowances(allowances.map(|(surface, depth)| (&**surface, *depth)))?;
             }
         }
         if let Some(resolution) = self.resolution {

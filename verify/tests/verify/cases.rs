@@ -237,6 +237,14 @@ fn rejects_unsupported_tools_and_arguments() {
     let verifier = || Verifier::new(&bvh, &Mounted).expect("a profile");
     let message = verifier().with_allowance("fluet", 0.1).expect_err("no such surface").to_string();
     assert!(message.contains("no surface `fluet`; it has `ball`, `flute`"), "{message}");
+    // Of several allowances all that are wrong are told.
+    let several = [("fluet", 0.1), ("ball", 0.1), ("shnak", 0.1), ("flute", f64::NAN)];
+    let message = verifier().with_allowances(several).expect_err("three mistakes").to_string();
+    let told = ["`fluet`", "`shnak`", "an allowance of NaN for `flute`"];
+    assert!(
+        told.iter().all(|word| message.contains(word)) && message.lines().count() == 3,
+        "{message}"
+    );
     for invalid in [f64::NAN, f64::NEG_INFINITY] {
         assert!(verifier().with_allowance("flute", invalid).is_err());
     }
