@@ -40,7 +40,7 @@ impl Program {
     /// # use touchoff::Unit;
     /// let down = [10.0, 5.0, 0.0].map(|z| Isometry3::translation(0.0, 0.0, z));
     /// let program = Program::from_poses("plunge", Unit::Millimetre, down)?;
-    /// assert_eq!(program.motions(), 2);
+    /// assert_eq!(program.tools()[0].number, None);
     /// # Ok::<(), touchoff_verify::job::JobError>(())
     /// ```
     ///
