@@ -5,13 +5,13 @@ use pyo3::{PyErr, create_exception};
 use touchoff::mesh::{GeometryError, StlError};
 
 create_exception!(
-    _touchoff,
+    touchoff,
     ToolError,
     PyValueError,
     "A tool's text that does not compile. The message has the diagnostics with their codes."
 );
 create_exception!(
-    _touchoff,
+    touchoff,
     JobError,
     PyValueError,
     "A job or a program that cannot be read or checked. The message names the file and the line."

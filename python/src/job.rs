@@ -1,8 +1,12 @@
 //! The verified job.
 
 use crate::error::JobError as PyJobError;
+use crate::error::refused;
+use crate::pool::on_all_cores;
 use crate::tool::{LoadError, LoadedTool};
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
+use pyo3::types::{PyBool, PyDict, PyInt, PyList};
 use serde::Serialize;
 use std::path::PathBuf;
 use touchoff_verify::job::{JobError, JobInputs};
@@ -18,12 +22,29 @@ enum CheckError {
     /// The keys of a job that is made in Python.
     #[error("job: {0}")]
     Keys(String),
+    #[error(transparent)]
+    Interrupted(#[from] PyErr),
+}
+
+/// Returns the error about keys that stand in no file.
+fn without_line(error: JobError) -> CheckError {
+    match error {
+        JobError::File { message, .. } => {
+            let message = match message.strip_prefix("line ").and_then(|rest| rest.split_once(": "))
+            {
+                Some((_, message)) => message.to_owned(),
+                None => message,
+            };
+            CheckError::Keys(message)
+        }
+        other => CheckError::Job(other),
+    }
 }
 
 impl From<CheckError> for PyErr {
     fn from(error: CheckError) -> PyErr {
         match error {
-            CheckError::Load(error) => error.into(),
+            CheckError::Interrupted(error) => error,
             other => PyJobError::new_err(other.to_string()),
         }
     }
@@ -49,26 +70,76 @@ struct FindingRow<R: Serialize> {
     row: R,
 }
 
-/// Checks a job: `keys` has it as JSON, in the format of a job file, or `path` is a job file. Returns the result as JSON.
+/// Returns a value of a job as TOML has it. `key` is its place, such as `tool.1.allow.ball`.
+fn value(key: &str, given: &Bound<'_, PyAny>) -> PyResult<toml::Value> {
+    if let Ok(entries) = given.cast::<PyDict>() {
+        return Ok(toml::Value::Table(table(key, entries)?));
+    }
+    if let Ok(items) = given.cast::<PyList>() {
+        let items = items.iter().enumerate();
+        let items = items.map(|(index, item)| value(&format!("{key}[{index}]"), &item));
+        return Ok(toml::Value::Array(items.collect::<PyResult<_>>()?));
+    }
+    // A bool is an int as well, and an int a float.
+    if let Ok(given) = given.cast::<PyBool>() {
+        return Ok(toml::Value::Boolean(given.is_true()));
+    }
+    if given.is_instance_of::<PyInt>() {
+        let whole = given
+            .extract::<i64>()
+            .map_err(|_| refused(format!("{key}: the number is too large")))?;
+        return Ok(toml::Value::Integer(whole));
+    }
+    if let Ok(number) = given.extract::<f64>() {
+        return match number.is_nan() {
+            true => {
+                Err(refused(format!("{key}: NaN is no number: give one, or inf for any depth")))
+            }
+            false => Ok(toml::Value::Float(number)),
+        };
+    }
+    if let Ok(text) = given.extract::<String>() {
+        return Ok(toml::Value::String(text));
+    }
+    let kind = given.get_type().name()?;
+    Err(PyTypeError::new_err(format!(
+        "{key}: a {kind} cannot stand in a job: give a number, text, a list or names with values; a job reads its files by their paths"
+    )))
+}
+
+fn table(key: &str, entries: &Bound<'_, PyDict>) -> PyResult<toml::Table> {
+    let entries = entries.iter().map(|(name, item)| {
+        let name: String = name.extract()?;
+        let place = if key.is_empty() { name.clone() } else { format!("{key}.{name}") };
+        Ok((name, value(&place, &item)?))
+    });
+    entries.collect()
+}
+
+/// Checks a job: `keys` has those of a job file, whose paths are relative to the folder of `path`, or `path` is a job file.
+/// Returns the result as JSON.
 #[pyfunction]
 #[pyo3(signature = (path, keys))]
-pub(crate) fn check_job(py: Python<'_>, path: PathBuf, keys: Option<String>) -> PyResult<String> {
+pub(crate) fn check_job(
+    py: Python<'_>,
+    path: PathBuf,
+    keys: Option<Bound<'_, PyDict>>,
+) -> PyResult<String> {
+    let keys = keys.map(|keys| table("", &keys)).transpose()?;
     let checked: Result<String, CheckError> = py.detach(|| {
         let file = match keys {
             None => JobFile::read(&path)?,
             Some(keys) => {
-                let keys: toml::Table = serde_json::from_str(&keys)
-                    .map_err(|error| CheckError::Keys(error.to_string()))?;
                 let text =
                     toml::to_string(&keys).map_err(|error| CheckError::Keys(error.to_string()))?;
-                JobFile::parse(&text, &path)?
+                JobFile::parse(&text, &path).map_err(without_line)?
             }
         };
         let inputs = JobInputs::read::<CheckError>(file, |named| {
             Ok(LoadedTool::named(&named.name, named.library.as_deref(), &named.params)?)
         })?;
         let job = inputs.job();
-        let report = job.check(&|_| ())?;
+        let report = on_all_cores(|| job.check(&|_| ()))??;
         let checked = Checked {
             verdict: match report.verdict() {
                 Verdict::Clean => "clean",

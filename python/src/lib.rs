@@ -13,6 +13,7 @@
 mod error;
 mod job;
 mod part;
+mod pool;
 mod poses;
 mod queries;
 mod sweep;
@@ -33,4 +34,13 @@ mod _touchoff {
     use crate::sweep::{read_map, sweep};
     #[pymodule_export]
     use crate::tool::{Tool, import_library, tool_names};
+    use pyo3::prelude::*;
+
+    /// Loads what numpy has for other extensions: later a signal could be pending.
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        let empty = numpy::PyArray1::<f64>::zeros(module.py(), 0, false);
+        drop(empty);
+        Ok(())
+    }
 }

@@ -1,8 +1,9 @@
 //! Parts: triangles for proved answers, and points on them for fast ones.
 
 use crate::error::{geometry, refused};
+use crate::pool::on_all_cores;
 use numpy::{PyArray2, PyArrayMethods, PyReadonlyArray2};
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyAttributeError, PyValueError};
 use pyo3::prelude::*;
 use std::path::PathBuf;
 use std::sync::OnceLock;
@@ -41,10 +42,14 @@ impl Part {
     /// # Errors
     /// `ValueError` if they cannot be sampled.
     pub(crate) fn points(&self) -> PyResult<&touchoff::Part> {
-        let sampled = self.points.get_or_init(|| match &self.mesh {
-            Some(mesh) => touchoff::Part::from_mesh(mesh, self.sampling),
-            None => unreachable!("a part of points has them from the beginning"),
-        });
+        let sampled = match (self.points.get(), &self.mesh) {
+            (Some(sampled), _) => sampled,
+            (None, Some(mesh)) => {
+                let sampled = on_all_cores(|| touchoff::Part::from_mesh(mesh, self.sampling))?;
+                self.points.get_or_init(|| sampled)
+            }
+            (None, None) => unreachable!("a part of points has them from the beginning"),
+        };
         sampled.as_ref().map_err(|error| refused(format!("points: {error}")))
     }
 
@@ -53,8 +58,30 @@ impl Part {
     /// # Errors
     /// `ValueError` for a part of points.
     pub(crate) fn triangles(&self) -> PyResult<&TriangleBvh> {
+        if let Some(triangles) = self.triangles.get() {
+            return Ok(triangles);
+        }
         let mesh = self.mesh()?;
-        Ok(self.triangles.get_or_init(|| TriangleBvh::new(mesh)))
+        let triangles = on_all_cores(|| TriangleBvh::new(mesh))?;
+        Ok(self.triangles.get_or_init(|| triangles))
+    }
+
+    /// Returns the mesh for an attribute.
+    fn shown(&self) -> PyResult<&Mesh> {
+        self.mesh.as_ref().ok_or_else(|| {
+            PyAttributeError::new_err("the part consists of points, and has no triangles")
+        })
+    }
+
+    /// Refuses a part whose inside is unknown.
+    pub(crate) fn require_inside(&self) -> PyResult<()> {
+        match self.triangles()?.has_inside() {
+            true => Ok(()),
+            false => Err(refused(
+                "part: its mesh leaks, is not consistently oriented or is inside out, so that its inside is unknown: repair \
+                 it, or check its surface alone by surface_only=True",
+            )),
+        }
     }
 
     pub(crate) fn mesh(&self) -> PyResult<&Mesh> {
@@ -85,7 +112,7 @@ impl Part {
     #[staticmethod]
     fn read(py: Python<'_>, path: PathBuf, unit_name: &str, points: usize) -> PyResult<Part> {
         let unit = unit(unit_name)?;
-        let read = py.detach(|| Geometry::read(&path, unit)).map_err(geometry)?;
+        let read = py.detach(|| on_all_cores(|| Geometry::read(&path, unit)))?.map_err(geometry)?;
         match read {
             Geometry::Mesh(mesh) => Ok(Part::of(mesh, points)),
             Geometry::Points(points) => {
@@ -105,14 +132,14 @@ impl Part {
     /// The vertices, n × 3.
     #[getter]
     fn vertices<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let vertices = self.mesh()?.vertices().iter().flat_map(|vertex| <[f64; 3]>::from(*vertex));
+        let vertices = self.shown()?.vertices().iter().flat_map(|vertex| <[f64; 3]>::from(*vertex));
         rows(py, vertices.collect(), 3)
     }
 
     /// The triangles, m × 3.
     #[getter]
     fn faces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u32>>> {
-        rows(py, self.mesh()?.triangles().as_flattened().to_vec(), 3)
+        rows(py, self.shown()?.triangles().as_flattened().to_vec(), 3)
     }
 
     /// The number of triangles; 0 for points.
@@ -121,10 +148,19 @@ impl Part {
         self.mesh.as_ref().map_or(0, |mesh| mesh.triangles().len())
     }
 
-    /// The lowest and the highest corner of the box of the triangles, 2 × 3.
+    /// The lowest and the highest corner of the box, 2 × 3.
     #[getter]
     fn bounds<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let corners = self.mesh()?.bounds();
+        let corners = match &self.mesh {
+            Some(mesh) => mesh.bounds(),
+            None => {
+                let tree = self.points()?.tree();
+                let points = (0..tree.slots()).map(|slot| tree.point(slot));
+                let low = points.clone().reduce(|low, point| low.inf(&point));
+                let high = points.reduce(|high, point| high.sup(&point));
+                [low.unwrap_or_default(), high.unwrap_or_default()]
+            }
+        };
         rows(py, corners.iter().flat_map(|corner| <[f64; 3]>::from(*corner)).collect(), 3)
     }
 
@@ -140,12 +176,18 @@ impl Part {
         self.mesh.as_ref().map_or(Vec::new(), |mesh| mesh.diagnostics().findings())
     }
 
-    /// The upper bound on how much deeper the surface can be than the deepest point, for a depth that is a distance; `None`
-    /// if it is unknown.
+    /// The number of points.
     #[getter]
-    fn covering_radius(&self, py: Python<'_>) -> PyResult<Option<f64>> {
+    fn point_count(&self, py: Python<'_>) -> PyResult<usize> {
+        Ok(py.detach(|| self.points())?.tree().len())
+    }
+
+    /// The largest distance of a place of the surface from the nearest point, and whether that is proved; `None` if it is
+    /// unknown.
+    #[getter]
+    fn covering_radius(&self, py: Python<'_>) -> PyResult<Option<(f64, bool)>> {
         let points = py.detach(|| self.points())?;
-        Ok(points.tree().covering_radius().map(|cover| cover.radius))
+        Ok(points.tree().covering_radius().map(|cover| (cover.radius, cover.proved)))
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::error::refused;
 use crate::part::{Part, rows};
+use crate::pool::interruptible;
 use crate::poses::Poses;
 use crate::tool::Tool;
 use nalgebra::{Point3, Vector3};
@@ -92,11 +93,19 @@ pub(crate) fn wrench<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let Poses(poses) = Poses::of(&poses)?;
     check_spin(tool, &poses)?;
-    let found = py.detach(|| {
-        let probe = probe(tool, part, law, weights, centre)?;
-        Ok::<_, PyErr>(probe.par_map(&poses, |probe, pose| probe.wrench(pose)))
-    })?;
+    let is_off_axis = centre[0] != 0.0 || centre[1] != 0.0;
+    if let Some(index) = poses.iter().position(|pose| is_off_axis && !pose.has_spin()) {
+        return Err(refused(format!(
+            "poses[{index}]: a compliance centre off the axis turns with the tool: give quaternions or matrices, or a \
+             centre whose x and y are 0"
+        )));
+    }
+    let probe = py.detach(|| probe(tool, part, law, weights, centre))?;
+    let found =
+        interruptible(py, &poses, |poses| probe.par_map(poses, |probe, pose| probe.wrench(pose)))?;
     let arrays = Arrays::new(py);
+    arrays.dict.set_item("rounding_error", probe.rounding_error_bound())?;
+    arrays.dict.set_item("sampling_error", probe.sampling_error_bound())?;
     arrays
         .vectors("force", found.iter().map(|one| one.force.into()))?
         .vectors("torque", found.iter().map(|one| one.torque.into()))?
@@ -129,11 +138,13 @@ pub(crate) fn contacts<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let Poses(poses) = Poses::of(&poses)?;
     check_spin(tool, &poses)?;
-    let found = py.detach(|| {
-        let probe: Probe<'_> = Probe::new(part.points()?, tool.get());
-        Ok::<_, PyErr>(probe.par_map(&poses, |probe, pose| probe.contacts(pose).to_vec()))
+    let points = py.detach(|| part.points())?;
+    let probe: Probe<'_> = Probe::new(points, tool.get());
+    let found = interruptible(py, &poses, |poses| {
+        probe.par_map(poses, |probe, pose| probe.contacts(pose).to_vec())
     })?;
     let arrays = Arrays::new(py);
+    arrays.dict.set_item("rounding_error", probe.rounding_error_bound())?;
     let mut offset = 0;
     let ends = found.iter().map(|contacts| {
         offset += index(contacts.len());
@@ -169,10 +180,9 @@ pub(crate) fn detect<'py>(
 ) -> PyResult<Bound<'py, PyArray1<bool>>> {
     let Poses(poses) = Poses::of(&poses)?;
     check_spin(tool, &poses)?;
-    let found = py.detach(|| {
-        let probe: Probe<'_> = Probe::new(part.points()?, tool.get());
-        Ok::<_, PyErr>(probe.par_map(&poses, Probe::detect))
-    })?;
+    let points = py.detach(|| part.points())?;
+    let probe: Probe<'_> = Probe::new(points, tool.get());
+    let found = interruptible(py, &poses, |poses| probe.par_map(poses, Probe::detect))?;
     Ok(PyArray1::from_vec(py, found))
 }
 
@@ -186,11 +196,10 @@ fn certified<R: Send>(
 ) -> PyResult<Vec<R>> {
     let Poses(poses) = Poses::of(poses)?;
     check_spin(tool, &poses)?;
-    // The interpreter's lock is not held for the triangles, either.
-    py.detach(|| {
-        let bvh: &TriangleBvh = part.triangles()?;
-        let certifier = Certifier::new(bvh, tool.get()).map_err(refused)?;
-        Ok(certifier.par_map(&poses, |certifier, pose| query(certifier, pose)))
+    let bvh: &TriangleBvh = py.detach(|| part.triangles())?;
+    let certifier = Certifier::new(bvh, tool.get()).map_err(refused)?;
+    interruptible(py, &poses, |poses| {
+        certifier.par_map(poses, |certifier, pose| query(certifier, pose))
     })
 }
 
@@ -262,7 +271,11 @@ pub(crate) fn signed_distance<'py>(
     part: &Part,
     poses: PyReadonlyArray2<'py, f64>,
     tolerance: f64,
+    surface_only: bool,
 ) -> PyResult<Bound<'py, PyDict>> {
+    if !surface_only {
+        part.require_inside()?;
+    }
     let found: Vec<Interval> = certified(py, tool, part, &poses, |certifier, pose| {
         certifier.signed_distance(pose, tolerance)
     })?;

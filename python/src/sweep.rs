@@ -4,6 +4,7 @@ use crate::error::refused;
 use crate::part::{Part, rows};
 use crate::tool::Tool;
 use numpy::{PyArray1, PyArrayMethods};
+use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::num::NonZeroU16;
@@ -29,6 +30,7 @@ pub(crate) fn sweep<'py>(
     tolerance: Option<f64>,
     min_niceness: f64,
     allow: Vec<(String, f64)>,
+    surface_only: bool,
 ) -> PyResult<Bound<'py, PyDict>> {
     if !(1..=Directions::MAX_HEMISPHERE).contains(&directions) {
         let limit = Directions::MAX_HEMISPHERE;
@@ -36,8 +38,12 @@ pub(crate) fn sweep<'py>(
     }
     let tools: Vec<&Tool> = tools.iter().map(|tool| &**tool).collect();
     let directions = Directions::spread(directions);
+    check_size(part.mesh()?.triangles().len(), tools.len(), directions.list().len())?;
     let (rows, stats) = py.detach(|| {
         let (mesh, bvh) = (part.mesh()?, part.triangles()?);
+        if !surface_only {
+            part.require_inside()?;
+        }
         let rules = Rules {
             tolerance: tolerance.unwrap_or_else(|| Rules::default_tolerance(mesh.unit())),
             niceness: min_niceness,
@@ -48,12 +54,18 @@ pub(crate) fn sweep<'py>(
         let sweep = sweep.map_err(refused)?;
         let batches: Vec<usize> = (0..sweep.batches()).collect();
         let (mut rows, mut stats) = (Vec::new(), SweepStats::default());
-        let _: ControlFlow<()> = sweep.run(&batches, |batch| {
+        let flow = sweep.run(&batches, |batch| {
             stats += batch.stats;
             rows.extend(batch.rows.into_iter().map(|(id, row)| (id.index(), row)));
-            ControlFlow::Continue(())
+            match Python::attach(|py| py.check_signals()) {
+                Ok(()) => ControlFlow::Continue(()),
+                Err(interrupt) => ControlFlow::Break(interrupt),
+            }
         });
-        Ok::<_, PyErr>((rows, stats))
+        match flow {
+            ControlFlow::Break(interrupt) => Err(interrupt),
+            ControlFlow::Continue(()) => Ok((rows, stats)),
+        }
     })?;
     let count = part.mesh()?.triangles().len();
     let names = tools.iter().map(|tool| tool.get().info().name.to_string()).collect();
@@ -83,7 +95,22 @@ pub(crate) fn read_map(py: Python<'_>, path: PathBuf) -> PyResult<Bound<'_, PyDi
             rows,
         })
     });
-    read.map_err(refused)?.arrays(py)
+    let read = read.map_err(|error: touchoff_postures::MapError| match error {
+        touchoff_postures::MapError::Unreadable { .. } => PyOSError::new_err(error.to_string()),
+        other => refused(other),
+    });
+    read?.arrays(py)
+}
+
+/// Refuses a table that is longer than the limit.
+fn check_size(count: usize, tools: usize, directions: usize) -> PyResult<()> {
+    if count.saturating_mul(tools).saturating_mul(directions) <= MAX_ENTRIES {
+        return Ok(());
+    }
+    Err(refused(format!(
+        "the table of {count} triangles, {tools} tools and {directions} directions is longer than {MAX_ENTRIES} entries: take \
+         fewer tools or directions at a time"
+    )))
 }
 
 struct Map {
@@ -99,12 +126,7 @@ impl Map {
     fn arrays(self, py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
         let Map { count, tools, directions, rows: found } = self;
         let (tool_count, direction_count) = (tools.len(), directions.list().len());
-        if count.saturating_mul(tool_count).saturating_mul(direction_count) > MAX_ENTRIES {
-            return Err(refused(format!(
-                "the table of {count} triangles, {tool_count} tools and {direction_count} directions is longer than \
-                 {MAX_ENTRIES} entries: take fewer tools or directions at a time"
-            )));
-        }
+        check_size(count, tool_count, direction_count)?;
         let mut reached = vec![false; count * tool_count * direction_count];
         let mut stickout = vec![f64::NAN; count * tool_count];
         let mut best_tool = vec![-1i64; count];

@@ -3,8 +3,10 @@
 use crate::error::{refused, tool as tool_error};
 use pyo3::exceptions::{PyOSError, PyValueError};
 use pyo3::prelude::*;
+use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use touchoff::tool::{Circle, Interpreted, ProfileSegment, ToolError, ToolInfo};
 use touchoff_drawing::{Content, TextRendering, svg};
 use touchoff_dsl::compile_with_arguments;
@@ -35,8 +37,11 @@ pub(crate) enum ToolText {
         name: String,
         text: String,
     },
-    /// Of several files that are not kept.
-    Mounted,
+    /// Of several files: the tool's own path, and all texts by their paths.
+    Files {
+        own: PathBuf,
+        texts: Arc<BTreeMap<PathBuf, String>>,
+    },
 }
 
 impl ToolText {
@@ -45,7 +50,11 @@ impl ToolText {
         match self {
             ToolText::File(path) => Interpreted::source(path),
             ToolText::Text { name, text } => Ok(Source::new(name, text)),
-            ToolText::Mounted => Ok(Source::new("tool", "")),
+            ToolText::Files { own, texts } => {
+                let text = texts.get(own).map_or("", String::as_str);
+                let source = Source::new(own.display().to_string(), text).with_path(own);
+                Ok(source.with_files(Arc::clone(texts)))
+            }
         }
     }
 }
@@ -98,10 +107,9 @@ impl LoadedTool {
     }
 
     fn imported(imported: &ImportedTool) -> Result<LoadedTool, ImportError> {
-        let text = match &imported.files[..] {
-            [file] => ToolText::Text { name: imported.path(), text: file.text.clone() },
-            _ => ToolText::Mounted,
-        };
+        let texts = imported.files.iter().map(|file| (file.path.clone().into(), file.text.clone()));
+        let text =
+            ToolText::Files { own: imported.path().into(), texts: Arc::new(texts.collect()) };
         Ok(LoadedTool::Interpreted { tool: Box::new(imported.load()?), text, params: Vec::new() })
     }
 
@@ -229,13 +237,11 @@ impl Tool {
         let compiled = match &self.loaded {
             LoadedTool::BuiltIn(tool) => {
                 let position = TOOLS.iter().position(|known| known.info().name == tool.info().name);
-                let files = position.map(|position| SOURCES[position]);
-                let Some([(file, text)]) = files else {
-                    return Err(refused(
-                        "the drawing of a built-in assembly needs its files: load it from its `.tool` file",
-                    ));
-                };
-                compile_with_arguments(&Source::new(*file, *text), &[])
+                let files = position.map_or(&[][..], |position| SOURCES[position]);
+                let own = files.first().map_or("", |(file, _)| file);
+                let texts = files.iter().map(|(file, text)| (file.into(), (*text).to_owned()));
+                let text = ToolText::Files { own: own.into(), texts: Arc::new(texts.collect()) };
+                compile_with_arguments(&text.source().map_err(tool_error)?, &[])
             }
             LoadedTool::Interpreted { text, params, .. } => {
                 compile_with_arguments(&text.source().map_err(tool_error)?, &arguments(params))

@@ -21,6 +21,7 @@ DOWN = [0, 0, 1, 0, 0, 1]
         (np.zeros((0, 6)), ValueError, ["poses", "empty"]),
         (np.zeros((2, 5)), ValueError, ["poses", "(2, 5)", "(n, 4, 4)"]),
         ([DOWN, DOWN[:5]], ValueError, ["poses", "equally long"]),
+        (np.ma.masked_array([DOWN, DOWN], mask=[[False] * 6, [True] * 6]), ValueError, ["poses", "masked"]),
         ([["a"] * 6], TypeError, ["poses", "dtype"]),
         ([[None] * 6], TypeError, ["poses", "dtype"]),
         (np.zeros((1, 6), dtype=complex), TypeError, ["poses", "complex"]),
@@ -62,6 +63,12 @@ def test_poses_are_refused(ball, block, poses, error, words):
         (lambda: touchoff.Part.read("missing.stl", unit="mm"), OSError, ["missing.stl"]),
         (lambda: touchoff.Part.read(__file__, unit="mm"), ValueError, ["test_inputs.py"]),
         (lambda: touchoff.Part.cuboid((0, 0, 0), (1, 1, 0), unit="mm"), ValueError, ["high"]),
+        (lambda: touchoff.Part(TRIANGLE[0], [[0, 1, 2], [0, 1]], unit="mm"), ValueError, ["faces", "equally long"]),
+        (lambda: touchoff.Part.read(3, unit="mm"), TypeError, ["path", "int"]),
+        (lambda: touchoff.Tool.library(3), TypeError, ["name", "int"]),
+        (lambda: touchoff.Tool.parse(b"tool"), TypeError, ["text", "bytes"]),
+        (lambda: touchoff.Tool.parse("tool \udc80"), ValueError, ["text", "Unicode"]),
+        (lambda: touchoff.PostureMap.read("missing.postures"), OSError, ["missing.postures"]),
         (lambda: touchoff.Tool.library("Bal"), ValueError, ["Bal", "tool_names"]),
         (lambda: touchoff.Tool.load("missing.tool"), OSError, ["missing.tool"]),
         (lambda: touchoff.Tool.parse("tool T { units mm; }"), touchoff.ToolError, ["error[T"]),
@@ -70,7 +77,10 @@ def test_poses_are_refused(ball, block, poses, error, words):
         (lambda: touchoff.import_tools(__file__), ValueError, ["none of the formats"]),
         (lambda: touchoff.Job.load("missing.toml").check(), touchoff.JobError, ["missing.toml"]),
         (lambda: touchoff.Job(part="p.stl").check(), touchoff.JobError, ["unit"]),
-        (lambda: touchoff.Job(part="p.stl", colour=1).check(), touchoff.JobError, ["colour"]),
+        (lambda: touchoff.Job(part="p.stl", colour=1).check(), touchoff.JobError, ["job: ", "colour"]),
+        (lambda: touchoff.Job(part="p.stl", tool={1: {"allow": {"ball": np.nan}}}).check(), ValueError, ["tool.1.allow.ball", "NaN"]),
+        (lambda: touchoff.Job(part=object()).check(), TypeError, ["part", "object", "paths"]),
+        (lambda: touchoff.Job(program=["a", {1}]).check(), TypeError, ["program[1]", "set"]),
     ],
 )
 def test_mistakes_are_named(make, error, words):
@@ -95,6 +105,22 @@ def test_arguments_of_queries_are_checked(ball, block):
         touchoff.sweep(block, ball, directions=100_000)
     with pytest.raises(ValueError, match="tools"):
         touchoff.sweep(block, [])
+    for mistake, words in [
+        ({"min_niceness": None}, "min_niceness"),
+        ({"allow": {"ball": "deep"}}, r"allow\['ball'\]"),
+        ({"allow": [("ball", 1)]}, "allow"),
+        ({"tolerance": "small"}, "tolerance"),
+    ]:
+        with pytest.raises(TypeError, match=words):
+            touchoff.sweep(block, ball, **mistake)
+    with pytest.raises(TypeError, match="part: a Part is expected"):
+        touchoff.sweep(ball, block)
+    with pytest.raises(ValueError, match="too large"):
+        touchoff.certified_depth(ball, block, DOWN, tolerance=10**400)
+    assert touchoff.certified_depth(ball, block, DOWN, tolerance=np.array(1e-3)).high[0] < 1e-9
+    # A compliance centre off the axis turns with the tool.
+    with pytest.raises(ValueError, match=r"poses\[0\].*quaternions"):
+        touchoff.wrench(ball, block, DOWN, centre=(1, 0, 0))
     # A solid without an axis needs its full rotation.
     with pytest.raises(ValueError, match=r"poses\[0\].*quaternions"):
         touchoff.wrench(touchoff.Tool.library("LBracket"), block, DOWN)
@@ -169,5 +195,5 @@ def test_no_text_of_a_tool_ends_the_interpreter(text):
 def test_no_job_ends_the_interpreter(keys):
     try:
         touchoff.Job(**keys).check()
-    except (touchoff.JobError, ValueError, OSError) as error:
+    except (TypeError, ValueError, OSError) as error:
         assert str(error)

@@ -88,6 +88,12 @@ def test_fixtures_stock_and_built_in_tools(folder):
         assert all(finding.row["surface"] == "shank" for finding in cut.findings)
 
 
+def test_an_allowance_may_be_infinite(folder):
+    allow = {"tip": float("inf"), "flute": float("inf")}
+    assert job(folder, -0.5).check().verdict == "findings"
+    assert job(folder, -0.5, allow=allow).check().verdict == "clean"
+
+
 def test_findings_become_a_table(folder):
     pandas = pytest.importorskip("pandas")
     table = job(folder, -0.5).check().to_dataframe()

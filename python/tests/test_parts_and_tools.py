@@ -19,6 +19,89 @@ def test_a_part_keeps_its_arrays(block):
     assert not turned.is_solid and any("inside out" in line for line in turned.diagnostics)
 
 
+def test_a_part_without_an_inside_is_refused_where_that_counts(ball, block):
+    turned = touchoff.Part(block.vertices, block.faces[:, ::-1], unit="mm")
+    buried = [0, 0, -9, 0, 0, 1]
+    assert touchoff.signed_distance(ball, block, buried).high[0] < 0
+    with pytest.raises(ValueError, match="surface_only"):
+        touchoff.signed_distance(ball, turned, buried)
+    assert touchoff.signed_distance(ball, turned, buried, surface_only=True).low[0] > 0
+    with pytest.raises(ValueError, match="surface_only"):
+        touchoff.sweep(turned, ball, directions=5)
+    assert touchoff.sweep(turned, ball, directions=5, surface_only=True).reached.any()
+
+
+def test_parts_of_points(ball, tmp_path):
+    random = np.random.default_rng(1)
+    points = np.hstack([random.uniform(-5, 5, (500, 2)), np.zeros((500, 1)), np.tile([0, 0, 1.0], (500, 1))])
+    header = ["ply", "format ascii 1.0", "element vertex 500"] + [f"property double {name}" for name in ("x", "y", "z", "nx", "ny", "nz")]
+    rows = [" ".join(map(repr, row)) for row in points.tolist()]
+    (tmp_path / "points.ply").write_text("\n".join([*header, "end_header", *rows]) + "\n")
+    part = touchoff.Part.read(tmp_path / "points.ply", unit="mm")
+    assert part and len(part) == 0 and "500 points" in repr(part) and not hasattr(part, "vertices")
+    assert np.allclose(part.bounds, [points[:, :3].min(axis=0), points[:, :3].max(axis=0)], atol=1e-5)
+    assert part.covering_radius is not None and not part.covering_radius_is_proved
+    assert touchoff.detect(ball, part, [0, 0, -0.5, 0, 0, 1])[0]
+    with pytest.raises(ValueError, match="needs triangles"):
+        touchoff.certified_depth(ball, part, [0, 0, -0.5, 0, 0, 1])
+
+
+def test_copies_and_errors_go_to_other_processes(ball, block, tmp_path):
+    import copy
+    import pickle
+
+    for part in (block, pickle.loads(pickle.dumps(block)), copy.deepcopy(block)):
+        for tool in (ball, pickle.loads(pickle.dumps(ball)), copy.copy(ball)):
+            depth = touchoff.certified_depth(tool, part, [0, 0, -0.5, 0, 0, 1])
+            assert depth.low[0] <= 0.5 <= depth.high[0]
+    assert pickle.loads(pickle.dumps(touchoff.Tool.library("D2Ball"))).name == "D2Ball"
+    error = pickle.loads(pickle.dumps(touchoff.ToolError("said")))
+    assert isinstance(error, touchoff.ToolError) and isinstance(error, ValueError)
+    assert not block.vertices.flags.writeable
+
+
+def test_a_forked_process_has_threads_of_its_own(ball, block):
+    import multiprocessing
+
+    poses = np.tile([0.0, 0, -0.5, 0, 0, 1], (5_000, 1))
+    assert touchoff.detect(ball, block, poses).all()
+    with multiprocessing.get_context("fork").Pool(2) as pool:
+        found = pool.starmap_async(touchoff.detect, [(ball, block, poses)] * 4).get(timeout=60)
+    assert all(one.all() for one in found)
+
+
+def test_an_interrupt_ends_a_long_query(ball, block):
+    import signal
+    import time
+
+    poses = np.tile([0.0, 0, -0.5, 0, 0, 1], (3_000_000, 1))
+    trimesh = pytest.importorskip("trimesh")
+    # 80,000 triangles: a sweep takes many seconds.
+    sphere = touchoff.Part(trimesh.creation.icosphere(subdivisions=6, radius=20), unit="mm")
+    for query in (
+        lambda: touchoff.certified_depth(ball, block, poses),
+        lambda: touchoff.sweep(sphere, ball, directions=200),
+    ):
+        signal.setitimer(signal.ITIMER_REAL, 0.5)
+        previous = signal.signal(signal.SIGALRM, interrupted)
+        begin = time.perf_counter()
+        try:
+            with pytest.raises(KeyboardInterrupt):
+                query()
+        finally:
+            signal.setitimer(signal.ITIMER_REAL, 0)
+            signal.signal(signal.SIGALRM, previous)
+        print(f"{time.perf_counter() - begin:.2f} s until the interrupt")
+
+
+def interrupted(number, frame):
+    raise KeyboardInterrupt
+
+
+def test_assemblies_are_drawn():
+    assert all(touchoff.Tool.library(name).svg().startswith("<svg") for name in touchoff.tool_names())
+
+
 def test_meshes_of_trimesh_are_taken():
     trimesh = pytest.importorskip("trimesh")
     box = trimesh.creation.box((2, 2, 2))
@@ -58,9 +141,13 @@ def test_libraries_of_cam_systems(tmp_path):
     library = touchoff.import_tools(file)
     assert [tool.title for tool in library.tools] == ["D6 ball"] and len(library.left_out) == 1
     assert library.tools[0].number == 7 and library.tools[0].tool.radius == 3
-    assert touchoff.Tool.from_library_file(file, 7).name == library.tools[0].tool.name
-    with pytest.raises(KeyError, match="0 tools are called 8"):
+    for known in (7, "7", "T7", "D6 ball"):
+        assert touchoff.Tool.from_library_file(file, known).name == library.tools[0].tool.name
+    with pytest.raises(KeyError, match="0 tools are called 8.*touch probe is left out"):
         touchoff.Tool.from_library_file(file, 8)
+    with pytest.raises(TypeError, match="tool"):
+        touchoff.Tool.from_library_file(file, None)
+    assert library.tools[0].tool.svg().startswith("<svg")
 
 
 def test_a_sweep_says_which_triangles_are_reached(block):

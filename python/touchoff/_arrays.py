@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+from typing import Any
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -16,14 +19,29 @@ def numbers(name: str, values: ArrayLike) -> Floats:
     TypeError
         If they are not real numbers.
     """
+    array = plain(name, values)
+    if array.dtype.kind not in "fiu":
+        raise TypeError(
+            f"{name}: numbers are expected, and this has the dtype {array.dtype}: convert it, as by .to_numpy(float)"
+        )
+    return np.ascontiguousarray(array, dtype=np.float64)
+
+
+def plain(name: str, values: ArrayLike) -> NDArray[Any]:
+    """Return values as an array.
+
+    Raises
+    ------
+    ValueError
+        If rows have different lengths, or values are masked.
+    """
+    if isinstance(values, np.ma.MaskedArray) and np.ma.is_masked(values):
+        raise ValueError(f"{name}: some values are masked: leave their rows out, as by .compressed() or a selection")
     try:
-        array = np.asarray(values)
+        return np.asarray(values)
     except ValueError as error:
         # Rows of different lengths.
         raise ValueError(f"{name}: {error}: give an array whose rows are equally long") from None
-    if array.dtype.kind not in "fiu":
-        raise TypeError(f"{name}: numbers are expected, and this has the dtype {array.dtype}")
-    return np.ascontiguousarray(array, dtype=np.float64)
 
 
 def length(name: str, value: object, *, least: float = 0.0) -> float:
@@ -36,12 +54,39 @@ def length(name: str, value: object, *, least: float = 0.0) -> float:
     ValueError
         If it is not finite, or below the least one.
     """
-    if isinstance(value, bool) or not isinstance(value, (int, float, np.integer, np.floating)):
-        raise TypeError(f"{name}: a number is expected, not {type(value).__name__}")
-    number = float(value)
+    number = real(name, value)
     if not least <= number < float("inf"):
         raise ValueError(f"{name}: {number} is no length of {least:g} or more")
     return number
+
+
+def real(name: str, value: object) -> float:
+    """Return a number as a float, which may be infinite or NaN."""
+    if isinstance(value, np.ndarray) and value.ndim == 0:
+        value = value[()]
+    if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, float, np.integer, np.floating)):
+        raise TypeError(f"{name}: a number is expected, not {type(value).__name__}")
+    try:
+        return float(value)
+    except OverflowError:
+        raise ValueError(f"{name}: the number is too large") from None
+
+
+def text(name: str, value: object) -> str:
+    """Return a text."""
+    if not isinstance(value, str):
+        raise TypeError(f"{name}: a text is expected, not {type(value).__name__}")
+    # What Python keeps of bytes that are no text.
+    if not value.isprintable() and any("\ud800" <= letter <= "\udfff" for letter in value):
+        raise ValueError(f"{name}: it has a character that is no Unicode")
+    return value
+
+
+def path(name: str, value: object) -> str:
+    """Return the path of a file."""
+    if not isinstance(value, (str, bytes, os.PathLike)):
+        raise TypeError(f"{name}: a path is expected, not {type(value).__name__}")
+    return os.fsdecode(value)
 
 
 def count(name: str, value: object) -> int:

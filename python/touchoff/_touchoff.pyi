@@ -1,6 +1,6 @@
 """The extension module: what the package's own modules call, with checked arrays."""
 
-from typing import TypedDict, final, type_check_only
+from typing import Any, TypedDict, final, type_check_only
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,7 +49,9 @@ class Part:
     @property
     def diagnostics(self) -> list[str]: ...
     @property
-    def covering_radius(self) -> float | None: ...
+    def covering_radius(self) -> tuple[float, bool] | None: ...
+    @property
+    def point_count(self) -> int: ...
 
 @final
 class Tool:
@@ -87,6 +89,8 @@ class WrenchArrays(TypedDict):
     triangle: _Ints
     force_error: _Floats
     torque_error: _Floats
+    rounding_error: float | None
+    sampling_error: float | None
 
 @type_check_only
 class ContactArrays(TypedDict):
@@ -103,6 +107,7 @@ class ContactArrays(TypedDict):
     magnitude: _Floats
     niceness: _Floats
     weight: _Floats
+    rounding_error: float | None
 
 @type_check_only
 class DistanceArrays(TypedDict):
@@ -144,7 +149,9 @@ def contacts(tool: Tool, part: Part, poses: _Floats) -> ContactArrays: ...
 def detect(tool: Tool, part: Part, poses: _Floats) -> NDArray[np.bool_]: ...
 def certified_depth(tool: Tool, part: Part, poses: _Floats, tolerance: float) -> DepthArrays: ...
 def clearance(tool: Tool, part: Part, poses: _Floats, tolerance: float) -> ClearanceArrays: ...
-def signed_distance(tool: Tool, part: Part, poses: _Floats, tolerance: float) -> DistanceArrays: ...
+def signed_distance(
+    tool: Tool, part: Part, poses: _Floats, tolerance: float, surface_only: bool
+) -> DistanceArrays: ...
 def sweep(
     part: Part,
     tools: list[Tool],
@@ -152,6 +159,7 @@ def sweep(
     tolerance: float | None,
     min_niceness: float,
     allow: list[tuple[str, float]],
+    surface_only: bool,
 ) -> MapArrays: ...
 def read_map(path: str) -> MapArrays: ...
-def check_job(path: str, keys: str | None) -> str: ...
+def check_job(path: str, keys: dict[str, Any] | None) -> str: ...

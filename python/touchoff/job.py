@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
-from . import _touchoff
+from . import _arrays, _touchoff
 
 if TYPE_CHECKING:
     import pandas
@@ -63,7 +63,7 @@ class Report:
     verdict: Verdict
     findings: list[Finding]
     gaps: list[Gap]
-    #: The reasons for which there is no verdict.
+    #: What stands in the way of a proof; without findings there is no verdict because of it.
     refusals: list[str]
     #: A sentence for each tool at each body.
     summaries: list[str]
@@ -97,14 +97,14 @@ class Job:
 
     def __init__(self, *, folder: str | os.PathLike[str] = ".", **keys: Any) -> None:
         # Only a folder's name is used; the file need not exist.
-        self._path = os.path.join(os.fspath(folder), "job.toml")
-        self._keys: str | None = json.dumps(_plain(keys))
+        self._path = os.path.join(_arrays.path("folder", folder), "job.toml")
+        self._keys: dict[str, Any] | None = _plain(keys)
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Job:
         """Take a job from its file, which is read by :meth:`check`."""
         job = cls.__new__(cls)
-        job._path, job._keys = os.fspath(path), None
+        job._path, job._keys = _arrays.path("path", path), None
         return job
 
     def check(self) -> Report:
@@ -139,7 +139,7 @@ def _plain(value: Any) -> Any:
     if isinstance(value, (list, tuple)):
         return [_plain(item) for item in value]
     if isinstance(value, os.PathLike):
-        return os.fspath(value)
+        return os.fsdecode(value)
     if hasattr(value, "tolist"):
         return value.tolist()
     return value

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING, Protocol, runtime_checkable
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,6 +15,8 @@ if TYPE_CHECKING:
     from ._arrays import Floats
 
 _DEFAULT_POINTS = 20_000
+
+Number = TypeVar("Number", bound=np.generic)
 
 
 @runtime_checkable
@@ -49,6 +52,8 @@ class Part:
     """
 
     _rust: _touchoff.Part
+    #: How the part was made, for copies in other processes.
+    _made: tuple[Any, tuple[Any, ...], dict[str, Any]]
 
     def __init__(
         self,
@@ -69,7 +74,9 @@ class Part:
         corners = _arrays.numbers("vertices", vertices)
         if corners.ndim != 2 or corners.shape[1] != 3:
             raise ValueError(f"vertices: the shape {corners.shape} is not (n, 3)")
-        self._rust = _touchoff.Part(corners, _indices(faces, len(corners)), _unit(unit), _arrays.count("points", points))
+        indices = _indices(faces, len(corners))
+        self._rust = _touchoff.Part(corners, indices, _unit(unit), _arrays.count("points", points))
+        self._made = (type(self), (corners, indices), {"unit": self._rust.unit, "points": points})
 
     @classmethod
     def read(
@@ -84,7 +91,10 @@ class Part:
         ValueError
             If it is damaged; the message names the line or the byte.
         """
-        return cls._of(_touchoff.Part.read(os.fspath(path), _unit(unit), _arrays.count("points", points)))
+        file = _arrays.path("path", path)
+        part = cls._of(_touchoff.Part.read(file, _unit(unit), _arrays.count("points", points)))
+        part._made = (cls.read, (file,), {"unit": unit, "points": points})
+        return part
 
     @classmethod
     def cuboid(
@@ -106,6 +116,15 @@ class Part:
         part._rust = rust
         return part
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _remade, self._made
+
+    def __copy__(self) -> Part:
+        return self
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Part:
+        return self
+
     @property
     def unit(self) -> str:
         """The unit of every length."""
@@ -113,17 +132,17 @@ class Part:
 
     @property
     def vertices(self) -> Floats:
-        """The vertices, n × 3."""
-        return self._rust.vertices
+        """The vertices, n × 3, as a copy that cannot be written. Of a part of points an `AttributeError`."""
+        return _fixed(self._rust.vertices)
 
     @property
     def faces(self) -> NDArray[np.uint32]:
-        """The triangles, m × 3."""
-        return self._rust.faces
+        """The triangles, m × 3, as a copy that cannot be written. Of a part of points an `AttributeError`."""
+        return _fixed(self._rust.faces)
 
     @property
     def bounds(self) -> Floats:
-        """The lowest and the highest corner, 2 × 3."""
+        """The lowest and the highest corner of the box of triangles or points, 2 × 3."""
         return self._rust.bounds
 
     @property
@@ -138,14 +157,39 @@ class Part:
 
     @property
     def covering_radius(self) -> float | None:
-        """The largest distance of a point of the surface from the nearest sampled point; None if it is unknown."""
-        return self._rust.covering_radius
+        """The largest distance of a point of the surface from the nearest sampled point; None if it is unknown.
+
+        It is proved for points that were sampled on triangles, and an estimate for points from a file; see
+        `covering_radius_is_proved`.
+        """
+        cover = self._rust.covering_radius
+        return None if cover is None else cover[0]
+
+    @property
+    def covering_radius_is_proved(self) -> bool:
+        """Whether the covering radius is proved, and not estimated."""
+        cover = self._rust.covering_radius
+        return cover is not None and cover[1]
 
     def __len__(self) -> int:
+        """Return the number of triangles."""
         return self._rust.triangle_count
 
+    def __bool__(self) -> bool:
+        return True
+
     def __repr__(self) -> str:
-        return f"Part({len(self)} triangles, unit={self.unit!r})"
+        count = f"{len(self)} triangles" if len(self) else f"{self._rust.point_count} points"
+        return f"Part({count}, unit={self.unit!r})"
+
+
+def _remade(make: Callable[..., Part], positional: tuple[Any, ...], named: dict[str, Any]) -> Part:
+    return make(*positional, **named)
+
+
+def _fixed(array: NDArray[Number]) -> NDArray[Number]:
+    array.flags.writeable = False
+    return array
 
 
 def _unit(unit: object) -> str:
@@ -158,7 +202,7 @@ def _unit(unit: object) -> str:
 
 
 def _indices(faces: ArrayLike, vertices: int) -> NDArray[np.uint32]:
-    array = np.asarray(faces)
+    array = _arrays.plain("faces", faces)
     if array.size == 0:
         raise ValueError("faces: the array is empty: give one triangle or more")
     if array.ndim != 2 or array.shape[1] != 3:

@@ -16,7 +16,7 @@ from .tool import Tool
 Ints = NDArray[np.int64]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Wrench:
     """Force and torque of the whole contact at n poses, in the world's frame."""
 
@@ -40,9 +40,17 @@ class Wrench:
     force_error: Floats
     #: Bound on the rounding error of the torque.
     torque_error: Floats
+    #: Bound on the rounding error of a point's depth; None if it is unknown for the tool.
+    rounding_error: float | None
+    #: How much deeper the surface between the points can be; None if it is unknown, and an estimate where the part's covering
+    #: radius is one.
+    sampling_error: float | None
+
+    def __repr__(self) -> str:
+        return f"Wrench({len(self.depth)} poses)"
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Contacts:
     """The points of the part inside the tool at n poses, one after the other.
 
@@ -69,12 +77,17 @@ class Contacts:
     niceness: Floats
     #: The point's share of the surface.
     weight: Floats
+    #: Bound on the rounding error of a point's depth; None if it is unknown for the tool.
+    rounding_error: float | None
 
     def __len__(self) -> int:
         return len(self.pose)
 
+    def __repr__(self) -> str:
+        return f"Contacts({len(self)} at {len(self.offsets) - 1} poses)"
 
-@dataclass(frozen=True, slots=True)
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Depth:
     """Proved bounds on the greatest depth of the part's triangles in the tool, at n poses."""
 
@@ -86,10 +99,16 @@ class Depth:
     triangle: Ints
     surface: Ints
 
+    def __repr__(self) -> str:
+        return f"Depth({len(self.low)} poses)"
 
-@dataclass(frozen=True, slots=True)
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Clearance:
-    """Proved bounds on the distance between part and tool at n poses; 0 in contact."""
+    """Proved bounds on the distance between the surfaces of part and tool at n poses; 0 in contact.
+
+    A tool that is wholly inside the material has a distance, too: see `signed_distance`.
+    """
 
     low: Floats
     high: Floats
@@ -101,13 +120,19 @@ class Clearance:
     tool_point: Floats
     normal: Floats
 
+    def __repr__(self) -> str:
+        return f"Clearance({len(self.low)} poses)"
 
-@dataclass(frozen=True, slots=True)
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Distance:
     """Proved bounds on the signed distance between part and tool at n poses: below 0 the depth in contact."""
 
     low: Floats
     high: Floats
+
+    def __repr__(self) -> str:
+        return f"Distance({len(self.low)} poses)"
 
 
 def wrench(
@@ -132,11 +157,17 @@ def wrench(
     weights
         A point's weight: its share of the surface, or 1.
     centre
-        The compliance centre, in the tool's frame and the part's unit.
+        The compliance centre, in the tool's frame and the part's unit. Off the axis it turns with the tool, so that poses need
+        their full rotation.
+
+    Notes
+    -----
+    Force and torque are in the world's frame; the torque is about the compliance centre.
     """
     rows = _arrays.poses(poses)
     middle = _arrays.vector("centre", centre)
-    return Wrench(**_touchoff.wrench(_tool(tool), _part(part), rows, law, weights, middle))
+    names = _arrays.text("law", law), _arrays.text("weights", weights)
+    return Wrench(**_touchoff.wrench(_tool(tool), _part(part), rows, *names, middle))
 
 
 def contacts(tool: Tool, part: Part, poses: ArrayLike) -> Contacts:
@@ -152,26 +183,30 @@ def detect(tool: Tool, part: Part, poses: ArrayLike) -> NDArray[np.bool_]:
 def certified_depth(tool: Tool, part: Part, poses: ArrayLike, *, tolerance: float = 1e-6) -> Depth:
     """Prove bounds on the greatest depth of the part's triangles in the tool.
 
-    The interval is at most as wide as the tolerance and the rounding error.
+    The interval is at most as wide as the tolerance and the rounding error. A tool that is wholly inside the material touches no
+    triangle, and has depth 0: `signed_distance` finds it.
     """
     rows, within = _arrays.poses(poses), _arrays.length("tolerance", tolerance)
     return Depth(**_touchoff.certified_depth(_tool(tool), _part(part), rows, within))
 
 
 def clearance(tool: Tool, part: Part, poses: ArrayLike, *, tolerance: float = 1e-6) -> Clearance:
-    """Prove bounds on the distance between part and tool, with the nearest points of both."""
+    """Prove bounds on the distance between the surfaces of part and tool, with the nearest points of both."""
     rows, within = _arrays.poses(poses), _arrays.length("tolerance", tolerance)
     return Clearance(**_touchoff.clearance(_tool(tool), _part(part), rows, within))
 
 
-def signed_distance(tool: Tool, part: Part, poses: ArrayLike, *, tolerance: float = 1e-6) -> Distance:
+def signed_distance(
+    tool: Tool, part: Part, poses: ArrayLike, *, tolerance: float = 1e-6, surface_only: bool = False
+) -> Distance:
     """Prove bounds on the signed distance between part and tool.
 
     It is the distance where they are apart, and below 0 the depth of the deepest point in contact. A tool that is wholly inside
-    the material has no lower bound: -inf.
+    the material has no lower bound: -inf. A part whose mesh has no inside is refused, unless `surface_only` is set: then a tool
+    inside it counts as apart.
     """
     rows, within = _arrays.poses(poses), _arrays.length("tolerance", tolerance)
-    return Distance(**_touchoff.signed_distance(_tool(tool), _part(part), rows, within))
+    return Distance(**_touchoff.signed_distance(_tool(tool), _part(part), rows, within, bool(surface_only)))
 
 
 def _tool(tool: object) -> _touchoff.Tool:

@@ -16,7 +16,7 @@ from .queries import Ints, _part, _tool
 from .tool import Tool
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class PostureMap:
     """Where t tools reach a part of n triangles, from m directions."""
 
@@ -41,7 +41,11 @@ class PostureMap:
     @classmethod
     def read(cls, path: str | os.PathLike[str]) -> PostureMap:
         """Read a map that `touchoff sweep` or a recorder filled."""
-        return _map(_touchoff.read_map(os.fspath(path)))
+        return _map(_touchoff.read_map(_arrays.path("path", path)))
+
+    def __repr__(self) -> str:
+        triangles, tools, directions = self.reached.shape
+        return f"PostureMap({triangles} triangles, {tools} tools, {directions} directions)"
 
     @property
     def is_reached(self) -> NDArray[np.bool_]:
@@ -57,6 +61,7 @@ def sweep(
     tolerance: float | None = None,
     min_niceness: float = 0.0,
     allow: Mapping[str, float] | None = None,
+    surface_only: bool = False,
 ) -> PostureMap:
     """Try tools at every triangle of a part, from many directions; every posture that is reported is proved.
 
@@ -72,16 +77,29 @@ def sweep(
         Niceness that a contact has to exceed.
     allow
         Depths that surfaces may have in the part, by their names; below 0 a distance to keep.
+    surface_only
+        Take a part whose mesh has no inside: a posture inside the material then counts as clear.
+
+    Raises
+    ------
+    ValueError
+        If the part has no inside, or the rules are invalid.
     """
+    body = _part(part)
+    if not isinstance(tools, (Tool, list, tuple)):
+        raise TypeError(f"tools: a Tool or a list of them is expected, not {type(tools).__name__}")
     listed = [tools] if isinstance(tools, Tool) else list(tools)
     if not listed:
         raise ValueError("tools: give one tool or more")
+    if allow is not None and not isinstance(allow, Mapping):
+        raise TypeError(f"allow: names with depths are expected, not {type(allow).__name__}")
     within = None if tolerance is None else _arrays.length("tolerance", tolerance)
-    allowed = [(str(name), float(depth)) for name, depth in (allow or {}).items()]
+    allowed = [
+        (_arrays.text("allow", name), _arrays.real(f"allow[{name!r}]", depth)) for name, depth in (allow or {}).items()
+    ]
     rust = [_tool(tool) for tool in listed]
-    found = _touchoff.sweep(
-        _part(part), rust, _arrays.count("directions", directions), within, float(min_niceness), allowed
-    )
+    nice, around = _arrays.real("min_niceness", min_niceness), _arrays.count("directions", directions)
+    found = _touchoff.sweep(body, rust, around, within, nice, allowed, bool(surface_only))
     return _map(found)
 
 

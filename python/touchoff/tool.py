@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Any
 
-from . import _touchoff
+from . import _arrays, _touchoff
 
 Params = Mapping[str, float | int | str]
 
@@ -27,6 +28,8 @@ class Tool:
     """
 
     _rust: _touchoff.Tool
+    #: How the tool was made, for copies in other processes.
+    _made: tuple[Callable[..., Tool], tuple[Any, ...]]
 
     def __init__(self) -> None:
         raise TypeError("make a tool by Tool.library, Tool.load, Tool.parse or import_tools")
@@ -34,7 +37,7 @@ class Tool:
     @classmethod
     def library(cls, name: str) -> Tool:
         """Take a built-in tool, of those that `tool_names` lists. It is compiled, and faster than one from a file."""
-        return cls._of(_touchoff.Tool.library(name))
+        return cls._of(_touchoff.Tool.library(_arrays.text("name", name)), cls.library, name)
 
     @classmethod
     def load(cls, path: str | os.PathLike[str], params: Params | None = None) -> Tool:
@@ -47,7 +50,8 @@ class Tool:
         ToolError
             If it does not compile; the message has the diagnostics with their codes.
         """
-        return cls._of(_touchoff.Tool.load(os.fspath(path), _assignments(params)))
+        file = _arrays.path("path", path)
+        return cls._of(_touchoff.Tool.load(file, _assignments(params)), cls.load, file, params)
 
     @classmethod
     def parse(cls, text: str, params: Params | None = None, *, name: str = "tool") -> Tool:
@@ -58,7 +62,8 @@ class Tool:
         ToolError
             If it does not compile.
         """
-        return cls._of(_touchoff.Tool.parse(text, _assignments(params), name))
+        rust = _touchoff.Tool.parse(_arrays.text("text", text), _assignments(params), _arrays.text("name", name))
+        return cls._of(rust, cls.parse, text, params)
 
     @classmethod
     def from_library_file(cls, path: str | os.PathLike[str], tool: str | int) -> Tool:
@@ -69,18 +74,32 @@ class Tool:
         KeyError
             If there is none, or several.
         """
+        if isinstance(tool, bool) or not isinstance(tool, (str, int)):
+            raise TypeError(f"tool: a name, a title or a number is expected, not {type(tool).__name__}")
         library = import_tools(path)
-        found = [one for one in library.tools if tool in (one.tool.name, one.title, one.number)]
+        number = int(tool.lstrip("Tt")) if isinstance(tool, str) and tool.lstrip("Tt").isdecimal() else tool
+        found = [one for one in library.tools if tool in (one.tool.name, one.title) or number == one.number]
         if len(found) != 1:
-            known = ", ".join(sorted(one.tool.name for one in library.tools))
-            raise KeyError(f"{len(found)} tools are called {tool!r}; {os.fspath(path)} has {known}")
+            known = ", ".join(f"{one.tool.name} (T{one.number}, {one.title})" for one in library.tools)
+            left_out = "; ".join(f"{name} is left out: {reason}" for name, reason in library.left_out)
+            raise KeyError(f"{len(found)} tools are called {tool!r}; {os.fsdecode(path)} has {known or 'none'}; {left_out}")
         return found[0].tool
 
     @classmethod
-    def _of(cls, rust: _touchoff.Tool) -> Tool:
+    def _of(cls, rust: _touchoff.Tool, make: Callable[..., Tool], *arguments: Any) -> Tool:
         tool = cls.__new__(cls)
         tool._rust = rust
+        tool._made = (make, arguments)
         return tool
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return self._made
+
+    def __copy__(self) -> Tool:
+        return self
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Tool:
+        return self
 
     @property
     def name(self) -> str:
@@ -99,7 +118,7 @@ class Tool:
 
     @property
     def radius(self) -> float:
-        """The largest distance from the axis, in the tool's unit."""
+        """The largest distance from the axis, in the tool's unit; of a solid an upper bound."""
         return self._rust.radius
 
     @property
@@ -161,9 +180,17 @@ def import_tools(path: str | os.PathLike[str]) -> ToolLibrary:
     ValueError
         If it is in none of these formats.
     """
-    tools, left_out = _touchoff.import_library(os.fspath(path))
-    imported = [ImportedTool(Tool._of(tool), number, title, notes) for tool, number, title, notes in tools]
+    file = _arrays.path("path", path)
+    tools, left_out = _touchoff.import_library(file)
+    imported = [
+        ImportedTool(Tool._of(tool, _listed, file, index), number, title, notes)
+        for index, (tool, number, title, notes) in enumerate(tools)
+    ]
     return ToolLibrary(imported, left_out)
+
+
+def _listed(path: str, index: int) -> Tool:
+    return import_tools(path).tools[index].tool
 
 
 def _assignments(params: Params | None) -> list[str]:
