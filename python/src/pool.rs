@@ -42,7 +42,7 @@ pub(crate) fn on_all_cores<R: Send>(run: impl FnOnce() -> R + Send) -> PyResult<
     Ok(pool.install(run))
 }
 
-/// Runs a query on stretches of a list of poses, and looks at signals in between.
+/// Runs a query on stretches of a list, passes the results of each to `take`, and looks at signals in between.
 ///
 /// # Errors
 /// That of a handler of signals, such as `KeyboardInterrupt`.
@@ -50,11 +50,11 @@ pub(crate) fn interruptible<I: Sync, R: Send>(
     py: Python<'_>,
     items: &[I],
     query: impl Fn(&[I]) -> Vec<R> + Sync,
-) -> PyResult<Vec<R>> {
-    let mut found = Vec::with_capacity(items.len());
+    mut take: impl FnMut(Vec<R>),
+) -> PyResult<()> {
     for stretch in items.chunks(POSES_PER_LOOK) {
-        found.extend(py.detach(|| on_all_cores(|| query(stretch)))?);
+        take(py.detach(|| on_all_cores(|| query(stretch)))?);
         py.check_signals()?;
     }
-    Ok(found)
+    Ok(())
 }

@@ -1,10 +1,11 @@
 //! Poses from arrays.
 
 use crate::error::refused;
+use crate::pool::on_all_cores;
 use nalgebra::{Matrix3, Point3, Vector3};
 use numpy::PyReadonlyArray2;
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use rayon::prelude::*;
 use touchoff::Pose;
 
 /// Largest deviation from `[0, 0, 0, 1]` of the last row of a matrix.
@@ -29,10 +30,17 @@ impl Poses {
                 return Err(refused("poses: an array with rows of 6, 7 or 16 numbers is expected"));
             }
         };
-        let poses = rows.chunks_exact(columns).enumerate().map(|(index, row)| {
-            read(row).map_err(|reason| PyValueError::new_err(format!("poses[{index}]: {reason}")))
-        });
-        Ok(Poses(poses.collect::<PyResult<_>>()?))
+        let poses = on_all_cores(|| {
+            rows.par_chunks_exact(columns).map(|row| read(row).ok()).collect::<Option<Vec<Pose>>>()
+        })?;
+        if let Some(poses) = poses {
+            return Ok(Poses(poses));
+        }
+        // The first row that is no pose.
+        let faults = rows.chunks_exact(columns).map(read).enumerate();
+        let fault = faults.filter_map(|(index, pose)| Some((index, pose.err()?))).next();
+        let (index, reason) = fault.unwrap_or_default();
+        Err(refused(format!("poses[{index}]: {reason}")))
     }
 }
 

@@ -10,7 +10,7 @@ use numpy::{Element, PyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use touchoff::certify::{Certifier, Clearance, Penetration, TriangleBvh, Witness};
-use touchoff::{Interval, Law, Pose, Probe, Weights};
+use touchoff::{Contact, Interval, Law, Pose, Probe, Weights, Wrench};
 
 /// The number that stands for no triangle or no surface.
 const NONE: i64 = -1;
@@ -40,6 +40,12 @@ impl<'py> Arrays<'py> {
         values: impl Iterator<Item = T>,
     ) -> PyResult<&Arrays<'py>> {
         self.dict.set_item(name, PyArray1::from_vec(self.py, values.collect()))?;
+        Ok(self)
+    }
+
+    /// Adds an array of vectors that are at hand.
+    fn list(&self, name: &str, values: Vec<[f64; 3]>) -> PyResult<&Arrays<'py>> {
+        self.dict.set_item(name, rows(self.py, values.into_flattened(), 3)?)?;
         Ok(self)
     }
 
@@ -101,31 +107,55 @@ pub(crate) fn wrench<'py>(
         )));
     }
     let probe = py.detach(|| probe(tool, part, law, weights, centre))?;
-    let found =
-        interruptible(py, &poses, |poses| probe.par_map(poses, |probe, pose| probe.wrench(pose)))?;
+    let mut columns = WrenchColumns::default();
+    let query =
+        |poses: &[Pose]| probe.par_map(poses, |probe: &mut Probe<'_>, pose| probe.wrench(pose));
+    interruptible(py, &poses, query, |found| found.iter().for_each(|wrench| columns.push(wrench)))?;
     let arrays = Arrays::new(py);
     arrays.dict.set_item("rounding_error", probe.rounding_error_bound())?;
     arrays.dict.set_item("sampling_error", probe.sampling_error_bound())?;
     arrays
-        .vectors("force", found.iter().map(|one| one.force.into()))?
-        .vectors("torque", found.iter().map(|one| one.torque.into()))?
-        .numbers("depth", found.iter().map(|one| one.depth()))?
-        .numbers("niceness", found.iter().map(|one| one.niceness.unwrap_or(f64::NAN)))?
-        .numbers("colliding", found.iter().map(|one| one.colliding as u64))?
-        .numbers("energy", found.iter().map(|one| one.energy))?
-        .vectors(
-            "point",
-            found.iter().map(|one| one.deepest.map_or(NAN, |deepest| deepest.point.into())),
-        )?
-        .numbers(
-            "triangle",
-            found
-                .iter()
-                .map(|one| one.deepest.map_or(NONE, |deepest| i64::from(deepest.triangle.0))),
-        )?
-        .numbers("force_error", found.iter().map(|one| one.rounding.force))?
-        .numbers("torque_error", found.iter().map(|one| one.rounding.torque))?;
+        .list("force", columns.force)?
+        .list("torque", columns.torque)?
+        .numbers("depth", columns.depth.into_iter())?
+        .numbers("niceness", columns.niceness.into_iter())?
+        .numbers("colliding", columns.colliding.into_iter())?
+        .numbers("energy", columns.energy.into_iter())?
+        .list("point", columns.point)?
+        .numbers("triangle", columns.triangle.into_iter())?
+        .numbers("force_error", columns.force_error.into_iter())?
+        .numbers("torque_error", columns.torque_error.into_iter())?;
     Ok(arrays.dict)
+}
+
+/// The quantities of wrenches, a list each. Wrenches themselves are several times as long.
+#[derive(Default)]
+struct WrenchColumns {
+    force: Vec<[f64; 3]>,
+    torque: Vec<[f64; 3]>,
+    depth: Vec<f64>,
+    niceness: Vec<f64>,
+    colliding: Vec<u64>,
+    energy: Vec<f64>,
+    point: Vec<[f64; 3]>,
+    triangle: Vec<i64>,
+    force_error: Vec<f64>,
+    torque_error: Vec<f64>,
+}
+
+impl WrenchColumns {
+    fn push(&mut self, wrench: &Wrench) {
+        self.force.push(wrench.force.into());
+        self.torque.push(wrench.torque.into());
+        self.depth.push(wrench.depth());
+        self.niceness.push(wrench.niceness.unwrap_or(f64::NAN));
+        self.colliding.push(wrench.colliding as u64);
+        self.energy.push(wrench.energy);
+        self.point.push(wrench.deepest.map_or(NAN, |deepest| deepest.point.into()));
+        self.triangle.push(wrench.deepest.map_or(NONE, |deepest| i64::from(deepest.triangle.0)));
+        self.force_error.push(wrench.rounding.force);
+        self.torque_error.push(wrench.rounding.torque);
+    }
 }
 
 /// Every point of the part inside the tool, at each pose.
@@ -140,9 +170,11 @@ pub(crate) fn contacts<'py>(
     check_spin(tool, &poses)?;
     let points = py.detach(|| part.points())?;
     let probe: Probe<'_> = Probe::new(points, tool.get());
-    let found = interruptible(py, &poses, |poses| {
-        probe.par_map(poses, |probe, pose| probe.contacts(pose).to_vec())
-    })?;
+    let mut found: Vec<Vec<Contact>> = Vec::with_capacity(poses.len());
+    let query = |poses: &[Pose]| {
+        probe.par_map(poses, |probe: &mut Probe<'_>, pose| probe.contacts(pose).to_vec())
+    };
+    interruptible(py, &poses, query, |stretch| found.extend(stretch))?;
     let arrays = Arrays::new(py);
     arrays.dict.set_item("rounding_error", probe.rounding_error_bound())?;
     let mut offset = 0;
@@ -182,7 +214,9 @@ pub(crate) fn detect<'py>(
     check_spin(tool, &poses)?;
     let points = py.detach(|| part.points())?;
     let probe: Probe<'_> = Probe::new(points, tool.get());
-    let found = interruptible(py, &poses, |poses| probe.par_map(poses, Probe::detect))?;
+    let mut found: Vec<bool> = Vec::with_capacity(poses.len());
+    let query = |poses: &[Pose]| probe.par_map(poses, Probe::detect);
+    interruptible(py, &poses, query, |stretch| found.extend(stretch))?;
     Ok(PyArray1::from_vec(py, found))
 }
 
@@ -198,9 +232,11 @@ fn certified<R: Send>(
     check_spin(tool, &poses)?;
     let bvh: &TriangleBvh = py.detach(|| part.triangles())?;
     let certifier = Certifier::new(bvh, tool.get()).map_err(refused)?;
-    interruptible(py, &poses, |poses| {
-        certifier.par_map(poses, |certifier, pose| query(certifier, pose))
-    })
+    let mut found: Vec<R> = Vec::with_capacity(poses.len());
+    let stretch =
+        |poses: &[Pose]| certifier.par_map(poses, |certifier, pose| query(certifier, pose));
+    interruptible(py, &poses, stretch, |answers| found.extend(answers))?;
+    Ok(found)
 }
 
 impl Arrays<'_> {
