@@ -244,7 +244,8 @@ impl Faces {
         faces: &[u32],
     ) -> f64 {
         // A point of the face may be off the rectangle's plane by the tolerance, and deeper by as much.
-        let more = of.tool_model.lipschitz() * flat(&of.bvh.frame) / of.length;
+        let bvh = &*of.bvh;
+        let more = of.tool_model.lipschitz() * flat(&bvh.frame) / of.length;
         let mut max_depth = f64::NEG_INFINITY;
         for indices in faces.chunks(LANES / 2) {
             self.batch.clear();
@@ -254,7 +255,7 @@ impl Faces {
                     max_depth = max_depth.max(depth);
                 } else {
                     self.batch.rectangle(
-                        &of.bvh.coplanar_faces.faces[*face as usize],
+                        &bvh.coplanar_faces.faces[*face as usize],
                         placed.pose,
                         *face,
                     );
@@ -353,8 +354,10 @@ impl SearchState {
         side: Side,
         margin: f64,
     ) {
+        // Once per query: a handle is a branch.
+        let bvh = &*of.bvh;
         self.descent.begin();
-        self.faces.begin(&of.bvh);
+        self.faces.begin(bvh);
         self.scratch.clear();
         let mut opened = 0;
         let mut nodes_per_face = NODES_PER_FACE;
@@ -368,13 +371,13 @@ impl SearchState {
             }
             // Bounds in `f32` may be too low by the margin.
             let threshold = (self.search.threshold() - margin) as f32;
-            if node.is_triangle(&of.bvh) {
-                let indices = self.descent.triangles(&of.bvh, node, threshold);
+            if node.is_triangle(bvh) {
+                let indices = self.descent.triangles(bvh, node, threshold);
                 if let Side::Inside = side
                     && opened > NODES_BEFORE_FACES
                 {
                     indices.retain(|index| {
-                        of.bvh.coplanar_faces.of_triangle(*index).is_none_or(|face| {
+                        bvh.coplanar_faces.of_triangle(*index).is_none_or(|face| {
                             let placed = PlacedTool { pose, view: &self.view };
                             self.faces.depth(of, query, placed, &[face]) > self.search.threshold()
                         })
@@ -383,14 +386,14 @@ impl SearchState {
                 if indices.is_empty() {
                     continue;
                 }
-                self.batch.begin(&of.bvh, pose, indices);
+                self.batch.begin(bvh, pose, indices);
                 match side {
                     Side::Inside => self.search_batch(of, query),
                     Side::Outside => self.search_outside(of, query),
                 }
                 continue;
             }
-            let (level, bvh, view) = (of.level, &*of.bvh, &self.view);
+            let (level, view) = (of.level, &self.view);
             let placed = PlacedTool { pose, view };
             opened += 1;
             if let Side::Inside = side
