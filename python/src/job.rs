@@ -29,14 +29,7 @@ enum CheckError {
 /// Returns the error about keys that stand in no file.
 fn without_line(error: JobError) -> CheckError {
     match error {
-        JobError::File { message, .. } => {
-            let message = match message.strip_prefix("line ").and_then(|rest| rest.split_once(": "))
-            {
-                Some((_, message)) => message.to_owned(),
-                None => message,
-            };
-            CheckError::Keys(message)
-        }
+        JobError::File { message, .. } => CheckError::Keys(message),
         other => CheckError::Job(other),
     }
 }

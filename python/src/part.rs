@@ -164,13 +164,13 @@ impl Part {
         rows(py, corners.iter().flat_map(|corner| <[f64; 3]>::from(*corner)).collect(), 3)
     }
 
-    /// Whether the mesh is closed and oriented outward, so that it has an inside.
+    /// Tells whether the mesh is closed and oriented outward, so that it has an inside.
     #[getter]
     fn is_solid(&self) -> bool {
         self.mesh.as_ref().is_some_and(|mesh| mesh.diagnostics().is_solid())
     }
 
-    /// What is noteworthy about the mesh, a sentence each.
+    /// The findings about the mesh, a sentence each.
     #[getter]
     fn diagnostics(&self) -> Vec<String> {
         self.mesh.as_ref().map_or(Vec::new(), |mesh| mesh.diagnostics().findings())

@@ -24,11 +24,9 @@ pub(crate) fn on_all_cores<R: Send>(run: impl FnOnce() -> R + Send) -> PyResult<
         let mut pool = POOL.lock().unwrap_or_else(PoisonError::into_inner);
         match &*pool {
             Some((owner, threads)) if *owner == process => Arc::clone(threads),
-            other => {
+            _ => {
                 // The parent's pool cannot be joined from here.
-                if let Some((_, lost)) = other {
-                    std::mem::forget(Arc::clone(lost));
-                }
+                std::mem::forget(pool.take());
                 let threads = ThreadPoolBuilder::new().build();
                 let threads = threads.map_err(|error| {
                     PyRuntimeError::new_err(format!("no threads can be started: {error}"))

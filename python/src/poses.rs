@@ -2,46 +2,49 @@
 
 use crate::error::refused;
 use crate::pool::on_all_cores;
+use crate::tool::Tool;
 use nalgebra::{Matrix3, Point3, Vector3};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 use rayon::prelude::*;
 use touchoff::Pose;
+use touchoff::tool::Symmetry;
 
 /// Largest deviation from `[0, 0, 0, 1]` of the last row of a matrix.
 const LAST_ROW: f64 = 1e-9;
 
-/// Poses in a C-contiguous array: n × 6 of tips and axes, n × 7 of tips and quaternions `x, y, z, w`, or n × 16 of matrices,
-/// row by row. The package `touchoff` makes these of what its users pass.
-pub(crate) struct Poses(pub(crate) Vec<Pose>);
-
-impl Poses {
-    /// Reads the poses.
-    ///
-    /// # Errors
-    /// `ValueError` for the first row that is no pose.
-    pub(crate) fn of(rows: &PyReadonlyArray2<'_, f64>) -> PyResult<Poses> {
-        let (columns, rows) = (rows.as_array().ncols(), rows.as_slice()?);
-        let read = match columns {
-            6 => axis,
-            7 => quaternion,
-            16 => matrix,
-            _ => {
-                return Err(refused("poses: an array with rows of 6, 7 or 16 numbers is expected"));
-            }
-        };
-        let poses = on_all_cores(|| {
-            rows.par_chunks_exact(columns).map(|row| read(row).ok()).collect::<Option<Vec<Pose>>>()
-        })?;
-        if let Some(poses) = poses {
-            return Ok(Poses(poses));
+/// Reads the poses of a tool from a C-contiguous array: n × 6 of tips and axes, n × 7 of tips and quaternions `x, y, z, w`, or
+/// n × 16 of matrices, row by row. The package `touchoff` makes these of what its users pass.
+///
+/// # Errors
+/// `ValueError` for the first row that is no pose, or that lacks the spin of a solid without an axis.
+pub(crate) fn read_poses(tool: &Tool, rows: &PyReadonlyArray2<'_, f64>) -> PyResult<Vec<Pose>> {
+    let (columns, rows) = (rows.as_array().ncols(), rows.as_slice()?);
+    let read = match columns {
+        6 => axis,
+        7 => quaternion,
+        16 => matrix,
+        _ => {
+            return Err(refused("poses: an array with rows of 6, 7 or 16 numbers is expected"));
         }
-        // The first row that is no pose.
-        let faults = rows.chunks_exact(columns).map(read).enumerate();
-        let fault = faults.filter_map(|(index, pose)| Some((index, pose.err()?))).next();
-        let (index, reason) = fault.unwrap_or_default();
-        Err(refused(format!("poses[{index}]: {reason}")))
+    };
+    let poses = on_all_cores(|| {
+        rows.par_chunks_exact(columns).map(|row| read(row).ok()).collect::<Option<Vec<Pose>>>()
+    })?;
+    if let Some(poses) = poses {
+        let is_solid = matches!(tool.get().info().symmetry, Symmetry::Solid { .. });
+        return match poses.iter().position(|pose| is_solid && !pose.has_spin()) {
+            Some(index) => Err(refused(format!(
+                "poses[{index}]: a solid without an axis needs its full rotation: give quaternions or matrices"
+            ))),
+            None => Ok(poses),
+        };
     }
+    // The first row that is no pose.
+    let faults = rows.chunks_exact(columns).map(read).enumerate();
+    let fault = faults.filter_map(|(index, pose)| Some((index, pose.err()?))).next();
+    let (index, reason) = fault.unwrap_or_default();
+    Err(refused(format!("poses[{index}]: {reason}")))
 }
 
 fn axis(row: &[f64]) -> Result<Pose, String> {

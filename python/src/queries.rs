@@ -3,7 +3,7 @@
 use crate::error::refused;
 use crate::part::{Part, rows};
 use crate::pool::interruptible;
-use crate::poses::Poses;
+use crate::poses::read_poses;
 use crate::tool::Tool;
 use nalgebra::{Point3, Vector3};
 use numpy::{Element, PyArray1, PyReadonlyArray2};
@@ -75,17 +75,6 @@ fn probe<'a>(
     Ok(probe.with_law(law).with_weights(weights).with_centre(centre))
 }
 
-/// Refuses poses without a spin for a solid without an axis.
-fn check_spin(tool: &Tool, poses: &[Pose]) -> PyResult<()> {
-    let is_solid = matches!(tool.get().info().symmetry, touchoff::tool::Symmetry::Solid { .. });
-    match poses.iter().position(|pose| is_solid && !pose.has_spin()) {
-        Some(index) => Err(refused(format!(
-            "poses[{index}]: a solid without an axis needs its full rotation: give quaternions or matrices"
-        ))),
-        None => Ok(()),
-    }
-}
-
 /// Force, torque and depth of the whole contact at each pose.
 #[pyfunction]
 pub(crate) fn wrench<'py>(
@@ -97,8 +86,7 @@ pub(crate) fn wrench<'py>(
     weights: &str,
     centre: [f64; 3],
 ) -> PyResult<Bound<'py, PyDict>> {
-    let Poses(poses) = Poses::of(&poses)?;
-    check_spin(tool, &poses)?;
+    let poses = read_poses(tool, &poses)?;
     let is_off_axis = centre[0] != 0.0 || centre[1] != 0.0;
     if let Some(index) = poses.iter().position(|pose| is_off_axis && !pose.has_spin()) {
         return Err(refused(format!(
@@ -166,8 +154,7 @@ pub(crate) fn contacts<'py>(
     part: &Part,
     poses: PyReadonlyArray2<'py, f64>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let Poses(poses) = Poses::of(&poses)?;
-    check_spin(tool, &poses)?;
+    let poses = read_poses(tool, &poses)?;
     let points = py.detach(|| part.points())?;
     let probe: Probe<'_> = Probe::new(points, tool.get());
     let mut found: Vec<Vec<Contact>> = Vec::with_capacity(poses.len());
@@ -202,7 +189,7 @@ pub(crate) fn contacts<'py>(
     Ok(arrays.dict)
 }
 
-/// Whether any point of the part is inside the tool, at each pose.
+/// Tells whether any point of the part is inside the tool, at each pose.
 #[pyfunction]
 pub(crate) fn detect<'py>(
     py: Python<'py>,
@@ -210,8 +197,7 @@ pub(crate) fn detect<'py>(
     part: &Part,
     poses: PyReadonlyArray2<'py, f64>,
 ) -> PyResult<Bound<'py, PyArray1<bool>>> {
-    let Poses(poses) = Poses::of(&poses)?;
-    check_spin(tool, &poses)?;
+    let poses = read_poses(tool, &poses)?;
     let points = py.detach(|| part.points())?;
     let probe: Probe<'_> = Probe::new(points, tool.get());
     let mut found: Vec<bool> = Vec::with_capacity(poses.len());
@@ -228,8 +214,7 @@ fn certified<R: Send>(
     poses: &PyReadonlyArray2<'_, f64>,
     query: impl Fn(&mut Certifier<'_>, &Pose) -> R + Sync,
 ) -> PyResult<Vec<R>> {
-    let Poses(poses) = Poses::of(poses)?;
-    check_spin(tool, &poses)?;
+    let poses = read_poses(tool, poses)?;
     let bvh: &TriangleBvh = py.detach(|| part.triangles())?;
     let certifier = Certifier::new(bvh, tool.get()).map_err(refused)?;
     let mut found: Vec<R> = Vec::with_capacity(poses.len());

@@ -16,7 +16,7 @@ use touchoff_postures::{Accessibility, Directions, MapRow, PostureMap, Rules};
 /// The largest table of triangles, tools and directions, in bytes.
 const MAX_ENTRIES: usize = 4 << 30;
 
-/// What was found at one triangle.
+/// A triangle's index, and its row.
 type TriangleRow = (usize, MapRow);
 
 /// Tries tools at every triangle of a part, from many directions.

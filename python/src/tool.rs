@@ -24,7 +24,7 @@ pub(crate) enum LoadedTool {
     BuiltIn(&'static dyn touchoff::Tool),
     Interpreted {
         tool: Box<Interpreted>,
-        /// What it was compiled from, for the drawing.
+        /// The text that it was compiled from, for the drawing.
         text: ToolText,
         params: Vec<String>,
     },
@@ -37,7 +37,7 @@ pub(crate) enum ToolText {
         name: String,
         text: String,
     },
-    /// Of several files: the tool's own path, and all texts by their paths.
+    /// Texts by their paths, among which `own` is the tool's.
     Files {
         own: PathBuf,
         texts: Arc<BTreeMap<PathBuf, String>>,
@@ -45,6 +45,11 @@ pub(crate) enum ToolText {
 }
 
 impl ToolText {
+    /// Takes texts by their paths, among which `own` is the tool's.
+    fn files(own: impl Into<PathBuf>, texts: impl Iterator<Item = (PathBuf, String)>) -> ToolText {
+        ToolText::Files { own: own.into(), texts: Arc::new(texts.collect()) }
+    }
+
     /// Returns the source to compile. A source is bound to a thread, so it is made where it is needed.
     fn source(&self) -> Result<Source, ToolError> {
         match self {
@@ -108,8 +113,7 @@ impl LoadedTool {
 
     fn imported(imported: &ImportedTool) -> Result<LoadedTool, ImportError> {
         let texts = imported.files.iter().map(|file| (file.path.clone().into(), file.text.clone()));
-        let text =
-            ToolText::Files { own: imported.path().into(), texts: Arc::new(texts.collect()) };
+        let text = ToolText::files(imported.path(), texts);
         Ok(LoadedTool::Interpreted { tool: Box::new(imported.load()?), text, params: Vec::new() })
     }
 
@@ -217,7 +221,7 @@ impl Tool {
         widest.reduce(f64::max).unwrap_or_else(|| info.radius())
     }
 
-    /// Whether depth is proved to be the distance to the tool's surface.
+    /// Tells whether depth is proved to be the distance to the tool's surface.
     #[getter]
     fn is_exact(&self) -> bool {
         self.loaded.info().is_exact()
@@ -240,7 +244,7 @@ impl Tool {
                 let files = position.map_or(&[][..], |position| SOURCES[position]);
                 let own = files.first().map_or("", |(file, _)| file);
                 let texts = files.iter().map(|(file, text)| (file.into(), (*text).to_owned()));
-                let text = ToolText::Files { own: own.into(), texts: Arc::new(texts.collect()) };
+                let text = ToolText::files(own, texts);
                 compile_with_arguments(&text.source().map_err(tool_error)?, &[])
             }
             LoadedTool::Interpreted { text, params, .. } => {

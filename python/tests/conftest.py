@@ -39,6 +39,16 @@ def program() -> Path:
     return Path(path)
 
 
+def write_ply(path: Path, part: touchoff.Part) -> None:
+    """Write a mesh with the digits that give its numbers back."""
+    lines = ["ply", "format ascii 1.0", f"element vertex {len(part.vertices)}"]
+    lines += [f"property double {name}" for name in "xyz"]
+    lines += [f"element face {len(part)}", "property list uchar int vertex_indices", "end_header"]
+    lines += [" ".join(map(repr, vertex)) for vertex in part.vertices.tolist()]
+    lines += [" ".join(map(str, [3, *face])) for face in part.faces.tolist()]
+    path.write_text("\n".join(lines) + "\n")
+
+
 def random_poses(count: int, *, seed: int, spread: float = 8.0) -> np.ndarray:
     """Tips about the block's top, with axes in the upper half space."""
     random = np.random.default_rng(seed)

@@ -7,6 +7,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from conftest import write_ply
 
 import touchoff
 
@@ -33,11 +34,7 @@ TOOL = """tool Mill {
 
 @pytest.fixture
 def folder(block, tmp_path: Path) -> Path:
-    ply = ["ply", "format ascii 1.0", "element vertex 8", "property double x", "property double y", "property double z"]
-    ply += ["element face 12", "property list uchar int vertex_indices", "end_header"]
-    ply += [" ".join(map(str, vertex)) for vertex in block.vertices.tolist()]
-    ply += [" ".join(map(str, [3, *face])) for face in block.faces.tolist()]
-    (tmp_path / "block.ply").write_text("\n".join(ply) + "\n")
+    write_ply(tmp_path / "block.ply", block)
     (tmp_path / "mill.tool").write_text(TOOL)
     return tmp_path
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import random_poses
+from conftest import random_poses, write_ply
 
 import touchoff
 
@@ -110,12 +110,7 @@ def test_results_have_the_bits_of_the_program(program: Path, block, tmp_path: Pa
     (tmp_path / "poses.csv").write_text("\n".join(lines) + "\n")
     # The program reads the vertices as the file has them.
     part = tmp_path / "block.ply"
-    ply = ["ply", "format ascii 1.0", f"element vertex {len(block.vertices)}"]
-    ply += [f"property double {name}" for name in "xyz"]
-    ply += [f"element face {len(block)}", "property list uchar int vertex_indices", "end_header"]
-    ply += [" ".join(repr(float(v)) for v in vertex) for vertex in block.vertices]
-    ply += [" ".join(map(str, [3, *face])) for face in block.faces.tolist()]
-    part.write_text("\n".join(ply) + "\n")
+    write_ply(part, block)
     read = touchoff.Part.read(part, unit="mm")
     found = touchoff.wrench(touchoff.Tool.library("D2Ball"), read, poses, law=law)
     command = [program, "run", "--part", part, "--unit", "mm", "--tool", "D2Ball"]

@@ -76,7 +76,7 @@ def text(name: str, value: object) -> str:
     """Return a text."""
     if not isinstance(value, str):
         raise TypeError(f"{name}: a text is expected, not {type(value).__name__}")
-    # What Python keeps of bytes that are no text.
+    # Python keeps bytes that are no text as these.
     if not value.isprintable() and any("\ud800" <= letter <= "\udfff" for letter in value):
         raise ValueError(f"{name}: it has a character that is no Unicode")
     return value

@@ -50,7 +50,7 @@ class Gap:
 
     file: str
     line: int
-    #: Whether there is no verdict because of it.
+    #: Set if there is no verdict because of it.
     open: bool
     reason: str
 
@@ -63,11 +63,11 @@ class Report:
     verdict: Verdict
     findings: list[Finding]
     gaps: list[Gap]
-    #: What stands in the way of a proof; without findings there is no verdict because of it.
+    #: Obstacles to a proof; without findings there is no verdict because of it.
     refusals: list[str]
     #: A sentence for each tool at each body.
     summaries: list[str]
-    #: Whether only the surface of the part was checked, since its mesh has no inside.
+    #: Set if only the surface of the part was checked, since its mesh has no inside.
     surface_only: bool
     #: The findings in SARIF 2.1.0, for services of continuous integration.
     sarif: dict[str, Any]
@@ -96,7 +96,7 @@ class Job:
     """
 
     def __init__(self, *, folder: str | os.PathLike[str] = ".", **keys: Any) -> None:
-        # Only a folder's name is used; the file need not exist.
+        # The name gives the folder; the file need not exist.
         self._path = os.path.join(_arrays.path("folder", folder), "job.toml")
         self._keys: dict[str, Any] | None = _plain(keys)
 

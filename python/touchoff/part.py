@@ -52,7 +52,7 @@ class Part:
     """
 
     _rust: _touchoff.Part
-    #: How the part was made, for copies in other processes.
+    #: The call that made the part, for copies in other processes.
     _made: tuple[Any, tuple[Any, ...], dict[str, Any]]
 
     def __init__(

@@ -42,7 +42,7 @@ class Wrench:
     torque_error: Floats
     #: Bound on the rounding error of a point's depth; None if it is unknown for the tool.
     rounding_error: float | None
-    #: How much deeper the surface between the points can be; None if it is unknown, and an estimate where the part's covering
+    #: Bound on how much deeper the surface between the points is; None if it is unknown, and an estimate where the part's covering
     #: radius is one.
     sampling_error: float | None
 

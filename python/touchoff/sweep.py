@@ -24,7 +24,7 @@ class PostureMap:
     tools: list[str]
     #: The axes of the directions, m × 3.
     directions: Floats
-    #: Whether a tool reaches a triangle from a direction, n × t × m.
+    #: Set where a tool reaches a triangle from a direction, n × t × m.
     reached: NDArray[np.bool_]
     #: The least stick-out that a tool needs for a triangle, n × t; NaN if it has no holder or does not reach it.
     stickout: Floats

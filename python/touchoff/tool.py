@@ -17,7 +17,7 @@ class Surface:
     """A surface of a tool."""
 
     name: str
-    #: Whether it cuts.
+    #: Set if it cuts.
     cutting: bool
 
 
@@ -28,7 +28,7 @@ class Tool:
     """
 
     _rust: _touchoff.Tool
-    #: How the tool was made, for copies in other processes.
+    #: The call that made the tool, for copies in other processes.
     _made: tuple[Callable[..., Tool], tuple[Any, ...]]
 
     def __init__(self) -> None:
@@ -157,7 +157,7 @@ class ImportedTool:
     tool: Tool
     number: int | None
     title: str
-    #: What the format leaves open or contradicts, a sentence each.
+    #: Notes on what the format leaves open or contradicts, a sentence each.
     notes: list[str]
 
 

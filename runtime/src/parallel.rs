@@ -35,6 +35,18 @@ pub(crate) fn each<R: Send>(count: usize, map: impl Fn(usize) -> R + Send + Sync
     }
 }
 
+/// Applies `map` to stretches of `size` items, in their order, each with a worker that `worker` makes for some of them.
+#[cfg(feature = "parallel")]
+pub(crate) fn stretches<I: Sync, W, R: Send>(
+    items: &[I],
+    size: usize,
+    worker: impl Fn() -> W + Send + Sync,
+    map: impl Fn(&mut W, &[I]) -> Vec<R> + Send + Sync,
+) -> Vec<R> {
+    use rayon::prelude::*;
+    items.par_chunks(size).map_init(worker, map).flatten_iter().collect()
+}
+
 /// Sorts unstably; equal items must be indistinguishable.
 pub(crate) fn sort<T: Ord + Send>(list: &mut [T]) {
     #[cfg(feature = "parallel")]

@@ -46,6 +46,8 @@ use crate::debug::debug;
 use crate::handle::{Handle, ToolHandle};
 use crate::id::SurfaceId;
 use crate::interval::Interval;
+#[cfg(feature = "parallel")]
+use crate::parallel;
 use crate::pose::Pose;
 use crate::tool::Tool;
 use containment::CorePoints;
@@ -394,19 +396,12 @@ impl<'a> Certifier<'a> {
         items: &[I],
         query: impl Fn(&mut Certifier<'a>, &I) -> R + Sync,
     ) -> Vec<R> {
-        use rayon::prelude::*;
         const ITEMS_PER_TASK: usize = 64;
-        items
-            .par_chunks(ITEMS_PER_TASK)
-            .map_init(
-                || self.clone(),
-                |certifier, items| {
-                    certifier.clear_caches();
-                    items.iter().map(|item| query(certifier, item)).collect::<Vec<R>>()
-                },
-            )
-            .flatten_iter()
-            .collect()
+        let run = |certifier: &mut Certifier<'a>, items: &[I]| {
+            certifier.clear_caches();
+            items.iter().map(|item| query(certifier, item)).collect()
+        };
+        parallel::stretches(items, ITEMS_PER_TASK, || self.clone(), run)
     }
 
     /// Returns whether a point in world coordinates is certainly deeper than is [allowed](Certifier::with_allowance), in a tool

@@ -1,6 +1,6 @@
 //! A tool among several bodies.
 
-use super::{Certifier, Clearance, MotionVerdict, Penetration, PoseVerdict};
+use super::{Certifier, Clearance, MotionVerdict, Penetration, PoseVerdict, ToolPoint, Witness};
 use crate::interval::Interval;
 use crate::motion::Motion;
 use crate::pose::Pose;
@@ -95,21 +95,25 @@ impl<'a> CertifiedScene<'a> {
         known
     }
 
+    /// Returns the answer of each body, in the world; `ask` takes the body's frame.
+    fn answers<'s, T>(
+        &'s mut self,
+        ask: impl Fn(&mut Certifier<'a>, &Pose) -> T,
+    ) -> impl Iterator<Item = BodyAnswer<'s, T>> {
+        self.bodies.iter_mut().map(move |Body { name, frame, certifier }| BodyAnswer {
+            body: name,
+            answer: ask(certifier, frame),
+        })
+    }
+
     /// Checks the tool at a pose as [`Certifier::check_pose`] does, and returns the gravest verdict: contact, inside the
     /// material, undecided, only the surface checked, and then clear. `None` without a body.
     pub fn check_pose(&mut self, pose: &Pose) -> Option<BodyAnswer<'_, PoseVerdict>> {
-        let answers = self.bodies.iter_mut().map(|body| {
-            let frame = body.frame;
-            let verdict = body.certifier.check_pose(&pose.relative_to(&frame));
-            let answer = match verdict {
-                PoseVerdict::Touching(mut witness) => {
-                    witness.point = to_world(&frame, witness.point);
-                    PoseVerdict::Touching(witness)
-                }
+        let answers =
+            self.answers(|certifier, frame| match certifier.check_pose(&pose.relative_to(frame)) {
+                PoseVerdict::Touching(witness) => PoseVerdict::Touching(witness.in_world(frame)),
                 other => other,
-            };
-            BodyAnswer { body: &body.name, answer }
-        });
+            });
         answers.min_by_key(|answer| match answer.answer {
             PoseVerdict::Touching(_) => 0,
             PoseVerdict::Inside(_) => 1,
@@ -126,17 +130,13 @@ impl<'a> CertifiedScene<'a> {
         motion: &Motion,
         tolerance: f64,
     ) -> Option<BodyAnswer<'_, MotionVerdict>> {
-        let answers = self.bodies.iter_mut().map(|body| {
-            let frame = body.frame;
-            let verdict = body.certifier.check_motion(&motion.relative_to(&frame), tolerance);
-            let answer = match verdict {
-                MotionVerdict::Touching(at, mut witness) => {
-                    witness.point = to_world(&frame, witness.point);
-                    MotionVerdict::Touching(at, witness)
+        let answers = self.answers(|certifier, frame| {
+            match certifier.check_motion(&motion.relative_to(frame), tolerance) {
+                MotionVerdict::Touching(at, witness) => {
+                    MotionVerdict::Touching(at, witness.in_world(frame))
                 }
                 other => other,
-            };
-            BodyAnswer { body: &body.name, answer }
+            }
         });
         answers.min_by_key(|answer| match answer.answer {
             MotionVerdict::Touching(..) => 0,
@@ -149,13 +149,9 @@ impl<'a> CertifiedScene<'a> {
 
     /// Computes the deepest penetration of any body into the tool, as [`Certifier::deepest`] does. `None` without a body.
     pub fn deepest(&mut self, pose: &Pose, tolerance: f64) -> Option<BodyAnswer<'_, Penetration>> {
-        let answers = self.bodies.iter_mut().map(|body| {
-            let frame = body.frame;
-            let mut answer = body.certifier.deepest(&pose.relative_to(&frame), tolerance);
-            if let Some(witness) = &mut answer.witness {
-                witness.point = to_world(&frame, witness.point);
-            }
-            BodyAnswer { body: &body.name, answer }
+        let answers = self.answers(|certifier, frame| {
+            let found = certifier.deepest(&pose.relative_to(frame), tolerance);
+            Penetration { witness: found.witness.map(|witness| witness.in_world(frame)), ..found }
         });
         answers.reduce(|one, other| {
             let [a, b] = [one.answer.depth, other.answer.depth];
@@ -167,17 +163,14 @@ impl<'a> CertifiedScene<'a> {
 
     /// Computes the distance of the nearest body, as [`Certifier::clearance`] does. `None` without a body.
     pub fn clearance(&mut self, pose: &Pose, tolerance: f64) -> Option<BodyAnswer<'_, Clearance>> {
-        let answers = self.bodies.iter_mut().map(|body| {
-            let frame = body.frame;
-            let mut answer = body.certifier.clearance(&pose.relative_to(&frame), tolerance);
-            if let Some(witness) = &mut answer.witness {
-                witness.point = to_world(&frame, witness.point);
-            }
-            if let Some(on_tool) = &mut answer.on_tool {
-                on_tool.point = to_world(&frame, on_tool.point);
-                on_tool.normal = frame.rotation() * on_tool.normal;
-            }
-            BodyAnswer { body: &body.name, answer }
+        let answers = self.answers(|certifier, frame| {
+            let found = certifier.clearance(&pose.relative_to(frame), tolerance);
+            let on_tool = found.on_tool.map(|on_tool| ToolPoint {
+                point: to_world(frame, on_tool.point),
+                normal: frame.rotation() * on_tool.normal,
+            });
+            let witness = found.witness.map(|witness| witness.in_world(frame));
+            Clearance { witness, on_tool, ..found }
         });
         answers.reduce(|one, other| {
             let [a, b] = [one.answer.distance, other.answer.distance];
@@ -193,10 +186,8 @@ impl<'a> CertifiedScene<'a> {
         pose: &Pose,
         tolerance: f64,
     ) -> Option<BodyAnswer<'_, Interval>> {
-        let answers = self.bodies.iter_mut().map(|body| {
-            let pose = pose.relative_to(&body.frame);
-            let answer = body.certifier.signed_distance(&pose, tolerance);
-            BodyAnswer { body: &body.name, answer }
+        let answers = self.answers(|certifier, frame| {
+            certifier.signed_distance(&pose.relative_to(frame), tolerance)
         });
         answers.reduce(|one, other| {
             let answer = lesser(one.answer, other.answer);
@@ -210,8 +201,14 @@ fn lesser(a: Interval, b: Interval) -> Interval {
     Interval::new(a.low.min(b.low), a.high.min(b.high))
 }
 
+impl Witness {
+    fn in_world(self, frame: &Pose) -> Witness {
+        Witness { point: to_world(frame, self.point), ..self }
+    }
+}
+
 fn to_world(frame: &Pose, point: Point3<f64>) -> Point3<f64> {
-    // As the pose was taken relative to it: at the origin the point keeps its bits.
+    // The point keeps its bits at the origin, as the pose does that was taken relative to it.
     if *frame == Pose::default() {
         return point;
     }

@@ -21,6 +21,8 @@ pub use wrench::{Stiffness, Wrench, WrenchRounding};
 use crate::bvh::WIDTH;
 use crate::debug::debug;
 use crate::handle::Handle;
+#[cfg(feature = "parallel")]
+use crate::parallel;
 use crate::pose::Pose;
 use crate::tool::{BatchEvaluator, OutputSelection, Outputs, Tool, reserve};
 use crate::unit::Unit;
@@ -300,17 +302,12 @@ impl<'a, T: BatchEvaluator + ?Sized> Probe<'a, T> {
         poses: &[Pose],
         query: impl Fn(&mut Probe<'a, T>, &Pose) -> R + Sync,
     ) -> Vec<R> {
-        use rayon::prelude::*;
         // Enough poses that cloning the probe costs nothing in comparison.
         const POSES_PER_TASK: usize = 256;
-        poses
-            .par_chunks(POSES_PER_TASK)
-            .map_init(
-                || self.clone(),
-                |probe, poses| poses.iter().map(|pose| query(probe, pose)).collect::<Vec<R>>(),
-            )
-            .flatten_iter()
-            .collect()
+        let run = |probe: &mut Probe<'a, T>, poses: &[Pose]| {
+            poses.iter().map(|pose| query(probe, pose)).collect()
+        };
+        parallel::stretches(poses, POSES_PER_TASK, || self.clone(), run)
     }
 
     /// Evaluates the tool at all points of the part that may be inside. Returns whether any point is inside.

@@ -169,7 +169,7 @@ fn shared_and_cloned_certifiers_have_the_same_bits() {
         Held(Certifier::shared(Arc::clone(&bvh), Arc::clone(&interpreted)).expect("a profile"));
     let mut borrowed = Certifier::new(&bvh, &*interpreted).expect("a profile");
     let mut cloned = borrowed.clone();
-    // In stretches of 64, as on all cores.
+    // Stretches of 64 begin without caches, as on all cores.
     let mut alone = Vec::new();
     for stretch in poses.chunks(64) {
         borrowed.clear_caches();

@@ -231,12 +231,12 @@ impl JobFile {
     /// # Errors
     /// If it is no job: the message names the line.
     pub fn parse(text: &str, file: &Path) -> Result<JobFile, JobError> {
-        let fault = |message: String| JobError::File { file: file.display().to_string(), message };
+        let name = file.display().to_string();
         let job: JobText = toml::from_str(text).map_err(|error| {
             let line = error.span().map(|span| 1 + text[..span.start].matches('\n').count());
-            let line = line.map_or(String::new(), |line| format!("line {line}: "));
-            fault(format!("{line}{}", error.message()))
+            JobError::File { file: name.clone(), line, message: error.message().to_owned() }
         })?;
+        let fault = |message: String| JobError::File { file: name.clone(), line: None, message };
         let unit = job.unit.parse::<Unit>().map_err(|error| fault(error.to_string()))?;
         let lengths = [Some(job.tolerance), job.resolution];
         if lengths.into_iter().flatten().any(|length| !(0.0..f64::INFINITY).contains(&length)) {

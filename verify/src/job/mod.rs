@@ -176,10 +176,12 @@ pub enum StockShape {
 #[non_exhaustive]
 pub enum JobError {
     /// The job's file is refused.
-    #[error("{file}: {message}")]
+    #[error("{file}: {}{message}", line.map_or(String::new(), |line| format!("line {line}: ")))]
     File {
         /// The file.
         file: String,
+        /// The line, from 1, if it is known.
+        line: Option<usize>,
         /// The reason, and the remedy.
         message: String,
     },

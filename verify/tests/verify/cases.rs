@@ -237,7 +237,7 @@ fn rejects_unsupported_tools_and_arguments() {
     let verifier = || Verifier::new(&bvh, &Mounted).expect("a profile");
     let message = verifier().with_allowance("fluet", 0.1).expect_err("no such surface").to_string();
     assert!(message.contains("no surface `fluet`; it has `ball`, `flute`"), "{message}");
-    // Of several allowances all that are wrong are told.
+    // All wrong allowances are told.
     let several = [("fluet", 0.1), ("ball", 0.1), ("shnak", 0.1), ("flute", f64::NAN)];
     let message = verifier().with_allowances(several).expect_err("three mistakes").to_string();
     let told = ["`fluet`", "`shnak`", "an allowance of NaN for `flute`"];
