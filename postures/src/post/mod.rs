@@ -260,23 +260,30 @@ impl Post {
             }
             let findings =
                 prover.findings(program.moves(ToolSelection::All, None, self.unit)?)?;
-            let in_stock =
-                prover.findings_in_stock(program.moves(ToolSelection::All, None, self.unit)?)?;
-            if findings.is_empty() && in_stock.is_empty() {
-                let locations =
-                    locations.iter().map(|location| (location.pose, location.rapid)).collect();
-                return Ok((posted.text, locations));
+            if findings.is_empty() {
+                let moves = program.moves(ToolSelection::All, None, self.unit)?;
+                let in_stock = prover.findings_in_stock(moves)?;
+                let Some(first) = in_stock.first() else {
+                    let locations =
+                        locations.iter().map(|location| (location.pose, location.rapid)).collect();
+                    return Ok((posted.text, locations));
+                };
+                // Several surfaces may be in the stock on one motion. Each round changes a motion to feed, so the loop ends;
+                // the way home is none of them.
+                let mut has_changed = false;
+                for finding in &in_stock {
+                    let location = &mut locations[posted.location(finding.line)];
+                    has_changed |= std::mem::replace(&mut location.rapid, false);
+                }
+                if !has_changed {
+                    let location = posted.location(first.line);
+                    return Err(prover.failure(first, locations[location].planned));
+                }
+                continue;
             }
             let mut found = BTreeMap::new();
             for finding in &findings {
                 found.entry(posted.location(finding.line)).or_insert(Fault::Found(finding));
-            }
-            for finding in &in_stock {
-                let location = &mut locations[posted.location(finding.line)];
-                // Each round changes a motion to feed. The way home is none of them, and stays a finding.
-                if !std::mem::replace(&mut location.rapid, false) && findings.is_empty() {
-                    return Err(prover.failure(finding, location.planned));
-                }
             }
             locations = refined(&locations, &joints, &found, prover)?;
         }

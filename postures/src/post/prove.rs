@@ -55,21 +55,21 @@ impl<'a> PathProver<'a> {
                 .with_tolerance(rules.tolerance - resolution)?
                 .with_resolution(resolution)
         };
-        let mut verifier = limited(bvh)?;
-        let mut stock_verifier = stock.map(limited).transpose()?;
-        for surface in tool.info().surfaces.iter() {
-            let any_depth =
-                |stock: Verifier<'a>| stock.with_allowance(&surface.name, f64::INFINITY);
-            stock_verifier = stock_verifier.map(any_depth).transpose()?;
+        let surfaces = tool.info().surfaces.iter();
+        let allowances = surfaces.clone().filter_map(|surface| {
             // The last of several allowances for a surface holds, as in a sweep.
             let stated = rules.allowed.iter().rev().find(|(name, _)| *name == surface.name);
             let allowed = match stated {
                 Some((_, allowed)) => allowed + motion,
-                None if surface.cutting => continue,
+                None if surface.cutting => return None,
                 None => motion,
             };
-            verifier = verifier.with_allowance(&surface.name, allowed)?;
-        }
+            Some((&*surface.name, allowed))
+        });
+        let verifier = limited(bvh)?.with_allowances(allowances)?;
+        let any_depth = surfaces.map(|surface| (&*surface.name, f64::INFINITY));
+        let stock_verifier =
+            stock.map(|stock| limited(stock)?.with_allowances(any_depth)).transpose()?;
         let sphere = RetractSphere::new(bvh, stock, verifier.reach());
         Ok(PathProver { verifier, stock: stock_verifier, sphere, file })
     }

@@ -98,6 +98,11 @@ fn rapid_traverse_keeps_clear_of_stock() {
     assert!(rapid > 0 && rapid_in_stock == 0, "{rapid} {rapid_in_stock}");
     // The shank is in the stock nevertheless, in feed: the tool is short.
     assert!(points == points_in_stock && all > 0, "{points:?} {points_in_stock:?} {all}");
+    // The joint motions of a machine are checked with the stock again.
+    let machine =
+        ["--tool-number", "3", "--feed", "20", "--machine", "A-C trunnion", "--stock", &stock];
+    let told = object(&path(&tube, &tube.bench.place("stock.nc"), &machine));
+    assert!(told["contact_points"].as_u64() > Some(50), "{told}");
     let open = Mesh::new(
         vec![Point3::origin(), Point3::new(1.0, 0.0, 0.0), Point3::new(0.0, 1.0, 0.0)],
         vec![[0, 1, 2]],
