@@ -2,6 +2,7 @@
 
 mod coordinates;
 mod cycle;
+mod linuxcnc;
 mod motion;
 mod next_run;
 mod refuse;

@@ -1,6 +1,6 @@
 //! Errors of the interpreter.
 
-use super::expression::ExpressionFault;
+use super::iso::ExpressionFault;
 
 /// A line that stops the interpreter.
 #[derive(Clone, PartialEq, thiserror::Error)]

@@ -52,18 +52,16 @@
 mod block;
 mod control;
 mod error;
-mod expression;
-mod flow;
 mod interpreter;
-mod linuxcnc;
+mod iso;
 mod note;
 mod rules;
 mod state;
 
 pub use control::Spindle;
 pub use error::{ArcFault, GcodeError, GcodeFault};
-pub use expression::ExpressionFault;
 pub use interpreter::Interpreter;
+pub use iso::ExpressionFault;
 pub use note::{NoteKind, ProgramNote};
 pub use rules::{Choice, ControlError, ControlRules, Rule};
 pub(crate) use state::about;

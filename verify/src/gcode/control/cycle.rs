@@ -9,10 +9,9 @@
 //! drill. G83 returns to its last depth in rapid traverse; the clearance that a control keeps there is taken
 //! as zero.
 
-use super::{AXES, Control, Cycle, FeedMode, Spindle};
+use super::{AXES, Control, Cycle, FeedMode, Spindle, linuxcnc};
 use crate::gcode::block::{Block, Group};
 use crate::gcode::error::{combination, missing};
-use crate::gcode::linuxcnc;
 use crate::gcode::rules::{Choice, Rule};
 use crate::gcode::state::{Position, Tcp};
 use crate::gcode::{GcodeFault, MAX_CYCLE_STEPS, Plane, StepPath};

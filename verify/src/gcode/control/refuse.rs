@@ -2,11 +2,9 @@
 //!
 //! `docs/controls.md` lists them with what each control does.
 
-use super::{AXES, Control, Motion, in_plane};
+use super::{AXES, Control, Motion, in_plane, linuxcnc};
 use crate::gcode::block::{Block, Code, Group};
 use crate::gcode::error::{combination, not_read, same_group};
-use crate::gcode::flow::before_semicolon;
-use crate::gcode::linuxcnc;
 use crate::gcode::note::NoteKind;
 use crate::gcode::rules::{Choice, Rule};
 use crate::gcode::state::{LengthOffset, Position, Rotation, Tcp};
@@ -61,36 +59,6 @@ impl Control {
             return Err(combination("G90 or G91", condition, remedy));
         }
         Ok(())
-    }
-
-    /// Refuses a line that the control does not read, whatever its words.
-    pub(crate) fn check_line(&self, text: &str) -> Result<(), GcodeFault> {
-        match self.stated(Rule::Dialect) {
-            Some(Choice::Rs274Ngc) => linuxcnc::check_line(text),
-            Some(Choice::Heidenhain) => {
-                let Some(found) = before_semicolon(text).chars().find(|c| matches!(c, '(' | '#'))
-                else {
-                    return Ok(());
-                };
-                let meaning = "no word of DIN/ISO programs of Heidenhain";
-                let remedy =
-                    "write comments after `;` and numbers as such, or state another `dialect`";
-                Err(not_read(format!("`{found}`"), meaning, remedy))
-            }
-            _ => Ok(()),
-        }
-    }
-
-    /// Refuses values that depend on when the assignment of their block takes effect.
-    pub(crate) fn check_assignment(&self, block: &Block) -> Result<(), GcodeFault> {
-        match block.assigns_beside_value && self.stated(Rule::Dialect) != Some(Choice::Rs274Ngc) {
-            true => Err(combination(
-                "an assignment",
-                "its block has another computed value, which LinuxCNC computes before it",
-                "write it in a block before",
-            )),
-            false => Ok(()),
-        }
     }
 
     /// Refuses words of a block that controls combine in different ways.

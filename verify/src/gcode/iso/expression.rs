@@ -73,7 +73,7 @@ pub enum ExpressionFault {
     /// A division by zero, the root of a negative number, or a number beyond the largest.
     #[error(
         "the result of `{operation}` is not a number within {}: correct the values",
-        super::LARGEST_NUMBER
+        crate::gcode::LARGEST_NUMBER
     )]
     NotFinite {
         /// The operation.
@@ -277,7 +277,7 @@ fn unsigned(cursor: &mut Cursor, known: &Parameters, depth: usize) -> Result<f64
             let digits = cursor.take_while(|byte| byte.is_ascii_digit() || byte == b'.');
             match digits.parse::<f64>() {
                 Ok(number) => finite(number, "a number"),
-                Err(_) => Err(ExpressionFault::Number { shown: super::shown(digits) }),
+                Err(_) => Err(ExpressionFault::Number { shown: crate::gcode::shown(digits) }),
             }
         }
         Some(b'#') => known.get(&parameter(cursor, known, depth)?),
@@ -355,12 +355,12 @@ pub(super) fn assignment(
 }
 
 fn finite(value: f64, operation: &'static str) -> Result<f64, ExpressionFault> {
-    match value.abs() <= super::LARGEST_NUMBER {
+    match value.abs() <= crate::gcode::LARGEST_NUMBER {
         true => Ok(value),
         false => Err(ExpressionFault::NotFinite { operation }),
     }
 }
 
 fn rest(cursor: &Cursor) -> String {
-    if cursor.rest().is_empty() { String::new() } else { super::shown(cursor.rest()) }
+    if cursor.rest().is_empty() { String::new() } else { crate::gcode::shown(cursor.rest()) }
 }

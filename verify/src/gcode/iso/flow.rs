@@ -1,8 +1,9 @@
 //! The lines of a program, and the order in which they are executed: its extent in the file, its subprograms and their repeats.
 
-use super::block::{Block, Group, Label, OWord, Role, begin, next, o_word};
 use super::expression::Parameters;
-use super::{GcodeError, GcodeFault, MAX_CALLS, MAX_REPEATED};
+use super::line::{Label, Line, OWord, Role, begin, next, o_word};
+use crate::gcode::block::{Block, Group};
+use crate::gcode::{GcodeError, GcodeFault, MAX_CALLS, MAX_REPEATED};
 use std::collections::{HashMap, HashSet};
 use touchoff::Unit;
 
@@ -69,8 +70,8 @@ fn is_empty(line: &str) -> bool {
 
 /// Reads a line on its own, as far as it depends on no parameter.
 fn block(line: &str) -> Option<Block> {
-    let mut block = Block::default();
-    block.parse(line, &mut Parameters::default()).ok().map(|()| block)
+    let mut parsed = Line::default();
+    parsed.parse(line, &mut Parameters::default()).ok().map(|()| parsed.block)
 }
 
 /// The extent of a program in its file.
@@ -86,14 +87,6 @@ pub(super) struct Extent<'a> {
     pub(super) left_out: Option<(usize, bool)>,
     /// The unit that the head states.
     pub(super) unit: Option<Unit>,
-}
-
-/// Returns the line of the first carriage return without a line feed.
-pub(super) fn lone_return(text: &str) -> Option<usize> {
-    let bytes = text.as_bytes();
-    let index = (0..bytes.len())
-        .find(|index| bytes[*index] == b'\r' && bytes.get(index + 1) != Some(&b'\n'))?;
-    Some(1 + bytes[..index].iter().filter(|byte| **byte == b'\n').count())
 }
 
 /// Finds the first line and the end of a program.
@@ -158,7 +151,7 @@ impl Subprograms {
         while let Some((line, after)) = line(text, place) {
             let at = place.line;
             place = after;
-            let (_, mut cursor) = begin(line);
+            let mut cursor = begin(line);
             if !matches!(next(&mut cursor), Ok(Some(b'O' | b'o'))) {
                 continue;
             }
@@ -310,7 +303,7 @@ impl<'a> Flow<'a> {
         }
         let mut place = self.place;
         while let Some((line, after)) = line(self.text, place) {
-            let (_, mut cursor) = begin(line);
+            let mut cursor = begin(line);
             match next(&mut cursor) {
                 // Subprograms are read before, and another program has a note of its own.
                 Ok(Some(b'O' | b'o')) => return None,
@@ -326,7 +319,7 @@ impl<'a> Flow<'a> {
         let mut place = if self.calls.is_empty() { self.place } else { return None };
         let mut title = None;
         while let Some((line, after)) = line(self.text, place) {
-            let (_, mut cursor) = begin(line);
+            let mut cursor = begin(line);
             if let Ok(Some(b'O' | b'o')) = next(&mut cursor) {
                 title = Some(place.line);
             } else if title.is_some() {
