@@ -185,11 +185,6 @@ impl Block {
         self.unused != 0 || self.codes().next().is_some()
     }
 
-    /// Returns whether the block moves, or changes what motions do.
-    pub(super) fn has_effect(&self) -> bool {
-        self.codes.iter().any(Option::is_some) || self.keyword.is_some() || self.has_any("XYZABC")
-    }
-
     /// Returns the number after a letter that no word has used.
     pub(super) fn value(&self, letter: char) -> Option<f64> {
         self.has(letter).then_some(self.values[usize::from(letter as u8 - b'A')])
@@ -221,6 +216,13 @@ impl Block {
         {
             true => Ok(Some(whole as u32)),
             false => Err(GcodeFault::NotAllowed { word, value, expected }),
+        }
+    }
+
+    /// Drops letters that no word has used.
+    pub(super) fn drop_letters(&mut self, letters: &str) {
+        for letter in letters.bytes() {
+            self.unused &= !(1 << (letter - b'A'));
         }
     }
 
@@ -346,7 +348,8 @@ fn m_group(code: Code) -> Result<Group, GcodeFault> {
     Ok(match code.tenths {
         0 | 10 | 20 | 300 => Group::Stop,
         60 => Group::ToolChange,
-        980 | 990 => Group::Subprogram,
+        // M97 is Haas'.
+        970 | 980 | 990 => Group::Subprogram,
         4280 | 4290 => Group::Kinematics,
         // Spindle and coolant, orientation of the spindle, rigid tapping, overrides.
         30 | 40 | 50 | 70 | 80 | 90 | 190 | 290 | 480 | 490 => Group::PassedOver,
@@ -404,7 +407,6 @@ fn refused_m(code: Code, tenths: u32) -> GcodeFault {
             "check the program without it",
         ),
         600 => ("a pallet change, which moves the part", "give one program per setup"),
-        970 => ("a call of a block number", "write M98 with an O-number"),
         _ => return GcodeFault::UnknownCode { word: code.to_string() },
     };
     not_read(code, meaning, remedy)

@@ -6,6 +6,9 @@ mod linuxcnc;
 mod motion;
 mod next_run;
 mod refuse;
+mod report;
+
+pub(super) use report::Report;
 
 use super::block::{Block, Code, Group};
 use super::error::{combination, not_read};
@@ -51,6 +54,8 @@ pub(super) struct Control {
     /// The rules that the program depends on, each with the first line.
     pub(super) asked: BTreeMap<Rule, usize>,
     axes: [bool; 6],
+    /// Words that are passed over, with their reasons.
+    ignored: BTreeMap<String, String>,
     /// Position in which M6 leaves the axes, if the machine states it.
     change_position: Option<Position>,
     /// Set once a work offset was selected.
@@ -209,6 +214,7 @@ impl Control {
             rules: setup.rules.clone(),
             asked: BTreeMap::new(),
             axes: setup.axes,
+            ignored: setup.ignore.clone(),
             change_position: setup.tool_change,
             offset_stated: false,
             returned: None,
@@ -240,6 +246,17 @@ impl Control {
     pub(super) fn choice(&mut self, rule: Rule) -> Choice {
         self.asked.entry(rule).or_insert(self.line);
         self.rules.get(rule).unwrap_or_else(|| rule.choices().next().expect("a rule has choices"))
+    }
+
+    /// Returns whether the setup ignores a word.
+    pub(super) fn ignores(&self, word: &str) -> bool {
+        !self.ignored.is_empty() && self.ignored.contains_key(word)
+    }
+
+    /// Notes a word that the setup ignores.
+    pub(super) fn ignore(&mut self, word: String) {
+        let reason = self.ignored.get(&word).cloned().unwrap_or_default();
+        self.notes.add(self.line, NoteKind::Ignored { word, reason });
     }
 
     /// Executes a block, in the order of RS274/NGC, table 8.

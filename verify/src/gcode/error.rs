@@ -207,6 +207,46 @@ pub enum GcodeFault {
         /// The problem, and the remedy.
         problem: &'static str,
     },
+    /// A sequence number that the program does not have.
+    #[error("there is no N{number} in this program: write it before the block at which to go on")]
+    NoSequenceNumber {
+        /// The number.
+        number: u32,
+    },
+    /// A sequence number that stands twice, and is a target.
+    #[error(
+        "N{number} stands in lines {first} and {second}, of which controls find one or the other: number the blocks anew"
+    )]
+    SecondSequenceNumber {
+        /// The number.
+        number: u32,
+        /// The line of the first.
+        first: usize,
+        /// The line of another.
+        second: usize,
+    },
+    /// A loop or a decision without its other end.
+    #[error(
+        "the loop or decision has no other end: add `END` with its number, or the `DO` that it ends"
+    )]
+    OpenLoop,
+    /// A letter that is no argument of a macro.
+    #[error("{word} is no argument of {call}: post the call with the letters of its arguments")]
+    NotAnArgument {
+        /// The letter.
+        word: char,
+        /// The word that calls the macro.
+        call: String,
+    },
+    /// More arguments than a subprogram has.
+    #[error("a call has more than 30 arguments: pass the others in global parameters")]
+    TooManyArguments,
+    /// An alarm that the program raises.
+    #[error("the program stops with alarm {number} here (#3000): correct what it has found")]
+    Alarm {
+        /// Its number.
+        number: f64,
+    },
     /// A subprogram of one dialect that is called or ended as one of another.
     #[error("{label} is {what}: {remedy}")]
     MixedCall {

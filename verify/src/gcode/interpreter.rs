@@ -41,6 +41,8 @@ pub(super) enum End {
     Stop,
     /// `%`.
     Percent,
+    /// M99 of the main program, after which it begins again.
+    Repeat,
 }
 
 impl<'a> Interpreter<'a> {
@@ -53,7 +55,7 @@ impl<'a> Interpreter<'a> {
             return Err(GcodeError { line, fault: GcodeFault::LoneReturn });
         }
         let mut control = Control::new(setup);
-        let front = Front::Iso(iso::Program::new(text, &mut control)?);
+        let front = Front::Iso(iso::Program::new(text, setup, &mut control)?);
         let first = Interpreter { front, control, finished: false, end: None, first: None };
         Ok(Interpreter { first: Some(Box::new(first.clone())), ..first })
     }

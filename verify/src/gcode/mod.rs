@@ -103,6 +103,11 @@ pub struct ControlSetup {
     pub rules: ControlRules,
     /// The axes that the machine has.
     pub axes: [bool; 6],
+    /// Values of variables before the program, by name: `#500`, `#<_depth>`. Lengths are in the unit of the program.
+    pub variables: BTreeMap<String, f64>,
+    /// Words that are passed over although they are not read, each with the reason for which they can neither move the tool nor
+    /// change what positions mean.
+    pub ignore: BTreeMap<String, String>,
     /// Position in which M6 leaves the axes, in machine coordinates: `None` for an axis that stays. Without it, as the
     /// [rules](Rule::ToolChange) say.
     pub tool_change: Option<Position>,
@@ -119,6 +124,8 @@ impl Default for ControlSetup {
             second_home: None,
             rules: ControlRules::default(),
             axes: [true; 6],
+            variables: BTreeMap::new(),
+            ignore: BTreeMap::new(),
             tool_change: None,
         }
     }

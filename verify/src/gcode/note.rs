@@ -30,6 +30,15 @@ pub enum NoteKind {
     OffsetOrShift,
     /// A tool change, whose motion only the machine knows.
     ToolChange,
+    /// A word that the setup ignores.
+    Ignored {
+        /// The word.
+        word: String,
+        /// The reason that the setup states.
+        reason: String,
+    },
+    /// M99 in the main program, which repeats it without end.
+    Endless,
     /// A stop, at which an operator can move the tool.
     Stop,
     /// A block that begins with `/`, and was executed.
@@ -65,6 +74,10 @@ impl fmt::Display for NoteKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             NoteKind::PassedOver { word } => write!(f, "{word} is passed over"),
+            NoteKind::Ignored { word, reason } => write!(f, "{word} is ignored as stated: {reason}"),
+            NoteKind::Endless => {
+                f.write_str("M99 repeats the program without end, of which one run is checked")
+            }
             NoteKind::RoundedCorners => f.write_str(
                 "the control may round corners without G61, by a tolerance of its own: its path is checked as programmed",
             ),

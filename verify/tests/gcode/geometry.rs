@@ -390,5 +390,9 @@ fn expressions_follow_the_rules_of_arithmetic() {
     }
     // An assignment takes effect after its block.
     assert_eq!(ends("#3=1.\nG0 X#3 #3=6.\nX#3", &at_zero()).map_x(), [Some(1.0), Some(6.0)]);
-    assert_eq!(ends("#3=1.+2.*3. (seven)\nG0 X#3", &at_zero()).map_x(), [Some(7.0)]);
+    let fanuc = ControlSetup {
+        rules: ControlRules::default().with(Rule::Dialect, Choice::Iso),
+        ..at_zero()
+    };
+    assert_eq!(ends("#3=1.+2.*3. (seven)\nG0 X#3", &fanuc).map_x(), [Some(7.0)]);
 }

@@ -3,6 +3,7 @@
 mod common;
 mod expected;
 mod geometry;
+mod macros;
 mod mutants;
 mod next_run;
 mod refusals;

@@ -1,22 +1,37 @@
-//! Parameters `#1`, `#<name>` and arithmetic in brackets.
+//! Arithmetic of macros: numbers, variables, brackets, operators and functions.
 //!
-//! Values are IEEE doubles, and each operation is rounded once. Read are `+ - * /`, brackets, one sign before
-//! a value, and `SQRT` and `ABS`, which mean the same on every control and are correctly rounded. Other
-//! functions and operators are refused. So are parameters from `#1000` and names that begin with `_`, by
-//! which controls report their state, and every parameter that the program has not assigned.
+//! Values are IEEE doubles. Sums, products, quotients and roots are rounded once, other functions are within 2⁻⁵⁰ of exact,
+//! relatively. The language is that of the control: Fanuc's and Haas' macros (Fanuc B-64694, chapter "Custom macro"), or LinuxCNC's
+//! (`interp_execute.cc`, `interp_read.cc`). Where no control is stated, an expression is read in both, and is refused if both read it
+//! and give different values.
 //!
-//! An assignment takes effect after its block (RS274/NGC, section 3.3.3.4).
+//! A control of Fanuc computes with fewer digits. A comparison or a rounding that rounding errors decide is refused there.
 
-use std::collections::BTreeMap;
+use super::variables::{Parameter, Scope, parameter};
+use crate::gcode::{LARGEST_NUMBER, shown};
+use crate::machine::sin_cos_degrees;
 
 /// Largest nesting of brackets and references.
 const MAX_DEPTH: usize = 30;
-/// The first number of the parameters that belong to the control.
-const FIRST_SYSTEM: u16 = 1000;
-/// The first number of the parameters that a subprogram of O-words shares with its caller.
-const FIRST_SHARED: u16 = 31;
+/// Largest absolute value of a result.
+const LARGEST_RESULT: f64 = 1e18;
+/// LinuxCNC's numbers are equal if they differ by less (`TOLERANCE_EQUAL`).
+const LINUXCNC_EQUAL: f64 = 1e-6;
+/// Numbers that differ by less, relatively (and absolutely below 1), may be equal on a control that computes with 8 digits.
+const TIE: f64 = 1e-6;
 
-/// A fault in a parameter or an expression.
+/// A value: a number, or `None` for a vacant variable of Fanuc.
+pub(super) type Value = Option<f64>;
+
+/// The language of expressions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Language {
+    /// Fanuc and Haas.
+    Fanuc,
+    LinuxCnc,
+}
+
+/// A fault in a variable or an expression.
 #[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ExpressionFault {
@@ -38,24 +53,65 @@ pub enum ExpressionFault {
         /// Its name.
         name: String,
     },
+    /// An expression with a value that depends on the control.
+    #[error("{shown} has another value on Fanuc than on LinuxCNC: state the `control`")]
+    Differs {
+        /// The expression.
+        shown: String,
+    },
+    /// A comparison or a rounding that depends on the last digits with which a control computes.
+    #[error(
+        "`{operation}` of {value} depends on the digits with which the control computes: compare with a margin, or round before"
+    )]
+    Tie {
+        /// The operation.
+        operation: &'static str,
+        /// The number, or the difference of the numbers that are compared.
+        value: f64,
+    },
+    /// A function whose range is set by a parameter of the control.
+    #[error(
+        "`{function}` of this value is given in one of two ranges of angles, by a parameter of the control: post the program \
+         without it"
+    )]
+    Range {
+        /// The function.
+        function: &'static str,
+    },
     /// A bracket without its end.
     #[error("an expression has no `]`: close it")]
     OpenBracket,
     /// A name without its end.
     #[error("a named parameter has no `>`: close it")]
     OpenName,
-    /// A parameter that has no value.
-    #[error("{parameter} has no value here: assign it in the program before")]
+    /// A variable that has no value.
+    #[error(
+        "{parameter} has no value here, but what an earlier program or the operator has left in it: assign it in the program before, \
+         or state it in `[variables]` of the job"
+    )]
     Unassigned {
-        /// The parameter.
+        /// The variable.
         parameter: String,
     },
-    /// A parameter that the control owns.
+    /// A variable of the control whose value only the machine knows.
     #[error(
-        "{parameter} is a parameter of the control, whose value is not known: post the program without it"
+        "{parameter} is a parameter of the control, whose value is not known: post the program without it, or state it in \
+         `[variables]` of the job"
     )]
     System {
-        /// The parameter.
+        /// The variable.
+        parameter: String,
+    },
+    /// A variable that the program cannot assign.
+    #[error("{parameter} is not assigned by programs that are read: post the program without it")]
+    ReadOnly {
+        /// The variable.
+        parameter: String,
+    },
+    /// A vacant variable where a number is needed.
+    #[error("{parameter} is vacant here: give the macro its argument")]
+    Vacant {
+        /// The variable.
         parameter: String,
     },
     /// An index that is no whole number from 1.
@@ -67,13 +123,12 @@ pub enum ExpressionFault {
     /// An assignment without `=`.
     #[error("{parameter} stands alone: write `=` and a value after it, or a letter before it")]
     NoAssignment {
-        /// The parameter.
+        /// The variable.
         parameter: String,
     },
     /// A division by zero, the root of a negative number, or a number beyond the largest.
     #[error(
-        "the result of `{operation}` is not a number within {}: correct the values",
-        crate::gcode::LARGEST_NUMBER
+        "the result of `{operation}` is not a number within {LARGEST_RESULT}: correct the values"
     )]
     NotFinite {
         /// The operation.
@@ -86,66 +141,20 @@ pub enum ExpressionFault {
 
 touchoff::debug_as_sentence!(ExpressionFault);
 
+impl ExpressionFault {
+    /// Returns whether the language lacks what is written, so that the control refuses it.
+    fn is_of_language(&self) -> bool {
+        matches!(
+            self,
+            ExpressionFault::Operation { .. }
+                | ExpressionFault::OpenBracket
+                | ExpressionFault::Value { .. }
+        )
+    }
+}
+
 fn place(shown: &str) -> String {
     if shown.is_empty() { "at the end of the line".to_owned() } else { format!("before {shown}") }
-}
-
-/// A parameter.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Parameter {
-    Numbered(u16),
-    /// A name in small letters without blanks, as names are compared.
-    Named(String),
-}
-
-impl Parameter {
-    fn shown(&self) -> String {
-        match self {
-            Parameter::Numbered(number) => format!("#{number}"),
-            Parameter::Named(name) => format!("#<{name}>"),
-        }
-    }
-
-    /// Returns whether a subprogram has its own: names always, numbers below [`FIRST_SHARED`] if it has `sub` (O-words).
-    fn is_local(&self, has_sub: bool) -> bool {
-        match self {
-            Parameter::Named(_) => true,
-            Parameter::Numbered(number) => has_sub && *number < FIRST_SHARED,
-        }
-    }
-}
-
-/// The parameters that the program has assigned.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Parameters {
-    values: BTreeMap<Parameter, f64>,
-}
-
-impl Parameters {
-    pub(super) fn assign(&mut self, parameter: Parameter, value: f64) {
-        self.values.insert(parameter, value);
-    }
-
-    /// Removes the parameters that are local to a subprogram, and returns them. `has_sub` is set for O-words.
-    pub(super) fn take_locals(&mut self, has_sub: bool) -> Parameters {
-        let values = std::mem::take(&mut self.values);
-        let (locals, shared) = values.into_iter().partition(|(key, _)| key.is_local(has_sub));
-        self.values = shared;
-        Parameters { values: locals }
-    }
-
-    /// Replaces the local parameters by those of the caller.
-    pub(super) fn restore_locals(&mut self, locals: Parameters, has_sub: bool) {
-        self.values.retain(|key, _| !key.is_local(has_sub));
-        self.values.extend(locals.values);
-    }
-
-    fn get(&self, parameter: &Parameter) -> Result<f64, ExpressionFault> {
-        self.values
-            .get(parameter)
-            .copied()
-            .ok_or_else(|| ExpressionFault::Unassigned { parameter: parameter.shown() })
-    }
 }
 
 /// A position in the text of a line.
@@ -189,9 +198,23 @@ impl<'a> Cursor<'a> {
         &rest[..length]
     }
 
+    /// Passes over a word in either case, if it comes next. Text may follow without a blank.
+    pub(super) fn take_word(&mut self, word: &str) -> bool {
+        self.peek();
+        let found = self.rest().as_bytes().get(..word.len());
+        let found = found.is_some_and(|found| found.eq_ignore_ascii_case(word.as_bytes()));
+        self.at += if found { word.len() } else { 0 };
+        found
+    }
+
     /// Returns the rest of the line.
     pub(super) fn rest(&self) -> &'a str {
         &self.text[self.at..]
+    }
+
+    /// Returns the text from here to the place of another cursor of the line.
+    pub(super) fn text_to(&self, other: &Cursor<'a>) -> &'a str {
+        &self.text[self.at..other.at.max(self.at)]
     }
 
     /// Passes over the text up to a delimiter and the delimiter, and returns the text before it.
@@ -202,165 +225,478 @@ impl<'a> Cursor<'a> {
     }
 }
 
+/// A function of one argument, or of two (`ATAN`, `POW`).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Function {
+    Abs,
+    Acos,
+    Asin,
+    Atan,
+    Cos,
+    Exists,
+    Exp,
+    Fix,
+    Fup,
+    Ln,
+    Pow,
+    Round,
+    Sin,
+    Sqrt,
+    Tan,
+}
+
+/// The functions by name.
+const FUNCTIONS: [(&str, Function); 15] = [
+    ("ABS", Function::Abs),
+    ("ACOS", Function::Acos),
+    ("ASIN", Function::Asin),
+    ("ATAN", Function::Atan),
+    ("COS", Function::Cos),
+    ("EXISTS", Function::Exists),
+    ("EXP", Function::Exp),
+    ("FIX", Function::Fix),
+    ("FUP", Function::Fup),
+    ("LN", Function::Ln),
+    ("POW", Function::Pow),
+    ("ROUND", Function::Round),
+    ("SIN", Function::Sin),
+    ("SQRT", Function::Sqrt),
+    ("TAN", Function::Tan),
+];
+
+/// An operator between two values.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Operator {
+    Power,
+    Times,
+    Over,
+    Modulo,
+    Plus,
+    Minus,
+    And,
+    Or,
+    Xor,
+    Equal,
+    NotEqual,
+    Greater,
+    GreaterOrEqual,
+    Less,
+    LessOrEqual,
+}
+
+/// The operators by name, with their precedence on Fanuc and on LinuxCNC (`precedence` of `interp_execute.cc`): the highest is
+/// executed first, 0 for one that the language lacks.
+const OPERATORS: [(&str, Operator, [u8; 2]); 15] = [
+    ("**", Operator::Power, [0, 5]),
+    ("*", Operator::Times, [3, 4]),
+    ("/", Operator::Over, [3, 4]),
+    ("MOD", Operator::Modulo, [3, 4]),
+    ("+", Operator::Plus, [2, 3]),
+    ("-", Operator::Minus, [2, 3]),
+    ("AND", Operator::And, [3, 1]),
+    ("OR", Operator::Or, [2, 1]),
+    ("XOR", Operator::Xor, [2, 1]),
+    ("EQ", Operator::Equal, [1, 2]),
+    ("NE", Operator::NotEqual, [1, 2]),
+    ("GT", Operator::Greater, [1, 2]),
+    ("GE", Operator::GreaterOrEqual, [1, 2]),
+    ("LT", Operator::Less, [1, 2]),
+    ("LE", Operator::LessOrEqual, [1, 2]),
+];
+
+/// Returns the function that begins here: a name with a bracket.
+fn function(mut cursor: Cursor) -> Option<Function> {
+    cursor.peek();
+    let name = cursor.take_while(|byte| byte.is_ascii_alphabetic());
+    let known = FUNCTIONS.into_iter().find(|(known, _)| name.eq_ignore_ascii_case(known));
+    known.filter(|_| cursor.peek() == Some(b'[')).map(|(_, function)| function)
+}
+
 /// Returns whether a value begins here.
 pub(super) fn begins_value(cursor: &mut Cursor) -> bool {
     match cursor.peek() {
         Some(b'0'..=b'9' | b'.' | b'+' | b'-' | b'[' | b'#') => true,
         // `X SQRT[2]` has a value; any other letter begins the next word.
-        Some(byte) if byte.is_ascii_alphabetic() => begins_function(*cursor).is_some(),
+        Some(byte) if byte.is_ascii_alphabetic() => function(*cursor).is_some(),
         _ => false,
     }
 }
 
-/// Returns the function that begins here, if it is one that is read.
-fn begins_function(mut cursor: Cursor) -> Option<&'static str> {
-    cursor.peek();
-    let name = cursor.take_while(|byte| byte.is_ascii_alphabetic());
-    let known = ["SQRT", "ABS"].into_iter().find(|known| name.eq_ignore_ascii_case(known))?;
-    cursor.take(b'[').then_some(known)
+/// Reads a value: a number, a variable, a bracket or a function, with one sign at most.
+pub(super) fn value(cursor: &mut Cursor, scope: &Scope) -> Result<Value, ExpressionFault> {
+    let mut literal = *cursor;
+    let negative = literal.peek() == Some(b'-');
+    if negative || literal.peek() == Some(b'+') {
+        literal.advance();
+    }
+    if matches!(literal.peek(), Some(b'0'..=b'9' | b'.')) {
+        let number = number(&mut literal)?;
+        *cursor = literal;
+        return Ok(Some(if negative { -number } else { number }));
+    }
+    agreed(cursor, scope, |reader, cursor| reader.unary(cursor, 0))
 }
 
-/// Reads a value: a number, a parameter, a bracket or a function, with one sign at most.
-pub(super) fn value(cursor: &mut Cursor, known: &Parameters) -> Result<f64, ExpressionFault> {
-    signed(cursor, known, 0)
-}
-
-/// Reads a sum of products, as after `=` and in brackets.
-fn sum(cursor: &mut Cursor, known: &Parameters, depth: usize) -> Result<f64, ExpressionFault> {
-    let mut total = product(cursor, known, depth)?;
-    loop {
-        if cursor.take(b'+') {
-            total = finite(total + product(cursor, known, depth)?, "+")?;
-        } else if cursor.take(b'-') {
-            total = finite(total - product(cursor, known, depth)?, "-")?;
-        } else {
-            return Ok(total);
+/// Reads an expression, as after `=`. LinuxCNC reads one value there.
+pub(super) fn expression(cursor: &mut Cursor, scope: &Scope) -> Result<Value, ExpressionFault> {
+    agreed(cursor, scope, |reader, cursor| match reader.language {
+        Language::Fanuc => reader.binary(cursor, 0, 1),
+        Language::LinuxCnc => {
+            let value = reader.unary(cursor, 0)?;
+            match cursor.peek() {
+                Some(b'+' | b'-' | b'*' | b'/') => {
+                    let name = char::from(cursor.rest().as_bytes()[0]).to_string();
+                    Err(ExpressionFault::Operation { name })
+                }
+                _ => Ok(value),
+            }
         }
+    })
+}
+
+/// Reads an expression in brackets, and returns whether it is true: not 0.
+pub(super) fn condition(cursor: &mut Cursor, scope: &Scope) -> Result<bool, ExpressionFault> {
+    if cursor.peek() != Some(b'[') {
+        return Err(ExpressionFault::Value { shown: rest(cursor) });
+    }
+    let value = agreed(cursor, scope, |reader, cursor| reader.bracket(cursor, 0))?;
+    Ok(value.is_some_and(|value| value != 0.0))
+}
+
+/// Reads a value in the language of the control, or in both if none is stated.
+fn agreed(
+    cursor: &mut Cursor,
+    scope: &Scope,
+    read: impl Fn(&Reader, &mut Cursor) -> Result<Value, ExpressionFault>,
+) -> Result<Value, ExpressionFault> {
+    if let Some(language) = scope.language {
+        return read(&Reader { scope, language }, cursor);
+    }
+    let start = *cursor;
+    let [mut fanuc, mut linuxcnc] = [start; 2];
+    let first = read(&Reader { scope, language: Language::Fanuc }, &mut fanuc);
+    let second = read(&Reader { scope, language: Language::LinuxCnc }, &mut linuxcnc);
+    // A program that one of them refuses runs on the other only.
+    let (value, end) = match (first, second) {
+        (Ok(first), Ok(second)) if first == second && fanuc.at == linuxcnc.at => (first, fanuc),
+        (Ok(_), Ok(_)) => {
+            return Err(ExpressionFault::Differs { shown: shown(start.text_to(&fanuc)) });
+        }
+        (Ok(value), Err(fault)) if fault.is_of_language() => (value, fanuc),
+        (Err(fault), Ok(value)) if fault.is_of_language() => (value, linuxcnc),
+        (Err(fault), _) | (_, Err(fault)) => return Err(fault),
+    };
+    *cursor = end;
+    Ok(value)
+}
+
+/// Reads a number without a sign.
+fn number(cursor: &mut Cursor) -> Result<f64, ExpressionFault> {
+    let digits = cursor.take_while(|byte| byte.is_ascii_digit() || byte == b'.');
+    match digits.parse::<f64>() {
+        Ok(number) if number <= LARGEST_NUMBER => Ok(number),
+        Ok(_) => Err(ExpressionFault::NotFinite { operation: "a number" }),
+        Err(_) => Err(ExpressionFault::Number { shown: shown(digits) }),
     }
 }
 
-fn product(cursor: &mut Cursor, known: &Parameters, depth: usize) -> Result<f64, ExpressionFault> {
-    let mut total = signed(cursor, known, depth)?;
-    loop {
-        if cursor.take(b'*') {
-            if cursor.peek() == Some(b'*') {
-                return Err(ExpressionFault::Operation { name: "**".to_owned() });
+/// A reader of expressions in one language.
+pub(super) struct Reader<'a> {
+    pub(super) scope: &'a Scope<'a>,
+    pub(super) language: Language,
+}
+
+impl Reader<'_> {
+    /// Reads values with operators of a precedence and higher ones, from left to right.
+    fn binary(
+        &self,
+        cursor: &mut Cursor,
+        depth: usize,
+        precedence: u8,
+    ) -> Result<Value, ExpressionFault> {
+        let mut left = self.unary(cursor, depth)?;
+        while let Some((operator, own, after)) = self.operator(*cursor) {
+            if own < precedence {
+                break;
             }
-            total = finite(total * signed(cursor, known, depth)?, "*")?;
-        } else if depth == 0 && cursor.peek() == Some(b'/') {
             // Outside of brackets it is the sign of an optional block on Fanuc.
-            return Err(ExpressionFault::Operation { name: "/".to_owned() });
-        } else if cursor.take(b'/') {
-            total = finite(total / signed(cursor, known, depth)?, "/")?;
-        } else {
-            return Ok(total);
+            if operator == Operator::Over && depth == 0 {
+                return Err(ExpressionFault::Operation { name: "/".to_owned() });
+            }
+            *cursor = after;
+            let right = self.binary(cursor, depth, own + 1)?;
+            left = self.apply(operator, left, right)?;
+        }
+        Ok(left)
+    }
+
+    /// Returns the operator that comes next, with its precedence and the place after it.
+    fn operator<'a>(&self, mut cursor: Cursor<'a>) -> Option<(Operator, u8, Cursor<'a>)> {
+        cursor.peek();
+        let (_, operator, precedences) =
+            OPERATORS.into_iter().find(|(name, _, _)| cursor.take_word(name))?;
+        let precedence = precedences[usize::from(self.language == Language::LinuxCnc)];
+        (precedence > 0).then_some((operator, precedence, cursor))
+    }
+
+    /// Reads a value with a sign.
+    pub(super) fn unary(
+        &self,
+        cursor: &mut Cursor,
+        depth: usize,
+    ) -> Result<Value, ExpressionFault> {
+        let negative = cursor.peek() == Some(b'-');
+        if negative || cursor.peek() == Some(b'+') {
+            cursor.advance();
+        }
+        let value = self.unsigned(cursor, depth)?;
+        Ok(if negative { value.map(|value| -value) } else { value })
+    }
+
+    /// Reads a value without a sign.
+    pub(super) fn unsigned(
+        &self,
+        cursor: &mut Cursor,
+        depth: usize,
+    ) -> Result<Value, ExpressionFault> {
+        // Brackets and references recurse, as deep as the program has them.
+        if depth > MAX_DEPTH {
+            return Err(ExpressionFault::TooDeep);
+        }
+        match cursor.peek() {
+            Some(b'0'..=b'9' | b'.') => number(cursor).map(Some),
+            Some(b'#') => self.scope.get(&parameter(self, cursor, depth)?, self.language),
+            Some(b'[') => self.bracket(cursor, depth),
+            Some(byte) if byte.is_ascii_alphabetic() => match function(*cursor) {
+                Some(function) => {
+                    cursor.take_while(|byte| byte.is_ascii_alphabetic());
+                    self.call(function, cursor, depth)
+                }
+                None => {
+                    let name = cursor.take_while(|byte| byte.is_ascii_alphabetic());
+                    Err(ExpressionFault::Operation { name: name.to_ascii_uppercase() })
+                }
+            },
+            _ => Err(ExpressionFault::Value { shown: rest(cursor) }),
         }
     }
-}
 
-fn signed(cursor: &mut Cursor, known: &Parameters, depth: usize) -> Result<f64, ExpressionFault> {
-    let negative = cursor.peek() == Some(b'-');
-    if negative || cursor.peek() == Some(b'+') {
-        cursor.advance();
+    /// Reads an expression in brackets.
+    fn bracket(&self, cursor: &mut Cursor, depth: usize) -> Result<Value, ExpressionFault> {
+        cursor.take(b'[');
+        let value = self.binary(cursor, depth + 1, 1)?;
+        self.close(cursor)?;
+        Ok(value)
     }
-    let value = unsigned(cursor, known, depth)?;
-    Ok(if negative { -value } else { value })
-}
 
-fn unsigned(cursor: &mut Cursor, known: &Parameters, depth: usize) -> Result<f64, ExpressionFault> {
-    // Brackets and references recurse, as deep as the program has them.
-    if depth > MAX_DEPTH {
-        return Err(ExpressionFault::TooDeep);
-    }
-    match cursor.peek() {
-        Some(b'0'..=b'9' | b'.') => {
-            let digits = cursor.take_while(|byte| byte.is_ascii_digit() || byte == b'.');
-            match digits.parse::<f64>() {
-                Ok(number) => finite(number, "a number"),
-                Err(_) => Err(ExpressionFault::Number { shown: crate::gcode::shown(digits) }),
-            }
+    fn close(&self, cursor: &mut Cursor) -> Result<(), ExpressionFault> {
+        if cursor.take(b']') {
+            return Ok(());
         }
-        Some(b'#') => known.get(&parameter(cursor, known, depth)?),
-        Some(b'[') => bracket(cursor, known, depth),
-        Some(byte) if byte.is_ascii_alphabetic() => match begins_function(*cursor) {
-            Some(function) => {
-                cursor.take_while(|byte| byte.is_ascii_alphabetic());
-                let argument = bracket(cursor, known, depth)?;
-                if function == "ABS" { Ok(argument.abs()) } else { finite(argument.sqrt(), "SQRT") }
-            }
-            None => {
-                let name = cursor.take_while(|byte| byte.is_ascii_alphabetic());
+        match cursor.peek() {
+            // An operator that the language lacks.
+            Some(byte) if byte.is_ascii_alphabetic() || byte == b'*' => {
+                let is_word = byte.is_ascii_alphabetic();
+                let name = cursor.take_while(|byte| byte.is_ascii_alphabetic() == is_word);
+                let name: String = name.chars().take(8).collect();
                 Err(ExpressionFault::Operation { name: name.to_ascii_uppercase() })
             }
-        },
-        _ => Err(ExpressionFault::Value { shown: rest(cursor) }),
-    }
-}
-
-/// Reads an expression in brackets.
-fn bracket(cursor: &mut Cursor, known: &Parameters, depth: usize) -> Result<f64, ExpressionFault> {
-    cursor.take(b'[');
-    let value = sum(cursor, known, depth + 1)?;
-    if cursor.take(b']') {
-        return Ok(value);
-    }
-    match cursor.peek() {
-        // An operator that is a word, such as `MOD`.
-        Some(byte) if byte.is_ascii_alphabetic() => {
-            let name = cursor.take_while(|byte| byte.is_ascii_alphabetic());
-            Err(ExpressionFault::Operation { name: name.to_ascii_uppercase() })
+            _ => Err(ExpressionFault::OpenBracket),
         }
-        _ => Err(ExpressionFault::OpenBracket),
     }
-}
 
-/// Reads a parameter, which begins with `#`.
-fn parameter(
-    cursor: &mut Cursor,
-    known: &Parameters,
-    depth: usize,
-) -> Result<Parameter, ExpressionFault> {
-    cursor.take(b'#');
-    if cursor.take(b'<') {
-        let name = cursor.take_until('>').ok_or(ExpressionFault::OpenName)?;
-        let name: String = name.chars().filter(|c| !c.is_whitespace()).collect();
-        let named = Parameter::Named(name.to_lowercase());
-        return match name.starts_with('_') || name.is_empty() {
-            true => Err(ExpressionFault::System { parameter: named.shown() }),
-            false => Ok(named),
+    /// Reads the arguments of a function, and returns its value.
+    fn call(
+        &self,
+        function: Function,
+        cursor: &mut Cursor,
+        depth: usize,
+    ) -> Result<Value, ExpressionFault> {
+        let is_linuxcnc = self.language == Language::LinuxCnc;
+        let lacks = |name: &str| Err(ExpressionFault::Operation { name: name.to_owned() });
+        if function == Function::Exists {
+            if !is_linuxcnc {
+                return lacks("EXISTS");
+            }
+            cursor.take(b'[');
+            if cursor.peek() != Some(b'#') {
+                return Err(ExpressionFault::Value { shown: rest(cursor) });
+            }
+            let named = parameter(self, cursor, depth + 1)?;
+            if !matches!(named, Parameter::Named(_)) {
+                return lacks("EXISTS of a number");
+            }
+            self.close(cursor)?;
+            return Ok(Some(f64::from(u8::from(self.scope.has(&named)))));
+        }
+        cursor.take(b'[');
+        let first = self.binary(cursor, depth + 1, 1)?.unwrap_or(0.0);
+        // `POW[a, b]` and `ATAN[y, x]` on Fanuc, `ATAN[y]/[x]` on both.
+        let mut second = None;
+        if !is_linuxcnc && cursor.take(b',') {
+            second = Some(self.binary(cursor, depth + 1, 1)?.unwrap_or(0.0));
+        }
+        self.close(cursor)?;
+        if function == Function::Atan && second.is_none() && cursor.take(b'/') {
+            if cursor.peek() != Some(b'[') {
+                return Err(ExpressionFault::Value { shown: rest(cursor) });
+            }
+            second = Some(self.bracket(cursor, depth)?.unwrap_or(0.0));
+        }
+        match (function, second) {
+            (Function::Atan, Some(second)) => self.angle(first, second).map(Some),
+            (Function::Pow, Some(second)) if !is_linuxcnc => {
+                finite(first.powf(second), "POW").map(Some)
+            }
+            (Function::Atan, None) if is_linuxcnc => lacks("ATAN without `/`"),
+            (Function::Atan, None) => Ok(Some(first.atan().to_degrees())),
+            (Function::Pow, _) => lacks("POW"),
+            (_, Some(_)) => lacks(","),
+            (function, None) => self.of_one(function, first).map(Some),
+        }
+    }
+
+    /// Returns the angle of a direction, in degrees from -180 to 180.
+    fn angle(&self, y: f64, x: f64) -> Result<f64, ExpressionFault> {
+        let angle = y.atan2(x).to_degrees();
+        match self.language {
+            // From 0 to 360 or from -180 to 180, by parameter 6004.
+            Language::Fanuc if angle < 0.0 => Err(ExpressionFault::Range { function: "ATAN" }),
+            _ => Ok(angle),
+        }
+    }
+
+    fn of_one(&self, function: Function, x: f64) -> Result<f64, ExpressionFault> {
+        let is_fanuc = self.language == Language::Fanuc;
+        match function {
+            Function::Abs => Ok(x.abs()),
+            Function::Acos => finite(x.acos().to_degrees(), "ACOS"),
+            // From -90 to 90, or from 90 to 270, by parameter 6004.
+            Function::Asin if is_fanuc => Err(ExpressionFault::Range { function: "ASIN" }),
+            Function::Asin => finite(x.asin().to_degrees(), "ASIN"),
+            Function::Cos => Ok(sin_cos_degrees(x).1),
+            Function::Sin => Ok(sin_cos_degrees(x).0),
+            Function::Tan => {
+                let (sine, cosine) = sin_cos_degrees(x);
+                finite(sine / cosine, "TAN")
+            }
+            Function::Exp => finite(x.exp(), "EXP"),
+            Function::Ln => finite(x.ln(), "LN"),
+            Function::Sqrt => finite(x.sqrt(), "SQRT"),
+            // Toward 0 and away from it on Fanuc, down and up on LinuxCNC.
+            Function::Fix if is_fanuc => self.rounded(x, x.trunc(), 0.0, "FIX"),
+            Function::Fix => Ok(x.floor()),
+            Function::Fup if is_fanuc => {
+                self.rounded(x, if x < 0.0 { x.floor() } else { x.ceil() }, 0.0, "FUP")
+            }
+            Function::Fup => Ok(x.ceil()),
+            Function::Round if is_fanuc => self.rounded(x, x.round(), 0.5, "ROUND"),
+            Function::Round => Ok(x.round()),
+            Function::Atan | Function::Exists | Function::Pow => {
+                unreachable!("read with its arguments")
+            }
+        }
+    }
+
+    /// Returns a rounded number, unless the number is so near a step at whole numbers and an offset that its last digits decide.
+    fn rounded(
+        &self,
+        x: f64,
+        rounded: f64,
+        offset: f64,
+        operation: &'static str,
+    ) -> Result<f64, ExpressionFault> {
+        let distance = (x - offset) - (x - offset).round();
+        match distance != 0.0 && distance.abs() <= TIE * x.abs().max(1.0) {
+            true => Err(ExpressionFault::Tie { operation, value: x }),
+            false => Ok(rounded),
+        }
+    }
+
+    fn apply(
+        &self,
+        operator: Operator,
+        left: Value,
+        right: Value,
+    ) -> Result<Value, ExpressionFault> {
+        let is_linuxcnc = self.language == Language::LinuxCnc;
+        // A vacant variable is 0 in sums and products, and no number where it is compared for equality.
+        if let (Operator::Equal | Operator::NotEqual, true) =
+            (operator, left.is_none() || right.is_none())
+        {
+            let is_equal = left.is_none() && right.is_none();
+            return Ok(Some(f64::from(u8::from(is_equal == (operator == Operator::Equal)))));
+        }
+        let [x, y] = [left, right].map(Option::unwrap_or_default);
+        let truth = |holds: bool| Ok(f64::from(u8::from(holds)));
+        let is_near = is_linuxcnc && (x - y).abs() < LINUXCNC_EQUAL;
+        let value = match operator {
+            Operator::Power => finite(x.powf(y), "**"),
+            Operator::Times => finite(x * y, "*"),
+            Operator::Over => finite(x / y, "/"),
+            Operator::Plus => finite(x + y, "+"),
+            Operator::Minus => finite(x - y, "-"),
+            Operator::Modulo if is_linuxcnc => finite(x.rem_euclid(y.abs()), "MOD"),
+            // Of whole numbers, with the sign of the first.
+            Operator::Modulo if [x, y].iter().all(|value| value.fract() == 0.0) => {
+                finite(x % y, "MOD")
+            }
+            Operator::Modulo => Err(ExpressionFault::Tie { operation: "MOD", value: x }),
+            Operator::And if is_linuxcnc => truth(x != 0.0 && y != 0.0),
+            Operator::Or if is_linuxcnc => truth(x != 0.0 || y != 0.0),
+            Operator::Xor if is_linuxcnc => truth((x != 0.0) != (y != 0.0)),
+            Operator::And => bits(x, y, "AND", |x, y| x & y),
+            Operator::Or => bits(x, y, "OR", |x, y| x | y),
+            Operator::Xor => bits(x, y, "XOR", |x, y| x ^ y),
+            Operator::Equal => self.compared(x, y, "EQ", is_near || !is_linuxcnc && x == y),
+            Operator::NotEqual => self.compared(x, y, "NE", !(is_near || !is_linuxcnc && x == y)),
+            Operator::Greater => self.compared(x, y, "GT", x > y),
+            Operator::GreaterOrEqual => self.compared(x, y, "GE", is_near || x >= y),
+            Operator::Less => self.compared(x, y, "LT", x < y),
+            Operator::LessOrEqual => self.compared(x, y, "LE", is_near || x <= y),
         };
+        value.map(Some)
     }
-    let index = unsigned(cursor, known, depth + 1)?;
-    if index.fract() != 0.0 || !(1.0..=f64::from(u16::MAX)).contains(&index) {
-        return Err(ExpressionFault::Index { index });
-    }
-    let numbered = Parameter::Numbered(index as u16);
-    // By these a control reports its state, which is not known here.
-    match index >= f64::from(FIRST_SYSTEM) {
-        true => Err(ExpressionFault::System { parameter: numbered.shown() }),
-        false => Ok(numbered),
+
+    /// Returns the result of a comparison, unless rounding errors decide it on a control with fewer digits.
+    fn compared(
+        &self,
+        x: f64,
+        y: f64,
+        operation: &'static str,
+        holds: bool,
+    ) -> Result<f64, ExpressionFault> {
+        let difference = x - y;
+        let is_tie = difference != 0.0 && difference.abs() <= TIE * x.abs().max(y.abs()).max(1.0);
+        match self.language == Language::Fanuc && is_tie {
+            true => Err(ExpressionFault::Tie { operation, value: difference }),
+            false => Ok(f64::from(u8::from(holds))),
+        }
     }
 }
 
-/// Reads an assignment `#1 = value`.
-pub(super) fn assignment(
-    cursor: &mut Cursor,
-    known: &Parameters,
-) -> Result<(Parameter, f64), ExpressionFault> {
-    let target = parameter(cursor, known, 0)?;
-    match cursor.take(b'=') {
-        true => Ok((target, sum(cursor, known, 0)?)),
-        false => Err(ExpressionFault::NoAssignment { parameter: target.shown() }),
+/// Applies an operation on the bits of whole numbers of 32 bits.
+fn bits(
+    x: f64,
+    y: f64,
+    operation: &'static str,
+    apply: fn(u32, u32) -> u32,
+) -> Result<f64, ExpressionFault> {
+    let is_whole =
+        |value: f64| value.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&value);
+    match is_whole(x) && is_whole(y) {
+        true => Ok(f64::from(apply(x as u32, y as u32))),
+        false => Err(ExpressionFault::NotFinite { operation }),
     }
 }
 
 fn finite(value: f64, operation: &'static str) -> Result<f64, ExpressionFault> {
-    match value.abs() <= crate::gcode::LARGEST_NUMBER {
+    match value.abs() <= LARGEST_RESULT {
         true => Ok(value),
         false => Err(ExpressionFault::NotFinite { operation }),
     }
 }
 
-fn rest(cursor: &Cursor) -> String {
-    if cursor.rest().is_empty() { String::new() } else { crate::gcode::shown(cursor.rest()) }
+pub(super) fn rest(cursor: &Cursor) -> String {
+    if cursor.rest().is_empty() { String::new() } else { shown(cursor.rest()) }
 }

@@ -1,10 +1,13 @@
 //! The lines of a program, and the order in which they are executed: its extent in the file, its subprograms and their repeats.
 
-use super::expression::Parameters;
-use super::line::{Label, Line, OWord, Role, begin, next, o_word};
-use crate::gcode::block::{Block, Group};
+use super::line::{Label, MacroCall, Role, begin, code, next};
+use super::structure::Structure;
+use super::variables::{Locals, Variables};
+use crate::gcode::error::combination;
 use crate::gcode::{GcodeError, GcodeFault, MAX_CALLS, MAX_REPEATED};
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
+use std::mem;
+use std::sync::Arc;
 use touchoff::Unit;
 
 /// A place in the text: the byte at which a line begins, and its number from 1.
@@ -68,12 +71,6 @@ fn is_empty(line: &str) -> bool {
         || line.starts_with('(') && line.find(')') == Some(line.len() - 1)
 }
 
-/// Reads a line on its own, as far as it depends on no parameter.
-fn block(line: &str) -> Option<Block> {
-    let mut parsed = Line::default();
-    parsed.parse(line, &mut Parameters::default()).ok().map(|()| parsed.block)
-}
-
 /// The extent of a program in its file.
 #[derive(Debug)]
 pub(super) struct Extent<'a> {
@@ -104,7 +101,7 @@ pub(super) fn extent(text: &str) -> Extent<'_> {
         if extent.closed {
             if !found.trim().is_empty() && !is_percent(found, false) {
                 let (_, has_blocks) = extent.left_out.get_or_insert((place.line, false));
-                *has_blocks |= block(found).is_some_and(|block| block.has_effect());
+                *has_blocks |= has_effect(found);
             }
         } else if is_percent(found, is_first) || head(found).is_some() {
             if is_first {
@@ -121,105 +118,50 @@ pub(super) fn extent(text: &str) -> Extent<'_> {
     extent
 }
 
-/// A subprogram.
-#[derive(Clone, Copy, Debug)]
-struct Subprogram {
-    /// [`Role::Title`] or [`Role::Sub`].
-    role: Role,
-    /// The line after the label.
-    body: Place,
-    /// The line after `endsub`.
-    after: Option<Place>,
-}
-
-/// The subprograms of a file.
-#[derive(Clone, Debug, Default)]
-struct Subprograms {
-    known: HashMap<Label, Subprogram>,
-}
-
-impl Subprograms {
-    /// Finds the labels of a text. Lines that are not understood are left to the interpreter.
-    ///
-    /// # Errors
-    /// A label that stands twice, a `sub` in another, a `sub` without `endsub`; each with its line.
-    fn find(text: &str) -> Result<Subprograms, GcodeError> {
-        let mut found = Subprograms::default();
-        let mut lines: HashMap<Label, usize> = HashMap::new();
-        let mut open: Option<(Label, usize)> = None;
-        let mut place = Place { offset: 0, line: 1 };
-        while let Some((line, after)) = line(text, place) {
-            let at = place.line;
-            place = after;
-            let mut cursor = begin(line);
-            if !matches!(next(&mut cursor), Ok(Some(b'O' | b'o'))) {
-                continue;
-            }
-            // A label that is an expression can only be called.
-            let Ok(OWord { label, role }) = o_word(&mut cursor, &Parameters::default()) else {
-                continue;
-            };
-            match (role, &open) {
-                (Role::Call, _) => {}
-                (Role::Sub, Some(_)) => {
-                    let problem = "it stands in another subprogram: end that with endsub before";
-                    return Err(nesting(at, &label, "sub", problem));
-                }
-                (Role::Sub | Role::Title, _) => {
-                    if let Some(first) = lines.insert(label.clone(), at) {
-                        let fault = GcodeFault::SecondLabel { label: label.to_string(), first };
-                        return Err(GcodeError { line: at, fault });
-                    }
-                    if role == Role::Sub {
-                        open = Some((label.clone(), at));
-                    }
-                    found.known.insert(label, Subprogram { role, body: after, after: None });
-                }
-                (Role::EndSub, Some((opened, _))) if *opened == label => {
-                    if let Some(known) = found.known.get_mut(&label) {
-                        known.after = Some(after);
-                    }
-                    open = None;
-                }
-                (Role::EndSub, Some(_)) => {
-                    let problem = "another subprogram is open: end that before";
-                    return Err(nesting(at, &label, "endsub", problem));
-                }
-                // The end of a subprogram that has a title is refused where it is executed.
-                (Role::EndSub, None) => {}
-            }
-        }
-        match open {
-            Some((label, at)) => Err(nesting(at, &label, "sub", "it has no endsub: add it")),
-            None => Ok(found),
-        }
-    }
-
-    /// Returns whether there is one.
-    fn is_known(&self) -> bool {
-        !self.known.is_empty()
-    }
-
-    fn get(&self, label: &Label) -> Option<&Subprogram> {
-        self.known.get(label)
-    }
-}
-
-/// Returns the error of a `sub` or `endsub` at a wrong place.
-fn nesting(line: usize, label: &Label, word: &'static str, problem: &'static str) -> GcodeError {
-    GcodeError { line, fault: GcodeFault::Nesting { label: label.to_string(), word, problem } }
-}
-
 /// A subprogram that is being executed.
 #[derive(Clone, Debug)]
 struct Call {
     label: Label,
-    subprogram: Subprogram,
+    /// [`Role::Title`] for a program that M99 ends, [`Role::Sub`] for one of O-words.
+    role: Role,
+    body: Place,
     return_to: Place,
     /// Executions that follow the present one.
     repeats: u32,
-    /// The caller's parameters that the subprogram does not see.
-    locals: Parameters,
+    /// The caller's variables that the subprogram does not see.
+    hidden: Hidden,
+    /// The macro that each motion calls, in the caller.
+    modal: Option<MacroCall>,
+}
+
+/// Variables of a caller.
+#[derive(Clone, Debug)]
+enum Hidden {
+    /// All local ones: the subprogram has its own.
+    Locals(Locals),
+    /// Names: it shares the numbered ones (M98).
+    Names(BTreeMap<String, f64>),
+}
+
+/// A `repeat` that is being executed.
+#[derive(Clone, Copy, Debug)]
+struct Repeat {
+    line: usize,
+    /// The number of calls around it.
+    depth: usize,
+    remaining: u32,
+}
+
+/// A call of a subprogram.
+#[derive(Debug)]
+pub(super) struct Callee {
+    pub(super) label: Label,
+    /// [`Role::Title`] (M98, G65) or [`Role::Sub`] (`call`).
+    pub(super) role: Role,
+    /// The number of executions, once at least.
+    pub(super) times: u32,
+    /// Its own variables; `None` if it shares the numbered ones of the caller.
+    pub(super) locals: Option<Locals>,
 }
 
 /// The place of execution in a text.
@@ -228,30 +170,41 @@ pub(super) struct Flow<'a> {
     text: &'a str,
     place: Place,
     closed: bool,
-    subprograms: Subprograms,
+    pub(super) structure: Arc<Structure>,
     calls: Vec<Call>,
+    repeats: Vec<Repeat>,
+    /// The places of sequence numbers, once a line has asked for one.
+    numbers: Option<Arc<HashMap<u32, Vec<Place>>>>,
     /// The labels that were called, or passed as a `sub`.
     found: HashSet<Label>,
+    /// The macro that each motion calls (G66).
+    pub(super) modal: Option<MacroCall>,
     /// Set once the program has a title.
     titled: bool,
     /// Set once a block of the main program was executed.
     started: bool,
+    /// The last line of the main program that was executed.
+    furthest: usize,
     repeated: usize,
 }
 
 impl<'a> Flow<'a> {
-    pub(super) fn new(extent: &Extent<'a>) -> Result<Flow<'a>, GcodeError> {
-        Ok(Flow {
+    pub(super) fn new(extent: &Extent<'a>, structure: Structure) -> Flow<'a> {
+        Flow {
             text: extent.text,
             place: extent.start,
             closed: extent.closed,
-            subprograms: Subprograms::find(extent.text)?,
+            structure: Arc::new(structure),
             calls: Vec::new(),
+            repeats: Vec::new(),
+            numbers: None,
             found: HashSet::new(),
+            modal: None,
             titled: false,
             started: false,
+            furthest: 0,
             repeated: 0,
-        })
+        }
     }
 
     /// Returns the next line and its number, or `None` where the text ends the program.
@@ -270,29 +223,33 @@ impl<'a> Flow<'a> {
         };
         let number = self.place.line;
         self.place = after;
-        self.count(1).map_err(|fault| GcodeError { line: number, fault })?;
+        self.count(1, number).map_err(|fault| GcodeError { line: number, fault })?;
+        if self.calls.is_empty() {
+            self.furthest = self.furthest.max(number);
+        }
         Ok(Some((number, line)))
-    }
-
-    /// Returns whether the text has subprograms.
-    pub(super) fn has_subprograms(&self) -> bool {
-        self.subprograms.is_known()
     }
 
     /// Returns whether a subprogram stands before the present line, and was neither called nor passed as a `sub` so far.
     pub(super) fn has_passed(&self, label: &Label) -> bool {
-        self.subprograms.get(label).is_some_and(|known| known.body.offset <= self.place.offset)
+        self.structure.get(label).is_some_and(|known| known.body.offset <= self.place.offset)
             && !self.found.contains(label)
     }
 
     /// Returns whether there is a subprogram with a label.
     pub(super) fn has(&self, label: &Label) -> bool {
-        self.subprograms.get(label).is_some()
+        self.structure.get(label).is_some()
     }
 
-    /// Counts blocks or steps of a subprogram. Those of the main program are limited by its text.
-    pub(super) fn count(&mut self, number: usize) -> Result<(), GcodeFault> {
-        self.repeated += if self.calls.is_empty() { 0 } else { number };
+    /// Returns whether the main program is executed.
+    pub(super) fn is_main(&self) -> bool {
+        self.calls.is_empty()
+    }
+
+    /// Counts blocks or steps of a line that were executed before, or of a subprogram. The others are limited by the text.
+    pub(super) fn count(&mut self, number: usize, line: usize) -> Result<(), GcodeFault> {
+        let is_repeated = !self.calls.is_empty() || line <= self.furthest;
+        self.repeated += if is_repeated { number } else { 0 };
         if self.repeated > MAX_REPEATED { Err(GcodeFault::TooLong) } else { Ok(()) }
     }
 
@@ -322,11 +279,8 @@ impl<'a> Flow<'a> {
             let mut cursor = begin(line);
             if let Ok(Some(b'O' | b'o')) = next(&mut cursor) {
                 title = Some(place.line);
-            } else if title.is_some() {
-                let stop = block(line).and_then(|block| block.code_of(Group::Stop));
-                if stop.is_some_and(|code| matches!(code.tenths, 20 | 300)) {
-                    return title;
-                }
+            } else if title.is_some() && ends_program(line) {
+                return title;
             }
             place = after;
         }
@@ -338,43 +292,129 @@ impl<'a> Flow<'a> {
         self.started = true;
     }
 
-    /// Obeys an O-word.
-    pub(super) fn o_word(
-        &mut self,
-        word: OWord,
-        parameters: &mut Parameters,
-    ) -> Result<(), GcodeFault> {
-        let OWord { label, role } = word;
-        match role {
-            Role::Call => self.call(label, Role::Sub, 1, parameters),
-            Role::EndSub => self.end_sub(&label, parameters),
-            Role::Title if self.calls.is_empty() && !self.started && !self.titled => {
+    /// Passes the title of a program.
+    pub(super) fn title(&mut self, label: &Label) -> Result<(), GcodeFault> {
+        match self.calls.is_empty() && !self.started && !self.titled {
+            true => {
                 self.titled = true;
                 Ok(())
             }
-            Role::Sub if self.calls.is_empty() && !self.titled => {
-                let known = self.subprograms.get(&label).and_then(|known| known.after);
-                self.found.insert(label.clone());
-                self.place = known.ok_or_else(|| GcodeFault::Nesting {
-                    label: label.to_string(),
-                    word: "sub",
-                    problem: "its label depends on a parameter: write a number or a name",
-                })?;
-                Ok(())
-            }
-            Role::Title | Role::Sub => Err(GcodeFault::RunsInto { label: label.to_string() }),
+            false => Err(GcodeFault::RunsInto { label: label.to_string() }),
         }
     }
 
-    /// Calls a subprogram with a title (M98) or of O-words (`call`), once at least.
+    /// Passes over a subprogram of O-words.
+    pub(super) fn pass_sub(&mut self, label: &Label) -> Result<(), GcodeFault> {
+        if !self.calls.is_empty() || self.titled {
+            return Err(GcodeFault::RunsInto { label: label.to_string() });
+        }
+        let after = self.structure.get(label).and_then(|known| known.after);
+        self.found.insert(label.clone());
+        self.place = after.ok_or_else(|| GcodeFault::Nesting {
+            label: label.to_string(),
+            word: "sub",
+            problem: "its label depends on a parameter: write a number or a name",
+        })?;
+        Ok(())
+    }
+
+    /// Goes on at a place.
+    pub(super) fn jump(&mut self, place: Place) {
+        self.place = place;
+    }
+
+    /// Goes on after the line at a place.
+    pub(super) fn jump_after(&mut self, place: Place) {
+        self.place = line(self.text, place).map_or(place, |(_, after)| after);
+    }
+
+    /// Returns the line at a place.
+    pub(super) fn text_at(&self, place: Place) -> &'a str {
+        line(self.text, place).map_or("", |(line, _)| line)
+    }
+
+    /// Returns the place of a sequence number in the program that is executed.
+    fn sequence(&mut self, number: u32, line_of_jump: usize) -> Result<Place, GcodeFault> {
+        if self.numbers.is_none() {
+            let mut numbers: HashMap<u32, Vec<Place>> = HashMap::new();
+            let mut place = Place { offset: 0, line: 1 };
+            while let Some((line, after)) = line(self.text, place) {
+                if let Some(number) = sequence_number(line) {
+                    numbers.entry(number).or_default().push(place);
+                }
+                place = after;
+            }
+            self.numbers = Some(Arc::new(numbers));
+        }
+        let [first, last] = self.structure.program(line_of_jump);
+        let places = self.numbers.as_ref().and_then(|numbers| numbers.get(&number));
+        let mut places = places
+            .into_iter()
+            .flatten()
+            .filter(|place| (first..=last).contains(&place.line))
+            .copied();
+        let Some(place) = places.next() else {
+            return Err(GcodeFault::NoSequenceNumber { number });
+        };
+        match places.next() {
+            // Controls seek from different places.
+            Some(second) => {
+                let (first, second) = (place.line, second.line);
+                Err(GcodeFault::SecondSequenceNumber { number, first, second })
+            }
+            None => Ok(place),
+        }
+    }
+
+    /// Obeys `GOTO` in a line.
+    pub(super) fn go_to(&mut self, number: u32, line: usize) -> Result<(), GcodeFault> {
+        let place = self.sequence(number, line)?;
+        if !self.structure.can_jump(line, place.line) {
+            let condition = "it leads into a loop (DO … END) from outside";
+            return Err(combination(
+                format!("GOTO {number}"),
+                condition,
+                "enter the loop by its DO",
+            ));
+        }
+        self.place = place;
+        Ok(())
+    }
+
+    /// Begins a `repeat`, and returns whether it is executed.
+    pub(super) fn repeat(&mut self, line: usize, times: u32) -> bool {
+        let remaining = times.saturating_sub(1);
+        if times > 0 {
+            self.repeats.push(Repeat { line, depth: self.calls.len(), remaining });
+        }
+        times > 0
+    }
+
+    /// Ends one execution of a `repeat`, and returns whether there is another.
+    pub(super) fn end_repeat(&mut self, head: usize) -> bool {
+        let depth = self.calls.len();
+        match self.repeats.last_mut() {
+            Some(repeat)
+                if repeat.line == head && repeat.depth == depth && repeat.remaining > 0 =>
+            {
+                repeat.remaining -= 1;
+                true
+            }
+            _ => {
+                self.repeats.pop();
+                false
+            }
+        }
+    }
+
+    /// Calls a subprogram with a title (M98, G65) or of O-words (`call`).
     pub(super) fn call(
         &mut self,
-        label: Label,
-        role: Role,
-        times: u32,
-        parameters: &mut Parameters,
+        callee: Callee,
+        variables: &mut Variables,
     ) -> Result<(), GcodeFault> {
-        let Some(subprogram) = self.subprograms.get(&label).copied() else {
+        let Callee { label, role, times, locals } = callee;
+        let Some(subprogram) = self.structure.get(&label).copied() else {
             return Err(GcodeFault::NoSubprogram { label: label.to_string() });
         };
         if subprogram.role != role {
@@ -385,23 +425,61 @@ impl<'a> Flow<'a> {
             };
             return Err(GcodeFault::MixedCall { label, what, remedy });
         }
+        self.found.insert(label.clone());
+        self.enter(label, role, subprogram.body, times, locals, variables)
+    }
+
+    /// Calls the blocks from a sequence number of the same program on (M97).
+    pub(super) fn call_local(
+        &mut self,
+        number: u32,
+        times: u32,
+        line: usize,
+        variables: &mut Variables,
+    ) -> Result<(), GcodeFault> {
+        let body = self.sequence(number, line)?;
+        self.enter(Label::Number(number), Role::Title, body, times, None, variables)
+    }
+
+    fn enter(
+        &mut self,
+        label: Label,
+        role: Role,
+        body: Place,
+        times: u32,
+        locals: Option<Locals>,
+        variables: &mut Variables,
+    ) -> Result<(), GcodeFault> {
         if self.calls.len() >= MAX_CALLS {
             return Err(GcodeFault::TooDeep);
         }
-        self.found.insert(label.clone());
-        // Those that the subprogram has of its own begin without values.
-        let locals = parameters.take_locals(role == Role::Sub);
         let return_to = self.place;
-        self.place = subprogram.body;
-        self.calls.push(Call { label, subprogram, return_to, repeats: times - 1, locals });
+        self.place = body;
+        let hidden = match locals {
+            Some(locals) => Hidden::Locals(mem::replace(&mut variables.locals, locals)),
+            None => Hidden::Names(mem::take(&mut variables.locals.named)),
+        };
+        let modal = self.modal.take();
+        self.calls.push(Call { label, role, body, return_to, repeats: times - 1, hidden, modal });
         Ok(())
     }
 
-    /// Obeys `endsub`.
-    fn end_sub(&mut self, label: &Label, parameters: &mut Parameters) -> Result<(), GcodeFault> {
+    /// Obeys `endsub` or `return`.
+    pub(super) fn end_sub(
+        &mut self,
+        label: &Label,
+        word: &'static str,
+        variables: &mut Variables,
+    ) -> Result<(), GcodeFault> {
+        let depth = self.calls.len();
         match self.calls.last() {
-            Some(call) if call.label == *label && call.subprogram.role == Role::Sub => {
-                self.leave(parameters)
+            Some(call) if call.label == *label && call.role == Role::Sub => {
+                // LinuxCNC keeps the number of those that remain for the next execution (`control_save_offset`).
+                if self.repeats.iter().any(|repeat| repeat.depth == depth) {
+                    let condition = "a `repeat` is being executed, whose count LinuxCNC keeps";
+                    return Err(combination(word, condition, "end the `repeat` before"));
+                }
+                self.leave(variables)
             }
             Some(call) if call.label == *label => Err(GcodeFault::MixedCall {
                 label: label.to_string(),
@@ -410,42 +488,88 @@ impl<'a> Flow<'a> {
             }),
             _ => {
                 let remedy = "remove it, or add the `sub` that it ends";
-                Err(GcodeFault::StrayReturn { word: format!("{label} endsub"), remedy })
+                Err(GcodeFault::StrayReturn { word: format!("{label} {word}"), remedy })
             }
         }
     }
 
-    /// Obeys M99.
-    pub(super) fn end_subprogram(&mut self, parameters: &mut Parameters) -> Result<(), GcodeFault> {
-        match self.calls.last() {
-            Some(call) if call.subprogram.role == Role::Sub => Err(GcodeFault::MixedCall {
+    /// Obeys M99 in a subprogram, with the sequence number of the caller at which it goes on (`M99 P`).
+    pub(super) fn end_subprogram(
+        &mut self,
+        target: Option<u32>,
+        line: usize,
+        variables: &mut Variables,
+    ) -> Result<(), GcodeFault> {
+        match (self.calls.last(), target) {
+            (Some(call), _) if call.role == Role::Sub => Err(GcodeFault::MixedCall {
                 label: call.label.to_string(),
                 what: "a subprogram with `sub`",
                 remedy: "end it with its O-word and `endsub`",
             }),
-            Some(_) => self.leave(parameters),
-            None => {
-                let remedy = "end the main program with M30";
-                Err(GcodeFault::StrayReturn { word: "M99".to_owned(), remedy })
+            (Some(call), Some(number)) => {
+                let line = call.return_to.line.max(2) - 1;
+                let place = self.sequence(number, line)?;
+                if let Some(call) = self.calls.last_mut() {
+                    call.repeats = 0;
+                }
+                self.leave(variables)?;
+                self.place = place;
+                Ok(())
             }
+            (Some(_), None) => self.leave(variables),
+            (None, Some(number)) => self.go_to(number, line),
+            (None, None) => Ok(()),
         }
     }
 
     /// Repeats the subprogram, or returns to its caller.
-    fn leave(&mut self, parameters: &mut Parameters) -> Result<(), GcodeFault> {
-        self.count(1)?;
+    fn leave(&mut self, variables: &mut Variables) -> Result<(), GcodeFault> {
+        self.count(1, 0)?;
         match self.calls.last_mut() {
             Some(call) if call.repeats > 0 => {
                 call.repeats -= 1;
-                self.place = call.subprogram.body;
+                self.place = call.body;
             }
             _ => {
                 if let Some(call) = self.calls.pop() {
                     self.place = call.return_to;
-                    parameters.restore_locals(call.locals, call.subprogram.role == Role::Sub);
+                    self.modal = call.modal;
+                    match call.hidden {
+                        Hidden::Locals(locals) => variables.locals = locals,
+                        Hidden::Names(names) => variables.locals.named = names,
+                    }
                 }
             }
         }
         Ok(())
     }
+}
+
+/// Returns the number of a line that begins with N.
+fn sequence_number(line: &str) -> Option<u32> {
+    let line = line.trim_start();
+    let line = match line.strip_prefix('/') {
+        Some(rest) => rest.trim_start_matches(|c: char| c.is_ascii_digit()).trim_start(),
+        None => line,
+    };
+    let digits = line.strip_prefix(['N', 'n'])?.trim_start();
+    let end = digits.find(|c: char| !c.is_ascii_digit()).unwrap_or(digits.len());
+    digits[..end].parse().ok()
+}
+
+/// Returns whether a line has M2 or M30.
+fn ends_program(line: &str) -> bool {
+    let code = code(line).unwrap_or_default();
+    code.split('M').skip(1).any(|word| {
+        let end = word.find(|c: char| !c.is_ascii_digit()).unwrap_or(word.len());
+        matches!(word[..end].parse(), Ok(2 | 30))
+    })
+}
+
+/// Returns whether a line has a G or M word, or the position of an axis.
+fn has_effect(line: &str) -> bool {
+    let code = code(line).unwrap_or_default();
+    code.as_bytes().windows(2).any(|pair| {
+        b"GMXYZABC".contains(&pair[0]) && (pair[1].is_ascii_digit() || b"+-.[#".contains(&pair[1]))
+    })
 }

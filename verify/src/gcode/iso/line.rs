@@ -2,10 +2,13 @@
 //! Comments are `( … )` and `; …`. Case does not matter, and blanks may stand between words and between a letter and its value. A
 //! character that belongs to none of these stops the interpreter.
 
-use super::expression::{Cursor, Parameter, Parameters, assignment, begins_value, value};
+use super::expression::{Cursor, ExpressionFault, Language, Value, begins_value, condition, value};
+use super::variables::{Parameter, Scope, assignment};
 use crate::gcode::block::{Block, Code, Keyword, Number};
-use crate::gcode::error::not_read;
-use crate::gcode::{ExpressionFault, GcodeFault, MAX_ASSIGNMENTS, unquoted};
+use crate::gcode::error::{combination, missing, not_read};
+use crate::gcode::rules::{Choice, Rule};
+use crate::gcode::{GcodeFault, LARGEST_NUMBER, MAX_ASSIGNMENTS, unquoted};
+use std::collections::BTreeMap;
 use std::fmt;
 
 /// Words of Heidenhain Klartext that begin a line or end one.
@@ -14,11 +17,9 @@ const KLARTEXT: [&str; 14] = [
     "TCPM", "TOOL",
 ];
 
-/// Words that decide what is executed, of macro programs and of Sinumerik.
-const DECISIONS: [&str; 14] = [
-    "CASE", "DO", "ELSE", "ENDIF", "FOR", "GOTO", "GOTOB", "GOTOF", "IF", "LOOP", "REPEAT", "THEN",
-    "UNTIL", "WHILE",
-];
+/// Statements of Sinumerik that decide what is executed.
+const DECISIONS: [&str; 10] =
+    ["CASE", "ELSE", "ENDIF", "FOR", "GOTOB", "GOTOF", "LOOP", "REPEAT", "THEN", "UNTIL"];
 
 /// Removes `/`, which may be followed by the number of its switch, and a block number.
 pub(super) fn begin(line: &str) -> Cursor<'_> {
@@ -40,25 +41,49 @@ pub(super) fn begin(line: &str) -> Cursor<'_> {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Line {
     pub(super) block: Block,
-    pub(super) label: Option<OWord>,
-    assignments: Vec<(Parameter, f64)>,
+    pub(super) statement: Option<Statement>,
+    pub(super) call: Option<MacroCall>,
+    pub(super) assignments: Vec<(Parameter, Value)>,
     /// Set if the line has an assignment.
     pub(super) assigns: bool,
+    /// Words that the setup ignores.
+    pub(super) ignored: Vec<String>,
+    /// Set if the line has such a word, to which letters of the line can belong.
+    pub(super) ignores: bool,
     /// Set if the line has an assignment, and another value that is computed.
     pub(super) assigns_beside_value: bool,
 }
 
+/// A statement of a macro of Fanuc that decides which line is next.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Statement {
+    /// `GOTO`, also after an `IF` that holds.
+    GoTo(u32),
+    /// `WHILE … DO m`, with its condition, or `DO m`.
+    Do { holds: bool },
+    /// `END m`.
+    End,
+    /// `IF` with a condition that does not hold.
+    Nothing,
+}
+
+/// A call of a macro: G65, or G66 for all motions that follow.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct MacroCall {
+    pub(super) is_modal: bool,
+    pub(super) program: u32,
+    pub(super) repeats: u32,
+    pub(super) arguments: BTreeMap<u32, Value>,
+}
+
 impl Line {
-    /// Reads a line. Assignments take effect on `parameters` at its end.
-    pub(super) fn parse(
-        &mut self,
-        text: &str,
-        parameters: &mut Parameters,
-    ) -> Result<(), GcodeFault> {
+    /// Reads a line, with its variables and conditions.
+    pub(super) fn parse(&mut self, text: &str, scope: &Scope) -> Result<(), GcodeFault> {
         self.block.clear();
-        self.label = None;
+        (self.statement, self.call) = (None, None);
         self.assignments.clear();
-        (self.assigns, self.assigns_beside_value) = (false, false);
+        self.ignored.clear();
+        (self.assigns, self.assigns_beside_value, self.ignores) = (false, false, false);
         let mut cursor = begin(text);
         // The assignments whose value depends on a parameter: with another assignment in the block, it depends on the control
         // whether that is in force yet.
@@ -70,14 +95,11 @@ impl Line {
                     if self.assignments.len() == MAX_ASSIGNMENTS {
                         return Err(GcodeFault::Assignments);
                     }
-                    self.assignments.push(assignment(&mut cursor, parameters)?);
+                    self.assignments.push(assignment(&mut cursor, scope)?);
                     let written = &start[1..start.len() - cursor.rest().len()];
                     uses += usize::from(written.contains('#'));
                 }
-                b'O' | b'o' if self.is_empty() => {
-                    self.label = Some(o_word(&mut cursor, parameters)?);
-                }
-                _ if byte.is_ascii_alphabetic() => self.word(&mut cursor, parameters)?,
+                _ if byte.is_ascii_alphabetic() => self.word(&mut cursor, scope)?,
                 b',' => {
                     let word: String =
                         cursor.rest().chars().take(2).flat_map(char::escape_debug).collect();
@@ -89,35 +111,40 @@ impl Line {
             }
         }
         self.assigns = !self.assignments.is_empty();
+        self.ignores = !self.ignored.is_empty();
         self.assigns_beside_value =
             self.assigns && self.block.is_computed() || uses > 0 && self.assignments.len() > 1;
-        // All values of the block were computed with the parameters before it (RS274/NGC, section 3.3.3.4).
-        for (parameter, value) in self.assignments.drain(..) {
-            parameters.assign(parameter, value);
-        }
         Ok(())
     }
 
     /// Returns whether the line has no word yet.
     pub(super) fn is_empty(&self) -> bool {
-        self.block.is_empty() && self.label.is_none() && self.assignments.is_empty()
+        self.block.is_empty()
+            && self.statement.is_none()
+            && self.call.is_none()
+            && self.assignments.is_empty()
     }
 
     /// Reads a word that begins with a letter.
-    fn word(&mut self, cursor: &mut Cursor, parameters: &Parameters) -> Result<(), GcodeFault> {
+    fn word(&mut self, cursor: &mut Cursor, scope: &Scope) -> Result<(), GcodeFault> {
         let start = *cursor;
         let letter = char::from(start.rest().as_bytes()[0]).to_ascii_uppercase();
         cursor.advance();
         if !begins_value(cursor) {
-            return self.name(start, cursor, letter);
+            return self.name(start, cursor, letter, scope);
         }
         let text = cursor.rest();
-        let value = value(cursor, parameters)?;
+        let value = value(cursor, scope)?;
         let written = &text[..text.len() - cursor.rest().len()];
+        // A word with a vacant variable is as if it were not written (Fanuc).
+        let Some(value) = value else { return Ok(()) };
         match letter {
-            'G' | 'M' => self.code(letter, value, written),
+            'G' | 'M' => self.code(letter, value, written, cursor, scope),
+            // An argument of an ignored word.
+            'E' if !self.ignored.is_empty() => Ok(()),
             'E' | 'U' | 'V' | 'W' => Err(GcodeFault::Axis { word: letter }),
             'N' | 'O' => Err(GcodeFault::Unused { word: letter }),
+            _ if value.abs() > LARGEST_NUMBER => Err(GcodeFault::TooLarge { word: letter }),
             _ => {
                 let is_computed = written.contains(['[', '#']);
                 let is_whole = !is_computed && !written.contains('.');
@@ -126,27 +153,63 @@ impl Line {
         }
     }
 
-    fn code(&mut self, letter: char, value: f64, written: &str) -> Result<(), GcodeFault> {
+    fn code(
+        &mut self,
+        letter: char,
+        value: f64,
+        written: &str,
+        cursor: &mut Cursor,
+        scope: &Scope,
+    ) -> Result<(), GcodeFault> {
         let tenths = (10.0 * value).round();
-        let digits = written.trim();
-        let is_literal = digits.bytes().all(|byte| byte.is_ascii_digit() || byte == b'.');
-        if !is_literal || (10.0 * value - tenths).abs() > 1e-9 || tenths > 99_999.0 {
+        let is_literal = !written.contains(['+', '-']);
+        let is_number = (10.0 * value - tenths).abs() <= 1e-9 && (0.0..=99_999.0).contains(&tenths);
+        if !is_literal || !is_number {
             let expected = "a number with one decimal at most";
             return Err(GcodeFault::NotAllowed { word: letter, value, expected });
         }
-        self.block.add_code(Code { letter, tenths: tenths as u32 })
+        let code = Code { letter, tenths: tenths as u32 };
+        if scope.control.ignores(&code.to_string()) {
+            self.ignored.push(code.to_string());
+            return Ok(());
+        }
+        match (letter, code.tenths) {
+            ('G', 650 | 660) if scope.language == Some(Language::Fanuc) => {
+                if !self.is_empty() {
+                    let condition = "other words stand before it";
+                    return Err(combination(code, condition, "write them in a block before"));
+                }
+                self.call = Some(macro_call(code, cursor, scope)?);
+                Ok(())
+            }
+            _ => self.block.add_code(code),
+        }
     }
 
-    /// Reads a letter without a value: a word of another dialect, or a mistake.
+    /// Reads a letter without a value: a statement, a word of another dialect, or a mistake.
     fn name<'a>(
         &mut self,
         start: Cursor<'a>,
         cursor: &mut Cursor<'a>,
         letter: char,
+        scope: &Scope,
     ) -> Result<(), GcodeFault> {
         let mut whole = start;
+        if let Some(word) = statement(&mut whole) {
+            *cursor = whole;
+            return self.decision(word, cursor, scope);
+        }
         let name = whole.take_while(|byte| byte.is_ascii_alphanumeric() || byte == b'_');
         let upper = name.to_ascii_uppercase();
+        if scope.control.ignores(&upper) {
+            // Its arguments.
+            if whole.peek() == Some(b'(') {
+                whole.take_until(')').ok_or(GcodeFault::OpenComment)?;
+            }
+            self.ignored.push(upper);
+            *cursor = whole;
+            return Ok(());
+        }
         let keyword = match upper.as_str() {
             "TRAORI" => Keyword::TransformationOn,
             "TRAFOOF" => Keyword::TransformationOff,
@@ -186,6 +249,204 @@ impl Line {
         *cursor = whole;
         Ok(())
     }
+
+    /// Reads what follows the first word of a statement.
+    fn decision(
+        &mut self,
+        word: &'static str,
+        cursor: &mut Cursor,
+        scope: &Scope,
+    ) -> Result<(), GcodeFault> {
+        if scope.language == Some(Language::LinuxCnc) {
+            let meaning = "a statement of macros of Fanuc and Haas";
+            let remedy = "write an O-word, or state another `dialect`";
+            return Err(not_read(word, meaning, remedy));
+        }
+        if !self.is_empty() {
+            let condition = "other words stand before it";
+            return Err(combination(word, condition, "write it on a line of its own"));
+        }
+        let statement = match word {
+            "GOTO" => Statement::GoTo(sequence_number(cursor, scope)?),
+            "IF" => {
+                let holds = condition(cursor, scope)?;
+                let is_jump = cursor.take_word("GOTO");
+                if !is_jump && !cursor.take_word("THEN") {
+                    let needed = "GOTO or THEN after its condition";
+                    return Err(missing("IF", needed));
+                }
+                match (holds, is_jump) {
+                    (false, _) => {
+                        // The rest of the line is not executed, and its variables may have no value.
+                        *cursor = Cursor::new("");
+                        Statement::Nothing
+                    }
+                    (true, true) => Statement::GoTo(sequence_number(cursor, scope)?),
+                    // The assignments of the line follow.
+                    (true, false) => {
+                        if next(cursor)? != Some(b'#') {
+                            let needed = "an assignment `#1 = …` after THEN";
+                            return Err(missing("IF", needed));
+                        }
+                        return Ok(());
+                    }
+                }
+            }
+            "WHILE" => {
+                let holds = condition(cursor, scope)?;
+                if !cursor.take_word("DO") {
+                    return Err(missing("WHILE", "DO with a number after its condition"));
+                }
+                loop_number(cursor)?;
+                Statement::Do { holds }
+            }
+            "DO" => {
+                loop_number(cursor)?;
+                Statement::Do { holds: true }
+            }
+            _ => {
+                loop_number(cursor)?;
+                Statement::End
+            }
+        };
+        if next(cursor)?.is_some() {
+            let condition = "other words stand after it";
+            return Err(combination(word, condition, "write them on a line of their own"));
+        }
+        self.statement = Some(statement);
+        Ok(())
+    }
+}
+
+/// Passes over the first word of a statement of a macro of Fanuc, and returns it.
+pub(super) fn statement(cursor: &mut Cursor) -> Option<&'static str> {
+    let start = *cursor;
+    let word =
+        ["GOTO", "IF", "WHILE", "DO", "END"].into_iter().find(|word| cursor.take_word(word))?;
+    // `GOTOF` and `ENDIF` are Sinumerik's.
+    let goes_on = cursor.rest().as_bytes().first().is_some_and(u8::is_ascii_alphabetic);
+    if goes_on {
+        *cursor = start;
+    }
+    (!goes_on).then_some(word)
+}
+
+/// Reads the number of a loop, from 1 to 3.
+pub(super) fn loop_number(cursor: &mut Cursor) -> Result<u32, GcodeFault> {
+    cursor.peek();
+    let digits = cursor.take_while(|byte| byte.is_ascii_digit());
+    match digits.parse() {
+        Ok(number @ 1..=3) => Ok(number),
+        _ => {
+            let value = digits.parse().unwrap_or(0.0);
+            let expected = "DO and END with a number from 1 to 3";
+            Err(GcodeFault::NotAllowed { word: 'O', value, expected })
+        }
+    }
+}
+
+/// Reads the sequence number after GOTO, which can be computed.
+fn sequence_number(cursor: &mut Cursor, scope: &Scope) -> Result<u32, GcodeFault> {
+    let value = value(cursor, scope)?.unwrap_or(0.0);
+    match value.fract() == 0.0 && (1.0..=99_999_999.0).contains(&value) {
+        true => Ok(value as u32),
+        false => {
+            let expected = "GOTO with a sequence number from 1";
+            Err(GcodeFault::NotAllowed { word: 'N', value, expected })
+        }
+    }
+}
+
+/// Returns the local variable of an argument letter (type I), other than I, J and K.
+fn local_of(letter: char) -> Option<u32> {
+    Some(match letter {
+        'A' => 1,
+        'B' => 2,
+        'C' => 3,
+        'D' => 7,
+        'E' => 8,
+        'F' => 9,
+        'H' => 11,
+        'M' => 13,
+        'Q' => 17,
+        'R' => 18,
+        'S' => 19,
+        'T' => 20,
+        'U' => 21,
+        'V' => 22,
+        'W' => 23,
+        'X' => 24,
+        'Y' => 25,
+        'Z' => 26,
+        _ => return None,
+    })
+}
+
+/// Reads the words after G65 or G66: P with the program, L with the repeats, and the arguments.
+///
+/// I, J and K that repeat, or that are not in this order, are those of type II: I1 J1 K1 to I10 J10 K10 are #4 to #33. Of two
+/// arguments for one variable the later counts.
+fn macro_call(code: Code, cursor: &mut Cursor, scope: &Scope) -> Result<MacroCall, GcodeFault> {
+    let (mut program, mut repeats) = (None, 1);
+    let mut arguments = BTreeMap::new();
+    // The next variable of I, J or K.
+    let mut next_of_type_ii = 4;
+    while let Some(byte) = next(cursor)? {
+        if !byte.is_ascii_alphabetic() {
+            return Err(unexpected(cursor));
+        }
+        let letter = char::from(byte).to_ascii_uppercase();
+        cursor.advance();
+        if !begins_value(cursor) {
+            return Err(GcodeFault::NoNumber { word: letter });
+        }
+        let start = *cursor;
+        let value = value(cursor, scope)?;
+        let written = start.text_to(cursor);
+        let is_whole = !written.contains(['.', '[', '#']);
+        let whole = |least: f64, expected: &'static str| {
+            let value = value.unwrap_or(0.0);
+            match value.fract() == 0.0 && (least..=99_999_999.0).contains(&value) {
+                true => Ok(value as u32),
+                false => Err(GcodeFault::NotAllowed { word: letter, value, expected }),
+            }
+        };
+        let number = match letter {
+            'P' => {
+                program = Some(whole(0.0, "the number of a program after P")?);
+                continue;
+            }
+            'L' => {
+                repeats = whole(1.0, "a number of repeats from 1 after L")?;
+                continue;
+            }
+            'I' | 'J' | 'K' => {
+                let offset = u32::from(byte.to_ascii_uppercase() - b'I');
+                let number = next_of_type_ii + (offset + 3 - (next_of_type_ii - 4) % 3) % 3;
+                next_of_type_ii = number + 1;
+                number
+            }
+            letter => local_of(letter)
+                .ok_or(GcodeFault::NotAnArgument { word: letter, call: code.to_string() })?,
+        };
+        if number > 33 {
+            return Err(GcodeFault::Repeated { word: letter });
+        }
+        // Fanuc counts such a number in the least increment of its letter, which depends on the machine.
+        let is_length = !"DEFHMST".contains(letter);
+        if is_whole
+            && is_length
+            && value.is_some_and(|value| value != 0.0)
+            && scope.control.stated(Rule::WholeNumbers) != Some(Choice::Units)
+        {
+            let condition = "its number has no decimal point";
+            let remedy = "write one: controls count such an argument in increments or in units";
+            return Err(combination(format!("{letter} of {code}"), condition, remedy));
+        }
+        arguments.insert(number, value);
+    }
+    let program = program.ok_or_else(|| missing(code, "P with the number of a program"))?;
+    Ok(MacroCall { is_modal: code.tenths == 660, program, repeats, arguments })
 }
 
 /// Passes over blanks and comments, and returns the next byte.
@@ -209,6 +470,22 @@ pub(super) fn next(cursor: &mut Cursor) -> Result<Option<u8>, GcodeFault> {
             Some(byte) => return Ok(Some(byte)),
         }
     }
+}
+
+/// Returns a line in capitals without blanks and comments.
+pub(super) fn code(text: &str) -> Result<String, GcodeFault> {
+    let mut code = String::new();
+    let mut is_comment = false;
+    for c in text.chars() {
+        match c {
+            '(' if is_comment => return Err(GcodeFault::OpenComment),
+            '(' | ')' => is_comment = c == '(',
+            ';' if !is_comment => return Ok(code),
+            c if !is_comment && !c.is_whitespace() => code.push(c.to_ascii_uppercase()),
+            _ => {}
+        }
+    }
+    if is_comment { Err(GcodeFault::OpenComment) } else { Ok(code) }
 }
 
 /// Returns whether a comment begins with a word, in either case.
@@ -281,6 +558,49 @@ pub(super) enum Role {
     Sub,
     EndSub,
     Call,
+    Return,
+    If,
+    ElseIf,
+    Else,
+    EndIf,
+    Do,
+    While,
+    EndWhile,
+    Repeat,
+    EndRepeat,
+    Break,
+    Continue,
+}
+
+/// The roles of O-words by name.
+const ROLES: [(&str, Role); 15] = [
+    ("sub", Role::Sub),
+    ("endsub", Role::EndSub),
+    ("call", Role::Call),
+    ("return", Role::Return),
+    ("if", Role::If),
+    ("elseif", Role::ElseIf),
+    ("else", Role::Else),
+    ("endif", Role::EndIf),
+    ("do", Role::Do),
+    ("while", Role::While),
+    ("endwhile", Role::EndWhile),
+    ("repeat", Role::Repeat),
+    ("endrepeat", Role::EndRepeat),
+    ("break", Role::Break),
+    ("continue", Role::Continue),
+];
+
+impl Role {
+    /// Returns the word.
+    pub(super) fn word(self) -> &'static str {
+        ROLES.into_iter().find(|(_, role)| *role == self).map_or("O", |(word, _)| word)
+    }
+
+    /// Returns whether it decides which line is next.
+    pub(super) fn is_decision(self) -> bool {
+        !matches!(self, Role::Title | Role::Sub | Role::EndSub | Role::Call)
+    }
 }
 
 /// An O-word.
@@ -290,8 +610,8 @@ pub(super) struct OWord {
     pub(super) role: Role,
 }
 
-/// Reads an O-word. The label can be an expression.
-pub(super) fn o_word(cursor: &mut Cursor, parameters: &Parameters) -> Result<OWord, GcodeFault> {
+/// Reads an O-word, or a title of Fanuc that begins with a colon. The label can be an expression. The arguments are left.
+pub(super) fn o_word(cursor: &mut Cursor, scope: &Scope) -> Result<OWord, GcodeFault> {
     cursor.advance();
     let label = match cursor.take(b'<') {
         true => {
@@ -299,7 +619,7 @@ pub(super) fn o_word(cursor: &mut Cursor, parameters: &Parameters) -> Result<OWo
             let name: String = name.chars().filter(|c| !c.is_whitespace()).collect();
             Label::Name(name.to_lowercase())
         }
-        false => match value(cursor, parameters)? {
+        false => match value(cursor, scope)?.unwrap_or(-1.0) {
             number if number.fract() == 0.0 && (0.0..=1e8).contains(&number) => {
                 Label::Number(number as u32)
             }
@@ -311,20 +631,18 @@ pub(super) fn o_word(cursor: &mut Cursor, parameters: &Parameters) -> Result<OWo
     };
     next(cursor)?;
     let word = cursor.take_while(|byte| byte.is_ascii_alphabetic());
-    let role = match word.to_ascii_lowercase().as_str() {
-        "" => Role::Title,
-        "sub" => Role::Sub,
-        "endsub" => Role::EndSub,
-        "call" => Role::Call,
-        _ => return Err(GcodeFault::ControlFlow { word: unquoted(word) }),
+    let role = match ROLES.into_iter().find(|(known, _)| word.eq_ignore_ascii_case(known)) {
+        Some((_, role)) => role,
+        None if word.is_empty() => Role::Title,
+        None => return Err(GcodeFault::ControlFlow { word: unquoted(word) }),
     };
+    Ok(OWord { label, role })
+}
+
+/// Refuses words after an O-word.
+pub(super) fn check_end(cursor: &mut Cursor) -> Result<(), GcodeFault> {
     match next(cursor)? {
-        None => Ok(OWord { label, role }),
-        Some(b'[') if role != Role::Title => {
-            let remedy = "assign parameters from #31 on before the call instead";
-            let meaning = "a word with arguments";
-            Err(not_read(word.to_ascii_lowercase(), meaning, remedy))
-        }
+        None => Ok(()),
         Some(_) => Err(unexpected(cursor)),
     }
 }

@@ -3,7 +3,7 @@
 //! Each was run with its interpreter (`rs274`).
 
 use super::flow::{Place, before_semicolon, line};
-use super::line::begins;
+use super::line::{begins, code};
 use crate::gcode::error::{combination, not_read};
 use crate::gcode::{GcodeError, GcodeFault};
 
@@ -79,22 +79,6 @@ fn check_spelling(code: &str) -> Result<(), GcodeFault> {
         }
     }
     Ok(())
-}
-
-/// Returns a line in capitals without blanks and comments.
-fn code(text: &str) -> Result<String, GcodeFault> {
-    let mut code = String::new();
-    let mut is_comment = false;
-    for c in text.chars() {
-        match c {
-            '(' if is_comment => return Err(GcodeFault::OpenComment),
-            '(' | ')' => is_comment = c == '(',
-            ';' if !is_comment => return Ok(code),
-            c if !is_comment && !c.is_whitespace() => code.push(c.to_ascii_uppercase()),
-            _ => {}
-        }
-    }
-    if is_comment { Err(GcodeFault::OpenComment) } else { Ok(code) }
 }
 
 #[cfg(test)]

@@ -8,6 +8,9 @@ mod expression;
 mod flow;
 mod line;
 mod linuxcnc;
+mod structure;
+mod system;
+mod variables;
 
 pub use expression::ExpressionFault;
 
@@ -17,33 +20,37 @@ use super::error::{combination, missing, not_read};
 use super::interpreter::{End, Progress};
 use super::note::NoteKind;
 use super::rules::{Choice, Rule};
-use super::{GcodeError, GcodeFault};
-use expression::Parameters;
-use flow::{Flow, before_semicolon};
-use line::{Label, Line, Role};
+use super::{ControlSetup, GcodeError, GcodeFault, MAX_REPEATED};
+use expression::{Cursor, Language, Value, condition, value};
+use flow::{Callee, Flow, before_semicolon};
+use line::{Label, Line, MacroCall, OWord, Role, Statement, begin, check_end, next, o_word};
 use std::mem;
+use structure::{Clause, Structure};
+use variables::{Locals, Parameter, Scope, Variables};
 
 /// A program, and the place of its execution.
 #[derive(Clone, Debug)]
 pub(super) struct Program<'a> {
     flow: Flow<'a>,
-    parameters: Parameters,
+    variables: Variables,
     line: Line,
     /// The number of the first switch for optional blocks.
     switch: Option<String>,
 }
 
 impl<'a> Program<'a> {
-    /// Reads what holds for the whole text, which is not copied: its extent, its unit, and its subprograms.
+    /// Reads what holds for the whole text, which is not copied: its extent, its unit, its subprograms and loops.
     ///
     /// # Errors
     /// If two subprograms have one label, or a `sub` and its `endsub` do not match.
-    pub(super) fn new(text: &'a str, control: &mut Control) -> Result<Program<'a>, GcodeError> {
+    pub(super) fn new(
+        text: &'a str,
+        setup: &ControlSetup,
+        control: &mut Control,
+    ) -> Result<Program<'a>, GcodeError> {
         let extent = flow::extent(text);
-        let flow = Flow::new(&extent)?;
-        if control.stated(Rule::Dialect) == Some(Choice::Rs274Ngc) && flow.has_subprograms() {
-            linuxcnc::check_text(extent.text)?;
-        }
+        let variables = Variables::new(&setup.variables);
+        let structure = Structure::find(extent.text, &Scope::new(&variables, control))?;
         // The head of a program of Heidenhain is a title elsewhere. No other control reads it.
         if let Some(unit) = extent.unit
             && matches!(control.stated(Rule::Dialect), None | Some(Choice::Heidenhain))
@@ -51,12 +58,23 @@ impl<'a> Program<'a> {
             (control.modal.unit, control.modal.unit_stated) = (unit, true);
             control.state_rule(Rule::Dialect, Choice::Heidenhain);
         }
+        // No other control executes these statements.
+        if control.stated(Rule::Dialect).is_none() {
+            match (structure.fanuc, structure.linuxcnc) {
+                (Some(_), None) => control.state_rule(Rule::Dialect, Choice::Iso),
+                (None, Some(_)) => control.state_rule(Rule::Dialect, Choice::Rs274Ngc),
+                _ => {}
+            }
+        }
+        if control.stated(Rule::Dialect) == Some(Choice::Rs274Ngc) && structure.has_subprograms() {
+            linuxcnc::check_text(extent.text)?;
+        }
         if let Some((line, has_blocks)) = extent.left_out {
             let kind = if has_blocks { NoteKind::OtherProgram } else { NoteKind::TextAfterEnd };
             control.notes.add(line, kind);
         }
-        let (parameters, line, switch) = (Parameters::default(), Line::default(), None);
-        Ok(Program { flow, parameters, line, switch })
+        let flow = Flow::new(&extent, structure);
+        Ok(Program { flow, variables, line: Line::default(), switch: None })
     }
 
     /// Executes the next line.
@@ -97,52 +115,9 @@ impl<'a> Program<'a> {
         Ok(progress)
     }
 
-    /// Returns the label and the repeats of M98.
-    fn called(&self, block: &mut Block) -> Result<(Label, u32), GcodeFault> {
-        let expected = "the number of a program after P";
-        let Some(number) = block.take_whole('P', 0, 99_999_999, expected)? else {
-            let needed = "P with the number of a program";
-            return Err(missing("M98", needed));
-        };
-        // Older controls take the last four digits as the number, and those before as repeats.
-        if number > 9999 && self.flow.has(&Label::Number(number % 10_000)) {
-            let condition = "its last four digits are the number of a program, too";
-            let remedy = "give the program another number, and write repeats after L";
-            return Err(combination(format!("M98 P{number}"), condition, remedy));
-        }
-        let times = block.take_whole('L', 1, 99_999_999, "a number of repeats from 1 after L")?;
-        Ok((Label::Number(number), times.unwrap_or(1)))
-    }
-
-    /// Refuses a call of a subprogram that LinuxCNC does not find: it seeks those that it does not know after the call only
-    /// (`control_back_to`).
-    fn check_order(&self, label: &Label, control: &Control) -> Result<(), GcodeFault> {
-        match control.stated(Rule::Dialect) == Some(Choice::Rs274Ngc) && self.flow.has_passed(label)
-        {
-            true => Err(combination(
-                format!("a call of {label}"),
-                "it stands before the call and was not called before",
-                "move it to the end of the file: LinuxCNC seeks it after the call only",
-            )),
-            false => Ok(()),
-        }
-    }
-
+    /// Executes one block: a line, or a part of one after a semicolon.
     fn line(
         &mut self,
-        number: usize,
-        text: &str,
-        control: &mut Control,
-    ) -> Result<Progress, GcodeFault> {
-        let mut line = mem::take(&mut self.line);
-        let result = self.execute(&mut line, number, text, control);
-        self.line = line;
-        result
-    }
-
-    fn execute(
-        &mut self,
-        line: &mut Line,
         number: usize,
         text: &str,
         control: &mut Control,
@@ -162,29 +137,63 @@ impl<'a> Program<'a> {
             return Ok(Progress::GoesOn);
         }
         check_text(text, control)?;
-        line.parse(text, &mut self.parameters)?;
-        check_assignment(line, control)?;
-        if is_optional {
-            control.notes.add(number, NoteKind::ExecutedOptionalBlock);
-        }
-        // A line with an O-word has no other word.
-        if let Some(word) = line.label.take() {
-            if word.role == Role::Call {
-                self.check_order(&word.label, control)?;
-            }
-            self.flow.o_word(word, &mut self.parameters)?;
+        let mut cursor = begin(text);
+        let byte = next(&mut cursor)?;
+        let is_colon =
+            byte == Some(b':') && control.stated(Rule::Dialect) != Some(Choice::Rs274Ngc);
+        if matches!(byte, Some(b'O' | b'o')) || is_colon {
+            self.o_word(&mut cursor, number, control)?;
             return Ok(Progress::GoesOn);
+        }
+        let mut line = mem::take(&mut self.line);
+        let scope = Scope::new(&self.variables, control);
+        let result = line.parse(text, &scope).and_then(|()| {
+            if is_optional {
+                control.notes.add(number, NoteKind::ExecutedOptionalBlock);
+            }
+            self.execute(&mut line, number, control)
+        });
+        self.line = line;
+        result
+    }
+
+    /// Executes a line that was read.
+    fn execute(
+        &mut self,
+        line: &mut Line,
+        number: usize,
+        control: &mut Control,
+    ) -> Result<Progress, GcodeFault> {
+        check_assignment(line, control)?;
+        // All values of the block were computed with the variables before it (RS274/NGC, section 3.3.3.4).
+        for (parameter, value) in line.assignments.drain(..) {
+            self.assign(&parameter, value, number, control)?;
+        }
+        // M words have no axis words.
+        let can_own_axes = line.ignored.iter().any(|word| !word.starts_with('M'));
+        for word in line.ignored.drain(..) {
+            control.ignore(word);
         }
         if line.is_empty() {
             return Ok(Progress::GoesOn);
         }
-        let assigns = line.assigns;
-        let block = &mut line.block;
         self.flow.start();
+        if let Some(statement) = line.statement {
+            self.decide(statement, number)?;
+            return Ok(Progress::GoesOn);
+        }
+        if let Some(call) = line.call.take() {
+            match call.is_modal {
+                true => self.flow.modal = Some(call),
+                false => self.call_macro(&call)?,
+            }
+            return Ok(Progress::GoesOn);
+        }
+        let block = &mut line.block;
         let subprogram = block.code_of(Group::Subprogram);
-        let is_call = matches!(subprogram, Some(Code { tenths: 980, .. }));
+        let is_call = matches!(subprogram, Some(Code { tenths: 970 | 980, .. }));
         if let Some(code) = subprogram
-            && (assigns || block.has_more_than_call())
+            && (line.assigns || block.has_more_than_call())
             && (is_call || control.stated(Rule::Dialect) != Some(Choice::Iso))
         {
             // LinuxCNC reads P and L, and executes no other word of the block.
@@ -192,18 +201,45 @@ impl<'a> Program<'a> {
             let remedy = "write them in a block before";
             return Err(combination(code, condition, remedy));
         }
+        if line.ignores {
+            // They could be the word's own.
+            if can_own_axes && block.has_any("XYZABCIJK") {
+                let condition = "its block has an ignored word, whose own they could be";
+                let remedy = "write them in a block of their own";
+                return Err(combination("axis words", condition, remedy));
+            }
+            block.drop_letters("PQLRDHE");
+        }
+        if block.passed_over.iter().any(|code| (code.letter, code.tenths) == ('G', 670)) {
+            self.flow.modal = None;
+        }
         control.execute(number, block)?;
         // A canned cycle in a repeated subprogram has many steps per block.
-        self.flow.count(control.pending.len())?;
-        let call = if is_call { Some(self.called(block)?) } else { None };
-        block.check_used()?;
-        match (call, subprogram) {
-            (Some((label, times)), _) => {
-                self.check_order(&label, control)?;
-                self.flow.call(label, Role::Title, times, &mut self.parameters)?;
+        self.flow.count(control.pending.len(), number)?;
+        let moves = !control.pending.is_empty();
+        match subprogram.map(|code| code.tenths) {
+            Some(tenths @ (970 | 980)) => {
+                let call = self.called(block, tenths, control)?;
+                block.check_used()?;
+                self.subprogram(call, number, control)?;
             }
-            (None, Some(_)) => self.flow.end_subprogram(&mut self.parameters)?,
-            (None, None) => {}
+            Some(_) => {
+                let expected = "M99 P with a sequence number of the caller";
+                let target = block.take_whole('P', 1, 99_999_999, expected)?;
+                block.check_used()?;
+                if self.flow.is_main() && target.is_none() {
+                    control.notes.add(number, NoteKind::Endless);
+                    return Ok(Progress::Ended(End::Repeat));
+                }
+                self.flow.end_subprogram(target, number, &mut self.variables)?;
+            }
+            None => block.check_used()?,
+        }
+        if moves
+            && subprogram.is_none()
+            && let Some(call) = self.flow.modal.clone()
+        {
+            self.call_macro(&call)?;
         }
         match block.tenths_of(Group::Stop) {
             Some(20 | 300) => {
@@ -222,6 +258,333 @@ impl<'a> Program<'a> {
             None => {}
         }
         Ok(Progress::GoesOn)
+    }
+
+    /// Assigns a variable.
+    fn assign(
+        &mut self,
+        parameter: &Parameter,
+        value: Value,
+        line: usize,
+        control: &mut Control,
+    ) -> Result<(), GcodeFault> {
+        let language = language(control);
+        if let (Parameter::Numbered(number), Some(Language::Fanuc)) = (parameter, language) {
+            match number {
+                // An alarm stops the machine, and a message until the operator starts it again.
+                3000 => return Err(GcodeFault::Alarm { number: value.unwrap_or(0.0) }),
+                3006 => {
+                    control.pause_spindle();
+                    control.notes.add(line, NoteKind::Stop);
+                    return Ok(());
+                }
+                // Single block, and exact stop, which leave the path.
+                3003 | 3004 => {
+                    let word = format!("#{number}");
+                    control.notes.add(line, NoteKind::PassedOver { word });
+                    return Ok(());
+                }
+                _ => {}
+            }
+        }
+        Ok(self.variables.assign(parameter, value, language)?)
+    }
+
+    /// Obeys a statement of a macro of Fanuc.
+    fn decide(&mut self, statement: Statement, line: usize) -> Result<(), GcodeFault> {
+        let clause = || {
+            let clause = self.flow.structure.clause(line);
+            clause.ok_or(GcodeFault::OpenLoop)
+        };
+        match statement {
+            Statement::GoTo(number) => self.flow.go_to(number, line)?,
+            Statement::Do { holds } => {
+                let after = clause()?.after;
+                if !holds {
+                    self.flow.jump(after);
+                }
+            }
+            Statement::End => {
+                let head = clause()?.head;
+                self.flow.jump(head);
+            }
+            Statement::Nothing => {}
+        }
+        Ok(())
+    }
+
+    /// Calls a macro with its arguments.
+    fn call_macro(&mut self, call: &MacroCall) -> Result<(), GcodeFault> {
+        let locals =
+            Locals { numbered: call.arguments.clone(), is_macro: true, ..Locals::default() };
+        let callee = Callee {
+            label: Label::Number(call.program),
+            role: Role::Title,
+            times: call.repeats,
+            locals: Some(locals),
+        };
+        self.flow.call(callee, &mut self.variables)
+    }
+
+    /// Returns the subprogram of M98 or M97.
+    fn called(
+        &self,
+        block: &mut Block,
+        tenths: u32,
+        control: &Control,
+    ) -> Result<Called, GcodeFault> {
+        let is_linuxcnc = control.stated(Rule::Dialect) == Some(Choice::Rs274Ngc);
+        let expected = "the number of a program after P";
+        let (word, needed) = match tenths {
+            970 => ("M97", "P with a sequence number"),
+            _ => ("M98", "P with the number of a program"),
+        };
+        let Some(number) = block.take_whole('P', 0, 99_999_999, expected)? else {
+            return Err(missing(word, needed));
+        };
+        let least = u32::from(!is_linuxcnc);
+        let expected = "a number of repeats from 1 after L";
+        let times = block.take_whole('L', least, 99_999_999, expected)?;
+        let is_local = tenths == 970;
+        if is_local || number <= 9999 || is_linuxcnc {
+            return Ok(Called { number, times: times.unwrap_or(1), is_local });
+        }
+        // Older controls take the last four digits as the number, and those before as repeats.
+        let [whole, last] = [number, number % 10_000].map(|n| self.flow.has(&Label::Number(n)));
+        match (whole, last, times) {
+            (true, true, _) => {
+                let condition = "its last four digits are the number of a program, too";
+                let remedy = "give the program another number, and write repeats after L";
+                Err(combination(format!("M98 P{number}"), condition, remedy))
+            }
+            (false, true, None) => {
+                let times = number / 10_000;
+                Ok(Called { number: number % 10_000, times, is_local })
+            }
+            _ => Ok(Called { number, times: times.unwrap_or(1), is_local }),
+        }
+    }
+
+    /// Calls a subprogram by M98 or M97.
+    fn subprogram(
+        &mut self,
+        call: Called,
+        line: usize,
+        control: &Control,
+    ) -> Result<(), GcodeFault> {
+        let Called { number, times, is_local } = call;
+        // LinuxCNC passes over `M98 L0`.
+        if times == 0 {
+            return Ok(());
+        }
+        if is_local {
+            return self.flow.call_local(number, times, line, &mut self.variables);
+        }
+        let label = Label::Number(number);
+        self.check_order(&label, control)?;
+        let callee = Callee { label, role: Role::Title, times, locals: None };
+        self.flow.call(callee, &mut self.variables)
+    }
+
+    /// Refuses a call of a subprogram that LinuxCNC does not find: it seeks those that it does not know after the call only
+    /// (`control_back_to`).
+    fn check_order(&self, label: &Label, control: &Control) -> Result<(), GcodeFault> {
+        match control.stated(Rule::Dialect) == Some(Choice::Rs274Ngc) && self.flow.has_passed(label)
+        {
+            true => Err(combination(
+                format!("a call of {label}"),
+                "it stands before the call and was not called before",
+                "move it to the end of the file: LinuxCNC seeks it after the call only",
+            )),
+            false => Ok(()),
+        }
+    }
+
+    /// Executes a line with an O-word, which has no other word.
+    fn o_word(
+        &mut self,
+        cursor: &mut Cursor,
+        line: usize,
+        control: &mut Control,
+    ) -> Result<(), GcodeFault> {
+        let scope = Scope::new(&self.variables, control);
+        let OWord { label, role } = o_word(cursor, &scope)?;
+        if role.is_decision()
+            && !matches!(control.stated(Rule::Dialect), None | Some(Choice::Rs274Ngc))
+        {
+            let (meaning, remedy) = ("an O-word of LinuxCNC", "state another `dialect`");
+            return Err(not_read(role.word(), meaning, remedy));
+        }
+        match role {
+            Role::Title => {
+                check_end(cursor)?;
+                self.flow.title(&label)
+            }
+            Role::Sub => {
+                check_end(cursor)?;
+                self.flow.pass_sub(&label)
+            }
+            Role::Call => {
+                let mut locals = Locals { numbered: scope.inherited(), ..Locals::default() };
+                let mut number = 0;
+                while next(cursor)? == Some(b'[') {
+                    number += 1;
+                    if number > 30 {
+                        return Err(GcodeFault::TooManyArguments);
+                    }
+                    locals.numbered.insert(number, value(cursor, &scope)?);
+                }
+                check_end(cursor)?;
+                self.check_order(&label, control)?;
+                self.variables.set_returned(None);
+                let callee = Callee { label, role: Role::Sub, times: 1, locals: Some(locals) };
+                self.flow.call(callee, &mut self.variables)
+            }
+            Role::EndSub | Role::Return => {
+                let returned = match next(cursor)? {
+                    Some(b'[') => value(cursor, &scope)?,
+                    _ => None,
+                };
+                check_end(cursor)?;
+                self.variables.set_returned(returned);
+                self.flow.end_sub(&label, role.word(), &mut self.variables)
+            }
+            _ => self.o_decision(cursor, &label, role, line, control),
+        }
+    }
+
+    /// Executes an O-word of a decision or a loop.
+    fn o_decision(
+        &mut self,
+        cursor: &mut Cursor,
+        label: &Label,
+        role: Role,
+        line: usize,
+        control: &Control,
+    ) -> Result<(), GcodeFault> {
+        let scope = Scope::new(&self.variables, control);
+        let Some(clause) = self.flow.structure.clause(line) else {
+            let problem = match role {
+                Role::If | Role::Do | Role::While | Role::Repeat => "it has no end: add it",
+                _ => "it has no beginning: add it",
+            };
+            let (label, word) = (label.to_string(), role.word());
+            return Err(GcodeFault::Nesting { label, word, problem });
+        };
+        self.flow.start();
+        match role {
+            Role::If | Role::While if clause.role == role => {
+                let holds = condition(cursor, &scope)?;
+                check_end(cursor)?;
+                match (holds, role) {
+                    (true, _) => Ok(()),
+                    (false, Role::If) => self.next_branch(clause, control),
+                    (false, _) => {
+                        self.flow.jump(clause.after);
+                        Ok(())
+                    }
+                }
+            }
+            // The condition of a `do`.
+            Role::While => {
+                let holds = condition(cursor, &scope)?;
+                check_end(cursor)?;
+                if holds {
+                    self.flow.jump(clause.head);
+                }
+                Ok(())
+            }
+            Role::Repeat => {
+                let times = value(cursor, &scope)?.unwrap_or(0.0).round();
+                check_end(cursor)?;
+                if !(times <= MAX_REPEATED as f64) {
+                    return Err(GcodeFault::TooLong);
+                }
+                if !self.flow.repeat(line, times.max(0.0) as u32) {
+                    self.flow.jump(clause.after);
+                }
+                Ok(())
+            }
+            Role::EndRepeat => {
+                check_end(cursor)?;
+                if self.flow.end_repeat(clause.head.line) {
+                    self.flow.jump_after(clause.head);
+                }
+                Ok(())
+            }
+            Role::EndWhile => {
+                check_end(cursor)?;
+                self.flow.jump(clause.head);
+                Ok(())
+            }
+            // A branch that was executed ends here.
+            Role::ElseIf | Role::Else => {
+                self.flow.jump(clause.after);
+                Ok(())
+            }
+            Role::Break | Role::Continue => {
+                check_end(cursor)?;
+                if self.flow.structure.head_role(clause) == Some(Role::Repeat) {
+                    let (meaning, remedy) = ("no word of a `repeat`", "write a `while`");
+                    return Err(not_read(role.word(), meaning, remedy));
+                }
+                self.flow.jump(if role == Role::Break { clause.after } else { clause.last });
+                Ok(())
+            }
+            _ => check_end(cursor),
+        }
+    }
+
+    /// Goes on at the next branch of an `if` whose condition holds, or after its end.
+    fn next_branch(&mut self, mut clause: Clause, control: &Control) -> Result<(), GcodeFault> {
+        loop {
+            let place = clause.next;
+            let Some(next_clause) = self.flow.structure.clause(place.line) else {
+                return Err(GcodeFault::OpenLoop);
+            };
+            clause = next_clause;
+            match clause.role {
+                Role::ElseIf => {
+                    let scope = Scope::new(&self.variables, control);
+                    let mut cursor = begin(self.flow.text_at(place));
+                    next(&mut cursor)?;
+                    o_word(&mut cursor, &scope)?;
+                    let holds = condition(&mut cursor, &scope)?;
+                    check_end(&mut cursor)?;
+                    if holds {
+                        self.flow.jump_after(place);
+                        return Ok(());
+                    }
+                }
+                Role::Else => {
+                    self.flow.jump_after(place);
+                    return Ok(());
+                }
+                _ => {
+                    self.flow.jump(clause.after);
+                    return Ok(());
+                }
+            }
+        }
+    }
+}
+
+/// A call of a subprogram by M98 or M97.
+#[derive(Clone, Copy, Debug)]
+struct Called {
+    /// The number of the program, or the sequence number.
+    number: u32,
+    times: u32,
+    /// Set by M97.
+    is_local: bool,
+}
+
+/// Returns the language of macros of a control, if it is stated and has one.
+fn language(control: &Control) -> Option<Language> {
+    match control.stated(Rule::Dialect) {
+        Some(Choice::Iso) => Some(Language::Fanuc),
+        Some(Choice::Rs274Ngc) => Some(Language::LinuxCnc),
+        _ => None,
     }
 }
 

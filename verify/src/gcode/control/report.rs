@@ -1,0 +1,115 @@
+//! Reports of the control about its state, which macros read as variables.
+
+use super::{Control, FeedMode, Motion};
+use crate::gcode::Plane;
+use crate::gcode::state::WorkOffset;
+use touchoff::Unit;
+
+/// A quantity that a control reports. Lengths are in the unit of the program, angles in degrees, modes as the numbers of their G words.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::gcode) enum Report {
+    /// The programmed position along an axis, in program coordinates.
+    Position(usize),
+    /// The position along an axis in machine coordinates.
+    Machine(usize),
+    /// The origin of a work offset along an axis.
+    Origin(WorkOffset, usize),
+    /// The sum of G52 and G92 along an axis.
+    Shift(usize),
+    /// The reference position along an axis (G28).
+    Home(usize),
+    /// The second reference position along an axis (G30).
+    SecondHome(usize),
+    /// The number of the tool in the spindle.
+    Tool,
+    /// The number of the tool that the next M6 changes to.
+    StagedTool,
+    /// The stated length of the tool in the spindle.
+    ToolLength,
+    /// The length offset in force.
+    LengthOffset,
+    /// The last H.
+    Register,
+    /// F.
+    Feed,
+    /// The line of the block.
+    Line,
+    /// G0 to G3, a canned cycle, or G80.
+    Motion,
+    /// G17 to G19.
+    Plane,
+    /// G90 or G91.
+    Distance,
+    /// G93 to G95.
+    FeedMode,
+    /// G20 or G21.
+    Unit,
+    /// G98 or G99.
+    Retract,
+    /// G54 to G59.3, as a number with a decimal.
+    WorkOffset,
+}
+
+impl Control {
+    /// Returns a quantity, if it is known here.
+    pub(in crate::gcode) fn report(&self, report: Report) -> Option<f64> {
+        let modal = &self.modal;
+        // The unit of a program that has not stated it decides about lengths.
+        let length = |axis: usize, value: f64| match axis < 3 {
+            true => modal.unit_stated.then(|| value / modal.millimetres(1.0)),
+            false => Some(value),
+        };
+        let on = |axis: usize, value: Option<f64>| value.and_then(|value| length(axis, value));
+        match report {
+            Report::Position(axis) => on(axis, self.position[axis]),
+            Report::Machine(axis) => on(axis, self.state.to_machine(self.position)[axis]),
+            Report::Origin(offset, axis) => on(axis, self.origin_of(offset).0[axis]),
+            Report::Shift(axis) => on(axis, self.state.shift[axis]),
+            Report::Home(axis) => on(axis, self.home.map(|home| home[axis])),
+            Report::SecondHome(axis) => on(axis, self.second_home.map(|home| home[axis])),
+            Report::Tool => self.state.tool.map(f64::from),
+            Report::StagedTool => self.staged.map(f64::from),
+            Report::ToolLength => {
+                let length = self.state.tool.and_then(|tool| self.lengths.get(&tool));
+                on(2, length.copied())
+            }
+            Report::LengthOffset => on(2, self.state.length.length()),
+            Report::Register => self.last_register.map(f64::from),
+            Report::Feed => modal.feed,
+            Report::Line => Some(self.line as f64),
+            Report::Motion => Some(match modal.motion {
+                None => 80.0,
+                Some(Motion::Rapid) => 0.0,
+                Some(Motion::Feed) => 1.0,
+                Some(Motion::Arc { clockwise }) => {
+                    if clockwise {
+                        2.0
+                    } else {
+                        3.0
+                    }
+                }
+                Some(Motion::Cycle(number)) => f64::from(number),
+            }),
+            Report::Plane => Some(match modal.plane {
+                Plane::Xy => 17.0,
+                Plane::Zx => 18.0,
+                Plane::Yz => 19.0,
+            }),
+            Report::Distance => Some(if modal.incremental { 91.0 } else { 90.0 }),
+            Report::FeedMode => Some(match modal.feed_mode {
+                FeedMode::InverseTime => 93.0,
+                FeedMode::PerMinute => 94.0,
+                FeedMode::PerRevolution => 95.0,
+            }),
+            Report::Unit => {
+                modal.unit_stated.then_some(if modal.unit == Unit::Inch { 20.0 } else { 21.0 })
+            }
+            Report::Retract => modal.retract_to_r.map(|to_r| if to_r { 99.0 } else { 98.0 }),
+            Report::WorkOffset => match self.state.work_offset {
+                WorkOffset::Standard(number @ 1..=6) => Some(f64::from(53 + number)),
+                WorkOffset::Standard(number) => Some(59.0 + 0.1 * f64::from(number - 6)),
+                WorkOffset::Additional(_) => None,
+            },
+        }
+    }
+}

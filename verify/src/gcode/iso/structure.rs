@@ -1,0 +1,272 @@
+//! The structure of a text: its programs and subprograms, and the lines that belong to one decision or loop.
+
+use super::expression::Cursor;
+use super::flow::{Place, line};
+use super::line::{Label, OWord, Role, begin, loop_number, next, o_word, statement};
+use super::variables::Scope;
+use crate::gcode::{GcodeError, GcodeFault};
+use std::collections::HashMap;
+
+/// A subprogram.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Subprogram {
+    /// [`Role::Title`] or [`Role::Sub`].
+    pub(super) role: Role,
+    /// The line after the label.
+    pub(super) body: Place,
+    /// The line after `endsub`.
+    pub(super) after: Option<Place>,
+}
+
+/// One line of a decision or a loop, such as `if`, `elseif` and `endif`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Clause {
+    /// Its word. The `while` that ends a `do` is [`Role::EndWhile`].
+    pub(super) role: Role,
+    /// The first line.
+    pub(super) head: Place,
+    /// The next line of the group, which is the last one for itself.
+    pub(super) next: Place,
+    /// The last line.
+    pub(super) last: Place,
+    /// The line after the last one.
+    pub(super) after: Place,
+}
+
+/// The kind of a label: O-words and loops of Fanuc have their own numbers.
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum Key {
+    OWord(Label),
+    Loop(u32),
+}
+
+/// A decision or a loop whose end was not found yet.
+#[derive(Debug)]
+struct Group {
+    key: Key,
+    lines: Vec<(Role, Place)>,
+    /// `break` and `continue`, which are no ends of a part.
+    jumps: Vec<(Role, Place)>,
+}
+
+/// The structure of a text.
+#[derive(Debug, Default)]
+pub(super) struct Structure {
+    subprograms: HashMap<Label, Subprogram>,
+    /// By line.
+    clauses: HashMap<usize, Clause>,
+    /// The lines of titles of programs, in order.
+    titles: Vec<Place>,
+    /// The first and the last line of each loop of Fanuc.
+    loops: Vec<[usize; 2]>,
+    pub(super) lines: usize,
+    /// The first line with a statement that only macros of Fanuc and Haas have.
+    pub(super) fanuc: Option<usize>,
+    /// The first line with an O-word that only LinuxCNC has, `sub`, `endsub` and `call` excepted.
+    pub(super) linuxcnc: Option<usize>,
+}
+
+impl Structure {
+    /// Reads the labels of a text. Lines that are not understood are left to the interpreter.
+    ///
+    /// # Errors
+    /// A label that stands twice, a `sub` in another, a `sub` without `endsub`; each with its line.
+    pub(super) fn find(text: &str, scope: &Scope) -> Result<Structure, GcodeError> {
+        let mut found = Structure::default();
+        let mut labels: HashMap<Label, usize> = HashMap::new();
+        let mut open: Option<(Label, usize)> = None;
+        let mut groups: Vec<Group> = Vec::new();
+        let mut place = Place { offset: 0, line: 1 };
+        while let Some((line, after)) = line(text, place) {
+            let here = place;
+            place = after;
+            found.lines = here.line;
+            let mut cursor = begin(line);
+            let word = match next(&mut cursor) {
+                Ok(Some(b'O' | b'o' | b':')) => o_word(&mut cursor, scope),
+                Ok(Some(byte)) if b"GgIiWwDdEe".contains(&byte) => {
+                    found.statement(&mut groups, cursor, here, after);
+                    continue;
+                }
+                _ => continue,
+            };
+            // A label that is an expression can only be called.
+            let Ok(OWord { label, role }) = word else { continue };
+            if role.is_decision() {
+                found.linuxcnc.get_or_insert(here.line);
+                found.add(&mut groups, Key::OWord(label), role, here, after);
+                continue;
+            }
+            match (role, &open) {
+                (Role::Sub, Some(_)) => {
+                    let problem = "it stands in another subprogram: end that with endsub before";
+                    return Err(nesting(here.line, &label, "sub", problem));
+                }
+                (Role::Sub | Role::Title, _) => {
+                    if let Some(first) = labels.insert(label.clone(), here.line) {
+                        let fault = GcodeFault::SecondLabel { label: label.to_string(), first };
+                        return Err(GcodeError { line: here.line, fault });
+                    }
+                    if role == Role::Sub {
+                        open = Some((label.clone(), here.line));
+                    } else {
+                        found.titles.push(here);
+                    }
+                    groups.clear();
+                    found.subprograms.insert(label, Subprogram { role, body: after, after: None });
+                }
+                (Role::EndSub, Some((opened, _))) if *opened == label => {
+                    if let Some(known) = found.subprograms.get_mut(&label) {
+                        known.after = Some(after);
+                    }
+                    open = None;
+                    groups.clear();
+                }
+                (Role::EndSub, Some(_)) => {
+                    let problem = "another subprogram is open: end that before";
+                    return Err(nesting(here.line, &label, "endsub", problem));
+                }
+                // The end of a subprogram that has a title is refused where it is executed.
+                _ => {}
+            }
+        }
+        match open {
+            Some((label, line)) => Err(nesting(line, &label, "sub", "it has no endsub: add it")),
+            None => Ok(found),
+        }
+    }
+
+    /// Adds a line that begins with a statement of a macro of Fanuc.
+    fn statement(
+        &mut self,
+        groups: &mut Vec<Group>,
+        mut cursor: Cursor,
+        here: Place,
+        after: Place,
+    ) {
+        if cursor.take_word("G65") || cursor.take_word("G66") {
+            self.fanuc.get_or_insert(here.line);
+            return;
+        }
+        let Some(word) = statement(&mut cursor) else { return };
+        self.fanuc.get_or_insert(here.line);
+        if word == "WHILE" {
+            pass_bracket(&mut cursor);
+            if !cursor.take_word("DO") {
+                return;
+            }
+        }
+        let role = match word {
+            "WHILE" | "DO" => Role::Do,
+            "END" => Role::EndWhile,
+            _ => return,
+        };
+        if let Ok(number) = loop_number(&mut cursor) {
+            self.add(groups, Key::Loop(number), role, here, after);
+        }
+    }
+
+    /// Adds a line of a decision or a loop. A group that is not complete has no clauses, and is refused where it is executed.
+    fn add(&mut self, groups: &mut Vec<Group>, key: Key, role: Role, here: Place, after: Place) {
+        let position = groups.iter().rposition(|group| group.key == key);
+        let head = position.map(|position| groups[position].lines[0].0);
+        match (role, head) {
+            (Role::Break | Role::Continue, Some(_)) => {
+                groups[position.expect("a group with a head")].jumps.push((role, here));
+            }
+            // The condition after a `do`.
+            (Role::While, Some(Role::Do))
+            | (Role::EndWhile, Some(Role::Do | Role::While))
+            | (Role::EndRepeat, Some(Role::Repeat))
+            | (Role::EndIf, Some(Role::If)) => {
+                let position = position.expect("a group with a head");
+                let role = if role == Role::While { Role::EndWhile } else { role };
+                groups[position].lines.push((role, here));
+                // Groups inside that have no end of their own are dropped.
+                let group = groups.drain(position..).next().expect("the group");
+                self.close(group, after);
+            }
+            (Role::ElseIf | Role::Else, Some(Role::If)) => {
+                let position = position.expect("a group with a head");
+                groups[position].lines.push((role, here));
+                groups.truncate(position + 1);
+            }
+            (Role::If | Role::Do | Role::While | Role::Repeat, _) => {
+                groups.push(Group { key, lines: vec![(role, here)], jumps: Vec::new() });
+            }
+            _ => {}
+        }
+    }
+
+    fn close(&mut self, group: Group, after: Place) {
+        let (head, last) = (group.lines[0].1, group.lines[group.lines.len() - 1].1);
+        if matches!(group.key, Key::Loop(_)) {
+            self.loops.push([head.line, last.line]);
+        }
+        let nexts = group.lines.iter().skip(1).map(|(_, place)| *place).chain([last]);
+        for ((role, here), next) in group.lines.iter().zip(nexts) {
+            self.clauses.insert(here.line, Clause { role: *role, head, next, last, after });
+        }
+        for (role, here) in group.jumps {
+            self.clauses.insert(here.line, Clause { role, head, next: last, last, after });
+        }
+    }
+
+    /// Returns the clause of a line.
+    pub(super) fn clause(&self, line: usize) -> Option<Clause> {
+        self.clauses.get(&line).copied()
+    }
+
+    /// Returns the role of the head of a clause's group.
+    pub(super) fn head_role(&self, clause: Clause) -> Option<Role> {
+        self.clause(clause.head.line).map(|head| head.role)
+    }
+
+    /// Returns whether a text has subprograms.
+    pub(super) fn has_subprograms(&self) -> bool {
+        !self.subprograms.is_empty()
+    }
+
+    /// Returns a subprogram.
+    pub(super) fn get(&self, label: &Label) -> Option<&Subprogram> {
+        self.subprograms.get(label)
+    }
+
+    /// Returns whether a line is in each loop of Fanuc in which another line is.
+    pub(super) fn can_jump(&self, from: usize, to: usize) -> bool {
+        let contains = |[first, last]: &[usize; 2], line| (*first..=*last).contains(&line);
+        self.loops.iter().filter(|range| contains(range, to)).all(|range| contains(range, from))
+    }
+
+    /// Returns the lines of the program that has a line: from its title, or from the first line, to the next title.
+    pub(super) fn program(&self, line: usize) -> [usize; 2] {
+        let first = self.titles.iter().rev().find(|title| title.line <= line);
+        let next = self.titles.iter().find(|title| title.line > line);
+        [first.map_or(1, |title| title.line), next.map_or(usize::MAX, |title| title.line - 1)]
+    }
+}
+
+/// Passes over an expression in brackets.
+fn pass_bracket(cursor: &mut Cursor) {
+    let mut depth = 0;
+    while let Some(byte) = cursor.peek() {
+        if !byte.is_ascii() {
+            return;
+        }
+        cursor.advance();
+        depth += i32::from(byte == b'[') - i32::from(byte == b']');
+        if depth == 0 {
+            return;
+        }
+    }
+}
+
+/// Returns the error of an O-word at a wrong place.
+pub(super) fn nesting(
+    line: usize,
+    label: &Label,
+    word: &'static str,
+    problem: &'static str,
+) -> GcodeError {
+    GcodeError { line, fault: GcodeFault::Nesting { label: label.to_string(), word, problem } }
+}

@@ -1,0 +1,268 @@
+//! Macros of Fanuc and of LinuxCNC, against programs whose motions are computed here.
+
+use touchoff_verify::gcode::{Choice, ControlRules, ControlSetup, NoteKind, Rule, Step, read};
+
+/// A control at the origin that executes the macros of one dialect.
+fn setup(dialect: Choice) -> ControlSetup {
+    let rules = ControlRules::default()
+        .with(Rule::Dialect, dialect)
+        .with(Rule::WholeNumbers, Choice::Units);
+    ControlSetup {
+        start: [Some(0.0); 6],
+        work_offsets: [Some([0.0; 6]); 9],
+        rules,
+        ..ControlSetup::default()
+    }
+}
+
+fn steps(program: &str, dialect: Choice) -> Vec<Step> {
+    read(program, &setup(dialect)).unwrap_or_else(|error| panic!("{program}\n{error}")).0
+}
+
+/// Returns X and Y of the ends.
+fn ends(program: &str, dialect: Choice) -> Vec<[f64; 2]> {
+    let ends = steps(program, dialect).into_iter().map(|step| [step.end[0], step.end[1]]);
+    ends.map(|end| end.map(|value| value.expect("a coordinate"))).collect()
+}
+
+#[track_caller]
+fn assert_ends(program: &str, dialect: Choice, expected: &[[f64; 2]]) {
+    let found = ends(program, dialect);
+    assert_eq!(found.len(), expected.len(), "{program}\n{found:?}");
+    for (found, expected) in found.iter().zip(expected) {
+        assert!((0..2).all(|k| (found[k] - expected[k]).abs() < 1e-12), "{found:?} {expected:?}");
+    }
+}
+
+/// The holes of a bolt circle, one by one.
+fn circle(count: u32, radius: f64, [x, y]: [f64; 2], start: f64) -> Vec<[f64; 2]> {
+    (0..count)
+        .map(|k| {
+            let angle = (start + 360.0 * f64::from(k) / f64::from(count)).to_radians();
+            [x + radius * angle.cos(), y + radius * angle.sin()]
+        })
+        .collect()
+}
+
+#[test]
+fn a_bolt_circle_is_the_same_in_every_form() {
+    let expected = circle(7, 40.0, [10.0, -5.0], 15.0);
+    let fanuc = "G21 G90 G0\nG65 P9100 X10. Y-5. R40. A15. K7.\nM30\n\
+        O9100 (X #24, Y #25, R #18, A #1, K #6)\n#30=0\nWHILE [#30 LT #6] DO1\n\
+        #31=#1+#30*360.0*[1/#6]\nX[#24+#18*COS[#31]] Y[#25+#18*SIN[#31]]\n#30=#30+1\nEND1\nM99\n";
+    assert_ends(fanuc, Choice::Iso, &expected);
+    let with_goto = "G21 G90 G0\n#100=0\nN10 IF [#100 GE 7] GOTO 20\n#101=[15+#100*360/7]\n\
+        X[10.+40.*COS[#101]] Y[-5.+40.*SIN[#101]]\n#100=#100+1\nGOTO 10\nN20 M30\n";
+    assert_ends(with_goto, Choice::Iso, &expected);
+    let linuxcnc = "g21 g90 g0\no<circle> sub\n#<k>=0\no1 while [#<k> lt #5]\n\
+        #<a>=[#4 + #<k> * 360 / #5]\nx[#1+#3*cos[#<a>]] y[#2+#3*sin[#<a>]]\n#<k>=[#<k>+1]\no1 endwhile\n\
+        o<circle> endsub\no<circle> call [10] [-5] [40] [15] [7]\nm30\n";
+    assert_ends(linuxcnc, Choice::Rs274Ngc, &expected);
+    let repeat = "g21 g90 g0\n#1=15\no1 repeat [7]\nx[10+40*cos[#1]] y[-5+40*sin[#1]]\n#1=[#1+360/7]\n\
+        o1 endrepeat\nm30\n";
+    let found = ends(repeat, Choice::Rs274Ngc);
+    assert!(
+        found
+            .iter()
+            .zip(&expected)
+            .all(|(found, expected)| { (0..2).all(|k| (found[k] - expected[k]).abs() < 1e-9) })
+    );
+    // A program with statements of one control is that control's, also if none is stated.
+    let setup = ControlSetup { start: [Some(0.0); 6], ..ControlSetup::default() };
+    assert_eq!(read(with_goto, &setup).expect("a macro").0.len(), 7);
+}
+
+#[test]
+fn modal_macros_are_called_after_each_motion() {
+    let program = "G21 G90 G0\nX1.\nG66 P9200 A0.5\nX2.\nS100\nX3. Y1.\nG67\nX4.\nM30\n\
+        O9200\nG91 Y#1\nG90\nM99\n";
+    let expected = [[1.0, 0.0], [2.0, 0.0], [2.0, 0.5], [3.0, 1.0], [3.0, 1.5], [4.0, 1.5]];
+    assert_ends(program, Choice::Iso, &expected);
+}
+
+#[test]
+fn subprograms_are_called_in_every_form() {
+    let sub = "O2001\nG91 X1.\nG90\nM99\n";
+    for call in ["M98 P2001 L3", "M98 P32001", "M98 P0032001", "M98 P2001\nM98 P2001 L2"] {
+        let program = format!("G21 G90 G0 X0\n{call}\nM30\n{sub}");
+        let expected = [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [3.0, 0.0]];
+        assert_ends(&program, Choice::Iso, &expected);
+    }
+    // Blocks of the program itself, and a return to a block of the caller.
+    let local = "G21 G90 G0\nM97 P100 L2\nY5.\nM30\nN100 G91 X1.\nG90\nM99\n";
+    assert_ends(local, Choice::Iso, &[[1.0, 0.0], [2.0, 0.0], [2.0, 5.0]]);
+    let target = "G21 G90 G0\nM98 P7\nX9.\nN50 X1.\nM30\nO7\nY2.\nM99 P50\n";
+    assert_ends(target, Choice::Iso, &[[0.0, 2.0], [1.0, 2.0]]);
+    let colon = "%\n:100\nG21 G90 G0 X1.\nM98 P7\nM30\n:7\nY2.\nM99\n%\n";
+    assert_ends(colon, Choice::Iso, &[[1.0, 0.0], [1.0, 2.0]]);
+    let endless = read("G21 G90 G0 X1.\nM99\n", &setup(Choice::Iso)).expect("a program");
+    assert!(endless.1.iter().any(|note| note.kind == NoteKind::Endless));
+}
+
+/// Arguments of both types, by the table of the manual.
+#[test]
+fn arguments_are_those_of_the_manual() {
+    let value = |arguments: &str, number: u32| {
+        let program = format!("G21 G90 G0\nG65 P1 {arguments}\nM30\nO1\nX#{number} Y0\nM99\n");
+        ends(&program, Choice::Iso)[0][0]
+    };
+    for (index, letter) in "ABCDEF".chars().enumerate() {
+        let number = [1, 2, 3, 7, 8, 9][index];
+        assert_eq!(value(&format!("{letter}5."), number), 5.0, "{letter}");
+    }
+    for (letter, number) in [('H', 11), ('M', 13), ('Q', 17), ('R', 18), ('S', 19), ('T', 20)] {
+        assert_eq!(value(&format!("{letter}5."), number), 5.0, "{letter}");
+    }
+    for (letter, number) in [('U', 21), ('V', 22), ('W', 23), ('X', 24), ('Y', 25), ('Z', 26)] {
+        assert_eq!(value(&format!("{letter}5."), number), 5.0, "{letter}");
+    }
+    for k in 1..=10 {
+        let all: String = (1..=10).map(|k| format!("I{k}.1J{k}.2K{k}.3 ")).collect();
+        for (offset, tenth) in [(0, 0.1), (1, 0.2), (2, 0.3)] {
+            let found = value(&all, 4 + 3 * (k - 1) + offset);
+            assert!((found - (f64::from(k) + tenth)).abs() < 1e-12);
+        }
+    }
+    // K before I is K1 and I2; of D and I2, both #7, the later counts.
+    assert_eq!(value("K3. I5.", 6), 3.0);
+    assert_eq!(value("K3. I5.", 7), 5.0);
+    assert_eq!(value("I1. I2. D9.", 7), 9.0);
+    // An argument that is not given is vacant: its word is as if it were not written, and it is not equal to 0.
+    let vacant = "G21 G90 G0 X3.\nG65 P1 A1.\nM30\nO1\nX#2 Y#1\nIF [#2 EQ #0] GOTO 5\nX9.\n\
+        N5 IF [#2 EQ 0] GOTO 6\nX[#2+4.]\nN6 M99\n";
+    assert_ends(vacant, Choice::Iso, &[[3.0, 0.0], [3.0, 1.0], [4.0, 1.0]]);
+    // The caller's variables are its own.
+    let own = "G21 G90 G0\n#1=2.\nG65 P1 A5.\nX#1\nM30\nO1\n#1=7.\nY#1\nM99\n";
+    assert_ends(own, Choice::Iso, &[[0.0, 7.0], [2.0, 7.0]]);
+}
+
+#[test]
+fn expressions_have_the_value_of_their_control() {
+    let value = |expression: &str, dialect| {
+        ends(&format!("G21 G90 G0 X[{expression}]\nM30"), dialect)[0][0]
+    };
+    for (expression, fanuc, linuxcnc) in [
+        ("FIX[-2.5]", Some(-2.0), Some(-3.0)),
+        ("FUP[-2.5]", Some(-3.0), Some(-2.0)),
+        ("FUP[2.1]", Some(3.0), Some(3.0)),
+        ("ROUND[2.5]", Some(3.0), Some(3.0)),
+        ("ROUND[-2.5]", Some(-3.0), Some(-3.0)),
+        ("[0-7] MOD 3", Some(-1.0), Some(2.0)),
+        ("7 MOD 3", Some(1.0), Some(1.0)),
+        ("6 AND 3", Some(2.0), Some(1.0)),
+        ("6 OR 3", Some(7.0), Some(1.0)),
+        ("6 XOR 3", Some(5.0), Some(0.0)),
+        ("2 ** 3", None, Some(8.0)),
+        ("POW[2,3]", Some(8.0), None),
+        ("ATAN[1]/[1]", Some(45.0), Some(45.0)),
+        ("ATAN[0-1]/[1]", None, Some(-45.0)),
+        ("ATAN[1]", Some(45.0), None),
+        ("ACOS[0.5]", Some(60.0), Some(60.0)),
+        ("ASIN[0.5]", None, Some(30.0)),
+        ("LN[EXP[2]]", Some(2.0), Some(2.0)),
+        ("TAN[45]", Some(1.0), Some(1.0)),
+        ("COS[90]", Some(0.0), Some(0.0)),
+        ("1 + 2 * 3 EQ 7", Some(1.0), Some(1.0)),
+        // Precedence: AND is a product on Fanuc, and the last on LinuxCNC.
+        ("4 + 2 AND 2", Some(6.0), Some(1.0)),
+        ("5 - 3 - 1", Some(1.0), Some(1.0)),
+        ("SQRT[16] / 2", Some(2.0), Some(2.0)),
+    ] {
+        for (dialect, expected) in [(Choice::Iso, fanuc), (Choice::Rs274Ngc, linuxcnc)] {
+            match expected {
+                Some(expected) => {
+                    let found = value(expression, dialect);
+                    assert!((found - expected).abs() < 1e-12, "{expression} is {found}");
+                }
+                None => {
+                    let program = format!("G21 G90 G0 X[{expression}]\nM30");
+                    read(&program, &setup(dialect)).expect_err(expression);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn decisions_of_linuxcnc_take_one_branch() {
+    for (value, expected) in [(6, 1.0), (1, 2.0), (3, 3.0)] {
+        let program = format!(
+            "g21 g90 g0\n#31={value}\no102 if [#31 gt 5]\nx1\no102 elseif [#31 lt 2]\nx2\no102 else\nx3\no102 endif\n\
+             y1\nm30\n"
+        );
+        assert_ends(&program, Choice::Rs274Ngc, &[[expected, 0.0], [expected, 1.0]]);
+    }
+    // break, continue, do, and nesting: the sum of the odd numbers below 8.
+    let program = "g21 g90 g0\n#31=0\n#32=0\no1 while [1]\n#31=[#31+1]\no2 if [#31 ge 8]\no1 break\no2 endif\n\
+        o3 if [#31 mod 2 eq 0]\no1 continue\no3 endif\n#32=[#32+#31]\nx#31 y#32\no1 endwhile\no4 do\n#31=[#31-3]\nx#31\n\
+        o4 while [#31 gt 0]\nm30\n";
+    let mut expected = vec![];
+    let mut sum = 0.0;
+    for odd in [1.0, 3.0, 5.0, 7.0] {
+        sum += odd;
+        expected.push([odd, sum]);
+    }
+    expected.extend([[5.0, sum], [2.0, sum], [-1.0, sum]]);
+    assert_ends(program, Choice::Rs274Ngc, &expected);
+    // Recursion, and a value that is returned.
+    let factorial = "g21 g90 g0\no<f> sub\no1 if [#1 le 1]\no<f> return [1]\no1 endif\no<f> call [#1-1]\n\
+        o<f> endsub [#1*#<_value>]\no<f> call [5]\nx#<_value>\nm30\n";
+    assert_ends(factorial, Choice::Rs274Ngc, &[[120.0, 0.0]]);
+}
+
+#[test]
+fn variables_of_the_control_are_those_of_its_state() {
+    let fanuc = "G21 G90 G55 G0 X3. Y4.\n#1=#5001+#4003\nX#1\nG91 X#4006\nM30";
+    assert_ends(fanuc, Choice::Iso, &[[3.0, 4.0], [93.0, 4.0], [114.0, 4.0]]);
+    let linuxcnc = "g21 g90 g55 g0 x3 y4\n#1=[#5420+#5220+#<_y>+#<_metric>]\nx#1\nm30";
+    assert_ends(linuxcnc, Choice::Rs274Ngc, &[[3.0, 4.0], [10.0, 4.0]]);
+    for (program, dialect, name) in [
+        ("G21 G0 X#5061", Choice::Iso, "#5061"),
+        ("G21 G0 X#3001", Choice::Iso, "#3001"),
+        ("g21 g0 x#5070", Choice::Rs274Ngc, "#5070"),
+        ("g21 g0 x#<_task>", Choice::Rs274Ngc, "#<_task>"),
+        ("G21 G0 X#500", Choice::Iso, "#500 has no value"),
+        ("g21 g0 x#<_depth>", Choice::Rs274Ngc, "#<_depth> has no value"),
+    ] {
+        let error = read(program, &setup(dialect)).expect_err(name);
+        assert!(error.to_string().contains(name), "{error}");
+        // A job can declare it.
+        let name = name.split(' ').next().expect("a name");
+        let mut declared = setup(dialect);
+        declared.variables.insert(name.to_owned(), 7.0);
+        let (steps, _) = read(&format!("{program}\nM30"), &declared).expect(name);
+        assert_eq!(steps[0].end[0], Some(7.0));
+    }
+}
+
+/// A loop of 10^6 blocks.
+#[test]
+fn long_loops_are_executed_to_their_end() {
+    let program =
+        "G21 G90 G0\n#1=0\nWHILE [#1 LT 200000] DO1\n#1=#1+1\nG1 X#1 F100.\nY[#1*2]\nEND1\nM30\n";
+    let found = steps(program, Choice::Iso);
+    assert_eq!(found.len(), 400_000);
+    assert_eq!(found.last().map(|step| step.end[1]), Some(Some(400_000.0)));
+}
+
+#[test]
+fn ignored_words_are_noted_with_their_reason() {
+    let mut setup = setup(Choice::Iso);
+    for word in ["G999", "M777", "DIST"] {
+        setup.ignore.insert(word.to_owned(), "it opens the door".to_owned());
+    }
+    let program = "G21 G90 G0 X1.\nG999 P3 E0.01\nM777\nDIST(1,2)\nX2. M777\nM30";
+    let (steps, notes) = read(program, &setup).expect("a program");
+    assert_eq!(steps.len(), 2);
+    let ignored: Vec<(usize, usize)> = notes
+        .iter()
+        .filter(|note| note.to_string().contains("it opens the door"))
+        .map(|note| (note.line, note.count))
+        .collect();
+    assert_eq!(ignored, [(2, 1), (3, 2), (4, 1)], "{notes:?}");
+    let error = read("G21 G0\nG999 X1.\nM30", &setup).expect_err("axis words");
+    assert!(
+        error.to_string().contains("line 2: axis words while its block has an ignored word"),
+        "{error}"
+    );
+}
