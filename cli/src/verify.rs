@@ -19,7 +19,7 @@ use touchoff_verify::job::{
     StockShape,
 };
 use touchoff_verify::machine::Machine;
-use touchoff_verify::{Job, JobFile, JobReport, Program, ToolSelection, Verdict};
+use touchoff_verify::{GapWeight, Job, JobFile, JobReport, Program, ToolSelection, Verdict};
 
 /// The exit status if there is no verdict, even with findings; the same as for wrong options.
 pub(crate) const NOT_CHECKED: u8 = 2;
@@ -208,7 +208,11 @@ pub(crate) fn print(inputs: &Inputs, report: &JobReport<'_>) -> Result<(), Failu
         }
     }
     // Gaps that are open and not accepted are among the refusals.
-    for gap in report.gaps.iter().filter(|gap| !gap.is_open || inputs.file.anyway) {
+    for gap in report.gaps.iter().filter(|gap| match gap.weight {
+        GapWeight::Stops => false,
+        GapWeight::Open => inputs.file.anyway,
+        GapWeight::Said => true,
+    }) {
         message!("not checked: {gap}");
     }
     for summary in report.summaries() {

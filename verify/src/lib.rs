@@ -29,9 +29,10 @@ pub mod program;
 pub mod stock;
 
 pub use check::{
-    Approach, Finding, FindingGroup, FindingKind, Gap, JointPath, MAX_READINGS, MachineProgram,
-    MachineProgramError, MachineSummary, Move, MovePath, RapidBox, StepFault, Tilt, ToolSelection,
-    ToolUse, UnknownCause, UnknownMotions, Verifier, VerifyError, VerifyReport,
+    Approach, Finding, FindingGroup, FindingKind, Gap, GapWeight, JointPath, MAX_READINGS,
+    MachineProgram, MachineProgramError, MachineSummary, Move, MovePath, ProgramStop, RapidBox,
+    StepFault, Tilt, ToolSelection, ToolUse, UnknownCause, UnknownMotions, Verifier, VerifyError,
+    VerifyReport,
 };
 pub use job::{Job, JobError, JobFile, JobReport, JobTool, Program, Verdict};
 pub use program::{ClData, CutterLocation, ProgramError};

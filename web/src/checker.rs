@@ -285,7 +285,7 @@ impl CheckResult {
                 }
             }
         }
-        let open = report.gaps.iter().filter(|gap| gap.is_open);
+        let open = report.gaps.iter().filter(|gap| gap.is_open());
         let first = &report.pairs[0].report;
         CheckResult {
             motions: first.motions,

@@ -67,7 +67,7 @@ pub(crate) fn facts(program: &Program) -> ProgramFacts {
             readings[0].assumed()
         ));
     }
-    let (open, said): (Vec<_>, Vec<_>) = program.gaps().into_iter().partition(|gap| gap.is_open);
+    let (open, said): (Vec<_>, Vec<_>) = program.gaps().into_iter().partition(|gap| gap.is_open());
     notes.extend(said.iter().map(ToString::to_string));
     let tools = program.tools().into_iter().filter(|tool| tool.motions > 0);
     ProgramFacts {

@@ -249,6 +249,7 @@ impl Post {
                 self.machine.clone(),
                 self.control.clone(),
             )?;
+            program.check_complete()?;
             if let Some((line, violation)) = program.summary().limits.first() {
                 return Err(PostError::AxisLimit {
                     machine: self.machine.name().to_owned(),

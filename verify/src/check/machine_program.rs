@@ -24,7 +24,9 @@ mod resolve;
 mod summary;
 
 pub use fault::{MachineProgramError, StepFault};
-pub use summary::{Gap, MachineSummary, ToolUse, UnknownCause, UnknownMotions};
+pub use summary::{
+    Gap, GapWeight, MachineSummary, ProgramStop, ToolUse, UnknownCause, UnknownMotions,
+};
 
 /// Largest number of readings of a program.
 pub const MAX_READINGS: usize = 8;
@@ -74,8 +76,10 @@ impl MachineProgram {
     /// Of a rule that is not stated, M6 moves the axes where only the machine knows, axes in rapid traverse move at any
     /// rates, and the first choice is made otherwise. [`MachineProgram::readings`] makes the others too.
     ///
+    /// A line that stops the interpreter ends the program: [`MachineProgram::check_complete`].
+    ///
     /// # Errors
-    /// If a line stops the interpreter, or if a motion is not possible on the machine.
+    /// If the labels of the program do not fit, or if a motion is not possible on the machine.
     pub fn new(
         name: &str,
         text: String,
@@ -205,6 +209,17 @@ impl MachineProgram {
         self.setup.work_offsets[0]
     }
 
+    /// Checks that the program is read to its end.
+    ///
+    /// # Errors
+    /// If a line stops the interpreter.
+    pub fn check_complete(&self) -> Result<(), MachineProgramError> {
+        match &self.summary.stop {
+            Some(stop) => Err(self.error(stop.error.clone())),
+            None => Ok(()),
+        }
+    }
+
     /// Returns the summary of the program on its machine.
     pub fn summary(&self) -> &MachineSummary {
         &self.summary
@@ -284,7 +299,7 @@ impl MachineProgram {
             Interpreter::new(&self.text, &self.setup).map_err(|error| self.error(error))?;
         let resolver =
             Resolver::new(&self.machine, &self.setup, self.off_is_tip, self.unnamed_tool);
-        Ok(Execution { program: self, interpreter, resolver })
+        Ok(Execution { program: self, interpreter, resolver, stop: None })
     }
 
     /// Runs the program once. `is_placed` is set if the origin of the part is known.
@@ -359,6 +374,11 @@ impl MachineProgram {
                 is_last_singular = pass.is_some();
             }
         }
+        if let Some(error) = execution.stop.take() {
+            let mut obstacles = execution.interpreter.obstacles();
+            obstacles.retain(|other| other.fault != error.fault);
+            summary.stop = Some(ProgramStop { error, obstacles });
+        }
         summary.notes = execution.interpreter.notes();
         summary.open_rules.clone_from(execution.interpreter.asked());
         summary.open_rules.extend(execution.resolver.asked);
@@ -376,6 +396,8 @@ struct Execution<'a> {
     program: &'a MachineProgram,
     interpreter: Interpreter<'a>,
     resolver: Resolver<'a>,
+    /// The line that has stopped the interpreter, after which there are no more steps.
+    stop: Option<GcodeError>,
 }
 
 impl Iterator for Execution<'_> {
@@ -383,15 +405,18 @@ impl Iterator for Execution<'_> {
 
     fn next(&mut self) -> Option<Self::Item> {
         let program = self.program;
-        let step = self.interpreter.next()?.map_err(|error| program.error(error));
-        Some(step.and_then(|step| {
-            let (file, line) = (&program.file, step.line);
-            let resolved = self
-                .resolver
-                .resolve(&step)
-                .map_err(|fault| MachineProgramError::Step { file: file.clone(), line, fault })?;
-            Ok((step, resolved))
-        }))
+        let step = match self.interpreter.next()? {
+            Ok(step) => step,
+            Err(error) => {
+                self.stop = Some(error);
+                return None;
+            }
+        };
+        let (file, line) = (&program.file, step.line);
+        let resolved = self.resolver.resolve(&step);
+        let resolved =
+            resolved.map_err(|fault| MachineProgramError::Step { file: file.clone(), line, fault });
+        Some(resolved.map(|resolved| (step, resolved)))
     }
 }
 

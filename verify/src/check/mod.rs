@@ -32,8 +32,8 @@ mod remedy;
 pub use approach::Approach;
 pub use finding::{Finding, FindingGroup, FindingKind, VerifyError, VerifyReport};
 pub use machine_program::{
-    Gap, MAX_READINGS, MachineProgram, MachineProgramError, MachineSummary, StepFault,
-    ToolSelection, ToolUse, UnknownCause, UnknownMotions,
+    Gap, GapWeight, MAX_READINGS, MachineProgram, MachineProgramError, MachineSummary, ProgramStop,
+    StepFault, ToolSelection, ToolUse, UnknownCause, UnknownMotions,
 };
 pub use moves::{JointPath, Move, MovePath, RapidBox};
 pub use remedy::Tilt;

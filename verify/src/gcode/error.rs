@@ -1,6 +1,7 @@
 //! Errors of the interpreter.
 
 use super::iso::ExpressionFault;
+use std::fmt;
 
 /// A line that stops the interpreter.
 #[derive(Clone, PartialEq, thiserror::Error)]
@@ -13,6 +14,27 @@ pub struct GcodeError {
 }
 
 touchoff::debug_as_sentence!(GcodeError);
+
+/// A word that stands in the way of reading a program, whatever comes before it.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Obstacle {
+    /// The first line that has it, 1-based.
+    pub line: usize,
+    /// The number of lines that have it.
+    pub count: usize,
+    /// The fault.
+    pub fault: GcodeFault,
+}
+
+/// The sentence, with its line and the number of lines.
+impl fmt::Display for Obstacle {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Obstacle { line, count, fault } = self;
+        write!(f, "line {line}: {fault}")?;
+        if *count > 1 { write!(f, " ({count} times)") } else { Ok(()) }
+    }
+}
 
 /// A fault in a line of a G-code program.
 #[derive(Clone, PartialEq, thiserror::Error)]
@@ -297,6 +319,25 @@ pub enum GcodeFault {
 }
 
 touchoff::debug_as_sentence!(GcodeFault);
+
+impl GcodeFault {
+    /// Returns whether a word is not read, whatever the state of the control.
+    pub(super) fn is_obstacle(&self) -> bool {
+        matches!(
+            self,
+            GcodeFault::UnknownWord { .. }
+                | GcodeFault::UnknownCode { .. }
+                | GcodeFault::NotRead { .. }
+                | GcodeFault::Klartext { .. }
+                | GcodeFault::ControlFlow { .. }
+                | GcodeFault::Axis { .. }
+                | GcodeFault::NoSubprogram { .. }
+                | GcodeFault::Character { .. }
+                | GcodeFault::OpenComment
+                | GcodeFault::Expression(ExpressionFault::Operation { .. })
+        )
+    }
+}
 
 /// Returns [`GcodeFault::Combination`].
 pub(super) fn combination(

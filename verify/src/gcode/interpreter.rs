@@ -2,7 +2,7 @@
 
 use super::control::Control;
 use super::rules::Rule;
-use super::{ControlSetup, GcodeError, GcodeFault, Step, iso};
+use super::{ControlSetup, GcodeError, GcodeFault, Obstacle, Step, iso};
 use std::collections::BTreeMap;
 
 /// An interpreter of a program: an iterator over its steps.
@@ -63,6 +63,14 @@ impl<'a> Interpreter<'a> {
     /// Returns the rules of the control on which the blocks depend that were executed so far, each with the first line.
     pub fn asked(&self) -> &BTreeMap<Rule, usize> {
         &self.control.asked
+    }
+
+    /// Returns the words of the text that are not read, each with its first line, in the order of lines. They stand in the way
+    /// beside the error that has stopped the program.
+    pub fn obstacles(&self) -> Vec<Obstacle> {
+        match &self.front {
+            Front::Iso(program) => program.obstacles(&self.control),
+        }
     }
 
     /// Executes the next line, and returns whether the program goes on.

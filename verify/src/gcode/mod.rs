@@ -59,7 +59,7 @@ mod rules;
 mod state;
 
 pub use control::Spindle;
-pub use error::{ArcFault, GcodeError, GcodeFault};
+pub use error::{ArcFault, GcodeError, GcodeFault, Obstacle};
 pub use interpreter::Interpreter;
 pub use iso::ExpressionFault;
 pub use note::{NoteKind, ProgramNote};

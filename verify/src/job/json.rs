@@ -7,7 +7,7 @@ use super::finding::rule;
 use super::machine::MachineRow;
 use super::report::{FindingDetail, JobFinding, JobReport, PairReport, Remedy, Severity, Verdict};
 use super::stock::StockRow;
-use crate::{FindingGroup, FindingKind, Gap};
+use crate::{FindingGroup, FindingKind};
 use serde::Serialize;
 use touchoff::certify::Witness;
 use touchoff::tool::Symmetry;
@@ -20,12 +20,12 @@ impl JobReport<'_> {
 
     /// Returns what is left open as objects for JSON.
     pub fn gap_rows(&self) -> impl Iterator<Item = impl Serialize + '_> {
-        self.gaps.iter().map(|Gap { line, is_open, reason, .. }| GapRow {
+        self.gaps.iter().map(|gap| GapRow {
             file: self.job.program.name(),
-            line: *line,
+            line: gap.line,
             kind: "not-checked",
-            open: *is_open,
-            reason,
+            open: gap.is_open(),
+            reason: &gap.reason,
         })
     }
 

@@ -85,7 +85,7 @@ impl<'a> Job<'a> {
             }
             cuts.extend(result.cut);
         }
-        gaps.sort_by_key(|gap| (!gap.is_open, gap.line));
+        gaps.sort_by_key(|gap| (gap.weight, gap.line));
         let machine = MachineFinding::all(self);
         let mut report = JobReport { job: self, pairs, machine, cuts, gaps, findings: Vec::new() };
         report.findings = finding::all(&report);

@@ -3,7 +3,7 @@
 use super::machine::MachineFinding;
 use super::stock::{CutStock, StockFinding};
 use super::{Body, Job, JobTool};
-use crate::{FindingGroup, Gap, Tilt, VerifyReport};
+use crate::{FindingGroup, Gap, GapWeight, Tilt, VerifyReport};
 use std::fmt;
 use touchoff::tool::ToolInfo;
 
@@ -126,7 +126,11 @@ impl JobReport<'_> {
 
     /// Returns the reasons for which a result without findings proves nothing.
     pub fn refusals(&self) -> Vec<String> {
-        let open = self.gaps.iter().filter(|gap| gap.is_open && !self.job.anyway);
+        let open = self.gaps.iter().filter(|gap| match gap.weight {
+            GapWeight::Stops => true,
+            GapWeight::Open => !self.job.anyway,
+            GapWeight::Said => false,
+        });
         let mut reasons: Vec<String> = open.map(Gap::to_string).collect();
         let mut is_checked = true;
         for reading in 0..self.job.program.reading_count() {

@@ -2,7 +2,8 @@
 
 use super::MachineProgram;
 use crate::gcode::{
-    ControlRules, LengthOffset, NoteKind, ProgramNote, Rule, Spindle, Step, WorkOffset,
+    ControlRules, GcodeError, LengthOffset, NoteKind, Obstacle, ProgramNote, Rule, Spindle, Step,
+    WorkOffset,
 };
 use crate::machine::{LimitViolation, SingularPass};
 use std::collections::BTreeMap;
@@ -46,6 +47,18 @@ pub struct MachineSummary {
     pub singular: Vec<(usize, SingularPass)>,
     /// Notes of the interpreter.
     pub notes: Vec<ProgramNote>,
+    /// The line at which the program stops being read, if it does.
+    pub stop: Option<ProgramStop>,
+}
+
+/// The end of what is read of a program. The motions before it are checked.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct ProgramStop {
+    /// The line and its fault.
+    pub error: GcodeError,
+    /// The other words of the text that are not read.
+    pub obstacles: Vec<Obstacle>,
 }
 
 /// Motions that are not checked for one cause.
@@ -186,21 +199,37 @@ impl fmt::Display for UnknownCause {
 pub struct Gap {
     /// The line of its first occurrence, 1-based.
     pub line: usize,
-    /// Set if there is no verdict with it: a collision could be missed that the program alone makes.
-    pub is_open: bool,
+    /// Its consequence.
+    pub weight: GapWeight,
     /// The subject that was not checked, the cause, and the remedy. A sentence without a full stop.
     pub reason: String,
+}
+
+/// The consequence of a gap.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum GapWeight {
+    /// The program is not read to its end. There is no verdict, whatever a job accepts.
+    Stops,
+    /// There is no verdict unless a job accepts it: a collision could be missed that the program alone makes.
+    Open,
+    /// A verdict is possible.
+    Said,
 }
 
 impl Gap {
     /// Creates a gap that leaves a verdict possible.
     pub fn said(line: usize, reason: String) -> Gap {
-        Gap { line, is_open: false, reason }
+        Gap { line, weight: GapWeight::Said, reason }
     }
 
     /// Creates a gap that allows no verdict.
     pub fn open(line: usize, reason: String) -> Gap {
-        Gap { line, is_open: true, reason }
+        Gap { line, weight: GapWeight::Open, reason }
+    }
+
+    /// Returns whether there is no verdict with it.
+    pub fn is_open(&self) -> bool {
+        self.weight != GapWeight::Said
     }
 }
 
@@ -268,6 +297,15 @@ impl MachineSummary {
     /// Returns what this reading leaves open.
     fn gaps(&self) -> Vec<Gap> {
         let mut gaps = Vec::new();
+        if let Some(ProgramStop { error, obstacles }) = &self.stop {
+            let weight = GapWeight::Stops;
+            let reason = format!("{}; the program is checked up to here", error.fault);
+            gaps.push(Gap { line: error.line, weight, reason });
+            gaps.extend(obstacles.iter().map(|Obstacle { line, count, fault }| {
+                let times = if *count > 1 { format!(" ({count} times)") } else { String::new() };
+                Gap { line: *line, weight, reason: format!("{fault}{times}") }
+            }));
+        }
         for UnknownMotions { cause, count, line, open_line } in &self.unknown {
             let plural = if *count == 1 { "" } else { "s" };
             let reason =
@@ -322,20 +360,20 @@ impl MachineSummary {
             gaps.push(Gap::said(0, reason.to_owned()));
         }
         for note in &self.notes {
-            let is_open = match note.kind {
+            let weight = match note.kind {
                 NoteKind::PassedOver { .. } => continue,
                 NoteKind::OtherProgram
                 | NoteKind::OptionalSwitches
                 | NoteKind::TwoRadii
                 | NoteKind::RoundedRadius
                 | NoteKind::OffsetOrShift
-                | NoteKind::LeftModes { .. } => true,
-                _ => false,
+                | NoteKind::LeftModes { .. } => GapWeight::Open,
+                _ => GapWeight::Said,
             };
             let times =
                 if note.count > 1 { format!(" ({} times)", note.count) } else { String::new() };
             let reason = format!("{}{times}", note.kind);
-            gaps.push(Gap { line: note.line, is_open, reason });
+            gaps.push(Gap { line: note.line, weight, reason });
         }
         gaps
     }
@@ -372,7 +410,7 @@ impl MachineProgram {
             gap
         });
         let mut gaps: Vec<Gap> = gaps.collect();
-        gaps.sort_by_key(|gap| (!gap.is_open, gap.line));
+        gaps.sort_by_key(|gap| (gap.weight, gap.line));
         gaps
     }
 

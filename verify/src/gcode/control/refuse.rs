@@ -17,7 +17,7 @@ const RADII_TOLERANCE: f64 = 5e-3;
 
 impl Control {
     /// Refuses words that mean something else in the dialect of the control.
-    pub(super) fn check_dialect(&mut self, block: &Block) -> Result<(), GcodeFault> {
+    pub(in crate::gcode) fn check_dialect(&mut self, block: &Block) -> Result<(), GcodeFault> {
         if let (Some(Choice::Iso | Choice::Rs274Ngc), Some(code)) =
             (self.stated(Rule::Dialect), block.code_of(Group::Units))
             && code.tenths > 210

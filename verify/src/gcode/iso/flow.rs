@@ -168,6 +168,7 @@ pub(super) struct Callee {
 #[derive(Clone, Debug)]
 pub(super) struct Flow<'a> {
     text: &'a str,
+    start: Place,
     place: Place,
     closed: bool,
     pub(super) structure: Arc<Structure>,
@@ -192,6 +193,7 @@ impl<'a> Flow<'a> {
     pub(super) fn new(extent: &Extent<'a>, structure: Structure) -> Flow<'a> {
         Flow {
             text: extent.text,
+            start: extent.start,
             place: extent.start,
             closed: extent.closed,
             structure: Arc::new(structure),
@@ -228,6 +230,18 @@ impl<'a> Flow<'a> {
             self.furthest = self.furthest.max(number);
         }
         Ok(Some((number, line)))
+    }
+
+    /// Returns the lines of the program, each with its number.
+    pub(super) fn lines(&self) -> impl Iterator<Item = (usize, &'a str)> + use<'a> {
+        let text = self.text;
+        let mut place = self.start;
+        std::iter::from_fn(move || {
+            let (found, after) = line(text, place)?;
+            let number = place.line;
+            place = after;
+            Some((number, found))
+        })
     }
 
     /// Returns whether a subprogram stands before the present line, and was neither called nor passed as a `sub` so far.

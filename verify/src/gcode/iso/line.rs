@@ -79,11 +79,7 @@ pub(super) struct MacroCall {
 impl Line {
     /// Reads a line, with its variables and conditions.
     pub(super) fn parse(&mut self, text: &str, scope: &Scope) -> Result<(), GcodeFault> {
-        self.block.clear();
-        (self.statement, self.call) = (None, None);
-        self.assignments.clear();
-        self.ignored.clear();
-        (self.assigns, self.assigns_beside_value, self.ignores) = (false, false, false);
+        self.clear();
         let mut cursor = begin(text);
         // The assignments whose value depends on a parameter: with another assignment in the block, it depends on the control
         // whether that is in force yet.
@@ -115,6 +111,52 @@ impl Line {
         self.assigns_beside_value =
             self.assigns && self.block.is_computed() || uses > 0 && self.assignments.len() > 1;
         Ok(())
+    }
+
+    /// Reads a line as far as it can be read without executing what comes before, and returns its faults.
+    pub(super) fn survey(&mut self, text: &str, scope: &Scope) -> Vec<GcodeFault> {
+        let mut faults = Vec::new();
+        self.clear();
+        let mut cursor = begin(text);
+        loop {
+            let start = cursor;
+            let read = match next(&mut cursor) {
+                Ok(None) => break,
+                // An O-word has a line of its own.
+                Ok(Some(b'O' | b'o' | b':')) if self.is_empty() => break,
+                Ok(Some(b'#')) => assignment(&mut cursor, scope).map(drop).map_err(Into::into),
+                Ok(Some(b'0'..=b'9')) if self.is_empty() => Err(numbered_line(cursor)),
+                Ok(Some(byte)) if byte.is_ascii_alphabetic() => self.word(&mut cursor, scope),
+                Ok(Some(_)) => Err(unexpected(&cursor)),
+                Err(fault) => Err(fault),
+            };
+            let Err(fault) = read else { continue };
+            let is_name = matches!(fault, GcodeFault::UnknownWord { .. });
+            let is_code =
+                matches!(fault, GcodeFault::UnknownCode { .. } | GcodeFault::NotRead { .. });
+            faults.push(fault);
+            if is_name {
+                // Its arguments or its value may follow.
+                cursor = start;
+                cursor.peek();
+                cursor.take_while(|byte| byte.is_ascii_alphanumeric() || byte == b'_');
+                if cursor.take(b'=') {
+                    cursor.peek();
+                    cursor.take_while(|byte| !matches!(byte, b' ' | b'\t' | b';'));
+                }
+            } else if !is_code || cursor.rest().len() == start.rest().len() {
+                break;
+            }
+        }
+        faults
+    }
+
+    fn clear(&mut self) {
+        self.block.clear();
+        (self.statement, self.call) = (None, None);
+        self.assignments.clear();
+        self.ignored.clear();
+        (self.assigns, self.assigns_beside_value, self.ignores) = (false, false, false);
     }
 
     /// Returns whether the line has no word yet.

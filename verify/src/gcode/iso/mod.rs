@@ -20,7 +20,7 @@ use super::error::{combination, missing, not_read};
 use super::interpreter::{End, Progress};
 use super::note::NoteKind;
 use super::rules::{Choice, Rule};
-use super::{ControlSetup, GcodeError, GcodeFault, MAX_REPEATED};
+use super::{ControlSetup, GcodeError, GcodeFault, MAX_REPEATED, Obstacle};
 use expression::{Cursor, Language, Value, condition, value};
 use flow::{Callee, Flow, before_semicolon};
 use line::{Label, Line, MacroCall, OWord, Role, Statement, begin, check_end, next, o_word};
@@ -75,6 +75,41 @@ impl<'a> Program<'a> {
         }
         let flow = Flow::new(&extent, structure);
         Ok(Program { flow, variables, line: Line::default(), switch: None })
+    }
+
+    /// Returns the words that are not read, each with its first line.
+    pub(super) fn obstacles(&self, control: &Control) -> Vec<Obstacle> {
+        let mut found: Vec<Obstacle> = Vec::new();
+        let mut control = control.clone();
+        let mut line = Line::default();
+        let is_left_out = control.stated(Rule::OptionalBlocks) == Some(Choice::LeftOut);
+        for (number, text) in self.flow.lines() {
+            if text.trim_start().starts_with('/') && is_left_out {
+                continue;
+            }
+            let scope = Scope { is_survey: true, ..Scope::new(&self.variables, &control) };
+            let mut faults = line.survey(text, &scope);
+            faults.extend(check_text(text, &control).err());
+            let block = &mut line.block;
+            // Words of another control; other faults depend on what comes before.
+            faults.extend(control.check_dialect(block).err());
+            if block.tenths_of(Group::Subprogram) == Some(980)
+                && let Some(program) = block.value('P')
+                && ![program as u32, program as u32 % 10_000]
+                    .iter()
+                    .any(|number| self.flow.has(&Label::Number(*number)))
+            {
+                let label = Label::Number(program as u32).to_string();
+                faults.push(GcodeFault::NoSubprogram { label });
+            }
+            for fault in faults.into_iter().filter(GcodeFault::is_obstacle) {
+                match found.iter_mut().find(|known| known.fault == fault) {
+                    Some(known) => known.count += 1,
+                    None => found.push(Obstacle { line: number, count: 1, fault }),
+                }
+            }
+        }
+        found
     }
 
     /// Executes the next line.
