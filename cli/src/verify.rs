@@ -117,6 +117,8 @@ pub(crate) fn job_file(
         control: options.control,
         work_offsets: [None; 9],
         block_delete: None,
+        ignore: BTreeMap::new(),
+        variables: BTreeMap::new(),
         tools,
         tolerance: options.tolerance,
         resolution: options.resolution,

@@ -145,6 +145,84 @@ fn a_work_offset_far_from_the_part_is_open() {
     }
 }
 
+/// Checks a program with the mill at a plate whose top is at 0, and returns the verdict, the lines of its findings, and the reasons
+/// against a verdict.
+fn checked(text: &str, setup: &ControlSetup) -> (Verdict, Vec<(usize, Option<String>)>, String) {
+    let part = cuboid([-20.0, -20.0, -10.0], [20.0, 20.0, 0.0]);
+    let machine = Machine::named("3-axis").expect("a machine");
+    let program = Program::parse(text, "a.nc", machine, setup).expect("a program");
+    let mut job = Job::new(&program, &part);
+    job.tools.push(JobTool::of_all(&Mill));
+    job.anyway = true;
+    let report = job.check(&|_| ()).expect("a result");
+    let findings = report.findings().iter();
+    let lines = findings.map(|finding| (finding.line, finding.under.clone())).collect();
+    (report.verdict(), lines, report.refusals().join("\n"))
+}
+
+#[test]
+fn a_program_is_checked_up_to_the_line_that_is_not_read() {
+    let setup = ControlSetup {
+        rules: ControlRules::named("linuxcnc").expect("a control"),
+        ..ControlSetup::default()
+    };
+    let head = "G21 G90 G54\nT1 M6\nS900 M3\nG0 X0. Y0.\nG43 H1 Z20.\n";
+    let text = format!("{head}G1 Z1. F100.\nG888 P3\nG1 Z-5.\nM777\nDRAW(1)\nG888\nM98 P44\nM30\n");
+    let (verdict, findings, refusals) = checked(&text, &setup);
+    // The gouge is behind the line that is not read.
+    assert_eq!((verdict, findings.len()), (Verdict::None, 0), "{refusals}");
+    for expected in [
+        "line 7: G888 is not understood",
+        "; the program is checked up to here",
+        "line 9: M777 is not understood",
+        "line 10: `DRAW` is not understood",
+        "line 12: there is no O44",
+    ] {
+        assert!(refusals.contains(expected), "{expected}\n{refusals}");
+    }
+    assert_eq!(refusals.lines().count(), 4, "{refusals}");
+    // One before it is found.
+    let gouge = text.replace("Z1.", "Z-1.");
+    let (verdict, findings, _) = checked(&gouge, &setup);
+    assert_eq!(verdict, Verdict::Findings);
+    assert!(!findings.is_empty() && findings.iter().all(|(line, _)| *line == 6), "{findings:?}");
+    // Words that are ignored with a reason stand in the way no more.
+    let mut rules = setup.rules.clone();
+    for word in ["G888", "M777", "DRAW"] {
+        rules = rules.ignoring(word, "draws on the screen").expect("a word");
+    }
+    let ignoring = ControlSetup { rules, ..setup };
+    let (verdict, findings, refusals) = checked(&text.replace("M98 P44\n", ""), &ignoring);
+    assert_eq!((verdict, findings[0].0), (Verdict::Findings, 8), "{refusals}");
+}
+
+/// A variable that can have several values: each is checked, and those that fail are named.
+#[test]
+fn every_value_of_a_variable_is_checked() {
+    let text =
+        "G21 G90 G54\nT1 M6\nS900 M3\nG0 X0. Y0.\nG43 H1 Z20.\nG1 Z[1.-#500] F100.\nG0 Z20.\nM30\n";
+    let setup = |values: &[f64]| ControlSetup {
+        rules: ControlRules::named("linuxcnc").expect("a control"),
+        variables: [("#500".to_owned(), values.to_vec())].into(),
+        ..ControlSetup::default()
+    };
+    let (verdict, ..) = checked(text, &setup(&[0.0, 0.5, 1.0]));
+    assert_eq!(verdict, Verdict::Clean);
+    let (verdict, findings, _) = checked(text, &setup(&[0.0, 0.5, 1.0, 1.5]));
+    assert_eq!(verdict, Verdict::Findings);
+    let named = (6, Some("under #500 = 1.5".to_owned()));
+    assert!(!findings.is_empty() && findings.iter().all(|found| *found == named), "{findings:?}");
+    // Nobody knows it otherwise.
+    let (verdict, _, refusals) =
+        checked(text, &ControlSetup { variables: [].into(), ..setup(&[0.0]) });
+    assert_eq!(verdict, Verdict::None);
+    assert!(refusals.contains("line 6: #500 has no value here"), "{refusals}");
+    let many = (0..101).map(f64::from).collect::<Vec<_>>();
+    let machine = Machine::named("3-axis").expect("a machine");
+    let error = Program::parse(text, "a.nc", machine, &setup(&many)).expect_err("too many");
+    assert!(error.to_string().contains("more than 100 combinations"), "{error}");
+}
+
 #[test]
 fn job_files_are_read_with_their_paths_beside_them() {
     let text = "part = \"a.stl\"\nunit = \"mm\"\nprogram = \"a.nc\"\ncontrol = \"haas\"\n[tool.3]\ntool = \"m.tool\"\n\
@@ -156,6 +234,19 @@ fn job_files_are_read_with_their_paths_beside_them() {
         ["part: jobs/a.stl", "program: jobs/a.nc", "tool T3: jobs/m.tool", "vise: jobs/v.stl"];
     assert_eq!(files, expected);
     assert_eq!(job.work_offsets[1], Some([1.0, 2.0, 3.0, 0.0, 0.0, 0.0]));
+
+    let tables = format!(
+        "{text}\n[ignore]\nG888 = \"draws\"\n[variables]\n\"#500\" = 2.5\n\"#<_d>\" = [1, 2]\n"
+    );
+    let stated = JobFile::parse(&tables, Path::new("jobs/a.toml")).expect("a job");
+    assert_eq!(stated.ignore["G888"], "draws");
+    assert_eq!(stated.variables["#500"], [2.5]);
+    assert_eq!(stated.variables["#<_d>"], [1.0, 2.0]);
+    for wrong in ["\"500x\" = 1", "\"#500\" = []", "\"#500\" = nan"] {
+        let tables = format!("{text}\n[variables]\n{wrong}\n");
+        let error = JobFile::parse(&tables, Path::new("a.toml")).expect_err(wrong);
+        assert!(error.to_string().contains("in `[variables]`"), "{error}");
+    }
 
     let setup = ControlSetup::default();
     let machine = || Machine::named("3-axis").expect("a machine");

@@ -15,6 +15,7 @@ use crate::machine::{JointError, JointMotion, Letter, Machine, Setup};
 use nalgebra::Vector3;
 use resolve::{AnyRapid, Resolved, Resolver};
 use std::collections::BTreeMap;
+use std::fmt;
 use std::sync::Arc;
 use touchoff::{Motion, Unit};
 
@@ -28,8 +29,34 @@ pub use summary::{
     Gap, GapWeight, MachineSummary, ProgramStop, ToolUse, UnknownCause, UnknownMotions,
 };
 
-/// Largest number of readings of a program.
+/// Largest number of readings of a program by the rules of controls.
 pub const MAX_READINGS: usize = 8;
+/// Largest number of combinations of the values that variables can have.
+pub const MAX_VALUES: usize = 100;
+
+/// What a reading of a program assumes.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct Assumption {
+    /// Rules of the control that are not stated.
+    pub rules: ControlRules,
+    /// Variables that can have several values.
+    pub variables: BTreeMap<String, f64>,
+}
+
+/// The assumption as the keys of files: `rapid = "straight", #500 = 2`.
+impl fmt::Display for Assumption {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.rules)?;
+        let mut is_first = self.rules == ControlRules::default();
+        for (name, value) in &self.variables {
+            let comma = if is_first { "" } else { ", " };
+            write!(f, "{comma}{name} = {value}")?;
+            is_first = false;
+        }
+        Ok(())
+    }
+}
 
 /// A G-code program on a machine, as one control reads it.
 #[derive(Clone, Debug)]
@@ -38,7 +65,7 @@ pub struct MachineProgram {
     text: Arc<str>,
     machine: Arc<Machine>,
     setup: ControlSetup,
-    assumed: ControlRules,
+    assumed: Assumption,
     /// Set if the program has no length offset at all, and a tool whose length is not stated.
     off_is_tip: bool,
     /// The register of the first length offset before a tool is named: the tool in the spindle.
@@ -87,14 +114,14 @@ impl MachineProgram {
         setup: ControlSetup,
     ) -> Result<MachineProgram, MachineProgramError> {
         let (text, machine) = (Arc::from(text), Arc::new(machine));
-        MachineProgram::reading(name, text, machine, setup, ControlRules::default())
+        MachineProgram::reading(name, text, machine, setup, Assumption::default())
     }
 
-    /// Interprets a program in every way in which a control does, as far as its rules are not stated: a program per
-    /// combination of the choices on which it depends. A result holds if it holds for all.
+    /// Interprets a program in every way in which a control does, as far as its rules are not stated, and with every value of its
+    /// variables: a program per combination of the choices on which it depends. A result holds if it holds for all.
     ///
     /// # Errors
-    /// As for [`MachineProgram::new`], and if there are more than [`MAX_READINGS`].
+    /// As for [`MachineProgram::new`], and if there are more than [`MAX_READINGS`] of rules or [`MAX_VALUES`] of variables.
     pub fn readings(
         name: &str,
         text: String,
@@ -103,6 +130,8 @@ impl MachineProgram {
     ) -> Result<Vec<MachineProgram>, MachineProgramError> {
         let (text, machine): (Arc<str>, _) = (Arc::from(text), Arc::new(machine));
         let mut branched: BTreeMap<Rule, usize> = BTreeMap::new();
+        let values = values(&setup.variables)
+            .ok_or_else(|| MachineProgramError::Values { file: name.to_owned() })?;
         loop {
             let mut assumed = vec![ControlRules::default()];
             for rule in branched.keys() {
@@ -117,7 +146,14 @@ impl MachineProgram {
                 let rules = rules.collect::<Vec<_>>().join(", ");
                 return Err(MachineProgramError::Readings { file: name.to_owned(), rules });
             }
-            let programs = assumed.into_iter().map(|assumed| {
+            let assumed = assumed.into_iter().flat_map(|rules| {
+                let with = move |variables: &BTreeMap<String, f64>| Assumption {
+                    rules: rules.clone(),
+                    variables: variables.clone(),
+                };
+                values.iter().map(with)
+            });
+            let programs = assumed.map(|assumed| {
                 let (text, machine) = (Arc::clone(&text), Arc::clone(&machine));
                 MachineProgram::reading(name, text, machine, setup.clone(), assumed)
             });
@@ -142,10 +178,13 @@ impl MachineProgram {
         text: Arc<str>,
         machine: Arc<Machine>,
         mut setup: ControlSetup,
-        assumed: ControlRules,
+        assumed: Assumption,
     ) -> Result<MachineProgram, MachineProgramError> {
         let stated = setup.rules.clone();
-        setup.rules = stated.clone().and(&assumed);
+        setup.rules = stated.clone().and(&assumed.rules);
+        for (name, value) in &assumed.variables {
+            setup.variables.insert(name.clone(), vec![*value]);
+        }
         // Whatever the control does, the axes are somewhere: that nobody knows where includes all choices.
         if setup.rules.get(Rule::ToolChange).is_none() {
             setup.rules = setup.rules.with(Rule::ToolChange, Choice::Moves);
@@ -181,7 +220,7 @@ impl MachineProgram {
         }
         let result = result.map(|(summary, _)| summary);
         program.summary = result.map_err(|error| match program.assumed {
-            ref assumed if *assumed == ControlRules::default() => error,
+            ref assumed if *assumed == Assumption::default() => error,
             ref assumed => {
                 MachineProgramError::Under { error: Box::new(error), rules: assumed.to_string() }
             }
@@ -190,12 +229,12 @@ impl MachineProgram {
         program
             .summary
             .open_rules
-            .retain(|rule, _| stated.get(*rule).is_none() && assumed.get(*rule).is_none());
+            .retain(|rule, _| stated.get(*rule).is_none() && assumed.rules.get(*rule).is_none());
         Ok(program)
     }
 
-    /// Returns the rules that this reading assumes, since they are not stated.
-    pub fn assumed(&self) -> &ControlRules {
+    /// Returns what this reading assumes, since it is not stated.
+    pub fn assumed(&self) -> &Assumption {
         &self.assumed
     }
 
@@ -389,6 +428,27 @@ impl MachineProgram {
         summary.limits_unchecked = !is_placed && linear.any(|axis| axis.limits.is_some());
         Ok((summary, offsets))
     }
+}
+
+/// Returns every combination of the values of variables that can have several; `None` if there are too many.
+fn values(variables: &BTreeMap<String, Vec<f64>>) -> Option<Vec<BTreeMap<String, f64>>> {
+    let mut combinations = vec![BTreeMap::new()];
+    for (name, values) in variables.iter().filter(|(_, values)| values.len() > 1) {
+        combinations = combinations
+            .iter()
+            .flat_map(|known: &BTreeMap<String, f64>| {
+                values.iter().map(move |value| {
+                    let mut with = known.clone();
+                    with.insert(name.clone(), *value);
+                    with
+                })
+            })
+            .collect();
+        if combinations.len() > MAX_VALUES {
+            return None;
+        }
+    }
+    Some(combinations)
 }
 
 /// An execution of a program: its steps, with what the machine makes of each.

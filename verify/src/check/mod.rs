@@ -32,8 +32,8 @@ mod remedy;
 pub use approach::Approach;
 pub use finding::{Finding, FindingGroup, FindingKind, VerifyError, VerifyReport};
 pub use machine_program::{
-    Gap, GapWeight, MAX_READINGS, MachineProgram, MachineProgramError, MachineSummary, ProgramStop,
-    StepFault, ToolSelection, ToolUse, UnknownCause, UnknownMotions,
+    Assumption, Gap, GapWeight, MAX_READINGS, MAX_VALUES, MachineProgram, MachineProgramError,
+    MachineSummary, ProgramStop, StepFault, ToolSelection, ToolUse, UnknownCause, UnknownMotions,
 };
 pub use moves::{JointPath, Move, MovePath, RapidBox};
 pub use remedy::Tilt;

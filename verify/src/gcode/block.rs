@@ -250,7 +250,36 @@ impl From<Code> for String {
     }
 }
 
+/// Returns whether a word of letters, in capitals, is read by a control, or decides what is executed.
+pub(super) fn is_keyword(word: &str) -> bool {
+    const WORDS: [&str; 22] = [
+        "CALL", "CASE", "DO", "ELSE", "END", "ENDFOR", "ENDIF", "ENDLOOP", "ENDWHILE", "FOR",
+        "GOTO", "GOTOB", "GOTOF", "IF", "LOOP", "REPEAT", "SUPA", "THEN", "TRAFOOF", "TRAORI",
+        "UNTIL", "WHILE",
+    ];
+    WORDS.contains(&word.trim_end_matches(|c: char| c.is_ascii_digit()))
+}
+
 impl Code {
+    /// Reads a G or M word in capitals, such as `G43.4`.
+    pub(super) fn parse(word: &str) -> Option<Code> {
+        let letter = word.chars().next().filter(|letter| matches!(letter, 'G' | 'M'))?;
+        let number: f64 = word[1..].parse().ok()?;
+        let tenths = (10.0 * number).round();
+        let is_number = word[1..].starts_with(|c: char| c.is_ascii_digit())
+            && (10.0 * number - tenths).abs() < 1e-9
+            && tenths <= 99_999.0;
+        is_number.then_some(Code { letter, tenths: tenths as u32 })
+    }
+
+    /// Returns whether nothing is known of an effect on the path.
+    pub(super) fn can_be_ignored(self) -> bool {
+        matches!(
+            group(self),
+            Ok(Group::PassedOver | Group::PathControl) | Err(GcodeFault::UnknownCode { .. })
+        )
+    }
+
     pub(super) fn is_m(&self) -> bool {
         self.letter == 'M'
     }

@@ -54,8 +54,6 @@ pub(super) struct Control {
     /// The rules that the program depends on, each with the first line.
     pub(super) asked: BTreeMap<Rule, usize>,
     axes: [bool; 6],
-    /// Words that are passed over, with their reasons.
-    ignored: BTreeMap<String, String>,
     /// Position in which M6 leaves the axes, if the machine states it.
     change_position: Option<Position>,
     /// Set once a work offset was selected.
@@ -214,7 +212,6 @@ impl Control {
             rules: setup.rules.clone(),
             asked: BTreeMap::new(),
             axes: setup.axes,
-            ignored: setup.ignore.clone(),
             change_position: setup.tool_change,
             offset_stated: false,
             returned: None,
@@ -250,12 +247,12 @@ impl Control {
 
     /// Returns whether the setup ignores a word.
     pub(super) fn ignores(&self, word: &str) -> bool {
-        !self.ignored.is_empty() && self.ignored.contains_key(word)
+        !self.rules.ignored().is_empty() && self.rules.ignored().contains_key(word)
     }
 
     /// Notes a word that the setup ignores.
     pub(super) fn ignore(&mut self, word: String) {
-        let reason = self.ignored.get(&word).cloned().unwrap_or_default();
+        let reason = self.rules.ignored().get(&word).cloned().unwrap_or_default();
         self.notes.add(self.line, NoteKind::Ignored { word, reason });
     }
 

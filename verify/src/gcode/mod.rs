@@ -24,15 +24,15 @@
 //! - G54 to G59.3, `G54.1 P`, G52, G92 to G92.3, `G10 L2`.
 //! - G43 H (without H: the register of the tool in the spindle), G49, T, M6.
 //! - Canned cycles G73 G74 G81 to G86 G89 with G98 G99 in three planes, with R, Z, Q, P and repeats L or K.
-//! - `M98 P L` with O-numbers and M99; `o100 sub`, `endsub` and `call` without arguments.
+//! - `M98 P L` with O-numbers, M97 and M99; macros of Fanuc and Haas (G65, G66, `IF`, `WHILE`, `GOTO`) and O-words of LinuxCNC.
 //! - Tool centre point control: G43.4, G43.5, G234, `TRAORI`, M428; ended by G49, `TRAFOOF`, M429.
 //! - Tilted planes G68.2 with G53.1, rotation G68, both ended by G69.
-//! - Parameters and arithmetic in brackets; comments, `/`, `%`, N.
+//! - Variables and expressions; comments, `/`, `%`, N.
 //!
 //! **What stops it.** Everything else. A word that is not understood could move the tool, so it is an error
-//! with its line, its name and a remedy, and so is a word that no other word of its block uses. Nothing is
-//! passed over in silence: words without an effect on the path, such as `M8`, are listed in
-//! [`Interpreter::notes`].
+//! with its line, its name and a remedy, and so is a word that no other word of its block uses;
+//! [`Interpreter::obstacles`] lists all that are not read. Nothing is passed over in silence: words without an
+//! effect on the path, such as `M8`, are listed in [`Interpreter::notes`].
 //!
 //! **What is unknown.** A coordinate is `None` if only the machine knows it: before it is programmed first,
 //! after G28 without a [home](ControlSetup::home), after a tool change that [moves](Choice::Moves) the axes,
@@ -46,8 +46,8 @@
 //! Without a statement the first choice of a rule is made.
 //!
 //! **Assumptions.** A tool change (M6) loads the tool of its own block or, without T there, the last T. Start
-//! values are G17 G90 G91.1 G94 G98 G54, and no motion mode. Subprograms share the parameters of their
-//! caller, except those of O-words, whose #1 to #30 and names are their own.
+//! values are G17 G90 G91.1 G94 G98 G54, and no motion mode. Subprograms that M98 calls share the variables of
+//! their caller; macros and O-words have their own.
 
 mod block;
 mod control;
@@ -62,6 +62,7 @@ pub use control::Spindle;
 pub use error::{ArcFault, GcodeError, GcodeFault, Obstacle};
 pub use interpreter::Interpreter;
 pub use iso::ExpressionFault;
+pub(crate) use iso::is_variable;
 pub use note::{NoteKind, ProgramNote};
 pub use rules::{Choice, ControlError, ControlRules, Rule};
 pub(crate) use state::about;
@@ -103,11 +104,9 @@ pub struct ControlSetup {
     pub rules: ControlRules,
     /// The axes that the machine has.
     pub axes: [bool; 6],
-    /// Values of variables before the program, by name: `#500`, `#<_depth>`. Lengths are in the unit of the program.
-    pub variables: BTreeMap<String, f64>,
-    /// Words that are passed over although they are not read, each with the reason for which they can neither move the tool nor
-    /// change what positions mean.
-    pub ignore: BTreeMap<String, String>,
+    /// Values that variables can have before the program, by name: `#500`, `#<_depth>`. Lengths are in the unit of the program. An
+    /// [`Interpreter`] takes the first of each.
+    pub variables: BTreeMap<String, Vec<f64>>,
     /// Position in which M6 leaves the axes, in machine coordinates: `None` for an axis that stays. Without it, as the
     /// [rules](Rule::ToolChange) say.
     pub tool_change: Option<Position>,
@@ -125,7 +124,6 @@ impl Default for ControlSetup {
             rules: ControlRules::default(),
             axes: [true; 6],
             variables: BTreeMap::new(),
-            ignore: BTreeMap::new(),
             tool_change: None,
         }
     }

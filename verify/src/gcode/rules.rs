@@ -3,6 +3,7 @@
 //! A program means different motions on different controls wherever it leaves a choice to them. Each such choice is a
 //! [`Rule`], and a control makes one [`Choice`] of each. `docs/controls.md` has the sources.
 
+use super::block::{Code, is_keyword};
 use crate::gcode::shown;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -480,7 +481,12 @@ impl Rule {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ControlRules {
     stated: BTreeMap<Rule, Choice>,
+    /// Words that are passed over, each with its reason.
+    ignored: BTreeMap<String, String>,
 }
+
+/// The table of a control's file, or of a job, with words that are passed over.
+const IGNORE: &str = "ignore";
 
 impl ControlRules {
     /// Returns the names of the controls that are known.
@@ -503,10 +509,12 @@ impl ControlRules {
         let stated = Rule::all().zip(CONTROL_CHOICES.map(|choices| choices[control]));
         Ok(ControlRules {
             stated: stated.filter(|(rule, _)| !OPEN.contains(&(name, *rule))).collect(),
+            ignored: BTreeMap::new(),
         })
     }
 
-    /// Parses a control from TOML: every rule by its key, but for the operator's switch. `file` is the file's name in errors.
+    /// Parses a control from TOML: every rule by its key, but for the operator's switch, and in the table `ignore` the words that
+    /// it passes over, each with a reason. `file` is the file's name in errors.
     ///
     /// # Errors
     /// If the text is not TOML, or if a key is unknown or missing, or its value is no choice.
@@ -532,8 +540,19 @@ impl ControlRules {
                 fault(error.span().map_or(0, |span| span.start), message)
             })?;
         let mut stated = BTreeMap::new();
+        let mut ignoring = ControlRules::default();
         for (key, value) in &parsed {
             let word = key.get_ref();
+            if word == IGNORE {
+                let words = value.get_ref().as_table().into_iter().flatten();
+                for (word, reason) in words {
+                    let reason = reason.as_str().unwrap_or_default();
+                    ignoring = ignoring
+                        .ignoring(word, reason)
+                        .map_err(|error| fault(key.span().start, error.to_string()))?;
+                }
+                continue;
+            }
             let Some(entry) = RULES.iter().find(|entry| entry.key == word) else {
                 let near = closest(word, RULES.iter().map(|entry| entry.key));
                 let message = format!("{} is no rule: did you mean `{near}`?", shown(word));
@@ -555,7 +574,7 @@ impl ControlRules {
             .iter()
             .find(|entry| entry.rule != Rule::OptionalBlocks && !stated.contains_key(&entry.rule))
         {
-            None => Ok(ControlRules { stated }),
+            None => Ok(ControlRules { stated, ignored: ignoring.ignored }),
             Some(Entry { key, about, .. }) => {
                 Err(ControlError::Missing { file: file.to_owned(), key, about })
             }
@@ -574,11 +593,40 @@ impl ControlRules {
         self
     }
 
+    /// Passes over a word that is not read: a G or M word, or a name with its arguments. The reason is that for which it can
+    /// neither move the tool nor change what positions mean, and is repeated with the verdict.
+    ///
+    /// # Errors
+    /// If the reason is empty, or if the word is read and has an effect, or is known to have one.
+    pub fn ignoring(mut self, word: &str, reason: &str) -> Result<ControlRules, ControlError> {
+        let upper = word.trim().to_ascii_uppercase();
+        let is_reason = !reason.trim().is_empty() && !reason.contains(char::is_control);
+        let problem = match (can_be_ignored(&upper), is_reason) {
+            (false, _) => "it has an effect, or is no G or M word and no name",
+            (true, false) => {
+                "its reason is missing, or is no line of text: write `WORD = \"reason\"`"
+            }
+            (true, true) => {
+                self.ignored.insert(upper, reason.trim().to_owned());
+                return Ok(self);
+            }
+        };
+        Err(ControlError::NotIgnored { word: shown(word), problem })
+    }
+
+    /// Returns the words that are passed over, each with its reason.
+    pub fn ignored(&self) -> &BTreeMap<String, String> {
+        &self.ignored
+    }
+
     /// States the rules of another, where these do not.
     #[must_use]
     pub fn and(mut self, other: &ControlRules) -> ControlRules {
         for (rule, choice) in &other.stated {
             self.stated.entry(*rule).or_insert(*choice);
+        }
+        for (word, reason) in &other.ignored {
+            self.ignored.entry(word.clone()).or_insert_with(|| reason.clone());
         }
         self
     }
@@ -601,7 +649,26 @@ impl ControlRules {
                 }
             }
         });
-        lines.collect()
+        let mut text: String = lines.collect();
+        if !self.ignored.is_empty() {
+            text += &format!("[{IGNORE}]\n");
+            for (word, reason) in &self.ignored {
+                let reason = reason.replace('\\', r"\\").replace('"', r#"\""#);
+                text += &format!("{word} = \"{reason}\"\n");
+            }
+        }
+        text
+    }
+}
+
+/// Returns whether nothing is known of an effect of a word, in capitals.
+fn can_be_ignored(word: &str) -> bool {
+    let is_name = word.len() > 1
+        && word.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
+        && word.starts_with(|c: char| c.is_ascii_alphabetic());
+    match Code::parse(word) {
+        Some(code) => code.can_be_ignored(),
+        None => is_name && !word[1..].chars().all(|c| c.is_ascii_digit()) && !is_keyword(word),
     }
 }
 
@@ -640,6 +707,14 @@ pub enum ControlError {
         line: usize,
         /// The fault and its remedy.
         message: String,
+    },
+    /// A word cannot be passed over.
+    #[error("{word} cannot be ignored: {problem}")]
+    NotIgnored {
+        /// The word.
+        word: String,
+        /// The problem.
+        problem: &'static str,
     },
     /// A rule is not stated.
     #[error(

@@ -3,7 +3,7 @@
 use super::program::{Program, read_control};
 use super::{Hand, JobError, checked_margin};
 use crate::ToolSelection;
-use crate::gcode::{Choice, ControlRules, ControlSetup, Rule};
+use crate::gcode::{Choice, ControlRules, ControlSetup, LARGEST_NUMBER, Rule, is_variable};
 use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
 use std::ffi::OsString;
@@ -28,6 +28,10 @@ pub struct JobFile {
     pub work_offsets: [Option<[f64; 6]>; 9],
     /// `true` if optional blocks are left out; `None` for both ways.
     pub block_delete: Option<bool>,
+    /// Words that the control passes over, each with a reason ([`ControlRules::ignoring`]).
+    pub ignore: BTreeMap<String, String>,
+    /// Values that variables of the program can have before it ([`ControlSetup::variables`]).
+    pub variables: BTreeMap<String, Vec<f64>>,
     /// The tools.
     pub tools: JobTools,
     /// Depth in the part that any surface may have.
@@ -115,6 +119,23 @@ fn assignments<'de, D: Deserializer<'de>>(table: D) -> Result<Vec<String>, D::Er
     Ok(params.collect())
 }
 
+/// The value of a variable, or all values that it can have.
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum VariableValues {
+    One(f64),
+    Several(Vec<f64>),
+}
+
+impl VariableValues {
+    fn into_values(self) -> Vec<f64> {
+        match self {
+            VariableValues::One(value) => vec![value],
+            VariableValues::Several(values) => values,
+        }
+    }
+}
+
 /// A mesh that no surface of a tool may touch.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -165,6 +186,10 @@ struct JobText {
     #[serde(default)]
     work_offsets: BTreeMap<String, Vec<f64>>,
     block_delete: Option<bool>,
+    #[serde(default)]
+    ignore: BTreeMap<String, String>,
+    #[serde(default)]
+    variables: BTreeMap<String, VariableValues>,
     /// Library of the tools, which the program selects by number.
     tools: Option<PathBuf>,
     #[serde(default)]
@@ -245,6 +270,18 @@ impl JobFile {
         for fixture in &job.fixture {
             checked_margin(fixture.margin).map_err(|error| fault(error.to_string()))?;
         }
+        let mut variables = BTreeMap::new();
+        for (name, values) in job.variables {
+            let values = values.into_values();
+            let is_number =
+                !values.is_empty() && values.iter().all(|value| value.abs() <= LARGEST_NUMBER);
+            if !is_number || !is_variable(&name) {
+                return Err(fault(format!(
+                    "`{name}` in `[variables]`: write `\"#500\" = 2.5`, or all values that it can have as a list"
+                )));
+            }
+            variables.insert(name, values);
+        }
         let folder = file.parent().unwrap_or(Path::new(""));
         let beside = |path: PathBuf| folder.join(path);
         let mut entries = BTreeMap::new();
@@ -271,6 +308,8 @@ impl JobFile {
             control: job.control.map(named),
             work_offsets: work_offsets(&job.work_offsets)?,
             block_delete: job.block_delete,
+            ignore: job.ignore,
+            variables,
             tools: JobTools::Numbered { library: job.tools.map(beside), entries },
             tolerance: job.tolerance,
             resolution: job.resolution,
@@ -304,9 +343,13 @@ impl JobFile {
             let choice = if left_out { Choice::LeftOut } else { Choice::Executed };
             rules = rules.with(Rule::OptionalBlocks, choice);
         }
+        for (word, reason) in &self.ignore {
+            rules = rules.ignoring(word, reason)?;
+        }
         let setup = ControlSetup {
             work_offsets: self.work_offsets,
             lengths: self.tools.lengths(),
+            variables: self.variables.clone(),
             rules,
             ..ControlSetup::default()
         };

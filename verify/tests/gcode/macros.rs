@@ -229,7 +229,7 @@ fn variables_of_the_control_are_those_of_its_state() {
         // A job can declare it.
         let name = name.split(' ').next().expect("a name");
         let mut declared = setup(dialect);
-        declared.variables.insert(name.to_owned(), 7.0);
+        declared.variables.insert(name.to_owned(), vec![7.0]);
         let (steps, _) = read(&format!("{program}\nM30"), &declared).expect(name);
         assert_eq!(steps[0].end[0], Some(7.0));
     }
@@ -249,7 +249,7 @@ fn long_loops_are_executed_to_their_end() {
 fn ignored_words_are_noted_with_their_reason() {
     let mut setup = setup(Choice::Iso);
     for word in ["G999", "M777", "DIST"] {
-        setup.ignore.insert(word.to_owned(), "it opens the door".to_owned());
+        setup.rules = setup.rules.ignoring(word, "it opens the door").expect("a word");
     }
     let program = "G21 G90 G0 X1.\nG999 P3 E0.01\nM777\nDIST(1,2)\nX2. M777\nM30";
     let (steps, notes) = read(program, &setup).expect("a program");
@@ -260,6 +260,21 @@ fn ignored_words_are_noted_with_their_reason() {
         .map(|note| (note.line, note.count))
         .collect();
     assert_eq!(ignored, [(2, 1), (3, 2), (4, 1)], "{notes:?}");
+    for (word, reason) in [
+        ("G43", "a reason"),
+        ("M98", "a reason"),
+        ("G31", "a reason"),
+        ("G999", " "),
+        ("X1", "a reason"),
+        ("IF", "a"),
+    ] {
+        setup.rules.clone().ignoring(word, reason).expect_err(word);
+    }
+    let file = ControlRules::named("linuxcnc")
+        .expect("a control")
+        .ignoring("g999", "it \"clamps\"")
+        .expect("a word");
+    assert_eq!(ControlRules::parse(&file.to_toml(), "mine.toml"), Ok(file));
     let error = read("G21 G0\nG999 X1.\nM30", &setup).expect_err("axis words");
     assert!(
         error.to_string().contains("line 2: axis words while its block has an ignored word"),

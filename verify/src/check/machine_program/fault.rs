@@ -28,6 +28,15 @@ pub enum MachineProgramError {
         /// The keys of the rules, each with the line that depends on it.
         rules: String,
     },
+    /// The variables of the program can have too many values.
+    #[error(
+        "{file}: the values of `[variables]` have more than {} combinations: state fewer, and check the program once for each group",
+        super::MAX_VALUES
+    )]
+    Values {
+        /// The program.
+        file: String,
+    },
     /// A line stops the interpreter.
     #[error("{file}:{line}: {fault}")]
     Gcode {

@@ -1,9 +1,8 @@
 //! Summary of a program on its machine: what it uses, and the gaps, which are everything that a verdict about it leaves open.
 
-use super::MachineProgram;
+use super::{Assumption, MachineProgram};
 use crate::gcode::{
-    ControlRules, GcodeError, LengthOffset, NoteKind, Obstacle, ProgramNote, Rule, Spindle, Step,
-    WorkOffset,
+    GcodeError, LengthOffset, NoteKind, Obstacle, ProgramNote, Rule, Spindle, Step, WorkOffset,
 };
 use crate::machine::{LimitViolation, SingularPass};
 use std::collections::BTreeMap;
@@ -394,7 +393,7 @@ impl MachineSummary {
 impl MachineProgram {
     /// Returns what the readings of a program leave open: first what allows no verdict, each in the order of lines.
     pub fn gaps(readings: &[MachineProgram]) -> Vec<Gap> {
-        let mut gaps: Vec<(Gap, Vec<&ControlRules>)> = Vec::new();
+        let mut gaps: Vec<(Gap, Vec<&Assumption>)> = Vec::new();
         for program in readings {
             for gap in program.summary.gaps() {
                 match gaps.iter_mut().find(|(known, _)| *known == gap) {
@@ -416,23 +415,28 @@ impl MachineProgram {
 
     /// Names the readings for which something holds, by what they assume: `under rotary = "shortest"`. `None` if it holds for
     /// all.
-    pub fn under(readings: &[MachineProgram], holds: &[&ControlRules]) -> Option<String> {
+    pub fn under(readings: &[MachineProgram], holds: &[&Assumption]) -> Option<String> {
         if holds.len() == readings.len() {
             return None;
         }
         // A rule with one choice in all of these, and with another elsewhere, is a condition.
         let first = holds.first()?;
-        let mut common = ControlRules::default();
+        let mut common = Assumption::default();
         for rule in Rule::all() {
-            let Some(choice) = first.get(rule) else { continue };
-            if holds.iter().all(|rules| rules.get(rule) == Some(choice)) {
-                common = common.with(rule, choice);
+            let Some(choice) = first.rules.get(rule) else { continue };
+            if holds.iter().all(|assumed| assumed.rules.get(rule) == Some(choice)) {
+                common.rules = common.rules.with(rule, choice);
             }
         }
-        match common == ControlRules::default() {
+        for (name, value) in &first.variables {
+            if holds.iter().all(|assumed| assumed.variables.get(name) == Some(value)) {
+                common.variables.insert(name.clone(), *value);
+            }
+        }
+        match common == Assumption::default() {
             false => Some(format!("under {common}")),
             true if holds.len() <= 3 => {
-                let each: Vec<String> = holds.iter().map(|rules| rules.to_string()).collect();
+                let each: Vec<String> = holds.iter().map(|assumed| assumed.to_string()).collect();
                 Some(format!("under {}", each.join(", or ")))
             }
             true => Some(format!("under {} of {} readings", holds.len(), readings.len())),

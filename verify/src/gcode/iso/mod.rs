@@ -28,6 +28,11 @@ use std::mem;
 use structure::{Clause, Structure};
 use variables::{Locals, Parameter, Scope, Variables};
 
+/// Returns whether a name is that of a variable: `#500`, or `#<_depth>`.
+pub(crate) fn is_variable(name: &str) -> bool {
+    Parameter::declared(name).is_some()
+}
+
 /// A program, and the place of its execution.
 #[derive(Clone, Debug)]
 pub(super) struct Program<'a> {

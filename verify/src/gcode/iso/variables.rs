@@ -105,10 +105,11 @@ fn is_system(number: u32, language: Language) -> bool {
 
 impl Variables {
     /// Creates the variables before a program, with those that a job declares.
-    pub(super) fn new(declared: &BTreeMap<String, f64>) -> Variables {
+    pub(super) fn new(declared: &BTreeMap<String, Vec<f64>>) -> Variables {
         let mut variables = Variables::default();
         variables.set_returned(None);
-        for (name, value) in declared {
+        for (name, values) in declared {
+            let Some(value) = values.first() else { continue };
             match Parameter::declared(name) {
                 Some(Parameter::Numbered(number)) if number < FIRST_SYSTEM_FANUC => {
                     variables.store(number, Some(*value), Language::LinuxCnc);
