@@ -1,9 +1,11 @@
 //! The control: everything that blocks change and motions depend on, and the order in which it executes the words of a block.
 
+mod compensation;
 mod coordinates;
 mod cycle;
 mod motion;
 mod next_run;
+mod offset;
 mod refuse;
 
 use super::block::{Block, Code, Group};
@@ -12,6 +14,7 @@ use super::note::{NoteKind, Notes};
 use super::rules::{Choice, ControlRules, Rule};
 use super::state::{ControlState, LengthOffset, Position, Rotation, Tcp, WorkOffset};
 use super::{ControlSetup, GcodeFault, Plane, Step, StepPath};
+use compensation::Compensation;
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 use touchoff::Unit;
@@ -30,6 +33,7 @@ pub(super) struct Control {
     /// Origin and rotation of the work offsets.
     origins: BTreeMap<WorkOffset, (Position, f64)>,
     lengths: BTreeMap<u32, f64>,
+    radius_offsets: BTreeMap<u32, f64>,
     home: Option<[f64; 6]>,
     second_home: Option<[f64; 6]>,
     /// Shift by G52.
@@ -43,6 +47,8 @@ pub(super) struct Control {
     /// Set if tool centre point control was switched on by M428 or `TRAORI`, which G43 and G49 do not end.
     transformed: bool,
     cycle: Option<Cycle>,
+    /// Cutter radius compensation.
+    compensation: Option<Compensation>,
     /// The last tool vector of G43.5.
     vector: Option<[f64; 3]>,
     pub(super) notes: Notes,
@@ -195,6 +201,7 @@ impl Control {
             position: setup.start,
             origins,
             lengths: setup.lengths.clone(),
+            radius_offsets: setup.radius_offsets.clone(),
             home: setup.home,
             second_home: setup.second_home,
             local: [0.0; 6],
@@ -203,6 +210,7 @@ impl Control {
             edge: None,
             transformed: false,
             cycle: None,
+            compensation: None,
             vector: None,
             notes: Notes::default(),
             rules: setup.rules.clone(),
@@ -244,6 +252,7 @@ impl Control {
     /// Executes a block, in the order of RS274/NGC, table 8.
     pub(super) fn execute(&mut self, line: usize, block: &mut Block) -> Result<(), GcodeFault> {
         self.line = line;
+        let (known, register) = (self.pending.len(), block.value('D'));
         self.note_words(block);
         self.check_dialect(block)?;
         self.check_words(block)?;
@@ -262,6 +271,7 @@ impl Control {
         // The unit and the distance mode hold for the numbers of their own block.
         self.settings(block)?;
         self.numbers(block);
+        self.compensation_words(block, register)?;
         self.coordinates(block)?;
         self.returned_length(block);
         if self.depends_on_length(block) {
@@ -276,7 +286,12 @@ impl Control {
             return Err(combination("a position", condition, remedy));
         }
         self.check_offset(block)?;
-        self.motion(block)
+        self.motion(block)?;
+        self.compensate(known)?;
+        match block.tenths_of(Group::Stop) {
+            Some(20 | 300) => self.end_compensation(),
+            _ => Ok(()),
+        }
     }
 
     /// Takes the word with the time of G4: P, or X in ISO programs, or F, which is no feed rate then.

@@ -88,6 +88,8 @@ impl<'a> Interpreter<'a> {
     /// Executes the next line, and returns whether the program goes on.
     pub(super) fn execute_line(&mut self) -> Result<bool, GcodeError> {
         let Some((line, text)) = self.flow.next_line()? else {
+            let line = self.control.line;
+            self.control.end_compensation().map_err(|fault| GcodeError { line, fault })?;
             self.finish(End::Percent);
             return Ok(false);
         };
