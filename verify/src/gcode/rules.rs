@@ -457,14 +457,11 @@ const CONTROL_CHOICES: [[Choice; 5]; 24] = {
 };
 
 /// Rules that a control leaves to a parameter without a usual value: every choice is a reading.
-const OPEN: [(&str, Rule); 11] = [
+const OPEN: [(&str, Rule); 9] = [
     ("fanuc", Rule::ReferenceReturn),
     ("fanuc", Rule::LengthChange),
     // K, and L on the Series 15 and in its format.
     ("fanuc", Rule::CycleRepeats),
-    // Type A or B, by parameter 5003 (SUP) and setting 43.
-    ("fanuc", Rule::CompensationStart),
-    ("haas", Rule::CompensationStart),
     ("haas", Rule::LengthChange),
     // Setting 162 does not list R and Q.
     ("haas", Rule::WholeRadii),

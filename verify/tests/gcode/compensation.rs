@@ -224,6 +224,62 @@ fn motions_across_the_plane() {
     assert_eq!(at(stays, &linuxcnc).last(), Some(&[-2.0, 10.0, 5.0]));
 }
 
+/// LinuxCNC begins with an arc that ends in the direction of the programmed one, and moves straight across outside corners in rapid
+/// traverse. A turn of less than 0.05 radians is no corner.
+#[test]
+fn motions_of_linuxcnc() {
+    let rules = ControlRules::named("linuxcnc").expect("a control");
+    let linuxcnc = ControlSetup { rules, ..arcs() };
+    // The centre (10, y) is as far from (0, 0) as from (10, 12).
+    let found = steps("G0 X0 Y0\nG41.1 D4 G2 X10 Y10 I10 F100\nG1 X20\nG40 Y0", &linuxcnc);
+    let StepPath::Arc { centre, sweep, .. } = found[1].path else { panic!("{found:?}") };
+    let y = 44.0 / 24.0;
+    assert!(
+        distance(centre, [10.0, y]) < 1e-12 && distance(xy(&found[1].end), [10.0, 12.0]) < 1e-12
+    );
+    assert!((sweep + 0.5 * PI + (y / 10.0).atan()).abs() < 1e-12, "{sweep}");
+    let rapid = "G0 X-10 Y0\nG41.1 D4 G1 X0 F100\nY10\nG0 X20\nG40 Y30";
+    let ends = [[-10.0, 0.0], [-2.0, 2.0], [-2.0, 10.0], [0.0, 12.0], [20.0, 12.0], [20.0, 30.0]];
+    assert_ends(rapid, &linuxcnc, &ends);
+    assert_eq!(steps(rapid, &linuxcnc)[3].path, StepPath::Line);
+    // 0.4 in 10 is 0.04 radians.
+    let bent = "G0 X-10 Y0\nG41.1 D4 G1 X0 F100\nX10 Y-0.4\nG40\nX20";
+    let normal = [0.4 / 10.0f64.hypot(0.4) * 2.0, 10.0 / 10.0f64.hypot(0.4) * 2.0];
+    let end = [10.0 + normal[0], normal[1] - 0.4];
+    assert_ends(bent, &linuxcnc, &[[-10.0, 0.0], [0.0, 2.0], end, [20.0, -0.4]]);
+}
+
+/// The planes permute the axes.
+#[test]
+fn compensation_in_three_planes() {
+    let program = "G17\nG0 X-10 Y0 Z5\nG1 G41 D1 X0 F100\nY10\nG2 X10 Y20 I10 J0\nG1 X20 Z4\nY-10\nG3 X10 Y-20 I-10 J0\nG1 X0\nG40 Y-30";
+    let plain = steps(program, &arcs());
+    for (plane, letters, word) in [("G18", "ZXYKIJ", Plane::Zx), ("G19", "YZXJKI", Plane::Yz)] {
+        let swapped: String = program
+            .chars()
+            .map(|c| match "XYZIJK".find(c) {
+                Some(index) => char::from(letters.as_bytes()[index]),
+                None => c,
+            })
+            .collect();
+        let steps = steps(&swapped.replace("G17", plane), &arcs());
+        assert_eq!(steps.len(), plain.len());
+        let [first, second] = word.axes();
+        for (step, plain) in steps.iter().zip(&plain) {
+            let axes = [first, second, word.normal()];
+            assert_eq!(axes.map(|axis| step.end[axis]), [0, 1, 2].map(|axis| plain.end[axis]));
+            match (step.path, plain.path) {
+                (StepPath::Line, StepPath::Line) => {}
+                (
+                    StepPath::Arc { plane, centre, sweep },
+                    StepPath::Arc { centre: plain_centre, sweep: plain_sweep, .. },
+                ) => assert_eq!((plane, centre, sweep), (word, plain_centre, plain_sweep)),
+                _ => panic!("{step:?} is not {plain:?}"),
+            }
+        }
+    }
+}
+
 /// Radii by control: a D number, the number of a tool, and a diameter in the unit of the program.
 #[test]
 fn radii_by_control() {
