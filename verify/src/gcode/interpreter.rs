@@ -14,7 +14,8 @@ use std::mem;
 
 /// An interpreter of a program: an iterator over its steps.
 ///
-/// It holds the state of the control and the steps of one block, so memory does not grow with the program.
+/// It holds the state of the control and the steps of one block, so memory does not grow with the program. Under cutter compensation, it holds
+/// those from one motion in the plane to the next.
 /// After an error it returns no more steps.
 #[derive(Clone, Debug)]
 pub struct Interpreter<'a> {

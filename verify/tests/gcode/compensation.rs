@@ -369,6 +369,8 @@ fn what_cannot_be_followed_is_refused_with_its_line() {
         ("BEGIN\nG40\nG0 Z9", arcs(), 5, "a motion across the plane follows G40"),
         ("BEGIN\nG40\nG28 Z9", arcs(), 5, "G28 while cutter compensation is on"),
         ("BEGIN\nM8\nM9\nX9\nG40 X20", arcs(), 6, "2 blocks without a motion"),
+        ("BEGIN\nX0 Z1\nX9\nG40 X20", arcs(), 5, "2 blocks without a motion"),
+        ("BEGIN\nG91 X0.\nG90 X9\nG40 X20", arcs(), 5, "2 blocks without a motion"),
         ("BEGIN\nG0 X9\nG40 X20", arcs(), 4, "G0 while it follows an outside corner"),
         (
             "BEGIN\nZ1\nX9 Y0\nG40 X20",

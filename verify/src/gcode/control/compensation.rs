@@ -5,8 +5,8 @@
 //! with those across the plane after it.
 //!
 //! The radius is that of a D number (Fanuc, Haas) or of a tool (LinuxCNC's D is a tool's number; Sinumerik and Heidenhain take that of the
-//! tool in the spindle). A negative one exchanges the sides (Fanuc B-62764EN section 15.4.7; `convert_cutter_compensation_on` of
-//! LinuxCNC's interpreter). With a radius of 0 the path is the programmed one, but the first and the last motion have to be straight all
+//! tool in the spindle). A negative one exchanges the sides (operator's manual of the Fanuc Series 16/18-C, section 15.4.7;
+//! `convert_cutter_compensation_on` of LinuxCNC's interpreter). With a radius of 0 the path is the programmed one, but the first and the last motion have to be straight all
 //! the same.
 //!
 //! **Entry and exit.** The first motion starts at the position, the last ends at it. Where the tool is at its other end is a
@@ -332,6 +332,9 @@ impl Control {
                 self.next_motion(&mut compensation, step, contour)?;
             }
             Phase::Contour => {
+                // Controls take a motion of no length in the plane for more than one block without any.
+                let is_across = step.commanded[compensation.plane.normal()] && !names_plane;
+                compensation.idle += usize::from(!is_across);
                 compensation.waiting.push(step);
                 self.compensation = Some(compensation);
                 return Ok(false);
@@ -375,6 +378,7 @@ impl Control {
         step: Step,
         mut contour: Contour,
     ) -> Result<(), GcodeFault> {
+        // The first motion has set it.
         let Some(mut held) = compensation.held.take() else { return Ok(()) };
         let (bend, turn) = offset::bend(&held.contour, &contour, self.tangent_tolerance());
         self.check_idle(compensation, bend)?;

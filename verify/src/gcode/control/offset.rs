@@ -337,7 +337,7 @@ fn line_and_circle(point: Vector, direction: Vector, centre: Vector, radius: f64
 /// Returns the ends of a chord of a circle by its middle and its direction, with the distance of the middle from the centre.
 fn across(middle: Vector, direction: Vector, radius: f64, distance: f64) -> Vec<Vector> {
     let squared = (radius - distance) * (radius + distance);
-    if !(squared >= 0.0) {
+    if squared < 0.0 {
         return Vec::new();
     }
     [-1.0, 1.0].map(|side| middle + direction * (side * squared.sqrt())).to_vec()
