@@ -589,3 +589,83 @@ fn random_contours_are_followed_at_the_radius() {
     assert!(worst[0] < 1e-9 && worst[1] < 1e-9, "{worst:?}");
     assert!(touched * 10 > motions_seen * 9);
 }
+
+/// Random lines with turns to both sides, against the closed form of each corner. A corner towards the tool cuts r tan(turn / 2) off both
+/// lines, and a program is refused at the first that has less left.
+#[test]
+fn random_lines_end_at_the_closed_form_of_their_corners() {
+    let mut random = Pcg64Mcg::seed_from_u64(5);
+    let (mut followed, mut refused, mut worst) = (0, 0, 0.0f64);
+    for _ in 0..20_000 {
+        let radius = 0.2 + 2.0 * uniform(&mut random);
+        let count = 2 + (6.0 * uniform(&mut random)) as usize;
+        let mut angles = vec![0.0];
+        for _ in 1..count {
+            // Turns of more than a millionth of a radian, and of less than 175 degrees.
+            let turn = (2.0 * uniform(&mut random) - 1.0) * 175.0f64.to_radians();
+            angles.push(angles[angles.len() - 1] + turn);
+        }
+        let lengths: Vec<f64> = (0..count).map(|_| 0.5 + 12.0 * uniform(&mut random)).collect();
+        let mut places: Vec<Point> = vec![[0.0, 0.0]];
+        for (angle, length) in angles.iter().zip(&lengths) {
+            let [x, y] = places[places.len() - 1];
+            places.push([x + length * angle.cos(), y + length * angle.sin()]);
+        }
+        let is_left = uniform(&mut random) < 0.5;
+        let side = if is_left { 1.0 } else { -1.0 };
+        let normal = |k: usize| [-side * angles[k].sin(), side * angles[k].cos()];
+        let beside =
+            |place: Point, k: usize| [0, 1].map(|axis| place[axis] + radius * normal(k)[axis]);
+        // The ends of the steps from the first motion on, and the line at which a corner has no room.
+        let mut expected = vec![beside(places[0], 0)];
+        let (mut before, mut stops) = (0.0, None);
+        for k in 0..count - 1 {
+            let (place, turn) = (places[k + 1], angles[k + 1] - angles[k]);
+            if side * turn < 0.0 {
+                expected.extend([beside(place, k), beside(place, k + 1)]);
+                before = 0.0;
+                continue;
+            }
+            let cut = radius * (0.5 * turn.abs()).tan();
+            if before + cut > lengths[k] || cut > lengths[k + 1] {
+                stops = stops.or(Some(k + 4));
+            }
+            let bisector = [0, 1].map(|axis| normal(k)[axis] + normal(k + 1)[axis]);
+            let scale = 2.0 * radius / (bisector[0] * bisector[0] + bisector[1] * bisector[1]);
+            expected.push([0, 1].map(|axis| place[axis] + scale * bisector[axis]));
+            before = cut;
+        }
+        expected.push(beside(places[count], count - 1));
+        let mut program = format!(
+            "G0 X{:.13} Y-30\nG1 {} D7 X0 Y0 F100\n",
+            -30.0,
+            if is_left { "G41" } else { "G42" }
+        );
+        for [x, y] in &places[1..] {
+            program += &format!("X{x:.13} Y{y:.13}\n");
+        }
+        program += "G40\nX-30 Y-30";
+        let mut setup = arcs();
+        setup.radius_offsets = [(7, radius)].into();
+        match (run(&program, &setup), stops) {
+            (Ok(steps), None) => {
+                followed += 1;
+                assert_joined(&steps);
+                let ends = &steps[1..steps.len() - 1];
+                assert_eq!(ends.len(), expected.len(), "{program}");
+                for (step, expected) in ends.iter().zip(&expected) {
+                    worst = worst.max(distance(xy(&step.end), *expected));
+                }
+            }
+            (Err(error), Some(line)) => {
+                refused += 1;
+                assert_eq!(error.line, line, "{program}\n{error}");
+            }
+            (found, expected) => panic!("{program}\n{found:?}\n{expected:?}"),
+        }
+    }
+    println!(
+        "{followed} paths within {worst:.1e} mm of the closed form, {refused} refused as it says"
+    );
+    assert!(worst < 1e-9 && followed > 2_000 && refused > 2_000);
+}
