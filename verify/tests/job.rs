@@ -227,8 +227,18 @@ fn compensation_mills_to_the_radius_of_the_job() {
     let error = deepest(&of_tool).expect_err("no D21").to_string();
     assert!(error.contains("line 7") || error.contains(":7:"), "{error}");
     assert!(error.contains("the radius offset 21 is not known"), "{error}");
+    for control in ["fanuc", "haas"] {
+        assert_eq!(deepest(&text.replace("linuxcnc", control)).expect(control), []);
+    }
     std::fs::write(folder.path().join("a.nc"), program.replace("D21", "D1")).expect("a file");
-    assert_eq!(deepest(&of_tool).expect("a verdict"), []);
+    for control in ["linuxcnc", "fanuc", "haas", "siemens"] {
+        assert_eq!(deepest(&of_tool.replace("linuxcnc", control)).expect(control), []);
+    }
+    // Without a control, both forms of corners and all first motions are readings.
+    let any = of_tool.replace("control = \"linuxcnc\"\n", "");
+    assert_eq!(deepest(&any).expect("a verdict"), []);
+    let readings = read(&any).and_then(|file| file.program()).expect("a program").reading_count();
+    assert_eq!(readings, 6);
     for (from, to, message) in [
         ("D21 = 4", "H21 = 4", "radius offset `H21`: write its number as in the program"),
         ("D21 = 4", "D0 = 4", "radius offset `D0`"),
