@@ -106,6 +106,13 @@ fn an_offset_of_zero_changes_nothing() {
         let same = steps(&SQUARE.replace("D1", number), &arcs());
         assert_eq!(same, plain);
     }
+    // Nothing leads back from it.
+    for end in ["G40\nG0 Z9\nG28 Z9", "G40 G49\nT1 M6", "G40 G28 Z9"] {
+        let program = SQUARE.replace("D1", "D3").replace("G40 X-10", end);
+        assert_eq!(steps(&program, &arcs())[..7], plain[..7], "{program}");
+    }
+    let arc = SQUARE.replace("D1", "D3").replace("G40 X-10", "G40 G2 X5 R5");
+    assert!(run(&arc, &arcs()).expect_err("an arc").to_string().contains("after G40 is an arc"));
     let arc = SQUARE.replace("G1 G41 D1 X0", "G2 G41 D3 X0 R20");
     assert!(run(&arc, &arcs()).expect_err("an arc").to_string().contains("begins with an arc"));
 }

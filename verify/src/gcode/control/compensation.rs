@@ -73,6 +73,11 @@ impl Compensation {
     fn is_on(&self) -> bool {
         !matches!(self.phase, Phase::Exit { .. })
     }
+
+    /// Returns whether the tool is beside the programmed path, or will be, or can be.
+    fn is_in_force(&self) -> bool {
+        self.is_on() || self.offset != 0.0
+    }
 }
 
 impl Control {
@@ -96,7 +101,11 @@ impl Control {
             Some(code) => self.start_compensation(block, code, register)?,
             None => {}
         }
-        let Some(compensation) = &self.compensation else { return Ok(()) };
+        // After G40 there is nothing to lead back from an offset of 0.
+        let Some(compensation) = self.compensation.as_ref().filter(|known| known.is_in_force())
+        else {
+            return Ok(());
+        };
         self.check_compensated(block, compensation)?;
         let is_selected = block.code_of(Group::CutterCompensation).is_some();
         match register.filter(|_| !is_selected) {
@@ -114,7 +123,7 @@ impl Control {
     ) -> Result<(), GcodeFault> {
         let is_linuxcnc = self.stated(Rule::Dialect) == Some(Choice::Rs274Ngc);
         let offset = self.offset(block, code, register)?;
-        if let Some(known) = &self.compensation {
+        if let Some(known) = self.compensation.as_ref().filter(|known| known.is_in_force()) {
             // The same words again change nothing.
             let is_same = known.code == code && known.offset == offset && known.is_on();
             return match is_same && !is_linuxcnc {
@@ -261,6 +270,8 @@ impl Control {
                 *is_here = false;
             }
         }
+        // An offset of 0 ends with the block of G40.
+        self.compensation = self.compensation.take().filter(Compensation::is_in_force);
         Ok(())
     }
 
@@ -270,10 +281,17 @@ impl Control {
         mut compensation: Compensation,
         step: Step,
     ) -> Result<bool, GcodeFault> {
+        let is_linuxcnc = self.stated(Rule::Dialect) == Some(Choice::Rs274Ngc);
+        if !compensation.is_in_force() {
+            if matches!(step.path, StepPath::Arc { .. }) && !is_linuxcnc {
+                return Err(CompensationFault::ArcExit.into());
+            }
+            self.pending.push_back(step);
+            return Ok(true);
+        }
         if let Some(axis) = (3..6).find(|axis| step.commanded[*axis]) {
             return Err(under_compensation(AXES[axis]));
         }
-        let is_linuxcnc = self.stated(Rule::Dialect) == Some(Choice::Rs274Ngc);
         let axes = compensation.plane.axes();
         let place = |position: &Position| in_plane(position, axes).map(Vector::from);
         let shape = match step.path {
@@ -318,7 +336,7 @@ impl Control {
                 compensation.phase = Phase::Contour;
             }
             compensation.idle = 0;
-            self.compensation = Some(compensation).filter(Compensation::is_on);
+            self.compensation = Some(compensation);
             return Ok(moves);
         }
         match compensation.phase {
