@@ -559,6 +559,6 @@ fn move_in_plane(step: &mut Step, plane: Plane, ends: [Vector; 2]) {
 
 /// Refuses a word while compensation is on.
 fn under_compensation(word: impl Into<String>) -> GcodeFault {
-    let condition = "cutter compensation is on, or G40 without the motion that ends it";
+    let condition = "cutter compensation is in force (G41, G42, or G40 without its motion)";
     combination(word, condition, "write G40 in a block with G0 or G1 before")
 }
