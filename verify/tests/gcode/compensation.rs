@@ -500,12 +500,17 @@ fn is_narrow(motions: &[Motion], radius: f64) -> bool {
 }
 
 fn write(motions: &[Motion], side: &str, offset: f64) -> String {
+    write_with(motions, side, offset, 13)
+}
+
+/// Writes a program of a contour, with an offset to the left and so many decimals.
+fn write_with(motions: &[Motion], side: &str, offset: f64, decimals: usize) -> String {
     let first = motions[0];
     // The normal to the left of the first line, on which the tool begins and ends.
     let length = distance(first.start, first.end);
     let normal = [first.start[1] - first.end[1], first.end[0] - first.start[0]];
     let lead = [0, 1].map(|k| first.start[k] + normal[k] / length * 3.0 * offset);
-    let word = |letter: char, value: f64| format!("{letter}{value:.13} ");
+    let word = |letter: char, value: f64| format!("{letter}{value:.decimals$} ");
     let place = |point: Point| word('X', point[0]) + &word('Y', point[1]);
     let mut text = format!("G0 {}Z0\nG1 {side} D7 {}F100\n", place(lead), place(first.start));
     for motion in motions {
@@ -595,6 +600,57 @@ fn random_contours_are_followed_at_the_radius() {
     );
     assert!(worst[0] < 1e-9 && worst[1] < 1e-9, "{worst:?}");
     assert!(touched * 10 > motions_seen * 9);
+}
+
+/// Rectangles with rounded corners, turned and written with three decimals, so that no transition is quite tangent: all are followed, and
+/// the tool's centre is as far from the exact contour as its radius, but for that rounding.
+#[test]
+fn rounded_numbers_bend_no_tangent_corner() {
+    let mut random = Pcg64Mcg::seed_from_u64(9);
+    let mut worst = 0.0f64;
+    for index in 0..2_000 {
+        let fillet = 2.0 + 8.0 * uniform(&mut random);
+        let half = [0, 1].map(|_| fillet + 3.0 + 20.0 * uniform(&mut random));
+        let angle = TAU * uniform(&mut random);
+        let (sine, cosine) = angle.sin_cos();
+        let turned = |[x, y]: Point| [cosine * x - sine * y, sine * x + cosine * y];
+        let [a, b] = half;
+        // Counterclockwise from the middle of the lower side.
+        let corners = [[a, -b], [a, b], [-a, b], [-a, -b]];
+        let mut motions = Vec::new();
+        let mut place = [0.0, -b];
+        for (corner, way) in
+            corners.into_iter().zip([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])
+        {
+            let next = [-way[1], way[0]];
+            let start = [0, 1].map(|k| corner[k] - fillet * way[k]);
+            let end = [0, 1].map(|k| corner[k] + fillet * next[k]);
+            let centre = [0, 1].map(|k| start[k] + fillet * next[k]);
+            motions.push(Motion { start: turned(place), end: turned(start), arc: None });
+            let arc = Some((turned(centre), 0.5 * PI));
+            motions.push(Motion { start: turned(start), end: turned(end), arc });
+            place = end;
+        }
+        motions.push(Motion { start: turned(place), end: turned([0.0, -b]), arc: None });
+        let is_inside = index % 2 == 0;
+        let radius = if is_inside { fillet * (0.1 + 0.85 * uniform(&mut random)) } else { 5.0 };
+        let (side, lead) = if is_inside { ("G41", radius) } else { ("G42", -radius) };
+        let corner = [Choice::ArcCorner, Choice::StraightCorner][index / 2 % 2];
+        let mut setup = setup(corner, Choice::NextMotion);
+        setup.radius_offsets = [(7, radius)].into();
+        let steps = steps(&write_with(&motions, side, lead, 3), &setup);
+        for motion in steps[2..steps.len() - 1].iter().map(Motion::of) {
+            for k in 0..=8 {
+                let place = motion.at(f64::from(k) / 8.0);
+                let found =
+                    motions.iter().map(|motion| motion.distance(place)).fold(f64::MAX, f64::min);
+                worst = worst.max((found - radius).abs());
+            }
+        }
+    }
+    println!("the tool is within {worst:.1e} mm of its radius");
+    // Ends and centres are rounded by 0.0005 mm in each of two axes, and the radius by the sum of both.
+    assert!(worst < 3e-3, "{worst}");
 }
 
 /// Random lines with turns to both sides, against the closed form of each corner. A corner towards the tool cuts r tan(turn / 2) off both
