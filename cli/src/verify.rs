@@ -116,6 +116,7 @@ pub(crate) fn job_file(
         machine: options.machine,
         control: options.control,
         work_offsets: [None; 9],
+        radius_offsets: BTreeMap::new(),
         block_delete: None,
         ignore: BTreeMap::new(),
         variables: BTreeMap::new(),

@@ -287,3 +287,62 @@ fn a_margin_that_is_no_length_is_refused() {
         assert!(matches!(job.check(&|_| ()), Err(JobError::Mismatch(_))), "{margin}");
     }
 }
+
+/// A job whose tool has a radius of 4 mm mills the outline of a block of 40 mm under compensation, up to its finished height.
+#[test]
+fn compensation_mills_to_the_radius_of_the_job() {
+    let part = cuboid([-20.0, -20.0, -10.0], [20.0, 20.0, 0.0]);
+    let folder = tempfile::tempdir().expect("a folder");
+    let program = "G21 G90 G54\nT1 M6\nS900 M3\nG0 X-40. Y0.\nG43 H1 Z5.\nG1 Z-5. F100.\nG41 D21 X-20.\nY20.\nX20.\nY-20.\nX-20.\nY0.\n\
+                   G40 X-40.\nG0 Z40.\nM30\n";
+    std::fs::write(folder.path().join("a.nc"), program).expect("a file");
+    let text = "part = \"a.stl\"\nunit = \"mm\"\nprogram = \"a.nc\"\nmachine = \"3-axis\"\ncontrol = \"linuxcnc\"\n\
+                [tool.1]\ntool = \"Mill\"\nlength = 80\n[radius_offsets]\nD21 = 4\n";
+    let read = |text: &str| JobFile::parse(text, &folder.path().join("a.toml"));
+    let deepest = |text: &str| {
+        let program = read(text).and_then(|file| file.program())?;
+        program.check_complete()?;
+        let mut job = Job::new(&program, &part);
+        job.tools.push(JobTool::numbered(1, &Mill));
+        let report = job.check(&|_| ())?;
+        let depths = report.findings().iter().filter_map(|finding| match finding.detail {
+            FindingDetail::Surface { .. } => Some((finding.line, finding.text.clone())),
+            _ => None,
+        });
+        Ok::<_, JobError>(depths.collect::<Vec<_>>())
+    };
+    assert_eq!(deepest(text).expect("a verdict"), []);
+    // A radius that is 0.1 mm too small leaves the tool as deep in the part.
+    let found = deepest(&text.replace("D21 = 4", "D21 = 3.9")).expect("a verdict");
+    assert!(found.iter().any(|(_, text)| text.contains("0.1000 mm deep in the part")), "{found:?}");
+    let of_tool = text.replace("[radius_offsets]\nD21 = 4", "radius_offset = 4");
+    let error = deepest(&of_tool).expect_err("no D21").to_string();
+    assert!(error.contains("line 7") || error.contains(":7:"), "{error}");
+    assert!(error.contains("the radius offset 21 is not known"), "{error}");
+    for control in ["fanuc", "haas"] {
+        assert_eq!(deepest(&text.replace("linuxcnc", control)).expect(control), []);
+    }
+    std::fs::write(folder.path().join("a.nc"), program.replace("D21", "D1")).expect("a file");
+    for control in ["linuxcnc", "fanuc", "haas", "siemens"] {
+        assert_eq!(deepest(&of_tool.replace("linuxcnc", control)).expect(control), []);
+    }
+    // Without a control, both forms of corners and all first motions are readings.
+    let any = of_tool.replace("control = \"linuxcnc\"\n", "");
+    assert_eq!(deepest(&any).expect("a verdict"), []);
+    let readings = read(&any).and_then(|file| file.program()).expect("a program").reading_count();
+    assert_eq!(readings, 6);
+    for (from, to, message) in [
+        ("D21 = 4", "H21 = 4", "radius offset `H21`: write its number as in the program"),
+        ("D21 = 4", "D0 = 4", "radius offset `D0`"),
+        ("D21 = 4", "D21 = nan", "radius offset 21 is a length in mm"),
+        (
+            "[radius_offsets]\nD21",
+            "radius_offset = 4\n[radius_offsets]\nD1",
+            "radius offset 1 is given twice",
+        ),
+    ] {
+        let text = text.replace(from, to);
+        let error = read(&text).err().map(|error| error.to_string());
+        assert!(error.as_deref().is_some_and(|error| error.contains(message)), "{to}: {error:?}");
+    }
+}

@@ -212,7 +212,7 @@ fn a_wrong_job_is_refused() {
     assert_eq!(absent.status.code(), Some(2), "{}", stderr(&absent));
     // A word that could move the tool stops the program with its line.
     for (word, message) in [
-        ("G41 D1", "cutter radius compensation"),
+        ("G41 D7", "the radius offset 7 is not known"),
         ("IF [#1 EQ 1] GOTO 5", "bracket.nc:"),
         ("L X+10 FMAX", "bracket.nc:"),
         ("G12.1", "G12.1 is not understood"),

@@ -356,7 +356,7 @@ fn g_group(code: Code) -> Result<Group, GcodeFault> {
         900 | 910 => Group::Distance,
         901 | 911 => Group::ArcDistance,
         930 | 940 | 950 => Group::FeedMode,
-        400 => Group::CutterCompensation,
+        400 | 410 | 411 | 420 | 421 => Group::CutterCompensation,
         430 | 434 | 435 | 490 | 2340 => Group::Length,
         540 | 541 | 550 | 560 | 570 | 580 | 590 | 591 | 592 | 593 => Group::WorkOffset,
         // G187 is Haas'.
@@ -393,9 +393,14 @@ fn m_group(code: Code) -> Result<Group, GcodeFault> {
 
 fn refused_g(code: Code, tenths: u32) -> GcodeFault {
     let (meaning, remedy) = match tenths {
-        410 | 411 | 420 | 421 => {
-            ("cutter radius compensation", "post the program with the path of the tool's centre")
+        412..=416 | 422..=426 | 1410 => {
+            ("three-dimensional cutter compensation", "post the program with the path of the tool")
         }
+        401 => ("control of the normal direction", "post the program with the angles of the axis"),
+        4500 | 4510 => (
+            "the path around outside corners",
+            "remove it, and state `outside_corner` of the control",
+        ),
         52 | 53 | 61 | 62 => ("a spline", "post the program with lines and arcs"),
         70 => ("diameter mode of a lathe", "post the program for a mill"),
         160 => ("polar coordinates", "post the program with X Y Z"),

@@ -1,10 +1,12 @@
 //! The control: everything that blocks change and motions depend on, and the order in which it executes the words of a block.
 
+mod compensation;
 mod coordinates;
 mod cycle;
 mod linuxcnc;
 mod motion;
 mod next_run;
+mod offset;
 mod refuse;
 mod report;
 
@@ -16,6 +18,7 @@ use super::note::{NoteKind, Notes};
 use super::rules::{Choice, ControlRules, Rule};
 use super::state::{ControlState, LengthOffset, Position, Rotation, Tcp, WorkOffset};
 use super::{ControlSetup, GcodeFault, Plane, Step, StepPath};
+use compensation::Compensation;
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 use touchoff::Unit;
@@ -34,6 +37,7 @@ pub(super) struct Control {
     /// Origin and rotation of the work offsets.
     origins: BTreeMap<WorkOffset, (Position, f64)>,
     lengths: BTreeMap<u32, f64>,
+    radius_offsets: BTreeMap<u32, f64>,
     home: Option<[f64; 6]>,
     second_home: Option<[f64; 6]>,
     /// Shift by G52.
@@ -47,6 +51,8 @@ pub(super) struct Control {
     /// Set if tool centre point control was switched on by M428 or `TRAORI`, which G43 and G49 do not end.
     transformed: bool,
     cycle: Option<Cycle>,
+    /// Cutter radius compensation.
+    compensation: Option<Compensation>,
     /// The last tool vector of G43.5.
     vector: Option<[f64; 3]>,
     pub(super) notes: Notes,
@@ -199,6 +205,7 @@ impl Control {
             position: setup.start,
             origins,
             lengths: setup.lengths.clone(),
+            radius_offsets: setup.radius_offsets.clone(),
             home: setup.home,
             second_home: setup.second_home,
             local: [0.0; 6],
@@ -207,6 +214,7 @@ impl Control {
             edge: None,
             transformed: false,
             cycle: None,
+            compensation: None,
             vector: None,
             notes: Notes::default(),
             rules: setup.rules.clone(),
@@ -259,6 +267,7 @@ impl Control {
     /// Executes a block, in the order of RS274/NGC, table 8.
     pub(super) fn execute(&mut self, line: usize, block: &mut Block) -> Result<(), GcodeFault> {
         self.line = line;
+        let (known, register) = (self.pending.len(), block.value('D'));
         self.note_words(block);
         self.check_dialect(block)?;
         self.check_words(block)?;
@@ -277,6 +286,7 @@ impl Control {
         // The unit and the distance mode hold for the numbers of their own block.
         self.settings(block)?;
         self.numbers(block);
+        self.compensation_words(block, register)?;
         self.coordinates(block)?;
         self.returned_length(block);
         if self.depends_on_length(block) {
@@ -291,7 +301,12 @@ impl Control {
             return Err(combination("a position", condition, remedy));
         }
         self.check_offset(block)?;
-        self.motion(block)
+        self.motion(block)?;
+        self.compensate(known)?;
+        match block.tenths_of(Group::Stop) {
+            Some(20 | 300) => self.end_compensation(),
+            _ => Ok(()),
+        }
     }
 
     /// Takes the word with the time of G4: P, or X in ISO programs, or F, which is no feed rate then.

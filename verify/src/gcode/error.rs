@@ -187,6 +187,9 @@ pub enum GcodeFault {
     /// A fault in an arc.
     #[error(transparent)]
     Arc(#[from] ArcFault),
+    /// A fault of cutter radius compensation.
+    #[error(transparent)]
+    Compensation(#[from] CompensationFault),
     /// A canned cycle whose plane R is below its depth.
     #[error(
         "the retract plane R {retract} is below the depth {depth} of the cycle (mm): exchange them"
@@ -429,3 +432,89 @@ pub enum ArcFault {
 }
 
 touchoff::debug_as_sentence!(ArcFault);
+
+/// A fault of cutter radius compensation (G41, G42). Lengths are in millimetres.
+#[derive(Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CompensationFault {
+    /// A radius that is not stated.
+    #[error(
+        "the radius offset {number} is not known: state it in mm in the job, by `radius_offset` of `[tool.{number}]` or as \
+         `D{number}` in `[radius_offsets]`"
+    )]
+    NoRadius {
+        /// The number after D, or of the tool.
+        number: u32,
+    },
+    /// A position in the plane that only the machine knows.
+    #[error(
+        "cutter compensation needs a known position in its plane: write both coordinates in G90 before G41 or G42"
+    )]
+    Unknown,
+    /// A first motion that is shorter than the offset.
+    #[error(
+        "the first motion of cutter compensation is {length} long, and the radius offset {offset} (mm): begin farther away"
+    )]
+    ShortEntry {
+        /// The length of the motion.
+        length: f64,
+        /// The radius offset.
+        offset: f64,
+    },
+    /// A first motion along an arc.
+    #[error("cutter compensation begins with an arc: write G0 or G1 in the block of G41 or G42")]
+    ArcEntry,
+    /// A first motion along an arc on which the tool cannot come to its offset.
+    #[error(
+        "the tool cannot come beside the arc with which cutter compensation begins: begin with G1"
+    )]
+    EntryArc,
+    /// A motion back to the programmed path along an arc.
+    #[error("the motion after G40 is an arc: write G0 or G1, which ends cutter compensation")]
+    ArcExit,
+    /// A motion across the plane between G40 and the one that ends compensation.
+    #[error(
+        "a motion across the plane follows G40, and the tool leaves its offset before or after it: write G40 in the block of a motion in \
+         the plane"
+    )]
+    ExitAcross,
+    /// An arc inside which the tool does not fit.
+    #[error(
+        "the tool is inside an arc of radius {radius}, which is not larger than the radius offset {offset} (mm), and would gouge: take a \
+         smaller tool or a larger arc"
+    )]
+    InsideArc {
+        /// The radius of the arc.
+        radius: f64,
+        /// The radius offset.
+        offset: f64,
+    },
+    /// An inside corner into which the tool does not fit.
+    #[error(
+        "the tool does not fit into the inside corner at the end of the motion of line {line}, and would gouge: one of both motions is \
+         shorter than what the radius offset cuts off at its corners"
+    )]
+    NoRoom {
+        /// The line of the motion before the corner, 1-based.
+        line: usize,
+    },
+    /// A motion across the plane in an outside corner that has two points.
+    #[error(
+        "a motion across the plane follows an outside corner of less than 90 degrees, around which the tool moves by two points: write it \
+         elsewhere"
+    )]
+    MotionInCorner,
+    /// More blocks without a motion in the plane than the control reads ahead.
+    #[error(
+        "{blocks} blocks without a motion in the plane of cutter compensation stand before this one, and controls read {most} ahead: write \
+         them before G41 or G42, or in the blocks of motions"
+    )]
+    LookAhead {
+        /// The number of blocks.
+        blocks: usize,
+        /// The number that is read ahead.
+        most: usize,
+    },
+}
+
+touchoff::debug_as_sentence!(CompensationFault);

@@ -7,7 +7,8 @@ use std::collections::BTreeMap;
 
 /// An interpreter of a program: an iterator over its steps.
 ///
-/// It holds the state of the control and the steps of one block, so memory does not grow with the program.
+/// It holds the state of the control and the steps of one block, so memory does not grow with the program. Under cutter compensation, it holds
+/// those from one motion in the plane to the next.
 /// After an error it returns no more steps.
 #[derive(Clone, Debug)]
 pub struct Interpreter<'a> {
@@ -79,6 +80,10 @@ impl<'a> Interpreter<'a> {
             Front::Iso(program) => program.execute_line(&mut self.control)?,
         };
         if let Progress::Ended(end) = progress {
+            if end != End::Stop {
+                let line = self.control.line;
+                self.control.end_compensation().map_err(|fault| GcodeError { line, fault })?;
+            }
             (self.finished, self.end) = (true, Some(end));
         }
         Ok(!self.finished)

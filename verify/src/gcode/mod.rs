@@ -23,6 +23,7 @@
 //! - G28 G30 with their intermediate position, G53.
 //! - G54 to G59.3, `G54.1 P`, G52, G92 to G92.3, `G10 L2`.
 //! - G43 H (without H: the register of the tool in the spindle), G49, T, M6.
+//! - Cutter radius compensation G40 G41 G42 with D, and LinuxCNC's G41.1 G42.1, from a [table of radii](ControlSetup::radius_offsets).
 //! - Canned cycles G73 G74 G81 to G86 G89 with G98 G99 in three planes, with R, Z, Q, P and repeats L or K.
 //! - `M98 P L` with O-numbers, M97 and M99; macros of Fanuc and Haas (G65, G66, `IF`, `WHILE`, `GOTO`) and O-words of LinuxCNC.
 //! - Tool centre point control: G43.4, G43.5, G234, `TRAORI`, M428; ended by G49, `TRAFOOF`, M429.
@@ -59,7 +60,7 @@ mod rules;
 mod state;
 
 pub use control::Spindle;
-pub use error::{ArcFault, GcodeError, GcodeFault, Obstacle};
+pub use error::{ArcFault, CompensationFault, GcodeError, GcodeFault, Obstacle};
 pub use interpreter::Interpreter;
 pub use iso::ExpressionFault;
 pub(crate) use iso::is_variable;
@@ -96,6 +97,9 @@ pub struct ControlSetup {
     pub work_offsets: [Option<[f64; 6]>; 9],
     /// Tool lengths in millimetres, by H or tool number.
     pub lengths: BTreeMap<u32, f64>,
+    /// Radius offsets of cutter compensation in millimetres, by D or tool number: the radius of the tool, or what it differs from the
+    /// radius with which the program was made. A negative one exchanges G41 and G42.
+    pub radius_offsets: BTreeMap<u32, f64>,
     /// Position of G28 in machine coordinates.
     pub home: Option<[f64; 6]>,
     /// Position of G30 in machine coordinates.
@@ -119,6 +123,7 @@ impl Default for ControlSetup {
             start: [None; 6],
             work_offsets: [None; 9],
             lengths: BTreeMap::new(),
+            radius_offsets: BTreeMap::new(),
             home: None,
             second_home: None,
             rules: ControlRules::default(),

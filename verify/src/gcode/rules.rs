@@ -57,6 +57,10 @@ pub enum Rule {
     ToolOrientation,
     /// Modes and offsets at M2 and M30.
     ProgramEnd,
+    /// The path around an outside corner under cutter compensation.
+    OutsideCorner,
+    /// The first and the last motion of cutter compensation.
+    CompensationStart,
     /// Blocks that begin with `/`: the operator's switch, which no control states.
     OptionalBlocks,
 }
@@ -114,6 +118,11 @@ pub enum Choice {
     KeepsModes,
     SetsModes,
     ResetsModes,
+    ArcCorner,
+    StraightCorner,
+    NextMotion,
+    OutsideCorners,
+    EntryMotion,
     Executed,
     LeftOut,
 }
@@ -127,7 +136,7 @@ struct Entry {
 }
 
 /// All rules. Without a statement the interpreter makes the first choice of each.
-const RULES: [Entry; 23] = [
+const RULES: [Entry; 25] = [
     Entry {
         rule: Rule::ToolChange,
         key: "tool_change",
@@ -371,6 +380,37 @@ const RULES: [Entry; 23] = [
         ],
     },
     Entry {
+        rule: Rule::OutsideCorner,
+        key: "outside_corner",
+        about: "the tool at an outside corner under cutter compensation",
+        choices: &[
+            (Choice::ArcCorner, "arc", "moves on an arc about the corner"),
+            (
+                Choice::StraightCorner,
+                "straight",
+                "moves straight on to where the paths meet, and above a turn of 90 degrees by two points",
+            ),
+        ],
+    },
+    Entry {
+        rule: Rule::CompensationStart,
+        key: "compensation_start",
+        about: "the tool at the end of the first motion of cutter compensation",
+        choices: &[
+            (Choice::NextMotion, "next motion", "is beside the start of the next one (type A)"),
+            (
+                Choice::OutsideCorners,
+                "outside corners",
+                "is so at inside corners, and goes around outside ones, also before the last motion (type B)",
+            ),
+            (
+                Choice::EntryMotion,
+                "entry motion",
+                "is beside that motion, and goes on as at other corners",
+            ),
+        ],
+    },
+    Entry {
         rule: Rule::OptionalBlocks,
         key: "optional_blocks",
         about: "blocks that begin with `/`",
@@ -387,7 +427,7 @@ const CONTROLS: [&str; 5] = ["fanuc", "haas", "linuxcnc", "siemens", "heidenhain
 /// Their choices, a column per control, in the order of [`RULES`] without the operator's switch. Each is the control as
 /// delivered: a builder can set most of them otherwise.
 #[rustfmt::skip]
-const CONTROL_CHOICES: [[Choice; 5]; 22] = {
+const CONTROL_CHOICES: [[Choice; 5]; 24] = {
     use Choice::*;
     [
         [Moves,           Retracts,      Stays,         Moves,         Moves],
@@ -412,6 +452,8 @@ const CONTROL_CHOICES: [[Choice; 5]; 22] = {
         [TableAsItStands, TableAtZero,   TableAtZero,   TableAtZero,   TableAtZero],
         [ByAxes,          ByAxes,        ByAxes,        ByAxes,        ByAxes],
         [KeepsModes,      KeepsModes,    SetsModes,     KeepsModes,    KeepsModes],
+        [StraightCorner,  StraightCorner, ArcCorner,    ArcCorner,     ArcCorner],
+        [NextMotion,      NextMotion,    EntryMotion,   NextMotion,    NextMotion],
     ]
 };
 

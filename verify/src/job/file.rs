@@ -26,6 +26,8 @@ pub struct JobFile {
     pub control: Option<OsString>,
     /// Origins of G54 to G59.3 in machine coordinates, in mm and degrees.
     pub work_offsets: [Option<[f64; 6]>; 9],
+    /// Radius offsets of cutter compensation in mm, by D or tool number.
+    pub radius_offsets: BTreeMap<u32, f64>,
     /// `true` if optional blocks are left out; `None` for both ways.
     pub block_delete: Option<bool>,
     /// Words that the control passes over, each with a reason ([`ControlRules::ignoring`]).
@@ -94,6 +96,8 @@ pub struct ToolEntry {
     pub params: Vec<String>,
     /// Distance from the tip to the gauge point of the spindle, in mm.
     pub length: Option<f64>,
+    /// Radius offset of cutter compensation under its number, in mm.
+    pub radius_offset: Option<f64>,
     /// The hand of its cutting edges, `right` if absent: that of the spindle's turn.
     #[serde(default)]
     pub hand: Hand,
@@ -185,6 +189,8 @@ struct JobText {
     control: Option<String>,
     #[serde(default)]
     work_offsets: BTreeMap<String, Vec<f64>>,
+    #[serde(default)]
+    radius_offsets: BTreeMap<String, f64>,
     block_delete: Option<bool>,
     #[serde(default)]
     ignore: BTreeMap<String, String>,
@@ -297,6 +303,7 @@ impl JobFile {
                 return Err(fault(format!("tool {number} is given twice: keep one of both")));
             }
         }
+        let radius_offsets = radius_offsets(&job.radius_offsets, &entries).map_err(fault)?;
         let named = |name: String| -> OsString {
             if name.ends_with(".toml") { folder.join(name).into() } else { name.into() }
         };
@@ -307,6 +314,7 @@ impl JobFile {
             machine: job.machine.map(named),
             control: job.control.map(named),
             work_offsets: work_offsets(&job.work_offsets)?,
+            radius_offsets,
             block_delete: job.block_delete,
             ignore: job.ignore,
             variables,
@@ -350,6 +358,7 @@ impl JobFile {
             work_offsets: self.work_offsets,
             lengths: self.tools.lengths(),
             variables: self.variables.clone(),
+            radius_offsets: self.radius_offsets.clone(),
             rules,
             ..ControlSetup::default()
         };
@@ -422,6 +431,33 @@ impl JobTools {
 
 fn has_ending(file: &Path, ending: &str) -> bool {
     file.extension().is_some_and(|end| end == ending)
+}
+
+/// Returns the radius offsets that are stated, by D or tool number: those by their names, `D21`, and those of the tools.
+///
+/// # Errors
+/// If a name is no such word, if one number has two values, or if a value is not finite.
+fn radius_offsets(
+    named: &BTreeMap<String, f64>,
+    tools: &BTreeMap<u32, ToolEntry>,
+) -> Result<BTreeMap<u32, f64>, String> {
+    let of_tools = tools.iter().filter_map(|(number, entry)| Some((*number, entry.radius_offset?)));
+    let mut offsets: BTreeMap<u32, f64> = of_tools.collect();
+    for (name, radius) in named {
+        let digits = name.strip_prefix(['D', 'd']).unwrap_or_default();
+        let Some(number) = digits.parse::<u32>().ok().filter(|number| *number > 0) else {
+            return Err(format!(
+                "radius offset `{name}`: write its number as in the program, `D21 = 0.02`"
+            ));
+        };
+        if offsets.insert(number, *radius).is_some() {
+            return Err(format!("radius offset {number} is given twice: keep one of both"));
+        }
+    }
+    match offsets.iter().find(|(_, radius)| !radius.is_finite()) {
+        Some((number, _)) => Err(format!("radius offset {number} is a length in mm")),
+        None => Ok(offsets),
+    }
 }
 
 /// Returns the origins of G54 to G59.3 by their names.

@@ -149,6 +149,17 @@ impl Program {
         MachineProgram::under(readings, &holds)
     }
 
+    /// Checks that G-code is read to its end in every reading. A job checks it up to the line that is not read, and gives no verdict.
+    ///
+    /// # Errors
+    /// If a line stops the interpreter.
+    pub fn check_complete(&self) -> Result<(), JobError> {
+        for reading in self.readings() {
+            reading.check_complete()?;
+        }
+        Ok(())
+    }
+
     /// Returns what the program leaves open, whatever it is checked against.
     pub fn gaps(&self) -> Vec<Gap> {
         match self {

@@ -499,6 +499,7 @@ fn skip_statement(word: &str, arguments: &str) -> Result<String, ProgramFault> {
         word.split([' ', ')', ',', '=']).find(|part| list.contains(part)).map(str::to_owned)
     });
     match (frame, motion) {
+        (Some(word), _) if word == "CUTCOM" => Err(ProgramFault::Compensation),
         (Some(word), _) => Err(ProgramFault::Frame { word }),
         (None, Some(word)) => Err(ProgramFault::Moves { word }),
         (None, None) => Err(ProgramFault::UnknownWord { word: shown(word) }),

@@ -167,6 +167,12 @@ pub enum ProgramFault {
         /// The word.
         word: String,
     },
+    /// Cutter compensation of the control.
+    #[error(
+        "CUTCOM is cutter compensation, under which the control moves the tool beside these positions by a radius that it has: post the \
+         program with the path of the tool"
+    )]
+    Compensation,
     /// A word that changes the meaning of positions.
     #[error(
         "{word} changes what positions mean: post the program as GOTO points in the part's coordinates"

@@ -130,10 +130,11 @@ fn steps(program: &str) -> (Vec<Step>, Option<GcodeError>) {
     (steps, None)
 }
 
-fn check_step(name: &str, step: &Step, wanted: &Canonical) {
+/// `slack` is added to the tolerance of positions, in the unit of the program.
+fn check_step(name: &str, step: &Step, wanted: &Canonical, slack: f64) {
     let fail = |what: &str| panic!("{name}: {what} of {} in\n{step:?}", wanted.text);
     let tolerance = |axis: usize| {
-        (0.5 * 10f64.powi(-wanted.digits) + 1e-9) * if axis < 3 { wanted.unit } else { 1.0 }
+        (0.5 * 10f64.powi(-wanted.digits) + slack + 1e-9) * if axis < 3 { wanted.unit } else { 1.0 }
     };
     for axis in 0..6 {
         match step.end[axis] {
@@ -177,14 +178,14 @@ fn check_step(name: &str, step: &Step, wanted: &Canonical) {
     }
 }
 
-fn compare(name: &str, program: &str, expected: &[Canonical]) -> usize {
+fn compare(name: &str, program: &str, expected: &[Canonical], slack: f64) -> usize {
     let (steps, error) = steps(program);
     if let Some(error) = error {
         panic!("{name}: {error}");
     }
     assert_eq!(steps.len(), expected.len(), "{name}: number of motions");
     for (step, wanted) in steps.iter().zip(expected) {
-        check_step(name, step, wanted);
+        check_step(name, step, wanted, slack);
     }
     steps.len()
 }
@@ -203,18 +204,21 @@ fn motions_are_those_of_linuxcnc() {
     let Some(folder) = folder() else { return };
     let folder = folder.join("interp");
     let mut total = 0;
-    // The results of g81 are those of the last of its programs.
-    for (program, expected) in [
-        ("g10/test.ngc", "g10/expected"),
-        ("g81/g19-g99-g81.ngc", "g81/expected"),
-        ("rotation/g53.ngc", "rotation/expected"),
-        ("flowsnake/flowsnake.ngc", "flowsnake/expected"),
-        ("unit-conversion/test.ngc", "unit-conversion/expected"),
-        ("m98m99/test.ngc", "m98m99/expected"),
-        ("g52/g92_offsets.ngc", "g52/expected"),
+    // The results of g81 are those of the last of its programs. The arcs of inside-corners are rounded, and are spirals: where LinuxCNC
+    // takes the radius of the end for that of the start, corners move by up to twice the last digit.
+    for (program, expected, slack) in [
+        ("g10/test.ngc", "g10/expected", 0.0),
+        ("g81/g19-g99-g81.ngc", "g81/expected", 0.0),
+        ("rotation/g53.ngc", "rotation/expected", 0.0),
+        ("flowsnake/flowsnake.ngc", "flowsnake/expected", 0.0),
+        ("crazy-paths/test.ngc", "crazy-paths/expected", 0.0),
+        ("unit-conversion/test.ngc", "unit-conversion/expected", 0.0),
+        ("m98m99/test.ngc", "m98m99/expected", 0.0),
+        ("g52/g92_offsets.ngc", "g52/expected", 0.0),
+        ("inside-corners/test.ngc", "inside-corners/expected", 2e-4),
     ] {
         let expected = canonical(&text(&folder.join(expected)));
-        let count = compare(program, &with_probes(&text(&folder.join(program))), &expected);
+        let count = compare(program, &with_probes(&text(&folder.join(program))), &expected, slack);
         println!("{program}: {count} motions");
         total += count;
     }
@@ -223,7 +227,7 @@ fn motions_are_those_of_linuxcnc() {
         let path = entry.expect("an entry").path();
         if path.extension().is_some_and(|ending| ending == "ngc") {
             let expected = text(&path.with_extension("ngc.expected"));
-            total += compare(&path.display().to_string(), &text(&path), &canonical(&expected));
+            total += compare(&path.display().to_string(), &text(&path), &canonical(&expected), 0.0);
             good += 1;
         }
     }
@@ -239,14 +243,7 @@ fn programs_that_are_not_read_are_refused_by_name() {
     let Some(folder) = folder() else { return };
     let folder = folder.join("interp");
     for (program, expected, line, message) in [
-        ("cam-nisley/cam.ngc", "cam-nisley/expected", 74, "G42 is cutter radius compensation"),
-        ("crazy-paths/test.ngc", "crazy-paths/expected", 5, "G41.1 is cutter radius"),
-        (
-            "inside-corners/test.ngc",
-            "inside-corners/expected",
-            13,
-            "G41.1 is cutter radius compensation",
-        ),
+        ("cam-nisley/cam.ngc", "cam-nisley/expected", 74, "the radius offset"),
         (
             "sequence-number/test.ngc",
             "sequence-number/expected",
@@ -264,7 +261,7 @@ fn programs_that_are_not_read_are_refused_by_name() {
         if !program.contains("g28") {
             let expected = canonical(&text(&folder.join(expected)));
             for (step, wanted) in steps.iter().zip(&expected) {
-                check_step(program, step, wanted);
+                check_step(program, step, wanted, 0.0);
             }
             println!("{program}: {} motions before {error}", steps.len());
         }

@@ -28,7 +28,13 @@ const SINUMERIK: &str = "; FLANK\nG17 G21 G40 G90 G94\nT7 D1 M6\nG54\nG0 X0 Y0 Z
 const LINUXCNC: &str = "o<hole> sub\n#3=[#31+1]\nG91 G81 X1 Z-2 R-1 L2 F100\nG80 G90\no<hole> endsub\n#31=2\nG21 G64 P0.01\n\
     G0 X0 Y0 Z5\no<hole> call\nM428\nG1 C90 F500\nG1 A20 X#31\nM429\nG0 Z[SQRT[25]*2]\nG30 Z6\nG19 G2 Y1 Z11 J.5 K.5\nM2\n";
 
-const SEEDS: [(&str, Choice); 5] = [
+const COMPENSATED: &str = "G17 G21 G40 G80 G90\nT1 M6\nG54\nG0 X-20. Y0. Z5.\nG1 G41 D1 X0. F100.\nY10.\nG2 X10. Y20. R10.\n\
+    G1 X20.\nZ-1.\nG3 X30. Y30. I0. J10.\nG1 X40.\nG2 X40. Y20. J-5.\nG1 X35.\nY-10.\nX0.\nY0.\nG40 X-20.\nG42 D2\nG1 X0. Y5.\n\
+    G2 I20.\nG1 Y20.\nG40\nG0 X0. Y0.\nZ50.\nM30\n";
+
+const SEEDS: [(&str, Choice); 7] = [
+    (COMPENSATED, Choice::Rs274Ngc),
+    (COMPENSATED, Choice::Iso),
     (THREE_AXES, Choice::Rs274Ngc),
     (FIVE_AXES, Choice::Iso),
     (TILTED, Choice::Iso),
@@ -37,7 +43,13 @@ const SEEDS: [(&str, Choice); 5] = [
 ];
 
 /// Pieces that mutations insert.
-const PIECES: [&str; 48] = [
+const PIECES: [&str; 54] = [
+    "G40",
+    "G41 D1",
+    "G42 D2",
+    "G41.1 D.5",
+    "G41",
+    "D2",
     "G0",
     "G1",
     "G2",
@@ -94,6 +106,7 @@ fn setups(dialect: Choice) -> [ControlSetup; 2] {
         work_offsets: [Some([1.0, 2.0, 3.0, 0.0, 0.0, 0.0]); 9],
         lengths: BTreeMap::from([(1, 80.0), (2, 90.0), (5, 120.0), (7, 60.0)]),
         home: Some([0.0, 0.0, 400.0, 0.0, 0.0, 0.0]),
+        radius_offsets: BTreeMap::from([(1, 2.0), (2, 3.5)]),
         ..ControlSetup::default()
     };
     let rules = ControlRules::named("haas").expect("a control");
@@ -102,7 +115,9 @@ fn setups(dialect: Choice) -> [ControlSetup; 2] {
     let rules = rules.with(Rule::WholeNumbers, Choice::Units).with(Rule::Unit, Choice::Millimetre);
     let rules = rules.with(Rule::Dialect, dialect).with(Rule::PresetEnd, Choice::EndsPreset);
     let unknown = ControlRules::default().with(Rule::Dialect, dialect);
-    [ControlSetup { rules, ..known }, ControlSetup { rules: unknown, ..ControlSetup::default() }]
+    let radius_offsets = known.radius_offsets.clone();
+    let unknown = ControlSetup { rules: unknown, radius_offsets, ..ControlSetup::default() };
+    [ControlSetup { rules, ..known }, unknown]
 }
 
 #[test]

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use touchoff_verify::gcode::{ControlRules, ControlSetup, NoteKind, Step, read};
 
 /// Blocks that change what later ones mean, and motions.
-const BLOCKS: [&str; 34] = [
+const BLOCKS: [&str; 36] = [
     "G20",
     "G21",
     "G17",
@@ -41,6 +41,8 @@ const BLOCKS: [&str; 34] = [
     "G53 G0 Z0.",
     "G28 Z8.",
     "G52 Y2.",
+    "G41.1 D1. G1 X30. Y20. Z1. F100.\nX40.\nG40 X50. Y50.",
+    "G42.1 D1. G0 X3. Y9. Z8.\nG3 X5. Y7. R30. F100.\nG40",
 ];
 
 /// Returns a control whose axes begin at the reference position, or where only the machine knows.

@@ -42,7 +42,10 @@ impl Control {
         if let Some(tool) = block.take_whole('T', 0, MAX_REGISTER, expected)? {
             self.staged = Some(tool);
         }
-        if let Some(edge) = block.take_whole('D', 0, MAX_REGISTER, expected)? {
+        let compensation = block.tenths_of(Group::CutterCompensation).unwrap_or(400);
+        // D of G41.1 and G42.1 is a diameter.
+        let has_diameter = matches!(compensation, 411 | 421);
+        if !has_diameter && let Some(edge) = block.take_whole('D', 0, MAX_REGISTER, expected)? {
             // D holds for the tool after the change, where D1 is in force anyway.
             let is_staged = self.staged.is_some() && self.staged != self.state.tool;
             if (edge != 1 || self.length_cancelled)
@@ -54,7 +57,9 @@ impl Control {
                 return Err(combination(format!("D{edge}"), condition, remedy));
             }
             self.edge = Some(edge);
-            self.notes.add(self.line, NoteKind::PassedOver { word: "D".to_owned() });
+            if compensation == 400 {
+                self.notes.add(self.line, NoteKind::PassedOver { word: "D".to_owned() });
+            }
             self.edge_length(edge)?;
         }
         let changes = match self.stated(Rule::Dialect) {

@@ -30,7 +30,7 @@ pub(super) fn check_words(block: &Block) -> Result<(), GcodeFault> {
     if let Some(value) = block.value('P').filter(|value| *value < 0.0) {
         return Err(GcodeFault::NotAllowed { word: 'P', value, expected: "a number from 0" });
     }
-    if block.has('D') {
+    if block.has('D') && block.tenths_of(Group::CutterCompensation).is_none_or(|code| code == 400) {
         return Err(GcodeFault::Unused { word: 'D' });
     }
     let motion = block.code_of(Group::Motion);

@@ -311,6 +311,9 @@ impl Control {
             && self.state == next.state
             && self.position == next.position
             && self.vector == next.vector
+            // A motion that is held back is compared once it is known.
+            && self.compensation.is_none()
+            && next.compensation.is_none()
             && self.returned == next.returned
             && (self.tcp_position_needed || !next.tcp_position_needed)
             && self.changed().zip(next.changed()).all(|(changed, next)| changed || !next)

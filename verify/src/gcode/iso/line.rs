@@ -261,6 +261,10 @@ impl Line {
             _ if DECISIONS.contains(&upper.trim_end_matches(|c: char| c.is_ascii_digit())) => {
                 return Err(GcodeFault::ControlFlow { word: upper });
             }
+            _ if upper.starts_with("CUT3D") => {
+                let meaning = "three-dimensional cutter compensation of Sinumerik";
+                return Err(not_read(upper, meaning, "post the program with the path of the tool"));
+            }
             _ if name.len() > 1 => {
                 return Err(GcodeFault::UnknownWord { word: unquoted(name) });
             }

@@ -253,10 +253,10 @@ impl<'a> Program<'a> {
         if block.passed_over.iter().any(|code| (code.letter, code.tenths) == ('G', 670)) {
             self.flow.modal = None;
         }
+        let moves = block.has_any("XYZABC") && !block.owns_axis_words();
         control.execute(number, block)?;
         // A canned cycle in a repeated subprogram has many steps per block.
         self.flow.count(control.pending.len(), number)?;
-        let moves = !control.pending.is_empty();
         match subprogram.map(|code| code.tenths) {
             Some(tenths @ (970 | 980)) => {
                 let call = self.called(block, tenths, control)?;
