@@ -88,12 +88,19 @@ pub const MAX_LENGTH: f64 = 1e6;
 pub const MAX_DEGREES: f64 = 1e6;
 
 /// The machines that come with the library: names and files.
-const LIBRARY: [(&str, &str); 5] = [
+const LIBRARY: [(&str, &str); 12] = [
     ("3-axis", include_str!("machines/3-axis.toml")),
     ("A-C trunnion", include_str!("machines/a-c-trunnion.toml")),
     ("B-C table-table", include_str!("machines/b-c-table.toml")),
+    ("A-B table-table", include_str!("machines/a-b-table.toml")),
+    ("B-C nutating table", include_str!("machines/b-c-nutating-table.toml")),
+    ("A head + C table", include_str!("machines/a-head-c-table.toml")),
     ("B head + C table", include_str!("machines/b-head-c-table.toml")),
+    ("B nutating head + C table", include_str!("machines/b-nutating-head-c-table.toml")),
     ("A-C fork head", include_str!("machines/a-c-fork-head.toml")),
+    ("B-C fork head", include_str!("machines/b-c-fork-head.toml")),
+    ("A-B head", include_str!("machines/a-b-head.toml")),
+    ("B-C nutating head", include_str!("machines/b-c-nutating-head.toml")),
 ];
 
 /// The letter of an axis (ISO 841).

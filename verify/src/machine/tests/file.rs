@@ -36,7 +36,7 @@ fn machines_of_the_library_have_their_names() {
         let rotary = machine.axes().iter().filter(|axis| axis.letter.is_rotary()).count();
         assert_eq!(rotary, if name == "3-axis" { 0 } else { 2 });
     }
-    assert_eq!(machines.len(), 5);
+    assert_eq!(machines.len(), 12);
     let error = Machine::named("lathe").expect_err("no machine").to_string();
     assert!(error.starts_with(
         "`lathe` is no machine of the library: name one of `3-axis`, `A-C trunnion`,"
