@@ -205,6 +205,14 @@ pub enum JointError {
         /// The last link.
         last: usize,
     },
+    /// A body moves with an axis that the machine lacks.
+    #[error(
+        "a body moves with {letter}, an axis that the machine lacks: name one of its axes, or its base"
+    )]
+    NoCarrier {
+        /// The axis.
+        letter: Letter,
+    },
     /// A position of the tip relative to a body that not all linear axes move.
     #[error(
         "not all linear axes move the tool relative to link {link}: give the tip relative to the workpiece"

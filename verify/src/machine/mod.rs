@@ -67,8 +67,8 @@ mod motion;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use chain::sin_cos_degrees;
 pub use chain::{Chain, RoundingBound};
+pub(crate) use chain::{Mover, Reference, Relation, sin_cos_degrees};
 pub use error::{InverseError, JointError, MachineError, MachineFault};
 pub use inverse::{InverseSolution, REACH_TOLERANCE};
 pub use limits::{LimitViolation, SINGULAR_ANGLE, SINGULAR_TURN, SingularPass};
@@ -133,6 +133,25 @@ impl Letter {
 impl fmt::Display for Letter {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         fmt::Debug::fmt(self, f)
+    }
+}
+
+/// A link of a machine: something that its axes move as one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Link {
+    /// The base, which stands still.
+    Base,
+    /// The link that an axis moves: those before it on its side move it, too.
+    Axis(Letter),
+}
+
+/// The letter of the axis, or `base`.
+impl fmt::Display for Link {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Link::Base => f.write_str("base"),
+            Link::Axis(letter) => letter.fmt(f),
+        }
     }
 }
 
