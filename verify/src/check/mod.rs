@@ -31,6 +31,7 @@ mod remedy;
 
 pub use approach::Approach;
 pub use finding::{Finding, FindingGroup, FindingKind, VerifyError, VerifyReport};
+pub(crate) use machine_program::MoveRequest;
 pub use machine_program::{
     Gap, MAX_READINGS, MachineProgram, MachineProgramError, MachineSummary, StepFault,
     ToolSelection, ToolUse, UnknownCause, UnknownMotions,

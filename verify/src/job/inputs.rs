@@ -1,8 +1,10 @@
 //! A job and the files that it names, read.
 
+use super::bodies::{self, LoadedBody};
 use super::file::{JobFile, NamedTool, StockEntry};
 use super::program::Program;
-use super::{Body, BodyRole, Job, JobError, JobStock, JobTool, PART, StockShape};
+use super::{Body, BodyFrame, BodyRole, Job, JobError, JobStock, JobTool, PART, StockShape};
+use crate::machine::{BodyShape, Machine};
 use nalgebra::Point3;
 use std::path::{Path, PathBuf};
 use touchoff::certify::TriangleBvh;
@@ -19,26 +21,30 @@ pub struct JobInputs<T> {
     pub program: Program,
     /// The tools that the program uses, in the order of their first motions.
     pub tools: Vec<(NamedTool, T)>,
-    /// The part, then the fixtures.
+    /// The part, then the fixtures and the meshes of the machine.
     pub bodies: Vec<JobBody>,
+    /// The bodies of the machine that are solids of revolution.
+    revolved: Vec<LoadedBody<T>>,
     /// The stock.
     pub stock: Option<JobStock>,
 }
 
-/// A part or a fixture, read from its file.
+/// A part, a fixture or a mesh of the machine, read.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct JobBody {
     /// Its name in findings.
     pub name: String,
-    /// The file of its mesh.
-    pub file: PathBuf,
+    /// The file of its mesh; `None` for one that is made of numbers.
+    pub file: Option<PathBuf>,
     /// Its mesh.
     pub mesh: Mesh,
     /// Its triangles.
     pub bvh: TriangleBvh,
-    link: Option<usize>,
-    role: BodyRole,
+    /// The frame of its triangles.
+    pub frame: BodyFrame,
+    /// How near the surfaces of a tool may come.
+    pub role: BodyRole,
 }
 
 impl JobBody {
@@ -46,12 +52,18 @@ impl JobBody {
     fn read(name: &str, file: &Path, unit: Unit, role: BodyRole) -> Result<JobBody, JobError> {
         let mesh = mesh(file, unit)?;
         let bvh = TriangleBvh::new(&mesh);
-        Ok(JobBody { name: name.to_owned(), file: file.to_owned(), mesh, bvh, link: None, role })
+        let (name, file) = (name.to_owned(), Some(file.to_owned()));
+        Ok(JobBody { name, file, mesh, bvh, frame: BodyFrame::Part, role })
+    }
+
+    /// Returns whether it is a mesh of the machine, and neither the part nor a fixture.
+    pub fn is_of_machine(&self) -> bool {
+        matches!(self.role, BodyRole::Machine { .. })
     }
 
     /// Returns whether it moves with another axis than the workpiece. The tool's poses at it are then in its own frame.
     pub fn has_own_frame(&self) -> bool {
-        self.link.is_some()
+        self.frame != BodyFrame::Part
     }
 }
 
@@ -78,20 +90,42 @@ impl<T: AsRef<dyn Tool>> JobInputs<T> {
             };
             let role = BodyRole::Fixture { margin: fixture.margin };
             let body = JobBody::read(&fixture.name, &fixture.mesh, file.unit, role)?;
-            bodies.push(JobBody { link, ..body });
+            let frame = link.map_or(BodyFrame::Part, BodyFrame::Table);
+            bodies.push(JobBody { frame, ..body });
+        }
+        let mut revolved = Vec::new();
+        if let Some(machine) = program.machine() {
+            bodies.extend(bodies::meshes(machine, file.unit)?);
+            revolved = bodies::revolved(machine, &bodies, file.unit, &mut load)?;
         }
         let stock = file.stock.as_ref().map(|entry| stock(entry, file.unit)).transpose()?;
-        Ok(JobInputs { file, program, tools, bodies, stock })
+        Ok(JobInputs { file, program, tools, bodies, revolved, stock })
+    }
+
+    /// Returns the files that it was read from, each with its role: those of [`JobFile::files`], and those of the machine's bodies.
+    pub fn files(&self) -> Vec<(String, &Path)> {
+        let mut files = self.file.files();
+        let bodies = self.program.machine().map_or(&[][..], Machine::bodies).iter();
+        files.extend(bodies.filter_map(|body| {
+            let file = match &body.shape {
+                BodyShape::Mesh { file, .. } => &**file,
+                BodyShape::Tool { name, .. } if name.ends_with(".tool") => Path::new(name),
+                _ => return None,
+            };
+            Some((body.name.clone(), file))
+        }));
+        files
     }
 
     /// Returns the job.
     pub fn job(&self) -> Job<'_> {
         let mut job = Job::new(&self.program, &self.bodies[0].bvh);
         for body in &self.bodies[1..] {
-            let mut fixture = Body::fixture(&body.name, &body.bvh);
-            (fixture.link, fixture.role) = (body.link, body.role);
-            job.bodies.push(fixture);
+            let mut other = Body::fixture(&body.name, &body.bvh);
+            (other.frame, other.role) = (body.frame, body.role);
+            job.bodies.push(other);
         }
+        job.revolved.extend(self.revolved.iter().map(LoadedBody::body));
         for (named, tool) in &self.tools {
             let mut tool = JobTool::of_all(tool.as_ref());
             (tool.motions, tool.hand) = (named.motions, named.hand);
@@ -106,7 +140,7 @@ impl<T: AsRef<dyn Tool>> JobInputs<T> {
     }
 }
 
-fn mesh(file: &Path, unit: Unit) -> Result<Mesh, JobError> {
+pub(super) fn mesh(file: &Path, unit: Unit) -> Result<Mesh, JobError> {
     match Geometry::read(file, unit)? {
         Geometry::Mesh(mesh) => Ok(mesh),
         Geometry::Points(_) => Err(JobError::NoTriangles { file: file.display().to_string() }),
