@@ -123,6 +123,7 @@ pub(crate) fn job_file(
         tolerance: options.tolerance,
         resolution: options.resolution,
         allow: options.allow,
+        other_parts: Vec::new(),
         fixtures: Vec::new(),
         stock: None,
         surface_only: options.surface_only,

@@ -254,3 +254,63 @@ fn g_code_runs_without_a_job() {
     assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
     assert!(stderr(&output).contains("units of part and program"), "{}", stderr(&output));
 }
+
+/// Two parts on one table: each is checked where it stands, with the motions of the whole program.
+#[test]
+fn a_job_has_a_part_per_work_offset() {
+    let bench = Bench::new();
+    bench.part("plate.stl", &cuboid([-20.0, -20.0, -10.0], [20.0, 20.0, 0.0]));
+    bench.part("bar.stl", &cuboid([-20.0, -5.0, -10.0], [20.0, 5.0, 4.0]));
+    bench.write("mill10.tool", end_mill("Mill10", 10.0));
+    let program = |height: f64, end: &str| {
+        let text = format!(
+            "G21 G90 G54 G94 F300.\nT1 M6\nS900 M3\nG0 X-30. Y0.\nG43 H1 Z20.\nZ0.\nG1 X30.\nG0 Z20.\n\
+             G55 X-30. Y0.\nZ{height}\nG1 X30.\nG0 Z20.\nG54 X0.\n{end}M30\n"
+        );
+        bench.write("two.nc", text);
+    };
+    let text = "part = \"plate.stl\"\nunit = \"mm\"\nprogram = \"two.nc\"\ncontrol = \"linuxcnc\"\n\
+                [work_offsets]\nG54 = [0, 0, -300]\nG55 = [100, 0, -300]\n[tool.1]\ntool = \"mill10.tool\"\nlength = 60\n\
+                [[other_part]]\nwork_offset = \"G55\"\nmesh = \"bar.stl\"\n";
+    program(4.0, "");
+    let clean = job(&bench, text, &[]);
+    assert_eq!(clean.status.code(), Some(0), "{}{}", stdout(&clean), stderr(&clean));
+    assert!(stderr(&clean).contains("T1 at the part at G55: no findings"), "{}", stderr(&clean));
+    // Without it nothing is near under G55, and a copy of the plate is lower.
+    let (alone, _) = text.split_once("[[other_part]]").expect("its start");
+    let far = job(&bench, alone, &[]);
+    assert_eq!(far.status.code(), Some(2), "{}", stderr(&far));
+    assert!(stderr(&far).contains("state what stands there as `[[other_part]]`"));
+    program(3.5, "");
+    for (text, status) in [(text.to_owned(), 1), (text.replace("mesh = \"bar.stl\"\n", ""), 0)] {
+        let output = job(&bench, &text, &[]);
+        assert_eq!(output.status.code(), Some(status), "{}{}", stdout(&output), stderr(&output));
+        let found = stdout(&output)
+            .contains("two.nc:11: T1 face is 0.5000 mm deep in the part at G55 at (");
+        assert_eq!(found, status == 1, "{}", stdout(&output));
+    }
+    // A motion under G54 that runs into the other part.
+    program(4.0, "Z2.\nX100.\nZ20.\n");
+    let named = format!("{text}name = \"the bar\"\n");
+    let found = objects(&job(&bench, &named, &["--json"]));
+    let at_bar = |row: &&serde_json::Value| row["body"] == "the bar" && row["rapid"] == true;
+    assert!(found.iter().any(|row| at_bar(&row) && row["line"] == 15), "{found:?}");
+    let report = bench.touchoff("report bracket.toml -o two.html");
+    assert_eq!(report.status.code(), Some(1), "{}", stderr(&report));
+    let html = std::fs::read_to_string(bench.place("two.html")).expect("the report");
+    assert!(html.contains("Other parts") && html.contains("the bar") && html.contains("bar.stl"));
+
+    for (from, to, words) in [
+        ("work_offset = \"G55\"", "work_offset = \"G54\"", "one of G55 to G59.3"),
+        ("work_offset = \"G55\"", "work_offset = \"G56\"", "state its origin and that of G54"),
+        ("G55 = [100, 0, -300]", "G55 = [100, 0, -300, 5]", "turns a rotary axis otherwise"),
+        ("bar.stl", "none.stl", "none.stl"),
+        ("mesh = ", "meshes = ", "unknown field `meshes`"),
+    ] {
+        assert!(text.contains(from), "{from}");
+        let refused = job(&bench, &text.replace(from, to), &[]);
+        let said = stderr(&refused);
+        assert_eq!(refused.status.code(), Some(2), "{to}: {said}");
+        assert!(said.contains(words), "{to}: {said}");
+    }
+}

@@ -342,6 +342,7 @@ impl MachineProgram {
             {
                 summary.tcp_without_length.get_or_insert(step.line);
             }
+            summary.add_offset(&step, &self.setup.work_offsets);
             if !step.rapid {
                 summary.add_feed(&step, self.off_is_tip);
             }

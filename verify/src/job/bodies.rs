@@ -139,6 +139,7 @@ pub(super) fn meshes(machine: &Machine, unit: Unit) -> Result<Vec<JobBody>, JobE
             bvh: TriangleBvh::new(&mesh),
             mesh,
             frame: BodyFrame::Machine(body.link),
+            work_offset: None,
             role: BodyRole::Machine { margin: body.margin * scale, meets_tools },
         });
     }
@@ -199,7 +200,7 @@ fn meets(body: &MachineBody, other: &JobBody, machine: &Machine) -> bool {
 }
 
 /// Returns a mesh with other vertices, in a unit.
-fn moved(
+pub(super) fn moved(
     mesh: &Mesh,
     place: impl Fn(&Point3<f64>) -> Point3<f64>,
     unit: Unit,

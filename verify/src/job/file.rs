@@ -1,7 +1,7 @@
 //! Job files: TOML, with paths relative to the folder of the file.
 
 use super::program::{Program, read_control};
-use super::{Hand, JobError, checked_margin};
+use super::{Hand, JobError, PART, checked_margin};
 use crate::ToolSelection;
 use crate::gcode::{Choice, ControlRules, ControlSetup, Rule};
 use serde::{Deserialize, Deserializer};
@@ -36,6 +36,8 @@ pub struct JobFile {
     pub resolution: Option<f64>,
     /// Depths that surfaces may have instead, by their names.
     pub allow: Vec<(String, f64)>,
+    /// Other parts on the same table.
+    pub other_parts: Vec<PartEntry>,
     /// The fixtures.
     pub fixtures: Vec<FixtureEntry>,
     /// The stock.
@@ -115,6 +117,18 @@ fn assignments<'de, D: Deserializer<'de>>(table: D) -> Result<Vec<String>, D::Er
     Ok(params.collect())
 }
 
+/// Another part on the same table, which stands at another work offset as the part stands at G54.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PartEntry {
+    /// Name of its work offset, G55 to G59.3.
+    pub work_offset: String,
+    /// Its mesh, in the unit of the part; that of the part if absent.
+    pub mesh: Option<PathBuf>,
+    /// Its name in findings; `the part at` its work offset if absent.
+    pub name: Option<String>,
+}
+
 /// A mesh that no surface of a tool may touch.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -175,6 +189,8 @@ struct JobText {
     #[serde(default)]
     allow: BTreeMap<String, f64>,
     #[serde(default)]
+    other_part: Vec<PartEntry>,
+    #[serde(default)]
     fixture: Vec<FixtureEntry>,
     stock: Option<StockEntry>,
     #[serde(default)]
@@ -208,6 +224,9 @@ impl JobFile {
                 }
             }
         }
+        let others =
+            self.other_parts.iter().filter_map(|part| Some((part.name(), &**part.mesh.as_ref()?)));
+        files.extend(others);
         let fixtures = self.fixtures.iter();
         files.extend(fixtures.map(|fixture| (fixture.name.clone(), &*fixture.mesh)));
         let stock = self.stock.as_ref().and_then(|stock| stock.mesh.as_deref());
@@ -275,6 +294,11 @@ impl JobFile {
             tolerance: job.tolerance,
             resolution: job.resolution,
             allow: job.allow.into_iter().collect(),
+            other_parts: job
+                .other_part
+                .into_iter()
+                .map(|part| PartEntry { mesh: part.mesh.map(beside), ..part })
+                .collect(),
             fixtures: job
                 .fixture
                 .into_iter()
@@ -373,6 +397,31 @@ impl JobTools {
                 .iter()
                 .filter_map(|(number, entry)| Some((*number, entry.length?)))
                 .collect(),
+        }
+    }
+}
+
+impl PartEntry {
+    /// Returns its name in findings.
+    pub fn name(&self) -> String {
+        match &self.name {
+            Some(name) => name.clone(),
+            None => format!("{PART} at {}", self.work_offset),
+        }
+    }
+
+    /// Returns the index of its work offset, from 1 on: that of G54 is the part's own.
+    ///
+    /// # Errors
+    /// [`JobError::WorkOffset`] if it has none of these names.
+    pub(super) fn offset_index(&self) -> Result<usize, JobError> {
+        let known = |name: &&str| name.eq_ignore_ascii_case(&self.work_offset);
+        match WORK_OFFSETS.iter().position(|name| known(&name)) {
+            Some(index) if index > 0 => Ok(index),
+            _ => Err(JobError::OtherPart {
+                name: self.name(),
+                reason: "its `work_offset` is one of G55 to G59.3, since the part stands at G54",
+            }),
         }
     }
 }

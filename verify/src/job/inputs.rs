@@ -1,11 +1,12 @@
 //! A job and the files that it names, read.
 
 use super::bodies::{self, LoadedBody};
-use super::file::{JobFile, NamedTool, StockEntry};
+use super::file::{JobFile, NamedTool, PartEntry, StockEntry};
 use super::program::Program;
 use super::{Body, BodyFrame, BodyRole, Job, JobError, JobStock, JobTool, PART, StockShape};
+use crate::gcode::WorkOffset;
 use crate::machine::{BodyShape, Machine};
-use nalgebra::Point3;
+use nalgebra::{Point3, Vector3};
 use std::path::{Path, PathBuf};
 use touchoff::certify::TriangleBvh;
 use touchoff::mesh::Geometry;
@@ -21,7 +22,7 @@ pub struct JobInputs<T> {
     pub program: Program,
     /// The tools that the program uses, in the order of their first motions.
     pub tools: Vec<(NamedTool, T)>,
-    /// The part, then the fixtures and the meshes of the machine.
+    /// The part, then other parts, the fixtures and the meshes of the machine.
     pub bodies: Vec<JobBody>,
     /// The bodies of the machine that are solids of revolution.
     revolved: Vec<LoadedBody<T>>,
@@ -29,7 +30,7 @@ pub struct JobInputs<T> {
     pub stock: Option<JobStock>,
 }
 
-/// A part, a fixture or a mesh of the machine, read.
+/// The part, another part, a fixture or a mesh of the machine, read.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct JobBody {
@@ -45,6 +46,8 @@ pub struct JobBody {
     pub frame: BodyFrame,
     /// How near the surfaces of a tool may come.
     pub role: BodyRole,
+    /// The work offset of another part.
+    pub work_offset: Option<WorkOffset>,
 }
 
 impl JobBody {
@@ -53,7 +56,54 @@ impl JobBody {
         let mesh = mesh(file, unit)?;
         let bvh = TriangleBvh::new(&mesh);
         let (name, file) = (name.to_owned(), Some(file.to_owned()));
-        Ok(JobBody { name, file, mesh, bvh, frame: BodyFrame::Part, role })
+        let (frame, work_offset) = (BodyFrame::Part, None);
+        Ok(JobBody { name, file, mesh, bvh, frame, role, work_offset })
+    }
+
+    /// Reads another part, and puts it at its work offset.
+    ///
+    /// # Errors
+    /// If its mesh cannot be read, or its place is not stated.
+    fn read_other(
+        entry: &PartEntry,
+        job: &JobFile,
+        program: &Program,
+    ) -> Result<JobBody, JobError> {
+        let index = entry.offset_index()?;
+        let refused = |reason| JobError::OtherPart { name: entry.name(), reason };
+        if program.machine().is_none() {
+            return Err(refused(
+                "other parts are for G-code, whose work offsets have a place: remove `[[other_part]]`",
+            ));
+        }
+        let (Some(part), Some(other)) = (job.work_offsets[0], job.work_offsets[index]) else {
+            return Err(refused("state its origin and that of G54 in `work_offsets`"));
+        };
+        // The frames of both are parallel then, and their origins apart by the difference.
+        if part[3..] != other[3..] {
+            return Err(refused(
+                "its origin turns a rotary axis otherwise than that of G54: state the same angles, and turn its mesh",
+            ));
+        }
+        let file = entry.mesh.as_deref().unwrap_or(&job.part);
+        let mut body = JobBody::read(&entry.name(), file, job.unit, BodyRole::Part)?;
+        let by = Vector3::from([0, 1, 2].map(|k| other[k] - part[k]));
+        let by = by * Unit::Millimetre.factor_to(job.unit);
+        let moved = bodies::moved(&body.mesh, |vertex| vertex + by, job.unit);
+        body.mesh = moved.map_err(|source| JobError::MachineMesh { name: entry.name(), source })?;
+        body.bvh = TriangleBvh::new(&body.mesh);
+        body.work_offset = Some(WorkOffset::Standard(index as u8 + 1));
+        Ok(body)
+    }
+
+    /// Returns whether it is another part than the first.
+    pub fn is_other_part(&self) -> bool {
+        self.work_offset.is_some()
+    }
+
+    /// Returns whether it is a fixture.
+    pub fn is_fixture(&self) -> bool {
+        matches!(self.role, BodyRole::Fixture { .. })
     }
 
     /// Returns whether it is a mesh of the machine, and neither the part nor a fixture.
@@ -83,6 +133,9 @@ impl<T: AsRef<dyn Tool>> JobInputs<T> {
             tools.push((named, tool));
         }
         let mut bodies = vec![JobBody::read(PART, &file.part, file.unit, BodyRole::Part)?];
+        for entry in &file.other_parts {
+            bodies.push(JobBody::read_other(entry, &file, &program)?);
+        }
         for fixture in &file.fixtures {
             let link = match &fixture.moves_with {
                 None => None,
@@ -123,6 +176,7 @@ impl<T: AsRef<dyn Tool>> JobInputs<T> {
         for body in &self.bodies[1..] {
             let mut other = Body::fixture(&body.name, &body.bvh);
             (other.frame, other.role) = (body.frame, body.role);
+            other.work_offset = body.work_offset;
             job.bodies.push(other);
         }
         job.revolved.extend(self.revolved.iter().map(LoadedBody::body));

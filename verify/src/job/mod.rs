@@ -19,7 +19,7 @@ mod report;
 mod stock;
 
 pub use bodies::RevolvedBody;
-pub use file::{FixtureEntry, JobFile, JobTools, NamedTool, StockEntry, ToolEntry};
+pub use file::{FixtureEntry, JobFile, JobTools, NamedTool, PartEntry, StockEntry, ToolEntry};
 pub use inputs::{JobBody, JobInputs};
 pub use machine::{MachineFinding, MachineFindingKind, SpindleFault};
 pub use program::{DEFAULT_MACHINE, Program, read_control, read_machine};
@@ -28,7 +28,7 @@ pub use report::{
 };
 pub use stock::{CutStock, StockFinding};
 
-use crate::gcode::ControlError;
+use crate::gcode::{ControlError, WorkOffset};
 use crate::machine::{JointError, Letter, Link, Machine, MachineError, Side};
 use crate::program::ProgramError;
 use crate::stock::{Stock, StockError};
@@ -85,7 +85,7 @@ pub const PART: &str = "the part";
 pub struct Job<'a> {
     /// The program.
     pub program: &'a Program,
-    /// The part, then the fixtures and the meshes of the machine.
+    /// The part, then other parts, the fixtures and the meshes of the machine.
     pub bodies: Vec<Body<'a>>,
     /// The tools of the program.
     pub tools: Vec<JobTool<'a>>,
@@ -117,6 +117,8 @@ pub struct Body<'a> {
     pub frame: BodyFrame,
     /// How near the surfaces of a tool may come.
     pub role: BodyRole,
+    /// The work offset of another part, under which the program is meant for it.
+    pub work_offset: Option<WorkOffset>,
 }
 
 /// The frame of the triangles of a body, which moves with a link of the machine.
@@ -285,6 +287,25 @@ pub enum JobError {
     /// A body of the job is no mesh.
     #[error(transparent)]
     Geometry(#[from] GeometryError),
+    /// Another part has no place on the table.
+    #[error("{name}: {reason}")]
+    OtherPart {
+        /// Its name.
+        name: String,
+        /// The reason, and the remedy.
+        reason: &'static str,
+    },
+    /// The program sets the work offset of another part to other values than the job.
+    #[error(
+        "line {line}: the program sets {offset}, at which another part of the job stands, to other values than the job: state its \
+         origin in `work_offsets`, or remove the block"
+    )]
+    MovedPart {
+        /// The work offset.
+        offset: WorkOffset,
+        /// The line of the first motion under it.
+        line: usize,
+    },
     /// A mesh of the machine is none in its place.
     #[error("the body `{name}` of the machine is no mesh in its place: {source}")]
     MachineMesh {
@@ -367,7 +388,7 @@ impl<'a> Job<'a> {
     /// Creates a job without tools, fixtures and stock, in which nothing may be deeper in the part than 0.
     pub fn new(program: &'a Program, part: &'a TriangleBvh) -> Job<'a> {
         let (frame, role) = (BodyFrame::Part, BodyRole::Part);
-        let part = Body { name: PART.to_owned(), bvh: part, frame, role };
+        let part = Body { name: PART.to_owned(), bvh: part, frame, role, work_offset: None };
         Job {
             program,
             bodies: vec![part],
@@ -455,17 +476,25 @@ impl<'a> Body<'a> {
     /// Creates a fixture that moves with the workpiece and may be touched, and not be entered.
     pub fn fixture(name: &str, bvh: &'a TriangleBvh) -> Body<'a> {
         let role = BodyRole::Fixture { margin: 0.0 };
-        Body { name: name.to_owned(), bvh, frame: BodyFrame::Part, role }
+        Body { name: name.to_owned(), bvh, frame: BodyFrame::Part, role, work_offset: None }
+    }
+
+    /// Creates another part, which the program cuts under another work offset. Its triangles are in the frame of the part: those of
+    /// its own frame, moved by the difference of both origins.
+    pub fn other_part(name: &str, bvh: &'a TriangleBvh, work_offset: WorkOffset) -> Body<'a> {
+        let (frame, role) = (BodyFrame::Part, BodyRole::Part);
+        Body { name: name.to_owned(), bvh, frame, role, work_offset: Some(work_offset) }
     }
 
     /// Creates a mesh of the machine, in machine coordinates with all axes at 0, that moves with a link and may be touched by the
     /// tools of the program, and not be entered.
     pub fn machine(name: &str, bvh: &'a TriangleBvh, link: Link) -> Body<'a> {
         let role = BodyRole::Machine { margin: 0.0, meets_tools: true };
-        Body { name: name.to_owned(), bvh, frame: BodyFrame::Machine(link), role }
+        let (frame, work_offset) = (BodyFrame::Machine(link), None);
+        Body { name: name.to_owned(), bvh, frame, role, work_offset }
     }
 
-    /// Returns whether it is the part, and no fixture or mesh of the machine.
+    /// Returns whether it is the part or another part, and no fixture or mesh of the machine.
     pub fn is_part(&self) -> bool {
         self.role == BodyRole::Part
     }

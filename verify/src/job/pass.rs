@@ -67,6 +67,19 @@ impl<'a> Job<'a> {
         }
         let (mut pairs, mut cuts) = (Vec::new(), Vec::new());
         let mut gaps = self.program.gaps();
+        let against = self.revolved.iter().flat_map(|body| &body.against);
+        if against.into_iter().any(|body| *body >= self.bodies.len()) {
+            return Err(JobError::Mismatch(
+                "a body of the machine is checked against a body of the job that there is not",
+            ));
+        }
+        for (offset, line) in
+            self.program.readings().iter().flat_map(|reading| &reading.summary().moved_offsets)
+        {
+            if self.bodies.iter().any(|body| body.work_offset == Some(*offset)) {
+                return Err(JobError::MovedPart { offset: *offset, line: *line });
+            }
+        }
         let is_machine = |body: &Body<'_>| matches!(body.frame, BodyFrame::Machine(_));
         if !self.revolved.is_empty() || self.bodies.iter().any(is_machine) {
             self.program.check_places()?;
@@ -89,7 +102,7 @@ impl<'a> Job<'a> {
             let far = result.far_offsets.into_iter().map(|(offset, line)| {
                 let reason = format!(
                     "under {offset} the tool never comes within its diameter of the part: check {offset} in `work_offsets`, \
-                     or give a job per part"
+                     state what stands there as `[[other_part]]`, or give a job per part"
                 );
                 (line, reason)
             });
@@ -173,8 +186,11 @@ impl<'a> Job<'a> {
         };
         let mut approaches: Vec<OffsetApproach<'_>> = Vec::new();
         for (offset, _) in &offsets {
-            // The part is the first body.
-            for (pair, verifier) in moving.iter().zip(&verifiers).filter(|(pair, _)| pair.body == 0)
+            // The part is the first body, unless another one stands at the offset.
+            let other = self.bodies.iter().position(|body| body.work_offset == Some(*offset));
+            let part = other.unwrap_or(0);
+            for (pair, verifier) in
+                moving.iter().zip(&verifiers).filter(|(pair, _)| pair.body == part)
             {
                 let Some(tool) = pair.moving.tool() else { continue };
                 let search = ApproachSearch::new(verifier)?;

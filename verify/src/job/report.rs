@@ -162,7 +162,8 @@ impl JobReport<'_> {
 
     /// Returns whether the program seems to be in another unit than the part, so that findings mean nothing.
     fn is_misplaced(&self) -> bool {
-        let mut parts = self.pairs.iter().filter(|pair| self.is_tool_at_part(pair));
+        let at_part = |pair: &&PairReport| self.is_tool_at_part(pair) && pair.body == 0;
+        let mut parts = self.pairs.iter().filter(at_part);
         !self.job.anyway && parts.any(|pair| pair.report.approach.unit_factor.is_some())
     }
 
@@ -225,7 +226,9 @@ impl JobReport<'_> {
                     .to_owned(),
             );
         }
-        let factor = parts().find_map(|pair| pair.report.approach.unit_factor);
+        // The positions for other parts are outside the box of each.
+        let mut first = parts().filter(|pair| pair.body == 0);
+        let factor = first.find_map(|pair| pair.report.approach.unit_factor);
         if let (false, Some(factor)) = (self.job.anyway, factor) {
             reasons.push(format!(
                 "the positions in feed lie outside the part's box, but would fit if they were {factor} times as large: check \

@@ -86,6 +86,7 @@ fn picture(picture: &Picture) -> Markup {
 
 /// Returns the 3-D view, and the pictures that stand in for it in print and without a script.
 fn view(content: &Content<'_>) -> Markup {
+    // Other parts are shown beside the part, as fixtures are.
     let mut others = content.inputs.bodies.iter().skip(1);
     let has_fixtures = others.any(|body| !body.is_of_machine());
     html! {

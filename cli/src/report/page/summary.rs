@@ -6,7 +6,7 @@ use crate::program::extent;
 use maud::{Markup, html};
 use std::collections::BTreeMap;
 use touchoff::Unit;
-use touchoff_verify::job::{PairReport, Severity};
+use touchoff_verify::job::{JobBody, PairReport, Severity};
 use touchoff_verify::{JobTool, Verdict};
 
 /// Returns the verdict, and what it is about.
@@ -71,18 +71,20 @@ fn facts(content: &Content<'_>) -> Vec<Fact> {
         let info = tool.tool.info();
         plain(&format!("{}{} {}", prefix(tool.number()), info.name, info.title))
     });
-    let fixtures = content.inputs.bodies.iter().skip(1).filter(|body| !body.is_of_machine());
-    let fixtures = fixtures.map(|body| plain(&body.name));
-    let meshes = content.inputs.bodies.iter().filter(|body| body.is_of_machine());
-    let meshes = meshes.map(|body| plain(&body.name));
-    let machine = checked.job.revolved.iter().map(|body| plain(&body.name)).chain(meshes);
+    let named = |is_wanted: fn(&JobBody) -> bool| {
+        let bodies = content.inputs.bodies.iter().skip(1).filter(move |body| is_wanted(body));
+        bodies.map(|body| plain(&body.name)).collect::<Vec<String>>()
+    };
+    let revolved = checked.job.revolved.iter().map(|body| plain(&body.name));
+    let machine = revolved.chain(named(JobBody::is_of_machine));
     let summaries = checked.summaries().into_iter().map(|summary| plain(&summary));
     let gaps = checked.gaps.iter().map(|gap| plain(&gap.to_string()));
     let facts = [
         Fact { key: "Part", values: part(content) },
         Fact { key: "Program", values: program(content) },
         Fact { key: "Tools", values: tools.collect() },
-        Fact { key: "Fixtures", values: fixtures.collect() },
+        Fact { key: "Other parts", values: named(JobBody::is_other_part) },
+        Fact { key: "Fixtures", values: named(JobBody::is_fixture) },
         Fact { key: "Bodies of the machine", values: machine.collect() },
         Fact { key: "Checked", values: summaries.collect() },
         Fact { key: "Stock", values: stock(content) },
