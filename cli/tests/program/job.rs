@@ -314,3 +314,74 @@ fn a_job_has_a_part_per_work_offset() {
         assert!(said.contains(words), "{to}: {said}");
     }
 }
+
+/// A job of two set-ups: the first cuts one half of a block away, and the second has the other half, turned over about x.
+#[test]
+fn a_stock_is_what_an_earlier_set_up_leaves() {
+    let bench = Bench::new();
+    bench.part("op10.stl", &cuboid([-20.0, -20.0, -20.0], [20.0, -2.0, 0.0]));
+    bench.part("op20.stl", &cuboid([-20.0, 2.0, -20.0], [20.0, 20.0, 0.0]));
+    bench.write("mill10.tool", end_mill("Mill10", 10.0));
+    let start = "G21 G90 G54 G94 F300.\nT1 M6\nS900 M3\nG0 X-30. Y4.\nG43 H1 Z5.\n";
+    let mut first = start.to_owned();
+    for (level, row) in [-10.0, -20.5].iter().flat_map(|z| [4.0, 12.0, 20.0].map(|y| (z, y))) {
+        first += &format!("G0 Z5.\nX-30. Y{row}\nZ{level}\nG1 X30.\n");
+    }
+    bench.write("op10.nc", first + "G0 Z5.\nM30\n");
+    let second = |row: f64| {
+        let text = format!("{start}G0 X-8. Y{row}\nZ-15.\nZ5.\nY-8.\nG1 Z-1.\nX8.\nG0 Z5.\nM30\n");
+        bench.write("op20.nc", text);
+    };
+    let text = |setup: &str, stock: &str| {
+        format!(
+            "part = \"{setup}.stl\"\nunit = \"mm\"\nprogram = \"{setup}.nc\"\ncontrol = \"linuxcnc\"\n[work_offsets]\n\
+             G54 = [0, 0, -300]\n[tool.1]\ntool = \"mill10.tool\"\nlength = 60\n[stock]\n{stock}\n"
+        )
+    };
+    let block = "box = [[-20, -20, -20], [20, 20, 0]]\nspacing = 1";
+    let turned = "from = \"op10.toml\"\norigin = [0, 0, -20]\nx = [1, 0, 0]\nz = [0, 0, -1]";
+    let file = bench.write("op10.toml", text("op10", block));
+    let earlier = touchoff(&["verify", &file]);
+    assert_eq!(earlier.status.code(), Some(0), "{}{}", stdout(&earlier), stderr(&earlier));
+    for (row, stock, status) in [(-8.0, turned, 0), (12.0, turned, 1), (-8.0, block, 1)] {
+        second(row);
+        let output = job(&bench, &text("op20", stock), &["--json"]);
+        assert_eq!(
+            output.status.code(),
+            Some(status),
+            "{row}: {}{}",
+            stdout(&output),
+            stderr(&output)
+        );
+        let found = objects(&output).iter().any(|found| found["kind"] == "stock");
+        assert_eq!(found, status == 1, "{row}: {}", stdout(&output));
+    }
+    second(-8.0);
+    let refused = |stock: &str, words: &str| {
+        let output = job(&bench, &text("op20", stock), &[]);
+        let said = stderr(&output);
+        assert_eq!(output.status.code(), Some(2), "{stock}: {said}");
+        assert!(said.contains(words), "{stock}: {said}");
+    };
+    refused(
+        &turned.replace("[0, 0, -1]", "[0, 0.6, -0.8]"),
+        "not directions of two coordinate axes",
+    );
+    refused(&format!("{turned}\nspacing = 1"), "remove `spacing`");
+    refused(&format!("{turned}\nmesh = \"op10.stl\""), "only one of them");
+    refused(&turned.replace("op10", "op5"), "op5.toml: cannot be read");
+    refused(&format!("{block}\norigin = [0, 0, -20]"), "place that of an earlier set-up");
+    refused(&block.replace("\nspacing = 1", ""), "has a `spacing`");
+    refused("from = \"bracket.toml\"", "comes from itself");
+    // An earlier set-up with another unit, without a stock, or with findings.
+    bench.write("op10.toml", text("op10", block).replace("\"mm\"", "\"inch\""));
+    refused(turned, "in another unit");
+    let (without, _) = text("op10", block)
+        .split_once("[stock]")
+        .map(|(a, b)| (a.to_owned(), b.to_owned()))
+        .expect("a stock");
+    bench.write("op10.toml", without);
+    refused(turned, "has no stock");
+    bench.write("op10.toml", text("op10", "box = [[-20, -20, -20], [20, 20, 8]]\nspacing = 1"));
+    refused(turned, "the set-up before, whose stock this is, is not clean");
+}

@@ -1,6 +1,6 @@
 //! The bodies of a machine in a job: meshes that tools must not touch, and solids of revolution that must not touch meshes.
 
-use super::inputs::{self, JobBody};
+use super::inputs::{self, JobBody, Load};
 use super::{BodyFrame, BodyRole, Hand, JobError, NamedTool};
 use crate::ToolSelection;
 use crate::machine::{BodyShape, Link, Machine, MachineBody, Opponent, Side};
@@ -154,7 +154,7 @@ pub(super) fn revolved<T, E: From<JobError>>(
     machine: &Machine,
     bodies: &[JobBody],
     unit: Unit,
-    load: &mut impl FnMut(&NamedTool) -> Result<T, E>,
+    load: Load<'_, T, E>,
 ) -> Result<Vec<LoadedBody<T>>, E> {
     let mut revolved = Vec::new();
     for body in machine.bodies() {

@@ -144,7 +144,7 @@ pub struct FixtureEntry {
     pub margin: f64,
 }
 
-/// The stock: a mesh, or a box by its lowest and highest corner.
+/// The stock: a mesh, a box by its lowest and highest corner, or what an earlier set-up leaves.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StockEntry {
@@ -153,8 +153,16 @@ pub struct StockEntry {
     /// The lowest and the highest corner of a box.
     #[serde(rename = "box")]
     pub corners: Option<[[f64; 3]; 2]>,
-    /// Distance between neighbouring points of its lattice.
-    pub spacing: f64,
+    /// The job file of an earlier set-up.
+    pub from: Option<PathBuf>,
+    /// The origin of the earlier set-up's part frame in the frame of the part; its own if absent.
+    pub origin: Option<[f64; 3]>,
+    /// The direction of its axis x, that of a coordinate axis; `[1, 0, 0]` if absent.
+    pub x: Option<[f64; 3]>,
+    /// The direction of its axis z; `[0, 0, 1]` if absent.
+    pub z: Option<[f64; 3]>,
+    /// Distance between neighbouring points of its lattice; that of an earlier set-up is its own.
+    pub spacing: Option<f64>,
     /// Depth that non-cutting surfaces may have in it.
     pub tolerance: Option<f64>,
     /// Output file for what remains, an STL mesh.
@@ -231,6 +239,8 @@ impl JobFile {
         files.extend(fixtures.map(|fixture| (fixture.name.clone(), &*fixture.mesh)));
         let stock = self.stock.as_ref().and_then(|stock| stock.mesh.as_deref());
         files.extend(stock.map(|file| ("stock".to_owned(), file)));
+        let earlier = self.stock.as_ref().and_then(|stock| stock.from.as_deref());
+        files.extend(earlier.map(|file| ("job of the earlier set-up".to_owned(), file)));
         files
     }
 
@@ -306,6 +316,7 @@ impl JobFile {
                 .collect(),
             stock: job.stock.map(|stock| StockEntry {
                 mesh: stock.mesh.map(beside),
+                from: stock.from.map(beside),
                 output: stock.output.map(beside),
                 map: stock.map.map(beside),
                 ..stock

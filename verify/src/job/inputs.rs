@@ -3,9 +3,12 @@
 use super::bodies::{self, LoadedBody};
 use super::file::{JobFile, NamedTool, PartEntry, StockEntry};
 use super::program::Program;
+use super::report::Verdict;
 use super::{Body, BodyFrame, BodyRole, Job, JobError, JobStock, JobTool, PART, StockShape};
+use crate::Gap;
 use crate::gcode::WorkOffset;
 use crate::machine::{BodyShape, Machine};
+use crate::stock::RemainingPoints;
 use nalgebra::{Point3, Vector3};
 use std::path::{Path, PathBuf};
 use touchoff::certify::TriangleBvh;
@@ -28,7 +31,12 @@ pub struct JobInputs<T> {
     revolved: Vec<LoadedBody<T>>,
     /// The stock.
     pub stock: Option<JobStock>,
+    /// What is open about them.
+    gaps: Vec<Gap>,
 }
+
+/// Loads a tool by its name.
+pub(super) type Load<'l, T, E> = &'l mut dyn FnMut(&NamedTool) -> Result<T, E>;
 
 /// The part, another part, a fixture or a mesh of the machine, read.
 #[derive(Clone, Debug)]
@@ -126,6 +134,15 @@ impl<T: AsRef<dyn Tool>> JobInputs<T> {
         file: JobFile,
         mut load: impl FnMut(&NamedTool) -> Result<T, E>,
     ) -> Result<JobInputs<T>, E> {
+        JobInputs::read_after(file, &mut load, &mut Vec::new())
+    }
+
+    /// Reads a job whose stock is that of the jobs before it; `later` are the job files that are read for others.
+    fn read_after<E: From<JobError>>(
+        file: JobFile,
+        load: Load<'_, T, E>,
+        later: &mut Vec<PathBuf>,
+    ) -> Result<JobInputs<T>, E> {
         let program = file.program()?;
         let mut tools = Vec::new();
         for named in file.used_tools(&program)? {
@@ -149,10 +166,71 @@ impl<T: AsRef<dyn Tool>> JobInputs<T> {
         let mut revolved = Vec::new();
         if let Some(machine) = program.machine() {
             bodies.extend(bodies::meshes(machine, file.unit)?);
-            revolved = bodies::revolved(machine, &bodies, file.unit, &mut load)?;
+            revolved = bodies::revolved(machine, &bodies, file.unit, load)?;
         }
-        let stock = file.stock.as_ref().map(|entry| stock(entry, file.unit)).transpose()?;
-        Ok(JobInputs { file, program, tools, bodies, revolved, stock })
+        let (mut stock, mut gaps) = (None, Vec::new());
+        if let Some(entry) = &file.stock {
+            let left = match &entry.from {
+                Some(earlier) => Some(Self::remaining(earlier, file.unit, load, later, &mut gaps)?),
+                None => None,
+            };
+            stock = Some(self::stock(entry, left, file.unit)?);
+        }
+        Ok(JobInputs { file, program, tools, bodies, revolved, stock, gaps })
+    }
+
+    /// Checks the job of an earlier set-up, and returns what it leaves of its stock, in its own frame.
+    ///
+    /// # Errors
+    /// If the job cannot be checked, has no stock or another unit, leaves several stocks, or is among those that it is read for.
+    fn remaining<E: From<JobError>>(
+        file: &Path,
+        unit: Unit,
+        load: Load<'_, T, E>,
+        later: &mut Vec<PathBuf>,
+        gaps: &mut Vec<Gap>,
+    ) -> Result<RemainingPoints, E> {
+        let name = || file.display().to_string();
+        let refused = |message: &str| {
+            E::from(JobError::File { file: name(), line: None, message: message.to_owned() })
+        };
+        let place = std::fs::canonicalize(file)
+            .map_err(|source| E::from(JobError::Unreadable { file: name(), source }))?;
+        if later.contains(&place) {
+            return Err(refused(
+                "the stock of this set-up comes from itself: give the first one a `mesh` or a `box`",
+            ));
+        }
+        later.push(place);
+        let earlier = JobFile::read(file)?;
+        if earlier.unit != unit {
+            return Err(refused(
+                "this set-up is in another unit than that after it: state both in the same one",
+            ));
+        }
+        let inputs = JobInputs::read_after(earlier, load, later)?;
+        later.pop();
+        let job = inputs.job();
+        let report = job.check(&|_| ())?;
+        let mut left = report.cuts.iter().map(|cut| cut.stock.remaining_points());
+        let Some(first) = left.next() else {
+            return Err(refused(
+                "this set-up has no stock, and so leaves none: state its `[stock]`",
+            ));
+        };
+        if left.any(|other| other != first) {
+            return Err(refused(
+                "this set-up leaves one stock or another, by the control: state its `control`",
+            ));
+        }
+        if report.verdict() != Verdict::Clean {
+            let reason = format!(
+                "the set-up before, whose stock this is, is not clean: verify {} by itself",
+                name()
+            );
+            gaps.push(Gap::open(0, reason));
+        }
+        Ok(first)
     }
 
     /// Returns the files that it was read from, each with its role: those of [`JobFile::files`], and those of the machine's bodies.
@@ -187,6 +265,7 @@ impl<T: AsRef<dyn Tool>> JobInputs<T> {
             job.tools.push(tool);
         }
         job.stock.clone_from(&self.stock);
+        job.gaps.clone_from(&self.gaps);
         (job.tolerance, job.resolution) = (self.file.tolerance, self.file.resolution);
         job.allow.clone_from(&self.file.allow);
         (job.surface_only, job.anyway) = (self.file.surface_only, self.file.anyway);
@@ -201,11 +280,43 @@ pub(super) fn mesh(file: &Path, unit: Unit) -> Result<Mesh, JobError> {
     }
 }
 
-fn stock(entry: &StockEntry, unit: Unit) -> Result<JobStock, JobError> {
-    let shape = match (&entry.mesh, entry.corners) {
-        (Some(file), None) => StockShape::Mesh(mesh(file, unit)?),
-        (None, Some(corners)) => StockShape::Box(corners.map(Point3::from)),
-        _ => return Err(JobError::Mismatch("a stock has a `mesh` or a `box`, and not both")),
+/// Returns the stock of an entry; `left` is what the earlier set-up leaves that it names.
+fn stock(
+    entry: &StockEntry,
+    left: Option<RemainingPoints>,
+    unit: Unit,
+) -> Result<JobStock, JobError> {
+    let is_placed = [entry.origin, entry.x, entry.z].iter().any(Option::is_some);
+    let spacing = match (&left, entry.spacing) {
+        (Some(points), None) => points.spacing(),
+        (Some(_), Some(_)) => {
+            return Err(JobError::Mismatch(
+                "a stock `from` an earlier set-up has the spacing of that one: remove `spacing`",
+            ));
+        }
+        (None, _) if is_placed => {
+            return Err(JobError::Mismatch(
+                "`origin`, `x` and `z` of a stock place that of an earlier set-up: state it by `from`, or remove them",
+            ));
+        }
+        (None, Some(spacing)) => spacing,
+        (None, None) => {
+            return Err(JobError::Mismatch("a stock of a `mesh` or a `box` has a `spacing`"));
+        }
     };
-    Ok(JobStock { shape, spacing: entry.spacing, tolerance: entry.tolerance })
+    let shape = match (&entry.mesh, entry.corners, left) {
+        (Some(file), None, None) => StockShape::Mesh(mesh(file, unit)?),
+        (None, Some(corners), None) => StockShape::Box(corners.map(Point3::from)),
+        (None, None, Some(points)) => StockShape::Points(points.placed(
+            Point3::from(entry.origin.unwrap_or_default()),
+            entry.x.unwrap_or([1.0, 0.0, 0.0]),
+            entry.z.unwrap_or([0.0, 0.0, 1.0]),
+        )?),
+        _ => {
+            return Err(JobError::Mismatch(
+                "a stock has a `mesh`, a `box` or `from`, and only one of them",
+            ));
+        }
+    };
+    Ok(JobStock { shape, spacing, tolerance: entry.tolerance })
 }

@@ -31,8 +31,8 @@ pub use stock::{CutStock, StockFinding};
 use crate::gcode::{ControlError, WorkOffset};
 use crate::machine::{JointError, Letter, Link, Machine, MachineError, Side};
 use crate::program::ProgramError;
-use crate::stock::{Stock, StockError};
-use crate::{MachineProgramError, ToolSelection, Verifier, VerifyError};
+use crate::stock::{RemainingPoints, Stock, StockError};
+use crate::{Gap, MachineProgramError, ToolSelection, Verifier, VerifyError};
 use nalgebra::Point3;
 use serde::Deserialize;
 use std::convert::Infallible;
@@ -101,6 +101,8 @@ pub struct Job<'a> {
     pub allow: Vec<(String, f64)>,
     /// Checks the surface alone of a body whose mesh has no inside.
     pub surface_only: bool,
+    /// What is open about its inputs, beside what the program leaves open.
+    pub gaps: Vec<Gap>,
     /// Accepts what the program leaves open, and a program that seems to be meant for another part.
     pub anyway: bool,
 }
@@ -209,6 +211,8 @@ pub struct JobStock {
 pub enum StockShape {
     /// The inside of a mesh.
     Mesh(Mesh),
+    /// What an earlier set-up left, in the frame of the part. Its spacing is that of its points.
+    Points(RemainingPoints),
     /// A box, by its lowest and its highest corner.
     Box([Point3<f64>; 2]),
 }
@@ -399,6 +403,7 @@ impl<'a> Job<'a> {
             resolution: None,
             allow: Vec::new(),
             surface_only: false,
+            gaps: Vec::new(),
             anyway: false,
         }
     }
@@ -542,6 +547,7 @@ impl JobStock {
     fn build(&self, unit: Unit) -> Result<Stock, StockError> {
         match &self.shape {
             StockShape::Mesh(mesh) => Stock::from_mesh(mesh, self.spacing),
+            StockShape::Points(points) => Stock::from_points(points),
             StockShape::Box(corners) => Stock::from_box(*corners, self.spacing, unit),
         }
     }

@@ -67,6 +67,7 @@ impl<'a> Job<'a> {
         }
         let (mut pairs, mut cuts) = (Vec::new(), Vec::new());
         let mut gaps = self.program.gaps();
+        gaps.extend(self.gaps.iter().cloned());
         let against = self.revolved.iter().flat_map(|body| &body.against);
         if against.into_iter().any(|body| *body >= self.bodies.len()) {
             return Err(JobError::Mismatch(
