@@ -64,7 +64,7 @@ impl ToolSelection {
 }
 
 /// Something of which moves are asked for, and the frame in which they are given.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) enum MoveRequest {
     /// The tool relative to the part.
     AtPart,
@@ -73,7 +73,7 @@ pub(crate) enum MoveRequest {
     /// Any bodies of the machine.
     Bodies {
         /// The bodies.
-        relation: Relation,
+        relation: Box<Relation>,
         /// Set if poses are in the frame of the part while all axes are at 0, and not in machine coordinates.
         is_in_part: bool,
     },
@@ -275,8 +275,10 @@ impl MachineProgram {
         }
         let [x, y, z, ..] = self.setup.work_offsets[0].unwrap_or_default();
         let origin = Vector3::new(x, y, z);
-        let frames: Vec<_> =
-            requests.iter().map(|request| MoveFrame { request: *request, origin, unit }).collect();
+        let frames: Vec<_> = requests
+            .iter()
+            .map(|request| MoveFrame { request: request.clone(), origin, unit })
+            .collect();
         // The program exists because an execution had no error, and every execution has the same steps.
         let reason = "the execution that created the program had no error";
         let steps = self.execute().expect(reason);
@@ -432,7 +434,6 @@ struct LengthOffsets {
 }
 
 /// The frame of moves.
-#[derive(Clone, Copy)]
 struct MoveFrame {
     request: MoveRequest,
     /// Origin of the part in machine coordinates, in mm.

@@ -427,7 +427,7 @@ impl PartEntry {
     /// [`JobError::WorkOffset`] if it has none of these names.
     pub(super) fn offset_index(&self) -> Result<usize, JobError> {
         let known = |name: &&str| name.eq_ignore_ascii_case(&self.work_offset);
-        match WORK_OFFSETS.iter().position(|name| known(&name)) {
+        match WORK_OFFSETS.iter().position(known) {
             Some(index) if index > 0 => Ok(index),
             _ => Err(JobError::OtherPart {
                 name: self.name(),

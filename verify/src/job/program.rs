@@ -307,7 +307,7 @@ impl Program {
             BodyFrame::Table(_) | BodyFrame::Machine(_) => Reference::Link(frame.link(machine)),
         };
         Ok(MoveRequest::Bodies {
-            relation: Relation::new(machine, mover, reference)?,
+            relation: Box::new(Relation::new(machine, mover, reference)?),
             is_in_part: matches!(frame, BodyFrame::Table(_)),
         })
     }

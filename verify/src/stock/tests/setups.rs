@@ -25,7 +25,7 @@ fn points_of_a_set_up_move_with_its_frame() {
     let cut = |time| motion.pose(time);
     stock.advance(&Mill, &cut, travel, MotionMode::Feed, 0.1).expect("contacts");
     let left = stock.remaining_points();
-    assert!(stock.len() < whole && stock.len() > 0);
+    assert!(stock.len() < whole && !stock.is_empty());
     let origin = Point3::new(3.0, -200.0, 17.25);
     let units = [0, 1, 2].map(|axis| Vector3::ith(axis, 1.0));
     let directions: Vec<Vector3<f64>> = units.into_iter().flat_map(|unit| [unit, -unit]).collect();
