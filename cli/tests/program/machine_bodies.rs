@@ -87,6 +87,16 @@ fn a_spindle_head_touches_the_table_at_a_steep_angle() {
     let plain = verify(&bench, &text.replace(" with bodies", ""), &[]);
     assert_eq!(plain.status.code(), Some(0), "{}{}", stdout(&plain), stderr(&plain));
 
+    // In inches the bodies are as large.
+    let side = 60.0 / 25.4;
+    bench.part("inch.stl", &cuboid([-side, -side, -side], [side, side, 0.0]));
+    let inch = text.replace("\"mm\"", "\"inch\"").replace("block.stl", "inch.stl");
+    let inch = verify(&bench, &inch.replace("tolerance = 2.1", "tolerance = 0.09"), &["--json"]);
+    let rows = objects(&inch);
+    let row = rows.iter().find(|row| row["kind"] == "deep").expect("a finding");
+    let depth = row["depth"][1].as_f64().expect("a number");
+    assert!((25.4 * depth - exact).abs() < 2e-3 && row["body"] == "the table", "{row}");
+
     verify(&bench, &text, &[]);
     let report = bench.touchoff("report slot.toml -o slot.html");
     assert_eq!(report.status.code(), Some(1), "{}", stderr(&report));

@@ -368,7 +368,7 @@ impl Chain {
     ///
     /// > rotation: (2 (30 + 9) (m + f) + 8) u
     ///
-    /// The turned mount of a [`Relation`] counts as one more axis: its rotation is taken as it is, within 9u of an exact one.
+    /// The turned mount of another body counts as one more axis: its rotation is taken as it is, within 9u of an exact one.
     ///
     /// Sine and cosine of the platform's library are taken to err by at most an ulp.
     pub fn rounding(&self, joints: &Joints) -> RoundingBound {

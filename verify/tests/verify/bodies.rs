@@ -493,3 +493,38 @@ fn bodies_without_a_place_are_refused() {
     let refused = job.check(&|_| ()).expect_err("no machine").to_string();
     assert!(refused.contains("bodies of a machine are for programs on a machine"), "{refused}");
 }
+
+/// In rapid traverse at unknown rates, a body on the slide of X is checked on all paths between those of the axes: a post beside the
+/// straight line is found, and one beside the box is not.
+#[test]
+fn bodies_are_checked_at_any_rates() {
+    let part = TriangleBvh::new(&block([-8.0, -8.0, -8.0], [8.0, 8.0, 8.0]));
+    let text = "G21 G90 G54 G94 F1000.\nT1 M6\nS900 M3\nG43 H1\nG1 X0. Y0. Z30. B0. C0.\nG0 X80. Y80.\nG1 Z32.\nM30\n";
+    let machine = Machine::parse(MACHINE, "head.toml").expect("a machine");
+    // A control without a name moves at unknown rates.
+    let setup = ControlSetup { rules: ControlRules::default(), ..setup() };
+    let program = Program::parse(text, "a.nc", machine, &setup).expect("a program");
+    let mount = Pose::from_axis(Point3::new(0.0, 0.0, 40.0), Vector3::z()).expect("a pose");
+    for (x, y, is_found) in
+        [(70.0, 10.0, true), (10.0, 70.0, true), (120.0, 10.0, false), (40.0, -40.0, false)]
+    {
+        // The program's origin is at (2, 5) on the machine, and the table moves the other way.
+        let (low, high) = ([x, y, -200.0], [x + 4.0, y + 4.0, 200.0]);
+        let shifted = |[x, y, z]: [f64; 3]| [x + ORIGIN[0], y + ORIGIN[1], z];
+        let post = TriangleBvh::new(&block(shifted(low), shifted(high)));
+        let mut job = Job::new(&program, &part);
+        job.tools.push(JobTool::numbered(1, &Mounted));
+        job.anyway = true;
+        let mut body = Body::machine("the post", &post, Link::Axis(Letter::Y));
+        body.role = BodyRole::Machine { margin: 0.0, meets_tools: false };
+        job.bodies.push(body);
+        let mut slide = RevolvedBody::new("the slide", &Mounted, Link::Axis(Letter::X), mount);
+        slide.against = vec![1];
+        job.revolved.push(slide);
+        let report = job.check(&|_| ()).expect("a result");
+        let pairs = report.pairs.iter().filter(|pair| pair.moving == Moving::Revolved(0));
+        let found: Vec<&Finding> = pairs.flat_map(|pair| &pair.report.findings).collect();
+        assert_eq!(!found.is_empty(), is_found, "{x} {y}: {found:?}");
+        assert!(found.iter().all(|found| found.any_rates && found.line == 6), "{found:?}");
+    }
+}
