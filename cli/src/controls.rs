@@ -6,7 +6,7 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::io::Write;
 use touchoff_verify::gcode::{ControlRules, Rule};
-use touchoff_verify::machine::{Axis, Machine, Side};
+use touchoff_verify::machine::{Axis, Machine, MachineBody, Opponent, Side};
 
 /// A control as a JSON object.
 #[derive(Serialize)]
@@ -23,6 +23,18 @@ struct MachineRow<'a> {
     /// Joint values after a tool change, in the order X Y Z A B C, of the axes that it moves.
     tool_change: Option<[Option<f64>; 6]>,
     axes: Vec<AxisRow>,
+    bodies: Vec<BodyRow<'a>>,
+}
+
+/// A body of a machine. Its file has its shape.
+#[derive(Serialize)]
+struct BodyRow<'a> {
+    name: &'a str,
+    /// `base`, or the letter of the axis.
+    moves_with: String,
+    /// Distance to keep, in mm.
+    margin: f64,
+    against: Vec<&'a str>,
 }
 
 /// An axis, with lengths in mm and angles in degrees.
@@ -81,7 +93,8 @@ pub(crate) fn machines(name: Option<&str>, json: bool) -> Result<(), Failure> {
         let machine = Machine::named(name)?;
         let axes: Vec<AxisRow> = machine.axes().iter().map(AxisRow::of).collect();
         if json {
-            let row = MachineRow { name, tool_change: machine.tool_change(), axes };
+            let bodies = machine.bodies().iter().map(BodyRow::of).collect();
+            let row = MachineRow { name, tool_change: machine.tool_change(), axes, bodies };
             out.json(&row)?;
             continue;
         }
@@ -94,8 +107,25 @@ pub(crate) fn machines(name: Option<&str>, json: bool) -> Result<(), Failure> {
         for axis in axes {
             writeln!(out, "  {}", axis.describe())?;
         }
+        for BodyRow { name, moves_with, margin, against } in
+            machine.bodies().iter().map(BodyRow::of)
+        {
+            write!(out, "  {name} moves with {moves_with}")?;
+            if !against.is_empty() {
+                write!(out, ", keeps {margin} mm from {}", against.join(", "))?;
+            }
+            writeln!(out)?;
+        }
     }
     Ok(out.flush()?)
+}
+
+impl BodyRow<'_> {
+    fn of(body: &MachineBody) -> BodyRow<'_> {
+        let against = body.against.iter().map(Opponent::word);
+        let (moves_with, against) = (body.link.to_string(), against.collect());
+        BodyRow { name: &body.name, moves_with, margin: body.margin, against }
+    }
 }
 
 impl AxisRow {

@@ -41,7 +41,9 @@ pub(crate) fn read(file: JobFile) -> Result<Inputs, Failure> {
         }
     }
     for body in &inputs.bodies {
-        part::print_findings(&body.file, &body.mesh);
+        if let Some(file) = &body.file {
+            part::print_findings(file, &body.mesh);
+        }
     }
     let entry = inputs.file.stock.as_ref().and_then(|entry| entry.mesh.as_ref());
     if let (Some(file), Some(JobStock { shape: StockShape::Mesh(mesh), .. })) =
@@ -124,6 +126,7 @@ pub(crate) fn job_file(
         tolerance: options.tolerance,
         resolution: options.resolution,
         allow: options.allow,
+        other_parts: Vec::new(),
         fixtures: Vec::new(),
         stock: None,
         surface_only: options.surface_only,
@@ -136,7 +139,7 @@ pub(crate) fn job_file(
 /// # Errors
 /// As for [`Job::check`].
 pub(crate) fn check<'a>(job: &'a Job<'_>, json: bool) -> Result<JobReport<'a>, Failure> {
-    let progress = Progress::steps(job.program.motions() * job.bodies.len(), "motions", json);
+    let progress = Progress::steps(job.motion_checks(), "motions", json);
     Ok(job.check(&|count| progress.advance(count))?)
 }
 
@@ -197,7 +200,7 @@ pub(crate) fn print(inputs: &Inputs, report: &JobReport<'_>) -> Result<(), Failu
     }
     let unit = inputs.file.unit;
     // Once per tool: at every body and in every reading it goes the same way.
-    for pair in report.pairs.iter().filter(|pair| pair.body == 0 && pair.reading == 0) {
+    for pair in report.tools_at_part() {
         print_approach(&pair.report, unit);
     }
     match &inputs.program {

@@ -7,11 +7,14 @@ use std::path::Path;
 use touchoff::certify::TriangleBvh;
 use touchoff::mesh::shapes;
 use touchoff::{Tool, Unit};
-use touchoff_verify::gcode::{ControlRules, ControlSetup};
-use touchoff_verify::job::{Body, BodyRole, FindingDetail, JobStock, StockShape};
+use touchoff_verify::gcode::{ControlRules, ControlSetup, WorkOffset};
+use touchoff_verify::job::{
+    Body, BodyRole, FindingDetail, JobStock, Moving, PairReport, StockShape,
+};
 use touchoff_verify::machine::Machine;
 use touchoff_verify::{
-    FindingGroup, Job, JobError, JobFile, JobTool, Program, ToolSelection, Verdict, Verifier,
+    FindingGroup, FindingKind, Job, JobError, JobFile, JobTool, Program, ToolSelection, Verdict,
+    Verifier,
 };
 
 touchoff::tool! {
@@ -91,7 +94,8 @@ fn one_pass_gives_what_each_check_gives_by_itself() {
         assert_eq!(report.pairs.len(), 4 * program.reading_count());
         assert_eq!(report.cuts.len(), program.reading_count());
         for pair in &report.pairs {
-            let (tool, body): (&dyn Tool, _) = (job.tools[pair.tool].tool, &job.bodies[pair.body]);
+            let index = pair.moving.tool().expect("a tool");
+            let (tool, body): (&dyn Tool, _) = (job.tools[index].tool, &job.bodies[pair.body]);
             let mut verifier = Verifier::new(body.bvh, tool).expect("a verifier");
             if pair.body == 0 {
                 verifier = verifier.with_tolerance(0.5).expect("a tolerance");
@@ -100,7 +104,7 @@ fn one_pass_gives_what_each_check_gives_by_itself() {
                     verifier = verifier.with_allowance(&surface.name, -0.25).expect("a margin");
                 }
             }
-            let selection = ToolSelection::Number(Some(pair.tool as u32 + 1));
+            let selection = ToolSelection::Number(Some(index as u32 + 1));
             let symmetry = tool.info().symmetry;
             let moves = program.moves(pair.reading, selection, symmetry, None, Unit::Millimetre);
             let alone = verifier.check_moves(moves.expect("moves"), &|_| ()).expect("a result");
@@ -344,5 +348,105 @@ fn compensation_mills_to_the_radius_of_the_job() {
         let text = text.replace(from, to);
         let error = read(&text).err().map(|error| error.to_string());
         assert!(error.as_deref().is_some_and(|error| error.contains(message)), "{to}: {error:?}");
+    }
+}
+
+/// A part at G55 has the findings of a job whose part stands at that origin, by the same motions of the machine.
+#[test]
+fn another_part_is_checked_where_it_stands() {
+    let (low, high) = ([-20.0, -20.0, -10.0], [20.0, 20.0, 0.0]);
+    let by = [45.0, 10.0, -5.0];
+    let moved = |corner: [f64; 3]| [0, 1, 2].map(|k| corner[k] + by[k]);
+    let (part, other) = (cuboid(low, high), cuboid(moved(low), moved(high)));
+    let origins = [[0.0, 0.0, -300.0], moved([0.0, 0.0, -300.0])];
+    let setup = |first: usize| ControlSetup {
+        work_offsets: std::array::from_fn(|k| {
+            let [x, y, z] = origins[(k + first) % 2];
+            (k < 2).then_some([x, y, z, 0.0, 0.0, 0.0])
+        }),
+        lengths: [(1, 80.0), (2, 60.0)].into(),
+        rules: ControlRules::named("linuxcnc").expect("a control"),
+        ..ControlSetup::default()
+    };
+    let program_of = |text: &str, setup: &ControlSetup| {
+        let machine = Machine::named("3-axis").expect("a machine");
+        Program::parse(text, "two.nc", machine, setup).expect("a program")
+    };
+    let mut random = Pcg64Mcg::seed_from_u64(50);
+    let mut found = 0;
+    for _ in 0..3 {
+        let text = program(&mut random);
+        let swapped = text.replace("G54", "G5X").replace("G55", "G54").replace("G5X", "G55");
+        let (here, there) = (program_of(&text, &setup(0)), program_of(&swapped, &setup(1)));
+        let [mut both, alone] = [&here, &there].map(|program| {
+            let mut job = Job::new(program, &part);
+            job.tools.extend([JobTool::numbered(1, &Mill), JobTool::numbered(2, &Ball)]);
+            job.anyway = true;
+            job
+        });
+        both.bodies.push(Body::other_part("the other", &other, WorkOffset::Standard(2)));
+        let at_other = both.check(&|_| ()).expect("a result");
+        let at_part = alone.check(&|_| ()).expect("a result");
+        for tool in 0..2 {
+            let of = |pairs: &[PairReport], body: usize| {
+                let mut pairs = pairs.iter();
+                let wanted =
+                    |pair: &&PairReport| (pair.moving, pair.body) == (Moving::Tool(tool), body);
+                pairs.find(wanted).expect("a pair").report.clone()
+            };
+            let (one, two) = (of(&at_other.pairs, 1), of(&at_part.pairs, 0));
+            assert_eq!(one.findings.len(), two.findings.len());
+            for (one, two) in one.findings.iter().zip(&two.findings) {
+                assert_eq!((one.line, one.from, one.rapid), (two.line, two.from, two.rapid));
+                let apart = one.pose.tip() - two.pose.tip();
+                assert!((apart - nalgebra::Vector3::from(by)).norm() < 1e-6, "{one:?} {two:?}");
+                if let (FindingKind::Deep { depth, .. }, FindingKind::Deep { depth: known, .. }) =
+                    (one.kind, two.kind)
+                {
+                    assert!((depth.low - known.low).abs() < 1e-6, "{one:?} {two:?}");
+                }
+                found += 1;
+            }
+        }
+        let texts: Vec<&str> = at_other.findings().iter().map(|finding| &*finding.text).collect();
+        assert!(texts.iter().any(|text| text.contains("deep in the other at")), "{texts:?}");
+    }
+    assert!(found > 20, "{found}");
+}
+
+/// A part at a work offset that the program sets otherwise has no place.
+#[test]
+fn an_offset_that_moves_another_part_is_refused() {
+    let part = cuboid([-20.0, -20.0, -10.0], [20.0, 20.0, 0.0]);
+    let other = cuboid([80.0, -20.0, -10.0], [120.0, 20.0, 0.0]);
+    for (set, is_refused) in [(100.0, false), (101.0, true)] {
+        let text = format!(
+            "G21 G90 G54\nT1 M6\nS900 M3\nG0 X0. Y0.\nG43 H1 Z20.\nG1 Z1. F100.\nG0 Z20.\nG10 L2 P2 X{set} Y0. Z-300.\n\
+             G55 G0 X0. Y0.\nG1 Z1.\nG0 Z20.\nG54 X0.\nM30\n"
+        );
+        let setup = ControlSetup {
+            rules: ControlRules::named("linuxcnc").expect("a control"),
+            work_offsets: std::array::from_fn(|k| {
+                (k < 2).then_some([100.0 * k as f64, 0.0, -300.0, 0.0, 0.0, 0.0])
+            }),
+            lengths: [(1, 80.0)].into(),
+            ..ControlSetup::default()
+        };
+        let machine = Machine::named("3-axis").expect("a machine");
+        let program = Program::parse(text, "two.nc", machine, &setup).expect("a program");
+        let mut job = Job::new(&program, &part);
+        job.tools.push(JobTool::numbered(1, &Mill));
+        // Without the other part, nothing is near under G55.
+        let alone = job.check(&|_| ()).expect("a result").refusals().join("\n");
+        assert!(alone.contains("under G55 the tool never comes"), "{alone}");
+        job.bodies.push(Body::other_part("the other", &other, WorkOffset::Standard(2)));
+        match job.check(&|_| ()) {
+            Ok(report) => assert!(!is_refused && report.verdict() == Verdict::Clean),
+            Err(error) => {
+                let expected =
+                    "line 9: the program sets G55, at which another part of the job stands";
+                assert!(is_refused && error.to_string().starts_with(expected), "{error}");
+            }
+        }
     }
 }

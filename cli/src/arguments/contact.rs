@@ -80,7 +80,7 @@ pub(crate) struct CheckArguments {
     /// Program: APT-CL, or a table of `x,y,z,i,j,k` or `x,y,z,qx,qy,qz,qw`, in the part's unit; or G-code.
     #[arg(long, value_name = "FILE", required_unless_present = "job")]
     pub(crate) program: Option<PathBuf>,
-    /// Machine of a G-code program: `3-axis`, `A-C trunnion`, `B-C table-table`, `B head + C table`, `A-C fork head`, or a
+    /// Machine of a G-code program: a built-in one by name, such as `A-C trunnion` (`touchoff machines` lists them), or a
     /// file [default: `3-axis`].
     #[arg(long, value_name = "NAME|FILE.toml")]
     pub(crate) machine: Option<OsString>,

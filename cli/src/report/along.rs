@@ -57,7 +57,7 @@ pub(super) fn points(inputs: &Inputs) -> Result<Part, Failure> {
     Ok(Part::new(&Cloud::sample(mesh, Sampling::new(POINTS))?, mesh.diagnostics()))
 }
 
-/// Follows a tool along the program.
+/// Follows the tool of a pair along the program; `None` if it is a body of the machine.
 ///
 /// # Errors
 /// If the tool cannot be certified.
@@ -65,8 +65,10 @@ pub(super) fn follow(
     checked: &JobReport<'_>,
     part: &Part,
     pair: &PairReport,
-) -> Result<Along, Failure> {
-    let tool = checked.tool(pair);
+) -> Result<Option<Along>, Failure> {
+    let (Some(index), Some(tool)) = (pair.moving.tool(), checked.tool(pair)) else {
+        return Ok(None);
+    };
     let (unit, info) = (checked.job.unit(), tool.tool.info());
     let mut certifier = Certifier::new(checked.body(pair).bvh, tool.tool)?;
     let mut probe = Probe::new(part, tool.tool).with_law(Law::Gradient);
@@ -76,13 +78,8 @@ pub(super) fn follow(
     let size = reach.high.max(-reach.low).max(info.radius()) * info.unit.factor_to(unit);
     let tolerance = size * 1e-6;
     let stride = pair.report.moves.div_ceil(SAMPLES).max(1);
-    let mut along = Along {
-        tool: pair.tool,
-        lines: Vec::new(),
-        stride,
-        samples: Vec::new(),
-        findings: Vec::new(),
-    };
+    let mut along =
+        Along { tool: index, lines: Vec::new(), stride, samples: Vec::new(), findings: Vec::new() };
     let program = checked.job.program;
     let moves = program.moves(pair.reading, tool.motions, info.symmetry, None, unit)?;
     for (location, step) in moves.enumerate() {
@@ -120,7 +117,7 @@ pub(super) fn follow(
             _ => None,
         })
         .collect();
-    Ok(along)
+    Ok(Some(along))
 }
 
 /// Width and height of a chart, in pixels.

@@ -29,7 +29,8 @@ pub(super) struct ColouredBodies {
 }
 
 impl ColouredBodies {
-    /// Returns part and fixtures with the depths of findings; the part's layer is there even without a finding.
+    /// Returns part, fixtures and meshes of the machine with the depths of findings; the part's layer is there even without a
+    /// finding.
     ///
     /// # Errors
     /// If the points of a body cannot be made ready for queries.
@@ -37,10 +38,19 @@ impl ColouredBodies {
         checked: &JobReport<'_>,
         bodies: &[JobBody],
     ) -> Result<ColouredBodies, Failure> {
-        let shown = bodies.iter().enumerate().map(|(index, body)| Shown {
-            is_fixture: index > 0,
-            has_own_frame: body.has_own_frame(),
-            ..Shown::new(&body.name, &body.mesh)
+        let shown = bodies.iter().enumerate().map(|(index, body)| {
+            let mut pairs = checked.pairs.iter().filter(|pair| pair.body == index);
+            // A mesh of the machine is shown with its findings alone, and is coarse without any.
+            let is_plain = body.is_of_machine() && pairs.all(|pair| pair.groups.is_empty());
+            let shown = match is_plain {
+                true => Shown::undivided(&body.name, &body.mesh),
+                false => Shown::new(&body.name, &body.mesh),
+            };
+            Shown {
+                is_fixture: index > 0 && !body.is_of_machine(),
+                has_own_frame: body.has_own_frame(),
+                ..shown
+            }
         });
         let bodies: Vec<Shown> = shown.collect();
         let mut layers = Vec::new();
@@ -116,7 +126,7 @@ fn depths(checked: &JobReport<'_>, index: usize, shown: &Shown) -> Result<Layer,
     let part = Part::from_cloud(&cloud(shown)?);
     let pairs = checked.pairs.iter().filter(|pair| pair.body == index);
     for pair in pairs.filter(|pair| !pair.report.findings.is_empty()) {
-        let mut probe = Probe::new(&part, checked.tool(pair).tool);
+        let mut probe = Probe::new(&part, checked.shape(pair));
         for finding in &pair.report.findings {
             let FindingKind::Deep { surface, allowed, depth, witness, .. } = finding.kind else {
                 continue;

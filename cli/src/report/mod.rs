@@ -139,6 +139,7 @@ struct Content<'a> {
     map: Option<NamedMap<'a>>,
     comparison: Option<PartComparison>,
     files: Vec<InputFile>,
+    /// Those of the tools, then those of the machine's bodies.
     shapes: Vec<ToolShape>,
     /// The data of the 3-D view as JSON; `null` without a view.
     scene_json: String,
@@ -166,8 +167,8 @@ impl<'a> Content<'a> {
         let (unit, bodies) = (inputs.file.unit, &inputs.bodies);
         let start = Instant::now();
         let points = along::points(inputs)?;
-        let pairs = checked.pairs.iter().filter(|pair| pair.body == 0 && pair.reading == 0);
-        let along = pairs.map(|pair| along::follow(checked, &points, pair));
+        let pairs = checked.tools_at_part();
+        let along = pairs.filter_map(|pair| along::follow(checked, &points, pair).transpose());
         let along = along.collect::<Result<_, Failure>>()?;
         times.push(("depth, clearance and force along the program", start.elapsed()));
 
@@ -182,8 +183,10 @@ impl<'a> Content<'a> {
             shown.add_stock(cut, &deviations)?;
             comparison = Some(deviations);
         }
+        let tools = checked.job.tools.iter().map(|tool| tool.tool);
+        let revolved = checked.job.revolved.iter().map(|body| body.shape);
         let shapes: Vec<ToolShape> =
-            checked.job.tools.iter().map(|tool| ToolShape::new(tool.tool.info(), unit)).collect();
+            tools.chain(revolved).map(|shape| ToolShape::new(shape.info(), unit)).collect();
         let places: Vec<Option<Place>> = checked
             .findings()
             .iter()
@@ -207,7 +210,7 @@ impl<'a> Content<'a> {
 
         let job_file = job_file.map(|file| ("job".to_owned(), file));
         let map_file = map.map(|map| ("posture map".to_owned(), map.file));
-        let files = job_file.into_iter().chain(inputs.file.files()).chain(map_file);
+        let files = job_file.into_iter().chain(inputs.files()).chain(map_file);
         Ok(Content {
             inputs,
             checked,

@@ -10,14 +10,14 @@ use nalgebra::{Point3, Vector3};
 use serde::Serialize;
 use touchoff::{Escaped, Pose, Unit};
 use touchoff_postures::colormap;
-use touchoff_verify::job::{FindingDetail, JobFinding};
+use touchoff_verify::job::{FindingDetail, JobFinding, Moving};
 use touchoff_verify::{FindingKind, JobReport};
 
 /// The place of a finding, and how to look at it.
 pub(super) struct Place {
     /// The body that the tool touches; `None` for the stock.
     pub(super) body: Option<usize>,
-    /// The index of the tool, if its pose is known.
+    /// The index of the shape of the tool, or of the machine's body, if its pose is known.
     pub(super) tool: Option<(usize, Pose)>,
     /// The point to look at.
     target: Point3<f64>,
@@ -53,7 +53,12 @@ impl Place {
             }
             FindingDetail::Surface { pair, group, .. } => {
                 let (finding, pair) = (&group.worst, &checked.pairs[*pair]);
-                let (tool, body) = (pair.tool, pair.body);
+                let body = pair.body;
+                // The shapes of the machine's bodies come after those of the tools.
+                let tool = match pair.moving {
+                    Moving::Tool(index) => index,
+                    Moving::Revolved(index) => checked.job.tools.len() + index,
+                };
                 let witness = match finding.kind {
                     FindingKind::Deep { witness, .. } | FindingKind::Near { witness, .. } => {
                         Some(witness)

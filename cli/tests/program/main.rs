@@ -12,6 +12,7 @@ mod integrations;
 mod job;
 mod keys;
 mod live;
+mod machine_bodies;
 mod mistakes;
 mod output;
 mod params;

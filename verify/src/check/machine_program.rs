@@ -11,7 +11,7 @@ use super::moves::{JointPath, Move, MovePath, RapidBox};
 use crate::gcode::{
     Choice, ControlRules, ControlSetup, GcodeError, Interpreter, LengthOffset, Rule, Step,
 };
-use crate::machine::{JointError, JointMotion, Letter, Machine, Setup};
+use crate::machine::{JointError, JointMotion, Letter, Machine, Relation, Setup};
 use nalgebra::Vector3;
 use resolve::{AnyRapid, Resolved, Resolver};
 use std::collections::BTreeMap;
@@ -90,6 +90,22 @@ impl ToolSelection {
             ToolSelection::Number(number) => number == tool,
         }
     }
+}
+
+/// Something of which moves are asked for, and the frame in which they are given.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum MoveRequest {
+    /// The tool relative to the part.
+    AtPart,
+    /// The tool relative to a link of the table, in the frame of the part while all axes are at 0.
+    AtTable(usize),
+    /// Any bodies of the machine.
+    Bodies {
+        /// The bodies.
+        relation: Box<Relation>,
+        /// Set if poses are in the frame of the part while all axes are at 0, and not in machine coordinates.
+        is_in_part: bool,
+    },
 }
 
 impl MachineProgram {
@@ -259,6 +275,13 @@ impl MachineProgram {
         }
     }
 
+    /// Returns whether the length of a tool is stated, so that the joint values of its motions are known, given the origin of the
+    /// part.
+    pub(crate) fn is_length_known(&self, tool: Option<u32>) -> bool {
+        let tool = tool.or(self.unnamed_tool);
+        tool.is_some_and(|tool| self.setup.lengths.contains_key(&tool))
+    }
+
     /// Returns the summary of the program on its machine.
     pub fn summary(&self) -> &MachineSummary {
         &self.summary
@@ -284,27 +307,32 @@ impl MachineProgram {
         unit: Unit,
     ) -> Result<impl Iterator<Item = Move> + '_, JointError> {
         let restarts = tool != ToolSelection::All;
-        let blocks = self.blocks(&[link], unit, restarts, move |number| tool.contains(number))?;
+        let request = link.map_or(MoveRequest::AtPart, MoveRequest::AtTable);
+        let blocks =
+            self.blocks(&[request], unit, restarts, move |number| tool.contains(number))?;
         Ok(blocks.flat_map(|(_, frames)| frames.into_iter().flatten()))
     }
 
-    /// Returns the moves of each block with the number of the tool in the spindle, in the frames of links as for
-    /// [`MachineProgram::moves`]. `restarts` is set if a tool begins with a rest at its first position after each change. A tool that
+    /// Returns the moves of each block with the number of the tool in the spindle, for each request. `restarts` is set if a tool begins with a rest at its first position after each change. A tool that
     /// is not wanted makes none.
     pub(crate) fn blocks<'a, W: Fn(Option<u32>) -> bool + 'a>(
         &'a self,
-        links: &[Option<usize>],
+        requests: &[MoveRequest],
         unit: Unit,
         restarts: bool,
         is_wanted: W,
     ) -> Result<impl Iterator<Item = (Option<u32>, Vec<Vec<Move>>)> + use<'a, W>, JointError> {
-        for link in links.iter().flatten() {
-            self.machine.chain(&Setup::default())?.relative_to(*link)?;
+        for request in requests {
+            if let MoveRequest::AtTable(link) = request {
+                self.machine.chain(&Setup::default())?.relative_to(*link)?;
+            }
         }
         let [x, y, z, ..] = self.setup.work_offsets[0].unwrap_or_default();
         let origin = Vector3::new(x, y, z);
-        let frames: Vec<_> =
-            links.iter().map(|link| MoveFrame { link: *link, origin, unit }).collect();
+        let frames: Vec<_> = requests
+            .iter()
+            .map(|request| MoveFrame { request: request.clone(), origin, unit })
+            .collect();
         // The program exists because an execution had no error, and every execution has the same steps.
         let reason = "the execution that created the program had no error";
         let steps = self.execute().expect(reason);
@@ -370,6 +398,7 @@ impl MachineProgram {
             {
                 summary.tcp_without_length.get_or_insert(step.line);
             }
+            summary.add_offset(&step, &self.setup.work_offsets);
             if !step.rapid {
                 summary.add_feed(&step, self.off_is_tip);
             }
@@ -490,10 +519,8 @@ struct LengthOffsets {
 }
 
 /// The frame of moves.
-#[derive(Clone, Copy)]
 struct MoveFrame {
-    /// The link of the table; `None` for the part.
-    link: Option<usize>,
+    request: MoveRequest,
     /// Origin of the part in machine coordinates, in mm.
     origin: Vector3<f64>,
     unit: Unit,
@@ -502,13 +529,15 @@ struct MoveFrame {
 impl MoveFrame {
     /// Returns the path of a joint motion that differs from that of the control by at most `error`, in mm.
     fn path(&self, motion: JointMotion, error: f64) -> JointPath {
-        match self.link {
-            Some(link) => {
-                let related = motion.relative_to(link).expect("a link of the machine");
-                JointPath::new(related, self.unit, error).relative_to(self.origin)
+        let (related, is_in_part) = match &self.request {
+            MoveRequest::AtPart => return JointPath::new(motion, self.unit, error),
+            MoveRequest::AtTable(link) => {
+                (motion.relative_to(*link).expect("a link of the machine"), true)
             }
-            None => JointPath::new(motion, self.unit, error),
-        }
+            MoveRequest::Bodies { relation, is_in_part } => (motion.between(relation), *is_in_part),
+        };
+        let path = JointPath::new(related, self.unit, error);
+        if is_in_part { path.relative_to(self.origin) } else { path }
     }
 
     /// Returns a rest at a pose of a joint motion.

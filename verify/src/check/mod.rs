@@ -31,6 +31,7 @@ mod remedy;
 
 pub use approach::Approach;
 pub use finding::{Finding, FindingGroup, FindingKind, VerifyError, VerifyReport};
+pub(crate) use machine_program::MoveRequest;
 pub use machine_program::{
     Assumption, Gap, GapWeight, MAX_READINGS, MAX_VALUES, MachineProgram, MachineProgramError,
     MachineSummary, ProgramStop, StepFault, ToolSelection, ToolUse, UnknownCause, UnknownMotions,

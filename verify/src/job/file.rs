@@ -1,7 +1,7 @@
 //! Job files: TOML, with paths relative to the folder of the file.
 
 use super::program::{Program, read_control};
-use super::{Hand, JobError, checked_margin};
+use super::{Hand, JobError, PART, checked_margin};
 use crate::ToolSelection;
 use crate::gcode::{Choice, ControlRules, ControlSetup, LARGEST_NUMBER, Rule, is_variable};
 use serde::{Deserialize, Deserializer};
@@ -42,6 +42,8 @@ pub struct JobFile {
     pub resolution: Option<f64>,
     /// Depths that surfaces may have instead, by their names.
     pub allow: Vec<(String, f64)>,
+    /// Other parts on the same table.
+    pub other_parts: Vec<PartEntry>,
     /// The fixtures.
     pub fixtures: Vec<FixtureEntry>,
     /// The stock.
@@ -140,6 +142,18 @@ impl VariableValues {
     }
 }
 
+/// Another part on the same table, which stands at another work offset as the part stands at G54.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PartEntry {
+    /// Name of its work offset, G55 to G59.3.
+    pub work_offset: String,
+    /// Its mesh, in the unit of the part; that of the part if absent.
+    pub mesh: Option<PathBuf>,
+    /// Its name in findings; `the part at` its work offset if absent.
+    pub name: Option<String>,
+}
+
 /// A mesh that no surface of a tool may touch.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -155,7 +169,7 @@ pub struct FixtureEntry {
     pub margin: f64,
 }
 
-/// The stock: a mesh, or a box by its lowest and highest corner.
+/// The stock: a mesh, a box by its lowest and highest corner, or what an earlier set-up leaves.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StockEntry {
@@ -164,8 +178,16 @@ pub struct StockEntry {
     /// The lowest and the highest corner of a box.
     #[serde(rename = "box")]
     pub corners: Option<[[f64; 3]; 2]>,
-    /// Distance between neighbouring points of its lattice.
-    pub spacing: f64,
+    /// The job file of an earlier set-up.
+    pub from: Option<PathBuf>,
+    /// The origin of the earlier set-up's part frame in the frame of the part; its own if absent.
+    pub origin: Option<[f64; 3]>,
+    /// The direction of its axis x, that of a coordinate axis; `[1, 0, 0]` if absent.
+    pub x: Option<[f64; 3]>,
+    /// The direction of its axis z; `[0, 0, 1]` if absent.
+    pub z: Option<[f64; 3]>,
+    /// Distance between neighbouring points of its lattice; that of an earlier set-up is its own.
+    pub spacing: Option<f64>,
     /// Depth that non-cutting surfaces may have in it.
     pub tolerance: Option<f64>,
     /// Output file for what remains, an STL mesh.
@@ -206,6 +228,8 @@ struct JobText {
     #[serde(default)]
     allow: BTreeMap<String, f64>,
     #[serde(default)]
+    other_part: Vec<PartEntry>,
+    #[serde(default)]
     fixture: Vec<FixtureEntry>,
     stock: Option<StockEntry>,
     #[serde(default)]
@@ -239,10 +263,15 @@ impl JobFile {
                 }
             }
         }
+        let others =
+            self.other_parts.iter().filter_map(|part| Some((part.name(), &**part.mesh.as_ref()?)));
+        files.extend(others);
         let fixtures = self.fixtures.iter();
         files.extend(fixtures.map(|fixture| (fixture.name.clone(), &*fixture.mesh)));
         let stock = self.stock.as_ref().and_then(|stock| stock.mesh.as_deref());
         files.extend(stock.map(|file| ("stock".to_owned(), file)));
+        let earlier = self.stock.as_ref().and_then(|stock| stock.from.as_deref());
+        files.extend(earlier.map(|file| ("job of the earlier set-up".to_owned(), file)));
         files
     }
 
@@ -322,6 +351,11 @@ impl JobFile {
             tolerance: job.tolerance,
             resolution: job.resolution,
             allow: job.allow.into_iter().collect(),
+            other_parts: job
+                .other_part
+                .into_iter()
+                .map(|part| PartEntry { mesh: part.mesh.map(beside), ..part })
+                .collect(),
             fixtures: job
                 .fixture
                 .into_iter()
@@ -329,6 +363,7 @@ impl JobFile {
                 .collect(),
             stock: job.stock.map(|stock| StockEntry {
                 mesh: stock.mesh.map(beside),
+                from: stock.from.map(beside),
                 output: stock.output.map(beside),
                 map: stock.map.map(beside),
                 ..stock
@@ -425,6 +460,31 @@ impl JobTools {
                 .iter()
                 .filter_map(|(number, entry)| Some((*number, entry.length?)))
                 .collect(),
+        }
+    }
+}
+
+impl PartEntry {
+    /// Returns its name in findings.
+    pub fn name(&self) -> String {
+        match &self.name {
+            Some(name) => name.clone(),
+            None => format!("{PART} at {}", self.work_offset),
+        }
+    }
+
+    /// Returns the index of its work offset, from 1 on: that of G54 is the part's own.
+    ///
+    /// # Errors
+    /// [`JobError::WorkOffset`] if it has none of these names.
+    pub(super) fn offset_index(&self) -> Result<usize, JobError> {
+        let known = |name: &&str| name.eq_ignore_ascii_case(&self.work_offset);
+        match WORK_OFFSETS.iter().position(known) {
+            Some(index) if index > 0 => Ok(index),
+            _ => Err(JobError::OtherPart {
+                name: self.name(),
+                reason: "its `work_offset` is one of G55 to G59.3, since the part stands at G54",
+            }),
         }
     }
 }

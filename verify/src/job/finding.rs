@@ -1,5 +1,6 @@
 //! The findings of a report, joined over its readings, and their text.
 
+use super::JobTool;
 use super::machine::MachineFindingKind;
 use super::report::{FindingDetail, JobFinding, JobReport, PairReport, Remedy, Severity};
 use crate::{Finding, FindingGroup, FindingKind, Tilt};
@@ -172,9 +173,10 @@ fn describe(
             format_interval(*low, *high, unit),
             unit.format_point(&witness.point),
         ),
-        FindingKind::Inside { surface: None } => {
-            format!("the tool is wholly inside {body}, {at}")
-        }
+        FindingKind::Inside { surface: None } => match report.revolved(pair) {
+            Some(_) => format!("it is wholly inside {body}, {at}"),
+            None => format!("the tool is wholly inside {body}, {at}"),
+        },
         FindingKind::Inside { surface: Some(surface) } => {
             format!("{} is inside {body}, away from its surface, {at}", name(*surface))
         }
@@ -188,9 +190,12 @@ fn describe(
     let mut text = match remedy.lift {
         // A gouge of a flank is not mended by a lift.
         Some(_) if cutting => text,
-        Some(lift) => {
-            format!("{text}; with {} more reach it is clear", unit.format(lift))
-        }
+        Some(lift) => match report.revolved(pair) {
+            Some(_) => {
+                format!("{text}; with a tool that is {} longer it is clear", unit.format(lift))
+            }
+            None => format!("{text}; with {} more reach it is clear", unit.format(lift)),
+        },
         None => text,
     };
     if let Some(Tilt { angle, axis }) = remedy.tilt {
@@ -203,9 +208,11 @@ fn describe(
             angle.to_degrees()
         );
     }
-    match report.tool(pair).number() {
-        Some(number) => format!("T{number} {text}"),
-        None => text,
+    let number = report.tool(pair).and_then(JobTool::number);
+    match (report.revolved(pair), number) {
+        (Some(moving), _) => format!("{}: {text}", moving.name),
+        (None, Some(number)) => format!("T{number} {text}"),
+        (None, None) => text,
     }
 }
 
@@ -254,14 +261,15 @@ fn plural(count: usize) -> &'static str {
 /// Summarises the findings of a tool at a body: per surface, the number of motions and the deepest.
 fn summary(report: &JobReport<'_>, pair: &PairReport) -> String {
     let (info, unit, body) = (report.info(pair), report.job.unit(), report.body(pair));
-    let number = report.tool(pair).number();
+    let number = report.tool(pair).and_then(JobTool::number);
+    let tool = match (report.revolved(pair), number) {
+        (Some(moving), _) => format!("{} at {}: ", moving.name, body.name),
+        (None, Some(number)) => format!("T{number} at {}: ", body.name),
+        (None, None) if body.is_part() => String::new(),
+        (None, None) => format!("{}: ", body.name),
+    };
     let PairReport { report, groups, .. } = pair;
     let motions = report.motions;
-    let tool = match number {
-        Some(number) => format!("T{number} at {}: ", body.name),
-        None if body.is_part() => String::new(),
-        None => format!("{}: ", body.name),
-    };
     let count = groups.len();
     if count == 0 {
         return format!("{tool}no findings in {motions} motion{}", plural(motions));

@@ -1,9 +1,15 @@
 //! A job and the files that it names, read.
 
-use super::file::{JobFile, NamedTool, StockEntry};
+use super::bodies::{self, LoadedBody};
+use super::file::{JobFile, NamedTool, PartEntry, StockEntry};
 use super::program::Program;
-use super::{Body, BodyRole, Job, JobError, JobStock, JobTool, PART, StockShape};
-use nalgebra::Point3;
+use super::report::Verdict;
+use super::{Body, BodyFrame, BodyRole, Job, JobError, JobStock, JobTool, PART, StockShape};
+use crate::Gap;
+use crate::gcode::WorkOffset;
+use crate::machine::{BodyShape, Machine};
+use crate::stock::RemainingPoints;
+use nalgebra::{Point3, Vector3};
 use std::path::{Path, PathBuf};
 use touchoff::certify::TriangleBvh;
 use touchoff::mesh::Geometry;
@@ -19,26 +25,37 @@ pub struct JobInputs<T> {
     pub program: Program,
     /// The tools that the program uses, in the order of their first motions.
     pub tools: Vec<(NamedTool, T)>,
-    /// The part, then the fixtures.
+    /// The part, then other parts, the fixtures and the meshes of the machine.
     pub bodies: Vec<JobBody>,
+    /// The bodies of the machine that are solids of revolution.
+    revolved: Vec<LoadedBody<T>>,
     /// The stock.
     pub stock: Option<JobStock>,
+    /// What is open about them.
+    gaps: Vec<Gap>,
 }
 
-/// A part or a fixture, read from its file.
+/// Loads a tool by its name.
+pub(super) type Load<'l, T, E> = &'l mut dyn FnMut(&NamedTool) -> Result<T, E>;
+
+/// The part, another part, a fixture or a mesh of the machine, read.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct JobBody {
     /// Its name in findings.
     pub name: String,
-    /// The file of its mesh.
-    pub file: PathBuf,
+    /// The file of its mesh; `None` for one that is made of numbers.
+    pub file: Option<PathBuf>,
     /// Its mesh.
     pub mesh: Mesh,
     /// Its triangles.
     pub bvh: TriangleBvh,
-    link: Option<usize>,
-    role: BodyRole,
+    /// The frame of its triangles.
+    pub frame: BodyFrame,
+    /// How near the surfaces of a tool may come.
+    pub role: BodyRole,
+    /// The work offset of another part.
+    pub work_offset: Option<WorkOffset>,
 }
 
 impl JobBody {
@@ -46,12 +63,65 @@ impl JobBody {
     fn read(name: &str, file: &Path, unit: Unit, role: BodyRole) -> Result<JobBody, JobError> {
         let mesh = mesh(file, unit)?;
         let bvh = TriangleBvh::new(&mesh);
-        Ok(JobBody { name: name.to_owned(), file: file.to_owned(), mesh, bvh, link: None, role })
+        let (name, file) = (name.to_owned(), Some(file.to_owned()));
+        let (frame, work_offset) = (BodyFrame::Part, None);
+        Ok(JobBody { name, file, mesh, bvh, frame, role, work_offset })
+    }
+
+    /// Reads another part, and puts it at its work offset.
+    ///
+    /// # Errors
+    /// If its mesh cannot be read, or its place is not stated.
+    fn read_other(
+        entry: &PartEntry,
+        job: &JobFile,
+        program: &Program,
+    ) -> Result<JobBody, JobError> {
+        let index = entry.offset_index()?;
+        let refused = |reason| JobError::OtherPart { name: entry.name(), reason };
+        if program.machine().is_none() {
+            return Err(refused(
+                "other parts are for G-code, whose work offsets have a place: remove `[[other_part]]`",
+            ));
+        }
+        let (Some(part), Some(other)) = (job.work_offsets[0], job.work_offsets[index]) else {
+            return Err(refused("state its origin and that of G54 in `work_offsets`"));
+        };
+        // The frames of both are parallel then, and their origins apart by the difference.
+        if part[3..] != other[3..] {
+            return Err(refused(
+                "its origin turns a rotary axis otherwise than that of G54: state the same angles, and turn its mesh",
+            ));
+        }
+        let file = entry.mesh.as_deref().unwrap_or(&job.part);
+        let mut body = JobBody::read(&entry.name(), file, job.unit, BodyRole::Part)?;
+        let by = Vector3::from([0, 1, 2].map(|k| other[k] - part[k]));
+        let by = by * Unit::Millimetre.factor_to(job.unit);
+        let moved = bodies::moved(&body.mesh, |vertex| vertex + by, job.unit);
+        body.mesh = moved.map_err(|source| JobError::MachineMesh { name: entry.name(), source })?;
+        body.bvh = TriangleBvh::new(&body.mesh);
+        body.work_offset = Some(WorkOffset::Standard(index as u8 + 1));
+        Ok(body)
+    }
+
+    /// Returns whether it is another part than the first.
+    pub fn is_other_part(&self) -> bool {
+        self.work_offset.is_some()
+    }
+
+    /// Returns whether it is a fixture.
+    pub fn is_fixture(&self) -> bool {
+        matches!(self.role, BodyRole::Fixture { .. })
+    }
+
+    /// Returns whether it is a mesh of the machine, and neither the part nor a fixture.
+    pub fn is_of_machine(&self) -> bool {
+        matches!(self.role, BodyRole::Machine { .. })
     }
 
     /// Returns whether it moves with another axis than the workpiece. The tool's poses at it are then in its own frame.
     pub fn has_own_frame(&self) -> bool {
-        self.link.is_some()
+        self.frame != BodyFrame::Part
     }
 }
 
@@ -64,6 +134,15 @@ impl<T: AsRef<dyn Tool>> JobInputs<T> {
         file: JobFile,
         mut load: impl FnMut(&NamedTool) -> Result<T, E>,
     ) -> Result<JobInputs<T>, E> {
+        JobInputs::read_after(file, &mut load, &mut Vec::new())
+    }
+
+    /// Reads a job whose stock is that of the jobs before it; `later` are the job files that are read for others.
+    fn read_after<E: From<JobError>>(
+        file: JobFile,
+        load: Load<'_, T, E>,
+        later: &mut Vec<PathBuf>,
+    ) -> Result<JobInputs<T>, E> {
         let program = file.program()?;
         let mut tools = Vec::new();
         for named in file.used_tools(&program)? {
@@ -71,6 +150,9 @@ impl<T: AsRef<dyn Tool>> JobInputs<T> {
             tools.push((named, tool));
         }
         let mut bodies = vec![JobBody::read(PART, &file.part, file.unit, BodyRole::Part)?];
+        for entry in &file.other_parts {
+            bodies.push(JobBody::read_other(entry, &file, &program)?);
+        }
         for fixture in &file.fixtures {
             let link = match &fixture.moves_with {
                 None => None,
@@ -78,20 +160,104 @@ impl<T: AsRef<dyn Tool>> JobInputs<T> {
             };
             let role = BodyRole::Fixture { margin: fixture.margin };
             let body = JobBody::read(&fixture.name, &fixture.mesh, file.unit, role)?;
-            bodies.push(JobBody { link, ..body });
+            let frame = link.map_or(BodyFrame::Part, BodyFrame::Table);
+            bodies.push(JobBody { frame, ..body });
         }
-        let stock = file.stock.as_ref().map(|entry| stock(entry, file.unit)).transpose()?;
-        Ok(JobInputs { file, program, tools, bodies, stock })
+        let mut revolved = Vec::new();
+        if let Some(machine) = program.machine() {
+            bodies.extend(bodies::meshes(machine, file.unit)?);
+            revolved = bodies::revolved(machine, &bodies, file.unit, load)?;
+        }
+        let (mut stock, mut gaps) = (None, Vec::new());
+        if let Some(entry) = &file.stock {
+            let left = match &entry.from {
+                Some(earlier) => Some(Self::remaining(earlier, file.unit, load, later, &mut gaps)?),
+                None => None,
+            };
+            stock = Some(self::stock(entry, left, file.unit)?);
+        }
+        Ok(JobInputs { file, program, tools, bodies, revolved, stock, gaps })
+    }
+
+    /// Checks the job of an earlier set-up, and returns what it leaves of its stock, in its own frame.
+    ///
+    /// # Errors
+    /// If the job cannot be checked, has no stock or another unit, leaves several stocks, or is among those that it is read for.
+    fn remaining<E: From<JobError>>(
+        file: &Path,
+        unit: Unit,
+        load: Load<'_, T, E>,
+        later: &mut Vec<PathBuf>,
+        gaps: &mut Vec<Gap>,
+    ) -> Result<RemainingPoints, E> {
+        let name = || file.display().to_string();
+        let refused = |message: &str| {
+            E::from(JobError::File { file: name(), line: None, message: message.to_owned() })
+        };
+        let place = std::fs::canonicalize(file)
+            .map_err(|source| E::from(JobError::Unreadable { file: name(), source }))?;
+        if later.contains(&place) {
+            return Err(refused(
+                "the stock of this set-up comes from itself: give the first one a `mesh` or a `box`",
+            ));
+        }
+        later.push(place);
+        let earlier = JobFile::read(file)?;
+        if earlier.unit != unit {
+            return Err(refused(
+                "this set-up is in another unit than that after it: state both in the same one",
+            ));
+        }
+        let inputs = JobInputs::read_after(earlier, load, later)?;
+        later.pop();
+        let job = inputs.job();
+        let report = job.check(&|_| ())?;
+        let mut left = report.cuts.iter().map(|cut| cut.stock.remaining_points());
+        let Some(first) = left.next() else {
+            return Err(refused(
+                "this set-up has no stock, and so leaves none: state its `[stock]`",
+            ));
+        };
+        if left.any(|other| other != first) {
+            return Err(refused(
+                "this set-up leaves one stock or another, by the control: state its `control`",
+            ));
+        }
+        if report.verdict() != Verdict::Clean {
+            let reason = format!(
+                "the set-up before, whose stock this is, is not clean: verify {} by itself",
+                name()
+            );
+            gaps.push(Gap::open(0, reason));
+        }
+        Ok(first)
+    }
+
+    /// Returns the files that it was read from, each with its role: those of [`JobFile::files`], and those of the machine's bodies.
+    pub fn files(&self) -> Vec<(String, &Path)> {
+        let mut files = self.file.files();
+        let bodies = self.program.machine().map_or(&[][..], Machine::bodies).iter();
+        files.extend(bodies.filter_map(|body| {
+            let file = match &body.shape {
+                BodyShape::Mesh { file, .. } => &**file,
+                BodyShape::Tool { name, .. } if name.ends_with(".tool") => Path::new(name),
+                _ => return None,
+            };
+            Some((body.name.clone(), file))
+        }));
+        files
     }
 
     /// Returns the job.
     pub fn job(&self) -> Job<'_> {
         let mut job = Job::new(&self.program, &self.bodies[0].bvh);
         for body in &self.bodies[1..] {
-            let mut fixture = Body::fixture(&body.name, &body.bvh);
-            (fixture.link, fixture.role) = (body.link, body.role);
-            job.bodies.push(fixture);
+            let mut other = Body::fixture(&body.name, &body.bvh);
+            (other.frame, other.role) = (body.frame, body.role);
+            other.work_offset = body.work_offset;
+            job.bodies.push(other);
         }
+        job.revolved.extend(self.revolved.iter().map(LoadedBody::body));
         for (named, tool) in &self.tools {
             let mut tool = JobTool::of_all(tool.as_ref());
             (tool.motions, tool.hand) = (named.motions, named.hand);
@@ -99,6 +265,7 @@ impl<T: AsRef<dyn Tool>> JobInputs<T> {
             job.tools.push(tool);
         }
         job.stock.clone_from(&self.stock);
+        job.gaps.clone_from(&self.gaps);
         (job.tolerance, job.resolution) = (self.file.tolerance, self.file.resolution);
         job.allow.clone_from(&self.file.allow);
         (job.surface_only, job.anyway) = (self.file.surface_only, self.file.anyway);
@@ -106,18 +273,50 @@ impl<T: AsRef<dyn Tool>> JobInputs<T> {
     }
 }
 
-fn mesh(file: &Path, unit: Unit) -> Result<Mesh, JobError> {
+pub(super) fn mesh(file: &Path, unit: Unit) -> Result<Mesh, JobError> {
     match Geometry::read(file, unit)? {
         Geometry::Mesh(mesh) => Ok(mesh),
         Geometry::Points(_) => Err(JobError::NoTriangles { file: file.display().to_string() }),
     }
 }
 
-fn stock(entry: &StockEntry, unit: Unit) -> Result<JobStock, JobError> {
-    let shape = match (&entry.mesh, entry.corners) {
-        (Some(file), None) => StockShape::Mesh(mesh(file, unit)?),
-        (None, Some(corners)) => StockShape::Box(corners.map(Point3::from)),
-        _ => return Err(JobError::Mismatch("a stock has a `mesh` or a `box`, and not both")),
+/// Returns the stock of an entry; `left` is what the earlier set-up leaves that it names.
+fn stock(
+    entry: &StockEntry,
+    left: Option<RemainingPoints>,
+    unit: Unit,
+) -> Result<JobStock, JobError> {
+    let is_placed = [entry.origin, entry.x, entry.z].iter().any(Option::is_some);
+    let spacing = match (&left, entry.spacing) {
+        (Some(points), None) => points.spacing(),
+        (Some(_), Some(_)) => {
+            return Err(JobError::Mismatch(
+                "a stock `from` an earlier set-up has the spacing of that one: remove `spacing`",
+            ));
+        }
+        (None, _) if is_placed => {
+            return Err(JobError::Mismatch(
+                "`origin`, `x` and `z` of a stock place that of an earlier set-up: state it by `from`, or remove them",
+            ));
+        }
+        (None, Some(spacing)) => spacing,
+        (None, None) => {
+            return Err(JobError::Mismatch("a stock of a `mesh` or a `box` has a `spacing`"));
+        }
     };
-    Ok(JobStock { shape, spacing: entry.spacing, tolerance: entry.tolerance })
+    let shape = match (&entry.mesh, entry.corners, left) {
+        (Some(file), None, None) => StockShape::Mesh(mesh(file, unit)?),
+        (None, Some(corners), None) => StockShape::Box(corners.map(Point3::from)),
+        (None, None, Some(points)) => StockShape::Points(points.placed(
+            Point3::from(entry.origin.unwrap_or_default()),
+            entry.x.unwrap_or([1.0, 0.0, 0.0]),
+            entry.z.unwrap_or([0.0, 0.0, 1.0]),
+        )?),
+        _ => {
+            return Err(JobError::Mismatch(
+                "a stock has a `mesh`, a `box` or `from`, and only one of them",
+            ));
+        }
+    };
+    Ok(JobStock { shape, spacing, tolerance: entry.tolerance })
 }

@@ -3,6 +3,7 @@
 //!
 //! Own types: the crate `serde-sarif` generates those of the whole standard while it is built, and findings need these.
 
+use super::JobTool;
 use super::finding::rule;
 use super::machine::MachineRow;
 use super::report::{FindingDetail, JobFinding, JobReport, PairReport, Remedy, Severity, Verdict};
@@ -95,8 +96,9 @@ struct SurfaceRow<'a> {
     /// For a solid without an axis, whose pose needs the spin: `qx, qy, qz, qw`.
     #[serde(skip_serializing_if = "Option::is_none")]
     quaternion: Option<[f64; 4]>,
-    /// The part or the fixture.
+    /// The part, the fixture, or the mesh of the machine.
     body: &'a str,
+    /// The tool, or the body of the machine.
     tool: &'a str,
     tool_number: Option<u32>,
     kind: &'static str,
@@ -195,8 +197,8 @@ impl<'a> SurfaceRow<'a> {
             axis: finding.pose.axis().into(),
             quaternion,
             body: &report.body(pair).name,
-            tool: &info.name,
-            tool_number: report.tool(pair).number(),
+            tool: report.revolved(pair).map_or(&*info.name, |body| &*body.name),
+            tool_number: report.tool(pair).and_then(JobTool::number),
             kind: rule(&finding.kind),
             surface: surface.map(|surface| &*surface.name),
             cutting: surface.map(|surface| surface.cutting),
@@ -304,8 +306,11 @@ struct Region {
 
 /// The rules, with what each finds.
 const RULES: [(&str, &str); 10] = [
-    ("deep", "A surface of the tool is deeper in the part, a fixture or the machine than allowed."),
-    ("near", "A surface of the tool comes nearer than its margin."),
+    (
+        "deep",
+        "A surface of the tool, or of a body of the machine, is deeper in the part, a fixture or another body than allowed.",
+    ),
+    ("near", "A surface of the tool, or of a body of the machine, comes nearer than its margin."),
     ("inside", "The tool, or a piece of it, is inside the material."),
     ("spindle", "A feed motion has a spindle that does not turn, or turns the wrong way round."),
     ("length", "A feed motion has the length offset of another tool."),

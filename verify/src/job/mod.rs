@@ -7,6 +7,7 @@
 //! Each reading of the program is executed once more than its summary needs: the blocks of one pass go to every tool at every
 //! body, and to the stock.
 
+mod bodies;
 mod file;
 mod finding;
 mod inputs;
@@ -17,25 +18,27 @@ mod program;
 mod report;
 mod stock;
 
-pub use file::{FixtureEntry, JobFile, JobTools, NamedTool, StockEntry, ToolEntry};
+pub use bodies::RevolvedBody;
+pub use file::{FixtureEntry, JobFile, JobTools, NamedTool, PartEntry, StockEntry, ToolEntry};
 pub use inputs::{JobBody, JobInputs};
 pub use machine::{MachineFinding, MachineFindingKind, SpindleFault};
 pub use program::{DEFAULT_MACHINE, Program, read_control, read_machine};
 pub use report::{
-    FindingDetail, JobFinding, JobReport, NO_INSIDE, PairReport, Remedy, Severity, Verdict,
+    FindingDetail, JobFinding, JobReport, Moving, NO_INSIDE, PairReport, Remedy, Severity, Verdict,
 };
 pub use stock::{CutStock, StockFinding};
 
-use crate::gcode::ControlError;
-use crate::machine::{JointError, MachineError};
+use crate::gcode::{ControlError, WorkOffset};
+use crate::machine::{JointError, Letter, Link, Machine, MachineError, Side};
 use crate::program::ProgramError;
-use crate::stock::{Stock, StockError};
-use crate::{MachineProgramError, ToolSelection, Verifier, VerifyError};
+use crate::stock::{RemainingPoints, Stock, StockError};
+use crate::{Gap, MachineProgramError, ToolSelection, Verifier, VerifyError};
 use nalgebra::Point3;
 use serde::Deserialize;
 use std::convert::Infallible;
 use touchoff::certify::TriangleBvh;
-use touchoff::mesh::GeometryError;
+use touchoff::mesh::{GeometryError, MeshError};
+use touchoff::tool::ToolInfo;
 use touchoff::{Mesh, PoseError, Tool, Unit};
 
 /// The name of the part in findings.
@@ -82,10 +85,12 @@ pub const PART: &str = "the part";
 pub struct Job<'a> {
     /// The program.
     pub program: &'a Program,
-    /// The part, then the fixtures.
+    /// The part, then other parts, the fixtures and the meshes of the machine.
     pub bodies: Vec<Body<'a>>,
     /// The tools of the program.
     pub tools: Vec<JobTool<'a>>,
+    /// The bodies of the machine that are solids of revolution.
+    pub revolved: Vec<RevolvedBody<'a>>,
     /// The stock.
     pub stock: Option<JobStock>,
     /// Depth in the part that any surface may have, unless it is allowed another.
@@ -96,11 +101,13 @@ pub struct Job<'a> {
     pub allow: Vec<(String, f64)>,
     /// Checks the surface alone of a body whose mesh has no inside.
     pub surface_only: bool,
+    /// What is open about its inputs, beside what the program leaves open.
+    pub gaps: Vec<Gap>,
     /// Accepts what the program leaves open, and a program that seems to be meant for another part.
     pub anyway: bool,
 }
 
-/// A body that the tool must not violate: the part, or a fixture.
+/// A body that the tool must not violate: the part, a fixture, or a mesh of the machine.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Body<'a> {
@@ -108,10 +115,40 @@ pub struct Body<'a> {
     pub name: String,
     /// Its triangles.
     pub bvh: &'a TriangleBvh,
-    /// The link of the table that it moves with; `None` for the workpiece ([`Program::link`]).
-    pub link: Option<usize>,
+    /// The frame of its triangles.
+    pub frame: BodyFrame,
     /// How near the surfaces of a tool may come.
     pub role: BodyRole,
+    /// The work offset of another part, under which the program is meant for it.
+    pub work_offset: Option<WorkOffset>,
+}
+
+/// The frame of the triangles of a body, which moves with a link of the machine.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BodyFrame {
+    /// That of the part, with which it moves.
+    Part,
+    /// That of the part while all axes are at 0. It moves with a link of the table ([`Program::link`]).
+    Table(usize),
+    /// Machine coordinates while all axes are at 0. It moves with any link.
+    Machine(Link),
+}
+
+impl BodyFrame {
+    /// Returns the link of a machine with which the body moves.
+    fn link(self, machine: &Machine) -> Link {
+        match self {
+            BodyFrame::Part => machine.last_link(Side::Table),
+            BodyFrame::Table(0) => Link::Base,
+            // Links are numbered from the base on.
+            BodyFrame::Table(index) => {
+                let table = machine.axes().iter().filter(|axis| axis.side == Side::Table);
+                let letters: Vec<Letter> = table.map(|axis| axis.letter).collect();
+                letters.get(index - 1).map_or(Link::Base, |letter| Link::Axis(*letter))
+            }
+            BodyFrame::Machine(link) => link,
+        }
+    }
 }
 
 /// The role of a body in a job, which decides how near the surfaces of a tool may come.
@@ -123,6 +160,13 @@ pub enum BodyRole {
     Fixture {
         /// The distance, 0 or more; at 0 surfaces may touch.
         margin: f64,
+    },
+    /// A mesh of the machine: what it is checked against keeps a distance from it.
+    Machine {
+        /// The distance, 0 or more; at 0 surfaces may touch.
+        margin: f64,
+        /// Set if the tools of the program are checked against it.
+        meets_tools: bool,
     },
 }
 
@@ -167,6 +211,8 @@ pub struct JobStock {
 pub enum StockShape {
     /// The inside of a mesh.
     Mesh(Mesh),
+    /// What an earlier set-up left, in the frame of the part. Its spacing is that of its points.
+    Points(RemainingPoints),
     /// A box, by its lowest and its highest corner.
     Box([Point3<f64>; 2]),
 }
@@ -245,6 +291,47 @@ pub enum JobError {
     /// A body of the job is no mesh.
     #[error(transparent)]
     Geometry(#[from] GeometryError),
+    /// Another part has no place on the table.
+    #[error("{name}: {reason}")]
+    OtherPart {
+        /// Its name.
+        name: String,
+        /// The reason, and the remedy.
+        reason: &'static str,
+    },
+    /// The program sets the work offset of another part to other values than the job.
+    #[error(
+        "line {line}: the program sets {offset}, at which another part of the job stands, to other values than the job: state its \
+         origin in `work_offsets`, or remove the block"
+    )]
+    MovedPart {
+        /// The work offset.
+        offset: WorkOffset,
+        /// The line of the first motion under it.
+        line: usize,
+    },
+    /// A mesh of the machine is none in its place.
+    #[error("the body `{name}` of the machine is no mesh in its place: {source}")]
+    MachineMesh {
+        /// Its name.
+        name: String,
+        /// The reason.
+        source: MeshError,
+    },
+    /// A body of the machine that moves against meshes is no solid of revolution.
+    #[error(
+        "the body `{name}` of the machine is a `solid` of the tool language: give a `tool`, a solid of revolution that contains it"
+    )]
+    NotRevolved {
+        /// Its name.
+        name: String,
+    },
+    /// The bodies of the machine cannot be placed, since the length of a tool is not stated.
+    #[error("{}", no_length(*number))]
+    NoLength {
+        /// The number of the tool; `None` for motions before the first tool change.
+        number: Option<u32>,
+    },
     /// A body of the job is a cloud of points.
     #[error(
         "{file}: the job needs triangles, and this has only points: give the mesh that they were sampled from"
@@ -276,28 +363,47 @@ fn no_tool(number: Option<u32>) -> String {
     }
 }
 
+fn no_length(number: Option<u32>) -> String {
+    let why = "the bodies of the machine are placed by the length of the tool in the spindle";
+    match number {
+        Some(number) => format!(
+            "{why}, and that of T{number} is not stated: state `length` in `[tool.{number}]` of the job, or name a machine without \
+             bodies"
+        ),
+        None => format!(
+            "{why}, and the program moves before its first tool change, or names no tool: write T and M6 before, or name a machine \
+             without bodies"
+        ),
+    }
+}
+
 /// Returns the margin of a fixture if it is a length of 0 or more.
 fn checked_margin(margin: f64) -> Result<f64, JobError> {
     // NaN is in no range.
     match (0.0..f64::INFINITY).contains(&margin) {
         true => Ok(margin),
-        false => Err(JobError::Mismatch("the margin of a fixture is a length of 0 or more")),
+        false => Err(JobError::Mismatch(
+            "the margin of a fixture or of a body of the machine is a length of 0 or more",
+        )),
     }
 }
 
 impl<'a> Job<'a> {
     /// Creates a job without tools, fixtures and stock, in which nothing may be deeper in the part than 0.
     pub fn new(program: &'a Program, part: &'a TriangleBvh) -> Job<'a> {
-        let part = Body { name: PART.to_owned(), bvh: part, link: None, role: BodyRole::Part };
+        let (frame, role) = (BodyFrame::Part, BodyRole::Part);
+        let part = Body { name: PART.to_owned(), bvh: part, frame, role, work_offset: None };
         Job {
             program,
             bodies: vec![part],
             tools: Vec::new(),
+            revolved: Vec::new(),
             stock: None,
             tolerance: 0.0,
             resolution: None,
             allow: Vec::new(),
             surface_only: false,
+            gaps: Vec::new(),
             anyway: false,
         }
     }
@@ -312,13 +418,8 @@ impl<'a> Job<'a> {
         let info = tool.tool.info();
         let mut verifier = Verifier::new(body.bvh, tool.tool)?;
         match body.role {
-            BodyRole::Fixture { margin } => {
-                // Surfaces without another allowance have 0.
-                if checked_margin(margin)? > 0.0 {
-                    let surfaces = info.surfaces.iter();
-                    verifier = verifier
-                        .with_allowances(surfaces.map(|surface| (&*surface.name, -margin)))?;
-                }
+            BodyRole::Fixture { margin } | BodyRole::Machine { margin, .. } => {
+                verifier = with_margin(verifier, info, margin)?;
             }
             BodyRole::Part => {
                 // An allowance of a job holds for the tools that have the surface, and one has to have it.
@@ -338,18 +439,74 @@ impl<'a> Job<'a> {
         }
         Ok(verifier)
     }
+
+    /// Returns the verifier of a body of the machine at another body: both keep the larger of their margins.
+    fn verifier_between(
+        &self,
+        revolved: &RevolvedBody<'a>,
+        body: &Body<'a>,
+    ) -> Result<Verifier<'a>, JobError> {
+        revolved.check_shape()?;
+        let margin = match body.role {
+            BodyRole::Part => 0.0,
+            BodyRole::Fixture { margin } | BodyRole::Machine { margin, .. } => {
+                checked_margin(margin)?
+            }
+        };
+        let margin = checked_margin(revolved.margin)?.max(margin);
+        let verifier = Verifier::new(body.bvh, revolved.shape)?;
+        let verifier = with_margin(verifier, revolved.shape.info(), margin)?;
+        Ok(match self.resolution {
+            Some(resolution) => verifier.with_resolution(resolution)?,
+            None => verifier,
+        })
+    }
+}
+
+/// Sets the distance that all surfaces of a tool keep.
+fn with_margin<'a>(
+    verifier: Verifier<'a>,
+    info: &ToolInfo,
+    margin: f64,
+) -> Result<Verifier<'a>, JobError> {
+    // Surfaces without another allowance have 0.
+    if checked_margin(margin)? == 0.0 {
+        return Ok(verifier);
+    }
+    let surfaces = info.surfaces.iter();
+    Ok(verifier.with_allowances(surfaces.map(|surface| (&*surface.name, -margin)))?)
 }
 
 impl<'a> Body<'a> {
     /// Creates a fixture that moves with the workpiece and may be touched, and not be entered.
     pub fn fixture(name: &str, bvh: &'a TriangleBvh) -> Body<'a> {
         let role = BodyRole::Fixture { margin: 0.0 };
-        Body { name: name.to_owned(), bvh, link: None, role }
+        Body { name: name.to_owned(), bvh, frame: BodyFrame::Part, role, work_offset: None }
     }
 
-    /// Returns whether it is the part, and no fixture.
+    /// Creates another part, which the program cuts under another work offset. Its triangles are in the frame of the part: those of
+    /// its own frame, moved by the difference of both origins.
+    pub fn other_part(name: &str, bvh: &'a TriangleBvh, work_offset: WorkOffset) -> Body<'a> {
+        let (frame, role) = (BodyFrame::Part, BodyRole::Part);
+        Body { name: name.to_owned(), bvh, frame, role, work_offset: Some(work_offset) }
+    }
+
+    /// Creates a mesh of the machine, in machine coordinates with all axes at 0, that moves with a link and may be touched by the
+    /// tools of the program, and not be entered.
+    pub fn machine(name: &str, bvh: &'a TriangleBvh, link: Link) -> Body<'a> {
+        let role = BodyRole::Machine { margin: 0.0, meets_tools: true };
+        let (frame, work_offset) = (BodyFrame::Machine(link), None);
+        Body { name: name.to_owned(), bvh, frame, role, work_offset }
+    }
+
+    /// Returns whether it is the part or another part, and no fixture or mesh of the machine.
     pub fn is_part(&self) -> bool {
         self.role == BodyRole::Part
+    }
+
+    /// Returns whether the tools of the program are checked against it.
+    fn meets_tools(&self) -> bool {
+        !matches!(self.role, BodyRole::Machine { meets_tools: false, .. })
     }
 }
 
@@ -390,6 +547,7 @@ impl JobStock {
     fn build(&self, unit: Unit) -> Result<Stock, StockError> {
         match &self.shape {
             StockShape::Mesh(mesh) => Stock::from_mesh(mesh, self.spacing),
+            StockShape::Points(points) => Stock::from_points(points),
             StockShape::Box(corners) => Stock::from_box(*corners, self.spacing, unit),
         }
     }

@@ -4,12 +4,14 @@
 use super::finding;
 use super::machine::MachineFinding;
 use super::program::BlockMoves;
-use super::report::{JobReport, PairReport, Remedy};
+use super::report::{JobReport, Moving, PairReport, Remedy};
 use super::stock::{CutStock, StockCut};
-use super::{Job, JobError, JobTool};
-use crate::check::{ApproachSearch, MoveCheck};
+use super::{Body, BodyFrame, Job, JobError, JobTool};
+use crate::check::{ApproachSearch, MoveCheck, MoveRequest};
 use crate::gcode::WorkOffset;
+use crate::machine::{Link, Machine, Side};
 use crate::{FindingGroup, Gap, Move, Verifier};
+use touchoff::tool::Symmetry;
 
 /// The results of one reading.
 struct ReadingResult {
@@ -19,6 +21,13 @@ struct ReadingResult {
     cut: Option<CutStock>,
     /// The work offsets under which no tool comes near the part, with their lines, if the reading has several.
     far_offsets: Vec<(WorkOffset, usize)>,
+}
+
+/// Something that moves, and the index of the body against which it is checked.
+#[derive(Clone, Copy)]
+struct MovingPair {
+    moving: Moving,
+    body: usize,
 }
 
 /// The closest approach to the part under one work offset, of one tool.
@@ -47,7 +56,7 @@ impl OffsetApproach<'_> {
 
 impl<'a> Job<'a> {
     /// Checks the program in every reading. `progress` is called with the number of motions checked since the last call, from any
-    /// thread; the numbers add up to [`Program::motions`](super::Program::motions) times the number of bodies.
+    /// thread; the numbers add up to [`Job::motion_checks`].
     ///
     /// # Errors
     /// If the program states another unit or cutter than the job, a tool cannot be certified or has not a surface that is allowed a
@@ -58,6 +67,28 @@ impl<'a> Job<'a> {
         }
         let (mut pairs, mut cuts) = (Vec::new(), Vec::new());
         let mut gaps = self.program.gaps();
+        gaps.extend(self.gaps.iter().cloned());
+        let against = self.revolved.iter().flat_map(|body| &body.against);
+        if against.into_iter().any(|body| *body >= self.bodies.len()) {
+            return Err(JobError::Mismatch(
+                "a body of the machine is checked against a body of the job that there is not",
+            ));
+        }
+        for (offset, line) in
+            self.program.readings().iter().flat_map(|reading| &reading.summary().moved_offsets)
+        {
+            if self.bodies.iter().any(|body| body.work_offset == Some(*offset)) {
+                return Err(JobError::MovedPart { offset: *offset, line: *line });
+            }
+        }
+        let is_machine = |body: &Body<'_>| matches!(body.frame, BodyFrame::Machine(_));
+        if !self.revolved.is_empty() || self.bodies.iter().any(is_machine) {
+            self.program.check_places()?;
+        } else if self.program.machine().is_some_and(|machine| !machine.bodies().is_empty()) {
+            let reason = "the bodies that the machine's file states are not checked here: check them by a job file, or name a machine \
+                          without bodies";
+            gaps.push(Gap::open(0, reason.to_owned()));
+        }
         let mut readings = self.program.readings().iter();
         if let (Some(line), Some(_)) =
             (readings.find_map(|reading| reading.summary().any_rapid), &self.stock)
@@ -72,7 +103,7 @@ impl<'a> Job<'a> {
             let far = result.far_offsets.into_iter().map(|(offset, line)| {
                 let reason = format!(
                     "under {offset} the tool never comes within its diameter of the part: check {offset} in `work_offsets`, \
-                     or give a job per part"
+                     state what stands there as `[[other_part]]`, or give a job per part"
                 );
                 (line, reason)
             });
@@ -92,6 +123,26 @@ impl<'a> Job<'a> {
         Ok(report)
     }
 
+    /// Returns the number of checks of motions at bodies, those of all readings together.
+    pub fn motion_checks(&self) -> usize {
+        let at_bodies = self.bodies.iter().filter(|body| body.meets_tools()).count();
+        let between = self.revolved.iter().map(|body| body.against.len()).sum::<usize>();
+        self.program.motions() * (at_bodies + between)
+    }
+
+    /// Returns what moves against which bodies: each tool, then each body of the machine.
+    fn moving_pairs(&self) -> Vec<MovingPair> {
+        let bodies = || self.bodies.iter().enumerate().filter(|(_, body)| body.meets_tools());
+        let tools = (0..self.tools.len()).flat_map(|tool| {
+            bodies().map(move |(body, _)| MovingPair { moving: Moving::Tool(tool), body })
+        });
+        let revolved = self.revolved.iter().enumerate().flat_map(|(index, moving)| {
+            let moving_index = Moving::Revolved(index);
+            moving.against.iter().map(move |body| MovingPair { moving: moving_index, body: *body })
+        });
+        tools.chain(revolved).collect()
+    }
+
     /// Checks one reading of the program.
     ///
     /// # Errors
@@ -101,21 +152,29 @@ impl<'a> Job<'a> {
         reading: usize,
         progress: &(dyn Fn(usize) + Sync),
     ) -> Result<ReadingResult, JobError> {
-        // The links of the bodies, that of the part first, and the index of that of each body.
-        let mut links: Vec<Option<usize>> = Vec::new();
-        let mut frame_of = Vec::new();
-        for body in &self.bodies {
-            let known = links.iter().position(|link| *link == body.link);
-            frame_of.push(known.unwrap_or(links.len()));
-            if known.is_none() {
-                links.push(body.link);
-            }
-        }
-        // Tool by tool, each at every body: the index of a pair follows from those of both.
+        let moving = self.moving_pairs();
+        // The moves that are asked for, those of the tools at the part first, and the index of those of each pair.
+        let mut requests = vec![MoveRequest::AtPart];
+        let mut request_of = Vec::new();
         let mut verifiers: Vec<Verifier<'a>> = Vec::new();
-        for tool in &self.tools {
-            for body in &self.bodies {
-                verifiers.push(self.verifier(tool, body)?);
+        for pair in &moving {
+            let body = &self.bodies[pair.body];
+            let revolved = match pair.moving {
+                Moving::Tool(index) => {
+                    verifiers.push(self.verifier(&self.tools[index], body)?);
+                    None
+                }
+                Moving::Revolved(index) => {
+                    let revolved = &self.revolved[index];
+                    verifiers.push(self.verifier_between(revolved, body)?);
+                    Some(revolved)
+                }
+            };
+            let request = self.program.request(revolved, body.frame)?;
+            let known = requests.iter().position(|known| *known == request);
+            request_of.push(known.unwrap_or(requests.len()));
+            if known.is_none() {
+                requests.push(request);
             }
         }
         let checks = verifiers.iter().map(MoveCheck::new);
@@ -128,8 +187,13 @@ impl<'a> Job<'a> {
         };
         let mut approaches: Vec<OffsetApproach<'_>> = Vec::new();
         for (offset, _) in &offsets {
-            // The part is the first body.
-            for (tool, verifier) in verifiers.iter().step_by(self.bodies.len()).enumerate() {
+            // The part is the first body, unless another one stands at the offset.
+            let other = self.bodies.iter().position(|body| body.work_offset == Some(*offset));
+            let part = other.unwrap_or(0);
+            for (pair, verifier) in
+                moving.iter().zip(&verifiers).filter(|(pair, _)| pair.body == part)
+            {
+                let Some(tool) = pair.moving.tool() else { continue };
                 let search = ApproachSearch::new(verifier)?;
                 approaches.push(OffsetApproach { offset: *offset, tool, search, has_moves: false });
             }
@@ -141,16 +205,22 @@ impl<'a> Job<'a> {
 
         // A tool that makes all motions is not changed, whatever numbers the program has.
         let restarts = !self.tools.iter().any(|tool| tool.motions == crate::ToolSelection::All);
-        let blocks = self.program.blocks(reading, &links, self.unit(), restarts, |number| {
-            Some(self.tool_of(number)?.tool.info().symmetry)
+        // The machine's bodies move with every tool.
+        let any_tool = (!self.revolved.is_empty()).then_some(Symmetry::Revolved);
+        let blocks = self.program.blocks(reading, &requests, self.unit(), restarts, |number| {
+            self.tool_of(number).map(|tool| tool.tool.info().symmetry).or(any_tool)
         })?;
         for BlockMoves { tool: number, frames } in blocks {
-            let Some(index) = self.tool_index(number) else { continue };
-            for (frame, check) in frame_of.iter().zip(&mut checks[index * self.bodies.len()..]) {
-                for step in &frames[*frame] {
+            let index = self.tool_index(number);
+            for ((pair, request), check) in moving.iter().zip(&request_of).zip(&mut checks) {
+                if pair.moving.tool().is_some() && pair.moving.tool() != index {
+                    continue;
+                }
+                for step in &frames[*request] {
                     check.add(step.clone(), progress)?;
                 }
             }
+            let Some(index) = index else { continue };
             for approach in approaches.iter_mut().filter(|approach| approach.tool == index) {
                 approach.add(&frames[0]);
             }
@@ -162,18 +232,14 @@ impl<'a> Job<'a> {
         }
 
         let mut pairs = Vec::new();
-        for (index, (verifier, check)) in verifiers.iter().zip(checks).enumerate() {
+        for ((MovingPair { moving, body }, verifier), check) in
+            moving.into_iter().zip(&verifiers).zip(checks)
+        {
             let report = check.finish(progress)?;
             let groups = FindingGroup::join(&report.findings);
-            let remedies = groups
-                .iter()
-                .map(|group| Remedy {
-                    lift: verifier.lift(&group.worst),
-                    tilt: verifier.tilt(&group.worst).filter(|_| self.program.turns_axis()),
-                })
-                .collect();
-            let (tool, body) = (index / self.bodies.len(), index % self.bodies.len());
-            pairs.push(PairReport { tool, body, reading, report, groups, remedies });
+            let remedies = groups.iter().map(|group| self.remedy(verifier, moving, body, group));
+            let remedies = remedies.collect();
+            pairs.push(PairReport { moving, body, reading, report, groups, remedies });
         }
         // An offset of another part, or with a wrong origin, is one under which no tool comes near this part.
         let near = approaches.into_iter().filter_map(OffsetApproach::finish_near);
@@ -181,6 +247,39 @@ impl<'a> Job<'a> {
         let far_offsets =
             offsets.into_iter().filter(|(offset, _)| !near.contains(offset)).collect();
         Ok(ReadingResult { pairs, cut: cut.map(StockCut::finish), far_offsets })
+    }
+
+    /// Returns the changes that clear the worst motion of a group: a travel along the axis where a longer tool makes it, and a tilt of
+    /// a tool.
+    fn remedy(
+        &self,
+        verifier: &Verifier<'_>,
+        moving: Moving,
+        body: usize,
+        group: &FindingGroup,
+    ) -> Remedy {
+        let machine = self.program.machine();
+        // A body that the head carries follows the tool.
+        let is_carried = |machine: &Machine| match self.bodies[body].frame.link(machine) {
+            Link::Base => false,
+            Link::Axis(letter) => machine.axis(letter).is_some_and(|axis| axis.side == Side::Tool),
+        };
+        if machine.is_some_and(is_carried) {
+            return Remedy { lift: None, tilt: None };
+        }
+        match moving {
+            Moving::Tool(_) => Remedy {
+                lift: verifier.lift(&group.worst),
+                tilt: verifier.tilt(&group.worst).filter(|_| self.program.turns_axis()),
+            },
+            Moving::Revolved(index) => {
+                let revolved = &self.revolved[index];
+                let is_lifted =
+                    machine.is_some_and(|machine| revolved.is_lifted_by_length(machine));
+                let lift = if is_lifted { verifier.lift(&group.worst) } else { None };
+                Remedy { lift, tilt: None }
+            }
+        }
     }
 
     /// Returns the tool that makes the motions of a number.

@@ -1,8 +1,9 @@
 //! A program of any kind: CL data, or G-code on a machine.
 
-use super::JobError;
+use super::{BodyFrame, JobError, RevolvedBody};
+use crate::check::MoveRequest;
 use crate::gcode::{ControlRules, ControlSetup};
-use crate::machine::{Machine, Side};
+use crate::machine::{Machine, Mover, Reference, Relation, Side};
 use crate::program::ProgramFile;
 use crate::{ClData, Gap, MachineProgram, Move, ProgramError, ToolSelection, ToolUse};
 use std::iter;
@@ -26,7 +27,7 @@ pub enum Program {
 pub(super) struct BlockMoves {
     /// Number of the tool in the spindle.
     pub(super) tool: Option<u32>,
-    /// The moves, one after the other, in the frame of each link that was asked for.
+    /// The moves, one after the other, for each request.
     pub(super) frames: Vec<Vec<Move>>,
 }
 
@@ -263,13 +264,14 @@ impl Program {
         })
     }
 
-    /// Returns the moves of a reading in the order of the program, in the frame of each link. `symmetry` is that of the tool with a
+    /// Returns the moves of a reading in the order of the program, for each request, of which positions have that of the tool at the
+    /// part alone. `symmetry` is that of the tool with a
     /// number in positions, of which a tool that is not known makes none. `restarts` is set if each tool begins with a rest at its
     /// first position.
     pub(super) fn blocks<'a>(
         &'a self,
         reading: usize,
-        links: &[Option<usize>],
+        requests: &[MoveRequest],
         unit: Unit,
         restarts: bool,
         symmetry: impl Fn(Option<u32>) -> Option<Symmetry> + 'a,
@@ -284,10 +286,62 @@ impl Program {
             })),
             Program::Machine(readings) => {
                 let blocks = readings[reading]
-                    .blocks(links, unit, restarts, move |number| symmetry(number).is_some())?;
+                    .blocks(requests, unit, restarts, move |number| symmetry(number).is_some())?;
                 Box::new(blocks.map(|(tool, frames)| BlockMoves { tool, frames }))
             }
         })
+    }
+
+    /// Returns the request for the moves of the tools, or of a body of the machine, at a body with a frame.
+    ///
+    /// # Errors
+    /// If the program is not for a machine, or that lacks a link.
+    pub(super) fn request(
+        &self,
+        revolved: Option<&RevolvedBody<'_>>,
+        frame: BodyFrame,
+    ) -> Result<MoveRequest, JobError> {
+        match (revolved, frame) {
+            (None, BodyFrame::Part) => return Ok(MoveRequest::AtPart),
+            (None, BodyFrame::Table(link)) => return Ok(MoveRequest::AtTable(link)),
+            _ => {}
+        }
+        let Some(machine) = self.machine() else {
+            return Err(JobError::Mismatch("bodies of a machine are for programs on a machine"));
+        };
+        let mover = match revolved {
+            None => Mover::Tool,
+            Some(body) => Mover::Body { link: body.link, mount: body.mount },
+        };
+        let reference = match frame {
+            BodyFrame::Part => Reference::Workpiece,
+            BodyFrame::Table(_) | BodyFrame::Machine(_) => Reference::Link(frame.link(machine)),
+        };
+        Ok(MoveRequest::Bodies {
+            relation: Box::new(Relation::new(machine, mover, reference)?),
+            is_in_part: matches!(frame, BodyFrame::Table(_)),
+        })
+    }
+
+    /// Checks that the bodies of the machine have a place in all readings: that the origin of the part and the lengths of all tools
+    /// are known.
+    ///
+    /// # Errors
+    /// If one of them is not stated.
+    pub(super) fn check_places(&self) -> Result<(), JobError> {
+        for program in self.readings() {
+            if program.part_origin().is_none() {
+                return Err(JobError::Mismatch(
+                    "the bodies of the machine have a place relative to the part if the origin of G54 is stated: state it in \
+                     `work_offsets` of the job, or name a machine without bodies",
+                ));
+            }
+            let mut tools = program.summary().tools.iter();
+            if let Some(tool) = tools.find(|tool| !program.is_length_known(tool.number)) {
+                return Err(JobError::NoLength { number: tool.number });
+            }
+        }
+        Ok(())
     }
 
     /// Returns the link of the table that moves with an axis, or `base`; `None` for the one that carries the part.

@@ -2,9 +2,10 @@
 
 use super::machine::MachineFinding;
 use super::stock::{CutStock, StockFinding};
-use super::{Body, Job, JobTool};
+use super::{Body, Job, JobTool, RevolvedBody};
 use crate::{FindingGroup, Gap, GapWeight, Tilt, VerifyReport};
 use std::fmt;
+use touchoff::Tool;
 use touchoff::tool::ToolInfo;
 
 /// The verdict about a job.
@@ -39,12 +40,31 @@ pub struct Remedy {
     pub tilt: Option<Tilt>,
 }
 
-/// A tool checked against the part or a fixture, in one reading of the program.
+/// Something that moves against a body: its index in the job.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Moving {
+    /// A tool of the program.
+    Tool(usize),
+    /// A body of the machine that is a solid of revolution.
+    Revolved(usize),
+}
+
+impl Moving {
+    /// Returns the index of a tool of the program.
+    pub fn tool(self) -> Option<usize> {
+        match self {
+            Moving::Tool(index) => Some(index),
+            Moving::Revolved(_) => None,
+        }
+    }
+}
+
+/// A tool, or a body of the machine, checked against a body, in one reading of the program.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct PairReport {
-    /// Index of the tool in the job.
-    pub tool: usize,
+    /// What moves against the body.
+    pub moving: Moving,
     /// Index of the body in the job.
     pub body: usize,
     /// Index of the reading of the program.
@@ -81,9 +101,31 @@ impl JobReport<'_> {
         &self.findings
     }
 
-    /// Returns the tool of a pair.
-    pub fn tool(&self, pair: &PairReport) -> &JobTool<'_> {
-        &self.job.tools[pair.tool]
+    /// Returns the tool of a pair; `None` if a body of the machine moves in it.
+    pub fn tool(&self, pair: &PairReport) -> Option<&JobTool<'_>> {
+        Some(&self.job.tools[pair.moving.tool()?])
+    }
+
+    /// Returns the body of the machine that moves in a pair; `None` if it is a tool.
+    pub fn revolved(&self, pair: &PairReport) -> Option<&RevolvedBody<'_>> {
+        match pair.moving {
+            Moving::Tool(_) => None,
+            Moving::Revolved(index) => Some(&self.job.revolved[index]),
+        }
+    }
+
+    /// Returns the shape that moves in a pair: a tool, or that of a body of the machine.
+    pub fn shape(&self, pair: &PairReport) -> &dyn Tool {
+        match pair.moving {
+            Moving::Tool(index) => self.job.tools[index].tool,
+            Moving::Revolved(index) => self.job.revolved[index].shape,
+        }
+    }
+
+    /// Returns the tools at the part in the first reading, one pair per tool.
+    pub fn tools_at_part(&self) -> impl Iterator<Item = &PairReport> {
+        let is_first = |pair: &&PairReport| pair.body == 0 && pair.reading == 0;
+        self.pairs.iter().filter(is_first).filter(|pair| pair.moving.tool().is_some())
     }
 
     /// Returns the body of a pair.
@@ -92,7 +134,7 @@ impl JobReport<'_> {
     }
 
     pub(super) fn info(&self, pair: &PairReport) -> &ToolInfo {
-        self.tool(pair).tool.info()
+        self.shape(pair).info()
     }
 
     /// Returns the stock after the first reading, if the job has one.
@@ -113,9 +155,15 @@ impl JobReport<'_> {
         }
     }
 
+    /// Returns whether a pair is a tool of the program at the part.
+    fn is_tool_at_part(&self, pair: &PairReport) -> bool {
+        pair.moving.tool().is_some() && self.body(pair).is_part()
+    }
+
     /// Returns whether the program seems to be in another unit than the part, so that findings mean nothing.
     fn is_misplaced(&self) -> bool {
-        let mut parts = self.pairs.iter().filter(|pair| self.body(pair).is_part());
+        let at_part = |pair: &&PairReport| self.is_tool_at_part(pair) && pair.body == 0;
+        let mut parts = self.pairs.iter().filter(at_part);
         !self.job.anyway && parts.any(|pair| pair.report.approach.unit_factor.is_some())
     }
 
@@ -172,7 +220,7 @@ impl JobReport<'_> {
                 );
             }
         }
-        let parts = || pairs.iter().filter(|pair| self.body(pair).is_part());
+        let parts = || pairs.iter().filter(|pair| self.is_tool_at_part(pair));
         // A program that touches a fixture or the stock is meant for this setup.
         let touches = touches_stock || pairs.iter().any(|pair| !pair.groups.is_empty());
         if !self.job.anyway && !touches && parts().all(|pair| pair.report.approach.is_far()) {
@@ -182,7 +230,9 @@ impl JobReport<'_> {
                     .to_owned(),
             );
         }
-        let factor = parts().find_map(|pair| pair.report.approach.unit_factor);
+        // The positions for other parts are outside the box of each.
+        let mut first = parts().filter(|pair| pair.body == 0);
+        let factor = first.find_map(|pair| pair.report.approach.unit_factor);
         if let (false, Some(factor)) = (self.job.anyway, factor) {
             reasons.push(format!(
                 "the positions in feed lie outside the part's box, but would fit if they were {factor} times as large: check \
@@ -227,9 +277,9 @@ impl fmt::Display for JobFinding {
 /// Subject of a finding.
 #[derive(Clone, Debug)]
 pub enum FindingDetail {
-    /// A surface of a tool at the part or at a fixture.
+    /// A surface of a tool, or of a body of the machine, at another body.
     Surface {
-        /// Index of the tool and the body in the report's pairs.
+        /// Index of both in the report's pairs.
         pair: usize,
         /// The consecutive motions.
         group: Box<FindingGroup>,

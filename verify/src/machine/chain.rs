@@ -1,6 +1,8 @@
 //! Forward kinematics: the pose of the tool relative to the workpiece or to another body of the machine.
 
-use super::{JointError, Joints, Letter, MAX_DEGREES, MAX_LENGTH, Machine, Setup, Side};
+use super::{
+    Axis, JointError, Joints, Letter, Link, MAX_DEGREES, MAX_LENGTH, Machine, Setup, Side,
+};
 use nalgebra::{Matrix3, Point3, Vector3};
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -21,7 +23,8 @@ pub struct Chain {
     has_rotary: [bool; 3],
     /// Number of rotary axes of the table. The linear axes follow them.
     table: usize,
-    /// 1 for each linear axis that moves the tool relative to the body, 0 for the others.
+    /// 1 for each linear axis that moves the tool relative to the body, 0 for the others; −1 in a [`Relation`] in which it moves
+    /// the other way.
     pub(super) slides: Vector3<f64>,
     /// For each linear axis the first link that it moves; 0 for an axis of the tool.
     slide_links: [usize; 3],
@@ -30,7 +33,11 @@ pub struct Chain {
     pub(super) frame: Frame,
     /// The link of the table side to which poses are relative.
     pub(super) link: usize,
-    pub(super) tool_length: f64,
+    /// The pose of the tool's tip frame with all axes at 0, in mm: (0, 0, −h) without a rotation, or that of another body in a
+    /// [`Relation`].
+    pub(super) mount: Pose,
+    /// Set if the mount is turned.
+    is_mount_turned: bool,
 }
 
 /// A rotary axis of a chain.
@@ -114,6 +121,7 @@ impl Chain {
             point: Vector3::zeros(),
             link: 0,
         };
+        let mount = Vector3::new(0.0, 0.0, -setup.tool_length);
         let mut chain = Chain {
             axes: [filler; 2],
             count: 0,
@@ -124,7 +132,8 @@ impl Chain {
             limits: [[f64::NEG_INFINITY, f64::INFINITY]; 6],
             frame: Frame::IDENTITY,
             link: machine.axes().iter().filter(|axis| axis.side == Side::Table).count(),
-            tool_length: setup.tool_length,
+            mount: Pose::from_computed(Matrix3::identity(), Point3::from(mount)),
+            is_mount_turned: false,
         };
         let mut link = 0;
         for axis in machine.axes() {
@@ -256,11 +265,14 @@ impl Chain {
 
     /// Returns the rotation of the tool from the turns of the axes.
     pub(super) fn rotation(&self, turns: &[Matrix3<f64>; 2]) -> Matrix3<f64> {
-        let product = match self.count {
+        let mut product = match self.count {
             0 => Matrix3::identity(),
             1 => turns[0],
             _ => turns[0] * turns[1],
         };
+        if self.is_mount_turned {
+            product *= self.mount.rotation();
+        }
         if self.frame.turned > 0 { self.frame.rotation.tr_mul(&product) } else { product }
     }
 
@@ -275,7 +287,7 @@ impl Chain {
 
     /// Returns the tip after the motions of the tool's rotary axes, with the linear axes at 0.
     fn swivelled_tip(&self, turns: &[Matrix3<f64>; 2]) -> Vector3<f64> {
-        let mut tip = Vector3::new(0.0, 0.0, -self.tool_length);
+        let mut tip = self.mount.tip().coords;
         for at in self.tool_axes().rev() {
             tip = self.axes[at].apply(&turns[at], &tip);
         }
@@ -356,6 +368,8 @@ impl Chain {
     ///
     /// > rotation: (2 (30 + 9) (m + f) + 8) u
     ///
+    /// The turned mount of another body counts as one more axis: its rotation is taken as it is, within 9u of an exact one.
+    ///
     /// Sine and cosine of the platform's library are taken to err by at most an ulp.
     pub fn rounding(&self, joints: &Joints) -> RoundingBound {
         let linear = Vector3::new(joints[0], joints[1], joints[2]).norm();
@@ -366,14 +380,148 @@ impl Chain {
     pub(super) fn rounding_at(&self, linear: f64) -> RoundingBound {
         let [turned, axes] = [self.frame.turned, self.count].map(|count| count as f64);
         let tip = (38.0 * axes + 76.0 * turned + 4.0) * self.size(linear) * UNIT_ROUNDOFF;
-        let rotation = 2.0 * (ROTATION_ERROR + 9.0) * (axes + turned) + 8.0;
+        let factors = axes + turned + f64::from(u8::from(self.is_mount_turned));
+        let rotation = 2.0 * (ROTATION_ERROR + 9.0) * factors + 8.0;
         RoundingBound { tip, rotation: rotation * UNIT_ROUNDOFF }
     }
 
     /// Returns the size S of [`Chain::rounding`], in mm.
     pub(super) fn size(&self, linear: f64) -> f64 {
         let points = self.rotary().iter().map(|axis| axis.point.norm()).sum::<f64>();
-        self.tool_length.abs() + linear + self.frame.origin.norm() + 4.0 * points
+        self.mount.tip().coords.norm() + linear + self.frame.origin.norm() + 4.0 * points
+    }
+}
+
+/// Something that moves with a link of a machine, relative to another link.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Mover {
+    /// The tool in the spindle.
+    Tool,
+    /// A body of the machine.
+    Body {
+        /// Its link.
+        link: Link,
+        /// Its pose in machine coordinates with all axes at 0, in mm.
+        mount: Pose,
+    },
+}
+
+/// The frame to which poses are relative.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Reference {
+    /// That of the workpiece, with its work offset.
+    Workpiece,
+    /// That of a link, which coincides with machine coordinates when all axes are at 0.
+    Link(Link),
+}
+
+/// The motion of any body of a machine relative to any other one.
+///
+/// Let link L of a machine be at P_L(q) in machine coordinates, as the [module](super) has it: the product of J(−q) of the axes of
+/// the table up to L, or of J(q) of those of the tool. The pose of a mount M of link B relative to link A is
+///
+/// > P_A(q)⁻¹ P_B(q) M
+///
+/// The axes that both links have in common cancel. Of those that remain, the factors of A are inverted and reversed: from a link of
+/// the table to one of the tool all of them are J(q), and the other way all are J(−q), where J(−q) of a rotary axis is J(q) about
+/// the opposite direction. On each side the linear axes are nearer to the base than the rotary ones. The product is hence one of
+/// rotations, translations, and rotations, as that of a [`Chain`] is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Relation {
+    chain: Chain,
+    /// Set if the mount is that of the tool in the spindle.
+    is_of_tool: bool,
+    /// Set if poses are relative to the workpiece.
+    is_to_workpiece: bool,
+}
+
+impl Relation {
+    /// Returns the motion of a body relative to a frame.
+    ///
+    /// # Errors
+    /// [`JointError::NoCarrier`] if the machine lacks the axis of a link.
+    pub(crate) fn new(
+        machine: &Machine,
+        mover: Mover,
+        reference: Reference,
+    ) -> Result<Relation, JointError> {
+        let mut chain = machine.chain(&Setup::default())?;
+        (chain.count, chain.table, chain.slides) = (0, 0, Vector3::zeros());
+        let to = match mover {
+            Mover::Tool => machine.last_link(Side::Tool),
+            Mover::Body { link, mount } => {
+                chain.is_mount_turned = *mount.rotation() != Matrix3::identity();
+                chain.mount = mount;
+                link
+            }
+        };
+        let from = match reference {
+            Reference::Workpiece => machine.last_link(Side::Table),
+            Reference::Link(link) => link,
+        };
+        let [from, to] = [machine.carriers(from)?, machine.carriers(to)?];
+        let common = from.iter().zip(&to).take_while(|(one, other)| one.letter == other.letter);
+        let common = common.count();
+        let inverted = from[common..].iter().rev().map(|axis| (axis, -link_sign(axis.side)));
+        let applied = to[common..].iter().map(|axis| (axis, link_sign(axis.side)));
+        let mut has_slide = false;
+        for (axis, sign) in inverted.chain(applied) {
+            if !axis.letter.is_rotary() {
+                chain.slides[axis.letter.index()] = sign;
+                has_slide = true;
+                continue;
+            }
+            chain.axes[chain.count] = RotaryAxis {
+                letter: axis.letter,
+                direction: sign * axis.direction,
+                point: axis.point.coords,
+                link: 0,
+            };
+            chain.count += 1;
+            // Rotary axes before the linear ones turn the position that these give.
+            chain.table += usize::from(!has_slide);
+        }
+        let is_of_tool = mover == Mover::Tool;
+        Ok(Relation { chain, is_of_tool, is_to_workpiece: reference == Reference::Workpiece })
+    }
+
+    /// Returns the chain for the tool length and the work offset of the chain of a workpiece.
+    pub(super) fn of(&self, workpiece: &Chain) -> Chain {
+        let mut chain = self.chain;
+        if self.is_of_tool {
+            chain.mount = workpiece.mount;
+        }
+        if self.is_to_workpiece {
+            chain.frame = workpiece.frame;
+        }
+        chain
+    }
+}
+
+/// Returns the sign of the joint value in the motion of an axis's link.
+fn link_sign(side: Side) -> f64 {
+    match side {
+        Side::Table => -1.0,
+        Side::Tool => 1.0,
+    }
+}
+
+impl Machine {
+    /// Returns the last link of a side: that of the workpiece, or that of the spindle.
+    pub(crate) fn last_link(&self, side: Side) -> Link {
+        let last = self.axes().iter().rfind(|axis| axis.side == side);
+        last.map_or(Link::Base, |axis| Link::Axis(axis.letter))
+    }
+
+    /// Returns the axes that move a link, from the base outwards.
+    fn carriers(&self, link: Link) -> Result<Vec<&Axis>, JointError> {
+        let Link::Axis(letter) = link else { return Ok(Vec::new()) };
+        let last = self.axis(letter).ok_or(JointError::NoCarrier { letter })?;
+        let mut side: Vec<&Axis> =
+            self.axes().iter().filter(|axis| axis.side == last.side).collect();
+        let count = side.iter().take_while(|axis| axis.letter != letter).count();
+        side.truncate(count + 1);
+        Ok(side)
     }
 }
 

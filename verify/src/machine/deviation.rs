@@ -13,6 +13,11 @@
 //! centripetal terms). A translation adds its own. With TCP, p is the path in the frame of the workpiece, and
 //! rotations are undone from there to another body.
 //!
+//! **Other bodies.** The tip of a body other than the tool is a fixed point of its link, to which the same factors apply:
+//! rotations, the translation by those of the linear joints that are between both links, and rotations. With TCP the linear joints
+//! are the path, with the rotations of the table undone, less the tool's tip after those of the tool: their speeds and accelerations
+//! are at most the sums of both.
+//!
 //! **Tool axis.** Let the outer axis have direction d₁ and rate w₁, the inner one d₂ and w₂, and let a(t) be
 //! the tool axis after the inner rotation. In this frame the angular velocity ω = w₁d₁ + w₂d₂ is constant,
 //! its derivative is n = w₁w₂ d₁ × d₂, and the tool axis has the speed |ω × a| and the tangential
@@ -39,7 +44,7 @@
 //! |n|/2. Its great circle is the spherical interpolation, and ‖R − R̃‖ ≤ 2 |q − q̃|.
 
 use super::chain::{Chain, RotaryAxis};
-use super::motion::{JointMotion, checked_time};
+use super::motion::{Derivatives, JointMotion, Related, checked_time};
 use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::FRAC_PI_2;
 
@@ -52,8 +57,13 @@ struct Interval<'m> {
     times: [f64; 2],
     duration: f64,
     /// The rotation matrices of the workpiece's chain at both ends.
-    turns: [[Matrix3<f64>; 2]; 2],
+    turns: Turns,
+    /// Those of the body's chain.
+    body_turns: Turns,
 }
+
+/// Rotation matrices of a chain at both ends of an interval.
+type Turns = [[Matrix3<f64>; 2]; 2];
 
 /// A point that moves: its positions at both ends of the interval, and bounds on its speed and acceleration.
 struct MovingPoint {
@@ -100,21 +110,22 @@ impl JointMotion {
 
     /// Returns a bound on the second derivative of the linear joint values between two times, in mm.
     pub(super) fn linear_acceleration(&self, t0: f64, t1: f64) -> f64 {
-        let acceleration = match self.tcp {
-            true => Interval::new(self, t0, t1).following_acceleration(),
-            false => self.path.derivatives().acceleration,
-        };
-        acceleration * (1.0 + RELATIVE_ERROR)
+        Interval::new(self, t0, t1).linear_bounds().acceleration * (1.0 + RELATIVE_ERROR)
     }
 
     /// Returns the angular rates of the rotary axes of a chain to a body, in radians, in the chain's order.
     fn rates(&self, chain: &Chain) -> [f64; 2] {
         let mut rates = [0.0; 2];
         for (rate, axis) in rates.iter_mut().zip(chain.rotary()) {
-            let [start, end] = self.rotary_ends(axis.letter);
-            *rate = (end - start).to_radians();
+            *rate = self.rate(axis);
         }
         rates
+    }
+
+    /// Returns the angular rate of a rotary axis, in radians.
+    fn rate(&self, axis: &RotaryAxis) -> f64 {
+        let [start, end] = self.rotary_ends(axis.letter);
+        (end - start).to_radians()
     }
 }
 
@@ -122,7 +133,11 @@ impl Interval<'_> {
     fn new(motion: &JointMotion, t0: f64, t1: f64) -> Interval<'_> {
         let (t0, t1) = (checked_time(t0), checked_time(t1));
         let turns = [t0, t1].map(|t| motion.turns(t));
-        Interval { motion, times: [t0, t1], duration: (t1 - t0).abs(), turns }
+        let body_turns = match motion.related {
+            Related::Workpiece => turns,
+            Related::TableLink | Related::Bodies => [t0, t1].map(|t| motion.body_turns(t)),
+        };
+        Interval { motion, times: [t0, t1], duration: (t1 - t0).abs(), turns, body_turns }
     }
 
     /// Adds up the bounds of tip, rotation and rounding. An error of the poses at both ends changes the
@@ -138,75 +153,87 @@ impl Interval<'_> {
     /// Returns bounds on the speed and the acceleration of the tip relative to the body.
     fn tip_bounds(&self) -> (f64, f64) {
         let (chain, body) = (&self.motion.chain, &self.motion.body);
-        let skipped = chain.rotary().len() - body.rotary().len();
+        if self.motion.tcp && self.motion.related != Related::Bodies {
+            if body.has_all_slides() {
+                return self.undone(chain.rotary().len() - body.rotary().len()).bounds();
+            }
+            // The body carries a linear axis of the table and hence no rotary axis. Its position is a part of the
+            // linear joints' coordinates, and the rest is that of the spindle head.
+            let head = self.swivelled_tip(body, &self.body_turns).bounds();
+            return match body.slides == Vector3::zeros() {
+                true => head,
+                false => {
+                    let slides = self.undone(chain.table_axes()).bounds();
+                    (head.0 + slides.0, head.1 + slides.1)
+                }
+            };
+        }
+        let mut tip = self.swivelled_tip(body, &self.body_turns);
+        if body.slides != Vector3::zeros() {
+            let ends = self.times.map(|t| self.motion.linear(t).component_mul(&body.slides));
+            tip.translate(ends, self.linear_bounds());
+        }
+        for at in (0..body.table_axes()).rev() {
+            self.rotate(
+                &mut tip,
+                &body.rotary()[at],
+                self.body_turns.map(|turns| turns[at]),
+                false,
+            );
+        }
+        tip.bounds()
+    }
+
+    /// Returns bounds on the derivatives of the linear joints. With TCP they follow the path.
+    fn linear_bounds(&self) -> Derivatives {
+        let path = self.motion.path.derivatives();
         if !self.motion.tcp {
-            let mut tip = self.swivelled_tip(body, skipped);
-            if body.slides != Vector3::zeros() {
-                let [start, end] =
-                    self.times.map(|t| self.motion.path.at(t).component_mul(&body.slides));
-                let path = self.motion.path.derivatives();
-                tip.translate([start, end], path.speed, path.acceleration);
-            }
-            for at in (skipped..skipped + body.table_axes()).rev() {
-                self.rotate(&mut tip, at, false);
-            }
-            return tip.bounds();
+            return path;
         }
-        if body.has_all_slides() {
-            return self.undone(skipped).bounds();
-        }
-        // The body carries a linear axis of the table and hence no rotary axis. Its position is a part of the
-        // linear joints' coordinates, and the rest is that of the spindle head.
-        let head = self.swivelled_tip(body, skipped).bounds();
-        match body.slides == Vector3::zeros() {
-            true => head,
-            false => {
-                let slides = self.undone(chain.table_axes()).bounds();
-                (head.0 + slides.0, head.1 + slides.1)
-            }
-        }
-    }
-
-    /// Returns a bound on the acceleration of the linear joints with TCP.
-    fn following_acceleration(&self) -> f64 {
         let chain = &self.motion.chain;
-        self.undone(chain.table_axes()).acceleration + self.swivelled_tip(chain, 0).acceleration
+        let tips = [self.undone(chain.table_axes()), self.swivelled_tip(chain, &self.turns)];
+        let [(speed, acceleration), (head_speed, head_acceleration)] = tips.map(|tip| tip.bounds());
+        Derivatives { speed: speed + head_speed, acceleration: acceleration + head_acceleration }
     }
 
-    /// Returns the tip after the rotary axes of the tool, with the linear axes at 0. `skipped` is the number
-    /// of axes of the workpiece's chain that the body's chain lacks.
-    fn swivelled_tip(&self, body: &Chain, skipped: usize) -> MovingPoint {
-        let tip = Vector3::new(0.0, 0.0, -body.tool_length);
+    /// Returns the tip of a chain after the rotary axes behind its linear ones, with these at 0.
+    fn swivelled_tip(&self, chain: &Chain, turns: &Turns) -> MovingPoint {
+        let tip = chain.mount.tip().coords;
         let mut tip = MovingPoint { ends: [tip; 2], speed: 0.0, acceleration: 0.0 };
-        for at in body.tool_axes().rev() {
-            self.rotate(&mut tip, skipped + at, false);
+        for at in chain.tool_axes().rev() {
+            self.rotate(&mut tip, &chain.rotary()[at], turns.map(|turns| turns[at]), false);
         }
         tip
     }
 
     /// Returns the path of the tip after undoing the first rotary axes, from the workpiece towards the base.
     fn undone(&self, count: usize) -> MovingPoint {
-        let frame = &self.motion.chain.frame;
+        let chain = &self.motion.chain;
         let path = self.motion.path.derivatives();
-        let ends = self.times.map(|t| frame.to_link(&self.motion.path.at(t)));
+        let ends = self.times.map(|t| chain.frame.to_link(&self.motion.path.at(t)));
         let mut tip = MovingPoint { ends, speed: path.speed, acceleration: path.acceleration };
         for at in 0..count {
-            self.rotate(&mut tip, at, true);
+            self.rotate(&mut tip, &chain.rotary()[at], self.turns.map(|turns| turns[at]), true);
         }
         tip
     }
 
-    /// Applies or undoes an axis of the workpiece's chain.
-    fn rotate(&self, point: &mut MovingPoint, at: usize, undo: bool) {
-        let axis = &self.motion.chain.rotary()[at];
-        let rate = self.motion.rates(&self.motion.chain)[at].abs();
+    /// Applies or undoes an axis, whose rotation matrices at both ends are given.
+    fn rotate(
+        &self,
+        point: &mut MovingPoint,
+        axis: &RotaryAxis,
+        turns: [Matrix3<f64>; 2],
+        undo: bool,
+    ) {
+        let rate = self.motion.rate(axis).abs();
         if rate > 0.0 {
             point.turn(axis, rate, self.duration, self.motion.position_error);
         }
-        for (end, turns) in point.ends.iter_mut().zip(&self.turns) {
+        for (end, turn) in point.ends.iter_mut().zip(&turns) {
             *end = match undo {
-                true => axis.undo(&turns[at], end),
-                false => axis.apply(&turns[at], end),
+                true => axis.undo(turn, end),
+                false => axis.apply(turn, end),
             };
         }
     }
@@ -214,24 +241,25 @@ impl Interval<'_> {
     /// Returns a bound on |a − ã| for the tool axis.
     fn axis_deviation(&self) -> f64 {
         let body = &self.motion.body;
-        let skipped = self.motion.chain.rotary().len() - body.rotary().len();
         let [outer, inner] = self.motion.rates(body);
+        // The axis that turns, before any rotation: +z but for a turned mount.
+        let mounted = body.mount.axis();
         let (d1, d2) = match body.rotary() {
             [] => return 0.0,
             [outer] => (outer.direction, Vector3::z()),
             [outer, inner, ..] => (outer.direction, inner.direction),
         };
         let axes = match body.rotary().len() {
-            1 => [Vector3::z(); 2],
-            _ => [0, 1].map(|end| Vector3::from(self.turns[end][skipped + 1].column(2))),
+            1 => [mounted; 2],
+            _ => self.body_turns.map(|turns| turns[1] * mounted),
         };
         let (omega, n) = (outer * d1 + inner * d2, outer * inner * d1.cross(&d2));
         // a'' = w2² d2 × (d2 × a), f' = w1w2 d1 · (d2 × a), f'' = w1w2² d1 · (d2 × (d2 × a)).
         let [outer, inner] = [outer.abs(), inner.abs()];
-        let (lever, omega_norm) = (d2.cross(&Vector3::z()).norm(), omega.norm());
+        let (lever, omega_norm) = (d2.cross(&mounted).norm(), omega.norm());
         let a2 = inner * inner * lever;
         let [f1, f2] = [outer * inner * lever, outer * a2];
-        let f0 = omega_norm.min(outer + inner * d2.z.abs());
+        let f0 = omega_norm.min(outer + inner * d2.dot(&mounted).abs());
         let tau2 = n.norm() * a2
             + f2 * omega_norm
             + 2.0 * f1 * f1
@@ -274,12 +302,12 @@ impl MovingPoint {
         (self.speed, self.acceleration)
     }
 
-    fn translate(&mut self, displacement: [Vector3<f64>; 2], speed: f64, acceleration: f64) {
+    fn translate(&mut self, displacement: [Vector3<f64>; 2], bounds: Derivatives) {
         for (end, displacement) in self.ends.iter_mut().zip(displacement) {
             *end += displacement;
         }
-        self.speed += speed;
-        self.acceleration += acceleration;
+        self.speed += bounds.speed;
+        self.acceleration += bounds.acceleration;
     }
 
     /// Updates the bounds for a rotation about an axis at a rate in radians. The positions err by at most

@@ -1,6 +1,6 @@
 //! Errors of machines, of joint values and of the inverse kinematics.
 
-use super::Letter;
+use super::{BodyFault, Letter};
 
 /// A reason for which a machine cannot be used. The message names the file, the line, the reason and the
 /// remedy.
@@ -55,6 +55,14 @@ pub enum MachineFault {
         "`tool_change` is \"stays\", or finite joint values of axes of the machine, such as {{ Z = 0 }}"
     )]
     ToolChange,
+    /// A body of the machine is wrong.
+    #[error("body `{name}`: {fault}")]
+    Body {
+        /// Its name.
+        name: String,
+        /// The reason.
+        fault: BodyFault,
+    },
     /// An axis is given twice.
     #[error("axis {letter} is given again, first in line {first}: remove one of them")]
     Repeated {
@@ -204,6 +212,14 @@ pub enum JointError {
         link: usize,
         /// The last link.
         last: usize,
+    },
+    /// A body moves with an axis that the machine lacks.
+    #[error(
+        "a body moves with {letter}, an axis that the machine lacks: name one of its axes, or its base"
+    )]
+    NoCarrier {
+        /// The axis.
+        letter: Letter,
     },
     /// A position of the tip relative to a body that not all linear axes move.
     #[error(

@@ -1,11 +1,15 @@
 //! Machines as TOML.
 
+use super::body::{self, BodyEntry};
 use super::chain::is_within;
-use super::{Axis, Letter, MAX_DEGREES, MAX_LENGTH, Machine, MachineError, MachineFault, Side};
+use super::{
+    Axis, Letter, MAX_DEGREES, MAX_LENGTH, Machine, MachineBody, MachineError, MachineFault, Side,
+};
 use nalgebra::{Point3, Vector3};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::ops::Range;
+use std::path::Path;
 use toml::Spanned;
 
 /// Smallest sine of the angle between two rotary axes, about 0.06°. Axes that are nearer to parallel do not
@@ -19,6 +23,8 @@ struct MachineFile {
     name: Spanned<String>,
     tool_change: Option<Spanned<ToolChangeEntry>>,
     axis: Vec<Spanned<AxisEntry>>,
+    #[serde(default)]
+    body: Vec<BodyEntry>,
 }
 
 /// Position in which M6 leaves the axes: `"stays"`, or joint values by letter.
@@ -63,7 +69,9 @@ pub(super) fn parse(text: &str, file: &str) -> Result<Machine, MachineError> {
         let name = name(parsed.name)?;
         let axes = axes(text, &parsed.axis)?;
         let tool_change = parsed.tool_change.map(|entry| tool_change(entry, &axes)).transpose()?;
-        Ok(Machine { name, axes, tool_change })
+        let mut machine = Machine { name, axes, tool_change, bodies: Vec::new() };
+        machine.bodies = bodies(parsed.body, &machine, Path::new(file))?;
+        Ok(machine)
     });
     let machine = assembled.map_err(|(span, fault)| MachineError::Line {
         file: file.to_owned(),
@@ -88,6 +96,19 @@ fn name(name: Spanned<String>) -> Result<String, Located> {
         return Err((span, MachineFault::Name));
     }
     Ok(name)
+}
+
+/// Returns the bodies of a machine.
+fn bodies(
+    entries: Vec<BodyEntry>,
+    machine: &Machine,
+    file: &Path,
+) -> Result<Vec<MachineBody>, Located> {
+    let names: Vec<_> = entries.iter().map(|entry| entry.name.clone()).collect();
+    body::bodies(entries, machine, file).map_err(|(index, fault)| {
+        let name = names[index].get_ref().clone();
+        (names[index].span(), MachineFault::Body { name, fault })
+    })
 }
 
 /// Returns the joint values after a tool change, of the axes that it moves.

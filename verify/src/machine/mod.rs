@@ -20,6 +20,25 @@
 //! The file can state `tool_change`: `"stays"` if M6 leaves the axes where they are, or the joint values at which it leaves
 //! axes, such as `{ Z = 0 }`; axes that are not named stay. Without it, the control's rules decide.
 //!
+//! A `[[body]]` states a body of the machine, for a check of its motions against others. Lengths are in mm, in machine coordinates
+//! with all axes at 0.
+//!
+//! | key | meaning |
+//! |---|---|
+//! | `name` | its name in findings |
+//! | `moves_with` | the axis that moves it, `base`, or `spindle` for the head that holds the tool |
+//! | `mesh` | its shape: a mesh in a file beside the machine's, in mm |
+//! | `box` | or its lowest and its highest corner |
+//! | `cylinder` | or its `radius` and `height` |
+//! | `tool` | or a solid of revolution: a `.tool` file beside the machine's, or a built-in tool |
+//! | `position` | the place of the mesh's origin, of the middle of the cylinder's lower end, or of the tool's tip; the origin if absent |
+//! | `axis` | the direction of the cylinder, or from the tool's tip to its spindle; `[0, 0, 1]` if absent |
+//! | `margin` | distance to keep; 0 if absent |
+//! | `against` | what it is checked against: names of bodies, `tool`, `part`, `fixtures` |
+//!
+//! A pair is checked if one of both names the other. One has to be a `tool` and the other one not: the depth of meshes in solids of
+//! revolution is proved. The tools of the program are solids, part and fixtures are meshes.
+//!
 //! Linear axes move along the machine coordinate of their letter, and no rotary axis carries one. Directions
 //! are those of ISO 841, also for axes of the table: a positive command turns such a table clockwise. A
 //! control that turns it counter-clockwise, as LinuxCNC's `xyzac-trt-kins` does by default, needs the
@@ -57,6 +76,7 @@
 //! or, with TCP, with the tip. [`JointMotion`] is this motion, with a proved bound on its deviation from a
 //! [`Motion`](touchoff::Motion), the limits of axes, and singular passes.
 
+mod body;
 mod chain;
 mod deviation;
 mod error;
@@ -67,8 +87,9 @@ mod motion;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use chain::sin_cos_degrees;
+pub use body::{BodyFault, BodyShape, MachineBody, Opponent};
 pub use chain::{Chain, RoundingBound};
+pub(crate) use chain::{Mover, Reference, Relation, sin_cos_degrees};
 pub use error::{InverseError, JointError, MachineError, MachineFault};
 pub use inverse::{InverseSolution, REACH_TOLERANCE};
 pub use limits::{LimitViolation, SINGULAR_ANGLE, SINGULAR_TURN, SingularPass};
@@ -88,12 +109,21 @@ pub const MAX_LENGTH: f64 = 1e6;
 pub const MAX_DEGREES: f64 = 1e6;
 
 /// The machines that come with the library: names and files.
-const LIBRARY: [(&str, &str); 5] = [
+const LIBRARY: [(&str, &str); 14] = [
     ("3-axis", include_str!("machines/3-axis.toml")),
     ("A-C trunnion", include_str!("machines/a-c-trunnion.toml")),
     ("B-C table-table", include_str!("machines/b-c-table.toml")),
+    ("A-B table-table", include_str!("machines/a-b-table.toml")),
+    ("B-C nutating table", include_str!("machines/b-c-nutating-table.toml")),
+    ("A head + C table", include_str!("machines/a-head-c-table.toml")),
     ("B head + C table", include_str!("machines/b-head-c-table.toml")),
+    ("B nutating head + C table", include_str!("machines/b-nutating-head-c-table.toml")),
     ("A-C fork head", include_str!("machines/a-c-fork-head.toml")),
+    ("B-C fork head", include_str!("machines/b-c-fork-head.toml")),
+    ("A-B head", include_str!("machines/a-b-head.toml")),
+    ("B-C nutating head", include_str!("machines/b-c-nutating-head.toml")),
+    ("A-C trunnion with bodies", include_str!("machines/a-c-trunnion-bodies.toml")),
+    ("A-C fork head with bodies", include_str!("machines/a-c-fork-head-bodies.toml")),
 ];
 
 /// The letter of an axis (ISO 841).
@@ -126,6 +156,25 @@ impl Letter {
 impl fmt::Display for Letter {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         fmt::Debug::fmt(self, f)
+    }
+}
+
+/// A link of a machine: something that its axes move as one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Link {
+    /// The base, which stands still.
+    Base,
+    /// The link that an axis moves: those before it on its side move it, too.
+    Axis(Letter),
+}
+
+/// The letter of the axis, or `base`.
+impl fmt::Display for Link {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Link::Base => f.write_str("base"),
+            Link::Axis(letter) => letter.fmt(f),
+        }
     }
 }
 
@@ -166,6 +215,7 @@ pub struct Machine {
     name: String,
     axes: Vec<Axis>,
     tool_change: Option<[Option<f64>; 6]>,
+    bodies: Vec<MachineBody>,
 }
 
 impl Machine {
@@ -233,6 +283,11 @@ impl Machine {
     /// Returns the axis of a letter.
     pub fn axis(&self, letter: Letter) -> Option<&Axis> {
         self.axes.iter().find(|axis| axis.letter == letter)
+    }
+
+    /// Returns the bodies that the file states, in its order.
+    pub fn bodies(&self) -> &[MachineBody] {
+        &self.bodies
     }
 
     /// Returns whether a rotary axis carries a side.

@@ -1,7 +1,7 @@
 //! Motions between two blocks of a program: rotary joints linear in time, together with linear joints or with
 //! the tip.
 
-use super::chain::{Chain, RoundingBound, UNIT_ROUNDOFF, check_length, is_within};
+use super::chain::{Chain, Relation, RoundingBound, UNIT_ROUNDOFF, check_length, is_within};
 use super::{JointError, Joints, Letter};
 use nalgebra::{Matrix3, Point3, Vector3};
 use touchoff::{Motion, MotionError, Pose};
@@ -17,6 +17,7 @@ pub struct JointMotion {
     pub(super) chain: Chain,
     /// The chain of the body to which poses are relative.
     pub(super) body: Chain,
+    pub(super) related: Related,
     /// Rotary joints at t = 0 and 1, in degrees.
     ends: [[f64; 3]; 2],
     pub(super) path: PreparedPath,
@@ -26,6 +27,17 @@ pub struct JointMotion {
     pub(super) rounding: RoundingBound,
     /// Bound on the error of a position at any place in the chain, in mm.
     pub(super) position_error: f64,
+}
+
+/// The bodies that the poses of a joint motion relate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Related {
+    /// The tool and the workpiece.
+    Workpiece,
+    /// The tool and a link of the table.
+    TableLink,
+    /// Any two bodies.
+    Bodies,
 }
 
 impl JointMotion {
@@ -84,6 +96,7 @@ impl JointMotion {
         let mut motion = JointMotion {
             chain: *chain,
             body: *chain,
+            related: Related::Workpiece,
             ends: rotary,
             path: PreparedPath::new(path)?,
             tcp,
@@ -100,9 +113,18 @@ impl JointMotion {
     /// # Errors
     /// [`JointError::NoLink`] if the link is beyond that of the workpiece.
     pub fn relative_to(&self, link: usize) -> Result<JointMotion, JointError> {
-        let mut motion = JointMotion { body: self.chain.relative_to(link)?, ..*self };
+        let body = self.chain.relative_to(link)?;
+        let mut motion = JointMotion { body, related: Related::TableLink, ..*self };
         motion.set_rounding();
         Ok(motion)
+    }
+
+    /// Returns the motion of a body of the machine relative to another one.
+    pub(crate) fn between(&self, relation: &Relation) -> JointMotion {
+        let body = relation.of(&self.chain);
+        let mut motion = JointMotion { body, related: Related::Bodies, ..*self };
+        motion.set_rounding();
+        motion
     }
 
     /// Returns the pose of the tool at a time from 0 to 1, in mm. Times outside are clamped to the nearer
@@ -114,7 +136,7 @@ impl JointMotion {
         let t = checked_time(t);
         let mut joints = self.rotary(t);
         // The tip is on its path, without the rounding of the kinematics.
-        if self.tcp && self.body == self.chain {
+        if self.tcp && self.related == Related::Workpiece {
             let turns = self.chain.turns(&joints);
             return Pose::from_computed(self.chain.rotation(&turns), Point3::from(self.path.at(t)));
         }
@@ -156,6 +178,13 @@ impl JointMotion {
             position
         };
         joints[..3].copy_from_slice(linear.as_slice());
+    }
+
+    /// Returns the linear joint values of a time, in mm.
+    pub(super) fn linear(&self, t: f64) -> Vector3<f64> {
+        let mut joints = self.rotary(t);
+        self.fill_linear(t, &mut joints);
+        Vector3::new(joints[0], joints[1], joints[2])
     }
 
     /// Returns the motion at constant speed between the poses at two times, with the tip on a straight line
@@ -207,10 +236,10 @@ impl JointMotion {
         let linear = if self.tcp { self.chain.size(reach) } else { reach };
         let pose = self.body.rounding_at(linear);
         let placed = pose.tip + angles * self.body.size(linear);
-        let tip = match (self.tcp, self.body == self.chain) {
+        let tip = match (self.tcp, self.related) {
             // The tip is the path itself.
-            (true, true) => 0.0,
-            (true, false) => follow + placed,
+            (true, Related::Workpiece) => 0.0,
+            (true, Related::TableLink | Related::Bodies) => follow + placed,
             (false, _) => placed,
         };
         let path = self.path.rounding();
@@ -221,6 +250,11 @@ impl JointMotion {
     /// Returns the rotation matrices of the workpiece's chain at a time.
     pub(super) fn turns(&self, t: f64) -> [Matrix3<f64>; 2] {
         self.chain.turns(&self.rotary(t))
+    }
+
+    /// Returns the rotation matrices of the body's chain at a time.
+    pub(super) fn body_turns(&self, t: f64) -> [Matrix3<f64>; 2] {
+        self.body.turns(&self.rotary(t))
     }
 }
 

@@ -95,6 +95,17 @@ pub enum StockError {
         /// The given spacing.
         spacing: f64,
     },
+    /// The points of a stock are turned otherwise than by quarter turns.
+    #[error(
+        "x = {x:?} and z = {z:?} are not directions of two coordinate axes, such as [1, 0, 0] and [0, 0, -1]: give such ones, or write \
+         the stock by `output`, turn this mesh, and state it as `mesh`"
+    )]
+    Turn {
+        /// The given direction of the axis x.
+        x: [f64; 3],
+        /// That of the axis z.
+        z: [f64; 3],
+    },
     /// Nothing of the stock is left.
     #[error("nothing of the stock is left, so it has no surface")]
     NothingLeft,

@@ -69,6 +69,40 @@ impl Lattice {
         Ok(Lattice { origin: origin.into(), spacing, counts })
     }
 
+    /// Returns the lattice in another frame: `turn` is a rotation by quarter turns that takes coordinates of this frame to
+    /// directions of the other one, and `origin` the place of this frame's origin in it.
+    ///
+    /// # Errors
+    /// [`StockError::Resolution`] if the spacing is too small for the coordinates there.
+    pub(super) fn placed(
+        &self,
+        turn: &QuarterTurn,
+        origin: Point3<f64>,
+    ) -> Result<Lattice, StockError> {
+        let mut placed = self.clone();
+        for (axis, (from, is_reversed)) in turn.0.into_iter().enumerate() {
+            let last = self.coordinate(from, (self.counts[from] - 1) as f64);
+            let first = if is_reversed { -last } else { self.origin[from] };
+            placed.origin[axis] = origin[axis] + first;
+            placed.counts[axis] = self.counts[from];
+        }
+        let (spacing, coordinate) = (self.spacing, placed.largest_coordinate());
+        let limit = MIN_SPACING_FRACTION * coordinate;
+        match spacing < limit {
+            true => Err(StockError::Resolution { spacing, coordinate, limit }),
+            false => Ok(placed),
+        }
+    }
+
+    /// Returns the index in a placed lattice of a node of this one.
+    pub(super) fn placed_index(&self, placed: &Lattice, turn: &QuarterTurn, index: usize) -> usize {
+        let node = self.node(index);
+        placed.index(turn.0.map(|(from, is_reversed)| match is_reversed {
+            true => self.counts[from] - 1 - node[from],
+            false => node[from],
+        }))
+    }
+
     /// Returns the largest absolute value of a node's coordinate.
     pub(super) fn largest_coordinate(&self) -> f64 {
         (0..3).fold(self.origin.coords.amax(), |largest, axis| {
@@ -135,6 +169,35 @@ impl Lattice {
             node[axis].checked_sub(1)?
         };
         Some(self.index(neighbour))
+    }
+}
+
+/// A rotation by quarter turns: for each axis of the new frame the axis of the old one, and whether it points the other way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct QuarterTurn([(usize, bool); 3]);
+
+impl QuarterTurn {
+    /// Takes the directions of the old frame's axes x and z in the new one; `None` if they are not those of two of its axes, or
+    /// the same one.
+    pub(super) fn new(x: [f64; 3], z: [f64; 3]) -> Option<QuarterTurn> {
+        let along = |vector: [f64; 3]| {
+            let mut axes = (0..3).filter(|axis| vector[*axis] != 0.0);
+            let axis = axes.next().filter(|axis| vector[*axis].abs() == 1.0)?;
+            axes.next().is_none().then_some((axis, vector[axis] < 0.0))
+        };
+        let ((x_axis, x_reversed), (z_axis, z_reversed)) = (along(x)?, along(z)?);
+        if x_axis == z_axis {
+            return None;
+        }
+        // y = z × x: along the next axis after z's if x's follows in turn.
+        let y_axis = 3 - x_axis - z_axis;
+        let in_turn = (z_axis + 1) % 3 == x_axis;
+        let y_reversed = (x_reversed != z_reversed) == in_turn;
+        let mut axes = [(0, false); 3];
+        axes[x_axis] = (0, x_reversed);
+        axes[y_axis] = (1, y_reversed);
+        axes[z_axis] = (2, z_reversed);
+        Some(QuarterTurn(axes))
     }
 }
 

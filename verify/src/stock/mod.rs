@@ -62,7 +62,7 @@ pub use error::StockError;
 pub use remaining::{DeviationPoint, PartComparison};
 
 use advance::OpenContacts;
-use lattice::{BitSet, Lattice, nodes_inside};
+use lattice::{BitSet, Lattice, QuarterTurn, nodes_inside};
 use nalgebra::{Point3, Vector3};
 use std::fmt;
 use touchoff::mesh::{LARGEST_COORDINATE, Mesh};
@@ -127,6 +127,42 @@ pub struct Stock {
     query: InsideQuery,
     /// Points inside the tool at one sample.
     inside: Vec<InsidePoint>,
+}
+
+/// The points that are left of a stock: the stock of a later set-up.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RemainingPoints {
+    lattice: Lattice,
+    nodes: BitSet,
+    unit: Unit,
+}
+
+impl RemainingPoints {
+    /// Returns the distance of neighbouring points.
+    pub fn spacing(&self) -> f64 {
+        self.lattice.spacing()
+    }
+
+    /// Returns the points in the frame of another set-up, in which the frame of this one has its origin and the directions of its
+    /// axes x and z. The points stay those of a lattice, and so nothing is sampled again, if these are directions of coordinate
+    /// axes.
+    ///
+    /// # Errors
+    /// [`StockError::Turn`] if they are not, and [`StockError::Resolution`] if the spacing is too small for the coordinates there.
+    pub fn placed(
+        &self,
+        origin: Point3<f64>,
+        x: [f64; 3],
+        z: [f64; 3],
+    ) -> Result<RemainingPoints, StockError> {
+        let turn = QuarterTurn::new(x, z).ok_or(StockError::Turn { x, z })?;
+        let lattice = self.lattice.placed(&turn, origin)?;
+        let mut nodes = BitSet::new(lattice.len());
+        for node in self.nodes.iter() {
+            nodes.insert(self.lattice.placed_index(&lattice, &turn, node));
+        }
+        Ok(RemainingPoints { lattice, nodes, unit: self.unit })
+    }
 }
 
 impl fmt::Debug for Stock {
@@ -202,6 +238,20 @@ impl Stock {
             query: InsideQuery::default(),
             inside: Vec::new(),
         })
+    }
+
+    /// Creates a stock from the points that are left of another one.
+    ///
+    /// # Errors
+    /// [`StockError::Empty`] if there are none.
+    pub fn from_points(points: &RemainingPoints) -> Result<Stock, StockError> {
+        Stock::new(points.lattice.clone(), points.nodes.clone(), points.unit)
+    }
+
+    /// Returns the points that are left.
+    pub fn remaining_points(&self) -> RemainingPoints {
+        let (lattice, nodes) = (self.lattice.clone(), self.remaining());
+        RemainingPoints { lattice, nodes, unit: self.unit }
     }
 
     /// Returns the distance of neighbouring points, which is the edge of their cells.

@@ -1,6 +1,7 @@
 //! Verification of programs: a comparison with brute force on random ones, and cases whose findings follow from
 //! geometry.
 
+mod bodies;
 mod cases;
 mod joints;
 mod machines;

@@ -86,7 +86,9 @@ fn picture(picture: &Picture) -> Markup {
 
 /// Returns the 3-D view, and the pictures that stand in for it in print and without a script.
 fn view(content: &Content<'_>) -> Markup {
-    let has_fixtures = content.inputs.bodies.len() > 1;
+    // Other parts are shown beside the part, as fixtures are.
+    let mut others = content.inputs.bodies.iter().skip(1);
+    let has_fixtures = others.any(|body| !body.is_of_machine());
     html! {
         section id="view" {
             h2 { "The part" }

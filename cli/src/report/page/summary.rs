@@ -6,8 +6,8 @@ use crate::program::extent;
 use maud::{Markup, html};
 use std::collections::BTreeMap;
 use touchoff::Unit;
-use touchoff_verify::Verdict;
-use touchoff_verify::job::{PairReport, Severity};
+use touchoff_verify::job::{JobBody, PairReport, Severity};
+use touchoff_verify::{JobTool, Verdict};
 
 /// Returns the verdict, and what it is about.
 pub(super) fn summary(content: &Content<'_>, title: &str) -> Markup {
@@ -71,14 +71,21 @@ fn facts(content: &Content<'_>) -> Vec<Fact> {
         let info = tool.tool.info();
         plain(&format!("{}{} {}", prefix(tool.number()), info.name, info.title))
     });
-    let fixtures = content.inputs.bodies.iter().skip(1).map(|body| plain(&body.name));
+    let named = |is_wanted: fn(&JobBody) -> bool| {
+        let bodies = content.inputs.bodies.iter().skip(1).filter(move |body| is_wanted(body));
+        bodies.map(|body| plain(&body.name)).collect::<Vec<String>>()
+    };
+    let revolved = checked.job.revolved.iter().map(|body| plain(&body.name));
+    let machine = revolved.chain(named(JobBody::is_of_machine));
     let summaries = checked.summaries().into_iter().map(|summary| plain(&summary));
     let gaps = checked.gaps.iter().map(|gap| plain(&gap.to_string()));
     let facts = [
         Fact { key: "Part", values: part(content) },
         Fact { key: "Program", values: program(content) },
         Fact { key: "Tools", values: tools.collect() },
-        Fact { key: "Fixtures", values: fixtures.collect() },
+        Fact { key: "Other parts", values: named(JobBody::is_other_part) },
+        Fact { key: "Fixtures", values: named(JobBody::is_fixture) },
+        Fact { key: "Bodies of the machine", values: machine.collect() },
         Fact { key: "Checked", values: summaries.collect() },
         Fact { key: "Stock", values: stock(content) },
         Fact { key: "Not checked", values: gaps.collect() },
@@ -100,11 +107,9 @@ fn part(content: &Content<'_>) -> Vec<String> {
 fn program(content: &Content<'_>) -> Vec<String> {
     let (job, checked) = (&content.inputs.file, content.checked);
     // Once per tool: at every body and in every reading it goes the same way.
-    let pairs = checked
-        .pairs
-        .iter()
-        .filter(|pair| pair.body == 0 && pair.reading == 0 && pair.report.moves > 0);
-    let travels = pairs.flat_map(|pair| travel(pair, checked.tool(pair).number(), job.unit));
+    let pairs = checked.tools_at_part().filter(|pair| pair.report.moves > 0);
+    let travels =
+        pairs.flat_map(|pair| travel(pair, checked.tool(pair).and_then(JobTool::number), job.unit));
     std::iter::once(plain(&job.program.display().to_string())).chain(travels).collect()
 }
 

@@ -33,6 +33,9 @@ pub struct MachineSummary {
     pub tcp_without_length: Option<usize>,
     /// The work offsets of motions at feed rate, each with the line of the first.
     pub work_offsets: Vec<(WorkOffset, usize)>,
+    /// Work offsets other than G54 that the program sets to other values than the setup states, each with the line of its first
+    /// motion.
+    pub moved_offsets: Vec<(WorkOffset, usize)>,
     /// Rules of the control on which the program depends and which are not stated, each with the first line.
     pub open_rules: BTreeMap<Rule, usize>,
     /// Feed motions with the length offset of another tool: the line of the first, the register and the tool.
@@ -261,6 +264,19 @@ impl MachineSummary {
         let offset = step.state.work_offset;
         if !self.work_offsets.iter().any(|(known, _)| *known == offset) {
             self.work_offsets.push((offset, step.line));
+        }
+    }
+
+    /// Notes that the work offset of a step has another origin than a setup states.
+    pub(super) fn add_offset(&mut self, step: &Step, stated: &[Option<[f64; 6]>; 9]) {
+        let (state, offset) = (&step.state, step.state.work_offset);
+        let WorkOffset::Standard(number @ 2..) = offset else { return };
+        let Some(Some(stated)) = stated.get(usize::from(number) - 1) else { return };
+        let mut origin = state.origin.iter().zip(stated);
+        let is_moved = state.origin_rotation != 0.0
+            || origin.any(|(set, stated)| set.is_some_and(|set| set != *stated));
+        if is_moved && self.moved_offsets.iter().all(|(known, _)| *known != offset) {
+            self.moved_offsets.push((offset, step.line));
         }
     }
 

@@ -1,8 +1,9 @@
-//! Forward kinematics against the closed forms of two tilting rotary tables (R. J. du Preez, *Axis machine
-//! tools: kinematics and vismach implementation in LinuxCNC*, 2016; the modules `xyzac-trt` and `xyzbc-trt`).
+//! Forward kinematics against closed forms: those of two tilting rotary tables (R. J. du Preez, *Axis machine
+//! tools: kinematics and vismach implementation in LinuxCNC*, 2016; the modules `xyzac-trt` and `xyzbc-trt`), and the
+//! rotation matrices of each machine of the library, written out.
 
 use super::Random;
-use crate::machine::{Machine, Setup};
+use crate::machine::{Letter, Machine, Setup};
 use nalgebra::{Matrix3, Point3, Vector3};
 
 /// Returns the file of a table that tilts about A or B and carries C. The angles of LinuxCNC's modules turn
@@ -81,4 +82,109 @@ fn poses_match_the_closed_forms_of_tilting_rotary_tables() {
         assert!(error < 1e-11 && twist < 1e-14, "{rotary:?}: {error:e} {twist:e}");
     }
     println!("greatest difference {greatest:e} mm");
+}
+
+/// Returns the rotation about x, y, z, or the nutating axis (0, 1, 1)/√2, by an angle in degrees.
+fn written_out(axis: char, degrees: f64) -> Matrix3<f64> {
+    let (s, c) = degrees.to_radians().sin_cos();
+    let r = s * std::f64::consts::FRAC_1_SQRT_2;
+    let [sum, rest] = [0.5 * (1.0 + c), 0.5 * (1.0 - c)];
+    #[rustfmt::skip]
+    let rows = match axis {
+        'x' => Matrix3::new(1.0, 0.0, 0.0, 0.0, c, -s, 0.0, s, c),
+        'y' => Matrix3::new(c, 0.0, s, 0.0, 1.0, 0.0, -s, 0.0, c),
+        'z' => Matrix3::new(c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0),
+        _ => Matrix3::new(c, -r, r, r, sum, rest, -r, rest, sum),
+    };
+    rows
+}
+
+/// A rotary axis of a machine as its drawing gives it.
+struct Drawn {
+    letter: Letter,
+    about: char,
+    through: [f64; 3],
+}
+
+fn drawn(letter: Letter, about: char, through: [f64; 3]) -> Drawn {
+    Drawn { letter, about, through }
+}
+
+/// The rotary axes of the machines of the library, from the workpiece to the tool, with the number of those that turn the table.
+#[rustfmt::skip]
+fn drawings() -> Vec<(&'static str, usize, [Drawn; 2])> {
+    use Letter::{A, B, C};
+    vec![
+        ("A-C trunnion", 2, [drawn(C, 'z', [0.0, 0.0, -500.0]), drawn(A, 'x', [0.0, 0.0, -480.0])]),
+        ("B-C table-table", 2, [drawn(C, 'z', [0.0, 0.0, -520.0]), drawn(B, 'y', [-40.0, 0.0, -470.0])]),
+        ("A-B table-table", 2, [drawn(B, 'y', [0.0, 0.0, -700.0]), drawn(A, 'x', [0.0, -120.0, -700.0])]),
+        ("B-C nutating table", 2, [drawn(C, 'z', [0.0, 0.0, -500.0]), drawn(B, 'n', [0.0, 0.0, -550.0])]),
+        ("A head + C table", 1, [drawn(C, 'z', [0.0, 0.0, -600.0]), drawn(A, 'x', [0.0, 0.0, 160.0])]),
+        ("B head + C table", 1, [drawn(C, 'z', [0.0, 0.0, -600.0]), drawn(B, 'y', [0.0, 0.0, 160.0])]),
+        ("B nutating head + C table", 1, [drawn(C, 'z', [0.0, 0.0, -600.0]), drawn(B, 'n', [0.0, 0.0, 200.0])]),
+        ("A-C fork head", 0, [drawn(C, 'z', [0.0, 0.0, 220.0]), drawn(A, 'x', [0.0, 0.0, 220.0])]),
+        ("B-C fork head", 0, [drawn(C, 'z', [0.0, 0.0, 220.0]), drawn(B, 'y', [0.0, 0.0, 220.0])]),
+        ("A-B head", 0, [drawn(A, 'x', [0.0, 0.0, 250.0]), drawn(B, 'y', [0.0, 0.0, 250.0])]),
+        ("B-C nutating head", 0, [drawn(C, 'z', [0.0, 0.0, 240.0]), drawn(B, 'n', [0.0, 0.0, 240.0])]),
+    ]
+}
+
+/// Poses of every machine of the library with rotary axes, and joint values for them: those of the table turn the tip after the
+/// linear axes, those of the head before.
+#[test]
+fn machines_of_the_library_match_their_drawings() {
+    let mut random = Random::new(11);
+    let drawings = drawings();
+    let names: Vec<&str> = Machine::names()
+        .map(|name| name.trim_end_matches(" with bodies"))
+        .filter(|name| *name != "3-axis")
+        .collect();
+    assert!(names.iter().all(|name| drawings.iter().any(|(drawn, ..)| drawn == name)), "{names:?}");
+    let mut solved = 0;
+    for (name, tables, axes) in &drawings {
+        let machine = Machine::named(name).expect("a machine");
+        let setup = Setup { work_offset: [0.0; 6], tool_length: 130.0 };
+        let chain = machine.chain(&setup).expect("a setup");
+        for _ in 0..200 {
+            let mut joints = [0.0; 6];
+            (0..3).for_each(|k| joints[k] = 300.0 * random.unit());
+            let mut turns = [Matrix3::identity(); 2];
+            for (turn, Drawn { letter, about, .. }) in turns.iter_mut().zip(axes) {
+                let [low, high] =
+                    machine.axis(*letter).and_then(|axis| axis.limits).unwrap_or([-180.0, 180.0]);
+                let angle = 0.5 * (low + high) + 0.5 * (high - low) * random.unit();
+                joints[letter.index()] = angle;
+                *turn = written_out(*about, angle);
+            }
+            let mut tip = Vector3::new(0.0, 0.0, -130.0);
+            for index in [1, 0] {
+                // The linear axes are between those of the head and those of the table.
+                if index + 1 == *tables {
+                    tip += Vector3::new(joints[0], joints[1], joints[2]);
+                }
+                let through = Vector3::from(axes[index].through);
+                tip = through + turns[index] * (tip - through);
+            }
+            if *tables == 0 {
+                tip += Vector3::new(joints[0], joints[1], joints[2]);
+            }
+            let pose = chain.pose(&joints).expect("a pose");
+            let error = (pose.tip().coords - tip).norm();
+            let twist = (pose.rotation() - turns[0] * turns[1]).norm();
+            assert!(error < 1e-11 && twist < 1e-14, "{name}: {joints:?}: {error:e} {twist:e}");
+            // Linear limits are those of a machine, and random positions are beyond some of them.
+            if let Ok(solution) =
+                chain.without_linear_limits().inverse(&Point3::from(tip), &pose.axis(), &joints)
+            {
+                for k in 0..6 {
+                    assert!(
+                        (solution.joints[k] - joints[k]).abs() < 1e-5,
+                        "{name}: {joints:?} {solution:?}"
+                    );
+                }
+                solved += 1;
+            }
+        }
+    }
+    assert_eq!(solved, 200 * drawings.len());
 }

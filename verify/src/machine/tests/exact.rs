@@ -2,6 +2,7 @@
 
 use dashu_float::FBig;
 use dashu_float::round::mode::HalfEven;
+use touchoff::Pose;
 
 const BITS: usize = 256;
 
@@ -21,6 +22,16 @@ impl Affine {
             [0, 1, 2, 3].map(|column| match column {
                 3 => big(by[row]),
                 _ => big(if row == column { 1.0 } else { 0.0 }),
+            })
+        }))
+    }
+
+    /// Returns the motion with exactly the numbers of a pose.
+    pub(super) fn of_pose(pose: &Pose) -> Affine {
+        Affine([0, 1, 2].map(|row| {
+            [0, 1, 2, 3].map(|column| match column {
+                3 => big(pose.tip()[row]),
+                _ => big(pose.rotation()[(row, column)]),
             })
         }))
     }
@@ -139,6 +150,21 @@ impl FileMachine {
             .fold(identity(), |pose, (_, motion)| pose.then(&motion.inverse()));
         let tool = side(false).fold(identity(), |pose, (_, motion)| pose.then(motion));
         body.inverse().then(&tool).then(&Affine::translation([0.0, 0.0, -length]))
+    }
+
+    /// Returns where the link that an axis moves is in machine coordinates, for the axis's index in [`FileMachine::motions`]; the
+    /// base without one.
+    pub(super) fn place(&self, motions: &[Affine], last: Option<usize>) -> Affine {
+        let mut place = Affine::translation([0.0; 3]);
+        let Some(last) = last else { return place };
+        let axes = self.0.iter().zip(motions).take(last + 1);
+        for (axis, motion) in axes.filter(|(axis, _)| axis.is_table == self.0[last].is_table) {
+            place = match axis.is_table {
+                true => place.then(&motion.inverse()),
+                false => place.then(motion),
+            };
+        }
+        place
     }
 
     /// Returns the frame of the workpiece in the last link: where the tip of a tool of length 0 is at the

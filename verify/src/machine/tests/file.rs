@@ -1,7 +1,7 @@
 //! Machines as files: those of the library, faults, and mutants.
 
 use super::{Random, cases, library, texts};
-use crate::machine::{Letter, Machine, MachineError, Side};
+use crate::machine::{BodyShape, Letter, Link, Machine, MachineError, Opponent, Side};
 
 /// A sound file, one key per line.
 const SOUND: &str = r#"name = "mill"
@@ -36,11 +36,117 @@ fn machines_of_the_library_have_their_names() {
         let rotary = machine.axes().iter().filter(|axis| axis.letter.is_rotary()).count();
         assert_eq!(rotary, if name == "3-axis" { 0 } else { 2 });
     }
-    assert_eq!(machines.len(), 5);
+    assert_eq!(machines.len(), 14);
     let error = Machine::named("lathe").expect_err("no machine").to_string();
     assert!(error.starts_with(
         "`lathe` is no machine of the library: name one of `3-axis`, `A-C trunnion`,"
     ));
+}
+
+/// A machine with bodies has the axes of the one without them.
+#[test]
+fn bodies_are_added_to_machines_of_the_library() {
+    let mut with_bodies = 0;
+    for machine in library() {
+        let plain = machine.name().trim_end_matches(" with bodies");
+        assert_eq!(machine.bodies().is_empty(), plain == machine.name());
+        assert_eq!(Machine::named(plain).expect("a machine").axes(), machine.axes());
+        with_bodies += usize::from(plain != machine.name());
+    }
+    assert_eq!(with_bodies, 2);
+}
+
+/// Bodies of every shape.
+const BODIES: &str = r#"
+[[body]]
+name = "the head"
+moves_with = "spindle"
+tool = "head.tool"
+position = [0, 0, 5]
+axis = [0, 0, 2]
+margin = 2
+against = ["part", "the table", "the bed"]
+[[body]]
+name = "the table"
+moves_with = "A"
+cylinder = { radius = 100, height = 30 }
+position = [1, 2, -300]
+axis = [0, 3, 0]
+[[body]]
+name = "the bed"
+moves_with = "base"
+mesh = "bed.stl"
+against = ["tool"]
+[[body]]
+name = "the post"
+moves_with = "X"
+box = [[0, 0, 0], [1, 2, 3]]
+against = ["tool"]
+"#;
+
+#[test]
+fn a_file_gives_bodies_in_its_order() {
+    let machine = Machine::parse(&format!("{SOUND}{BODIES}"), "shop/mill.toml").expect("a machine");
+    let [head, table, bed, post] = machine.bodies() else { panic!("{:?}", machine.bodies()) };
+    assert_eq!((&*head.name, head.link, head.margin), ("the head", Link::Axis(Letter::Z), 2.0));
+    let BodyShape::Tool { name, place } = &head.shape else { panic!("{head:?}") };
+    assert_eq!((&**name, place.tip().z, place.axis().z), ("shop/head.tool", 5.0, 1.0));
+    let beside =
+        [Opponent::Part, Opponent::Body("the table".into()), Opponent::Body("the bed".into())];
+    assert_eq!(head.against, beside);
+    let BodyShape::Cylinder { place, radius, .. } = table.shape else { panic!("{table:?}") };
+    assert_eq!((table.link, radius, place.axis().y), (Link::Axis(Letter::A), 100.0, 1.0));
+    let BodyShape::Mesh { file, .. } = &bed.shape else { panic!("{bed:?}") };
+    assert_eq!((bed.link, file.display().to_string()), (Link::Base, "shop/bed.stl".to_owned()));
+    assert!(matches!(post.shape, BodyShape::Box(_)) && post.against == [Opponent::Tool]);
+}
+
+/// Each fault of a body is refused with the line of its name and a remedy.
+#[test]
+fn faults_of_bodies_are_refused_with_their_line() {
+    let text = format!("{SOUND}{BODIES}");
+    let first = 1 + text.lines().position(|line| line.contains("the head")).expect("a line");
+    let line = |name: &str| {
+        1 + text.lines().position(|line| line == format!("name = {name:?}")).expect("a line")
+    };
+    assert_eq!(first, line("the head"));
+    #[rustfmt::skip]
+    let faults = [
+        ("name = \"the head\"", "name = \"part\"", "the head", "give it another name"),
+        ("name = \"the bed\"", "name = \"the table\"", "the bed", "another body has this name"),
+        ("moves_with = \"X\"", "moves_with = \"B\"", "the post", "it moves with `B`: name an axis of the machine"),
+        ("box = [[0, 0, 0], [1, 2, 3]]", "", "the post", "give it one shape"),
+        ("box = [[0", "tool = \"Ball\"\nbox = [[0", "the post", "give it one shape"),
+        ("box = [[0", "axis = [0, 0, 1]\nbox = [[0", "the post", "`axis` is none of its shape"),
+        ("mesh = ", "axis = [0, 0, 1]\nmesh = ", "the bed", "turn the mesh in its file"),
+        ("[1, 2, 3]]", "[1, -2, 3]]", "the post", "give its lowest corner, then its highest"),
+        ("radius = 100", "radius = 0", "the table", "give a `radius` and a `height`"),
+        ("axis = [0, 3, 0]", "axis = [0, 0, 0]", "the table", "give a vector"),
+        ("margin = 2", "margin = -2", "the head", "give a length of 0 or more"),
+        ("margin = 2", "margin = nan", "the head", "give a length of 0 or more"),
+        ("position = [1, 2, -300]", "position = [1, inf, -300]", "the table", "give finite coordinates"),
+        ("\"the bed\"]", "\"the bad\"]", "the head", "checked against `the bad`: name another body"),
+        ("[\"part\", \"the table\"", "[\"part\"", "the table", "it is checked against nothing"),
+        ("[\"part\"", "[\"tool\"", "the head", "it moves as one with the tool"),
+        ("moves_with = \"spindle\"", "moves_with = \"A\"", "the head", "it moves as one with the part"),
+        ("moves_with = \"A\"", "moves_with = \"Z\"", "the head", "it moves as one with the table"),
+        ("against = [\"tool\"]\n[[", "against = [\"part\"]\n[[", "the bed", "its shape and that of the part are meshes"),
+        ("mesh = \"bed.stl\"", "tool = \"bed.tool\"", "the head", "it and the bed are solids of revolution"),
+    ];
+    for (sound, faulty, name, message) in faults {
+        assert!(text.contains(sound), "{sound}");
+        let faulty = text.replacen(sound, faulty, 1);
+        let error = Machine::parse(&faulty, "mill.toml").expect_err(message).to_string();
+        assert!(
+            error.starts_with(&format!("mill.toml:{}: body `", line(name))),
+            "{message}\n{error}"
+        );
+        assert!(error.contains(message) && !error.contains('\n'), "{message}\n{error}");
+    }
+    // A key that no body has is refused as those of axes are.
+    let unknown = text.replace("margin = 2", "margins = 2");
+    let error = Machine::parse(&unknown, "mill.toml").expect_err("an unknown key").to_string();
+    assert!(error.contains("unknown field `margins`"), "{error}");
 }
 
 #[test]

@@ -8,7 +8,7 @@ use touchoff::Pose;
 
 /// Returns the errors of a pose: of the tip, and of the rotation in the Frobenius norm, which is at least
 /// that of the operator.
-fn errors(pose: &Pose, exact: &Affine) -> [f64; 2] {
+pub(super) fn errors(pose: &Pose, exact: &Affine) -> [f64; 2] {
     let norm = |squares: [f64; 2]| squares.map(f64::sqrt);
     let mut squares = [0.0; 2];
     for row in 0..3 {

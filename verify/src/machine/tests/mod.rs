@@ -1,5 +1,6 @@
 //! Tests against 256-bit kinematics, against published closed forms, and against dense samples.
 
+mod bodies;
 mod closed_forms;
 mod exact;
 mod file;

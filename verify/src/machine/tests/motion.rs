@@ -8,13 +8,13 @@ use nalgebra::{Isometry3, Matrix3, Point3, Vector3};
 use touchoff::Motion;
 
 /// Number of samples of a motion.
-const SAMPLES: usize = 24;
+pub(super) const SAMPLES: usize = 24;
 
-fn machines() -> Vec<Machine> {
+pub(super) fn machines() -> Vec<Machine> {
     texts().into_iter().map(|text| Machine::parse(text, "test").expect("a machine")).collect()
 }
 
-fn rotation(pose: &Isometry3<f64>) -> Matrix3<f64> {
+pub(super) fn rotation(pose: &Isometry3<f64>) -> Matrix3<f64> {
     pose.rotation.to_rotation_matrix().into_inner()
 }
 
@@ -47,7 +47,7 @@ fn poses_are_those_of_the_second_implementation() {
 
 /// Returns the largest displacement of sample points of the tool, within `reach` of the tip, between the true
 /// pose and that of the approximating motion.
-fn displacement(
+pub(super) fn displacement(
     truth: &Isometry3<f64>,
     motion: &Motion,
     fraction: f64,

@@ -2,7 +2,7 @@
 //! motions.
 
 use super::Random;
-use crate::machine::{Axis, JointMotion, LinearPath, Machine, Plane, Setup, Side};
+use crate::machine::{Axis, JointMotion, LinearPath, Link, Machine, Plane, Setup, Side};
 use nalgebra::{
     Isometry3, Point3, Rotation2, Translation3, Unit, UnitQuaternion, Vector2, Vector3,
 };
@@ -80,6 +80,25 @@ impl Sampled {
         axes.fold(Isometry3::identity(), |pose, axis| {
             pose * link_motion(axis, sign * self.value(axis, t, linear))
         })
+    }
+
+    /// Returns where a link is in machine coordinates.
+    pub(super) fn place(&self, t: f64, link: Link) -> Isometry3<f64> {
+        let Link::Axis(letter) = link else { return Isometry3::identity() };
+        let side = self.machine.axis(letter).expect("an axis of the machine").side;
+        let axes = self.machine.axes().iter().filter(|axis| axis.side == side);
+        let count = 1 + axes.take_while(|axis| axis.letter != letter).count();
+        self.side(side, t, &self.linear(t), count)
+    }
+
+    /// Returns where the frame of the workpiece is in machine coordinates.
+    pub(super) fn part(&self, t: f64) -> Isometry3<f64> {
+        let linear = self.linear(t);
+        let is_slide = |axis: &&Axis| axis.side == Side::Table && !axis.letter.is_rotary();
+        let slides = self.machine.axes().iter().filter(is_slide);
+        let slide: Vector3<f64> =
+            slides.map(|axis| axis.direction * linear[axis.letter.index()]).sum();
+        Translation3::from(-slide) * self.workpiece(t)
     }
 
     /// Returns the frame of the workpiece in machine coordinates, with the linear joints at 0.

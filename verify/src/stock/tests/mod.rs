@@ -5,6 +5,7 @@ mod contacts;
 mod cutting;
 mod inside;
 mod part;
+mod setups;
 
 use super::*;
 use nalgebra::Vector3;
