@@ -176,11 +176,11 @@ fn a_program_is_checked_up_to_the_line_that_is_not_read() {
     // The gouge is behind the line that is not read.
     assert_eq!((verdict, findings.len()), (Verdict::None, 0), "{refusals}");
     for expected in [
-        "line 7: G888 is not understood",
+        "a.nc:7: G888 is not understood",
         "; the program is checked up to here",
-        "line 9: M777 is not understood",
-        "line 10: `DRAW` is not understood",
-        "line 12: there is no O44",
+        "a.nc:9: M777 is not understood",
+        "a.nc:10: `DRAW` is not understood",
+        "a.nc:12: there is no O44",
     ] {
         assert!(refusals.contains(expected), "{expected}\n{refusals}");
     }
@@ -220,7 +220,7 @@ fn every_value_of_a_variable_is_checked() {
     let (verdict, _, refusals) =
         checked(text, &ControlSetup { variables: [].into(), ..setup(&[0.0]) });
     assert_eq!(verdict, Verdict::None);
-    assert!(refusals.contains("line 6: #500 has no value here"), "{refusals}");
+    assert!(refusals.contains("a.nc:6: #500 has no value here"), "{refusals}");
     let many = (0..101).map(f64::from).collect::<Vec<_>>();
     let machine = Machine::named("3-axis").expect("a machine");
     let error = Program::parse(text, "a.nc", machine, &setup(&many)).expect_err("too many");

@@ -113,7 +113,9 @@ fn read_part(file: &Path, unit: Unit) -> Result<(BeginPart, Vec<u8>), Failure> {
 
 /// Reads a program's file, after a check that it can be followed.
 fn read_program(file: &Path, machine: Option<&Path>) -> Result<(BeginProgram, Vec<u8>), Failure> {
-    let machine = match Program::read(file, machine, &ControlSetup::default())? {
+    let program = Program::read(file, machine, &ControlSetup::default())?;
+    program.check_complete()?;
+    let machine = match program {
         Program::Locations(_) => None,
         Program::Machine(_) => {
             let machine = machine.unwrap_or(Path::new(DEFAULT_MACHINE));

@@ -179,7 +179,13 @@ impl JobReport<'_> {
             GapWeight::Open => !self.job.anyway,
             GapWeight::Said => false,
         });
-        let mut reasons: Vec<String> = open.map(Gap::to_string).collect();
+        let program = self.job.program.name();
+        let mut reasons: Vec<String> = open
+            .map(|gap| match gap.weight {
+                GapWeight::Stops => format!("{program}:{}: {}", gap.line, gap.reason),
+                _ => gap.to_string(),
+            })
+            .collect();
         let mut is_checked = true;
         for reading in 0..self.job.program.reading_count() {
             let pairs: Vec<&PairReport> =
