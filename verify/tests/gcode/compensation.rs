@@ -385,6 +385,7 @@ fn what_cannot_be_followed_is_refused_with_its_line() {
             5,
             "follows an outside corner of less than 90 degrees",
         ),
+        ("T4\nG0 X-10 Y0\nG1 G41 X0 F100\nY10\nT5", named("heidenhain"), 5, "T while"),
         // Inside corners and arcs.
         ("BEGIN\nX-9\nG3 X-11 Y8 J-2\nG1 X-20", arcs(), 5, "inside an arc of radius 2"),
         ("BEGIN\nX-1\nY20\nG40 X9", arcs(), 4, "at the end of the motion of line 3"),

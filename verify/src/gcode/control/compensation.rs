@@ -35,6 +35,7 @@ pub(super) struct Compensation {
     code: Code,
     /// The offset to the left, in millimetres.
     offset: f64,
+    tool: Option<u32>,
     plane: Plane,
     unit: Unit,
     phase: Phase,
@@ -144,6 +145,7 @@ impl Control {
             self.compensation = Some(Compensation {
                 code,
                 offset,
+                tool: self.state.tool,
                 plane,
                 unit,
                 phase: Phase::Entry,
@@ -221,6 +223,10 @@ impl Control {
         }
         if let Some(number) = self.modal.cycle() {
             return Err(under_compensation(format!("G{number}")));
+        }
+        // Heidenhain changes the tool by T alone.
+        if self.state.tool != compensation.tool {
+            return Err(under_compensation("T"));
         }
         if self.modal.plane != compensation.plane {
             return Err(under_compensation("another plane"));
