@@ -116,7 +116,11 @@ fn setup() -> ControlSetup {
 }
 
 fn steps(program: &str) -> (Vec<Step>, Option<GcodeError>) {
-    let interpreter = match Interpreter::new(program, &setup()) {
+    steps_with(program, &setup())
+}
+
+fn steps_with(program: &str, setup: &ControlSetup) -> (Vec<Step>, Option<GcodeError>) {
+    let interpreter = match Interpreter::new(program, setup) {
         Ok(interpreter) => interpreter,
         Err(error) => return (Vec::new(), Some(error)),
     };
@@ -281,12 +285,7 @@ fn holes(is_tapping: bool, returns_to_r: bool) -> Vec<(bool, [f64; 3])> {
             }
             found.push((false, [x, y, depth]));
             let clear = if returns_to_r { retract } else { initial.max(retract) };
-            if is_tapping {
-                found.push((false, [x, y, retract]));
-            }
-            if !is_tapping || clear > retract {
-                found.push((true, [x, y, clear]));
-            }
+            found.push((!is_tapping, [x, y, clear]));
             clear
         };
     hole(&mut found, 2.0, [1.0, 1.0], [-1.0, 1.0, 2.0]);
@@ -340,4 +339,165 @@ fn cycles_in_three_planes_and_with_both_retracts() {
         }
     }
     println!("{count} motions of cycles");
+}
+
+/// Folders of LinuxCNC's own tests whose programs are not read as its interpreter reads them, with the reason: the refusal, or what the
+/// test is about.
+const NOT_READ: &[(&str, &str)] = &[
+    // The program stops with an error there, too, or its result is that of several runs.
+    ("abort-hot-comment", "(abort, is a comment at which LinuxCNC stops"),
+    ("m98m99/03-error-M98-no-P-word", "M98 needs P"),
+    ("m98m99/04-M98-but-no-sub", "there is no O1 in this file"),
+    ("m98m99/06-error-mixed-sub-styles", "call it by M98 P"),
+    ("m98m99/09-disable-fanuc-subs", "10 motions, not 32"),
+    ("m98m99/11-main-program-oword", "without M2, M30 or %"),
+    ("nested-sub-error", "there is no O<nested> in this file"),
+    ("nested-sub-in-file-error", "there is no O<sequential> in this file"),
+    // Its first O0002 is taken for another label than O2.
+    ("m98m99/10-M98-P001", "O2 is already defined"),
+    // It is repeated until a variable, which is not known before, has counted three runs.
+    ("m98m99/12-M99-endless-main-program", "#100 has no value"),
+    // The result is a list of positions.
+    ("rotation/abs-pts", "27 motions, not 0"),
+    // Python, remapped words, files of the machine, and subprograms in other files.
+    ("iniparam", "#<_ini[vars]toolchange_x> has no value"),
+    ("pymove", "there is no O<canonmove> in this file"),
+    ("python-self", "py, is a comment whose Python"),
+    ("sub-call-from-sub", "there is no O<caller> in this file"),
+    ("value-returned", "py, is a comment whose Python"),
+    // Words that are refused with their reasons.
+    ("g10/g10-l1-l10", "of G10"),
+    ("g10/g10-l11", "of G10"),
+    ("g33.1", "G33.1 is threading"),
+    ("g52/g52-g92-interaction", "G92.3 is a shift that another program may have left"),
+    ("g64-r-planner", "R is used by no G or M word"),
+    ("g71-endless-loop", "G8 is no word of LinuxCNC"),
+    ("g71-endless-loop2", "D is used by no G or M word"),
+    ("g71-endless-loop_2", "G7 is diameter mode of a lathe"),
+    ("g71-with-g70", "G71.1 is"),
+    ("g72-facing", "G43 while its block has M6"),
+    ("g72-missing-iteration", "G43 while its block has M6"),
+    ("g76", "G76 is"),
+    ("g84/g18/g98", "G84 while G18 or G19"),
+    ("g84/g18/g99", "G84 while G18 or G19"),
+    ("g84/g19/g98", "G84 while G18 or G19"),
+    ("g84/g19/g99", "G84 while G18 or G19"),
+    ("m19", "Q is used by no G or M word"),
+    ("machine-coord-params", "G43.1 is another form of tool length offset"),
+    ("oword-bug315-p2", "the label after O while it depends on a name"),
+    ("rotation/g28", "G28.1 is storing a reference position"),
+];
+
+/// The tools of a table: lengths and radii in millimetres, of a machine in inches as that of `rs274`.
+fn with_tools(mut setup: ControlSetup, table: &str) -> ControlSetup {
+    for line in table.lines() {
+        let mut number = None;
+        for word in line.split(';').next().unwrap_or_default().split_whitespace() {
+            let (letter, value) = word.split_at(1);
+            match (letter, value.parse::<f64>(), number) {
+                ("T", Ok(tool), _) => number = Some(tool as u32),
+                ("Z", Ok(length), Some(tool)) => drop(setup.lengths.insert(tool, 25.4 * length)),
+                ("D", Ok(diameter), Some(tool)) => {
+                    setup.radius_offsets.insert(tool, 12.7 * diameter);
+                }
+                _ => {}
+            }
+        }
+    }
+    setup
+}
+
+/// Every test of `tests/interp` in a copy of LinuxCNC's repository, whose folder is in `LINUXCNC`, as one that has a program and the
+/// canonical commands that `rs274` gives for it:
+/// `LINUXCNC=../../linuxcnc cargo test -p touchoff-verify --test gcode every_test -- --nocapture`.
+#[test]
+fn every_test_of_linuxcnc() {
+    let Some(root) = std::env::var_os("LINUXCNC") else {
+        println!("LINUXCNC is not set: its tests are not run");
+        return;
+    };
+    let root = std::path::Path::new(&root).join("tests/interp");
+    let mut folders = vec![root.clone()];
+    let (mut agree, mut listed, mut motions, mut wrong) = (0, 0, 0, Vec::new());
+    while let Some(folder) = folders.pop() {
+        let mut programs = Vec::new();
+        for entry in std::fs::read_dir(&folder).expect("a folder") {
+            let path = entry.expect("an entry").path();
+            match path.extension() {
+                _ if path.is_dir() => folders.push(path),
+                Some(ending) if ending == "ngc" => programs.push(path),
+                _ => {}
+            }
+        }
+        let expected = folder.join("expected");
+        let name = folder.strip_prefix(&root).expect("a folder of the tests").display().to_string();
+        if !expected.is_file() || programs.is_empty() {
+            continue;
+        }
+        let mut expected =
+            canonical(&String::from_utf8_lossy(&std::fs::read(&expected).expect("a file")));
+        expected.retain(|motion| !motion.text.contains("MESSAGE"));
+        let mut setup = setup();
+        if let Ok(table) = std::fs::read_to_string(folder.join("test.tbl")) {
+            setup = with_tools(setup, &table);
+        }
+        programs.sort();
+        let outcome = programs.iter().map(|program| {
+            let program =
+                String::from_utf8_lossy(&std::fs::read(program).expect("a file")).into_owned();
+            agrees(&program, &setup, &expected)
+        });
+        // A folder has one program with a result, or several with one that all give.
+        let outcomes: Vec<Result<usize, String>> = outcome.collect();
+        let best = outcomes.iter().find(|outcome| outcome.is_ok()).unwrap_or(&outcomes[0]);
+        let known = NOT_READ.iter().find(|(known, _)| *known == name);
+        match (best, known) {
+            (Ok(count), None) => {
+                motions += count;
+                agree += 1;
+            }
+            (Err(reason), Some((_, expected))) if reason.contains(expected) => listed += 1,
+            (found, _) => wrong.push(format!("(\"{name}\", {found:?}),")),
+        }
+    }
+    println!("{agree} tests agree in {motions} motions, {listed} are not read");
+    wrong.sort();
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// Returns the number of motions of a program that are the expected ones, or the first difference.
+fn agrees(program: &str, setup: &ControlSetup, expected: &[Canonical]) -> Result<usize, String> {
+    let (steps, error) = steps_with(program, setup);
+    if let Some(error) = error {
+        return Err(error.to_string());
+    }
+    // A motion of no length moves nothing, and is left out by one of both.
+    let steps = steps.iter().filter(|step| {
+        let is_still = step.commanded.iter().zip(step.start.iter().zip(&step.end));
+        matches!(step.path, StepPath::Arc { .. })
+            || is_still.clone().any(|(commanded, (start, end))| *commanded && start != end)
+    });
+    let steps: Vec<&Step> = steps.collect();
+    let mut before = &Canonical::default();
+    let mut moving = Vec::new();
+    for wanted in expected {
+        let place = |motion: &Canonical| (motion.end, motion.origin, motion.rotation, motion.shift);
+        if wanted.arc.is_some() || place(wanted) != place(before) {
+            moving.push(wanted);
+        }
+        before = wanted;
+    }
+    if steps.len() != moving.len() {
+        return Err(format!("{} motions, not {}", steps.len(), moving.len()));
+    }
+    for (step, wanted) in steps.iter().zip(moving) {
+        let tolerance = 1e-3 * wanted.unit;
+        let is_near = (0..6).all(|axis| {
+            step.end[axis].is_some_and(|value| (value - wanted.end[axis]).abs() <= tolerance)
+        });
+        if !is_near || step.rapid != wanted.rapid {
+            return Err(format!("another motion in line {}: {}", step.line, wanted.text));
+        }
+    }
+    Ok(steps.len())
 }

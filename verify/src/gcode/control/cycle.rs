@@ -295,6 +295,10 @@ impl Control {
         }
         self.move_along(axis, false, depth);
         match number {
+            // LinuxCNC leaves the thread in one motion (`convert_cycle_g74_g84`).
+            74 | 84 if self.stated(Rule::Dialect) == Some(Choice::Rs274Ngc) => {
+                self.move_along(axis, false, clear);
+            }
             // Tapping and boring leave the hole at feed rate.
             74 | 84 | 85 | 89 => {
                 self.move_along(axis, false, retract);

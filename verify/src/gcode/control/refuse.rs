@@ -275,8 +275,13 @@ impl Control {
             return Ok(());
         };
         let chord = (u - x).hypot(v - y);
+        // LinuxCNC rounds no coordinate.
+        let rounds = self.stated(Rule::Dialect) != Some(Choice::Rs274Ngc);
         let [across, along] = [(u - x).abs(), (v - y).abs()];
-        if chord > 0.0 && across.max(along) < 2.0 * self.modal.millimetres(self.modal.increment()) {
+        if rounds
+            && chord > 0.0
+            && across.max(along) < 2.0 * self.modal.millimetres(self.modal.increment())
+        {
             let condition = "its end is less than two increments from its start, and can be the same where coordinates are rounded";
             let remedy = "leave the end out for a full circle, or leave out the arc";
             return Err(combination("an arc", condition, remedy));

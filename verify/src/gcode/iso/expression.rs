@@ -7,7 +7,7 @@
 //!
 //! A control of Fanuc computes with fewer digits. A comparison or a rounding that rounding errors decide is refused there.
 
-use super::variables::{Parameter, Scope, parameter};
+use super::variables::{Scope, parameter};
 use crate::gcode::{LARGEST_NUMBER, shown};
 use crate::machine::sin_cos_degrees;
 
@@ -522,12 +522,9 @@ impl Reader<'_> {
             if cursor.peek() != Some(b'#') {
                 return Err(ExpressionFault::Value { shown: rest(cursor) });
             }
-            let named = parameter(self, cursor, depth + 1)?;
-            if !matches!(named, Parameter::Named(_)) {
-                return lacks("EXISTS of a number");
-            }
+            let parameter = parameter(self, cursor, depth + 1)?;
             self.close(cursor)?;
-            return Ok(Some(f64::from(u8::from(self.scope.has(&named)))));
+            return Ok(Some(f64::from(u8::from(self.scope.has(&parameter)))));
         }
         cursor.take(b'[');
         let first = self.binary(cursor, depth + 1, 1)?.unwrap_or(0.0);

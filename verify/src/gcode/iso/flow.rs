@@ -478,7 +478,7 @@ impl<'a> Flow<'a> {
         Ok(())
     }
 
-    /// Obeys `endsub` or `return`.
+    /// Obeys `endsub`, or `return`, whose label has no meaning.
     pub(super) fn end_sub(
         &mut self,
         label: &Label,
@@ -487,7 +487,10 @@ impl<'a> Flow<'a> {
     ) -> Result<(), GcodeFault> {
         let depth = self.calls.len();
         match self.calls.last() {
-            Some(call) if call.label == *label && call.role == Role::Sub => {
+            Some(call)
+                if call.role == Role::Sub
+                    && (call.label == *label || word == Role::Return.word()) =>
+            {
                 // LinuxCNC keeps the number of those that remain for the next execution (`control_save_offset`).
                 if self.repeats.iter().any(|repeat| repeat.depth == depth) {
                     let condition = "a `repeat` is being executed, whose count LinuxCNC keeps";

@@ -676,11 +676,15 @@ pub(super) fn o_word(cursor: &mut Cursor, scope: &Scope) -> Result<OWord, GcodeF
         },
     };
     next(cursor)?;
-    let word = cursor.take_while(|byte| byte.is_ascii_alphabetic());
-    let role = match ROLES.into_iter().find(|(known, _)| word.eq_ignore_ascii_case(known)) {
+    // LinuxCNC reads `end sub`, too.
+    let mut word = String::new();
+    while cursor.peek().is_some_and(|byte| byte.is_ascii_alphabetic()) {
+        word += &cursor.take_while(|byte| byte.is_ascii_alphabetic()).to_ascii_lowercase();
+    }
+    let role = match ROLES.into_iter().find(|(known, _)| word == *known) {
         Some((_, role)) => role,
         None if word.is_empty() => Role::Title,
-        None => return Err(GcodeFault::ControlFlow { word: unquoted(word) }),
+        None => return Err(GcodeFault::ControlFlow { word: unquoted(&word) }),
     };
     Ok(OWord { label, role })
 }

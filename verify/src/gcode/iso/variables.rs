@@ -23,6 +23,9 @@ const FIRST_SYSTEM_FANUC: u32 = 1000;
 /// The first variable of the control, on LinuxCNC.
 const FIRST_SYSTEM_LINUXCNC: u32 = 5001;
 
+/// The number of variables of LinuxCNC (`RS274NGC_MAX_PARAMETERS`).
+const LINUXCNC_PARAMETERS: u32 = 5602;
+
 /// A variable.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Parameter {
@@ -237,10 +240,13 @@ impl<'a> Scope<'a> {
         found.ok_or_else(|| ExpressionFault::Unassigned { parameter: parameter.shown() })
     }
 
-    /// Returns whether a named variable has a value.
+    /// Returns whether LinuxCNC has a variable: every number of its table, and names with a value.
     pub(super) fn has(&self, parameter: &Parameter) -> bool {
-        matches!(parameter, Parameter::Named(name) if system::is_predefined(name))
-            || self.get(parameter, Language::LinuxCnc).is_ok()
+        match parameter {
+            Parameter::Numbered(number) => *number < LINUXCNC_PARAMETERS,
+            Parameter::Named(name) if system::is_predefined(name) => true,
+            Parameter::Named(_) => self.get(parameter, Language::LinuxCnc).is_ok(),
+        }
     }
 }
 
