@@ -110,7 +110,12 @@ impl JointMotion {
 
     /// Returns a bound on the second derivative of the linear joint values between two times, in mm.
     pub(super) fn linear_acceleration(&self, t0: f64, t1: f64) -> f64 {
-        Interval::new(self, t0, t1).linear_bounds().acceleration * (1.0 + RELATIVE_ERROR)
+        let acceleration = match self.tcp {
+            true => Interval::new(self, t0, t1).linear_bounds().acceleration,
+            // Rotations, which an interval has, do not count.
+            false => self.path.derivatives().acceleration,
+        };
+        acceleration * (1.0 + RELATIVE_ERROR)
     }
 
     /// Returns the angular rates of the rotary axes of a chain to a body, in radians, in the chain's order.
