@@ -38,6 +38,13 @@ pub(super) struct Block {
     whole: u32,
     /// Letters whose number is a parameter or an expression, as bits from A.
     computed: u32,
+    /// Letters with a distance mode of their own (AC, IC), and those of them that are increments, as bits from A.
+    own_distance: u32,
+    own_increment: u32,
+    /// The tool vector (A3, B3, C3).
+    pub(super) vector: Option<[f64; 3]>,
+    /// The full turns of an arc beside its way to the end (TURN).
+    pub(super) full_turns: u32,
     /// Set if G90 or G91 stands after a coordinate.
     pub(super) distance_after_coordinate: bool,
 }
@@ -49,6 +56,8 @@ impl Block {
         self.passed_over.clear();
         self.keyword = None;
         (self.whole, self.computed) = (0, 0);
+        (self.own_distance, self.own_increment) = (0, 0);
+        (self.vector, self.full_turns) = (None, 0);
         self.distance_after_coordinate = false;
     }
 
@@ -79,6 +88,19 @@ impl Block {
             self.computed |= bit;
         }
         Ok(())
+    }
+
+    /// Gives the number after a letter a distance mode of its own.
+    pub(super) fn set_distance(&mut self, letter: char, is_incremental: bool) {
+        let bit = 1 << (letter as u8 - b'A');
+        self.own_distance |= bit;
+        self.own_increment |= if is_incremental { bit } else { 0 };
+    }
+
+    /// Returns the distance mode of the number after a letter, if it has one of its own: whether it is an increment.
+    pub(super) fn own_distance(&self, letter: char) -> Option<bool> {
+        let bit = 1 << (letter as u8 - b'A');
+        (self.own_distance & bit != 0).then_some(self.own_increment & bit != 0)
     }
 
     /// Adds a G or M word.

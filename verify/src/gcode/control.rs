@@ -2,6 +2,8 @@
 
 mod coordinates;
 mod cycle;
+mod frame;
+mod hole;
 mod linuxcnc;
 mod motion;
 mod next_run;
@@ -16,6 +18,9 @@ use super::{ControlSetup, GcodeFault, Plane, Step, StepPath};
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 use touchoff::Unit;
+
+pub(super) use frame::{FrameStep, Retract, Swivel};
+pub(super) use hole::Hole;
 
 /// Letters of the axes.
 const AXES: [char; 6] = ['X', 'Y', 'Z', 'A', 'B', 'C'];
@@ -37,6 +42,8 @@ pub(super) struct Control {
     local: [f64; 6],
     /// Shift by G92.
     preset: Position,
+    /// The frames of Sinumerik.
+    frames: frame::Frames,
     /// The tool that the next M6 changes to.
     staged: Option<u32>,
     /// The last D.
@@ -48,6 +55,8 @@ pub(super) struct Control {
     vector: Option<[f64; 3]>,
     pub(super) notes: Notes,
     rules: ControlRules,
+    /// What the language of the program settles, whatever the rules state.
+    settled: ControlRules,
     /// The rules that the program depends on, each with the first line.
     pub(super) asked: BTreeMap<Rule, usize>,
     axes: [bool; 6],
@@ -97,7 +106,7 @@ pub(super) struct Modal {
     feed_mode: FeedMode,
     feed: Option<f64>,
     /// Set where the path goes through the corners (G61).
-    exact_path: bool,
+    pub(super) exact_path: bool,
     /// G99: canned cycles end in the plane R; `None` before G98 or G99.
     retract_to_r: Option<bool>,
 }
@@ -176,8 +185,9 @@ impl Control {
         let offsets = (1..).map(WorkOffset::Standard).zip(setup.work_offsets);
         let known =
             |origin: Option<[f64; 6]>| (origin.map_or([None; 6], |origin| origin.map(Some)), 0.0);
-        let origins: BTreeMap<_, _> =
+        let mut origins: BTreeMap<_, _> =
             offsets.map(|(offset, origin)| (offset, known(origin))).collect();
+        origins.insert(WorkOffset::Off, known(Some([0.0; 6])));
         let state = ControlState {
             tool: None,
             length: LengthOffset::Off,
@@ -188,6 +198,7 @@ impl Control {
             tcp: Tcp::Off,
             tcp_starts: 0,
             rotation: Rotation::Off,
+            orientation: None,
         };
         Control {
             line: 0,
@@ -200,6 +211,7 @@ impl Control {
             second_home: setup.second_home,
             local: [0.0; 6],
             preset: [Some(0.0); 6],
+            frames: frame::Frames::new(),
             staged: None,
             edge: None,
             transformed: false,
@@ -207,6 +219,7 @@ impl Control {
             vector: None,
             notes: Notes::default(),
             rules: setup.rules.clone(),
+            settled: ControlRules::default(),
             asked: BTreeMap::new(),
             axes: setup.axes,
             change_position: setup.tool_change,
@@ -231,13 +244,23 @@ impl Control {
         self.rules = std::mem::take(&mut self.rules).with(rule, choice);
     }
 
+    /// States what the language of the program settles on every control.
+    pub(super) fn settle(&mut self, rules: &[(Rule, Choice)]) {
+        for (rule, choice) in rules {
+            self.settled = std::mem::take(&mut self.settled).with(*rule, *choice);
+        }
+    }
+
     /// Returns what the control does under a rule, if that is stated.
     pub(super) fn stated(&self, rule: Rule) -> Option<Choice> {
-        self.rules.get(rule)
+        self.settled.get(rule).or_else(|| self.rules.get(rule))
     }
 
     /// Returns what the control does under a rule, and notes that the program depends on it.
     pub(super) fn choice(&mut self, rule: Rule) -> Choice {
+        if let Some(choice) = self.settled.get(rule) {
+            return choice;
+        }
         self.asked.entry(rule).or_insert(self.line);
         self.rules.get(rule).unwrap_or_else(|| rule.choices().next().expect("a rule has choices"))
     }
@@ -303,13 +326,7 @@ impl Control {
     fn numbers(&mut self, block: &mut Block) {
         // Zeros are the same in every unit.
         let has_length = block.is_nonzero("XYZIJKRQ");
-        self.unit_used |= has_length;
-        if !self.modal.unit_stated && has_length {
-            self.modal.unit = match self.choice(Rule::Unit) {
-                Choice::Inch => Unit::Inch,
-                _ => Unit::Millimetre,
-            };
-        }
+        self.unit_of_lengths(has_length);
         if block.has_whole() && self.choice(Rule::WholeNumbers) == Choice::Increments {
             let has_angles = block.code_of(Group::Rotation).is_some();
             let (length, motion) = (self.modal.increment(), self.modal.motion);
@@ -326,6 +343,17 @@ impl Control {
                 'I' | 'J' | 'K' | 'R' if has_angles => 1e-3,
                 _ => length,
             });
+        }
+    }
+
+    /// Gives lengths the unit that the control gives them before the program states one.
+    fn unit_of_lengths(&mut self, has_length: bool) {
+        self.unit_used |= has_length;
+        if !self.modal.unit_stated && has_length {
+            self.modal.unit = match self.choice(Rule::Unit) {
+                Choice::Inch => Unit::Inch,
+                _ => Unit::Millimetre,
+            };
         }
     }
 

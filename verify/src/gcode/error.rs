@@ -248,6 +248,14 @@ pub enum GcodeFault {
         super::MAX_ASSIGNMENTS
     )]
     Assignments,
+    /// A statement of a loop or a branch without the other one that it belongs to.
+    #[error("{word} {problem}")]
+    Structure {
+        /// The statement.
+        word: &'static str,
+        /// The problem, and the remedy.
+        problem: &'static str,
+    },
     /// Subprograms that take too many blocks and steps.
     #[error(
         "subprograms take more than {} blocks and motions: reduce the repeats",

@@ -1,8 +1,8 @@
 //! The interpreter: executes the lines of a program in order, and returns their motions.
 
 use super::control::Control;
-use super::rules::Rule;
-use super::{ControlSetup, GcodeError, GcodeFault, Step, iso};
+use super::rules::{Choice, Rule};
+use super::{ControlSetup, GcodeError, GcodeFault, Step, iso, sinumerik};
 use std::collections::BTreeMap;
 
 /// An interpreter of a program: an iterator over its steps.
@@ -25,6 +25,7 @@ pub struct Interpreter<'a> {
 #[derive(Clone, Debug)]
 enum Front<'a> {
     Iso(iso::Program<'a>),
+    Sinumerik(sinumerik::Program<'a>),
 }
 
 /// The state of a program after a line.
@@ -53,7 +54,12 @@ impl<'a> Interpreter<'a> {
             return Err(GcodeError { line, fault: GcodeFault::LoneReturn });
         }
         let mut control = Control::new(setup);
-        let front = Front::Iso(iso::Program::new(text, &mut control)?);
+        // ISO words mean the same in native programs of Sinumerik, so that one without native words is read as another one.
+        let can_be_native = matches!(control.stated(Rule::Dialect), None | Some(Choice::Sinumerik));
+        let front = match can_be_native && sinumerik::is_native(text) {
+            true => Front::Sinumerik(sinumerik::Program::new(text, &mut control)?),
+            false => Front::Iso(iso::Program::new(text, &mut control)?),
+        };
         let first = Interpreter { front, control, finished: false, end: None, first: None };
         Ok(Interpreter { first: Some(Box::new(first.clone())), ..first })
     }
@@ -67,6 +73,7 @@ impl<'a> Interpreter<'a> {
     pub(super) fn execute_line(&mut self) -> Result<bool, GcodeError> {
         let progress = match &mut self.front {
             Front::Iso(program) => program.execute_line(&mut self.control)?,
+            Front::Sinumerik(program) => program.execute_line(&mut self.control)?,
         };
         if let Progress::Ended(end) = progress {
             (self.finished, self.end) = (true, Some(end));

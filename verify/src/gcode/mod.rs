@@ -56,6 +56,7 @@ mod interpreter;
 mod iso;
 mod note;
 mod rules;
+mod sinumerik;
 mod state;
 
 pub use control::Spindle;

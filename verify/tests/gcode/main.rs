@@ -6,3 +6,4 @@ mod geometry;
 mod mutants;
 mod next_run;
 mod refusals;
+mod sinumerik;

@@ -202,7 +202,7 @@ impl<'a> Resolver<'a> {
         self.refuse_unknown_levers(&frame, start, end)?;
         if step.state.tcp == Tcp::Transformation
             && start.is_some_and(|start| start[3..] != end[3..])
-            && self.ask(Rule::ToolOrientation, step) == Some(Choice::GreatCircle)
+            && self.orientation(step) == Some(Choice::GreatCircle)
         {
             unknown_path = Some(UnknownCause::GreatCircle);
         }
@@ -384,6 +384,11 @@ impl<'a> Resolver<'a> {
     fn ask(&mut self, rule: Rule, step: &Step) -> Option<Choice> {
         self.asked.entry(rule).or_insert(step.line);
         self.setup.rules.get(rule)
+    }
+
+    /// Returns the tool axis between two positions: as the program states it, or as the control does it.
+    fn orientation(&mut self, step: &Step) -> Option<Choice> {
+        step.state.orientation.or_else(|| self.ask(Rule::ToolOrientation, step))
     }
 
     /// Notes that nothing tells where the axes are.

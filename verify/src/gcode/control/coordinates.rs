@@ -18,7 +18,7 @@ const MAX_REGISTER: u32 = 99_999_999;
 
 impl Control {
     /// Changes the state. The machine stands still, so its position gets other coordinates.
-    fn change(&mut self, edit: impl FnOnce(&mut ControlState)) {
+    pub(super) fn change(&mut self, edit: impl FnOnce(&mut ControlState)) {
         let mut new = (*self.state).clone();
         edit(&mut new);
         // Steps share the state until it changes.
@@ -103,6 +103,8 @@ impl Control {
         // The tool before the first change may be the same.
         self.leave_for_change(self.state.tool.is_none_or(|before| before == tool));
         self.length_cancelled = false;
+        // The first edge of the new tool is in force.
+        self.edge = None;
         self.change(|state| state.tool = Some(tool));
         // Not asked: whether the length counts matters at the next motion only.
         let is_always = self.stated(Rule::ToolLength) == Some(Choice::Always);
@@ -463,14 +465,20 @@ impl Control {
                 Some(_) => {}
             }
         }
-        self.offset_stated = true;
-        self.needs_offset = None;
         // The centre of a rotation is in coordinates of the work offset before.
-        if offset != self.state.work_offset {
+        if offset != self.state.work_offset && self.stated(Rule::Dialect) != Some(Choice::Sinumerik)
+        {
             self.check_unrotated(code)?;
         }
-        self.activate(offset);
+        self.select_offset(offset);
         Ok(())
+    }
+
+    /// Puts a work offset in force.
+    pub(super) fn select_offset(&mut self, offset: WorkOffset) {
+        self.offset_stated = true;
+        self.needs_offset = None;
+        self.activate(offset);
     }
 
     fn activate(&mut self, offset: WorkOffset) {
@@ -639,12 +647,17 @@ impl Control {
     }
 
     fn update_shift(&mut self) {
-        let (preset, local) = (self.preset, self.local);
-        self.change(|state| {
-            for axis in 0..AXES.len() {
-                state.shift[axis] = preset[axis].map(|preset| preset + local[axis]);
-            }
-        });
+        let shift = self.total_shift();
+        self.change(|state| state.shift = shift);
+    }
+
+    /// Returns the sum of the shifts by G52, by G92 and by frames.
+    pub(super) fn total_shift(&self) -> Position {
+        let (mut shift, frame) = (self.preset, self.frames.shift());
+        for (axis, shift) in shift.iter_mut().enumerate() {
+            *shift = shift.map(|preset| preset + self.local[axis] + frame[axis]);
+        }
+        shift
     }
 
     /// Executes G68: a rotation about the normal of the plane, by R degrees about a centre.

@@ -10,6 +10,7 @@ mod line;
 mod linuxcnc;
 
 pub use expression::ExpressionFault;
+pub(super) use flow::{Place, line};
 
 use super::block::{Block, Code, Group};
 use super::control::Control;
