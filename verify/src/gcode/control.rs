@@ -36,6 +36,7 @@ pub(super) struct Control {
     /// Origin and rotation of the work offsets.
     origins: BTreeMap<WorkOffset, (Position, f64)>,
     lengths: BTreeMap<u32, f64>,
+    tool_names: BTreeMap<String, u32>,
     home: Option<[f64; 6]>,
     second_home: Option<[f64; 6]>,
     /// Shift by G52.
@@ -48,6 +49,10 @@ pub(super) struct Control {
     staged: Option<u32>,
     /// The last D.
     edge: Option<u32>,
+    /// The D between a T and its M6, on Sinumerik.
+    staged_edge: Option<u32>,
+    /// Set by a change after D0 between T and M6, until the next D.
+    needs_edge: bool,
     /// Set if tool centre point control was switched on by M428 or `TRAORI`, which G43 and G49 do not end.
     transformed: bool,
     cycle: Option<Cycle>,
@@ -207,6 +212,7 @@ impl Control {
             position: setup.start,
             origins,
             lengths: setup.lengths.clone(),
+            tool_names: setup.tool_names.clone(),
             home: setup.home,
             second_home: setup.second_home,
             local: [0.0; 6],
@@ -214,6 +220,8 @@ impl Control {
             frames: frame::Frames::new(),
             staged: None,
             edge: None,
+            staged_edge: None,
+            needs_edge: false,
             transformed: false,
             cycle: None,
             vector: None,
@@ -265,6 +273,12 @@ impl Control {
         self.rules.get(rule).unwrap_or_else(|| rule.choices().next().expect("a rule has choices"))
     }
 
+    /// Returns the number of the tool with a name.
+    pub(super) fn tool_number(&self, name: &str) -> Option<u32> {
+        let known = self.tool_names.iter().find(|(known, _)| known.eq_ignore_ascii_case(name));
+        known.map(|(_, number)| *number).or_else(|| name.parse().ok())
+    }
+
     /// Executes a block, in the order of RS274/NGC, table 8.
     pub(super) fn execute(&mut self, line: usize, block: &mut Block) -> Result<(), GcodeFault> {
         self.line = line;
@@ -300,6 +314,7 @@ impl Control {
             return Err(combination("a position", condition, remedy));
         }
         self.check_offset(block)?;
+        self.check_staged_edge(block)?;
         self.motion(block)
     }
 

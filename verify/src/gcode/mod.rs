@@ -96,6 +96,8 @@ pub struct ControlSetup {
     pub work_offsets: [Option<[f64; 6]>; 9],
     /// Tool lengths in millimetres, by H or tool number.
     pub lengths: BTreeMap<u32, f64>,
+    /// The numbers of tools, by the names that programs of Sinumerik give them (`T="NAME"`), in either case.
+    pub tool_names: BTreeMap<String, u32>,
     /// Position of G28 in machine coordinates.
     pub home: Option<[f64; 6]>,
     /// Position of G30 in machine coordinates.
@@ -116,6 +118,7 @@ impl Default for ControlSetup {
             start: [None; 6],
             work_offsets: [None; 9],
             lengths: BTreeMap::new(),
+            tool_names: BTreeMap::new(),
             home: None,
             second_home: None,
             rules: ControlRules::default(),

@@ -19,6 +19,7 @@ fn setup() -> ControlSetup {
         start: [Some(0.0); 6],
         work_offsets,
         lengths: BTreeMap::from([(1, 80.0), (2, 50.0)]),
+        tool_names: BTreeMap::from([("DRILL 8.5".to_owned(), 2)]),
         home: Some([1.0, 2.0, 400.0, 0.0, 0.0, 0.0]),
         ..ControlSetup::default()
     }
@@ -82,7 +83,7 @@ fn words_and_statements_are_the_motions_of_iso_words() {
         ("G2 X10 Y0 Z-5 I5 J0 TURN=2 F=50*2", "G2 X10 Y0 Z-5 I5 J0 P3 F100"),
         ("G18 G3 X10 Z10 CR=10 F100", "G18 G3 X10 Z10 R10 F100"),
         ("G700\nDEF REAL A_X=1, _B\n_B=2\nG0 X=A_X Y=_B", "G20\nG0 X1 Y2"),
-        ("DEF INT K\nFOR K=1 TO 3\nG0 X=K\nENDFOR", "G0 X1\nX2\nX3"),
+        ("DEF INT KK\nFOR KK=1 TO 3\nG0 X=KK\nENDFOR", "G0 X1\nX2\nX3"),
         ("FOR R5=3 TO 1\nG0 X=R5\nENDFOR\nG0 Y1", "G0 Y1"),
         (
             "R1=0\nWHILE R1<3\nG1 X=R1 Z=-R1 F100\nR1=R1+1\nENDWHILE",
@@ -307,7 +308,7 @@ fn drilling_cycles_move_to_their_levels() {
 #[test]
 fn tools_offsets_and_machine_coordinates() {
     // SUPA without a length is the spindle's gauge point.
-    let program = "G90 G17 G710\nSUPA G0 Z=400 D0\nT=\"1\"\nM6\nG55 G0 X1 Y2 Z3 D1\nSUPA G0 Z300 D0\nT2 D1 M6\nG505\n\
+    let program = "G90 G17 G710\nSUPA G0 Z=400 D0\nT=\"1\"\nM6\nG55 G0 X1 Y2 Z3 D1\nSUPA G0 Z300 D0\nT=\"drill 8.5\" D1 M6\nG505\n\
         G0 X1 Y2 Z3\nG500\nG0 X1 Y2 Z3\nM30\n";
     let all = steps(program);
     let machine: Vec<_> = all.iter().map(|step| step.state.to_machine(step.end)).collect();
@@ -321,7 +322,7 @@ fn tools_offsets_and_machine_coordinates() {
     assert_eq!(at(3), [Some(401.0), Some(12.0), Some(48.0)]);
     assert_eq!(all[4].state.work_offset, WorkOffset::Off);
     assert_eq!(at(4), [Some(1.0), Some(2.0), Some(53.0)]);
-    let all = steps("G599\nG91 G1 A1 F100\nM30\n");
+    let all = steps("G599\nG0 A1\nM30\n");
     assert_eq!(all[0].state.work_offset, WorkOffset::Additional(93));
 }
 
@@ -391,7 +392,7 @@ fn what_is_outside_is_refused_by_name_with_its_line() {
         ("R1=1\nG58 X1", 2, "G58 is a programmable shift"),
         ("R1=1\nG77", 2, "G77"),
         ("R1=1\nM77", 2, "M77"),
-        ("R1=1\nT=\"FACEMILL 63\"", 2, "a tool by its name"),
+        ("R1=1\nT=\"FACEMILL 63\"", 2, "a tool by a name that the job does not state"),
         ("R1=1\nUNKNOWN_SUB", 2, "`UNKNOWN_SUB` is no word that is read, and no subprogram"),
         ("R1=1\nL77", 2, "`L77` is no word that is read"),
         ("CALL \"SUB\"\nR1=1", 1, "no subprogram of this file"),
@@ -409,7 +410,7 @@ fn what_is_outside_is_refused_by_name_with_its_line() {
         ("R1=\"A\"", 1, "a text stands where a number is needed"),
         ("R1=1 G0 X5", 1, "an assignment while its block has addresses"),
         ("R1=3\nFOR R2=1 TO R1\nR1=R1-1\nENDFOR", 2, "its last value changes"),
-        ("R1=1\nLOOP\nENDLOOP", 2, "more than 10000000 blocks"),
+        ("R1=1\nLOOP\nENDLOOP", 3, "more than 10000000 blocks"),
         ("R1=1\nG0 TRANS X5", 2, "no word that is read"),
         ("TRANS X5 F100", 1, "TRANS while its block has other words"),
         ("TRANS X5\nTRAORI", 2, "TRAORI or TRAFOOF while a programmable frame"),
@@ -423,7 +424,7 @@ fn what_is_outside_is_refused_by_name_with_its_line() {
         ("F100\nCYCLE86(20,0,3,-10,,0,3,1,0,0,0)", 2, "argument 8 of CYCLE86"),
         ("F100\nG18\nCYCLE81(20,0,3,-10)", 3, "G18 or G19 is in force"),
         ("R1=1\nG291", 2, "G291 is the ISO mode"),
-        ("R1=1\nA3=1", 2, "TRAORI is not in force"),
+        ("R1=1\nG0 A3=1", 2, "TRAORI is not in force"),
         ("T1 M6\nTRAORI\nG54\nORIMKS\nG0 X1 A3=1", 5, "ORIMKS is in force"),
         ("T1 M6\nTRAORI\nG54\nG0 X1 A2=1", 4, "A2= is another form of tool orientation"),
         ("G0 A=IC(5)", 1, "AC or IC of A while the other distance mode"),
@@ -458,7 +459,7 @@ const SEEDS: [&str; 3] = [
     "T1 D1 M6\nG54\nS1000 M3\nCYCLE800(1,\"TC1\",200000,57,10,0,0,0,30,0,0,0,0,-1,100,1)\nG0 X1 Y1 Z50\nG1 Z-1 F100\nTRANS X5\n\
      AROT RPL=30\nG1 X5 Y5\nTRANS\nG0 Z50\nCYCLE800(4,\"TC1\",200001,39,0,0,0,45,10,0,0,0,0,1,,1)\nX1 Y1 Z60\nCYCLE800()\nM30\n",
     "N1 T2 M6\nG54 G0 X0 Y0 Z100 A0 B0 C0 S900 M3\nTRAORI\nG54\nORIWKS ORIAXES G642 CYCLE832(0.01,1,1)\nG1 X1 Y2 Z3 A3=0.1 B3=0.2 C3=1 F500\n\
-     X2 Y3 A3=0 B3=0 C3=1\nG3 X10 Y0 I=AC(5) J=AC(1.5)\nX12 A5 C10\nTRAFOOF\nG54\nR1=ROUND(2.5)+ABS(-1)*(3-1)/2\nG0 Z=R1*10\n\
+     X2 Y3 A3=0 B3=0 C3=1\nG3 X8 Y3 I=AC(5) J=AC(1.5)\nG1 X12 A5 C10\nTRAFOOF\nG54\nR1=ROUND(2.5)+ABS(-1)*(3-1)/2\nG0 Z=R1*10\n\
      LOOP\nR1=R1-1\nIF R1<0 GOTOF OUT\nENDLOOP\nOUT:\nL1 P2\nM30\nPROC L1\nG91 G0 X1\nG90\nM17\n",
 ];
 

@@ -73,6 +73,7 @@ pub(super) fn is_native(text: &str) -> bool {
         if words.peek().is_some_and(|byte| byte.is_ascii_digit()) {
             return false;
         }
+        let mut is_first = true;
         while !words.is_at_end() {
             match words.byte() {
                 Some(b'#') => return false,
@@ -88,7 +89,8 @@ pub(super) fn is_native(text: &str) -> bool {
                     }
                 }
                 Some(byte) if byte.is_ascii_alphabetic() || matches!(byte, b'_' | b'$') => {
-                    found |= is_native_word(&mut words);
+                    found |= is_native_word(&mut words, is_first);
+                    is_first = false;
                 }
                 Some(byte) if byte.is_ascii() => words.advance(),
                 _ => break,
@@ -100,7 +102,7 @@ pub(super) fn is_native(text: &str) -> bool {
 
 /// Passes over a name, and returns whether it begins a statement of Sinumerik alone: a word of the tables, a value after `=`, or one of
 /// its work offsets.
-fn is_native_word(words: &mut Cursor) -> bool {
+fn is_native_word(words: &mut Cursor, is_first: bool) -> bool {
     let name = words.name();
     // O-words of LinuxCNC have statements of the same names.
     let is_o_word =
@@ -113,7 +115,7 @@ fn is_native_word(words: &mut Cursor) -> bool {
         let is_settable = digits.len() == 3 && digits.starts_with('5');
         is_settable || matches!(digits, "153" | "290")
     });
-    is_offset || table::is_marker(name) || words.take_assignment()
+    is_offset || table::is_marker(name, is_first) || words.take_assignment()
 }
 
 impl<'a> Program<'a> {

@@ -262,13 +262,13 @@ const STATEMENTS: &[&str] = &[
     "TRANS", "ATRANS", "ROT", "AROT", "CYCLE800", "CYCLE81", "CYCLE82", "CYCLE83", "CYCLE84",
     "CYCLE840", "CYCLE85", "CYCLE86", "CYCLE89", "MCALL", "SUPA", "GOTOF", "GOTOB", "GOTOC",
     "GOTOS", "ENDIF", "ENDWHILE", "ENDFOR", "ENDLOOP", "UNTIL", "DEF", "PROC", "RET", "REPEATB",
-    "ORIMKS", "ORIAXES", "ORIVECT", "ORIPLANE",
+    "ORIWKS", "ORIMKS", "ORIAXES", "ORIVECT", "ORIPLANE",
 ];
 
-/// Returns whether a word is one of Sinumerik alone. Short words, which can be names or words elsewhere, are none.
-pub(super) fn is_marker(word: &str) -> bool {
+/// Returns whether a word is one of Sinumerik alone. Short words are words elsewhere, too, and count at the begin of a line.
+pub(super) fn is_marker(word: &str, is_first: bool) -> bool {
     let is_statement = STATEMENTS.iter().any(|known| word.eq_ignore_ascii_case(known));
-    is_statement || word.len() > 3 && !word.eq_ignore_ascii_case("READ") && use_of(word).is_some()
+    (word.len() > 3 || is_first && word.len() == 3) && (is_statement || use_of(word).is_some())
 }
 
 #[cfg(test)]

@@ -175,7 +175,7 @@ impl<'a> Program<'a> {
             'D' => once(letter, &mut words.edge, self.value(letter, cursor)?),
             'S' => once(letter, &mut words.speed, self.value(letter, cursor)?),
             'T' => {
-                let tool = self.tool(cursor)?;
+                let tool = self.tool(cursor, control)?;
                 block.add('T', plain(tool))
             }
             // A word for the machine's logic, which moves no axis of the path.
@@ -400,19 +400,19 @@ impl<'a> Program<'a> {
         number(cursor, &self.variables).map(|_| ())
     }
 
-    /// Reads the number of a tool, which can be a name of digits: `T5`, `T="5"`.
-    fn tool(&self, cursor: &mut Cursor) -> Result<f64, GcodeFault> {
+    /// Reads the number of a tool, or its name: `T5`, `T="MILL"`. A name of digits is a number.
+    fn tool(&self, cursor: &mut Cursor, control: &Control) -> Result<f64, GcodeFault> {
         if !{ *cursor }.take_assignment() {
             return self.value('T', cursor);
         }
         cursor.take_assignment();
         match expression(cursor, &self.variables)? {
             Value::Number(number) => Ok(number),
-            Value::Text(name) => match name.parse::<u32>() {
-                Ok(number) => Ok(f64::from(number)),
-                Err(_) => {
-                    let meaning = "a tool by its name";
-                    let remedy = "write the number of the tool in the job: T=\"5\", or T5";
+            Value::Text(name) => match control.tool_number(&name) {
+                Some(number) => Ok(f64::from(number)),
+                None => {
+                    let meaning = "a tool by a name that the job does not state";
+                    let remedy = "state `name` in its `[tool.N]`, or write its number: T5";
                     Err(not_read(format!("T={}", shown(&name)), meaning, remedy))
                 }
             },
