@@ -1,5 +1,5 @@
 //! G-code: an interpreter of ISO 6983 programs in the dialects of Fanuc and Haas, LinuxCNC, Sinumerik and
-//! Heidenhain (DIN/ISO).
+//! Heidenhain (DIN/ISO), and of native programs of Sinumerik 840D.
 //!
 //! An [`Interpreter`] executes a program as a control does, and returns its motions one by one. Each [`Step`]
 //! is a line or an arc between two positions in program coordinates, with the [state of the
@@ -28,6 +28,8 @@
 //! - Tool centre point control: G43.4, G43.5, G234, `TRAORI`, M428; ended by G49, `TRAFOOF`, M429.
 //! - Tilted planes G68.2 with G53.1, rotation G68, both ended by G69.
 //! - Parameters and arithmetic in brackets; comments, `/`, `%`, N.
+//! - Native programs of Sinumerik: expressions, loops and jumps, subprograms of the file, frames, CYCLE800, drilling cycles, tool vectors
+//!   under `TRAORI`. `docs/controls.md` lists their words.
 //!
 //! **What stops it.** Everything else. A word that is not understood could move the tool, so it is an error
 //! with its line, its name and a remedy, and so is a word that no other word of its block uses. Nothing is

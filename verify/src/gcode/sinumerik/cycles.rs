@@ -211,7 +211,7 @@ pub(super) fn swivel(cursor: &mut Cursor, known: &Variables) -> Result<Swivel, G
         return Ok(Swivel { retract, ..Swivel::reset() });
     }
     let state = given.digits(2)?;
-    if state / 100 % 1000 != 0 || state % 10 > 1 {
+    if state / 100 % 1000 != 0 || state / 100_000 > 2 || state % 100 > 11 || state % 10 > 1 {
         let meaning = "another state than a new plane or an additional one";
         return Err(given.refused(
             2,

@@ -578,7 +578,7 @@ fn partners(text: &str, sections: &[Section]) -> Result<HashMap<usize, Place>, G
             let here = std::mem::replace(&mut place, after);
             let Some((found, _)) = Structure::at(start(content).words) else { continue };
             if !found.closes().is_empty() {
-                let Some((opened, at, next)) =
+                let Some((_, at, next)) =
                     open.pop().filter(|(opened, ..)| found.closes().contains(opened))
                 else {
                     let problem =
@@ -598,7 +598,6 @@ fn partners(text: &str, sections: &[Section]) -> Result<HashMap<usize, Place>, G
                         partners.insert(here.line, next);
                     }
                 }
-                debug_assert!(opened.opens());
             }
             if found.opens() {
                 open.push((found, here, after));

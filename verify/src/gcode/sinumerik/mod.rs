@@ -229,16 +229,14 @@ impl<'a> Program<'a> {
             return Err(missing("FOR", "TO with the last value of its variable"));
         }
         let last = number(words, &self.variables)?;
-        let before = *self
-            .ends
-            .entry(line)
-            .and_modify(|end| {
-                if !is_step {
-                    *end = last
-                }
-            })
-            .or_insert(last);
-        if before != last {
+        let before = match is_step {
+            true => self.ends.get(&line).copied(),
+            false => {
+                self.ends.insert(line, last);
+                Some(last)
+            }
+        };
+        if before != Some(last) {
             let remedy = "write WHILE, or a last value that stays";
             return Err(combination("FOR", "its last value changes while it counts", remedy));
         }

@@ -540,7 +540,7 @@ fn g_word(code: Code, block: &mut Block, words: &mut Words) -> Result<(), GcodeF
         5000 => settable(code, WorkOffset::Off, words),
         // The numbers of settable frames: G54 is the first, and G58 of ISO mode the fifth.
         5050 | 5060 => settable(code, WorkOffset::Standard((code.tenths / 10 - 500) as u8), words),
-        5070..=5990 if code.tenths % 10 == 0 => {
+        5070..=5990 if code.tenths.is_multiple_of(10) => {
             settable(code, WorkOffset::Additional((code.tenths / 10 - 506) as u16), words)
         }
         90 | 600 | 6010 | 6020 | 6030 | 640 | 6410 | 6420 | 6430 | 6440 | 6450 | 620 | 6210 => {
@@ -621,7 +621,7 @@ fn m_word(code: Code, block: &mut Block, words: &mut Words) -> Result<(), GcodeF
             Ok(())
         }
         // Gears of the spindle.
-        400..=450 if code.tenths % 10 == 0 => {
+        400..=450 if code.tenths.is_multiple_of(10) => {
             block.passed_over.push(code);
             Ok(())
         }
