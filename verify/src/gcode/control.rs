@@ -563,6 +563,7 @@ impl Control {
             absolute: !self.modal.incremental,
             is_homeward: false,
             is_return: false,
+            shortest: [false; 6],
             state,
         });
     }

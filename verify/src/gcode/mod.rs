@@ -156,6 +156,8 @@ pub struct Step {
     pub is_homeward: bool,
     /// Set for the motion to a reference position (G28, G30).
     pub is_return: bool,
+    /// Rotary axes that turn the shorter way to their end (DC of Sinumerik), whatever the [rule](Rule::Rotary).
+    pub shortest: [bool; 6],
     /// The spindle during the motion.
     pub spindle: Spindle,
     /// State of the control, shared by steps until it changes.

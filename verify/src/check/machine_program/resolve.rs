@@ -475,7 +475,11 @@ impl<'a> Resolver<'a> {
             if turn.abs() < 180.0 - ANGLE_INCREMENT && (within - turn).abs() < ANGLE_INCREMENT {
                 continue;
             }
-            match self.ask(Rule::Rotary, step) {
+            let way = match step.shortest[k] {
+                true => Some(Choice::Shortest),
+                false => self.ask(Rule::Rotary, step),
+            };
+            match way {
                 Some(Choice::Shortest) => {
                     let shorter = turn - 360.0 * (turn / 360.0).round();
                     start[k] = Some(to - shorter);

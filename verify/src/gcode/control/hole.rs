@@ -1,7 +1,7 @@
 //! Holes of Sinumerik's drilling cycles, in absolute levels along Z.
 
 use super::{Control, Motion, Spindle};
-use crate::gcode::block::{Block, Number};
+use crate::gcode::block::{Block, Distance, Number};
 use crate::gcode::error::combination;
 use crate::gcode::state::Tcp;
 use crate::gcode::{GcodeFault, Plane};
@@ -46,7 +46,7 @@ impl Control {
         // The checks of a position along Z in G90.
         let mut block = Block::default();
         block.add('Z', Number { value: hole.depth, is_whole: false, is_computed: false })?;
-        block.set_distance('Z', false);
+        block.set_distance('Z', Distance::Absolute);
         self.returned_length(&block);
         self.length_without_word();
         self.check_offset(&block)?;

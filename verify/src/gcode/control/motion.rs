@@ -70,6 +70,7 @@ impl Control {
         self.check_tilted(block)?;
         let turns = self.take_vector(block)?;
         self.check_position(block)?;
+        let shortest = AXES.map(|letter| block.is_shortest(letter));
         let (mut end, _, mut commanded) = self.take_end(block);
         // The machine turns its axes to the tool vector: the angles are not the program's.
         if turns {
@@ -77,6 +78,7 @@ impl Control {
             commanded[3..].fill(true);
         }
         self.push(rapid, end, commanded, StepPath::Line);
+        self.pending.back_mut().expect("the step that was added").shortest = shortest;
         Ok(())
     }
 
@@ -134,6 +136,14 @@ impl Control {
 
     fn arc(&mut self, block: &mut Block, clockwise: bool) -> Result<(), GcodeFault> {
         let word = if clockwise { "G2" } else { "G3" };
+        if let Some(letter) = AXES.iter().find(|letter| block.is_shortest(**letter)) {
+            let condition = "its block has an arc";
+            return Err(combination(
+                format!("DC of {letter}"),
+                condition,
+                "turn the axis in a block before",
+            ));
+        }
         if block.vector.is_some() || self.vector.is_some() && block.has_any("ABC") {
             let condition = "its block has a tool vector, or angles after one";
             return Err(combination(word, condition, "post the arc as lines"));

@@ -311,7 +311,11 @@ impl<'a> Flow<'a> {
         };
         let start = find(first)?;
         let end = match last {
-            Some(label) => find(label)?.line,
+            // Several parts can end with the same label.
+            Some(label) => match self.find(label, start.line, Direction::Forward) {
+                Some(end) => end.line,
+                None => find(label)?.line,
+            },
             None if is_block => start.line,
             None => match self.find("ENDLABEL", start.line, Direction::Forward) {
                 Some(end) if start.line > line || end.line < line => end.line,

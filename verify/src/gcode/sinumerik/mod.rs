@@ -282,6 +282,15 @@ impl<'a> Program<'a> {
             }
             "ENDLABEL" => {}
             "DEF" => self.variables.define(words)?,
+            "CALL" if words.take_name("BLOCK") => {
+                let first = words.name();
+                if !words.take_name("TO") {
+                    return Err(missing("CALL BLOCK", "two labels with TO between"));
+                }
+                let last = Some(words.name());
+                let repeat = RepeatWords { first, last, is_block: false, times: 1 };
+                self.flow.repeat(repeat, line)?;
+            }
             "CALL" => {
                 words.peek();
                 let called = words.quoted().unwrap_or_else(|| words.name());

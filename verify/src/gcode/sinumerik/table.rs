@@ -153,7 +153,7 @@ const REFUSED: &[(&[&str], &str, &str)] = &[
         "a motion of an axis by itself",
         "write the axis in a block with G0 or G1",
     ),
-    (&["DC", "ACP", "ACN"], "a direction of a rotary axis", "write its angle, in G90"),
+    (&["ACP", "ACN"], "a direction of a rotary axis", "write its angle, in G90"),
     (
         &["PTP", "PTPG0", "RTLIOF"],
         "a path of each axis by itself",

@@ -4,7 +4,7 @@ use super::expression::{Value, expression, number, unsigned};
 use super::table::{Use, use_of};
 use super::text::Cursor;
 use super::{Program, no_subprogram, undefined};
-use crate::gcode::block::{Block, Code, Group, Keyword, Number};
+use crate::gcode::block::{Block, Code, Distance, Group, Keyword, Number};
 use crate::gcode::control::{Control, FrameStep};
 use crate::gcode::error::{combination, missing, not_read};
 use crate::gcode::interpreter::Progress;
@@ -37,8 +37,8 @@ struct Words {
 /// A value of an axis.
 struct AxisValue {
     value: f64,
-    /// Set by `IC(…)` and false by `AC(…)`, which hold for the axis alone.
-    is_incremental: Option<bool>,
+    /// Stated by `AC(…)`, `IC(…)` or `DC(…)`, which hold for the axis alone.
+    distance: Option<Distance>,
 }
 
 impl<'a> Program<'a> {
@@ -165,10 +165,10 @@ impl<'a> Program<'a> {
                 if letter == 'G' { g_word(code, block, words) } else { m_word(code, block, words) }
             }
             'X' | 'Y' | 'Z' | 'A' | 'B' | 'C' | 'I' | 'J' | 'K' => {
-                let AxisValue { value, is_incremental } = self.axis_value(letter, cursor)?;
+                let AxisValue { value, distance } = self.axis_value(letter, cursor)?;
                 block.add(letter, plain(value))?;
-                if let Some(is_incremental) = is_incremental {
-                    block.set_distance(letter, is_incremental);
+                if let Some(distance) = distance {
+                    block.set_distance(letter, distance);
                 }
                 Ok(())
             }
@@ -359,34 +359,32 @@ impl<'a> Program<'a> {
         Ok(if is_negative { -value } else { value })
     }
 
-    /// Reads the value of an axis, which can be `=AC(…)` or `=IC(…)`.
+    /// Reads the value of an axis, which can be `=AC(…)`, `=IC(…)` or `=DC(…)`.
     fn axis_value(&self, letter: char, cursor: &mut Cursor) -> Result<AxisValue, GcodeFault> {
         let mut after = *cursor;
         if after.take_assignment() {
-            let is_incremental = match after.name() {
-                name if name.eq_ignore_ascii_case("AC") => Some(false),
-                name if name.eq_ignore_ascii_case("IC") => Some(true),
-                name if ["DC", "ACP", "ACN"]
-                    .iter()
-                    .any(|known| name.eq_ignore_ascii_case(known)) =>
-                {
-                    let meaning = "a direction of a rotary axis";
-                    return Err(not_read(
-                        name.to_ascii_uppercase(),
-                        meaning,
-                        "write its angle, in G90",
-                    ));
-                }
-                _ => None,
-            };
-            if is_incremental.is_some() && after.peek() == Some(b'(') {
+            let name = after.name();
+            let distance =
+                ["AC", "IC", "DC"].iter().position(|known| name.eq_ignore_ascii_case(known));
+            if ["ACP", "ACN"].iter().any(|known| name.eq_ignore_ascii_case(known))
+                || distance == Some(2) && !matches!(letter, 'A' | 'B' | 'C')
+            {
+                let meaning = "a direction of a rotary axis";
+                let remedy = "write its angle in G90, or DC";
+                return Err(not_read(name.to_ascii_uppercase(), meaning, remedy));
+            }
+            if let Some(distance) = distance
+                && after.peek() == Some(b'(')
+            {
                 // The bracket is that of an expression.
                 *cursor = after;
                 let value = bounded(letter, bracket(cursor, self)?)?;
-                return Ok(AxisValue { value, is_incremental });
+                let distance =
+                    [Distance::Absolute, Distance::Incremental, Distance::Shortest][distance];
+                return Ok(AxisValue { value, distance: Some(distance) });
             }
         }
-        Ok(AxisValue { value: self.value(letter, cursor)?, is_incremental: None })
+        Ok(AxisValue { value: self.value(letter, cursor)?, distance: None })
     }
 
     /// Reads an angle of the spindle, which can be `AC(…)` and its like.
