@@ -122,6 +122,20 @@ fn one_pass_gives_what_each_check_gives_by_itself() {
     assert!(found > 200 && most_readings > 1);
 }
 
+/// Names by which programs of Sinumerik select tools are given once.
+#[test]
+fn a_tool_name_stands_for_one_tool() {
+    let text = |second: &str| {
+        format!(
+            "part = \"a.stl\"\nunit = \"mm\"\nprogram = \"a.mpf\"\n[tool.1]\nname = \"FACEMILL 63\"\n[tool.2]\nname = \"{second}\"\n"
+        )
+    };
+    let parse = |second: &str| JobFile::parse(&text(second), Path::new("job.toml"));
+    assert!(parse("CUTTER 16").is_ok());
+    let error = parse("FACEMILL 63").expect_err("two tools of one name").to_string();
+    assert!(error.contains("the tool name `FACEMILL 63` is given twice"), "{error}");
+}
+
 /// A program that moves far away under one of two work offsets seems to be meant for another part.
 #[test]
 fn a_work_offset_far_from_the_part_is_open() {

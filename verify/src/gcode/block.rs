@@ -24,6 +24,15 @@ pub(super) struct Number {
     pub(super) is_computed: bool,
 }
 
+/// The meaning of a number that holds for its axis alone.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Distance {
+    Absolute,
+    Incremental,
+    /// A position of a rotary axis, to which it turns the shorter way.
+    Shortest,
+}
+
 /// The words of a block. Words that no other word uses remain in it, and are refused at its end.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Block {
@@ -38,6 +47,15 @@ pub(super) struct Block {
     whole: u32,
     /// Letters whose number is a parameter or an expression, as bits from A.
     computed: u32,
+    /// Letters with a distance mode of their own, those of them that are increments, and those that turn the shorter way, as bits
+    /// from A.
+    own_distance: u32,
+    own_increment: u32,
+    shortest: u32,
+    /// The tool vector (A3, B3, C3).
+    pub(super) vector: Option<[f64; 3]>,
+    /// The full turns of an arc beside its way to the end (TURN).
+    pub(super) full_turns: u32,
     /// Set if G90 or G91 stands after a coordinate.
     pub(super) distance_after_coordinate: bool,
 }
@@ -49,6 +67,8 @@ impl Block {
         self.passed_over.clear();
         self.keyword = None;
         (self.whole, self.computed) = (0, 0);
+        (self.own_distance, self.own_increment, self.shortest) = (0, 0, 0);
+        (self.vector, self.full_turns) = (None, 0);
         self.distance_after_coordinate = false;
     }
 
@@ -79,6 +99,25 @@ impl Block {
             self.computed |= bit;
         }
         Ok(())
+    }
+
+    /// Gives the number after a letter a distance mode of its own.
+    pub(super) fn set_distance(&mut self, letter: char, distance: Distance) {
+        let bit = 1 << (letter as u8 - b'A');
+        self.own_distance |= bit;
+        self.own_increment |= if distance == Distance::Incremental { bit } else { 0 };
+        self.shortest |= if distance == Distance::Shortest { bit } else { 0 };
+    }
+
+    /// Returns whether the axis of a letter turns the shorter way.
+    pub(super) fn is_shortest(&self, letter: char) -> bool {
+        self.shortest & (1 << (letter as u8 - b'A')) != 0
+    }
+
+    /// Returns the distance mode of the number after a letter, if it has one of its own: whether it is an increment.
+    pub(super) fn own_distance(&self, letter: char) -> Option<bool> {
+        let bit = 1 << (letter as u8 - b'A');
+        (self.own_distance & bit != 0).then_some(self.own_increment & bit != 0)
     }
 
     /// Adds a G or M word.

@@ -3,6 +3,8 @@
 mod compensation;
 mod coordinates;
 mod cycle;
+mod frame;
+mod hole;
 mod linuxcnc;
 mod motion;
 mod next_run;
@@ -23,6 +25,9 @@ use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 use touchoff::Unit;
 
+pub(super) use frame::{FrameStep, Retract, Swivel};
+pub(super) use hole::Hole;
+
 /// Letters of the axes.
 const AXES: [char; 6] = ['X', 'Y', 'Z', 'A', 'B', 'C'];
 
@@ -38,16 +43,23 @@ pub(super) struct Control {
     origins: BTreeMap<WorkOffset, (Position, f64)>,
     lengths: BTreeMap<u32, f64>,
     radius_offsets: BTreeMap<u32, f64>,
+    tool_names: BTreeMap<String, u32>,
     home: Option<[f64; 6]>,
     second_home: Option<[f64; 6]>,
     /// Shift by G52.
     local: [f64; 6],
     /// Shift by G92.
     preset: Position,
+    /// The frames of Sinumerik.
+    frames: frame::Frames,
     /// The tool that the next M6 changes to.
     staged: Option<u32>,
     /// The last D.
     edge: Option<u32>,
+    /// The D between a T and its M6, on Sinumerik.
+    staged_edge: Option<u32>,
+    /// Set by a change after D0 between T and M6, until the next D.
+    needs_edge: bool,
     /// Set if tool centre point control was switched on by M428 or `TRAORI`, which G43 and G49 do not end.
     transformed: bool,
     cycle: Option<Cycle>,
@@ -57,6 +69,8 @@ pub(super) struct Control {
     vector: Option<[f64; 3]>,
     pub(super) notes: Notes,
     rules: ControlRules,
+    /// What the language of the program settles, whatever the rules state.
+    settled: ControlRules,
     /// The rules that the program depends on, each with the first line.
     pub(super) asked: BTreeMap<Rule, usize>,
     axes: [bool; 6],
@@ -106,7 +120,7 @@ pub(super) struct Modal {
     feed_mode: FeedMode,
     feed: Option<f64>,
     /// Set where the path goes through the corners (G61).
-    exact_path: bool,
+    pub(super) exact_path: bool,
     /// G99: canned cycles end in the plane R; `None` before G98 or G99.
     retract_to_r: Option<bool>,
 }
@@ -185,8 +199,9 @@ impl Control {
         let offsets = (1..).map(WorkOffset::Standard).zip(setup.work_offsets);
         let known =
             |origin: Option<[f64; 6]>| (origin.map_or([None; 6], |origin| origin.map(Some)), 0.0);
-        let origins: BTreeMap<_, _> =
+        let mut origins: BTreeMap<_, _> =
             offsets.map(|(offset, origin)| (offset, known(origin))).collect();
+        origins.insert(WorkOffset::Off, known(Some([0.0; 6])));
         let state = ControlState {
             tool: None,
             length: LengthOffset::Off,
@@ -197,6 +212,7 @@ impl Control {
             tcp: Tcp::Off,
             tcp_starts: 0,
             rotation: Rotation::Off,
+            orientation: None,
         };
         Control {
             line: 0,
@@ -206,18 +222,23 @@ impl Control {
             origins,
             lengths: setup.lengths.clone(),
             radius_offsets: setup.radius_offsets.clone(),
+            tool_names: setup.tool_names.clone(),
             home: setup.home,
             second_home: setup.second_home,
             local: [0.0; 6],
             preset: [Some(0.0); 6],
+            frames: frame::Frames::new(),
             staged: None,
             edge: None,
+            staged_edge: None,
+            needs_edge: false,
             transformed: false,
             cycle: None,
             compensation: None,
             vector: None,
             notes: Notes::default(),
             rules: setup.rules.clone(),
+            settled: ControlRules::default(),
             asked: BTreeMap::new(),
             axes: setup.axes,
             change_position: setup.tool_change,
@@ -242,13 +263,23 @@ impl Control {
         self.rules = std::mem::take(&mut self.rules).with(rule, choice);
     }
 
+    /// States what the language of the program settles on every control.
+    pub(super) fn settle(&mut self, rules: &[(Rule, Choice)]) {
+        for (rule, choice) in rules {
+            self.settled = std::mem::take(&mut self.settled).with(*rule, *choice);
+        }
+    }
+
     /// Returns what the control does under a rule, if that is stated.
     pub(super) fn stated(&self, rule: Rule) -> Option<Choice> {
-        self.rules.get(rule)
+        self.settled.get(rule).or_else(|| self.rules.get(rule))
     }
 
     /// Returns what the control does under a rule, and notes that the program depends on it.
     pub(super) fn choice(&mut self, rule: Rule) -> Choice {
+        if let Some(choice) = self.settled.get(rule) {
+            return choice;
+        }
         self.asked.entry(rule).or_insert(self.line);
         self.rules.get(rule).unwrap_or_else(|| rule.choices().next().expect("a rule has choices"))
     }
@@ -262,6 +293,12 @@ impl Control {
     pub(super) fn ignore(&mut self, word: String) {
         let reason = self.rules.ignored().get(&word).cloned().unwrap_or_default();
         self.notes.add(self.line, NoteKind::Ignored { word, reason });
+    }
+
+    /// Returns the number of the tool with a name.
+    pub(super) fn tool_number(&self, name: &str) -> Option<u32> {
+        let known = self.tool_names.iter().find(|(known, _)| known.eq_ignore_ascii_case(name));
+        known.map(|(_, number)| *number).or_else(|| name.parse().ok())
     }
 
     /// Executes a block, in the order of RS274/NGC, table 8.
@@ -301,6 +338,7 @@ impl Control {
             return Err(combination("a position", condition, remedy));
         }
         self.check_offset(block)?;
+        self.check_staged_edge(block)?;
         self.motion(block)?;
         self.compensate(known)?;
         match block.tenths_of(Group::Stop) {
@@ -332,13 +370,7 @@ impl Control {
     fn numbers(&mut self, block: &mut Block) {
         // Zeros are the same in every unit.
         let has_length = block.is_nonzero("XYZIJKRQ");
-        self.unit_used |= has_length;
-        if !self.modal.unit_stated && has_length {
-            self.modal.unit = match self.choice(Rule::Unit) {
-                Choice::Inch => Unit::Inch,
-                _ => Unit::Millimetre,
-            };
-        }
+        self.unit_of_lengths(has_length);
         if block.has_whole() && self.choice(Rule::WholeNumbers) == Choice::Increments {
             let has_angles = block.code_of(Group::Rotation).is_some();
             let (length, motion) = (self.modal.increment(), self.modal.motion);
@@ -355,6 +387,17 @@ impl Control {
                 'I' | 'J' | 'K' | 'R' if has_angles => 1e-3,
                 _ => length,
             });
+        }
+    }
+
+    /// Gives lengths the unit that the control gives them before the program states one.
+    fn unit_of_lengths(&mut self, has_length: bool) {
+        self.unit_used |= has_length;
+        if !self.modal.unit_stated && has_length {
+            self.modal.unit = match self.choice(Rule::Unit) {
+                Choice::Inch => Unit::Inch,
+                _ => Unit::Millimetre,
+            };
         }
     }
 
@@ -549,6 +592,7 @@ impl Control {
             absolute: !self.modal.incremental,
             is_homeward: false,
             is_return: false,
+            shortest: [false; 6],
             state,
         });
     }

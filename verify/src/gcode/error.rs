@@ -27,6 +27,16 @@ pub struct Obstacle {
     pub fault: GcodeFault,
 }
 
+impl Obstacle {
+    /// Adds a fault in a line to a list with one entry for each.
+    pub(super) fn add(found: &mut Vec<Obstacle>, line: usize, fault: GcodeFault) {
+        match found.iter_mut().find(|known| known.fault == fault) {
+            Some(known) => known.count += 1,
+            None => found.push(Obstacle { line, count: 1, fault }),
+        }
+    }
+}
+
 /// The sentence, with its line and the number of lines.
 impl fmt::Display for Obstacle {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -313,6 +323,14 @@ pub enum GcodeFault {
         super::MAX_ASSIGNMENTS
     )]
     Assignments,
+    /// A statement of a loop or a branch without the other one that it belongs to.
+    #[error("{word} {problem}")]
+    Structure {
+        /// The statement.
+        word: &'static str,
+        /// The problem, and the remedy.
+        problem: &'static str,
+    },
     /// Subprograms that take too many blocks and steps.
     #[error(
         "subprograms take more than {} blocks and motions: reduce the repeats",

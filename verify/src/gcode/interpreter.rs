@@ -1,8 +1,8 @@
 //! The interpreter: executes the lines of a program in order, and returns their motions.
 
 use super::control::Control;
-use super::rules::Rule;
-use super::{ControlSetup, GcodeError, GcodeFault, Obstacle, Step, iso};
+use super::rules::{Choice, Rule};
+use super::{ControlSetup, GcodeError, GcodeFault, Obstacle, Step, iso, sinumerik};
 use std::collections::BTreeMap;
 
 /// An interpreter of a program: an iterator over its steps.
@@ -26,6 +26,7 @@ pub struct Interpreter<'a> {
 #[derive(Clone, Debug)]
 enum Front<'a> {
     Iso(iso::Program<'a>),
+    Sinumerik(sinumerik::Program<'a>),
 }
 
 /// The state of a program after a line.
@@ -56,7 +57,12 @@ impl<'a> Interpreter<'a> {
             return Err(GcodeError { line, fault: GcodeFault::LoneReturn });
         }
         let mut control = Control::new(setup);
-        let front = Front::Iso(iso::Program::new(text, setup, &mut control)?);
+        // ISO words mean the same in native programs of Sinumerik, so that one without native words is read as another one.
+        let can_be_native = matches!(control.stated(Rule::Dialect), None | Some(Choice::Sinumerik));
+        let front = match can_be_native && sinumerik::is_native(text) {
+            true => Front::Sinumerik(sinumerik::Program::new(text, &mut control)?),
+            false => Front::Iso(iso::Program::new(text, setup, &mut control)?),
+        };
         let first = Interpreter { front, control, finished: false, end: None, first: None };
         Ok(Interpreter { first: Some(Box::new(first.clone())), ..first })
     }
@@ -71,6 +77,7 @@ impl<'a> Interpreter<'a> {
     pub fn obstacles(&self) -> Vec<Obstacle> {
         match &self.front {
             Front::Iso(program) => program.obstacles(&self.control),
+            Front::Sinumerik(program) => program.obstacles(&self.control),
         }
     }
 
@@ -78,6 +85,7 @@ impl<'a> Interpreter<'a> {
     pub(super) fn execute_line(&mut self) -> Result<bool, GcodeError> {
         let progress = match &mut self.front {
             Front::Iso(program) => program.execute_line(&mut self.control)?,
+            Front::Sinumerik(program) => program.execute_line(&mut self.control)?,
         };
         if let Progress::Ended(end) = progress {
             if end != End::Stop {

@@ -1,5 +1,5 @@
 //! G-code: an interpreter of ISO 6983 programs in the dialects of Fanuc and Haas, LinuxCNC, Sinumerik and
-//! Heidenhain (DIN/ISO).
+//! Heidenhain (DIN/ISO), and of native programs of Sinumerik 840D.
 //!
 //! An [`Interpreter`] executes a program as a control does, and returns its motions one by one. Each [`Step`]
 //! is a line or an arc between two positions in program coordinates, with the [state of the
@@ -29,6 +29,8 @@
 //! - Tool centre point control: G43.4, G43.5, G234, `TRAORI`, M428; ended by G49, `TRAFOOF`, M429.
 //! - Tilted planes G68.2 with G53.1, rotation G68, both ended by G69.
 //! - Variables and expressions; comments, `/`, `%`, N.
+//! - Native programs of Sinumerik: expressions, loops and jumps, subprograms of the file, frames, CYCLE800, drilling cycles, tool vectors
+//!   under `TRAORI`. `docs/controls.md` lists their words.
 //!
 //! **What stops it.** Everything else. A word that is not understood could move the tool, so it is an error
 //! with its line, its name and a remedy, and so is a word that no other word of its block uses;
@@ -57,6 +59,7 @@ mod interpreter;
 mod iso;
 mod note;
 mod rules;
+mod sinumerik;
 mod state;
 
 pub use control::Spindle;
@@ -100,6 +103,8 @@ pub struct ControlSetup {
     /// Radius offsets of cutter compensation in millimetres, by D or tool number: the radius of the tool, or what it differs from the
     /// radius with which the program was made. A negative one exchanges G41 and G42.
     pub radius_offsets: BTreeMap<u32, f64>,
+    /// The numbers of tools, by the names that programs of Sinumerik give them (`T="NAME"`), in either case.
+    pub tool_names: BTreeMap<String, u32>,
     /// Position of G28 in machine coordinates.
     pub home: Option<[f64; 6]>,
     /// Position of G30 in machine coordinates.
@@ -124,6 +129,7 @@ impl Default for ControlSetup {
             work_offsets: [None; 9],
             lengths: BTreeMap::new(),
             radius_offsets: BTreeMap::new(),
+            tool_names: BTreeMap::new(),
             home: None,
             second_home: None,
             rules: ControlRules::default(),
@@ -160,6 +166,8 @@ pub struct Step {
     pub is_homeward: bool,
     /// Set for the motion to a reference position (G28, G30).
     pub is_return: bool,
+    /// Rotary axes that turn the shorter way to their end (DC of Sinumerik), whatever the [rule](Rule::Rotary).
+    pub shortest: [bool; 6],
     /// The spindle during the motion.
     pub spindle: Spindle,
     /// State of the control, shared by steps until it changes.

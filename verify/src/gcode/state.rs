@@ -21,6 +21,7 @@
 //! it depends on: the entries of a product of three rotations are within 2⁻⁴⁸, and a sum has at most eight
 //! terms.
 
+use super::Choice;
 use crate::machine::sin_cos_degrees;
 use nalgebra::{Matrix3, Vector3};
 use std::fmt;
@@ -50,6 +51,9 @@ pub struct ControlState {
     pub tcp_starts: usize,
     /// The rotation of the program's coordinates.
     pub rotation: Rotation,
+    /// The tool axis between two positions of the rotary axes, where the program states it: [`Choice::ByAxes`] (ORIAXES) or
+    /// [`Choice::GreatCircle`] (ORIVECT).
+    pub orientation: Option<Choice>,
 }
 
 /// Tool length offset (G43).
@@ -69,6 +73,8 @@ pub enum LengthOffset {
 /// Work offset (G54).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum WorkOffset {
+    /// None: coordinates are those of the machine (G500 of Sinumerik).
+    Off,
     /// G54 to G59.3, numbered from 1 to 9.
     Standard(u8),
     /// Fanuc's `G54.1 P1` to `P300`.
@@ -78,6 +84,7 @@ pub enum WorkOffset {
 impl fmt::Display for WorkOffset {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            WorkOffset::Off => f.write_str("G500"),
             WorkOffset::Standard(number @ 1..=6) => write!(f, "G{}", 53 + number),
             WorkOffset::Standard(number) => write!(f, "G59.{}", number.saturating_sub(6)),
             WorkOffset::Additional(number) => write!(f, "G54.1 P{number}"),

@@ -93,6 +93,8 @@ pub struct NamedTool {
 pub struct ToolEntry {
     /// A `.tool` file or a built-in tool, instead of the library's tool with this number.
     pub tool: Option<String>,
+    /// The name by which programs of Sinumerik select it: `T="NAME"`.
+    pub name: Option<String>,
     /// Values of the params of the file: `name=value`.
     #[serde(default, rename = "set", deserialize_with = "assignments")]
     pub params: Vec<String>,
@@ -328,6 +330,13 @@ impl JobFile {
             if let Some(tool) = entry.tool.as_mut().filter(|tool| tool.ends_with(".tool")) {
                 *tool = folder.join(&*tool).display().to_string();
             }
+            let same = |other: &ToolEntry| entry.name.is_some() && other.name == entry.name;
+            if entries.values().any(same) {
+                let name = entry.name.unwrap_or_default();
+                return Err(fault(format!(
+                    "the tool name `{name}` is given twice: keep one of both"
+                )));
+            }
             if entries.insert(number, entry).is_some() {
                 return Err(fault(format!("tool {number} is given twice: keep one of both")));
             }
@@ -394,6 +403,7 @@ impl JobFile {
             lengths: self.tools.lengths(),
             variables: self.variables.clone(),
             radius_offsets: self.radius_offsets.clone(),
+            tool_names: self.tools.names(),
             rules,
             ..ControlSetup::default()
         };
@@ -459,6 +469,17 @@ impl JobTools {
             JobTools::Numbered { entries, .. } => entries
                 .iter()
                 .filter_map(|(number, entry)| Some((*number, entry.length?)))
+                .collect(),
+        }
+    }
+
+    /// Returns the numbers of the tools that have names, by these.
+    fn names(&self) -> BTreeMap<String, u32> {
+        match self {
+            JobTools::One(_) => BTreeMap::new(),
+            JobTools::Numbered { entries, .. } => entries
+                .iter()
+                .filter_map(|(number, entry)| Some((entry.name.clone()?, *number)))
                 .collect(),
         }
     }

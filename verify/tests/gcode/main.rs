@@ -8,3 +8,4 @@ mod macros;
 mod mutants;
 mod next_run;
 mod refusals;
+mod sinumerik;

@@ -5,7 +5,7 @@ use crate::oracle::Mounted;
 use nalgebra::{Point3, Vector3};
 use touchoff::certify::TriangleBvh;
 use touchoff::{Pose, Unit};
-use touchoff_verify::gcode::ControlSetup;
+use touchoff_verify::gcode::{Choice, ControlRules, ControlSetup, Rule};
 use touchoff_verify::machine::Machine;
 use touchoff_verify::{FindingKind, MachineProgram, Move, ToolSelection, Verifier};
 
@@ -45,6 +45,46 @@ fn an_aligned_tool_is_tilted_wherever_it_stands() {
     assert!((pose.tip().coords - expected * -1.0).norm() < 1e-12, "{pose:?}");
     let unknown = &program.summary().unknown;
     assert!(!unknown.is_empty() && unknown.iter().all(|unknown| unknown.open_line.is_none()));
+}
+
+/// A plane of CYCLE800 aligns the tool as G53.1 does, and tool vectors under TRAORI turn it, by the axes or on a great circle, which
+/// is not followed.
+#[test]
+fn native_programs_of_sinumerik_turn_the_tool() {
+    let native = |blocks: &str| {
+        let origin = Some([0.0, 0.0, -300.0, 0.0, 0.0, 0.0]);
+        let machine = Machine::named("A-C trunnion").expect("a machine of the library");
+        let rules = ControlRules::default().with(Rule::Rotary, Choice::Counts);
+        let lengths = [(1, 80.0)].into();
+        let mut setup = ControlSetup { lengths, rules, ..Default::default() };
+        setup.work_offsets[0] = origin;
+        let text =
+            format!("G17 G90 G710 F=100\nT=\"1\" M6\nG54\nG0 X0 Y0 Z50 A0 C0\n{blocks}\nM30\n");
+        MachineProgram::new("part.mpf", text, machine, setup).expect("a program")
+    };
+    // By the shorter way C turns through 0, else through 180 degrees.
+    for (word, middle) in [("C=DC(10)", 10.0), ("C=10", -10.0)] {
+        let turn = native(&format!("G0 X10 C350\nG1 {word}"));
+        let all = moves(&turn);
+        let tip = all.last().expect("a move").path.pose(0.5).tip();
+        assert!((tip.x - middle).abs() < 1e-9, "{word}: {tip}");
+    }
+    let expected = Vector3::new(0.0, -0.5, 0.75f64.sqrt());
+    let plane =
+        native("CYCLE800(1,\"TC1\",200000,57,0,0,5,30,0,0,0,0,0,-1,,1)\nG0 X0 Y0\nZ50\nG1 Z-1");
+    let pose = last_pose(&plane);
+    assert!((pose.axis() - expected).norm() < 1e-12, "{pose:?}");
+    let tip = expected * -1.0 + Vector3::new(0.0, 0.0, 5.0);
+    assert!((pose.tip().coords - tip).norm() < 1e-12, "{pose:?}");
+    for (word, is_followed) in [("ORIAXES", true), ("ORIVECT", false)] {
+        let vectors =
+            native(&format!("TRAORI\nG54\nORIWKS {word}\nG1 X1 Y2 Z3 A3=0 B3=-1 C3=SQRT(3)"));
+        let pose = last_pose(&vectors);
+        assert!((pose.axis() - expected).norm() < 1e-12, "{pose:?}");
+        assert!((pose.tip() - Point3::new(1.0, 2.0, 3.0)).norm() < 1e-9, "{pose:?}");
+        let line = vectors.summary().unknown.iter().any(|unknown| unknown.open_line == Some(8));
+        assert_eq!(line, !is_followed, "{:?}", vectors.summary().unknown);
+    }
 }
 
 #[test]

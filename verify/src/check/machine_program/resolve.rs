@@ -202,7 +202,7 @@ impl<'a> Resolver<'a> {
         self.refuse_unknown_levers(&frame, start, end)?;
         if step.state.tcp == Tcp::Transformation
             && start.is_some_and(|start| start[3..] != end[3..])
-            && self.ask(Rule::ToolOrientation, step) == Some(Choice::GreatCircle)
+            && self.orientation(step) == Some(Choice::GreatCircle)
         {
             unknown_path = Some(UnknownCause::GreatCircle);
         }
@@ -386,6 +386,11 @@ impl<'a> Resolver<'a> {
         self.setup.rules.get(rule)
     }
 
+    /// Returns the tool axis between two positions: as the program states it, or as the control does it.
+    fn orientation(&mut self, step: &Step) -> Option<Choice> {
+        step.state.orientation.or_else(|| self.ask(Rule::ToolOrientation, step))
+    }
+
     /// Notes that nothing tells where the axes are.
     fn lose(&mut self, cause: UnknownCause) -> Resolved {
         self.joints = [None; 6];
@@ -470,7 +475,11 @@ impl<'a> Resolver<'a> {
             if turn.abs() < 180.0 - ANGLE_INCREMENT && (within - turn).abs() < ANGLE_INCREMENT {
                 continue;
             }
-            match self.ask(Rule::Rotary, step) {
+            let way = match step.shortest[k] {
+                true => Some(Choice::Shortest),
+                false => self.ask(Rule::Rotary, step),
+            };
+            match way {
                 Some(Choice::Shortest) => {
                     let shorter = turn - 360.0 * (turn / 360.0).round();
                     start[k] = Some(to - shorter);

@@ -18,7 +18,7 @@ const MAX_REGISTER: u32 = 99_999_999;
 
 impl Control {
     /// Changes the state. The machine stands still, so its position gets other coordinates.
-    fn change(&mut self, edit: impl FnOnce(&mut ControlState)) {
+    pub(super) fn change(&mut self, edit: impl FnOnce(&mut ControlState)) {
         let mut new = (*self.state).clone();
         edit(&mut new);
         // Steps share the state until it changes.
@@ -48,10 +48,11 @@ impl Control {
         if !has_diameter && let Some(edge) = block.take_whole('D', 0, MAX_REGISTER, expected)? {
             // D holds for the tool after the change, where D1 is in force anyway.
             let is_staged = self.staged.is_some() && self.staged != self.state.tool;
-            if (edge != 1 || self.length_cancelled)
+            let is_between = (edge != 1 || self.length_cancelled)
                 && (has_tool || has_change || is_staged)
-                && self.choice(Rule::ToolLength) == Choice::Always
-            {
+                && self.choice(Rule::ToolLength) == Choice::Always;
+            let can_wait = edge < 2 && self.stated(Rule::Dialect) == Some(Choice::Sinumerik);
+            if is_between && !can_wait {
                 let condition = "a tool is about to be changed, for which it counts";
                 let remedy = "write it after the change";
                 return Err(combination(format!("D{edge}"), condition, remedy));
@@ -60,7 +61,12 @@ impl Control {
             if compensation == 400 {
                 self.notes.add(self.line, NoteKind::PassedOver { word: "D".to_owned() });
             }
-            self.edge_length(edge)?;
+            self.staged_edge = is_between.then_some(edge);
+            self.needs_edge &= is_between;
+            // D1 is in force after the change anyway. D0 ends the length of the tool in the spindle.
+            if !is_between || edge == 0 && !has_change && self.state.tool.is_some() {
+                self.edge_length(edge)?;
+            }
         }
         let changes = match self.stated(Rule::Dialect) {
             // T changes the tool at once, and an M6 after it finds it in the spindle.
@@ -108,11 +114,27 @@ impl Control {
         // The tool before the first change may be the same.
         self.leave_for_change(self.state.tool.is_none_or(|before| before == tool));
         self.length_cancelled = false;
+        // The first edge of the new tool is in force.
+        self.edge = None;
+        self.needs_edge = self.staged_edge.take() == Some(0);
         self.change(|state| state.tool = Some(tool));
         // Not asked: whether the length counts matters at the next motion only.
         let is_always = self.stated(Rule::ToolLength) == Some(Choice::Always);
         if self.length_implicit || is_always && self.state.length == LengthOffset::Off {
             self.imply_length(tool);
+        }
+    }
+
+    /// Refuses Z where a D between T and M6 leaves the length to the control: before the change for D1, after it for D0.
+    pub(super) fn check_staged_edge(&self, block: &Block) -> Result<(), GcodeFault> {
+        let is_position = block.is_programmed() || block.code_of(Group::Machine).is_some();
+        let is_open = self.needs_edge || self.staged_edge == Some(1);
+        match is_open && is_position && block.has('Z') {
+            true => {
+                let condition = "D was written between T and M6, for the tool before the change or for the one after it";
+                Err(combination("Z", condition, "write D after the change"))
+            }
+            false => Ok(()),
         }
     }
 
@@ -468,14 +490,20 @@ impl Control {
                 Some(_) => {}
             }
         }
-        self.offset_stated = true;
-        self.needs_offset = None;
         // The centre of a rotation is in coordinates of the work offset before.
-        if offset != self.state.work_offset {
+        if offset != self.state.work_offset && self.stated(Rule::Dialect) != Some(Choice::Sinumerik)
+        {
             self.check_unrotated(code)?;
         }
-        self.activate(offset);
+        self.select_offset(offset);
         Ok(())
+    }
+
+    /// Puts a work offset in force.
+    pub(super) fn select_offset(&mut self, offset: WorkOffset) {
+        self.offset_stated = true;
+        self.needs_offset = None;
+        self.activate(offset);
     }
 
     fn activate(&mut self, offset: WorkOffset) {
@@ -644,12 +672,17 @@ impl Control {
     }
 
     fn update_shift(&mut self) {
-        let (preset, local) = (self.preset, self.local);
-        self.change(|state| {
-            for axis in 0..AXES.len() {
-                state.shift[axis] = preset[axis].map(|preset| preset + local[axis]);
-            }
-        });
+        let shift = self.total_shift();
+        self.change(|state| state.shift = shift);
+    }
+
+    /// Returns the sum of the shifts by G52, by G92 and by frames.
+    pub(super) fn total_shift(&self) -> Position {
+        let (mut shift, frame) = (self.preset, self.frames.shift());
+        for (axis, shift) in shift.iter_mut().enumerate() {
+            *shift = shift.map(|preset| preset + self.local[axis] + frame[axis]);
+        }
+        shift
     }
 
     /// Executes G68: a rotation about the normal of the plane, by R degrees about a centre.

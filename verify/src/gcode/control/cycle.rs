@@ -267,7 +267,7 @@ impl Control {
         }
     }
 
-    fn move_along(&mut self, axis: usize, rapid: bool, level: Option<f64>) {
+    pub(super) fn move_along(&mut self, axis: usize, rapid: bool, level: Option<f64>) {
         let mut end = self.position;
         end[axis] = level;
         let mut commanded = [false; 6];

@@ -6,6 +6,7 @@ use crate::gcode::error::{ArcFault, combination, missing, not_read};
 use crate::gcode::rules::{Choice, Rule};
 use crate::gcode::state::{LengthOffset, Position, Rotation, Tcp};
 use crate::gcode::{GcodeFault, Plane, StepPath};
+use nalgebra::Vector3;
 use std::f64::consts::{SQRT_2, TAU};
 use touchoff::Unit;
 
@@ -20,7 +21,8 @@ impl Control {
         if block.owns_axis_words() {
             return Ok(());
         }
-        let has_vector = self.state.tcp == Tcp::Vector && block.has_any("IJK");
+        let has_vector =
+            self.state.tcp == Tcp::Vector && block.has_any("IJK") || block.vector.is_some();
         let has_axes = block.has_any("XYZABC") || has_vector;
         match self.modal.motion {
             // A full circle has no end: its word and a centre are enough.
@@ -38,19 +40,25 @@ impl Control {
         }
     }
 
+    /// Returns whether the number after a letter is an increment.
+    pub(super) fn is_incremental(&self, block: &Block, letter: char) -> bool {
+        block.own_distance(letter).unwrap_or(self.modal.incremental)
+    }
+
     /// Takes the axis words of a block as the end of a motion, with the axes that they name and those that they command.
     /// An increment of 0 commands nothing.
     fn take_end(&self, block: &mut Block) -> (Position, [bool; 6], [bool; 6]) {
         let axes = self.take_axes(block);
         let mut end = self.position;
-        for (coordinate, value) in end.iter_mut().zip(axes) {
-            if let Some(value) = value {
-                let origin = if self.modal.incremental { *coordinate } else { Some(0.0) };
-                *coordinate = origin.map(|origin| origin + value);
+        let mut commanded = [false; 6];
+        for axis in 0..AXES.len() {
+            if let Some(value) = axes[axis] {
+                let is_incremental = self.is_incremental(block, AXES[axis]);
+                let origin = if is_incremental { end[axis] } else { Some(0.0) };
+                end[axis] = origin.map(|origin| origin + value);
+                commanded[axis] = !is_incremental || value != 0.0;
             }
         }
-        let incremental = self.modal.incremental;
-        let commanded = axes.map(|value| value.is_some_and(|value| !incremental || value != 0.0));
         (end, axes.map(|value| value.is_some()), commanded)
     }
 
@@ -62,6 +70,7 @@ impl Control {
         self.check_tilted(block)?;
         let turns = self.take_vector(block)?;
         self.check_position(block)?;
+        let shortest = AXES.map(|letter| block.is_shortest(letter));
         let (mut end, _, mut commanded) = self.take_end(block);
         // The machine turns its axes to the tool vector: the angles are not the program's.
         if turns {
@@ -69,11 +78,19 @@ impl Control {
             commanded[3..].fill(true);
         }
         self.push(rapid, end, commanded, StepPath::Line);
+        self.pending.back_mut().expect("the step that was added").shortest = shortest;
         Ok(())
     }
 
-    /// Takes the tool vector under G43.5, and returns whether the block has one.
+    /// Takes the tool vector under G43.5 or `TRAORI`, and returns whether the block has one.
     fn take_vector(&mut self, block: &mut Block) -> Result<bool, GcodeFault> {
+        if let Some(vector) = block.vector.take() {
+            return self.transformed_vector(block, vector).map(|()| true);
+        }
+        // The angles of rotary axes end a vector under TRAORI.
+        if self.state.tcp == Tcp::Transformation && block.has_any("ABC") {
+            self.vector = None;
+        }
         if self.state.tcp != Tcp::Vector {
             return Ok(false);
         }
@@ -95,8 +112,42 @@ impl Control {
         Ok(true)
     }
 
+    /// Takes the tool vector under `TRAORI`, which is in program coordinates.
+    fn transformed_vector(&mut self, block: &Block, vector: [f64; 3]) -> Result<(), GcodeFault> {
+        if self.state.tcp != Tcp::Transformation {
+            return Err(combination("A3=", "TRAORI is not in force", "write TRAORI before"));
+        }
+        if let Some(letter) = AXES[3..].iter().find(|letter| block.has(**letter)) {
+            let condition = "its block has a tool vector";
+            return Err(combination(*letter, condition, "write the vector, or the angles"));
+        }
+        let vector = Vector3::from(vector);
+        let norm = vector.norm();
+        if norm < 1e-6 {
+            return Err(GcodeFault::NoDirection);
+        }
+        let turned = match self.state.rotation.frame() {
+            Some(frame) => frame.rotation * vector,
+            None => vector,
+        };
+        self.vector = Some((turned / norm).into());
+        Ok(())
+    }
+
     fn arc(&mut self, block: &mut Block, clockwise: bool) -> Result<(), GcodeFault> {
         let word = if clockwise { "G2" } else { "G3" };
+        if let Some(letter) = AXES.iter().find(|letter| block.is_shortest(**letter)) {
+            let condition = "its block has an arc";
+            return Err(combination(
+                format!("DC of {letter}"),
+                condition,
+                "turn the axis in a block before",
+            ));
+        }
+        if block.vector.is_some() || self.vector.is_some() && block.has_any("ABC") {
+            let condition = "its block has a tool vector, or angles after one";
+            return Err(combination(word, condition, "post the arc as lines"));
+        }
         if self.state.tcp == Tcp::Vector {
             let condition = "G43.5 gives I J K another meaning";
             let remedy = "post the arc as lines, or select G43.4";
@@ -116,12 +167,15 @@ impl Control {
             clockwise,
             plane: self.modal.plane,
             offsets: ['I', 'J', 'K'].map(|letter| self.take_length(block, letter)),
-            absolute: match self.modal.absolute_centres {
-                Some(absolute) => absolute,
-                None => self.choice(Rule::Dialect) == Choice::Heidenhain && !self.modal.incremental,
+            absolute: match (self.absolute_centre(block)?, self.modal.absolute_centres) {
+                (true, _) => true,
+                (false, Some(absolute)) => absolute,
+                (false, None) => {
+                    self.choice(Rule::Dialect) == Choice::Heidenhain && !self.modal.incremental
+                }
             },
             radius: self.take_length(block, 'R'),
-            turns: self.turns(block)?,
+            turns: self.turns(block)? + block.full_turns,
             unit: self.modal.unit,
         };
         self.check_position(block)?;
@@ -135,6 +189,20 @@ impl Control {
         }
         self.push(false, end, commanded, path);
         Ok(())
+    }
+
+    /// Returns whether the centre of an arc is absolute by its own words (`I=AC(…)`), of which both coordinates are then.
+    fn absolute_centre(&self, block: &Block) -> Result<bool, GcodeFault> {
+        let letters = self.modal.plane.axes().map(|axis| ['I', 'J', 'K'][axis]);
+        let absolute = letters.map(|letter| block.own_distance(letter) == Some(false));
+        match absolute {
+            [false, false] => Ok(false),
+            [true, true] => Ok(true),
+            _ => {
+                let condition = "the other coordinate of its centre is no AC";
+                Err(combination("AC of a centre", condition, "write AC for both"))
+            }
+        }
     }
 
     /// Takes the number of turns of an arc.
@@ -158,7 +226,8 @@ impl Control {
         if self.state.tcp != Tcp::Off {
             return Err(combination("G53", "tool centre point control is on", self.tcp_remedy()));
         }
-        if matches!(self.state.rotation, Rotation::Plane { .. }) {
+        let is_sinumerik = self.stated(Rule::Dialect) == Some(Choice::Sinumerik);
+        if matches!(self.state.rotation, Rotation::Plane { .. }) && !is_sinumerik {
             return Err(combination("G53", "a plane is rotated", "end it with G69 before"));
         }
         match self.modal.motion {

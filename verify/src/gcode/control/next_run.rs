@@ -197,7 +197,7 @@ impl Mode {
                 (state.shift, first.local, first.preset)
                     != (others.shift, second.local, second.preset)
             }
-            Mode::Rotation => state.rotation != others.rotation,
+            Mode::Rotation => (state.rotation, first.frames) != (others.rotation, second.frames),
             Mode::Length => {
                 (state.length, first.length_implicit, first.length_cancelled)
                     != (others.length, second.length_implicit, second.length_cancelled)
@@ -227,6 +227,9 @@ impl Mode {
             Mode::Retract => "G98",
             Mode::WorkOffset => return state.work_offset.to_string(),
             Mode::Origins => "G10",
+            Mode::Shift | Mode::Rotation if left.frames.word().is_some() => {
+                left.frames.word().unwrap_or_default()
+            }
             Mode::Shift if left.local == [0.0; 6] => "G92",
             Mode::Shift => "G52",
             Mode::Rotation if matches!(state.rotation, Rotation::Tilted { .. }) => "G68.2",
@@ -279,8 +282,11 @@ impl Control {
                 Mode::Shift => {
                     (self.local, self.preset, state.shift) =
                         (left.local, left.preset, left.state.shift);
+                    self.frames = left.frames;
                 }
-                Mode::Rotation => state.rotation = left.state.rotation,
+                Mode::Rotation => {
+                    (state.rotation, self.frames) = (left.state.rotation, left.frames);
+                }
                 Mode::Length => {
                     (state.length, self.returned) = (left.state.length, left.returned);
                     (self.length_implicit, self.length_cancelled) =

@@ -143,7 +143,7 @@ impl Control {
         }
         // On Fanuc the change of the length acts on an increment, too.
         let length_changed = block.has('Z') && std::mem::take(&mut self.length_changed);
-        if length_changed && is_incremental {
+        if length_changed && self.is_incremental(block, 'Z') {
             let condition = "G91 is in force and the length offset has changed";
             let remedy = "write it in G90";
             return Err(combination("Z", condition, remedy));
@@ -151,6 +151,16 @@ impl Control {
         self.check_shifted(block)?;
         for (axis, letter) in AXES.into_iter().enumerate() {
             let Some(value) = block.value(letter) else { continue };
+            // The way of a rotary axis to a stated angle is not that of an increment.
+            if axis > 2 && block.own_distance(letter).is_some_and(|own| own != is_incremental) {
+                let condition = "the other distance mode is in force";
+                return Err(combination(
+                    format!("AC or IC of {letter}"),
+                    condition,
+                    "write G90 or G91 in the block",
+                ));
+            }
+            let is_incremental = self.is_incremental(block, letter);
             // An increment of 0 states no position: the axis still stands where the change has found it.
             self.origin_changed[axis] &= is_incremental && value == 0.0;
             if is_incremental && self.is_rounded(axis, value) {
@@ -166,10 +176,12 @@ impl Control {
     pub(super) fn check_shifted(&self, block: &Block) -> Result<(), GcodeFault> {
         let is_sinumerik = matches!(self.stated(Rule::Dialect), None | Some(Choice::Sinumerik));
         let changed = (0..AXES.len()).find(|&axis| {
-            block.has(AXES[axis]) && (self.origin_changed[axis] || axis == 2 && self.length_changed)
+            block.has(AXES[axis])
+                && self.is_incremental(block, AXES[axis])
+                && (self.origin_changed[axis] || axis == 2 && self.length_changed)
         });
         match changed {
-            Some(axis) if self.modal.incremental && is_sinumerik => Err(combination(
+            Some(axis) if is_sinumerik => Err(combination(
                 AXES[axis],
                 "G91 is in force and its work offset, shift or length has changed, which Sinumerik adds",
                 "write it in G90",

@@ -108,7 +108,7 @@ impl Control {
             Report::WorkOffset => match self.state.work_offset {
                 WorkOffset::Standard(number @ 1..=6) => Some(f64::from(53 + number)),
                 WorkOffset::Standard(number) => Some(59.0 + 0.1 * f64::from(number - 6)),
-                WorkOffset::Additional(_) => None,
+                WorkOffset::Additional(_) | WorkOffset::Off => None,
             },
         }
     }

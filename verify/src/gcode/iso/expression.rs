@@ -134,6 +134,20 @@ pub enum ExpressionFault {
         /// The operation.
         operation: &'static str,
     },
+    /// A bracket without its end, or an argument that is missing.
+    #[error("an expression has no `)`, or lacks an argument before it: complete it")]
+    OpenParenthesis,
+    /// A text without its end.
+    #[error("a text has no second quote: close it")]
+    OpenQuote,
+    /// A value of another kind than its place needs.
+    #[error("{found} stands where {wanted} is needed: correct the expression")]
+    Kind {
+        /// The kind of the value.
+        found: &'static str,
+        /// The kind that is needed.
+        wanted: &'static str,
+    },
     /// Brackets that are nested too deeply.
     #[error("brackets are nested more than {MAX_DEPTH} deep: write the expression in steps")]
     TooDeep,

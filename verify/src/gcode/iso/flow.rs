@@ -12,13 +12,13 @@ use touchoff::Unit;
 
 /// A place in the text: the byte at which a line begins, and its number from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Place {
-    pub(super) offset: usize,
-    pub(super) line: usize,
+pub(in crate::gcode) struct Place {
+    pub(in crate::gcode) offset: usize,
+    pub(in crate::gcode) line: usize,
 }
 
 /// Returns the line at a place, and the place after it. Lines end in LF or CRLF.
-pub(super) fn line(text: &str, place: Place) -> Option<(&str, Place)> {
+pub(in crate::gcode) fn line(text: &str, place: Place) -> Option<(&str, Place)> {
     let rest = text.get(place.offset..).filter(|rest| !rest.is_empty())?;
     let (found, length) = match rest.split_once('\n') {
         Some((found, _)) => (found, found.len() + 1),

@@ -13,6 +13,7 @@ mod system;
 mod variables;
 
 pub use expression::ExpressionFault;
+pub(super) use flow::{Place, line};
 
 use super::block::{Block, Code, Group};
 use super::control::Control;
@@ -108,10 +109,7 @@ impl<'a> Program<'a> {
                 faults.push(GcodeFault::NoSubprogram { label });
             }
             for fault in faults.into_iter().filter(GcodeFault::is_obstacle) {
-                match found.iter_mut().find(|known| known.fault == fault) {
-                    Some(known) => known.count += 1,
-                    None => found.push(Obstacle { line: number, count: 1, fault }),
-                }
+                Obstacle::add(&mut found, number, fault);
             }
         }
         found

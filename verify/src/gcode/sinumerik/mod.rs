@@ -1,0 +1,550 @@
+//! Native programs of Sinumerik 840D (`.mpf`, `.spf`).
+//!
+//! ```text
+//! text ──flow──▶ line ──statements, words──▶ block ──▶ control
+//!                     ──cycles──▶ frames, holes ──▶ control
+//! ```
+//!
+//! `flow` decides which line is next, `expression` and `variables` compute values, `words` builds the block of a line, `cycles` reads the
+//! calls of CYCLE800 and of drilling cycles, and `table` has the words that are passed over and those that are refused.
+
+mod cycles;
+mod expression;
+mod flow;
+mod table;
+mod text;
+mod variables;
+mod words;
+
+use super::block::Block;
+use super::control::{Control, Hole};
+use super::error::{combination, missing, not_read};
+use super::interpreter::{End, Progress};
+use super::note::NoteKind;
+use super::rules::{Choice, Rule};
+use super::{GcodeError, GcodeFault, Obstacle, shown};
+use expression::{Value, expression, number};
+use flow::{Direction, Flow, Left, RepeatWords, Structure, no_target, title};
+use std::collections::HashMap;
+use table::{Use, use_of};
+use text::{Cursor, Start, start};
+use variables::{Reference, Variables};
+
+/// What native programs mean on every Sinumerik, whatever a control's file says about programs in ISO mode.
+const NATIVE: [(Rule, Choice); 4] = [
+    (Rule::Dialect, Choice::Sinumerik),
+    // D1 is in force from the tool change on (MD20270), and there is no G43.
+    (Rule::ToolLength, Choice::Always),
+    (Rule::WholeNumbers, Choice::Units),
+    // SUPA and G53 suppress frames, and no tool offset.
+    (Rule::MachineCoordinates, Choice::WithLength),
+];
+
+/// A program, and the place of its execution.
+#[derive(Clone, Debug)]
+pub(super) struct Program<'a> {
+    flow: Flow<'a>,
+    variables: Variables,
+    block: Block,
+    /// The number of the first switch for optional blocks.
+    switch: Option<&'a str>,
+    /// The cycle of `MCALL`, which each motion calls.
+    modal_hole: Option<Hole>,
+    /// Set by ORIMKS: tool vectors are in the frame of the machine.
+    machine_orientation: bool,
+    /// The line of the `FOR` whose `ENDFOR` was executed last, until that line is executed.
+    stepping: Option<usize>,
+    /// The last value of each loop that counts, by the line of its `FOR`.
+    ends: HashMap<usize, f64>,
+}
+
+/// Returns whether a text is a native program of Sinumerik: whether it has a statement that no other language has, and no `#`, which
+/// begins the parameters of others. Comments are not read. Programs of ISO words alone are none.
+pub(super) fn is_native(text: &str) -> bool {
+    let mut found = false;
+    for line in text.lines() {
+        if title(line).is_some_and(|name| name.len() > 7) {
+            found = true;
+            continue;
+        }
+        let parts = start(line);
+        let mut words = parts.words;
+        found |= parts.label.is_some();
+        // Lines of Heidenhain Klartext begin with their number.
+        if words.peek().is_some_and(|byte| byte.is_ascii_digit()) {
+            return false;
+        }
+        let mut is_first = true;
+        while !words.is_at_end() {
+            match words.byte() {
+                Some(b'#') => return false,
+                // A comment elsewhere, and the arguments of a call here, whose name was read before.
+                Some(b'(') => {
+                    if words.bracketed([b'(', b')']).is_none() {
+                        break;
+                    }
+                }
+                Some(b'"') => {
+                    if words.quoted().is_none() {
+                        break;
+                    }
+                }
+                Some(byte) if byte.is_ascii_alphabetic() || matches!(byte, b'_' | b'$') => {
+                    found |= is_native_word(&mut words, is_first);
+                    is_first = false;
+                }
+                Some(byte) if byte.is_ascii() => words.advance(),
+                _ => break,
+            }
+        }
+    }
+    found
+}
+
+/// Passes over a name, and returns whether it begins a statement of Sinumerik alone: a word of the tables, a value after `=`, or one of
+/// its work offsets.
+fn is_native_word(words: &mut Cursor, is_first: bool) -> bool {
+    let name = words.name();
+    // O-words of LinuxCNC have statements of the same names.
+    let is_o_word =
+        name.starts_with(['O', 'o']) && name.len() > 1 && name.as_bytes()[1].is_ascii_digit();
+    if is_o_word || name.eq_ignore_ascii_case("O") {
+        words.take_while(|byte| byte != b'#' && byte.is_ascii());
+        return false;
+    }
+    let is_offset = name.strip_prefix(['G', 'g']).is_some_and(|digits| {
+        let is_settable = digits.len() == 3 && digits.starts_with('5');
+        is_settable || matches!(digits, "153" | "290")
+    });
+    is_offset || table::is_marker(name, is_first) || words.take_assignment()
+}
+
+impl<'a> Program<'a> {
+    /// Reads what holds for the whole text, which is not copied: its programs, its loops and branches.
+    ///
+    /// # Errors
+    /// If two programs have one name, or a loop or a branch has no end or no begin.
+    pub(super) fn new(text: &'a str, control: &mut Control) -> Result<Program<'a>, GcodeError> {
+        let flow = Flow::new(text)?;
+        control.settle(&NATIVE);
+        Ok(Program {
+            flow,
+            variables: Variables::default(),
+            block: Block::default(),
+            switch: None,
+            modal_hole: None,
+            machine_orientation: false,
+            stepping: None,
+            ends: HashMap::new(),
+        })
+    }
+
+    /// Returns the words of the text that are refused wherever they stand, each with its first line.
+    pub(super) fn obstacles(&self, control: &Control) -> Vec<Obstacle> {
+        let mut found = Vec::new();
+        for (line, text) in (1..).zip(self.flow.text().lines()) {
+            let mut words = start(text).words;
+            while !words.is_at_end() {
+                let passed = match words.byte() {
+                    Some(b'"') => words.quoted().is_some(),
+                    Some(b'(') => words.bracketed([b'(', b')']).is_some(),
+                    Some(byte) if byte.is_ascii_alphabetic() || byte == b'_' => {
+                        let name = words.name().to_ascii_uppercase();
+                        if let Some(Use::Refused { meaning, remedy }) = use_of(&name)
+                            && !control.ignores(&name)
+                        {
+                            Obstacle::add(&mut found, line, not_read(name, meaning, remedy));
+                        }
+                        true
+                    }
+                    Some(byte) if byte.is_ascii() => {
+                        words.advance();
+                        true
+                    }
+                    _ => false,
+                };
+                if !passed {
+                    break;
+                }
+            }
+        }
+        found
+    }
+
+    /// Executes the next line.
+    pub(super) fn execute_line(&mut self, control: &mut Control) -> Result<Progress, GcodeError> {
+        let (line, text) = self.flow.next_line()?;
+        let result = self.line(line, text, control);
+        result.map_err(|fault| GcodeError { line, fault })
+    }
+
+    fn line(
+        &mut self,
+        line: usize,
+        text: &'a str,
+        control: &mut Control,
+    ) -> Result<Progress, GcodeFault> {
+        control.line = line;
+        let Start { switch, mut words, .. } = start(text);
+        let is_percent = words.byte() == Some(b'%') && words.rest().trim_end() == "%";
+        if words.is_at_end() || is_percent {
+            return Ok(Progress::GoesOn);
+        }
+        if let Some(digits) = switch {
+            let first = *self.switch.get_or_insert(digits);
+            // `/2` is a switch of its own.
+            if first != digits {
+                control.notes.add(line, NoteKind::OptionalSwitches);
+            }
+            if control.choice(Rule::OptionalBlocks) == Choice::LeftOut {
+                control.notes.add(line, NoteKind::OmittedOptionalBlock);
+                return Ok(Progress::GoesOn);
+            }
+            control.notes.add(line, NoteKind::ExecutedOptionalBlock);
+        }
+        if let Some((structure, mut after)) = Structure::at(words) {
+            self.structure(structure, &mut after, line)?;
+            return end_of_line(&mut after).map(|()| Progress::GoesOn);
+        }
+        let mut after = words;
+        let name = after.name();
+        let is_word = name.as_bytes().get(1).is_some_and(|byte| !byte.is_ascii_digit());
+        if is_word && self.statement(name, &mut after, line, control)? {
+            return end_of_line(&mut after).map(|()| Progress::GoesOn);
+        }
+        if name.eq_ignore_ascii_case("RET") {
+            end_of_line(&mut after)?;
+            return Ok(self.leave(control));
+        }
+        if let Some(section) = self.called(name, &after) {
+            self.call(section, &mut after)?;
+            return end_of_line(&mut after).map(|()| Progress::GoesOn);
+        }
+        self.words(line, words, control)
+    }
+
+    /// Executes a statement of a loop or a branch.
+    fn structure(
+        &mut self,
+        structure: Structure,
+        words: &mut Cursor,
+        line: usize,
+    ) -> Result<(), GcodeFault> {
+        let goes_on = match structure {
+            Structure::If | Structure::While | Structure::Until => {
+                expression(words, &self.variables)?.truth()?
+            }
+            Structure::For => self.count(words, line)?,
+            Structure::EndFor => {
+                self.stepping = Some(self.flow.partner_line(line));
+                false
+            }
+            Structure::EndIf | Structure::Loop | Structure::Repeat => true,
+            Structure::Else | Structure::EndWhile | Structure::EndLoop => false,
+        };
+        if !goes_on {
+            self.flow.go_to_partner(line);
+        }
+        Ok(())
+    }
+
+    /// Executes `FOR` after that word, and returns whether the loop goes on.
+    fn count(&mut self, words: &mut Cursor, line: usize) -> Result<bool, GcodeFault> {
+        let is_step = self.stepping.take() == Some(line);
+        let variable = self.assigned(words)?;
+        let first = number(words, &self.variables)?;
+        let value = match is_step {
+            true => self.variables.get(variable)?.number()? + 1.0,
+            false => first,
+        };
+        self.variables.set(variable, Value::Number(value))?;
+        if !words.take_name("TO") {
+            return Err(missing("FOR", "TO with the last value of its variable"));
+        }
+        let last = number(words, &self.variables)?;
+        let before = match is_step {
+            true => self.ends.get(&line).copied(),
+            false => {
+                self.ends.insert(line, last);
+                Some(last)
+            }
+        };
+        if before != Some(last) {
+            let remedy = "write WHILE, or a last value that stays";
+            return Err(combination("FOR", "its last value changes while it counts", remedy));
+        }
+        Ok(value <= last)
+    }
+
+    /// Reads a variable and the `=` after it.
+    fn assigned(&self, words: &mut Cursor) -> Result<Reference, GcodeFault> {
+        let name = { *words }.name();
+        let Some(reference) = expression::reference(words, &self.variables, 0)? else {
+            return Err(undefined(name));
+        };
+        match words.take_assignment() {
+            true => Ok(reference),
+            false => Err(missing(shown(name), "`=` and a value")),
+        }
+    }
+
+    /// Executes a statement that begins with a name, and returns whether it is one.
+    fn statement(
+        &mut self,
+        name: &str,
+        words: &mut Cursor<'a>,
+        line: usize,
+        control: &mut Control,
+    ) -> Result<bool, GcodeFault> {
+        match name.to_ascii_uppercase().as_str() {
+            "GOTO" | "GOTOF" | "GOTOB" | "GOTOC" | "GOTOS" => self.jump(name, words, line)?,
+            "IF" => {
+                let is_met = expression(words, &self.variables)?.truth()?;
+                let jump = words.name();
+                if !is_met {
+                    words.take_while(|byte| byte != b';');
+                    return Ok(true);
+                }
+                self.jump(jump, words, line)?;
+            }
+            "CASE" => self.case(words, line)?,
+            "REPEAT" | "REPEATB" => {
+                let is_block = name.len() == "REPEATB".len();
+                let repeat = self.repeat_words(words, is_block)?;
+                self.flow.repeat(repeat, line)?;
+            }
+            "ENDLABEL" => {}
+            "DEF" => self.variables.define(words)?,
+            "CALL" if words.take_name("BLOCK") => {
+                let first = words.name();
+                if !words.take_name("TO") {
+                    return Err(missing("CALL BLOCK", "two labels with TO between"));
+                }
+                let last = Some(words.name());
+                let repeat = RepeatWords { first, last, is_block: false, times: 1 };
+                self.flow.repeat(repeat, line)?;
+            }
+            "CALL" => {
+                words.peek();
+                let called = words.quoted().unwrap_or_else(|| words.name());
+                match self.flow.subprogram(called) {
+                    Some(section) => self.call(section, words)?,
+                    None => return Err(no_subprogram(called)),
+                }
+            }
+            "MCALL" if words.is_at_end() => self.modal_hole = None,
+            "MCALL" => {
+                let cycle = words.name();
+                let Some(hole) = cycles::hole(cycle, words, &self.variables)? else {
+                    let meaning = "a modal call of another program than a drilling cycle";
+                    return Err(not_read(
+                        format!("MCALL {}", shown(cycle)),
+                        meaning,
+                        "call it after each position",
+                    ));
+                };
+                control.check_hole(&hole)?;
+                self.modal_hole = Some(hole);
+            }
+            "TRANS" | "ATRANS" | "ROT" | "AROT" => {
+                let turn = self.frame_words(name, words)?;
+                control.program_frame(turn)?;
+            }
+            "CYCLE800" => {
+                let swivel = cycles::swivel(words, &self.variables)?;
+                control.swivel(&swivel)?;
+                self.flow.count_steps(control.pending.len())?;
+            }
+            _ => {
+                let Some(hole) = cycles::hole(name, words, &self.variables)? else {
+                    return Ok(false);
+                };
+                control.drill(&hole)?;
+                self.flow.count_steps(control.pending.len())?;
+            }
+        }
+        Ok(true)
+    }
+
+    /// Executes a jump after its word.
+    fn jump(&mut self, word: &str, words: &mut Cursor<'a>, line: usize) -> Result<(), GcodeFault> {
+        let direction = match word.to_ascii_uppercase().as_str() {
+            "GOTOF" => Direction::Forward,
+            "GOTOB" => Direction::Backward,
+            "GOTO" | "GOTOC" => Direction::Both,
+            "GOTOS" => return self.flow.go_to_start(),
+            _ => return Err(missing("IF", "a jump after its condition")),
+        };
+        let target = words.name();
+        if target.is_empty() || self.variables.find(target).is_some() {
+            let meaning = "a jump to a name that is computed";
+            return Err(not_read(
+                word.to_ascii_uppercase(),
+                meaning,
+                "write a label or a block number after it",
+            ));
+        }
+        let is_found = self.flow.jump(target, line, direction)?;
+        if !is_found && !word.eq_ignore_ascii_case("GOTOC") {
+            return Err(no_target(target));
+        }
+        Ok(())
+    }
+
+    /// Executes `CASE(expression) OF value GOTOF label … DEFAULT GOTOF label` after its first word.
+    fn case(&mut self, words: &mut Cursor<'a>, line: usize) -> Result<(), GcodeFault> {
+        let value = number(words, &self.variables)?;
+        if !words.take_name("OF") {
+            return Err(missing("CASE", "OF after its expression"));
+        }
+        while !words.is_at_end() {
+            let is_met = words.take_name("DEFAULT") || number(words, &self.variables)? == value;
+            let jump = words.name();
+            if is_met {
+                self.jump(jump, words, line)?;
+                words.take_while(|byte| byte != b';');
+                return Ok(());
+            }
+            words.name();
+        }
+        Ok(())
+    }
+
+    /// Reads the labels of `REPEAT`, and how often.
+    fn repeat_words(
+        &self,
+        words: &mut Cursor<'a>,
+        is_block: bool,
+    ) -> Result<RepeatWords<'a>, GcodeFault> {
+        let first = words.name();
+        if first.is_empty() {
+            return Err(missing("REPEATB", "the label of its line"));
+        }
+        let mut ahead = *words;
+        let second = ahead.name();
+        let is_label = second.as_bytes().get(1).is_some_and(|byte| !byte.is_ascii_digit());
+        let last = (is_label && !is_block).then_some(second);
+        if last.is_some() {
+            *words = ahead;
+        }
+        let times = self.times(words)?.unwrap_or(1);
+        Ok(RepeatWords { first, last, is_block, times })
+    }
+
+    /// Reads how often a subprogram or a part is executed: `P3` or `P=3`.
+    fn times(&self, words: &mut Cursor) -> Result<Option<u32>, GcodeFault> {
+        if !matches!(words.peek(), Some(b'P' | b'p')) {
+            return Ok(None);
+        }
+        words.advance();
+        let value = match words.take_assignment() {
+            true => number(words, &self.variables)?,
+            false => {
+                words.peek();
+                expression::unsigned(words)?
+            }
+        };
+        match value.fract() == 0.0 && (0.0..=9999.0).contains(&value) {
+            true => Ok(Some(value as u32)),
+            false => {
+                let expected = "a whole number from 0 to 9999 after P";
+                Err(GcodeFault::NotAllowed { word: 'P', value, expected })
+            }
+        }
+    }
+
+    /// Returns the subprogram that a line calls by its first name: `NAME`, `NAME(…)` or `L123`.
+    fn called(&self, name: &str, after: &Cursor) -> Option<usize> {
+        let mut after = *after;
+        let is_call = after.is_at_end() || matches!(after.byte(), Some(b'(' | b'P' | b'p'));
+        let is_named = name.len() > 1
+            && (name.starts_with(['L', 'l']) || !name.as_bytes()[1].is_ascii_digit());
+        self.flow
+            .subprogram(name)
+            .filter(|_| is_call && is_named && self.variables.find(name).is_none())
+    }
+
+    /// Calls a subprogram with the arguments and the number of times that follow.
+    fn call(&mut self, section: usize, words: &mut Cursor) -> Result<(), GcodeFault> {
+        let arguments = cycles::arguments(words, &self.variables)?;
+        let times = self.times(words)?;
+        let parameters = self.flow.parameters(section);
+        if times.is_some_and(|times| times > 1) && !parameters.is_empty() {
+            let condition = "the subprogram has parameters";
+            return Err(combination("P", condition, "call it once for each time"));
+        }
+        if times == Some(0) {
+            return Ok(());
+        }
+        let base = self.variables.enter();
+        let called = self.flow.call(section, times.unwrap_or(1), base);
+        called.and_then(|()| self.bind(parameters, arguments))
+    }
+
+    /// Gives the parameters of a subprogram the values of its call.
+    fn bind(&mut self, parameters: &str, arguments: Vec<Option<Value>>) -> Result<(), GcodeFault> {
+        let mut cursor = Cursor::new(parameters);
+        let mut arguments = arguments.into_iter();
+        while !cursor.is_at_end() {
+            let value = arguments.next().flatten();
+            self.variables.define_parameter(&mut cursor, value)?;
+            if !cursor.take(b',') {
+                break;
+            }
+        }
+        match cursor.is_at_end() && arguments.all(|value| value.is_none()) {
+            true => Ok(()),
+            false => {
+                let meaning = "more than the parameters of the subprogram";
+                Err(not_read("an argument", meaning, "give as many as its PROC has"))
+            }
+        }
+    }
+
+    /// Ends the present program.
+    fn leave(&mut self, control: &mut Control) -> Progress {
+        match self.flow.leave() {
+            Left::MainProgram => {
+                if let Some(line) = self.flow.text_after_end() {
+                    control.notes.add(line, NoteKind::TextAfterEnd);
+                }
+                return Progress::Ended(End::Stop);
+            }
+            // It has no parameters, and defines its variables again.
+            Left::Again => self.variables.clear(),
+            Left::Subprogram { base } => self.variables.leave(base),
+        }
+        Progress::GoesOn
+    }
+}
+
+/// Refuses words after a statement.
+fn end_of_line(words: &mut Cursor) -> Result<(), GcodeFault> {
+    match words.is_at_end() {
+        true => Ok(()),
+        false => {
+            let condition = "it stands after a statement that has its block for itself";
+            Err(combination(shown(words.rest()), condition, "write it in a block before or after"))
+        }
+    }
+}
+
+/// Returns the fault of a name that is neither a variable nor a word.
+fn undefined(name: &str) -> GcodeFault {
+    let meaning = "no variable that DEF defines, and no address that is read";
+    not_read(
+        shown(name),
+        meaning,
+        "define it with DEF in the program, or post the program without it",
+    )
+}
+
+/// Returns the fault of a subprogram that is not in the file.
+fn no_subprogram(name: &str) -> GcodeFault {
+    let meaning = "no word that is read, and no subprogram of this file";
+    not_read(
+        shown(name),
+        meaning,
+        "append the subprogram after a line `%_N_NAME_SPF`, or post the program without it",
+    )
+}

@@ -1,0 +1,602 @@
+//! Native programs of Sinumerik: the same motions written in ISO words, closed forms, refusals, mutants, and the speed of a loop.
+
+use rand_core::{Rng, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+use std::collections::BTreeMap;
+use std::time::{Duration, Instant};
+use touchoff_verify::gcode::{
+    Choice, ControlRules, ControlSetup, GcodeError, Interpreter, LengthOffset, NoteKind, Position,
+    Rotation, Rule, Spindle, Step, StepPath, Tcp, WorkOffset, read,
+};
+
+/// A control that stands at 0, with work offsets that differ.
+fn setup() -> ControlSetup {
+    let mut work_offsets = [Some([0.0; 6]); 9];
+    for (number, offset) in work_offsets.iter_mut().enumerate().skip(1) {
+        *offset = Some([100.0 * number as f64, 10.0, -5.0, 0.0, 0.0, 0.0]);
+    }
+    ControlSetup {
+        start: [Some(0.0); 6],
+        work_offsets,
+        lengths: BTreeMap::from([(1, 80.0), (2, 50.0)]),
+        tool_names: BTreeMap::from([("DRILL 8.5".to_owned(), 2)]),
+        home: Some([1.0, 2.0, 400.0, 0.0, 0.0, 0.0]),
+        ..ControlSetup::default()
+    }
+}
+
+fn execute(program: &str) -> Result<Vec<Step>, GcodeError> {
+    Interpreter::new(program, &setup())?.collect()
+}
+
+#[track_caller]
+fn steps(program: &str) -> Vec<Step> {
+    execute(program).unwrap_or_else(|error| panic!("{program}\n{error}"))
+}
+
+/// Executes a program of ISO words as LinuxCNC does.
+#[track_caller]
+fn iso(program: &str) -> Vec<Step> {
+    let rules = ControlRules::default().with(Rule::Dialect, Choice::Rs274Ngc);
+    let setup = ControlSetup { rules, ..setup() };
+    read(program, &setup).unwrap_or_else(|error| panic!("{program}\n{error}")).0
+}
+
+/// All that makes a motion, in machine coordinates, rounded to 1e-9.
+fn motion(step: &Step) -> String {
+    let [start, end] = [step.start, step.end]
+        .map(|position| step.state.to_machine(position).map(|value| value.map(rounded)));
+    let path = match step.path {
+        StepPath::Arc { plane, centre, sweep } => {
+            format!("{plane:?} {:?} {}", centre.map(rounded), rounded(sweep))
+        }
+        path => format!("{path:?}"),
+    };
+    format!("{} {start:?} {end:?} {path} {:?}", step.rapid, step.spindle)
+}
+
+fn rounded(value: f64) -> f64 {
+    // -0 is 0.
+    (value * 1e9).round() / 1e9 + 0.0
+}
+
+#[track_caller]
+fn assert_same(native: &str, other: &str) {
+    let [native_steps, other_steps] = [steps(native), iso(other)];
+    let [first, second] =
+        [&native_steps, &other_steps].map(|steps| steps.iter().map(motion).collect::<Vec<_>>());
+    assert_eq!(first, second, "{native}\n{other}");
+    assert!(!first.is_empty(), "{native}");
+}
+
+#[test]
+fn words_and_statements_are_the_motions_of_iso_words() {
+    let pairs = [
+        ("R1=5\nG0 X=10 Y=2*3 Z=R1", "G0 X10 Y6 Z5"),
+        ("R1=1 R2=R1+1\nR[R2+1]=7\nG0 X=R3 Y=-R1", "G0 X7 Y-1"),
+        ("G0 X1 Y1\nG1 X=AC(5) Y=IC(2) F100", "G0 X1 Y1\nG1 X5 Y3 F100"),
+        ("G0 X1 Y1\nG91 G1 X=AC(5) Y2 Z=IC(-1) F100", "G0 X1 Y1\nG1 X5 Y3 Z-1 F100"),
+        ("G17 G2 X10 Y10 CR=10 F100", "G17 G2 X10 Y10 R10 F100"),
+        ("G17 G3 X10 Y10 CR=-10 F100", "G17 G3 X10 Y10 R-10 F100"),
+        ("G3 X10 Y0 I=AC(5) J=AC(0) F100", "G3 X10 Y0 I5 J0 F100"),
+        ("G0 X1 Y2\nG2 X1 Y2 I=AC(5) J=AC(2) F100", "G0 X1 Y2\nG2 X1 Y2 I4 J0 F100"),
+        ("G2 X10 Y0 Z-5 I5 J0 TURN=2 F=50*2", "G2 X10 Y0 Z-5 I5 J0 P3 F100"),
+        ("G18 G3 X10 Z10 CR=10 F100", "G18 G3 X10 Z10 R10 F100"),
+        ("G700\nDEF REAL A_X=1, _B\n_B=2\nG0 X=A_X Y=_B", "G20\nG0 X1 Y2"),
+        ("DEF INT KK\nFOR KK=1 TO 3\nG0 X=KK\nENDFOR", "G0 X1\nX2\nX3"),
+        ("FOR R5=3 TO 1\nG0 X=R5\nENDFOR\nG0 Y1", "G0 Y1"),
+        (
+            "R1=0\nWHILE R1<3\nG1 X=R1 Z=-R1 F100\nR1=R1+1\nENDWHILE",
+            "G1 X0 Z0 F100\nX1 Z-1\nX2 Z-2",
+        ),
+        ("R1=0\nREPEAT\nR1=R1+1\nG0 Y=R1\nUNTIL R1>=2", "G0 Y1\nY2"),
+        ("R1=0\nLOOP\nR1=R1+1\nIF R1>2 GOTOF OUT\nG0 Y=R1\nENDLOOP\nOUT: G0 X9", "G0 Y1\nY2\nX9"),
+        ("R1=0\nAGAIN:\nR1=R1+1\nG0 Y=R1\nIF (R1<2) AND NOT (R1==5) GOTOB AGAIN", "G0 Y1\nY2"),
+        (
+            "R1=1\nN10 G0 X=R1\nR1=R1+1\nIF R1<=2 GOTOB N10\nGOTO N90\nG0 X77\nN90 G0 Y1",
+            "G0 X1\nX2\nY1",
+        ),
+        ("R1=2\nIF R1==1\nG0 X1\nELSE\nIF R1==2\nG0 X2\nELSE\nG0 X3\nENDIF\nENDIF", "G0 X2"),
+        (
+            "R1=2\nCASE(R1) OF 1 GOTOF A1_ 2 GOTOF B1_ DEFAULT GOTOF C1_\nA1_: G0 X1\nB1_: G0 X2\nC1_: G0 X3",
+            "G0 X2\nX3",
+        ),
+        ("GOTOC NOWHERE\nG0 X1", "G0 X1"),
+        ("R1=0\nBEGIN_: R1=R1+1\nG0 X=R1\nREPEAT BEGIN_ P=2\nG0 Y1", "G0 X1\nX2\nX3\nY1"),
+        (
+            "R1=0\nP_A: R1=R1+1\nP_B: G0 X=R1\nG0 Y1\nREPEAT P_A P_B P2\nG0 Y2",
+            "G0 X1\nY1\nX2\nX3\nY2",
+        ),
+        ("R1=0\nP_A: R1=R1+1\nONE: G0 X=R1\nR1=9\nREPEATB ONE P=1", "G0 X1\nX9"),
+        (
+            "CALL BLOCK L_A TO L_END\nCALL BLOCK L_B TO L_END\nGOTOF L_OUT\nL_A:\nG0 X1\nL_END:\nL_B:\nG0 X2\nL_END:\nL_OUT:",
+            "G0 X1\nX2",
+        ),
+        ("G0 C=DC(350)\nC=DC(10)", "G0 C350\nC10"),
+        ("G0 X=SIN(30)*10 Y=COS(60)*10 Z=TAN(45)", "G0 X5 Y5 Z1"),
+        ("G0 X=SQRT(16)+ABS(-1) Y=POT(3) Z=ATAN2(1,1)", "G0 X5 Y9 Z45"),
+        ("G0 X=TRUNC(2.7) Y=ROUND(2.7) Z=7 DIV 2 + 7 MOD 2", "G0 X2 Y3 Z4"),
+        ("DEF REAL LIST[3]\nLIST[1]=4 LIST[2]=LIST[1]+1\nG0 X=LIST[0] Y=LIST[2]", "G0 X0 Y5"),
+        ("DEF BOOL ON=TRUE\nIF ON\nG0 X1\nENDIF\nIF NOT ON\nG0 X2\nENDIF", "G0 X1"),
+        ("DEF STRING[20] NAME=\"A\"\nIF NAME==\"A\"\nG0 X1\nENDIF", "G0 X1"),
+        (
+            "G0 X1\nMSG(\"G0 X5; no comment\")\nG4 F2\nG4 S30\nSTOPRE\nSOFT G642 ADIS=0.1\nG0 X2",
+            "G0 X1\nX2",
+        ),
+        (
+            "WORKPIECE(,,,\"BOX\",64,0,50,-80,0,0,100,100)\nCYCLE832(0.01,_FINISH,1)\nFGROUP(X,Y) G0 X1",
+            "G0 X1",
+        ),
+    ];
+    for (native, other) in pairs {
+        assert_same(&format!("{native}\nM30\n"), &format!("{other}\nM2\n"));
+    }
+}
+
+#[test]
+fn subprograms_are_executed_where_they_are_called() {
+    let programs = [
+        "%_N_MAIN_MPF\n;$PATH=/_N_WKS_DIR\nG0 X1\nHOLE P2\nL10\nCALL \"_N_HOLE_SPF\"\nM30\n\
+         %_N_HOLE_SPF\nG0 Z1\nG0 Z2\nM17\n%_N_L10_SPF\nG0 Y1\nRET\n",
+        "G0 X1\nHOLE P=2\nL10\nHOLE\nM30\nPROC HOLE SBLOF DISPLOF\nG0 Z1\nG0 Z2\nRET\nPROC L10\nG0 Y1\nM17\n",
+    ];
+    for program in programs {
+        assert_same(program, "G0 X1\nZ1\nZ2\nZ1\nZ2\nY1\nZ1\nZ2\nM2\n");
+    }
+    // Values are copied, and variables belong to their program.
+    let program = "DEF REAL D_=7\nAT(2,,D_)\nAT(3,1)\nG0 X=D_\nM30\nPROC AT(REAL A_,REAL B_,REAL C_)\n\
+        DEF REAL D_\nG0 X=A_ Y=B_ Z=C_+D_\nRET\n";
+    assert_same(program, "G0 X2 Y0 Z7\nX3 Y1 Z0\nX7\nM2\n");
+    // The end of a main program of a file with subprograms before it.
+    let first = "%_N_SUB_SPF\nG0 X5\nM17\n%_N_TOP_MPF\nSUB\nG0 X6\nM30\n";
+    assert_same(first, "G0 X5\nX6\nM2\n");
+}
+
+fn rotate(point: [f64; 3], axis: usize, degrees: f64) -> [f64; 3] {
+    let (sine, cosine) = degrees.to_radians().sin_cos();
+    let (first, second) = ((axis + 1) % 3, (axis + 2) % 3);
+    let mut turned = point;
+    turned[first] = cosine * point[first] - sine * point[second];
+    turned[second] = sine * point[first] + cosine * point[second];
+    turned
+}
+
+fn moved(point: [f64; 3], by: [f64; 3]) -> [f64; 3] {
+    [0, 1, 2].map(|k| point[k] + by[k])
+}
+
+#[track_caller]
+fn assert_at(position: Position, expected: [f64; 3], program: &str) {
+    for axis in 0..3 {
+        let value = position[axis].unwrap_or_else(|| panic!("{position:?} is unknown\n{program}"));
+        assert!(
+            (value - expected[axis]).abs() < 1e-9,
+            "{position:?} is not {expected:?}\n{program}"
+        );
+    }
+}
+
+/// Positions in frames against points that the test shifts and turns one by one, the last statement first.
+#[test]
+fn frames_shift_and_turn_positions() {
+    let point = [3.0, -2.0, 1.5];
+    let cases: [(&str, [f64; 3]); 9] = [
+        ("TRANS X10 Y=5+1 Z-2", moved(point, [10.0, 6.0, -2.0])),
+        ("TRANS X10\nATRANS X1 Z3", moved(point, [11.0, 0.0, 3.0])),
+        ("TRANS X10\nTRANS Y5", moved(point, [0.0, 5.0, 0.0])),
+        ("ROT RPL=30", rotate(point, 2, 30.0)),
+        ("TRANS X10 Y20\nAROT Z=-50", moved(rotate(point, 2, -50.0), [10.0, 20.0, 0.0])),
+        ("ROT Z90\nATRANS X10", rotate(moved(point, [10.0, 0.0, 0.0]), 2, 90.0)),
+        ("TRANS X10\nROT RPL=30", rotate(point, 2, 30.0)),
+        ("ROT RPL=30\nTRANS", point),
+        ("TRANS X1\nAROT RPL=30\nROT", point),
+    ];
+    for (frame, expected) in cases {
+        let program = format!("G54\n{frame}\nG0 X3 Y-2 Z1.5\nM30\n");
+        let all = steps(&program);
+        let step = all.last().expect("a motion");
+        assert_at(step.state.to_machine(step.end), expected, &program);
+    }
+    // The machine stands still at a frame: the axes that are not programmed keep their place.
+    let all = steps("G0 X1 Y2 Z3\nTRANS X10 Y10\nG0 X0\nM30\n");
+    assert_at(all[1].state.to_machine(all[1].end), [10.0, 2.0, 3.0], "");
+    // RPY angles under TRAORI: about Z, the new Y, the new X, so that a point is turned about X first.
+    let program = "T1 M6\nTRAORI\nG54\nROT X20 Y30 Z40\nG0 X3 Y-2 Z1.5\nM30\n";
+    let step = steps(program).pop().expect("a motion");
+    let expected = rotate(rotate(rotate(point, 0, 20.0), 1, 30.0), 2, 40.0);
+    assert_at(step.state.to_workpiece(step.end), expected, program);
+}
+
+/// Planes of CYCLE800 against points that the test turns about each axis, with the sequence of axes that each mode has.
+#[test]
+fn cycle800_tilts_the_plane_axis_by_axis() {
+    let point = [3.0, -2.0, 1.5];
+    for (mode, axes) in [
+        (57, [0, 1, 2]),
+        (39, [2, 0, 1]),
+        (54, [1, 0, 2]),
+        (27, [2, 1, 0]),
+        (45, [0, 2, 1]),
+        (30, [1, 2, 0]),
+    ] {
+        let program = format!(
+            "T1 M6\nG54\nCYCLE800(0,\"TC1\",200000,{mode},10,20,30,11,-22,33,1,2,3,-1,,1)\nG0 X3 Y-2 Z1.5\nM30\n"
+        );
+        let all = steps(&program);
+        let [align, last] = &all[all.len() - 2..] else { panic!("{program}") };
+        assert_eq!(align.path, StepPath::Align);
+        assert_eq!(align.end[3..], [None; 3]);
+        let mut expected = moved(point, [1.0, 2.0, 3.0]);
+        for (axis, angle) in axes.into_iter().zip([11.0, -22.0, 33.0]).rev() {
+            expected = rotate(expected, axis, angle);
+        }
+        expected = moved(expected, [10.0, 20.0, 30.0]);
+        assert!(matches!(last.state.rotation, Rotation::Tilted { aligned: true, .. }));
+        assert_at(last.state.to_workpiece(last.end), expected, &program);
+    }
+    // An additional plane is in the coordinates of the one before, and a programmable frame in those of the plane.
+    let program = "T1 M6\nG54\nCYCLE800(0,\"\",0,57,0,0,0,0,30,0,0,0,0,1,,1)\nCYCLE800(0,\"\",1,57,5,0,0,20,0,0,0,0,0,1,,1)\n\
+        TRANS X7\nAROT Z10\nG0 X3 Y-2 Z1.5\nM30\n";
+    let step = steps(program).pop().expect("a motion");
+    let inner = moved(rotate(point, 2, 10.0), [7.0, 0.0, 0.0]);
+    let expected = rotate(moved(rotate(inner, 0, 20.0), [5.0, 0.0, 0.0]), 1, 30.0);
+    assert_at(step.state.to_workpiece(step.end), expected, program);
+    // A plane that is ended leaves the axes as they are, and the state without one.
+    for end in ["CYCLE800()", "CYCLE800(0,\"0\",200000,57,0,0,0,0,0,0,0,0,0,1,,1)"] {
+        let program = format!(
+            "T1 M6\nG54\nCYCLE800(0,\"\",0,57,0,0,0,0,30,0,0,0,0,1,,1)\n{end}\nG0 X3 Y-2 Z1.5\nM30\n"
+        );
+        let all = steps(&program);
+        assert_eq!(all.iter().filter(|step| step.path == StepPath::Align).count(), 1);
+        assert_eq!(all.last().map(|step| step.state.rotation), Some(Rotation::Off));
+    }
+    // Retracts: Z of the machine to its home, then X and Y, or along the tool.
+    let all = steps("CYCLE800(2,\"\",0,57,0,0,0,0,30,0,0,0,0,0,,1)\nM30\n");
+    let ends = all.iter().map(|step| step.state.to_machine(step.end));
+    let ends: Vec<_> = ends.map(|end| [end[0], end[1], end[2]]).collect();
+    assert_eq!(ends, [[Some(0.0), Some(0.0), Some(400.0)], [Some(1.0), Some(2.0), Some(400.0)]]);
+    let all = steps("CYCLE800(5,\"\",0,57,0,0,0,0,30,0,0,0,0,0,25,1)\nM30\n");
+    assert_eq!(all[0].end[2], Some(25.0));
+    assert!(all[0].rapid && all[0].is_homeward);
+    let all = steps("CYCLE800(4,\"\",0,57,0,0,0,0,30,0,0,0,0,0,,1)\nM30\n");
+    assert_eq!((all[0].end[0], all[0].end[2], all[0].commanded[2]), (Some(0.0), None, true));
+}
+
+/// The height of each motion, with `r` for rapid traverse.
+fn heights(steps: &[Step]) -> Vec<String> {
+    let height = |step: &Step| {
+        let [x, y, z] = [0, 1, 2].map(|k| step.end[k].expect("a coordinate"));
+        format!("{}{x},{y},{z}", if step.rapid { "r" } else { "" })
+    };
+    steps.iter().map(height).collect()
+}
+
+#[test]
+fn drilling_cycles_move_to_their_levels() {
+    let position = "G90 G0 X5 Y6 Z50 F100\n";
+    let out_rapid = ["r5,6,50", "r5,6,3", "5,6,-10", "r5,6,20"];
+    let out_feed = ["r5,6,50", "r5,6,3", "5,6,-10", "5,6,3", "r5,6,20"];
+    let cases: [(&str, &[&str]); 13] = [
+        ("CYCLE81(20,0,3,-10)", &out_rapid),
+        ("CYCLE81(20,0,3,,10)", &out_rapid),
+        ("CYCLE81(20,1,2,,11,0,0,1,11)", &out_rapid),
+        ("CYCLE81(20,1,2,-10,,0,0,1,12)", &out_rapid),
+        ("CYCLE82(20,0,3,-10,0,0.5)", &out_rapid),
+        ("CYCLE83(20,0,3,-10,,-3,,2,0,0,1,0)", &out_rapid),
+        ("CYCLE83(20,0,3,,10,,4,100,0,0.5,100,1,0,1.2,1.4,0,1.6,0,1,11211111)", &out_rapid),
+        ("CYCLE86(20,0,3,-10,,0,3,0,0,0,0)", &out_rapid),
+        ("CYCLE85(20,0,3,-10,,0,100,200)", &out_feed),
+        ("CYCLE89(20,0,3,-10,,0)", &out_feed),
+        ("CYCLE84(20,0,3,-10,,0,3,,1.5,0,500,500)", &out_feed),
+        ("CYCLE840(20,0,3,-10,,0,0,5,1,,1.5)", &out_feed),
+        // Increments in force do not matter.
+        ("G91\nCYCLE81(20,0,3,-10)\nG90", &out_rapid),
+    ];
+    for (cycle, expected) in cases {
+        let program = format!("{position}{cycle}\nM30\n");
+        assert_eq!(heights(&steps(&program)), expected, "{program}");
+    }
+    // Tapping needs no feed of the program where it has a pitch, and turns the spindle itself.
+    let tapped =
+        steps("G0 X5 Y6 Z50\nCYCLE84(20,0,3,-10,,0,3,,1.5,0,500,500)\nS500\nG1 Z19 F100\nM30\n");
+    assert_eq!(tapped[2].spindle, Spindle::Tapping);
+    assert_eq!(tapped[5].spindle, Spindle::Clockwise);
+    // Each motion calls a modal cycle, at its end.
+    let modal = "G0 X1 Y1 Z50 F100\nMCALL CYCLE81(20,0,3,-10)\nX2\nM8\nY2\nMCALL\nX3\nM30\n";
+    let expected = [
+        "r1,1,50", "r2,1,50", "r2,1,3", "2,1,-10", "r2,1,20", "r2,2,20", "r2,2,3", "2,2,-10",
+        "r2,2,20", "r3,2,20",
+    ];
+    assert_eq!(heights(&steps(modal)), expected);
+}
+
+#[test]
+fn tools_offsets_and_machine_coordinates() {
+    // SUPA without a length is the spindle's gauge point.
+    let program = "G90 G17 G710\nSUPA G0 Z=400 D0\nT=\"1\"\nM6\nG55 G0 X1 Y2 Z3 D1\nSUPA G0 Z300 D0\nT=\"drill 8.5\" D1 M6\nG505\n\
+        G0 X1 Y2 Z3\nG500\nG0 X1 Y2 Z3\nM30\n";
+    let all = steps(program);
+    let machine: Vec<_> = all.iter().map(|step| step.state.to_machine(step.end)).collect();
+    let at = |index: usize| [0, 1, 2].map(|k| machine[index][k]);
+    assert_eq!(at(0), [Some(0.0), Some(0.0), Some(400.0)]);
+    assert_eq!(at(1), [Some(101.0), Some(12.0), Some(78.0)]);
+    assert_eq!(at(2), [Some(101.0), Some(12.0), Some(300.0)]);
+    assert_eq!(all[1].state.length, LengthOffset::On { register: 1, length: Some(80.0) });
+    assert_eq!(all[2].state.length, LengthOffset::Off);
+    assert_eq!((all[3].state.work_offset, all[3].state.tool), (WorkOffset::Standard(5), Some(2)));
+    assert_eq!(at(3), [Some(401.0), Some(12.0), Some(48.0)]);
+    assert_eq!(all[4].state.work_offset, WorkOffset::Off);
+    assert_eq!(at(4), [Some(1.0), Some(2.0), Some(53.0)]);
+    let all = steps("G599\nG0 A1\nM30\n");
+    assert_eq!(all[0].state.work_offset, WorkOffset::Additional(93));
+}
+
+#[test]
+fn tool_vectors_under_traori_are_in_program_coordinates() {
+    let program = "T1 M6\nG54\nG0 X0 Y0 Z50 A0 B0 C0\nTRAORI\nG54\nORIWKS ORIAXES\nG1 X1 A3=0 B3=3 C3=4 F100\nX2\n\
+        AROT Z90\nX3 Y0 A3=0 B3=3 C3=4\nTRANS\nX1 Y1 A0 C0\nTRAFOOF\nG54\nM30\n";
+    let all = steps(program);
+    let vectors: Vec<_> = all.iter().map(|step| step.tool_vector).collect();
+    let near = |found: Option<[f64; 3]>, expected: [f64; 3]| {
+        let found = found.expect("a vector");
+        assert!((0..3).all(|k| (found[k] - expected[k]).abs() < 1e-12), "{found:?}");
+    };
+    assert_eq!(vectors[0], None);
+    near(vectors[1], [0.0, 0.6, 0.8]);
+    near(vectors[2], [0.0, 0.6, 0.8]);
+    near(vectors[3], [-0.6, 0.0, 0.8]);
+    assert_eq!(vectors[4], None);
+    assert_eq!((all[1].end[3], all[1].commanded[3]), (None, true));
+    assert_eq!(
+        (all[1].state.tcp, all[1].state.orientation),
+        (Tcp::Transformation, Some(Choice::ByAxes))
+    );
+}
+
+#[test]
+fn other_programs_are_read_as_before() {
+    // A statement of Sinumerik in a comment, or its name in another language, makes no native program.
+    for program in ["G0 X1 (TRANS X=5)\nM30\n", "#1=5\nG0 X#1\nM30\n", "G0 X1 ; X=5\nM30\n"] {
+        assert_eq!(steps(program).len(), 1, "{program}");
+        let interpreter = Interpreter::new(program, &setup()).expect("a program");
+        assert!(!interpreter.asked().contains_key(&Rule::Dialect));
+    }
+    let native = ControlRules::default().with(Rule::Dialect, Choice::Sinumerik);
+    let plain = "G17 G71 G90 (A COMMENT)\nT1 D1 M6\nG54 G0 X1 Y2 Z3\nG1 X5 F100\nM30\n";
+    let found = read(plain, &ControlSetup { rules: native.clone(), ..setup() }).expect("a program");
+    assert_eq!(found.0.len(), 2);
+    // The dialect of another control keeps its front end.
+    let linuxcnc = ControlRules::default().with(Rule::Dialect, Choice::Rs274Ngc);
+    let refused = read("G0 X=5\nM2\n", &ControlSetup { rules: linuxcnc, ..setup() });
+    assert!(refused.is_err());
+    // Words that are passed over are listed.
+    let (_, notes) = read("MSG(\"A\")\nSOFT\nG642\nG0 X=1\nM30\n", &setup()).expect("a program");
+    for word in ["MSG", "SOFT", "G642"] {
+        let kind = NoteKind::PassedOver { word: word.to_owned() };
+        assert!(notes.iter().any(|note| note.kind == kind), "{word} in {notes:?}");
+    }
+}
+
+#[test]
+fn what_is_outside_is_refused_by_name_with_its_line() {
+    let cases = [
+        ("R1=1\nG0 X=R2", 2, "R2 has no value here"),
+        ("G0 X=$AA_IW[X]", 1, "$AA_IW is a parameter of the control"),
+        ("R1=1\nQ_X=5", 2, "`Q_X` is no variable that DEF defines"),
+        ("G0 X1=5", 1, "X1= is an address with a number of its own"),
+        ("G0 C=ACP(5)", 1, "ACP is a direction of a rotary axis"),
+        ("G0 X=DC(5)", 1, "DC is a direction of a rotary axis"),
+        ("G2 X10 C=DC(5) CR=10 F100", 1, "DC of C while its block has an arc"),
+        ("R1=1\nMIRROR X0", 2, "MIRROR is scaling or mirroring"),
+        ("R1=1\nSCALE X2", 2, "SCALE is scaling or mirroring"),
+        ("R1=1\nPOCKET4(10,0,2)", 2, "POCKET4 is a milling cycle"),
+        ("R1=1\nHOLES1(0,0,0,10,10,3)", 2, "HOLES1 is a pattern of holes"),
+        ("EXTCALL(\"A\")", 1, "EXTCALL is a call of a file outside"),
+        ("R1=1\nCIP X1 Y1 I1=2 J1=3", 2, "CIP is another form of arc"),
+        ("G1 X1 RND=2 F100", 1, "RND is a rounded or chamfered corner"),
+        ("R1=1\nG41 X5", 2, "G41"),
+        ("R1=1\nG43 H1", 2, "G43 is a word of ISO mode"),
+        ("R1=1\nG58 X1", 2, "G58 is a programmable shift"),
+        ("R1=1\nG77", 2, "G77"),
+        ("R1=1\nM77", 2, "M77"),
+        ("R1=1\nT=\"FACEMILL 63\"", 2, "a tool by a name that the job does not state"),
+        ("R1=1\nUNKNOWN_SUB", 2, "`UNKNOWN_SUB` is no word that is read, and no subprogram"),
+        ("R1=1\nL77", 2, "`L77` is no word that is read"),
+        ("CALL \"SUB\"\nR1=1", 1, "no subprogram of this file"),
+        ("R1=1\nMCALL POCKET4(1)", 2, "a modal call of another program"),
+        ("R1=1\nGOTOF NOWHERE", 2, "a jump to `NOWHERE`"),
+        ("HERE:\nGOTOF HERE", 2, "a jump to `HERE`"),
+        ("R1=1\nWHILE R1<5\nR1=2", 2, "WHILE has no end"),
+        ("R1=1\nENDIF", 2, "ENDIF closes no statement"),
+        ("R1=1\nIF R1>0 AND R1<5 GOTOF A_\nA_:", 2, "AND while its sides are no conditions"),
+        ("R1=0.1+0.2\nIF R1==0.3 GOTOF A_\nA_:", 2, "differ by rounding alone"),
+        ("R1=1\nR1=R1/0", 2, "the result of `/`"),
+        ("R1=SQRT(-1)", 1, "the result of `SQRT`"),
+        ("R1=(1", 1, "has no `)`"),
+        ("R1=\"A", 1, "no second quote"),
+        ("R1=\"A\"", 1, "a text stands where a number is needed"),
+        ("R1=1 G0 X5", 1, "an assignment while its block has addresses"),
+        ("R1=3\nFOR R2=1 TO R1\nR1=R1-1\nENDFOR", 2, "its last value changes"),
+        ("R1=1\nLOOP\nENDLOOP", 3, "more than 10000000 blocks"),
+        ("R1=1\nG0 TRANS X5", 2, "no word that is read"),
+        ("TRANS X5 F100", 1, "TRANS while its block has other words"),
+        ("TRANS X5\nTRAORI", 2, "TRAORI or TRAFOOF while a programmable frame"),
+        ("T1 M6\nROT X30\nG0 X1 Y1 Z1", 3, "a length offset is in force in a tilted plane"),
+        ("CYCLE800(1,\"\",0,192,0,0,0,10,0,0,0,0,0,1)", 1, "a plane by solid angles"),
+        ("CYCLE800(1,\"\",10,57,0,0,0,10,0,0,0,0,0,1)", 1, "keeps its place"),
+        ("CYCLE81(20,0,3)", 1, "CYCLE81 needs its final depth"),
+        ("G0 Z50\nCYCLE81(20,0,3,-10)", 2, "CYCLE81 needs a feed rate"),
+        ("F100\nCYCLE81(20,0,3,-10,5)", 2, "its two depths differ"),
+        ("F100\nCYCLE81(20,0,3,10)", 2, "is below the depth"),
+        ("F100\nCYCLE86(20,0,3,-10,,0,3,1,0,0,0)", 2, "argument 8 of CYCLE86"),
+        ("F100\nG18\nCYCLE81(20,0,3,-10)", 3, "G18 or G19 is in force"),
+        ("R1=1\nG291", 2, "G291 is the ISO mode"),
+        ("R1=1\nG0 A3=1", 2, "TRAORI is not in force"),
+        ("T1 M6\nTRAORI\nG54\nORIMKS\nG0 X1 A3=1", 5, "ORIMKS is in force"),
+        ("T1 M6\nTRAORI\nG54\nG0 X1 A2=1", 4, "A2= is another form of tool orientation"),
+        ("G0 A=IC(5)", 1, "AC or IC of A while the other distance mode"),
+        ("G2 X10 Y0 I=AC(5) J0 F100", 1, "the other coordinate of its centre is no AC"),
+        ("R1=1\n(A COMMENT)", 2, "begins no word"),
+        ("SELF\nM30\n%_N_SELF_SPF\nSELF\nM17", 4, "more than 9 deep"),
+        ("G0 X=1\nPROC A_(VAR REAL B_)\nRET\n%_N_Z_MPF", 1, "ends"),
+        ("G0 X=1", 1, "the program stops here"),
+    ];
+    for (program, line, words) in cases {
+        let text = format!("{program}\nM30\n");
+        let text = if words == "ends" { text.replace("G0 X=1", "A_(1)") } else { text };
+        let text = if words.contains("stops here") { "G0 X=1\n".to_owned() } else { text };
+        let error = match execute(&text) {
+            Ok(steps) => panic!("{text} is read, with {} motions", steps.len()),
+            Err(error) => error,
+        };
+        let message = error.to_string();
+        let found = words == "ends" || message.contains(words);
+        assert!(found, "{text}\n{message}");
+        assert_eq!(error.line, line, "{text}\n{message}");
+    }
+}
+
+const SEEDS: [&str; 3] = [
+    "%_N_PLATE_MPF\n;$PATH=/_N_WKS_DIR\nN10 G17 G90 G710 G40 FNORM\nN20 DEF REAL DEPTH=-5, STEPS[3]\nN30 SUPA G0 Z=400 D0\n\
+     N40 T=\"1\" M6\nN50 G54 D1 S3000 M3\nN60 G0 X=10 Y=R1A Z50\nR1=0\nWHILE (R1<3) AND (DEPTH<>0)\nSTEPS[R1]=R1*DEPTH\n\
+     G1 X=R1*10 Z=STEPS[R1] F=200\nR1=R1+1\nENDWHILE\nFOR R2=1 TO 3\nIF R2==2\nG2 X=IC(10) Y=AC(5) CR=20\nELSE\nG0 Z10\nENDIF\n\
+     ENDFOR\nHOLE(5,DEPTH)\nMCALL CYCLE83(20,0,3,DEPTH,,,2,1,0,0,1,1)\nX20 Y20\nX30\nMCALL\nAGAIN: X40\nR1=R1-1\n\
+     IF R1>0 GOTOB AGAIN\nREPEAT AGAIN P=1\nCASE(R2) OF 1 GOTOF EINS 4 GOTOF ZWEI DEFAULT GOTOF EINS\nEINS: G0 Y1\nZWEI: G0 Y2\n\
+     M30\n%_N_HOLE_SPF\nPROC HOLE(REAL X_, REAL Z_)\nG0 X=X_\nG1 Z=Z_ F100\nG0 Z10\nRET\n",
+    "T1 D1 M6\nG54\nS1000 M3\nCYCLE800(1,\"TC1\",200000,57,10,0,0,0,30,0,0,0,0,-1,100,1)\nG0 X1 Y1 Z50\nG1 Z-1 F100\nTRANS X5\n\
+     AROT RPL=30\nG1 X5 Y5\nTRANS\nG0 Z50\nCYCLE800(4,\"TC1\",200001,39,0,0,0,45,10,0,0,0,0,1,,1)\nX1 Y1 Z60\nCYCLE800()\nM30\n",
+    "N1 T2 M6\nG54 G0 X0 Y0 Z100 A0 B0 C0 S900 M3\nTRAORI\nG54\nORIWKS ORIAXES G642 CYCLE832(0.01,1,1)\nG1 X1 Y2 Z3 A3=0.1 B3=0.2 C3=1 F500\n\
+     X2 Y3 A3=0 B3=0 C3=1\nG3 X8 Y3 I=AC(5) J=AC(1.5)\nG1 X12 A5 C10\nTRAFOOF\nG54\nR1=ROUND(2.5)+ABS(-1)*(3-1)/2\nG0 Z=R1*10\n\
+     LOOP\nR1=R1-1\nIF R1<0 GOTOF OUT\nENDLOOP\nOUT:\nL1 P2\nM30\nPROC L1\nG91 G0 X1\nG90\nM17\n",
+];
+
+/// Pieces that mutations insert.
+const PIECES: [&str; 36] = [
+    "G0",
+    "G1",
+    "G91",
+    "TRANS X1",
+    "ROT X30",
+    "AROT RPL=10",
+    "CYCLE800()",
+    "MCALL CYCLE81(20,0,3,-5)",
+    "MCALL",
+    "R1=",
+    "R[R1]=",
+    "IF R1>2",
+    "ENDIF",
+    "ELSE",
+    "WHILE TRUE",
+    "ENDWHILE",
+    "FOR R1=1 TO 9",
+    "ENDFOR",
+    "GOTOB",
+    "GOTOF OUT",
+    "REPEAT",
+    "UNTIL",
+    "M17",
+    "M30",
+    "L1 P9999",
+    "HOLE",
+    "PROC A",
+    "(",
+    ")",
+    "\"",
+    "=",
+    ",",
+    "999999999",
+    "A3=1",
+    "\n",
+    "\u{e9}",
+];
+
+#[test]
+fn mutants_end_with_steps_or_with_a_line() {
+    let count: u64 = match std::env::var("MUTANTS") {
+        Ok(text) => text.parse().expect("MUTANTS is a whole number"),
+        Err(_) => 1_500,
+    };
+    let seeds = SEEDS.map(|seed| seed.replace("R1A", "2"));
+    for seed in &seeds {
+        assert!(steps(seed).len() > 5, "{seed}");
+    }
+    let mut random = Pcg64Mcg::seed_from_u64(11);
+    let mut random =
+        |limit: usize| ((u128::from(random.next_u64()) * limit as u128) >> 64) as usize;
+    let (mut whole, mut motions, mut slowest) = (0u64, 0u64, (Duration::ZERO, String::new()));
+    for _ in 0..count {
+        let mut text: Vec<char> = seeds[random(seeds.len())].chars().collect();
+        for _ in 0..1 + random(3) {
+            let at = random(text.len());
+            match random(7) {
+                0 => drop(text.remove(at)),
+                1 => text.insert(at, char::from(b' ' + random(95) as u8)),
+                2 => text[at] = char::from(b'0' + random(10) as u8),
+                3 => drop(text.drain(at..(at + 1 + random(30)).min(text.len()))),
+                4 => {
+                    let piece: Vec<char> = text[at..(at + 1 + random(60)).min(text.len())].to_vec();
+                    let to = random(text.len());
+                    text.splice(to..to, piece);
+                }
+                5 => text.truncate(at),
+                _ => drop(text.splice(at..at, PIECES[random(PIECES.len())].chars())),
+            }
+            if text.is_empty() {
+                text.push('X');
+            }
+        }
+        let text: String = text.into_iter().collect();
+        let lines = text.split('\n').count();
+        let begin = Instant::now();
+        match Interpreter::new(&text, &setup()) {
+            Err(error) => assert!((1..=lines).contains(&error.line), "{error}\n{text}"),
+            Ok(interpreter) => {
+                let mut is_whole = true;
+                for step in interpreter {
+                    match step {
+                        Ok(step) => {
+                            motions += 1;
+                            let mut numbers = step.start.iter().chain(&step.end).flatten();
+                            assert!(numbers.all(|value| value.is_finite()), "{step:?}\n{text}");
+                            assert!((1..=lines).contains(&step.line), "{step:?}\n{text}");
+                        }
+                        Err(error) => {
+                            is_whole = false;
+                            assert!((1..=lines).contains(&error.line), "{error}\n{text}");
+                        }
+                    }
+                }
+                whole += u64::from(is_whole);
+            }
+        }
+        if begin.elapsed() > slowest.0 {
+            slowest = (begin.elapsed(), text);
+        }
+    }
+    println!(
+        "{count} mutants: {whole} read to the end, {motions} motions, the slowest in {:?}",
+        slowest.0
+    );
+    assert!(slowest.0 < Duration::from_secs(60), "{}", slowest.1);
+    assert!(whole > 0 && whole < count);
+}
+
+/// A loop takes little more time for a block than its text written out.
+#[test]
+fn a_loop_of_a_hundred_thousand_blocks_is_as_fast_as_text() {
+    let looped = "R1=0\nWHILE R1<100000\nG1 X=R1*0.001 Y=-R1*0.001 F100\nR1=R1+1\nENDWHILE\nM30\n";
+    let mut written = String::from("R1=0\n");
+    for index in 0..100_000 {
+        let value = f64::from(index) * 0.001;
+        written.push_str(&format!("G1 X{value:.3} Y-{value:.3} F100\n"));
+    }
+    written.push_str("M30\n");
+    let times = [looped, written.as_str()].map(|program| {
+        let begin = Instant::now();
+        let found = read(program, &setup()).expect("a program");
+        assert_eq!(found.0.len(), 100_000);
+        begin.elapsed()
+    });
+    println!("{:?} for the loop, {:?} for the text", times[0], times[1]);
+    assert!(times[0] < 20 * times[1] + Duration::from_millis(100), "{times:?}");
+}
