@@ -2,10 +2,13 @@
 
 mod coordinates;
 mod cycle;
+mod heidenhain;
 mod linuxcnc;
 mod motion;
 mod next_run;
 mod refuse;
+
+pub(super) use heidenhain::{Circle, Curve};
 
 use super::block::{Block, Code, Group};
 use super::error::{combination, not_read};
@@ -188,6 +191,7 @@ impl Control {
             tcp: Tcp::Off,
             tcp_starts: 0,
             rotation: Rotation::Off,
+            shorter_way: false,
         };
         Control {
             line: 0,

@@ -2,7 +2,7 @@
 
 use super::control::Control;
 use super::rules::Rule;
-use super::{ControlSetup, GcodeError, GcodeFault, Step, iso};
+use super::{ControlSetup, GcodeError, GcodeFault, Step, iso, klartext};
 use std::collections::BTreeMap;
 
 /// An interpreter of a program: an iterator over its steps.
@@ -25,6 +25,7 @@ pub struct Interpreter<'a> {
 #[derive(Clone, Debug)]
 enum Front<'a> {
     Iso(iso::Program<'a>),
+    Klartext(klartext::Program<'a>),
 }
 
 /// The state of a program after a line.
@@ -53,7 +54,10 @@ impl<'a> Interpreter<'a> {
             return Err(GcodeError { line, fault: GcodeFault::LoneReturn });
         }
         let mut control = Control::new(setup);
-        let front = Front::Iso(iso::Program::new(text, &mut control)?);
+        let front = match klartext::is_program(text) {
+            true => Front::Klartext(klartext::Program::new(text, &mut control)?),
+            false => Front::Iso(iso::Program::new(text, &mut control)?),
+        };
         let first = Interpreter { front, control, finished: false, end: None, first: None };
         Ok(Interpreter { first: Some(Box::new(first.clone())), ..first })
     }
@@ -67,6 +71,7 @@ impl<'a> Interpreter<'a> {
     pub(super) fn execute_line(&mut self) -> Result<bool, GcodeError> {
         let progress = match &mut self.front {
             Front::Iso(program) => program.execute_line(&mut self.control)?,
+            Front::Klartext(program) => program.execute_line(&mut self.control)?,
         };
         if let Progress::Ended(end) = progress {
             (self.finished, self.end) = (true, Some(end));

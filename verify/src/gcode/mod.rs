@@ -54,6 +54,7 @@ mod control;
 mod error;
 mod interpreter;
 mod iso;
+mod klartext;
 mod note;
 mod rules;
 mod state;

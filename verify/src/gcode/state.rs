@@ -50,6 +50,8 @@ pub struct ControlState {
     pub tcp_starts: usize,
     /// The rotation of the program's coordinates.
     pub rotation: Rotation,
+    /// Set by M126 of Heidenhain: rotary axes turn the shorter way to an absolute position.
+    pub shorter_way: bool,
 }
 
 /// Tool length offset (G43).

@@ -470,7 +470,11 @@ impl<'a> Resolver<'a> {
             if turn.abs() < 180.0 - ANGLE_INCREMENT && (within - turn).abs() < ANGLE_INCREMENT {
                 continue;
             }
-            match self.ask(Rule::Rotary, step) {
+            let choice = match step.state.shorter_way {
+                true => Some(Choice::Shortest),
+                false => self.ask(Rule::Rotary, step),
+            };
+            match choice {
                 Some(Choice::Shortest) => {
                     let shorter = turn - 360.0 * (turn / 360.0).round();
                     start[k] = Some(to - shorter);

@@ -18,7 +18,7 @@ const MAX_REGISTER: u32 = 99_999_999;
 
 impl Control {
     /// Changes the state. The machine stands still, so its position gets other coordinates.
-    fn change(&mut self, edit: impl FnOnce(&mut ControlState)) {
+    pub(super) fn change(&mut self, edit: impl FnOnce(&mut ControlState)) {
         let mut new = (*self.state).clone();
         edit(&mut new);
         // Steps share the state until it changes.
