@@ -1,8 +1,9 @@
-//! The G-code interpreter: LinuxCNC's own tests, programs with known motions, refusals, and mutants.
+//! The G-code interpreter: LinuxCNC's own tests, programs with known motions, refusals, Klartext, and mutants.
 
 mod common;
 mod expected;
 mod geometry;
+mod klartext;
 mod mutants;
 mod next_run;
 mod refusals;

@@ -284,7 +284,11 @@ impl<'a> Program<'a> {
     }
 
     /// Executes FN.
-    fn function(&mut self, cursor: &mut Cursor<'a>, control: &mut Control) -> Result<(), GcodeFault> {
+    fn function(
+        &mut self,
+        cursor: &mut Cursor<'a>,
+        control: &mut Control,
+    ) -> Result<(), GcodeFault> {
         cursor.peek();
         let digits = cursor.take_while(|byte| byte.is_ascii_digit());
         let word = format!("FN {digits}");

@@ -140,7 +140,12 @@ impl Program<'_> {
         let is_open = self.add_end(words, start)?;
         let tenths = if words.is_rapid() { 0 } else { 10 };
         self.block.add_code(Code { letter: 'G', tenths })?;
-        control.execute(control.line, &mut self.block)?;
+        control.execute(control.line, &mut self.block).map_err(|fault| match fault {
+            GcodeFault::NoFeed { inverse, .. } => {
+                GcodeFault::NoFeed { word: "L".to_owned(), inverse }
+            }
+            fault => fault,
+        })?;
         if is_open {
             self.block.clear();
             self.block.add_code(Code { letter: 'G', tenths: 900 })?;
