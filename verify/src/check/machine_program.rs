@@ -154,6 +154,8 @@ impl MachineProgram {
         if is_placed && machine.axes().iter().all(|axis| axis.home.is_some()) {
             setup.home = Some(machine.home().map(Option::unwrap_or_default));
         }
+        let travel = machine.axis(Letter::Z).and_then(|axis| axis.limits);
+        setup.top = travel.filter(|_| is_placed).map(|[_, top]| top);
         let mut program = MachineProgram {
             file: name.to_owned(),
             text,

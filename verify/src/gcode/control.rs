@@ -36,6 +36,8 @@ pub(super) struct Control {
     lengths: BTreeMap<u32, f64>,
     home: Option<[f64; 6]>,
     second_home: Option<[f64; 6]>,
+    /// Upper end of the travel of Z.
+    top: Option<f64>,
     /// Shift by G52.
     local: [f64; 6],
     /// Shift by G92.
@@ -202,6 +204,7 @@ impl Control {
             lengths: setup.lengths.clone(),
             home: setup.home,
             second_home: setup.second_home,
+            top: setup.top,
             local: [0.0; 6],
             preset: [Some(0.0); 6],
             staged: None,
@@ -520,6 +523,7 @@ impl Control {
             commanded,
             path,
             tool_vector,
+            master_is_positive: None,
             spindle,
             absolute: !self.modal.incremental,
             is_homeward: false,

@@ -1,5 +1,5 @@
 //! G-code: an interpreter of ISO 6983 programs in the dialects of Fanuc and Haas, LinuxCNC, Sinumerik and
-//! Heidenhain (DIN/ISO).
+//! Heidenhain (DIN/ISO), and of conversational programs of Heidenhain (Klartext).
 //!
 //! An [`Interpreter`] executes a program as a control does, and returns its motions one by one. Each [`Step`]
 //! is a line or an arc between two positions in program coordinates, with the [state of the
@@ -28,6 +28,7 @@
 //! - Tool centre point control: G43.4, G43.5, G234, `TRAORI`, M428; ended by G49, `TRAFOOF`, M429.
 //! - Tilted planes G68.2 with G53.1, rotation G68, both ended by G69.
 //! - Parameters and arithmetic in brackets; comments, `/`, `%`, N.
+//! - Klartext, if the text begins with `BEGIN PGM NAME MM`: `docs/controls.md` lists its words.
 //!
 //! **What stops it.** Everything else. A word that is not understood could move the tool, so it is an error
 //! with its line, its name and a remedy, and so is a word that no other word of its block uses. Nothing is
@@ -100,6 +101,8 @@ pub struct ControlSetup {
     pub home: Option<[f64; 6]>,
     /// Position of G30 in machine coordinates.
     pub second_home: Option<[f64; 6]>,
+    /// Upper end of the travel of Z in machine coordinates, to which M140 MB MAX of Heidenhain moves.
+    pub top: Option<f64>,
     /// The choices of the control where controls differ.
     pub rules: ControlRules,
     /// The axes that the machine has.
@@ -118,6 +121,7 @@ impl Default for ControlSetup {
             lengths: BTreeMap::new(),
             home: None,
             second_home: None,
+            top: None,
             rules: ControlRules::default(),
             axes: [true; 6],
             tool_change: None,
@@ -151,6 +155,9 @@ pub struct Step {
     pub is_homeward: bool,
     /// Set for the motion to a reference position (G28, G30).
     pub is_return: bool,
+    /// The sign of the master axis at the end of an [alignment](StepPath::Align), if the program states it (SEQ of Heidenhain): set
+    /// for angles from 0. It is the rotary axis next to the tool, or else the one next to the base.
+    pub master_is_positive: Option<bool>,
     /// The spindle during the motion.
     pub spindle: Spindle,
     /// State of the control, shared by steps until it changes.

@@ -254,13 +254,13 @@ fn cycles_move_along_the_hole() {
         [
             (rapid, 3.0),
             (feed, -7.0),
-            (rapid, 3.0),
+            (feed, 3.0),
             (rapid, -5.0),
             (feed, -13.0),
-            (rapid, 3.0),
+            (feed, 3.0),
             (rapid, -11.0),
             (feed, -18.0),
-            (rapid, 3.0),
+            (feed, 3.0),
             (rapid, -16.0),
             (feed, -19.0),
             (feed, 3.0),
@@ -270,6 +270,19 @@ fn cycles_move_along_the_hole() {
     assert_eq!(
         single(205, "Q202=+15 ~\n Q258=+0.5 ~\n Q259=+1"),
         [(rapid, 3.0), (feed, -14.0), (rapid, 3.0), (rapid, -13.5), (feed, -19.0), (rapid, 51.0)]
+    );
+    // Breaks of chips between which the tool stays in the hole, which it leaves in rapid traverse.
+    assert_eq!(
+        single(203, "Q202=+5 ~\n Q213=+2 ~\n Q208= MAX ;RETRACTION ~\n Q256=+1"),
+        [
+            (rapid, 3.0),
+            (feed, -14.0),
+            (rapid, 3.0),
+            (rapid, -12.0),
+            (feed, -19.0),
+            (rapid, 3.0),
+            (rapid, 51.0)
+        ]
     );
     // A second clearance below the first one has no part.
     let low = "CYCL DEF 207 TAP ~\n Q200=+5 ~\n Q201=-34 ~\n Q239=+1.25 ~\n Q203=+0 ~\n Q204=+1";
@@ -476,6 +489,10 @@ fn m_words_hold_where_the_manual_says() {
     assert_near(found[5].end, [1.0, 2.0, -50.0]);
     assert!(found[5].rapid && !found[5].is_homeward);
     assert_eq!((found[6].end[2], found[6].commanded[2], found[6].is_homeward), (None, true, true));
+    let limited = ControlSetup { top: Some(200.0), ..at_zero() };
+    let (topped, _) = read(&program("TOOL CALL 5 Z S1\nL M140 MB MAX"), &limited).expect("steps");
+    // The tip is 80 mm below the gauge point.
+    assert_eq!((topped[0].end[2], topped[0].is_homeward), (Some(120.0), true));
     assert!(found[7].state.shorter_way && !found[8].state.shorter_way);
     assert_eq!((found[9].state.tcp, found[10].state.tcp), (Tcp::Rotary, Tcp::Off));
     let tcpm = "TOOL CALL 5 Z S1\nFUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS REFPNT TIP-TIP\nL A+5 FMAX\nFUNCTION RESET TCPM\nL A+0 FMAX";

@@ -122,28 +122,36 @@ impl Control {
         Ok(())
     }
 
-    /// Moves along the tool axis (M140) by a distance in millimetres, or to the end of the travel, which only the machine knows.
+    /// Moves along the tool axis (M140) by a distance in millimetres, or to the end of the travel.
     pub(in crate::gcode) fn retract(&mut self, distance: Option<f64>, rapid: bool) {
-        let mut end = self.position;
-        let mut commanded = [false; 6];
         // A table or head that is turned about z leaves the tool along z.
+        let is_upright = self.position[3..5].iter().all(|angle| *angle == Some(0.0));
         let is_along_z = match self.state.rotation {
             Rotation::Tilted { aligned, .. } => aligned,
-            Rotation::Off | Rotation::Plane { .. } => {
-                self.position[3..5].iter().all(|angle| *angle == Some(0.0))
-            }
+            Rotation::Off | Rotation::Plane { .. } => is_upright,
         };
-        if is_along_z {
-            end[2] = end[2].zip(distance).map(|(z, distance)| z + distance);
-            commanded[2] = true;
-        } else {
-            end[..3].fill(None);
-            commanded[..3].fill(true);
+        let along_z = [false, false, true, false, false, false];
+        let end = self.position;
+        match distance {
+            Some(distance) if is_along_z => {
+                let mut end = end;
+                end[2] = end[2].map(|z| z + distance);
+                self.push(rapid, end, along_z, StepPath::Line);
+            }
+            None if is_upright && is_along_z => {
+                let target = [None, None, self.top, None, None, None];
+                self.move_machine(along_z, target, StepPath::Line);
+            }
+            _ => {
+                let mut end = end;
+                end[..3].fill(None);
+                self.push(rapid, end, [true, true, true, false, false, false], StepPath::Line);
+            }
         }
-        self.push(rapid, end, commanded, StepPath::Line);
-        // The way to the end of the travel leads away from the part, as that to a home does.
+        let spindle = self.spindle(rapid);
         let step = self.pending.back_mut().expect("the step that was added");
-        step.is_homeward = distance.is_none();
+        // The way to the end of the travel leads away from the part, as that to a home does.
+        (step.rapid, step.spindle, step.is_homeward) = (rapid, spindle, distance.is_none());
     }
 
     /// Moves along Z to a level in program coordinates, in millimetres. A tap turns with the motion.
@@ -185,13 +193,16 @@ impl Control {
         });
     }
 
-    /// Turns the rotary axes so that the tool stands along z of the tilted plane.
-    pub(in crate::gcode) fn align_with_plane(&mut self) {
+    /// Turns the rotary axes so that the tool stands along z of the tilted plane, at an angle of the master axis whose sign may be
+    /// stated.
+    pub(in crate::gcode) fn align_with_plane(&mut self, master_is_positive: Option<bool>) {
         let Rotation::Tilted { frame, .. } = self.state.rotation else { return };
         let mut end = self.position;
         end[3..].fill(None);
         let commanded = [false, false, false, true, true, true];
         self.push(true, end, commanded, StepPath::Align);
+        let step = self.pending.back_mut().expect("the step that was added");
+        step.master_is_positive = master_is_positive;
         self.change(|state| state.rotation = Rotation::Tilted { frame, aligned: true });
     }
 

@@ -32,6 +32,8 @@ pub(super) struct Cycle {
     second: f64,
     /// The infeeds, if the tool leaves the hole between them.
     infeed: Option<Infeed>,
+    /// Set if cycle 203 leaves the hole in rapid traverse (Q208).
+    is_fast: bool,
     /// Q214 of cycle 202.
     side: u32,
 }
@@ -49,7 +51,10 @@ struct Infeed {
     stop: f64,
 }
 
-/// The Q parameters of a cycle: those that are words (`AUTO`) have no number.
+/// Feed in mm per minute from which it is rapid traverse.
+const RAPID_FEED: f64 = 99_999.0;
+
+/// The Q parameters of a cycle. `MAX` is an infinite number, and `AUTO` none.
 struct Given {
     number: u32,
     values: Vec<(u16, Option<f64>)>,
@@ -61,7 +66,13 @@ impl Given {
     }
 
     fn needed(&self, parameter: u16, needed: &'static str) -> Result<f64, GcodeFault> {
-        self.get(parameter).ok_or_else(|| missing(format!("CYCL DEF {}", self.number), needed))
+        let value = self.get(parameter).filter(|value| value.is_finite());
+        value.ok_or_else(|| missing(format!("CYCL DEF {}", self.number), needed))
+    }
+
+    /// Returns a length in the unit of the program, which is 0 if it is not given.
+    fn length(&self, parameter: u16) -> f64 {
+        self.get(parameter).filter(|value| value.is_finite()).unwrap_or_default()
     }
 
     /// Returns the fault of a value.
@@ -152,11 +163,12 @@ impl Program<'_> {
                         let meaning = "a value of GLOBAL DEF";
                         return Err(not_read("PREDEF", meaning, "write it in the cycle"));
                     }
-                    None
+                    let is_rapid = ["MAX", "FMAX"].iter().any(|max| word.eq_ignore_ascii_case(max));
+                    is_rapid.then_some(f64::INFINITY)
                 }
                 false => Some(value(&mut ahead, &self.parameters)?),
             };
-            if let Some(value) = value {
+            if let Some(value) = value.filter(|value| value.is_finite()) {
                 self.parameters.assign(Parameter::global(parameter), value)?;
             }
             given.values.push((parameter, value));
@@ -231,11 +243,12 @@ impl Program<'_> {
         let is_tap = matches!(cycle.number, 206 | 207 | 209);
         control.move_to_level(top, true, false);
         if let Some(infeed) = cycle.infeed {
-            self.infeeds(infeed, [surface, top, bottom], control)?;
+            let is_fast = cycle.number != 203 || cycle.is_fast;
+            infeeds(infeed, is_fast, [surface, top, bottom], control)?;
         }
         control.move_to_level(bottom, false, is_tap);
         match cycle.number {
-            201 | 203 => control.move_to_level(top, false, false),
+            201 | 203 => control.move_to_level(top, cycle.is_fast, false),
             202 => {
                 let (axis, sign) = [(0, -1.0), (1, -1.0), (0, 1.0), (1, 1.0)]
                     [usize::try_from(cycle.side.max(1) - 1).unwrap_or_default()];
@@ -258,34 +271,34 @@ impl Program<'_> {
         control.move_to_level(clear, true, false);
         Ok(())
     }
+}
 
-    /// Moves to the depths of all infeeds but the last.
-    fn infeeds(
-        &self,
-        infeed: Infeed,
-        [surface, top, bottom]: [f64; 3],
-        control: &mut Control,
-    ) -> Result<(), GcodeFault> {
-        let (mut level, mut depth, mut steps) = (surface, infeed.first, 0);
-        for index in 1.. {
-            level -= depth;
-            if level <= bottom + 1e-9 {
-                return Ok(());
-            }
-            // A decrement beyond the least infeed stops there.
-            depth = (depth - infeed.decrement).max(infeed.least.min(depth));
-            if index % infeed.count == 0 {
-                control.move_to_level(level, false, false);
-                control.move_to_level(top, true, false);
-                control.move_to_level((level + infeed.stop).min(top), true, false);
-            }
-            steps += 3;
-            if steps > MAX_CYCLE_STEPS {
-                return Err(GcodeFault::CycleTooLong);
-            }
+/// Moves to the depths of all infeeds but the last. `is_fast` is set if the tool leaves the hole in rapid traverse.
+fn infeeds(
+    infeed: Infeed,
+    is_fast: bool,
+    [surface, top, bottom]: [f64; 3],
+    control: &mut Control,
+) -> Result<(), GcodeFault> {
+    let (mut level, mut depth, mut steps) = (surface, infeed.first, 0);
+    for index in 1.. {
+        level -= depth;
+        if level <= bottom + 1e-9 {
+            return Ok(());
         }
-        Ok(())
+        // A decrement beyond the least infeed stops there.
+        depth = (depth - infeed.decrement).max(infeed.least.min(depth));
+        if index % infeed.count == 0 {
+            control.move_to_level(level, false, false);
+            control.move_to_level(top, is_fast, false);
+            control.move_to_level((level + infeed.stop).min(top), true, false);
+        }
+        steps += 3;
+        if steps > MAX_CYCLE_STEPS {
+            return Err(GcodeFault::CycleTooLong);
+        }
     }
+    Ok(())
 }
 
 /// Returns the cycle of its parameters. `unit` is that of the program in millimetres.
@@ -315,17 +328,16 @@ fn cycle(given: &Given, unit: f64) -> Result<Cycle, GcodeFault> {
             if first <= 0.0 {
                 return Err(given.refused(202, "an infeed depth above 0"));
             }
-            let decrement = unit * given.get(212).unwrap_or_default();
-            let least = unit * given.get(205).unwrap_or_default();
+            let (decrement, least) = (unit * given.length(212), unit * given.length(205));
             if decrement < 0.0 || decrement > 0.0 && least <= 0.0 {
                 return Err(missing("Q212", "Q205 above 0, the least infeed depth"));
             }
-            let stops = [258, 259].map(|q| given.get(q).unwrap_or_default());
+            let stops = [258, 259].map(|q| given.length(q));
             let stop = match number {
                 205 => unit * stops[0].min(stops[1]).max(0.0),
                 _ => clearance,
             };
-            let breaks = given.get(213).filter(|_| number == 203).unwrap_or_default();
+            let breaks = if number == 203 { given.length(213) } else { 0.0 };
             let count = 1 + breaks.clamp(0.0, 1e6) as u32;
             Some(Infeed { first, decrement, least, count, stop })
         }
@@ -338,7 +350,9 @@ fn cycle(given: &Given, unit: f64) -> Result<Cycle, GcodeFault> {
     if ![0.0, 1.0, 2.0, 3.0, 4.0].contains(&side) {
         return Err(given.refused(214, "0 to 4"));
     }
-    Ok(Cycle { number, clearance, depth, surface, second, infeed, side: side as u32 })
+    let is_fast = number == 203 && given.get(208).is_some_and(|feed| feed >= RAPID_FEED);
+    let side = side as u32;
+    Ok(Cycle { number, clearance, depth, surface, second, infeed, is_fast, side })
 }
 
 fn is_thread(number: u32) -> bool {

@@ -35,6 +35,8 @@ pub(super) struct Frame {
     tilt: Option<Matrix3<f64>>,
     /// Set if the rotary axes stand as the plane needs them.
     aligned: bool,
+    /// The sign of the master axis in the plane, if the program states it (SEQ).
+    master_is_positive: Option<bool>,
     /// The reason for which the shift depends on the control.
     pub(super) doubt: Option<&'static str>,
     /// The number of the preset, if the program has selected one.
@@ -50,12 +52,14 @@ impl Frame {
             mirror: [1.0; 3],
             tilt: None,
             aligned: false,
+            master_is_positive: None,
             doubt: None,
             preset: None,
         }
     }
 
-    fn is_mirrored(&self) -> bool {
+    /// Returns whether axes are mirrored.
+    pub(super) fn is_mirrored(&self) -> bool {
         self.mirror != [1.0; 3]
     }
 
@@ -251,6 +255,7 @@ impl Program<'_> {
             return Err(combination(word, condition, "write PLANE RESET before"));
         }
         (self.frame.tilt, self.frame.aligned) = (Some(rotation), false);
+        self.frame.master_is_positive = None;
         self.change_frame(control);
         Ok(())
     }
@@ -326,9 +331,15 @@ impl Program<'_> {
         }
         match rotation {
             Some(rotation) => {
+                // Where the normal stays, only the table or only the plane turns.
+                if words.turns_table && (rotation[(2, 2)] - 1.0).abs() < 1e-12 {
+                    let meaning = "a turn of the table about the tool, which leaves the plane";
+                    return Err(not_read("TABLE ROT", meaning, "write COORD ROT"));
+                }
                 self.tilt("PLANE", rotation, control)?;
+                self.frame.master_is_positive = words.master_is_positive;
                 if words.turns {
-                    control.align_with_plane();
+                    control.align_with_plane(words.master_is_positive);
                     self.frame.aligned = true;
                 }
             }
@@ -368,6 +379,14 @@ impl Program<'_> {
             } else if cursor.take_prefix("COORD") && cursor.take_prefix("ROT") {
                 let word = "COORD ROT".to_owned();
                 control.notes.add(control.line, NoteKind::PassedOver { word });
+            } else if cursor.take_prefix("TABLE") && cursor.take_prefix("ROT") {
+                words.turns_table = true;
+            } else if cursor.take_prefix("SEQ") {
+                let is_positive = cursor.take(b'+');
+                if !is_positive && !cursor.take(b'-') {
+                    return Err(cursor.unexpected("SEQ+ or SEQ-"));
+                }
+                words.master_is_positive = Some(is_positive);
             } else if matches!(cursor.peek(), Some(b'M')) {
                 words.retract = Some(scale.retract(cursor)?);
             } else if matches!(cursor.peek(), Some(b'F')) {
@@ -404,7 +423,7 @@ impl Program<'_> {
             return Err(missing(format!("Q120 to Q122 without {letter}"), needed));
         }
         control.execute(control.line, &mut self.block)?;
-        control.align_with_plane();
+        control.align_with_plane(self.frame.master_is_positive);
         self.frame.aligned = true;
         self.before.forget();
         Ok(())
@@ -443,6 +462,10 @@ struct PlaneWords {
     values: [Option<f64>; 12],
     turns: bool,
     stays: bool,
+    /// TABLE ROT.
+    turns_table: bool,
+    /// SEQ+ or SEQ-.
+    master_is_positive: Option<bool>,
     retract: Option<Retract>,
 }
 

@@ -186,6 +186,7 @@ impl<'a> Program<'a> {
                 control.notes.add_once(control.line, NoteKind::PassedOver { word });
             }
             "END" if cursor.take_word("PGM") => {
+                self.note_end(control);
                 if let Some((line, is_program)) = self.flow.text_after() {
                     let kind = match is_program {
                         true => NoteKind::OtherProgram,
@@ -244,12 +245,23 @@ impl<'a> Program<'a> {
                     control.pause_spindle();
                     control.notes.add(control.line, NoteKind::Stop);
                 }
-                2 | 30 => progress = Progress::Ended(End::Stop),
+                2 | 30 => {
+                    self.note_end(control);
+                    progress = Progress::Ended(End::Stop);
+                }
                 _ => {}
             }
         }
         self.codes = codes;
         Ok(progress)
+    }
+
+    /// Notes mirrored axes at the end of the program, which the control keeps for the next run or not.
+    fn note_end(&self, control: &mut Control) {
+        if self.frame.is_mirrored() {
+            let words = "CYCL DEF 8".to_owned();
+            control.notes.add(control.line, NoteKind::LeftModes { words });
+        }
     }
 
     /// Executes an M word of the spindle.
@@ -469,7 +481,7 @@ impl<'a> Program<'a> {
         }
         if let Some(tool) = tool {
             self.block.add('T', number(tool))?;
-            self.before.forget();
+            self.before.leave();
         }
         control.execute(control.line, &mut self.block)
     }

@@ -37,6 +37,11 @@ impl Before {
         Before { pole: [None; 3], plane: Plane::Xy, corner: None, heading: None }
     }
 
+    /// Forgets the motion, after which something else has moved the axes.
+    pub(super) fn leave(&mut self) {
+        (self.corner, self.heading) = (None, None);
+    }
+
     /// Forgets what depends on the coordinates, which have changed.
     pub(super) fn forget(&mut self) {
         *self = Before::new();

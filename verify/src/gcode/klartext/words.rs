@@ -235,16 +235,11 @@ pub(super) const PLANES: [Entry; 18] = [
     refused("POINTS", "a plane by three points", SPATIAL),
     refused("AXIAL", "a plane by the angles of the axes", SPATIAL),
     refused("MOVE", "rotary axes that turn about the tip", "write TURN, or STAY and a motion"),
-    refused(
+    read(
         "SEQ+",
-        "one of two positions of the axes, by the master axis",
-        "remove it: where two positions differ, this is said",
+        "the angle of the master axis is above 0: the rotary axis next to the tool, or else next to the base",
     ),
-    refused(
-        "SEQ-",
-        "one of two positions of the axes, by the master axis",
-        "remove it: where two positions differ, this is said",
-    ),
+    read("SEQ-", "it is below 0"),
     refused(
         "SYM+",
         "one of two positions of the axes, by the master axis",
@@ -255,10 +250,9 @@ pub(super) const PLANES: [Entry; 18] = [
         "one of two positions of the axes, by the master axis",
         "remove it: where two positions differ, this is said",
     ),
-    refused(
+    read(
         "TABLE",
-        "TABLE ROT: the table turns, and not the plane, where both are possible",
-        "write COORD ROT",
+        "TABLE ROT: the table turns, and not the plane, where both are possible; a plane that keeps z is refused",
     ),
 ];
 
