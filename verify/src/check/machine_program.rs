@@ -9,7 +9,7 @@
 
 use super::moves::{JointPath, Move, MovePath, RapidBox};
 use crate::gcode::{
-    Choice, ControlRules, ControlSetup, GcodeError, Interpreter, LengthOffset, Rule, Step,
+    self, Choice, ControlRules, ControlSetup, GcodeError, Interpreter, LengthOffset, Rule, Step,
 };
 use crate::machine::{JointError, JointMotion, Letter, Machine, Setup};
 use nalgebra::Vector3;
@@ -140,7 +140,10 @@ impl MachineProgram {
         mut setup: ControlSetup,
         assumed: ControlRules,
     ) -> Result<MachineProgram, MachineProgramError> {
-        let stated = setup.rules.clone();
+        let mut stated = setup.rules.clone();
+        if let Some(own) = gcode::rules_of(&text) {
+            stated = stated.and(&own);
+        }
         setup.rules = stated.clone().and(&assumed);
         // Whatever the control does, the axes are somewhere: that nobody knows where includes all choices.
         if setup.rules.get(Rule::ToolChange).is_none() {

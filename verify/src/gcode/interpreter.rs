@@ -25,7 +25,7 @@ pub struct Interpreter<'a> {
 #[derive(Clone, Debug)]
 enum Front<'a> {
     Iso(iso::Program<'a>),
-    Klartext(klartext::Program<'a>),
+    Klartext(Box<klartext::Program<'a>>),
 }
 
 /// The state of a program after a line.
@@ -55,7 +55,7 @@ impl<'a> Interpreter<'a> {
         }
         let mut control = Control::new(setup);
         let front = match klartext::is_program(text) {
-            true => Front::Klartext(klartext::Program::new(text, &mut control)?),
+            true => Front::Klartext(Box::new(klartext::Program::new(text, &mut control)?)),
             false => Front::Iso(iso::Program::new(text, &mut control)?),
         };
         let first = Interpreter { front, control, finished: false, end: None, first: None };

@@ -202,6 +202,11 @@ pub fn read(text: &str, setup: &ControlSetup) -> Result<(Vec<Step>, Vec<ProgramN
     Ok((steps, interpreter.notes()))
 }
 
+/// Returns the rules of the control for which a program is written, if its language is that of one control alone.
+pub(crate) fn rules_of(text: &str) -> Option<ControlRules> {
+    klartext::is_program(text).then(klartext::rules)
+}
+
 /// Quotes text of the program for a message: short, without characters that a terminal would obey.
 fn shown(text: &str) -> String {
     format!("`{}`", unquoted(text))

@@ -458,6 +458,9 @@ fn coordinates_are_shifted_mirrored_rotated_and_tilted() {
     let more = "CYCL DEF 10.0 ROTATION\nCYCL DEF 10.1 ROT+90\n";
     let expected = applied(turn(0, 45.0), applied(turn(2, 90.0), [1.0, 2.0, 3.0]));
     assert_near(tilted("SPATIAL SPA+45 SPB+0 SPC+0", more), shifted(expected));
+    // A plane without angles asks for no turn.
+    let flat = last("TOOL CALL 5 Z S1\nPLANE SPATIAL SPA+0 SPB+0 SPC+0 STAY\nL X+1 Y+2 Z+3 FMAX");
+    assert_near(flat, [1.0, 2.0, 3.0]);
     // A plane that turns the axes by its angles, one more turn, and the way back.
     let plane = "TOOL CALL 5 Z S1\nPLANE SPATIAL SPA+30 SPB+0 SPC+0 STAY\nPLANE RELATIV SPB+40 STAY\n\
         L A+Q120 B+Q121 C+Q122 R0 FMAX\nL X+1 Y+2 FMAX\n";
@@ -538,6 +541,7 @@ fn what_is_not_read_is_named_with_its_line() {
             2,
             "RND is a corner that is not between two lines",
         ),
+        ("L X+10 F100\nCHF 1\nL X+5 Y+5", 2, "CHF is a chamfer of a corner that is not square"),
         ("L X+1 FMAX M777", 2, "M777 is not understood"),
         ("L X+1 U+2 FMAX", 2, "the axis U"),
         ("L X+1 X+2 FMAX", 2, "X stands twice"),

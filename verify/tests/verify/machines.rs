@@ -172,6 +172,8 @@ fn rotary_axes_of_klartext_obey_their_words() {
         );
         let programs = read(&body);
         let [program] = &programs[..] else { panic!("{} readings", programs.len()) };
+        // Every rule is that of the only control that reads the program.
+        assert!(program.summary().open_rules.is_empty(), "{:?}", program.summary());
         let pose = last_pose(program);
         let expected = Vector3::new(0.0, -sine, cosine);
         assert!((pose.axis() - expected).norm() < 1e-9, "{pose:?}");

@@ -73,6 +73,11 @@ pub(super) fn is_program(text: &str) -> bool {
     first_block(text).is_some()
 }
 
+/// Returns the rules of the only control that reads Klartext.
+pub(super) fn rules() -> ControlRules {
+    ControlRules::named("heidenhain").expect("a control that is known by name")
+}
+
 impl<'a> Program<'a> {
     /// Reads what holds for the whole text, which is not copied: its unit and its labels. The control is a Heidenhain then.
     ///
@@ -85,7 +90,7 @@ impl<'a> Program<'a> {
             let [dialect, _] = Rule::Dialect.describe(choice);
             return Err(GcodeError { line, fault: GcodeFault::OtherControl { dialect } });
         }
-        let rules = ControlRules::named("heidenhain").expect("a control that is known by name");
+        let rules = rules();
         for rule in Rule::all() {
             if let (None, Some(choice)) = (control.stated(rule), rules.get(rule)) {
                 control.state_rule(rule, choice);

@@ -13,6 +13,7 @@ use crate::gcode::error::{combination, missing, not_read};
 use crate::gcode::state::{Position, Rotation};
 use crate::gcode::{GcodeFault, Plane};
 use crate::machine::sin_cos_degrees;
+use nalgebra::Matrix3;
 
 /// Letters of the axes.
 const AXES: [char; 6] = ['X', 'Y', 'Z', 'A', 'B', 'C'];
@@ -78,7 +79,7 @@ impl Program<'_> {
             match head {
                 "L" => self.line(words, control)?,
                 "LP" => {
-                    let words = self.from_polar(words, control)?;
+                    let words = self.cartesian(words, control)?;
                     self.line(words, control)?;
                 }
                 _ if !words.has_axes() && head != "CP" && head != "CTP" => {
@@ -86,7 +87,7 @@ impl Program<'_> {
                 }
                 "CT" => self.tangent_arc(head, words, control)?,
                 "CTP" => {
-                    let words = self.from_polar(words, control)?;
+                    let words = self.cartesian(words, control)?;
                     self.tangent_arc(head, words, control)?;
                 }
                 _ => self.arc(head, words, control)?,
@@ -254,13 +255,16 @@ impl Program<'_> {
         }
         let has_linear = words.axes[..3].iter().any(Option::is_some);
         let has_rotary = words.axes[3..].iter().any(Option::is_some);
-        if let Rotation::Tilted { aligned, .. } = control.rotation() {
-            if !aligned && has_linear {
+        if let Rotation::Tilted { aligned, frame } = control.rotation() {
+            // A plane that keeps z needs no turn of axes at 0.
+            let at_zero = control.position()[3..].iter().all(|angle| *angle == Some(0.0));
+            let is_upright = frame.rotation[(2, 2)] == 1.0 && at_zero;
+            if !aligned && has_linear && !is_upright {
                 let condition = "the tool does not stand along z of the tilted plane";
                 let remedy = "write TURN in PLANE, or L A+Q120 B+Q121 C+Q122 after it";
                 return Err(combination("a position", condition, remedy));
             }
-            if has_rotary {
+            if has_rotary && (aligned || frame.rotation != Matrix3::identity()) {
                 let condition = "a plane is tilted, to which only Q120 to Q122 turn the axes";
                 return Err(combination("a rotary axis", condition, "write PLANE RESET before"));
             }
@@ -341,7 +345,7 @@ impl Program<'_> {
     }
 
     /// Replaces the polar coordinates of a block by Cartesian ones.
-    fn from_polar(&self, mut words: Words, control: &Control) -> Result<Words, GcodeFault> {
+    fn cartesian(&self, mut words: Words, control: &Control) -> Result<Words, GcodeFault> {
         let centre = self.centre("LP")?;
         let axes = self.before.plane.axes();
         if axes.iter().any(|axis| words.axes[*axis].is_some()) {
@@ -604,6 +608,13 @@ impl Program<'_> {
         let turn = (into[0] * out[1] - into[1] * out[0]).atan2(into[0] * out[0] + into[1] * out[1]);
         let cut = match corner {
             Corner::Round(radius) => radius * (0.5 * turn).tan().abs(),
+            // At another corner the length can be that of the chamfer or of what it takes of each line.
+            Corner::Chamfer(_)
+                if turn.abs() > 1e-9 && (into[0] * out[0] + into[1] * out[1]).abs() > 1e-9 =>
+            {
+                let remedy = "write the chamfer as a line";
+                return Err(not_read("CHF", "a chamfer of a corner that is not square", remedy));
+            }
             Corner::Chamfer(length) => *length,
         };
         if cut > lengths[0].min(lengths[1]) + SAME_POINT {

@@ -69,7 +69,7 @@ pub(super) const STATEMENTS: [Entry; 50] = [
     read("CP", "an arc or a helix about the pole by its angle"),
     read("CTP", "CT to polar coordinates"),
     read("RND", "a rounded corner between two lines in the plane"),
-    read("CHF", "a chamfer between two lines in the plane"),
+    read("CHF", "a chamfer between two lines in the plane at a right angle"),
     read("TOOL CALL", "a tool change, by the number of the tool; DL other than 0 is refused"),
     read("TOOL DEF", "the length of a tool, or the tool that is called next"),
     read("LBL", "a label"),
@@ -376,7 +376,7 @@ mod tests {
         if std::env::var_os("KLARTEXT").is_some() {
             println!("{}", printed());
         }
-        assert!(page.contains(&printed()), "docs/controls.md has other tables");
+        assert!(page.contains(printed().trim_end()), "docs/controls.md has other tables");
     }
 
     #[test]
