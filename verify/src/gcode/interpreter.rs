@@ -24,7 +24,7 @@ pub struct Interpreter<'a> {
 /// blocks, and decides which line is next.
 #[derive(Clone, Debug)]
 enum Front<'a> {
-    Iso(iso::Program<'a>),
+    Iso(Box<iso::Program<'a>>),
     Klartext(Box<klartext::Program<'a>>),
 }
 
@@ -56,7 +56,7 @@ impl<'a> Interpreter<'a> {
         let mut control = Control::new(setup);
         let front = match klartext::is_program(text) {
             true => Front::Klartext(Box::new(klartext::Program::new(text, &mut control)?)),
-            false => Front::Iso(iso::Program::new(text, &mut control)?),
+            false => Front::Iso(Box::new(iso::Program::new(text, &mut control)?)),
         };
         let first = Interpreter { front, control, finished: false, end: None, first: None };
         Ok(Interpreter { first: Some(Box::new(first.clone())), ..first })

@@ -36,7 +36,7 @@ pub(super) struct Retract {
 }
 
 /// The words of a motion. M words that are not here are in a list of their own.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Words {
     /// X Y Z A B C.
     pub(super) axes: [Option<Coordinate>; 6],

@@ -34,9 +34,24 @@ pub(super) struct Cycle {
     infeed: Option<Infeed>,
     /// Set if cycle 203 leaves the hole in rapid traverse (Q208).
     is_fast: bool,
-    /// Q214 of cycle 202.
-    side: u32,
+    /// The direction in which cycle 202 leaves the wall.
+    side: Option<Side>,
 }
+
+/// A direction along an axis (Q214).
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Side {
+    axis: usize,
+    sign: f64,
+}
+
+/// The directions of Q214 from 1.
+const SIDES: [Side; 4] = [
+    Side { axis: 0, sign: -1.0 },
+    Side { axis: 1, sign: -1.0 },
+    Side { axis: 0, sign: 1.0 },
+    Side { axis: 1, sign: 1.0 },
+];
 
 /// The infeeds of a cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -250,15 +265,15 @@ impl Program<'_> {
         match cycle.number {
             201 | 203 => control.move_to_level(top, cycle.is_fast, false),
             202 => {
-                let (axis, sign) = [(0, -1.0), (1, -1.0), (0, 1.0), (1, 1.0)]
-                    [usize::try_from(cycle.side.max(1) - 1).unwrap_or_default()];
-                let increment = sign * DISENGAGING * self.frame.mirror[axis];
-                if cycle.side > 0 {
+                let aside = cycle.side.map(|Side { axis, sign }| {
+                    (axis, sign * DISENGAGING * self.frame.mirror[axis])
+                });
+                if let Some((axis, increment)) = aside {
                     control.move_by(axis, increment, false);
                 }
                 control.move_to_level(top, false, false);
                 control.move_to_level(clear, true, false);
-                if cycle.side > 0 {
+                if let Some((axis, increment)) = aside {
                     control.move_by(axis, -increment, true);
                 }
             }
@@ -344,14 +359,17 @@ fn cycle(given: &Given, unit: f64) -> Result<Cycle, GcodeFault> {
         _ => None,
     };
     let side = match number {
-        202 => given.needed(214, "Q214, the direction in which the tool leaves the wall")?,
-        _ => 0.0,
+        202 => match given.needed(214, "Q214, the direction in which the tool leaves the wall")? {
+            0.0 => None,
+            side => {
+                let known = (1..).zip(SIDES).find(|(number, _)| f64::from(*number) == side);
+                let (_, side) = known.ok_or_else(|| given.refused(214, "0 to 4"))?;
+                Some(side)
+            }
+        },
+        _ => None,
     };
-    if ![0.0, 1.0, 2.0, 3.0, 4.0].contains(&side) {
-        return Err(given.refused(214, "0 to 4"));
-    }
     let is_fast = number == 203 && given.get(208).is_some_and(|feed| feed >= RAPID_FEED);
-    let side = side as u32;
     Ok(Cycle { number, clearance, depth, surface, second, infeed, is_fast, side })
 }
 

@@ -157,8 +157,7 @@ impl Program<'_> {
         let mut codes = Vec::new();
         let words = Scale::new(&self.parameters, self.unit).words(cursor, &mut codes)?;
         let alone = Words { axes: words.axes, ..Words::default() };
-        let has_more = format!("{words:?}") != format!("{alone:?}") || !codes.is_empty();
-        if has_more || words.axes.contains(&Some(Coordinate::OfPlane)) {
+        if words != alone || !codes.is_empty() || words.axes.contains(&Some(Coordinate::OfPlane)) {
             return Err(start.unexpected(wanted));
         }
         Ok(words)

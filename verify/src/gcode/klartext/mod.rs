@@ -166,9 +166,8 @@ impl<'a> Program<'a> {
             }
             "STOP" => {
                 self.codes.clear();
-                let mut codes = vec![0];
-                Scale::new(&self.parameters, self.unit).words(&mut cursor, &mut codes)?;
-                self.codes = codes;
+                self.codes.push(0);
+                Scale::new(&self.parameters, self.unit).words(&mut cursor, &mut self.codes)?;
                 self.start_words(control)?;
                 return self.end_words(control);
             }
