@@ -617,6 +617,40 @@ fn what_is_not_read_is_named_with_its_line() {
     assert_eq!(error.line, 3);
 }
 
+#[test]
+fn notes_name_what_is_passed_over_and_what_is_left() {
+    let notes = |body: &str| {
+        let (_, notes) = read(&program(body), &at_zero()).unwrap_or_else(|error| panic!("{error}"));
+        notes.iter().map(ToString::to_string).collect::<Vec<_>>()
+    };
+    let has = |notes: &[String], note: &str| {
+        assert!(notes.iter().any(|found| found.contains(note)), "{note} is not in {notes:?}");
+    };
+    let passed = notes(
+        "BLK FORM 0.1 Z  X-5  Y+0 Z-20\nTOOL CALL 5 Z S900 DR+0.1\nL X+1 FMAX M8\nCYCL DEF 32.0 TOLERANCE\nCYCL DEF 32.1\n\
+         FN 16: F-PRINT A/B\nL M103 F20\nPLANE SPATIAL SPA+0 SPB+0 SPC+0 COORD ROT STAY\nPLANE RESET STAY\nSTOP",
+    );
+    for word in
+        ["BLK FORM 0.1 Z X-5 Y+0 Z-20", "DR", "M8", "CYCL DEF 32", "FN 16", "M103", "COORD ROT"]
+    {
+        has(&passed, &format!("{word} is passed over"));
+    }
+    has(&passed, "line 11: motions by hand during the stop");
+    // A shift that the control can keep for the next run, and one that has ended.
+    let shift = "L X+1 FMAX\nCYCL DEF 7.0 DATUM\nCYCL DEF 7.1 X+5\nL X+2 FMAX";
+    has(&notes(shift), "line 2: the program ends with CYCL DEF 7");
+    let ended = notes(&format!("{shift}\nTRANS DATUM RESET"));
+    assert!(!ended.iter().any(|note| note.contains("ends with")), "{ended:?}");
+    has(&notes("CYCL DEF 8.1 X\nL X+1 FMAX"), "ends with CYCL DEF 8");
+    let text = format!("{}L X+1 FMAX\n", program("L X+1 FMAX"));
+    let (_, after) = read(&text, &at_zero()).expect("steps");
+    has(&after.iter().map(ToString::to_string).collect::<Vec<_>>(), "the text after the end");
+    let text = program("L X+1 FMAX") + &program("L X+2 FMAX");
+    let (steps, after) = read(&text, &at_zero()).expect("steps");
+    assert_eq!(steps.len(), 1);
+    has(&after.iter().map(ToString::to_string).collect::<Vec<_>>(), "another program begins here");
+}
+
 /// Every word that the documentation calls refused is refused by its name.
 #[test]
 fn words_that_the_documentation_refuses_are_refused() {

@@ -186,8 +186,10 @@ impl<'a> Program<'a> {
             "TRANS" if cursor.take_word("DATUM") => self.trans_datum(&mut cursor, control)?,
             "FUNCTION" => self.mode(&mut cursor, control)?,
             "BLK" => {
-                let word = "BLK FORM".to_owned();
-                control.notes.add_once(control.line, NoteKind::PassedOver { word });
+                // The corners of the blank, which a job may need for its stock.
+                let text = start.rest().split([';', '\n']).next().unwrap_or_default();
+                let word = unquoted(&text.split_whitespace().collect::<Vec<_>>().join(" "));
+                control.notes.add(control.line, NoteKind::PassedOver { word });
             }
             "END" if cursor.take_word("PGM") => {
                 self.note_end(control);
