@@ -60,6 +60,28 @@ impl Words {
         self.axes.iter().any(Option::is_some)
     }
 
+    /// Refuses a word that a statement does not use.
+    pub(super) fn check_used(&self, head: &'static str) -> Result<(), GcodeFault> {
+        let unused = [
+            ("R", self.radius.is_some_and(|radius| radius != 0.0) && head != "CR"),
+            ("DR", self.clockwise.is_some() && !matches!(head, "C" | "CR" | "CP")),
+            ("PR", self.polar_radius.is_some() && !matches!(head, "LP" | "CTP")),
+            ("PA", self.polar_angle.is_some() && !matches!(head, "LP" | "CTP" | "CP")),
+        ];
+        match unused.into_iter().find(|(_, is_unused)| *is_unused) {
+            Some((word, _)) => {
+                let remedy = "remove it, or write the statement that uses it";
+                Err(not_read(format!("{word} beside {head}"), "a word of another motion", remedy))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// Returns whether the block has coordinates of axes alone.
+    pub(super) fn is_plain(&self) -> bool {
+        *self == Words { axes: self.axes, ..Words::default() }
+    }
+
     pub(super) fn is_rapid(&self) -> bool {
         self.feed == Some(Feed::Rapid)
     }

@@ -202,6 +202,7 @@ impl Program<'_> {
         self.codes.clear();
         let scale = super::Scale::new(&self.parameters, self.unit);
         let mut words = scale.words(cursor, &mut self.codes)?;
+        words.check_used("CYCL CALL")?;
         if !is_position {
             if words.has_axes() || words.is_call || words.is_machine {
                 return Err(cursor.unexpected("an M word alone after CYCL CALL"));

@@ -156,8 +156,8 @@ impl Program<'_> {
         let mut start = *cursor;
         let mut codes = Vec::new();
         let words = Scale::new(&self.parameters, self.unit).words(cursor, &mut codes)?;
-        let alone = Words { axes: words.axes, ..Words::default() };
-        if words != alone || !codes.is_empty() || words.axes.contains(&Some(Coordinate::OfPlane)) {
+        if !words.is_plain() || !codes.is_empty() || words.axes.contains(&Some(Coordinate::OfPlane))
+        {
             return Err(start.unexpected(wanted));
         }
         Ok(words)

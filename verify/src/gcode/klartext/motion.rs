@@ -68,6 +68,7 @@ impl Program<'_> {
         self.codes.clear();
         let scale = Scale::new(&self.parameters, self.unit);
         let words = scale.words(cursor, &mut self.codes)?;
+        words.check_used(head)?;
         self.start_words(control)?;
         if words.is_machine {
             if head != "L" {
@@ -293,7 +294,8 @@ impl Program<'_> {
         let words = Scale::new(&self.parameters, self.unit).words(cursor, &mut codes)?;
         let position = self.position(control);
         let named = [0, 1, 2].map(|axis| words.axes[axis].is_some());
-        let has_more = words.axes[3..].iter().any(Option::is_some) || !codes.is_empty();
+        let has_more =
+            words.axes[3..].iter().any(Option::is_some) || !words.is_plain() || !codes.is_empty();
         if has_more || named == [true; 3] {
             return Err(expected("CC", "two coordinates of X, Y and Z after CC, or none"));
         }
