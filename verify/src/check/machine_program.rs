@@ -9,7 +9,7 @@
 
 use super::moves::{JointPath, Move, MovePath, RapidBox};
 use crate::gcode::{
-    Choice, ControlRules, ControlSetup, GcodeError, Interpreter, LengthOffset, Rule, Step,
+    self, Choice, ControlRules, ControlSetup, GcodeError, Interpreter, LengthOffset, Rule, Step,
 };
 use crate::machine::{JointError, JointMotion, Letter, Machine, Relation, Setup};
 use nalgebra::Vector3;
@@ -196,7 +196,10 @@ impl MachineProgram {
         mut setup: ControlSetup,
         assumed: Assumption,
     ) -> Result<MachineProgram, MachineProgramError> {
-        let stated = setup.rules.clone();
+        let mut stated = setup.rules.clone();
+        if let Some(own) = gcode::rules_of(&text) {
+            stated = stated.and(&own);
+        }
         setup.rules = stated.clone().and(&assumed.rules);
         for (name, value) in &assumed.variables {
             setup.variables.insert(name.clone(), vec![*value]);
@@ -213,6 +216,8 @@ impl MachineProgram {
         if is_placed && machine.axes().iter().all(|axis| axis.home.is_some()) {
             setup.home = Some(machine.home().map(Option::unwrap_or_default));
         }
+        let travel = machine.axis(Letter::Z).and_then(|axis| axis.limits);
+        setup.top = travel.filter(|_| is_placed).map(|[_, top]| top);
         let mut program = MachineProgram {
             file: name.to_owned(),
             text,

@@ -4,6 +4,7 @@ mod compensation;
 mod coordinates;
 mod cycle;
 mod frame;
+mod heidenhain;
 mod hole;
 mod linuxcnc;
 mod motion;
@@ -13,6 +14,8 @@ mod refuse;
 mod report;
 
 pub(super) use report::Report;
+
+pub(super) use heidenhain::{Circle, Curve};
 
 use super::block::{Block, Code, Group};
 use super::error::{combination, not_read};
@@ -46,6 +49,8 @@ pub(super) struct Control {
     tool_names: BTreeMap<String, u32>,
     home: Option<[f64; 6]>,
     second_home: Option<[f64; 6]>,
+    /// Upper end of the travel of Z.
+    top: Option<f64>,
     /// Shift by G52.
     local: [f64; 6],
     /// Shift by G92.
@@ -213,6 +218,7 @@ impl Control {
             tcp_starts: 0,
             rotation: Rotation::Off,
             orientation: None,
+            shorter_way: false,
         };
         Control {
             line: 0,
@@ -225,6 +231,7 @@ impl Control {
             tool_names: setup.tool_names.clone(),
             home: setup.home,
             second_home: setup.second_home,
+            top: setup.top,
             local: [0.0; 6],
             preset: [Some(0.0); 6],
             frames: frame::Frames::new(),
@@ -588,6 +595,7 @@ impl Control {
             commanded,
             path,
             tool_vector,
+            master_is_positive: None,
             spindle,
             absolute: !self.modal.incremental,
             is_homeward: false,

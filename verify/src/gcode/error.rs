@@ -98,13 +98,35 @@ pub enum GcodeFault {
         /// The word.
         word: String,
     },
-    /// A word of Heidenhain's conversational programs.
+    /// A word of Heidenhain's conversational programs in another program.
     #[error(
-        "`{word}` is a word of Heidenhain Klartext, which is not read: post the program as ISO G-code"
+        "`{word}` is a word of Heidenhain Klartext: begin the program with `BEGIN PGM NAME MM`, or post it as ISO G-code"
     )]
     Klartext {
         /// The word.
         word: String,
+    },
+    /// A program of Heidenhain Klartext for another control.
+    #[error(
+        "the program is Heidenhain Klartext, and `dialect` of the control is \"{dialect}\": name the control `heidenhain`"
+    )]
+    OtherControl {
+        /// The dialect that is stated.
+        dialect: &'static str,
+    },
+    /// A text that is not what Klartext has at its place.
+    #[error("`{shown}` is not understood here: write {expected}")]
+    Sentence {
+        /// The text.
+        shown: String,
+        /// The texts that are.
+        expected: &'static str,
+    },
+    /// A label that is not in the program.
+    #[error("there is no {label} in this program: add the label, or correct the call")]
+    NoLabel {
+        /// The label, for example `LBL 1`.
+        label: String,
     },
     /// A statement that decides at run time what is executed.
     #[error(
@@ -308,7 +330,7 @@ pub enum GcodeFault {
     },
     /// The end of the file before the end of the program.
     #[error(
-        "the program stops here without M2, M30 or %: post it again, or add M30 if this is the end"
+        "the program stops here without M2, M30, END PGM or %: post it again, or add its end if this is the end"
     )]
     Unfinished,
     /// Subprograms that call each other too deeply.

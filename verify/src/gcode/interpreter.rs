@@ -2,7 +2,7 @@
 
 use super::control::Control;
 use super::rules::{Choice, Rule};
-use super::{ControlSetup, GcodeError, GcodeFault, Obstacle, Step, iso, sinumerik};
+use super::{ControlSetup, GcodeError, GcodeFault, Obstacle, Step, iso, klartext, sinumerik};
 use std::collections::BTreeMap;
 
 /// An interpreter of a program: an iterator over its steps.
@@ -25,8 +25,9 @@ pub struct Interpreter<'a> {
 /// blocks, and decides which line is next.
 #[derive(Clone, Debug)]
 enum Front<'a> {
-    Iso(iso::Program<'a>),
-    Sinumerik(sinumerik::Program<'a>),
+    Iso(Box<iso::Program<'a>>),
+    Klartext(Box<klartext::Program<'a>>),
+    Sinumerik(Box<sinumerik::Program<'a>>),
 }
 
 /// The state of a program after a line.
@@ -59,9 +60,12 @@ impl<'a> Interpreter<'a> {
         let mut control = Control::new(setup);
         // ISO words mean the same in native programs of Sinumerik, so that one without native words is read as another one.
         let can_be_native = matches!(control.stated(Rule::Dialect), None | Some(Choice::Sinumerik));
-        let front = match can_be_native && sinumerik::is_native(text) {
-            true => Front::Sinumerik(sinumerik::Program::new(text, &mut control)?),
-            false => Front::Iso(iso::Program::new(text, setup, &mut control)?),
+        let front = if klartext::is_program(text) {
+            Front::Klartext(Box::new(klartext::Program::new(text, &mut control)?))
+        } else if can_be_native && sinumerik::is_native(text) {
+            Front::Sinumerik(Box::new(sinumerik::Program::new(text, &mut control)?))
+        } else {
+            Front::Iso(Box::new(iso::Program::new(text, setup, &mut control)?))
         };
         let first = Interpreter { front, control, finished: false, end: None, first: None };
         Ok(Interpreter { first: Some(Box::new(first.clone())), ..first })
@@ -77,6 +81,7 @@ impl<'a> Interpreter<'a> {
     pub fn obstacles(&self) -> Vec<Obstacle> {
         match &self.front {
             Front::Iso(program) => program.obstacles(&self.control),
+            Front::Klartext(program) => program.obstacles(),
             Front::Sinumerik(program) => program.obstacles(&self.control),
         }
     }
@@ -85,6 +90,7 @@ impl<'a> Interpreter<'a> {
     pub(super) fn execute_line(&mut self) -> Result<bool, GcodeError> {
         let progress = match &mut self.front {
             Front::Iso(program) => program.execute_line(&mut self.control)?,
+            Front::Klartext(program) => program.execute_line(&mut self.control)?,
             Front::Sinumerik(program) => program.execute_line(&mut self.control)?,
         };
         if let Progress::Ended(end) = progress {

@@ -1,5 +1,5 @@
 //! G-code: an interpreter of ISO 6983 programs in the dialects of Fanuc and Haas, LinuxCNC, Sinumerik and
-//! Heidenhain (DIN/ISO), and of native programs of Sinumerik 840D.
+//! Heidenhain (DIN/ISO), of native programs of Sinumerik 840D, and of conversational programs of Heidenhain (Klartext).
 //!
 //! An [`Interpreter`] executes a program as a control does, and returns its motions one by one. Each [`Step`]
 //! is a line or an arc between two positions in program coordinates, with the [state of the
@@ -31,6 +31,7 @@
 //! - Variables and expressions; comments, `/`, `%`, N.
 //! - Native programs of Sinumerik: expressions, loops and jumps, subprograms of the file, frames, CYCLE800, drilling cycles, tool vectors
 //!   under `TRAORI`. `docs/controls.md` lists their words.
+//! - Klartext, if the text begins with `BEGIN PGM NAME MM`: `docs/controls.md` lists its words.
 //!
 //! **What stops it.** Everything else. A word that is not understood could move the tool, so it is an error
 //! with its line, its name and a remedy, and so is a word that no other word of its block uses;
@@ -57,6 +58,7 @@ mod control;
 mod error;
 mod interpreter;
 mod iso;
+mod klartext;
 mod note;
 mod rules;
 mod sinumerik;
@@ -109,6 +111,8 @@ pub struct ControlSetup {
     pub home: Option<[f64; 6]>,
     /// Position of G30 in machine coordinates.
     pub second_home: Option<[f64; 6]>,
+    /// Upper end of the travel of Z in machine coordinates, to which M140 MB MAX of Heidenhain moves.
+    pub top: Option<f64>,
     /// The choices of the control where controls differ.
     pub rules: ControlRules,
     /// The axes that the machine has.
@@ -132,6 +136,7 @@ impl Default for ControlSetup {
             tool_names: BTreeMap::new(),
             home: None,
             second_home: None,
+            top: None,
             rules: ControlRules::default(),
             axes: [true; 6],
             variables: BTreeMap::new(),
@@ -168,6 +173,9 @@ pub struct Step {
     pub is_return: bool,
     /// Rotary axes that turn the shorter way to their end (DC of Sinumerik), whatever the [rule](Rule::Rotary).
     pub shortest: [bool; 6],
+    /// The sign of the master axis at the end of an [alignment](StepPath::Align), if the program states it (SEQ of Heidenhain): set
+    /// for angles from 0. It is the rotary axis next to the tool, or else the one next to the base.
+    pub master_is_positive: Option<bool>,
     /// The spindle during the motion.
     pub spindle: Spindle,
     /// State of the control, shared by steps until it changes.
@@ -210,6 +218,11 @@ pub fn read(text: &str, setup: &ControlSetup) -> Result<(Vec<Step>, Vec<ProgramN
     let mut interpreter = Interpreter::new(text, setup)?;
     let steps = interpreter.by_ref().collect::<Result<Vec<_>, _>>()?;
     Ok((steps, interpreter.notes()))
+}
+
+/// Returns the rules of the control for which a program is written, if its language is that of one control alone.
+pub(crate) fn rules_of(text: &str) -> Option<ControlRules> {
+    klartext::is_program(text).then(klartext::rules)
 }
 
 /// Quotes text of the program for a message: short, without characters that a terminal would obey.

@@ -54,6 +54,8 @@ pub struct ControlState {
     /// The tool axis between two positions of the rotary axes, where the program states it: [`Choice::ByAxes`] (ORIAXES) or
     /// [`Choice::GreatCircle`] (ORIVECT).
     pub orientation: Option<Choice>,
+    /// Set by M126 of Heidenhain: rotary axes turn the shorter way to an absolute position.
+    pub shorter_way: bool,
 }
 
 /// Tool length offset (G43).

@@ -263,7 +263,7 @@ fn is_gcode(text: &str) -> bool {
     });
     code.next().is_some_and(|line| {
         let line = line.trim_start_matches(|c: char| c == '/' || c.is_whitespace());
-        // Klartext is refused by the interpreter, by its name.
+        // A number of its block precedes the head of a program in Klartext.
         line.starts_with(['%', '(']) || line.contains("BEGIN PGM") || begins_word(line)
     })
 }

@@ -1,9 +1,10 @@
-//! The G-code interpreter: LinuxCNC's own tests, programs with known motions, refusals, and mutants.
+//! The G-code interpreter: LinuxCNC's own tests, programs with known motions, refusals, Klartext, and mutants.
 
 mod common;
 mod compensation;
 mod expected;
 mod geometry;
+mod klartext;
 mod macros;
 mod mutants;
 mod next_run;

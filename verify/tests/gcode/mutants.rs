@@ -132,7 +132,12 @@ fn seeds_are_read() {
     }
 }
 
-fn mutate(seed: &str, random: &mut impl FnMut(usize) -> usize) -> String {
+/// Returns a text with one to three damages, by pieces that are inserted among others.
+pub(crate) fn mutate(
+    seed: &str,
+    pieces: &[&str],
+    random: &mut impl FnMut(usize) -> usize,
+) -> String {
     let mut text: Vec<char> = seed.chars().collect();
     for _ in 0..1 + random(3) {
         let at = random(text.len());
@@ -148,7 +153,7 @@ fn mutate(seed: &str, random: &mut impl FnMut(usize) -> usize) -> String {
                 text.splice(to..to, piece);
             }
             6 => text.truncate(at),
-            _ => drop(text.splice(at..at, PIECES[random(PIECES.len())].chars())),
+            _ => drop(text.splice(at..at, pieces[random(pieces.len())].chars())),
         }
         if text.is_empty() {
             text.push('X');
@@ -171,7 +176,7 @@ fn mutants_end_with_steps_or_with_a_line() {
     let setups = SEEDS.map(|(_, dialect)| setups(dialect));
     for index in 0..count {
         let seed = random(SEEDS.len());
-        let text = mutate(SEEDS[seed].0, &mut random);
+        let text = mutate(SEEDS[seed].0, &PIECES, &mut random);
         let lines = text.split(['\n', '\r']).count();
         let begin = Instant::now();
         match Interpreter::new(&text, &setups[seed][index as usize % 2]) {

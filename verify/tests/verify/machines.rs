@@ -189,3 +189,45 @@ fn a_resolution_of_0_ends() {
         assert!(report.findings.iter().any(|found| is_deep(&found.kind)), "{:?}", report.findings);
     }
 }
+
+/// In Klartext the sign of the master axis selects one of two positions of the axes, and M126 the way to a stated angle.
+#[test]
+fn rotary_axes_of_klartext_obey_their_words() {
+    let machine = || Machine::named("A-C trunnion").expect("a machine of the library");
+    let mut setup = ControlSetup { lengths: [(1, 80.0)].into(), ..Default::default() };
+    setup.work_offsets[0] = Some([0.0, 0.0, -400.0, 0.0, 0.0, 0.0]);
+    let read = |body: &str| {
+        let text = format!(
+            "0 BEGIN PGM A MM\nTOOL CALL 1 Z S900\nL A+0 C+0 FMAX M3\nL X+0 Y+0 Z+100 FMAX\n{body}\nM30\nEND PGM A MM\n"
+        );
+        let programs = MachineProgram::readings("a.h", text.clone(), machine(), &setup);
+        programs.unwrap_or_else(|error| panic!("{text}{error}"))
+    };
+    let (sine, cosine) = 20f64.to_radians().sin_cos();
+    let mut tilts = Vec::new();
+    for sign in ["+", "-"] {
+        let body = format!(
+            "PLANE SPATIAL SPA+20 SPB+0 SPC+0 STAY SEQ{sign} TABLE ROT\nL A+Q120 C+Q122 R0 FMAX\n\
+             L X+0 Y+0 FMAX\nL Z+50 FMAX\nL Z+1 F100"
+        );
+        let programs = read(&body);
+        let [program] = &programs[..] else { panic!("{} readings", programs.len()) };
+        // Every rule is that of the only control that reads the program.
+        assert!(program.summary().open_rules.is_empty(), "{:?}", program.summary());
+        let pose = last_pose(program);
+        let expected = Vector3::new(0.0, -sine, cosine);
+        assert!((pose.axis() - expected).norm() < 1e-9, "{pose:?}");
+        assert!((pose.tip().coords - expected).norm() < 1e-9, "{pose:?}");
+        // The body that A carries shows its angle.
+        let tilt = (0..6).find_map(|link| {
+            let moves = program.moves(ToolSelection::All, Some(link), Unit::Millimetre).ok()?;
+            let axis = moves.last()?.path.pose(1.0).axis();
+            (axis.y.abs() > 0.5 * sine).then_some(axis.y)
+        });
+        tilts.push(tilt.expect("a link that A turns"));
+    }
+    assert!((tilts[0] + tilts[1]).abs() < 1e-9, "{tilts:?}");
+    let turn = "L C+345 FMAX\nL C+15 FMAX\nL Z+1 F100";
+    assert_eq!(read(turn).len(), 3);
+    assert_eq!(read(&format!("M126\n{turn}")).len(), 1);
+}

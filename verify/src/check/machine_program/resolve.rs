@@ -186,7 +186,7 @@ impl<'a> Resolver<'a> {
             }
         };
         if matches!(step.path, StepPath::Align) {
-            return self.align(&frame, &step.state);
+            return self.align(&frame, step);
         }
         let current = self.current_position(&frame);
         let mut ends = match self.ends(step, &frame, &current)? {
@@ -475,7 +475,7 @@ impl<'a> Resolver<'a> {
             if turn.abs() < 180.0 - ANGLE_INCREMENT && (within - turn).abs() < ANGLE_INCREMENT {
                 continue;
             }
-            let way = match step.shortest[k] {
+            let way = match step.shortest[k] || step.state.shorter_way {
                 true => Some(Choice::Shortest),
                 false => self.ask(Rule::Rotary, step),
             };
@@ -495,16 +495,20 @@ impl<'a> Resolver<'a> {
     }
 
     /// Resolves the rotation that aligns the tool with z of a tilted plane, with the linear joints at rest.
-    fn align(&mut self, frame: &Frame, state: &ControlState) -> Result<Resolved, StepFault> {
-        let axis = match &state.rotation {
+    fn align(&mut self, frame: &Frame, step: &Step) -> Result<Resolved, StepFault> {
+        let axis = match &step.state.rotation {
             Rotation::Tilted { frame, .. } => frame.rotation.column(2).into_owned(),
             Rotation::Off | Rotation::Plane { .. } => Vector3::z(),
         };
         let near = self.joints.map(Option::unwrap_or_default);
         // The angles do not depend on the tip, whose linear joints are not those of the machine at rest.
         let chain = frame.chain.without_linear_limits();
-        let found = chain.solutions(&Point3::origin(), &axis, &near)?;
-        if !self.is_one_choice(&found) {
+        let mut found = chain.solutions(&Point3::origin(), &axis, &near)?;
+        if let Some((master, is_positive)) = self.master().zip(step.master_is_positive) {
+            let sign = if is_positive { 1.0 } else { -1.0 };
+            found.retain(|solution| sign * solution.joints[master] >= -ANGLE_INCREMENT);
+        }
+        if found.is_empty() || !self.is_one_choice(&found) {
             let is_known = (3..6).all(|k| self.joints[k].is_some());
             let cause = if is_known { UnknownCause::TwoPositions } else { self.cause };
             return Ok(self.lose(cause));
@@ -523,6 +527,12 @@ impl<'a> Resolver<'a> {
         let mut end = joints;
         end[3..].copy_from_slice(&found[3..]);
         self.rapid(&frame.chain, [joints, end])
+    }
+
+    /// Returns the index of the master axis of Heidenhain: the first rotary axis from the tool, or the last one from the table.
+    fn master(&self) -> Option<usize> {
+        // Axes are in order from the base outwards.
+        self.rotary(Side::Tool).last().or_else(|| self.rotary(Side::Table).next())
     }
 
     /// Returns the indices of the rotary joints of a side.

@@ -258,6 +258,17 @@ impl Control {
         }
     }
 
+    /// Refuses a word that moves the tool by itself, or changes coordinates, while compensation is in force.
+    pub(in crate::gcode) fn check_uncompensated(
+        &self,
+        word: impl Into<String>,
+    ) -> Result<(), GcodeFault> {
+        match self.compensation.as_ref().is_some_and(Compensation::is_in_force) {
+            true => Err(under_compensation(word)),
+            false => Ok(()),
+        }
+    }
+
     /// Replaces the steps that a block has added after the first ones by those of the tool's centre that are known now.
     pub(super) fn compensate(&mut self, first: usize) -> Result<(), GcodeFault> {
         if self.compensation.is_none() {

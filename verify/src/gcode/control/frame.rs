@@ -158,6 +158,7 @@ impl Frames {
 impl Control {
     /// Executes `TRANS`, `ATRANS`, `ROT` or `AROT`.
     pub(in crate::gcode) fn program_frame(&mut self, step: FrameStep) -> Result<(), GcodeFault> {
+        self.check_uncompensated("a programmable frame")?;
         self.check_frame_change("a programmable frame")?;
         let [x, y, z, a, b, c] = step.shift;
         self.unit_of_lengths([x, y, z].iter().any(|length| *length != 0.0));
@@ -176,6 +177,7 @@ impl Control {
 
     /// Executes CYCLE800.
     pub(in crate::gcode) fn swivel(&mut self, swivel: &Swivel) -> Result<(), GcodeFault> {
+        self.check_uncompensated("CYCLE800")?;
         self.check_frame_change("CYCLE800")?;
         if self.state.tcp != Tcp::Off {
             let condition = "tool centre point control is on";
@@ -308,6 +310,7 @@ impl Control {
             let condition = "its block has another work offset";
             return Err(combination(offset.to_string(), condition, "keep one of them"));
         }
+        self.check_uncompensated(offset.to_string())?;
         self.select_offset(offset);
         Ok(())
     }

@@ -47,7 +47,7 @@ impl Control {
 
     /// Takes the axis words of a block as the end of a motion, with the axes that they name and those that they command.
     /// An increment of 0 commands nothing.
-    fn take_end(&self, block: &mut Block) -> (Position, [bool; 6], [bool; 6]) {
+    pub(super) fn take_end(&self, block: &mut Block) -> (Position, [bool; 6], [bool; 6]) {
         let axes = self.take_axes(block);
         let mut end = self.position;
         let mut commanded = [false; 6];
@@ -250,6 +250,16 @@ impl Control {
         if axes.iter().all(Option::is_none) {
             return Err(missing("G53", "an axis word"));
         }
+        self.move_to_machine(axes);
+        // G53 can cancel the length offset as G28 does, by a parameter of Fanuc (5001, EVO).
+        if axes[2].is_some() && self.state.length != LengthOffset::Off {
+            self.returned = self.returned.or(Some(true));
+        }
+        Ok(())
+    }
+
+    /// Moves axes to machine coordinates as they are programmed.
+    pub(super) fn move_to_machine(&mut self, axes: Position) {
         let mut target = axes;
         // Without the place of the part on the machine its coordinates lead nowhere that is known.
         let length = self.state.length.length();
@@ -264,11 +274,6 @@ impl Control {
         let is_homeward = axes[2].map_or(self.position[2].is_none(), |z| z == 0.0);
         self.move_machine(axes.map(|value| value.is_some()), target, StepPath::Line);
         self.pending.back_mut().expect("the step that was added").is_homeward = is_homeward;
-        // G53 can cancel the length offset as G28 does, by a parameter of Fanuc (5001, EVO).
-        if axes[2].is_some() && self.state.length != LengthOffset::Off {
-            self.returned = self.returned.or(Some(true));
-        }
-        Ok(())
     }
 
     /// Executes G28 or G30: to the intermediate position, then to the reference position.
@@ -352,18 +357,18 @@ impl Control {
 
 /// Words of an arc, lengths in millimetres.
 #[derive(Clone, Copy, Debug)]
-struct ArcWords {
-    clockwise: bool,
-    plane: Plane,
+pub(super) struct ArcWords {
+    pub(super) clockwise: bool,
+    pub(super) plane: Plane,
     /// Numbers after I, J and K.
-    offsets: [Option<f64>; 3],
+    pub(super) offsets: [Option<f64>; 3],
     /// Set by G90.1: I J K are coordinates, not distances from the start.
-    absolute: bool,
-    radius: Option<f64>,
+    pub(super) absolute: bool,
+    pub(super) radius: Option<f64>,
     /// Number of turns, a begun one included.
-    turns: u32,
+    pub(super) turns: u32,
     /// The unit of the program, in which the tolerances are defined.
-    unit: Unit,
+    pub(super) unit: Unit,
 }
 
 /// Distance below which start and end are the same point, in millimetres. It is a hundredth of the least
@@ -396,7 +401,7 @@ const CHORD_TOLERANCE: f64 = 0.00005 * 25.4;
 /// the sweep is at most half a turn for R > 0, and at least half a turn for R < 0. Near half a turn, the
 /// centre is ill-conditioned: an error δ of the end moves it by up to √(2 R δ). With a centre, the sweep of
 /// one turn is within 2⁻⁴⁹ (1 + D / r) of exact, for the radius r and the largest coordinate D.
-fn path(words: &ArcWords, start: Position, end: Position) -> Result<StepPath, ArcFault> {
+pub(super) fn path(words: &ArcWords, start: Position, end: Position) -> Result<StepPath, ArcFault> {
     let [first, second] = words.plane.axes();
     let letters = centre_letters(words.plane);
     let normal = words.plane.normal();

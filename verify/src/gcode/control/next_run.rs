@@ -212,7 +212,15 @@ impl Mode {
     /// Returns the word that left it.
     fn word(self, left: &Control) -> String {
         let (modal, state) = (&left.modal, &*left.state);
+        let is_heidenhain = left.stated(Rule::Dialect) == Some(Choice::Heidenhain);
         let word = match self {
+            Mode::Shift if is_heidenhain => "CYCL DEF 7 or G54",
+            Mode::Rotation if is_heidenhain => match state.rotation {
+                Rotation::Tilted { .. } => "PLANE",
+                _ => "CYCL DEF 10 or G73",
+            },
+            Mode::Tcp if is_heidenhain => "M128",
+            Mode::Length if is_heidenhain => "the length of its last tool",
             Mode::Unit if modal.unit == Unit::Inch => "G20",
             Mode::Unit => "G21",
             Mode::Plane => match modal.plane {

@@ -1,0 +1,253 @@
+//! Motions and changes of coordinates that Heidenhain Klartext has, and ISO 6983 has no words for.
+
+use super::motion::{ArcWords, path};
+use super::{AXES, Control, Motion};
+use crate::gcode::block::Block;
+use crate::gcode::error::combination;
+use crate::gcode::state::{LengthOffset, Position, Rotation, Tcp};
+use crate::gcode::{GcodeFault, Plane, StepPath};
+use std::sync::Arc;
+use touchoff::Unit;
+
+/// An arc in a plane, of which the tool axis need not be the normal. Lengths are in millimetres.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::gcode) struct Circle {
+    /// The statement, for messages.
+    pub(in crate::gcode) word: &'static str,
+    pub(in crate::gcode) plane: Plane,
+    pub(in crate::gcode) curve: Curve,
+    pub(in crate::gcode) rapid: bool,
+    /// The unit of the program, in which the tolerance of its radii is defined.
+    pub(in crate::gcode) unit: Unit,
+}
+
+/// The curve of an arc.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::gcode) enum Curve {
+    /// About a centre to the end.
+    Centre { centre: [f64; 2], clockwise: bool },
+    /// By its radius, which is below 0 for more than half a turn.
+    Radius { radius: f64, clockwise: bool },
+    /// About a centre by an angle in radians. The end is stated, too.
+    Sweep { centre: [f64; 2], sweep: f64 },
+}
+
+impl Control {
+    /// Returns the present position in program coordinates.
+    pub(in crate::gcode) fn position(&self) -> Position {
+        self.position
+    }
+
+    /// Returns the rotation of program coordinates.
+    pub(in crate::gcode) fn rotation(&self) -> Rotation {
+        self.state.rotation
+    }
+
+    /// Returns whether the machine has the axes A, B and C.
+    pub(in crate::gcode) fn rotary_axes(&self) -> impl Iterator<Item = bool> + use<> {
+        let [_, _, _, a, b, c] = self.axes;
+        [a, b, c].into_iter()
+    }
+
+    /// Returns whether tool centre point control is on.
+    pub(in crate::gcode) fn is_tcp(&self) -> bool {
+        self.state.tcp != Tcp::Off
+    }
+
+    /// Returns whether the coordinates of the plane have changed by a rotation since both of its axes were stated.
+    pub(in crate::gcode) fn is_rotation_open(&self) -> bool {
+        self.rotation_changed
+    }
+
+    /// Executes an arc to the end that a block states.
+    pub(in crate::gcode) fn circle(
+        &mut self,
+        block: &mut Block,
+        circle: Circle,
+    ) -> Result<(), GcodeFault> {
+        let Circle { word, plane, curve, rapid, unit } = circle;
+        self.feed(block)?;
+        if !rapid {
+            self.check_feed(word)?;
+        }
+        self.check_position(block)?;
+        self.check_offset(block)?;
+        let (end, _, commanded) = self.take_end(block);
+        let words = |clockwise, centre: Option<[f64; 2]>, radius| {
+            let mut offsets = [None; 3];
+            for (axis, value) in plane.axes().into_iter().zip(centre.into_iter().flatten()) {
+                offsets[axis] = Some(value);
+            }
+            ArcWords { clockwise, plane, offsets, absolute: true, radius, turns: 1, unit }
+        };
+        let path = match curve {
+            Curve::Sweep { centre, sweep } => StepPath::Arc { plane, centre, sweep },
+            Curve::Centre { centre, clockwise } => {
+                path(&words(clockwise, Some(centre), None), self.position, end)?
+            }
+            Curve::Radius { radius, clockwise } => {
+                path(&words(clockwise, None, Some(radius)), self.position, end)?
+            }
+        };
+        if !matches!(curve, Curve::Sweep { .. }) {
+            self.check_radii(&path, &end)?;
+        }
+        if let Curve::Radius { radius, .. } = curve
+            && plane == self.modal.plane
+        {
+            self.check_radius_digits(radius, &end);
+        }
+        self.push(rapid, end, commanded, path);
+        Ok(())
+    }
+
+    /// Moves to the machine coordinates of a block (M91).
+    pub(in crate::gcode) fn machine_position(
+        &mut self,
+        block: &mut Block,
+        rapid: bool,
+    ) -> Result<(), GcodeFault> {
+        if self.is_tcp() {
+            return Err(combination("M91", "M128 is in force", "write M129 before"));
+        }
+        self.feed(block)?;
+        if !rapid {
+            self.check_feed("L")?;
+        }
+        let axes = self.take_axes(block);
+        self.move_to_machine(axes);
+        let spindle = self.spindle(rapid);
+        let step = self.pending.back_mut().expect("the step that was added");
+        (step.rapid, step.spindle) = (rapid, spindle);
+        Ok(())
+    }
+
+    /// Moves along the tool axis (M140) by a distance in millimetres, or to the end of the travel.
+    pub(in crate::gcode) fn retract(&mut self, distance: Option<f64>, rapid: bool) {
+        // A table or head that is turned about z leaves the tool along z.
+        let is_upright = self.position[3..5].iter().all(|angle| *angle == Some(0.0));
+        let is_along_z = match self.state.rotation {
+            Rotation::Tilted { aligned, .. } => aligned,
+            Rotation::Off | Rotation::Plane { .. } => is_upright,
+        };
+        let along_z = [false, false, true, false, false, false];
+        let end = self.position;
+        match distance {
+            Some(distance) if is_along_z => {
+                let mut end = end;
+                end[2] = end[2].map(|z| z + distance);
+                self.push(rapid, end, along_z, StepPath::Line);
+            }
+            None if is_upright && is_along_z => {
+                let target = [None, None, self.top, None, None, None];
+                self.move_machine(along_z, target, StepPath::Line);
+            }
+            _ => {
+                let mut end = end;
+                end[..3].fill(None);
+                self.push(rapid, end, [true, true, true, false, false, false], StepPath::Line);
+            }
+        }
+        let spindle = self.spindle(rapid);
+        let step = self.pending.back_mut().expect("the step that was added");
+        // The way to the end of the travel leads away from the part, as that to a home does.
+        (step.rapid, step.spindle, step.is_homeward) = (rapid, spindle, distance.is_none());
+    }
+
+    /// Moves along Z to a level in program coordinates, in millimetres. A tap turns with the motion.
+    pub(in crate::gcode) fn move_to_level(&mut self, level: f64, rapid: bool, is_tap: bool) {
+        if self.position[2] == Some(level) {
+            return;
+        }
+        let mut end = self.position;
+        end[2] = Some(level);
+        let before = self.modal.motion;
+        if is_tap {
+            self.modal.motion = Some(Motion::Cycle(84));
+        }
+        let commanded = [false, false, true, false, false, false];
+        self.push(rapid, end, commanded, StepPath::Line);
+        self.modal.motion = before;
+    }
+
+    /// Notes the end of a tapping cycle, which leaves the spindle standing or turning.
+    pub(in crate::gcode) fn leave_thread(&mut self) {
+        self.end_tapping(84);
+    }
+
+    /// Moves an axis by an increment, in millimetres.
+    pub(in crate::gcode) fn move_by(&mut self, axis: usize, increment: f64, rapid: bool) {
+        let mut end = self.position;
+        end[axis] = end[axis].map(|value| value + increment);
+        let mut commanded = [false; 6];
+        commanded[axis] = true;
+        self.push(rapid, end, commanded, StepPath::Line);
+    }
+
+    /// Sets the shift and the rotation of program coordinates.
+    pub(in crate::gcode) fn set_coordinates(&mut self, shift: [f64; 6], rotation: Rotation) {
+        self.local = shift;
+        self.change(|state| {
+            state.shift = shift.map(Some);
+            state.rotation = rotation;
+        });
+    }
+
+    /// Turns the rotary axes so that the tool stands along z of the tilted plane, at an angle of the master axis whose sign may be
+    /// stated.
+    pub(in crate::gcode) fn align_with_plane(&mut self, master_is_positive: Option<bool>) {
+        let Rotation::Tilted { frame, .. } = self.state.rotation else { return };
+        let mut end = self.position;
+        end[3..].fill(None);
+        let commanded = [false, false, false, true, true, true];
+        self.push(true, end, commanded, StepPath::Align);
+        let step = self.pending.back_mut().expect("the step that was added");
+        step.master_is_positive = master_is_positive;
+        self.change(|state| state.rotation = Rotation::Tilted { frame, aligned: true });
+    }
+
+    /// Turns the rotary axes to 0.
+    pub(in crate::gcode) fn turn_to_zero(&mut self) {
+        let mut end = self.position;
+        let mut commanded = [false; 6];
+        for axis in 3..AXES.len() {
+            if self.axes[axis] {
+                end[axis] = Some(0.0);
+                commanded[axis] = true;
+            }
+        }
+        if commanded.contains(&true) {
+            self.push(true, end, commanded, StepPath::Line);
+        }
+    }
+
+    /// Switches tool centre point control (M128).
+    pub(in crate::gcode) fn set_tcp(&mut self, is_on: bool) {
+        self.transformed = is_on;
+        let tcp = if is_on { Tcp::Rotary } else { Tcp::Off };
+        if self.state.tcp != tcp {
+            self.change(|state| {
+                state.tcp = tcp;
+                state.tcp_starts += usize::from(is_on);
+            });
+        }
+    }
+
+    /// Sets whether rotary axes turn the shorter way (M126), whatever the control does otherwise.
+    pub(in crate::gcode) fn set_shorter_way(&mut self, is_on: bool) {
+        // It changes no coordinate, and so no position.
+        if self.state.shorter_way != is_on {
+            Arc::make_mut(&mut self.state).shorter_way = is_on;
+        }
+    }
+
+    /// Sets the length of a tool, in millimetres, which the program states.
+    pub(in crate::gcode) fn define_length(&mut self, tool: u32, length: f64) {
+        self.lengths.insert(tool, length);
+    }
+
+    /// Returns whether the length of the tool in the spindle is in force.
+    pub(in crate::gcode) fn has_length(&self) -> bool {
+        self.state.length != LengthOffset::Off
+    }
+}

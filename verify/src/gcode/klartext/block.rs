@@ -1,0 +1,326 @@
+//! The words of a motion: coordinates, feed and M words.
+
+use super::expression::{Parameters, value};
+use super::line::Cursor;
+use super::words::{Entry, M_WORDS};
+use crate::gcode::GcodeFault;
+use crate::gcode::error::not_read;
+use touchoff::Unit;
+
+/// A coordinate, in millimetres or degrees.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Coordinate {
+    Absolute(f64),
+    /// From the position before (`IX`).
+    Incremental(f64),
+    /// The angle at which the tool stands along z of the tilted plane: Q120, Q121 or Q122 as the axis's own.
+    OfPlane,
+}
+
+/// A feed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Feed {
+    /// Rapid traverse, in this block alone.
+    Rapid,
+    Rate(f64),
+    /// The feed of the last TOOL CALL (`F AUTO`).
+    OfTool,
+}
+
+/// A retract along the tool axis (M140).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Retract {
+    /// In millimetres; `None`: to the end of the travel.
+    pub(super) distance: Option<f64>,
+    pub(super) rapid: bool,
+}
+
+/// The words of a motion. M words that are not here are in a list of their own.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Words {
+    /// X Y Z A B C.
+    pub(super) axes: [Option<Coordinate>; 6],
+    pub(super) polar_radius: Option<Coordinate>,
+    pub(super) polar_angle: Option<Coordinate>,
+    pub(super) radius: Option<f64>,
+    pub(super) clockwise: Option<bool>,
+    pub(super) feed: Option<Feed>,
+    pub(super) retract: Option<Retract>,
+    /// M91.
+    pub(super) is_machine: bool,
+    /// M99.
+    pub(super) is_call: bool,
+    /// M89.
+    pub(super) is_modal_call: bool,
+}
+
+impl Words {
+    /// Returns whether the block has a coordinate of an axis.
+    pub(super) fn has_axes(&self) -> bool {
+        self.axes.iter().any(Option::is_some)
+    }
+
+    /// Refuses a word that a statement does not use.
+    pub(super) fn check_used(&self, head: &'static str) -> Result<(), GcodeFault> {
+        let unused = [
+            ("R", self.radius.is_some_and(|radius| radius != 0.0) && head != "CR"),
+            ("DR", self.clockwise.is_some() && !matches!(head, "C" | "CR" | "CP")),
+            ("PR", self.polar_radius.is_some() && !matches!(head, "LP" | "CTP")),
+            ("PA", self.polar_angle.is_some() && !matches!(head, "LP" | "CTP" | "CP")),
+        ];
+        match unused.into_iter().find(|(_, is_unused)| *is_unused) {
+            Some((word, _)) => {
+                let remedy = "remove it, or write the statement that uses it";
+                Err(not_read(format!("{word} beside {head}"), "a word of another motion", remedy))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// Returns whether the block has coordinates of axes alone.
+    pub(super) fn is_plain(&self) -> bool {
+        *self == Words { axes: self.axes, ..Words::default() }
+    }
+
+    pub(super) fn is_rapid(&self) -> bool {
+        self.feed == Some(Feed::Rapid)
+    }
+}
+
+/// What numbers are read with.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Scale<'a> {
+    known: &'a Parameters,
+    /// The unit of the program in millimetres.
+    unit: f64,
+}
+
+impl<'a> Scale<'a> {
+    pub(super) fn new(known: &'a Parameters, unit: Unit) -> Scale<'a> {
+        Scale { known, unit: unit.millimetres() }
+    }
+
+    /// Reads a length, and returns it in millimetres.
+    pub(super) fn length(&self, cursor: &mut Cursor) -> Result<f64, GcodeFault> {
+        Ok(self.unit * value(cursor, self.known)?)
+    }
+
+    /// Reads the words of a motion. `codes` gets the numbers of M words.
+    pub(super) fn words(
+        &self,
+        cursor: &mut Cursor,
+        codes: &mut Vec<u32>,
+    ) -> Result<Words, GcodeFault> {
+        let mut words = Words::default();
+        while let Some(byte) = cursor.peek() {
+            match byte.to_ascii_uppercase() {
+                letter @ (b'X'..=b'Z' | b'A'..=b'C') => {
+                    cursor.advance();
+                    self.axis(cursor, letter, false, &mut words)?;
+                }
+                b'I' => {
+                    let start = *cursor;
+                    cursor.advance();
+                    match cursor.here().map(|byte| byte.to_ascii_uppercase()) {
+                        Some(letter @ (b'X'..=b'Z' | b'A'..=b'C')) => {
+                            cursor.advance();
+                            self.axis(cursor, letter, true, &mut words)?;
+                        }
+                        Some(b'P') => self.polar(cursor, true, &mut words)?,
+                        _ => {
+                            let mut start = start;
+                            return Err(start.unexpected("an axis after I"));
+                        }
+                    }
+                }
+                b'P' => self.polar(cursor, false, &mut words)?,
+                b'R' => self.radius(cursor, &mut words)?,
+                b'D' if cursor.take_prefix("DR") => {
+                    let is_clockwise = cursor.take(b'-');
+                    if !is_clockwise && !cursor.take(b'+') {
+                        return Err(cursor.unexpected("DR+ or DR-"));
+                    }
+                    words.clockwise = Some(is_clockwise);
+                }
+                b'F' => words.feed = Some(self.feed(cursor)?),
+                b'M' => self.m_word(cursor, &mut words, codes)?,
+                letter @ b'U'..=b'W' => return Err(GcodeFault::Axis { word: char::from(letter) }),
+                _ => return Err(cursor.unexpected("a coordinate, R0, DR, F or an M word")),
+            }
+        }
+        Ok(words)
+    }
+
+    fn axis(
+        &self,
+        cursor: &mut Cursor,
+        letter: u8,
+        incremental: bool,
+        words: &mut Words,
+    ) -> Result<(), GcodeFault> {
+        let axis = match letter {
+            b'A'..=b'C' => usize::from(letter - b'A') + 3,
+            _ => usize::from(letter - b'X'),
+        };
+        let coordinate = if axis >= 3 && !incremental && takes_angle_of_plane(cursor, letter) {
+            Coordinate::OfPlane
+        } else {
+            let value = value(cursor, self.known)?;
+            let value = if axis < 3 { self.unit * value } else { value };
+            match incremental {
+                true => Coordinate::Incremental(value),
+                false => Coordinate::Absolute(value),
+            }
+        };
+        match words.axes[axis].replace(coordinate) {
+            Some(_) => Err(GcodeFault::Repeated { word: char::from(letter) }),
+            None => Ok(()),
+        }
+    }
+
+    /// Reads PR or PA.
+    fn polar(
+        &self,
+        cursor: &mut Cursor,
+        incremental: bool,
+        words: &mut Words,
+    ) -> Result<(), GcodeFault> {
+        let is_radius = cursor.take_prefix("PR");
+        if !is_radius && !cursor.take_prefix("PA") {
+            return Err(cursor.unexpected("PR or PA"));
+        }
+        let value = value(cursor, self.known)?;
+        let value = if is_radius { self.unit * value } else { value };
+        let coordinate = match incremental {
+            true => Coordinate::Incremental(value),
+            false => Coordinate::Absolute(value),
+        };
+        match is_radius {
+            true => words.polar_radius = Some(coordinate),
+            false => words.polar_angle = Some(coordinate),
+        }
+        Ok(())
+    }
+
+    /// Reads R0, RL, RR or a radius.
+    fn radius(&self, cursor: &mut Cursor, words: &mut Words) -> Result<(), GcodeFault> {
+        cursor.advance();
+        match cursor.here() {
+            Some(b'L' | b'l') => return compensation("RL"),
+            Some(b'R' | b'r') => return compensation("RR"),
+            _ => {}
+        }
+        let start = cursor.rest();
+        let word = start.split(|c: char| c.is_whitespace() || c == ';').next().unwrap_or_default();
+        match word {
+            "0" => cursor.advance(),
+            "+" | "-" => return compensation(if word == "+" { "R+" } else { "R-" }),
+            _ => words.radius = Some(self.length(cursor)?),
+        }
+        Ok(())
+    }
+
+    /// Reads a feed.
+    pub(super) fn feed(&self, cursor: &mut Cursor) -> Result<Feed, GcodeFault> {
+        cursor.advance();
+        match cursor.here().map(|byte| byte.to_ascii_uppercase()) {
+            // Per turn and per tooth: the path is the same.
+            Some(b'U' | b'Z') => cursor.advance(),
+            Some(b'T') => {
+                return Err(not_read("FT", "a feed by the time of a block", "write F"));
+            }
+            _ => {}
+        }
+        if cursor.take_prefix("MAX") {
+            return match cursor.here() {
+                Some(b'T' | b't') => {
+                    Err(not_read("FMAXT", "a feed by the time of a block", "write FMAX"))
+                }
+                _ => Ok(Feed::Rapid),
+            };
+        }
+        if cursor.take_prefix("AUTO") {
+            return Ok(Feed::OfTool);
+        }
+        Ok(Feed::Rate(value(cursor, self.known)?))
+    }
+
+    fn m_word(
+        &self,
+        cursor: &mut Cursor,
+        words: &mut Words,
+        codes: &mut Vec<u32>,
+    ) -> Result<(), GcodeFault> {
+        cursor.advance();
+        let digits = cursor.take_while(|byte| byte.is_ascii_digit());
+        let Ok(number) = digits.parse::<u32>() else {
+            return Err(GcodeFault::NoNumber { word: 'M' });
+        };
+        m_entry(number)?.check()?;
+        match number {
+            91 => words.is_machine = true,
+            99 => words.is_call = true,
+            89 => words.is_modal_call = true,
+            140 => words.retract = Some(self.retract(cursor)?),
+            // The feed of the motion that follows the rotary axes, and that along the tool axis in percent.
+            103 | 128 => {
+                codes.push(number);
+                if matches!(cursor.peek(), Some(b'F' | b'f')) {
+                    self.feed(cursor)?;
+                }
+            }
+            120 => {
+                codes.push(number);
+                if cursor.take_prefix("LA") {
+                    value(cursor, self.known)?;
+                }
+            }
+            _ => codes.push(number),
+        }
+        Ok(())
+    }
+
+    /// Reads `MB` and its feed.
+    pub(super) fn retract(&self, cursor: &mut Cursor) -> Result<Retract, GcodeFault> {
+        if !cursor.take_prefix("MB") {
+            return Err(cursor.unexpected("MB with a distance, or MB MAX, after M140"));
+        }
+        let is_whole = cursor.take_prefix("MAX");
+        let distance = if is_whole { None } else { Some(self.length(cursor)?) };
+        if let Some(value) = distance.filter(|distance| *distance < 0.0) {
+            let shown = format!("MB {value}");
+            return Err(GcodeFault::Sentence { shown, expected: "a distance from 0" });
+        }
+        let has_feed = matches!(cursor.peek(), Some(b'F' | b'f'));
+        let feed = if has_feed { self.feed(cursor)? } else { Feed::Rapid };
+        Ok(Retract { distance, rapid: feed == Feed::Rapid })
+    }
+}
+
+/// Returns the entry of an M word.
+pub(super) fn m_entry(number: u32) -> Result<&'static Entry, GcodeFault> {
+    let known = M_WORDS.iter().find(|entry| entry.word[1..].parse() == Ok(number));
+    known.ok_or_else(|| GcodeFault::UnknownCode { word: format!("M{number}") })
+}
+
+/// Passes over `+Q120` after A, `+Q121` after B and `+Q122` after C.
+fn takes_angle_of_plane(cursor: &mut Cursor, letter: u8) -> bool {
+    let mut ahead = *cursor;
+    ahead.take(b'+');
+    let is_angle = ahead.take_prefix("Q12") && ahead.here() == Some(letter - b'A' + b'0');
+    if is_angle {
+        ahead.advance();
+    }
+    let found = is_angle && !ahead.here().is_some_and(|byte| byte.is_ascii_digit());
+    if found {
+        *cursor = ahead;
+    }
+    found
+}
+
+/// Selects the side of the path on which the tool moves: RL, RR, or R+ and R- of a motion along one axis.
+fn compensation(word: &'static str) -> Result<(), GcodeFault> {
+    let meaning = "cutter radius compensation";
+    let remedy = "post the program with the path of the tool's centre, R0";
+    Err(not_read(word, meaning, remedy))
+}

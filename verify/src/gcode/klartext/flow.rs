@@ -1,0 +1,297 @@
+//! The order in which blocks are executed: labels, their calls and repeats, and jumps.
+//!
+//! `CALL LBL n` executes the blocks after the label up to `LBL 0`. `CALL LBL n REP r` executes the section from the label to the call
+//! r times more (TNC 640, *Klartext programming*, "Labeling subprograms and program section repeats"). `LBL 0` outside of a call does
+//! nothing: "subprograms located before M2 or M30 will be executed at least once even if they are not called".
+
+use super::expression::{Parameters, value};
+use super::line::{Cursor, Place, begin, block};
+use crate::gcode::error::{combination, missing};
+use crate::gcode::{GcodeError, GcodeFault, MAX_CALLS, MAX_REPEATED};
+use std::collections::HashMap;
+use std::fmt;
+
+/// Largest number after REP.
+const MAX_REPEATS: f64 = 65_534.0;
+
+/// A label.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum Label<'a> {
+    Number(u32),
+    Name(&'a str),
+}
+
+impl fmt::Display for Label<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Label::Number(number) => write!(f, "LBL {number}"),
+            Label::Name(name) => write!(f, "LBL {}", crate::gcode::shown(name)),
+        }
+    }
+}
+
+/// Reads the number or the name of a label.
+pub(super) fn label<'a>(
+    cursor: &mut Cursor<'a>,
+    known: &Parameters,
+) -> Result<Label<'a>, GcodeFault> {
+    if cursor.peek() == Some(b'"') {
+        return Ok(Label::Name(cursor.quoted()?));
+    }
+    let mut start = *cursor;
+    let number = value(cursor, known)?;
+    match number.fract() == 0.0 && (0.0..=65_535.0).contains(&number) {
+        true => Ok(Label::Number(number as u32)),
+        false => Err(start.unexpected("a whole number from 0, or a name in quotation marks")),
+    }
+}
+
+/// A subprogram that is being executed.
+#[derive(Clone, Copy, Debug)]
+struct Call {
+    return_to: Place,
+    /// The number of repeats that its caller has begun.
+    repeats: usize,
+}
+
+/// A section that is being repeated.
+#[derive(Clone, Copy, Debug)]
+struct Repeat {
+    /// Its first byte, and that of its last block.
+    section: [usize; 2],
+    /// Executions that follow the present one.
+    left: u32,
+}
+
+/// The place of execution in a text.
+#[derive(Clone, Debug)]
+pub(super) struct Flow<'a> {
+    text: &'a str,
+    /// The first block after the head.
+    start: Place,
+    /// The next block.
+    place: Place,
+    /// The present block.
+    present: Place,
+    /// The places after labels.
+    labels: HashMap<Label<'a>, Place>,
+    /// The bytes at which `LBL 0` stands, in order.
+    ends: Vec<usize>,
+    calls: Vec<Call>,
+    repeats: Vec<Repeat>,
+    /// Set once a block was called, repeated or jumped to.
+    jumped: bool,
+    counted: usize,
+}
+
+impl<'a> Flow<'a> {
+    /// Returns the blocks of the text, each with its line.
+    pub(super) fn blocks(&self) -> impl Iterator<Item = (usize, &'a str)> + use<'a> {
+        let (text, mut place) = (self.text, self.start);
+        std::iter::from_fn(move || {
+            let (found, after) = block(text, place)?;
+            let line = std::mem::replace(&mut place, after).line;
+            Some((line, found))
+        })
+    }
+
+    /// Finds the labels of a text whose first block is at a place.
+    ///
+    /// # Errors
+    /// A label that stands twice, with its line.
+    pub(super) fn new(text: &'a str, start: Place) -> Result<Flow<'a>, GcodeError> {
+        let mut flow = Flow {
+            text,
+            start,
+            place: start,
+            present: start,
+            labels: HashMap::new(),
+            ends: Vec::new(),
+            calls: Vec::new(),
+            repeats: Vec::new(),
+            jumped: false,
+            counted: 0,
+        };
+        let mut lines: HashMap<Label, usize> = HashMap::new();
+        let known = Parameters::new();
+        let mut place = start;
+        while let Some((found, after)) = block(text, place) {
+            let at = std::mem::replace(&mut place, after);
+            let (mut cursor, _) = begin(found);
+            if cursor.peek() != Some(b'L') || !cursor.take_word("LBL") {
+                continue;
+            }
+            // A label that is not understood is refused where it is executed.
+            let Ok(label) = label(&mut cursor, &known) else { continue };
+            if label == Label::Number(0) {
+                flow.ends.push(at.offset);
+            } else if let Some(first) = lines.insert(label, at.line) {
+                let fault = GcodeFault::SecondLabel { label: label.to_string(), first };
+                return Err(GcodeError { line: at.line, fault });
+            } else {
+                flow.labels.insert(label, after);
+            }
+        }
+        Ok(flow)
+    }
+
+    /// Returns the next block and its line.
+    ///
+    /// # Errors
+    /// If the text ends without an end of the program, with its last line; if too many blocks are repeated.
+    pub(super) fn next_block(&mut self) -> Result<(usize, &'a str), GcodeError> {
+        let Some((found, after)) = block(self.text, self.place) else {
+            let last = self.place.line.max(2) - 1;
+            return Err(GcodeError { line: last, fault: GcodeFault::Unfinished });
+        };
+        self.present = self.place;
+        self.place = after;
+        let line = self.present.line;
+        self.count(1).map_err(|fault| GcodeError { line, fault })?;
+        Ok((line, found))
+    }
+
+    /// Counts blocks or steps that are executed after a jump. Those before are limited by the text.
+    pub(super) fn count(&mut self, number: usize) -> Result<(), GcodeFault> {
+        self.counted += if self.jumped { number } else { 0 };
+        if self.counted > MAX_REPEATED { Err(GcodeFault::TooLong) } else { Ok(()) }
+    }
+
+    /// Returns the block after the present one, without blank lines and comments, and the place after it.
+    pub(super) fn ahead(&self, mut place: Place) -> Option<(Cursor<'a>, Place)> {
+        loop {
+            let (found, after) = block(self.text, place)?;
+            let (mut cursor, _) = begin(found);
+            if !matches!(cursor.peek(), None | Some(b'*')) {
+                return Some((cursor, after));
+            }
+            place = after;
+        }
+    }
+
+    /// Returns the place of the next block.
+    pub(super) fn place(&self) -> Place {
+        self.place
+    }
+
+    /// Goes on at a place.
+    pub(super) fn go_on_at(&mut self, place: Place) {
+        self.place = place;
+    }
+
+    fn find(&self, label: Label) -> Result<Place, GcodeFault> {
+        let found = self.labels.get(&label).copied();
+        found.ok_or_else(|| GcodeFault::NoLabel { label: label.to_string() })
+    }
+
+    /// Obeys `CALL LBL` without REP.
+    pub(super) fn call(&mut self, label: Label) -> Result<(), GcodeFault> {
+        let place = self.find(label)?;
+        if self.calls.len() >= MAX_CALLS {
+            return Err(GcodeFault::TooDeep);
+        }
+        self.calls.push(Call { return_to: self.place, repeats: self.repeats.len() });
+        (self.place, self.jumped) = (place, true);
+        Ok(())
+    }
+
+    /// Obeys `CALL LBL n REP r`.
+    pub(super) fn repeat(&mut self, label: Label, times: f64) -> Result<(), GcodeFault> {
+        let place = self.find(label)?;
+        let section = [place.offset, self.present.offset];
+        let word = format!("REP of {label}");
+        if section[0] > section[1] {
+            let condition = "the label stands after the call";
+            return Err(combination(word, condition, "write the call after the section"));
+        }
+        if self.ends.iter().any(|end| (section[0]..section[1]).contains(end)) {
+            let condition = "LBL 0 stands in the section, which ends a subprogram";
+            let remedy = "remove LBL 0, or write a CALL LBL without REP for each execution";
+            return Err(combination(word, condition, remedy));
+        }
+        if times.fract() != 0.0 || !(0.0..=MAX_REPEATS).contains(&times) {
+            let shown = format!("REP {times}");
+            return Err(GcodeFault::Sentence { shown, expected: "a whole number from 0 to 65534" });
+        }
+        let own = self.calls.last().map_or(0, |call| call.repeats);
+        let known = self.repeats[own..].iter().position(|known| known.section == section);
+        let index = match known {
+            Some(index) => own + index,
+            None => {
+                self.repeats.push(Repeat { section, left: times as u32 });
+                self.repeats.len() - 1
+            }
+        };
+        // Repeats that were begun in it have been left.
+        self.repeats.truncate(index + 1);
+        match self.repeats[index].left {
+            0 => self.repeats.truncate(index),
+            left => {
+                self.repeats[index].left = left - 1;
+                (self.place, self.jumped) = (place, true);
+            }
+        }
+        Ok(())
+    }
+
+    /// Obeys `GOTO LBL`.
+    pub(super) fn jump(&mut self, label: Label) -> Result<(), GcodeFault> {
+        let place = self.find(label)?;
+        let own = self.calls.last().map_or(0, |call| call.repeats);
+        // A section that is left begins anew the next time.
+        let mut index = 0;
+        self.repeats.retain(|repeat| {
+            index += 1;
+            index <= own || (repeat.section[0]..=repeat.section[1]).contains(&place.offset)
+        });
+        (self.place, self.jumped) = (place, true);
+        Ok(())
+    }
+
+    /// Obeys `LBL 0`.
+    pub(super) fn end_subprogram(&mut self) {
+        if let Some(call) = self.calls.pop() {
+            self.repeats.truncate(call.repeats);
+            self.place = call.return_to;
+        }
+    }
+
+    /// Returns the line of the first text after the present block, and whether it is another program.
+    pub(super) fn text_after(&self) -> Option<(usize, bool)> {
+        let mut place = self.place;
+        let mut first = None;
+        while let Some((found, after)) = block(self.text, place) {
+            if super::line::head(found).is_some() {
+                return Some((place.line, true));
+            }
+            if !begin(found).0.is_at_end() {
+                first.get_or_insert((place.line, false));
+            }
+            place = after;
+        }
+        first
+    }
+}
+
+/// Reads `CALL LBL`, after these words.
+pub(super) fn call<'a>(
+    cursor: &mut Cursor<'a>,
+    flow: &mut Flow<'a>,
+    known: &Parameters,
+) -> Result<(), GcodeFault> {
+    let label = label(cursor, known)?;
+    if label == Label::Number(0) {
+        return Err(missing("CALL LBL", "another label than 0, which ends a subprogram"));
+    }
+    if !cursor.take_prefix("REP") {
+        cursor.check_end()?;
+        return flow.call(label);
+    }
+    let times = value(cursor, known)?;
+    // Older controls write the executions that are left, too, as in `REP 5/5`.
+    if cursor.take(b'/') {
+        cursor.number()?;
+    }
+    cursor.check_end()?;
+    flow.repeat(label, times)
+}

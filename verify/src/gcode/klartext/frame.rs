@@ -1,0 +1,494 @@
+//! Coordinates: the preset, the datum shift, mirrored axes, a rotation, tilted planes.
+//!
+//! A position is mirrored, rotated about z of the plane by cycle 10, turned with the tilted plane, and shifted by cycle 7. A shift in a
+//! tilted plane is along its axes. Where the manual leaves the order of two of them open, the second one is refused.
+//!
+//! The angles of a plane are about the fixed axes x, y and z of the workpiece, in this order; those of PLANE EULER about z, the new x
+//! and the new z (TNC 640, *Klartext programming*, "The PLANE function"). The preset that a program selects is the frame of the part.
+
+use super::Program;
+use super::block::{Coordinate, Feed, Retract, Scale, Words};
+use super::expression::value;
+use super::line::{Cursor, expected};
+use super::words::{PLANES, find};
+use crate::gcode::GcodeFault;
+use crate::gcode::control::Control;
+use crate::gcode::error::{combination, missing, not_read};
+use crate::gcode::note::NoteKind;
+use crate::gcode::state::{Frame as Map, Rotation, about};
+use nalgebra::{Matrix3, Vector3};
+
+/// Cosine of the angle between the vectors of PLANE VECTOR above which they are no right angle.
+const LARGEST_COSINE: f64 = 1e-3;
+
+/// The coordinates of a program.
+#[derive(Clone, Debug)]
+pub(super) struct Frame {
+    /// The values of the datum shift.
+    shift: [f64; 6],
+    /// The shift that is in force outside of the tilted plane.
+    base: [f64; 6],
+    /// The angle of cycle 10, in degrees.
+    turn: f64,
+    /// Signs of X, Y and Z.
+    pub(super) mirror: [f64; 3],
+    tilt: Option<Matrix3<f64>>,
+    /// Set if the rotary axes stand as the plane needs them.
+    aligned: bool,
+    /// The sign of the master axis in the plane, if the program states it (SEQ).
+    master_is_positive: Option<bool>,
+    /// The reason for which the shift depends on the control.
+    pub(super) doubt: Option<&'static str>,
+    /// The number of the preset, if the program has selected one.
+    preset: Option<f64>,
+}
+
+impl Frame {
+    pub(super) fn new() -> Frame {
+        Frame {
+            shift: [0.0; 6],
+            base: [0.0; 6],
+            turn: 0.0,
+            mirror: [1.0; 3],
+            tilt: None,
+            aligned: false,
+            master_is_positive: None,
+            doubt: None,
+            preset: None,
+        }
+    }
+
+    /// Returns whether axes are mirrored.
+    pub(super) fn is_mirrored(&self) -> bool {
+        self.mirror != [1.0; 3]
+    }
+
+    /// Returns the rotation of the control.
+    fn rotation(&self) -> Rotation {
+        let turn = about(2, self.turn);
+        match self.tilt {
+            None if self.turn == 0.0 => Rotation::Off,
+            None => Rotation::Plane { frame: Map { rotation: turn, origin: Vector3::zeros() } },
+            Some(tilt) => {
+                let [x, y, z] = [0, 1, 2].map(|axis| self.shift[axis] - self.base[axis]);
+                let in_plane = if self.doubt.is_some() { [0.0; 3] } else { [x, y, z] };
+                let frame = Map { rotation: tilt * turn, origin: tilt * Vector3::from(in_plane) };
+                Rotation::Tilted { frame, aligned: self.aligned }
+            }
+        }
+    }
+}
+
+impl Program<'_> {
+    /// Gives the control the coordinates that hold now.
+    fn change_frame(&mut self, control: &mut Control) {
+        self.before.forget();
+        control.set_coordinates(self.frame.base, self.frame.rotation());
+    }
+
+    /// Executes a line of an old cycle after its number and its part: 7, 8, 10 or 19.
+    pub(super) fn old_cycle(
+        &mut self,
+        number: u32,
+        cursor: &mut Cursor,
+        control: &mut Control,
+    ) -> Result<(), GcodeFault> {
+        match number {
+            7 => self.datum_shift(cursor, control),
+            8 => self.mirror(cursor, control),
+            10 => self.rotate(cursor, control),
+            _ => self.working_plane(cursor, control),
+        }
+    }
+
+    /// Executes the axes of CYCL DEF 7 or TRANS DATUM AXIS.
+    pub(super) fn datum_shift(
+        &mut self,
+        cursor: &mut Cursor,
+        control: &mut Control,
+    ) -> Result<(), GcodeFault> {
+        if cursor.peek() == Some(b'#') {
+            let meaning = "a row of a datum table, which is another file";
+            return Err(not_read("CYCL DEF 7 #", meaning, "write the values of its axes"));
+        }
+        let words = self.coordinates(cursor, "an axis with its shift")?;
+        let mut shift = self.frame.shift;
+        for (value, coordinate) in shift.iter_mut().zip(words.axes) {
+            match coordinate {
+                Some(Coordinate::Absolute(given)) => *value = given,
+                Some(Coordinate::Incremental(given)) => *value += given,
+                _ => {}
+            }
+        }
+        self.set_shift(shift, control)
+    }
+
+    /// Sets the datum shift.
+    pub(super) fn set_shift(
+        &mut self,
+        shift: [f64; 6],
+        control: &mut Control,
+    ) -> Result<(), GcodeFault> {
+        let is_turned = self.frame.turn != 0.0 || self.frame.is_mirrored();
+        if is_turned && shift != self.frame.shift && shift != [0.0; 6] {
+            let condition = "axes are rotated (CYCL DEF 10) or mirrored (CYCL DEF 8)";
+            return Err(combination("a datum shift", condition, "end that before"));
+        }
+        self.frame.shift = shift;
+        if self.frame.tilt.is_none() {
+            (self.frame.base, self.frame.doubt) = (shift, None);
+        } else if shift == self.frame.base {
+            self.frame.doubt = None;
+        } else if self.frame.base != [0.0; 6] || shift[3..] != [0.0; 3] {
+            self.frame.doubt =
+                Some("the datum shift has changed in a tilted plane, which had another one before");
+        }
+        self.change_frame(control);
+        Ok(())
+    }
+
+    /// Reads coordinates without other words.
+    fn coordinates(
+        &mut self,
+        cursor: &mut Cursor,
+        wanted: &'static str,
+    ) -> Result<Words, GcodeFault> {
+        let mut start = *cursor;
+        let mut codes = Vec::new();
+        let words = Scale::new(&self.parameters, self.unit).words(cursor, &mut codes)?;
+        if !words.is_plain() || !codes.is_empty() || words.axes.contains(&Some(Coordinate::OfPlane))
+        {
+            return Err(start.unexpected(wanted));
+        }
+        Ok(words)
+    }
+
+    /// Executes the axes of CYCL DEF 8. Without one, none is mirrored.
+    fn mirror(&mut self, cursor: &mut Cursor, control: &mut Control) -> Result<(), GcodeFault> {
+        let mut mirror = [1.0; 3];
+        while let Some(byte) = cursor.peek() {
+            match byte {
+                b'X' => mirror[0] = -1.0,
+                b'Y' => mirror[1] = -1.0,
+                _ => return Err(cursor.unexpected("X or Y, the axes that can be mirrored")),
+            }
+            cursor.advance();
+        }
+        if mirror != [1.0; 3] && (self.frame.turn != 0.0 || self.frame.tilt.is_some()) {
+            let condition = "axes are rotated (CYCL DEF 10, PLANE)";
+            return Err(combination("CYCL DEF 8", condition, "end that before"));
+        }
+        self.frame.mirror = mirror;
+        self.change_frame(control);
+        Ok(())
+    }
+
+    /// Executes the angle of CYCL DEF 10.
+    fn rotate(&mut self, cursor: &mut Cursor, control: &mut Control) -> Result<(), GcodeFault> {
+        let is_increment = cursor.take_prefix("IROT");
+        if !is_increment && !cursor.take_prefix("ROT") {
+            return Err(cursor.unexpected("ROT with an angle"));
+        }
+        let angle = value(cursor, &self.parameters)?;
+        cursor.check_end()?;
+        let turn = if is_increment { self.frame.turn + angle } else { angle };
+        if turn != 0.0 && self.frame.is_mirrored() {
+            let condition = "axes are mirrored (CYCL DEF 8)";
+            return Err(combination("CYCL DEF 10", condition, "end that before"));
+        }
+        self.check_tcp("CYCL DEF 10", turn != 0.0, control)?;
+        self.frame.turn = turn;
+        self.change_frame(control);
+        Ok(())
+    }
+
+    fn check_tcp(
+        &self,
+        word: &'static str,
+        rotates: bool,
+        control: &Control,
+    ) -> Result<(), GcodeFault> {
+        match rotates && control.is_tcp() {
+            true => Err(combination(word, "M128 is in force", "write M129 before")),
+            false => Ok(()),
+        }
+    }
+
+    /// Executes the angles of CYCL DEF 19. Without one, no plane is tilted.
+    fn working_plane(
+        &mut self,
+        cursor: &mut Cursor,
+        control: &mut Control,
+    ) -> Result<(), GcodeFault> {
+        if cursor.is_at_end() {
+            return self.end_plane(control);
+        }
+        let wanted =
+            "the angles A, B and C without F and ABST, by which the control turns the axes";
+        let words = self.coordinates(cursor, wanted)?;
+        let mut angles = [0.0; 3];
+        for (angle, coordinate) in angles.iter_mut().zip(&words.axes[3..]) {
+            match coordinate {
+                Some(Coordinate::Absolute(value)) => *angle = *value,
+                None => {}
+                Some(_) => return Err(expected("CYCL DEF 19", wanted)),
+            }
+        }
+        self.tilt("CYCL DEF 19", spatial(angles), control)
+    }
+
+    /// Tilts the plane. The axes rest.
+    fn tilt(
+        &mut self,
+        word: &'static str,
+        rotation: Matrix3<f64>,
+        control: &mut Control,
+    ) -> Result<(), GcodeFault> {
+        self.check_tcp(word, true, control)?;
+        if self.frame.turn != 0.0 || self.frame.is_mirrored() {
+            let condition = "axes are rotated (CYCL DEF 10) or mirrored (CYCL DEF 8)";
+            return Err(combination(word, condition, "end that before"));
+        }
+        if self.frame.tilt.is_some() && self.frame.shift != self.frame.base {
+            let condition = "the datum shift has changed in a tilted plane";
+            return Err(combination(word, condition, "write PLANE RESET before"));
+        }
+        (self.frame.tilt, self.frame.aligned) = (Some(rotation), false);
+        self.frame.master_is_positive = None;
+        self.change_frame(control);
+        Ok(())
+    }
+
+    /// Ends the tilted plane. The axes rest.
+    fn end_plane(&mut self, control: &mut Control) -> Result<(), GcodeFault> {
+        if self.frame.turn != 0.0 && self.frame.tilt.is_some() {
+            let condition = "axes are rotated in the tilted plane (CYCL DEF 10)";
+            return Err(combination("the end of a plane", condition, "end that before"));
+        }
+        let has_moved = self.frame.shift != self.frame.base && self.frame.shift != [0.0; 6];
+        self.frame.doubt =
+            has_moved.then_some("the datum shift has changed in a tilted plane, which has ended");
+        (self.frame.tilt, self.frame.aligned) = (None, false);
+        self.frame.base = self.frame.shift;
+        self.change_frame(control);
+        Ok(())
+    }
+
+    /// Executes PLANE.
+    pub(super) fn plane(
+        &mut self,
+        cursor: &mut Cursor,
+        control: &mut Control,
+    ) -> Result<(), GcodeFault> {
+        let form = cursor.letters().to_ascii_uppercase();
+        let Some(entry) = find(&PLANES, &form) else {
+            return Err(expected(&form, "SPATIAL, EULER, VECTOR, RELATIV or RESET after PLANE"));
+        };
+        entry.check()?;
+        let words = self.plane_words(cursor, control)?;
+        let [spa, spb, spc, precession, nutation, turn, bx, by, bz, nx, ny, nz] = words.values;
+        let needed = |value: Option<f64>, needed| {
+            value.ok_or_else(|| missing(format!("PLANE {form}"), needed))
+        };
+        let rotation = match form.as_str() {
+            "RESET" => None,
+            "SPATIAL" => {
+                let all = "the angles SPA, SPB and SPC";
+                Some(spatial([needed(spa, all)?, needed(spb, all)?, needed(spc, all)?]))
+            }
+            "EULER" => {
+                let all = "the angles EULPR, EULNU and EULROT";
+                let [first, second, third] =
+                    [needed(precession, all)?, needed(nutation, all)?, needed(turn, all)?];
+                Some(about(2, first) * about(0, second) * about(2, third))
+            }
+            "VECTOR" => {
+                let all = "the vectors BX BY BZ and NX NY NZ";
+                let base = Vector3::new(needed(bx, all)?, needed(by, all)?, needed(bz, all)?);
+                let normal = Vector3::new(needed(nx, all)?, needed(ny, all)?, needed(nz, all)?);
+                Some(from_vectors(base, normal)?)
+            }
+            "RELATIV" => {
+                let Some(tilt) = self.frame.tilt else {
+                    return Err(missing("PLANE RELATIV", "a tilted plane before"));
+                };
+                let (axis, angle) = match (spa, spb, spc) {
+                    (Some(angle), None, None) => (0, angle),
+                    (None, Some(angle), None) => (1, angle),
+                    (None, None, Some(angle)) => (2, angle),
+                    _ => return Err(missing("PLANE RELATIV", "one of SPA, SPB and SPC")),
+                };
+                Some(tilt * about(axis, angle))
+            }
+            _ => return Err(expected(&form, "the form of the plane after PLANE")),
+        };
+        if rotation.is_some() && !words.turns && !words.stays {
+            return Err(missing(format!("PLANE {form}"), "TURN or STAY"));
+        }
+        if let Some(retract) = words.retract.filter(|_| words.turns) {
+            control.retract(retract.distance, retract.rapid);
+        }
+        match rotation {
+            Some(rotation) => {
+                // Where the normal stays, only the table or only the plane turns.
+                if words.turns_table && (rotation[(2, 2)] - 1.0).abs() < 1e-12 {
+                    let meaning = "a turn of the table about the tool, which leaves the plane";
+                    return Err(not_read("TABLE ROT", meaning, "write COORD ROT"));
+                }
+                self.tilt("PLANE", rotation, control)?;
+                self.frame.master_is_positive = words.master_is_positive;
+                if words.turns {
+                    control.align_with_plane(words.master_is_positive);
+                    self.frame.aligned = true;
+                }
+            }
+            None => {
+                self.end_plane(control)?;
+                if words.turns {
+                    control.turn_to_zero();
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Reads the words after the form of a plane.
+    fn plane_words(
+        &mut self,
+        cursor: &mut Cursor,
+        control: &mut Control,
+    ) -> Result<PlaneWords, GcodeFault> {
+        let scale = Scale::new(&self.parameters, self.unit);
+        let mut words = PlaneWords::default();
+        while !cursor.is_at_end() {
+            if let Some(index) = VALUES.iter().position(|name| cursor.take_prefix(name)) {
+                words.values[index] = Some(value(cursor, &self.parameters)?);
+                continue;
+            }
+            let refused = PLANES.iter().filter(|entry| entry.check().is_err());
+            for entry in refused {
+                if cursor.take_prefix(entry.word) {
+                    entry.check()?;
+                }
+            }
+            if cursor.take_prefix("TURN") {
+                words.turns = true;
+            } else if cursor.take_prefix("STAY") {
+                words.stays = true;
+            } else if cursor.take_prefix("COORD") && cursor.take_prefix("ROT") {
+                let word = "COORD ROT".to_owned();
+                control.notes.add(control.line, NoteKind::PassedOver { word });
+            } else if cursor.take_prefix("TABLE") && cursor.take_prefix("ROT") {
+                words.turns_table = true;
+            } else if cursor.take_prefix("SEQ") {
+                let is_positive = cursor.take(b'+');
+                if !is_positive && !cursor.take(b'-') {
+                    return Err(cursor.unexpected("SEQ+ or SEQ-"));
+                }
+                words.master_is_positive = Some(is_positive);
+            } else if matches!(cursor.peek(), Some(b'M')) {
+                words.retract = Some(scale.retract(cursor)?);
+            } else if matches!(cursor.peek(), Some(b'F')) {
+                // The rate of the rotary axes: their path is the same.
+                let _: Feed = scale.feed(cursor)?;
+            } else {
+                return Err(cursor.unexpected("an angle, a vector, TURN, STAY, MB or F"));
+            }
+        }
+        Ok(words)
+    }
+
+    /// Turns the rotary axes to the tilted plane: `L A+Q120 B+Q121 C+Q122`.
+    pub(super) fn turn_to_plane(
+        &mut self,
+        words: &Words,
+        control: &mut Control,
+    ) -> Result<(), GcodeFault> {
+        let is_other =
+            |word: &Option<Coordinate>| !matches!(word, None | Some(Coordinate::OfPlane));
+        if words.axes.iter().any(is_other) {
+            let condition = "its block has another coordinate";
+            let remedy = "turn the axes in a block of their own";
+            return Err(combination("Q120 to Q122", condition, remedy));
+        }
+        if !matches!(control.rotation(), Rotation::Tilted { .. }) {
+            return Err(missing("Q120 to Q122", "a tilted plane (PLANE) before"));
+        }
+        let missed = control.rotary_axes().zip(&words.axes[3..]).zip(["A", "B", "C"]);
+        if let Some((_, letter)) =
+            missed.into_iter().find(|((has, word), _)| *has && word.is_none())
+        {
+            let needed = "all rotary axes of the machine, since the plane depends on each";
+            return Err(missing(format!("Q120 to Q122 without {letter}"), needed));
+        }
+        control.execute(control.line, &mut self.block)?;
+        control.align_with_plane(self.frame.master_is_positive);
+        self.frame.aligned = true;
+        self.before.forget();
+        Ok(())
+    }
+
+    /// Executes CYCL DEF 247.
+    pub(super) fn preset(&mut self, number: f64, control: &mut Control) -> Result<(), GcodeFault> {
+        let word = format!("CYCL DEF 247 Q339={number}");
+        match self.frame.preset {
+            Some(before) if before != number => {
+                let meaning =
+                    "another preset than the one before, whose place only the machine knows";
+                return Err(not_read(word, meaning, "check a program per preset"));
+            }
+            None if self.positioned => {
+                let condition = "positions of the preset before it stand in the program";
+                return Err(combination(word, condition, "select the preset first"));
+            }
+            _ => {}
+        }
+        if self.frame.tilt.is_some() {
+            let condition = "a plane is tilted";
+            return Err(combination(word, condition, "write PLANE RESET before"));
+        }
+        // It ends the shift, mirrored axes and the rotation.
+        self.frame = Frame { preset: Some(number), ..Frame::new() };
+        self.change_frame(control);
+        Ok(())
+    }
+}
+
+/// The words after the form of a plane.
+#[derive(Default)]
+struct PlaneWords {
+    /// By the order of [`VALUES`].
+    values: [Option<f64>; 12],
+    turns: bool,
+    stays: bool,
+    /// TABLE ROT.
+    turns_table: bool,
+    /// SEQ+ or SEQ-.
+    master_is_positive: Option<bool>,
+    retract: Option<Retract>,
+}
+
+/// The numbers of a plane.
+const VALUES: [&str; 12] =
+    ["SPA", "SPB", "SPC", "EULPR", "EULNU", "EULROT", "BX", "BY", "BZ", "NX", "NY", "NZ"];
+
+/// Returns the rotation by angles in degrees about the fixed x, y and z, in this order.
+fn spatial([a, b, c]: [f64; 3]) -> Matrix3<f64> {
+    about(2, c) * about(1, b) * about(0, a)
+}
+
+/// Returns the rotation whose x has the direction of a base, and whose z is a normal.
+fn from_vectors(base: Vector3<f64>, normal: Vector3<f64>) -> Result<Matrix3<f64>, GcodeFault> {
+    let lengths = [base.norm(), normal.norm()];
+    let expected = "two vectors at right angles";
+    let shown = || "PLANE VECTOR".to_owned();
+    if lengths.iter().any(|length| *length < 1e-6) {
+        return Err(GcodeFault::Sentence { shown: shown(), expected });
+    }
+    let (base, normal) = (base / lengths[0], normal / lengths[1]);
+    if base.dot(&normal).abs() > LARGEST_COSINE {
+        return Err(GcodeFault::Sentence { shown: shown(), expected });
+    }
+    let y = normal.cross(&base).normalize();
+    Ok(Matrix3::from_columns(&[y.cross(&normal), y, normal]))
+}

@@ -1,0 +1,196 @@
+//! The text of a block: the lines that belong to it, and the words on them.
+//!
+//! A block is a line, and the lines after it as long as each ends in `~`. A comment begins with `;` and ends with its line. Numbers
+//! have a point or a comma.
+
+use crate::gcode::{ExpressionFault, GcodeFault, LARGEST_NUMBER, shown, unquoted};
+use touchoff::Unit;
+
+/// A place in the text: the byte at which a block begins, and the number of its line from 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Place {
+    pub(super) offset: usize,
+    pub(super) line: usize,
+}
+
+/// Returns the block at a place, and the place after it.
+pub(super) fn block(text: &str, place: Place) -> Option<(&str, Place)> {
+    let rest = text.get(place.offset..).filter(|rest| !rest.is_empty())?;
+    let (mut length, mut lines) = (0, 0);
+    loop {
+        let tail = &rest[length..];
+        let (line, whole) = match tail.split_once('\n') {
+            Some((line, _)) => (line, line.len() + 1),
+            None => (tail, tail.len()),
+        };
+        (length, lines) = (length + whole, lines + 1);
+        if length == rest.len() || !line.trim_end().ends_with('~') {
+            break;
+        }
+    }
+    Some((&rest[..length], Place { offset: place.offset + length, line: place.line + lines }))
+}
+
+/// Returns a block without the sign of an optional block and its number, and whether it has the sign.
+pub(super) fn begin(block: &str) -> (Cursor<'_>, bool) {
+    let mut cursor = Cursor::new(block);
+    let mut is_optional = cursor.take(b'/');
+    cursor.peek();
+    cursor.take_while(|byte| byte.is_ascii_digit());
+    is_optional |= cursor.take(b'/');
+    (cursor, is_optional)
+}
+
+/// Returns the unit of a line that is the head of a program, `BEGIN PGM NAME MM`.
+pub(super) fn head(block: &str) -> Option<Unit> {
+    let (mut cursor, _) = begin(block);
+    let is_head = cursor.take_word("BEGIN") && cursor.take_word("PGM");
+    let text = cursor.rest().split(';').next().unwrap_or_default().trim_end();
+    match text.rsplit_once(char::is_whitespace).filter(|_| is_head)?.1 {
+        unit if unit.eq_ignore_ascii_case("MM") => Some(Unit::Millimetre),
+        unit if unit.eq_ignore_ascii_case("INCH") => Some(Unit::Inch),
+        _ => None,
+    }
+}
+
+/// A position in the text of a block.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cursor<'a> {
+    text: &'a str,
+    at: usize,
+}
+
+impl<'a> Cursor<'a> {
+    pub(super) fn new(text: &'a str) -> Cursor<'a> {
+        Cursor { text, at: 0 }
+    }
+
+    /// Passes over blanks, comments and the signs of continued lines, and returns the next byte without passing over it.
+    pub(super) fn peek(&mut self) -> Option<u8> {
+        let bytes = self.text.as_bytes();
+        loop {
+            match *bytes.get(self.at)? {
+                b' ' | b'\t' | b'\r' | b'\n' | b'~' => self.at += 1,
+                b';' => {
+                    let rest = &self.text[self.at..];
+                    self.at += rest.find('\n').unwrap_or(rest.len());
+                }
+                byte => return Some(byte),
+            }
+        }
+    }
+
+    /// Returns the byte at the cursor, which may be a blank.
+    pub(super) fn here(&self) -> Option<u8> {
+        self.text.as_bytes().get(self.at).copied()
+    }
+
+    /// Passes over the next byte that is no blank if it is the given one.
+    pub(super) fn take(&mut self, byte: u8) -> bool {
+        let found = self.peek() == Some(byte);
+        self.at += usize::from(found);
+        found
+    }
+
+    /// Passes over one byte, which has to be ASCII.
+    pub(super) fn advance(&mut self) {
+        self.at += 1;
+    }
+
+    /// Passes over bytes as long as they satisfy the condition, and returns their text.
+    pub(super) fn take_while(&mut self, condition: impl Fn(u8) -> bool) -> &'a str {
+        let rest = &self.text[self.at..];
+        let length = rest.bytes().position(|byte| !condition(byte)).unwrap_or(rest.len());
+        self.at += length;
+        &rest[..length]
+    }
+
+    /// Passes over blanks, and returns the letters after them.
+    pub(super) fn letters(&mut self) -> &'a str {
+        self.peek();
+        self.take_while(|byte| byte.is_ascii_alphabetic())
+    }
+
+    /// Passes over a word of letters, in either case, if it is next.
+    pub(super) fn take_word(&mut self, word: &str) -> bool {
+        let mut ahead = *self;
+        let found = ahead.letters().eq_ignore_ascii_case(word);
+        if found {
+            *self = ahead;
+        }
+        found
+    }
+
+    /// Passes over a text, in either case, if it is next, whatever follows it.
+    pub(super) fn take_prefix(&mut self, prefix: &str) -> bool {
+        self.peek();
+        let next = self.text.as_bytes().get(self.at..self.at + prefix.len());
+        let found = next.is_some_and(|next| next.eq_ignore_ascii_case(prefix.as_bytes()));
+        self.at += if found { prefix.len() } else { 0 };
+        found
+    }
+
+    /// Passes over a text in quotes, and returns it.
+    pub(super) fn quoted(&mut self) -> Result<&'a str, GcodeFault> {
+        let rest = &self.text[self.at..];
+        let name = rest[1..].split(['"', '\n']).next().unwrap_or_default();
+        match rest[1 + name.len()..].starts_with('"') {
+            true => {
+                self.at += name.len() + 2;
+                Ok(name)
+            }
+            false => Err(expected(rest, "the second quotation mark of a name")),
+        }
+    }
+
+    /// Returns the rest of the block.
+    pub(super) fn rest(&self) -> &'a str {
+        &self.text[self.at..]
+    }
+
+    /// Returns whether only blanks and comments follow.
+    pub(super) fn is_at_end(&mut self) -> bool {
+        self.peek().is_none()
+    }
+
+    /// Refuses what follows, if something does.
+    pub(super) fn check_end(&mut self) -> Result<(), GcodeFault> {
+        match self.is_at_end() {
+            true => Ok(()),
+            false => Err(self.unexpected("nothing more in this block")),
+        }
+    }
+
+    /// Returns the fault of what follows.
+    pub(super) fn unexpected(&mut self, wanted: &'static str) -> GcodeFault {
+        self.peek();
+        expected(self.rest(), wanted)
+    }
+
+    /// Reads a number without a sign.
+    pub(super) fn number(&mut self) -> Result<f64, GcodeFault> {
+        let start = self.rest();
+        let digits = self.take_while(|byte| byte.is_ascii_digit() || byte == b'.');
+        // A comma is the point of controls in German.
+        let mut number = digits.parse::<f64>();
+        if self.here() == Some(b',') && !digits.contains('.') {
+            self.advance();
+            let places = self.take_while(|byte| byte.is_ascii_digit());
+            number = format!("{digits}.{places}").parse();
+        }
+        let number = number.map_err(|_| {
+            let shown = shown(start.split_whitespace().next().unwrap_or_default());
+            ExpressionFault::Number { shown }
+        })?;
+        match number <= LARGEST_NUMBER {
+            true => Ok(number),
+            false => Err(ExpressionFault::NotFinite { operation: "a number" }.into()),
+        }
+    }
+}
+
+/// Returns the fault of a text that is not what is understood at its place.
+pub(super) fn expected(text: &str, wanted: &'static str) -> GcodeFault {
+    let line = text.lines().next().unwrap_or_default().trim_end();
+    GcodeFault::Sentence { shown: unquoted(line), expected: wanted }
+}

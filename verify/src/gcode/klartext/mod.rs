@@ -1,0 +1,623 @@
+//! Heidenhain Klartext: conversational programs of the TNC controls (`.h`).
+//!
+//! ```text
+//! text ──flow──▶ block ──line, block, expression──▶ words ──motion, cycle, frame──▶ control
+//! ```
+//!
+//! `words` lists what is read, passed over and refused.
+
+mod block;
+mod cycle;
+mod expression;
+mod flow;
+mod frame;
+mod line;
+mod motion;
+mod words;
+
+use super::block::{Block, Code};
+use super::control::Control;
+use super::error::{combination, missing, not_read};
+use super::interpreter::{End, Progress};
+use super::note::NoteKind;
+use super::rules::{Choice, ControlRules, Rule};
+use super::{GcodeError, GcodeFault, Obstacle, unquoted};
+use block::{Feed, Scale, m_entry};
+use cycle::Cycle;
+use expression::{Parameters, angle, finite, formula, parameter, value};
+use flow::{Flow, Label, label};
+use frame::Frame;
+use line::{Cursor, Place, begin, expected, head};
+use motion::{Before, number};
+use touchoff::Unit;
+use words::{CYCLES, Entry, FUNCTIONS, STATEMENTS, Treatment, find};
+
+/// Largest number of a tool.
+const MAX_TOOL: f64 = 99_999_999.0;
+
+/// A program, and the place of its execution.
+#[derive(Clone, Debug)]
+pub(super) struct Program<'a> {
+    flow: Flow<'a>,
+    parameters: Parameters,
+    unit: Unit,
+    frame: Frame,
+    before: Before,
+    cycle: Option<Cycle>,
+    /// Set by M89.
+    is_modal_call: bool,
+    /// F of the last TOOL CALL.
+    tool_feed: Option<f64>,
+    /// Set once a position in program coordinates was executed.
+    positioned: bool,
+    /// The words of a block for the control.
+    block: Block,
+    /// The numbers of the M words of a block that the control executes.
+    codes: Vec<u32>,
+}
+
+/// Returns the first block of a text that is no comment, if it is the head of a program in Klartext: its unit and the place after it.
+fn first_block(text: &str) -> Option<(Unit, Place, usize)> {
+    let mut place = Place { offset: 0, line: 1 };
+    while let Some((found, after)) = line::block(text, place) {
+        if !begin(found).0.is_at_end() {
+            return Some((head(found)?, after, place.line));
+        }
+        place = after;
+    }
+    None
+}
+
+/// Returns whether a text is a program in Klartext.
+pub(super) fn is_program(text: &str) -> bool {
+    first_block(text).is_some()
+}
+
+/// Returns the rules of the only control that reads Klartext.
+pub(super) fn rules() -> ControlRules {
+    ControlRules::named("heidenhain").expect("a control that is known by name")
+}
+
+impl<'a> Program<'a> {
+    /// Reads what holds for the whole text, which is not copied: its unit and its labels. The control is a Heidenhain then.
+    ///
+    /// # Errors
+    /// If the control states another dialect, or a label stands twice.
+    pub(super) fn new(text: &'a str, control: &mut Control) -> Result<Program<'a>, GcodeError> {
+        let (unit, start, line) =
+            first_block(text).ok_or(GcodeError { line: 1, fault: GcodeFault::Unfinished })?;
+        if let Some(choice) = control.stated(Rule::Dialect).filter(|c| *c != Choice::Heidenhain) {
+            let [dialect, _] = Rule::Dialect.describe(choice);
+            return Err(GcodeError { line, fault: GcodeFault::OtherControl { dialect } });
+        }
+        let rules = rules();
+        for rule in Rule::all() {
+            if let (None, Some(choice)) = (control.stated(rule), rules.get(rule)) {
+                control.state_rule(rule, choice);
+            }
+        }
+        // Lengths are converted where they are read.
+        (control.modal.unit, control.modal.unit_stated) = (Unit::Millimetre, true);
+        Ok(Program {
+            flow: Flow::new(text, start)?,
+            parameters: Parameters::new(),
+            unit,
+            frame: Frame::new(),
+            before: Before::new(),
+            cycle: None,
+            is_modal_call: false,
+            tool_feed: None,
+            positioned: false,
+            block: Block::default(),
+            codes: Vec::new(),
+        })
+    }
+
+    /// Returns the words of the text that are refused wherever they stand, each with its first line.
+    pub(super) fn obstacles(&self) -> Vec<Obstacle> {
+        let mut found = Vec::new();
+        for (line, text) in self.flow.blocks() {
+            let (mut cursor, _) = begin(text);
+            let head = cursor.letters().to_ascii_uppercase();
+            let mut after = cursor;
+            let second = after.letters().to_ascii_uppercase();
+            let mut words = vec![format!("{head} {second}"), head.clone()];
+            let mut table = &STATEMENTS[..];
+            match (head.as_str(), second.as_str()) {
+                ("FN", _) => {
+                    cursor.peek();
+                    let digits = cursor.take_while(|byte| byte.is_ascii_digit());
+                    (words, table) = (vec![format!("FN {digits}")], &FUNCTIONS);
+                }
+                ("CYCL", "DEF") => {
+                    after.peek();
+                    let digits = after.take_while(|byte| byte.is_ascii_digit());
+                    if let Some(entry) = find(&CYCLES, digits)
+                        && let Treatment::Refused(remedy) = entry.treatment
+                    {
+                        let word = format!("CYCL DEF {digits}");
+                        Obstacle::add(&mut found, line, not_read(word, entry.meaning, remedy));
+                    }
+                }
+                _ => {}
+            }
+            let refused = words.iter().find_map(|word| find(table, word)?.check().err());
+            if let Some(fault) = refused {
+                Obstacle::add(&mut found, line, fault);
+            }
+        }
+        found
+    }
+
+    /// Executes the next block.
+    pub(super) fn execute_line(&mut self, control: &mut Control) -> Result<Progress, GcodeError> {
+        let (line, text) = self.flow.next_block()?;
+        control.line = line;
+        let result = self.statement(text, control).and_then(|progress| {
+            // A cycle in a repeated section has many steps per block.
+            self.flow.count(control.pending.len())?;
+            Ok(progress)
+        });
+        result.map_err(|fault| GcodeError { line, fault })
+    }
+
+    /// Executes a block.
+    fn statement(&mut self, text: &'a str, control: &mut Control) -> Result<Progress, GcodeFault> {
+        let (mut cursor, is_optional) = begin(text);
+        // A line that begins with `*` is a heading.
+        if matches!(cursor.peek(), None | Some(b'*')) {
+            return Ok(Progress::GoesOn);
+        }
+        if is_optional {
+            let is_left_out = control.choice(Rule::OptionalBlocks) == Choice::LeftOut;
+            let kind = match is_left_out {
+                true => NoteKind::OmittedOptionalBlock,
+                false => NoteKind::ExecutedOptionalBlock,
+            };
+            control.notes.add(control.line, kind);
+            if is_left_out {
+                return Ok(Progress::GoesOn);
+            }
+        }
+        let start = cursor;
+        let head = cursor.letters();
+        let motion = ["L", "CP", "C", "CR", "CT", "LP", "CTP"];
+        if let Some(head) = motion.into_iter().find(|known| known.eq_ignore_ascii_case(head)) {
+            return self.motion(head, &mut cursor, control);
+        }
+        let upper = head.to_ascii_uppercase();
+        match upper.as_str() {
+            "CC" => self.pole(&mut cursor, control)?,
+            // M words alone.
+            "M" => return self.motion("L", &mut { start }, control),
+            "Q" | "QL" | "QR" | "QS" => self.assign(&mut { start })?,
+            "FN" => self.function(&mut cursor, control)?,
+            "IF" => self.jump(&mut cursor)?,
+            "LBL" => {
+                let label = label(&mut cursor, &self.parameters)?;
+                cursor.check_end()?;
+                if label == Label::Number(0) {
+                    self.flow.end_subprogram();
+                }
+            }
+            "STOP" => {
+                self.codes.clear();
+                self.codes.push(0);
+                Scale::new(&self.parameters, self.unit).words(&mut cursor, &mut self.codes)?;
+                self.start_words(control)?;
+                return self.end_words(control);
+            }
+            "TOOL" => self.tool(&mut cursor, control)?,
+            "CYCL" if cursor.take_word("DEF") => self.define_cycle(&mut cursor, control)?,
+            "CYCL" if cursor.take_word("CALL") => {
+                if cursor.take_word("PAT") {
+                    refuse("CYCL CALL PAT")?;
+                }
+                return self.cycle_call(&mut cursor, control);
+            }
+            "CALL" if cursor.take_word("LBL") => {
+                flow::call(&mut cursor, &mut self.flow, &self.parameters)?;
+            }
+            "PLANE" => self.plane(&mut cursor, control)?,
+            "TRANS" if cursor.take_word("DATUM") => self.trans_datum(&mut cursor, control)?,
+            "FUNCTION" => self.mode(&mut cursor, control)?,
+            "BLK" => {
+                // The corners of the blank, which a job may need for its stock.
+                let text = start.rest().split([';', '\n']).next().unwrap_or_default();
+                let word = unquoted(&text.split_whitespace().collect::<Vec<_>>().join(" "));
+                control.notes.add(control.line, NoteKind::PassedOver { word });
+            }
+            "END" if cursor.take_word("PGM") => {
+                self.note_end(control);
+                if let Some((line, is_program)) = self.flow.text_after() {
+                    let kind = match is_program {
+                        true => NoteKind::OtherProgram,
+                        false => NoteKind::TextAfterEnd,
+                    };
+                    control.notes.add(line, kind);
+                }
+                return Ok(Progress::Ended(End::Stop));
+            }
+            "RND" | "CHF" => {
+                let needed = "a line L in X and Y before it, and another one after it";
+                return Err(missing(upper, needed));
+            }
+            _ => return Err(unknown(&upper, start, cursor)),
+        }
+        Ok(Progress::GoesOn)
+    }
+
+    /// Executes the M words that act at the start of their block.
+    fn start_words(&mut self, control: &mut Control) -> Result<(), GcodeFault> {
+        if self.codes.is_empty() {
+            return Ok(());
+        }
+        let turns = |code: &&u32| matches!(**code, 3 | 4 | 13 | 14);
+        let codes = std::mem::take(&mut self.codes);
+        if let [first, second, ..] = codes.iter().filter(turns).collect::<Vec<_>>()[..] {
+            return Err(super::error::same_group(format!("M{first}"), format!("M{second}")));
+        }
+        for code in &codes {
+            match code {
+                3 | 13 => self.m_word(3, control)?,
+                4 | 14 => self.m_word(4, control)?,
+                126 => control.set_shorter_way(true),
+                128 => self.set_tcp(true, control)?,
+                _ if m_entry(*code)?.treatment == Treatment::PassedOver => {
+                    let word = format!("M{code}");
+                    control.notes.add(control.line, NoteKind::PassedOver { word });
+                }
+                _ => {}
+            }
+        }
+        self.codes = codes;
+        Ok(())
+    }
+
+    /// Executes the M words that act at the end of their block.
+    fn end_words(&mut self, control: &mut Control) -> Result<Progress, GcodeFault> {
+        let codes = std::mem::take(&mut self.codes);
+        let mut progress = Progress::GoesOn;
+        for code in &codes {
+            match code {
+                5 | 19 => self.m_word(*code, control)?,
+                127 => control.set_shorter_way(false),
+                129 => self.set_tcp(false, control)?,
+                0 | 1 => {
+                    control.pause_spindle();
+                    control.notes.add(control.line, NoteKind::Stop);
+                }
+                2 | 30 => {
+                    self.note_end(control);
+                    progress = Progress::Ended(End::Stop);
+                }
+                _ => {}
+            }
+        }
+        self.codes = codes;
+        Ok(progress)
+    }
+
+    /// Notes mirrored axes at the end of the program, which the control keeps for the next run or not.
+    fn note_end(&self, control: &mut Control) {
+        if self.frame.is_mirrored() {
+            let words = "CYCL DEF 8".to_owned();
+            control.notes.add(control.line, NoteKind::LeftModes { words });
+        }
+    }
+
+    /// Executes an M word of the spindle.
+    fn m_word(&mut self, code: u32, control: &mut Control) -> Result<(), GcodeFault> {
+        self.block.clear();
+        self.block.add_code(Code { letter: 'M', tenths: 10 * code })?;
+        control.execute(control.line, &mut self.block)
+    }
+
+    /// Executes M128 and M129.
+    fn set_tcp(&mut self, is_on: bool, control: &mut Control) -> Result<(), GcodeFault> {
+        if is_on && control.rotation() != super::Rotation::Off {
+            let condition = "axes are rotated (CYCL DEF 10, PLANE)";
+            return Err(combination("M128", condition, "end that before"));
+        }
+        if is_on && !control.has_length() {
+            return Err(missing("M128", "a tool with its length (TOOL CALL) before"));
+        }
+        control.set_tcp(is_on);
+        Ok(())
+    }
+
+    /// Executes a formula.
+    fn assign(&mut self, cursor: &mut Cursor) -> Result<(), GcodeFault> {
+        let target = parameter(cursor)?;
+        if !cursor.take(b'=') {
+            return Err(cursor.unexpected("= and a formula after a parameter"));
+        }
+        let value = formula(cursor, &self.parameters)?;
+        cursor.check_end()?;
+        Ok(self.parameters.assign(target, value)?)
+    }
+
+    /// Executes FN.
+    fn function(
+        &mut self,
+        cursor: &mut Cursor<'a>,
+        control: &mut Control,
+    ) -> Result<(), GcodeFault> {
+        cursor.peek();
+        let digits = cursor.take_while(|byte| byte.is_ascii_digit());
+        let word = format!("FN {digits}");
+        let Some(entry) = find(&FUNCTIONS, &word) else {
+            let remedy = "check the program without it";
+            return Err(not_read(word, "a function that is not known", remedy));
+        };
+        entry.check()?;
+        if entry.treatment == Treatment::PassedOver {
+            control.notes.add(control.line, NoteKind::PassedOver { word });
+            return Ok(());
+        }
+        if !cursor.take(b':') {
+            return Err(cursor.unexpected("a colon after the number of FN"));
+        }
+        if matches!(digits, "9" | "10" | "11" | "12") {
+            if !cursor.take_word("IF") {
+                return Err(cursor.unexpected("IF"));
+            }
+            return self.jump(cursor);
+        }
+        let target = parameter(cursor)?;
+        if !cursor.take(b'=') {
+            return Err(cursor.unexpected("= after the parameter"));
+        }
+        let operation = entry.word;
+        let known = &self.parameters;
+        let result = match digits {
+            "0" => value(cursor, known)?,
+            "5" | "6" | "7" => {
+                let name = match digits {
+                    "5" => "SQRT",
+                    "6" => "SIN",
+                    _ => "COS",
+                };
+                let mut ahead = *cursor;
+                if !ahead.take_prefix(name) {
+                    return Err(cursor.unexpected("SQRT, SIN or COS, as the number of FN says"));
+                }
+                formula(cursor, known)?
+            }
+            _ => {
+                let first = value(cursor, known)?;
+                let is_between = match digits {
+                    "1" => cursor.take(b'+'),
+                    "2" => cursor.take(b'-'),
+                    "3" => cursor.take(b'*'),
+                    "4" => cursor.take_prefix("DIV") || cursor.take(b'/'),
+                    "8" => cursor.take_prefix("LEN"),
+                    _ => cursor.take_prefix("ANG"),
+                };
+                if !is_between {
+                    return Err(cursor.unexpected("the operator of FN"));
+                }
+                let second = value(cursor, known)?;
+                match digits {
+                    "1" => finite(first + second, operation)?,
+                    "2" => finite(first - second, operation)?,
+                    "3" => finite(first * second, operation)?,
+                    "4" => finite(first / second, operation)?,
+                    "8" => finite(first.hypot(second), operation)?,
+                    _ => angle(first, second)?,
+                }
+            }
+        };
+        cursor.check_end()?;
+        Ok(self.parameters.assign(target, result)?)
+    }
+
+    /// Executes a jump after IF.
+    fn jump(&mut self, cursor: &mut Cursor<'a>) -> Result<(), GcodeFault> {
+        let first = value(cursor, &self.parameters)?;
+        let comparison = cursor.letters().to_ascii_uppercase();
+        let second = value(cursor, &self.parameters)?;
+        // Values that are equal but for rounding are not compared: controls may compute them in another way.
+        let difference = first - second;
+        if difference != 0.0 && difference.abs() < 1e-9 * first.abs().max(second.abs()).max(1.0) {
+            let condition = "they differ by rounding alone";
+            let remedy = "count in whole numbers";
+            return Err(combination("a comparison of values", condition, remedy));
+        }
+        let holds = match comparison.as_str() {
+            "EQU" => difference == 0.0,
+            "NE" => difference != 0.0,
+            "GT" => difference > 0.0,
+            "LT" => difference < 0.0,
+            _ => return Err(expected(&comparison, "EQU, NE, GT or LT between two values")),
+        };
+        if !cursor.take_word("GOTO") || !cursor.take_word("LBL") {
+            return Err(cursor.unexpected("GOTO LBL and a label"));
+        }
+        let label = label(cursor, &self.parameters)?;
+        cursor.check_end()?;
+        if holds { self.flow.jump(label) } else { Ok(()) }
+    }
+
+    /// Executes TOOL CALL and TOOL DEF, after TOOL.
+    fn tool(&mut self, cursor: &mut Cursor, control: &mut Control) -> Result<(), GcodeFault> {
+        let is_call = cursor.take_word("CALL");
+        if !is_call && !cursor.take_word("DEF") {
+            return Err(cursor.unexpected("CALL or DEF after TOOL"));
+        }
+        let word = if is_call { "TOOL CALL" } else { "TOOL DEF" };
+        if cursor.peek() == Some(b'"') {
+            let name = cursor.quoted()?;
+            if is_call {
+                let meaning = "a tool by its name, whose number only the machine knows";
+                let word = format!("TOOL CALL \"{}\"", unquoted(name));
+                return Err(not_read(word, meaning, "write the number of the tool"));
+            }
+        }
+        let has_number = matches!(cursor.peek(), Some(b'0'..=b'9' | b'+' | b'Q'));
+        let tool = if has_number { Some(value(cursor, &self.parameters)?) } else { None };
+        if let Some(tool) = tool
+            && (tool.fract() != 0.0 || !(0.0..=MAX_TOOL).contains(&tool))
+        {
+            let shown = format!("{word} {tool}");
+            return Err(GcodeFault::Sentence { shown, expected: "the whole number of a tool" });
+        }
+        self.block.clear();
+        let mut length = None;
+        while let Some(byte) = cursor.peek() {
+            let start = *cursor;
+            let scale = Scale::new(&self.parameters, self.unit);
+            match byte.to_ascii_uppercase() {
+                b'Z' => cursor.advance(),
+                b'X' | b'Y' | b'U'..=b'W' => {
+                    let shown = format!("{word} {}", char::from(byte));
+                    return Err(not_read(shown, "another tool axis than Z", "write Z"));
+                }
+                b'S' => {
+                    cursor.advance();
+                    let speed = value(cursor, &self.parameters)?;
+                    self.block.add('S', number(speed))?;
+                }
+                b'F' => match scale.feed(cursor)? {
+                    Feed::Rate(rate) => {
+                        self.tool_feed = Some(rate);
+                        self.block.add('F', number(rate))?;
+                    }
+                    _ => return Err({ start }.unexpected("F with a number")),
+                },
+                b'D' if cursor.take_prefix("DL") => {
+                    let delta = scale.length(cursor)?;
+                    if delta != 0.0 {
+                        let meaning = "an allowance on the length of the tool";
+                        let remedy = "write DL+0, and the allowance in the coordinates";
+                        return Err(not_read(format!("DL{delta:+}"), meaning, remedy));
+                    }
+                }
+                b'D' if cursor.take_prefix("DR") => {
+                    // Of the radius, and of the radius of the corner.
+                    cursor.take_prefix("2");
+                    cursor.take(b':');
+                    scale.length(cursor)?;
+                    let word = "DR".to_owned();
+                    control.notes.add_once(control.line, NoteKind::PassedOver { word });
+                }
+                b'L' if !is_call => {
+                    cursor.advance();
+                    length = Some(scale.length(cursor)?);
+                }
+                b'R' if !is_call => {
+                    cursor.advance();
+                    scale.length(cursor)?;
+                }
+                _ => return Err(cursor.unexpected("Z, S, F, DL or DR after the tool")),
+            }
+        }
+        if !is_call {
+            if let (Some(tool), Some(length)) = (tool, length) {
+                control.define_length(tool as u32, length);
+            } else {
+                let word = word.to_owned();
+                control.notes.add(control.line, NoteKind::PassedOver { word });
+            }
+            return Ok(());
+        }
+        if let Some(tool) = tool {
+            self.block.add('T', number(tool))?;
+            self.before.leave();
+        }
+        control.execute(control.line, &mut self.block)
+    }
+
+    /// Executes TRANS DATUM, after these words.
+    fn trans_datum(
+        &mut self,
+        cursor: &mut Cursor,
+        control: &mut Control,
+    ) -> Result<(), GcodeFault> {
+        if cursor.take_word("RESET") {
+            cursor.check_end()?;
+            return self.set_shift([0.0; 6], control);
+        }
+        match cursor.take_word("AXIS") {
+            true => self.datum_shift(cursor, control),
+            false => Err(cursor.unexpected("AXIS or RESET after TRANS DATUM")),
+        }
+    }
+
+    /// Executes FUNCTION.
+    fn mode(&mut self, cursor: &mut Cursor, control: &mut Control) -> Result<(), GcodeFault> {
+        let word = cursor.letters().to_ascii_uppercase();
+        match word.as_str() {
+            "RESET" if cursor.take_word("TCPM") => {
+                cursor.check_end()?;
+                self.set_tcp(false, control)
+            }
+            "TCPM" if cursor.take_word("RESET") => self.set_tcp(false, control),
+            "TCPM" => {
+                while !cursor.is_at_end() {
+                    let start = *cursor;
+                    let pair = [cursor.letters(), cursor.letters()];
+                    match pair.map(str::to_ascii_uppercase).each_ref().map(String::as_str) {
+                        ["F", "TCP" | "CONT"] | ["AXIS", "POS"] | ["PATHCTRL", "AXIS"] => {}
+                        ["REFPNT", "TIP"] if cursor.take_prefix("-TIP") => {}
+                        ["AXIS", "SPAT"] => {
+                            let meaning = "angles of the workpiece instead of the axes";
+                            return Err(not_read("AXIS SPAT", meaning, "write AXIS POS"));
+                        }
+                        ["PATHCTRL", "VECTOR"] => {
+                            let meaning = "a tool axis that turns in a plane between two positions";
+                            return Err(not_read(
+                                "PATHCTRL VECTOR",
+                                meaning,
+                                "write PATHCTRL AXIS",
+                            ));
+                        }
+                        _ => return Err({ start }.unexpected("AXIS POS, PATHCTRL AXIS or F TCP")),
+                    }
+                }
+                self.set_tcp(true, control)
+            }
+            "DWELL" => {
+                let word = "FUNCTION DWELL".to_owned();
+                control.notes.add(control.line, NoteKind::PassedOver { word });
+                Ok(())
+            }
+            "MODE" if cursor.take_word("MILL") => {
+                let word = "FUNCTION MODE".to_owned();
+                control.notes.add(control.line, NoteKind::PassedOver { word });
+                Ok(())
+            }
+            _ => {
+                let entry = find(&STATEMENTS, "FUNCTION").expect("an entry of the table");
+                match entry.treatment {
+                    Treatment::Refused(remedy) => {
+                        let word = format!("FUNCTION {word}");
+                        Err(not_read(word, entry.meaning, remedy))
+                    }
+                    _ => Ok(()),
+                }
+            }
+        }
+    }
+}
+
+/// Refuses a statement of the table.
+fn refuse(word: &str) -> Result<(), GcodeFault> {
+    find(&STATEMENTS, word).map_or(Ok(()), Entry::check)
+}
+
+/// Returns the fault of a block that begins with no word that is read.
+fn unknown(head: &str, mut start: Cursor, mut after: Cursor) -> GcodeFault {
+    let second = after.letters().to_ascii_uppercase();
+    for word in [format!("{head} {second}"), head.to_owned()] {
+        if let Err(fault) = refuse(&word) {
+            return fault;
+        }
+    }
+    if head.len() > 1 || start.peek().is_some_and(|byte| byte.is_ascii_alphabetic()) {
+        return GcodeFault::UnknownWord {
+            word: unquoted(start.rest().lines().next().unwrap_or(head).trim_end()),
+        };
+    }
+    start.unexpected("a word of Klartext, as L, TOOL CALL or CYCL DEF")
+}

@@ -1,0 +1,682 @@
+//! Motions: lines and arcs, in Cartesian and in polar coordinates, corners between lines.
+//!
+//! Coordinates are those of the program, before its axes are mirrored. An increment is from the last programmed position, which a
+//! rounded corner does not reach. The arcs of CC, C and CP are in the plane of the two axes of the pole; angles are from X in XY,
+//! from Y in YZ and from Z in ZX (TNC 640, *Klartext programming*, "Setting the pole and angle reference axis").
+
+use super::Program;
+use super::block::{Coordinate, Feed, Scale, Words};
+use super::line::{Cursor, expected};
+use crate::gcode::block::{Code, Number};
+use crate::gcode::control::{Circle, Control, Curve};
+use crate::gcode::error::{combination, missing, not_read};
+use crate::gcode::state::{Position, Rotation};
+use crate::gcode::{GcodeFault, Plane};
+use crate::machine::sin_cos_degrees;
+use nalgebra::Matrix3;
+
+/// Letters of the axes.
+const AXES: [char; 6] = ['X', 'Y', 'Z', 'A', 'B', 'C'];
+
+/// Distance in millimetres below which two points are the same.
+const SAME_POINT: f64 = 1e-5;
+
+/// What a motion leaves for the next ones.
+#[derive(Clone, Debug)]
+pub(super) struct Before {
+    /// The pole, in millimetres, and the plane of its two axes.
+    pole: [Option<f64>; 3],
+    plane: Plane,
+    /// The corner that the last motion has rounded: the programmed position.
+    corner: Option<Position>,
+    /// Direction in X and Y at the end of the last motion, of any length.
+    heading: Option<[f64; 2]>,
+}
+
+impl Before {
+    pub(super) fn new() -> Before {
+        Before { pole: [None; 3], plane: Plane::Xy, corner: None, heading: None }
+    }
+
+    /// Forgets the motion, after which something else has moved the axes.
+    pub(super) fn leave(&mut self) {
+        (self.corner, self.heading) = (None, None);
+    }
+
+    /// Forgets what depends on the coordinates, which have changed.
+    pub(super) fn forget(&mut self) {
+        *self = Before::new();
+    }
+}
+
+/// A corner between two lines.
+enum Corner {
+    /// RND, with its radius.
+    Round(f64),
+    /// CHF, with the length that it takes of each line.
+    Chamfer(f64),
+}
+
+impl Program<'_> {
+    /// Executes a statement of a motion after its first word.
+    pub(super) fn motion(
+        &mut self,
+        head: &'static str,
+        cursor: &mut Cursor,
+        control: &mut Control,
+    ) -> Result<super::Progress, GcodeFault> {
+        self.codes.clear();
+        let scale = Scale::new(&self.parameters, self.unit);
+        let words = scale.words(cursor, &mut self.codes)?;
+        words.check_used(head)?;
+        self.start_words(control)?;
+        if words.is_machine {
+            if head != "L" {
+                let remedy = "write L with M91";
+                return Err(combination(head, "its block has M91", remedy));
+            }
+            self.machine_position(&words, control)?;
+        } else {
+            match head {
+                "L" => self.line(words, control)?,
+                "LP" => {
+                    let words = self.cartesian(words, control)?;
+                    self.line(words, control)?;
+                }
+                _ if !words.has_axes() && head != "CP" && head != "CTP" => {
+                    return Err(missing(head, "the coordinates of its end"));
+                }
+                "CT" => self.tangent_arc(head, words, control)?,
+                "CTP" => {
+                    let words = self.cartesian(words, control)?;
+                    self.tangent_arc(head, words, control)?;
+                }
+                _ => self.arc(head, words, control)?,
+            }
+        }
+        if let Some(retract) = words.retract {
+            if words.has_axes() {
+                let condition = "its block has coordinates, before or after which it moves";
+                return Err(combination("M140", condition, "write it in a block of its own"));
+            }
+            self.before.heading = None;
+            control.retract(retract.distance, retract.rapid);
+        }
+        let is_motion = words.has_axes() && !words.is_machine;
+        if words.is_modal_call {
+            self.is_modal_call = true;
+        }
+        if words.is_call || self.is_modal_call && is_motion {
+            self.is_modal_call &= !words.is_call;
+            self.call_cycle(0.0, control)?;
+        }
+        self.end_words(control)
+    }
+
+    /// Returns the last programmed position.
+    fn position(&self, control: &Control) -> Position {
+        self.before.corner.unwrap_or_else(|| {
+            let mut position = control.position();
+            for (value, sign) in position.iter_mut().zip(self.frame.mirror) {
+                *value = value.map(|value| value * sign);
+            }
+            position
+        })
+    }
+
+    /// Executes a line to the coordinates of a block.
+    pub(super) fn line(&mut self, words: Words, control: &mut Control) -> Result<(), GcodeFault> {
+        self.block.clear();
+        self.add_feed(&words)?;
+        if !words.has_axes() {
+            return control.execute(control.line, &mut self.block);
+        }
+        if words.axes.contains(&Some(Coordinate::OfPlane)) {
+            return self.turn_to_plane(&words, control);
+        }
+        self.check_coordinates(&words, control)?;
+        if let Some(corner) = self.corner_ahead()? {
+            return self.rounded(&words, &corner, control);
+        }
+        self.straight(&words, control)
+    }
+
+    /// Executes a line, whose feed is in the block.
+    fn straight(&mut self, words: &Words, control: &mut Control) -> Result<(), GcodeFault> {
+        let start = self.position(control);
+        let is_open = self.add_end(words, start)?;
+        let tenths = if words.is_rapid() { 0 } else { 10 };
+        self.block.add_code(Code { letter: 'G', tenths })?;
+        control.execute(control.line, &mut self.block).map_err(|fault| match fault {
+            GcodeFault::NoFeed { inverse, .. } => {
+                GcodeFault::NoFeed { word: "L".to_owned(), inverse }
+            }
+            fault => fault,
+        })?;
+        if is_open {
+            self.block.clear();
+            self.block.add_code(Code { letter: 'G', tenths: 900 })?;
+            control.execute(control.line, &mut self.block)?;
+        }
+        // The way of an axis by an increment is stated.
+        if words.axes[3..].iter().any(|word| matches!(word, Some(Coordinate::Incremental(_)))) {
+            control.pending.iter_mut().for_each(|step| step.absolute = false);
+        }
+        self.before.corner = None;
+        let end = self.position(control);
+        self.before.heading = direction(start, end);
+        self.positioned = true;
+        Ok(())
+    }
+
+    /// Adds the coordinates of the end to the block. Returns whether they are all increments from a position that is not known.
+    fn add_end(&mut self, words: &Words, start: Position) -> Result<bool, GcodeFault> {
+        let mut increments = [0, 0];
+        let mut unknown = None;
+        for (axis, coordinate) in words.axes.iter().enumerate() {
+            let Some(coordinate) = coordinate else { continue };
+            let is_increment = matches!(coordinate, Coordinate::Incremental(_));
+            increments[usize::from(is_increment)] += 1;
+            if is_increment && start[axis].is_none() {
+                unknown = Some(axis);
+            }
+        }
+        if let Some(axis) = unknown
+            && increments[0] > 0
+        {
+            let condition =
+                "its block has an absolute coordinate and its position before is not known";
+            let remedy = "write it absolute";
+            return Err(combination(format!("I{}", AXES[axis]), condition, remedy));
+        }
+        let rotary = words.axes[3..].iter().flatten();
+        let mut is_increment = rotary.map(|word| matches!(word, Coordinate::Incremental(_)));
+        if let Some(first) = is_increment.next()
+            && is_increment.any(|other| other != first)
+        {
+            let condition = "its block has another rotary axis, absolute and by an increment";
+            return Err(combination("a rotary axis", condition, "write both in one way"));
+        }
+        let is_open = unknown.is_some();
+        if is_open {
+            self.block.add_code(Code { letter: 'G', tenths: 910 })?;
+        }
+        for (axis, coordinate) in words.axes.iter().enumerate() {
+            let value = match coordinate {
+                Some(Coordinate::Absolute(value)) => *value,
+                Some(Coordinate::Incremental(value)) if is_open => *value,
+                Some(Coordinate::Incremental(value)) => start[axis].unwrap_or_default() + value,
+                Some(Coordinate::OfPlane) | None => continue,
+            };
+            let sign = self.frame.mirror.get(axis).copied().unwrap_or(1.0);
+            self.block.add(AXES[axis], number(sign * value))?;
+        }
+        Ok(is_open)
+    }
+
+    /// Adds the feed of a block.
+    fn add_feed(&mut self, words: &Words) -> Result<(), GcodeFault> {
+        let rate = match words.feed {
+            Some(Feed::Rate(rate)) => rate,
+            Some(Feed::OfTool) => {
+                self.tool_feed.ok_or_else(|| missing("F AUTO", "F in the TOOL CALL before"))?
+            }
+            Some(Feed::Rapid) | None => return Ok(()),
+        };
+        self.block.add('F', number(rate))
+    }
+
+    /// Executes a motion to machine coordinates.
+    fn machine_position(&mut self, words: &Words, control: &mut Control) -> Result<(), GcodeFault> {
+        self.block.clear();
+        self.add_feed(words)?;
+        for (axis, coordinate) in words.axes.iter().enumerate() {
+            match coordinate {
+                Some(Coordinate::Absolute(value)) => self.block.add(AXES[axis], number(*value))?,
+                Some(_) => {
+                    let condition = "its block has M91, in which it is from the last such position";
+                    let remedy = "write it absolute";
+                    return Err(combination(format!("I{}", AXES[axis]), condition, remedy));
+                }
+                None => {}
+            }
+        }
+        if !words.has_axes() {
+            return Err(missing("M91", "a coordinate"));
+        }
+        self.before.heading = None;
+        control.machine_position(&mut self.block, words.is_rapid())
+    }
+
+    /// Refuses coordinates whose meaning depends on what stands before them.
+    fn check_coordinates(&self, words: &Words, control: &Control) -> Result<(), GcodeFault> {
+        if let Some(condition) = self.frame.doubt {
+            let remedy = "write the shift anew (CYCL DEF 7) without a tilted plane";
+            return Err(combination("a position", condition, remedy));
+        }
+        let has_linear = words.axes[..3].iter().any(Option::is_some);
+        let has_rotary = words.axes[3..].iter().any(Option::is_some);
+        if let Rotation::Tilted { aligned, frame } = control.rotation() {
+            // A plane that keeps z needs no turn of axes at 0.
+            let at_zero = control.position()[3..].iter().all(|angle| *angle == Some(0.0));
+            let is_upright = frame.rotation[(2, 2)] == 1.0 && at_zero;
+            if !aligned && has_linear && !is_upright {
+                let condition = "the tool does not stand along z of the tilted plane";
+                let remedy = "write TURN in PLANE, or L A+Q120 B+Q121 C+Q122 after it";
+                return Err(combination("a position", condition, remedy));
+            }
+            if has_rotary && (aligned || frame.rotation != Matrix3::identity()) {
+                let condition = "a plane is tilted, to which only Q120 to Q122 turn the axes";
+                return Err(combination("a rotary axis", condition, "write PLANE RESET before"));
+            }
+        }
+        if control.is_rotation_open() && words.axes[0].is_some() != words.axes[1].is_some() {
+            let condition = "it is the first after a rotation, and not of both axes of the plane";
+            return Err(combination("a position", condition, "write X and Y"));
+        }
+        Ok(())
+    }
+
+    /// Refuses a motion along Z whose meaning depends on what stands before it.
+    pub(super) fn check_level(&self, control: &Control) -> Result<(), GcodeFault> {
+        let mut words = Words::default();
+        words.axes[2] = Some(Coordinate::Absolute(0.0));
+        self.check_coordinates(&words, control)
+    }
+
+    /// Executes CC.
+    pub(super) fn pole(
+        &mut self,
+        cursor: &mut Cursor,
+        control: &Control,
+    ) -> Result<(), GcodeFault> {
+        let mut codes = Vec::new();
+        let words = Scale::new(&self.parameters, self.unit).words(cursor, &mut codes)?;
+        let position = self.position(control);
+        let named = [0, 1, 2].map(|axis| words.axes[axis].is_some());
+        let has_more =
+            words.axes[3..].iter().any(Option::is_some) || !words.is_plain() || !codes.is_empty();
+        if has_more || named == [true; 3] {
+            return Err(expected("CC", "two coordinates of X, Y and Z after CC, or none"));
+        }
+        self.before.plane = match named {
+            [true, true, _] | [false, false, false] => Plane::Xy,
+            [_, true, true] => Plane::Yz,
+            [true, _, true] => Plane::Zx,
+            // One coordinate changes, the other stays.
+            _ => self.before.plane,
+        };
+        let axes = self.before.plane.axes();
+        if let Some(axis) = (0..3).find(|axis| named[*axis] && !axes.contains(axis)) {
+            let needed = "both coordinates of the pole, since the one before is in another plane";
+            return Err(missing(format!("CC {}", AXES[axis]), needed));
+        }
+        for axis in axes {
+            self.before.pole[axis] = match words.axes[axis] {
+                Some(Coordinate::Absolute(value)) => Some(value),
+                Some(Coordinate::Incremental(value)) => position[axis].map(|base| base + value),
+                _ if named == [false; 3] => position[axis],
+                _ => self.before.pole[axis],
+            };
+        }
+        Ok(())
+    }
+
+    /// Returns the pole along both axes of its plane.
+    fn centre(&self, head: &'static str) -> Result<[f64; 2], GcodeFault> {
+        let [first, second] = self.before.plane.axes().map(|axis| self.before.pole[axis]);
+        match (first, second) {
+            (Some(first), Some(second)) => Ok([first, second]),
+            _ => Err(missing(head, "the pole CC before, in the coordinates that hold now")),
+        }
+    }
+
+    /// Returns the last programmed position along both axes of a plane.
+    fn in_plane(
+        &self,
+        head: &'static str,
+        plane: Plane,
+        control: &Control,
+    ) -> Result<[f64; 2], GcodeFault> {
+        let position = self.position(control);
+        let [first, second] = plane.axes().map(|axis| position[axis]);
+        first.zip(second).map(|(first, second)| [first, second]).ok_or_else(|| {
+            let remedy = "write L with both coordinates of the plane before";
+            combination(head, "the position before it is not known", remedy)
+        })
+    }
+
+    /// Replaces the polar coordinates of a block by Cartesian ones.
+    fn cartesian(&self, mut words: Words, control: &Control) -> Result<Words, GcodeFault> {
+        let centre = self.centre("LP")?;
+        let axes = self.before.plane.axes();
+        if axes.iter().any(|axis| words.axes[*axis].is_some()) {
+            let wanted = "PR and PA instead of coordinates in the plane of the pole";
+            return Err(expected("LP", wanted));
+        }
+        // What is left out stays as it is.
+        let is_whole = matches!(
+            (words.polar_radius, words.polar_angle),
+            (Some(Coordinate::Absolute(_)), Some(Coordinate::Absolute(_)))
+        );
+        let (mut radius, mut angle) = (0.0, 0.0);
+        if !is_whole {
+            let start = self.in_plane("LP", self.before.plane, control)?;
+            let [across, up] = [start[0] - centre[0], start[1] - centre[1]];
+            radius = across.hypot(up);
+            angle = up.atan2(across).to_degrees();
+        }
+        match words.polar_radius {
+            Some(Coordinate::Absolute(value)) => radius = value,
+            Some(Coordinate::Incremental(value)) => radius += value,
+            _ => {}
+        }
+        match words.polar_angle {
+            Some(Coordinate::Absolute(value)) => angle = value,
+            Some(Coordinate::Incremental(value)) => angle += value,
+            _ => {}
+        }
+        let (sine, cosine) = sin_cos_degrees(angle);
+        words.axes[axes[0]] = Some(Coordinate::Absolute(centre[0] + radius * cosine));
+        words.axes[axes[1]] = Some(Coordinate::Absolute(centre[1] + radius * sine));
+        Ok(words)
+    }
+
+    /// Executes C, CR or CP.
+    fn arc(
+        &mut self,
+        head: &'static str,
+        mut words: Words,
+        control: &mut Control,
+    ) -> Result<(), GcodeFault> {
+        let clockwise = words.clockwise.ok_or_else(|| missing(head, "DR+ or DR-"))?;
+        let (plane, curve) = match head {
+            "C" => (self.before.plane, Curve::Centre { centre: self.centre(head)?, clockwise }),
+            "CR" => {
+                let radius = words.radius.ok_or_else(|| missing(head, "the radius R"))?;
+                let plane = match [0, 1, 2].map(|axis| words.axes[axis].is_some()) {
+                    [true, false, true] => Plane::Zx,
+                    [false, true, true] => Plane::Yz,
+                    _ => Plane::Xy,
+                };
+                (plane, Curve::Radius { radius, clockwise })
+            }
+            _ => (self.before.plane, self.turn(&mut words, clockwise, control)?),
+        };
+        self.circle(head, &words, plane, curve, control)
+    }
+
+    /// Returns the curve of CP, and adds its end to the words.
+    fn turn(
+        &self,
+        words: &mut Words,
+        clockwise: bool,
+        control: &Control,
+    ) -> Result<Curve, GcodeFault> {
+        let centre = self.centre("CP")?;
+        let axes = self.before.plane.axes();
+        if axes.iter().any(|axis| words.axes[*axis].is_some()) {
+            return Err(expected(
+                "CP",
+                "PA or IPA instead of coordinates in the plane of the pole",
+            ));
+        }
+        let start = self.in_plane("CP", self.before.plane, control)?;
+        let [across, up] = [start[0] - centre[0], start[1] - centre[1]];
+        let radius = across.hypot(up);
+        if radius < SAME_POINT {
+            return Err(crate::gcode::ArcFault::ZeroRadius.into());
+        }
+        let (end, sweep) = match words.polar_angle {
+            Some(Coordinate::Incremental(angle)) => {
+                if angle == 0.0 || (angle < 0.0) != clockwise {
+                    let condition = "DR has the other sign";
+                    let remedy = "write both with one sign";
+                    return Err(combination(format!("IPA{angle}"), condition, remedy));
+                }
+                let (sine, cosine) = sin_cos_degrees(angle);
+                let end = [across * cosine - up * sine, across * sine + up * cosine];
+                (end, angle.to_radians())
+            }
+            Some(Coordinate::Absolute(angle)) => {
+                let (sine, cosine) = sin_cos_degrees(angle);
+                let end = [radius * cosine, radius * sine];
+                let (cross, dot) = (across * end[1] - up * end[0], across * end[0] + up * end[1]);
+                let turn = cross.atan2(dot);
+                let is_full = (end[0] - across).hypot(end[1] - up) < SAME_POINT;
+                let sweep = match (is_full, clockwise) {
+                    (true, _) => std::f64::consts::TAU,
+                    (false, false) => turn.rem_euclid(std::f64::consts::TAU),
+                    (false, true) => (-turn).rem_euclid(std::f64::consts::TAU),
+                };
+                (end, if clockwise { -sweep } else { sweep })
+            }
+            _ => return Err(missing("CP", "PA or IPA")),
+        };
+        for (k, axis) in axes.into_iter().enumerate() {
+            words.axes[axis] = Some(Coordinate::Absolute(centre[k] + end[k]));
+        }
+        Ok(Curve::Sweep { centre, sweep })
+    }
+
+    /// Executes CT.
+    fn tangent_arc(
+        &mut self,
+        head: &'static str,
+        words: Words,
+        control: &mut Control,
+    ) -> Result<(), GcodeFault> {
+        let start = self.in_plane(head, Plane::Xy, control)?;
+        let Some(heading) = self.before.heading else {
+            return Err(missing(head, "a motion of X or Y in the block before"));
+        };
+        let mut end = start;
+        for (axis, value) in end.iter_mut().enumerate() {
+            match words.axes[axis] {
+                Some(Coordinate::Absolute(coordinate)) => *value = coordinate,
+                Some(Coordinate::Incremental(increment)) => *value += increment,
+                _ => {}
+            }
+        }
+        let length = heading[0].hypot(heading[1]);
+        let ahead = heading.map(|value| value / length);
+        let chord = [end[0] - start[0], end[1] - start[1]];
+        let (cross, dot) =
+            (ahead[0] * chord[1] - ahead[1] * chord[0], ahead[0] * chord[0] + ahead[1] * chord[1]);
+        let squared = chord[0] * chord[0] + chord[1] * chord[1];
+        // The height of the chord over the tangent: an arc of so large a radius is a line, or runs backwards.
+        if cross.abs() < SAME_POINT {
+            let condition = "its end lies on the tangent of the motion before";
+            return Err(combination(head, condition, "write L"));
+        }
+        let radius = squared / (2.0 * cross);
+        let centre = [start[0] - radius * ahead[1], start[1] + radius * ahead[0]];
+        let sweep = 2.0 * cross.atan2(dot);
+        self.circle(head, &words, Plane::Xy, Curve::Sweep { centre, sweep }, control)
+    }
+
+    /// Executes an arc, in mirrored axes where they are.
+    fn circle(
+        &mut self,
+        head: &'static str,
+        words: &Words,
+        plane: Plane,
+        curve: Curve,
+        control: &mut Control,
+    ) -> Result<(), GcodeFault> {
+        self.check_coordinates(words, control)?;
+        if self.corner_ahead()?.is_some() {
+            return Err(not_read("RND", "a corner beside an arc", "write the arc of the corner"));
+        }
+        self.block.clear();
+        self.add_feed(words)?;
+        let start = self.position(control);
+        if self.add_end(words, start)? {
+            let condition = "the position before it is not known";
+            return Err(combination(head, condition, "write its end absolute"));
+        }
+        let [first, second] = plane.axes().map(|axis| self.frame.mirror[axis]);
+        let turned = first * second < 0.0;
+        let mirror = |[u, v]: [f64; 2]| [first * u, second * v];
+        let curve = match curve {
+            Curve::Centre { centre, clockwise } => {
+                Curve::Centre { centre: mirror(centre), clockwise: clockwise != turned }
+            }
+            Curve::Radius { radius, clockwise } => {
+                Curve::Radius { radius, clockwise: clockwise != turned }
+            }
+            Curve::Sweep { centre, sweep } => {
+                Curve::Sweep { centre: mirror(centre), sweep: if turned { -sweep } else { sweep } }
+            }
+        };
+        let rapid = words.is_rapid();
+        let circle = Circle { word: head, plane, curve, rapid, unit: self.unit };
+        control.circle(&mut self.block, circle)?;
+        self.before.corner = None;
+        self.before.heading = self.heading_after(control);
+        self.positioned = true;
+        Ok(())
+    }
+
+    /// Returns the direction at the end of the arc that was added last.
+    fn heading_after(&self, control: &Control) -> Option<[f64; 2]> {
+        let step = control.pending.back()?;
+        let crate::gcode::StepPath::Arc { plane: Plane::Xy, centre, sweep } = step.path else {
+            return None;
+        };
+        let [x, y] = [step.end[0]? - centre[0], step.end[1]? - centre[1]];
+        let [first, second, _] = self.frame.mirror;
+        Some([-y * sweep.signum() * first, x * sweep.signum() * second])
+    }
+
+    /// Returns the corner that the next block states, if it states one.
+    fn corner_ahead(&self) -> Result<Option<Corner>, GcodeFault> {
+        let Some((mut cursor, _)) = self.flow.ahead(self.flow.place()) else { return Ok(None) };
+        let is_round = match cursor.peek() {
+            Some(b'R') => cursor.take_word("RND"),
+            Some(b'C') if cursor.take_word("CHF") => false,
+            _ => return Ok(None),
+        };
+        let scale = Scale::new(&self.parameters, self.unit);
+        if is_round && !cursor.take(b'R') {
+            return Err(cursor.unexpected("the radius R after RND"));
+        }
+        let length = scale.length(&mut cursor)?;
+        if matches!(cursor.peek(), Some(b'F')) {
+            scale.feed(&mut cursor)?;
+        }
+        cursor.check_end()?;
+        if length <= 0.0 {
+            return Err(missing(if is_round { "RND" } else { "CHF" }, "a length above 0"));
+        }
+        Ok(Some(if is_round { Corner::Round(length) } else { Corner::Chamfer(length) }))
+    }
+
+    /// Executes a line up to the corner after it, and the corner. The line after the corner begins at its end.
+    fn rounded(
+        &mut self,
+        words: &Words,
+        corner: &Corner,
+        control: &mut Control,
+    ) -> Result<(), GcodeFault> {
+        let head = match corner {
+            Corner::Round(_) => "RND",
+            Corner::Chamfer(_) => "CHF",
+        };
+        let beside = || {
+            let remedy = "write the corner as a motion of its own";
+            not_read(head, "a corner that is not between two lines in X and Y", remedy)
+        };
+        let (_, after) = self.flow.ahead(self.flow.place()).ok_or_else(beside)?;
+        let (mut cursor, _) = self.flow.ahead(after).ok_or_else(beside)?;
+        if !cursor.take_word("L") {
+            return Err(beside());
+        }
+        let start = self.position(control);
+        let mut codes = Vec::new();
+        let next = Scale::new(&self.parameters, self.unit).words(&mut cursor, &mut codes)?;
+        let point = end_of(words, start).ok_or_else(beside)?;
+        let end = end_of(&next, point).ok_or_else(beside)?;
+        let (Some(into), Some(out)) = (direction(start, point), direction(point, end)) else {
+            return Err(beside());
+        };
+        let is_level = start[2..] == point[2..] && point[2..] == end[2..];
+        if !is_level || next.is_machine || next.is_rapid() || words.is_rapid() {
+            return Err(beside());
+        }
+        let lengths = [into, out].map(|[x, y]| x.hypot(y));
+        let [into, out] = [(into, lengths[0]), (out, lengths[1])]
+            .map(|([x, y], length)| [x / length, y / length]);
+        let turn = (into[0] * out[1] - into[1] * out[0]).atan2(into[0] * out[0] + into[1] * out[1]);
+        let cut = match corner {
+            Corner::Round(radius) => radius * (0.5 * turn).tan().abs(),
+            // At another corner the length can be that of the chamfer or of what it takes of each line.
+            Corner::Chamfer(_)
+                if turn.abs() > 1e-9 && (into[0] * out[0] + into[1] * out[1]).abs() > 1e-9 =>
+            {
+                let remedy = "write the chamfer as a line";
+                return Err(not_read("CHF", "a chamfer of a corner that is not square", remedy));
+            }
+            Corner::Chamfer(length) => *length,
+        };
+        if cut > lengths[0].min(lengths[1]) + SAME_POINT {
+            let condition = "a line beside it is too short";
+            return Err(combination(head, condition, "make the corner smaller"));
+        }
+        self.flow.go_on_at(after);
+        // Lines that go on in one direction have no corner.
+        if turn.abs() < 1e-9 {
+            return self.straight(words, control);
+        }
+        let (Some(x), Some(y)) = (point[0], point[1]) else { return Err(beside()) };
+        let from = [x - cut * into[0], y - cut * into[1]];
+        let to = [x + cut * out[0], y + cut * out[1]];
+        self.straight(&to_point(from), control)?;
+        self.block.clear();
+        match corner {
+            Corner::Chamfer(_) => self.straight(&to_point(to), control)?,
+            Corner::Round(radius) => {
+                let side = radius * turn.signum();
+                let centre = [from[0] - side * into[1], from[1] + side * into[0]];
+                let curve = Curve::Sweep { centre, sweep: turn };
+                self.circle("RND", &to_point(to), Plane::Xy, curve, control)?;
+            }
+        }
+        self.before.corner = Some(point);
+        self.before.heading = Some(out);
+        Ok(())
+    }
+}
+
+/// Returns a number of a block.
+pub(super) fn number(value: f64) -> Number {
+    Number { value, is_whole: false, is_computed: false }
+}
+
+/// Returns the words of a line at feed to a point.
+fn to_point([x, y]: [f64; 2]) -> Words {
+    let mut words = Words::default();
+    words.axes[0] = Some(Coordinate::Absolute(x));
+    words.axes[1] = Some(Coordinate::Absolute(y));
+    words
+}
+
+/// Returns the end of a line, if it is known.
+fn end_of(words: &Words, start: Position) -> Option<Position> {
+    let mut end = start;
+    for (value, coordinate) in end.iter_mut().zip(words.axes) {
+        match coordinate {
+            Some(Coordinate::Absolute(coordinate)) => *value = Some(coordinate),
+            Some(Coordinate::Incremental(increment)) => *value = Some((*value)? + increment),
+            Some(Coordinate::OfPlane) => return None,
+            None => {}
+        }
+    }
+    Some(end)
+}
+
+/// Returns the direction of a line in X and Y, if it moves there.
+fn direction(start: Position, end: Position) -> Option<[f64; 2]> {
+    let direction = [end[0]? - start[0]?, end[1]? - start[1]?];
+    (direction != [0.0, 0.0]).then_some(direction)
+}

@@ -1,0 +1,860 @@
+//! Programs in Heidenhain Klartext: their steps against values that the tests know beforehand, the same part in ISO words, words
+//! that are refused, and damaged programs.
+
+use super::mutants::mutate;
+use rand_core::{Rng, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+use std::collections::BTreeMap;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::time::{Duration, Instant};
+use touchoff_verify::gcode::{
+    Choice, ControlRules, ControlSetup, Interpreter, Plane, Position, Rotation, Rule, Spindle,
+    Step, StepPath, Tcp, read,
+};
+
+/// A control whose axes are at 0, and stay there at a tool change.
+fn at_zero() -> ControlSetup {
+    ControlSetup {
+        start: [Some(0.0); 6],
+        work_offsets: [Some([0.0; 6]); 9],
+        lengths: BTreeMap::from([(5, 80.0)]),
+        rules: ControlRules::default().with(Rule::ToolChange, Choice::Stays),
+        ..ControlSetup::default()
+    }
+}
+
+fn program(body: &str) -> String {
+    format!("0 BEGIN PGM PART MM\n{body}\nEND PGM PART MM\n")
+}
+
+fn steps(body: &str) -> Vec<Step> {
+    let text = program(body);
+    read(&text, &at_zero()).unwrap_or_else(|error| panic!("{text}{error}")).0
+}
+
+fn ends(body: &str) -> Vec<Position> {
+    steps(body).iter().map(|step| step.end).collect()
+}
+
+#[track_caller]
+fn assert_near(position: Position, expected: [f64; 3]) {
+    for axis in 0..3 {
+        let value =
+            position[axis].unwrap_or_else(|| panic!("{position:?} is unknown, not {expected:?}"));
+        assert!((value - expected[axis]).abs() < 1e-9, "{position:?} is not {expected:?}");
+    }
+}
+
+/// Returns the levels of Z to which the steps of the last block move, with a mark for rapid traverse.
+fn levels(body: &str) -> Vec<(bool, f64)> {
+    let steps = steps(body);
+    let last = steps.last().expect("steps").line;
+    let of_last = steps.iter().filter(|step| step.line == last && step.commanded[2]);
+    of_last.map(|step| (step.rapid, step.end[2].expect("a level"))).collect()
+}
+
+#[test]
+fn lines_are_absolute_by_increments_and_polar() {
+    let found = ends(
+        "1 L X+10 Y-5,5 R0 FMAX M3 ; comment\n2 L IX+5 Z+2 F500\n/3 L Y1.25\n* - heading\n4 CC X+10 Y+10\n\
+         5 LP PR+20 PA+30\n6 LP IPA+60 IPR-10\n7 CC\n8 LP PR+4 PA-90\nL C+30\nL IC+370 X+0",
+    );
+    let half = 3f64.sqrt() / 2.0;
+    let expected = [
+        [10.0, -5.5, 0.0],
+        [15.0, -5.5, 2.0],
+        [15.0, 1.25, 2.0],
+        [10.0 + 20.0 * half, 20.0, 2.0],
+        [10.0, 20.0, 2.0],
+        [10.0, 16.0, 2.0],
+        [10.0, 16.0, 2.0],
+        [0.0, 16.0, 2.0],
+    ];
+    assert_eq!(found.len(), expected.len());
+    for (end, expected) in found.iter().zip(expected) {
+        assert_near(*end, expected);
+    }
+    assert_eq!(found[7][5], Some(400.0));
+    let steps = steps("L X+1 FMAX\nL Y+1 F200\nL Z+1 FMAX\nL Z+0");
+    assert_eq!(steps.iter().map(|step| step.rapid).collect::<Vec<_>>(), [true, false, true, false]);
+    assert_eq!(steps.iter().map(|step| step.line).collect::<Vec<_>>(), [2, 3, 4, 5]);
+    // The unit of the head.
+    let inch =
+        "BEGIN PGM A INCH\nL X+1 Y+0 FMAX\nCC X+2 Y+0\nCP IPA-180 DR- F10\nM2\nEND PGM A INCH\n";
+    let (found, _) = read(inch, &at_zero()).expect("steps");
+    assert_near(found[1].end, [76.2, 0.0, 0.0]);
+}
+
+/// Arcs of random centre, radius, start and sweep in all planes, written as C, as CP with either angle, and as CR.
+#[test]
+fn arcs_are_the_ones_that_were_written() {
+    let mut random = Pcg64Mcg::seed_from_u64(3);
+    let mut uniform = || (random.next_u64() >> 11) as f64 / 2f64.powi(53);
+    let mut worst = [0.0f64; 3];
+    for index in 0..6000 {
+        let (plane, letters) = [
+            (Plane::Xy, ["X", "Y", "Z"]),
+            (Plane::Yz, ["Y", "Z", "X"]),
+            (Plane::Zx, ["Z", "X", "Y"]),
+        ][index % 3];
+        let centre = [0, 1].map(|_| 200.0 * uniform() - 100.0);
+        let radius = 1.0 + 50.0 * uniform();
+        let begin = 360.0 * uniform();
+        let form = index / 3 % 4;
+        // Only CP states more than a turn, and near half a turn R leaves the centre open to rounding.
+        let turns = if form == 1 { 3.0 } else { 0.95 };
+        let mut sweep = 5.0 + (360.0 * turns - 10.0) * uniform();
+        if form == 3 && (sweep - 180.0).abs() < 12.0 {
+            sweep = 90.0;
+        }
+        let clockwise = index % 2 == 0;
+        let signed = if clockwise { -sweep } else { sweep };
+        let at = |degrees: f64| {
+            let angle = degrees.to_radians();
+            [centre[0] + radius * angle.cos(), centre[1] + radius * angle.sin()]
+        };
+        let (start, end) = (at(begin), at(begin + signed));
+        let rise = if form == 3 { 0.0 } else { 10.0 * uniform() };
+        let sign = if clockwise { '-' } else { '+' };
+        let [u, v, w] = letters;
+        let up = if form == 3 { String::new() } else { format!("{w}{rise:.12}") };
+        let arc = match form {
+            0 => format!("C {u}{:.12} {v}{:.12} {up}", end[0], end[1]),
+            1 => format!("CP IPA{signed:+.12} {up}"),
+            2 => format!("CP PA{:.12} {up}", begin + signed),
+            _ => {
+                let radius = if sweep > 180.0 { -radius } else { radius };
+                format!("CR {u}{:.12} {v}{:.12} R{radius:+.12}", end[0], end[1])
+            }
+        };
+        let body = format!(
+            "L {u}{:.12} {v}{:.12} {w}0 FMAX\nCC {u}{:.12} {v}{:.12}\n{arc} DR{sign} F100",
+            start[0], start[1], centre[0], centre[1]
+        );
+        let steps = steps(&body);
+        let StepPath::Arc { plane: found, centre: found_centre, sweep: found_sweep } =
+            steps[1].path
+        else {
+            panic!("{body}\n{:?}", steps[1])
+        };
+        assert_eq!(found, plane, "{body}");
+        worst[0] = worst[0].max((found_centre[0] - centre[0]).hypot(found_centre[1] - centre[1]));
+        worst[1] = worst[1].max((found_sweep - signed.to_radians()).abs());
+        let [first, second] = plane.axes();
+        for (axis, wanted) in [(first, end[0]), (second, end[1]), (plane.normal(), rise)] {
+            worst[2] = worst[2].max((steps[1].end[axis].expect("a coordinate") - wanted).abs());
+        }
+    }
+    println!("centre within {:.1e} mm, sweep {:.1e}, end {:.1e} mm", worst[0], worst[1], worst[2]);
+    assert!(worst[0] < 1e-8 && worst[1] < 1e-9 && worst[2] < 1e-9, "{worst:?}");
+}
+
+#[test]
+fn tangent_arcs_and_corners_meet_their_lines() {
+    let found = steps(
+        "L X+0 Y+0 FMAX\nL X+10 F100\nCT X+20 Y+10\nCT X+10 Y+20\nCC X+10 Y+10\nCTP PR+10 PA+180",
+    );
+    let arcs: Vec<_> = found.iter().map(|step| step.path).collect();
+    let quarter = |centre| StepPath::Arc { plane: Plane::Xy, centre, sweep: FRAC_PI_2 };
+    assert_eq!(arcs[2], quarter([10.0, 10.0]));
+    assert_eq!(arcs[3], quarter([10.0, 10.0]));
+    assert_near(found[4].end, [0.0, 10.0, 0.0]);
+    assert!(
+        matches!(arcs[4], StepPath::Arc { sweep, .. } if (sweep - FRAC_PI_2).abs() < 1e-12),
+        "{arcs:?}"
+    );
+    let corner = |word: &str| {
+        steps(&format!("L X+0 Y+0 FMAX\nL X+10 F100\n{word}\nL IY+10\n{word}\nL X-10 IY+0\nL X-20"))
+    };
+    let round = corner("RND R2 F50");
+    let expected = [
+        ([8.0, 0.0], None),
+        ([10.0, 2.0], Some(([8.0, 2.0], FRAC_PI_2))),
+        ([10.0, 8.0], None),
+        ([8.0, 10.0], Some(([8.0, 8.0], FRAC_PI_2))),
+        ([-10.0, 10.0], None),
+        ([-20.0, 10.0], None),
+    ];
+    assert_eq!(round.len(), 1 + expected.len());
+    for (step, (end, arc)) in round[1..].iter().zip(expected) {
+        assert_near(step.end, [end[0], end[1], 0.0]);
+        match (step.path, arc) {
+            (StepPath::Line, None) => {}
+            (StepPath::Arc { plane: Plane::Xy, centre, sweep }, Some((wanted, angle))) => {
+                assert!((centre[0] - wanted[0]).hypot(centre[1] - wanted[1]) < 1e-12);
+                assert!((sweep - angle).abs() < 1e-12);
+            }
+            other => panic!("{other:?}"),
+        }
+    }
+    let chamfered = corner("CHF 2");
+    let points: Vec<_> = chamfered[1..].iter().map(|step| [step.end[0], step.end[1]]).collect();
+    let expected =
+        [[8.0, 0.0], [10.0, 2.0], [10.0, 8.0], [8.0, 10.0], [-10.0, 10.0], [-20.0, 10.0]];
+    assert_eq!(points, expected.map(|point| point.map(Some)));
+    // A corner of 60 degrees: the arc touches both lines.
+    let sharp =
+        steps("L X+0 Y+0 FMAX\nCC X+0 Y+0\nL X+20 F100\nRND R3\nL X+10 Y+17.320508075688775");
+    let StepPath::Arc { centre, sweep, .. } = sharp[2].path else { panic!("{:?}", sharp[2]) };
+    let start = sharp[1].end[0].expect("X");
+    assert!((centre[0] - start).abs() < 1e-12 && (centre[1] - 3.0).abs() < 1e-12);
+    assert!((sweep - 2.0 * PI / 3.0).abs() < 1e-12);
+    assert!((20.0 - start - 3.0 * (PI / 3.0).tan()).abs() < 1e-12);
+}
+
+#[test]
+fn the_same_part_in_iso_words_has_the_same_steps() {
+    let klartext = program(
+        "TOOL CALL 5 Z S3000 F400\nM3\nL X+0 Y+0 R0 FMAX\nL Z-2 F200\nL X+10 Y+5\nCC X+20 Y+5\nC X+20 Y-5 DR-\n\
+         CR X+30 Y-5 R+5 DR+\nCC X+25 Y-5\nC X+30 Y-5 Z-3 DR+\nL Z+50 FMAX\nL X+1.5 Y+2\nM5\nM30",
+    );
+    let iso = "%PART G71 *\nN10 T5 G17 G90 S3000 F400*\nN20 M3*\nN30 G0 X0 Y0*\nN40 G1 Z-2 F200*\nN50 X10 Y5*\n\
+        N60 G2 X20 Y-5 I20 J5*\nN70 G3 X30 Y-5 R5*\nN80 G3 X30 Y-5 Z-3 I25 J-5*\nN90 G0 Z50*\nN100 G1 X1.5 Y2*\nN110 M5*\n\
+        N120 M30*\n";
+    let rules = ControlRules::named("heidenhain").expect("a control");
+    let rules = rules.with(Rule::ToolChange, Choice::Stays);
+    let setup = ControlSetup { rules, ..at_zero() };
+    let [klartext, iso] = [klartext.as_str(), iso].map(|text| {
+        let mut steps = read(text, &setup).unwrap_or_else(|error| panic!("{text}{error}")).0;
+        steps.iter_mut().for_each(|step| step.line = 0);
+        steps
+    });
+    assert_eq!(klartext.len(), 8);
+    assert_eq!(klartext, iso);
+}
+
+#[test]
+fn cycles_move_along_the_hole() {
+    let at = "TOOL CALL 5 Z S900\nL X+10 Y+20 FMAX M3\nL Z+100 FMAX\n";
+    let call = |cycle: &str| levels(&format!("{at}{cycle}\nL X+30 FMAX M99"));
+    let [rapid, feed] = [true, false];
+    let common = "Q200=+2 ;CLEARANCE ~\n Q201=-20 ~\n Q206=+100 ~\n Q203=+1 ~\n Q204=+50";
+    let single =
+        |number: u32, more: &str| call(&format!("CYCL DEF {number} NAME ~\n {common} ~\n {more}"));
+    assert_eq!(
+        single(200, "Q202=+8"),
+        [
+            (rapid, 3.0),
+            (feed, -7.0),
+            (rapid, 3.0),
+            (rapid, -5.0),
+            (feed, -15.0),
+            (rapid, 3.0),
+            (rapid, -13.0),
+            (feed, -19.0),
+            (rapid, 51.0)
+        ]
+    );
+    assert_eq!(single(200, "Q202=+20"), [(rapid, 3.0), (feed, -19.0), (rapid, 51.0)]);
+    assert_eq!(single(240, "Q343=+0"), [(rapid, 3.0), (feed, -19.0), (rapid, 51.0)]);
+    assert_eq!(single(201, "Q208=AUTO"), [(rapid, 3.0), (feed, -19.0), (feed, 3.0), (rapid, 51.0)]);
+    // Infeeds of 8, 6, 5 (the least one) and 1.
+    assert_eq!(
+        single(203, "Q202=+8 ~\n Q212=+2 ~\n Q205=+5 ~\n Q213=+0"),
+        [
+            (rapid, 3.0),
+            (feed, -7.0),
+            (feed, 3.0),
+            (rapid, -5.0),
+            (feed, -13.0),
+            (feed, 3.0),
+            (rapid, -11.0),
+            (feed, -18.0),
+            (feed, 3.0),
+            (rapid, -16.0),
+            (feed, -19.0),
+            (feed, 3.0),
+            (rapid, 51.0)
+        ]
+    );
+    assert_eq!(
+        single(205, "Q202=+15 ~\n Q258=+0.5 ~\n Q259=+1"),
+        [(rapid, 3.0), (feed, -14.0), (rapid, 3.0), (rapid, -13.5), (feed, -19.0), (rapid, 51.0)]
+    );
+    // Breaks of chips between which the tool stays in the hole, which it leaves in rapid traverse.
+    assert_eq!(
+        single(203, "Q202=+5 ~\n Q213=+2 ~\n Q208= MAX ;RETRACTION ~\n Q256=+1"),
+        [
+            (rapid, 3.0),
+            (feed, -14.0),
+            (rapid, 3.0),
+            (rapid, -12.0),
+            (feed, -19.0),
+            (rapid, 3.0),
+            (rapid, 51.0)
+        ]
+    );
+    // A second clearance below the first one has no part.
+    let low = "CYCL DEF 207 TAP ~\n Q200=+5 ~\n Q201=-34 ~\n Q239=+1.25 ~\n Q203=+0 ~\n Q204=+1";
+    assert_eq!(call(low), [(rapid, 5.0), (feed, -34.0), (feed, 5.0)]);
+    let tapped = steps(&format!("{at}{low}\nCYCL CALL"));
+    assert!(tapped[tapped.len() - 2..].iter().all(|step| step.spindle == Spindle::Tapping));
+    // Boring leaves the wall by 0.2 mm along -X, and returns to the axis above the part.
+    let bored = steps(&format!("{at}CYCL DEF 202 BORE ~\n {common} ~\n Q214=+1\nCYCL CALL"));
+    let last: Vec<_> =
+        bored[bored.len() - 6..].iter().map(|step| [step.end[0], step.end[2]]).collect();
+    let expected =
+        [[10.0, 3.0], [10.0, -19.0], [9.8, -19.0], [9.8, 3.0], [9.8, 51.0], [10.0, 51.0]];
+    assert_eq!(last, expected.map(|point| point.map(Some)));
+    // Calls: modal until M99, at a position with a higher surface, and not at all for the depth 0.
+    let drill = format!("CYCL DEF 200 DRILLING ~\n {common} ~\n Q202=+30\n");
+    let holes = |body: &str| {
+        let steps = steps(&format!("{at}{drill}{body}"));
+        let bottoms = steps.iter().filter(|step| !step.rapid);
+        bottoms
+            .map(|step| [step.end[0], step.end[1], step.end[2]].map(|v| v.expect("known")))
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(
+        holes("L X+1 FMAX M89\nL X+2 FMAX\nL X+3 FMAX M99\nL X+4 FMAX"),
+        [[1.0, 20.0, -19.0], [2.0, 20.0, -19.0], [3.0, 20.0, -19.0]]
+    );
+    assert_eq!(holes("CYCL CALL POS X+7 Y+8 Z+4"), [[7.0, 8.0, -15.0]]);
+    let none = drill.replace("Q201=-20", "Q201=+0");
+    assert_eq!(steps(&format!("{at}{none}\nCYCL CALL")).len(), steps(at).len());
+}
+
+#[test]
+fn labels_call_repeat_and_jump() {
+    let at = |body: &str| ends(body).iter().map(|end| end[0].expect("X")).collect::<Vec<_>>();
+    // A subprogram that is called twice, also by its name.
+    assert_eq!(
+        at(
+            "CALL LBL 7\nCALL LBL \"hole 1\"\nCALL LBL 7\nM30\nLBL 7\nL IX+1 FMAX\nLBL 0\nLBL \"hole 1\"\nL X+50 FMAX\nCALL LBL 7\nLBL 0"
+        ),
+        [1.0, 50.0, 51.0, 52.0]
+    );
+    // A section is executed once and as often as REP says, nested ones each time anew.
+    assert_eq!(at("LBL 1\nL IX+1 FMAX\nCALL LBL 1 REP 3/3"), [1.0, 2.0, 3.0, 4.0]);
+    assert_eq!(
+        at("LBL 1\nLBL 2\nL IX+1 FMAX\nCALL LBL 2 REP 2\nL IX+100 FMAX\nCALL LBL 1 REP1"),
+        [1.0, 2.0, 3.0, 103.0, 104.0, 105.0, 106.0, 206.0]
+    );
+    // The limit of a loop is a parameter. LBL 0 of a subprogram that is run into does nothing.
+    assert_eq!(
+        at(
+            "Q1 = 0\nLBL 3\nL X+Q1 FMAX\nFN 1: Q1 = +Q1 + +2\nFN 12: IF +Q1 LT +5 GOTO LBL 3\nLBL 4\nL X+9 FMAX\nLBL 0\nL X+8 FMAX"
+        ),
+        [0.0, 2.0, 4.0, 9.0, 8.0]
+    );
+    // A section that a jump has left begins anew.
+    assert_eq!(
+        at(
+            "Q1 = 0\nLBL 1\nQ1 = Q1 + 1\nL X+Q1 FMAX\nIF +Q1 EQU +2 GOTO LBL 5\nCALL LBL 1 REP 2\nM30\nLBL 5\nCALL LBL 6\nM30\nLBL 6\nL X+0 FMAX\nLBL 0"
+        ),
+        [1.0, 2.0, 0.0]
+    );
+}
+
+#[test]
+fn formulas_have_their_values() {
+    for (formula, value) in [
+        ("5 * 3 + 2 * 10", 35.0),
+        ("SQ 10 - 3^3", 73.0),
+        ("(1 + 2) * -4", -12.0),
+        ("12 * ( 5 - 3 ) / 8", 3.0),
+        ("SIN 30 + COS60", 1.0),
+        ("TAN 45 * 10", 10.0),
+        ("ATAN 1 + ASIN 0.5 + ACOS 0.5", 135.0),
+        ("SQRT 2 * SQRT 2", 2.0),
+        ("ABS -7,5 + INT 3.9 + FRAC 2.25", 10.75),
+        ("SGN -3 + NEG 4 + LN EXP 2", -3.0),
+        ("7 % 4 + PI", 3.0 + PI),
+        ("+Q20 + QL1 - QR2", 16.0),
+        ("SINQ20 * 2", 2.0 * 21f64.to_radians().sin()),
+    ] {
+        let body = format!("Q20 = 21\nQL1 = 5\nQR2 = 10\nQ1 = {formula}\nL X+Q1 FMAX");
+        let found = ends(&body)[0][0].expect("X");
+        assert!((found - value).abs() < 1e-12, "{formula} is {found}, not {value}");
+    }
+    for (function, value) in [
+        ("FN 0: Q1 = -3.5", -3.5),
+        ("FN 1: Q1 = +3 + -5", -2.0),
+        ("FN 2: Q1 = +3 - -5", 8.0),
+        ("FN 3: Q1 = +3 * +5", 15.0),
+        ("FN 4: Q1 = +3 DIV +5", 0.6),
+        ("FN 5: Q1 = SQRT 16", 4.0),
+        ("FN 6: Q1 = SIN -90", -1.0),
+        ("FN 7: Q1 = COS +180", -1.0),
+        ("FN 8: Q1 = +3 LEN +4", 5.0),
+        ("FN 13: Q1 = +1 ANG -1", 135.0),
+    ] {
+        let found = ends(&format!("{function}\nL X+Q1 FMAX"))[0][0].expect("X");
+        assert!((found - value).abs() < 1e-12, "{function} is {found}, not {value}");
+    }
+}
+
+/// Returns the rotation by degrees about an axis, as rows.
+fn turn(axis: usize, degrees: f64) -> [[f64; 3]; 3] {
+    let (s, c) = degrees.to_radians().sin_cos();
+    match axis {
+        0 => [[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]],
+        1 => [[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]],
+        _ => [[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]],
+    }
+}
+
+fn applied(rotation: [[f64; 3]; 3], point: [f64; 3]) -> [f64; 3] {
+    rotation.map(|row| row.iter().zip(point).map(|(entry, value)| entry * value).sum())
+}
+
+#[test]
+fn coordinates_are_shifted_mirrored_rotated_and_tilted() {
+    let last = |body: &str| {
+        let steps = steps(body);
+        let step = steps.last().expect("a step");
+        step.state.to_workpiece(step.end)
+    };
+    let shift =
+        "CYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 X+10\nCYCL DEF 7.2 Y-20\nCYCL DEF 7.3 IZ+5\n";
+    assert_near(last(&format!("{shift}L X+1 Y+2 Z+3 FMAX")), [11.0, -18.0, 8.0]);
+    assert_near(
+        last(&format!("{shift}CYCL DEF 8.0 MIRROR\nCYCL DEF 8.1 X\nL X+1 Y+2 Z+3 FMAX")),
+        [9.0, -18.0, 8.0],
+    );
+    let reset = "CYCL DEF 8.0 MIRROR\nCYCL DEF 8.1\nTRANS DATUM RESET\n";
+    assert_near(last(&format!("{shift}{reset}L X+1 Y+2 Z+3 FMAX")), [1.0, 2.0, 3.0]);
+    // A mirrored arc turns the other way.
+    let mirrored = steps(
+        "CYCL DEF 8.1 X\nL X+10 Y+0 FMAX\nCC X+0 Y+0\nC X+0 Y+10 DR+ F100\nCP IPA+90 DR+\nL IX+1",
+    );
+    let sweeps: Vec<_> = mirrored[1..3]
+        .iter()
+        .map(|step| match step.path {
+            StepPath::Arc { centre, sweep, .. } => (centre, sweep),
+            path => panic!("{path:?}"),
+        })
+        .collect();
+    assert!(
+        sweeps
+            .iter()
+            .all(|(centre, sweep)| *centre == [0.0; 2] && (sweep + FRAC_PI_2).abs() < 1e-12)
+    );
+    assert_near(mirrored[3].end, [9.0, 0.0, 0.0]);
+    let rotation = "CYCL DEF 10.0 ROTATION\nCYCL DEF 10.1 ROT+30\n";
+    let [x, y, z] = applied(turn(2, 30.0), [1.0, 2.0, 3.0]);
+    assert_near(
+        last(&format!("{shift}{rotation}L X+1 Y+2 Z+3 FMAX")),
+        [x + 10.0, y - 20.0, z + 5.0],
+    );
+    // The angles of a plane are about fixed axes, in the order A, B, C; those of Euler about moving ones.
+    let tilted = |plane: &str, more: &str| {
+        last(&format!(
+            "TOOL CALL 5 Z S1\n{shift}PLANE {plane} TURN MB10 FMAX\n{more}L X+1 Y+2 FMAX\nL Z+3 FMAX"
+        ))
+    };
+    let shifted = |[x, y, z]: [f64; 3]| [x + 10.0, y - 20.0, z + 5.0];
+    let spatial = [(0, 20.0), (1, -35.0), (2, 50.0)];
+    let expected =
+        spatial.into_iter().fold([1.0, 2.0, 3.0], |p, (axis, a)| applied(turn(axis, a), p));
+    assert_near(tilted("SPATIAL SPA+20 SPB-35 SPC+50 COORD ROT", ""), shifted(expected));
+    let euler = [(2, 20.0), (0, -35.0), (2, 50.0)];
+    let expected =
+        euler.into_iter().rev().fold([1.0, 2.0, 3.0], |p, (axis, a)| applied(turn(axis, a), p));
+    assert_near(tilted("EULER EULPR+20 EULNU-35 EULROT+50", ""), shifted(expected));
+    // z along (0, -1, 1), x along x.
+    let expected = applied(turn(0, 45.0), [1.0, 2.0, 3.0]);
+    assert_near(tilted("VECTOR BX+2 BY+0 BZ+0 NX+0 NY-0.5 NZ+0.5", ""), shifted(expected));
+    let more = "CYCL DEF 10.0 ROTATION\nCYCL DEF 10.1 ROT+90\n";
+    let expected = applied(turn(0, 45.0), applied(turn(2, 90.0), [1.0, 2.0, 3.0]));
+    assert_near(tilted("SPATIAL SPA+45 SPB+0 SPC+0", more), shifted(expected));
+    // A plane without angles asks for no turn.
+    let flat = last("TOOL CALL 5 Z S1\nPLANE SPATIAL SPA+0 SPB+0 SPC+0 STAY\nL X+1 Y+2 Z+3 FMAX");
+    assert_near(flat, [1.0, 2.0, 3.0]);
+    // A plane that turns the axes by its angles, one more turn, and the way back.
+    let plane = "TOOL CALL 5 Z S1\nPLANE SPATIAL SPA+30 SPB+0 SPC+0 STAY\nPLANE RELATIV SPB+40 STAY\n\
+        L A+Q120 B+Q121 C+Q122 R0 FMAX\nL X+1 Y+2 FMAX\n";
+    let found = steps(&format!("{plane}PLANE RESET TURN FMAX\nL X+1 Y+2 Z+3 FMAX"));
+    assert_eq!(found[0].path, StepPath::Align);
+    let Rotation::Tilted { frame, aligned: true } = found[1].state.rotation else {
+        panic!("{:?}", found[1].state)
+    };
+    let normal = applied(turn(0, 30.0), applied(turn(1, 40.0), [0.0, 0.0, 1.0]));
+    for (found, expected) in frame.rotation.column(2).iter().zip(normal) {
+        assert!((found - expected).abs() < 1e-12);
+    }
+    assert_eq!(found[2].end[3..], [Some(0.0); 3]);
+    assert_eq!(found[3].state.rotation, Rotation::Off);
+}
+
+#[test]
+fn m_words_hold_where_the_manual_says() {
+    let found = steps(
+        "TOOL CALL 5 Z S1000\nL X+5 Y+6 Z+7 FMAX M3\nL Z-1 F100 M5\nL X+0 F100 M13\nL Z+0 FMAX M91\nL X+1 Y+2 F50 M91\n\
+         L M140 MB30\nL M140 MB MAX F500\nM126\nL C+10 FMAX\nM127\nL C+20 FMAX\nL M128 F1000\nL A+5 FMAX\nM129\nL A+0 FMAX",
+    );
+    assert_eq!(found[1].spindle, Spindle::Clockwise);
+    assert_eq!(found[2].spindle, Spindle::Clockwise);
+    // The gauge point is at the machine's Z0, the tip 80 mm below.
+    assert_eq!(found[3].end[2], Some(-80.0));
+    assert!(found[3].rapid && found[3].is_homeward && !found[4].rapid);
+    assert_near(found[4].end, [1.0, 2.0, -80.0]);
+    assert_near(found[5].end, [1.0, 2.0, -50.0]);
+    assert!(found[5].rapid && !found[5].is_homeward);
+    assert_eq!((found[6].end[2], found[6].commanded[2], found[6].is_homeward), (None, true, true));
+    let limited = ControlSetup { top: Some(200.0), ..at_zero() };
+    let (topped, _) = read(&program("TOOL CALL 5 Z S1\nL M140 MB MAX"), &limited).expect("steps");
+    // The tip is 80 mm below the gauge point.
+    assert_eq!((topped[0].end[2], topped[0].is_homeward), (Some(120.0), true));
+    assert!(found[7].state.shorter_way && !found[8].state.shorter_way);
+    assert_eq!((found[9].state.tcp, found[10].state.tcp), (Tcp::Rotary, Tcp::Off));
+    let tcpm = "TOOL CALL 5 Z S1\nFUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS REFPNT TIP-TIP\nL A+5 FMAX\nFUNCTION RESET TCPM\nL A+0 FMAX";
+    let found = steps(tcpm);
+    assert_eq!((found[0].state.tcp, found[1].state.tcp), (Tcp::Rotary, Tcp::Off));
+    // The length that the program states.
+    let own = steps("TOOL DEF 9 L+50 R+3\nTOOL CALL 9 Z S1\nL Z+0 FMAX M91");
+    assert_eq!(own[0].end[2], Some(-50.0));
+    let preset = "CYCL DEF 247 DATUM SETTING ~\n Q339=+3 ;NUMBER\nL X+1 FMAX\nCYCL DEF 247 DATUM ~\n Q339=+3\nL X+2 FMAX";
+    assert_eq!(ends(preset).len(), 2);
+}
+
+#[test]
+fn what_is_not_read_is_named_with_its_line() {
+    let mut wrong = Vec::new();
+    for (body, line, message) in [
+        ("L X+1 RL F100", 2, "RL is cutter radius compensation"),
+        ("L X+1 RR F100", 2, "RR is cutter radius compensation"),
+        ("L X+1 R+ F100", 2, "R+ is cutter radius compensation"),
+        ("L X+1", 2, "L needs a feed rate"),
+        ("CC X+0 Y+0\nC X+0 Y+1 DR+", 3, "C needs a feed rate"),
+        ("L X+Q5 FMAX", 2, "Q5 has no value here"),
+        ("L X+Q108 FMAX", 2, "Q108 is a parameter of the control"),
+        ("Q150 = 1", 2, "Q150 is a parameter of the control"),
+        ("L X+1 FMAX\nL A+Q120 FMAX", 3, "Q120 to Q122 needs a tilted plane"),
+        ("Q1 = Q2", 2, "Q2 has no value here"),
+        ("Q1 = 1 / 0", 2, "the result of `/`"),
+        ("Q1 = -2 ^ 2", 2, "^ is a power beside a sign"),
+        ("Q1 = (2", 2, "write `)`"),
+        ("Q1 = FOO 2", 2, "`FOO` in an expression"),
+        ("Q2000 = 1", 2, "write Q0 to Q1999"),
+        ("QS1 = \"a\"", 2, "QS1 is a parameter of text"),
+        ("C X+1 Y+1 DR+ F100", 2, "C needs the pole CC"),
+        ("CC X+0 Y+0\nC X+1 Y+1 F100", 3, "C needs DR+ or DR-"),
+        ("CC X+5 Y+0\nCP IPA+90 DR- F100", 3, "IPA90 while DR has the other sign"),
+        ("CC X+0 Y+0\nCP IPA+90 DR+ F100", 3, "radius zero"),
+        ("CR X+10 Y+0 R+1 DR+ F100", 2, "less than half the distance"),
+        ("CT X+1 Y+1 F100", 2, "CT needs a motion of X or Y"),
+        ("RND R2", 2, "RND needs a line L in X and Y before it"),
+        ("L X+1 F100\nRND R5\nL Y+1", 2, "RND while a line beside it is too short"),
+        (
+            "L X+1 F100\nRND R1\nCR X+2 Y+1 R5 DR+",
+            2,
+            "RND is a corner that is not between two lines",
+        ),
+        ("L X+10 F100\nCHF 1\nL X+5 Y+5", 2, "CHF is a chamfer of a corner that is not square"),
+        ("L X+1 FMAX M777", 2, "M777 is not understood"),
+        ("L X+1 U+2 FMAX", 2, "the axis U"),
+        ("L X+1 X+2 FMAX", 2, "X stands twice"),
+        ("L X+1 FMAX M3 M4", 2, "M3 and M4 exclude each other"),
+        ("L X+1 R5 FMAX", 2, "R beside L is a word of another motion"),
+        ("L X+1 DR+ FMAX", 2, "DR beside L"),
+        ("L PR+1 PA+2 FMAX", 2, "PR beside L"),
+        ("CC X+0 Y+0\nC X+1 PA+2 DR+ F1", 3, "PA beside C"),
+        ("CC X+0 Y+0 R5", 2, "two coordinates of X, Y and Z after CC"),
+        ("L X+1 KOO FMAX", 2, "`KOO FMAX` is not understood here"),
+        ("TOOL CALL \"MILL\" Z S1", 2, "TOOL CALL \"MILL\" is a tool by its name"),
+        ("TOOL CALL 5 X S1", 2, "TOOL CALL X is another tool axis"),
+        ("TOOL CALL 5 Z S1 DL+0.2", 2, "DL+0.2 is an allowance"),
+        ("CALL LBL 9", 2, "there is no LBL 9"),
+        ("CALL LBL \"a\"", 2, "there is no LBL `a`"),
+        ("LBL 1\nLBL 1", 3, "LBL 1 is already defined in line 2"),
+        ("LBL 1\nL IX+1 FMAX\nLBL 0\nCALL LBL 1 REP 2", 5, "LBL 0 stands in the section"),
+        ("CALL LBL 1 REP 2\nLBL 1", 2, "REP of LBL 1 while the label stands after the call"),
+        ("LBL 1\nCALL LBL 1\nLBL 0", 3, "call each other more than"),
+        ("LBL 1\nFN 9: IF +1 EQU +1 GOTO LBL 1", 3, "more than 10000000"),
+        ("FN 9: IF +1 EQU +1.0000000000001 GOTO LBL 1", 2, "differ by rounding alone"),
+        ("CYCL CALL", 2, "a call of a cycle needs a drilling cycle"),
+        ("CYCL DEF 200 DRILL ~\n Q200=2", 2, "CYCL DEF 200 needs Q201, the depth"),
+        ("CYCL DEF 777 X", 2, "CYCL DEF 777 is a cycle that is not known"),
+        ("CYCL DEF 7.1 #5", 2, "a row of a datum table"),
+        ("CYCL DEF 8.1 X\nCYCL DEF 10.1 ROT+5", 3, "CYCL DEF 10 while axes are mirrored"),
+        ("CYCL DEF 10.1 ROT+5\nL X+1 FMAX", 3, "it is the first after a rotation"),
+        ("CYCL DEF 10.1 ROT+5\nCYCL DEF 7.1 X+5", 3, "a datum shift while axes are rotated"),
+        (
+            "PLANE SPATIAL SPA+5 SPB+0 SPC+0 STAY\nL X+1 Y+1 FMAX",
+            3,
+            "the tool does not stand along z",
+        ),
+        ("PLANE SPATIAL SPA+5 SPB+0 SPC+0", 2, "PLANE SPATIAL needs TURN or STAY"),
+        ("PLANE SPATIAL SPA+5 TURN", 2, "the angles SPA, SPB and SPC"),
+        ("PLANE VECTOR BX+1 BY+0 BZ+0 NX+1 NY+0 NZ+0 STAY", 2, "two vectors at right angles"),
+        (
+            "CYCL DEF 7.1 X+1\nPLANE SPATIAL SPA+5 SPB+0 SPC+0 TURN\nCYCL DEF 7.1 X+2\nL X+1 Y+1 FMAX",
+            5,
+            "the datum shift has changed in a tilted plane",
+        ),
+        (
+            "CYCL DEF 247 ~\n Q339=1\nL X+1 FMAX\nCYCL DEF 247 ~\n Q339=2",
+            5,
+            "Q339=2 is another preset",
+        ),
+        ("L X+1 FMAX\nCYCL DEF 247 ~\n Q339=2", 3, "positions of the preset before it"),
+        ("M128", 2, "M128 needs a tool with its length"),
+        ("FUNCTION TCPM F TCP AXIS SPAT PATHCTRL AXIS", 2, "AXIS SPAT is angles"),
+        ("FUNCTION TCPM F TCP AXIS POS PATHCTRL VECTOR", 2, "PATHCTRL VECTOR is a tool axis"),
+        ("FUNCTION PARAXCOMP", 2, "FUNCTION PARAXCOMP is another function"),
+        ("X+10 R0 F100", 2, "X"),
+        ("ERROR = L X+1", 2, "`ERROR = L X+1` is not understood"),
+        ("L X+99999999999 FMAX", 2, "a number"),
+        ("G1 X10", 2, "G"),
+        ("L X+1 FMAX M140 MB MAX", 2, "M140 while its block has coordinates"),
+        ("CYCL DEF 247 ~\n Q339=PREDEF", 2, "PREDEF is a value of GLOBAL DEF"),
+    ] {
+        let text = program(body);
+        let error = read(&text, &at_zero()).expect_err(body);
+        if error.line != line || !error.to_string().contains(message) {
+            wrong.push(format!("{body}: {error}, not {line}: {message}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    // An increment from a position that only the machine knows, and one that stands alone.
+    let unknown = ControlSetup { start: [None; 6], ..at_zero() };
+    let error = read(&program("L X+1 IY+2 FMAX"), &unknown).expect_err("an increment");
+    assert!(error.to_string().contains("IY while its block has an absolute"), "{error}");
+    let (found, _) = read(&program("L IY+2 FMAX\nL X+1 FMAX"), &unknown).expect("increments");
+    assert_eq!((found[0].end[1], found[0].commanded[1]), (None, true));
+    assert_eq!((found[1].end[0], found[1].absolute), (Some(1.0), true));
+    // Another control, and a program without its end.
+    let haas = ControlSetup { rules: ControlRules::named("haas").expect("a control"), ..at_zero() };
+    let error = read(&program("L X+1 FMAX"), &haas).expect_err("another control");
+    assert!(error.to_string().contains("name the control `heidenhain`"), "{error}");
+    let error = read("; a\nBEGIN PGM A MM\nL X+1 FMAX", &at_zero()).expect_err("no end");
+    assert_eq!(error.line, 3);
+}
+
+#[test]
+fn notes_name_what_is_passed_over_and_what_is_left() {
+    let notes = |body: &str| {
+        let (_, notes) = read(&program(body), &at_zero()).unwrap_or_else(|error| panic!("{error}"));
+        notes.iter().map(ToString::to_string).collect::<Vec<_>>()
+    };
+    let has = |notes: &[String], note: &str| {
+        assert!(notes.iter().any(|found| found.contains(note)), "{note} is not in {notes:?}");
+    };
+    let passed = notes(
+        "BLK FORM 0.1 Z  X-5  Y+0 Z-20\nTOOL CALL 5 Z S900 DR+0.1\nL X+1 FMAX M8\nCYCL DEF 32.0 TOLERANCE\nCYCL DEF 32.1\n\
+         FN 16: F-PRINT A/B\nL M103 F20\nPLANE SPATIAL SPA+0 SPB+0 SPC+0 COORD ROT STAY\nPLANE RESET STAY\nSTOP",
+    );
+    for word in
+        ["BLK FORM 0.1 Z X-5 Y+0 Z-20", "DR", "M8", "CYCL DEF 32", "FN 16", "M103", "COORD ROT"]
+    {
+        has(&passed, &format!("{word} is passed over"));
+    }
+    has(&passed, "line 11: motions by hand during the stop");
+    // A shift that the control can keep for the next run, and one that has ended.
+    let shift = "L X+1 FMAX\nCYCL DEF 7.0 DATUM\nCYCL DEF 7.1 X+5\nL X+2 FMAX";
+    has(&notes(shift), "line 2: the program ends with CYCL DEF 7");
+    let ended = notes(&format!("{shift}\nTRANS DATUM RESET"));
+    assert!(!ended.iter().any(|note| note.contains("ends with")), "{ended:?}");
+    has(&notes("CYCL DEF 8.1 X\nL X+1 FMAX"), "ends with CYCL DEF 8");
+    let text = format!("{}L X+1 FMAX\n", program("L X+1 FMAX"));
+    let (_, after) = read(&text, &at_zero()).expect("steps");
+    has(&after.iter().map(ToString::to_string).collect::<Vec<_>>(), "the text after the end");
+    let text = program("L X+1 FMAX") + &program("L X+2 FMAX");
+    let (steps, after) = read(&text, &at_zero()).expect("steps");
+    assert_eq!(steps.len(), 1);
+    has(&after.iter().map(ToString::to_string).collect::<Vec<_>>(), "another program begins here");
+}
+
+/// Every word that the documentation calls refused is refused by its name.
+#[test]
+fn words_that_the_documentation_refuses_are_refused() {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/controls.md");
+    let page = std::fs::read_to_string(path).expect("the page");
+    let (_, section) = page.split_once("## Heidenhain Klartext").expect("the section");
+    let mut tables = section.split("|---|---|---|\n").skip(1).map(|table| {
+        let rows = table.lines().take_while(|line| line.starts_with('|'));
+        let cells = rows.map(|row| row.split('|').map(str::trim).collect::<Vec<_>>());
+        cells
+            .filter(|cells| cells[3].starts_with("refused"))
+            .map(|cells| cells[1])
+            .collect::<Vec<_>>()
+    });
+    let [statements, m_words, functions, planes, cycles] =
+        [(); 5].map(|()| tables.next().expect("a table"));
+    let forms = ["PROJECTED", "POINTS", "AXIAL"];
+    let plane = |word: &str| match forms.contains(&word) {
+        true => format!("PLANE {word} STAY"),
+        false => format!("PLANE SPATIAL SPA+0 SPB+0 SPC+0 {word} STAY"),
+    };
+    let lines = statements
+        .iter()
+        .map(|word| (*word, format!("{word} 5")))
+        .chain(m_words.iter().map(|word| (*word, format!("L X+1 FMAX {word}"))))
+        .chain(functions.iter().map(|word| (*word, format!("{word}: Q1 = 5"))))
+        .chain(planes.iter().map(|word| (*word, plane(word))))
+        .chain(cycles.iter().map(|word| (*word, format!("{word} NAME ~\n Q200=+1"))));
+    let mut count = 0;
+    for (word, line) in lines {
+        let error = read(&program(&line), &at_zero()).expect_err(&line);
+        assert!(error.to_string().contains(word), "{line}: {error}");
+        assert_eq!(error.line, 2, "{line}: {error}");
+        count += 1;
+    }
+    println!("{count} words are refused by their names");
+    assert!(count > 100);
+}
+
+#[test]
+fn a_repeated_section_is_read_at_the_speed_of_text() {
+    let body = "Q1 = 0\nLBL 1\nQ1 = Q1 + 0.001\nL X+Q1 IY+1 F500\nCALL LBL 1 REP 49999";
+    let (text, setup) = (program(body), at_zero());
+    let begin = Instant::now();
+    let steps = Interpreter::new(&text, &setup).expect("a program");
+    let count = steps.inspect(|step| assert!(step.is_ok())).count();
+    let repeated = begin.elapsed();
+    assert_eq!(count, 50_000);
+    let lines: String =
+        (0..100_000).map(|k| format!("{k} L  X+{k}.125  Y-{k}.5  Z+{}\n", k % 7)).collect();
+    let plain = program(&format!("L X+0 F1000\n{lines}"));
+    let begin = Instant::now();
+    let count = Interpreter::new(&plain, &setup).expect("a program").count();
+    let read = begin.elapsed();
+    let lines: String =
+        (0..100_000).map(|k| format!("N{k} X{k}.125 Y-{k}.5 Z{}\n", k % 7)).collect();
+    let iso = format!("G21 G90 G54\nG1 X0. F1000.\n{lines}M30\n");
+    let begin = Instant::now();
+    assert_eq!(Interpreter::new(&iso, &setup).expect("a program").count(), count);
+    let other = begin.elapsed();
+    println!(
+        "150,000 repeated blocks in {repeated:?}, {count} lines in {read:?}, as ISO words in {other:?}"
+    );
+    assert_eq!(count, 100_001);
+    assert!(repeated < Duration::from_secs(5) && read < Duration::from_secs(5));
+}
+
+const MILLING: &str = "0 BEGIN PGM MILL MM\n1 BLK FORM 0.1 Z X+0 Y+0 Z-20\n2 BLK FORM 0.2 X+100 Y+100 Z+0\n; a comment\n* - heading\n\
+    3 TOOL DEF 4 L+30 R+4\n4 TOOL CALL 5 Z S3000 F200 DL+0 DR+0\n5 L M140 MB MAX\n6 L X-10.5 Y+20 R0 FMAX M3\n7 L Z+2 FMAX M8\n\
+    8 L Z-5 F AUTO\n9 CC X+10 Y+20\n10 CP IPA-180 DR- F500\n11 C X-10.5 Y+20 DR+\n12 L X+40\n13 RND R5\n14 L IY+30\n15 CHF 2\n\
+    16 L X+0\n17 CR X+10 Y+60 R+10 DR+\n18 CT X+30 Y+80\n19 CC X+0 Z-5\n20 LP PR+20 PA+30\n21 CP IPA+720 IY-4 DR+\n/22 L Z+50 FMAX M1\n\
+    23 L Z+0 R0 FMAX M91\n24 CYCL DEF 7.0 DATUM\n25 CYCL DEF 7.1 X+5\n26 CYCL DEF 7.2 IY+5\n27 CYCL DEF 8.0 M\n28 CYCL DEF 8.1 Y\n\
+    29 L X+1 Y+2 F300\n30 CYCL DEF 8.1\n31 CYCL DEF 10.0 R\n32 CYCL DEF 10.1 ROT+30\n33 L X+0 Y+0\n34 M5\n35 M30\n36 END PGM MILL MM\n";
+
+const HOLES: &str = "BEGIN PGM HOLES INCH\nFN 0: Q1 = +0\nQ2 = 2 * SIN(Q1 + 30) + SQRT 4\nTOOL CALL 5 Z S900\nM3\n\
+    CYCL DEF 200 DRILLING ~\n  Q200=+2 ;SET-UP CLEARANCE ~\n  Q201=-15 ;DEPTH ~\n  Q206=+250 ~\n  Q202=+5 ~\n  Q203=+0 ~\n  Q204=+50\n\
+    LBL 1\nL X+Q1 Y+Q2 R0 FMAX M99\nFN 1: Q1 = +Q1 + +10\nCALL LBL 1 REP 3\nFN 9: IF +Q1 EQU +5 GOTO LBL 9\nCALL LBL \"row\"\nLBL 9\n\
+    L Z+100 FMAX M2\nLBL \"row\"\nCYCL DEF 203 DRILL ~\n Q200=1 ~\n Q201=-9 ~\n Q206=AUTO ~\n Q202=4 ~\n Q203=0 ~\n Q204=5 ~\n Q212=1 ~\n Q205=2\n\
+    CYCL CALL POS X+1 Y+2 Z+0 FMAX\nCYCL DEF 207 TAP ~\n Q200=2 ~\n Q201=-9 ~\n Q239=1 ~\n Q203=0 ~\n Q204=5\nL X+3 FMAX M89\nL X+4 F100 M99\nLBL 0\n\
+    END PGM HOLES INCH\n";
+
+const PLANES: &str = "1 BEGIN PGM TILT MM\nCYCL DEF 247 DATUM ~\n Q339=+1\nTOOL CALL 5 Z S900\nM126\nL A+0 C+0 FMAX\n\
+    PLANE SPATIAL SPA+30 SPB+0 SPC+45 TURN MB MAX FMAX COORD ROT\nL X+1 Y+2 FMAX\nL Z+3 F100\nCYCL DEF 10.1 ROT+5\nL X+0 Y+0\n\
+    CYCL DEF 10.1 ROT+0\nPLANE RESET TURN F1000\nPLANE EULER EULPR+5 EULNU+6 EULROT+7 STAY\nL A+Q120 B+Q121 C+Q122 FMAX\nPLANE RESET STAY\n\
+    CYCL DEF 19.0 P\nCYCL DEF 19.1 A+10 B+0 C+0\nCYCL DEF 19.1\nL X+0 Y+0 Z+50 A+0 B+0 C+0 FMAX\nL M128 F500\nL X+1 Y+1 Z+40 A+10 C-20 F800\n\
+    L IA+1 IC+2\nM129\nFUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS\nL X+2 A+3\nFUNCTION RESET TCPM\nTRANS DATUM AXIS X+1\nSTOP M9\nEND PGM TILT MM\n";
+
+const PIECES: [&str; 44] = [
+    "L X+1 FMAX\n",
+    "LBL 1\n",
+    "LBL 0\n",
+    "CALL LBL 1\n",
+    "CALL LBL 1 REP 2\n",
+    "CALL LBL 9",
+    "CC X+1 Y+2\n",
+    "CC\n",
+    "CP IPA+90 DR+\n",
+    "CT X+9 Y+9\n",
+    "RND R1\n",
+    "CHF 1\n",
+    "CYCL DEF 7.1 X+3\n",
+    "CYCL DEF 8.1 X\n",
+    "CYCL DEF 10.1 ROT+9\n",
+    "CYCL DEF 19.1 A+5\n",
+    "CYCL CALL\n",
+    "PLANE RESET TURN\n",
+    "PLANE SPATIAL SPA+1 SPB+2 SPC+3 TURN\n",
+    "L A+Q120 B+Q121 C+Q122 FMAX\n",
+    "TRANS DATUM RESET\n",
+    "TOOL CALL 5\n",
+    "M128\n",
+    "M129\n",
+    "M91",
+    "M99",
+    "M89",
+    "M140 MB5",
+    "M30\n",
+    "END PGM\n",
+    "Q1 = ",
+    "Q200=",
+    "~\n",
+    ";",
+    "*",
+    "/",
+    "(",
+    ")",
+    "^",
+    "\"",
+    "99999",
+    "0.0001",
+    "\n",
+    "\u{e9}",
+];
+
+/// Reads `MUTANTS` damaged programs, six thousand by default.
+#[test]
+fn mutants_end_with_steps_or_with_a_line() {
+    let count: u64 = match std::env::var("MUTANTS") {
+        Ok(text) => text.parse().expect("MUTANTS is a whole number"),
+        Err(_) => 6000,
+    };
+    let seeds = [MILLING, HOLES, PLANES];
+    let unknown = ControlSetup { lengths: BTreeMap::from([(5, 80.0)]), ..ControlSetup::default() };
+    let setups = [at_zero(), unknown];
+    for seed in seeds {
+        for setup in &setups {
+            let steps = read(seed, setup).unwrap_or_else(|error| panic!("{seed}{error}")).0;
+            assert!(steps.len() >= 10, "{} steps\n{seed}", steps.len());
+        }
+    }
+    let mut random = Pcg64Mcg::seed_from_u64(11);
+    let mut random =
+        |limit: usize| ((u128::from(random.next_u64()) * limit as u128) >> 64) as usize;
+    let (mut whole, mut steps, mut slowest) = (0u64, 0u64, (Duration::ZERO, String::new()));
+    for index in 0..count {
+        let text = mutate(seeds[random(seeds.len())], &PIECES, &mut random);
+        let lines = text.split(['\n', '\r']).count();
+        let begin = Instant::now();
+        match Interpreter::new(&text, &setups[index as usize % 2]) {
+            Err(error) => assert!((1..=lines).contains(&error.line), "{error}\n{text}"),
+            Ok(mut interpreter) => {
+                let mut fault = None;
+                for step in interpreter.by_ref() {
+                    match step {
+                        Ok(step) => {
+                            steps += 1;
+                            let numbers = step.start.iter().chain(&step.end).flatten();
+                            assert!(
+                                numbers.into_iter().all(|value| value.is_finite()),
+                                "{step:?}\n{text}"
+                            );
+                            if let StepPath::Arc { centre, sweep, .. } = step.path {
+                                let is_finite = centre[0].is_finite() && centre[1].is_finite();
+                                assert!(is_finite && sweep.is_finite(), "{step:?}\n{text}");
+                                assert!(sweep.abs() < 1e9 * TAU, "{step:?}\n{text}");
+                            }
+                            assert!((1..=lines).contains(&step.line), "{step:?}\n{text}");
+                        }
+                        Err(error) => fault = Some(error),
+                    }
+                }
+                assert!(interpreter.next().is_none(), "steps after the end\n{text}");
+                match fault {
+                    None => {
+                        interpreter.notes();
+                        whole += 1;
+                    }
+                    Some(error) => assert!((1..=lines).contains(&error.line), "{error}\n{text}"),
+                }
+            }
+        }
+        if begin.elapsed() > slowest.0 {
+            slowest = (begin.elapsed(), text);
+        }
+    }
+    println!(
+        "{count} mutants: {whole} read to the end, {steps} steps, the slowest in {:?}",
+        slowest.0
+    );
+    assert!(slowest.0 < Duration::from_secs(60), "{}", slowest.1);
+    assert!(whole > 0 && whole < count);
+}
