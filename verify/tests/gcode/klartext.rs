@@ -458,6 +458,15 @@ fn coordinates_are_shifted_mirrored_rotated_and_tilted() {
     let more = "CYCL DEF 10.0 ROTATION\nCYCL DEF 10.1 ROT+90\n";
     let expected = applied(turn(0, 45.0), applied(turn(2, 90.0), [1.0, 2.0, 3.0]));
     assert_near(tilted("SPATIAL SPA+45 SPB+0 SPC+0", more), shifted(expected));
+    // An allowance on the length raises the tip, along z of a plane, until the next tool.
+    let raised = "TOOL CALL 5 Z S1 DL+0.5\nCYCL DEF 7.1 X+10\n";
+    assert_near(last(&format!("{raised}L X+1 Y+2 Z+3 FMAX")), [11.0, 2.0, 3.5]);
+    assert_near(last(&format!("{raised}TOOL CALL 5 Z S1\nL X+1 Y+2 Z+3 FMAX")), [11.0, 2.0, 3.0]);
+    let [x, y, z] = applied(turn(0, 45.0), [1.0, 2.0, 3.5]);
+    assert_near(
+        last(&format!("{raised}PLANE SPATIAL SPA+45 SPB+0 SPC+0 TURN\nL X+1 Y+2 FMAX\nL Z+3 FMAX")),
+        [x + 10.0, y, z],
+    );
     // A plane without angles asks for no turn.
     let flat = last("TOOL CALL 5 Z S1\nPLANE SPATIAL SPA+0 SPB+0 SPC+0 STAY\nL X+1 Y+2 Z+3 FMAX");
     assert_near(flat, [1.0, 2.0, 3.0]);
@@ -554,7 +563,8 @@ fn what_is_not_read_is_named_with_its_line() {
         ("L X+1 KOO FMAX", 2, "`KOO FMAX` is not understood here"),
         ("TOOL CALL \"MILL\" Z S1", 2, "TOOL CALL \"MILL\" is a tool by its name"),
         ("TOOL CALL 5 X S1", 2, "TOOL CALL X is another tool axis"),
-        ("TOOL CALL 5 Z S1 DL+0.2", 2, "DL+0.2 is an allowance"),
+        ("TOOL CALL 5 Z S1 DL+0.2\nM128", 3, "M128 while the tool has an allowance"),
+        ("TOOL CALL 5 Z S1\nM128\nTOOL CALL S2 DL-1", 4, "DL while M128 is in force"),
         ("CALL LBL 9", 2, "there is no LBL 9"),
         ("CALL LBL \"a\"", 2, "there is no LBL `a`"),
         ("LBL 1\nLBL 1", 3, "LBL 1 is already defined in line 2"),

@@ -41,6 +41,8 @@ pub(super) struct Frame {
     pub(super) doubt: Option<&'static str>,
     /// The number of the preset, if the program has selected one.
     preset: Option<f64>,
+    /// The allowance on the length of the tool (DL), by which the tip is higher along its axis.
+    allowance: f64,
 }
 
 impl Frame {
@@ -55,7 +57,13 @@ impl Frame {
             master_is_positive: None,
             doubt: None,
             preset: None,
+            allowance: 0.0,
         }
+    }
+
+    /// Returns whether the tip is off the programmed position along the tool.
+    pub(super) fn has_allowance(&self) -> bool {
+        self.allowance != 0.0
     }
 
     /// Returns whether axes are mirrored.
@@ -71,7 +79,8 @@ impl Frame {
             None => Rotation::Plane { frame: Map { rotation: turn, origin: Vector3::zeros() } },
             Some(tilt) => {
                 let [x, y, z] = [0, 1, 2].map(|axis| self.shift[axis] - self.base[axis]);
-                let in_plane = if self.doubt.is_some() { [0.0; 3] } else { [x, y, z] };
+                let mut in_plane = if self.doubt.is_some() { [0.0; 3] } else { [x, y, z] };
+                in_plane[2] += self.allowance;
                 let frame = Map { rotation: tilt * turn, origin: tilt * Vector3::from(in_plane) };
                 Rotation::Tilted { frame, aligned: self.aligned }
             }
@@ -83,7 +92,19 @@ impl Program<'_> {
     /// Gives the control the coordinates that hold now.
     fn change_frame(&mut self, control: &mut Control) {
         self.before.forget();
-        control.set_coordinates(self.frame.base, self.frame.rotation());
+        let mut shift = self.frame.base;
+        if self.frame.tilt.is_none() {
+            shift[2] += self.frame.allowance;
+        }
+        control.set_coordinates(shift, self.frame.rotation());
+    }
+
+    /// Sets the allowance on the length of the tool. The tip is at the programmed position with it.
+    pub(super) fn set_allowance(&mut self, allowance: f64, control: &mut Control) {
+        if self.frame.allowance != allowance {
+            self.frame.allowance = allowance;
+            self.change_frame(control);
+        }
     }
 
     /// Executes a line of an old cycle after its number and its part: 7, 8, 10 or 19.
@@ -448,7 +469,8 @@ impl Program<'_> {
             return Err(combination(word, condition, "write PLANE RESET before"));
         }
         // It ends the shift, mirrored axes and the rotation.
-        self.frame = Frame { preset: Some(number), ..Frame::new() };
+        let allowance = self.frame.allowance;
+        self.frame = Frame { preset: Some(number), allowance, ..Frame::new() };
         self.change_frame(control);
         Ok(())
     }

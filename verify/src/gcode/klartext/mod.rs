@@ -319,6 +319,10 @@ impl<'a> Program<'a> {
             let condition = "axes are rotated (CYCL DEF 10, PLANE)";
             return Err(combination("M128", condition, "end that before"));
         }
+        if is_on && self.frame.has_allowance() {
+            let condition = "the tool has an allowance on its length (DL)";
+            return Err(combination("M128", condition, "write DL+0 in TOOL CALL"));
+        }
         if is_on && !control.has_length() {
             return Err(missing("M128", "a tool with its length (TOOL CALL) before"));
         }
@@ -463,7 +467,7 @@ impl<'a> Program<'a> {
             return Err(GcodeFault::Sentence { shown, expected: "the whole number of a tool" });
         }
         self.block.clear();
-        let mut length = None;
+        let (mut length, mut allowance) = (None, None);
         while let Some(byte) = cursor.peek() {
             let start = *cursor;
             let scale = Scale::new(&self.parameters, self.unit);
@@ -486,12 +490,9 @@ impl<'a> Program<'a> {
                     _ => return Err({ start }.unexpected("F with a number")),
                 },
                 b'D' if cursor.take_prefix("DL") => {
-                    let delta = scale.length(cursor)?;
-                    if delta != 0.0 {
-                        let meaning = "an allowance on the length of the tool";
-                        let remedy = "write DL+0, and the allowance in the coordinates";
-                        return Err(not_read(format!("DL{delta:+}"), meaning, remedy));
-                    }
+                    // Tables of tools write it with a colon.
+                    cursor.take(b':');
+                    allowance = Some(scale.length(cursor)?);
                 }
                 b'D' if cursor.take_prefix("DR") => {
                     // Of the radius, and of the radius of the corner.
@@ -524,8 +525,17 @@ impl<'a> Program<'a> {
         if let Some(tool) = tool {
             self.block.add('T', number(tool))?;
             self.before.leave();
+            allowance.get_or_insert(0.0);
         }
-        control.execute(control.line, &mut self.block)
+        if allowance.is_some_and(|allowance| allowance != 0.0) && control.is_tcp() {
+            let condition = "M128 is in force, under which it is along an axis that turns";
+            return Err(combination("DL", condition, "write M129 before, or DL+0"));
+        }
+        control.execute(control.line, &mut self.block)?;
+        if let Some(allowance) = allowance {
+            self.set_allowance(allowance, control);
+        }
+        Ok(())
     }
 
     /// Executes TRANS DATUM, after these words.

@@ -70,7 +70,7 @@ pub(super) const STATEMENTS: [Entry; 50] = [
     read("CTP", "CT to polar coordinates"),
     read("RND", "a rounded corner between two lines in the plane"),
     read("CHF", "a chamfer between two lines in the plane at a right angle"),
-    read("TOOL CALL", "a tool change, by the number of the tool; DL other than 0 is refused"),
+    read("TOOL CALL", "a tool change, by the number of the tool; DL raises the tip along the tool"),
     read("TOOL DEF", "the length of a tool, or the tool that is called next"),
     read("LBL", "a label"),
     read("CALL LBL", "a subprogram, or a section that is repeated (REP)"),
