@@ -242,7 +242,7 @@ fn words_that_are_not_read_are_named() {
         ("GOTO 10", 1, "there is no N10"),
         ("GOTO 10\nN10\nN10", 1, "N10 stands in lines 2 and 3"),
         ("GOTO 10\nDO1\nN10\nEND1", 1, "into a loop"),
-        ("GOTOF END", 1, "`GOTOF` decides"),
+        ("GOTOF END", 1, "a jump to `END`"),
         ("N1 GOTO 1", 1, "more than 10000000 blocks"),
         ("IF [1 EQ 1] G0 X1", 1, "IF needs GOTO or THEN"),
         ("WHILE [1 EQ 1] DO 4", 1, "a number from 1 to 3"),

@@ -535,7 +535,7 @@ impl<'a> Program<'a> {
             Role::Repeat => {
                 let times = value(cursor, &scope)?.unwrap_or(0.0).round();
                 check_end(cursor)?;
-                if !(times <= MAX_REPEATED as f64) {
+                if times > MAX_REPEATED as f64 {
                     return Err(GcodeFault::TooLong);
                 }
                 if !self.flow.repeat(line, times.max(0.0) as u32) {
