@@ -581,9 +581,19 @@ fn what_is_not_read_is_named_with_its_line() {
         ("CYCL DEF 10.1 ROT+5\nL X+1 FMAX", 3, "it is the first after a rotation"),
         ("CYCL DEF 10.1 ROT+5\nCYCL DEF 7.1 X+5", 3, "a datum shift while axes are rotated"),
         (
-            "PLANE SPATIAL SPA+5 SPB+0 SPC+0 STAY\nL X+1 Y+1 FMAX",
-            3,
+            "PLANE SPATIAL SPA+5 SPB+0 SPC+0 TURN\nPLANE SPATIAL SPA+6 SPB+0 SPC+0 STAY\nL X+1 Y+1 FMAX",
+            4,
             "the tool does not stand along z",
+        ),
+        (
+            "PLANE SPATIAL SPA+5 SPB+0 SPC+0 STAY\nL X+1 A+5 FMAX",
+            3,
+            "a rotary axis while a plane is tilted",
+        ),
+        (
+            "PLANE SPATIAL SPA+5 SPB+0 SPC+0 TURN\nL A+5 FMAX",
+            3,
+            "a rotary axis while a plane is tilted",
         ),
         ("PLANE SPATIAL SPA+5 SPB+0 SPC+0", 2, "PLANE SPATIAL needs TURN or STAY"),
         ("PLANE SPATIAL SPA+5 TURN", 2, "the angles SPA, SPB and SPC"),
