@@ -550,6 +550,8 @@ fn what_is_not_read_is_named_with_its_line() {
             2,
             "RND is a corner that is not between two lines",
         ),
+        ("L X+10 F100\n/RND R1\nL Y+5", 2, "/ is a corner in an optional block"),
+        ("L X+10 F100\nRND R1\n/L Y+5", 2, "RND is a corner that is not between two lines"),
         ("L X+10 F100\nCHF 1\nL X+5 Y+5", 2, "CHF is a chamfer of a corner that is not square"),
         ("L X+1 FMAX M777", 2, "M777 is not understood"),
         ("L X+1 U+2 FMAX", 2, "the axis U"),

@@ -6,6 +6,7 @@
 
 use super::Program;
 use super::block::{Coordinate, Feed, Scale, Words};
+use super::flow::Ahead;
 use super::line::{Cursor, expected};
 use crate::gcode::block::{Code, Number};
 use crate::gcode::control::{Circle, Control, Curve};
@@ -564,12 +565,18 @@ impl Program<'_> {
 
     /// Returns the corner that the next block states, if it states one.
     fn corner_ahead(&self) -> Result<Option<Corner>, GcodeFault> {
-        let Some((mut cursor, _)) = self.flow.ahead(self.flow.place()) else { return Ok(None) };
+        let Some(Ahead { mut cursor, is_optional, .. }) = self.flow.ahead(self.flow.place()) else {
+            return Ok(None);
+        };
         let is_round = match cursor.peek() {
             Some(b'R') => cursor.take_word("RND"),
             Some(b'C') if cursor.take_word("CHF") => false,
             _ => return Ok(None),
         };
+        if is_optional {
+            let meaning = "a corner in an optional block";
+            return Err(not_read("/", meaning, "write the corner without `/`"));
+        }
         let scale = Scale::new(&self.parameters, self.unit);
         if is_round && !cursor.take(b'R') {
             return Err(cursor.unexpected("the radius R after RND"));
@@ -600,9 +607,9 @@ impl Program<'_> {
             let remedy = "write the corner as a motion of its own";
             not_read(head, "a corner that is not between two lines in X and Y", remedy)
         };
-        let (_, after) = self.flow.ahead(self.flow.place()).ok_or_else(beside)?;
-        let (mut cursor, _) = self.flow.ahead(after).ok_or_else(beside)?;
-        if !cursor.take_word("L") {
+        let after = self.flow.ahead(self.flow.place()).ok_or_else(beside)?.after;
+        let Ahead { mut cursor, is_optional, .. } = self.flow.ahead(after).ok_or_else(beside)?;
+        if is_optional || !cursor.take_word("L") {
             return Err(beside());
         }
         let start = self.position(control);
