@@ -201,7 +201,7 @@ pub enum StepPath {
         sweep: f64,
     },
     /// A rotation of A, B and C that aligns the tool with z of a tilted plane (G53.1). The angles are the
-    /// machine's.
+    /// machine's. If no axis is [commanded](Step::commanded), the program has turned them before.
     Align,
     /// An arc whose start is unknown in its plane.
     Undetermined,

@@ -196,7 +196,7 @@ fn rotary_axes_of_klartext_obey_their_words() {
     let machine = || Machine::named("A-C trunnion").expect("a machine of the library");
     let mut setup = ControlSetup { lengths: [(1, 80.0)].into(), ..Default::default() };
     setup.work_offsets[0] = Some([0.0, 0.0, -400.0, 0.0, 0.0, 0.0]);
-    let read = |body: &str| {
+    let readings = |body: &str| {
         let text = format!(
             "0 BEGIN PGM A MM\nTOOL CALL 1 Z S900\nL A+0 C+0 FMAX M3\nL X+0 Y+0 Z+100 FMAX\n{body}\nM30\nEND PGM A MM\n"
         );
@@ -210,7 +210,7 @@ fn rotary_axes_of_klartext_obey_their_words() {
             "PLANE SPATIAL SPA+20 SPB+0 SPC+0 STAY SEQ{sign} TABLE ROT\nL A+Q120 C+Q122 R0 FMAX\n\
              L X+0 Y+0 FMAX\nL Z+50 FMAX\nL Z+1 F100"
         );
-        let programs = read(&body);
+        let programs = readings(&body);
         let [program] = &programs[..] else { panic!("{} readings", programs.len()) };
         // Every rule is that of the only control that reads the program.
         assert!(program.summary().open_rules.is_empty(), "{:?}", program.summary());
@@ -227,7 +227,30 @@ fn rotary_axes_of_klartext_obey_their_words() {
         tilts.push(tilt.expect("a link that A turns"));
     }
     assert!((tilts[0] + tilts[1]).abs() < 1e-9, "{tilts:?}");
+    // Angles that the program states are those of the plane, before it or after it, or an error.
+    let stated = |before: &str, after: &str| {
+        let text = format!(
+            "0 BEGIN PGM A MM\nTOOL CALL 1 Z S900\nL A+0 C+0 FMAX M3\nL X+0 Y+0 Z+100 FMAX\n{before}\n\
+             PLANE SPATIAL SPA+20 SPB+0 SPC+0 STAY\n{after}\nL X+0 Y+0 FMAX\nL Z+1 F100\nM30\nEND PGM A MM\n"
+        );
+        MachineProgram::new("a.h", text, machine(), setup.clone()).map_err(|e| e.to_string())
+    };
+    let expected = Vector3::new(0.0, -sine, cosine);
+    let turns = ["L A+20 C+0 FMAX", "L A-20 C+0 FMAX"];
+    let read = turns.map(|turn| [stated(turn, ""), stated("", turn)]);
+    let is_read = read.each_ref().map(|ways| ways.each_ref().map(Result::is_ok));
+    assert!(matches!(is_read, [[true, true], [false, false]] | [[false, false], [true, true]]));
+    for result in read.iter().flatten() {
+        match result {
+            Ok(program) => {
+                let pose = last_pose(program);
+                assert!((pose.axis() - expected).norm() < 1e-9, "{pose:?}");
+                assert!((pose.tip().coords - expected).norm() < 1e-9, "{pose:?}");
+            }
+            Err(error) => assert!(error.contains("40.000 degrees off z of the tilted"), "{error}"),
+        }
+    }
     let turn = "L C+345 FMAX\nL C+15 FMAX\nL Z+1 F100";
-    assert_eq!(read(turn).len(), 3);
-    assert_eq!(read(&format!("M126\n{turn}")).len(), 1);
+    assert_eq!(readings(turn).len(), 3);
+    assert_eq!(readings(&format!("M126\n{turn}")).len(), 1);
 }

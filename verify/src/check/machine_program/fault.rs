@@ -86,6 +86,15 @@ pub enum StepFault {
         /// Its length, in mm.
         length: f64,
     },
+    /// The program has turned the rotary axes to other angles than a tilted plane needs.
+    #[error(
+        "the tool is {degrees:.3} degrees off z of the tilted plane, to which the program has turned the axes itself: correct the \
+         angles, or let PLANE turn them"
+    )]
+    NotAligned {
+        /// The angle, in degrees.
+        degrees: f64,
+    },
     /// The head turns, and the length of the tool is unknown.
     #[error("the head turns, and so the length of the tool matters: state it in the job")]
     NoLength,

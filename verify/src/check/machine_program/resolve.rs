@@ -13,6 +13,10 @@ use std::collections::BTreeMap;
 /// The increment of angles, in degrees: nearer to half a turn a control may take either way.
 const ANGLE_INCREMENT: f64 = 1e-3;
 
+/// Greatest angle between the tool and z of its plane, in degrees, where the program has turned the axes: angles are written to 0.001
+/// degrees.
+const ALIGNED: f64 = 2e-3;
+
 /// Tolerance of tool lengths, in mm: registers are set to 0.001 mm.
 const LENGTH_TOLERANCE: f64 = 1e-3;
 
@@ -500,6 +504,9 @@ impl<'a> Resolver<'a> {
             Rotation::Tilted { frame, .. } => frame.rotation.column(2).into_owned(),
             Rotation::Off | Rotation::Plane { .. } => Vector3::z(),
         };
+        if !step.commanded[3..].contains(&true) {
+            return self.check_aligned(frame, &axis);
+        }
         let near = self.joints.map(Option::unwrap_or_default);
         // The angles do not depend on the tip, whose linear joints are not those of the machine at rest.
         let chain = frame.chain.without_linear_limits();
@@ -527,6 +534,19 @@ impl<'a> Resolver<'a> {
         let mut end = joints;
         end[3..].copy_from_slice(&found[3..]);
         self.rapid(&frame.chain, [joints, end])
+    }
+
+    /// Refuses angles of the rotary axes at which the tool does not stand along z of a plane.
+    fn check_aligned(&self, frame: &Frame, axis: &Vector3<f64>) -> Result<Resolved, StepFault> {
+        let mut joints = self.joints;
+        joints[..3].fill(Some(0.0));
+        let Some(joints) = known(&joints) else { return Ok(Resolved::Unknown(self.cause)) };
+        let pose = frame.chain.without_linear_limits().pose(&joints)?;
+        let degrees = 2.0 * (0.5 * (pose.axis() - axis).norm()).asin().to_degrees();
+        if degrees > ALIGNED {
+            return Err(StepFault::NotAligned { degrees });
+        }
+        Ok(Resolved::Motions(Vec::new()))
     }
 
     /// Returns the index of the master axis of Heidenhain: the first rotary axis from the tool, or the last one from the table.

@@ -206,6 +206,13 @@ impl Control {
         self.change(|state| state.rotation = Rotation::Tilted { frame, aligned: true });
     }
 
+    /// Takes the tool to stand along z of the tilted plane, to which the program has turned the axes.
+    pub(in crate::gcode) fn stand_along_plane(&mut self) {
+        let Rotation::Tilted { frame, .. } = self.state.rotation else { return };
+        self.push(true, self.position, [false; 6], StepPath::Align);
+        self.change(|state| state.rotation = Rotation::Tilted { frame, aligned: true });
+    }
+
     /// Turns the rotary axes to 0.
     pub(in crate::gcode) fn turn_to_zero(&mut self) {
         let mut end = self.position;

@@ -63,6 +63,15 @@ struct Repeat {
     left: u32,
 }
 
+/// A block that is read before it is executed.
+pub(super) struct Ahead<'a> {
+    pub(super) cursor: Cursor<'a>,
+    /// Set if it begins with `/`.
+    pub(super) is_optional: bool,
+    /// The place after it.
+    pub(super) after: Place,
+}
+
 /// The place of execution in a text.
 #[derive(Clone, Debug)]
 pub(super) struct Flow<'a> {
@@ -157,13 +166,13 @@ impl<'a> Flow<'a> {
         if self.counted > MAX_REPEATED { Err(GcodeFault::TooLong) } else { Ok(()) }
     }
 
-    /// Returns the block after the present one, without blank lines and comments, and the place after it.
-    pub(super) fn ahead(&self, mut place: Place) -> Option<(Cursor<'a>, Place)> {
+    /// Returns the first block from a place on that is neither blank nor a comment.
+    pub(super) fn ahead(&self, mut place: Place) -> Option<Ahead<'a>> {
         loop {
             let (found, after) = block(self.text, place)?;
-            let (mut cursor, _) = begin(found);
+            let (mut cursor, is_optional) = begin(found);
             if !matches!(cursor.peek(), None | Some(b'*')) {
-                return Some((cursor, after));
+                return Some(Ahead { cursor, is_optional, after });
             }
             place = after;
         }

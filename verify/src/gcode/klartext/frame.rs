@@ -61,6 +61,11 @@ impl Frame {
         }
     }
 
+    /// Notes that the rotary axes stand as the plane needs them.
+    pub(super) fn stand(&mut self) {
+        self.aligned = true;
+    }
+
     /// Returns whether the tip is off the programmed position along the tool.
     pub(super) fn has_allowance(&self) -> bool {
         self.allowance != 0.0

@@ -6,6 +6,7 @@
 
 use super::Program;
 use super::block::{Coordinate, Feed, Scale, Words};
+use super::flow::Ahead;
 use super::line::{Cursor, expected};
 use crate::gcode::block::{Code, Number};
 use crate::gcode::control::{Circle, Control, Curve};
@@ -249,7 +250,11 @@ impl Program<'_> {
     }
 
     /// Refuses coordinates whose meaning depends on what stands before them.
-    fn check_coordinates(&self, words: &Words, control: &Control) -> Result<(), GcodeFault> {
+    fn check_coordinates(
+        &mut self,
+        words: &Words,
+        control: &mut Control,
+    ) -> Result<(), GcodeFault> {
         if let Some(condition) = self.frame.doubt {
             let remedy = "write the shift anew (CYCL DEF 7) without a tilted plane";
             return Err(combination("a position", condition, remedy));
@@ -260,14 +265,23 @@ impl Program<'_> {
             // A plane that keeps z needs no turn of axes at 0.
             let at_zero = control.position()[3..].iter().all(|angle| *angle == Some(0.0));
             let is_upright = frame.rotation[(2, 2)] == 1.0 && at_zero;
-            if !aligned && has_linear && !is_upright {
-                let condition = "the tool does not stand along z of the tilted plane";
-                let remedy = "write TURN in PLANE, or L A+Q120 B+Q121 C+Q122 after it";
-                return Err(combination("a position", condition, remedy));
+            if has_rotary && (aligned || has_linear) && frame.rotation != Matrix3::identity() {
+                let condition = "a plane is tilted, in which the axes turn by themselves";
+                let remedy =
+                    "turn them in a block of its own after PLANE, or write PLANE RESET before";
+                return Err(combination("a rotary axis", condition, remedy));
             }
-            if has_rotary && (aligned || frame.rotation != Matrix3::identity()) {
-                let condition = "a plane is tilted, to which only Q120 to Q122 turn the axes";
-                return Err(combination("a rotary axis", condition, "write PLANE RESET before"));
+            if !aligned && has_linear && !is_upright {
+                let angles = control.position().into_iter().skip(3).zip(control.rotary_axes());
+                let mut turned = angles.filter(|(_, has_axis)| *has_axis).peekable();
+                // Angles that the program has stated are compared with the plane on the machine.
+                if turned.peek().is_none() || turned.any(|(angle, _)| angle.is_none()) {
+                    let condition = "the tool does not stand along z of the tilted plane";
+                    let remedy = "write TURN in PLANE, or L A+Q120 B+Q121 C+Q122 after it";
+                    return Err(combination("a position", condition, remedy));
+                }
+                control.stand_along_plane();
+                self.frame.stand();
             }
         }
         if control.is_rotation_open() && words.axes[0].is_some() != words.axes[1].is_some() {
@@ -278,7 +292,7 @@ impl Program<'_> {
     }
 
     /// Refuses a motion along Z whose meaning depends on what stands before it.
-    pub(super) fn check_level(&self, control: &Control) -> Result<(), GcodeFault> {
+    pub(super) fn check_level(&mut self, control: &mut Control) -> Result<(), GcodeFault> {
         let mut words = Words::default();
         words.axes[2] = Some(Coordinate::Absolute(0.0));
         self.check_coordinates(&words, control)
@@ -551,12 +565,18 @@ impl Program<'_> {
 
     /// Returns the corner that the next block states, if it states one.
     fn corner_ahead(&self) -> Result<Option<Corner>, GcodeFault> {
-        let Some((mut cursor, _)) = self.flow.ahead(self.flow.place()) else { return Ok(None) };
+        let Some(Ahead { mut cursor, is_optional, .. }) = self.flow.ahead(self.flow.place()) else {
+            return Ok(None);
+        };
         let is_round = match cursor.peek() {
             Some(b'R') => cursor.take_word("RND"),
             Some(b'C') if cursor.take_word("CHF") => false,
             _ => return Ok(None),
         };
+        if is_optional {
+            let meaning = "a corner in an optional block";
+            return Err(not_read("/", meaning, "write the corner without `/`"));
+        }
         let scale = Scale::new(&self.parameters, self.unit);
         if is_round && !cursor.take(b'R') {
             return Err(cursor.unexpected("the radius R after RND"));
@@ -587,9 +607,9 @@ impl Program<'_> {
             let remedy = "write the corner as a motion of its own";
             not_read(head, "a corner that is not between two lines in X and Y", remedy)
         };
-        let (_, after) = self.flow.ahead(self.flow.place()).ok_or_else(beside)?;
-        let (mut cursor, _) = self.flow.ahead(after).ok_or_else(beside)?;
-        if !cursor.take_word("L") {
+        let after = self.flow.ahead(self.flow.place()).ok_or_else(beside)?.after;
+        let Ahead { mut cursor, is_optional, .. } = self.flow.ahead(after).ok_or_else(beside)?;
+        if is_optional || !cursor.take_word("L") {
             return Err(beside());
         }
         let start = self.position(control);

@@ -228,7 +228,10 @@ pub(super) const PLANES: [Entry; 18] = [
     read("RELATIV", "by one more angle SPA, SPB or SPC about an axis of the plane"),
     read("RESET", "none"),
     read("TURN", "the rotary axes turn to the plane, and X Y Z rest"),
-    read("STAY", "the axes rest; `L A+Q120 B+Q121 C+Q122` turns them"),
+    read(
+        "STAY",
+        "the axes rest; `L A+Q120 B+Q121 C+Q122` turns them, or numbers that are compared with the plane",
+    ),
     read("MB", "a retract along the tool axis before, as M140"),
     passed("COORD", "COORD ROT: the plane turns, and not the table, where both are possible"),
     refused("PROJECTED", "a plane by projected angles", SPATIAL),
