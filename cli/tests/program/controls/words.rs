@@ -116,7 +116,6 @@ fn other_words_on_which_controls_differ_are_refused() {
     let begin = "G0 X-6. Y0. Z20.\nG1 X4. Z1.\n";
     for (blocks, word) in [
         ("G99 G81 X4. Z0.5 R2.\nG20 X0.1", "coordinates, unit or tool have changed"),
-        ("G0 X12. Y0.\nG3 X12. Y0.0004 I-2. J0.", "less than two increments from its start"),
         ("T1 M6\nS900 M3\nG91 G43 H1 Z20.", "the length offset has changed"),
         ("/1 G0 X5.\n/2 G0 X6.", "optional blocks have several switches"),
         ("G0 X0. Y0. Z20.\nG2 X20.02 Y0. I10. J0.", "the radii of an arc differ"),
