@@ -94,10 +94,8 @@ impl<'a> Interpreter<'a> {
             Front::Sinumerik(program) => program.execute_line(&mut self.control)?,
         };
         if let Progress::Ended(end) = progress {
-            if end != End::Stop {
-                let line = self.control.line;
-                self.control.end_compensation().map_err(|fault| GcodeError { line, fault })?;
-            }
+            let line = self.control.line;
+            self.control.end_compensation().map_err(|fault| GcodeError { line, fault })?;
             (self.finished, self.end) = (true, Some(end));
         }
         Ok(!self.finished)

@@ -517,13 +517,61 @@ fn m_words_hold_where_the_manual_says() {
     assert_eq!(ends(preset).len(), 2);
 }
 
+/// A contour with lines, arcs and a rounded corner has the path of the tool's centre of the same contour in ISO words.
+#[test]
+fn a_compensated_contour_has_the_path_of_iso_words() {
+    let klartext = "TOOL DEF 5 L+80 R+4\nTOOL CALL 5 Z S3000 F500 DR+0.5\nM3\nL X-20 Y-20 FMAX\nL Z-5 R0 F500\nL X+0 Y+0 RL\nL Y+40\n\
+        RND R10\nL X+40\nCC X+40 Y+20\nC X+40 Y+0 DR-\nL X+0 Y+0\nL X-20 Y-20 R0\nL Z+50 FMAX";
+    let iso = "%PART G71 *\nG90 S3000\nT5\nM3\nG0 X-20. Y-20.\nG1 Z-5. F500.\nG41 X0. Y0.\nY30.\nG2 X10. Y40. I10. J40.\nG1 X40.\n\
+        G2 X40. Y0. I40. J20.\nG1 X0. Y0.\nG40 X-20. Y-20.\nG0 Z50.\nM30\n";
+    let found = steps(klartext);
+    let rules = ControlRules::named("heidenhain").expect("a control");
+    let setup = ControlSetup {
+        radius_offsets: BTreeMap::from([(5, 4.5)]),
+        rules: rules.with(Rule::ToolChange, Choice::Stays),
+        ..at_zero()
+    };
+    let wanted = read(&iso.replace("I10. J40.", "I10. J30."), &setup).expect("a program").0;
+    let path = |steps: &[Step]| -> Vec<(bool, [f64; 3], bool)> {
+        let moving = steps.iter().filter(|step| step.commanded.contains(&true));
+        let path = moving.map(|step| {
+            let end =
+                [0, 1, 2].map(|axis| 1e-9 * (1e9 * step.end[axis].expect("a number")).round());
+            (step.rapid, end, matches!(step.path, StepPath::Arc { .. }))
+        });
+        path.collect()
+    };
+    assert_eq!(path(&found), path(&wanted));
+    // The tool is beside the left edge by its radius and DR.
+    assert!(found.iter().any(|step| step.end[0] == Some(-4.5) && step.end[1] == Some(30.0)));
+    let text = program(&klartext.replace("L X-20 Y-20 R0\n", ""));
+    let error = read(&text, &at_zero()).expect_err("the end of the program");
+    assert!(error.to_string().contains("cutter compensation is in force"), "{error}");
+    for word in [
+        "TOOL CALL 5 Z S1",
+        "CYCL DEF 7.1 X+1",
+        "PLANE RESET STAY",
+        "L Z+0 FMAX M91",
+        "L M140 MB MAX",
+        "M128",
+    ] {
+        let text =
+            program(&klartext.replace("L Y+40\nRND R10", &format!("L Y+40\n{word}\nL Y+41")));
+        let error = read(&text, &at_zero()).expect_err(word);
+        assert!(error.to_string().contains("cutter compensation is in force"), "{word}: {error}");
+        assert_eq!(error.line, 9, "{word}: {error}");
+    }
+}
+
 #[test]
 fn what_is_not_read_is_named_with_its_line() {
     let mut wrong = Vec::new();
     for (body, line, message) in [
-        ("L X+1 RL F100", 2, "RL is cutter radius compensation"),
-        ("L X+1 RR F100", 2, "RR is cutter radius compensation"),
-        ("L X+1 R+ F100", 2, "R+ is cutter radius compensation"),
+        ("L X+1 RL F100", 2, "a tool in the spindle"),
+        ("TOOL CALL 5 Z S1\nL X+1 RR F100", 3, "the radius offset 5 is not known"),
+        ("L X+1 R+ F100", 2, "R+ is cutter compensation of a motion along one axis"),
+        ("CYCL DEF 8.0 M\nCYCL DEF 8.1 X\nL X+1 RL F100", 4, "RL while axes are mirrored"),
+        ("L X+1 F100\nCC X+0 Y+0\nC X+1 Y+0 DR+ RL", 4, "RL while its block has an arc"),
         ("L X+1", 2, "L needs a feed rate"),
         ("CC X+0 Y+0\nC X+0 Y+1 DR+", 3, "C needs a feed rate"),
         ("L X+Q5 FMAX", 2, "Q5 has no value here"),
@@ -654,11 +702,11 @@ fn notes_name_what_is_passed_over_and_what_is_left() {
         assert!(notes.iter().any(|found| found.contains(note)), "{note} is not in {notes:?}");
     };
     let passed = notes(
-        "BLK FORM 0.1 Z  X-5  Y+0 Z-20\nTOOL CALL 5 Z S900 DR+0.1\nL X+1 FMAX M8\nCYCL DEF 32.0 TOLERANCE\nCYCL DEF 32.1\n\
+        "BLK FORM 0.1 Z  X-5  Y+0 Z-20\nTOOL CALL 5 Z S900 DR2+0.1\nL X+1 FMAX M8\nCYCL DEF 32.0 TOLERANCE\nCYCL DEF 32.1\n\
          FN 16: F-PRINT A/B\nL M103 F20\nPLANE SPATIAL SPA+0 SPB+0 SPC+0 COORD ROT STAY\nPLANE RESET STAY\nSTOP",
     );
     for word in
-        ["BLK FORM 0.1 Z X-5 Y+0 Z-20", "DR", "M8", "CYCL DEF 32", "FN 16", "M103", "COORD ROT"]
+        ["BLK FORM 0.1 Z X-5 Y+0 Z-20", "DR2", "M8", "CYCL DEF 32", "FN 16", "M103", "COORD ROT"]
     {
         has(&passed, &format!("{word} is passed over"));
     }

@@ -67,6 +67,10 @@ fn a_bolt_circle_is_the_same_in_every_form() {
             .zip(&expected)
             .all(|(found, expected)| { (0..2).all(|k| (found[k] - expected[k]).abs() < 1e-9) })
     );
+    // Blanks after a value are no part of it, whatever the control.
+    let blanks = "G21 G90 G0\n#1=2 \n#2=[#1+1] \nX#1 Y#2 \nM30\n";
+    let unstated = ControlSetup { start: [Some(0.0); 6], ..ControlSetup::default() };
+    assert_eq!(read(blanks, &unstated).expect("values").0[0].end[..2], [Some(2.0), Some(3.0)]);
     // A program with statements of one control is that control's, also if none is stated.
     let setup = ControlSetup { start: [Some(0.0); 6], ..ControlSetup::default() };
     assert_eq!(read(with_goto, &setup).expect("a macro").0.len(), 7);

@@ -141,7 +141,7 @@ fn other_words_on_which_controls_differ_are_refused() {
         scene.gives(&[], 1, &["under semicolon = \"end of block\""]);
     }
     let scene = Scene::new(&format!("{begin}X5. ; G65 P100")).with("anyway = true");
-    scene.gives(&HAAS, 2, &["a macro call"]);
+    scene.gives(&HAAS, 2, &["there is no O100"]);
     // The number of repeats is no length.
     let repeats = Scene::new(&format!("{begin}G99 G91 G81 X0.1 Z-0.2 R-0.1 K2\nG80 G90"));
     repeats.with("anyway = true").gives(&FANUC, 0, &[]);

@@ -195,7 +195,8 @@ impl Control {
         let Some(radius) = self.radius_offsets.get(&number) else {
             return Err(CompensationFault::NoRadius { number }.into());
         };
-        if *radius < 0.0 && dialect == Some(Choice::Heidenhain) {
+        let radius = radius + self.radius_allowance;
+        if radius < 0.0 && dialect == Some(Choice::Heidenhain) {
             let condition = "its radius offset is negative";
             return Err(combination(code, condition, "write the other of G41 and G42"));
         }
@@ -255,6 +256,19 @@ impl Control {
                 }
                 _ => Ok(()),
             },
+        }
+    }
+
+    /// Returns the word of compensation that is in force.
+    pub(in crate::gcode) fn compensation_code(&self) -> Option<Code> {
+        self.compensation.as_ref().filter(|known| known.is_on()).map(|known| known.code)
+    }
+
+    /// Refuses an arc in another plane than that of compensation.
+    pub(super) fn check_compensated_plane(&self, plane: Plane) -> Result<(), GcodeFault> {
+        match self.compensation.as_ref().is_some_and(|known| known.plane != plane) {
+            true => Err(under_compensation("an arc in another plane")),
+            false => Ok(()),
         }
     }
 

@@ -59,13 +59,14 @@ impl Control {
         self.rotation_changed
     }
 
-    /// Executes an arc to the end that a block states.
+    /// Executes an arc to the end that a block states, and returns its programmed path.
     pub(in crate::gcode) fn circle(
         &mut self,
         block: &mut Block,
         circle: Circle,
-    ) -> Result<(), GcodeFault> {
+    ) -> Result<StepPath, GcodeFault> {
         let Circle { word, plane, curve, rapid, unit } = circle;
+        self.check_compensated_plane(plane)?;
         self.feed(block)?;
         if !rapid {
             self.check_feed(word)?;
@@ -97,8 +98,10 @@ impl Control {
         {
             self.check_radius_digits(radius, &end);
         }
+        let known = self.pending.len();
         self.push(rapid, end, commanded, path);
-        Ok(())
+        self.compensate(known)?;
+        Ok(path)
     }
 
     /// Moves to the machine coordinates of a block (M91).
@@ -251,6 +254,16 @@ impl Control {
     /// Sets the length of a tool, in millimetres, which the program states.
     pub(in crate::gcode) fn define_length(&mut self, tool: u32, length: f64) {
         self.lengths.insert(tool, length);
+    }
+
+    /// Sets the radius offset of a tool, in millimetres, which the program states.
+    pub(in crate::gcode) fn define_radius(&mut self, tool: u32, radius: f64) {
+        self.radius_offsets.insert(tool, radius);
+    }
+
+    /// Sets what the program adds to the radius offset of the tool in the spindle (DR), in millimetres.
+    pub(in crate::gcode) fn set_radius_allowance(&mut self, allowance: f64) {
+        self.radius_allowance = allowance;
     }
 
     /// Returns whether the length of the tool in the spindle is in force.

@@ -390,6 +390,9 @@ fn agreed(
     let [mut fanuc, mut linuxcnc] = [start; 2];
     let first = read(&Reader { scope, language: Language::Fanuc }, &mut fanuc);
     let second = read(&Reader { scope, language: Language::LinuxCnc }, &mut linuxcnc);
+    // One of both may have passed over blanks.
+    fanuc.peek();
+    linuxcnc.peek();
     // A program that one of them refuses runs on the other only.
     let (value, end) = match (first, second) {
         (Ok(first), Ok(second)) if first == second && fanuc.at == linuxcnc.at => (first, fanuc),

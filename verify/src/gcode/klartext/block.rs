@@ -4,6 +4,7 @@ use super::expression::{Parameters, value};
 use super::line::Cursor;
 use super::words::{Entry, M_WORDS};
 use crate::gcode::GcodeFault;
+use crate::gcode::block::Code;
 use crate::gcode::error::not_read;
 use touchoff::Unit;
 
@@ -35,6 +36,37 @@ pub(super) struct Retract {
     pub(super) rapid: bool,
 }
 
+/// The side of the programmed path on which the tool moves, seen along it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Side {
+    /// R0: on it.
+    On,
+    /// RL.
+    Left,
+    /// RR.
+    Right,
+}
+
+impl Side {
+    /// Returns the word of ISO programs.
+    pub(super) fn code(self) -> Code {
+        let tenths = match self {
+            Side::On => 400,
+            Side::Left => 410,
+            Side::Right => 420,
+        };
+        Code { letter: 'G', tenths }
+    }
+
+    pub(super) fn word(self) -> &'static str {
+        match self {
+            Side::On => "R0",
+            Side::Left => "RL",
+            Side::Right => "RR",
+        }
+    }
+}
+
 /// The words of a motion. M words that are not here are in a list of their own.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Words {
@@ -43,6 +75,7 @@ pub(super) struct Words {
     pub(super) polar_radius: Option<Coordinate>,
     pub(super) polar_angle: Option<Coordinate>,
     pub(super) radius: Option<f64>,
+    pub(super) side: Option<Side>,
     pub(super) clockwise: Option<bool>,
     pub(super) feed: Option<Feed>,
     pub(super) retract: Option<Retract>,
@@ -205,18 +238,24 @@ impl<'a> Scale<'a> {
     /// Reads R0, RL, RR or a radius.
     fn radius(&self, cursor: &mut Cursor, words: &mut Words) -> Result<(), GcodeFault> {
         cursor.advance();
-        match cursor.here() {
-            Some(b'L' | b'l') => return compensation("RL"),
-            Some(b'R' | b'r') => return compensation("RR"),
-            _ => {}
-        }
         let start = cursor.rest();
         let word = start.split(|c: char| c.is_whitespace() || c == ';').next().unwrap_or_default();
-        match word {
-            "0" => cursor.advance(),
-            "+" | "-" => return compensation(if word == "+" { "R+" } else { "R-" }),
-            _ => words.radius = Some(self.length(cursor)?),
-        }
+        let side = match word {
+            "0" => Side::On,
+            "L" | "l" => Side::Left,
+            "R" | "r" => Side::Right,
+            "+" | "-" => {
+                let shown = format!("R{word}");
+                let meaning = "cutter compensation of a motion along one axis";
+                return Err(not_read(shown, meaning, "write the position of the tool's centre"));
+            }
+            _ => {
+                words.radius = Some(self.length(cursor)?);
+                return Ok(());
+            }
+        };
+        cursor.advance();
+        words.side = Some(side);
         Ok(())
     }
 
@@ -316,11 +355,4 @@ fn takes_angle_of_plane(cursor: &mut Cursor, letter: u8) -> bool {
         *cursor = ahead;
     }
     found
-}
-
-/// Selects the side of the path on which the tool moves: RL, RR, or R+ and R- of a motion along one axis.
-fn compensation(word: &'static str) -> Result<(), GcodeFault> {
-    let meaning = "cutter radius compensation";
-    let remedy = "post the program with the path of the tool's centre, R0";
-    Err(not_read(word, meaning, remedy))
 }

@@ -246,6 +246,7 @@ impl Program<'_> {
             return Err(missing("a call of a cycle", "a drilling cycle before (CYCL DEF 200)"));
         };
         let word = format!("CYCL DEF {}", cycle.number);
+        control.check_uncompensated(&*word)?;
         if control.is_tcp() {
             return Err(combination(word, "M128 is in force", "write M129 before"));
         }

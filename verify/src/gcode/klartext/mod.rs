@@ -186,6 +186,9 @@ impl<'a> Program<'a> {
             return self.motion(head, &mut cursor, control);
         }
         let upper = head.to_ascii_uppercase();
+        if matches!(upper.as_str(), "TOOL" | "CYCL" | "PLANE" | "TRANS" | "FUNCTION") {
+            control.check_uncompensated(&*upper)?;
+        }
         match upper.as_str() {
             "CC" => self.pole(&mut cursor, control)?,
             // M words alone.
@@ -315,6 +318,7 @@ impl<'a> Program<'a> {
 
     /// Executes M128 and M129.
     fn set_tcp(&mut self, is_on: bool, control: &mut Control) -> Result<(), GcodeFault> {
+        control.check_uncompensated("M128 or M129")?;
         if is_on && control.rotation() != super::Rotation::Off {
             let condition = "axes are rotated (CYCL DEF 10, PLANE)";
             return Err(combination("M128", condition, "end that before"));
@@ -468,6 +472,7 @@ impl<'a> Program<'a> {
         }
         self.block.clear();
         let (mut length, mut allowance) = (None, None);
+        let (mut radius, mut radius_allowance) = (None, None);
         while let Some(byte) = cursor.peek() {
             let start = *cursor;
             let scale = Scale::new(&self.parameters, self.unit);
@@ -495,12 +500,17 @@ impl<'a> Program<'a> {
                     allowance = Some(scale.length(cursor)?);
                 }
                 b'D' if cursor.take_prefix("DR") => {
-                    // Of the radius, and of the radius of the corner.
-                    cursor.take_prefix("2");
+                    let is_of_corner = cursor.take_prefix("2");
                     cursor.take(b':');
-                    scale.length(cursor)?;
-                    let word = "DR".to_owned();
-                    control.notes.add_once(control.line, NoteKind::PassedOver { word });
+                    let value = scale.length(cursor)?;
+                    // The radius of the corner moves no path.
+                    match is_of_corner {
+                        true => {
+                            let word = "DR2".to_owned();
+                            control.notes.add_once(control.line, NoteKind::PassedOver { word });
+                        }
+                        false => radius_allowance = Some(value),
+                    }
                 }
                 b'L' if !is_call => {
                     cursor.advance();
@@ -508,12 +518,15 @@ impl<'a> Program<'a> {
                 }
                 b'R' if !is_call => {
                     cursor.advance();
-                    scale.length(cursor)?;
+                    radius = Some(scale.length(cursor)?);
                 }
                 _ => return Err(cursor.unexpected("Z, S, F, DL or DR after the tool")),
             }
         }
         if !is_call {
+            if let (Some(tool), Some(radius)) = (tool, radius) {
+                control.define_radius(tool as u32, radius);
+            }
             if let (Some(tool), Some(length)) = (tool, length) {
                 control.define_length(tool as u32, length);
             } else {
@@ -526,6 +539,7 @@ impl<'a> Program<'a> {
             self.block.add('T', number(tool))?;
             self.before.leave();
             allowance.get_or_insert(0.0);
+            radius_allowance.get_or_insert(0.0);
         }
         if allowance.is_some_and(|allowance| allowance != 0.0) && control.is_tcp() {
             let condition = "M128 is in force, under which it is along an axis that turns";
@@ -534,6 +548,9 @@ impl<'a> Program<'a> {
         control.execute(control.line, &mut self.block)?;
         if let Some(allowance) = allowance {
             self.set_allowance(allowance, control);
+        }
+        if let Some(allowance) = radius_allowance {
+            control.set_radius_allowance(allowance);
         }
         Ok(())
     }

@@ -5,14 +5,14 @@
 //! from Y in YZ and from Z in ZX (TNC 640, *Klartext programming*, "Setting the pole and angle reference axis").
 
 use super::Program;
-use super::block::{Coordinate, Feed, Scale, Words};
+use super::block::{Coordinate, Feed, Scale, Side, Words};
 use super::flow::Ahead;
 use super::line::{Cursor, expected};
 use crate::gcode::block::{Code, Number};
 use crate::gcode::control::{Circle, Control, Curve};
 use crate::gcode::error::{combination, missing, not_read};
 use crate::gcode::state::{Position, Rotation};
-use crate::gcode::{GcodeFault, Plane};
+use crate::gcode::{GcodeFault, Plane, StepPath};
 use crate::machine::sin_cos_degrees;
 use nalgebra::Matrix3;
 
@@ -100,6 +100,7 @@ impl Program<'_> {
                 let condition = "its block has coordinates, before or after which it moves";
                 return Err(combination("M140", condition, "write it in a block of its own"));
             }
+            control.check_uncompensated("M140")?;
             self.before.heading = None;
             control.retract(retract.distance, retract.rapid);
         }
@@ -129,10 +130,12 @@ impl Program<'_> {
     pub(super) fn line(&mut self, words: Words, control: &mut Control) -> Result<(), GcodeFault> {
         self.block.clear();
         self.add_feed(&words)?;
+        self.add_side(&words)?;
         if !words.has_axes() {
             return control.execute(control.line, &mut self.block);
         }
         if words.axes.contains(&Some(Coordinate::OfPlane)) {
+            control.check_uncompensated("Q120")?;
             return self.turn_to_plane(&words, control);
         }
         self.check_coordinates(&words, control)?;
@@ -215,6 +218,29 @@ impl Program<'_> {
         Ok(is_open)
     }
 
+    /// Adds the word of cutter compensation.
+    fn add_side(&mut self, words: &Words) -> Result<(), GcodeFault> {
+        let Some(side) = words.side else { return Ok(()) };
+        if side != Side::On && self.frame.is_mirrored() {
+            let condition = "axes are mirrored (CYCL DEF 8), which can exchange the sides";
+            return Err(combination(side.word(), condition, "end that before"));
+        }
+        self.block.add_code(side.code())
+    }
+
+    /// Refuses another side than that in force in the block of an arc: the first motion of compensation and the last are lines.
+    fn check_side(&self, words: &Words, control: &Control) -> Result<(), GcodeFault> {
+        let Some(side) = words.side else { return Ok(()) };
+        let in_force = control.compensation_code().map_or(400, |code| code.tenths);
+        match in_force == side.code().tenths {
+            true => Ok(()),
+            false => {
+                let condition = "its block has an arc, and begins or ends cutter compensation";
+                Err(combination(side.word(), condition, "write it in a block with L"))
+            }
+        }
+    }
+
     /// Adds the feed of a block.
     fn add_feed(&mut self, words: &Words) -> Result<(), GcodeFault> {
         let rate = match words.feed {
@@ -245,6 +271,7 @@ impl Program<'_> {
         if !words.has_axes() {
             return Err(missing("M91", "a coordinate"));
         }
+        control.check_uncompensated("M91")?;
         self.before.heading = None;
         control.machine_position(&mut self.block, words.is_rapid())
     }
@@ -519,6 +546,7 @@ impl Program<'_> {
         control: &mut Control,
     ) -> Result<(), GcodeFault> {
         self.check_coordinates(words, control)?;
+        self.check_side(words, control)?;
         if self.corner_ahead()?.is_some() {
             return Err(not_read("RND", "a corner beside an arc", "write the arc of the corner"));
         }
@@ -545,20 +573,18 @@ impl Program<'_> {
         };
         let rapid = words.is_rapid();
         let circle = Circle { word: head, plane, curve, rapid, unit: self.unit };
-        control.circle(&mut self.block, circle)?;
+        let path = control.circle(&mut self.block, circle)?;
         self.before.corner = None;
-        self.before.heading = self.heading_after(control);
+        self.before.heading = self.heading_after(path, control);
         self.positioned = true;
         Ok(())
     }
 
-    /// Returns the direction at the end of the arc that was added last.
-    fn heading_after(&self, control: &Control) -> Option<[f64; 2]> {
-        let step = control.pending.back()?;
-        let crate::gcode::StepPath::Arc { plane: Plane::Xy, centre, sweep } = step.path else {
-            return None;
-        };
-        let [x, y] = [step.end[0]? - centre[0], step.end[1]? - centre[1]];
+    /// Returns the direction at the end of an arc, at the present position.
+    fn heading_after(&self, path: StepPath, control: &Control) -> Option<[f64; 2]> {
+        let StepPath::Arc { plane: Plane::Xy, centre, sweep } = path else { return None };
+        let [x, y, ..] = control.position();
+        let [x, y] = [x? - centre[0], y? - centre[1]];
         let [first, second, _] = self.frame.mirror;
         Some([-y * sweep.signum() * first, x * sweep.signum() * second])
     }
