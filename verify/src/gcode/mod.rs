@@ -21,7 +21,7 @@
 //! - G0 G1 G2 G3 in the planes G17 G18 G19: helices, I J K by G90.1 and G91.1, R, full circles, turns P.
 //! - G20 G21 (Sinumerik's G70 G71), G90 G91, G93 G94 G95, G4; G61 G64 and their like leave a [`ProgramNote`].
 //! - G28 G30 with their intermediate position, G53.
-//! - G54 to G59.3, `G54.1 P`, G52, G92 to G92.3, `G10 L2`.
+//! - G54 to G59.3, `G54.1 P`, `G154 P`, G110 to G129, G52, G92 to G92.3, G10 L2 and L20.
 //! - G43 H (without H: the register of the tool in the spindle), G49, T, M6.
 //! - Cutter radius compensation G40 G41 G42 with D, and LinuxCNC's G41.1 G42.1, from a [table of radii](ControlSetup::radius_offsets).
 //! - Canned cycles G73 G74 G81 to G86 G89 with G98 G99 in three planes, with R, Z, Q, P and repeats L or K.
@@ -63,6 +63,7 @@ mod note;
 mod rules;
 mod sinumerik;
 mod state;
+mod words;
 
 pub use control::Spindle;
 pub use error::{ArcFault, CompensationFault, GcodeError, GcodeFault, Obstacle};

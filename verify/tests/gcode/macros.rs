@@ -239,6 +239,24 @@ fn variables_of_the_control_are_those_of_its_state() {
     }
 }
 
+/// The origins that G10 sets, of further work offsets by their number and of one at the present position.
+#[test]
+fn g10_sets_origins() {
+    for offset in ["G54.1 P3", "G154 P3", "G112"] {
+        let program =
+            format!("G21 G90 G0 X5.\nG10 L20 P3 X100. Y0. Z0. A0. B0. C0.\n{offset}\nX5.\nM30");
+        let found = steps(&program, Choice::Iso);
+        assert_eq!(found[1].state.origin[0], Some(100.0), "{offset}");
+        assert_eq!(found[1].state.to_machine(found[1].end)[0], Some(105.0));
+    }
+    let here = "g21 g90 g54 g0 x5 y2\ng10 l20 p1 x0 y10\ng0 x1 y1\ng10 l20 p0 x7\nx0\nm30";
+    let found = steps(here, Choice::Rs274Ngc);
+    let places: Vec<_> =
+        found.iter().map(|step| step.state.to_machine(step.end)[..2].to_vec()).collect();
+    let expected = [[5.0, 2.0], [6.0, -7.0], [-1.0, -7.0]].map(|place| place.map(Some).to_vec());
+    assert_eq!(places, expected);
+}
+
 /// A loop of 10^6 blocks.
 #[test]
 fn long_loops_are_executed_to_their_end() {

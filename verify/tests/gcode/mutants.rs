@@ -32,7 +32,19 @@ const COMPENSATED: &str = "G17 G21 G40 G80 G90\nT1 M6\nG54\nG0 X-20. Y0. Z5.\nG1
     G1 X20.\nZ-1.\nG3 X30. Y30. I0. J10.\nG1 X40.\nG2 X40. Y20. J-5.\nG1 X35.\nY-10.\nX0.\nY0.\nG40 X-20.\nG42 D2\nG1 X0. Y5.\n\
     G2 I20.\nG1 Y20.\nG40\nG0 X0. Y0.\nZ50.\nM30\n";
 
-const SEEDS: [(&str, Choice); 7] = [
+const MACROS: &str = "O100\nG21 G90 G54\nT1 M6\nG0 X0. Y0. Z50.\n#100=5.\n#1=[#100*2-SQRT[16.]]\nIF [#1 GT 3] GOTO 20\nX99.\n\
+    N20 IF [#1 EQ 6.] THEN #101=ABS[-2.5]\nG65 P9010 X#1 Y2. I1. J2. I3. L2\nG66 P9020 A1.5\nX1. Y1.\nX2.\nG67\nM97 P500 L2\n\
+    M98 P9030\nX88.\nN700 #110=#5001+#4003\nX[#110 MOD 7] Y[ATAN[1.]/[2.]]\nM30\nN500 G91 X1. Y#101\nG90\nM99\nO9010\n\
+    G0 X#24 Y[#25+#7]\nIF [#2 EQ #0] GOTO 5\nX#2\nN5 M99\nO9020\nG1 Z[#1-2.] F100.\nG0 Z5.\nM99\nO9030\nY[ROUND[2.4]]\nM99 P700\n";
+
+const OWORDS: &str = "o<arc> sub\n#<r>=[#1/2]\no1 if [#2 gt 5]\no<arc> return [7]\no1 elseif [#2 eq 2]\ng0 x#<r> y#2\no1 else\n\
+    g0 x[#<r> + 1]\no1 endif\no2 repeat [3]\n#31=[#31 + 0.5]\ng1 x#31 y[cos[60 * #31]] f100\no2 endrepeat\no<arc> endsub [#31]\n\
+    g21 g90 g54 g61\n#31=1\n#<_depth>=2.5\ng0 x0 y0 z5\no<arc> call [4] [2]\no<arc> call [6] [9]\n\
+    g1 z[0 - #<_depth> ** 2 / 4] f50\nx[#<_value> + exists[#<_depth>]]\ny[#5420 mod 3 + #<_z>]\ng0 z[fix[7.5]]\nm2\n";
+
+const SEEDS: [(&str, Choice); 9] = [
+    (MACROS, Choice::Iso),
+    (OWORDS, Choice::Rs274Ngc),
     (COMPENSATED, Choice::Rs274Ngc),
     (COMPENSATED, Choice::Iso),
     (THREE_AXES, Choice::Rs274Ngc),
@@ -43,7 +55,25 @@ const SEEDS: [(&str, Choice); 7] = [
 ];
 
 /// Pieces that mutations insert.
-const PIECES: [&str; 54] = [
+const PIECES: [&str; 72] = [
+    "GOTO 20",
+    "IF [",
+    "THEN #1=",
+    "G65 P9010 A1.",
+    "G66 P9020",
+    "M97 P500",
+    "M99 P20",
+    "N20 ",
+    "#0",
+    "#5001",
+    "#<_x>",
+    " EQ ",
+    " MOD ",
+    "ATAN[",
+    "o1 else",
+    "o1 endif",
+    "o2 endrepeat",
+    "o<arc> return [1]",
     "G40",
     "G41 D1",
     "G42 D2",

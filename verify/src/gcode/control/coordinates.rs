@@ -465,7 +465,9 @@ impl Control {
     /// Executes G54 to G59.3 and G54.1.
     fn work_offset(&mut self, block: &mut Block, code: Code) -> Result<(), GcodeFault> {
         let offset = match code.tenths {
-            541 => {
+            // G110 to G129 of Haas are G154 P1 to P20.
+            tenths @ 1100..=1290 => WorkOffset::Additional((tenths / 10 - 109) as u16),
+            541 | 1540 => {
                 let expected = "a whole number from 1 to 300 after P";
                 match block.take_whole('P', 1, 300, expected)? {
                     Some(number) => WorkOffset::Additional(number as u16),
@@ -551,12 +553,37 @@ impl Control {
 
     /// Executes `G10 L2 P`: sets the origin of a work offset.
     fn set_origin(&mut self, block: &mut Block, code: Code) -> Result<(), GcodeFault> {
-        block
-            .take_whole('L', 2, 2, "L2, which sets the origin of a work offset")?
-            .ok_or_else(|| missing(code, "L2"))?;
-        let number = block
-            .take_whole('P', 1, 9, "a work offset from P1 (G54) to P9 (G59.3)")?
-            .ok_or_else(|| missing(code, "P with the number of the work offset"))?;
+        let dialect = self.stated(Rule::Dialect);
+        let form =
+            block.take_whole('L', 0, 999, "L2 or L20, which set the origin of a work offset")?;
+        let offset = match (form, dialect) {
+            (None, _) => return Err(missing(code, "L2")),
+            (Some(2), _) => self.offset_of_number(block, code)?,
+            (Some(20), Some(Choice::Rs274Ngc)) => return self.set_origin_here(block, code),
+            // A further work offset (G54.1).
+            (Some(20), Some(Choice::Iso)) => {
+                let needed = "P with the number of the work offset";
+                let number = block.take_whole('P', 1, 300, "a work offset from P1 to P300")?;
+                WorkOffset::Additional(number.ok_or_else(|| missing(code, needed))? as u16)
+            }
+            (Some(20), _) => {
+                let meaning = "the origin of a further work offset on Fanuc, and the present position on LinuxCNC";
+                return Err(not_read("L20 of G10", meaning, "state the `dialect` of the control"));
+            }
+            (Some(form @ (1 | 10..=13)), _) => {
+                let meaning = "a length or a radius of a tool, which the job states";
+                let remedy = "remove the block, and state `length` and `radius_offset` of the tool";
+                return Err(not_read(format!("L{form} of G10"), meaning, remedy));
+            }
+            (Some(form), _) => {
+                let meaning = "a setting of the control";
+                return Err(not_read(
+                    format!("L{form} of G10"),
+                    meaning,
+                    "check the program without it",
+                ));
+            }
+        };
         if self.modal.incremental {
             return Err(combination(code, "G91 is in force", "write G90 before"));
         }
@@ -567,7 +594,6 @@ impl Control {
             return Err(not_read("R of G10", meaning, remedy));
         }
         let axes = self.take_axes(block);
-        let offset = WorkOffset::Standard(number as u8);
         let is_turned = self.origins.get(&offset).is_some_and(|(_, rotation)| *rotation != 0.0);
         let is_shifted = self.state.shift != [Some(0.0); 6];
         if self.state.work_offset == offset && is_shifted && (turn.is_some() || is_turned) {
@@ -579,7 +605,7 @@ impl Control {
         // A program that sets G54 moves the part, and is refused on a machine.
         if turn.is_none()
             && !is_known
-            && number != 1
+            && offset != WorkOffset::Standard(1)
             && matches!(self.stated(Rule::Dialect), None | Some(Choice::Rs274Ngc))
         {
             let needed = "R0, since LinuxCNC keeps a rotation of the work offset; or state its origin in `work_offsets`";
@@ -596,6 +622,49 @@ impl Control {
                 let needed = "its work offset (G54) after G10, since Sinumerik activates the new origin by that word";
                 self.needs_offset = Some(needed);
             }
+        }
+        Ok(())
+    }
+
+    /// Takes P of G10 L2.
+    fn offset_of_number(&self, block: &mut Block, code: Code) -> Result<WorkOffset, GcodeFault> {
+        let expected = "a work offset from P1 (G54) to P9 (G59.3)";
+        let number = block
+            .take_whole('P', 0, 9, expected)?
+            .ok_or_else(|| missing(code, "P with the number of the work offset"))?;
+        match (number, self.stated(Rule::Dialect)) {
+            (0, Some(Choice::Rs274Ngc)) => Ok(self.state.work_offset),
+            (0, _) => {
+                let meaning = "the external work offset on Fanuc, and the one in force on LinuxCNC";
+                Err(not_read("P0 of G10", meaning, "write the number of the offset"))
+            }
+            (number, _) => Ok(WorkOffset::Standard(number as u8)),
+        }
+    }
+
+    /// Executes `G10 L20 P` of LinuxCNC: the present position gets the given coordinates in a work offset.
+    fn set_origin_here(&mut self, block: &mut Block, code: Code) -> Result<(), GcodeFault> {
+        let offset = self.offset_of_number(block, code)?;
+        let rotation = self.origin_of(offset).1;
+        let is_plain = self.state.shift == [Some(0.0); 6]
+            && self.state.origin_rotation == 0.0
+            && rotation == 0.0
+            && block.take('R').is_none();
+        if !is_plain {
+            let condition = "a shift is in force, or a work offset is rotated";
+            return Err(combination("G10 L20", condition, "write G10 L2"));
+        }
+        let axes = self.take_axes(block);
+        let (mut origin, _) = self.origin_of(offset);
+        for axis in 0..AXES.len() {
+            if let Some(value) = axes[axis] {
+                let place = self.position[axis].zip(self.state.origin[axis]);
+                origin[axis] = place.map(|(position, present)| position + present - value);
+            }
+        }
+        self.origins.insert(offset, (origin, rotation));
+        if self.state.work_offset == offset {
+            self.activate(offset);
         }
         Ok(())
     }

@@ -53,6 +53,15 @@ impl Control {
             let remedy = "write G43.4 H and G49, or state `dialect = \"rs274ngc\"` of the control";
             return Err(not_read(code, meaning, remedy));
         }
+        if let Some(code) = block
+            .code_of(Group::WorkOffset)
+            .filter(|code| matches!(code.tenths, 1100..=1290 | 1540))
+            && dialect != Some(Choice::Iso)
+        {
+            let meaning = "a work offset of Haas, and another word elsewhere";
+            let remedy = "state `dialect = \"iso\"` of the control";
+            return Err(not_read(code, meaning, remedy));
+        }
         if block.distance_after_coordinate && dialect == Some(Choice::Heidenhain) {
             let condition = "a coordinate stands before it in the block";
             let remedy = "write it first: on Heidenhain it holds for the coordinates after it";
@@ -87,7 +96,8 @@ impl Control {
         }
         // G54.1 has its own P.
         if block.has('P')
-            && let Some(code) = block.code_of(Group::WorkOffset).filter(|code| code.tenths != 541)
+            && let Some(code) =
+                block.code_of(Group::WorkOffset).filter(|code| !matches!(code.tenths, 541 | 1540))
         {
             let condition = "it selects another work offset on Fanuc and Siemens";
             let remedy = "write it in a block of its own";
@@ -346,7 +356,10 @@ fn takes(code: Code, letter: char) -> bool {
         ('P', 'G') => {
             is_arc
                 || is_cycle
-                || matches!(code.tenths, 40 | 50 | 80 | 100 | 300 | 541 | 640 | 682 | 1030 | 1870)
+                || matches!(
+                    code.tenths,
+                    40 | 50 | 80 | 100 | 300 | 541 | 640 | 682 | 1030 | 1540 | 1870
+                )
         }
         ('P', _) => matches!(code.tenths, 190 | 510..=530 | 620..=650 | 980),
         ('Q', 'G') => is_cycle || matches!(code.tenths, 51 | 640),

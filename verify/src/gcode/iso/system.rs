@@ -110,10 +110,12 @@ pub(super) fn numbered(number: u32, language: Language, control: &Control) -> Op
                 4005 => report(Report::FeedMode),
                 4006 => report(Report::Unit),
                 4010 => report(Report::Retract),
-                4014 => report(Report::WorkOffset),
                 4109 => report(Report::Feed),
                 4111 => report(Report::Register),
-                4120 => report(Report::Tool),
+                // The last T, or the tool in the spindle.
+                4120 => {
+                    report(Report::Tool).filter(|tool| report(Report::StagedTool) == Some(*tool))
+                }
                 _ => None,
             }
         }
