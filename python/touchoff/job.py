@@ -113,7 +113,8 @@ class Job:
         Raises
         ------
         JobError
-            If the job or its program cannot be read; the message names the file and the line.
+            If the job or a file that it names cannot be read; the message names the file. A line of a program that is not
+            understood is among the refusals, and the program is checked up to there.
         """
         checked = json.loads(_touchoff.check_job(self._path, self._keys))
         return Report(
