@@ -215,7 +215,7 @@ fn a_wrong_job_is_refused() {
         ("G41 D7", "the radius offset 7 is not known"),
         ("IF [#1 EQ 1] GOTO 5", "bracket.nc:"),
         ("L X+10 FMAX", "bracket.nc:"),
-        ("G12.1", "G12.1 is not understood"),
+        ("G12.1", "G12.1 is polar coordinate interpolation"),
         ("B10.", "bracket.nc:"),
     ] {
         bench.write("bracket.nc", PROGRAM.replace("N80 Z5.", &format!("N80 {word}")));

@@ -51,7 +51,7 @@ const FINAL: &str = "post the program with final coordinates";
 
 /// The words by letter and number.
 #[rustfmt::skip]
-const WORDS: [Entry; 87] = [
+const WORDS: [Entry; 88] = [
     g(&[0], Group::Motion, "rapid traverse"),
     g(&[10], Group::Motion, "a line at feed rate"),
     g(&[20, 30], Group::Motion, "an arc or a helix, clockwise and counter-clockwise"),
@@ -135,7 +135,8 @@ const WORDS: [Entry; 87] = [
     no_m(&[130, 140], "the spindle with coolant, or a brake of a rotary axis on Haas", "write M3 or M4, and M8"),
     no_m(&[170], "a return of Sinumerik", "write M99"),
     m(&[290, 480, 490, 510, 520, 530, 620, 630, 640, 650, 670, 680], Group::PassedOver, "rigid tapping, overrides, outputs of LinuxCNC"),
-    no_m(&[500, 600], "a pallet change, which moves the part, and a switch of the override on LinuxCNC (M50)", "give one program per setup"),
+    no_m(&[500], "a pallet change on Haas, and a switch of the override on LinuxCNC", "check the program without it"),
+    no_m(&[600], "a pallet change, which moves the part", "give one program per setup"),
     m(&[970, 980, 990], Group::Subprogram, "a subprogram: M97 and M98 call it, M99 ends it"),
     no_m(&[1280, 1290], "tool centre point control of Heidenhain", "write G43.4 H, and G49 to end it"),
     m(&[4280, 4290], Group::Kinematics, "tool centre point control of LinuxCNC, on and off"),
