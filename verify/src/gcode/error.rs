@@ -27,12 +27,16 @@ pub struct Obstacle {
     pub fault: GcodeFault,
 }
 
+/// Largest number of different obstacles that are listed. Prose has one in each line.
+const MAX_OBSTACLES: usize = 100;
+
 impl Obstacle {
-    /// Adds a fault in a line to a list with one entry for each.
+    /// Adds a fault in a line to a list with one entry for each, which ends at [`MAX_OBSTACLES`].
     pub(super) fn add(found: &mut Vec<Obstacle>, line: usize, fault: GcodeFault) {
-        match found.iter_mut().find(|known| known.fault == fault) {
-            Some(known) => known.count += 1,
-            None => found.push(Obstacle { line, count: 1, fault }),
+        if let Some(known) = found.iter_mut().find(|known| known.fault == fault) {
+            known.count += 1;
+        } else if found.len() < MAX_OBSTACLES {
+            found.push(Obstacle { line, count: 1, fault });
         }
     }
 }

@@ -76,8 +76,8 @@ impl<'a> Interpreter<'a> {
         &self.control.asked
     }
 
-    /// Returns the words of the text that are not read, each with its first line, in the order of lines. They stand in the way
-    /// beside the error that has stopped the program.
+    /// Returns the words of the text that are not read, each with its first line, in the order of lines: the first hundred. They
+    /// stand in the way beside the error that has stopped the program.
     pub fn obstacles(&self) -> Vec<Obstacle> {
         match &self.front {
             Front::Iso(program) => program.obstacles(&self.control),
