@@ -1,11 +1,11 @@
 //! Programs in Heidenhain Klartext: their steps against values that the tests know beforehand, the same part in ISO words, words
 //! that are refused, and damaged programs.
 
-use super::mutants::mutate;
+use super::mutants::{Seed, read_mutants};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use std::collections::BTreeMap;
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::f64::consts::{FRAC_PI_2, PI};
 use std::time::{Duration, Instant};
 use touchoff_verify::gcode::{
     Choice, ControlRules, ControlSetup, Interpreter, Plane, Position, Rotation, Rule, Spindle,
@@ -860,13 +860,8 @@ const PIECES: [&str; 44] = [
     "\u{e9}",
 ];
 
-/// Reads `MUTANTS` damaged programs, six thousand by default.
 #[test]
 fn mutants_end_with_steps_or_with_a_line() {
-    let count: u64 = match std::env::var("MUTANTS") {
-        Ok(text) => text.parse().expect("MUTANTS is a whole number"),
-        Err(_) => 6000,
-    };
     let seeds = [MILLING, HOLES, PLANES];
     let unknown = ControlSetup { lengths: BTreeMap::from([(5, 80.0)]), ..ControlSetup::default() };
     let setups = [at_zero(), unknown];
@@ -876,55 +871,6 @@ fn mutants_end_with_steps_or_with_a_line() {
             assert!(steps.len() >= 10, "{} steps\n{seed}", steps.len());
         }
     }
-    let mut random = Pcg64Mcg::seed_from_u64(11);
-    let mut random =
-        |limit: usize| ((u128::from(random.next_u64()) * limit as u128) >> 64) as usize;
-    let (mut whole, mut steps, mut slowest) = (0u64, 0u64, (Duration::ZERO, String::new()));
-    for index in 0..count {
-        let text = mutate(seeds[random(seeds.len())], &PIECES, &mut random);
-        let lines = text.split(['\n', '\r']).count();
-        let begin = Instant::now();
-        match Interpreter::new(&text, &setups[index as usize % 2]) {
-            Err(error) => assert!((1..=lines).contains(&error.line), "{error}\n{text}"),
-            Ok(mut interpreter) => {
-                let mut fault = None;
-                for step in interpreter.by_ref() {
-                    match step {
-                        Ok(step) => {
-                            steps += 1;
-                            let numbers = step.start.iter().chain(&step.end).flatten();
-                            assert!(
-                                numbers.into_iter().all(|value| value.is_finite()),
-                                "{step:?}\n{text}"
-                            );
-                            if let StepPath::Arc { centre, sweep, .. } = step.path {
-                                let is_finite = centre[0].is_finite() && centre[1].is_finite();
-                                assert!(is_finite && sweep.is_finite(), "{step:?}\n{text}");
-                                assert!(sweep.abs() < 1e9 * TAU, "{step:?}\n{text}");
-                            }
-                            assert!((1..=lines).contains(&step.line), "{step:?}\n{text}");
-                        }
-                        Err(error) => fault = Some(error),
-                    }
-                }
-                assert!(interpreter.next().is_none(), "steps after the end\n{text}");
-                match fault {
-                    None => {
-                        interpreter.notes();
-                        whole += 1;
-                    }
-                    Some(error) => assert!((1..=lines).contains(&error.line), "{error}\n{text}"),
-                }
-            }
-        }
-        if begin.elapsed() > slowest.0 {
-            slowest = (begin.elapsed(), text);
-        }
-    }
-    println!(
-        "{count} mutants: {whole} read to the end, {steps} steps, the slowest in {:?}",
-        slowest.0
-    );
-    assert!(slowest.0 < Duration::from_secs(60), "{}", slowest.1);
-    assert!(whole > 0 && whole < count);
+    let seeds = seeds.map(|text| Seed { text, setups: &setups });
+    read_mutants(&seeds, &PIECES, 6000, 11);
 }

@@ -3,8 +3,11 @@
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use std::collections::BTreeMap;
+use std::f64::consts::TAU;
 use std::time::{Duration, Instant};
-use touchoff_verify::gcode::{Choice, ControlRules, ControlSetup, Interpreter, Rule};
+use touchoff_verify::gcode::{
+    Choice, ControlRules, ControlSetup, Interpreter, Rule, Step, StepPath,
+};
 
 const THREE_AXES: &str = "%\nO1000 (PLATE)\nN10 G17 G21 G40 G49 G80 G90 G94 G98\nN20 G91 G28 Z0.\nN30 T1 M6\n\
     N40 G54 G90 G0 X10. Y10. S3000 M3\nN50 G43 H1 Z50. M8\nN60 G99 G81 R2. Z-12.5 F150.\nN70 X20.\nN80 G98 Y20.\n\
@@ -163,11 +166,7 @@ fn seeds_are_read() {
 }
 
 /// Returns a text with one to three damages, by pieces that are inserted among others.
-pub(crate) fn mutate(
-    seed: &str,
-    pieces: &[&str],
-    random: &mut impl FnMut(usize) -> usize,
-) -> String {
+fn mutate(seed: &str, pieces: &[&str], random: &mut impl FnMut(usize) -> usize) -> String {
     let mut text: Vec<char> = seed.chars().collect();
     for _ in 0..1 + random(3) {
         let at = random(text.len());
@@ -192,24 +191,29 @@ pub(crate) fn mutate(
     text.into_iter().collect()
 }
 
-/// Reads `MUTANTS` damaged programs, ten thousand by default.
-#[test]
-fn mutants_end_with_steps_or_with_a_line() {
+/// An undamaged program, and the controls that read it in turn.
+pub(crate) struct Seed<'a> {
+    pub(crate) text: &'a str,
+    pub(crate) setups: &'a [ControlSetup],
+}
+
+/// Reads `MUTANTS` damaged programs, or the given number, each with one of its seed's controls. Asserts that each ends with
+/// finite steps or with one of its lines.
+pub(crate) fn read_mutants(seeds: &[Seed], pieces: &[&str], default_count: u64, random_seed: u64) {
     let count: u64 = match std::env::var("MUTANTS") {
         Ok(text) => text.parse().expect("MUTANTS is a whole number"),
-        Err(_) => 10_000,
+        Err(_) => default_count,
     };
-    let mut random = Pcg64Mcg::seed_from_u64(7);
+    let mut random = Pcg64Mcg::seed_from_u64(random_seed);
     let mut random =
         |limit: usize| ((u128::from(random.next_u64()) * limit as u128) >> 64) as usize;
     let (mut whole, mut steps, mut slowest) = (0u64, 0u64, (Duration::ZERO, String::new()));
-    let setups = SEEDS.map(|(_, dialect)| setups(dialect));
     for index in 0..count {
-        let seed = random(SEEDS.len());
-        let text = mutate(SEEDS[seed].0, &PIECES, &mut random);
+        let seed = &seeds[random(seeds.len())];
+        let text = mutate(seed.text, pieces, &mut random);
         let lines = text.split(['\n', '\r']).count();
         let begin = Instant::now();
-        match Interpreter::new(&text, &setups[seed][index as usize % 2]) {
+        match Interpreter::new(&text, &seed.setups[index as usize % seed.setups.len()]) {
             Err(error) => assert!((1..=lines).contains(&error.line), "{error}\n{text}"),
             Ok(mut interpreter) => {
                 let mut error = None;
@@ -217,11 +221,7 @@ fn mutants_end_with_steps_or_with_a_line() {
                     match step {
                         Ok(step) => {
                             steps += 1;
-                            let numbers = step.start.iter().chain(&step.end).flatten();
-                            assert!(
-                                numbers.into_iter().all(|value| value.is_finite()),
-                                "{step:?}\n{text}"
-                            );
+                            assert_is_finite(&step, &text);
                             assert!((1..=lines).contains(&step.line), "{step:?}\n{text}");
                         }
                         Err(fault) => error = Some(fault),
@@ -229,7 +229,10 @@ fn mutants_end_with_steps_or_with_a_line() {
                 }
                 assert!(interpreter.next().is_none(), "steps after the end\n{text}");
                 match error {
-                    None => whole += 1,
+                    None => {
+                        interpreter.notes();
+                        whole += 1;
+                    }
                     Some(error) => assert!((1..=lines).contains(&error.line), "{error}\n{text}"),
                 }
             }
@@ -244,4 +247,22 @@ fn mutants_end_with_steps_or_with_a_line() {
     );
     assert!(slowest.0 < Duration::from_secs(60), "{}", slowest.1);
     assert!(whole > 0 && whole < count);
+}
+
+fn assert_is_finite(step: &Step, text: &str) {
+    let mut numbers = step.start.iter().chain(&step.end).flatten();
+    assert!(numbers.all(|value| value.is_finite()), "{step:?}\n{text}");
+    if let StepPath::Arc { centre, sweep, .. } = step.path {
+        let is_finite = centre[0].is_finite() && centre[1].is_finite();
+        assert!(is_finite && sweep.is_finite(), "{step:?}\n{text}");
+        assert!(sweep.abs() < 1e9 * TAU, "{step:?}\n{text}");
+    }
+}
+
+#[test]
+fn mutants_end_with_steps_or_with_a_line() {
+    let setups = SEEDS.map(|(_, dialect)| setups(dialect));
+    let seeds: Vec<Seed> =
+        SEEDS.iter().zip(&setups).map(|(&(text, _), setups)| Seed { text, setups }).collect();
+    read_mutants(&seeds, &PIECES, 10_000, 7);
 }

@@ -1,7 +1,6 @@
 //! Native programs of Sinumerik: the same motions written in ISO words, closed forms, refusals, mutants, and the speed of a loop.
 
-use rand_core::{Rng, SeedableRng};
-use rand_pcg::Pcg64Mcg;
+use super::mutants::{Seed, read_mutants};
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 use touchoff_verify::gcode::{
@@ -512,73 +511,13 @@ const PIECES: [&str; 36] = [
 
 #[test]
 fn mutants_end_with_steps_or_with_a_line() {
-    let count: u64 = match std::env::var("MUTANTS") {
-        Ok(text) => text.parse().expect("MUTANTS is a whole number"),
-        Err(_) => 1_500,
-    };
     let seeds = SEEDS.map(|seed| seed.replace("R1A", "2"));
     for seed in &seeds {
         assert!(steps(seed).len() > 5, "{seed}");
     }
-    let mut random = Pcg64Mcg::seed_from_u64(11);
-    let mut random =
-        |limit: usize| ((u128::from(random.next_u64()) * limit as u128) >> 64) as usize;
-    let (mut whole, mut motions, mut slowest) = (0u64, 0u64, (Duration::ZERO, String::new()));
-    for _ in 0..count {
-        let mut text: Vec<char> = seeds[random(seeds.len())].chars().collect();
-        for _ in 0..1 + random(3) {
-            let at = random(text.len());
-            match random(7) {
-                0 => drop(text.remove(at)),
-                1 => text.insert(at, char::from(b' ' + random(95) as u8)),
-                2 => text[at] = char::from(b'0' + random(10) as u8),
-                3 => drop(text.drain(at..(at + 1 + random(30)).min(text.len()))),
-                4 => {
-                    let piece: Vec<char> = text[at..(at + 1 + random(60)).min(text.len())].to_vec();
-                    let to = random(text.len());
-                    text.splice(to..to, piece);
-                }
-                5 => text.truncate(at),
-                _ => drop(text.splice(at..at, PIECES[random(PIECES.len())].chars())),
-            }
-            if text.is_empty() {
-                text.push('X');
-            }
-        }
-        let text: String = text.into_iter().collect();
-        let lines = text.split('\n').count();
-        let begin = Instant::now();
-        match Interpreter::new(&text, &setup()) {
-            Err(error) => assert!((1..=lines).contains(&error.line), "{error}\n{text}"),
-            Ok(interpreter) => {
-                let mut is_whole = true;
-                for step in interpreter {
-                    match step {
-                        Ok(step) => {
-                            motions += 1;
-                            let mut numbers = step.start.iter().chain(&step.end).flatten();
-                            assert!(numbers.all(|value| value.is_finite()), "{step:?}\n{text}");
-                            assert!((1..=lines).contains(&step.line), "{step:?}\n{text}");
-                        }
-                        Err(error) => {
-                            is_whole = false;
-                            assert!((1..=lines).contains(&error.line), "{error}\n{text}");
-                        }
-                    }
-                }
-                whole += u64::from(is_whole);
-            }
-        }
-        if begin.elapsed() > slowest.0 {
-            slowest = (begin.elapsed(), text);
-        }
-    }
-    println!(
-        "{count} mutants: {whole} read to the end, {motions} motions, the slowest in {:?}",
-        slowest.0
-    );
-    assert!(slowest.0 < Duration::from_secs(60), "{}", slowest.1);
-    assert!(whole > 0 && whole < count);
+    let setups = [setup()];
+    let seeds = seeds.each_ref().map(|text| Seed { text, setups: &setups });
+    read_mutants(&seeds, &PIECES, 1_500, 11);
 }
 
 /// A loop takes little more time for a block than its text written out.
