@@ -34,7 +34,7 @@ pub const MAX_READINGS: usize = 8;
 /// Largest number of combinations of the values that variables can have.
 pub const MAX_VALUES: usize = 100;
 
-/// What a reading of a program assumes.
+/// Assumptions of a reading of a program.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Assumption {

@@ -76,7 +76,7 @@ pub(super) struct Control {
     vector: Option<[f64; 3]>,
     pub(super) notes: Notes,
     rules: ControlRules,
-    /// What the language of the program settles, whatever the rules state.
+    /// Choices that the language of the program settles, whatever the rules state.
     settled: ControlRules,
     /// The rules that the program depends on, each with the first line.
     pub(super) asked: BTreeMap<Rule, usize>,

@@ -8,7 +8,7 @@ use super::error::not_read;
 use std::collections::HashMap;
 use std::sync::LazyLock;
 
-/// What becomes of a word.
+/// Treatment of a word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Treatment {
     /// It is executed, or passed over if its group says so.

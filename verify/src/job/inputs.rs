@@ -31,7 +31,7 @@ pub struct JobInputs<T> {
     revolved: Vec<LoadedBody<T>>,
     /// The stock.
     pub stock: Option<JobStock>,
-    /// What is open about them.
+    /// Gaps in these inputs.
     gaps: Vec<Gap>,
 }
 
@@ -52,7 +52,7 @@ pub struct JobBody {
     pub bvh: TriangleBvh,
     /// The frame of its triangles.
     pub frame: BodyFrame,
-    /// How near the surfaces of a tool may come.
+    /// Role, which decides how near the surfaces of a tool may come.
     pub role: BodyRole,
     /// The work offset of another part.
     pub work_offset: Option<WorkOffset>,

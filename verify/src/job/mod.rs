@@ -101,7 +101,7 @@ pub struct Job<'a> {
     pub allow: Vec<(String, f64)>,
     /// Checks the surface alone of a body whose mesh has no inside.
     pub surface_only: bool,
-    /// What is open about its inputs, beside what the program leaves open.
+    /// Gaps in its inputs, beside what the program leaves open.
     pub gaps: Vec<Gap>,
     /// Accepts what the program leaves open, and a program that seems to be meant for another part.
     pub anyway: bool,
@@ -211,7 +211,7 @@ pub struct JobStock {
 pub enum StockShape {
     /// The inside of a mesh.
     Mesh(Mesh),
-    /// What an earlier set-up left, in the frame of the part. Its spacing is that of its points.
+    /// Remains of an earlier set-up, in the frame of the part. Its spacing is that of its points.
     Points(RemainingPoints),
     /// A box, by its lowest and its highest corner.
     Box([Point3<f64>; 2]),

@@ -63,7 +63,7 @@ impl Moving {
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct PairReport {
-    /// What moves against the body.
+    /// Object that moves against the body.
     pub moving: Moving,
     /// Index of the body in the job.
     pub body: usize,

@@ -20,7 +20,7 @@ pub struct MachineBody {
     pub shape: BodyShape,
     /// Distance that it keeps from everything it is checked against, 0 or more; at 0 they may touch.
     pub margin: f64,
-    /// What it is checked against.
+    /// Opponents that it is checked against.
     pub against: Vec<Opponent>,
 }
 
@@ -55,7 +55,7 @@ pub enum BodyShape {
     },
 }
 
-/// What a body of a machine is checked against.
+/// An opponent that a body of a machine is checked against.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Opponent {

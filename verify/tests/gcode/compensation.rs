@@ -98,7 +98,7 @@ fn a_square_from_outside() {
     assert!((sweep + 0.5 * PI).abs() < 1e-12, "{sweep}");
 }
 
-/// Without an offset the tool follows the contour, as a program of its centre does.
+/// The tool follows the contour without an offset, as a program of its centre does.
 #[test]
 fn an_offset_of_zero_changes_nothing() {
     let plain = steps(&SQUARE.replace("G41 D1 ", "").replace("G40 ", ""), &arcs());

@@ -52,7 +52,7 @@ pub(super) struct Compensation {
 struct Held {
     step: Step,
     contour: Contour,
-    /// Where the tool starts.
+    /// Start of the tool.
     from: Vector,
     is_entry: bool,
 }

@@ -45,7 +45,7 @@ pub(super) struct Contour {
     radii: [f64; 2],
     /// Length of a line, or the angle of an arc.
     extent: f64,
-    /// What the corners at both ends cut off from it.
+    /// Parts that the corners at both ends cut off from it.
     cut: [f64; 2],
 }
 
@@ -153,7 +153,7 @@ impl Contour {
         }
         let centre = end + normal * radius;
         let turn = angle(start - centre, end - centre);
-        // Of both arcs, the one that turns as the programmed arc.
+        // The arc of both that turns as the programmed one.
         let extent = if turn * sweep.signum() <= 0.0 { TAU - turn.abs() } else { turn.abs() };
         let shape = Shape::Arc { centre, sweep: extent * sweep.signum() };
         Ok(Contour { shape, radii: [radius; 2], extent, ..programmed })
@@ -210,7 +210,7 @@ pub(super) fn bend(before: &Contour, after: &Contour, tolerance: f64) -> (Bend, 
     if turn.abs() <= tolerance {
         return (Bend::Tangent, turn);
     }
-    // Where the motion turns back, the curvatures decide on which side of it the second one is.
+    // The curvatures decide on which side of the first motion the second one is, where it turns back.
     let is_inside = match turn.abs() > PI - tolerance {
         true => side * (before.curvature(1) + after.curvature(0)) < 0.0,
         false => side * turn > 0.0,

@@ -79,7 +79,7 @@ pub(super) struct Variables {
     declared: BTreeMap<Parameter, f64>,
 }
 
-/// What an expression sees: the variables, the control, and the language, if the control is stated.
+/// Inputs of an expression: the variables, the control, and the language, if the control is stated.
 pub(super) struct Scope<'a> {
     pub(super) variables: &'a Variables,
     pub(super) control: &'a Control,

@@ -120,7 +120,7 @@ impl Words {
     }
 }
 
-/// What numbers are read with.
+/// Settings that numbers are read with.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Scale<'a> {
     known: &'a Parameters,

@@ -22,7 +22,7 @@ const AXES: [char; 6] = ['X', 'Y', 'Z', 'A', 'B', 'C'];
 /// Distance in millimetres below which two points are the same.
 const SAME_POINT: f64 = 1e-5;
 
-/// What a motion leaves for the next ones.
+/// State that a motion leaves for the next ones.
 #[derive(Clone, Debug)]
 pub(super) struct Before {
     /// The pole, in millimetres, and the plane of its two axes.
@@ -395,7 +395,7 @@ impl Program<'_> {
             let wanted = "PR and PA instead of coordinates in the plane of the pole";
             return Err(expected("LP", wanted));
         }
-        // What is left out stays as it is.
+        // Coordinates that are left out stay as they are.
         let is_whole = matches!(
             (words.polar_radius, words.polar_angle),
             (Some(Coordinate::Absolute(_)), Some(Coordinate::Absolute(_)))

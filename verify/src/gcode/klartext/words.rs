@@ -4,7 +4,7 @@
 use crate::gcode::GcodeFault;
 use crate::gcode::error::not_read;
 
-/// What is done with a word.
+/// Treatment of a word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Treatment {
     Read,

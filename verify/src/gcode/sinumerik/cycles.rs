@@ -82,7 +82,7 @@ struct Layout {
     cycle: &'static str,
     /// The drilling axis.
     axis: Option<usize>,
-    /// How the depth is measured at the tool.
+    /// Measure of the depth at the tool.
     geometry: usize,
     /// The plane.
     plane: usize,

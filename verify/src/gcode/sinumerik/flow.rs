@@ -129,7 +129,7 @@ struct Call {
     return_to: Place,
     /// Executions that follow the present one.
     left: u32,
-    /// Where the variables of the caller begin.
+    /// Start of the variables of the caller.
     base: usize,
 }
 
@@ -152,7 +152,7 @@ pub(super) struct Flow<'a> {
     place: Place,
     sections: Vec<Section<'a>>,
     section: usize,
-    /// Where a statement goes that does not go on to the next line, by its line.
+    /// Targets of the statements that do not go on to the next line, by their lines.
     partners: HashMap<usize, Place>,
     /// The targets of jumps that were executed, by the place of their name.
     targets: HashMap<usize, Place>,
@@ -442,7 +442,7 @@ pub(super) struct RepeatWords<'a> {
     pub(super) times: u32,
 }
 
-/// What follows the end of a program.
+/// Continuation after the end of a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Left {
     /// Nothing: it was the main program.

@@ -30,7 +30,7 @@ use table::{Use, use_of};
 use text::{Cursor, Start, start};
 use variables::{Reference, Variables};
 
-/// What native programs mean on every Sinumerik, whatever a control's file says about programs in ISO mode.
+/// Meaning of native programs on every Sinumerik, whatever a control's file says about programs in ISO mode.
 const NATIVE: [(Rule, Choice); 4] = [
     (Rule::Dialect, Choice::Sinumerik),
     // D1 is in force from the tool change on (MD20270), and there is no G43.

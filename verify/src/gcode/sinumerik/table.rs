@@ -88,7 +88,7 @@ const PASSED_OVER: &[&str] = &[
     "DIAMOF",
     "GROUP_BEGIN",
     "GROUP_END",
-    // What is in force anyway.
+    // Words for what is in force anyway.
     "NORM",
     "CUT2D",
     "CUT2DF",
