@@ -122,6 +122,7 @@ pub(crate) fn job_file(
         block_delete: None,
         ignore: BTreeMap::new(),
         variables: BTreeMap::new(),
+        subprograms: Vec::new(),
         tools,
         tolerance: options.tolerance,
         resolution: options.resolution,

@@ -69,6 +69,7 @@ impl<'a> Checker<'a> {
         let finding = |time, pose, kind| Finding {
             location: index,
             line: step.line,
+            within: step.within,
             from: step.from,
             rapid: step.rapid,
             time,

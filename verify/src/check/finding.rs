@@ -1,6 +1,7 @@
 //! Findings of a verification, and those of consecutive motions joined.
 
 use super::Approach;
+use crate::gcode::SubprogramLine;
 use crate::program::ProgramError;
 use std::cmp::Ordering;
 use std::mem::{self, Discriminant};
@@ -66,6 +67,8 @@ pub struct Finding {
     pub location: usize,
     /// Line of that cutter location.
     pub line: usize,
+    /// The line of the motion in the file of subprograms that has it.
+    pub within: Option<SubprogramLine>,
     /// Line of the cutter location at which the motion begins; `None` for the first one, which is checked by
     /// itself.
     pub from: Option<usize>,
@@ -189,7 +192,8 @@ impl FindingGroup {
 
     fn add(&mut self, finding: &Finding) {
         // A block may have several moves, and a first position by itself.
-        self.motions += usize::from(finding.line != self.last.line);
+        self.motions +=
+            usize::from((finding.line, finding.within) != (self.last.line, self.last.within));
         self.last = *finding;
         let other = if finding.kind.severity(&self.worst.kind) == Ordering::Greater {
             mem::replace(&mut self.worst, *finding)

@@ -10,6 +10,7 @@
 use super::moves::{JointPath, Move, MovePath, RapidBox};
 use crate::gcode::{
     self, Choice, ControlRules, ControlSetup, GcodeError, Interpreter, LengthOffset, Rule, Step,
+    SubprogramFile,
 };
 use crate::machine::{JointError, JointMotion, Letter, Machine, Relation, Setup};
 use nalgebra::Vector3;
@@ -262,6 +263,11 @@ impl MachineProgram {
     /// Returns the program's name in messages.
     pub fn name(&self) -> &str {
         &self.file
+    }
+
+    /// Returns the files of subprograms that it can call.
+    pub(crate) fn subprograms(&self) -> &[SubprogramFile] {
+        &self.setup.subprograms
     }
 
     /// Returns the origin of the part in machine coordinates, if the setup states it.
@@ -595,6 +601,7 @@ impl MoveFrame {
 fn move_along(step: &Step, from: Option<usize>, path: MovePath) -> Move {
     Move {
         line: step.line,
+        within: step.within,
         from,
         rapid: step.rapid,
         tool: step.state.tool,

@@ -1,6 +1,6 @@
 //! The motions of a program, each with its place in the file.
 
-use crate::gcode::WorkOffset;
+use crate::gcode::{SubprogramLine, WorkOffset};
 use crate::machine::JointMotion;
 use crate::program::{ClData, CutterLocation};
 use nalgebra::{Point3, Vector3};
@@ -14,6 +14,8 @@ use touchoff::{Motion, MotionError, Pose, Unit};
 pub struct Move {
     /// Line of the block or cutter location at which the motion ends.
     pub line: usize,
+    /// The line of its block in the file of subprograms that has it.
+    pub within: Option<SubprogramLine>,
     /// Line at which it begins; `None` for the first position, which is checked by itself.
     pub from: Option<usize>,
     /// Set in rapid traverse.
@@ -165,7 +167,15 @@ impl Move {
             }
         };
         let from = from.map(|from| from.line);
-        Move { line: to.line, from, rapid: to.rapid, tool: None, work_offset: None, path }
+        Move {
+            line: to.line,
+            within: None,
+            from,
+            rapid: to.rapid,
+            tool: None,
+            work_offset: None,
+            path,
+        }
     }
 }
 

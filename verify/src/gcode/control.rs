@@ -22,7 +22,7 @@ use super::error::{combination, not_read};
 use super::note::{NoteKind, Notes};
 use super::rules::{Choice, ControlRules, Rule};
 use super::state::{ControlState, LengthOffset, Position, Rotation, Tcp, WorkOffset};
-use super::{ControlSetup, GcodeFault, Plane, Step, StepPath};
+use super::{ControlSetup, GcodeFault, Plane, Step, StepPath, SubprogramLine};
 use compensation::Compensation;
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
@@ -37,7 +37,10 @@ const AXES: [char; 6] = ['X', 'Y', 'Z', 'A', 'B', 'C'];
 /// A control: everything that blocks change and motions depend on.
 #[derive(Clone, Debug)]
 pub(super) struct Control {
+    /// The line of the program.
     pub(super) line: usize,
+    /// The line of the file of subprograms that it has called.
+    pub(super) within: Option<SubprogramLine>,
     pub(super) modal: Modal,
     state: Arc<ControlState>,
     /// Position in program coordinates.
@@ -224,6 +227,7 @@ impl Control {
         };
         Control {
             line: 0,
+            within: None,
             modal: Modal::new(),
             state: Arc::new(state),
             position: setup.start,
@@ -311,9 +315,17 @@ impl Control {
         known.map(|(_, number)| *number).or_else(|| name.parse().ok())
     }
 
+    /// Sets the line of the block that is executed next; `file` is that of a called subprogram in another file. The line of the program is that
+    /// of the call then.
+    pub(super) fn set_line(&mut self, file: Option<usize>, line: usize) {
+        self.within = file.map(|file| SubprogramLine { file, line });
+        if file.is_none() {
+            self.line = line;
+        }
+    }
+
     /// Executes a block, in the order of RS274/NGC, table 8.
-    pub(super) fn execute(&mut self, line: usize, block: &mut Block) -> Result<(), GcodeFault> {
-        self.line = line;
+    pub(super) fn execute(&mut self, block: &mut Block) -> Result<(), GcodeFault> {
         let (known, register) = (self.pending.len(), block.value('D'));
         self.note_words(block);
         self.check_dialect(block)?;
@@ -589,9 +601,10 @@ impl Control {
             _ => self.spindle(rapid),
         };
         let state = Arc::clone(&self.state);
-        let (line, tool_vector) = (self.line, self.vector);
+        let (line, within, tool_vector) = (self.line, self.within, self.vector);
         self.pending.push_back(Step {
             line,
+            within,
             rapid,
             start,
             end,

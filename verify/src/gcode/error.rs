@@ -19,7 +19,7 @@ touchoff::debug_as_sentence!(GcodeError);
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Obstacle {
-    /// The first line that has it, 1-based.
+    /// The first line that has it, 1-based; 0 for one in a file of subprograms, whose line the fault names.
     pub line: usize,
     /// The number of lines that have it.
     pub count: usize,
@@ -45,7 +45,10 @@ impl Obstacle {
 impl fmt::Display for Obstacle {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Obstacle { line, count, fault } = self;
-        write!(f, "line {line}: {fault}")?;
+        match line {
+            0 => write!(f, "{fault}")?,
+            line => write!(f, "line {line}: {fault}")?,
+        }
         if *count > 1 { write!(f, " ({count} times)") } else { Ok(()) }
     }
 }
@@ -244,8 +247,11 @@ pub enum GcodeFault {
         "the tool vector I J K is zero and points nowhere: give the direction from the tip to the spindle"
     )]
     NoDirection,
-    /// A subprogram that is not in the file.
-    #[error("there is no {label} in this file: append the subprogram, and write repeats after L")]
+    /// A subprogram that is in no file.
+    #[error(
+        "there is no {label} in this file, nor in those that the job names: append the subprogram, or name its file in `subprograms` of \
+         the job"
+    )]
     NoSubprogram {
         /// The label, for example `O100`.
         label: String,
@@ -356,6 +362,31 @@ pub enum GcodeFault {
         word: &'static str,
         /// The problem, and the remedy.
         problem: &'static str,
+    },
+    /// A program of another unit than that of the one that calls it.
+    #[error(
+        "the program is in another unit than the one that calls it: post both in the same unit"
+    )]
+    OtherUnit,
+    /// A subprogram that two files have.
+    #[error("{label} is in two files, {first} and {second}: name one of them in `subprograms`")]
+    TwoFiles {
+        /// The label.
+        label: String,
+        /// The file of the first.
+        first: String,
+        /// The file of the second.
+        second: String,
+    },
+    /// A fault in another file than that of the program, or in that of the program after a call from another one.
+    #[error("{}, line {line}: {fault}", name.as_deref().unwrap_or("the program itself"))]
+    InFile {
+        /// The file of subprograms; `None` for the program.
+        name: Option<String>,
+        /// The line, 1-based.
+        line: usize,
+        /// The fault in it.
+        fault: Box<GcodeFault>,
     },
     /// Subprograms that take too many blocks and steps.
     #[error(

@@ -1,8 +1,11 @@
 //! The interpreter: executes the lines of a program in order, and returns their motions.
 
 use super::control::Control;
+use super::files::in_file;
 use super::rules::{Choice, Rule};
-use super::{ControlSetup, GcodeError, GcodeFault, Obstacle, Step, iso, klartext, sinumerik};
+use super::{
+    ControlSetup, GcodeError, GcodeFault, Obstacle, Step, SubprogramFile, iso, klartext, sinumerik,
+};
 use std::collections::BTreeMap;
 
 /// An interpreter of a program: an iterator over its steps.
@@ -13,6 +16,7 @@ use std::collections::BTreeMap;
 #[derive(Clone, Debug)]
 pub struct Interpreter<'a> {
     front: Front<'a>,
+    files: &'a [SubprogramFile],
     pub(super) control: Control,
     finished: bool,
     /// The end of the program, once it was executed.
@@ -49,25 +53,32 @@ pub(super) enum End {
 }
 
 impl<'a> Interpreter<'a> {
-    /// Creates an interpreter of a text, which is not copied.
+    /// Creates an interpreter of a text, which is not copied, nor are the files of subprograms in the setup.
     ///
     /// # Errors
     /// If two subprograms have one label, or a `sub` and its `endsub` do not match.
-    pub fn new(text: &'a str, setup: &ControlSetup) -> Result<Interpreter<'a>, GcodeError> {
+    pub fn new(text: &'a str, setup: &'a ControlSetup) -> Result<Interpreter<'a>, GcodeError> {
+        let files = &setup.subprograms[..];
         if let Some(line) = lone_return(text) {
             return Err(GcodeError { line, fault: GcodeFault::LoneReturn });
+        }
+        for (index, file) in files.iter().enumerate() {
+            if let Some(line) = lone_return(&file.text) {
+                let error = GcodeError { line, fault: GcodeFault::LoneReturn };
+                return Err(GcodeError { line: 1, fault: in_file(files, index + 1, error) });
+            }
         }
         let mut control = Control::new(setup);
         // ISO words mean the same in native programs of Sinumerik, so that one without native words is read as another one.
         let can_be_native = matches!(control.stated(Rule::Dialect), None | Some(Choice::Sinumerik));
         let front = if klartext::is_program(text) {
-            Front::Klartext(Box::new(klartext::Program::new(text, &mut control)?))
+            Front::Klartext(Box::new(klartext::Program::new(text, files, &mut control)?))
         } else if can_be_native && sinumerik::is_native(text) {
-            Front::Sinumerik(Box::new(sinumerik::Program::new(text, &mut control)?))
+            Front::Sinumerik(Box::new(sinumerik::Program::new(text, files, &mut control)?))
         } else {
             Front::Iso(Box::new(iso::Program::new(text, setup, &mut control)?))
         };
-        let first = Interpreter { front, control, finished: false, end: None, first: None };
+        let first = Interpreter { front, files, control, finished: false, end: None, first: None };
         Ok(Interpreter { first: Some(Box::new(first.clone())), ..first })
     }
 
@@ -88,11 +99,22 @@ impl<'a> Interpreter<'a> {
 
     /// Executes the next line, and returns whether the program goes on.
     pub(super) fn execute_line(&mut self) -> Result<bool, GcodeError> {
-        let progress = match &mut self.front {
-            Front::Iso(program) => program.execute_line(&mut self.control)?,
-            Front::Klartext(program) => program.execute_line(&mut self.control)?,
-            Front::Sinumerik(program) => program.execute_line(&mut self.control)?,
+        let file = match &self.front {
+            Front::Iso(program) => program.called_file(),
+            Front::Klartext(program) => program.called_file(),
+            Front::Sinumerik(program) => program.called_file(),
         };
+        let progress = match &mut self.front {
+            Front::Iso(program) => program.execute_line(&mut self.control),
+            Front::Klartext(program) => program.execute_line(&mut self.control),
+            Front::Sinumerik(program) => program.execute_line(&mut self.control),
+        };
+        let progress = progress.map_err(|error| match file {
+            Some(file) => {
+                GcodeError { line: self.control.line, fault: in_file(self.files, file, error) }
+            }
+            None => error,
+        })?;
         if let Progress::Ended(end) = progress {
             let line = self.control.line;
             self.control.end_compensation().map_err(|fault| GcodeError { line, fault })?;

@@ -56,6 +56,7 @@
 mod block;
 mod control;
 mod error;
+mod files;
 mod interpreter;
 mod iso;
 mod klartext;
@@ -67,6 +68,7 @@ mod words;
 
 pub use control::Spindle;
 pub use error::{ArcFault, CompensationFault, GcodeError, GcodeFault, Obstacle};
+pub use files::{SubprogramFile, SubprogramLine};
 pub use interpreter::Interpreter;
 pub use iso::ExpressionFault;
 pub(crate) use iso::is_variable;
@@ -121,6 +123,8 @@ pub struct ControlSetup {
     /// Values that variables can have before the program, by name: `#500`, `#<_depth>`. Lengths are in the unit of the program. An
     /// [`Interpreter`] takes the first of each.
     pub variables: BTreeMap<String, Vec<f64>>,
+    /// Files of subprograms that the program can call.
+    pub subprograms: Vec<SubprogramFile>,
     /// Position in which M6 leaves the axes, in machine coordinates: `None` for an axis that stays. Without it, as the
     /// [rules](Rule::ToolChange) say.
     pub tool_change: Option<Position>,
@@ -141,6 +145,7 @@ impl Default for ControlSetup {
             rules: ControlRules::default(),
             axes: [true; 6],
             variables: BTreeMap::new(),
+            subprograms: Vec::new(),
             tool_change: None,
         }
     }
@@ -150,8 +155,10 @@ impl Default for ControlSetup {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Step {
-    /// The line of its block, 1-based.
+    /// The line of its block, 1-based; in a file of subprograms, that of the program's block which calls it.
     pub line: usize,
+    /// The line of its block in the file of subprograms that has it.
+    pub within: Option<SubprogramLine>,
     /// Set in rapid traverse.
     pub rapid: bool,
     /// Position at the start: the end of the motion before, in the coordinates that hold now.

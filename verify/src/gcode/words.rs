@@ -137,7 +137,7 @@ const WORDS: [Entry; 88] = [
     m(&[290, 480, 490, 510, 520, 530, 620, 630, 640, 650, 670, 680], Group::PassedOver, "rigid tapping, overrides, outputs of LinuxCNC"),
     no_m(&[500], "a pallet change on Haas, and a switch of the override on LinuxCNC", "check the program without it"),
     no_m(&[600], "a pallet change, which moves the part", "give one program per setup"),
-    m(&[970, 980, 990], Group::Subprogram, "a subprogram: M97 and M98 call it, M99 ends it"),
+    m(&[970, 980, 990, 1980], Group::Subprogram, "a subprogram: M97, M98 and M198 (of another file) call it, M99 ends it"),
     no_m(&[1280, 1290], "tool centre point control of Heidenhain", "write G43.4 H, and G49 to end it"),
     m(&[4280, 4290], Group::Kinematics, "tool centre point control of LinuxCNC, on and off"),
 ];

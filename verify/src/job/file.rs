@@ -1,6 +1,6 @@
 //! Job files: TOML, with paths relative to the folder of the file.
 
-use super::program::{Program, read_control};
+use super::program::{Program, read_control, read_subprograms};
 use super::{Hand, JobError, PART, checked_margin};
 use crate::ToolSelection;
 use crate::gcode::{Choice, ControlRules, ControlSetup, LARGEST_NUMBER, Rule, is_variable};
@@ -34,6 +34,8 @@ pub struct JobFile {
     pub ignore: BTreeMap<String, String>,
     /// Values that variables of the program can have before it ([`ControlSetup::variables`]).
     pub variables: BTreeMap<String, Vec<f64>>,
+    /// Files of subprograms that the program calls.
+    pub subprograms: Vec<PathBuf>,
     /// The tools.
     pub tools: JobTools,
     /// Depth in the part that any surface may have.
@@ -220,6 +222,8 @@ struct JobText {
     ignore: BTreeMap<String, String>,
     #[serde(default)]
     variables: BTreeMap<String, VariableValues>,
+    #[serde(default)]
+    subprograms: Vec<PathBuf>,
     /// Library of the tools, which the program selects by number.
     tools: Option<PathBuf>,
     #[serde(default)]
@@ -245,6 +249,7 @@ impl JobFile {
     pub fn files(&self) -> Vec<(String, &Path)> {
         let mut files =
             vec![("part".to_owned(), &*self.part), ("program".to_owned(), &*self.program)];
+        files.extend(self.subprograms.iter().map(|file| ("subprograms".to_owned(), &**file)));
         for (role, name) in [("machine", &self.machine), ("control", &self.control)] {
             let file = name.as_deref().map(Path::new).filter(|file| has_ending(file, "toml"));
             files.extend(file.map(|file| (role.to_owned(), file)));
@@ -356,6 +361,7 @@ impl JobFile {
             block_delete: job.block_delete,
             ignore: job.ignore,
             variables,
+            subprograms: job.subprograms.into_iter().map(beside).collect(),
             tools: JobTools::Numbered { library: job.tools.map(beside), entries },
             tolerance: job.tolerance,
             resolution: job.resolution,
@@ -402,6 +408,7 @@ impl JobFile {
             work_offsets: self.work_offsets,
             lengths: self.tools.lengths(),
             variables: self.variables.clone(),
+            subprograms: read_subprograms(&self.subprograms)?,
             radius_offsets: self.radius_offsets.clone(),
             tool_names: self.tools.names(),
             rules,

@@ -148,7 +148,7 @@ fn describe(
     let body = &report.body(pair).name;
     let finding = &group.worst;
     let name = |surface: SurfaceId| &*info.surface(surface).name;
-    let at = place(group);
+    let at = place(report, group);
     let text = match &finding.kind {
         FindingKind::Deep { surface, through: true, witness, .. } => {
             let point = unit.format_point(&witness.point);
@@ -217,20 +217,23 @@ fn describe(
 }
 
 /// Describes the motions of a group.
-fn place(group: &FindingGroup) -> String {
-    let Finding { from, time, rapid, .. } = group.worst;
+fn place(report: &JobReport<'_>, group: &FindingGroup) -> String {
+    let Finding { from, time, rapid, within, .. } = group.worst;
     let rapid = if rapid { ", in rapid traverse" } else { "" };
+    let within = within.map_or(String::new(), |within| {
+        format!(" ({}, line {})", report.job.program.file_name(within.file), within.line)
+    });
     match (group.motions, from) {
         (1, Some(from)) if group.worst.any_rates => format!(
             "in rapid traverse from line {from} at some rates of its axes (the straight line is clear; `rapid` of the \
-             control or of the machine's axes states the path)"
+             control or of the machine's axes states the path){within}"
         ),
         (1, Some(from)) => {
-            format!("at fraction {time:.2} of the motion from line {from}{rapid}")
+            format!("at fraction {time:.2} of the motion from line {from}{rapid}{within}")
         }
-        (1, None) => format!("at the first position{rapid}"),
+        (1, None) => format!("at the first position{rapid}{within}"),
         (motions, _) => format!(
-            "on {motions} motions, lines {} to {}{rapid}",
+            "on {motions} motions, lines {} to {}{rapid}{within}",
             group.first.line, group.last.line
         ),
     }

@@ -77,6 +77,9 @@ struct SurfaceRow<'a> {
     line: usize,
     first_line: usize,
     last_line: usize,
+    /// The line of the worst motion in the file of subprograms that has it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    within: Option<SubprogramRow<'a>>,
     /// Number of motions.
     motions: usize,
     /// The line at which the worst motion begins.
@@ -114,6 +117,13 @@ struct SurfaceRow<'a> {
     /// The least tilt about the tip that clears the tool at this pose.
     #[serde(skip_serializing_if = "Option::is_none")]
     tilt: Option<TiltRow>,
+}
+
+/// A line of a file of subprograms.
+#[derive(Serialize)]
+struct SubprogramRow<'a> {
+    file: &'a str,
+    line: usize,
 }
 
 /// A tilt of the axis about the tip.
@@ -186,6 +196,10 @@ impl<'a> SurfaceRow<'a> {
             line: finding.line,
             first_line: group.first.line,
             last_line: group.last.line,
+            within: finding.within.map(|within| SubprogramRow {
+                file: report.job.program.file_name(within.file),
+                line: within.line,
+            }),
             motions: group.motions,
             from_line: finding.from,
             location: finding.location,

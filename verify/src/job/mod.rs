@@ -239,6 +239,14 @@ pub enum JobError {
         /// The reason.
         source: std::io::Error,
     },
+    /// Two files of subprograms have one name.
+    #[error(
+        "two files of `subprograms` have the name {name}, by which controls find them: rename one of them"
+    )]
+    SecondSubprogram {
+        /// The name.
+        name: String,
+    },
     /// Statements of a job that do not go together.
     #[error("{0}")]
     Mismatch(&'static str),

@@ -2,12 +2,12 @@
 
 use super::{BodyFrame, JobError, RevolvedBody};
 use crate::check::MoveRequest;
-use crate::gcode::{ControlRules, ControlSetup};
+use crate::gcode::{ControlRules, ControlSetup, SubprogramFile};
 use crate::machine::{Machine, Mover, Reference, Relation, Side};
-use crate::program::ProgramFile;
+use crate::program::{ProgramFile, read_text};
 use crate::{ClData, Gap, MachineProgram, Move, ProgramError, ToolSelection, ToolUse};
 use std::iter;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use touchoff::tool::{Symmetry, ToolInfo};
 use touchoff::{Pose, Unit};
 
@@ -121,6 +121,16 @@ impl Program {
         match self {
             Program::Locations(programs) => programs[0].name(),
             Program::Machine(readings) => readings[0].name(),
+        }
+    }
+
+    /// Returns the name of a file: that of the program, or by its [number](crate::gcode::SubprogramLine::file) of a file of subprograms.
+    pub fn file_name(&self, number: usize) -> &str {
+        let readings = self.readings().first();
+        let file = readings.zip(number.checked_sub(1));
+        match file.and_then(|(program, index)| program.subprograms().get(index)) {
+            Some(file) => &file.name,
+            None => self.name(),
         }
     }
 
@@ -396,6 +406,23 @@ pub fn read_control(name: &Path) -> Result<ControlRules, JobError> {
         Some((text, file)) => ControlRules::parse(&text, &file)?,
         None => ControlRules::named(&name.to_string_lossy())?,
     })
+}
+
+/// Reads files of subprograms.
+///
+/// # Errors
+/// If one cannot be read, or is no text; if two have one name, by which controls find them.
+pub(super) fn read_subprograms(files: &[PathBuf]) -> Result<Vec<SubprogramFile>, JobError> {
+    let mut subprograms: Vec<SubprogramFile> = Vec::new();
+    for file in files {
+        let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        if subprograms.iter().any(|known| known.name.eq_ignore_ascii_case(&name)) {
+            return Err(JobError::SecondSubprogram { name });
+        }
+        let text = read_text(file)?.into();
+        subprograms.push(SubprogramFile { name, text });
+    }
+    Ok(subprograms)
 }
 
 /// Reads a machine by its name, or from a file in TOML.

@@ -84,6 +84,21 @@ impl ProgramFile {
     }
 }
 
+/// Reads a file as text.
+///
+/// # Errors
+/// If it cannot be read, or is no text.
+pub(crate) fn read_text(path: &Path) -> Result<String, ProgramError> {
+    let file = path.display().to_string();
+    match read_regular_file(path) {
+        Ok(bytes) => match decode(&bytes) {
+            Ok(text) => Ok(text.to_owned()),
+            Err((line, fault)) => Err(ProgramError::Line { file, line, fault }),
+        },
+        Err(source) => Err(ProgramError::Read { file, source }),
+    }
+}
+
 /// A cutter location: one position of a program.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CutterLocation {

@@ -10,3 +10,4 @@ mod mutants;
 mod next_run;
 mod refusals;
 mod sinumerik;
+mod subprograms;

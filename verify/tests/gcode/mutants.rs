@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::time::{Duration, Instant};
 use touchoff_verify::gcode::{
-    Choice, ControlRules, ControlSetup, Interpreter, Rule, Step, StepPath,
+    Choice, ControlRules, ControlSetup, Interpreter, Rule, Step, StepPath, SubprogramFile,
 };
 
 const THREE_AXES: &str = "%\nO1000 (PLATE)\nN10 G17 G21 G40 G49 G80 G90 G94 G98\nN20 G91 G28 Z0.\nN30 T1 M6\n\
@@ -58,7 +58,7 @@ const SEEDS: [(&str, Choice); 9] = [
 ];
 
 /// Pieces that mutations insert.
-const PIECES: [&str; 72] = [
+const PIECES: [&str; 77] = [
     "GOTO 20",
     "IF [",
     "THEN #1=",
@@ -107,6 +107,11 @@ const PIECES: [&str; 72] = [
     "G54.1 P9",
     "M98 P1000",
     "M98 P2000 L9999",
+    "M98 P9001 L2",
+    "M98 <SUB>",
+    "M198 P9001",
+    "G65 P9001 X1. K2.",
+    "o<sub> call [3]",
     "M99",
     "M30",
     "M428",
@@ -133,6 +138,10 @@ const PIECES: [&str; 72] = [
     "\u{e9}",
 ];
 
+/// A file of subprograms that mutants can call.
+const SUBPROGRAM: &str =
+    "O9001\nG91 X1.\nG90\nM98 P1000\nM99\no<sub> sub\ng91 x1\ng90\no<hole> call\no<sub> endsub\n";
+
 fn setups(dialect: Choice) -> [ControlSetup; 2] {
     let known = ControlSetup {
         start: [Some(0.0); 6],
@@ -140,6 +149,7 @@ fn setups(dialect: Choice) -> [ControlSetup; 2] {
         lengths: BTreeMap::from([(1, 80.0), (2, 90.0), (5, 120.0), (7, 60.0)]),
         home: Some([0.0, 0.0, 400.0, 0.0, 0.0, 0.0]),
         radius_offsets: BTreeMap::from([(1, 2.0), (2, 3.5)]),
+        subprograms: vec![SubprogramFile { name: "sub.ngc".to_owned(), text: SUBPROGRAM.into() }],
         ..ControlSetup::default()
     };
     let rules = ControlRules::named("haas").expect("a control");

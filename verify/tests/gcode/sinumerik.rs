@@ -357,7 +357,8 @@ fn other_programs_are_read_as_before() {
     // A statement of Sinumerik in a comment, or its name in another language, makes no native program.
     for program in ["G0 X1 (TRANS X=5)\nM30\n", "#1=5\nG0 X#1\nM30\n", "G0 X1 ; X=5\nM30\n"] {
         assert_eq!(steps(program).len(), 1, "{program}");
-        let interpreter = Interpreter::new(program, &setup()).expect("a program");
+        let setup = setup();
+        let interpreter = Interpreter::new(program, &setup).expect("a program");
         assert!(!interpreter.asked().contains_key(&Rule::Dialect));
     }
     let native = ControlRules::default().with(Rule::Dialect, Choice::Sinumerik);
@@ -390,7 +391,7 @@ fn what_is_outside_is_refused_by_name_with_its_line() {
         ("R1=1\nSCALE X2", 2, "SCALE is scaling or mirroring"),
         ("R1=1\nPOCKET4(10,0,2)", 2, "POCKET4 is a milling cycle"),
         ("R1=1\nHOLES1(0,0,0,10,10,3)", 2, "HOLES1 is a pattern of holes"),
-        ("EXTCALL(\"A\")", 1, "EXTCALL is a call of a file outside"),
+        ("EXTCALL(\"A\")", 1, "`A` is no word that is read, and no subprogram"),
         ("R1=1\nCIP X1 Y1 I1=2 J1=3", 2, "CIP is another form of arc"),
         ("G1 X1 RND=2 F100", 1, "RND is a rounded or chamfered corner"),
         ("R1=1\nG41 X5", 2, "G41"),

@@ -105,6 +105,22 @@ fn what_a_program_leaves_out_at_its_start_is_named() {
     scene.gives(&LINUXCNC, 0, &[]);
 }
 
+#[test]
+fn a_finding_in_a_file_of_subprograms_names_the_call_and_its_line() {
+    let scene = Scene::new("T1 M6\nS9000 M3\nG43 H1 G0 X-6. Y0. Z20.\nM98 P9001\nG0 Z20.");
+    scene.bench.write("O9001.nc", "(PASS)\nG0 X0. Y0.\nG1 Z-1.\nM99\n");
+    scene.gives(&HAAS, 2, &["a.nc:5: there is no O9001", "name its file in `subprograms`"]);
+    let mut scene = scene.placed().with("subprograms = [\"O9001.nc\"]");
+    scene.gives(&HAAS, 1, &["a.nc:5: T1", "(O9001.nc, line 3)"]);
+    scene.gives(
+        &[&HAAS[..], &["--json"]].concat(),
+        1,
+        &["\"within\":{\"file\":\"O9001.nc\",\"line\":3}"],
+    );
+    scene.job = scene.job.replace("O9001.nc", "O9002.nc");
+    scene.gives(&HAAS, 2, &["O9002.nc: cannot be read"]);
+}
+
 /// A collision is one however far it is from the part.
 #[test]
 fn a_collision_far_from_the_part_has_status_1() {

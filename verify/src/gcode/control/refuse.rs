@@ -78,7 +78,7 @@ impl Control {
             && let Some(code) = block
                 .codes()
                 .filter(Code::is_m)
-                .find(|code| matches!(code.tenths, 0..=60 | 290 | 300 | 980 | 990))
+                .find(|code| matches!(code.tenths, 0..=60 | 290 | 300 | 980 | 990 | 1980))
         {
             let condition =
                 "its block has another M word, of which Haas and Fanuc as delivered execute one";
@@ -361,11 +361,11 @@ fn takes(code: Code, letter: char) -> bool {
                     40 | 50 | 80 | 100 | 300 | 541 | 640 | 682 | 1030 | 1540 | 1870
                 )
         }
-        ('P', _) => matches!(code.tenths, 190 | 510..=530 | 620..=650 | 980),
+        ('P', _) => matches!(code.tenths, 190 | 510..=530 | 620..=650 | 980 | 1980),
         ('Q', 'G') => is_cycle || matches!(code.tenths, 51 | 640),
         ('Q', _) => matches!(code.tenths, 190 | 670 | 680),
         ('L', 'G') => is_cycle || code.tenths == 100,
-        ('L', _) => code.tenths == 980,
+        ('L', _) => matches!(code.tenths, 980 | 1980),
         ('R', 'G') => is_arc || is_cycle || matches!(code.tenths, 100 | 640 | 680),
         _ => code.tenths == 190,
     }
@@ -379,7 +379,7 @@ fn is_other_on_heidenhain(code: Code) -> bool {
             90 | 100 | 150 | 200 | 210 | 230 | 280 | 300 | 430..=449 | 490 | 520..=599 | 610..=649 | 670..=699 | 730 | 740
                 | 810..=890 | 920..=979 | 980 | 990
         ),
-        ('M', tenths) => matches!(tenths, 890 | 980 | 990),
+        ('M', tenths) => matches!(tenths, 890 | 980 | 990 | 1980),
         _ => false,
     }
 }

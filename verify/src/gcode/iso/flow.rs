@@ -1,13 +1,15 @@
 //! The lines of a program, and the order in which they are executed: its extent in the file, its subprograms and their repeats.
+//!
+//! A subprogram of another file has a flow of its own, which its caller's flow waits for.
 
 use super::line::{Label, MacroCall, Role, begin, code, next};
-use super::structure::Structure;
+use super::structure::{Structure, Subprogram};
 use super::variables::{Locals, Variables};
 use crate::gcode::error::combination;
-use crate::gcode::{GcodeError, GcodeFault, MAX_CALLS, MAX_REPEATED};
+use crate::gcode::{GcodeError, GcodeFault, MAX_CALLS, MAX_REPEATED, SubprogramFile};
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::mem;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 use touchoff::Unit;
 
 /// A place in the text: the byte at which a line begins, and its number from 1.
@@ -72,7 +74,7 @@ fn is_empty(line: &str) -> bool {
 }
 
 /// The extent of a program in its file.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Extent<'a> {
     /// The text without what follows the last `%`.
     pub(super) text: &'a str,
@@ -116,6 +118,108 @@ pub(super) fn extent(text: &str) -> Extent<'_> {
         place = after;
     }
     extent
+}
+
+/// A text: that of the program, or a file of subprograms.
+#[derive(Debug)]
+pub(super) struct Source<'a> {
+    /// The label that its name stands for: that of `O9001.nc` or `9001.nc` is O9001, that of `probe.ngc` is `O<probe>`.
+    label: Option<Label>,
+    extent: Extent<'a>,
+    pub(super) structure: Structure,
+    /// The places of sequence numbers, once a line has asked for one.
+    numbers: OnceLock<HashMap<u32, Vec<Place>>>,
+}
+
+impl<'a> Source<'a> {
+    pub(super) fn new(
+        file: Option<&SubprogramFile>,
+        extent: Extent<'a>,
+        structure: Structure,
+    ) -> Source<'a> {
+        let label = file.map(|file| Label::of_file(file.stem()));
+        Source { label, extent, structure, numbers: OnceLock::new() }
+    }
+
+    pub(super) fn text(&self) -> &'a str {
+        self.extent.text
+    }
+
+    /// Returns the lines of the program, each with its number.
+    fn lines(&self) -> impl Iterator<Item = (usize, &'a str)> + use<'a> {
+        let (text, mut place) = (self.text(), self.extent.start);
+        std::iter::from_fn(move || {
+            let (found, after) = line(text, place)?;
+            Some((mem::replace(&mut place, after).line, found))
+        })
+    }
+
+    /// Returns the place after the title with which the text begins, or that of its first line.
+    fn body(&self) -> Place {
+        let mut place = self.extent.start;
+        while let Some((found, after)) = line(self.text(), place) {
+            match next(&mut begin(found)) {
+                Ok(Some(b'O' | b'o' | b':')) => return after,
+                Ok(None) => place = after,
+                _ => break,
+            }
+        }
+        self.extent.start
+    }
+
+    /// Returns the subprogram with a label. A file without titles is a subprogram under its own name, and LinuxCNC finds in a file the one
+    /// that has its name.
+    fn subprogram(&self, label: &Label, is_linuxcnc: bool) -> Option<Subprogram> {
+        let has_name = self.label.as_ref() == Some(label);
+        if is_linuxcnc && !has_name && self.label.is_some() {
+            return None;
+        }
+        let known = self.structure.get(label).copied();
+        known.or_else(|| {
+            let is_whole = has_name && !is_linuxcnc && !self.structure.has_subprograms();
+            is_whole.then(|| Subprogram { role: Role::Title, body: self.body(), after: None })
+        })
+    }
+
+    fn sequence_numbers(&self) -> &HashMap<u32, Vec<Place>> {
+        self.numbers.get_or_init(|| {
+            let mut numbers: HashMap<u32, Vec<Place>> = HashMap::new();
+            let mut place = Place { offset: 0, line: 1 };
+            while let Some((line, after)) = line(self.text(), place) {
+                if let Some(number) = sequence_number(line) {
+                    numbers.entry(number).or_default().push(place);
+                }
+                place = after;
+            }
+            numbers
+        })
+    }
+}
+
+/// Refuses a subprogram that two texts have. LinuxCNC finds in a file the one that has its name, and the others from there only.
+pub(super) fn check_files(
+    sources: &[Source],
+    files: &[SubprogramFile],
+    is_linuxcnc: bool,
+) -> Result<(), GcodeError> {
+    let name = |index: usize| match index {
+        0 => "the program itself".to_owned(),
+        number => files[number - 1].name.clone(),
+    };
+    let mut known: HashMap<&Label, usize> = HashMap::new();
+    for (index, source) in sources.iter().enumerate() {
+        let has_titles = source.structure.has_subprograms();
+        let titles = source.structure.labels().filter(|_| index == 0 || !is_linuxcnc);
+        let own = source.label.as_ref().filter(|_| !has_titles || is_linuxcnc);
+        for label in titles.chain(own) {
+            if let Some(first) = known.insert(label, index) {
+                let (first, second) = (name(first), name(index));
+                let fault = GcodeFault::TwoFiles { label: label.to_string(), first, second };
+                return Err(GcodeError { line: 1, fault });
+            }
+        }
+    }
+    Ok(())
 }
 
 /// A subprogram that is being executed.
@@ -167,15 +271,17 @@ pub(super) struct Callee {
 /// The place of execution in a text.
 #[derive(Clone, Debug)]
 pub(super) struct Flow<'a> {
-    text: &'a str,
-    start: Place,
+    /// The text of the program, then the files of subprograms.
+    sources: Arc<[Source<'a>]>,
+    /// The index of the text that is executed.
+    pub(super) file: usize,
+    /// Set for a subprogram in another file than its caller.
+    is_inner: bool,
+    /// The number of calls in the flows that wait for this one.
+    below: usize,
     place: Place,
-    closed: bool,
-    pub(super) structure: Arc<Structure>,
     calls: Vec<Call>,
     repeats: Vec<Repeat>,
-    /// The places of sequence numbers, once a line has asked for one.
-    numbers: Option<Arc<HashMap<u32, Vec<Place>>>>,
     /// The labels that were called, or passed as a `sub`.
     found: HashSet<Label>,
     /// The macro that each motion calls (G66).
@@ -190,16 +296,16 @@ pub(super) struct Flow<'a> {
 }
 
 impl<'a> Flow<'a> {
-    pub(super) fn new(extent: &Extent<'a>, structure: Structure) -> Flow<'a> {
+    /// Begins the first of several texts.
+    pub(super) fn new(sources: Arc<[Source<'a>]>) -> Flow<'a> {
         Flow {
-            text: extent.text,
-            start: extent.start,
-            place: extent.start,
-            closed: extent.closed,
-            structure: Arc::new(structure),
+            file: 0,
+            is_inner: false,
+            below: 0,
+            place: sources[0].extent.start,
+            sources,
             calls: Vec::new(),
             repeats: Vec::new(),
-            numbers: None,
             found: HashSet::new(),
             modal: None,
             titled: false,
@@ -209,13 +315,61 @@ impl<'a> Flow<'a> {
         }
     }
 
+    fn source(&self) -> &Source<'a> {
+        &self.sources[self.file]
+    }
+
+    fn text(&self) -> &'a str {
+        self.source().text()
+    }
+
+    /// Returns the structure of the present text.
+    pub(super) fn structure(&self) -> &Structure {
+        &self.source().structure
+    }
+
+    /// Returns the flow of a subprogram in another file, before its call.
+    pub(super) fn inside(&self, file: usize) -> Flow<'a> {
+        Flow {
+            file,
+            is_inner: true,
+            below: self.depth(),
+            place: self.sources[file].extent.start,
+            // Its blocks are those of a subprogram.
+            started: true,
+            titled: true,
+            repeated: self.repeated,
+            ..Flow::new(Arc::clone(&self.sources))
+        }
+    }
+
+    /// Goes on after a call of a subprogram in another file, which has ended.
+    pub(super) fn go_on_after(&mut self, called: Flow<'a>) {
+        self.repeated = called.repeated;
+    }
+
+    /// Returns the number of calls that are being executed.
+    fn depth(&self) -> usize {
+        self.below + self.calls.len()
+    }
+
+    /// Returns whether a subprogram of this file has ended that another file has called.
+    pub(super) fn is_left(&self) -> bool {
+        self.is_inner && self.calls.is_empty()
+    }
+
+    /// Returns whether the end of the present subprogram leads to another file.
+    pub(super) fn returns_to_file(&self) -> bool {
+        self.is_inner && self.calls.len() == 1
+    }
+
     /// Returns the next line and its number, or `None` where the text ends the program.
     ///
     /// # Errors
     /// If the text ends without an end of the program, with its last line; if too many blocks are repeated.
     pub(super) fn next_line(&mut self) -> Result<Option<(usize, &'a str)>, GcodeError> {
-        let Some((line, after)) = line(self.text, self.place) else {
-            let is_whole = self.closed && self.calls.is_empty();
+        let Some((line, after)) = line(self.text(), self.place) else {
+            let is_whole = self.source().extent.closed && self.is_main();
             // The place is after the last line. An empty text has its fault in line 1.
             let last = self.place.line.max(2) - 1;
             return match is_whole {
@@ -226,54 +380,56 @@ impl<'a> Flow<'a> {
         let number = self.place.line;
         self.place = after;
         self.count(1, number).map_err(|fault| GcodeError { line: number, fault })?;
-        if self.calls.is_empty() {
+        if self.is_main() {
             self.furthest = self.furthest.max(number);
         }
         Ok(Some((number, line)))
     }
 
-    /// Returns the lines of the program, each with its number.
-    pub(super) fn lines(&self) -> impl Iterator<Item = (usize, &'a str)> + use<'a> {
-        let text = self.text;
-        let mut place = self.start;
-        std::iter::from_fn(move || {
-            let (found, after) = line(text, place)?;
-            let number = place.line;
-            place = after;
-            Some((number, found))
-        })
+    /// Returns the lines of a text, each with its number.
+    pub(super) fn lines(&self, file: usize) -> impl Iterator<Item = (usize, &'a str)> + use<'a> {
+        self.sources[file].lines()
     }
 
     /// Returns whether a subprogram stands before the present line, and was neither called nor passed as a `sub` so far.
     pub(super) fn has_passed(&self, label: &Label) -> bool {
-        self.structure.get(label).is_some_and(|known| known.body.offset <= self.place.offset)
+        self.structure().get(label).is_some_and(|known| known.body.offset <= self.place.offset)
             && !self.found.contains(label)
     }
 
-    /// Returns whether there is a subprogram with a label.
-    pub(super) fn has(&self, label: &Label) -> bool {
-        self.structure.get(label).is_some()
+    /// Returns the subprogram with a label in one of the texts, with the index of that text.
+    pub(super) fn find(&self, label: &Label, is_linuxcnc: bool) -> Option<(usize, Subprogram)> {
+        let mut found =
+            self.sources.iter().enumerate().filter_map(|(index, source)| {
+                Some((index, source.subprogram(label, is_linuxcnc)?))
+            });
+        found.next()
+    }
+
+    /// Returns the program of a whole file.
+    pub(super) fn whole(&self, file: usize) -> Subprogram {
+        Subprogram { role: Role::Title, body: self.sources[file].body(), after: None }
     }
 
     /// Returns whether the main program is executed.
     pub(super) fn is_main(&self) -> bool {
-        self.calls.is_empty()
+        self.depth() == 0
     }
 
     /// Counts blocks or steps of a line that were executed before, or of a subprogram. The others are limited by the text.
     pub(super) fn count(&mut self, number: usize, line: usize) -> Result<(), GcodeFault> {
-        let is_repeated = !self.calls.is_empty() || line <= self.furthest;
+        let is_repeated = !self.is_main() || line <= self.furthest;
         self.repeated += if is_repeated { number } else { 0 };
         if self.repeated > MAX_REPEATED { Err(GcodeFault::TooLong) } else { Ok(()) }
     }
 
     /// Returns the line of text that follows the end of the main program and is no subprogram.
     pub(super) fn text_after_end(&self) -> Option<usize> {
-        if !self.calls.is_empty() {
+        if !self.is_main() {
             return None;
         }
         let mut place = self.place;
-        while let Some((line, after)) = line(self.text, place) {
+        while let Some((line, after)) = line(self.text(), place) {
             let mut cursor = begin(line);
             match next(&mut cursor) {
                 // Subprograms are read before, and another program has a note of its own.
@@ -287,9 +443,9 @@ impl<'a> Flow<'a> {
 
     /// Returns the line of the title of another main program after the present one: one that ends as such.
     pub(super) fn other_program(&self) -> Option<usize> {
-        let mut place = if self.calls.is_empty() { self.place } else { return None };
+        let mut place = if self.is_main() { self.place } else { return None };
         let mut title = None;
-        while let Some((line, after)) = line(self.text, place) {
+        while let Some((line, after)) = line(self.text(), place) {
             let mut cursor = begin(line);
             if let Ok(Some(b'O' | b'o')) = next(&mut cursor) {
                 title = Some(place.line);
@@ -308,7 +464,7 @@ impl<'a> Flow<'a> {
 
     /// Passes the title of a program.
     pub(super) fn title(&mut self, label: &Label) -> Result<(), GcodeFault> {
-        match self.calls.is_empty() && !self.started && !self.titled {
+        match self.is_main() && !self.started && !self.titled {
             true => {
                 self.titled = true;
                 Ok(())
@@ -319,10 +475,10 @@ impl<'a> Flow<'a> {
 
     /// Passes over a subprogram of O-words.
     pub(super) fn pass_sub(&mut self, label: &Label) -> Result<(), GcodeFault> {
-        if !self.calls.is_empty() || self.titled {
+        if !self.is_main() || self.titled {
             return Err(GcodeFault::RunsInto { label: label.to_string() });
         }
-        let after = self.structure.get(label).and_then(|known| known.after);
+        let after = self.structure().get(label).and_then(|known| known.after);
         self.found.insert(label.clone());
         self.place = after.ok_or_else(|| GcodeFault::Nesting {
             label: label.to_string(),
@@ -339,29 +495,18 @@ impl<'a> Flow<'a> {
 
     /// Goes on after the line at a place.
     pub(super) fn jump_after(&mut self, place: Place) {
-        self.place = line(self.text, place).map_or(place, |(_, after)| after);
+        self.place = line(self.text(), place).map_or(place, |(_, after)| after);
     }
 
     /// Returns the line at a place.
     pub(super) fn text_at(&self, place: Place) -> &'a str {
-        line(self.text, place).map_or("", |(line, _)| line)
+        line(self.text(), place).map_or("", |(line, _)| line)
     }
 
     /// Returns the place of a sequence number in the program that is executed.
-    fn sequence(&mut self, number: u32, line_of_jump: usize) -> Result<Place, GcodeFault> {
-        if self.numbers.is_none() {
-            let mut numbers: HashMap<u32, Vec<Place>> = HashMap::new();
-            let mut place = Place { offset: 0, line: 1 };
-            while let Some((line, after)) = line(self.text, place) {
-                if let Some(number) = sequence_number(line) {
-                    numbers.entry(number).or_default().push(place);
-                }
-                place = after;
-            }
-            self.numbers = Some(Arc::new(numbers));
-        }
-        let [first, last] = self.structure.program(line_of_jump);
-        let places = self.numbers.as_ref().and_then(|numbers| numbers.get(&number));
+    fn sequence(&self, number: u32, line_of_jump: usize) -> Result<Place, GcodeFault> {
+        let [first, last] = self.structure().program(line_of_jump);
+        let places = self.source().sequence_numbers().get(&number);
         let mut places = places
             .into_iter()
             .flatten()
@@ -383,7 +528,7 @@ impl<'a> Flow<'a> {
     /// Obeys `GOTO` in a line.
     pub(super) fn go_to(&mut self, number: u32, line: usize) -> Result<(), GcodeFault> {
         let place = self.sequence(number, line)?;
-        if !self.structure.can_jump(line, place.line) {
+        if !self.structure().can_jump(line, place.line) {
             let condition = "it leads into a loop (DO … END) from outside";
             return Err(combination(
                 format!("GOTO {number}"),
@@ -421,16 +566,14 @@ impl<'a> Flow<'a> {
         }
     }
 
-    /// Calls a subprogram with a title (M98, G65) or of O-words (`call`).
+    /// Calls a subprogram of the present text with a title (M98, G65) or of O-words (`call`).
     pub(super) fn call(
         &mut self,
+        subprogram: Subprogram,
         callee: Callee,
         variables: &mut Variables,
     ) -> Result<(), GcodeFault> {
         let Callee { label, role, times, locals } = callee;
-        let Some(subprogram) = self.structure.get(&label).copied() else {
-            return Err(GcodeFault::NoSubprogram { label: label.to_string() });
-        };
         if subprogram.role != role {
             let label = label.to_string();
             let (what, remedy) = match role {
@@ -464,7 +607,7 @@ impl<'a> Flow<'a> {
         locals: Option<Locals>,
         variables: &mut Variables,
     ) -> Result<(), GcodeFault> {
-        if self.calls.len() >= MAX_CALLS {
+        if self.depth() >= MAX_CALLS {
             return Err(GcodeFault::TooDeep);
         }
         let return_to = self.place;
@@ -523,20 +666,28 @@ impl<'a> Flow<'a> {
                 what: "a subprogram with `sub`",
                 remedy: "end it with its O-word and `endsub`",
             }),
-            (Some(call), Some(number)) => {
-                let line = call.return_to.line.max(2) - 1;
-                let place = self.sequence(number, line)?;
-                if let Some(call) = self.calls.last_mut() {
-                    call.repeats = 0;
-                }
-                self.leave(variables)?;
-                self.place = place;
-                Ok(())
+            (Some(_), Some(number)) => {
+                self.abandon(variables)?;
+                self.return_to(number)
             }
             (Some(_), None) => self.leave(variables),
             (None, Some(number)) => self.go_to(number, line),
             (None, None) => Ok(()),
         }
+    }
+
+    /// Ends the present subprogram, whatever repeats of it were to follow.
+    pub(super) fn abandon(&mut self, variables: &mut Variables) -> Result<(), GcodeFault> {
+        if let Some(call) = self.calls.last_mut() {
+            call.repeats = 0;
+        }
+        self.leave(variables)
+    }
+
+    /// Goes on at a sequence number, after a call in the line before.
+    pub(super) fn return_to(&mut self, number: u32) -> Result<(), GcodeFault> {
+        self.place = self.sequence(number, self.place.line.max(2) - 1)?;
+        Ok(())
     }
 
     /// Repeats the subprogram, or returns to its caller.

@@ -43,6 +43,8 @@ pub(super) struct Line {
     pub(super) block: Block,
     pub(super) statement: Option<Statement>,
     pub(super) call: Option<MacroCall>,
+    /// The file that M98 or M198 names: `M98 <NAME>`, or `M98 (NAME.NC)` of Haas.
+    pub(super) file: Option<String>,
     pub(super) assignments: Vec<(Parameter, Value)>,
     /// Set if the line has an assignment.
     pub(super) assigns: bool,
@@ -153,7 +155,7 @@ impl Line {
 
     fn clear(&mut self) {
         self.block.clear();
-        (self.statement, self.call) = (None, None);
+        (self.statement, self.call, self.file) = (None, None, None);
         self.assignments.clear();
         self.ignored.clear();
         (self.assigns, self.assigns_beside_value, self.ignores) = (false, false, false);
@@ -223,6 +225,10 @@ impl Line {
                 }
                 self.call = Some(macro_call(code, cursor, scope)?);
                 Ok(())
+            }
+            ('M', 980 | 1980) if scope.language != Some(Language::LinuxCnc) => {
+                self.file = file_name(cursor)?;
+                self.block.add_code(code)
             }
             _ => self.block.add_code(code),
         }
@@ -362,6 +368,20 @@ impl Line {
         self.statement = Some(statement);
         Ok(())
     }
+}
+
+/// Returns the name of a file after M98: in angle brackets, which are passed over, or in parentheses, which are a comment where P stands beside
+/// them.
+fn file_name(cursor: &mut Cursor) -> Result<Option<String>, GcodeFault> {
+    let (name, end) = match cursor.peek() {
+        Some(b'<') => {
+            cursor.advance();
+            (cursor.take_until('>').ok_or(ExpressionFault::OpenName)?, "")
+        }
+        Some(b'(') => ({ *cursor }.take_until(')').ok_or(GcodeFault::OpenComment)?, "("),
+        _ => return Ok(None),
+    };
+    Ok(Some(name.trim_start_matches(end).trim().to_owned()))
 }
 
 /// Passes over the first word of a statement of a macro of Fanuc, and returns it.
@@ -584,6 +604,19 @@ pub(super) enum Label {
     Number(u32),
     /// A name in small letters without blanks, as names are compared.
     Name(String),
+}
+
+impl Label {
+    /// Returns the label that the name of a file stands for, without its ending.
+    pub(super) fn of_file(stem: &str) -> Label {
+        let stem: String = stem.chars().filter(|c| !c.is_whitespace()).collect();
+        let stem = stem.to_lowercase();
+        let digits = stem.strip_prefix('o').unwrap_or(&stem);
+        match digits.parse() {
+            Ok(number) => Label::Number(number),
+            Err(_) => Label::Name(stem),
+        }
+    }
 }
 
 impl fmt::Display for Label {

@@ -18,15 +18,17 @@ pub(super) use flow::{Place, line};
 use super::block::{Block, Code, Group};
 use super::control::Control;
 use super::error::{combination, missing, not_read};
+use super::files::{self, in_file};
 use super::interpreter::{End, Progress};
 use super::note::NoteKind;
 use super::rules::{Choice, Rule};
-use super::{ControlSetup, GcodeError, GcodeFault, MAX_REPEATED, Obstacle};
+use super::{ControlSetup, GcodeError, GcodeFault, MAX_REPEATED, Obstacle, SubprogramFile, shown};
 use expression::{Cursor, Language, Value, condition, value};
-use flow::{Callee, Flow, before_semicolon};
+use flow::{Callee, Flow, Source, before_semicolon};
 use line::{Label, Line, MacroCall, OWord, Role, Statement, begin, check_end, next, o_word};
+use std::collections::BTreeSet;
 use std::mem;
-use structure::{Clause, Structure};
+use structure::{Clause, Structure, Subprogram};
 use variables::{Locals, Parameter, Scope, Variables};
 
 /// Returns whether a name is that of a variable: `#500`, or `#<_depth>`.
@@ -38,6 +40,11 @@ pub(crate) fn is_variable(name: &str) -> bool {
 #[derive(Clone, Debug)]
 pub(super) struct Program<'a> {
     flow: Flow<'a>,
+    /// The flows of other files that wait for the end of a subprogram.
+    waiting: Vec<Flow<'a>>,
+    /// The files of which a subprogram was called.
+    entered: BTreeSet<usize>,
+    files: &'a [SubprogramFile],
     variables: Variables,
     line: Line,
     /// The number of the first switch for optional blocks.
@@ -45,18 +52,27 @@ pub(super) struct Program<'a> {
 }
 
 impl<'a> Program<'a> {
-    /// Reads what holds for the whole text, which is not copied: its extent, its unit, its subprograms and loops.
+    /// Reads what holds for the whole text and for the files of subprograms, which are not copied: extent, unit, subprograms and loops.
     ///
     /// # Errors
     /// If two subprograms have one label, or a `sub` and its `endsub` do not match.
     pub(super) fn new(
         text: &'a str,
-        setup: &ControlSetup,
+        setup: &'a ControlSetup,
         control: &mut Control,
     ) -> Result<Program<'a>, GcodeError> {
+        let files = &setup.subprograms[..];
         let extent = flow::extent(text);
         let variables = Variables::new(&setup.variables);
         let structure = Structure::find(extent.text, &Scope::new(&variables, control))?;
+        let in_file = |index, error| GcodeError { line: 1, fault: in_file(files, index, error) };
+        let mut others = Vec::new();
+        for (index, file) in (1..).zip(files) {
+            let extent = flow::extent(&file.text);
+            let found = Structure::find(extent.text, &Scope::new(&variables, control));
+            let found = found.map_err(|error| in_file(index, error))?;
+            others.push(Source::new(Some(file), extent, found));
+        }
         // The head of a program of Heidenhain is a title elsewhere. No other control reads it.
         if let Some(unit) = extent.unit
             && matches!(control.stated(Rule::Dialect), None | Some(Choice::Heidenhain))
@@ -66,21 +82,36 @@ impl<'a> Program<'a> {
         }
         // No other control executes these statements.
         if control.stated(Rule::Dialect).is_none() {
-            match (structure.fanuc, structure.linuxcnc) {
-                (Some(_), None) => control.state_rule(Rule::Dialect, Choice::Iso),
-                (None, Some(_)) => control.state_rule(Rule::Dialect, Choice::Rs274Ngc),
+            let all = || others.iter().map(|other| &other.structure).chain([&structure]);
+            match (all().any(|one| one.fanuc.is_some()), all().any(|one| one.linuxcnc.is_some())) {
+                (true, false) => control.state_rule(Rule::Dialect, Choice::Iso),
+                (false, true) => control.state_rule(Rule::Dialect, Choice::Rs274Ngc),
                 _ => {}
             }
         }
-        if control.stated(Rule::Dialect) == Some(Choice::Rs274Ngc) && structure.has_subprograms() {
-            linuxcnc::check_text(extent.text)?;
+        if control.stated(Rule::Dialect) == Some(Choice::Rs274Ngc) {
+            if structure.has_subprograms() {
+                linuxcnc::check_text(extent.text)?;
+            }
+            for (index, other) in (1..).zip(&others) {
+                linuxcnc::check_text(other.text()).map_err(|error| in_file(index, error))?;
+            }
         }
         if let Some((line, has_blocks)) = extent.left_out {
             let kind = if has_blocks { NoteKind::OtherProgram } else { NoteKind::TextAfterEnd };
             control.notes.add(line, kind);
         }
-        let flow = Flow::new(&extent, structure);
-        Ok(Program { flow, variables, line: Line::default(), switch: None })
+        let sources: Vec<Source> =
+            [Source::new(None, extent, structure)].into_iter().chain(others).collect();
+        flow::check_files(&sources, files, is_linuxcnc(control))?;
+        let flow = Flow::new(sources.into());
+        let (waiting, entered, line) = (Vec::new(), BTreeSet::new(), Line::default());
+        Ok(Program { flow, waiting, entered, files, variables, line, switch: None })
+    }
+
+    /// Returns the number of the file of a called subprogram, if it is not in the program's.
+    pub(super) fn called_file(&self) -> Option<usize> {
+        (!self.waiting.is_empty()).then_some(self.flow.file)
     }
 
     /// Returns the words that are not read, each with its first line.
@@ -89,7 +120,9 @@ impl<'a> Program<'a> {
         let mut control = control.clone();
         let mut line = Line::default();
         let is_left_out = control.stated(Rule::OptionalBlocks) == Some(Choice::LeftOut);
-        for (number, text) in self.flow.lines() {
+        let files = [0].into_iter().chain(self.entered.iter().copied().filter(|file| *file > 0));
+        let lines = files.flat_map(|file| self.flow.lines(file).map(move |line| (file, line)));
+        for (file, (number, text)) in lines {
             if text.trim_start().starts_with('/') && is_left_out {
                 continue;
             }
@@ -103,13 +136,19 @@ impl<'a> Program<'a> {
                 && let Some(program) = block.value('P')
                 && ![program as u32, program as u32 % 10_000]
                     .iter()
-                    .any(|number| self.flow.has(&Label::Number(*number)))
+                    .any(|number| self.has(&Label::Number(*number), &control))
             {
                 let label = Label::Number(program as u32).to_string();
                 faults.push(GcodeFault::NoSubprogram { label });
             }
             for fault in faults.into_iter().filter(GcodeFault::is_obstacle) {
-                Obstacle::add(&mut found, number, fault);
+                match file {
+                    0 => Obstacle::add(&mut found, number, fault),
+                    _ => {
+                        let error = GcodeError { line: number, fault };
+                        Obstacle::add(&mut found, 0, in_file(self.files, file, error));
+                    }
+                }
             }
         }
         found
@@ -121,7 +160,46 @@ impl<'a> Program<'a> {
             return Ok(Progress::Ended(End::Percent));
         };
         let result = self.blocks(line, text, control);
+        while self.flow.is_left()
+            && let Some(flow) = self.waiting.pop()
+        {
+            let called = mem::replace(&mut self.flow, flow);
+            self.flow.go_on_after(called);
+        }
         result.map_err(|fault| GcodeError { line, fault })
+    }
+
+    /// Returns whether a subprogram with a label is in one of the files.
+    fn has(&self, label: &Label, control: &Control) -> bool {
+        self.flow.find(label, is_linuxcnc(control)).is_some()
+    }
+
+    /// Calls a subprogram with a title (M98, G65) or of O-words (`call`), of the present file or, if that has none, of another one.
+    fn call(&mut self, callee: Callee, control: &Control) -> Result<(), GcodeFault> {
+        let label = &callee.label;
+        let found = match self.flow.structure().get(label) {
+            Some(subprogram) => Some((self.flow.file, *subprogram)),
+            None => self.flow.find(label, is_linuxcnc(control)),
+        };
+        match found {
+            Some((file, subprogram)) => self.enter(file, subprogram, callee),
+            None => Err(GcodeFault::NoSubprogram { label: label.to_string() }),
+        }
+    }
+
+    /// Calls a subprogram of a file.
+    fn enter(
+        &mut self,
+        file: usize,
+        subprogram: Subprogram,
+        callee: Callee,
+    ) -> Result<(), GcodeFault> {
+        if file != self.flow.file {
+            self.entered.insert(file);
+            let called = self.flow.inside(file);
+            self.waiting.push(mem::replace(&mut self.flow, called));
+        }
+        self.flow.call(subprogram, callee, &mut self.variables)
     }
 
     /// Executes the block of a line, and those after semicolons if they end a block.
@@ -131,7 +209,7 @@ impl<'a> Program<'a> {
         text: &str,
         control: &mut Control,
     ) -> Result<Progress, GcodeFault> {
-        control.line = number;
+        control.set_line(self.called_file(), number);
         // Prose is taken for a comment, so that the rule is asked about blocks only.
         let after = after_semicolon(text).filter(|after| after.split(';').any(could_be_block));
         let mut progress = self.line(number, text, control)?;
@@ -167,11 +245,11 @@ impl<'a> Program<'a> {
             let first = self.switch.get_or_insert_with(|| text[..digits].to_owned());
             // `/2` is a switch of its own on Fanuc and Siemens.
             if *first != text[..digits] {
-                control.notes.add(number, NoteKind::OptionalSwitches);
+                control.notes.add(control.line, NoteKind::OptionalSwitches);
             }
         }
         if is_optional && control.choice(Rule::OptionalBlocks) == Choice::LeftOut {
-            control.notes.add(number, NoteKind::OmittedOptionalBlock);
+            control.notes.add(control.line, NoteKind::OmittedOptionalBlock);
             return Ok(Progress::GoesOn);
         }
         check_text(text, control)?;
@@ -187,7 +265,7 @@ impl<'a> Program<'a> {
         let scope = Scope::new(&self.variables, control);
         let result = line.parse(text, &scope).and_then(|()| {
             if is_optional {
-                control.notes.add(number, NoteKind::ExecutedOptionalBlock);
+                control.notes.add(control.line, NoteKind::ExecutedOptionalBlock);
             }
             self.execute(&mut line, number, control)
         });
@@ -205,7 +283,7 @@ impl<'a> Program<'a> {
         check_assignment(line, control)?;
         // All values of the block were computed with the variables before it (RS274/NGC, section 3.3.3.4).
         for (parameter, value) in line.assignments.drain(..) {
-            self.assign(&parameter, value, number, control)?;
+            self.assign(&parameter, value, control)?;
         }
         // M words have no axis words.
         let can_own_axes = line.ignored.iter().any(|word| !word.starts_with('M'));
@@ -223,13 +301,13 @@ impl<'a> Program<'a> {
         if let Some(call) = line.call.take() {
             match call.is_modal {
                 true => self.flow.modal = Some(call),
-                false => self.call_macro(&call)?,
+                false => self.call_macro(&call, control)?,
             }
             return Ok(Progress::GoesOn);
         }
         let block = &mut line.block;
         let subprogram = block.code_of(Group::Subprogram);
-        let is_call = matches!(subprogram, Some(Code { tenths: 970 | 980, .. }));
+        let is_call = matches!(subprogram, Some(Code { tenths: 970 | 980 | 1980, .. }));
         if let Some(code) = subprogram
             && (line.assigns || block.has_more_than_call())
             && (is_call || control.stated(Rule::Dialect) != Some(Choice::Iso))
@@ -252,12 +330,12 @@ impl<'a> Program<'a> {
             self.flow.modal = None;
         }
         let moves = block.has_any("XYZABC") && !block.owns_axis_words();
-        control.execute(number, block)?;
+        control.execute(block)?;
         // A canned cycle in a repeated subprogram has many steps per block.
         self.flow.count(control.pending.len(), number)?;
         match subprogram.map(|code| code.tenths) {
-            Some(tenths @ (970 | 980)) => {
-                let call = self.called(block, tenths, control)?;
+            Some(tenths @ (970 | 980 | 1980)) => {
+                let call = self.called(block, tenths, line.file.take(), control)?;
                 block.check_used()?;
                 self.subprogram(call, number, control)?;
             }
@@ -266,10 +344,16 @@ impl<'a> Program<'a> {
                 let target = block.take_whole('P', 1, 99_999_999, expected)?;
                 block.check_used()?;
                 if self.flow.is_main() && target.is_none() {
-                    control.notes.add(number, NoteKind::Endless);
+                    control.notes.add(control.line, NoteKind::Endless);
                     return Ok(Progress::Ended(End::Repeat));
                 }
-                self.flow.end_subprogram(target, number, &mut self.variables)?;
+                match (target, self.flow.returns_to_file(), self.waiting.last_mut()) {
+                    (Some(target), true, Some(caller)) => {
+                        caller.return_to(target)?;
+                        self.flow.abandon(&mut self.variables)?;
+                    }
+                    _ => self.flow.end_subprogram(target, number, &mut self.variables)?,
+                }
             }
             None => block.check_used()?,
         }
@@ -277,7 +361,7 @@ impl<'a> Program<'a> {
             && subprogram.is_none()
             && let Some(call) = self.flow.modal.clone()
         {
-            self.call_macro(&call)?;
+            self.call_macro(&call, control)?;
         }
         match block.tenths_of(Group::Stop) {
             Some(20 | 300) => {
@@ -291,7 +375,7 @@ impl<'a> Program<'a> {
             }
             Some(_) => {
                 control.pause_spindle();
-                control.notes.add(number, NoteKind::Stop);
+                control.notes.add(control.line, NoteKind::Stop);
             }
             None => {}
         }
@@ -303,7 +387,6 @@ impl<'a> Program<'a> {
         &mut self,
         parameter: &Parameter,
         value: Value,
-        line: usize,
         control: &mut Control,
     ) -> Result<(), GcodeFault> {
         let language = language(control);
@@ -313,13 +396,13 @@ impl<'a> Program<'a> {
                 3000 => return Err(GcodeFault::Alarm { number: value.unwrap_or(0.0) }),
                 3006 => {
                     control.pause_spindle();
-                    control.notes.add(line, NoteKind::Stop);
+                    control.notes.add(control.line, NoteKind::Stop);
                     return Ok(());
                 }
                 // Single block, and exact stop, which leave the path.
                 3003 | 3004 => {
                     let word = format!("#{number}");
-                    control.notes.add(line, NoteKind::PassedOver { word });
+                    control.notes.add(control.line, NoteKind::PassedOver { word });
                     return Ok(());
                 }
                 _ => {}
@@ -331,7 +414,7 @@ impl<'a> Program<'a> {
     /// Obeys a statement of a macro of Fanuc.
     fn decide(&mut self, statement: Statement, line: usize) -> Result<(), GcodeFault> {
         let clause = || {
-            let clause = self.flow.structure.clause(line);
+            let clause = self.flow.structure().clause(line);
             clause.ok_or(GcodeFault::OpenLoop)
         };
         match statement {
@@ -352,7 +435,7 @@ impl<'a> Program<'a> {
     }
 
     /// Calls a macro with its arguments.
-    fn call_macro(&mut self, call: &MacroCall) -> Result<(), GcodeFault> {
+    fn call_macro(&mut self, call: &MacroCall, control: &Control) -> Result<(), GcodeFault> {
         let locals =
             Locals { numbered: call.arguments.clone(), is_macro: true, ..Locals::default() };
         let callee = Callee {
@@ -361,34 +444,63 @@ impl<'a> Program<'a> {
             times: call.repeats,
             locals: Some(locals),
         };
-        self.flow.call(callee, &mut self.variables)
+        self.call(callee, control)
     }
 
-    /// Returns the subprogram of M98 or M97.
+    /// Returns the subprogram of M98, M97 or M198; `file` is the name of a file beside it.
     fn called(
         &self,
         block: &mut Block,
         tenths: u32,
+        file: Option<String>,
         control: &Control,
     ) -> Result<Called, GcodeFault> {
-        let is_linuxcnc = control.stated(Rule::Dialect) == Some(Choice::Rs274Ngc);
+        let is_linuxcnc = is_linuxcnc(control);
         let expected = "the number of a program after P";
         let (word, needed) = match tenths {
             970 => ("M97", "P with a sequence number"),
-            _ => ("M98", "P with the number of a program"),
+            980 => ("M98", "P with the number of a program"),
+            _ => ("M198", "P with the number of a program"),
         };
-        let Some(number) = block.take_whole('P', 0, 99_999_999, expected)? else {
-            return Err(missing(word, needed));
-        };
+        let number = block.take_whole('P', 0, 99_999_999, expected)?;
         let least = u32::from(!is_linuxcnc);
         let expected = "a number of repeats from 1 after L";
         let times = block.take_whole('L', least, 99_999_999, expected)?;
-        let is_local = tenths == 970;
-        if is_local || number <= 9999 || is_linuxcnc {
-            return Ok(Called { number, times: times.unwrap_or(1), is_local });
+        let number = match (number, file) {
+            (Some(number), _) => number,
+            (None, Some(name)) => {
+                let Some(file) = files::find(self.files, &name) else {
+                    return Err(GcodeFault::NoSubprogram { label: shown(&name) });
+                };
+                let subprogram = self.flow.whole(file);
+                let times = times.unwrap_or(1);
+                return Ok(Called { target: Target::File(file, subprogram), times });
+            }
+            (None, None) => return Err(missing(word, needed)),
+        };
+        match tenths {
+            970 => {
+                let target = Target::Sequence(number);
+                return Ok(Called { target, times: times.unwrap_or(1) });
+            }
+            1980 => {
+                let label = Label::Number(number);
+                let found = self.flow.find(&label, is_linuxcnc).filter(|(file, _)| *file > 0);
+                let Some((file, subprogram)) = found else {
+                    return Err(GcodeFault::NoSubprogram { label: label.to_string() });
+                };
+                let times = times.unwrap_or(1);
+                return Ok(Called { target: Target::File(file, subprogram), times });
+            }
+            _ if number <= 9999 || is_linuxcnc => {
+                let target = Target::Program(number);
+                return Ok(Called { target, times: times.unwrap_or(1) });
+            }
+            _ => {}
         }
         // Older controls take the last four digits as the number, and those before as repeats.
-        let [whole, last] = [number, number % 10_000].map(|n| self.flow.has(&Label::Number(n)));
+        let [whole, last] =
+            [number, number % 10_000].map(|number| self.has(&Label::Number(number), control));
         match (whole, last, times) {
             (true, true, _) => {
                 let condition = "its last four digits are the number of a program, too";
@@ -397,9 +509,9 @@ impl<'a> Program<'a> {
             }
             (false, true, None) => {
                 let times = number / 10_000;
-                Ok(Called { number: number % 10_000, times, is_local })
+                Ok(Called { target: Target::Program(number % 10_000), times })
             }
-            _ => Ok(Called { number, times: times.unwrap_or(1), is_local }),
+            _ => Ok(Called { target: Target::Program(number), times: times.unwrap_or(1) }),
         }
     }
 
@@ -410,25 +522,32 @@ impl<'a> Program<'a> {
         line: usize,
         control: &Control,
     ) -> Result<(), GcodeFault> {
-        let Called { number, times, is_local } = call;
+        let Called { target, times } = call;
         // LinuxCNC passes over `M98 L0`.
         if times == 0 {
             return Ok(());
         }
-        if is_local {
-            return self.flow.call_local(number, times, line, &mut self.variables);
+        let callee = |label| Callee { label, role: Role::Title, times, locals: None };
+        match target {
+            Target::Sequence(number) => {
+                self.flow.call_local(number, times, line, &mut self.variables)
+            }
+            Target::Program(number) => {
+                let label = Label::Number(number);
+                self.check_order(&label, control)?;
+                self.call(callee(label), control)
+            }
+            Target::File(file, subprogram) => {
+                let label = Label::of_file(self.files[file - 1].stem());
+                self.enter(file, subprogram, callee(label))
+            }
         }
-        let label = Label::Number(number);
-        self.check_order(&label, control)?;
-        let callee = Callee { label, role: Role::Title, times, locals: None };
-        self.flow.call(callee, &mut self.variables)
     }
 
     /// Refuses a call of a subprogram that LinuxCNC does not find: it seeks those that it does not know after the call only
     /// (`control_back_to`).
     fn check_order(&self, label: &Label, control: &Control) -> Result<(), GcodeFault> {
-        match control.stated(Rule::Dialect) == Some(Choice::Rs274Ngc) && self.flow.has_passed(label)
-        {
+        match is_linuxcnc(control) && self.flow.has_passed(label) {
             true => Err(combination(
                 format!("a call of {label}"),
                 "it stands before the call and was not called before",
@@ -476,7 +595,7 @@ impl<'a> Program<'a> {
                 self.check_order(&label, control)?;
                 self.variables.set_returned(None);
                 let callee = Callee { label, role: Role::Sub, times: 1, locals: Some(locals) };
-                self.flow.call(callee, &mut self.variables)
+                self.call(callee, control)
             }
             Role::EndSub | Role::Return => {
                 let returned = match next(cursor)? {
@@ -501,7 +620,7 @@ impl<'a> Program<'a> {
         control: &Control,
     ) -> Result<(), GcodeFault> {
         let scope = Scope::new(&self.variables, control);
-        let Some(clause) = self.flow.structure.clause(line) else {
+        let Some(clause) = self.flow.structure().clause(line) else {
             let problem = match role {
                 Role::If | Role::Do | Role::While | Role::Repeat => "it has no end: add it",
                 _ => "it has no beginning: add it",
@@ -562,7 +681,7 @@ impl<'a> Program<'a> {
             }
             Role::Break | Role::Continue => {
                 check_end(cursor)?;
-                if self.flow.structure.head_role(clause) == Some(Role::Repeat) {
+                if self.flow.structure().head_role(clause) == Some(Role::Repeat) {
                     let (meaning, remedy) = ("no word of a `repeat`", "write a `while`");
                     return Err(not_read(role.word(), meaning, remedy));
                 }
@@ -577,7 +696,7 @@ impl<'a> Program<'a> {
     fn next_branch(&mut self, mut clause: Clause, control: &Control) -> Result<(), GcodeFault> {
         loop {
             let place = clause.next;
-            let Some(next_clause) = self.flow.structure.clause(place.line) else {
+            let Some(next_clause) = self.flow.structure().clause(place.line) else {
                 return Err(GcodeFault::OpenLoop);
             };
             clause = next_clause;
@@ -607,14 +726,26 @@ impl<'a> Program<'a> {
     }
 }
 
-/// A call of a subprogram by M98 or M97.
+/// A call of a subprogram by M98, M97 or M198.
 #[derive(Clone, Copy, Debug)]
 struct Called {
-    /// The number of the program, or the sequence number.
-    number: u32,
+    target: Target,
     times: u32,
-    /// Set by M97.
-    is_local: bool,
+}
+
+/// A subprogram that is called.
+#[derive(Clone, Copy, Debug)]
+enum Target {
+    /// The blocks from a sequence number of the same program on (M97).
+    Sequence(u32),
+    /// The program with a number.
+    Program(u32),
+    /// A program of another file.
+    File(usize, Subprogram),
+}
+
+fn is_linuxcnc(control: &Control) -> bool {
+    control.stated(Rule::Dialect) == Some(Choice::Rs274Ngc)
 }
 
 /// Returns the language of macros of a control, if it is stated and has one.

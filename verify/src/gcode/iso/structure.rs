@@ -227,6 +227,11 @@ impl Structure {
         !self.subprograms.is_empty()
     }
 
+    /// Returns the labels of the subprograms.
+    pub(super) fn labels(&self) -> impl Iterator<Item = &Label> {
+        self.subprograms.keys()
+    }
+
     /// Returns a subprogram.
     pub(super) fn get(&self, label: &Label) -> Option<&Subprogram> {
         self.subprograms.get(label)

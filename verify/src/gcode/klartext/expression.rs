@@ -59,6 +59,21 @@ impl Parameters {
         Parameters { values: vec![f64::NAN; count] }
     }
 
+    /// Hides the parameters of a program (QL) from one that it calls, and returns their values.
+    pub(super) fn hide_local(&mut self) -> Vec<f64> {
+        let first = usize::from(KINDS[0].1);
+        let local = &mut self.values[first..first + usize::from(KINDS[1].1)];
+        let values = local.to_vec();
+        local.fill(f64::NAN);
+        values
+    }
+
+    /// Gives the parameters of a program their values again.
+    pub(super) fn show_local(&mut self, values: &[f64]) {
+        let first = usize::from(KINDS[0].1);
+        self.values[first..first + values.len()].copy_from_slice(values);
+    }
+
     /// Assigns a value.
     ///
     /// # Errors

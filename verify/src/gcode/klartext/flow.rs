@@ -10,6 +10,7 @@ use crate::gcode::error::{combination, missing};
 use crate::gcode::{GcodeError, GcodeFault, MAX_CALLS, MAX_REPEATED};
 use std::collections::HashMap;
 use std::fmt;
+use std::sync::Arc;
 
 /// Largest number after REP.
 const MAX_REPEATS: f64 = 65_534.0;
@@ -72,10 +73,12 @@ pub(super) struct Ahead<'a> {
     pub(super) after: Place,
 }
 
-/// The place of execution in a text.
+/// The place of execution in a text. A called program has a flow of its own, which its caller's flow waits for.
 #[derive(Clone, Debug)]
 pub(super) struct Flow<'a> {
     text: &'a str,
+    /// The number of calls in the flows that wait for this one.
+    below: usize,
     /// The first block after the head.
     start: Place,
     /// The next block.
@@ -83,9 +86,9 @@ pub(super) struct Flow<'a> {
     /// The present block.
     present: Place,
     /// The places after labels.
-    labels: HashMap<Label<'a>, Place>,
+    labels: Arc<HashMap<Label<'a>, Place>>,
     /// The bytes at which `LBL 0` stands, in order.
-    ends: Vec<usize>,
+    ends: Arc<[usize]>,
     calls: Vec<Call>,
     repeats: Vec<Repeat>,
     /// Set once a block was called, repeated or jumped to.
@@ -109,18 +112,8 @@ impl<'a> Flow<'a> {
     /// # Errors
     /// A label that stands twice, with its line.
     pub(super) fn new(text: &'a str, start: Place) -> Result<Flow<'a>, GcodeError> {
-        let mut flow = Flow {
-            text,
-            start,
-            place: start,
-            present: start,
-            labels: HashMap::new(),
-            ends: Vec::new(),
-            calls: Vec::new(),
-            repeats: Vec::new(),
-            jumped: false,
-            counted: 0,
-        };
+        let mut labels = HashMap::new();
+        let mut ends = Vec::new();
         let mut lines: HashMap<Label, usize> = HashMap::new();
         let known = Parameters::new();
         let mut place = start;
@@ -133,15 +126,45 @@ impl<'a> Flow<'a> {
             // A label that is not understood is refused where it is executed.
             let Ok(label) = label(&mut cursor, &known) else { continue };
             if label == Label::Number(0) {
-                flow.ends.push(at.offset);
+                ends.push(at.offset);
             } else if let Some(first) = lines.insert(label, at.line) {
                 let fault = GcodeFault::SecondLabel { label: label.to_string(), first };
                 return Err(GcodeError { line: at.line, fault });
             } else {
-                flow.labels.insert(label, after);
+                labels.insert(label, after);
             }
         }
-        Ok(flow)
+        Ok(Flow {
+            text,
+            below: 0,
+            start,
+            place: start,
+            present: start,
+            labels: Arc::new(labels),
+            ends: ends.into(),
+            calls: Vec::new(),
+            repeats: Vec::new(),
+            jumped: false,
+            counted: 0,
+        })
+    }
+
+    /// Begins a program that another flow calls.
+    ///
+    /// # Errors
+    /// If it is called too deeply.
+    pub(super) fn called_by(self, caller: &Flow) -> Result<Flow<'a>, GcodeFault> {
+        // One for the call itself, which has no place here.
+        let below = caller.below + caller.calls.len() + 1;
+        match below <= MAX_CALLS {
+            true => Ok(Flow { below, jumped: true, counted: caller.counted, ..self }),
+            false => Err(GcodeFault::TooDeep),
+        }
+    }
+
+    /// Goes on after the call of a program.
+    pub(super) fn go_on_after(&mut self, called: &Flow) {
+        (self.jumped, self.counted) = (true, called.counted);
     }
 
     /// Returns the next block and its line.
@@ -196,7 +219,7 @@ impl<'a> Flow<'a> {
     /// Obeys `CALL LBL` without REP.
     pub(super) fn call(&mut self, label: Label) -> Result<(), GcodeFault> {
         let place = self.find(label)?;
-        if self.calls.len() >= MAX_CALLS {
+        if self.below + self.calls.len() >= MAX_CALLS {
             return Err(GcodeFault::TooDeep);
         }
         self.calls.push(Call { return_to: self.place, repeats: self.repeats.len() });

@@ -447,7 +447,7 @@ impl Program<'_> {
             let needed = "all rotary axes of the machine, since the plane depends on each";
             return Err(missing(format!("Q120 to Q122 without {letter}"), needed));
         }
-        control.execute(control.line, &mut self.block)?;
+        control.execute(&mut self.block)?;
         control.align_with_plane(self.frame.master_is_positive);
         self.frame.aligned = true;
         self.before.forget();

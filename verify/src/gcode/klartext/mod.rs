@@ -18,10 +18,11 @@ mod words;
 use super::block::{Block, Code};
 use super::control::Control;
 use super::error::{combination, missing, not_read};
+use super::files::{self, in_file};
 use super::interpreter::{End, Progress};
 use super::note::NoteKind;
 use super::rules::{Choice, ControlRules, Rule};
-use super::{GcodeError, GcodeFault, Obstacle, unquoted};
+use super::{GcodeError, GcodeFault, Obstacle, SubprogramFile, shown, unquoted};
 use block::{Feed, Scale, m_entry};
 use cycle::Cycle;
 use expression::{Parameters, angle, finite, formula, parameter, value};
@@ -29,6 +30,8 @@ use flow::{Flow, Label, label};
 use frame::Frame;
 use line::{Cursor, Place, begin, expected, head};
 use motion::{Before, number};
+use std::collections::BTreeMap;
+use std::mem;
 use touchoff::Unit;
 use words::{CYCLES, Entry, FUNCTIONS, STATEMENTS, Treatment, find};
 
@@ -39,6 +42,13 @@ const MAX_TOOL: f64 = 99_999_999.0;
 #[derive(Clone, Debug)]
 pub(super) struct Program<'a> {
     flow: Flow<'a>,
+    /// The programs that wait for the end of one that they have called.
+    waiting: Vec<Waiting<'a>>,
+    /// The file of the program that is executed.
+    file: usize,
+    files: &'a [SubprogramFile],
+    /// The files that were called, each before its first block.
+    called: BTreeMap<usize, Flow<'a>>,
     parameters: Parameters,
     unit: Unit,
     frame: Frame,
@@ -54,6 +64,15 @@ pub(super) struct Program<'a> {
     block: Block,
     /// The numbers of the M words of a block that the control executes.
     codes: Vec<u32>,
+}
+
+/// A program that waits for the end of one that it has called.
+#[derive(Clone, Debug)]
+struct Waiting<'a> {
+    flow: Flow<'a>,
+    file: usize,
+    /// Its parameters QL.
+    local: Vec<f64>,
 }
 
 /// Returns the first block of a text that is no comment, if it is the head of a program in Klartext: its unit and the place after it.
@@ -83,7 +102,11 @@ impl<'a> Program<'a> {
     ///
     /// # Errors
     /// If the control states another dialect, or a label stands twice.
-    pub(super) fn new(text: &'a str, control: &mut Control) -> Result<Program<'a>, GcodeError> {
+    pub(super) fn new(
+        text: &'a str,
+        files: &'a [SubprogramFile],
+        control: &mut Control,
+    ) -> Result<Program<'a>, GcodeError> {
         let (unit, start, line) =
             first_block(text).ok_or(GcodeError { line: 1, fault: GcodeFault::Unfinished })?;
         if let Some(choice) = control.stated(Rule::Dialect).filter(|c| *c != Choice::Heidenhain) {
@@ -100,6 +123,10 @@ impl<'a> Program<'a> {
         (control.modal.unit, control.modal.unit_stated) = (Unit::Millimetre, true);
         Ok(Program {
             flow: Flow::new(text, start)?,
+            waiting: Vec::new(),
+            file: 0,
+            files,
+            called: BTreeMap::new(),
             parameters: Parameters::new(),
             unit,
             frame: Frame::new(),
@@ -113,10 +140,50 @@ impl<'a> Program<'a> {
         })
     }
 
+    /// Returns the number of the file of a called program.
+    pub(super) fn called_file(&self) -> Option<usize> {
+        (!self.waiting.is_empty()).then_some(self.file)
+    }
+
+    /// Calls the program of a file, after `CALL PGM`.
+    fn call_program(&mut self, cursor: &Cursor<'a>) -> Result<(), GcodeFault> {
+        let name = cursor.rest().split([';', '\n']).next().unwrap_or_default();
+        let name = name.trim().trim_matches('"');
+        let Some(file) = files::find(self.files, name) else {
+            return Err(GcodeFault::NoSubprogram { label: shown(name) });
+        };
+        let flow = match self.called.get(&file) {
+            Some(flow) => flow.clone(),
+            None => {
+                let text = &self.files[file - 1].text;
+                let Some((unit, start, line)) = first_block(text) else {
+                    let (meaning, remedy) =
+                        ("no program in Klartext", "name a file that begins with BEGIN PGM");
+                    return Err(not_read(shown(name), meaning, remedy));
+                };
+                if unit != self.unit {
+                    let error = GcodeError { line, fault: GcodeFault::OtherUnit };
+                    return Err(in_file(self.files, file, error));
+                }
+                let flow = Flow::new(text, start);
+                let flow = flow.map_err(|error| in_file(self.files, file, error))?;
+                self.called.insert(file, flow.clone());
+                flow
+            }
+        };
+        let called = flow.called_by(&self.flow)?;
+        let flow = mem::replace(&mut self.flow, called);
+        let file = mem::replace(&mut self.file, file);
+        let local = self.parameters.hide_local();
+        self.waiting.push(Waiting { flow, file, local });
+        Ok(())
+    }
+
     /// Returns the words of the text that are refused wherever they stand, each with its first line.
     pub(super) fn obstacles(&self) -> Vec<Obstacle> {
         let mut found = Vec::new();
-        for (line, text) in self.flow.blocks() {
+        let main = self.waiting.first().map_or(&self.flow, |waiting| &waiting.flow);
+        for (line, text) in main.blocks() {
             let (mut cursor, _) = begin(text);
             let head = cursor.letters().to_ascii_uppercase();
             let mut after = cursor;
@@ -152,7 +219,7 @@ impl<'a> Program<'a> {
     /// Executes the next block.
     pub(super) fn execute_line(&mut self, control: &mut Control) -> Result<Progress, GcodeError> {
         let (line, text) = self.flow.next_block()?;
-        control.line = line;
+        control.set_line(self.called_file(), line);
         let result = self.statement(text, control).and_then(|progress| {
             // A cycle in a repeated section has many steps per block.
             self.flow.count(control.pending.len())?;
@@ -218,6 +285,7 @@ impl<'a> Program<'a> {
                 }
                 return self.cycle_call(&mut cursor, control);
             }
+            "CALL" if cursor.take_word("PGM") => self.call_program(&cursor)?,
             "CALL" if cursor.take_word("LBL") => {
                 flow::call(&mut cursor, &mut self.flow, &self.parameters)?;
             }
@@ -231,6 +299,13 @@ impl<'a> Program<'a> {
                 control.notes.add(control.line, NoteKind::PassedOver { word });
             }
             "END" if cursor.take_word("PGM") => {
+                if let Some(Waiting { flow, file, local }) = self.waiting.pop() {
+                    let called = mem::replace(&mut self.flow, flow);
+                    self.flow.go_on_after(&called);
+                    self.file = file;
+                    self.parameters.show_local(&local);
+                    return Ok(Progress::GoesOn);
+                }
                 self.note_end(control);
                 if let Some((line, is_program)) = self.flow.text_after() {
                     let kind = match is_program {
@@ -290,6 +365,12 @@ impl<'a> Program<'a> {
                     control.pause_spindle();
                     control.notes.add(control.line, NoteKind::Stop);
                 }
+                2 | 30 if !self.waiting.is_empty() => {
+                    let condition =
+                        "CALL PGM has called the program, whose end they are on some controls";
+                    let remedy = "remove it: END PGM leads back to the caller";
+                    return Err(combination(format!("M{code}"), condition, remedy));
+                }
                 2 | 30 => {
                     self.note_end(control);
                     progress = Progress::Ended(End::Stop);
@@ -313,7 +394,7 @@ impl<'a> Program<'a> {
     fn m_word(&mut self, code: u32, control: &mut Control) -> Result<(), GcodeFault> {
         self.block.clear();
         self.block.add_code(Code { letter: 'M', tenths: 10 * code })?;
-        control.execute(control.line, &mut self.block)
+        control.execute(&mut self.block)
     }
 
     /// Executes M128 and M129.
@@ -545,7 +626,7 @@ impl<'a> Program<'a> {
             let condition = "M128 is in force, under which it is along an axis that turns";
             return Err(combination("DL", condition, "write M129 before, or DL+0"));
         }
-        control.execute(control.line, &mut self.block)?;
+        control.execute(&mut self.block)?;
         if let Some(allowance) = allowance {
             self.set_allowance(allowance, control);
         }

@@ -132,7 +132,7 @@ impl Program<'_> {
         self.add_feed(&words)?;
         self.add_side(&words)?;
         if !words.has_axes() {
-            return control.execute(control.line, &mut self.block);
+            return control.execute(&mut self.block);
         }
         if words.axes.contains(&Some(Coordinate::OfPlane)) {
             control.check_uncompensated("Q120")?;
@@ -151,7 +151,7 @@ impl Program<'_> {
         let is_open = self.add_end(words, start)?;
         let tenths = if words.is_rapid() { 0 } else { 10 };
         self.block.add_code(Code { letter: 'G', tenths })?;
-        control.execute(control.line, &mut self.block).map_err(|fault| match fault {
+        control.execute(&mut self.block).map_err(|fault| match fault {
             GcodeFault::NoFeed { inverse, .. } => {
                 GcodeFault::NoFeed { word: "L".to_owned(), inverse }
             }
@@ -160,7 +160,7 @@ impl Program<'_> {
         if is_open {
             self.block.clear();
             self.block.add_code(Code { letter: 'G', tenths: 900 })?;
-            control.execute(control.line, &mut self.block)?;
+            control.execute(&mut self.block)?;
         }
         // The way of an axis by an increment is stated.
         if words.axes[3..].iter().any(|word| matches!(word, Some(Coordinate::Incremental(_)))) {

@@ -74,6 +74,7 @@ pub(super) const STATEMENTS: [Entry; 50] = [
     read("TOOL DEF", "the length of a tool, or the tool that is called next"),
     read("LBL", "a label"),
     read("CALL LBL", "a subprogram, or a section that is repeated (REP)"),
+    read("CALL PGM", "a program of a file that the job names"),
     read("Q", "a formula (Q, QL, QR)"),
     read("FN", "arithmetic and jumps: see below"),
     read("IF", "a jump, as FN 9 to FN 12"),
@@ -102,11 +103,6 @@ pub(super) const STATEMENTS: [Entry; 50] = [
     refused("FPOL", "free contour programming", LINES),
     refused("FSELECT", "free contour programming", LINES),
     refused("SPL", "a spline", LINES),
-    refused(
-        "CALL PGM",
-        "a call of another program, which is another file",
-        "insert its blocks as a subprogram (LBL)",
-    ),
     refused(
         "CALL SELECTED",
         "a call of another program, which is another file",

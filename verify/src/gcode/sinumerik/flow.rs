@@ -6,8 +6,9 @@
 use super::text::{Cursor, start};
 use crate::gcode::error::{combination, missing, not_read};
 use crate::gcode::iso::{Place, line};
-use crate::gcode::{GcodeError, GcodeFault, MAX_CALLS, MAX_REPEATED, shown};
+use crate::gcode::{GcodeError, GcodeFault, MAX_CALLS, MAX_REPEATED, SubprogramFile, shown};
 use std::collections::HashMap;
+use std::sync::Arc;
 
 /// A program of a file.
 #[derive(Clone, Debug)]
@@ -145,15 +146,59 @@ struct Repeat {
     depth: usize,
 }
 
-/// The place of execution in a text.
-#[derive(Clone, Debug)]
-pub(super) struct Flow<'a> {
+/// A text, and what is found in it once.
+#[derive(Debug)]
+pub(super) struct Source<'a> {
     text: &'a str,
-    place: Place,
     sections: Vec<Section<'a>>,
-    section: usize,
     /// Targets of the statements that do not go on to the next line, by their lines.
     partners: HashMap<usize, Place>,
+    /// The program that is executed first.
+    main: usize,
+}
+
+impl<'a> Source<'a> {
+    /// Finds the programs of a text, and its loops and branches.
+    ///
+    /// # Errors
+    /// If two programs have one name, or a loop or a branch has no end or no begin.
+    pub(super) fn new(text: &'a str) -> Result<Source<'a>, GcodeError> {
+        let sections = sections(text)?;
+        let main =
+            sections.iter().position(|section| section.name.is_empty() || section.is_main(text));
+        let (main, partners) = (main.unwrap_or(0), partners(text, &sections)?);
+        Ok(Source { text, sections, partners, main })
+    }
+
+    /// Returns the program with a name in a file of subprograms: one with that title, or the first one of a file of that name.
+    pub(super) fn section(&self, file: &SubprogramFile, name: &str) -> Option<usize> {
+        let is_file = plain_name(&file.name).eq_ignore_ascii_case(plain_name(name));
+        self.subprogram(name).or_else(|| is_file.then_some(self.main))
+    }
+
+    /// Returns the parameters of a subprogram.
+    pub(super) fn parameters(&self, section: usize) -> &'a str {
+        self.sections[section].parameters
+    }
+
+    /// Returns the subprogram with a name.
+    fn subprogram(&self, name: &str) -> Option<usize> {
+        let plain = plain_name(name);
+        let found = |section: &Section| {
+            !section.name.is_empty() && section.name.eq_ignore_ascii_case(plain)
+        };
+        self.sections.iter().position(found)
+    }
+}
+
+/// The place of execution in a text. A subprogram of another file has a flow of its own, which its caller's flow waits for.
+#[derive(Clone, Debug)]
+pub(super) struct Flow<'a> {
+    source: Arc<Source<'a>>,
+    /// The number of calls in the flows that wait for this one.
+    below: usize,
+    place: Place,
+    section: usize,
     /// The targets of jumps that were executed, by the place of their name.
     targets: HashMap<usize, Place>,
     calls: Vec<Call>,
@@ -164,32 +209,47 @@ pub(super) struct Flow<'a> {
 }
 
 impl<'a> Flow<'a> {
-    /// Finds the programs of a text, and its loops and branches.
-    ///
-    /// # Errors
-    /// If two programs have one name, or a loop or a branch has no end or no begin.
-    pub(super) fn new(text: &'a str) -> Result<Flow<'a>, GcodeError> {
-        let sections = sections(text)?;
-        let main =
-            sections.iter().position(|section| section.name.is_empty() || section.is_main(text));
-        let section = main.unwrap_or(0);
-        Ok(Flow {
-            text,
-            place: sections[section].start,
-            section,
-            partners: partners(text, &sections)?,
-            sections,
+    /// Begins the main program of a text.
+    pub(super) fn new(source: Arc<Source<'a>>) -> Flow<'a> {
+        Flow {
+            below: 0,
+            place: source.sections[source.main].start,
+            section: source.main,
+            source,
             targets: HashMap::new(),
             calls: Vec::new(),
             repeats: Vec::new(),
             furthest: 0,
             repeated: 0,
-        })
+        }
+    }
+
+    /// Begins a program of another text, which this flow waits for.
+    ///
+    /// # Errors
+    /// If subprograms call each other too deeply.
+    pub(super) fn inside(
+        &self,
+        source: Arc<Source<'a>>,
+        section: usize,
+    ) -> Result<Flow<'a>, GcodeFault> {
+        // One for the call itself.
+        let below = self.below + self.calls.len() + 1;
+        if below > MAX_CALLS {
+            return Err(GcodeFault::TooDeep);
+        }
+        let place = source.sections[section].start;
+        Ok(Flow { below, place, section, repeated: self.repeated, ..Flow::new(source) })
+    }
+
+    /// Goes on after a call of a subprogram in another file.
+    pub(super) fn go_on_after(&mut self, called: &Flow) {
+        self.repeated = called.repeated;
     }
 
     /// Returns the whole text.
     pub(super) fn text(&self) -> &'a str {
-        self.text
+        self.source.text
     }
 
     /// Returns the next line, its place and the number of it.
@@ -198,21 +258,25 @@ impl<'a> Flow<'a> {
     /// If the text ends without an end of the program; if too many blocks are repeated.
     pub(super) fn next_line(&mut self) -> Result<(usize, &'a str), GcodeError> {
         self.end_repeat();
-        let end = self.sections[self.section].end;
-        let found = line(self.text, self.place).filter(|_| self.place.offset < end);
+        let end = self.source.sections[self.section].end;
+        let found = line(self.text(), self.place).filter(|_| self.place.offset < end);
         let Some((text, after)) = found else {
             // The place is after the last line. An empty text has its fault in line 1.
             let last = self.place.line.max(2) - 1;
             return Err(GcodeError { line: last, fault: GcodeFault::Unfinished });
         };
         let number = self.place.line;
-        let is_repeated = self.place.offset < self.furthest || !self.calls.is_empty();
+        let is_repeated = self.place.offset < self.furthest || self.is_called();
         self.furthest = self.furthest.max(after.offset);
         self.place = after;
         if is_repeated {
             self.count(1).map_err(|fault| GcodeError { line: number, fault })?;
         }
         Ok((number, text))
+    }
+
+    fn is_called(&self) -> bool {
+        self.below + self.calls.len() > 0
     }
 
     /// Counts blocks and steps that are executed again. Those of the main program are limited by its text.
@@ -223,25 +287,25 @@ impl<'a> Flow<'a> {
 
     /// Counts the steps of a block, if it is executed again.
     pub(super) fn count_steps(&mut self, number: usize) -> Result<(), GcodeFault> {
-        let is_repeated = self.place.offset < self.furthest || !self.calls.is_empty();
+        let is_repeated = self.place.offset < self.furthest || self.is_called();
         if is_repeated { self.count(number) } else { Ok(()) }
     }
 
     /// Goes on where the statement of a line goes that is not followed by its next line.
     pub(super) fn go_to_partner(&mut self, line: usize) {
-        if let Some(place) = self.partners.get(&line) {
+        if let Some(place) = self.source.partners.get(&line) {
             self.place = *place;
         }
     }
 
     /// Returns the line of the statement to which one of a line belongs: the `FOR` of an `ENDFOR`.
     pub(super) fn partner_line(&self, line: usize) -> usize {
-        self.partners.get(&line).map_or(line, |place| place.line)
+        self.source.partners.get(&line).map_or(line, |place| place.line)
     }
 
     /// Goes to the start of the program (`GOTOS`).
     pub(super) fn go_to_start(&mut self) -> Result<(), GcodeFault> {
-        self.go(self.sections[self.section].start)
+        self.go(self.source.sections[self.section].start)
     }
 
     /// Goes to a label or a block number. `line` is that of the jump. Returns whether there is one.
@@ -251,7 +315,7 @@ impl<'a> Flow<'a> {
         line: usize,
         direction: Direction,
     ) -> Result<bool, GcodeFault> {
-        let key = target.as_ptr() as usize - self.text.as_ptr() as usize;
+        let key = target.as_ptr() as usize - self.text().as_ptr() as usize;
         let place = match self.targets.get(&key) {
             Some(place) => Some(*place),
             None => self.find(target, line, direction),
@@ -276,11 +340,11 @@ impl<'a> Flow<'a> {
 
     /// Finds a label or a block number in the present program.
     fn find(&self, target: &str, from: usize, direction: Direction) -> Option<Place> {
-        let Section { start: begin, end, .. } = self.sections[self.section];
+        let Section { start: begin, end, .. } = self.source.sections[self.section];
         let is_number = matches!(target.as_bytes(), [b'N' | b'n', rest @ ..] if rest.iter().all(u8::is_ascii_digit));
         let (mut before, mut after) = (None, None);
         let mut place = begin;
-        while let Some((text, next)) = line(self.text, place).filter(|_| place.offset < end) {
+        while let Some((text, next)) = line(self.text(), place).filter(|_| place.offset < end) {
             let parts = start(text);
             let found = if is_number { parts.number } else { parts.label };
             if found.is_some_and(|found| found.eq_ignore_ascii_case(target)) {
@@ -366,18 +430,9 @@ impl<'a> Flow<'a> {
         }
     }
 
-    /// Returns the subprogram with a name.
+    /// Returns the subprogram of this text with a name.
     pub(super) fn subprogram(&self, name: &str) -> Option<usize> {
-        let plain = plain_name(name);
-        let found = |section: &Section| {
-            !section.name.is_empty() && section.name.eq_ignore_ascii_case(plain)
-        };
-        self.sections.iter().position(found)
-    }
-
-    /// Returns the parameters of a subprogram.
-    pub(super) fn parameters(&self, section: usize) -> &'a str {
-        self.sections[section].parameters
+        self.source.subprogram(name)
     }
 
     /// Begins a subprogram, `times` times. `base` is where the variables of the caller begin.
@@ -387,13 +442,13 @@ impl<'a> Flow<'a> {
         times: u32,
         base: usize,
     ) -> Result<(), GcodeFault> {
-        if self.calls.len() >= MAX_CALLS {
+        if self.below + self.calls.len() >= MAX_CALLS {
             return Err(GcodeFault::TooDeep);
         }
         let (caller, return_to) = (self.section, self.place);
         self.calls.push(Call { caller, return_to, left: times - 1, base });
         self.section = section;
-        self.place = self.sections[section].start;
+        self.place = self.source.sections[section].start;
         Ok(())
     }
 
@@ -405,7 +460,7 @@ impl<'a> Flow<'a> {
             None => Left::MainProgram,
             Some(call) if call.left > 0 => {
                 call.left -= 1;
-                self.place = self.sections[self.section].start;
+                self.place = self.source.sections[self.section].start;
                 Left::Again
             }
             Some(call) => {
@@ -419,9 +474,9 @@ impl<'a> Flow<'a> {
 
     /// Returns the line of the first text after the end of the main program that belongs to it.
     pub(super) fn text_after_end(&self) -> Option<usize> {
-        let end = self.sections[self.section].end;
+        let end = self.source.sections[self.section].end;
         let mut place = self.place;
-        while let Some((text, after)) = line(self.text, place).filter(|_| place.offset < end) {
+        while let Some((text, after)) = line(self.text(), place).filter(|_| place.offset < end) {
             let mut words = start(text).words;
             if !words.is_at_end() && words.byte() != Some(b'%') {
                 return Some(place.line);

@@ -19,13 +19,16 @@ mod words;
 use super::block::Block;
 use super::control::{Control, Hole};
 use super::error::{combination, missing, not_read};
+use super::files::{in_file, without_folder};
 use super::interpreter::{End, Progress};
 use super::note::NoteKind;
 use super::rules::{Choice, Rule};
-use super::{GcodeError, GcodeFault, Obstacle, shown};
+use super::{GcodeError, GcodeFault, Obstacle, SubprogramFile, shown};
 use expression::{Value, expression, number};
-use flow::{Direction, Flow, Left, RepeatWords, Structure, no_target, title};
+use flow::{Direction, Flow, Left, RepeatWords, Source, Structure, no_target, title};
 use std::collections::HashMap;
+use std::mem;
+use std::sync::Arc;
 use table::{Use, use_of};
 use text::{Cursor, Start, start};
 use variables::{Reference, Variables};
@@ -44,6 +47,13 @@ const NATIVE: [(Rule, Choice); 4] = [
 #[derive(Clone, Debug)]
 pub(super) struct Program<'a> {
     flow: Flow<'a>,
+    /// The callers of subprograms in other files.
+    waiting: Vec<Waiting<'a>>,
+    /// The text of the program, then the files of subprograms.
+    sources: Vec<Arc<Source<'a>>>,
+    files: &'a [SubprogramFile],
+    /// The index of the text that is executed.
+    file: usize,
     variables: Variables,
     block: Block,
     /// The number of the first switch for optional blocks.
@@ -56,6 +66,21 @@ pub(super) struct Program<'a> {
     stepping: Option<usize>,
     /// The last value of each loop that counts, by the line of its `FOR`.
     ends: HashMap<usize, f64>,
+}
+
+/// A caller of a subprogram in another file.
+#[derive(Clone, Debug)]
+struct Waiting<'a> {
+    flow: Flow<'a>,
+    file: usize,
+    stepping: Option<usize>,
+    ends: HashMap<usize, f64>,
+    /// The called program, before its first block.
+    called: Flow<'a>,
+    /// Executions that follow the present one.
+    left: u32,
+    /// Start of the variables of the caller.
+    base: usize,
 }
 
 /// Returns whether a text is a native program of Sinumerik: whether it has a statement that no other language has, and no `#`, which
@@ -124,11 +149,25 @@ impl<'a> Program<'a> {
     ///
     /// # Errors
     /// If two programs have one name, or a loop or a branch has no end or no begin.
-    pub(super) fn new(text: &'a str, control: &mut Control) -> Result<Program<'a>, GcodeError> {
-        let flow = Flow::new(text)?;
+    pub(super) fn new(
+        text: &'a str,
+        files: &'a [SubprogramFile],
+        control: &mut Control,
+    ) -> Result<Program<'a>, GcodeError> {
+        let mut sources = vec![Arc::new(Source::new(text)?)];
+        for (index, file) in (1..).zip(files) {
+            let source = Source::new(&file.text);
+            let source = source
+                .map_err(|error| GcodeError { line: 1, fault: in_file(files, index, error) })?;
+            sources.push(Arc::new(source));
+        }
         control.settle(&NATIVE);
         Ok(Program {
-            flow,
+            flow: Flow::new(Arc::clone(&sources[0])),
+            waiting: Vec::new(),
+            sources,
+            files,
+            file: 0,
             variables: Variables::default(),
             block: Block::default(),
             switch: None,
@@ -139,10 +178,16 @@ impl<'a> Program<'a> {
         })
     }
 
+    /// Returns the number of the file of a called subprogram, if it is not in the program's.
+    pub(super) fn called_file(&self) -> Option<usize> {
+        (!self.waiting.is_empty()).then_some(self.file)
+    }
+
     /// Returns the words of the text that are refused wherever they stand, each with its first line.
     pub(super) fn obstacles(&self, control: &Control) -> Vec<Obstacle> {
         let mut found = Vec::new();
-        for (line, text) in (1..).zip(self.flow.text().lines()) {
+        let main = self.waiting.first().map_or(&self.flow, |waiting| &waiting.flow);
+        for (line, text) in (1..).zip(main.text().lines()) {
             let mut words = start(text).words;
             while !words.is_at_end() {
                 let passed = match words.byte() {
@@ -184,7 +229,7 @@ impl<'a> Program<'a> {
         text: &'a str,
         control: &mut Control,
     ) -> Result<Progress, GcodeFault> {
-        control.line = line;
+        control.set_line(self.called_file(), line);
         let Start { switch, mut words, .. } = start(text);
         let is_percent = words.byte() == Some(b'%') && words.rest().trim_end() == "%";
         if words.is_at_end() || is_percent {
@@ -194,13 +239,13 @@ impl<'a> Program<'a> {
             let first = *self.switch.get_or_insert(digits);
             // `/2` is a switch of its own.
             if first != digits {
-                control.notes.add(line, NoteKind::OptionalSwitches);
+                control.notes.add(control.line, NoteKind::OptionalSwitches);
             }
             if control.choice(Rule::OptionalBlocks) == Choice::LeftOut {
-                control.notes.add(line, NoteKind::OmittedOptionalBlock);
+                control.notes.add(control.line, NoteKind::OmittedOptionalBlock);
                 return Ok(Progress::GoesOn);
             }
-            control.notes.add(line, NoteKind::ExecutedOptionalBlock);
+            control.notes.add(control.line, NoteKind::ExecutedOptionalBlock);
         }
         if let Some((structure, mut after)) = Structure::at(words) {
             self.structure(structure, &mut after, line)?;
@@ -216,11 +261,11 @@ impl<'a> Program<'a> {
             end_of_line(&mut after)?;
             return Ok(self.leave(control));
         }
-        if let Some(section) = self.called(name, &after) {
-            self.call(section, &mut after)?;
+        if let Some(callee) = self.called(name, &after) {
+            self.call(callee, &mut after)?;
             return end_of_line(&mut after).map(|()| Progress::GoesOn);
         }
-        self.words(line, words, control)
+        self.words(words, control)
     }
 
     /// Executes a statement of a loop or a branch.
@@ -327,9 +372,25 @@ impl<'a> Program<'a> {
             "CALL" => {
                 words.peek();
                 let called = words.quoted().unwrap_or_else(|| words.name());
-                match self.flow.subprogram(called) {
-                    Some(section) => self.call(section, words)?,
+                match self.subprogram(called) {
+                    Some(callee) => self.call(callee, words)?,
                     None => return Err(no_subprogram(called)),
+                }
+            }
+            "EXTCALL" => {
+                let mut name = *words;
+                if words.peek() == Some(b'(') {
+                    let inner = words.bracketed([b'(', b')']).unwrap_or_default();
+                    name = Cursor::new(inner);
+                } else if words.peek() == Some(b'"') {
+                    words.quoted();
+                }
+                name.peek();
+                let name = name.quoted().unwrap_or_default();
+                let name = without_folder(name);
+                match self.in_other_file(name) {
+                    Some(callee) => self.call(callee, words)?,
+                    None => return Err(no_subprogram(name)),
                 }
             }
             "MCALL" if words.is_at_end() => self.modal_hole = None,
@@ -454,21 +515,38 @@ impl<'a> Program<'a> {
     }
 
     /// Returns the subprogram that a line calls by its first name: `NAME`, `NAME(…)` or `L123`.
-    fn called(&self, name: &str, after: &Cursor) -> Option<usize> {
+    fn called(&self, name: &str, after: &Cursor) -> Option<Callee> {
         let mut after = *after;
         let is_call = after.is_at_end() || matches!(after.byte(), Some(b'(' | b'P' | b'p'));
         let is_named = name.len() > 1
             && (name.starts_with(['L', 'l']) || !name.as_bytes()[1].is_ascii_digit());
-        self.flow
-            .subprogram(name)
-            .filter(|_| is_call && is_named && self.variables.find(name).is_none())
+        let is_one = is_call && is_named && self.variables.find(name).is_none();
+        is_one.then(|| self.subprogram(name)).flatten()
+    }
+
+    /// Returns the subprogram with a name: of the present file or, if that has none, of another one.
+    fn subprogram(&self, name: &str) -> Option<Callee> {
+        match self.flow.subprogram(name) {
+            Some(section) => Some(Callee { file: self.file, section }),
+            None => self.in_other_file(name),
+        }
+    }
+
+    fn in_other_file(&self, name: &str) -> Option<Callee> {
+        let files = (1..).zip(self.files).filter(|(file, _)| *file != self.file);
+        files
+            .filter_map(|(file, known)| {
+                let section = self.sources[file].section(known, name)?;
+                Some(Callee { file, section })
+            })
+            .next()
     }
 
     /// Calls a subprogram with the arguments and the number of times that follow.
-    fn call(&mut self, section: usize, words: &mut Cursor) -> Result<(), GcodeFault> {
+    fn call(&mut self, callee: Callee, words: &mut Cursor) -> Result<(), GcodeFault> {
         let arguments = cycles::arguments(words, &self.variables)?;
         let times = self.times(words)?;
-        let parameters = self.flow.parameters(section);
+        let parameters = self.sources[callee.file].parameters(callee.section);
         if times.is_some_and(|times| times > 1) && !parameters.is_empty() {
             let condition = "the subprogram has parameters";
             return Err(combination("P", condition, "call it once for each time"));
@@ -476,9 +554,24 @@ impl<'a> Program<'a> {
         if times == Some(0) {
             return Ok(());
         }
-        let base = self.variables.enter();
-        let called = self.flow.call(section, times.unwrap_or(1), base);
-        called.and_then(|()| self.bind(parameters, arguments))
+        let (base, times) = (self.variables.enter(), times.unwrap_or(1));
+        if callee.file == self.file {
+            self.flow.call(callee.section, times, base)?;
+        } else {
+            let source = Arc::clone(&self.sources[callee.file]);
+            let called = self.flow.inside(source, callee.section)?;
+            let flow = mem::replace(&mut self.flow, called.clone());
+            self.waiting.push(Waiting {
+                flow,
+                file: mem::replace(&mut self.file, callee.file),
+                stepping: self.stepping.take(),
+                ends: mem::take(&mut self.ends),
+                called,
+                left: times - 1,
+                base,
+            });
+        }
+        self.bind(parameters, arguments)
     }
 
     /// Gives the parameters of a subprogram the values of its call.
@@ -504,6 +597,7 @@ impl<'a> Program<'a> {
     /// Ends the present program.
     fn leave(&mut self, control: &mut Control) -> Progress {
         match self.flow.leave() {
+            Left::MainProgram if !self.waiting.is_empty() => self.leave_file(),
             Left::MainProgram => {
                 if let Some(line) = self.flow.text_after_end() {
                     control.notes.add(line, NoteKind::TextAfterEnd);
@@ -516,6 +610,28 @@ impl<'a> Program<'a> {
         }
         Progress::GoesOn
     }
+
+    /// Begins a program of another file again, or goes on after its call.
+    fn leave_file(&mut self) {
+        if let Some(caller) = self.waiting.last_mut().filter(|caller| caller.left > 0) {
+            caller.left -= 1;
+            let called = mem::replace(&mut self.flow, caller.called.clone());
+            self.flow.go_on_after(&called);
+            self.variables.clear();
+        } else if let Some(caller) = self.waiting.pop() {
+            let called = mem::replace(&mut self.flow, caller.flow);
+            self.flow.go_on_after(&called);
+            (self.file, self.stepping, self.ends) = (caller.file, caller.stepping, caller.ends);
+            self.variables.leave(caller.base);
+        }
+    }
+}
+
+/// A subprogram that is called.
+#[derive(Clone, Copy, Debug)]
+struct Callee {
+    file: usize,
+    section: usize,
 }
 
 /// Refuses words after a statement.
@@ -541,10 +657,11 @@ fn undefined(name: &str) -> GcodeFault {
 
 /// Returns the fault of a subprogram that is not in the file.
 fn no_subprogram(name: &str) -> GcodeFault {
-    let meaning = "no word that is read, and no subprogram of this file";
+    let meaning =
+        "no word that is read, and no subprogram of this file or of those that the job names";
     not_read(
         shown(name),
         meaning,
-        "append the subprogram after a line `%_N_NAME_SPF`, or post the program without it",
+        "name its file in `subprograms` of the job, or append it after a line `%_N_NAME_SPF`",
     )
 }

@@ -221,9 +221,9 @@ const REFUSED: &[(&[&str], &str, &str)] = &[
         WITHOUT,
     ),
     (
-        &["EXTCALL", "PCALL", "ISOCALL"],
-        "a call of a file outside",
-        "append the text of the subprogram after a line `%_N_NAME_SPF`",
+        &["PCALL", "ISOCALL"],
+        "a call by a path, or in ISO mode",
+        "call the subprogram by its name, and name its file in `subprograms` of the job",
     ),
     (
         &[
@@ -260,9 +260,9 @@ pub(super) fn use_of(word: &str) -> Option<Use> {
 /// Statements that other languages do not have, besides the words of the tables.
 const STATEMENTS: &[&str] = &[
     "TRANS", "ATRANS", "ROT", "AROT", "CYCLE800", "CYCLE81", "CYCLE82", "CYCLE83", "CYCLE84",
-    "CYCLE840", "CYCLE85", "CYCLE86", "CYCLE89", "MCALL", "SUPA", "GOTOF", "GOTOB", "GOTOC",
-    "GOTOS", "ENDIF", "ENDWHILE", "ENDFOR", "ENDLOOP", "UNTIL", "DEF", "PROC", "RET", "REPEATB",
-    "ORIWKS", "ORIMKS", "ORIAXES", "ORIVECT", "ORIPLANE",
+    "CYCLE840", "CYCLE85", "CYCLE86", "CYCLE89", "MCALL", "EXTCALL", "SUPA", "GOTOF", "GOTOB",
+    "GOTOC", "GOTOS", "ENDIF", "ENDWHILE", "ENDFOR", "ENDLOOP", "UNTIL", "DEF", "PROC", "RET",
+    "REPEATB", "ORIWKS", "ORIMKS", "ORIAXES", "ORIVECT", "ORIPLANE",
 ];
 
 /// Returns whether a word is one of Sinumerik alone. Short words are words elsewhere, too, and count at the begin of a line.

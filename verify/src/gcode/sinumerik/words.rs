@@ -45,19 +45,17 @@ impl<'a> Program<'a> {
     /// Executes a block.
     pub(super) fn words(
         &mut self,
-        line: usize,
         cursor: Cursor<'a>,
         control: &mut Control,
     ) -> Result<Progress, GcodeFault> {
         let mut block = std::mem::take(&mut self.block);
-        let result = self.block(line, cursor, &mut block, control);
+        let result = self.block(cursor, &mut block, control);
         self.block = block;
         result
     }
 
     fn block(
         &mut self,
-        line: usize,
         mut cursor: Cursor<'a>,
         block: &mut Block,
         control: &mut Control,
@@ -118,7 +116,7 @@ impl<'a> Program<'a> {
         }
         let is_motion = block.has_any("XYZ");
         if !block.is_empty() || block.vector.is_some() {
-            control.execute(line, block)?;
+            control.execute(block)?;
             self.flow.count_steps(control.pending.len())?;
             block.check_used()?;
         }
@@ -130,7 +128,7 @@ impl<'a> Program<'a> {
             Some(20 | 300) => return Ok(self.leave(control)),
             Some(_) => {
                 control.pause_spindle();
-                control.notes.add(line, NoteKind::Stop);
+                control.notes.add(control.line, NoteKind::Stop);
             }
             None => {}
         }

@@ -1,0 +1,60 @@
+//! Files of subprograms beside that of the program.
+
+use super::{GcodeError, GcodeFault};
+use std::sync::Arc;
+
+/// A file of subprograms that a program can call.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SubprogramFile {
+    /// Its name without a folder. Controls find subprograms by it.
+    pub name: String,
+    /// Its text.
+    pub text: Arc<str>,
+}
+
+impl SubprogramFile {
+    /// Returns the name without the part after its last point.
+    pub(super) fn stem(&self) -> &str {
+        stem(&self.name)
+    }
+}
+
+/// A line of a file that was called.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SubprogramLine {
+    /// The number of the file: from 1 on in [`ControlSetup::subprograms`](super::ControlSetup::subprograms), 0 for the file of the
+    /// program, which a subprogram of another file can call.
+    pub file: usize,
+    /// The line, 1-based.
+    pub line: usize,
+}
+
+/// Returns the name of a file without the part after its last point.
+pub(super) fn stem(name: &str) -> &str {
+    name.rsplit_once('.').map_or(name, |(stem, _)| stem)
+}
+
+/// Returns the name of a file as a call on a control has it, without its folder.
+pub(super) fn without_folder(name: &str) -> &str {
+    name.rsplit(['/', '\\']).next().unwrap_or(name).trim()
+}
+
+/// Returns the number of the file that a call on a control names, with its ending or without. Controls do not distinguish cases.
+pub(super) fn find(files: &[SubprogramFile], name: &str) -> Option<usize> {
+    let name = without_folder(name);
+    let mut found = files.iter().position(|file| file.name.eq_ignore_ascii_case(name));
+    if found.is_none() {
+        found = files.iter().position(|file| file.stem().eq_ignore_ascii_case(name));
+    }
+    found.map(|index| index + 1)
+}
+
+/// Returns the fault of a line in a file of subprograms.
+pub(super) fn in_file(files: &[SubprogramFile], file: usize, error: GcodeError) -> GcodeFault {
+    let GcodeError { line, fault } = error;
+    let name = match file {
+        0 => None,
+        number => Some(files[number - 1].name.clone()),
+    };
+    GcodeFault::InFile { name, line, fault: Box::new(fault) }
+}
