@@ -2,6 +2,7 @@
 //! blocks.
 
 use super::GcodeFault;
+use super::control::Corner;
 use super::error::same_group;
 use super::words::group;
 use std::fmt;
@@ -55,6 +56,8 @@ pub(super) struct Block {
     shortest: u32,
     /// The tool vector (A3, B3, C3).
     pub(super) vector: Option<[f64; 3]>,
+    /// The corner at the end of a line.
+    pub(super) corner: Option<Corner>,
     /// The full turns of an arc beside its way to the end (TURN).
     pub(super) full_turns: u32,
     /// Set if G90 or G91 stands after a coordinate.
@@ -69,7 +72,7 @@ impl Block {
         self.keyword = None;
         (self.whole, self.computed) = (0, 0);
         (self.own_distance, self.own_increment, self.shortest) = (0, 0, 0);
-        (self.vector, self.full_turns) = (None, 0);
+        (self.vector, self.corner, self.full_turns) = (None, None, 0);
         self.distance_after_coordinate = false;
     }
 
@@ -79,6 +82,7 @@ impl Block {
             && self.codes.iter().all(Option::is_none)
             && self.passed_over.is_empty()
             && self.keyword.is_none()
+            && self.corner.is_none()
     }
 
     /// Adds a letter with its number.
@@ -205,19 +209,21 @@ impl Block {
     /// Returns whether a word of the block can name axes without moving them, or by a path of its own. What it leaves of the axis
     /// words moves on some controls.
     pub(super) fn owns_axis_words(&self) -> bool {
-        let owners = [Group::OneShot, Group::Machine, Group::Dwell];
+        let owners = [Group::OneShot, Group::Machine, Group::Dwell, Group::Mirror];
         owners.into_iter().any(|group| self.code_of(group).is_some())
             || self.code_of(Group::Rotation).is_some_and(|code| code.tenths != 690)
-            || self.passed_over.iter().any(|code| {
-                code.letter == 'G' && matches!(code.tenths, 150 | 230 | 500 | 501 | 670)
-            })
+            || self
+                .passed_over
+                .iter()
+                .any(|code| code.letter == 'G' && matches!(code.tenths, 230 | 500 | 670))
     }
 
     /// Returns whether the block has a position in program coordinates for a motion.
     pub(super) fn is_programmed(&self) -> bool {
         self.has_any("XYZABCIJK")
-            && self.code_of(Group::OneShot).is_none()
-            && self.code_of(Group::Machine).is_none()
+            && [Group::OneShot, Group::Machine, Group::Mirror]
+                .into_iter()
+                .all(|group| self.code_of(group).is_none())
     }
 
     /// Returns whether the block has words besides a keyword, of which none was used.
@@ -228,6 +234,12 @@ impl Block {
     /// Returns the number after a letter that no word has used.
     pub(super) fn value(&self, letter: char) -> Option<f64> {
         self.has(letter).then_some(self.values[usize::from(letter as u8 - b'A')])
+    }
+
+    /// Replaces the number after a letter.
+    pub(super) fn set(&mut self, letter: char, value: f64) {
+        self.unused |= 1 << (letter as u8 - b'A');
+        self.values[usize::from(letter as u8 - b'A')] = value;
     }
 
     /// Returns the number after a letter, which counts as used.
@@ -355,6 +367,10 @@ pub(super) enum Group {
     Rotation,
     /// Words for one block that use axis words: G10, G28, G30, G52, G53.1, G92.
     OneShot,
+    /// G15 and G16.
+    Polar,
+    /// G50.1 and G51.1.
+    Mirror,
     /// G53.
     Machine,
     /// G4.

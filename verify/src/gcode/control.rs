@@ -2,7 +2,9 @@
 
 mod compensation;
 mod coordinates;
+mod corner;
 mod cycle;
+mod figure;
 mod frame;
 mod heidenhain;
 mod hole;
@@ -13,6 +15,7 @@ mod offset;
 mod refuse;
 mod report;
 
+pub(super) use corner::Corner;
 pub(super) use report::Report;
 
 pub(super) use heidenhain::{Circle, Curve};
@@ -75,6 +78,12 @@ pub(super) struct Control {
     cycle: Option<Cycle>,
     /// Cutter radius compensation.
     compensation: Option<Compensation>,
+    /// The line whose corner is not known yet (`,R`, `,C`).
+    held_line: Option<corner::HeldLine>,
+    /// Polar coordinates (G16).
+    polar: Option<figure::Polar>,
+    /// The mirror image (G51.1).
+    mirror: figure::Mirror,
     /// The last tool vector of G43.5.
     vector: Option<[f64; 3]>,
     pub(super) notes: Notes,
@@ -249,6 +258,9 @@ impl Control {
             transformed: false,
             cycle: None,
             compensation: None,
+            held_line: None,
+            polar: None,
+            mirror: [None; 3],
             vector: None,
             notes: Notes::default(),
             rules: setup.rules.clone(),
@@ -345,6 +357,8 @@ impl Control {
         // The unit and the distance mode hold for the numbers of their own block.
         self.settings(block)?;
         self.numbers(block);
+        self.figure_words(block)?;
+        self.map_coordinates(block)?;
         self.compensation_words(block, register)?;
         self.coordinates(block)?;
         self.returned_length(block);
@@ -362,6 +376,7 @@ impl Control {
         self.check_offset(block)?;
         self.check_staged_edge(block)?;
         self.motion(block)?;
+        self.corners(block, known)?;
         self.compensate(known)?;
         match block.tenths_of(Group::Stop) {
             Some(20 | 300) => self.end_compensation(),
@@ -396,6 +411,7 @@ impl Control {
         if block.has_whole() && self.choice(Rule::WholeNumbers) == Choice::Increments {
             let has_angles = block.code_of(Group::Rotation).is_some();
             let (length, motion) = (self.modal.increment(), self.modal.motion);
+            let has_polar_angle = self.polar.is_some() && !block.owns_axis_words();
             // The rule is asked only where it matters: each that is not stated doubles the readings.
             let has_whole_radius = block.is_whole('R') || block.is_whole('Q');
             let keeps_radii = has_whole_radius && self.choice(Rule::WholeRadii) == Choice::Units;
@@ -403,6 +419,7 @@ impl Control {
                 'R' | 'Q' if keeps_radii => 1.0,
                 // The least increment of an angle, whatever the unit.
                 'A' | 'B' | 'C' => 1e-3,
+                'Y' if has_polar_angle => 1e-3,
                 // The number of repeats of a cycle.
                 'K' if matches!(motion, Some(Motion::Cycle(_))) => 1.0,
                 // The angles of G68 and G68.2.

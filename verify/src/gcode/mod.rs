@@ -25,7 +25,8 @@
 //! - G43 H (without H: the register of the tool in the spindle), G49, T, M6.
 //! - Cutter radius compensation G40 G41 G42 with D, and LinuxCNC's G41.1 G42.1, from a [table of radii](ControlSetup::radius_offsets).
 //! - Canned cycles G73 G74 G81 to G86 G89 with G98 G99 in three planes, with R, Z, Q, P and repeats L or K.
-//! - `M98 P L` with O-numbers, M97 and M99; macros of Fanuc and Haas (G65, G66, `IF`, `WHILE`, `GOTO`) and O-words of LinuxCNC.
+//! - Polar coordinates G16, mirror images G51.1, corners `,R` and `,C` between lines.
+//! - `M98 P L` with O-numbers, M97, M198 and M99, also of [other files](ControlSetup::subprograms); macros of Fanuc and Haas (G65, G66, `IF`, `WHILE`, `GOTO`) and O-words of LinuxCNC.
 //! - Tool centre point control: G43.4, G43.5, G234, `TRAORI`, M428; ended by G49, `TRAFOOF`, M429.
 //! - Tilted planes G68.2 with G53.1, rotation G68, both ended by G69.
 //! - Variables and expressions; comments, `/`, `%`, N.

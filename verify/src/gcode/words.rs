@@ -51,7 +51,7 @@ const FINAL: &str = "post the program with final coordinates";
 
 /// The words by letter and number.
 #[rustfmt::skip]
-const WORDS: [Entry; 88] = [
+const WORDS: [Entry; 89] = [
     g(&[0], Group::Motion, "rapid traverse"),
     g(&[10], Group::Motion, "a line at feed rate"),
     g(&[20, 30], Group::Motion, "an arc or a helix, clockwise and counter-clockwise"),
@@ -65,8 +65,7 @@ const WORDS: [Entry; 88] = [
     no_g(&[106], "a retract that the operator can start", WITHOUT),
     no_g(&[120, 130], "a circular pocket of Haas, whose path is the control's own", MOTIONS),
     no_g(&[121, 131], "polar coordinate interpolation, of a rotary and a linear axis", MOTIONS),
-    g(&[150], Group::PassedOver, "the end of polar coordinates"),
-    no_g(&[160], "polar coordinates", "post the program with X Y Z"),
+    g(&[150, 160], Group::Polar, "the end of polar coordinates, and polar coordinates"),
     g(&[170, 180, 190], Group::Plane, "the plane XY, ZX or YZ"),
     g(&[200, 210], Group::Units, "inches, and millimetres"),
     no_g(&[220], "limits that the tool must not leave", WITHOUT),
@@ -86,8 +85,10 @@ const WORDS: [Entry; 88] = [
     g(&[434, 435, 2340], Group::Length, "tool centre point control, with rotary axes (G43.4, G234) or tool vectors"),
     no_g(&[470], "engraving of text, whose path is the control's own", MOTIONS),
     g(&[490], Group::Length, "the end of a length offset and of tool centre point control"),
-    g(&[500, 501], Group::PassedOver, "the end of scaling and mirroring"),
-    no_g(&[510, 511, 1000, 1010], "scaling or mirroring", FINAL),
+    g(&[500], Group::PassedOver, "the end of scaling"),
+    g(&[501, 511], Group::Mirror, "the end of a mirror image, and a mirror image"),
+    no_g(&[510], "scaling, whose axes and unit of P are set by parameters (5400 and 5401 of Fanuc)", FINAL),
+    no_g(&[1000, 1010], "a mirror image of Haas", "write G50.1 and G51.1, or post the program with final coordinates"),
     g(&[520], Group::OneShot, "a shift"),
     g(&[530], Group::Machine, "machine coordinates"),
     g(&[531], Group::OneShot, "the alignment of the tool with a tilted plane"),

@@ -3,6 +3,7 @@
 mod common;
 mod compensation;
 mod expected;
+mod figures;
 mod geometry;
 mod klartext;
 mod macros;

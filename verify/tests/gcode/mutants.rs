@@ -58,7 +58,7 @@ const SEEDS: [(&str, Choice); 9] = [
 ];
 
 /// Pieces that mutations insert.
-const PIECES: [&str; 77] = [
+const PIECES: [&str; 83] = [
     "GOTO 20",
     "IF [",
     "THEN #1=",
@@ -108,6 +108,12 @@ const PIECES: [&str; 77] = [
     "M98 P1000",
     "M98 P2000 L9999",
     "M98 P9001 L2",
+    "G16",
+    "G15",
+    "G51.1 X1.",
+    "G50.1 X0",
+    ",R2.",
+    ",C1.",
     "M98 <SUB>",
     "M198 P9001",
     "G65 P9001 X1. K2.",

@@ -359,7 +359,6 @@ fn words_that_are_not_read_are_named() {
         ("G254", 1, "G254 is a dynamic work offset"),
         ("M98 P7", 1, "there is no O7"),
         ("G10 L2 P1 X0 Y0 Z0 R30", 1, "a rotation of the work offset on LinuxCNC alone"),
-        ("G0 X1\nG50.1 X0 Y0", 2, "X is used by no"),
         ("G0 X1\nG92.1 Y0", 2, "Y is used by no"),
         ("G0 X1\nG53.1", 2, "a tilted plane"),
         ("G0 X1\nG68 X0 Y0 Z5 R30", 2, "Z is used by no"),

@@ -165,7 +165,8 @@ impl Control {
         code: Code,
         register: Option<f64>,
     ) -> Result<f64, GcodeFault> {
-        let side = if matches!(code.tenths, 410 | 411) { 1.0 } else { -1.0 };
+        let is_left = matches!(code.tenths, 410 | 411) != self.turns_over(self.modal.plane);
+        let side = if is_left { 1.0 } else { -1.0 };
         let dialect = self.stated(Rule::Dialect);
         if matches!(code.tenths, 411 | 421) {
             if dialect != Some(Choice::Rs274Ngc) {
@@ -490,6 +491,7 @@ impl Control {
 
     /// Ends compensation with the program: after G40 the tool stays beside the programmed path.
     pub(crate) fn end_compensation(&mut self) -> Result<(), GcodeFault> {
+        self.check_corner()?;
         let Some(mut compensation) = self.compensation.take() else { return Ok(()) };
         if compensation.is_on() {
             return Err(under_compensation("the end of the program"));

@@ -136,6 +136,7 @@ impl Control {
 
     fn arc(&mut self, block: &mut Block, clockwise: bool) -> Result<(), GcodeFault> {
         let word = if clockwise { "G2" } else { "G3" };
+        let clockwise = clockwise != self.turns_over(self.modal.plane);
         if let Some(letter) = AXES.iter().find(|letter| block.is_shortest(**letter)) {
             let condition = "its block has an arc";
             return Err(combination(

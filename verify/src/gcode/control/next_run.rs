@@ -38,9 +38,11 @@ enum Mode {
     Staged,
     /// A series of canned cycles, with its initial level.
     Series,
+    Polar,
+    Mirror,
 }
 
-const MODES: [Mode; 14] = [
+const MODES: [Mode; 16] = [
     Mode::Unit,
     Mode::Plane,
     Mode::Distance,
@@ -55,6 +57,8 @@ const MODES: [Mode; 14] = [
     Mode::Tcp,
     Mode::Staged,
     Mode::Series,
+    Mode::Polar,
+    Mode::Mirror,
 ];
 
 impl Interpreter<'_> {
@@ -206,6 +210,8 @@ impl Mode {
             Mode::Tcp => (state.tcp, first.transformed) != (others.tcp, second.transformed),
             Mode::Staged => first.staged != second.staged,
             Mode::Series => (&first.cycle, modal.cycle()) != (&second.cycle, other.cycle()),
+            Mode::Polar => first.polar != second.polar,
+            Mode::Mirror => first.mirror != second.mirror,
         }
     }
 
@@ -252,6 +258,8 @@ impl Mode {
                 Some(Motion::Cycle(number)) => return format!("G{number} without G80"),
                 _ => "a canned cycle without G80",
             },
+            Mode::Polar => "G16",
+            Mode::Mirror => "G51.1",
             Mode::Tcp => match state.tcp {
                 Tcp::Transformation => "TRAORI",
                 Tcp::Vector => "G43.5",
@@ -301,6 +309,8 @@ impl Control {
                         (left.length_implicit, left.length_cancelled);
                 }
                 Mode::Register => self.last_register = left.last_register,
+                Mode::Polar => self.polar = left.polar,
+                Mode::Mirror => self.mirror = left.mirror,
                 Mode::Staged => self.staged = left.staged,
                 Mode::Series => {
                     // M2 and M30 select G1 on LinuxCNC, and keep the level of the series until another motion word
@@ -328,6 +338,8 @@ impl Control {
             // A motion that is held back is compared once it is known.
             && self.compensation.is_none()
             && next.compensation.is_none()
+            && self.held_line.is_none()
+            && next.held_line.is_none()
             && self.returned == next.returned
             && (self.tcp_position_needed || !next.tcp_position_needed)
             && self.changed().zip(next.changed()).all(|(changed, next)| changed || !next)

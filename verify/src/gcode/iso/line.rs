@@ -5,6 +5,7 @@
 use super::expression::{Cursor, ExpressionFault, Language, Value, begins_value, condition, value};
 use super::variables::{Parameter, Scope, assignment};
 use crate::gcode::block::{Block, Code, Keyword, Number};
+use crate::gcode::control::Corner;
 use crate::gcode::error::{combination, missing, not_read};
 use crate::gcode::rules::{Choice, Rule};
 use crate::gcode::{GcodeFault, LARGEST_NUMBER, MAX_ASSIGNMENTS, unquoted};
@@ -98,12 +99,7 @@ impl Line {
                     uses += usize::from(written.contains('#'));
                 }
                 _ if byte.is_ascii_alphabetic() => self.word(&mut cursor, scope)?,
-                b',' => {
-                    let word: String =
-                        cursor.rest().chars().take(2).flat_map(char::escape_debug).collect();
-                    let meaning = "a rounded or chamfered corner";
-                    return Err(not_read(word, meaning, "post the program with its motions"));
-                }
+                b',' => self.corner(&mut cursor, scope)?,
                 b'0'..=b'9' if self.is_empty() => return Err(numbered_line(cursor)),
                 _ => return Err(unexpected(&cursor)),
             }
@@ -129,6 +125,7 @@ impl Line {
                 Ok(Some(b'#')) => assignment(&mut cursor, scope).map(drop).map_err(Into::into),
                 Ok(Some(b'0'..=b'9')) if self.is_empty() => Err(numbered_line(cursor)),
                 Ok(Some(byte)) if byte.is_ascii_alphabetic() => self.word(&mut cursor, scope),
+                Ok(Some(b',')) => self.corner(&mut cursor, scope),
                 Ok(Some(_)) => Err(unexpected(&cursor)),
                 Err(fault) => Err(fault),
             };
@@ -194,6 +191,36 @@ impl Line {
                 let is_whole = !is_computed && !written.contains('.');
                 self.block.add(letter, Number { value, is_whole, is_computed })
             }
+        }
+    }
+
+    /// Reads `,R` or `,C` with its length.
+    fn corner(&mut self, cursor: &mut Cursor, scope: &Scope) -> Result<(), GcodeFault> {
+        let word: String = cursor.rest().chars().take(2).flat_map(char::escape_debug).collect();
+        let is_known = matches!(
+            scope.control.stated(Rule::Dialect),
+            None | Some(Choice::Iso | Choice::Sinumerik)
+        );
+        let letter = word.chars().nth(1).filter(|_| is_known).map(|c| c.to_ascii_uppercase());
+        let Some(letter @ ('R' | 'C')) = letter else {
+            let meaning = "an angle, or a corner on other controls";
+            return Err(not_read(word, meaning, "post the program with its motions"));
+        };
+        cursor.advance();
+        cursor.advance();
+        if !begins_value(cursor) {
+            return Err(GcodeFault::NoNumber { word: letter });
+        }
+        let start = *cursor;
+        let Some(length) = value(cursor, scope)? else { return Ok(()) };
+        if length.abs() > LARGEST_NUMBER {
+            return Err(GcodeFault::TooLarge { word: letter });
+        }
+        let is_whole = !start.text_to(cursor).contains(['.', '[', '#']);
+        let corner = Corner { is_round: letter == 'R', length, is_whole };
+        match self.block.corner.replace(corner) {
+            None => Ok(()),
+            Some(_) => Err(GcodeFault::Repeated { word: letter }),
         }
     }
 
