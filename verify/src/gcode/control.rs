@@ -15,7 +15,7 @@ mod offset;
 mod refuse;
 mod report;
 
-pub(super) use corner::Corner;
+pub(super) use corner::{Corner, CornerShape};
 pub(super) use report::Report;
 
 pub(super) use heidenhain::{Circle, Curve};
@@ -110,6 +110,8 @@ pub(super) struct Control {
     rotation_changed: bool,
     /// The reason for which a work offset has to be selected before a position.
     needs_offset: Option<&'static str>,
+    /// Set by TRAORI and TRAFOOF, until a work offset is selected.
+    transformation_changed: bool,
     /// Set if tool centre point control has begun with turned axes, until a position is stated.
     tcp_position_needed: bool,
     /// Set once the program has a length.
@@ -275,6 +277,7 @@ impl Control {
             origin_changed: [false; 6],
             rotation_changed: false,
             needs_offset: None,
+            transformation_changed: false,
             tcp_position_needed: false,
             unit_used: false,
             length_implicit: false,

@@ -55,6 +55,8 @@ pub enum Rule {
     TcpStart,
     /// The tool axis between two positions of the rotary axes under `TRAORI`.
     ToolOrientation,
+    /// The work offset after `TRAORI` and `TRAFOOF`.
+    TransformationOffset,
     /// Modes and offsets at M2 and M30.
     ProgramEnd,
     /// The path around an outside corner under cutter compensation.
@@ -115,6 +117,8 @@ pub enum Choice {
     TableAsItStands,
     ByAxes,
     GreatCircle,
+    DeselectsOffset,
+    KeepsOffset,
     KeepsModes,
     SetsModes,
     ResetsModes,
@@ -136,7 +140,7 @@ struct Entry {
 }
 
 /// All rules. Without a statement the interpreter makes the first choice of each.
-const RULES: [Entry; 25] = [
+const RULES: [Entry; 26] = [
     Entry {
         rule: Rule::ToolChange,
         key: "tool_change",
@@ -361,6 +365,15 @@ const RULES: [Entry; 25] = [
         ],
     },
     Entry {
+        rule: Rule::TransformationOffset,
+        key: "traori_offset",
+        about: "the work offset after TRAORI and TRAFOOF",
+        choices: &[
+            (Choice::DeselectsOffset, "deselects", "is deselected, until it is programmed again"),
+            (Choice::KeepsOffset, "keeps", "stays in force"),
+        ],
+    },
+    Entry {
         rule: Rule::ProgramEnd,
         key: "program_end",
         about: "modes and offsets at M2 and M30",
@@ -427,7 +440,7 @@ const CONTROLS: [&str; 5] = ["fanuc", "haas", "linuxcnc", "siemens", "heidenhain
 /// Their choices, a column per control, in the order of [`RULES`] without the operator's switch. Each is the control as
 /// delivered: a builder can set most of them otherwise.
 #[rustfmt::skip]
-const CONTROL_CHOICES: [[Choice; 5]; 24] = {
+const CONTROL_CHOICES: [[Choice; 5]; 25] = {
     use Choice::*;
     [
         [Moves,           Retracts,      Stays,         Moves,         Moves],
@@ -451,6 +464,7 @@ const CONTROL_CHOICES: [[Choice; 5]; 24] = {
         [Increments,      Units,         Units,         Units,         Units],
         [TableAsItStands, TableAtZero,   TableAtZero,   TableAtZero,   TableAtZero],
         [ByAxes,          ByAxes,        ByAxes,        ByAxes,        ByAxes],
+        [KeepsOffset,     KeepsOffset,   KeepsOffset,   KeepsOffset,   KeepsOffset],
         [KeepsModes,      KeepsModes,    SetsModes,     KeepsModes,    KeepsModes],
         [StraightCorner,  StraightCorner, ArcCorner,    ArcCorner,     ArcCorner],
         [NextMotion,      NextMotion,    EntryMotion,   NextMotion,    NextMotion],
@@ -458,7 +472,7 @@ const CONTROL_CHOICES: [[Choice; 5]; 24] = {
 };
 
 /// Rules that a control leaves to a parameter without a usual value: every choice is a reading.
-const OPEN: [(&str, Rule); 9] = [
+const OPEN: [(&str, Rule); 10] = [
     ("fanuc", Rule::ReferenceReturn),
     ("fanuc", Rule::LengthChange),
     // K, and L on the Series 15 and in its format.
@@ -471,6 +485,8 @@ const OPEN: [(&str, Rule); 9] = [
     // Within a turn in native programs, the shorter way in ISO mode (MD20734).
     ("siemens", Rule::Rotary),
     ("siemens", Rule::ToolOrientation),
+    // MD10602, by which the machine's builder clears the frame with the change of the axes.
+    ("siemens", Rule::TransformationOffset),
     // The display of the axis below 360 degrees, and M126.
     ("heidenhain", Rule::Rotary),
 ];

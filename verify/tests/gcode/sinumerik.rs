@@ -393,7 +393,8 @@ fn what_is_outside_is_refused_by_name_with_its_line() {
         ("R1=1\nHOLES1(0,0,0,10,10,3)", 2, "HOLES1 is a pattern of holes"),
         ("EXTCALL(\"A\")", 1, "`A` is no word that is read, and no subprogram"),
         ("R1=1\nCIP X1 Y1 I1=2 J1=3", 2, "CIP is another form of arc"),
-        ("G1 X1 RND=2 F100", 1, "RND is a rounded or chamfered corner"),
+        ("G54 G1 X1 RND=2 F100\nG0 Y1", 2, "RND is a corner that is not between two lines"),
+        ("G54 G1 X9 RND=2 CHF=1 F100\nY1", 1, "CHF while its block has another corner"),
         ("R1=1\nG41 X5", 2, "G41"),
         ("R1=1\nG43 H1", 2, "G43 is a word of ISO mode"),
         ("R1=1\nG58 X1", 2, "G58 is a programmable shift"),
@@ -539,4 +540,36 @@ fn a_loop_of_a_hundred_thousand_blocks_is_as_fast_as_text() {
     });
     println!("{:?} for the loop, {:?} for the text", times[0], times[1]);
     assert!(times[0] < 20 * times[1] + Duration::from_millis(100), "{times:?}");
+}
+
+/// The corners of a square and of a triangle whose lines meet at 60 degrees, at points that are worked out by hand.
+#[test]
+fn corners_are_rounded_or_chamfered() {
+    let found =
+        steps("G54 G0 X0 Y0\nG1 X40 RND=5 F100\nY30 CHR=2\nR1=SQRT(8)\nX0 CHF=R1\nY10\nM30\n");
+    let ends: Vec<[f64; 2]> =
+        found.iter().map(|step| [0, 1].map(|axis| step.end[axis].expect("a coordinate"))).collect();
+    let expected = [
+        [0.0, 0.0],
+        [35.0, 0.0],
+        [40.0, 5.0],
+        [40.0, 28.0],
+        [38.0, 30.0],
+        [2.0, 30.0],
+        [0.0, 28.0],
+        [0.0, 10.0],
+    ];
+    assert_eq!(ends.len(), expected.len(), "{ends:?}");
+    for (end, expected) in ends.iter().zip(expected) {
+        assert!((0..2).all(|k| (end[k] - expected[k]).abs() < 1e-12), "{ends:?}");
+    }
+    let StepPath::Arc { centre, sweep, .. } = found[2].path else { panic!("{:?}", found[2]) };
+    assert!((centre[0] - 35.0).abs() < 1e-12 && (centre[1] - 5.0).abs() < 1e-12, "{centre:?}");
+    assert!((sweep - std::f64::consts::FRAC_PI_2).abs() < 1e-12, "{sweep}");
+    // A chamfer of 4 across the corner of an equilateral triangle takes 4 of both lines.
+    let apex = 20.0 * 3.0f64.sqrt();
+    let found = steps(&format!("G54 G0 X0 Y0\nG1 X40 CHF=4 F100\nX20 Y{apex:.12}\nM30\n"));
+    let end = found[2].end;
+    let expected = [40.0 - 4.0 * 0.5, 4.0 * 0.75f64.sqrt()];
+    assert!((0..2).all(|k| (end[k].expect("a coordinate") - expected[k]).abs() < 1e-11), "{end:?}");
 }

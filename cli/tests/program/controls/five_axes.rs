@@ -144,6 +144,18 @@ fn an_orientation_under_traori_is_stated() {
     scene.gives_natively(0, &[]);
 }
 
+/// Posts of Autodesk write no work offset after TRAORI.
+#[test]
+fn the_work_offset_after_traori_is_deselected_or_kept() {
+    let blocks = "T1 D1 M6\nS9000 M3\nG0 X-6. Y0. Z20. A0. C0.\nTRAORI\nX-5.\nG1 X-4. Z1.\nG0 Z20.\nTRAFOOF\nG0 Z60.";
+    let scene = Scene::new(blocks).placed();
+    let scene = scene.with("machine = \"A-C trunnion\"\nanyway = true");
+    scene.gives_after_traori(Choice::KeepsOffset, 0, &[]);
+    let needed = "a.nc:6: a position needs a work offset (G54) before, since TRAORI";
+    scene.gives_after_traori(Choice::DeselectsOffset, 2, &[needed]);
+    scene.gives(&SIEMENS, 2, &[needed, "traori_offset"]);
+}
+
 /// A rotary axis without limits returns in a direction of the machine's.
 #[test]
 fn a_return_of_a_rotary_axis_is_not_the_shorter_way() {

@@ -60,10 +60,16 @@ impl Scene {
 
     /// As [`Scene::gives`], on a Sinumerik that reads native programs.
     fn gives_natively(&self, status: i32, words: &[&str]) {
+        self.gives_after_traori(Choice::DeselectsOffset, status, words);
+    }
+
+    /// As [`Scene::gives_natively`], with what TRAORI does to the work offset.
+    fn gives_after_traori(&self, offset: Choice, status: i32, words: &[&str]) {
         let siemens = ControlRules::named("siemens").expect("a control");
         let native = siemens.with(Rule::ToolLength, Choice::Always);
         let native = native.with(Rule::Rotary, Choice::WithinTurn);
-        let native = native.with(Rule::ToolOrientation, Choice::ByAxes).to_toml();
+        let native = native.with(Rule::ToolOrientation, Choice::ByAxes);
+        let native = native.with(Rule::TransformationOffset, offset).to_toml();
         let control = self.bench.write("native.toml", native);
         self.gives(&["--control", &control], status, words);
     }

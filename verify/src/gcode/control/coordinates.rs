@@ -425,8 +425,7 @@ impl Control {
                 let remedy = "write it in a block of its own";
                 return Err(combination(word, condition, remedy));
             }
-            let needed = "a work offset (G54) before, since TRAORI and TRAFOOF deselect it";
-            self.needs_offset = Some(needed);
+            self.transformation_changed = true;
         }
         if word == "M429" || word == "TRAFOOF" {
             self.transformed = false;
@@ -504,7 +503,7 @@ impl Control {
     /// Puts a work offset in force.
     pub(super) fn select_offset(&mut self, offset: WorkOffset) {
         self.offset_stated = true;
-        self.needs_offset = None;
+        (self.needs_offset, self.transformation_changed) = (None, false);
         self.activate(offset);
     }
 
@@ -829,6 +828,11 @@ impl Control {
             return Ok(());
         }
         let mut needed = self.needs_offset;
+        if self.transformation_changed
+            && self.choice(Rule::TransformationOffset) == Choice::DeselectsOffset
+        {
+            needed = Some("a work offset (G54) before, since TRAORI and TRAFOOF deselect it");
+        }
         if !self.offset_stated && self.choice(Rule::StartOffset) == Choice::NoOffset {
             needed
                 .get_or_insert("a work offset (G54) before, since this control starts without one");

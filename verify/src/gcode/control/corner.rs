@@ -1,7 +1,6 @@
-//! Corners of a contour (`,R` and `,C` of Fanuc and Haas): the arc or the chamfer between two lines.
+//! Corners of a contour (`,R` and `,C` of Fanuc and Haas, `RND=`, `CHR=` and `CHF=` of Sinumerik): the arc or the chamfer between two lines.
 //!
-//! The line that states a corner is held until the next motion. `,R` is the radius of an arc that touches both lines, `,C` the distance of both
-//! ends of the chamfer from the corner (known: Fanuc, *Optional chamfering and corner R*).
+//! The line that states a corner is held until the next motion (known: Fanuc, *Optional chamfering and corner R*; Siemens, *NC programming*).
 
 use super::{Control, in_plane};
 use crate::gcode::block::Block;
@@ -15,18 +14,24 @@ use std::sync::Arc;
 /// A corner, as its block states it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::gcode) struct Corner {
-    /// `,R`, and not `,C`.
-    pub(in crate::gcode) is_round: bool,
-    /// The radius, or the distance from the corner, in the unit of the program.
+    /// The word, for messages.
+    pub(in crate::gcode) word: &'static str,
+    pub(in crate::gcode) shape: CornerShape,
+    /// The length that gives its size, in the unit of the program.
     pub(in crate::gcode) length: f64,
     /// Set if it is written without a decimal point.
     pub(in crate::gcode) is_whole: bool,
 }
 
-impl Corner {
-    fn word(self) -> &'static str {
-        if self.is_round { ",R" } else { ",C" }
-    }
+/// The shape of a corner, and the length that gives its size.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::gcode) enum CornerShape {
+    /// An arc that touches both lines, by its radius.
+    Round,
+    /// A chamfer, by the distance of both ends from the corner.
+    Chamfer,
+    /// A chamfer, by its own length.
+    Chord,
 }
 
 /// A line, and the corner at its end.
@@ -54,7 +59,7 @@ impl Control {
             self.held_line = None;
         }
         let Some(corner) = block.corner.take() else { return Ok(()) };
-        let word = corner.word();
+        let word = corner.word;
         let is_increment = corner.is_whole && self.choice(Rule::WholeNumbers) == Choice::Increments;
         let factor = if is_increment { self.modal.increment() } else { 1.0 };
         let length = self.modal.millimetres(corner.length * factor);
@@ -77,7 +82,7 @@ impl Control {
     pub(super) fn check_corner(&self) -> Result<(), GcodeFault> {
         match &self.held_line {
             None => Ok(()),
-            Some(held) => Err(missing(held.corner.word(), "a line (G1) in its plane after it")),
+            Some(held) => Err(missing(held.corner.word, "a line (G1) in its plane after it")),
         }
     }
 }
@@ -92,7 +97,7 @@ fn is_line(step: &Step) -> bool {
 fn round(held: &HeldLine, next: &Step, plane: Plane) -> Result<[Step; 3], GcodeFault> {
     let HeldLine { step, corner, length, .. } = held;
     let axes = plane.axes();
-    let word = corner.word();
+    let word = corner.word;
     let beside =
         || not_read(word, "a corner that is not between two lines in its plane", WRITE_OUT);
     let is_level = |step: &Step| {
@@ -122,15 +127,21 @@ fn round(held: &HeldLine, next: &Step, plane: Plane) -> Result<[Step; 3], GcodeF
         return Err(combination(word, condition, "remove it"));
     }
     let turn = cross.atan2(dot);
-    let cut = if corner.is_round { length * (0.5 * turn).tan().abs() } else { *length };
+    // Half of the angle between both lines.
+    let half = 0.5 * (PI - turn.abs());
+    let cut = match corner.shape {
+        CornerShape::Round => length / half.tan(),
+        CornerShape::Chamfer => *length,
+        CornerShape::Chord => 0.5 * length / half.sin(),
+    };
     if cut > lengths[0].min(lengths[1]) {
         let condition = "a line beside it is shorter than what it takes of it";
         return Err(combination(word, condition, "make the corner smaller"));
     }
     let [from, to] = [back, ahead].map(|direction| point + cut * direction);
-    let path = if corner.is_round {
+    let path = if corner.shape == CornerShape::Round {
         let inward = (back + ahead).normalize();
-        let centre = point + inward * (length / (0.5 * (PI - turn.abs())).sin());
+        let centre = point + inward * (length / half.sin());
         StepPath::Arc { plane, centre: centre.into(), sweep: turn }
     } else {
         StepPath::Line

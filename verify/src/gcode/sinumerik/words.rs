@@ -5,7 +5,7 @@ use super::table::{Use, use_of};
 use super::text::Cursor;
 use super::{Program, no_subprogram, undefined};
 use crate::gcode::block::{Block, Code, Distance, Group, Keyword, Number};
-use crate::gcode::control::{Control, FrameStep};
+use crate::gcode::control::{Control, Corner, CornerShape, FrameStep};
 use crate::gcode::error::{combination, missing, not_read};
 use crate::gcode::interpreter::Progress;
 use crate::gcode::note::NoteKind;
@@ -274,6 +274,19 @@ impl<'a> Program<'a> {
             }
             "CR" if cursor.take_assignment() => {
                 block.add('R', plain(number(cursor, &self.variables)?))
+            }
+            "RND" | "CHR" | "CHF" if cursor.take_assignment() => {
+                let (word, shape) = match upper.as_str() {
+                    "RND" => ("RND", CornerShape::Round),
+                    "CHR" => ("CHR", CornerShape::Chamfer),
+                    _ => ("CHF", CornerShape::Chord),
+                };
+                let length = number(cursor, &self.variables)?;
+                let corner = Corner { word, shape, length, is_whole: false };
+                match block.corner.replace(corner) {
+                    None => Ok(()),
+                    Some(_) => Err(combination(word, "its block has another corner", "keep one")),
+                }
             }
             "TURN" if cursor.take_assignment() => {
                 let value = number(cursor, &self.variables)?;
