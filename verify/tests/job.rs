@@ -122,6 +122,66 @@ fn one_pass_gives_what_each_check_gives_by_itself() {
     assert!(found > 200 && most_readings > 1);
 }
 
+/// One order over surfaces, stock and machine: by what a finding means, then by depth. What goes right through the part is one
+/// finding.
+#[test]
+fn the_worst_finding_comes_first() {
+    let part = cuboid([-20.0, -20.0, -10.0], [20.0, 20.0, 0.0]);
+    let clamp = cuboid([40.0, -5.0, 0.0], [50.0, 5.0, 20.0]);
+    let text = "G21 G90 G54\nT1 M6\nS900 M3\nG0 X-30. Y0.\nG43 H1 Z5.\nG1 Z-5. F100.\nX30.\nG0 Z5.\nX10. Y10.\nG1 Z-0.5\nG0 Z5.\n\
+                X30.\nG1 Z-5.\nX-30.\nY14.\nX30.\nG0 Z5.\nX0. Y-12.\nZ-0.25\nZ5.\nM5\nG1 X-30.\nM30\n";
+    let setup = ControlSetup {
+        rules: ControlRules::named("linuxcnc").expect("a control"),
+        work_offsets: std::array::from_fn(|k| {
+            (k == 0).then_some([0.0, 0.0, -300.0, 0.0, 0.0, 0.0])
+        }),
+        lengths: [(1, 80.0)].into(),
+        ..ControlSetup::default()
+    };
+    let machine = Machine::named("3-axis").expect("a machine");
+    let program = Program::parse(text, "worst.nc", machine, &setup).expect("a program");
+    let mut job = Job::new(&program, &part);
+    job.tools.push(JobTool::numbered(1, &Mill));
+    let mut fixture = Body::fixture("the clamp", &clamp);
+    fixture.role = BodyRole::Fixture { margin: 7.0 };
+    job.bodies.push(fixture);
+    let corners = [[-20.0, -20.0, -10.0], [20.0, 20.0, 2.0]].map(Point3::from);
+    let stock = JobStock { shape: StockShape::Box(corners), spacing: 1.0, tolerance: Some(0.5) };
+    job.stock = Some(stock);
+    let report = job.check(&|_| ()).expect("a result");
+    let findings = report.findings();
+
+    // Face and flute pass through on line 7, and beside it on lines 14 and 16.
+    let FindingDetail::Surface { groups, motions, .. } = &findings[0].detail else {
+        panic!("{}", findings[0]);
+    };
+    assert_eq!((findings[0].rule, findings[0].line, findings[0].lines), ("deep", 7, [7, 16]));
+    assert_eq!((groups.len(), *motions), (6, 3), "{}", findings[0]);
+    let start = "T1 face and flute pass right through the part on 3 motions, lines 7, 14, 16; first, face passes right \
+                 through the part at ";
+    assert!(findings[0].text.starts_with(start), "{}", findings[0]);
+
+    // The depth beyond its limit, over surfaces and the stock; then what has none.
+    let excess = |detail: &FindingDetail| match detail {
+        FindingDetail::Surface { groups, .. } => match groups[0].worst.kind {
+            FindingKind::Deep { through: true, .. } => Some(f64::INFINITY),
+            FindingKind::Deep { depth, allowed, .. } => Some(depth.low - allowed),
+            _ => None,
+        },
+        FindingDetail::Stock(stock) => Some(stock.depth - 0.5),
+        FindingDetail::Machine(_) => None,
+    };
+    let excesses: Vec<_> = findings.iter().map(|finding| excess(&finding.detail)).collect();
+    let deep: Vec<f64> = excesses.iter().map_while(|excess| *excess).collect();
+    assert!(deep.is_sorted_by(|one, other| one >= other), "{deep:?}");
+    let rules: Vec<_> = findings.iter().map(|finding| finding.rule).collect();
+    let stock = rules.iter().position(|rule| *rule == "stock").expect("stock");
+    assert!(rules[..stock].contains(&"deep") && rules[stock..deep.len()].contains(&"deep"));
+    let (last, near) = rules[deep.len()..].split_last().expect("findings without a depth");
+    assert!(*last == "spindle" && near.contains(&"near"), "{rules:?}");
+    assert!(near.iter().all(|rule| *rule == "near"), "{rules:?}");
+}
+
 /// Names by which programs of Sinumerik select tools are given once.
 #[test]
 fn a_tool_name_stands_for_one_tool() {

@@ -275,8 +275,9 @@ impl CheckResult {
         let (mut findings, mut others, mut remarks) = (Vec::new(), Vec::new(), Vec::new());
         for finding in report.findings() {
             match &finding.detail {
-                FindingDetail::Surface { pair: 0, group, .. } => {
-                    findings.push(FindingRow::of(group, report.job.tools[0].tool.info()));
+                FindingDetail::Surface { pair: 0, groups, .. } => {
+                    let info = report.job.tools[0].tool.info();
+                    findings.extend(groups.iter().map(|group| FindingRow::of(group, info)));
                 }
                 _ => {
                     let is_remark = finding.severity == Severity::Remark;

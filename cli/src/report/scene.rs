@@ -51,8 +51,8 @@ impl Place {
                 let target = finding.point;
                 Some(Place { body: None, tool: None, target, toward, extent })
             }
-            FindingDetail::Surface { pair, group, .. } => {
-                let (finding, pair) = (&group.worst, &checked.pairs[*pair]);
+            FindingDetail::Surface { pair, groups, .. } => {
+                let (finding, pair) = (&groups[0].worst, &checked.pairs[*pair]);
                 let body = pair.body;
                 // The shapes of the machine's bodies come after those of the tools.
                 let tool = match pair.moving {

@@ -225,16 +225,66 @@ impl FindingKind {
     /// Compares findings by severity: a tool or a surface inside the material, then depth beyond the allowance, then
     /// distance short of the margin, then motions that could not be decided.
     pub fn severity(&self, other: &FindingKind) -> Ordering {
-        let [one, other] = [self, other].map(|kind| match kind {
-            FindingKind::Inside { surface: None } => (5, 0.0),
-            FindingKind::Inside { surface: Some(_) } => (4, 0.0),
-            FindingKind::Deep { allowed, depth, through, .. } => {
-                (3, if *through { f64::INFINITY } else { depth.low - allowed })
+        self.rank().cmp(&other.rank())
+    }
+
+    /// Returns the place in the order of severity.
+    pub(crate) fn rank(&self) -> Rank {
+        match self {
+            FindingKind::Inside { surface: None } => Rank { class: RankClass::Inside, excess: 0.0 },
+            FindingKind::Inside { surface: Some(_) } => {
+                Rank { class: RankClass::PieceInside, excess: 0.0 }
             }
-            FindingKind::Near { margin, distance, .. } => (2, margin - distance.high),
-            FindingKind::Ambiguous(_) => (1, 0.0),
-            FindingKind::Undecided { .. } => (0, 0.0),
-        });
-        one.0.cmp(&other.0).then(one.1.total_cmp(&other.1))
+            FindingKind::Deep { allowed, depth, through, .. } => {
+                Rank::deep(if *through { f64::INFINITY } else { depth.low - allowed })
+            }
+            FindingKind::Near { margin, distance, .. } => {
+                Rank { class: RankClass::Near, excess: margin - distance.high }
+            }
+            FindingKind::Ambiguous(_) => Rank { class: RankClass::Ambiguous, excess: 0.0 },
+            FindingKind::Undecided { .. } => Rank { class: RankClass::Undecided, excess: 0.0 },
+        }
+    }
+
+    /// Returns whether the tool is so far in the material that no depth tells how far: a piece of it is inside, or the
+    /// surface of the material passes its middle.
+    pub fn is_right_through(&self) -> bool {
+        matches!(self, FindingKind::Inside { .. } | FindingKind::Deep { through: true, .. })
+    }
+}
+
+/// The place of a finding in the order of severity: the greater, the worse.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Rank {
+    class: RankClass,
+    /// A measure within the class, the length beyond a limit in the part's unit.
+    excess: f64,
+}
+
+/// The classes of findings, from the least to the worst.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum RankClass {
+    Undecided,
+    Ambiguous,
+    Machine,
+    Near,
+    Deep,
+    PieceInside,
+    Inside,
+}
+
+impl Rank {
+    /// Returns the rank of a depth that exceeds its limit by a length.
+    pub(crate) fn deep(excess: f64) -> Rank {
+        Rank { class: RankClass::Deep, excess }
+    }
+
+    /// Returns the rank of a finding about the machine, which has no depth. A greater measure is worse.
+    pub(crate) fn machine(measure: f64) -> Rank {
+        Rank { class: RankClass::Machine, excess: measure }
+    }
+
+    pub(crate) fn cmp(&self, other: &Rank) -> Ordering {
+        self.class.cmp(&other.class).then(self.excess.total_cmp(&other.excess))
     }
 }

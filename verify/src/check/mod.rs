@@ -30,6 +30,7 @@ mod moves;
 mod remedy;
 
 pub use approach::Approach;
+pub(crate) use finding::Rank;
 pub use finding::{Finding, FindingGroup, FindingKind, VerifyError, VerifyReport};
 pub(crate) use machine_program::MoveRequest;
 pub use machine_program::{

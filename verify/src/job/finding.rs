@@ -3,7 +3,9 @@
 use super::JobTool;
 use super::machine::MachineFindingKind;
 use super::report::{FindingDetail, JobFinding, JobReport, PairReport, Remedy, Severity};
+use crate::check::Rank;
 use crate::{Finding, FindingGroup, FindingKind, Tilt};
+use std::cmp::Ordering;
 use std::fmt::Write as _;
 use touchoff::{Interval, SurfaceId, Unit};
 
@@ -18,27 +20,37 @@ pub(super) fn rule(kind: &FindingKind) -> &'static str {
     }
 }
 
-/// Returns all findings of a report: those of surfaces by severity, then those of the machine and of the stock.
+/// A finding of one reading, and its place in the order of severity.
+struct Ranked {
+    reading: usize,
+    rank: Rank,
+    finding: JobFinding,
+}
+
+/// Returns all findings of a report in the order of [`JobReport::findings`].
 pub(super) fn all(report: &JobReport<'_>) -> Vec<JobFinding> {
     let mut found = surfaces(report);
     for (reading, finding) in &report.machine {
+        // The machine cannot keep a limit, but a singular pass only slows it down.
+        let (severity, measure) = match finding.kind {
+            MachineFindingKind::Singular { turn, .. } => (Severity::Remark, turn.abs()),
+            _ => (Severity::Violation, 0.0),
+        };
+        let rank = Rank::machine(measure);
         let finding = JobFinding {
             rule: finding.rule(),
-            // The machine cannot keep a limit, but a singular pass only slows it down.
-            severity: match finding.kind {
-                MachineFindingKind::Singular { .. } => Severity::Remark,
-                _ => Severity::Violation,
-            },
+            severity,
             line: finding.line,
             lines: [finding.line; 2],
             text: finding.to_string(),
             under: None,
             detail: FindingDetail::Machine(finding.clone()),
         };
-        found.push((*reading, finding));
+        found.push(Ranked { reading: *reading, rank, finding });
     }
     for (reading, cut) in report.cuts.iter().enumerate() {
         for finding in &cut.findings {
+            let rank = Rank::deep(finding.depth - cut.tolerance);
             let finding = JobFinding {
                 rule: "stock",
                 severity: Severity::Violation,
@@ -48,13 +60,18 @@ pub(super) fn all(report: &JobReport<'_>) -> Vec<JobFinding> {
                 under: None,
                 detail: FindingDetail::Stock(finding.clone()),
             };
-            found.push((reading, finding));
+            found.push(Ranked { reading, rank, finding });
         }
     }
+    // Equal ones stay in the order of readings, tools and lines.
+    found.sort_by(|one, other| {
+        let by_severity = one.finding.severity.cmp(&other.finding.severity);
+        by_severity.then_with(|| other.rank.cmp(&one.rank))
+    });
     let is_same =
         |one: &JobFinding, other: &JobFinding| (one.line, &one.text) == (other.line, &other.text);
-    let joined = by_reading(found.into_iter(), is_same);
-    let named = joined.into_iter().map(|(mut finding, readings)| {
+    let found = found.into_iter().map(|Ranked { reading, finding, .. }| (reading, finding));
+    let named = by_reading(found, is_same).into_iter().map(|(mut finding, readings)| {
         if let Some(under) = report.job.program.under(&readings) {
             finding.text = format!("{}; {under}", finding.text);
             finding.under = Some(under);
@@ -64,30 +81,115 @@ pub(super) fn all(report: &JobReport<'_>) -> Vec<JobFinding> {
     named.collect()
 }
 
-/// Returns the findings of surfaces, the worst first, each with the index of its reading.
-fn surfaces(report: &JobReport<'_>) -> Vec<(usize, JobFinding)> {
-    let mut surfaces: Vec<(usize, FindingGroup, Remedy)> = Vec::new();
+/// Returns the findings of surfaces in the order of pairs, and those of a pair in the order of its groups.
+fn surfaces(report: &JobReport<'_>) -> Vec<Ranked> {
+    let mut found = Vec::new();
     for (index, pair) in report.pairs.iter().enumerate() {
-        let groups = pair.groups.iter().zip(&pair.remedies);
-        surfaces.extend(groups.map(|(group, remedy)| (index, *group, *remedy)));
+        // The groups of each finding, and its remedy.
+        let mut rows: Vec<(Vec<FindingGroup>, Remedy)> = Vec::new();
+        // The rows that a further group may join: one per way of being right through.
+        let mut open: Vec<usize> = Vec::new();
+        for (group, remedy) in pair.groups.iter().zip(&pair.remedies) {
+            // Rapid traverse at any rates has a sentence of its own.
+            let joins = group.worst.kind.is_right_through() && !group.worst.any_rates;
+            let is_alike = |row: &&usize| {
+                let known = &rows[**row].0[0].worst.kind;
+                joins && known.severity(&group.worst.kind) == Ordering::Equal
+            };
+            if let Some(row) = open.iter().find(is_alike) {
+                rows[*row].0.push(*group);
+                continue;
+            }
+            if joins {
+                open.push(rows.len());
+            }
+            rows.push((vec![*group], *remedy));
+        }
+        found.extend(rows.into_iter().map(|(groups, remedy)| {
+            let kind = groups[0].worst.kind;
+            let open = matches!(kind, FindingKind::Undecided { .. } | FindingKind::Ambiguous(_));
+            let runs = Run::all(&groups);
+            let motions = match &groups[..] {
+                [group] => group.motions,
+                _ => motions_in(&runs, &pair.report.findings),
+            };
+            let last = groups.iter().map(|group| group.last).max_by_key(|last| last.location);
+            let finding = JobFinding {
+                rule: rule(&kind),
+                severity: if open { Severity::Undecided } else { Severity::Violation },
+                line: groups[0].worst.line,
+                lines: [groups[0].first.line, last.unwrap_or(groups[0].last).line],
+                text: describe(report, pair, &groups, &runs, motions, remedy),
+                under: None,
+                detail: FindingDetail::Surface { pair: index, groups, motions, remedy },
+            };
+            Ranked { reading: pair.reading, rank: kind.rank(), finding }
+        }));
     }
-    surfaces.sort_by(|one, other| other.1.worst.kind.severity(&one.1.worst.kind));
-    let findings = surfaces.into_iter().map(|(index, group, remedy)| {
-        let pair = &report.pairs[index];
-        let kind = &group.worst.kind;
-        let open = matches!(kind, FindingKind::Undecided { .. } | FindingKind::Ambiguous(_));
-        let finding = JobFinding {
-            rule: rule(kind),
-            severity: if open { Severity::Undecided } else { Severity::Violation },
-            line: group.worst.line,
-            lines: [group.first.line, group.last.line],
-            text: describe(report, pair, &group, remedy),
-            under: None,
-            detail: FindingDetail::Surface { pair: index, group: Box::new(group), remedy },
-        };
-        (pair.reading, finding)
+    found
+}
+
+/// Consecutive motions, by the index and the line of the first and the last.
+#[derive(Clone, Copy)]
+struct Run {
+    locations: [usize; 2],
+    lines: [usize; 2],
+}
+
+impl Run {
+    /// Returns the runs of groups in the order of their first motions. Groups that follow each other or overlap are one.
+    fn all(groups: &[FindingGroup]) -> Vec<Run> {
+        let mut runs: Vec<Run> = Vec::new();
+        for FindingGroup { first, last, .. } in groups {
+            match runs.last_mut() {
+                Some(run) if first.location <= run.locations[1] + 1 => {
+                    if last.location > run.locations[1] {
+                        (run.locations[1], run.lines[1]) = (last.location, last.line);
+                    }
+                }
+                _ => runs.push(Run {
+                    locations: [first.location, last.location],
+                    lines: [first.line, last.line],
+                }),
+            }
+        }
+        runs
+    }
+}
+
+/// Returns the number of blocks or cutter locations in runs of motions that all have findings.
+fn motions_in(runs: &[Run], findings: &[Finding]) -> usize {
+    let mut runs = runs.iter().peekable();
+    let (mut motions, mut last) = (0, None);
+    for finding in findings {
+        while runs.next_if(|run| run.locations[1] < finding.location).is_some() {}
+        let Some(run) = runs.peek() else { break };
+        // A block may have several moves.
+        if run.locations[0] <= finding.location && last != Some(finding.line) {
+            motions += 1;
+            last = Some(finding.line);
+        }
+    }
+    motions
+}
+
+/// Number of runs of motions that a finding names.
+const NAMED_RUNS: usize = 4;
+
+/// Names runs of motions by their lines.
+fn lines_of(runs: &[Run]) -> String {
+    let named = runs.iter().take(NAMED_RUNS).map(|run| match run.lines {
+        [first, last] if first == last => first.to_string(),
+        [first, last] => format!("{first} to {last}"),
     });
-    findings.collect()
+    let named = named.collect::<Vec<_>>().join(", ");
+    match runs.get(NAMED_RUNS..).and_then(<[Run]>::last) {
+        Some(run) => {
+            let more = runs.len() - NAMED_RUNS;
+            format!("{named} and {more} more ranges up to line {}", run.lines[1])
+        }
+        None => named,
+    }
 }
 
 /// Joins what several readings have alike: each with the readings that have it, in the order of the first.
@@ -135,10 +237,57 @@ fn format_bound(depth: f64, max_depth: f64, unit: Unit) -> String {
     format!("; at most {} {unit}{rest}", format_small(max_depth, unit))
 }
 
-/// Describes the findings of consecutive motions.
+/// Describes the findings of consecutive motions, and for several groups first all of their motions.
 ///
-/// The remedy is that of the worst motion.
+/// The remedy is that of the worst motion of the first group.
 fn describe(
+    report: &JobReport<'_>,
+    pair: &PairReport,
+    groups: &[FindingGroup],
+    runs: &[Run],
+    motions: usize,
+    remedy: Remedy,
+) -> String {
+    let first = describe_group(report, pair, &groups[0], remedy);
+    let text = if groups.len() > 1 {
+        let (info, body) = (report.info(pair), &report.body(pair).name);
+        let mut surfaces: Vec<&str> = Vec::new();
+        for surface in groups.iter().filter_map(|group| group.worst.kind.surface()) {
+            let name = &*info.surface(surface).name;
+            if !surfaces.contains(&name) {
+                surfaces.push(name);
+            }
+        }
+        let (names, verb) = match &surfaces[..] {
+            [] if report.revolved(pair).is_some() => ("it".to_owned(), "is"),
+            [] => ("the tool".to_owned(), "is"),
+            [name] => ((*name).to_owned(), "is"),
+            [names @ .., last] => (format!("{} and {last}", names.join(", ")), "are"),
+        };
+        let what = match groups[0].worst.kind {
+            FindingKind::Inside { surface: None } => format!("{verb} wholly inside {body}"),
+            FindingKind::Inside { .. } => format!("{verb} inside {body}, away from its surface,"),
+            _ if verb == "is" => format!("passes right through {body}"),
+            _ => format!("pass right through {body}"),
+        };
+        let ending = plural(motions);
+        format!(
+            "{names} {what} on {motions} motion{ending}, lines {}; first, {first}",
+            lines_of(runs)
+        )
+    } else {
+        first
+    };
+    let number = report.tool(pair).and_then(JobTool::number);
+    match (report.revolved(pair), number) {
+        (Some(moving), _) => format!("{}: {text}", moving.name),
+        (None, Some(number)) => format!("T{number} {text}"),
+        (None, None) => text,
+    }
+}
+
+/// Describes the findings of consecutive motions of a tool or a body of the machine, without its name.
+fn describe_group(
     report: &JobReport<'_>,
     pair: &PairReport,
     group: &FindingGroup,
@@ -208,12 +357,7 @@ fn describe(
             angle.to_degrees()
         );
     }
-    let number = report.tool(pair).and_then(JobTool::number);
-    match (report.revolved(pair), number) {
-        (Some(moving), _) => format!("{}: {text}", moving.name),
-        (None, Some(number)) => format!("T{number} {text}"),
-        (None, None) => text,
-    }
+    text
 }
 
 /// Describes the motions of a group.

@@ -11,7 +11,7 @@ use super::stock::StockRow;
 use crate::{FindingGroup, FindingKind};
 use serde::Serialize;
 use touchoff::certify::Witness;
-use touchoff::tool::Symmetry;
+use touchoff::tool::{Symmetry, ToolInfo};
 
 impl JobReport<'_> {
     /// Returns a finding as an object for JSON.
@@ -58,9 +58,16 @@ impl<'a> FindingRow<'a> {
     fn of(report: &'a JobReport<'_>, finding: &'a JobFinding) -> FindingRow<'a> {
         let file = report.job.program.name();
         let kind = match &finding.detail {
-            FindingDetail::Surface { pair, group, remedy } => {
+            FindingDetail::Surface { pair, groups, motions, remedy } => {
                 let pair = &report.pairs[*pair];
-                KindRow::Surface(Box::new(SurfaceRow::of(report, pair, group, *remedy)))
+                let row = SurfaceRow {
+                    first_line: finding.lines[0],
+                    last_line: finding.lines[1],
+                    motions: *motions,
+                    groups: GroupRow::all(report.info(pair), groups),
+                    ..SurfaceRow::of(report, pair, &groups[0], *remedy)
+                };
+                KindRow::Surface(Box::new(row))
             }
             FindingDetail::Machine(finding) => KindRow::Machine(finding.row(file)),
             FindingDetail::Stock(finding) => KindRow::Stock(finding.row(file, report.job.unit())),
@@ -82,6 +89,9 @@ struct SurfaceRow<'a> {
     within: Option<SubprogramRow<'a>>,
     /// Number of motions.
     motions: usize,
+    /// The groups of consecutive motions, if there are several.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    groups: Vec<GroupRow<'a>>,
     /// The line at which the worst motion begins.
     from_line: Option<usize>,
     /// The index of the position at which it ends, from 0.
@@ -124,6 +134,31 @@ struct SurfaceRow<'a> {
 struct SubprogramRow<'a> {
     file: &'a str,
     line: usize,
+}
+
+/// Consecutive motions on which the tool, or a surface of it, passes right through a body.
+#[derive(Serialize)]
+struct GroupRow<'a> {
+    surface: Option<&'a str>,
+    first_line: usize,
+    last_line: usize,
+    motions: usize,
+}
+
+impl<'a> GroupRow<'a> {
+    /// Returns the groups of a finding that has several; none of one with a single group.
+    fn all(info: &'a ToolInfo, groups: &[FindingGroup]) -> Vec<GroupRow<'a>> {
+        if groups.len() == 1 {
+            return Vec::new();
+        }
+        let rows = groups.iter().map(|group| GroupRow {
+            surface: group.worst.kind.surface().map(|surface| &*info.surface(surface).name),
+            first_line: group.first.line,
+            last_line: group.last.line,
+            motions: group.motions,
+        });
+        rows.collect()
+    }
 }
 
 /// A tilt of the axis about the tip.
@@ -201,6 +236,7 @@ impl<'a> SurfaceRow<'a> {
                 line: within.line,
             }),
             motions: group.motions,
+            groups: Vec::new(),
             from_line: finding.from,
             location: finding.location,
             rapid: finding.rapid,

@@ -95,8 +95,10 @@ pub struct JobReport<'a> {
 }
 
 impl JobReport<'_> {
-    /// Returns all findings: those of surfaces, the worst first, then those of the machine and of the stock. A finding of several
-    /// readings is one.
+    /// Returns all findings: violations, then what is undecided, then remarks. Within each the worst comes first: a tool inside the
+    /// material, then the depth beyond its limit at a body or in the stock, then the distance short of a margin, then the machine,
+    /// whose findings have no depth. A finding of several readings is one, and so are the motions on which a tool passes right
+    /// through a body.
     pub fn findings(&self) -> &[JobFinding] {
         &self.findings
     }
@@ -287,9 +289,12 @@ pub enum FindingDetail {
     Surface {
         /// Index of both in the report's pairs.
         pair: usize,
-        /// The consecutive motions.
-        group: Box<FindingGroup>,
-        /// The changes that clear the worst.
+        /// The consecutive motions. There are several groups, in the order of the program, if the tool passes right through the
+        /// body on each: depth does not tell them apart.
+        groups: Vec<FindingGroup>,
+        /// Number of blocks or cutter locations in all groups together.
+        motions: usize,
+        /// The changes that clear the worst motion of the first group.
         remedy: Remedy,
     },
     /// The machine.
@@ -298,8 +303,8 @@ pub enum FindingDetail {
     Stock(StockFinding),
 }
 
-/// The consequence of a finding.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// The consequence of a finding, from the worst.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
     /// A rule is violated.
     Violation,

@@ -415,7 +415,7 @@ fn a_head_touches_a_tilted_slab_at_the_angle_of_the_closed_form() {
         job.revolved.push(head);
         let report = job.check(&|_| ()).expect("a result");
         let kinds = report.findings().iter().filter_map(|finding| match &finding.detail {
-            FindingDetail::Surface { group, .. } => Some(group.worst.kind),
+            FindingDetail::Surface { groups, .. } => Some(groups[0].worst.kind),
             _ => None,
         });
         let texts = report.findings().iter().map(|finding| finding.text.clone());
