@@ -4,11 +4,13 @@
 //! job ──verify──▶ findings ──scene──▶ places ──────┐
 //! bodies ──shapes──▶ pieces ──colouring──▶ layers ─┼─scene──▶ the 3-D view ─┐
 //! tools ──shapes──▶ profiles ──────────────────────┴─picture─▶ pictures ────┼─page──▶ HTML
-//! program ──along──▶ samples, charts ───────────────────────────────────────┘
+//! program ──along──▶ samples, charts ───────────────────────────────────────┤
+//!    └──excerpt──▶ lines around findings ───────────────────────────────────┘
 //! ```
 
 mod along;
 mod colouring;
+mod excerpt;
 mod page;
 mod scene;
 mod shapes;
@@ -22,6 +24,7 @@ use crate::progress::Progress;
 use crate::verify::{self, Inputs};
 use along::Along;
 use colouring::{ColouredBodies, Layer};
+use excerpt::{ExcerptLine, excerpts};
 use scene::{Place, Scene};
 use sha2::{Digest, Sha256};
 use shapes::ToolShape;
@@ -151,6 +154,8 @@ struct Content<'a> {
     close_ups: Vec<(usize, Picture)>,
     /// Set for each finding that has a camera.
     has_place: Vec<bool>,
+    /// The lines of the program around each finding.
+    excerpts: Vec<Vec<ExcerptLine>>,
     /// One per tool.
     along: Vec<Along>,
     times: Vec<(&'static str, Duration)>,
@@ -224,6 +229,7 @@ impl<'a> Content<'a> {
             sheets,
             close_ups,
             has_place: places.iter().map(Option::is_some).collect(),
+            excerpts: excerpts(&inputs.file.program, checked.findings()),
             shapes,
             along,
             times,

@@ -201,6 +201,81 @@ fn a_job_has_tools_fixtures_and_stock() {
     assert_eq!(page.between("<td><code>", "</code>").len(), 7);
 }
 
+/// Returns the lines of the program in a row: the mark, the number and the text of each.
+fn excerpt(row: &str) -> Vec<(char, usize, String)> {
+    let (_, lines) = row.split_once("<pre>").expect("an excerpt");
+    let (lines, _) = lines.split_once("</pre>").expect("its end");
+    let lines = lines.split("<span").skip(1).map(|line| {
+        let (_, line) = line.split_once('>').expect("a line");
+        let line = line.split_once("\n</span>").expect("its end").0;
+        let line = line.replace("&gt;", ">");
+        let mark = line.chars().next().expect("a mark");
+        let (number, text) = line[1..].trim_start().split_once("  ").expect("a number and a text");
+        (mark, number.parse().expect("a number"), text.to_owned())
+    });
+    lines.collect()
+}
+
+/// The program around each finding: cutter locations of APT, then a table.
+#[test]
+fn findings_show_the_program_around_them() {
+    let bench = Bench::new();
+    let Gouging { part, program } = bench.gouging();
+    let options = format!("--unit mm --tool D2Ball --program {program} --tolerance 0.01");
+    let page = Page::write(&bench, &format!("{part} {options}"));
+    let text = std::fs::read_to_string(&program).expect("a program");
+    let text: Vec<&str> = text.lines().collect();
+    let findings = page.data("findings");
+    let findings = findings.as_array().expect("a list");
+    assert!(!findings.is_empty());
+    for (finding, row) in findings.iter().zip(page.rows()) {
+        let number = |key: &str| finding[key].as_u64().expect("a number") as usize;
+        let shown = excerpt(row);
+        assert_eq!(shown.len(), 7);
+        for (mark, line, shown) in &shown {
+            assert_eq!(shown, text[line - 1]);
+            let within = (number("first_line")..=number("last_line")).contains(line);
+            let expected = match *line == number("line") {
+                true => '>',
+                false if within => '|',
+                false => ' ',
+            };
+            assert_eq!(*mark, expected, "line {line} of {finding}");
+        }
+        assert_eq!(shown[3].1, number("line"));
+    }
+
+    // At the ends of a table, of which the last line is long and has markup.
+    let comment = format!("# <b>{}", "x".repeat(200));
+    bench.write("path.csv", format!("# a comment\n0,0,1,0,0,1\n0,0,-0.5,0,0,1 {comment}"));
+    let options = "--unit mm --tool D2Ball --program path.csv --tolerance 0.1";
+    let page = Page::write(&bench, &format!("block.stl {options}"));
+    let rows = page.rows();
+    let shown = excerpt(rows[0]);
+    let numbers: Vec<_> = shown.iter().map(|(mark, line, _)| (*mark, *line)).collect();
+    assert_eq!(numbers, [(' ', 1), (' ', 2), ('>', 3)]);
+    assert!(shown[2].2.starts_with("0,0,-0.5,0,0,1 # &lt;b>xxx"), "{}", shown[2].2);
+    assert!(shown[2].2.ends_with("xx…") && shown[2].2.len() < 140, "{}", shown[2].2);
+    assert_self_contained(&page);
+}
+
+/// Of a long program the lines around findings alone are in the file.
+#[test]
+fn a_long_program_makes_a_short_report() {
+    let bench = Bench::new();
+    let filling = "(FILLING)\n".repeat(500_000);
+    let program = format!(
+        "G21 G90 G54\nT1 M6\nS900 M3\nG0 X-9. Y0.\nG43 H1 Z5.\n{filling}G1 Z-0.5 F100.\nX9.\n{filling}M30\n"
+    );
+    bench.write("long.nc", program);
+    let options = "--unit mm --tool D2Ball --program long.nc --control linuxcnc --anyway";
+    let page = Page::write(&bench, &format!("block.stl {options}"));
+    let rows = page.rows();
+    assert_eq!(excerpt(rows[0])[3], ('>', 500_007, "X9.".to_owned()));
+    let shown = page.text.matches("(FILLING)").count();
+    assert!(shown <= 6 * rows.len() && shown > 0, "{shown}");
+}
+
 #[test]
 fn files_have_their_digests() {
     let bench = Bench::new();

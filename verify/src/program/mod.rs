@@ -338,8 +338,8 @@ fn check_characters(text: &str) -> Result<&str, Located> {
     }
 }
 
-/// Returns the lines, trimmed and numbered from 1. They may end in LF, CRLF or a lone CR.
-fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
+/// Returns the lines of a program, trimmed and numbered from 1. They may end in LF, CRLF or a lone CR.
+pub fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
     let lines =
         text.split('\n').flat_map(|line| line.strip_suffix('\r').unwrap_or(line).split('\r'));
     (1..).zip(lines.map(str::trim))

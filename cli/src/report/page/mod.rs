@@ -4,6 +4,7 @@ mod assumptions;
 mod summary;
 
 use super::along;
+use super::excerpt::{ExcerptLine, LineRole};
 use super::scene::{base64, json};
 use super::{Content, Picture, prefix};
 use crate::check::{Proved, prove};
@@ -128,7 +129,7 @@ fn view(content: &Content<'_>) -> Markup {
     }
 }
 
-/// Returns the findings, the worst first, and pictures of the worst.
+/// Returns the findings, the worst first, with the program around each, and pictures of the worst.
 fn findings(content: &Content<'_>) -> Markup {
     html! {
         section {
@@ -136,6 +137,11 @@ fn findings(content: &Content<'_>) -> Markup {
             @if content.checked.findings().is_empty() {
                 p { "None." }
             } @else {
+                p.note {
+                    "Violations come first, then what is undecided, then warnings; in each the worst comes first. In the text of \
+                     the program " code { ">" } " marks the line of the worst motion and " code { "|" } " the other lines of the \
+                     finding."
+                }
                 table.findings {
                     thead { tr { th { "#" } th { "severity" } th { "kind" } th { "line" } th { "lines" } th { "finding" } th {} } }
                     tbody {
@@ -148,7 +154,10 @@ fn findings(content: &Content<'_>) -> Markup {
                                 td.name { (finding.rule) }
                                 td.number { (finding.line) }
                                 td.number { (first) @if last != first { " to " (last) } }
-                                td.text { (plain(&finding.text)) }
+                                td.text {
+                                    span.said { (plain(&finding.text)) }
+                                    (excerpt(&content.excerpts[index]))
+                                }
                                 td {
                                     @if content.has_place[index] {
                                         button.show type="button" data-finding=(index) { "show" }
@@ -169,6 +178,27 @@ fn findings(content: &Content<'_>) -> Markup {
                             figcaption { (plain(&content.checked.findings()[*index].text)) }
                         }
                     }
+                }
+            }
+        }
+    }
+}
+
+/// Returns the lines of the program around a finding, closed until a reader opens them.
+fn excerpt(lines: &[ExcerptLine]) -> Markup {
+    let [first, .., last] = lines else { return html! {} };
+    let digits = last.number.to_string().len();
+    html! {
+        details {
+            summary { "program, lines " (first.number) " to " (last.number) }
+            pre {
+                @for line in lines {
+                    @let (class, mark) = match line.role {
+                        LineRole::Worst => (Some("worst"), '>'),
+                        LineRole::Within => (Some("within"), '|'),
+                        LineRole::Around => (None, ' '),
+                    };
+                    span class=[class] { (format!("{mark} {:digits$}  {}", line.number, line.text)) "\n" }
                 }
             }
         }

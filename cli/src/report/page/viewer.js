@@ -279,7 +279,7 @@
     const row = finding === null ? null : document.querySelector(`[data-finding="${finding}"]`).closest("tr");
     document.querySelectorAll(".current").forEach(old => old.classList.remove("current"));
     row?.classList.add("current");
-    const text = row ? `${finding + 1}. line ${row.cells[3].textContent}: ${row.cells[5].textContent}` : "";
+    const text = row ? `${finding + 1}. line ${row.cells[3].textContent}: ${row.querySelector(".said").textContent}` : "";
     element("heading").textContent = `${scene.title}\n${text}`;
     const ends = layer.ends ?? ["", ""];
     [element("low").textContent, element("high").textContent] = ends;
@@ -330,6 +330,8 @@
     state.finding = finding;
     if (target.tip) place(target);
     describe();
+    const program = document.querySelector(`#finding-${finding + 1} details`);
+    if (program) program.open = true;
     const [x, y, z] = target.toward;
     fly({ centre: target.target, yaw: Math.atan2(y, x), pitch: Math.asin(z), extent: target.extent, cut: target.cut });
   }
