@@ -12,6 +12,7 @@ mod along;
 mod colouring;
 mod excerpt;
 mod page;
+mod path;
 mod scene;
 mod shapes;
 
@@ -25,6 +26,7 @@ use crate::verify::{self, Inputs};
 use along::Along;
 use colouring::{ColouredBodies, Layer};
 use excerpt::{ExcerptLine, excerpts};
+use path::ToolPath;
 use scene::{Place, Scene};
 use sha2::{Digest, Sha256};
 use shapes::ToolShape;
@@ -148,6 +150,8 @@ struct Content<'a> {
     scene_json: String,
     /// The largest rounding error of a coordinate in the 3-D view, in the unit of the job; `None` without a view.
     scene_rounding: Option<f64>,
+    /// Describes how the path is drawn.
+    path_caption: String,
     /// One picture per quantity.
     sheets: Vec<Picture>,
     /// The worst findings, by their index.
@@ -199,7 +203,11 @@ impl<'a> Content<'a> {
             .collect();
         let pictures = Pictures { inputs, checked, shown: &shown, shapes: &shapes };
         let title = pictures.title();
-        let scene = Scene::new(&title, unit, &shown, &shapes, &places);
+        let path = ToolPath::new(checked, shown.bodies[0].extent())?;
+        let tools = checked.job.tools.iter();
+        let names = tools.map(|tool| format!("{}{}", prefix(tool.number()), tool.tool.info().name));
+        let names: Vec<String> = names.collect();
+        let scene = Scene::new(&title, unit, &shown, &shapes, &places, &path, &names);
         let sheets =
             shown.layers.iter().map(|layer| pictures.sheet(layer)).collect::<Result<_, _>>()?;
         let mut close_ups: Vec<(usize, Picture)> = Vec::new();
@@ -226,6 +234,7 @@ impl<'a> Content<'a> {
                 .collect::<Result<_, _>>()?,
             scene_json: scene::json(&scene)?,
             scene_rounding: scene.map(|scene| scene.rounding_error()),
+            path_caption: path.caption(unit),
             sheets,
             close_ups,
             has_place: places.iter().map(Option::is_some).collect(),

@@ -1,7 +1,8 @@
 //! The 3-D view: the place of each finding with its camera, and the data of the view, as JSON in the page.
 
 use super::colouring::{ColouredBodies, Layer};
-use super::shapes::{Shown, ToolShape};
+use super::path::{ToolPath, Way};
+use super::shapes::{Shown, ToolShape, bounds};
 use crate::picture::render::Camera;
 use crate::verify::Inputs;
 use base64::Engine;
@@ -124,6 +125,14 @@ fn above_horizon(toward: Vector3<f64>) -> Vector3<f64> {
 
 /// Number of triangles above which there is no 3-D view, so that the file stays below 15 MB.
 const MAX_TRIANGLES: usize = 500_000;
+/// The colour of the part and of the stock where they have no value, red, green and blue.
+const PLAIN: [u8; 3] = [205; 3];
+/// The colours of other bodies, one after the other: apart from the scale of values, and from the tool.
+const COLOURS_OF_OTHERS: [[u8; 3]; 5] =
+    [[138, 176, 217], [222, 160, 166], [199, 180, 128], [180, 164, 214], [150, 190, 186]];
+/// The colours of the tools' paths, one after the other (Okabe and Ito, darkened).
+const COLOURS_OF_PATHS: [[u8; 3]; 6] =
+    [[0, 114, 178], [200, 84, 0], [176, 74, 134], [0, 120, 90], [70, 70, 70], [140, 110, 0]];
 /// Largest value of a rounded coordinate.
 const COORDINATE_STEPS: f64 = u16::MAX as f64;
 /// Largest value of a colour; 0 stands for none.
@@ -139,6 +148,8 @@ pub(super) struct Scene<'a> {
     tools: Vec<Tool>,
     /// The camera on each finding, in the order of the table; null without a place.
     places: Vec<Option<PlaceRow>>,
+    /// The path of the tips; null without a motion.
+    path: Option<PathRow>,
     /// Colours of values from the lowest to the greatest, red, green and blue.
     colours: Vec<[u8; 3]>,
 }
@@ -146,8 +157,10 @@ pub(super) struct Scene<'a> {
 #[derive(Serialize)]
 struct Body<'a> {
     name: &'a str,
-    /// Set for a fixture.
+    /// Set for a fixture or another part.
     fixture: bool,
+    /// Its colour where it has no value.
+    colour: [u8; 3],
     /// Set if the tool's poses at it are in a frame of its own.
     own_frame: bool,
     /// Lowest corner of its box, and the lengths of the steps of rounded coordinates.
@@ -157,6 +170,26 @@ struct Body<'a> {
     vertices: String,
     /// Vertices of triangles, 32 bits each.
     triangles: String,
+}
+
+#[derive(Serialize)]
+struct PathRow {
+    /// As of a body.
+    low: [f64; 3],
+    step: [f64; 3],
+    vertices: String,
+    /// One byte per vertex: 0 where a path begins, else 1 + 2 times the index of the colour, and 1 more in rapid traverse.
+    ways: String,
+    colours: [[u8; 3]; COLOURS_OF_PATHS.len()],
+    /// Number and name of each tool that has a path.
+    tools: Vec<PathTool>,
+}
+
+#[derive(Serialize)]
+struct PathTool {
+    name: String,
+    /// The index of its colour.
+    colour: usize,
 }
 
 #[derive(Serialize)]
@@ -195,6 +228,8 @@ impl<'a> Scene<'a> {
         shown: &'a ColouredBodies,
         shapes: &[ToolShape],
         places: &[Option<Place>],
+        path: &ToolPath,
+        tool_names: &[String],
     ) -> Option<Scene<'a>> {
         let ColouredBodies { bodies, layers } = shown;
         if bodies.iter().map(|body| body.triangles.len()).sum::<usize>() > MAX_TRIANGLES {
@@ -204,42 +239,94 @@ impl<'a> Scene<'a> {
         Some(Scene {
             title,
             unit: unit.symbol(),
-            bodies: bodies.iter().map(Body::new).collect(),
+            bodies: bodies.iter().enumerate().map(|(index, body)| Body::new(index, body)).collect(),
             layers: layers.iter().map(LayerRow::new).collect(),
             tools: shapes.iter().map(Tool::new).collect(),
             places: places.iter().map(|known| known.as_ref().map(PlaceRow::new)).collect(),
+            path: PathRow::new(path, tool_names),
             colours: (0..COLOURS).map(|k| colormap(k as f64 / (COLOURS - 1) as f64)).collect(),
         })
     }
 
     /// Returns the greatest difference of a shown coordinate from the one of the file.
     pub(super) fn rounding_error(&self) -> f64 {
-        let steps = self.bodies.iter().flat_map(|body| body.step);
+        let path = self.path.iter().flat_map(|path| path.step);
+        let steps = self.bodies.iter().flat_map(|body| body.step).chain(path);
         0.5 * steps.fold(0.0, f64::max)
     }
 }
 
 impl<'a> Body<'a> {
-    fn new(shown: &'a Shown) -> Body<'a> {
-        let [low, high] = shown.bounds();
-        let step = (high - low) / COORDINATE_STEPS;
-        let vertices = shown.vertices.iter().flat_map(|vertex| {
-            [0, 1, 2].map(|k| {
-                // A flat body has no extent along one axis.
-                let steps = if step[k] > 0.0 { (vertex[k] - low[k]) / step[k] } else { 0.0 };
-                steps.round() as u16
-            })
-        });
+    fn new(index: usize, shown: &'a Shown) -> Body<'a> {
+        let Rounded { low, step, vertices } = Rounded::new(shown.vertices.iter().copied());
         let triangles = shown.triangles.iter().flatten();
         Body {
             name: &shown.name,
             fixture: shown.is_fixture,
+            colour: match index.checked_sub(1) {
+                Some(other) if shown.is_fixture || shown.has_own_frame => {
+                    COLOURS_OF_OTHERS[other % COLOURS_OF_OTHERS.len()]
+                }
+                _ => PLAIN,
+            },
             own_frame: shown.has_own_frame,
-            low: low.into(),
-            step: step.into(),
-            vertices: base64(vertices.flat_map(u16::to_le_bytes)),
+            low,
+            step,
+            vertices,
             triangles: base64(triangles.flat_map(|vertex| vertex.to_le_bytes())),
         }
+    }
+}
+
+/// Coordinates rounded to steps of the extent along each axis.
+struct Rounded {
+    low: [f64; 3],
+    step: [f64; 3],
+    /// 16 bits per coordinate, little-endian, in base64.
+    vertices: String,
+}
+
+impl Rounded {
+    fn new(vertices: impl Iterator<Item = Point3<f64>> + Clone) -> Rounded {
+        let [low, high] = bounds(vertices.clone());
+        let step = (high - low) / COORDINATE_STEPS;
+        let steps = vertices.flat_map(|vertex| {
+            [0, 1, 2].map(|k| {
+                // What is flat has no extent along one axis.
+                let steps = if step[k] > 0.0 { (vertex[k] - low[k]) / step[k] } else { 0.0 };
+                steps.round() as u16
+            })
+        });
+        let vertices = base64(steps.flat_map(u16::to_le_bytes));
+        Rounded { low: low.into(), step: step.into(), vertices }
+    }
+}
+
+impl PathRow {
+    /// Returns the row of a path, with the name of each tool of the job.
+    fn new(path: &ToolPath, names: &[String]) -> Option<PathRow> {
+        if path.vertices.is_empty() {
+            return None;
+        }
+        let tips = path.vertices.iter().map(|vertex| vertex.tip);
+        let Rounded { low, step, vertices } = Rounded::new(tips);
+        let colour = |tool: usize| tool % COLOURS_OF_PATHS.len();
+        let ways = path.vertices.iter().map(|vertex| match vertex.way {
+            Way::Begins => 0,
+            Way::Feed => 1 + 2 * colour(vertex.tool) as u8,
+            Way::Rapid => 2 + 2 * colour(vertex.tool) as u8,
+        });
+        let has_path = |tool: &usize| path.vertices.iter().any(|vertex| vertex.tool == *tool);
+        let tools = (0..names.len()).filter(has_path);
+        let tools = tools.map(|tool| PathTool { name: names[tool].clone(), colour: colour(tool) });
+        Some(PathRow {
+            low,
+            step,
+            vertices,
+            ways: base64(ways),
+            colours: COLOURS_OF_PATHS,
+            tools: tools.collect(),
+        })
     }
 }
 

@@ -12,6 +12,12 @@ const PIECES: f64 = 96.0;
 /// Number of triangles above which the pieces are made larger.
 const MAX_TRIANGLES: usize = 150_000;
 
+/// Returns the corners of the box of some points; the origin twice if there are none.
+pub(super) fn bounds(mut points: impl Iterator<Item = Point3<f64>>) -> [Point3<f64>; 2] {
+    let first = points.next().unwrap_or_default();
+    points.fold([first; 2], |[low, high], point| [low.inf(&point), high.sup(&point)])
+}
+
 /// A body as it is shown.
 pub(super) struct Shown {
     pub(super) name: String,
@@ -20,7 +26,7 @@ pub(super) struct Shown {
     pub(super) triangles: Vec<[u32; 3]>,
     /// The triangle of the file that each triangle is a piece of.
     pub(super) sources: Vec<u32>,
-    /// Set for a fixture, as opposed to the part and the stock.
+    /// Set for a fixture or another part, as opposed to the part and the stock.
     pub(super) is_fixture: bool,
     /// Set if the body has a frame of its own, in which the tool's poses at it are given.
     pub(super) has_own_frame: bool,
@@ -101,10 +107,7 @@ impl Shown {
 
     /// Returns the corners of the box.
     pub(super) fn bounds(&self) -> [Point3<f64>; 2] {
-        let first = self.vertices.first().copied().unwrap_or_default();
-        self.vertices
-            .iter()
-            .fold([first; 2], |[low, high], vertex| [low.inf(vertex), high.sup(vertex)])
+        bounds(self.vertices.iter().copied())
     }
 
     /// Returns the largest extent along an axis.

@@ -175,6 +175,11 @@ fn every_finding_has_a_row_and_a_camera() {
     assert!((degrees - 280.0).abs() < 12.0, "{degrees}");
 }
 
+/// Returns the colours of the bodies of the 3-D view.
+fn colours_of_bodies(scene: &Value) -> Vec<&Value> {
+    scene["bodies"].as_array().expect("a list").iter().map(|body| &body["colour"]).collect()
+}
+
 #[test]
 fn a_job_has_tools_fixtures_and_stock() {
     let (bench, job) = bracket();
@@ -188,6 +193,11 @@ fn a_job_has_tools_fixtures_and_stock() {
         list.map(|row| row[key].as_str().expect("a text").to_owned()).collect()
     };
     assert_eq!(names("bodies", "name"), ["the part", "the vise", "what remains of the stock"]);
+    let colours = colours_of_bodies(&scene);
+    assert!(colours[1] != colours[0] && colours[2] == colours[0], "{colours:?}");
+    let tools = scene["path"]["tools"].as_array().expect("a list").iter();
+    let tools: Vec<_> = tools.map(|tool| tool["name"].as_str().expect("a text")).collect();
+    assert_eq!(tools, ["T1 Face40", "T3 Mill10", "T2 Ball6"]);
     let layers = names("layers", "quantity");
     assert!(layers.iter().any(|layer| layer.contains("in the vise")), "{layers:?}");
     assert!(layers.iter().any(|layer| layer.starts_with("material left")), "{layers:?}");
@@ -199,6 +209,51 @@ fn a_job_has_tools_fixtures_and_stock() {
     }
     // Job, part, program, three tools and the vise.
     assert_eq!(page.between("<td><code>", "</code>").len(), 7);
+}
+
+/// The path of a tip: down in rapid traverse, around a circle at feed rate, and up. The circle is drawn within a thousandth of
+/// the part's extent of 6 mm.
+#[test]
+fn the_path_is_drawn_in_the_part() {
+    let bench = Bench::new();
+    let program = "G21 G90 G54 G17\nT1 M6\nS900 M3\nG0 X8. Y0.\nG43 H1 Z5.\nZ1.\nG3 X8. Y0. I-8. J0. F100.\nG0 Z5.\nM30\n";
+    bench.write("circle.nc", program);
+    let options = "--unit mm --tool D2Ball --program circle.nc --control linuxcnc --anyway";
+    let page = Page::write(&bench, &format!("block.stl {options}"));
+    assert_self_contained(&page);
+    let path = &page.data("scene")["path"];
+    let bytes = |key: &str| STANDARD.decode(path[key].as_str().expect("a text")).expect("base64");
+    let (low, step) = (numbers(&path["low"]), numbers(&path["step"]));
+    let vertices: Vec<[f64; 3]> = bytes("vertices")
+        .chunks(6)
+        .map(|six| {
+            [0, 1, 2].map(|k| {
+                let steps = u16::from_le_bytes([six[2 * k], six[2 * k + 1]]);
+                low[k] + f64::from(steps) * step[k]
+            })
+        })
+        .collect();
+    let ways = bytes("ways");
+    assert_eq!(ways.len(), vertices.len());
+    let (feed, rapid): (Vec<_>, Vec<_>) =
+        (1..ways.len()).filter(|k| ways[*k] > 0).partition(|k| ways[*k] == 1);
+    assert!(ways[0] == 0 && rapid.iter().all(|k| ways[*k] == 2));
+    let is_near = |one: f64, other: f64| (one - other).abs() < 1e-3;
+    for k in &rapid {
+        let [x, y, z] = vertices[*k];
+        assert!(is_near(x, 8.0) && is_near(y, 0.0) && (is_near(z, 1.0) || is_near(z, 5.0)));
+    }
+    // The middles of chords are nearest to the axis.
+    let mut turned = 0.0;
+    for k in feed {
+        let [from, to] = [vertices[k - 1], vertices[k]];
+        let radius = (0.5 * (from[0] + to[0])).hypot(0.5 * (from[1] + to[1]));
+        assert!((8.0 - 0.0071..8.001).contains(&radius), "{radius}");
+        let cross = from[0] * to[1] - from[1] * to[0];
+        turned += cross.atan2(from[0] * to[0] + from[1] * to[1]);
+    }
+    assert!(is_near(turned, std::f64::consts::TAU), "{turned}");
+    assert!(page.text.contains("curves within 0.0060 mm."), "the caption");
 }
 
 /// Returns the lines of the program in a row: the mark, the number and the text of each.

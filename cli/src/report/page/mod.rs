@@ -87,19 +87,14 @@ fn picture(picture: &Picture) -> Markup {
 
 /// Returns the 3-D view, and the pictures that stand in for it in print and without a script.
 fn view(content: &Content<'_>) -> Markup {
-    // Other parts are shown beside the part, as fixtures are.
-    let mut others = content.inputs.bodies.iter().skip(1);
-    let has_fixtures = others.any(|body| !body.is_of_machine());
     html! {
         section id="view" {
             h2 { "The part" }
             div.viewer {
                 div.controls {
                     label { "colours: " select id="layer" {} }
-                    @if has_fixtures {
-                        label { input type="checkbox" id="fixtures"; " fixtures" }
-                    }
                     label { input type="checkbox" id="cut" checked; " cut away what hides a finding" }
+                    label { input type="checkbox" id="path" checked; " path of the tools" }
                     button type="button" id="whole" { "whole part" }
                 }
                 div.stage {
@@ -114,6 +109,12 @@ fn view(content: &Content<'_>) -> Markup {
                     span id="high" {}
                     span.swatch {}
                     span id="nothing" {}
+                }
+                div.legend id="bodies" {}
+                div.legend {
+                    span { "path of the tip: " }
+                    span.legend id="paths" {}
+                    span { (content.path_caption) }
                 }
                 p.note {
                     "Drag to turn, shift and drag or two fingers to move; then the wheel zooms. Arrow keys turn, + and - zoom. A \

@@ -20,17 +20,42 @@
   const PAINT = `#version 300 es
     precision highp float;
     in vec3 seen; flat in float shade;
-    uniform sampler2D ramp; uniform float cut; uniform bool glass;
+    uniform sampler2D ramp; uniform float cut; uniform bool glass; uniform vec3 own;
     layout(location = 0) out vec4 colour; layout(location = 1) out vec4 normal;
     void main() {
       if (seen.z > cut) discard;
       vec3 n = normalize(cross(dFdx(seen), dFdy(seen)));
       n = n.z < 0.0 ? -n : n;
       float bright = 0.72 + 0.28 * max(dot(n, normalize(vec3(-0.4, 0.5, 1.0))), 0.0);
-      vec3 plain = glass ? (shade > 0.5 ? vec3(0.84, 0.525, 0.118) : vec3(0.392, 0.463, 0.588)) : vec3(0.804);
+      vec3 plain = glass ? (shade > 0.5 ? vec3(0.84, 0.525, 0.118) : vec3(0.392, 0.463, 0.588)) : own;
       bool valued = !glass && shade > 0.5;
       colour = vec4(valued ? texelFetch(ramp, ivec2(int(shade + 0.5), 0), 0).rgb : plain * bright, 1.0);
       normal = vec4(n * 0.5 + 0.5, 1.0);
+    }`;
+  // A line per instance, as four corners: from one vertex of a path to the next.
+  const LINES = `#version 300 es
+    in vec3 start, end; in float way, from, to;
+    uniform mat3 frame; uniform vec3 centre; uniform vec2 scale; uniform float range, width;
+    out vec2 seen; flat out float kind;
+    void main() {
+      vec3 a = (start - centre) * frame, b = (end - centre) * frame;
+      float share = float(gl_VertexID & 1), side = float(gl_VertexID >> 1) - 0.5;
+      vec2 along = b.xy - a.xy;
+      along = length(along) > 0.0 ? normalize(along) : vec2(1.0, 0.0);
+      vec3 at = mix(a, b, share) + vec3(side * width * vec2(-along.y, along.x), width);
+      seen = vec2(at.z, mix(from, to, share));
+      kind = way;
+      gl_Position = way < 0.5 ? vec4(2.0, 2.0, 2.0, 1.0) : vec4(at.xy * scale, -at.z / range, 1.0);
+    }`;
+  const DASHES = `#version 300 es
+    precision highp float;
+    in vec2 seen; flat in float kind;
+    uniform float cut, dash; uniform vec3 colours[6];
+    layout(location = 0) out vec4 colour;
+    void main() {
+      int way = int(kind + 0.5) - 1;
+      if (seen.x > cut || (way & 1) == 1 && fract(seen.y / dash) > 0.55) discard;
+      colour = vec4(colours[way >> 1], 1.0);
     }`;
   const SHEET = `#version 300 es
     void main() { gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0); }`;
@@ -62,7 +87,7 @@
       for (int k = 0; k < finer * finer; k++) {
         ivec2 at = ivec2(gl_FragCoord.xy) * finer + ivec2(k % finer, k / finer);
         float near = texelFetch(depths, at, 0).r, pane = texelFetch(paneDepths, at, 0).r;
-        vec3 one = near == 1.0 ? vec3(1.0) : texelFetch(colours, at, 0).rgb;
+        vec3 one = texelFetch(colours, at, 0).rgb;
         if (edge(normals, depths, at)) one = mix(one, EDGE, 0.8);
         if (pane < near) {
           one = mix(one, texelFetch(paneColours, at, 0).rgb, 0.35);
@@ -88,12 +113,12 @@
     const uniforms = {};
     for (let k = gl.getProgramParameter(made, gl.ACTIVE_UNIFORMS); k-- > 0;) {
       const { name } = gl.getActiveUniform(made, k);
-      uniforms[name] = gl.getUniformLocation(made, name);
+      uniforms[name.replace("[0]", "")] = gl.getUniformLocation(made, name);
     }
     return { made, uniforms };
   }
-  const surface = program(SURFACE, PAINT), composer = program(SHEET, COMPOSE);
-  if (!surface || !composer) return;
+  const surface = program(SURFACE, PAINT), composer = program(SHEET, COMPOSE), liner = program(LINES, DASHES);
+  if (!surface || !composer || !liner) return;
 
   const bytes = text => Uint8Array.from(atob(text), character => character.charCodeAt(0));
   /** Uploads triangles, each with three corners of its own, and a value per corner. */
@@ -154,6 +179,35 @@
     Object.assign(pane, shape(placed, new Uint8Array(values)));
   }
 
+  /** Uploads the path of the tools: tips, and the length in rapid traverse up to each, at which dashes begin. */
+  function uploadPath({ low, step, vertices, ways: encoded, colours }) {
+    const rounded = new Uint16Array(bytes(vertices).buffer), ways = bytes(encoded), tips = new Float32Array(4 * ways.length);
+    ways.forEach((way, at) => {
+      for (let k = 0; k < 3; k++) tips[4 * at + k] = low[k] + rounded[3 * at + k] * step[k];
+      const length = [0, 1, 2].map(k => tips[4 * at + k] - tips[4 * at - 4 + k]);
+      tips[4 * at + 3] = way > 0 && way % 2 === 0 ? tips[4 * at - 1] + Math.hypot(...length) : 0;
+    });
+    const array = gl.createVertexArray();
+    gl.bindVertexArray(array);
+    const attribute = (name, ...layout) => {
+      const place = gl.getAttribLocation(liner.made, name);
+      gl.enableVertexAttribArray(place);
+      gl.vertexAttribPointer(place, ...layout);
+      gl.vertexAttribDivisor(place, 1);
+    };
+    for (const data of [tips, ways]) {
+      gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
+      gl.bufferData(gl.ARRAY_BUFFER, data, gl.STATIC_DRAW);
+      if (data === ways) attribute("way", 1, gl.UNSIGNED_BYTE, false, 1, 1);
+      else [["start", 3, 0], ["end", 3, 16], ["from", 1, 12], ["to", 1, 28]].forEach(([name, size, offset]) => {
+        attribute(name, size, gl.FLOAT, false, 16, offset);
+      });
+    }
+    const box = [low, low.map((part, k) => part + 65535 * step[k])];
+    return { array, count: ways.length - 1, box, colours: colours.flat().map(part => part / 255) };
+  }
+  const path = scene.path && uploadPath(scene.path);
+
   const ramp = gl.createTexture();
   const ramped = Array.from({ length: 256 }, (_, value) => {
     const at = Math.max(value - 1, 0) / 254 * (scene.colours.length - 1), low = Math.min(Math.floor(at), scene.colours.length - 2);
@@ -203,9 +257,9 @@
   }
   const pixelsPerLength = () => 0.92 * Math.min(canvas.clientWidth, canvas.clientHeight) / state.extent;
   function visible() {
-    const main = scene.bodies[state.main], withFixtures = element("fixtures")?.checked;
+    const main = scene.bodies[state.main];
     return bodies.filter((body, index) => index === state.main || (!main.own_frame && !body.own_frame
-      && ((index === 0 && main.fixture) || (body.fixture && withFixtures))));
+      && ((index === 0 && main.fixture) || (body.fixture && switches.get(index).checked))));
   }
 
   let due = false;
@@ -214,7 +268,8 @@
     due = false;
     resize();
     const axes = frame(state), shown = visible(), cut = element("cut").checked ? state.cut : Infinity;
-    const corners = shown.flatMap(({ box }) => [0, 1, 2, 3, 4, 5, 6, 7].map(k => [0, 1, 2].map(axis => box[k >> axis & 1][axis])));
+    const drawn = path && !scene.bodies[state.main].own_frame && element("path").checked ? [path] : [];
+    const corners = [...shown, ...drawn].flatMap(({ box }) => [0, 1, 2, 3, 4, 5, 6, 7].map(k => [0, 1, 2].map(axis => box[k >> axis & 1][axis])));
     const size = tools.flatMap(tool => tool.positions).reduce((size, part) => Math.max(size, Math.abs(part)), 0);
     const range = 2 * size + 1.01 * Math.max(...corners.map(corner => Math.hypot(...corner.map((part, k) => part - state.centre[k]))));
     const pixels = pixelsPerLength();
@@ -232,14 +287,34 @@
     gl.uniform1i(surface.uniforms.ramp, 0);
     [shown, state.finding !== null && scene.places[state.finding].tip ? [pane] : []].forEach((shapes, k) => {
       gl.bindFramebuffer(gl.FRAMEBUFFER, layers[k].target);
-      gl.clearColor(0, 0, 0, 0);
+      gl.clearColor(1, 1, 1, 1);
       gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
       gl.uniform1i(surface.uniforms.glass, k);
-      for (const { array, count } of shapes) {
+      for (const { array, count, colour } of shapes) {
+        gl.uniform3fv(surface.uniforms.own, colour ? colour.map(part => part / 255) : [0, 0, 0]);
         gl.bindVertexArray(array);
         gl.drawArrays(gl.TRIANGLES, 0, count);
       }
     });
+    // Lines on the picture of what is solid leave normals and depths as they are, so that they have no edges.
+    for (const { array, count, colours } of drawn) {
+      gl.bindFramebuffer(gl.FRAMEBUFFER, layers[0].target);
+      gl.drawBuffers([gl.COLOR_ATTACHMENT0, gl.NONE]);
+      gl.depthMask(false);
+      gl.useProgram(liner.made);
+      gl.uniformMatrix3fv(liner.uniforms.frame, false, axes.flat());
+      gl.uniform3fv(liner.uniforms.centre, state.centre);
+      gl.uniform2fv(liner.uniforms.scale, scale);
+      gl.uniform1f(liner.uniforms.range, range);
+      gl.uniform1f(liner.uniforms.cut, Math.min(cut, 2 * range));
+      gl.uniform1f(liner.uniforms.width, 1.6 / pixels);
+      gl.uniform1f(liner.uniforms.dash, 10 / pixels);
+      gl.uniform3fv(liner.uniforms.colours, colours);
+      gl.bindVertexArray(array);
+      gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, count);
+      gl.depthMask(true);
+      gl.drawBuffers([gl.COLOR_ATTACHMENT0, gl.COLOR_ATTACHMENT1]);
+    }
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     gl.viewport(0, 0, canvas.width, canvas.height);
     gl.disable(gl.DEPTH_TEST);
@@ -285,6 +360,7 @@
     [element("low").textContent, element("high").textContent] = ends;
     element("ramp").style.background = layer.ends ? `linear-gradient(to right, ${scene.colours.map(colour => `rgb(${colour})`)})` : "none";
     element("nothing").textContent = layer.nothing;
+    element("nothing").previousElementSibling.style.background = `rgb(${scene.bodies[state.main].colour})`;
     element("layer").value = state.layer;
   }
   function colour(layer) {
@@ -386,6 +462,23 @@
     redraw();
   });
 
+  /** Adds a colour and its name to a legend. */
+  function explain(legend, colour, name, kind) {
+    const [entry, swatch] = [kind, "span"].map(name => document.createElement(name));
+    swatch.className = "swatch";
+    swatch.style.background = `rgb(${colour})`;
+    entry.append(swatch, name);
+    element(legend).append(entry);
+    return entry;
+  }
+  // A switch with the colour and the name of each fixture.
+  const switches = new Map(scene.bodies.map((body, index) => [index, body]).filter(([, body]) => body.fixture).map(([index, body]) => {
+    const box = Object.assign(document.createElement("input"), { type: "checkbox", checked: true });
+    explain("bodies", body.colour, body.name, "label").prepend(box);
+    box.addEventListener("change", redraw);
+    return [index, box];
+  }));
+  scene.path?.tools.forEach(tool => explain("paths", scene.path.colours[tool.colour], tool.name, "span"));
   const select = element("layer");
   scene.layers.forEach((layer, index) => select.add(new Option(layer.quantity, index)));
   select.addEventListener("change", () => {
@@ -394,7 +487,7 @@
     if (state.main === body) { describe(); redraw(); } else whole();
   });
   element("whole").addEventListener("click", whole);
-  for (const id of ["fixtures", "cut"]) element(id)?.addEventListener("change", redraw);
+  for (const id of ["cut", "path"]) element(id).addEventListener("change", redraw);
   document.querySelectorAll("button.show").forEach(button => button.addEventListener("click", () => {
     show(+button.dataset.finding);
     element("view").scrollIntoView();
