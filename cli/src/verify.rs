@@ -214,6 +214,10 @@ pub(crate) fn print(inputs: &Inputs, report: &JobReport<'_>) -> Result<(), Failu
             }
         }
     }
+    for time in report.cycle_times() {
+        let tool = time.tool.map_or(String::new(), |number| format!(" of T{number}"));
+        message!("time{tool}: {time}");
+    }
     // Gaps that are open and not accepted are among the refusals.
     for gap in report.gaps.iter().filter(|gap| match gap.weight {
         GapWeight::Stops => false,

@@ -248,7 +248,7 @@ impl FindingKind {
 
     /// Returns whether the tool is so far in the material that no depth tells how far: a piece of it is inside, or the
     /// surface of the material passes its middle.
-    pub fn is_right_through(&self) -> bool {
+    pub(crate) fn is_right_through(&self) -> bool {
         matches!(self, FindingKind::Inside { .. } | FindingKind::Deep { through: true, .. })
     }
 }

@@ -20,11 +20,13 @@ use std::fmt;
 use std::sync::Arc;
 use touchoff::{Motion, Unit};
 
+mod cycle_time;
 mod fault;
 mod path;
 mod resolve;
 mod summary;
 
+pub use cycle_time::{CYCLE_TIME_ASSUMPTIONS, CycleTime};
 pub use fault::{MachineProgramError, StepFault};
 pub use summary::{
     Gap, GapWeight, MachineSummary, ProgramStop, ToolUse, UnknownCause, UnknownMotions,
@@ -391,6 +393,10 @@ impl MachineProgram {
         while let Some(step) = execution.next() {
             let (step, resolved) = step?;
             let number = step.state.tool;
+            // The time of a tool change is not counted.
+            if !matches!(resolved, Resolved::ToolChange) {
+                summary.time_of(number, &self.machine).add(&step, &resolved, &self.machine);
+            }
             if !matches!(resolved, Resolved::ToolChange)
                 && !seen.iter().any(|(tool, _)| *tool == number)
             {
@@ -457,6 +463,9 @@ impl MachineProgram {
             let mut obstacles = execution.interpreter.obstacles();
             obstacles.retain(|other| other.fault != error.fault);
             summary.stop = Some(ProgramStop { error, obstacles });
+        }
+        for (number, dwells) in execution.interpreter.dwells() {
+            summary.time_of(*number, &self.machine).add_dwells(dwells);
         }
         summary.notes = execution.interpreter.notes();
         summary.open_rules.clone_from(execution.interpreter.asked());

@@ -25,7 +25,7 @@ use super::error::{combination, not_read};
 use super::note::{NoteKind, Notes};
 use super::rules::{Choice, ControlRules, Rule};
 use super::state::{ControlState, LengthOffset, Position, Rotation, Tcp, WorkOffset};
-use super::{ControlSetup, GcodeFault, Plane, Step, StepPath, SubprogramLine};
+use super::{ControlSetup, Dwells, Feed, GcodeFault, Plane, Step, StepPath, SubprogramLine};
 use compensation::Compensation;
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
@@ -121,6 +121,10 @@ pub(super) struct Control {
     /// Set by G49, until the next tool change.
     length_cancelled: bool,
     spindle: SpindleWords,
+    /// Set where F has a meaning of the language's own, so that no feed is known (Heidenhain Klartext).
+    pub(super) has_own_feed: bool,
+    /// The dwells with each tool.
+    pub(super) dwells: BTreeMap<Option<u32>, Dwells>,
     /// Steps that were not yet returned.
     pub(super) pending: VecDeque<Step>,
 }
@@ -283,6 +287,8 @@ impl Control {
             length_implicit: false,
             length_cancelled: false,
             spindle: SpindleWords::new(),
+            has_own_feed: false,
+            dwells: BTreeMap::new(),
             pending: VecDeque::new(),
         }
     }
@@ -387,8 +393,9 @@ impl Control {
         }
     }
 
-    /// Takes the word with the time of G4: P, or X in ISO programs, or F, which is no feed rate then.
-    fn dwell(&self, block: &mut Block) -> Result<(), GcodeFault> {
+    /// Takes the word with the time of G4: P, or X in ISO programs, or F, which is no feed rate then. The time is not known where
+    /// controls differ: P is in seconds on LinuxCNC, and without a decimal point in milliseconds on Fanuc and Haas.
+    fn dwell(&mut self, block: &mut Block) -> Result<(), GcodeFault> {
         if block.code_of(Group::Dwell).is_none() {
             return Ok(());
         }
@@ -400,10 +407,53 @@ impl Control {
         let dialect = self.stated(Rule::Dialect);
         // Native programs of Sinumerik and of Heidenhain have the time in F.
         let has_time_in_x = !matches!(dialect, Some(Choice::Sinumerik | Choice::Heidenhain));
-        if block.take('P').is_none() && block.code_of(Group::Motion).is_none() && has_time_in_x {
-            block.take('X');
-        }
+        let feed = block.take('F');
+        let seconds = if let Some(time) = block.take('P') {
+            match (dialect, block.lacks_point('P')) {
+                (Some(Choice::Rs274Ngc), _) | (Some(Choice::Iso), false) => Some(time),
+                (Some(Choice::Iso), true) => Some(1e-3 * time),
+                _ => None,
+            }
+        } else if block.code_of(Group::Motion).is_none() && has_time_in_x && block.has('X') {
+            block.take('X').filter(|_| !block.lacks_point('X'))
+        } else {
+            feed.filter(|_| !matches!(dialect, Some(Choice::Iso | Choice::Rs274Ngc)))
+        };
+        self.add_dwell(seconds.filter(|seconds| *seconds >= 0.0), 1);
         Ok(())
+    }
+
+    /// Notes a number of dwells of some seconds with the present tool; `None` if their time is not known.
+    fn add_dwell(&mut self, seconds: Option<f64>, count: usize) {
+        let dwells = self.dwells.entry(self.state.tool).or_default();
+        match seconds {
+            Some(seconds) => dwells.seconds += seconds,
+            None => {
+                dwells.unknown += count;
+                dwells.first_unknown.get_or_insert(self.line);
+            }
+        }
+    }
+
+    /// Returns the feed that is programmed for a motion, as far as it is known.
+    fn programmed_feed(&self) -> Option<Feed> {
+        let feed = self.modal.feed.filter(|_| !self.has_own_feed)?;
+        let speed = |per_minute| Feed::Speed {
+            length: self.modal.millimetres(per_minute),
+            angle: per_minute,
+        };
+        match self.modal.feed_mode {
+            FeedMode::PerMinute => Some(speed(feed)),
+            FeedMode::PerRevolution => {
+                let turns = self.spindle.speed.filter(|turns| *turns > 0.0)?;
+                Some(speed(feed * turns))
+            }
+            // It is the time of a block, of which these make several motions.
+            FeedMode::InverseTime => {
+                let is_one_motion = self.modal.cycle().is_none() && self.compensation.is_none();
+                is_one_motion.then_some(Feed::Time { minutes: 1.0 / feed })
+            }
+        }
     }
 
     /// Gives the numbers of a block the unit that the control gives them.
@@ -474,12 +524,15 @@ impl Control {
         }
         // F of a dwell is its time on some controls.
         let is_dwell = block.code_of(Group::Dwell).is_some();
-        match block.take('F') {
+        match block.value('F') {
             Some(value) if value < 0.0 => {
                 let expected = "a positive number";
                 return Err(GcodeFault::NotAllowed { word: 'F', value, expected });
             }
-            Some(feed) if !is_dwell => self.modal.feed = Some(feed).filter(|feed| *feed > 0.0),
+            Some(feed) if !is_dwell => {
+                block.take('F');
+                self.modal.feed = Some(feed).filter(|feed| *feed > 0.0);
+            }
             _ => {}
         }
         // LinuxCNC asks for a feed rate also where no axis moves (`convert_straight`).
@@ -622,10 +675,12 @@ impl Control {
         };
         let state = Arc::clone(&self.state);
         let (line, within, tool_vector) = (self.line, self.within, self.vector);
+        let feed = if rapid { None } else { self.programmed_feed() };
         self.pending.push_back(Step {
             line,
             within,
             rapid,
+            feed,
             start,
             end,
             commanded,

@@ -4,7 +4,7 @@ use super::control::Control;
 use super::files::in_file;
 use super::rules::{Choice, Rule};
 use super::{
-    ControlSetup, GcodeError, GcodeFault, Obstacle, Step, SubprogramFile, iso, klartext, sinumerik,
+    ControlSetup, Dwells, GcodeError, GcodeFault, Obstacle, Step, SubprogramFile, iso, klartext, sinumerik,
 };
 use std::collections::BTreeMap;
 
@@ -85,6 +85,11 @@ impl<'a> Interpreter<'a> {
     /// Returns the rules of the control on which the blocks depend that were executed so far, each with the first line.
     pub fn asked(&self) -> &BTreeMap<Rule, usize> {
         &self.control.asked
+    }
+
+    /// Returns the dwells so far, by the tool in the spindle.
+    pub fn dwells(&self) -> &BTreeMap<Option<u32>, Dwells> {
+        &self.control.dwells
     }
 
     /// Returns the words of the text that are not read, each with its first line, in the order of lines: the first hundred. They

@@ -3,7 +3,7 @@
 use super::machine::MachineFinding;
 use super::stock::{CutStock, StockFinding};
 use super::{Body, Job, JobTool, RevolvedBody};
-use crate::{FindingGroup, Gap, GapWeight, Tilt, VerifyReport};
+use crate::{CycleTime, FindingGroup, Gap, GapWeight, Tilt, VerifyReport};
 use std::fmt;
 use touchoff::Tool;
 use touchoff::tool::ToolInfo;
@@ -137,6 +137,11 @@ impl JobReport<'_> {
 
     pub(super) fn info(&self, pair: &PairReport) -> &ToolInfo {
         self.shape(pair).info()
+    }
+
+    /// Returns the time of each tool in the first reading of G-code; none of cutter locations.
+    pub fn cycle_times(&self) -> &[CycleTime] {
+        self.job.program.readings().first().map_or(&[], |reading| &reading.summary().times)
     }
 
     /// Returns the stock after the first reading, if the job has one.

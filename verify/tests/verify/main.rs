@@ -3,6 +3,7 @@
 
 mod bodies;
 mod cases;
+mod cycle_time;
 mod joints;
 mod machines;
 mod oracle;

@@ -1,10 +1,10 @@
 //! Summary of a program on its machine: what it uses, and the gaps, which are everything that a verdict about it leaves open.
 
-use super::{Assumption, MachineProgram};
+use super::{Assumption, CycleTime, MachineProgram};
 use crate::gcode::{
     GcodeError, LengthOffset, NoteKind, Obstacle, ProgramNote, Rule, Spindle, Step, WorkOffset,
 };
-use crate::machine::{LimitViolation, SingularPass};
+use crate::machine::{LimitViolation, Machine, SingularPass};
 use std::collections::BTreeMap;
 use std::fmt;
 
@@ -47,6 +47,8 @@ pub struct MachineSummary {
     pub limits_unchecked: bool,
     /// Singular passes, each with its line.
     pub singular: Vec<(usize, SingularPass)>,
+    /// The time of each tool, in the order of their first motions.
+    pub times: Vec<CycleTime>,
     /// Notes of the interpreter.
     pub notes: Vec<ProgramNote>,
     /// The line at which the program stops being read, if it does.
@@ -246,6 +248,16 @@ impl fmt::Display for Gap {
 }
 
 impl MachineSummary {
+    /// Returns the time of a tool on a machine.
+    pub(super) fn time_of(&mut self, tool: Option<u32>, machine: &Machine) -> &mut CycleTime {
+        let known = self.times.iter().position(|time| time.tool == tool);
+        let index = known.unwrap_or_else(|| {
+            self.times.push(CycleTime::new(tool, machine));
+            self.times.len() - 1
+        });
+        &mut self.times[index]
+    }
+
     /// Notes what a motion at feed rate needs.
     pub(super) fn add_feed(&mut self, step: &Step, off_is_tip: bool) {
         let tool = step.state.tool;

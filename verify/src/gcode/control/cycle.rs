@@ -43,6 +43,8 @@ impl Control {
         self.check_tilted(block)?;
         self.check_position(block)?;
         let normal = self.modal.plane.normal();
+        let has_dwell =
+            matches!(number, 82 | 86 | 88 | 89) || block.value('P').is_some_and(|time| time > 0.0);
         let cycle = self.cycle_words(block, number, &word)?;
         let levels = self.levels(&cycle)?;
         let repeats = self.repeats(block)?;
@@ -56,6 +58,9 @@ impl Control {
             return Err(GcodeFault::CycleTooLong);
         }
         let axes = self.take_axes(block);
+        if has_dwell {
+            self.add_dwell(None, repeats as usize);
+        }
         // LinuxCNC compares the initial level, and not the present one, with R.
         if is_below(cycle.initial, levels.retract)
             && self.position[normal] != levels.retract

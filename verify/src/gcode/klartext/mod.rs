@@ -121,6 +121,8 @@ impl<'a> Program<'a> {
         }
         // Lengths are converted where they are read.
         (control.modal.unit, control.modal.unit_stated) = (Unit::Millimetre, true);
+        // Cycles have feeds of their own, and M103, M109 and M116 change what F means.
+        control.has_own_feed = true;
         Ok(Program {
             flow: Flow::new(text, start)?,
             waiting: Vec::new(),

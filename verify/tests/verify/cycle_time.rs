@@ -1,0 +1,156 @@
+//! Cycle times against closed forms, worked out by hand.
+
+use std::f64::consts::PI;
+use touchoff_verify::gcode::{ControlRules, ControlSetup};
+use touchoff_verify::machine::Machine;
+use touchoff_verify::{CycleTime, MachineProgram};
+
+/// Rates of the axes in rapid traverse, in mm and degrees per minute.
+const RATES: [(&str, f64); 5] =
+    [("X", 30_000.0), ("Y", 20_000.0), ("Z", 10_000.0), ("A", 3_600.0), ("C", 7_200.0)];
+
+/// Returns a machine of the library with rates.
+fn with_rates(machine: &str) -> Machine {
+    let mut text = Machine::file(machine).expect("a machine of the library").to_owned();
+    for (letter, rate) in RATES {
+        let line = format!("letter = \"{letter}\"\n");
+        text = text.replace(&line, &format!("{line}rapid = {rate}\n"));
+    }
+    Machine::parse(&text, "rates.toml").expect("a machine")
+}
+
+/// Returns the times of a program under a control. The first three motions start where nobody knows: two in rapid traverse, and
+/// that of the length offset.
+fn times(machine: Machine, control: Option<&str>, blocks: &str) -> Vec<CycleTime> {
+    let rules = control.map(|name| ControlRules::named(name).expect("a control"));
+    let mut setup = ControlSetup {
+        lengths: [(1, 80.0), (2, 60.0)].into(),
+        rules: rules.unwrap_or_default(),
+        ..ControlSetup::default()
+    };
+    setup.work_offsets[0] = Some([0.0, 0.0, -300.0, 0.0, 0.0, 0.0]);
+    let text = format!(
+        "G21 G90 G94 G54 G17\nT1 M6\nS600 M3\nG0 X0. Y0.\nG43 H1 Z10.\nG0 X0. Y0. Z10.\n{blocks}\nM30\n"
+    );
+    let program = MachineProgram::new("time.nc", text, machine, setup).expect("a program");
+    program.check_complete().expect("all lines are read");
+    program.summary().times.clone()
+}
+
+/// Returns the time of the one tool on three axes under the rules of LinuxCNC.
+fn time(blocks: &str) -> CycleTime {
+    let times = times(with_rates("3-axis"), Some("linuxcnc"), blocks);
+    assert_eq!(times.len(), 1, "{times:?}");
+    times[0]
+}
+
+/// Returns the time in rapid traverse at rates that are stated.
+fn rapid(time: &CycleTime) -> f64 {
+    time.rapid.expect("rates")
+}
+
+#[track_caller]
+fn assert_near(seconds: f64, expected: f64) {
+    assert!((seconds - expected).abs() < 1e-9 * expected.max(1.0), "{seconds} s, not {expected} s");
+}
+
+#[test]
+fn lines_and_arcs_take_their_length_over_the_feed() {
+    assert_near(time("").feed, 0.0);
+    assert_near(time("G1 X100. F200.").feed, 30.0);
+    // Along the diagonal of a box of 3 x 4 x 12.
+    assert_near(time("G1 X3. Y4. Z-2. F60.").feed, 13.0);
+    // 10 mm, half a circle of radius 10, and half a turn of a helix that falls by 3.
+    assert_near(time("G1 X10. F600.\nG3 X-10. Y0. I-10. J0.").feed, 1.0 + PI);
+    let helix = "G1 X10. F600.\nG3 X-10. Y0. Z7. I-10. J0.";
+    assert_near(time(helix).feed, 1.0 + 0.1 * (10.0 * PI).hypot(3.0));
+    // An inch at 10 inches a minute.
+    assert_near(time("G20 G1 X1. F10.").feed, 6.0);
+    assert_near(time("G91 G1 X1. F60.\nX1.\nX1.\nG90").feed, 3.0);
+}
+
+#[test]
+fn feeds_by_time_and_per_turn_have_their_meaning() {
+    assert_near(time("G93 G1 X50. F2.\nX60. F4.").feed, 45.0);
+    // 600 turns a minute at 0.1 mm a turn.
+    assert_near(time("G95 G1 X60. F0.1").feed, 60.0);
+    assert_near(time("G95 G1 X60. F0.1\nS1200\nX0.").feed, 90.0);
+    assert_near(time("G95 G1 X60. F0.1\nG94 G1 X0. F120.").feed, 90.0);
+}
+
+#[test]
+fn rotary_axes_alone_turn_by_degrees() {
+    let of = |blocks: &str| {
+        let start = "G0 A0. C0.\n";
+        let times =
+            times(with_rates("A-C trunnion"), Some("linuxcnc"), &format!("{start}{blocks}"));
+        times[0]
+    };
+    let before = of("");
+    assert_near(of("G1 C90. F180.").feed, 30.0);
+    assert_near(of("G1 A-30. C40. F100.").feed, 30.0);
+    // Beside X, the feed is that of X.
+    assert_near(of("G1 X10. C90. F60.").feed, 10.0);
+    // An inch has no part in degrees.
+    assert_near(of("G20 G1 C90. F180.").feed, 30.0);
+    assert_near(rapid(&of("G0 A-60. C60.")) - rapid(&before), 1.0);
+}
+
+#[test]
+fn the_slowest_axis_decides_in_rapid_traverse() {
+    assert_near(rapid(&time("")), 0.0);
+    // X takes 0.2 s, Y 0.3 s and Z 0.06 s.
+    assert_near(rapid(&time("G0 X100. Y100. Z20.")), 0.3);
+    assert_near(rapid(&time("G0 X100.\nY100.\nZ20.")), 0.56);
+    // Down to R and up again, and the hole in between.
+    let drilled = time("G98 G81 X0. Y0. Z-8. R2. F100.\nG80");
+    assert_near(drilled.feed, 6.0);
+    assert_near(rapid(&drilled), 0.006 * (8.0 + 18.0));
+    assert_eq!(drilled.unknown, time("").unknown);
+
+    // Without rates nobody knows.
+    let machine = Machine::named("3-axis").expect("a machine of the library");
+    let without = times(machine, Some("linuxcnc"), "G0 X100.\nG1 X0. F200.\nG0 Y5.");
+    assert_near(without[0].feed, 30.0);
+    assert_eq!(without[0].rapid, None);
+    assert_eq!(without[0].first_unknown, Some(4));
+    assert_eq!(without[0].unknown, time("").unknown + 3);
+}
+
+#[test]
+fn dwells_are_in_the_unit_of_their_control() {
+    let machine = || with_rates("3-axis");
+    let before = time("").unknown;
+    for (control, block, seconds) in [
+        (Some("linuxcnc"), "G4 P2", Some(2.0)),
+        (Some("linuxcnc"), "G4 P2.5", Some(2.5)),
+        (Some("fanuc"), "G4 P500", Some(0.5)),
+        (Some("haas"), "G4 P1.5", Some(1.5)),
+        (Some("fanuc"), "G4 X2.", Some(2.0)),
+        (Some("fanuc"), "G4 X2", None),
+        (Some("siemens"), "G4 F3", Some(3.0)),
+        (None, "G4 P2", None),
+    ] {
+        let dwelling = times(machine(), control, &format!("{block}\nG1 X100. F200."));
+        assert_eq!(dwelling.len(), 1, "{dwelling:?}");
+        let time = dwelling[0];
+        assert_near(time.dwell, seconds.unwrap_or(0.0));
+        assert_near(time.feed, 30.0);
+        let plain = times(machine(), control, "G1 X100. F200.")[0];
+        assert_eq!(time.unknown - plain.unknown, usize::from(seconds.is_none()), "{block}");
+    }
+    // The time at the bottom of a hole is not counted, and said.
+    let drilled = time("G98 G82 X0. Y0. Z-8. R2. P1. F100.\nX5.\nG80");
+    assert_eq!(drilled.unknown, before + 2);
+}
+
+#[test]
+fn each_tool_has_its_time() {
+    let blocks =
+        "G1 X100. F200.\nG0 Z100.\nT2 M6\nS600 M3\nG43 H2 G0 X0. Y0. Z10.\nG1 X50. F100.\nG4 P4.";
+    let times = times(with_rates("3-axis"), Some("linuxcnc"), blocks);
+    let tools: Vec<_> = times.iter().map(|time| (time.tool, time.feed, time.dwell)).collect();
+    assert_eq!(tools, [(Some(1), 30.0, 0.0), (Some(2), 30.0, 4.0)]);
+    let said = times[1].to_string();
+    assert!(said.starts_with("30.0 s in feed, ") && said.contains(", 4.0 s in dwells"), "{said}");
+}
