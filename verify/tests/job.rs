@@ -9,7 +9,7 @@ use touchoff::mesh::shapes;
 use touchoff::{Tool, Unit};
 use touchoff_verify::gcode::{ControlRules, ControlSetup, WorkOffset};
 use touchoff_verify::job::{
-    Body, BodyRole, FindingDetail, JobStock, Moving, PairReport, StockShape,
+    Body, BodyRole, FindingDetail, JobFinding, JobStock, Moving, PairReport, StockShape,
 };
 use touchoff_verify::machine::Machine;
 use touchoff_verify::{
@@ -160,6 +160,11 @@ fn the_worst_finding_comes_first() {
     let start = "T1 face and flute pass right through the part on 3 motions, lines 7, 14, 16; first, face passes right \
                  through the part at ";
     assert!(findings[0].text.starts_with(start), "{}", findings[0]);
+
+    let at_part = |finding: &&JobFinding| matches!(finding.detail, FindingDetail::Surface { pair, .. } if report.pairs[pair].body == 0);
+    let count = findings.iter().filter(at_part).count();
+    let start = format!("T1 at the part: {count} findings in ");
+    assert!(report.summaries()[0].starts_with(&start), "{:?}", report.summaries());
 
     // The depth beyond its limit, over surfaces and the stock; then what has none.
     let excess = |detail: &FindingDetail| match detail {

@@ -85,27 +85,7 @@ pub(super) fn all(report: &JobReport<'_>) -> Vec<JobFinding> {
 fn surfaces(report: &JobReport<'_>) -> Vec<Ranked> {
     let mut found = Vec::new();
     for (index, pair) in report.pairs.iter().enumerate() {
-        // The groups of each finding, and its remedy.
-        let mut rows: Vec<(Vec<FindingGroup>, Remedy)> = Vec::new();
-        // The rows that a further group may join: one per way of being right through.
-        let mut open: Vec<usize> = Vec::new();
-        for (group, remedy) in pair.groups.iter().zip(&pair.remedies) {
-            // Rapid traverse at any rates has a sentence of its own.
-            let joins = group.worst.kind.is_right_through() && !group.worst.any_rates;
-            let is_alike = |row: &&usize| {
-                let known = &rows[**row].0[0].worst.kind;
-                joins && known.severity(&group.worst.kind) == Ordering::Equal
-            };
-            if let Some(row) = open.iter().find(is_alike) {
-                rows[*row].0.push(*group);
-                continue;
-            }
-            if joins {
-                open.push(rows.len());
-            }
-            rows.push((vec![*group], *remedy));
-        }
-        found.extend(rows.into_iter().map(|(groups, remedy)| {
+        found.extend(joined(pair).into_iter().map(|(groups, remedy)| {
             let kind = groups[0].worst.kind;
             let open = matches!(kind, FindingKind::Undecided { .. } | FindingKind::Ambiguous(_));
             let runs = Run::all(&groups);
@@ -127,6 +107,31 @@ fn surfaces(report: &JobReport<'_>) -> Vec<Ranked> {
         }));
     }
     found
+}
+
+/// Returns the groups of each finding of a pair, with its remedy: one group each, but for those on which the tool passes right
+/// through the body in the same way.
+fn joined(pair: &PairReport) -> Vec<(Vec<FindingGroup>, Remedy)> {
+    let mut rows: Vec<(Vec<FindingGroup>, Remedy)> = Vec::new();
+    // The rows that a further group may join: one per way of being right through.
+    let mut open: Vec<usize> = Vec::new();
+    for (group, remedy) in pair.groups.iter().zip(&pair.remedies) {
+        // Rapid traverse at any rates has a sentence of its own.
+        let joins = group.worst.kind.is_right_through() && !group.worst.any_rates;
+        let is_alike = |row: &&usize| {
+            let known = &rows[**row].0[0].worst.kind;
+            joins && known.severity(&group.worst.kind) == Ordering::Equal
+        };
+        if let Some(row) = open.iter().find(is_alike) {
+            rows[*row].0.push(*group);
+            continue;
+        }
+        if joins {
+            open.push(rows.len());
+        }
+        rows.push((vec![*group], *remedy));
+    }
+    rows
 }
 
 /// Consecutive motions, by the index and the line of the first and the last.
@@ -415,9 +420,9 @@ fn summary(report: &JobReport<'_>, pair: &PairReport) -> String {
         (None, None) if body.is_part() => String::new(),
         (None, None) => format!("{}: ", body.name),
     };
-    let PairReport { report, groups, .. } = pair;
+    let count = joined(pair).len();
+    let PairReport { report, .. } = pair;
     let motions = report.motions;
-    let count = groups.len();
     if count == 0 {
         return format!("{tool}no findings in {motions} motion{}", plural(motions));
     }

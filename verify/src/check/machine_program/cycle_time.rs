@@ -85,11 +85,11 @@ impl fmt::Display for CycleTime {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{:.1} s in feed", self.feed)?;
         match self.rapid {
-            Some(rapid) => write!(f, ", {rapid:.1} s in rapid traverse")?,
+            Some(rapid) => write!(f, ", {rapid:.1} s in rapid traverse"),
             None => {
-                f.write_str(", rapid traverse not known, as the machine's file states no rates")?
+                f.write_str(", rapid traverse not known, as the machine's file states no rates")
             }
-        }
+        }?;
         if self.dwell > 0.0 {
             write!(f, ", {:.1} s in dwells", self.dwell)?;
         }
