@@ -4,6 +4,7 @@ import { Quaternion, Vector3 } from 'three';
 
 const STEP = 0.5; // of an arrow key, mm
 const TURN = 0.008; // rad per pixel
+const MIN_DRAG = 3; // pixels before a press is a drag
 const GAMEPAD = { speed: 0.25, turn: 1.2, dead: 0.12 }; // part sizes and rad per second
 
 /** The pose that the hand asks for, and the means to move it. */
@@ -16,8 +17,10 @@ export class Hand {
     this.millimetre = 1;
     /** The tip of the tool as it stands, `null` if unknown. @type {number[] | null} */
     this.stands = null;
-    /** @type {{offset: Vector3, x: number, y: number, pointer: number} | null} */
+    /** @type {{offset: Vector3, x: number, y: number, pointer: number, moves: boolean} | null} */
     this.drag = null;
+    /** Is called when a pointer takes hold of the tool. */
+    this.taken = () => {};
     /** Speeds of a SpaceMouse, -1 to 1: three of translation, three of rotation. */
     this.mouse = [0, 0, 0, 0, 0, 0];
     this.#listen(scene.canvas);
@@ -33,7 +36,7 @@ export class Hand {
     this.tip.set(...tip);
     this.turn.copy(turn);
     this.stands = null;
-    this.drag = null;
+    this.#grip();
   }
 
   #listen(canvas) {
@@ -43,31 +46,35 @@ export class Hand {
       const [x, y] = at(event);
       const hit = this.#onPlane(x, y);
       if (!hit) return;
-      this.drag = { offset: this.tip.clone().sub(hit), x, y, pointer: event.pointerId };
+      this.drag = { offset: this.tip.clone().sub(hit), x, y, pointer: event.pointerId, moves: false };
+      this.taken();
       this.scene.orbit.enabled = false;
       canvas.setPointerCapture(event.pointerId);
     }, { capture: true });
     canvas.addEventListener('pointermove', (event) => {
       if (this.drag?.pointer !== event.pointerId) return;
       const [x, y] = at(event);
+      // A click is no drag, even if the pointer trembles.
+      if (!this.drag.moves && Math.hypot(x - this.drag.x, y - this.drag.y) < MIN_DRAG) return;
+      const [dx, dy] = [x - this.drag.x, y - this.drag.y];
+      Object.assign(this.drag, { x, y, moves: true });
       if (event.shiftKey) {
         const { right, up } = this.scene.directions();
-        this.rotate(up, TURN * (x - this.drag.x));
-        this.rotate(right, TURN * (y - this.drag.y));
-        const hit = this.#onPlane(x, y);
-        if (hit) this.drag.offset.copy(this.tip).sub(hit);
+        this.rotate(up, TURN * dx);
+        this.rotate(right, TURN * dy);
+        this.#grip();
       } else {
         const hit = this.#onPlane(x, y);
         if (hit) this.tip.copy(hit).add(this.drag.offset);
       }
-      Object.assign(this.drag, { x, y });
     });
     for (const name of ['pointerup', 'pointercancel']) {
       canvas.addEventListener(name, (event) => {
         if (this.drag?.pointer !== event.pointerId) return;
+        const { moves } = this.drag;
         this.drag = null;
         this.scene.orbit.enabled = true;
-        this.release();
+        if (moves) this.release();
       });
     }
     canvas.addEventListener('wheel', (event) => {
@@ -76,10 +83,7 @@ export class Hand {
       event.stopImmediatePropagation();
       const { away } = this.scene.directions();
       this.tip.addScaledVector(away, -event.deltaY * 0.25 * this.scene.pixel(this.tip.toArray()));
-      if (this.drag) {
-        const hit = this.#onPlane(this.drag.x, this.drag.y);
-        if (hit) this.drag.offset.copy(this.tip).sub(hit);
-      }
+      this.#grip();
     }, { capture: true, passive: false });
     canvas.addEventListener('keydown', (event) => {
       const moves = {
@@ -101,6 +105,12 @@ export class Hand {
   /** Turns the tool about its tip. */
   rotate(axis, angle) {
     this.turn.premultiply(new Quaternion().setFromAxisAngle(axis, angle)).normalize();
+  }
+
+  /** Keeps a hand that drags at its place on the tool, which has moved. */
+  #grip() {
+    const hit = this.drag && this.#onPlane(this.drag.x, this.drag.y);
+    if (hit) this.drag.offset.copy(this.tip).sub(hit);
   }
 
   /** Returns where the ray at a position meets the plane through the tip that is parallel to the screen. */

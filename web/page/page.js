@@ -27,6 +27,9 @@ const program = new ProgramView(scene, {
   message: (text, isError) => readout.message(text, isError),
 });
 
+// Who takes hold of the tool wants it to stand.
+hand.taken = () => program.pause();
+
 /** The file and the facts of part and tool, and the texts that the tool may mount. */
 let partName = '';
 /** @type {any} */ let part = null;
@@ -146,8 +149,10 @@ const replies = {
       hand.stands = state.tool.tip;
       scene.show(state, contacts);
       readout.show(state, surfaces);
-      id('holder').textContent = program.pose ? 'At this position, from the points' : 'On the hand';
-      if (state.count > 0 && hand.drag) {
+      // A program has no hand on which the haptic model could give a force.
+      id('wrench').hidden = id('stretch-row').hidden = program.pose !== null;
+      id('contact-at').textContent = program.pose ? 'Contact at this position' : 'Contact';
+      if (state.count > 0 && hand.drag?.moves && !program.pose) {
         const better = map.record(contacts, CONTACT_VALUES, tool.surfaces, hand.pose, tool.name);
         if (better.length) {
           scene.colorTriangles(better);
@@ -157,6 +162,7 @@ const replies = {
       // For scripts: where the tool is on the canvas.
       id('canvas').dataset.tip = scene.project(state.tool.tip).map((value) => value.toFixed(1)).join();
       id('canvas').dataset.force = state.force.join();
+      id('canvas').dataset.range = String(scene.toolRange());
       id('canvas').dataset.timing = JSON.stringify({ ...timing, skipped, fps });
     }
     const now = performance.now();
@@ -208,7 +214,7 @@ function followProgram() {
   if (program.pose !== followed) {
     followed = program.pose;
     hand.place(followed.slice(0, 3), new Quaternion(...followed.slice(3)));
-  } else if (hand.drag || hand.pose.some((value, k) => Math.abs(value - followed[k]) > 1e-9)) {
+  } else if (hand.pose.some((value, k) => Math.abs(value - followed[k]) > 1e-9)) {
     program.leave();
     state = null;
     ask('start', { pose: followed });

@@ -6,7 +6,7 @@ const id = (name) => /** @type {any} */ (document.getElementById(name));
 /** Duration of a whole program that plays, s, and least rate in positions per second. */
 const PLAYED = { seconds: 40, rate: 4 };
 
-/** @typedef {{kind: string, surface: string | null, at: number, span: number[], lines: number[], rapid: boolean, measured: number[] | null, limit: number | null, point: number[] | null, triangle: number}} Finding */
+/** @typedef {{kind: string, surface: string | null, at: number, span: number[], lines: number[], rapid: boolean, measured: number[] | null, limit: number | null, point: number[] | null, triangle: number, axis: number[]}} Finding */
 
 export class ProgramView {
   /**
@@ -83,9 +83,14 @@ export class ProgramView {
     if (this.file) this.#check(what);
   }
 
+  /** Stops playing. */
+  pause() {
+    this.#play(false);
+  }
+
   /** Lets go of the tool, which the hand takes. */
   leave() {
-    this.#play(false);
+    this.pause();
     this.pose = null;
   }
 
@@ -173,7 +178,7 @@ export class ProgramView {
   show(finding) {
     this.#play(false);
     this.seek(finding.at);
-    if (finding.point) this.scene.lookAt(finding.point, finding.triangle);
+    if (finding.point) this.scene.lookAt(finding.point, finding.triangle, finding.axis);
   }
 
   #play(on) {

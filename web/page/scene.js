@@ -9,6 +9,8 @@ const FORCE = 0xc2410c;
 const FEED = new THREE.Color('#0b7a4b');
 const RAPID = new THREE.Color('#d08a00');
 const MAX_CONTACTS = 4096;
+/** Greatest slope of a view of a finding over the plane at right angles to the tool's axis. */
+const MAX_RISE = 0.6;
 /** Values of a contact in the engine's list. */
 export const CONTACT_VALUES = 10;
 
@@ -58,13 +60,21 @@ export class Scene {
     /** The path of a program. @type {THREE.LineSegments | null} */
     this.path = null;
     this.toolRadius = 0;
-    // A view that cuts away what is in front ends with the next turn of it.
-    this.orbit.addEventListener('start', () => this.#setNear(0.01));
+    /** The plane before which the part is cut away, if it is; the tool never is. @type {THREE.Plane[]} */
+    this.section = [];
+    this.renderer.localClippingEnabled = true;
+    // A click turns nothing, and the section stays.
+    let isTurning = false;
+    this.orbit.addEventListener('start', () => { isTurning = true; });
+    this.orbit.addEventListener('end', () => { isTurning = false; });
+    this.orbit.addEventListener('change', () => { if (isTurning) this.section.length = 0; });
   }
 
-  /** Sets the distance before which nothing is drawn, as a fraction of the distance of the target. */
-  #setNear(fraction) {
-    this.camera.near = fraction * this.camera.position.distanceTo(this.orbit.target);
+  /** Sets the distances between which things are drawn. */
+  #setRange() {
+    const distance = this.camera.position.distanceTo(this.orbit.target);
+    this.camera.near = 0.01 * distance;
+    this.camera.far = 100 * Math.max(distance, this.size);
     this.camera.updateProjectionMatrix();
   }
 
@@ -98,11 +108,11 @@ export class Scene {
     geometry.setAttribute('color', new THREE.BufferAttribute(colors, 3));
     geometry.computeVertexNormals();
     // A flat face drawn behind its edges.
-    const material = new THREE.MeshLambertMaterial({ vertexColors: true, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1, side: THREE.DoubleSide });
+    const material = new THREE.MeshLambertMaterial({ vertexColors: true, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1, side: THREE.DoubleSide, clippingPlanes: this.section });
     this.part = new THREE.Mesh(geometry, material);
     const edges = new THREE.LineSegments(
       new THREE.EdgesGeometry(geometry, 30),
-      new THREE.LineBasicMaterial({ color: 0x5b6775 }),
+      new THREE.LineBasicMaterial({ color: 0x5b6775, clippingPlanes: this.section }),
     );
     this.part.add(edges);
     this.scene.add(this.part);
@@ -152,6 +162,10 @@ export class Scene {
     }
     this.toolRadius = toolRadius(triangles.positions, surfaces, triangles.surfaces);
     this.tool.add(new THREE.Mesh(geometry, new THREE.MeshLambertMaterial({ vertexColors: true, transparent: true, opacity: 0.82 })));
+    // What the part hides of the tool shows through it.
+    this.tool.add(new THREE.Mesh(geometry, new THREE.MeshLambertMaterial({
+      vertexColors: true, transparent: true, opacity: 0.3, depthFunc: THREE.GreaterDepth, depthWrite: false,
+    })));
     this.ghost.add(new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({ color: 0x16202c, transparent: true, opacity: 0.14, depthTest: false, depthWrite: false })));
   }
 
@@ -184,23 +198,40 @@ export class Scene {
   }
 
   /**
-   * Looks at a point of the part from outside, a little from above and from aside, near enough for the tool. What stands
-   * before it is cut away.
+   * Looks at a point of the part from outside and from beside the tool, near enough for the tool. The part is cut away where it
+   * stands before the point.
    * @param {number[]} point
    * @param {number} triangle of the part
+   * @param {number[]} axis of the tool
    */
-  lookAt(point, triangle) {
+  lookAt(point, triangle, axis) {
     const normals = /** @type {any} */ (this.part).geometry.getAttribute('normal');
     const normal = new THREE.Vector3().fromBufferAttribute(normals, 3 * triangle);
     const aside = new THREE.Vector3(-normal.y, normal.x, 0).multiplyScalar(0.7);
     const toward = normal.add(aside).add(new THREE.Vector3(0.1, -0.2, 0.5));
-    if (toward.lengthSq() < 1e-3) toward.set(0.75, -1, 0.62);
+    // A tool that is seen along its axis hides the point, and its holder may reach beyond the camera.
+    const up = new THREE.Vector3(...axis);
+    const rise = toward.dot(up);
+    toward.addScaledVector(up, -rise);
+    if (toward.length() < 1e-3) toward.set(0.75, -1, 0).addScaledVector(up, up.y - 0.75 * up.x);
+    toward.normalize().addScaledVector(up, Math.min(Math.max(rise, -MAX_RISE), MAX_RISE));
     const extent = Math.min(0.6 * this.size, Math.max(12 * this.toolRadius, 0.05 * this.size));
     const distance = (0.5 * extent) / Math.tan((this.camera.fov * Math.PI) / 360);
     this.orbit.target.set(...point);
     this.camera.position.copy(this.orbit.target).addScaledVector(toward.normalize(), distance);
     this.orbit.update();
-    this.#setNear(1 - Math.min(0.9, (0.6 * extent) / distance));
+    this.#setRange();
+    this.#cutBefore(this.orbit.target, Math.min(2 * this.toolRadius, extent));
+  }
+
+  /** Cuts the part away from a distance before a point on, if it stands there. */
+  #cutBefore(point, distance) {
+    this.section.length = 0;
+    const toward = this.camera.position.clone().sub(point);
+    const caster = new THREE.Raycaster(this.camera.position, toward.clone().negate().normalize(), 0, 0.999 * toward.length());
+    if (!caster.intersectObject(/** @type {any} */ (this.part), false).length) return;
+    const away = toward.negate().normalize();
+    this.section.push(new THREE.Plane().setFromNormalAndCoplanarPoint(away, point.clone().addScaledVector(away, -distance)));
   }
 
   /**
@@ -217,9 +248,9 @@ export class Scene {
     const distance = (0.62 * this.size) / Math.tan((this.camera.fov * Math.PI) / 360) / narrow;
     this.orbit.target.copy(target);
     this.camera.position.copy(target).addScaledVector(direction, distance);
-    this.camera.far = distance * 100;
     this.orbit.update();
-    this.#setNear(0.01);
+    this.#setRange();
+    this.section.length = 0;
   }
 
   /**
@@ -308,6 +339,14 @@ export class Scene {
     const caster = new THREE.Raycaster();
     caster.setFromCamera(at, this.camera);
     return caster;
+  }
+
+  /** Returns the least distance of the tool from the plane before which nothing is drawn; below 0 it is cut there. */
+  toolRange() {
+    const { min, max } = new THREE.Box3().setFromObject(this.tool);
+    const { away } = this.directions();
+    const nearest = new THREE.Vector3(...['x', 'y', 'z'].map((axis) => (away[axis] > 0 ? min : max)[axis]));
+    return nearest.sub(this.camera.position).dot(away) - this.camera.near;
   }
 
   /** Returns whether the tool is at a position of the canvas. */

@@ -267,6 +267,8 @@ struct FindingRow {
     /// The point of the part, and its triangle.
     point: Option<[f64; 3]>,
     triangle: Option<u32>,
+    /// The axis of the tool at the worst.
+    axis: [f64; 3],
 }
 
 impl CheckResult {
@@ -305,7 +307,7 @@ impl CheckResult {
 
 impl FindingRow {
     fn of(group: &FindingGroup, info: &ToolInfo) -> FindingRow {
-        let Finding { location, line, rapid, time, kind, .. } = group.worst;
+        let Finding { location, line, rapid, time, pose, kind, .. } = group.worst;
         let (label, measured, limit, witness) = match kind {
             FindingKind::Deep { allowed, depth, through, witness, .. } => {
                 let label = if through { "right through" } else { "deep" };
@@ -329,6 +331,7 @@ impl FindingRow {
             limit,
             point: witness.map(|witness| witness.point.coords.into()),
             triangle: witness.map(|witness| witness.triangle.0),
+            axis: pose.axis().into(),
         }
     }
 }

@@ -206,8 +206,8 @@ impl Engine {
         }
     }
 
-    /// Returns the state of a tool that is held at a pose, with the values of [`state`](Engine::state). The force is that of the
-    /// contact stiffness, without a coupling.
+    /// Returns the state of a tool that is held at a pose, with the values of [`state`](Engine::state). Force and torque are 0, as
+    /// no hand feels them.
     ///
     /// # Errors
     /// Fails for an invalid pose, and without a session.
@@ -330,17 +330,13 @@ impl Engine {
 
     fn held(&mut self, pose: &[f64]) -> Result<Vec<f64>, EngineError> {
         let pose = pose_of(pose)?;
-        let unit = self.part.as_ref().ok_or(EngineError::NotLoaded)?.unit().millimetres();
-        let stiffness = self.stiffness * unit.powi(3);
         let wrench = self.running()?.probe(|probe| probe.wrench(&pose));
         let mut values = vec![0.0];
         // Tool and hand are at one pose.
         for _ in 0..2 {
             values.extend(pose.tip().iter().chain(pose.rotation().iter()));
         }
-        // The torque is in N·mm.
-        values.extend(wrench.force.iter().map(|force| stiffness * force));
-        values.extend(wrench.torque.iter().map(|torque| stiffness * unit * torque));
+        values.extend([0.0; 6]);
         values.extend([
             wrench.depth(),
             wrench.niceness.unwrap_or(f64::INFINITY),

@@ -145,15 +145,64 @@ try {
     assert.ok(Math.hypot(x - box.width / 2, y - box.height / 2) < 0.15 * box.height, `${x}, ${y}`);
   });
 
+  await check('a click on a finding and on the tool keeps the tool whole and in its program', async () => {
+    // A holder leans toward the viewer, over a wall of the pocket.
+    await page.selectOption('#tool', 'ball_er16.tool');
+    await until(() => /BallEr16/.test(document.getElementById('title').textContent));
+    const axis = '0,-0.6,0.8';
+    const rows = Array.from({ length: 9 }, (_, k) => `${-2 + 0.5 * k},-5,-5,${axis}`);
+    const program = [`-2,-5,12,${axis}`, ...rows, `2,-5,12,${axis}`].join('\n');
+    await page.setInputFiles('#program-file', { name: 'wall.csv', mimeType: 'text/csv', buffer: Buffer.from(program) });
+    await until(() => document.getElementById('verdict').textContent.includes('(10 motions'));
+    const findings = page.locator('#findings-list button');
+    for (let k = 0; k < await findings.count(); k++) {
+      await findings.nth(k).click();
+      await page.waitForTimeout(400);
+      const range = Number(await data('range'));
+      assert.ok(range > 0, `finding ${k} cuts the tool ${range} mm before the viewer`);
+    }
+    await shot('whole');
+    const tip = await text('#tip');
+    const [x, y] = (await data('tip')).split(',').map(Number);
+    const box = await page.locator('#canvas').boundingBox();
+    // With a hand that trembles by a pixel.
+    await page.mouse.move(box.x + x, box.y + y - 25);
+    await page.mouse.down();
+    await page.mouse.move(box.x + x + 1, box.y + y - 25);
+    await page.waitForTimeout(200);
+    await page.mouse.up();
+    await page.waitForTimeout(300);
+    assert.deepEqual([await text('#tip'), await page.isHidden('#wrench')], [tip, true]);
+    // While it plays, a click on the tool stops it, and the view can be turned again.
+    await page.click('#play');
+    await page.waitForTimeout(300);
+    const [left, top] = (await data('tip')).split(',').map(Number);
+    await page.mouse.click(box.x + left, box.y + top - 25, { delay: 100 });
+    assert.equal(await page.getAttribute('#play', 'aria-label'), 'Play');
+    const camera = await data('camera');
+    await page.mouse.move(box.x + 40, box.y + box.height / 2);
+    await page.mouse.down();
+    await page.mouse.move(box.x + 90, box.y + box.height / 2, { steps: 5 });
+    await page.mouse.up();
+    await until((before) => document.getElementById('canvas').dataset.camera !== before, camera);
+    await page.selectOption('#tool', 'd2_ball.tool');
+    await until(() => /D2Ball/.test(document.getElementById('title').textContent));
+    const over = ['-18,-10,12,0,0,1', '-18,-10,0,0,0,1', '-14,10,12,0,0,1'].join('\n');
+    await page.setInputFiles('#program-file', { name: 'over.csv', mimeType: 'text/csv', buffer: Buffer.from(over) });
+    await until(() => document.getElementById('verdict').textContent.includes('(2 motions'));
+  });
+
   await check('a scrub moves the tool, and a drag takes it from the program', async () => {
     await page.locator('#position').fill('0');
     await until(() => /^line 1 · feed · 1[12]\.\d+ mm or more from the part/.test(document.getElementById('position-text').textContent));
     await until(() => / 12\.00\s*$/.test(document.getElementById('tip').textContent));
     await page.click('[data-view=front]');
-    assert.equal(await text('#holder'), 'At this position, from the points');
+    assert.equal(await text('#contact-at'), 'Contact at this position');
+    assert.ok(await page.isHidden('#wrench'), 'no force without a hand');
     await page.waitForTimeout(300);
     await press(30, 0, 5);
-    await until(() => document.getElementById('holder').textContent === 'On the hand');
+    await until(() => !document.getElementById('wrench').hidden);
+    assert.match(await text('#wrench caption'), /haptic model.*no cutting forces/);
     await until(() => Number(document.getElementById('tip').textContent.trim().split(/\s+/)[0]) > -17.9);
     await page.mouse.up();
     await page.click('#close-program');
