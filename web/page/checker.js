@@ -1,6 +1,6 @@
 // The check of programs, in a thread of its own.
 
-import init, { Checker } from './engine.js';
+import init, { Checker, Engine } from './engine.js';
 import { engineModule } from './wasm.js';
 
 /** Positions for which depth and clearance are drawn, at most. */
@@ -10,8 +10,6 @@ const SLICE = 30;
 
 /** @type {Checker} */
 let checker;
-/** @type {{machine: string | null, tools: {number: number | null, motions: number}[], notes: string[]}} */
-let facts;
 let version = 0;
 
 globalThis.checkedMotions = (count) => postMessage({ kind: 'progress', count });
@@ -30,20 +28,52 @@ function follow(of, step, next, last) {
   if (next <= last) setTimeout(() => answer({ kind: 'follow', of, step, next, last }), 0);
 }
 
+/** The position to which the stock is to be cut, `null` if it is there. @type {number | null} */
+let cutTo = null;
+let isCutting = false;
+let hasStock = false;
+/** The number of points of the stock that was sent last. */
+let sentPoints = -1;
+
+/** Cuts the stock in slices, and sends what remains after each that has cut something. */
+function cut() {
+  const begin = performance.now();
+  while (cutTo !== null && performance.now() - begin < SLICE) {
+    if (checker.cutStock(cutTo)) cutTo = null;
+  }
+  const points = checker.stockPoints();
+  if (points !== sentPoints) {
+    sentPoints = points;
+    const positions = checker.stockPositions();
+    postMessage({ kind: 'stock', positions }, { transfer: [positions.buffer] });
+  }
+  isCutting = cutTo !== null;
+  if (isCutting) setTimeout(() => answer({ kind: 'cut' }), 0);
+}
+
 /** @type {Record<string, (message: any) => void>} */
 const requests = {
-  /** Takes what is new of part, tool and program, and checks the motions of a tool of the program. */
-  check({ part, tool, program, number, tolerance }) {
+  /** Takes what is new of part and program. */
+  read({ part, program }) {
     version++;
     if (part?.bytes) checker.readPart(new Uint8Array(part.bytes), part.name, part.unit);
     else if (part) checker.generatePart(part.shape);
-    if (tool) checker.setTool(tool.name, tool.text, JSON.stringify(tool.files));
-    if (program) facts = JSON.parse(checker.readProgram(new Uint8Array(program.bytes), program.name, program.machine));
-    const taken = facts.tools.find((one) => one.number === number) ?? facts.tools[0];
-    if (!taken) throw new Error('the program has no motions that can be checked');
-    const positions = checker.takeMotions(taken.number ?? undefined);
+    const facts = program && JSON.parse(checker.readProgram(new Uint8Array(program.bytes), program.name, program.machine));
+    if (facts?.tools.length === 0) throw new Error('the program has no motions that can be checked');
+    postMessage({ kind: 'read', facts });
+  },
+  /** Checks the motions of all tools, each given with its number in the program. */
+  check({ tools, stock, tolerance }) {
+    version++;
+    checker.setStock(new Float64Array(stock));
+    hasStock = stock.length > 0;
+    sentPoints = -1;
+    for (const { number, name, text, files } of tools) {
+      checker.setTool(number ?? undefined, name, text ?? Engine.libraryText(name), JSON.stringify(files));
+    }
+    const positions = checker.takeMotions();
     const count = positions.length / 4;
-    postMessage({ kind: 'program', facts, number: taken.number, positions });
+    postMessage({ kind: 'motions', positions });
     const before = performance.now();
     const result = JSON.parse(checker.check(tolerance));
     postMessage({ kind: 'result', result, tolerance, milliseconds: performance.now() - before });
@@ -51,7 +81,12 @@ const requests = {
   },
   at({ position }) {
     postMessage({ kind: 'at', position, state: checker.at(position) });
+    if (!hasStock) return;
+    cutTo = position;
+    if (!isCutting) setTimeout(() => answer({ kind: 'cut' }), 0);
+    isCutting = true;
   },
+  cut,
   follow({ of, step, next, last }) {
     follow(of, step, next, last);
   },
@@ -62,6 +97,7 @@ function answer(data) {
   try {
     requests[data.kind](data);
   } catch (error) {
+    if (data.kind === 'cut') isCutting = hasStock = false;
     postMessage({ kind: 'error', request: data.kind, message: String(error instanceof Error ? error.message : error) });
   }
 }

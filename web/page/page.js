@@ -22,7 +22,17 @@ const editor = new Editor(id('editor'), (text) => compile(toolName, text, toolFi
 
 const program = new ProgramView(scene, {
   part: partSource,
-  tool: () => ({ name: toolName, text: editor.text, files: toolFiles }),
+  tools: () => [...sources.keys()],
+  tool: () => toolName,
+  source: (name) => ({ name, ...sources.get(name) }),
+  show: (name) => new Promise((resolve) => {
+    if (name === toolName) {
+      resolve();
+    } else {
+      shown = resolve;
+      takeTool(name);
+    }
+  }),
   unit: () => part,
   message: (text, isError) => readout.message(text, isError),
 });
@@ -36,6 +46,12 @@ let partName = '';
 let isSampled = false;
 let toolName = '';
 let toolFiles = {};
+/** The text and the files of each known tool, by the name of its file; those of the library have no text here. @type {Map<string, {text: string | null, files: any}>} */
+const sources = new Map();
+/** The text of the library's tool that was shown last. */
+let libraryText = '';
+/** Is called when the tool is there that a program asked for. @type {(() => void) | null} */
+let shown = null;
 /** @type {any} */ let tool = null;
 let version = 0;
 /** @type {import('./state.js').State | null} */
@@ -81,11 +97,10 @@ function title() {
 
 const replies = {
   async ready({ library }) {
-    const options = library.map(({ file, name, title }) => {
-      const option = new Option(`${name}${title ? `: ${title}` : ''}`, file);
-      return option;
-    });
-    id('tool').replaceChildren(...options);
+    for (const { file, name, title } of library) {
+      sources.set(file, { text: null, files: {} });
+      id('tool').add(new Option(`${name}${title ? `: ${title}` : ''}`, file));
+    }
     await begin();
   },
   part({ facts, positions, tool: triangles }) {
@@ -108,11 +123,11 @@ const replies = {
     id('facts').textContent = `${partName}: ${part.findings.join('; ')}.\n${points.toLocaleString('en')} points${cover}.`;
     readout.message('');
     place();
-    program.refresh({ part: true });
+    program.replacePart();
     openLater();
   },
   text({ text }) {
-    editor.text = text;
+    editor.text = libraryText = text;
   },
   tool({ version: of, result, tool: triangles, milliseconds }) {
     // A later text is on its way.
@@ -126,19 +141,24 @@ const replies = {
       ? `${first.file ? `${first.file}: ` : ''}${first.message}; ${first.help}${count > 1 ? ` (and ${count - 1} more)` : ''}`
       : `no errors, compiled in ${milliseconds.toFixed(0)} ms`;
     id('drawing').classList.toggle('stale', !result.tool);
+    const byProgram = shown;
+    shown = null;
+    byProgram?.();
     if (!result.tool) {
       if (id('editor-pane').hidden) readout.message(problem.textContent, true);
       return;
     }
+    // The library's texts are known to the check.
+    if (editor.text !== libraryText) sources.set(toolName, { text: editor.text, files: toolFiles });
     const isNew = !tool || tool.name !== result.tool.name;
     tool = result.tool;
     id('drawing').innerHTML = tool.svg;
     readout.setSurfaces(tool.surfaces);
     if (part) {
       scene.setTool(triangles, tool.surfaces);
-      if (isNew) place();
+      if (isNew && !program.pose) place();
       else restart();
-      program.refresh({ tool: true });
+      if (!byProgram) program.replaceTool(toolName);
     }
     title();
   },
@@ -240,33 +260,28 @@ function loadPart(name, request) {
 let lastPart = null;
 let lastFile = null;
 
-/** Opens files of tools: the first is shown, the others can be mounted. */
+/** Opens files of tools, each of which can mount the others: the first is shown. */
 async function openTools(files) {
   const texts = await Promise.all(files.map(async (file) => [file.name, await file.text()]));
-  const [[name, text]] = texts;
-  editor.text = text;
-  compile(name, text, Object.fromEntries(texts.slice(1)));
+  for (const [name, text] of texts) addTool(name, text, Object.fromEntries(texts.filter(([other]) => other !== name)));
+  program.offer(texts.map(([name]) => name));
+  takeTool(texts[0][0]);
+}
+
+/** Adds a tool to those that can be chosen, in place of one with its name. */
+function addTool(name, text, files) {
+  sources.set(name, { text, files });
+  for (const option of [...id('tool').options]) if (option.value === name) option.remove();
+  id('tool').add(new Option(name, name), 0);
 }
 
 /** Begins with what the server was given, or a default part and tool. */
 async function begin() {
   const session = await (await fetch('session.json')).json();
   for (const [shape, name] of Object.entries(SHAPES)) id('part').add(new Option(name, shape));
-  if (session.tool) {
-    const { name, text, files } = session.tool;
-    if (text) {
-      id('tool').add(new Option(name, ''), 0);
-      id('tool').value = '';
-      editor.text = text;
-      compile(name, text, files);
-    } else {
-      id('tool').value = name;
-      takeTool(name);
-    }
-  } else {
-    id('tool').value = DEFAULT_TOOL;
-    takeTool(DEFAULT_TOOL);
-  }
+  for (const { name, text, files } of session.tools ?? []) if (text !== null) addTool(name, text, files);
+  program.given = (session.tools ?? []).filter(({ number }) => number !== null).map(({ number, name }) => [number, name]);
+  takeTool(session.tools?.[0]?.name ?? DEFAULT_TOOL);
   if (session.program) {
     const { name, machine } = session.program;
     program.machine = machine;
@@ -292,10 +307,18 @@ function openLater() {
   waitingProgram = null;
 }
 
-function takeTool(file) {
-  toolName = file;
-  toolFiles = {};
-  ask('libraryTool', { file, version: ++version });
+/** Shows a tool that is known. */
+function takeTool(name) {
+  const { text, files } = /** @type {any} */ (sources.get(name));
+  id('tool').value = name;
+  if (text === null) {
+    toolName = name;
+    toolFiles = files;
+    ask('libraryTool', { file: name, version: ++version });
+  } else {
+    editor.text = text;
+    compile(name, text, files);
+  }
 }
 
 const on = (name, event, handler) => id(name).addEventListener(event, handler);
@@ -306,7 +329,7 @@ on('points', 'change', () => {
   ask('points', { points: Number(id('points').value) });
 });
 on('unit', 'change', () => lastFile && !lastPart && openPart(lastFile));
-on('tool', 'change', () => id('tool').value && takeTool(id('tool').value));
+on('tool', 'change', () => takeTool(id('tool').value));
 on('open-part', 'click', () => id('part-file').click());
 on('open-tool', 'click', () => id('tool-file').click());
 on('open-program', 'click', () => id('program-file').click());
@@ -367,8 +390,6 @@ const MESH = /\.(stl|ply|obj)$/i;
 function take(files) {
   const tools = files.filter((file) => file.name.endsWith('.tool'));
   if (tools.length) {
-    id('tool').add(new Option(tools[0].name, ''), 0);
-    id('tool').selectedIndex = 0;
     openTools(tools).catch((error) => readout.message(error.message, true));
   }
   const [other] = files.filter((file) => !file.name.endsWith('.tool') && !MESH.test(file.name));

@@ -6,12 +6,19 @@ const id = (name) => /** @type {any} */ (document.getElementById(name));
 /** Duration of a whole program that plays, s, and least rate in positions per second. */
 const PLAYED = { seconds: 40, rate: 4 };
 
-/** @typedef {{kind: string, surface: string | null, at: number, span: number[], lines: number[], rapid: boolean, measured: number[] | null, limit: number | null, point: number[] | null, triangle: number, axis: number[]}} Finding */
+/** Lines of the program's text that are shown before and after that of the position. */
+const AROUND = 2;
+/** Index of the tool's number in a state, which is -1 without one. */
+const NUMBER = 15;
+
+/** @typedef {{kind: string, name: string | null, span: number[], rapid: boolean, measured: number[] | null, limit: number | null, point: number[] | null, triangle: number, axis: number[]}} Surface */
+/** @typedef {{severity: string, text: string, number: number | null, through: boolean, lines: number[], at: number | null, surface: Surface | null}} Finding */
 
 export class ProgramView {
   /**
    * @param {import('./scene.js').Scene} scene
-   * @param {{part: () => Promise<any>, tool: () => any, unit: () => {unit: string, millimetres: number}, message: (text: string, isError?: boolean) => void}} page
+   * @param {{part: () => Promise<any>, tools: () => string[], tool: () => string, source: (name: string) => any, show: (name: string) => Promise<void>,
+   *   unit: () => {unit: string, millimetres: number, lowest: number[], highest: number[]}, message: (text: string, isError?: boolean) => void}} page
    */
   constructor(scene, page) {
     this.scene = scene;
@@ -22,11 +29,21 @@ export class ProgramView {
     this.last = 0;
     /** @type {{name: string, bytes: ArrayBuffer} | null} */
     this.file = null;
+    /** @type {string[]} */
+    this.lines = [];
+    /** The name of the tool of each number. @type {Map<number | null, string>} */
+    this.tools = new Map();
+    /** The number of the tool at the position. @type {number | null} */
+    this.number = null;
     /** The machine to begin with; with a text, it is not among the known ones. @type {{name: string, text: string | null} | null} */
     this.machine = null;
     this.timeline = new Timeline(id('timeline'));
     /** @type {Worker | null} */
     this.worker = null;
+    /** The facts about the program. @type {any} */
+    this.facts = null;
+    /** The tools that the command was given, by number. @type {[number | null, string][]} */
+    this.given = [];
     this.asked = null;
     this.isBusy = false;
     this.isPlaying = false;
@@ -34,14 +51,15 @@ export class ProgramView {
   }
 
   #listen() {
+    id('show-path').addEventListener('change', () => this.scene.showPath(id('show-path').checked));
     id('position').addEventListener('input', () => {
       this.#play(false);
       this.seek(Number(id('position').value));
     });
     id('play').addEventListener('click', () => this.#play(!this.isPlaying));
-    id('program-tool').addEventListener('change', () => this.#check({}));
-    id('tolerance').addEventListener('change', () => this.#check({}));
-    id('machine').addEventListener('change', () => this.#check({ program: true }));
+    id('tolerance').addEventListener('change', () => this.#check());
+    for (const name of ['sides', 'below', 'above']) id(`stock-${name}`).addEventListener('change', () => this.#check());
+    id('machine').addEventListener('change', () => this.#read({ program: true }));
     id('close-program').addEventListener('click', () => this.close());
     id('timeline').addEventListener('click', (event) => {
       const finding = this.timeline.findingAt(event.offsetX, event.offsetY);
@@ -53,6 +71,8 @@ export class ProgramView {
   /** Opens a program: positions, or G-code. */
   async open(name, bytes) {
     this.file = { name, bytes };
+    // As the reader of programs counts lines.
+    this.lines = new TextDecoder().decode(bytes).split(/\r\n|[\r\n]/);
     id('program').hidden = false;
     if (!this.worker) {
       this.page.message('starting the check');
@@ -68,19 +88,36 @@ export class ProgramView {
       });
       this.worker.onmessage = ({ data }) => this.#replies[data.kind](data);
     }
-    await this.#check({ part: true, tool: true, program: true });
+    await this.#read({ part: true, program: true });
   }
 
   close() {
-    this.file = null;
+    this.file = this.facts = null;
     this.leave();
     this.scene.setPath(null);
+    this.scene.setStock(new Float32Array());
     id('program').hidden = id('findings').hidden = true;
   }
 
-  /** Checks again with another part or another tool. */
-  refresh(what) {
-    if (this.file) this.#check(what);
+  /** Checks again with another part. */
+  replacePart() {
+    if (this.file) this.#read({ part: true });
+  }
+
+  /** Checks again with another tool at the position. */
+  replaceTool(name) {
+    if (!this.facts) return;
+    this.tools.set(this.number, name);
+    this.#listTools();
+    this.#check();
+  }
+
+  /** Takes tools whose names begin with a number of the program, as in `T2_drill.tool`, where none is chosen. */
+  offer(names) {
+    for (const name of names) {
+      const number = Number(name.match(/^t(\d+)/i)?.[1] ?? Number.NaN);
+      if (this.facts?.tools.some((used) => used.number === number) && !this.tools.has(number)) this.tools.set(number, name);
+    }
   }
 
   /** Stops playing. */
@@ -94,40 +131,92 @@ export class ProgramView {
     this.pose = null;
   }
 
-  async #check(what) {
+  async #read(what) {
     if (!this.worker || !this.file) return;
     const machine = id('machine').value || this.machine?.text;
-    id('verdict').textContent = 'checking';
-    id('verdict').className = '';
+    this.worker.postMessage({
+      kind: 'read',
+      part: what.part ? await this.page.part() : null,
+      program: what.program ? { ...this.file, machine } : null,
+    });
+  }
+
+  /** Checks all motions, once each number has a tool. */
+  #check() {
+    if (!this.worker || !this.facts) return;
+    const missing = this.facts.tools.filter(({ number }) => !this.tools.has(number)).map(({ number }) => nameOf(number));
+    id('verdict').textContent = missing.length ? `choose the tool of ${missing.join(', ')}` : 'checking';
+    id('verdict').className = missing.length ? 'open' : '';
+    id('findings').hidden = false;
+    if (missing.length) return;
     this.done = 0;
-    const chosen = id('program-tool').value;
     this.worker.postMessage({
       kind: 'check',
-      part: what.part ? await this.page.part() : null,
-      tool: what.tool ? this.page.tool() : null,
-      program: what.program ? { ...this.file, machine } : null,
-      number: chosen === '' ? null : Number(chosen),
+      tools: this.facts.tools.map(({ number }) => ({ number, ...this.page.source(/** @type {string} */ (this.tools.get(number))) })),
+      stock: this.#stock(),
       tolerance: Number(id('tolerance').value),
     });
   }
 
+  /** Returns the corners of the stock, which exceeds the part by the margins; none without margins. */
+  #stock() {
+    const [sides, below, above] = ['sides', 'below', 'above'].map((name) => id(`stock-${name}`).value);
+    if (!sides && !below && !above) return [];
+    const { lowest, highest } = this.page.unit();
+    const [x, y, z] = [sides, sides, below].map((margin, axis) => lowest[axis] - Number(margin));
+    return [x, y, z, ...[sides, sides, above].map((margin, axis) => highest[axis] + Number(margin))];
+  }
+
+  /** Lists the numbers of the program, each with the choice of its tool. */
+  #listTools() {
+    const names = this.page.tools();
+    const rows = this.facts.tools.map(({ number, motions }) => {
+      const choice = document.createElement('select');
+      choice.setAttribute('aria-label', `Tool of ${nameOf(number)}`);
+      const chosen = this.tools.get(number);
+      choice.append(...(chosen ? [] : [new Option('choose…', '')]), ...names.map((name) => new Option(name, name, false, name === chosen)));
+      choice.addEventListener('change', () => {
+        this.tools.set(number, choice.value);
+        this.#check();
+      });
+      const row = document.createElement('tr');
+      const cells = [nameOf(number), `${motions} motions`, choice].map((content) => {
+        const cell = document.createElement('td');
+        cell.append(content);
+        return cell;
+      });
+      row.append(...cells);
+      return row;
+    });
+    id('program-tools').replaceChildren(...rows);
+    id('program-tools').hidden = rows.length < 2;
+  }
+
   #replies = {
-    program: ({ facts, number, positions }) => {
+    read: ({ facts }) => {
+      if (facts) {
+        const isSame = this.facts?.name === this.file?.name;
+        this.facts = { ...facts, name: this.file?.name };
+        if (!isSame) this.tools = new Map(this.given);
+        this.offer(this.page.tools());
+        const [{ number }] = facts.tools;
+        this.number = number;
+        // One tool is the one that is shown.
+        if (facts.tools.length === 1 && !this.tools.has(number)) this.tools.set(number, this.page.tool());
+        id('machines').hidden = facts.machine === null;
+        id('program-notes').textContent = facts.notes.join('\n');
+      }
+      this.page.message('');
+      this.#listTools();
+      this.#check();
+    },
+    motions: ({ positions }) => {
       this.last = positions.length / 4 - 1;
-      this.facts = facts;
       this.scene.setPath(positions);
+      this.scene.setStock(new Float32Array());
       this.timeline.reset(this.last, this.page.unit());
       id('position').max = String(this.last);
-      const options = facts.tools.map((tool) => {
-        const name = tool.number === null ? 'any' : `T${tool.number}`;
-        return new Option(`${name}, ${tool.motions} motions`, tool.number ?? '', false, tool.number === number);
-      });
-      id('program-tool').replaceChildren(...options);
-      id('program-tools').hidden = facts.tools.length < 2;
-      id('machines').hidden = facts.machine === null;
-      id('program-notes').textContent = facts.notes.join('\n');
       id('findings-list').replaceChildren();
-      this.page.message('');
       this.seek(Math.min(this.position, this.last));
     },
     progress: ({ count }) => {
@@ -140,21 +229,31 @@ export class ProgramView {
       const [text, kind] = verdict(result);
       id('verdict').textContent = `${text} (${result.motions} motions, proved in ${seconds} s)`;
       id('verdict').className = kind;
-      id('program-notes').textContent = [...this.facts.notes, ...result.remarks].join('\n');
+      id('program-notes').textContent = [...this.facts.notes, result.stock].filter(Boolean).join('\n');
       id('findings').hidden = false;
-      id('findings-list').replaceChildren(...result.findings.map((finding) => this.#row(finding)));
+      id('findings-list').replaceChildren(...rowsOf(result.findings).map((row) => this.#row(row)));
       id('canvas').dataset.findings = String(result.findings.length);
+    },
+    stock: ({ positions }) => {
+      if (this.file) this.scene.setStock(positions);
+      id('canvas').dataset.stock = String(positions.length / 9);
     },
     along: ({ samples, done }) => {
       this.timeline.add(samples);
       if (done) id('canvas').dataset.along = 'done';
     },
-    at: ({ position, state }) => {
+    at: async ({ position, state }) => {
+      this.number = state[NUMBER] < 0 ? null : state[NUMBER];
+      // The tool comes before its pose.
+      const name = this.tools.get(this.number);
+      if (name) await this.page.show(name);
       this.isBusy = false;
+      if (!this.file) return;
       this.pose = Array.from(state.subarray(0, 7));
       this.timeline.setCursor(position);
       id('position').value = String(position);
       id('position-text').textContent = this.#describe(state);
+      this.#excerpt(state[7]);
       if (this.asked !== null) this.seek(this.asked);
     },
     error: ({ message }) => {
@@ -177,8 +276,9 @@ export class ProgramView {
   /** Shows a finding, and looks at it. */
   show(finding) {
     this.#play(false);
-    this.seek(finding.at);
-    if (finding.point) this.scene.lookAt(finding.point, finding.triangle, finding.axis);
+    if (finding.at !== null) this.seek(finding.at);
+    const { point, triangle, axis } = finding.surface ?? {};
+    if (point) this.scene.lookAt(point, triangle, axis);
   }
 
   #play(on) {
@@ -204,7 +304,7 @@ export class ProgramView {
 
   #describe(state) {
     const [line, rapid, , high, low, , whole] = state.subarray(7);
-    const parts = [`line ${line}`, rapid ? 'rapid traverse' : 'feed'];
+    const parts = [`line ${line}`, ...this.#ofTool(this.number), rapid ? 'rapid traverse' : 'feed'];
     // Below the last digit that is shown, a bound is rounding.
     if (Number.parseFloat(this.#length(high)) > 0) parts.push(`at most ${this.#length(high)} deep`);
     else parts.push(`${this.#length(whole)} or more from the part`);
@@ -212,20 +312,89 @@ export class ProgramView {
     return parts.join(' · ');
   }
 
-  /** @param {Finding} finding */
-  #row(finding) {
+  /** Names a tool if the program has several. */
+  #ofTool(number) {
+    return this.facts.tools.length > 1 ? [nameOf(number)] : [];
+  }
+
+  /** Shows the program's text around a line. */
+  #excerpt(line) {
+    const first = Math.max(line - AROUND, 1);
+    const rows = this.lines.slice(first - 1, line + AROUND).map((text, k) => {
+      const row = document.createElement('div');
+      row.textContent = `${String(first + k).padStart(String(line + AROUND).length)}  ${text}`;
+      row.classList.toggle('here', first + k === line);
+      return row;
+    });
+    id('excerpt').replaceChildren(...rows);
+  }
+
+  /**
+   * Makes a row of the list. Of several findings, each click shows the next.
+   * @param {Finding[]} findings
+   */
+  #row(findings) {
     const button = document.createElement('button');
-    const measured = finding.measured ? ` ${this.#length(finding.measured[1])}` : '';
+    button.className = findings[0].severity;
     const name = document.createElement('b');
-    name.textContent = `${finding.surface ?? 'tool'}: ${finding.kind === 'near' ? 'distance' : finding.kind}${finding.kind === 'right through' ? '' : measured}`;
-    const [worst, first, last] = finding.lines;
-    const lines = first === last ? `line ${worst}` : `lines ${first} to ${last}, worst ${worst}`;
-    button.append(name, `${lines}${finding.rapid ? ', rapid traverse' : ''}`);
-    button.addEventListener('click', () => this.show(finding));
+    name.textContent = this.#name(findings);
+    let shown = -1;
+    const lines = document.createElement('span');
+    lines.textContent = describeLines(findings);
+    button.append(name, lines);
+    button.addEventListener('click', () => {
+      shown = (shown + 1) % findings.length;
+      this.show(findings[shown]);
+      if (findings.length > 1) lines.textContent = `${shown + 1} of ${findings.length}: ${this.#name([findings[shown]])}, ${describeLines([findings[shown]])}`;
+    });
     const item = document.createElement('li');
     item.append(button);
     return item;
   }
+
+  /** @param {Finding[]} findings */
+  #name(findings) {
+    const [{ surface, text, number }] = findings;
+    const tool = this.#ofTool(number).map((name) => `${name} `).join('');
+    if (findings.length > 1) return `${tool}right through or inside the part: ${findings.length} findings`;
+    if (!surface) return text;
+    const { kind, name, measured } = surface;
+    const amount = measured && kind !== 'right through' ? ` ${this.#length(measured[1])}` : '';
+    return `${tool}${name ?? 'tool'}: ${kind === 'near' ? 'distance' : kind}${amount}`;
+  }
+}
+
+/** Returns the name of a number of a program. */
+const nameOf = (number) => (number === null ? 'before the first tool' : `T${number}`);
+
+/**
+ * Joins the findings that are one row of the list: those of a tool that goes right through the part or is inside it. Rows are in the
+ * order of their first findings.
+ * @param {Finding[]} findings
+ * @returns {Finding[][]}
+ */
+function rowsOf(findings) {
+  const rows = [];
+  /** @type {Map<number | null, Finding[]>} */
+  const through = new Map();
+  for (const finding of findings) {
+    const row = finding.through ? through.get(finding.number) : null;
+    if (row) {
+      row.push(finding);
+    } else {
+      rows.push([finding]);
+      if (finding.through) through.set(finding.number, rows.at(-1));
+    }
+  }
+  return rows;
+}
+
+/** @param {Finding[]} findings */
+function describeLines(findings) {
+  const [{ lines: [worst], surface }] = findings;
+  const [first, last] = [Math.min(...findings.map(({ lines }) => lines[1])), Math.max(...findings.map(({ lines }) => lines[2]))];
+  const lines = first === last ? `line ${worst}` : `lines ${first} to ${last}, worst ${worst}`;
+  return `${lines}${surface?.rapid ? ', rapid traverse' : ''}`;
 }
 
 /**
@@ -233,9 +402,9 @@ export class ProgramView {
  * nothing.
  * @returns {[string, string]}
  */
-function verdict({ findings, others, open, clear, inside_known: known, far, unit_factor: factor }) {
-  if (findings.length) return [`${findings.length} finding${findings.length === 1 ? '' : 's'}`, 'bad'];
-  if (others.length) return [others.join('; '), 'bad'];
+function verdict({ findings, open, clear, inside_known: known, far, unit_factor: factor }) {
+  const { length } = findings.filter(({ severity }) => severity !== 'note');
+  if (length) return [`${length} finding${length === 1 ? '' : 's'}`, 'bad'];
   if (!known) return ['no findings at the surface; the part is not closed, so a tool inside it is not found', 'open'];
   if (open.length) return [`no findings in what was checked; ${open.join('; ')}`, 'open'];
   if (factor) return [`no findings, but all feed lies outside the part, and would fit if it were ${factor} times as large: check the units`, 'open'];

@@ -3,11 +3,13 @@
 import * as THREE from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import { CUTTING, OTHER, colorOf } from './colors.js';
+import { pathLines } from './path.js';
 
 const PART = new THREE.Color('#c9ced4');
+const STOCK = new THREE.Color('#d8b98c');
 const FORCE = 0xc2410c;
-const FEED = new THREE.Color('#0b7a4b');
-const RAPID = new THREE.Color('#d08a00');
+const FEED = 0x0b7a4b;
+const RAPID = 0xd08a00;
 const MAX_CONTACTS = 4096;
 /** Greatest slope of a view of a finding over the plane at right angles to the tool's axis. */
 const MAX_RISE = 0.6;
@@ -57,11 +59,19 @@ export class Scene {
     this.spring.frustumCulled = false;
     this.spring.renderOrder = 3;
     this.scene.add(this.arrow, this.spring);
-    /** The path of a program. @type {THREE.LineSegments | null} */
-    this.path = null;
+    /** The path of a program. */
+    this.path = new THREE.Group();
+    // Lengths of dashes are in pixels.
+    this.dashes = new THREE.LineDashedMaterial({ color: RAPID, dashSize: 7, gapSize: 5 });
+    this.scene.add(this.path);
     this.toolRadius = 0;
     /** The plane before which the part is cut away, if it is; the tool never is. @type {THREE.Plane[]} */
     this.section = [];
+    // Steps of the lattice look alike from every side without smooth normals.
+    const material = new THREE.MeshLambertMaterial({ color: STOCK, flatShading: true, clippingPlanes: this.section });
+    this.stock = new THREE.Mesh(new THREE.BufferGeometry(), material);
+    this.stock.visible = false;
+    this.scene.add(this.stock);
     this.renderer.localClippingEnabled = true;
     // A click turns nothing, and the section stays.
     let isTurning = false;
@@ -170,31 +180,35 @@ export class Scene {
   }
 
   /**
-   * Shows the path of a program, `null` for none.
+   * Shows what remains of the stock.
+   * @param {Float32Array} positions of its triangles
+   */
+  setStock(positions) {
+    this.stock.geometry.dispose();
+    this.stock.geometry = new THREE.BufferGeometry().setAttribute('position', new THREE.BufferAttribute(positions, 3));
+    this.stock.visible = positions.length > 0;
+  }
+
+  /**
+   * Shows the path of a program, `null` for none: solid in feed, dashed in rapid traverse.
    * @param {Float32Array | null} positions tips, each with 1 in rapid traverse, else 0
    */
   setPath(positions) {
-    if (this.path) {
-      this.scene.remove(this.path);
-      this.path.geometry.dispose();
-      this.path = null;
-    }
+    for (const line of this.path.children) line.geometry.dispose();
+    this.path.clear();
     if (!positions) return;
-    const segments = Math.max(positions.length / 4 - 1, 0);
-    const ends = new Float32Array(6 * segments);
-    const colors = new Float32Array(6 * segments);
-    for (let k = 0; k < segments; k++) {
-      const color = positions[4 * k + 7] ? RAPID : FEED;
-      for (let end = 0; end < 2; end++) {
-        ends.set(positions.subarray(4 * (k + end), 4 * (k + end) + 3), 6 * k + 3 * end);
-        color.toArray(colors, 6 * k + 3 * end);
-      }
-    }
-    const geometry = new THREE.BufferGeometry();
-    geometry.setAttribute('position', new THREE.BufferAttribute(ends, 3));
-    geometry.setAttribute('color', new THREE.BufferAttribute(colors, 3));
-    this.path = new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({ vertexColors: true, transparent: true, opacity: 0.75 }));
-    this.scene.add(this.path);
+    const { feed, rapid } = pathLines(positions);
+    const line = (ends, material) => {
+      const geometry = new THREE.BufferGeometry().setAttribute('position', new THREE.BufferAttribute(ends, 3));
+      this.path.add(new THREE.LineSegments(geometry, material).computeLineDistances());
+    };
+    line(feed, new THREE.LineBasicMaterial({ color: FEED, transparent: true, opacity: 0.75 }));
+    line(rapid, this.dashes);
+  }
+
+  /** Shows or hides the path. */
+  showPath(isShown) {
+    this.path.visible = isShown;
   }
 
   /**
@@ -229,7 +243,8 @@ export class Scene {
     this.section.length = 0;
     const toward = this.camera.position.clone().sub(point);
     const caster = new THREE.Raycaster(this.camera.position, toward.clone().negate().normalize(), 0, 0.999 * toward.length());
-    if (!caster.intersectObject(/** @type {any} */ (this.part), false).length) return;
+    const before = [/** @type {any} */ (this.part), ...(this.stock.visible ? [this.stock] : [])];
+    if (!caster.intersectObjects(before, false).length) return;
     const away = toward.negate().normalize();
     this.section.push(new THREE.Plane().setFromNormalAndCoplanarPoint(away, point.clone().addScaledVector(away, -distance)));
   }
@@ -308,6 +323,7 @@ export class Scene {
       this.camera.aspect = width / height;
       this.camera.updateProjectionMatrix();
     }
+    this.dashes.scale = 1 / this.pixel(this.orbit.target.toArray());
     this.renderer.render(this.scene, this.camera);
   }
 

@@ -40,7 +40,8 @@ export class Timeline {
   }
 
   setResult(findings, tolerance) {
-    Object.assign(this, { findings, tolerance });
+    // What has a place in the program.
+    Object.assign(this, { findings: findings.filter(({ surface }) => surface), tolerance });
     this.draw();
   }
 
@@ -61,7 +62,7 @@ export class Timeline {
   /** Returns the finding below a place of the canvas: of several, the worst. */
   findingAt(x, y) {
     if (y < LANES[0] - 3 || y > LANES[0] + LANES[1] + 3) return null;
-    return this.findings.find(({ span: [first, last] }) => this.#x(first - 1) - 3 <= x && x <= this.#x(last) + 3) ?? null;
+    return this.findings.find(({ surface: { span: [first, last] } }) => this.#x(first - 1) - 3 <= x && x <= this.#x(last) + 3) ?? null;
   }
 
   draw() {
@@ -109,9 +110,9 @@ export class Timeline {
 
     // The worst comes last, on top.
     for (const finding of [...this.findings].reverse()) {
-      const [first, last] = finding.span;
+      const [first, last] = finding.surface.span;
       const from = this.#x(Math.max(first - 1, 0));
-      context.fillStyle = ['undecided', 'ambiguous'].includes(finding.kind) ? OPEN : BAD;
+      context.fillStyle = finding.severity === 'violation' ? BAD : OPEN;
       context.fillRect(from, top + 1, Math.max(this.#x(last) - from, 2), middle - 2);
     }
 

@@ -52,6 +52,9 @@ pub(crate) enum EngineError {
         /// The greatest number that the page holds.
         limit: usize,
     },
+    /// A tool of a program is not given.
+    #[error("{}", missing_tool(*.0))]
+    MissingTool(Option<u32>),
     /// The text of a tool that is checked has errors.
     #[error("{0} has errors: mend them in the editor, then the program is checked")]
     ToolErrors(String),
@@ -70,7 +73,20 @@ pub(crate) enum EngineError {
     /// A pose has the wrong number of values.
     #[error("a pose has 7 values, the tip and a quaternion (x, y, z, w), not {0}")]
     PoseLength(usize),
+    /// A box has the wrong number of values.
+    #[error("a box has 6 values, its lowest and its highest corner, not {0}")]
+    Corners(usize),
     /// The files given with a tool are not a JSON object of texts.
     #[error("the files of a tool must be a JSON object from path to text: {0}")]
     Files(#[from] serde_json::Error),
+}
+
+fn missing_tool(number: Option<u32>) -> String {
+    match number {
+        Some(number) => {
+            format!("T{number} of the program has no tool: choose one beside the verdict")
+        }
+        None => "the program moves before its first tool change: choose a tool for these motions"
+            .to_owned(),
+    }
 }

@@ -10,6 +10,7 @@
 //! text ─▶ tool ┴─▶ surface: triangles to draw
 //!
 //! G-code, APT ─▶ program ─▶ checker ─▶ findings; depth and clearance at each position
+//!                              └─▶ stock ─▶ what remains at a position
 //! ```
 
 #![deny(missing_docs, missing_debug_implementations)]
@@ -19,6 +20,7 @@ mod engine;
 mod error;
 mod part;
 mod program;
+mod stock;
 mod surface;
 mod tool;
 mod touch;

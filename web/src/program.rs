@@ -1,4 +1,4 @@
-//! Programs: read from a file, and the motions of one tool.
+//! Programs: read from a file, and the motions of their tools.
 
 use crate::error::EngineError;
 use serde::Serialize;
@@ -6,7 +6,7 @@ use touchoff::Unit;
 use touchoff::tool::ToolInfo;
 use touchoff_verify::gcode::ControlSetup;
 use touchoff_verify::machine::Machine;
-use touchoff_verify::{Move, Program, ToolSelection};
+use touchoff_verify::{Move, Program, ToolSelection, ToolUse};
 
 /// Greatest number of motions that the page holds in memory.
 const MAX_MOTIONS: usize = 200_000;
@@ -78,17 +78,28 @@ pub(crate) fn facts(program: &Program) -> ProgramFacts {
     }
 }
 
-/// Returns the motions of the tool with a number in the program, as its first reading has them, in the frame and unit of the part.
+/// Returns the motions of all tools in the order of the program, as its first reading has them, in the frame and unit of the part.
+/// `tool` returns the tool with a number in the program.
 ///
 /// # Errors
-/// Fails if unit, poses or cutter of the program do not fit.
-pub(crate) fn moves(
+/// Fails if a number has no tool, and if unit, poses or cutter of the program do not fit.
+pub(crate) fn moves<'a>(
     program: &Program,
-    number: Option<u32>,
-    info: &ToolInfo,
+    tool: impl Fn(Option<u32>) -> Option<&'a ToolInfo>,
     unit: Unit,
 ) -> Result<Vec<Move>, EngineError> {
-    let selection = ToolSelection::Number(number);
-    program.check_tool(selection, info, unit)?;
-    Ok(program.moves(0, selection, info.symmetry, None, unit)?.collect())
+    for ToolUse { number, .. } in program.tools().into_iter().filter(|used| used.motions > 0) {
+        let info = tool(number).ok_or(EngineError::MissingTool(number))?;
+        program.check_tool(ToolSelection::Number(number), info, unit)?;
+    }
+    Ok(match program {
+        Program::Locations(programs) => {
+            let tools = programs.iter().filter_map(|program| Some((program, tool(program.tool)?)));
+            tools.flat_map(|(program, info)| Move::all(program, info.symmetry)).collect()
+        }
+        Program::Machine(readings) => {
+            // A tool of which no motion can be checked may rest somewhere.
+            readings[0].moves_in_order(unit).filter(|step| tool(step.tool).is_some()).collect()
+        }
+    })
 }

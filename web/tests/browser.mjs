@@ -139,10 +139,100 @@ try {
     await until(() => /at most 0\.200 mm deep/.test(document.getElementById('position-text').textContent));
     await until(() => Number(document.getElementById('count').textContent) > 0);
     await shot('finding');
+    // The text of the program, with the line of the position marked.
+    const line = Number((await text('#position-text')).match(/^line (\d+)/)[1]);
+    assert.equal(await text('#excerpt .here'), `${line}  ${program.split('\n')[line - 1]}`);
+    assert.equal(await page.locator('#excerpt div').count(), 5);
     // The tool stands at the middle of the canvas, where the camera looks.
     const [x, y] = (await data('tip')).split(',').map(Number);
     const box = await page.locator('#canvas').boundingBox();
     assert.ok(Math.hypot(x - box.width / 2, y - box.height / 2) < 0.15 * box.height, `${x}, ${y}`);
+  });
+
+  await check('what goes right through is one row, the path has dashes in rapid traverse, and a switch hides it', async () => {
+    const program = 'G21 G90\nT1 M6\nS900 M3\nG43 H1\nG0 X-18. Y-5. Z15.\nG0 Z2.\nG1 Z-14. F200.\nG1 Z-3.\nG0 Z15.\nG0 X18.\nM30\n';
+    await page.setInputFiles('#program-file', { name: 'through.nc', mimeType: 'text/plain', buffer: Buffer.from(program) });
+    await until(() => /^3 findings/.test(document.getElementById('verdict').textContent));
+    const rows = await page.locator('#findings-list button').allTextContents();
+    assert.equal(rows.length, 1);
+    assert.match(rows[0], /^right through or inside the part: 3 findings/);
+    // Each click shows the next of them.
+    for (const [index, surface] of ['ball', 'flute', 'shank'].entries()) {
+      await page.click('#findings-list button');
+      assert.match(await text('#findings-list button'), new RegExp(`${index + 1} of 3: ${surface}: right through`));
+    }
+    await page.click('[data-view=front]');
+    await page.waitForTimeout(300);
+    await shot('path');
+    /** Returns how often the colour of rapid traverse begins along the row of pixels with the most of it. */
+    const dashes = () => page.evaluate(() => {
+      const canvas = document.getElementById('canvas');
+      const copy = document.createElement('canvas');
+      Object.assign(copy, { width: canvas.width, height: canvas.height });
+      const context = copy.getContext('2d');
+      context.drawImage(canvas, 0, 0);
+      const { data, width, height } = context.getImageData(0, 0, canvas.width, canvas.height);
+      const isRapid = (k) => data[k] > 190 && data[k + 1] > 110 && data[k + 1] < 190 && data[k + 2] < 110;
+      let most = 0;
+      for (let y = 0; y < height; y++) {
+        let begun = 0;
+        for (let x = 1; x < width; x++) begun += Number(isRapid(4 * (y * width + x)) && !isRapid(4 * (y * width + x - 1)));
+        most = Math.max(most, begun);
+      }
+      return most;
+    });
+    const drawn = await dashes();
+    assert.ok(drawn > 5, `${drawn} dashes`);
+    await page.uncheck('#show-path');
+    await page.waitForTimeout(300);
+    assert.equal(await dashes(), 0);
+    await page.check('#show-path');
+  });
+
+  await check('a program with two tools is followed as a whole', async () => {
+    const lines = ['G21 G90', 'T1 M6', 'S900 M3', 'G43 H1', 'G0 X-18. Y0. Z5.', 'G1 Z-0.2 F100.', 'G0 Z5.',
+      'T2 M6', 'S900 M3', 'G43 H2', 'G0 X-15. Y0. Z5.', 'G1 Z-0.5 F100.', 'G0 Z5.', 'M30'];
+    const ball = 'tool T2 { units mm; profile { start (0, 0); arc to (3, 3) center (0, 3) as ball cutting; line to (3, 40), (0, 40) as shank; } niceness cutting: 1 - depth/3; }';
+    await page.setInputFiles('#tool-file', { name: 'T2_ball.tool', mimeType: 'text/plain', buffer: Buffer.from(ball) });
+    await until(() => /^T2 on/.test(document.getElementById('title').textContent));
+    await page.setInputFiles('#program-file', { name: 'both.nc', mimeType: 'text/plain', buffer: Buffer.from(lines.join('\n')) });
+    // The name of a file gives its number; the other one is asked for.
+    await until(() => document.getElementById('verdict').textContent === 'choose the tool of T1');
+    const choices = page.locator('#program-tools select');
+    assert.equal(await choices.nth(1).inputValue(), 'T2_ball.tool');
+    await choices.nth(0).selectOption('d2_ball.tool');
+    await until(() => /^2 findings \(/.test(document.getElementById('verdict').textContent));
+    const rows = await page.locator('#findings-list button').allTextContents();
+    assert.match(rows.join('\n'), /^T2 ball: deep 0\.500 mm.*\nT1 ball: deep 0\.200 mm/);
+    // The tool changes with the position.
+    for (const [row, name] of [[0, 'T2'], [1, 'D2Ball']]) {
+      await page.locator('#findings-list button').nth(row).click();
+      await until((tool) => document.getElementById('title').textContent.startsWith(`${tool} on`), name);
+    }
+    await until(() => / · T1 · /.test(document.getElementById('position-text').textContent));
+    await shot('tools');
+    await page.click('#play');
+    await until(() => / · T2 · /.test(document.getElementById('position-text').textContent));
+    await until(() => document.getElementById('title').textContent.startsWith('T2 on'));
+    await until(() => document.getElementById('play').getAttribute('aria-label') === 'Play');
+    // With margins there is a stock, which is cut up to the position, and whole again at the start.
+    await page.fill('#stock-above', '1');
+    await page.press('#stock-above', 'Tab');
+    await until(() => /stock: \d+ of \d+ points remain/.test(document.getElementById('program-notes').textContent));
+    await until(() => Number(document.getElementById('canvas').dataset.stock) > 0);
+    const cut = await data('stock');
+    await shot('stock');
+    await page.locator('#position').fill('0');
+    await until((before) => document.getElementById('canvas').dataset.stock !== before, cut);
+    assert.ok(Number(await data('stock')) < Number(cut), 'holes add faces');
+    await page.fill('#stock-above', '');
+    await page.press('#stock-above', 'Tab');
+    await page.locator('#position').fill(await page.getAttribute('#position', 'max'));
+    await until(() => / · T2 · /.test(document.getElementById('position-text').textContent));
+    // Another tool in its place is checked at once.
+    await page.selectOption('#tool', 'd2_ball.tool');
+    await until(() => [...document.querySelectorAll('#program-tools select')].every((choice) => choice.value === 'd2_ball.tool'));
+    await until(() => /^2 findings \(/.test(document.getElementById('verdict').textContent));
   });
 
   await check('a click on a finding and on the tool keeps the tool whole and in its program', async () => {

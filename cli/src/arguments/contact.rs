@@ -202,9 +202,10 @@ pub(crate) struct Live {
     /// Unit of the part: `mm`, `inch` or `m`.
     #[arg(long, requires = "part")]
     pub(crate) unit: Option<Unit>,
-    /// Built-in tool by name (`touchoff tools` lists them), or any `.tool` file [default: `D2Ball`].
-    #[arg(long, value_name = "NAME|FILE.tool")]
-    pub(crate) tool: Option<OsString>,
+    /// Built-in tool by name (`touchoff tools` lists them), or any `.tool` file [default: `D2Ball`]. The tools of a program with
+    /// several are given by their numbers: `--tool 1=D2Ball,2=drill.tool`.
+    #[arg(long, value_name = "[NUMBER=]NAME|FILE.tool", value_delimiter = ',')]
+    pub(crate) tool: Vec<OsString>,
     /// Program to follow: positions of the tip, or G-code.
     #[arg(long, value_name = "FILE")]
     pub(crate) program: Option<PathBuf>,

@@ -10,7 +10,7 @@ use crate::part;
 use serde::Serialize;
 use server::{Content, Page};
 use std::collections::BTreeMap;
-use std::ffi::OsStr;
+use std::ffi::{OsStr, OsString};
 use std::io::Write;
 use std::net::{Ipv4Addr, TcpListener};
 use std::path::Path;
@@ -20,11 +20,11 @@ use touchoff_verify::Program;
 use touchoff_verify::gcode::ControlSetup;
 use touchoff_verify::job::DEFAULT_MACHINE;
 
-/// The part and the tool that the page begins with.
+/// The part and the tools that the page begins with.
 #[derive(Serialize)]
 struct Begin {
     part: Option<BeginPart>,
-    tool: Option<BeginTool>,
+    tools: Vec<BeginTool>,
     program: Option<BeginProgram>,
 }
 
@@ -37,6 +37,8 @@ struct BeginPart {
 /// A library tool by its file, or the text of a tool and of the files that it mounts.
 #[derive(Serialize)]
 struct BeginTool {
+    /// Its number in the program, if it is given.
+    number: Option<u32>,
     name: String,
     text: Option<String>,
     files: BTreeMap<String, String>,
@@ -67,12 +69,12 @@ pub(crate) fn live(arguments: &Live, json: bool) -> Result<(), Failure> {
         (Some(file), Some(unit)) => Some(read_part(file, unit)?),
         _ => None,
     };
-    let tool = arguments.tool.as_deref().map(begin_tool).transpose()?;
+    let tools = begin_tools(&arguments.tool)?;
     let machine = arguments.machine.as_deref().map(Path::new);
     let program =
         arguments.program.as_deref().map(|file| read_program(file, machine)).transpose()?;
     let ((part, part_bytes), (program, program_bytes)) = (part.unzip(), program.unzip());
-    let begin = serde_json::to_vec(&Begin { part, tool, program })?;
+    let begin = serde_json::to_vec(&Begin { part, tools, program })?;
     let mut page = Page::embedded();
     page.add("/session.json", Content::json(begin));
     for (path, bytes) in [("/part", part_bytes), ("/program", program_bytes)] {
@@ -128,12 +130,38 @@ fn read_program(file: &Path, machine: Option<&Path>) -> Result<(BeginProgram, Ve
     Ok((BeginProgram { name: file_name(file), machine }, std::fs::read(file)?))
 }
 
+/// Returns the tools as the page takes them: one for all motions, or each with its number in the program.
+fn begin_tools(given: &[OsString]) -> Result<Vec<BeginTool>, Failure> {
+    let mut tools: Vec<BeginTool> = Vec::new();
+    for text in given {
+        let numbered = text.to_str().and_then(|text| text.split_once('='));
+        let numbered = numbered.and_then(|(number, name)| Some((number.parse().ok()?, name)));
+        let (number, name) = match numbered {
+            Some((number, name)) => (Some(number), OsStr::new(name)),
+            None => (None, &**text),
+        };
+        // A tool without a number makes all motions.
+        if number.is_none() && given.len() > 1 || tools.iter().any(|tool| tool.number == number) {
+            let reason =
+                "of several tools each has a number of its own: `--tool 1=D2Ball,2=drill.tool`";
+            return Err(Failure::Usage(reason));
+        }
+        let tool = begin_tool(number, name)?;
+        // The page knows tools by the names of their files.
+        if tools.iter().any(|known| known.name == tool.name && known.text != tool.text) {
+            return Err(Failure::Usage("two tools have files of one name: rename one of them"));
+        }
+        tools.push(tool);
+    }
+    Ok(tools)
+}
+
 /// Returns a tool as the page takes it.
-fn begin_tool(name: &OsStr) -> Result<BeginTool, Failure> {
+fn begin_tool(number: Option<u32>, name: &OsStr) -> Result<BeginTool, Failure> {
     let path = Path::new(name);
     if path.extension().is_none_or(|extension| extension != "tool") {
         let SourceFiles { file, .. } = source_files(&name.to_string_lossy())?;
-        return Ok(BeginTool { name: file.to_owned(), text: None, files: BTreeMap::new() });
+        return Ok(BeginTool { number, name: file.to_owned(), text: None, files: BTreeMap::new() });
     }
     let arguments = ParamArguments::default();
     // Fails with the diagnostics if the file has errors.
@@ -148,5 +176,5 @@ fn begin_tool(name: &OsStr) -> Result<BeginTool, Failure> {
         }
     }
     let name = file_name(path);
-    Ok(BeginTool { name, text: Some(compiled.sources.main().text.clone()), files })
+    Ok(BeginTool { number, name, text: Some(compiled.sources.main().text.clone()), files })
 }

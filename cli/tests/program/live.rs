@@ -86,9 +86,10 @@ fn the_page_comes_with_the_part_and_the_tool() {
     }
     let begin: Value = serde_json::from_slice(&live.get("/session.json").2).expect("an object");
     assert_eq!(begin["part"], serde_json::json!({"name": "block.stl", "unit": "inch"}));
-    assert_eq!(begin["tool"]["name"], "my.tool");
-    assert!(begin["tool"]["text"].as_str().expect("a text").contains("tool My"));
-    let files = begin["tool"]["files"].as_object().expect("files");
+    let tool = &begin["tools"][0];
+    assert_eq!((&tool["name"], &tool["number"]), (&"my.tool".into(), &Value::Null));
+    assert!(tool["text"].as_str().expect("a text").contains("tool My"));
+    let files = tool["files"].as_object().expect("files");
     assert_eq!(files.keys().collect::<Vec<_>>(), ["cutter.tool", "holder.tool"]);
     let block = std::fs::read(bench.folder.path().join("block.stl")).expect("the part");
     assert_eq!(live.get("/part").2, block);
@@ -104,10 +105,13 @@ fn the_page_comes_with_the_part_and_the_tool() {
 #[test]
 fn nothing_else_is_served_and_nobody_else() {
     let bench = Bench::new();
-    let live = Live::new(&bench, &["--tool", "BallEr16"]);
+    let live = Live::new(&bench, &["--tool", "1=BallEr16,12=D2Ball"]);
     let begin: Value = serde_json::from_slice(&live.get("/session.json").2).expect("an object");
-    assert_eq!(begin["tool"]["name"], "ball_er16.tool");
-    assert!(begin["part"].is_null() && begin["tool"]["text"].is_null());
+    let tools = [(1, "ball_er16.tool"), (12, "d2_ball.tool")].map(|(number, name)| {
+        serde_json::json!({"number": number, "name": name, "text": null, "files": {}})
+    });
+    assert_eq!(begin["tools"], serde_json::json!(tools));
+    assert!(begin["part"].is_null());
     for path in ["/part", "/block.stl", "/../block.stl", "/%2e%2e/block.stl", "/etc/passwd"] {
         assert_eq!(live.get(path).0, 404, "{path}");
     }
@@ -137,6 +141,10 @@ fn wrong_parts_and_tools_are_refused() {
     let part = bench.write("empty.stl", "");
     refused(&["--tool", &broken], 1, "broken.tool");
     refused(&["--tool", "D2Bal"], 1, "did you mean `D2Ball`?");
+    refused(&["--tool", "1=D2Bal"], 1, "did you mean `D2Ball`?");
+    for tools in ["D2Ball,BallEr16", "1=D2Ball,BallEr16", "1=D2Ball,1=BallEr16"] {
+        refused(&["--tool", tools], 2, "each has a number of its own");
+    }
     refused(&["--part", &part, "--unit", "mm"], 1, "empty.stl");
     let program = bench.write("bad.nc", "G21 G90\nG1 X#1 F100.\n");
     refused(&["--program", &program], 2, "bad.nc:2");

@@ -326,6 +326,14 @@ impl MachineProgram {
         Ok(blocks.flat_map(|(_, frames)| frames.into_iter().flatten()))
     }
 
+    /// Returns the motions with all tools relative to the part, in the order of the program and in a unit of length. Each tool
+    /// begins with a rest at its first position after a change, as [`MachineProgram::moves`] of that tool does.
+    pub fn moves_in_order(&self, unit: Unit) -> impl Iterator<Item = Move> + '_ {
+        // Only the frame of a link can be missing.
+        let blocks = self.blocks(&[MoveRequest::AtPart], unit, true, |_| true);
+        blocks.into_iter().flatten().flat_map(|(_, frames)| frames.into_iter().flatten())
+    }
+
     /// Returns the moves of each block with the number of the tool in the spindle, for each request. `restarts` is set if a tool begins with a rest at its first position after each change. A tool that
     /// is not wanted makes none.
     pub(crate) fn blocks<'a, W: Fn(Option<u32>) -> bool + 'a>(
