@@ -26,11 +26,11 @@ const program = new ProgramView(scene, {
   tool: () => toolName,
   source: (name) => ({ name, ...sources.get(name) }),
   show: (name) => new Promise((resolve) => {
-    if (name === toolName) {
+    if (name === toolName && awaiting.length === 0) {
       resolve();
     } else {
-      shown = resolve;
-      takeTool(name);
+      if (name !== toolName) takeTool(name);
+      awaiting.push(resolve);
     }
   }),
   unit: () => part,
@@ -50,8 +50,8 @@ let toolFiles = {};
 const sources = new Map();
 /** The text of the library's tool that was shown last. */
 let libraryText = '';
-/** Is called when the tool is there that a program asked for. @type {(() => void) | null} */
-let shown = null;
+/** Are called when the tool is there that a program asked for. @type {(() => void)[]} */
+const awaiting = [];
 /** @type {any} */ let tool = null;
 let version = 0;
 /** @type {import('./state.js').State | null} */
@@ -141,9 +141,8 @@ const replies = {
       ? `${first.file ? `${first.file}: ` : ''}${first.message}; ${first.help}${count > 1 ? ` (and ${count - 1} more)` : ''}`
       : `no errors, compiled in ${milliseconds.toFixed(0)} ms`;
     id('drawing').classList.toggle('stale', !result.tool);
-    const byProgram = shown;
-    shown = null;
-    byProgram?.();
+    const callers = awaiting.splice(0);
+    for (const resolve of callers) resolve();
     if (!result.tool) {
       if (id('editor-pane').hidden) readout.message(problem.textContent, true);
       return;
@@ -158,7 +157,7 @@ const replies = {
       scene.setTool(triangles, tool.surfaces);
       if (isNew && !program.pose) place();
       else restart();
-      if (!byProgram) program.replaceTool(toolName);
+      if (!callers.length) program.replaceTool(toolName);
     }
     title();
   },

@@ -274,11 +274,13 @@ export class ProgramView {
   }
 
   /** Shows a finding, and looks at it. */
-  show(finding) {
+  async show({ at, number, surface }) {
     this.#play(false);
-    if (finding.at !== null) this.seek(finding.at);
-    const { point, triangle, axis } = finding.surface ?? {};
-    if (point) this.scene.lookAt(point, triangle, axis);
+    if (at !== null) this.seek(at);
+    if (!surface?.point) return;
+    // How near the view is depends on the tool.
+    await this.page.show(/** @type {string} */ (this.tools.get(number)));
+    this.scene.lookAt(surface.point, surface.triangle, surface.axis, surface.name);
   }
 
   #play(on) {

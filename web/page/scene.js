@@ -12,7 +12,7 @@ const FEED = 0x0b7a4b;
 const RAPID = 0xd08a00;
 const MAX_CONTACTS = 4096;
 /** Greatest slope of a view of a finding over the plane at right angles to the tool's axis. */
-const MAX_RISE = 0.6;
+const MAX_RISE = 0.35;
 /** Values of a contact in the engine's list. */
 export const CONTACT_VALUES = 10;
 
@@ -64,6 +64,10 @@ export class Scene {
     // Lengths of dashes are in pixels.
     this.dashes = new THREE.LineDashedMaterial({ color: RAPID, dashSize: 7, gapSize: 5 });
     this.scene.add(this.path);
+    /** Radius of each surface of the tool about its axis, their names, and the radius of those that cut. @type {number[]} */
+    this.radii = [];
+    /** @type {string[]} */
+    this.surfaces = [];
     this.toolRadius = 0;
     /** The plane before which the part is cut away, if it is; the tool never is. @type {THREE.Plane[]} */
     this.section = [];
@@ -150,7 +154,7 @@ export class Scene {
   /**
    * Shows a tool and the hand's ghost of it.
    * @param {ToolTriangles} triangles
-   * @param {{cutting: boolean}[]} surfaces
+   * @param {{name: string, cutting: boolean}[]} surfaces
    */
   setTool(triangles, surfaces) {
     const geometry = new THREE.BufferGeometry();
@@ -170,7 +174,10 @@ export class Scene {
       group.children.forEach((child) => child.geometry.dispose());
       group.clear();
     }
-    this.toolRadius = toolRadius(triangles.positions, surfaces, triangles.surfaces);
+    this.radii = radii(triangles.positions, surfaces.length, triangles.surfaces);
+    const cutting = this.radii.filter((_, surface) => surfaces[surface].cutting);
+    this.toolRadius = Math.max(...(cutting.length ? cutting : this.radii));
+    this.surfaces = surfaces.map(({ name }) => name);
     this.tool.add(new THREE.Mesh(geometry, new THREE.MeshLambertMaterial({ vertexColors: true, transparent: true, opacity: 0.82 })));
     // What the part hides of the tool shows through it.
     this.tool.add(new THREE.Mesh(geometry, new THREE.MeshLambertMaterial({
@@ -212,13 +219,14 @@ export class Scene {
   }
 
   /**
-   * Looks at a point of the part from outside and from beside the tool, near enough for the tool. The part is cut away where it
-   * stands before the point.
+   * Looks at a point of the part from outside and from beside the tool, near enough for the tool, and outside the surface of it
+   * that is named. The part is cut away where it stands before the point.
    * @param {number[]} point
    * @param {number} triangle of the part
    * @param {number[]} axis of the tool
+   * @param {string | null} surface of the tool
    */
-  lookAt(point, triangle, axis) {
+  lookAt(point, triangle, axis, surface) {
     const normals = /** @type {any} */ (this.part).geometry.getAttribute('normal');
     const normal = new THREE.Vector3().fromBufferAttribute(normals, 3 * triangle);
     const aside = new THREE.Vector3(-normal.y, normal.x, 0).multiplyScalar(0.7);
@@ -229,7 +237,8 @@ export class Scene {
     toward.addScaledVector(up, -rise);
     if (toward.length() < 1e-3) toward.set(0.75, -1, 0).addScaledVector(up, up.y - 0.75 * up.x);
     toward.normalize().addScaledVector(up, Math.min(Math.max(rise, -MAX_RISE), MAX_RISE));
-    const extent = Math.min(0.6 * this.size, Math.max(12 * this.toolRadius, 0.05 * this.size));
+    const radius = this.radii[this.surfaces.indexOf(surface ?? '')] ?? this.toolRadius;
+    const extent = Math.max(Math.min(0.6 * this.size, Math.max(12 * this.toolRadius, 0.05 * this.size)), 4 * radius);
     const distance = (0.5 * extent) / Math.tan((this.camera.fov * Math.PI) / 360);
     this.orbit.target.set(...point);
     this.camera.position.copy(this.orbit.target).addScaledVector(toward.normalize(), distance);
@@ -359,10 +368,14 @@ export class Scene {
 
   /** Returns the least distance of the tool from the plane before which nothing is drawn; below 0 it is cut there. */
   toolRange() {
-    const { min, max } = new THREE.Box3().setFromObject(this.tool);
+    const [mesh] = this.tool.children;
+    mesh.geometry.boundingBox ?? mesh.geometry.computeBoundingBox();
+    const { min, max } = mesh.geometry.boundingBox;
     const { away } = this.directions();
-    const nearest = new THREE.Vector3(...['x', 'y', 'z'].map((axis) => (away[axis] > 0 ? min : max)[axis]));
-    return nearest.sub(this.camera.position).dot(away) - this.camera.near;
+    // The box stands around the tool in the tool's own frame.
+    const corners = Array.from({ length: 8 }, (_, k) => new THREE.Vector3(...['x', 'y', 'z'].map((axis, i) => ((k >> i) & 1 ? max : min)[axis])));
+    const depths = corners.map((corner) => corner.applyMatrix4(this.tool.matrix).sub(this.camera.position).dot(away));
+    return Math.min(...depths) - this.camera.near;
   }
 
   /** Returns whether the tool is at a position of the canvas. */
@@ -380,12 +393,12 @@ export class Scene {
   }
 }
 
-/** Returns the radius of the surfaces that cut, or of all if none does. */
-function toolRadius(positions, surfaces, of) {
-  let radius = 0;
-  const cuts = surfaces.some(({ cutting }) => cutting);
+/** Returns the radius of each surface about the tool's axis. */
+function radii(positions, count, of) {
+  const found = new Array(count).fill(0);
   for (let k = 0; k < positions.length; k += 3) {
-    if (!cuts || surfaces[of[Math.floor(k / 9)]].cutting) radius = Math.max(radius, Math.hypot(positions[k], positions[k + 1]));
+    const surface = of[Math.floor(k / 9)];
+    found[surface] = Math.max(found[surface], Math.hypot(positions[k], positions[k + 1]));
   }
-  return radius;
+  return found;
 }
