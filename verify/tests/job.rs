@@ -13,8 +13,8 @@ use touchoff_verify::job::{
 };
 use touchoff_verify::machine::Machine;
 use touchoff_verify::{
-    FindingGroup, FindingKind, Job, JobError, JobFile, JobTool, Program, ToolSelection, Verdict,
-    Verifier,
+    FindingGroup, FindingKind, Job, JobError, JobFile, JobTool, Move, Program, ToolSelection,
+    Verdict, Verifier,
 };
 
 touchoff::tool! {
@@ -185,6 +185,29 @@ fn the_worst_finding_comes_first() {
     let (last, near) = rules[deep.len()..].split_last().expect("findings without a depth");
     assert!(*last == "spindle" && near.contains(&"near"), "{rules:?}");
     assert!(near.iter().all(|rule| *rule == "near"), "{rules:?}");
+}
+
+/// The moves of all tools in the order of the program hold those of each tool, with a rest after each change.
+#[test]
+fn moves_in_order_hold_those_of_each_tool() {
+    let text = program(&mut Pcg64Mcg::seed_from_u64(50));
+    let machine = Machine::named("3-axis").expect("a machine");
+    let program = Program::parse(&text, "random.nc", machine, &ControlSetup::default());
+    let program = program.expect("a program");
+    let unit = Unit::Millimetre;
+    for (index, reading) in program.readings().iter().enumerate() {
+        let all: Vec<_> = reading.moves_in_order(unit).collect();
+        assert_eq!(all.chunk_by(|one, other| one.tool == other.tool).count(), 5);
+        for number in [1, 2].map(Some) {
+            let selection = ToolSelection::Number(number);
+            let alone = program.moves(index, selection, Ball.info().symmetry, None, unit);
+            let key = |step: Move| (step.line, step.from, step.rapid, step.path.pose(0.5));
+            let alone: Vec<_> = alone.expect("moves").map(key).collect();
+            let own = all.iter().filter(|step| step.tool == number).cloned();
+            assert_eq!(own.map(key).collect::<Vec<_>>(), alone);
+            assert!(alone.len() > 40);
+        }
+    }
 }
 
 /// Names by which programs of Sinumerik select tools are given once.

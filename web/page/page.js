@@ -37,7 +37,7 @@ const program = new ProgramView(scene, {
   message: (text, isError) => readout.message(text, isError),
 });
 
-// Who takes hold of the tool wants it to stand.
+// A hand on the tool stops the program.
 hand.taken = () => program.pause();
 
 /** The file and the facts of part and tool, and the texts that the tool may mount. */
@@ -50,7 +50,7 @@ let toolFiles = {};
 const sources = new Map();
 /** The text of the library's tool that was shown last. */
 let libraryText = '';
-/** Are called when the tool is there that a program asked for. @type {(() => void)[]} */
+/** Callbacks for the arrival of the tool that a program asked for. @type {(() => void)[]} */
 const awaiting = [];
 /** @type {any} */ let tool = null;
 let version = 0;
@@ -259,12 +259,18 @@ function loadPart(name, request) {
 let lastPart = null;
 let lastFile = null;
 
-/** Opens files of tools, each of which can mount the others: the first is shown. */
+/** Opens files of tools, each of which can mount the others. */
 async function openTools(files) {
   const texts = await Promise.all(files.map(async (file) => [file.name, await file.text()]));
   for (const [name, text] of texts) addTool(name, text, Object.fromEntries(texts.filter(([other]) => other !== name)));
-  program.offer(texts.map(([name]) => name));
-  takeTool(texts[0][0]);
+  // Tools that a program has by their numbers are shown where it uses them.
+  if (!program.take(texts.map(([name]) => name))) chooseTool(texts[0][0]);
+}
+
+/** Shows a tool, which takes the place of that at the position of a program. */
+function chooseTool(name) {
+  program.choose(name);
+  takeTool(name);
 }
 
 /** Adds a tool to those that can be chosen, in place of one with its name. */
@@ -328,7 +334,7 @@ on('points', 'change', () => {
   ask('points', { points: Number(id('points').value) });
 });
 on('unit', 'change', () => lastFile && !lastPart && openPart(lastFile));
-on('tool', 'change', () => takeTool(id('tool').value));
+on('tool', 'change', () => chooseTool(id('tool').value));
 on('open-part', 'click', () => id('part-file').click());
 on('open-tool', 'click', () => id('tool-file').click());
 on('open-program', 'click', () => id('program-file').click());

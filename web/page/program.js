@@ -71,7 +71,7 @@ export class ProgramView {
   /** Opens a program: positions, or G-code. */
   async open(name, bytes) {
     this.file = { name, bytes };
-    // As the reader of programs counts lines.
+    // Lines are counted as by the reader of programs.
     this.lines = new TextDecoder().decode(bytes).split(/\r\n|[\r\n]/);
     id('program').hidden = false;
     if (!this.worker) {
@@ -104,20 +104,33 @@ export class ProgramView {
     if (this.file) this.#read({ part: true });
   }
 
-  /** Checks again with another tool at the position. */
-  replaceTool(name) {
+  /** Sets the tool at the position. */
+  choose(name) {
     if (!this.facts) return;
     this.tools.set(this.number, name);
     this.#listTools();
+  }
+
+  /** Checks again with another tool at the position. */
+  replaceTool(name) {
+    this.choose(name);
     this.#check();
   }
 
-  /** Takes tools whose names begin with a number of the program, as in `T2_drill.tool`, where none is chosen. */
-  offer(names) {
-    for (const name of names) {
-      const number = Number(name.match(/^t(\d+)/i)?.[1] ?? Number.NaN);
-      if (this.facts?.tools.some((used) => used.number === number) && !this.tools.has(number)) this.tools.set(number, name);
-    }
+  /** Checks again with the tools whose names begin with a number of the program. Returns whether there are any. */
+  take(names) {
+    const numbered = names.map((name) => [this.#numberOf(name), name]).filter(([number]) => number !== null);
+    for (const [number, name] of numbered) this.tools.set(number, name);
+    if (!numbered.length) return false;
+    this.#listTools();
+    this.#check();
+    return true;
+  }
+
+  /** Returns the number of the program with which the name of a tool begins, as in `T2_drill.tool`. */
+  #numberOf(name) {
+    const number = Number(name.match(/^t(\d+)/i)?.[1] ?? Number.NaN);
+    return this.facts?.tools.some((used) => used.number === number) ? number : null;
   }
 
   /** Stops playing. */
@@ -198,7 +211,10 @@ export class ProgramView {
         const isSame = this.facts?.name === this.file?.name;
         this.facts = { ...facts, name: this.file?.name };
         if (!isSame) this.tools = new Map(this.given);
-        this.offer(this.page.tools());
+        for (const name of this.page.tools()) {
+          const number = this.#numberOf(name);
+          if (number !== null && !this.tools.has(number)) this.tools.set(number, name);
+        }
         const [{ number }] = facts.tools;
         this.number = number;
         // One tool is the one that is shown.
@@ -278,7 +294,7 @@ export class ProgramView {
     this.#play(false);
     if (at !== null) this.seek(at);
     if (!surface?.point) return;
-    // How near the view is depends on the tool.
+    // The distance of the view depends on the tool.
     await this.page.show(/** @type {string} */ (this.tools.get(number)));
     this.scene.lookAt(surface.point, surface.triangle, surface.axis, surface.name);
   }

@@ -179,7 +179,7 @@ export class Scene {
     this.toolRadius = Math.max(...(cutting.length ? cutting : this.radii));
     this.surfaces = surfaces.map(({ name }) => name);
     this.tool.add(new THREE.Mesh(geometry, new THREE.MeshLambertMaterial({ vertexColors: true, transparent: true, opacity: 0.82 })));
-    // What the part hides of the tool shows through it.
+    // The tool shows through the part where that hides it.
     this.tool.add(new THREE.Mesh(geometry, new THREE.MeshLambertMaterial({
       vertexColors: true, transparent: true, opacity: 0.3, depthFunc: THREE.GreaterDepth, depthWrite: false,
     })));

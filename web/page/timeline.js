@@ -40,7 +40,7 @@ export class Timeline {
   }
 
   setResult(findings, tolerance) {
-    // What has a place in the program.
+    // Findings with a place in the program.
     Object.assign(this, { findings: findings.filter(({ surface }) => surface), tolerance });
     this.draw();
   }

@@ -247,7 +247,7 @@ impl Checker {
         let (Some(corners), Some(bvh)) = (self.stock, &self.bvh) else { return Ok(true) };
         let last = self.moves.len().checked_sub(1).ok_or(EngineError::NotLoaded)?;
         let position = position.max(0.0).min(last as f64);
-        // What was cut does not come back.
+        // Material that was cut does not come back.
         let played = match self.played.take().filter(|played| played.at() <= position) {
             Some(played) => played,
             None => PlayedStock::new(corners, bvh.unit())?,
@@ -332,7 +332,7 @@ struct CheckResult {
 }
 
 /// A finding of a job.
-#[derive(Debug, Serialize)]
+#[derive(Clone, Debug, Serialize)]
 struct FindingRow {
     severity: &'static str,
     /// The sentence.
@@ -351,7 +351,7 @@ struct FindingRow {
 }
 
 /// A finding of a surface of the tool at the part, on consecutive motions.
-#[derive(Debug, Serialize)]
+#[derive(Clone, Debug, Serialize)]
 struct SurfaceRow {
     kind: &'static str,
     name: Option<String>,

@@ -215,7 +215,7 @@ try {
     await until(() => / · T2 · /.test(document.getElementById('position-text').textContent));
     await until(() => document.getElementById('title').textContent.startsWith('T2 on'));
     await until(() => document.getElementById('play').getAttribute('aria-label') === 'Play');
-    // With margins there is a stock, which is cut up to the position, and whole again at the start.
+    // Margins state a stock, which is cut up to the position, and whole again at the start.
     await page.fill('#stock-above', '1');
     await page.press('#stock-above', 'Tab');
     await until(() => /stock: \d+ of \d+ points remain/.test(document.getElementById('program-notes').textContent));
@@ -229,9 +229,14 @@ try {
     await page.press('#stock-above', 'Tab');
     await page.locator('#position').fill(await page.getAttribute('#position', 'max'));
     await until(() => / · T2 · /.test(document.getElementById('position-text').textContent));
+    // A file for another number does not change the tool at the position.
+    await page.setInputFiles('#tool-file', { name: 'T1_small.tool', mimeType: 'text/plain', buffer: Buffer.from(ball.replace('T2', 'Small').replaceAll('3', '2')) });
+    await until(() => document.querySelector('#program-tools select').value === 'T1_small.tool');
+    await until(() => /^2 findings \(/.test(document.getElementById('verdict').textContent));
+    assert.match(await text('#title'), /^T2 on/);
     // Another tool in its place is checked at once.
     await page.selectOption('#tool', 'd2_ball.tool');
-    await until(() => [...document.querySelectorAll('#program-tools select')].every((choice) => choice.value === 'd2_ball.tool'));
+    await until(() => document.querySelectorAll('#program-tools select')[1].value === 'd2_ball.tool');
     await until(() => /^2 findings \(/.test(document.getElementById('verdict').textContent));
   });
 
@@ -255,7 +260,7 @@ try {
     const tip = await text('#tip');
     const [x, y] = (await data('tip')).split(',').map(Number);
     const box = await page.locator('#canvas').boundingBox();
-    // With a hand that trembles by a pixel.
+    // A hand that trembles by a pixel.
     await page.mouse.move(box.x + x, box.y + y - 25);
     await page.mouse.down();
     await page.mouse.move(box.x + x + 1, box.y + y - 25);
@@ -263,7 +268,7 @@ try {
     await page.mouse.up();
     await page.waitForTimeout(300);
     assert.deepEqual([await text('#tip'), await page.isHidden('#wrench')], [tip, true]);
-    // While it plays, a click on the tool stops it, and the view can be turned again.
+    // A click on the tool stops a program that plays, and the view can be turned again.
     await page.click('#play');
     await page.waitForTimeout(300);
     const [left, top] = (await data('tip')).split(',').map(Number);

@@ -147,7 +147,7 @@ const path = Float32Array.from({ length: 44 }, (_, k) => (k % 4 === 0 ? k / 4 : 
 const ends = (most) => Object.fromEntries(Object.entries(pathLines(path, most)).map(([mode, values]) => [mode, [...values].filter((_, k) => k % 3 === 0)]));
 assert.deepEqual(ends(11).rapid, [3, 4, 4, 5, 5, 6, 6, 7]);
 assert.deepEqual(ends(11).feed.length, 2 * 6);
-// Of at most 5 positions every third is kept, and the last; a line with some feed is one of feed.
+// Every third position is kept of at most 5, and the last; a line with some feed is one of feed.
 assert.deepEqual(ends(5), { feed: [0, 3, 6, 9, 9, 10], rapid: [3, 6] });
 assert.deepEqual(ends(3), { feed: [0, 5, 5, 10], rapid: [] });
 

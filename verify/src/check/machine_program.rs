@@ -329,7 +329,7 @@ impl MachineProgram {
     /// Returns the motions with all tools relative to the part, in the order of the program and in a unit of length. Each tool
     /// begins with a rest at its first position after a change, as [`MachineProgram::moves`] of that tool does.
     pub fn moves_in_order(&self, unit: Unit) -> impl Iterator<Item = Move> + '_ {
-        // Only the frame of a link can be missing.
+        // The frame of a link alone could be missing.
         let blocks = self.blocks(&[MoveRequest::AtPart], unit, true, |_| true);
         blocks.into_iter().flatten().flat_map(|(_, frames)| frames.into_iter().flatten())
     }
