@@ -180,9 +180,12 @@ export class Scene {
     this.surfaces = surfaces.map(({ name }) => name);
     this.tool.add(new THREE.Mesh(geometry, new THREE.MeshLambertMaterial({ vertexColors: true, transparent: true, opacity: 0.82 })));
     // The tool shows through the part where that hides it.
-    this.tool.add(new THREE.Mesh(geometry, new THREE.MeshLambertMaterial({
+    const hidden = new THREE.Mesh(geometry, new THREE.MeshLambertMaterial({
       vertexColors: true, transparent: true, opacity: 0.3, depthFunc: THREE.GreaterDepth, depthWrite: false,
-    })));
+    }));
+    // The tool is drawn after it, as it does not hide itself.
+    hidden.renderOrder = -1;
+    this.tool.add(hidden);
     this.ghost.add(new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({ color: 0x16202c, transparent: true, opacity: 0.14, depthTest: false, depthWrite: false })));
   }
 
