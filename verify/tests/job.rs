@@ -63,17 +63,22 @@ fn program(random: &mut Pcg64Mcg) -> String {
     text + "G54 G0 X0. Y0.\nM30\n"
 }
 
-#[test]
-fn one_pass_gives_what_each_check_gives_by_itself() {
-    let part = cuboid([-20.0, -20.0, -10.0], [20.0, 20.0, 0.0]);
-    let clamp = cuboid([10.0, 10.0, 0.0], [30.0, 30.0, 6.0]);
-    let setup = ControlSetup {
+/// Returns the set-up for these programs.
+fn setup() -> ControlSetup {
+    ControlSetup {
         work_offsets: std::array::from_fn(|k| {
             (k < 2).then_some([5.0 * k as f64, 0.0, -300.0, 0.0, 0.0, 0.0])
         }),
         lengths: [(1, 80.0), (2, 60.0)].into(),
         ..ControlSetup::default()
-    };
+    }
+}
+
+#[test]
+fn one_pass_gives_what_each_check_gives_by_itself() {
+    let part = cuboid([-20.0, -20.0, -10.0], [20.0, 20.0, 0.0]);
+    let clamp = cuboid([10.0, 10.0, 0.0], [30.0, 30.0, 6.0]);
+    let setup = setup();
     let mut random = Pcg64Mcg::seed_from_u64(49);
     let (mut pairs, mut found, mut most_readings) = (0, 0, 0);
     for _ in 0..3 {
@@ -192,8 +197,7 @@ fn the_worst_finding_comes_first() {
 fn moves_in_order_hold_those_of_each_tool() {
     let text = program(&mut Pcg64Mcg::seed_from_u64(50));
     let machine = Machine::named("3-axis").expect("a machine");
-    let program = Program::parse(&text, "random.nc", machine, &ControlSetup::default());
-    let program = program.expect("a program");
+    let program = Program::parse(&text, "random.nc", machine, &setup()).expect("a program");
     let unit = Unit::Millimetre;
     for (index, reading) in program.readings().iter().enumerate() {
         let all: Vec<_> = reading.moves_in_order(unit).collect();
