@@ -4,7 +4,8 @@ use super::control::Control;
 use super::files::in_file;
 use super::rules::{Choice, Rule};
 use super::{
-    ControlSetup, Dwells, GcodeError, GcodeFault, Obstacle, Step, SubprogramFile, iso, klartext, sinumerik,
+    ControlSetup, Dwells, GcodeError, GcodeFault, Obstacle, Step, SubprogramFile, iso, klartext,
+    sinumerik,
 };
 use std::collections::BTreeMap;
 

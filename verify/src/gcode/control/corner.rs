@@ -2,7 +2,7 @@
 //!
 //! The line that states a corner is held until the next motion (known: Fanuc, *Optional chamfering and corner R*; Siemens, *NC programming*).
 
-use super::{Control, in_plane};
+use super::{Control, FeedMode, in_plane};
 use crate::gcode::block::Block;
 use crate::gcode::error::{combination, missing, not_read};
 use crate::gcode::rules::{Choice, Rule};
@@ -65,6 +65,10 @@ impl Control {
         let length = self.modal.millimetres(corner.length * factor);
         if length <= 0.0 || length.is_nan() {
             return Err(missing(word, "a length above 0"));
+        }
+        // Its time would be that of each of its motions.
+        if self.modal.feed_mode == FeedMode::InverseTime {
+            return Err(combination(word, "G93 is in force", "write G94 before"));
         }
         if self.polar.is_some() {
             return Err(combination(word, "polar coordinates are in force (G16)", WRITE_OUT));
