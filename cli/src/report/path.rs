@@ -112,7 +112,7 @@ impl ToolPath {
 
     /// Adds a vertex, if it is one of those that are kept.
     fn push(&mut self, vertex: Vertex) {
-        let is_kept = self.passed % self.stride == 0;
+        let is_kept = self.passed.is_multiple_of(self.stride);
         self.passed += 1;
         self.begins |= vertex.way == Way::Begins;
         if !is_kept {
