@@ -1,8 +1,9 @@
 //! The text of a program around the lines of its findings.
 
-use std::path::Path;
+use crate::output::file_name;
 use touchoff::Escaped;
-use touchoff_verify::job::{FindingDetail, JobFinding};
+use touchoff_verify::gcode::SubprogramLine;
+use touchoff_verify::job::{FindingDetail, JobFile, JobFinding};
 use touchoff_verify::program::lines;
 
 /// Number of lines before and after that of the worst motion.
@@ -29,27 +30,54 @@ pub(super) struct ExcerptLine {
     pub(super) role: LineRole,
 }
 
-/// Returns the lines of a program around each finding; none if the file can no longer be read as text.
-pub(super) fn excerpts(program: &Path, findings: &[JobFinding]) -> Vec<Vec<ExcerptLine>> {
-    let text = std::fs::read_to_string(program).unwrap_or_default();
-    let text: Vec<&str> = lines(&text).map(|(_, line)| line).collect();
-    findings.iter().map(|finding| excerpt(&text, finding)).collect()
+/// Consecutive lines of a file.
+pub(super) struct Excerpt {
+    /// The file of subprograms; `None` for the program.
+    pub(super) file: Option<String>,
+    pub(super) lines: Vec<ExcerptLine>,
 }
 
-/// Returns the lines around a finding.
-fn excerpt(text: &[&str], finding: &JobFinding) -> Vec<ExcerptLine> {
+/// Returns the lines of the program around each finding, and those of the file of subprograms that has its worst motion. A file that can no longer
+/// be read as text has none.
+pub(super) fn excerpts(job: &JobFile, findings: &[JobFinding]) -> Vec<Vec<Excerpt>> {
+    let texts: Vec<String> = [&job.program]
+        .into_iter()
+        .chain(&job.subprograms)
+        .map(|file| std::fs::read_to_string(file).unwrap_or_default())
+        .collect();
+    let texts: Vec<Vec<&str>> =
+        texts.iter().map(|text| lines(text).map(|(_, line)| line).collect()).collect();
+    findings.iter().map(|finding| excerpts_of(job, &texts, finding)).collect()
+}
+
+/// Returns the excerpts of a finding. The texts are those of the program and of its files of subprograms.
+fn excerpts_of(job: &JobFile, texts: &[Vec<&str>], finding: &JobFinding) -> Vec<Excerpt> {
+    let mut within = None;
     let ranges = match &finding.detail {
         FindingDetail::Surface { groups, .. } => {
+            within = groups[0].worst.within;
             groups.iter().map(|group| [group.first.line, group.last.line]).collect()
         }
         FindingDetail::Machine(_) | FindingDetail::Stock(_) => vec![finding.lines],
     };
+    let lines = around(&texts[0], finding.line, &ranges);
+    let mut excerpts = vec![Excerpt { file: None, lines }];
+    if let Some(SubprogramLine { file, line }) = within {
+        let lines = around(&texts[file], line, &[]);
+        let file = file.checked_sub(1).map(|index| file_name(&job.subprograms[index]));
+        excerpts.push(Excerpt { file, lines });
+    }
+    excerpts
+}
+
+/// Returns the lines around the worst one.
+fn around(text: &[&str], worst: usize, ranges: &[[usize; 2]]) -> Vec<ExcerptLine> {
     // A subprogram may stand before the block that calls it.
     let is_within =
         |line| ranges.iter().any(|[one, end]| (*one.min(end)..=*one.max(end)).contains(&line));
-    let shown = finding.line.saturating_sub(AROUND).max(1)..=finding.line + AROUND;
+    let shown = worst.saturating_sub(AROUND).max(1)..=worst + AROUND;
     let lines = shown.filter_map(|number| {
-        let role = if number == finding.line {
+        let role = if number == worst {
             LineRole::Worst
         } else if is_within(number) {
             LineRole::Within

@@ -25,7 +25,7 @@ use crate::progress::Progress;
 use crate::verify::{self, Inputs};
 use along::Along;
 use colouring::{ColouredBodies, Layer};
-use excerpt::{ExcerptLine, excerpts};
+use excerpt::{Excerpt, excerpts};
 use path::ToolPath;
 use scene::{Place, Scene};
 use sha2::{Digest, Sha256};
@@ -159,7 +159,7 @@ struct Content<'a> {
     /// Set for each finding that has a camera.
     has_place: Vec<bool>,
     /// The lines of the program around each finding.
-    excerpts: Vec<Vec<ExcerptLine>>,
+    excerpts: Vec<Vec<Excerpt>>,
     /// One per tool.
     along: Vec<Along>,
     times: Vec<(&'static str, Duration)>,
@@ -238,7 +238,7 @@ impl<'a> Content<'a> {
             sheets,
             close_ups,
             has_place: places.iter().map(Option::is_some).collect(),
-            excerpts: excerpts(&inputs.file.program, checked.findings()),
+            excerpts: excerpts(&inputs.file, checked.findings()),
             shapes,
             along,
             times,

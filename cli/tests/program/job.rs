@@ -121,6 +121,11 @@ fn the_job_of_the_page_becomes_clean() {
     }
     let count = outputs.len();
     assert!(count >= 3, "{count} commands");
+    let printed = stdout(&outputs[0].1);
+    assert!(
+        include_str!("../../../docs/verify.md").contains(&format!("```text\n{printed}```")),
+        "the page has other findings than\n{printed}"
+    );
     let found = job(&bench, &text, &["--json"]);
     let is_finding = |row: &serde_json::Value| row["kind"] != "not-checked";
     let found: Vec<_> = objects(&found).into_iter().filter(is_finding).collect();

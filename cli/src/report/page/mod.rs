@@ -4,7 +4,7 @@ mod assumptions;
 mod summary;
 
 use super::along;
-use super::excerpt::{ExcerptLine, LineRole};
+use super::excerpt::{Excerpt, LineRole};
 use super::scene::{base64, json};
 use super::{Content, Picture, prefix};
 use crate::check::{Proved, prove};
@@ -159,7 +159,7 @@ fn findings(content: &Content<'_>) -> Markup {
                                 td.number { (first) @if last != first { " to " (last) } }
                                 td.text {
                                     span.said { (plain(&finding.text)) }
-                                    (excerpt(&content.excerpts[index]))
+                                    @for lines in &content.excerpts[index] { (excerpt(lines)) }
                                 }
                                 td {
                                     @if content.has_place[index] {
@@ -187,13 +187,14 @@ fn findings(content: &Content<'_>) -> Markup {
     }
 }
 
-/// Returns the lines of the program around a finding, closed until a reader opens them.
-fn excerpt(lines: &[ExcerptLine]) -> Markup {
-    let [first, .., last] = lines else { return html! {} };
+/// Returns the lines of a file around a finding, closed until a reader opens them.
+fn excerpt(Excerpt { file, lines }: &Excerpt) -> Markup {
+    let [first, .., last] = &lines[..] else { return html! {} };
     let digits = last.number.to_string().len();
+    let file = file.as_deref().unwrap_or("program");
     html! {
         details {
-            summary { "program, lines " (first.number) " to " (last.number) }
+            summary { (plain(file)) ", lines " (first.number) " to " (last.number) }
             pre {
                 @for line in lines {
                     @let (class, mark) = match line.role {

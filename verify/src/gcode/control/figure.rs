@@ -120,13 +120,13 @@ impl Control {
             return Ok(());
         }
         match self.polar {
-            Some(polar) => self.from_polar(polar, block),
+            Some(polar) => self.polar_words(polar, block),
             None => self.mirror_words(block),
         }
     }
 
     /// Replaces the radius X and the angle Y by coordinates.
-    fn from_polar(&mut self, polar: Polar, block: &mut Block) -> Result<(), GcodeFault> {
+    fn polar_words(&mut self, polar: Polar, block: &mut Block) -> Result<(), GcodeFault> {
         let word = "a position in polar coordinates (G16)";
         if block.has_any("IJ") {
             let remedy = "write R, or the arc after G15";

@@ -344,7 +344,7 @@ impl<'a> Flow<'a> {
     }
 
     /// Goes on after a call of a subprogram in another file, which has ended.
-    pub(super) fn go_on_after(&mut self, called: Flow<'a>) {
+    pub(super) fn go_on_after(&mut self, called: &Flow<'a>) {
         self.repeated = called.repeated;
     }
 

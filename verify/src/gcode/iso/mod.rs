@@ -164,7 +164,7 @@ impl<'a> Program<'a> {
             && let Some(flow) = self.waiting.pop()
         {
             let called = mem::replace(&mut self.flow, flow);
-            self.flow.go_on_after(called);
+            self.flow.go_on_after(&called);
         }
         result.map_err(|fault| GcodeError { line, fault })
     }
