@@ -476,6 +476,7 @@ impl MachineProgram {
             summary.time_of(*number, &self.machine).add_dwells(dwells);
         }
         summary.notes = execution.interpreter.notes();
+        summary.blank = execution.interpreter.blank();
         summary.open_rules.clone_from(execution.interpreter.asked());
         summary.open_rules.extend(execution.resolver.asked);
         let unchecked = seen.into_iter().filter(|(tool, _)| !uses.contains_key(tool));

@@ -103,6 +103,15 @@ impl<'a> Interpreter<'a> {
         }
     }
 
+    /// Returns the lowest and the highest corner of the blank that the program has stated so far as a box, in program coordinates and in
+    /// millimetres: by BLK FORM of Heidenhain Klartext.
+    pub fn blank(&self) -> Option<[[f64; 3]; 2]> {
+        match &self.front {
+            Front::Klartext(program) => program.blank(),
+            Front::Iso(_) | Front::Sinumerik(_) => None,
+        }
+    }
+
     /// Executes the next line, and returns whether the program goes on.
     pub(super) fn execute_line(&mut self) -> Result<bool, GcodeError> {
         let file = match &self.front {

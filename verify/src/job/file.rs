@@ -173,7 +173,7 @@ pub struct FixtureEntry {
     pub margin: f64,
 }
 
-/// The stock: a mesh, a box by its lowest and highest corner, or what an earlier set-up leaves.
+/// The stock: a mesh, a box by its lowest and highest corner, the blank of the program, or what an earlier set-up leaves.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StockEntry {
@@ -182,6 +182,9 @@ pub struct StockEntry {
     /// The lowest and the highest corner of a box.
     #[serde(rename = "box")]
     pub corners: Option<[[f64; 3]; 2]>,
+    /// The box that the program states by BLK FORM (Heidenhain Klartext).
+    #[serde(default)]
+    pub blank: bool,
     /// The job file of an earlier set-up.
     pub from: Option<PathBuf>,
     /// The origin of the earlier set-up's part frame in the frame of the part; its own if absent.

@@ -174,7 +174,7 @@ impl<T: AsRef<dyn Tool>> JobInputs<T> {
                 Some(earlier) => Some(Self::remaining(earlier, file.unit, load, later, &mut gaps)?),
                 None => None,
             };
-            stock = Some(self::stock(entry, left, file.unit)?);
+            stock = Some(self::stock(entry, left, &program, file.unit)?);
         }
         Ok(JobInputs { file, program, tools, bodies, revolved, stock, gaps })
     }
@@ -280,10 +280,23 @@ pub(super) fn mesh(file: &Path, unit: Unit) -> Result<Mesh, JobError> {
     }
 }
 
+/// Returns the blank that a program states, in a unit.
+fn blank(program: &Program, unit: Unit) -> Result<[Point3<f64>; 2], JobError> {
+    let stated = program.readings().first().and_then(|reading| reading.summary().blank);
+    let factor = Unit::Millimetre.factor_to(unit);
+    match stated {
+        Some(corners) => Ok(corners.map(|corner| Point3::from(corner) * factor)),
+        None => Err(JobError::Mismatch(
+            "the program states no box by BLK FORM 0.1 and 0.2: state the stock by a `mesh` or a `box`",
+        )),
+    }
+}
+
 /// Returns the stock of an entry; `left` is what the earlier set-up leaves that it names.
 fn stock(
     entry: &StockEntry,
     left: Option<RemainingPoints>,
+    program: &Program,
     unit: Unit,
 ) -> Result<JobStock, JobError> {
     let is_placed = [entry.origin, entry.x, entry.z].iter().any(Option::is_some);
@@ -301,20 +314,23 @@ fn stock(
         }
         (None, Some(spacing)) => spacing,
         (None, None) => {
-            return Err(JobError::Mismatch("a stock of a `mesh` or a `box` has a `spacing`"));
+            return Err(JobError::Mismatch(
+                "a stock of a `mesh`, a `box` or a `blank` has a `spacing`",
+            ));
         }
     };
-    let shape = match (&entry.mesh, entry.corners, left) {
-        (Some(file), None, None) => StockShape::Mesh(mesh(file, unit)?),
-        (None, Some(corners), None) => StockShape::Box(corners.map(Point3::from)),
-        (None, None, Some(points)) => StockShape::Points(points.placed(
+    let shape = match (&entry.mesh, entry.corners, entry.blank, left) {
+        (Some(file), None, false, None) => StockShape::Mesh(mesh(file, unit)?),
+        (None, Some(corners), false, None) => StockShape::Box(corners.map(Point3::from)),
+        (None, None, true, None) => StockShape::Box(blank(program, unit)?),
+        (None, None, false, Some(points)) => StockShape::Points(points.placed(
             Point3::from(entry.origin.unwrap_or_default()),
             entry.x.unwrap_or([1.0, 0.0, 0.0]),
             entry.z.unwrap_or([0.0, 0.0, 1.0]),
         )?),
         _ => {
             return Err(JobError::Mismatch(
-                "a stock has a `mesh`, a `box` or `from`, and only one of them",
+                "a stock has a `mesh`, a `box`, `blank = true` or `from`, and only one of them",
             ));
         }
     };

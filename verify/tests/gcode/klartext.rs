@@ -875,3 +875,29 @@ fn mutants_end_with_steps_or_with_a_line() {
     let seeds = seeds.map(|text| Seed { text, setups: &setups });
     read_mutants(&seeds, &PIECES, 6000, 11);
 }
+
+#[test]
+fn the_blank_is_a_box_in_millimetres() {
+    let blank = |text: &str| {
+        let setup = at_zero();
+        let mut interpreter = Interpreter::new(text, &setup).expect("a program");
+        assert!(interpreter.by_ref().all(|step| step.is_ok()), "{text}");
+        interpreter.blank()
+    };
+    let of = |lines: &str, unit: &str| {
+        blank(&format!("BEGIN PGM A {unit}\nQ1=3\n{lines}\nL X+1 FMAX\nEND PGM A {unit}\n"))
+    };
+    let corners = "BLK FORM 0.1 Z X-1 Y+0.5 Z-Q1 ; lowest\n2 BLK FORM 0.2 X+2 Y+Q1 Z+0";
+    let expected = [[-1.0, 0.5, -3.0], [2.0, 3.0, 0.0]];
+    assert_eq!(of(corners, "MM"), Some(expected));
+    let inch = expected.map(|corner| corner.map(|value| 25.4 * value));
+    assert_eq!(of(corners, "INCH"), Some(inch));
+    for other in [
+        "BLK FORM CYLINDER Z R50 L10",
+        "BLK FORM 0.1 Z X-1 Y+0.5 Z-1",
+        "BLK FORM 0.1 Z X-1 Y+0.5 Z-1\nBLK FORM 0.2 IX+2 IY+3 IZ+1",
+        "BLK FORM 0.1 Z X+3 Y+0.5 Z-1\nBLK FORM 0.2 X+2 Y+3 Z+1",
+    ] {
+        assert_eq!(of(other, "MM"), None, "{other}");
+    }
+}

@@ -122,8 +122,8 @@ fn a_finding_in_a_file_of_subprograms_names_the_call_and_its_line() {
     let options = ["--control", "haas", "-o", &page];
     let said = stderr(&touchoff(&[&["report", &file][..], &options].concat()));
     let page = std::fs::read_to_string(&page).expect(&said);
-    assert!(page.contains("<summary>O9001.nc, lines 1 to 4</summary>"));
-    assert!(page.contains("&gt; 3  G1 Z-1.") || page.contains("> 3  G1 Z-1."));
+    assert!(page.contains("<summary>O9001.nc, lines 1 to 5</summary>"), "{said}");
+    assert!(page.contains("&gt; 3  G1 Z-1."));
     scene.job = scene.job.replace("O9001.nc", "O9002.nc");
     scene.gives(&HAAS, 2, &["O9002.nc: cannot be read"]);
 }

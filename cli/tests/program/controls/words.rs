@@ -340,3 +340,30 @@ fn a_block_after_a_semicolon_can_begin_with_a_comment() {
     scene("(A)/(B)Y10.").gives(&FANUC, 2, &["`/` begins no word"]);
     scene("(NOTE").gives(&FANUC, 2, &["comment"]);
 }
+
+/// The stock of BLK FORM is that of the same box in the job.
+#[test]
+fn the_blank_of_klartext_is_the_stock() {
+    let text = "BEGIN PGM A MM\nBLK FORM 0.1 Z X-4 Y-4 Z-2\nBLK FORM 0.2 X+4 Y+4 Z+1\nTOOL CALL 1 Z S9000\n\
+                L Z+20 R0 FMAX M3\nL X-6 Y+0 FMAX\nL Z+0.5 F500\nL X+6\nL Z+20 FMAX\nM2\nEND PGM A MM\n";
+    let stock = |text: &str, shape: &str| {
+        let mut scene = Scene::of(text).placed();
+        scene.job += &format!("[stock]\n{shape}\nspacing = 0.25\n");
+        let output = scene.run(&["--control", "heidenhain"]);
+        let said = stderr(&output);
+        let line = said.lines().find(|line| line.starts_with("stock: ")).map(str::to_owned);
+        (output.status.code(), line, said)
+    };
+    let (status, line, said) = stock(text, "blank = true");
+    assert!(line.is_some(), "{said}");
+    let boxed = stock(text, "box = [[-4, -4, -2], [4, 4, 1]]");
+    assert_eq!((status, line), (boxed.0, boxed.1), "{said}");
+    for (text, shape, message) in [
+        (text.replace("BLK FORM 0.2", "; "), "blank = true", "states no box by BLK FORM"),
+        (text.replace("X+4 Y+4 Z+1", "X-5 Y+4 Z+1"), "blank = true", "states no box by BLK FORM"),
+        (text.to_owned(), "blank = true\nbox = [[0, 0, 0], [1, 1, 1]]", "only one of them"),
+    ] {
+        let (status, _, said) = stock(&text, shape);
+        assert!(status == Some(2) && said.contains(message), "{said}");
+    }
+}

@@ -49,6 +49,8 @@ pub struct MachineSummary {
     pub singular: Vec<(usize, SingularPass)>,
     /// The time of each tool, in the order of their first motions.
     pub times: Vec<CycleTime>,
+    /// The lowest and the highest corner of the blank that the program states, in program coordinates and in millimetres.
+    pub blank: Option<[[f64; 3]; 2]>,
     /// Notes of the interpreter.
     pub notes: Vec<ProgramNote>,
     /// The line at which the program stops being read, if it does.

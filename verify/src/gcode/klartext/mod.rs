@@ -60,6 +60,8 @@ pub(super) struct Program<'a> {
     tool_feed: Option<f64>,
     /// Set once a position in program coordinates was executed.
     positioned: bool,
+    /// The lowest and the highest corner of the blank, in millimetres.
+    blank: [Option<[f64; 3]>; 2],
     /// The words of a block for the control.
     block: Block,
     /// The numbers of the M words of a block that the control executes.
@@ -137,6 +139,7 @@ impl<'a> Program<'a> {
             is_modal_call: false,
             tool_feed: None,
             positioned: false,
+            blank: [None; 2],
             block: Block::default(),
             codes: Vec::new(),
         })
@@ -295,7 +298,7 @@ impl<'a> Program<'a> {
             "TRANS" if cursor.take_word("DATUM") => self.trans_datum(&mut cursor, control)?,
             "FUNCTION" => self.mode(&mut cursor, control)?,
             "BLK" => {
-                // The corners of the blank, which a job may need for its stock.
+                self.blank_corner(&mut cursor)?;
                 let text = start.rest().split([';', '\n']).next().unwrap_or_default();
                 let word = unquoted(&text.split_whitespace().collect::<Vec<_>>().join(" "));
                 control.notes.add(control.line, NoteKind::PassedOver { word });
@@ -325,6 +328,39 @@ impl<'a> Program<'a> {
             _ => return Err(unknown(&upper, start, cursor)),
         }
         Ok(Progress::GoesOn)
+    }
+
+    /// Reads a corner of the blank: `BLK FORM 0.1 Z X+0 Y+0 Z-40`, the lowest one, or `BLK FORM 0.2 X+100 Y+80 Z+0`. Blanks of another form
+    /// have none.
+    fn blank_corner(&mut self, cursor: &mut Cursor) -> Result<(), GcodeFault> {
+        if !cursor.take_word("FORM") {
+            return Ok(());
+        }
+        let corner = match cursor.peek() {
+            Some(b'0'..=b'9') if cursor.take_prefix("0.1") => 0,
+            Some(b'0'..=b'9') if cursor.take_prefix("0.2") => 1,
+            _ => return Ok(()),
+        };
+        if corner == 0 {
+            // The tool axis.
+            cursor.letters();
+        }
+        let scale = Scale::new(&self.parameters, self.unit);
+        let mut position = [None; 3];
+        while let Some(axis @ b'X'..=b'Z') = cursor.peek().map(|byte| byte.to_ascii_uppercase()) {
+            cursor.advance();
+            position[usize::from(axis - b'X')] = Some(scale.length(cursor)?);
+        }
+        if let (Some(_), [Some(x), Some(y), Some(z)]) = (cursor.check_end().ok(), position) {
+            self.blank[corner] = Some([x, y, z]);
+        }
+        Ok(())
+    }
+
+    /// Returns the lowest and the highest corner of the blank in millimetres, if the program states it as a box.
+    pub(super) fn blank(&self) -> Option<[[f64; 3]; 2]> {
+        let [Some(low), Some(high)] = self.blank else { return None };
+        (0..3).all(|axis| low[axis] < high[axis]).then_some([low, high])
     }
 
     /// Executes the M words that act at the start of their block.

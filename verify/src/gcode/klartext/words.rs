@@ -85,7 +85,7 @@ pub(super) const STATEMENTS: [Entry; 50] = [
     read("FUNCTION TCPM", "tool centre point control, as M128, with AXIS POS and PATHCTRL AXIS"),
     read("FUNCTION RESET", "its end"),
     read("STOP", "a stop, as M0"),
-    passed("BLK FORM", "the blank, of which a note has the corners; a job states its stock"),
+    passed("BLK FORM", "the blank; a job can take its box for the stock (`blank = true`)"),
     passed("FUNCTION DWELL", "a dwell"),
     passed("FUNCTION MODE", "the mode of the machine, MILL alone"),
     refused("APPR", "an approach to a compensated contour", CENTRE),
