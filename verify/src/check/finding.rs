@@ -85,6 +85,13 @@ pub struct Finding {
     pub kind: FindingKind,
 }
 
+impl Finding {
+    /// Returns the place of the block or cutter location in the program and its files of subprograms.
+    pub(crate) fn block(&self) -> (usize, Option<SubprogramLine>) {
+        (self.line, self.within)
+    }
+}
+
 /// The kind of a finding. Lengths are in the part's unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FindingKind {
@@ -192,8 +199,7 @@ impl FindingGroup {
 
     fn add(&mut self, finding: &Finding) {
         // A block may have several moves, and a first position by itself.
-        self.motions +=
-            usize::from((finding.line, finding.within) != (self.last.line, self.last.within));
+        self.motions += usize::from(finding.block() != self.last.block());
         self.last = *finding;
         let other = if finding.kind.severity(&self.worst.kind) == Ordering::Greater {
             mem::replace(&mut self.worst, *finding)

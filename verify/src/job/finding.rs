@@ -170,9 +170,9 @@ fn motions_in(runs: &[Run], findings: &[Finding]) -> usize {
         while runs.next_if(|run| run.locations[1] < finding.location).is_some() {}
         let Some(run) = runs.peek() else { break };
         // A block may have several moves.
-        if run.locations[0] <= finding.location && last != Some(finding.line) {
+        if run.locations[0] <= finding.location && last != Some(finding.block()) {
             motions += 1;
-            last = Some(finding.line);
+            last = Some(finding.block());
         }
     }
     motions

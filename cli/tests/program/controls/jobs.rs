@@ -124,6 +124,9 @@ fn a_finding_in_a_file_of_subprograms_names_the_call_and_its_line() {
     let page = std::fs::read_to_string(&page).expect(&said);
     assert!(page.contains("<summary>O9001.nc, lines 1 to 5</summary>"), "{said}");
     assert!(page.contains("&gt; 3  G1 Z-1."));
+    // Two motions of one call, each with findings of several surfaces.
+    scene.bench.write("O9001.nc", "G0 X-6. Y0.\nG1 Z-2.5\nX6.\nX-6.\nG0 Z20.\nM99\n");
+    scene.gives(&HAAS, 1, &["pass right through the part on 2 motions, lines 5;"]);
     scene.job = scene.job.replace("O9001.nc", "O9002.nc");
     scene.gives(&HAAS, 2, &["O9002.nc: cannot be read"]);
 }
