@@ -204,9 +204,7 @@ impl<'a> Content<'a> {
         let pictures = Pictures { inputs, checked, shown: &shown, shapes: &shapes };
         let title = pictures.title();
         let path = ToolPath::new(checked, shown.bodies[0].extent())?;
-        let tools = checked.job.tools.iter();
-        let names = tools.map(|tool| format!("{}{}", prefix(tool.number()), tool.tool.info().name));
-        let names: Vec<String> = names.collect();
+        let names = pictures.tool_names();
         let scene = Scene::new(&title, unit, &shown, &shapes, &places, &path, &names);
         let sheets =
             shown.layers.iter().map(|layer| pictures.sheet(layer)).collect::<Result<_, _>>()?;
@@ -299,17 +297,17 @@ impl Pictures<'_> {
         format!("{}: {}", Escaped(&file_name(&self.inputs.file.part)), self.subtitle())
     }
 
+    /// Returns number and name of each tool.
+    fn tool_names(&self) -> Vec<String> {
+        let tools = self.checked.job.tools.iter();
+        tools.map(|tool| format!("{}{}", prefix(tool.number()), tool.tool.info().name)).collect()
+    }
+
     /// Describes the program, the tools and the unit.
     fn subtitle(&self) -> String {
-        let names = self
-            .checked
-            .job
-            .tools
-            .iter()
-            .map(|tool| format!("{}{}", prefix(tool.number()), tool.tool.info().name));
-        let names: Vec<String> = names.collect();
+        let names = self.tool_names().join(", ");
         let program = file_name(&self.inputs.file.program);
-        let text = format!("{program}, {}, lengths in {}", names.join(", "), self.inputs.file.unit);
+        let text = format!("{program}, {names}, lengths in {}", self.inputs.file.unit);
         Escaped(&text).to_string()
     }
 }

@@ -142,7 +142,7 @@ impl ToolPath {
 mod tests {
     use super::*;
 
-    /// Of a long path the vertices are left out evenly, and no line crosses a gap.
+    /// Vertices of a long path are left out evenly, and no line crosses a gap.
     #[test]
     fn a_long_path_is_thinned_evenly() {
         let (vertices, begins) = (Vec::new(), false);

@@ -292,7 +292,7 @@ impl Rounded {
         let step = (high - low) / COORDINATE_STEPS;
         let steps = vertices.flat_map(|vertex| {
             [0, 1, 2].map(|k| {
-                // What is flat has no extent along one axis.
+                // Flat shapes have no extent along one axis.
                 let steps = if step[k] > 0.0 { (vertex[k] - low[k]) / step[k] } else { 0.0 };
                 steps.round() as u16
             })

@@ -322,7 +322,7 @@ fn findings_show_the_program_around_them() {
     assert_self_contained(&page);
 }
 
-/// Of a long program the lines around findings alone are in the file.
+/// Lines of a long program are in the file around findings alone.
 #[test]
 fn a_long_program_makes_a_short_report() {
     let bench = Bench::new();

@@ -379,10 +379,10 @@ pub enum GcodeFault {
         second: String,
     },
     /// A fault in another file than that of the program, or in that of the program after a call from another one.
-    #[error("{}, line {line}: {fault}", name.as_deref().unwrap_or("the program itself"))]
+    #[error("{name}, line {line}: {fault}")]
     InFile {
-        /// The file of subprograms; `None` for the program.
-        name: Option<String>,
+        /// The file of subprograms, or words for the program.
+        name: String,
         /// The line, 1-based.
         line: usize,
         /// The fault in it.

@@ -15,7 +15,7 @@ pub struct SubprogramFile {
 impl SubprogramFile {
     /// Returns the name without the part after its last point.
     pub(super) fn stem(&self) -> &str {
-        stem(&self.name)
+        self.name.rsplit_once('.').map_or(&self.name, |(stem, _)| stem)
     }
 }
 
@@ -27,11 +27,6 @@ pub struct SubprogramLine {
     pub file: usize,
     /// The line, 1-based.
     pub line: usize,
-}
-
-/// Returns the name of a file without the part after its last point.
-pub(super) fn stem(name: &str) -> &str {
-    name.rsplit_once('.').map_or(name, |(stem, _)| stem)
 }
 
 /// Returns the name of a file as a call on a control has it, without its folder.
@@ -49,12 +44,16 @@ pub(super) fn find(files: &[SubprogramFile], name: &str) -> Option<usize> {
     found.map(|index| index + 1)
 }
 
+/// Returns the name of a file by its [number](SubprogramLine::file), for messages.
+pub(super) fn name(files: &[SubprogramFile], number: usize) -> &str {
+    match number {
+        0 => "the program itself",
+        number => &files[number - 1].name,
+    }
+}
+
 /// Returns the fault of a line in a file of subprograms.
 pub(super) fn in_file(files: &[SubprogramFile], file: usize, error: GcodeError) -> GcodeFault {
     let GcodeError { line, fault } = error;
-    let name = match file {
-        0 => None,
-        number => Some(files[number - 1].name.clone()),
-    };
-    GcodeFault::InFile { name, line, fault: Box::new(fault) }
+    GcodeFault::InFile { name: name(files, file).to_owned(), line, fault: Box::new(fault) }
 }

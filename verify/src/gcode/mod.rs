@@ -200,7 +200,7 @@ pub enum Feed {
     Speed {
         /// Along the path of X, Y and Z, in millimetres per minute.
         length: f64,
-        /// Of a motion of rotary axes alone, in degrees per minute.
+        /// Feed of a motion of rotary axes alone, in degrees per minute.
         angle: f64,
     },
     /// The time of the motion (G93).

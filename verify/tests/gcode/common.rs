@@ -1,7 +1,8 @@
-//! The programs of the folder `shared/data/gcode`, which need not exist.
+//! The execution of programs, and those of the folder `shared/data/gcode`, which need not exist.
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use touchoff_verify::gcode::{ControlSetup, GcodeError, Interpreter, Step};
 
 /// Returns the folder, or prints that it is absent.
 pub(crate) fn folder() -> Option<PathBuf> {
@@ -13,6 +14,17 @@ pub(crate) fn folder() -> Option<PathBuf> {
         println!("shared/data/gcode is absent: its programs are not tested");
     }
     found
+}
+
+/// Executes a program.
+pub(crate) fn execute(program: &str, setup: &ControlSetup) -> Result<Vec<Step>, GcodeError> {
+    Interpreter::new(program, setup)?.collect()
+}
+
+/// Executes a program that is read to its end.
+#[track_caller]
+pub(crate) fn steps(program: &str, setup: &ControlSetup) -> Vec<Step> {
+    execute(program, setup).unwrap_or_else(|error| panic!("{program}\n{error}"))
 }
 
 pub(crate) fn text(path: &Path) -> String {

@@ -1,8 +1,8 @@
 //! Polar coordinates, mirror images, and corners of contours: the same motions written without them, closed forms, and refusals.
 
+use crate::common;
 use touchoff_verify::gcode::{
-    Choice, ControlRules, ControlSetup, GcodeError, Interpreter, NoteKind, Rule, Step, StepPath,
-    read,
+    Choice, ControlRules, ControlSetup, GcodeError, NoteKind, Rule, Step, StepPath, read,
 };
 
 fn setup() -> ControlSetup {
@@ -19,12 +19,12 @@ fn setup() -> ControlSetup {
 }
 
 fn execute(program: &str) -> Result<Vec<Step>, GcodeError> {
-    Interpreter::new(program, &setup())?.collect()
+    common::execute(program, &setup())
 }
 
 #[track_caller]
 fn steps(program: &str) -> Vec<Step> {
-    execute(program).unwrap_or_else(|error| panic!("{program}\n{error}"))
+    common::steps(program, &setup())
 }
 
 /// Asserts that two programs move alike, up to rounding.

@@ -1,9 +1,9 @@
 //! Programs that have to be refused, with the line, and programs that have to be read.
 
-use crate::common::{folder, text};
+use crate::common::{execute, folder, text};
 use touchoff_verify::gcode::{
-    Choice, ControlRules, ControlSetup, GcodeError, Interpreter, NoteKind, Position, Rule, Step,
-    StepPath, Tcp, read,
+    Choice, ControlRules, ControlSetup, GcodeError, NoteKind, Position, Rule, Step, StepPath, Tcp,
+    read,
 };
 
 fn at_zero() -> ControlSetup {
@@ -15,13 +15,13 @@ fn at_zero() -> ControlSetup {
 }
 
 fn run(program: &str) -> Result<Vec<Step>, GcodeError> {
-    Interpreter::new(program, &at_zero())?.collect()
+    execute(program, &at_zero())
 }
 
 /// Executes a program as LinuxCNC does.
 fn run_on_linuxcnc(program: &str) -> Result<Vec<Step>, GcodeError> {
     let rules = ControlRules::named("linuxcnc").expect("a control");
-    Interpreter::new(program, &ControlSetup { rules, ..at_zero() })?.collect()
+    execute(program, &ControlSetup { rules, ..at_zero() })
 }
 
 fn refusal(name: &str, program: &str) -> GcodeError {

@@ -1,6 +1,7 @@
 //! Native programs of Sinumerik: the same motions written in ISO words, closed forms, refusals, mutants, and the speed of a loop.
 
 use super::mutants::{Seed, read_mutants};
+use crate::common;
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 use touchoff_verify::gcode::{
@@ -25,12 +26,12 @@ fn setup() -> ControlSetup {
 }
 
 fn execute(program: &str) -> Result<Vec<Step>, GcodeError> {
-    Interpreter::new(program, &setup())?.collect()
+    common::execute(program, &setup())
 }
 
 #[track_caller]
 fn steps(program: &str) -> Vec<Step> {
-    execute(program).unwrap_or_else(|error| panic!("{program}\n{error}"))
+    common::steps(program, &setup())
 }
 
 /// Executes a program of ISO words as LinuxCNC does.

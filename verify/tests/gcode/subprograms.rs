@@ -1,6 +1,7 @@
 //! Subprograms in other files: the same motions as with the subprograms in the program's own file, the lines that steps and faults name,
 //! and calls that are refused.
 
+use crate::common;
 use touchoff_verify::gcode::{
     Choice, ControlRules, ControlSetup, GcodeError, Interpreter, Position, Rule, Step,
     SubprogramFile, SubprogramLine,
@@ -22,12 +23,12 @@ fn setup(control: &str, files: &[(&str, &str)]) -> ControlSetup {
 }
 
 fn execute(control: &str, program: &str, files: &[(&str, &str)]) -> Result<Vec<Step>, GcodeError> {
-    Interpreter::new(program, &setup(control, files))?.collect()
+    common::execute(program, &setup(control, files))
 }
 
 #[track_caller]
 fn steps(control: &str, program: &str, files: &[(&str, &str)]) -> Vec<Step> {
-    execute(control, program, files).unwrap_or_else(|error| panic!("{program}\n{error}"))
+    common::steps(program, &setup(control, files))
 }
 
 fn ends(steps: &[Step]) -> Vec<Position> {

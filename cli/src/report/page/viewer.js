@@ -276,12 +276,16 @@
     const scale = [2 * pixels / canvas.clientWidth, 2 * pixels / canvas.clientHeight];
     gl.viewport(0, 0, canvas.width * finer, canvas.height * finer);
     gl.enable(gl.DEPTH_TEST);
-    gl.useProgram(surface.made);
-    gl.uniformMatrix3fv(surface.uniforms.frame, false, axes.flat());
-    gl.uniform3fv(surface.uniforms.centre, state.centre);
-    gl.uniform2fv(surface.uniforms.scale, scale);
-    gl.uniform1f(surface.uniforms.range, range);
-    gl.uniform1f(surface.uniforms.cut, Math.min(cut, 2 * range));
+    // Both programs see the scene through one camera.
+    const look = ({ made, uniforms }) => {
+      gl.useProgram(made);
+      gl.uniformMatrix3fv(uniforms.frame, false, axes.flat());
+      gl.uniform3fv(uniforms.centre, state.centre);
+      gl.uniform2fv(uniforms.scale, scale);
+      gl.uniform1f(uniforms.range, range);
+      gl.uniform1f(uniforms.cut, Math.min(cut, 2 * range));
+    };
+    look(surface);
     gl.activeTexture(gl.TEXTURE0);
     gl.bindTexture(gl.TEXTURE_2D, ramp);
     gl.uniform1i(surface.uniforms.ramp, 0);
@@ -301,12 +305,7 @@
       gl.bindFramebuffer(gl.FRAMEBUFFER, layers[0].target);
       gl.drawBuffers([gl.COLOR_ATTACHMENT0, gl.NONE]);
       gl.depthMask(false);
-      gl.useProgram(liner.made);
-      gl.uniformMatrix3fv(liner.uniforms.frame, false, axes.flat());
-      gl.uniform3fv(liner.uniforms.centre, state.centre);
-      gl.uniform2fv(liner.uniforms.scale, scale);
-      gl.uniform1f(liner.uniforms.range, range);
-      gl.uniform1f(liner.uniforms.cut, Math.min(cut, 2 * range));
+      look(liner);
       gl.uniform1f(liner.uniforms.width, 1.6 / pixels);
       gl.uniform1f(liner.uniforms.dash, 10 / pixels);
       gl.uniform3fv(liner.uniforms.colours, colours);

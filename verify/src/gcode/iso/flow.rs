@@ -6,6 +6,7 @@ use super::line::{Label, MacroCall, Role, begin, code, next};
 use super::structure::{Structure, Subprogram};
 use super::variables::{Locals, Variables};
 use crate::gcode::error::combination;
+use crate::gcode::files::name;
 use crate::gcode::{GcodeError, GcodeFault, MAX_CALLS, MAX_REPEATED, SubprogramFile};
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::mem;
@@ -202,10 +203,6 @@ pub(super) fn check_files(
     files: &[SubprogramFile],
     is_linuxcnc: bool,
 ) -> Result<(), GcodeError> {
-    let name = |index: usize| match index {
-        0 => "the program itself".to_owned(),
-        number => files[number - 1].name.clone(),
-    };
     let mut known: HashMap<&Label, usize> = HashMap::new();
     for (index, source) in sources.iter().enumerate() {
         let has_titles = source.structure.has_subprograms();
@@ -213,7 +210,7 @@ pub(super) fn check_files(
         let own = source.label.as_ref().filter(|_| !has_titles || is_linuxcnc);
         for label in titles.chain(own) {
             if let Some(first) = known.insert(label, index) {
-                let (first, second) = (name(first), name(index));
+                let [first, second] = [first, index].map(|index| name(files, index).to_owned());
                 let fault = GcodeFault::TwoFiles { label: label.to_string(), first, second };
                 return Err(GcodeError { line: 1, fault });
             }
@@ -397,8 +394,11 @@ impl<'a> Flow<'a> {
             && !self.found.contains(label)
     }
 
-    /// Returns the subprogram with a label in one of the texts, with the index of that text.
+    /// Returns the subprogram with a label in the present text or, if that has none, in another one, with the index of the text.
     pub(super) fn find(&self, label: &Label, is_linuxcnc: bool) -> Option<(usize, Subprogram)> {
+        if let Some(own) = self.structure().get(label) {
+            return Some((self.file, *own));
+        }
         let mut found =
             self.sources.iter().enumerate().filter_map(|(index, source)| {
                 Some((index, source.subprogram(label, is_linuxcnc)?))

@@ -404,15 +404,15 @@ impl Line {
 /// Returns the name of a file after M98: in angle brackets, which are passed over, or in parentheses, which are a comment where P stands beside
 /// them.
 fn file_name(cursor: &mut Cursor) -> Result<Option<String>, GcodeFault> {
-    let (name, end) = match cursor.peek() {
+    let name = match cursor.peek() {
         Some(b'<') => {
             cursor.advance();
-            (cursor.take_until('>').ok_or(ExpressionFault::OpenName)?, "")
+            cursor.take_until('>').ok_or(ExpressionFault::OpenName)?
         }
-        Some(b'(') => ({ *cursor }.take_until(')').ok_or(GcodeFault::OpenComment)?, "("),
+        Some(b'(') => &{ *cursor }.take_until(')').ok_or(GcodeFault::OpenComment)?[1..],
         _ => return Ok(None),
     };
-    Ok(Some(name.trim_start_matches(end).trim().to_owned()))
+    Ok(Some(name.trim().to_owned()))
 }
 
 /// Passes over the first word of a statement of a macro of Fanuc, and returns it.

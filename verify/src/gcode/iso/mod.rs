@@ -177,11 +177,7 @@ impl<'a> Program<'a> {
     /// Calls a subprogram with a title (M98, G65) or of O-words (`call`), of the present file or, if that has none, of another one.
     fn call(&mut self, callee: Callee, control: &Control) -> Result<(), GcodeFault> {
         let label = &callee.label;
-        let found = match self.flow.structure().get(label) {
-            Some(subprogram) => Some((self.flow.file, *subprogram)),
-            None => self.flow.find(label, is_linuxcnc(control)),
-        };
-        match found {
+        match self.flow.find(label, is_linuxcnc(control)) {
             Some((file, subprogram)) => self.enter(file, subprogram, callee),
             None => Err(GcodeFault::NoSubprogram { label: label.to_string() }),
         }
@@ -466,53 +462,52 @@ impl<'a> Program<'a> {
         let least = u32::from(!is_linuxcnc);
         let expected = "a number of repeats from 1 after L";
         let times = block.take_whole('L', least, 99_999_999, expected)?;
-        let number = match (number, file) {
-            (Some(number), _) => number,
-            (None, Some(name)) => {
-                let Some(file) = files::find(self.files, &name) else {
-                    return Err(GcodeFault::NoSubprogram { label: shown(&name) });
-                };
-                let subprogram = self.flow.whole(file);
-                let times = times.unwrap_or(1);
-                return Ok(Called { target: Target::File(file, subprogram), times });
-            }
-            (None, None) => return Err(missing(word, needed)),
+        let Some(number) = number else {
+            let Some(name) = file else { return Err(missing(word, needed)) };
+            let Some(file) = files::find(self.files, &name) else {
+                return Err(GcodeFault::NoSubprogram { label: shown(&name) });
+            };
+            let target = Target::File(file, self.flow.whole(file));
+            return Ok(Called { target, times: times.unwrap_or(1) });
         };
-        match tenths {
-            970 => {
-                let target = Target::Sequence(number);
-                return Ok(Called { target, times: times.unwrap_or(1) });
-            }
+        let target = match tenths {
+            970 => Target::Sequence(number),
             1980 => {
                 let label = Label::Number(number);
                 let found = self.flow.find(&label, is_linuxcnc).filter(|(file, _)| *file > 0);
                 let Some((file, subprogram)) = found else {
                     return Err(GcodeFault::NoSubprogram { label: label.to_string() });
                 };
-                let times = times.unwrap_or(1);
-                return Ok(Called { target: Target::File(file, subprogram), times });
+                Target::File(file, subprogram)
             }
-            _ if number <= 9999 || is_linuxcnc => {
-                let target = Target::Program(number);
-                return Ok(Called { target, times: times.unwrap_or(1) });
+            _ if number > 9999 && !is_linuxcnc => {
+                return self.called_with_repeats(number, times, control);
             }
-            _ => {}
-        }
-        // Older controls take the last four digits as the number, and those before as repeats.
+            _ => Target::Program(number),
+        };
+        Ok(Called { target, times: times.unwrap_or(1) })
+    }
+
+    /// Returns the subprogram of M98 with more than four digits: older controls take the last four as the number, and those before as
+    /// repeats.
+    fn called_with_repeats(
+        &self,
+        number: u32,
+        times: Option<u32>,
+        control: &Control,
+    ) -> Result<Called, GcodeFault> {
         let [whole, last] =
             [number, number % 10_000].map(|number| self.has(&Label::Number(number), control));
-        match (whole, last, times) {
+        let (number, times) = match (whole, last, times) {
             (true, true, _) => {
                 let condition = "its last four digits are the number of a program, too";
                 let remedy = "give the program another number, and write repeats after L";
-                Err(combination(format!("M98 P{number}"), condition, remedy))
+                return Err(combination(format!("M98 P{number}"), condition, remedy));
             }
-            (false, true, None) => {
-                let times = number / 10_000;
-                Ok(Called { target: Target::Program(number % 10_000), times })
-            }
-            _ => Ok(Called { target: Target::Program(number), times: times.unwrap_or(1) }),
-        }
+            (false, true, None) => (number % 10_000, number / 10_000),
+            _ => (number, times.unwrap_or(1)),
+        };
+        Ok(Called { target: Target::Program(number), times })
     }
 
     /// Calls a subprogram by M98 or M97.

@@ -336,10 +336,9 @@ impl<'a> Program<'a> {
         if !cursor.take_word("FORM") {
             return Ok(());
         }
-        let corner = match cursor.peek() {
-            Some(b'0'..=b'9') if cursor.take_prefix("0.1") => 0,
-            Some(b'0'..=b'9') if cursor.take_prefix("0.2") => 1,
-            _ => return Ok(()),
+        let Some(corner) = ["0.1", "0.2"].iter().position(|number| cursor.take_prefix(number))
+        else {
+            return Ok(());
         };
         if corner == 0 {
             // The tool axis.
@@ -351,7 +350,7 @@ impl<'a> Program<'a> {
             cursor.advance();
             position[usize::from(axis - b'X')] = Some(scale.length(cursor)?);
         }
-        if let (Some(_), [Some(x), Some(y), Some(z)]) = (cursor.check_end().ok(), position) {
+        if let ([Some(x), Some(y), Some(z)], true) = (position, cursor.is_at_end()) {
             self.blank[corner] = Some([x, y, z]);
         }
         Ok(())
