@@ -58,7 +58,7 @@ pub(super) struct Block {
     shortest: u32,
     /// The tool vector (A3, B3, C3).
     pub(super) vector: Option<[f64; 3]>,
-    /// The corner at the end of a line.
+    /// The corner at the end of a motion.
     pub(super) corner: Option<Corner>,
     /// The full turns of an arc beside its way to the end (TURN).
     pub(super) full_turns: u32,

@@ -79,7 +79,7 @@ pub(super) struct Control {
     /// Cutter radius compensation.
     compensation: Option<Compensation>,
     /// The line whose corner is not known yet (`,R`, `,C`).
-    held_line: Option<corner::HeldLine>,
+    held_motion: Option<corner::HeldMotion>,
     /// Polar coordinates (G16).
     polar: Option<figure::Polar>,
     /// The mirror image (G51.1).
@@ -264,7 +264,7 @@ impl Control {
             transformed: false,
             cycle: None,
             compensation: None,
-            held_line: None,
+            held_motion: None,
             polar: None,
             mirror: [None; 3],
             vector: None,
@@ -385,7 +385,7 @@ impl Control {
         self.check_offset(block)?;
         self.check_staged_edge(block)?;
         self.motion(block)?;
-        self.corners(block, known)?;
+        self.corners(block.corner.take(), known)?;
         self.compensate(known)?;
         match block.tenths_of(Group::Stop) {
             Some(20 | 300) => self.end_compensation(),

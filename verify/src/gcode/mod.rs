@@ -184,7 +184,7 @@ pub struct Step {
     pub is_return: bool,
     /// Rotary axes that turn the shorter way to their end (DC of Sinumerik), whatever the [rule](Rule::Rotary).
     pub shortest: [bool; 6],
-    /// The sign of the master axis at the end of an [alignment](StepPath::Align), if the program states it (SEQ of Heidenhain): set
+    /// The sign of the master axis at the end of an alignment with a tilted plane, if the program states it (SEQ of Heidenhain): set
     /// for angles from 0. It is the rotary axis next to the tool, or else the one next to the base.
     pub master_is_positive: Option<bool>,
     /// The spindle during the motion.
@@ -243,6 +243,12 @@ pub enum StepPath {
     /// A rotation of A, B and C that aligns the tool with z of a tilted plane (G53.1). The angles are the
     /// machine's. If no axis is [commanded](Step::commanded), the program has turned them before.
     Align,
+    /// A rotation of A, B and C, while X, Y and Z follow so that a point of the tool axis rests at the workpiece (PLANE MOVE of
+    /// Heidenhain). Axes whose ends are unknown align the tool with z of a tilted plane.
+    Pivot {
+        /// Distance of the point below the tip, in millimetres.
+        distance: f64,
+    },
     /// An arc whose start is unknown in its plane.
     Undetermined,
     /// The motion of a tool change to a position in machine coordinates, on a path that only the machine knows.

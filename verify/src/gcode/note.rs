@@ -39,6 +39,8 @@ pub enum NoteKind {
     },
     /// M99 in the main program, which repeats it without end.
     Endless,
+    /// A bore that is milled on a helix, whose first point is the control's own.
+    HelixStart,
     /// A stop, at which an operator can move the tool.
     Stop,
     /// A block that begins with `/`, and was executed.
@@ -85,6 +87,9 @@ impl fmt::Display for NoteKind {
                 "G58 and G59 are work offsets, but shifts on native Sinumerik: state `dialect` of the control",
             ),
             NoteKind::ToolChange => f.write_str("the motion of the tool change is not checked"),
+            NoteKind::HelixStart => f.write_str(
+                "the control chooses where the helix of CYCL DEF 208 begins: it is followed from +X",
+            ),
             NoteKind::Stop => f.write_str("motions by hand during the stop are not checked"),
             NoteKind::ExecutedOptionalBlock => f.write_str("an optional block (/) is executed"),
             NoteKind::OmittedOptionalBlock => f.write_str("an optional block (/) is left out"),

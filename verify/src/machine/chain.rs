@@ -210,6 +210,17 @@ impl Chain {
         chain
     }
 
+    /// Returns the chain to the point of the tool axis that is below the tip by a distance, in mm.
+    ///
+    /// # Errors
+    /// [`JointError::Range`] if the distance is out of range.
+    pub(super) fn below_tip(&self, distance: f64) -> Result<Chain, JointError> {
+        check_length("the distance of the pivot", distance)?;
+        let tip = self.mount.tip() - distance * self.mount.axis();
+        let mount = Pose::from_computed(*self.mount.rotation(), tip);
+        Ok(Chain { mount, ..*self })
+    }
+
     /// Checks that joint values are in range, and that no axis is moved that the machine lacks.
     pub(super) fn check(&self, joints: &Joints) -> Result<(), JointError> {
         for letter in Letter::ALL {

@@ -195,7 +195,7 @@ impl Interval<'_> {
         if !self.motion.tcp {
             return path;
         }
-        let chain = &self.motion.chain;
+        let chain = &self.motion.guide;
         let tips = [self.undone(chain.table_axes()), self.swivelled_tip(chain, &self.turns)];
         let [(speed, acceleration), (head_speed, head_acceleration)] = tips.map(|tip| tip.bounds());
         Derivatives { speed: speed + head_speed, acceleration: acceleration + head_acceleration }
@@ -211,9 +211,9 @@ impl Interval<'_> {
         tip
     }
 
-    /// Returns the path of the tip after undoing the first rotary axes, from the workpiece towards the base.
+    /// Returns the path of the guided point after undoing the first rotary axes, from the workpiece towards the base.
     fn undone(&self, count: usize) -> MovingPoint {
-        let chain = &self.motion.chain;
+        let chain = &self.motion.guide;
         let path = self.motion.path.derivatives();
         let ends = self.times.map(|t| chain.frame.to_link(&self.motion.path.at(t)));
         let mut tip = MovingPoint { ends, speed: path.speed, acceleration: path.acceleration };

@@ -9,12 +9,15 @@ use touchoff::{Motion, MotionError, Pose};
 /// The motion of a machine between two blocks: what the control interpolates from t = 0 to 1.
 ///
 /// Rotary joints r(t) = (1 − t) r₀ + t r₁ are linear in time. The path is that of the linear joints
-/// ([`JointMotion::new`]), or that of the tip in the frame of the workpiece ([`JointMotion::with_tcp`]).
+/// ([`JointMotion::new`]), or that of the tip in the frame of the workpiece ([`JointMotion::with_tcp`]), or another point of the tool
+/// axis rests there ([`JointMotion::about`]).
 /// Poses are relative to the workpiece, or to another body of the machine ([`JointMotion::relative_to`]).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JointMotion {
     /// The chain of the workpiece, in whose frame a path of the tip is.
     pub(super) chain: Chain,
+    /// With TCP, the chain to the point that is on the path: the tip, or another point of the tool axis.
+    pub(super) guide: Chain,
     /// The chain of the body to which poses are relative.
     pub(super) body: Chain,
     pub(super) related: Related,
@@ -84,6 +87,29 @@ impl JointMotion {
         JointMotion::build(chain, rotary, path, true)
     }
 
+    /// Creates a motion of the rotary axes about a point that rests in the frame of the workpiece, while the linear joints follow.
+    /// It is on the tool axis, below the tip by `distance` in mm. `rotary` has the joint values of A, B and C at t = 0 and 1, in
+    /// degrees.
+    ///
+    /// # Errors
+    /// As [`JointMotion::with_tcp`], and if the distance is out of range.
+    pub fn about(
+        chain: &Chain,
+        distance: f64,
+        rotary: [[f64; 3]; 2],
+        point: &Point3<f64>,
+    ) -> Result<JointMotion, JointError> {
+        let guide = chain.below_tip(distance)?;
+        let point = [point.x, point.y, point.z];
+        let path = LinearPath::Line { start: point, end: point };
+        let motion = JointMotion::with_tcp(&guide, rotary, &path)?;
+        // The tip is found from the joints: only the point of the guide is on the path.
+        let related = if distance == 0.0 { Related::Workpiece } else { Related::Bodies };
+        let mut motion = JointMotion { chain: *chain, body: *chain, related, ..motion };
+        motion.set_rounding();
+        Ok(motion)
+    }
+
     fn build(
         chain: &Chain,
         rotary: [[f64; 3]; 2],
@@ -95,6 +121,7 @@ impl JointMotion {
         }
         let mut motion = JointMotion {
             chain: *chain,
+            guide: *chain,
             body: *chain,
             related: Related::Workpiece,
             ends: rotary,
@@ -114,7 +141,11 @@ impl JointMotion {
     /// [`JointError::NoLink`] if the link is beyond that of the workpiece.
     pub fn relative_to(&self, link: usize) -> Result<JointMotion, JointError> {
         let body = self.chain.relative_to(link)?;
-        let mut motion = JointMotion { body, related: Related::TableLink, ..*self };
+        let related = match self.related {
+            Related::Bodies => Related::Bodies,
+            Related::Workpiece | Related::TableLink => Related::TableLink,
+        };
+        let mut motion = JointMotion { body, related, ..*self };
         motion.set_rounding();
         Ok(motion)
     }
@@ -173,7 +204,7 @@ impl JointMotion {
     fn fill_linear(&self, t: f64, joints: &mut Joints) {
         let position = self.path.at(t);
         let linear = if self.tcp {
-            self.chain.follow(&self.chain.turns(joints), &position)
+            self.guide.follow(&self.guide.turns(joints), &position)
         } else {
             position
         };
@@ -232,8 +263,8 @@ impl JointMotion {
         let greatest = start.iter().zip(end).map(|(start, end)| start.abs().max(end.abs()));
         let angles = 5.0 * UNIT_ROUNDOFF * greatest.sum::<f64>().to_radians();
         let reach = self.path.reach();
-        let follow = self.chain.rounding_at(reach).tip + angles * self.chain.size(reach);
-        let linear = if self.tcp { self.chain.size(reach) } else { reach };
+        let follow = self.guide.rounding_at(reach).tip + angles * self.guide.size(reach);
+        let linear = if self.tcp { self.guide.size(reach) } else { reach };
         let pose = self.body.rounding_at(linear);
         let placed = pose.tip + angles * self.body.size(linear);
         let tip = match (self.tcp, self.related) {

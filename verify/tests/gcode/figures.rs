@@ -1,6 +1,8 @@
 //! Polar coordinates, mirror images, and corners of contours: the same motions written without them, closed forms, and refusals.
 
 use crate::common;
+use rand_core::{Rng, SeedableRng};
+use rand_pcg::Pcg64Mcg;
 use touchoff_verify::gcode::{
     Choice, ControlRules, ControlSetup, GcodeError, NoteKind, Rule, Step, StepPath, read,
 };
@@ -235,20 +237,180 @@ fn corners_of_a_contour_are_rounded_or_chamfered() {
     );
     let end = 20.0 + cut / 2.0f64.sqrt();
     assert!((arc.end[0].expect("X") - end).abs() < 1e-12, "{arc:?}");
+    // Motions that go on in one direction have no corner.
+    assert_same(
+        &format!("{START}G1 X40. ,R5.\nX50.\nG0 Z10.\nM30\n"),
+        &format!("{START}G1 X40.\nX50.\nG0 Z10.\nM30\n"),
+    );
     let refused =
         |blocks: &str, message: &str| assert_refused(&format!("{START}{blocks}\nM30\n"), message);
-    refused("G1 X40. ,R5.", ",R needs a line (G1) in its plane after it");
-    refused("G1 X40. ,R5.\nG0 Y10.", "a corner that is not between two lines in its plane");
-    refused("G1 X40. ,R5.\nZ5.", "a corner that is not between two lines in its plane");
-    refused("G1 X40. ,R5.\nG55 Y10.", "a corner that is not between two lines in its plane");
-    refused("G1 X40. ,R5.\nG18\nG1 X10.", "a corner that is not between two lines in its plane");
-    refused("G1 X40. ,R5.\nG3 Y10. R5.", "a corner that is not between two lines in its plane");
+    refused("G1 X40. ,R5.", ",R needs a motion at feed in its plane after it");
+    let round = "a corner that is not between two lines or arcs in its plane";
+    for blocks in ["G0 Y10.", "Z5.", "G55 Y10.", "G18\nG1 X10.", "G3 Y10. Z5. R5."] {
+        refused(&format!("G1 X40. ,R5.\n{blocks}"), round);
+    }
+    refused("G3 X40. R20. Z5. ,R5.\nG1 Y-10.", round);
+    refused("G1 X40. ,C5.\nG3 Y10. R8.", "a corner that is not between two lines in its plane");
+    refused("G3 X40. R20. ,C5.\nG1 X60.", "a corner that is not between two lines in its plane");
     refused("G0 X40. ,R5.\nG1 Y10.", "a corner that is not between two lines");
-    refused("G3 X40. R20. ,R5.\nG1 Y10.", "a corner that is not between two lines");
-    refused("G1 X40. ,R5.\nY4.", "a line beside it is shorter");
-    refused("G1 X40. ,R5.\nX50.", "the next line goes on in its direction");
+    refused("G1 X40. ,R5.\nY4.", "a motion beside it is shorter");
+    refused("G1 X40. ,R5.\nX30.", "the next motion goes back in its direction");
     refused("G1 X40. ,R0.\nY10.", ",R needs a length above 0");
     refused("G1 X40. ,A5.\nY10.", ",A is an angle, or a corner on other controls");
     refused("G1 X40. ,R5. ,C5.\nY10.", "C stands twice");
     refused(",R5.", "a corner that is not between two lines");
+}
+
+/// A point along a contour, and the direction there.
+struct Place {
+    point: [f64; 2],
+    direction: [f64; 2],
+}
+
+/// Returns a step's start and end as places, and its radius about a centre.
+fn places(step: &Step) -> [Place; 2] {
+    let at =
+        |position: &[Option<f64>; 6]| [0, 1].map(|axis| position[axis].expect("a known place"));
+    let points = [at(&step.start), at(&step.end)];
+    let [start, end] = points;
+    points.map(|point| {
+        let direction = match step.path {
+            StepPath::Arc { centre, sweep, .. } => {
+                let radius = [point[0] - centre[0], point[1] - centre[1]];
+                [-radius[1] * sweep.signum(), radius[0] * sweep.signum()]
+            }
+            _ => [end[0] - start[0], end[1] - start[1]],
+        };
+        let length = direction[0].hypot(direction[1]);
+        Place { point, direction: direction.map(|value| value / length) }
+    })
+}
+
+/// Corners between random lines and arcs, in ISO and in Klartext: each piece goes on where the one before ends, in its direction; the
+/// corner has its radius; and what is left of both motions lies on them. A corner of two lines is also checked against its closed form.
+#[test]
+fn rounded_corners_touch_lines_and_arcs() {
+    let mut random = Pcg64Mcg::seed_from_u64(31);
+    let mut uniform = move || (random.next_u64() >> 11) as f64 / 2f64.powi(53);
+    let rules = ControlRules::named("heidenhain").expect("a control");
+    let klartext_setup =
+        ControlSetup { rules: rules.with(Rule::ToolChange, Choice::Stays), ..setup() };
+    let (mut read, mut kinds) = (0, [0; 4]);
+    for case in 0..4000 {
+        let kind = case % 4;
+        let radius = 0.5 + 4.0 * uniform();
+        // Two motions that meet at the origin; the first comes from `from`, the second leads to `to`.
+        let angles = [0.0, 1.0].map(|_| std::f64::consts::TAU * uniform());
+        let lengths = [0.0, 1.0].map(|_| 20.0 + 20.0 * uniform());
+        let [from, to] =
+            [0, 1].map(|k| [lengths[k] * angles[k].cos(), lengths[k] * angles[k].sin()]);
+        let bends = [0, 1].map(|k| {
+            (kind >> k & 1 == 1).then(|| (uniform() < 0.5, (0.6 + uniform()) * lengths[k]))
+        });
+        let word = |bend: Option<(bool, f64)>, point: [f64; 2], corner: &str| match bend {
+            None => format!("G1 X{:.9} Y{:.9}{corner}", point[0], point[1]),
+            Some((clockwise, radius)) => {
+                let code = if clockwise { 2 } else { 3 };
+                format!("G{code} X{:.9} Y{:.9} R{radius:.9}{corner}", point[0], point[1])
+            }
+        };
+        let sentence = |bend: Option<(bool, f64)>, point: [f64; 2]| match bend {
+            None => format!("L X{:+.9} Y{:+.9}", point[0], point[1]),
+            Some((clockwise, radius)) => {
+                let sign = if clockwise { '-' } else { '+' };
+                format!("CR X{:+.9} Y{:+.9} R{radius:+.9} DR{sign}", point[0], point[1])
+            }
+        };
+        let iso = format!(
+            "{START}G0 X{:.9} Y{:.9}\n{}\n{}\nG1 Z9.\nM30\n",
+            from[0],
+            from[1],
+            word(bends[0], [0.0; 2], &format!(",R{radius:.9}")),
+            word(bends[1], to, "")
+        );
+        let klartext = format!(
+            "0 BEGIN PGM A MM\nL X{:+.9} Y{:+.9} FMAX\n{} F100\nRND R{radius:.9}\n{}\nL Z+9\nEND PGM A MM\n",
+            from[0],
+            from[1],
+            sentence(bends[0], [0.0; 2]),
+            sentence(bends[1], to)
+        );
+        let plain = steps(&iso.replace(&format!(",R{radius:.9}"), ""));
+        let found = execute(&iso);
+        let twin = touchoff_verify::gcode::read(&klartext, &klartext_setup);
+        assert_eq!(found.is_ok(), twin.is_ok(), "{iso}{klartext}{found:?} {twin:?}");
+        let (Ok(found), Ok((twin, _))) = (found, twin) else { continue };
+        let count = found.len();
+        for (step, other) in found[count - 4..].iter().zip(&twin[twin.len() - 4..]) {
+            let [one, two] = [step, other].map(places);
+            for (one, two) in one.iter().zip(&two) {
+                let [x, y] = [0, 1].map(|axis| one.point[axis] - two.point[axis]);
+                assert!(
+                    step.commanded[2] || x.hypot(y) < 1e-7,
+                    "{iso}{klartext}{step:?} {other:?}"
+                );
+            }
+        }
+        let [before, between, after] = &found[count - 4..count - 1] else { panic!("{iso}") };
+        let StepPath::Arc { centre, sweep, .. } = between.path else { panic!("{iso}{between:?}") };
+        for [one, two] in [[before, between], [between, after]].map(|pair| pair.map(places)) {
+            let ([_, end], [start, _]) = (one, two);
+            let gap = (end.point[0] - start.point[0]).hypot(end.point[1] - start.point[1]);
+            let bend = (end.direction[0] - start.direction[0])
+                .hypot(end.direction[1] - start.direction[1]);
+            assert!(gap == 0.0 && bend < 1e-6, "{iso}{found:?} {gap:e} {bend:e}");
+        }
+        for place in places(between) {
+            let found = (place.point[0] - centre[0]).hypot(place.point[1] - centre[1]);
+            assert!((found - radius).abs() < 1e-7, "{iso}: {found} is not {radius}");
+        }
+        // The rest of a motion is its own, and shorter.
+        for (whole, part) in [(&plain[count - 4], before), (&plain[count - 3], after)] {
+            match (whole.path, part.path) {
+                (StepPath::Line, StepPath::Line) => {
+                    let ([start, end], [first, last]) = (places(whole), places(part));
+                    let along = |point: [f64; 2]| {
+                        let [x, y] = [0, 1].map(|axis| point[axis] - start.point[axis]);
+                        let across = x * start.direction[1] - y * start.direction[0];
+                        assert!(across.abs() < 1e-7, "{iso}");
+                        x * start.direction[0] + y * start.direction[1]
+                    };
+                    let order = [
+                        along(start.point),
+                        along(first.point),
+                        along(last.point),
+                        along(end.point),
+                    ];
+                    assert!(
+                        order.windows(2).all(|pair| pair[0] <= pair[1] + 1e-9),
+                        "{iso}{order:?}"
+                    );
+                }
+                (
+                    StepPath::Arc { centre, sweep, .. },
+                    StepPath::Arc { centre: of_part, sweep: part_sweep, .. },
+                ) => {
+                    assert_eq!(centre, of_part);
+                    assert!(sweep * part_sweep >= 0.0 && part_sweep.abs() <= sweep.abs(), "{iso}");
+                    let ends = places(part).map(|place| {
+                        (place.point[1] - centre[1]).atan2(place.point[0] - centre[0])
+                    });
+                    let turn = (ends[1] - ends[0] - part_sweep).rem_euclid(std::f64::consts::TAU);
+                    assert!(turn.min(std::f64::consts::TAU - turn) < 1e-6, "{iso}{turn}");
+                }
+                other => panic!("{iso}{other:?}"),
+            }
+        }
+        if kind == 0 {
+            // The tangent length r / tan(half of the angle between both lines).
+            let between = (angles[0] - angles[1]).cos().acos();
+            let cut = places(before)[1].point;
+            assert!((cut[0].hypot(cut[1]) - radius / (0.5 * between).tan()).abs() < 1e-6, "{iso}");
+            assert!((sweep.abs() - (std::f64::consts::PI - between)).abs() < 1e-6, "{iso}");
+        }
+        read += 1;
+        kinds[kind] += 1;
+    }
+    println!("{read} corners: {kinds:?} of two lines, an arc before, an arc after, two arcs");
+    assert!(kinds.iter().all(|count| *count > 400), "{kinds:?}");
 }

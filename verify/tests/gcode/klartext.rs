@@ -8,8 +8,8 @@ use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::time::{Duration, Instant};
 use touchoff_verify::gcode::{
-    Choice, ControlRules, ControlSetup, Interpreter, Plane, Position, Rotation, Rule, Spindle,
-    Step, StepPath, Tcp, read,
+    Choice, ControlRules, ControlSetup, Interpreter, NoteKind, Plane, Position, Rotation, Rule,
+    Spindle, Step, StepPath, Tcp, read,
 };
 
 /// A control whose axes are at 0, and stay there at a tool change.
@@ -202,6 +202,59 @@ fn tangent_arcs_and_corners_meet_their_lines() {
     assert!((20.0 - start - 3.0 * (PI / 3.0).tan()).abs() < 1e-12);
 }
 
+/// Cycle 208 is the same motions in L, CC and CP; a tool of the bore's diameter plunges.
+#[test]
+fn a_bore_is_milled_on_a_helix() {
+    let at =
+        "TOOL DEF 5 L+80 R+4\nTOOL CALL 5 Z S900 F100 DR+0.5\nL X+10 Y+20 FMAX M3\nL Z+100 FMAX\n";
+    let bore = |diameter: f64, more: &str| {
+        format!(
+            "{at}CYCL DEF 208 BORE MILLING ~\n Q200=+2 ~\n Q201=-10 ~\n Q206=+100 ~\n Q334=+0.5 ~\n Q203=+1 ~\n Q204=+20 ~\n \
+             Q335={diameter:+} {more}\nCYCL CALL"
+        )
+    };
+    let plain = |sign: char| {
+        let [down, around] = [24 * 360, 360].map(|angle| format!("IPA{sign}{angle} DR{sign}"));
+        format!(
+            "{at}L Z+3 FMAX\nL X+13 F100\nCC X+10 Y+20\nCP {down} Z-9\nCP {around}\nL X+10 Y+20\nL Z+3 FMAX\nL Z+21 FMAX"
+        )
+    };
+    for (more, sign) in [("", '+'), ("~\n Q342=+0 ~\n Q351=+1", '+'), ("~\n Q351=-1", '-')] {
+        let (found, expected) = (steps(&bore(15.0, more)), steps(&plain(sign)));
+        let moved = |step: &&Step| step.start != step.end || step.path != StepPath::Line;
+        let ways = |steps: &[Step]| -> Vec<(bool, [i64; 3], Option<i64>)> {
+            let moving =
+                steps.iter().filter(moved).filter(|step| step.end[2] != Some(3.0) || !step.rapid);
+            let rounded = |value: f64| (1e9 * value).round() as i64;
+            let way = moving.map(|step| {
+                let end = [0, 1, 2].map(|axis| rounded(step.end[axis].expect("a number")));
+                let sweep = match step.path {
+                    StepPath::Arc { centre: [10.0, 20.0], sweep, .. } => Some(rounded(sweep)),
+                    _ => None,
+                };
+                (step.rapid, end, sweep)
+            });
+            way.collect()
+        };
+        assert_eq!(ways(&found), ways(&expected));
+    }
+    let (_, notes) = read(&program(&bore(15.0, "")), &at_zero()).expect("a program");
+    assert!(notes.iter().any(|note| note.kind == NoteKind::HelixStart), "{notes:?}");
+    assert_eq!(levels(&bore(9.0, "")), [(true, 3.0), (false, -9.0), (true, 21.0)]);
+    for (body, message) in [
+        (bore(8.0, ""), "CYCL DEF 208 while the tool is wider than the bore"),
+        (bore(18.5, ""), "a bore of more than twice the tool"),
+        (bore(15.0, "").replace("Q334=+0.5", "Q334=+0"), "an infeed per turn above 0"),
+        (bore(15.0, "").replace("Q334=+0.5", "Q334=+0.001"), "more than"),
+        (bore(15.0, "").replace("TOOL DEF 5 L+80 R+4\n", ""), "the radius offset 5 is not known"),
+    ] {
+        let error = read(&program(&body), &at_zero()).expect_err(&body).to_string();
+        assert!(error.contains(message), "{body}\n{error}");
+    }
+    // What was milled before needs no second pass.
+    assert!(read(&program(&bore(24.0, "~\n Q342=+10")), &at_zero()).is_ok());
+}
+
 #[test]
 fn the_same_part_in_iso_words_has_the_same_steps() {
     let klartext = program(
@@ -345,6 +398,15 @@ fn labels_call_repeat_and_jump() {
         ),
         [1.0, 2.0, 0.0]
     );
+}
+
+/// A control wraps a comment that is too long for a line; a parameter of a cycle after such a sign is none.
+#[test]
+fn wrapped_comments_go_on() {
+    let wrapped = "; the axis Z on the~\n Head\nQ1 = 3 ; half of the key~\n width)~\n and more\nL X+Q1 FMAX ;there~\n Y+4";
+    assert_near(ends(wrapped)[0], [3.0, 4.0, 0.0]);
+    let hole = "TOOL CALL 5 Z S1\nL X+1 FMAX\nCYCL DEF 240 C ~\n Q200=+2 ;clearance~\n Q201=-3 ;depth ~\n Q343=+0~\n Q203=+0 ~\n Q204=+9\nCYCL CALL";
+    assert_eq!(levels(hole), [(true, 2.0), (false, -3.0), (true, 9.0)]);
 }
 
 #[test]
@@ -592,16 +654,23 @@ fn what_is_not_read_is_named_with_its_line() {
         ("CC X+0 Y+0\nCP IPA+90 DR+ F100", 3, "radius zero"),
         ("CR X+10 Y+0 R+1 DR+ F100", 2, "less than half the distance"),
         ("CT X+1 Y+1 F100", 2, "CT needs a motion of X or Y"),
-        ("RND R2", 2, "RND needs a line L in X and Y before it"),
-        ("L X+1 F100\nRND R5\nL Y+1", 2, "RND while a line beside it is too short"),
-        (
-            "L X+1 F100\nRND R1\nCR X+2 Y+1 R5 DR+",
-            2,
-            "RND is a corner that is not between two lines",
-        ),
+        ("RND R2", 2, "RND needs a motion before it"),
+        ("L X+1 F100\nRND R5\nL Y+1", 4, "RND while a motion beside it is shorter"),
+        ("L X+1 F100\nRND R0.2\nL X+0", 4, "RND while the next motion goes back"),
+        ("L X+1 F100\nRND R9\nCR X+2 Y+1 R5 DR+", 4, "RND while a motion beside it is shorter"),
+        ("L X+9 F100\nRND R1\nL Z+5", 4, "RND is a corner that is not between two lines or arcs"),
+        ("L X+9 F100\nRND R1\nL Y+5 FMAX", 4, "RND is a corner that is not between two lines"),
+        ("L X+9 FMAX\nRND R1\nL Y+5 F100", 2, "RND is a corner that is not between two lines"),
+        ("L X+9 F100\nRND R1\nTOOL CALL 1 Z S1", 4, "RND needs a motion at feed"),
+        ("L X+9 F100\nRND R1\nL M140 MB5", 4, "RND needs a motion at feed"),
+        ("L X+9 F100\nRND R1", 4, "RND needs a motion at feed"),
         ("L X+10 F100\n/RND R1\nL Y+5", 2, "/ is a corner in an optional block"),
-        ("L X+10 F100\nRND R1\n/L Y+5", 2, "RND is a corner that is not between two lines"),
-        ("L X+10 F100\nCHF 1\nL X+5 Y+5", 2, "CHF is a chamfer of a corner that is not square"),
+        ("L X+10 F100\nCHF 1\nL X+5 Y+5", 4, "CHF is a chamfer of a corner that is not square"),
+        (
+            "L X+9 F100\nCHF 1\nCR X+8 Y+1 R+1 DR+",
+            4,
+            "CHF is a corner that is not between two lines",
+        ),
         ("L X+1 FMAX M777", 2, "M777 is not understood"),
         ("L X+1 U+2 FMAX", 2, "the axis U"),
         ("L X+1 X+2 FMAX", 2, "X stands twice"),
@@ -646,7 +715,19 @@ fn what_is_not_read_is_named_with_its_line() {
             3,
             "a rotary axis while a plane is tilted",
         ),
-        ("PLANE SPATIAL SPA+5 SPB+0 SPC+0", 2, "PLANE SPATIAL needs TURN or STAY"),
+        ("PLANE SPATIAL SPA+5 SPB+0 SPC+0", 2, "PLANE SPATIAL needs TURN, MOVE or STAY"),
+        ("PLANE SPATIAL SPA+5 SPB+0 SPC+0 TURN STAY", 2, "TURN and STAY exclude each other"),
+        (
+            "TOOL CALL 5 Z S1\nPLANE SPATIAL SPA+5 SPB+0 SPC+0 MOVE DIST-1",
+            3,
+            "DIST needs a distance from 0",
+        ),
+        (
+            "TOOL CALL 5 Z S1 DL+1\nPLANE SPATIAL SPA+5 SPB+0 SPC+0 MOVE",
+            3,
+            "MOVE while the tool has an allowance",
+        ),
+        ("PLANE SPATIAL SPA+5 SPB+0 SPC+0 MOVE", 2, "MOVE needs a tool with its length"),
         ("PLANE SPATIAL SPA+5 TURN", 2, "the angles SPA, SPB and SPC"),
         ("PLANE VECTOR BX+1 BY+0 BZ+0 NX+1 NY+0 NZ+0 STAY", 2, "two vectors at right angles"),
         (
@@ -814,7 +895,7 @@ const PLANES: &str = "1 BEGIN PGM TILT MM\nCYCL DEF 247 DATUM ~\n Q339=+1\nTOOL 
     CYCL DEF 19.0 P\nCYCL DEF 19.1 A+10 B+0 C+0\nCYCL DEF 19.1\nL X+0 Y+0 Z+50 A+0 B+0 C+0 FMAX\nL M128 F500\nL X+1 Y+1 Z+40 A+10 C-20 F800\n\
     L IA+1 IC+2\nM129\nFUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS\nL X+2 A+3\nFUNCTION RESET TCPM\nTRANS DATUM AXIS X+1\nSTOP M9\nEND PGM TILT MM\n";
 
-const PIECES: [&str; 44] = [
+const PIECES: [&str; 47] = [
     "L X+1 FMAX\n",
     "LBL 1\n",
     "LBL 0\n",
@@ -833,6 +914,9 @@ const PIECES: [&str; 44] = [
     "CYCL DEF 19.1 A+5\n",
     "CYCL CALL\n",
     "PLANE RESET TURN\n",
+    "PLANE RESET MOVE DIST5\n",
+    "PLANE SPATIAL SPA+1 SPB+2 SPC+3 MOVE\n",
+    "CYCL DEF 208 BORE ~\n Q200=+1 ~\n Q201=-5 ~\n Q334=+1 ~\n Q203=+0 ~\n Q204=+9 ~\n Q335=+9\n",
     "PLANE SPATIAL SPA+1 SPB+2 SPC+3 TURN\n",
     "L A+Q120 B+Q121 C+Q122 FMAX\n",
     "TRANS DATUM RESET\n",

@@ -254,3 +254,57 @@ fn rotary_axes_of_klartext_obey_their_words() {
     assert_eq!(readings(turn).len(), 3);
     assert_eq!(readings(&format!("M126\n{turn}")).len(), 1);
 }
+
+/// PLANE … MOVE of Klartext turns the tool about the point below its tip, which rests at the part: on a table, a head, and both.
+/// Afterwards positions are those of the plane, as after TURN.
+#[test]
+fn a_plane_of_klartext_turns_about_a_point_that_rests() {
+    for (name, angles) in
+        [("A-C trunnion", "A+0 C+0"), ("A-C fork head", "A+0 C+0"), ("B head + C table", "B+0 C+0")]
+    {
+        let machine = Machine::named(name).expect("a machine of the library");
+        let mut setup = ControlSetup { lengths: [(1, 80.0)].into(), ..Default::default() };
+        setup.work_offsets[0] = Some([5.0, -7.0, -400.0, 0.0, 0.0, 0.0]);
+        let moves_of = |body: &str| {
+            let text = format!(
+                "0 BEGIN PGM A MM\nTOOL CALL 1 Z S900\nL {angles} FMAX M3\nL X+10 Y+20 FMAX\nL Z+30 FMAX\n{body}\nM30\nEND PGM A MM\n"
+            );
+            let program = MachineProgram::new("a.h", text.clone(), machine.clone(), setup.clone());
+            moves(&program.unwrap_or_else(|error| panic!("{name}: {text}{error}")))
+        };
+        let tilt = nalgebra::Rotation3::from_axis_angle(&Vector3::z_axis(), 0.5)
+            * nalgebra::Rotation3::from_axis_angle(&Vector3::x_axis(), 0.35);
+        let [x, y] = [0, 1].map(|k| tilt.matrix().column(k).into_owned());
+        let normal = tilt * Vector3::z();
+        let plane = format!(
+            "PLANE VECTOR BX{:+.9} BY{:+.9} BZ{:+.9} NX{:+.9} NY{:+.9} NZ{:+.9}",
+            x.x, x.y, x.z, normal.x, normal.y, normal.z
+        );
+        for (distance, word) in [(0.0, ""), (0.0, "DIST0"), (25.0, "DIST25"), (25.0, "ABST+25")] {
+            let found = moves_of(&format!("{plane} SEQ- MOVE {word} F900"));
+            let turn = found.last().expect("a move");
+            assert!(turn.rapid);
+            let rests = Point3::new(10.0, 20.0, 30.0 - distance);
+            for k in 0..=20 {
+                let pose = turn.path.pose(f64::from(k) / 20.0);
+                let point = pose.tip() - distance * pose.axis();
+                assert!((point - rests).norm() < 1e-9, "{name} {word} {k}: {point}");
+            }
+            assert!((turn.path.pose(0.0).axis() - Vector3::z()).norm() < 1e-12, "{name}");
+            assert!((turn.path.pose(1.0).axis() - normal).norm() < 1e-8, "{name}");
+            // A position in the plane, and the way back about the same point.
+            let back = format!(
+                "{plane} SEQ- MOVE {word} FMAX\nL X+1 Y+2 FMAX\nL Z+3 FMAX\nPLANE RESET MOVE {word} FMAX"
+            );
+            let found = moves_of(&back);
+            let [.., at, reset] = &found[..] else { panic!("{} moves", found.len()) };
+            let expected = x + 2.0 * y + 3.0 * normal;
+            let at = at.path.pose(1.0);
+            assert!((at.tip().coords - expected).norm() < 1e-7, "{name}: {at:?}");
+            let rests = at.tip() - distance * at.axis();
+            let end = reset.path.pose(1.0);
+            assert!((end.tip() - distance * end.axis() - rests).norm() < 1e-7, "{name}: {end:?}");
+            assert!((end.axis() - Vector3::z()).norm() < 1e-12, "{name}");
+        }
+    }
+}

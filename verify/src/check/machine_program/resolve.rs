@@ -189,8 +189,10 @@ impl<'a> Resolver<'a> {
                 });
             }
         };
-        if matches!(step.path, StepPath::Align) {
-            return self.align(&frame, step);
+        match step.path {
+            StepPath::Align => return self.align(&frame, step),
+            StepPath::Pivot { distance } => return self.pivot(&frame, step, distance),
+            _ => {}
         }
         let current = self.current_position(&frame);
         let mut ends = match self.ends(step, &frame, &current)? {
@@ -417,7 +419,7 @@ impl<'a> Resolver<'a> {
             self.is_turned_table = false;
         } else if turning != self.turning {
             // A table that turns in the block counts at its end, but for the alignment with a plane.
-            let aligns = matches!(step.path, StepPath::Align);
+            let aligns = matches!(step.path, StepPath::Align | StepPath::Pivot { .. });
             let is_turned = self.rotary(Side::Table).any(|k| {
                 self.joints[k] != Some(self.origin[k])
                     || !aligns && step.commanded[k] && step.end[k] != Some(0.0)
@@ -500,30 +502,16 @@ impl<'a> Resolver<'a> {
 
     /// Resolves the rotation that aligns the tool with z of a tilted plane, with the linear joints at rest.
     fn align(&mut self, frame: &Frame, step: &Step) -> Result<Resolved, StepFault> {
-        let axis = match &step.state.rotation {
-            Rotation::Tilted { frame, .. } => frame.rotation.column(2).into_owned(),
-            Rotation::Off | Rotation::Plane { .. } => Vector3::z(),
-        };
         if !step.commanded[3..].contains(&true) {
-            return self.check_aligned(frame, &axis);
+            return self.check_aligned(frame, &plane_axis(step));
         }
-        let near = self.joints.map(Option::unwrap_or_default);
-        // The angles do not depend on the tip, whose linear joints are not those of the machine at rest.
-        let chain = frame.chain.without_linear_limits();
-        let mut found = chain.solutions(&Point3::origin(), &axis, &near)?;
-        if let Some((master, is_positive)) = self.master().zip(step.master_is_positive) {
-            let sign = if is_positive { 1.0 } else { -1.0 };
-            found.retain(|solution| sign * solution.joints[master] >= -ANGLE_INCREMENT);
-        }
-        if found.is_empty() || !self.is_one_choice(&found) {
-            let is_known = (3..6).all(|k| self.joints[k].is_some());
-            let cause = if is_known { UnknownCause::TwoPositions } else { self.cause };
-            return Ok(self.lose(cause));
-        }
-        let found = found[0].joints;
         let before = known(&self.joints);
+        let found = match self.aligned_angles(frame, step)? {
+            Located::Known(found) => found,
+            Located::Unknown(cause) => return Ok(self.lose(cause)),
+        };
         // The angles are known also where the way to them is not.
-        (3..6).for_each(|k| self.joints[k] = Some(found[k]));
+        (3..6).for_each(|k| self.joints[k] = Some(found[k - 3]));
         let Some(joints) = before else { return Ok(Resolved::Unknown(self.cause)) };
         if self.part_position_unknown {
             return Ok(Resolved::Unknown(UnknownCause::NoPartPosition));
@@ -532,8 +520,60 @@ impl<'a> Resolver<'a> {
             return Ok(Resolved::Unknown(UnknownCause::NoLever));
         }
         let mut end = joints;
-        end[3..].copy_from_slice(&found[3..]);
+        end[3..].copy_from_slice(&found);
         self.rapid(&frame.chain, [joints, end])
+    }
+
+    /// Resolves a rotation about a point of the tool axis, below the tip by a distance in mm: to the angles that are stated, or to
+    /// those that align the tool with z of a tilted plane.
+    fn pivot(&mut self, frame: &Frame, step: &Step, distance: f64) -> Result<Resolved, StepFault> {
+        let before = known(&self.joints);
+        let stated = [3, 4, 5].map(|k| match self.machine.axis(Letter::ALL[k]) {
+            Some(_) => Some(step.end[k]? + frame.rotary[k - 3]),
+            None => Some(0.0),
+        });
+        let found = match stated {
+            [Some(a), Some(b), Some(c)] => [a, b, c],
+            _ => match self.aligned_angles(frame, step)? {
+                Located::Known(found) => found,
+                Located::Unknown(cause) => return Ok(self.lose(cause)),
+            },
+        };
+        self.joints = [None, None, None, Some(found[0]), Some(found[1]), Some(found[2])];
+        let Some(joints) = before else { return Ok(Resolved::Unknown(self.cause)) };
+        if self.part_position_unknown {
+            self.cause = UnknownCause::NoPartPosition;
+            return Ok(Resolved::Unknown(self.cause));
+        }
+        if frame.has_unknown_lever {
+            self.cause = UnknownCause::NoLever;
+            return Ok(Resolved::Unknown(self.cause));
+        }
+        let pose = frame.chain.pose(&joints)?;
+        let point = pose.tip() - distance * pose.axis();
+        let [_, _, _, a, b, c] = joints;
+        let motion = JointMotion::about(&frame.chain, distance, [[a, b, c], found], &point)?;
+        self.joints = motion.joints(1.0).map(Some);
+        Ok(Resolved::Motions(vec![(motion, 0.0)]))
+    }
+
+    /// Returns the rotary joints that align the tool with z of a tilted plane, in degrees.
+    fn aligned_angles(&self, frame: &Frame, step: &Step) -> Result<Located<[f64; 3]>, StepFault> {
+        let near = self.joints.map(Option::unwrap_or_default);
+        // The angles do not depend on the tip, whose linear joints are not those of the machine at rest.
+        let chain = frame.chain.without_linear_limits();
+        let mut found = chain.solutions(&Point3::origin(), &plane_axis(step), &near)?;
+        if let Some((master, is_positive)) = self.master().zip(step.master_is_positive) {
+            let sign = if is_positive { 1.0 } else { -1.0 };
+            found.retain(|solution| sign * solution.joints[master] >= -ANGLE_INCREMENT);
+        }
+        if found.is_empty() || !self.is_one_choice(&found) {
+            let is_known = (3..6).all(|k| self.joints[k].is_some());
+            let cause = if is_known { UnknownCause::TwoPositions } else { self.cause };
+            return Ok(Located::Unknown(cause));
+        }
+        let [_, _, _, a, b, c] = found[0].joints;
+        Ok(Located::Known([a, b, c]))
     }
 
     /// Refuses angles of the rotary axes at which the tool does not stand along z of a plane.
@@ -776,6 +816,14 @@ impl Frame {
             Ok((motion, segment.error))
         });
         motions.collect()
+    }
+}
+
+/// Returns z of the tilted plane of a step, in the frame of the part; z itself without one.
+fn plane_axis(step: &Step) -> Vector3<f64> {
+    match &step.state.rotation {
+        Rotation::Tilted { frame, .. } => frame.rotation.column(2).into_owned(),
+        Rotation::Off | Rotation::Plane { .. } => Vector3::z(),
     }
 }
 

@@ -3,7 +3,7 @@
 use super::motion::{ArcWords, path};
 use super::{AXES, Control, Motion};
 use crate::gcode::block::Block;
-use crate::gcode::error::combination;
+use crate::gcode::error::{CompensationFault, combination, missing};
 use crate::gcode::state::{LengthOffset, Position, Rotation, Tcp};
 use crate::gcode::{GcodeFault, Plane, StepPath};
 use std::sync::Arc;
@@ -100,6 +100,7 @@ impl Control {
         }
         let known = self.pending.len();
         self.push(rapid, end, commanded, path);
+        self.corners(block.corner.take(), known)?;
         self.compensate(known)?;
         Ok(path)
     }
@@ -178,6 +179,38 @@ impl Control {
         self.end_tapping(84);
     }
 
+    /// Returns the radius of the tool in the spindle with its allowance (DR), in millimetres.
+    pub(in crate::gcode) fn tool_radius(&self, word: &str) -> Result<f64, GcodeFault> {
+        let tool = self.state.tool;
+        let number = tool.ok_or_else(|| missing(word, "a tool in the spindle (TOOL CALL)"))?;
+        let radius = self.radius_offsets.get(&number);
+        let radius = radius.ok_or(CompensationFault::NoRadius { number })?;
+        Ok(radius + self.radius_allowance)
+    }
+
+    /// Moves on a helix about a centre in X and Y to a level, at feed rate. The sweep is in radians, lengths are in millimetres. X and Y
+    /// have to be known.
+    pub(in crate::gcode) fn helix(&mut self, centre: [f64; 2], sweep: f64, level: f64) {
+        let mut end = self.position;
+        let radius = [0, 1].map(|axis| end[axis].map(|value| value - centre[axis]));
+        if let [Some(x), Some(y)] = radius {
+            let (sine, cosine) = sweep.sin_cos();
+            end[0] = Some(centre[0] + x * cosine - y * sine);
+            end[1] = Some(centre[1] + x * sine + y * cosine);
+        }
+        end[2] = Some(level);
+        let commanded = [true, true, true, false, false, false];
+        self.push(false, end, commanded, StepPath::Arc { plane: Plane::Xy, centre, sweep });
+    }
+
+    /// Moves to a point in X and Y at feed rate, in millimetres.
+    pub(in crate::gcode) fn move_in_plane(&mut self, [x, y]: [f64; 2]) {
+        let mut end = self.position;
+        (end[0], end[1]) = (Some(x), Some(y));
+        let commanded = [true, true, false, false, false, false];
+        self.push(false, end, commanded, StepPath::Line);
+    }
+
     /// Moves an axis by an increment, in millimetres.
     pub(in crate::gcode) fn move_by(&mut self, axis: usize, increment: f64, rapid: bool) {
         let mut end = self.position;
@@ -197,13 +230,17 @@ impl Control {
     }
 
     /// Turns the rotary axes so that the tool stands along z of the tilted plane, at an angle of the master axis whose sign may be
-    /// stated.
-    pub(in crate::gcode) fn align_with_plane(&mut self, master_is_positive: Option<bool>) {
+    /// stated. X, Y and Z rest, or follow about a point below the tip by `pivot` millimetres.
+    pub(in crate::gcode) fn align_with_plane(
+        &mut self,
+        pivot: Option<f64>,
+        master_is_positive: Option<bool>,
+    ) {
         let Rotation::Tilted { frame, .. } = self.state.rotation else { return };
         let mut end = self.position;
         end[3..].fill(None);
         let commanded = [false, false, false, true, true, true];
-        self.push(true, end, commanded, StepPath::Align);
+        self.turn(end, commanded, StepPath::Align, pivot);
         let step = self.pending.back_mut().expect("the step that was added");
         step.master_is_positive = master_is_positive;
         self.change(|state| state.rotation = Rotation::Tilted { frame, aligned: true });
@@ -216,8 +253,8 @@ impl Control {
         self.change(|state| state.rotation = Rotation::Tilted { frame, aligned: true });
     }
 
-    /// Turns the rotary axes to 0.
-    pub(in crate::gcode) fn turn_to_zero(&mut self) {
+    /// Turns the rotary axes to 0. X, Y and Z rest, or follow about a point below the tip by `pivot` millimetres.
+    pub(in crate::gcode) fn turn_to_zero(&mut self, pivot: Option<f64>) {
         let mut end = self.position;
         let mut commanded = [false; 6];
         for axis in 3..AXES.len() {
@@ -227,8 +264,27 @@ impl Control {
             }
         }
         if commanded.contains(&true) {
-            self.push(true, end, commanded, StepPath::Line);
+            self.turn(end, commanded, StepPath::Line, pivot);
         }
+    }
+
+    /// Turns the rotary axes on a path, or about a point below the tip by `pivot` millimetres.
+    fn turn(
+        &mut self,
+        mut end: Position,
+        mut commanded: [bool; 6],
+        path: StepPath,
+        pivot: Option<f64>,
+    ) {
+        let path = match pivot {
+            Some(distance) => {
+                end[..3].fill(None);
+                commanded[..3].fill(true);
+                StepPath::Pivot { distance }
+            }
+            None => path,
+        };
+        self.push(true, end, commanded, path);
     }
 
     /// Switches tool centre point control (M128).

@@ -338,8 +338,8 @@ impl Control {
             // A motion that is held back is compared once it is known.
             && self.compensation.is_none()
             && next.compensation.is_none()
-            && self.held_line.is_none()
-            && next.held_line.is_none()
+            && self.held_motion.is_none()
+            && next.held_motion.is_none()
             && self.returned == next.returned
             && (self.tcp_position_needed || !next.tcp_position_needed)
             && self.changed().zip(next.changed()).all(|(changed, next)| changed || !next)

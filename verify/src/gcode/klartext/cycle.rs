@@ -1,10 +1,12 @@
-//! Cycles: drilling, reaming, boring and tapping, and the calls of a cycle.
+//! Cycles: drilling, reaming, boring, tapping and bore milling, and the calls of a cycle.
 //!
 //! A cycle moves in rapid traverse along Z to the set-up clearance (Q200) over the surface (Q203), at feed rate to its depth (Q201)
 //! and back, and to the second set-up clearance (Q204) if that is higher (TNC 640, *Cycle programming*, "Fixed cycles: drilling").
 //! The depths of infeeds are from the surface; between them the tool leaves the hole, and returns in rapid traverse to the set-up
 //! clearance over the depth that was reached (200, 203), or to the advanced stop distance over it (205: the lesser of Q258 and Q259).
-//! The retracts of chip breaking (Q256) stay on the stroke of the drill, and are left out.
+//! The retracts of chip breaking (Q256) stay on the stroke of the drill, and are left out. Bore milling (208) moves to the wall at the
+//! set-up clearance, down a helix with the pitch Q334, around at the depth, and back to the axis. Where the helix begins is the
+//! control's own: a note says so.
 
 use super::Program;
 use super::block::Coordinate;
@@ -15,6 +17,7 @@ use crate::gcode::control::Control;
 use crate::gcode::error::{combination, missing, not_read};
 use crate::gcode::note::NoteKind;
 use crate::gcode::{GcodeFault, MAX_CYCLE_STEPS};
+use std::f64::consts::TAU;
 
 /// The distance by which cycle 202 leaves the wall of the bore, in millimetres (Q214).
 const DISENGAGING: f64 = 0.2;
@@ -36,6 +39,18 @@ pub(super) struct Cycle {
     is_fast: bool,
     /// The direction in which cycle 202 leaves the wall.
     side: Option<Side>,
+    /// The bore that cycle 208 mills.
+    bore: Option<Bore>,
+}
+
+/// A bore that is milled on a helix.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Bore {
+    diameter: f64,
+    /// Diameter before, or 0.
+    rough: f64,
+    pitch: f64,
+    clockwise: bool,
 }
 
 /// A direction along an axis (Q214).
@@ -65,6 +80,12 @@ struct Infeed {
     /// Distance from the depth that was reached at which the tool returns to it.
     stop: f64,
 }
+
+/// Difference of diameters below which they are the same, in millimetres.
+const SAME_DIAMETER: f64 = 1e-6;
+
+/// Largest number of turns of a helix.
+const MAX_TURNS: f64 = 1000.0;
 
 /// Feed in mm per minute from which it is rapid traverse.
 const RAPID_FEED: f64 = 99_999.0;
@@ -263,7 +284,10 @@ impl Program<'_> {
             let is_fast = cycle.number != 203 || cycle.is_fast;
             infeeds(infeed, is_fast, [surface, top, bottom], control)?;
         }
-        control.move_to_level(bottom, false, is_tap);
+        match cycle.bore {
+            Some(bore) => mill(bore, [top, bottom], control)?,
+            None => control.move_to_level(bottom, false, is_tap),
+        }
         match cycle.number {
             201 | 203 => control.move_to_level(top, cycle.is_fast, false),
             202 => {
@@ -315,6 +339,42 @@ fn infeeds(
             return Err(GcodeFault::CycleTooLong);
         }
     }
+    Ok(())
+}
+
+/// Mills a bore about the present position.
+fn mill(bore: Bore, [top, bottom]: [f64; 2], control: &mut Control) -> Result<(), GcodeFault> {
+    const WORD: &str = "CYCL DEF 208";
+    let Bore { diameter, rough, pitch, clockwise } = bore;
+    let tool = 2.0 * control.tool_radius(WORD)?;
+    let position = control.position();
+    let (Some(x), Some(y)) = (position[0], position[1]) else {
+        return Err(missing(WORD, "X and Y of the hole before"));
+    };
+    let radius = 0.5 * (diameter - tool);
+    if radius < -SAME_DIAMETER {
+        let condition = "the tool is wider than the bore (Q335)";
+        return Err(combination(WORD, condition, "correct the diameter or the radius of the tool"));
+    }
+    if diameter - rough.max(0.0) > 2.0 * tool + SAME_DIAMETER {
+        let meaning =
+            "a bore of more than twice the tool, which some controls mill in several passes";
+        return Err(not_read("Q335 of CYCL DEF 208", meaning, "post the program with CP"));
+    }
+    if radius < SAME_DIAMETER {
+        control.move_to_level(bottom, false, false);
+        return Ok(());
+    }
+    control.notes.add_once(control.line, NoteKind::HelixStart);
+    let turns = (top - bottom) / pitch;
+    if turns > MAX_TURNS {
+        return Err(GcodeFault::CycleTooLong);
+    }
+    let sense = if clockwise { -TAU } else { TAU };
+    control.move_in_plane([x + radius, y]);
+    control.helix([x, y], sense * turns, bottom);
+    control.helix([x, y], sense, bottom);
+    control.move_in_plane([x, y]);
     Ok(())
 }
 
@@ -371,8 +431,21 @@ fn cycle(given: &Given, unit: f64) -> Result<Cycle, GcodeFault> {
         },
         _ => None,
     };
+    let bore = match number {
+        208 => {
+            let pitch = unit * given.needed(334, "Q334, the infeed per turn")?;
+            let diameter = unit * given.needed(335, "Q335, the diameter of the bore")?;
+            if pitch <= 0.0 {
+                return Err(given.refused(334, "an infeed per turn above 0"));
+            }
+            // Climb milling, unless Q351 says otherwise.
+            let clockwise = given.length(351) < 0.0;
+            Some(Bore { diameter, rough: unit * given.length(342), pitch, clockwise })
+        }
+        _ => None,
+    };
     let is_fast = number == 203 && given.get(208).is_some_and(|feed| feed >= RAPID_FEED);
-    Ok(Cycle { number, clearance, depth, surface, second, infeed, is_fast, side })
+    Ok(Cycle { number, clearance, depth, surface, second, infeed, is_fast, side, bore })
 }
 
 fn is_thread(number: u32) -> bool {

@@ -13,7 +13,7 @@ use super::line::{Cursor, expected};
 use super::words::{PLANES, find};
 use crate::gcode::GcodeFault;
 use crate::gcode::control::Control;
-use crate::gcode::error::{combination, missing, not_read};
+use crate::gcode::error::{combination, missing, not_read, same_group};
 use crate::gcode::note::NoteKind;
 use crate::gcode::state::{Frame as Map, Rotation, about};
 use nalgebra::{Matrix3, Vector3};
@@ -348,10 +348,22 @@ impl Program<'_> {
             }
             _ => return Err(expected(&form, "the form of the plane after PLANE")),
         };
-        if rotation.is_some() && !words.turns && !words.stays {
-            return Err(missing(format!("PLANE {form}"), "TURN or STAY"));
+        if rotation.is_some() && words.positioning.is_none() {
+            return Err(missing(format!("PLANE {form}"), "TURN, MOVE or STAY"));
         }
-        if let Some(retract) = words.retract.filter(|_| words.turns) {
+        let (turns, pivot) = match words.positioning {
+            Some(Positioning::Turn) => (true, None),
+            Some(Positioning::Move { distance }) => (true, Some(distance)),
+            Some(Positioning::Stay) | None => (false, None),
+        };
+        if pivot.is_some() && self.frame.has_allowance() {
+            let condition = "the tool has an allowance on its length (DL)";
+            return Err(combination("MOVE", condition, "write DL+0 in TOOL CALL"));
+        }
+        if pivot.is_some() && !control.has_length() {
+            return Err(missing("MOVE", "a tool with its length (TOOL CALL) before"));
+        }
+        if let Some(retract) = words.retract.filter(|_| turns) {
             control.retract(retract.distance, retract.rapid);
         }
         match rotation {
@@ -363,15 +375,15 @@ impl Program<'_> {
                 }
                 self.tilt("PLANE", rotation, control)?;
                 self.frame.master_is_positive = words.master_is_positive;
-                if words.turns {
-                    control.align_with_plane(words.master_is_positive);
+                if turns {
+                    control.align_with_plane(pivot, words.master_is_positive);
                     self.frame.aligned = true;
                 }
             }
             None => {
                 self.end_plane(control)?;
-                if words.turns {
-                    control.turn_to_zero();
+                if turns {
+                    control.turn_to_zero(pivot);
                 }
             }
         }
@@ -398,9 +410,16 @@ impl Program<'_> {
                 }
             }
             if cursor.take_prefix("TURN") {
-                words.turns = true;
+                words.set(Positioning::Turn)?;
+            } else if cursor.take_prefix("MOVE") {
+                let has_distance = ["DIST", "ABST", "SETUP"].iter().any(|w| cursor.take_prefix(w));
+                let distance = if has_distance { scale.length(cursor)? } else { 0.0 };
+                if distance < 0.0 {
+                    return Err(missing("DIST", "a distance from 0"));
+                }
+                words.set(Positioning::Move { distance })?;
             } else if cursor.take_prefix("STAY") {
-                words.stays = true;
+                words.set(Positioning::Stay)?;
             } else if cursor.take_prefix("COORD") && cursor.take_prefix("ROT") {
                 let word = "COORD ROT".to_owned();
                 control.notes.add(control.line, NoteKind::PassedOver { word });
@@ -418,7 +437,7 @@ impl Program<'_> {
                 // The rate of the rotary axes: their path is the same.
                 let _: Feed = scale.feed(cursor)?;
             } else {
-                return Err(cursor.unexpected("an angle, a vector, TURN, STAY, MB or F"));
+                return Err(cursor.unexpected("an angle, a vector, TURN, MOVE, STAY, MB or F"));
             }
         }
         Ok(words)
@@ -448,7 +467,7 @@ impl Program<'_> {
             return Err(missing(format!("Q120 to Q122 without {letter}"), needed));
         }
         control.execute(&mut self.block)?;
-        control.align_with_plane(self.frame.master_is_positive);
+        control.align_with_plane(None, self.frame.master_is_positive);
         self.frame.aligned = true;
         self.before.forget();
         Ok(())
@@ -481,18 +500,47 @@ impl Program<'_> {
     }
 }
 
+/// What the rotary axes do.
+#[derive(Clone, Copy)]
+enum Positioning {
+    /// They turn, and X, Y and Z rest.
+    Turn,
+    /// They turn, and X, Y and Z follow about the point below the tip by a distance in millimetres.
+    Move { distance: f64 },
+    /// They rest.
+    Stay,
+}
+
 /// The words after the form of a plane.
 #[derive(Default)]
 struct PlaneWords {
     /// By the order of [`VALUES`].
     values: [Option<f64>; 12],
-    turns: bool,
-    stays: bool,
+    positioning: Option<Positioning>,
     /// TABLE ROT.
     turns_table: bool,
     /// SEQ+ or SEQ-.
     master_is_positive: Option<bool>,
     retract: Option<Retract>,
+}
+
+impl Positioning {
+    fn word(self) -> &'static str {
+        match self {
+            Positioning::Turn => "TURN",
+            Positioning::Move { .. } => "MOVE",
+            Positioning::Stay => "STAY",
+        }
+    }
+}
+
+impl PlaneWords {
+    fn set(&mut self, positioning: Positioning) -> Result<(), GcodeFault> {
+        match self.positioning.replace(positioning) {
+            Some(before) => Err(same_group(before.word(), positioning.word())),
+            None => Ok(()),
+        }
+    }
 }
 
 /// The numbers of a plane.

@@ -1,6 +1,7 @@
 //! The text of a block: the lines that belong to it, and the words on them.
 //!
-//! A block is a line, and the lines after it as long as each ends in `~`. A comment begins with `;` and ends with its line. Numbers
+//! A block is a line, and the lines after it as long as each ends in `~`. A comment begins with `;` and ends with its line, or with a later
+//! one if it is wrapped. Numbers
 //! have a point or a comma.
 
 use crate::gcode::{ExpressionFault, GcodeFault, LARGEST_NUMBER, shown, unquoted};
@@ -71,10 +72,7 @@ impl<'a> Cursor<'a> {
         loop {
             match *bytes.get(self.at)? {
                 b' ' | b'\t' | b'\r' | b'\n' | b'~' => self.at += 1,
-                b';' => {
-                    let rest = &self.text[self.at..];
-                    self.at += rest.find('\n').unwrap_or(rest.len());
-                }
+                b';' => self.at += comment(&self.text[self.at..]),
                 byte => return Some(byte),
             }
         }
@@ -186,6 +184,31 @@ impl<'a> Cursor<'a> {
             true => Ok(number),
             false => Err(ExpressionFault::NotFinite { operation: "a number" }.into()),
         }
+    }
+}
+
+/// Returns the length of a comment at the start of a text, up to the end of its line.
+///
+/// A comment that is too long for its line goes on after a `~` that follows its last word at once. The text after such a sign is that
+/// of the comment only if it begins with a word in lower case: words of Klartext are written in upper case.
+fn comment(text: &str) -> usize {
+    let mut length = 0;
+    loop {
+        let rest = &text[length..];
+        let line = rest.split('\n').next().unwrap_or_default();
+        let next = rest[line.len()..].split_whitespace().next().unwrap_or_default();
+        length += line.len();
+        let is_wrapped = line
+            .trim_end()
+            .strip_suffix('~')
+            .is_some_and(|before| before.ends_with(|last: char| !last.is_whitespace()));
+        let is_prose = next.contains(|c: char| c.is_lowercase())
+            && !next.contains(|c: char| c.is_ascii_digit() || "+-=".contains(c));
+        if !is_wrapped || !is_prose {
+            return length;
+        }
+        // The end of the line.
+        length += 1;
     }
 }
 

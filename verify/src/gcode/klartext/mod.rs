@@ -260,6 +260,7 @@ impl<'a> Program<'a> {
         let upper = head.to_ascii_uppercase();
         if matches!(upper.as_str(), "TOOL" | "CYCL" | "PLANE" | "TRANS" | "FUNCTION") {
             control.check_uncompensated(&*upper)?;
+            control.check_corner()?;
         }
         match upper.as_str() {
             "CC" => self.pole(&mut cursor, control)?,
@@ -276,6 +277,7 @@ impl<'a> Program<'a> {
                 }
             }
             "STOP" => {
+                control.check_corner()?;
                 self.codes.clear();
                 self.codes.push(0);
                 Scale::new(&self.parameters, self.unit).words(&mut cursor, &mut self.codes)?;
@@ -322,8 +324,7 @@ impl<'a> Program<'a> {
                 return Ok(Progress::Ended(End::Stop));
             }
             "RND" | "CHF" => {
-                let needed = "a line L in X and Y before it, and another one after it";
-                return Err(missing(upper, needed));
+                return Err(missing(upper, "a motion before it, and another one after it"));
             }
             _ => return Err(unknown(&upper, start, cursor)),
         }

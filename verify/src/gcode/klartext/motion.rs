@@ -9,7 +9,7 @@ use super::block::{Coordinate, Feed, Scale, Side, Words};
 use super::flow::Ahead;
 use super::line::{Cursor, expected};
 use crate::gcode::block::{Code, Number};
-use crate::gcode::control::{Circle, Control, Curve};
+use crate::gcode::control::{Circle, Control, Corner, CornerShape, Curve};
 use crate::gcode::error::{combination, missing, not_read};
 use crate::gcode::state::{Position, Rotation};
 use crate::gcode::{GcodeFault, Plane, StepPath};
@@ -28,34 +28,24 @@ pub(super) struct Before {
     /// The pole, in millimetres, and the plane of its two axes.
     pole: [Option<f64>; 3],
     plane: Plane,
-    /// The corner that the last motion has rounded: the programmed position.
-    corner: Option<Position>,
     /// Direction in X and Y at the end of the last motion, of any length.
     heading: Option<[f64; 2]>,
 }
 
 impl Before {
     pub(super) fn new() -> Before {
-        Before { pole: [None; 3], plane: Plane::Xy, corner: None, heading: None }
+        Before { pole: [None; 3], plane: Plane::Xy, heading: None }
     }
 
     /// Forgets the motion, after which something else has moved the axes.
     pub(super) fn leave(&mut self) {
-        (self.corner, self.heading) = (None, None);
+        self.heading = None;
     }
 
     /// Forgets what depends on the coordinates, which have changed.
     pub(super) fn forget(&mut self) {
         *self = Before::new();
     }
-}
-
-/// A corner between two lines.
-enum Corner {
-    /// RND, with its radius.
-    Round(f64),
-    /// CHF, with the length that it takes of each line.
-    Chamfer(f64),
 }
 
 impl Program<'_> {
@@ -71,6 +61,9 @@ impl Program<'_> {
         let words = scale.words(cursor, &mut self.codes)?;
         words.check_used(head)?;
         self.start_words(control)?;
+        if words.is_machine || words.retract.is_some() {
+            control.check_corner()?;
+        }
         if words.is_machine {
             if head != "L" {
                 let remedy = "write L with M91";
@@ -109,6 +102,7 @@ impl Program<'_> {
             self.is_modal_call = true;
         }
         if words.is_call || self.is_modal_call && is_motion {
+            control.check_corner()?;
             self.is_modal_call &= !words.is_call;
             self.call_cycle(0.0, control)?;
         }
@@ -117,13 +111,11 @@ impl Program<'_> {
 
     /// Returns the last programmed position.
     fn position(&self, control: &Control) -> Position {
-        self.before.corner.unwrap_or_else(|| {
-            let mut position = control.position();
-            for (value, sign) in position.iter_mut().zip(self.frame.mirror) {
-                *value = value.map(|value| value * sign);
-            }
-            position
-        })
+        let mut position = control.position();
+        for (value, sign) in position.iter_mut().zip(self.frame.mirror) {
+            *value = value.map(|value| value * sign);
+        }
+        position
     }
 
     /// Executes a line to the coordinates of a block.
@@ -139,16 +131,9 @@ impl Program<'_> {
             return self.turn_to_plane(&words, control);
         }
         self.check_coordinates(&words, control)?;
-        if let Some(corner) = self.corner_ahead()? {
-            return self.rounded(&words, &corner, control);
-        }
-        self.straight(&words, control)
-    }
-
-    /// Executes a line, whose feed is in the block.
-    fn straight(&mut self, words: &Words, control: &mut Control) -> Result<(), GcodeFault> {
+        self.block.corner = self.take_corner()?;
         let start = self.position(control);
-        let is_open = self.add_end(words, start)?;
+        let is_open = self.add_end(&words, start)?;
         let tenths = if words.is_rapid() { 0 } else { 10 };
         self.block.add_code(Code { letter: 'G', tenths })?;
         control.execute(&mut self.block).map_err(|fault| match fault {
@@ -166,7 +151,6 @@ impl Program<'_> {
         if words.axes[3..].iter().any(|word| matches!(word, Some(Coordinate::Incremental(_)))) {
             control.pending.iter_mut().for_each(|step| step.absolute = false);
         }
-        self.before.corner = None;
         let end = self.position(control);
         self.before.heading = direction(start, end);
         self.positioned = true;
@@ -547,10 +531,8 @@ impl Program<'_> {
     ) -> Result<(), GcodeFault> {
         self.check_coordinates(words, control)?;
         self.check_side(words, control)?;
-        if self.corner_ahead()?.is_some() {
-            return Err(not_read("RND", "a corner beside an arc", "write the arc of the corner"));
-        }
         self.block.clear();
+        self.block.corner = self.take_corner()?;
         self.add_feed(words)?;
         let start = self.position(control);
         if self.add_end(words, start)? {
@@ -574,7 +556,6 @@ impl Program<'_> {
         let rapid = words.is_rapid();
         let circle = Circle { word: head, plane, curve, rapid, unit: self.unit };
         let path = control.circle(&mut self.block, circle)?;
-        self.before.corner = None;
         self.before.heading = self.heading_after(path, control);
         self.positioned = true;
         Ok(())
@@ -589,13 +570,14 @@ impl Program<'_> {
         Some([-y * sweep.signum() * first, x * sweep.signum() * second])
     }
 
-    /// Returns the corner that the next block states, if it states one.
-    fn corner_ahead(&self) -> Result<Option<Corner>, GcodeFault> {
-        let Some(Ahead { mut cursor, is_optional, .. }) = self.flow.ahead(self.flow.place()) else {
+    /// Returns the corner that the next block states, if it states one, and passes over the block.
+    fn take_corner(&mut self) -> Result<Option<Corner>, GcodeFault> {
+        let Some(Ahead { mut cursor, is_optional, after }) = self.flow.ahead(self.flow.place())
+        else {
             return Ok(None);
         };
         let is_round = match cursor.peek() {
-            Some(b'R') => cursor.take_word("RND"),
+            Some(b'R') if cursor.take_word("RND") => true,
             Some(b'C') if cursor.take_word("CHF") => false,
             _ => return Ok(None),
         };
@@ -612,113 +594,19 @@ impl Program<'_> {
             scale.feed(&mut cursor)?;
         }
         cursor.check_end()?;
-        if length <= 0.0 {
-            return Err(missing(if is_round { "RND" } else { "CHF" }, "a length above 0"));
-        }
-        Ok(Some(if is_round { Corner::Round(length) } else { Corner::Chamfer(length) }))
-    }
-
-    /// Executes a line up to the corner after it, and the corner. The line after the corner begins at its end.
-    fn rounded(
-        &mut self,
-        words: &Words,
-        corner: &Corner,
-        control: &mut Control,
-    ) -> Result<(), GcodeFault> {
-        let head = match corner {
-            Corner::Round(_) => "RND",
-            Corner::Chamfer(_) => "CHF",
-        };
-        let beside = || {
-            let remedy = "write the corner as a motion of its own";
-            not_read(head, "a corner that is not between two lines in X and Y", remedy)
-        };
-        let after = self.flow.ahead(self.flow.place()).ok_or_else(beside)?.after;
-        let Ahead { mut cursor, is_optional, .. } = self.flow.ahead(after).ok_or_else(beside)?;
-        if is_optional || !cursor.take_word("L") {
-            return Err(beside());
-        }
-        let start = self.position(control);
-        let mut codes = Vec::new();
-        let next = Scale::new(&self.parameters, self.unit).words(&mut cursor, &mut codes)?;
-        let point = end_of(words, start).ok_or_else(beside)?;
-        let end = end_of(&next, point).ok_or_else(beside)?;
-        let (Some(into), Some(out)) = (direction(start, point), direction(point, end)) else {
-            return Err(beside());
-        };
-        let is_level = start[2..] == point[2..] && point[2..] == end[2..];
-        if !is_level || next.is_machine || next.is_rapid() || words.is_rapid() {
-            return Err(beside());
-        }
-        let lengths = [into, out].map(|[x, y]| x.hypot(y));
-        let [into, out] = [(into, lengths[0]), (out, lengths[1])]
-            .map(|([x, y], length)| [x / length, y / length]);
-        let turn = (into[0] * out[1] - into[1] * out[0]).atan2(into[0] * out[0] + into[1] * out[1]);
-        let cut = match corner {
-            Corner::Round(radius) => radius * (0.5 * turn).tan().abs(),
-            // At another corner the length can be that of the chamfer or of what it takes of each line.
-            Corner::Chamfer(_)
-                if turn.abs() > 1e-9 && (into[0] * out[0] + into[1] * out[1]).abs() > 1e-9 =>
-            {
-                let remedy = "write the chamfer as a line";
-                return Err(not_read("CHF", "a chamfer of a corner that is not square", remedy));
-            }
-            Corner::Chamfer(length) => *length,
-        };
-        if cut > lengths[0].min(lengths[1]) + SAME_POINT {
-            let condition = "a line beside it is too short";
-            return Err(combination(head, condition, "make the corner smaller"));
-        }
         self.flow.go_on_at(after);
-        // Lines that go on in one direction have no corner.
-        if turn.abs() < 1e-9 {
-            return self.straight(words, control);
-        }
-        let (Some(x), Some(y)) = (point[0], point[1]) else { return Err(beside()) };
-        let from = [x - cut * into[0], y - cut * into[1]];
-        let to = [x + cut * out[0], y + cut * out[1]];
-        self.straight(&to_point(from), control)?;
-        self.block.clear();
-        match corner {
-            Corner::Chamfer(_) => self.straight(&to_point(to), control)?,
-            Corner::Round(radius) => {
-                let side = radius * turn.signum();
-                let centre = [from[0] - side * into[1], from[1] + side * into[0]];
-                let curve = Curve::Sweep { centre, sweep: turn };
-                self.circle("RND", &to_point(to), Plane::Xy, curve, control)?;
-            }
-        }
-        self.before.corner = Some(point);
-        self.before.heading = Some(out);
-        Ok(())
+        let (word, shape) = match is_round {
+            true => ("RND", CornerShape::Round),
+            // At another corner the length can be that of the chamfer or of what it takes of each line.
+            false => ("CHF", CornerShape::SquareChamfer),
+        };
+        Ok(Some(Corner { word, shape, length, is_whole: false }))
     }
 }
 
 /// Returns a number of a block.
 pub(super) fn number(value: f64) -> Number {
     Number { value, is_whole: false, is_computed: false }
-}
-
-/// Returns the words of a line at feed to a point.
-fn to_point([x, y]: [f64; 2]) -> Words {
-    let mut words = Words::default();
-    words.axes[0] = Some(Coordinate::Absolute(x));
-    words.axes[1] = Some(Coordinate::Absolute(y));
-    words
-}
-
-/// Returns the end of a line, if it is known.
-fn end_of(words: &Words, start: Position) -> Option<Position> {
-    let mut end = start;
-    for (value, coordinate) in end.iter_mut().zip(words.axes) {
-        match coordinate {
-            Some(Coordinate::Absolute(coordinate)) => *value = Some(coordinate),
-            Some(Coordinate::Incremental(increment)) => *value = Some((*value)? + increment),
-            Some(Coordinate::OfPlane) => return None,
-            None => {}
-        }
-    }
-    Some(end)
 }
 
 /// Returns the direction of a line in X and Y, if it moves there.

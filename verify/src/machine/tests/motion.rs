@@ -202,6 +202,7 @@ fn rejects_a_nan_time() {
         rotary: [[0.0; 3]; 2],
         path: LinearPath::Line { start: [0.0; 3], end: [1.0; 3] },
         tcp: false,
+        pivot: None,
         machine,
     };
     sampled.motion().pose(f64::NAN);

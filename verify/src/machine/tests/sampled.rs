@@ -15,6 +15,8 @@ pub(super) struct Sampled {
     pub(super) rotary: [[f64; 3]; 2],
     pub(super) path: LinearPath,
     pub(super) tcp: bool,
+    /// Distance below the tip of a point that rests, which is the path.
+    pub(super) pivot: Option<f64>,
 }
 
 /// Returns the motion of an axis's link relative to the one before it, for the tool's side.
@@ -33,6 +35,10 @@ impl Sampled {
     /// Returns the motion that is tested.
     pub(super) fn motion(&self) -> JointMotion {
         let chain = self.machine.chain(&self.setup).expect("a setup");
+        if let Some(distance) = self.pivot {
+            let point = Point3::from(self.position(0.0));
+            return JointMotion::about(&chain, distance, self.rotary, &point).expect("a motion");
+        }
         match self.tcp {
             true => JointMotion::with_tcp(&chain, self.rotary, &self.path),
             false => JointMotion::new(&chain, self.rotary, &self.path),
@@ -126,7 +132,7 @@ impl Sampled {
         }
         let tip = self.workpiece(t) * Point3::from(position);
         let head = self.side(Side::Tool, t, &Vector3::zeros(), usize::MAX)
-            * Point3::new(0.0, 0.0, -self.setup.tool_length);
+            * Point3::new(0.0, 0.0, -self.setup.tool_length - self.pivot.unwrap_or_default());
         tip - head
     }
 
@@ -151,7 +157,7 @@ impl Sampled {
 
 impl Random {
     /// Returns a joint motion of a machine. Turns are from 1e-3° to some 100°, paths from 1e-2 to 200 mm,
-    /// lines and arcs of up to two turns; half of the motions are with TCP.
+    /// lines and arcs of up to two turns; half of the motions are with TCP, and a sixth about a point that rests.
     pub(super) fn motion(&mut self, machine: &Machine) -> Sampled {
         let setup = self.setup(machine);
         let scale = self.pick(&[1e-3, 1.0, 30.0, 100.0]);
@@ -165,11 +171,17 @@ impl Random {
         let start = [0, 1, 2].map(|_| 200.0 * self.unit());
         let size = self.pick(&[0.0, 1e-2, 10.0, 200.0]);
         let line_end = start.map(|value| value + size * self.unit());
-        let path = match self.below(3) {
+        let mut path = match self.below(3) {
             0 | 1 => LinearPath::Line { start, end: line_end },
             _ => self.arc(start, size),
         };
-        Sampled { machine: machine.clone(), setup, rotary, path, tcp: self.below(2) == 0 }
+        let mut tcp = self.below(2) == 0;
+        let distance = self.pick(&[0.0, 1.0, 50.0, 300.0]);
+        let pivot = (self.below(6) == 0).then_some(distance);
+        if pivot.is_some() {
+            (path, tcp) = (LinearPath::Line { start, end: start }, true);
+        }
+        Sampled { machine: machine.clone(), setup, rotary, path, tcp, pivot }
     }
 
     /// Returns a helix about a centre at about the given distance. Every third is a spiral.
