@@ -121,7 +121,7 @@ pub(super) struct Control {
     /// Set by G49, until the next tool change.
     length_cancelled: bool,
     spindle: SpindleWords,
-    /// Set where F has a meaning of the language's own, so that no feed is known (Heidenhain Klartext).
+    /// Set while F is no speed along the path, so that no feed is known (Heidenhain Klartext).
     pub(super) has_own_feed: bool,
     /// The dwells with each tool.
     pub(super) dwells: BTreeMap<Option<u32>, Dwells>,
@@ -424,7 +424,7 @@ impl Control {
     }
 
     /// Notes a number of dwells of some seconds with the present tool; `None` if their time is not known.
-    fn add_dwell(&mut self, seconds: Option<f64>, count: usize) {
+    pub(super) fn add_dwell(&mut self, seconds: Option<f64>, count: usize) {
         let dwells = self.dwells.entry(self.state.tool).or_default();
         match seconds {
             Some(seconds) => dwells.seconds += seconds,

@@ -154,3 +154,54 @@ fn each_tool_has_its_time() {
     let said = times[1].to_string();
     assert!(said.starts_with("30.0 s in feed, ") && said.contains(", 4.0 s in dwells"), "{said}");
 }
+
+/// Feeds of Klartext along lines, arcs and the strokes of cycles; what F means otherwise is not known.
+#[test]
+fn klartext_has_its_feeds() {
+    let of = |unit: &str, blocks: &str| {
+        let mut setup = ControlSetup { lengths: [(1, 80.0)].into(), ..ControlSetup::default() };
+        setup.work_offsets[0] = Some([0.0, 0.0, -300.0, 0.0, 0.0, 0.0]);
+        let text = format!(
+            "0 BEGIN PGM T {unit}\nTOOL CALL 1 Z S600 F600\nL X+0 Y+0 FMAX M3\nL Z+10 FMAX\n{blocks}\nM30\nEND PGM T {unit}\n"
+        );
+        let machine = with_rates("3-axis");
+        let program = MachineProgram::new("time.h", text, machine, setup).expect("a program");
+        program.check_complete().expect("all lines are read");
+        let times = &program.summary().times;
+        assert_eq!(times.len(), 1, "{times:?}");
+        times[0]
+    };
+    let start = of("MM", "").unknown;
+    let known = |blocks: &str| {
+        let time = of("MM", blocks);
+        assert_eq!(time.unknown, start, "{blocks}");
+        time
+    };
+    assert_near(known("L X+100 F200").feed, 30.0);
+    assert_near(known("L X+10 F AUTO\nCC X+0 Y+0\nC X-10 Y+0 DR+").feed, 1.0 + PI);
+    // Down from 12 to 2 above the part; 8 mm at 100, the dwell, and up.
+    let hole = |number: u32, more: &str| {
+        format!(
+            "CYCL DEF {number} HOLE ~\n Q200=+2 ~\n Q201=-8 ~\n Q206=+100 ~\n Q203=+0 ~\n Q204=+2 ~\n {more}\nCYCL CALL"
+        )
+    };
+    let drilled = known(&hole(200, "Q202=+8 ~\n Q211=+0.5"));
+    assert_near(drilled.feed, 6.0);
+    assert_near(drilled.dwell, 0.5);
+    assert_near(rapid(&drilled), 0.006 * (8.0 + 10.0));
+    assert_near(known(&hole(201, "Q208=+0")).feed, 12.0);
+    assert_near(known(&hole(201, "Q208=+200")).feed, 9.0);
+    assert_near(known(&format!("L X+100 F200\n{}\nL X+0", hole(201, "Q208=+200"))).feed, 69.0);
+    for (unit, blocks, more) in [
+        ("MM", "L X+100 FU0.1".to_owned(), 1),
+        ("MM", "L X+100 F200 M136\nL X+0 M137\nL X+100".to_owned(), 1),
+        ("MM", "L X+100 F200 M109\nL X+0 M111".to_owned(), 1),
+        ("MM", "L Z+9 F200 M103 F20".to_owned(), 1),
+        ("MM", hole(207, "Q239=+1"), 2),
+        ("MM", hole(200, "Q202=+8 ~\n Q210=+1"), 1),
+        ("MM", "FUNCTION DWELL TIME10".to_owned(), 1),
+        ("INCH", "L X+1 F20".to_owned(), 1),
+    ] {
+        assert_eq!(of(unit, &blocks).unknown, start + more, "{blocks}");
+    }
+}

@@ -179,6 +179,11 @@ impl Control {
         self.end_tapping(84);
     }
 
+    /// Sets the feed in millimetres per minute, and returns the one before.
+    pub(in crate::gcode) fn replace_feed(&mut self, feed: Option<f64>) -> Option<f64> {
+        std::mem::replace(&mut self.modal.feed, feed)
+    }
+
     /// Returns the radius of the tool in the spindle with its allowance (DR), in millimetres.
     pub(in crate::gcode) fn tool_radius(&self, word: &str) -> Result<f64, GcodeFault> {
         let tool = self.state.tool;

@@ -24,6 +24,8 @@ pub(super) enum Feed {
     /// Rapid traverse, in this block alone.
     Rapid,
     Rate(f64),
+    /// A feed per turn or per tooth (FU, FZ).
+    PerTurn(f64),
     /// The feed of the last TOOL CALL (`F AUTO`).
     OfTool,
 }
@@ -262,9 +264,12 @@ impl<'a> Scale<'a> {
     /// Reads a feed.
     pub(super) fn feed(&self, cursor: &mut Cursor) -> Result<Feed, GcodeFault> {
         cursor.advance();
+        let mut is_per_turn = false;
         match cursor.here().map(|byte| byte.to_ascii_uppercase()) {
-            // Per turn and per tooth: the path is the same.
-            Some(b'U' | b'Z') => cursor.advance(),
+            Some(b'U' | b'Z') => {
+                is_per_turn = true;
+                cursor.advance();
+            }
             Some(b'T') => {
                 return Err(not_read("FT", "a feed by the time of a block", "write F"));
             }
@@ -281,7 +286,8 @@ impl<'a> Scale<'a> {
         if cursor.take_prefix("AUTO") {
             return Ok(Feed::OfTool);
         }
-        Ok(Feed::Rate(value(cursor, self.known)?))
+        let rate = value(cursor, self.known)?;
+        Ok(if is_per_turn { Feed::PerTurn(rate) } else { Feed::Rate(rate) })
     }
 
     fn m_word(

@@ -39,6 +39,14 @@ pub(super) struct Cycle {
     is_fast: bool,
     /// The direction in which cycle 202 leaves the wall.
     side: Option<Side>,
+    /// Feed down, if the cycle states one. That of a thread is its pitch.
+    feed: Option<f64>,
+    /// Feed with which the tool leaves the hole.
+    retract_feed: Option<f64>,
+    /// Dwell at the depth (Q211), in seconds.
+    dwell: f64,
+    /// Set if the tool rests at the set-up clearance, too (Q210).
+    rests_above: bool,
     /// The bore that cycle 208 mills.
     bore: Option<Bore>,
 }
@@ -147,6 +155,9 @@ impl Program<'_> {
         match entry.treatment {
             Treatment::Refused(remedy) => return Err(not_read(word(), entry.meaning, remedy)),
             Treatment::PassedOver => {
+                if number == 9 && part != Some(0) {
+                    control.add_dwell(None, 1);
+                }
                 if part.unwrap_or(0) == 0 {
                     let word = word();
                     control.notes.add(control.line, NoteKind::PassedOver { word });
@@ -275,19 +286,37 @@ impl Program<'_> {
         if cycle.depth == 0.0 {
             return Ok(());
         }
+        if cycle.dwell > 0.0 {
+            control.add_dwell(Some(cycle.dwell), 1);
+        }
+        if cycle.rests_above {
+            control.add_dwell(None, 1);
+        }
+        let feed = control.replace_feed(cycle.feed);
+        let result = self.execute_cycle(&cycle, lift, control);
+        control.replace_feed(feed);
+        result
+    }
+
+    fn execute_cycle(
+        &mut self,
+        cycle: &Cycle,
+        lift: f64,
+        control: &mut Control,
+    ) -> Result<(), GcodeFault> {
         let surface = cycle.surface + lift;
         let (top, bottom) = (surface + cycle.clearance, surface + cycle.depth);
         let clear = surface + cycle.second.max(cycle.clearance);
         let is_tap = matches!(cycle.number, 206 | 207 | 209);
         control.move_to_level(top, true, false);
         if let Some(infeed) = cycle.infeed {
-            let is_fast = cycle.number != 203 || cycle.is_fast;
-            infeeds(infeed, is_fast, [surface, top, bottom], control)?;
+            infeeds(cycle, infeed, [surface, top, bottom], control)?;
         }
         match cycle.bore {
             Some(bore) => mill(bore, [top, bottom], control)?,
             None => control.move_to_level(bottom, false, is_tap),
         }
+        control.replace_feed(cycle.retract_feed);
         match cycle.number {
             201 | 203 => control.move_to_level(top, cycle.is_fast, false),
             202 => {
@@ -314,13 +343,14 @@ impl Program<'_> {
     }
 }
 
-/// Moves to the depths of all infeeds but the last. `is_fast` is set if the tool leaves the hole in rapid traverse.
+/// Moves to the depths of all infeeds but the last.
 fn infeeds(
+    cycle: &Cycle,
     infeed: Infeed,
-    is_fast: bool,
     [surface, top, bottom]: [f64; 3],
     control: &mut Control,
 ) -> Result<(), GcodeFault> {
+    let is_fast = cycle.number != 203 || cycle.is_fast;
     let (mut level, mut depth, mut steps) = (surface, infeed.first, 0);
     for index in 1.. {
         level -= depth;
@@ -331,7 +361,9 @@ fn infeeds(
         depth = (depth - infeed.decrement).max(infeed.least.min(depth));
         if index % infeed.count == 0 {
             control.move_to_level(level, false, false);
+            control.replace_feed(cycle.retract_feed);
             control.move_to_level(top, is_fast, false);
+            control.replace_feed(cycle.feed);
             control.move_to_level((level + infeed.stop).min(top), true, false);
         }
         steps += 3;
@@ -444,8 +476,30 @@ fn cycle(given: &Given, unit: f64) -> Result<Cycle, GcodeFault> {
         }
         _ => None,
     };
+    let down = given.get(206).filter(|feed| feed.is_finite());
+    let feed = if is_thread(number) { None } else { down };
+    let retract_feed = match (number, given.get(208)) {
+        // 0 is the feed down.
+        (201 | 203, Some(feed)) if feed.is_finite() && feed != 0.0 => Some(feed),
+        _ => feed,
+    };
+    let (dwell, rests_above) = (given.length(211).max(0.0), given.length(210) > 0.0);
     let is_fast = number == 203 && given.get(208).is_some_and(|feed| feed >= RAPID_FEED);
-    Ok(Cycle { number, clearance, depth, surface, second, infeed, is_fast, side, bore })
+    Ok(Cycle {
+        number,
+        clearance,
+        depth,
+        surface,
+        second,
+        infeed,
+        is_fast,
+        side,
+        feed,
+        retract_feed,
+        dwell,
+        rests_above,
+        bore,
+    })
 }
 
 fn is_thread(number: u32) -> bool {

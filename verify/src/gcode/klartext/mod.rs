@@ -57,7 +57,11 @@ pub(super) struct Program<'a> {
     /// Set by M89.
     is_modal_call: bool,
     /// F of the last TOOL CALL.
-    tool_feed: Option<f64>,
+    tool_feed: Option<Feed>,
+    /// Set if the feed in force is per turn or per tooth.
+    is_per_turn: bool,
+    /// The M words in force that change what F means: 103, 109, 116 and 136.
+    feed_words: Vec<u32>,
     /// Set once a position in program coordinates was executed.
     positioned: bool,
     /// The lowest and the highest corner of the blank, in millimetres.
@@ -123,8 +127,6 @@ impl<'a> Program<'a> {
         }
         // Lengths are converted where they are read.
         (control.modal.unit, control.modal.unit_stated) = (Unit::Millimetre, true);
-        // Cycles have feeds of their own, and M103, M109 and M116 change what F means.
-        control.has_own_feed = true;
         Ok(Program {
             flow: Flow::new(text, start)?,
             waiting: Vec::new(),
@@ -138,6 +140,8 @@ impl<'a> Program<'a> {
             cycle: None,
             is_modal_call: false,
             tool_feed: None,
+            is_per_turn: false,
+            feed_words: Vec::new(),
             positioned: false,
             blank: [None; 2],
             block: Block::default(),
@@ -375,6 +379,14 @@ impl<'a> Program<'a> {
         }
         for code in &codes {
             match code {
+                103 | 109 | 116 | 136 => self.feed_words.push(*code),
+                110 => self.feed_words.push(109),
+                111 => self.feed_words.retain(|word| *word != 109),
+                117 => self.feed_words.retain(|word| *word != 116),
+                137 => self.feed_words.retain(|word| *word != 136),
+                _ => {}
+            }
+            match code {
                 3 | 13 => self.m_word(3, control)?,
                 4 | 14 => self.m_word(4, control)?,
                 126 => control.set_shorter_way(true),
@@ -388,6 +400,12 @@ impl<'a> Program<'a> {
         }
         self.codes = codes;
         Ok(())
+    }
+
+    /// Tells the control whether F is the speed along the path. In inches it is in tenths of an inch.
+    fn state_feed(&self, control: &mut Control) {
+        control.has_own_feed =
+            self.unit == Unit::Inch || self.is_per_turn || !self.feed_words.is_empty();
     }
 
     /// Executes the M words that act at the end of their block.
@@ -607,8 +625,9 @@ impl<'a> Program<'a> {
                     self.block.add('S', number(speed))?;
                 }
                 b'F' => match scale.feed(cursor)? {
-                    Feed::Rate(rate) => {
-                        self.tool_feed = Some(rate);
+                    feed @ (Feed::Rate(rate) | Feed::PerTurn(rate)) => {
+                        self.tool_feed = Some(feed);
+                        self.is_per_turn = matches!(feed, Feed::PerTurn(_));
                         self.block.add('F', number(rate))?;
                     }
                     _ => return Err({ start }.unexpected("F with a number")),
@@ -724,6 +743,7 @@ impl<'a> Program<'a> {
                 self.set_tcp(true, control)
             }
             "DWELL" => {
+                control.add_dwell(None, 1);
                 let word = "FUNCTION DWELL".to_owned();
                 control.notes.add(control.line, NoteKind::PassedOver { word });
                 Ok(())

@@ -61,6 +61,15 @@ impl Program<'_> {
         let words = scale.words(cursor, &mut self.codes)?;
         words.check_used(head)?;
         self.start_words(control)?;
+        if let Some(feed) = words.feed {
+            self.is_per_turn = match feed {
+                Feed::Rate(_) => false,
+                Feed::PerTurn(_) => true,
+                Feed::OfTool => matches!(self.tool_feed, Some(Feed::PerTurn(_))),
+                Feed::Rapid => self.is_per_turn,
+            };
+        }
+        self.state_feed(control);
         if words.is_machine || words.retract.is_some() {
             control.check_corner()?;
         }
@@ -227,12 +236,17 @@ impl Program<'_> {
 
     /// Adds the feed of a block.
     fn add_feed(&mut self, words: &Words) -> Result<(), GcodeFault> {
-        let rate = match words.feed {
-            Some(Feed::Rate(rate)) => rate,
+        let feed = match words.feed {
             Some(Feed::OfTool) => {
-                self.tool_feed.ok_or_else(|| missing("F AUTO", "F in the TOOL CALL before"))?
+                let feed = self.tool_feed;
+                feed.ok_or_else(|| missing("F AUTO", "F in the TOOL CALL before"))?
             }
-            Some(Feed::Rapid) | None => return Ok(()),
+            Some(feed) => feed,
+            None => return Ok(()),
+        };
+        let rate = match feed {
+            Feed::Rate(rate) | Feed::PerTurn(rate) => rate,
+            Feed::Rapid | Feed::OfTool => return Ok(()),
         };
         self.block.add('F', number(rate))
     }
