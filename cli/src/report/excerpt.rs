@@ -52,17 +52,15 @@ pub(super) fn excerpts(job: &JobFile, findings: &[JobFinding]) -> Vec<Vec<Excerp
 
 /// Returns the excerpts of a finding. The texts are those of the program and of its files of subprograms.
 fn excerpts_of(job: &JobFile, texts: &[Vec<&str>], finding: &JobFinding) -> Vec<Excerpt> {
-    let mut within = None;
     let ranges = match &finding.detail {
         FindingDetail::Surface { groups, .. } => {
-            within = groups[0].worst.within;
             groups.iter().map(|group| [group.first.line, group.last.line]).collect()
         }
         FindingDetail::Machine(_) | FindingDetail::Stock(_) => vec![finding.lines],
     };
     let lines = around(&texts[0], finding.line, &ranges);
     let mut excerpts = vec![Excerpt { file: None, lines }];
-    if let Some(SubprogramLine { file, line }) = within {
+    if let Some(SubprogramLine { file, line }) = finding.within {
         let lines = around(&texts[file], line, &[]);
         let file = file.checked_sub(1).map(|index| file_name(&job.subprograms[index]));
         excerpts.push(Excerpt { file, lines });

@@ -250,10 +250,10 @@ impl Post {
                 self.control.clone(),
             )?;
             program.check_complete()?;
-            if let Some((line, violation)) = program.summary().limits.first() {
+            if let Some((block, violation)) = program.summary().limits.first() {
                 return Err(PostError::AxisLimit {
                     machine: self.machine.name().to_owned(),
-                    location: locations[posted.location(*line)].planned + 1,
+                    location: locations[posted.location(block.line)].planned + 1,
                     letter: violation.letter,
                     value: violation.value,
                     limit: violation.limit,

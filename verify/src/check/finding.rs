@@ -1,7 +1,7 @@
 //! Findings of a verification, and those of consecutive motions joined.
 
 use super::Approach;
-use crate::gcode::SubprogramLine;
+use crate::gcode::{BlockLine, SubprogramLine};
 use crate::program::ProgramError;
 use std::cmp::Ordering;
 use std::mem::{self, Discriminant};
@@ -86,9 +86,9 @@ pub struct Finding {
 }
 
 impl Finding {
-    /// Returns the place of the block or cutter location in the program and its files of subprograms.
-    pub(crate) fn block(&self) -> (usize, Option<SubprogramLine>) {
-        (self.line, self.within)
+    /// Returns the place of the block or cutter location.
+    pub fn block(&self) -> BlockLine {
+        BlockLine { line: self.line, within: self.within }
     }
 }
 

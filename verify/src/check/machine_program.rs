@@ -453,16 +453,16 @@ impl MachineProgram {
             if let Some((register, tool)) = other
                 && !summary.other_lengths.iter().any(|known| (known.1, known.2) == (register, tool))
             {
-                summary.other_lengths.push((step.line, register, tool));
+                summary.other_lengths.push((step.block(), register, tool));
             }
             for (motion, _) in &motions {
                 for violation in motion.check_limits() {
-                    summary.add_violation(step.line, violation);
+                    summary.add_violation(step.block(), violation);
                 }
                 let pass = motion.singular_pass();
                 // A pass of several blocks is one.
                 if let (false, Some(pass)) = (is_last_singular, pass) {
-                    summary.singular.push((step.line, pass));
+                    summary.singular.push((step.block(), pass));
                 }
                 is_last_singular = pass.is_some();
             }

@@ -1,6 +1,6 @@
 //! The motions of a program, each with its place in the file.
 
-use crate::gcode::{SubprogramLine, WorkOffset};
+use crate::gcode::{BlockLine, SubprogramLine, WorkOffset};
 use crate::machine::JointMotion;
 use crate::program::{ClData, CutterLocation};
 use nalgebra::{Point3, Vector3};
@@ -176,6 +176,11 @@ impl Move {
             work_offset: None,
             path,
         }
+    }
+
+    /// Returns the place of its block or cutter location.
+    pub fn block(&self) -> BlockLine {
+        BlockLine { line: self.line, within: self.within }
     }
 }
 

@@ -29,6 +29,15 @@ pub struct SubprogramLine {
     pub line: usize,
 }
 
+/// The place of a block, or of a cutter location.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BlockLine {
+    /// The line in the program, 1-based; of a block in a file of subprograms, that of the program's block which calls it.
+    pub line: usize,
+    /// The line in the file of subprograms that has the block.
+    pub within: Option<SubprogramLine>,
+}
+
 /// Returns the name of a file as a call on a control has it, without its folder.
 pub(super) fn without_folder(name: &str) -> &str {
     name.rsplit(['/', '\\']).next().unwrap_or(name).trim()

@@ -69,7 +69,7 @@ mod words;
 
 pub use control::Spindle;
 pub use error::{ArcFault, CompensationFault, GcodeError, GcodeFault, Obstacle};
-pub use files::{SubprogramFile, SubprogramLine};
+pub use files::{BlockLine, SubprogramFile, SubprogramLine};
 pub use interpreter::Interpreter;
 pub use iso::ExpressionFault;
 pub(crate) use iso::is_variable;
@@ -191,6 +191,13 @@ pub struct Step {
     pub spindle: Spindle,
     /// State of the control, shared by steps until it changes.
     pub state: Arc<ControlState>,
+}
+
+impl Step {
+    /// Returns the place of its block.
+    pub fn block(&self) -> BlockLine {
+        BlockLine { line: self.line, within: self.within }
+    }
 }
 
 /// The programmed feed of a motion.

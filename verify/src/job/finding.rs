@@ -4,6 +4,7 @@ use super::JobTool;
 use super::machine::MachineFindingKind;
 use super::report::{FindingDetail, JobFinding, JobReport, PairReport, Remedy, Severity};
 use crate::check::Rank;
+use crate::gcode::SubprogramLine;
 use crate::{Finding, FindingGroup, FindingKind, Tilt};
 use std::cmp::Ordering;
 use std::fmt::Write as _;
@@ -40,9 +41,10 @@ pub(super) fn all(report: &JobReport<'_>) -> Vec<JobFinding> {
         let finding = JobFinding {
             rule: finding.rule(),
             severity,
-            line: finding.line,
-            lines: [finding.line; 2],
-            text: finding.to_string(),
+            line: finding.block.line,
+            within: finding.block.within,
+            lines: [finding.block.line; 2],
+            text: format!("{finding}{}", within(report, finding.block.within)),
             under: None,
             detail: FindingDetail::Machine(finding.clone()),
         };
@@ -54,9 +56,10 @@ pub(super) fn all(report: &JobReport<'_>) -> Vec<JobFinding> {
             let finding = JobFinding {
                 rule: "stock",
                 severity: Severity::Violation,
-                line: finding.line,
-                lines: [finding.first_line, finding.last_line],
-                text: finding.describe(report.job.unit()),
+                line: finding.block.line,
+                within: finding.block.within,
+                lines: [finding.first.line, finding.last.line],
+                text: finding.describe(report.job.unit()) + &within(report, finding.block.within),
                 under: None,
                 detail: FindingDetail::Stock(finding.clone()),
             };
@@ -98,6 +101,7 @@ fn surfaces(report: &JobReport<'_>) -> Vec<Ranked> {
                 rule: rule(&kind),
                 severity: if open { Severity::Undecided } else { Severity::Violation },
                 line: groups[0].worst.line,
+                within: groups[0].worst.within,
                 lines: [groups[0].first.line, last.unwrap_or(groups[0].last).line],
                 text: describe(report, pair, &groups, &runs, motions, remedy),
                 under: None,
@@ -365,13 +369,18 @@ fn describe_group(
     text
 }
 
+/// Names a line in a file of subprograms.
+fn within(report: &JobReport<'_>, place: Option<SubprogramLine>) -> String {
+    place.map_or(String::new(), |within| {
+        format!(" ({}, line {})", report.job.program.file_name(within.file), within.line)
+    })
+}
+
 /// Describes the motions of a group.
 fn place(report: &JobReport<'_>, group: &FindingGroup) -> String {
-    let Finding { from, time, rapid, within, .. } = group.worst;
+    let Finding { from, time, rapid, within: place, .. } = group.worst;
     let rapid = if rapid { ", in rapid traverse" } else { "" };
-    let within = within.map_or(String::new(), |within| {
-        format!(" ({}, line {})", report.job.program.file_name(within.file), within.line)
-    });
+    let within = within(report, place);
     match (group.motions, from) {
         (1, Some(from)) if group.worst.any_rates => format!(
             "in rapid traverse from line {from} at some rates of its axes (the straight line is clear; `rapid` of the \

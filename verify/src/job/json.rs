@@ -41,6 +41,9 @@ impl JobReport<'_> {
 struct FindingRow<'a> {
     #[serde(flatten)]
     kind: KindRow<'a>,
+    /// The line of the worst motion in the file of subprograms that has it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    within: Option<SubprogramRow<'a>>,
     /// The readings of the program under which it holds, if not under all.
     #[serde(skip_serializing_if = "Option::is_none")]
     under: Option<&'a str>,
@@ -72,7 +75,11 @@ impl<'a> FindingRow<'a> {
             FindingDetail::Machine(finding) => KindRow::Machine(finding.row(file)),
             FindingDetail::Stock(finding) => KindRow::Stock(finding.row(file, report.job.unit())),
         };
-        FindingRow { kind, under: finding.under.as_deref() }
+        let within = finding.within.map(|within| SubprogramRow {
+            file: report.job.program.file_name(within.file),
+            line: within.line,
+        });
+        FindingRow { kind, within, under: finding.under.as_deref() }
     }
 }
 
@@ -84,9 +91,6 @@ struct SurfaceRow<'a> {
     line: usize,
     first_line: usize,
     last_line: usize,
-    /// The line of the worst motion in the file of subprograms that has it.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    within: Option<SubprogramRow<'a>>,
     /// Number of motions.
     motions: usize,
     /// The groups of consecutive motions, if there are several.
@@ -231,10 +235,6 @@ impl<'a> SurfaceRow<'a> {
             line: finding.line,
             first_line: group.first.line,
             last_line: group.last.line,
-            within: finding.within.map(|within| SubprogramRow {
-                file: report.job.program.file_name(within.file),
-                line: within.line,
-            }),
             motions: group.motions,
             groups: Vec::new(),
             from_line: finding.from,

@@ -2,7 +2,7 @@
 
 use super::{Hand, Job};
 use crate::MachineProgram;
-use crate::gcode::Spindle;
+use crate::gcode::{BlockLine, Spindle};
 use crate::machine::Letter;
 use serde::Serialize;
 use std::fmt;
@@ -11,8 +11,8 @@ use std::fmt;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct MachineFinding {
-    /// The line of the first motion with it, or of the worst.
-    pub line: usize,
+    /// The block of the first motion with it, or of the worst.
+    pub block: BlockLine,
     /// Its kind.
     pub kind: MachineFindingKind,
 }
@@ -100,7 +100,7 @@ impl MachineFinding {
         let mut findings = Vec::new();
         // A program that never starts the spindle has a gap instead.
         let starts = summary.states_spindle();
-        for &(line, tool_number, spindle) in &summary.spindle {
+        for &(block, tool_number, spindle) in &summary.spindle {
             let hand = job.tool_of(tool_number).map_or(Hand::Right, |tool| tool.hand);
             let fault = match (spindle, hand) {
                 (Spindle::NotStated, _) if !starts => continue,
@@ -112,25 +112,25 @@ impl MachineFinding {
                 _ => continue,
             };
             findings.push(MachineFinding {
-                line,
+                block,
                 kind: MachineFindingKind::Spindle { fault, tool_number },
             });
         }
-        for &(line, register, tool_number) in &summary.other_lengths {
+        for &(block, register, tool_number) in &summary.other_lengths {
             findings.push(MachineFinding {
-                line,
+                block,
                 kind: MachineFindingKind::Length { register, tool_number },
             });
         }
-        for (line, violation) in &summary.limits {
+        for (block, violation) in &summary.limits {
             let (joint, value, limit) = (violation.letter, violation.value, violation.limit);
             let kind = MachineFindingKind::Limit { joint, unit: unit(joint), value, limit };
-            findings.push(MachineFinding { line: *line, kind });
+            findings.push(MachineFinding { block: *block, kind });
         }
-        for (line, pass) in &summary.singular {
+        for (block, pass) in &summary.singular {
             let joint = pass.letter;
             let kind = MachineFindingKind::Singular { joint, unit: unit(joint), turn: pass.turn };
-            findings.push(MachineFinding { line: *line, kind });
+            findings.push(MachineFinding { block: *block, kind });
         }
         findings
     }
@@ -146,7 +146,7 @@ impl MachineFinding {
     }
 
     pub(super) fn row<'a>(&'a self, file: &'a str) -> MachineRow<'a> {
-        MachineRow { file, line: self.line, kind: &self.kind }
+        MachineRow { file, line: self.block.line, kind: &self.kind }
     }
 }
 

@@ -3,6 +3,7 @@
 use super::machine::MachineFinding;
 use super::stock::{CutStock, StockFinding};
 use super::{Body, Job, JobTool, RevolvedBody};
+use crate::gcode::SubprogramLine;
 use crate::{CycleTime, FindingGroup, Gap, GapWeight, Tilt, VerifyReport};
 use std::fmt;
 use touchoff::Tool;
@@ -270,6 +271,8 @@ pub struct JobFinding {
     pub severity: Severity,
     /// The line of the worst motion.
     pub line: usize,
+    /// The line of its block in the file of subprograms that has it.
+    pub within: Option<SubprogramLine>,
     /// The lines of the first and the last motion.
     pub lines: [usize; 2],
     /// A sentence without a full stop, with the readings for which it holds.

@@ -2,6 +2,7 @@
 
 use super::{Job, JobError, JobStock, JobTool};
 use crate::Move;
+use crate::gcode::BlockLine;
 use crate::stock::{DeviationPoint, MotionMode, Stock, StockContact};
 use nalgebra::Point3;
 use serde::Serialize;
@@ -11,12 +12,12 @@ use touchoff::Unit;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct StockFinding {
-    /// The line of the deepest contact.
-    pub line: usize,
-    /// The line of the first motion.
-    pub first_line: usize,
-    /// The line of the last motion.
-    pub last_line: usize,
+    /// The block of the deepest contact.
+    pub block: BlockLine,
+    /// The block of the first motion.
+    pub first: BlockLine,
+    /// The block of the last motion.
+    pub last: BlockLine,
     /// Number of blocks.
     pub motions: usize,
     /// Set in rapid traverse.
@@ -143,19 +144,19 @@ impl StockCut {
             if let Some((_, index)) = known.filter(|_| continued) {
                 let finding = &mut findings[*index];
                 // A block may have several moves.
-                finding.motions += usize::from(finding.last_line != step.line);
-                finding.last_line = step.line;
+                finding.motions += usize::from(finding.last != step.block());
+                finding.last = step.block();
                 if depth > finding.depth {
-                    (finding.line, finding.depth, finding.point) = (step.line, depth, point);
+                    (finding.block, finding.depth, finding.point) = (step.block(), depth, point);
                 }
                 continue;
             }
             self.open.retain(|(known, _)| *known != surface.0);
             self.open.push((surface.0, findings.len()));
             findings.push(StockFinding {
-                line: step.line,
-                first_line: step.line,
-                last_line: step.line,
+                block: step.block(),
+                first: step.block(),
+                last: step.block(),
                 motions: 1,
                 rapid: step.rapid,
                 tool: info.name.to_string(),
@@ -179,12 +180,12 @@ impl StockCut {
 impl StockFinding {
     /// Describes the finding.
     pub(super) fn describe(&self, unit: Unit) -> String {
-        let StockFinding { surface, depth, point, motions, first_line, last_line, .. } = self;
+        let StockFinding { surface, depth, point, motions, first, last, .. } = self;
         let rapid = if self.rapid { " in rapid traverse" } else { "" };
         let tool = self.tool_number.map_or(String::new(), |number| format!("T{number} "));
         let lines = match motions {
             1 => String::new(),
-            _ => format!(", on {motions} motions, lines {first_line} to {last_line}"),
+            _ => format!(", on {motions} motions, lines {} to {}", first.line, last.line),
         };
         format!(
             "{tool}{surface} touches the stock{rapid}, {} deep at {}{lines}",
@@ -196,9 +197,9 @@ impl StockFinding {
     pub(super) fn row<'a>(&'a self, file: &'a str, unit: Unit) -> StockRow<'a> {
         StockRow {
             file,
-            line: self.line,
-            first_line: self.first_line,
-            last_line: self.last_line,
+            line: self.block.line,
+            first_line: self.first.line,
+            last_line: self.last.line,
             motions: self.motions,
             rapid: self.rapid,
             unit: unit.symbol(),

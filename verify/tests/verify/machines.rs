@@ -5,7 +5,7 @@ use crate::oracle::Mounted;
 use nalgebra::{Point3, Vector3};
 use touchoff::certify::TriangleBvh;
 use touchoff::{Pose, Unit};
-use touchoff_verify::gcode::{Choice, ControlRules, ControlSetup, Rule};
+use touchoff_verify::gcode::{BlockLine, Choice, ControlRules, ControlSetup, Rule};
 use touchoff_verify::machine::Machine;
 use touchoff_verify::{FindingKind, MachineProgram, Move, ToolSelection, Verifier};
 
@@ -158,7 +158,8 @@ fn what_turns_has_to_be_given() {
 fn another_length_moves_the_tip() {
     let blocks = "T1 M6\nG43 H2 G0 X0. Y0. Z50.\nG1 Z9.";
     let program = program("3-axis", None, &[(1, 80.0), (2, 70.0)], blocks).expect("a program");
-    assert_eq!(program.summary().other_lengths, [(4, 2, 1)]);
+    let block = BlockLine { line: 4, within: None };
+    assert_eq!(program.summary().other_lengths, [(block, 2, 1)]);
     assert!((last_pose(&program).tip().z - (9.0 - 10.0)).abs() < 1e-12);
 }
 

@@ -129,6 +129,13 @@ fn a_finding_in_a_file_of_subprograms_names_the_call_and_its_line() {
     scene.gives(&HAAS, 1, &["pass right through the part on 2 motions, lines 5;"]);
     scene.job = scene.job.replace("O9001.nc", "O9002.nc");
     scene.gives(&HAAS, 2, &["O9002.nc: cannot be read"]);
+    // A finding about the machine, too.
+    let off = "T1 M6\nS9000 M3\nM5\nG43 H1 G0 X-6. Y0. Z20.\nM98 P9001\nG0 Z20.";
+    let scene = Scene::new(off).placed().with("subprograms = [\"O9001.nc\"]");
+    scene.bench.write("O9001.nc", "G0 X-6. Y0.\nG1 Z9.\nG0 Z20.\nM99\n");
+    scene.gives(&HAAS, 1, &["a.nc:6: T1 feeds with the spindle off", "(O9001.nc, line 2)"]);
+    let json = [&HAAS[..], &["--json"]].concat();
+    scene.gives(&json, 1, &["\"within\":{\"file\":\"O9001.nc\",\"line\":2}"]);
 }
 
 /// A collision is one however far it is from the part.

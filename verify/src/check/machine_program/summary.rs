@@ -2,7 +2,8 @@
 
 use super::{Assumption, CycleTime, MachineProgram};
 use crate::gcode::{
-    GcodeError, LengthOffset, NoteKind, Obstacle, ProgramNote, Rule, Spindle, Step, WorkOffset,
+    BlockLine, GcodeError, LengthOffset, NoteKind, Obstacle, ProgramNote, Rule, Spindle, Step,
+    WorkOffset,
 };
 use crate::machine::{LimitViolation, Machine, SingularPass};
 use std::collections::BTreeMap;
@@ -24,7 +25,7 @@ pub struct MachineSummary {
     /// As before, for a motion of which one axis is rotary. Only its straight path is checked.
     pub any_rotary_rapid: Option<usize>,
     /// The spindle during motions at feed rate, without those of taps: the line of the first by tool and spindle.
-    pub spindle: Vec<(usize, Option<u32>, Spindle)>,
+    pub spindle: Vec<(BlockLine, Option<u32>, Spindle)>,
     /// The line of the first feed without a tool length offset, in a program that names no tool or has no offset at all:
     /// positions are taken as those of the tip.
     pub no_offset: Option<usize>,
@@ -39,14 +40,14 @@ pub struct MachineSummary {
     /// Rules of the control on which the program depends and which are not stated, each with the first line.
     pub open_rules: BTreeMap<Rule, usize>,
     /// Feed motions with the length offset of another tool: the line of the first, the register and the tool.
-    pub other_lengths: Vec<(usize, u32, u32)>,
+    pub other_lengths: Vec<(BlockLine, u32, u32)>,
     /// Axes that leave their limits, each with its line: the worst per axis and limit. Those of X, Y and Z are checked if the
     /// origin of the part on the machine is given.
-    pub limits: Vec<(usize, LimitViolation)>,
+    pub limits: Vec<(BlockLine, LimitViolation)>,
     /// Set if the machine states limits of X, Y or Z that are not checked.
     pub limits_unchecked: bool,
     /// Singular passes, each with its line.
-    pub singular: Vec<(usize, SingularPass)>,
+    pub singular: Vec<(BlockLine, SingularPass)>,
     /// The time of each tool, in the order of their first motions.
     pub times: Vec<CycleTime>,
     /// The lowest and the highest corner of the blank that the program states, in program coordinates and in millimetres.
@@ -270,7 +271,7 @@ impl MachineSummary {
                 .iter()
                 .any(|(_, known, spindle)| (*known, *spindle) == (tool, step.spindle))
         {
-            self.spindle.push((step.line, tool, step.spindle));
+            self.spindle.push((step.block(), tool, step.spindle));
         }
         if (tool.is_none() || off_is_tip) && step.state.length == LengthOffset::Off {
             self.no_offset.get_or_insert(step.line);
@@ -311,14 +312,14 @@ impl MachineSummary {
     }
 
     /// Adds a violation, or keeps the worse one of the same axis and limit.
-    pub(super) fn add_violation(&mut self, line: usize, violation: LimitViolation) {
+    pub(super) fn add_violation(&mut self, block: BlockLine, violation: LimitViolation) {
         let known = self
             .limits
             .iter_mut()
             .find(|(_, known)| known.letter == violation.letter && known.limit == violation.limit);
         match known {
-            None => self.limits.push((line, violation)),
-            Some(known) if violation.excess() > known.1.excess() => *known = (line, violation),
+            None => self.limits.push((block, violation)),
+            Some(known) if violation.excess() > known.1.excess() => *known = (block, violation),
             Some(_) => (),
         }
     }
@@ -409,7 +410,7 @@ impl MachineSummary {
 
     /// Returns the line of the first feed with a spindle.
     fn first_feed(&self, wanted: Spindle) -> Option<usize> {
-        self.spindle.iter().find(|(.., spindle)| *spindle == wanted).map(|(line, ..)| *line)
+        self.spindle.iter().find(|(.., spindle)| *spindle == wanted).map(|(block, ..)| block.line)
     }
 
     /// Returns whether the program says something about the spindle before some feed. Otherwise it leaves the spindle to the
