@@ -259,6 +259,7 @@ converted! {
     touchoff_postures::RulesError,
     touchoff_postures::path::PathError,
     touchoff_postures::post::PostError,
+    touchoff_postures::shard::ShardError,
     touchoff_postures::sweep::SweepError,
     touchoff_verify::VerifyError,
     touchoff_verify::machine::JointError,

@@ -45,6 +45,7 @@ fn main() -> ExitCode {
         Command::Haptic(arguments) => haptic::haptic(&arguments, json).map(success),
         Command::Live(arguments) => live::live(&arguments, json).map(success),
         Command::Sweep(arguments) => postures::sweep::sweep(&arguments, json).map(success),
+        Command::Merge(arguments) => postures::shard::merge(&arguments, json),
         Command::Map(arguments) => postures::map::map(&arguments, json).map(success),
         Command::Path(arguments) => postures::path::path(&arguments, json).map(success),
         Command::Sample(arguments) => part::sample(&arguments, json).map(success),

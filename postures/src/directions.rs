@@ -26,7 +26,8 @@ impl Directions {
             // In the middles of layers of equal height, which cut equal areas from the sphere (Archimedes).
             let up = 1.0 - (2 * k + 1) as f64 / count as f64;
             let out = (1.0 - up * up).sqrt();
-            let (sine, cosine) = (golden * k as f64).sin_cos();
+            // The sines of the system differ by a bit from one system to another, and maps compare directions.
+            let (sine, cosine) = libm::sincos(golden * k as f64);
             let vector = Vector3::new(out * cosine, out * sine, up).normalize();
             [vector.x, vector.y, vector.z]
         });

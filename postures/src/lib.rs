@@ -10,6 +10,7 @@ mod placement;
 pub mod post;
 mod record;
 mod recorder;
+pub mod shard;
 pub mod sweep;
 mod validator;
 

@@ -98,6 +98,11 @@ impl MapRow {
     }
 }
 
+/// Returns the number of directions from which a tool reaches a triangle.
+pub(crate) fn direction_count(access: &Accessibility) -> u32 {
+    access.directions.iter().map(|word| word.count_ones()).sum()
+}
+
 /// Orders the better posture first: the nicer one; of two that are equal but for rounding to `f32`, the one
 /// with more clearance; then the less deep. The remaining fields make the result independent of the order of
 /// arrival.

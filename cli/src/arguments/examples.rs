@@ -56,6 +56,15 @@ Examples:
   Only summarise how much of the part a tool of your own reaches, with long triangles divided into pieces:
     touchoff sweep --part part.stl --unit mm --tool my.tool --directions 50 --refine 2";
 
+pub(super) const MERGE: &str = "\
+Examples:
+  Sweep a part in two shards, which can run on two machines, and join them:
+    touchoff sweep --part part.stl --unit mm --tool D2Ball --directions 50 --shard 1/2 -o 1.parquet
+    touchoff sweep --part part.stl --unit mm --tool D2Ball --directions 50 --shard 2/2 -o 2.parquet
+    touchoff merge 1.parquet 2.parquet -o merged.postures -o merged.parquet
+  List the shards that are left:
+    touchoff merge --left 1.parquet 2.parquet";
+
 pub(super) const MAP: &str = "\
 Examples:
   Summarise a map that `touchoff sweep` made:

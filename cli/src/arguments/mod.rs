@@ -82,6 +82,12 @@ pub(crate) enum Command {
     /// it.
     #[command(after_help = examples::SWEEP)]
     Sweep(Box<postures::Sweep>),
+    /// Join the shards of a sweep to one map, or list those that are left.
+    ///
+    /// Shards are checked: one of another part, tool, rule or version, a damaged one, one that is missing or there twice is
+    /// named and refused. The map has the same bytes wherever and in whatever order they were swept.
+    #[command(after_help = examples::MERGE)]
+    Merge(postures::Merge),
     /// Summarise a posture map, and write it as a table, JSON, a coloured mesh, or pictures.
     #[command(after_help = examples::MAP)]
     Map(Box<postures::Map>),

@@ -10,6 +10,7 @@ use nalgebra::Point3;
 use std::ffi::OsString;
 use std::num::NonZeroU16;
 use std::path::PathBuf;
+use touchoff_postures::shard::Shard;
 
 #[derive(Args)]
 pub(crate) struct Sweep {
@@ -50,9 +51,26 @@ pub(crate) struct Sweep {
     /// place of a sweep.
     #[arg(long, value_name = "FILE.csv", requires = "output", conflicts_with = "refine")]
     pub(crate) touched: Option<PathBuf>,
-    /// Posture map to fill; triangles that it already has are skipped.
+    /// Sweep one part of the triangles only, such as 3/8, the third of eight, into a table that `touchoff merge` joins
+    /// with the others. A table that is there already is kept.
+    #[arg(long, value_name = "NUMBER/COUNT", requires = "output", conflicts_with_all = ["refine", "touched"])]
+    pub(crate) shard: Option<Shard>,
+    /// Posture map to fill; triangles that it already has are skipped. With `--shard`, a table in `.parquet`.
     #[arg(short, long, value_name = "MAP")]
     pub(crate) output: Option<PathBuf>,
+}
+
+#[derive(Args)]
+pub(crate) struct Merge {
+    /// Tables of `touchoff sweep --shard`, in any order.
+    #[arg(value_name = "SHARD.parquet", required = true)]
+    pub(crate) files: Vec<PathBuf>,
+    /// Output file: a new posture map in `.postures`, one table in `.parquet`. Can be repeated.
+    #[arg(short, long, value_name = "OUT.postures|.parquet")]
+    pub(crate) output: Vec<PathBuf>,
+    /// List the shards that are missing or cannot be read, one per line, and end with status 3 if there are any.
+    #[arg(long, conflicts_with = "output")]
+    pub(crate) left: bool,
 }
 
 #[derive(Args)]
@@ -60,9 +78,9 @@ pub(crate) struct Map {
     /// Posture map, filled by `sweep` or by the recorder of a haptic loop.
     #[arg(value_name = "MAP")]
     pub(crate) map: PathBuf,
-    /// Output file: a table in `.csv`, the whole map in `.json`, the part coloured by niceness in `.ply`, pictures
-    /// in `.png`. Can be repeated.
-    #[arg(short, long, value_name = "OUT.csv|.json|.ply|.png")]
+    /// Output file: a table in `.csv` or `.parquet`, the whole map in `.json`, the part coloured by niceness in `.ply`,
+    /// pictures in `.png`. Can be repeated.
+    #[arg(short, long, value_name = "OUT.csv|.parquet|.json|.ply|.png")]
     pub(crate) output: Vec<PathBuf>,
     /// Quantity that pictures show.
     #[arg(long, value_enum, value_name = "QUANTITY", default_value_t = Quantity::Niceness)]
@@ -71,7 +89,7 @@ pub(crate) struct Map {
     /// least stick-out is that of any].
     #[arg(long, value_name = "NAME")]
     pub(crate) tool: Option<String>,
-    /// Part, for `.ply` and `.png`: a mesh in STL, PLY or OBJ, in the map's unit.
+    /// Part, for `.parquet`, `.ply` and `.png`: a mesh in STL, PLY or OBJ, in the map's unit.
     #[arg(long, value_name = "FILE")]
     pub(crate) part: Option<PathBuf>,
 }

@@ -52,7 +52,8 @@ pub(crate) fn map(arguments: &Map, json: bool) -> Result<(), Failure> {
     let formats: Vec<MapFormat> =
         arguments.output.iter().map(|file| MapFormat::of(file)).collect::<Result<_, _>>()?;
     for (format, file) in formats.iter().zip(&arguments.output) {
-        if part.is_none() && matches!(format, MapFormat::Ply | MapFormat::Png) {
+        if part.is_none() && matches!(format, MapFormat::Parquet | MapFormat::Ply | MapFormat::Png)
+        {
             return Err(Failure::PartMissing { file: file.display().to_string() });
         }
     }
@@ -62,6 +63,7 @@ pub(crate) fn map(arguments: &Map, json: bool) -> Result<(), Failure> {
         match (format, &part) {
             (MapFormat::Csv, _) => map.write_csv(&mut out)?,
             (MapFormat::Json, _) => map.write_json(&mut out)?,
+            (MapFormat::Parquet, Some((mesh, _))) => map.write_parquet(&mut out, mesh)?,
             (MapFormat::Ply, Some((mesh, _))) => {
                 // Tools state niceness on any scale, so colours are relative to the best.
                 let greatest = max_niceness(&map)?;
@@ -73,7 +75,7 @@ pub(crate) fn map(arguments: &Map, json: bool) -> Result<(), Failure> {
                 out.write_all(&picture).map_err(unwritable)?;
             }
             // Refused above.
-            (MapFormat::Ply | MapFormat::Png, None) => (),
+            (MapFormat::Parquet | MapFormat::Ply | MapFormat::Png, None) => (),
         }
         out.commit().map_err(unwritable)?;
         message!("{}", file.display());
@@ -161,6 +163,7 @@ fn print_summary(map: &PostureMap, json: bool) -> Result<(), Failure> {
 enum MapFormat {
     Csv,
     Json,
+    Parquet,
     Ply,
     Png,
 }
@@ -170,10 +173,11 @@ impl MapFormat {
         match extension(file).as_deref() {
             Some("csv") => Ok(MapFormat::Csv),
             Some("json") => Ok(MapFormat::Json),
+            Some("parquet") => Ok(MapFormat::Parquet),
             Some("ply") => Ok(MapFormat::Ply),
             Some("png") => Ok(MapFormat::Png),
             _ => Err(Failure::Format {
-                formats: "a map is written as `.csv`, `.json`, `.ply` or `.png`",
+                formats: "a map is written as `.csv`, `.json`, `.parquet`, `.ply` or `.png`",
                 file: file.display().to_string(),
             }),
         }

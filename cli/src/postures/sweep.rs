@@ -313,13 +313,14 @@ pub(crate) fn sweep(arguments: &Sweep, json: bool) -> Result<(), Failure> {
     let directions = Directions::spread(arguments.directions.into());
     let sweep =
         PostureSweep::new(&mesh, &bvh, tools.clone(), &directions, rules.clone(), arguments.keep)?;
+    let identity = MapIdentity::new(&mesh, &tools, rules)?
+        .with_directions(directions.list().to_vec())
+        .with_keep(arguments.keep);
+    if let Some((shard, file)) = arguments.shard.zip(arguments.output.as_deref()) {
+        return super::shard::sweep(&sweep, &mesh, &identity, shard, file, json);
+    }
     let map = match &arguments.output {
-        Some(file) => {
-            let identity = MapIdentity::new(&mesh, &tools, rules)?
-                .with_directions(directions.list().to_vec())
-                .with_keep(arguments.keep);
-            Some(PostureMap::open(file, &identity)?)
-        }
+        Some(file) => Some(PostureMap::open(file, &identity)?),
         None => None,
     };
     if let Some((file, map)) = arguments.touched.as_ref().zip(map.as_ref()) {

@@ -124,6 +124,12 @@ pub enum MapError {
         /// The reason.
         what: &'static str,
     },
+    /// A map is written where there is a file.
+    #[error("{file} is there already, and a merged map is new: remove it, or give another path")]
+    Exists {
+        /// The file.
+        file: String,
+    },
     /// An export could not be written.
     #[error("cannot write what {file} has: {source}: check the path and the room left")]
     Export {

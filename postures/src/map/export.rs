@@ -1,6 +1,8 @@
 //! Export of maps. Every number is written so that it reads back as the same double.
 
 use super::{MapError, MapIdentity, PartFingerprint, PostureMap};
+use crate::record::direction_count;
+use crate::shard::{TableRow, encoded};
 use crate::{Accessibility, MapRow, Piece, PostureRecord, Rules};
 use serde::Serialize;
 use std::collections::HashMap;
@@ -172,6 +174,32 @@ impl PostureMap {
         writeln!(out, "\n]}}").and_then(|()| out.flush()).map_err(export)
     }
 
+    /// Writes the map as a table in Apache Parquet, for DuckDB, Polars and other engines: the lines of [`PostureMap::write_csv`], with
+    /// the area of the triangle, the place of the posture among those of its triangle (`rank`, from 0), and the set of directions from
+    /// which the tool reaches the triangle (`direction_set`, of which the most significant bit of the first byte is direction 0). The
+    /// map's identity is the metadata `touchoff.map`, as JSON.
+    ///
+    /// # Errors
+    /// If the mesh is not the map's part, if the output cannot be written, or if the map cannot be read.
+    pub fn write_parquet(&self, out: &mut impl Write, mesh: &Mesh) -> Result<(), MapError> {
+        self.check_mesh(mesh)?;
+        let mut rows = Vec::new();
+        self.for_each_triangle(|triangle, pieces| {
+            let row = MapRow::joined(&pieces, self.identity.keep);
+            let reached = row.access.iter().map(|access| {
+                let fractions =
+                    pieces.iter().map(|(piece, row)| row.area_fraction(*piece, access.tool));
+                fractions.flatten().sum()
+            });
+            let (area, reached) = (mesh.area(triangle), reached.collect());
+            rows.push(TableRow { triangle, area, row, reached });
+            Ok::<(), MapError>(())
+        })?;
+        let bytes = encoded(&self.identity, None, &rows);
+        let bytes = bytes.map_err(|error| self.export(io::Error::other(error)))?;
+        out.write_all(&bytes).and_then(|()| out.flush()).map_err(|error| self.export(error))
+    }
+
     /// Writes the map's part as binary PLY. Each face has a colour (`red`, `green`, `blue`) and the `niceness`
     /// of its best posture on record; a face without one is grey, and its niceness is NaN. Faces are in the
     /// order of triangles, and each names its `triangle`. A divided triangle has one face per piece, whose corners may
@@ -185,11 +213,7 @@ impl PostureMap {
         mesh: &Mesh,
         colour: impl Fn(f64) -> [u8; 3],
     ) -> Result<(), MapError> {
-        let (stored, requested) = (self.identity.part, PartFingerprint::of(mesh));
-        if stored != requested {
-            let difference = super::Difference::Part { stored, requested };
-            return Err(MapError::Differs { file: self.file.clone(), difference });
-        }
+        self.check_mesh(mesh)?;
         let mut faces = Vec::new();
         self.for_each_triangle(|triangle, pieces| {
             // Triangles without a row are missing here, and are faces too.
@@ -204,6 +228,15 @@ impl PostureMap {
         })?;
         faces.resize(mesh.triangles().len(), Vec::new());
         write_ply_body(out, mesh, &faces, colour).map_err(|source| self.export(source))
+    }
+
+    fn check_mesh(&self, mesh: &Mesh) -> Result<(), MapError> {
+        let (stored, requested) = (self.identity.part, PartFingerprint::of(mesh));
+        if stored == requested {
+            return Ok(());
+        }
+        let difference = super::Difference::Part { stored, requested };
+        Err(MapError::Differs { file: self.file.clone(), difference })
     }
 
     fn name(&self, tool: u16) -> &str {
@@ -283,11 +316,6 @@ fn lines(row: &MapRow) -> impl Iterator<Item = (Option<&PostureRecord>, Option<&
     let others =
         row.access.iter().filter(|access| row.best.iter().all(|record| record.tool != access.tool));
     records.chain(others.map(|access| (None, Some(access))))
-}
-
-/// Returns the number of directions from which a tool reaches a triangle.
-fn direction_count(access: &Accessibility) -> u32 {
-    access.directions.iter().map(|word| word.count_ones()).sum()
 }
 
 /// Returns a CSV field, in quotes if needed.

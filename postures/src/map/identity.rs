@@ -120,7 +120,7 @@ impl MapIdentity {
     }
 
     /// Returns the reason for which data do not fit a map of this identity; `None` if they fit.
-    pub(super) fn row_error(
+    pub(crate) fn row_error(
         &self,
         triangle: TriangleId,
         best: &[PostureRecord],
@@ -173,7 +173,7 @@ impl MapIdentity {
     }
 
     /// Returns the difference between this identity, which a file has, and the requested one.
-    pub(super) fn difference(&self, requested: &MapIdentity) -> Option<Difference> {
+    pub(crate) fn difference(&self, requested: &MapIdentity) -> Option<Difference> {
         if self.part != requested.part {
             return Some(Difference::Part { stored: self.part, requested: requested.part });
         }

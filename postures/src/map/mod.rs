@@ -427,7 +427,7 @@ fn tiles(
 }
 
 /// Encodes a value.
-fn encode(value: &impl Serialize) -> Vec<u8> {
+pub(crate) fn encode(value: &impl Serialize) -> Vec<u8> {
     let payload = postcard::to_allocvec(value).expect("lists of known length");
     let mut bytes = crc32fast::hash(&payload).to_le_bytes().to_vec();
     bytes.extend(payload);
@@ -435,7 +435,7 @@ fn encode(value: &impl Serialize) -> Vec<u8> {
 }
 
 /// Decodes a value; `None` if the bytes are not those that were written.
-fn decode<T: DeserializeOwned>(bytes: &[u8]) -> Option<T> {
+pub(crate) fn decode<T: DeserializeOwned>(bytes: &[u8]) -> Option<T> {
     let (checksum, payload) = bytes.split_first_chunk()?;
     if u32::from_le_bytes(*checksum) != crc32fast::hash(payload) {
         return None;

@@ -4,6 +4,7 @@ use super::{
     FACTS, FORMAT_VERSION, IDENTITY, MapError, MapIdentity, PostureMap, ROWS, VERSION, as_damage,
     decode, encode,
 };
+use crate::MapRow;
 use redb::backends::InMemoryBackend;
 use redb::{Builder, Database, ReadableDatabase, StorageBackend};
 use std::fs::{self, File, TryLockError};
@@ -12,7 +13,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicI64, Ordering};
 use std::time::Duration;
-use touchoff::AtomicFile;
+use touchoff::{AtomicFile, TriangleId};
 
 /// Number of attempts to copy a map that another process writes to.
 const MAX_COPY_ATTEMPTS: u32 = 200;
@@ -101,6 +102,34 @@ impl PostureMap {
         Err(MapError::Busy { file })
     }
 
+    /// Writes a new map with rows, which are by triangle: beside its target, and renamed when it is complete, so that no partial map is
+    /// ever found. Its bytes depend on the identity and the rows alone.
+    ///
+    /// # Errors
+    /// [`MapError::Exists`] if there is a file already, or if the map cannot be written.
+    pub(crate) fn create_with<'r>(
+        path: &Path,
+        identity: &MapIdentity,
+        rows: impl Iterator<Item = (TriangleId, &'r MapRow)>,
+    ) -> Result<(), MapError> {
+        let file = path.display().to_string();
+        let unwritable = |source| MapError::written(file.clone(), source);
+        let draft = MemoryStore::default();
+        let database = Builder::new().create_with_backend(draft.clone());
+        let database = database.map_err(|error| MapError::from_database(&file, error))?;
+        write_facts(&database, identity)
+            .and_then(|()| write_rows(&database, rows))
+            .map_err(|error| MapError::from_database(&file, error))?;
+        database.close().map_err(|error| MapError::from_database(&file, error))?;
+        let bytes = draft.bytes().map_err(unwritable)?;
+        let mut new = AtomicFile::create(path).map_err(unwritable)?;
+        new.write_all(&bytes).map_err(unwritable)?;
+        new.commit_new().map_err(|error| match error.kind() {
+            io::ErrorKind::AlreadyExists => MapError::Exists { file: file.clone() },
+            _ => unwritable(error),
+        })
+    }
+
     /// Returns the map in a store.
     pub(super) fn from_database(database: Database, file: String) -> Result<PostureMap, MapError> {
         let identity = read_facts(&database, &file)?;
@@ -140,6 +169,24 @@ pub(super) fn write_facts(database: &Database, identity: &MapIdentity) -> Result
     Ok(write.commit()?)
 }
 
+/// Writes rows into a new store, in one transaction.
+fn write_rows<'r>(
+    database: &Database,
+    rows: impl Iterator<Item = (TriangleId, &'r MapRow)>,
+) -> Result<(), redb::Error> {
+    let mut rows = rows.peekable();
+    if rows.peek().is_none() {
+        return Ok(());
+    }
+    let write = database.begin_write()?;
+    let mut table = write.open_table(ROWS)?;
+    for (triangle, row) in rows {
+        table.insert(triangle.0, encode(row).as_slice())?;
+    }
+    drop(table);
+    Ok(write.commit()?)
+}
+
 /// Reads the facts of a map, and returns its identity.
 fn read_facts(database: &Database, file: &str) -> Result<MapIdentity, MapError> {
     let foreign = || MapError::Foreign { file: file.to_owned() };
@@ -170,22 +217,11 @@ fn read_fact(database: &Database, file: &str, name: &str) -> Result<Option<Vec<u
     read().map_err(|error| MapError::from_database(file, error))
 }
 
-/// Writes a new map beside its target and renames it when it is complete, so that no partial map is ever found.
+/// Writes a new map, unless another process was faster: its file is the one to open.
 fn create(path: &Path, identity: &MapIdentity) -> Result<(), MapError> {
-    let file = path.display().to_string();
-    let unwritable = |source| MapError::written(file.clone(), source);
-    let draft = MemoryStore::default();
-    let database = Builder::new().create_with_backend(draft.clone());
-    let database = database.map_err(|error| MapError::from_database(&file, error))?;
-    write_facts(&database, identity).map_err(|error| MapError::from_database(&file, error))?;
-    database.close().map_err(|error| MapError::from_database(&file, error))?;
-    let bytes = draft.bytes().map_err(unwritable)?;
-    let mut new = AtomicFile::create(path).map_err(unwritable)?;
-    new.write_all(&bytes).map_err(unwritable)?;
-    match new.commit_new() {
-        // Another process was faster: its file is the one to open.
-        Err(error) if error.kind() == io::ErrorKind::AlreadyExists => Ok(()),
-        done => done.map_err(unwritable),
+    match PostureMap::create_with(path, identity, std::iter::empty()) {
+        Err(MapError::Exists { .. }) => Ok(()),
+        done => done,
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod path;
 mod refine;
+mod shard;
 mod sweep;
 mod touched;
 

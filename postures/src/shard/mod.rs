@@ -1,0 +1,387 @@
+//! Shards: a sweep in equal parts, each with a file of its own, which merge to one map.
+//!
+//! A shard has some of the batches of a sweep, and the content of a batch depends on the part, the tools and the rules alone. The
+//! bytes of a shard's file, and those of the merged map, are hence the same on every machine, in any order and as often as a shard is
+//! computed.
+//!
+//! ```text
+//! sweep ── shard 1/n ──▶ 1.parquet ─┐
+//!       ── shard 2/n ──▶ 2.parquet ─┼─ merge ──▶ map, or one table
+//!       ── …                        ┘
+//! ```
+
+mod table;
+#[cfg(test)]
+mod tests;
+
+pub(crate) use table::{TableRow, encoded};
+
+use crate::map::Difference;
+use crate::sweep::PostureSweep;
+use crate::{MapError, MapIdentity, MapRow, PostureMap};
+use std::collections::BTreeMap;
+use std::fmt;
+use std::io::{self, Write};
+use std::ops::Range;
+use std::path::Path;
+use std::str::FromStr;
+use touchoff::{AtomicFile, Mesh, TriangleId};
+
+/// One of the equal parts of a sweep: `3/8` is the third of eight.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Shard {
+    /// From 1 on.
+    number: u32,
+    count: u32,
+}
+
+impl Shard {
+    /// Largest number of shards.
+    pub const MAX: u32 = 1_000_000;
+
+    /// Returns the shard with a number from 1 to `count`; `None` if there is no such shard, or more than [`Shard::MAX`].
+    pub fn new(number: u32, count: u32) -> Option<Shard> {
+        (count <= Shard::MAX && (1..=count).contains(&number)).then_some(Shard { number, count })
+    }
+
+    /// Returns its number, from 1 on.
+    pub fn number(self) -> u32 {
+        self.number
+    }
+
+    /// Returns the number of shards.
+    pub fn count(self) -> u32 {
+        self.count
+    }
+
+    /// Returns the batches of a sweep that belong to the shard. Those of all shards are all batches, each once; some shards of a
+    /// sweep with few batches have none.
+    pub fn batches(self, sweep: &PostureSweep<'_>) -> Range<usize> {
+        let bound = |shards: u32| {
+            let batches = u64::from(shards) * sweep.batches() as u64 / u64::from(self.count);
+            batches as usize
+        };
+        bound(self.number - 1)..bound(self.number)
+    }
+}
+
+impl fmt::Display for Shard {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}/{}", self.number, self.count)
+    }
+}
+
+/// A text that is no shard.
+#[derive(Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "give the number of a shard and that of all shards, such as 3/8, up to {} shards",
+    Shard::MAX
+)]
+pub struct NoShard;
+
+touchoff::debug_as_sentence!(NoShard);
+
+impl FromStr for Shard {
+    type Err = NoShard;
+
+    fn from_str(text: &str) -> Result<Shard, NoShard> {
+        let digits = |text: &str| {
+            let is_number = !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+            text.parse().ok().filter(|_| is_number)
+        };
+        let (number, count) = text.split_once('/').ok_or(NoShard)?;
+        let found = digits(number).zip(digits(count));
+        found.and_then(|(number, count)| Shard::new(number, count)).ok_or(NoShard)
+    }
+}
+
+/// A reason for which shards cannot be written, read or merged.
+#[derive(thiserror::Error)]
+#[non_exhaustive]
+pub enum ShardError {
+    /// A file cannot be read.
+    #[error("cannot read {file}: {source}: check the path")]
+    Unreadable {
+        /// The file.
+        file: String,
+        /// The system's error.
+        source: io::Error,
+    },
+    /// A file cannot be written. What was there is unchanged.
+    #[error("cannot write {file}: {source}: check the path and the room left")]
+    Unwritable {
+        /// The file.
+        file: String,
+        /// The system's error.
+        source: io::Error,
+    },
+    /// A file has no table of postures.
+    #[error("{file} is no shard of a sweep: give files of `touchoff sweep --shard`")]
+    Foreign {
+        /// The file.
+        file: String,
+    },
+    /// A table is that of a whole map.
+    #[error(
+        "{file} is the table of a whole map, and no shard: give files of `touchoff sweep --shard`"
+    )]
+    Whole {
+        /// The file.
+        file: String,
+    },
+    /// A file is not what was written.
+    #[error("{file} is damaged: {what}: run its shard again")]
+    Damaged {
+        /// The file.
+        file: String,
+        /// The reason.
+        what: String,
+    },
+    /// A file of another version, whose sweep may differ.
+    #[error(
+        "{file} was written by version {version} of Touchoff, and this is {reads}: run its shard again"
+    )]
+    OtherVersion {
+        /// The file.
+        file: String,
+        /// The version that has written it.
+        version: String,
+        /// This version.
+        reads: &'static str,
+    },
+    /// A shard of another sweep.
+    #[error("{file} is of another sweep than {first}: {difference}")]
+    Differs {
+        /// The file.
+        file: String,
+        /// The first file.
+        first: String,
+        /// The difference.
+        difference: Difference,
+    },
+    /// A shard of another number of shards.
+    #[error(
+        "{file} is shard {shard}, and {first} is one of {count}: run all shards with one number of them"
+    )]
+    OtherCount {
+        /// The file.
+        file: String,
+        /// Its shard.
+        shard: Shard,
+        /// The first file.
+        first: String,
+        /// The number of its shards.
+        count: u32,
+    },
+    /// Two files of one shard.
+    #[error("{file} and {first} are both shard {shard}: give one of them")]
+    Twice {
+        /// The file.
+        file: String,
+        /// The file before.
+        first: String,
+        /// Their shard.
+        shard: Shard,
+    },
+    /// Shards are missing.
+    #[error("{} of {count} shards are left, the first of them {first}: run them (`touchoff merge --left` lists them)", .left)]
+    Incomplete {
+        /// The number of missing shards.
+        left: usize,
+        /// The number of shards.
+        count: u32,
+        /// The first that is missing.
+        first: Shard,
+    },
+    /// No file was given.
+    #[error("no shard is given: give the files of `touchoff sweep --shard`")]
+    Empty,
+    /// The map cannot be written.
+    #[error(transparent)]
+    Map(#[from] MapError),
+}
+
+touchoff::debug_as_sentence!(ShardError);
+
+/// Writes the rows of a shard to a file in Apache Parquet, completely or not at all. The rows may be in any order.
+///
+/// # Errors
+/// [`ShardError::Unwritable`], in which case the file is as it was before.
+pub fn write_shard(
+    path: impl AsRef<Path>,
+    mesh: &Mesh,
+    identity: &MapIdentity,
+    shard: Shard,
+    rows: Vec<(TriangleId, MapRow)>,
+) -> Result<(), ShardError> {
+    let rows = rows.into_iter().map(|(triangle, row)| {
+        let reached = row.access.iter().map(|access| f64::from(u8::from(access.is_reached())));
+        TableRow { triangle, area: mesh.area(triangle), reached: reached.collect(), row }
+    });
+    let mut rows: Vec<TableRow> = rows.collect();
+    rows.sort_by_key(|row| row.triangle);
+    write_file(path.as_ref(), identity, Some(shard), &rows)
+}
+
+/// Writes a table to a file.
+fn write_file(
+    path: &Path,
+    identity: &MapIdentity,
+    shard: Option<Shard>,
+    rows: &[TableRow],
+) -> Result<(), ShardError> {
+    let unwritable = |source| ShardError::Unwritable { file: path.display().to_string(), source };
+    let bytes = encoded(identity, shard, rows).map_err(|e| unwritable(io::Error::other(e)))?;
+    let mut file = AtomicFile::create(path).map_err(unwritable)?;
+    file.write_all(&bytes).map_err(unwritable)?;
+    file.commit().map_err(unwritable)
+}
+
+/// Reads a table from a file.
+fn read_file(path: &Path) -> Result<table::Table, ShardError> {
+    let file = path.display().to_string();
+    // A device may have no end, and a pipe no writer.
+    let read = || match std::fs::metadata(path)?.is_file() {
+        true => std::fs::read(path),
+        false => Err(io::Error::new(io::ErrorKind::InvalidInput, "it is no regular file")),
+    };
+    let bytes = read().map_err(|source| ShardError::Unreadable { file: file.clone(), source })?;
+    table::read(&file, bytes)
+}
+
+/// Returns whether a file has a shard of a sweep already, complete.
+///
+/// # Errors
+/// If there is a file that is not that shard: it is not replaced.
+pub fn is_done(
+    path: impl AsRef<Path>,
+    identity: &MapIdentity,
+    shard: Shard,
+) -> Result<bool, ShardError> {
+    let path = path.as_ref();
+    if !path.is_file() {
+        return Ok(false);
+    }
+    let (file, found) = (path.display().to_string(), read_file(path)?);
+    let first = "this one".to_owned();
+    if let Some(difference) = found.identity.difference(identity) {
+        return Err(ShardError::Differs { file, first, difference });
+    }
+    match found.shard {
+        None => Err(ShardError::Whole { file }),
+        Some(found) if found == shard => Ok(true),
+        Some(found) => {
+            Err(ShardError::OtherCount { file, shard: found, first, count: shard.count })
+        }
+    }
+}
+
+/// The shards of a sweep, one file after the other.
+#[derive(Debug, Default)]
+pub struct Merge {
+    /// The identity and the number of shards, with the first file.
+    study: Option<(MapIdentity, u32, String)>,
+    /// The file and the rows of each shard, by its number.
+    found: BTreeMap<u32, (String, Vec<TableRow>)>,
+}
+
+/// All rows of a sweep, from its shards.
+#[derive(Debug)]
+pub struct Merged {
+    identity: MapIdentity,
+    rows: Vec<TableRow>,
+}
+
+impl Merge {
+    /// Begins without a shard.
+    pub fn new() -> Merge {
+        Merge::default()
+    }
+
+    /// Adds the shard of a file.
+    ///
+    /// # Errors
+    /// If the file cannot be read, is damaged or is no shard of the same sweep, or if its shard is there already. What was added
+    /// before stays.
+    pub fn add(&mut self, path: impl AsRef<Path>) -> Result<Shard, ShardError> {
+        let path = path.as_ref();
+        let file = path.display().to_string();
+        let table::Table { identity, shard, rows } = read_file(path)?;
+        let shard = shard.ok_or_else(|| ShardError::Whole { file: file.clone() })?;
+        match &self.study {
+            None => self.study = Some((identity, shard.count, file.clone())),
+            Some((known, count, first)) => {
+                let first = first.clone();
+                if let Some(difference) = identity.difference(known) {
+                    return Err(ShardError::Differs { file, first, difference });
+                }
+                if shard.count != *count {
+                    return Err(ShardError::OtherCount { file, shard, first, count: *count });
+                }
+            }
+        }
+        if let Some((first, _)) = self.found.get(&shard.number) {
+            return Err(ShardError::Twice { file, first: first.clone(), shard });
+        }
+        self.found.insert(shard.number, (file, rows));
+        Ok(shard)
+    }
+
+    /// Returns the shards that are missing; none without any shard, since nothing says how many there are.
+    pub fn left(&self) -> impl Iterator<Item = Shard> + '_ {
+        let count = self.study.as_ref().map_or(0, |(_, count, _)| *count);
+        let numbers = (1..=count).filter(|number| !self.found.contains_key(number));
+        numbers.map(move |number| Shard { number, count })
+    }
+
+    /// Joins all shards.
+    ///
+    /// # Errors
+    /// [`ShardError::Incomplete`] if some are missing, [`ShardError::Empty`] if all are. [`ShardError::Damaged`] if they do not have
+    /// each triangle once.
+    pub fn finish(self) -> Result<Merged, ShardError> {
+        let mut left = self.left();
+        if let Some(first) = left.next() {
+            return Err(ShardError::Incomplete {
+                left: 1 + left.count(),
+                count: first.count,
+                first,
+            });
+        }
+        drop(left);
+        let (identity, _, first) = self.study.ok_or(ShardError::Empty)?;
+        let mut rows: Vec<TableRow> = self.found.into_values().flat_map(|(_, rows)| rows).collect();
+        rows.sort_by_key(|row| row.triangle);
+        let is_each_once = rows.len() == identity.part.triangles as usize
+            && rows.is_sorted_by(|one, next| one.triangle < next.triangle);
+        if !is_each_once {
+            let what = "it and the other shards do not have each triangle once".to_owned();
+            return Err(ShardError::Damaged { file: first, what });
+        }
+        Ok(Merged { identity, rows })
+    }
+}
+
+impl Merged {
+    /// Returns the part, the tools and the rules of the sweep.
+    pub fn identity(&self) -> &MapIdentity {
+        &self.identity
+    }
+
+    /// Writes a new posture map. Its bytes depend on the rows alone.
+    ///
+    /// # Errors
+    /// If there is a file already, or the map cannot be written.
+    pub fn write_map(&self, path: impl AsRef<Path>) -> Result<(), ShardError> {
+        let rows = self.rows.iter().map(|TableRow { triangle, row, .. }| (*triangle, row));
+        Ok(PostureMap::create_with(path.as_ref(), &self.identity, rows)?)
+    }
+
+    /// Writes all rows as one table in Apache Parquet.
+    ///
+    /// # Errors
+    /// [`ShardError::Unwritable`].
+    pub fn write_table(&self, path: impl AsRef<Path>) -> Result<(), ShardError> {
+        write_file(path.as_ref(), &self.identity, None, &self.rows)
+    }
+}
