@@ -31,7 +31,7 @@ mod _touchoff {
     #[pymodule_export]
     use crate::queries::{certified_depth, clearance, contacts, detect, signed_distance, wrench};
     #[pymodule_export]
-    use crate::sweep::{read_map, sweep};
+    use crate::sweep::{Study, merge_shards, read_map, sweep, write_shard};
     #[pymodule_export]
     use crate::tool::{Tool, import_library, tool_names};
     use pyo3::prelude::*;

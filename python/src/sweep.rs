@@ -6,12 +6,14 @@ use crate::tool::Tool;
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
-use std::num::NonZeroU16;
+use pyo3::types::{PyBytes, PyDict};
+use std::num::{NonZeroU16, NonZeroUsize};
 use std::ops::ControlFlow;
 use std::path::PathBuf;
+use touchoff::Unit;
+use touchoff_postures::shard::{self, Merge, Shard, ShardError, is_done, shard_bytes};
 use touchoff_postures::sweep::{PostureSweep, SweepStats};
-use touchoff_postures::{Accessibility, Directions, MapRow, PostureMap, Rules};
+use touchoff_postures::{Accessibility, Directions, MapIdentity, MapRow, PostureMap, Rules};
 
 /// The largest table of triangles, tools and directions, in bytes.
 const MAX_ENTRIES: usize = 4 << 30;
@@ -32,23 +34,15 @@ pub(crate) fn sweep<'py>(
     allow: Vec<(String, f64)>,
     surface_only: bool,
 ) -> PyResult<Bound<'py, PyDict>> {
-    if !(1..=Directions::MAX_HEMISPHERE).contains(&directions) {
-        let limit = Directions::MAX_HEMISPHERE;
-        return Err(refused(format!("directions: {directions} per hemisphere: give 1 to {limit}")));
-    }
+    let directions = spread(directions)?;
     let tools: Vec<&Tool> = tools.iter().map(|tool| &**tool).collect();
-    let directions = Directions::spread(directions);
     check_size(part.mesh()?.triangles().len(), tools.len(), directions.list().len())?;
     let (rows, stats) = py.detach(|| {
         let (mesh, bvh) = (part.mesh()?, part.triangles()?);
         if !surface_only {
             part.require_inside()?;
         }
-        let rules = Rules {
-            tolerance: tolerance.unwrap_or_else(|| Rules::default_tolerance(mesh.unit())),
-            niceness: min_niceness,
-            allowed: allow,
-        };
+        let rules = rules(mesh.unit(), tolerance, min_niceness, allow);
         let tools = tools.iter().map(|tool| tool.get() as &dyn touchoff::Tool).collect();
         let sweep = PostureSweep::new(mesh, bvh, tools, &directions, rules, NonZeroU16::MIN);
         let sweep = sweep.map_err(refused)?;
@@ -74,6 +68,147 @@ pub(crate) fn sweep<'py>(
     dict.set_item("acceptable", stats.acceptable)?;
     dict.set_item("undecided", stats.undecided)?;
     Ok(dict)
+}
+
+/// A sweep whose shards are computed one by one, here or elsewhere.
+#[pyclass(frozen, module = "touchoff._touchoff")]
+pub(crate) struct Study {
+    part: Py<Part>,
+    tools: Vec<Py<Tool>>,
+    directions: Directions,
+    rules: Rules,
+    identity: MapIdentity,
+}
+
+#[pymethods]
+impl Study {
+    #[new]
+    #[allow(clippy::too_many_arguments)]
+    fn new(
+        py: Python<'_>,
+        part: Py<Part>,
+        tools: Vec<Py<Tool>>,
+        directions: usize,
+        tolerance: Option<f64>,
+        min_niceness: f64,
+        allow: Vec<(String, f64)>,
+        surface_only: bool,
+    ) -> PyResult<Study> {
+        let directions = spread(directions)?;
+        let (rules, identity) = py.detach(|| {
+            let mesh = part.get().mesh()?;
+            if !surface_only {
+                part.get().require_inside()?;
+            }
+            let rules = rules(mesh.unit(), tolerance, min_niceness, allow);
+            let tools: Vec<_> = tools.iter().map(|tool| tool.get().get()).collect();
+            let identity = MapIdentity::new(mesh, &tools, rules.clone()).map_err(refused)?;
+            let identity = identity.with_directions(directions.list().to_vec());
+            Ok::<_, PyErr>((rules, identity))
+        })?;
+        let study = Study { part, tools, directions, rules, identity };
+        // What cannot be swept is refused here, and not by each shard.
+        study.swept()?;
+        Ok(study)
+    }
+
+    /// Returns the bytes of a shard, from 1 to `count`.
+    fn shard<'py>(
+        &self,
+        py: Python<'py>,
+        number: u32,
+        count: u32,
+        threads: usize,
+    ) -> PyResult<Bound<'py, PyBytes>> {
+        let shard = shard(number, count)?;
+        let threads =
+            NonZeroUsize::new(threads).ok_or_else(|| refused("threads: give 1 or more"))?;
+        let bytes = py.detach(|| {
+            let sweep = self.swept()?.with_threads(threads);
+            let batches: Vec<usize> = shard.batches(&sweep).collect();
+            let mut rows = Vec::new();
+            let flow = sweep.run(&batches, |batch| {
+                rows.extend(batch.rows);
+                match Python::attach(|py| py.check_signals()) {
+                    Ok(()) => ControlFlow::Continue(()),
+                    Err(interrupt) => ControlFlow::Break(interrupt),
+                }
+            });
+            match flow {
+                ControlFlow::Break(interrupt) => Err(interrupt),
+                ControlFlow::Continue(()) => {
+                    Ok(shard_bytes(self.part.get().mesh()?, &self.identity, shard, rows))
+                }
+            }
+        })?;
+        Ok(PyBytes::new(py, &bytes))
+    }
+
+    /// Returns whether a file has a shard of this sweep, complete.
+    fn is_done(&self, py: Python<'_>, path: PathBuf, number: u32, count: u32) -> PyResult<bool> {
+        let shard = shard(number, count)?;
+        py.detach(|| is_done(path, &self.identity, shard)).map_err(shard_error)
+    }
+}
+
+impl Study {
+    fn swept(&self) -> PyResult<PostureSweep<'_>> {
+        let (mesh, bvh) = (self.part.get().mesh()?, self.part.get().triangles()?);
+        let tools = self.tools.iter().map(|tool| tool.get().get() as &dyn touchoff::Tool).collect();
+        let rules = self.rules.clone();
+        PostureSweep::new(mesh, bvh, tools, &self.directions, rules, NonZeroU16::MIN)
+            .map_err(refused)
+    }
+}
+
+fn shard(number: u32, count: u32) -> PyResult<Shard> {
+    Shard::new(number, count)
+        .ok_or_else(|| refused(format!("{number}/{count}: there is no such shard")))
+}
+
+fn shard_error(error: ShardError) -> PyErr {
+    match error {
+        ShardError::Unreadable { .. } | ShardError::Unwritable { .. } => {
+            PyOSError::new_err(error.to_string())
+        }
+        other => refused(other),
+    }
+}
+
+/// Writes the bytes of a shard to a file, completely or not at all.
+#[pyfunction]
+pub(crate) fn write_shard(py: Python<'_>, path: PathBuf, bytes: &[u8]) -> PyResult<()> {
+    py.detach(|| shard::write_shard(path, bytes)).map_err(shard_error)
+}
+
+/// Joins shards to a table, and returns its number of triangles.
+#[pyfunction]
+pub(crate) fn merge_shards(py: Python<'_>, files: Vec<PathBuf>, table: PathBuf) -> PyResult<u32> {
+    let merged = py.detach(|| {
+        let mut merge = Merge::new();
+        for file in files {
+            merge.add(file)?;
+        }
+        let merged = merge.finish()?;
+        merged.write_table(table)?;
+        Ok(merged.identity().part.triangles)
+    });
+    merged.map_err(shard_error)
+}
+
+/// Returns directions, given their number per hemisphere.
+fn spread(hemisphere: usize) -> PyResult<Directions> {
+    if (1..=Directions::MAX_HEMISPHERE).contains(&hemisphere) {
+        return Ok(Directions::spread(hemisphere));
+    }
+    let limit = Directions::MAX_HEMISPHERE;
+    Err(refused(format!("directions: {hemisphere} per hemisphere: give 1 to {limit}")))
+}
+
+/// Returns the rules of a sweep.
+fn rules(unit: Unit, tolerance: Option<f64>, niceness: f64, allowed: Vec<(String, f64)>) -> Rules {
+    let tolerance = tolerance.unwrap_or_else(|| Rules::default_tolerance(unit));
+    Rules { tolerance, niceness, allowed }
 }
 
 /// Reads a posture map.

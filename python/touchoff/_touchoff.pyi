@@ -11,6 +11,7 @@ _Ints = NDArray[np.int64]
 __all__ = [
     "JobError",
     "Part",
+    "Study",
     "Tool",
     "ToolError",
     "certified_depth",
@@ -19,11 +20,13 @@ __all__ = [
     "contacts",
     "detect",
     "import_library",
+    "merge_shards",
     "read_map",
     "signed_distance",
     "sweep",
     "tool_names",
     "wrench",
+    "write_shard",
 ]
 
 class ToolError(ValueError): ...
@@ -162,4 +165,21 @@ def sweep(
     surface_only: bool,
 ) -> MapArrays: ...
 def read_map(path: str) -> MapArrays: ...
+@final
+class Study:
+    def __new__(
+        cls,
+        part: Part,
+        tools: list[Tool],
+        directions: int,
+        tolerance: float | None,
+        min_niceness: float,
+        allow: list[tuple[str, float]],
+        surface_only: bool,
+    ) -> Study: ...
+    def shard(self, number: int, count: int, threads: int) -> bytes: ...
+    def is_done(self, path: str, number: int, count: int) -> bool: ...
+
+def write_shard(path: str, bytes: bytes) -> None: ...
+def merge_shards(files: list[str], table: str) -> int: ...
 def check_job(path: str, keys: dict[str, Any] | None) -> str: ...

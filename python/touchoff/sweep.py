@@ -86,21 +86,52 @@ def sweep(
         If the part has no inside, or the rules are invalid.
     """
     body = _part(part)
+    rules = Rules.of(directions, tolerance, min_niceness, allow, surface_only)
+    return _map(_touchoff.sweep(body, [_tool(tool) for tool in _listed(tools)], *rules.arguments()))
+
+
+@dataclass(frozen=True, slots=True)
+class Rules:
+    """The directions that a sweep tries, and what it accepts."""
+
+    directions: int
+    tolerance: float | None
+    min_niceness: float
+    allow: list[tuple[str, float]]
+    surface_only: bool
+
+    @classmethod
+    def of(
+        cls,
+        directions: int,
+        tolerance: float | None,
+        min_niceness: float,
+        allow: Mapping[str, float] | None,
+        surface_only: bool,
+    ) -> Rules:
+        """Check the arguments of :func:`sweep`."""
+        if allow is not None and not isinstance(allow, Mapping):
+            raise TypeError(f"allow: names with depths are expected, not {type(allow).__name__}")
+        return cls(
+            _arrays.count("directions", directions),
+            None if tolerance is None else _arrays.length("tolerance", tolerance),
+            _arrays.real("min_niceness", min_niceness),
+            [(_arrays.text("allow", name), _arrays.real(f"allow[{name!r}]", depth)) for name, depth in (allow or {}).items()],
+            bool(surface_only),
+        )
+
+    def arguments(self) -> tuple[int, float | None, float, list[tuple[str, float]], bool]:
+        """Return the arguments of the extension module."""
+        return self.directions, self.tolerance, self.min_niceness, self.allow, self.surface_only
+
+
+def _listed(tools: Tool | Sequence[Tool]) -> list[Tool]:
     if not isinstance(tools, (Tool, list, tuple)):
         raise TypeError(f"tools: a Tool or a list of them is expected, not {type(tools).__name__}")
     listed = [tools] if isinstance(tools, Tool) else list(tools)
     if not listed:
         raise ValueError("tools: give one tool or more")
-    if allow is not None and not isinstance(allow, Mapping):
-        raise TypeError(f"allow: names with depths are expected, not {type(allow).__name__}")
-    within = None if tolerance is None else _arrays.length("tolerance", tolerance)
-    allowed = [
-        (_arrays.text("allow", name), _arrays.real(f"allow[{name!r}]", depth)) for name, depth in (allow or {}).items()
-    ]
-    rust = [_tool(tool) for tool in listed]
-    nice, around = _arrays.real("min_niceness", min_niceness), _arrays.count("directions", directions)
-    found = _touchoff.sweep(body, rust, around, within, nice, allowed, bool(surface_only))
-    return _map(found)
+    return listed
 
 
 def _map(arrays: _touchoff.MapArrays) -> PostureMap:

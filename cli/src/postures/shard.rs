@@ -12,7 +12,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 use touchoff::Mesh;
 use touchoff_postures::MapIdentity;
-use touchoff_postures::shard::{Merge, Shard, is_done, write_shard};
+use touchoff_postures::shard::{Merge, Shard, is_done, shard_bytes, write_shard};
 use touchoff_postures::sweep::{PostureSweep, SweepStats};
 
 /// Exit status if shards are left.
@@ -57,7 +57,7 @@ pub(super) fn sweep(
     drop(progress);
     let triangles = rows.len();
     if !was_done {
-        write_shard(file, mesh, identity, shard, rows)?;
+        write_shard(file, &shard_bytes(mesh, identity, shard, rows))?;
     }
     let summary = Summary {
         shard: shard.to_string(),

@@ -4,10 +4,11 @@ use crate::bench::{Bench, TOOL, stderr, stdout, touchoff};
 use crate::import::LIBRARY;
 use std::process::{Command, Output};
 
-const COMMANDS: [&str; 19] = [
+const COMMANDS: [&str; 20] = [
     // `sweep` makes the map that `map` and `path` read.
-    "sweep", "map", "path", "run", "verify", "report", "haptic", "live", "sample", "import",
-    "export", "tools", "controls", "machines", "check", "explain", "fmt", "expand", "draw",
+    "sweep", "merge", "map", "path", "run", "verify", "report", "haptic", "live", "sample",
+    "import", "export", "tools", "controls", "machines", "check", "explain", "fmt", "expand",
+    "draw",
 ];
 
 const PROGRAM: &str =

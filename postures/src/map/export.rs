@@ -196,7 +196,6 @@ impl PostureMap {
             Ok::<(), MapError>(())
         })?;
         let bytes = encoded(&self.identity, None, &rows);
-        let bytes = bytes.map_err(|error| self.export(io::Error::other(error)))?;
         out.write_all(&bytes).and_then(|()| out.flush()).map_err(|error| self.export(error))
     }
 

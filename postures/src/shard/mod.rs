@@ -203,37 +203,31 @@ pub enum ShardError {
 
 touchoff::debug_as_sentence!(ShardError);
 
-/// Writes the rows of a shard to a file in Apache Parquet, completely or not at all. The rows may be in any order.
-///
-/// # Errors
-/// [`ShardError::Unwritable`], in which case the file is as it was before.
-pub fn write_shard(
-    path: impl AsRef<Path>,
+/// Returns the rows of a shard as the bytes of a file in Apache Parquet. The rows may be in any order.
+pub fn shard_bytes(
     mesh: &Mesh,
     identity: &MapIdentity,
     shard: Shard,
     rows: Vec<(TriangleId, MapRow)>,
-) -> Result<(), ShardError> {
+) -> Vec<u8> {
     let rows = rows.into_iter().map(|(triangle, row)| {
         let reached = row.access.iter().map(|access| f64::from(u8::from(access.is_reached())));
         TableRow { triangle, area: mesh.area(triangle), reached: reached.collect(), row }
     });
     let mut rows: Vec<TableRow> = rows.collect();
     rows.sort_by_key(|row| row.triangle);
-    write_file(path.as_ref(), identity, Some(shard), &rows)
+    encoded(identity, Some(shard), &rows)
 }
 
-/// Writes a table to a file.
-fn write_file(
-    path: &Path,
-    identity: &MapIdentity,
-    shard: Option<Shard>,
-    rows: &[TableRow],
-) -> Result<(), ShardError> {
+/// Writes the bytes of a shard to a file, completely or not at all.
+///
+/// # Errors
+/// [`ShardError::Unwritable`], in which case the file is as it was before.
+pub fn write_shard(path: impl AsRef<Path>, bytes: &[u8]) -> Result<(), ShardError> {
+    let path = path.as_ref();
     let unwritable = |source| ShardError::Unwritable { file: path.display().to_string(), source };
-    let bytes = encoded(identity, shard, rows).map_err(|e| unwritable(io::Error::other(e)))?;
     let mut file = AtomicFile::create(path).map_err(unwritable)?;
-    file.write_all(&bytes).map_err(unwritable)?;
+    file.write_all(bytes).map_err(unwritable)?;
     file.commit().map_err(unwritable)
 }
 
@@ -382,6 +376,6 @@ impl Merged {
     /// # Errors
     /// [`ShardError::Unwritable`].
     pub fn write_table(&self, path: impl AsRef<Path>) -> Result<(), ShardError> {
-        write_file(path.as_ref(), &self.identity, None, &self.rows)
+        write_shard(path, &encoded(&self.identity, None, &self.rows))
     }
 }

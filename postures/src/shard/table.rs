@@ -195,10 +195,12 @@ fn optional<T: DataType>(
 }
 
 /// Returns the bytes of a table. Rows are by triangle.
-///
-/// # Errors
-/// Those of `parquet`, which memory that takes all bytes does not lead to.
-pub(crate) fn encoded(
+pub(crate) fn encoded(identity: &MapIdentity, shard: Option<Shard>, rows: &[TableRow]) -> Vec<u8> {
+    try_encoded(identity, shard, rows)
+        .expect("columns of the schema, in memory that takes all bytes")
+}
+
+fn try_encoded(
     identity: &MapIdentity,
     shard: Option<Shard>,
     rows: &[TableRow],

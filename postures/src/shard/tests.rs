@@ -83,7 +83,8 @@ impl Study {
             let shard = Shard::new(number, count).expect("a shard");
             let path = folder.join(format!("{number}-of-{count}.parquet"));
             let rows = self.rows(shard.batches(&self.sweep()));
-            write_shard(&path, &self.mesh, &self.identity(), shard, rows).expect("a shard");
+            let bytes = shard_bytes(&self.mesh, &self.identity(), shard, rows);
+            write_shard(&path, &bytes).expect("a shard");
             path
         });
         shards.collect()
@@ -180,7 +181,8 @@ fn what_is_missing_twice_or_of_another_sweep_is_named() {
         let path = folder.join("other.parquet");
         let shard = Shard::new(2, 3).expect("a shard");
         let rows = other.rows(shard.batches(&other.sweep()));
-        write_shard(&path, &other.mesh, &other.identity(), shard, rows).expect("a shard");
+        let bytes = shard_bytes(&other.mesh, &other.identity(), shard, rows);
+        write_shard(&path, &bytes).expect("a shard");
         let message = error(&[&files[0], &path]);
         assert!(message.contains(what), "{what}: {message}");
         let done = is_done(&path, &study.identity(), shard);
@@ -199,14 +201,11 @@ fn what_is_missing_twice_or_of_another_sweep_is_named() {
 /// A file that is cut off anywhere, or has one other bit, is refused.
 #[test]
 fn damaged_files_are_refused() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let (folder, study) = (folder.path(), Study::new());
+    let study = Study::new();
     let shard = Shard::new(1, 5).expect("a shard");
     let mut rows = study.rows(shard.batches(&study.sweep()));
     rows.truncate(12);
-    let path = folder.join("shard.parquet");
-    write_shard(&path, &study.mesh, &study.identity(), shard, rows).expect("a shard");
-    let bytes = fs::read(&path).expect("a file");
+    let bytes = shard_bytes(&study.mesh, &study.identity(), shard, rows);
     table::read("whole", bytes.clone()).expect("a table");
     for length in 0..bytes.len() {
         let error = table::read("cut", bytes[..length].to_vec());

@@ -17,7 +17,7 @@ pub use refine::{Refinement, Refiner, TriangleReach};
 
 use super::{Directions, MapRow, Piece, Rules, RulesError, ValidatorError};
 use std::fmt;
-use std::num::NonZeroU16;
+use std::num::{NonZeroU16, NonZeroUsize};
 use std::ops::{AddAssign, ControlFlow};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc;
@@ -36,6 +36,7 @@ pub struct PostureSweep<'a> {
     directions: &'a Directions,
     rules: Rules,
     keep: NonZeroU16,
+    threads: NonZeroUsize,
 }
 
 impl fmt::Debug for PostureSweep<'_> {
@@ -178,7 +179,8 @@ impl<'a> PostureSweep<'a> {
         keep: NonZeroU16,
     ) -> Result<PostureSweep<'a>, SweepError> {
         rules.check(&tools)?;
-        let sweep = PostureSweep { mesh, bvh, tools, directions, rules, keep };
+        let threads = std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
+        let sweep = PostureSweep { mesh, bvh, tools, directions, rules, keep, threads };
         for tool in &sweep.tools {
             if !tool.info().surfaces.iter().any(|surface| surface.cutting) {
                 return Err(SweepError::NoCuttingSurface(tool.info().name.to_string()));
@@ -187,6 +189,13 @@ impl<'a> PostureSweep<'a> {
         // Report here the errors that workers would meet in their threads.
         Worker::new(&sweep)?;
         Ok(sweep)
+    }
+
+    /// Sets the number of threads, in place of one per core.
+    #[must_use]
+    pub fn with_threads(mut self, threads: NonZeroUsize) -> PostureSweep<'a> {
+        self.threads = threads;
+        self
     }
 
     /// Returns the number of batches.
@@ -200,7 +209,7 @@ impl<'a> PostureSweep<'a> {
         &ids[batch * BATCH_TRIANGLES..((batch + 1) * BATCH_TRIANGLES).min(ids.len())]
     }
 
-    /// Processes the given batches on all cores, and passes each to `each` as it is done, in no particular
+    /// Processes the given batches on all cores, or on [`PostureSweep::with_threads`], and passes each to `each` as it is done, in no particular
     /// order, until all are done or `each` breaks. The content of a batch depends neither on the thread nor on
     /// the time.
     pub fn run<B>(
@@ -244,7 +253,7 @@ impl<'a> PostureSweep<'a> {
         judge: impl Fn(&mut Worker<'_>, usize) -> T + Sync,
         mut each: impl FnMut(T) -> ControlFlow<B>,
     ) -> ControlFlow<B> {
-        let workers = std::thread::available_parallelism().map_or(1, usize::from);
+        let workers = self.threads.get();
         let (next, stop) = (AtomicUsize::new(0), AtomicBool::new(false));
         std::thread::scope(|scope| {
             // Bounded, so that workers wait for an `each` that is slower than they are, and rows do not pile up in memory.

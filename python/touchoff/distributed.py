@@ -1,0 +1,201 @@
+"""Sweeps and jobs on a cluster of Ray: ``pip install "touchoff[ray]"``.
+
+A sweep runs in shards, each a task. Parts lie in Ray's object store; a shard comes back as the bytes of its file, which is
+written on the machine of the caller. Ray runs tasks again whose machine is lost, and at most ``in_flight`` of them are
+submitted at a time. Shards that a folder has already are kept, so that a study goes on where it was stopped.
+
+>>> import touchoff.distributed
+>>> dataset = touchoff.distributed.sweep({"plate": part}, tools, folder="study")    # doctest: +SKIP
+>>> dataset.to_table(filter=(pyarrow.compute.field("rank") == 0))    # doctest: +SKIP
+"""
+
+from __future__ import annotations
+
+import functools
+import os
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from . import _arrays, _touchoff
+from .job import Job, Report
+from .part import Part
+from .queries import _part, _tool
+from .sweep import Rules, _listed
+from .tool import Tool
+
+if TYPE_CHECKING:
+    import pyarrow.dataset
+
+Progress = Callable[[int, int], None]
+#: The vertices, the triangles and the unit of a part.
+_Arrays = tuple[Any, Any, str]
+
+
+@functools.lru_cache(maxsize=2)
+def _study(key: str, part: _Key, tools: _Key, rules: _Key) -> _touchoff.Study:
+    vertices, faces, unit = part.value
+    body = _part(Part(vertices, faces, unit=unit))
+    return _touchoff.Study(body, [_tool(tool) for tool in tools.value], *rules.value.arguments())
+
+
+class _Key:
+    """A value that does not count in the key of a cache."""
+
+    def __init__(self, value: Any) -> None:
+        self.value = value
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Key)
+
+    def __hash__(self) -> int:
+        return 0
+
+
+def _shard(key: str, part: _Arrays, tools: list[Tool], rules: Rules, number: int, count: int, threads: int) -> bytes:
+    """Compute a shard: the task. A worker keeps the part that it had last, with its tree of triangles."""
+    return _study(key, _Key(part), _Key(tools), _Key(rules)).shard(number, count, threads)
+
+
+def sweep(
+    parts: Mapping[str, Part],
+    tools: Tool | Sequence[Tool],
+    *,
+    folder: str | os.PathLike[str],
+    shards: int = 16,
+    directions: int = 200,
+    tolerance: float | None = None,
+    min_niceness: float = 0.0,
+    allow: Mapping[str, float] | None = None,
+    surface_only: bool = False,
+    num_cpus: int = 1,
+    max_retries: int = -1,
+    in_flight: int = 64,
+    progress: Progress | None = None,
+) -> pyarrow.dataset.Dataset:
+    """Try tools at every triangle of parts, as :func:`touchoff.sweep` does, as tasks of Ray.
+
+    The tables have the same bytes for any cluster, and as those that `touchoff merge` writes.
+
+    Parameters
+    ----------
+    parts
+        The parts by their names, which become folders.
+    tools
+        One tool or several. They are made again on each machine: a `.tool` file has to be there, or give its text.
+    folder
+        Where the tables are written: `part=NAME/table.parquet`, and shards in `_shards/NAME`.
+    shards
+        Number of tasks per part.
+    directions, tolerance, min_niceness, allow, surface_only
+        As in :func:`touchoff.sweep`.
+    num_cpus
+        Cores that a task takes, and the threads that it has.
+    max_retries
+        How often Ray runs a task again whose machine is lost; -1 for any number of times.
+    in_flight
+        Tasks that are submitted at a time.
+    progress
+        Called after each shard with the number of shards that are there, and of all.
+
+    Raises
+    ------
+    ValueError
+        If a part has no inside, the rules are invalid, or the folder has shards of another sweep.
+    OSError
+        If a table cannot be written; shards that were written stay.
+    """
+    import pyarrow.dataset
+    import ray
+
+    rules = Rules.of(directions, tolerance, min_niceness, allow, surface_only)
+    listed = _listed(tools)
+    total, threads = _arrays.count("shards", shards), _arrays.count("num_cpus", num_cpus)
+    limit = _arrays.count("in_flight", in_flight)
+    root = Path(_arrays.path("folder", folder))
+    files = {name: [root / "_shards" / _name(name) / f"{k}-of-{total}.parquet" for k in range(1, total + 1)] for name in parts}
+    task = ray.remote(num_cpus=threads, max_retries=max_retries)(_shard)
+    open_tasks: dict[Any, Path] = {}
+    done = 0
+
+    def collect(wanted: int) -> None:
+        nonlocal done
+        while len(open_tasks) > wanted:
+            ready, _ = ray.wait(list(open_tasks), num_returns=1)
+            for reference in ready:
+                _touchoff.write_shard(str(open_tasks.pop(reference)), ray.get(reference))
+                done += 1
+                if progress is not None:
+                    progress(done, total * len(parts))
+
+    kept_tools = ray.put(listed)
+    for name, part in parts.items():
+        study = _touchoff.Study(_part(part), [_tool(tool) for tool in listed], *rules.arguments())
+        files[name][0].parent.mkdir(parents=True, exist_ok=True)
+        arrays: _Arrays = (part.vertices, part.faces, part.unit)
+        kept = None
+        for number, file in enumerate(files[name], 1):
+            if study.is_done(str(file), number, total):
+                done += 1
+                continue
+            kept = ray.put(arrays) if kept is None else kept
+            collect(limit - 1)
+            open_tasks[task.remote(kept.hex(), kept, kept_tools, rules, number, total, threads)] = file
+    collect(0)
+    tables = []
+    for name in parts:
+        table = root / f"part={_name(name)}" / "table.parquet"
+        table.parent.mkdir(parents=True, exist_ok=True)
+        _touchoff.merge_shards([str(file) for file in files[name]], str(table))
+        tables.append(str(table))
+    partitioning = pyarrow.dataset.partitioning(flavor="hive")
+    return pyarrow.dataset.dataset(tables, format="parquet", partitioning=partitioning, partition_base_dir=str(root))
+
+
+def _name(name: str) -> str:
+    if not _arrays.text("parts", name) or any(sign in name for sign in "/\\=%") or name.startswith((".", "_")):
+        raise ValueError(f"parts: {name!r} cannot be the name of a folder: take letters, digits, - and _")
+    return name
+
+
+def _check(path: str) -> Report | Exception:
+    try:
+        return Job.load(path).check()
+    except (ValueError, OSError) as error:
+        return error
+
+
+def verify_many(
+    jobs: Sequence[str | os.PathLike[str]],
+    *,
+    num_cpus: int = 1,
+    max_retries: int = -1,
+    in_flight: int = 64,
+) -> Iterator[tuple[str, Report | Exception]]:
+    """Check jobs as tasks of Ray, each as :meth:`touchoff.Job.check` does, in the order in which they end.
+
+    The files of a job have to be on each machine, as in a folder that all share. A job that cannot be checked yields its
+    exception in place of a report; the others go on.
+
+    Parameters
+    ----------
+    jobs
+        Job files.
+    num_cpus, max_retries, in_flight
+        As in :func:`sweep`.
+    """
+    import ray
+
+    task = ray.remote(num_cpus=_arrays.count("num_cpus", num_cpus), max_retries=max_retries)(_check)
+    paths = [os.path.abspath(_arrays.path("jobs", job)) for job in jobs]
+    limit = _arrays.count("in_flight", in_flight)
+    open_tasks: dict[Any, str] = {}
+    waiting = iter(paths)
+    while True:
+        while len(open_tasks) < limit and (path := next(waiting, None)) is not None:
+            open_tasks[task.remote(path)] = path
+        if not open_tasks:
+            return
+        ready, _ = ray.wait(list(open_tasks), num_returns=1)
+        for reference in ready:
+            yield open_tasks.pop(reference), ray.get(reference)
