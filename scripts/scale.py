@@ -174,10 +174,14 @@ def main() -> None:
     tree = seconds(lambda: study(touchoff.Part(part.vertices, part.faces, unit="mm")))
     print(f"an empty task of Ray takes {1e3 * dispatch:.2f} ms of the caller; a worker prepares the part once in {1e3 * tree:.0f} ms; "
           f"shards differ by {100 * spread:.0f} % (standard deviation)")
-    reached = touchoff.sweep(part, [touchoff.Tool.library(name) for name in TOOLS], directions=DIRECTIONS, tolerance=0.05).reached
-    slim, stout = reached[:, 0], reached[:, 1]
+    found = touchoff.sweep(part, [touchoff.Tool.library(name) for name in TOOLS], directions=DIRECTIONS, tolerance=0.05)
+    slim, stout = found.reached[:, 0], found.reached[:, 1]
+    corners = part.vertices[part.faces]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    is_facing = normals @ found.directions.T > 0
     print(f"the slim tool does not reach {100 * (1 - slim.mean()):.0f} % of all triangles and directions, the stout one {100 * (1 - stout.mean()):.0f} %; "
-          f"the stout one reaches {int((stout & ~slim).sum())} of those that the slim one does not")
+          f"the stout one reaches {int((stout & ~slim).sum())} of those that the slim one does not; "
+          f"{100 * is_facing.mean():.1f} % face the triangle, {100 * (is_facing & ~slim).mean():.1f} % without being reached by the slim one")
     # Half of the directions do not face a triangle, and the tree of 10^6 triangles is deeper; the rate is taken as it is.
     total = 1e4 * 1e3 * 1e6 * 1e3
     core_hours = total / rate / 3600

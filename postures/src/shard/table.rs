@@ -94,7 +94,7 @@ struct Line<'a> {
     of: &'a TableRow,
     tool: u16,
     /// A posture, and its place among those of the triangle.
-    record: Option<(usize, &'a PostureRecord)>,
+    record: Option<(u16, &'a PostureRecord)>,
     /// An entry of the accessibility, by its index.
     access: Option<usize>,
 }
@@ -103,7 +103,7 @@ impl TableRow {
     /// Returns the lines of the row: a line per posture, and one per tool that was tried and has none.
     fn lines(&self) -> impl Iterator<Item = Line<'_>> {
         let MapRow { best, access } = &self.row;
-        let records = best.iter().enumerate().map(|(rank, record)| Line {
+        let records = (0..).zip(best).map(|(rank, record)| Line {
             of: self,
             tool: record.tool,
             record: Some((rank, record)),
@@ -217,7 +217,8 @@ fn try_encoded(
     let lines: Vec<Line<'_>> = rows.iter().flat_map(TableRow::lines).collect();
     for lines in lines.chunks(GROUP_LINES) {
         let mut group = writer.next_row_group()?;
-        let triangles: Vec<i32> = lines.iter().map(|line| line.of.triangle.0 as i32).collect();
+        let triangles: Vec<i32> =
+            lines.iter().map(|line| line.of.triangle.0.cast_signed()).collect();
         column::<Int32Type>(&mut group, &triangles, None)?;
         let areas: Vec<f64> = lines.iter().map(|line| line.of.area).collect();
         column::<DoubleType>(&mut group, &areas, None)?;
@@ -226,14 +227,15 @@ fn try_encoded(
         let names = lines.iter().map(|line| identity.tools[usize::from(line.tool)].name.as_str());
         let names: Vec<ByteArray> = names.map(ByteArray::from).collect();
         column::<ByteArrayType>(&mut group, &names, None)?;
-        let ranks = lines.iter().map(|line| line.record.map(|(rank, _)| rank as i32));
+        let ranks = lines.iter().map(|line| line.record.map(|(rank, _)| i32::from(rank)));
         optional::<Int32Type>(&mut group, ranks)?;
         for number in 0..RECORD_NUMBERS {
             let numbers = lines.iter().map(|line| line.numbers().map(|numbers| numbers[number]));
             optional::<DoubleType>(&mut group, numbers)?;
         }
         let access = || lines.iter().map(Line::accessibility);
-        let counts = access().map(|access| access.map(|access| direction_count(access) as i32));
+        let counts =
+            access().map(|access| access.map(|access| direction_count(access).cast_signed()));
         optional::<Int32Type>(&mut group, counts)?;
         let stickouts = access().map(|access| access.and_then(|access| access.stickout));
         optional::<DoubleType>(&mut group, stickouts)?;
@@ -320,7 +322,7 @@ impl Columns {
     /// Adds the lines to the rows of their triangles. Returns `None` if a value is missing, or out of range.
     fn add_to(&self, rows: &mut Vec<TableRow>) -> Option<()> {
         for (at, triangle) in self.triangle.iter().enumerate() {
-            let triangle = TriangleId((*triangle)? as u32);
+            let triangle = TriangleId((*triangle)?.cast_unsigned());
             let area = (*self.area.get(at)?)?;
             if rows.last().is_none_or(|row| row.triangle != triangle) {
                 let (row, reached) = (MapRow::default(), Vec::new());
