@@ -2,8 +2,7 @@
 """Costs of a sweep in shards, and what they say about a study of 10^4 tools, 10^3 parts, 10^6 triangles and 10^3 directions:
 scripts/scale.py [SIZE]
 
-Prints the tables of docs/scale.md. Needs the package touchoff[ray] and a machine with two cores that does nothing else. The part is a
-corrugated block of 12 SIZE^2 triangles, made here."""
+Prints the tables of docs/scale.md. Needs the package touchoff[ray] and two cores. The part is a corrugated block of 12 SIZE^2 triangles, made here."""
 
 import heapq
 import os
@@ -144,16 +143,16 @@ def main() -> None:
     runs: dict[str, list[float]] = {}
     for _ in range(3):
         one_thread = [seconds(lambda k=k: swept.shard(k, SHARDS, 1)) for k in range(1, SHARDS + 1)]
-        runs.setdefault("one process", []).append(sum(one_thread))
-        runs.setdefault("two threads", []).append(seconds(lambda: [swept.shard(k, SHARDS, 2) for k in range(1, SHARDS + 1)]))
+        runs.setdefault("one process, one thread", []).append(sum(one_thread))
+        runs.setdefault("one process, two threads", []).append(seconds(lambda: [swept.shard(k, SHARDS, 2) for k in range(1, SHARDS + 1)]))
         for count in (1, 2):
-            runs.setdefault(f"{count} in a pool", []).append(processes(part, count))
-            runs.setdefault(f"{count} of Ray", []).append(on_ray(part, count))
+            runs.setdefault(f"a pool of {count}", []).append(processes(part, count))
+            runs.setdefault(f"Ray with {count} core{'s' if count > 1 else ''}", []).append(on_ray(part, count))
     medians = {name: statistics.median(times) for name, times in runs.items()}
-    alone = medians["one process"]
+    alone = medians["one process, one thread"]
     print("\n| 16 shards | time | postures/s per core | efficiency |\n|---|--:|--:|--:|")
     for name, time_s in medians.items():
-        cores = 2 if name.startswith("2") or name == "two threads" else 1
+        cores = 2 if name.endswith(("two threads", "of 2", "2 cores")) else 1
         print(f"| {name} | {time_s:.2f} s | {postures / time_s / cores:,.0f} | {alone / time_s / cores:.2f} |")
     shards = [swept.shard(k, SHARDS, 2) for k in range(1, SHARDS + 1)]
     sent = part.vertices.nbytes + part.faces.nbytes
@@ -191,7 +190,7 @@ def main() -> None:
         tasks = int(total / rate / task_s)
         took = simulated(cores, tasks, task_s, spread, dispatch)
         busy = total / rate / took / cores
-        limit = "cores" if busy > 0.95 else "the driver, which starts the tasks"
+        limit = "cores" if busy > 0.95 else "one caller that starts all tasks, and the last tasks"
         print(f"| {cores:,} | {task_s} s | {tasks:,} | {took / 3600:,.1f} h | {100 * busy:.0f} % | {limit} |")
     table = total / 1e3 * back / rows
     print(f"\ntables: {table / 1e12:,.0f} TB (a set of 10^3 directions takes 125 bytes: {1e13 * 125 / 1e12:,.0f} TB of them); parts: "

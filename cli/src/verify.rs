@@ -3,20 +3,21 @@
 use crate::arguments::{CheckArguments, ParamArguments, ToolArguments, Verify};
 use crate::failure::Failure;
 use crate::loaded_tool::{LoadedTool, compile_named};
-use crate::output::{Output, extension, write_file};
+use crate::output::{Output, extension, unreadable, write_file};
 use crate::part;
 use crate::program::{print_approach, print_ignored, warn_of_cutter};
 use crate::progress::Progress;
 use anstyle::{AnsiColor, Style};
 use std::collections::BTreeMap;
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use touchoff::Shard;
 use touchoff::certify::TriangleBvh;
 use touchoff_dsl::Compiled;
 use touchoff_verify::job::{
-    CutStock, Hand, JobInputs, JobStock, JobTools, NO_INSIDE, NamedTool, Severity, StockEntry,
-    StockShape,
+    CutStock, Hand, JobError, JobInputs, JobShard, JobShardError, JobStock, JobTools, NO_INSIDE,
+    NamedTool, Severity, StockEntry, StockShape,
 };
 use touchoff_verify::machine::Machine;
 use touchoff_verify::{GapWeight, Job, JobFile, JobReport, Program, ToolSelection, Verdict};
@@ -148,7 +149,13 @@ pub(crate) fn check<'a>(job: &'a Job<'_>, json: bool) -> Result<JobReport<'a>, F
 pub(crate) fn verify(arguments: Verify, json: bool) -> Result<ExitCode, Failure> {
     let inputs = read(job_file(arguments.job, arguments.part, arguments.check)?)?;
     let job = inputs.job();
-    let report = check(&job, json)?;
+    if let Some((shard, file)) = arguments.shard.zip(arguments.output.as_deref()) {
+        return check_shard(&job, shard, file, json);
+    }
+    let report = match arguments.checked.is_empty() {
+        true => check(&job, json)?,
+        false => check_joined(&job, &arguments.checked, json)?,
+    };
     let mut out = Output::rows();
     for finding in report.findings() {
         if json {
@@ -170,6 +177,48 @@ pub(crate) fn verify(arguments: Verify, json: bool) -> Result<ExitCode, Failure>
         write_file(&file, serde_json::to_vec_pretty(&report.sarif())?)?;
     }
     Ok(exit(report.verdict()))
+}
+
+/// Checks the motions of a shard, and writes in which tasks there are findings.
+///
+/// # Errors
+/// As for [`Job::check_shard`], and if the file cannot be written.
+fn check_shard(job: &Job<'_>, shard: Shard, file: &Path, json: bool) -> Result<ExitCode, Failure> {
+    let progress = Progress::steps(job.motion_checks(), "motions", json);
+    let found = job.check_shard(shard, &|count| progress.advance(count))?;
+    drop(progress);
+    write_file(file, serde_json::to_vec(&found)?)?;
+    let tasks = found.tasks_with_findings();
+    let mut out = Output::lines();
+    match json {
+        true => out.json(
+            &serde_json::json!({ "shard": shard.to_string(), "tasks_with_findings": tasks }),
+        )?,
+        false => writeln!(out, "shard {shard}: findings in {tasks} tasks of 32 motions")?,
+    }
+    out.flush()?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Checks a job whose shards were checked before.
+///
+/// # Errors
+/// As for [`Job::check_joined`], and if a file cannot be read.
+fn check_joined<'a>(
+    job: &'a Job<'_>,
+    files: &[PathBuf],
+    json: bool,
+) -> Result<JobReport<'a>, Failure> {
+    let mut shards: Vec<(String, JobShard)> = Vec::new();
+    for file in files {
+        let bytes = touchoff::read_regular_file(file).map_err(|source| unreadable(file, source))?;
+        let name = file.display().to_string();
+        let shard = serde_json::from_slice(&bytes);
+        let damaged = |_| JobError::from(JobShardError::Damaged { file: name.clone() });
+        shards.push((name.clone(), shard.map_err(damaged)?));
+    }
+    let progress = Progress::steps(job.motion_checks(), "motions", json);
+    Ok(job.check_joined(&shards, &|count| progress.advance(count))?)
 }
 
 /// Returns the exit status of a verdict.

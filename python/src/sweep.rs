@@ -10,8 +10,8 @@ use pyo3::types::{PyBytes, PyDict};
 use std::num::{NonZeroU16, NonZeroUsize};
 use std::ops::ControlFlow;
 use std::path::PathBuf;
-use touchoff::Unit;
-use touchoff_postures::shard::{self, Merge, Shard, ShardError, is_done, shard_bytes};
+use touchoff::{Shard, Unit};
+use touchoff_postures::shard::{self, Merge, ShardError, is_done, shard_bytes};
 use touchoff_postures::sweep::{PostureSweep, SweepStats};
 use touchoff_postures::{Accessibility, Directions, MapIdentity, MapRow, PostureMap, Rules};
 
@@ -125,7 +125,7 @@ impl Study {
             NonZeroUsize::new(threads).ok_or_else(|| refused("threads: give 1 or more"))?;
         let bytes = py.detach(|| {
             let sweep = self.swept()?.with_threads(threads);
-            let batches: Vec<usize> = shard.batches(&sweep).collect();
+            let batches: Vec<usize> = shard.range(sweep.batches()).collect();
             let mut rows = Vec::new();
             let flow = sweep.run(&batches, |batch| {
                 rows.extend(batch.rows);

@@ -134,6 +134,7 @@ mod pose;
 mod probe;
 mod scene;
 pub mod scenes;
+mod shard;
 mod storage;
 pub mod tool;
 mod unit;
@@ -156,6 +157,7 @@ pub use probe::{
     Posture, Probe, Stiffness, Summary, ToolEnvelope, Weights, Wrench, WrenchRounding, summary,
 };
 pub use scene::{PartId, Scene, SceneError, ToolId};
+pub use shard::{NoShard, Shard};
 pub use storage::SavedError;
 pub use tool::Tool;
 pub use touchoff_macros::{include_tool, tool, tool_library};

@@ -58,9 +58,7 @@ Examples:
 
 pub(super) const MERGE: &str = "\
 Examples:
-  Sweep a part in two shards, which can run on two machines, and join them:
-    touchoff sweep --part part.stl --unit mm --tool D2Ball --directions 50 --shard 1/2 -o 1.parquet
-    touchoff sweep --part part.stl --unit mm --tool D2Ball --directions 50 --shard 2/2 -o 2.parquet
+  Join two shards, which `touchoff sweep` with `--shard 1/2 -o 1.parquet` and `--shard 2/2 -o 2.parquet` has written:
     touchoff merge 1.parquet 2.parquet -o merged.postures -o merged.parquet
   List the shards that are left:
     touchoff merge --left 1.parquet 2.parquet";

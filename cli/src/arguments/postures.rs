@@ -10,7 +10,7 @@ use nalgebra::Point3;
 use std::ffi::OsString;
 use std::num::NonZeroU16;
 use std::path::PathBuf;
-use touchoff_postures::shard::Shard;
+use touchoff::Shard;
 
 #[derive(Args)]
 pub(crate) struct Sweep {

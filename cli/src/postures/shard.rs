@@ -10,19 +10,18 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
-use touchoff::Mesh;
+use touchoff::{Mesh, Shard};
 use touchoff_postures::MapIdentity;
-use touchoff_postures::shard::{Merge, Shard, is_done, shard_bytes, write_shard};
+use touchoff_postures::shard::{Merge, ShardError, is_done, shard_bytes, write_shard};
 use touchoff_postures::sweep::{PostureSweep, SweepStats};
 
 /// Exit status if shards are left.
 const LEFT: u8 = 3;
 
-/// Summary of a shard.
+/// Summary of a shard. Numbers are of what was swept now.
 #[derive(Serialize)]
 struct Summary {
     shard: String,
-    /// Number of triangles of the shard.
     triangles: usize,
     postures: u64,
     acceptable: u64,
@@ -43,8 +42,15 @@ pub(super) fn sweep(
     file: &Path,
     json: bool,
 ) -> Result<(), Failure> {
+    if !is_table(file) {
+        return Err(Failure::Format {
+            formats: "a shard is written as `.parquet`",
+            file: file.display().to_string(),
+        });
+    }
     let was_done = is_done(file, identity, shard)?;
-    let batches: Vec<usize> = if was_done { Vec::new() } else { shard.batches(sweep).collect() };
+    let batches: Vec<usize> =
+        if was_done { Vec::new() } else { shard.range(sweep.batches()).collect() };
     let (mut rows, mut stats) = (Vec::new(), SweepStats::default());
     let start = Instant::now();
     let progress = Progress::steps(batches.len(), "batches", json);
@@ -109,6 +115,10 @@ pub(crate) fn merge(arguments: &Arguments, json: bool) -> Result<ExitCode, Failu
     }
     let mut out = Output::lines();
     if arguments.left {
+        if merge.is_empty() {
+            // Nothing says how many shards there are.
+            return Err(ShardError::Empty.into());
+        }
         let left: Vec<Shard> = merge.left().collect();
         for shard in &left {
             match json {

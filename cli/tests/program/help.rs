@@ -71,6 +71,11 @@ fn all_commands_are_listed() {
 #[test]
 fn examples_work_as_they_stand() {
     let bench = example_files();
+    for number in 1..=2 {
+        let sweep = "sweep --part part.stl --unit mm --tool D2Ball --directions 10";
+        let shard = bench.touchoff(&format!("{sweep} --shard {number}/2 -o {number}.parquet"));
+        assert!(shard.status.success(), "{}", stderr(&shard));
+    }
     for command in COMMANDS.into_iter().chain(["tools list", "tools show"]) {
         let words: Vec<&str> = command.split(' ').chain(["--help"]).collect();
         let help = stdout(&touchoff(&words));

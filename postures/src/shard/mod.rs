@@ -17,83 +17,11 @@ mod tests;
 pub(crate) use table::{TableRow, encoded};
 
 use crate::map::Difference;
-use crate::sweep::PostureSweep;
 use crate::{MapError, MapIdentity, MapRow, PostureMap};
 use std::collections::BTreeMap;
-use std::fmt;
 use std::io::{self, Write};
-use std::ops::Range;
 use std::path::Path;
-use std::str::FromStr;
-use touchoff::{AtomicFile, Mesh, TriangleId};
-
-/// One of the equal parts of a sweep: `3/8` is the third of eight.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Shard {
-    /// From 1 on.
-    number: u32,
-    count: u32,
-}
-
-impl Shard {
-    /// Largest number of shards.
-    pub const MAX: u32 = 1_000_000;
-
-    /// Returns the shard with a number from 1 to `count`; `None` if there is no such shard, or more than [`Shard::MAX`].
-    pub fn new(number: u32, count: u32) -> Option<Shard> {
-        (count <= Shard::MAX && (1..=count).contains(&number)).then_some(Shard { number, count })
-    }
-
-    /// Returns its number, from 1 on.
-    pub fn number(self) -> u32 {
-        self.number
-    }
-
-    /// Returns the number of shards.
-    pub fn count(self) -> u32 {
-        self.count
-    }
-
-    /// Returns the batches of a sweep that belong to the shard. Those of all shards are all batches, each once; some shards of a
-    /// sweep with few batches have none.
-    pub fn batches(self, sweep: &PostureSweep<'_>) -> Range<usize> {
-        let bound = |shards: u32| {
-            let batches = u64::from(shards) * sweep.batches() as u64 / u64::from(self.count);
-            batches as usize
-        };
-        bound(self.number - 1)..bound(self.number)
-    }
-}
-
-impl fmt::Display for Shard {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}/{}", self.number, self.count)
-    }
-}
-
-/// A text that is no shard.
-#[derive(Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "give the number of a shard and that of all shards, such as 3/8, up to {} shards",
-    Shard::MAX
-)]
-pub struct NoShard;
-
-touchoff::debug_as_sentence!(NoShard);
-
-impl FromStr for Shard {
-    type Err = NoShard;
-
-    fn from_str(text: &str) -> Result<Shard, NoShard> {
-        let digits = |text: &str| {
-            let is_number = !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
-            text.parse().ok().filter(|_| is_number)
-        };
-        let (number, count) = text.split_once('/').ok_or(NoShard)?;
-        let found = digits(number).zip(digits(count));
-        found.and_then(|(number, count)| Shard::new(number, count)).ok_or(NoShard)
-    }
-}
+use touchoff::{AtomicFile, Mesh, Shard, TriangleId, read_regular_file};
 
 /// A reason for which shards cannot be written, read or merged.
 #[derive(thiserror::Error)]
@@ -139,7 +67,7 @@ pub enum ShardError {
     },
     /// A file of another version, whose sweep may differ.
     #[error(
-        "{file} was written by version {version} of Touchoff, and this is {reads}: run its shard again"
+        "{file} was written by version {version} of Touchoff, and this is {reads}: remove it, and run its shard again"
     )]
     OtherVersion {
         /// The file.
@@ -173,6 +101,16 @@ pub enum ShardError {
         /// The number of its shards.
         count: u32,
     },
+    /// A file that has another shard of the same sweep.
+    #[error("{file} has shard {found}, and not {wanted}: give each shard a file of its own")]
+    OtherShard {
+        /// The file.
+        file: String,
+        /// Its shard.
+        found: Shard,
+        /// The shard that is to be written.
+        wanted: Shard,
+    },
     /// Two files of one shard.
     #[error("{file} and {first} are both shard {shard}: give one of them")]
     Twice {
@@ -193,8 +131,8 @@ pub enum ShardError {
         /// The first that is missing.
         first: Shard,
     },
-    /// No file was given.
-    #[error("no shard is given: give the files of `touchoff sweep --shard`")]
+    /// No shard was read, so that nothing says how many there are.
+    #[error("no shard is given that can be read: give the files of `touchoff sweep --shard`")]
     Empty,
     /// The map cannot be written.
     #[error(transparent)]
@@ -234,19 +172,15 @@ pub fn write_shard(path: impl AsRef<Path>, bytes: &[u8]) -> Result<(), ShardErro
 /// Reads a table from a file.
 fn read_file(path: &Path) -> Result<table::Table, ShardError> {
     let file = path.display().to_string();
-    // A device may have no end, and a pipe no writer.
-    let read = || match std::fs::metadata(path)?.is_file() {
-        true => std::fs::read(path),
-        false => Err(io::Error::new(io::ErrorKind::InvalidInput, "it is no regular file")),
-    };
-    let bytes = read().map_err(|source| ShardError::Unreadable { file: file.clone(), source })?;
+    let bytes = read_regular_file(path)
+        .map_err(|source| ShardError::Unreadable { file: file.clone(), source })?;
     table::read(&file, bytes)
 }
 
-/// Returns whether a file has a shard of a sweep already, complete.
+/// Returns whether a file has a shard of a sweep already, complete. A damaged one is none, and to be replaced.
 ///
 /// # Errors
-/// If there is a file that is not that shard: it is not replaced.
+/// If there is a file of anything else: it is not to be replaced.
 pub fn is_done(
     path: impl AsRef<Path>,
     identity: &MapIdentity,
@@ -256,7 +190,11 @@ pub fn is_done(
     if !path.is_file() {
         return Ok(false);
     }
-    let (file, found) = (path.display().to_string(), read_file(path)?);
+    let found = match read_file(path) {
+        Err(ShardError::Damaged { .. }) => return Ok(false),
+        found => found?,
+    };
+    let file = path.display().to_string();
     let first = "this one".to_owned();
     if let Some(difference) = found.identity.difference(identity) {
         return Err(ShardError::Differs { file, first, difference });
@@ -264,9 +202,7 @@ pub fn is_done(
     match found.shard {
         None => Err(ShardError::Whole { file }),
         Some(found) if found == shard => Ok(true),
-        Some(found) => {
-            Err(ShardError::OtherCount { file, shard: found, first, count: shard.count })
-        }
+        Some(found) => Err(ShardError::OtherShard { file, found, wanted: shard }),
     }
 }
 
@@ -303,29 +239,34 @@ impl Merge {
         let table::Table { identity, shard, rows } = read_file(path)?;
         let shard = shard.ok_or_else(|| ShardError::Whole { file: file.clone() })?;
         match &self.study {
-            None => self.study = Some((identity, shard.count, file.clone())),
+            None => self.study = Some((identity, shard.count(), file.clone())),
             Some((known, count, first)) => {
                 let first = first.clone();
                 if let Some(difference) = identity.difference(known) {
                     return Err(ShardError::Differs { file, first, difference });
                 }
-                if shard.count != *count {
+                if shard.count() != *count {
                     return Err(ShardError::OtherCount { file, shard, first, count: *count });
                 }
             }
         }
-        if let Some((first, _)) = self.found.get(&shard.number) {
+        if let Some((first, _)) = self.found.get(&shard.number()) {
             return Err(ShardError::Twice { file, first: first.clone(), shard });
         }
-        self.found.insert(shard.number, (file, rows));
+        self.found.insert(shard.number(), (file, rows));
         Ok(shard)
+    }
+
+    /// Returns whether no shard was added.
+    pub fn is_empty(&self) -> bool {
+        self.found.is_empty()
     }
 
     /// Returns the shards that are missing; none without any shard, since nothing says how many there are.
     pub fn left(&self) -> impl Iterator<Item = Shard> + '_ {
         let count = self.study.as_ref().map_or(0, |(_, count, _)| *count);
         let numbers = (1..=count).filter(|number| !self.found.contains_key(number));
-        numbers.map(move |number| Shard { number, count })
+        numbers.filter_map(move |number| Shard::new(number, count))
     }
 
     /// Joins all shards.
@@ -338,7 +279,7 @@ impl Merge {
         if let Some(first) = left.next() {
             return Err(ShardError::Incomplete {
                 left: 1 + left.count(),
-                count: first.count,
+                count: first.count(),
                 first,
             });
         }

@@ -4,7 +4,7 @@
 //! without a posture at a triangle. Its metadata have the identity of the map and a digest of the whole file, so that a table that was
 //! changed or cut off is refused before its columns are read: the decoders of `parquet` panic at some.
 
-use super::{Shard, ShardError};
+use super::ShardError;
 use crate::map::{MapIdentity, decode, encode};
 use crate::record::direction_count;
 use crate::{Accessibility, MapRow, PostureRecord};
@@ -21,7 +21,7 @@ use siphasher::sip::SipHasher24;
 use std::hash::Hasher;
 use std::io::Write;
 use std::sync::Arc;
-use touchoff::TriangleId;
+use touchoff::{Shard, TriangleId};
 
 /// The columns, in the order in which they are written. Lengths are in the part's unit. Bit k of `direction_set`, counted from the
 /// most significant bit of the first byte, stands for direction k.

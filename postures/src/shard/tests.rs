@@ -1,9 +1,10 @@
 //! Shards that merge to the rows of a whole sweep, in any order; files that are damaged, foreign, missing or there twice.
 
 use super::*;
+use crate::sweep::PostureSweep;
 use crate::{Directions, Rules};
 use std::fs;
-use std::num::NonZeroU16;
+use std::num::{NonZeroU16, NonZeroUsize};
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use touchoff::certify::TriangleBvh;
@@ -67,7 +68,7 @@ impl Study {
             .with_keep(self.keep)
     }
 
-    fn rows(&self, batches: Range<usize>) -> Vec<(TriangleId, MapRow)> {
+    fn rows(&self, batches: std::ops::Range<usize>) -> Vec<(TriangleId, MapRow)> {
         let batches: Vec<usize> = batches.collect();
         let mut rows = Vec::new();
         let _: ControlFlow<()> = self.sweep().run(&batches, |batch| {
@@ -82,7 +83,7 @@ impl Study {
         let shards = (1..=count).map(|number| {
             let shard = Shard::new(number, count).expect("a shard");
             let path = folder.join(format!("{number}-of-{count}.parquet"));
-            let rows = self.rows(shard.batches(&self.sweep()));
+            let rows = self.rows(shard.range(self.sweep().batches()));
             let bytes = shard_bytes(&self.mesh, &self.identity(), shard, rows);
             write_shard(&path, &bytes).expect("a shard");
             path
@@ -121,6 +122,19 @@ fn shards_of_any_number_and_order_merge_to_the_same_bytes() {
         files.reverse();
         assert!(merged(folder, &files).expect("a map") == whole, "{count} shards");
     }
+    // The number of threads does not count.
+    let shard: Shard = "2/3".parse().expect("a shard");
+    let with_threads = |threads: usize| {
+        let sweep = study.sweep().with_threads(NonZeroUsize::new(threads).expect("a number"));
+        let batches: Vec<usize> = shard.range(sweep.batches()).collect();
+        let mut rows = Vec::new();
+        let _: ControlFlow<()> = sweep.run(&batches, |batch| {
+            rows.extend(batch.rows);
+            ControlFlow::Continue(())
+        });
+        shard_bytes(&study.mesh, &study.identity(), shard, rows)
+    };
+    assert!(with_threads(1) == with_threads(5));
     // The rows are those of a sweep into a map, which has them in the order of time.
     let map = PostureMap::open(folder.join("swept.postures"), &study.identity()).expect("a map");
     let mut rows = study.rows(0..study.sweep().batches());
@@ -162,7 +176,7 @@ fn what_is_missing_twice_or_of_another_sweep_is_named() {
     fs::write(&text, "triangle,tool\n").expect("a file");
     assert!(error(&[&text]).contains("is no shard of a sweep"));
     assert!(error(&[&folder.join("none.parquet")]).contains("cannot read"));
-    assert!(error(&[]).contains("no shard is given"));
+    assert!(error(&[]).contains("no shard is given that can be read"));
     merged(folder, &files).expect("a map");
     assert!(error(&[&folder.join("merged.parquet")]).contains("is the table of a whole map"));
     // Other rules, another part, other directions.
@@ -180,7 +194,7 @@ fn what_is_missing_twice_or_of_another_sweep_is_named() {
     for (what, other) in others {
         let path = folder.join("other.parquet");
         let shard = Shard::new(2, 3).expect("a shard");
-        let rows = other.rows(shard.batches(&other.sweep()));
+        let rows = other.rows(shard.range(other.sweep().batches()));
         let bytes = shard_bytes(&other.mesh, &other.identity(), shard, rows);
         write_shard(&path, &bytes).expect("a shard");
         let message = error(&[&files[0], &path]);
@@ -190,7 +204,12 @@ fn what_is_missing_twice_or_of_another_sweep_is_named() {
     }
     let shard = |text: &str| text.parse::<Shard>().expect("a shard");
     assert!(is_done(&files[1], &study.identity(), shard("2/3")).expect("a shard"));
-    assert!(is_done(&files[1], &study.identity(), shard("1/3")).is_err());
+    let other = is_done(&files[1], &study.identity(), shard("1/3"));
+    assert!(matches!(other, Err(ShardError::OtherShard { .. })), "{other:?}");
+    let cut = folder.join("cut.parquet");
+    fs::write(&cut, &fs::read(&files[1]).expect("a file")[..500]).expect("a file");
+    assert!(!is_done(&cut, &study.identity(), shard("2/3")).expect("a damaged file is replaced"));
+    assert!(is_done(&text, &study.identity(), shard("2/3")).is_err());
     assert!(!is_done(folder.join("none.parquet"), &study.identity(), shard("1/3")).expect("none"));
     let mut merge = Merge::new();
     assert_eq!(merge.left().count(), 0);
@@ -203,7 +222,7 @@ fn what_is_missing_twice_or_of_another_sweep_is_named() {
 fn damaged_files_are_refused() {
     let study = Study::new();
     let shard = Shard::new(1, 5).expect("a shard");
-    let mut rows = study.rows(shard.batches(&study.sweep()));
+    let mut rows = study.rows(shard.range(study.sweep().batches()));
     rows.truncate(12);
     let bytes = shard_bytes(&study.mesh, &study.identity(), shard, rows);
     table::read("whole", bytes.clone()).expect("a table");
@@ -219,25 +238,5 @@ fn damaged_files_are_refused() {
             matches!(error, Err(ShardError::Damaged { .. } | ShardError::Foreign { .. })),
             "byte {at}: {error:?}"
         );
-    }
-}
-
-#[test]
-fn shards_are_numbers_of_numbers() {
-    for text in
-        ["", "/", "1", "0/3", "4/3", "1/0", "+1/3", "1/3/5", " 1/3", "-1/3", "1/1000001", "1.0/2"]
-    {
-        assert!(text.parse::<Shard>().is_err(), "{text}");
-    }
-    for text in ["1/1", "3/8", "1000000/1000000"] {
-        assert_eq!(text.parse::<Shard>().expect("a shard").to_string(), text);
-    }
-    // All batches are in one shard each.
-    let study = Study::new();
-    let sweep = study.sweep();
-    for count in 1..12 {
-        let shards = (1..=count).map(|number| Shard::new(number, count).expect("a shard"));
-        let batches: Vec<usize> = shards.flat_map(|shard| shard.batches(&sweep)).collect();
-        assert_eq!(batches, (0..sweep.batches()).collect::<Vec<_>>());
     }
 }

@@ -112,6 +112,23 @@ pub(crate) enum MoveRequest {
 }
 
 impl MachineProgram {
+    /// Returns what decides about its motions, as text: all but the name of its file.
+    pub(crate) fn identity(&self) -> impl fmt::Display + '_ {
+        fmt::from_fn(|f| {
+            let MachineProgram {
+                file: _,
+                text,
+                machine,
+                setup,
+                assumed,
+                off_is_tip,
+                unnamed_tool,
+                ..
+            } = self;
+            write!(f, "{text} {machine:?} {setup:?} {assumed:?} {off_is_tip} {unnamed_tool:?}")
+        })
+    }
+
     /// Interprets a program on a machine. `name` is the program's name in errors.
     ///
     /// `setup` states work offsets, tool lengths, and the rules of the control. The frame of the part is that of G54. If its

@@ -78,7 +78,7 @@ pub(super) struct Control {
     cycle: Option<Cycle>,
     /// Cutter radius compensation.
     compensation: Option<Compensation>,
-    /// The line whose corner is not known yet (`,R`, `,C`).
+    /// The line or arc whose corner is not known yet (`,R`, `,C`, RND).
     held_motion: Option<corner::HeldMotion>,
     /// Polar coordinates (G16).
     polar: Option<figure::Polar>,

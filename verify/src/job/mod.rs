@@ -16,6 +16,7 @@ mod machine;
 mod pass;
 mod program;
 mod report;
+mod shard;
 mod stock;
 
 pub use bodies::RevolvedBody;
@@ -26,6 +27,7 @@ pub use program::{DEFAULT_MACHINE, Program, read_control, read_machine};
 pub use report::{
     FindingDetail, JobFinding, JobReport, Moving, NO_INSIDE, PairReport, Remedy, Severity, Verdict,
 };
+pub use shard::{JobShard, JobShardError};
 pub use stock::{CutStock, StockFinding};
 
 use crate::gcode::{ControlError, WorkOffset};
@@ -221,6 +223,9 @@ pub enum StockShape {
 #[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum JobError {
+    /// Shards that are not those of the job.
+    #[error(transparent)]
+    Shards(#[from] JobShardError),
     /// The job's file is refused.
     #[error("{file}: {}{message}", line.map_or(String::new(), |line| format!("line {line}: ")))]
     File {

@@ -185,6 +185,7 @@ impl StockFinding {
         let tool = self.tool_number.map_or(String::new(), |number| format!("T{number} "));
         let lines = match motions {
             1 => String::new(),
+            _ if first.line == last.line => format!(", on {motions} motions, line {}", first.line),
             _ => format!(", on {motions} motions, lines {} to {}", first.line, last.line),
         };
         format!(

@@ -24,7 +24,7 @@ pub struct JointMotion {
     /// Rotary joints at t = 0 and 1, in degrees.
     ends: [[f64; 3]; 2],
     pub(super) path: PreparedPath,
-    /// Set if the path is that of the tip.
+    /// Set if the path is that of the tip, or of another point of the tool axis.
     pub(super) tcp: bool,
     /// Bounds on the error of poses.
     pub(super) rounding: RoundingBound,
@@ -87,9 +87,9 @@ impl JointMotion {
         JointMotion::build(chain, rotary, path, true)
     }
 
-    /// Creates a motion of the rotary axes about a point that rests in the frame of the workpiece, while the linear joints follow.
-    /// It is on the tool axis, below the tip by `distance` in mm. `rotary` has the joint values of A, B and C at t = 0 and 1, in
-    /// degrees.
+    /// Creates a motion of the rotary axes about a point of the tool axis, while the linear joints follow: the point that is below the
+    /// tip by `distance`, in mm, rests at `point` in the frame of the workpiece. `rotary` has the joint values of A, B and C at t = 0
+    /// and 1, in degrees.
     ///
     /// # Errors
     /// As [`JointMotion::with_tcp`], and if the distance is out of range.

@@ -253,6 +253,8 @@ fn corners_of_a_contour_are_rounded_or_chamfered() {
     refused("G1 X40. ,C5.\nG3 Y10. R8.", "a corner that is not between two lines in its plane");
     refused("G3 X40. R20. ,C5.\nG1 X60.", "a corner that is not between two lines in its plane");
     refused("G0 X40. ,R5.\nG1 Y10.", "a corner that is not between two lines");
+    refused("G1 X40. ,C5.\nG3 Y10. R5.", "a corner that is not between two lines in its plane");
+    refused("G1 X40. ,R5.\nG41 D1 Y10.", "the next motion begins or ends cutter compensation");
     refused("G1 X40. ,R5.\nY4.", "a motion beside it is shorter");
     refused("G1 X40. ,R5.\nX30.", "the next motion goes back in its direction");
     refused("G1 X40. ,R0.\nY10.", ",R needs a length above 0");

@@ -405,6 +405,8 @@ fn labels_call_repeat_and_jump() {
 fn wrapped_comments_go_on() {
     let wrapped = "; the axis Z on the~\n Head\nQ1 = 3 ; half of the key~\n width)~\n and more\nL X+Q1 FMAX ;there~\n Y+4";
     assert_near(ends(wrapped)[0], [3.0, 4.0, 0.0]);
+    // Words of a block in lower case are no prose.
+    assert!(steps("L X+5 ;there~\n fmax")[0].rapid);
     let hole = "TOOL CALL 5 Z S1\nL X+1 FMAX\nCYCL DEF 240 C ~\n Q200=+2 ;clearance~\n Q201=-3 ;depth ~\n Q343=+0~\n Q203=+0 ~\n Q204=+9\nCYCL CALL";
     assert_eq!(levels(hole), [(true, 2.0), (false, -3.0), (true, 9.0)]);
 }
@@ -664,6 +666,21 @@ fn what_is_not_read_is_named_with_its_line() {
         ("L X+9 F100\nRND R1\nTOOL CALL 1 Z S1", 4, "RND needs a motion at feed"),
         ("L X+9 F100\nRND R1\nL M140 MB5", 4, "RND needs a motion at feed"),
         ("L X+9 F100\nRND R1", 4, "RND needs a motion at feed"),
+        (
+            "TOOL DEF 5 L+80 R+4\nTOOL CALL 5 Z S1\nL X-9 Y-9 R0 F100\nL X+0 Y+0 RL\nL Y+40\nRND R5\nL X+40 R0",
+            8,
+            "RND while the next motion begins or ends cutter compensation",
+        ),
+        (
+            "TOOL DEF 5 L+80 R+4\nTOOL CALL 5 Z S1\nL X+9 R0 F100\nRND R1\nL Y+40 RR",
+            6,
+            "RND while the next motion begins or ends cutter compensation",
+        ),
+        (
+            "TOOL CALL 5 Z S1\nL Z+50 FMAX\nCYCL DEF 200 D ~\n Q200=+2 ~\n Q201=-3 ~\n Q202=+3 ~\n Q203=+0 ~\n Q204=+9\nL X+9 F100\nCYCL CALL POS X+1 Y+1 Z+0 F100\nRND R1\nL Y+9 F100",
+            11,
+            "RND needs a motion at feed",
+        ),
         ("L X+10 F100\n/RND R1\nL Y+5", 2, "/ is a corner in an optional block"),
         ("L X+10 F100\nCHF 1\nL X+5 Y+5", 4, "CHF is a chamfer of a corner that is not square"),
         (

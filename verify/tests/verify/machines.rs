@@ -251,6 +251,20 @@ fn rotary_axes_of_klartext_obey_their_words() {
             Err(error) => assert!(error.contains("40.000 degrees off z of the tilted"), "{error}"),
         }
     }
+    // A turn about a point has the way of any other one: 270 degrees back, or 90 on by M126.
+    let back = "L C+270 FMAX\nPLANE RESET MOVE FMAX\nL Z+1 F100";
+    assert_eq!(readings(back).len(), 3);
+    let turned = |body: &str| {
+        let programs = readings(body);
+        let moves = moves(&programs[0]);
+        let [.., turn, _] = &moves[..] else { panic!("{} moves", moves.len()) };
+        // The part turns against C.
+        let x = |t: f64| turn.path.pose(t).rotation().column(0).into_owned();
+        (x(0.5).x, x(0.5).y)
+    };
+    let (x, y) = turned(&format!("M126\n{back}"));
+    let half = 0.5f64.sqrt();
+    assert!((x - half).abs() < 1e-9 && (y.abs() - half).abs() < 1e-9, "{x} {y}");
     let turn = "L C+345 FMAX\nL C+15 FMAX\nL Z+1 F100";
     assert_eq!(readings(turn).len(), 3);
     assert_eq!(readings(&format!("M126\n{turn}")).len(), 1);
@@ -307,5 +321,24 @@ fn a_plane_of_klartext_turns_about_a_point_that_rests() {
             assert!((end.tip() - distance * end.axis() - rests).norm() < 1e-7, "{name}: {end:?}");
             assert!((end.axis() - Vector3::z()).norm() < 1e-12, "{name}");
         }
+    }
+}
+
+/// A machine without rotary axes reaches no tilted plane, whichever way it is asked to turn.
+#[test]
+fn a_plane_needs_axes_that_turn_to_it() {
+    for word in ["TURN", "MOVE", "MOVE DIST10"] {
+        let text = format!(
+            "0 BEGIN PGM A MM\nTOOL CALL 1 Z S900\nL X+0 Y+0 FMAX M3\nL Z+100 FMAX\n\
+             PLANE SPATIAL SPA+30 SPB+0 SPC+0 {word} FMAX\nL X+0 Y+0 FMAX\nL Z+1 F100\nM30\nEND PGM A MM\n"
+        );
+        let setup = ControlSetup { lengths: [(1, 80.0)].into(), ..Default::default() };
+        let machine = Machine::named("3-axis").expect("a machine of the library");
+        let program = MachineProgram::new("a.h", text, machine, setup);
+        let is_refused = match &program {
+            Err(_) => true,
+            Ok(program) => program.check_complete().is_err(),
+        };
+        assert!(is_refused, "{word}: {:?}", program.map(|program| program.summary().clone()));
     }
 }

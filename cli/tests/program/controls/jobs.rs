@@ -354,3 +354,57 @@ fn a_series_of_cycles_is_left_to_the_next_run() {
     let ended = Scene::new(&blocks("G80")).placed().run(&LINUXCNC);
     assert!(!stderr(&ended).contains("without G80"), "{}", stderr(&ended));
 }
+
+/// Returns the options that join shards.
+fn joined<const N: usize>(files: [&String; N]) -> Vec<&str> {
+    files.into_iter().flat_map(|file| ["--checked", file]).collect()
+}
+
+/// The report of a job whose shards were checked before is that of the whole check, byte by byte: findings of tools at the part and a
+/// fixture, in several readings, and of the stock.
+#[test]
+fn shards_of_a_job_give_its_report() {
+    let mut blocks = "S900 M3\n".to_owned();
+    for k in 0..300 {
+        let depth = if [40, 41, 200].contains(&k) { -1.0 } else { 3.0 };
+        let x = f64::from(k % 20) - 10.0;
+        blocks += &format!("G1 X{x:.1} Y{:.1} Z{depth:.1}\n", f64::from(k / 20) - 7.5);
+    }
+    let mut scene = Scene::new(&blocks).placed().obstacle([8.0, -9.0, 0.0], [12.0, 9.0, 4.0]);
+    scene.job += "[stock]\nbox = [-8, -8, -8, 8, 8, 1]\nspacing = 0.5\n";
+    for control in [&LINUXCNC[..], &[]] {
+        let whole = scene.run(&[control, &["--json"]].concat());
+        assert_eq!(whole.status.code(), Some(1), "{}", stderr(&whole));
+        for count in [1, 3, 7] {
+            let mut files = Vec::new();
+            for number in 1..=count {
+                let file = scene.bench.place(&format!("{number}-of-{count}.json"));
+                let shard = format!("{number}/{count}");
+                let run = scene.run(&[control, &["--shard", &shard, "-o", &file]].concat());
+                assert_eq!(run.status.code(), Some(0), "{}", stderr(&run));
+                assert!(stdout(&run).contains(&format!("shard {shard}: findings in")));
+                files.insert(0, file);
+            }
+            let checked = files.iter().flat_map(|file| ["--checked", file]);
+            let options: Vec<&str> =
+                control.iter().copied().chain(["--json"]).chain(checked).collect();
+            let joined = scene.run(&options);
+            assert_eq!(joined.status.code(), Some(1));
+            assert_eq!((stdout(&joined), stderr(&joined)), (stdout(&whole), stderr(&whole)));
+        }
+    }
+    let [one, two, three] =
+        [1, 2, 3].map(|number| scene.bench.place(&format!("{number}-of-3.json")));
+    scene.gives(&joined([&one, &three]), 2, &["1 of 3 shards are left, the first of them 2/3"]);
+    scene.gives(&joined([&one, &two, &one]), 2, &["are both shard 1/3"]);
+    let other = scene.bench.place("2-of-7.json");
+    scene.gives(&joined([&one, &other]), 2, &["is shard 2/7, and"]);
+    let text = std::fs::read_to_string(&two).expect("a shard");
+    for changed in [text.replace("2/3", "3/3"), text[..text.len() / 2].to_owned(), "{}".to_owned()]
+    {
+        let file = scene.bench.write("changed.json", changed);
+        scene.gives(&joined([&one, &file, &three]), 2, &["changed.json is damaged"]);
+    }
+    scene.bench.write("a.nc", super::program(&blocks.replace("Z-1.0", "Z-1.1")));
+    scene.gives(&joined([&one, &two, &three]), 2, &["1-of-3.json is of another job"]);
+}

@@ -528,16 +528,21 @@ impl<'a> Resolver<'a> {
     /// those that align the tool with z of a tilted plane.
     fn pivot(&mut self, frame: &Frame, step: &Step, distance: f64) -> Result<Resolved, StepFault> {
         let before = known(&self.joints);
-        let stated = [3, 4, 5].map(|k| match self.machine.axis(Letter::ALL[k]) {
-            Some(_) => Some(step.end[k]? + frame.rotary[k - 3]),
-            None => Some(0.0),
-        });
-        let found = match stated {
-            [Some(a), Some(b), Some(c)] => [a, b, c],
-            _ => match self.aligned_angles(frame, step)? {
-                Located::Known(found) => found,
+        let mut ends = [self.current_position(frame), step.end];
+        let is_stated = (3..6).any(|k| step.end[k].is_some() && self.has_axis(k));
+        let (found, way) = if is_stated {
+            // Angles that are stated have the way of any other motion to them.
+            let way = self.turn_endless(step, &mut ends);
+            let found = [3, 4, 5].map(|k| match ends[1][k].filter(|_| self.has_axis(k)) {
+                Some(angle) => angle + frame.rotary[k - 3],
+                None => 0.0,
+            });
+            (found, way)
+        } else {
+            match self.aligned_angles(frame, step)? {
+                Located::Known(found) => (found, None),
                 Located::Unknown(cause) => return Ok(self.lose(cause)),
-            },
+            }
         };
         self.joints = [None, None, None, Some(found[0]), Some(found[1]), Some(found[2])];
         let Some(joints) = before else { return Ok(Resolved::Unknown(self.cause)) };
@@ -551,10 +556,23 @@ impl<'a> Resolver<'a> {
         }
         let pose = frame.chain.pose(&joints)?;
         let point = pose.tip() - distance * pose.axis();
-        let [_, _, _, a, b, c] = joints;
-        let motion = JointMotion::about(&frame.chain, distance, [[a, b, c], found], &point)?;
+        // The start counts so that the way to the end is that of the control.
+        let start = [3, 4, 5].map(|k| match ends[0][k].filter(|_| is_stated && self.has_axis(k)) {
+            Some(angle) => angle + frame.rotary[k - 3],
+            None => joints[k],
+        });
+        let from = if way.is_some() { found } else { start };
+        let motion = JointMotion::about(&frame.chain, distance, [from, found], &point)?;
         self.joints = motion.joints(1.0).map(Some);
-        Ok(Resolved::Motions(vec![(motion, 0.0)]))
+        Ok(match way {
+            Some(cause) => Resolved::Arrival(Box::new(motion), cause),
+            None => Resolved::Motions(vec![(motion, 0.0)]),
+        })
+    }
+
+    /// Returns whether the machine has an axis, by its index.
+    fn has_axis(&self, axis: usize) -> bool {
+        self.machine.axis(Letter::ALL[axis]).is_some()
     }
 
     /// Returns the rotary joints that align the tool with z of a tilted plane, in degrees.

@@ -13,7 +13,7 @@
 //! [rule](Rule::CompensationStart) of the control.
 
 use super::offset::{self, Bend, Contour, Corner, Leg, Outside, Shape, Vector};
-use super::{AXES, Control, Modal, in_plane};
+use super::{AXES, Control, Modal, corner, in_plane};
 use crate::gcode::block::{Block, Code, Group};
 use crate::gcode::error::{CompensationFault, combination, missing, not_read};
 use crate::gcode::rules::{Choice, Rule};
@@ -89,6 +89,15 @@ impl Control {
         block: &mut Block,
         register: Option<f64>,
     ) -> Result<(), GcodeFault> {
+        let known = self.compensation.as_ref();
+        let changes = match block.code_of(Group::CutterCompensation) {
+            Some(Code { tenths: 400, .. }) => known.is_some(),
+            Some(code) => known.is_none_or(|known| !known.is_on() || known.code != code),
+            None => false,
+        };
+        if changes {
+            self.check_corner_before_compensation()?;
+        }
         match block.code_of(Group::CutterCompensation) {
             Some(Code { tenths: 400, .. }) => match &mut self.compensation {
                 Some(compensation) if compensation.phase == Phase::Contour => {
@@ -286,7 +295,9 @@ impl Control {
 
     /// Replaces the steps that a block has added after the first ones by those of the tool's centre that are known now.
     pub(super) fn compensate(&mut self, first: usize) -> Result<(), GcodeFault> {
-        if self.compensation.is_none() {
+        // A motion that is held for its corner is compensated with the next one.
+        let is_held = self.held_motion.as_mut().is_some_and(corner::HeldMotion::take_new);
+        if self.compensation.is_none() || is_held && self.pending.len() <= first {
             return Ok(());
         }
         let mut is_idle = true;

@@ -11,7 +11,7 @@
 use super::{Control, FeedMode, in_plane};
 use crate::gcode::error::{combination, missing, not_read};
 use crate::gcode::rules::{Choice, Rule};
-use crate::gcode::{GcodeFault, Plane, Step, StepPath};
+use crate::gcode::{Feed, GcodeFault, Plane, Step, StepPath};
 use nalgebra::Vector2;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
@@ -26,6 +26,8 @@ pub(in crate::gcode) struct Corner {
     pub(in crate::gcode) length: f64,
     /// Set if it is written without a decimal point.
     pub(in crate::gcode) is_whole: bool,
+    /// The feed of the corner alone, if it has one, in millimetres per minute.
+    pub(in crate::gcode) feed: Option<f64>,
 }
 
 /// The shape of a corner, and the length that gives its size.
@@ -49,6 +51,15 @@ pub(super) struct HeldMotion {
     /// In millimetres.
     length: f64,
     plane: Plane,
+    /// Set in the block that states the corner.
+    is_new: bool,
+}
+
+impl HeldMotion {
+    /// Returns whether the present block states the corner.
+    pub(super) fn take_new(&mut self) -> bool {
+        std::mem::take(&mut self.is_new)
+    }
 }
 
 /// Smallest sine of the angle between two motions with a corner.
@@ -91,8 +102,21 @@ impl Control {
         let is_moved = self.pending.len() > first;
         let step = self.pending.pop_back_if(|step| is_moved && is_contour(step));
         let Some(step) = step else { return Err(beside(&corner)) };
-        self.held_motion = Some(HeldMotion { step, corner, length, plane: self.modal.plane });
+        let plane = self.modal.plane;
+        self.held_motion = Some(HeldMotion { step, corner, length, plane, is_new: true });
         Ok(())
+    }
+
+    /// Refuses the begin or the end of cutter compensation after a motion that is held for its corner: both motions would be another
+    /// one's.
+    pub(super) fn check_corner_before_compensation(&self) -> Result<(), GcodeFault> {
+        match &self.held_motion {
+            None => Ok(()),
+            Some(held) => {
+                let condition = "the next motion begins or ends cutter compensation";
+                Err(combination(held.corner.word, condition, WRITE_OUT))
+            }
+        }
     }
 
     /// Refuses a corner without a motion after it.
@@ -281,6 +305,10 @@ fn trimmed(held: &HeldMotion, next: &Step, plane: Plane) -> Result<Vec<Step>, Gc
         return Err(beside(corner));
     };
     let word = corner.word;
+    let has_arc = before.arc.is_some() || after.arc.is_some();
+    if has_arc && corner.shape != CornerShape::Round {
+        return Err(beside(corner));
+    }
     let point = before.end;
     let (into, out) = (before.direction(point), after.direction(point));
     let (cross, dot) = (into.perp(&out), into.dot(&out));
@@ -293,7 +321,6 @@ fn trimmed(held: &HeldMotion, next: &Step, plane: Plane) -> Result<Vec<Step>, Gc
     }
     let parts = match corner.shape {
         CornerShape::Round => rounded(&before, &after, *length, cross.signum()),
-        _ if before.arc.is_some() || after.arc.is_some() => return Err(beside(corner)),
         CornerShape::SquareChamfer if dot.abs() > 1e-9 => {
             let meaning = "a chamfer of a corner that is not square";
             return Err(not_read(word, meaning, "write the chamfer as a line"));
@@ -329,8 +356,12 @@ fn trimmed(held: &HeldMotion, next: &Step, plane: Plane) -> Result<Vec<Step>, Gc
         ..step.clone()
     };
     let first = Step { start: step.start, ..moved(&before, step) };
+    let mut between = moved(&between, step);
+    if let (Some(feed), Some(Feed::Speed { .. })) = (corner.feed, between.feed) {
+        between.feed = Some(Feed::Speed { length: feed, angle: feed });
+    }
     let last = Step { end: next.end, ..moved(&after, next) };
-    Ok(vec![first, moved(&between, step), last])
+    Ok(vec![first, between, last])
 }
 
 /// Returns two elements cut off by an arc that touches both, and the arc between them. `side` is 1 if the contour turns to the left,

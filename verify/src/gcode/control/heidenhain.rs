@@ -156,6 +156,8 @@ impl Control {
         let step = self.pending.back_mut().expect("the step that was added");
         // The way to the end of the travel leads away from the part, as that to a home does.
         (step.rapid, step.spindle, step.is_homeward) = (rapid, spindle, distance.is_none());
+        // Its feed is that of MB, which is not kept.
+        step.feed = None;
     }
 
     /// Moves along Z to a level in program coordinates, in millimetres. A tap turns with the motion.

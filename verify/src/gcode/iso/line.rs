@@ -221,7 +221,7 @@ impl Line {
             'R' => (",R", CornerShape::Round),
             _ => (",C", CornerShape::Chamfer),
         };
-        let corner = Corner { word, shape, length, is_whole };
+        let corner = Corner { word, shape, length, is_whole, feed: None };
         match self.block.corner.replace(corner) {
             None => Ok(()),
             Some(_) => Err(GcodeFault::Repeated { word: letter }),

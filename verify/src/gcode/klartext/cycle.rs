@@ -35,7 +35,7 @@ pub(super) struct Cycle {
     second: f64,
     /// The infeeds, if the tool leaves the hole between them.
     infeed: Option<Infeed>,
-    /// Set if cycle 203 leaves the hole in rapid traverse (Q208).
+    /// Set if cycle 201, 202 or 203 leaves the hole in rapid traverse (Q208).
     is_fast: bool,
     /// The direction in which cycle 202 leaves the wall.
     side: Option<Side>,
@@ -278,6 +278,7 @@ impl Program<'_> {
             return Err(missing("a call of a cycle", "a drilling cycle before (CYCL DEF 200)"));
         };
         let word = format!("CYCL DEF {}", cycle.number);
+        control.check_corner()?;
         control.check_uncompensated(&*word)?;
         if control.is_tcp() {
             return Err(combination(word, "M128 is in force", "write M129 before"));
@@ -326,7 +327,7 @@ impl Program<'_> {
                 if let Some((axis, increment)) = aside {
                     control.move_by(axis, increment, false);
                 }
-                control.move_to_level(top, false, false);
+                control.move_to_level(top, cycle.is_fast, false);
                 control.move_to_level(clear, true, false);
                 if let Some((axis, increment)) = aside {
                     control.move_by(axis, -increment, true);
@@ -480,11 +481,12 @@ fn cycle(given: &Given, unit: f64) -> Result<Cycle, GcodeFault> {
     let feed = if is_thread(number) { None } else { down };
     let retract_feed = match (number, given.get(208)) {
         // 0 is the feed down.
-        (201 | 203, Some(feed)) if feed.is_finite() && feed != 0.0 => Some(feed),
+        (201..=203, Some(feed)) if feed.is_finite() && feed != 0.0 => Some(feed),
         _ => feed,
     };
     let (dwell, rests_above) = (given.length(211).max(0.0), given.length(210) > 0.0);
-    let is_fast = number == 203 && given.get(208).is_some_and(|feed| feed >= RAPID_FEED);
+    let is_fast =
+        matches!(number, 201..=203) && given.get(208).is_some_and(|feed| feed >= RAPID_FEED);
     Ok(Cycle {
         number,
         clearance,

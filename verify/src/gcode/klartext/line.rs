@@ -187,10 +187,17 @@ impl<'a> Cursor<'a> {
     }
 }
 
+/// Words that can begin a line that continues a block, beside those with numbers.
+const CONTINUING: [&str; 26] = [
+    "AUTO", "C", "CALL", "COORD", "CYCL", "DEF", "DIST", "DR", "F", "FMAX", "FU", "FZ", "L", "M",
+    "MAX", "MB", "MOVE", "PLANE", "POS", "REP", "RL", "ROT", "RR", "STAY", "TABLE", "TURN",
+];
+
 /// Returns the length of a comment at the start of a text, up to the end of its line.
 ///
 /// A comment that is too long for its line goes on after a `~` that follows its last word at once. The text after such a sign is that
-/// of the comment only if it begins with a word in lower case: words of Klartext are written in upper case.
+/// of the comment if its first word has a letter in lower case, no digit and no sign, and is none that a block has. Any other text is
+/// taken for words of the block.
 fn comment(text: &str) -> usize {
     let mut length = 0;
     loop {
@@ -198,11 +205,12 @@ fn comment(text: &str) -> usize {
         let line = rest.split('\n').next().unwrap_or_default();
         let next = rest[line.len()..].split_whitespace().next().unwrap_or_default();
         length += line.len();
-        let is_wrapped = line
-            .trim_end()
-            .strip_suffix('~')
-            .is_some_and(|before| before.ends_with(|last: char| !last.is_whitespace()));
-        let is_prose = next.contains(|c: char| c.is_lowercase())
+        let before = line.trim_end().strip_suffix('~');
+        let is_wrapped =
+            before.is_some_and(|before| before.ends_with(|c: char| !c.is_whitespace()));
+        let is_word = CONTINUING.iter().any(|word| word.eq_ignore_ascii_case(next));
+        let is_prose = !is_word
+            && next.contains(|c: char| c.is_lowercase())
             && !next.contains(|c: char| c.is_ascii_digit() || "+-=".contains(c));
         if !is_wrapped || !is_prose {
             return length;

@@ -111,7 +111,6 @@ impl Program<'_> {
             self.is_modal_call = true;
         }
         if words.is_call || self.is_modal_call && is_motion {
-            control.check_corner()?;
             self.is_modal_call &= !words.is_call;
             self.call_cycle(0.0, control)?;
         }
@@ -604,9 +603,14 @@ impl Program<'_> {
             return Err(cursor.unexpected("the radius R after RND"));
         }
         let length = scale.length(&mut cursor)?;
-        if matches!(cursor.peek(), Some(b'F')) {
-            scale.feed(&mut cursor)?;
-        }
+        let feed = match cursor.peek() {
+            Some(b'F') => Some(scale.feed(&mut cursor)?),
+            _ => None,
+        };
+        let feed = match feed {
+            Some(Feed::Rate(rate)) => Some(rate),
+            _ => None,
+        };
         cursor.check_end()?;
         self.flow.go_on_at(after);
         let (word, shape) = match is_round {
@@ -614,7 +618,7 @@ impl Program<'_> {
             // At another corner the length can be that of the chamfer or of what it takes of each line.
             false => ("CHF", CornerShape::SquareChamfer),
         };
-        Ok(Some(Corner { word, shape, length, is_whole: false }))
+        Ok(Some(Corner { word, shape, length, is_whole: false, feed }))
     }
 }
 

@@ -282,7 +282,7 @@ impl<'a> Program<'a> {
                     _ => ("CHF", CornerShape::Chord),
                 };
                 let length = number(cursor, &self.variables)?;
-                let corner = Corner { word, shape, length, is_whole: false };
+                let corner = Corner { word, shape, length, is_whole: false, feed: None };
                 match block.corner.replace(corner) {
                     None => Ok(()),
                     Some(_) => Err(combination(word, "its block has another corner", "keep one")),

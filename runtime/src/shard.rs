@@ -1,0 +1,124 @@
+//! Shards: the equal parts of a work that several machines share.
+
+use std::fmt;
+use std::ops::Range;
+use std::str::FromStr;
+
+/// One of the equal parts of a work: `3/8` is the third of eight.
+///
+/// ```
+/// use touchoff::Shard;
+///
+/// let shard: Shard = "3/8".parse()?;
+/// assert_eq!((shard.number(), shard.count(), shard.range(16)), (3, 8, 4..6));
+/// # Ok::<(), touchoff::NoShard>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Shard {
+    number: u32,
+    count: u32,
+}
+
+impl Shard {
+    /// Largest number of shards.
+    pub const MAX: u32 = 1_000_000;
+
+    /// Returns the shard with a number from 1 to `count`; `None` if there is no such shard, or more than [`Shard::MAX`].
+    pub fn new(number: u32, count: u32) -> Option<Shard> {
+        (count <= Shard::MAX && (1..=count).contains(&number)).then_some(Shard { number, count })
+    }
+
+    /// Returns its number, from 1 on.
+    pub fn number(self) -> u32 {
+        self.number
+    }
+
+    /// Returns the number of shards.
+    pub fn count(self) -> u32 {
+        self.count
+    }
+
+    /// Returns its range of `total` items. Those of all shards are all items, each once; some shards of few items have none.
+    pub fn range(self, total: usize) -> Range<usize> {
+        let bound =
+            |shards: u32| (u128::from(shards) * total as u128 / u128::from(self.count)) as usize;
+        bound(self.number - 1)..bound(self.number)
+    }
+
+    /// Returns whether it has an item where items are dealt out in turn, as those of a work whose end is not known.
+    pub fn is_dealt(self, item: usize) -> bool {
+        item as u64 % u64::from(self.count) == u64::from(self.number - 1)
+    }
+}
+
+impl fmt::Display for Shard {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}/{}", self.number, self.count)
+    }
+}
+
+/// A text that is no shard.
+#[derive(Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "give the number of a shard and that of all shards, such as 3/8, up to {} shards",
+    Shard::MAX
+)]
+pub struct NoShard;
+
+crate::debug_as_sentence!(NoShard);
+
+impl FromStr for Shard {
+    type Err = NoShard;
+
+    fn from_str(text: &str) -> Result<Shard, NoShard> {
+        let digits = |text: &str| {
+            let is_number = !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+            text.parse().ok().filter(|_| is_number)
+        };
+        let (number, count) = text.split_once('/').ok_or(NoShard)?;
+        let found = digits(number).zip(digits(count));
+        found.and_then(|(number, count)| Shard::new(number, count)).ok_or(NoShard)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn texts_are_shards_or_refused() {
+        for text in [
+            "",
+            "/",
+            "1",
+            "0/3",
+            "4/3",
+            "1/0",
+            "+1/3",
+            "1/3/5",
+            " 1/3",
+            "-1/3",
+            "1/1000001",
+            "1.0/2",
+        ] {
+            assert!(text.parse::<Shard>().is_err(), "{text}");
+        }
+        for text in ["1/1", "3/8", "1000000/1000000"] {
+            assert_eq!(text.parse::<Shard>().expect("a shard").to_string(), text);
+        }
+    }
+
+    #[test]
+    fn each_item_is_in_one_shard() {
+        for (count, total) in (1..12).flat_map(|count| [0, 1, 5, 100].map(|total| (count, total))) {
+            let shards = || (1..=count).map(|number| Shard::new(number, count).expect("a shard"));
+            let ranges: Vec<usize> = shards().flat_map(|shard| shard.range(total)).collect();
+            assert_eq!(ranges, (0..total).collect::<Vec<_>>());
+            for item in 0..total {
+                assert_eq!(shards().filter(|shard| shard.is_dealt(item)).count(), 1);
+            }
+        }
+        let all = Shard::new(1_000_000, 1_000_000).expect("a shard");
+        assert_eq!(all.range(usize::MAX).end, usize::MAX);
+    }
+}
