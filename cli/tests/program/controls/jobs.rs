@@ -371,7 +371,7 @@ fn shards_of_a_job_give_its_report() {
         blocks += &format!("G1 X{x:.1} Y{:.1} Z{depth:.1}\n", f64::from(k / 20) - 7.5);
     }
     let mut scene = Scene::new(&blocks).placed().obstacle([8.0, -9.0, 0.0], [12.0, 9.0, 4.0]);
-    scene.job += "[stock]\nbox = [-8, -8, -8, 8, 8, 1]\nspacing = 0.5\n";
+    scene.job += "[stock]\nbox = [[-8, -8, -8], [8, 8, 1]]\nspacing = 0.5\n";
     for control in [&LINUXCNC[..], &[]] {
         let whole = scene.run(&[control, &["--json"]].concat());
         assert_eq!(whole.status.code(), Some(1), "{}", stderr(&whole));
