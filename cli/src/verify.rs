@@ -120,6 +120,7 @@ pub(crate) fn job_file(
         control: options.control,
         work_offsets: [None; 9],
         radius_offsets: BTreeMap::new(),
+        presets: BTreeMap::new(),
         block_delete: None,
         ignore: BTreeMap::new(),
         variables: BTreeMap::new(),

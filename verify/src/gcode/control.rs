@@ -52,6 +52,8 @@ pub(super) struct Control {
     origins: BTreeMap<WorkOffset, (Position, f64)>,
     lengths: BTreeMap<u32, f64>,
     radius_offsets: BTreeMap<u32, f64>,
+    /// The numbers of work offsets, by those of presets (Heidenhain).
+    presets: BTreeMap<u32, u8>,
     /// The sum that a program of Heidenhain adds to the radius offset of its tool.
     radius_allowance: f64,
     tool_names: BTreeMap<String, u32>,
@@ -249,6 +251,7 @@ impl Control {
             origins,
             lengths: setup.lengths.clone(),
             radius_offsets: setup.radius_offsets.clone(),
+            presets: setup.presets.clone(),
             radius_allowance: 0.0,
             tool_names: setup.tool_names.clone(),
             home: setup.home,

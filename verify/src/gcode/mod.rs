@@ -109,6 +109,9 @@ pub struct ControlSetup {
     /// Radius offsets of cutter compensation in millimetres, by D or tool number: the radius of the tool, or what it differs from the
     /// radius with which the program was made. A negative one exchanges G41 and G42.
     pub radius_offsets: BTreeMap<u32, f64>,
+    /// The work offset of each preset of Heidenhain by its number: 1 stands for G54, 9 for G59.3. Without any, a program selects one
+    /// preset, which is that of the part.
+    pub presets: BTreeMap<u32, u8>,
     /// The numbers of tools, by the names that programs of Sinumerik give them (`T="NAME"`), in either case.
     pub tool_names: BTreeMap<String, u32>,
     /// Position of G28 in machine coordinates.
@@ -139,6 +142,7 @@ impl Default for ControlSetup {
             work_offsets: [None; 9],
             lengths: BTreeMap::new(),
             radius_offsets: BTreeMap::new(),
+            presets: BTreeMap::new(),
             tool_names: BTreeMap::new(),
             home: None,
             second_home: None,

@@ -28,6 +28,8 @@ pub struct JobFile {
     pub work_offsets: [Option<[f64; 6]>; 9],
     /// Radius offsets of cutter compensation in mm, by D or tool number.
     pub radius_offsets: BTreeMap<u32, f64>,
+    /// The work offsets of presets ([`ControlSetup::presets`]).
+    pub presets: BTreeMap<u32, u8>,
     /// `true` if optional blocks are left out; `None` for both ways.
     pub block_delete: Option<bool>,
     /// Words that the control passes over, each with a reason ([`ControlRules::ignoring`]).
@@ -220,6 +222,8 @@ struct JobText {
     work_offsets: BTreeMap<String, Vec<f64>>,
     #[serde(default)]
     radius_offsets: BTreeMap<String, f64>,
+    #[serde(default)]
+    presets: BTreeMap<String, String>,
     block_delete: Option<bool>,
     #[serde(default)]
     ignore: BTreeMap<String, String>,
@@ -350,6 +354,7 @@ impl JobFile {
             }
         }
         let radius_offsets = radius_offsets(&job.radius_offsets, &entries).map_err(fault)?;
+        let presets = presets(&job.presets).map_err(fault)?;
         let named = |name: String| -> OsString {
             if name.ends_with(".toml") { folder.join(name).into() } else { name.into() }
         };
@@ -361,6 +366,7 @@ impl JobFile {
             control: job.control.map(named),
             work_offsets: work_offsets(&job.work_offsets)?,
             radius_offsets,
+            presets,
             block_delete: job.block_delete,
             ignore: job.ignore,
             variables,
@@ -413,6 +419,7 @@ impl JobFile {
             variables: self.variables.clone(),
             subprograms: read_subprograms(&self.subprograms)?,
             radius_offsets: self.radius_offsets.clone(),
+            presets: self.presets.clone(),
             tool_names: self.tools.names(),
             rules,
             ..ControlSetup::default()
@@ -549,6 +556,22 @@ fn radius_offsets(
         Some((number, _)) => Err(format!("radius offset {number} is a length in mm")),
         None => Ok(offsets),
     }
+}
+
+/// Returns the numbers of work offsets, from 1 for G54, by those of presets.
+///
+/// # Errors
+/// If a preset is no whole number, or stands for no work offset.
+fn presets(named: &BTreeMap<String, String>) -> Result<BTreeMap<u32, u8>, String> {
+    let found = named.iter().map(|(preset, offset)| {
+        let known = (1..).zip(WORK_OFFSETS).find(|(_, known)| known.eq_ignore_ascii_case(offset));
+        let number = preset.parse().ok();
+        let found = number.zip(known).map(|(number, (index, _))| (number, index));
+        found.ok_or_else(|| {
+            format!("preset `{preset}`: write its number and a work offset, `2 = \"G55\"`")
+        })
+    });
+    found.collect()
 }
 
 /// Returns the origins of G54 to G59.3 by their names.

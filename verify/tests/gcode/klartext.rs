@@ -582,6 +582,30 @@ fn m_words_hold_where_the_manual_says() {
     assert_eq!(ends(preset).len(), 2);
 }
 
+/// Presets with stated work offsets have the positions of G54 and G55 in ISO words, and end shifts.
+#[test]
+fn presets_are_work_offsets_that_are_stated() {
+    let mut setup = at_zero();
+    setup.presets = BTreeMap::from([(3, 1), (7, 2)]);
+    setup.work_offsets[1] = Some([100.0, 50.0, -10.0, 0.0, 0.0, 0.0]);
+    let select = |number: u32| format!("CYCL DEF 247 DATUM ~\n Q339=+{number}\n");
+    let at = |body: &str| {
+        let text = program(body);
+        let steps = read(&text, &setup).unwrap_or_else(|error| panic!("{text}{error}")).0;
+        let last = steps.last().expect("a step").clone();
+        let origin = last.state.origin;
+        [0, 1, 2].map(|axis| last.end[axis].expect("known") + origin[axis].expect("known"))
+    };
+    let line = "L X+1 Y+2 Z+3 FMAX";
+    assert_eq!(at(&format!("{}{line}", select(3))), [1.0, 2.0, 3.0]);
+    assert_eq!(at(&format!("{}{line}", select(7))), [101.0, 52.0, -7.0]);
+    let both = format!("{}CYCL DEF 7.1 X+9\n{line}\n{}{line}", select(3), select(7));
+    assert_eq!(at(&both), [101.0, 52.0, -7.0]);
+    assert_eq!(at(&format!("{both}\n{}L X+0 Y+0 Z+0 FMAX", select(3))), [0.0; 3]);
+    let error = read(&program(&format!("{}{line}", select(4))), &setup).expect_err("preset 4");
+    assert!(error.to_string().contains("a preset whose work offset is not stated"), "{error}");
+}
+
 /// A contour with lines, arcs and a rounded corner has the path of the tool's centre of the same contour in ISO words.
 #[test]
 fn a_compensated_contour_has_the_path_of_iso_words() {

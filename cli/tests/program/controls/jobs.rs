@@ -151,6 +151,31 @@ fn a_collision_far_from_the_part_has_status_1() {
     assert!(said.find("not verified:") < said.find("program:"), "{said}");
 }
 
+/// A program in Klartext with two presets goes to two places of one part; a preset that is not stated is named.
+#[test]
+fn presets_of_klartext_are_work_offsets() {
+    let text = "0 BEGIN PGM A MM\nCYCL DEF 247 DATUM ~\n Q339=+1\nTOOL CALL 1 Z S900\nL X-6 Y+0 FMAX M3\nL Z+20 FMAX\n\
+                CYCL DEF 247 DATUM ~\n Q339=+2\nL X+0 Y+0 FMAX\nL Z-1 F100\nL Z+20 FMAX\nM30\nEND PGM A MM\n";
+    let scene = |presets: &str| {
+        let mut scene = Scene::of(text).placed();
+        scene.job = scene
+            .job
+            .replace("a.nc", "a.h")
+            .replace("[work_offsets]\n", "[work_offsets]\nG55 = [3, 0, -400]\n");
+        scene.job += presets;
+        scene.bench.write("a.h", text);
+        scene
+    };
+    scene("").gives(&[], 2, &["another preset than the one before", "in `presets` of the job"]);
+    scene("[presets]\n1 = \"G54\"\n").gives(&[], 2, &["a preset whose work offset is not stated"]);
+    scene("[presets]\n1 = \"G54\"\n2 = \"X\"\n").gives(&[], 2, &["preset `2`: write its number"]);
+    scene("[presets]\n1 = \"G54\"\n2 = \"G55\"\n").gives(
+        &[],
+        1,
+        &["a.h:10: T1", "at (3.0000, 0.0000"],
+    );
+}
+
 #[test]
 fn a_mesh_in_place_of_a_job_is_named() {
     let bench = Bench::new();

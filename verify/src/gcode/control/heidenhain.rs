@@ -4,7 +4,7 @@ use super::motion::{ArcWords, path};
 use super::{AXES, Control, Motion};
 use crate::gcode::block::Block;
 use crate::gcode::error::{CompensationFault, combination, missing};
-use crate::gcode::state::{LengthOffset, Position, Rotation, Tcp};
+use crate::gcode::state::{LengthOffset, Position, Rotation, Tcp, WorkOffset};
 use crate::gcode::{GcodeFault, Plane, StepPath};
 use std::sync::Arc;
 use touchoff::Unit;
@@ -179,6 +179,19 @@ impl Control {
     /// Notes the end of a tapping cycle, which leaves the spindle standing or turning.
     pub(in crate::gcode) fn leave_thread(&mut self) {
         self.end_tapping(84);
+    }
+
+    /// Returns whether the setup states work offsets of presets.
+    pub(in crate::gcode) fn has_presets(&self) -> bool {
+        !self.presets.is_empty()
+    }
+
+    /// Selects the work offset of a preset. Returns `false` if the setup does not state it.
+    pub(in crate::gcode) fn select_preset(&mut self, number: f64) -> bool {
+        let known = self.presets.iter().find(|(known, _)| f64::from(**known) == number);
+        let Some((_, offset)) = known else { return false };
+        self.select_offset(WorkOffset::Standard(*offset));
+        true
     }
 
     /// Sets the feed in millimetres per minute, and returns the one before.

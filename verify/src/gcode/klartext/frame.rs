@@ -4,7 +4,8 @@
 //! tilted plane is along its axes. Where the manual leaves the order of two of them open, the second one is refused.
 //!
 //! The angles of a plane are about the fixed axes x, y and z of the workpiece, in this order; those of PLANE EULER about z, the new x
-//! and the new z (TNC 640, *Klartext programming*, "The PLANE function"). The preset that a program selects is the frame of the part.
+//! and the new z (TNC 640, *Klartext programming*, "The PLANE function"). The preset that a program selects is the frame of the part; of
+//! several, each has a work offset that the setup states.
 
 use super::Program;
 use super::block::{Coordinate, Feed, Retract, Scale, Words};
@@ -477,10 +478,11 @@ impl Program<'_> {
     pub(super) fn preset(&mut self, number: f64, control: &mut Control) -> Result<(), GcodeFault> {
         let word = format!("CYCL DEF 247 Q339={number}");
         match self.frame.preset {
-            Some(before) if before != number => {
+            Some(before) if before != number && !control.has_presets() => {
                 let meaning =
                     "another preset than the one before, whose place only the machine knows";
-                return Err(not_read(word, meaning, "check a program per preset"));
+                let remedy = "state the work offset of each in `presets` of the job";
+                return Err(not_read(word, meaning, remedy));
             }
             None if self.positioned => {
                 let condition = "positions of the preset before it stand in the program";
@@ -496,6 +498,10 @@ impl Program<'_> {
         let allowance = self.frame.allowance;
         self.frame = Frame { preset: Some(number), allowance, ..Frame::new() };
         self.change_frame(control);
+        if control.has_presets() && !control.select_preset(number) {
+            let meaning = "a preset whose work offset is not stated";
+            return Err(not_read(word, meaning, "state it in `presets` of the job"));
+        }
         Ok(())
     }
 }

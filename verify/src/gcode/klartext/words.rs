@@ -278,7 +278,7 @@ pub(super) const CYCLES: [Entry; 71] = [
     read("208", "bore milling on a helix"),
     read("209", "tapping with chip breaking"),
     read("240", "centring, by its depth"),
-    read("247", "the preset, of which a program has one"),
+    read("247", "the preset; of several, a job states the work offset of each (`presets`)"),
     passed("9", "a dwell"),
     passed("13", "an orientation of the spindle"),
     passed("32", "the tolerance of corners"),
