@@ -90,12 +90,31 @@ impl MapRow {
         joined
     }
 
+    /// Returns the lines of a table: the postures, the best first, each with its tool's accessibility, and then the tools without a
+    /// posture.
+    pub(crate) fn lines(
+        &self,
+    ) -> impl Iterator<Item = (Option<&PostureRecord>, Option<&Accessibility>)> {
+        let access = |tool: u16| self.access.iter().find(move |access| access.tool == tool);
+        let records = self.best.iter().map(move |record| (Some(record), access(record.tool)));
+        let others = self
+            .access
+            .iter()
+            .filter(|access| self.best.iter().all(|record| record.tool != access.tool));
+        records.chain(others.map(|access| (None, Some(access))))
+    }
+
     /// Returns the fraction of a triangle's area at a piece of it, with this row, that a tool reaches; `None` if no sweep
     /// tried the tool there.
-    pub(super) fn area_fraction(&self, piece: Piece, tool: u16) -> Option<f64> {
+    fn area_fraction(&self, piece: Piece, tool: u16) -> Option<f64> {
         let access = self.access.iter().find(|access| access.tool == tool)?;
         Some(if access.is_reached() { piece.fraction() } else { 0.0 })
     }
+}
+
+/// Returns the fraction of a triangle's area that a tool reaches, by its pieces; `None` if no sweep tried the tool at one of them.
+pub(crate) fn area_reached(pieces: &[(Piece, MapRow)], tool: u16) -> Option<f64> {
+    pieces.iter().map(|(piece, row)| row.area_fraction(*piece, tool)).sum()
 }
 
 /// Returns the number of directions from which a tool reaches a triangle.

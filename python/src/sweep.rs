@@ -8,9 +8,9 @@ use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use std::num::{NonZeroU16, NonZeroUsize};
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, Range};
 use std::path::PathBuf;
-use touchoff::{Shard, Unit};
+use touchoff::{Shard, TriangleId, Unit};
 use touchoff_postures::shard::{self, Merge, ShardError, is_done, shard_bytes};
 use touchoff_postures::sweep::{PostureSweep, SweepStats};
 use touchoff_postures::{Accessibility, Directions, MapIdentity, MapRow, PostureMap, Rules};
@@ -46,20 +46,10 @@ pub(crate) fn sweep<'py>(
         let tools = tools.iter().map(|tool| tool.get() as &dyn touchoff::Tool).collect();
         let sweep = PostureSweep::new(mesh, bvh, tools, &directions, rules, NonZeroU16::MIN);
         let sweep = sweep.map_err(refused)?;
-        let batches: Vec<usize> = (0..sweep.batches()).collect();
-        let (mut rows, mut stats) = (Vec::new(), SweepStats::default());
-        let flow = sweep.run(&batches, |batch| {
-            stats += batch.stats;
-            rows.extend(batch.rows.into_iter().map(|(id, row)| (id.index(), row)));
-            match Python::attach(|py| py.check_signals()) {
-                Ok(()) => ControlFlow::Continue(()),
-                Err(interrupt) => ControlFlow::Break(interrupt),
-            }
-        });
-        match flow {
-            ControlFlow::Break(interrupt) => Err(interrupt),
-            ControlFlow::Continue(()) => Ok((rows, stats)),
-        }
+        let batches = 0..sweep.batches();
+        let (rows, stats) = run(&sweep, batches)?;
+        let rows = rows.into_iter().map(|(id, row)| (id.index(), row)).collect();
+        Ok::<_, PyErr>((rows, stats))
     })?;
     let count = part.mesh()?.triangles().len();
     let names = tools.iter().map(|tool| tool.get().info().name.to_string()).collect();
@@ -68,6 +58,30 @@ pub(crate) fn sweep<'py>(
     dict.set_item("acceptable", stats.acceptable)?;
     dict.set_item("undecided", stats.undecided)?;
     Ok(dict)
+}
+
+/// Runs batches of a sweep, unless a signal ends them.
+///
+/// # Errors
+/// That of a handler of signals, such as `KeyboardInterrupt`.
+fn run(
+    sweep: &PostureSweep<'_>,
+    batches: Range<usize>,
+) -> PyResult<(Vec<(TriangleId, MapRow)>, SweepStats)> {
+    let batches: Vec<usize> = batches.collect();
+    let (mut rows, mut stats) = (Vec::new(), SweepStats::default());
+    let flow = sweep.run(&batches, |batch| {
+        stats += batch.stats;
+        rows.extend(batch.rows);
+        match Python::attach(|py| py.check_signals()) {
+            Ok(()) => ControlFlow::Continue(()),
+            Err(interrupt) => ControlFlow::Break(interrupt),
+        }
+    });
+    match flow {
+        ControlFlow::Break(interrupt) => Err(interrupt),
+        ControlFlow::Continue(()) => Ok((rows, stats)),
+    }
 }
 
 /// A sweep whose shards are computed one by one, here or elsewhere.
@@ -107,7 +121,7 @@ impl Study {
             Ok::<_, PyErr>((rules, identity))
         })?;
         let study = Study { part, tools, directions, rules, identity };
-        // What cannot be swept is refused here, and not by each shard.
+        // Errors of the sweep are raised here, and not by each shard.
         study.swept()?;
         Ok(study)
     }
@@ -125,21 +139,8 @@ impl Study {
             NonZeroUsize::new(threads).ok_or_else(|| refused("threads: give 1 or more"))?;
         let bytes = py.detach(|| {
             let sweep = self.swept()?.with_threads(threads);
-            let batches: Vec<usize> = shard.range(sweep.batches()).collect();
-            let mut rows = Vec::new();
-            let flow = sweep.run(&batches, |batch| {
-                rows.extend(batch.rows);
-                match Python::attach(|py| py.check_signals()) {
-                    Ok(()) => ControlFlow::Continue(()),
-                    Err(interrupt) => ControlFlow::Break(interrupt),
-                }
-            });
-            match flow {
-                ControlFlow::Break(interrupt) => Err(interrupt),
-                ControlFlow::Continue(()) => {
-                    Ok(shard_bytes(self.part.get().mesh()?, &self.identity, shard, rows))
-                }
-            }
+            let (rows, _) = run(&sweep, shard.range(sweep.batches()))?;
+            Ok::<_, PyErr>(shard_bytes(self.part.get().mesh()?, &self.identity, shard, rows))
         })?;
         Ok(PyBytes::new(py, &bytes))
     }

@@ -32,29 +32,37 @@ Progress = Callable[[int, int], None]
 _Arrays = tuple[Any, Any, str]
 
 
-@functools.lru_cache(maxsize=2)
-def _study(key: str, part: _Key, tools: _Key, rules: _Key) -> _touchoff.Study:
-    vertices, faces, unit = part.value
-    body = _part(Part(vertices, faces, unit=unit))
-    return _touchoff.Study(body, [_tool(tool) for tool in tools.value], *rules.value.arguments())
-
-
-class _Key:
-    """A value that does not count in the key of a cache."""
-
-    def __init__(self, value: Any) -> None:
-        self.value = value
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Key)
-
-    def __hash__(self) -> int:
-        return 0
+#: The key and the sweep of the part that this worker had last, with its tree of triangles.
+_kept: tuple[str, _touchoff.Study] | None = None
 
 
 def _shard(key: str, part: _Arrays, tools: list[Tool], rules: Rules, number: int, count: int, threads: int) -> bytes:
-    """Compute a shard: the task. A worker keeps the part that it had last, with its tree of triangles."""
-    return _study(key, _Key(part), _Key(tools), _Key(rules)).shard(number, count, threads)
+    """Compute a shard: the task."""
+    global _kept
+    if _kept is None or _kept[0] != key:
+        vertices, faces, unit = part
+        _kept = key, _study(Part(vertices, faces, unit=unit), tools, rules)
+    return _kept[1].shard(number, count, threads)
+
+
+def _study(part: Part, tools: list[Tool], rules: Rules) -> _touchoff.Study:
+    return _touchoff.Study(_part(part), [_tool(tool) for tool in tools], *rules.arguments())
+
+
+def _results(calls: Iterator[tuple[Any, Callable[[], Any]]], in_flight: int) -> Iterator[tuple[Any, Any]]:
+    """Submit tasks, some at a time, and yield the label and the result of each as it ends."""
+    import ray
+
+    open_tasks: dict[Any, Any] = {}
+    while True:
+        while len(open_tasks) < in_flight and (call := next(calls, None)) is not None:
+            label, submit = call
+            open_tasks[submit()] = label
+        if not open_tasks:
+            return
+        ready, _ = ray.wait(list(open_tasks), num_returns=1)
+        for reference in ready:
+            yield open_tasks.pop(reference), ray.get(reference)
 
 
 def sweep(
@@ -115,33 +123,27 @@ def sweep(
     root = Path(_arrays.path("folder", folder))
     files = {name: [root / "_shards" / _name(name) / f"{k}-of-{total}.parquet" for k in range(1, total + 1)] for name in parts}
     task = ray.remote(num_cpus=threads, max_retries=max_retries)(_shard)
-    open_tasks: dict[Any, Path] = {}
+    kept_tools = ray.put(listed)
     done = 0
 
-    def collect(wanted: int) -> None:
+    def calls() -> Iterator[tuple[Path, Callable[[], Any]]]:
         nonlocal done
-        while len(open_tasks) > wanted:
-            ready, _ = ray.wait(list(open_tasks), num_returns=1)
-            for reference in ready:
-                _touchoff.write_shard(str(open_tasks.pop(reference)), ray.get(reference))
-                done += 1
-                if progress is not None:
-                    progress(done, total * len(parts))
+        for name, part in parts.items():
+            study = _study(part, listed, rules)
+            files[name][0].parent.mkdir(parents=True, exist_ok=True)
+            kept = None
+            for number, file in enumerate(files[name], 1):
+                if study.is_done(str(file), number, total):
+                    done += 1
+                    continue
+                kept = ray.put((part.vertices, part.faces, part.unit)) if kept is None else kept
+                yield file, functools.partial(task.remote, kept.hex(), kept, kept_tools, rules, number, total, threads)
 
-    kept_tools = ray.put(listed)
-    for name, part in parts.items():
-        study = _touchoff.Study(_part(part), [_tool(tool) for tool in listed], *rules.arguments())
-        files[name][0].parent.mkdir(parents=True, exist_ok=True)
-        arrays: _Arrays = (part.vertices, part.faces, part.unit)
-        kept = None
-        for number, file in enumerate(files[name], 1):
-            if study.is_done(str(file), number, total):
-                done += 1
-                continue
-            kept = ray.put(arrays) if kept is None else kept
-            collect(limit - 1)
-            open_tasks[task.remote(kept.hex(), kept, kept_tools, rules, number, total, threads)] = file
-    collect(0)
+    for file, shard in _results(calls(), limit):
+        _touchoff.write_shard(str(file), shard)
+        done += 1
+        if progress is not None:
+            progress(done, total * len(parts))
     tables = []
     for name in parts:
         table = root / f"part={_name(name)}" / "table.parquet"
@@ -189,13 +191,4 @@ def verify_many(
     task = ray.remote(num_cpus=_arrays.count("num_cpus", num_cpus), max_retries=max_retries)(_check)
     paths = [os.path.abspath(_arrays.path("jobs", job)) for job in jobs]
     limit = _arrays.count("in_flight", in_flight)
-    open_tasks: dict[Any, str] = {}
-    waiting = iter(paths)
-    while True:
-        while len(open_tasks) < limit and (path := next(waiting, None)) is not None:
-            open_tasks[task.remote(path)] = path
-        if not open_tasks:
-            return
-        ready, _ = ray.wait(list(open_tasks), num_returns=1)
-        for reference in ready:
-            yield open_tasks.pop(reference), ray.get(reference)
+    yield from _results(((path, functools.partial(task.remote, path)) for path in paths), limit)

@@ -157,7 +157,7 @@ pub use probe::{
     Posture, Probe, Stiffness, Summary, ToolEnvelope, Weights, Wrench, WrenchRounding, summary,
 };
 pub use scene::{PartId, Scene, SceneError, ToolId};
-pub use shard::{NoShard, Shard};
+pub use shard::{NoShard, Shard, ShardSet, ShardSetError};
 pub use storage::SavedError;
 pub use tool::Tool;
 pub use touchoff_macros::{include_tool, tool, tool_library};

@@ -1,5 +1,6 @@
 //! Shards: the equal parts of a work that several machines share.
 
+use std::collections::BTreeMap;
 use std::fmt;
 use std::ops::Range;
 use std::str::FromStr;
@@ -54,6 +55,80 @@ impl Shard {
 impl fmt::Display for Shard {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}/{}", self.number, self.count)
+    }
+}
+
+/// The shards of a work that are there, each with the name of its file.
+#[derive(Clone, Debug, Default)]
+pub struct ShardSet {
+    files: BTreeMap<Shard, String>,
+    /// The shard that was added first.
+    first: Option<Shard>,
+}
+
+/// A reason for which a shard is not added to others.
+#[derive(Clone, PartialEq, Eq, thiserror::Error)]
+pub enum ShardSetError {
+    /// A shard of another number of shards.
+    #[error(
+        "{file} is shard {shard}, and {first} is one of {count}: run all shards with one number of them"
+    )]
+    OtherCount {
+        /// The file.
+        file: String,
+        /// Its shard.
+        shard: Shard,
+        /// The first file.
+        first: String,
+        /// The number of its shards.
+        count: u32,
+    },
+    /// Two files of one shard.
+    #[error("{file} and {first} are both shard {shard}: give one of them")]
+    Twice {
+        /// The file.
+        file: String,
+        /// The file before.
+        first: String,
+        /// Their shard.
+        shard: Shard,
+    },
+}
+
+crate::debug_as_sentence!(ShardSetError);
+
+impl ShardSet {
+    /// Adds the shard of a file.
+    ///
+    /// # Errors
+    /// If the shards before are of another number, or it is among them.
+    pub fn add(&mut self, shard: Shard, file: &str) -> Result<(), ShardSetError> {
+        let first = *self.first.get_or_insert(shard);
+        let (file, name) = (file.to_owned(), |shard: &Shard| self.files[shard].clone());
+        if first.count != shard.count {
+            return Err(ShardSetError::OtherCount {
+                file,
+                shard,
+                first: name(&first),
+                count: first.count,
+            });
+        }
+        if self.files.contains_key(&shard) {
+            return Err(ShardSetError::Twice { file, first: name(&shard), shard });
+        }
+        self.files.insert(shard, file);
+        Ok(())
+    }
+
+    /// Returns the number of all shards; 0 without any, since nothing says how many there are.
+    pub fn count(&self) -> u32 {
+        self.first.map_or(0, Shard::count)
+    }
+
+    /// Returns the shards that are missing, in order; none without any.
+    pub fn left(&self) -> impl Iterator<Item = Shard> + '_ {
+        let shards = (1..=self.count()).map(|number| Shard { number, count: self.count() });
+        shards.filter(|shard| !self.files.contains_key(shard))
     }
 }
 
@@ -120,5 +195,22 @@ mod tests {
         }
         let all = Shard::new(1_000_000, 1_000_000).expect("a shard");
         assert_eq!(all.range(usize::MAX).end, usize::MAX);
+    }
+
+    #[test]
+    fn a_set_has_each_shard_once() {
+        let shard = |text: &str| text.parse::<Shard>().expect("a shard");
+        let left = |set: &ShardSet| set.left().map(|shard| shard.to_string()).collect::<Vec<_>>();
+        let mut set = ShardSet::default();
+        assert_eq!((set.count(), left(&set)), (0, Vec::new()));
+        set.add(shard("2/3"), "b").expect("a shard");
+        assert_eq!((set.count(), left(&set)), (3, vec!["1/3".to_owned(), "3/3".to_owned()]));
+        let twice = set.add(shard("2/3"), "c").expect_err("twice").to_string();
+        assert!(twice.starts_with("c and b are both shard 2/3"), "{twice}");
+        let other = set.add(shard("1/4"), "d").expect_err("another number").to_string();
+        assert!(other.starts_with("d is shard 1/4, and b is one of 3"), "{other}");
+        set.add(shard("3/3"), "e").expect("a shard");
+        set.add(shard("1/3"), "f").expect("a shard");
+        assert!(left(&set).is_empty());
     }
 }

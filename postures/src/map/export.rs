@@ -1,7 +1,7 @@
 //! Export of maps. Every number is written so that it reads back as the same double.
 
 use super::{MapError, MapIdentity, PartFingerprint, PostureMap};
-use crate::record::direction_count;
+use crate::record::{area_reached, direction_count};
 use crate::shard::{TableRow, encoded};
 use crate::{Accessibility, MapRow, Piece, PostureRecord, Rules};
 use serde::Serialize;
@@ -74,10 +74,8 @@ impl PostureMap {
         writeln!(out, "{COLUMNS}").map_err(export)?;
         self.for_each_triangle(|triangle, pieces| {
             let row = MapRow::joined(&pieces, self.identity.keep);
-            lines(&row).try_for_each(|(record, access)| {
-                let reached = access.and_then(|access| {
-                    pieces.iter().map(|(piece, row)| row.area_fraction(*piece, access.tool)).sum()
-                });
+            row.lines().try_for_each(|(record, access)| {
+                let reached = access.and_then(|access| area_reached(&pieces, access.tool));
                 self.line(out, triangle, record, access, reached).map_err(export)
             })
         })?;
@@ -162,10 +160,7 @@ impl PostureMap {
                 tool: self.name(access.tool),
                 directions: direction_count(access),
                 stickout: access.stickout,
-                area_reached: pieces
-                    .iter()
-                    .map(|(piece, row)| row.area_fraction(*piece, access.tool))
-                    .sum(),
+                area_reached: area_reached(&pieces, access.tool),
             });
             let (best, access) = (best.collect(), access.collect());
             let row = Triangle { triangle, pieces: pieces.len(), best, access };
@@ -186,11 +181,7 @@ impl PostureMap {
         let mut rows = Vec::new();
         self.for_each_triangle(|triangle, pieces| {
             let row = MapRow::joined(&pieces, self.identity.keep);
-            let reached = row.access.iter().map(|access| {
-                let fractions =
-                    pieces.iter().map(|(piece, row)| row.area_fraction(*piece, access.tool));
-                fractions.flatten().sum()
-            });
+            let reached = row.access.iter().map(|access| area_reached(&pieces, access.tool));
             let (area, reached) = (mesh.area(triangle), reached.collect());
             rows.push(TableRow { triangle, area, row, reached });
             Ok::<(), MapError>(())
@@ -304,17 +295,6 @@ fn write_ply_body(
         out.write_all(&id.0.to_le_bytes())?;
     }
     out.flush()
-}
-
-/// Returns the postures of a row, each with its tool's accessibility, and then the tools without a posture.
-fn lines(row: &MapRow) -> impl Iterator<Item = (Option<&PostureRecord>, Option<&Accessibility>)> {
-    let records = row
-        .best
-        .iter()
-        .map(|record| (Some(record), row.access.iter().find(|access| access.tool == record.tool)));
-    let others =
-        row.access.iter().filter(|access| row.best.iter().all(|record| record.tool != access.tool));
-    records.chain(others.map(|access| (None, Some(access))))
 }
 
 /// Returns a CSV field, in quotes if needed.

@@ -10,7 +10,7 @@ mod export;
 mod identity;
 mod open;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 pub use error::MapError;
 pub use identity::{Difference, MapIdentity, PartFingerprint, ToolFingerprint};

@@ -17,11 +17,11 @@ mod tests;
 pub(crate) use table::{TableRow, encoded};
 
 use crate::map::Difference;
-use crate::{MapError, MapIdentity, MapRow, PostureMap};
-use std::collections::BTreeMap;
+use crate::record::area_reached;
+use crate::{MapError, MapIdentity, MapRow, Piece, PostureMap};
 use std::io::{self, Write};
 use std::path::Path;
-use touchoff::{AtomicFile, Mesh, Shard, TriangleId, read_regular_file};
+use touchoff::{AtomicFile, Mesh, Shard, ShardSet, ShardSetError, TriangleId, read_regular_file};
 
 /// A reason for which shards cannot be written, read or merged.
 #[derive(thiserror::Error)]
@@ -87,20 +87,6 @@ pub enum ShardError {
         /// The difference.
         difference: Difference,
     },
-    /// A shard of another number of shards.
-    #[error(
-        "{file} is shard {shard}, and {first} is one of {count}: run all shards with one number of them"
-    )]
-    OtherCount {
-        /// The file.
-        file: String,
-        /// Its shard.
-        shard: Shard,
-        /// The first file.
-        first: String,
-        /// The number of its shards.
-        count: u32,
-    },
     /// A file that has another shard of the same sweep.
     #[error("{file} has shard {found}, and not {wanted}: give each shard a file of its own")]
     OtherShard {
@@ -111,16 +97,9 @@ pub enum ShardError {
         /// The shard that is to be written.
         wanted: Shard,
     },
-    /// Two files of one shard.
-    #[error("{file} and {first} are both shard {shard}: give one of them")]
-    Twice {
-        /// The file.
-        file: String,
-        /// The file before.
-        first: String,
-        /// Their shard.
-        shard: Shard,
-    },
+    /// A shard that does not go with the others.
+    #[error(transparent)]
+    Set(#[from] ShardSetError),
     /// Shards are missing.
     #[error("{} of {count} shards are left, the first of them {first}: run them (`touchoff merge --left` lists them)", .left)]
     Incomplete {
@@ -149,8 +128,11 @@ pub fn shard_bytes(
     rows: Vec<(TriangleId, MapRow)>,
 ) -> Vec<u8> {
     let rows = rows.into_iter().map(|(triangle, row)| {
-        let reached = row.access.iter().map(|access| f64::from(u8::from(access.is_reached())));
-        TableRow { triangle, area: mesh.area(triangle), reached: reached.collect(), row }
+        let pieces = [(Piece::whole(triangle), row)];
+        let [(_, row)] = &pieces;
+        let reached = row.access.iter().map(|access| area_reached(&pieces, access.tool)).collect();
+        let [(_, row)] = pieces;
+        TableRow { triangle, area: mesh.area(triangle), row, reached }
     });
     let mut rows: Vec<TableRow> = rows.collect();
     rows.sort_by_key(|row| row.triangle);
@@ -209,10 +191,10 @@ pub fn is_done(
 /// The shards of a sweep, one file after the other.
 #[derive(Debug, Default)]
 pub struct Merge {
-    /// The identity and the number of shards, with the first file.
-    study: Option<(MapIdentity, u32, String)>,
-    /// The file and the rows of each shard, by its number.
-    found: BTreeMap<u32, (String, Vec<TableRow>)>,
+    /// The identity of the sweep, with the first file.
+    study: Option<(MapIdentity, String)>,
+    shards: ShardSet,
+    rows: Vec<TableRow>,
 }
 
 /// All rows of a sweep, from its shards.
@@ -238,35 +220,25 @@ impl Merge {
         let file = path.display().to_string();
         let table::Table { identity, shard, rows } = read_file(path)?;
         let shard = shard.ok_or_else(|| ShardError::Whole { file: file.clone() })?;
-        match &self.study {
-            None => self.study = Some((identity, shard.count(), file.clone())),
-            Some((known, count, first)) => {
-                let first = first.clone();
-                if let Some(difference) = identity.difference(known) {
-                    return Err(ShardError::Differs { file, first, difference });
-                }
-                if shard.count() != *count {
-                    return Err(ShardError::OtherCount { file, shard, first, count: *count });
-                }
-            }
+        if let Some((known, first)) = &self.study
+            && let Some(difference) = identity.difference(known)
+        {
+            return Err(ShardError::Differs { file, first: first.clone(), difference });
         }
-        if let Some((first, _)) = self.found.get(&shard.number()) {
-            return Err(ShardError::Twice { file, first: first.clone(), shard });
-        }
-        self.found.insert(shard.number(), (file, rows));
+        self.shards.add(shard, &file)?;
+        self.study.get_or_insert((identity, file));
+        self.rows.extend(rows);
         Ok(shard)
     }
 
     /// Returns whether no shard was added.
     pub fn is_empty(&self) -> bool {
-        self.found.is_empty()
+        self.study.is_none()
     }
 
     /// Returns the shards that are missing; none without any shard, since nothing says how many there are.
     pub fn left(&self) -> impl Iterator<Item = Shard> + '_ {
-        let count = self.study.as_ref().map_or(0, |(_, count, _)| *count);
-        let numbers = (1..=count).filter(|number| !self.found.contains_key(number));
-        numbers.filter_map(move |number| Shard::new(number, count))
+        self.shards.left()
     }
 
     /// Joins all shards.
@@ -277,15 +249,12 @@ impl Merge {
     pub fn finish(self) -> Result<Merged, ShardError> {
         let mut left = self.left();
         if let Some(first) = left.next() {
-            return Err(ShardError::Incomplete {
-                left: 1 + left.count(),
-                count: first.count(),
-                first,
-            });
+            let (left, count) = (1 + left.count(), first.count());
+            return Err(ShardError::Incomplete { left, count, first });
         }
         drop(left);
-        let (identity, _, first) = self.study.ok_or(ShardError::Empty)?;
-        let mut rows: Vec<TableRow> = self.found.into_values().flat_map(|(_, rows)| rows).collect();
+        let Merge { study, mut rows, .. } = self;
+        let (identity, first) = study.ok_or(ShardError::Empty)?;
         rows.sort_by_key(|row| row.triangle);
         let is_each_once = rows.len() == identity.part.triangles as usize
             && rows.is_sorted_by(|one, next| one.triangle < next.triangle);

@@ -75,8 +75,8 @@ pub(crate) struct TableRow {
     /// In the square of the part's unit.
     pub(crate) area: f64,
     pub(crate) row: MapRow,
-    /// Per entry of [`MapRow::access`], the fraction of the area that the tool reaches.
-    pub(crate) reached: Vec<f64>,
+    /// Per entry of [`MapRow::access`], the fraction of the area that the tool reaches, if it was tried everywhere.
+    pub(crate) reached: Vec<Option<f64>>,
 }
 
 /// A table, as it is read.
@@ -93,44 +93,33 @@ pub(crate) struct Table {
 struct Line<'a> {
     of: &'a TableRow,
     tool: u16,
-    /// A posture, and its place among those of the triangle.
-    record: Option<(u16, &'a PostureRecord)>,
-    /// An entry of the accessibility, by its index.
-    access: Option<usize>,
+    /// The place of the posture among those of the triangle.
+    rank: u16,
+    record: Option<&'a PostureRecord>,
+    access: Option<&'a Accessibility>,
 }
 
 impl TableRow {
-    /// Returns the lines of the row: a line per posture, and one per tool that was tried and has none.
     fn lines(&self) -> impl Iterator<Item = Line<'_>> {
-        let MapRow { best, access } = &self.row;
-        let records = (0..).zip(best).map(|(rank, record)| Line {
-            of: self,
-            tool: record.tool,
-            record: Some((rank, record)),
-            access: access.iter().position(|access| access.tool == record.tool),
-        });
-        let others = access.iter().enumerate();
-        let others = others.filter(|(_, access)| best.iter().all(|best| best.tool != access.tool));
-        let others = others.map(|(index, access)| Line {
-            of: self,
-            tool: access.tool,
-            record: None,
-            access: Some(index),
-        });
-        records.chain(others)
+        // Postures come first.
+        (0..).zip(self.row.lines()).filter_map(|(rank, (record, access))| {
+            let tool = record.map(|record| record.tool).or(access.map(|access| access.tool))?;
+            Some(Line { of: self, tool, rank, record, access })
+        })
     }
 }
 
 impl Line<'_> {
     fn numbers(&self) -> Option<[f64; RECORD_NUMBERS]> {
-        let (_, record) = self.record?;
         let PostureRecord { tip: [x, y, z], axis: [i, j, k], niceness, depth, clearance, .. } =
-            record;
+            self.record?;
         Some([*x, *y, *z, *i, *j, *k, *niceness, *depth, *clearance])
     }
 
-    fn accessibility(&self) -> Option<&Accessibility> {
-        self.access.map(|index| &self.of.row.access[index])
+    fn area_reached(&self) -> Option<f64> {
+        let TableRow { row, reached, .. } = self.of;
+        let index = row.access.iter().position(|access| access.tool == self.tool)?;
+        reached[index]
     }
 }
 
@@ -227,20 +216,19 @@ fn try_encoded(
         let names = lines.iter().map(|line| identity.tools[usize::from(line.tool)].name.as_str());
         let names: Vec<ByteArray> = names.map(ByteArray::from).collect();
         column::<ByteArrayType>(&mut group, &names, None)?;
-        let ranks = lines.iter().map(|line| line.record.map(|(rank, _)| i32::from(rank)));
+        let ranks = lines.iter().map(|line| line.record.map(|_| i32::from(line.rank)));
         optional::<Int32Type>(&mut group, ranks)?;
         for number in 0..RECORD_NUMBERS {
             let numbers = lines.iter().map(|line| line.numbers().map(|numbers| numbers[number]));
             optional::<DoubleType>(&mut group, numbers)?;
         }
-        let access = || lines.iter().map(Line::accessibility);
+        let access = || lines.iter().map(|line| line.access);
         let counts =
             access().map(|access| access.map(|access| direction_count(access).cast_signed()));
         optional::<Int32Type>(&mut group, counts)?;
         let stickouts = access().map(|access| access.and_then(|access| access.stickout));
         optional::<DoubleType>(&mut group, stickouts)?;
-        let reached = lines.iter().map(|line| line.access.map(|index| line.of.reached[index]));
-        optional::<DoubleType>(&mut group, reached)?;
+        optional::<DoubleType>(&mut group, lines.iter().map(Line::area_reached))?;
         let sets = access().map(|access| {
             access.map(|access| ByteArray::from(to_bytes(&access.directions, count)))
         });
@@ -346,7 +334,7 @@ impl Columns {
                 let directions = to_words(set.data());
                 let stickout = *self.stickout.get(at)?;
                 row.access.insert(place, Accessibility { tool, directions, stickout });
-                reached.insert(place, (*self.reached.get(at)?)?);
+                reached.insert(place, *self.reached.get(at)?);
             }
         }
         Some(())

@@ -1,6 +1,7 @@
 //! Shards that merge to the rows of a whole sweep, in any order; files that are damaged, foreign, missing or there twice.
 
 use super::*;
+use crate::map::tests::{Ball, Flat};
 use crate::sweep::PostureSweep;
 use crate::{Directions, Rules};
 use std::fs;
@@ -10,26 +11,6 @@ use std::path::PathBuf;
 use touchoff::certify::TriangleBvh;
 use touchoff::mesh::shapes;
 use touchoff::{Tool, Unit};
-
-touchoff::tool! {
-    tool Ball "a ball on a straight shank, in a holder" {
-        units mm;
-        profile {
-            start (0, 0);
-            arc to (3, 3) center (0, 3) as ball cutting;
-            line to (3, 20), (0, 20) as shank;
-        }
-        niceness cutting: 1;
-    }
-}
-
-touchoff::tool! {
-    tool Flat "flat" {
-        units mm;
-        profile { start (0, 0); line to (4, 0), (4, 20), (0, 20) as side cutting; }
-        niceness cutting: 1;
-    }
-}
 
 /// A sphere of 1,280 triangles, which are five batches, and the settings of its sweep.
 struct Study {
@@ -111,7 +92,7 @@ fn shards_of_any_number_and_order_merge_to_the_same_bytes() {
     let folder = tempfile::tempdir().expect("a folder");
     let (folder, study) = (folder.path(), Study::new());
     let whole = merged(folder, &study.write(folder, 1)).expect("a map");
-    // Of nine shards some have none of the five batches.
+    // Some of nine shards have none of the five batches.
     for count in [2, 3, 9] {
         let mut files = study.write(folder, count);
         let again = study.write(folder, count);

@@ -209,9 +209,9 @@ impl<'a> PostureSweep<'a> {
         &ids[batch * BATCH_TRIANGLES..((batch + 1) * BATCH_TRIANGLES).min(ids.len())]
     }
 
-    /// Processes the given batches on all cores, or on [`PostureSweep::with_threads`], and passes each to `each` as it is done, in no particular
-    /// order, until all are done or `each` breaks. The content of a batch depends neither on the thread nor on
-    /// the time.
+    /// Processes the given batches on all cores, or on the threads of [`PostureSweep::with_threads`], and passes each to `each` as it
+    /// is done, in no particular order, until all are done or `each` breaks. The content of a batch depends neither on the thread nor
+    /// on the time.
     pub fn run<B>(
         &self,
         batches: &[usize],

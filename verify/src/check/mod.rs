@@ -399,9 +399,7 @@ impl<'a> MoveCheck<'a> {
         mut self,
         progress: &(dyn Fn(usize) + Sync),
     ) -> Result<BTreeSet<usize>, VerifyError> {
-        if !self.batch.is_empty() {
-            self.check_batch(progress)?;
-        }
+        self.check_batch(progress)?;
         Ok(self.findings.iter().map(|finding| finding.location / MOVES_PER_TASK).collect())
     }
 
@@ -413,9 +411,7 @@ impl<'a> MoveCheck<'a> {
         mut self,
         progress: &(dyn Fn(usize) + Sync),
     ) -> Result<VerifyReport, VerifyError> {
-        if !self.batch.is_empty() {
-            self.check_batch(progress)?;
-        }
+        self.check_batch(progress)?;
         let MoveCheck { verifier, max_depths, count, modes, .. } = self;
         Ok(VerifyReport {
             moves: count,

@@ -33,7 +33,7 @@ struct ReadingResult {
     cut: Option<CutStock>,
     /// The work offsets under which no tool comes near the part, with their lines, if the reading has several.
     far_offsets: Vec<(WorkOffset, usize)>,
-    /// Of a shard, per pair the tasks with findings, and nothing else.
+    /// Tasks with findings, per pair: the only result of a shard.
     found: Vec<BTreeSet<usize>>,
 }
 
@@ -250,7 +250,7 @@ impl<'a> Job<'a> {
             MoveCheck::new(verifier, tasks)
         });
         let mut checks: Vec<MoveCheck<'_>> = checks.collect::<Result<_, _>>()?;
-        // What joins all motions is no matter of a shard.
+        // A shard does nothing that joins all motions.
         let is_shard = matches!(pass, Pass::Shard(_));
         let offsets = match self.program.readings().get(reading) {
             Some(program) if !is_shard && program.summary().work_offsets.len() > 1 => {

@@ -10,7 +10,7 @@ use siphasher::sip::SipHasher24;
 use std::collections::BTreeSet;
 use std::fmt::{self, Write};
 use std::hash::Hasher;
-use touchoff::Shard;
+use touchoff::{Shard, ShardSet, ShardSetError};
 
 /// The version of the program, whose checks may differ from those of another.
 const VERSION: &str = env!("CARGO_PKG_VERSION");
@@ -57,30 +57,9 @@ pub enum JobShardError {
         /// The file.
         file: String,
     },
-    /// A shard of another number of shards.
-    #[error(
-        "{file} is shard {shard}, and {first} is one of {count}: check all shards with one number of them"
-    )]
-    OtherCount {
-        /// The file.
-        file: String,
-        /// Its shard.
-        shard: Shard,
-        /// The first file.
-        first: String,
-        /// The number of its shards.
-        count: u32,
-    },
-    /// Two files of one shard.
-    #[error("{file} and {first} are both shard {shard}: give one of them")]
-    Twice {
-        /// The file.
-        file: String,
-        /// The file before.
-        first: String,
-        /// Their shard.
-        shard: Shard,
-    },
+    /// A shard that does not go with the others.
+    #[error(transparent)]
+    Set(#[from] ShardSetError),
     /// Shards are missing.
     #[error("{left} of {count} shards are left, the first of them {first}: check them")]
     Incomplete {
@@ -127,9 +106,9 @@ impl JobShard {
     ) -> Result<Vec<BTreeSet<usize>>, JobShardError> {
         let expected = digest_of(job);
         let mut all = vec![BTreeSet::new(); pairs];
-        let mut known: Vec<(Shard, &str)> = Vec::new();
-        for (file, found) in shards {
-            let (name, file) = (file, || file.clone());
+        let mut known = ShardSet::default();
+        for (name, found) in shards {
+            let file = || name.clone();
             if found.touchoff != VERSION {
                 let version = found.touchoff.clone();
                 return Err(JobShardError::OtherVersion { file: file(), version });
@@ -139,26 +118,17 @@ impl JobShard {
             if found.job != expected || found.found.len() != pairs {
                 return Err(JobShardError::OtherJob { file: file() });
             }
-            if let Some((first, of)) =
-                known.first().filter(|(first, _)| first.count() != shard.count())
-            {
-                let (first, count) = ((*of).to_owned(), first.count());
-                return Err(JobShardError::OtherCount { file: file(), shard, first, count });
-            }
-            if let Some((_, first)) = known.iter().find(|(known, _)| *known == shard) {
-                let first = (*first).to_owned();
-                return Err(JobShardError::Twice { file: file(), first, shard });
-            }
-            known.push((shard, name.as_str()));
+            known.add(shard, name)?;
             for (all, found) in all.iter_mut().zip(&found.found) {
                 all.extend(found);
             }
         }
-        let count = known.first().map_or(1, |(shard, _)| shard.count());
-        let numbers = (1..=count).filter_map(|number| Shard::new(number, count));
-        let mut left = numbers.filter(|shard| !known.iter().any(|(known, _)| known == shard));
-        match left.next() {
-            Some(first) => Err(JobShardError::Incomplete { left: 1 + left.count(), count, first }),
+        let mut left = known.left();
+        match left.next().or_else(|| Shard::new(1, 1).filter(|_| shards.is_empty())) {
+            Some(first) => {
+                let (left, count) = (1 + left.count(), first.count());
+                Err(JobShardError::Incomplete { left, count, first })
+            }
             None => Ok(all),
         }
     }

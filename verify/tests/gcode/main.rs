@@ -6,6 +6,7 @@ mod expected;
 mod figures;
 mod geometry;
 mod klartext;
+mod klartext_cycles;
 mod macros;
 mod mutants;
 mod next_run;

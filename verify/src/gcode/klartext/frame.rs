@@ -506,7 +506,7 @@ impl Program<'_> {
     }
 }
 
-/// What the rotary axes do.
+/// The motion of the rotary axes.
 #[derive(Clone, Copy)]
 enum Positioning {
     /// They turn, and X, Y and Z rest.

@@ -603,14 +603,12 @@ impl Program<'_> {
             return Err(cursor.unexpected("the radius R after RND"));
         }
         let length = scale.length(&mut cursor)?;
-        let feed = match cursor.peek() {
-            Some(b'F') => Some(scale.feed(&mut cursor)?),
-            _ => None,
-        };
-        let feed = match feed {
-            Some(Feed::Rate(rate)) => Some(rate),
-            _ => None,
-        };
+        let mut feed = None;
+        if matches!(cursor.peek(), Some(b'F'))
+            && let Feed::Rate(rate) = scale.feed(&mut cursor)?
+        {
+            feed = Some(rate);
+        }
         cursor.check_end()?;
         self.flow.go_on_at(after);
         let (word, shape) = match is_round {

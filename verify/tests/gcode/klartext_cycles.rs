@@ -1,0 +1,156 @@
+//! Cycles of Heidenhain Klartext: their levels along the hole, and the helix of bore milling.
+
+use crate::klartext::{at_zero, program, steps};
+use touchoff_verify::gcode::{NoteKind, Spindle, Step, StepPath, read};
+
+/// Returns the levels of Z to which the steps of the last block move, with a mark for rapid traverse.
+pub(crate) fn levels(body: &str) -> Vec<(bool, f64)> {
+    let steps = steps(body);
+    let last = steps.last().expect("steps").line;
+    let of_last = steps.iter().filter(|step| step.line == last && step.commanded[2]);
+    of_last.map(|step| (step.rapid, step.end[2].expect("a level"))).collect()
+}
+
+#[test]
+fn cycles_move_along_the_hole() {
+    let at = "TOOL CALL 5 Z S900\nL X+10 Y+20 FMAX M3\nL Z+100 FMAX\n";
+    let call = |cycle: &str| levels(&format!("{at}{cycle}\nL X+30 FMAX M99"));
+    let [rapid, feed] = [true, false];
+    let common = "Q200=+2 ;CLEARANCE ~\n Q201=-20 ~\n Q206=+100 ~\n Q203=+1 ~\n Q204=+50";
+    let single =
+        |number: u32, more: &str| call(&format!("CYCL DEF {number} NAME ~\n {common} ~\n {more}"));
+    assert_eq!(
+        single(200, "Q202=+8"),
+        [
+            (rapid, 3.0),
+            (feed, -7.0),
+            (rapid, 3.0),
+            (rapid, -5.0),
+            (feed, -15.0),
+            (rapid, 3.0),
+            (rapid, -13.0),
+            (feed, -19.0),
+            (rapid, 51.0)
+        ]
+    );
+    assert_eq!(single(200, "Q202=+20"), [(rapid, 3.0), (feed, -19.0), (rapid, 51.0)]);
+    assert_eq!(single(240, "Q343=+0"), [(rapid, 3.0), (feed, -19.0), (rapid, 51.0)]);
+    assert_eq!(single(201, "Q208=AUTO"), [(rapid, 3.0), (feed, -19.0), (feed, 3.0), (rapid, 51.0)]);
+    // Infeeds of 8, 6, 5 (the least one) and 1.
+    assert_eq!(
+        single(203, "Q202=+8 ~\n Q212=+2 ~\n Q205=+5 ~\n Q213=+0"),
+        [
+            (rapid, 3.0),
+            (feed, -7.0),
+            (feed, 3.0),
+            (rapid, -5.0),
+            (feed, -13.0),
+            (feed, 3.0),
+            (rapid, -11.0),
+            (feed, -18.0),
+            (feed, 3.0),
+            (rapid, -16.0),
+            (feed, -19.0),
+            (feed, 3.0),
+            (rapid, 51.0)
+        ]
+    );
+    assert_eq!(
+        single(205, "Q202=+15 ~\n Q258=+0.5 ~\n Q259=+1"),
+        [(rapid, 3.0), (feed, -14.0), (rapid, 3.0), (rapid, -13.5), (feed, -19.0), (rapid, 51.0)]
+    );
+    // Breaks of chips between which the tool stays in the hole, which it leaves in rapid traverse.
+    assert_eq!(
+        single(203, "Q202=+5 ~\n Q213=+2 ~\n Q208= MAX ;RETRACTION ~\n Q256=+1"),
+        [
+            (rapid, 3.0),
+            (feed, -14.0),
+            (rapid, 3.0),
+            (rapid, -12.0),
+            (feed, -19.0),
+            (rapid, 3.0),
+            (rapid, 51.0)
+        ]
+    );
+    // A second clearance below the first one has no part.
+    let low = "CYCL DEF 207 TAP ~\n Q200=+5 ~\n Q201=-34 ~\n Q239=+1.25 ~\n Q203=+0 ~\n Q204=+1";
+    assert_eq!(call(low), [(rapid, 5.0), (feed, -34.0), (feed, 5.0)]);
+    let tapped = steps(&format!("{at}{low}\nCYCL CALL"));
+    assert!(tapped[tapped.len() - 2..].iter().all(|step| step.spindle == Spindle::Tapping));
+    // Boring leaves the wall by 0.2 mm along -X, and returns to the axis above the part.
+    let bored = steps(&format!("{at}CYCL DEF 202 BORE ~\n {common} ~\n Q214=+1\nCYCL CALL"));
+    let last: Vec<_> =
+        bored[bored.len() - 6..].iter().map(|step| [step.end[0], step.end[2]]).collect();
+    let expected =
+        [[10.0, 3.0], [10.0, -19.0], [9.8, -19.0], [9.8, 3.0], [9.8, 51.0], [10.0, 51.0]];
+    assert_eq!(last, expected.map(|point| point.map(Some)));
+    // Calls: modal until M99, at a position with a higher surface, and not at all for the depth 0.
+    let drill = format!("CYCL DEF 200 DRILLING ~\n {common} ~\n Q202=+30\n");
+    let holes = |body: &str| {
+        let steps = steps(&format!("{at}{drill}{body}"));
+        let bottoms = steps.iter().filter(|step| !step.rapid);
+        bottoms
+            .map(|step| [step.end[0], step.end[1], step.end[2]].map(|v| v.expect("known")))
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(
+        holes("L X+1 FMAX M89\nL X+2 FMAX\nL X+3 FMAX M99\nL X+4 FMAX"),
+        [[1.0, 20.0, -19.0], [2.0, 20.0, -19.0], [3.0, 20.0, -19.0]]
+    );
+    assert_eq!(holes("CYCL CALL POS X+7 Y+8 Z+4"), [[7.0, 8.0, -15.0]]);
+    let none = drill.replace("Q201=-20", "Q201=+0");
+    assert_eq!(steps(&format!("{at}{none}\nCYCL CALL")).len(), steps(at).len());
+}
+
+/// Cycle 208 is the same motions in L, CC and CP; a tool of the bore's diameter plunges.
+#[test]
+fn a_bore_is_milled_on_a_helix() {
+    let at =
+        "TOOL DEF 5 L+80 R+4\nTOOL CALL 5 Z S900 F100 DR+0.5\nL X+10 Y+20 FMAX M3\nL Z+100 FMAX\n";
+    let bore = |diameter: f64, more: &str| {
+        format!(
+            "{at}CYCL DEF 208 BORE MILLING ~\n Q200=+2 ~\n Q201=-10 ~\n Q206=+100 ~\n Q334=+0.5 ~\n Q203=+1 ~\n Q204=+20 ~\n \
+             Q335={diameter:+} {more}\nCYCL CALL"
+        )
+    };
+    let plain = |sign: char| {
+        let [down, around] = [24 * 360, 360].map(|angle| format!("IPA{sign}{angle} DR{sign}"));
+        format!(
+            "{at}L Z+3 FMAX\nL X+13 F100\nCC X+10 Y+20\nCP {down} Z-9\nCP {around}\nL X+10 Y+20\nL Z+3 FMAX\nL Z+21 FMAX"
+        )
+    };
+    for (more, sign) in [("", '+'), ("~\n Q342=+0 ~\n Q351=+1", '+'), ("~\n Q351=-1", '-')] {
+        let (found, expected) = (steps(&bore(15.0, more)), steps(&plain(sign)));
+        let moved = |step: &&Step| step.start != step.end || step.path != StepPath::Line;
+        let ways = |steps: &[Step]| -> Vec<(bool, [i64; 3], Option<i64>)> {
+            let moving =
+                steps.iter().filter(moved).filter(|step| step.end[2] != Some(3.0) || !step.rapid);
+            let rounded = |value: f64| (1e9 * value).round() as i64;
+            let way = moving.map(|step| {
+                let end = [0, 1, 2].map(|axis| rounded(step.end[axis].expect("a number")));
+                let sweep = match step.path {
+                    StepPath::Arc { centre: [10.0, 20.0], sweep, .. } => Some(rounded(sweep)),
+                    _ => None,
+                };
+                (step.rapid, end, sweep)
+            });
+            way.collect()
+        };
+        assert_eq!(ways(&found), ways(&expected));
+    }
+    let (_, notes) = read(&program(&bore(15.0, "")), &at_zero()).expect("a program");
+    assert!(notes.iter().any(|note| note.kind == NoteKind::HelixStart), "{notes:?}");
+    assert_eq!(levels(&bore(9.0, "")), [(true, 3.0), (false, -9.0), (true, 21.0)]);
+    for (body, message) in [
+        (bore(8.0, ""), "CYCL DEF 208 while the tool is wider than the bore"),
+        (bore(18.5, ""), "a bore of more than twice the tool"),
+        (bore(15.0, "").replace("Q334=+0.5", "Q334=+0"), "an infeed per turn above 0"),
+        (bore(15.0, "").replace("Q334=+0.5", "Q334=+0.001"), "more than"),
+        (bore(15.0, "").replace("TOOL DEF 5 L+80 R+4\n", ""), "the radius offset 5 is not known"),
+    ] {
+        let error = read(&program(&body), &at_zero()).expect_err(&body).to_string();
+        assert!(error.contains(message), "{body}\n{error}");
+    }
+    // A bore that was milled before needs no second pass.
+    assert!(read(&program(&bore(24.0, "~\n Q342=+10")), &at_zero()).is_ok());
+}
