@@ -171,6 +171,9 @@ pub(crate) fn verify(arguments: Verify, json: bool) -> Result<ExitCode, Failure>
         for row in report.gap_rows() {
             out.json(&row)?;
         }
+        for row in report.cycle_time_rows() {
+            out.json(&row)?;
+        }
     }
     out.flush()?;
     print(&inputs, &report)?;

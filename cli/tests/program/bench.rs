@@ -29,6 +29,12 @@ pub(super) fn objects(output: &Output) -> Vec<Value> {
     stdout(output).lines().map(|line| serde_json::from_str(line).expect("a JSON object")).collect()
 }
 
+/// Returns the rows of `verify` that are findings, and neither gaps nor times.
+pub(super) fn findings(output: &Output) -> Vec<Value> {
+    let is_finding = |row: &Value| row["kind"] != "not-checked" && row["kind"] != "cycle-time";
+    objects(output).into_iter().filter(is_finding).collect()
+}
+
 /// A tool of one param, as a user writes it.
 pub(super) const TOOL: &str = "tool My {
     units mm;

@@ -1,6 +1,6 @@
 //! Job files: G-code on a machine, with several tools, fixtures and stock.
 
-use crate::bench::{Bench, cuboid, objects, stderr, stdout, touchoff};
+use crate::bench::{Bench, cuboid, findings, objects, stderr, stdout, touchoff};
 use crate::help::page_commands;
 use std::process::Output;
 use touchoff::Mesh;
@@ -126,9 +126,7 @@ fn the_job_of_the_page_becomes_clean() {
         include_str!("../../../docs/verify.md").contains(&format!("```text\n{printed}```")),
         "the page has other findings than\n{printed}"
     );
-    let found = job(&bench, &text, &["--json"]);
-    let is_finding = |row: &serde_json::Value| row["kind"] != "not-checked";
-    let found: Vec<_> = objects(&found).into_iter().filter(is_finding).collect();
+    let found = findings(&job(&bench, &text, &["--json"]));
     assert!(found.iter().any(|row| {
         row["tool_number"] == 2 && row["surface"] == "nut" && row["body"] == "the vise"
     }));

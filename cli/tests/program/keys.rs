@@ -31,6 +31,8 @@ fn all_keys_are_documented() {
         (bench.place("block.stl"), bench.place("map.postures"), bench.place("path.apt"));
     let gouge = "UNITS/MM\nGOTO/-9,0,3,0,0,1\nGOTO/-9,0,-0.5,0,0,1\nGOTO/9,0,-0.5,0,0,1\nFINI\n";
     let program = bench.write("gouge.apt", gouge);
+    let milled =
+        bench.write("mill.nc", "G21 G90 G54 S900 M3\nG0 X-9. Y0. Z3.\nG1 X9. F100.\nM30\n");
     let library = bench.write("library.json", crate::import::LIBRARY);
     let solid = bench.write("solid.csv", "-4,0,-0.2,0,0,0,1\n4,0,-0.2,0,0,0,1\n");
     let tool = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tools-library/tools/fig_7_3.tool");
@@ -39,6 +41,7 @@ fn all_keys_are_documented() {
         format!("run PART --tool D2Ball --program {program} --certify 1e-3"),
         format!("verify PART --tool D2Ball --program {program} --allow shank=-9"),
         format!("verify PART --tool Block --program {solid}"),
+        format!("verify PART --tool D2Ball --program {milled}"),
         "haptic PART --tool D2Ball --duration 0.05".to_owned(),
         format!("sweep PART --tool D2Ball --directions 20 --tolerance 0.05 -o {map}"),
         format!("map {map}"),

@@ -1,6 +1,6 @@
 //! Bodies of a machine: a job is followed from its text to the finding that a spindle head touches the table.
 
-use crate::bench::{Bench, cuboid, objects, stderr, stdout, touchoff};
+use crate::bench::{Bench, cuboid, findings, objects, stderr, stdout, touchoff};
 use std::process::Output;
 
 /// A slot in the side of a block, milled with the table tilted by 90 degrees.
@@ -51,8 +51,7 @@ fn a_spindle_head_touches_the_table_at_a_steep_angle() {
     let sarif = bench.place("slot.sarif");
     let output = verify(&bench, &text, &["--json", "--sarif", &sarif]);
     assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
-    let found = objects(&output);
-    let found: Vec<_> = found.iter().filter(|row| row["kind"] != "not-checked").collect();
+    let found = findings(&output);
     let [row] = &found[..] else { panic!("{found:?}") };
     for (key, value) in
         [("tool", "the spindle head"), ("body", "the table"), ("kind", "deep"), ("surface", "nose")]

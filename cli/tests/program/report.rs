@@ -1,6 +1,6 @@
 //! Reports: one HTML file with every finding, which loads nothing and survives the names of files.
 
-use crate::bench::{Bench, Gouging, objects, shared, stderr};
+use crate::bench::{Bench, Gouging, findings, shared, stderr};
 use crate::job::bracket;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -111,8 +111,7 @@ fn area([a, b, c]: [[f64; 3]; 3]) -> f64 {
 /// Asserts that a report has the findings that `verify` prints, and a camera on each that has a pose.
 fn assert_same_findings(page: &Page, verified: &Output) {
     assert_eq!(page.output.status.code(), verified.status.code(), "{}", stderr(&page.output));
-    let is_finding = |row: &Value| row["kind"] != "not-checked";
-    let rows: Vec<Value> = objects(verified).into_iter().filter(is_finding).collect();
+    let rows = findings(verified);
     assert_eq!(page.data("findings"), Value::from(rows.clone()));
     let (shown, scene) = (page.rows(), page.data("scene"));
     assert_eq!(shown.len(), rows.len());

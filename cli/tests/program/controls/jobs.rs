@@ -1,8 +1,10 @@
 //! What a job states, what a verdict says, and what a program leaves to its next run.
 
 use super::{FANUC, HAAS, LINUXCNC, SIEMENS, Scene};
-use crate::bench::{Bench, objects, stderr, stdout, touchoff};
+use crate::bench::{Bench, findings, objects, stderr, stdout, touchoff};
+use serde_json::json;
 use std::fs;
+use touchoff_verify::CYCLE_TIME_ASSUMPTIONS;
 use touchoff_verify::gcode::{ControlRules, Rule};
 
 /// Every tool with motions is in the verdict.
@@ -192,18 +194,54 @@ fn a_mesh_in_place_of_a_job_is_named() {
 #[test]
 fn what_was_not_checked_is_in_the_json() {
     let scene = Scene::new("G0 X-6. Y0. Z20.\nM8\nM0\nG1 X4. Z1.");
-    let rows = objects(&scene.run(&[&LINUXCNC[..], &["--json"]].concat()));
-    let reasons: Vec<&str> = rows.iter().filter_map(|row| row["reason"].as_str()).collect();
-    assert!(
-        rows.iter().all(|row| row["kind"] == "not-checked" && row["open"] == false),
-        "{rows:?}"
-    );
+    let output = scene.run(&[&LINUXCNC[..], &["--json"]].concat());
+    let rows = objects(&output);
+    let gaps: Vec<_> = rows.iter().filter(|row| row["kind"] == "not-checked").collect();
+    let reasons: Vec<&str> = gaps.iter().filter_map(|row| row["reason"].as_str()).collect();
+    assert!(gaps.iter().all(|row| row["open"] == false), "{gaps:?}");
+    assert!(findings(&output).is_empty(), "{rows:?}");
     for word in
         ["limits of X, Y and Z", "no position before", "by hand during the stop", "of the tip"]
     {
         assert!(reasons.iter().any(|reason| reason.contains(word)), "{word}: {reasons:?}");
     }
     assert!(!reasons.iter().any(|reason| reason.contains("passed over")), "{reasons:?}");
+}
+
+/// 10 mm at 100 mm/min along X and a dwell, after a motion from where nobody knows; then rates, and another reading.
+#[test]
+fn cycle_times_are_in_the_json() {
+    let times = |scene: &Scene, more: &[&str]| {
+        let mut rows = objects(&scene.run(&[more, &["--json"]].concat()));
+        rows.retain(|row| row["kind"] == "cycle-time");
+        rows
+    };
+    let scene = Scene::new("G0 X-6. Y0. Z20.\nG1 X4.\nG4 P2.\nG0 Z30.");
+    let found = times(&scene, &LINUXCNC);
+    let [row] = &found[..] else { panic!("{found:?}") };
+    let expected = json!({
+        "file": row["file"], "kind": "cycle-time", "tool_number": null, "feed_s": 6.0, "rapid_s": null, "dwell_s": 2.0,
+        "unknown": 2, "first_unknown_line": 2, "assumptions": CYCLE_TIME_ASSUMPTIONS,
+    });
+    assert_eq!(*row, expected);
+    assert!(row["file"].as_str().is_some_and(|file| file.ends_with("a.nc")), "{row}");
+
+    // 10 mm of Z at 3000 mm/min.
+    let mut machine = stdout(&touchoff(&["machines", "3-axis"]));
+    for letter in ["X", "Y", "Z"] {
+        let line = format!("letter = \"{letter}\"\n");
+        machine = machine.replace(&line, &format!("{line}rapid = 3000\n"));
+    }
+    let scene = scene.with("machine = \"mine.toml\"");
+    scene.bench.write("mine.toml", machine);
+    let found = times(&scene, &LINUXCNC);
+    let rapid = found[0]["rapid_s"].as_f64().expect("rates");
+    assert!((rapid - 0.2).abs() < 1e-9 && found[0]["unknown"] == 1, "{found:?}");
+
+    // A program with several readings names the one of which it is the time.
+    let scene = Scene::new("G0 X-6. Y0. Z20.\nG81 X-6. Y0. Z10. R15.\nX6.\nG80");
+    let under = times(&scene, &[])[0]["under"].clone();
+    assert!(under.as_str().is_some_and(|under| under.starts_with("under cycle_return")), "{under}");
 }
 
 /// Too many rules at once that are not stated are no verdict.
