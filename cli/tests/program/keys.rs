@@ -29,7 +29,7 @@ fn all_keys_are_documented() {
     let bench = Bench::new();
     let (part, map, path) =
         (bench.place("block.stl"), bench.place("map.postures"), bench.place("path.apt"));
-    let gouge = "UNITS/MM\nGOTO/-9,0,3,0,0,1\nGOTO/-9,0,-0.5,0,0,1\nGOTO/9,0,-0.5,0,0,1\nFINI\n";
+    let gouge = "UNITS/MM\nFEDRAT/9,MMPM\nGOTO/-9,0,3,0,0,1\nGOTO/-9,0,-0.5,0,0,1\nGOTO/9,0,-0.5,0,0,1\nFINI\n";
     let program = bench.write("gouge.apt", gouge);
     let milled =
         bench.write("mill.nc", "G21 G90 G54 S900 M3\nG0 X-9. Y0. Z3.\nG1 X9. F100.\nM30\n");

@@ -26,7 +26,6 @@ mod path;
 mod resolve;
 mod summary;
 
-pub use cycle_time::{CYCLE_TIME_ASSUMPTIONS, CycleTime};
 pub use fault::{MachineProgramError, StepFault};
 pub use summary::{
     Gap, GapWeight, MachineSummary, ProgramStop, ToolUse, UnknownCause, UnknownMotions,

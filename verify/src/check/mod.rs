@@ -24,19 +24,20 @@
 
 mod approach;
 mod checker;
+mod cycle_time;
 mod finding;
 mod machine_program;
 mod moves;
 mod remedy;
 
 pub use approach::Approach;
+pub use cycle_time::{CYCLE_TIME_ASSUMPTIONS, CycleTime};
 pub(crate) use finding::Rank;
 pub use finding::{Finding, FindingGroup, FindingKind, VerifyError, VerifyReport};
 pub(crate) use machine_program::MoveRequest;
 pub use machine_program::{
-    Assumption, CYCLE_TIME_ASSUMPTIONS, CycleTime, Gap, GapWeight, MAX_READINGS, MAX_VALUES,
-    MachineProgram, MachineProgramError, MachineSummary, ProgramStop, StepFault, ToolSelection,
-    ToolUse, UnknownCause, UnknownMotions,
+    Assumption, Gap, GapWeight, MAX_READINGS, MAX_VALUES, MachineProgram, MachineProgramError,
+    MachineSummary, ProgramStop, StepFault, ToolSelection, ToolUse, UnknownCause, UnknownMotions,
 };
 pub use moves::{JointPath, Move, MovePath, RapidBox};
 pub use remedy::Tilt;

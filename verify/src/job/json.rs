@@ -33,7 +33,7 @@ impl JobReport<'_> {
     /// Returns the [times of the tools](JobReport::cycle_times) as objects for JSON.
     pub fn cycle_time_rows(&self) -> impl Iterator<Item = impl Serialize + '_> {
         let under = self.job.program.under(&[0]);
-        self.cycle_times().iter().map(move |time| CycleTimeRow {
+        self.cycle_times().into_iter().map(move |time| CycleTimeRow {
             file: self.job.program.name(),
             kind: "cycle-time",
             tool_number: time.tool,

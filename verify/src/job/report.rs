@@ -140,9 +140,9 @@ impl JobReport<'_> {
         self.shape(pair).info()
     }
 
-    /// Returns the time of each tool in the first reading of G-code; none of cutter locations.
-    pub fn cycle_times(&self) -> &[CycleTime] {
-        self.job.program.readings().first().map_or(&[], |reading| &reading.summary().times)
+    /// Returns the time of each tool, as [`Program::cycle_times`](super::Program::cycle_times) does.
+    pub fn cycle_times(&self) -> Vec<CycleTime> {
+        self.job.program.cycle_times(self.job.unit())
     }
 
     /// Returns the stock after the first reading, if the job has one.

@@ -5,6 +5,7 @@
 //! whole check: the closest approach, the stock, the groups of findings. The result is hence the same as without shards, byte by byte.
 
 use super::{Job, Program};
+use crate::CutterLocation;
 use serde::{Deserialize, Serialize};
 use siphasher::sip::SipHasher24;
 use std::collections::BTreeSet;
@@ -176,10 +177,10 @@ fn digest_of(job: &Job<'_>) -> String {
     match program {
         Program::Locations(programs) => {
             for program in programs {
-                text.add(format_args!(
-                    "{:?} {:?} {:?}",
-                    program.unit, program.tool, program.locations
-                ));
+                text.add(format_args!("{:?} {:?}", program.unit, program.tool));
+                for CutterLocation { line, pose, rapid, feed: _ } in &program.locations {
+                    text.add(format_args!("{line} {pose:?} {rapid}"));
+                }
             }
         }
         Program::Machine(readings) => {

@@ -12,11 +12,19 @@
 //! and the cutters stated before or after it, up to the next position, are those of the new one. In NX's files,
 //! `TOOL PATH` after `END-OF-PATH` begins another operation.
 //!
+//! `FEDRAT`, `SPINDL` and `DELAY` give the feeds and delays from which times follow (`rates`). They hold until the next one, for
+//! every tool.
+//!
 //! Words that can neither move the tool nor change the meaning of positions are listed in
-//! [`ClData::ignored`](super::ClData::ignored), with any arguments or with those given. Every other word is refused: an unknown
-//! one could be a motion.
+//! [`ClData::ignored`](super::ClData::ignored), with any arguments or with those given; so is a rate that is not understood. Every
+//! other word is refused: an unknown one could be a motion.
 
-use super::{CutterLocation, Located, ProgramFault, Tape, Tapes, axis_pose, lines, number, shown};
+mod rates;
+
+use super::{
+    CutterLocation, Delay, Located, ProgramFault, Tape, Tapes, axis_pose, lines, number, shown,
+};
+use rates::Rates;
 use std::collections::BTreeMap;
 use std::mem;
 use touchoff::{Pose, Unit};
@@ -129,6 +137,7 @@ struct Reader {
     /// Set in a file of NX, which has `TOOL PATH`.
     is_nx: bool,
     rapid: bool,
+    rates: Rates,
     /// Set once there was a `GOTO`.
     has_moved: bool,
     /// Statements about the present tool, by word: the line and the arguments.
@@ -190,6 +199,7 @@ impl Reader {
             }
             "FROM" if self.tape.locations.is_empty() => {
                 self.position(line, "FROM", rest, true, is_last)?;
+                self.tape.starts_at_first = true;
             }
             "FROM" => return Err(ProgramFault::LateFrom),
             "RAPID" if rest.is_empty() => self.rapid = true,
@@ -231,7 +241,8 @@ impl Reader {
     ) -> Result<(), ProgramFault> {
         match self.pose(word, rest) {
             Ok(pose) => {
-                self.tape.locations.push(CutterLocation { line, pose, rapid });
+                let feed = self.rates.feed().filter(|_| !rapid);
+                self.tape.locations.push(CutterLocation { line, pose, rapid, feed });
                 Ok(())
             }
             Err(_) if is_last => Err(ProgramFault::Unfinished),
@@ -344,7 +355,7 @@ impl Reader {
         Ok(())
     }
 
-    /// Passes over or refuses a word that is not read.
+    /// Reads a word that moves nothing, passes over it, or refuses it.
     fn other(
         &mut self,
         line: usize,
@@ -354,7 +365,18 @@ impl Reader {
     ) -> Result<(), ProgramFault> {
         match skip_statement(word, rest) {
             Ok(word) => {
-                self.tape.ignored.push((line, word));
+                let is_read = match word.as_str() {
+                    "DELAY" | "DWELL" => {
+                        // The unit of a `DWELL` is the post-processor's.
+                        let seconds = self.rates.delay(rest).filter(|_| word == "DELAY");
+                        self.tape.delays.push(Delay { line, seconds });
+                        seconds.is_some()
+                    }
+                    other => self.rates.read(other, rest),
+                };
+                if !is_read {
+                    self.tape.ignored.push((line, word));
+                }
                 Ok(())
             }
             Err(ProgramFault::UnknownWord { .. })
@@ -427,7 +449,7 @@ const PROSE_WORDS: [&str; 3] = ["PARTNO", "PPRINT", "REMARK"];
 const VERBATIM_WORDS: [&str; 2] = ["INSERT", "LETTER"];
 
 /// Words that can neither move the tool nor change the meaning of positions: names and messages, tolerances
-/// that were used in computing the positions, speeds and feeds, coolant, stops and waits, the block numbers and
+/// that were used in computing the positions, speeds and feeds, coolant, stops and delays, the block numbers and
 /// the file of the post-processor, planes that only other words use, displays.
 #[rustfmt::skip]
 const IGNORED_WORDS: [&str; 35] = [

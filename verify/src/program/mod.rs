@@ -40,7 +40,11 @@ pub struct ClData {
     pub ignored: Vec<(usize, String)>,
     /// The tool's number, if APT's `LOADTL` states it.
     pub tool: Option<u32>,
+    /// Delays of APT.
+    pub delays: Vec<Delay>,
     file: String,
+    /// Set if the tool stands at the first location (`FROM`), and no motion leads there.
+    starts_at_first: bool,
     /// Line of `UNITS` in a program that was read.
     unit_line: Option<usize>,
     /// Cutters that APT states, as arguments of `CUTTER` in the program's unit, each with its line.
@@ -108,6 +112,17 @@ pub struct CutterLocation {
     pub pose: Pose,
     /// Set if the tool arrives in rapid traverse.
     pub rapid: bool,
+    /// The speed of the tip on the way there, in millimetres per minute, as far as APT states it (`FEDRAT`); `None` in rapid traverse.
+    pub feed: Option<f64>,
+}
+
+/// A delay that a program states.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Delay {
+    /// Its line, 1-based.
+    pub line: usize,
+    /// Its time in seconds; `None` if that is not known.
+    pub seconds: Option<f64>,
 }
 
 impl ClData {
@@ -122,8 +137,9 @@ impl ClData {
         poses: impl IntoIterator<Item = (Pose, bool)>,
     ) -> Result<ClData, ProgramError> {
         let numbered = (1..).zip(poses);
-        let locations: Vec<CutterLocation> =
-            numbered.map(|(line, (pose, rapid))| CutterLocation { line, pose, rapid }).collect();
+        let locations: Vec<CutterLocation> = numbered
+            .map(|(line, (pose, rapid))| CutterLocation { line, pose, rapid, feed: None })
+            .collect();
         let file = name.to_owned();
         if locations.is_empty() {
             return Err(ProgramError::NoPosition { file });
@@ -133,7 +149,9 @@ impl ClData {
             locations,
             ignored: Vec::new(),
             tool: None,
+            delays: Vec::new(),
             file,
+            starts_at_first: false,
             unit_line: None,
             cutters: Vec::new(),
         })
@@ -190,6 +208,8 @@ impl ClData {
             locations: tape.locations,
             ignored: tape.ignored,
             tool: tape.tool,
+            delays: tape.delays,
+            starts_at_first: tape.starts_at_first,
             cutters: tape.cutters,
             file: file.clone(),
         });
@@ -199,6 +219,11 @@ impl ClData {
     /// Returns the program's name in messages.
     pub fn name(&self) -> &str {
         &self.file
+    }
+
+    /// Returns whether the tool stands at the first location (`FROM`), so that no motion leads there.
+    pub(crate) fn starts_at_first(&self) -> bool {
+        self.starts_at_first
     }
 
     /// Checks that a unit that the file states is the part's. A file that states none is taken to be in the
@@ -267,6 +292,9 @@ struct Tape {
     unit: Option<(Unit, usize)>,
     ignored: Vec<(usize, String)>,
     tool: Option<u32>,
+    delays: Vec<Delay>,
+    /// Set if the first location is that of `FROM`.
+    starts_at_first: bool,
     cutters: Vec<(usize, Vec<f64>)>,
 }
 

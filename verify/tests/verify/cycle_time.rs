@@ -1,9 +1,10 @@
 //! Cycle times against closed forms, worked out by hand.
 
 use std::f64::consts::PI;
+use touchoff::Unit;
 use touchoff_verify::gcode::{ControlRules, ControlSetup};
 use touchoff_verify::machine::Machine;
-use touchoff_verify::{CycleTime, MachineProgram};
+use touchoff_verify::{CycleTime, MachineProgram, Program};
 
 /// Rates of the axes in rapid traverse, in mm and degrees per minute.
 const RATES: [(&str, f64); 5] =
@@ -204,4 +205,104 @@ fn klartext_has_its_feeds() {
     ] {
         assert_eq!(of(unit, &blocks).unknown, start + more, "{blocks}");
     }
+}
+
+/// Returns the times of a program in APT-CL, whose positions are in `unit` if it states none.
+fn cl_times(text: &str, unit: Unit) -> Vec<CycleTime> {
+    let machine = Machine::named("3-axis").expect("a machine of the library");
+    let program = Program::parse(text, "time.cl", machine, &ControlSetup::default());
+    program.expect("a program").cycle_times(unit)
+}
+
+/// Returns the time of the one tool of a program in mm, which begins where `FROM` says.
+fn cl_time(statements: &str) -> CycleTime {
+    let times = cl_times(&format!("UNITS/MM\nFROM/0,0,0\n{statements}\nFINI\n"), Unit::Inch);
+    let [time] = times[..] else { panic!("{times:?}") };
+    assert_eq!(time.rapid, None);
+    time
+}
+
+#[test]
+fn cutter_locations_take_their_length_over_fedrat() {
+    let known = |statements: &str| {
+        let time = cl_time(statements);
+        assert_eq!((time.unknown, time.first_unknown), (0, None), "{statements}");
+        time
+    };
+    assert_near(known("FEDRAT/200,MMPM\nGOTO/100,0,0").feed, 30.0);
+    // Along the diagonal of a box of 3 x 4 x 12, and back while the axis turns.
+    assert_near(known("FEDRAT/60,MMPM\nGOTO/3,4,-12").feed, 13.0);
+    assert_near(known("FEDRAT/60,MMPM\nGOTO/3,4,-12\nGOTO/0,0,0,0,.6,.8").feed, 26.0);
+    // The feed holds until the next one.
+    assert_near(
+        known("FEDRAT/60,MMPM\nGOTO/1,0,0\nGOTO/2,0,0\nFEDRAT/MMPM,120\nGOTO/4,0,0").feed,
+        3.0,
+    );
+    // 254 mm at 10 inches a minute.
+    assert_near(known("FEDRAT/10,IPM\nGOTO/254,0,0").feed, 60.0);
+    // 600 turns a minute at 0.1 mm a turn, then 1200.
+    let per_turn =
+        "SPINDL/600,RPM,CLW\nFEDRAT/0.1,MMPR\nGOTO/60,0,0\nSPINDL/RPM,1200,CLW\nGOTO/0,0,0";
+    assert_near(known(per_turn).feed, 90.0);
+    // A position that is repeated.
+    assert_near(known("FEDRAT/60,MMPM\nGOTO/1,0,0\nGOTO/1,0,0").feed, 1.0);
+    // Delays of 2 s, and of 5 turns.
+    let delays = known("SPINDL/600,RPM\nFEDRAT/60,MMPM\nGOTO/1,0,0\nDELAY/2\nDELAY/5,REV");
+    assert_near(delays.dwell, 2.5);
+    assert_near(delays.known(), 3.5);
+}
+
+/// Lines are counted from `UNITS` and `FROM`.
+#[test]
+fn what_cutter_locations_leave_open_is_counted_and_no_time() {
+    for (statements, feed, unknown, line) in [
+        // Rapid traverse, whose rates APT does not state.
+        ("FEDRAT/60,MMPM\nGOTO/1,0,0\nRAPID\nGOTO/9,0,0\nGOTO/8,0,0", 2.0, 1, 6),
+        // A feed that comes late, one without a unit, and one per turn without a speed.
+        ("GOTO/5,0,0\nFEDRAT/60,MMPM\nGOTO/6,0,0", 1.0, 1, 3),
+        ("FEDRAT/60,MMPM\nGOTO/1,0,0\nFEDRAT/50\nGOTO/2,0,0\nGOTO/3,0,0", 1.0, 2, 6),
+        ("FEDRAT/60,MMPM\nGOTO/1,0,0\nFEDRAT/0.1,MMPR\nGOTO/2,0,0", 1.0, 1, 6),
+        // A turn of the axis in place.
+        ("FEDRAT/60,MMPM\nGOTO/1,0,0,0,0,1\nGOTO/1,0,0,0,.6,.8", 1.0, 1, 5),
+        // A delay in turns of a spindle whose speed is not known, and one whose unit is not.
+        ("FEDRAT/60,MMPM\nGOTO/1,0,0\nDELAY/5,REV\nDWELL/5", 1.0, 2, 5),
+    ] {
+        let time = cl_time(statements);
+        assert_near(time.feed, feed);
+        assert_near(time.dwell, 0.0);
+        assert_eq!((time.unknown, time.first_unknown), (unknown, Some(line)), "{statements}");
+    }
+    // The way to a first position that the tool has to reach.
+    let times = cl_times("FEDRAT/60,MMPM\nGOTO/5,0,0\nGOTO/6,0,0\nFINI\n", Unit::Millimetre);
+    assert_eq!((times[0].unknown, times[0].first_unknown), (1, Some(2)));
+    assert_near(times[0].feed, 1.0);
+    // No feed at all, and tables of poses.
+    assert!(cl_times("GOTO/5,0,0\nGOTO/6,0,0\nFINI\n", Unit::Millimetre).is_empty());
+    assert!(cl_times("0,0,0,0,0,1\n6,0,0,0,0,1\n", Unit::Millimetre).is_empty());
+}
+
+#[test]
+fn cutter_locations_have_a_time_per_tool_in_the_unit_of_the_part() {
+    // An inch is 25.4 mm; the tool 3 comes twice, and each comes from where only the machine knows.
+    let text = "LOADTL/3\nFEDRAT/10,IPM\nGOTO/0,0,0\nGOTO/1,0,0\nLOADTL/7\nGOTO/0,0,0\nGOTO/0,2,0\nDELAY/4\n\
+                LOADTL/3\nGOTO/0,0,0\nGOTO/0,0,3\nFINI\n";
+    let of = |unit: Unit| {
+        let times = cl_times(text, unit);
+        let tools: Vec<_> = times.iter().map(|time| (time.tool, time.unknown)).collect();
+        assert_eq!(tools, [(Some(3), 2), (Some(7), 1)]);
+        [times[0].feed, times[1].feed, times[1].dwell]
+    };
+    for (unit, expected) in
+        [(Unit::Inch, [24.0, 12.0, 4.0]), (Unit::Millimetre, [24.0 / 25.4, 12.0 / 25.4, 4.0])]
+    {
+        for (seconds, expected) in of(unit).into_iter().zip(expected) {
+            assert_near(seconds, expected);
+        }
+    }
+    let said = cl_times(text, Unit::Inch)[1].to_string();
+    assert_eq!(
+        said,
+        "12.0 s in feed, rapid traverse not known, as no rates are stated, 4.0 s in dwells; the time of 1 motions or dwells is not \
+         known, the first in line 6"
+    );
 }

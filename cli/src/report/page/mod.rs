@@ -248,7 +248,7 @@ fn along_program(content: &Content<'_>) -> Result<Markup, Failure> {
     })
 }
 
-/// Returns the time of each tool in motion, with the assumptions; nothing of a program without feeds.
+/// Returns the time of each tool in motion, with the assumptions; nothing of CL data without feeds and delays.
 fn cycle_time(content: &Content<'_>) -> Markup {
     let times = content.checked.cycle_times();
     if times.is_empty() {
@@ -279,7 +279,7 @@ fn cycle_time(content: &Content<'_>) -> Markup {
                     }
                 }
                 tbody {
-                    @for time in times {
+                    @for time in &times {
                         @let tool = time.tool.map_or("before a tool change".to_owned(), |number| format!("T{number}"));
                         (row(&tool, parts(time), time.unknown, time.first_unknown))
                     }

@@ -1,43 +1,11 @@
-//! The time that the motions of a program take, by the programmed feed and the rates of rapid traverse.
+//! The time of steps on a machine, by the programmed feed and the rates of its axes.
 
 use super::resolve::Resolved;
+use crate::check::CycleTime;
 use crate::gcode::{Dwells, Feed, Step, StepPath};
 use crate::machine::{JointMotion, Machine};
-use std::fmt;
-
-/// The assumptions of a [`CycleTime`], as a sentence.
-pub const CYCLE_TIME_ASSUMPTIONS: &str = "F is the speed of the tip along the programmed path of X, Y and Z, or that of rotary axes where they move \
-     alone; in rapid traverse the slowest axis takes its way at the rate that the machine's file states. Acceleration, look-ahead, \
-     overrides, tool changes and stops of the program are not counted";
-
-/// The time that a tool is in motion, and dwells, in one reading of a program. Times are in seconds.
-///
-/// A motion at feed rate takes the length of its path, of which that of an arc is by its mean radius, over the feed: from G94, or
-/// from G95 at the speed of the spindle. Under G93 it takes its time. One in rapid traverse takes the longest time of an axis at
-/// its rate. Acceleration, look-ahead, overrides, tool changes and stops of the program are not counted.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[non_exhaustive]
-pub struct CycleTime {
-    /// The tool's number; `None` before the first tool change.
-    pub tool: Option<u32>,
-    /// Time at feed rate.
-    pub feed: f64,
-    /// Time in rapid traverse; `None` on a machine that states no rates.
-    pub rapid: Option<f64>,
-    /// Time of dwells by G4.
-    pub dwell: f64,
-    /// Number of motions and dwells whose time is not known, and not counted: where the start, the feed or the rates are not.
-    pub unknown: usize,
-    /// The line of the first of them.
-    pub first_unknown: Option<usize>,
-}
 
 impl CycleTime {
-    /// Returns the time that is known.
-    pub fn known(&self) -> f64 {
-        self.feed + self.rapid.unwrap_or_default() + self.dwell
-    }
-
     /// Returns the time of a tool on a machine before its first motion.
     pub(super) fn new(tool: Option<u32>, machine: &Machine) -> CycleTime {
         let has_rates = machine.axes().iter().all(|axis| axis.rapid.is_some());
@@ -70,36 +38,6 @@ impl CycleTime {
         self.dwell += dwells.seconds;
         if let Some(line) = dwells.first_unknown {
             self.add_unknown(dwells.unknown, line);
-        }
-    }
-
-    fn add_unknown(&mut self, count: usize, line: usize) {
-        self.unknown += count;
-        self.first_unknown = Some(self.first_unknown.map_or(line, |first| first.min(line)));
-    }
-}
-
-/// The times as a sentence: `30.0 s in feed, 1.2 s in rapid traverse; the time of 3 motions or dwells is not known, the first in
-/// line 7`.
-impl fmt::Display for CycleTime {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{:.1} s in feed", self.feed)?;
-        match self.rapid {
-            Some(rapid) => write!(f, ", {rapid:.1} s in rapid traverse"),
-            None => {
-                f.write_str(", rapid traverse not known, as the machine's file states no rates")
-            }
-        }?;
-        if self.dwell > 0.0 {
-            write!(f, ", {:.1} s in dwells", self.dwell)?;
-        }
-        match self.first_unknown {
-            Some(line) => write!(
-                f,
-                "; the time of {} motions or dwells is not known, the first in line {line}",
-                self.unknown
-            ),
-            None => Ok(()),
         }
     }
 }

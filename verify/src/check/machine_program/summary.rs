@@ -1,6 +1,7 @@
 //! Summary of a program on its machine: what it uses, and the gaps, which are everything that a verdict about it leaves open.
 
-use super::{Assumption, CycleTime, MachineProgram};
+use super::{Assumption, MachineProgram};
+use crate::check::CycleTime;
 use crate::gcode::{
     BlockLine, GcodeError, LengthOffset, NoteKind, Obstacle, ProgramNote, Rule, Spindle, Step,
     WorkOffset,
