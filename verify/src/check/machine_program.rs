@@ -9,8 +9,8 @@
 
 use super::moves::{JointPath, Move, MovePath, RapidBox};
 use crate::gcode::{
-    self, Choice, ControlRules, ControlSetup, GcodeError, Interpreter, LengthOffset, Rule, Step,
-    SubprogramFile,
+    self, BlockLine, Choice, ControlRules, ControlSetup, GcodeError, Interpreter, LengthOffset,
+    Rule, Step, SubprogramFile,
 };
 use crate::machine::{JointError, JointMotion, Letter, Machine, Relation, Setup};
 use nalgebra::Vector3;
@@ -164,7 +164,7 @@ impl MachineProgram {
         setup: &ControlSetup,
     ) -> Result<Vec<MachineProgram>, MachineProgramError> {
         let (text, machine): (Arc<str>, _) = (Arc::from(text), Arc::new(machine));
-        let mut branched: BTreeMap<Rule, usize> = BTreeMap::new();
+        let mut branched: BTreeMap<Rule, BlockLine> = BTreeMap::new();
         let values = values(&setup.variables)
             .ok_or_else(|| MachineProgramError::Values { file: name.to_owned() })?;
         loop {
@@ -176,8 +176,9 @@ impl MachineProgram {
                     .collect();
             }
             if assumed.len() > MAX_READINGS {
-                let rules =
-                    branched.iter().map(|(rule, line)| format!("`{}` (line {line})", rule.key()));
+                let rules = branched
+                    .iter()
+                    .map(|(rule, block)| format!("`{}` (line {})", rule.key(), block.line));
                 let rules = rules.collect::<Vec<_>>().join(", ");
                 return Err(MachineProgramError::Readings { file: name.to_owned(), rules });
             }
@@ -197,8 +198,8 @@ impl MachineProgram {
             let known = branched.len();
             for program in &programs {
                 let open = program.summary.open_rules.iter().filter(|(rule, _)| rule.is_branched());
-                for (rule, line) in open {
-                    branched.entry(*rule).or_insert(*line);
+                for (rule, block) in open {
+                    branched.entry(*rule).or_insert(*block);
                 }
             }
             if branched.len() == known {
@@ -411,7 +412,7 @@ impl MachineProgram {
         let mut offsets = LengthOffsets::default();
         let mut summary = MachineSummary::default();
         let mut uses: BTreeMap<Option<u32>, usize> = BTreeMap::new();
-        let mut seen: Vec<(Option<u32>, usize)> = Vec::new();
+        let mut seen: Vec<(Option<u32>, BlockLine)> = Vec::new();
         let mut is_last_singular = false;
         let mut execution = self.execute()?;
         while let Some(step) = execution.next() {
@@ -424,7 +425,7 @@ impl MachineProgram {
             if !matches!(resolved, Resolved::ToolChange)
                 && !seen.iter().any(|(tool, _)| *tool == number)
             {
-                seen.push((number, step.line));
+                seen.push((number, step.block()));
             }
             if let LengthOffset::On { register, .. } = step.state.length {
                 offsets.any = true;
@@ -437,7 +438,7 @@ impl MachineProgram {
                 && step.state.turns_with_workpiece()
                 && !is_known
             {
-                summary.tcp_without_length.get_or_insert(step.line);
+                summary.tcp_without_length.get_or_insert(step.block());
             }
             summary.add_offset(&step, &self.setup.work_offsets);
             if !step.rapid {
@@ -456,7 +457,7 @@ impl MachineProgram {
                         Some(_) => &mut summary.any_rapid,
                         None => &mut summary.any_rotary_rapid,
                     };
-                    found.get_or_insert(step.line);
+                    found.get_or_insert(step.block());
                     vec![(straight, 0.0)]
                 }
             };
@@ -497,7 +498,7 @@ impl MachineProgram {
         summary.open_rules.extend(execution.resolver.asked);
         let unchecked = seen.into_iter().filter(|(tool, _)| !uses.contains_key(tool));
         summary.unchecked_tools =
-            unchecked.filter_map(|(tool, line)| Some((tool?, line))).collect();
+            unchecked.filter_map(|(tool, block)| Some((tool?, block))).collect();
         let mut linear = self.machine.axes().iter().filter(|axis| !axis.letter.is_rotary());
         summary.limits_unchecked = !is_placed && linear.any(|axis| axis.limits.is_some());
         Ok((summary, offsets))

@@ -25,7 +25,9 @@ use super::error::{combination, not_read};
 use super::note::{NoteKind, Notes};
 use super::rules::{Choice, ControlRules, Rule};
 use super::state::{ControlState, LengthOffset, Position, Rotation, Tcp, WorkOffset};
-use super::{ControlSetup, Dwells, Feed, GcodeFault, Plane, Step, StepPath, SubprogramLine};
+use super::{
+    BlockLine, ControlSetup, Dwells, Feed, GcodeFault, Plane, Step, StepPath, SubprogramLine,
+};
 use compensation::Compensation;
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
@@ -93,7 +95,7 @@ pub(super) struct Control {
     /// Choices that the language of the program settles, whatever the rules state.
     settled: ControlRules,
     /// The rules that the program depends on, each with the first line.
-    pub(super) asked: BTreeMap<Rule, usize>,
+    pub(super) asked: BTreeMap<Rule, BlockLine>,
     axes: [bool; 6],
     /// Position in which M6 leaves the axes, if the machine states it.
     change_position: Option<Position>,
@@ -318,7 +320,8 @@ impl Control {
         if let Some(choice) = self.settled.get(rule) {
             return choice;
         }
-        self.asked.entry(rule).or_insert(self.line);
+        let block = self.block();
+        self.asked.entry(rule).or_insert(block);
         self.rules.get(rule).unwrap_or_else(|| rule.choices().next().expect("a rule has choices"))
     }
 
@@ -330,13 +333,18 @@ impl Control {
     /// Notes a word that the setup ignores.
     pub(super) fn ignore(&mut self, word: String) {
         let reason = self.rules.ignored().get(&word).cloned().unwrap_or_default();
-        self.notes.add(self.line, NoteKind::Ignored { word, reason });
+        self.notes.add(self.block(), NoteKind::Ignored { word, reason });
     }
 
     /// Returns the number of the tool with a name.
     pub(super) fn tool_number(&self, name: &str) -> Option<u32> {
         let known = self.tool_names.iter().find(|(known, _)| known.eq_ignore_ascii_case(name));
         known.map(|(_, number)| *number).or_else(|| name.parse().ok())
+    }
+
+    /// Returns the place of the block that is executed.
+    pub(super) fn block(&self) -> BlockLine {
+        BlockLine { line: self.line, within: self.within }
     }
 
     /// Sets the line of the block that is executed next; `file` is that of a called subprogram in another file. The line of the program is that
@@ -499,10 +507,10 @@ impl Control {
     /// Notes the words that are passed over.
     fn note_words(&mut self, block: &Block) {
         for code in &block.passed_over {
-            self.notes.add(self.line, NoteKind::PassedOver { word: code.to_string() });
+            self.notes.add(self.block(), NoteKind::PassedOver { word: code.to_string() });
         }
         if block.has('S') {
-            self.notes.add(self.line, NoteKind::PassedOver { word: "S".to_owned() });
+            self.notes.add(self.block(), NoteKind::PassedOver { word: "S".to_owned() });
         }
     }
 
@@ -589,7 +597,7 @@ impl Control {
         if let Some(code) = block.code_of(Group::PathControl) {
             path_control(block, code)?;
             self.modal.exact_path = matches!(code.tenths, 610 | 611);
-            self.notes.add(self.line, NoteKind::PassedOver { word: code.to_string() });
+            self.notes.add(self.block(), NoteKind::PassedOver { word: code.to_string() });
         }
         Ok(())
     }
@@ -669,7 +677,7 @@ impl Control {
     /// Adds a step from the present position, and moves there.
     fn push(&mut self, rapid: bool, end: Position, commanded: [bool; 6], path: StepPath) {
         if !self.modal.exact_path && !matches!(path, StepPath::ToolChange(_)) {
-            self.notes.add_once(self.line, NoteKind::RoundedCorners);
+            self.notes.add_once(self.block(), NoteKind::RoundedCorners);
         }
         let start = std::mem::replace(&mut self.position, end);
         let spindle = match self.modal.motion {

@@ -20,7 +20,7 @@ impl SubprogramFile {
 }
 
 /// A line of a file that was called.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct SubprogramLine {
     /// The number of the file: from 1 on in [`ControlSetup::subprograms`](super::ControlSetup::subprograms), 0 for the file of the
     /// program, which a subprogram of another file can call.
@@ -30,12 +30,19 @@ pub struct SubprogramLine {
 }
 
 /// The place of a block, or of a cutter location.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct BlockLine {
     /// The line in the program, 1-based; of a block in a file of subprograms, that of the program's block which calls it.
     pub line: usize,
     /// The line in the file of subprograms that has the block.
     pub within: Option<SubprogramLine>,
+}
+
+/// A line of the program itself.
+impl From<usize> for BlockLine {
+    fn from(line: usize) -> BlockLine {
+        BlockLine { line, within: None }
+    }
 }
 
 /// Returns the name of a file as a call on a control has it, without its folder.
@@ -65,4 +72,11 @@ pub(super) fn name(files: &[SubprogramFile], number: usize) -> &str {
 pub(super) fn in_file(files: &[SubprogramFile], file: usize, error: GcodeError) -> GcodeFault {
     let GcodeError { line, fault } = error;
     GcodeFault::InFile { name: name(files, file).to_owned(), line, fault: Box::new(fault) }
+}
+
+/// Returns the line that a fault in a file of subprograms names; `None` of a fault in the program.
+pub(crate) fn line_of(files: &[SubprogramFile], fault: &GcodeFault) -> Option<SubprogramLine> {
+    let GcodeFault::InFile { name: wanted, line, .. } = fault else { return None };
+    let file = (0..=files.len()).find(|number| name(files, *number) == wanted)?;
+    Some(SubprogramLine { file, line: *line })
 }

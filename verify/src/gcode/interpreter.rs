@@ -4,8 +4,8 @@ use super::control::Control;
 use super::files::in_file;
 use super::rules::{Choice, Rule};
 use super::{
-    ControlSetup, Dwells, GcodeError, GcodeFault, Obstacle, Step, SubprogramFile, iso, klartext,
-    sinumerik,
+    BlockLine, ControlSetup, Dwells, GcodeError, GcodeFault, Obstacle, Step, SubprogramFile, iso,
+    klartext, sinumerik,
 };
 use std::collections::BTreeMap;
 
@@ -83,8 +83,8 @@ impl<'a> Interpreter<'a> {
         Ok(Interpreter { first: Some(Box::new(first.clone())), ..first })
     }
 
-    /// Returns the rules of the control on which the blocks depend that were executed so far, each with the first line.
-    pub fn asked(&self) -> &BTreeMap<Rule, usize> {
+    /// Returns the rules of the control on which the blocks depend that were executed so far, each with the first block.
+    pub fn asked(&self) -> &BTreeMap<Rule, BlockLine> {
         &self.control.asked
     }
 

@@ -69,6 +69,7 @@ mod words;
 
 pub use control::Spindle;
 pub use error::{ArcFault, CompensationFault, GcodeError, GcodeFault, Obstacle};
+pub(crate) use files::line_of;
 pub use files::{BlockLine, SubprogramFile, SubprogramLine};
 pub use interpreter::Interpreter;
 pub use iso::ExpressionFault;

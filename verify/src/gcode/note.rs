@@ -1,5 +1,6 @@
 //! Notes: what a program leaves to the control, and words that were passed over.
 
+use super::{BlockLine, SubprogramLine};
 use std::collections::BTreeMap;
 use std::fmt;
 
@@ -7,8 +8,10 @@ use std::fmt;
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct ProgramNote {
-    /// The line of the first, 1-based.
+    /// The line of the first, 1-based; in a file of subprograms, that of the program's block which calls it.
     pub line: usize,
+    /// The line of the first in the file of subprograms that has it.
+    pub within: Option<SubprogramLine>,
     /// The number of them.
     pub count: usize,
     /// The subject.
@@ -66,7 +69,7 @@ pub enum NoteKind {
 
 impl fmt::Display for ProgramNote {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let ProgramNote { line, count, kind } = self;
+        let ProgramNote { line, within: _, count, kind } = self;
         write!(f, "line {line}: {kind}")?;
         if *count > 1 { write!(f, " ({count} times)") } else { Ok(()) }
     }
@@ -121,25 +124,26 @@ impl fmt::Display for NoteKind {
 /// The notes of a program.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Notes {
-    /// First line and number.
-    found: BTreeMap<NoteKind, (usize, usize)>,
+    /// First block and number.
+    found: BTreeMap<NoteKind, (BlockLine, usize)>,
 }
 
 impl Notes {
     /// Adds a note.
-    pub(super) fn add(&mut self, line: usize, kind: NoteKind) {
-        self.found.entry(kind).or_insert((line, 0)).1 += 1;
+    pub(super) fn add(&mut self, block: BlockLine, kind: NoteKind) {
+        self.found.entry(kind).or_insert((block, 0)).1 += 1;
     }
 
     /// Adds a subject whose number says nothing.
-    pub(super) fn add_once(&mut self, line: usize, kind: NoteKind) {
-        self.found.entry(kind).or_insert((line, 1));
+    pub(super) fn add_once(&mut self, block: BlockLine, kind: NoteKind) {
+        self.found.entry(kind).or_insert((block, 1));
     }
 
     /// Returns the notes.
     pub(super) fn list(&self) -> Vec<ProgramNote> {
-        let notes = self.found.iter().map(|(kind, (line, count))| ProgramNote {
-            line: *line,
+        let notes = self.found.iter().map(|(kind, (block, count))| ProgramNote {
+            line: block.line,
+            within: block.within,
             count: *count,
             kind: kind.clone(),
         });

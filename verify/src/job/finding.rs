@@ -371,9 +371,7 @@ fn describe_group(
 
 /// Names a line in a file of subprograms.
 fn within(report: &JobReport<'_>, place: Option<SubprogramLine>) -> String {
-    place.map_or(String::new(), |within| {
-        format!(" ({}, line {})", report.job.program.file_name(within.file), within.line)
-    })
+    report.job.program.name_within(place)
 }
 
 /// Describes the motions of a group.

@@ -8,6 +8,7 @@ use super::finding::rule;
 use super::machine::MachineRow;
 use super::report::{FindingDetail, JobFinding, JobReport, PairReport, Remedy, Severity, Verdict};
 use super::stock::StockRow;
+use crate::gcode::SubprogramLine;
 use crate::{CYCLE_TIME_ASSUMPTIONS, FindingGroup, FindingKind};
 use serde::Serialize;
 use touchoff::certify::Witness;
@@ -24,6 +25,7 @@ impl JobReport<'_> {
         self.gaps.iter().map(|gap| GapRow {
             file: self.job.program.name(),
             line: gap.line,
+            within: SubprogramRow::of(self, gap.within),
             kind: "not-checked",
             open: gap.is_open(),
             reason: &gap.reason,
@@ -92,10 +94,7 @@ impl<'a> FindingRow<'a> {
             FindingDetail::Machine(finding) => KindRow::Machine(finding.row(file)),
             FindingDetail::Stock(finding) => KindRow::Stock(finding.row(file, report.job.unit())),
         };
-        let within = finding.within.map(|within| SubprogramRow {
-            file: report.job.program.file_name(within.file),
-            line: within.line,
-        });
+        let within = SubprogramRow::of(report, finding.within);
         FindingRow { kind, within, under: finding.under.as_deref() }
     }
 }
@@ -155,6 +154,15 @@ struct SurfaceRow<'a> {
 struct SubprogramRow<'a> {
     file: &'a str,
     line: usize,
+}
+
+impl<'a> SubprogramRow<'a> {
+    fn of(report: &'a JobReport<'_>, place: Option<SubprogramLine>) -> Option<SubprogramRow<'a>> {
+        place.map(|place| SubprogramRow {
+            file: report.job.program.file_name(place.file),
+            line: place.line,
+        })
+    }
 }
 
 /// Consecutive motions on which the tool, or a surface of it, passes right through a body.
@@ -284,6 +292,9 @@ impl<'a> SurfaceRow<'a> {
 struct GapRow<'a> {
     file: &'a str,
     line: usize,
+    /// The line in the file of subprograms that has it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    within: Option<SubprogramRow<'a>>,
     kind: &'static str,
     /// Set if it allows no verdict.
     open: bool,

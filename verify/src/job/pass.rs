@@ -8,7 +8,7 @@ use super::report::{JobReport, Moving, PairReport, Remedy};
 use super::stock::{CutStock, StockCut};
 use super::{Body, BodyFrame, Job, JobError, JobShard, JobTool};
 use crate::check::{ApproachSearch, MoveCheck, MoveRequest, Tasks};
-use crate::gcode::WorkOffset;
+use crate::gcode::{BlockLine, WorkOffset};
 use crate::machine::{Link, Machine, Side};
 use crate::{FindingGroup, Gap, Move, Verifier};
 use std::collections::BTreeSet;
@@ -31,8 +31,8 @@ struct ReadingResult {
     pairs: Vec<PairReport>,
     /// The stock after it, if the job has one.
     cut: Option<CutStock>,
-    /// The work offsets under which no tool comes near the part, with their lines, if the reading has several.
-    far_offsets: Vec<(WorkOffset, usize)>,
+    /// The work offsets under which no tool comes near the part, with their blocks, if the reading has several.
+    far_offsets: Vec<(WorkOffset, BlockLine)>,
     /// Tasks with findings, per pair: the only result of a shard.
     found: Vec<BTreeSet<usize>>,
 }
@@ -152,26 +152,28 @@ impl<'a> Job<'a> {
             gaps.push(Gap::open(0, reason.to_owned()));
         }
         let mut readings = self.program.readings().iter();
-        if let (Some(line), Some(_)) =
+        if let (Some(block), Some(_)) =
             (readings.find_map(|reading| reading.summary().any_rapid), &self.stock)
         {
             let reason = "the path of several axes in rapid traverse is checked against the stock on the straight line only: \
                           state `rapid` of the control, or the `rapid` rates of the machine's axes";
-            gaps.push(Gap::open(line, reason.to_owned()));
+            let within = self.program.name_within(block.within);
+            gaps.push(Gap::open(block, format!("{reason}{within}")));
         }
         for reading in 0..self.program.reading_count() {
             let result = self.check_reading(reading, pass, progress)?;
             pairs.extend(result.pairs);
-            let far = result.far_offsets.into_iter().map(|(offset, line)| {
+            let far = result.far_offsets.into_iter().map(|(offset, block)| {
                 let reason = format!(
                     "under {offset} the tool never comes within its diameter of the part: check {offset} in `work_offsets`, \
                      state what stands there as `[[other_part]]`, or give a job per part"
                 );
-                (line, reason)
+                (block, reason)
             });
             let thin = result.cut.iter().flat_map(|cut| cut.too_thin.iter().cloned());
-            for (line, reason) in far.chain(thin) {
-                let gap = Gap::open(line, reason);
+            for (block, reason) in far.chain(thin) {
+                let within = self.program.name_within(block.within);
+                let gap = Gap::open(block, format!("{reason}{within}"));
                 if !gaps.contains(&gap) {
                     gaps.push(gap);
                 }

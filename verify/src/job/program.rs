@@ -2,7 +2,7 @@
 
 use super::{BodyFrame, JobError, RevolvedBody};
 use crate::check::MoveRequest;
-use crate::gcode::{ControlRules, ControlSetup, SubprogramFile};
+use crate::gcode::{ControlRules, ControlSetup, SubprogramFile, SubprogramLine};
 use crate::machine::{Machine, Mover, Reference, Relation, Side};
 use crate::program::{ProgramFile, read_text};
 use crate::{ClData, CycleTime, Gap, MachineProgram, Move, ProgramError, ToolSelection, ToolUse};
@@ -126,12 +126,12 @@ impl Program {
 
     /// Returns the name of a file: that of the program, or by its [number](crate::gcode::SubprogramLine::file) of a file of subprograms.
     pub fn file_name(&self, number: usize) -> &str {
-        let readings = self.readings().first();
-        let file = readings.zip(number.checked_sub(1));
-        match file.and_then(|(program, index)| program.subprograms().get(index)) {
-            Some(file) => &file.name,
-            None => self.name(),
-        }
+        self.readings().first().map_or(self.name(), |program| program.file_name(number))
+    }
+
+    /// Names a line in a file of subprograms, for the end of a sentence; empty without one.
+    pub(super) fn name_within(&self, place: Option<SubprogramLine>) -> String {
+        self.readings().first().map_or(String::new(), |program| program.name_within(place))
     }
 
     /// Returns the readings of G-code; none for positions, which have one meaning.
@@ -197,10 +197,10 @@ impl Program {
                 tools.push(*used);
             }
         }
-        for (number, line) in summaries().flat_map(|summary| &summary.unchecked_tools) {
+        for (number, block) in summaries().flat_map(|summary| &summary.unchecked_tools) {
             // An empty spindle has no tool that could be missing.
             if *number != 0 && tools.iter().all(|tool| tool.number != Some(*number)) {
-                tools.push(ToolUse { number: Some(*number), line: *line, motions: 0 });
+                tools.push(ToolUse { number: Some(*number), line: block.line, motions: 0 });
             }
         }
         for program in self.locations(ToolSelection::All) {

@@ -49,8 +49,8 @@ pub struct CutStock {
     /// The thickness from which a layer is found for certain by every tool that has moved in it, in the part's unit; infinite if
     /// none is.
     pub found_layer: f64,
-    /// The tools that can pass through material between its points: the line of the first motion, and the reason.
-    pub(super) too_thin: Vec<(usize, String)>,
+    /// The tools that can pass through material between its points: the block of the first motion, and the reason.
+    pub(super) too_thin: Vec<(BlockLine, String)>,
 }
 
 /// A finding as a JSON object.
@@ -98,7 +98,7 @@ impl StockCut {
     }
 
     /// Notes the layer that a tool finds for certain, and that it is more than twice as thick as that of a wide tool.
-    fn see(&mut self, tool: &JobTool<'_>, line: usize) {
+    fn see(&mut self, tool: &JobTool<'_>, block: BlockLine) {
         if self.seen.contains(&tool.number()) {
             return;
         }
@@ -120,7 +120,7 @@ impl StockCut {
                  a smaller `spacing`, or a smaller `tolerance` of the stock",
                 unit.format(stock.spacing())
             );
-            too_thin.push((line, reason));
+            too_thin.push((block, reason));
         }
     }
 
@@ -129,7 +129,7 @@ impl StockCut {
     /// # Errors
     /// If it cannot be cut.
     pub(super) fn advance(&mut self, tool: &JobTool<'_>, step: &Move) -> Result<(), JobError> {
-        self.see(tool, step.line);
+        self.see(tool, step.block());
         let CutStock { findings, stock, tolerance, .. } = &mut self.cut;
         let info = tool.tool.info();
         let max_speed = step.path.max_speed(info, self.unit);

@@ -44,7 +44,7 @@ fn an_aligned_tool_is_tilted_wherever_it_stands() {
     assert!((pose.axis() - expected).norm() < 1e-12, "{pose:?}");
     assert!((pose.tip().coords - expected * -1.0).norm() < 1e-12, "{pose:?}");
     let unknown = &program.summary().unknown;
-    assert!(!unknown.is_empty() && unknown.iter().all(|unknown| unknown.open_line.is_none()));
+    assert!(!unknown.is_empty() && unknown.iter().all(|unknown| unknown.first_open.is_none()));
 }
 
 /// A plane of CYCLE800 aligns the tool as G53.1 does, and tool vectors under TRAORI turn it, by the axes or on a great circle, which
@@ -82,7 +82,8 @@ fn native_programs_of_sinumerik_turn_the_tool() {
         let pose = last_pose(&vectors);
         assert!((pose.axis() - expected).norm() < 1e-12, "{pose:?}");
         assert!((pose.tip() - Point3::new(1.0, 2.0, 3.0)).norm() < 1e-9, "{pose:?}");
-        let line = vectors.summary().unknown.iter().any(|unknown| unknown.open_line == Some(8));
+        let line =
+            vectors.summary().unknown.iter().any(|unknown| unknown.first_open == Some(8.into()));
         assert_eq!(line, !is_followed, "{:?}", vectors.summary().unknown);
     }
 }
@@ -92,7 +93,7 @@ fn a_shift_at_an_unknown_position_leaves_positions_unknown() {
     let program = program("3-axis", None, &[], "G92 X50. Y0. Z5.\nG0 X50. Y0. Z5.\nG1 X32.");
     let program = program.expect("a program");
     let [unknown] = &program.summary().unknown[..] else { panic!("{:?}", program.summary()) };
-    assert_eq!((unknown.count, unknown.open_line), (2, Some(3)));
+    assert_eq!((unknown.count, unknown.first_open), (2, Some(3.into())));
 }
 
 #[test]

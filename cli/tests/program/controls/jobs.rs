@@ -140,6 +140,49 @@ fn a_finding_in_a_file_of_subprograms_names_the_call_and_its_line() {
     scene.gives(&json, 1, &["\"within\":{\"file\":\"O9001.nc\",\"line\":2}"]);
 }
 
+/// What stays open in a file of subprograms: a stop, a feed without a length offset, and a return to where nobody knows.
+#[test]
+fn a_gap_in_a_file_of_subprograms_names_the_call_and_its_line() {
+    let scene = Scene::new("G0 X-6. Y0. Z20.\nM98 P9001\nM0");
+    let scene = scene.with("subprograms = [\"O9001.nc\"]").with("anyway = true");
+    scene.bench.write("O9001.nc", "(PASS)\nG0 X0. Y0.\nG1 Z15.\nM0\nG28 X0.\nM99\n");
+    let words = [
+        "not checked: line 3: motions by hand during the stop are not checked (2 times) (O9001.nc, line 4)",
+        "were set with the tool (O9001.nc, line 3)",
+        "`home` of its axes (O9001.nc, line 5)",
+    ];
+    scene.gives(&HAAS, 0, &words);
+    let rows = objects(&scene.run(&[&HAAS[..], &["--json"]].concat()));
+    for (reason, line) in [("by hand", 4), ("no tool length offset", 3), ("`home` of its axes", 5)]
+    {
+        let has_reason =
+            |row: &&serde_json::Value| row["reason"].as_str().is_some_and(|of| of.contains(reason));
+        let row = rows.iter().find(has_reason).expect(reason);
+        assert_eq!((&row["kind"], &row["line"]), (&"not-checked".into(), &3.into()), "{row}");
+        assert_eq!(row["within"], json!({ "file": "O9001.nc", "line": line }), "{row}");
+    }
+    // One in the program itself has none.
+    assert!(
+        rows.iter().any(|row| row["reason"].is_string() && row["within"].is_null()),
+        "{rows:?}"
+    );
+    let (file, page) = (scene.bench.place("a.toml"), scene.bench.place("report.html"));
+    let said = stderr(&touchoff(&["report", &file, "--control", "haas", "-o", &page]));
+    let page = fs::read_to_string(&page).expect(&said);
+    assert!(
+        page.contains("during the stop are not checked (2 times) (O9001.nc, line 4)"),
+        "{said}"
+    );
+
+    // The sentence of a line that is not read names the file by itself.
+    scene.bench.write("O9001.nc", "G0 X0. Y0.\nG777\nM99\n");
+    scene.gives(&HAAS, 2, &["a.nc:3: O9001.nc, line 2: G777"]);
+    let rows = objects(&scene.run(&[&HAAS[..], &["--json"]].concat()));
+    let row = rows.iter().find(|row| row["open"] == true).expect("a gap");
+    assert_eq!(row["within"], json!({ "file": "O9001.nc", "line": 2 }), "{row}");
+    assert!(!row["reason"].to_string().contains("(O9001.nc"), "{row}");
+}
+
 /// A collision is one however far it is from the part.
 #[test]
 fn a_collision_far_from_the_part_has_status_1() {

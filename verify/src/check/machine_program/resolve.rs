@@ -3,8 +3,8 @@
 use super::path::{self, Map};
 use super::{StepFault, UnknownCause};
 use crate::gcode::{
-    self, Choice, ControlSetup, ControlState, LengthOffset, Position, Rotation, Rule, Step,
-    StepPath, Tcp, WorkOffset,
+    self, BlockLine, Choice, ControlSetup, ControlState, LengthOffset, Position, Rotation, Rule,
+    Step, StepPath, Tcp, WorkOffset,
 };
 use crate::machine::{Chain, InverseSolution, JointMotion, Joints, Letter, Machine, Setup, Side};
 use nalgebra::{Matrix3, Point3, Vector3};
@@ -60,7 +60,7 @@ pub(super) struct Resolver<'a> {
     /// The register of the first length offset of a program that names no tool: its tool.
     unnamed_tool: Option<u32>,
     /// The rules of the control on which the steps depend, each with the first line.
-    pub(super) asked: BTreeMap<Rule, usize>,
+    pub(super) asked: BTreeMap<Rule, BlockLine>,
     /// Set if a rotary axis carries the tool.
     has_head: bool,
     /// Set if the origin of the part on the machine is given.
@@ -388,7 +388,7 @@ impl<'a> Resolver<'a> {
 
     /// Returns what the control does under a rule, if that is stated, and notes that a step depends on it.
     fn ask(&mut self, rule: Rule, step: &Step) -> Option<Choice> {
-        self.asked.entry(rule).or_insert(step.line);
+        self.asked.entry(rule).or_insert(step.block());
         self.setup.rules.get(rule)
     }
 

@@ -4,7 +4,7 @@ use super::{Assumption, MachineProgram};
 use crate::check::CycleTime;
 use crate::gcode::{
     BlockLine, GcodeError, LengthOffset, NoteKind, Obstacle, ProgramNote, Rule, Spindle, Step,
-    WorkOffset,
+    SubprogramFile, SubprogramLine, WorkOffset, line_of,
 };
 use crate::machine::{LimitViolation, Machine, SingularPass};
 use std::collections::BTreeMap;
@@ -16,30 +16,30 @@ use std::fmt;
 pub struct MachineSummary {
     /// The tools in the order of their first motion that is checked.
     pub tools: Vec<ToolUse>,
-    /// Tools with motions of which none is checked, each with the line of its first. The tool that is in the spindle before
+    /// Tools with motions of which none is checked, each with the block of its first. The tool that is in the spindle before
     /// the first change is not among them.
-    pub unchecked_tools: Vec<(u32, usize)>,
+    pub unchecked_tools: Vec<(u32, BlockLine)>,
     /// Motions that are not checked, by their cause.
     pub unknown: Vec<UnknownMotions>,
-    /// The line of the first motion in rapid traverse of several axes at rates that are not known.
-    pub any_rapid: Option<usize>,
+    /// The block of the first motion in rapid traverse of several axes at rates that are not known.
+    pub any_rapid: Option<BlockLine>,
     /// As before, for a motion of which one axis is rotary. Only its straight path is checked.
-    pub any_rotary_rapid: Option<usize>,
+    pub any_rotary_rapid: Option<BlockLine>,
     /// The spindle during motions at feed rate, without those of taps: the line of the first by tool and spindle.
     pub spindle: Vec<(BlockLine, Option<u32>, Spindle)>,
-    /// The line of the first feed without a tool length offset, in a program that names no tool or has no offset at all:
+    /// The block of the first feed without a tool length offset, in a program that names no tool or has no offset at all:
     /// positions are taken as those of the tip.
-    pub no_offset: Option<usize>,
-    /// The line of the first motion under tool centre point control, or in an aligned plane, without a tool length offset, and with
+    pub no_offset: Option<BlockLine>,
+    /// The block of the first motion under tool centre point control, or in an aligned plane, without a tool length offset, and with
     /// a tool whose length is not stated.
-    pub tcp_without_length: Option<usize>,
-    /// The work offsets of motions at feed rate, each with the line of the first.
-    pub work_offsets: Vec<(WorkOffset, usize)>,
+    pub tcp_without_length: Option<BlockLine>,
+    /// The work offsets of motions at feed rate, each with the block of the first.
+    pub work_offsets: Vec<(WorkOffset, BlockLine)>,
     /// Work offsets other than G54 that the program sets to other values than the setup states, each with the line of its first
     /// motion.
     pub moved_offsets: Vec<(WorkOffset, usize)>,
-    /// Rules of the control on which the program depends and which are not stated, each with the first line.
-    pub open_rules: BTreeMap<Rule, usize>,
+    /// Rules of the control on which the program depends and which are not stated, each with the first block.
+    pub open_rules: BTreeMap<Rule, BlockLine>,
     /// Feed motions with the length offset of another tool: the line of the first, the register and the tool.
     pub other_lengths: Vec<(BlockLine, u32, u32)>,
     /// Axes that leave their limits, each with its line: the worst per axis and limit. Those of X, Y and Z are checked if the
@@ -77,11 +77,11 @@ pub struct UnknownMotions {
     pub cause: UnknownCause,
     /// Their number.
     pub count: usize,
-    /// The line of the first.
-    pub line: usize,
-    /// The line of the first that allows no verdict: one in feed, or one between positions that the program states. The way
+    /// The block of the first.
+    pub first: BlockLine,
+    /// The block of the first that allows no verdict: one in feed, or one between positions that the program states. The way
     /// to its first position is the operator's, and that to the reference position the machine's.
-    pub open_line: Option<usize>,
+    pub first_open: Option<BlockLine>,
 }
 
 /// A tool's use in a program.
@@ -205,8 +205,10 @@ impl fmt::Display for UnknownCause {
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Gap {
-    /// The line of its first occurrence, 1-based.
+    /// The line of its first occurrence, 1-based; 0 if it concerns no line.
     pub line: usize,
+    /// The line of its first occurrence in the file of subprograms that has it.
+    pub within: Option<SubprogramLine>,
     /// Its consequence.
     pub weight: GapWeight,
     /// The subject that was not checked, the cause, and the remedy. A sentence without a full stop.
@@ -226,13 +228,18 @@ pub enum GapWeight {
 
 impl Gap {
     /// Creates a gap that leaves a verdict possible.
-    pub fn said(line: usize, reason: String) -> Gap {
-        Gap { line, weight: GapWeight::Said, reason }
+    pub fn said(place: impl Into<BlockLine>, reason: String) -> Gap {
+        Gap::new(place.into(), GapWeight::Said, reason)
     }
 
     /// Creates a gap that allows no verdict.
-    pub fn open(line: usize, reason: String) -> Gap {
-        Gap { line, weight: GapWeight::Open, reason }
+    pub fn open(place: impl Into<BlockLine>, reason: String) -> Gap {
+        Gap::new(place.into(), GapWeight::Open, reason)
+    }
+
+    fn new(place: BlockLine, weight: GapWeight, reason: String) -> Gap {
+        let BlockLine { line, within } = place;
+        Gap { line, within, weight, reason }
     }
 
     /// Returns whether there is no verdict with it.
@@ -275,11 +282,11 @@ impl MachineSummary {
             self.spindle.push((step.block(), tool, step.spindle));
         }
         if (tool.is_none() || off_is_tip) && step.state.length == LengthOffset::Off {
-            self.no_offset.get_or_insert(step.line);
+            self.no_offset.get_or_insert(step.block());
         }
         let offset = step.state.work_offset;
         if !self.work_offsets.iter().any(|(known, _)| *known == offset) {
-            self.work_offsets.push((offset, step.line));
+            self.work_offsets.push((offset, step.block()));
         }
     }
 
@@ -299,7 +306,7 @@ impl MachineSummary {
     pub(super) fn add_unknown(&mut self, step: &Step, cause: UnknownCause) {
         let position = self.unknown.iter().position(|known| known.cause == cause);
         let position = position.unwrap_or_else(|| {
-            let motions = UnknownMotions { cause, count: 0, line: step.line, open_line: None };
+            let motions = UnknownMotions { cause, count: 0, first: step.block(), first_open: None };
             self.unknown.push(motions);
             self.unknown.len() - 1
         });
@@ -308,7 +315,7 @@ impl MachineSummary {
         // The way to the first position is the operator's, and that to the reference position the machine's.
         let is_said = matches!(cause, UnknownCause::Start | UnknownCause::Home);
         if !step.rapid || !is_said {
-            unknown.open_line.get_or_insert(step.line);
+            unknown.first_open.get_or_insert(step.block());
         }
     }
 
@@ -325,66 +332,69 @@ impl MachineSummary {
         }
     }
 
-    /// Returns what this reading leaves open.
-    fn gaps(&self) -> Vec<Gap> {
+    /// Returns what this reading leaves open. `files` are those of subprograms.
+    fn gaps(&self, files: &[SubprogramFile]) -> Vec<Gap> {
         let mut gaps = Vec::new();
         if let Some(ProgramStop { error, obstacles }) = &self.stop {
             let weight = GapWeight::Stops;
             let reason = format!("{}; the program is checked up to here", error.fault);
-            gaps.push(Gap { line: error.line, weight, reason });
+            // The sentence of a fault names the line in its file.
+            let place = |line, fault| BlockLine { line, within: line_of(files, fault) };
+            gaps.push(Gap::new(place(error.line, &error.fault), weight, reason));
             gaps.extend(obstacles.iter().map(|Obstacle { line, count, fault }| {
                 let times = if *count > 1 { format!(" ({count} times)") } else { String::new() };
-                Gap { line: *line, weight, reason: format!("{fault}{times}") }
+                Gap::new(place(*line, fault), weight, format!("{fault}{times}"))
             }));
         }
-        for UnknownMotions { cause, count, line, open_line } in &self.unknown {
+        for UnknownMotions { cause, count, first, first_open } in &self.unknown {
             let plural = if *count == 1 { "" } else { "s" };
+            let line = first.line;
             let reason =
                 format!("{count} motion{plural} not checked, first at line {line}: {cause}");
-            gaps.push(match open_line {
-                Some(open_line) => Gap::open(*open_line, reason),
-                None => Gap::said(*line, reason),
+            gaps.push(match first_open {
+                Some(first_open) => Gap::open(*first_open, reason),
+                None => Gap::said(*first, reason),
             });
         }
-        for (tool, line) in &self.unchecked_tools {
-            gaps.push(Gap::open(*line, format!("no motion of T{tool} is checked")));
+        for (tool, block) in &self.unchecked_tools {
+            gaps.push(Gap::open(*block, format!("no motion of T{tool} is checked")));
         }
-        if let Some(line) = self.any_rotary_rapid {
+        if let Some(block) = self.any_rotary_rapid {
             let reason = "the path of several axes in rapid traverse, one of them rotary, is checked on the straight line \
                           only: state `rapid` of the control, or the `rapid` rates of the machine's axes";
-            gaps.push(Gap::open(line, reason.to_owned()));
+            gaps.push(Gap::open(block, reason.to_owned()));
         }
-        if let Some(line) = self.open_rules.get(&Rule::Unit) {
+        if let Some(block) = self.open_rules.get(&Rule::Unit) {
             let reason = "no G20 or G21 before a length, which is read in mm: write one, or state `unit` of the control";
-            gaps.push(Gap::open(*line, reason.to_owned()));
+            gaps.push(Gap::open(*block, reason.to_owned()));
         }
-        if let Some(line) = self.open_rules.get(&Rule::StartOffset) {
+        if let Some(block) = self.open_rules.get(&Rule::StartOffset) {
             let reason = "no work offset before a position, which is taken in G54: write G54, or state `start_offset` of the \
                           control";
-            gaps.push(Gap::open(*line, reason.to_owned()));
+            gaps.push(Gap::open(*block, reason.to_owned()));
         }
-        if let (Some(line), false) = (self.first_feed(Spindle::NotStated), self.states_spindle()) {
+        if let (Some(block), false) = (self.first_feed(Spindle::NotStated), self.states_spindle()) {
             let reason = "the program feeds and never starts the spindle: write M3 with S before";
-            gaps.push(Gap::open(line, reason.to_owned()));
+            gaps.push(Gap::open(block, reason.to_owned()));
         }
-        if let Some(line) = self.first_feed(Spindle::AfterTapping) {
+        if let Some(block) = self.first_feed(Spindle::AfterTapping) {
             let reason = "a tapping cycle before a feed leaves the spindle standing or turning, by the control: write M3 after G80";
-            gaps.push(Gap::open(line, reason.to_owned()));
+            gaps.push(Gap::open(block, reason.to_owned()));
         }
-        if let Some(line) = self.no_offset {
+        if let Some(block) = self.no_offset {
             let reason = "no tool length offset (G43) is in force: positions are taken as those of the tip, as if the work offset \
                           were set with the tool";
             let remedy = "write G43, or state the lengths of the tools in the job (0 if Z of the work offset is that of the tip)";
             // A program that names no tool is set up with the one that is in the spindle.
             gaps.push(match self.tools.iter().any(|tool| tool.number.is_some()) {
-                true => Gap::open(line, format!("{reason}: {remedy}")),
-                false => Gap::said(line, reason.to_owned()),
+                true => Gap::open(block, format!("{reason}: {remedy}")),
+                false => Gap::said(block, reason.to_owned()),
             });
         }
-        if let Some(line) = self.tcp_without_length {
+        if let Some(block) = self.tcp_without_length {
             let reason =
                 format!("tips are taken as programmed, but {}", UnknownCause::TcpWithoutLength);
-            gaps.push(Gap::open(line, reason));
+            gaps.push(Gap::open(block, reason));
         }
         if self.limits_unchecked {
             let reason = "the limits of X, Y and Z are not checked: state the origin of G54 in `work_offsets`";
@@ -404,14 +414,15 @@ impl MachineSummary {
             let times =
                 if note.count > 1 { format!(" ({} times)", note.count) } else { String::new() };
             let reason = format!("{}{times}", note.kind);
-            gaps.push(Gap { line: note.line, weight, reason });
+            let place = BlockLine { line: note.line, within: note.within };
+            gaps.push(Gap::new(place, weight, reason));
         }
         gaps
     }
 
-    /// Returns the line of the first feed with a spindle.
-    fn first_feed(&self, wanted: Spindle) -> Option<usize> {
-        self.spindle.iter().find(|(.., spindle)| *spindle == wanted).map(|(block, ..)| block.line)
+    /// Returns the block of the first feed with a spindle.
+    fn first_feed(&self, wanted: Spindle) -> Option<BlockLine> {
+        self.spindle.iter().find(|(.., spindle)| *spindle == wanted).map(|(block, ..)| *block)
     }
 
     /// Returns whether the program says something about the spindle before some feed. Otherwise it leaves the spindle to the
@@ -427,7 +438,11 @@ impl MachineProgram {
     pub fn gaps(readings: &[MachineProgram]) -> Vec<Gap> {
         let mut gaps: Vec<(Gap, Vec<&Assumption>)> = Vec::new();
         for program in readings {
-            for gap in program.summary.gaps() {
+            for mut gap in program.summary.gaps(program.subprograms()) {
+                // Faults that stop a program name the line themselves.
+                if gap.weight != GapWeight::Stops {
+                    gap.reason += &program.name_within(gap.within);
+                }
                 match gaps.iter_mut().find(|(known, _)| *known == gap) {
                     Some((_, rules)) => rules.push(&program.assumed),
                     None => gaps.push((gap, vec![&program.assumed])),
@@ -443,6 +458,19 @@ impl MachineProgram {
         let mut gaps: Vec<Gap> = gaps.collect();
         gaps.sort_by_key(|gap| (gap.weight, gap.line));
         gaps
+    }
+
+    /// Returns the name of a file: that of the program, or by its [number](SubprogramLine::file) of a file of subprograms.
+    pub(crate) fn file_name(&self, number: usize) -> &str {
+        let file = number.checked_sub(1).and_then(|index| self.subprograms().get(index));
+        file.map_or(self.name(), |file| &file.name)
+    }
+
+    /// Names a line in a file of subprograms, for the end of a sentence; empty without one.
+    pub(crate) fn name_within(&self, place: Option<SubprogramLine>) -> String {
+        place.map_or(String::new(), |within| {
+            format!(" ({}, line {})", self.file_name(within.file), within.line)
+        })
     }
 
     /// Names the readings for which something holds, by what they assume: `under rotary = "shortest"`. `None` if it holds for

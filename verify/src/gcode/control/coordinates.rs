@@ -59,7 +59,7 @@ impl Control {
             }
             self.edge = Some(edge);
             if compensation == 400 {
-                self.notes.add(self.line, NoteKind::PassedOver { word: "D".to_owned() });
+                self.notes.add(self.block(), NoteKind::PassedOver { word: "D".to_owned() });
             }
             self.staged_edge = is_between.then_some(edge);
             self.needs_edge &= is_between;
@@ -110,7 +110,7 @@ impl Control {
 
     /// Changes the tool.
     fn change_tool(&mut self, tool: u32) {
-        self.notes.add(self.line, NoteKind::ToolChange);
+        self.notes.add(self.block(), NoteKind::ToolChange);
         // The tool before the first change may be the same.
         self.leave_for_change(self.state.tool.is_none_or(|before| before == tool));
         self.length_cancelled = false;
@@ -482,7 +482,7 @@ impl Control {
         };
         if matches!(code.tenths, 580 | 590) {
             match self.stated(Rule::Dialect) {
-                None => self.notes.add(self.line, NoteKind::OffsetOrShift),
+                None => self.notes.add(self.block(), NoteKind::OffsetOrShift),
                 Some(Choice::Sinumerik) => {
                     let meaning = "a shift in native programs of Sinumerik";
                     let remedy = "write G54 to G57, or state `dialect = \"iso\"` of the control";

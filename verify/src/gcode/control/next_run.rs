@@ -10,7 +10,7 @@ use crate::gcode::interpreter::{End, Interpreter};
 use crate::gcode::note::{NoteKind, ProgramNote};
 use crate::gcode::rules::{Choice, Rule};
 use crate::gcode::state::{LengthOffset, Rotation, Tcp};
-use crate::gcode::{Plane, Step, StepPath};
+use crate::gcode::{BlockLine, Plane, Step, StepPath};
 use std::sync::Arc;
 use touchoff::Unit;
 
@@ -90,23 +90,24 @@ fn note(first: &Interpreter, left: &Control, end: End) -> Option<ProgramNote> {
     if all.is_none() && end == Some(Choice::SetsModes) {
         return None;
     }
-    let mut alone: Vec<(Mode, usize)> = Vec::new();
+    let mut alone: Vec<(Mode, BlockLine)> = Vec::new();
     for mode in &kept {
-        alone.extend(first_difference(first, left, &[*mode]).map(|line| (*mode, line)));
+        alone.extend(first_difference(first, left, &[*mode]).map(|block| (*mode, block)));
     }
-    let line = alone.iter().map(|(_, line)| *line).chain(all).min()?;
+    let BlockLine { line, within } = alone.iter().map(|(_, block)| *block).chain(all).min()?;
     // Modes that differ only together are named together.
     let guilty: Vec<Mode> = match alone.is_empty() {
         true => kept,
         false => alone.into_iter().map(|(mode, _)| mode).collect(),
     };
     let words: Vec<String> = guilty.into_iter().map(|mode| mode.word(left)).collect();
-    Some(ProgramNote { line, count: 1, kind: NoteKind::LeftModes { words: words.join(", ") } })
+    let kind = NoteKind::LeftModes { words: words.join(", ") };
+    Some(ProgramNote { line, within, count: 1, kind })
 }
 
-/// Returns the line of the first block that is executed otherwise if some modes are kept, at any position of the switch for
+/// Returns the place of the first block that is executed otherwise if some modes are kept, at any position of the switch for
 /// optional blocks, and under all choices of the rules on which the first run did not depend.
-fn first_difference(first: &Interpreter, left: &Control, kept: &[Mode]) -> Option<usize> {
+fn first_difference(first: &Interpreter, left: &Control, kept: &[Mode]) -> Option<BlockLine> {
     let mut start = first.clone();
     start.control.stand_as(left);
     let mut starts = vec![start];
@@ -116,9 +117,9 @@ fn first_difference(first: &Interpreter, left: &Control, kept: &[Mode]) -> Optio
     while let Some(start) = starts.pop() {
         let (mut run, mut next) = (start.clone(), start.clone());
         next.control.keep(left, kept);
-        let line = run_beside(&mut run, &mut next);
-        if line.is_some() {
-            return line;
+        let block = run_beside(&mut run, &mut next);
+        if block.is_some() {
+            return block;
         }
         let mut asked = run.control.asked.keys().chain(next.control.asked.keys());
         if let Some(rule) =
@@ -142,15 +143,15 @@ fn under_each<'a>(start: &Interpreter<'a>, rule: Rule) -> Vec<Interpreter<'a>> {
         .collect()
 }
 
-/// Executes two runs until they agree, and returns the line of the first block that they execute in different ways.
-fn run_beside(run: &mut Interpreter, next: &mut Interpreter) -> Option<usize> {
+/// Executes two runs until they agree, and returns the place of the first block that they execute in different ways.
+fn run_beside(run: &mut Interpreter, next: &mut Interpreter) -> Option<BlockLine> {
     while !run.control.agrees(&next.control) {
         let lengths = [&*run, next].map(|run| run.control.state.length);
         // The first run has shown what stops the program itself.
         let more = run.execute_line().ok()?;
-        let line = run.control.line;
+        let block = run.control.block();
         if next.execute_line().is_err() {
-            return Some(line);
+            return Some(block);
         }
         let mut steps = std::mem::take(&mut run.control.pending);
         let others = std::mem::take(&mut next.control.pending);
@@ -164,7 +165,7 @@ fn run_beside(run: &mut Interpreter, next: &mut Interpreter) -> Option<usize> {
         let is_same = steps.len() == others.len()
             && steps.iter().zip(&others).all(|(step, other)| is_same_motion(step, other));
         match (is_same, more) {
-            (false, _) => return Some(line),
+            (false, _) => return Some(block),
             (true, false) => return None,
             (true, true) => {}
         }

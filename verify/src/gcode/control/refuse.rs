@@ -312,7 +312,7 @@ impl Control {
         let [from, to] = [[x, y], [u, v]].map(|[x, y]| (x - centre[0]).hypot(y - centre[1]));
         let turn = if chord > 0.0 { from.max(to) / chord } else { 0.0 };
         if (from - to).abs() * turn.max(1.0) > RADII_TOLERANCE {
-            self.notes.add(self.line, NoteKind::TwoRadii);
+            self.notes.add(self.block(), NoteKind::TwoRadii);
         }
         Ok(())
     }
@@ -337,7 +337,7 @@ impl Control {
         let farthest = if is_major { 2.0 * radius.abs() } else { chord };
         let turn = farthest / chord.max(increment) * f64::sqrt(8.0) * increment;
         if (deep - shallow).abs() + turn > RADII_TOLERANCE.max(8.0 * increment) {
-            self.notes.add(self.line, NoteKind::RoundedRadius);
+            self.notes.add(self.block(), NoteKind::RoundedRadius);
         }
     }
 }

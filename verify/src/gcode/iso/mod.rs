@@ -99,7 +99,7 @@ impl<'a> Program<'a> {
         }
         if let Some((line, has_blocks)) = extent.left_out {
             let kind = if has_blocks { NoteKind::OtherProgram } else { NoteKind::TextAfterEnd };
-            control.notes.add(line, kind);
+            control.notes.add(line.into(), kind);
         }
         let sources: Vec<Source> =
             [Source::new(None, extent, structure)].into_iter().chain(others).collect();
@@ -241,11 +241,11 @@ impl<'a> Program<'a> {
             let first = self.switch.get_or_insert_with(|| text[..digits].to_owned());
             // `/2` is a switch of its own on Fanuc and Siemens.
             if *first != text[..digits] {
-                control.notes.add(control.line, NoteKind::OptionalSwitches);
+                control.notes.add(control.block(), NoteKind::OptionalSwitches);
             }
         }
         if is_optional && control.choice(Rule::OptionalBlocks) == Choice::LeftOut {
-            control.notes.add(control.line, NoteKind::OmittedOptionalBlock);
+            control.notes.add(control.block(), NoteKind::OmittedOptionalBlock);
             return Ok(Progress::GoesOn);
         }
         check_text(text, control)?;
@@ -261,7 +261,7 @@ impl<'a> Program<'a> {
         let scope = Scope::new(&self.variables, control);
         let result = line.parse(text, &scope).and_then(|()| {
             if is_optional {
-                control.notes.add(control.line, NoteKind::ExecutedOptionalBlock);
+                control.notes.add(control.block(), NoteKind::ExecutedOptionalBlock);
             }
             self.execute(&mut line, number, control)
         });
@@ -340,7 +340,7 @@ impl<'a> Program<'a> {
                 let target = block.take_whole('P', 1, 99_999_999, expected)?;
                 block.check_used()?;
                 if self.flow.is_main() && target.is_none() {
-                    control.notes.add(control.line, NoteKind::Endless);
+                    control.notes.add(control.block(), NoteKind::Endless);
                     return Ok(Progress::Ended(End::Repeat));
                 }
                 match (target, self.flow.returns_to_file(), self.waiting.last_mut()) {
@@ -362,16 +362,16 @@ impl<'a> Program<'a> {
         match block.tenths_of(Group::Stop) {
             Some(20 | 300) => {
                 if let Some(line) = self.flow.text_after_end() {
-                    control.notes.add(line, NoteKind::TextAfterEnd);
+                    control.notes.add(line.into(), NoteKind::TextAfterEnd);
                 }
                 if let Some(line) = self.flow.other_program() {
-                    control.notes.add(line, NoteKind::OtherProgram);
+                    control.notes.add(line.into(), NoteKind::OtherProgram);
                 }
                 return Ok(Progress::Ended(End::Stop));
             }
             Some(_) => {
                 control.pause_spindle();
-                control.notes.add(control.line, NoteKind::Stop);
+                control.notes.add(control.block(), NoteKind::Stop);
             }
             None => {}
         }
@@ -392,13 +392,13 @@ impl<'a> Program<'a> {
                 3000 => return Err(GcodeFault::Alarm { number: value.unwrap_or(0.0) }),
                 3006 => {
                     control.pause_spindle();
-                    control.notes.add(control.line, NoteKind::Stop);
+                    control.notes.add(control.block(), NoteKind::Stop);
                     return Ok(());
                 }
                 // Single block, and exact stop, which leave the path.
                 3003 | 3004 => {
                     let word = format!("#{number}");
-                    control.notes.add(control.line, NoteKind::PassedOver { word });
+                    control.notes.add(control.block(), NoteKind::PassedOver { word });
                     return Ok(());
                 }
                 _ => {}

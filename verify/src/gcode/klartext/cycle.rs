@@ -160,7 +160,7 @@ impl Program<'_> {
                 }
                 if part.unwrap_or(0) == 0 {
                     let word = word();
-                    control.notes.add(control.line, NoteKind::PassedOver { word });
+                    control.notes.add(control.block(), NoteKind::PassedOver { word });
                 }
                 return Ok(());
             }
@@ -398,7 +398,7 @@ fn mill(bore: Bore, [top, bottom]: [f64; 2], control: &mut Control) -> Result<()
         control.move_to_level(bottom, false, false);
         return Ok(());
     }
-    control.notes.add_once(control.line, NoteKind::HelixStart);
+    control.notes.add_once(control.block(), NoteKind::HelixStart);
     let turns = (top - bottom) / pitch;
     if turns > MAX_TURNS {
         return Err(GcodeFault::CycleTooLong);

@@ -423,7 +423,7 @@ impl Program<'_> {
                 words.set(Positioning::Stay)?;
             } else if cursor.take_prefix("COORD") && cursor.take_prefix("ROT") {
                 let word = "COORD ROT".to_owned();
-                control.notes.add(control.line, NoteKind::PassedOver { word });
+                control.notes.add(control.block(), NoteKind::PassedOver { word });
             } else if cursor.take_prefix("TABLE") && cursor.take_prefix("ROT") {
                 words.turns_table = true;
             } else if cursor.take_prefix("SEQ") {

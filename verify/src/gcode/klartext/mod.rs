@@ -250,7 +250,7 @@ impl<'a> Program<'a> {
                 true => NoteKind::OmittedOptionalBlock,
                 false => NoteKind::ExecutedOptionalBlock,
             };
-            control.notes.add(control.line, kind);
+            control.notes.add(control.block(), kind);
             if is_left_out {
                 return Ok(Progress::GoesOn);
             }
@@ -307,7 +307,7 @@ impl<'a> Program<'a> {
                 self.blank_corner(&mut cursor)?;
                 let text = start.rest().split([';', '\n']).next().unwrap_or_default();
                 let word = unquoted(&text.split_whitespace().collect::<Vec<_>>().join(" "));
-                control.notes.add(control.line, NoteKind::PassedOver { word });
+                control.notes.add(control.block(), NoteKind::PassedOver { word });
             }
             "END" if cursor.take_word("PGM") => {
                 if let Some(Waiting { flow, file, local }) = self.waiting.pop() {
@@ -323,7 +323,7 @@ impl<'a> Program<'a> {
                         true => NoteKind::OtherProgram,
                         false => NoteKind::TextAfterEnd,
                     };
-                    control.notes.add(line, kind);
+                    control.notes.add(line.into(), kind);
                 }
                 return Ok(Progress::Ended(End::Stop));
             }
@@ -393,7 +393,7 @@ impl<'a> Program<'a> {
                 128 => self.set_tcp(true, control)?,
                 _ if m_entry(*code)?.treatment == Treatment::PassedOver => {
                     let word = format!("M{code}");
-                    control.notes.add(control.line, NoteKind::PassedOver { word });
+                    control.notes.add(control.block(), NoteKind::PassedOver { word });
                 }
                 _ => {}
             }
@@ -419,7 +419,7 @@ impl<'a> Program<'a> {
                 129 => self.set_tcp(false, control)?,
                 0 | 1 => {
                     control.pause_spindle();
-                    control.notes.add(control.line, NoteKind::Stop);
+                    control.notes.add(control.block(), NoteKind::Stop);
                 }
                 2 | 30 if !self.waiting.is_empty() => {
                     let condition =
@@ -442,7 +442,7 @@ impl<'a> Program<'a> {
     fn note_end(&self, control: &mut Control) {
         if self.frame.is_mirrored() {
             let words = "CYCL DEF 8".to_owned();
-            control.notes.add(control.line, NoteKind::LeftModes { words });
+            control.notes.add(control.block(), NoteKind::LeftModes { words });
         }
     }
 
@@ -497,7 +497,7 @@ impl<'a> Program<'a> {
         };
         entry.check()?;
         if entry.treatment == Treatment::PassedOver {
-            control.notes.add(control.line, NoteKind::PassedOver { word });
+            control.notes.add(control.block(), NoteKind::PassedOver { word });
             return Ok(());
         }
         if !cursor.take(b':') {
@@ -645,7 +645,7 @@ impl<'a> Program<'a> {
                     match is_of_corner {
                         true => {
                             let word = "DR2".to_owned();
-                            control.notes.add_once(control.line, NoteKind::PassedOver { word });
+                            control.notes.add_once(control.block(), NoteKind::PassedOver { word });
                         }
                         false => radius_allowance = Some(value),
                     }
@@ -669,7 +669,7 @@ impl<'a> Program<'a> {
                 control.define_length(tool as u32, length);
             } else {
                 let word = word.to_owned();
-                control.notes.add(control.line, NoteKind::PassedOver { word });
+                control.notes.add(control.block(), NoteKind::PassedOver { word });
             }
             return Ok(());
         }
@@ -745,12 +745,12 @@ impl<'a> Program<'a> {
             "DWELL" => {
                 control.add_dwell(None, 1);
                 let word = "FUNCTION DWELL".to_owned();
-                control.notes.add(control.line, NoteKind::PassedOver { word });
+                control.notes.add(control.block(), NoteKind::PassedOver { word });
                 Ok(())
             }
             "MODE" if cursor.take_word("MILL") => {
                 let word = "FUNCTION MODE".to_owned();
-                control.notes.add(control.line, NoteKind::PassedOver { word });
+                control.notes.add(control.block(), NoteKind::PassedOver { word });
                 Ok(())
             }
             _ => {

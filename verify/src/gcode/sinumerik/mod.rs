@@ -239,13 +239,13 @@ impl<'a> Program<'a> {
             let first = *self.switch.get_or_insert(digits);
             // `/2` is a switch of its own.
             if first != digits {
-                control.notes.add(control.line, NoteKind::OptionalSwitches);
+                control.notes.add(control.block(), NoteKind::OptionalSwitches);
             }
             if control.choice(Rule::OptionalBlocks) == Choice::LeftOut {
-                control.notes.add(control.line, NoteKind::OmittedOptionalBlock);
+                control.notes.add(control.block(), NoteKind::OmittedOptionalBlock);
                 return Ok(Progress::GoesOn);
             }
-            control.notes.add(control.line, NoteKind::ExecutedOptionalBlock);
+            control.notes.add(control.block(), NoteKind::ExecutedOptionalBlock);
         }
         if let Some((structure, mut after)) = Structure::at(words) {
             self.structure(structure, &mut after, line)?;
@@ -600,7 +600,7 @@ impl<'a> Program<'a> {
             Left::MainProgram if !self.waiting.is_empty() => self.leave_file(),
             Left::MainProgram => {
                 if let Some(line) = self.flow.text_after_end() {
-                    control.notes.add(line, NoteKind::TextAfterEnd);
+                    control.notes.add(line.into(), NoteKind::TextAfterEnd);
                 }
                 return Progress::Ended(End::Stop);
             }

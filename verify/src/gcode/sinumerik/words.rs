@@ -128,7 +128,7 @@ impl<'a> Program<'a> {
             Some(20 | 300) => return Ok(self.leave(control)),
             Some(_) => {
                 control.pause_spindle();
-                control.notes.add(control.line, NoteKind::Stop);
+                control.notes.add(control.block(), NoteKind::Stop);
             }
             None => {}
         }
@@ -183,7 +183,7 @@ impl<'a> Program<'a> {
             // A word for the machine's logic, which moves no axis of the path.
             'H' => {
                 self.value(letter, cursor)?;
-                control.notes.add(control.line, NoteKind::PassedOver { word: "H".to_owned() });
+                control.notes.add(control.block(), NoteKind::PassedOver { word: "H".to_owned() });
                 Ok(())
             }
             'U' | 'V' | 'W' => Err(GcodeFault::Axis { word: letter }),
@@ -221,7 +221,7 @@ impl<'a> Program<'a> {
             // A word for the machine's logic.
             ('H', _) => {
                 number(cursor, &self.variables)?;
-                control.notes.add(control.line, NoteKind::PassedOver { word });
+                control.notes.add(control.block(), NoteKind::PassedOver { word });
                 Ok(())
             }
             ('S' | 'M', _) => {
@@ -261,7 +261,7 @@ impl<'a> Program<'a> {
             "TRAFOOF" => transformation(cursor, block, Keyword::TransformationOff, name),
             "ORIWKS" | "ORIMKS" => {
                 self.machine_orientation = upper == "ORIMKS";
-                control.notes.add(control.line, NoteKind::PassedOver { word: upper });
+                control.notes.add(control.block(), NoteKind::PassedOver { word: upper });
                 Ok(())
             }
             "ORIAXES" => {
@@ -311,7 +311,7 @@ impl<'a> Program<'a> {
             _ => match use_of(name) {
                 Some(Use::PassedOver) => {
                     self.pass_over(cursor)?;
-                    control.notes.add(control.line, NoteKind::PassedOver { word: upper });
+                    control.notes.add(control.block(), NoteKind::PassedOver { word: upper });
                     Ok(())
                 }
                 Some(Use::Refused { meaning, remedy }) => Err(not_read(upper, meaning, remedy)),
