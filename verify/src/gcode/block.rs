@@ -2,7 +2,7 @@
 //! blocks.
 
 use super::GcodeFault;
-use super::control::Corner;
+use super::control::{Corner, CornerFeed};
 use super::error::same_group;
 use super::words::group;
 use std::fmt;
@@ -60,6 +60,8 @@ pub(super) struct Block {
     pub(super) vector: Option<[f64; 3]>,
     /// The corner at the end of a motion.
     pub(super) corner: Option<Corner>,
+    /// The feed of the corners from here on (FRCM).
+    pub(super) modal_corner_feed: Option<CornerFeed>,
     /// The full turns of an arc beside its way to the end (TURN).
     pub(super) full_turns: u32,
     /// Set if G90 or G91 stands after a coordinate.
@@ -75,6 +77,7 @@ impl Block {
         (self.whole, self.computed, self.without_point) = (0, 0, 0);
         (self.own_distance, self.own_increment, self.shortest) = (0, 0, 0);
         (self.vector, self.corner, self.full_turns) = (None, None, 0);
+        self.modal_corner_feed = None;
         self.distance_after_coordinate = false;
     }
 

@@ -15,7 +15,7 @@ mod offset;
 mod refuse;
 mod report;
 
-pub(super) use corner::{Corner, CornerShape};
+pub(super) use corner::{Corner, CornerFeed, CornerShape};
 pub(super) use report::Report;
 
 pub(super) use heidenhain::{Circle, Curve};
@@ -148,6 +148,8 @@ pub(super) struct Modal {
     absolute_centres: Option<bool>,
     feed_mode: FeedMode,
     feed: Option<f64>,
+    /// The feed of corners that state none (FRCM).
+    corner_feed: CornerFeed,
     /// Set where the path goes through the corners (G61).
     pub(super) exact_path: bool,
     /// G99: canned cycles end in the plane R; `None` before G98 or G99.
@@ -449,22 +451,22 @@ impl Control {
     /// Returns the feed that is programmed for a motion, as far as it is known.
     fn programmed_feed(&self) -> Option<Feed> {
         let feed = self.modal.feed.filter(|_| !self.has_own_feed)?;
-        let speed = |per_minute| Feed::Speed {
-            length: self.modal.millimetres(per_minute),
-            angle: per_minute,
-        };
-        match self.modal.feed_mode {
-            FeedMode::PerMinute => Some(speed(feed)),
-            FeedMode::PerRevolution => {
-                let turns = self.spindle.speed.filter(|turns| *turns > 0.0)?;
-                Some(speed(feed * turns))
-            }
-            // It is the time of a block, of which these make several motions.
-            FeedMode::InverseTime => {
-                let is_one_motion = self.modal.cycle().is_none() && self.compensation.is_none();
-                is_one_motion.then_some(Feed::Time { minutes: 1.0 / feed })
-            }
+        if self.modal.feed_mode != FeedMode::InverseTime {
+            return self.speed(feed);
         }
+        // It is the time of a block, of which these make several motions.
+        let is_one_motion = self.modal.cycle().is_none() && self.compensation.is_none();
+        is_one_motion.then_some(Feed::Time { minutes: 1.0 / feed })
+    }
+
+    /// Returns the speed of a feed per minute or per turn of the spindle; `None` if it is not known, and of a feed by time.
+    fn speed(&self, feed: f64) -> Option<Feed> {
+        let per_minute = match self.modal.feed_mode {
+            FeedMode::PerMinute => feed,
+            FeedMode::PerRevolution => feed * self.spindle.speed.filter(|turns| *turns > 0.0)?,
+            FeedMode::InverseTime => return None,
+        };
+        Some(Feed::Speed { length: self.modal.millimetres(per_minute), angle: per_minute })
     }
 
     /// Gives the numbers of a block the unit that the control gives them.
@@ -527,7 +529,14 @@ impl Control {
             {
                 self.modal.feed = None;
             }
+            // FRCM has to be stated again.
+            if mode != self.modal.feed_mode && self.modal.corner_feed != CornerFeed::OfMotion {
+                self.modal.corner_feed = CornerFeed::Unknown;
+            }
             self.modal.feed_mode = mode;
+        }
+        if let Some(feed) = block.modal_corner_feed.take() {
+            self.modal.corner_feed = feed;
         }
         // F of G93 is the time of one block.
         if self.modal.feed_mode == FeedMode::InverseTime {
@@ -724,6 +733,7 @@ impl Modal {
             absolute_centres: None,
             feed_mode: FeedMode::PerMinute,
             feed: None,
+            corner_feed: CornerFeed::OfMotion,
             exact_path: false,
             retract_to_r: None,
         }

@@ -190,11 +190,24 @@ fn klartext_has_its_feeds() {
     assert_near(drilled.feed, 6.0);
     assert_near(drilled.dwell, 0.5);
     assert_near(rapid(&drilled), 0.006 * (8.0 + 10.0));
+    // The feed of CYCL CALL POS is that of the way to the position.
+    let call = |feed: &str| {
+        let hole = hole(200, "Q202=+8 ~\n Q211=+0").replace("CYCL CALL", "");
+        format!("L X+100 F200\n{hole}\nCYCL CALL POS X+0 Y+0 Z+0 {feed}\nL X+100")
+    };
+    assert_near(known(&call("FMAX")).feed, 66.0);
+    assert_near(known(&call("F100")).feed, 126.0);
+    // Per turn, it is not known.
+    let per_turn = of("MM", &call("FU0.1"));
+    assert_near(per_turn.feed, 66.0);
+    assert_eq!(per_turn.unknown, start + 1);
     assert_near(known(&hole(201, "Q208=+0")).feed, 12.0);
     assert_near(known(&hole(201, "Q208=+200")).feed, 9.0);
     assert_near(known(&format!("L X+100 F200\n{}\nL X+0", hole(201, "Q208=+200"))).feed, 69.0);
     for (unit, blocks, more) in [
         ("MM", "L X+100 FU0.1".to_owned(), 1),
+        ("MM", "L X+10 F100\nRND R2 FU0.1\nL Y+10".to_owned(), 1),
+        ("MM", "L X+10 F100 M109\nRND R2 F50\nL Y+10 M111".to_owned(), 2),
         ("MM", "L X+100 F200 M136\nL X+0 M137\nL X+100".to_owned(), 1),
         ("MM", "L X+100 F200 M109\nL X+0 M111".to_owned(), 1),
         ("MM", "L Z+9 F200 M103 F20".to_owned(), 1),
@@ -204,6 +217,93 @@ fn klartext_has_its_feeds() {
         ("INCH", "L X+1 F20".to_owned(), 1),
     ] {
         assert_eq!(of(unit, &blocks).unknown, start + more, "{blocks}");
+    }
+}
+
+/// Two sides of a square of 10 mm, of which a corner of 2 mm takes 2 of each.
+#[test]
+fn corners_of_klartext_have_their_feed() {
+    let of = |blocks: &str| {
+        let setup = ControlSetup { lengths: [(1, 80.0)].into(), ..ControlSetup::default() };
+        let text = format!(
+            "0 BEGIN PGM T MM\nTOOL CALL 1 Z S600 F600\nL X+0 Y+0 Z+10 FMAX M3\n{blocks}\nM30\nEND PGM T MM\n"
+        );
+        let program = MachineProgram::new("corner.h", text, with_rates("3-axis"), setup);
+        let program = program.expect("a program");
+        program.check_complete().expect("all lines are read");
+        program.summary().times[0]
+    };
+    let start = of("").unknown;
+    // Both lines at 100 mm/min, and the corner at its own feed.
+    let lines = 60.0 * 16.0 / 100.0;
+    for (corner, seconds) in [
+        ("RND R2", 60.0 * PI / 100.0),
+        ("RND R2 F50", 60.0 * PI / 50.0),
+        ("RND R2 F AUTO", 60.0 * PI / 600.0),
+        ("CHF 2 F50", 60.0 * 8.0_f64.sqrt() / 50.0),
+    ] {
+        let time = of(&format!("L X+10 F100\n{corner}\nL Y+10"));
+        assert_near(time.feed, lines + seconds);
+        assert_eq!(time.unknown, start, "{corner}");
+    }
+    // A feed of the corner beside one of the path that is not known.
+    let time = of("L X+10 FU0.1\nRND R2 F50\nL Y+10");
+    assert_near(time.feed, 60.0 * PI / 50.0);
+    assert_eq!(time.unknown, start + 2);
+}
+
+/// The same corners by the words of Sinumerik.
+#[test]
+fn corners_of_sinumerik_have_their_feed() {
+    let of = |blocks: &str| {
+        let mut setup = ControlSetup {
+            lengths: [(1, 80.0)].into(),
+            rules: ControlRules::named("siemens").expect("a control"),
+            ..ControlSetup::default()
+        };
+        setup.work_offsets[0] = Some([0.0, 0.0, -300.0, 0.0, 0.0, 0.0]);
+        let text = format!(
+            "DEF REAL DEPTH=0\nG71 G90 G94 G54 G17\nT1 M6\nD1\nS600 M3\nG0 X0 Y0 Z10\nG0 X0 Y0 Z10\n{blocks}\nM30\n"
+        );
+        let program = MachineProgram::new("corner.mpf", text, with_rates("3-axis"), setup);
+        let program = program.expect("a program");
+        program.check_complete().expect("all lines are read");
+        program.summary().times[0]
+    };
+    let start = of("").unknown;
+    let (line, arc) = (60.0 / 100.0, 60.0 * PI);
+    for (blocks, seconds) in [
+        ("G1 X10 RND=2 F100\nY10", 16.0 * line + arc / 100.0),
+        // For the corner of the block alone; without one it has no effect.
+        ("G1 X10 RND=2 FRC=50 F100\nY10 RND=2\nX0", 22.0 * line + arc / 50.0 + arc / 100.0),
+        ("G1 X10 FRC=50 F100\nY10 RND=2\nX0", 26.0 * line + arc / 100.0),
+        ("G1 X10 CHR=2 FRC=50 F100\nY10", 16.0 * line + 60.0 * 8.0_f64.sqrt() / 50.0),
+        (
+            "G1 X10 CHF=2 FRC=50 F100\nY10",
+            60.0 * (20.0 - 8.0_f64.sqrt()) / 100.0 + 60.0 * 2.0 / 50.0,
+        ),
+        // For all corners, until 0 gives them the feed of the path again. FRC goes before.
+        ("FRCM=50\nG1 X10 RND=2 F100\nY10 RND=2\nX0", 22.0 * line + 2.0 * arc / 50.0),
+        (
+            "FRCM=50\nG1 X10 RND=2 F100\nY10 RND=2 FRCM=0\nX0",
+            22.0 * line + arc / 50.0 + arc / 100.0,
+        ),
+        ("FRCM=50\nG1 X10 RND=2 FRC=25 F100\nY10 RND=2\nX0", 22.0 * line + arc / 25.0 + arc / 50.0),
+        // Per turn, of which there are 600 a minute.
+        ("G95 G1 X10 RND=2 FRC=0.1 F0.5\nY10", 60.0 * 16.0 / 300.0 + arc / 60.0),
+    ] {
+        let time = of(blocks);
+        assert_near(time.feed, seconds);
+        assert_eq!(time.unknown, start, "{blocks}");
+    }
+    for (blocks, seconds) in [
+        // A modal feed has to be stated again in another mode.
+        ("FRCM=50\nG95 G1 X10 RND=2 F0.5\nY10", 60.0 * 16.0 / 300.0),
+        ("G1 X10 RND=2 FRC=0 F100\nY10", 16.0 * line),
+    ] {
+        let time = of(blocks);
+        assert_near(time.feed, seconds);
+        assert_eq!(time.unknown, start + 1, "{blocks}");
     }
 }
 

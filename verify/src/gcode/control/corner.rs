@@ -2,7 +2,8 @@
 //! between two lines or arcs, the chamfer between two lines.
 //!
 //! The motion that states a corner is held until the next one (known: Fanuc, *Optional chamfering and corner R*; Siemens, *NC
-//! programming*; Heidenhain, *Klartext programming*).
+//! programming*; Heidenhain, *Klartext programming*). Its feed is that of the motion before it, unless the language states another one:
+//! F in the block of RND and CHF, FRC and FRCM.
 //!
 //! An arc of radius r that touches both motions has its centre at the distance r from each, on the side to which the contour turns:
 //! at a crossing of two curves, a line and its parallel, or a circle with the radius R ± r about the centre of an arc. Of several
@@ -26,8 +27,18 @@ pub(in crate::gcode) struct Corner {
     pub(in crate::gcode) length: f64,
     /// Set if it is written without a decimal point.
     pub(in crate::gcode) is_whole: bool,
-    /// The feed of the corner alone, if it has one, in millimetres per minute.
-    pub(in crate::gcode) feed: Option<f64>,
+    pub(in crate::gcode) feed: CornerFeed,
+}
+
+/// The feed of a corner.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::gcode) enum CornerFeed {
+    /// That of the motion before it.
+    OfMotion,
+    /// Its own, above 0, in the unit and with the meaning of F.
+    Own(f64),
+    /// Its own, whose speed is not known.
+    Unknown,
 }
 
 /// The shape of a corner, and the length that gives its size.
@@ -50,6 +61,8 @@ pub(super) struct HeldMotion {
     corner: Corner,
     /// In millimetres.
     length: f64,
+    /// Feed of the corner.
+    feed: Option<Feed>,
     plane: Plane,
     /// Set in the block that states the corner.
     is_new: bool,
@@ -102,8 +115,17 @@ impl Control {
         let is_moved = self.pending.len() > first;
         let step = self.pending.pop_back_if(|step| is_moved && is_contour(step));
         let Some(step) = step else { return Err(beside(&corner)) };
+        let feed = match corner.feed {
+            CornerFeed::OfMotion => self.modal.corner_feed,
+            own => own,
+        };
+        let feed = match feed {
+            CornerFeed::OfMotion => step.feed,
+            CornerFeed::Own(feed) => self.speed(feed),
+            CornerFeed::Unknown => None,
+        };
         let plane = self.modal.plane;
-        self.held_motion = Some(HeldMotion { step, corner, length, plane, is_new: true });
+        self.held_motion = Some(HeldMotion { step, corner, length, feed, plane, is_new: true });
         Ok(())
     }
 
@@ -298,7 +320,7 @@ impl Parallel {
 
 /// Returns a motion up to the corner at its end, the corner if there is one, and the motion after it.
 fn trimmed(held: &HeldMotion, next: &Step, plane: Plane) -> Result<Vec<Step>, GcodeFault> {
-    let HeldMotion { step, corner, length, .. } = held;
+    let HeldMotion { step, corner, length, feed, .. } = held;
     let is_one_frame = Arc::ptr_eq(&step.state, &next.state) && held.plane == plane;
     let elements = [step, next].map(|step| Element::new(step, plane));
     let ([Some(before), Some(after)], true) = (elements, is_contour(next) && is_one_frame) else {
@@ -356,10 +378,7 @@ fn trimmed(held: &HeldMotion, next: &Step, plane: Plane) -> Result<Vec<Step>, Gc
         ..step.clone()
     };
     let first = Step { start: step.start, ..moved(&before, step) };
-    let mut between = moved(&between, step);
-    if let (Some(feed), Some(Feed::Speed { .. })) = (corner.feed, between.feed) {
-        between.feed = Some(Feed::Speed { length: feed, angle: feed });
-    }
+    let between = Step { feed: *feed, ..moved(&between, step) };
     let last = Step { end: next.end, ..moved(&after, next) };
     Ok(vec![first, between, last])
 }

@@ -5,7 +5,7 @@
 use super::expression::{Cursor, ExpressionFault, Language, Value, begins_value, condition, value};
 use super::variables::{Parameter, Scope, assignment};
 use crate::gcode::block::{Block, Code, Keyword, Number};
-use crate::gcode::control::{Corner, CornerShape};
+use crate::gcode::control::{Corner, CornerFeed, CornerShape};
 use crate::gcode::error::{combination, missing, not_read};
 use crate::gcode::rules::{Choice, Rule};
 use crate::gcode::{GcodeFault, LARGEST_NUMBER, MAX_ASSIGNMENTS, unquoted};
@@ -221,7 +221,7 @@ impl Line {
             'R' => (",R", CornerShape::Round),
             _ => (",C", CornerShape::Chamfer),
         };
-        let corner = Corner { word, shape, length, is_whole, feed: None };
+        let corner = Corner { word, shape, length, is_whole, feed: CornerFeed::OfMotion };
         match self.block.corner.replace(corner) {
             None => Ok(()),
             Some(_) => Err(GcodeFault::Repeated { word: letter }),

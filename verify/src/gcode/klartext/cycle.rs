@@ -240,6 +240,7 @@ impl Program<'_> {
                 return Err(cursor.unexpected("an M word alone after CYCL CALL"));
             }
             self.start_words(control)?;
+            self.state_feed(control);
             self.call_cycle(0.0, control)?;
             return self.end_words(control);
         }
@@ -263,7 +264,15 @@ impl Program<'_> {
         words.axes[2] = None;
         words.feed = Some(words.feed.unwrap_or(super::block::Feed::Rapid));
         self.start_words(control)?;
-        self.line(words, control)?;
+        // Its feed is that of the way to the position alone (known: TNC 640, *Cycle programming*).
+        let (is_per_turn, feed) = (self.is_per_turn, control.replace_feed(None));
+        self.note_feed(&words);
+        self.state_feed(control);
+        let moved = self.line(words, control);
+        control.replace_feed(feed);
+        self.is_per_turn = is_per_turn;
+        self.state_feed(control);
+        moved?;
         self.call_cycle(lift, control)?;
         self.end_words(control)
     }

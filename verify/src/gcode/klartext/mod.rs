@@ -402,10 +402,14 @@ impl<'a> Program<'a> {
         Ok(())
     }
 
-    /// Tells the control whether F is the speed along the path. In inches it is in tenths of an inch.
+    /// Returns whether F of any block is no speed along the path in millimetres per minute: in inches it is in tenths of an inch.
+    fn feed_has_other_meaning(&self) -> bool {
+        self.unit == Unit::Inch || !self.feed_words.is_empty()
+    }
+
+    /// Tells the control whether F is the speed along the path.
     fn state_feed(&self, control: &mut Control) {
-        control.has_own_feed =
-            self.unit == Unit::Inch || self.is_per_turn || !self.feed_words.is_empty();
+        control.has_own_feed = self.is_per_turn || self.feed_has_other_meaning();
     }
 
     /// Executes the M words that act at the end of their block.

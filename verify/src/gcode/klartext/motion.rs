@@ -9,7 +9,7 @@ use super::block::{Coordinate, Feed, Scale, Side, Words};
 use super::flow::Ahead;
 use super::line::{Cursor, expected};
 use crate::gcode::block::{Code, Number};
-use crate::gcode::control::{Circle, Control, Corner, CornerShape, Curve};
+use crate::gcode::control::{Circle, Control, Corner, CornerFeed, CornerShape, Curve};
 use crate::gcode::error::{combination, missing, not_read};
 use crate::gcode::state::{Position, Rotation};
 use crate::gcode::{GcodeFault, Plane, StepPath};
@@ -61,14 +61,7 @@ impl Program<'_> {
         let words = scale.words(cursor, &mut self.codes)?;
         words.check_used(head)?;
         self.start_words(control)?;
-        if let Some(feed) = words.feed {
-            self.is_per_turn = match feed {
-                Feed::Rate(_) => false,
-                Feed::PerTurn(_) => true,
-                Feed::OfTool => matches!(self.tool_feed, Some(Feed::PerTurn(_))),
-                Feed::Rapid => self.is_per_turn,
-            };
-        }
+        self.note_feed(&words);
         self.state_feed(control);
         if words.is_machine || words.retract.is_some() {
             control.check_corner()?;
@@ -603,12 +596,10 @@ impl Program<'_> {
             return Err(cursor.unexpected("the radius R after RND"));
         }
         let length = scale.length(&mut cursor)?;
-        let mut feed = None;
-        if matches!(cursor.peek(), Some(b'F'))
-            && let Feed::Rate(rate) = scale.feed(&mut cursor)?
-        {
-            feed = Some(rate);
-        }
+        let feed = match cursor.peek() {
+            Some(b'F' | b'f') => self.corner_feed(scale.feed(&mut cursor)?),
+            _ => CornerFeed::OfMotion,
+        };
         cursor.check_end()?;
         self.flow.go_on_at(after);
         let (word, shape) = match is_round {
@@ -617,6 +608,32 @@ impl Program<'_> {
             false => ("CHF", CornerShape::SquareChamfer),
         };
         Ok(Some(Corner { word, shape, length, is_whole: false, feed }))
+    }
+
+    /// Returns the feed of a corner that its block states: in millimetres per minute, unless F has another meaning.
+    fn corner_feed(&self, feed: Feed) -> CornerFeed {
+        let stated = match feed {
+            Feed::OfTool => self.tool_feed,
+            other => Some(other),
+        };
+        match stated {
+            Some(Feed::Rate(rate)) if rate > 0.0 && !self.feed_has_other_meaning() => {
+                CornerFeed::Own(rate)
+            }
+            _ => CornerFeed::Unknown,
+        }
+    }
+
+    /// Notes whether F of a block is per turn.
+    pub(super) fn note_feed(&mut self, words: &Words) {
+        match words.feed {
+            Some(Feed::Rate(_)) => self.is_per_turn = false,
+            Some(Feed::PerTurn(_)) => self.is_per_turn = true,
+            Some(Feed::OfTool) => {
+                self.is_per_turn = matches!(self.tool_feed, Some(Feed::PerTurn(_)));
+            }
+            Some(Feed::Rapid) | None => {}
+        }
     }
 }
 

@@ -5,7 +5,7 @@ use super::table::{Use, use_of};
 use super::text::Cursor;
 use super::{Program, no_subprogram, undefined};
 use crate::gcode::block::{Block, Code, Distance, Group, Keyword, Number};
-use crate::gcode::control::{Control, Corner, CornerShape, FrameStep};
+use crate::gcode::control::{Control, Corner, CornerFeed, CornerShape, FrameStep};
 use crate::gcode::error::{combination, missing, not_read};
 use crate::gcode::interpreter::Progress;
 use crate::gcode::note::NoteKind;
@@ -30,6 +30,8 @@ struct Words {
     exact_path: Option<bool>,
     /// ORIAXES and ORIVECT.
     orientation: Option<Choice>,
+    /// FRC.
+    corner_feed: Option<CornerFeed>,
     /// M17.
     returns: bool,
 }
@@ -73,8 +75,21 @@ impl<'a> Program<'a> {
                 _ => self.name(&mut cursor, block, &mut words, control)?,
             }
         }
-        let Words { vector, edge, speed, offset, exact_path, orientation, returns, assigns } =
-            words;
+        let Words {
+            vector,
+            edge,
+            speed,
+            offset,
+            exact_path,
+            orientation,
+            corner_feed,
+            returns,
+            assigns,
+        } = words;
+        // It has no effect in a block without a corner.
+        if let (Some(corner), Some(feed)) = (&mut block.corner, corner_feed) {
+            corner.feed = feed;
+        }
         if let Some(speed) = speed
             && block.code_of(Group::Dwell).is_none()
         {
@@ -115,7 +130,7 @@ impl<'a> Program<'a> {
             control.check_no_frame()?;
         }
         let is_motion = block.has_any("XYZ");
-        if !block.is_empty() || block.vector.is_some() {
+        if !block.is_empty() || block.vector.is_some() || block.modal_corner_feed.is_some() {
             control.execute(block)?;
             self.flow.count_steps(control.pending.len())?;
             block.check_used()?;
@@ -282,11 +297,21 @@ impl<'a> Program<'a> {
                     _ => ("CHF", CornerShape::Chord),
                 };
                 let length = number(cursor, &self.variables)?;
-                let corner = Corner { word, shape, length, is_whole: false, feed: None };
+                let corner =
+                    Corner { word, shape, length, is_whole: false, feed: CornerFeed::OfMotion };
                 match block.corner.replace(corner) {
                     None => Ok(()),
                     Some(_) => Err(combination(word, "its block has another corner", "keep one")),
                 }
+            }
+            "FRC" => {
+                words.corner_feed = Some(self.corner_feed(cursor, upper, CornerFeed::Unknown)?);
+                Ok(())
+            }
+            "FRCM" => {
+                block.modal_corner_feed =
+                    Some(self.corner_feed(cursor, upper, CornerFeed::OfMotion)?);
+                Ok(())
             }
             "TURN" if cursor.take_assignment() => {
                 let value = number(cursor, &self.variables)?;
@@ -321,6 +346,24 @@ impl<'a> Program<'a> {
                 None => Err(no_subprogram(name)),
             },
         }
+    }
+
+    /// Reads the feed of corners after FRC or FRCM; `zero` is what 0 means.
+    fn corner_feed(
+        &self,
+        cursor: &mut Cursor<'a>,
+        word: String,
+        zero: CornerFeed,
+    ) -> Result<CornerFeed, GcodeFault> {
+        if !cursor.take_assignment() {
+            return Err(missing(word, "`=` and a feed"));
+        }
+        let feed = number(cursor, &self.variables)?;
+        Ok(match feed {
+            0.0 => zero,
+            feed if feed > 0.0 => CornerFeed::Own(feed),
+            _ => CornerFeed::Unknown,
+        })
     }
 
     /// Passes over the index, the arguments and the value of a word.
