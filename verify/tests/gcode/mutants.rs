@@ -4,7 +4,6 @@ use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
-use std::time::{Duration, Instant};
 use touchoff_verify::gcode::{
     Choice, ControlRules, ControlSetup, Interpreter, Rule, Step, StepPath, SubprogramFile,
 };
@@ -223,12 +222,11 @@ pub(crate) fn read_mutants(seeds: &[Seed], pieces: &[&str], default_count: u64, 
     let mut random = Pcg64Mcg::seed_from_u64(random_seed);
     let mut random =
         |limit: usize| ((u128::from(random.next_u64()) * limit as u128) >> 64) as usize;
-    let (mut whole, mut steps, mut slowest) = (0u64, 0u64, (Duration::ZERO, String::new()));
+    let (mut whole, mut steps) = (0u64, 0u64);
     for index in 0..count {
         let seed = &seeds[random(seeds.len())];
         let text = mutate(seed.text, pieces, &mut random);
         let lines = text.split(['\n', '\r']).count();
-        let begin = Instant::now();
         match Interpreter::new(&text, &seed.setups[index as usize % seed.setups.len()]) {
             Err(error) => assert!((1..=lines).contains(&error.line), "{error}\n{text}"),
             Ok(mut interpreter) => {
@@ -253,15 +251,8 @@ pub(crate) fn read_mutants(seeds: &[Seed], pieces: &[&str], default_count: u64, 
                 }
             }
         }
-        if begin.elapsed() > slowest.0 {
-            slowest = (begin.elapsed(), text);
-        }
     }
-    println!(
-        "{count} mutants: {whole} read to the end, {steps} steps, the slowest in {:?}",
-        slowest.0
-    );
-    assert!(slowest.0 < Duration::from_secs(60), "{}", slowest.1);
+    println!("{count} mutants: {whole} read to the end, {steps} steps");
     assert!(whole > 0 && whole < count);
 }
 

@@ -1,9 +1,8 @@
-//! Native programs of Sinumerik: the same motions written in ISO words, closed forms, refusals, mutants, and the speed of a loop.
+//! Native programs of Sinumerik: the same motions written in ISO words, closed forms, refusals, mutants, and a long loop.
 
 use super::mutants::{Seed, read_mutants};
 use crate::common;
 use std::collections::BTreeMap;
-use std::time::{Duration, Instant};
 use touchoff_verify::gcode::{
     Choice, ControlRules, ControlSetup, GcodeError, Interpreter, LengthOffset, NoteKind, Position,
     Rotation, Rule, Spindle, Step, StepPath, Tcp, WorkOffset, read,
@@ -523,9 +522,9 @@ fn mutants_end_with_steps_or_with_a_line() {
     read_mutants(&seeds, &PIECES, 1_500, 11);
 }
 
-/// A loop takes little more time for a block than its text written out.
+/// A loop has the steps of its text written out.
 #[test]
-fn a_loop_of_a_hundred_thousand_blocks_is_as_fast_as_text() {
+fn a_loop_of_a_hundred_thousand_blocks_moves_as_text() {
     let looped = "R1=0\nWHILE R1<100000\nG1 X=R1*0.001 Y=-R1*0.001 F100\nR1=R1+1\nENDWHILE\nM30\n";
     let mut written = String::from("R1=0\n");
     for index in 0..100_000 {
@@ -533,14 +532,15 @@ fn a_loop_of_a_hundred_thousand_blocks_is_as_fast_as_text() {
         written.push_str(&format!("G1 X{value:.3} Y-{value:.3} F100\n"));
     }
     written.push_str("M30\n");
-    let times = [looped, written.as_str()].map(|program| {
-        let begin = Instant::now();
-        let found = read(program, &setup()).expect("a program");
-        assert_eq!(found.0.len(), 100_000);
-        begin.elapsed()
-    });
-    println!("{:?} for the loop, {:?} for the text", times[0], times[1]);
-    assert!(times[0] < 20 * times[1] + Duration::from_millis(100), "{times:?}");
+    let [looped, written] = [looped, written.as_str()].map(steps);
+    assert_eq!((looped.len(), written.len()), (100_000, 100_000));
+    for (one, other) in looped.iter().zip(&written) {
+        let is_near = |axis: usize| {
+            let ends = one.end[axis].zip(other.end[axis]);
+            ends.is_some_and(|(one, other)| (one - other).abs() < 1e-9)
+        };
+        assert!((0..2).all(is_near), "{one:?} {other:?}");
+    }
 }
 
 /// The corners of a square and of a triangle whose lines meet at 60 degrees, at points that are worked out by hand.
