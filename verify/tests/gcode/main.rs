@@ -1,4 +1,4 @@
-//! The G-code interpreter: LinuxCNC's own tests, programs with known motions, refusals, Klartext, and mutants.
+//! The G-code interpreter: LinuxCNC's own tests, programs with known motions, refusals, Klartext, the programs of a folder, and mutants.
 
 mod common;
 mod compensation;
@@ -10,6 +10,7 @@ mod klartext_cycles;
 mod macros;
 mod mutants;
 mod next_run;
+mod programs;
 mod refusals;
 mod sinumerik;
 mod subprograms;
