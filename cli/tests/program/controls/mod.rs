@@ -3,6 +3,7 @@
 mod five_axes;
 mod jobs;
 mod motions;
+mod posts;
 mod words;
 
 use crate::bench::{Bench, cuboid, stderr, stdout, touchoff};
