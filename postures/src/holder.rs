@@ -18,15 +18,10 @@ pub(crate) struct Holder {
     cutting: f64,
     /// Stick-out of the tool as it is: the height of the nose.
     pub(crate) stickout: f64,
-    /// Size down to which triangles are subdivided. A smaller one counts as high as its highest point.
-    min_size: f64,
 }
 
 /// Steps per straight segment of the profile.
 const STEPS_PER_SEGMENT: usize = 16;
-
-/// Size down to which triangles are subdivided, as a fraction of the holder's radius.
-const MIN_SIZE_FRACTION: f64 = 1.0 / 64.0;
 
 impl Holder {
     /// Creates the holder of a tool, or returns `None` if it has none. `length` is the factor from the tool's
@@ -43,13 +38,7 @@ impl Holder {
         let cutting = cutting_segments
             .flat_map(|segment| [segment.from[1], segment.to[1]])
             .fold(0.0, f64::max);
-        let widest = steps.last().map_or(0.0, |[radius, _]| *radius);
-        Some(Holder {
-            steps,
-            cutting: cutting * length,
-            stickout: nose,
-            min_size: MIN_SIZE_FRACTION * widest,
-        })
+        Some(Holder { steps, cutting: cutting * length, stickout: nose })
     }
 
     /// Returns the least height of the holder above its nose at a distance `d` from the axis; `None` beyond its
@@ -60,8 +49,7 @@ impl Holder {
 
     /// Returns the stick-out at which the holder touches nothing for a tip and an axis; `None` if that is not
     /// less than `limit`. The holder is taken to continue upward at the largest radius so far. The result is
-    /// therefore no less than what is needed, and exceeds it by at most the height of a step and the size of a
-    /// subdivided triangle.
+    /// therefore no less than what is needed but for rounding, and exceeds it by at most the height of a step.
     pub(crate) fn required_stickout(
         &self,
         bvh: &TriangleBvh,
@@ -79,39 +67,95 @@ impl Holder {
 
     /// Returns the stick-out that a triangle needs, or `required` if that is more. Its corners are relative to the
     /// tip.
+    ///
+    /// A point needs its height less that of the first step that reaches it. Wider steps are higher, so the triangle needs
+    /// the most, over all steps, of its greatest height within the step's radius less the step's height.
     fn triangle(&self, corners: [Vector3<f64>; 3], axis: &Vector3<f64>, required: f64) -> f64 {
-        let mut highest = required;
-        let mut stack = vec![corners];
-        while let Some([a, b, c]) = stack.pop() {
-            let heights = [a, b, c].map(|corner| corner.dot(axis));
-            let high = heights.into_iter().fold(f64::NEG_INFINITY, f64::max);
-            let centroid = (a + b + c) / 3.0;
-            let radius =
-                [a, b, c].map(|corner| (corner - centroid).norm()).into_iter().fold(0.0, f64::max);
-            let min_distance = ((centroid - axis * centroid.dot(axis)).norm() - radius).max(0.0);
-            // The whole triangle is taken as high as its highest corner and as near to the axis as its nearest point: more
-            // than it needs, and less so the smaller it is.
-            let Some(needed) = self.height(min_distance).map(|height| high - height) else {
-                continue;
-            };
-            if needed <= highest {
-                continue;
+        let triangle = AxialTriangle::new(corners, axis);
+        let highest = triangle.heights.into_iter().fold(f64::NEG_INFINITY, f64::max);
+        let mut required = required;
+        for [radius, height] in &self.steps {
+            // Neither this step nor a higher one asks for more.
+            if highest - height <= required {
+                break;
             }
-            if radius <= self.min_size {
-                highest = needed;
-                continue;
+            if let Some(within) = triangle.highest_within(*radius) {
+                required = required.max(within - height);
             }
-            // Halve the longest side.
-            let sides = [(b - a).norm(), (c - b).norm(), (a - c).norm()];
-            let [a, b, c] = match () {
-                () if sides[0] >= sides[1] && sides[0] >= sides[2] => [a, b, c],
-                () if sides[1] >= sides[2] => [b, c, a],
-                () => [c, a, b],
-            };
-            let half = (a + b) / 2.0;
-            stack.extend([[a, half, c], [half, b, c]]);
         }
-        highest
+        required
+    }
+}
+
+/// A triangle, as heights along an axis through the origin and vectors across it.
+struct AxialTriangle {
+    axis: Vector3<f64>,
+    heights: [f64; 3],
+    across: [Vector3<f64>; 3],
+}
+
+impl AxialTriangle {
+    fn new(corners: [Vector3<f64>; 3], axis: &Vector3<f64>) -> AxialTriangle {
+        let heights = corners.map(|corner| corner.dot(axis));
+        let across = [0, 1, 2].map(|k| corners[k] - axis * heights[k]);
+        AxialTriangle { axis: *axis, heights, across }
+    }
+
+    /// Returns the greatest height of a point at most `radius` from the axis, up to rounding; `None` if there is none.
+    ///
+    /// Height is linear on the triangle, and its points within the radius are a convex set. Height is greatest where an
+    /// edge ends or leaves the cylinder of that radius, or at the highest point that the triangle's plane has on the cylinder.
+    fn highest_within(&self, radius: f64) -> Option<f64> {
+        let edges = [[0, 1], [1, 2], [2, 0]].map(|edge| self.highest_of_edge(edge, radius));
+        let heights = edges.into_iter().chain([self.highest_inside(radius)]);
+        heights.flatten().reduce(f64::max)
+    }
+
+    /// The same of the points of an edge.
+    fn highest_of_edge(&self, [from, to]: [usize; 2], radius: f64) -> Option<f64> {
+        let (start, along) = (self.across[from], self.across[to] - self.across[from]);
+        // The points with |start + t along| ≤ radius.
+        let (square, half) = (along.norm_squared(), start.dot(&along));
+        let beyond = start.norm_squared() - radius * radius;
+        let discriminant = half * half - square * beyond;
+        let [first, last] = if square > 0.0 {
+            if discriminant < 0.0 {
+                return None;
+            }
+            [-1.0, 1.0].map(|sign| (sign * discriminant.sqrt() - half) / square)
+        } else if beyond > 0.0 {
+            return None;
+        } else {
+            [0.0, 1.0]
+        };
+        let (first, last) = (first.max(0.0), last.min(1.0));
+        let height = |t: f64| self.heights[from] + (self.heights[to] - self.heights[from]) * t;
+        (first <= last).then(|| height(first).max(height(last)))
+    }
+
+    /// Returns the greatest height of the triangle's plane at a distance `radius` from the axis, if it is there in the
+    /// triangle.
+    fn highest_inside(&self, radius: f64) -> Option<f64> {
+        let corners = [0, 1, 2].map(|k| self.across[k] + self.axis * self.heights[k]);
+        let [a, b, c] = corners;
+        let normal = (b - a).cross(&(c - a));
+        let slope = normal.dot(&self.axis);
+        // A plane along the axis has no highest point there.
+        if slope == 0.0 {
+            return None;
+        }
+        let level = normal - self.axis * slope;
+        // A plane across the axis is as high everywhere, on the axis, too.
+        let across = match level.norm() {
+            0.0 => level,
+            length => level * (-slope.signum() * radius / length),
+        };
+        let height = (a - across).dot(&normal) / slope;
+        let point = across + self.axis * height;
+        let is_inside = [[a, b], [b, c], [c, a]]
+            .iter()
+            .all(|[from, to]| (to - from).cross(&(point - from)).dot(&normal) >= 0.0);
+        is_inside.then_some(height)
     }
 }
 
