@@ -7,7 +7,7 @@ use crate::record::merge;
 use crate::{Accessibility, MapRow, Piece, PostureRecord, Validator};
 use nalgebra::{Point3, Vector3};
 use touchoff::certify::{ContactVerdict, Containment, Location};
-use touchoff::{Pose, Tool};
+use touchoff::{Mesh, Pose, Tool};
 
 /// Number of recent obstructions that are kept per direction, the latest first.
 const MAX_OBSTRUCTIONS: usize = 8;
@@ -48,14 +48,7 @@ impl<'a> Worker<'a> {
     ) -> (Vec<MapRow>, SweepStats) {
         let mesh = self.sweep.mesh;
         let mut rows = vec![MapRow::default(); pieces.len()];
-        // A triangle without an area has no normal, so there is nothing to touch it with.
-        let points: Vec<Option<SurfacePoint>> = pieces
-            .map(|piece| {
-                let [a, b, c] = piece.corners(mesh);
-                let point = Point3::from((a.coords + b.coords + c.coords) / 3.0);
-                mesh.normal(piece.triangle()).map(|normal| SurfacePoint { point, normal })
-            })
-            .collect();
+        let points: Vec<_> = pieces.map(|piece| surface_point(mesh, piece)).collect();
         let mut stats = SweepStats::default();
         for candidate in &mut self.tools {
             candidate.clear_caches();
@@ -226,3 +219,14 @@ impl<'a> CandidateTool<'a> {
         least.map(|least| least.min(holder.stickout))
     }
 }
+
+/// Returns the centroid of a piece with its normal; `None` for a triangle without an area, which has no normal and is not
+/// touched.
+fn surface_point(mesh: &Mesh, piece: Piece) -> Option<SurfacePoint> {
+    let [a, b, c] = piece.corners(mesh);
+    let point = Point3::from((a.coords + b.coords + c.coords) / 3.0);
+    mesh.normal(piece.triangle()).map(|normal| SurfacePoint { point, normal })
+}
+
+#[cfg(test)]
+mod costs;
