@@ -47,24 +47,6 @@ impl Holder {
         self.steps.iter().find(|[radius, _]| d <= *radius).map(|[_, height]| *height)
     }
 
-    /// Returns the stick-out at which the holder touches nothing for a tip and an axis; `None` if that is not
-    /// less than `limit`. The holder is taken to continue upward at the largest radius so far. The result is
-    /// therefore no less than what is needed but for rounding, and exceeds it by at most the height of a step.
-    pub(crate) fn required_stickout(
-        &self,
-        bvh: &TriangleBvh,
-        tip: &Point3<f64>,
-        axis: &Vector3<f64>,
-        limit: Option<f64>,
-    ) -> Option<f64> {
-        let limit = limit.unwrap_or(f64::INFINITY);
-        let origin = bvh.origin() - tip;
-        let mut search =
-            StickoutSearch { holder: self, tip, axis, origin, limit, required: self.cutting };
-        bvh.visit(&mut search);
-        (search.required < limit).then_some(search.required)
-    }
-
     /// Returns the stick-out that a triangle needs, or `required` if that is more. Its corners are relative to the
     /// tip.
     ///
@@ -73,8 +55,9 @@ impl Holder {
     fn triangle(&self, corners: [Vector3<f64>; 3], axis: &Vector3<f64>, required: f64) -> f64 {
         let triangle = AxialTriangle::new(corners, axis);
         let highest = triangle.heights.into_iter().fold(f64::NEG_INFINITY, f64::max);
+        let nearest = triangle.least_distance();
         let mut required = required;
-        for [radius, height] in &self.steps {
+        for [radius, height] in self.steps.iter().skip_while(|[radius, _]| *radius < nearest) {
             // Neither this step nor a higher one asks for more.
             if highest - height <= required {
                 break;
@@ -99,6 +82,14 @@ impl AxialTriangle {
         let heights = corners.map(|corner| corner.dot(axis));
         let across = [0, 1, 2].map(|k| corners[k] - axis * heights[k]);
         AxialTriangle { axis: *axis, heights, across }
+    }
+
+    /// Returns at most the distance of the triangle from the axis.
+    fn least_distance(&self) -> f64 {
+        let [a, b, c] = self.across;
+        let centroid = (a + b + c) / 3.0;
+        let reach = self.across.map(|corner| (corner - centroid).norm_squared());
+        centroid.norm() - reach.into_iter().fold(0.0, f64::max).sqrt()
     }
 
     /// Returns the greatest height of a point at most `radius` from the axis, up to rounding; `None` if there is none.
@@ -208,7 +199,50 @@ fn underside(mut corners: Vec<Corner>, nose: f64) -> Vec<[f64; 2]> {
     steps
 }
 
-/// A search for the least stick-out of a holder at a pose.
+/// The least stick-out of several postures.
+pub(crate) struct LeastStickout<'a> {
+    holder: &'a Holder,
+    bvh: &'a TriangleBvh,
+    least: Option<f64>,
+    /// The triangle that asked for the most in the posture before: it is likely to do so in the next.
+    binding: Option<[Point3<f64>; 3]>,
+}
+
+impl<'a> LeastStickout<'a> {
+    pub(crate) fn new(holder: &'a Holder, bvh: &'a TriangleBvh) -> LeastStickout<'a> {
+        LeastStickout { holder, bvh, least: None, binding: None }
+    }
+
+    /// Returns the least stick-out; `None` before the first posture. The holder is taken to continue upward at the largest
+    /// radius so far. The result is therefore no less than what is needed but for rounding, and exceeds it by at most the
+    /// height of a step.
+    pub(crate) fn least(&self) -> Option<f64> {
+        self.least
+    }
+
+    /// Adds a posture, given by its tip and its axis, a unit vector: the stick-out at which the holder touches nothing.
+    pub(crate) fn add(&mut self, tip: &Point3<f64>, axis: &Vector3<f64>) {
+        let mut search = StickoutSearch {
+            holder: self.holder,
+            tip,
+            axis,
+            origin: self.bvh.origin() - tip,
+            limit: self.least.unwrap_or(f64::INFINITY),
+            required: self.holder.cutting,
+            binding: self.binding,
+        };
+        if let Some(corners) = self.binding {
+            search.triangle(corners);
+        }
+        self.bvh.visit(&mut search);
+        self.binding = search.binding;
+        if search.required < search.limit {
+            self.least = Some(search.required);
+        }
+    }
+}
+
+/// A search for the stick-out of a holder at a pose.
 struct StickoutSearch<'a> {
     holder: &'a Holder,
     tip: &'a Point3<f64>,
@@ -219,6 +253,8 @@ struct StickoutSearch<'a> {
     limit: f64,
     /// The stick-out that the triangles need which were visited.
     required: f64,
+    /// The one among them that needs it.
+    binding: Option<[Point3<f64>; 3]>,
 }
 
 impl BoxVisitor for StickoutSearch<'_> {
@@ -235,9 +271,11 @@ impl BoxVisitor for StickoutSearch<'_> {
 
     fn triangle(&mut self, corners: [Point3<f64>; 3]) {
         if self.required < self.limit {
-            let corners = corners.map(|corner| corner - self.tip);
-            let required = self.holder.triangle(corners, self.axis, self.required);
-            self.required = self.required.max(required);
+            let relative = corners.map(|corner| corner - self.tip);
+            let required = self.holder.triangle(relative, self.axis, self.required);
+            if required > self.required {
+                (self.required, self.binding) = (required, Some(corners));
+            }
         }
     }
 }

@@ -97,8 +97,13 @@ fn needed(outline: &[[f64; 2]], [d, z]: [f64; 2]) -> f64 {
 fn least(info: &ToolInfo, mesh: &Mesh, tip: [f64; 3], axis: Vector3<f64>) -> f64 {
     let length = info.unit.factor_to(mesh.unit());
     let holder = Holder::new(info, length).expect("a holder");
-    let bvh = TriangleBvh::new(mesh);
-    holder.required_stickout(&bvh, &Point3::from(tip), &axis.normalize(), None).expect("no limit")
+    needed_by(&holder, &TriangleBvh::new(mesh), &Point3::from(tip), &axis.normalize())
+}
+
+fn needed_by(holder: &Holder, bvh: &TriangleBvh, tip: &Point3<f64>, axis: &Vector3<f64>) -> f64 {
+    let mut stickout = LeastStickout::new(holder, bvh);
+    stickout.add(tip, axis);
+    stickout.least().expect("one posture")
 }
 
 fn cuboid(low: [f64; 3], high: [f64; 3], unit: Unit) -> Mesh {
@@ -184,7 +189,7 @@ fn no_place_of_a_part_needs_more_and_one_beside_it_as_much() {
             for _ in 0..30 {
                 let tip = Point3::from(Vector3::from_fn(|_, _| draw(-30.0, 30.0)));
                 let axis = Vector3::from_fn(|_, _| draw(-1.0, 1.0)).normalize();
-                let found = holder.required_stickout(&bvh, &tip, &axis, None).expect("no limit");
+                let found = needed_by(&holder, &bvh, &tip, &axis);
                 let [mut true_least, mut near] = [holder.cutting; 2];
                 for place in &places {
                     let way = place - tip;
@@ -224,14 +229,27 @@ fn the_unit_of_the_part_is_that_of_the_answer() {
 }
 
 #[test]
-fn what_is_not_less_is_not_told_and_a_tool_alone_has_no_holder() {
-    let info = mounted(&Disc);
+fn the_least_of_all_postures_counts_in_any_order() {
+    let info = mounted(&Nut);
     let holder = Holder::new(&info, 1.0).expect("a holder");
     let bvh = TriangleBvh::new(&cuboid([5.0, -50.0, -5.0], [55.0, 50.0, 20.0], Unit::Millimetre));
-    let (tip, axis) = (&Point3::origin(), &Vector3::z());
-    assert_eq!(holder.required_stickout(&bvh, tip, axis, Some(20.0)), None);
-    let found = holder.required_stickout(&bvh, tip, axis, Some(20.5)).expect("less");
-    assert!((found - 20.0).abs() < 1e-12);
-    assert_eq!(holder.required_stickout(&bvh, tip, axis, Some(12.0)), None);
-    assert!(Holder::new(Disc.info(), 1.0).is_none());
+    let mut postures: Vec<_> = (0..40)
+        .map(|k| {
+            let (sine, cosine) = (0.05 * f64::from(k - 20)).sin_cos();
+            (
+                Point3::new(0.2 * f64::from(k % 7), f64::from(k), 0.0),
+                Vector3::new(sine, 0.0, cosine),
+            )
+        })
+        .collect();
+    let each = postures.iter().map(|(tip, axis)| needed_by(&holder, &bvh, tip, axis));
+    let wanted = each.fold(f64::INFINITY, f64::min);
+    for _ in 0..postures.len() {
+        postures.rotate_left(1);
+        let mut stickout = LeastStickout::new(&holder, &bvh);
+        assert_eq!(stickout.least(), None);
+        postures.iter().for_each(|(tip, axis)| stickout.add(tip, axis));
+        assert_eq!(stickout.least(), Some(wanted));
+    }
+    assert!(Holder::new(Nut.info(), 1.0).is_none());
 }

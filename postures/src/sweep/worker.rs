@@ -1,7 +1,7 @@
 //! One thread of a sweep.
 
 use super::{PostureDecision, PostureSweep, SweepError, SweepStats};
-use crate::holder::Holder;
+use crate::holder::{Holder, LeastStickout};
 use crate::placement::{CandidatePosture, SurfacePoint, ToolPlacement};
 use crate::record::merge;
 use crate::{Accessibility, MapRow, Piece, PostureRecord, Validator};
@@ -209,14 +209,11 @@ impl<'a> CandidateTool<'a> {
     /// Returns the least stick-out over all postures, at most that of the tool as it is, which was validated.
     fn stickout(&self, sweep: &PostureSweep<'a>, reached: &[CandidatePosture]) -> Option<f64> {
         let holder = self.holder.as_ref()?;
-        let mut least: Option<f64> = None;
+        let mut stickout = LeastStickout::new(holder, sweep.bvh);
         for posture in reached {
-            let axis = Vector3::from(sweep.directions.list()[posture.direction]);
-            if let Some(needed) = holder.required_stickout(sweep.bvh, &posture.tip, &axis, least) {
-                least = Some(needed);
-            }
+            stickout.add(&posture.tip, &sweep.directions.list()[posture.direction].into());
         }
-        least.map(|least| least.min(holder.stickout))
+        stickout.least().map(|least| least.min(holder.stickout))
     }
 }
 
