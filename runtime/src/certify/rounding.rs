@@ -28,6 +28,8 @@
 //! A triangle whose corners move has all of its points moved by no more than the corners, and depth changes by no
 //! more than the displacement. A plane that bounds depth only beyond its guards has the errors of a corner and of the
 //! distance from a segment twice, `40 uM + 36 uS`: a point that is beyond them only by rounding is deeper by no more.
+//! A plane that touches the tool has a normal whose length errs by 5u, which with the products of sums is another 8 uM,
+//! and 8 uS of the tool: `28 uM + 12 uS`.
 //! An upper bound along a line has all of these errors, `61 uM + 5 uW + 18 uS`, which is less than
 //! `105 uS + 115 uP`. [`point_error_bound`] allows 128 u for both.
 //!

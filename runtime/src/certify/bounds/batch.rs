@@ -77,6 +77,7 @@ impl Batch {
 
     /// Transforms the corners to the tool's frame and unit.
     pub(crate) fn turn(&mut self, view: &PoseTransform) {
+        let len = self.len();
         for corner in &mut self.corners {
             let p = *corner;
             for lane in 0..LANES {
@@ -85,6 +86,8 @@ impl Batch {
                         p[0][lane] * row[0] + p[1][lane] * row[1] + p[2][lane] * row[2];
                 }
             }
+            // Lanes behind the last triangle hold old corners, which would be bounded, too.
+            corner.iter_mut().for_each(|axis| axis[len..].fill(f64::NAN));
         }
     }
 
@@ -98,7 +101,6 @@ impl Batch {
 
     #[inline(always)]
     fn bound_on<S: Simd>(&mut self, simd: S, hull: &Hull<f64>, threshold: f64) {
-        // The lanes behind the last triangle hold old corners, whose bounds nobody reads.
         let (bound, point) = hull.triangles(simd, &self.load_corners(simd), threshold, None);
         bound.store_slice(&mut self.bounds);
         store(&mut self.points, point);

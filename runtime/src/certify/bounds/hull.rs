@@ -3,8 +3,9 @@
 use crate::bvh::{LaneVector, PoseTransform};
 use crate::certify::bounds::descent::{Bounds, BoxBounds, BoxRings, Children, rings};
 use crate::certify::bounds::nearest::{
-    AxisDistances, Clip, NearestPoint, Real, Ring, RingDistances, choose, direction_from_axis,
-    distances, extents_from, from_ring, max3, min3, radial_extents, under_both, under_both_of_ring,
+    AxisDistances, Clip, NearestPoint, Real, Ring, RingDistances, choose, cross,
+    direction_from_axis, distances, dot, extents_from, from_ring, max3, min3, minus,
+    radial_extents, under_both, under_both_of_ring,
 };
 use crate::certify::part::NodeRing;
 use crate::certify::tool_model::feature::{Feature, MeridianPoint};
@@ -20,6 +21,8 @@ pub(crate) struct Hull<R> {
     /// The rounding error bound of a point.
     pub(crate) margin: R,
     pub(crate) slabs: Vec<HullSlab<R>>,
+    /// The planes that touch the tool from outside, if it has a profile with convex arcs that are no balls about the axis.
+    support: Option<Support<R>>,
 }
 
 /// A slab between two heights: the depth of a point in it is at most each of these bounds.
@@ -102,7 +105,12 @@ impl<R: Real> Hull<R> {
                 let hole = (slab.hole > 0.0).then(|| R::of(slab.hole));
                 Some(HullSlab { low, high, planes, guarded, hole, ball, rings: rings.collect() })
             });
-        Hull { slabs: slabs.collect(), margin: R::of(error) }
+        let is_round = |feature: &Feature| {
+            feature.circle.is_some_and(|circle| circle.convex)
+                && feature.ball(section.size).is_none()
+        };
+        let support = section.features.iter().any(is_round).then(|| Support::new(section));
+        Hull { slabs: slabs.collect(), margin: R::of(error), support }
     }
 
     /// Creates a hull for a tool whose depth has the Lipschitz constant `steep`: depth is at most `steep` times the
@@ -120,7 +128,7 @@ impl<R: Real> Hull<R> {
             ball: None,
             rings: Vec::new(),
         });
-        Hull { slabs: slabs.collect(), margin: R::of(error) }
+        Hull { slabs: slabs.collect(), margin: R::of(error), support: None }
     }
 
     /// Creates a hull of the regions that some features bound, for points no farther from these features than the
@@ -131,7 +139,8 @@ impl<R: Real> Hull<R> {
             .iter()
             .map(|slab| owners.is_owned(slab.side).then_some(Rectangle::of(slab)))
             .collect();
-        let mut hull = Hull::new(section, &zones, error);
+        // Points outside are no nearer to a plane that touches the tool than to the tool.
+        let mut hull = Hull { support: None, ..Hull::new(section, &zones, error) };
         // A level feature is the side of no slab.
         let sides: Vec<usize> = section.slabs.iter().map(|slab| slab.side).collect();
         for (index, feature) in section.features.iter().enumerate() {
@@ -164,6 +173,15 @@ impl<R: Real> Hull<R> {
     ) -> (V, LaneVector<V>) {
         let [a, b, c] = corners;
         let (low, high) = (min3(a[2], b[2], c[2]), max3(a[2], b[2], c[2]));
+        let limit = V::splat(simd, threshold);
+        let under = match &self.support {
+            Some(support) => support.parallel_to(simd, corners),
+            None => V::splat(simd, R::of(f64::INFINITY)),
+        };
+        // Near a contact this alone rules out most triangles.
+        if !under.simd_gt(limit).any_true() {
+            return (under, *a);
+        }
         let near = NearestPoint::to_axis(simd, corners);
         // In that direction no corner reaches farther out than its distance from the axis.
         let out = radial_extents(corners, &near.direction);
@@ -191,9 +209,101 @@ impl<R: Real> Hull<R> {
             bound = better.select(depth, bound);
             point = choose(better, &deepest, &point);
         }
-        (bound, point)
+        (bound.min(under), point)
     }
 }
+
+/// What the planes that touch the whole tool from outside are computed from.
+///
+/// For a unit vector `m` the tool lies within `m·p ≤ h(m)`, where `h` is its support function. The way from a point inside to
+/// its foot on that plane leaves the tool, so no point is deeper than its distance `h(m) - m·p` from the plane, whatever `m`.
+/// Perpendicular to a triangle, it is the same for all of its points, and least at the face that the tool touches.
+#[derive(Clone)]
+struct Support<R> {
+    /// Ends of the profile's features.
+    corners: Vec<[R; 2]>,
+    /// The height of the middle of the tool.
+    middle: R,
+    arcs: Vec<SupportArc<R>>,
+}
+
+/// A convex arc of the profile of at most a quarter turn.
+#[derive(Clone, Copy)]
+struct SupportArc<R> {
+    centre: [R; 2],
+    radius: R,
+    /// The outward normals at its ends.
+    normals: [[R; 2]; 2],
+}
+
+impl<R: Real> Support<R> {
+    fn new(section: &Section) -> Support<R> {
+        let mut corners: Vec<MeridianPoint> =
+            section.features.iter().flat_map(|feature| feature.ends).collect();
+        // Neighbours share an end.
+        corners.dedup();
+        let arcs = section.features.iter().filter_map(|feature| {
+            let circle = feature.circle.filter(|circle| circle.convex)?;
+            Some(SupportArc {
+                centre: circle.centre.map(R::of),
+                radius: R::of(circle.radius),
+                normals: [0, 1].map(|end| {
+                    let [d, z] = feature.tangent_at(end);
+                    [z, -d].map(R::of)
+                }),
+            })
+        });
+        let [low, high] = section.reach();
+        Support {
+            corners: corners.into_iter().map(|at| at.map(R::of)).collect(),
+            middle: R::of(0.5 * (low + high)),
+            arcs: arcs.collect(),
+        }
+    }
+
+    /// Returns the distances of triangles under the planes that touch the tool and are parallel to them: of the two,
+    /// that on the triangle's side of the tool's middle. It is infinite for a triangle so small or large that its normal is
+    /// not known.
+    #[inline(always)]
+    fn parallel_to<S: Simd, V: SimdFloat<S, Element = R>>(
+        &self,
+        simd: S,
+        [a, b, c]: &[LaneVector<V>; 3],
+    ) -> V {
+        let splat = |value: R| V::splat(simd, value);
+        let zero = splat(R::of(0.0));
+        let normal = cross(&minus(b, a), &minus(c, a));
+        let square = dot(&normal, &normal);
+        let unknown = square.simd_lt(splat(R::of(SMALLEST_SQUARE)))
+            | square.simd_gt(splat(R::of(1.0 / SMALLEST_SQUARE)));
+        // Away from the middle of the axis.
+        let [x, y, z] = *a;
+        let middle = splat(self.middle);
+        let side = dot(&normal, &[x, y, z - middle]);
+        let length = square.sqrt();
+        let scale = splat(R::of(1.0)) / side.simd_lt(zero).select(zero - length, length);
+        let normal = [normal[0] * scale, normal[1] * scale, normal[2] * scale];
+        let [across, along] = [(normal[0] * normal[0] + normal[1] * normal[1]).sqrt(), normal[2]];
+        let mut support = splat(R::of(f64::NEG_INFINITY));
+        for [d, z] in &self.corners {
+            support = support.max(across * splat(*d) + along * splat(*z));
+        }
+        for arc in &self.arcs {
+            let [[d, z], [first_d, first_z], [last_d, last_z]] =
+                [arc.centre, arc.normals[0], arc.normals[1]].map(|vector| vector.map(splat));
+            let in_range = (along * first_d).simd_ge(across * first_z)
+                & (across * last_z).simd_ge(along * last_d);
+            let reach = across * d + along * z + splat(arc.radius);
+            support = in_range.select(support.max(reach), support);
+        }
+        let least = min3(dot(&normal, a), dot(&normal, b), dot(&normal, c));
+        unknown.select(splat(R::of(f64::INFINITY)), support - least)
+    }
+}
+
+/// The least square of a normal's length, and the reciprocal of the greatest, of which the length has full precision in
+/// `f32`.
+const SMALLEST_SQUARE: f64 = 1e-30;
 
 /// Returns the plane with a normal through a point, as in [`HullSlab::planes`].
 fn plane<R: Real>(n: MeridianPoint, [d, z]: MeridianPoint) -> [R; 3] {
@@ -698,6 +808,28 @@ mod tests {
         let (first, point) = hull.triangles(simd, &corners, 0.0, None);
         let (second, _) = hull.triangles(simd, &corners, 0.0, Some(&point));
         [first[0], second[0]]
+    }
+
+    #[test]
+    fn a_triangle_that_touches_an_arc_is_not_deep() {
+        let section = Section::new(Rounded.info(), ERROR).expect("a profile");
+        let zones: Vec<_> = section.slabs.iter().map(|slab| Some(Rectangle::of(slab))).collect();
+        let hull = Hull::<f64>::new(&section, &zones, ERROR);
+        for (degrees, turn) in [(1, 0.0), (20, 1.0), (45, 2.0), (70, 3.0), (60, -2.0)] {
+            // Outward from the centre of the edge: down at 0 degrees. Beyond 70 the shank, which is wider, reaches farther.
+            let (sine, cosine) = f64::from(degrees).to_radians().sin_cos();
+            let azimuth = Vector3::new(f64::cos(turn), f64::sin(turn), 0.0);
+            let out = azimuth * sine - Vector3::z() * cosine;
+            let touch = azimuth * 2.0 + Vector3::z() * 2.0 + out * 2.0;
+            let [u, v] = [azimuth.cross(&Vector3::z()), azimuth * cosine + Vector3::z() * sine];
+            for deep in [0.0, 0.125] {
+                let corners = [[-2.0, -1.0], [2.0, -2.0], [0.5, 3.0]]
+                    .map(|[x, y]| (touch - out * deep + u * x + v * y).into());
+                let [bound, _] =
+                    dispatch!(Level::new(), simd => both_bounds(simd, &hull, &corners));
+                assert!((bound - deep).abs() < 1e-12, "{degrees}: {bound}, not {deep}");
+            }
+        }
     }
 
     #[test]

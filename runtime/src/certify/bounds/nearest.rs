@@ -86,13 +86,24 @@ pub(crate) fn choose<S: Simd, V: SimdBase<S>>(
 }
 
 #[inline(always)]
-fn minus<S: Simd, V: SimdBase<S>>(a: &LaneVector<V>, b: &LaneVector<V>) -> LaneVector<V> {
+pub(crate) fn minus<S: Simd, V: SimdBase<S>>(
+    a: &LaneVector<V>,
+    b: &LaneVector<V>,
+) -> LaneVector<V> {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
 #[inline(always)]
-fn dot<S: Simd, V: SimdBase<S>>(a: &LaneVector<V>, b: &LaneVector<V>) -> V {
+pub(crate) fn dot<S: Simd, V: SimdBase<S>>(a: &LaneVector<V>, b: &LaneVector<V>) -> V {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+#[inline(always)]
+pub(crate) fn cross<S: Simd, V: SimdBase<S>>(
+    a: &LaneVector<V>,
+    b: &LaneVector<V>,
+) -> LaneVector<V> {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 /// Returns the z component of the cross product.
