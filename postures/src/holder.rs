@@ -17,7 +17,7 @@ pub(crate) struct Holder {
     /// The least stick-out: the height of the highest cutting point.
     cutting: f64,
     /// Stick-out of the tool as it is: the height of the nose.
-    pub(crate) stickout: f64,
+    stickout: f64,
 }
 
 /// Steps per straight segment of the profile.
@@ -84,12 +84,13 @@ impl AxialTriangle {
         AxialTriangle { axis: *axis, heights, across }
     }
 
-    /// Returns at most the distance of the triangle from the axis.
+    /// Returns at most the distance of the triangle from the axis: how far it is in the direction of its centroid.
     fn least_distance(&self) -> f64 {
         let [a, b, c] = self.across;
-        let centroid = (a + b + c) / 3.0;
-        let reach = self.across.map(|corner| (corner - centroid).norm_squared());
-        centroid.norm() - reach.into_iter().fold(0.0, f64::max).sqrt()
+        let middle = a + b + c;
+        let least =
+            self.across.map(|corner| corner.dot(&middle)).into_iter().fold(f64::INFINITY, f64::min);
+        least / middle.norm()
     }
 
     /// Returns the greatest height of a point at most `radius` from the axis, up to rounding; `None` if there is none.
@@ -199,54 +200,57 @@ fn underside(mut corners: Vec<Corner>, nose: f64) -> Vec<[f64; 2]> {
     steps
 }
 
-/// The least stick-out of several postures.
+/// Least stick-outs of a holder at a part, for several postures each.
 pub(crate) struct LeastStickout<'a> {
-    holder: &'a Holder,
+    holder: Holder,
     bvh: &'a TriangleBvh,
-    least: Option<f64>,
-    /// The triangle that asked for the most in the posture before: it is likely to do so in the next.
+    /// The triangle that asked for the most in the posture before: it is likely to do so in the next, which is then found
+    /// sooner. The results do not depend on it.
     binding: Option<[Point3<f64>; 3]>,
 }
 
 impl<'a> LeastStickout<'a> {
-    pub(crate) fn new(holder: &'a Holder, bvh: &'a TriangleBvh) -> LeastStickout<'a> {
-        LeastStickout { holder, bvh, least: None, binding: None }
+    pub(crate) fn new(holder: Holder, bvh: &'a TriangleBvh) -> LeastStickout<'a> {
+        LeastStickout { holder, bvh, binding: None }
     }
 
-    /// Returns the least stick-out; `None` before the first posture. The holder is taken to continue upward at the largest
-    /// radius so far. The result is therefore no less than what is needed but for rounding, and exceeds it by at most the
-    /// height of a step.
-    pub(crate) fn least(&self) -> Option<f64> {
-        self.least
-    }
-
-    /// Adds a posture, given by its tip and its axis, a unit vector: the stick-out at which the holder touches nothing.
-    pub(crate) fn add(&mut self, tip: &Point3<f64>, axis: &Vector3<f64>) {
-        let mut search = StickoutSearch {
-            holder: self.holder,
-            tip,
-            axis,
-            origin: self.bvh.origin() - tip,
-            limit: self.least.unwrap_or(f64::INFINITY),
-            required: self.holder.cutting,
-            binding: self.binding,
-        };
-        if let Some(corners) = self.binding {
-            search.triangle(corners);
+    /// Returns the least stick-out at which the holder touches nothing in some posture, at most that of the tool as it is;
+    /// `None` without postures. They are given by their tips and their axes, unit vectors. The holder is taken to continue
+    /// upward at the largest radius so far. The result is therefore no less than what is needed but for rounding, and
+    /// exceeds it by at most the height of a step.
+    pub(crate) fn of(
+        &mut self,
+        postures: impl IntoIterator<Item = (Point3<f64>, Vector3<f64>)>,
+    ) -> Option<f64> {
+        let mut least: Option<f64> = None;
+        for (tip, axis) in postures {
+            let mut search = StickoutSearch {
+                holder: &self.holder,
+                tip,
+                axis,
+                origin: self.bvh.origin() - tip,
+                limit: least.unwrap_or(f64::INFINITY),
+                required: self.holder.cutting,
+                binding: self.binding,
+            };
+            if let Some(corners) = self.binding {
+                search.triangle(corners);
+            }
+            self.bvh.visit(&mut search);
+            self.binding = search.binding;
+            if search.required < search.limit {
+                least = Some(search.required);
+            }
         }
-        self.bvh.visit(&mut search);
-        self.binding = search.binding;
-        if search.required < search.limit {
-            self.least = Some(search.required);
-        }
+        least.map(|least| least.min(self.holder.stickout))
     }
 }
 
 /// A search for the stick-out of a holder at a pose.
 struct StickoutSearch<'a> {
     holder: &'a Holder,
-    tip: &'a Point3<f64>,
-    axis: &'a Vector3<f64>,
+    tip: Point3<f64>,
+    axis: Vector3<f64>,
     /// Origin of the boxes, relative to the tip.
     origin: Vector3<f64>,
     /// The stick-out at which the search ends.
@@ -261,18 +265,20 @@ impl BoxVisitor for StickoutSearch<'_> {
     fn enters(&mut self, centre: Vector3<f64>, half: Vector3<f64>) -> bool {
         let centre = self.origin + centre;
         let half = half * BOX_ROUNDING_FACTOR;
-        let height_of_centre = centre.dot(self.axis);
+        let height_of_centre = centre.dot(&self.axis);
         let high = height_of_centre + half.dot(&self.axis.abs());
-        let radius = half.norm();
-        let min_distance = ((centre - self.axis * height_of_centre).norm() - radius).max(0.0);
-        let lowest = self.holder.height(min_distance);
+        // No point of the box is nearer to the axis than it is in the direction of the centre.
+        let across = centre - self.axis * height_of_centre;
+        let distance = across.norm();
+        let min_distance = distance - half.dot(&across.abs()) / distance;
+        let lowest = self.holder.height(min_distance.max(0.0));
         self.required < self.limit && lowest.is_some_and(|height| high - height > self.required)
     }
 
     fn triangle(&mut self, corners: [Point3<f64>; 3]) {
         if self.required < self.limit {
             let relative = corners.map(|corner| corner - self.tip);
-            let required = self.holder.triangle(relative, self.axis, self.required);
+            let required = self.holder.triangle(relative, &self.axis, self.required);
             if required > self.required {
                 (self.required, self.binding) = (required, Some(corners));
             }

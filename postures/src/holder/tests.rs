@@ -100,10 +100,11 @@ fn least(info: &ToolInfo, mesh: &Mesh, tip: [f64; 3], axis: Vector3<f64>) -> f64
     needed_by(&holder, &TriangleBvh::new(mesh), &Point3::from(tip), &axis.normalize())
 }
 
+/// Returns the stick-out for one posture.
 fn needed_by(holder: &Holder, bvh: &TriangleBvh, tip: &Point3<f64>, axis: &Vector3<f64>) -> f64 {
-    let mut stickout = LeastStickout::new(holder, bvh);
-    stickout.add(tip, axis);
-    stickout.least().expect("one posture")
+    // Of a tool that is long enough.
+    let holder = Holder { stickout: f64::INFINITY, ..holder.clone() };
+    LeastStickout::new(holder, bvh).of([(*tip, *axis)]).expect("one posture")
 }
 
 fn cuboid(low: [f64; 3], high: [f64; 3], unit: Unit) -> Mesh {
@@ -235,7 +236,7 @@ fn the_least_of_all_postures_counts_in_any_order() {
     let bvh = TriangleBvh::new(&cuboid([5.0, -50.0, -5.0], [55.0, 50.0, 20.0], Unit::Millimetre));
     let mut postures: Vec<_> = (0..40)
         .map(|k| {
-            let (sine, cosine) = (0.05 * f64::from(k - 20)).sin_cos();
+            let (sine, cosine) = (0.02 * f64::from(k - 5)).sin_cos();
             (
                 Point3::new(0.2 * f64::from(k % 7), f64::from(k), 0.0),
                 Vector3::new(sine, 0.0, cosine),
@@ -244,12 +245,20 @@ fn the_least_of_all_postures_counts_in_any_order() {
         .collect();
     let each = postures.iter().map(|(tip, axis)| needed_by(&holder, &bvh, tip, axis));
     let wanted = each.fold(f64::INFINITY, f64::min);
+    assert!(wanted > 12.0 && wanted < 30.0, "{wanted}");
+    let mut stickout = LeastStickout::new(holder.clone(), &bvh);
+    assert_eq!(stickout.of([]), None);
     for _ in 0..postures.len() {
         postures.rotate_left(1);
-        let mut stickout = LeastStickout::new(&holder, &bvh);
-        assert_eq!(stickout.least(), None);
-        postures.iter().for_each(|(tip, axis)| stickout.add(tip, axis));
-        assert_eq!(stickout.least(), Some(wanted));
+        assert_eq!(stickout.of(postures.iter().copied()), Some(wanted));
+        assert_eq!(
+            LeastStickout::new(holder.clone(), &bvh).of(postures.iter().copied()),
+            Some(wanted)
+        );
     }
+    // At a wall that is higher than the tool is long, the tool as it is counts, which was validated.
+    let wall = TriangleBvh::new(&cuboid([5.0, -50.0, -5.0], [55.0, 50.0, 90.0], Unit::Millimetre));
+    let upright = [(Point3::origin(), Vector3::z())];
+    assert_eq!(LeastStickout::new(holder, &wall).of(upright), Some(30.0));
     assert!(Holder::new(Nut.info(), 1.0).is_none());
 }

@@ -22,7 +22,8 @@ pub(super) struct Worker<'a> {
 struct CandidateTool<'a> {
     index: u16,
     placement: ToolPlacement<'a>,
-    holder: Option<Holder>,
+    /// Of a tool with a holder.
+    stickout: Option<LeastStickout<'a>>,
     validator: Validator<'a>,
     /// Set if the points of the tool that may not be in the part are connected. If one of them is outside the
     /// part and no triangle touches them, then all of them are outside.
@@ -78,7 +79,8 @@ impl<'a> CandidateTool<'a> {
         Ok(CandidateTool {
             index,
             placement: ToolPlacement::new(tool, unit),
-            holder: Holder::new(info, info.unit.factor_to(unit)),
+            stickout: Holder::new(info, info.unit.factor_to(unit))
+                .map(|holder| LeastStickout::new(holder, sweep.bvh)),
             one_piece: validator.certifier.is_one_piece(),
             validator,
             obstructions: vec![Vec::new(); sweep.directions.list().len()],
@@ -127,7 +129,11 @@ impl<'a> CandidateTool<'a> {
             *stats.count_of(decision) += 1;
         }
         self.postures = postures;
-        let stickout = self.stickout(sweep, &reached);
+        let stickout = self.stickout.as_mut().and_then(|stickout| {
+            stickout.of(reached
+                .iter()
+                .map(|posture| (posture.tip, sweep.directions.list()[posture.direction].into())))
+        });
         // Comparing niceness in `f32` ignores rounding errors; ties go to the middle of the cone, where the margin's angle
         // is largest and its cosine least.
         let mut ranked: Vec<(f64, &CandidatePosture)> = reached
@@ -204,16 +210,6 @@ impl<'a> CandidateTool<'a> {
             PostureRecord { tool: self.index, tip, axis, niceness, depth: 0.0, clearance: 0.0 };
         self.validator.measure(&mut record, pose);
         record
-    }
-
-    /// Returns the least stick-out over all postures, at most that of the tool as it is, which was validated.
-    fn stickout(&self, sweep: &PostureSweep<'a>, reached: &[CandidatePosture]) -> Option<f64> {
-        let holder = self.holder.as_ref()?;
-        let mut stickout = LeastStickout::new(holder, sweep.bvh);
-        for posture in reached {
-            stickout.add(&posture.tip, &sweep.directions.list()[posture.direction].into());
-        }
-        stickout.least().map(|least| least.min(holder.stickout))
     }
 }
 
