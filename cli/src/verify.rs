@@ -119,6 +119,7 @@ pub(crate) fn job_file(
         machine: options.machine,
         control: options.control,
         work_offsets: [None; 9],
+        additional_offsets: BTreeMap::new(),
         radius_offsets: BTreeMap::new(),
         presets: BTreeMap::new(),
         block_delete: None,

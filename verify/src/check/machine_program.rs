@@ -440,7 +440,7 @@ impl MachineProgram {
             {
                 summary.tcp_without_length.get_or_insert(step.block());
             }
-            summary.add_offset(&step, &self.setup.work_offsets);
+            summary.add_offset(&step, &self.setup);
             if !step.rapid {
                 summary.add_feed(&step, self.off_is_tip);
             }

@@ -232,6 +232,12 @@ impl Control {
             |origin: Option<[f64; 6]>| (origin.map_or([None; 6], |origin| origin.map(Some)), 0.0);
         let mut origins: BTreeMap<_, _> =
             offsets.map(|(offset, origin)| (offset, known(origin))).collect();
+        origins.extend(
+            setup
+                .additional_offsets
+                .iter()
+                .map(|(number, origin)| (WorkOffset::Additional(*number), known(Some(*origin)))),
+        );
         origins.insert(WorkOffset::Off, known(Some([0.0; 6])));
         let state = ControlState {
             tool: None,
@@ -768,9 +774,8 @@ fn path_control(block: &mut Block, code: Code) -> Result<(), GcodeFault> {
     let switch = match code.tenths {
         640 | 1870 => {
             block.take('P');
-            if code.tenths == 640 {
-                block.take('Q');
-            }
+            // The tolerance of Haas is E.
+            block.take(if code.tenths == 640 { 'Q' } else { 'E' });
             return Ok(());
         }
         610 | 611 => return Ok(()),

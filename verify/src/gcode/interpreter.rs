@@ -73,9 +73,9 @@ impl<'a> Interpreter<'a> {
         // ISO words mean the same in native programs of Sinumerik, so that one without native words is read as another one.
         let can_be_native = matches!(control.stated(Rule::Dialect), None | Some(Choice::Sinumerik));
         let front = if klartext::is_program(text) {
-            Front::Klartext(Box::new(klartext::Program::new(text, files, &mut control)?))
+            Front::Klartext(Box::new(klartext::Program::new(text, setup, &mut control)?))
         } else if can_be_native && sinumerik::is_native(text) {
-            Front::Sinumerik(Box::new(sinumerik::Program::new(text, files, &mut control)?))
+            Front::Sinumerik(Box::new(sinumerik::Program::new(text, setup, &mut control)?))
         } else {
             Front::Iso(Box::new(iso::Program::new(text, setup, &mut control)?))
         };

@@ -73,7 +73,11 @@ pub(crate) use files::line_of;
 pub use files::{BlockLine, SubprogramFile, SubprogramLine};
 pub use interpreter::Interpreter;
 pub use iso::ExpressionFault;
-pub(crate) use iso::is_variable;
+/// Returns whether a name is that of a variable that a job can state: `#500` or `#<_depth>`, `R1` of Sinumerik, `Q1`, `QL1` or `QR1` of
+/// Klartext.
+pub(crate) fn is_variable(name: &str) -> bool {
+    iso::is_variable(name) || sinumerik::is_variable(name) || klartext::is_variable(name)
+}
 pub use note::{NoteKind, ProgramNote};
 pub use rules::{Choice, ControlError, ControlRules, Rule};
 pub(crate) use state::about;
@@ -105,6 +109,8 @@ pub struct ControlSetup {
     pub start: Position,
     /// Origins of G54 to G59.3 in machine coordinates.
     pub work_offsets: [Option<[f64; 6]>; 9],
+    /// Origins of further work offsets, by the number after `G54.1 P`; G110 of Haas is 1, and G507 of Sinumerik.
+    pub additional_offsets: BTreeMap<u16, [f64; 6]>,
     /// Tool lengths in millimetres, by H or tool number.
     pub lengths: BTreeMap<u32, f64>,
     /// Radius offsets of cutter compensation in millimetres, by D or tool number: the radius of the tool, or what it differs from the
@@ -125,7 +131,7 @@ pub struct ControlSetup {
     pub rules: ControlRules,
     /// The axes that the machine has.
     pub axes: [bool; 6],
-    /// Values that variables can have before the program, by name: `#500`, `#<_depth>`. Lengths are in the unit of the program. An
+    /// Values that variables can have before the program, by name: `#500`, `#<_depth>`, `R1`, `Q1`. Lengths are in the unit of the program. An
     /// [`Interpreter`] takes the first of each.
     pub variables: BTreeMap<String, Vec<f64>>,
     /// Files of subprograms that the program can call.
@@ -141,6 +147,7 @@ impl Default for ControlSetup {
         ControlSetup {
             start: [None; 6],
             work_offsets: [None; 9],
+            additional_offsets: BTreeMap::new(),
             lengths: BTreeMap::new(),
             radius_offsets: BTreeMap::new(),
             presets: BTreeMap::new(),

@@ -26,6 +26,8 @@ pub struct JobFile {
     pub control: Option<OsString>,
     /// Origins of G54 to G59.3 in machine coordinates, in mm and degrees.
     pub work_offsets: [Option<[f64; 6]>; 9],
+    /// Origins of further work offsets ([`ControlSetup::additional_offsets`]).
+    pub additional_offsets: BTreeMap<u16, [f64; 6]>,
     /// Radius offsets of cutter compensation in mm, by D or tool number.
     pub radius_offsets: BTreeMap<u32, f64>,
     /// The work offsets of presets ([`ControlSetup::presets`]).
@@ -319,6 +321,8 @@ impl JobFile {
         for fixture in &job.fixture {
             checked_margin(fixture.margin).map_err(|error| fault(error.to_string()))?;
         }
+        let Origins { standard: work_offsets, additional: additional_offsets } =
+            work_offsets(&job.work_offsets)?;
         let mut variables = BTreeMap::new();
         for (name, values) in job.variables {
             let values = values.into_values();
@@ -326,7 +330,7 @@ impl JobFile {
                 !values.is_empty() && values.iter().all(|value| value.abs() <= LARGEST_NUMBER);
             if !is_number || !is_variable(&name) {
                 return Err(fault(format!(
-                    "`{name}` in `[variables]`: write `\"#500\" = 2.5`, or all values that it can have as a list"
+                    "`{name}` in `[variables]`: write `\"#500\" = 2.5`, `R1 = 2.5` or `Q1 = 2.5`, or all values that it can have as a list"
                 )));
             }
             variables.insert(name, values);
@@ -364,7 +368,8 @@ impl JobFile {
             program: beside(job.program),
             machine: job.machine.map(named),
             control: job.control.map(named),
-            work_offsets: work_offsets(&job.work_offsets)?,
+            work_offsets,
+            additional_offsets,
             radius_offsets,
             presets,
             block_delete: job.block_delete,
@@ -415,6 +420,7 @@ impl JobFile {
         }
         let setup = ControlSetup {
             work_offsets: self.work_offsets,
+            additional_offsets: self.additional_offsets.clone(),
             lengths: self.tools.lengths(),
             variables: self.variables.clone(),
             subprograms: read_subprograms(&self.subprograms)?,
@@ -574,20 +580,55 @@ fn presets(named: &BTreeMap<String, String>) -> Result<BTreeMap<u32, u8>, String
     found.collect()
 }
 
-/// Returns the origins of G54 to G59.3 by their names.
+/// The origins of work offsets.
+#[derive(Default)]
+struct Origins {
+    /// Those of G54 to G59.3.
+    standard: [Option<[f64; 6]>; 9],
+    additional: BTreeMap<u16, [f64; 6]>,
+}
+
+/// Returns the origins of work offsets by their names.
 ///
 /// # Errors
-/// If a name is not one of these, or has fewer than three numbers or more than six.
-fn work_offsets(named: &BTreeMap<String, Vec<f64>>) -> Result<[Option<[f64; 6]>; 9], JobError> {
-    let mut offsets = [None; 9];
+/// If a name is not that of a work offset, or has fewer than three numbers or more than six, or if two names are of one offset.
+fn work_offsets(named: &BTreeMap<String, Vec<f64>>) -> Result<Origins, JobError> {
+    let mut origins = Origins::default();
     for (name, values) in named {
-        let position = WORK_OFFSETS.iter().position(|known| known.eq_ignore_ascii_case(name));
-        let (Some(position), 3..=6) = (position, values.len()) else {
-            return Err(JobError::WorkOffset { name: name.clone() });
-        };
+        let refused = || JobError::WorkOffset { name: name.clone() };
         let mut origin = [0.0; 6];
-        origin[..values.len()].copy_from_slice(values);
-        offsets[position] = Some(origin);
+        origin
+            .get_mut(..values.len())
+            .filter(|own| own.len() >= 3)
+            .ok_or_else(refused)?
+            .copy_from_slice(values);
+        let position = WORK_OFFSETS.iter().position(|known| known.eq_ignore_ascii_case(name));
+        let before = match (position, additional_offset(name)) {
+            (Some(position), _) => origins.standard[position].replace(origin),
+            (None, Some(number)) => origins.additional.insert(number, origin),
+            (None, None) => return Err(refused()),
+        };
+        if before.is_some() {
+            return Err(refused());
+        }
     }
-    Ok(offsets)
+    Ok(origins)
+}
+
+/// Returns the number of a further work offset by its name: `G54.1 P1` to `P300` and `G154 P1` to `P300`, `G110` to `G129` of Haas, and
+/// `G507` to `G599` of Sinumerik.
+fn additional_offset(name: &str) -> Option<u16> {
+    let name = name.to_ascii_uppercase();
+    let number = |text: &str| text.parse::<u16>().ok();
+    let found = match name.split_once('P') {
+        Some((code, index)) => {
+            number(index.trim()).filter(|_| matches!(code.trim(), "G54.1" | "G154"))
+        }
+        None => match number(name.strip_prefix('G')?)? {
+            code @ 110..=129 => Some(code - 109),
+            code @ 507..=599 => Some(code - 506),
+            _ => None,
+        },
+    };
+    found.filter(|number| (1..=300).contains(number))
 }

@@ -271,7 +271,8 @@ pub enum JobError {
     },
     /// A work offset has another name, or another number of coordinates.
     #[error(
-        "work offset `{name}`: write `G54 = [x, y, z]` or `[x, y, z, a, b, c]`, with G54 to G59.3"
+        "work offset `{name}`: write `G54 = [x, y, z]` or `[x, y, z, a, b, c]`, once for each of G54 to G59.3, `\"G54.1 P1\"`, \
+         `\"G154 P1\"`, G110 to G129 and G507 to G599"
     )]
     WorkOffset {
         /// The given name.

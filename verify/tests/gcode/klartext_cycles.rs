@@ -154,3 +154,38 @@ fn a_bore_is_milled_on_a_helix() {
     // A bore that was milled before needs no second pass.
     assert!(read(&program(&bore(24.0, "~\n Q342=+10")), &at_zero()).is_ok());
 }
+
+/// A parameter by which a cycle goes to another depth is refused by its name, unless it is 0.
+#[test]
+fn a_parameter_of_another_depth_is_refused() {
+    let drilled = |number: u32, more: &str| {
+        let body = format!(
+            "TOOL CALL 5 Z S900\nL X+10 Y+20 FMAX M3\nL Z+100 FMAX\nCYCL DEF {number} NAME Q200=+2 Q201=-20 Q206=+100 Q202=+20 \
+             Q203=+1 Q204=+50 {more}\nL X+30 FMAX M99"
+        );
+        read(&program(&body), &at_zero()).map(|(steps, _)| steps.len())
+    };
+    for number in [200, 203, 205] {
+        let plain = drilled(number, "").expect("a cycle");
+        assert_eq!(drilled(number, "Q395=+0").expect("a cycle"), plain);
+        for refused in ["Q395=+1", "Q999=+3", "Q379=+8"] {
+            let fault = drilled(number, refused).expect_err(refused).to_string();
+            let (name, _) = refused.split_once('=').expect("a name");
+            assert!(fault.contains(&format!("{name} of CYCL DEF {number}")), "{fault}");
+        }
+    }
+    assert!(drilled(205, "Q379=+0 Q253=+750").is_ok());
+}
+
+/// A job states values that the machine has: a parameter that the program has not assigned, and one of the control.
+#[test]
+fn parameters_are_stated() {
+    let body = "TOOL CALL 5 Z S900\nL X+Q50 Y+QL7 FMAX M3\nL Z+Q108 FMAX";
+    assert!(read(&program(body), &at_zero()).is_err());
+    let mut setup = at_zero();
+    for (name, value) in [("Q50", 12.5), ("ql7", -3.0), ("Q108", 5.0)] {
+        setup.variables.insert(name.to_owned(), vec![value]);
+    }
+    let (steps, _) = read(&program(body), &setup).expect("a program");
+    assert_eq!(steps.last().expect("a step").end[..3], [12.5, -3.0, 5.0].map(Some));
+}

@@ -196,6 +196,40 @@ fn a_collision_far_from_the_part_has_status_1() {
     assert!(said.find("not verified:") < said.find("program:"), "{said}");
 }
 
+/// Further work offsets have the origins that the job states by the names of the controls.
+#[test]
+fn further_work_offsets_are_stated() {
+    for (control, block, name) in [
+        ("haas", "G154 P5", "\"G154 P5\""),
+        ("haas", "G114", "\"G154 P5\""),
+        ("haas", "G154 P5", "G114"),
+        ("fanuc", "G54.1 P5", "\"g54.1 p5\""),
+    ] {
+        let text = format!("{block}\nG0 X-100. Y0. Z20.\nG1 Z-1. F100.\nG0 Z20.");
+        let mut scene = Scene::new(&text).placed();
+        let arguments = ["--control", control];
+        scene.gives(&arguments, 2, &["is unknown: state it"]);
+        // 100 mm beside G54, so that the block is cut at its middle.
+        let origin = format!("[work_offsets]\n{name} = [100, 0, -400]\n");
+        scene.job = scene.job.replace("[work_offsets]\n", &origin);
+        scene.gives(&arguments, 1, &["1.0000"]);
+    }
+    let mut scene = Scene::new("G0 Z20.").placed();
+    for (names, said) in [
+        ("\"G154 P0\" = [1, 2, 3]", "work offset `G154 P0`"),
+        ("\"G154 P301\" = [1, 2, 3]", "work offset `G154 P301`"),
+        ("G114 = [1, 2, 3]\n\"G54.1 P5\" = [1, 2, 3]", "once for each"),
+        ("G130 = [1, 2, 3]", "work offset `G130`"),
+        ("G114 = [1, 2]", "work offset `G114`"),
+    ] {
+        scene.job = Scene::new("G0 Z20.")
+            .placed()
+            .job
+            .replace("[work_offsets]\n", &format!("[work_offsets]\n{names}\n"));
+        scene.gives(&["--control", "haas"], 2, &[said]);
+    }
+}
+
 /// A program in Klartext with two presets goes to two places of one part; a preset that is not stated is named.
 #[test]
 fn presets_of_klartext_are_work_offsets() {

@@ -173,7 +173,7 @@ fn words_that_controls_execute_in_different_ways_are_refused_or_named() {
     shift.gives(&[], 2, &["shifts on native Sinumerik: state `dialect`"]);
     shift.gives(&SIEMENS, 2, &["G59 is a shift in native programs of Sinumerik"]);
     // Words that move nothing, and the end of a block of Heidenhain.
-    let passed = Scene::new(&format!("{begin}G103 P1\nG187 P2\nM83\nM84\nG0 Z20.*\n"));
+    let passed = Scene::new(&format!("{begin}G103 P1\nG187 P2 E0.02\nM83\nM84\nG0 Z20.*\n"));
     passed.with("anyway = true").gives(&HAAS, 0, &[]);
 }
 

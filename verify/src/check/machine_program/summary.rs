@@ -3,8 +3,8 @@
 use super::{Assumption, MachineProgram};
 use crate::check::CycleTime;
 use crate::gcode::{
-    BlockLine, GcodeError, LengthOffset, NoteKind, Obstacle, ProgramNote, Rule, Spindle, Step,
-    SubprogramFile, SubprogramLine, WorkOffset, line_of,
+    BlockLine, ControlSetup, GcodeError, LengthOffset, NoteKind, Obstacle, ProgramNote, Rule,
+    Spindle, Step, SubprogramFile, SubprogramLine, WorkOffset, line_of,
 };
 use crate::machine::{LimitViolation, Machine, SingularPass};
 use std::collections::BTreeMap;
@@ -291,10 +291,16 @@ impl MachineSummary {
     }
 
     /// Notes that the work offset of a step has another origin than a setup states.
-    pub(super) fn add_offset(&mut self, step: &Step, stated: &[Option<[f64; 6]>; 9]) {
+    pub(super) fn add_offset(&mut self, step: &Step, setup: &ControlSetup) {
         let (state, offset) = (&step.state, step.state.work_offset);
-        let WorkOffset::Standard(number @ 2..) = offset else { return };
-        let Some(Some(stated)) = stated.get(usize::from(number) - 1) else { return };
+        let stated = match offset {
+            WorkOffset::Standard(number @ 2..) => {
+                setup.work_offsets.get(usize::from(number) - 1).and_then(Option::as_ref)
+            }
+            WorkOffset::Additional(number) => setup.additional_offsets.get(&number),
+            WorkOffset::Standard(_) | WorkOffset::Off => None,
+        };
+        let Some(stated) = stated else { return };
         let mut origin = state.origin.iter().zip(stated);
         let is_moved = state.origin_rotation != 0.0
             || origin.any(|(set, stated)| set.is_some_and(|set| set != *stated));

@@ -4,7 +4,7 @@
 
 use super::expression::{Cursor, ExpressionFault, Language, Value, begins_value, condition, value};
 use super::variables::{Parameter, Scope, assignment};
-use crate::gcode::block::{Block, Code, Keyword, Number};
+use crate::gcode::block::{Block, Code, Group, Keyword, Number};
 use crate::gcode::control::{Corner, CornerFeed, CornerShape};
 use crate::gcode::error::{combination, missing, not_read};
 use crate::gcode::rules::{Choice, Rule};
@@ -166,6 +166,11 @@ impl Line {
             && self.assignments.is_empty()
     }
 
+    /// Returns whether the block has G187 of Haas, of which E is the tolerance.
+    fn is_smoothness(&self) -> bool {
+        self.block.code_of(Group::PathControl).is_some_and(|code| code.tenths == 1870)
+    }
+
     /// Reads a word that begins with a letter.
     fn word(&mut self, cursor: &mut Cursor, scope: &Scope) -> Result<(), GcodeFault> {
         let start = *cursor;
@@ -183,7 +188,9 @@ impl Line {
             'G' | 'M' => self.code(letter, value, written, cursor, scope),
             // An argument of an ignored word.
             'E' if !self.ignored.is_empty() => Ok(()),
-            'E' | 'U' | 'V' | 'W' => Err(GcodeFault::Axis { word: letter }),
+            'E' | 'U' | 'V' | 'W' if !(letter == 'E' && self.is_smoothness()) => {
+                Err(GcodeFault::Axis { word: letter })
+            }
             'N' | 'O' => Err(GcodeFault::Unused { word: letter }),
             _ if value.abs() > LARGEST_NUMBER => Err(GcodeFault::TooLarge { word: letter }),
             _ => {

@@ -98,6 +98,37 @@ const MAX_TURNS: f64 = 1000.0;
 /// Feed in mm per minute from which it is rapid traverse.
 const RAPID_FEED: f64 = 99_999.0;
 
+/// The parameters that a cycle has.
+struct CycleParameters {
+    number: u32,
+    /// Those that are read, or that change nothing about the path.
+    known: &'static [u16],
+    /// Those that change depths unless they are 0.
+    zero: &'static [u16],
+}
+
+const PARAMETERS: [CycleParameters; 11] = [
+    with(200, &[200, 201, 202, 203, 204, 206, 210, 211], &[395]),
+    with(201, &[200, 201, 203, 204, 206, 208, 211], &[]),
+    with(202, &[200, 201, 203, 204, 206, 208, 211, 214, 336], &[]),
+    with(203, &[200, 201, 202, 203, 204, 205, 206, 208, 210, 211, 212, 213, 256], &[395]),
+    with(
+        205,
+        &[200, 201, 202, 203, 204, 205, 206, 208, 211, 212, 253, 256, 257, 258, 259],
+        &[379, 395],
+    ),
+    with(206, &[200, 201, 203, 204, 206, 211], &[]),
+    with(207, &[200, 201, 203, 204, 239], &[]),
+    with(208, &[200, 201, 203, 204, 206, 334, 335, 342, 351], &[]),
+    with(209, &[200, 201, 203, 204, 239, 256, 257, 336, 403], &[]),
+    with(240, &[200, 201, 203, 204, 206, 211, 253, 343, 344], &[342]),
+    with(247, &[339], &[]),
+];
+
+const fn with(number: u32, known: &'static [u16], zero: &'static [u16]) -> CycleParameters {
+    CycleParameters { number, known, zero }
+}
+
 /// The Q parameters of a cycle. `MAX` is an infinite number, and `AUTO` none.
 struct Given {
     number: u32,
@@ -105,6 +136,31 @@ struct Given {
 }
 
 impl Given {
+    /// Checks that the meaning of each parameter is known.
+    ///
+    /// # Errors
+    /// If the cycle has one that is not read, which may change its depth.
+    fn check(&self) -> Result<(), GcodeFault> {
+        let Some(CycleParameters { known, zero, .. }) =
+            PARAMETERS.iter().find(|cycle| cycle.number == self.number)
+        else {
+            return Ok(());
+        };
+        for (parameter, value) in &self.values {
+            let word = || format!("Q{parameter} of CYCL DEF {}", self.number);
+            if zero.contains(parameter) {
+                if *value != Some(0.0) {
+                    let meaning = "a parameter by which the tool goes to another depth than Q201";
+                    return Err(not_read(word(), meaning, "write 0, and Q201 for the tip"));
+                }
+            } else if !known.contains(parameter) {
+                let meaning = "a parameter that is not known in this cycle";
+                return Err(not_read(word(), meaning, "post the program with its motions"));
+            }
+        }
+        Ok(())
+    }
+
     fn get(&self, parameter: u16) -> Option<f64> {
         self.values.iter().find(|(number, _)| *number == parameter).and_then(|(_, value)| *value)
     }
@@ -174,6 +230,7 @@ impl Program<'_> {
             };
         }
         let given = self.cycle_parameters(number, cursor)?;
+        given.check()?;
         if number == 247 {
             let preset = given.needed(339, "Q339, the number of the preset")?;
             return self.preset(preset, control);

@@ -2,14 +2,20 @@
 //!
 //! Values are IEEE doubles, and each operation is rounded once; angles are in degrees. Functions hold for the operand or the bracket
 //! after them, `^` before `* / %`, and these before `+ -` (TNC 640, *Klartext programming*, "Entering formulas directly").
-//! A parameter that the program has not assigned has a value that only the machine knows, and stops the interpreter. So do
-//! Q108 to Q199, by which the control reports its state.
+//! A parameter that the program has not assigned has a value that only the machine knows, and stops the interpreter, unless the job
+//! states it. So do Q108 to Q199, by which the control reports its state.
 
 use super::line::Cursor;
 use crate::gcode::error::not_read;
 use crate::gcode::{ExpressionFault, GcodeFault, LARGEST_NUMBER, shown};
 use crate::machine::sin_cos_degrees;
+use std::collections::BTreeMap;
 use std::fmt;
+
+/// Returns whether a name is that of a Q parameter.
+pub(crate) fn is_variable(name: &str) -> bool {
+    Parameter::named(name).is_some()
+}
 
 /// Largest nesting of brackets and functions.
 const MAX_DEPTH: usize = 30;
@@ -25,6 +31,25 @@ impl Parameter {
     /// Returns a global parameter by its number.
     pub(super) fn global(number: u16) -> Parameter {
         Parameter(number)
+    }
+
+    /// Returns the parameter with a name.
+    fn named(name: &str) -> Option<Parameter> {
+        let digits = name.find(|letter: char| letter.is_ascii_digit())?;
+        Parameter::of_kind(&name[..digits], &name[digits..])
+    }
+
+    /// Returns the parameter of a kind, as `QL`, with the digits of its number.
+    fn of_kind(kind: &str, digits: &str) -> Option<Parameter> {
+        let number = digits.parse::<u16>().ok().filter(|_| !digits.starts_with('+'))?;
+        let mut first = 0;
+        for (known, count) in KINDS {
+            if kind.eq_ignore_ascii_case(known) && number < count {
+                return Some(Parameter(first + number));
+            }
+            first += count;
+        }
+        None
     }
 
     /// Returns whether the control writes its state into it.
@@ -57,6 +82,17 @@ impl Parameters {
     pub(super) fn new() -> Parameters {
         let count = KINDS.iter().map(|(_, count)| usize::from(*count)).sum();
         Parameters { values: vec![f64::NAN; count] }
+    }
+
+    /// Creates the parameters of a program, of which a job states those in `stated`.
+    pub(super) fn stated(stated: &BTreeMap<String, Vec<f64>>) -> Parameters {
+        let mut parameters = Parameters::new();
+        for (name, values) in stated {
+            if let Some((parameter, value)) = Parameter::named(name).zip(values.first()) {
+                parameters.values[usize::from(parameter.0)] = *value;
+            }
+        }
+        parameters
     }
 
     /// Hides the parameters of a program (QL) from one that it calls, and returns their values.
@@ -93,15 +129,15 @@ impl Parameters {
     /// Returns the value of a parameter.
     ///
     /// # Errors
-    /// If the control owns it, or if the program has not assigned it.
+    /// If neither the job states it nor the program has assigned it.
     pub(super) fn get(&self, parameter: Parameter) -> Result<f64, ExpressionFault> {
         let value = self.values[usize::from(parameter.0)];
-        if parameter.is_of_control() {
-            Err(ExpressionFault::System { parameter: parameter.to_string() })
-        } else if value.is_nan() {
-            Err(ExpressionFault::Unassigned { parameter: parameter.to_string() })
-        } else {
+        if !value.is_nan() {
             Ok(value)
+        } else if parameter.is_of_control() {
+            Err(ExpressionFault::System { parameter: parameter.to_string() })
+        } else {
+            Err(ExpressionFault::Unassigned { parameter: parameter.to_string() })
         }
     }
 }
@@ -115,18 +151,9 @@ pub(super) fn parameter(cursor: &mut Cursor) -> Result<Parameter, GcodeFault> {
         let (meaning, remedy) = ("a parameter of text", "write numbers instead");
         return Err(not_read(format!("QS{digits}"), meaning, remedy));
     }
-    let mut first = 0;
-    for (known, count) in KINDS {
-        if kind.eq_ignore_ascii_case(known)
-            && let Ok(number) = digits.parse::<u16>()
-            && number < count
-        {
-            return Ok(Parameter(first + number));
-        }
-        first += count;
-    }
     let mut start = start;
-    Err(start.unexpected("Q0 to Q1999, QL0 to QL499 or QR0 to QR499"))
+    Parameter::of_kind(&kind, &digits)
+        .ok_or_else(|| start.unexpected("Q0 to Q1999, QL0 to QL499 or QR0 to QR499"))
 }
 
 /// Reads a value: a number or a parameter, with one sign at most.

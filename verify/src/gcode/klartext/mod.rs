@@ -22,9 +22,10 @@ use super::files::{self, in_file};
 use super::interpreter::{End, Progress};
 use super::note::NoteKind;
 use super::rules::{Choice, ControlRules, Rule};
-use super::{GcodeError, GcodeFault, Obstacle, SubprogramFile, shown, unquoted};
+use super::{ControlSetup, GcodeError, GcodeFault, Obstacle, SubprogramFile, shown, unquoted};
 use block::{Feed, Scale, m_entry};
 use cycle::Cycle;
+pub(crate) use expression::is_variable;
 use expression::{Parameters, angle, finite, formula, parameter, value};
 use flow::{Flow, Label, label};
 use frame::Frame;
@@ -110,7 +111,7 @@ impl<'a> Program<'a> {
     /// If the control states another dialect, or a label stands twice.
     pub(super) fn new(
         text: &'a str,
-        files: &'a [SubprogramFile],
+        setup: &'a ControlSetup,
         control: &mut Control,
     ) -> Result<Program<'a>, GcodeError> {
         let (unit, start, line) =
@@ -131,9 +132,9 @@ impl<'a> Program<'a> {
             flow: Flow::new(text, start)?,
             waiting: Vec::new(),
             file: 0,
-            files,
+            files: &setup.subprograms,
             called: BTreeMap::new(),
-            parameters: Parameters::new(),
+            parameters: Parameters::stated(&setup.variables),
             unit,
             frame: Frame::new(),
             before: Before::new(),

@@ -295,7 +295,9 @@ fn named(cursor: &mut Cursor, known: &Variables, depth: usize) -> Result<Value, 
         return Ok(Value::Number(std::f64::consts::PI));
     }
     if name.starts_with('$') {
-        return Err(ExpressionFault::System { parameter: name.to_ascii_uppercase() }.into());
+        let meaning = "a variable of the control, whose value only the machine knows";
+        let remedy = "write its value, or an R parameter that `[variables]` of the job states";
+        return Err(not_read(name.to_ascii_uppercase(), meaning, remedy));
     }
     let is_call = after.peek() == Some(b'(');
     let is_distance =

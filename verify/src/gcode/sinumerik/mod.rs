@@ -23,7 +23,7 @@ use super::files::{in_file, without_folder};
 use super::interpreter::{End, Progress};
 use super::note::NoteKind;
 use super::rules::{Choice, Rule};
-use super::{GcodeError, GcodeFault, Obstacle, SubprogramFile, shown};
+use super::{ControlSetup, GcodeError, GcodeFault, Obstacle, SubprogramFile, shown};
 use expression::{Value, expression, number};
 use flow::{Direction, Flow, Left, RepeatWords, Source, Structure, no_target, title};
 use std::collections::HashMap;
@@ -31,6 +31,7 @@ use std::mem;
 use std::sync::Arc;
 use table::{Use, use_of};
 use text::{Cursor, Start, start};
+pub(crate) use variables::is_variable;
 use variables::{Reference, Variables};
 
 /// Meaning of native programs on every Sinumerik, whatever a control's file says about programs in ISO mode.
@@ -151,9 +152,10 @@ impl<'a> Program<'a> {
     /// If two programs have one name, or a loop or a branch has no end or no begin.
     pub(super) fn new(
         text: &'a str,
-        files: &'a [SubprogramFile],
+        setup: &'a ControlSetup,
         control: &mut Control,
     ) -> Result<Program<'a>, GcodeError> {
+        let files = &setup.subprograms[..];
         let mut sources = vec![Arc::new(Source::new(text)?)];
         for (index, file) in (1..).zip(files) {
             let source = Source::new(&file.text);
@@ -168,7 +170,7 @@ impl<'a> Program<'a> {
             sources,
             files,
             file: 0,
-            variables: Variables::default(),
+            variables: Variables::new(&setup.variables),
             block: Block::default(),
             switch: None,
             modal_hole: None,

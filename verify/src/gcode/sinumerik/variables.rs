@@ -1,12 +1,13 @@
 //! R parameters, and the variables that `DEF` defines.
 //!
 //! R parameters keep their values from one program to the next, so one that the program has not assigned has a value that only the
-//! machine knows. A variable of `DEF` begins with 0, FALSE or an empty text, and belongs to its program or subprogram.
+//! machine knows, or that a job states. A variable of `DEF` begins with 0, FALSE or an empty text, and belongs to its program or subprogram.
 
 use super::expression::{Value, expression, number};
 use super::text::Cursor;
 use crate::gcode::error::{combination, not_read};
 use crate::gcode::{ExpressionFault, GcodeFault, shown};
+use std::collections::BTreeMap;
 
 /// The greatest R parameter (MD28050 allows as many).
 const MAX_R: f64 = 32_534.0;
@@ -64,7 +65,37 @@ pub(super) struct Variables {
     base: usize,
 }
 
+/// Returns whether a name is that of an R parameter.
+pub(crate) fn is_variable(name: &str) -> bool {
+    r_index(name).is_some()
+}
+
+/// Returns the index of an R parameter by its name.
+fn r_index(name: &str) -> Option<usize> {
+    let index = name.strip_prefix(['R', 'r'])?;
+    let is_whole = !index.is_empty() && index.bytes().all(|byte| byte.is_ascii_digit());
+    index.parse().ok().filter(|index| is_whole && *index as f64 <= MAX_R)
+}
+
 impl Variables {
+    /// Creates the variables of a program, of which a job states the R parameters in `stated`.
+    pub(super) fn new(stated: &BTreeMap<String, Vec<f64>>) -> Variables {
+        let mut variables = Variables::default();
+        for (name, values) in stated {
+            if let Some((index, value)) = r_index(name).zip(values.first()) {
+                variables.set_r(index, *value);
+            }
+        }
+        variables
+    }
+
+    fn set_r(&mut self, index: usize, value: f64) {
+        if self.r.len() <= index {
+            self.r.resize(index + 1, None);
+        }
+        self.r[index] = Some(value);
+    }
+
     /// Begins the variables of a subprogram, and returns where those of the caller begin.
     pub(super) fn enter(&mut self) -> usize {
         std::mem::replace(&mut self.base, self.named.len())
@@ -133,11 +164,7 @@ impl Variables {
     pub(super) fn set(&mut self, reference: Reference, value: Value) -> Result<(), GcodeFault> {
         match reference {
             Reference::R(index) => {
-                let number = value.number()?;
-                if self.r.len() <= index {
-                    self.r.resize(index + 1, None);
-                }
-                self.r[index] = Some(number);
+                self.set_r(index, value.number()?);
             }
             Reference::Named { variable, element } => {
                 let Variable { kind, values, .. } = &mut self.named[variable];
