@@ -98,6 +98,45 @@ fn a_square_from_outside() {
     assert!((sweep + 0.5 * PI).abs() < 1e-12, "{sweep}");
 }
 
+/// A step of 3 mm between an outside and an inside corner. Straight on at the outside one, its path is as long as it is, whatever the
+/// radius.
+#[test]
+fn a_short_motion_is_lengthened_by_its_outside_corner() {
+    let with_radius = |radius: f64, mut setup: ControlSetup| {
+        setup.radius_offsets = [(1, radius)].into();
+        setup
+    };
+    let straight = || setup(Choice::StraightCorner, Choice::NextMotion);
+    let down = "G0 X-40 Y-20 Z5\nG1 G41 D1 X-20 F100\nY0\nX2\nY-3\nX20\nG40 Y30";
+    let up = "G0 X20 Y-40 Z5\nG1 G42 D1 Y-3 F100\nX2\nY0\nX-20\nY-20\nG40 X-50";
+    for r in [0.5, 2.9, 3.0, 3.2, 5.0, 9.0, 17.5] {
+        let corners = [[-20.0 - r, -20.0], [-20.0 - r, r], [2.0 + r, r], [2.0 + r, r - 3.0]];
+        let mut expected = vec![[-40.0, -20.0]];
+        expected.extend(corners);
+        expected.extend([[20.0, r - 3.0], [20.0, 30.0]]);
+        assert_ends(down, &with_radius(r, straight()), &expected);
+        let mut expected = vec![[20.0, -40.0], [20.0, r - 3.0]];
+        expected.extend(corners.iter().rev());
+        expected.push([-50.0, -20.0]);
+        assert_ends(up, &with_radius(r, straight()), &expected);
+    }
+    let refusal = |program: &str, setup: ControlSetup| {
+        run(program, &setup).expect_err("a corner without room").to_string()
+    };
+    // The last motion has 18 mm and no outside corner. Arcs lengthen nothing.
+    for (program, line) in [(down, 6), (up, 3)] {
+        let error = refusal(program, with_radius(18.5, straight()));
+        assert!(error.contains("does not fit"), "{error}");
+        let error = refusal(program, with_radius(5.0, arcs()));
+        assert!(error.contains(&format!("the motion of line {}", if line == 6 { 5 } else { 3 })), "{error}");
+    }
+    // Between two inside corners, the direction would turn round.
+    let slot = "G0 X-40 Y-20 Z5\nG1 G41 D1 X-20 F100\nY0\nX2\nY-3\nX20\nY20\nG40 X60";
+    assert_eq!(run(slot, &with_radius(5.0, straight())).expect("steps").len(), 8);
+    let slot = slot.replace("X20\nY20", "X10\nY20");
+    assert!(refusal(&slot, with_radius(5.0, straight())).contains("the motion of line 6"));
+}
+
 /// The tool follows the contour without an offset, as a program of its centre does.
 #[test]
 fn an_offset_of_zero_changes_nothing() {

@@ -69,6 +69,16 @@ enum Phase {
     },
 }
 
+impl Held {
+    /// Refuses a motion whose direction would turn round, since its corners cut off more than it has.
+    fn check_room(&self) -> Result<(), CompensationFault> {
+        match self.contour.is_kept() {
+            true => Ok(()),
+            false => Err(CompensationFault::NoRoom { line: self.step.line }),
+        }
+    }
+}
+
 impl Compensation {
     /// Returns whether the tool is beside the programmed path, or will be with the next motion.
     fn is_on(&self) -> bool {
@@ -453,14 +463,22 @@ impl Control {
         let corner = match bend {
             _ if is_beside_next => offset::at(contour.beside(0)),
             Bend::Tangent => offset::at(held.contour.beside(1)),
-            Bend::Inside => offset::meet(&mut held.contour, &mut contour)
-                .ok_or(CompensationFault::NoRoom { line: held.step.line })?,
+            Bend::Inside => {
+                let (before, after) = (&mut held.contour, &mut contour);
+                let corner = offset::meet(before, after, false).or_else(|| {
+                    // The next corner can be an outside one, at which the motion goes straight on.
+                    let is_lengthened = self.choice(Rule::OutsideCorner) == Choice::StraightCorner;
+                    is_lengthened.then(|| offset::meet(before, after, true)).flatten()
+                });
+                corner.ok_or(CompensationFault::NoRoom { line: held.step.line })?
+            }
             Bend::Outside => {
                 let form = self.outside(step.rapid)?;
                 let stands_between = !compensation.waiting.is_empty();
-                offset::around(&held.contour, &contour, turn, form, stands_between)?
+                offset::around(&mut held.contour, &mut contour, turn, form, stands_between)?
             }
         };
+        held.check_room()?;
         let place = self.leave(compensation, &held, &corner);
         if let Some(leg) = corner.after {
             self.add_leg(compensation.plane, &step, step.start, place, leg);
@@ -477,10 +495,10 @@ impl Control {
         ends: [Vector; 2],
         is_here: bool,
     ) -> Result<(), GcodeFault> {
-        let Some(held) = compensation.held.take() else { return Ok(()) };
+        let Some(mut held) = compensation.held.take() else { return Ok(()) };
         let mut corner = offset::at(held.contour.beside(1));
         if is_here && (ends[1] - ends[0]).norm() >= STILL {
-            let contour = Contour::new(ends, Shape::Line, compensation.offset)?;
+            let mut contour = Contour::new(ends, Shape::Line, compensation.offset)?;
             let (bend, turn) = offset::bend(&held.contour, &contour, self.tangent_tolerance());
             if bend == Bend::Outside
                 && self.choice(Rule::CompensationStart) == Choice::OutsideCorners
@@ -488,9 +506,10 @@ impl Control {
                 self.check_idle(&compensation, bend)?;
                 let form = self.outside(step.rapid)?;
                 let stands_between = !compensation.waiting.is_empty();
-                corner = offset::around(&held.contour, &contour, turn, form, stands_between)?;
+                corner = offset::around(&mut held.contour, &mut contour, turn, form, stands_between)?;
             }
         }
+        held.check_room()?;
         let place = self.leave(&mut compensation, &held, &corner);
         if let Some(leg) = corner.after {
             self.add_leg(compensation.plane, &step, step.start, place, leg);
@@ -508,6 +527,7 @@ impl Control {
             return Err(under_compensation("the end of the program"));
         }
         if let Some(held) = compensation.held.take() {
+            held.check_room()?;
             let place = held.contour.beside(1);
             self.leave(&mut compensation, &held, &offset::at(place));
             for (axis, value) in compensation.plane.axes().into_iter().zip([place.x, place.y]) {

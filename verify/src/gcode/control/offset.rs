@@ -45,7 +45,7 @@ pub(super) struct Contour {
     radii: [f64; 2],
     /// Length of a line, or the angle of an arc.
     extent: f64,
-    /// Parts that the corners at both ends cut off from it.
+    /// Parts that the corners at both ends cut off from it. Less than zero where one has lengthened a line.
     cut: [f64; 2],
 }
 
@@ -222,6 +222,13 @@ pub(super) fn bend(before: &Contour, after: &Contour, tolerance: f64) -> (Bend, 
     }
 }
 
+impl Contour {
+    /// Returns whether the corners at both ends leave something of the offset curve, which keeps its direction then.
+    pub(super) fn is_kept(&self) -> bool {
+        self.cut[0] + self.cut[1] <= self.extent + ROUNDING
+    }
+}
+
 /// Returns the way through a place where one motion ends and the next begins.
 pub(super) fn at(place: Vector) -> Corner {
     Corner { end: place, before: Vec::new(), after: None, start: place }
@@ -232,8 +239,8 @@ pub(super) fn at(place: Vector) -> Corner {
 /// # Errors
 /// If it is open where these motions are executed.
 pub(super) fn around(
-    before: &Contour,
-    after: &Contour,
+    before: &mut Contour,
+    after: &mut Contour,
     turn: f64,
     form: Outside,
     stands_between: bool,
@@ -261,7 +268,10 @@ pub(super) fn around(
             // A line goes straight on. An arc is followed by a line along its tangent, or begins after one.
             let mut added = Vec::new();
             let end = match before.shape {
-                Shape::Line => first,
+                Shape::Line => {
+                    before.cut[1] = -(first - end).norm();
+                    first
+                }
                 Shape::Arc { .. } => {
                     added.push(line(first));
                     end
@@ -271,7 +281,10 @@ pub(super) fn around(
                 added.push(line(second));
             }
             let (after, start) = match after.shape {
-                Shape::Line => (None, second),
+                Shape::Line => {
+                    after.cut[0] = -(start - second).norm();
+                    (None, second)
+                }
                 Shape::Arc { .. } => (Some(line(start)), start),
             };
             Ok(Corner { end, before: added, after, start })
@@ -280,20 +293,30 @@ pub(super) fn around(
 }
 
 /// Returns the way through an inside corner: to the point nearest to it at which the offset curves meet. Both motions lose what is beyond.
-/// `None` if the curves do not meet, or if the motion before is shorter than what its two corners cut off.
-pub(super) fn meet(before: &mut Contour, after: &mut Contour) -> Option<Corner> {
+/// `None` if the curves do not meet, or if the motion before is shorter than what its two corners cut off. If the next corner can
+/// lengthen the motion after (`is_lengthened`), a line may be shorter than what this corner cuts off: that corner decides.
+pub(super) fn meet(
+    before: &mut Contour,
+    after: &mut Contour,
+    is_lengthened: bool,
+) -> Option<Corner> {
     let corner = after.ends[0];
+    let longest = match after.shape {
+        Shape::Line if is_lengthened => f64::INFINITY,
+        _ => after.extent + ROUNDING,
+    };
     let reached = meetings(before, after).into_iter().filter_map(|place| {
         let cut = [before.cut_at(1, place), after.cut_at(0, place)];
-        let is_on_both = (-ROUNDING..=before.extent + ROUNDING).contains(&cut[0])
-            && (-ROUNDING..=after.extent + ROUNDING).contains(&cut[1]);
+        let before_length = before.extent - before.cut[0].min(0.0);
+        let is_on_both = (-ROUNDING..=before_length + ROUNDING).contains(&cut[0])
+            && (-ROUNDING..=longest).contains(&cut[1]);
         is_on_both.then_some((place, cut.map(|cut| cut.max(0.0))))
     });
     let (place, cut) = reached.min_by(|(first, _), (second, _)| {
         (first - corner).norm().total_cmp(&(second - corner).norm())
     })?;
     (before.cut[1], after.cut[0]) = (cut[0], cut[1]);
-    (before.cut[0] + before.cut[1] <= before.extent + ROUNDING).then(|| at(place))
+    before.is_kept().then(|| at(place))
 }
 
 /// Returns the points at which two offset curves meet, extended beyond their ends.
