@@ -112,6 +112,21 @@ impl<'a> Interpreter<'a> {
         }
     }
 
+    /// Takes over the shift, the rotation or both that another run has left, where the text keeps them beside the control: in Klartext.
+    pub(super) fn keep_frame(&mut self, left: &Interpreter, [shift, rotation]: [bool; 2]) {
+        if let (Front::Klartext(program), Front::Klartext(left)) = (&mut self.front, &left.front) {
+            program.keep_frame(left, [shift, rotation]);
+        }
+    }
+
+    /// Returns the words that can have left the shift, if a program in Klartext ends with DL.
+    pub(super) fn klartext_shift(&self) -> Option<&'static str> {
+        match &self.front {
+            Front::Klartext(program) => program.shift_words(),
+            Front::Iso(_) | Front::Sinumerik(_) => None,
+        }
+    }
+
     /// Executes the next line, and returns whether the program goes on.
     pub(super) fn execute_line(&mut self) -> Result<bool, GcodeError> {
         let file = match &self.front {

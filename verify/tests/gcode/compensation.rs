@@ -128,7 +128,10 @@ fn a_short_motion_is_lengthened_by_its_outside_corner() {
         let error = refusal(program, with_radius(18.5, straight()));
         assert!(error.contains("does not fit"), "{error}");
         let error = refusal(program, with_radius(5.0, arcs()));
-        assert!(error.contains(&format!("the motion of line {}", if line == 6 { 5 } else { 3 })), "{error}");
+        assert!(
+            error.contains(&format!("the motion of line {}", if line == 6 { 5 } else { 3 })),
+            "{error}"
+        );
     }
     // Between two inside corners, the direction would turn round.
     let slot = "G0 X-40 Y-20 Z5\nG1 G41 D1 X-20 F100\nY0\nX2\nY-3\nX20\nY20\nG40 X60";

@@ -8,8 +8,8 @@ use rand_pcg::Pcg64Mcg;
 use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_PI_2, PI};
 use touchoff_verify::gcode::{
-    Choice, ControlRules, ControlSetup, Interpreter, Plane, Position, Rotation, Rule, Spindle,
-    Step, StepPath, Tcp, read,
+    Choice, ControlRules, ControlSetup, Interpreter, NoteKind, Plane, Position, Rotation, Rule,
+    Spindle, Step, StepPath, Tcp, read,
 };
 
 /// A control whose axes are at 0, and stay there at a tool change.
@@ -214,6 +214,32 @@ fn the_same_part_in_iso_words_has_the_same_steps() {
     });
     assert_eq!(klartext.len(), 8);
     assert_eq!(klartext, iso);
+}
+
+/// DL ends with the next TOOL CALL, and so in the next run, if that calls a tool before it moves.
+#[test]
+fn an_allowance_on_the_length_is_left_for_motions_before_the_first_tool() {
+    let left = |body: &str| {
+        let text = program(body);
+        let (_, notes) = read(&text, &at_zero()).unwrap_or_else(|error| panic!("{text}{error}"));
+        notes.into_iter().find_map(|note| match note.kind {
+            NoteKind::LeftModes { words } => Some((note.line, words)),
+            _ => None,
+        })
+    };
+    let end = "L Z+20 R0 FMAX M3\nL X+1 F100\nL Y+2\nL Z+50 FMAX\nM30";
+    let first = "TOOL CALL 5 Z S1000\nL Z+10 R0 FMAX M3\nL X+4 F100\nTOOL CALL 5 Z S2000 DL+0.5\n";
+    assert_eq!(left(&format!("{first}{end}")), None);
+    assert_eq!(left(&format!("TOOL CALL 5 Z S1000 DL-0.5\n{end}")), None);
+    // The tool is called after the first motion.
+    let before = format!("L Z+100 FMAX\n{first}{end}");
+    assert_eq!(left(&before), Some((2, "DL of TOOL CALL".to_owned())));
+    // A shift is left also where DL is not.
+    let shifted = format!("{first}CYCL DEF 7.0\nCYCL DEF 7.1 X+3\n{end}");
+    let (line, found) = left(&shifted).expect("a shift");
+    assert_eq!(line, 4);
+    assert!(found.contains("CYCL DEF 7"), "{found}");
+    assert_eq!(left(&shifted.replace("M30", "CYCL DEF 7.0\nCYCL DEF 7.1 X+0\nM30")), None);
 }
 
 #[test]

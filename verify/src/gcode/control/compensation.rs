@@ -506,7 +506,8 @@ impl Control {
                 self.check_idle(&compensation, bend)?;
                 let form = self.outside(step.rapid)?;
                 let stands_between = !compensation.waiting.is_empty();
-                corner = offset::around(&mut held.contour, &mut contour, turn, form, stands_between)?;
+                corner =
+                    offset::around(&mut held.contour, &mut contour, turn, form, stands_between)?;
             }
         }
         held.check_room()?;

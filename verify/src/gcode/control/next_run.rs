@@ -66,7 +66,7 @@ impl Interpreter<'_> {
     pub fn notes(&self) -> Vec<ProgramNote> {
         let mut notes = self.control.notes.list();
         if let (Some(first), Some(end)) = (&self.first, self.end) {
-            notes.extend(note(first, &self.control, end));
+            notes.extend(note(first, self, end));
         }
         notes.sort_by_key(|note| note.line);
         notes
@@ -76,11 +76,11 @@ impl Interpreter<'_> {
 /// Notes the first block that the next run of a program executes otherwise, because the control keeps what it `left`.
 ///
 /// `first` is the program before its first block.
-fn note(first: &Interpreter, left: &Control, end: End) -> Option<ProgramNote> {
-    let end = left.stated(Rule::ProgramEnd).filter(|_| end == End::Stop);
+fn note(first: &Interpreter, left: &Interpreter, end: End) -> Option<ProgramNote> {
+    let end = left.control.stated(Rule::ProgramEnd).filter(|_| end == End::Stop);
     let kept: Vec<Mode> = MODES
         .into_iter()
-        .filter(|mode| mode.differs(&first.control, left) && !mode.is_reset(end))
+        .filter(|mode| mode.differs(&first.control, &left.control) && !mode.is_reset(end))
         .collect();
     if kept.is_empty() {
         return None;
@@ -107,16 +107,17 @@ fn note(first: &Interpreter, left: &Control, end: End) -> Option<ProgramNote> {
 
 /// Returns the place of the first block that is executed otherwise if some modes are kept, at any position of the switch for
 /// optional blocks, and under all choices of the rules on which the first run did not depend.
-fn first_difference(first: &Interpreter, left: &Control, kept: &[Mode]) -> Option<BlockLine> {
+fn first_difference(first: &Interpreter, left: &Interpreter, kept: &[Mode]) -> Option<BlockLine> {
     let mut start = first.clone();
-    start.control.stand_as(left);
+    start.control.stand_as(&left.control);
     let mut starts = vec![start];
-    if left.asked.contains_key(&Rule::OptionalBlocks) {
+    if left.control.asked.contains_key(&Rule::OptionalBlocks) {
         starts = under_each(&starts[0], Rule::OptionalBlocks);
     }
     while let Some(start) = starts.pop() {
         let (mut run, mut next) = (start.clone(), start.clone());
-        next.control.keep(left, kept);
+        next.control.keep(&left.control, kept);
+        next.keep_frame(left, [Mode::Shift, Mode::Rotation].map(|mode| kept.contains(&mode)));
         let block = run_beside(&mut run, &mut next);
         if block.is_some() {
             return block;
@@ -217,11 +218,13 @@ impl Mode {
     }
 
     /// Returns the word that left it.
-    fn word(self, left: &Control) -> String {
+    fn word(self, left: &Interpreter) -> String {
+        let shift = left.klartext_shift();
+        let left = &left.control;
         let (modal, state) = (&left.modal, &*left.state);
         let is_heidenhain = left.stated(Rule::Dialect) == Some(Choice::Heidenhain);
         let word = match self {
-            Mode::Shift if is_heidenhain => "CYCL DEF 7 or G54",
+            Mode::Shift if is_heidenhain => shift.unwrap_or("CYCL DEF 7 or G54"),
             Mode::Rotation if is_heidenhain => match state.rotation {
                 Rotation::Tilted { .. } => "PLANE",
                 _ => "CYCL DEF 10 or G73",
