@@ -104,11 +104,12 @@ impl<'a> Interpreter<'a> {
     }
 
     /// Returns the lowest and the highest corner of the blank that the program has stated so far as a box, in program coordinates and in
-    /// millimetres: by BLK FORM of Heidenhain Klartext.
+    /// millimetres: by BLK FORM of Heidenhain Klartext, or by G30 and G31 of its DIN/ISO programs.
     pub fn blank(&self) -> Option<[[f64; 3]; 2]> {
         match &self.front {
             Front::Klartext(program) => program.blank(),
-            Front::Iso(_) | Front::Sinumerik(_) => None,
+            Front::Iso(program) => program.blank(),
+            Front::Sinumerik(_) => None,
         }
     }
 

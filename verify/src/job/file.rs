@@ -186,7 +186,7 @@ pub struct StockEntry {
     /// The lowest and the highest corner of a box.
     #[serde(rename = "box")]
     pub corners: Option<[[f64; 3]; 2]>,
-    /// The box that the program states by BLK FORM (Heidenhain Klartext).
+    /// The box that the program states by BLK FORM (Heidenhain Klartext), or by G30 and G31 (DIN/ISO).
     #[serde(default)]
     pub blank: bool,
     /// The job file of an earlier set-up.

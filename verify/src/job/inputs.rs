@@ -287,7 +287,7 @@ fn blank(program: &Program, unit: Unit) -> Result<[Point3<f64>; 2], JobError> {
     match stated {
         Some(corners) => Ok(corners.map(|corner| Point3::from(corner) * factor)),
         None => Err(JobError::Mismatch(
-            "the program states no box by BLK FORM 0.1 and 0.2: state the stock by a `mesh` or a `box`",
+            "the program states no box by BLK FORM 0.1 and 0.2 (G30 and G31 in DIN/ISO): state the stock by a `mesh` or a `box`",
         )),
     }
 }

@@ -242,6 +242,32 @@ fn an_allowance_on_the_length_is_left_for_motions_before_the_first_tool() {
     assert_eq!(left(&shifted.replace("M30", "CYCL DEF 7.0\nCYCL DEF 7.1 X+0\nM30")), None);
 }
 
+/// The lines of the blank in DIN/ISO programs move nothing, and are returns and probing on other controls.
+#[test]
+fn the_blank_of_din_iso_is_passed_over() {
+    let iso = "%PART G71 *\nN10 G30 G17 X-50 Y-50 Z-20*\nN20 G31 G90 X+50 Y+50 Z+0*\nN30 T5 G17 S3000*\n\
+        N40 G0 G40 G90 X1 Y2 M3*\nN50 G1 Z-2 F200*\nN60 M30*\n";
+    let setup = at_zero();
+    let mut interpreter = Interpreter::new(iso, &setup).expect("a program");
+    let found: Vec<Step> = interpreter.by_ref().collect::<Result<_, _>>().expect("steps");
+    assert_eq!(found.iter().map(|step| step.line).collect::<Vec<_>>(), [5, 6]);
+    let box_ = [[-50.0, -50.0, -20.0], [50.0, 50.0, 0.0]];
+    assert_eq!(interpreter.blank(), Some(box_));
+    assert!(interpreter.obstacles().is_empty());
+    let inches = iso.replace("G71", "G70");
+    let mut interpreter = Interpreter::new(&inches, &setup).expect("a program");
+    assert!(interpreter.by_ref().all(|step| step.is_ok()));
+    assert_eq!(interpreter.blank(), Some(box_.map(|corner| corner.map(|value| 25.4 * value))));
+    // G91 makes the highest corner an increment.
+    let text = iso.replace("G31 G90", "G31 G91");
+    let error = read(&text, &setup).expect_err("an increment").to_string();
+    assert!(error.contains("line 3: G31 is a corner of the blank"), "{error}");
+    // The head is a title on other controls.
+    let rules = ControlRules::named("fanuc").expect("a control");
+    let error = read(iso, &ControlSetup { rules, ..at_zero() }).expect_err("another control");
+    assert!(!error.to_string().contains("blank"), "{error}");
+}
+
 #[test]
 fn labels_call_repeat_and_jump() {
     let at = |body: &str| ends(body).iter().map(|end| end[0].expect("X")).collect::<Vec<_>>();

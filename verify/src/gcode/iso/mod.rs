@@ -4,6 +4,7 @@
 //! text ──flow──▶ line ──line, expression──▶ block ──▶ control
 //! ```
 
+mod blank;
 mod expression;
 mod flow;
 mod line;
@@ -23,6 +24,7 @@ use super::interpreter::{End, Progress};
 use super::note::NoteKind;
 use super::rules::{Choice, Rule};
 use super::{ControlSetup, GcodeError, GcodeFault, MAX_REPEATED, Obstacle, SubprogramFile, shown};
+use blank::{BlankLine, blank_line};
 use expression::{Cursor, Language, Value, condition, value};
 use flow::{Callee, Flow, Source, before_semicolon};
 use line::{Label, Line, MacroCall, OWord, Role, Statement, begin, check_end, next, o_word};
@@ -49,6 +51,8 @@ pub(super) struct Program<'a> {
     line: Line,
     /// The number of the first switch for optional blocks.
     switch: Option<String>,
+    /// The lowest and the highest corner of the blank, in millimetres.
+    blank: [Option<[f64; 3]>; 2],
 }
 
 impl<'a> Program<'a> {
@@ -106,12 +110,27 @@ impl<'a> Program<'a> {
         flow::check_files(&sources, files, is_linuxcnc(control))?;
         let flow = Flow::new(sources.into());
         let (waiting, entered, line) = (Vec::new(), BTreeSet::new(), Line::default());
-        Ok(Program { flow, waiting, entered, files, variables, line, switch: None })
+        Ok(Program {
+            flow,
+            waiting,
+            entered,
+            files,
+            variables,
+            line,
+            switch: None,
+            blank: [None; 2],
+        })
     }
 
     /// Returns the number of the file of a called subprogram, if it is not in the program's.
     pub(super) fn called_file(&self) -> Option<usize> {
         (!self.waiting.is_empty()).then_some(self.flow.file)
+    }
+
+    /// Returns the lowest and the highest corner of the blank in millimetres, if the program states it as a box.
+    pub(super) fn blank(&self) -> Option<[[f64; 3]; 2]> {
+        let [Some(low), Some(high)] = self.blank else { return None };
+        (0..3).all(|axis| low[axis] < high[axis]).then_some([low, high])
     }
 
     /// Returns the words that are not read, each with its first line.
@@ -124,6 +143,14 @@ impl<'a> Program<'a> {
         let lines = files.flat_map(|file| self.flow.lines(file).map(move |line| (file, line)));
         for (file, (number, text)) in lines {
             if text.trim_start().starts_with('/') && is_left_out {
+                continue;
+            }
+            if is_heidenhain(&control)
+                && let Some(line) = blank_line(text)
+            {
+                if let (0, Err(fault)) = (file, line) {
+                    Obstacle::add(&mut found, number, fault);
+                }
                 continue;
             }
             let scope = Scope { is_survey: true, ..Scope::new(&self.variables, &control) };
@@ -257,8 +284,15 @@ impl<'a> Program<'a> {
             self.o_word(&mut cursor, number, control)?;
             return Ok(Progress::GoesOn);
         }
+        let mut modes = None;
+        if is_heidenhain(control)
+            && let Some(line) = blank_line(text)
+        {
+            modes = Some(self.blank_corner(line?, control));
+        }
         let mut line = mem::take(&mut self.line);
         let scope = Scope::new(&self.variables, control);
+        let text = modes.as_deref().unwrap_or(text);
         let result = line.parse(text, &scope).and_then(|()| {
             if is_optional {
                 control.notes.add(control.block(), NoteKind::ExecutedOptionalBlock);
@@ -267,6 +301,15 @@ impl<'a> Program<'a> {
         });
         self.line = line;
         result
+    }
+
+    /// Keeps a corner of the blank, and returns the words of its line that are executed.
+    fn blank_corner(&mut self, line: BlankLine, control: &mut Control) -> String {
+        let scale = control.modal.unit.millimetres();
+        self.blank[line.corner] = line.position.map(|position| position.map(|value| value * scale));
+        let word = ["G30", "G31"][line.corner].to_owned();
+        control.notes.add(control.block(), NoteKind::PassedOver { word });
+        line.modes
     }
 
     /// Executes a line that was read.
@@ -750,6 +793,11 @@ fn language(control: &Control) -> Option<Language> {
         Some(Choice::Rs274Ngc) => Some(Language::LinuxCnc),
         _ => None,
     }
+}
+
+/// Returns whether a program is read as DIN/ISO of Heidenhain.
+fn is_heidenhain(control: &Control) -> bool {
+    control.stated(Rule::Dialect) == Some(Choice::Heidenhain)
 }
 
 /// Refuses a line that the control does not read, whatever its words.
