@@ -167,6 +167,40 @@ impl MapX for Vec<Position> {
 }
 
 /// G73 and G83 to G89 along Z, with the levels of G98 and G99; the levels are those of the definition of each cycle.
+/// G91 after a cycle of G90 moves over the next holes, which keep their depth and R on Fanuc and Haas.
+#[test]
+fn a_cycle_of_g90_keeps_its_levels_under_g91() {
+    let setup = |control: &str| ControlSetup {
+        rules: match ControlRules::named(control).expect("a control") {
+            // Fanuc has either, by its series.
+            rules if control == "fanuc" => rules.with(Rule::CycleRepeats, Choice::RepeatsByK),
+            rules => rules,
+        },
+        ..at_zero()
+    };
+    let first = "M3 S900\nG90 G0 Z9.\nG81 G99 X0 Y0 Z-3. R2. F100.\n";
+    for (control, repeats) in [("fanuc", "K3"), ("haas", "L3")] {
+        let short = format!("{first}G91 X10. {repeats}\nY-5.\nG90 X1. Y1.\nG80\nM30\n");
+        let long = format!("{first}X10.\nX20.\nX30.\nY-5.\nX1. Y1.\nG80\nM30\n");
+        let [short, long] = [short, long].map(|text| {
+            let (steps, _) = read(&text, &setup(control)).unwrap_or_else(|e| panic!("{text}{e}"));
+            steps.into_iter().map(|step| (step.rapid, step.end)).collect::<Vec<_>>()
+        });
+        assert_eq!(short, long, "{control}");
+        for other in ["G91 X10. Z-5.", "G91 X10. R-5.", "G91 X1. Z-5. R0\nG90 X5."] {
+            let text = format!("{first}{other}\nM30\n");
+            let error = read(&text, &setup(control)).expect_err(other).to_string();
+            assert!(error.contains("under the other one of G90 and G91"), "{error}");
+        }
+    }
+    let text = format!("{first}G91 X10.\nG80\nM30\n");
+    let unnamed = ControlSetup { rules: ControlRules::default(), ..at_zero() };
+    for setup in [setup("linuxcnc"), unnamed] {
+        let error = read(&text, &setup).expect_err("levels").to_string();
+        assert!(error.contains("line 4: G81 while its depth or R"), "{error}");
+    }
+}
+
 #[test]
 fn canned_cycles_stop_at_their_levels() {
     let levels = |program: &str| -> Vec<(f64, bool)> {

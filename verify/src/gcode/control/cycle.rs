@@ -5,6 +5,8 @@
 //! G91, R is relative to that level and the depth to R. A [rule](Rule::CycleBelowR) of the control decides
 //! whether a tool that begins below R rises to it before it moves sideways.
 //!
+//! Where G91 follows a cycle of G90 on Fanuc and Haas, as in `G81 X0 Z-3. R2.` and `G91 X10. K3`, the cycle keeps its levels.
+//!
 //! The retracts of G73 by an amount that the control holds are left out: they stay on the stroke of the
 //! drill. G83 returns to its last depth in rapid traverse; the clearance that a control keeps there is taken
 //! as zero.
@@ -181,13 +183,26 @@ impl Control {
     /// Takes the words of the cycle. Those that are missing are the ones of the cycle before.
     fn cycle_words(&self, block: &mut Block, number: u32, word: &str) -> Result<Cycle, GcodeFault> {
         let known = self.cycle.as_ref();
-        let incremental = self.modal.incremental;
+        let mut incremental = self.modal.incremental;
+        let dialect = self.stated(Rule::Dialect);
         // LinuxCNC asks for R and the depth again after another cycle.
-        let is_linuxcnc = self.stated(Rule::Dialect) == Some(Choice::Rs274Ngc);
-        // Under the other distance mode the numbers had another meaning.
-        let usable = known.filter(|cycle| cycle.incremental == incremental);
-        let usable = usable.filter(|cycle| !is_linuxcnc || cycle.number == number);
+        let is_linuxcnc = dialect == Some(Choice::Rs274Ngc);
+        let usable = known.filter(|cycle| !is_linuxcnc || cycle.number == number);
         let normal = self.modal.plane.normal();
+        let has = [AXES[normal], 'R'].map(|letter| block.has(letter));
+        // Under the other distance mode the numbers had another meaning.
+        if let Some(cycle) = usable.filter(|cycle| cycle.incremental != incremental)
+            && has != [true; 2]
+        {
+            // Fanuc and Haas keep the levels, so that G91 repeats the hole along X and Y.
+            if has != [false; 2] || cycle.incremental || dialect != Some(Choice::Iso) {
+                let condition =
+                    "its depth or R is of a block before, under the other one of G90 and G91,";
+                let remedy = "write the depth and R in this block";
+                return Err(combination(word, condition, remedy));
+            }
+            incremental = false;
+        }
         let depth = self.take_length(block, AXES[normal]).or(usable.map(|cycle| cycle.depth));
         let retract = self.take_length(block, 'R').or(usable.map(|cycle| cycle.retract));
         let peck = match number {
