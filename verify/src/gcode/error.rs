@@ -388,9 +388,9 @@ pub enum GcodeFault {
         /// The fault in it.
         fault: Box<GcodeFault>,
     },
-    /// Subprograms that take too many blocks and steps.
+    /// Subprograms, loops and jumps that take too many blocks and steps.
     #[error(
-        "subprograms take more than {} blocks and motions: reduce the repeats",
+        "loops, jumps and subprograms take more than {} blocks and motions: end the loop, or reduce the repeats",
         super::MAX_REPEATED
     )]
     TooLong,
@@ -412,7 +412,9 @@ impl GcodeFault {
                 | GcodeFault::NoSubprogram { .. }
                 | GcodeFault::Character { .. }
                 | GcodeFault::OpenComment
-                | GcodeFault::Expression(ExpressionFault::Operation { .. })
+                | GcodeFault::Expression(
+                    ExpressionFault::Operation { .. } | ExpressionFault::Slash
+                )
         )
     }
 }

@@ -2,8 +2,8 @@
 
 use super::program::{Program, read_control, read_subprograms};
 use super::{Hand, JobError, PART, checked_margin};
-use crate::ToolSelection;
 use crate::gcode::{Choice, ControlRules, ControlSetup, LARGEST_NUMBER, Rule, is_variable};
+use crate::{ToolSelection, ToolUse};
 use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
 use std::ffi::OsString;
@@ -445,30 +445,30 @@ impl JobFile {
     /// # Errors
     /// If no tool is given for a number, or one for several.
     pub fn used_tools(&self, program: &Program) -> Result<Vec<NamedTool>, JobError> {
-        let used: Vec<Option<u32>> = program.tools().iter().map(|tool| tool.number).collect();
+        let uses = program.tools();
         let (library, entries) = match &self.tools {
             JobTools::One(tool) => {
-                let mut numbers = used.iter().flatten();
+                let mut numbers = uses.iter().filter_map(|tool| tool.number);
                 if let (Some(first), Some(second)) = (numbers.next(), numbers.next()) {
-                    return Err(JobError::SeveralTools { first: *first, second: *second });
+                    return Err(JobError::SeveralTools { first, second });
                 }
                 return Ok(vec![tool.clone()]);
             }
             JobTools::Numbered { library, entries } => (library, entries),
         };
         let mut tools = Vec::new();
-        for number in used {
+        for ToolUse { number, line, .. } in uses {
             // A program without numbers needs no choice if there is one tool.
             let known = match (number, entries.iter().next()) {
                 (Some(number), _) => number,
                 (None, Some((only, _))) if entries.len() == 1 => *only,
-                (None, _) => return Err(JobError::NoTool { number: None }),
+                (None, _) => return Err(JobError::NoTool { number: None, line }),
             };
             let entry = entries.get(&known).cloned().unwrap_or_default();
             let (name, library) = match (entry.tool, library) {
                 (Some(name), _) => (OsString::from(name), None),
                 (None, Some(library)) => (format!("T{known}").into(), Some(library.clone())),
-                (None, None) => return Err(JobError::NoTool { number }),
+                (None, None) => return Err(JobError::NoTool { number, line }),
             };
             tools.push(NamedTool {
                 motions: ToolSelection::Number(number),

@@ -256,10 +256,12 @@ pub enum JobError {
     #[error("{0}")]
     Mismatch(&'static str),
     /// No tool is given for a number of the program.
-    #[error("{}", no_tool(*number))]
+    #[error("{}", no_tool(*number, *line))]
     NoTool {
         /// The number; `None` for motions before the first tool change.
         number: Option<u32>,
+        /// The line of the first motion with it, 1-based.
+        line: usize,
     },
     /// A program changes tools, and one was given.
     #[error("the program uses T{first} and T{second}: give its tools by number in a job file")]
@@ -341,10 +343,12 @@ pub enum JobError {
         name: String,
     },
     /// The bodies of the machine cannot be placed, since the length of a tool is not stated.
-    #[error("{}", no_length(*number))]
+    #[error("{}", no_length(*number, *line))]
     NoLength {
         /// The number of the tool; `None` for motions before the first tool change.
         number: Option<u32>,
+        /// The line of the first motion with it, 1-based.
+        line: usize,
     },
     /// A body of the job is a cloud of points.
     #[error(
@@ -365,19 +369,20 @@ impl From<Infallible> for JobError {
     }
 }
 
-fn no_tool(number: Option<u32>) -> String {
+fn no_tool(number: Option<u32>, line: usize) -> String {
     match number {
         Some(number) => format!(
             "no tool is given for T{number}: state `tools = \"LIBRARY\"` or `[tool.{number}]` with `tool = \"FILE.tool\"` in \
              the job"
         ),
-        None => "the program moves before its first tool change, or names no tool: give one tool in the job, or use \
-                 `--tool`"
-            .to_owned(),
+        None => format!(
+            "line {line}: the program moves before its first tool change, or names no tool: give one tool in the job, or use \
+             `--tool`"
+        ),
     }
 }
 
-fn no_length(number: Option<u32>) -> String {
+fn no_length(number: Option<u32>, line: usize) -> String {
     let why = "the bodies of the machine are placed by the length of the tool in the spindle";
     match number {
         Some(number) => format!(
@@ -385,7 +390,7 @@ fn no_length(number: Option<u32>) -> String {
              bodies"
         ),
         None => format!(
-            "{why}, and the program moves before its first tool change, or names no tool: write T and M6 before, or name a machine \
+            "line {line}: {why}, and the program moves before its first tool change, or names no tool: write T and M6 before, or name a machine \
              without bodies"
         ),
     }

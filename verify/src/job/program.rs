@@ -359,7 +359,7 @@ impl Program {
             }
             let mut tools = program.summary().tools.iter();
             if let Some(tool) = tools.find(|tool| !program.is_length_known(tool.number)) {
-                return Err(JobError::NoLength { number: tool.number });
+                return Err(JobError::NoLength { number: tool.number, line: tool.line });
             }
         }
         Ok(())

@@ -563,6 +563,11 @@ fn what_is_not_read_is_named_with_its_line() {
         ("L X+1 F100\nCC X+0 Y+0\nC X+1 Y+0 DR+ RL", 4, "RL while its block has an arc"),
         ("L X+1", 2, "L needs a feed rate"),
         ("CC X+0 Y+0\nC X+0 Y+1 DR+", 3, "C needs a feed rate"),
+        (
+            "FOO BAR",
+            2,
+            "`FOO BAR` is not understood and could move the tool or change what positions mean",
+        ),
         ("L X+Q5 FMAX", 2, "Q5 has no value here"),
         ("L X+Q108 FMAX", 2, "Q108 is a parameter of the control"),
         ("Q150 = 1", 2, "Q150 is a parameter of the control"),

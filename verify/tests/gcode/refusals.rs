@@ -229,8 +229,8 @@ fn words_that_are_not_read_are_named() {
         ("G21\nG41 D1 X1", 2, "the radius offset 1 is not known"),
         ("G1 F1 X[ASIN[0.5]]", 1, "`ASIN` of this value"),
         ("G1 F1 X[FIX[-0.5]]", 1, "another value on Fanuc than on LinuxCNC"),
-        ("X#5220", 1, "#5220 is a parameter of the control"),
-        ("X#<_x>", 1, "#<_x> is a parameter of the control"),
+        ("X#5220", 1, "#5220 is a system variable"),
+        ("X#<_x>", 1, "#<_x> is a system variable"),
         ("G0 X#1", 1, "#1 has no value here"),
         ("G0 X[1/0]", 1, "the result of `/`"),
         ("G0 X[1+[2]", 1, "no `]`"),
@@ -245,7 +245,20 @@ fn words_that_are_not_read_are_named() {
         ("GOTOF END", 1, "a jump to `END`"),
         ("N1 GOTO 1", 1, "more than 10000000 blocks"),
         ("IF [1 EQ 1] G0 X1", 1, "IF needs GOTO or THEN"),
-        ("WHILE [1 EQ 1] DO 4", 1, "a number from 1 to 3"),
+        (
+            "WHILE [1 EQ 1] DO 4",
+            1,
+            "`DO4` is not understood here: write DO and END with a number from 1 to 3",
+        ),
+        ("WHILE[1EQ1]DO1\nEND1", 1, "loops, jumps and subprograms take more than 10000000 blocks"),
+        ("END5", 1, "`END5` is not understood here"),
+        (
+            "#1=#5061",
+            1,
+            "#5061 is a system variable (the position of a skip or a probe), whose value",
+        ),
+        ("#1=#5041", 1, "#5041 is a system variable (the present position), whose value"),
+        ("#1=#3007", 1, "#3007 is a system variable (the mirror images in force), whose value"),
         ("#1=0.1\nIF [[#1*3] EQ 0.3] GOTO 2\nN2", 2, "depends on the digits"),
         ("G65 P9 A1\nM30\nO9\nM99", 1, "A of G65 while its number has no decimal point"),
         ("G65 P9 N1.\nM30\nO9\nM99", 1, "N is no argument of G65"),
@@ -330,7 +343,7 @@ fn words_that_are_not_read_are_named() {
         ("G91 G0 C0.0004", 1, "no multiple of the least increment"),
         ("S1 M3\nG0 Z5\nG43 H1 G81 X1 Z-1 R1 F1", 3, "changes the length offset, before or after"),
         ("T1 M6\nTRAORI\nG0 X1", 3, "TRAORI and TRAFOOF deselect it"),
-        ("#1=6/2", 1, "`/` in an expression"),
+        ("#1=6/2", 1, "`/` outside of brackets"),
         ("M98 P7 #1=2\nM30\nO7\nM99", 1, "M98 while its block has other words"),
         ("#1=7\nM98 P#1 L2\nM30\nO7\nM99", 2, "M98 while its block has other words"),
         ("#<a>=1\nM98 P7\nM30\nO7\nG0 X#<a>\nM99", 5, "#<a> has no value here"),
@@ -409,6 +422,15 @@ fn words_of_one_dialect() {
     assert!(kept.to_string().contains("LinuxCNC keeps a rotation"), "{kept}");
     let unit = execute("haas", "G70\nM30").expect_err("a bolt circle");
     assert!(unit.to_string().contains("a unit in programs of Sinumerik"), "{unit}");
+    let circle = execute("haas", "G70 I5. J15. L12\nM30").expect_err("a bolt circle").to_string();
+    assert!(circle.contains("G70 is a pattern of holes of Haas"), "{circle}");
+    for (division, reason) in [
+        ("#100=4.\n#1=#100/0", "`/` outside of brackets is the sign of an optional block on Fanuc"),
+        ("#100=4.\n#1=[#100/0]", "the result of `/` is not a number"),
+    ] {
+        let error = execute("fanuc", division).expect_err("a division").to_string();
+        assert!(error.contains(reason), "{error}");
+    }
     assert_eq!(execute("siemens", "G70\nM30"), Ok(0));
     assert_eq!(execute("fanuc", "M98 P7\nM30\nO7\nG0 X1. M99"), Ok(1));
     for (program, reason) in [

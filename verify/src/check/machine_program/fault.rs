@@ -122,7 +122,8 @@ pub enum StepFault {
     },
     /// The origin of a work offset is unknown.
     #[error(
-        "the origin of {offset} is unknown: state it, and that of G54, in the job's `work_offsets`"
+        "the origin of {offset}{} is unknown: state it, and that of G54, in the job's `work_offsets`",
+        on_sinumerik(offset)
     )]
     NoOrigin {
         /// The work offset.
@@ -140,3 +141,24 @@ pub enum StepFault {
 }
 
 touchoff::debug_as_sentence!(StepFault);
+
+/// Returns the word of native programs of Sinumerik for a work offset, where it is another one.
+fn on_sinumerik(offset: &str) -> &'static str {
+    match offset {
+        "G58" => " (G505 on Sinumerik)",
+        "G59" => " (G506 on Sinumerik)",
+        _ => "",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_unknown_origin_has_the_word_of_the_program() {
+        let sentence = |offset: &str| StepFault::NoOrigin { offset: offset.to_owned() }.to_string();
+        assert!(sentence("G58").starts_with("the origin of G58 (G505 on Sinumerik) is unknown"));
+        assert!(sentence("G55").starts_with("the origin of G55 is unknown"));
+    }
+}

@@ -22,6 +22,11 @@ impl Control {
             (self.stated(Rule::Dialect), block.code_of(Group::Units))
             && code.tenths > 210
         {
+            if matches!(code.tenths, 700 | 710) && block.has_any("IJL") {
+                let meaning = "a pattern of holes of Haas, on a circle or an arc";
+                let remedy = "post its holes one by one";
+                return Err(not_read(code, meaning, remedy));
+            }
             let meaning = "a unit in programs of Sinumerik and Heidenhain, and a cycle elsewhere";
             let remedy = "write G20 or G21";
             return Err(not_read(code, meaning, remedy));

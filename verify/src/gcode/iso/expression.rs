@@ -53,6 +53,11 @@ pub enum ExpressionFault {
         /// Its name.
         name: String,
     },
+    /// A division outside of brackets.
+    #[error(
+        "`/` outside of brackets is the sign of an optional block on Fanuc, and no division: write it in brackets, as in `[#1/2]`"
+    )]
+    Slash,
     /// An expression with a value that depends on the control.
     #[error("{shown} has another value on Fanuc than on LinuxCNC: state the `control`")]
     Differs {
@@ -95,8 +100,9 @@ pub enum ExpressionFault {
     },
     /// A variable of the control whose value only the machine knows.
     #[error(
-        "{parameter} is a parameter of the control, whose value is not known: post the program without it, or state it in \
-         `[variables]` of the job"
+        "{parameter} is {}, whose value is not known: post the program without it, or state it in \
+         `[variables]` of the job",
+        system_variable(parameter)
     )]
     System {
         /// The variable.
@@ -161,9 +167,21 @@ impl ExpressionFault {
         matches!(
             self,
             ExpressionFault::Operation { .. }
+                | ExpressionFault::Slash
                 | ExpressionFault::OpenBracket
                 | ExpressionFault::Value { .. }
         )
+    }
+}
+
+/// Returns what a variable of the control is, where all controls that have its number agree.
+fn system_variable(parameter: &str) -> &'static str {
+    match parameter.strip_prefix('#').map(str::parse::<u32>) {
+        Some(Ok(3007)) => "a system variable (the mirror images in force)",
+        Some(Ok(5041..=5060)) => "a system variable (the present position)",
+        Some(Ok(5061..=5080)) => "a system variable (the position of a skip or a probe)",
+        None if parameter.starts_with('Q') => "a parameter of the control",
+        _ => "a system variable",
     }
 }
 
@@ -436,9 +454,8 @@ impl Reader<'_> {
             if own < precedence {
                 break;
             }
-            // Outside of brackets it is the sign of an optional block on Fanuc.
             if operator == Operator::Over && depth == 0 {
-                return Err(ExpressionFault::Operation { name: "/".to_owned() });
+                return Err(ExpressionFault::Slash);
             }
             *cursor = after;
             let right = self.binary(cursor, depth, own + 1)?;

@@ -387,15 +387,15 @@ impl Line {
                 if !cursor.take_word("DO") {
                     return Err(missing("WHILE", "DO with a number after its condition"));
                 }
-                loop_number(cursor)?;
+                loop_number(cursor, "DO")?;
                 Statement::Do { holds }
             }
             "DO" => {
-                loop_number(cursor)?;
+                loop_number(cursor, "DO")?;
                 Statement::Do { holds: true }
             }
             _ => {
-                loop_number(cursor)?;
+                loop_number(cursor, "END")?;
                 Statement::End
             }
         };
@@ -435,16 +435,16 @@ pub(super) fn statement(cursor: &mut Cursor) -> Option<&'static str> {
     (!goes_on).then_some(word)
 }
 
-/// Reads the number of a loop, from 1 to 3.
-pub(super) fn loop_number(cursor: &mut Cursor) -> Result<u32, GcodeFault> {
+/// Reads the number of a loop after DO or END, from 1 to 3.
+pub(super) fn loop_number(cursor: &mut Cursor, word: &str) -> Result<u32, GcodeFault> {
     cursor.peek();
     let digits = cursor.take_while(|byte| byte.is_ascii_digit());
     match digits.parse() {
         Ok(number @ 1..=3) => Ok(number),
         _ => {
-            let value = digits.parse().unwrap_or(0.0);
+            let shown = format!("{word}{digits}");
             let expected = "DO and END with a number from 1 to 3";
-            Err(GcodeFault::NotAllowed { word: 'O', value, expected })
+            Err(GcodeFault::Sentence { shown, expected })
         }
     }
 }

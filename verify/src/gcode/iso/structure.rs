@@ -161,7 +161,7 @@ impl Structure {
             "END" => Role::EndWhile,
             _ => return,
         };
-        if let Ok(number) = loop_number(&mut cursor) {
+        if let Ok(number) = loop_number(&mut cursor, word) {
             self.add(groups, Key::Loop(number), role, here, after);
         }
     }

@@ -786,9 +786,8 @@ fn unknown(head: &str, mut start: Cursor, mut after: Cursor) -> GcodeFault {
         }
     }
     if head.len() > 1 || start.peek().is_some_and(|byte| byte.is_ascii_alphabetic()) {
-        return GcodeFault::UnknownWord {
-            word: unquoted(start.rest().lines().next().unwrap_or(head).trim_end()),
-        };
+        let text = unquoted(start.rest().lines().next().unwrap_or(head).trim_end());
+        return GcodeFault::UnknownCode { word: format!("`{text}`") };
     }
     start.unexpected("a word of Klartext, as L, TOOL CALL or CYCL DEF")
 }
