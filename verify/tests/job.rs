@@ -369,8 +369,7 @@ fn job_files_are_read_with_their_paths_beside_them() {
     let two = text.replace("[work_offsets]", "[tool.5]\ntool = \"n.tool\"\n[work_offsets]");
     let two = JobFile::parse(&two, Path::new("a.toml")).expect("a job");
     let early = "G21 G90\nG54 G43 H3 G0 X1. Y0. Z5.\nX2.\nT3 M6\nG43 H3 Z5.\nX3.\nX4.\nM30\n";
-    let missing = two.used_tools(&of(early));
-    let missing = missing.err().expect("motions without a tool").to_string();
+    let missing = two.used_tools(&of(early)).expect_err("motions without a tool").to_string();
     assert!(
         missing.contains("line 3: the program moves before its first tool change"),
         "{missing}"

@@ -479,10 +479,10 @@ fn bodies_without_a_place_are_refused() {
     assert!(refused.contains("state it in `work_offsets`"), "{refused}");
     let unknown = ControlSetup { lengths: [(2, 60.0)].into(), ..placed.clone() };
     let refused = check(text, &unknown, true).expect_err("no length");
-    assert!(matches!(refused, JobError::NoLength { number: Some(1) }), "{refused}");
+    assert!(matches!(refused, JobError::NoLength { number: Some(1), .. }), "{refused}");
     let unnamed = text.replace("T1 M6\nS900 M3\nG43 H1\n", "S900 M3\n");
     let refused = check(&unnamed, &placed, true).expect_err("no tool");
-    assert!(matches!(refused, JobError::NoLength { number: None }), "{refused}");
+    assert!(matches!(refused, JobError::NoLength { number: None, .. }), "{refused}");
     assert!(refused.to_string().contains("write T and M6 before"), "{refused}");
     // Positions of tips have no machine.
     let positions = ClData::parse("0,0,20,0,0,1\n0,0,9,0,0,1\n", "a.csv").expect("positions");
