@@ -152,7 +152,7 @@ pub(super) fn parameter(cursor: &mut Cursor) -> Result<Parameter, GcodeFault> {
         return Err(not_read(format!("QS{digits}"), meaning, remedy));
     }
     let mut start = start;
-    Parameter::of_kind(&kind, &digits)
+    Parameter::of_kind(kind, digits)
         .ok_or_else(|| start.unexpected("Q0 to Q1999, QL0 to QL499 or QR0 to QR499"))
 }
 
