@@ -381,7 +381,11 @@ fn other_programs_are_read_as_before() {
 fn what_is_outside_is_refused_by_name_with_its_line() {
     let cases = [
         ("R1=1\nG0 X=R2", 2, "R2 has no value here"),
-        ("G0 X=$AA_IW[X]", 1, "$AA_IW is a system variable"),
+        (
+            "G0 X=$AA_IW[X]",
+            1,
+            "$AA_IW is a variable of the control, whose value only the machine knows",
+        ),
         ("R1=1\nQ_X=5", 2, "`Q_X` is no variable that DEF defines"),
         ("G0 X1=5", 1, "X1= is an address with a number of its own"),
         ("G0 C=ACP(5)", 1, "ACP is a direction of a rotary axis"),
