@@ -70,8 +70,11 @@ impl Holder {
     }
 }
 
-/// A triangle, as heights along an axis through the origin and vectors across it.
+/// A triangle, and its corners as heights along an axis through the origin and vectors across it.
 struct AxialTriangle {
+    corners: [Vector3<f64>; 3],
+    /// The normal, of any length.
+    normal: Vector3<f64>,
     axis: Vector3<f64>,
     heights: [f64; 3],
     across: [Vector3<f64>; 3],
@@ -81,7 +84,9 @@ impl AxialTriangle {
     fn new(corners: [Vector3<f64>; 3], axis: &Vector3<f64>) -> AxialTriangle {
         let heights = corners.map(|corner| corner.dot(axis));
         let across = [0, 1, 2].map(|k| corners[k] - axis * heights[k]);
-        AxialTriangle { axis: *axis, heights, across }
+        let [a, b, c] = corners;
+        let normal = (b - a).cross(&(c - a));
+        AxialTriangle { corners, normal, axis: *axis, heights, across }
     }
 
     /// Returns at most the distance of the triangle from the axis: how far it is in the direction of its centroid.
@@ -128,25 +133,23 @@ impl AxialTriangle {
     /// Returns the greatest height of the triangle's plane at a distance `radius` from the axis, if it is there in the
     /// triangle.
     fn highest_inside(&self, radius: f64) -> Option<f64> {
-        let corners = [0, 1, 2].map(|k| self.across[k] + self.axis * self.heights[k]);
-        let [a, b, c] = corners;
-        let normal = (b - a).cross(&(c - a));
-        let slope = normal.dot(&self.axis);
+        let AxialTriangle { corners: [a, b, c], normal, axis, .. } = self;
+        let slope = normal.dot(axis);
         // A plane along the axis has no highest point there.
         if slope == 0.0 {
             return None;
         }
-        let level = normal - self.axis * slope;
+        let level = normal - axis * slope;
         // A plane across the axis is as high everywhere, on the axis, too.
         let across = match level.norm() {
             0.0 => level,
             length => level * (-slope.signum() * radius / length),
         };
-        let height = (a - across).dot(&normal) / slope;
-        let point = across + self.axis * height;
+        let height = (a - across).dot(normal) / slope;
+        let point = across + axis * height;
         let is_inside = [[a, b], [b, c], [c, a]]
             .iter()
-            .all(|[from, to]| (to - from).cross(&(point - from)).dot(&normal) >= 0.0);
+            .all(|[from, to]| (*to - *from).cross(&(point - *from)).dot(normal) >= 0.0);
         is_inside.then_some(height)
     }
 }

@@ -102,7 +102,7 @@ fn least(info: &ToolInfo, mesh: &Mesh, tip: [f64; 3], axis: Vector3<f64>) -> f64
 
 /// Returns the stick-out for one posture.
 fn needed_by(holder: &Holder, bvh: &TriangleBvh, tip: &Point3<f64>, axis: &Vector3<f64>) -> f64 {
-    // Of a tool that is long enough.
+    // The tool is long enough.
     let holder = Holder { stickout: f64::INFINITY, ..holder.clone() };
     LeastStickout::new(holder, bvh).of([(*tip, *axis)]).expect("one posture")
 }

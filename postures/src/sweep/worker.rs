@@ -22,7 +22,7 @@ pub(super) struct Worker<'a> {
 struct CandidateTool<'a> {
     index: u16,
     placement: ToolPlacement<'a>,
-    /// Of a tool with a holder.
+    /// The search for stick-outs, if the tool has a holder.
     stickout: Option<LeastStickout<'a>>,
     validator: Validator<'a>,
     /// Set if the points of the tool that may not be in the part are connected. If one of them is outside the

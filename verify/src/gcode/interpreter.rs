@@ -106,11 +106,14 @@ impl<'a> Interpreter<'a> {
     /// Returns the lowest and the highest corner of the blank that the program has stated so far as a box, in program coordinates and in
     /// millimetres: by BLK FORM of Heidenhain Klartext, or by G30 and G31 of its DIN/ISO programs.
     pub fn blank(&self) -> Option<[[f64; 3]; 2]> {
-        match &self.front {
-            Front::Klartext(program) => program.blank(),
-            Front::Iso(program) => program.blank(),
-            Front::Sinumerik(_) => None,
-        }
+        let [Some(low), Some(high)] = (match &self.front {
+            Front::Klartext(program) => program.blank,
+            Front::Iso(program) => program.blank,
+            Front::Sinumerik(_) => return None,
+        }) else {
+            return None;
+        };
+        (0..3).all(|axis| low[axis] < high[axis]).then_some([low, high])
     }
 
     /// Takes over the shift, the rotation or both that another run has left, where the text keeps them beside the control: in Klartext.

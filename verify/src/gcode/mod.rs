@@ -73,11 +73,6 @@ pub(crate) use files::line_of;
 pub use files::{BlockLine, SubprogramFile, SubprogramLine};
 pub use interpreter::Interpreter;
 pub use iso::ExpressionFault;
-/// Returns whether a name is that of a variable that a job can state: `#500` or `#<_depth>`, `R1` of Sinumerik, `Q1`, `QL1` or `QR1` of
-/// Klartext.
-pub(crate) fn is_variable(name: &str) -> bool {
-    iso::is_variable(name) || sinumerik::is_variable(name) || klartext::is_variable(name)
-}
 pub use note::{NoteKind, ProgramNote};
 pub use rules::{Choice, ControlError, ControlRules, Rule};
 pub(crate) use state::about;
@@ -99,6 +94,12 @@ const MAX_ASSIGNMENTS: usize = 50;
 pub const MAX_REPEATED: usize = 10_000_000;
 /// Largest number of motions of one block with a canned cycle.
 pub const MAX_CYCLE_STEPS: usize = 100_000;
+
+/// Returns whether a name is that of a variable that a job can state: `#500` or `#<_depth>`, `R1` of Sinumerik, `Q1`, `QL1` or `QR1` of
+/// Klartext.
+pub(crate) fn is_variable(name: &str) -> bool {
+    iso::is_variable(name) || sinumerik::is_variable(name) || klartext::is_variable(name)
+}
 
 /// State of the control before the program.
 #[derive(Clone, Debug, PartialEq)]

@@ -79,8 +79,15 @@ pub enum WorkOffset {
     Off,
     /// G54 to G59.3, numbered from 1 to 9.
     Standard(u8),
-    /// Fanuc's `G54.1 P1` to `P300`.
+    /// Fanuc's `G54.1 P1` to `P300`, which are `G154 P1` to `P300` of Haas.
     Additional(u16),
+}
+
+impl WorkOffset {
+    /// The first of the G words of Haas that are further work offsets: G110 to G129 are G154 P1 to P20.
+    pub(crate) const FIRST_OF_HAAS: u32 = 110;
+    /// The first of those of Sinumerik: G505 and G506 are G58 and G59 of ISO mode, and G507 to G599 go on.
+    pub(crate) const FIRST_OF_SINUMERIK: u32 = 507;
 }
 
 impl fmt::Display for WorkOffset {

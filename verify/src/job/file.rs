@@ -2,7 +2,9 @@
 
 use super::program::{Program, read_control, read_subprograms};
 use super::{Hand, JobError, PART, checked_margin};
-use crate::gcode::{Choice, ControlRules, ControlSetup, LARGEST_NUMBER, Rule, is_variable};
+use crate::gcode::{
+    Choice, ControlRules, ControlSetup, LARGEST_NUMBER, Rule, WorkOffset, is_variable,
+};
 use crate::{ToolSelection, ToolUse};
 use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
@@ -619,16 +621,16 @@ fn work_offsets(named: &BTreeMap<String, Vec<f64>>) -> Result<Origins, JobError>
 /// `G507` to `G599` of Sinumerik.
 fn additional_offset(name: &str) -> Option<u16> {
     let name = name.to_ascii_uppercase();
-    let number = |text: &str| text.parse::<u16>().ok();
+    let number = |text: &str| text.parse::<u32>().ok();
     let found = match name.split_once('P') {
         Some((code, index)) => {
             number(index.trim()).filter(|_| matches!(code.trim(), "G54.1" | "G154"))
         }
         None => match number(name.strip_prefix('G')?)? {
-            code @ 110..=129 => Some(code - 109),
-            code @ 507..=599 => Some(code - 506),
+            code @ 110..=129 => Some(code - WorkOffset::FIRST_OF_HAAS + 1),
+            code @ 507..=599 => Some(code - WorkOffset::FIRST_OF_SINUMERIK + 1),
             _ => None,
         },
     };
-    found.filter(|number| (1..=300).contains(number))
+    found.filter(|number| (1..=300).contains(number)).map(|number| number as u16)
 }

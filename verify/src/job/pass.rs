@@ -151,14 +151,16 @@ impl<'a> Job<'a> {
                           without bodies";
             gaps.push(Gap::open(0, reason.to_owned()));
         }
+        let open = |block: BlockLine, reason: &str| {
+            Gap::open(block, format!("{reason}{}", self.program.name_within(block.within)))
+        };
         let mut readings = self.program.readings().iter();
         if let (Some(block), Some(_)) =
             (readings.find_map(|reading| reading.summary().any_rapid), &self.stock)
         {
             let reason = "the path of several axes in rapid traverse is checked against the stock on the straight line only: \
                           state `rapid` of the control, or the `rapid` rates of the machine's axes";
-            let within = self.program.name_within(block.within);
-            gaps.push(Gap::open(block, format!("{reason}{within}")));
+            gaps.push(open(block, reason));
         }
         for reading in 0..self.program.reading_count() {
             let result = self.check_reading(reading, pass, progress)?;
@@ -172,8 +174,7 @@ impl<'a> Job<'a> {
             });
             let thin = result.cut.iter().flat_map(|cut| cut.too_thin.iter().cloned());
             for (block, reason) in far.chain(thin) {
-                let within = self.program.name_within(block.within);
-                let gap = Gap::open(block, format!("{reason}{within}"));
+                let gap = open(block, &reason);
                 if !gaps.contains(&gap) {
                     gaps.push(gap);
                 }

@@ -8,8 +8,8 @@ use rand_pcg::Pcg64Mcg;
 use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_PI_2, PI};
 use touchoff_verify::gcode::{
-    Choice, ControlRules, ControlSetup, Interpreter, NoteKind, Plane, Position, Rotation, Rule,
-    Spindle, Step, StepPath, Tcp, read,
+    Choice, ControlRules, ControlSetup, Plane, Position, Rotation, Rule, Spindle, Step, StepPath,
+    Tcp, read,
 };
 
 /// A control whose axes are at 0, and stay there at a tool change.
@@ -214,58 +214,6 @@ fn the_same_part_in_iso_words_has_the_same_steps() {
     });
     assert_eq!(klartext.len(), 8);
     assert_eq!(klartext, iso);
-}
-
-/// DL ends with the next TOOL CALL, and so in the next run, if that calls a tool before it moves.
-#[test]
-fn an_allowance_on_the_length_is_left_for_motions_before_the_first_tool() {
-    let left = |body: &str| {
-        let text = program(body);
-        let (_, notes) = read(&text, &at_zero()).unwrap_or_else(|error| panic!("{text}{error}"));
-        notes.into_iter().find_map(|note| match note.kind {
-            NoteKind::LeftModes { words } => Some((note.line, words)),
-            _ => None,
-        })
-    };
-    let end = "L Z+20 R0 FMAX M3\nL X+1 F100\nL Y+2\nL Z+50 FMAX\nM30";
-    let first = "TOOL CALL 5 Z S1000\nL Z+10 R0 FMAX M3\nL X+4 F100\nTOOL CALL 5 Z S2000 DL+0.5\n";
-    assert_eq!(left(&format!("{first}{end}")), None);
-    assert_eq!(left(&format!("TOOL CALL 5 Z S1000 DL-0.5\n{end}")), None);
-    // The tool is called after the first motion.
-    let before = format!("L Z+100 FMAX\n{first}{end}");
-    assert_eq!(left(&before), Some((2, "DL of TOOL CALL".to_owned())));
-    // A shift is left also where DL is not.
-    let shifted = format!("{first}CYCL DEF 7.0\nCYCL DEF 7.1 X+3\n{end}");
-    let (line, found) = left(&shifted).expect("a shift");
-    assert_eq!(line, 4);
-    assert!(found.contains("CYCL DEF 7"), "{found}");
-    assert_eq!(left(&shifted.replace("M30", "CYCL DEF 7.0\nCYCL DEF 7.1 X+0\nM30")), None);
-}
-
-/// The lines of the blank in DIN/ISO programs move nothing, and are returns and probing on other controls.
-#[test]
-fn the_blank_of_din_iso_is_passed_over() {
-    let iso = "%PART G71 *\nN10 G30 G17 X-50 Y-50 Z-20*\nN20 G31 G90 X+50 Y+50 Z+0*\nN30 T5 G17 S3000*\n\
-        N40 G0 G40 G90 X1 Y2 M3*\nN50 G1 Z-2 F200*\nN60 M30*\n";
-    let setup = at_zero();
-    let mut interpreter = Interpreter::new(iso, &setup).expect("a program");
-    let found: Vec<Step> = interpreter.by_ref().collect::<Result<_, _>>().expect("steps");
-    assert_eq!(found.iter().map(|step| step.line).collect::<Vec<_>>(), [5, 6]);
-    let box_ = [[-50.0, -50.0, -20.0], [50.0, 50.0, 0.0]];
-    assert_eq!(interpreter.blank(), Some(box_));
-    assert!(interpreter.obstacles().is_empty());
-    let inches = iso.replace("G71", "G70");
-    let mut interpreter = Interpreter::new(&inches, &setup).expect("a program");
-    assert!(interpreter.by_ref().all(|step| step.is_ok()));
-    assert_eq!(interpreter.blank(), Some(box_.map(|corner| corner.map(|value| 25.4 * value))));
-    // G91 makes the highest corner an increment.
-    let text = iso.replace("G31 G90", "G31 G91");
-    let error = read(&text, &setup).expect_err("an increment").to_string();
-    assert!(error.contains("line 3: G31 is a corner of the blank"), "{error}");
-    // The head is a title on other controls.
-    let rules = ControlRules::named("fanuc").expect("a control");
-    let error = read(iso, &ControlSetup { rules, ..at_zero() }).expect_err("another control");
-    assert!(!error.to_string().contains("blank"), "{error}");
 }
 
 #[test]
@@ -897,30 +845,4 @@ fn mutants_end_with_steps_or_with_a_line() {
     }
     let seeds = seeds.map(|text| Seed { text, setups: &setups });
     read_mutants(&seeds, &PIECES, 6000, 11);
-}
-
-#[test]
-fn the_blank_is_a_box_in_millimetres() {
-    let blank = |text: &str| {
-        let setup = at_zero();
-        let mut interpreter = Interpreter::new(text, &setup).expect("a program");
-        assert!(interpreter.by_ref().all(|step| step.is_ok()), "{text}");
-        interpreter.blank()
-    };
-    let of = |lines: &str, unit: &str| {
-        blank(&format!("BEGIN PGM A {unit}\nQ1=3\n{lines}\nL X+1 FMAX\nEND PGM A {unit}\n"))
-    };
-    let corners = "BLK FORM 0.1 Z X-1 Y+0.5 Z-Q1 ; lowest\n2 BLK FORM 0.2 X+2 Y+Q1 Z+0";
-    let expected = [[-1.0, 0.5, -3.0], [2.0, 3.0, 0.0]];
-    assert_eq!(of(corners, "MM"), Some(expected));
-    let inch = expected.map(|corner| corner.map(|value| 25.4 * value));
-    assert_eq!(of(corners, "INCH"), Some(inch));
-    for other in [
-        "BLK FORM CYLINDER Z R50 L10",
-        "BLK FORM 0.1 Z X-1 Y+0.5 Z-1",
-        "BLK FORM 0.1 Z X-1 Y+0.5 Z-1\nBLK FORM 0.2 IX+2 IY+3 IZ+1",
-        "BLK FORM 0.1 Z X+3 Y+0.5 Z-1\nBLK FORM 0.2 X+2 Y+3 Z+1",
-    ] {
-        assert_eq!(of(other, "MM"), None, "{other}");
-    }
 }

@@ -1,5 +1,6 @@
 //! The G-code interpreter: LinuxCNC's own tests, programs with known motions, refusals, Klartext, the programs of a folder, and mutants.
 
+mod blank;
 mod common;
 mod compensation;
 mod expected;

@@ -1,5 +1,6 @@
 //! The next run of a program, against the same blocks executed twice in one program.
 
+use crate::klartext::{at_zero, program};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use std::collections::BTreeMap;
@@ -60,14 +61,18 @@ fn setup(at_home: bool) -> ControlSetup {
     }
 }
 
-/// Returns the words that a program of LinuxCNC leaves for its next run.
-fn left(program: &str, at_home: bool) -> Option<String> {
-    let (_, notes) =
-        read(program, &setup(at_home)).unwrap_or_else(|error| panic!("{program}: {error}"));
+/// Returns the words that a program leaves for its next run, and the line that they change.
+fn left_modes(program: &str, setup: &ControlSetup) -> Option<(usize, String)> {
+    let (_, notes) = read(program, setup).unwrap_or_else(|error| panic!("{program}: {error}"));
     notes.into_iter().find_map(|note| match note.kind {
-        NoteKind::LeftModes { words } => Some(format!("{}: {words}", note.line)),
+        NoteKind::LeftModes { words } => Some((note.line, words)),
         _ => None,
     })
+}
+
+/// The same of a program of LinuxCNC, as a sentence.
+fn left(program: &str, at_home: bool) -> Option<String> {
+    left_modes(program, &setup(at_home)).map(|(line, words)| format!("{line}: {words}"))
 }
 
 /// Returns whether the machine moves otherwise, as far as the motion is known.
@@ -144,4 +149,23 @@ fn what_is_left_is_named() {
     ] {
         assert_eq!(left(&blocks, false).as_deref(), expected, "{blocks}");
     }
+}
+
+/// DL ends with the next TOOL CALL, and so in the next run, if that calls a tool before it moves.
+#[test]
+fn an_allowance_on_the_length_is_left_for_motions_before_the_first_tool() {
+    let left = |body: &str| left_modes(&program(body), &at_zero());
+    let end = "L Z+20 R0 FMAX M3\nL X+1 F100\nL Y+2\nL Z+50 FMAX\nM30";
+    let first = "TOOL CALL 5 Z S1000\nL Z+10 R0 FMAX M3\nL X+4 F100\nTOOL CALL 5 Z S2000 DL+0.5\n";
+    assert_eq!(left(&format!("{first}{end}")), None);
+    assert_eq!(left(&format!("TOOL CALL 5 Z S1000 DL-0.5\n{end}")), None);
+    // The tool is called after the first motion.
+    let before = format!("L Z+100 FMAX\n{first}{end}");
+    assert_eq!(left(&before), Some((2, "DL of TOOL CALL".to_owned())));
+    // A shift is left also where DL is not.
+    let shifted = format!("{first}CYCL DEF 7.0\nCYCL DEF 7.1 X+3\n{end}");
+    let (line, found) = left(&shifted).expect("a shift");
+    assert_eq!(line, 4);
+    assert!(found.contains("CYCL DEF 7"), "{found}");
+    assert_eq!(left(&shifted.replace("M30", "CYCL DEF 7.0\nCYCL DEF 7.1 X+0\nM30")), None);
 }

@@ -220,6 +220,14 @@ fn klartext_has_its_feeds() {
     }
 }
 
+/// Returns the time of the first tool of a program that is read to its end, on a machine with rates.
+fn first_time(name: &str, text: String, setup: ControlSetup) -> CycleTime {
+    let program = MachineProgram::new(name, text, with_rates("3-axis"), setup);
+    let program = program.expect("a program");
+    program.check_complete().expect("all lines are read");
+    program.summary().times[0]
+}
+
 /// Two sides of a square of 10 mm, of which a corner of 2 mm takes 2 of each.
 #[test]
 fn corners_of_klartext_have_their_feed() {
@@ -228,10 +236,7 @@ fn corners_of_klartext_have_their_feed() {
         let text = format!(
             "0 BEGIN PGM T MM\nTOOL CALL 1 Z S600 F600\nL X+0 Y+0 Z+10 FMAX M3\n{blocks}\nM30\nEND PGM T MM\n"
         );
-        let program = MachineProgram::new("corner.h", text, with_rates("3-axis"), setup);
-        let program = program.expect("a program");
-        program.check_complete().expect("all lines are read");
-        program.summary().times[0]
+        first_time("corner.h", text, setup)
     };
     let start = of("").unknown;
     // Both lines at 100 mm/min, and the corner at its own feed.
@@ -265,10 +270,7 @@ fn corners_of_sinumerik_have_their_feed() {
         let text = format!(
             "DEF REAL DEPTH=0\nG71 G90 G94 G54 G17\nT1 M6\nD1\nS600 M3\nG0 X0 Y0 Z10\nG0 X0 Y0 Z10\n{blocks}\nM30\n"
         );
-        let program = MachineProgram::new("corner.mpf", text, with_rates("3-axis"), setup);
-        let program = program.expect("a program");
-        program.check_complete().expect("all lines are read");
-        program.summary().times[0]
+        first_time("corner.mpf", text, setup)
     };
     let start = of("").unknown;
     let (line, arc) = (60.0 / 100.0, 60.0 * PI);

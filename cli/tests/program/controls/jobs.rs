@@ -140,7 +140,7 @@ fn a_finding_in_a_file_of_subprograms_names_the_call_and_its_line() {
     scene.gives(&json, 1, &["\"within\":{\"file\":\"O9001.nc\",\"line\":2}"]);
 }
 
-/// What stays open in a file of subprograms: a stop, a feed without a length offset, and a return to where nobody knows.
+/// Gaps in a file of subprograms: a stop, a feed without a length offset, and a return to where nobody knows.
 #[test]
 fn a_gap_in_a_file_of_subprograms_names_the_call_and_its_line() {
     let scene = Scene::new("G0 X-6. Y0. Z20.\nM98 P9001\nM0");
@@ -215,6 +215,7 @@ fn further_work_offsets_are_stated() {
         scene.gives(&arguments, 1, &["1.0000"]);
     }
     let mut scene = Scene::new("G0 Z20.").placed();
+    let plain = scene.job.clone();
     for (names, said) in [
         ("\"G154 P0\" = [1, 2, 3]", "work offset `G154 P0`"),
         ("\"G154 P301\" = [1, 2, 3]", "work offset `G154 P301`"),
@@ -222,10 +223,7 @@ fn further_work_offsets_are_stated() {
         ("G130 = [1, 2, 3]", "work offset `G130`"),
         ("G114 = [1, 2]", "work offset `G114`"),
     ] {
-        scene.job = Scene::new("G0 Z20.")
-            .placed()
-            .job
-            .replace("[work_offsets]\n", &format!("[work_offsets]\n{names}\n"));
+        scene.job = plain.replace("[work_offsets]\n", &format!("[work_offsets]\n{names}\n"));
         scene.gives(&["--control", "haas"], 2, &[said]);
     }
 }

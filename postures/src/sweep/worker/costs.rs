@@ -64,12 +64,13 @@ fn costs() {
 #[derive(Default)]
 struct Costs {
     postures: usize,
-    /// Of the whole sweep.
+    /// Time of the whole sweep.
     total: Duration,
-    /// Of the postures that a known obstruction refuses, a found one refuses, and that are accepted; without the time of
-    /// reading the clock.
+    /// Time of the postures that a known obstruction refuses. This and the next two are without the time of reading the clock.
     known: Duration,
+    /// Time of those that a search refuses.
     found: Duration,
+    /// Time of those that are accepted.
     acceptable: Duration,
 }
 

@@ -2,6 +2,7 @@
 //! them.
 //!
 //! - `hull`: upper bounds of a tool's depth in boxes and triangles.
+//! - `support`: upper bounds of depth beside a triangle, by planes that touch the tool.
 //! - `shell`: lower bounds of a tool's distance from boxes and triangles, in `f32`.
 //! - `swept`: upper bounds of depth in moving boxes and triangles.
 //! - `batch`: eight triangles in `f64`.
@@ -16,4 +17,5 @@ pub(crate) mod descent;
 pub(crate) mod hull;
 pub(crate) mod nearest;
 pub(crate) mod shell;
+pub(crate) mod support;
 pub(crate) mod swept;

@@ -464,8 +464,9 @@ impl Control {
     /// Executes G54 to G59.3 and G54.1.
     fn work_offset(&mut self, block: &mut Block, code: Code) -> Result<(), GcodeFault> {
         let offset = match code.tenths {
-            // G110 to G129 of Haas are G154 P1 to P20.
-            tenths @ 1100..=1290 => WorkOffset::Additional((tenths / 10 - 109) as u16),
+            tenths @ 1100..=1290 => {
+                WorkOffset::Additional((tenths / 10 - WorkOffset::FIRST_OF_HAAS + 1) as u16)
+            }
             541 | 1540 => {
                 let expected = "a whole number from 1 to 300 after P";
                 match block.take_whole('P', 1, 300, expected)? {

@@ -4,6 +4,7 @@
 use super::flow::before_semicolon;
 use crate::gcode::GcodeFault;
 use crate::gcode::error::not_read;
+use std::iter;
 
 /// A line of the blank.
 #[derive(Debug, PartialEq)]
@@ -22,7 +23,7 @@ pub(super) struct BlankLine {
 /// If it has other words than the blank needs.
 pub(super) fn blank_line(text: &str) -> Option<Result<BlankLine, GcodeFault>> {
     let text = before_semicolon(text).trim().trim_end_matches('*');
-    let mut words = words(text).into_iter().peekable();
+    let mut words = words(text).peekable();
     words.next_if(|(letter, _)| *letter == 'N');
     let corner = match words.next()? {
         ('G', "30") => 0,
@@ -54,14 +55,16 @@ pub(super) fn blank_line(text: &str) -> Option<Result<BlankLine, GcodeFault>> {
 }
 
 /// Returns the words of a line, each as its letter in capitals and the text up to the next one.
-fn words(text: &str) -> Vec<(char, &str)> {
-    let starts: Vec<(usize, char)> =
-        text.char_indices().filter(|(_, c)| c.is_alphabetic()).collect();
-    let ends = starts.iter().skip(1).map(|(index, _)| *index).chain([text.len()]);
-    let word = |((start, letter), end): (&(usize, char), usize)| {
-        (letter.to_ascii_uppercase(), text[start + letter.len_utf8()..end].trim())
-    };
-    starts.iter().zip(ends).map(word).collect()
+fn words(text: &str) -> impl Iterator<Item = (char, &str)> {
+    let mut rest = text.trim_start_matches(|letter: char| !letter.is_alphabetic());
+    iter::from_fn(move || {
+        let letter = rest.chars().next()?;
+        let after = &rest[letter.len_utf8()..];
+        let end = after.find(char::is_alphabetic).unwrap_or(after.len());
+        let (number, more) = after.split_at(end);
+        rest = more;
+        Some((letter.to_ascii_uppercase(), number.trim()))
+    })
 }
 
 #[cfg(test)]

@@ -188,9 +188,8 @@ impl Line {
             'G' | 'M' => self.code(letter, value, written, cursor, scope),
             // An argument of an ignored word.
             'E' if !self.ignored.is_empty() => Ok(()),
-            'E' | 'U' | 'V' | 'W' if !(letter == 'E' && self.is_smoothness()) => {
-                Err(GcodeFault::Axis { word: letter })
-            }
+            'E' if !self.is_smoothness() => Err(GcodeFault::Axis { word: letter }),
+            'U' | 'V' | 'W' => Err(GcodeFault::Axis { word: letter }),
             'N' | 'O' => Err(GcodeFault::Unused { word: letter }),
             _ if value.abs() > LARGEST_NUMBER => Err(GcodeFault::TooLarge { word: letter }),
             _ => {

@@ -52,7 +52,7 @@ pub(super) struct Program<'a> {
     /// The number of the first switch for optional blocks.
     switch: Option<String>,
     /// The lowest and the highest corner of the blank, in millimetres.
-    blank: [Option<[f64; 3]>; 2],
+    pub(super) blank: [Option<[f64; 3]>; 2],
 }
 
 impl<'a> Program<'a> {
@@ -125,12 +125,6 @@ impl<'a> Program<'a> {
     /// Returns the number of the file of a called subprogram, if it is not in the program's.
     pub(super) fn called_file(&self) -> Option<usize> {
         (!self.waiting.is_empty()).then_some(self.flow.file)
-    }
-
-    /// Returns the lowest and the highest corner of the blank in millimetres, if the program states it as a box.
-    pub(super) fn blank(&self) -> Option<[[f64; 3]; 2]> {
-        let [Some(low), Some(high)] = self.blank else { return None };
-        (0..3).all(|axis| low[axis] < high[axis]).then_some([low, high])
     }
 
     /// Returns the words that are not read, each with its first line.

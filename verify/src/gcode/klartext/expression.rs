@@ -41,7 +41,7 @@ impl Parameter {
 
     /// Returns the parameter of a kind, as `QL`, with the digits of its number.
     fn of_kind(kind: &str, digits: &str) -> Option<Parameter> {
-        let number = digits.parse::<u16>().ok().filter(|_| !digits.starts_with('+'))?;
+        let number = digits.parse::<u16>().ok()?;
         let mut first = 0;
         for (known, count) in KINDS {
             if kind.eq_ignore_ascii_case(known) && number < count {

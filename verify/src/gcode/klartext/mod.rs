@@ -66,7 +66,7 @@ pub(super) struct Program<'a> {
     /// Set once a position in program coordinates was executed.
     positioned: bool,
     /// The lowest and the highest corner of the blank, in millimetres.
-    blank: [Option<[f64; 3]>; 2],
+    pub(super) blank: [Option<[f64; 3]>; 2],
     /// The words of a block for the control.
     block: Block,
     /// The numbers of the M words of a block that the control executes.
@@ -360,12 +360,6 @@ impl<'a> Program<'a> {
             self.blank[corner] = Some([x, y, z]);
         }
         Ok(())
-    }
-
-    /// Returns the lowest and the highest corner of the blank in millimetres, if the program states it as a box.
-    pub(super) fn blank(&self) -> Option<[[f64; 3]; 2]> {
-        let [Some(low), Some(high)] = self.blank else { return None };
-        (0..3).all(|axis| low[axis] < high[axis]).then_some([low, high])
     }
 
     /// Executes the M words that act at the start of their block.

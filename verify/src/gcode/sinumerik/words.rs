@@ -602,7 +602,8 @@ fn g_word(code: Code, block: &mut Block, words: &mut Words) -> Result<(), GcodeF
         // The numbers of settable frames: G54 is the first, and G58 of ISO mode the fifth.
         5050 | 5060 => settable(code, WorkOffset::Standard((code.tenths / 10 - 500) as u8), words),
         5070..=5990 if code.tenths.is_multiple_of(10) => {
-            settable(code, WorkOffset::Additional((code.tenths / 10 - 506) as u16), words)
+            let number = code.tenths / 10 - WorkOffset::FIRST_OF_SINUMERIK + 1;
+            settable(code, WorkOffset::Additional(number as u16), words)
         }
         90 | 600 | 6010 | 6020 | 6030 | 640 | 6410 | 6420 | 6430 | 6440 | 6450 | 620 | 6210 => {
             match code.tenths {
