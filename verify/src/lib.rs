@@ -29,10 +29,11 @@ pub mod program;
 pub mod stock;
 
 pub use check::{
-    Approach, Assumption, CYCLE_TIME_ASSUMPTIONS, CycleTime, Finding, FindingGroup, FindingKind,
-    Gap, GapWeight, JointPath, MAX_READINGS, MAX_VALUES, MachineProgram, MachineProgramError,
-    MachineSummary, Move, MovePath, ProgramStop, RapidBox, StepFault, Tilt, ToolSelection, ToolUse,
-    UnknownCause, UnknownMotions, Verifier, VerifyError, VerifyReport,
+    Approach, Assumption, BlockError, BlockFault, CYCLE_TIME_ASSUMPTIONS, CycleTime, Finding,
+    FindingGroup, FindingKind, Gap, GapWeight, JointPath, MAX_READINGS, MAX_VALUES, MachineProgram,
+    MachineProgramError, MachineSummary, Move, MovePath, Obstacle, ProgramStop, RapidBox,
+    StepFault, Tilt, ToolSelection, ToolUse, UnknownCause, UnknownMotions, Verifier, VerifyError,
+    VerifyReport,
 };
 pub use job::{Job, JobError, JobFile, JobReport, JobTool, Program, Verdict};
 pub use program::{ClData, CutterLocation, ProgramError};

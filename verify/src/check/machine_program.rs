@@ -15,7 +15,7 @@ use crate::gcode::{
 use crate::machine::{JointError, JointMotion, Letter, Machine, Relation, Setup};
 use nalgebra::Vector3;
 use resolve::{AnyRapid, Resolved, Resolver};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 use std::fmt;
 use std::sync::Arc;
 use touchoff::{Motion, Unit};
@@ -26,11 +26,13 @@ mod path;
 mod resolve;
 mod summary;
 
-pub use fault::{MachineProgramError, StepFault};
+pub use fault::{BlockError, BlockFault, MachineProgramError, Obstacle, StepFault};
 pub use summary::{
     Gap, GapWeight, MachineSummary, ProgramStop, ToolUse, UnknownCause, UnknownMotions,
 };
 
+/// Largest number of obstacles that are listed. Prose has one in each line.
+const MAX_OBSTACLES: usize = 100;
 /// Largest number of readings of a program by the rules of controls.
 pub const MAX_READINGS: usize = 8;
 /// Largest number of combinations of the values that variables can have.
@@ -376,8 +378,7 @@ impl MachineProgram {
         let steps = self.execute().expect(reason);
         // The line at which the tool stands, and the tool.
         let mut from: Option<(usize, Option<u32>)> = None;
-        Ok(steps.map(move |step| {
-            let (step, resolved) = step.expect(reason);
+        Ok(steps.map(move |(step, resolved)| {
             let tool = step.state.tool;
             from = from.filter(|(_, before)| !restarts || *before == tool);
             if !is_wanted(tool) {
@@ -393,15 +394,22 @@ impl MachineProgram {
         }))
     }
 
-    fn error(&self, error: GcodeError) -> MachineProgramError {
+    fn error(&self, error: BlockError) -> MachineProgramError {
+        let BlockError { block, fault } = error;
+        MachineProgramError::Block { file: self.file.clone(), line: block.line, fault }
+    }
+
+    /// Returns a block that is not read.
+    fn unread(&self, error: GcodeError) -> BlockError {
         let GcodeError { line, fault } = error;
-        MachineProgramError::Gcode { file: self.file.clone(), line, fault }
+        let within = gcode::line_of(&self.setup.subprograms, &fault);
+        BlockError { block: BlockLine { line, within }, fault: fault.into() }
     }
 
     /// Begins an execution of the program.
     fn execute(&self) -> Result<Execution<'_>, MachineProgramError> {
-        let interpreter =
-            Interpreter::new(&self.text, &self.setup).map_err(|error| self.error(error))?;
+        let interpreter = Interpreter::new(&self.text, &self.setup)
+            .map_err(|error| self.error(self.unread(error)))?;
         let resolver =
             Resolver::new(&self.machine, &self.setup, self.off_is_tip, self.unnamed_tool);
         Ok(Execution { program: self, interpreter, resolver, stop: None })
@@ -415,8 +423,7 @@ impl MachineProgram {
         let mut seen: Vec<(Option<u32>, BlockLine)> = Vec::new();
         let mut is_last_singular = false;
         let mut execution = self.execute()?;
-        while let Some(step) = execution.next() {
-            let (step, resolved) = step?;
+        while let Some((step, resolved)) = execution.next() {
             let number = step.state.tool;
             // The time of a tool change is not counted.
             if !matches!(resolved, Resolved::ToolChange) {
@@ -485,8 +492,7 @@ impl MachineProgram {
             }
         }
         if let Some(error) = execution.stop.take() {
-            let mut obstacles = execution.interpreter.obstacles();
-            obstacles.retain(|other| other.fault != error.fault);
+            let obstacles = execution.obstacles(&error);
             summary.stop = Some(ProgramStop { error, obstacles });
         }
         for (number, dwells) in execution.interpreter.dwells() {
@@ -531,27 +537,62 @@ struct Execution<'a> {
     program: &'a MachineProgram,
     interpreter: Interpreter<'a>,
     resolver: Resolver<'a>,
-    /// The line that has stopped the interpreter, after which there are no more steps.
-    stop: Option<GcodeError>,
+    /// The block that has stopped it, after which there are no more steps.
+    stop: Option<BlockError>,
+}
+
+impl Execution<'_> {
+    /// Returns what stands in the way behind the block that has stopped it, beside that error.
+    fn obstacles(&mut self, stop: &BlockError) -> Vec<Obstacle> {
+        let mut found: Vec<Obstacle> = Vec::new();
+        let mut known = HashSet::new();
+        for step in self.interpreter.survey() {
+            let (block, fault) = match step {
+                Ok(step) => match self.resolver.resolve(&step) {
+                    Err(fault) if fault.is_of_job() => (step.block(), BlockFault::from(fault)),
+                    _ => continue,
+                },
+                Err(error) => {
+                    let BlockError { block, fault } = self.program.unread(error);
+                    (block, fault)
+                }
+            };
+            if fault.is_same(&stop.fault) {
+                continue;
+            }
+            let position = found.iter().position(|known| known.fault.is_same(&fault));
+            let index = match position {
+                Some(index) => index,
+                None if found.len() < MAX_OBSTACLES => {
+                    found.push(Obstacle { block, count: 0, fault });
+                    found.len() - 1
+                }
+                None => continue,
+            };
+            if known.insert((index, block)) {
+                found[index].count += 1;
+            }
+        }
+        found
+    }
 }
 
 impl Iterator for Execution<'_> {
-    type Item = Result<(Step, Resolved), MachineProgramError>;
+    type Item = (Step, Resolved);
 
     fn next(&mut self) -> Option<Self::Item> {
-        let program = self.program;
-        let step = match self.interpreter.next()? {
-            Ok(step) => step,
-            Err(error) => {
-                self.stop = Some(error);
-                return None;
-            }
+        if self.stop.is_some() {
+            return None;
+        }
+        let error = match self.interpreter.next()? {
+            Ok(step) => match self.resolver.resolve(&step) {
+                Ok(resolved) => return Some((step, resolved)),
+                Err(fault) => BlockError { block: step.block(), fault: fault.into() },
+            },
+            Err(error) => self.program.unread(error),
         };
-        let (file, line) = (&program.file, step.line);
-        let resolved = self.resolver.resolve(&step);
-        let resolved =
-            resolved.map_err(|fault| MachineProgramError::Step { file: file.clone(), line, fault });
-        Some(resolved.map(|resolved| (step, resolved)))
+        self.stop = Some(error);
+        None
     }
 }
 

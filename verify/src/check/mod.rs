@@ -36,8 +36,9 @@ pub(crate) use finding::Rank;
 pub use finding::{Finding, FindingGroup, FindingKind, VerifyError, VerifyReport};
 pub(crate) use machine_program::MoveRequest;
 pub use machine_program::{
-    Assumption, Gap, GapWeight, MAX_READINGS, MAX_VALUES, MachineProgram, MachineProgramError,
-    MachineSummary, ProgramStop, StepFault, ToolSelection, ToolUse, UnknownCause, UnknownMotions,
+    Assumption, BlockError, BlockFault, Gap, GapWeight, MAX_READINGS, MAX_VALUES, MachineProgram,
+    MachineProgramError, MachineSummary, Obstacle, ProgramStop, StepFault, ToolSelection, ToolUse,
+    UnknownCause, UnknownMotions,
 };
 pub use moves::{JointPath, Move, MovePath, RapidBox};
 pub use remedy::Tilt;

@@ -91,7 +91,7 @@ pub(super) struct Control {
     /// The last tool vector of G43.5.
     vector: Option<[f64; 3]>,
     pub(super) notes: Notes,
-    rules: ControlRules,
+    pub(super) rules: ControlRules,
     /// Choices that the language of the program settles, whatever the rules state.
     settled: ControlRules,
     /// The rules that the program depends on, each with the first line.

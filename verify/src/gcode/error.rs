@@ -1,7 +1,6 @@
 //! Errors of the interpreter.
 
 use super::iso::ExpressionFault;
-use std::fmt;
 
 /// A line that stops the interpreter.
 #[derive(Clone, PartialEq, thiserror::Error)]
@@ -14,44 +13,6 @@ pub struct GcodeError {
 }
 
 touchoff::debug_as_sentence!(GcodeError);
-
-/// A word that stands in the way of reading a program, whatever comes before it.
-#[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct Obstacle {
-    /// The first line that has it, 1-based; 0 for one in a file of subprograms, whose line the fault names.
-    pub line: usize,
-    /// The number of lines that have it.
-    pub count: usize,
-    /// The fault.
-    pub fault: GcodeFault,
-}
-
-/// Largest number of different obstacles that are listed. Prose has one in each line.
-const MAX_OBSTACLES: usize = 100;
-
-impl Obstacle {
-    /// Adds a fault in a line to a list with one entry for each, which ends at [`MAX_OBSTACLES`].
-    pub(super) fn add(found: &mut Vec<Obstacle>, line: usize, fault: GcodeFault) {
-        if let Some(known) = found.iter_mut().find(|known| known.fault == fault) {
-            known.count += 1;
-        } else if found.len() < MAX_OBSTACLES {
-            found.push(Obstacle { line, count: 1, fault });
-        }
-    }
-}
-
-/// The sentence, with its line and the number of lines.
-impl fmt::Display for Obstacle {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Obstacle { line, count, fault } = self;
-        match line {
-            0 => write!(f, "{fault}")?,
-            line => write!(f, "line {line}: {fault}")?,
-        }
-        if *count > 1 { write!(f, " ({count} times)") } else { Ok(()) }
-    }
-}
 
 /// A fault in a line of a G-code program.
 #[derive(Clone, PartialEq, thiserror::Error)]
@@ -399,23 +360,62 @@ pub enum GcodeFault {
 touchoff::debug_as_sentence!(GcodeFault);
 
 impl GcodeFault {
-    /// Returns whether a word is not read, whatever the state of the control.
-    pub(super) fn is_obstacle(&self) -> bool {
-        matches!(
-            self,
-            GcodeFault::UnknownWord { .. }
-                | GcodeFault::UnknownCode { .. }
-                | GcodeFault::NotRead { .. }
-                | GcodeFault::Klartext { .. }
-                | GcodeFault::ControlFlow { .. }
-                | GcodeFault::Axis { .. }
-                | GcodeFault::NoSubprogram { .. }
-                | GcodeFault::Character { .. }
-                | GcodeFault::OpenComment
-                | GcodeFault::Expression(
-                    ExpressionFault::Operation { .. } | ExpressionFault::Slash
-                )
-        )
+    /// Returns the fault without the file that has it.
+    pub(crate) fn innermost(&self) -> &GcodeFault {
+        match self {
+            GcodeFault::InFile { fault, .. } => fault.innermost(),
+            fault => fault,
+        }
+    }
+
+    /// Returns whether the fault is one of the block itself: whether it would be there whatever the blocks before have done to the
+    /// state of the control.
+    pub(super) fn is_of_block(&self) -> bool {
+        match self.innermost() {
+            GcodeFault::Combination { condition, .. } => {
+                let own = ["its block", "its number", "other words"];
+                own.iter().any(|start| condition.starts_with(start))
+            }
+            GcodeFault::Missing { needed, .. } => !needed.contains("before"),
+            GcodeFault::Compensation(fault) => matches!(fault, CompensationFault::NoRadius { .. }),
+            GcodeFault::Expression(fault) => !matches!(fault, ExpressionFault::Tie { .. }),
+            GcodeFault::Unused { .. }
+            | GcodeFault::NoMotionMode
+            | GcodeFault::NoFeed { .. }
+            | GcodeFault::Arc(_)
+            | GcodeFault::CycleBelow { .. }
+            | GcodeFault::CycleTooLong
+            | GcodeFault::RunsInto { .. }
+            | GcodeFault::StrayReturn { .. }
+            | GcodeFault::MixedCall { .. }
+            | GcodeFault::Nesting { .. }
+            | GcodeFault::OpenLoop
+            | GcodeFault::Alarm { .. }
+            | GcodeFault::TooDeep
+            | GcodeFault::TooLong
+            | GcodeFault::Unfinished => false,
+            _ => true,
+        }
+    }
+
+    /// Returns the word that is not read, without which the rest of its block can be.
+    pub(super) fn unread_word(&self) -> Option<&str> {
+        match self.innermost() {
+            GcodeFault::UnknownWord { word }
+            | GcodeFault::UnknownCode { word }
+            | GcodeFault::NotRead { word, .. } => Some(word.trim_matches('`')),
+            _ => None,
+        }
+    }
+
+    /// Returns the variable or the name whose value is missing.
+    pub(super) fn missing_value(&self) -> Option<&str> {
+        match self.innermost() {
+            GcodeFault::Expression(ExpressionFault::Unassigned { parameter }) => Some(parameter),
+            // A name that no DEF of Sinumerik has defined.
+            GcodeFault::NotRead { word, .. } => word.strip_prefix('`')?.strip_suffix('`'),
+            _ => None,
+        }
     }
 }
 

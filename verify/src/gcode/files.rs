@@ -20,7 +20,7 @@ impl SubprogramFile {
 }
 
 /// A line of a file that was called.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct SubprogramLine {
     /// The number of the file: from 1 on in [`ControlSetup::subprograms`](super::ControlSetup::subprograms), 0 for the file of the
     /// program, which a subprogram of another file can call.
@@ -30,7 +30,7 @@ pub struct SubprogramLine {
 }
 
 /// The place of a block, or of a cutter location.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct BlockLine {
     /// The line in the program, 1-based; of a block in a file of subprograms, that of the program's block which calls it.
     pub line: usize,

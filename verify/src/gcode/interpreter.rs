@@ -3,9 +3,10 @@
 use super::control::Control;
 use super::files::in_file;
 use super::rules::{Choice, Rule};
+use super::survey::Survey;
 use super::{
-    BlockLine, ControlSetup, Dwells, GcodeError, GcodeFault, Obstacle, Step, SubprogramFile, iso,
-    klartext, sinumerik,
+    BlockLine, ControlSetup, Dwells, GcodeError, GcodeFault, Step, SubprogramFile, iso, klartext,
+    sinumerik,
 };
 use std::collections::BTreeMap;
 
@@ -19,7 +20,11 @@ pub struct Interpreter<'a> {
     front: Front<'a>,
     files: &'a [SubprogramFile],
     pub(super) control: Control,
-    finished: bool,
+    pub(super) finished: bool,
+    /// The line that is executed, and its text.
+    pub(super) present: Option<(usize, &'a str)>,
+    /// The error that has stopped the program.
+    error: Option<GcodeError>,
     /// The end of the program, once it was executed.
     pub(super) end: Option<End>,
     /// Itself before the first block.
@@ -79,7 +84,16 @@ impl<'a> Interpreter<'a> {
         } else {
             Front::Iso(Box::new(iso::Program::new(text, setup, &mut control)?))
         };
-        let first = Interpreter { front, files, control, finished: false, end: None, first: None };
+        let first = Interpreter {
+            front,
+            files,
+            control,
+            finished: false,
+            present: None,
+            error: None,
+            end: None,
+            first: None,
+        };
         Ok(Interpreter { first: Some(Box::new(first.clone())), ..first })
     }
 
@@ -93,14 +107,12 @@ impl<'a> Interpreter<'a> {
         &self.control.dwells
     }
 
-    /// Returns the words of the text that are not read, each with its first line, in the order of lines: the first hundred. They
-    /// stand in the way beside the error that has stopped the program.
-    pub fn obstacles(&self) -> Vec<Obstacle> {
-        match &self.front {
-            Front::Iso(program) => program.obstacles(&self.control),
-            Front::Klartext(program) => program.obstacles(),
-            Front::Sinumerik(program) => program.obstacles(&self.control),
-        }
+    /// Returns an execution of what follows the present block, which goes on behind errors: it finds what else stands in the way of the
+    /// program. It begins with the block that has stopped the program, if one has.
+    pub fn survey(&self) -> Survey<'a> {
+        let mut rest = Interpreter { finished: false, first: None, ..self.clone() };
+        let error = rest.error.take();
+        Survey::new(rest, error)
     }
 
     /// Returns the lowest and the highest corner of the blank that the program has stated so far as a box, in program coordinates and in
@@ -133,28 +145,71 @@ impl<'a> Interpreter<'a> {
 
     /// Executes the next line, and returns whether the program goes on.
     pub(super) fn execute_line(&mut self) -> Result<bool, GcodeError> {
-        let file = match &self.front {
+        let file = self.called_file();
+        let next = match &mut self.front {
+            Front::Iso(program) => program.next_line(),
+            Front::Klartext(program) => program.next_line(),
+            Front::Sinumerik(program) => program.next_line(),
+        };
+        self.present = None;
+        self.present = next.map_err(|error| self.in_program(file, error))?;
+        match self.present {
+            Some(_) => self.execute_again(),
+            None => self.end_by(End::Percent),
+        }
+    }
+
+    /// Executes the present line, and returns whether the program goes on.
+    pub(super) fn execute_again(&mut self) -> Result<bool, GcodeError> {
+        let file = self.called_file();
+        let Some((line, text)) = self.present else { return Ok(!self.finished) };
+        let control = &mut self.control;
+        let progress = match &mut self.front {
+            Front::Iso(program) => program.execute_line(line, text, control),
+            Front::Klartext(program) => program.execute_line(line, text, control),
+            Front::Sinumerik(program) => program.execute_line(line, text, control),
+        };
+        match progress.map_err(|fault| self.in_program(file, GcodeError { line, fault }))? {
+            Progress::GoesOn => Ok(true),
+            Progress::Ended(end) => self.end_by(end),
+        }
+    }
+
+    /// Ends the program.
+    fn end_by(&mut self, end: End) -> Result<bool, GcodeError> {
+        let line = self.control.line;
+        self.control.end_compensation().map_err(|fault| GcodeError { line, fault })?;
+        (self.finished, self.end) = (true, Some(end));
+        Ok(false)
+    }
+
+    /// Goes on after the end of the loop that begins in the present line, if one does.
+    pub(super) fn leave_loop(&mut self) {
+        let Some((line, _)) = self.present else { return };
+        match &mut self.front {
+            Front::Iso(program) => program.leave_loop(line),
+            // Its loops are jumps back, which are not made if their condition is not known.
+            Front::Klartext(_) => {}
+            Front::Sinumerik(program) => program.leave_loop(line),
+        }
+    }
+
+    fn called_file(&self) -> Option<usize> {
+        match &self.front {
             Front::Iso(program) => program.called_file(),
             Front::Klartext(program) => program.called_file(),
             Front::Sinumerik(program) => program.called_file(),
-        };
-        let progress = match &mut self.front {
-            Front::Iso(program) => program.execute_line(&mut self.control),
-            Front::Klartext(program) => program.execute_line(&mut self.control),
-            Front::Sinumerik(program) => program.execute_line(&mut self.control),
-        };
-        let progress = progress.map_err(|error| match file {
+        }
+    }
+
+    /// Returns an error of a line in a file, if not in the program, as that of the line which calls it.
+    fn in_program(&self, file: Option<usize>, error: GcodeError) -> GcodeError {
+        match file {
             Some(file) => {
                 GcodeError { line: self.control.line, fault: in_file(self.files, file, error) }
             }
             None => error,
-        })?;
-        if let Progress::Ended(end) = progress {
-            let line = self.control.line;
-            self.control.end_compensation().map_err(|fault| GcodeError { line, fault })?;
-            (self.finished, self.end) = (true, Some(end));
         }
-        Ok(!self.finished)
     }
 }
 
@@ -172,6 +227,7 @@ impl Iterator for Interpreter<'_> {
             if let Err(error) = self.execute_line() {
                 self.finished = true;
                 self.control.pending.clear();
+                self.error = Some(error.clone());
                 return Some(Err(error));
             }
         }

@@ -36,7 +36,7 @@
 //!
 //! **What stops it.** Everything else. A word that is not understood could move the tool, so it is an error
 //! with its line, its name and a remedy, and so is a word that no other word of its block uses;
-//! [`Interpreter::obstacles`] lists all that are not read. Nothing is passed over in silence: words without an
+//! [`Interpreter::survey`] finds all that are not read. Nothing is passed over in silence: words without an
 //! effect on the path, such as `M8`, are listed in [`Interpreter::notes`].
 //!
 //! **What is unknown.** A coordinate is `None` if only the machine knows it: before it is programmed first,
@@ -65,10 +65,11 @@ mod note;
 mod rules;
 mod sinumerik;
 mod state;
+mod survey;
 mod words;
 
 pub use control::Spindle;
-pub use error::{ArcFault, CompensationFault, GcodeError, GcodeFault, Obstacle};
+pub use error::{ArcFault, CompensationFault, GcodeError, GcodeFault};
 pub(crate) use files::line_of;
 pub use files::{BlockLine, SubprogramFile, SubprogramLine};
 pub use interpreter::Interpreter;
@@ -77,6 +78,7 @@ pub use note::{NoteKind, ProgramNote};
 pub use rules::{Choice, ControlError, ControlRules, Rule};
 pub(crate) use state::about;
 pub use state::{ControlState, Frame, LengthOffset, Position, Rotation, Tcp, WorkOffset};
+pub use survey::Survey;
 
 pub use crate::machine::Plane;
 

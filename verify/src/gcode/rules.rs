@@ -672,6 +672,16 @@ impl ControlRules {
         Err(ControlError::NotIgnored { word: shown(word), problem })
     }
 
+    /// Passes over a word, whatever its effect, and returns whether it was not passed over before.
+    pub(super) fn pass_over(&mut self, word: &str) -> bool {
+        self.ignored.insert(word.to_ascii_uppercase(), String::new()).is_none()
+    }
+
+    /// Passes over a word no longer.
+    pub(super) fn pass_over_no_longer(&mut self, word: &str) {
+        self.ignored.remove(&word.to_ascii_uppercase());
+    }
+
     /// Returns the words that are passed over, each with its reason.
     pub fn ignored(&self) -> &BTreeMap<String, String> {
         &self.ignored

@@ -14,7 +14,6 @@ fn the_blank_of_din_iso_is_passed_over() {
     assert_eq!(found.iter().map(|step| step.line).collect::<Vec<_>>(), [5, 6]);
     let box_ = [[-50.0, -50.0, -20.0], [50.0, 50.0, 0.0]];
     assert_eq!(interpreter.blank(), Some(box_));
-    assert!(interpreter.obstacles().is_empty());
     let inches = iso.replace("G71", "G70");
     let mut interpreter = Interpreter::new(&inches, &setup).expect("a program");
     assert!(interpreter.by_ref().all(|step| step.is_ok()));

@@ -3,6 +3,7 @@
 
 use super::klartext_cycles::levels;
 use super::mutants::{Seed, read_mutants};
+use super::survey::assert_planted_are_found;
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use std::collections::BTreeMap;
@@ -844,5 +845,6 @@ fn mutants_end_with_steps_or_with_a_line() {
         }
     }
     let seeds = seeds.map(|text| Seed { text, setups: &setups });
+    assert_planted_are_found(&seeds, ["L M777", "TCH PROBE 0", "L X+Q1999"]);
     read_mutants(&seeds, &PIECES, 6000, 11);
 }

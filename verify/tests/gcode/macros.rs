@@ -303,3 +303,24 @@ fn ignored_words_are_noted_with_their_reason() {
         "{error}"
     );
 }
+
+/// Lines to a printer move nothing, whatever variables they print.
+#[test]
+fn printing_is_passed_over() {
+    let program =
+        "G21 G90 G54 G0 X0 Y0\nPOPEN\nDPRNT[X#500[44]*Y#[#1+1][53]]\nBPRNT[A];B\nPCLOS\nX1.\nM30\n";
+    assert_eq!(steps(program, Choice::Iso).len(), 2);
+    let lines = [
+        ("DPRNT X5", "DPRNT needs"),
+        ("DPRNT[A] X5.", "the character"),
+        ("POPEN X5.", "the character"),
+        ("X5. PCLOS", "PCLOS while"),
+    ];
+    for (line, message) in lines {
+        let program = format!("G21 G90 G54 G0 X0 Y0\n{line}\nM30\n");
+        let error = read(&program, &setup(Choice::Iso)).expect_err(line).to_string();
+        assert!(error.contains("line 2") && error.contains(message), "{error}");
+    }
+    let error = read(program, &setup(Choice::Rs274Ngc)).expect_err("a word of Fanuc").to_string();
+    assert!(error.contains("`POPEN` is not understood"), "{error}");
+}

@@ -15,3 +15,4 @@ mod programs;
 mod refusals;
 mod sinumerik;
 mod subprograms;
+mod survey;

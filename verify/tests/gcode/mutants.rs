@@ -1,5 +1,6 @@
 //! Damaged programs: the interpreter ends with steps or with an error that names a line, whatever it reads.
 
+use super::survey::assert_planted_are_found;
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use std::collections::BTreeMap;
@@ -222,7 +223,7 @@ pub(crate) fn read_mutants(seeds: &[Seed], pieces: &[&str], default_count: u64, 
     let mut random = Pcg64Mcg::seed_from_u64(random_seed);
     let mut random =
         |limit: usize| ((u128::from(random.next_u64()) * limit as u128) >> 64) as usize;
-    let (mut whole, mut steps) = (0u64, 0u64);
+    let (mut whole, mut steps, mut others) = (0u64, 0u64, 0u64);
     for index in 0..count {
         let seed = &seeds[random(seeds.len())];
         let text = mutate(seed.text, pieces, &mut random);
@@ -247,12 +248,25 @@ pub(crate) fn read_mutants(seeds: &[Seed], pieces: &[&str], default_count: u64, 
                         interpreter.notes();
                         whole += 1;
                     }
-                    Some(error) => assert!((1..=lines).contains(&error.line), "{error}\n{text}"),
+                    Some(error) => {
+                        assert!((1..=lines).contains(&error.line), "{error}\n{text}");
+                        for step in interpreter.survey() {
+                            match step {
+                                Ok(step) => assert_is_finite(&step, &text),
+                                Err(error) => {
+                                    others += 1;
+                                    assert!((1..=lines).contains(&error.line), "{error}\n{text}");
+                                }
+                            }
+                        }
+                    }
                 }
             }
         }
     }
-    println!("{count} mutants: {whole} read to the end, {steps} steps");
+    println!(
+        "{count} mutants: {whole} read to the end, {steps} steps, {others} errors behind the first"
+    );
     assert!(whole > 0 && whole < count);
 }
 
@@ -271,5 +285,6 @@ fn mutants_end_with_steps_or_with_a_line() {
     let setups = SEEDS.map(|(_, dialect)| setups(dialect));
     let seeds: Vec<Seed> =
         SEEDS.iter().zip(&setups).map(|(&(text, _), setups)| Seed { text, setups }).collect();
+    assert_planted_are_found(&seeds, ["M777", "G778", "G10.9"]);
     read_mutants(&seeds, &PIECES, 10_000, 7);
 }

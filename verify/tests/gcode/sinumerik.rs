@@ -1,6 +1,7 @@
 //! Native programs of Sinumerik: the same motions written in ISO words, closed forms, refusals, mutants, and a long loop.
 
 use super::mutants::{Seed, read_mutants};
+use super::survey::assert_planted_are_found;
 use crate::common;
 use std::collections::BTreeMap;
 use touchoff_verify::gcode::{
@@ -523,6 +524,7 @@ fn mutants_end_with_steps_or_with_a_line() {
     }
     let setups = [setup()];
     let seeds = seeds.each_ref().map(|text| Seed { text, setups: &setups });
+    assert_planted_are_found(&seeds, ["M777", "WAITM(1)", "X=R99"]);
     read_mutants(&seeds, &PIECES, 1_500, 11);
 }
 

@@ -3,8 +3,8 @@
 
 use crate::common;
 use touchoff_verify::gcode::{
-    Choice, ControlRules, ControlSetup, GcodeError, Interpreter, Position, Rule, Step,
-    SubprogramFile, SubprogramLine,
+    Choice, ControlRules, ControlSetup, GcodeError, Position, Rule, Step, SubprogramFile,
+    SubprogramLine,
 };
 
 fn setup(control: &str, files: &[(&str, &str)]) -> ControlSetup {
@@ -188,17 +188,4 @@ fn steps_and_faults_name_the_line_of_the_file() {
     expect(&[("7.nc", "M98 P7\nM99\n")], "line 2: 7.nc, line 1: subprograms call each other more");
     // A control finds one of two, and it is not known which.
     expect(&[file, inner, ("o8.txt", "O8\nM99\n")], "O8 is in two files, 8.nc and o8.txt");
-}
-
-#[test]
-fn words_of_a_called_file_are_listed_with_those_of_the_program() {
-    let program = "G90 G0 X0 Y0\nM98 P7\nG777\nM30\n";
-    let setup = setup("fanuc", &[("7.nc", "X1.\nG778\nM99\n"), ("9.nc", "G779\nM99\n")]);
-    let mut interpreter = Interpreter::new(program, &setup).expect("a program");
-    assert!(interpreter.by_ref().any(|step| step.is_err()));
-    let found: Vec<String> =
-        interpreter.obstacles().iter().map(|obstacle| obstacle.to_string()).collect();
-    assert!(found[0].starts_with("line 3: G777"), "{found:?}");
-    assert!(found[1].starts_with("7.nc, line 2: G778"), "{found:?}");
-    assert_eq!(found.len(), 2);
 }

@@ -7,7 +7,9 @@ use touchoff::certify::TriangleBvh;
 use touchoff::{Pose, Unit};
 use touchoff_verify::gcode::{BlockLine, Choice, ControlRules, ControlSetup, Rule};
 use touchoff_verify::machine::Machine;
-use touchoff_verify::{FindingKind, MachineProgram, Move, ToolSelection, Verifier};
+use touchoff_verify::{
+    FindingKind, MachineProgram, MachineProgramError, Move, ToolSelection, Verifier,
+};
 
 /// Returns a program on a machine of the library, with the origin of G54 if it is given.
 fn program(
@@ -21,7 +23,13 @@ fn program(
         ControlSetup { lengths: lengths.iter().copied().collect(), ..Default::default() };
     setup.work_offsets[0] = origin;
     let text = format!("G21 G90 G94 F100.\n{blocks}\nM30\n");
-    MachineProgram::new("part.nc", text, machine, setup).map_err(|error| error.to_string())
+    whole(MachineProgram::new("part.nc", text, machine, setup))
+}
+
+/// Returns a program that is checked to its end, or the error that stops it.
+fn whole(program: Result<MachineProgram, MachineProgramError>) -> Result<MachineProgram, String> {
+    let whole = program.and_then(|program| program.check_complete().map(|()| program));
+    whole.map_err(|error| error.to_string())
 }
 
 fn moves(program: &MachineProgram) -> Vec<Move> {
@@ -102,6 +110,39 @@ fn a_program_cannot_move_the_part() {
     for origin in [None, Some([0.0, 0.0, -450.0, 0.0, 0.0, 0.0])] {
         let refused = program("3-axis", origin, &[], blocks).expect_err("it moves the part");
         assert!(refused.contains("the program sets G54"), "{refused}");
+    }
+}
+
+/// What the job leaves open ends what is checked, and the rest is listed: work offsets and axes with the words that are not read.
+#[test]
+fn all_that_stands_in_the_way_is_listed() {
+    let blocks = "G54 G0 X0. Y0. Z50.\nX5.\nG55 X0.\nM130\nG56 Y1.\nG55 X2.\nG54 A5.\nG1 X3. M131\nG41 D4 X9.";
+    let origin = Some([0.0, 0.0, -450.0, 0.0, 0.0, 0.0]);
+    let text = format!("G21 G90 G94 F100.\n{blocks}\nM30\n");
+    let mut setup = ControlSetup::default();
+    setup.work_offsets[0] = origin;
+    let machine = Machine::named("3-axis").expect("a machine of the library");
+    let program = MachineProgram::new("part.nc", text, machine, setup).expect("a program");
+    assert_eq!(moves(&program).iter().map(|step| step.line).collect::<Vec<_>>(), [2, 3]);
+    let stop = program.summary().stop.as_ref().expect("a stop");
+    let found = stop.obstacles.iter().map(|one| (one.block.line, one.count, one.fault.to_string()));
+    let all =
+        std::iter::once((stop.error.block.line, 1, stop.error.fault.to_string())).chain(found);
+    let expected = [
+        (4, 1, "the origin of G55 is unknown"),
+        (5, 1, "M130 is not understood"),
+        (6, 1, "the origin of G56 is unknown"),
+        (8, 2, "A is 5, but the machine has no axis A"),
+        (9, 1, "M131 is not understood"),
+        (10, 1, "the radius offset 4 is not known"),
+    ];
+    let all: Vec<_> = all.collect();
+    assert_eq!(all.len(), expected.len(), "{all:#?}");
+    for ((line, count, sentence), (expected_line, expected_count, start)) in
+        all.iter().zip(expected)
+    {
+        assert!((*line, *count) == (expected_line, expected_count), "{all:#?}");
+        assert!(sentence.starts_with(start), "{all:#?}");
     }
 }
 
@@ -235,7 +276,7 @@ fn rotary_axes_of_klartext_obey_their_words() {
             "0 BEGIN PGM A MM\nTOOL CALL 1 Z S900\nL A+0 C+0 FMAX M3\nL X+0 Y+0 Z+100 FMAX\n{before}\n\
              PLANE SPATIAL SPA+20 SPB+0 SPC+0 STAY\n{after}\nL X+0 Y+0 FMAX\nL Z+1 F100\nM30\nEND PGM A MM\n"
         );
-        MachineProgram::new("a.h", text, machine(), setup.clone()).map_err(|e| e.to_string())
+        whole(MachineProgram::new("a.h", text, machine(), setup.clone()))
     };
     let expected = Vector3::new(0.0, -sine, cosine);
     let turns = ["L A+20 C+0 FMAX", "L A-20 C+0 FMAX"];

@@ -1,6 +1,6 @@
 //! Errors of programs on a machine.
 
-use crate::gcode::GcodeFault;
+use crate::gcode::{BlockLine, GcodeFault};
 use crate::machine::{InverseError, JointError};
 
 /// A program that cannot be checked on its machine.
@@ -37,32 +37,72 @@ pub enum MachineProgramError {
         /// The program.
         file: String,
     },
-    /// A line stops the interpreter.
+    /// A block is not read, or its motion is not possible on the machine.
     #[error("{file}:{line}: {fault}")]
-    Gcode {
+    Block {
         /// The program.
         file: String,
         /// The line, 1-based.
         line: usize,
         /// The fault in it.
-        fault: GcodeFault,
-    },
-    /// A motion is not possible on the machine.
-    #[error("{file}:{line}: {fault}")]
-    Step {
-        /// The program.
-        file: String,
-        /// The line, 1-based.
-        line: usize,
-        /// The fault of the motion.
-        fault: StepFault,
+        fault: BlockFault,
     },
 }
 
 touchoff::debug_as_sentence!(MachineProgramError);
 
+/// A block that ends what is checked of a program.
+#[derive(Clone, PartialEq, thiserror::Error)]
+#[error("line {}: {fault}", .block.line)]
+pub struct BlockError {
+    /// The block.
+    pub block: BlockLine,
+    /// Its fault.
+    pub fault: BlockFault,
+}
+
+touchoff::debug_as_sentence!(BlockError);
+
+/// A fault in a block of a program.
+#[derive(Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum BlockFault {
+    /// It is not read.
+    #[error(transparent)]
+    Gcode(#[from] GcodeFault),
+    /// Its motion is not possible on the machine.
+    #[error(transparent)]
+    Step(#[from] StepFault),
+}
+
+touchoff::debug_as_sentence!(BlockFault);
+
+impl BlockFault {
+    /// Returns whether it is the same as another one, whatever the file and the line.
+    pub(super) fn is_same(&self, other: &BlockFault) -> bool {
+        match (self, other) {
+            (BlockFault::Gcode(fault), BlockFault::Gcode(other)) => {
+                fault.innermost() == other.innermost()
+            }
+            _ => self == other,
+        }
+    }
+}
+
+/// A fault that stands in the way of checking a program, beside the one that ends what is checked.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Obstacle {
+    /// The first block that has it.
+    pub block: BlockLine,
+    /// The number of blocks that have it.
+    pub count: usize,
+    /// The fault.
+    pub fault: BlockFault,
+}
+
 /// A reason for which a motion is not possible on a machine.
-#[derive(thiserror::Error)]
+#[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum StepFault {
     /// A joint value is out of range, or of an axis that the machine lacks.
@@ -141,6 +181,24 @@ pub enum StepFault {
 }
 
 touchoff::debug_as_sentence!(StepFault);
+
+impl StepFault {
+    /// Returns whether it is one of what the job states, whatever the positions in the program.
+    pub(super) fn is_of_job(&self) -> bool {
+        match self {
+            StepFault::NoLength
+            | StepFault::NoPartPosition
+            | StepFault::NoOrigin { .. }
+            | StepFault::TurnedOffset { .. } => true,
+            StepFault::Joint(error) => matches!(error, JointError::NoAxis { .. }),
+            StepFault::Inverse(_)
+            | StepFault::Length { .. }
+            | StepFault::NotAligned { .. }
+            | StepFault::MovedPart
+            | StepFault::LongArc { .. } => false,
+        }
+    }
+}
 
 /// Returns the word of native programs of Sinumerik for a work offset, where it is another one.
 fn on_sinumerik(offset: &str) -> &'static str {

@@ -1,10 +1,10 @@
 //! Summary of a program on its machine: what it uses, and the gaps, which are everything that a verdict about it leaves open.
 
-use super::{Assumption, MachineProgram};
+use super::{Assumption, BlockError, MachineProgram, Obstacle};
 use crate::check::CycleTime;
 use crate::gcode::{
-    BlockLine, ControlSetup, GcodeError, LengthOffset, NoteKind, Obstacle, ProgramNote, Rule,
-    Spindle, Step, SubprogramFile, SubprogramLine, WorkOffset, line_of,
+    BlockLine, ControlSetup, LengthOffset, NoteKind, ProgramNote, Rule, Spindle, Step,
+    SubprogramLine, WorkOffset,
 };
 use crate::machine::{LimitViolation, Machine, SingularPass};
 use std::collections::BTreeMap;
@@ -63,9 +63,9 @@ pub struct MachineSummary {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ProgramStop {
-    /// The line and its fault.
-    pub error: GcodeError,
-    /// The other words of the text that are not read.
+    /// The block and its fault.
+    pub error: BlockError,
+    /// What else stands in the way behind it, the first hundred.
     pub obstacles: Vec<Obstacle>,
 }
 
@@ -338,18 +338,16 @@ impl MachineSummary {
         }
     }
 
-    /// Returns what this reading leaves open. `files` are those of subprograms.
-    fn gaps(&self, files: &[SubprogramFile]) -> Vec<Gap> {
+    /// Returns what this reading leaves open.
+    fn gaps(&self) -> Vec<Gap> {
         let mut gaps = Vec::new();
         if let Some(ProgramStop { error, obstacles }) = &self.stop {
             let weight = GapWeight::Stops;
             let reason = format!("{}; the program is checked up to here", error.fault);
-            // The sentence of a fault names the line in its file.
-            let place = |line, fault| BlockLine { line, within: line_of(files, fault) };
-            gaps.push(Gap::new(place(error.line, &error.fault), weight, reason));
-            gaps.extend(obstacles.iter().map(|Obstacle { line, count, fault }| {
+            gaps.push(Gap::new(error.block, weight, reason));
+            gaps.extend(obstacles.iter().map(|Obstacle { block, count, fault }| {
                 let times = if *count > 1 { format!(" ({count} times)") } else { String::new() };
-                Gap::new(place(*line, fault), weight, format!("{fault}{times}"))
+                Gap::new(*block, weight, format!("{fault}{times}"))
             }));
         }
         for UnknownMotions { cause, count, first, first_open } in &self.unknown {
@@ -444,7 +442,7 @@ impl MachineProgram {
     pub fn gaps(readings: &[MachineProgram]) -> Vec<Gap> {
         let mut gaps: Vec<(Gap, Vec<&Assumption>)> = Vec::new();
         for program in readings {
-            for mut gap in program.summary.gaps(program.subprograms()) {
+            for mut gap in program.summary.gaps() {
                 // Faults that stop a program name the line themselves.
                 if gap.weight != GapWeight::Stops {
                     gap.reason += &program.name_within(gap.within);

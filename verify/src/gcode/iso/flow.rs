@@ -146,15 +146,6 @@ impl<'a> Source<'a> {
         self.extent.text
     }
 
-    /// Returns the lines of the program, each with its number.
-    fn lines(&self) -> impl Iterator<Item = (usize, &'a str)> + use<'a> {
-        let (text, mut place) = (self.text(), self.extent.start);
-        std::iter::from_fn(move || {
-            let (found, after) = line(text, place)?;
-            Some((mem::replace(&mut place, after).line, found))
-        })
-    }
-
     /// Returns the place after the title with which the text begins, or that of its first line.
     fn body(&self) -> Place {
         let mut place = self.extent.start;
@@ -381,11 +372,6 @@ impl<'a> Flow<'a> {
             self.furthest = self.furthest.max(number);
         }
         Ok(Some((number, line)))
-    }
-
-    /// Returns the lines of a text, each with its number.
-    pub(super) fn lines(&self, file: usize) -> impl Iterator<Item = (usize, &'a str)> + use<'a> {
-        self.sources[file].lines()
     }
 
     /// Returns whether a subprogram stands before the present line, and was neither called nor passed as a `sub` so far.

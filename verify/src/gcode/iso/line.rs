@@ -3,6 +3,7 @@
 //! character that belongs to none of these stops the interpreter.
 
 use super::expression::{Cursor, ExpressionFault, Language, Value, begins_value, condition, value};
+use super::flow::before_semicolon;
 use super::variables::{Parameter, Scope, assignment};
 use crate::gcode::block::{Block, Code, Group, Keyword, Number};
 use crate::gcode::control::{Corner, CornerFeed, CornerShape};
@@ -68,6 +69,8 @@ pub(super) enum Statement {
     End,
     /// `IF` with a condition that does not hold.
     Nothing,
+    /// A line to a printer or a file: `POPEN`, `DPRNT[…]`, `BPRNT[…]` and `PCLOS`.
+    Print(&'static str),
 }
 
 /// A call of a macro: G65, or G66 for all motions that follow.
@@ -109,45 +112,6 @@ impl Line {
         self.assigns_beside_value =
             self.assigns && self.block.is_computed() || uses > 0 && self.assignments.len() > 1;
         Ok(())
-    }
-
-    /// Reads a line as far as it can be read without executing what comes before, and returns its faults.
-    pub(super) fn survey(&mut self, text: &str, scope: &Scope) -> Vec<GcodeFault> {
-        let mut faults = Vec::new();
-        self.clear();
-        let mut cursor = begin(text);
-        loop {
-            let start = cursor;
-            let read = match next(&mut cursor) {
-                Ok(None) => break,
-                // An O-word has a line of its own.
-                Ok(Some(b'O' | b'o' | b':')) if self.is_empty() => break,
-                Ok(Some(b'#')) => assignment(&mut cursor, scope).map(drop).map_err(Into::into),
-                Ok(Some(b'0'..=b'9')) if self.is_empty() => Err(numbered_line(cursor)),
-                Ok(Some(byte)) if byte.is_ascii_alphabetic() => self.word(&mut cursor, scope),
-                Ok(Some(b',')) => self.corner(&mut cursor, scope),
-                Ok(Some(_)) => Err(unexpected(&cursor)),
-                Err(fault) => Err(fault),
-            };
-            let Err(fault) = read else { continue };
-            let is_name = matches!(fault, GcodeFault::UnknownWord { .. });
-            let is_code =
-                matches!(fault, GcodeFault::UnknownCode { .. } | GcodeFault::NotRead { .. });
-            faults.push(fault);
-            if is_name {
-                // Its arguments or its value may follow.
-                cursor = start;
-                cursor.peek();
-                cursor.take_while(|byte| byte.is_ascii_alphanumeric() || byte == b'_');
-                if cursor.take(b'=') {
-                    cursor.peek();
-                    cursor.take_while(|byte| !matches!(byte, b' ' | b'\t' | b';'));
-                }
-            } else if !is_code || cursor.rest().len() == start.rest().len() {
-                break;
-            }
-        }
-        faults
     }
 
     fn clear(&mut self) {
@@ -295,6 +259,12 @@ impl Line {
             *cursor = whole;
             return Ok(());
         }
+        if let Some(word) = ["POPEN", "DPRNT", "BPRNT", "PCLOS"].into_iter().find(|w| *w == upper)
+            && scope.language == Some(Language::Fanuc)
+        {
+            *cursor = whole;
+            return self.print(word, cursor);
+        }
         let keyword = match upper.as_str() {
             "TRAORI" => Keyword::TransformationOn,
             "TRAFOOF" => Keyword::TransformationOff,
@@ -337,6 +307,22 @@ impl Line {
         }
         *cursor = whole;
         Ok(())
+    }
+
+    /// Reads a line to a printer, whose words are not those of a block.
+    fn print(&mut self, word: &'static str, cursor: &mut Cursor) -> Result<(), GcodeFault> {
+        if !self.is_empty() {
+            let condition = "other words stand before it";
+            return Err(combination(word, condition, "write it on a line of its own"));
+        }
+        if word.ends_with("PRNT") {
+            let text = before_semicolon(cursor.rest());
+            let end = text.rfind(']').filter(|_| text.trim_start().starts_with('['));
+            let end = end.ok_or_else(|| missing(word, "its text in brackets"))?;
+            *cursor = Cursor::new(&cursor.rest()[end + 1..]);
+        }
+        self.statement = Some(Statement::Print(word));
+        check_end(cursor)
     }
 
     /// Reads what follows the first word of a statement.

@@ -23,12 +23,11 @@ use super::files::{self, in_file};
 use super::interpreter::{End, Progress};
 use super::note::NoteKind;
 use super::rules::{Choice, Rule};
-use super::{ControlSetup, GcodeError, GcodeFault, MAX_REPEATED, Obstacle, SubprogramFile, shown};
+use super::{ControlSetup, GcodeError, GcodeFault, MAX_REPEATED, SubprogramFile, shown};
 use blank::{BlankLine, blank_line};
 use expression::{Cursor, Language, Value, condition, value};
 use flow::{Callee, Flow, Source, before_semicolon};
 use line::{Label, Line, MacroCall, OWord, Role, Statement, begin, check_end, next, o_word};
-use std::collections::BTreeSet;
 use std::mem;
 use structure::{Clause, Structure, Subprogram};
 use variables::{Locals, Parameter, Scope, Variables};
@@ -44,8 +43,6 @@ pub(super) struct Program<'a> {
     flow: Flow<'a>,
     /// The flows of other files that wait for the end of a subprogram.
     waiting: Vec<Flow<'a>>,
-    /// The files of which a subprogram was called.
-    entered: BTreeSet<usize>,
     files: &'a [SubprogramFile],
     variables: Variables,
     line: Line,
@@ -109,17 +106,8 @@ impl<'a> Program<'a> {
             [Source::new(None, extent, structure)].into_iter().chain(others).collect();
         flow::check_files(&sources, files, is_linuxcnc(control))?;
         let flow = Flow::new(sources.into());
-        let (waiting, entered, line) = (Vec::new(), BTreeSet::new(), Line::default());
-        Ok(Program {
-            flow,
-            waiting,
-            entered,
-            files,
-            variables,
-            line,
-            switch: None,
-            blank: [None; 2],
-        })
+        let (waiting, line) = (Vec::new(), Line::default());
+        Ok(Program { flow, waiting, files, variables, line, switch: None, blank: [None; 2] })
     }
 
     /// Returns the number of the file of a called subprogram, if it is not in the program's.
@@ -127,59 +115,18 @@ impl<'a> Program<'a> {
         (!self.waiting.is_empty()).then_some(self.flow.file)
     }
 
-    /// Returns the words that are not read, each with its first line.
-    pub(super) fn obstacles(&self, control: &Control) -> Vec<Obstacle> {
-        let mut found: Vec<Obstacle> = Vec::new();
-        let mut control = control.clone();
-        let mut line = Line::default();
-        let is_left_out = control.stated(Rule::OptionalBlocks) == Some(Choice::LeftOut);
-        let files = [0].into_iter().chain(self.entered.iter().copied().filter(|file| *file > 0));
-        let lines = files.flat_map(|file| self.flow.lines(file).map(move |line| (file, line)));
-        for (file, (number, text)) in lines {
-            if text.trim_start().starts_with('/') && is_left_out {
-                continue;
-            }
-            if is_heidenhain(&control)
-                && let Some(line) = blank_line(text)
-            {
-                if let (0, Err(fault)) = (file, line) {
-                    Obstacle::add(&mut found, number, fault);
-                }
-                continue;
-            }
-            let scope = Scope { is_survey: true, ..Scope::new(&self.variables, &control) };
-            let mut faults = line.survey(text, &scope);
-            faults.extend(check_text(text, &control).err());
-            let block = &mut line.block;
-            // Words of another control; other faults depend on what comes before.
-            faults.extend(control.check_dialect(block).err());
-            if block.tenths_of(Group::Subprogram) == Some(980)
-                && let Some(program) = block.value('P')
-                && ![program as u32, program as u32 % 10_000]
-                    .iter()
-                    .any(|number| self.has(&Label::Number(*number), &control))
-            {
-                let label = Label::Number(program as u32).to_string();
-                faults.push(GcodeFault::NoSubprogram { label });
-            }
-            for fault in faults.into_iter().filter(GcodeFault::is_obstacle) {
-                match file {
-                    0 => Obstacle::add(&mut found, number, fault),
-                    _ => {
-                        let error = GcodeError { line: number, fault };
-                        Obstacle::add(&mut found, 0, in_file(self.files, file, error));
-                    }
-                }
-            }
-        }
-        found
+    /// Returns the next line and its number, or `None` where `%` ends the program.
+    pub(super) fn next_line(&mut self) -> Result<Option<(usize, &'a str)>, GcodeError> {
+        self.flow.next_line()
     }
 
-    /// Executes the next line.
-    pub(super) fn execute_line(&mut self, control: &mut Control) -> Result<Progress, GcodeError> {
-        let Some((line, text)) = self.flow.next_line()? else {
-            return Ok(Progress::Ended(End::Percent));
-        };
+    /// Executes a line.
+    pub(super) fn execute_line(
+        &mut self,
+        line: usize,
+        text: &'a str,
+        control: &mut Control,
+    ) -> Result<Progress, GcodeFault> {
         let result = self.blocks(line, text, control);
         while self.flow.is_left()
             && let Some(flow) = self.waiting.pop()
@@ -187,7 +134,14 @@ impl<'a> Program<'a> {
             let called = mem::replace(&mut self.flow, flow);
             self.flow.go_on_after(&called);
         }
-        result.map_err(|fault| GcodeError { line, fault })
+        result
+    }
+
+    /// Goes on after the end of the loop that begins in a line, if one does.
+    pub(super) fn leave_loop(&mut self, line: usize) {
+        if let Some(clause) = self.flow.structure().clause(line) {
+            self.flow.jump(clause.after);
+        }
     }
 
     /// Returns whether a subprogram with a label is in one of the files.
@@ -212,7 +166,6 @@ impl<'a> Program<'a> {
         callee: Callee,
     ) -> Result<(), GcodeFault> {
         if file != self.flow.file {
-            self.entered.insert(file);
             let called = self.flow.inside(file);
             self.waiting.push(mem::replace(&mut self.flow, called));
         }
@@ -328,7 +281,7 @@ impl<'a> Program<'a> {
         }
         self.flow.start();
         if let Some(statement) = line.statement {
-            self.decide(statement, number)?;
+            self.decide(statement, number, control)?;
             return Ok(Progress::GoesOn);
         }
         if let Some(call) = line.call.take() {
@@ -445,7 +398,12 @@ impl<'a> Program<'a> {
     }
 
     /// Obeys a statement of a macro of Fanuc.
-    fn decide(&mut self, statement: Statement, line: usize) -> Result<(), GcodeFault> {
+    fn decide(
+        &mut self,
+        statement: Statement,
+        line: usize,
+        control: &mut Control,
+    ) -> Result<(), GcodeFault> {
         let clause = || {
             let clause = self.flow.structure().clause(line);
             clause.ok_or(GcodeFault::OpenLoop)
@@ -463,6 +421,10 @@ impl<'a> Program<'a> {
                 self.flow.jump(head);
             }
             Statement::Nothing => {}
+            Statement::Print(word) => {
+                let word = word.to_owned();
+                control.notes.add(control.block(), NoteKind::PassedOver { word });
+            }
         }
         Ok(())
     }

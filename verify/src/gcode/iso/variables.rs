@@ -84,8 +84,6 @@ pub(super) struct Scope<'a> {
     pub(super) variables: &'a Variables,
     pub(super) control: &'a Control,
     pub(super) language: Option<Language>,
-    /// Set where a text is only read: every variable is 1 then.
-    pub(super) is_survey: bool,
 }
 
 /// Returns whether a numbered variable is local to a call.
@@ -180,7 +178,7 @@ impl Variables {
 impl<'a> Scope<'a> {
     /// Creates the scope of a line that is executed.
     pub(super) fn new(variables: &'a Variables, control: &'a Control) -> Scope<'a> {
-        Scope { variables, control, language: language(control), is_survey: false }
+        Scope { variables, control, language: language(control) }
     }
 
     /// Returns the variables that a subprogram of O-words finds before its arguments: those of its caller.
@@ -197,9 +195,6 @@ impl<'a> Scope<'a> {
         parameter: &Parameter,
         language: Language,
     ) -> Result<Value, ExpressionFault> {
-        if self.is_survey {
-            return Ok(Some(1.0));
-        }
         let variables = self.variables;
         let found = match parameter {
             Parameter::Numbered(0) if language == Language::Fanuc => return Ok(None),

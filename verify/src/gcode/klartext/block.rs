@@ -301,7 +301,10 @@ impl<'a> Scale<'a> {
         let Ok(number) = digits.parse::<u32>() else {
             return Err(GcodeFault::NoNumber { word: 'M' });
         };
-        m_entry(number)?.check()?;
+        // The setup can ignore one that is not known.
+        if let Ok(entry) = m_entry(number) {
+            entry.check()?;
+        }
         match number {
             91 => words.is_machine = true,
             99 => words.is_call = true,

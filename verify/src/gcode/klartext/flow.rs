@@ -79,8 +79,6 @@ pub(super) struct Flow<'a> {
     text: &'a str,
     /// The number of calls in the flows that wait for this one.
     below: usize,
-    /// The first block after the head.
-    start: Place,
     /// The next block.
     place: Place,
     /// The present block.
@@ -97,16 +95,6 @@ pub(super) struct Flow<'a> {
 }
 
 impl<'a> Flow<'a> {
-    /// Returns the blocks of the text, each with its line.
-    pub(super) fn blocks(&self) -> impl Iterator<Item = (usize, &'a str)> + use<'a> {
-        let (text, mut place) = (self.text, self.start);
-        std::iter::from_fn(move || {
-            let (found, after) = block(text, place)?;
-            let line = std::mem::replace(&mut place, after).line;
-            Some((line, found))
-        })
-    }
-
     /// Finds the labels of a text whose first block is at a place.
     ///
     /// # Errors
@@ -137,7 +125,6 @@ impl<'a> Flow<'a> {
         Ok(Flow {
             text,
             below: 0,
-            start,
             place: start,
             present: start,
             labels: Arc::new(labels),

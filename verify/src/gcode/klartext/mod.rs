@@ -22,7 +22,7 @@ use super::files::{self, in_file};
 use super::interpreter::{End, Progress};
 use super::note::NoteKind;
 use super::rules::{Choice, ControlRules, Rule};
-use super::{ControlSetup, GcodeError, GcodeFault, Obstacle, SubprogramFile, shown, unquoted};
+use super::{ControlSetup, GcodeError, GcodeFault, SubprogramFile, shown, unquoted};
 use block::{Feed, Scale, m_entry};
 use cycle::Cycle;
 pub(crate) use expression::is_variable;
@@ -34,7 +34,7 @@ use motion::{Before, number};
 use std::collections::BTreeMap;
 use std::mem;
 use touchoff::Unit;
-use words::{CYCLES, Entry, FUNCTIONS, STATEMENTS, Treatment, find};
+use words::{Entry, FUNCTIONS, STATEMENTS, Treatment, find};
 
 /// Largest number of a tool.
 const MAX_TOOL: f64 = 99_999_999.0;
@@ -189,56 +189,26 @@ impl<'a> Program<'a> {
         Ok(())
     }
 
-    /// Returns the words of the text that are refused wherever they stand, each with its first line.
-    pub(super) fn obstacles(&self) -> Vec<Obstacle> {
-        let mut found = Vec::new();
-        let main = self.waiting.first().map_or(&self.flow, |waiting| &waiting.flow);
-        for (line, text) in main.blocks() {
-            let (mut cursor, _) = begin(text);
-            let head = cursor.letters().to_ascii_uppercase();
-            let mut after = cursor;
-            let second = after.letters().to_ascii_uppercase();
-            let mut words = vec![format!("{head} {second}"), head.clone()];
-            let mut table = &STATEMENTS[..];
-            match (head.as_str(), second.as_str()) {
-                ("FN", _) => {
-                    cursor.peek();
-                    let digits = cursor.take_while(|byte| byte.is_ascii_digit());
-                    (words, table) = (vec![format!("FN {digits}")], &FUNCTIONS);
-                }
-                ("CYCL", "DEF") => {
-                    after.peek();
-                    let digits = after.take_while(|byte| byte.is_ascii_digit());
-                    if let Some(entry) = find(&CYCLES, digits)
-                        && let Treatment::Refused(remedy) = entry.treatment
-                    {
-                        let word = format!("CYCL DEF {digits}");
-                        Obstacle::add(&mut found, line, not_read(word, entry.meaning, remedy));
-                    }
-                }
-                _ => {}
-            }
-            let refused = words.iter().find_map(|word| find(table, word)?.check().err());
-            if let Some(fault) = refused {
-                Obstacle::add(&mut found, line, fault);
-            }
-        }
-        found
-    }
-
-    /// Executes the next block.
-    pub(super) fn execute_line(&mut self, control: &mut Control) -> Result<Progress, GcodeError> {
-        let (line, text) = self.flow.next_block()?;
-        control.set_line(self.called_file(), line);
-        let result = self.statement(text, control).and_then(|progress| {
-            // A cycle in a repeated section has many steps per block.
-            self.flow.count(control.pending.len())?;
-            Ok(progress)
-        });
-        result.map_err(|fault| GcodeError { line, fault })
+    /// Returns the next block and its line.
+    pub(super) fn next_line(&mut self) -> Result<Option<(usize, &'a str)>, GcodeError> {
+        self.flow.next_block().map(Some)
     }
 
     /// Executes a block.
+    pub(super) fn execute_line(
+        &mut self,
+        line: usize,
+        text: &'a str,
+        control: &mut Control,
+    ) -> Result<Progress, GcodeFault> {
+        control.set_line(self.called_file(), line);
+        let progress = self.statement(text, control)?;
+        // A cycle in a repeated section has many steps per block.
+        self.flow.count(control.pending.len())?;
+        Ok(progress)
+    }
+
+    /// Executes the statement of a block.
     fn statement(&mut self, text: &'a str, control: &mut Control) -> Result<Progress, GcodeFault> {
         let (mut cursor, is_optional) = begin(text);
         // A line that begins with `*` is a heading.
@@ -386,11 +356,17 @@ impl<'a> Program<'a> {
                 4 | 14 => self.m_word(4, control)?,
                 126 => control.set_shorter_way(true),
                 128 => self.set_tcp(true, control)?,
-                _ if m_entry(*code)?.treatment == Treatment::PassedOver => {
+                _ => {
                     let word = format!("M{code}");
-                    control.notes.add(control.block(), NoteKind::PassedOver { word });
+                    match m_entry(*code) {
+                        Ok(entry) if entry.treatment == Treatment::PassedOver => {
+                            control.notes.add(control.block(), NoteKind::PassedOver { word });
+                        }
+                        Ok(_) => {}
+                        Err(_) if control.ignores(&word) => control.ignore(word),
+                        Err(fault) => return Err(fault),
+                    }
                 }
-                _ => {}
             }
         }
         self.codes = codes;

@@ -23,13 +23,12 @@ use super::files::{in_file, without_folder};
 use super::interpreter::{End, Progress};
 use super::note::NoteKind;
 use super::rules::{Choice, Rule};
-use super::{ControlSetup, GcodeError, GcodeFault, Obstacle, SubprogramFile, shown};
+use super::{ControlSetup, GcodeError, GcodeFault, SubprogramFile, shown};
 use expression::{Value, expression, number};
 use flow::{Direction, Flow, Left, RepeatWords, Source, Structure, no_target, title};
 use std::collections::HashMap;
 use std::mem;
 use std::sync::Arc;
-use table::{Use, use_of};
 use text::{Cursor, Start, start};
 pub(crate) use variables::is_variable;
 use variables::{Reference, Variables};
@@ -185,47 +184,18 @@ impl<'a> Program<'a> {
         (!self.waiting.is_empty()).then_some(self.file)
     }
 
-    /// Returns the words of the text that are refused wherever they stand, each with its first line.
-    pub(super) fn obstacles(&self, control: &Control) -> Vec<Obstacle> {
-        let mut found = Vec::new();
-        let main = self.waiting.first().map_or(&self.flow, |waiting| &waiting.flow);
-        for (line, text) in (1..).zip(main.text().lines()) {
-            let mut words = start(text).words;
-            while !words.is_at_end() {
-                let passed = match words.byte() {
-                    Some(b'"') => words.quoted().is_some(),
-                    Some(b'(') => words.bracketed([b'(', b')']).is_some(),
-                    Some(byte) if byte.is_ascii_alphabetic() || byte == b'_' => {
-                        let name = words.name().to_ascii_uppercase();
-                        if let Some(Use::Refused { meaning, remedy }) = use_of(&name)
-                            && !control.ignores(&name)
-                        {
-                            Obstacle::add(&mut found, line, not_read(name, meaning, remedy));
-                        }
-                        true
-                    }
-                    Some(byte) if byte.is_ascii() => {
-                        words.advance();
-                        true
-                    }
-                    _ => false,
-                };
-                if !passed {
-                    break;
-                }
-            }
-        }
-        found
+    /// Returns the next line and its number.
+    pub(super) fn next_line(&mut self) -> Result<Option<(usize, &'a str)>, GcodeError> {
+        self.flow.next_line().map(Some)
     }
 
-    /// Executes the next line.
-    pub(super) fn execute_line(&mut self, control: &mut Control) -> Result<Progress, GcodeError> {
-        let (line, text) = self.flow.next_line()?;
-        let result = self.line(line, text, control);
-        result.map_err(|fault| GcodeError { line, fault })
+    /// Goes on after the end of the loop that begins in a line, if one does.
+    pub(super) fn leave_loop(&mut self, line: usize) {
+        self.flow.go_to_partner(line);
     }
 
-    fn line(
+    /// Executes a line.
+    pub(super) fn execute_line(
         &mut self,
         line: usize,
         text: &'a str,

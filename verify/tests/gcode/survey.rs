@@ -1,0 +1,231 @@
+//! What stands in the way of a program beside the error that stops it.
+
+use crate::mutants::Seed;
+use std::sync::Arc;
+use touchoff_verify::gcode::{
+    Choice, ControlRules, ControlSetup, GcodeError, Interpreter, Rule, SubprogramFile,
+};
+
+fn setup(control: &str) -> ControlSetup {
+    let rules =
+        ControlRules::named(control).expect("a control").with(Rule::WholeNumbers, Choice::Units);
+    ControlSetup { start: [Some(0.0); 6], rules, ..ControlSetup::default() }
+}
+
+/// Returns the error that stops a program, then those that the survey finds.
+fn errors(program: &str, setup: &ControlSetup) -> Vec<GcodeError> {
+    let mut interpreter = Interpreter::new(program, setup).expect("a program");
+    let stop = interpreter.by_ref().find_map(Result::err).expect("an error");
+    let others = interpreter.survey().filter_map(Result::err);
+    [stop].into_iter().chain(others).collect()
+}
+
+/// Compares the errors of a program with their lines and the beginnings of their sentences.
+#[track_caller]
+fn expect(control: &str, program: &str, expected: &[(usize, &str)]) {
+    let found = errors(program, &setup(control));
+    let text: Vec<String> = found.iter().map(ToString::to_string).collect();
+    assert_eq!(found.len(), expected.len(), "{text:#?}");
+    for (error, (line, start)) in found.iter().zip(expected) {
+        assert_eq!(error.line, *line, "{text:#?}");
+        assert!(error.fault.to_string().starts_with(start), "{error}");
+    }
+}
+
+/// Words and values alike are found: those of a block together, with the rest of it executed.
+#[test]
+fn everything_that_stands_in_the_way_is_found() {
+    let fanuc = "G21 G90 G0 X0 Y0 Z5\nM130 M131 G777 G1 F100 X1.\nG41 D7 X2.\nX3. Y5.\n#1=#500+#501\nX#502\nM98 P9\nG43 H1.5\nM30\n";
+    expect(
+        "fanuc",
+        fanuc,
+        &[
+            (2, "M130"),
+            (2, "M131"),
+            (2, "G777"),
+            (3, "the radius offset 7"),
+            (5, "#500 has no value"),
+            (6, "#502 has no value"),
+            (7, "there is no O9"),
+            (8, "H1.5"),
+        ],
+    );
+    let linuxcnc =
+        "G21 G90 G0 X0 Y0\nM130\no1 if [#500 GT 1]\nG1 X1 F100 M131\no1 endif\nG0 X[foo[1]]\nM2\n";
+    expect(
+        "linuxcnc",
+        linuxcnc,
+        &[(2, "M130"), (3, "#500"), (4, "M131"), (6, "`FOO` in an expression")],
+    );
+    let sinumerik = "G54 G90 G0 X0 Y0\nMYCYCLE(1,2)\nR1=R7\nG41 D3 X5\nWAITM(1)\nX=R8\nGOTOF NOWHERE\nX7 OEMWORD\nM30\n";
+    expect(
+        "siemens",
+        sinumerik,
+        &[
+            (2, "`MYCYCLE`"),
+            (3, "R7 has no value"),
+            (5, "WAITM"),
+            (6, "R8 has no value"),
+            (7, "a jump to `NOWHERE`"),
+            (8, "`OEMWORD`"),
+        ],
+    );
+    let klartext = "0 BEGIN PGM A MM\n1 TOOL CALL 1 Z S1000\n2 L X+0 Y+0 FMAX M130\n3 L X+5 F200 M222 M223\n4 CYCL DEF 399\n5 TCH PROBE 0\n6 L X+Q5\n7 CALL LBL 9\n8 L X+7 M118\n9 M30\n10 END PGM A MM\n";
+    expect(
+        "heidenhain",
+        klartext,
+        &[
+            (3, "M130"),
+            (4, "M222"),
+            (4, "M223"),
+            (5, "CYCL DEF 399"),
+            (6, "TCH PROBE"),
+            (7, "Q5 has no value"),
+            (8, "there is no LBL 9"),
+            (9, "M118"),
+        ],
+    );
+}
+
+/// An error that a block which was not executed can have caused is none of the program.
+#[test]
+fn what_follows_from_another_error_is_not_found() {
+    // Neither the motion mode, nor the feed, the start of the arc, the variable or the offset are known.
+    let fanuc =
+        "G21 G90 G0 X0 Y0\nG1 F100 X1. ?\nX2.\n#5=TAN[FOO]\nX#5\nG2 X9. Y9. I1.\nG1 X1.\nM30\n";
+    expect("fanuc", fanuc, &[(2, "the character `?`"), (4, "`FOO`")]);
+    let heidenhain = "0 BEGIN PGM A MM\n1 TOOL CALL 1 Z S1000\n2 L X+0 Y+0 R0 FMAX\n3 Q4 = FOO\n4 L X+Q4\n5 L X+1 NIX\n6 RND R2\n7 L Y+8 F100\n8 M30\n9 END PGM A MM\n";
+    expect("heidenhain", heidenhain, &[(4, "`FOO`"), (6, "`NIX`")]);
+    let sinumerik = "G54 G90 G0 X0 Y0\nDEF FRAME NEST\nNEST=CTRANS(X,1)\nX5\nM30\n";
+    expect("siemens", sinumerik, &[(2, "`FRAME NEST`"), (3, "`CTRANS`")]);
+}
+
+/// A word of the machine's builder is passed over in every language, with its reason.
+#[test]
+fn ignored_words_do_not_stand_in_the_way() {
+    let programs = [
+        ("haas", "G21 G90 G54 G0 X0 Y0\nX1. M222\nM30\n"),
+        ("siemens", "G54 G90 G0 X0 Y0\nX1 M222\nM30\n"),
+        (
+            "heidenhain",
+            "0 BEGIN PGM A MM\n1 L X+0 Y+0 FMAX\n2 L X+1 FMAX M222\n3 M30\n4 END PGM A MM\n",
+        ),
+    ];
+    for (control, program) in programs {
+        let mut setup = setup(control);
+        setup.rules = setup.rules.ignoring("M222", "opens the camera").expect("it can be ignored");
+        let mut interpreter = Interpreter::new(program, &setup).expect("a program");
+        let steps: Result<Vec<_>, _> = interpreter.by_ref().collect();
+        assert_eq!(steps.expect(control).last().expect("a step").end[0], Some(1.0));
+        let notes: Vec<String> = interpreter.notes().iter().map(ToString::to_string).collect();
+        assert!(
+            notes.iter().any(|note| note.contains("M222 is ignored as stated: opens the camera")),
+            "{notes:?}"
+        );
+        assert_eq!(interpreter.survey().count(), 0, "{control}");
+    }
+}
+
+/// A loop whose condition is not known is executed once.
+#[test]
+fn loops_without_a_known_end_are_left() {
+    let body = "X1.\nM130\nX0\n";
+    let fanuc = format!("G21 G90 G0 X0 Y0\nWHILE[#500LT3]DO1\n{body}END1\nM131\nM30\n");
+    expect("fanuc", &fanuc, &[(2, "#500"), (4, "M130"), (7, "M131")]);
+    for head in ["while [#500 LT 3]", "repeat [#500]"] {
+        let end = head.split(' ').next().expect("a word");
+        let linuxcnc = format!("G21 G90 G0 X0 Y0\no1 {head}\n{body}o1 end{end}\nM131\nM30\n");
+        expect("linuxcnc", &linuxcnc, &[(2, "#500"), (4, "M130"), (7, "M131")]);
+    }
+    for (head, end) in [("WHILE R5<3", "ENDWHILE"), ("FOR R1=1 TO R5", "ENDFOR")] {
+        let sinumerik = format!("G54 G90 G0 X0 Y0\n{head}\nX1.\nWAITM(1)\nX0\n{end}\nM131\nM30\n");
+        expect("siemens", &sinumerik, &[(2, "R5"), (4, "WAITM"), (7, "M131")]);
+    }
+    // The body of one whose end is known has its words once.
+    let known =
+        format!("G21 G90 G0 X0 Y0\n#1=0\nWHILE[#1LT3]DO1\n#1=#1+1\n{body}END1\nM131\nM30\n");
+    expect("fanuc", &known, &[(6, "M130"), (9, "M131")]);
+}
+
+/// Blocks of a called file are executed where it is called, those of another one are not.
+#[test]
+fn words_of_a_called_file_are_found_with_those_of_the_program() {
+    let files = [("7.nc", "X1.\nG778\nM99\n"), ("9.nc", "G779\nM99\n")];
+    let file = |(name, text): (&str, &str)| SubprogramFile {
+        name: name.to_owned(),
+        text: Arc::from(text),
+    };
+    let setup = ControlSetup { subprograms: files.map(file).to_vec(), ..setup("fanuc") };
+    let program = "G21 G90 G0 X0 Y0\nM98 P7\nG777\nM30\n";
+    let found: Vec<String> = errors(program, &setup).iter().map(ToString::to_string).collect();
+    assert!(found[0].starts_with("line 2: 7.nc, line 2: G778"), "{found:?}");
+    assert!(found[1].starts_with("line 3: G777"), "{found:?}");
+    assert_eq!(found.len(), 2);
+}
+
+/// Returns a text with further lines, each before that of a number from 0 on.
+fn with_lines(text: &str, lines: &[(usize, &str)]) -> String {
+    let mut found = String::new();
+    for (number, line) in text.lines().enumerate() {
+        for (_, planted) in lines.iter().filter(|(before, _)| *before == number) {
+            found += planted;
+            found.push('\n');
+        }
+        found += line;
+        found.push('\n');
+    }
+    found
+}
+
+/// Plants lines that are not read into programs: a survey finds those that are executed, and nothing else.
+pub(crate) fn assert_planted_are_found(seeds: &[Seed], planted: [&str; 3]) {
+    let mut count = 0;
+    for Seed { text, setups } in seeds {
+        let setup = &setups[0];
+        let stops = |text: &str| {
+            Interpreter::new(text, setup).ok().is_some_and(|mut found| found.any(|s| s.is_err()))
+        };
+        let lines = text.lines().count();
+        let is_executed: Vec<[bool; 3]> = (0..lines)
+            .map(|line| planted.map(|planted| stops(&with_lines(text, &[(line, planted)]))))
+            .collect();
+        // The head of the program stays before them.
+        for first in 4..lines {
+            for second in first + 1..lines {
+                let third = 4 + (second + first * 7) % (lines - 4);
+                let places = [first, second, third];
+                // Blocks of Klartext have several lines.
+                let goes_on =
+                    |place| text.lines().nth(place - 1).is_some_and(|line| line.ends_with('~'));
+                if places.into_iter().any(goes_on) {
+                    continue;
+                }
+                let plants: Vec<(usize, &str)> = places.into_iter().zip(planted).collect();
+                let broken = with_lines(text, &plants);
+                if Interpreter::new(&broken, setup).is_err() || !stops(&broken) {
+                    continue;
+                }
+                let found = errors(&broken, setup);
+                let mut expected: Vec<(usize, &str)> = (0..3)
+                    .filter(|index| is_executed[places[*index]][*index])
+                    .map(|index| {
+                        let (place, planted) = plants[index];
+                        let before = |(other, (at, _)): &(usize, &(usize, &str))| {
+                            *at < place || *at == place && *other < index
+                        };
+                        (place + 1 + plants.iter().enumerate().filter(before).count(), planted)
+                    })
+                    .collect();
+                expected.sort_unstable();
+                let mut lines: Vec<usize> = found.iter().map(|error| error.line).collect();
+                lines.sort_unstable();
+                let expected: Vec<usize> = expected.iter().map(|(line, _)| *line).collect();
+                let sentences: Vec<String> = found.iter().map(ToString::to_string).collect();
+                assert_eq!(lines, expected, "{sentences:#?}\n{broken}");
+                count += 1;
+            }
+        }
+    }
+    println!("{count} programs with planted lines");
+    assert!(count > 100);
+}
