@@ -151,3 +151,23 @@ def test_jobs_are_checked_and_none_is_lost(cluster, tmp_path):
         assert (report.verdict, [f.row for f in report.findings]) == (here.verdict, [f.row for f in here.findings])
     assert {found[str(job)].verdict for job in jobs[:-1]} >= {"findings"}
     assert Path(jobs[0]).exists()
+    # The order in which jobs end does not change the table.
+    file = tmp_path / "night" / "reports.parquet"
+    dataset = touchoff.distributed.write_reports(found.items(), file)
+    whole = file.read_bytes()
+    touchoff.distributed.write_reports(reversed(found.items()), file)
+    assert file.read_bytes() == whole
+    rows = {row["job"]: row for row in dataset.to_table().to_pylist()}
+    assert list(rows) == sorted(str(job) for job in jobs)
+    for job in jobs[:-1]:
+        report, row = found[str(job)], rows[str(job)]
+        assert (row["verdict"], row["error"]) == (report.verdict, None)
+        assert [(f["kind"], f["line"], f["text"]) for f in row["findings"]] == [(f.kind, f.line, f.text) for f in report.findings]
+        bounds = [f.depth or (None, None) for f in report.findings]
+        assert [(f["depth_low"], f["depth_high"]) for f in row["findings"]] == bounds
+        assert [(f["x"], f["y"], f["z"]) for f in row["findings"]] == [f.point or (None,) * 3 for f in report.findings]
+        assert [(g["line"], g["open"]) for g in row["gaps"]] == [(g.line, g.open) for g in report.gaps]
+    missing = rows[str(jobs[-1])]
+    assert missing["verdict"] is None and "missing.toml" in missing["error"]
+    deep = dataset.to_table(filter=pyarrow.compute.field("verdict") == "findings")
+    assert set(deep["job"].to_pylist()) == {str(jobs[1]), str(jobs[3])}

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import functools
 import os
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -25,6 +25,7 @@ from .sweep import Rules, _listed
 from .tool import Tool
 
 if TYPE_CHECKING:
+    import pyarrow
     import pyarrow.dataset
 
 Progress = Callable[[int, int], None]
@@ -192,3 +193,62 @@ def verify_many(
     paths = [os.path.abspath(_arrays.path("jobs", job)) for job in jobs]
     limit = _arrays.count("in_flight", in_flight)
     yield from _results(((path, functools.partial(task.remote, path)) for path in paths), limit)
+
+
+def write_reports(
+    results: Iterable[tuple[str, Report | Exception]], path: str | os.PathLike[str]
+) -> pyarrow.dataset.Dataset:
+    """Write the results of jobs to a Parquet file, a row each in the order of their names, and return it as an Arrow dataset.
+
+    Columns: `job`; `verdict`, null for a job that could not be checked, and `error`, which says why; `findings`, a list with `kind`,
+    `file`, `line`, `text`, the proved bounds `depth_low` and `depth_high`, and the point `x`, `y`, `z` in the unit of the part; `gaps`, a
+    list with `file`, `line`, `open` and `reason`; `refusals`, a list of sentences.
+
+    Parameters
+    ----------
+    results
+        What :func:`verify_many` yields.
+    path
+        The file, which is there once all results are.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be written.
+    """
+    import pyarrow
+    import pyarrow.dataset
+    import pyarrow.parquet
+
+    file = Path(_arrays.path("path", path))
+    rows = sorted((_row(job, result) for job, result in results), key=lambda row: row["job"])
+    table = pyarrow.Table.from_pylist(rows, schema=_schema())
+    file.parent.mkdir(parents=True, exist_ok=True)
+    # A file that is there is whole.
+    begun = file.with_name(f"{file.name}.begun")
+    pyarrow.parquet.write_table(table, begun)
+    begun.replace(file)
+    return pyarrow.dataset.dataset(str(file), format="parquet")
+
+
+def _row(job: str, result: Report | Exception) -> dict[str, Any]:
+    if isinstance(result, Exception):
+        return {"job": job, "error": str(result)}
+    findings = []
+    for finding in result.findings:
+        (low, high), (x, y, z) = finding.depth or (None, None), finding.point or (None, None, None)
+        place = {"kind": finding.kind, "file": finding.file, "line": finding.line, "text": finding.text}
+        findings.append({**place, "depth_low": low, "depth_high": high, "x": x, "y": y, "z": z})
+    gaps = [{"file": gap.file, "line": gap.line, "open": gap.open, "reason": gap.reason} for gap in result.gaps]
+    return {"job": job, "verdict": result.verdict, "findings": findings, "gaps": gaps, "refusals": result.refusals}
+
+
+def _schema() -> pyarrow.Schema:
+    import pyarrow as pa
+
+    place: list[tuple[str, pa.DataType]] = [("file", pa.string()), ("line", pa.int64())]
+    numbers = [(name, pa.float64()) for name in ("depth_low", "depth_high", "x", "y", "z")]
+    finding = pa.struct([("kind", pa.string()), *place, ("text", pa.string()), *numbers])
+    gap = pa.struct([*place, ("open", pa.bool_()), ("reason", pa.string())])
+    lists = [("findings", pa.list_(finding)), ("gaps", pa.list_(gap)), ("refusals", pa.list_(pa.string()))]
+    return pa.schema([("job", pa.string()), ("verdict", pa.string()), ("error", pa.string()), *lists])
