@@ -62,7 +62,7 @@ def test_triangles_that_no_tool_reaches(study):
     expected = [(part, int(k)) for part in sorted(maps) for k in np.flatnonzero(~maps[part].is_reached)]
     assert found == expected
     assert 0 < len(found) < sum(len(m.is_reached) for m in maps.values())
-    lines = block("python", 1)
+    lines = block("python", 2)
     before = os.getcwd()
     os.chdir(root)
     try:

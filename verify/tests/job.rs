@@ -365,7 +365,10 @@ fn job_files_are_read_with_their_paths_beside_them() {
     assert_eq!(used[0].motions, ToolSelection::Number(Some(3)));
     assert_eq!(used[0].params, ["D=6"]);
     let missing = job.used_tools(&of("G21 T4 M6\nG0 X1.\nX2.\nM30\n")).err();
-    assert!(matches!(missing, Some(JobError::NoTool { number: Some(4), line: 2 })), "{missing:?}");
+    assert!(
+        matches!(missing, Some(JobError::NoTool { number: Some(4), line: 2, .. })),
+        "{missing:?}"
+    );
     let two = text.replace("[work_offsets]", "[tool.5]\ntool = \"n.tool\"\n[work_offsets]");
     let two = JobFile::parse(&two, Path::new("a.toml")).expect("a job");
     let early = "G21 G90\nG54 G43 H3 G0 X1. Y0. Z5.\nX2.\nT3 M6\nG43 H3 Z5.\nX3.\nX4.\nM30\n";

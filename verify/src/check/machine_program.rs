@@ -406,6 +406,16 @@ impl MachineProgram {
         BlockError { block: BlockLine { line, within }, fault: fault.into() }
     }
 
+    /// Returns the error of an axis that the machine lacks and that a step moves elsewhere than to 0, where it is taken to stand.
+    fn lacking_axis(&self, step: &Step) -> Option<JointError> {
+        Letter::ALL.into_iter().zip(step.commanded.into_iter().zip(step.end)).find_map(
+            |(letter, (is_commanded, end))| {
+                let value = end.filter(|end| is_commanded && *end != 0.0)?;
+                self.machine.axis(letter).is_none().then_some(JointError::NoAxis { letter, value })
+            },
+        )
+    }
+
     /// Begins an execution of the program.
     fn execute(&self) -> Result<Execution<'_>, MachineProgramError> {
         let interpreter = Interpreter::new(&self.text, &self.setup)
@@ -492,8 +502,9 @@ impl MachineProgram {
             }
         }
         if let Some(error) = execution.stop.take() {
-            let obstacles = execution.obstacles(&error);
-            summary.stop = Some(ProgramStop { error, obstacles });
+            let mut obstacles = execution.obstacles(&error);
+            let count = obstacles.remove(0).count;
+            summary.stop = Some(ProgramStop { error, count, obstacles });
         }
         for (number, dwells) in execution.interpreter.dwells() {
             summary.time_of(*number, &self.machine).add_dwells(dwells);
@@ -542,35 +553,42 @@ struct Execution<'a> {
 }
 
 impl Execution<'_> {
-    /// Returns what stands in the way behind the block that has stopped it, beside that error.
+    /// Returns what stands in the way from the block on that has stopped it, whose error is the first.
     fn obstacles(&mut self, stop: &BlockError) -> Vec<Obstacle> {
-        let mut found: Vec<Obstacle> = Vec::new();
-        let mut known = HashSet::new();
-        for step in self.interpreter.survey() {
-            let (block, fault) = match step {
-                Ok(step) => match self.resolver.resolve(&step) {
-                    Err(fault) if fault.is_of_job() => (step.block(), BlockFault::from(fault)),
-                    _ => continue,
-                },
-                Err(error) => {
-                    let BlockError { block, fault } = self.program.unread(error);
-                    (block, fault)
+        let BlockError { block, fault } = stop.clone();
+        let mut found = vec![Obstacle { block, count: 1, fault }];
+        let mut known = HashSet::from([(0, block)]);
+        let mut survey = self.interpreter.survey();
+        let mut errors = Vec::new();
+        while let Some(step) = survey.next() {
+            match step {
+                Ok(step) => {
+                    let block = step.block();
+                    let lacking = self.program.lacking_axis(&step);
+                    // An axis stays where it is in the blocks after the one that states it.
+                    let others = self.resolver.resolve(&step).err().filter(|fault| {
+                        let is_lacking =
+                            matches!(fault, StepFault::Joint(JointError::NoAxis { .. }));
+                        !is_lacking && fault.is_of_job(survey.is_uncertain())
+                    });
+                    let faults = lacking.map(StepFault::from).into_iter().chain(others);
+                    errors.extend(faults.map(|fault| BlockError { block, fault: fault.into() }));
                 }
-            };
-            if fault.is_same(&stop.fault) {
-                continue;
+                Err(error) => errors.push(self.program.unread(error)),
             }
-            let position = found.iter().position(|known| known.fault.is_same(&fault));
-            let index = match position {
-                Some(index) => index,
-                None if found.len() < MAX_OBSTACLES => {
-                    found.push(Obstacle { block, count: 0, fault });
-                    found.len() - 1
+            for BlockError { block, fault } in errors.drain(..) {
+                let position = found.iter().position(|known| known.fault.is_same(&fault));
+                let index = match position {
+                    Some(index) => index,
+                    None if found.len() <= MAX_OBSTACLES => {
+                        found.push(Obstacle { block, count: 0, fault });
+                        found.len() - 1
+                    }
+                    None => continue,
+                };
+                if known.insert((index, block)) {
+                    found[index].count += 1;
                 }
-                None => continue,
-            };
-            if known.insert((index, block)) {
-                found[index].count += 1;
             }
         }
         found

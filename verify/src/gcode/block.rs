@@ -4,7 +4,7 @@
 use super::GcodeFault;
 use super::control::{Corner, CornerFeed};
 use super::error::same_group;
-use super::words::group;
+use super::words::{IGNORE, group};
 use std::fmt;
 
 /// Words of more than one letter that are read.
@@ -339,10 +339,11 @@ impl Code {
 
     /// Returns whether nothing is known of an effect on the path.
     pub(super) fn can_be_ignored(self) -> bool {
-        matches!(
-            group(self),
-            Ok(Group::PassedOver | Group::PathControl) | Err(GcodeFault::UnknownCode { .. })
-        )
+        match group(self) {
+            Ok(group) => matches!(group, Group::PassedOver | Group::PathControl),
+            Err(GcodeFault::NotRead { remedy, .. }) => remedy == IGNORE,
+            Err(_) => true,
+        }
     }
 
     pub(super) fn is_m(&self) -> bool {

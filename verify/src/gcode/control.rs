@@ -15,7 +15,7 @@ mod offset;
 mod refuse;
 mod report;
 
-pub(super) use corner::{Corner, CornerFeed, CornerShape};
+pub(super) use corner::{Corner, CornerFeed, CornerShape, WRITE_OUT};
 pub(super) use report::Report;
 
 pub(super) use heidenhain::{Circle, Curve};
@@ -378,7 +378,7 @@ impl Control {
         self.motion_mode(block);
         // The spindle changes before such a motion or after it, by the control.
         if let Some(word) = turned.filter(|_| block.is_programmed() && self.modal.is_feed()) {
-            let condition = "its block has a motion at feed rate";
+            let condition = "a motion at feed rate is in its block";
             let remedy = "write it in a block before or after";
             return Err(combination(word, condition, remedy));
         }

@@ -1,5 +1,6 @@
 //! Errors of the interpreter.
 
+use super::control::WRITE_OUT;
 use super::iso::ExpressionFault;
 
 /// A line that stops the interpreter.
@@ -153,7 +154,7 @@ pub enum GcodeFault {
         word: char,
     },
     /// A G or M word without a word that it needs.
-    #[error("{word} needs {needed}: add it to the block")]
+    #[error("{word} needs {needed}: add it{}", if is_elsewhere(needed) { "" } else { " to the block" })]
     Missing {
         /// The word.
         word: String,
@@ -359,6 +360,16 @@ pub enum GcodeFault {
 
 touchoff::debug_as_sentence!(GcodeFault);
 
+/// The first words of conditions of a block, whatever stands before it.
+const OF_BLOCK: [&str; 3] = ["its block", "its number", "other words"];
+/// The words for what stands in other blocks.
+const ELSEWHERE: [&str; 2] = ["before", "after it"];
+
+/// Returns whether a condition or a need is one of other blocks.
+fn is_elsewhere(text: &str) -> bool {
+    ELSEWHERE.iter().any(|word| text.contains(word))
+}
+
 impl GcodeFault {
     /// Returns the fault without the file that has it.
     pub(crate) fn innermost(&self) -> &GcodeFault {
@@ -373,16 +384,17 @@ impl GcodeFault {
     pub(super) fn is_of_block(&self) -> bool {
         match self.innermost() {
             GcodeFault::Combination { condition, .. } => {
-                let own = ["its block", "its number", "other words"];
-                own.iter().any(|start| condition.starts_with(start))
+                OF_BLOCK.iter().any(|start| condition.starts_with(start))
+                    && !is_elsewhere(condition)
             }
-            GcodeFault::Missing { needed, .. } => !needed.contains("before"),
-            GcodeFault::Compensation(fault) => matches!(fault, CompensationFault::NoRadius { .. }),
+            GcodeFault::Missing { needed, .. } => !is_elsewhere(needed),
+            GcodeFault::NotRead { remedy, .. } => *remedy != WRITE_OUT,
             GcodeFault::Expression(fault) => !matches!(fault, ExpressionFault::Tie { .. }),
             GcodeFault::Unused { .. }
             | GcodeFault::NoMotionMode
             | GcodeFault::NoFeed { .. }
             | GcodeFault::Arc(_)
+            | GcodeFault::Compensation(_)
             | GcodeFault::CycleBelow { .. }
             | GcodeFault::CycleTooLong
             | GcodeFault::RunsInto { .. }
@@ -398,28 +410,37 @@ impl GcodeFault {
         }
     }
 
-    /// Returns the word that is not read, without which the rest of its block can be.
+    /// Returns the word that is not read, without which the rest of its block can be: a G or M word, or a name that is not known. Known names
+    /// begin statements, to which the rest belongs.
     pub(super) fn unread_word(&self) -> Option<&str> {
+        let is_name =
+            |word: &str| word.chars().all(|c| c.is_ascii_alphanumeric() || "_.$".contains(c));
+        let is_code = |word: &str| {
+            let number = word.strip_prefix(['G', 'M']);
+            number.is_some_and(|number| number.starts_with(|c: char| c.is_ascii_digit()))
+        };
         match self.innermost() {
-            GcodeFault::UnknownWord { word }
-            | GcodeFault::UnknownCode { word }
-            | GcodeFault::NotRead { word, .. } => Some(word.trim_matches('`')),
+            GcodeFault::UnknownWord { word } | GcodeFault::UnknownCode { word } => {
+                Some(word.as_str()).filter(|word| is_name(word))
+            }
+            GcodeFault::NotRead { word, .. } if is_code(word) => Some(word),
+            GcodeFault::NotRead { word, .. } => {
+                word.strip_prefix('`')?.strip_suffix('`').filter(|word| is_name(word))
+            }
             _ => None,
         }
     }
 
-    /// Returns the variable or the name whose value is missing.
-    pub(super) fn missing_value(&self) -> Option<&str> {
-        match self.innermost() {
-            GcodeFault::Expression(ExpressionFault::Unassigned { parameter }) => Some(parameter),
-            // A name that no DEF of Sinumerik has defined.
-            GcodeFault::NotRead { word, .. } => word.strip_prefix('`')?.strip_suffix('`'),
-            _ => None,
-        }
+    /// Returns whether what is not read can be a call, which assigns variables.
+    pub(super) fn leaves_call_out(&self) -> bool {
+        let unread = self.innermost();
+        let is_name = matches!(unread, GcodeFault::NotRead { word, .. } if word.starts_with('`'));
+        is_name
+            || matches!(unread, GcodeFault::NoSubprogram { .. } | GcodeFault::UnknownWord { .. })
     }
 }
 
-/// Returns [`GcodeFault::Combination`].
+/// Returns [`GcodeFault::Combination`]. A condition of the block alone begins with one of [`OF_BLOCK`].
 pub(super) fn combination(
     word: impl Into<String>,
     condition: &'static str,
@@ -437,7 +458,7 @@ pub(super) fn not_read(
     GcodeFault::NotRead { word: word.into(), meaning, remedy }
 }
 
-/// Returns [`GcodeFault::Missing`].
+/// Returns [`GcodeFault::Missing`]. What other blocks lack is needed [before or after](ELSEWHERE).
 pub(super) fn missing(word: impl Into<String>, needed: &'static str) -> GcodeFault {
     GcodeFault::Missing { word: word.into(), needed }
 }

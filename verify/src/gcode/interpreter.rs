@@ -23,8 +23,10 @@ pub struct Interpreter<'a> {
     pub(super) finished: bool,
     /// The line that is executed, and its text.
     pub(super) present: Option<(usize, &'a str)>,
-    /// The error that has stopped the program.
-    error: Option<GcodeError>,
+    /// The number of lines that were executed.
+    lines: usize,
+    /// Set if an error has stopped the program.
+    is_stopped: bool,
     /// The end of the program, once it was executed.
     pub(super) end: Option<End>,
     /// Itself before the first block.
@@ -38,6 +40,14 @@ enum Front<'a> {
     Iso(Box<iso::Program<'a>>),
     Klartext(Box<klartext::Program<'a>>),
     Sinumerik(Box<sinumerik::Program<'a>>),
+}
+
+/// The language of a program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Language {
+    Iso,
+    Klartext,
+    Sinumerik,
 }
 
 /// The state of a program after a line.
@@ -76,10 +86,11 @@ impl<'a> Interpreter<'a> {
         }
         let mut control = Control::new(setup);
         // ISO words mean the same in native programs of Sinumerik, so that one without native words is read as another one.
-        let can_be_native = matches!(control.stated(Rule::Dialect), None | Some(Choice::Sinumerik));
+        let is_sinumerik = control.stated(Rule::Dialect) == Some(Choice::Sinumerik);
+        let can_be_native = is_sinumerik || control.stated(Rule::Dialect).is_none();
         let front = if klartext::is_program(text) {
             Front::Klartext(Box::new(klartext::Program::new(text, setup, &mut control)?))
-        } else if can_be_native && sinumerik::is_native(text) {
+        } else if can_be_native && sinumerik::is_native(text, is_sinumerik) {
             Front::Sinumerik(Box::new(sinumerik::Program::new(text, setup, &mut control)?))
         } else {
             Front::Iso(Box::new(iso::Program::new(text, setup, &mut control)?))
@@ -90,7 +101,8 @@ impl<'a> Interpreter<'a> {
             control,
             finished: false,
             present: None,
-            error: None,
+            lines: 0,
+            is_stopped: false,
             end: None,
             first: None,
         };
@@ -110,9 +122,24 @@ impl<'a> Interpreter<'a> {
     /// Returns an execution of what follows the present block, which goes on behind errors: it finds what else stands in the way of the
     /// program. It begins with the block that has stopped the program, if one has.
     pub fn survey(&self) -> Survey<'a> {
-        let mut rest = Interpreter { finished: false, first: None, ..self.clone() };
-        let error = rest.error.take();
-        Survey::new(rest, error)
+        let mut rest = match &self.first {
+            // The block has changed a part of the state before its error.
+            Some(first) if self.is_stopped => (**first).clone(),
+            _ => Interpreter { finished: false, first: None, ..self.clone() },
+        };
+        while self.is_stopped && rest.lines + 1 < self.lines && rest.execute_line().is_ok() {
+            rest.control.pending.clear();
+        }
+        Survey::new(rest, self.is_stopped)
+    }
+
+    /// Returns the language of the program.
+    pub(super) fn language(&self) -> Language {
+        match &self.front {
+            Front::Iso(_) => Language::Iso,
+            Front::Klartext(_) => Language::Klartext,
+            Front::Sinumerik(_) => Language::Sinumerik,
+        }
     }
 
     /// Returns the lowest and the highest corner of the blank that the program has stated so far as a box, in program coordinates and in
@@ -145,6 +172,7 @@ impl<'a> Interpreter<'a> {
 
     /// Executes the next line, and returns whether the program goes on.
     pub(super) fn execute_line(&mut self) -> Result<bool, GcodeError> {
+        self.lines += 1;
         let file = self.called_file();
         let next = match &mut self.front {
             Front::Iso(program) => program.next_line(),
@@ -175,12 +203,27 @@ impl<'a> Interpreter<'a> {
         }
     }
 
+    /// Executes a text in place of the present line, and returns whether the program goes on.
+    pub(super) fn execute_instead(&mut self, text: &'a str) -> Result<bool, GcodeError> {
+        self.present = self.present.map(|(line, _)| (line, text));
+        self.execute_again()
+    }
+
     /// Ends the program.
     fn end_by(&mut self, end: End) -> Result<bool, GcodeError> {
         let line = self.control.line;
         self.control.end_compensation().map_err(|fault| GcodeError { line, fault })?;
         (self.finished, self.end) = (true, Some(end));
         Ok(false)
+    }
+
+    /// Goes on behind the last line of the main program that was executed, out of all loops and calls, and returns whether it was not there.
+    pub(super) fn go_past(&mut self) -> bool {
+        match &mut self.front {
+            Front::Iso(program) => program.go_past(),
+            Front::Klartext(program) => program.go_past(),
+            Front::Sinumerik(program) => program.go_past(),
+        }
     }
 
     /// Goes on after the end of the loop that begins in the present line, if one does.
@@ -227,7 +270,7 @@ impl Iterator for Interpreter<'_> {
             if let Err(error) = self.execute_line() {
                 self.finished = true;
                 self.control.pending.clear();
-                self.error = Some(error.clone());
+                self.is_stopped = true;
                 return Some(Err(error));
             }
         }

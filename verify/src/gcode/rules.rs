@@ -4,6 +4,7 @@
 //! [`Rule`], and a control makes one [`Choice`] of each. `docs/controls.md` has the sources.
 
 use super::block::{Code, is_keyword};
+use super::sinumerik;
 use crate::gcode::shown;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -736,7 +737,11 @@ fn can_be_ignored(word: &str) -> bool {
         && word.starts_with(|c: char| c.is_ascii_alphabetic());
     match Code::parse(word) {
         Some(code) => code.can_be_ignored(),
-        None => is_name && !word[1..].chars().all(|c| c.is_ascii_digit()) && !is_keyword(word),
+        None => {
+            let is_address =
+                word.get(1..).is_some_and(|rest| rest.chars().all(|c| c.is_ascii_digit()));
+            is_name && !is_address && !is_keyword(word) && !sinumerik::has_effect(word)
+        }
     }
 }
 

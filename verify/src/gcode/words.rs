@@ -48,7 +48,8 @@ const LINES: &str = "post the program with lines and arcs";
 const WITHOUT: &str = "check the program without it";
 const CENTRE: &str = "post the program with the path of the tool";
 const FINAL: &str = "post the program with final coordinates";
-const IGNORE: &str = "name it in `[ignore]` of the job if it moves nothing on this machine";
+pub(super) const IGNORE: &str =
+    "name it in `[ignore]` of the job if it moves nothing on this machine";
 
 /// The words by letter and number.
 #[rustfmt::skip]

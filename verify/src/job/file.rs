@@ -459,18 +459,22 @@ impl JobFile {
             JobTools::Numbered { library, entries } => (library, entries),
         };
         let mut tools = Vec::new();
+        let mut missing: Vec<(u32, usize)> = Vec::new();
         for ToolUse { number, line, .. } in uses {
             // A program without numbers needs no choice if there is one tool.
             let known = match (number, entries.iter().next()) {
                 (Some(number), _) => number,
                 (None, Some((only, _))) if entries.len() == 1 => *only,
-                (None, _) => return Err(JobError::NoTool { number: None, line }),
+                (None, _) => return Err(JobError::NoTool { number, line, others: Vec::new() }),
             };
             let entry = entries.get(&known).cloned().unwrap_or_default();
             let (name, library) = match (entry.tool, library) {
                 (Some(name), _) => (OsString::from(name), None),
                 (None, Some(library)) => (format!("T{known}").into(), Some(library.clone())),
-                (None, None) => return Err(JobError::NoTool { number, line }),
+                (None, None) => {
+                    missing.push((known, line));
+                    continue;
+                }
             };
             tools.push(NamedTool {
                 motions: ToolSelection::Number(number),
@@ -481,6 +485,10 @@ impl JobFile {
                 hand: entry.hand,
                 allow: entry.allow.into_iter().collect(),
             });
+        }
+        if let [(first, line), others @ ..] = &missing[..] {
+            let others = others.iter().map(|(number, _)| *number).collect();
+            return Err(JobError::NoTool { number: Some(*first), line: *line, others });
         }
         Ok(tools)
     }

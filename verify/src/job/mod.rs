@@ -256,12 +256,14 @@ pub enum JobError {
     #[error("{0}")]
     Mismatch(&'static str),
     /// No tool is given for a number of the program.
-    #[error("{}", no_tool(*number, *line))]
+    #[error("{}", no_tool(*number, *line, others))]
     NoTool {
         /// The number; `None` for motions before the first tool change.
         number: Option<u32>,
         /// The line of the first motion with it, 1-based.
         line: usize,
+        /// Further numbers without a tool.
+        others: Vec<u32>,
     },
     /// A program changes tools, and one was given.
     #[error("the program uses T{first} and T{second}: give its tools by number in a job file")]
@@ -369,11 +371,12 @@ impl From<Infallible> for JobError {
     }
 }
 
-fn no_tool(number: Option<u32>, line: usize) -> String {
+fn no_tool(number: Option<u32>, line: usize, others: &[u32]) -> String {
     match number {
         Some(number) => format!(
-            "no tool is given for T{number}: state `tools = \"LIBRARY\"` or `[tool.{number}]` with `tool = \"FILE.tool\"` in \
-             the job"
+            "no tool is given for T{number}{}: state `tools = \"LIBRARY\"` or `[tool.{number}]` with `tool = \"FILE.tool\"` in \
+             the job",
+            others.iter().map(|number| format!(", T{number}")).collect::<String>()
         ),
         None => format!(
             "line {line}: the program moves before its first tool change, or names no tool: give one tool in the job, or use \

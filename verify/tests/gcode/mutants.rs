@@ -286,5 +286,5 @@ fn mutants_end_with_steps_or_with_a_line() {
     let seeds: Vec<Seed> =
         SEEDS.iter().zip(&setups).map(|(&(text, _), setups)| Seed { text, setups }).collect();
     assert_planted_are_found(&seeds, ["M777", "G778", "G10.9"]);
-    read_mutants(&seeds, &PIECES, 10_000, 7);
+    read_mutants(&seeds, &PIECES, 5_000, 7);
 }

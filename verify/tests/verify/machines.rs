@@ -126,13 +126,13 @@ fn all_that_stands_in_the_way_is_listed() {
     assert_eq!(moves(&program).iter().map(|step| step.line).collect::<Vec<_>>(), [2, 3]);
     let stop = program.summary().stop.as_ref().expect("a stop");
     let found = stop.obstacles.iter().map(|one| (one.block.line, one.count, one.fault.to_string()));
-    let all =
-        std::iter::once((stop.error.block.line, 1, stop.error.fault.to_string())).chain(found);
+    let all = std::iter::once((stop.error.block.line, stop.count, stop.error.fault.to_string()))
+        .chain(found);
     let expected = [
-        (4, 1, "the origin of G55 is unknown"),
+        (4, 2, "the origin of G55 is unknown"),
         (5, 1, "M130 is not understood"),
         (6, 1, "the origin of G56 is unknown"),
-        (8, 2, "A is 5, but the machine has no axis A"),
+        (8, 1, "A is 5, but the machine has no axis A"),
         (9, 1, "M131 is not understood"),
         (10, 1, "the radius offset 4 is not known"),
     ];

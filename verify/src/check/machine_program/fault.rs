@@ -1,6 +1,6 @@
 //! Errors of programs on a machine.
 
-use crate::gcode::{BlockLine, GcodeFault};
+use crate::gcode::{BlockLine, GcodeFault, WorkOffset};
 use crate::machine::{InverseError, JointError};
 
 /// A program that cannot be checked on its machine.
@@ -78,9 +78,13 @@ pub enum BlockFault {
 touchoff::debug_as_sentence!(BlockFault);
 
 impl BlockFault {
-    /// Returns whether it is the same as another one, whatever the file and the line.
+    /// Returns whether it is the same as another one, whatever the file and the line, and the position of an axis that the machine lacks.
     pub(super) fn is_same(&self, other: &BlockFault) -> bool {
         match (self, other) {
+            (
+                BlockFault::Step(StepFault::Joint(JointError::NoAxis { letter, .. })),
+                BlockFault::Step(StepFault::Joint(JointError::NoAxis { letter: other, .. })),
+            ) => letter == other,
             (BlockFault::Gcode(fault), BlockFault::Gcode(other)) => {
                 fault.innermost() == other.innermost()
             }
@@ -163,11 +167,11 @@ pub enum StepFault {
     /// The origin of a work offset is unknown.
     #[error(
         "the origin of {offset}{} is unknown: state it, and that of G54, in the job's `work_offsets`",
-        on_sinumerik(offset)
+        on_sinumerik(*offset)
     )]
     NoOrigin {
         /// The work offset.
-        offset: String,
+        offset: WorkOffset,
     },
     /// A work offset, or a rotary axis by G52 or G92, is turned against the part while the program states tips.
     #[error(
@@ -176,20 +180,20 @@ pub enum StepFault {
     )]
     TurnedOffset {
         /// The work offset.
-        offset: String,
+        offset: WorkOffset,
     },
 }
 
 touchoff::debug_as_sentence!(StepFault);
 
 impl StepFault {
-    /// Returns whether it is one of what the job states, whatever the positions in the program.
-    pub(super) fn is_of_job(&self) -> bool {
+    /// Returns whether it is one of what the job states, whatever the positions in the program. `is_uncertain` is set if modes of the control
+    /// are not known.
+    pub(super) fn is_of_job(&self, is_uncertain: bool) -> bool {
         match self {
-            StepFault::NoLength
-            | StepFault::NoPartPosition
-            | StepFault::NoOrigin { .. }
-            | StepFault::TurnedOffset { .. } => true,
+            // They depend on tool centre point control.
+            StepFault::NoLength | StepFault::NoPartPosition => !is_uncertain,
+            StepFault::NoOrigin { .. } | StepFault::TurnedOffset { .. } => true,
             StepFault::Joint(error) => matches!(error, JointError::NoAxis { .. }),
             StepFault::Inverse(_)
             | StepFault::Length { .. }
@@ -201,11 +205,16 @@ impl StepFault {
 }
 
 /// Returns the word of native programs of Sinumerik for a work offset, where it is another one.
-fn on_sinumerik(offset: &str) -> &'static str {
+fn on_sinumerik(offset: WorkOffset) -> String {
     match offset {
-        "G58" => " (G505 on Sinumerik)",
-        "G59" => " (G506 on Sinumerik)",
-        _ => "",
+        WorkOffset::Standard(number @ 5..=6) => {
+            format!(" (G{} on Sinumerik)", 500 + u32::from(number))
+        }
+        WorkOffset::Additional(number) => {
+            let word = WorkOffset::FIRST_OF_SINUMERIK - 1 + u32::from(number);
+            if word <= 599 { format!(" (G{word} on Sinumerik)") } else { String::new() }
+        }
+        WorkOffset::Off | WorkOffset::Standard(_) => String::new(),
     }
 }
 
@@ -215,8 +224,18 @@ mod tests {
 
     #[test]
     fn an_unknown_origin_has_the_word_of_the_program() {
-        let sentence = |offset: &str| StepFault::NoOrigin { offset: offset.to_owned() }.to_string();
-        assert!(sentence("G58").starts_with("the origin of G58 (G505 on Sinumerik) is unknown"));
-        assert!(sentence("G55").starts_with("the origin of G55 is unknown"));
+        let sentence = |offset| StepFault::NoOrigin { offset }.to_string();
+        let further = sentence(WorkOffset::Standard(5));
+        assert!(
+            further.starts_with("the origin of G58 (G505 on Sinumerik) is unknown"),
+            "{further}"
+        );
+        let additional = sentence(WorkOffset::Additional(93));
+        assert!(
+            additional.starts_with("the origin of G54.1 P93 (G599 on Sinumerik) is"),
+            "{additional}"
+        );
+        assert!(sentence(WorkOffset::Additional(94)).starts_with("the origin of G54.1 P94 is"));
+        assert!(sentence(WorkOffset::Standard(2)).starts_with("the origin of G55 is unknown"));
     }
 }

@@ -663,7 +663,7 @@ impl<'a> Resolver<'a> {
             match self.known_in_machine(&state.origin).filter(|_| self.is_placed) {
                 Some(origin) => origin,
                 None => {
-                    return Err(StepFault::NoOrigin { offset: state.work_offset.to_string() });
+                    return Err(StepFault::NoOrigin { offset: state.work_offset });
                 }
             }
         };
@@ -679,7 +679,7 @@ impl<'a> Resolver<'a> {
             let is_table_turned = self.rotary(Side::Table).any(|k| origin[k] != 0.0)
                 && self.ask(Rule::TcpStart, step) != Some(Choice::TableAsItStands);
             if state.origin_rotation != 0.0 || has_rotary_offset || is_table_turned {
-                return Err(StepFault::TurnedOffset { offset: state.work_offset.to_string() });
+                return Err(StepFault::TurnedOffset { offset: state.work_offset });
             }
             // The origin of the part's frame is that of G54.
             linear -= Vector3::new(self.origin[0], self.origin[1], self.origin[2]);

@@ -65,6 +65,8 @@ pub struct MachineSummary {
 pub struct ProgramStop {
     /// The block and its fault.
     pub error: BlockError,
+    /// The number of blocks that have this fault.
+    pub count: usize,
     /// What else stands in the way behind it, the first hundred.
     pub obstacles: Vec<Obstacle>,
 }
@@ -341,13 +343,14 @@ impl MachineSummary {
     /// Returns what this reading leaves open.
     fn gaps(&self) -> Vec<Gap> {
         let mut gaps = Vec::new();
-        if let Some(ProgramStop { error, obstacles }) = &self.stop {
+        if let Some(ProgramStop { error, count, obstacles }) = &self.stop {
             let weight = GapWeight::Stops;
-            let reason = format!("{}; the program is checked up to here", error.fault);
-            gaps.push(Gap::new(error.block, weight, reason));
+            let times = |count| if count > 1 { format!(" ({count} times)") } else { String::new() };
+            let BlockError { block, fault } = error;
+            let reason = format!("{fault}{}; the program is checked up to here", times(*count));
+            gaps.push(Gap::new(*block, weight, reason));
             gaps.extend(obstacles.iter().map(|Obstacle { block, count, fault }| {
-                let times = if *count > 1 { format!(" ({count} times)") } else { String::new() };
-                Gap::new(*block, weight, format!("{fault}{times}"))
+                Gap::new(*block, weight, format!("{fault}{}", times(*count)))
             }));
         }
         for UnknownMotions { cause, count, first, first_open } in &self.unknown {

@@ -200,14 +200,17 @@ impl Control {
                 None => Err(missing(code, "D with the diameter of the cutter")),
             };
         }
-        let needed_tool = "a tool in the spindle (T M6), whose radius counts";
+        let needed_tool =
+            "a tool in the spindle before (T and M6, or TOOL CALL), whose radius counts";
         let of_tool = || self.state.tool.ok_or_else(|| missing(code, needed_tool));
         let number = match dialect {
             Some(Choice::Rs274Ngc) if register.is_none_or(|register| register == 0.0) => of_tool()?,
             // D0 selects no edge, which has no radius.
             Some(Choice::Sinumerik) if self.edge == Some(0) => 0,
             Some(Choice::Sinumerik | Choice::Heidenhain) => of_tool()?,
-            _ => self.edge.ok_or_else(|| missing(code, "D with the number of a radius offset"))?,
+            _ => self.edge.ok_or_else(|| {
+                missing(code, "D with the number of a radius offset, in its block or before")
+            })?,
         };
         if number == 0 {
             return Ok(0.0);

@@ -364,7 +364,8 @@ impl Control {
             (None, known @ LengthOffset::On { .. }, _) if code.tenths != 430 => known,
             (None, _, Some(tool)) => self.registered(tool),
             (None, _, None) => {
-                let needed = "H with the number of a length, or a tool in the spindle (T M6)";
+                let needed =
+                    "H with the number of a length, or a tool in the spindle before (T and M6)";
                 return Err(missing(code, needed));
             }
         };

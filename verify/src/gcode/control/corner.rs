@@ -150,7 +150,7 @@ impl Control {
     }
 }
 
-const WRITE_OUT: &str = "write the corner as a motion of its own";
+pub(in crate::gcode) const WRITE_OUT: &str = "write the corner as a motion of its own";
 
 /// Returns the fault of a corner whose neighbours are not those that it needs.
 fn beside(corner: &Corner) -> GcodeFault {

@@ -280,6 +280,8 @@ pub(super) struct Flow<'a> {
     started: bool,
     /// The last line of the main program that was executed.
     furthest: usize,
+    /// The place after it.
+    past: Place,
     repeated: usize,
 }
 
@@ -291,7 +293,6 @@ impl<'a> Flow<'a> {
             is_inner: false,
             below: 0,
             place: sources[0].extent.start,
-            sources,
             calls: Vec::new(),
             repeats: Vec::new(),
             found: HashSet::new(),
@@ -299,6 +300,8 @@ impl<'a> Flow<'a> {
             titled: false,
             started: false,
             furthest: 0,
+            past: sources[0].extent.start,
+            sources,
             repeated: 0,
         }
     }
@@ -368,8 +371,8 @@ impl<'a> Flow<'a> {
         let number = self.place.line;
         self.place = after;
         self.count(1, number).map_err(|fault| GcodeError { line: number, fault })?;
-        if self.is_main() {
-            self.furthest = self.furthest.max(number);
+        if self.is_main() && number > self.furthest {
+            (self.furthest, self.past) = (number, after);
         }
         Ok(Some((number, line)))
     }
@@ -477,6 +480,17 @@ impl<'a> Flow<'a> {
     /// Goes on at a place.
     pub(super) fn jump(&mut self, place: Place) {
         self.place = place;
+    }
+
+    /// Goes on behind the last line of the main program that was executed, and returns whether it was not there.
+    pub(super) fn go_past(&mut self, variables: &mut Variables) -> bool {
+        while let Some(call) = self.calls.pop() {
+            self.end_call(call, variables);
+        }
+        self.repeats.clear();
+        let is_behind = self.place.offset < self.past.offset;
+        self.place = self.past;
+        is_behind
     }
 
     /// Goes on after the line at a place.
@@ -686,16 +700,21 @@ impl<'a> Flow<'a> {
             }
             _ => {
                 if let Some(call) = self.calls.pop() {
-                    self.place = call.return_to;
-                    self.modal = call.modal;
-                    match call.hidden {
-                        Hidden::Locals(locals) => variables.locals = locals,
-                        Hidden::Names(names) => variables.locals.named = names,
-                    }
+                    self.end_call(call, variables);
                 }
             }
         }
         Ok(())
+    }
+
+    /// Returns to the caller.
+    fn end_call(&mut self, call: Call, variables: &mut Variables) {
+        self.place = call.return_to;
+        self.modal = call.modal;
+        match call.hidden {
+            Hidden::Locals(locals) => variables.locals = locals,
+            Hidden::Names(names) => variables.locals.named = names,
+        }
     }
 }
 

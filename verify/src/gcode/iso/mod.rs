@@ -137,6 +137,16 @@ impl<'a> Program<'a> {
         result
     }
 
+    /// Goes on behind the last line of the main program that was executed, out of all loops and calls, and returns whether it was not there.
+    pub(super) fn go_past(&mut self) -> bool {
+        let is_called = !self.waiting.is_empty() || !self.flow.is_main();
+        if !self.waiting.is_empty() {
+            self.flow = self.waiting.swap_remove(0);
+            self.waiting.clear();
+        }
+        self.flow.go_past(&mut self.variables) || is_called
+    }
+
     /// Goes on after the end of the loop that begins in a line, if one does.
     pub(super) fn leave_loop(&mut self, line: usize) {
         if let Some(clause) = self.flow.structure().clause(line) {
@@ -303,15 +313,20 @@ impl<'a> Program<'a> {
             let remedy = "write them in a block before";
             return Err(combination(code, condition, remedy));
         }
-        if line.ignores {
-            // They could be the word's own.
-            if can_own_axes && block.has_any("XYZABCIJK") {
-                let condition = "its block has an ignored word, whose own they could be";
-                let remedy = "write them in a block of their own";
-                return Err(combination("axis words", condition, remedy));
-            }
-            block.drop_letters("PQLRDHE");
+        // They could be the word's own.
+        if can_own_axes && block.has_any("XYZABCIJK") {
+            let condition = "its block has an ignored word, whose own they could be";
+            let remedy = "write them in a block of their own";
+            return Err(combination("axis words", condition, remedy));
         }
+        let ignores = line.ignores;
+        // Letters that no other word has used belong to an ignored one.
+        let check_used = |block: &mut Block| {
+            if ignores {
+                block.drop_letters("PQLRDHE");
+            }
+            block.check_used()
+        };
         if block.passed_over.iter().any(|code| (code.letter, code.tenths) == ('G', 670)) {
             self.flow.modal = None;
         }
@@ -322,13 +337,13 @@ impl<'a> Program<'a> {
         match subprogram.map(|code| code.tenths) {
             Some(tenths @ (970 | 980 | 1980)) => {
                 let call = self.called(block, tenths, line.file.take(), control)?;
-                block.check_used()?;
+                check_used(block)?;
                 self.subprogram(call, number, control)?;
             }
             Some(_) => {
                 let expected = "M99 P with a sequence number of the caller";
                 let target = block.take_whole('P', 1, 99_999_999, expected)?;
-                block.check_used()?;
+                check_used(block)?;
                 if self.flow.is_main() && target.is_none() {
                     control.notes.add(control.block(), NoteKind::Endless);
                     return Ok(Progress::Ended(End::Repeat));
@@ -341,7 +356,7 @@ impl<'a> Program<'a> {
                     _ => self.flow.end_subprogram(target, number, &mut self.variables)?,
                 }
             }
-            None => block.check_used()?,
+            None => check_used(block)?,
         }
         if moves
             && subprogram.is_none()

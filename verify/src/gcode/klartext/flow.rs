@@ -83,6 +83,8 @@ pub(super) struct Flow<'a> {
     place: Place,
     /// The present block.
     present: Place,
+    /// The place after the last block of the main program that was executed.
+    past: Place,
     /// The places after labels.
     labels: Arc<HashMap<Label<'a>, Place>>,
     /// The bytes at which `LBL 0` stands, in order.
@@ -127,6 +129,7 @@ impl<'a> Flow<'a> {
             below: 0,
             place: start,
             present: start,
+            past: start,
             labels: Arc::new(labels),
             ends: ends.into(),
             calls: Vec::new(),
@@ -166,8 +169,20 @@ impl<'a> Flow<'a> {
         self.present = self.place;
         self.place = after;
         let line = self.present.line;
+        if self.below == 0 && self.calls.is_empty() && self.past.offset < after.offset {
+            self.past = after;
+        }
         self.count(1).map_err(|fault| GcodeError { line, fault })?;
         Ok((line, found))
+    }
+
+    /// Goes on behind the last block of the main program that was executed, and returns whether it was not there.
+    pub(super) fn go_past(&mut self) -> bool {
+        let is_behind = !self.calls.is_empty() || self.place.offset < self.past.offset;
+        self.place = self.past;
+        self.calls.clear();
+        self.repeats.clear();
+        is_behind
     }
 
     /// Counts blocks or steps that are executed after a jump. Those before are limited by the text.

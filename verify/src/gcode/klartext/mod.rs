@@ -189,6 +189,19 @@ impl<'a> Program<'a> {
         Ok(())
     }
 
+    /// Goes on behind the last block of the main program that was executed, out of all repeats and calls, and returns whether it was not
+    /// there.
+    pub(super) fn go_past(&mut self) -> bool {
+        let is_called = !self.waiting.is_empty();
+        if is_called {
+            let Waiting { flow, file, local } = self.waiting.swap_remove(0);
+            (self.flow, self.file) = (flow, file);
+            self.parameters.show_local(&local);
+            self.waiting.clear();
+        }
+        self.flow.go_past() || is_called
+    }
+
     /// Returns the next block and its line.
     pub(super) fn next_line(&mut self) -> Result<Option<(usize, &'a str)>, GcodeError> {
         self.flow.next_block().map(Some)

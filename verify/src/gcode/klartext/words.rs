@@ -174,7 +174,11 @@ pub(super) const M_WORDS: [Entry; 57] = [
     refused("M104", "the datum before the program", "write CYCL DEF 247"),
     refused("M118", "motions by hand during the program", WITHOUT),
     refused("M124", "points that the control leaves out", WITHOUT),
-    refused("M130", "a position in the untilted plane", "write PLANE RESET before"),
+    refused(
+        "M130",
+        "a position in the untilted plane",
+        "write the position without it, after PLANE RESET",
+    ),
     refused("M138", "the axes that a tilted plane turns", WITHOUT),
     refused("M143", "the end of a basic rotation that the operator has set", WITHOUT),
     refused(

@@ -314,7 +314,7 @@ fn named(cursor: &mut Cursor, known: &Variables, depth: usize) -> Result<Value, 
         return Err(ExpressionFault::Operation { name: name.to_ascii_uppercase() }.into());
     }
     let Some(reference) = reference(cursor, known, depth)? else {
-        return Err(ExpressionFault::Unassigned { parameter: name.to_ascii_uppercase() }.into());
+        return Err(super::undefined(name));
     };
     known.get(reference)
 }

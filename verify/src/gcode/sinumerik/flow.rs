@@ -205,6 +205,8 @@ pub(super) struct Flow<'a> {
     repeats: Vec<Repeat>,
     /// The end of the text that was executed: what stands before it is repeated.
     furthest: usize,
+    /// The place after the last line of the main program that was executed.
+    past: Place,
     repeated: usize,
 }
 
@@ -215,6 +217,7 @@ impl<'a> Flow<'a> {
             below: 0,
             place: source.sections[source.main].start,
             section: source.main,
+            past: source.sections[source.main].start,
             source,
             targets: HashMap::new(),
             calls: Vec::new(),
@@ -269,6 +272,9 @@ impl<'a> Flow<'a> {
         let is_repeated = self.place.offset < self.furthest || self.is_called();
         self.furthest = self.furthest.max(after.offset);
         self.place = after;
+        if !self.is_called() && self.past.offset < after.offset {
+            self.past = after;
+        }
         if is_repeated {
             self.count(1).map_err(|fault| GcodeError { line: number, fault })?;
         }
@@ -289,6 +295,15 @@ impl<'a> Flow<'a> {
     pub(super) fn count_steps(&mut self, number: usize) -> Result<(), GcodeFault> {
         let is_repeated = self.place.offset < self.furthest || self.is_called();
         if is_repeated { self.count(number) } else { Ok(()) }
+    }
+
+    /// Goes on behind the last line of the main program that was executed, and returns whether it was not there.
+    pub(super) fn go_past(&mut self) -> bool {
+        let is_behind = self.is_called() || self.place.offset < self.past.offset;
+        (self.place, self.section) = (self.past, self.source.main);
+        self.calls.clear();
+        self.repeats.clear();
+        is_behind
     }
 
     /// Goes on where the statement of a line goes that is not followed by its next line.
@@ -510,8 +525,7 @@ pub(super) enum Left {
 
 /// Returns the fault of a jump without a target.
 pub(super) fn no_target(label: &str) -> GcodeFault {
-    let word = format!("a jump to {}", shown(label));
-    missing(word, "that label or block number in the direction of the jump")
+    GcodeFault::NoLabel { label: format!("{} in the direction of the jump", shown(label)) }
 }
 
 /// Returns the name of a subprogram without the parts that its file name adds.

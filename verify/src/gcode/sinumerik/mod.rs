@@ -29,6 +29,7 @@ use flow::{Direction, Flow, Left, RepeatWords, Source, Structure, no_target, tit
 use std::collections::HashMap;
 use std::mem;
 use std::sync::Arc;
+pub(super) use table::has_effect;
 use text::{Cursor, Start, start};
 pub(crate) use variables::is_variable;
 use variables::{Reference, Variables};
@@ -83,9 +84,10 @@ struct Waiting<'a> {
     base: usize,
 }
 
-/// Returns whether a text is a native program of Sinumerik: whether it has a statement that no other language has, and no `#`, which
-/// begins the parameters of others. Comments are not read. Programs of ISO words alone are none.
-pub(super) fn is_native(text: &str) -> bool {
+/// Returns whether a text is a native program of Sinumerik: whether it has a statement that no other language has, or, if the control is
+/// stated to be one, a call by a name alone. Otherwise it has no `#` either, which begins the parameters of others, and no line that begins
+/// with a number, as those of Heidenhain Klartext do. Comments are not read. Programs of ISO words alone are none.
+pub(super) fn is_native(text: &str, is_stated: bool) -> bool {
     let mut found = false;
     for line in text.lines() {
         if title(line).is_some_and(|name| name.len() > 7) {
@@ -95,14 +97,14 @@ pub(super) fn is_native(text: &str) -> bool {
         let parts = start(line);
         let mut words = parts.words;
         found |= parts.label.is_some();
-        // Lines of Heidenhain Klartext begin with their number.
-        if words.peek().is_some_and(|byte| byte.is_ascii_digit()) {
+        if !is_stated && words.peek().is_some_and(|byte| byte.is_ascii_digit()) {
             return false;
         }
+        found |= is_stated && is_call(words);
         let mut is_first = true;
         while !words.is_at_end() {
             match words.byte() {
-                Some(b'#') => return false,
+                Some(b'#') if !is_stated => return false,
                 // A comment elsewhere, and the arguments of a call here, whose name was read before.
                 Some(b'(') => {
                     if words.bracketed([b'(', b')']).is_none() {
@@ -124,6 +126,20 @@ pub(super) fn is_native(text: &str) -> bool {
         }
     }
     found
+}
+
+/// Returns whether a line is the call of a subprogram: `NAME`, `NAME(…)`, `NAME P3` or `L100`.
+fn is_call(mut words: Cursor) -> bool {
+    let name = words.name();
+    let is_number = name.len() > 1 && name.as_bytes()[1..].iter().all(u8::is_ascii_digit);
+    let is_name = match name.as_bytes() {
+        [b'L' | b'l', _, ..] => true,
+        [first, second, ..] => first.is_ascii_alphabetic() && second.is_ascii_alphabetic(),
+        _ => false,
+    };
+    let is_known = super::block::is_keyword(&name.to_ascii_uppercase());
+    let is_alone = words.is_at_end() || matches!(words.byte(), Some(b'(' | b'P' | b'p'));
+    is_name && !is_known && is_alone && (is_number || name.as_bytes()[0].is_ascii_alphabetic())
 }
 
 /// Passes over a name, and returns whether it begins a statement of Sinumerik alone: a word of the tables, a value after `=`, or one of
@@ -187,6 +203,18 @@ impl<'a> Program<'a> {
     /// Returns the next line and its number.
     pub(super) fn next_line(&mut self) -> Result<Option<(usize, &'a str)>, GcodeError> {
         self.flow.next_line().map(Some)
+    }
+
+    /// Goes on behind the last line of the main program that was executed, out of all loops and calls, and returns whether it was not there.
+    pub(super) fn go_past(&mut self) -> bool {
+        let is_called = !self.waiting.is_empty();
+        if is_called {
+            let Waiting { flow, file, stepping, ends, .. } = self.waiting.swap_remove(0);
+            (self.flow, self.file, self.stepping, self.ends) = (flow, file, stepping, ends);
+            self.waiting.clear();
+        }
+        self.variables.leave(0);
+        self.flow.go_past() || is_called
     }
 
     /// Goes on after the end of the loop that begins in a line, if one does.

@@ -257,6 +257,12 @@ pub(super) fn use_of(word: &str) -> Option<Use> {
     Some(Use::Refused { meaning, remedy })
 }
 
+/// Returns whether a word is read, or is refused since it has an effect.
+pub(in crate::gcode) fn has_effect(word: &str) -> bool {
+    let is_statement = STATEMENTS.iter().any(|known| word.eq_ignore_ascii_case(known));
+    is_statement || matches!(use_of(word), Some(Use::Refused { .. }))
+}
+
 /// Statements that other languages do not have, besides the words of the tables.
 const STATEMENTS: &[&str] = &[
     "TRANS", "ATRANS", "ROT", "AROT", "CYCLE800", "CYCLE81", "CYCLE82", "CYCLE83", "CYCLE84",

@@ -18,6 +18,8 @@ use nalgebra::Matrix3;
 #[derive(Clone, Copy, Debug, Default)]
 struct Words {
     assigns: bool,
+    /// Set if the block has a word that the setup ignores, to which letters of the block can belong.
+    ignores: bool,
     /// Components of the tool vector, after `A3=`, `B3=` and `C3=`.
     vector: [Option<f64>; 3],
     /// The number after D.
@@ -85,6 +87,7 @@ impl<'a> Program<'a> {
             corner_feed,
             returns,
             assigns,
+            ignores,
         } = words;
         // It has no effect in a block without a corner.
         if let (Some(corner), Some(feed)) = (&mut block.corner, corner_feed) {
@@ -133,6 +136,10 @@ impl<'a> Program<'a> {
         if !block.is_empty() || block.vector.is_some() || block.modal_corner_feed.is_some() {
             control.execute(block)?;
             self.flow.count_steps(control.pending.len())?;
+            if ignores {
+                // Letters that no other word has used belong to an ignored one.
+                block.drop_letters("PQLRDHE");
+            }
             block.check_used()?;
         }
         if let Some(hole) = self.modal_hole.as_ref().filter(|_| is_motion) {
@@ -176,6 +183,7 @@ impl<'a> Program<'a> {
             'G' | 'M' => {
                 let code = self.code(letter, cursor)?;
                 if control.ignores(&code.to_string()) {
+                    words.ignores = true;
                     control.ignore(code.to_string());
                     return Ok(());
                 }
@@ -206,6 +214,8 @@ impl<'a> Program<'a> {
             'L' => {
                 Err(no_subprogram(begin.rest().split([' ', ';', '\t']).next().unwrap_or_default()))
             }
+            // An argument of an ignored word.
+            _ if words.ignores => self.value(letter, cursor).map(drop),
             _ => Err(GcodeFault::Unused { word: letter }),
         }
     }
@@ -266,6 +276,7 @@ impl<'a> Program<'a> {
         *cursor = after;
         let upper = name.to_ascii_uppercase();
         if control.ignores(&upper) {
+            words.ignores = true;
             self.pass_over(cursor)?;
             control.ignore(upper);
             return Ok(());
