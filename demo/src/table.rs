@@ -4,7 +4,8 @@ use std::error::Error;
 use std::time::Instant;
 use touchoff::scenes::{POSES, ScenePath, tube};
 use touchoff::{Cloud, Part, Pose, Probe, Sampling};
-use touchoff_tools::Fig73;
+
+touchoff::include_tool!("../tools-library/tools/fig_7_3.tool");
 
 /// The thesis's values for a path: contacts at a pose, and the mean time of a query in µs on a 250 MHz R10000.
 struct ThesisValues {

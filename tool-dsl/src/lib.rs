@@ -15,6 +15,8 @@ mod dimension;
 pub mod domain;
 mod elimination;
 pub mod emit;
+#[cfg(feature = "macros")]
+pub mod expand;
 pub mod expr;
 pub mod format;
 pub mod formula;

@@ -68,7 +68,7 @@ fn tool_files() -> Vec<PathBuf> {
     let folders = [
         "tools-library/tools",
         "runtime/examples",
-        "tool-macros/tests/compile_fail",
+        "runtime/tests/mistakes",
         "tool-dsl/src/format",
     ];
     let own = folders.map(|folder| home.join(folder).read_dir().expect("a folder of the project"));
