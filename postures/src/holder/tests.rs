@@ -3,12 +3,14 @@
 use super::*;
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
+use std::sync::LazyLock;
 use touchoff::mesh::shapes;
+use touchoff::tool::Interpreted;
 use touchoff::tool::Surface;
 use touchoff::{Mesh, Tool, TriangleId, Unit};
 
-touchoff::tool! {
-    tool Disc "a ball in a holder with a flat face" {
+static DISC: LazyLock<Interpreted> = LazyLock::new(|| {
+    r#"tool Disc "a ball in a holder with a flat face" {
         units mm;
         profile {
             start (0, 0);
@@ -18,11 +20,13 @@ touchoff::tool! {
             line to (10, 30), (10, 50), (0, 50) as nut;
         }
         niceness cutting: 1;
-    }
-}
+    }"#
+    .parse()
+    .expect("a tool")
+});
 
-touchoff::tool! {
-    tool Nut "a ball in a holder that widens" {
+static NUT: LazyLock<Interpreted> = LazyLock::new(|| {
+    r#"tool Nut "a ball in a holder that widens" {
         units mm;
         profile {
             start (0, 0);
@@ -34,11 +38,13 @@ touchoff::tool! {
             line to (12, 50), (8, 54), (8, 60), (20, 61), (20, 80), (0, 80) as nut;
         }
         niceness cutting: 1;
-    }
-}
+    }"#
+    .parse()
+    .expect("a tool")
+});
 
-touchoff::tool! {
-    tool Lip "a holder with a round lip: lower than where its arc begins and ends" {
+static LIP: LazyLock<Interpreted> = LazyLock::new(|| {
+    r#"tool Lip "a holder with a round lip: lower than where its arc begins and ends" {
         units mm;
         profile {
             start (0, 0);
@@ -49,8 +55,10 @@ touchoff::tool! {
             line to (14, 50), (0, 50) as nut;
         }
         niceness cutting: 1;
-    }
-}
+    }"#
+    .parse()
+    .expect("a tool")
+});
 
 /// Returns the info of a tool whose holder is named as a mounted component.
 fn mounted(tool: &dyn Tool) -> ToolInfo {
@@ -113,7 +121,7 @@ fn cuboid(low: [f64; 3], high: [f64; 3], unit: Unit) -> Mesh {
 
 #[test]
 fn a_flat_holder_stays_above_the_highest_that_it_covers() {
-    let info = mounted(&Disc);
+    let info = mounted(&*DISC);
     // The tip is at the foot of a step 20 high, at a distance of `away`.
     for (away, wanted) in [(5.0, 20.0), (9.5, 20.0), (10.5, 12.0), (40.0, 12.0)] {
         let step = cuboid([away, -50.0, -5.0], [away + 50.0, 50.0, 20.0], Unit::Millimetre);
@@ -127,7 +135,7 @@ fn a_flat_holder_stays_above_the_highest_that_it_covers() {
 
 #[test]
 fn a_wall_that_leans_asks_for_more_the_nearer_it_comes() {
-    let info = mounted(&Disc);
+    let info = mounted(&*DISC);
     let step = cuboid([6.0, -50.0, -5.0], [56.0, 50.0, 20.0], Unit::Millimetre);
     let mut last = 0.0;
     for degrees in [-40.0, -20.0, 0.0, 20.0, 40.0] {
@@ -140,7 +148,7 @@ fn a_wall_that_leans_asks_for_more_the_nearer_it_comes() {
 
 #[test]
 fn a_plane_that_leans_is_highest_at_the_rim() {
-    let info = mounted(&Disc);
+    let info = mounted(&*DISC);
     // The top is 35 above the tip, so that it is above the cutter, too, wherever the rim meets it.
     let block = cuboid([-90.0, -90.0, -90.0], [90.0, 90.0, 35.0], Unit::Millimetre);
     for degrees in [0.0, 1e-9, 15.0, 40.0] {
@@ -177,7 +185,7 @@ fn no_place_of_a_part_needs_more_and_one_beside_it_as_much() {
         shapes::sphere(18.0, 3, Unit::Millimetre).expect("a sphere"),
         shapes::tube(12.0, 25.0, 40.0, 24, 3, Unit::Millimetre).expect("a tube"),
     ];
-    let tools: [&dyn Tool; 3] = [&Disc, &Nut, &Lip];
+    let tools: [&dyn Tool; 3] = [&*DISC, &*NUT, &*LIP];
     let mut more = 0;
     for tool in tools {
         let info = mounted(tool);
@@ -212,7 +220,7 @@ fn no_place_of_a_part_needs_more_and_one_beside_it_as_much() {
 
 #[test]
 fn the_unit_of_the_part_is_that_of_the_answer() {
-    let info = mounted(&Nut);
+    let info = mounted(&*NUT);
     let axis = Vector3::new(0.2, 0.1, 1.0);
     let of = |unit: Unit| {
         let scale = Unit::Millimetre.factor_to(unit);
@@ -231,7 +239,7 @@ fn the_unit_of_the_part_is_that_of_the_answer() {
 
 #[test]
 fn the_least_of_all_postures_counts_in_any_order() {
-    let info = mounted(&Nut);
+    let info = mounted(&*NUT);
     let holder = Holder::new(&info, 1.0).expect("a holder");
     let bvh = TriangleBvh::new(&cuboid([5.0, -50.0, -5.0], [55.0, 50.0, 20.0], Unit::Millimetre));
     let mut postures: Vec<_> = (0..40)
@@ -260,5 +268,5 @@ fn the_least_of_all_postures_counts_in_any_order() {
     let wall = TriangleBvh::new(&cuboid([5.0, -50.0, -5.0], [55.0, 50.0, 90.0], Unit::Millimetre));
     let upright = [(Point3::origin(), Vector3::z())];
     assert_eq!(LeastStickout::new(holder, &wall).of(upright), Some(30.0));
-    assert!(Holder::new(Nut.info(), 1.0).is_none());
+    assert!(Holder::new(NUT.info(), 1.0).is_none());
 }

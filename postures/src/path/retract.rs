@@ -311,10 +311,12 @@ mod tests {
     use crate::path::tilt::TiltLimit;
     use crate::{Directions, Rules};
     use std::f64::consts::PI;
+    use std::sync::LazyLock;
     use touchoff::mesh::shapes;
+    use touchoff::tool::Interpreted;
 
-    touchoff::tool! {
-        tool Mill "a ball on a neck, in a wider holder" {
+    static MILL: LazyLock<Interpreted> = LazyLock::new(|| {
+        r#"tool Mill "a ball on a neck, in a wider holder" {
             units mm;
             profile {
                 start (0, 0);
@@ -324,8 +326,10 @@ mod tests {
                 line to (9, 20), (9, 40), (0, 40) as holder;
             }
             niceness cutting: 1;
-        }
-    }
+        }"#
+        .parse()
+        .expect("a tool")
+    });
 
     /// The oracle proves every way, and takes the shortest that is proved.
     #[test]
@@ -336,7 +340,7 @@ mod tests {
         let rules = Rules { tolerance: 0.01, niceness: 0.0, allowed: Vec::new() };
         let tilt = TiltLimit::new(PI).expect("an angle");
         let range = AxisRange { tilt, machine: None };
-        let mut planner = PathPlanner::new(&bvh, None, &Mill, &rules, range).expect("a planner");
+        let mut planner = PathPlanner::new(&bvh, None, &*MILL, &rules, range).expect("a planner");
         let sphere = RetractSphere::new(&bvh, None, planner.placement.reach());
         // The ball is a little off the part, inside and outside.
         let mut poses = Vec::new();

@@ -3,9 +3,11 @@
 use super::*;
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
+use std::sync::LazyLock;
+use touchoff::tool::Interpreted;
 
-touchoff::tool! {
-    tool Ball "a ball on a straight shank" {
+static BALL: LazyLock<Interpreted> = LazyLock::new(|| {
+    r#"tool Ball "a ball on a straight shank" {
         units mm;
         profile {
             start (0, 0);
@@ -14,11 +16,13 @@ touchoff::tool! {
             line to (3, 20), (0, 20) as shank;
         }
         niceness cutting: 1;
-    }
-}
+    }"#
+    .parse()
+    .expect("a tool")
+});
 
-touchoff::tool! {
-    tool Bull "a bull nose" {
+static BULL: LazyLock<Interpreted> = LazyLock::new(|| {
+    r#"tool Bull "a bull nose" {
         units mm;
         profile {
             start (0, 0);
@@ -28,11 +32,13 @@ touchoff::tool! {
             line to (6, 30), (0, 30) as shank;
         }
         niceness cutting: 1;
-    }
-}
+    }"#
+    .parse()
+    .expect("a tool")
+});
 
-touchoff::tool! {
-    tool Flat "a flat end, sharp, in inches" {
+static FLAT: LazyLock<Interpreted> = LazyLock::new(|| {
+    r#"tool Flat "a flat end, sharp, in inches" {
         units inch;
         profile {
             start (0, 0);
@@ -41,11 +47,13 @@ touchoff::tool! {
             line to (0.25, 2), (0, 2) as shank;
         }
         niceness cutting: 1;
-    }
-}
+    }"#
+    .parse()
+    .expect("a tool")
+});
 
-touchoff::tool! {
-    tool Point "a cone of 90 degrees" {
+static POINT: LazyLock<Interpreted> = LazyLock::new(|| {
+    r#"tool Point "a cone of 90 degrees" {
         units mm;
         profile {
             start (0, 0);
@@ -53,11 +61,13 @@ touchoff::tool! {
             line to (3, 20), (0, 20) as shank;
         }
         niceness cutting: 1;
-    }
-}
+    }"#
+    .parse()
+    .expect("a tool")
+});
 
-touchoff::tool! {
-    tool Lollipop "most of a ball on a thin neck" {
+static LOLLIPOP: LazyLock<Interpreted> = LazyLock::new(|| {
+    r#"tool Lollipop "most of a ball on a thin neck" {
         units mm;
         profile {
             start (0, 0);
@@ -65,11 +75,13 @@ touchoff::tool! {
             line to (3, 40), (0, 40) as neck;
         }
         niceness cutting: 1;
-    }
-}
+    }"#
+    .parse()
+    .expect("a tool")
+});
 
-touchoff::tool! {
-    tool Steps "two steps, both sharp, and what is cut away" {
+static STEPS: LazyLock<Interpreted> = LazyLock::new(|| {
+    r#"tool Steps "two steps, both sharp, and what is cut away" {
         units mm;
         profile {
             start (0, 0);
@@ -79,8 +91,10 @@ touchoff::tool! {
             line to (8, 20), (0, 20) as shank;
         }
         niceness cutting: 1;
-    }
-}
+    }"#
+    .parse()
+    .expect("a tool")
+});
 
 fn draws() -> impl FnMut(f64, f64) -> f64 {
     let mut random = Pcg64Mcg::seed_from_u64(3);
@@ -139,7 +153,7 @@ fn leaning(degrees: f64) -> Vector3<f64> {
 #[test]
 fn below_the_place_is_the_tool_and_above_beside_it_the_face() {
     let mut draw = draws();
-    let tools: [&dyn Tool; 6] = [&Ball, &Bull, &Flat, &Point, &Lollipop, &Steps];
+    let tools: [&dyn Tool; 6] = [&*BALL, &*BULL, &*FLAT, &*POINT, &*LOLLIPOP, &*STEPS];
     for tool in tools {
         let size = tool.info().size() * tool.info().unit.factor_to(Unit::Millimetre);
         let mut stood = 0;
@@ -177,14 +191,14 @@ fn a_ball_stands_as_high_as_its_middle_whichever_way_it_leans() {
     let place = Point3::new(1.0, 2.0, 3.0);
     for degrees in [0.0, 1e-9, 10.0, 45.0, 89.9] {
         let axis = leaning(degrees);
-        let all = contacts(&Ball, place, Vector3::z(), axis);
+        let all = contacts(&*BALL, place, Vector3::z(), axis);
         assert_eq!(all.len(), 1, "{degrees}");
         let middle = all[0].tip + axis * 3.0;
         assert!((middle - (place + Vector3::z() * 3.0)).norm() < 1e-12, "{degrees}");
     }
     // Beyond a right angle the flute is in the way.
-    assert!(contacts(&Ball, place, Vector3::z(), leaning(90.1)).is_empty());
-    assert!(contacts(&Ball, place, Vector3::z(), -Vector3::z()).is_empty());
+    assert!(contacts(&*BALL, place, Vector3::z(), leaning(90.1)).is_empty());
+    assert!(contacts(&*BALL, place, Vector3::z(), -Vector3::z()).is_empty());
 }
 
 #[test]
@@ -192,44 +206,44 @@ fn a_bull_nose_that_leans_stands_on_its_corners_arc() {
     for degrees in [1.0, 30.0, 89.0] {
         let (sine, cosine) = f64::to_radians(degrees).sin_cos();
         let axis = leaning(degrees);
-        let all = contacts(&Bull, Point3::origin(), Vector3::z(), axis);
+        let all = contacts(&*BULL, Point3::origin(), Vector3::z(), axis);
         assert_eq!(all.len(), 1, "{degrees}");
         // The arc's centre is 4 from the axis, on its lowest side, and 2 along it.
         let corner = all[0].tip + Vector3::new(cosine, 0.0, -sine) * 4.0 + axis * 2.0;
         assert!((corner - Point3::new(0.0, 0.0, 2.0)).norm() < 1e-12, "{degrees}: {corner}");
     }
     // An upright tool stands on its flat face, which has no single point of contact.
-    assert!(contacts(&Bull, Point3::origin(), Vector3::z(), Vector3::z()).is_empty());
+    assert!(contacts(&*BULL, Point3::origin(), Vector3::z(), Vector3::z()).is_empty());
 }
 
 #[test]
 fn a_flat_end_stands_on_its_corner_in_the_parts_unit() {
     for degrees in [0.001, 30.0, 89.0] {
         let axis = leaning(degrees);
-        let all = contacts(&Flat, Point3::origin(), Vector3::z(), axis);
+        let all = contacts(&*FLAT, Point3::origin(), Vector3::z(), axis);
         assert_eq!(all.len(), 1, "{degrees}");
         let off = Point3::origin() - all[0].tip;
         assert!(off.dot(&axis).abs() < 1e-9 && (off.norm() - 6.35).abs() < 1e-9, "{off}");
     }
-    assert!(contacts(&Flat, Point3::origin(), Vector3::z(), leaning(90.1)).is_empty());
+    assert!(contacts(&*FLAT, Point3::origin(), Vector3::z(), leaning(90.1)).is_empty());
 }
 
 #[test]
 fn a_cones_tip_touches_as_far_as_its_side_lets_it() {
     for (degrees, count) in [(0.0, 1), (44.0, 1), (46.0, 0)] {
-        let all = contacts(&Point, Point3::origin(), Vector3::z(), leaning(degrees));
+        let all = contacts(&*POINT, Point3::origin(), Vector3::z(), leaning(degrees));
         assert_eq!(all.len(), count, "{degrees}");
         assert!(all.iter().all(|contact| contact.tip.coords.norm() < 1e-12));
     }
     // At this angle the cone's upper corner would touch, but the shank above it does not cut.
-    assert!(contacts(&Point, Point3::origin(), Vector3::z(), leaning(60.0)).is_empty());
+    assert!(contacts(&*POINT, Point3::origin(), Vector3::z(), leaning(60.0)).is_empty());
 }
 
 #[test]
 fn a_lollipop_touches_what_it_is_under() {
     // The neck begins where the normal points 53 degrees upward.
     let under =
-        |degrees: f64| contacts(&Lollipop, Point3::origin(), -Vector3::z(), leaning(degrees));
+        |degrees: f64| contacts(&*LOLLIPOP, Point3::origin(), -Vector3::z(), leaning(degrees));
     assert!(under(0.0).is_empty() && under(36.0).is_empty());
     for degrees in [38.0, 90.0, 140.0, 180.0] {
         let all = under(degrees);
@@ -242,7 +256,7 @@ fn a_lollipop_touches_what_it_is_under() {
 #[test]
 fn each_step_touches_and_a_cove_never_does() {
     let axis = leaning(45.0);
-    let mut all = contacts(&Steps, Point3::origin(), Vector3::z(), axis);
+    let mut all = contacts(&*STEPS, Point3::origin(), Vector3::z(), axis);
     all.sort_by(|a, b| b.tip.z.total_cmp(&a.tip.z));
     // Where the upper step touches, the lower one passes through the face. Contacts do not exclude that.
     let corners = all.iter().map(|contact| {
@@ -255,8 +269,8 @@ fn each_step_touches_and_a_cove_never_does() {
     assert_eq!(all.len(), 2);
 }
 
-touchoff::tool! {
-    tool Sharp "two surfaces that meet in a sharp corner" {
+static SHARP: LazyLock<Interpreted> = LazyLock::new(|| {
+    r#"tool Sharp "two surfaces that meet in a sharp corner" {
         units mm;
         profile {
             start (0, 0);
@@ -266,12 +280,14 @@ touchoff::tool! {
         }
         niceness flute: 1;
         niceness face: 0.25 + z;
-    }
-}
+    }"#
+    .parse()
+    .expect("a tool")
+});
 
 #[test]
 fn a_corner_is_as_nice_as_the_less_nice_of_what_meets_there() {
-    let mut placement = ToolPlacement::new(&Sharp, Unit::Metre);
+    let mut placement = ToolPlacement::new(&*SHARP, Unit::Metre);
     let target = SurfacePoint { point: Point3::new(0.1, 0.0, 0.2), normal: Vector3::z() };
     let axes = (1..90).map(|degrees| {
         let (sine, cosine) = f64::from(degrees).to_radians().sin_cos();

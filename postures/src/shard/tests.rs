@@ -1,7 +1,7 @@
 //! Shards that merge to the rows of a whole sweep, in any order; files that are damaged, foreign, missing or there twice.
 
 use super::*;
-use crate::map::tests::{Ball, Flat};
+use crate::map::tests::{BALL, FLAT};
 use crate::sweep::PostureSweep;
 use crate::{Directions, Rules};
 use std::fs;
@@ -21,7 +21,7 @@ struct Study {
     keep: NonZeroU16,
 }
 
-const TOOLS: [&dyn Tool; 2] = [&Ball, &Flat];
+const TOOLS: [&dyn Tool; 2] = [&*BALL, &*FLAT];
 
 impl Study {
     fn new() -> Study {

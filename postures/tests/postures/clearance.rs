@@ -1,7 +1,7 @@
 //! Distances between surfaces of a tool and a part, compared with a fine raster of its triangles.
 
 use crate::{
-    Ball, HOLDER, Mill, NECK, Plain, cutting_distance, is_inside, polyline_distance,
+    BALL, HOLDER, MILL, NECK, PLAIN, cutting_distance, is_inside, polyline_distance,
     random_numbers, random_pose,
 };
 use crate::{parts, sample_points, surface};
@@ -17,7 +17,7 @@ fn clearances_agree_with_sample_points() {
     let (mut clear, mut touching) = (0, 0);
     for mesh in parts() {
         let bvh = TriangleBvh::new(&mesh);
-        let mut certifier = Certifier::new(&bvh, &Mill).expect("a profile");
+        let mut certifier = Certifier::new(&bvh, &*MILL).expect("a profile");
         for _ in 0..60 {
             let pose = random_pose(&mut random, 30.0);
             let (points, spacing) = sample_points(&mesh, &pose);
@@ -30,7 +30,7 @@ fn clearances_agree_with_sample_points() {
                         .fold(f64::INFINITY, f64::min)
                 };
                 let surfaces: Vec<SurfaceId> =
-                    names.iter().map(|name| surface(&Mill, name)).collect();
+                    names.iter().map(|name| surface(&*MILL, name)).collect();
                 let clearance = certifier.clearance_of(&surfaces, &pose, 1e-6);
                 let Interval { low, high } = clearance.expect("a surface of the tool").distance;
                 let nearest =
@@ -70,8 +70,8 @@ fn clearances_agree_with_sample_points() {
 fn clearance_above_a_plate_is_the_height_of_each_surface() {
     let (low, high) = (Point3::new(-50.0, -50.0, -9.0), Point3::new(50.0, 50.0, 0.0));
     let bvh = TriangleBvh::new(&shapes::cuboid(low, high, Unit::Millimetre).expect("a plate"));
-    let mut certifier = Certifier::new(&bvh, &Mill).expect("a profile");
-    let [neck, holder] = ["neck", "holder"].map(|name| surface(&Mill, name));
+    let mut certifier = Certifier::new(&bvh, &*MILL).expect("a profile");
+    let [neck, holder] = ["neck", "holder"].map(|name| surface(&*MILL, name));
     for (tip, to_neck, to_holder) in
         [(1.0, 13.0, 21.0), (-0.5, 11.5, 19.5), (-12.0, 0.0, 8.0), (-25.0, 0.0, 0.0)]
     {
@@ -99,10 +99,10 @@ fn clearance_above_a_plate_is_the_height_of_each_surface() {
 fn clearance_of_no_surface_is_infinite_and_without_a_profile_that_of_the_tool() {
     let bvh = TriangleBvh::new(&parts()[0]);
     let pose = Pose::from_axis(Point3::new(0.0, 0.0, 5.0), Vector3::z()).expect("a pose");
-    let mut certifier = Certifier::new(&bvh, &Ball).expect("a profile");
+    let mut certifier = Certifier::new(&bvh, &*BALL).expect("a profile");
     let none = certifier.clearance_of(&[], &pose, 0.0).expect("no surface");
     assert_eq!(none.distance.low, f64::INFINITY);
-    let mut certifier = Certifier::new(&bvh, &Plain).expect("a depth that is known");
+    let mut certifier = Certifier::new(&bvh, &*PLAIN).expect("a depth that is known");
     let Interval { low, high } = certifier
         .clearance_of(&[SurfaceId(0)], &pose, 1e-6)
         .expect("a surface of the tool")

@@ -8,20 +8,24 @@ use rand_pcg::Pcg64Mcg;
 use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
 use std::process::{Command, Stdio};
+use std::sync::LazyLock;
 use std::time::Duration;
 use std::{env, fs, thread};
 use touchoff::TriangleId;
 use touchoff::mesh::shapes;
+use touchoff::tool::Interpreted;
 use touchoff::{Mesh, Unit};
 use touchoff_postures::{Accessibility, MapIdentity, MapRow, PostureMap, PostureRecord, Rules};
 
-touchoff::tool! {
-    tool Ball "a ball" {
+static BALL: LazyLock<Interpreted> = LazyLock::new(|| {
+    r#"tool Ball "a ball" {
         units mm;
         profile { start (0, 0); arc to (0, 6) center (0, 3) as ball cutting; }
         niceness cutting: 1;
-    }
-}
+    }"#
+    .parse()
+    .expect("a tool")
+});
 
 /// Environment variable for the path of the map that the killed process records into.
 const MAP_PATH_VARIABLE: &str = "TOUCHOFF_KILLED_MAP";
@@ -36,7 +40,7 @@ fn sphere() -> Mesh {
 
 fn identity() -> MapIdentity {
     let rules = Rules { tolerance: 0.01, niceness: 0.0, allowed: Vec::new() };
-    let identity = MapIdentity::new(&sphere(), &[&Ball], rules).expect("rules");
+    let identity = MapIdentity::new(&sphere(), &[&*BALL], rules).expect("rules");
     identity.with_directions(vec![[0.0, 0.0, 1.0]; 600])
 }
 

@@ -12,12 +12,14 @@ mod validator;
 use nalgebra::Point3;
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
+use std::sync::LazyLock;
 use sweep::sweep_all;
 use touchoff::mesh::shapes;
+use touchoff::tool::Interpreted;
 use touchoff::{Mesh, Pose, SurfaceId, Tool, TriangleId, Unit};
 
-touchoff::tool! {
-    tool Mill "a ball on a neck, in a wider holder" {
+static MILL: LazyLock<Interpreted> = LazyLock::new(|| {
+    r#"tool Mill "a ball on a neck, in a wider holder" {
         units mm;
         profile {
             start (0, 0);
@@ -27,24 +29,30 @@ touchoff::tool! {
             line to (9, 20), (9, 40), (0, 40) as holder;
         }
         niceness cutting: 1 - depth/3;
-    }
-}
+    }"#
+    .parse()
+    .expect("a tool")
+});
 
-touchoff::tool! {
-    tool Ball "nothing but a ball" {
+static BALL: LazyLock<Interpreted> = LazyLock::new(|| {
+    r#"tool Ball "nothing but a ball" {
         units mm;
         profile { start (0, 0); arc to (0, 6) center (0, 3) as ball cutting; }
         niceness cutting: 1;
-    }
-}
+    }"#
+    .parse()
+    .expect("a tool")
+});
 
-touchoff::tool! {
-    tool Plain "a ball without a profile" {
+static PLAIN: LazyLock<Interpreted> = LazyLock::new(|| {
+    r#"tool Plain "a ball without a profile" {
         units mm;
         region ball as ball cutting where hypot(d, z - 3) <= 3 { depth: 3 - hypot(d, z - 3); }
         niceness cutting: 1;
-    }
-}
+    }"#
+    .parse()
+    .expect("a tool")
+});
 
 /// Segments of a profile that do not cut, as `[d, z]`: the neck and the holder of a [`Mill`].
 const NECK: [[f64; 2]; 3] = [[3.0, 12.0], [2.5, 12.0], [2.5, 20.0]];

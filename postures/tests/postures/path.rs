@@ -1,12 +1,14 @@
 //! Paths: no cutter location and no motion is deeper than the tolerance at any sample point.
 
-use crate::{HOLDER, Mill, NECK, cutting_distance, is_inside, polyline_distance};
+use crate::{HOLDER, MILL, NECK, cutting_distance, is_inside, polyline_distance};
 use nalgebra::{Point3, Rotation3, Vector3};
 use std::f64::consts::PI;
 use std::num::NonZeroU16;
 use std::ops::ControlFlow;
+use std::sync::LazyLock;
 use touchoff::certify::TriangleBvh;
 use touchoff::mesh::shapes;
+use touchoff::tool::Interpreted;
 use touchoff::{Mesh, Tool, TriangleId, Unit};
 use touchoff_postures::path::{
     LeftOutReason, PathError, PathRequest, Pattern, ToolAxisLimits, ToolPath,
@@ -14,8 +16,8 @@ use touchoff_postures::path::{
 use touchoff_postures::sweep::PostureSweep;
 use touchoff_postures::{Directions, Rules};
 
-touchoff::tool! {
-    tool Wide "a bull nose that is larger than most parts here" {
+static WIDE: LazyLock<Interpreted> = LazyLock::new(|| {
+    r#"tool Wide "a bull nose that is larger than most parts here" {
         units mm;
         profile {
             start (0, 0);
@@ -24,8 +26,10 @@ touchoff::tool! {
             line to (65, 40), (0, 40) as body;
         }
         niceness cutting: 1;
-    }
-}
+    }"#
+    .parse()
+    .expect("a tool")
+});
 
 const TOLERANCE: f64 = 0.01;
 
@@ -188,8 +192,8 @@ fn sphere() -> Mesh {
 }
 
 fn plan_and_check(mesh: Mesh, normal: [f64; 3], spacing: [f64; 2]) -> ToolPath {
-    let case = Case::new(mesh, &Mill);
-    let path = case.plan_over_planes(&Mill, normal, spacing);
+    let case = Case::new(mesh, &*MILL);
+    let path = case.plan_over_planes(&*MILL, normal, spacing);
     let [feed, rapid] = max_depths(&case.mesh, &path);
     println!(
         "{} locations, {} contact points, {} left out, {} retracts, turns {:?}, feed {feed:?}, rapid {rapid:?}",
@@ -263,12 +267,12 @@ fn covers_an_open_sheet_and_a_bore() {
 /// no trace in it: the oracle samples its surface, and locates the tips.
 #[test]
 fn rapid_traverse_keeps_clear_of_the_stock() {
-    let case = Case::new(step(), &Mill);
+    let case = Case::new(step(), &*MILL);
     let [low, high] = [Point3::new(-15.0, -13.0, 0.0), Point3::new(15.0, 13.0, 17.0)];
     let stock = shapes::cuboid(low, high, Unit::Millimetre).expect("a stock");
     let bvh = TriangleBvh::new(&stock);
     let pattern = Pattern { normal: [0.0, 1.0, 0.0], stepover: 2.0, step: 1.0 };
-    let request = case.request(&Mill, &pattern);
+    let request = case.request(&*MILL, &pattern);
     let without = request.plan().expect("a path");
     let path = PathRequest { stock: Some(&bvh), ..request }.plan().expect("a path");
     let in_stock = |path: &ToolPath| {
@@ -298,8 +302,8 @@ fn paths_are_reproducible_in_every_unit_and_position() {
         let vertices =
             mesh.vertices().iter().map(|vertex| vertex * scale + Vector3::repeat(offset));
         let mesh = Mesh::new(vertices, mesh.triangles().to_vec(), unit).expect("a mesh");
-        let case = Case::new(mesh, &Mill);
-        let path = case.plan_over_planes(&Mill, [0.0, 0.0, 1.0], [4.0, 2.0]);
+        let case = Case::new(mesh, &*MILL);
+        let path = case.plan_over_planes(&*MILL, [0.0, 0.0, 1.0], [4.0, 2.0]);
         let [feed, rapid] = max_depths(&case.mesh, &path);
         let rounding = 1e-9 + 1e-13 * offset;
         let max_depth = feed.into_iter().chain(rapid).fold(0.0, f64::max);
@@ -324,9 +328,9 @@ fn paths_are_reproducible_in_every_unit_and_position() {
 
 #[test]
 fn rejects_invalid_patterns() {
-    let case = Case::new(sphere(), &Mill);
+    let case = Case::new(sphere(), &*MILL);
     let pattern = Pattern { normal: [0.0, 0.0, 1.0], stepover: 2.0, step: 1.0 };
-    let error_of = |pattern: Pattern| case.plan(&Mill, &pattern).expect_err("no path");
+    let error_of = |pattern: Pattern| case.plan(&*MILL, &pattern).expect_err("no path");
     for invalid in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let error = error_of(Pattern { stepover: invalid, ..pattern });
         assert!(matches!(error, PathError::Pattern { what: "a stepover", .. }), "{error}");
@@ -346,22 +350,26 @@ fn rejects_invalid_patterns() {
     }
     // One plane, and one point on a line, are enough.
     for large in [1e3, 1e300] {
-        let path = case.plan(&Mill, &Pattern { stepover: large, step: large, ..pattern });
+        let path = case.plan(&*MILL, &Pattern { stepover: large, step: large, ..pattern });
         assert!(path.expect("a path").contact_points > 0);
     }
     // The normal may have any length.
     for size in [1e-300, 1e300] {
         let path =
-            case.plan(&Mill, &Pattern { normal: [0.0, 0.0, size], ..pattern }).expect("a path");
-        assert_eq!(path.locations, case.plan(&Mill, &pattern).expect("a path").locations, "{size}");
+            case.plan(&*MILL, &Pattern { normal: [0.0, 0.0, size], ..pattern }).expect("a path");
+        assert_eq!(
+            path.locations,
+            case.plan(&*MILL, &pattern).expect("a path").locations,
+            "{size}"
+        );
     }
     let empty = vec![Vec::new(); case.access.len()];
     for access in [&empty[..], &[], &vec![vec![0; 4]; case.access.len()]] {
-        let result = PathRequest { accessibility: access, ..case.request(&Mill, &pattern) }.plan();
+        let result = PathRequest { accessibility: access, ..case.request(&*MILL, &pattern) }.plan();
         assert_eq!(result.expect_err("no path"), PathError::NoPosture);
     }
     let invalid_rules = Rules { tolerance: 0.0, ..case.rules.clone() };
-    let result = PathRequest { rules: &invalid_rules, ..case.request(&Mill, &pattern) }.plan();
+    let result = PathRequest { rules: &invalid_rules, ..case.request(&*MILL, &pattern) }.plan();
     assert!(matches!(result, Err(PathError::Validator(_))));
 }
 
@@ -369,19 +377,19 @@ fn rejects_invalid_patterns() {
 fn covers_a_single_triangle() {
     let corners = [[0.0, 0.0, 0.0], [9.0, 0.0, 0.0], [0.0, 9.0, 0.0]].map(Point3::from);
     let mesh = Mesh::new(corners.to_vec(), vec![[0, 1, 2]], Unit::Millimetre).expect("a mesh");
-    let case = Case::new(mesh, &Mill);
-    let path = case.plan_over_planes(&Mill, [1.0, 0.0, 0.0], [1.0, 1.0]);
+    let case = Case::new(mesh, &*MILL);
+    let path = case.plan_over_planes(&*MILL, [1.0, 0.0, 0.0], [1.0, 1.0]);
     assert_eq!(path.left_out.len(), 0);
     // Planes parallel to the triangle do not cut it.
     let flat = Pattern { normal: [0.0, 0.0, 1.0], stepover: 1.0, step: 1.0 };
-    assert_eq!(case.plan(&Mill, &flat).expect_err("no path"), PathError::NoPosture);
+    assert_eq!(case.plan(&*MILL, &flat).expect_err("no path"), PathError::NoPosture);
 }
 
 #[test]
 fn a_tool_larger_than_the_part_reaches_it() {
-    let case = Case::new(sphere(), &Wide);
+    let case = Case::new(sphere(), &*WIDE);
     assert!(case.access.iter().flatten().any(|word| *word != 0));
-    let path = case.plan_over_planes(&Wide, [0.0, 0.0, 1.0], [4.0, 2.0]);
+    let path = case.plan_over_planes(&*WIDE, [0.0, 0.0, 1.0], [4.0, 2.0]);
     // Five circles of 250 mm together, with a point every 2 mm.
     assert!(
         path.contact_points >= 120 && path.left_out.is_empty(),
@@ -393,9 +401,9 @@ fn a_tool_larger_than_the_part_reaches_it() {
 
 #[test]
 fn no_axis_exceeds_the_largest_tilt() {
-    let case = Case::new(sphere(), &Mill);
+    let case = Case::new(sphere(), &*MILL);
     let pattern = Pattern { normal: [0.0, 0.3, 1.0], stepover: 2.0, step: 1.0 };
-    let plan = |max_tilt: f64| PathRequest { max_tilt, ..case.request(&Mill, &pattern) }.plan();
+    let plan = |max_tilt: f64| PathRequest { max_tilt, ..case.request(&*MILL, &pattern) }.plan();
     let lowest = |path: &ToolPath| {
         // Between two axes the lowest lies on their great circle.
         let pairs = path.locations.windows(2);
@@ -455,9 +463,9 @@ impl ToolAxisLimits for ThreeAxes {
 
 #[test]
 fn all_axes_are_within_the_limits_of_a_machine() {
-    let case = Case::new(step(), &Mill);
+    let case = Case::new(step(), &*MILL);
     let pattern = Pattern { normal: [0.0, 1.0, 0.0], stepover: 2.0, step: 1.0 };
-    let plan = |axis_limits| PathRequest { axis_limits, ..case.request(&Mill, &pattern) }.plan();
+    let plan = |axis_limits| PathRequest { axis_limits, ..case.request(&*MILL, &pattern) }.plan();
     let [free, limited] = [None, Some(&Trunnion as &dyn ToolAxisLimits)].map(|limits| {
         let path = plan(limits).expect("a path");
         let outside = path.locations.windows(2).filter(|pair| {

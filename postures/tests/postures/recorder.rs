@@ -1,6 +1,6 @@
 //! A recorded loop: the map holds the loop's postures, and the loop is not affected.
 
-use crate::{Ball, Mill};
+use crate::{BALL, MILL};
 use nalgebra::{Point3, Vector3};
 use std::num::NonZeroU16;
 use std::path::Path;
@@ -26,7 +26,7 @@ fn sphere() -> Mesh {
 fn identity() -> MapIdentity {
     let rules = Rules { tolerance: 0.2, niceness: 0.5, allowed: Vec::new() };
     let keep = NonZeroU16::new(2).expect("not 0");
-    MapIdentity::new(&sphere(), &[&Ball, &Mill], rules).expect("rules").with_keep(keep)
+    MapIdentity::new(&sphere(), &[&*BALL, &*MILL], rules).expect("rules").with_keep(keep)
 }
 
 /// A hand that winds about the sphere and leans back and forth, at times too deep.
@@ -51,7 +51,7 @@ fn run_loop(
 ) -> (Vec<SessionState>, LoopReport, Option<RecorderStats>) {
     let limits = DeviceLimits::default();
     let mut device = ScriptedDevice::new(limits, move |cycle| pose(cycles.start + cycle));
-    let probe = Probe::new(part, &Mill).with_law(Law::Gradient);
+    let probe = Probe::new(part, &*MILL).with_law(Law::Gradient);
     let mut session = Session::new(probe, &SessionSettings::new(1000.0), limits).expect("settings");
     let (mut publisher, _, mut samples) = state_channel(capacity);
     let mut states = Vec::new();
@@ -63,7 +63,7 @@ fn run_loop(
         });
         let recorded = match map {
             Some(map) => {
-                let mut recorder = Recorder::new(map, part, bvh, &Mill).expect("a recorder");
+                let mut recorder = Recorder::new(map, part, bvh, &*MILL).expect("a recorder");
                 Some(recorder.follow(&mut samples).expect("recorded"))
             }
             None => {
@@ -102,8 +102,8 @@ fn a_session_fills_a_map_and_resumes() {
     assert!(whole.len() > 50, "{} of {}", whole.len(), mesh.triangles().len());
 
     // Records are acceptable, and as nice as they state.
-    let mut probe = Probe::new(&part, &Mill);
-    let mut certifier = Certifier::new(&bvh, &Mill).expect("a profile");
+    let mut probe = Probe::new(&part, &*MILL);
+    let mut certifier = Certifier::new(&bvh, &*MILL).expect("a profile");
     for surface in ["ball", "flute"] {
         certifier = certifier.with_allowance(surface, 0.2).expect("a surface");
     }
@@ -148,9 +148,9 @@ fn the_recorder_does_not_change_the_loop() {
     let map = open(folder.path(), "map");
     let limits = DeviceLimits::default();
     let mut device = ScriptedDevice::new(limits, pose);
-    let probe = Probe::new(&part, &Mill).with_law(Law::Gradient);
+    let probe = Probe::new(&part, &*MILL).with_law(Law::Gradient);
     let mut session = Session::new(probe, &SessionSettings::new(1000.0), limits).expect("settings");
-    let mut recorder = Recorder::new(&map, &part, &bvh, &Mill).expect("a recorder");
+    let mut recorder = Recorder::new(&map, &part, &bvh, &*MILL).expect("a recorder");
     for (cycle, expected) in expected_states.iter().enumerate() {
         let state = session.cycle(&mut device).expect("a state");
         recorder.process(&state).expect("recorded");
@@ -213,17 +213,17 @@ fn rejects_another_tool_version_and_another_unit() {
     assert!(matches!(error, RecorderError::Tool { .. }), "{error:?}");
     assert!(error.to_string().contains("Mill is no tool of the map, which has `Ball`, `Mill`"));
     let inch = part.converted_to(Unit::Inch);
-    let error = Recorder::new(&map, &inch, &bvh, &Mill).expect_err("another unit");
+    let error = Recorder::new(&map, &inch, &bvh, &*MILL).expect_err("another unit");
     assert!(matches!(error, RecorderError::Unit { .. }), "{error:?}");
 }
 
 #[test]
 fn interpreted_and_compiled_tools_have_the_same_digest() {
     let interpreted_mill = interpreted("1 - depth/3");
-    assert_eq!(interpreted_mill.info().digest, Mill.info().digest);
+    assert_eq!(interpreted_mill.info().digest, MILL.info().digest);
     assert_eq!(identity().tool(interpreted_mill.info()), Some(1));
-    assert_ne!(interpreted("1 - depth/4").info().digest, Mill.info().digest);
-    assert_ne!(Ball.info().digest, Mill.info().digest);
+    assert_ne!(interpreted("1 - depth/4").info().digest, MILL.info().digest);
+    assert_ne!(BALL.info().digest, MILL.info().digest);
 }
 
 /// Returns a tool like [`Mill`], except for its niceness, its layout and its title.

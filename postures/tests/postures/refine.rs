@@ -4,8 +4,10 @@ use nalgebra::Point3;
 use std::collections::HashMap;
 use std::num::NonZeroU16;
 use std::ops::ControlFlow;
+use std::sync::LazyLock;
 use std::time::Instant;
 use touchoff::certify::TriangleBvh;
+use touchoff::tool::Interpreted;
 use touchoff::{Mesh, Tool, TriangleId, Unit};
 use touchoff_postures::sweep::{
     BATCH_TRIANGLES, PieceBatch, PostureSweep, Refinement, Refiner, SweepStats,
@@ -14,8 +16,8 @@ use touchoff_postures::{
     Accessibility, Directions, MapIdentity, MapRow, Piece, PostureMap, PostureRecord, Rules,
 };
 
-touchoff::tool! {
-    tool Slim "a ball of 2 mm on a straight shank, 40 mm long" {
+static SLIM: LazyLock<Interpreted> = LazyLock::new(|| {
+    r#"tool Slim "a ball of 2 mm on a straight shank, 40 mm long" {
         units mm;
         profile {
             start (0, 0);
@@ -24,8 +26,10 @@ touchoff::tool! {
             line to (1, 40), (0, 40) as shank;
         }
         niceness cutting: 1 - depth;
-    }
-}
+    }"#
+    .parse()
+    .expect("a tool")
+});
 
 /// Returns a box of 60 by 40 by 20 with a pocket of 40 by 20 by 12, in 28 triangles.
 fn pocket() -> Mesh {
@@ -157,18 +161,18 @@ fn pieces_colour_less_area_wrongly_than_centroids() {
     let (directions, side) = if part.is_some() { (200, 96) } else { (20, 48) };
     let side = side.min(((1 << 19) / mesh.triangles().len()).isqrt().max(1) as u32);
     let fine = subdivided(&mesh, side);
-    let case = Case::new(&mesh, &Slim, directions);
+    let case = Case::new(&mesh, &*SLIM, directions);
     let folder = tempfile::tempdir().expect("a folder");
     let map = case.map(folder.path());
     let start = Instant::now();
     let (rows, stats) = case.rows();
     let by_centroids = start.elapsed();
-    let refinement = Refinement::of_tools(&[&Slim], mesh.unit());
+    let refinement = Refinement::of_tools(&[&*SLIM], mesh.unit());
     assert_eq!(refinement, Refinement { longest: 2.0, finest: 0.25 });
     let refined = case.refine(&rows, refinement, &map);
     let by_pieces = start.elapsed();
     let start = Instant::now();
-    let (dense, _) = Case::new(&fine, &Slim, directions).rows();
+    let (dense, _) = Case::new(&fine, &*SLIM, directions).rows();
     let by_dense = start.elapsed();
     let (mut area, mut wrong, mut reached) = (0.0, [0.0; 2], [0.0; 3]);
     for id in mesh.ids() {
@@ -220,7 +224,7 @@ fn pieces_colour_less_area_wrongly_than_centroids() {
 #[test]
 fn pieces_are_judged_like_triangles() {
     let mesh = pocket();
-    let case = Case::new(&mesh, &Slim, 15);
+    let case = Case::new(&mesh, &*SLIM, 15);
     let folder = tempfile::tempdir().expect("a folder");
     let map = case.map(folder.path());
     let (rows, _) = case.rows();
@@ -235,7 +239,7 @@ fn pieces_are_judged_like_triangles() {
         pieces.iter().flat_map(|(piece, _)| piece.corners(&mesh)).collect();
     let triangles = (0..pieces.len() as u32).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]);
     let cut = Mesh::new(corners, triangles, mesh.unit()).expect("a mesh");
-    let (alone, _) = Case::new(&cut, &Slim, 15).rows();
+    let (alone, _) = Case::new(&cut, &*SLIM, 15).rows();
     let tip = |record: &PostureRecord| Point3::from(record.tip);
     let mut reached = 0;
     for ((piece, row), alone) in pieces.iter().zip(&alone) {

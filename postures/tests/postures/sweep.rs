@@ -1,19 +1,21 @@
 //! Results of a sweep: comparisons with known ones, and their independence of the order of batches.
 
 use crate::{
-    Ball, HOLDER, Mill, NECK, cutting_distance, is_inside, parts, polyline_distance, sample_points,
+    BALL, HOLDER, MILL, NECK, cutting_distance, is_inside, parts, polyline_distance, sample_points,
 };
 use nalgebra::{Point3, Vector3};
 use std::num::NonZeroU16;
 use std::ops::ControlFlow;
+use std::sync::LazyLock;
 use touchoff::certify::TriangleBvh;
 use touchoff::mesh::shapes;
+use touchoff::tool::Interpreted;
 use touchoff::{Mesh, Tool, TriangleId, Unit};
 use touchoff_postures::sweep::{Batch, PostureSweep, SweepError, SweepStats};
 use touchoff_postures::{Directions, MapRow, Rules, Validator, ValidatorError};
 
-touchoff::tool! {
-    tool Lollipop "most of a ball on a thin neck" {
+static LOLLIPOP: LazyLock<Interpreted> = LazyLock::new(|| {
+    r#"tool Lollipop "most of a ball on a thin neck" {
         units mm;
         profile {
             start (0, 0);
@@ -21,15 +23,19 @@ touchoff::tool! {
             line to (3, 40), (0, 40) as neck;
         }
         niceness cutting: 1;
-    }
-}
+    }"#
+    .parse()
+    .expect("a tool")
+});
 
-touchoff::tool! {
-    tool Stick "nothing of it cuts" {
+static STICK: LazyLock<Interpreted> = LazyLock::new(|| {
+    r#"tool Stick "nothing of it cuts" {
         units mm;
         profile { start (0, 0); line to (3, 0), (3, 20), (0, 20) as stick; }
-    }
-}
+    }"#
+    .parse()
+    .expect("a tool")
+});
 
 fn rules() -> Rules {
     Rules { tolerance: 0.01, niceness: 0.5, allowed: Vec::new() }
@@ -98,7 +104,7 @@ fn batches_do_not_depend_on_their_order() {
     let mesh = shapes::sphere(8.0, 3, Unit::Millimetre).expect("a sphere");
     let bvh = TriangleBvh::new(&mesh);
     let directions = Directions::spread(25);
-    let tools: Vec<&dyn Tool> = vec![&Mill, &Ball];
+    let tools: Vec<&dyn Tool> = vec![&*MILL, &*BALL];
     let sweep =
         PostureSweep::new(&mesh, &bvh, tools, &directions, rules(), keep(2)).expect("a sweep");
     assert_eq!(sweep.batches(), 5);
@@ -127,9 +133,9 @@ fn best_postures_are_acceptable_and_sorted() {
     let directions = Directions::spread(40);
     for mesh in parts() {
         let bvh = TriangleBvh::new(&mesh);
-        let mut validator = Validator::new(&bvh, &Mill, &rules()).expect("a validator");
+        let mut validator = Validator::new(&bvh, &*MILL, &rules()).expect("a validator");
         let sweep = |count| {
-            PostureSweep::new(&mesh, &bvh, vec![&Mill], &directions, rules(), keep(count))
+            PostureSweep::new(&mesh, &bvh, vec![&*MILL], &directions, rules(), keep(count))
                 .expect("a sweep")
         };
         let rows = |sweep: &PostureSweep<'_>| {
@@ -173,18 +179,18 @@ fn enclosed_surfaces_are_not_reached() {
     let directions = Directions::spread(60);
     // A cavity for which the tool is too long.
     let hollow = joined(&outer, &block([-10.0; 3], [10.0; 3]), true);
-    let (rows, stats) = sweep_all(&hollow, &[&Mill], &directions, rules());
+    let (rows, stats) = sweep_all(&hollow, &[&*MILL], &directions, rules());
     assert!(rows[..12].iter().all(|row| count(&row.access[0].directions) > 0));
     assert!(
         rows[12..].iter().all(|row| count(&row.access[0].directions) == 0 && row.best.is_empty())
     );
     assert!(stats.obstructed + stats.cached_obstruction > 0);
     // A ball without a shank fits into the cavity, where there is no material.
-    let (rows, _) = sweep_all(&hollow, &[&Ball], &directions, rules());
+    let (rows, _) = sweep_all(&hollow, &[&*BALL], &directions, rules());
     assert!(rows[12..].iter().all(|row| count(&row.access[0].directions) > 0));
     // A body inside the material of another: no triangle is near the ball, and yet it is inside.
     let core = joined(&outer, &block([-10.0; 3], [10.0; 3]), false);
-    let (rows, _) = sweep_all(&core, &[&Ball], &directions, rules());
+    let (rows, _) = sweep_all(&core, &[&*BALL], &directions, rules());
     assert!(rows[..12].iter().all(|row| count(&row.access[0].directions) > 0));
     assert!(rows[12..].iter().all(|row| count(&row.access[0].directions) == 0));
 }
@@ -194,7 +200,7 @@ fn a_plate_is_reached_from_all_directions_of_the_arc() {
     // A ball with 180 degrees of arc may have any axis, and one on a stem of its own width half of all axes.
     let plate = shapes::plane(0.01, 1, Unit::Millimetre).expect("a plate");
     let directions = Directions::spread(500);
-    for (tool, expected) in [(&Ball as &dyn Tool, 4.0), (&Mill, 2.0), (&Lollipop, 2.0 * 1.8)] {
+    for (tool, expected) in [(&*BALL as &dyn Tool, 4.0), (&*MILL, 2.0), (&*LOLLIPOP, 2.0 * 1.8)] {
         let (rows, _) = sweep_all(&plate, &[tool], &directions, rules());
         for row in rows {
             let angle = directions.solid_angle(&row.access[0].directions) / std::f64::consts::PI;
@@ -225,7 +231,7 @@ fn only_a_lollipop_reaches_an_undercut() {
     };
     for (degrees, lollipop) in [(10.0, true), (50.0, true), (56.0, false), (80.0, false)] {
         let mesh = tilted(degrees);
-        for (tool, expected) in [(&Lollipop as &dyn Tool, lollipop), (&Mill, false)] {
+        for (tool, expected) in [(&*LOLLIPOP as &dyn Tool, lollipop), (&*MILL, false)] {
             let (rows, stats) = sweep_all(&mesh, &[tool], &up, rules());
             let is_reached = count(&rows[0].access[0].directions) == 1;
             assert_eq!(is_reached, expected, "{} at {degrees}: {stats:?}", tool.info().name);
@@ -245,7 +251,7 @@ fn degenerate_triangles_are_not_reached() {
     triangles.extend([[0, 0, 1], [2, 2, 2]]);
     let mesh = Mesh::new(block.vertices().to_vec(), triangles, Unit::Millimetre).expect("a mesh");
     let directions = Directions::spread(20);
-    let (rows, stats) = sweep_all(&mesh, &[&Mill], &directions, rules());
+    let (rows, stats) = sweep_all(&mesh, &[&*MILL], &directions, rules());
     assert_eq!(stats.postures(), 40 * 14);
     for row in &rows[12..] {
         assert!(row.best.is_empty() && count(&row.access[0].directions) == 0);
@@ -258,7 +264,7 @@ fn niceness_has_to_exceed_the_rule() {
     let directions = Directions::spread(30);
     let mesh = block([0.0; 3], [9.0; 3]);
     for (niceness, is_reached) in [(0.999, true), (1.0, false), (-1.0, true)] {
-        let (rows, stats) = sweep_all(&mesh, &[&Mill], &directions, Rules { niceness, ..rules() });
+        let (rows, stats) = sweep_all(&mesh, &[&*MILL], &directions, Rules { niceness, ..rules() });
         assert_eq!(rows.iter().any(|row| !row.best.is_empty()), is_reached, "{niceness}");
         assert_eq!(stats.below_niceness > 0, !is_reached, "{niceness}");
         assert_eq!(stats.searched() + stats.cached_obstruction > 0, is_reached, "{niceness}");
@@ -276,7 +282,7 @@ fn larger_allowances_reach_more() {
     );
     let sets = [-1.0, 0.0, 2.0, f64::INFINITY].map(|allowed| {
         let allowed = vec![("holder".to_owned(), allowed)];
-        let (rows, _) = sweep_all(&mesh, &[&Mill], &directions, Rules { allowed, ..rules() });
+        let (rows, _) = sweep_all(&mesh, &[&*MILL], &directions, Rules { allowed, ..rules() });
         rows.into_iter().flat_map(|row| row.access[0].directions.clone()).collect::<Vec<u64>>()
     });
     for pair in sets.windows(2) {
@@ -296,7 +302,7 @@ fn accessibility_does_not_depend_on_the_unit() {
         };
         let mesh = scaled(shapes::tube(4.0, 6.0, 25.0, 24, 3, Unit::Millimetre).expect("a tube"));
         let rules = Rules { tolerance: 0.01 * scale, ..rules() };
-        let (rows, _) = sweep_all(&mesh, &[&Mill], &directions, rules);
+        let (rows, _) = sweep_all(&mesh, &[&*MILL], &directions, rules);
         rows.into_iter().flat_map(|row| row.access[0].directions.clone()).collect::<Vec<u64>>()
     });
     assert!(count(&sets[0]) > 500);
@@ -324,9 +330,9 @@ fn rejects_unsupported_tools_and_rules() {
     let error_of = |tools: Vec<&'static dyn Tool>, rules: Rules| {
         PostureSweep::new(&mesh, &bvh, tools, &directions, rules, keep(1)).expect_err("refused")
     };
-    assert_eq!(error_of(vec![&Stick], rules()), SweepError::NoCuttingSurface("Stick".into()));
+    assert_eq!(error_of(vec![&*STICK], rules()), SweepError::NoCuttingSurface("Stick".into()));
     let invalid = Rules { tolerance: 0.0, ..rules() };
-    assert!(matches!(error_of(vec![&Mill], invalid), SweepError::Rules(_)));
+    assert!(matches!(error_of(vec![&*MILL], invalid), SweepError::Rules(_)));
     assert!(matches!(
         error_of(vec![&Round], rules()),
         SweepError::Validator(ValidatorError::Solid { .. })

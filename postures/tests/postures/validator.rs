@@ -1,7 +1,7 @@
 //! Accepted postures are acceptable at every sample point.
 
 use crate::{
-    Ball, HOLDER, Mill, NECK, Plain, cutting_distance, is_inside, polyline_distance,
+    BALL, HOLDER, MILL, NECK, PLAIN, cutting_distance, is_inside, polyline_distance,
     random_numbers, random_pose,
 };
 use crate::{parts, sample_points};
@@ -22,8 +22,8 @@ fn accepted_postures_obey_the_rules_at_sample_points() {
         let bvh = TriangleBvh::new(&mesh);
         for tolerance in [1e-3, 0.05, 1.0] {
             let mut validator =
-                Validator::new(&bvh, &Mill, &rules(tolerance)).expect("a validator");
-            let mut certifier = Certifier::new(&bvh, &Mill).expect("a profile");
+                Validator::new(&bvh, &*MILL, &rules(tolerance)).expect("a validator");
+            let mut certifier = Certifier::new(&bvh, &*MILL).expect("a profile");
             for _ in 0..60 {
                 // About to touch, or slightly deeper.
                 let start = random_pose(&mut random, 20.0);
@@ -77,7 +77,7 @@ fn does_not_record_postures_that_break_the_rules() {
     let bvh = TriangleBvh::new(mesh);
     let upright =
         |x: f64, z: f64| Pose::from_axis(Point3::new(x, -5.0, z), Vector3::z()).expect("a pose");
-    let mut validator = Validator::new(&bvh, &Mill, &rules(0.01)).expect("a validator");
+    let mut validator = Validator::new(&bvh, &*MILL, &rules(0.01)).expect("a validator");
     let good = upright(-6.0, -0.005);
     assert!(validator.record(0, &good, 0.501).is_some());
     assert!(validator.record(0, &good, 0.5).is_none());
@@ -87,26 +87,26 @@ fn does_not_record_postures_that_break_the_rules() {
     assert!(!validator.accepts(&upright(3.0 - 0.009, -19.5)));
     let neck = ("neck".to_owned(), 0.01);
     let mut allowed = Rules { allowed: vec![neck.clone()], ..rules(0.01) };
-    let mut validator = Validator::new(&bvh, &Mill, &allowed).expect("a validator");
+    let mut validator = Validator::new(&bvh, &*MILL, &allowed).expect("a validator");
     assert!(validator.accepts(&upright(3.0 - 0.009, -19.5)));
     assert!(!validator.accepts(&upright(3.0 - 0.009, -20.5)));
     allowed.allowed = vec![("holder".into(), 0.6), ("flute".into(), 0.0)];
-    let mut validator = Validator::new(&bvh, &Mill, &allowed).expect("a validator");
+    let mut validator = Validator::new(&bvh, &*MILL, &allowed).expect("a validator");
     assert!(validator.accepts(&upright(3.0 + 1e-6, -20.5)));
     assert!(!validator.accepts(&upright(3.0 - 0.009, -19.5)));
     allowed.allowed = vec![("holder".into(), -1.0), neck];
-    let mut validator = Validator::new(&bvh, &Mill, &allowed).expect("a validator");
+    let mut validator = Validator::new(&bvh, &*MILL, &allowed).expect("a validator");
     assert!(!validator.accepts(&upright(3.0 - 0.009, -19.5)));
     assert!(validator.accepts(&upright(3.0 - 0.009, -18.9)));
     // Inside the part no posture is acceptable.
-    let mut validator = Validator::new(&bvh, &Ball, &rules(0.01)).expect("a validator");
+    let mut validator = Validator::new(&bvh, &*BALL, &rules(0.01)).expect("a validator");
     assert!(!validator.accepts(&upright(-6.0, -7.0)));
 }
 
 #[test]
 fn rejects_invalid_rules() {
     let bvh = TriangleBvh::new(&parts()[0]);
-    let error_of = |rules: &Rules| match Validator::new(&bvh, &Mill, rules) {
+    let error_of = |rules: &Rules| match Validator::new(&bvh, &*MILL, rules) {
         Err(ValidatorError::Rules(error)) => error.to_string(),
         _ => panic!("{rules:?}"),
     };
@@ -119,14 +119,14 @@ fn rejects_invalid_rules() {
     named.allowed = vec![("neck".into(), f64::NAN)];
     assert!(error_of(&named).contains("an allowance of NaN for `neck` is not a length"));
     named.allowed = vec![("nack".into(), 0.1)];
-    let message = named.check(&[&Mill, &Ball]).expect_err("no such surface").to_string();
+    let message = named.check(&[&*MILL, &*BALL]).expect_err("no such surface").to_string();
     let surfaces = "`ball`, `flute`, `holder`, `neck`";
     assert_eq!(
         message,
         format!("no tool has the surface `nack` that is allowed for: they have {surfaces}")
     );
     // Another tool may have this surface.
-    assert!(Validator::new(&bvh, &Mill, &named).is_ok());
+    assert!(Validator::new(&bvh, &*MILL, &named).is_ok());
     // Only margins are refused for a tool without a profile.
-    assert!(Validator::new(&bvh, &Plain, &rules(0.01)).is_ok());
+    assert!(Validator::new(&bvh, &*PLAIN, &rules(0.01)).is_ok());
 }

@@ -220,10 +220,12 @@ mod tests {
     use super::*;
     use crate::certify::TriangleBvh;
     use crate::mesh::{Mesh, shapes};
+    use crate::tool::Interpreted;
     use nalgebra::{Isometry3, UnitQuaternion};
+    use std::sync::LazyLock;
 
-    crate::tool! {
-        tool Mill "a bull nose on a shank" {
+    static MILL: LazyLock<Interpreted> = LazyLock::new(|| {
+        r#"tool Mill "a bull nose on a shank" {
             units mm;
             profile {
                 start (0, 0);
@@ -233,8 +235,10 @@ mod tests {
                 line to (3, 12), (3, 30), (0, 30) as shank;
             }
             niceness cutting: 1;
-        }
-    }
+        }"#
+        .parse()
+        .expect("a tool")
+    });
 
     const UNIT: Unit = Unit::Millimetre;
 
@@ -263,12 +267,12 @@ mod tests {
             .collect::<Result<_, _>>()?;
         let mut scene = CertifiedScene::new(UNIT);
         for ((name, tree), frame) in names.iter().zip(&trees).zip(&frames) {
-            scene.add_body(*name, Certifier::new(tree, &Mill)?, Pose::default())?;
+            scene.add_body(*name, Certifier::new(tree, &*MILL)?, Pose::default())?;
             assert!(scene.move_body(name, Pose::try_from(*frame)?));
         }
         assert!(!scene.move_body("table", Pose::default()));
         let mut others =
-            moved.iter().map(|tree| Certifier::new(tree, &Mill)).collect::<Result<Vec<_>, _>>()?;
+            moved.iter().map(|tree| Certifier::new(tree, &*MILL)).collect::<Result<Vec<_>, _>>()?;
         let (mut contacts, mut apart, mut clear) = (0, 0, 0);
         for k in 0..300 {
             let at = f64::from(k);
@@ -327,7 +331,7 @@ mod tests {
         assert!(contacts > 50 && apart > 50 && clear > 20);
         let inch = shapes::sphere(1.0, 2, Unit::Inch)?;
         let inch = TriangleBvh::new(&inch);
-        let refused = scene.add_body("inch", Certifier::new(&inch, &Mill)?, Pose::default());
+        let refused = scene.add_body("inch", Certifier::new(&inch, &*MILL)?, Pose::default());
         assert_eq!(refused, Err(SceneError { part: Unit::Inch, scene: UNIT }));
         assert_eq!(CertifiedScene::new(UNIT).check_pose(&Pose::default()), None);
         Ok(())

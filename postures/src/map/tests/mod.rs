@@ -14,12 +14,14 @@ use redb::Builder;
 use std::fs::{self, File};
 use std::io;
 use std::num::NonZeroU16;
+use std::sync::LazyLock;
 use tempfile::TempDir;
 use touchoff::mesh::shapes;
+use touchoff::tool::Interpreted;
 use touchoff::{Mesh, TriangleId, Unit};
 
-touchoff::tool! {
-    tool Ball "a ball on a straight shank" {
+static BALL: LazyLock<Interpreted> = LazyLock::new(|| {
+    r#"tool Ball "a ball on a straight shank" {
         units mm;
         profile {
             start (0, 0);
@@ -27,16 +29,20 @@ touchoff::tool! {
             line to (3, 20), (0, 20) as shank;
         }
         niceness cutting: 1;
-    }
-}
+    }"#
+    .parse()
+    .expect("a tool")
+});
 
-touchoff::tool! {
-    tool Flat "flat" {
+static FLAT: LazyLock<Interpreted> = LazyLock::new(|| {
+    r#"tool Flat "flat" {
         units mm;
         profile { start (0, 0); line to (4, 0), (4, 20), (0, 20) as side cutting; }
         niceness cutting: 1;
-    }
-}
+    }"#
+    .parse()
+    .expect("a tool")
+});
 
 /// Returns a mesh of twelve triangles.
 fn block() -> Mesh {
@@ -50,7 +56,7 @@ fn rules() -> Rules {
 /// Returns an identity with two tools, 70 directions and three postures per triangle.
 fn identity() -> MapIdentity {
     let directions = (0..70).map(|k| (f64::from(k) / 10.0).sin_cos()).map(|(x, y)| [x, y, 0.0]);
-    MapIdentity::new(&block(), &[&Ball, &Flat], rules())
+    MapIdentity::new(&block(), &[&*BALL, &*FLAT], rules())
         .expect("rules")
         .with_directions(directions.collect())
         .with_keep(NonZeroU16::new(3).expect("not 0"))

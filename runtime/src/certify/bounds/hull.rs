@@ -571,15 +571,17 @@ mod tests {
     use crate::certify::space::Point;
     use crate::mesh::Mesh;
     use crate::pose::Pose;
+    use crate::tool::Interpreted;
     use crate::tool::Tool;
     use crate::unit::Unit;
     use fearless_simd::{Level, dispatch, f64x8};
     use nalgebra::{Point3, Vector3};
+    use std::sync::LazyLock;
 
     const ERROR: f64 = 1e-12;
 
-    crate::tool! {
-        tool Necked "reflex corners between lines, and a convex corner above one" {
+    static NECKED: LazyLock<Interpreted> = LazyLock::new(|| {
+        r#"tool Necked "reflex corners between lines, and a convex corner above one" {
             units mm;
             profile {
                 start (0, 0);
@@ -589,11 +591,13 @@ mod tests {
                 line to (5, 9), (5, 20), (0, 20) as housing;
             }
             niceness cutting: 1;
-        }
-    }
+        }"#
+        .parse()
+        .expect("a tool")
+    });
 
-    crate::tool! {
-        tool Waisted "a waist between cones" {
+    static WAISTED: LazyLock<Interpreted> = LazyLock::new(|| {
+        r#"tool Waisted "a waist between cones" {
             units mm;
             profile {
                 start (0, 0);
@@ -603,11 +607,13 @@ mod tests {
                 line to (6, 18), (0, 20) as head;
             }
             niceness cutting: 1;
-        }
-    }
+        }"#
+        .parse()
+        .expect("a tool")
+    });
 
-    crate::tool! {
-        tool Rounded "convex and concave arcs beside lines" {
+    static ROUNDED: LazyLock<Interpreted> = LazyLock::new(|| {
+        r#"tool Rounded "convex and concave arcs beside lines" {
             units mm;
             profile {
                 start (0, 0);
@@ -618,11 +624,13 @@ mod tests {
                 line to (7, 14), (7, 16), (0, 16) as shank;
             }
             niceness cutting: 1;
-        }
-    }
+        }"#
+        .parse()
+        .expect("a tool")
+    });
 
-    crate::tool! {
-        tool Hollow "a cone from below, so that the profile runs downward first" {
+    static HOLLOW: LazyLock<Interpreted> = LazyLock::new(|| {
+        r#"tool Hollow "a cone from below, so that the profile runs downward first" {
             units mm;
             profile {
                 start (0, 4);
@@ -630,12 +638,14 @@ mod tests {
                 line to (6, 0), (6, 12), (0, 12) as body;
             }
             niceness cutting: 1;
-        }
-    }
+        }"#
+        .parse()
+        .expect("a tool")
+    });
 
     /// Returns the tools of these tests.
     fn tools() -> [&'static ToolInfo; 4] {
-        [Necked.info(), Waisted.info(), Rounded.info(), Hollow.info()]
+        [NECKED.info(), WAISTED.info(), ROUNDED.info(), HOLLOW.info()]
     }
 
     /// A sequence of numbers from 0 to 1 that looks random.
@@ -714,7 +724,7 @@ mod tests {
 
     #[test]
     fn a_triangle_that_touches_an_arc_is_not_deep() {
-        let section = Section::new(Rounded.info(), ERROR).expect("a profile");
+        let section = Section::new(ROUNDED.info(), ERROR).expect("a profile");
         let zones: Vec<_> = section.slabs.iter().map(|slab| Some(Rectangle::of(slab))).collect();
         let hull = Hull::<f64>::new(&section, &zones, ERROR);
         for (degrees, turn) in [(1, 0.0), (20, 1.0), (45, 2.0), (70, 3.0), (60, -2.0)] {

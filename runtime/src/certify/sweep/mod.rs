@@ -547,11 +547,13 @@ mod tests {
     use crate::mesh::Mesh;
     use crate::motion::Motion;
     use crate::pose::Pose;
+    use crate::tool::Interpreted;
     use crate::unit::Unit;
     use nalgebra::{Point3, Vector3};
+    use std::sync::LazyLock;
 
-    crate::tool! {
-        tool Held "a flute that cuts, below a shank" {
+    static HELD: LazyLock<Interpreted> = LazyLock::new(|| {
+        r#"tool Held "a flute that cuts, below a shank" {
             units mm;
             profile {
                 start (0, 0);
@@ -560,8 +562,10 @@ mod tests {
                 line to (6, 60), (0, 60) as shank;
             }
             niceness cutting: 1;
-        }
-    }
+        }"#
+        .parse()
+        .expect("a tool")
+    });
 
     #[test]
     fn a_triangle_inside_the_tool_is_followed_from_the_flute_to_the_shank() {
@@ -573,7 +577,7 @@ mod tests {
         let pose = |z: f64| {
             Pose::from_axis(Point3::new(0.0, 0.0, z), Vector3::z()).expect("a unit vector")
         };
-        let mut certifier = Certifier::new(&bvh, &Held)
+        let mut certifier = Certifier::new(&bvh, &*HELD)
             .expect("a profile")
             .with_allowance("face", f64::INFINITY)
             .expect("a surface")

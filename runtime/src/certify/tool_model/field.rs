@@ -441,12 +441,14 @@ mod tests {
     use super::*;
     use crate::certify::{Certifier, PoseVerdict, TriangleBvh};
     use crate::mesh::shapes;
+    use crate::tool::Interpreted;
     use crate::{Pose, Unit};
     use fearless_simd::Level;
     use nalgebra::{Point3, Vector3};
+    use std::sync::LazyLock;
 
-    crate::tool! {
-        tool Sphere "a ball of radius 1" {
+    static SPHERE: LazyLock<Interpreted> = LazyLock::new(|| {
+        r#"tool Sphere "a ball of radius 1" {
             units mm;
             tip z = -1;
             curve sphere = hypot(d, z) - 1;
@@ -454,13 +456,15 @@ mod tests {
                 depth: -sphere;
                 direction: away from (0, 0);
             }
-        }
-    }
+        }"#
+        .parse()
+        .expect("a tool")
+    });
 
     #[test]
     fn a_search_that_discards_every_box_proves_that_no_point_is_deeper() {
         let field =
-            Field::new(ToolHandle::Borrowed(&Sphere), Level::new()).expect("a Lipschitz constant");
+            Field::new(ToolHandle::Borrowed(&*SPHERE), Level::new()).expect("a Lipschitz constant");
         let of_regions = |is_owned: bool| Owners::of_regions(field.info(), |_, _| is_owned);
         let DeepestPoint::Found { depth, max_depth, .. } =
             field.deepest(&of_regions(true), 0.5, 1.01)
@@ -479,7 +483,7 @@ mod tests {
     -> Result<(), Box<dyn std::error::Error>> {
         let (low, high) = (Point3::new(-5.0, -5.0, -5.0), Point3::new(5.0, 5.0, 0.0));
         let block = TriangleBvh::new(&shapes::cuboid(low, high, Unit::Millimetre)?);
-        let mut certifier = Certifier::new(&block, &Sphere)?.with_allowance("sphere", 100.0)?;
+        let mut certifier = Certifier::new(&block, &*SPHERE)?.with_allowance("sphere", 100.0)?;
         let pose = Pose::from_axis(Point3::new(0.0, 0.0, 3.0), Vector3::z())?;
         assert!(matches!(certifier.check_pose(&pose), PoseVerdict::Clear));
         Ok(())

@@ -392,12 +392,14 @@ mod tests {
     use super::*;
     use crate::certify::tool_model::section::Owners;
     use crate::id::SurfaceId;
+    use crate::tool::Interpreted;
     use crate::tool::Tool;
     use crate::tool::{Circle, ProfileSegment, ToolInfo};
     use std::borrow::Cow;
+    use std::sync::LazyLock;
 
-    crate::tool! {
-        tool Slender "a flat end, a long flute" {
+    static SLENDER: LazyLock<Interpreted> = LazyLock::new(|| {
+        r#"tool Slender "a flat end, a long flute" {
             units mm;
             profile {
                 start (0, 0);
@@ -406,11 +408,13 @@ mod tests {
                 line to (0, 70) as top;
             }
             niceness cutting: 1;
-        }
-    }
+        }"#
+        .parse()
+        .expect("a tool")
+    });
 
-    crate::tool! {
-        tool Dumbbell "two cylinders of 3 mm radius, and a neck of 1 mm" {
+    static DUMBBELL: LazyLock<Interpreted> = LazyLock::new(|| {
+        r#"tool Dumbbell "two cylinders of 3 mm radius, and a neck of 1 mm" {
             units mm;
             profile {
                 start (0, 0);
@@ -419,11 +423,13 @@ mod tests {
                 line to (3, 40), (0, 40) as upper;
             }
             niceness cutting: 1;
-        }
-    }
+        }"#
+        .parse()
+        .expect("a tool")
+    });
 
-    crate::tool! {
-        tool Chamfered "a chamfer of a tenth of a micrometre" {
+    static CHAMFERED: LazyLock<Interpreted> = LazyLock::new(|| {
+        r#"tool Chamfered "a chamfer of a tenth of a micrometre" {
             units mm;
             profile {
                 start (0, 0);
@@ -432,8 +438,10 @@ mod tests {
                 line to (5, 50), (0, 50) as flute;
             }
             niceness cutting: 1;
-        }
-    }
+        }"#
+        .parse()
+        .expect("a tool")
+    });
 
     /// Returns the witnesses of a tool whose surfaces have limits by name; all others may have any depth.
     fn of(tool: &dyn Tool, limits: &[(&str, f64)]) -> Vec<CorePoint> {
@@ -458,9 +466,9 @@ mod tests {
 
     #[test]
     fn a_thin_piece_is_found() {
-        let [face] = of(&Slender, &[("face", 0.0)])[..] else { panic!("one piece") };
+        let [face] = of(&*SLENDER, &[("face", 0.0)])[..] else { panic!("one piece") };
         assert!(face.point[1] < 0.5 && face.feature == 0, "{face:?}");
-        let [chamfer] = of(&Chamfered, &[("chamfer", 0.0)])[..] else { panic!("one piece") };
+        let [chamfer] = of(&*CHAMFERED, &[("chamfer", 0.0)])[..] else { panic!("one piece") };
         assert_eq!(chamfer.feature, 1);
     }
 
@@ -473,7 +481,7 @@ mod tests {
             circle: *circle,
             surface: SurfaceId(0),
         });
-        let info = ToolInfo { outline: Cow::Owned(pieces.collect()), ..Dumbbell.info().clone() };
+        let info = ToolInfo { outline: Cow::Owned(pieces.collect()), ..DUMBBELL.info().clone() };
         Section::new(&info, 1e-12).expect("a profile")
     }
 
@@ -510,14 +518,14 @@ mod tests {
 
     #[test]
     fn the_greatest_depth_is_that_of_the_middle() {
-        let section = Section::new(Dumbbell.info(), 1e-12).expect("a profile");
+        let section = Section::new(DUMBBELL.info(), 1e-12).expect("a profile");
         let of = |surface: usize| Owners::of(&section, |k| k == surface).greatest_depth(&section);
         // The middle of each cylinder is 3 mm deep. The neck's edge is on the cylinder's end as well: it is the nearest
         // point of points on the axis down to a depth of 3 mm, the middle excepted.
         for surface in 0..3 {
             assert!((3.0..=3.0303).contains(&of(surface)), "{surface}: {}", of(surface));
         }
-        let section = Section::new(Slender.info(), 1e-12).expect("a profile");
+        let section = Section::new(SLENDER.info(), 1e-12).expect("a profile");
         for surface in 0..3 {
             let depth = Owners::of(&section, |k| k == surface).greatest_depth(&section);
             assert!((0.5..=0.50505).contains(&depth), "{surface}: {depth}");
@@ -527,15 +535,15 @@ mod tests {
     #[test]
     fn pieces_are_as_many_as_there_are() {
         let limits = |limit: f64| [("lower", limit), ("neck", limit), ("upper", limit)];
-        assert_eq!(of(&Dumbbell, &limits(0.0)).len(), 1);
+        assert_eq!(of(&*DUMBBELL, &limits(0.0)).len(), 1);
         // A path along the axis joins them, which straight segments between witnesses do not show.
-        assert!((1..=3).contains(&of(&Dumbbell, &limits(0.9)).len()));
+        assert!((1..=3).contains(&of(&*DUMBBELL, &limits(0.9)).len()));
         // The neck is nowhere so deep.
-        let heights: Vec<f64> = of(&Dumbbell, &limits(1.5)).iter().map(|w| w.point[1]).collect();
+        let heights: Vec<f64> = of(&*DUMBBELL, &limits(1.5)).iter().map(|w| w.point[1]).collect();
         let [low, high] = heights[..] else { panic!("two pieces: {heights:?}") };
         assert!(low.min(high) < 10.0 && low.max(high) > 30.0, "{heights:?}");
-        assert_eq!(of(&Dumbbell, &limits(3.1)), []);
-        assert_eq!(of(&Dumbbell, &[("lower", 0.0), ("upper", 0.0)]).len(), 2);
-        assert_eq!(of(&Dumbbell, &[]), []);
+        assert_eq!(of(&*DUMBBELL, &limits(3.1)), []);
+        assert_eq!(of(&*DUMBBELL, &[("lower", 0.0), ("upper", 0.0)]).len(), 2);
+        assert_eq!(of(&*DUMBBELL, &[]), []);
     }
 }

@@ -408,10 +408,12 @@ fn common(line: &Feature, circle: &Circle) -> [[MeridianPoint; 2]; 2] {
 mod tests {
     use super::*;
     use crate::SurfaceId;
+    use crate::tool::Interpreted;
     use crate::tool::Tool;
+    use std::sync::LazyLock;
 
-    crate::tool! {
-        tool Held "a ball end mill in a nut" {
+    static HELD: LazyLock<Interpreted> = LazyLock::new(|| {
+        r#"tool Held "a ball end mill in a nut" {
             units mm;
             profile {
                 start (0, 0);
@@ -421,11 +423,13 @@ mod tests {
                 line to (8.5, 30), (14, 31), (14, 47), (0, 47) as nut;
             }
             niceness cutting: 1;
-        }
-    }
+        }"#
+        .parse()
+        .expect("a tool")
+    });
 
-    crate::tool! {
-        tool Waisted "an overhang, and borders that are not level" {
+    static WAISTED: LazyLock<Interpreted> = LazyLock::new(|| {
+        r#"tool Waisted "an overhang, and borders that are not level" {
             units mm;
             profile {
                 start (0, 0);
@@ -435,14 +439,16 @@ mod tests {
                 line to (6, 18), (0, 20) as head;
             }
             niceness cutting: 1;
-        }
-    }
+        }"#
+        .parse()
+        .expect("a tool")
+    });
 
     const ERROR: f64 = 1e-12;
 
     #[test]
     fn every_point_that_a_surface_owns_lies_in_a_zone() {
-        for info in [Held.info(), Waisted.info()] {
+        for info in [HELD.info(), WAISTED.info()] {
             let section = Section::new(info, ERROR).and_then(Section::with_circles);
             let section = section.expect("a profile");
             for surface in 0..info.surfaces.len() {
@@ -478,9 +484,9 @@ mod tests {
 
     #[test]
     fn zones_end_at_the_height_where_surfaces_of_equal_direction_meet() {
-        let section = Section::new(Held.info(), ERROR).expect("a profile");
+        let section = Section::new(HELD.info(), ERROR).expect("a profile");
         let ends = |name: &str| {
-            let SurfaceId(surface) = Held.info().surface_named(name).expect("a surface");
+            let SurfaceId(surface) = HELD.info().surface_named(name).expect("a surface");
             let zones = Owners::of(&section, |other| other == surface).zones(&section, 0.0);
             let bounds = zones.into_iter().flatten().map(|zone| [zone.low[1], zone.high[1]]);
             bounds

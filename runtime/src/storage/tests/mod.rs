@@ -9,12 +9,14 @@ use crate::point_bvh::PointBvh;
 use crate::pose::Pose;
 use crate::probe::Probe;
 use crate::scenes::{self, ScenePath as Course};
+use crate::tool::Interpreted;
 use crate::unit::Unit;
 use nalgebra::Point3;
 use std::fs::{self, File};
+use std::sync::LazyLock;
 
-crate::tool! {
-    tool Ball "a ball on a straight shank" {
+static BALL: LazyLock<Interpreted> = LazyLock::new(|| {
+    r#"tool Ball "a ball on a straight shank" {
         units mm;
         let r = 1;
         curve nose = hypot(d, z - r) - r;
@@ -24,8 +26,10 @@ crate::tool! {
         region shank where z >= r, 0 <= side <= end { depth: side; }
         region end as shank where 0 <= end <= side { depth: end; }
         niceness cutting: 1 - depth/r;
-    }
-}
+    }"#
+    .parse()
+    .expect("a tool")
+});
 
 fn open(bytes: &[u8]) -> Result<Part, SavedError> {
     read::part(bytes, bytes.len() as u64, "a.part")
@@ -65,7 +69,7 @@ fn bits(part: &Part) -> Vec<u8> {
 
 /// Returns all query results at some poses, in a text that distinguishes all numbers.
 fn evaluations(part: &Part, poses: &[Pose]) -> String {
-    let mut probe = Probe::new(part, &Ball);
+    let mut probe = Probe::new(part, &*BALL);
     let mut evaluations =
         format!("{:?} {:?} {:?}\n", part.unit(), part.diagnostics(), part.tree().covering_radius());
     for pose in poses {
@@ -113,7 +117,7 @@ fn what_is_cut_stays_cut() {
     let mut opened = open(&saved(&part)).expect("opened");
     // An opened part can be edited in the same way, and an edited part can be saved.
     for pose in &poses {
-        assert_eq!(part.cut(&Ball, pose), opened.cut(&Ball, pose));
+        assert_eq!(part.cut(&*BALL, pose), opened.cut(&*BALL, pose));
     }
     assert!(part.tree().removed > 0 && bits(&part) == bits(&opened));
     let again = open(&saved(&part)).expect("opened");
