@@ -21,7 +21,9 @@ struct Study {
     keep: NonZeroU16,
 }
 
-const TOOLS: [&dyn Tool; 2] = [&*BALL, &*FLAT];
+fn tools() -> [&'static dyn Tool; 2] {
+    [&*BALL, &*FLAT]
+}
 
 impl Study {
     fn new() -> Study {
@@ -38,12 +40,12 @@ impl Study {
 
     fn sweep(&self) -> PostureSweep<'_> {
         let (mesh, bvh, directions) = (&self.mesh, &self.bvh, &self.directions);
-        PostureSweep::new(mesh, bvh, TOOLS.to_vec(), directions, self.rules.clone(), self.keep)
+        PostureSweep::new(mesh, bvh, tools().to_vec(), directions, self.rules.clone(), self.keep)
             .expect("a sweep")
     }
 
     fn identity(&self) -> MapIdentity {
-        MapIdentity::new(&self.mesh, &TOOLS, self.rules.clone())
+        MapIdentity::new(&self.mesh, &tools(), self.rules.clone())
             .expect("rules")
             .with_directions(self.directions.list().to_vec())
             .with_keep(self.keep)

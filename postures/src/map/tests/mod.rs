@@ -20,7 +20,7 @@ use touchoff::mesh::shapes;
 use touchoff::tool::Interpreted;
 use touchoff::{Mesh, TriangleId, Unit};
 
-static BALL: LazyLock<Interpreted> = LazyLock::new(|| {
+pub(crate) static BALL: LazyLock<Interpreted> = LazyLock::new(|| {
     r#"tool Ball "a ball on a straight shank" {
         units mm;
         profile {
@@ -34,7 +34,7 @@ static BALL: LazyLock<Interpreted> = LazyLock::new(|| {
     .expect("a tool")
 });
 
-static FLAT: LazyLock<Interpreted> = LazyLock::new(|| {
+pub(crate) static FLAT: LazyLock<Interpreted> = LazyLock::new(|| {
     r#"tool Flat "flat" {
         units mm;
         profile { start (0, 0); line to (4, 0), (4, 20), (0, 20) as side cutting; }
