@@ -15,13 +15,22 @@ impl Failure {
         matches!(self, Failure::Tool(ToolError::Invalid(_)))
     }
 
+    /// Returns the code of the [table](touchoff_verify::codes), if the failure has one.
+    pub(crate) fn code(&self) -> Option<&'static str> {
+        match self {
+            Failure::Refused { code, .. } | Failure::Coded { code, .. } => Some(code),
+            Failure::StockNoInside { .. } => Some(StockError::NoInside { what: "stock" }.code()),
+            _ => None,
+        }
+    }
+
     /// Returns the exit status: 2 if the options are wrong or an input cannot be used as requested, [`INTERRUPTED`]
     /// after a signal, 1 for all else.
     pub(crate) fn status(&self) -> u8 {
         match self {
             Failure::Usage(_)
             | Failure::IsInput { .. }
-            | Failure::Refused(_)
+            | Failure::Refused { .. }
             | Failure::MeshForJob { .. }
             | Failure::Find(FindError::Several { .. } | FindError::Numbers { .. })
             | Failure::NoInside { .. } => 2,
@@ -42,8 +51,11 @@ impl Failure {
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Failure {
     /// A program, a job, a machine or a control cannot be used as requested.
-    #[error("{0}")]
-    Refused(Box<dyn Error + Send + Sync>),
+    #[error("{error}")]
+    Refused { code: &'static str, error: Box<dyn Error + Send + Sync> },
+    /// A program, a stock or joint values could not be computed with.
+    #[error("{error}")]
+    Coded { code: &'static str, error: Box<dyn Error + Send + Sync> },
     /// A library could not do what was asked for.
     #[error("{0}")]
     Library(Box<dyn Error + Send + Sync>),
@@ -53,8 +65,8 @@ pub(crate) enum Failure {
     /// The options do not go together, or this system lacks the device.
     #[error("{0}")]
     Usage(&'static str),
-    /// No diagnostic has such a code.
-    #[error("no error or warning has the code `{code}`: {}", near_codes(near))]
+    /// Nothing has such a code.
+    #[error("no error, warning, finding or gap has the code `{code}`: {}", near_codes(near))]
     Code {
         code: String,
         /// The codes most like it.
@@ -223,8 +235,15 @@ pub(crate) enum Failure {
     Json(#[from] serde_json::Error),
 }
 
-/// Converts errors of libraries, which no code tells apart but by the exit status.
+/// Converts errors of libraries, which the exit status and the code tell apart.
 macro_rules! converted {
+    ($variant:ident of code: $($error:ty),* $(,)?) => {
+        $(impl From<$error> for Failure {
+            fn from(error: $error) -> Failure {
+                Failure::$variant { code: error.code(), error: Box::new(error) }
+            }
+        })*
+    };
     ($variant:ident: $($error:ty),* $(,)?) => {
         $(impl From<$error> for Failure {
             fn from(error: $error) -> Failure {
@@ -235,12 +254,20 @@ macro_rules! converted {
 }
 
 converted! {
-    Refused:
+    Refused of code:
     touchoff_verify::ProgramError,
     touchoff_verify::JobError,
     touchoff_verify::MachineProgramError,
     touchoff_verify::gcode::ControlError,
     touchoff_verify::machine::MachineError,
+}
+
+converted! {
+    Coded of code:
+    touchoff_verify::VerifyError,
+    touchoff_verify::machine::JointError,
+    touchoff_verify::program::WriteError,
+    touchoff_verify::stock::StockError,
 }
 
 converted! {
@@ -261,10 +288,6 @@ converted! {
     touchoff_postures::post::PostError,
     touchoff_postures::shard::ShardError,
     touchoff_postures::sweep::SweepError,
-    touchoff_verify::VerifyError,
-    touchoff_verify::machine::JointError,
-    touchoff_verify::program::WriteError,
-    touchoff_verify::stock::StockError,
 }
 
 /// Returns the cause of a failure to write, and its remedy.

@@ -67,7 +67,10 @@ fn main() -> ExitCode {
 
 /// Reports a failure, and returns its exit status, which is `min_status` or higher.
 fn fail(failure: &failure::Failure, min_status: u8) -> ExitCode {
-    let severity = if failure.is_rendered() { "" } else { "error: " };
-    message!("{severity}{failure}");
+    match failure.code() {
+        _ if failure.is_rendered() => message!("{failure}"),
+        Some(code) => message!("error[{code}]: {failure}"),
+        None => message!("error: {failure}"),
+    }
     ExitCode::from(failure.status().max(min_status))
 }

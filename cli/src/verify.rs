@@ -165,7 +165,7 @@ pub(crate) fn verify(arguments: Verify, json: bool) -> Result<ExitCode, Failure>
         } else {
             let place = format!("{}:{}:", inputs.program.name(), finding.line);
             out.styled(style(finding.severity), &place)?;
-            writeln!(out, " {}", finding.text)?;
+            writeln!(out, " {} [{}]", finding.text, finding.rule.code())?;
         }
     }
     if json {
@@ -251,7 +251,7 @@ fn style(severity: Severity) -> Style {
 /// If a file cannot be written.
 pub(crate) fn print(inputs: &Inputs, report: &JobReport<'_>) -> Result<(), Failure> {
     for reason in report.refusals() {
-        message!("not verified: {reason}");
+        message!("not verified: {reason} [{}]", reason.code());
     }
     let unit = inputs.file.unit;
     // Once per tool: at every body and in every reading it goes the same way.
@@ -278,7 +278,7 @@ pub(crate) fn print(inputs: &Inputs, report: &JobReport<'_>) -> Result<(), Failu
         GapWeight::Open => inputs.file.anyway,
         GapWeight::Said => true,
     }) {
-        message!("not checked: {gap}");
+        message!("not checked: {gap} [{}]", gap.code());
     }
     for summary in report.summaries() {
         message!("{summary}");

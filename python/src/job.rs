@@ -29,7 +29,7 @@ enum CheckError {
 /// Returns the error about keys that stand in no file.
 fn without_line(error: JobError) -> CheckError {
     match error {
-        JobError::File { message, .. } => CheckError::Keys(message),
+        JobError::File { fault, .. } => CheckError::Keys(fault.to_string()),
         other => CheckError::Job(other),
     }
 }
@@ -145,7 +145,7 @@ pub(crate) fn check_job(
                 .map(|finding| FindingRow { text: finding.text.clone(), row: report.row(finding) })
                 .collect(),
             gaps: report.gap_rows().collect(),
-            refusals: report.refusals(),
+            refusals: report.refusals().iter().map(ToString::to_string).collect(),
             summaries: report.summaries(),
             surface_only: report.is_surface_only(),
             sarif: report.sarif(),

@@ -22,6 +22,7 @@ struct VerifyPage;
 struct RustPage;
 
 mod check;
+pub mod codes;
 pub mod gcode;
 pub mod job;
 pub mod machine;

@@ -88,7 +88,7 @@ pub(crate) struct Check {
 
 #[derive(Args)]
 pub(crate) struct Explain {
-    /// Code to explain, as printed between the brackets of a message, such as T0201.
+    /// Code to explain, as printed between the brackets of a message, such as T0201 or P0112.
     #[arg(value_name = "CODE")]
     pub(crate) code: Option<String>,
 }

@@ -29,7 +29,7 @@ fn findings_are_lines_as_compilers_print_them() {
         line.starts_with(&format!("{file}:5: ball is 0.5000 mm deep in the part at (")),
         "{line}"
     );
-    assert!(line.contains(" of the motion from line 4"), "{line}");
+    assert!(line.contains(" of the motion from line 4") && line.ends_with(" [V0101]"), "{line}");
     let said = stderr(&output);
     assert!(
         said.contains("1 finding in 3 motions: ball on 1 motion (deepest 0.5000 mm, line 5)"),
@@ -58,7 +58,8 @@ fn a_finding_is_an_object_for_programs() {
         (&row["line"], &row["from_line"], &row["location"]),
         (&5.into(), &4.into(), &2.into())
     );
-    assert_eq!((&row["kind"], &row["surface"]), (&"deep".into(), &"ball".into()));
+    assert_eq!((&row["code"], &row["kind"]), (&"V0101".into(), &"deep".into()));
+    assert_eq!(row["surface"], "ball");
     assert_eq!((&row["cutting"], &row["rapid"]), (&true.into(), &false.into()));
     assert!((0.3..0.7).contains(&number(&row["fraction"])) && row["triangle"].is_u64(), "{row}");
     assert!(number(&row["allowed_depth"]) == 0.01 && row["file"].is_string(), "{row}");
@@ -151,21 +152,13 @@ fn motions_of_a_solid_are_proved_with_their_spin() {
 #[test]
 fn unknown_statements_are_refused() {
     let bench = Bench::new();
-    let words = "GOTOX/1,2,3|GO TO/1,2,3|LINEAR/1,2,3|ARC/1,2,3|DRILL/1|ORIGIN/0,0,35|CUTCOM/LEFT|MODE/INCR|\
-                 THICK/-5|HEAD/2|CUTTER/50|INSERT G0 Z-5";
-    for word in words.split('|') {
-        let text = PROGRAM
-            .replace("RAPID\n", &format!("{word}\n"))
-            .replace("UNITS/MM", "UNITS/MM\nLOADTL/1\nCUTTER/2,1");
-        bench.write("word.apt", text);
-        let output = verify(&bench, "word.apt", "D2Ball", &["--tolerance", "0.5"]);
-        let said = stderr(&output);
-        assert_eq!(output.status.code(), Some(2), "{word}: {said}");
-        assert!(said.contains("word.apt:8: "), "{word}: {said}");
-        let run = bench.touchoff(
-            "run --part block.stl --unit mm --tool D2Ball --program word.apt --points 100",
-        );
-        assert_eq!(run.status.code(), Some(2), "{word}: {}", stderr(&run));
+    bench.write("word.apt", PROGRAM.replace("RAPID\n", "GOTOX/1,2,3\n"));
+    let inputs = "--part block.stl --unit mm --tool D2Ball --program word.apt";
+    for command in ["verify", "run"] {
+        let output = bench.touchoff(&format!("{command} {inputs}"));
+        assert_eq!(output.status.code(), Some(2), "{command}: {}", stderr(&output));
+        let start = "error[P0515]: word.apt:6: `GOTOX` ";
+        assert!(stderr(&output).starts_with(start), "{command}: {}", stderr(&output));
     }
     bench.write("wide.apt", PROGRAM.replace("UNITS/MM", "UNITS/MM\nCUTTER/50,25"));
     let output = verify(&bench, "wide.apt", "D2Ball", &["--tolerance", "0.5"]);

@@ -10,9 +10,6 @@ use super::syntax::SyntaxKind;
 use super::table::Entry;
 use super::values::ValueKind;
 
-/// The largest number of edits between two similar codes.
-const MAX_EDITS: usize = 2;
-
 /// A family of kinds, whose codes have a common prefix.
 #[derive(Clone, Copy, Debug)]
 pub struct Family {
@@ -68,12 +65,4 @@ pub fn entries() -> impl Iterator<Item = &'static Entry> {
 /// Returns the row of a code, if there is one.
 pub fn entry(code: &str) -> Option<&'static Entry> {
     entries().find(|entry| entry.code == code)
-}
-
-/// Returns the rows whose codes are most similar to an unknown code: at most three, and none if no code is
-/// similar.
-pub fn similar_entries(code: &str) -> impl Iterator<Item = &'static Entry> {
-    let edits = |entry: &Entry| strsim::damerau_levenshtein(code, entry.code);
-    let min_edits = entries().map(edits).min().filter(|edits| *edits <= MAX_EDITS);
-    entries().filter(move |entry| Some(edits(entry)) == min_edits).take(3)
 }

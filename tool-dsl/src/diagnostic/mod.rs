@@ -26,7 +26,7 @@ pub use data::{
     CycleLinks, Expected, FormattedNumber, MountChain, NameRemedy, NameStart, Names, Operation,
     ParamRemedy, Role, Statement, Subject, SurfaceRemedy, format_number, nearest,
 };
-pub use kind::{FAMILIES, Family, Kind, entries, entry, similar_entries};
+pub use kind::{FAMILIES, Family, Kind, entries, entry};
 pub use mounts::MountKind;
 pub use profile::ProfileKind;
 pub use refusal::{MAX_DIAGNOSTICS, Refusal, Reported, any_error};

@@ -1,6 +1,7 @@
 //! Findings of a verification, and those of consecutive motions joined.
 
 use super::Approach;
+use crate::codes::faults;
 use crate::gcode::{BlockLine, SubprogramLine};
 use crate::program::ProgramError;
 use std::cmp::Ordering;
@@ -8,28 +9,33 @@ use std::mem::{self, Discriminant};
 use touchoff::certify::{AllowanceErrors, NotCertifiable, Witness};
 use touchoff::{Interval, MotionError, Pose, SurfaceId};
 
-/// A reason for which a program cannot be checked.
-#[derive(thiserror::Error)]
-#[non_exhaustive]
-pub enum VerifyError {
-    /// The tool cannot be certified.
-    #[error(transparent)]
-    NotCertifiable(#[from] NotCertifiable),
-    /// Some allowances are invalid.
-    #[error(transparent)]
-    Allowances(#[from] AllowanceErrors),
-    /// The program does not fit the part or the tool: its unit, its cutter, or its poses.
-    #[error(transparent)]
-    Program(#[from] ProgramError),
-    /// A tolerance or a resolution is not a finite length of 0 or more.
-    #[error("{tolerance} is no tolerance: give a length of 0 or more")]
-    Tolerance {
-        /// The given value.
-        tolerance: f64,
-    },
+faults! {
+    #[family("J05", "Tools and limits")]
+    /// A reason for which a program cannot be checked.
+    #[derive(thiserror::Error)]
+    #[non_exhaustive]
+    pub enum VerifyError {
+        /// The tool cannot be certified.
+        #[code = J0501]
+        #[error(transparent)]
+        NotCertifiable(#[from] NotCertifiable),
+        /// Some allowances are invalid.
+        #[code = J0502]
+        #[error(transparent)]
+        Allowances(#[from] AllowanceErrors),
+        /// The program does not fit the part or the tool: its unit, its cutter, or its poses.
+        #[code_of(0)]
+        #[error(transparent)]
+        Program(#[from] ProgramError),
+        /// A tolerance or a resolution is not a finite length of 0 or more.
+        #[code = J0503]
+        #[error("{tolerance} is no tolerance: give a length of 0 or more")]
+        Tolerance {
+            /// The given value.
+            tolerance: f64,
+        },
+    }
 }
-
-touchoff::debug_as_sentence!(VerifyError);
 
 /// The result of checking a program.
 #[derive(Clone, Debug, PartialEq)]

@@ -27,6 +27,7 @@ mod resolve;
 mod summary;
 
 pub use fault::{BlockError, BlockFault, MachineProgramError, Obstacle, StepFault};
+pub(crate) use summary::CheckGap;
 pub use summary::{
     Gap, GapWeight, MachineSummary, ProgramStop, ToolUse, UnknownCause, UnknownMotions,
 };

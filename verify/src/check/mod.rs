@@ -34,12 +34,12 @@ pub use approach::Approach;
 pub use cycle_time::{CYCLE_TIME_ASSUMPTIONS, CycleTime};
 pub(crate) use finding::Rank;
 pub use finding::{Finding, FindingGroup, FindingKind, VerifyError, VerifyReport};
-pub(crate) use machine_program::MoveRequest;
 pub use machine_program::{
     Assumption, BlockError, BlockFault, Gap, GapWeight, MAX_READINGS, MAX_VALUES, MachineProgram,
     MachineProgramError, MachineSummary, Obstacle, ProgramStop, StepFault, ToolSelection, ToolUse,
     UnknownCause, UnknownMotions,
 };
+pub(crate) use machine_program::{CheckGap, MoveRequest};
 pub use moves::{JointPath, Move, MovePath, RapidBox};
 pub use remedy::Tilt;
 

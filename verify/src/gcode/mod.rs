@@ -75,7 +75,7 @@ pub use files::{BlockLine, SubprogramFile, SubprogramLine};
 pub use interpreter::Interpreter;
 pub use iso::ExpressionFault;
 pub use note::{NoteKind, ProgramNote};
-pub use rules::{Choice, ControlError, ControlRules, Rule};
+pub use rules::{Choice, ControlError, ControlFault, ControlRules, Rule};
 pub(crate) use state::about;
 pub use state::{ControlState, Frame, LengthOffset, Position, Rotation, Tcp, WorkOffset};
 pub use survey::Survey;

@@ -1,6 +1,7 @@
 //! Notes: what a program leaves to the control, and words that were passed over.
 
 use super::{BlockLine, SubprogramLine};
+use crate::codes::faults;
 use std::collections::BTreeMap;
 use std::fmt;
 
@@ -18,53 +19,104 @@ pub struct ProgramNote {
     pub kind: NoteKind,
 }
 
-/// Subject of a note.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-#[non_exhaustive]
-pub enum NoteKind {
-    /// A word that can neither move the tool nor change what positions mean.
-    PassedOver {
-        /// A G or M word, or the letter of another.
-        word: String,
-    },
-    /// A motion without G61: the control may round its corners, by a tolerance of its own.
-    RoundedCorners,
-    /// A work offset (G58, G59) that native Sinumerik programs read as a shift.
-    OffsetOrShift,
-    /// A tool change, whose motion only the machine knows.
-    ToolChange,
-    /// A word that the setup ignores.
-    Ignored {
-        /// The word.
-        word: String,
-        /// The reason that the setup states.
-        reason: String,
-    },
-    /// M99 in the main program, which repeats it without end.
-    Endless,
-    /// A bore that is milled on a helix, whose first point is the control's own.
-    HelixStart,
-    /// A stop, at which an operator can move the tool.
-    Stop,
-    /// A block that begins with `/`, and was executed.
-    ExecutedOptionalBlock,
-    /// A block that begins with `/`, and was left out.
-    OmittedOptionalBlock,
-    /// Text after the end of the program, which is not read.
-    TextAfterEnd,
-    /// Another program in the file, which is not read.
-    OtherProgram,
-    /// A block whose switch is not that of other optional blocks. They are executed or left out together.
-    OptionalSwitches,
-    /// An arc whose radii at its start and end differ by more than rounding. It is read as a spiral.
-    TwoRadii,
-    /// An arc by its radius, which moves by more than rounding where its numbers are rounded to the least increment.
-    RoundedRadius,
-    /// A motion that differs in the next run of the program, if the control keeps modes from the end of the run before.
-    LeftModes {
-        /// The words that left them, as a list.
-        words: String,
-    },
+faults! {
+    #[family("V05", "What a program leaves to the control")]
+    /// Subject of a note.
+    #[derive(Clone, PartialEq, Eq, PartialOrd, Ord, thiserror::Error)]
+    #[non_exhaustive]
+    pub enum NoteKind {
+        /// A word that can neither move the tool nor change what positions mean.
+        #[code = V0501]
+        #[error("{word} is passed over")]
+        PassedOver {
+            /// A G or M word, or the letter of another.
+            word: String,
+        },
+        /// Corners that the control may round, without G61.
+        #[code = V0502]
+        #[error("the control may round corners without G61, by a tolerance of its own: its path is checked as programmed")]
+        RoundedCorners,
+        /// A work offset (G58, G59) that native Sinumerik programs read as a shift.
+        #[code = V0503]
+        #[error("G58 and G59 are work offsets, but shifts on native Sinumerik: state `dialect` of the control")]
+        OffsetOrShift,
+        /// A tool change, whose motion only the machine knows.
+        #[code = V0504]
+        #[error("the motion of the tool change is not checked")]
+        ToolChange,
+        /// A word that the setup ignores.
+        #[code = V0505]
+        #[error("{word} is ignored as stated: {reason}")]
+        Ignored {
+            /// The word.
+            word: String,
+            /// The reason that the setup states.
+            reason: String,
+        },
+        /// M99 in the main program, which repeats it without end.
+        #[code = V0506]
+        #[error("M99 repeats the program without end, of which one run is checked")]
+        Endless,
+        /// A bore that is milled on a helix, whose first point is the control's own.
+        #[code = V0507]
+        #[error("the control chooses where the helix of CYCL DEF 208 begins: it is followed from +X")]
+        HelixStart,
+        /// A stop, at which an operator can move the tool.
+        #[code = V0508]
+        #[error("motions by hand during the stop are not checked")]
+        Stop,
+        /// A block that begins with `/`, and was executed.
+        #[code = V0509]
+        #[error("an optional block (/) is executed")]
+        ExecutedOptionalBlock,
+        /// A block that begins with `/`, and was left out.
+        #[code = V0510]
+        #[error("an optional block (/) is left out")]
+        OmittedOptionalBlock,
+        /// Text after the end of the program, which is not read.
+        #[code = V0511]
+        #[error("the text after the end of the program is not read")]
+        TextAfterEnd,
+        /// Another program in the file, which is not read.
+        #[code = V0512]
+        #[error("another program begins here, and is not checked: give a file per program")]
+        OtherProgram,
+        /// A block whose switch is not that of other optional blocks.
+        ///
+        /// All optional blocks are executed or left out together.
+        #[code = V0513]
+        #[error("optional blocks have several switches (/1, /2), of which all on and all off are checked")]
+        OptionalSwitches,
+        /// An arc whose radii at its start and end differ by more than rounding.
+        ///
+        /// It is read as a spiral.
+        #[code = V0514]
+        #[error(
+            "the radii of an arc differ at its start and its end, and controls take different paths between: correct the arc"
+        )]
+        TwoRadii,
+        /// An arc by its radius, with more digits than the least increment.
+        ///
+        /// It moves by more than rounding where its numbers are rounded to the least increment.
+        #[code = V0515]
+        #[error(
+            "an arc by its radius has more digits than the least increment, and moves where they are rounded: write them with as many, or \
+             the arc with its centre"
+        )]
+        RoundedRadius,
+        /// A motion that differs in the next run of the program.
+        ///
+        /// Some controls keep modes from the end of one run to the start of the next.
+        #[code = V0516]
+        #[error(
+            "the program ends with {words}, which a control can keep, and its next run is another from here on: write before what this \
+             motion needs, end the program as it starts, or state `program_end` of the control"
+        )]
+        LeftModes {
+            /// The words that left them, as a list.
+            words: String,
+        },
+    }
 }
 
 impl fmt::Display for ProgramNote {
@@ -72,52 +124,6 @@ impl fmt::Display for ProgramNote {
         let ProgramNote { line, within: _, count, kind } = self;
         write!(f, "line {line}: {kind}")?;
         if *count > 1 { write!(f, " ({count} times)") } else { Ok(()) }
-    }
-}
-
-impl fmt::Display for NoteKind {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            NoteKind::PassedOver { word } => write!(f, "{word} is passed over"),
-            NoteKind::Ignored { word, reason } => write!(f, "{word} is ignored as stated: {reason}"),
-            NoteKind::Endless => {
-                f.write_str("M99 repeats the program without end, of which one run is checked")
-            }
-            NoteKind::RoundedCorners => f.write_str(
-                "the control may round corners without G61, by a tolerance of its own: its path is checked as programmed",
-            ),
-            NoteKind::OffsetOrShift => f.write_str(
-                "G58 and G59 are work offsets, but shifts on native Sinumerik: state `dialect` of the control",
-            ),
-            NoteKind::ToolChange => f.write_str("the motion of the tool change is not checked"),
-            NoteKind::HelixStart => f.write_str(
-                "the control chooses where the helix of CYCL DEF 208 begins: it is followed from +X",
-            ),
-            NoteKind::Stop => f.write_str("motions by hand during the stop are not checked"),
-            NoteKind::ExecutedOptionalBlock => f.write_str("an optional block (/) is executed"),
-            NoteKind::OmittedOptionalBlock => f.write_str("an optional block (/) is left out"),
-            NoteKind::TextAfterEnd => {
-                f.write_str("the text after the end of the program is not read")
-            }
-            NoteKind::OptionalSwitches => f.write_str(
-                "optional blocks have several switches (/1, /2), of which all on and all off are checked",
-            ),
-            NoteKind::TwoRadii => f.write_str(
-                "the radii of an arc differ at its start and its end, and controls take different paths between: correct the arc",
-            ),
-            NoteKind::RoundedRadius => f.write_str(
-                "an arc by its radius has more digits than the least increment, and moves where they are rounded: write them with as \
-                 many, or the arc with its centre",
-            ),
-            NoteKind::LeftModes { words } => write!(
-                f,
-                "the program ends with {words}, which a control can keep, and its next run is another from here on: write \
-                 before what this motion needs, end the program as it starts, or state `program_end` of the control"
-            ),
-            NoteKind::OtherProgram => f.write_str(
-                "another program begins here, and is not checked: give a file per program",
-            ),
-        }
     }
 }
 

@@ -5,6 +5,7 @@
 
 use super::block::{Code, is_keyword};
 use super::sinumerik;
+use crate::codes::faults;
 use crate::gcode::shown;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -589,14 +590,15 @@ impl ControlRules {
     /// # Ok::<(), touchoff_verify::gcode::ControlError>(())
     /// ```
     pub fn parse(text: &str, file: &str) -> Result<ControlRules, ControlError> {
-        let fault = |start: usize, message: String| {
+        let refused = |start: usize, fault: ControlFault| {
             let line = 1 + text[..start].matches('\n').count();
-            ControlError::Line { file: file.to_owned(), line, message }
+            ControlError::Line { file: file.to_owned(), line, fault }
         };
         let parsed: BTreeMap<Spanned<String>, Spanned<toml::Value>> = toml::from_str(text)
             .map_err(|error| {
                 let message = error.message().trim().replace('\n', ", ");
-                fault(error.span().map_or(0, |span| span.start), message)
+                let start = error.span().map_or(0, |span| span.start);
+                refused(start, ControlFault::Syntax { message })
             })?;
         let mut stated = BTreeMap::new();
         let mut ignoring = ControlRules::default();
@@ -606,16 +608,16 @@ impl ControlRules {
                 let words = value.get_ref().as_table().into_iter().flatten();
                 for (word, reason) in words {
                     let reason = reason.as_str().unwrap_or_default();
-                    ignoring = ignoring
-                        .ignoring(word, reason)
-                        .map_err(|error| fault(key.span().start, error.to_string()))?;
+                    ignoring
+                        .ignore(word, reason)
+                        .map_err(|fault| refused(key.span().start, fault))?;
                 }
                 continue;
             }
             let Some(entry) = RULES.iter().find(|entry| entry.key == word) else {
-                let near = closest(word, RULES.iter().map(|entry| entry.key));
-                let message = format!("{} is no rule: did you mean `{near}`?", shown(word));
-                return Err(fault(key.span().start, message));
+                let nearest = closest(word, RULES.iter().map(|entry| entry.key));
+                let fault = ControlFault::UnknownRule { key: shown(word), nearest };
+                return Err(refused(key.span().start, fault));
             };
             let choice = value
                 .get_ref()
@@ -624,8 +626,8 @@ impl ControlRules {
             let Some((choice, ..)) = choice else {
                 let words: Vec<String> =
                     entry.choices.iter().map(|(_, known, _)| format!("\"{known}\"")).collect();
-                let message = format!("`{word}` is one of {}", words.join(", "));
-                return Err(fault(value.span().start, message));
+                let fault = ControlFault::Choice { key: entry.key, choices: words.join(", ") };
+                return Err(refused(value.span().start, fault));
             };
             stated.insert(entry.rule, *choice);
         }
@@ -658,19 +660,22 @@ impl ControlRules {
     /// # Errors
     /// If the reason is empty, or if the word is read and has an effect, or is known to have one.
     pub fn ignoring(mut self, word: &str, reason: &str) -> Result<ControlRules, ControlError> {
+        self.ignore(word, reason)?;
+        Ok(self)
+    }
+
+    /// Passes over a word for a reason, as [`ControlRules::ignoring`] does.
+    fn ignore(&mut self, word: &str, reason: &str) -> Result<(), ControlFault> {
         let upper = word.trim().to_ascii_uppercase();
         let is_reason = !reason.trim().is_empty() && !reason.contains(char::is_control);
-        let problem = match (can_be_ignored(&upper), is_reason) {
-            (false, _) => "it has an effect, or is no G or M word and no name",
-            (true, false) => {
-                "its reason is missing, or is no line of text: write `WORD = \"reason\"`"
-            }
+        match (can_be_ignored(&upper), is_reason) {
+            (false, _) => Err(ControlFault::HasEffect { word: shown(word) }),
+            (true, false) => Err(ControlFault::NoReason { word: shown(word) }),
             (true, true) => {
                 self.ignored.insert(upper, reason.trim().to_owned());
-                return Ok(self);
+                Ok(())
             }
-        };
-        Err(ControlError::NotIgnored { word: shown(word), problem })
+        }
     }
 
     /// Passes over a word, whatever its effect, and returns whether it was not passed over before.
@@ -756,54 +761,109 @@ impl fmt::Display for ControlRules {
     }
 }
 
-/// A control that cannot be read.
-#[derive(Clone, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum ControlError {
-    /// No control of this name is known.
-    #[error(
-        "{name} is no control that is known: did you mean `{nearest}`? `touchoff controls` lists them, and a file ends in \
-         `.toml`"
-    )]
-    UnknownName {
-        /// The name.
-        name: String,
-        /// The nearest known one.
-        nearest: &'static str,
-    },
-    /// A line of the file is refused.
-    #[error("{file}:{line}: {message}")]
-    Line {
-        /// The file.
-        file: String,
-        /// The line, 1-based.
-        line: usize,
-        /// The fault and its remedy.
-        message: String,
-    },
-    /// A word cannot be passed over.
-    #[error("{word} cannot be ignored: {problem}")]
-    NotIgnored {
-        /// The word.
-        word: String,
-        /// The problem.
-        problem: &'static str,
-    },
-    /// A rule is not stated.
-    #[error(
-        "{file}: the rule `{key}` is missing ({about}): state it; `touchoff controls NAME` prints a whole file"
-    )]
-    Missing {
-        /// The file.
-        file: String,
-        /// The key.
-        key: &'static str,
-        /// The subject of the rule.
-        about: &'static str,
-    },
+faults! {
+    #[family("K04", "Controls: names and files")]
+    /// A control that cannot be read.
+    #[derive(Clone, PartialEq, Eq, thiserror::Error)]
+    #[non_exhaustive]
+    pub enum ControlError {
+        /// A name that is that of no known control.
+        #[code = K0401]
+        #[error(
+            "{name} is no control that is known: did you mean `{nearest}`? `touchoff controls` lists them, and a file ends in `.toml`"
+        )]
+        UnknownName {
+            /// The name.
+            name: String,
+            /// The nearest known one.
+            nearest: &'static str,
+        },
+        /// A line of the file is refused.
+        #[code_of(fault)]
+        #[error("{file}:{line}: {fault}")]
+        Line {
+            /// The file.
+            file: String,
+            /// The line, 1-based.
+            line: usize,
+            /// The fault in it.
+            fault: ControlFault,
+        },
+        /// A word cannot be passed over.
+        #[code_of(0)]
+        #[error(transparent)]
+        NotIgnored(#[from] ControlFault),
+        /// A rule that the file does not state.
+        ///
+        /// A control's file states all rules, so that nothing of it is assumed.
+        #[code = K0402]
+        #[error(
+            "{file}: the rule `{key}` is missing ({about}): state it; `touchoff controls NAME` prints a whole file"
+        )]
+        Missing {
+            /// The file.
+            file: String,
+            /// The key.
+            key: &'static str,
+            /// The subject of the rule.
+            about: &'static str,
+        },
+    }
 }
 
-touchoff::debug_as_sentence!(ControlError);
+faults! {
+    #[family("K05", "Controls: rules and words that are passed over")]
+    /// A fault in a line of a control's file, or a word that cannot be passed over.
+    #[derive(Clone, PartialEq, Eq, thiserror::Error)]
+    #[non_exhaustive]
+    pub enum ControlFault {
+        /// A text that is not TOML.
+        #[code = K0501]
+        #[error("{message}")]
+        Syntax {
+            /// The parser's message.
+            message: String,
+        },
+        /// A key that is no rule.
+        #[code = K0502]
+        #[error("{key} is no rule: did you mean `{nearest}`?")]
+        UnknownRule {
+            /// The escaped key.
+            key: String,
+            /// The nearest known one.
+            nearest: &'static str,
+        },
+        /// A value that is no choice of its rule.
+        #[code = K0503]
+        #[error("`{key}` is one of {choices}")]
+        Choice {
+            /// The rule's key.
+            key: &'static str,
+            /// Its choices, as a list.
+            choices: String,
+        },
+        /// A word to be ignored that has an effect.
+        ///
+        /// A word is passed over only if it is not known to move the tool or to change what positions mean.
+        #[code = K0504]
+        #[error("{word} cannot be ignored: it has an effect, or is no G or M word and no name")]
+        HasEffect {
+            /// The escaped word.
+            word: String,
+        },
+        /// A word to be ignored without a reason.
+        ///
+        /// The reason is repeated with the verdict, since the check relies on it.
+        #[code = K0505]
+        #[error(
+            "{word} cannot be ignored: its reason is missing, or is no line of text: write `WORD = \"reason\"`"
+        )]
+        NoReason {
+            /// The escaped word.
+            word: String,
+        },
+    }
+}
 
 /// Returns the known word with the fewest changes of letters.
 fn closest(word: &str, known: impl Iterator<Item = &'static str>) -> &'static str {

@@ -1,9 +1,10 @@
 //! Job files: TOML, with paths relative to the folder of the file.
 
 use super::program::{Program, read_control, read_subprograms};
-use super::{Hand, JobError, PART, checked_margin};
+use super::{Hand, JobError, JobFileFault, PART, checked_margin};
 use crate::gcode::{
-    Choice, ControlRules, ControlSetup, LARGEST_NUMBER, Rule, WorkOffset, is_variable,
+    Choice, ControlRules, ControlSetup, LARGEST_NUMBER, Rule, SubprogramFile, WorkOffset,
+    is_variable,
 };
 use crate::{ToolSelection, ToolUse};
 use serde::{Deserialize, Deserializer};
@@ -312,16 +313,18 @@ impl JobFile {
         let name = file.display().to_string();
         let job: JobText = toml::from_str(text).map_err(|error| {
             let line = error.span().map(|span| 1 + text[..span.start].matches('\n').count());
-            JobError::File { file: name.clone(), line, message: error.message().to_owned() }
+            let fault = JobFileFault::Syntax { message: error.message().to_owned() };
+            JobError::File { file: name.clone(), line, fault }
         })?;
-        let fault = |message: String| JobError::File { file: name.clone(), line: None, message };
-        let unit = job.unit.parse::<Unit>().map_err(|error| fault(error.to_string()))?;
+        let refused =
+            |fault: JobFileFault| JobError::File { file: name.clone(), line: None, fault };
+        let unit = job.unit.parse::<Unit>().map_err(|error| refused(error.into()))?;
         let lengths = [Some(job.tolerance), job.resolution];
         if lengths.into_iter().flatten().any(|length| !(0.0..f64::INFINITY).contains(&length)) {
-            return Err(fault("`tolerance` and `resolution` are lengths of 0 or more".to_owned()));
+            return Err(refused(JobFileFault::Length));
         }
         for fixture in &job.fixture {
-            checked_margin(fixture.margin).map_err(|error| fault(error.to_string()))?;
+            checked_margin(fixture.margin).map_err(|_| refused(JobFileFault::Margin))?;
         }
         let Origins { standard: work_offsets, additional: additional_offsets } =
             work_offsets(&job.work_offsets)?;
@@ -331,9 +334,7 @@ impl JobFile {
             let is_number =
                 !values.is_empty() && values.iter().all(|value| value.abs() <= LARGEST_NUMBER);
             if !is_number || !is_variable(&name) {
-                return Err(fault(format!(
-                    "`{name}` in `[variables]`: write `\"#500\" = 2.5`, `R1 = 2.5` or `Q1 = 2.5`, or all values that it can have as a list"
-                )));
+                return Err(refused(JobFileFault::Variable { name }));
             }
             variables.insert(name, values);
         }
@@ -344,23 +345,21 @@ impl JobFile {
             let number = number
                 .trim_start_matches(['T', 't'])
                 .parse::<u32>()
-                .map_err(|_| fault(format!("`{number}` is no tool number: write `[tool.3]`")))?;
+                .map_err(|_| refused(JobFileFault::ToolNumber { number: number.clone() }))?;
             if let Some(tool) = entry.tool.as_mut().filter(|tool| tool.ends_with(".tool")) {
                 *tool = folder.join(&*tool).display().to_string();
             }
             let same = |other: &ToolEntry| entry.name.is_some() && other.name == entry.name;
             if entries.values().any(same) {
                 let name = entry.name.unwrap_or_default();
-                return Err(fault(format!(
-                    "the tool name `{name}` is given twice: keep one of both"
-                )));
+                return Err(refused(JobFileFault::SecondToolName { name }));
             }
             if entries.insert(number, entry).is_some() {
-                return Err(fault(format!("tool {number} is given twice: keep one of both")));
+                return Err(refused(JobFileFault::SecondTool { number }));
             }
         }
-        let radius_offsets = radius_offsets(&job.radius_offsets, &entries).map_err(fault)?;
-        let presets = presets(&job.presets).map_err(fault)?;
+        let radius_offsets = radius_offsets(&job.radius_offsets, &entries).map_err(refused)?;
+        let presets = presets(&job.presets).map_err(refused)?;
         let named = |name: String| -> OsString {
             if name.ends_with(".toml") { folder.join(name).into() } else { name.into() }
         };
@@ -404,15 +403,15 @@ impl JobFile {
         })
     }
 
-    /// Reads the program, and interprets G-code.
+    /// Returns the set-up of the control that the job states, with the rules of its control and the files of its subprograms.
     ///
     /// # Errors
-    /// If the program, the machine or the control is refused, or if a single program of positions has one position.
-    pub fn program(&self) -> Result<Program, JobError> {
-        let mut rules = match &self.control {
-            Some(control) => read_control(Path::new(control))?,
-            None => ControlRules::default(),
-        };
+    /// If a word cannot be ignored.
+    pub fn setup(
+        &self,
+        mut rules: ControlRules,
+        subprograms: Vec<SubprogramFile>,
+    ) -> Result<ControlSetup, JobError> {
         if let Some(left_out) = self.block_delete {
             let choice = if left_out { Choice::LeftOut } else { Choice::Executed };
             rules = rules.with(Rule::OptionalBlocks, choice);
@@ -420,18 +419,30 @@ impl JobFile {
         for (word, reason) in &self.ignore {
             rules = rules.ignoring(word, reason)?;
         }
-        let setup = ControlSetup {
+        Ok(ControlSetup {
             work_offsets: self.work_offsets,
             additional_offsets: self.additional_offsets.clone(),
             lengths: self.tools.lengths(),
             variables: self.variables.clone(),
-            subprograms: read_subprograms(&self.subprograms)?,
+            subprograms,
             radius_offsets: self.radius_offsets.clone(),
             presets: self.presets.clone(),
             tool_names: self.tools.names(),
             rules,
             ..ControlSetup::default()
+        })
+    }
+
+    /// Reads the program, and interprets G-code.
+    ///
+    /// # Errors
+    /// If the program, the machine or the control is refused, or if a single program of positions has one position.
+    pub fn program(&self) -> Result<Program, JobError> {
+        let rules = match &self.control {
+            Some(control) => read_control(Path::new(control))?,
+            None => ControlRules::default(),
         };
+        let setup = self.setup(rules, read_subprograms(&self.subprograms)?)?;
         let machine = self.machine.as_deref().map(Path::new);
         let program = Program::read(&self.program, machine, &setup)?;
         if let Program::Locations(programs) = &program
@@ -465,7 +476,7 @@ impl JobFile {
             let known = match (number, entries.iter().next()) {
                 (Some(number), _) => number,
                 (None, Some((only, _))) if entries.len() == 1 => *only,
-                (None, _) => return Err(JobError::NoTool { number, line, others: Vec::new() }),
+                (None, _) => return Err(JobError::UnnamedTool { line }),
             };
             let entry = entries.get(&known).cloned().unwrap_or_default();
             let (name, library) = match (entry.tool, library) {
@@ -488,7 +499,7 @@ impl JobFile {
         }
         if let [(first, line), others @ ..] = &missing[..] {
             let others = others.iter().map(|(number, _)| *number).collect();
-            return Err(JobError::NoTool { number: Some(*first), line: *line, others });
+            return Err(JobError::NoTool { number: *first, line: *line, others });
         }
         Ok(tools)
     }
@@ -530,15 +541,12 @@ impl PartEntry {
     /// Returns the index of its work offset, from 1 on: that of G54 is the part's own.
     ///
     /// # Errors
-    /// [`JobError::WorkOffset`] if it has none of these names.
+    /// [`JobError::OtherPartOffset`] if it has none of these names.
     pub(super) fn offset_index(&self) -> Result<usize, JobError> {
         let known = |name: &&str| name.eq_ignore_ascii_case(&self.work_offset);
         match WORK_OFFSETS.iter().position(known) {
             Some(index) if index > 0 => Ok(index),
-            _ => Err(JobError::OtherPart {
-                name: self.name(),
-                reason: "its `work_offset` is one of G55 to G59.3, since the part stands at G54",
-            }),
+            _ => Err(JobError::OtherPartOffset { name: self.name() }),
         }
     }
 }
@@ -554,22 +562,20 @@ fn has_ending(file: &Path, ending: &str) -> bool {
 fn radius_offsets(
     named: &BTreeMap<String, f64>,
     tools: &BTreeMap<u32, ToolEntry>,
-) -> Result<BTreeMap<u32, f64>, String> {
+) -> Result<BTreeMap<u32, f64>, JobFileFault> {
     let of_tools = tools.iter().filter_map(|(number, entry)| Some((*number, entry.radius_offset?)));
     let mut offsets: BTreeMap<u32, f64> = of_tools.collect();
     for (name, radius) in named {
         let digits = name.strip_prefix(['D', 'd']).unwrap_or_default();
         let Some(number) = digits.parse::<u32>().ok().filter(|number| *number > 0) else {
-            return Err(format!(
-                "radius offset `{name}`: write its number as in the program, `D21 = 0.02`"
-            ));
+            return Err(JobFileFault::RadiusOffset { name: name.clone() });
         };
         if offsets.insert(number, *radius).is_some() {
-            return Err(format!("radius offset {number} is given twice: keep one of both"));
+            return Err(JobFileFault::SecondRadiusOffset { number });
         }
     }
     match offsets.iter().find(|(_, radius)| !radius.is_finite()) {
-        Some((number, _)) => Err(format!("radius offset {number} is a length in mm")),
+        Some((number, _)) => Err(JobFileFault::RadiusLength { number: *number }),
         None => Ok(offsets),
     }
 }
@@ -578,14 +584,12 @@ fn radius_offsets(
 ///
 /// # Errors
 /// If a preset is no whole number, or stands for no work offset.
-fn presets(named: &BTreeMap<String, String>) -> Result<BTreeMap<u32, u8>, String> {
+fn presets(named: &BTreeMap<String, String>) -> Result<BTreeMap<u32, u8>, JobFileFault> {
     let found = named.iter().map(|(preset, offset)| {
         let known = (1..).zip(WORK_OFFSETS).find(|(_, known)| known.eq_ignore_ascii_case(offset));
         let number = preset.parse().ok();
         let found = number.zip(known).map(|(number, (index, _))| (number, index));
-        found.ok_or_else(|| {
-            format!("preset `{preset}`: write its number and a work offset, `2 = \"G55\"`")
-        })
+        found.ok_or_else(|| JobFileFault::Preset { preset: preset.clone() })
     });
     found.collect()
 }

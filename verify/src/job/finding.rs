@@ -4,20 +4,96 @@ use super::JobTool;
 use super::machine::MachineFindingKind;
 use super::report::{FindingDetail, JobFinding, JobReport, PairReport, Remedy, Severity};
 use crate::check::Rank;
+use crate::codes::{Entry, Family};
 use crate::gcode::SubprogramLine;
 use crate::{Finding, FindingGroup, FindingKind, Tilt};
 use std::cmp::Ordering;
-use std::fmt::Write as _;
+use std::fmt::{self, Write as _};
 use touchoff::{Interval, SurfaceId, Unit};
 
-/// Returns the keyword of a finding's kind.
-pub(super) fn rule(kind: &FindingKind) -> &'static str {
-    match kind {
-        FindingKind::Deep { .. } => "deep",
-        FindingKind::Near { .. } => "near",
-        FindingKind::Inside { .. } => "inside",
-        FindingKind::Undecided { .. } => "undecided",
-        FindingKind::Ambiguous(_) => "ambiguous",
+/// Declares the rules with their rows of the table of codes.
+macro_rules! rules {
+    ($($(#[doc = $doc:literal])+ $code:ident $name:ident $keyword:literal $message:literal)*) => {
+        /// The rule that a finding violates.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub enum FindingRule {
+            $($(#[doc = $doc])+ $name,)*
+        }
+
+        impl FindingRule {
+            /// The rows of the rules.
+            pub(crate) const FAMILY: Family = Family::new(
+                "V01",
+                "Findings",
+                &[$(Some(Entry::new(stringify!($code), &[$($doc),+], $message))),*],
+            );
+
+            /// All rules, in the order of their codes.
+            pub const ALL: &'static [FindingRule] = &[$(FindingRule::$name),*];
+
+            /// Returns the stable code of the [table](crate::codes).
+            pub fn code(self) -> &'static str {
+                match self { $(FindingRule::$name => stringify!($code)),* }
+            }
+
+            /// Returns the keyword, which rows of JSON have as `kind`.
+            pub fn keyword(self) -> &'static str {
+                match self { $(FindingRule::$name => $keyword),* }
+            }
+        }
+    };
+}
+
+rules! {
+    /// A surface that is deeper in a body than allowed.
+    ///
+    /// It is a surface of a tool, or of a body of the machine, in the part, a fixture or another body. `tolerance` and `allow` state the
+    /// allowed depth; in rapid traverse it is the tolerance.
+    V0101 Deep "deep" "{surface} is {depth} deep in {body} at {point}: lift or tilt the tool there, or take another one"
+    /// A surface that comes nearer to a body than its margin.
+    V0102 Near "near" "{surface} is {distance} from {body} at {point}, less than its margin: lift or tilt the tool there, or lower `margin`"
+    /// A tool, or a piece of it, that is inside the material.
+    ///
+    /// It touches no surface of the material there, so that no depth is measured.
+    V0103 Inside "inside" "{surface} is inside {body}, away from its surface: check the work offset, the unit and the length of the tool"
+    /// A surface of which it is not decided whether it exceeds its limit.
+    ///
+    /// The effort of a proof is bounded, and the surface is near its limit on this motion.
+    V0104 Undecided "undecided" "it is not decided whether {surface} is too deep in {body}: try a larger `--resolution`"
+    /// A motion whose rotation is ambiguous, of which only the end was checked.
+    ///
+    /// Its axis turns to the opposite, for which all ways are as short.
+    V0105 Ambiguous "ambiguous" "start and end axes are antiparallel, so the rotation is ambiguous: add a position between"
+    /// A feed motion with a spindle that does not turn, or turns the wrong way round.
+    V0106 Spindle "spindle" "{tool} feeds with the spindle off, without a speed, or turning the wrong way round: write M3 or M4 and S before, or state `hand` of the tool"
+    /// A feed motion with the length offset of another tool.
+    V0107 Length "length" "{tool} feeds with the length offset H{register}, which has another length: correct H, or the lengths of the job"
+    /// An axis of the machine that goes beyond its limit.
+    V0108 Limit "limit" "{axis} goes to {value}, beyond its limit: move the part on the table, or choose another machine"
+    /// A rotary axis that turns far while the tool axis hardly moves.
+    ///
+    /// It is a remark: the control slows down there, and the verdict does not depend on it.
+    V0109 Singular "singular" "{axis} turns by {angle} while the tool axis hardly moves: tilt the part or the tool axis away from the pole"
+    /// A surface that does not cut, or a rapid motion, in material that is still there.
+    V0110 Stock "stock" "{surface} touches the stock, {depth} deep at {point}: clear the material before, or move around it"
+}
+
+impl fmt::Display for FindingRule {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.keyword())
+    }
+}
+
+impl FindingRule {
+    /// Returns the rule of a finding's kind.
+    pub(super) fn of(kind: &FindingKind) -> FindingRule {
+        match kind {
+            FindingKind::Deep { .. } => FindingRule::Deep,
+            FindingKind::Near { .. } => FindingRule::Near,
+            FindingKind::Inside { .. } => FindingRule::Inside,
+            FindingKind::Undecided { .. } => FindingRule::Undecided,
+            FindingKind::Ambiguous(_) => FindingRule::Ambiguous,
+        }
     }
 }
 
@@ -54,7 +130,7 @@ pub(super) fn all(report: &JobReport<'_>) -> Vec<JobFinding> {
         for finding in &cut.findings {
             let rank = Rank::deep(finding.depth - cut.tolerance);
             let finding = JobFinding {
-                rule: "stock",
+                rule: FindingRule::Stock,
                 severity: Severity::Violation,
                 line: finding.block.line,
                 within: finding.block.within,
@@ -98,7 +174,7 @@ fn surfaces(report: &JobReport<'_>) -> Vec<Ranked> {
             };
             let last = groups.iter().map(|group| group.last).max_by_key(|last| last.location);
             let finding = JobFinding {
-                rule: rule(&kind),
+                rule: FindingRule::of(&kind),
                 severity: if open { Severity::Undecided } else { Severity::Violation },
                 line: groups[0].worst.line,
                 within: groups[0].worst.within,

@@ -4,7 +4,10 @@ use super::bodies::{self, LoadedBody};
 use super::file::{JobFile, NamedTool, PartEntry, StockEntry};
 use super::program::Program;
 use super::report::Verdict;
-use super::{Body, BodyFrame, BodyRole, Job, JobError, JobStock, JobTool, PART, StockShape};
+use super::{
+    Body, BodyFrame, BodyRole, Job, JobError, JobFileFault, JobGap, JobStock, JobTool, PART,
+    StockShape,
+};
 use crate::Gap;
 use crate::gcode::WorkOffset;
 use crate::machine::{BodyShape, Machine};
@@ -78,20 +81,16 @@ impl JobBody {
         program: &Program,
     ) -> Result<JobBody, JobError> {
         let index = entry.offset_index()?;
-        let refused = |reason| JobError::OtherPart { name: entry.name(), reason };
+        let name = entry.name();
         if program.machine().is_none() {
-            return Err(refused(
-                "other parts are for G-code, whose work offsets have a place: remove `[[other_part]]`",
-            ));
+            return Err(JobError::OtherPartForPositions { name });
         }
         let (Some(part), Some(other)) = (job.work_offsets[0], job.work_offsets[index]) else {
-            return Err(refused("state its origin and that of G54 in `work_offsets`"));
+            return Err(JobError::OtherPartOrigin { name });
         };
         // The frames of both are parallel then, and their origins apart by the difference.
         if part[3..] != other[3..] {
-            return Err(refused(
-                "its origin turns a rotary axis otherwise than that of G54: state the same angles, and turn its mesh",
-            ));
+            return Err(JobError::OtherPartTurned { name });
         }
         let file = entry.mesh.as_deref().unwrap_or(&job.part);
         let mut body = JobBody::read(&entry.name(), file, job.unit, BodyRole::Part)?;
@@ -174,7 +173,7 @@ impl<T: AsRef<dyn Tool>> JobInputs<T> {
                 Some(earlier) => Some(Self::remaining(earlier, file.unit, load, later, &mut gaps)?),
                 None => None,
             };
-            stock = Some(self::stock(entry, left, &program, file.unit)?);
+            stock = Some(entry.stock(left, &program, file.unit)?);
         }
         Ok(JobInputs { file, program, tools, bodies, revolved, stock, gaps })
     }
@@ -191,22 +190,17 @@ impl<T: AsRef<dyn Tool>> JobInputs<T> {
         gaps: &mut Vec<Gap>,
     ) -> Result<RemainingPoints, E> {
         let name = || file.display().to_string();
-        let refused = |message: &str| {
-            E::from(JobError::File { file: name(), line: None, message: message.to_owned() })
-        };
+        let refused =
+            |fault: JobFileFault| E::from(JobError::File { file: name(), line: None, fault });
         let place = std::fs::canonicalize(file)
             .map_err(|source| E::from(JobError::Unreadable { file: name(), source }))?;
         if later.contains(&place) {
-            return Err(refused(
-                "the stock of this set-up comes from itself: give the first one a `mesh` or a `box`",
-            ));
+            return Err(refused(JobFileFault::OwnStock));
         }
         later.push(place);
         let earlier = JobFile::read(file)?;
         if earlier.unit != unit {
-            return Err(refused(
-                "this set-up is in another unit than that after it: state both in the same one",
-            ));
+            return Err(refused(JobFileFault::OtherUnit));
         }
         let inputs = JobInputs::read_after(earlier, load, later)?;
         later.pop();
@@ -214,21 +208,13 @@ impl<T: AsRef<dyn Tool>> JobInputs<T> {
         let report = job.check(&|_| ())?;
         let mut left = report.cuts.iter().map(|cut| cut.stock.remaining_points());
         let Some(first) = left.next() else {
-            return Err(refused(
-                "this set-up has no stock, and so leaves none: state its `[stock]`",
-            ));
+            return Err(refused(JobFileFault::NoStock));
         };
         if left.any(|other| other != first) {
-            return Err(refused(
-                "this set-up leaves one stock or another, by the control: state its `control`",
-            ));
+            return Err(refused(JobFileFault::SeveralStocks));
         }
         if report.verdict() != Verdict::Clean {
-            let reason = format!(
-                "the set-up before, whose stock this is, is not clean: verify {} by itself",
-                name()
-            );
-            gaps.push(Gap::open(0, reason));
+            gaps.push(JobGap::EarlierSetup { file: name() }.open(0));
         }
         Ok(first)
     }
@@ -286,53 +272,48 @@ fn blank(program: &Program, unit: Unit) -> Result<[Point3<f64>; 2], JobError> {
     let factor = Unit::Millimetre.factor_to(unit);
     match stated {
         Some(corners) => Ok(corners.map(|corner| Point3::from(corner) * factor)),
-        None => Err(JobError::Mismatch(
-            "the program states no box by BLK FORM 0.1 and 0.2 (G30 and G31 in DIN/ISO): state the stock by a `mesh` or a `box`",
-        )),
+        None => Err(JobError::NoBlank),
     }
 }
 
-/// Returns the stock of an entry; `left` is what the earlier set-up leaves that it names.
-fn stock(
-    entry: &StockEntry,
-    left: Option<RemainingPoints>,
-    program: &Program,
-    unit: Unit,
-) -> Result<JobStock, JobError> {
-    let is_placed = [entry.origin, entry.x, entry.z].iter().any(Option::is_some);
-    let spacing = match (&left, entry.spacing) {
-        (Some(points), None) => points.spacing(),
-        (Some(_), Some(_)) => {
-            return Err(JobError::Mismatch(
-                "a stock `from` an earlier set-up has the spacing of that one: remove `spacing`",
-            ));
-        }
-        (None, _) if is_placed => {
-            return Err(JobError::Mismatch(
-                "`origin`, `x` and `z` of a stock place that of an earlier set-up: state it by `from`, or remove them",
-            ));
-        }
-        (None, Some(spacing)) => spacing,
-        (None, None) => {
-            return Err(JobError::Mismatch(
-                "a stock of a `mesh`, a `box` or a `blank` has a `spacing`",
-            ));
-        }
-    };
-    let shape = match (&entry.mesh, entry.corners, entry.blank, left) {
-        (Some(file), None, false, None) => StockShape::Mesh(mesh(file, unit)?),
-        (None, Some(corners), false, None) => StockShape::Box(corners.map(Point3::from)),
-        (None, None, true, None) => StockShape::Box(blank(program, unit)?),
-        (None, None, false, Some(points)) => StockShape::Points(points.placed(
-            Point3::from(entry.origin.unwrap_or_default()),
-            entry.x.unwrap_or([1.0, 0.0, 0.0]),
-            entry.z.unwrap_or([0.0, 0.0, 1.0]),
-        )?),
-        _ => {
-            return Err(JobError::Mismatch(
-                "a stock has a `mesh`, a `box`, `blank = true` or `from`, and only one of them",
-            ));
-        }
-    };
-    Ok(JobStock { shape, spacing, tolerance: entry.tolerance })
+impl StockEntry {
+    /// Returns the stock; `earlier` is what the set-up leaves that it names by `from`.
+    ///
+    /// # Errors
+    /// If it has no shape or several, if its mesh cannot be read, or if the program states no blank.
+    pub fn stock(
+        &self,
+        earlier: Option<RemainingPoints>,
+        program: &Program,
+        unit: Unit,
+    ) -> Result<JobStock, JobError> {
+        let is_placed = [self.origin, self.x, self.z].iter().any(Option::is_some);
+        let spacing = match (&earlier, self.spacing) {
+            (Some(points), None) => points.spacing(),
+            (Some(_), Some(_)) => {
+                return Err(JobError::SpacingOfEarlier);
+            }
+            (None, _) if is_placed => {
+                return Err(JobError::PlaceOfStock);
+            }
+            (None, Some(spacing)) => spacing,
+            (None, None) => {
+                return Err(JobError::NoSpacing);
+            }
+        };
+        let shape = match (&self.mesh, self.corners, self.blank, earlier) {
+            (Some(file), None, false, None) => StockShape::Mesh(mesh(file, unit)?),
+            (None, Some(corners), false, None) => StockShape::Box(corners.map(Point3::from)),
+            (None, None, true, None) => StockShape::Box(blank(program, unit)?),
+            (None, None, false, Some(points)) => StockShape::Points(points.placed(
+                Point3::from(self.origin.unwrap_or_default()),
+                self.x.unwrap_or([1.0, 0.0, 0.0]),
+                self.z.unwrap_or([0.0, 0.0, 1.0]),
+            )?),
+            _ => {
+                return Err(JobError::StockShape);
+            }
+        };
+        Ok(JobStock { shape, spacing, tolerance: self.tolerance })
+    }
 }

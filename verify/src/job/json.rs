@@ -3,11 +3,10 @@
 //!
 //! Own types: the crate `serde-sarif` generates those of the whole standard while it is built, and findings need these.
 
-use super::JobTool;
-use super::finding::rule;
 use super::machine::MachineRow;
 use super::report::{FindingDetail, JobFinding, JobReport, PairReport, Remedy, Severity, Verdict};
 use super::stock::StockRow;
+use super::{FindingRule, JobTool};
 use crate::gcode::SubprogramLine;
 use crate::{CYCLE_TIME_ASSUMPTIONS, FindingGroup, FindingKind};
 use serde::Serialize;
@@ -27,6 +26,7 @@ impl JobReport<'_> {
             line: gap.line,
             within: SubprogramRow::of(self, gap.within),
             kind: "not-checked",
+            code: gap.code(),
             open: gap.is_open(),
             reason: &gap.reason,
         })
@@ -58,6 +58,8 @@ impl JobReport<'_> {
 /// A finding as a JSON object.
 #[derive(Serialize)]
 struct FindingRow<'a> {
+    /// The code of the rule.
+    code: &'static str,
     #[serde(flatten)]
     kind: KindRow<'a>,
     /// The line of the worst motion in the file of subprograms that has it.
@@ -95,7 +97,7 @@ impl<'a> FindingRow<'a> {
             FindingDetail::Stock(finding) => KindRow::Stock(finding.row(file, report.job.unit())),
         };
         let within = SubprogramRow::of(report, finding.within);
-        FindingRow { kind, within, under: finding.under.as_deref() }
+        FindingRow { code: finding.rule.code(), kind, within, under: finding.under.as_deref() }
     }
 }
 
@@ -274,7 +276,7 @@ impl<'a> SurfaceRow<'a> {
             body: &report.body(pair).name,
             tool: report.revolved(pair).map_or(&*info.name, |body| &*body.name),
             tool_number: report.tool(pair).and_then(JobTool::number),
-            kind: rule(&finding.kind),
+            kind: FindingRule::of(&finding.kind).keyword(),
             surface: surface.map(|surface| &*surface.name),
             cutting: surface.map(|surface| surface.cutting),
             measurement,
@@ -296,6 +298,8 @@ struct GapRow<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     within: Option<SubprogramRow<'a>>,
     kind: &'static str,
+    /// The code of its cause.
+    code: &'static str,
     /// Set if it allows no verdict.
     open: bool,
     reason: &'a str,
@@ -359,7 +363,10 @@ struct Driver {
 #[serde(rename_all = "camelCase")]
 struct Rule {
     id: &'static str,
+    /// The keyword.
+    name: &'static str,
     short_description: Text,
+    help: Text,
 }
 
 #[derive(Serialize)]
@@ -401,25 +408,18 @@ struct Region {
     end_line: usize,
 }
 
-/// The rules, with what each finds.
-const RULES: [(&str, &str); 10] = [
-    (
-        "deep",
-        "A surface of the tool, or of a body of the machine, is deeper in the part, a fixture or another body than allowed.",
-    ),
-    ("near", "A surface of the tool, or of a body of the machine, comes nearer than its margin."),
-    ("inside", "The tool, or a piece of it, is inside the material."),
-    ("spindle", "A feed motion has a spindle that does not turn, or turns the wrong way round."),
-    ("length", "A feed motion has the length offset of another tool."),
-    ("limit", "An axis of the machine goes beyond its limit."),
-    ("singular", "A rotary axis turns far while the tool axis hardly moves."),
-    (
-        "stock",
-        "A surface that does not cut, or a rapid motion, touches material that is still there.",
-    ),
-    ("undecided", "It is not decided whether a surface exceeds its limit."),
-    ("ambiguous", "The rotation of a motion is ambiguous, so that only its end was checked."),
-];
+/// Returns the rules, with what each finds.
+fn rules() -> Vec<Rule> {
+    let rules = FindingRule::ALL.iter().zip(FindingRule::FAMILY.entries());
+    rules
+        .map(|(rule, entry)| Rule {
+            id: rule.code(),
+            name: rule.keyword(),
+            short_description: Text { text: entry.title() },
+            help: Text { text: entry.help() },
+        })
+        .collect()
+}
 
 /// Returns the findings of a job as a SARIF log.
 fn log(report: &JobReport<'_>) -> Log {
@@ -428,7 +428,7 @@ fn log(report: &JobReport<'_>) -> Log {
         .findings()
         .iter()
         .map(|finding| Finding {
-            rule_id: finding.rule,
+            rule_id: finding.rule.code(),
             level: if finding.severity == Severity::Violation { "error" } else { "warning" },
             message: Text { text: finding.text.clone() },
             locations: [Location {
@@ -443,10 +443,7 @@ fn log(report: &JobReport<'_>) -> Log {
             }],
         })
         .collect();
-    let rules =
-        RULES.map(|(id, text)| Rule { id, short_description: Text { text: text.to_owned() } });
-    let driver =
-        Driver { name: "touchoff", version: env!("CARGO_PKG_VERSION"), rules: rules.into() };
+    let driver = Driver { name: "touchoff", version: env!("CARGO_PKG_VERSION"), rules: rules() };
     Log {
         schema: "https://json.schemastore.org/sarif-2.1.0.json",
         version: "2.1.0",

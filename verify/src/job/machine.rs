@@ -1,6 +1,6 @@
 //! Findings about the machine: spindle, length offsets, limits of axes, singular passes.
 
-use super::{Hand, Job};
+use super::{FindingRule, Hand, Job};
 use crate::MachineProgram;
 use crate::gcode::{BlockLine, Spindle};
 use crate::machine::Letter;
@@ -135,13 +135,13 @@ impl MachineFinding {
         findings
     }
 
-    /// Returns the keyword of the kind.
-    pub(super) fn rule(&self) -> &'static str {
+    /// Returns the rule of the kind.
+    pub(super) fn rule(&self) -> FindingRule {
         match self.kind {
-            MachineFindingKind::Spindle { .. } => "spindle",
-            MachineFindingKind::Length { .. } => "length",
-            MachineFindingKind::Limit { .. } => "limit",
-            MachineFindingKind::Singular { .. } => "singular",
+            MachineFindingKind::Spindle { .. } => FindingRule::Spindle,
+            MachineFindingKind::Length { .. } => FindingRule::Length,
+            MachineFindingKind::Limit { .. } => FindingRule::Limit,
+            MachineFindingKind::Singular { .. } => FindingRule::Singular,
         }
     }
 

@@ -6,11 +6,11 @@ use super::machine::MachineFinding;
 use super::program::BlockMoves;
 use super::report::{JobReport, Moving, PairReport, Remedy};
 use super::stock::{CutStock, StockCut};
-use super::{Body, BodyFrame, Job, JobError, JobShard, JobTool};
+use super::{Body, BodyFrame, Job, JobError, JobGap, JobShard, JobTool};
 use crate::check::{ApproachSearch, MoveCheck, MoveRequest, Tasks};
 use crate::gcode::{BlockLine, WorkOffset};
 use crate::machine::{Link, Machine, Side};
-use crate::{FindingGroup, Gap, Move, Verifier};
+use crate::{FindingGroup, Move, Verifier};
 use std::collections::BTreeSet;
 use touchoff::Shard;
 use touchoff::tool::Symmetry;
@@ -132,9 +132,7 @@ impl<'a> Job<'a> {
         gaps.extend(self.gaps.iter().cloned());
         let against = self.revolved.iter().flat_map(|body| &body.against);
         if against.into_iter().any(|body| *body >= self.bodies.len()) {
-            return Err(JobError::Mismatch(
-                "a body of the machine is checked against a body of the job that there is not",
-            ));
+            return Err(JobError::NoSuchBody);
         }
         for (offset, line) in
             self.program.readings().iter().flat_map(|reading| &reading.summary().moved_offsets)
@@ -147,34 +145,27 @@ impl<'a> Job<'a> {
         if !self.revolved.is_empty() || self.bodies.iter().any(is_machine) {
             self.program.check_places()?;
         } else if self.program.machine().is_some_and(|machine| !machine.bodies().is_empty()) {
-            let reason = "the bodies that the machine's file states are not checked here: check them by a job file, or name a machine \
-                          without bodies";
-            gaps.push(Gap::open(0, reason.to_owned()));
+            gaps.push(JobGap::MachineBodies.open(0));
         }
-        let open = |block: BlockLine, reason: &str| {
-            Gap::open(block, format!("{reason}{}", self.program.name_within(block.within)))
+        let open = |block: BlockLine, gap: &JobGap| {
+            let mut gap = gap.open(block);
+            gap.reason += &self.program.name_within(block.within);
+            gap
         };
         let mut readings = self.program.readings().iter();
         if let (Some(block), Some(_)) =
             (readings.find_map(|reading| reading.summary().any_rapid), &self.stock)
         {
-            let reason = "the path of several axes in rapid traverse is checked against the stock on the straight line only: \
-                          state `rapid` of the control, or the `rapid` rates of the machine's axes";
-            gaps.push(open(block, reason));
+            gaps.push(open(block, &JobGap::StockRapid));
         }
         for reading in 0..self.program.reading_count() {
             let result = self.check_reading(reading, pass, progress)?;
             pairs.extend(result.pairs);
-            let far = result.far_offsets.into_iter().map(|(offset, block)| {
-                let reason = format!(
-                    "under {offset} the tool never comes within its diameter of the part: check {offset} in `work_offsets`, \
-                     state what stands there as `[[other_part]]`, or give a job per part"
-                );
-                (block, reason)
-            });
+            let far = result.far_offsets.into_iter();
+            let far = far.map(|(offset, block)| (block, JobGap::FarOffset { offset }));
             let thin = result.cut.iter().flat_map(|cut| cut.too_thin.iter().cloned());
-            for (block, reason) in far.chain(thin) {
-                let gap = open(block, &reason);
+            for (block, gap) in far.chain(thin) {
+                let gap = open(block, &gap);
                 if !gaps.contains(&gap) {
                     gaps.push(gap);
                 }

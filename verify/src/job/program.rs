@@ -1,6 +1,6 @@
 //! A program of any kind: CL data, or G-code on a machine.
 
-use super::{BodyFrame, JobError, RevolvedBody};
+use super::{BodyFrame, JobError, JobGap, RevolvedBody};
 use crate::check::MoveRequest;
 use crate::gcode::{ControlRules, ControlSetup, SubprogramFile, SubprogramLine};
 use crate::machine::{Machine, Mover, Reference, Relation, Side};
@@ -80,9 +80,7 @@ impl Program {
                 Program::gcode(&file.display().to_string(), text, machine, setup)
             }
             (ProgramFile::Locations(programs), true) => Ok(Program::Locations(programs)),
-            (ProgramFile::Locations(_), false) => Err(JobError::Mismatch(
-                "a machine or a control is for G-code: this program states positions of the tip",
-            )),
+            (ProgramFile::Locations(_), false) => Err(JobError::MachineForPositions),
         }
     }
 
@@ -328,7 +326,7 @@ impl Program {
             _ => {}
         }
         let Some(machine) = self.machine() else {
-            return Err(JobError::Mismatch("bodies of a machine are for programs on a machine"));
+            return Err(JobError::BodiesForPositions);
         };
         let mover = match revolved {
             None => Mover::Tool,
@@ -352,14 +350,15 @@ impl Program {
     pub(super) fn check_places(&self) -> Result<(), JobError> {
         for program in self.readings() {
             if program.part_origin().is_none() {
-                return Err(JobError::Mismatch(
-                    "the bodies of the machine have a place relative to the part if the origin of G54 is stated: state it in \
-                     `work_offsets` of the job, or name a machine without bodies",
-                ));
+                return Err(JobError::NoPlace);
             }
             let mut tools = program.summary().tools.iter();
             if let Some(tool) = tools.find(|tool| !program.is_length_known(tool.number)) {
-                return Err(JobError::NoLength { number: tool.number, line: tool.line });
+                let line = tool.line;
+                return Err(match tool.number {
+                    Some(number) => JobError::NoLength { number, line },
+                    None => JobError::NoToolForLength { line },
+                });
             }
         }
         Ok(())
@@ -371,7 +370,7 @@ impl Program {
     /// If the program is not for a machine, its table has no such axis, or the part is turned in its frame.
     pub fn link(&self, axis: &str) -> Result<Option<usize>, JobError> {
         let Some(program) = self.readings().first() else {
-            return Err(JobError::Mismatch("`moves_with` is for programs on a machine"));
+            return Err(JobError::MovesWithoutMachine);
         };
         // Links are numbered from the base on.
         let axes = program.machine().axes().iter().filter(|axis| axis.side == Side::Table);
@@ -383,14 +382,9 @@ impl Program {
             // The frame of another link is that of the machine, in which the part has to have a place.
             Some(link) => match program.part_origin() {
                 Some(origin) if origin[3..] == [0.0; 3] => Ok(Some(link)),
-                _ => Err(JobError::Mismatch(
-                    "`moves_with` another axis than the part's needs the origin of G54 in `work_offsets`, without rotary \
-                     offsets",
-                )),
+                _ => Err(JobError::MovesWithoutOrigin),
             },
-            None => Err(JobError::Mismatch(
-                "`moves_with` names an axis of the machine's table, or `base`",
-            )),
+            None => Err(JobError::MovesWithNothing),
         }
     }
 }
@@ -400,12 +394,8 @@ fn tool_changes(programs: &[ClData]) -> Option<Gap> {
     let [_, changed @ ..] = programs else { return None };
     let line = changed.first()?.locations[0].line;
     let count = changed.len();
-    let plural = if count == 1 { "" } else { "s" };
-    let reason = format!(
-        "{count} motion{plural} to the first position after a tool change not checked, first to line {line}: only the machine \
-         knows where they start"
-    );
-    Some(Gap::said(line, reason))
+    let gap = JobGap::ToolChange { count, line };
+    Some(Gap::said(line, gap.code(), gap.to_string()))
 }
 
 /// Reads a control by its name, or from a file in TOML.

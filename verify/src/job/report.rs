@@ -2,7 +2,8 @@
 
 use super::machine::MachineFinding;
 use super::stock::{CutStock, StockFinding};
-use super::{Body, Job, JobTool, RevolvedBody};
+use super::{Body, FindingRule, Job, JobTool, RevolvedBody};
+use crate::codes::faults;
 use crate::gcode::SubprogramLine;
 use crate::{CycleTime, FindingGroup, Gap, GapWeight, Tilt, VerifyReport};
 use std::fmt;
@@ -181,17 +182,19 @@ impl JobReport<'_> {
     }
 
     /// Returns the reasons for which a result without findings proves nothing.
-    pub fn refusals(&self) -> Vec<String> {
+    pub fn refusals(&self) -> Vec<NoVerdict> {
         let open = self.gaps.iter().filter(|gap| match gap.weight {
             GapWeight::Stops => true,
             GapWeight::Open => !self.job.anyway,
             GapWeight::Said => false,
         });
-        let program = self.job.program.name();
-        let mut reasons: Vec<String> = open
+        let mut reasons: Vec<NoVerdict> = open
             .map(|gap| match gap.weight {
-                GapWeight::Stops => format!("{program}:{}: {}", gap.line, gap.reason),
-                _ => gap.to_string(),
+                GapWeight::Stops => NoVerdict::Unread {
+                    program: self.job.program.name().to_owned(),
+                    gap: gap.clone(),
+                },
+                _ => NoVerdict::Open(gap.clone()),
             })
             .collect();
         let mut is_checked = true;
@@ -211,49 +214,106 @@ impl JobReport<'_> {
             }
         }
         if !is_checked {
-            reasons.push("no motion could be checked".to_owned());
+            reasons.push(NoVerdict::NoMotion);
         }
         reasons
     }
 
     /// Returns the reasons to doubt that the motions of a reading are meant for these bodies.
-    fn implausibilities(&self, pairs: &[&PairReport], touches_stock: bool) -> Vec<String> {
+    fn implausibilities(&self, pairs: &[&PairReport], touches_stock: bool) -> Vec<NoVerdict> {
         let mut reasons = Vec::new();
         for pair in pairs {
             if !pair.report.inside_known && !self.job.surface_only {
-                reasons.push(format!(
-                    "{}: {NO_INSIDE}: repair the mesh, or check its surface alone with `--surface-only`",
-                    self.body(pair).name
-                ));
+                reasons.push(NoVerdict::NoInside { body: self.body(pair).name.clone() });
             }
             if pair.report.unrestricted {
-                reasons.push(
-                    "`--tolerance`, `--allow` and `--resolution` allow every surface its greatest possible depth, so \
-                     nothing could be found: lower them"
-                        .to_owned(),
-                );
+                reasons.push(NoVerdict::Unrestricted);
             }
         }
         let parts = || pairs.iter().filter(|pair| self.is_tool_at_part(pair));
         // A program that touches a fixture or the stock is meant for this setup.
         let touches = touches_stock || pairs.iter().any(|pair| !pair.groups.is_empty());
         if !self.job.anyway && !touches && parts().all(|pair| pair.report.approach.is_far()) {
-            reasons.push(
-                "the program never comes within the tool's diameter of the part: check the part, its position and its \
-                 unit, or accept the program with `--anyway`"
-                    .to_owned(),
-            );
+            reasons.push(NoVerdict::Far);
         }
         // The positions for other parts are outside the box of each.
         let mut first = parts().filter(|pair| pair.body == 0);
         let factor = first.find_map(|pair| pair.report.approach.unit_factor);
         if let (false, Some(factor)) = (self.job.anyway, factor) {
-            reasons.push(format!(
-                "the positions in feed lie outside the part's box, but would fit if they were {factor} times as large: check \
-                 the units of part and program, or accept the program with `--anyway`"
-            ));
+            reasons.push(NoVerdict::OtherUnit { factor });
         }
         reasons
+    }
+}
+
+faults! {
+    #[family("V02", "No verdict")]
+    /// A reason for which a result without findings proves nothing.
+    #[derive(Clone, PartialEq, thiserror::Error)]
+    #[non_exhaustive]
+    pub enum NoVerdict {
+        /// The program is not read to its end.
+        #[code_of(gap)]
+        #[error("{program}:{}: {}", gap.line, gap.reason)]
+        Unread {
+            /// The program.
+            program: String,
+            /// The gap.
+            gap: Gap,
+        },
+        /// A gap that the job does not accept.
+        #[code_of(0)]
+        #[error("{0}")]
+        Open(Gap),
+        /// A body whose inside is undefined.
+        ///
+        /// A tool that is wholly inside the material would not be found.
+        #[code = V0201]
+        #[error(
+            "{body}: {NO_INSIDE}: repair the mesh, or check its surface alone with `--surface-only`"
+        )]
+        NoInside {
+            /// The body.
+            body: String,
+        },
+        /// Limits that allow every depth.
+        #[code = V0202]
+        #[error(
+            "`--tolerance`, `--allow` and `--resolution` allow every surface its greatest possible depth, so nothing could be found: lower \
+             them"
+        )]
+        Unrestricted,
+        /// A program that stays far from the part.
+        #[code = V0203]
+        #[error(
+            "the program never comes within the tool's diameter of the part: check the part, its position and its unit, or accept the \
+             program with `--anyway`"
+        )]
+        Far,
+        /// A program that seems to be in another unit than the part.
+        #[code = V0204]
+        #[error(
+            "the positions in feed lie outside the part's box, but would fit if they were {factor} times as large: check the units of part \
+             and program, or accept the program with `--anyway`"
+        )]
+        OtherUnit {
+            /// The factor by which they would fit.
+            factor: f64,
+        },
+        /// A program of which no motion can be checked.
+        #[code = V0205]
+        #[error("no motion could be checked")]
+        NoMotion,
+    }
+}
+
+impl NoVerdict {
+    /// Returns the line of the program that it concerns, 1-based; 0 if it concerns none.
+    pub fn line(&self) -> usize {
+        match self {
+            NoVerdict::Unread { gap, .. } | NoVerdict::Open(gap) => gap.line,
+            _ => 0,
+        }
     }
 }
 
@@ -265,8 +325,8 @@ pub const NO_INSIDE: &str = "the part's inside is undefined: its mesh leaks, is 
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct JobFinding {
-    /// The keyword of its kind: `deep`, `near`, `inside`, `undecided`, `ambiguous`, `spindle`, `length`, `limit`, `singular` or `stock`.
-    pub rule: &'static str,
+    /// The rule that it violates.
+    pub rule: FindingRule,
     /// Its consequence.
     pub severity: Severity,
     /// The line of the worst motion.

@@ -6,6 +6,7 @@
 
 use super::{Job, Program};
 use crate::CutterLocation;
+use crate::codes::faults;
 use serde::{Deserialize, Serialize};
 use siphasher::sip::SipHasher24;
 use std::collections::BTreeSet;
@@ -30,50 +31,56 @@ pub struct JobShard {
     digest: String,
 }
 
-/// A reason for which shards of a job are not joined.
-#[derive(Clone, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum JobShardError {
-    /// A shard is not what was written.
-    #[error("{file} is damaged: check its shard again")]
-    Damaged {
-        /// The file.
-        file: String,
-    },
-    /// A shard of another version.
-    #[error(
-        "{file} was written by version {version} of Touchoff, and this is {VERSION}: check its shard again"
-    )]
-    OtherVersion {
-        /// The file.
-        file: String,
-        /// The version.
-        version: String,
-    },
-    /// A shard of another job.
-    #[error(
-        "{file} is of another job: its program, tools, bodies or limits differ: check its shard again"
-    )]
-    OtherJob {
-        /// The file.
-        file: String,
-    },
-    /// A shard that does not go with the others.
-    #[error(transparent)]
-    Set(#[from] ShardSetError),
-    /// Shards are missing.
-    #[error("{left} of {count} shards are left, the first of them {first}: check them")]
-    Incomplete {
-        /// The number of missing shards.
-        left: usize,
-        /// The number of shards.
-        count: u32,
-        /// The first that is missing.
-        first: Shard,
-    },
+faults! {
+    #[family("J03", "Jobs in shards")]
+    /// A reason for which shards of a job are not joined.
+    #[derive(Clone, PartialEq, thiserror::Error)]
+    #[non_exhaustive]
+    pub enum JobShardError {
+        /// A shard is not what was written.
+        #[code = J0301]
+        #[error("{file} is damaged: check its shard again")]
+        Damaged {
+            /// The file.
+            file: String,
+        },
+        /// A shard of another version.
+        #[code = J0302]
+        #[error(
+            "{file} was written by version {version} of Touchoff, and this is {VERSION}: check its shard again"
+        )]
+        OtherVersion {
+            /// The file.
+            file: String,
+            /// The version.
+            version: String,
+        },
+        /// A shard of another job.
+        #[code = J0303]
+        #[error(
+            "{file} is of another job: its program, tools, bodies or limits differ: check its shard again"
+        )]
+        OtherJob {
+            /// The file.
+            file: String,
+        },
+        /// A shard that does not go with the others.
+        #[code = J0304]
+        #[error(transparent)]
+        Set(#[from] ShardSetError),
+        /// Shards are missing.
+        #[code = J0305]
+        #[error("{left} of {count} shards are left, the first of them {first}: check them")]
+        Incomplete {
+            /// The number of missing shards.
+            left: usize,
+            /// The number of shards.
+            count: u32,
+            /// The first that is missing.
+            first: Shard,
+        },
+    }
 }
-
-touchoff::debug_as_sentence!(JobShardError);
 
 impl JobShard {
     pub(super) fn new(job: &Job<'_>, shard: Shard, found: Vec<BTreeSet<usize>>) -> JobShard {

@@ -1,6 +1,6 @@
 //! The program against the material that is still there.
 
-use super::{Job, JobError, JobStock, JobTool};
+use super::{Job, JobError, JobGap, JobStock, JobTool};
 use crate::Move;
 use crate::gcode::BlockLine;
 use crate::stock::{DeviationPoint, MotionMode, Stock, StockContact};
@@ -49,8 +49,8 @@ pub struct CutStock {
     /// The thickness from which a layer is found for certain by every tool that has moved in it, in the part's unit; infinite if
     /// none is.
     pub found_layer: f64,
-    /// The tools that can pass through material between its points: the block of the first motion, and the reason.
-    pub(super) too_thin: Vec<(BlockLine, String)>,
+    /// The tools that can pass through material between its points: the block of the first motion, and the gap.
+    pub(super) too_thin: Vec<(BlockLine, JobGap)>,
 }
 
 /// A finding as a JSON object.
@@ -115,12 +115,8 @@ impl StockCut {
                 Some(layer) => format!("up to a thickness of {}", unit.format(layer)),
                 None => "of any thickness".to_owned(),
             };
-            let reason = format!(
-                "{name} is thin for a stock whose points are {} apart, and may pass through material {found} unseen: state \
-                 a smaller `spacing`, or a smaller `tolerance` of the stock",
-                unit.format(stock.spacing())
-            );
-            too_thin.push((block, reason));
+            let spacing = unit.format(stock.spacing());
+            too_thin.push((block, JobGap::ThinTool { name, spacing, found }));
         }
     }
 

@@ -2,6 +2,7 @@
 
 use super::chain::is_within;
 use super::{Letter, Link, MAX_LENGTH, Machine, Side};
+use crate::codes::faults;
 use nalgebra::{Point3, Vector3};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
@@ -107,81 +108,93 @@ struct CylinderEntry {
     height: f64,
 }
 
-/// A reason for which a body of a machine is refused.
-#[derive(Clone, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum BodyFault {
-    /// The name is empty, stands for something else, or has a control character.
-    #[error(
-        "give it another name of one line: `tool`, `part` and `fixtures` stand for those of the job"
-    )]
-    Name,
-    /// Another body has the same name.
-    #[error("another body has this name: rename one of them")]
-    Repeated,
-    /// It moves with no link of the machine.
-    #[error("it moves with `{link}`: name an axis of the machine, `base`, or `spindle`")]
-    Link {
-        /// The given link.
-        link: String,
-    },
-    /// It has no shape, or several.
-    #[error("give it one shape: `mesh`, `box`, `cylinder` or `tool`")]
-    Shape,
-    /// A key that its shape does not have.
-    #[error("`{key}` is none of its shape: {remedy}")]
-    Key {
-        /// The key.
-        key: &'static str,
-        /// The remedy.
-        remedy: &'static str,
-    },
-    /// A number that is not finite, too large, or no length.
-    #[error("`{key}` is wrong: {remedy}")]
-    Number {
-        /// The key.
-        key: &'static str,
-        /// The remedy.
-        remedy: &'static str,
-    },
-    /// A name in `against` is none.
-    #[error("it is checked against `{name}`: name another body, `tool`, `part` or `fixtures`")]
-    Against {
-        /// The name.
-        name: String,
-    },
-    /// No pair has the body.
-    #[error(
-        "it is checked against nothing: add `against = [\"tool\"]`, for instance, or remove it"
-    )]
-    Unused,
-    /// Both bodies of a pair move as one.
-    #[error("it moves as one with {other}, and never against it: remove this from `against`")]
-    SameLink {
-        /// The other body.
-        other: String,
-    },
-    /// Two meshes, of which no distance is proved.
-    #[error(
-        "its shape and that of {other} are meshes, of which no pair is proved: give one of both as a `tool`, a solid of revolution \
-         that contains it"
-    )]
-    TwoMeshes {
-        /// The other body.
-        other: String,
-    },
-    /// Two solids of revolution, of which no distance is proved.
-    #[error(
-        "it and {other} are solids of revolution, of which no pair is proved: give the body as a `mesh`, a `box` or a `cylinder`, \
-         also in addition to this one"
-    )]
-    TwoTools {
-        /// The other body.
-        other: String,
-    },
+faults! {
+    #[family("K03", "Machines: bodies")]
+    /// A reason for which a body of a machine is refused.
+    #[derive(Clone, PartialEq, thiserror::Error)]
+    #[non_exhaustive]
+    pub enum BodyFault {
+        /// The name is empty, stands for something else, or has a control character.
+        #[code = K0301]
+        #[error(
+            "give it another name of one line: `tool`, `part` and `fixtures` stand for those of the job"
+        )]
+        Name,
+        /// Another body has the same name.
+        #[code = K0302]
+        #[error("another body has this name: rename one of them")]
+        Repeated,
+        /// It moves with no link of the machine.
+        #[code = K0303]
+        #[error("it moves with `{link}`: name an axis of the machine, `base`, or `spindle`")]
+        Link {
+            /// The given link.
+            link: String,
+        },
+        /// It has no shape, or several.
+        #[code = K0304]
+        #[error("give it one shape: `mesh`, `box`, `cylinder` or `tool`")]
+        Shape,
+        /// A key that its shape does not have.
+        #[code = K0305]
+        #[error("`{key}` is none of its shape: {remedy}")]
+        Key {
+            /// The key.
+            key: &'static str,
+            /// The remedy.
+            remedy: &'static str,
+        },
+        /// A number that is not finite, too large, or no length.
+        #[code = K0306]
+        #[error("`{key}` is wrong: {remedy}")]
+        Number {
+            /// The key.
+            key: &'static str,
+            /// The remedy.
+            remedy: &'static str,
+        },
+        /// A name in `against` is none.
+        #[code = K0307]
+        #[error("it is checked against `{name}`: name another body, `tool`, `part` or `fixtures`")]
+        Against {
+            /// The name.
+            name: String,
+        },
+        /// No pair has the body.
+        #[code = K0308]
+        #[error(
+            "it is checked against nothing: add `against = [\"tool\"]`, for instance, or remove it"
+        )]
+        Unused,
+        /// Both bodies of a pair move as one.
+        #[code = K0309]
+        #[error("it moves as one with {other}, and never against it: remove this from `against`")]
+        SameLink {
+            /// The other body.
+            other: String,
+        },
+        /// Two meshes, of which no distance is proved.
+        #[code = K0310]
+        #[error(
+            "its shape and that of {other} are meshes, of which no pair is proved: give one of both as a `tool`, a solid of revolution \
+             that contains it"
+        )]
+        TwoMeshes {
+            /// The other body.
+            other: String,
+        },
+        /// Two solids of revolution, of which no distance is proved.
+        #[code = K0311]
+        #[error(
+            "it and {other} are solids of revolution, of which no pair is proved: give the body as a `mesh`, a `box` or a `cylinder`, \
+             also in addition to this one"
+        )]
+        TwoTools {
+            /// The other body.
+            other: String,
+        },
+    }
 }
-
-touchoff::debug_as_sentence!(BodyFault);
 
 impl MachineBody {
     /// Returns whether it is given as a solid of revolution in the tool language, and not as a mesh.

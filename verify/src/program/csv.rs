@@ -149,7 +149,7 @@ fn with_remedy(fault: ProgramFault) -> ProgramFault {
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::{fan, refusal, shared};
+    use super::super::tests::{fan, line_of, refusal, shared};
     use super::END;
     use crate::program::{ClData, CutterLocation};
     use nalgebra::{Point3, Vector3};
@@ -174,11 +174,7 @@ mod tests {
         for end in 0..last {
             assert!(ClData::parse(&whole[..end], "part.csv").is_err(), "{:?}", &whole[..end]);
         }
-        assert_eq!(
-            refusal(whole.trim_end().trim_end_matches(END)),
-            "part.cl:5: the table stops here without its end mark `# end of program`: write it again, or add \
-             the mark if this is the end"
-        );
+        assert_eq!(refusal(whole.trim_end().trim_end_matches(END)), (5, "P0529"));
         // As a spreadsheet saves it: comment lines are padded with empty cells.
         let sheet = whole
             .replace('\n', ",,,,,\r\n")
@@ -260,73 +256,33 @@ mod tests {
     }
 
     #[test]
-    fn every_refusal_names_its_line_and_remedy() {
-        let either = "6 (x,y,z,i,j,k) or 7 (x,y,z,qx,qy,qz,qw)";
-        let plain = "is not a number: write a plain number with a decimal point";
-        let infinite = "is not a finite number: correct it or remove the position";
-        let unit = "give a unit vector (within 0.001 of 1)";
-        for (text, message) in [
-            ("1,2,3\n", format!("1: found 3 columns, expected {either}: correct the row")),
+    fn every_refusal_names_its_line_and_word() {
+        for (text, line, code, word) in [
+            ("1,2,3\n", 1, "P0503", "found 3 columns"),
             (
                 "1,2,3,0,0,1\n1,2,3,0,0,0,1\n",
-                "2: found 7 columns, expected 6 (x,y,z,i,j,k): correct the row".to_owned(),
+                2,
+                "P0503",
+                "found 7 columns, expected 6 (x,y,z,i,j,k)",
             ),
-            (
-                "x,y,z,qx,qy,qz,qw\n1,2,3,0,0,1\n",
-                "2: found 6 columns, expected 7 (x,y,z,qx,qy,qz,qw): correct the row".to_owned(),
-            ),
-            (
-                "1,5,2,5,3,5,0,0,0,0,1,0\n",
-                format!(
-                    "1: found 12 columns, expected {either}: these look like decimal commas \
-                     (`0,5`): write points (`0.5`)"
-                ),
-            ),
-            (
-                "0,5;1,5;2,5;0,0;1,0;0,0\n",
-                "1: `0,5` is not a number: write decimals with a point".to_owned(),
-            ),
-            (
-                "1;2;3;0;0;1\n1,2,3,0,0,1\n",
-                "2: found 1 column, expected 6 (x,y,z,i,j,k): correct the row".to_owned(),
-            ),
-            (
-                "1 2 3 0 0 1\n",
-                format!(
-                    "1: found 1 column, expected {either}: separate the columns by commas, semicolons \
-                     or tabs, not blanks"
-                ),
-            ),
-            (
-                "i,j,k,x,y,z\n",
-                "1: `i,j,k,x,y,z` are not the columns: write x,y,z,i,j,k or x,y,z,qx,qy,qz,qw, \
-                 or no names"
-                    .to_owned(),
-            ),
-            ("1,2,3,0,0,1\nx,y,z,i,j,k\n", format!("2: `x` {plain}")),
-            ("1,2,,0,0,1\n", format!("1: an empty cell {plain}")),
-            ("nan,2,3,0,0,1\n", format!("1: `nan` {infinite}")),
-            ("1,2,3,0,0,1\n1,-1e400,3,0,0,1\n", format!("2: `-1e400` {infinite}")),
-            (
-                "1,2,3,0,0,-0\n",
-                "1: the axis i,j,k is zero and points nowhere: give the unit vector from the tip \
-                 to the spindle"
-                    .to_owned(),
-            ),
-            (
-                "1,2,3,0,0,0,0\n",
-                "1: the quaternion qx,qy,qz,qw is zero and points nowhere: give the unit \
-                 quaternion from the tool's frame to the part's"
-                    .to_owned(),
-            ),
-            ("# a\n\n1,2,3,0,0,0.5\n", format!("3: the axis has norm 0.5: {unit}")),
-            (
-                "1,2,3,0,0,0,2\n",
-                "1: the quaternion has norm 2: give a unit quaternion (within 0.001 of 1)"
-                    .to_owned(),
-            ),
+            ("x,y,z,qx,qy,qz,qw\n1,2,3,0,0,1\n", 2, "P0503", "expected 7 (x,y,z,qx,qy,qz,qw)"),
+            ("1,5,2,5,3,5,0,0,0,0,1,0\n", 1, "P0503", "decimal commas"),
+            ("0,5;1,5;2,5;0,0;1,0;0,0\n", 1, "P0505", "`0,5`"),
+            ("1;2;3;0;0;1\n1,2,3,0,0,1\n", 2, "P0503", "found 1 column, expected 6 (x,y,z,i,j,k)"),
+            ("1 2 3 0 0 1\n", 1, "P0503", "not blanks"),
+            ("i,j,k,x,y,z\n", 1, "P0504", "`i,j,k,x,y,z`"),
+            ("1,2,3,0,0,1\nx,y,z,i,j,k\n", 2, "P0505", "`x`"),
+            ("1,2,,0,0,1\n", 1, "P0505", "an empty cell"),
+            ("nan,2,3,0,0,1\n", 1, "P0506", "`nan`"),
+            ("1,2,3,0,0,1\n1,-1e400,3,0,0,1\n", 2, "P0506", "`-1e400`"),
+            ("1,2,3,0,0,-0\n", 1, "P0507", "i,j,k"),
+            ("1,2,3,0,0,0,0\n", 1, "P0507", "qx,qy,qz,qw"),
+            ("# a\n\n1,2,3,0,0,0.5\n", 3, "P0508", "norm 0.5"),
+            ("1,2,3,0,0,0,2\n", 1, "P0508", "norm 2"),
         ] {
-            assert_eq!(refusal(text), format!("part.cl:{message}"), "{text:?}");
+            let error = ClData::parse(text, "part.csv").expect_err(text);
+            assert_eq!((line_of(&error), error.code()), (line, code), "{text:?}: {error}");
+            assert!(error.to_string().contains(word), "{text:?}: {error}");
         }
     }
 }

@@ -3,9 +3,21 @@
 use super::*;
 use std::path::PathBuf;
 
-/// Returns the message for content that is refused.
-pub(super) fn refusal(content: impl AsRef<[u8]>) -> String {
-    ClData::parse(content, "part.cl").expect_err("it is refused").to_string()
+/// Returns the line, with 0 for none, and the code of content that is refused.
+pub(super) fn refusal(content: impl AsRef<[u8]>) -> (usize, &'static str) {
+    let error = ClData::parse(content, "part.cl").expect_err("it is refused");
+    (line_of(&error), error.code())
+}
+
+pub(super) fn line_of(error: &ProgramError) -> usize {
+    match error {
+        ProgramError::OnePosition { line, .. }
+        | ProgramError::Cutter { line, .. }
+        | ProgramError::Line { line, .. }
+        | ProgramError::NoSpin { line, .. } => *line,
+        ProgramError::Unit { line, .. } => line.unwrap_or(0),
+        ProgramError::Read { .. } | ProgramError::NoPosition { .. } => 0,
+    }
 }
 
 /// Returns a table like published ones, and its rows: a fan of tilted tool axes over an arc, rounded to four
@@ -70,36 +82,26 @@ pub(super) fn shared(name: &str) -> Option<PathBuf> {
 
 #[test]
 fn refuses_what_is_neither_format() {
-    let no_position = "part.cl: holds no position: give rows of x,y,z,i,j,k or an APT-CL \
-                       program of GOTO points (G-code is not read)";
     for empty in ["", "\u{feff}", "# only\n\n$$ comments\r\n", "FINI\n"] {
-        assert_eq!(refusal(empty), no_position, "{empty:?}");
+        assert_eq!(refusal(empty), (0, "P0602"), "{empty:?}");
     }
-    assert_eq!(
-        refusal("G0 X1 Y-2.5\nM30\n"),
-        "part.cl:1: `G0 X1 Y-2.5` is G-code, which is not read: post the program as APT-CL, or as rows of \
-         x,y,z,i,j,k"
-    );
-    assert_eq!(
-        refusal("\n%\nO1000\n"),
-        "part.cl:2: `%` begins neither a row of x,y,z,i,j,k nor an APT statement: give one or \
-         the other"
-    );
-    let not_text = "is not UTF-8 text: save it as UTF-8 (not UTF-16 or Latin-1)";
-    for (content, place) in [
-        (&b"1,2,3,0,0,1\r\n# caf\xe9\n"[..], "part.cl:2: byte 18 of the file"),
-        (&b"\xff\xfe1\0"[..], "part.cl:1: byte 0 of the file"),
-        (&b"1\0,\0"[..], "part.cl:1: byte 1 of the file"),
+    assert_eq!(refusal("G0 X1 Y-2.5\nM30\n"), (1, "P0513"));
+    assert_eq!(refusal("\n%\nO1000\n"), (2, "P0502"));
+    for (content, line, byte) in [
+        (&b"1,2,3,0,0,1\r\n# caf\xe9\n"[..], 2, 18),
+        (&b"\xff\xfe1\0"[..], 1, 0),
+        (&b"1\0,\0"[..], 1, 1),
     ] {
-        assert_eq!(refusal(content), format!("{place} {not_text}"));
+        let error = ClData::parse(content, "part.cl").expect_err("no text");
+        let ProgramError::Line { line: found, fault, .. } = error else { panic!("{error}") };
+        assert_eq!((found, fault), (line, ProgramFault::NotText { byte }));
     }
 }
 
 #[test]
 fn names_a_file_that_is_absent() {
-    let error = ClData::read("no/such.cl").expect_err("it is absent").to_string();
-    assert!(error.starts_with("no/such.cl: cannot be read ("), "{error}");
-    assert!(error.ends_with("): check the path and its permissions"), "{error}");
+    let error = ClData::read("no/such.cl").expect_err("it is absent");
+    assert!(matches!(&error, ProgramError::Read { file, .. } if file == "no/such.cl"), "{error}");
 }
 
 #[test]

@@ -7,43 +7,50 @@
 use super::ClData;
 use super::csv::{END, HEAD};
 use super::cutter::Cutter;
+use crate::codes::faults;
 use std::fmt::{self, Display, Formatter};
 use std::io::{self, Write};
 use touchoff::{Pose, Unit};
 
-/// A reason for which a program cannot be written.
-#[derive(thiserror::Error)]
-#[non_exhaustive]
-pub enum WriteError {
-    /// APT-CL has no word for the unit.
-    #[error("APT-CL has no word for {unit}: write the program in mm or inch, or as a table")]
-    Unit {
-        /// The program's unit.
-        unit: Unit,
-    },
-    /// The part's name contains a control character, such as a line break.
-    #[error("the part's name {name:?} has a line break or a control character: leave that out")]
-    Part {
-        /// The name.
-        name: String,
-    },
-    /// A feed or a spindle speed is not finite or not above 0.
-    #[error("{what} of {value} is not a rate above 0: give one per minute")]
-    Rate {
-        /// The name of the rate.
-        what: &'static str,
-        /// The given value.
-        value: f64,
-    },
-    /// A feed is given, and the unit of the program is unknown.
-    #[error("a feed needs the program's unit: state the unit of the program, or write no feed")]
-    FeedUnit,
-    /// The output could not be written.
-    #[error("the program could not be written whole: {0}")]
-    Output(#[from] io::Error),
+faults! {
+    #[family("P07", "Programs that cannot be written")]
+    /// A reason for which a program cannot be written.
+    #[derive(thiserror::Error)]
+    #[non_exhaustive]
+    pub enum WriteError {
+        /// APT-CL has no word for the unit.
+        #[code = P0701]
+        #[error("APT-CL has no word for {unit}: write the program in mm or inch, or as a table")]
+        Unit {
+            /// The program's unit.
+            unit: Unit,
+        },
+        /// The part's name contains a control character, such as a line break.
+        #[code = P0702]
+        #[error("the part's name {name:?} has a line break or a control character: leave that out")]
+        Part {
+            /// The name.
+            name: String,
+        },
+        /// A feed or a spindle speed is not finite or not above 0.
+        #[code = P0703]
+        #[error("{what} of {value} is not a rate above 0: give one per minute")]
+        Rate {
+            /// The name of the rate.
+            what: &'static str,
+            /// The given value.
+            value: f64,
+        },
+        /// A feed is given, and the unit of the program is unknown.
+        #[code = P0704]
+        #[error("a feed needs the program's unit: state the unit of the program, or write no feed")]
+        FeedUnit,
+        /// The output could not be written.
+        #[code = P0705]
+        #[error("the program could not be written whole: {0}")]
+        Output(#[from] io::Error),
+    }
 }
-
-touchoff::debug_as_sentence!(WriteError);
 
 /// The statements before the positions of an APT-CL program, and the decimals of the positions. Nothing is
 /// written for a statement that is `None`.

@@ -30,3 +30,17 @@ pub(crate) fn steps(program: &str, setup: &ControlSetup) -> Vec<Step> {
 pub(crate) fn text(path: &Path) -> String {
     fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
+
+/// Returns whether an error has a code and, where a word follows it in the pattern, this in its sentence: a word of the program, or what
+/// tells two causes of one code apart.
+pub(crate) fn is_fault(error: &GcodeError, pattern: &str) -> bool {
+    let (code, word) = pattern.split_once(' ').unwrap_or((pattern, ""));
+    error.code() == code && error.fault.to_string().contains(word)
+}
+
+/// Asserts the line and the fault of an error, as [`is_fault`] does.
+#[track_caller]
+pub(crate) fn assert_fault(program: &str, error: &GcodeError, line: usize, pattern: &str) {
+    let said = format!("{program}\n{}: {error}, not {line}: {pattern}", error.code());
+    assert!(error.line == line && is_fault(error, pattern), "{said}");
+}

@@ -1,10 +1,12 @@
 //! Cutter compensation against geometry: closed forms, and distances of random contours, computed from the contours alone.
 
+use crate::common::{assert_fault, is_fault};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use std::f64::consts::{PI, SQRT_2, TAU};
 use touchoff_verify::gcode::{
-    Choice, ControlRules, ControlSetup, GcodeError, Plane, Rule, Step, StepPath, read,
+    Choice, CompensationFault, ControlRules, ControlSetup, GcodeError, GcodeFault, Plane, Rule,
+    Step, StepPath, read,
 };
 
 type Point = [f64; 2];
@@ -121,23 +123,23 @@ fn a_short_motion_is_lengthened_by_its_outside_corner() {
         assert_ends(up, &with_radius(r, straight()), &expected);
     }
     let refusal = |program: &str, setup: ControlSetup| {
-        run(program, &setup).expect_err("a corner without room").to_string()
+        run(program, &setup).expect_err("a corner without room")
     };
     // The last motion has 18 mm and no outside corner. Arcs lengthen nothing.
     for (program, line) in [(down, 6), (up, 3)] {
         let error = refusal(program, with_radius(18.5, straight()));
-        assert!(error.contains("does not fit"), "{error}");
+        assert!(is_fault(&error, "P0409"), "{error}");
         let error = refusal(program, with_radius(5.0, arcs()));
-        assert!(
-            error.contains(&format!("the motion of line {}", if line == 6 { 5 } else { 3 })),
-            "{error}"
-        );
+        let before = if line == 6 { 5 } else { 3 };
+        let fault = GcodeFault::Compensation(CompensationFault::NoRoom { line: before });
+        assert_eq!(error.fault, fault, "{error}");
     }
     // Between two inside corners, the direction would turn round.
     let slot = "G0 X-40 Y-20 Z5\nG1 G41 D1 X-20 F100\nY0\nX2\nY-3\nX20\nY20\nG40 X60";
     assert_eq!(run(slot, &with_radius(5.0, straight())).expect("steps").len(), 8);
     let slot = slot.replace("X20\nY20", "X10\nY20");
-    assert!(refusal(&slot, with_radius(5.0, straight())).contains("the motion of line 6"));
+    let error = refusal(&slot, with_radius(5.0, straight()));
+    assert!(is_fault(&error, "P0409 line 6"), "{error}");
 }
 
 /// The tool follows the contour without an offset, as a program of its centre does.
@@ -154,9 +156,9 @@ fn an_offset_of_zero_changes_nothing() {
         assert_eq!(steps(&program, &arcs())[..7], plain[..7], "{program}");
     }
     let arc = SQUARE.replace("D1", "D3").replace("G40 X-10", "G40 G2 X5 R5");
-    assert!(run(&arc, &arcs()).expect_err("an arc").to_string().contains("after G40 is an arc"));
+    assert!(is_fault(&run(&arc, &arcs()).expect_err("an arc"), "P0406 G40"));
     let arc = SQUARE.replace("G1 G41 D1 X0", "G2 G41 D3 X0 R20");
-    assert!(run(&arc, &arcs()).expect_err("an arc").to_string().contains("begins with an arc"));
+    assert!(is_fault(&run(&arc, &arcs()).expect_err("an arc"), "P0404"));
 }
 
 #[test]
@@ -376,67 +378,61 @@ fn what_cannot_be_followed_is_refused_with_its_line() {
     let unknown = ControlSetup { start: [None; 6], ..arcs() };
     let straight = setup(Choice::StraightCorner, Choice::NextMotion);
     for (program, setup, line, message) in [
-        ("G41 X10", arcs(), 1, "G41 needs D with the number"),
-        ("G41 D9 X10", arcs(), 1, "the radius offset 9 is not known"),
-        ("G0 G41 D1 X10\nX20", unknown, 1, "needs a known position"),
-        ("G0 G41 D1 X1\nX20", arcs(), 1, "1 long, and the radius offset 2 (mm)"),
-        ("G0 G41 D1 X0\nX20", arcs(), 1, "0 long"),
-        ("G0 X1\nG41 D1 G2 X9 R5 F9", arcs(), 2, "begins with an arc"),
-        ("G18\nG91.1 G41.1 D4 X9", arcs(), 2, "G91.1 is a word of LinuxCNC"),
-        ("G41.1 D4 X9", arcs(), 1, "by a diameter on LinuxCNC"),
-        ("G41.2 D4 X9", arcs(), 1, "G41.2 is three-dimensional cutter compensation"),
-        ("G42.4 D4 X9", arcs(), 1, "G42.4 is three-dimensional cutter compensation"),
-        ("G141 D4 X9", arcs(), 1, "G141 is three-dimensional cutter compensation"),
-        ("CUT3DC", arcs(), 1, "CUT3DC is three-dimensional cutter compensation of Sinumerik"),
-        ("G450", arcs(), 1, "G450 is the path around outside corners"),
-        ("G81 X1 Z-1 R1 F1\nG41 D1", arcs(), 2, "G41 while a canned cycle is in force"),
-        ("G43.4 H1\nG41 D1", arcs(), 2, "G41 while tool centre point control is on"),
-        ("G68.2 X0 Y0 Z0 I0 J30 K0\nG41 D1", arcs(), 2, "write G53.1"),
-        ("G19 G41 D4 X9", named("linuxcnc"), 1, "G41 while G19 is in force"),
-        ("G0 G41.1 X9", named("linuxcnc"), 1, "G41.1 needs D"),
-        ("G0 G41.1 D4 X2", named("linuxcnc"), 1, "2 long, and the radius offset 2"),
-        ("G41.1 D4\nG0 Z9", named("linuxcnc"), 2, "0 long, and the radius offset 2"),
-        ("G0 X1 D4", named("linuxcnc"), 1, "D is used by no G or M word"),
-        ("G41 D-1", named("linuxcnc"), 1, "D-1 is not understood"),
-        ("BEGIN\nG42 X1 Y20", arcs(), 4, "G42 while cutter compensation is in force"),
-        ("BEGIN\nG41 D4 X1 Y20", arcs(), 4, "G41 while cutter compensation is in force"),
-        ("BEGIN\nD4", arcs(), 4, "D4 while cutter compensation is in force"),
-        ("BEGIN\nG18", arcs(), 4, "another plane while"),
-        ("BEGIN\nG20", setup(Choice::ArcCorner, Choice::NextMotion), 4, "G20 while"),
-        ("BEGIN\nG55", arcs(), 4, "G55 while cutter compensation is in force"),
-        ("BEGIN\nG43 H1", arcs(), 4, "G43 while cutter compensation is in force"),
-        ("BEGIN\nG53 G0 Z0", arcs(), 4, "G53 while cutter compensation is in force"),
-        ("BEGIN\nG28 Z5", arcs(), 4, "G28 while cutter compensation is in force"),
-        ("BEGIN\nG52 X1", arcs(), 4, "G52 while cutter compensation is in force"),
-        ("BEGIN\nG68 X0 Y0 R5", arcs(), 4, "G68 while cutter compensation is in force"),
-        ("BEGIN\nT1 M6", arcs(), 4, "M6 while cutter compensation is in force"),
-        ("BEGIN\nG81 X1 Z-1 R1 F1", arcs(), 4, "G81 while cutter compensation is in force"),
-        ("BEGIN\nC5", arcs(), 4, "C while cutter compensation is in force"),
-        ("BEGIN\nM0", arcs(), 4, "M0 while cutter compensation is in force"),
-        ("BEGIN", arcs(), 4, "the end of the program while cutter compensation is in force"),
-        ("BEGIN\nG40 G2 X5 Y15 R5", arcs(), 4, "the motion after G40 is an arc"),
-        ("BEGIN\nG40\nG0 Z9", arcs(), 5, "a motion across the plane follows G40"),
-        ("BEGIN\nG40\nG28 Z9", arcs(), 5, "G28 while cutter compensation is in force"),
-        ("BEGIN\nM8\nM9\nX9\nG40 X20", arcs(), 6, "2 blocks without a motion"),
-        ("BEGIN\nX0 Z1\nX9\nG40 X20", arcs(), 5, "2 blocks without a motion"),
-        ("BEGIN\nG91 X0.\nG90 X9\nG40 X20", arcs(), 5, "2 blocks without a motion"),
-        ("BEGIN\nG0 X9\nG40 X20", arcs(), 4, "G0 while it follows an outside corner"),
-        (
-            "BEGIN\nZ1\nX9 Y0\nG40 X20",
-            straight,
-            5,
-            "follows an outside corner of less than 90 degrees",
-        ),
-        ("T4\nG0 X-10 Y0\nG1 G41 X0 F100\nY10\nT5", named("heidenhain"), 5, "T while"),
+        ("G41 X10", arcs(), 1, "P0119 G41"),
+        ("G41 D9 X10", arcs(), 1, "P0401 radius offset 9"),
+        ("G0 G41 D1 X10\nX20", unknown, 1, "P0402"),
+        ("G0 G41 D1 X1\nX20", arcs(), 1, "P0403 radius offset 2"),
+        ("G0 G41 D1 X0\nX20", arcs(), 1, "P0403"),
+        ("G0 X1\nG41 D1 G2 X9 R5 F9", arcs(), 2, "P0404"),
+        ("G18\nG91.1 G41.1 D4 X9", arcs(), 2, "P0115 G91.1"),
+        ("G41.1 D4 X9", arcs(), 1, "P0115 by a diameter on LinuxCNC"),
+        ("G41.2 D4 X9", arcs(), 1, "P0115 G41.2"),
+        ("G42.4 D4 X9", arcs(), 1, "P0115 G42.4"),
+        ("G141 D4 X9", arcs(), 1, "P0115 G141"),
+        ("CUT3DC", arcs(), 1, "P0115 CUT3DC"),
+        ("G450", arcs(), 1, "P0115 G450"),
+        ("G81 X1 Z-1 R1 F1\nG41 D1", arcs(), 2, "P0120 G41"),
+        ("G43.4 H1\nG41 D1", arcs(), 2, "P0120 G41"),
+        ("G68.2 X0 Y0 Z0 I0 J30 K0\nG41 D1", arcs(), 2, "P0120 G53.1"),
+        ("G19 G41 D4 X9", named("linuxcnc"), 1, "P0120 G41"),
+        ("G0 G41.1 X9", named("linuxcnc"), 1, "P0119 G41.1"),
+        ("G0 G41.1 D4 X2", named("linuxcnc"), 1, "P0403 radius offset 2"),
+        ("G41.1 D4\nG0 Z9", named("linuxcnc"), 2, "P0403 radius offset 2"),
+        ("G0 X1 D4", named("linuxcnc"), 1, "P0118 D"),
+        ("G41 D-1", named("linuxcnc"), 1, "P0106 D-1"),
+        ("BEGIN\nG42 X1 Y20", arcs(), 4, "P0120 G42"),
+        ("BEGIN\nG41 D4 X1 Y20", arcs(), 4, "P0120 G41"),
+        ("BEGIN\nD4", arcs(), 4, "P0120 D4"),
+        ("BEGIN\nG18", arcs(), 4, "P0120 another plane while"),
+        ("BEGIN\nG20", setup(Choice::ArcCorner, Choice::NextMotion), 4, "P0120 G20"),
+        ("BEGIN\nG55", arcs(), 4, "P0120 G55"),
+        ("BEGIN\nG43 H1", arcs(), 4, "P0120 G43"),
+        ("BEGIN\nG53 G0 Z0", arcs(), 4, "P0120 G53"),
+        ("BEGIN\nG28 Z5", arcs(), 4, "P0120 G28"),
+        ("BEGIN\nG52 X1", arcs(), 4, "P0120 G52"),
+        ("BEGIN\nG68 X0 Y0 R5", arcs(), 4, "P0120 G68"),
+        ("BEGIN\nT1 M6", arcs(), 4, "P0120 M6"),
+        ("BEGIN\nG81 X1 Z-1 R1 F1", arcs(), 4, "P0120 G81"),
+        ("BEGIN\nC5", arcs(), 4, "P0120 C"),
+        ("BEGIN\nM0", arcs(), 4, "P0120 M0"),
+        ("BEGIN", arcs(), 4, "P0120 the end of the program while cutter compensation is in force"),
+        ("BEGIN\nG40 G2 X5 Y15 R5", arcs(), 4, "P0406 G40"),
+        ("BEGIN\nG40\nG0 Z9", arcs(), 5, "P0407 a motion across the plane follows G40"),
+        ("BEGIN\nG40\nG28 Z9", arcs(), 5, "P0120 G28"),
+        ("BEGIN\nM8\nM9\nX9\nG40 X20", arcs(), 6, "P0411 2 blocks"),
+        ("BEGIN\nX0 Z1\nX9\nG40 X20", arcs(), 5, "P0411 2 blocks"),
+        ("BEGIN\nG91 X0.\nG90 X9\nG40 X20", arcs(), 5, "P0411 2 blocks"),
+        ("BEGIN\nG0 X9\nG40 X20", arcs(), 4, "P0120 G0"),
+        ("BEGIN\nZ1\nX9 Y0\nG40 X20", straight, 5, "P0410"),
+        ("T4\nG0 X-10 Y0\nG1 G41 X0 F100\nY10\nT5", named("heidenhain"), 5, "P0120 T"),
         // Inside corners and arcs.
-        ("BEGIN\nX-9\nG3 X-11 Y8 J-2\nG1 X-20", arcs(), 5, "inside an arc of radius 2"),
-        ("BEGIN\nX-1\nY20\nG40 X9", arcs(), 4, "at the end of the motion of line 3"),
-        ("BEGIN\nX-3\nY0\nG40 X9", arcs(), 5, "at the end of the motion of line 4"),
+        ("BEGIN\nX-9\nG3 X-11 Y8 J-2\nG1 X-20", arcs(), 5, "P0408"),
+        ("BEGIN\nX-1\nY20\nG40 X9", arcs(), 4, "P0409 line 3"),
+        ("BEGIN\nX-3\nY0\nG40 X9", arcs(), 5, "P0409 line 4"),
     ] {
         let program = program.replace("BEGIN\n", begin).replace("BEGIN", begin.trim_end());
         let error = run(&program, &setup).expect_err(&program);
-        assert_eq!(error.line, line, "{program}\n{error}");
-        assert!(error.to_string().contains(message), "{program}\n{error}");
+        assert_fault(&program, &error, line, message);
     }
 }
 

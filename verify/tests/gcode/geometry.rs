@@ -1,6 +1,7 @@
 //! Positions and arcs against values that the tests know beforehand: they construct the geometry, and write the
 //! program from it.
 
+use crate::common::{assert_fault, is_fault};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use std::f64::consts::{PI, TAU};
@@ -189,15 +190,15 @@ fn a_cycle_of_g90_keeps_its_levels_under_g91() {
         assert_eq!(short, long, "{control}");
         for other in ["G91 X10. Z-5.", "G91 X10. R-5.", "G91 X1. Z-5. R0\nG90 X5."] {
             let text = format!("{first}{other}\nM30\n");
-            let error = read(&text, &setup(control)).expect_err(other).to_string();
-            assert!(error.contains("under the other one of G90 and G91"), "{error}");
+            let error = read(&text, &setup(control)).expect_err(other);
+            assert!(is_fault(&error, "P0120 G90"), "{error}");
         }
     }
     let text = format!("{first}G91 X10.\nG80\nM30\n");
     let unnamed = ControlSetup { rules: ControlRules::default(), ..at_zero() };
     for setup in [setup("linuxcnc"), unnamed] {
-        let error = read(&text, &setup).expect_err("levels").to_string();
-        assert!(error.contains("line 4: G81 while its depth or R"), "{error}");
+        let error = read(&text, &setup).expect_err("levels");
+        assert_fault(&text, &error, 4, "P0120 G81");
     }
 }
 

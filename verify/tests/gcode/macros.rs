@@ -1,5 +1,6 @@
 //! Macros of Fanuc and of LinuxCNC, against programs whose motions are computed here.
 
+use crate::common::assert_fault;
 use touchoff_verify::gcode::{Choice, ControlRules, ControlSetup, NoteKind, Rule, Step, read};
 
 /// A control at the origin that executes the macros of one dialect.
@@ -220,18 +221,17 @@ fn variables_of_the_control_are_those_of_its_state() {
     assert_ends(fanuc, Choice::Iso, &[[3.0, 4.0], [93.0, 4.0], [114.0, 4.0]]);
     let linuxcnc = "g21 g90 g55 g0 x3 y4\n#1=[#5420+#5220+#<_y>+#<_metric>]\nx#1\nm30";
     assert_ends(linuxcnc, Choice::Rs274Ngc, &[[3.0, 4.0], [10.0, 4.0]]);
-    for (program, dialect, name) in [
-        ("G21 G0 X#5061", Choice::Iso, "#5061"),
-        ("G21 G0 X#3001", Choice::Iso, "#3001"),
-        ("g21 g0 x#5070", Choice::Rs274Ngc, "#5070"),
-        ("g21 g0 x#<_task>", Choice::Rs274Ngc, "#<_task>"),
-        ("G21 G0 X#500", Choice::Iso, "#500 has no value"),
-        ("g21 g0 x#<_depth>", Choice::Rs274Ngc, "#<_depth> has no value"),
+    for (program, dialect, code, name) in [
+        ("G21 G0 X#5061", Choice::Iso, "P0211", "#5061"),
+        ("G21 G0 X#3001", Choice::Iso, "P0211", "#3001"),
+        ("g21 g0 x#5070", Choice::Rs274Ngc, "P0211", "#5070"),
+        ("g21 g0 x#<_task>", Choice::Rs274Ngc, "P0211", "#<_task>"),
+        ("G21 G0 X#500", Choice::Iso, "P0210", "#500"),
+        ("g21 g0 x#<_depth>", Choice::Rs274Ngc, "P0210", "#<_depth>"),
     ] {
         let error = read(program, &setup(dialect)).expect_err(name);
-        assert!(error.to_string().contains(name), "{error}");
+        assert_fault(program, &error, 1, &format!("{code} {name}"));
         // A job can declare it.
-        let name = name.split(' ').next().expect("a name");
         let mut declared = setup(dialect);
         declared.variables.insert(name.to_owned(), vec![7.0]);
         let (steps, _) = read(&format!("{program}\nM30"), &declared).expect(name);
@@ -297,11 +297,9 @@ fn ignored_words_are_noted_with_their_reason() {
         .ignoring("g999", "it \"clamps\"")
         .expect("a word");
     assert_eq!(ControlRules::parse(&file.to_toml(), "mine.toml"), Ok(file));
-    let error = read("G21 G0\nG999 X1.\nM30", &setup).expect_err("axis words");
-    assert!(
-        error.to_string().contains("line 2: axis words while its block has an ignored word"),
-        "{error}"
-    );
+    let program = "G21 G0\nG999 X1.\nM30";
+    let error = read(program, &setup).expect_err("axis words");
+    assert_fault(program, &error, 2, "P0120 axis words while its block has an ignored word");
 }
 
 /// Lines to a printer move nothing, whatever variables they print.
@@ -311,16 +309,16 @@ fn printing_is_passed_over() {
         "G21 G90 G54 G0 X0 Y0\nPOPEN\nDPRNT[X#500[44]*Y#[#1+1][53]]\nBPRNT[A];B\nPCLOS\nX1.\nM30\n";
     assert_eq!(steps(program, Choice::Iso).len(), 2);
     let lines = [
-        ("DPRNT X5", "DPRNT needs"),
-        ("DPRNT[A] X5.", "the character"),
-        ("POPEN X5.", "the character"),
-        ("X5. PCLOS", "PCLOS while"),
+        ("DPRNT X5", "P0119 DPRNT"),
+        ("DPRNT[A] X5.", "P0101"),
+        ("POPEN X5.", "P0101"),
+        ("X5. PCLOS", "P0120 PCLOS"),
     ];
     for (line, message) in lines {
         let program = format!("G21 G90 G54 G0 X0 Y0\n{line}\nM30\n");
-        let error = read(&program, &setup(Choice::Iso)).expect_err(line).to_string();
-        assert!(error.contains("line 2") && error.contains(message), "{error}");
+        let error = read(&program, &setup(Choice::Iso)).expect_err(line);
+        assert_fault(&program, &error, 2, message);
     }
-    let error = read(program, &setup(Choice::Rs274Ngc)).expect_err("a word of Fanuc").to_string();
-    assert!(error.contains("`POPEN` is not understood"), "{error}");
+    let error = read(program, &setup(Choice::Rs274Ngc)).expect_err("a word of Fanuc");
+    assert_fault(program, &error, 2, "P0107 `POPEN`");
 }

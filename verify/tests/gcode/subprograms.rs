@@ -2,6 +2,7 @@
 //! and calls that are refused.
 
 use crate::common;
+use crate::common::{assert_fault, is_fault};
 use touchoff_verify::gcode::{
     Choice, ControlRules, ControlSetup, GcodeError, Position, Rule, Step, SubprogramFile,
     SubprogramLine,
@@ -87,9 +88,7 @@ fn a_file_without_a_title_is_the_program_of_its_number_or_name() {
         expected
     );
     let own = "G90 G0 X0 Y0\nM198 P7\nM30\nO7\nX1.\nM99\n";
-    assert!(
-        execute("haas", own, &[]).expect_err("own file").to_string().contains("there is no O7")
-    );
+    assert!(is_fault(&execute("haas", own, &[]).expect_err("own file"), "P0126 O7"));
 }
 
 #[test]
@@ -117,7 +116,7 @@ fn linuxcnc_finds_a_file_by_the_name_of_its_subprogram() {
     // A file of another name is not found.
     let other = [("rows.ngc", files[0].1)];
     let error = execute("linuxcnc", program, &other).expect_err("another name");
-    assert!(error.to_string().contains("line 2: there is no O<row>"), "{error}");
+    assert_fault(program, &error, 2, "P0126 O<row>");
 }
 
 #[test]
@@ -134,13 +133,13 @@ fn klartext_calls_a_program_with_its_own_labels_and_parameters() {
     let expected = [[30.0, 5.0], [30.0, 6.0], [6.0, 7.0]].map(|end| end.map(Some));
     assert_eq!(found[found.len() - 3..], expected);
     for (text, problem) in [
-        (called.replace(" MM", " INCH"), "line 6: STEP.H, line 1: the program is in another unit"),
-        (called.replace("END", "M30\nEND"), "line 6: STEP.H, line 6: M30 while CALL PGM"),
-        (called.replace("Q1 = Q1", "Q1 = Q3"), "line 6: STEP.H, line 4"),
-        (called.replace("LBL 1", "CALL PGM STEP"), "call each other more than"),
+        (called.replace(" MM", " INCH"), "P0142 STEP.H, line 1:"),
+        (called.replace("END", "M30\nEND"), "P0120 STEP.H, line 6: M30"),
+        (called.replace("Q1 = Q1", "Q1 = Q3"), "P0210 STEP.H, line 4:"),
+        (called.replace("LBL 1", "CALL PGM STEP"), "P0139"),
     ] {
         let error = execute("heidenhain", program, &[("STEP.H", &text)]).expect_err(problem);
-        assert!(error.to_string().contains(problem), "{error}");
+        assert_fault(program, &error, 6, problem);
     }
 }
 
@@ -176,16 +175,16 @@ fn steps_and_faults_name_the_line_of_the_file() {
         .collect();
     let within = |file, line| Some(SubprogramLine { file, line });
     assert_eq!(found, [(1, None), (2, within(1, 2)), (2, within(2, 2)), (3, None)]);
-    let expect = |files: &[(&str, &str)], message: &str| {
-        let error = execute("fanuc", program, files).expect_err(message).to_string();
-        assert!(error.contains(message), "{error}");
+    let expect = |files: &[(&str, &str)], line: usize, pattern: &str| {
+        let error = execute("fanuc", program, files).expect_err(pattern);
+        assert_fault(program, &error, line, pattern);
     };
-    expect(&[], "line 2: there is no O7 in this file, nor in those that the job names");
-    expect(&[file], "line 2: 7.nc, line 3: there is no O8");
-    expect(&[file, ("8.nc", "G1 Y1.\nM99\n")], "line 2: 8.nc, line 1: G1 needs a feed rate");
-    expect(&[("7.nc", "X1.\n")], "line 2: 7.nc, line 1: the program stops here without");
-    expect(&[("7.nc", "X1.\rX2.\n")], "line 1: 7.nc, line 1: a carriage return");
-    expect(&[("7.nc", "M98 P7\nM99\n")], "line 2: 7.nc, line 1: subprograms call each other more");
+    expect(&[], 2, "P0126 O7");
+    expect(&[file], 2, "P0126 7.nc, line 3: there is no O8");
+    expect(&[file, ("8.nc", "G1 Y1.\nM99\n")], 2, "P0122 8.nc, line 1: G1");
+    expect(&[("7.nc", "X1.\n")], 2, "P0138 7.nc, line 1:");
+    expect(&[("7.nc", "X1.\rX2.\n")], 1, "P0102 7.nc, line 1:");
+    expect(&[("7.nc", "M98 P7\nM99\n")], 2, "P0139 7.nc, line 1:");
     // A control finds one of two, and it is not known which.
-    expect(&[file, inner, ("o8.txt", "O8\nM99\n")], "O8 is in two files, 8.nc and o8.txt");
+    expect(&[file, inner, ("o8.txt", "O8\nM99\n")], 1, "P0143 O8 is in two files, 8.nc and o8.txt");
 }

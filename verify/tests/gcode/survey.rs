@@ -1,5 +1,6 @@
 //! What stands in the way of a program beside the error that stops it.
 
+use crate::common::{assert_fault, is_fault};
 use crate::mutants::Seed;
 use std::sync::Arc;
 use touchoff_verify::gcode::{
@@ -20,15 +21,14 @@ fn errors(program: &str, setup: &ControlSetup) -> Vec<GcodeError> {
     [stop].into_iter().chain(others).collect()
 }
 
-/// Compares the errors of a program with their lines and the beginnings of their sentences.
+/// Compares the errors of a program with their lines, codes and words.
 #[track_caller]
 fn expect(control: &str, program: &str, expected: &[(usize, &str)]) {
     let found = errors(program, &setup(control));
     let text: Vec<String> = found.iter().map(ToString::to_string).collect();
     assert_eq!(found.len(), expected.len(), "{text:#?}");
-    for (error, (line, start)) in found.iter().zip(expected) {
-        assert_eq!(error.line, *line, "{text:#?}");
-        assert!(error.fault.to_string().starts_with(start), "{error}");
+    for (error, (line, pattern)) in found.iter().zip(expected) {
+        assert_fault(program, error, *line, pattern);
     }
 }
 
@@ -40,14 +40,14 @@ fn everything_that_stands_in_the_way_is_found() {
         "fanuc",
         fanuc,
         &[
-            (2, "M130"),
-            (2, "M131"),
-            (2, "G777"),
-            (3, "the radius offset 7"),
-            (5, "#500 has no value"),
-            (6, "#502 has no value"),
-            (7, "there is no O9"),
-            (8, "H1.5"),
+            (2, "P0114 M130"),
+            (2, "P0114 M131"),
+            (2, "P0114 G777"),
+            (3, "P0401 radius offset 7"),
+            (5, "P0210 #500"),
+            (6, "P0210 #502"),
+            (7, "P0126 O9"),
+            (8, "P0106 H1.5"),
         ],
     );
     let linuxcnc =
@@ -55,19 +55,19 @@ fn everything_that_stands_in_the_way_is_found() {
     expect(
         "linuxcnc",
         linuxcnc,
-        &[(2, "M130"), (3, "#500"), (4, "M131"), (6, "`FOO` in an expression")],
+        &[(2, "P0115 M130"), (3, "P0210 #500"), (4, "P0115 M131"), (6, "P0203 `FOO`")],
     );
     let sinumerik = "G54 G90 G0 X0 Y0\nR1=R7\nG41 D3 X5\nWAITM(1)\nX=R8\nGOTOF NOWHERE\nX7 OEMWORD\nMYCYCLE(1,2)\nM30\n";
     expect(
         "siemens",
         sinumerik,
         &[
-            (2, "R7 has no value"),
-            (4, "WAITM"),
-            (5, "R8 has no value"),
-            (6, "there is no `NOWHERE`"),
-            (7, "`OEMWORD`"),
-            (8, "`MYCYCLE`"),
+            (2, "P0210 R7"),
+            (4, "P0115 WAITM"),
+            (5, "P0210 R8"),
+            (6, "P0111 `NOWHERE`"),
+            (7, "P0115 `OEMWORD`"),
+            (8, "P0115 `MYCYCLE`"),
         ],
     );
     let klartext = "0 BEGIN PGM A MM\n1 TOOL CALL 1 Z S1000\n2 L X+0 Y+0 FMAX M130\n3 L X+5 F200 M222 M223\n4 CYCL DEF 399\n5 TCH PROBE 0\n6 L X+Q5\n7 CALL LBL 9\n8 L X+7 M118\n9 M30\n10 END PGM A MM\n";
@@ -75,14 +75,14 @@ fn everything_that_stands_in_the_way_is_found() {
         "heidenhain",
         klartext,
         &[
-            (3, "M130"),
-            (4, "M222"),
-            (4, "M223"),
-            (5, "CYCL DEF 399"),
-            (6, "TCH PROBE"),
-            (7, "Q5 has no value"),
-            (8, "there is no LBL 9"),
-            (9, "M118"),
+            (3, "P0114 M130"),
+            (4, "P0114 M222"),
+            (4, "P0114 M223"),
+            (5, "P0115 CYCL"),
+            (6, "P0115 TCH"),
+            (7, "P0210 Q5"),
+            (8, "P0111 LBL 9"),
+            (9, "P0115 M118"),
         ],
     );
 }
@@ -93,11 +93,11 @@ fn what_follows_from_another_error_is_not_found() {
     // Neither the motion mode, nor the feed, the start of the arc, the variable or the offset are known.
     let fanuc =
         "G21 G90 G0 X0 Y0\nG1 F100 X1. ?\nX2.\n#5=TAN[FOO]\nX#5\nG2 X9. Y9. I1.\nG1 X1.\nM30\n";
-    expect("fanuc", fanuc, &[(2, "the character `?`"), (4, "`FOO`")]);
+    expect("fanuc", fanuc, &[(2, "P0101 `?`"), (4, "P0203 `FOO`")]);
     let heidenhain = "0 BEGIN PGM A MM\n1 TOOL CALL 1 Z S1000\n2 L X+0 Y+0 R0 FMAX\n3 Q4 = FOO\n4 L X+Q4\n5 L X+1 NIX\n6 RND R2\n7 L Y+8 F100\n8 M30\n9 END PGM A MM\n";
-    expect("heidenhain", heidenhain, &[(4, "`FOO`"), (6, "`NIX`")]);
+    expect("heidenhain", heidenhain, &[(4, "P0203 `FOO`"), (6, "P0110 `NIX`")]);
     let sinumerik = "G54 G90 G0 X0 Y0\nDEF FRAME NEST\nNEST=CTRANS(X,1)\nX5\nM30\n";
-    expect("siemens", sinumerik, &[(2, "`FRAME NEST`"), (3, "`CTRANS`")]);
+    expect("siemens", sinumerik, &[(2, "P0115 `FRAME NEST`"), (3, "P0203 `CTRANS`")]);
 }
 
 /// A word of the machine's builder is passed over in every language, with its reason.
@@ -135,48 +135,48 @@ fn what_was_left_out_causes_no_errors() {
         expect("fanuc", &text, expected);
     };
     // Values that come from it.
-    fanuc("IF[#500EQ1]THEN#105=2.\nX#105", &[(5, "#500")]);
-    fanuc("N10#106=#501\nX#106\nG54.1 P#106\nGOTO#106", &[(5, "#501")]);
-    fanuc("#0109=#500\n# 112=#500\nX[10./#109]\nX#112", &[(5, "#500"), (6, "#500")]);
-    fanuc("#[100+10]=#500\nX#110", &[(5, "#500")]);
-    fanuc("G65 P2000 A#500\nX#101", &[(5, "#500")]);
+    fanuc("IF[#500EQ1]THEN#105=2.\nX#105", &[(5, "P0210 #500")]);
+    fanuc("N10#106=#501\nX#106\nG54.1 P#106\nGOTO#106", &[(5, "P0210 #501")]);
+    fanuc("#0109=#500\n# 112=#500\nX[10./#109]\nX#112", &[(5, "P0210 #500"), (6, "P0210 #500")]);
+    fanuc("#[100+10]=#500\nX#110", &[(5, "P0210 #500")]);
+    fanuc("G65 P2000 A#500\nX#101", &[(5, "P0210 #500")]);
     // A variable that was only read there is found.
-    fanuc("#5=#501+#502\nX#502", &[(5, "#501"), (6, "#502")]);
+    fanuc("#5=#501+#502\nX#502", &[(5, "P0210 #501"), (6, "P0210 #502")]);
     // The modes of a block that was left out.
-    fanuc("G83 X0 Y0 Z-5. R2. F100.\nX10.\nX20.\nG80", &[(5, "G83 needs a positive")]);
-    fanuc("G81 X5. Z-1. R2. F100. ?\nX10.\nG80", &[(5, "the character")]);
-    fanuc("T2 M6 ?\nG43\nG41 X5.", &[(5, "the character")]);
-    fanuc("G1 X5. F100. ,R2.\nY5. ?\nG0 Z50.", &[(6, "the character")]);
+    fanuc("G83 X0 Y0 Z-5. R2. F100.\nX10.\nX20.\nG80", &[(5, "P0119 G83")]);
+    fanuc("G81 X5. Z-1. R2. F100. ?\nX10.\nG80", &[(5, "P0101")]);
+    fanuc("T2 M6 ?\nG43\nG41 X5.", &[(5, "P0101")]);
+    fanuc("G1 X5. F100. ,R2.\nY5. ?\nG0 Z50.", &[(6, "P0101")]);
     // The end of a program or a subprogram.
     let program = format!("{head}M130\nM5 M30 ?\nO2\nX[10./#3]\nM98 P777\nM99\n");
-    expect("fanuc", &program, &[(5, "M130"), (6, "the character")]);
+    expect("fanuc", &program, &[(5, "P0114 M130"), (6, "P0101")]);
     let program =
         format!("{head}M98 P2000\nM131\nM30\nO2000\nG0 X1.\nM99 ?\nO3000\nX[10./#1]\nM99\n");
-    expect("fanuc", &program, &[(10, "the character"), (6, "M131")]);
+    expect("fanuc", &program, &[(10, "P0101"), (6, "P0114 M131")]);
     // A subprogram that repeats a block with a word that is not read.
     let program = format!("{head}M98 P2000 L3\nX#100\nM131\nM30\nO2000\n#100=1\nX5. M99 M132\n");
-    expect("fanuc", &program, &[(11, "M132"), (7, "M131")]);
+    expect("fanuc", &program, &[(11, "P0114 M132"), (7, "P0114 M131")]);
     let program = format!("{head}#6=0\nM130\nN10 #6=#6+1 M131\nIF[#6LT3]GOTO10\nM132\nM30\n");
-    expect("fanuc", &program, &[(6, "M130"), (7, "M131"), (9, "M132")]);
+    expect("fanuc", &program, &[(6, "P0114 M130"), (7, "P0114 M131"), (9, "P0114 M132")]);
     let siemens = "G17 G90 G54 G40\nT1 M6\nS800 M3\nG0 X0 Y0 Z10\n";
     let siemens = |text: &str, expected: &[(usize, &str)]| {
         expect("siemens", &format!("{siemens}{text}\nM30\n"), expected);
     };
-    siemens("R01=R50\nX=R1\nR[2]=R51\nX=R2", &[(5, "R50"), (7, "R51")]);
-    siemens("DEF REAL BB\nBB=R50\nR8=10/BB\nX=R8", &[(6, "R50")]);
-    siemens("R1=R5+R6\nX=R6", &[(5, "R5 "), (6, "R6 ")]);
-    siemens("WHEN TRUE DO M5\nX=ZZ", &[(5, "WHEN"), (6, "`ZZ`")]);
-    siemens("R1=1\nX#5\nX=R1\nOEM1\nX5", &[(6, "X has no number"), (8, "`OEM1`")]);
+    siemens("R01=R50\nX=R1\nR[2]=R51\nX=R2", &[(5, "P0210 R50"), (7, "P0210 R51")]);
+    siemens("DEF REAL BB\nBB=R50\nR8=10/BB\nX=R8", &[(6, "P0210 R50")]);
+    siemens("R1=R5+R6\nX=R6", &[(5, "P0210 R5"), (6, "P0210 R6")]);
+    siemens("WHEN TRUE DO M5\nX=ZZ", &[(5, "P0115 WHEN"), (6, "P0115 `ZZ`")]);
+    siemens("R1=1\nX#5\nX=R1\nOEM1\nX5", &[(6, "P0104"), (8, "P0115 `OEM1`")]);
     let klartext = "BEGIN PGM A MM\nTOOL CALL 1 Z S1000\nL X+0 Y+0 Z+50 R0 FMAX M3\n";
     let klartext = |text: &str, expected: &[(usize, &str)]| {
         expect("heidenhain", &format!("{klartext}{text}\nM30\nEND PGM A MM\n"), expected);
     };
-    klartext("Q01 = Q50\nL X+Q1", &[(4, "Q50")]);
-    klartext("Q1 = Q5 + Q6\nL X+Q6", &[(4, "Q5 "), (5, "Q6 ")]);
-    klartext("TOOL CALL 2 Z NIX\nL X+5 RL F100\nL X+9\nL R0 X+20", &[(4, "`NIX`")]);
+    klartext("Q01 = Q50\nL X+Q1", &[(4, "P0210 Q50")]);
+    klartext("Q1 = Q5 + Q6\nL X+Q6", &[(4, "P0210 Q5"), (5, "P0210 Q6")]);
+    klartext("TOOL CALL 2 Z NIX\nL X+5 RL F100\nL X+9\nL R0 X+20", &[(4, "P0110 `NIX`")]);
     klartext(
         "CALL LBL 1\nM222\nM30\nLBL 1\nL X+1 NIX\nLBL 0 NIX\nL X+Q9",
-        &[(8, "`NIX`"), (9, "`NIX`"), (5, "M222")],
+        &[(8, "P0110 `NIX`"), (9, "P0110 `NIX`"), (5, "P0114 M222")],
     );
 }
 
@@ -184,18 +184,17 @@ fn what_was_left_out_causes_no_errors() {
 #[test]
 fn errors_behind_an_m_word_are_all_found() {
     for (block, message) in [
-        ("END1", "the loop or decision"),
-        ("X5. R3.", "R is used by no"),
-        ("M98 P777", "there is no O777"),
-        ("G2 X4.", "the arc has neither"),
-        ("G43 H1. G41", "G41"),
-        ("G64 P3 G2 X1. R5.", "P"),
+        ("END1", "P0131"),
+        ("X5. R3.", "P0118 R"),
+        ("M98 P777", "P0126 O777"),
+        ("G2 X4.", "P0301"),
+        ("G43 H1. G41", "P0119 G41"),
+        ("G64 P3 G2 X1. R5.", "P0120 P"),
     ] {
         let program = format!("G21 G90 G17 G54 F100. G1 X0 Y0\nM130\n{block}\nM30\n");
         let found = errors(&program, &setup("fanuc"));
-        let text: Vec<String> = found.iter().map(ToString::to_string).collect();
-        assert!(text.len() == 2 && text[1].starts_with("line 3: "), "{text:#?}");
-        assert!(found[1].fault.to_string().contains(message), "{text:#?}");
+        assert_eq!(found.len(), 2, "{found:#?}");
+        assert_fault(&program, &found[1], 3, message);
     }
 }
 
@@ -210,16 +209,15 @@ fn endless_loops_are_left() {
     for text in fanuc {
         let program = format!("{head}{text}\nM130\nM30\n");
         let found = errors(&program, &setup("fanuc"));
-        let last = found.last().expect("errors").to_string();
-        assert!(last.contains("M130"), "{found:#?}\n{program}");
+        assert!(is_fault(found.last().expect("errors"), "P0114 M130"), "{found:#?}\n{program}");
     }
     let siemens =
         "G90 G17 G54 G0 X0 Y0\nR1=0\nAGAIN: X1\nR1=R1+R50\nIF R1<3 GOTOB AGAIN\nM131\nM30\n";
-    expect("siemens", siemens, &[(4, "R50"), (6, "M131")]);
+    expect("siemens", siemens, &[(4, "P0210 R50"), (6, "P0114 M131")]);
     let siemens = "G90 G17 G54 G0 X0 Y0\nM130\nFOR R1=1 TO 90000\nX1\nX2\nENDFOR\nM131\nM30\n";
-    expect("siemens", siemens, &[(2, "M130"), (7, "M131")]);
+    expect("siemens", siemens, &[(2, "P0114 M130"), (7, "P0114 M131")]);
     let klartext = "BEGIN PGM A MM\nL X+0 Y+0 FMAX\nQ1 = 0\nLBL 1\nQ1 = Q1 + Q50\nFN 12: IF +Q1 LT +3 GOTO LBL 1\nM222\nM30\nEND PGM A MM\n";
-    expect("heidenhain", klartext, &[(5, "Q50"), (7, "M222")]);
+    expect("heidenhain", klartext, &[(5, "P0210 Q50"), (7, "P0114 M222")]);
 }
 
 /// Letters that other words of the block use stay theirs beside an ignored word.
@@ -262,20 +260,20 @@ fn an_ignored_word_takes_no_letter_of_another_word() {
 fn loops_without_a_known_end_are_left() {
     let body = "X1.\nM130\nX0\n";
     let fanuc = format!("G21 G90 G0 X0 Y0\nWHILE[#500LT3]DO1\n{body}END1\nM131\nM30\n");
-    expect("fanuc", &fanuc, &[(2, "#500"), (4, "M130"), (7, "M131")]);
+    expect("fanuc", &fanuc, &[(2, "P0210 #500"), (4, "P0114 M130"), (7, "P0114 M131")]);
     for head in ["while [#500 LT 3]", "repeat [#500]"] {
         let end = head.split(' ').next().expect("a word");
         let linuxcnc = format!("G21 G90 G0 X0 Y0\no1 {head}\n{body}o1 end{end}\nM131\nM30\n");
-        expect("linuxcnc", &linuxcnc, &[(2, "#500"), (4, "M130"), (7, "M131")]);
+        expect("linuxcnc", &linuxcnc, &[(2, "P0210 #500"), (4, "P0115 M130"), (7, "P0115 M131")]);
     }
     for (head, end) in [("WHILE R5<3", "ENDWHILE"), ("FOR R1=1 TO R5", "ENDFOR")] {
         let sinumerik = format!("G54 G90 G0 X0 Y0\n{head}\nX1.\nWAITM(1)\nX0\n{end}\nM131\nM30\n");
-        expect("siemens", &sinumerik, &[(2, "R5"), (4, "WAITM"), (7, "M131")]);
+        expect("siemens", &sinumerik, &[(2, "P0210 R5"), (4, "P0115 WAITM"), (7, "P0114 M131")]);
     }
     // The body of one whose end is known has its words once.
     let known =
         format!("G21 G90 G0 X0 Y0\n#1=0\nWHILE[#1LT3]DO1\n#1=#1+1\n{body}END1\nM131\nM30\n");
-    expect("fanuc", &known, &[(6, "M130"), (9, "M131")]);
+    expect("fanuc", &known, &[(6, "P0114 M130"), (9, "P0114 M131")]);
 }
 
 /// Blocks of a called file are executed where it is called, those of another one are not.
@@ -288,9 +286,9 @@ fn words_of_a_called_file_are_found_with_those_of_the_program() {
     };
     let setup = ControlSetup { subprograms: files.map(file).to_vec(), ..setup("fanuc") };
     let program = "G21 G90 G0 X0 Y0\nM98 P7\nG777\nM30\n";
-    let found: Vec<String> = errors(program, &setup).iter().map(ToString::to_string).collect();
-    assert!(found[0].starts_with("line 2: 7.nc, line 2: G778"), "{found:?}");
-    assert!(found[1].starts_with("line 3: G777"), "{found:?}");
+    let found = errors(program, &setup);
+    assert_fault(program, &found[0], 2, "P0114 7.nc, line 2: G778");
+    assert_fault(program, &found[1], 3, "P0114 G777");
     assert_eq!(found.len(), 2);
 }
 

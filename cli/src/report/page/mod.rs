@@ -154,7 +154,7 @@ fn findings(content: &Content<'_>) -> Markup {
                             tr id={ "finding-" (index + 1) } {
                                 td.number { (index + 1) }
                                 td { span.badge.(class) { (severity) } }
-                                td.name { (finding.rule) }
+                                td.name title=(finding.rule.code()) { (finding.rule) }
                                 td.number { (finding.line) }
                                 td.number { (first) @if last != first { " to " (last) } }
                                 td.text {

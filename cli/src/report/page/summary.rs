@@ -54,7 +54,9 @@ fn verdict(content: &Content<'_>) -> Markup {
             @if violations > 0 && undecided > 0 { " and " (undecided) " undecided" }
             @if remarks > 0 { "; " (remarks) " warning" (plural(remarks)) }
         }
-        @for reason in &refusals { p.reason { "Not verified: " (plain(reason)) } }
+        @for reason in &refusals {
+            p.reason { "Not verified: " (plain(&reason.to_string())) " [" (reason.code()) "]" }
+        }
     }
 }
 
@@ -78,7 +80,8 @@ fn facts(content: &Content<'_>) -> Vec<Fact> {
     let revolved = checked.job.revolved.iter().map(|body| plain(&body.name));
     let machine = revolved.chain(named(JobBody::is_of_machine));
     let summaries = checked.summaries().into_iter().map(|summary| plain(&summary));
-    let gaps = checked.gaps.iter().map(|gap| plain(&gap.to_string()));
+    let gaps =
+        checked.gaps.iter().map(|gap| format!("{} [{}]", plain(&gap.to_string()), gap.code()));
     let facts = [
         Fact { key: "Part", values: part(content) },
         Fact { key: "Program", values: program(content) },
@@ -130,7 +133,7 @@ fn stock(content: &Content<'_>) -> Vec<String> {
 fn counts(content: &Content<'_>) -> Vec<String> {
     let mut rules: BTreeMap<&str, usize> = BTreeMap::new();
     for finding in content.checked.findings() {
-        *rules.entry(finding.rule).or_default() += 1;
+        *rules.entry(finding.rule.keyword()).or_default() += 1;
     }
     let counts: Vec<_> = rules.iter().map(|(rule, count)| format!("{count} {rule}")).collect();
     if counts.is_empty() { counts } else { vec![counts.join(", ")] }

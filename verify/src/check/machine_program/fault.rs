@@ -1,55 +1,61 @@
 //! Errors of programs on a machine.
 
+use crate::codes::faults;
 use crate::gcode::{BlockLine, GcodeFault, WorkOffset};
 use crate::machine::{InverseError, JointError};
 
-/// A program that cannot be checked on its machine.
-#[derive(thiserror::Error)]
-#[non_exhaustive]
-pub enum MachineProgramError {
-    /// A control reads the program in this way, and is stopped by it.
-    #[error(
-        "{error} (under {rules}; a control that is named, or whose rules are stated, reads it in one way)"
-    )]
-    Under {
-        /// The error.
-        error: Box<MachineProgramError>,
-        /// The rules that are assumed.
-        rules: String,
-    },
-    /// Controls read the program in too many ways.
-    #[error(
-        "{file}: controls read this program in more than {} ways, by the rules {rules}: name the control, or state its rules",
-        super::MAX_READINGS
-    )]
-    Readings {
-        /// The program.
-        file: String,
-        /// The keys of the rules, each with the line that depends on it.
-        rules: String,
-    },
-    /// The variables of the program can have too many values.
-    #[error(
-        "{file}: the values of `[variables]` have more than {} combinations: state fewer, and check the program once for each group",
-        super::MAX_VALUES
-    )]
-    Values {
-        /// The program.
-        file: String,
-    },
-    /// A block is not read, or its motion is not possible on the machine.
-    #[error("{file}:{line}: {fault}")]
-    Block {
-        /// The program.
-        file: String,
-        /// The line, 1-based.
-        line: usize,
-        /// The fault in it.
-        fault: BlockFault,
-    },
+faults! {
+    #[family("K09", "Readings of programs")]
+    /// A program that cannot be checked on its machine.
+    #[derive(thiserror::Error)]
+    #[non_exhaustive]
+    pub enum MachineProgramError {
+        /// A control reads the program in this way, and is stopped by it.
+        #[code_of(error)]
+        #[error(
+            "{error} (under {rules}; a control that is named, or whose rules are stated, reads it in one way)"
+        )]
+        Under {
+            /// The error.
+            error: Box<MachineProgramError>,
+            /// The rules that are assumed.
+            rules: String,
+        },
+        /// Controls read the program in too many ways.
+        #[code = K0901]
+        #[error(
+            "{file}: controls read this program in more than {} ways, by the rules {rules}: name the control, or state its rules",
+            super::MAX_READINGS
+        )]
+        Readings {
+            /// The program.
+            file: String,
+            /// The keys of the rules, each with the line that depends on it.
+            rules: String,
+        },
+        /// The variables of the program can have too many values.
+        #[code = K0902]
+        #[error(
+            "{file}: the values of `[variables]` have more than {} combinations: state fewer, and check the program once for each group",
+            super::MAX_VALUES
+        )]
+        Values {
+            /// The program.
+            file: String,
+        },
+        /// A block is not read, or its motion is not possible on the machine.
+        #[code_of(fault)]
+        #[error("{file}:{line}: {fault}")]
+        Block {
+            /// The program.
+            file: String,
+            /// The line, 1-based.
+            line: usize,
+            /// The fault in it.
+            fault: BlockFault,
+        },
+    }
 }
-
-touchoff::debug_as_sentence!(MachineProgramError);
 
 /// A block that ends what is checked of a program.
 #[derive(Clone, PartialEq, thiserror::Error)]
@@ -78,6 +84,14 @@ pub enum BlockFault {
 touchoff::debug_as_sentence!(BlockFault);
 
 impl BlockFault {
+    /// Returns the stable [code](crate::codes) of the fault.
+    pub fn code(&self) -> &'static str {
+        match self {
+            BlockFault::Gcode(fault) => fault.code(),
+            BlockFault::Step(fault) => fault.code(),
+        }
+    }
+
     /// Returns whether it is the same as another one, whatever the file and the line, and the position of an axis that the machine lacks.
     pub(super) fn is_same(&self, other: &BlockFault) -> bool {
         match (self, other) {
@@ -105,86 +119,97 @@ pub struct Obstacle {
     pub fault: BlockFault,
 }
 
-/// A reason for which a motion is not possible on a machine.
-#[derive(Clone, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum StepFault {
-    /// A joint value is out of range, or of an axis that the machine lacks.
-    #[error(transparent)]
-    Joint(#[from] JointError),
-    /// No joint values give the tool axis.
-    #[error(transparent)]
-    Inverse(#[from] InverseError),
-    /// The length offset is that of another tool, while positions are those of the tip.
-    #[error(
-        "the length offset H{register} is {offset} mm, but T{tool} in the spindle is {length} mm long: correct H, or the \
-         lengths of the job"
-    )]
-    Length {
-        /// The register.
-        register: u32,
-        /// Its value, in mm.
-        offset: f64,
-        /// The tool in the spindle.
-        tool: u32,
-        /// Its length, in mm.
-        length: f64,
-    },
-    /// The program has turned the rotary axes to other angles than a tilted plane needs.
-    #[error(
-        "the tool is {degrees:.3} degrees off z of the tilted plane, to which the program has turned the axes itself: correct the \
-         angles, or let PLANE turn them"
-    )]
-    NotAligned {
-        /// The angle, in degrees.
-        degrees: f64,
-    },
-    /// The head turns, and the length of the tool is unknown.
-    #[error("the head turns, and so the length of the tool matters: state it in the job")]
-    NoLength,
-    /// The table turns without tool centre point control, and the position of the part on it is unknown.
-    #[error(
-        "the table turns without tool centre point control, and so the position of the part on it matters: state the \
-         origin of G54 in the job's `work_offsets`"
-    )]
-    NoPartPosition,
-    /// The program sets or turns G54, which is the frame of the part.
-    #[error(
-        "the program sets G54, which is the frame of the part, to other values than the job: state its origin in the job's \
-         `work_offsets`, or remove the block"
-    )]
-    MovedPart,
-    /// An arc in a tilted plane has too many turns.
-    #[error(
-        "an arc in a tilted plane turns by {degrees:.0} degrees, more than {limit:.0}: divide it"
-    )]
-    LongArc {
-        /// The angle, in degrees.
-        degrees: f64,
-        /// The greatest angle at this radius, in degrees.
-        limit: f64,
-    },
-    /// The origin of a work offset is unknown.
-    #[error(
-        "the origin of {offset}{} is unknown: state it, and that of G54, in the job's `work_offsets`",
-        on_sinumerik(*offset)
-    )]
-    NoOrigin {
-        /// The work offset.
-        offset: WorkOffset,
-    },
-    /// A work offset, or a rotary axis by G52 or G92, is turned against the part while the program states tips.
-    #[error(
-        "{offset} turns the table, or is turned against G54, while tool centre point control is on: controls take the part at \
-         different angles then, so state offsets of rotary axes as 0, and turn the part in the CAM system"
-    )]
-    TurnedOffset {
-        /// The work offset.
-        offset: WorkOffset,
-    },
+faults! {
+    #[family("K08", "Motions that are not possible on a machine")]
+    /// A reason for which a motion is not possible on a machine.
+    #[derive(Clone, PartialEq, thiserror::Error)]
+    #[non_exhaustive]
+    pub enum StepFault {
+        /// A joint value is out of range, or of an axis that the machine lacks.
+        #[code_of(0)]
+        #[error(transparent)]
+        Joint(#[from] JointError),
+        /// No joint values give the tool axis.
+        #[code_of(0)]
+        #[error(transparent)]
+        Inverse(#[from] InverseError),
+        /// The length offset is that of another tool, while positions are those of the tip.
+        #[code = K0801]
+        #[error(
+            "the length offset H{register} is {offset} mm, but T{tool} in the spindle is {length} mm long: correct H, or the \
+             lengths of the job"
+        )]
+        Length {
+            /// The register.
+            register: u32,
+            /// Its value, in mm.
+            offset: f64,
+            /// The tool in the spindle.
+            tool: u32,
+            /// Its length, in mm.
+            length: f64,
+        },
+        /// The program has turned the rotary axes to other angles than a tilted plane needs.
+        #[code = K0802]
+        #[error(
+            "the tool is {degrees:.3} degrees off z of the tilted plane, to which the program has turned the axes itself: correct the \
+             angles, or let PLANE turn them"
+        )]
+        NotAligned {
+            /// The angle, in degrees.
+            degrees: f64,
+        },
+        /// The head turns, and the length of the tool is unknown.
+        #[code = K0803]
+        #[error("the head turns, and so the length of the tool matters: state it in the job")]
+        NoLength,
+        /// The table turns without tool centre point control, and the position of the part on it is unknown.
+        #[code = K0804]
+        #[error(
+            "the table turns without tool centre point control, and so the position of the part on it matters: state the \
+             origin of G54 in the job's `work_offsets`"
+        )]
+        NoPartPosition,
+        /// The program sets or turns G54, which is the frame of the part.
+        #[code = K0805]
+        #[error(
+            "the program sets G54, which is the frame of the part, to other values than the job: state its origin in the job's \
+             `work_offsets`, or remove the block"
+        )]
+        MovedPart,
+        /// An arc in a tilted plane has too many turns.
+        #[code = K0806]
+        #[error(
+            "an arc in a tilted plane turns by {degrees:.0} degrees, more than {limit:.0}: divide it"
+        )]
+        LongArc {
+            /// The angle, in degrees.
+            degrees: f64,
+            /// The greatest angle at this radius, in degrees.
+            limit: f64,
+        },
+        /// The origin of a work offset is unknown.
+        #[code = K0807]
+        #[error(
+            "the origin of {offset}{} is unknown: state it, and that of G54, in the job's `work_offsets`",
+            on_sinumerik(*offset)
+        )]
+        NoOrigin {
+            /// The work offset.
+            offset: WorkOffset,
+        },
+        /// A work offset, or a rotary axis by G52 or G92, is turned against the part while the program states tips.
+        #[code = K0808]
+        #[error(
+            "{offset} turns the table, or is turned against G54, while tool centre point control is on: controls take the part at \
+             different angles then, so state offsets of rotary axes as 0, and turn the part in the CAM system"
+        )]
+        TurnedOffset {
+            /// The work offset.
+            offset: WorkOffset,
+        },
+    }
 }
-
-touchoff::debug_as_sentence!(StepFault);
 
 impl StepFault {
     /// Returns whether it is one of what the job states, whatever the positions in the program. `is_uncertain` is set if modes of the control

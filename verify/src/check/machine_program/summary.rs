@@ -2,6 +2,7 @@
 
 use super::{Assumption, BlockError, MachineProgram, Obstacle};
 use crate::check::CycleTime;
+use crate::codes::faults;
 use crate::gcode::{
     BlockLine, ControlSetup, LengthOffset, NoteKind, ProgramNote, Rule, Spindle, Step,
     SubprogramLine, WorkOffset,
@@ -98,108 +99,186 @@ pub struct ToolUse {
     pub motions: usize,
 }
 
-/// The reason for which only the machine knows where a motion starts or ends.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum UnknownCause {
-    /// The program has not stated a position before.
-    Start,
-    /// The program has not stated the position of another axis before.
-    Axis,
-    /// A tool change moved the axes.
-    ToolChange,
-    /// A motion to machine coordinates that are not known.
-    Return,
-    /// The way of axes from known positions to machine coordinates that are not known.
-    Home,
-    /// A shift by G92 at an unknown position.
-    Shift,
-    /// No tool length offset is in force, and the length of the tool is not stated.
-    NoOffset {
-        /// The tool.
-        tool: u32,
-    },
-    /// The length offset is that of another tool, and one of both lengths is not stated.
-    OtherOffset {
-        /// The tool.
-        tool: u32,
-        /// The register.
-        register: u32,
-    },
-    /// The head turns, and the length of the tool is not stated.
-    NoLever,
-    /// The table turns, and the position of the part on it is not stated.
-    NoPartPosition,
-    /// The way of an axis that turns by half a turn.
-    HalfTurn,
-    /// The tool axis is reached by two positions of the rotary axes, of which controls choose in different ways.
-    TwoPositions,
-    /// A rotary axis without limits returns to its reference position, in a direction of the machine's.
-    ReturnWay,
-    /// The tool axis turns on a great circle, which is not followed.
-    GreatCircle,
-    /// Tool centre point control or a tilted plane began while the table was turned, and the control takes the part as it stood
-    /// then.
-    TurnedTable,
-    /// Tool centre point control, or an aligned plane, without a tool length offset.
-    TcpWithoutLength,
+faults! {
+    #[family("V04", "Motions that are not checked")]
+    /// The reason for which only the machine knows where a motion starts or ends.
+    #[derive(Clone, Copy, PartialEq, Eq, thiserror::Error)]
+    #[non_exhaustive]
+    pub enum UnknownCause {
+        /// A motion from a position that the program has not stated.
+        ///
+        /// In rapid traverse it is the operator's way to the first position, and a verdict is possible.
+        #[code = V0401]
+        #[error("the program states no position before")]
+        Start,
+        /// A motion while the position of another axis is not stated.
+        #[code = V0402]
+        #[error("the position of another axis is not stated before: write all axes of the machine in the first blocks")]
+        Axis,
+        /// A motion from where a tool change leaves the axes.
+        #[code = V0403]
+        #[error(
+            "only the machine knows where the tool change leaves its axes: state `tool_change` in the machine's file, or the control"
+        )]
+        ToolChange,
+        /// A motion to machine coordinates that are not known.
+        #[code = V0404]
+        #[error(
+            "only the machine knows where its coordinates and its reference position are: state the origin of G54 in `work_offsets`, and \
+             `home` of its axes"
+        )]
+        Return,
+        /// The way of axes from known positions to machine coordinates that are not known.
+        ///
+        /// It is the machine's own way to its reference position, and a verdict is possible.
+        #[code = V0405]
+        #[error(
+            "only the machine knows where its coordinates and its reference position are: state the origin of G54 in `work_offsets`, and \
+             `home` of its axes"
+        )]
+        Home,
+        /// A shift by G92 at an unknown position.
+        #[code = V0406]
+        #[error("G92 shifts a position that is not known")]
+        Shift,
+        /// A motion without a tool length offset, while the length of the tool is not stated.
+        #[code = V0407]
+        #[error(
+            "T{tool} moves without a tool length offset: write G43 H{tool}, or state the length of tool {tool} in the job (0 if Z of the \
+             work offset is that of its tip)"
+        )]
+        NoOffset {
+            /// The tool.
+            tool: u32,
+        },
+        /// The length offset of another tool, while one of both lengths is not stated.
+        #[code = V0408]
+        #[error(
+            "T{tool} moves with the length offset H{register} of another tool: state the lengths of both in the job"
+        )]
+        OtherOffset {
+            /// The tool.
+            tool: u32,
+            /// The register.
+            register: u32,
+        },
+        /// A head that turns a tool whose length is not stated.
+        #[code = V0409]
+        #[error("the head turns the tool, whose length is not stated: state it in the job")]
+        NoLever,
+        /// A table that turns a part whose position is not stated.
+        #[code = V0410]
+        #[error(
+            "the table turns the part, whose position is not stated: state the origin of G54 in `work_offsets`"
+        )]
+        NoPartPosition,
+        /// An axis that turns by half a turn.
+        #[code = V0411]
+        #[error("an axis turns by half a turn, for which both ways are as short: write an angle between")]
+        HalfTurn,
+        /// A tool axis that two positions of the rotary axes give.
+        #[code = V0412]
+        #[error(
+            "two positions of the rotary axes give the tool axis, and controls choose in different ways: turn the axes near to one of \
+             them before"
+        )]
+        TwoPositions,
+        /// A rotary axis without limits that returns to its reference position.
+        #[code = V0413]
+        #[error(
+            "a rotary axis without limits returns to its reference position in a direction of the machine's: turn it there by G0 before"
+        )]
+        ReturnWay,
+        /// A tool axis that turns on a great circle, which is not followed.
+        #[code = V0414]
+        #[error(
+            "the tool axis turns on a great circle under TRAORI (ORIVECT): state `tool_orientation` of the control, if it turns each axis \
+             in proportion (ORIAXES)"
+        )]
+        GreatCircle,
+        /// Tool centre point control or a tilted plane that begins while the table is turned.
+        ///
+        /// Some controls take the part as it stands then.
+        #[code = V0415]
+        #[error(
+            "the table is turned where tool centre point control or a tilted plane begins, and positions are those of the part as it \
+             stands: turn it to 0 before, or state `tcp_start` of the control"
+        )]
+        TurnedTable,
+        /// Tool centre point control, or an aligned plane, without a tool length offset.
+        ///
+        /// The control computes with the length offset that is in force, and without one with a tool of length 0.
+        #[code = V0416]
+        #[error(
+            "tool centre point control or an aligned plane (G53.1) is in force, and no length offset: write H with the number of the \
+             length, or G43 H before"
+        )]
+        TcpWithoutLength,
+    }
 }
 
-impl fmt::Display for UnknownCause {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            UnknownCause::Start => f.write_str("the program states no position before"),
-            UnknownCause::Axis => f.write_str(
-                "the position of another axis is not stated before: write all axes of the machine in the first blocks",
-            ),
-            UnknownCause::ToolChange => f.write_str(
-                "only the machine knows where the tool change leaves its axes: state `tool_change` in the machine's file, or \
-                 the control",
-            ),
-            UnknownCause::Return | UnknownCause::Home => f.write_str(
-                "only the machine knows where its coordinates and its reference position are: state the origin of G54 in \
-                 `work_offsets`, and `home` of its axes",
-            ),
-            UnknownCause::Shift => f.write_str("G92 shifts a position that is not known"),
-            UnknownCause::NoOffset { tool } => write!(
-                f,
-                "T{tool} moves without a tool length offset: write G43 H{tool}, or state the length of tool {tool} in the \
-                 job (0 if Z of the work offset is that of its tip)"
-            ),
-            UnknownCause::OtherOffset { tool, register } => write!(
-                f,
-                "T{tool} moves with the length offset H{register} of another tool: state the lengths of both in the job"
-            ),
-            UnknownCause::NoLever => {
-                f.write_str("the head turns the tool, whose length is not stated: state it in the job")
-            }
-            UnknownCause::NoPartPosition => f.write_str(
-                "the table turns the part, whose position is not stated: state the origin of G54 in `work_offsets`",
-            ),
-            UnknownCause::TwoPositions => f.write_str(
-                "two positions of the rotary axes give the tool axis, and controls choose in different ways: turn the axes near to \
-                 one of them before",
-            ),
-            UnknownCause::ReturnWay => f.write_str(
-                "a rotary axis without limits returns to its reference position in a direction of the machine's: turn it there by \
-                 G0 before",
-            ),
-            UnknownCause::GreatCircle => f.write_str(
-                "the tool axis turns on a great circle under TRAORI (ORIVECT): state `tool_orientation` of the control, if it turns \
-                 each axis in proportion (ORIAXES)",
-            ),
-            UnknownCause::TurnedTable => f.write_str(
-                "the table is turned where tool centre point control or a tilted plane begins, and positions are those of the \
-                 part as it stands: turn it to 0 before, or state `tcp_start` of the control",
-            ),
-            UnknownCause::TcpWithoutLength => f.write_str(
-                "tool centre point control or an aligned plane (G53.1) is in force, and no length offset: write H with the \
-                 number of the length, or G43 H before",
-            ),
-            UnknownCause::HalfTurn => {
-                f.write_str("an axis turns by half a turn, for which both ways are as short: write an angle between")
-            }
-        }
+faults! {
+    #[family("V03", "What a check leaves open")]
+    /// A reason for a gap that concerns no single motion.
+    #[derive(Clone, PartialEq, thiserror::Error)]
+    pub(crate) enum CheckGap {
+        /// A tool of which no motion is checked.
+        ///
+        /// Other gaps say why.
+        #[code = V0301]
+        #[error("no motion of T{tool} is checked")]
+        Unchecked { tool: u32 },
+        /// Rapid traverse of a rotary axis with others, whose path is not stated.
+        #[code = V0302]
+        #[error(
+            "the path of several axes in rapid traverse, one of them rotary, is checked on the straight line only: state `rapid` of the \
+             control, or the `rapid` rates of the machine's axes"
+        )]
+        RotaryRapid,
+        /// A length before the program states its unit.
+        #[code = V0303]
+        #[error("no G20 or G21 before a length, which is read in mm: write one, or state `unit` of the control")]
+        Unit,
+        /// A position before the program states its work offset.
+        #[code = V0304]
+        #[error(
+            "no work offset before a position, which is taken in G54: write G54, or state `start_offset` of the control"
+        )]
+        StartOffset,
+        /// A program that never starts the spindle.
+        #[code = V0305]
+        #[error("the program feeds and never starts the spindle: write M3 with S before")]
+        NoSpindle,
+        /// A feed after a tapping cycle, with a spindle that may stand.
+        #[code = V0306]
+        #[error(
+            "a tapping cycle before a feed leaves the spindle standing or turning, by the control: write M3 after G80"
+        )]
+        AfterTapping,
+        /// A feed without a tool length offset, in a program that names tools.
+        ///
+        /// The gauge point of the spindle goes then where the program says, unless the work offset was set with the tool.
+        #[code = V0307]
+        #[error(
+            "no tool length offset (G43) is in force: positions are taken as those of the tip, as if the work offset were set with the \
+             tool: write G43, or state the lengths of the tools in the job (0 if Z of the work offset is that of the tip)"
+        )]
+        NoOffset,
+        /// A program that names no tool and no tool length offset, whose positions are taken as those of the tip.
+        ///
+        /// It is set up with the tool that is in the spindle, and a verdict is possible.
+        #[code = V0308]
+        #[error(
+            "no tool length offset (G43) is in force: positions are taken as those of the tip, as if the work offset were set with the \
+             tool"
+        )]
+        OffIsTip,
+        /// Limits of linear axes that are not checked.
+        ///
+        /// They are limits in machine coordinates, in which the part has to have a place. A verdict is possible.
+        #[code = V0309]
+        #[error("the limits of X, Y and Z are not checked: state the origin of G54 in `work_offsets`")]
+        Limits,
     }
 }
 
@@ -213,6 +292,8 @@ pub struct Gap {
     pub within: Option<SubprogramLine>,
     /// Its consequence.
     pub weight: GapWeight,
+    /// The stable code of its cause.
+    code: &'static str,
     /// The subject that was not checked, the cause, and the remedy. A sentence without a full stop.
     pub reason: String,
 }
@@ -229,19 +310,24 @@ pub enum GapWeight {
 }
 
 impl Gap {
-    /// Creates a gap that leaves a verdict possible.
-    pub fn said(place: impl Into<BlockLine>, reason: String) -> Gap {
-        Gap::new(place.into(), GapWeight::Said, reason)
+    /// Creates a gap that leaves a verdict possible. `code` is that of its cause.
+    pub fn said(place: impl Into<BlockLine>, code: &'static str, reason: String) -> Gap {
+        Gap::new(place.into(), GapWeight::Said, code, reason)
     }
 
-    /// Creates a gap that allows no verdict.
-    pub fn open(place: impl Into<BlockLine>, reason: String) -> Gap {
-        Gap::new(place.into(), GapWeight::Open, reason)
+    /// Creates a gap that allows no verdict. `code` is that of its cause.
+    pub fn open(place: impl Into<BlockLine>, code: &'static str, reason: String) -> Gap {
+        Gap::new(place.into(), GapWeight::Open, code, reason)
     }
 
-    fn new(place: BlockLine, weight: GapWeight, reason: String) -> Gap {
+    fn new(place: BlockLine, weight: GapWeight, code: &'static str, reason: String) -> Gap {
         let BlockLine { line, within } = place;
-        Gap { line, within, weight, reason }
+        Gap { line, within, weight, code, reason }
+    }
+
+    /// Returns the stable [code](crate::codes) of its cause.
+    pub fn code(&self) -> &'static str {
+        self.code
     }
 
     /// Returns whether there is no verdict with it.
@@ -348,9 +434,9 @@ impl MachineSummary {
             let times = |count| if count > 1 { format!(" ({count} times)") } else { String::new() };
             let BlockError { block, fault } = error;
             let reason = format!("{fault}{}; the program is checked up to here", times(*count));
-            gaps.push(Gap::new(*block, weight, reason));
+            gaps.push(Gap::new(*block, weight, fault.code(), reason));
             gaps.extend(obstacles.iter().map(|Obstacle { block, count, fault }| {
-                Gap::new(*block, weight, format!("{fault}{}", times(*count)))
+                Gap::new(*block, weight, fault.code(), format!("{fault}{}", times(*count)))
             }));
         }
         for UnknownMotions { cause, count, first, first_open } in &self.unknown {
@@ -359,53 +445,44 @@ impl MachineSummary {
             let reason =
                 format!("{count} motion{plural} not checked, first at line {line}: {cause}");
             gaps.push(match first_open {
-                Some(first_open) => Gap::open(*first_open, reason),
-                None => Gap::said(*first, reason),
+                Some(first_open) => Gap::open(*first_open, cause.code(), reason),
+                None => Gap::said(*first, cause.code(), reason),
             });
         }
+        let open = |block: BlockLine, gap: CheckGap| Gap::open(block, gap.code(), gap.to_string());
         for (tool, block) in &self.unchecked_tools {
-            gaps.push(Gap::open(*block, format!("no motion of T{tool} is checked")));
+            gaps.push(open(*block, CheckGap::Unchecked { tool: *tool }));
         }
         if let Some(block) = self.any_rotary_rapid {
-            let reason = "the path of several axes in rapid traverse, one of them rotary, is checked on the straight line \
-                          only: state `rapid` of the control, or the `rapid` rates of the machine's axes";
-            gaps.push(Gap::open(block, reason.to_owned()));
+            gaps.push(open(block, CheckGap::RotaryRapid));
         }
         if let Some(block) = self.open_rules.get(&Rule::Unit) {
-            let reason = "no G20 or G21 before a length, which is read in mm: write one, or state `unit` of the control";
-            gaps.push(Gap::open(*block, reason.to_owned()));
+            gaps.push(open(*block, CheckGap::Unit));
         }
         if let Some(block) = self.open_rules.get(&Rule::StartOffset) {
-            let reason = "no work offset before a position, which is taken in G54: write G54, or state `start_offset` of the \
-                          control";
-            gaps.push(Gap::open(*block, reason.to_owned()));
+            gaps.push(open(*block, CheckGap::StartOffset));
         }
         if let (Some(block), false) = (self.first_feed(Spindle::NotStated), self.states_spindle()) {
-            let reason = "the program feeds and never starts the spindle: write M3 with S before";
-            gaps.push(Gap::open(block, reason.to_owned()));
+            gaps.push(open(block, CheckGap::NoSpindle));
         }
         if let Some(block) = self.first_feed(Spindle::AfterTapping) {
-            let reason = "a tapping cycle before a feed leaves the spindle standing or turning, by the control: write M3 after G80";
-            gaps.push(Gap::open(block, reason.to_owned()));
+            gaps.push(open(block, CheckGap::AfterTapping));
         }
+        let said = |place: BlockLine, gap: CheckGap| Gap::said(place, gap.code(), gap.to_string());
         if let Some(block) = self.no_offset {
-            let reason = "no tool length offset (G43) is in force: positions are taken as those of the tip, as if the work offset \
-                          were set with the tool";
-            let remedy = "write G43, or state the lengths of the tools in the job (0 if Z of the work offset is that of the tip)";
             // A program that names no tool is set up with the one that is in the spindle.
             gaps.push(match self.tools.iter().any(|tool| tool.number.is_some()) {
-                true => Gap::open(block, format!("{reason}: {remedy}")),
-                false => Gap::said(block, reason.to_owned()),
+                true => open(block, CheckGap::NoOffset),
+                false => said(block, CheckGap::OffIsTip),
             });
         }
         if let Some(block) = self.tcp_without_length {
-            let reason =
-                format!("tips are taken as programmed, but {}", UnknownCause::TcpWithoutLength);
-            gaps.push(Gap::open(block, reason));
+            let cause = UnknownCause::TcpWithoutLength;
+            let reason = format!("tips are taken as programmed, but {cause}");
+            gaps.push(Gap::open(block, cause.code(), reason));
         }
         if self.limits_unchecked {
-            let reason = "the limits of X, Y and Z are not checked: state the origin of G54 in `work_offsets`";
-            gaps.push(Gap::said(0, reason.to_owned()));
+            gaps.push(said(BlockLine::from(0), CheckGap::Limits));
         }
         for note in &self.notes {
             let weight = match note.kind {
@@ -422,7 +499,7 @@ impl MachineSummary {
                 if note.count > 1 { format!(" ({} times)", note.count) } else { String::new() };
             let reason = format!("{}{times}", note.kind);
             let place = BlockLine { line: note.line, within: note.within };
-            gaps.push(Gap::new(place, weight, reason));
+            gaps.push(Gap::new(place, weight, note.kind.code(), reason));
         }
         gaps
     }

@@ -8,6 +8,7 @@
 //! A control of Fanuc computes with fewer digits. A comparison or a rounding that rounding errors decide is refused there.
 
 use super::variables::{Scope, parameter};
+use crate::codes::faults;
 use crate::gcode::{LARGEST_NUMBER, shown};
 use crate::machine::sin_cos_degrees;
 
@@ -31,135 +32,156 @@ pub(super) enum Language {
     LinuxCnc,
 }
 
-/// A fault in a variable or an expression.
-#[derive(Clone, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum ExpressionFault {
-    /// A number that is not one.
-    #[error("{shown} is not a number: write digits with a decimal point")]
-    Number {
-        /// The number as written.
-        shown: String,
-    },
-    /// A value that is missing or not understood.
-    #[error("a value is missing {}: write a number, a parameter or a bracket", place(.shown))]
-    Value {
-        /// The text after it.
-        shown: String,
-    },
-    /// A function or operator that is not read.
-    #[error("`{name}` in an expression is not read: post the program with numbers")]
-    Operation {
-        /// Its name.
-        name: String,
-    },
-    /// A division outside of brackets.
-    #[error(
-        "`/` outside of brackets is the sign of an optional block on Fanuc, and no division: write it in brackets, as in `[#1/2]`"
-    )]
-    Slash,
-    /// An expression with a value that depends on the control.
-    #[error("{shown} has another value on Fanuc than on LinuxCNC: state the `control`")]
-    Differs {
-        /// The expression.
-        shown: String,
-    },
-    /// A comparison or a rounding that depends on the last digits with which a control computes.
-    #[error(
-        "`{operation}` of {value} depends on the digits with which the control computes: compare with a margin, or round before"
-    )]
-    Tie {
-        /// The operation.
-        operation: &'static str,
-        /// The number, or the difference of the numbers that are compared.
-        value: f64,
-    },
-    /// A function whose range is set by a parameter of the control.
-    #[error(
-        "`{function}` of this value is given in one of two ranges of angles, by a parameter of the control: post the program \
-         without it"
-    )]
-    Range {
-        /// The function.
-        function: &'static str,
-    },
-    /// A bracket without its end.
-    #[error("an expression has no `]`: close it")]
-    OpenBracket,
-    /// A name without its end.
-    #[error("a named parameter has no `>`: close it")]
-    OpenName,
-    /// A variable that has no value.
-    #[error(
-        "{parameter} has no value here, but what an earlier program or the operator has left in it: assign it in the program before, \
-         or state it in `[variables]` of the job"
-    )]
-    Unassigned {
-        /// The variable.
-        parameter: String,
-    },
-    /// A variable of the control whose value only the machine knows.
-    #[error(
-        "{parameter} is {}, whose value is not known: post the program without it, or state it in \
-         `[variables]` of the job",
-        system_variable(parameter)
-    )]
-    System {
-        /// The variable.
-        parameter: String,
-    },
-    /// A variable that the program cannot assign.
-    #[error("{parameter} is not assigned by programs that are read: post the program without it")]
-    ReadOnly {
-        /// The variable.
-        parameter: String,
-    },
-    /// A vacant variable where a number is needed.
-    #[error("{parameter} is vacant here: give the macro its argument")]
-    Vacant {
-        /// The variable.
-        parameter: String,
-    },
-    /// An index that is no whole number from 1.
-    #[error("#{index} is no parameter: write a whole number from 1 to 999 after #")]
-    Index {
-        /// The index.
-        index: f64,
-    },
-    /// An assignment without `=`.
-    #[error("{parameter} stands alone: write `=` and a value after it, or a letter before it")]
-    NoAssignment {
-        /// The variable.
-        parameter: String,
-    },
-    /// A division by zero, the root of a negative number, or a number beyond the largest.
-    #[error(
-        "the result of `{operation}` is not a number within {LARGEST_RESULT}: correct the values"
-    )]
-    NotFinite {
-        /// The operation.
-        operation: &'static str,
-    },
-    /// A bracket without its end, or an argument that is missing.
-    #[error("an expression has no `)`, or lacks an argument before it: complete it")]
-    OpenParenthesis,
-    /// A text without its end.
-    #[error("a text has no second quote: close it")]
-    OpenQuote,
-    /// A value of another kind than its place needs.
-    #[error("{found} stands where {wanted} is needed: correct the expression")]
-    Kind {
-        /// The kind of the value.
-        found: &'static str,
-        /// The kind that is needed.
-        wanted: &'static str,
-    },
-    /// Brackets that are nested too deeply.
-    #[error("brackets are nested more than {MAX_DEPTH} deep: write the expression in steps")]
-    TooDeep,
+faults! {
+    #[family("P02", "Programs of controls: variables and expressions")]
+    /// A fault in a variable or an expression.
+    #[derive(Clone, PartialEq, thiserror::Error)]
+    #[non_exhaustive]
+    pub enum ExpressionFault {
+        /// A number that is not one.
+        #[code = P0201]
+        #[error("{shown} is not a number: write digits with a decimal point")]
+        Number {
+            /// The number as written.
+            shown: String,
+        },
+        /// A value that is missing or not understood.
+        #[code = P0202]
+        #[error("a value is missing {}: write a number, a parameter or a bracket", place(.shown))]
+        Value {
+            /// The text after it.
+            shown: String,
+        },
+        /// A function or operator that is not read.
+        #[code = P0203]
+        #[error("`{name}` in an expression is not read: post the program with numbers")]
+        Operation {
+            /// Its name.
+            name: String,
+        },
+        /// A division outside of brackets.
+        #[code = P0204]
+        #[error(
+            "`/` outside of brackets is the sign of an optional block on Fanuc, and no division: write it in brackets, as in `[#1/2]`"
+        )]
+        Slash,
+        /// An expression with a value that depends on the control.
+        #[code = P0205]
+        #[error("{shown} has another value on Fanuc than on LinuxCNC: state the `control`")]
+        Differs {
+            /// The expression.
+            shown: String,
+        },
+        /// A comparison or a rounding that depends on the last digits with which a control computes.
+        #[code = P0206]
+        #[error(
+            "`{operation}` of {value} depends on the digits with which the control computes: compare with a margin, or round before"
+        )]
+        Tie {
+            /// The operation.
+            operation: &'static str,
+            /// The number, or the difference of the numbers that are compared.
+            value: f64,
+        },
+        /// A function whose range is set by a parameter of the control.
+        #[code = P0207]
+        #[error(
+            "`{function}` of this value is given in one of two ranges of angles, by a parameter of the control: post the program \
+             without it"
+        )]
+        Range {
+            /// The function.
+            function: &'static str,
+        },
+        /// A bracket without its end.
+        #[code = P0208]
+        #[error("an expression has no `]`: close it")]
+        OpenBracket,
+        /// A name without its end.
+        #[code = P0209]
+        #[error("a named parameter has no `>`: close it")]
+        OpenName,
+        /// A variable that has no value.
+        #[code = P0210]
+        #[error(
+            "{parameter} has no value here, but what an earlier program or the operator has left in it: assign it in the program before, \
+             or state it in `[variables]` of the job"
+        )]
+        Unassigned {
+            /// The variable.
+            parameter: String,
+        },
+        /// A variable of the control whose value only the machine knows.
+        #[code = P0211]
+        #[error(
+            "{parameter} is {}, whose value is not known: post the program without it, or state it in \
+             `[variables]` of the job",
+            system_variable(parameter)
+        )]
+        System {
+            /// The variable.
+            parameter: String,
+        },
+        /// A variable that the program cannot assign.
+        #[code = P0212]
+        #[error("{parameter} is not assigned by programs that are read: post the program without it")]
+        ReadOnly {
+            /// The variable.
+            parameter: String,
+        },
+        /// A vacant variable where a number is needed.
+        #[code = P0213]
+        #[error("{parameter} is vacant here: give the macro its argument")]
+        Vacant {
+            /// The variable.
+            parameter: String,
+        },
+        /// An index that is no whole number from 1.
+        #[code = P0214]
+        #[error("#{index} is no parameter: write a whole number from 1 to 999 after #")]
+        Index {
+            /// The index.
+            index: f64,
+        },
+        /// An assignment without `=`.
+        #[code = P0215]
+        #[error("{parameter} stands alone: write `=` and a value after it, or a letter before it")]
+        NoAssignment {
+            /// The variable.
+            parameter: String,
+        },
+        /// A division by zero, the root of a negative number, or a number beyond the largest.
+        #[code = P0216]
+        #[error(
+            "the result of `{operation}` is not a number within {LARGEST_RESULT}: correct the values"
+        )]
+        NotFinite {
+            /// The operation.
+            operation: &'static str,
+        },
+        /// A bracket without its end, or an argument that is missing.
+        #[code = P0217]
+        #[error("an expression has no `)`, or lacks an argument before it: complete it")]
+        OpenParenthesis,
+        /// A text without its end.
+        #[code = P0218]
+        #[error("a text has no second quote: close it")]
+        OpenQuote,
+        /// A value of another kind than its place needs.
+        #[code = P0219]
+        #[error("{found} stands where {wanted} is needed: correct the expression")]
+        Kind {
+            /// The kind of the value.
+            found: &'static str,
+            /// The kind that is needed.
+            wanted: &'static str,
+        },
+        /// Brackets that are nested too deeply.
+        #[code = P0220]
+        #[error("brackets are nested more than {MAX_DEPTH} deep: write the expression in steps")]
+        TooDeep,
+    }
 }
-
-touchoff::debug_as_sentence!(ExpressionFault);
 
 impl ExpressionFault {
     /// Returns whether the language lacks what is written, so that the control refuses it.

@@ -2,7 +2,7 @@
 
 use super::exact::{Affine, FileMachine, big};
 use super::{Random, cases, texts};
-use crate::machine::{Chain, Machine};
+use crate::machine::{Chain, JointError, Letter, Machine};
 use nalgebra::Matrix3;
 use touchoff::Pose;
 
@@ -99,32 +99,26 @@ fn program_coordinates_are_those_of_the_tip() {
 fn values_that_are_no_joints_are_refused() {
     let machine = Machine::named("A-C trunnion").expect("a machine");
     let chain = machine.chain(&Default::default()).expect("a setup");
-    let message = |joints| chain.pose(&joints).expect_err("no joints").to_string();
+    let refusal = |joints| chain.pose(&joints).expect_err("no joints");
+    let what = |error: JointError| match error {
+        JointError::Range { what, .. } => what,
+        other => panic!("{other}"),
+    };
     for bad in [f64::NAN, f64::INFINITY, -2e6] {
         for index in 0..6 {
             let mut joints = [0.0; 6];
             joints[index] = bad;
-            assert!(message(joints).starts_with(&"XYZABC"[index..=index]));
+            assert_eq!(what(refusal(joints)), "XYZABC"[index..=index]);
             let mut setup = super::Setup { work_offset: joints, tool_length: 0.0 };
             assert!(machine.chain(&setup).is_err());
             setup = super::Setup { work_offset: [0.0; 6], tool_length: bad };
-            assert!(
-                machine
-                    .chain(&setup)
-                    .expect_err("no length")
-                    .to_string()
-                    .starts_with("the tool length is")
-            );
+            assert_eq!(what(machine.chain(&setup).expect_err("no length")), "the tool length");
         }
     }
-    assert_eq!(
-        message([0.0, 0.0, 0.0, 0.0, 1.5, 0.0]),
-        "B is 1.5, but the machine has no axis B: name the machine for which the program was posted"
-    );
-    assert_eq!(
-        chain.relative_to(4).expect_err("no link").to_string(),
-        "there is no link 4: the table side has links 0 (the base) to 3"
-    );
+    let missing = JointError::NoAxis { letter: Letter::B, value: 1.5 };
+    assert_eq!(refusal([0.0, 0.0, 0.0, 0.0, 1.5, 0.0]), missing);
+    let missing = JointError::NoLink { link: 4, last: 3 };
+    assert_eq!(chain.relative_to(4).expect_err("no link"), missing);
     let tip = nalgebra::Point3::origin();
     let base = chain.relative_to(0).expect("the base");
     assert!(

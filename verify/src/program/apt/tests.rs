@@ -1,8 +1,9 @@
-use super::super::tests::{flank, refusal, shared};
-use crate::program::ClData;
+use super::super::tests::{flank, line_of, refusal, shared};
+use crate::program::{ClData, ProgramError};
 use nalgebra::{Point3, Vector3};
 use std::path::Path;
-use touchoff::Unit;
+use touchoff::tool::Interpreted;
+use touchoff::{Tool, Unit};
 
 fn program(text: &str) -> ClData {
     ClData::parse(text, "part.cl").expect("it is a program")
@@ -64,7 +65,7 @@ fn an_axis_that_is_left_out_stays_in_files_of_nx() {
         "GOTO/4,5,6,1,0,0\nLOADTL/2\nGOTO/7,8,9\nFINI",
         "TOOL PATH/A,TOOL,B\nGOTO/4,5,6,1,0,0\nMULTAX/OFF\nGOTO/7,8,9\nFINI",
     ] {
-        assert!(refusal(text).contains("GOTO has no axis after a tilted one"), "{text}");
+        assert_eq!(refusal(text).1, "P0526", "{text}");
     }
 }
 
@@ -89,7 +90,7 @@ fn another_frame_among_the_comments_is_refused() {
             format!("UNITS/MM\n{}GOTO/1,2,3\n{}GOTO/4,5,6\nFINI\n", frame("0.0"), frame(x))
         };
         assert_eq!(program(&text("0.0")).locations.len(), 2);
-        assert!(refusal(text("100.0")).contains("changes what positions mean"));
+        assert_eq!(refusal(text("100.0")).1, "P0512");
     }
 }
 
@@ -182,8 +183,7 @@ fn what_could_be_a_motion_is_refused() {
     for word in words.split('|') {
         let text =
             format!("UNITS/MM\nLOADTL/1\nCUTTER/2,1\nGOTO/1,2,3\n{word}\nGOTO/4,5,6\nFINI\n");
-        let said = refusal(&text);
-        assert!(said.starts_with("part.cl:5: "), "{word}: {said}");
+        assert_eq!(refusal(&text).0, 5, "{word}");
     }
     for word in [
         "FEDRAT/100 GOTO/0,0,-5",
@@ -213,7 +213,7 @@ fn what_could_be_a_motion_is_refused() {
         let text = format!(
             "TOOL PATH/A,TOOL,D2\nTLDATA/MILL,2,1\nTOOLNO/1\nLOADTL/1\nCUTTER/2\nGOTO/1,2,3\n{word}\nFINI\n"
         );
-        assert!(refusal(&text).starts_with("part.cl:7: "), "{word}: {}", refusal(&text));
+        assert_eq!(refusal(&text).0, 7, "{word}");
     }
     for word in [
         "LOADTL/1 GOTO/0,0,-5",
@@ -224,16 +224,13 @@ fn what_could_be_a_motion_is_refused() {
         "TOOL PATH/A,GODLTA/0,0,-5",
         "TOOL PATH/A GOTO/0,0,-5,TOOL,B",
     ] {
-        let said = refusal(format!("FROM/0,0,50\n{word}\nGOTO/0,0,1\nFINI\n"));
-        assert!(said.starts_with("part.cl:2: ") && said.contains("another statement"), "{said}");
+        let text = format!("FROM/0,0,50\n{word}\nGOTO/0,0,1\nFINI\n");
+        assert_eq!(refusal(text), (2, "P0516"), "{word}");
     }
-    assert_eq!(
-        refusal("FROM/0,0,9\nGOTO/1,2,3\nLOADTL/2\nGOTO/4,5,6\nFINI"),
-        "part.cl:3: LOADTL comes after positions, which are of another tool: give one program per tool"
-    );
+    assert_eq!(refusal("FROM/0,0,9\nGOTO/1,2,3\nLOADTL/2\nGOTO/4,5,6\nFINI"), (3, "P0517"));
     for hidden in ["\u{c}", "\u{b}", "\u{85}", "\u{2028}", "\u{2029}", "\u{1b}"] {
-        let said = refusal(format!("GOTO/1,2,3\nFEDRAT/100 {hidden}GOTO/0,0,-5\nFINI"));
-        assert!(said.contains("part.cl:2: the character `\\u{"), "{said}");
+        let text = format!("GOTO/1,2,3\nFEDRAT/100 {hidden}GOTO/0,0,-5\nFINI");
+        assert_eq!(refusal(text), (2, "P0518"), "{hidden:?}");
     }
 }
 
@@ -244,11 +241,11 @@ fn the_end_of_a_path_of_nx_ends_a_program() {
     assert_eq!(program(&format!("{whole}\nFINI\n")).locations.len(), 2);
     assert_eq!(
         refusal(format!("{whole}\nTOOL PATH/C,TOOL,D\nGOTO/1,2,3\nEND-OF-PATH\n")),
-        "part.cl:5: another tool than that of line 1: give one program per tool"
+        (5, "P0519")
     );
     assert_eq!(
         refusal(format!("{whole}\nTOOL PATH/C,TOOL,B\nGOTO/1,2,3\nEND-OF-PATH\n")),
-        "part.cl:5: a statement follows END-OF-PATH: give one program per file"
+        (5, "P0530")
     );
 }
 
@@ -256,8 +253,9 @@ fn the_end_of_a_path_of_nx_ends_a_program() {
 type ToolLines = (Option<u32>, Vec<usize>);
 
 /// Returns the tools of a program, each with the lines of its positions.
-fn tools(text: &str) -> Result<Vec<ToolLines>, String> {
-    let programs = ClData::parse_tools(text, "part.cl").map_err(|error| error.to_string())?;
+fn tools(text: &str) -> Result<Vec<ToolLines>, (usize, &'static str)> {
+    let programs = ClData::parse_tools(text, "part.cl");
+    let programs = programs.map_err(|error| (line_of(&error), error.code()))?;
     let lines = |program: &ClData| program.locations.iter().map(|at| at.line).collect();
     Ok(programs.iter().map(|program| (program.tool, lines(program))).collect())
 }
@@ -272,10 +270,7 @@ fn a_tool_change_begins_another_program() {
     let programs = ClData::parse_tools(text, "part.cl").expect("three programs");
     assert!(programs.iter().all(|program| program.unit == Some(Unit::Inch)));
     assert_eq!(programs[2].locations[0].pose.axis(), Vector3::x());
-    assert_eq!(
-        refusal(text),
-        "part.cl:6: another tool than that of line 3: give one program per tool"
-    );
+    assert_eq!(refusal(text), (6, "P0519"));
 }
 
 #[test]
@@ -291,35 +286,22 @@ fn operations_of_nx_follow_one_another() {
     let again = operation("A", "BALL", "") + &operation("B", "BALL", "");
     assert_eq!(tools(&again), Ok(vec![(None, vec![3, 4, 8, 9])]));
     let unnumbered = operation("A", "BALL", "") + &operation("B", "MILL", "");
-    let message = "part.cl:6: another tool than that of line 1: give one program per tool";
-    assert_eq!(tools(&unnumbered), Err(message.to_owned()));
+    assert_eq!(tools(&unnumbered), Err((6, "P0519")));
     let unfinished = both.concat().replace("END-OF-PATH\nTOOL", "TOOL");
     let unfinished = unfinished.strip_suffix("END-OF-PATH\n").expect("the end");
-    assert!(tools(unfinished).is_err_and(|error| error.contains("without FINI")));
-    assert_eq!(
-        tools("LOADTL/1\nGOTO/1,2,3\nLOADTL/NEXT\nGOTO/1,2,3\nFINI"),
-        Err("part.cl:3: LOADTL/NEXT changes the tool, but has no number: write LOADTL/3".to_owned())
-    );
+    assert!(tools(unfinished).is_err_and(|(_, code)| code == "P0528"));
+    assert_eq!(tools("LOADTL/1\nGOTO/1,2,3\nLOADTL/NEXT\nGOTO/1,2,3\nFINI"), Err((3, "P0520")));
     assert!(tools("LOADTL/1\nGOTO/1,2,3\nLOADTL/2\nUNITS/MM\nGOTO/1,2,3\nFINI").is_err());
 }
 
 #[test]
 fn the_cutter_is_compared_with_the_tool() {
-    touchoff::tool! {
-        tool Ball "6 mm" {
-            units mm;
-            profile {
-                start (0, 0);
-                arc to (3, 3) center (0, 3) as ball cutting;
-                line to (3, 20), (0, 20) as shank;
-            }
-            niceness cutting: 1;
-        }
-    }
-    use touchoff::Tool as _;
+    let text = "tool Ball { units mm; profile { start (0, 0); arc to (3, 3) center (0, 3) as ball cutting; \
+                line to (3, 20), (0, 20) as shank; } niceness cutting: 1; }";
+    let ball = Interpreted::from_text("ball.tool", text).expect("a tool");
     let check = |cutter: &str, unit: Unit| {
         let text = format!("{cutter}\nGOTO/1,2,3\nGOTO/4,5,6\nFINI");
-        program(&text).check_cutter(Ball.info(), unit).map_err(|error| error.to_string())
+        program(&text).check_cutter(ball.info(), unit)
     };
     let mm = Unit::Millimetre;
     for same in [
@@ -331,112 +313,62 @@ fn the_cutter_is_compared_with_the_tool() {
         "UNITS/INCHES\nCUTTER/.23622,.11811",
         "PPRINT none",
     ] {
-        assert_eq!(check(same, mm), Ok(None), "{same}");
+        assert_eq!(check(same, mm).expect(same), None);
     }
-    assert_eq!(check("CUTTER/.23622,.11811", Unit::Inch), Ok(None));
+    assert_eq!(check("CUTTER/.23622,.11811", Unit::Inch).expect("the same"), None);
     for other in ["CUTTER/50", "CUTTER/6,0", "CUTTER/6,3,0,3,0,5", "UNITS/INCHES\nCUTTER/6,3"] {
         assert!(check(other, mm).is_err(), "{other}");
     }
-    assert_eq!(
-        check("CUTTER/50,1", mm),
-        Err("part.cl:1: CUTTER/50,1 is not `Ball`, which is CUTTER/6,3 in mm: give the tool that the \
-             program was made for, or remove the statement to try another"
-            .to_owned())
-    );
+    let error = check("CUTTER/50,1", mm).expect_err("another one");
+    let is_found = matches!(&error, ProgramError::Cutter { line: 1, stated, expected, .. } if (&**stated, &**expected) == ("50,1", "6,3"));
+    assert!(is_found, "{error}");
 }
 
 #[test]
 fn holds_the_program_to_the_part() {
     let program = program("\nUNITS/MMS\nGOTO/1,2,3\nFINI\n");
-    assert_eq!(
-        program.check_unit(Unit::Inch).expect_err("they differ").to_string(),
-        "part.cl:2: UNITS says mm, but the part is in inch: load the part in mm, or post the \
-         program in inch"
-    );
+    let error = program.check_unit(Unit::Inch).expect_err("they differ");
+    assert_eq!((line_of(&error), error.code()), (2, "P0605"), "{error}");
 }
 
+/// The words are those of the bodies that the sentences show.
 #[test]
-fn every_refusal_names_its_line_and_remedy() {
-    let moves = "moves the tool in a way that is not read: post the program as GOTO points";
-    let frame =
-        "changes what positions mean: post the program as GOTO points in the part's coordinates";
-    let unknown = "is not understood and could move the tool: post the program as GOTO points, or \
-                   remove the statement if it moves nothing";
-    let unfinished =
-        "the program stops here without FINI: post it again, or add FINI if this is the end";
-    let numbers = "numbers: write GOTO/x,y,z or GOTO/x,y,z,i,j,k";
-    let malformed = "is not understood: write GOTO/x,y,z,i,j,k, with nothing before it";
-    let infinite = "is not a finite number: correct it or remove the position";
-    for (body, message) in [
-        ("GODLTA/0,0,1\nFINI", format!("2: GODLTA {moves}")),
-        ("TLLFT, gofwd / L1,PAST,L2\nFINI", format!("2: TLLFT {moves}")),
-        ("GOTOX/1,2,3\nFINI", format!("2: `GOTOX` {unknown}")),
-        ("C1 = LINE/P1,P2\nFINI", format!("2: `C1 = LINE` {unknown}")),
-        (
-            "LOADTL/1\nGOTO/1,2,3\nLOADTL/2\nFINI",
-            "4: another tool than that of line 2: give one program per tool".to_owned(),
-        ),
-        (
-            "INSERT G0 Z-5\nFINI",
-            "2: INSERT writes to the control what may be a motion: post the program without it"
-                .to_owned(),
-        ),
-        ("L1) CYCLE/DRILL,5\nFINI", format!("2: CYCLE {moves}")),
-        ("MSYS/0,0,5,1,0,0,0,1,0\nFINI", format!("2: MSYS {frame}")),
-        ("0010 GOTO/1,2,3\nFINI", format!("2: `0010 GOTO/1,2,3` {malformed}")),
-        ("GOTO 1,2,3\nFINI", format!("2: `GOTO 1,2,3` {malformed}")),
-        ("GOTO/1,2\nFINI", format!("2: GOTO has 2 {numbers}")),
-        ("GOTO\nFINI", format!("2: GOTO has 0 {numbers}")),
-        ("GOTO/1,2,1e999\nFINI", format!("2: `1e999` {infinite}")),
-        ("GOTO/1,NaN,3\nFINI", format!("2: `NaN` {infinite}")),
-        (
-            "GOTO/P1\nFINI",
-            "2: `P1` is not a number: write a plain number with a decimal point".to_owned(),
-        ),
-        (
-            "GOTO/1,2,3,0,0,0\nFINI",
-            "2: the axis i,j,k is zero and points nowhere: give the unit vector from the tip \
-             to the spindle"
-                .to_owned(),
-        ),
-        (
-            "GOTO/1,2,3,0,3,4\nFINI",
-            "2: the axis has norm 5: give a unit vector (within 0.001 of 1)".to_owned(),
-        ),
-        (
-            "MULTAX/3\nFINI",
-            "2: MULTAX/3 is not understood: write MULTAX/ON or MULTAX/OFF".to_owned(),
-        ),
-        (
-            "UNITS/CM\nFINI",
-            "2: UNITS/CM is not supported: post the program in MM or INCHES".to_owned(),
-        ),
-        (
-            "UNITS/INCH\nFINI",
-            "2: UNITS changes from mm to inch: post the whole program in one unit".to_owned(),
-        ),
-        (
-            "GOTO/1,2,3\nFROM/4,5,6\nFINI",
-            "3: FROM after a position states where the tool is, or moves it there: write GOTO if it moves, or remove it"
-                .to_owned(),
-        ),
-        ("GOTO/1,2,3\n\n", format!("2: {unfinished}")),
-        ("GOTO/1,2,3\nGOTO/4,5", format!("3: {unfinished}")),
-        ("GOTO/1,2,3\nGOTO/4,5,6,0,0.7", format!("3: {unfinished}")),
-        ("GOTO/1,2,3,$\n0,0,1$", format!("2: {unfinished}")),
-        ("GOTO/1,2,3\nFIN", format!("3: `FIN` {unknown}")),
-        (
-            "GOTO/1,2,3\nFINI\n\nPPRINT BYE\nGOTO/1,2,3",
-            "6: a statement follows FINI: give one program per file".to_owned(),
-        ),
+fn every_refusal_names_its_line_and_word() {
+    for (body, line, code, word) in [
+        ("GODLTA/0,0,1\nFINI", 2, "P0510", "GODLTA"),
+        ("TLLFT, gofwd / L1,PAST,L2\nFINI", 2, "P0510", "TLLFT"),
+        ("GOTOX/1,2,3\nFINI", 2, "P0515", "`GOTOX`"),
+        ("C1 = LINE/P1,P2\nFINI", 2, "P0515", "`C1 = LINE`"),
+        ("LOADTL/1\nGOTO/1,2,3\nLOADTL/2\nFINI", 4, "P0519", "line 2"),
+        ("INSERT G0 Z-5\nFINI", 2, "P0514", "INSERT"),
+        ("L1) CYCLE/DRILL,5\nFINI", 2, "P0510", "CYCLE"),
+        ("MSYS/0,0,5,1,0,0,0,1,0\nFINI", 2, "P0512", "MSYS"),
+        ("0010 GOTO/1,2,3\nFINI", 2, "P0521", "`0010 GOTO/1,2,3`"),
+        ("GOTO 1,2,3\nFINI", 2, "P0521", "`GOTO 1,2,3`"),
+        ("GOTO/1,2\nFINI", 2, "P0509", "GOTO has 2 "),
+        ("GOTO\nFINI", 2, "P0509", "GOTO has 0 "),
+        ("GOTO/1,2,1e999\nFINI", 2, "P0506", "`1e999`"),
+        ("GOTO/1,NaN,3\nFINI", 2, "P0506", "`NaN`"),
+        ("GOTO/P1\nFINI", 2, "P0505", "`P1`"),
+        ("GOTO/1,2,3,0,0,0\nFINI", 2, "P0507", "i,j,k"),
+        ("GOTO/1,2,3,0,3,4\nFINI", 2, "P0508", "norm 5"),
+        ("MULTAX/3\nFINI", 2, "P0522", "MULTAX/3"),
+        ("UNITS/CM\nFINI", 2, "P0523", "UNITS/CM"),
+        ("UNITS/INCH\nFINI", 2, "P0524", "from mm to inch"),
+        ("GOTO/1,2,3\nFROM/4,5,6\nFINI", 3, "P0527", "FROM"),
+        ("GOTO/1,2,3\n\n", 2, "P0528", "FINI"),
+        ("GOTO/1,2,3\nGOTO/4,5", 3, "P0528", "FINI"),
+        ("GOTO/1,2,3\nGOTO/4,5,6,0,0.7", 3, "P0528", "FINI"),
+        ("GOTO/1,2,3,$\n0,0,1$", 2, "P0528", "FINI"),
+        ("GOTO/1,2,3\nFIN", 3, "P0515", "`FIN`"),
+        ("GOTO/1,2,3\nFINI\n\nPPRINT BYE\nGOTO/1,2,3", 6, "P0530", "FINI"),
     ] {
         let text = format!("UNITS/MM\n{body}");
-        assert_eq!(refusal(&text), format!("part.cl:{message}"), "{text:?}");
+        let error = ClData::parse(&text, "part.cl").expect_err(body);
+        assert_eq!((line_of(&error), error.code()), (line, code), "{text:?}: {error}");
+        assert!(error.to_string().contains(word), "{text:?}: {error}");
     }
-    assert_eq!(
-        refusal("GOTO/1,2,3\nUNITS/MM\nFINI"),
-        "part.cl:2: UNITS comes after the first position: state it before"
-    );
+    assert_eq!(refusal("GOTO/1,2,3\nUNITS/MM\nFINI"), (2, "P0525"));
 }
 
 /// No truncated file is taken for a whole one.

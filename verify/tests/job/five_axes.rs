@@ -1,8 +1,10 @@
 //! Rotary axes, tool centre point control and tilted planes.
 
-use super::{FANUC, HAAS, LINUXCNC, SIEMENS, Scene, program};
-use crate::bench::{stdout, touchoff};
-use touchoff_verify::gcode::{Choice, ControlRules, Rule};
+use crate::scene::{
+    ANY, CLEAN, FANUC, FINDINGS, HAAS, LINUXCNC, NONE, SIEMENS, Scene, native, program, rules,
+    straight,
+};
+use touchoff_verify::gcode::{Choice, Rule};
 
 /// An endless table turns by -330 or by +30 degrees; a post on it is at 180.
 #[test]
@@ -10,23 +12,22 @@ fn a_rotary_axis_counts_or_turns_the_shorter_way() {
     let blocks = "T1 M6\nS9000 M3\nG43 H1\nG0 A0. C345.\nG0 X20. Y0.\nZ5.\nG1 C15.\nG0 Z50.";
     let scene = Scene::new(blocks).placed().obstacle([-22.0, -2.0, -2.0], [-18.0, 2.0, 30.0]);
     let scene = scene.with("machine = \"A-C trunnion\"\nanyway = true");
-    scene.gives(&[], 1, &["the clamp", "under rotary = \"counts\""]);
-    scene.gives(&LINUXCNC, 1, &["the clamp"]);
-    scene.gives(&FANUC, 0, &[]);
+    scene.gives(ANY, FINDINGS, &["V0101 8 the clamp", "V0101 8 under rotary = \"counts\""]);
+    scene.gives(LINUXCNC, FINDINGS, &["V0101 8 the clamp"]);
+    scene.gives(FANUC, CLEAN, &[]);
     // Half a turn is as short either way.
     let half = Scene::new(&blocks.replace("C15.", "C165.")).placed();
     let half = half.with("machine = \"A-C trunnion\"");
-    half.gives(&FANUC, 2, &["half a turn"]);
+    half.gives(FANUC, NONE, &["V0411 8"]);
 }
 
 #[test]
 fn limits_of_rotary_axes_need_no_work_offset() {
     let blocks = "T1 M6\nS9000 M3\nG43 H1\nM428\nG0 X0. Y0. Z30. A0. C0.\nG1 A45.\nG1 A0.";
     let scene = Scene::new(blocks).with("machine = \"A-C trunnion\"\nanyway = true");
-    scene.gives(&LINUXCNC, 1, &["A goes to 45.0000°, beyond its limit of 30°"]);
-    let said =
-        ["the limits of X, Y and Z are not checked: state the origin of G54 in `work_offsets`"];
-    scene.gives(&LINUXCNC, 1, &said);
+    scene.gives(LINUXCNC, FINDINGS, &["V0108 7 A goes to 45.0000°, beyond its limit of 30°"]);
+    let said = ["V0309 `work_offsets`"];
+    scene.gives(LINUXCNC, FINDINGS, &said);
 }
 
 /// The shorter way holds for every stated angle: under G53, through G28, on an arc, and after a tilted plane.
@@ -38,21 +39,19 @@ fn the_shorter_way_holds_for_every_stated_angle() {
         let scene = Scene::new(&format!("{start}{turn}\nG43 H1 G0 Z50.")).placed();
         let scene =
             scene.obstacle(post.0, post.1).with("machine = \"A-C trunnion\"\nanyway = true");
-        scene.gives(&FANUC, 1, &["the clamp"]);
-        scene.gives(&[], 1, &["the clamp"]);
+        scene.gives(FANUC, FINDINGS, &["V01 the clamp"]);
+        scene.gives(ANY, FINDINGS, &["V01 the clamp"]);
     }
     let tilted = "T1 M6\nS9000 M3\nG43 H1\nG0 X20. Y0. Z50. A0. C-15.\nG68.2 X0. Y0. Z0. I165. J20. K0.\nG53.1\nG69\n\
                   G0 A0.\nG0 C345.\nG0 X20. Y0. Z5.\nG0 C15.\nG0 Z50.";
     let scene = Scene::new(tilted).placed().obstacle(post.0, post.1);
     let scene = scene.with("machine = \"A-C trunnion\"\nanyway = true");
-    let fanuc = ControlRules::named("fanuc").expect("a control");
-    let stated = fanuc
+    let stated = rules("fanuc")
         .with(Rule::TcpStart, Choice::TableAtZero)
         .with(Rule::ReferenceReturn, Choice::KeepsLength)
         .with(Rule::LengthChange, Choice::WithNextZ)
         .with(Rule::CycleRepeats, Choice::RepeatsByL);
-    let control = scene.bench.write("fanuc.toml", stated.to_toml());
-    scene.gives(&["--control", &control], 1, &["the clamp"]);
+    scene.gives_by(stated, FINDINGS, &["V01 the clamp"]);
 }
 
 /// Endless axes of Siemens turn between angles from 0 to 360.
@@ -62,9 +61,9 @@ fn a_rotary_axis_turns_within_a_turn() {
         "T1 M6\nS9000 M3\nG43 H1\nG0 X20. Y0. Z50. A0. C0.\nG91 C450.\nG90 Z5.\nG1 C280.\nG0 Z50.";
     let scene = Scene::new(blocks).placed().obstacle([-22.0, -2.0, -2.0], [-18.0, 2.0, 30.0]);
     let scene = scene.with("machine = \"A-C trunnion\"\nanyway = true");
-    scene.gives_natively(1, &["the clamp"]);
-    scene.gives(&LINUXCNC, 0, &[]);
-    scene.gives(&[], 1, &["under rotary = \"within a turn\""]);
+    scene.gives_natively(FINDINGS, &["V0101 8 the clamp"]);
+    scene.gives(LINUXCNC, CLEAN, &[]);
+    scene.gives(ANY, FINDINGS, &["V0101 8 under rotary = \"within a turn\""]);
 }
 
 /// Fanuc takes the part as it stands where tool centre point control begins.
@@ -76,29 +75,29 @@ fn tool_centre_point_control_begins_with_the_table_at_zero() {
         let scene = Scene::new(blocks).placed();
         scene.with("machine = \"A-C trunnion\"\nanyway = true")
     };
-    scene(&turned).gives(&FANUC, 2, &["`tcp_start`"]);
-    scene(&turned).gives(&[], 2, &["`tcp_start`"]);
-    scene(&turned.replace("G43.4 H1", "G43 H1\nM428")).gives(&LINUXCNC, 0, &[]);
+    scene(&turned).gives(FANUC, NONE, &["V0415 `tcp_start`"]);
+    scene(&turned).gives(ANY, NONE, &["V0415 `tcp_start`"]);
+    scene(&turned.replace("G43.4 H1", "G43 H1\nM428")).gives(LINUXCNC, CLEAN, &[]);
     let at_zero = blocks.replace("G43.4 H1", "G0 A0. C0.\nG43.4 H1");
-    scene(&at_zero).gives(&FANUC, 0, &[]);
+    scene(&at_zero).gives(FANUC, CLEAN, &[]);
     let in_its_block = at_zero.replace("G43.4 H1", "G43.4 H1 C90.");
-    scene(&in_its_block).gives(&FANUC, 2, &["G43.4 while its block turns the axes"]);
+    scene(&in_its_block).gives(FANUC, NONE, &["P0120 5 G43.4"]);
     // It begins anew without a motion between, and so does a plane.
     let anew = format!("{at_zero}\nG1 C40.\nG49\nG43.4 H1\nG0 X-6. Y0. Z50.\nG49");
-    scene(&anew).gives(&FANUC, 0, &["1 motion not checked", "`tcp_start`"]);
+    scene(&anew).gives(FANUC, CLEAN, &["V0415 12", "V0415 `tcp_start`"]);
     let plane = "T1 M6\nS9000 M3\nG0 A0. C90.\nG43 H1 Z60.\nG68.2 X0 Y0 Z0 I0 J0 K0\nG53.1\nG0 X-6. Y0. Z20.";
-    scene(plane).gives(&FANUC, 2, &["`tcp_start`"]);
-    scene(&plane.replace("C90", "C0")).gives(&FANUC, 0, &[]);
-    scene(&format!("{at_zero}\nG49 G0 X-7.")).gives(&FANUC, 2, &["write it in a block of its own"]);
+    scene(plane).gives(FANUC, NONE, &["V0415 `tcp_start`"]);
+    scene(&plane.replace("C90", "C0")).gives(FANUC, CLEAN, &[]);
+    scene(&format!("{at_zero}\nG49 G0 X-7.")).gives(FANUC, NONE, &["P0120 9 G49"]);
     // An offset of the table turns the part, or does not.
     let mut offset = scene(&at_zero);
     offset.job = offset.job.replace("-400]", "-400, 0, 0, 30]");
-    offset.gives(&FANUC, 0, &[]);
-    for control in [&HAAS[..], &[]] {
-        offset.gives(control, 2, &["G54 turns the table"]);
+    offset.gives(FANUC, CLEAN, &[]);
+    for control in [HAAS, ANY] {
+        offset.gives(control, NONE, &["K0808 G54"]);
     }
-    offset.bench.write("a.nc", program(&at_zero.replace("G43.4 H1", "G43 H1\nM428")));
-    offset.gives(&LINUXCNC, 2, &["G54 turns the table"]);
+    offset.text = program(&at_zero.replace("G43.4 H1", "G43 H1\nM428"));
+    offset.gives(LINUXCNC, NONE, &["K0808 G54"]);
 }
 
 /// A control computes tips with the length offset that is in force, also under tool centre point control.
@@ -109,26 +108,26 @@ fn tool_centre_point_control_needs_a_length_offset() {
         let scene = Scene::new(&format!("T1 M6\nS9000 M3\nG0 A0. C0.\n{blocks}")).placed();
         scene.with("machine = \"A-C trunnion\"\nanyway = true")
     };
-    let word = ["and no length offset"];
+    let word = ["V0416"];
     for (control, start) in [
-        (&FANUC, "G43.4 H0"),
-        (&FANUC, "G43.4"),
-        (&FANUC, "G43.5 H0"),
-        (&FANUC, "G68.2 X0 Y0 Z0 I0 J0 K0\nG53.1"),
-        (&HAAS, "G234 H0"),
-        (&LINUXCNC, "M428"),
-        (&LINUXCNC, "G43 H1\nM428\nG49"),
+        (FANUC, "G43.4 H0"),
+        (FANUC, "G43.4"),
+        (FANUC, "G43.5 H0"),
+        (FANUC, "G68.2 X0 Y0 Z0 I0 J0 K0\nG53.1"),
+        (HAAS, "G234 H0"),
+        (LINUXCNC, "M428"),
+        (LINUXCNC, "G43 H1\nM428\nG49"),
     ] {
-        scene(&format!("{start}\n{moves}")).gives(control, 2, &word);
+        scene(&format!("{start}\n{moves}")).gives(control, NONE, &word);
     }
     let unknown = Scene::new(&format!("T1 M6\nS9000 M3\nG0 A0. C0.\nM428\n{moves}"));
-    unknown.with("machine = \"A-C trunnion\"").gives(&LINUXCNC, 2, &word);
+    unknown.with("machine = \"A-C trunnion\"").gives(LINUXCNC, NONE, &word);
     for (control, start) in [
-        (&FANUC, "G43.4 H1"),
-        (&FANUC, "G43 H1 Z60.\nG68.2 X0 Y0 Z0 I0 J0 K0\nG53.1"),
-        (&LINUXCNC, "G43 H1\nM428"),
+        (FANUC, "G43.4 H1"),
+        (FANUC, "G43 H1 Z60.\nG68.2 X0 Y0 Z0 I0 J0 K0\nG53.1"),
+        (LINUXCNC, "G43 H1\nM428"),
     ] {
-        scene(&format!("{start}\n{moves}")).gives(control, 0, &[]);
+        scene(&format!("{start}\n{moves}")).gives(control, CLEAN, &[]);
     }
 }
 
@@ -136,12 +135,10 @@ fn tool_centre_point_control_needs_a_length_offset() {
 #[test]
 fn an_orientation_under_traori_is_stated() {
     let blocks = "T1 M6\nS9000 M3\nG0 A0. C0.\nTRAORI\nG54\nG0 X-6. Y0. Z20.\nG1 X-4. Z1.\nG0 Z20. A-10. C20.\nTRAFOOF\nG54";
-    let scene = Scene::new(blocks).placed().with("machine = \"mine.toml\"");
-    let machine = stdout(&touchoff(&["machines", "A-C trunnion"]));
-    let machine = machine.replace("name = ", "tool_change = \"stays\"\nname = ");
-    scene.bench.write("mine.toml", machine);
-    scene.gives(&SIEMENS, 2, &["ORIVECT", "great circle"]);
-    scene.gives_natively(0, &[]);
+    let scene = Scene::new(blocks).placed();
+    let scene = scene.on("A-C trunnion", "name = ", "tool_change = \"stays\"\nname = ");
+    scene.gives(SIEMENS, NONE, &["V0414 9 ORIVECT", "V0414 9"]);
+    scene.gives_natively(CLEAN, &[]);
 }
 
 /// Posts of Autodesk write no work offset after TRAORI.
@@ -150,10 +147,10 @@ fn the_work_offset_after_traori_is_deselected_or_kept() {
     let blocks = "T1 D1 M6\nS9000 M3\nG0 X-6. Y0. Z20. A0. C0.\nTRAORI\nX-5.\nG1 X-4. Z1.\nG0 Z20.\nTRAFOOF\nG0 Z60.";
     let scene = Scene::new(blocks).placed();
     let scene = scene.with("machine = \"A-C trunnion\"\nanyway = true");
-    scene.gives_after_traori(Choice::KeepsOffset, 0, &[]);
-    let needed = "a.nc:6: a position needs a work offset (G54) before, since TRAORI";
-    scene.gives_after_traori(Choice::DeselectsOffset, 2, &[needed]);
-    scene.gives(&SIEMENS, 2, &[needed, "traori_offset"]);
+    scene.gives_by(native(Choice::KeepsOffset), CLEAN, &[]);
+    let needed = "P0119 6 since TRAORI";
+    scene.gives_by(native(Choice::DeselectsOffset), NONE, &[needed]);
+    scene.gives(SIEMENS, NONE, &[needed, "P0119 6 traori_offset"]);
 }
 
 /// A rotary axis without limits returns in a direction of the machine's.
@@ -161,8 +158,8 @@ fn the_work_offset_after_traori_is_deselected_or_kept() {
 fn a_return_of_a_rotary_axis_is_not_the_shorter_way() {
     let blocks = "G43 H1 G0 X-6. Y0. Z20. A0. C10.\nG1 X-4. Z1.\nG0 Z50.\nG91 G28 C0.\nG90";
     let scene = Scene::new(blocks).placed().with("machine = \"A-C trunnion\"");
-    scene.gives(&FANUC, 2, &["in a direction of the machine's"]);
-    scene.gives(&LINUXCNC, 0, &[]);
+    scene.gives(FANUC, NONE, &["V0413 5"]);
+    scene.gives(LINUXCNC, CLEAN, &[]);
 }
 
 /// Two positions of the rotary axes align the tool, and the nearer of one axis is not that of the other.
@@ -177,8 +174,8 @@ fn an_alignment_that_controls_choose_in_different_ways_is_not_followed() {
         let scene = Scene::new(blocks).placed();
         scene.with("machine = \"A-C trunnion\"")
     };
-    scene(&blocks("A5. C0.")).gives_straight(2, &["two positions of the rotary axes"]);
-    scene(&blocks("A0. C0.")).gives_straight(0, &[]);
+    scene(&blocks("A5. C0.")).gives_by(straight(), NONE, &["V0412 7"]);
+    scene(&blocks("A0. C0.")).gives_by(straight(), CLEAN, &[]);
 }
 
 /// In an aligned plane, too, each axis moves by itself.
@@ -188,8 +185,8 @@ fn rapid_traverse_in_a_tilted_plane_is_any_dog_leg() {
                   G0 X-10. Y-10. Z1.\nX10. Y10. Z1.\nG1 Y12.\nG0 Z50.\nG69";
     let scene = Scene::new(blocks).placed().obstacle([4.0, -9.0, -2.0], [9.0, -4.0, 5.0]);
     let scene = scene.with("machine = \"A-C trunnion\"\nanyway = true");
-    scene.gives(&FANUC, 1, &["the clamp", "at some rates of its axes"]);
-    scene.gives_straight(0, &[]);
+    scene.gives(FANUC, FINDINGS, &["V0103 9 the clamp", "V0103 9 at some rates of its axes"]);
+    scene.gives_by(straight(), CLEAN, &[]);
 }
 
 /// An axis that the program has not stated leaves all motions between stated positions unknown.
@@ -198,32 +195,25 @@ fn an_axis_that_is_not_stated_is_named() {
     let blocks =
         "T1 M6\nS9000 M3\nG43 H1\nG0 X-6. Y0. Z20.\nG0 Z5.\nG0 X6.\nG0 A0. C0.\nG1 X4. Z1.";
     let scene = Scene::new(blocks).placed().with("machine = \"A-C trunnion\"");
-    scene.gives(
-        &LINUXCNC,
-        2,
-        &["2 motions not checked, first at line 6: the position of another axis is not stated"],
-    );
+    scene.gives(LINUXCNC, NONE, &["V0402 6"]);
     let stated = Scene::new(&blocks.replace("Y0. Z20.", "Y0. Z20. A0. C0.")).placed();
-    stated.with("machine = \"A-C trunnion\"").gives(&LINUXCNC, 0, &[]);
+    stated.with("machine = \"A-C trunnion\"").gives(LINUXCNC, CLEAN, &[]);
 }
 
 #[test]
 fn a_length_that_counts_always_is_along_z_and_returns_with_d1() {
     let start = "G21 G90 G54 S9000 M3 F100.\nT1 M6\nS9000 M3\nG0 X-6. Y0. Z20.\n";
     let edge = Scene::of(&format!("{start}D0\nX-5.\nD1 Z20.\nG1 X4. Z1.\nM30\n")).placed();
-    edge.with("anyway = true").gives_natively(0, &[]);
+    edge.with("anyway = true").gives_natively(CLEAN, &[]);
     let plane = Scene::of(&format!("{start}G18\nG0 Z21.\nM30\n")).placed();
-    plane.gives_natively(
-        2,
-        &["G18 or G19 is in force and the length of the tool counts without G43"],
-    );
+    plane.gives_natively(NONE, &["P0120 6 G18"]);
     // An end near the start turns the arc of a control that moves its centre.
     let arc = Scene::of(&format!("{start}G0 X30.\nG3 X30.001 Y-0.1 I-30. J0.\nM30\n")).placed();
-    arc.gives_natively(2, &["the radii of an arc differ"]);
+    arc.gives_natively(NONE, &["V0514 6"]);
     // The head of a program is that of one control.
     let head =
         "%PLATE G71 *\nN10 G90 G54 S9000 M3 F100.\nN20 G0 X-6. Y0. Z20.\nN99999999 %PLATE G71 *\n";
-    Scene::of(head).gives(&[], 2, &["G54 is another word in DIN/ISO programs of Heidenhain"]);
+    Scene::of(head).gives(ANY, NONE, &["P0115 2 G54"]);
 }
 
 /// Motions in a plane whose tool is not along it, and the way in which the axes turn there.
@@ -235,21 +225,24 @@ fn a_tilted_plane_is_aligned_in_rapid_traverse_before_its_first_position() {
         scene.with("machine = \"A-C trunnion\"\nanyway = true")
     };
     let plane = "G68.2 X0 Y0 Z0 I0 J20. K0";
-    scene(&format!("{plane}\nG53.1\nX-6. Y0. Z30.")).gives(&FANUC, 0, &[]);
-    let not_aligned = "a length offset is in force in a tilted plane that is not aligned";
-    scene(&format!("{plane}\nX-6. Y0. Z30.")).gives(&FANUC, 2, &[not_aligned]);
+    scene(&format!("{plane}\nG53.1\nX-6. Y0. Z30.")).gives(FANUC, CLEAN, &[]);
+    let not_aligned = "P0120 7 a length offset is in force in a tilted plane that is not aligned";
+    scene(&format!("{plane}\nX-6. Y0. Z30.")).gives(FANUC, NONE, &[not_aligned]);
     let alone = scene(&format!("{plane}\nG53.1\nX-6. Y0. Z30.\nG69\nX-7."));
-    alone.gives(&FANUC, 2, &["the first after G68 or G69, and not of both axes"]);
+    alone.gives(FANUC, NONE, &["P0120 10 G68"]);
     let began = "G1 A-20. F500.\nG43.4 H1 Z60.";
-    scene(began)
-        .gives_straight(2, &["the first of tool centre point control that began with turned axes"]);
-    scene("G234 X-6. Y0. Z30.").gives(&HAAS, 2, &["G234 needs H in its block"]);
+    scene(began).gives_by(
+        straight(),
+        NONE,
+        &["P0120 7 the first of tool centre point control that began with turned axes"],
+    );
+    scene("G234 X-6. Y0. Z30.").gives(HAAS, NONE, &["P0119 6 G234"]);
     let again = "G43.4 H1\nX-6. Y0. Z30.\nG43 H1";
-    scene(again).gives(&FANUC, 2, &["G43 while tool centre point control is on"]);
+    scene(again).gives(FANUC, NONE, &["P0120 8 G43"]);
     let tie = "G68.2 X0 Y0 Z0 I90. J25. K0\nG53.1\nX-6. Y0. Z30.\nG69";
-    scene(tie).gives(&FANUC, 2, &["two positions of the rotary axes give the tool axis"]);
-    let in_feed = "a motion at feed rate is in force, at which Fanuc turns the axes";
-    scene(&format!("G1 Z50.\n{plane}\nG53.1")).gives(&FANUC, 2, &[in_feed]);
+    scene(tie).gives(FANUC, NONE, &["V0412 7"]);
+    let in_feed = "P0120 8 G53.1";
+    scene(&format!("G1 Z50.\n{plane}\nG53.1")).gives(FANUC, NONE, &[in_feed]);
 }
 
 /// Words whose values are positions of the work offset that TRAFOOF has deselected.
@@ -259,21 +252,19 @@ fn words_after_trafoof_need_a_work_offset_as_positions_do() {
         let start = "T1 D1 M6\nS9000 M3\nG0 X-6. Y0. Z20.\nTRAORI\nG54\nX-5.\nTRAFOOF";
         let scene = Scene::new(&format!("{start}\n{word}\nG54")).placed();
         let scene = scene.with("machine = \"A-C trunnion\"\nanyway = true");
-        scene.gives_natively(2, &["since TRAORI and TRAFOOF deselect it"]);
+        scene.gives_natively(NONE, &["P0119 9 since TRAORI and TRAFOOF deselect it"]);
     }
     // Parameters are no comment.
-    for (word, status) in [("TRAORI(1)", 0), ("TRAORI(1,0,0,1,30,0)", 2), ("TRAORI(2)", 2)] {
+    for (word, verdict) in
+        [("TRAORI(1)", CLEAN), ("TRAORI(1,0,0,1,30,0)", NONE), ("TRAORI(2)", NONE)]
+    {
         let blocks = format!(
             "T1 D1 M6\nS9000 M3\nG0 X-6. Y0. Z20. A0. C0.\n{word}\nG54\nX-5.\nTRAFOOF\nG54\nG0 Z60."
         );
         let scene = Scene::new(&blocks).placed();
-        scene.with("machine = \"A-C trunnion\"\nanyway = true").gives_natively(status, &[]);
+        scene.with("machine = \"A-C trunnion\"\nanyway = true").gives_natively(verdict, &[]);
     }
     let blocks = "T1 D1 M6\nS9000 M3\nG0 X-6. Y0. Z20. A0. C0.\nTRAORI\nG54\nG18 G0 X-5.";
     let scene = Scene::new(blocks).placed().with("machine = \"A-C trunnion\"\nanyway = true");
-    scene.gives(
-        &SIEMENS,
-        2,
-        &["G18 or G19 is in force and the length of the tool counts without G43"],
-    );
+    scene.gives(SIEMENS, NONE, &["P0120 7 G18"]);
 }

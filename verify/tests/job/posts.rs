@@ -3,8 +3,9 @@
 //! A ball end mill with a radius of 1 mm passes over the block at z = 0.2, and back 0.3 mm deep in its top. Another one with a radius of
 //! 2 mm drills 0.5 mm deep. The depth of a tip in a plane is its distance from it, and times are lengths over feeds.
 
-use crate::bench::{Bench, TOOL, findings, objects, stderr, stdout, touchoff};
-use serde_json::Value;
+use crate::scene::{FINDINGS, Scene, rules};
+use touchoff_verify::FindingKind;
+use touchoff_verify::job::{FindingDetail, FindingRule};
 
 /// A program as a postprocessor writes it, and the beginning of its blocks that cut into the block.
 struct Post<'a> {
@@ -47,52 +48,59 @@ const POSTS: [Post<'static>; 5] = [
     Post { control: "heidenhain", file: "plate.h", text: HEIDENHAIN, gouges: ["11 L", "18 CYCL"] },
 ];
 
+const BALL_4: &str = "tool My {
+    units mm;
+    profile { start (0, 0); arc to (2, 2) center (0, 2) as ball cutting; line to (2, 20), (0, 20) as shank; }
+    niceness cutting: 1;
+}";
+
 #[test]
 fn a_job_posted_for_each_control_has_the_same_findings() {
     for Post { control, file, text, gouges } in POSTS {
-        let bench = Bench::new();
-        bench.write("ball4.tool", TOOL);
-        bench.write(file, text);
-        let machine = stdout(&touchoff(&["machines", "3-axis"]));
-        let machine = machine.replace("name = ", "tool_change = { Z = 0 }\nname = ");
-        bench.write("mine.toml", machine);
-        let job = bench.write(
-            "job.toml",
-            format!(
-                "part = \"block.stl\"\nunit = \"mm\"\nprogram = \"{file}\"\nmachine = \"mine.toml\"\ncontrol = \"{control}\"\n\
-                 [work_offsets]\nG54 = [0, 0, -400]\n[tool.1]\ntool = \"D2Ball\"\nname = \"BALL 2\"\nlength = 50\n[tool.2]\n\
-                 tool = \"ball4.tool\"\nname = \"BALL 4\"\nlength = 60\n"
-            ),
-        );
-        let output = touchoff(&["verify", &job, "--json"]);
-        let said = stderr(&output);
-        assert_eq!(output.status.code(), Some(1), "{control}: {said}");
-        // Nothing is left open but what is said.
-        assert!(!said.contains("not verified"), "{control}: {said}");
-        let found = findings(&output);
-        assert_eq!(found.len(), 2, "{control}: {found:?}");
+        let mut scene = Scene::of(text).with_file("ball4.tool", BALL_4);
+        scene.file = file;
+        scene.job = scene.job.replace("LENGTH", "name = \"BALL 2\"\nlength = 50")
+            + "[tool.2]\ntool = \"ball4.tool\"\nname = \"BALL 4\"\nlength = 60\n[work_offsets]\nG54 = [0, 0, -400]\n";
+        let scene = scene.on("3-axis", "name = ", "tool_change = { Z = 0 }\nname = ");
         let line_of = |begin: &str| {
             let line = text.lines().position(|line| line.starts_with(begin));
             1 + line.expect("a block")
         };
-        // The deeper one comes first.
-        for (row, (tool, depth, begin)) in
-            found.iter().zip([(2, 0.5, gouges[1]), (1, 0.3, gouges[0])])
-        {
-            assert_eq!(row["kind"], "deep", "{control}: {row}");
-            assert_eq!(row["surface"], "ball", "{control}: {row}");
-            assert_eq!(row["tool_number"], tool, "{control}: {row}");
-            assert_eq!(row["line"], line_of(begin), "{control}: {row}");
-            let [low, high] = [0, 1].map(|k| row["depth"][k].as_f64().expect("a number"));
-            assert!(low <= depth + 1e-6 && depth <= high + 1e-3, "{control}: {row}");
-            assert!(high - low < 1e-3, "{control}: {row}");
-        }
-        let times: Vec<Value> =
-            objects(&output).into_iter().filter(|row| row["kind"] == "cycle-time").collect();
-        for (tool, seconds) in [(1, 60.0 * (4.8 / 500.0 + 24.5 / 200.0)), (2, 60.0 * 2.5 / 100.0)] {
-            let time = times.iter().find(|row| row["tool_number"] == tool).expect("a time");
-            let feed = time["feed_s"].as_f64().expect("a number");
-            assert!((feed - seconds).abs() < 1e-9, "{control}: {time}");
-        }
+        let compared = scene.with_report(rules(control), |report| {
+            // Nothing is left open but what is said.
+            assert_eq!((report.verdict(), report.refusals()), (FINDINGS, Vec::new()), "{control}");
+            // The deeper one comes first.
+            let expected = [(2, 0.5, gouges[1]), (1, 0.3, gouges[0])];
+            assert_eq!(report.findings().len(), expected.len(), "{control}");
+            for (finding, (number, depth, begin)) in report.findings().iter().zip(expected) {
+                assert_eq!(
+                    (finding.rule, finding.line),
+                    (FindingRule::Deep, line_of(begin)),
+                    "{control}: {finding}"
+                );
+                let FindingDetail::Surface { pair, groups, .. } = &finding.detail else {
+                    panic!("{control}: {finding}");
+                };
+                let pair = &report.pairs[*pair];
+                let FindingKind::Deep { surface, depth: found, .. } = groups[0].worst.kind else {
+                    panic!("{control}: {finding}");
+                };
+                assert_eq!(report.tool(pair).and_then(|tool| tool.number()), Some(number));
+                assert_eq!(&*report.shape(pair).info().surface(surface).name, "ball");
+                assert!(
+                    found.low <= depth + 1e-6 && depth <= found.high + 1e-3,
+                    "{control}: {finding}"
+                );
+                assert!(found.high - found.low < 1e-3, "{control}: {finding}");
+            }
+            let times = report.cycle_times();
+            for (tool, seconds) in
+                [(1, 60.0 * (4.8 / 500.0 + 24.5 / 200.0)), (2, 60.0 * 2.5 / 100.0)]
+            {
+                let time = times.iter().find(|time| time.tool == Some(tool)).expect("a time");
+                assert!((time.feed - seconds).abs() < 1e-9, "{control}: {time:?}");
+            }
+        });
+        compared.expect(control);
     }
 }

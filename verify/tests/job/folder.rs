@@ -1,0 +1,373 @@
+//! Jobs that name other files: further parts, earlier set-ups, machines with bodies.
+
+use crate::scene::{CLEAN, Checked, FINDINGS, NONE};
+use nalgebra::Point3;
+use std::path::PathBuf;
+use tempfile::TempDir;
+use touchoff::mesh::shapes;
+use touchoff::tool::{Interpreted, ToolError};
+use touchoff::{Mesh, Tool, Unit};
+use touchoff_verify::job::{FindingDetail, FindingRule, JobInputs};
+use touchoff_verify::machine::Machine;
+use touchoff_verify::{FindingKind, JobError, JobFile, JobReport, Verdict};
+
+/// A tool of a job.
+struct Loaded(Interpreted);
+
+impl AsRef<dyn Tool + 'static> for Loaded {
+    fn as_ref(&self) -> &(dyn Tool + 'static) {
+        &self.0
+    }
+}
+
+/// A reason for which a job and its files are not read.
+#[derive(Debug, thiserror::Error)]
+enum ReadError {
+    #[error(transparent)]
+    Job(#[from] JobError),
+    #[error(transparent)]
+    Tool(#[from] ToolError),
+}
+
+/// A folder with the files of a job.
+struct Folder(TempDir);
+
+impl Folder {
+    fn new() -> Folder {
+        Folder(tempfile::tempdir().expect("a folder"))
+    }
+
+    fn place(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    fn write(&self, name: &str, content: impl AsRef<[u8]>) {
+        std::fs::write(self.place(name), content).expect("a writable folder");
+    }
+
+    fn cuboid(&self, name: &str, low: [f64; 3], high: [f64; 3]) {
+        let mesh = shapes::cuboid(Point3::from(low), Point3::from(high), Unit::Millimetre);
+        self.mesh(name, &mesh.expect("a cuboid"));
+    }
+
+    fn mesh(&self, name: &str, mesh: &Mesh) {
+        let mut bytes = Vec::new();
+        mesh.write_stl(&mut bytes).expect("memory");
+        self.write(name, bytes);
+    }
+
+    /// Checks a job that stands in this folder, and hands on its report.
+    fn with_report<T>(
+        &self,
+        job: &str,
+        found: impl FnOnce(&JobReport<'_>) -> T,
+    ) -> Result<T, ReadError> {
+        self.write("job.toml", job);
+        let file = JobFile::read(&self.place("job.toml"))?;
+        let inputs = JobInputs::read::<ReadError>(file, |named| {
+            Ok(Loaded(Interpreted::load(&named.name)?))
+        })?;
+        for (named, tool) in &inputs.tools {
+            let info = tool.0.info();
+            inputs
+                .program
+                .check_tool(named.motions, info, inputs.file.unit)
+                .map_err(JobError::from)?;
+        }
+        let job = inputs.job();
+        let report = job.check(&|_| ())?;
+        Ok(found(&report))
+    }
+
+    fn check(&self, job: &str) -> Checked {
+        match self.with_report(job, Checked::of) {
+            Ok(checked) => checked,
+            Err(ReadError::Job(error)) => Checked::refused(&error),
+            Err(error) => panic!("{error}\n{job}"),
+        }
+    }
+
+    #[track_caller]
+    fn gives(&self, job: &str, verdict: Verdict, patterns: &[&str]) {
+        self.check(job).assert(verdict, patterns, job);
+    }
+
+    /// Asserts the code of a job that is refused after a change, and a word of its sentence.
+    #[track_caller]
+    fn refuses(&self, job: &str, [from, to]: [&str; 2], pattern: &str) {
+        assert!(job.contains(from), "{from}");
+        self.gives(&job.replace(from, to), NONE, &[pattern]);
+    }
+}
+
+const MILL: &str = "tool Mill10 \"10 mm end mill\" { units mm; profile { start (0, 0); line to (5, 0) as face cutting; \
+                    line to (5, 22) as flute cutting; line to (5, 60), (0, 60) as shank; } niceness cutting: 1; }";
+
+/// Two parts on one table: each is checked where it stands, with the motions of the whole program.
+#[test]
+fn a_job_has_a_part_per_work_offset() {
+    let folder = Folder::new();
+    folder.cuboid("plate.stl", [-20.0, -20.0, -10.0], [20.0, 20.0, 0.0]);
+    folder.cuboid("bar.stl", [-20.0, -5.0, -10.0], [20.0, 5.0, 4.0]);
+    folder.write("mill10.tool", MILL);
+    let program = |height: f64, end: &str| {
+        let text = format!(
+            "G21 G90 G54 G94 F300.\nT1 M6\nS900 M3\nG0 X-30. Y0.\nG43 H1 Z20.\nZ0.\nG1 X30.\nG0 Z20.\n\
+             G55 X-30. Y0.\nZ{height}\nG1 X30.\nG0 Z20.\nG54 X0.\n{end}M30\n"
+        );
+        folder.write("two.nc", text);
+    };
+    let text = "part = \"plate.stl\"\nunit = \"mm\"\nprogram = \"two.nc\"\ncontrol = \"linuxcnc\"\n\
+                [work_offsets]\nG54 = [0, 0, -300]\nG55 = [100, 0, -300]\n[tool.1]\ntool = \"mill10.tool\"\nlength = 60\n\
+                [[other_part]]\nwork_offset = \"G55\"\nmesh = \"bar.stl\"\n";
+    program(4.0, "");
+    folder.gives(text, CLEAN, &[]);
+    let summaries = folder.with_report(text, |report| report.summaries()).expect("a report");
+    let is_other = |summary: &String| summary.starts_with("T1 at the part at G55: no findings");
+    assert!(summaries.iter().any(is_other), "{summaries:?}");
+    // Without it nothing is near under G55, and a copy of the plate is lower.
+    let (alone, _) = text.split_once("[[other_part]]").expect("its start");
+    folder.gives(alone, NONE, &["V0603"]);
+    program(3.5, "");
+    folder.gives(text, FINDINGS, &["V0101 11 T1 face is 0.5000 mm deep in the part at G55 at ("]);
+    folder.gives(&text.replace("mesh = \"bar.stl\"\n", ""), CLEAN, &[]);
+    // A motion under G54 that runs into the other part.
+    program(4.0, "Z2.\nX100.\nZ20.\n");
+    let named = format!("{text}name = \"the bar\"\n");
+    folder.gives(&named, FINDINGS, &["V01 15 the bar", "V01 15 in rapid traverse"]);
+
+    for (change, pattern) in [
+        (["work_offset = \"G55\"", "work_offset = \"G54\""], "J0129"),
+        (["work_offset = \"G55\"", "work_offset = \"G56\""], "J0130"),
+        (["G55 = [100, 0, -300]", "G55 = [100, 0, -300, 5]"], "J0131"),
+        (["bar.stl", "none.stl"], "J0108 none.stl"),
+        (["mesh = ", "meshes = "], "J0201 `meshes`"),
+    ] {
+        folder.refuses(text, change, pattern);
+    }
+}
+
+/// A job of two set-ups: the first cuts one half of a block away, and the second has the other half, turned over about x.
+#[test]
+fn a_stock_is_what_an_earlier_set_up_leaves() {
+    let folder = Folder::new();
+    folder.cuboid("op10.stl", [-20.0, -20.0, -20.0], [20.0, -2.0, 0.0]);
+    folder.cuboid("op20.stl", [-20.0, 2.0, -20.0], [20.0, 20.0, 0.0]);
+    folder.write("mill10.tool", MILL);
+    let start = "G21 G90 G54 G94 F300.\nT1 M6\nS900 M3\nG0 X-30. Y4.\nG43 H1 Z5.\n";
+    let mut first = start.to_owned();
+    for (level, row) in [-10.0, -20.5].iter().flat_map(|z| [4.0, 12.0, 20.0].map(|y| (z, y))) {
+        first += &format!("G0 Z5.\nX-30. Y{row}\nZ{level}\nG1 X30.\n");
+    }
+    folder.write("op10.nc", first + "G0 Z5.\nM30\n");
+    let second = |row: f64| {
+        let text = format!("{start}G0 X-8. Y{row}\nZ-15.\nZ5.\nY-8.\nG1 Z-1.\nX8.\nG0 Z5.\nM30\n");
+        folder.write("op20.nc", text);
+    };
+    let text = |setup: &str, stock: &str| {
+        format!(
+            "part = \"{setup}.stl\"\nunit = \"mm\"\nprogram = \"{setup}.nc\"\ncontrol = \"linuxcnc\"\n[work_offsets]\n\
+             G54 = [0, 0, -300]\n[tool.1]\ntool = \"mill10.tool\"\nlength = 60\n[stock]\n{stock}\n"
+        )
+    };
+    let block = "box = [[-20, -20, -20], [20, 20, 0]]\nspacing = 1";
+    let turned = "from = \"op10.toml\"\norigin = [0, 0, -20]\nx = [1, 0, 0]\nz = [0, 0, -1]";
+    let earlier = text("op10", block);
+    folder.write("op10.toml", &earlier);
+    folder.gives(&earlier, CLEAN, &[]);
+    for (row, stock, verdict) in
+        [(-8.0, turned, CLEAN), (12.0, turned, FINDINGS), (-8.0, block, FINDINGS)]
+    {
+        second(row);
+        let checked = folder.check(&text("op20", stock));
+        assert_eq!(checked.verdict, verdict, "{row}: {:#?}", checked.rows);
+        assert_eq!(checked.has(FindingRule::Stock.code()), verdict == FINDINGS, "{row}");
+    }
+    second(-8.0);
+    for (stock, pattern) in [
+        (turned.replace("[0, 0, -1]", "[0, 0.6, -0.8]"), "J0409"),
+        (format!("{turned}\nspacing = 1"), "J0124"),
+        (format!("{turned}\nmesh = \"op10.stl\""), "J0127"),
+        (turned.replace("op10", "op5"), "J0101 op5.toml"),
+        (format!("{block}\norigin = [0, 0, -20]"), "J0125"),
+        (block.replace("\nspacing = 1", ""), "J0126"),
+        ("from = \"job.toml\"".to_owned(), "J0213"),
+    ] {
+        folder.gives(&text("op20", &stock), NONE, &[pattern]);
+    }
+    // An earlier set-up with another unit, without a stock, or with findings.
+    let (without, _) = earlier.split_once("[stock]").expect("a stock");
+    let other = text("op10", "box = [[-20, -20, -20], [20, 20, 8]]\nspacing = 1");
+    for (earlier, pattern) in [
+        (earlier.replace("\"mm\"", "\"inch\""), "J0214"),
+        (without.to_owned(), "J0215"),
+        (other, "V0605"),
+    ] {
+        folder.write("op10.toml", earlier);
+        folder.gives(&text("op20", turned), NONE, &[pattern]);
+    }
+}
+
+/// A slot in the side of a block, milled with the table tilted by 90 degrees.
+const SLOT: &str = "G21 G90 G17 G40 G49 G80 G94\nG54\nT1 M6\nS6000 M3\nG0 A0. C0.\nG43 H1 X0. Y0. Z150.\nG0 A-90.\nM428\n\
+    G0 X-80. Y100. Z-45.\nY58.\nG1 X80. F800.\nG0 Y100.\nM429\nM30\n";
+
+const MILL_IN_HOLDER: &str = "tool Mill10 \"10 mm end mill in a holder\" { units mm; profile { start (0, 0); \
+    line to (5, 0) as face cutting; line to (5, 30) as flute cutting; line to (5, 60) as shank; line to (14, 60), (14, 90), \
+    (0, 90) as holder; } niceness cutting: 1; }";
+
+/// Returns a folder with the slot, and its job.
+fn slot() -> (Folder, String) {
+    let folder = Folder::new();
+    folder.cuboid("block.stl", [-60.0, -60.0, -60.0], [60.0, 60.0, 0.0]);
+    folder.write("slot.nc", SLOT);
+    folder.write("mill10.tool", MILL_IN_HOLDER);
+    let job = "part = \"block.stl\"\nunit = \"mm\"\nprogram = \"slot.nc\"\nmachine = \"A-C trunnion with bodies\"\n\
+               control = \"linuxcnc\"\ntolerance = 2.1\n[work_offsets]\nG54 = [0, 0, -440]\n[tool.1]\ntool = \"mill10.tool\"\n\
+               length = 95\n";
+    (folder, job.to_owned())
+}
+
+/// The gauge point is at y = 58 + 95 of the tilted block, and the disc of the table reaches to 160: its prism to 160 / cos(π / 96).
+#[test]
+fn a_spindle_head_touches_the_table_at_a_steep_angle() {
+    let (folder, job) = slot();
+    let exact = 160.0 / (std::f64::consts::PI / 96.0).cos() - (58.0 + 95.0);
+    let depth_of = |job: &str| {
+        let depth = folder.with_report(job, |report| {
+            let [finding] = report.findings() else { panic!("{:?}", report.findings()) };
+            assert_eq!((finding.rule, finding.line), (FindingRule::Deep, 11), "{finding}");
+            let FindingDetail::Surface { pair, groups, remedy, .. } = &finding.detail else {
+                panic!("{finding}");
+            };
+            let pair = &report.pairs[*pair];
+            let FindingKind::Deep { surface, depth, .. } = groups[0].worst.kind else {
+                panic!("{finding}");
+            };
+            let head = report.revolved(pair).expect("a body of the machine");
+            let surface = &*report.shape(pair).info().surface(surface).name;
+            assert_eq!((&*head.name, surface), ("the spindle head", "nose"));
+            assert_eq!(report.body(pair).name, "the table");
+            (depth.high, remedy.lift.expect("a longer tool"))
+        });
+        depth.expect("a report")
+    };
+    let (depth, lift) = depth_of(&job);
+    assert!((depth - exact).abs() < 1e-3, "{depth} {exact}");
+    // The margin of the head is 1 mm.
+    assert!((lift - exact - 1.0).abs() < 0.02, "{lift}");
+    folder.gives(&job.replace("length = 95", "length = 104"), CLEAN, &[]);
+    // The same machine without bodies has nothing to find.
+    folder.gives(&job.replace(" with bodies", ""), CLEAN, &[]);
+    // In inches the bodies are as large.
+    let side = 60.0 / 25.4;
+    folder.cuboid("inch.stl", [-side, -side, -side], [side, side, 0.0]);
+    let inch = job.replace("\"mm\"", "\"inch\"").replace("block.stl", "inch.stl");
+    let (depth, _) = depth_of(&inch.replace("tolerance = 2.1", "tolerance = 0.09"));
+    assert!((25.4 * depth - exact).abs() < 2e-3, "{depth} {exact}");
+}
+
+/// An own machine has meshes and tools in files beside its own.
+#[test]
+fn an_own_machine_has_its_bodies_in_files() {
+    let (folder, job) = slot();
+    std::fs::create_dir(folder.place("shop")).expect("a folder");
+    let machine = Machine::file("A-C trunnion with bodies").expect("a machine");
+    let machine = machine.replace("name = \"A-C trunnion with bodies\"", "name = \"ours\"");
+    let machine = machine.replace("tool = \"SpindleHead\"", "tool = \"head.tool\"");
+    let disc = "cylinder = { radius = 160, height = 40 }\nposition = [0, 0, -540]\n";
+    assert!(machine.contains(disc));
+    let machine = machine.replace(disc, "mesh = \"table.stl\"\nposition = [0, 0, -500]\n");
+    folder.write("shop/ours.toml", &machine);
+    let head = "tool Head \"a head\" { units mm; profile { start (0, 0); line to (80, 0), (80, 300), (0, 300) as cover; } }";
+    folder.write("shop/head.tool", head);
+    folder.cuboid("shop/table.stl", [-155.0, -155.0, -40.0], [155.0, 155.0, 0.0]);
+    let job = job.replace("A-C trunnion with bodies", "shop/ours.toml");
+    folder.gives(&job, FINDINGS, &["V0101 the spindle head: cover is 2.0000 mm deep in the table"]);
+    for (from, to, pattern) in [
+        ("table.stl", "none.stl", "J0108 none.stl"),
+        ("\"the table\", \"the cradle\"", "\"the tables\", \"the cradle\"", "K0307 the tables"),
+        (
+            "[220, 180, -560]]\nagainst = [\"tool\"]",
+            "[220, 180, -560]]\nagainst = [\"part\"]",
+            "K0310 the part",
+        ),
+    ] {
+        assert!(machine.contains(from), "{from}");
+        folder.write("shop/ours.toml", machine.replacen(from, to, 1));
+        folder.gives(&job, NONE, &[pattern]);
+    }
+}
+
+/// Bodies have no place without the origin of G54 and the lengths of the tools.
+#[test]
+fn bodies_need_the_place_of_the_part_and_the_lengths_of_tools() {
+    let (folder, job) = slot();
+    let job = job.replace("tolerance", "anyway = true\ntolerance");
+    folder.refuses(&job, ["[work_offsets]\nG54 = [0, 0, -440]\n", ""], "J0117");
+    folder.refuses(&job, ["length = 95\n", ""], "J0112 T1");
+}
+
+/// A fork head beside walls: its arms are beside the spindle, and reach lower than the pivot by their radius.
+#[test]
+fn an_arm_of_a_fork_head_touches_a_wall() {
+    let folder = Folder::new();
+    folder.cuboid("block.stl", [-60.0, -60.0, -60.0], [60.0, 60.0, 0.0]);
+    folder.cuboid("walls.stl", [-170.0, -330.0, -60.0], [-110.0, 330.0, 53.0]);
+    folder.write("mill10.tool", MILL_IN_HOLDER);
+    let job = "part = \"block.stl\"\nunit = \"mm\"\nprogram = \"slot.nc\"\nmachine = \"A-C fork head with bodies\"\n\
+               control = \"linuxcnc\"\ntolerance = 2.1\n[work_offsets]\nG54 = [0, 0, -700]\n[tool.1]\ntool = \"mill10.tool\"\n\
+               length = 95\n[[fixture]]\nname = \"the wall\"\nmesh = \"walls.stl\"\n";
+    // The pivot is 95 + 220 mm from the tip, and at the cosine of the tilt above it: the arm's radius is 110.
+    let clear = |angle: f64| 3.0 + 315.0 * f64::cos(angle.to_radians()) - 110.0 - 53.0 - 1.0;
+    assert!(clear(59.0) > 0.1 && clear(61.0) < -4.0, "{} {}", clear(59.0), clear(61.0));
+    for (tilt, verdict) in [(59.0, CLEAN), (-59.0, CLEAN), (61.0, FINDINGS), (-61.0, FINDINGS)] {
+        let program = format!(
+            "G21 G90 G54 G94 F800.\nT1 M6\nS6000 M3\nG0 A0. C0.\nG43 H1 X0. Y0. Z100.\nM428\nG0 X0. Y0. Z3.\nG1 A{tilt}\n\
+             M429\nM30\n"
+        );
+        folder.write("slot.nc", program);
+        let checked = folder.check(job);
+        assert_eq!(checked.verdict, verdict, "{tilt}: {:#?}", checked.rows);
+        let is_found = checked.has("V01 the left arm of the fork: arm is");
+        assert_eq!(is_found, verdict == FINDINGS, "{tilt}: {:#?}", checked.rows);
+        assert!(!checked.has("V01 the right arm") && !checked.has("V01 T1"), "{:#?}", checked.rows);
+    }
+}
+
+/// Values of params, and keys of a job that name what there is not.
+#[test]
+fn a_wrong_job_is_refused_with_its_key() {
+    let (folder, job) = slot();
+    folder.cuboid("vise.stl", [-80.0, 70.0, -60.0], [80.0, 90.0, -40.0]);
+    let job = job
+        + "[[fixture]]\nname = \"the vise\"\nmesh = \"vise.stl\"\nmoves_with = \"C\"\n[stock]\n\
+           box = [[-60, -60, -60], [60, 60, 0]]\nspacing = 2\n";
+    folder.gives(&job, FINDINGS, &["V0101 the table"]);
+    for (change, pattern) in [
+        (["unit = \"mm\"", "unit = \"yard\""], "J0202 yard"),
+        (["tolerance = 2.1", "tolerances = 2.1"], "J0201 line 6: unknown field `tolerances`"),
+        (["tolerance = 2.1", "tolerance = -1"], "J0203"),
+        (["G54 = [", "G60 = ["], "J0106 `G60`"),
+        (["[tool.1]", "[tool.4]"], "J0103 T1"),
+        (["[tool.1]", "[tool.three]"], "J0206 `three`"),
+        (["A-C trunnion", "A-D trunnion"], "K0201 `A-D trunnion with bodies`"),
+        (["A-C trunnion with bodies", "none.toml"], "J0101 none.toml"),
+        (["moves_with = \"C\"", "moves_with = \"B\""], "J0122"),
+        (["spacing = 2", "spacing = 0.001"], "J04 give a spacing of"),
+        (["slot.nc", "none.nc"], "P0601 none.nc"),
+    ] {
+        folder.refuses(&job, change, pattern);
+    }
+    // A word that could move the tool stops the program with its line.
+    for (word, pattern) in [
+        ("G41 D7", "P0401 8 7"),
+        ("IF [#1 EQ 1] GOTO 5", "P0 8"),
+        ("L X+10 FMAX", "P0108 8"),
+        ("G12.1", "P0115 8 G12.1"),
+        ("B10.", "K0602 8 B"),
+    ] {
+        folder.write("slot.nc", SLOT.replace("M428", word));
+        folder.gives(&job, NONE, &[pattern]);
+    }
+}

@@ -1,0 +1,414 @@
+//! What a job states, what a verdict says, and what a program leaves to its next run.
+
+use crate::scene::{
+    ANY, CLEAN, FANUC, FINDINGS, HAAS, HEIDENHAIN, LINUXCNC, NONE, SIEMENS, Scene, rules,
+};
+use touchoff_verify::gcode::{ControlRules, Rule};
+use touchoff_verify::job::JobShard;
+use touchoff_verify::{Gap, Job, JobReport};
+
+/// Every tool with motions is in the verdict.
+#[test]
+fn a_tool_without_a_checked_motion_is_named() {
+    let start = "T1 M6\nS9000 M3\nG43 H1 G0 X-6. Y0. Z20.\nG1 X4. Z1.\nG0 Z20.\n";
+    for (tool, words) in [("T2", "V0301 9 T2"), ("T0", "V0301 9 T0")] {
+        let scene = Scene::new(&format!("{start}G49\n{tool} M6\nG0 X0. Y0.\nZ-5."));
+        let mut scene = scene.placed();
+        scene.job += "[tool.2]\ntool = \"D2Ball\"\n";
+        scene.gives(LINUXCNC, NONE, &[words, "V0407 9"]);
+    }
+}
+
+#[test]
+fn a_work_offset_far_from_the_part_is_named() {
+    let blocks =
+        "G43 H1 G0 X-6. Y0. Z20.\nG1 X4. Z1.\nG0 Z20.\nG55 G0 X-6. Y0. Z20.\nG1 X4. Z1.\nG0 Z20.";
+    let mut scene = Scene::new(blocks).placed();
+    scene.job += "G55 = [200, 0, -400]\n";
+    scene.gives(LINUXCNC, NONE, &["V0603 6 G55"]);
+    scene.job = scene.job.replace("[200, 0, -400]", "[1, 0, -400]");
+    scene.gives(LINUXCNC, CLEAN, &[]);
+}
+
+#[test]
+fn a_feed_needs_a_spindle_that_turns_the_right_way() {
+    let feed = "G0 X-6. Y0. Z20.\nG1 X4. Z1. F100.\nM30\n";
+    for (start, verdict, patterns) in [
+        ("S900 M3", CLEAN, &[][..]),
+        ("S900 M13", NONE, &["P0115 2 M13"]),
+        ("S900 M3\nM5", FINDINGS, &["V0106 feeds with the spindle off"]),
+        ("M3", FINDINGS, &["V0106 4 no speed of the spindle"]),
+        ("S0 M3", FINDINGS, &["V0106 feeds with the spindle off"]),
+        ("S900 M4", FINDINGS, &["V0106 the wrong way round"]),
+        ("", NONE, &["V0305 4"]),
+    ] {
+        let scene = Scene::of(&format!("G21 G90 G54\n{start}\n{feed}"));
+        scene.gives(LINUXCNC, verdict, patterns);
+    }
+    let mut left = Scene::of(&format!("G21 G90 G54\nT1 M6\nS900 M4\nG43 H1\n{feed}"));
+    left.gives(LINUXCNC, FINDINGS, &["V0106 the wrong way round"]);
+    left.job = left.job.replace("LENGTH", "hand = \"left\"\nLENGTH");
+    left.gives(LINUXCNC, CLEAN, &[]);
+    // A stop stops the spindle of a Haas, and not that of LinuxCNC.
+    let stop = Scene::of(&format!("G21 G90 G54\nS900 M3\nM0\n{feed}"));
+    stop.gives(LINUXCNC, CLEAN, &[]);
+    stop.gives(HAAS, FINDINGS, &["V0106 feeds with the spindle off"]);
+    stop.gives(
+        ANY,
+        FINDINGS,
+        &["V0106 feeds with the spindle off", "V0106 5 under stop = \"stops spindle\""],
+    );
+    let heidenhain = Scene::of(&format!("G71 G90\nS900 M3\nM0\n{feed}"));
+    let heidenhain_words = ["V0106 feeds with the spindle off"];
+    heidenhain.gives(HEIDENHAIN, FINDINGS, &heidenhain_words);
+    // M6 stops the spindle without a change of the tool, too.
+    let change = Scene::of(&format!("G71 G90\nT1\nS900 M3\nM6\n{feed}"));
+    change.gives(HEIDENHAIN, FINDINGS, &heidenhain_words);
+    let order =
+        Scene::of(&format!("G21 G90 G54\nG0 X-6. Y0. Z20.\nG1 X4. Z1. F100.\nS900 M3\n{feed}"));
+    order.gives(LINUXCNC, FINDINGS, &["V0106 feeds with the spindle off"]);
+}
+
+#[test]
+fn what_a_program_leaves_out_at_its_start_is_named() {
+    let blocks = "G0 X-6. Y0. Z20.\nG1 X4. Z1.";
+    let scene = Scene::of(&format!("G90 G54 S900 M3 F100.\n{blocks}\nM30\n"));
+    scene.gives(ANY, NONE, &["V0303 2 G20", "V0303 2 `unit`"]);
+    scene.gives(LINUXCNC, CLEAN, &[]);
+    let scene = Scene::of(&format!("G90 G21 S900 M3 F100.\n{blocks}\nM30\n"));
+    scene.gives(ANY, NONE, &["V0304 2", "V0304 2 `start_offset`"]);
+    scene.gives(SIEMENS, NONE, &["P0119 2 G54"]);
+    scene.gives(LINUXCNC, CLEAN, &[]);
+}
+
+/// A collision is one however far it is from the part.
+#[test]
+fn a_collision_far_from_the_part_is_a_finding() {
+    let blocks = "G0 X100. Y0. Z20.\nG1 Z5.\nG0 Z20.";
+    let scene = Scene::new(blocks).obstacle([95.0, -5.0, 0.0], [105.0, 5.0, 10.0]);
+    scene.gives(LINUXCNC, FINDINGS, &["V0101 3 the clamp"]);
+    let free = Scene::new(blocks);
+    free.gives(LINUXCNC, NONE, &["V0203"]);
+}
+
+/// Further work offsets have the origins that the job states by the names of the controls.
+#[test]
+fn further_work_offsets_are_stated() {
+    for (control, block, name) in [
+        (HAAS, "G154 P5", "\"G154 P5\""),
+        (HAAS, "G114", "\"G154 P5\""),
+        (HAAS, "G154 P5", "G114"),
+        (FANUC, "G54.1 P5", "\"g54.1 p5\""),
+    ] {
+        let text = format!("{block}\nG0 X-100. Y0. Z20.\nG1 Z-1. F100.\nG0 Z20.");
+        let mut scene = Scene::new(&text).placed();
+        scene.gives(control, NONE, &["K0807 3"]);
+        // 100 mm beside G54, so that the block is cut at its middle.
+        let origin = format!("[work_offsets]\n{name} = [100, 0, -400]\n");
+        scene.job = scene.job.replace("[work_offsets]\n", &origin);
+        scene.gives(control, FINDINGS, &["V0101 4"]);
+    }
+    let mut scene = Scene::new("G0 Z20.").placed();
+    let plain = scene.job.clone();
+    for (names, said) in [
+        ("\"G154 P0\" = [1, 2, 3]", "J0106 `G154 P0`"),
+        ("\"G154 P301\" = [1, 2, 3]", "J0106 `G154 P301`"),
+        ("G114 = [1, 2, 3]\n\"G54.1 P5\" = [1, 2, 3]", "J0106"),
+        ("G130 = [1, 2, 3]", "J0106 `G130`"),
+        ("G114 = [1, 2]", "J0106 `G114`"),
+    ] {
+        scene.job = plain.replace("[work_offsets]\n", &format!("[work_offsets]\n{names}\n"));
+        scene.gives(HAAS, NONE, &[said]);
+    }
+}
+
+/// A program in Klartext with two presets goes to two places of one part; a preset that is not stated is named.
+#[test]
+fn presets_of_klartext_are_work_offsets() {
+    let text = "0 BEGIN PGM A MM\nCYCL DEF 247 DATUM ~\n Q339=+1\nTOOL CALL 1 Z S900\nL X-6 Y+0 FMAX M3\nL Z+20 FMAX\n\
+                CYCL DEF 247 DATUM ~\n Q339=+2\nL X+0 Y+0 FMAX\nL Z-1 F100\nL Z+20 FMAX\nM30\nEND PGM A MM\n";
+    let scene = |presets: &str| {
+        let mut scene = Scene::of(text).placed();
+        scene.file = "a.h";
+        let stated = "[work_offsets]\nG55 = [3, 0, -400]\n";
+        scene.job = scene.job.replace("[work_offsets]\n", stated) + presets;
+        scene
+    };
+    scene("").gives(
+        ANY,
+        NONE,
+        &["P0115 7 another preset than the one before", "P0115 7 `presets`"],
+    );
+    scene("[presets]\n1 = \"G54\"\n").gives(
+        ANY,
+        NONE,
+        &["P0115 7 a preset whose work offset is not stated"],
+    );
+    scene("[presets]\n1 = \"G54\"\n2 = \"X\"\n").gives(ANY, NONE, &["J0212 `2`"]);
+    scene("[presets]\n1 = \"G54\"\n2 = \"G55\"\n").gives(
+        ANY,
+        FINDINGS,
+        &["V0101 10", "V0101 10 at (3.0000, 0.0000"],
+    );
+}
+
+/// Too many rules at once that are not stated are no verdict.
+#[test]
+fn too_many_readings_name_the_rules() {
+    let blocks = "G0 X-6 Y0. Z2.\n/G0 X5.\nG81 X-6 Y0. Z1. R6.\nX6. ; G0 X1.\nG80\nM0\nG1 Z2.";
+    let scene = Scene::new(blocks);
+    let words = ["K0901", "K0901 `whole_numbers`", "K0901 `cycle_below_r`"];
+    scene.gives(ANY, NONE, &words);
+}
+
+/// The page has a row for each rule, with what each control does.
+#[test]
+fn the_page_about_controls_states_every_rule() {
+    let page = include_str!("../../../docs/controls.md");
+    for rule in Rule::all().filter(|rule| *rule != Rule::OptionalBlocks) {
+        let words = ControlRules::names().map(|name| {
+            let control = ControlRules::named(name).expect("a control");
+            control.get(rule).map_or("either", |choice| rule.describe(choice)[0])
+        });
+        let row = format!("| `{}` | {} |", rule.key(), words.collect::<Vec<_>>().join(" | "));
+        assert!(page.contains(&row), "{row}");
+    }
+}
+
+/// The tool of a program that names none is that of its first length offset.
+#[test]
+fn a_program_without_a_tool_number_moves_its_gauge_point_without_an_offset() {
+    let start = "G43 H1 G0 X-6. Y0. Z45.\nG1 X-4. Z1.\nG0 Z45.\n";
+    for end in ["G49 Z45.\nX6.\nG1 X5.", "G91 G28 Z0.\nG90 G49 G0 Z45.\nX6.\nG1 X5."] {
+        let scene = Scene::new(&format!("{start}{end}")).placed();
+        let scene = scene.obstacle([0.0, -2.0, -20.0], [8.0, 2.0, -1.0]).with("anyway = true");
+        scene.gives(LINUXCNC, FINDINGS, &["V0103 the clamp"]);
+    }
+    let other = Scene::new(&format!("{start}G43 H7 Z45.\nX6.\nG1 X5.")).placed();
+    other.gives(LINUXCNC, NONE, &["V0408 5 H7"]);
+}
+
+/// The state at the end of a program is that in which its next run begins, on some controls.
+#[test]
+fn a_program_that_ends_otherwise_than_it_begins_is_named() {
+    let begin = "G21 G54 S9000 M3 F100.\nG0 X-6. Y0. Z20.\nG1 X-4. Z1.\nG0 Z20.\n";
+    let word = "V0516";
+    Scene::of(&format!("{begin}G91 G28 Z0.\nM30\n")).gives(FANUC, NONE, &[word]);
+    Scene::of(&format!("{begin}G91 G28 Z0.\nM30\n")).gives(LINUXCNC, CLEAN, &[]);
+    Scene::of(&format!("{begin}G91 G28 Z0.\nG90\nM30\n")).gives(FANUC, CLEAN, &[]);
+    Scene::of(&format!("{begin}G52 X1.\nM30\n")).gives(LINUXCNC, NONE, &[word]);
+    Scene::of(&format!("%\n{begin}G91 G0 Z1.\n%\n")).gives(LINUXCNC, NONE, &[word]);
+    let cycles = "G81 X-4. Y0. Z1. R3.\nG80\nG99 G81 X-5. Z1. R3.\nG80\nG0 Z20.\nG90\nM30\n";
+    Scene::of(&format!("{begin}{cycles}")).gives(FANUC, NONE, &[word]);
+    // LinuxCNC keeps the unit and the length offset, of all that M30 leaves.
+    let moves = "G0 X-6. Y0. Z20.\nG1 X4. Z1.\nG0 Z20.";
+    let unit = format!("G90 G54 S900 M3 F100.\nG43 H1\n{moves}\nG20\nM30\n");
+    Scene::of(&unit).gives(LINUXCNC, NONE, &["V0516 3 G20"]);
+    let length = format!("{begin}G43 H1\nG0 Z20.\nM30\n");
+    Scene::of(&length).gives(LINUXCNC, NONE, &["V0516 2 G43"]);
+    let stated = format!("{begin}G0 G90 Z20.\nG20 G55\nM30\n");
+    Scene::of(&stated).gives(LINUXCNC, CLEAN, &[]);
+    // G49 at the start moves Z by the length that the run before has left.
+    let cancels = "G21 G90 G54 G49\nG0 X-6. Y0.\nG43 H1 Z20.\nS900 M3\nG1 X-4. Z1. F100.\nM30\n";
+    Scene::of(cancels).gives(FANUC, NONE, &["V0516 1 G43"]);
+    Scene::of(cancels).gives(HAAS, NONE, &["V0516 1 G43"]);
+    Scene::of(&cancels.replace("M30", "G49\nM30")).gives(LINUXCNC, CLEAN, &[]);
+    // The operator can turn the switch for optional blocks between two runs.
+    let moves = "G0 X-6. Y0. Z20.\nG1 X-4. Z1.\nG0 Z20.";
+    let switched = Scene::new(&format!("/G52 X0\n{moves}\n/G52 X-8."));
+    switched.gives(LINUXCNC, NONE, &["V0516 3 G52"]);
+    Scene::new(&format!("/G52 X0\n{moves}")).gives(LINUXCNC, CLEAN, &[]);
+    // A new origin and a shift, which cancel each other where both are kept.
+    let both = format!("G43 H1\nG55\n{moves}\nG10 L2 P2 X40. Y0. Z-400.\nG52 X-40.\nG0 X-6.\nG49");
+    let mut both = Scene::new(&both).placed();
+    both.job += "G55 = [0, 0, -400]\n";
+    both.gives(FANUC, NONE, &["V0516 4 G10"]);
+    both.gives(LINUXCNC, CLEAN, &[]);
+}
+
+/// A program that begins with a return along one axis is followed from its first position on.
+#[test]
+fn a_program_begins_with_a_return_along_one_axis() {
+    for first in ["G91 G28 Z0.\nG90", "G91 G28 X0. Y0. Z0.\nG90", "G53 G0 Z0."] {
+        let blocks = format!(
+            "{first}\nT1 M6\nS9000 M3\nG0 X-6. Y0.\nG43 H1 Z20.\nG1 X4. Z1.\nG0 Z20.\nG91 G28 Z0."
+        );
+        Scene::new(&blocks).placed().gives(LINUXCNC, CLEAN, &[]);
+        Scene::new(&blocks).gives(LINUXCNC, CLEAN, &[]);
+    }
+}
+
+/// Thin tools and necks, which pass between the points of a stock.
+#[test]
+fn a_tool_that_is_thinner_than_the_points_of_the_stock_are_apart_is_named() {
+    let pin = "line to (0.5, 0), (0.5, 40), (0, 40) as pin cutting;";
+    let necked = "line to (3, 0), (3, 3) as disc cutting; line to (0.75, 3), (0.75, 30) as neck; \
+                  line to (3, 30), (3, 40), (0, 40) as shank;";
+    for (profile, spacing, verdict, pattern) in [
+        (pin, 1.0, NONE, "V0604 4 T1"),
+        (pin, 0.4, FINDINGS, "V0110 5 pin"),
+        (necked, 1.0, NONE, "V0604 4 T1"),
+        (necked, 0.5, FINDINGS, "V0110 5 neck"),
+    ] {
+        let text = format!("tool Pin {{ units mm; profile {{ start (0, 0); {profile} }} }}");
+        let mut scene = Scene::new("T1 M6\nS900 M3\nG0 X-30. Y0. Z5.3\nX30.\nZ60.\nG1 X29.");
+        scene = scene.with_file("pin.tool", text);
+        scene.job = scene.job.replace("D2Ball", "pin.tool");
+        scene.job +=
+            &format!("[stock]\nbox = [[-20, -20, 12], [20, 20, 20]]\nspacing = {spacing}\n");
+        scene.gives(LINUXCNC, verdict, &[pattern]);
+    }
+}
+
+/// LinuxCNC keeps the initial level of a series of cycles that no word has ended; others may keep the cycle.
+#[test]
+fn a_series_of_cycles_is_left_to_the_next_run() {
+    let blocks = |end: &str| {
+        format!(
+            "G91 G28 Z0.\nG90 G43 H1\nG98 G81 X-2. Y0. Z0.5 R3.\nX2.\nG0 X10. Y0. Z20.\n\
+             G81 X10. Y0. Z12. R15.\nX14.\n{end}"
+        )
+    };
+    let left = "V0516 2 G81";
+    Scene::new(&blocks("")).placed().gives(LINUXCNC, NONE, &[left]);
+    let ended = Scene::new(&blocks("G80")).placed().check(LINUXCNC);
+    assert!(!ended.has("V0516 G81"), "{ended:?}");
+}
+
+#[test]
+fn a_finding_in_a_file_of_subprograms_names_the_call_and_its_line() {
+    let pass = "(PASS)\nG0 X0. Y0.\nG1 Z-1.\nM99\n";
+    let scene = Scene::new("T1 M6\nS9000 M3\nG43 H1 G0 X-6. Y0. Z20.\nM98 P9001\nG0 Z20.");
+    scene.gives(HAAS, NONE, &["P0126 5 O9001"]);
+    let scene = scene.placed().with("subprograms = [\"O9001.nc\"]").with_file("O9001.nc", pass);
+    scene.gives(HAAS, FINDINGS, &["V0101 5 T1", "V0101 5 (O9001.nc, line 3)"]);
+    let within = |scene: &Scene, pattern: &str| {
+        let checked = scene.check(HAAS);
+        let row = checked.rows.into_iter().find(|row| row.is(pattern)).expect(pattern);
+        row.within
+    };
+    let line = |line| Some(("O9001.nc".to_owned(), line));
+    assert_eq!(within(&scene, "V0101 5 T1"), line(3));
+    // Two motions of one call, each with findings of several surfaces.
+    let through = "G0 X-6. Y0.\nG1 Z-2.5\nX6.\nX-6.\nG0 Z20.\nM99\n";
+    let scene = scene.with_file("O9001.nc", through);
+    scene.gives(HAAS, FINDINGS, &["V0101 5 pass right through the part on 2 motions, lines 5;"]);
+    // A finding about the machine, too.
+    let off = "T1 M6\nS9000 M3\nM5\nG43 H1 G0 X-6. Y0. Z20.\nM98 P9001\nG0 Z20.";
+    let scene = Scene::new(off).placed().with("subprograms = [\"O9001.nc\"]");
+    let scene = scene.with_file("O9001.nc", "G0 X-6. Y0.\nG1 Z9.\nG0 Z20.\nM99\n");
+    scene.gives(HAAS, FINDINGS, &["V0106 6 T1", "V0106 6 (O9001.nc, line 2)"]);
+    assert_eq!(within(&scene, "V0106 6"), line(2));
+}
+
+/// Gaps in a file of subprograms: a stop, a feed without a length offset, and a return to where nobody knows.
+#[test]
+fn a_gap_in_a_file_of_subprograms_names_the_call_and_its_line() {
+    let scene = Scene::new("G0 X-6. Y0. Z20.\nM98 P9001\nM0");
+    let scene = scene.with("subprograms = [\"O9001.nc\"]").with("anyway = true");
+    let scene = scene.with_file("O9001.nc", "(PASS)\nG0 X0. Y0.\nG1 Z15.\nM0\nG28 X0.\nM99\n");
+    let patterns = [
+        "V0508 3 (2 times) (O9001.nc, line 4)",
+        "V0308 3 (O9001.nc, line 3)",
+        "V0405 3 (O9001.nc, line 5)",
+    ];
+    scene.gives(HAAS, CLEAN, &patterns);
+    let rows = scene.check(HAAS).rows;
+    for (code, line) in [("V0508", 4), ("V0308", 3), ("V0405", 5)] {
+        let row = rows.iter().find(|row| row.code == code).expect(code);
+        assert_eq!((row.line, &row.within), (3, &Some(("O9001.nc".to_owned(), line))), "{row:?}");
+    }
+    // One in the program itself has none.
+    assert!(rows.iter().any(|row| row.within.is_none()), "{rows:?}");
+
+    // The sentence of a line that is not read names the file by itself.
+    let scene = scene.with_file("O9001.nc", "G0 X0. Y0.\nG777\nM99\n");
+    scene.gives(HAAS, NONE, &["P0114 3 O9001.nc, line 2: G777"]);
+    let rows = scene.check(HAAS).rows;
+    let row = rows.iter().find(|row| row.code == "P0114").expect("a line");
+    assert_eq!(row.within, Some(("O9001.nc".to_owned(), 2)), "{row:?}");
+    assert!(!row.text.contains("(O9001.nc"), "{row:?}");
+}
+
+#[test]
+fn what_is_not_checked_is_named_without_being_open() {
+    let scene = Scene::new("G0 X-6. Y0. Z20.\nM8\nM0\nG1 X4. Z1.");
+    // The limits of the axes, the way to the first position, the stop, and positions as those of the tip.
+    scene.gives(LINUXCNC, CLEAN, &["V0309", "V0401 2", "V0508 4", "V0308 5"]);
+    let is_open = |report: &JobReport<'_>| report.gaps.iter().any(Gap::is_open);
+    assert!(!scene.with_report(rules("linuxcnc"), is_open).expect("a result"));
+    // Words that change nothing are no gap.
+    assert!(!scene.check(LINUXCNC).has("V0501"));
+}
+
+/// 10 mm at 100 mm/min along X and a dwell, after a motion from where nobody knows; then rates, and another reading.
+#[test]
+fn cycle_times_are_those_of_each_tool() {
+    let scene = Scene::new("G0 X-6. Y0. Z20.\nG1 X4.\nG4 P2.\nG0 Z30.");
+    let times = scene.check(LINUXCNC).times;
+    let [time] = &times[..] else { panic!("{times:?}") };
+    assert_eq!((time.tool, time.feed, time.rapid, time.dwell), (None, 6.0, None, 2.0));
+    assert_eq!((time.unknown, time.first_unknown), (2, Some(2)));
+    // 10 mm of Z at 3000 mm/min.
+    let [time] = scene.with_rates([3000; 3]).check(LINUXCNC).times[..] else { panic!("a time") };
+    assert!((time.rapid.expect("rates") - 0.2).abs() < 1e-9 && time.unknown == 1, "{time:?}");
+}
+
+/// The report of a job whose shards were checked before is that of the whole check: findings of tools at the part and a fixture, in
+/// several readings, and of the stock.
+#[test]
+fn shards_of_a_job_give_its_report() {
+    let mut blocks = "S900 M3\n".to_owned();
+    for k in 0..300 {
+        let depth = if [40, 41, 200].contains(&k) { -1.0 } else { 3.0 };
+        let x = f64::from(k % 20) - 10.0;
+        blocks += &format!("G1 X{x:.1} Y{:.1} Z{depth:.1}\n", f64::from(k / 20) - 7.5);
+    }
+    let scene = |blocks: &str| {
+        let mut scene = Scene::new(blocks).placed().obstacle([8.0, -9.0, 0.0], [12.0, 9.0, 4.0]);
+        scene.job += "[stock]\nbox = [[-8, -8, -8], [8, 8, 1]]\nspacing = 0.5\n";
+        scene
+    };
+    let shards = |job: &Job<'_>, count: u32| -> Vec<(String, JobShard)> {
+        let shards = (1..=count).rev().map(|number| {
+            let name = format!("{number}/{count}");
+            let shard = name.parse().expect("a shard");
+            (name, job.check_shard(shard, &|_| ()).expect("a shard"))
+        });
+        shards.collect()
+    };
+    // All that is said of a job, with every digit.
+    let said = |report: &JobReport<'_>| {
+        let cuts: Vec<_> = report.cuts.iter().map(|cut| cut.stock.remaining_points()).collect();
+        let found: Vec<_> = report.findings().iter().map(|finding| finding.text.clone()).collect();
+        let pairs: Vec<_> = report.pairs.iter().map(|pair| pair.report.clone()).collect();
+        (report.verdict(), found, pairs, report.gaps.clone(), report.summaries(), cuts)
+    };
+    for rules in [rules("linuxcnc"), ControlRules::default()] {
+        let compared = scene(&blocks).with_job(rules, |job| {
+            let whole = said(&job.check(&|_| ())?);
+            assert!(whole.0 == FINDINGS && !whole.1.is_empty());
+            for count in [1, 3, 7] {
+                let joined = said(&job.check_joined(&shards(job, count), &|_| ())?);
+                assert!(joined == whole, "{count}");
+            }
+            Ok(())
+        });
+        compared.expect("a result");
+    }
+    let others = scene(&blocks.replace("Z-1.0", "Z-1.1"));
+    let others = others.with_job(rules("linuxcnc"), |job| Ok(shards(job, 3))).expect("shards");
+    let refused = scene(&blocks).with_job(rules("linuxcnc"), |job| {
+        let (three, seven) = (shards(job, 3), shards(job, 7));
+        let own = |indices: &[usize]| indices.iter().map(|k| three[*k].clone()).collect::<Vec<_>>();
+        let code = |shards: &[(String, JobShard)]| {
+            job.check_joined(shards, &|_| ()).expect_err("a fault").code()
+        };
+        assert_eq!(code(&own(&[0, 2])), "J0305");
+        assert_eq!(code(&own(&[0, 1, 1])), "J0304");
+        assert_eq!(code(&[three[0].clone(), seven[0].clone()]), "J0304");
+        assert_eq!(code(&others), "J0303");
+        Ok(())
+    });
+    refused.expect("a result");
+}

@@ -1,0 +1,13 @@
+//! Jobs: built in code and read from the text of their files, what controls do differently, and the codes of what is found.
+//!
+//! Controls differ: a program on which they do is clean only if it is clean on all of them, or on the one that is named.
+
+mod built;
+mod codes;
+mod five_axes;
+mod folder;
+mod jobs;
+mod motions;
+mod posts;
+mod scene;
+mod words;

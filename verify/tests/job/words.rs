@@ -1,0 +1,370 @@
+//! Words, numbers and text that controls read in different ways.
+
+use crate::scene::{
+    ANY, CLEAN, FANUC, FINDINGS, HAAS, HEIDENHAIN, LINUXCNC, NONE, SIEMENS, Scene, program, rules,
+};
+use touchoff_verify::JobReport;
+
+#[test]
+fn numbers_without_a_point_are_units_or_increments() {
+    let blocks = "G0 X-6. Y0. Z20.\nG0 Z5\nX6.\nG1 X4. Z1.";
+    let scene = Scene::new(blocks).obstacle([-1.0, -3.0, 0.5], [1.0, 3.0, 3.0]);
+    scene.gives(
+        ANY,
+        FINDINGS,
+        &["V0101 4 the clamp", "V0101 4 under whole_numbers = \"increments\""],
+    );
+    scene.gives(LINUXCNC, CLEAN, &[]);
+    scene.gives(FANUC, FINDINGS, &["V0101 4 the clamp"]);
+}
+
+/// A Haas may read a whole number after R or Q as units, where those of axes are increments.
+#[test]
+fn a_whole_number_after_r_is_either_on_haas() {
+    let blocks = "G0 X-6. Y0. Z20.\nG68 X0. Y0. R90\nX12. Y6. Z1.\nG1 X10.\nG69";
+    let scene = Scene::new(blocks).obstacle([-8.0, 8.0, -1.0], [-4.0, 15.0, 9.0]);
+    let scene = scene.with("anyway = true");
+    scene.gives(HAAS, FINDINGS, &["V0103 5 the clamp", "V0103 5 under whole_radii = \"units\""]);
+    scene.gives(FANUC, CLEAN, &[]);
+    scene.gives(ANY, FINDINGS, &["V0103 5 the clamp"]);
+}
+
+#[test]
+fn text_after_a_semicolon_is_a_comment_or_a_block() {
+    let blocks =
+        "G0 X-6. Y0. Z20.\nG0 X0. Z20.; G1 Z-1. ; G0 Z20.\nG1 X1. Z19. ; a comment, G1 Z-1.";
+    let scene = Scene::new(blocks).with("anyway = true");
+    scene.gives(ANY, FINDINGS, &["V0101 3 ball", "V0101 3 under semicolon = \"end of block\""]);
+    scene.gives(LINUXCNC, CLEAN, &[]);
+    scene.gives(HAAS, FINDINGS, &["V0101 3 ball"]);
+}
+
+#[test]
+fn another_program_in_the_file_is_not_passed_over() {
+    let one = program("G0 X-6. Y0. Z20.\nG1 X4. Z1.");
+    let other = program("G0 X0. Y0. Z20.\nG1 Z-1.");
+    for text in [
+        format!("%\nO1\n{one}%\n%\nO2\n{other}%\n"),
+        format!("%\nO1\n{one}O2\n{other}%\n"),
+        format!("%\n{one}%\n{other}"),
+    ] {
+        let scene = Scene::of(&text);
+        scene.gives(LINUXCNC, NONE, &["V0512"]);
+    }
+    let sub = format!(
+        "%\nO1\n{}O7\nG1 X5.\nM99\n%\n(made by a post)\n",
+        one.replace("M30", "M98 P7\nM30")
+    );
+    Scene::of(&sub).gives(LINUXCNC, CLEAN, &[]);
+}
+
+/// Blocks that begin with `/`: the switch is the operator's, and both positions are checked unless the job states one.
+#[test]
+fn optional_blocks_are_checked_with_and_without() {
+    let blocks = "G0 X-6. Y0. Z20.\n/G0 X20.\nG1 Z-1.\nG1 X19.\nG0 Z20.";
+    let scene = Scene::new(blocks).with("anyway = true");
+    scene.gives(LINUXCNC, FINDINGS, &["V0101 5 under optional_blocks = \"left out\""]);
+    let scene = scene.with("block_delete = false");
+    scene.gives(LINUXCNC, CLEAN, &[]);
+}
+
+#[test]
+fn words_of_heidenhain_are_not_read_as_those_of_others() {
+    let heidenhain = HEIDENHAIN;
+    let own = Scene::of("G21 G90 S9000 M3 F100.\nG0 X-6. Y0. Z20.\nG1 X4. Z1.\nM30\n");
+    own.gives(heidenhain, NONE, &["P0115 1 G21"]);
+    let own = Scene::of("G71 G90 S9000 M3 F100.\nG0 X-6. Y0. Z20.\nG1 X4. Z1.\nM30\n");
+    own.gives(heidenhain, CLEAN, &[]);
+    // The head states the unit, and the last line repeats it.
+    let own = "%PLATE G71 *\nN10 G90 S9000 M3 F100.\nN20 G0 X-6. Y0. Z20.\nN30 G1 X4. Z1.\nN99999999 %PLATE G71 *\n";
+    Scene::of(own).gives(heidenhain, CLEAN, &[]);
+    let fault = own.replace("N20 G0", "N20 G0 M91");
+    Scene::of(&fault).gives(heidenhain, NONE, &["P0114 3 M91"]);
+    // I and J are the pole: an arc about the origin.
+    let arc = Scene::of("G71 G90 S9000 M3 F100.\nG0 X-6. Y0. Z1.\nG2 X6. Y0. I0. J0.\nM30\n");
+    arc.gives(heidenhain, CLEAN, &[]);
+    arc.gives(LINUXCNC, NONE, &["P0115 1 G71"]);
+}
+
+/// Words of Heidenhain whose order in a block matters, or that keep what they leave out.
+#[test]
+fn words_of_heidenhain_depend_on_their_order() {
+    let begin = "G71 G90 S9000 M3 F100.\nG0 X-6. Y0. Z20.\nG1 X-4. Z1.\n";
+    for (blocks, word) in [
+        ("G1 X6. G91 Y0. Z0.", "P0120 4 it holds for the coordinates after it"),
+        ("G2 X-10. Y20. I-10.", "P0120 4 G2"),
+        ("M89", "P0115 4 M89"),
+    ] {
+        let scene = Scene::of(&format!("{begin}{blocks}\nM30\n"));
+        scene.gives(HEIDENHAIN, NONE, &[word]);
+    }
+    // The head is a title for others.
+    let head = Scene::of("%P G71\nG90 G54 S9000 M3 F100.\nG0 X-6. Y0. Z20.\nG1 X-4. Z1.\nM30\n");
+    head.gives(HEIDENHAIN, NONE, &["P0115 2 G54"]);
+    let low = |report: &JobReport<'_>| report.pairs[0].report.approach.program[0].x;
+    let low = head.with_report(rules("haas"), low).expect("a result");
+    assert!((low + 152.4).abs() < 1e-9, "read in inches: {low}");
+    let edge = Scene::new("D1\nG0 X-6. Y0. Z20.\nG1 X-4. Z1.\nD0\nG0 X6.").placed();
+    edge.gives_natively(NONE, &["P0119 5 D0"]);
+}
+
+#[test]
+fn a_call_that_controls_read_in_two_ways_is_refused() {
+    let text = "G21 G90 G54 S9000 M3 F100.\nG0 X-6. Y0. Z20.\nM98 P20100\nM30\nO0100\nG91 G0 X3.\nG90\nM99\n\
+                O20100\nG91 G0 X1.\nG90\nM99\n";
+    Scene::of(text).gives(
+        ANY,
+        NONE,
+        &["P0120 3 its last four digits are the number of a program, too"],
+    );
+    // T alone changes the tool of a Heidenhain.
+    let text = "G71 G90 S9000 M3 F100.\nT1\nS9000 M3\nG0 X-6. Y0. Z20.\nG1 X4. Z1.\nT3\nS9000 M3\nG1 X5.\nM30\n";
+    Scene::of(text).gives(HEIDENHAIN, NONE, &["J0103 8 T3"]);
+}
+
+/// Words that controls read in ways that are not followed are refused, or allow no verdict.
+#[test]
+fn other_words_on_which_controls_differ_are_refused() {
+    let begin = "G0 X-6. Y0. Z20.\nG1 X4. Z1.\n";
+    for (blocks, word) in [
+        ("G99 G81 X4. Z0.5 R2.\nG20 X0.1", "P0120 5 G81"),
+        ("T1 M6\nS900 M3\nG91 G43 H1 Z20.", "P0120 6 Z"),
+        ("/1 G0 X5.\n/2 G0 X6.", "V0513 5"),
+        ("G0 X0. Y0. Z20.\nG2 X20.02 Y0. I10. J0.", "V0514 5"),
+        ("G0 Z30.\rG0 X5.", "P0102 4"),
+        ("G91 G28 X0. Y0. Z0.\nG0 X-10.\nG90", "V040"),
+        ("G53 G0 Z-30.\nG53 G0 X10.\nG53 G0 X0.", "V040"),
+    ] {
+        Scene::new(&format!("{begin}{blocks}")).gives(LINUXCNC, NONE, &[word]);
+    }
+    // The way home after G49 is the machine's, as that before it is. Other motions without the offset are not.
+    let home = format!("T1 M6\nS900 M3\nG43 H1 {begin}G0 Z20.\nG49\nG53 G0 Z0.\n");
+    let reference = ["V040"];
+    Scene::new(&home).gives(LINUXCNC, CLEAN, &reference);
+    Scene::new(&format!("{home}G53 G0 X0. Y0.\n")).gives(LINUXCNC, CLEAN, &reference);
+    let low = home.replace("G53 G0 Z0.", "G53 G0 Z-30.");
+    Scene::new(&low).gives(LINUXCNC, NONE, &["V0407 8"]);
+    // Text after a semicolon, in ways that do not look like a block at first sight.
+    for text in ["X0. ;;Z-1.", "X0. ; (a) Z-1.", "X0. ; /Z-1.", "X0. ; #1=2 ; Z-1. ; NOTE A"] {
+        let scene = Scene::new(&format!("G0 X-6. Y0. Z20.\nG1 X-4. Z1.\n{text}\nG0 Z20."));
+        let scene = scene.with("block_delete = false\nanyway = true");
+        scene.gives(LINUXCNC, CLEAN, &[]);
+        scene.gives(HAAS, FINDINGS, &["V0101 4 ball"]);
+        scene.gives(ANY, FINDINGS, &["V0101 4 under semicolon = \"end of block\""]);
+    }
+    let scene = Scene::new(&format!("{begin}X5. ; G65 P100")).with("anyway = true");
+    scene.gives(HAAS, NONE, &["P0126 4"]);
+    // The number of repeats is no length.
+    let repeats = Scene::new(&format!("{begin}G99 G91 G81 X0.1 Z-0.2 R-0.1 K2\nG80 G90"));
+    repeats.with("anyway = true").gives(FANUC, CLEAN, &[]);
+}
+
+/// Words on which controls differ: each ends without a verdict, with the word that decides it.
+#[test]
+fn words_that_controls_execute_in_different_ways_are_refused_or_named() {
+    let begin = "T1 M6\nS9000 M3\nG43 H1 G0 X-6. Y0. Z20.\nG1 X4. Z1.\n";
+    for (blocks, word) in [
+        // Fanuc moves in rapid traverse, and by a dog-leg.
+        ("G53 Z0.", "P0120 6 G53"),
+        ("G0 Z20.\nT2\nT3 M6", "P0120 8 another tool is staged"),
+        ("G0 Z20.\nT1 M6 X5.", "P0120 7 M6"),
+        ("M98 P7 G0 Z20.\nM30\nO7\nM99", "P0120 6 M98"),
+        (";py,self.execute(\"G0 X5\")", "P0115 6 a comment whose Python LinuxCNC executes"),
+        ("( PY,a=1)", "P0115 6 a comment whose Python LinuxCNC executes"),
+        // Rigid tapping leaves the spindle standing.
+        ("G0 Z20.\nG84 X4. Z1. R2.\nG80\nG1 X5.", "V0306 9 M3"),
+    ] {
+        Scene::new(&format!("{begin}{blocks}")).gives(LINUXCNC, NONE, &[word]);
+    }
+    let tap = format!("{begin}G0 Z20.\nG84 X4. Z1. R2.\nG80\nS9000 M3\nG1 X5.");
+    Scene::new(&tap).gives(LINUXCNC, CLEAN, &[]);
+    // Native programs of Sinumerik shift by G58 and G59.
+    let text = "G21 G90 G59 S9000 M3 F100.\nG43 H1 G0 X-6. Y0. Z20.\nG1 X4. Z1.\nM30\n";
+    let mut shift = Scene::of(text).placed();
+    shift.job += "G59 = [1, 0, -400]\n";
+    shift.gives(ANY, NONE, &["V0503 1 `dialect`"]);
+    shift.gives(SIEMENS, NONE, &["P0115 1 G59"]);
+    // Words that move nothing, and the end of a block of Heidenhain.
+    let passed = Scene::new(&format!("{begin}G103 P1\nG187 P2 E0.02\nM83\nM84\nG0 Z20.*\n"));
+    passed.with("anyway = true").gives(HAAS, CLEAN, &[]);
+}
+
+/// Words at which a control stops with an error: what the program has set stays for the next one.
+#[test]
+fn words_at_which_a_control_stops_are_refused() {
+    let begin = "T1 M6\nS9000 M3\nG43 H1 G0 X-6. Y0. Z20.\nG1 X4. Z1.\nG0 Z20.\n";
+    let long = format!("X-6.{}Y0.", " ".repeat(300));
+    for (block, word) in [
+        ("G103 P1", "P0115 7 G103"),
+        ("G43.4 H1", "P0115 7 G43.4"),
+        ("G69", "P0115 7 G69"),
+        ("G94\nG1 X5.", "P0122 8 G1"),
+        ("G82 X4. Z1. R2. P1\nG81 X5. Z1.", "P0119 8 G81"),
+        ("G81 X4. Z1. R2.\nX5. P1", "P0118 8 P"),
+        ("M29 S900\nG18\nG84 X4. Y1. Z1. R2.", "P0115 7 M29"),
+        ("G18\nG84 X4. Y1. Z1. R2.", "P0120 8 G84"),
+        ("M29 S100", "P0115 7 M29"),
+        ("M62", "P0119 7 M62"),
+        ("G4 X1.", "P0119 7 G4"),
+        ("G82 X4. Z1. R2.", "P0119 7 G82"),
+        ("G81 X4. Z1. R2. K2", "P0118 7 K"),
+        ("M4 S100\nG74 X4. Z1. R2. L2", "P0118 8 L"),
+        ("D1", "P0118 7 D"),
+        ("S-100", "P0106 7 S-100"),
+        ("G0 G28 Z0.", "P0117 7 G28"),
+        ("M8 M9", "P0117 7 M8"),
+        ("M3 M5", "P0117 7 M3"),
+        ("X-6. *", "P0115 7 `*`"),
+        ("(ABORT,stop)", "P0115 7 at which LinuxCNC stops"),
+        (long.as_str(), "P0115 7 longer than the 251 bytes"),
+    ] {
+        Scene::new(&format!("{begin}{block}")).gives(LINUXCNC, NONE, &[word]);
+    }
+    let passed =
+        "G61\nG64 P0.01\nM7\nM8\nM9\nM62 P1\nG4 P0.5\nG82 X4. Z1. R2. P1\nX5.\nG80\nG0 Z20.";
+    Scene::new(&format!("{begin}{passed}")).gives(LINUXCNC, CLEAN, &[]);
+    Scene::new(&format!("{begin}G61.1")).gives(FANUC, NONE, &["P0115 7 G61.1"]);
+    for (control, blocks, word) in [
+        // Without the digits below the increment the centre is 0.28 mm farther.
+        (FANUC, "X-100.\nG2 X100. R100.0004 F500.", "V0515"),
+        (FANUC, "X-12.\nX0.\nG1 Y0.\nG2 X.0004 Y.0104 R-5.", "V0515"),
+        (
+            FANUC,
+            "X1.0004 Y-0.0004\nG2 X0.9996 Y0.0004 I5. J5.",
+            "P0120 8 less than two increments from its start",
+        ),
+        (FANUC, "G0 X3.33333\nG92 X0", "P0120 8 G92"),
+        (SIEMENS, "G52 Z-3.\nG91 G28 Z0.", "P0120 8 Z"),
+        (HAAS, "G81 X4. Z1. R2.\nX5. L0", "P0120 8 L0"),
+        (HAAS, "G81 X4. Z1. R2.\nG98 Z1.5", "P0120 8 G81"),
+        (HAAS, "M30 M9", "P0120 7 M30"),
+        (SIEMENS, "G4 X5.", "P0118 7 X"),
+        (FANUC, "G18\nG43 H1 Z20.", "P0120 8 G43"),
+        (SIEMENS, "G20\nG91 G1 X.0001", "P0120 8 X0.0001"),
+        (FANUC, "S900 M4\nG86 X4. Z1. R2. P0\nG80", "P0120 8 G86"),
+    ] {
+        Scene::new(&format!("{begin}{blocks}")).gives(control, NONE, &[word]);
+    }
+    let off = Scene::new(&format!("{begin}M88\nM89\nG1 Z1.")).with("anyway = true");
+    off.gives(HAAS, FINDINGS, &["V0106 9 feeds with the spindle off"]);
+    let turned = Scene::new("T1 M6\nS900 M3\nG0 G43 H1 Z60.\nA-30. C0.\nM428\nG49\nX5.");
+    let turned = turned.placed().with("machine = \"A-C trunnion\"");
+    turned.gives(LINUXCNC, NONE, &["P0120 7 G49"]);
+    let both = Scene::new(&format!("{begin}G81 G80 X4. Z1. R2."));
+    both.gives(FANUC, NONE, &["P0117 7 G81"]);
+    both.gives(LINUXCNC, CLEAN, &[]);
+    for (block, word) in [("(a comment)", "P0115 4 `(`"), ("G64", "P0115 4 G64")] {
+        let text = format!(
+            "%A G71 *\nN10 G90 S9000 M3 F100.\nN20 G0 X-6. Y0. Z20.\n{block}\nN90 %A G71 *\n"
+        );
+        Scene::of(&text).gives(ANY, NONE, &[word]);
+    }
+}
+
+/// A number that two words of a block take, and limits of LinuxCNC that it exceeds in silence or stops at.
+#[test]
+fn numbers_that_controls_share_out_differently_are_refused() {
+    let begin = "G0 X-6. Y0. Z20.\n";
+    let shared = "P0120 some controls give its number to both";
+    for (blocks, word) in [
+        ("G64 P3 G2 X4. I5. Z5.", shared),
+        ("G2 X4. I5. Z5.\nM62 P3 X-6. I-5.", shared),
+        ("G3 X4. Z5. R9. P2 M64", shared),
+        ("G82 X4. Z1. R2. P1 G64", shared),
+        ("G82 X4. Z1. R2. P-1", "P0106 3 P-1"),
+        ("M62 P-1", "P0106 3 P-1"),
+    ] {
+        Scene::new(&format!("{begin}{blocks}")).gives(LINUXCNC, NONE, &[word]);
+    }
+    let many = |count: usize| format!("{begin}#1=4{}\nG0 X#1 Z1.", "#2=2".repeat(count - 1));
+    Scene::new(&many(50)).gives(LINUXCNC, CLEAN, &[]);
+    Scene::new(&many(51)).gives(LINUXCNC, NONE, &["P0140 3"]);
+    let nested = |deep: usize| {
+        let calls = (1..deep).map(|k| format!("O{k}\nM98 P{}\nM99\n", k + 1));
+        let subprograms: String = calls.collect();
+        let main = program(&format!("{begin}M98 P1"));
+        Scene::of(&format!("{main}{subprograms}O{deep}\nG1 X4. Z1.\nM99\n"))
+    };
+    nested(9).gives(LINUXCNC, CLEAN, &[]);
+    nested(10).gives(LINUXCNC, NONE, &["P0139 30"]);
+}
+
+/// LinuxCNC seeks a subprogram after its call, and reads what stands between.
+#[test]
+fn a_subprogram_that_linuxcnc_does_not_find_is_refused() {
+    let scene = |main: &str, subprograms: &str| {
+        Scene::of(&format!("{}{subprograms}", program(&format!("G0 X-6. Y0. Z20.\n{main}"))))
+    };
+    let seven = "O7\nG1 Z3.\nM99\n";
+    let eight = "O8\nM98 P7\nG1 X4. Z1.\nM99\n";
+    scene("M98 P8", &format!("{eight}{seven}")).gives(LINUXCNC, CLEAN, &[]);
+    scene("M98 P7\nM98 P8", &format!("{seven}{eight}")).gives(LINUXCNC, CLEAN, &[]);
+    let not_found = "P0120 9 a call of O7 while it stands before the call";
+    scene("M98 P8", &format!("{seven}{eight}")).gives(LINUXCNC, NONE, &[not_found]);
+    for spelling in ["M98. P7", "M098 P7"] {
+        scene(spelling, seven).gives(LINUXCNC, NONE, &["P0115 3 M98"]);
+    }
+    scene("#<x>=7\nM98 P#<x>", seven).gives(LINUXCNC, NONE, &["P0120 P"]);
+    let passed = |line: &str| format!("O9\n{line}\nM99\n{seven}");
+    scene("M98 P7\nG1 X4. Z1.", &passed("G1 X1.")).gives(LINUXCNC, CLEAN, &[]);
+    for (line, word) in
+        [("(A(B))", "P0103 6 comment"), ("(A", "P0103 6 comment"), ("M98 P#<q>", "P0120 P")]
+    {
+        scene("M98 P7", &passed(line)).gives(LINUXCNC, NONE, &[word]);
+    }
+    Scene::of("G21 G90 G54 G94 S9000 M3\nG0 X-6. Y0. Z20.\nF0\nG1\nF100.\nG1 X4. Z1.\nM30\n")
+        .gives(LINUXCNC, NONE, &["P0122 4 G1"]);
+}
+
+/// No control goes exactly through corners, unless the program says so.
+#[test]
+fn that_corners_are_rounded_is_said() {
+    let blocks = "G0 X-6. Y0. Z20.\nG1 X4. Z1.\nG0 Z20.";
+    let word = "V0502 G61";
+    Scene::new(blocks).gives(LINUXCNC, CLEAN, &[word]);
+    Scene::new(&format!("G61\n{blocks}\nG64 P0.1\nX0.")).gives(LINUXCNC, CLEAN, &[word]);
+    let exact = Scene::new(&format!("G61\n{blocks}")).check(LINUXCNC);
+    assert!(!exact.has("V0502"), "{exact:?}");
+}
+
+/// An optional block, or a comment without an end, after the end of a block.
+#[test]
+fn a_block_after_a_semicolon_can_begin_with_a_comment() {
+    let scene = |after: &str| {
+        let blocks = format!("G0 X-6. Y0. Z1.\nG61\nG1 X-5.;{after}\nX4. Y0.");
+        Scene::new(&blocks).obstacle([-6.0, 7.0, -1.0], [-4.0, 9.0, 9.0]).with("anyway = true")
+    };
+    for after in ["/(AROUND)Y10.", "/9 (AROUND) Y10."] {
+        scene(after).gives(FANUC, FINDINGS, &["V0101 4 the clamp"]);
+        scene(after).gives(ANY, FINDINGS, &["V0101 4 the clamp"]);
+        scene(after).gives(LINUXCNC, CLEAN, &[]);
+    }
+    scene("(A)/(B)Y10.").gives(FANUC, NONE, &["P0101 4 `/`"]);
+    scene("(NOTE").gives(FANUC, NONE, &["P0103 4 comment"]);
+}
+
+/// The stock of BLK FORM is that of the same box in the job.
+#[test]
+fn the_blank_of_klartext_is_the_stock() {
+    let text = "BEGIN PGM A MM\nBLK FORM 0.1 Z X-4 Y-4 Z-2\nBLK FORM 0.2 X+4 Y+4 Z+1\nTOOL CALL 1 Z S9000\n\
+                L Z+20 R0 FMAX M3\nL X-6 Y+0 FMAX\nL Z+0.5 F500\nL X+6\nL Z+20 FMAX\nM2\nEND PGM A MM\n";
+    let scene = |text: &str, shape: &str| {
+        let mut scene = Scene::of(text).placed();
+        scene.file = "a.h";
+        scene.job += &format!("[stock]\n{shape}\nspacing = 0.25\n");
+        scene
+    };
+    let left = |shape: &str| {
+        let points = |report: &JobReport<'_>| report.cut().map(|cut| cut.stock.remaining_points());
+        let left = scene(text, shape).with_report(rules("heidenhain"), points);
+        left.expect("a result").expect("a stock")
+    };
+    assert_eq!(left("blank = true"), left("box = [[-4, -4, -2], [4, 4, 1]]"));
+    for (text, shape, message) in [
+        (text.replace("BLK FORM 0.2", "; "), "blank = true", "J0123"),
+        (text.replace("X+4 Y+4 Z+1", "X-5 Y+4 Z+1"), "blank = true", "J0123"),
+        (text.to_owned(), "blank = true\nbox = [[0, 0, 0], [1, 1, 1]]", "J0127"),
+    ] {
+        scene(&text, shape).gives(HEIDENHAIN, NONE, &[message]);
+    }
+}
