@@ -303,4 +303,73 @@ mod tests {
             (0..RAYS).filter_map(|ray| block.winding(inside, direction(ray), None).ok()).collect();
         assert!(turns.len() > 28 && turns.iter().all(|winding| *winding == 1), "{turns:?}");
     }
+
+    /// Returns a cube from -1 to 1 whose faces are divided into eight by eight squares. All coordinates are dyadic, so
+    /// that boxes end exactly where triangles do.
+    fn divided_cube() -> TriangleBvh {
+        const STEPS: u32 = 8;
+        let at = |k: u32| f64::from(k) / 4.0 - 1.0;
+        let mut vertices = Vec::new();
+        for axis in 0..3 {
+            for side in [-1.0, 1.0] {
+                for (i, k) in (0..STEPS).flat_map(|i| (0..STEPS).map(move |k| (i, k))) {
+                    let corners = [[i, k], [i + 1, k], [i + 1, k + 1], [i, k + 1]].map(|[i, k]| {
+                        let mut corner = Point3::origin();
+                        corner[axis] = side;
+                        corner[(axis + 1) % 3] = at(i);
+                        corner[(axis + 2) % 3] = at(k);
+                        corner
+                    });
+                    let [a, b, c, d] = corners;
+                    let halves = if side > 0.0 { [a, b, c, a, c, d] } else { [a, c, b, a, d, c] };
+                    vertices.extend(halves);
+                }
+            }
+        }
+        // Each vertex once, so that the surface is closed.
+        let first = |k: u32| {
+            let place = vertices[k as usize];
+            vertices.iter().position(|other| *other == place).unwrap_or_default() as u32
+        };
+        let triangles: Vec<[u32; 3]> = (0..vertices.len() as u32 / 3)
+            .map(|k| [first(3 * k), first(3 * k + 1), first(3 * k + 2)])
+            .collect();
+        let mesh = crate::Mesh::new(vertices, triangles, Unit::Millimetre).expect("a cube");
+        TriangleBvh::new(&mesh)
+    }
+
+    /// Rays from points inside that leave the cube within rounding of a line between its squares, where the boxes of the
+    /// leaves end: of the triangles on both sides one is crossed, unless the ray meets the line exactly.
+    #[test]
+    fn a_ray_beside_the_border_of_two_boxes_crosses_one_triangle() {
+        let cube = divided_cube();
+        assert!(cube.has_inside());
+        let mut crossed = 0;
+        for ray in 0..RAYS {
+            let toward = direction(ray);
+            for axis in 0..3 {
+                let [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
+                for (line, step) in (1..8).flat_map(|line| (0..8).map(move |step| (line, step))) {
+                    let mut exit = Point3::origin();
+                    exit[axis] = toward[axis].signum();
+                    exit[u] = f64::from(line) / 4.0 - 1.0;
+                    exit[v] = 0.23 * f64::from(step) - 0.81;
+                    for back in [0.1, 0.3, 0.6] {
+                        let from = exit - back * toward;
+                        if from.coords.amax() >= 1.0 {
+                            continue;
+                        }
+                        match cube.winding(from, toward, None) {
+                            Ok(winding) => {
+                                assert_eq!(winding, 1, "ray {ray} from {from}");
+                                crossed += 1;
+                            }
+                            Err(other) => assert!(matches!(other, Crossing::Edge)),
+                        }
+                    }
+                }
+            }
+        }
+        assert!(crossed > 10_000, "{crossed}");
+    }
 }
