@@ -372,4 +372,66 @@ mod tests {
         }
         assert!(crossed > 10_000, "{crossed}");
     }
+
+    /// A corner of a void lies exactly on the first ray: the three triangles there are no crossings, and another ray
+    /// decides.
+    #[test]
+    fn a_ray_through_a_corner_decides_nothing() {
+        let cube = shapes::cuboid(
+            Point3::new(-64.0, -64.0, -64.0),
+            Point3::new(64.0, 64.0, 64.0),
+            Unit::Millimetre,
+        )
+        .expect("a cube");
+        let centre = Point3::origin();
+        let end = TriangleBvh::new(&cube).end(centre, direction(0));
+        // Divided by a power of two, so that the corner is on the ray to the last bit.
+        let corner = Point3::from(end.coords / 64.0);
+        let base = [[1.0, 0.0, -8.0], [-9.0, 8.0, -7.0], [-9.0, -8.0, -7.0]].map(Point3::from);
+        let first = cube.vertices().len() as u32;
+        let vertices = [cube.vertices(), &[corner], &base].concat();
+        // Its faces are turned inward, toward the origin.
+        let void = [[0, 2, 1], [0, 3, 2], [0, 1, 3], [1, 2, 3]]
+            .map(|triangle| triangle.map(|k: u32| k + first));
+        let triangles = cube.triangles().iter().copied().chain(void);
+        let mesh = crate::Mesh::new(vertices, triangles, Unit::Millimetre).expect("a mesh");
+        let bvh = TriangleBvh::new(&mesh);
+        assert!(bvh.has_inside());
+        assert_eq!(bvh.end(centre, direction(0)), end);
+        assert!(matches!(bvh.winding(centre, direction(0), None), Err(Crossing::Edge)));
+        assert_eq!(bvh.locate(centre), Location::Outside);
+    }
+
+    /// A block that is inside out is hidden in a good one up to one of its faces. Only beside that face is the winding
+    /// number negative.
+    #[test]
+    fn a_piece_inside_out_that_barely_sticks_out_leaves_no_inside() {
+        let large = shapes::cuboid(
+            Point3::new(-10.0, -10.0, -10.0),
+            Point3::new(10.0, 10.0, 10.0),
+            Unit::Millimetre,
+        )
+        .expect("a block");
+        for axis in 0..3 {
+            for side in [-1.0, 1.0] {
+                for (reach, is_hidden) in [(9.999, true), (10.001, false)] {
+                    let [mut low, mut high] = [[-2.0; 3], [2.0; 3]].map(Point3::from);
+                    if side < 0.0 {
+                        low[axis] = -reach;
+                    } else {
+                        high[axis] = reach;
+                    }
+                    let small = shapes::cuboid(low, high, Unit::Millimetre).expect("a block");
+                    let first = large.vertices().len() as u32;
+                    let turned = small.triangles().iter().map(|[a, b, c]| [*b, *a, *c]);
+                    let turned = turned.map(|triangle| triangle.map(|k| k + first));
+                    let vertices = [large.vertices(), small.vertices()].concat();
+                    let triangles = large.triangles().iter().copied().chain(turned);
+                    let mesh = crate::Mesh::new(vertices, triangles, Unit::Millimetre);
+                    let bvh = TriangleBvh::new(&mesh.expect("a mesh"));
+                    assert_eq!(bvh.has_inside(), is_hidden, "axis {axis}, side {side}");
+                }
+            }
+        }
+    }
 }
