@@ -141,6 +141,53 @@ fn binary_errors_name_the_defect_and_the_byte() {
     assert!(missing.to_string().contains("cannot read no/such/part.stl"), "{missing}");
 }
 
+/// Nine different coordinates, each of which is read to its place and refused in its place if it is not finite.
+#[test]
+fn every_coordinate_of_a_binary_triangle_is_read_and_checked() {
+    let mut record = triangle_record();
+    for (k, number) in record.iter_mut().enumerate().skip(3) {
+        *number = (k * k) as f32 + 0.5;
+    }
+    let file = binary("", &[triangle_record(), record]);
+    let mesh = Mesh::from_stl(&file, "", UNIT).expect("a mesh");
+    let read = mesh.triangle(TriangleId(1)).map(|corner| <[f64; 3]>::from(corner.coords));
+    let written = record[3..].iter().map(|number| f64::from(*number));
+    assert!(read.as_flattened().iter().copied().eq(written), "{read:?}");
+    for k in 3..12 {
+        for wrong in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+            let mut damaged = record;
+            damaged[k] = wrong;
+            let said = refusal(&binary("", &[triangle_record(), damaged]));
+            let byte = 84 + 50 + 4 * k;
+            let expected = format!("triangle 1 (from 0), byte {byte}: the coordinate {wrong}");
+            assert!(said.contains(&expected), "{said}");
+        }
+    }
+}
+
+#[test]
+fn every_coordinate_of_an_ascii_triangle_is_read_and_checked() {
+    let words: Vec<String> = (1..10).map(|k| format!("{}.5", k * k)).collect();
+    let text = |words: &[String]| {
+        let rows: Vec<String> =
+            words.chunks(3).map(|row| format!("vertex {}", row.join(" "))).collect();
+        let rows = rows.join("\n");
+        format!("solid x\nfacet normal 0 0 1\nouter loop\n{rows}\nendloop\nendfacet\nendsolid\n")
+    };
+    let mesh = Mesh::from_stl(text(&words).as_bytes(), "", UNIT).expect("a mesh");
+    let read = mesh.triangle(TriangleId(0)).map(|corner| <[f64; 3]>::from(corner.coords));
+    assert!(read.as_flattened().iter().map(ToString::to_string).eq(words.iter().cloned()));
+    for k in 0..9 {
+        for wrong in ["inf", "-1e999", "1e61"] {
+            let mut damaged = words.clone();
+            damaged[k] = wrong.to_owned();
+            let said = refusal(text(&damaged).as_bytes());
+            let expected = format!("line {}: the coordinate `{wrong}` is not", 4 + k / 3);
+            assert!(said.contains(&expected), "{said}");
+        }
+    }
+}
+
 #[test]
 fn welds_vertices_that_differ_by_noise() {
     let mut noisy = triangle_record();

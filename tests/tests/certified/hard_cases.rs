@@ -93,6 +93,21 @@ fn an_exhausted_budget_leaves_a_valid_interval() {
     }
 }
 
+/// The tree of one triangle has a root, a leaf and the triangle: a budget of three examines all of them.
+#[test]
+fn a_budget_counts_nodes_and_triangles() {
+    let bvh = TriangleBvh::new(&soup(&[[[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [0.0, 1.0, 0.0]]]));
+    let deep = pose([0.0, 0.0, -0.5], UP);
+    for (budget, is_decided) in [(0, false), (1, false), (2, false), (3, true), (4, true)] {
+        let certifier = Certifier::new(&bvh, tool("D2Ball")).expect("a profile");
+        let mut certifier = certifier.with_budget(budget);
+        let verdict = certifier.check_pose(&deep);
+        let is_touching = matches!(verdict, PoseVerdict::Touching(_));
+        assert_eq!(is_touching, is_decided, "{budget}: {verdict:?}");
+        assert!(is_touching || matches!(verdict, PoseVerdict::Undecided(_)), "{verdict:?}");
+    }
+}
+
 #[test]
 fn every_simd_level_gives_a_valid_interval() {
     let levels = levels();

@@ -15,8 +15,11 @@
 //! `POSES`, `ZOOMED` and `MOTIONS` are numbers of poses, and of motions proved clear, per tool and part; `CASES` is the
 //! number of all cases together.
 
+mod afar;
 mod allowances;
 mod approach;
+mod bodies;
+mod borders;
 mod brute;
 mod clearance;
 mod closed_forms;
@@ -26,6 +29,7 @@ mod enclosed;
 mod end_in_part;
 mod fields;
 mod hard_cases;
+mod inside_out;
 mod motions;
 mod overhang;
 mod pair;
@@ -33,6 +37,7 @@ mod poses;
 mod ring_of_ties;
 mod rounding;
 mod spinning;
+mod supports;
 mod sweeps;
 mod trajectories;
 mod zoomed;

@@ -5,7 +5,8 @@ use crate::{UP, block, pose, tool};
 use touchoff::certify::{
     Approximation, Certifier, MotionDepth, MotionVerdict, Trajectory, TriangleBvh,
 };
-use touchoff::{Motion, Pose, SurfaceId};
+use touchoff::mesh::shapes;
+use touchoff::{Motion, Pose, SurfaceId, Unit};
 
 /// Radius of the arc about the z axis, and that of the tool, mm.
 const RADIUS: f64 = 20.0;
@@ -97,6 +98,29 @@ fn an_arc_beside_a_wall_is_decided_to_the_tolerance() {
                 assert!((witness.point.x - (RADIUS + BALL - depth)).abs() < 1e-9, "{witness:?}");
             }
             other => panic!("{depth}: {other:?}"),
+        }
+    }
+}
+
+/// Chords of the arc cut into a pillar inside it, which the arc itself passes.
+#[test]
+fn an_arc_about_a_pillar_is_clear_though_its_chords_are_not() {
+    for (gap, clear) in [(1.0, true), (1e-2, true), (1e-4, true), (-1e-4, false), (-1.0, false)] {
+        let pillar = shapes::tube(4.0, RADIUS - BALL - gap, 8.0, 256, 1, Unit::Millimetre);
+        let pillar = TriangleBvh::new(&pillar.expect("a tube"));
+        let mut certifier = Certifier::new(&pillar, tool("Ball")).expect("a profile");
+        let verdict = certifier.check_motion(&Arc { error: 0.0 }, 1e-6);
+        match verdict {
+            MotionVerdict::Clear => assert!(clear, "{gap}"),
+            MotionVerdict::Touching(at, witness) => {
+                let from_tip = witness.point - Arc { error: 0.0 }.pose(at).tip();
+                // Below the centre of the ball its distance from there counts, above it that from the axis.
+                let below = (BALL - from_tip.z).max(0.0);
+                let distance = from_tip.x.hypot(from_tip.y).hypot(below);
+                // The point is inside the tool at the arc's own pose, not only at that of a chord.
+                assert!(!clear && distance < BALL, "{gap}: {verdict:?}");
+            }
+            other => panic!("{gap}: {other:?}"),
         }
     }
 }

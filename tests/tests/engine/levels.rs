@@ -58,6 +58,30 @@ fn queries_keep_their_node_budget() {
     assert!(looser > POSES / 2);
 }
 
+/// A budget of as many nodes as a query visits suffices for it; one node less pays for a coarser level only.
+#[test]
+fn a_budget_is_spent_to_the_last_node() {
+    let part = detailed(20_000);
+    let needed = LodProbe::new(&part, &Fig73, 0, Law::Thesis).expect_err("no nodes").needed;
+    let query = |budget: usize, pose: &Pose| {
+        let mut probe = LodProbe::new(&part, &Fig73, budget, Law::Thesis).expect("enough nodes");
+        probe.wrench(pose)
+    };
+    let mut compared = 0;
+    for k in 0..200 {
+        let pose = ScenePath::Hold.pose(k, 200);
+        let whole = query(1_000_000, &pose);
+        if whole.nodes <= needed {
+            continue;
+        }
+        compared += 1;
+        assert_eq!(query(whole.nodes, &pose), whole);
+        let less = query(whole.nodes - 1, &pose);
+        assert!(less.level > whole.level && less.nodes < whole.nodes, "{less:?}");
+    }
+    assert!(compared > 50, "{compared}");
+}
+
 #[test]
 fn rejects_a_budget_that_is_too_small() {
     let part = detailed(2_000);

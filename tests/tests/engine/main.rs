@@ -5,5 +5,6 @@ mod evaluators;
 mod levels;
 mod query;
 mod scene;
+mod scene_sums;
 mod solids;
 mod units;

@@ -303,4 +303,135 @@ mod tests {
             (0..RAYS).filter_map(|ray| block.winding(inside, direction(ray), None).ok()).collect();
         assert!(turns.len() > 28 && turns.iter().all(|winding| *winding == 1), "{turns:?}");
     }
+
+    /// Returns a cube from -1 to 1 whose faces are divided into eight by eight squares. All coordinates are dyadic, so
+    /// that boxes end exactly where triangles do.
+    fn divided_cube() -> TriangleBvh {
+        const STEPS: u32 = 8;
+        let at = |k: u32| f64::from(k) / 4.0 - 1.0;
+        let mut vertices = Vec::new();
+        for axis in 0..3 {
+            for side in [-1.0, 1.0] {
+                for (i, k) in (0..STEPS).flat_map(|i| (0..STEPS).map(move |k| (i, k))) {
+                    let corners = [[i, k], [i + 1, k], [i + 1, k + 1], [i, k + 1]].map(|[i, k]| {
+                        let mut corner = Point3::origin();
+                        corner[axis] = side;
+                        corner[(axis + 1) % 3] = at(i);
+                        corner[(axis + 2) % 3] = at(k);
+                        corner
+                    });
+                    let [a, b, c, d] = corners;
+                    let halves = if side > 0.0 { [a, b, c, a, c, d] } else { [a, c, b, a, d, c] };
+                    vertices.extend(halves);
+                }
+            }
+        }
+        // Each vertex once, so that the surface is closed.
+        let first = |k: u32| {
+            let place = vertices[k as usize];
+            vertices.iter().position(|other| *other == place).unwrap_or_default() as u32
+        };
+        let triangles: Vec<[u32; 3]> = (0..vertices.len() as u32 / 3)
+            .map(|k| [first(3 * k), first(3 * k + 1), first(3 * k + 2)])
+            .collect();
+        let mesh = crate::Mesh::new(vertices, triangles, Unit::Millimetre).expect("a cube");
+        TriangleBvh::new(&mesh)
+    }
+
+    /// Rays from points inside that leave the cube within rounding of a line between its squares, where the boxes of the
+    /// leaves end: of the triangles on both sides one is crossed, unless the ray meets the line exactly.
+    #[test]
+    fn a_ray_beside_the_border_of_two_boxes_crosses_one_triangle() {
+        let cube = divided_cube();
+        assert!(cube.has_inside());
+        let mut crossed = 0;
+        for ray in 0..RAYS {
+            let toward = direction(ray);
+            for axis in 0..3 {
+                let [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
+                for (line, step) in (1..8).flat_map(|line| (0..8).map(move |step| (line, step))) {
+                    let mut exit = Point3::origin();
+                    exit[axis] = toward[axis].signum();
+                    exit[u] = f64::from(line) / 4.0 - 1.0;
+                    exit[v] = 0.23 * f64::from(step) - 0.81;
+                    for back in [0.1, 0.3, 0.6] {
+                        let from = exit - back * toward;
+                        if from.coords.amax() >= 1.0 {
+                            continue;
+                        }
+                        match cube.winding(from, toward, None) {
+                            Ok(winding) => {
+                                assert_eq!(winding, 1, "ray {ray} from {from}");
+                                crossed += 1;
+                            }
+                            Err(other) => assert!(matches!(other, Crossing::Edge)),
+                        }
+                    }
+                }
+            }
+        }
+        assert!(crossed > 10_000, "{crossed}");
+    }
+
+    /// A corner of a void lies exactly on the first ray: the three triangles there are no crossings, and another ray
+    /// decides.
+    #[test]
+    fn a_ray_through_a_corner_decides_nothing() {
+        let cube = shapes::cuboid(
+            Point3::new(-64.0, -64.0, -64.0),
+            Point3::new(64.0, 64.0, 64.0),
+            Unit::Millimetre,
+        )
+        .expect("a cube");
+        let centre = Point3::origin();
+        let end = TriangleBvh::new(&cube).end(centre, direction(0));
+        // Divided by a power of two, so that the corner is on the ray to the last bit.
+        let corner = Point3::from(end.coords / 64.0);
+        let base = [[1.0, 0.0, -8.0], [-9.0, 8.0, -7.0], [-9.0, -8.0, -7.0]].map(Point3::from);
+        let first = cube.vertices().len() as u32;
+        let vertices = [cube.vertices(), &[corner], &base].concat();
+        // Its faces are turned inward, toward the origin.
+        let void = [[0, 2, 1], [0, 3, 2], [0, 1, 3], [1, 2, 3]]
+            .map(|triangle| triangle.map(|k: u32| k + first));
+        let triangles = cube.triangles().iter().copied().chain(void);
+        let mesh = crate::Mesh::new(vertices, triangles, Unit::Millimetre).expect("a mesh");
+        let bvh = TriangleBvh::new(&mesh);
+        assert!(bvh.has_inside());
+        assert_eq!(bvh.end(centre, direction(0)), end);
+        assert!(matches!(bvh.winding(centre, direction(0), None), Err(Crossing::Edge)));
+        assert_eq!(bvh.locate(centre), Location::Outside);
+    }
+
+    /// A block that is inside out is hidden in a good one up to one of its faces. Only beside that face is the winding
+    /// number negative.
+    #[test]
+    fn a_piece_inside_out_that_barely_sticks_out_leaves_no_inside() {
+        let large = shapes::cuboid(
+            Point3::new(-10.0, -10.0, -10.0),
+            Point3::new(10.0, 10.0, 10.0),
+            Unit::Millimetre,
+        )
+        .expect("a block");
+        for axis in 0..3 {
+            for side in [-1.0, 1.0] {
+                for (reach, is_hidden) in [(9.999, true), (10.001, false)] {
+                    let [mut low, mut high] = [[-2.0; 3], [2.0; 3]].map(Point3::from);
+                    if side < 0.0 {
+                        low[axis] = -reach;
+                    } else {
+                        high[axis] = reach;
+                    }
+                    let small = shapes::cuboid(low, high, Unit::Millimetre).expect("a block");
+                    let first = large.vertices().len() as u32;
+                    let turned = small.triangles().iter().map(|[a, b, c]| [*b, *a, *c]);
+                    let turned = turned.map(|triangle| triangle.map(|k| k + first));
+                    let vertices = [large.vertices(), small.vertices()].concat();
+                    let triangles = large.triangles().iter().copied().chain(turned);
+                    let mesh = crate::Mesh::new(vertices, triangles, Unit::Millimetre);
+                    let bvh = TriangleBvh::new(&mesh.expect("a mesh"));
+                    assert_eq!(bvh.has_inside(), is_hidden, "axis {axis}, side {side}");
+                }
+            }
+        }
+    }
 }

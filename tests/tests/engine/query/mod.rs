@@ -5,6 +5,7 @@
 mod aligned;
 mod anywhere;
 mod bits;
+mod bounds;
 mod compare;
 mod composed;
 mod error;

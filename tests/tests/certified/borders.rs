@@ -1,0 +1,120 @@
+//! Corners at the height at which one surface ends and the next begins: rounding puts each on either side, and its depth
+//! counts for the surface to which it is exactly the nearest.
+//!
+//! The doubles of part and pose are exact numbers, and a pose is the map `p = R q + tip`, inverted here in 256 bits.
+
+use crate::soup;
+use nalgebra::{Matrix3, Point3, Vector3};
+use touchoff::certify::{Certifier, PoseVerdict, TriangleBvh};
+use touchoff::tool::Interpreted;
+use touchoff::{Pose, Tool};
+use touchoff_tests::oracle::big::Big;
+use touchoff_tests::oracle::rng::Rng;
+
+const RADIUS: f64 = 5.0;
+/// The height of the border.
+const BORDER: f64 = 10.0;
+
+fn pin() -> Interpreted {
+    "tool Pin { units mm; profile { start (0, 0); line to (5, 0) as face; line to (5, 10) as lower cutting; line to (5, 20) as upper; line to (0, 20) as top; } niceness cutting: 1; }"
+        .parse()
+        .expect("a tool")
+}
+
+/// Returns a point of the world in the tool's frame.
+fn in_tool(pose: &Pose, point: Point3<f64>) -> [Big; 3] {
+    let rotation: &Matrix3<f64> = pose.rotation();
+    let column = |k: usize| [0, 1, 2].map(|row| Big::exactly(rotation[(row, k)]));
+    let [x, y, z] = [column(0), column(1), column(2)];
+    let cross = |a: &[Big; 3], b: &[Big; 3]| {
+        [[1, 2], [2, 0], [0, 1]].map(|[i, j]| &(&a[i] * &b[j]) - &(&a[j] * &b[i]))
+    };
+    let dot =
+        |a: &[Big; 3], b: &[Big; 3]| &(&(&a[0] * &b[0]) + &(&a[1] * &b[1])) + &(&a[2] * &b[2]);
+    let from_tip = [0, 1, 2].map(|k| &Big::exactly(point[k]) - &Big::exactly(pose.tip()[k]));
+    let rows = [cross(&y, &z), cross(&z, &x), cross(&x, &y)];
+    let determinant = dot(&rows[0], &x);
+    rows.map(|row| &dot(&row, &from_tip) / &determinant)
+}
+
+/// Triangles all of whose corners are at the border as nearly as doubles can be.
+#[test]
+fn a_corner_at_the_border_counts_for_the_surface_that_is_exactly_nearest() {
+    let tool = pin();
+    let [lower, upper] =
+        ["lower", "upper"].map(|name| tool.info().surface_named(name).expect("a surface"));
+    let mut rng = Rng::new(1);
+    let mut owned = [0, 0];
+    for round in 0..120 {
+        let size = [1.0, 1e2, 1e4, 1e6][round % 4];
+        let tip = Point3::from(size * Vector3::from(rng.direction()));
+        let pose = Pose::from_axis(tip, Vector3::from(rng.direction())).expect("an axis");
+        let corners = [[3.0, 0.0], [3.5, 0.3], [3.5, -0.3]]
+            .map(|[x, y]| tip + pose.rotation() * Vector3::new(x, y, BORDER));
+        let bvh = TriangleBvh::new(&soup(&[corners.map(Into::into)]));
+        let mut certifier = Certifier::new(&bvh, &tool).expect("a profile");
+        let depths = [lower, upper].map(|surface| {
+            certifier.deepest_on(surface, &pose, 0.0).expect("a surface").depth.high
+        });
+        for corner in corners {
+            let [x, y, z] = in_tool(&pose, corner);
+            let depth = &Big::exactly(RADIUS) - &(&(&x * &x) + &(&y * &y)).sqrt();
+            let owner = usize::from(z > Big::exactly(BORDER));
+            owned[owner] += 1;
+            assert!(
+                depth <= Big::exactly(depths[owner]),
+                "surface {owner}: {:e} over {:?}, {:e} above the border, at {pose:?}",
+                depth.to_f64(),
+                depths,
+                (&z - &Big::exactly(BORDER)).to_f64()
+            );
+        }
+        // Of two allowances the lesser holds at the border.
+        for (strict, other) in [("lower", "upper"), ("upper", "lower")] {
+            let all = [("face", 9.0), ("top", 9.0), (strict, 1.0), (other, 9.0)];
+            let mut certifier = Certifier::new(&bvh, &tool)
+                .and_then(|certifier| Ok(certifier.with_allowances(all).expect("surfaces")))
+                .expect("a profile");
+            let owner = usize::from(strict == "upper");
+            let is_owned = corners.iter().any(|corner| {
+                let [_, _, z] = in_tool(&pose, *corner);
+                usize::from(z > Big::exactly(BORDER)) == owner
+            });
+            let verdict = certifier.check_pose(&pose);
+            // The triangle is no solid, so that no pose is clear of more than its surface.
+            assert!(!is_owned || verdict != PoseVerdict::SurfaceOnly, "{strict}: {verdict:?}");
+        }
+    }
+    assert!(owned[0] > 60 && owned[1] > 60, "{owned:?}");
+}
+
+/// A plate whose face is at the end of the tool: no point of it is deeper than rounding, and none is missed.
+#[test]
+fn a_corner_at_the_end_of_a_tool_is_within_rounding_of_its_surface() {
+    let tool = pin();
+    let mut rng = Rng::new(2);
+    for round in 0..200 {
+        let size = [1.0, 1e2, 1e4, 1e6][round % 4];
+        let tip = Point3::from(size * Vector3::from(rng.direction()));
+        let pose = Pose::from_axis(tip, Vector3::from(rng.direction())).expect("an axis");
+        let corners = [[0.1, 0.0], [2.5, 0.3], [2.5, -0.3]]
+            .map(|[x, y]| tip + pose.rotation() * Vector3::new(x, y, 2.0 * BORDER));
+        let bvh = TriangleBvh::new(&soup(&[corners.map(Into::into)]));
+        let mut certifier = Certifier::new(&bvh, &tool).expect("a profile");
+        let found = certifier.deepest(&pose, 0.0).depth;
+        // So near to the end, depth is the distance from its plane.
+        let mut deepest = Big::zero();
+        for corner in corners {
+            let [_, _, z] = in_tool(&pose, corner);
+            let depth = &Big::exactly(2.0 * BORDER) - &z;
+            if depth > deepest {
+                deepest = depth;
+            }
+        }
+        let text = format!("{:e} in {found:?} at {pose:?}", deepest.to_f64());
+        assert!(
+            Big::exactly(found.low) <= deepest && deepest <= Big::exactly(found.high),
+            "{text}"
+        );
+    }
+}

@@ -1,0 +1,72 @@
+//! A surface that crosses itself: a prism over a bow tie has material in one lobe and its opposite in the other. A tool
+//! in the latter is neither inside nor outside, and no answer may take it for clear.
+
+use nalgebra::Point3;
+use touchoff::certify::{
+    Certifier, Containment, MotionDepth, MotionVerdict, PoseVerdict, TriangleBvh,
+};
+use touchoff::tool::Interpreted;
+use touchoff::{Mesh, SurfaceId, Unit};
+
+use crate::{UP, motion, pose};
+
+fn bead() -> Interpreted {
+    "tool Bead { units mm; profile { start (0, 0); arc to (0, 0.2) center (0, 0.1) as bead cutting; } niceness cutting: 1; }"
+        .parse()
+        .expect("a tool")
+}
+
+/// Returns the prism, with its triangles as they are or turned over.
+fn bow_tie(turned: bool) -> TriangleBvh {
+    let tie = [[0.0, 0.0], [4.0, 4.0], [4.0, 0.0], [0.0, 3.0]];
+    let vertices = [0.0, 2.0].map(|z| tie.map(|[x, y]| Point3::new(x, y, z))).concat();
+    let caps = [[1, 0, 2], [2, 0, 3], [4, 5, 6], [4, 6, 7]];
+    let walls = (0..4u32).flat_map(|k| {
+        let next = (k + 1) % 4;
+        [[k, next, next + 4], [k, next + 4, k + 4]]
+    });
+    let triangles = caps.into_iter().chain(walls);
+    let triangles = triangles.map(|[a, b, c]| if turned { [b, a, c] } else { [a, b, c] });
+    TriangleBvh::new(&Mesh::new(vertices, triangles, Unit::Millimetre).expect("a mesh"))
+}
+
+#[test]
+fn a_tool_in_a_lobe_that_is_inside_out_is_undecided() {
+    let tool = bead();
+    let mut solids = 0;
+    for turned in [false, true] {
+        let bvh = bow_tie(turned);
+        if !bvh.has_inside() {
+            continue;
+        }
+        solids += 1;
+        let mut certifier = Certifier::new(&bvh, &tool).expect("a profile");
+        let mut found = [0, 0];
+        for x in [0.5, 3.5] {
+            let tip = pose([x, 1.5, 1.0], UP);
+            let at_rest = motion(&tip, &tip);
+            let verdict = certifier.check_pose(&tip);
+            let contained = certifier.containment(&tip);
+            let buried = certifier.is_buried(&tip);
+            let signed = certifier.signed_distance(&tip, 1e-9);
+            let moved = certifier.check_motion(&at_rest, 1e-6);
+            let depth = certifier.motion_depth(SurfaceId(0), &at_rest, 0.0, 1e-6);
+            let depth = depth.expect("a surface");
+            assert_eq!(signed.low, f64::NEG_INFINITY);
+            let is_inside = contained == Containment::Inside(SurfaceId(0));
+            found[usize::from(is_inside)] += 1;
+            if is_inside {
+                assert_eq!(verdict, PoseVerdict::Inside(SurfaceId(0)));
+                assert_eq!((buried, moved), (Some(true), MotionVerdict::Inside(SurfaceId(0))));
+                assert!(depth == MotionDepth::Inside && signed.high < 0.0);
+            } else {
+                assert_eq!(contained, Containment::Undecided);
+                assert_eq!(verdict, PoseVerdict::Undecided(0.0));
+                assert_eq!((buried, moved), (None, MotionVerdict::Undecided(0.0)));
+                assert!(depth == MotionDepth::Undecided(0.0) && signed.high > 0.0);
+            }
+        }
+        assert_eq!(found, [1, 1]);
+    }
+    assert!(solids > 0);
+}

@@ -1,0 +1,109 @@
+//! Distances of convex tools inside a convex part. The part's surface is as far away as the nearest plane of a face is
+//! from the tool, along the face's normal: the difference of the support functions of both.
+
+use crate::pose;
+use nalgebra::{Point3, Vector3};
+use touchoff::certify::{Certifier, TriangleBvh};
+use touchoff::mesh::shapes;
+use touchoff::tool::Interpreted;
+use touchoff::{Mesh, Pose, TriangleId, Unit};
+use touchoff_tests::oracle::rng::Rng;
+
+const SIZE: f64 = 20.0;
+
+/// A convex tool: its text, the least and greatest height that reach farthest in some direction with their radii, and
+/// balls on the axis.
+struct Convex {
+    text: &'static str,
+    /// Circles of its surface, as radius and height.
+    circles: &'static [[f64; 2]],
+    /// Balls about points of the axis, as radius and height of the centre.
+    balls: &'static [[f64; 2]],
+    /// True if the distance is known from both sides.
+    is_exact: bool,
+}
+
+const TOOLS: [Convex; 4] = [
+    Convex {
+        text: "tool Ball { units mm; profile { start (0, 0); arc to (0, 6) center (0, 3) as ball cutting; } niceness cutting: 1; }",
+        circles: &[],
+        balls: &[[3.0, 3.0]],
+        is_exact: true,
+    },
+    Convex {
+        text: "tool Pin { units mm; profile { start (0, 0); line to (2, 0) as face cutting; line to (2, 5), (0, 5) as side; } niceness cutting: 1; }",
+        circles: &[[2.0, 0.0], [2.0, 5.0]],
+        balls: &[],
+        is_exact: true,
+    },
+    Convex {
+        text: "tool Mill { units mm; profile { start (0, 0); arc to (1, 1) center (0, 1) as nose cutting; line to (1, 3), (2, 6), (0, 6) as side; } niceness cutting: 1; }",
+        circles: &[[1.0, 1.0], [2.0, 6.0]],
+        balls: &[[1.0, 1.0]],
+        is_exact: true,
+    },
+    Convex {
+        text: "tool Regions { units mm;
+            curve nose = hypot(d, z - 1) - 1; curve side = 1 - d; curve end = 6 - z;
+            region ball as ball cutting where z <= 1, nose <= 0 { depth: -nose; }
+            region shank where z >= 1, 0 <= side <= end { depth: side; }
+            region end as shank where 0 <= end <= side { depth: end; }
+            niceness cutting: 1; }",
+        circles: &[[1.0, 1.0], [1.0, 6.0]],
+        balls: &[[1.0, 1.0]],
+        is_exact: false,
+    },
+];
+
+impl Convex {
+    /// Returns how far the tool reaches in a direction of the world, a unit vector.
+    fn support(&self, pose: &Pose, direction: Vector3<f64>) -> f64 {
+        let up = direction.dot(&pose.axis());
+        let out = (1.0 - up * up).max(0.0).sqrt();
+        let circles = self.circles.iter().map(|[radius, height]| radius * out + height * up);
+        // The upper half of a ball may be inside the tool, and reaches no farther than the tool then.
+        let balls = self.balls.iter().map(|[radius, height]| radius + height * up);
+        direction.dot(&pose.tip().coords) + circles.chain(balls).fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    fn distance(&self, mesh: &Mesh, pose: &Pose) -> f64 {
+        let faces = (0..mesh.triangles().len() as u32).map(TriangleId);
+        let gaps = faces.map(|id| {
+            let normal = mesh.normal(id).expect("it has an area");
+            normal.dot(&mesh.triangle(id)[0].coords) - self.support(pose, normal)
+        });
+        gaps.fold(f64::INFINITY, f64::min)
+    }
+}
+
+#[test]
+fn a_convex_tool_in_a_convex_part_is_as_far_as_the_nearest_face() {
+    let mesh = shapes::sphere(SIZE, 2, Unit::Millimetre).expect("a sphere");
+    for id in (0..mesh.triangles().len() as u32).map(TriangleId) {
+        let (normal, base) = (mesh.normal(id).expect("it has an area"), mesh.triangle(id)[0]);
+        assert!(mesh.vertices().iter().all(|p| normal.dot(&(p - base)) < 1e-12), "not convex");
+    }
+    let bvh = TriangleBvh::new(&mesh);
+    let mut rng = Rng::new(1);
+    for convex in &TOOLS {
+        let tool: Interpreted = convex.text.parse().expect("a tool");
+        let mut certifier = Certifier::new(&bvh, &tool).expect("a bounded depth");
+        let mut count = 0;
+        while count < if convex.is_exact { 60 } else { 6 } {
+            let tip = Point3::from(rng.between(0.0, SIZE) * Vector3::from(rng.direction()));
+            let pose = pose(tip.into(), rng.direction());
+            let expected = convex.distance(&mesh, &pose);
+            if expected < 1e-3 {
+                continue;
+            }
+            count += 1;
+            let found =
+                certifier.clearance(&pose, if convex.is_exact { 1e-7 } else { 1e-2 }).distance;
+            let text = format!("{}: {expected} in {found:?} at {pose:?}", convex.text);
+            assert!(found.low <= expected + 1e-12, "{text}");
+            if convex.is_exact {
+                assert!(expected - 1e-12 <= found.high && found.width() < 2e-7, "{text}");
+            }
+        }
+    }
+}

@@ -1,0 +1,221 @@
+//! The rounding bounds of a wrench at their limits: each test has a contact for which one term of a bound is all that
+//! covers the error.
+//!
+//! All points of a part are equal here, so that its tree stores them exactly and each has the same evaluation. The
+//! exact sum is then the number of points times one product in 256 bits.
+
+use super::{parts, poses};
+use nalgebra::{Point3, Vector3};
+use touchoff::tool::{Interpreted, PointEvaluation, Tool};
+use touchoff::{Law, Level, Part, Pose, Probe, Scene, Weights, Wrench};
+use touchoff_tests::evaluations::evaluate_points;
+use touchoff_tests::oracle::big::Big;
+use touchoff_tests::oracle::rng::Rng;
+
+type Triple = [Big; 3];
+
+fn ball() -> Interpreted {
+    "tool Ball { units mm; profile { start (0, 0); arc to (0, 6) center (0, 3) as ball cutting; } niceness cutting: 1; }"
+        .parse()
+        .expect("a tool")
+}
+
+/// Returns a part of one point, `count` times, with one normal and the weight 1.
+fn repeated(at: Point3<f64>, normal: Vector3<f64>, count: usize) -> Part {
+    parts::of(vec![at; count], vec![normal; count], vec![1.0; count])
+}
+
+fn to_big(v: Vector3<f64>) -> Triple {
+    [v.x, v.y, v.z].map(Big::exactly)
+}
+
+fn dot(a: &Triple, b: &Triple) -> Big {
+    &(&(&a[0] * &b[0]) + &(&a[1] * &b[1])) + &(&a[2] * &b[2])
+}
+
+fn cross(a: &Triple, b: &Triple) -> Triple {
+    let part = |i: usize, j: usize| &(&a[i] * &b[j]) - &(&a[j] * &b[i]);
+    [part(1, 2), part(2, 0), part(0, 1)]
+}
+
+fn error_of(exact: &Triple, found: Vector3<f64>) -> f64 {
+    let square = (0..3).map(|k| &exact[k] - &Big::exactly(found[k])).map(|part| &part * &part);
+    square.fold(Big::zero(), |sum, part| &sum + &part).sqrt().to_f64()
+}
+
+/// A point in a tool whose tip is at the world's origin, where the difference of both is exact.
+struct ExactContact {
+    pose: Pose,
+    /// The point in the tool's frame, as the query computes it.
+    position: [f64; 3],
+    evaluation: PointEvaluation,
+    normal: Vector3<f64>,
+}
+
+impl ExactContact {
+    fn new(tool: &dyn Tool, pose: Pose, point: Point3<f64>, normal: Vector3<f64>) -> ExactContact {
+        let rotation = pose.rotation();
+        let position = [0, 1, 2].map(|axis| {
+            let column = rotation.column(axis);
+            point.x * column[0] + point.y * column[1] + point.z * column[2]
+        });
+        let evaluation = evaluate_points(tool, Level::new(), &[position])[0].expect("a contact");
+        ExactContact { pose, position, evaluation, normal }
+    }
+
+    /// Returns the rows of the rotation.
+    fn rows(&self) -> [Triple; 3] {
+        [0, 1, 2].map(|row| to_big(self.pose.rotation().row(row).transpose()))
+    }
+
+    /// Returns the force of `count` such points under the law of the thesis, in the world's frame: `m (n - R u)`.
+    fn force(&self, count: usize) -> Triple {
+        let direction = to_big(Vector3::from(self.evaluation.direction));
+        let scale = &Big::exactly(count as f64) * &Big::exactly(self.evaluation.magnitude);
+        let (rows, normal) = (self.rows(), to_big(self.normal));
+        [0, 1, 2].map(|k| &scale * &(&normal[k] - &dot(&rows[k], &direction)))
+    }
+
+    /// Returns the torque of that force about a point of the tool's frame, in the world's frame.
+    fn torque(&self, count: usize, centre: Point3<f64>) -> Triple {
+        let arm = [0, 1, 2].map(|k| &Big::exactly(self.position[k]) - &Big::exactly(centre[k]));
+        let arm = self.rows().map(|row| dot(&row, &arm));
+        cross(&arm, &self.force(count))
+    }
+
+    fn wrench(&self, tool: &dyn Tool, part: &Part, centre: Point3<f64>) -> Wrench {
+        let mut probe = Probe::new(part, tool)
+            .with_law(Law::Thesis)
+            .with_weights(Weights::Unit)
+            .with_centre(centre);
+        probe.wrench(&self.pose)
+    }
+}
+
+/// Asserts that force, torque and integral err by no more than the wrench states.
+fn assert_bounded(contact: &ExactContact, count: usize, wrench: &Wrench, centre: Point3<f64>) {
+    assert_eq!(wrench.colliding, count);
+    let force = error_of(&contact.force(count), wrench.force);
+    let torque = error_of(&contact.torque(count, centre), wrench.torque);
+    let stated = wrench.rounding;
+    assert!(force <= stated.force, "{count} points: {force:e} of {stated:?}");
+    assert!(torque <= stated.torque, "{count} points: {torque:e} of {stated:?}");
+    let ulps = f64::EPSILON / 2.0 * (count as f64 + 6.0) * wrench.integral;
+    let integral = &Big::exactly(count as f64) * &Big::exactly(contact.evaluation.magnitude);
+    let lost = (&integral - &Big::exactly(wrench.integral)).abs().to_f64();
+    assert!(lost <= ulps, "{count} points: {lost:e} of the integral");
+}
+
+fn turned(rng: &mut Rng) -> Pose {
+    Pose::from_quaternion(Point3::origin(), poses::quaternion(rng)).expect("a pose")
+}
+
+/// Returns a pose with the tip at the origin and a point of the ball there, in the world's frame.
+fn touching(rng: &mut Rng) -> (Pose, Point3<f64>) {
+    let pose = turned(rng);
+    let own = Vector3::new(0.0, 0.0, 3.0) + rng.between(0.3, 2.9) * Vector3::from(rng.direction());
+    (pose, Point3::from(pose.rotation() * own))
+}
+
+/// The torque about a centre far away along the force is small, and its error that of the arm.
+#[test]
+fn the_torque_bound_covers_a_centre_far_along_the_force() {
+    let tool = ball();
+    let mut rng = Rng::new(1);
+    for _ in 0..20 {
+        let (pose, point) = touching(&mut rng);
+        let normal = Vector3::from(rng.direction()).map(|part| f64::from(part as f32));
+        let part = repeated(point, normal, 1);
+        let normal = Vector3::from(part.tree().normal(0));
+        let contact = ExactContact::new(&tool, pose, point, normal);
+        let at_tip = contact.wrench(&tool, &part, Point3::origin());
+        let along = pose.rotation().transpose() * at_tip.force.normalize();
+        for distance in [0.0, 1.0, 1e3, 1e6, 1e9] {
+            let centre = Point3::from(distance * along);
+            let wrench = contact.wrench(&tool, &part, centre);
+            assert_bounded(&contact, 1, &wrench, centre);
+        }
+    }
+}
+
+/// Where the normal is the direction out of the tool, the two cancel, and their own rounding is all that is left.
+#[test]
+fn the_force_bound_covers_normals_that_face_the_way_out() {
+    let tool = ball();
+    let mut rng = Rng::new(2);
+    for _ in 0..40 {
+        let (pose, point) = touching(&mut rng);
+        let out = ExactContact::new(&tool, pose, point, Vector3::z()).evaluation.direction;
+        let part = repeated(point, pose.rotation() * Vector3::from(out), 1);
+        let contact = ExactContact::new(&tool, pose, point, Vector3::from(part.tree().normal(0)));
+        let wrench = contact.wrench(&tool, &part, Point3::origin());
+        assert!(wrench.force.norm() < 1e-6 * wrench.integral);
+        assert_bounded(&contact, 1, &wrench, Point3::origin());
+    }
+}
+
+/// The same number is added thousands of times, so that each addition is rounded the same way.
+#[test]
+fn the_force_bound_covers_the_additions_of_many_equal_points() {
+    const COUNT: usize = 20_000;
+    let tool = ball();
+    let mut rng = Rng::new(3);
+    for _ in 0..8 {
+        let (pose, point) = touching(&mut rng);
+        let part = repeated(point, Vector3::from(rng.direction()), COUNT);
+        let contact = ExactContact::new(&tool, pose, point, Vector3::from(part.tree().normal(0)));
+        let wrench = contact.wrench(&tool, &part, Point3::origin());
+        assert_bounded(&contact, COUNT, &wrench, Point3::origin());
+    }
+}
+
+/// A force along its arm has no torque about the tip, only the error of the moments.
+#[test]
+fn the_torque_bound_covers_moments_that_cancel() {
+    let tool = ball();
+    let mut rng = Rng::new(4);
+    for _ in 0..40 {
+        let (pose, point) = touching(&mut rng);
+        let out = ExactContact::new(&tool, pose, point, Vector3::z()).evaluation.direction;
+        // The direction mirrored along the arm differs from itself along the arm.
+        let (out, arm) = (pose.rotation() * Vector3::from(out), point.coords.normalize());
+        let normal = out - 2.0 * out.dot(&arm) * arm;
+        let part = repeated(point, normal, 1);
+        let contact = ExactContact::new(&tool, pose, point, Vector3::from(part.tree().normal(0)));
+        let wrench = contact.wrench(&tool, &part, Point3::origin());
+        assert!(wrench.torque.norm() < 1e-5 * wrench.integral, "{wrench:?}");
+        assert_bounded(&contact, 1, &wrench, Point3::origin());
+    }
+}
+
+/// The first part is hardly touched, so that all of the error is that of the second.
+#[test]
+fn the_bounds_of_a_scene_cover_the_part_that_is_added_last() {
+    let tool = ball();
+    let mut rng = Rng::new(5);
+    for round in 0..40 {
+        let (pose, point) = touching(&mut rng);
+        let normals = [rng.direction(), rng.direction()].map(Vector3::from);
+        let barely = Point3::from(pose.rotation() * Vector3::new(0.0, 0.0, 1e-9));
+        let (light, heavy) = (repeated(barely, normals[0], 1), repeated(point, normals[1], 40));
+        let mut scene = Scene::new(parts::UNIT).with_weights(Weights::Unit);
+        let order = if round % 2 == 0 { [&light, &heavy] } else { [&heavy, &light] };
+        for part in order {
+            scene.add_part(part, Pose::default()).expect("millimetres");
+        }
+        let id = scene.add_tool(&tool);
+        scene.move_tool(id, pose);
+        let wrench = scene.wrench(id);
+        assert_eq!(wrench.colliding, 41);
+        let [light, heavy] = [(barely, &light, 1), (point, &heavy, 40)].map(|(at, part, count)| {
+            let normal = Vector3::from(part.tree().normal(0));
+            let contact = ExactContact::new(&tool, pose, at, normal);
+            (contact.force(count), contact.torque(count, Point3::origin()))
+        });
+        let sum = |a: &Triple, b: &Triple| [0, 1, 2].map(|k| &a[k] + &b[k]);
+        let force = error_of(&sum(&light.0, &heavy.0), wrench.force);
+        let torque = error_of(&sum(&light.1, &heavy.1), wrench.torque);
+        assert!(force <= wrench.rounding.force, "{force:e} of {:?}", wrench.rounding);
+        assert!(torque <= wrench.rounding.torque, "{torque:e} of {:?}", wrench.rounding);
+    }
+}

@@ -1,0 +1,113 @@
+//! Sums over the parts of a scene, for contacts whose depth and niceness are known.
+
+use nalgebra::{Isometry3, Point3, UnitQuaternion, Vector3};
+use touchoff::tool::Interpreted;
+use touchoff::{Cloud, Part, Pose, Scene, TriangleId, Unit};
+
+/// A ball of 3 mm radius about (0, 0, 3). Its niceness falls with the height, so that a deeper point may be nicer.
+fn ball() -> Interpreted {
+    "tool Ball { units mm; profile { start (0, 0); arc to (0, 6) center (0, 3) as ball cutting; } niceness cutting: 1 - z/10 allow rising; }"
+        .parse()
+        .expect("a tool")
+}
+
+fn part_of(points: &[Point3<f64>]) -> Part {
+    let ids = (0..points.len() as u32).map(TriangleId).collect();
+    let normals = vec![Vector3::x(); points.len()];
+    let weights = vec![1.0; points.len()];
+    let cloud = Cloud::new(points.to_vec(), normals, ids, weights, Unit::Millimetre);
+    Part::from_cloud(&cloud.expect("a cloud"))
+}
+
+/// Returns the depth and the niceness of the point of the tool's axis at a height.
+fn known(z: f64) -> [f64; 2] {
+    [3.0 - (z - 3.0).abs(), 1.0 - z / 10.0]
+}
+
+fn near(what: &str, found: f64, expected: f64) {
+    assert!((found - expected).abs() < 1e-9, "{what}: {found} for {expected}");
+}
+
+/// One point per part, in both orders: the deeper of the two is nicer in some pairs and less nice in others.
+#[test]
+fn parts_together_have_the_greatest_depth_and_the_least_niceness() {
+    let tool = ball();
+    let turn = UnitQuaternion::from_euler_angles(0.4, -1.1, 2.3);
+    let frames =
+        [Isometry3::identity(), Isometry3::from_parts(Vector3::new(7.0, -2.0, 4.0).into(), turn)];
+    for heights in [[1.0, 5.5], [5.5, 1.0], [1.0, 4.5], [4.5, 1.0], [2.0, 2.5], [2.5, 2.0]] {
+        for frame in frames {
+            let parts = heights.map(|z| part_of(&[Point3::new(0.0, 0.0, z)]));
+            let mut scene = Scene::new(Unit::Millimetre);
+            let pose = Pose::try_from(frame).expect("a pose");
+            let ids = parts.each_ref().map(|part| scene.add_part(part, pose).expect("millimetres"));
+            let id = scene.add_tool(&tool);
+            scene.move_tool(id, pose);
+            let [[first, nice], [second, other]] = heights.map(known);
+            let wrench = scene.wrench(id);
+            near("depth", wrench.depth(), first.max(second));
+            near("niceness", wrench.niceness.expect("a contact"), nice.min(other));
+            let (part, deepest) = scene.deepest(id).expect("a contact");
+            let deeper = usize::from(second > first);
+            assert_eq!(part, ids[deeper], "{heights:?}");
+            near("depth of the deepest", deepest.depth, first.max(second));
+            let at = frame * Point3::new(0.0, 0.0, heights[deeper]);
+            for found in [deepest.point, wrench.deepest.expect("a contact").point] {
+                near("deepest point", (found - at).norm(), 0.0);
+            }
+        }
+    }
+}
+
+/// A part and its tool are turned together: force and torque turn as vectors do.
+#[test]
+fn force_and_torque_of_a_turned_part_are_in_the_frame_of_the_world() {
+    let tool = ball();
+    let points = [Point3::new(0.5, 1.0, 2.0), Point3::new(-1.5, 0.2, 4.0)];
+    let part = part_of(&points);
+    let measure = |frame: Isometry3<f64>| {
+        let mut scene = Scene::new(Unit::Millimetre);
+        let pose = Pose::try_from(frame).expect("a pose");
+        scene.add_part(&part, pose).expect("millimetres");
+        let id = scene.add_tool(&tool);
+        scene.move_tool(id, pose);
+        scene.wrench(id)
+    };
+    let still = measure(Isometry3::identity());
+    assert!(still.force.norm() > 1.0 && still.torque.norm() > 1.0);
+    for angles in [[0.3, 0.0, 0.0], [0.0, -0.8, 0.0], [0.1, 1.2, -2.0]] {
+        let turn = UnitQuaternion::from_euler_angles(angles[0], angles[1], angles[2]);
+        let frame = Isometry3::from_parts(Vector3::new(50.0, 60.0, -70.0).into(), turn);
+        let moved = measure(frame);
+        near("force", (moved.force - turn * still.force).norm(), 0.0);
+        near("torque", (moved.torque - turn * still.torque).norm(), 0.0);
+    }
+}
+
+/// A disc as high as it is wide reaches farthest from its tip at its upper rim, and a cube from its middle at its
+/// corners: the one just touches the other, along the line from the tip to the middle.
+#[test]
+fn a_rim_that_just_touches_a_corner_is_detected() {
+    let disc: Interpreted =
+        "tool Disc { units mm; profile { start (0, 0); line to (10, 0) as face; line to (10, 10) as rim cutting; line to (0, 10) as top; } niceness cutting: 1; }"
+            .parse()
+            .expect("a tool");
+    let half = 4.0;
+    let corners: Vec<Point3<f64>> = (0..8)
+        .map(|k| Point3::from([0, 1, 2].map(|axis| if k >> axis & 1 == 0 { -half } else { half })))
+        .collect();
+    let cube = part_of(&corners);
+    let rim = Vector3::new(10.0, 0.0, 10.0);
+    let diagonal = Vector3::new(1.0, 1.0, 1.0);
+    let turn = UnitQuaternion::rotation_between(&-diagonal, &rim).expect("no half turn");
+    let mut scene = Scene::new(Unit::Millimetre);
+    let part = scene.add_part(&cube, Pose::default()).expect("millimetres");
+    let id = scene.add_tool(&disc);
+    for (inside, touches) in [(1e-3, true), (1e-5, true), (-1e-3, false)] {
+        let middle = Point3::from(rim.normalize() * (rim.norm() - inside + 3f64.sqrt() * half));
+        let frame = Isometry3::from_parts(middle.coords.into(), turn);
+        scene.move_part(part, Pose::try_from(frame).expect("a pose"));
+        assert_eq!(scene.detect(id), touches.then_some(part), "{inside}");
+        assert_eq!(scene.pair_wrench(id, part).colliding, usize::from(touches), "{inside}");
+    }
+}
