@@ -1,5 +1,6 @@
 //! Oracles that share no code with the project, and the scenes and tools that the tests use.
 
+pub mod checks;
 pub mod count;
 pub mod evaluations;
 pub mod fixtures;
@@ -7,5 +8,7 @@ pub mod haptics;
 pub mod libraries;
 pub mod library;
 pub mod oracle;
+pub mod points;
 pub mod profiles;
+pub mod tally;
 pub mod turns;

@@ -1,7 +1,7 @@
 //! The texts of the library's tools.
 
 use std::path::{Path, PathBuf};
-use touchoff::tool::Interpreted;
+use touchoff::tool::{Interpreted, Tool};
 use touchoff_dsl::CheckedTool;
 use touchoff_dsl::source::Source;
 
@@ -29,6 +29,31 @@ pub fn files() -> Vec<PathBuf> {
 pub fn library() -> Vec<Source> {
     let read = |path| Source::read(path).expect("the library has the file");
     files().into_iter().map(read).collect()
+}
+
+/// Returns a compiled tool of the library.
+///
+/// # Panics
+/// If there is none of that name.
+pub fn tool(name: &str) -> &'static dyn Tool {
+    touchoff_tools::find(name).unwrap_or_else(|| panic!("the library has no {name}"))
+}
+
+/// Reads a file of the library, by its name without the ending.
+///
+/// # Panics
+/// If the library has no such file.
+pub fn source(name: &str) -> Source {
+    Source::read(folder().join(name).with_extension("tool")).expect("the library has the file")
+}
+
+/// Checks a file of the library, by its name without the ending.
+///
+/// # Panics
+/// If the library has no such file.
+pub fn checked(name: &str) -> Box<CheckedTool> {
+    let compiled = touchoff_dsl::compile(&source(name));
+    compiled.outcome.unwrap_or_else(|refusal| panic!("{name}: {refusal:?}")).tool
 }
 
 /// Compiles a tool of the library from its text, for the interpreter and for proofs.

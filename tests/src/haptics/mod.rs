@@ -20,10 +20,4 @@ pub fn upright(z: f64) -> Pose {
     Pose::from_axis(Point3::new(0.0, 0.0, z), Vector3::z()).expect("a pose")
 }
 
-/// Returns a tool of the library.
-///
-/// # Panics
-/// If there is none of that name.
-pub fn tool(name: &str) -> &'static dyn touchoff::Tool {
-    touchoff_tools::find(name).expect("a tool of the library")
-}
+pub use crate::library::tool;

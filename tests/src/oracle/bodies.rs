@@ -1,143 +1,260 @@
-//! Solids without an axis: a block, and an L-bracket with a hole. Their surfaces are patches. The depth of a point
-//! is its distance to the nearest patch, found by clamping to each. Splitting surfaces are used only to bound
-//! [`Oracle::border_distance`].
+//! Solids without an axis: a block, and an L-bracket with a hole, by their faces. Inside, the depth of a point is its
+//! distance to the nearest face of its zone; outside, its distance is that to boxes and to the hole.
 
+use super::real::Real;
 use super::rng::Rng;
 use super::{Oracle, OracleEvaluation};
 use std::sync::OnceLock;
 
-type P3 = [f64; 3];
+/// A point in space.
+type P3<T> = [T; 3];
 
-/// A patch of a surface.
-#[derive(Clone, Copy, Debug)]
-enum Patch {
-    /// The rectangle from `low` to `high`, which are equal along `axis`, except for a hole through it.
-    Plate { axis: usize, out: f64, low: P3, high: P3, hole: Option<Hole> },
-    /// The wall of a hole, from z = 0 to a height; the material is around it.
-    Bore { hole: Hole, height: f64 },
+/// A solid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Body {
+    /// The block of 40 × 30 × 20, standing on the middle of its underside.
+    Block,
+    /// The bracket: legs of 30 along x and 24 along z, 20 wide, 6 thick, with a hole of radius 3.3 through the lying
+    /// leg, 10 from the origin.
+    LBracket,
 }
 
-/// A round hole along z.
-#[derive(Clone, Copy, Debug)]
-struct Hole {
-    centre: [f64; 2],
-    radius: f64,
+/// The nearest feature of a region.
+#[derive(Clone, Copy)]
+enum Face {
+    /// The plane on which a coordinate equals `at`. The depth is `sign * (coordinate - at)`, so `sign` gives the side
+    /// of the material.
+    Plane { axis: usize, at: f64, sign: f64 },
+    /// Both planes `y = ±half`.
+    Sides { half: f64 },
+    /// The wall of the hole.
+    Bore,
+    /// The inner edge.
+    Edge,
 }
 
-impl Hole {
-    fn offset(&self, p: P3) -> [f64; 2] {
-        [p[0] - self.centre[0], p[1] - self.centre[1]]
-    }
-
-    /// Returns the point of the rim, or wall, that is nearest to `p`.
-    fn rim(&self, p: P3) -> P3 {
-        let [x, y] = self.offset(p);
-        let part = self.radius / x.hypot(y);
-        [self.centre[0] + part * x, self.centre[1] + part * y, p[2]]
-    }
+/// The zone of the solid in which a region may lie.
+#[derive(Clone, Copy, PartialEq)]
+enum Zone {
+    Anywhere,
+    /// The horizontal leg, up to the inner edge.
+    Lying,
+    /// The part below and behind the inner edge.
+    Heel,
+    /// The vertical leg, from the inner edge upward.
+    Standing,
 }
 
-impl Patch {
-    fn plate(axis: usize, out: f64, low: P3, high: P3) -> Patch {
-        assert_eq!(low[axis], high[axis]);
-        Patch::Plate { axis, out, low, high, hole: None }
+/// The standing leg's inner face and the lying leg's upper one, which meet in the inner edge.
+const WALL: f64 = -4.0;
+const LEDGE: f64 = 6.0;
+/// The hole's axis and radius.
+const BORE: f64 = 10.0;
+const BORE_RADIUS: f64 = 3.3;
+
+const fn plane(axis: usize, at: f64, sign: f64) -> Face {
+    Face::Plane { axis, at, sign }
+}
+
+const BLOCK: [(&str, Zone, Face); 6] = [
+    ("left", Zone::Anywhere, plane(0, -20.0, 1.0)),
+    ("right", Zone::Anywhere, plane(0, 20.0, -1.0)),
+    ("front", Zone::Anywhere, plane(1, -15.0, 1.0)),
+    ("back", Zone::Anywhere, plane(1, 15.0, -1.0)),
+    ("bottom", Zone::Anywhere, plane(2, 0.0, 1.0)),
+    ("top", Zone::Anywhere, plane(2, 20.0, -1.0)),
+];
+
+const BRACKET: [(&str, Zone, Face); 13] = [
+    ("lying_bottom", Zone::Lying, plane(2, 0.0, 1.0)),
+    ("lying_top", Zone::Lying, plane(2, LEDGE, -1.0)),
+    ("lying_end", Zone::Lying, plane(0, 20.0, -1.0)),
+    ("lying_side", Zone::Lying, Face::Sides { half: 10.0 }),
+    ("bore", Zone::Lying, Face::Bore),
+    ("heel_bottom", Zone::Heel, plane(2, 0.0, 1.0)),
+    ("heel_back", Zone::Heel, plane(0, -10.0, 1.0)),
+    ("heel_side", Zone::Heel, Face::Sides { half: 10.0 }),
+    ("heel_edge", Zone::Heel, Face::Edge),
+    ("standing_back", Zone::Standing, plane(0, -10.0, 1.0)),
+    ("standing_inner", Zone::Standing, plane(0, WALL, -1.0)),
+    ("standing_side", Zone::Standing, Face::Sides { half: 10.0 }),
+    ("standing_top", Zone::Standing, plane(2, 24.0, -1.0)),
+];
+
+/// Returns the vector from the hole's axis.
+fn from_bore_axis<T: Real>(p: &P3<T>) -> [T; 2] {
+    [p[0].minus(&T::exactly(BORE)), p[1].clone()]
+}
+
+/// Returns the vector from the inner edge.
+fn from_edge<T: Real>(p: &P3<T>) -> [T; 2] {
+    [p[0].minus(&T::exactly(WALL)), p[2].minus(&T::exactly(LEDGE))]
+}
+
+impl Face {
+    /// Returns the signed distance inside the face; for the edge, the distance from it.
+    fn inward<T: Real>(self, p: &P3<T>) -> T {
+        match self {
+            Face::Plane { axis, at, sign } => {
+                T::exactly(sign).times(&p[axis].minus(&T::exactly(at)))
+            }
+            Face::Sides { half } => T::exactly(half).minus(&p[1].absolute()),
+            Face::Bore => {
+                let [x, y] = from_bore_axis(p);
+                x.hypot(&y).minus(&T::decimal(BORE_RADIUS))
+            }
+            Face::Edge => {
+                let [x, z] = from_edge(p);
+                x.hypot(&z)
+            }
+        }
     }
 
-    /// Returns the nearest point of the patch.
-    fn foot(&self, p: P3) -> P3 {
-        match *self {
-            Patch::Plate { low, high, hole, .. } => {
-                let foot = [0, 1, 2].map(|k| p[k].clamp(low[k], high[k]));
-                match hole {
-                    Some(hole) if length2(hole.offset(foot)) < hole.radius => hole.rim(foot),
-                    _ => foot,
+    fn direction<T: Real>(self, p: &P3<T>) -> P3<T> {
+        match self {
+            Face::Plane { axis, sign, .. } => {
+                std::array::from_fn(|k| T::exactly(if k == axis { -sign } else { 0.0 }))
+            }
+            Face::Sides { .. } => {
+                let sign = if p[1] < T::zero() { -1.0 } else { 1.0 };
+                [0.0, sign, 0.0].map(T::exactly)
+            }
+            Face::Bore => {
+                let [x, y] = from_bore_axis(p);
+                let norm = x.hypot(&y);
+                [x.negated().over(&norm), y.negated().over(&norm), T::zero()]
+            }
+            Face::Edge => {
+                let [x, z] = from_edge(p);
+                match x.hypot(&z) {
+                    norm if norm == T::zero() => [0.0, 0.0, 1.0].map(T::exactly),
+                    norm => [x.negated().over(&norm), T::zero(), z.negated().over(&norm)],
                 }
             }
-            Patch::Bore { hole, height } => {
-                let [x, y, z] = hole.rim(p);
-                [x, y, z.clamp(0.0, height)]
-            }
         }
     }
 
-    fn distance(&self, p: P3) -> f64 {
-        match *self {
-            // More accurate than by the foot.
-            Patch::Bore { hole, height } => {
-                let height_outside = p[2] - p[2].clamp(0.0, height);
-                (length2(hole.offset(p)) - hole.radius).abs().hypot(height_outside)
-            }
-            Patch::Plate { .. } => {
-                let foot = self.foot(p);
-                let [x, y, z] = [0, 1, 2].map(|k| foot[k] - p[k]);
-                x.hypot(y).hypot(z)
-            }
+    /// Returns the distance to the nearest point at which the direction is undefined, or for which another direction is
+    /// equally good.
+    fn singularity_distance<T: Real>(self, p: &P3<T>) -> f64 {
+        let [a, b] = match self {
+            Face::Plane { .. } | Face::Sides { .. } => return f64::INFINITY,
+            Face::Bore => from_bore_axis(p),
+            Face::Edge => from_edge(p),
+        };
+        a.hypot(&b).to_f64()
+    }
+}
+
+impl Zone {
+    /// Returns the distance by which a point is outside the zone.
+    fn distance<T: Real>(self, p: &P3<T>) -> T {
+        let [beyond_wall, above_ledge] = from_edge(p);
+        let signed = match self {
+            Zone::Anywhere => T::zero(),
+            Zone::Lying => beyond_wall.negated(),
+            Zone::Heel => beyond_wall.most(above_ledge),
+            Zone::Standing => beyond_wall.most(above_ledge.negated()),
+        };
+        signed.most(T::zero())
+    }
+}
+
+impl Body {
+    fn faces(self) -> &'static [(&'static str, Zone, Face)] {
+        match self {
+            Body::Block => &BLOCK,
+            Body::LBracket => &BRACKET,
         }
     }
 
-    /// Returns the unit vector from a point inside to the foot; out of the material where they coincide.
-    fn direction(&self, p: P3) -> P3 {
-        match *self {
-            Patch::Plate { axis, out, .. } => {
-                let foot = self.foot(p);
-                let direction = [0, 1, 2].map(|k| foot[k] - p[k]);
-                if (0..3).all(|k| k == axis || direction[k] == 0.0) {
-                    let mut normal = [0.0; 3];
-                    normal[axis] = out;
-                    return normal;
-                }
-                let size = direction[0].hypot(direction[1]).hypot(direction[2]);
-                direction.map(|c| c / size)
-            }
-            Patch::Bore { hole, .. } => {
-                let [x, y] = hole.offset(p);
-                let size = x.hypot(y);
-                [-x / size, -y / size, 0.0]
-            }
+    /// Returns the nearest region of a zone and the depth there, negative outside, and the same of the next.
+    fn nearest_two<T: Real>(self, zone: Zone, p: &P3<T>) -> Option<[(usize, T); 2]> {
+        let own = self.faces().iter().enumerate().filter(|(_, (_, other, _))| *other == zone);
+        let mut all: Vec<(usize, T)> =
+            own.map(|(region, (.., face))| (region, face.inward(p))).collect();
+        all.sort_by(|a, b| a.1.partial_cmp(&b.1).expect("a number"));
+        let mut all = all.into_iter();
+        Some([all.next()?, all.next()?])
+    }
+
+    fn ranked<T: Real>(self, p: &P3<T>) -> [(usize, T); 2] {
+        let zones = [Zone::Anywhere, Zone::Lying, Zone::Heel, Zone::Standing];
+        let own = zones.into_iter().filter(|zone| zone.distance(p) == T::zero());
+        let ranked = own.filter_map(|zone| self.nearest_two(zone, p));
+        let deeper = |a: [(usize, T); 2], b: [(usize, T); 2]| if b[0].1 > a[0].1 { b } else { a };
+        ranked.reduce(deeper).expect("every place is in a zone that has faces")
+    }
+
+    /// Returns the region of the nearest face in the point's zone, among equals the first listed, and the depth of the
+    /// point, negative outside. Zones meet in planes; there the zone counts in which the point is deeper.
+    pub fn nearest<T: Real>(self, p: &P3<T>) -> (usize, T) {
+        let [nearest, _] = self.ranked(p);
+        nearest
+    }
+
+    /// Returns the depth of a point; minus the distance outside.
+    pub fn depth<T: Real>(self, p: &P3<T>) -> T {
+        let (_, inward) = self.nearest(p);
+        if inward < T::zero() { self.distance_outside(p).negated() } else { inward }
+    }
+
+    /// Returns the depth of a region at a point, whether or not the region owns it.
+    pub fn depth_of<T: Real>(self, region: usize, p: &P3<T>) -> T {
+        self.faces()[region].2.inward(p)
+    }
+
+    /// Returns the distance by which a point misses a region: beyond the border to a neighbouring zone, at least its
+    /// distance from the zone.
+    pub fn excess_distance<T: Real>(self, region: usize, p: &P3<T>) -> T {
+        let excess = self.depth_of(region, p).minus(&self.nearest(p).1).absolute();
+        excess.most(self.faces()[region].1.distance(p))
+    }
+
+    /// Returns the unit vector from a point inside to the face of a region.
+    pub fn direction_of<T: Real>(self, region: usize, p: &P3<T>) -> P3<T> {
+        self.faces()[region].2.direction(p)
+    }
+
+    /// Returns the distance to the nearest point at which the direction of a region does not exist.
+    pub fn singularity_distance_of<T: Real>(self, region: usize, p: &P3<T>) -> f64 {
+        self.faces()[region].2.singularity_distance(p)
+    }
+
+    /// Returns the distance from a point outside to the boxes of the solid, or to the hole if that is nearest.
+    fn distance_outside<T: Real>(self, p: &P3<T>) -> T {
+        let to_box = |low: [f64; 3], high: [f64; 3]| {
+            let outside = |k: usize| {
+                let below = T::exactly(low[k]).minus(&p[k]);
+                below.most(p[k].minus(&T::exactly(high[k]))).most(T::zero())
+            };
+            outside(0).hypot(&outside(1)).hypot(&outside(2))
+        };
+        let [low, high] = self.bounds();
+        if self == Body::Block {
+            return to_box(low, high);
         }
-    }
-}
-
-fn length2([x, y]: [f64; 2]) -> f64 {
-    x.hypot(y)
-}
-
-/// A region that wins a point: its index, its patch and the distance to the patch.
-type Winner = (usize, Patch, f64);
-
-/// Returns the winner of a point among candidate regions, each with its patch: the nearest, or among equals the
-/// first listed. Also returns how much farther the next is.
-fn nearest(candidates: impl Iterator<Item = (usize, Patch)>, p: P3) -> Option<(Winner, f64)> {
-    let all: Vec<Winner> =
-        candidates.map(|(region, patch)| (region, patch, patch.distance(p))).collect();
-    let winner = *all.iter().min_by(|a, b| a.2.total_cmp(&b.2).then(a.0.cmp(&b.0)))?;
-    let others = all.iter().filter(|other| other.0 != winner.0);
-    let margin = others.fold(f64::INFINITY, |m, other| m.min(other.2 - winner.2));
-    Some((winner, margin))
-}
-
-/// The queries of the two solids.
-trait Body {
-    const REGIONS: &'static [&'static str];
-    fn inside(&self, p: P3) -> bool;
-    fn patches(&self) -> Vec<Patch>;
-    /// Returns the regions that may own a point inside, each with its patch.
-    fn candidates(&self, p: P3) -> Vec<(usize, Patch)>;
-    /// Returns the distance to points that other regions may own.
-    fn distance_to_other_regions(&self, p: P3) -> f64;
-
-    fn distance(&self, p: P3) -> f64 {
-        self.patches().iter().fold(f64::INFINITY, |m, patch| m.min(patch.distance(p)))
+        let lying = to_box(low, [high[0], high[1], LEDGE]);
+        let standing = to_box(low, [WALL, high[1], high[2]]);
+        let [x, y] = from_bore_axis(p);
+        // Over the hole, its rim is the nearest point of the horizontal leg.
+        let bore = T::decimal(BORE_RADIUS).minus(&x.hypot(&y)).most(T::zero());
+        bore.hypot(&lying).least(standing)
     }
 
-    fn winner(&self, p: P3) -> Option<(Winner, f64)> {
-        if self.inside(p) { nearest(self.candidates(p).into_iter(), p) } else { None }
+    /// Returns the least and the largest coordinates.
+    fn bounds(self) -> [P3<f64>; 2] {
+        match self {
+            Body::Block => [[-20.0, -15.0, 0.0], [20.0, 15.0, 20.0]],
+            Body::LBracket => [[-10.0, -10.0, 0.0], [20.0, 10.0, 24.0]],
+        }
     }
 
     /// Returns points on borders, found by bisection between points of which one is inside and the other has
     /// another owner or none.
-    fn borders(&self, low: P3, high: P3) -> Vec<Vec<P3>> {
-        let owner = |p: P3| self.winner(p).map(|((region, ..), _)| region);
+    fn borders(self) -> Vec<Vec<P3<f64>>> {
+        let owner = |p: P3<f64>| self.evaluate(p).map(|evaluation| evaluation.owner);
+        let [low, high] = self.bounds();
         let mut rng = Rng::new(77);
         let mut random_point = || [0, 1, 2].map(|k| rng.between(low[k] - 1.0, high[k] + 1.0));
         let mut points = Vec::new();
@@ -153,273 +270,162 @@ trait Body {
             }
             points.push(if first.is_some() { a } else { b });
         }
-        points.chunks(66).map(<[P3]>::to_vec).collect()
+        points.chunks(66).map(<[P3<f64>]>::to_vec).collect()
     }
 }
 
-macro_rules! body_oracle {
-    ($name:literal, $extent:expr, $low:expr, $high:expr) => {
-        fn name(&self) -> &'static str {
-            $name
+impl Oracle for Body {
+    fn name(&self) -> &'static str {
+        match self {
+            Body::Block => "Block",
+            Body::LBracket => "LBracket",
         }
-        fn regions(&self) -> Vec<&str> {
-            Self::REGIONS.to_vec()
-        }
-        fn evaluate(&self, p: P3) -> Option<OracleEvaluation> {
-            let ((owner, patch, depth), _) = self.winner(p)?;
-            Some(OracleEvaluation {
-                owner,
-                depth,
-                magnitude: depth,
-                direction: patch.direction(p),
-                niceness: 0.0,
-            })
-        }
-        fn gradient(&self, p: P3) -> Option<P3> {
-            Some(self.evaluate(p)?.direction.map(|c| -c))
-        }
-        fn signed_distance(&self, p: P3) -> f64 {
-            if self.inside(p) { -self.distance(p) } else { self.distance(p) }
-        }
-        fn border_distance(&self, p: P3) -> f64 {
-            // A step changes each distance by at most its own length.
-            match self.winner(p) {
-                Some(((.., depth), margin)) => {
-                    depth.min(margin / 2.0).min(self.distance_to_other_regions(p))
-                }
-                None => self.distance(p),
-            }
-        }
-        fn is_revolved(&self) -> bool {
-            false
-        }
-        fn curve_points(&self) -> Vec<Vec<P3>> {
-            static FOUND: OnceLock<Vec<Vec<P3>>> = OnceLock::new();
-            FOUND.get_or_init(|| self.borders($low, $high)).clone()
-        }
-        fn extent(&self) -> [f64; 2] {
-            $extent
-        }
-    };
-}
-
-/// Returns every combination of one number per axis.
-fn grid(x: &[f64], y: &[f64], z: &[f64]) -> Vec<P3> {
-    let column = |x: f64, y: f64| z.iter().map(move |z| [x, y, *z]);
-    x.iter().flat_map(|x| y.iter().flat_map(move |y| column(*x, *y))).collect()
-}
-
-/// The block of 40 × 30 × 20, standing on the middle of its underside.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Block;
-
-impl Body for Block {
-    const REGIONS: &'static [&'static str] = &["left", "right", "front", "back", "bottom", "top"];
-
-    fn inside(&self, [x, y, z]: P3) -> bool {
-        x.abs() <= 20.0 && y.abs() <= 15.0 && (0.0..=20.0).contains(&z)
     }
 
-    fn patches(&self) -> Vec<Patch> {
-        let (low, high) = ([-20.0, -15.0, 0.0], [20.0, 15.0, 20.0]);
-        let mut patches = Vec::new();
-        for axis in 0..3 {
-            for (out, from) in [(-1.0, low), (1.0, high)] {
-                let at = |mut p: P3| {
-                    p[axis] = from[axis];
-                    p
-                };
-                patches.push(Patch::plate(axis, out, at(low), at(high)));
-            }
-        }
-        patches
+    fn regions(&self) -> Vec<&str> {
+        self.faces().iter().map(|(name, ..)| *name).collect()
     }
 
-    fn candidates(&self, _: P3) -> Vec<(usize, Patch)> {
-        self.patches().into_iter().enumerate().collect()
-    }
-
-    fn distance_to_other_regions(&self, _: P3) -> f64 {
-        f64::INFINITY
-    }
-}
-
-impl Oracle for Block {
-    body_oracle!("Block", [25.0, 20.0], [-20.0, -15.0, 0.0], [20.0, 15.0, 20.0]);
-
-    fn singularity_distance(&self, _: P3) -> f64 {
-        f64::INFINITY
-    }
-
-    fn corner_points(&self) -> Vec<P3> {
-        // Vertices, middles of edges and faces, and the ends of the ridges inside.
-        let mut all = grid(&[-20.0, 0.0, 20.0], &[-15.0, 0.0, 15.0], &[0.0, 10.0, 20.0]);
-        all.extend(grid(&[-10.0, 10.0], &[-5.0, 5.0], &[10.0]));
-        all
-    }
-}
-
-/// The bracket: legs of 30 along x and 24 along z, 20 wide, 6 thick, with a hole of radius 3.3 through the lying
-/// leg.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct LBracket;
-
-const HOLE: Hole = Hole { centre: [10.0, 0.0], radius: 3.3 };
-/// The standing leg's inner face and the lying leg's upper one, which meet in the inner edge.
-const WALL_POSITION: f64 = -4.0;
-const LEDGE_HEIGHT: f64 = 6.0;
-
-impl LBracket {
-    fn bottom() -> Patch {
-        Self::drilled(-1.0, [-10.0, -10.0, 0.0], [20.0, 10.0, 0.0])
-    }
-    fn ledge() -> Patch {
-        Self::drilled(1.0, [WALL_POSITION, -10.0, LEDGE_HEIGHT], [20.0, 10.0, LEDGE_HEIGHT])
-    }
-    fn drilled(out: f64, low: P3, high: P3) -> Patch {
-        Patch::Plate { axis: 2, out, low, high, hole: Some(HOLE) }
-    }
-    fn end() -> Patch {
-        Patch::plate(0, 1.0, [20.0, -10.0, 0.0], [20.0, 10.0, LEDGE_HEIGHT])
-    }
-    fn back() -> Patch {
-        Patch::plate(0, -1.0, [-10.0, -10.0, 0.0], [-10.0, 10.0, 24.0])
-    }
-    fn wall() -> Patch {
-        Patch::plate(0, 1.0, [WALL_POSITION, -10.0, LEDGE_HEIGHT], [WALL_POSITION, 10.0, 24.0])
-    }
-    fn top() -> Patch {
-        Patch::plate(2, 1.0, [-10.0, -10.0, 24.0], [WALL_POSITION, 10.0, 24.0])
-    }
-    fn bore() -> Patch {
-        Patch::Bore { hole: HOLE, height: LEDGE_HEIGHT }
-    }
-    /// Returns the rectangle of a leg on both sides. Each side is an L: two rectangles, one of which ends at `x`
-    /// and `z`.
-    fn sides([x, z]: [f64; 2]) -> [Patch; 2] {
-        [-10.0, 10.0].map(|y: f64| Patch::plate(1, y.signum(), [-10.0, y, 0.0], [x, y, z]))
-    }
-}
-
-const LYING: [f64; 2] = [20.0, LEDGE_HEIGHT];
-const STANDING: [f64; 2] = [WALL_POSITION, 24.0];
-
-impl Body for LBracket {
-    const REGIONS: &'static [&'static str] = &[
-        "lying_bottom",
-        "lying_top",
-        "lying_end",
-        "lying_side",
-        "bore",
-        "heel_bottom",
-        "heel_back",
-        "heel_side",
-        "heel_edge",
-        "standing_back",
-        "standing_inner",
-        "standing_side",
-        "standing_top",
-    ];
-
-    fn inside(&self, [x, y, z]: P3) -> bool {
-        let lying = (WALL_POSITION..=20.0).contains(&x) && (0.0..=LEDGE_HEIGHT).contains(&z);
-        let standing = (-10.0..=WALL_POSITION).contains(&x) && (0.0..=24.0).contains(&z);
-        (lying || standing) && y.abs() <= 10.0 && length2(HOLE.offset([x, y, z])) >= HOLE.radius
-    }
-
-    fn patches(&self) -> Vec<Patch> {
-        let faces = [Self::bottom(), Self::ledge(), Self::end(), Self::back(), Self::wall()];
-        let rest = [Self::top(), Self::bore()];
-        let sides = [LYING, STANDING].into_iter().flat_map(Self::sides);
-        faces.into_iter().chain(rest).chain(sides).collect()
-    }
-
-    fn candidates(&self, [x, _, z]: P3) -> Vec<(usize, Patch)> {
-        let sides = |region: usize, leg| Self::sides(leg).map(|side| (region, side));
-        let mut all = Vec::new();
-        if x >= WALL_POSITION {
-            all.extend([(0, Self::bottom()), (1, Self::ledge()), (2, Self::end())]);
-            all.extend(sides(3, LYING));
-            all.push((4, Self::bore()));
-        }
-        if x <= WALL_POSITION && z <= LEDGE_HEIGHT {
-            all.extend([(5, Self::bottom()), (6, Self::back())]);
-            all.extend(sides(7, STANDING));
-            // Both end in the inner edge.
-            all.extend([(8, Self::ledge()), (8, Self::wall())]);
-        }
-        if x <= WALL_POSITION && z >= LEDGE_HEIGHT {
-            all.extend([(9, Self::back()), (10, Self::wall())]);
-            all.extend(sides(11, STANDING));
-            all.push((12, Self::top()));
-        }
-        all
-    }
-
-    fn distance_to_other_regions(&self, [x, _, z]: P3) -> f64 {
-        (x - WALL_POSITION).abs().min(if x <= WALL_POSITION {
-            (z - LEDGE_HEIGHT).abs()
-        } else {
-            f64::INFINITY
+    fn evaluate(&self, p: P3<f64>) -> Option<OracleEvaluation> {
+        let (owner, depth) = self.nearest(&p);
+        let direction = || self.direction_of(owner, &p);
+        (depth >= 0.0).then(|| OracleEvaluation {
+            owner,
+            depth,
+            magnitude: depth,
+            direction: direction(),
+            niceness: 0.0,
         })
     }
-}
 
-impl Oracle for LBracket {
-    body_oracle!("LBracket", [500f64.sqrt(), 24.0], [-10.0, -10.0, 0.0], [20.0, 10.0, 24.0]);
-
-    fn singularity_distance(&self, p: P3) -> f64 {
-        match self.winner(p) {
-            Some(((4, ..), _)) => length2(HOLE.offset(p)),
-            Some(((8, ..), _)) => (p[0] - WALL_POSITION).hypot(p[2] - LEDGE_HEIGHT),
-            _ => f64::INFINITY,
-        }
+    fn gradient(&self, p: P3<f64>) -> Option<P3<f64>> {
+        Some(self.evaluate(p)?.direction.map(|c| -c))
     }
 
-    fn corner_points(&self) -> Vec<P3> {
-        let mut all = grid(
-            &[-10.0, -7.0, WALL_POSITION, 5.0, 20.0],
-            &[-10.0, 0.0, 10.0],
-            &[0.0, 3.0, LEDGE_HEIGHT],
-        );
-        all.extend(grid(&[-10.0, -7.0, WALL_POSITION], &[-10.0, 0.0, 10.0], &[15.0, 24.0]));
+    fn signed_distance(&self, p: P3<f64>) -> f64 {
+        -self.depth(&p)
+    }
+
+    fn border_distance(&self, p: P3<f64>) -> f64 {
+        let [(region, depth), (_, next)] = self.ranked(&p);
+        if depth < 0.0 {
+            return self.distance_outside(&p);
+        }
+        // A step changes each distance by at most its own length.
+        let border = depth.min((next - depth) / 2.0);
+        if self.faces()[region].1 == Zone::Anywhere {
+            return border;
+        }
+        let [wall, ledge] = from_edge(&p);
+        let other_zones = if wall <= 0.0 { wall.abs().min(ledge.abs()) } else { wall };
+        border.min(other_zones)
+    }
+
+    fn singularity_distance(&self, p: P3<f64>) -> f64 {
+        let owner = self.evaluate(p).map(|evaluation| evaluation.owner);
+        owner.map_or(f64::INFINITY, |owner| self.singularity_distance_of(owner, &p))
+    }
+
+    fn is_revolved(&self) -> bool {
+        false
+    }
+
+    fn corner_points(&self) -> Vec<P3<f64>> {
+        if *self == Body::Block {
+            // Vertices, middles of edges and faces, and the ends of the ridges inside.
+            let mut all = grid(&[-20.0, 0.0, 20.0], &[-15.0, 0.0, 15.0], &[0.0, 10.0, 20.0]);
+            all.extend(grid(&[-10.0, 10.0], &[-5.0, 5.0], &[10.0]));
+            return all;
+        }
+        let across = [-10.0, 0.0, 10.0];
+        let mut all = grid(&[-10.0, -7.0, WALL, 5.0, 20.0], &across, &[0.0, 3.0, LEDGE]);
+        all.extend(grid(&[-10.0, -7.0, WALL], &across, &[15.0, 24.0]));
         // The rim of the hole, and points half way up its wall.
         for k in 0..16 {
             let (sin, cos) = (f64::from(k) * std::f64::consts::FRAC_PI_8).sin_cos();
-            all.extend([0.0, 3.0, LEDGE_HEIGHT].map(|z| [10.0 + 3.3 * cos, 3.3 * sin, z]));
+            let at = |z: f64| [BORE + BORE_RADIUS * cos, BORE_RADIUS * sin, z];
+            all.extend([0.0, 3.0, LEDGE].map(at));
         }
         all
     }
+
+    fn curve_points(&self) -> Vec<Vec<P3<f64>>> {
+        static FOUND: [OnceLock<Vec<Vec<P3<f64>>>>; 2] = [const { OnceLock::new() }; 2];
+        FOUND[*self as usize].get_or_init(|| self.borders()).clone()
+    }
+
+    fn extent(&self) -> [f64; 2] {
+        match self {
+            Body::Block => [25.0, 20.0],
+            Body::LBracket => [500f64.sqrt(), 24.0],
+        }
+    }
+}
+
+/// Returns every combination of one number per axis.
+fn grid(x: &[f64], y: &[f64], z: &[f64]) -> Vec<P3<f64>> {
+    let column = |x: f64, y: f64| z.iter().map(move |z| [x, y, *z]);
+    x.iter().flat_map(|x| y.iter().flat_map(move |y| column(*x, *y))).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    fn at(body: Body, p: P3<f64>) -> Option<(&'static str, f64)> {
+        body.evaluate(p).map(|s| (body.faces()[s.owner].0, s.depth))
+    }
+
     #[test]
     fn the_block_at_a_few_points() {
-        let at = |p| Block.evaluate(p).map(|s| (Block::REGIONS[s.owner], s.depth, s.direction));
-        assert_eq!(at([18.0, 0.0, 10.0]), Some(("right", 2.0, [1.0, 0.0, 0.0])));
-        assert_eq!(at([0.0, -14.5, 10.0]), Some(("front", 0.5, [0.0, -1.0, 0.0])));
-        assert_eq!(at([0.0, 0.0, 10.0]), Some(("bottom", 10.0, [0.0, 0.0, -1.0])));
-        assert_eq!(at([20.0, 15.0, 20.0]).map(|s| (s.0, s.1)), Some(("right", 0.0)));
-        assert_eq!(at([20.5, 0.0, 0.0]), None);
-        assert_eq!(Block.signed_distance([23.0, 19.0, 10.0]), 5.0);
+        assert_eq!(at(Body::Block, [18.0, 0.0, 10.0]), Some(("right", 2.0)));
+        assert_eq!(at(Body::Block, [0.0, -14.5, 10.0]), Some(("front", 0.5)));
+        assert_eq!(at(Body::Block, [0.0, 0.0, 10.0]), Some(("bottom", 10.0)));
+        assert_eq!(at(Body::Block, [20.0, 15.0, 20.0]), Some(("right", 0.0)));
+        assert_eq!(at(Body::Block, [20.5, 0.0, 0.0]), None);
+        let directions = [[18.0, 0.0, 10.0], [0.0, -14.5, 10.0], [0.0, 0.0, 10.0]]
+            .map(|p| Body::Block.evaluate(p).map(|s| s.direction));
+        assert_eq!(directions, [[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, -1.0]].map(Some));
+        assert_eq!(Body::Block.signed_distance([23.0, 19.0, 10.0]), 5.0);
     }
 
     #[test]
     fn the_bracket_at_a_few_points() {
-        let at = |p| LBracket.evaluate(p).map(|s| (LBracket::REGIONS[s.owner], s.depth));
-        assert_eq!(at([0.0, 0.0, 2.0]), Some(("lying_bottom", 2.0)));
-        assert_eq!(at([-7.5, 0.0, 15.0]), Some(("standing_back", 2.5)));
-        assert_eq!(at([-5.0, 0.0, 5.0]), Some(("heel_edge", 2f64.sqrt())));
-        assert_eq!(at([10.0, 0.0, 3.0]), None);
-        assert_eq!(at([-3.0, 0.0, 7.0]), None);
-        let (region, depth) = at([14.0, 0.0, 3.0]).expect("beside the hole");
+        let bracket = Body::LBracket;
+        assert_eq!(at(bracket, [0.0, 0.0, 2.0]), Some(("lying_bottom", 2.0)));
+        assert_eq!(at(bracket, [-7.5, 0.0, 15.0]), Some(("standing_back", 2.5)));
+        assert_eq!(at(bracket, [-5.0, 0.0, 5.0]), Some(("heel_edge", 2f64.sqrt())));
+        assert_eq!(at(bracket, [10.0, 0.0, 3.0]), None);
+        assert_eq!(at(bracket, [-3.0, 0.0, 7.0]), None);
+        let (region, depth) = at(bracket, [14.0, 0.0, 3.0]).expect("beside the hole");
         assert_eq!(region, "bore");
         assert!((depth - 0.7).abs() < 1e-15);
         // Inside the hole the wall is nearest, and below the hole its rim.
-        assert!((LBracket.signed_distance([10.0, 1.0, 3.0]) - 2.3).abs() < 1e-15);
-        assert!((LBracket.signed_distance([10.0, 1.0, -1.0]) - 2.3f64.hypot(1.0)).abs() < 1e-15);
+        assert!((bracket.signed_distance([10.0, 1.0, 3.0]) - 2.3).abs() < 1e-15);
+        assert!((bracket.signed_distance([10.0, 1.0, -1.0]) - 2.3f64.hypot(1.0)).abs() < 1e-15);
+    }
+
+    /// The depth of a point is the distance to the nearest point of the other side, by steps along the axes and to the
+    /// corners: no step shorter than the depth leaves the solid, and some step a little longer does.
+    #[test]
+    fn depths_are_distances() {
+        let mut rng = Rng::new(3);
+        for body in [Body::Block, Body::LBracket] {
+            let [low, high] = body.bounds();
+            for _ in 0..4_000 {
+                let p = [0, 1, 2].map(|k| rng.between(low[k] - 2.0, high[k] + 2.0));
+                let depth = body.depth(&p);
+                let step = |by: f64, u: P3<f64>| [0, 1, 2].map(|k| p[k] + by * u[k]);
+                for _ in 0..8 {
+                    let q = step(0.999_999 * depth.abs(), rng.direction());
+                    assert_eq!(body.depth(&q) >= 0.0, depth >= 0.0, "{body:?} {p:?} {q:?}");
+                }
+                if depth >= 0.0 {
+                    let (owner, _) = body.nearest(&p);
+                    let q = step(depth + 1e-9, body.direction_of(owner, &p));
+                    assert!(body.depth(&q) < 0.0, "{body:?} {p:?} {q:?}");
+                }
+            }
+        }
     }
 }

@@ -1,9 +1,11 @@
 //! Interference by evaluating the oracle at every point, one after the other.
 //!
 //! No tree, no filter, no lanes: a loop in f64 with compensated sums. All results are in the world frame and in the
-//! part's unit.
+//! part's unit. The queries of the engine agree with it and with the [closed forms][super::closed_forms], so these two
+//! agree too.
 
 use super::Oracle;
+use super::triangle::{cross, dot, norm, sub, unit};
 
 /// The pose of the tool.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -218,19 +220,21 @@ impl FromIterator<f64> for Sum {
     }
 }
 
-fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-fn norm(a: [f64; 3]) -> f64 {
-    dot(a, a).sqrt()
-}
-fn unit(a: [f64; 3]) -> [f64; 3] {
-    let n = norm(a);
-    a.map(|c| c / n)
+#[cfg(test)]
+mod tests {
+    use super::super::UnitSphere;
+    use super::*;
+
+    #[test]
+    fn without_contacts_the_wrench_is_zero() {
+        let pose = Pose { tip: [0.0, 0.0, 9.0], ..Pose::IDENTITY };
+        let a = Query::new(&UnitSphere, pose, &[[0.0; 3]], &[[0.0, 0.0, 1.0]], &[1.0]).answer();
+        assert_eq!((a.count, a.deepest, a.niceness, a.force), (0, None, None, [0.0; 3]));
+    }
+
+    #[test]
+    fn sums_keep_what_plain_addition_loses() {
+        let sum: Sum = [1.0, 1e100, 1.0, -1e100].into_iter().collect();
+        assert_eq!(sum.value(), 2.0);
+    }
 }

@@ -1,9 +1,10 @@
 //! Reference evaluations of the tools, computed independently of the compiler.
 //!
 //! An [`Oracle`] evaluates one tool at one point. Nothing here shares code with the project. Solids that the
-//! compiler derives from a profile are evaluated by brute force over the profile's pieces ([`profile`]), the
+//! compiler derives from a profile are evaluated by brute force over the profile's segments ([`profile`]), the
 //! thesis's own tool by its equations written out by hand ([`fig73`]), contacts by textbook integrals
-//! ([`closed_forms`]) and by a plain loop over the points ([`brute`]).
+//! ([`closed_forms`]) and by a plain loop over the points ([`brute`]). Profiles, fig. 7.3 and the solids are generic
+//! over the number: doubles, or 256 bits ([`real`]).
 //!
 //! **Frame.** Everything is in the tool frame: tip at the origin, +z from the tip to the spindle, lengths in the
 //! tool file's unit. `[d, z]` is a point of the half plane `d >= 0`, `d` being the distance from the axis.
@@ -14,22 +15,22 @@
 pub mod big;
 pub mod bodies;
 pub mod brute;
-#[cfg(test)]
-mod brute_contacts;
 pub mod closed_forms;
 pub mod fig73;
 #[cfg(test)]
 mod fig73_table;
 pub mod nearest;
-pub mod outline;
-mod piece;
+pub mod plane;
 pub mod profile;
+pub mod real;
 pub mod reference;
 pub mod restated;
 pub mod rng;
+pub mod segment;
 pub mod solids;
+pub mod triangle;
 
-pub use bodies::{Block, LBracket};
+pub use bodies::Body;
 pub use fig73::Fig73;
 pub use nearest::{Nearest, d2_ball, fig_7_3_exact, half_sphere_cylinder};
 pub use solids::{Cylinder, UnitSphere};
@@ -51,7 +52,7 @@ pub struct OracleEvaluation {
 }
 
 /// The reference evaluation of one tool.
-pub trait Oracle {
+pub trait Oracle: Send + Sync {
     /// Returns the tool's name, as in its file.
     fn name(&self) -> &'static str;
 
@@ -124,6 +125,15 @@ pub fn all() -> Vec<Box<dyn Oracle>> {
     all
 }
 
+/// Returns the oracle of a tool of the library.
+///
+/// # Panics
+/// If there is none of that name.
+pub fn of(name: &str) -> Box<dyn Oracle> {
+    let known = thesis().into_iter().find(|oracle| oracle.name() == name);
+    known.unwrap_or_else(|| Box::new(Nearest::of(name)))
+}
+
 /// Returns the oracles of the thesis's solids and the plain ball cutter, whose splitting curves are known as
 /// equations, and of two solids without an axis.
 pub fn thesis() -> Vec<Box<dyn Oracle>> {
@@ -134,8 +144,8 @@ pub fn thesis() -> Vec<Box<dyn Oracle>> {
         Box::<Fig73>::default(),
         Box::new(fig_7_3_exact()),
         Box::new(d2_ball()),
-        Box::new(Block),
-        Box::new(LBracket),
+        Box::new(Body::Block),
+        Box::new(Body::LBracket),
     ]
 }
 
@@ -177,18 +187,9 @@ impl Meridian {
     }
 }
 
-/// Returns `v` as a unit vector; +z if it vanishes.
-pub fn unit_or_z(v: [f64; 2]) -> [f64; 2] {
-    let n = v[0].hypot(v[1]);
-    if n > 0.0 { [v[0] / n, v[1] / n] } else { [0.0, 1.0] }
-}
-
 /// Returns points evenly spaced from `a` to `b`, both included.
 pub fn sample_line(a: [f64; 2], b: [f64; 2]) -> Vec<[f64; 2]> {
-    sample_curve(|t| {
-        // Exact at both ends, and in z along level lines.
-        [a[0] * (1.0 - t) + b[0] * t, if a[1] == b[1] { a[1] } else { a[1] * (1.0 - t) + b[1] * t }]
-    })
+    segment::Segment::line(a, b).samples()
 }
 
 /// Returns 65 points of a curve given on `0..=1`.

@@ -1,18 +1,19 @@
 //! Tools whose owner is the nearest feature of the profile: nothing but [`Profile`] decides.
 
+use super::plane::Point;
 use super::profile::{Feature, Profile};
 use super::restated::{self, Niceness, Restated};
 use super::rng::Rng;
 use super::{Meridian, Oracle, OracleEvaluation, sample_curve, sample_line};
 
 /// Points along a curve.
-type Points = Vec<[f64; 2]>;
+type Points = Vec<Point<f64>>;
 
 /// A profile tool: `depth` is the distance, `magnitude` the same, and the direction points to the nearest point.
 #[derive(Clone, Debug)]
 pub struct Nearest {
     name: &'static str,
-    profile: Profile,
+    profile: Profile<f64>,
     regions: Vec<Region>,
     niceness: Niceness,
     /// Largest `d` and `z`.
@@ -31,20 +32,11 @@ struct Region {
 impl Nearest {
     /// Creates the oracle of a restated tool.
     pub fn new(tool: &Restated) -> Self {
-        let point = |[d, z]: &restated::Point| [d.to_f64(), z.to_f64()];
-        let segments: Vec<_> = tool
-            .segments
-            .iter()
-            .map(|segment| (point(&segment.to), segment.centre.as_ref().map(point)))
-            .collect();
-        let profile = Profile::new(point(&tool.start), &segments);
-        let surface = profile.surface();
-        let largest =
-            |axis: usize| surface.iter().flatten().fold(0.0f64, |largest, p| largest.max(p[axis]));
+        let profile = tool.profile().map(super::big::Big::to_f64);
         Self {
             name: tool.name,
             regions: regions(tool, &profile),
-            extent: [largest(0), largest(1)],
+            extent: profile.extent()[1],
             profile,
             niceness: tool.niceness,
             splits: None,
@@ -66,7 +58,7 @@ impl Nearest {
     }
 
     /// Returns the profile.
-    pub fn profile(&self) -> &Profile {
+    pub fn profile(&self) -> &Profile<f64> {
         &self.profile
     }
 
@@ -75,15 +67,22 @@ impl Nearest {
         self.regions.iter().map(|region| (region.surface, region.cutting))
     }
 
-    /// Returns the distance to the pieces of a surface, from either side.
+    /// Returns the distance to the segments of a surface, from either side.
     pub fn distance_to_surface(&self, surface: &str, p: [f64; 3]) -> f64 {
+        self.distance_where(|region| region.surface == surface, p)
+    }
+
+    /// Returns the distance to the segments that cut, or to the others, from either side.
+    pub fn distance_to_cutting(&self, cutting: bool, p: [f64; 3]) -> f64 {
+        self.distance_where(|region| region.cutting == cutting, p)
+    }
+
+    fn distance_where(&self, counts: impl Fn(&Region) -> bool, p: [f64; 3]) -> f64 {
         let at = Meridian::of(p).dz;
         let owned = self.profile.owners().iter().zip(&self.regions);
-        let pieces = owned.filter_map(|(feature, region)| match feature {
-            Feature::Piece(piece) if region.surface == surface => Some(*piece),
-            _ => None,
-        });
-        pieces.map(|piece| self.profile.distance_to_piece(piece, at)).fold(f64::INFINITY, f64::min)
+        let segments =
+            owned.filter(|(owner, region)| matches!(owner, Feature::Segment(_)) && counts(region));
+        segments.map(|(owner, _)| self.profile.distance(*owner, &at)).fold(f64::INFINITY, f64::min)
     }
 
     /// Returns points at which the nearest feature changes, found by bisection; one list per pair of owners.
@@ -120,23 +119,22 @@ impl Nearest {
 
 /// Returns the names of regions, as the language gives them, and their surfaces. A corner's surface is that of the
 /// neighbour that does not cut, or else of the first.
-fn regions(tool: &Restated, profile: &Profile) -> Vec<Region> {
+fn regions(tool: &Restated, profile: &Profile<f64>) -> Vec<Region> {
     let cuts = |surface: &str| tool.cutting.contains(&surface);
+    let last = tool.surfaces.len() - 1;
     let mut fans: Vec<String> = Vec::new();
     let of = |feature: &Feature| match *feature {
-        Feature::Piece(piece) => {
-            let surface = tool.segments[piece].surface;
-            let count_on_surface = |segments: &[restated::Segment]| {
-                segments.iter().filter(|segment| segment.surface == surface).count()
-            };
-            let name = match count_on_surface(&tool.segments) {
+        Feature::Segment(k) => {
+            let surface = tool.surfaces[k];
+            let count = |surfaces: &[&str]| surfaces.iter().filter(|s| **s == surface).count();
+            let name = match count(&tool.surfaces) {
                 1 => surface.to_owned(),
-                _ => format!("{surface}.{}", count_on_surface(&tool.segments[..=piece])),
+                _ => format!("{surface}.{}", count(&tool.surfaces[..=k])),
             };
             Region { name, surface, cutting: cuts(surface) }
         }
-        Feature::Corner(piece) => {
-            let [a, b] = [piece, piece + 1].map(|piece| tool.segments[piece].surface);
+        Feature::Corner(k) => {
+            let [a, b] = [k.saturating_sub(1), k.min(last)].map(|k| tool.surfaces[k]);
             let surface = if cuts(a) && !cuts(b) { b } else { a };
             let pair = format!("{a}/{b}");
             fans.push(pair.clone());
@@ -162,14 +160,19 @@ impl Oracle for Nearest {
         if d > self.extent[0] || z < 0.0 || z > self.extent[1] {
             return None; // most points of most clouds
         }
-        let (nearest, outward) = self.profile.evaluate(m.dz)?;
-        let region = &self.regions[nearest.owner];
-        let niceness = || (self.niceness)(region.surface, nearest.distance, m.dz).max(0.0);
+        let near = self.profile.nearest(&m.dz);
+        let depth = near.distance;
+        if depth > 0.0 && !self.profile.encloses(&m.dz) {
+            return None;
+        }
+        let owner = self.profile.owner(near.feature);
+        let region = &self.regions[owner];
+        let niceness = || (self.niceness)(region.surface, depth, m.dz).max(0.0);
         Some(OracleEvaluation {
-            owner: nearest.owner,
-            depth: nearest.distance,
-            magnitude: nearest.distance,
-            direction: m.lift(outward),
+            owner,
+            depth,
+            magnitude: depth,
+            direction: m.lift(self.profile.direction(near.feature, &m.dz)),
             niceness: if region.cutting { niceness() } else { 0.0 },
         })
     }
@@ -179,15 +182,19 @@ impl Oracle for Nearest {
     }
 
     fn signed_distance(&self, p: [f64; 3]) -> f64 {
-        self.profile.signed_distance(Meridian::of(p).dz)
+        -self.profile.depth(&Meridian::of(p).dz)
     }
 
     fn border_distance(&self, p: [f64; 3]) -> f64 {
-        self.profile.border_distance(Meridian::of(p).dz)
+        self.profile.border_distance(&Meridian::of(p).dz)
     }
 
     fn singularity_distance(&self, p: [f64; 3]) -> f64 {
-        self.profile.singularity_distance(Meridian::of(p).dz)
+        let at = Meridian::of(p).dz;
+        let near = self.profile.nearest(&at);
+        let is_inside = near.distance == 0.0 || self.profile.encloses(&at);
+        let singularity = || self.profile.singularity_distance(near.feature, &at);
+        if is_inside { singularity() } else { f64::INFINITY }
     }
 
     fn corners(&self) -> Vec<[f64; 2]> {
@@ -208,7 +215,6 @@ impl Oracle for Nearest {
         self.extent
     }
 }
-
 /// Returns the half sphere of radius 2 joined to a cylinder of radius 1 (Ho 1999, fig. 2.2, 2.3), 8 long.
 pub fn half_sphere_cylinder() -> Nearest {
     Nearest::of("HalfSphereCylinder").with(vec![

@@ -1,295 +1,355 @@
-//! A profile of lines and arcs, and its nearest piece by exhaustive search.
+//! A profile of lines and arcs, and its nearest feature by exhaustive search: the one oracle of what a profile is, for
+//! any number type.
 //!
 //! For a surface of revolution the nearest surface point lies in the half plane through the query point, so two
-//! dimensions are enough; the axis is a mirror and not a feature. Each piece counts only for points whose foot lies
-//! on it, and each vertex for all points. The smallest distance wins, and among equals the feature listed first.
-//! Inside is decided by crossings (even-odd), not by the nearest piece.
+//! dimensions are enough. At the axis the profile meets its mirror image. Each segment counts only for points whose foot
+//! lies on it, each reflex corner for those of its fan. The smallest distance wins, and among equals the feature listed
+//! first. Inside is decided by crossings (even-odd), not by the nearest feature.
 
-use super::piece::{P2, Piece, cross, dot, len, sub};
-use super::unit_or_z;
+use super::plane::{Point, cross, dot, norm, sub, unit};
+use super::real::Real;
+use super::segment::Segment;
 
-/// The turn of the profile at a vertex.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Turn {
-    /// An end of the profile, on the axis.
-    Axis,
-    /// The material fills less than a half turn: nearest from outside only.
-    Convex,
-    /// No turn: the vertex owns nothing.
-    Smooth,
-    /// The material fills more than a half turn: the vertex owns a fan inside, with this rank.
-    Reflex(usize),
+/// Sine of a turn, below which a vertex is smooth.
+const SMOOTH: f64 = 1e-12;
+
+/// A feature of a profile.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Feature {
+    /// A segment, by its index.
+    Segment(usize),
+    /// The corner before a segment; behind the last for their number. If it is reflex, it owns a fan inside.
+    Corner(usize),
 }
 
-#[derive(Clone, Copy, Debug)]
-struct Vertex {
-    point: P2,
-    turn: Turn,
-}
-
-/// The nearest feature of a profile.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct NearestFeature {
-    /// Index in the order of listing. For a convex vertex (outside only), that of the piece listed first of the two
-    /// that meet there.
-    pub owner: usize,
-    /// Distance to the foot.
-    pub distance: f64,
-    /// The nearest point of the profile.
-    pub foot: P2,
-    /// True if the foot is a reflex corner that owns the point.
-    pub corner: bool,
+/// The nearest feature of a profile, from inside or outside.
+#[derive(Clone, Debug)]
+pub struct NearestFeature<T> {
+    /// The feature.
+    pub feature: Feature,
+    /// The distance to it.
+    pub distance: T,
 }
 
 /// A closed profile from the axis to the axis, counter-clockwise with `d` to the right and `z` up.
 #[derive(Clone, Debug)]
-pub struct Profile {
-    pieces: Vec<Piece>,
-    vertices: Vec<Vertex>,
+pub struct Profile<T> {
+    segments: Vec<Segment<T>>,
+    /// The unit vectors of travel into each vertex and out of it. At the axis one is the other's mirror image.
+    tangents: Vec<[Point<T>; 2]>,
+    /// The sine of the turn at each vertex, negative at a reflex corner.
+    turns: Vec<f64>,
     owners: Vec<Feature>,
 }
 
-/// The specification of a piece: its end, and its centre if it is an arc.
-pub type SegmentSpec = ([f64; 2], Option<[f64; 2]>);
-
-/// A feature that may own points inside.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Feature {
-    /// A piece, by its index.
-    Piece(usize),
-    /// The reflex corner behind a piece, by the piece's index.
-    Corner(usize),
-}
-
-impl Profile {
-    /// Creates the profile that starts at `start` and goes on through `drafts`. Owners are numbered along it, each
-    /// reflex corner between its pieces; the first wins a tie.
-    pub fn new(start: P2, segments: &[SegmentSpec]) -> Self {
-        let mut at = start;
-        let mut pieces: Vec<Piece> = Vec::new();
-        let mut vertices = vec![Vertex { point: start, turn: Turn::Axis }];
-        let mut owners = Vec::new();
-        for (index, &(to, centre)) in segments.iter().enumerate() {
-            let mut piece = Piece::new(at, to, centre, 0);
-            if let Some(before) = pieces.last() {
-                let bend = cross(before.tangent(at), piece.tangent(at));
-                let turn = if bend < -1e-12 {
-                    owners.push(Feature::Corner(index - 1));
-                    Turn::Reflex(owners.len() - 1)
-                } else if bend > 1e-12 {
-                    Turn::Convex
-                } else {
-                    Turn::Smooth
-                };
-                vertices.push(Vertex { point: at, turn });
-            }
-            piece.rank = owners.len();
-            owners.push(Feature::Piece(index));
-            pieces.push(piece);
-            at = to;
+impl<T: Real> Profile<T> {
+    /// Creates the profile of segments, each of which begins where the last ends.
+    ///
+    /// # Panics
+    /// If there is none.
+    pub fn new(segments: Vec<Segment<T>>) -> Profile<T> {
+        assert!(!segments.is_empty(), "a profile has segments");
+        let count = segments.len();
+        let mirrored = |t: &Point<T>| [t[0].clone(), t[1].negated()];
+        let (mut tangents, mut turns, mut owners) = (Vec::new(), Vec::new(), Vec::new());
+        for k in 0..=count {
+            let before = k.checked_sub(1).map(|k| segments[k].tangent(&segments[k].to));
+            let after = segments.get(k).map(|segment| segment.tangent(&segment.from));
+            let into = before.clone().or(after.as_ref().map(mirrored));
+            let out = after.or(before.as_ref().map(mirrored));
+            let [into, out] = [into, out].map(|t| t.expect("a vertex has a segment on one side"));
+            turns.push(cross(&into, &out).to_f64());
+            tangents.push([into, out]);
+            owners.extend((turns[k] < -SMOOTH).then_some(Feature::Corner(k)));
+            owners.extend((k < count).then_some(Feature::Segment(k)));
         }
-        vertices.push(Vertex { point: at, turn: Turn::Axis });
-        Self { pieces, vertices, owners }
+        Profile { segments, tangents, turns, owners }
     }
 
-    /// Returns the turn behind a piece.
-    pub fn turn(&self, piece: usize) -> Turn {
-        self.vertices[piece + 1].turn
+    /// Reads the profile of vertices separated by commas: `d z` after a line, `d z about c h` after an arc with its centre,
+    /// `d z radius r` or `d z hollow radius r` after one with its radius.
+    ///
+    /// # Panics
+    /// If the text is none.
+    pub fn parse(text: &str) -> Profile<T> {
+        let numbers = |text: &str| -> Vec<T> {
+            let words = text.split_whitespace();
+            words.map(|word| T::decimal(word.parse().expect("a number"))).collect()
+        };
+        let point = |text: &str| <Point<T>>::try_from(numbers(text)).expect("two coordinates");
+        let mut vertices = text.split(',');
+        let mut from = point(vertices.next().unwrap_or_default());
+        let segment = |vertex: &str| {
+            let start = from.clone();
+            let segment = if let Some((to, centre)) = vertex.split_once("about") {
+                Segment::arc(start, point(to), point(centre))
+            } else if let Some((to, radius)) = vertex.split_once("radius") {
+                let (to, convex) =
+                    to.split_once("hollow").map_or((to, true), |(to, _)| (to, false));
+                Segment::by_radius(start, point(to), numbers(radius).remove(0), convex)
+            } else {
+                Segment::line(start, point(vertex))
+            };
+            from = segment.to.clone();
+            segment
+        };
+        Profile::new(vertices.map(segment).collect())
     }
 
-    /// Returns the features that may own points inside, in the order of listing.
+    /// Returns the profile with each number mapped.
+    pub fn map<U: Real>(&self, number: impl Fn(&T) -> U) -> Profile<U> {
+        let point = |p: &Point<T>| p.each_ref().map(&number);
+        Profile::new(self.segments.iter().map(|segment| segment.map(point, &number)).collect())
+    }
+
+    /// Returns the segments.
+    pub fn segments(&self) -> &[Segment<T>] {
+        &self.segments
+    }
+
+    /// Returns the features that may own points inside, in the order of listing: along the profile.
     pub fn owners(&self) -> &[Feature] {
         &self.owners
     }
 
-    /// Returns the nearest feature, from inside or outside.
+    /// Returns the vertex before a segment, or behind the last.
+    pub fn vertex(&self, k: usize) -> &Point<T> {
+        self.segments.get(k).map_or_else(|| &self.segments[k - 1].to, |segment| &segment.from)
+    }
+
+    /// Returns the unit vectors of travel into a vertex and out of it. At the axis one is the other's mirror image.
+    pub fn tangents(&self, k: usize) -> &[Point<T>; 2] {
+        &self.tangents[k]
+    }
+
+    /// Returns the sine of the turn at a vertex, negative at a reflex corner.
+    pub fn turn(&self, k: usize) -> f64 {
+        self.turns[k]
+    }
+
+    fn is_reflex(&self, k: usize) -> bool {
+        self.turns[k] < -SMOOTH
+    }
+
+    /// Returns whether a point is inside, by the even-odd rule on the ray away from the axis. Undecided on the profile
+    /// itself.
+    pub fn encloses(&self, p: &Point<T>) -> bool {
+        self.segments.iter().map(|segment| segment.crossings(p)).sum::<usize>() % 2 == 1
+    }
+
+    /// Returns the depth of a point: the distance to the profile, negative outside.
+    pub fn depth(&self, p: &Point<T>) -> T {
+        let distances = self.segments.iter().map(|segment| segment.distance(p));
+        let distance = distances.reduce(T::least).expect("a profile has segments");
+        if distance == T::zero() || self.encloses(p) { distance } else { distance.negated() }
+    }
+
+    /// Returns the nearest feature.
+    pub fn nearest(&self, p: &Point<T>) -> NearestFeature<T> {
+        self.nearest_of(|_| true, p)
+    }
+
+    /// Returns the nearest feature among some segments and their ends, one of which is the nearest.
     ///
     /// Beside a fan or joint, the distances of two features differ only by the square of the distance from their
     /// border, far below rounding. Each feature therefore counts only on its own side, and ties are left for the
     /// borders themselves.
-    pub fn nearest(&self, p: P2) -> NearestFeature {
-        let mut best = NearestFeature { owner: 0, distance: f64::INFINITY, foot: p, corner: false };
-        for piece in self.pieces.iter().filter(|piece| piece.faces(p)) {
-            let (owner, distance) = (piece.rank, piece.distance(p));
-            if (distance, owner) < (best.distance, best.owner) {
-                best = NearestFeature { owner, distance, foot: piece.foot(p), corner: false };
+    pub fn nearest_of(&self, is_near: impl Fn(usize) -> bool, p: &Point<T>) -> NearestFeature<T> {
+        let count = self.segments.len();
+        let is_near_end = |k: usize| (k > 0 && is_near(k - 1)) || (k < count && is_near(k));
+        let mut best: Option<NearestFeature<T>> = None;
+        for feature in (0..=count).flat_map(|k| [Feature::Corner(k), Feature::Segment(k)]) {
+            let distance = match feature {
+                Feature::Corner(k) if is_near_end(k) && self.owns_fan_at(k, p) => {
+                    norm(&sub(p, self.vertex(k)))
+                }
+                Feature::Segment(k) if k < count && is_near(k) && self.segments[k].faces(p) => {
+                    self.segments[k].inward(p).absolute()
+                }
+                _ => continue,
+            };
+            if best.as_ref().is_none_or(|best| distance < best.distance) {
+                best = Some(NearestFeature { feature, distance });
             }
         }
-        for (i, v) in self.vertices.iter().enumerate() {
-            let neighbour = [i.checked_sub(1), Some(i)].map(|k| self.pieces.get(k?));
-            let from = sub(p, v.point);
-            let in_fan = neighbour.iter().zip([1.0, -1.0]).all(|(piece, sign)| {
-                piece.is_none_or(|piece| sign * dot(from, piece.tangent(v.point)) >= 0.0)
+        // A joint, and a corner outside its fan, only catch points that rounding let fall between their neighbours.
+        for k in (0..=count).filter(|k| is_near_end(*k) && !self.owns_fan_at(*k, p)) {
+            let distance = norm(&sub(p, self.vertex(k)));
+            let share = if self.turns[k] > SMOOTH { 1.0 } else { 1.0 - 1e-9 };
+            let is_nearer = best.as_ref().is_none_or(|best| {
+                distance < best.distance
+                    && (share == 1.0 || distance.to_f64() < best.distance.to_f64() * share)
             });
-            let first = neighbour.iter().flatten().map(|piece| piece.rank).min();
-            let (owner, corner) = match v.turn {
-                Turn::Reflex(rank) => (rank, true),
-                _ => (first.unwrap_or(0), false),
-            };
-            // A joint, and a corner outside its fan, only catch points that rounding let fall between their
-            // neighbours.
-            let distance = len(from);
-            let wins = match v.turn {
-                Turn::Reflex(_) if in_fan => (distance, owner) < (best.distance, best.owner),
-                Turn::Reflex(_) | Turn::Smooth => distance < best.distance * (1.0 - 1e-9),
-                Turn::Axis | Turn::Convex => distance < best.distance,
-            };
-            if wins {
-                best = NearestFeature { owner, distance, foot: v.point, corner };
+            if is_nearer {
+                best = Some(NearestFeature { feature: Feature::Corner(k), distance });
             }
         }
-        best
+        best.expect("one segment is near")
     }
 
-    /// Returns the distance to a piece, its ends included, from either side.
-    pub fn distance_to_piece(&self, piece: usize, p: P2) -> f64 {
-        self.pieces[piece].clamped(p)
+    /// Returns whether a vertex is a reflex corner, in whose fan a point lies.
+    fn owns_fan_at(&self, k: usize, p: &Point<T>) -> bool {
+        let [before, after] = &self.tangents[k];
+        let from = || sub(p, self.vertex(k));
+        self.is_reflex(k) && dot(&from(), before) >= T::zero() && dot(&from(), after) <= T::zero()
     }
 
-    /// Returns whether `p` is in the solid or on its surface.
-    pub fn contains(&self, p: P2) -> bool {
-        self.encloses(p) || self.nearest(p).distance == 0.0
+    /// Returns the index of a feature in the order of listing; for a corner that owns nothing, that of the segment listed
+    /// first of those that meet there.
+    pub fn owner(&self, feature: Feature) -> usize {
+        let index = |feature| self.owners.iter().position(|owner| *owner == feature);
+        let Feature::Corner(k) = feature else {
+            return index(feature).expect("each segment is listed");
+        };
+        index(feature).unwrap_or_else(|| self.owner(Feature::Segment(k.saturating_sub(1))))
     }
 
-    /// Returns, for a point of the solid, its nearest feature and the unit vector `(radial, axial)` toward it;
-    /// `None` outside.
-    pub fn evaluate(&self, p: P2) -> Option<(NearestFeature, P2)> {
-        let near = self.nearest(p);
-        (near.distance == 0.0 || self.encloses(p)).then(|| (near, self.direction(&near, p)))
-    }
-
-    /// Applies the even-odd rule on the ray from `p` away from the axis. Undecided on the surface.
-    fn encloses(&self, p: P2) -> bool {
-        let crossed = self.pieces.iter().map(|piece| piece.crossings(p)).sum::<usize>();
-        crossed % 2 == 1
-    }
-
-    /// Returns the signed distance to the surface, negative inside.
-    pub fn signed_distance(&self, p: P2) -> f64 {
-        let distance = self.nearest(p).distance;
-        if self.contains(p) { -distance } else { distance }
-    }
-
-    fn direction(&self, near: &NearestFeature, p: P2) -> P2 {
-        if near.corner {
-            return unit_or_z(sub(near.foot, p));
+    /// Returns the distance to a feature, to a segment with its ends.
+    pub fn distance(&self, feature: Feature, p: &Point<T>) -> T {
+        match feature {
+            Feature::Segment(k) => self.segments[k].distance(p),
+            Feature::Corner(k) => norm(&sub(p, self.vertex(k))),
         }
-        self.owner_piece(near, p).outward(p)
     }
 
+    /// Returns the unit vector from a point inside to its nearest point, if that is of this feature.
+    pub fn direction(&self, feature: Feature, p: &Point<T>) -> Point<T> {
+        match feature {
+            Feature::Segment(k) => self.segments[k].outward(p),
+            Feature::Corner(k) if self.is_reflex(k) => unit(&sub(self.vertex(k), p)),
+            // Only the corner itself is inside and nearest to a corner that owns nothing.
+            Feature::Corner(k) => self.segments[k.saturating_sub(1)].outward(p),
+        }
+    }
+
+    /// Returns the distance from a point that a feature owns to the nearest one at which its direction does not exist:
+    /// the axis unless the direction is along it, the centre of an arc, a corner.
+    pub fn singularity_distance(&self, feature: Feature, p: &Point<T>) -> f64 {
+        let has_radial_part = self.direction(feature, p)[0] != T::zero();
+        let axis = if has_radial_part { p[0].to_f64() } else { f64::INFINITY };
+        let centre = match feature {
+            Feature::Segment(k) => self.segments[k].centre(),
+            Feature::Corner(k) if self.is_reflex(k) => Some(self.vertex(k)),
+            Feature::Corner(k) => self.segments[k.saturating_sub(1)].centre(),
+        };
+        centre.map_or(axis, |centre| axis.min(norm(&sub(p, centre)).to_f64()))
+    }
+
+    /// Returns the commands of a `.tool` file that draw the profile, with the words for each number and each surface.
+    pub fn text(&self, number: impl Fn(&T) -> String, surface: impl Fn(usize) -> String) -> String {
+        let point = |[d, z]: &Point<T>| format!("({}, {})", number(d), number(z));
+        let mut text = format!("profile {{\n  start {};\n", point(self.vertex(0)));
+        for (k, segment) in self.segments.iter().enumerate() {
+            let to = point(&segment.to);
+            let command = match &segment.circle {
+                None => format!("line to {to}"),
+                Some(circle) => {
+                    let concave = if circle.convex { "" } else { " concave" };
+                    if circle.by_radius {
+                        format!("arc to {to} radius {}{concave}", number(&circle.radius))
+                    } else {
+                        format!("arc to {to} center {}{concave}", point(&circle.centre))
+                    }
+                }
+            };
+            text += &format!("  {command} as {};\n", surface(k));
+        }
+        text + "}"
+    }
+}
+
+impl Profile<f64> {
     /// Returns a lower bound of the distance to the surface and to the curves on which the nearest feature changes;
     /// outside, of the distance to the surface only.
     ///
     /// Two features meet either at a shared fan line or joint, whose distance is plain, or on the curve where their
     /// distances agree. Distances are 1-Lipschitz, so that curve is at least half their difference away.
-    pub fn border_distance(&self, p: P2) -> f64 {
+    pub fn border_distance(&self, p: &Point<f64>) -> f64 {
         let near = self.nearest(p);
-        if !self.contains(p) {
-            return near.distance;
+        let least = near.distance;
+        if least > 0.0 && !self.encloses(p) {
+            return least;
         }
-        let mut min_distance = near.distance;
-        let mut linked = vec![near.owner];
-        for (i, v) in self.vertices.iter().enumerate() {
-            let (Some(before), Some(after)) =
-                (i.checked_sub(1).map(|k| self.pieces[k]), self.pieces.get(i))
-            else {
-                continue;
-            };
-            let fan = match v.turn {
-                Turn::Reflex(rank) => Some(rank),
-                Turn::Smooth => None,
-                Turn::Axis | Turn::Convex => continue,
-            };
-            let owners = [Some(before.rank), fan, Some(after.rank)];
-            if owners.contains(&Some(near.owner)) {
-                linked.extend(owners.into_iter().flatten());
-                for tangent in [before.tangent(v.point), after.tangent(v.point)] {
-                    min_distance = min_distance.min(dot(sub(p, v.point), tangent).abs());
+        let owner = self.owners[self.owner(near.feature)];
+        let mut linked = vec![owner];
+        let mut border = least;
+        let count = self.segments.len();
+        for k in (0..=count).filter(|k| self.turns[*k] <= SMOOTH) {
+            let before = k.checked_sub(1).map(Feature::Segment);
+            let after = (k < count).then_some(Feature::Segment(k));
+            let corner = self.is_reflex(k).then_some(Feature::Corner(k));
+            let around = [before, corner, after];
+            // A smooth profile at the axis has no other side.
+            let is_border = corner.is_some() || (before.is_some() && after.is_some());
+            if is_border && around.contains(&Some(owner)) {
+                linked.extend(around.into_iter().flatten());
+                for tangent in self.tangents(k) {
+                    border = border.min(dot(&sub(p, self.vertex(k)), tangent).abs());
                 }
             }
         }
-        for piece in self.pieces.iter().filter(|piece| !linked.contains(&piece.rank)) {
-            min_distance = min_distance.min((piece.clamped(p) - near.distance) / 2.0);
+        for other in self.owners.iter().filter(|other| !linked.contains(other)) {
+            border = border.min((self.distance(*other, p) - least) / 2.0);
         }
-        for v in &self.vertices {
-            if matches!(v.turn, Turn::Reflex(rank) if !linked.contains(&rank)) {
-                min_distance = min_distance.min((len(sub(p, v.point)) - near.distance) / 2.0);
-            }
-        }
-        min_distance.max(0.0)
-    }
-
-    /// Returns the distance defined at [`super::Oracle::singularity_distance`].
-    pub fn singularity_distance(&self, p: P2) -> f64 {
-        let Some((near, direction)) = self.evaluate(p) else {
-            return f64::INFINITY;
-        };
-        let axis = if direction[0] == 0.0 { f64::INFINITY } else { p[0] };
-        let point = if near.corner {
-            near.distance
-        } else {
-            let centre = self.owner_piece(&near, p).centre();
-            centre.map_or(f64::INFINITY, |centre| len(sub(p, centre)))
-        };
-        axis.min(point)
+        border.max(0.0)
     }
 
     /// Returns the vertices, and the centres of arcs.
-    pub fn corners(&self) -> Vec<P2> {
-        let vertices = self.vertices.iter().map(|v| v.point);
-        vertices.chain(self.pieces.iter().filter_map(Piece::centre)).collect()
+    pub fn corners(&self) -> Vec<Point<f64>> {
+        let vertices = (0..=self.segments.len()).map(|k| *self.vertex(k));
+        vertices.chain(self.segments.iter().filter_map(Segment::centre).copied()).collect()
     }
 
-    /// Returns points along each piece.
-    pub fn surface(&self) -> Vec<Vec<P2>> {
-        self.pieces.iter().map(Piece::samples).collect()
+    /// Returns points along each segment.
+    pub fn surface(&self) -> Vec<Vec<Point<f64>>> {
+        self.segments.iter().map(Segment::samples).collect()
     }
 
-    /// Returns the piece with the owner's rank whose foot is the nearest point; failing that, the first with that
-    /// rank.
-    fn owner_piece(&self, near: &NearestFeature, p: P2) -> &Piece {
-        let owned_pieces = || self.pieces.iter().filter(|piece| piece.rank == near.owner);
-        let facing = owned_pieces().find(|piece| piece.faces(p) && piece.foot(p) == near.foot);
-        facing.or_else(|| owned_pieces().next()).unwrap_or(&self.pieces[0])
+    /// Returns the least and the largest `[d, z]`.
+    pub fn extent(&self) -> [Point<f64>; 2] {
+        let extremes = self.segments.iter().flat_map(Segment::extremes);
+        extremes.fold([[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]], |[low, high], p| {
+            [[0, 1].map(|k| low[k].min(p[k])), [0, 1].map(|k| high[k].max(p[k]))]
+        })
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::plane::{add, unit};
     use super::super::rng::Rng;
     use super::*;
 
     /// A body with a neck: convex and concave arcs, a taper, both kinds of corner.
-    fn vase() -> Profile {
-        Profile::new(
-            [0.0, 0.0],
-            &[
-                ([2.0, 2.0], Some([0.0, 2.0])),
-                ([1.0, 3.0], Some([2.0, 3.0])),
-                ([3.0, 5.0], None),
-                ([3.0, 6.0], None),
-                ([0.0, 6.0], None),
-            ],
-        )
+    fn vase() -> Profile<f64> {
+        Profile::parse("0 0, 2 2 about 0 2, 1 3 about 2 3, 3 5, 3 6, 0 6")
+    }
+
+    fn random_point(rng: &mut Rng) -> Point<f64> {
+        [rng.between(0.0, 4.0), rng.between(-1.0, 7.0)]
     }
 
     /// Compares with a polyline so fine that only its sagitta (below 1e-6) is left.
     #[test]
     fn distances_agree_with_a_fine_polyline() {
         let vase = vase();
-        let fine: Vec<_> = vase.pieces.iter().flat_map(|piece| piece.chords(2000)).collect();
+        let share = |i: u32| f64::from(i) / 2000.0;
+        let chords = |segment: &Segment<f64>| -> Vec<[Point<f64>; 2]> {
+            (0..2000).map(|i| [segment.at(share(i)), segment.at(share(i + 1))]).collect()
+        };
+        let fine: Vec<_> = vase.segments().iter().flat_map(chords).collect();
         let mut rng = Rng::new(5);
         for _ in 0..2_000 {
             let p = [rng.between(0.0, 5.0), rng.between(-2.0, 8.0)];
-            let polyline = fine.iter().map(|&(a, b)| {
+            let polyline = fine.iter().map(|[a, b]| {
                 let e = sub(b, a);
-                let t = (dot(sub(p, a), e) / dot(e, e)).clamp(0.0, 1.0);
-                len([p[0] - a[0] - t * e[0], p[1] - a[1] - t * e[1]])
+                let t = (dot(&sub(&p, a), &e) / dot(&e, &e)).clamp(0.0, 1.0);
+                norm(&sub(&p, &add(a, &e, &t)))
             });
-            let min_distance = polyline.fold(f64::INFINITY, f64::min);
-            let near = vase.nearest(p);
-            assert!((min_distance - near.distance).abs() < 1e-6, "{p:?}");
-            assert!((len(sub(p, near.foot)) - near.distance).abs() < 1e-14);
+            let least = polyline.fold(f64::INFINITY, f64::min);
+            let near = vase.nearest(&p);
+            assert!((least - near.distance).abs() < 1e-6, "{p:?}");
+            assert_eq!(vase.depth(&p).abs(), near.distance, "{p:?}");
         }
     }
 
@@ -299,18 +359,16 @@ mod tests {
         let vase = vase();
         let mut rng = Rng::new(6);
         for _ in 0..100_000 {
-            let p = [rng.between(0.0, 4.0), rng.between(-1.0, 7.0)];
-            let near = vase.nearest(p);
+            let p = random_point(&mut rng);
+            let near = vase.nearest(&p);
             if near.distance < 1e-12 {
                 continue;
             }
-            let at_vertex = vase.vertices.iter().any(|v| v.point == near.foot);
-            let inside = near.corner
-                || (!at_vertex && {
-                    let piece = vase.owner_piece(&near, p);
-                    cross(piece.tangent(near.foot), sub(p, near.foot)) > 0.0
-                });
-            assert_eq!(inside, vase.contains(p), "{p:?} {near:?}");
+            let inside = match near.feature {
+                Feature::Segment(k) => vase.segments()[k].inward(&p) > 0.0,
+                Feature::Corner(k) => vase.is_reflex(k),
+            };
+            assert_eq!(inside, vase.encloses(&p), "{p:?} {near:?}");
         }
     }
 
@@ -319,15 +377,15 @@ mod tests {
         let vase = vase();
         let mut rng = Rng::new(7);
         for _ in 0..100_000 {
-            let p = [rng.between(0.0, 4.0), rng.between(-1.0, 7.0)];
-            let Some((near, u)) = vase.evaluate(p) else {
-                continue;
-            };
-            for k in 0..2 {
-                assert!(
-                    (p[k] + near.distance * u[k] - near.foot[k]).abs() < 1e-13,
-                    "{p:?} {near:?} {u:?}"
-                );
+            let p = random_point(&mut rng);
+            let near = vase.nearest(&p);
+            if vase.encloses(&p) {
+                let u = vase.direction(near.feature, &p);
+                let foot = add(&p, &u, &near.distance);
+                assert!(vase.nearest(&foot).distance < 1e-13, "{p:?} {near:?} {u:?}");
+                if let Feature::Segment(k) = near.feature {
+                    assert!(norm(&sub(&vase.segments()[k].foot(&p), &foot)) < 1e-13);
+                }
             }
         }
     }
@@ -335,12 +393,21 @@ mod tests {
     #[test]
     fn the_surface_belongs_to_the_solid() {
         let vase = vase();
-        for p in vase.corners() {
-            let centre = vase.pieces.iter().any(|piece| piece.centre() == Some(p));
-            assert!(centre || vase.contains(p), "{p:?}");
+        for p in
+            [[0.0, 0.0], [3.0, 5.5], [1.5, 6.0], [3.0, 6.0], [2.0, 2.0], [1.0, 3.0], [3.0, 5.0]]
+        {
+            assert_eq!(vase.depth(&p), 0.0, "{p:?}");
         }
-        for p in [[0.0, 0.0], [3.0, 5.5], [1.5, 6.0], [3.0, 6.0], [2.0, 2.0]] {
-            assert!(vase.contains(p) && vase.nearest(p).distance == 0.0, "{p:?}");
-        }
+    }
+
+    /// At the axis a dished end is a reflex corner, which owns a fan, and a pointed one is not.
+    #[test]
+    fn the_axis_is_a_mirror() {
+        let dished = Profile::<f64>::parse("0 1, 3 0, 3 8, 0 9");
+        assert_eq!(dished.owners()[..2], [Feature::Corner(0), Feature::Segment(0)]);
+        assert_eq!(dished.owners().len(), 4);
+        let near = dished.nearest(&[0.1, 2.0]);
+        assert_eq!((near.feature, near.distance), (Feature::Corner(0), 0.1f64.hypot(1.0)));
+        assert_eq!(dished.direction(near.feature, &[0.1, 2.0]), unit(&[-0.1, -1.0]));
     }
 }

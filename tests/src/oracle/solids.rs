@@ -1,6 +1,7 @@
 //! The thesis's smallest solids, by their equations.
 
-use super::{Meridian, Oracle, OracleEvaluation, sample_curve, sample_line, unit_or_z};
+use super::plane::unit;
+use super::{Meridian, Oracle, OracleEvaluation, sample_curve, sample_line};
 
 /// The unit sphere (Ho 1999, eq. 4.1, 4.2), its lowest point at the origin: depth `1 - |p - c|`, direction away
 /// from the centre (0, 0, 1).
@@ -30,7 +31,7 @@ impl Oracle for UnitSphere {
             owner: 0,
             depth: 1.0 - rho,
             magnitude: 1.0 - rho,
-            direction: m.lift(unit_or_z(arm)),
+            direction: m.lift(unit(&arm)),
             niceness: 0.0,
         })
     }
@@ -138,10 +139,6 @@ impl Oracle for Cylinder {
             Some(OracleEvaluation { owner: 0, .. }) => Meridian::of(p).dz[0],
             _ => f64::INFINITY,
         }
-    }
-
-    fn magnitude_is_depth(&self) -> bool {
-        true
     }
 
     fn corners(&self) -> Vec<[f64; 2]> {

@@ -14,6 +14,7 @@ use touchoff_haptics::{
     StatePublisher, state_channel,
 };
 use touchoff_tests::fixtures::{part, poses};
+use touchoff_tests::library;
 
 #[global_allocator]
 static COUNTED: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
@@ -39,8 +40,7 @@ fn main() {
     for law in [Law::Thesis, Law::Gradient] {
         for path in ScenePath::ALL {
             let poses = poses(path, 500);
-            let mut probe =
-                Probe::new(&part, touchoff_tools::find("Fig73").expect("a tool")).with_law(law);
+            let mut probe = Probe::new(&part, library::tool("Fig73")).with_law(law);
             let first = everything(&mut probe, &poses);
             assert!(first > 0);
             let region = Region::new(COUNTED);
@@ -60,7 +60,7 @@ fn main() {
 fn a_certifier() {
     let bvh = TriangleBvh::new(&tube());
     for name in ["Fig73Exact", "BallEr16"] {
-        let tool = touchoff_tools::find(name).expect("a tool");
+        let tool = library::tool(name);
         let mut certifier = Certifier::new(&bvh, tool).expect("a profile");
         let mut round = |poses: &[Pose]| -> f64 {
             let depths = poses.iter().map(|pose| certifier.deepest(pose, 1e-6).depth.low);
@@ -96,7 +96,7 @@ fn a_haptic_loop() {
     let part = part(20_000);
     let (rate, cycles) = (1000.0, 3_000);
     for name in ["Fig73Exact", "Block"] {
-        let tool = touchoff_tools::find(name).expect("a tool");
+        let tool = library::tool(name);
         let axes = if name == "Block" { DeviceAxes::Six } else { DeviceAxes::Five };
         let limits = DeviceLimits { axes, ..DeviceLimits::default() };
         for rendering in [None, Some(Rendering::Direct { scaled: true, damping: 1e-3 })] {

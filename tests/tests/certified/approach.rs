@@ -4,11 +4,12 @@
 //! triangle's radius is skipped; the others are sampled. From the best samples a search climbs in time and position at
 //! once.
 
-use crate::brute::{Ball, BruteForce, Point, TRIANGLES_PER_GROUP, ToolFrame, nearest};
+use crate::brute::{Ball, BruteForce, TRIANGLES_PER_GROUP, ToolFrame};
 use nalgebra::Point3;
 use touchoff::{Pose, TriangleId};
 use touchoff_tests::oracle::Oracle;
 use touchoff_tests::oracle::rng::Rng;
+use touchoff_tests::oracle::triangle::{Point, advance, nearest};
 
 /// Maximum number of triangles sampled per pose, and number of samples per triangle.
 const MAX_TRIANGLES: usize = 40;
@@ -123,7 +124,7 @@ impl BruteForce<'_> {
             for _ in 0..SAMPLES_PER_TRIANGLE {
                 let mut offset = || rng.between(-1.0, 1.0) * radius;
                 let (x, y) = (offset(), offset());
-                let z = rng.between(0.0, 1.0) * if rng.bits() & 1 == 0 { height } else { radius };
+                let z = rng.between(0.0, 1.0) * if rng.once_in(2) { height } else { radius };
                 let inside = tip + rotation * nalgebra::Vector3::new(x, y, z) * self.length;
                 points.push(nearest(point(inside), &corners));
             }
@@ -164,10 +165,8 @@ impl BruteForce<'_> {
         sort_deepest_first(&mut samples);
         let starts = samples.iter().take(if closely { CLIMBS } else { 1 });
         let climbed = starts.map(|from| self.climb_in_time(motion, *from, step, rng));
-        climbed.fold(
-            samples[0],
-            |best, candidate| if candidate.depth > best.depth { candidate } else { best },
-        )
+        let deeper = |a: MotionSample, b: MotionSample| if b.depth > a.depth { b } else { a };
+        climbed.fold(samples[0], deeper)
     }
 
     /// Climbs in time and position from a sample, and returns the deepest sample reached.
@@ -193,10 +192,7 @@ impl BruteForce<'_> {
             let t = (best.t + time_change).clamp(0.0, 1.0);
             let offset = if k % 3 == 1 { 0.0 } else { distance };
             let direction = rng.direction();
-            let p = nearest(
-                [0, 1, 2].map(|axis| best.point[axis] + offset * direction[axis]),
-                &corners,
-            );
+            let p = nearest(advance(best.point, offset, direction), &corners);
             let depth = self.evaluation(&self.tool_frame(&motion.pose(t)), p);
             if depth > best.depth {
                 best = MotionSample { t, point: p, depth, ..best };

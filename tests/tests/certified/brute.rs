@@ -8,10 +8,8 @@ use nalgebra::{Point3, Vector3};
 use std::cell::Cell;
 use touchoff::{Mesh, Pose, TriangleId};
 use touchoff_tests::oracle::rng::Rng;
+use touchoff_tests::oracle::triangle::{Point, advance, distance, dot, nearest, point, sub, unit};
 use touchoff_tests::oracle::{Meridian, Nearest, Oracle};
-
-/// A point or vector in the tool's frame and unit.
-pub(crate) type Point = [f64; 3];
 
 /// Minimum and maximum number of samples of each kind per triangle. Fewer triangles nearby get more samples each.
 const SAMPLE_LIMITS: [usize; 2] = [8, 150];
@@ -54,52 +52,6 @@ pub(crate) const TRIANGLES_PER_GROUP: usize = 32;
 pub(crate) struct ToolFrame {
     tip: Point3<f64>,
     axes: [[f64; 3]; 3],
-}
-
-fn subtract(a: Point, b: Point) -> Point {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-fn dot(a: Point, b: Point) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn cross(a: Point, b: Point) -> Point {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-fn advance(a: Point, t: f64, direction: Point) -> Point {
-    [a[0] + t * direction[0], a[1] + t * direction[1], a[2] + t * direction[2]]
-}
-
-/// Returns the distance between two points.
-pub(crate) fn distance(a: Point, b: Point) -> f64 {
-    let difference = subtract(a, b);
-    dot(difference, difference).sqrt()
-}
-
-/// Returns the point of a triangle nearest to `p`: the foot on its plane, or else a point on an edge.
-pub(crate) fn nearest(p: Point, &[a, b, c]: &[Point; 3]) -> Point {
-    // The two shortest edges determine the plane of a sliver best.
-    let mut sorted_edges = [subtract(b, a), subtract(c, b), subtract(a, c)];
-    sorted_edges.sort_by(|e, f| dot(*e, *e).total_cmp(&dot(*f, *f)));
-    let normal = cross(sorted_edges[0], sorted_edges[1]);
-    let squared_norm = dot(normal, normal);
-    if squared_norm > 0.0 {
-        let foot = advance(p, -dot(normal, subtract(p, a)) / squared_norm, normal);
-        let side =
-            |from: Point, to: Point| dot(cross(subtract(to, from), subtract(foot, from)), normal);
-        let sides = [side(a, b), side(b, c), side(c, a)];
-        if sides.iter().all(|side| *side >= 0.0) || sides.iter().all(|side| *side <= 0.0) {
-            return foot;
-        }
-    }
-    let edges = [[a, b], [b, c], [c, a]].map(|[from, to]| {
-        let edge = subtract(to, from);
-        let t = dot(subtract(p, from), edge) / dot(edge, edge);
-        advance(from, if t > 0.0 { t.min(1.0) } else { 0.0 }, edge)
-    });
-    edges.into_iter().min_by(|e, f| distance(p, *e).total_cmp(&distance(p, *f))).unwrap_or(a)
 }
 
 /// Returns a ball that contains several balls.
@@ -163,7 +115,7 @@ impl<'a> BruteForce<'a> {
     /// Returns the depth of a point of the tool's frame, in the tool's unit; it is negative outside.
     pub(crate) fn depth(&self, p: Point) -> f64 {
         self.evaluations.set(self.evaluations.get() + 1);
-        -self.oracle.profile().signed_distance(Meridian::of(p).dz)
+        self.oracle.profile().depth(&Meridian::of(p).dz)
     }
 
     /// Returns the greatest depth found, in the part's unit. It is negative if no sample is inside, and negative
@@ -206,15 +158,11 @@ impl<'a> BruteForce<'a> {
     /// Returns samples of a triangle, the deepest first.
     fn sample(&self, triangle: &[Point; 3], count: usize, rng: &mut Rng) -> Vec<(f64, Point)> {
         let [radius, height] = self.oracle.extent();
-        let [a, b, c] = *triangle;
-        let mut points = vec![a, b, c];
+        let mut points = triangle.to_vec();
         for _ in 0..count {
-            let (v, w) = (rng.between(0.0, 1.0), rng.between(0.0, 1.0));
-            let (v, w) = if v + w > 1.0 { (1.0 - v, 1.0 - w) } else { (v, w) };
-            points.push(advance(advance(a, v, subtract(b, a)), w, subtract(c, a)));
+            points.push(point(triangle, rng.weights()));
             // Half of the points are near the tip.
-            let max_height =
-                if rng.bits().is_multiple_of(2) { height } else { height.min(2.0 * radius) };
+            let max_height = if rng.once_in(2) { height } else { height.min(2.0 * radius) };
             let mut offset = || rng.between(-0.5, 0.5) * radius;
             points.push(nearest([offset(), offset(), rng.between(0.0, max_height)], triangle));
         }
@@ -252,9 +200,7 @@ impl<'a> BruteForce<'a> {
             let next = nearest(advance(current, step, direction), &triangle);
             let depth = self.depth(next);
             if depth > best {
-                let moved = subtract(next, current);
-                let norm = dot(moved, moved).sqrt();
-                last_direction = moved.map(|component| component / norm);
+                last_direction = unit(sub(next, current));
                 (best, current, failed) = (depth, next, 0);
                 step *= 1.5;
             } else {

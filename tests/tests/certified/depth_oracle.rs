@@ -1,9 +1,6 @@
 //! Tools as oracles whose depth is fast enough for millions of evaluations.
 
-use touchoff_tests::oracle::outline::Outline;
-use touchoff_tests::oracle::{
-    Block, Cylinder, Fig73, LBracket, Nearest, Oracle, UnitSphere, restated,
-};
+use touchoff_tests::oracle::{self, Nearest, Oracle, restated};
 
 /// Tools with a profile.
 pub(crate) const PROFILES: [&str; 6] =
@@ -19,34 +16,24 @@ const FIELD_LIPSCHITZ_BOUND: f64 = 2.24;
 /// A tool whose depth is evaluated many times.
 pub(crate) enum DepthOracle {
     /// A tool with a profile.
-    Profile(Box<Nearest>, Outline),
+    Profile(Nearest),
     /// A tool with a depth field.
-    Field(Box<dyn Oracle + Send + Sync>),
+    Field(Box<dyn Oracle>),
 }
 
 impl DepthOracle {
     /// Returns a tool from the lists above.
     pub(crate) fn of(name: &str) -> DepthOracle {
-        match name {
-            "Fig73" => DepthOracle::Field(Box::<Fig73>::default()),
-            "Cylinder" => DepthOracle::Field(Box::new(Cylinder)),
-            "UnitSphere" => DepthOracle::Field(Box::new(UnitSphere)),
-            "Block" => DepthOracle::Field(Box::new(Block)),
-            "LBracket" => DepthOracle::Field(Box::new(LBracket)),
-            _ => {
-                let nearest = Box::new(Nearest::of(name));
-                match restated::of(name).and_then(|tool| Outline::of(&tool)) {
-                    Some(outline) => DepthOracle::Profile(nearest, outline),
-                    None => DepthOracle::Field(nearest),
-                }
-            }
+        match restated::of(name) {
+            Some(tool) if !FIELDS.contains(&name) => DepthOracle::Profile(Nearest::new(&tool)),
+            _ => DepthOracle::Field(oracle::of(name)),
         }
     }
 
     /// Returns the oracle of the tool.
     pub(crate) fn oracle(&self) -> &dyn Oracle {
         match self {
-            DepthOracle::Profile(nearest, _) => &**nearest,
+            DepthOracle::Profile(nearest) => nearest,
             DepthOracle::Field(field) => &**field,
         }
     }
@@ -54,9 +41,7 @@ impl DepthOracle {
     /// Returns the depth of a point; it is negative outside.
     pub(crate) fn depth(&self, p: [f64; 3]) -> f64 {
         match self {
-            DepthOracle::Profile(_, outline) => {
-                outline.depth([(p[0] * p[0] + p[1] * p[1]).sqrt(), p[2]])
-            }
+            DepthOracle::Profile(nearest) => nearest.profile().depth(&[p[0].hypot(p[1]), p[2]]),
             DepthOracle::Field(field) => field
                 .evaluate(p)
                 .map_or_else(|| -field.signed_distance(p), |evaluation| evaluation.depth),

@@ -4,60 +4,39 @@
 //! restatement, samples triangles and climbs from the deepest samples, and from the witness. No depth that it finds may
 //! exceed the upper bound. The lower bound is proved by the witness, whose depth is evaluated by the same oracle.
 
-use crate::brute::{BruteForce, ToolFrame, distance, nearest};
+use crate::brute::{BruteForce, ToolFrame};
 use crate::pair::{Pair, Pairs, parts};
 use crate::{oracle, overhang};
 use touchoff::certify::{Certifier, PoseVerdict, Witness};
 use touchoff::{Interval, Pose, SurfaceId};
 use touchoff_tests::count::case_count;
 use touchoff_tests::oracle::rng::Rng;
+use touchoff_tests::oracle::triangle::{distance, nearest};
+use touchoff_tests::tally::Tally;
 
 /// Number of poses per part and tool, unless `POSES` is set.
 const POSES: usize = 24;
 
+/// Names of counts: a sample inside the tool, brute force near the lower bound, an interval wider than tolerance and
+/// rounding together, a wrong answer.
+const POSES_QUERIED: &str = "poses";
+const IN_CONTACT: &str = "in contact";
+const REACHED: &str = "reached";
+const WIDER: &str = "wider";
+const VIOLATIONS: &str = "violations";
+
 /// The tolerances used, in the part's unit.
 const TOLERANCES: [f64; 4] = [0.0, 1e-9, 1e-6, 1e-3];
 
-/// The results of comparisons.
-#[derive(Clone, Debug, Default)]
-struct Results {
-    /// Number of poses queried.
-    poses: usize,
-    /// Number of poses at which brute force finds a point inside the tool.
-    touching: usize,
-    /// Number of poses at which brute force, without the witness, comes within 1e-6 of the lower bound.
-    reached: usize,
-    /// Number of verdicts of [`Certifier::check_pose`] that are undecided.
-    undecided: usize,
-    /// Number of intervals wider than tolerance and rounding together.
-    too_wide: usize,
-    /// Number of depths that brute force evaluated.
-    samples: u64,
-    /// Wrong answers, with tool, part and pose.
-    violations: Vec<String>,
-}
-
-impl Results {
-    fn add(mut self, other: Results) -> Results {
-        self.poses += other.poses;
-        self.touching += other.touching;
-        self.reached += other.reached;
-        self.undecided += other.undecided;
-        self.too_wide += other.too_wide;
-        self.samples += other.samples;
-        self.violations.extend(other.violations);
-        self
-    }
-}
-
 impl Pair<'_> {
     /// Compares certified depths with brute force at random poses.
-    fn compare_depths(&self, poses: usize) -> Results {
+    fn compare_depths(&self, poses: usize) -> Tally {
         let mut rng = Rng::new(self.seed);
         let brute = BruteForce::new(&self.part.mesh, &self.oracle, self.length());
         let mut certifier =
             Certifier::new(&self.part.bvh, self.tool).expect("a tool with a profile");
-        let mut results = Results { poses, ..Results::default() };
+        let mut tally = Tally::default();
+        tally.add(POSES_QUERIED, poses as u64);
         for k in 0..poses {
             let pose = brute.random_pose(&mut rng);
             let mut validation = Validation {
@@ -68,12 +47,12 @@ impl Pair<'_> {
                 rounding: 64.0 * f64::EPSILON * brute.size,
                 pose,
                 tolerance: TOLERANCES[k % TOLERANCES.len()],
-                results: &mut results,
+                tally: &mut tally,
             };
             validation.validate(&mut certifier, &mut rng);
         }
-        results.samples = brute.evaluations.get();
-        results
+        tally.add("samples", brute.evaluations.get());
+        tally
     }
 }
 
@@ -85,7 +64,7 @@ struct Validation<'a> {
     rounding: f64,
     pose: Pose,
     tolerance: f64,
-    results: &'a mut Results,
+    tally: &'a mut Tally,
 }
 
 impl Validation<'_> {
@@ -100,8 +79,9 @@ impl Validation<'_> {
             self.pose.axis().as_slice(),
             self.tolerance,
         );
-        self.results.touching += usize::from(sampled_depth > 0.0);
-        self.results.reached += usize::from(low - sampled_depth.max(0.0) <= 1e-6);
+        self.tally.see(IN_CONTACT, sampled_depth > 0.0);
+        // Brute force without the witness comes near the lower bound.
+        self.tally.see(REACHED, low - sampled_depth.max(0.0) <= 1e-6);
         let mut max_depth = sampled_depth;
         match penetration.witness {
             Some(witness) => {
@@ -126,7 +106,7 @@ impl Validation<'_> {
             self.add_violation("no interval", &case);
         }
         // The rounding error counts twice at either end and four times in the tolerance.
-        self.results.too_wide += usize::from(high - low - self.tolerance > 8.0 * self.rounding);
+        self.tally.see(WIDER, high - low - self.tolerance > 8.0 * self.rounding);
         let verdict = certifier.check_pose(&self.pose);
         self.validate_verdict(verdict, max_depth, low, &format!("{case}, {verdict:?}"));
     }
@@ -144,7 +124,7 @@ impl Validation<'_> {
                 }
             }
             PoseVerdict::Undecided(high) => {
-                self.results.undecided += 1;
+                self.tally.add("undecided", 1);
                 if max_depth > high + self.rounding {
                     self.add_violation("deeper than what is undecided", case);
                 }
@@ -170,34 +150,25 @@ impl Validation<'_> {
     }
 
     fn add_violation(&mut self, message: &str, case: &str) {
-        self.results.violations.push(format!("{message}: {case}"));
+        self.tally.find(VIOLATIONS, format!("{message}: {case}"));
     }
 }
 
 /// Compares tools with all parts, from the seed on.
 fn check(tools: &[&str], poses: usize, seed: u64) {
     let parts = parts("POSES");
-    let results = Pairs { parts: &parts, tools, seed }.compare(oracle, |pair| {
-        let results = pair.compare_depths(poses);
-        assert!(results.touching > poses / 3, "{pair}: {results:?}");
+    let tallies = Pairs { parts: &parts, tools, seed }.compare(oracle, |pair| {
+        let tally = pair.compare_depths(poses);
+        assert!(3 * tally.count(IN_CONTACT) > poses as u64, "{pair}: {tally:?}");
         // The slivers of real parts widen intervals by their skew.
-        assert!(results.too_wide == 0 || pair.part.is_real, "{pair}: {results:?}");
-        results
+        assert!(tally.count(WIDER) == 0 || pair.part.is_real, "{pair}: {tally:?}");
+        tally
     });
-    let total = results.into_iter().fold(Results::default(), Results::add);
-    eprintln!(
-        "brute force: {} poses, {} in contact, {} reached, {} undecided, {} wider, {} samples, {} violations",
-        total.poses,
-        total.touching,
-        total.reached,
-        total.undecided,
-        total.too_wide,
-        total.samples,
-        total.violations.len()
-    );
-    assert!(total.violations.is_empty(), "{:#?}", total.violations);
+    let total: Tally = tallies.into_iter().sum();
+    eprintln!("brute force: {total}");
+    total.assert_none(VIOLATIONS);
     // Brute force that seldom comes near the lower bound would not contradict an upper bound either.
-    assert!(2 * total.reached > total.poses, "{} of {} reached", total.reached, total.poses);
+    assert!(2 * total.count(REACHED) > total.count(POSES_QUERIED), "{total}");
 }
 
 #[test]

@@ -12,40 +12,29 @@ use touchoff::mesh::shapes;
 use touchoff::{Mesh, Motion, Pose, SurfaceId, Tool, Unit};
 use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::{Nearest, Oracle};
+use touchoff_tests::tally::Tally;
 use touchoff_tools::TOOLS;
 
-/// The verdicts on poses of one kind.
-#[derive(Clone, Copy, Debug, Default)]
-struct Verdicts {
-    poses: usize,
-    /// Number of poses with the correct verdict.
-    correct: usize,
-}
-
-/// The verdicts on a tool in blocks.
-#[derive(Clone, Debug, Default)]
-struct BlockVerdicts {
-    /// Poses at which the tool is entirely inside.
-    inside: Verdicts,
-    /// Poses at which a face cuts the tool.
-    cut: Verdicts,
-    /// Verdicts that are neither correct nor undecided.
-    violations: Vec<String>,
-}
+/// Names of counts: poses with the tool entirely inside and with a face that cuts it, those with the correct verdict, and
+/// verdicts that are neither correct nor undecided.
+const POSES: &str = "poses";
+const INSIDE: &str = "found inside";
+const CUT: &str = "found cut";
+const VIOLATIONS: &str = "violations";
 
 /// Checks the verdicts on random blocks around a tool. One face of each is a small distance inside or outside the tool's
 /// extent, and the others are farther away.
-fn check_blocks(name: &str, blocks: usize) -> BlockVerdicts {
+fn check_blocks(name: &str, blocks: usize) -> Tally {
     let (tool, subject) = (tool(name), DepthOracle::of(name));
     let mut rng = Rng::new(5);
     let info = tool.info();
-    let mut verdicts = BlockVerdicts::default();
+    let mut tally = Tally::default();
     let [radius, height] = subject.oracle().extent();
     let size = radius.max(height);
     for _ in 0..blocks {
-        let gap = size * 10f64.powf(rng.between(subject.min_gap().log10(), -1.0));
-        let inside = rng.bits().is_multiple_of(2);
-        let near_face = rng.bits() as usize % 6;
+        let gap = size * rng.power(subject.min_gap().log10(), -1.0);
+        let inside = rng.once_in(2);
+        let near_face = rng.index(6);
         let extent = [radius, radius, 0.0, radius, radius, height];
         let faces: [f64; 6] = std::array::from_fn(|face| {
             let margin = if face == near_face && inside {
@@ -65,19 +54,18 @@ fn check_blocks(name: &str, blocks: usize) -> BlockVerdicts {
         let bvh = TriangleBvh::new(&to_world(&cuboid, &pose));
         let mut certifier = Certifier::new(&bvh, tool).expect("a tool that is proved");
         let verdict = certifier.check_pose(&pose);
-        let same_kind = if inside { &mut verdicts.inside } else { &mut verdicts.cut };
-        same_kind.poses += 1;
+        tally.add(POSES, 1);
         match (inside, verdict) {
-            (true, PoseVerdict::Inside(_)) | (false, PoseVerdict::Touching(_)) => {
-                same_kind.correct += 1;
-            }
+            (true, PoseVerdict::Inside(_)) => tally.add(INSIDE, 1),
+            (false, PoseVerdict::Touching(_)) => tally.add(CUT, 1),
             (_, PoseVerdict::Undecided(_)) => {}
-            _ => verdicts
-                .violations
-                .push(format!("{name} in {faces:?}, inside {inside}: {verdict:?} at {pose:?}")),
+            _ => tally.find(
+                VIOLATIONS,
+                format!("{name} in {faces:?}, inside {inside}: {verdict:?} at {pose:?}"),
+            ),
         }
     }
-    verdicts
+    tally
 }
 
 /// Transforms a mesh from the tool's frame to the world frame.
@@ -92,21 +80,18 @@ fn a_tool_in_a_block_is_inside_unless_a_face_cuts_it() {
     // The extents of a solid are not distances from an axis.
     let fields: Vec<&str> =
         FIELDS.into_iter().filter(|name| !["Block", "LBracket"].contains(name)).collect();
-    let (mut poses, mut violations) = (0, Vec::new());
+    let mut tallies = Vec::new();
     for (tools, blocks) in [(&PROFILES[..], 1000), (&fields, 20)] {
         for name in tools {
-            let verdicts = check_blocks(name, blocks);
-            let BlockVerdicts { inside, cut, .. } = verdicts;
-            assert!(
-                4 * inside.correct > blocks && 4 * cut.correct > blocks,
-                "{name}: {verdicts:?}"
-            );
-            poses += inside.poses + cut.poses;
-            violations.extend(verdicts.violations);
+            let tally = check_blocks(name, blocks);
+            let is_enough = |kind: &str| 4 * tally.count(kind) > blocks as u64;
+            assert!(is_enough(INSIDE) && is_enough(CUT), "{name}: {tally}");
+            tallies.push(tally);
         }
     }
-    eprintln!("blocks: {poses} poses, {} violations", violations.len());
-    assert!(violations.is_empty(), "{violations:#?}");
+    let total: Tally = tallies.into_iter().sum();
+    eprintln!("blocks: {total}");
+    total.assert_none(VIOLATIONS);
 }
 
 /// Returns a cube around the origin that contains any library tool.
@@ -225,7 +210,7 @@ fn inside_verdicts_agree_with_samples_of_the_section() {
                 panic!("{name} has a profile");
             };
             // Upright or upside down: the material is below a height of the tool, or above it.
-            let (up, cut) = (rng.bits().is_multiple_of(2), rng.between(-0.1, 1.1) * height);
+            let (up, cut) = (rng.once_in(2), rng.between(-0.1, 1.1) * height);
             let axis = [0.0, 0.0, if up { 1.0 } else { -1.0 }];
             let tip = [0.1, 0.2, if up { -cut } else { cut } * length];
             let verdict = certifier.check_pose(&pose(tip, axis));

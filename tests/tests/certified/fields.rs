@@ -10,24 +10,16 @@ use touchoff::tool::Interpreted;
 use touchoff::{Interval, Mesh, Pose, SurfaceId, TriangleId, Unit};
 use touchoff_dsl::source::Source;
 use touchoff_tests::oracle::rng::Rng;
-use touchoff_tests::oracle::{Block, Cylinder, Fig73, LBracket, Oracle, UnitSphere};
+use touchoff_tests::oracle::{self, Oracle};
 
 /// Returns every library tool without a profile, and its oracle.
-fn tools_without_profile() -> Vec<(&'static str, Box<dyn Oracle>)> {
-    vec![
-        ("Fig73", Box::new(Fig73::default())),
-        ("Cylinder", Box::new(Cylinder)),
-        ("UnitSphere", Box::new(UnitSphere)),
-        ("Block", Box::new(Block)),
-        ("LBracket", Box::new(LBracket)),
-    ]
+fn tools_without_profile() -> [(&'static str, Box<dyn Oracle>); 5] {
+    ["Fig73", "Cylinder", "UnitSphere", "Block", "LBracket"].map(|name| (name, oracle::of(name)))
 }
 
 /// Returns a random pose near a sphere of this radius, in any orientation.
 fn random_pose_near(radius: f64, rng: &mut Rng) -> Pose {
-    let mut quaternion = [0; 4].map(|_| rng.between(-1.0, 1.0));
-    let norm = quaternion.iter().map(|component| component * component).sum::<f64>().sqrt();
-    quaternion.iter_mut().for_each(|component| *component /= norm);
+    let quaternion = rng.quaternion();
     let tip = Vector3::from(rng.direction()) * radius * rng.between(0.7, 1.3);
     Pose::from_quaternion(Point3::from(tip), quaternion).expect("a quaternion")
 }
@@ -40,9 +32,7 @@ fn to_tool(pose: &Pose, length: f64, point: Point3<f64>) -> [f64; 3] {
 fn random_points(mesh: &Mesh, rng: &mut Rng) -> Vec<Point3<f64>> {
     let ids = (0..mesh.triangles().len() as u32).flat_map(|id| [id; 8]);
     let random_point = |id: u32| {
-        let [a, b, c] = mesh.triangle(TriangleId(id));
-        let (v, w) = (rng.between(0.0, 1.0), rng.between(0.0, 1.0));
-        let (v, w) = if v + w > 1.0 { (1.0 - v, 1.0 - w) } else { (v, w) };
+        let ([a, b, c], [v, w]) = (mesh.triangle(TriangleId(id)), rng.weights());
         a + v * (b - a) + w * (c - a)
     };
     ids.map(random_point).collect()

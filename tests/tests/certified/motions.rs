@@ -51,7 +51,7 @@ fn random_direction(rng: &mut Rng) -> Vector3<f64> {
 
 /// Returns a random number between two powers of ten.
 fn random_power(rng: &mut Rng, low_exponent: f64, high_exponent: f64) -> f64 {
-    10f64.powf(rng.between(low_exponent, high_exponent))
+    rng.power(low_exponent, high_exponent)
 }
 
 /// Returns a rotation about a random axis by 0.001 to 150 degrees.
@@ -70,7 +70,7 @@ impl BruteForce<'_> {
             if motion.angle().to_degrees() > 170.0 {
                 continue;
             }
-            let stays = rng.bits().is_multiple_of(6);
+            let stays = rng.once_in(6);
             return if stays { motion } else { self.shift_to_near_miss(motion, rng) };
         }
     }
@@ -90,7 +90,7 @@ impl BruteForce<'_> {
                 let slide = normal.cross(&random_direction(rng)).normalize()
                     * part_size
                     * random_power(rng, -3.0, 0.0);
-                let tilts = rng.bits().is_multiple_of(2);
+                let tilts = rng.once_in(2);
                 pose_at(tip + slide, if tilts { axis + 0.1 * random_direction(rng) } else { axis })
             }
             MotionKind::SwingAboutTip => pose_at(tip, random_rotation(rng) * axis),
@@ -103,10 +103,7 @@ impl BruteForce<'_> {
             }
             MotionKind::Plunge => {
                 let distance = part_size * random_power(rng, -4.0, 0.3);
-                pose_at(
-                    tip + axis * if rng.bits().is_multiple_of(2) { distance } else { -distance },
-                    axis,
-                )
+                pose_at(tip + axis * if rng.once_in(2) { distance } else { -distance }, axis)
             }
             MotionKind::Straight => pose_at(
                 tip + random_direction(rng) * part_size * random_power(rng, -4.0, 0.5),
@@ -118,7 +115,7 @@ impl BruteForce<'_> {
                     tip + random_direction(rng) * part_size * random_power(rng, 0.5, 3.0),
                     random_rotation(rng) * axis,
                 );
-                if rng.bits().is_multiple_of(2) {
+                if rng.once_in(2) {
                     let back = tip - (far_pose.tip() - tip);
                     return ReferenceMotion { from: pose_at(back, axis), to: far_pose };
                 }
@@ -126,7 +123,7 @@ impl BruteForce<'_> {
             }
             MotionKind::Any => self.random_pose(rng),
         };
-        if rng.bits().is_multiple_of(2) {
+        if rng.once_in(2) {
             ReferenceMotion { from, to }
         } else {
             ReferenceMotion { from: to, to: from }
@@ -136,7 +133,7 @@ impl BruteForce<'_> {
     fn shift_to_near_miss(&self, mut motion: ReferenceMotion, rng: &mut Rng) -> ReferenceMotion {
         let [radius, _] = self.oracle.extent();
         let gap = random_power(rng, -7.0, -0.3) * (radius * self.length / 5.0);
-        let gap = if rng.bits().is_multiple_of(10) { -gap } else { gap };
+        let gap = if rng.once_in(10) { -gap } else { gap };
         for _ in 0..SHIFTS {
             let deepest = self.deepest_in_motion(&motion, TIME_SAMPLES_PER_SHIFT, false, rng);
             let normal = self

@@ -2,107 +2,108 @@
 
 use crate::{UP, block, pose, soup};
 use nalgebra::Point3;
+use std::sync::LazyLock;
 use touchoff::certify::{Certifier, PoseVerdict, TriangleBvh};
+use touchoff::tool::Interpreted;
 use touchoff::{Interval, SurfaceId, Tool};
 use touchoff_tests::oracle::restated::Restated;
 use touchoff_tests::oracle::{Nearest, Oracle};
 
-touchoff::tool! {
-    tool HoleSaw "38 mm, 12 mm deep" {
-        units mm;
-        profile {
-            start (0, 12);
-            line to (16, 12), (16, 0) as cup;
-            line to (19, 0) as teeth cutting;
-            line to (19, 18), (5, 18), (5, 45), (0, 45) as body;
-        }
-        niceness teeth: 1;
+/// The texts of the tools.
+const TEXTS: [&str; 7] = [
+    r#"tool HoleSaw "38 mm, 12 mm deep" {
+    units mm;
+    profile {
+        start (0, 12);
+        line to (16, 12), (16, 0) as cup;
+        line to (19, 0) as teeth cutting;
+        line to (19, 18), (5, 18), (5, 45), (0, 45) as body;
     }
-}
-
-touchoff::tool! {
-    tool Dished "a dovetail whose face is dished by 0.2 mm" {
-        units mm;
-        profile {
-            start (0, 0.2);
-            line to (8, 0) as face cutting;
-            line to (5, 6) as flank cutting;
-            line to (4, 7), (4, 40), (0, 40) as shank;
-        }
-        niceness face: 1;
-        niceness flank: 1;
+    niceness teeth: 1;
+}"#,
+    r#"tool Dished "a dovetail whose face is dished by 0.2 mm" {
+    units mm;
+    profile {
+        start (0, 0.2);
+        line to (8, 0) as face cutting;
+        line to (5, 6) as flank cutting;
+        line to (4, 7), (4, 40), (0, 40) as shank;
     }
-}
-
-touchoff::tool! {
-    tool Bell "hollow and round arcs on both sides" {
-        units mm;
-        profile {
-            start (0, 8);
-            arc to (6, 2) center (0, 2) concave as dome;
-            arc to (8, 0) center (8, 2) as lip cutting;
-            arc to (10, 2) center (8, 2) as lip cutting;
-            line to (10, 12) as side cutting;
-            arc to (6, 14) center (10, 17) concave as neck;
-            line to (6, 40), (0, 40) as shank;
-        }
-        niceness lip: 1;
-        niceness side: 1;
+    niceness face: 1;
+    niceness flank: 1;
+}"#,
+    r#"tool Bell "hollow and round arcs on both sides" {
+    units mm;
+    profile {
+        start (0, 8);
+        arc to (6, 2) center (0, 2) concave as dome;
+        arc to (8, 0) center (8, 2) as lip cutting;
+        arc to (10, 2) center (8, 2) as lip cutting;
+        line to (10, 12) as side cutting;
+        arc to (6, 14) center (10, 17) concave as neck;
+        line to (6, 40), (0, 40) as shank;
     }
-}
-
-touchoff::tool! {
-    tool Skirt "a stem with a skirt about it" {
-        units mm;
-        profile {
-            start (0, 0);
-            line to (3, 0) as face cutting;
-            line to (3, 10), (8, 9), (7.5, 4) as under;
-            line to (10, 3.5) as lip cutting;
-            line to (12, 15), (4, 18), (4, 40), (0, 40) as top;
-        }
-        niceness face: 1;
-        niceness lip: 1;
+    niceness lip: 1;
+    niceness side: 1;
+}"#,
+    r#"tool Skirt "a stem with a skirt about it" {
+    units mm;
+    profile {
+        start (0, 0);
+        line to (3, 0) as face cutting;
+        line to (3, 10), (8, 9), (7.5, 4) as under;
+        line to (10, 3.5) as lip cutting;
+        line to (12, 15), (4, 18), (4, 40), (0, 40) as top;
     }
-}
-
-touchoff::tool! {
-    tool Torus "an inclined web with a round rim, deepest on a circle" {
-        units mm;
-        profile {
-            start (0, 1.2);
-            line to (8.4, 0.8) as web;
-            arc to (10, 0) center (10, 2) as low cutting;
-            arc to (12, 2) center (10, 2) as low cutting;
-            arc to (10, 4) center (10, 2) as high;
-            arc to (8.4, 3.2) center (10, 2) as high;
-            line to (0, 2.8) as top;
-        }
-        niceness low: 1;
+    niceness face: 1;
+    niceness lip: 1;
+}"#,
+    r#"tool Torus "an inclined web with a round rim, deepest on a circle" {
+    units mm;
+    profile {
+        start (0, 1.2);
+        line to (8.4, 0.8) as web;
+        arc to (10, 0) center (10, 2) as low cutting;
+        arc to (12, 2) center (10, 2) as low cutting;
+        arc to (10, 4) center (10, 2) as high;
+        arc to (8.4, 3.2) center (10, 2) as high;
+        line to (0, 2.8) as top;
     }
-}
-
-touchoff::tool! {
-    tool Wheel "an inclined web with a thick rim" {
-        units mm;
-        profile {
-            start (0, 1.3);
-            line to (8, 1.5) as web;
-            line to (9, 0), (11, 0), (12, 1.5) as low cutting;
-            line to (12, 2.5), (11, 4), (9, 4), (8, 2.5) as high;
-            line to (0, 2.7) as top;
-        }
-        niceness low: 1;
+    niceness low: 1;
+}"#,
+    r#"tool Wheel "an inclined web with a thick rim" {
+    units mm;
+    profile {
+        start (0, 1.3);
+        line to (8, 1.5) as web;
+        line to (9, 0), (11, 0), (12, 1.5) as low cutting;
+        line to (12, 2.5), (11, 4), (9, 4), (8, 2.5) as high;
+        line to (0, 2.7) as top;
     }
-}
+    niceness low: 1;
+}"#,
+    r#"tool Dimple "a hollow cone in the end of a rod" {
+    units mm;
+    profile {
+        start (0, 1);
+        line to (1, 0) as dimple;
+        line to (1, 20) as flute cutting;
+        line to (0, 20) as top;
+    }
+    niceness flute: 1;
+}"#,
+];
 
-/// The names of these tools.
+/// The names of these tools that are compared with oracles.
 pub(crate) const ALL: [&str; 6] = ["HoleSaw", "Dished", "Bell", "Skirt", "Torus", "Wheel"];
+
+static TOOLS: LazyLock<[Interpreted; 7]> =
+    LazyLock::new(|| TEXTS.map(|text| text.parse().expect("a tool")));
 
 /// Returns one of these tools.
 pub(crate) fn tool(name: &str) -> Option<&'static dyn Tool> {
-    let tools: [&dyn Tool; 6] = [&HoleSaw, &Dished, &Bell, &Skirt, &Torus, &Wheel];
-    tools.into_iter().find(|tool| tool.info().name == name)
+    let found = TOOLS.iter().find(|tool| tool.info().name == name)?;
+    Some(found)
 }
 
 /// Returns the oracle of one of these tools, from the dimensions of its drawing.
@@ -175,25 +176,12 @@ fn a_rim_is_as_deep_as_its_circle() {
     }
 }
 
-touchoff::tool! {
-    tool Dimple "a hollow cone in the end of a rod" {
-        units mm;
-        profile {
-            start (0, 1);
-            line to (1, 0) as dimple;
-            line to (1, 20) as flute cutting;
-            line to (0, 20) as top;
-        }
-        niceness flute: 1;
-    }
-}
-
 /// Points above the tip of the cone are nearest to that tip, a corner on the axis.
 #[test]
 fn a_zone_of_a_corner_on_the_axis_is_found_inside() {
     let bvh = TriangleBvh::new(&block([-30.0, -30.0, -40.0], [30.0, 30.0, 40.0]));
     for limit in [0.0, 0.5, 0.8, 0.9] {
-        let mut certifier = Certifier::new(&bvh, &Dimple).expect("a profile");
+        let mut certifier = Certifier::new(&bvh, tool("Dimple").expect("it")).expect("a profile");
         let unlimited = f64::INFINITY;
         for (surface, limit) in [("dimple", limit), ("flute", unlimited), ("top", unlimited)] {
             certifier = certifier.with_allowance(surface, limit).expect("a surface");

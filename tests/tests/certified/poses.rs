@@ -40,25 +40,16 @@ fn pose_at(tip: Point3<f64>, axis: Vector3<f64>) -> Pose {
 
 /// Returns a random point of the tool's surface and the outward direction there, both as `[d, z]`.
 fn random_surface_point(oracle: &Nearest, rng: &mut Rng) -> ([f64; 2], [f64; 2]) {
-    loop {
-        let segments = oracle.profile().surface();
-        let segment = &segments[rng.bits() as usize % segments.len()];
-        let k = rng.bits() as usize % (segment.len() - 1);
-        let (from, to) = (segment[k], segment[k + 1]);
-        let edge = [to[0] - from[0], to[1] - from[1]];
-        let length = edge[0].hypot(edge[1]);
-        if length > 0.0 {
-            let fraction = rng.between(0.0, 1.0);
-            let point = [from[0] + fraction * edge[0], from[1] + fraction * edge[1]];
-            return (point, [edge[1] / length, -edge[0] / length]);
-        }
-    }
+    let segments = oracle.profile().segments();
+    let segment = &segments[rng.index(segments.len())];
+    let point = segment.at(rng.between(0.0, 1.0));
+    (point, segment.outward(&point))
 }
 
 /// Returns a random depth from 1e-9 to about 6 mm, or sometimes minus that, for a gap.
 fn random_press_depth(rng: &mut Rng) -> f64 {
-    let depth = 10f64.powf(rng.between(-9.0, 0.8));
-    if rng.bits().is_multiple_of(8) { -depth } else { depth }
+    let depth = rng.power(-9.0, 0.8);
+    if rng.once_in(8) { -depth } else { depth }
 }
 
 impl BruteForce<'_> {
@@ -77,8 +68,7 @@ impl BruteForce<'_> {
         let (mesh, length) = (self.mesh, self.length);
         let id = (rng.bits() as usize % mesh.triangles().len()) as u32;
         let [a, b, c] = mesh.triangle(TriangleId(id));
-        let (v, w) = (rng.between(0.0, 1.0), rng.between(0.0, 1.0));
-        let (v, w) = if v + w > 1.0 { (1.0 - v, 1.0 - w) } else { (v, w) };
+        let [v, w] = rng.weights();
         let target = a + v * (b - a) + w * (c - a);
         let ([d, z], [radial_part, axial_part]) = random_surface_point(self.oracle, rng);
         let inward =
@@ -102,14 +92,14 @@ impl BruteForce<'_> {
     fn aligned_pose(&self, rng: &mut Rng) -> Pose {
         let length = self.length;
         let mut axis = Vector3::zeros();
-        let axis_index = rng.bits() as usize % 3;
-        axis[axis_index] = if rng.bits().is_multiple_of(2) { 1.0 } else { -1.0 };
+        let axis_index = rng.index(3);
+        axis[axis_index] = if rng.once_in(2) { 1.0 } else { -1.0 };
         let [low, high] = self.mesh.bounds();
         let corners = self.oracle.corners();
-        let [d, z] = corners[rng.bits() as usize % corners.len()];
+        let [d, z] = corners[rng.index(corners.len())];
         let mut tip = Point3::origin();
         for k in 0..3 {
-            let side = if rng.bits().is_multiple_of(2) { low[k] } else { high[k] };
+            let side = if rng.once_in(2) { low[k] } else { high[k] };
             let grid = (rng.between(low[k], high[k]) * 2.0).round() / 2.0;
             tip[k] = match rng.bits() % 4 {
                 0 if k == axis_index => side - z * length * axis[k],

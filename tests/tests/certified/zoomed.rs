@@ -15,40 +15,21 @@ use touchoff::certify::Certifier;
 use touchoff::{Interval, Pose, TriangleId};
 use touchoff_tests::count::case_count;
 use touchoff_tests::oracle::rng::Rng;
-
-/// A point of the tool's frame.
-type Point = [f64; 3];
+use touchoff_tests::oracle::triangle::{Point, distance, norm, point, sub};
+use touchoff_tests::tally::Tally;
 
 /// Number of points that are zoomed in on, at first and at last.
 const POINT_COUNTS: [usize; 2] = [48, 6];
 /// Ratio of the sizes of successive neighbourhoods.
 const SHRINK_FACTOR: f64 = 0.4;
 
-/// The results of comparisons.
-#[derive(Clone, Debug, Default)]
-struct Results {
-    /// Number of poses queried.
-    poses: usize,
-    /// Number of poses at which a sample is inside the tool.
-    touching: usize,
-    /// Number of poses at which the samples come near enough to the lower bound.
-    reached: usize,
-    /// Intervals wider than tolerance and rounding together.
-    too_wide: Vec<String>,
-    /// Poses at which a sample exceeds the upper bound.
-    violations: Vec<String>,
-}
-
-impl Results {
-    fn add(mut self, other: Results) -> Results {
-        self.poses += other.poses;
-        self.touching += other.touching;
-        self.reached += other.reached;
-        self.too_wide.extend(other.too_wide);
-        self.violations.extend(other.violations);
-        self
-    }
-}
+/// Names of counts: a sample inside the tool, samples near the lower bound, an interval wider than tolerance and rounding
+/// together, a sample that exceeds the upper bound.
+const POSES: &str = "poses";
+const IN_CONTACT: &str = "in contact";
+const REACHED: &str = "reached";
+const WIDER: &str = "wider";
+const VIOLATIONS: &str = "violations";
 
 /// A sample: its depth, its triangle, and two of its barycentric weights.
 #[derive(Clone, Copy, Debug)]
@@ -111,7 +92,7 @@ impl Search {
 
 impl Pair<'_, DepthOracle> {
     /// Compares certified depths at random poses, with `samples` samples at each pose where a triangle is near.
-    fn compare_zoomed(&self, poses: usize, samples: u64) -> Results {
+    fn compare_zoomed(&self, poses: usize, samples: u64) -> Tally {
         let mut rng = Rng::new(self.seed);
         let (mesh, length) = (&self.part.mesh, self.length());
         let [radius, height] = self.oracle.oracle().extent();
@@ -123,10 +104,10 @@ impl Pair<'_, DepthOracle> {
         let mut certifier =
             Certifier::new(&self.part.bvh, self.tool).expect("a tool that is proved");
         let brute = match &self.oracle {
-            DepthOracle::Profile(nearest, _) => Some(BruteForce::new(mesh, nearest, length)),
+            DepthOracle::Profile(nearest) => Some(BruteForce::new(mesh, nearest, length)),
             DepthOracle::Field(_) => None,
         };
-        let mut results = Results { poses, ..Results::default() };
+        let mut tally = Tally::default();
         for _ in 0..poses {
             let pose = match &brute {
                 Some(brute) => brute.random_pose(&mut rng),
@@ -134,17 +115,18 @@ impl Pair<'_, DepthOracle> {
             };
             let Interval { low, high } = certifier.deepest(&pose, tolerance).depth;
             let max_depth = (self.deepest(&pose, samples, &mut rng) * length).max(0.0);
-            results.touching += usize::from(max_depth > 0.0);
-            results.reached += usize::from(max_depth >= low - margin);
+            tally.add(POSES, 1);
+            tally.see(IN_CONTACT, max_depth > 0.0);
+            tally.see(REACHED, max_depth >= low - margin);
             let case = format!("{self}: [{low:?}, {high:?}], {max_depth:?} at {pose:?}");
             if high - low > 1.01 * tolerance + 8.0 * rounding {
-                results.too_wide.push(case.clone());
+                tally.find(WIDER, case.clone());
             }
             if max_depth > high + rounding {
-                results.violations.push(case);
+                tally.find(VIOLATIONS, case);
             }
         }
-        results
+        tally
     }
 
     /// Returns a pose, in any orientation, that puts a random point inside the tool's extent at one of the part.
@@ -158,14 +140,8 @@ impl Pair<'_, DepthOracle> {
         let (d, direction) = (rng.between(0.0, radius), rng.direction());
         let inside =
             Vector3::new(d * direction[0], d * direction[1], rng.between(0.0, height)) * length;
-        let quaternion = loop {
-            let quaternion = [0; 4].map(|_| rng.between(-1.0, 1.0));
-            let norm = quaternion.iter().map(|component| component * component).sum::<f64>().sqrt();
-            if (0.1..=1.0).contains(&norm) {
-                break quaternion.map(|component| component / norm);
-            }
-        };
-        let rotated = Pose::from_quaternion(Point3::origin(), quaternion).expect("a quaternion");
+        let rotated =
+            Pose::from_quaternion(Point3::origin(), rng.quaternion()).expect("a quaternion");
         rotated
             .translated(target.coords - rotated.rotation() * inside)
             .expect("a place near the part")
@@ -274,8 +250,7 @@ impl Pair<'_, DepthOracle> {
     fn sample_nearby(&self, corners: &[Point; 3], reach: f64, best: &mut Sample, rng: &mut Rng) {
         let [a, b, c] = corners;
         let step = |to: &Point| {
-            let edge = [0, 1, 2].map(|k| to[k] - a[k]);
-            let length = edge.iter().map(|component| component * component).sum::<f64>().sqrt();
+            let length = norm(sub(*to, *a));
             if length > reach { reach / length } else { 1.0 }
         };
         let [v, w] = best.weights;
@@ -304,16 +279,6 @@ fn bisect_longest_edge(triangle: &[Point; 3], corners: [[f64; 2]; 3]) -> [[[f64;
     [[a, middle, c], [middle, b, c]]
 }
 
-fn distance(a: Point, b: Point) -> f64 {
-    let difference = [0, 1, 2].map(|k| b[k] - a[k]);
-    difference.iter().map(|component| component * component).sum::<f64>().sqrt()
-}
-
-/// Returns the point of a triangle with two barycentric weights.
-fn point([a, b, c]: &[Point; 3], [v, w]: [f64; 2]) -> Point {
-    [0, 1, 2].map(|k| a[k] + v * (b[k] - a[k]) + w * (c[k] - a[k]))
-}
-
 #[test]
 fn samples_that_zoom_in_are_within_the_interval() {
     let is_full = is_full_run("ZOOMED");
@@ -328,17 +293,10 @@ fn samples_that_zoom_in_are_within_the_interval() {
         tools.extend(["Fig73", "UnitSphere", "Block"]);
     }
     let pairs = Pairs { parts: &parts, tools: &tools, seed: 3 };
-    let results = pairs.compare(DepthOracle::of, |pair| pair.compare_zoomed(poses, samples));
-    let total = results.into_iter().fold(Results::default(), Results::add);
-    eprintln!(
-        "samples that zoom in: {} poses, {} in contact, {} reached, {} wider, {} violations",
-        total.poses,
-        total.touching,
-        total.reached,
-        total.too_wide.len(),
-        total.violations.len()
-    );
-    assert!(total.violations.is_empty(), "{:#?}", total.violations);
-    assert!(total.too_wide.is_empty(), "{:#?}", total.too_wide);
-    assert!(10 * total.reached > 9 * total.poses, "{} of {}", total.reached, total.poses);
+    let tallies = pairs.compare(DepthOracle::of, |pair| pair.compare_zoomed(poses, samples));
+    let total: Tally = tallies.into_iter().sum();
+    eprintln!("samples that zoom in: {total}");
+    total.assert_none(VIOLATIONS);
+    total.assert_none(WIDER);
+    assert!(10 * total.count(REACHED) > 9 * total.count(POSES), "{total}");
 }

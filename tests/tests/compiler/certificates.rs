@@ -1,7 +1,6 @@
 //! Certificates of tools: against the known results for the thesis's, against evaluations, and for tools that are
 //! wrong.
 
-use std::path::Path;
 use touchoff::Level;
 use touchoff::tool::PointEvaluation;
 use touchoff_dsl::interpret::Interpreter;
@@ -9,9 +8,10 @@ use touchoff_dsl::prove::Certificate;
 use touchoff_dsl::source::Source;
 use touchoff_dsl::{CheckedTool, compile};
 use touchoff_tests::evaluations::evaluate_points;
-use touchoff_tests::library::library;
+use touchoff_tests::library::{self, library};
 use touchoff_tests::oracle::Nearest;
 use touchoff_tests::oracle::big::Big;
+use touchoff_tests::oracle::profile::Profile;
 use touchoff_tests::oracle::reference::{QueryPoint, Reference};
 use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::profiles::{owners, tools};
@@ -19,16 +19,6 @@ use touchoff_tests::profiles::{owners, tools};
 fn checked(source: &Source) -> Box<CheckedTool> {
     let compiled = compile(source);
     compiled.outcome.unwrap_or_else(|refusal| panic!("{refusal:?}")).tool
-}
-
-fn of_library(name: &str) -> Box<CheckedTool> {
-    let sources = library();
-    checked(
-        sources
-            .iter()
-            .find(|source| Path::new(&source.name).ends_with(name))
-            .expect("a tool of the library"),
-    )
 }
 
 fn text(text: &str) -> Box<CheckedTool> {
@@ -55,7 +45,7 @@ fn border(tool: &CheckedTool, proved: &Certificate, names: [&str; 2]) -> ([f64; 
 
 #[test]
 fn the_thesis_magnitudes_are_up_to_root_5_of_the_distance() {
-    let tool = of_library("fig_7_3.tool");
+    let tool = library::checked("fig_7_3");
     let proved = Certificate::prove(&tool);
     assert!(proved.is_continuous() && !proved.is_exact());
     let (least, most) = bounds(&proved);
@@ -95,7 +85,7 @@ fn info_has_the_proved_bounds() {
 
 #[test]
 fn the_exact_tool_is_exact() {
-    let tool = of_library("fig_7_3_exact.tool");
+    let tool = library::checked("fig_7_3_exact");
     let proved = Certificate::prove(&tool);
     assert!(proved.is_exact() && proved.examined_boxes <= 2_500, "{}", proved.examined_boxes);
     // The parabola: from 0.93 rad at the axis to a right angle, nowhere less than 2 deep.
@@ -373,29 +363,17 @@ fn slivers_beside_corners_have_their_own_depth() {
            line to (1.144, 11.157) as e; arc to (4.66107, 14.59491) radius 4.88365 concave as a cutting;
            line to (0, 13.587) as top; } }",
     );
-    let pieces: Vec<_> = tool.model.outline().collect();
-    let minus = |a: [f64; 2], b: [f64; 2]| [a[0] - b[0], a[1] - b[1]];
-    let norm = |v: [f64; 2]| v[0].hypot(v[1]);
-    let cross = |a: [f64; 2], b: [f64; 2]| a[0] * b[1] - a[1] * b[0];
-    // The distance to the arcs, which are less than half a turn; no line is near.
-    let distance = |p: [f64; 2]| {
-        let arcs = pieces.iter().filter_map(|piece| Some((piece.ends, piece.circle?)));
-        let arc_distances = arcs.map(|(ends, (centre, radius, _))| {
-            let [from, to, way] = [ends[0], ends[1], p].map(|at| minus(at, centre));
-            let within = cross(from, way) * cross(from, to) >= 0.0
-                && cross(way, to) * cross(from, to) >= 0.0;
-            let end_distances = ends.map(|end| norm(minus(p, end)));
-            if within { (norm(way) - radius).abs() } else { end_distances[0].min(end_distances[1]) }
-        });
-        arc_distances.fold(f64::INFINITY, f64::min)
-    };
+    let profile = Profile::<f64>::parse(
+        "0 0, 2.00214 2.90705, 4.41515 5.623 radius 1.869372, 3.03072 7.923 hollow radius 8.06307,
+         1.144 11.157, 4.66107 14.59491 hollow radius 4.88365, 0 13.587",
+    );
     let mut interpreter = Interpreter::new(&tool);
     let mut rng = Rng::new(11);
     let mut inside = 0;
     for _ in 0..20_000 {
         let p = [rng.between(4.3, 4.45), 0.0, rng.between(5.5, 5.7)];
         let Some(evaluation) = interpreter.evaluate(p, 1.0) else { continue };
-        let distance = distance([p[0], p[2]]);
+        let distance = profile.depth(&[p[0], p[2]]);
         assert!(
             (evaluation.depth - distance).abs() < 1e-12,
             "{p:?}: {} of {distance}",

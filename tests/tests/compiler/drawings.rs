@@ -1,20 +1,14 @@
 //! Drawings: every surface is explained, the measures are the file's, every region is named if regions are drawn, and
 //! the bytes are the same every time. One is kept as a snapshot.
 
-use std::path::Path;
 use touchoff_drawing::{Content, TextRendering, svg};
 use touchoff_dsl::source::Source;
 use touchoff_dsl::{CheckedTool, compile, emit};
+use touchoff_tests::library::checked;
 
 fn tool(name: &str, text: &str) -> Box<CheckedTool> {
     let compiled = compile(&Source::new(name, text));
     compiled.outcome.unwrap_or_else(|refusal| panic!("{name}: {refusal:?}")).tool
-}
-
-fn library(file: &str) -> Box<CheckedTool> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tools-library/tools").join(file);
-    let source = Source::read(path).expect("the library has the file");
-    compile(&source).outcome.unwrap_or_else(|refusal| panic!("{file}: {refusal:?}")).tool
 }
 
 fn profile(segments: &str) -> Box<CheckedTool> {
@@ -95,7 +89,7 @@ fn every_tool_of_the_library_is_drawn() {
     for name in
         ["cylinder", "d2_ball", "fig_7_3", "fig_7_3_exact", "half_sphere_cylinder", "unit_sphere"]
     {
-        holds(&library(&format!("{name}.tool")));
+        holds(&checked(name));
     }
 }
 
@@ -153,7 +147,7 @@ fn long_tools_are_shortened() {
 /// The dimensions of the cutter stand in the detail, and those of the holder in the whole view.
 #[test]
 fn assemblies_have_a_detail() {
-    let tool = library("ball_er16.tool");
+    let tool = checked("ball_er16");
     for content in [Content::Outline, Content::Regions] {
         let drawing = svg(&tool, content, TextRendering::Strokes);
         well_formed(&drawing);
@@ -167,7 +161,7 @@ fn assemblies_have_a_detail() {
 /// Each section has its own overall dimensions, unless another view has them already.
 #[test]
 fn solids_are_drawn_in_three_sections() {
-    let tool = library("block.tool");
+    let tool = checked("block");
     for content in [Content::Outline, Content::Regions] {
         let drawing = svg(&tool, content, TextRendering::Strokes);
         well_formed(&drawing);
@@ -190,7 +184,7 @@ fn solids_are_drawn_in_three_sections() {
 
 #[test]
 fn the_documentation_includes_the_drawing() {
-    let tool = library("unit_sphere.tool");
+    let tool = checked("unit_sphere");
     let drawing = svg(&tool, Content::Regions, TextRendering::Page);
     assert!(emit::with_drawing(&tool, &drawing).to_string().contains("doc = \"<div><svg"));
     assert!(!emit::emit(&tool).to_string().contains("svg"));
@@ -199,7 +193,7 @@ fn the_documentation_includes_the_drawing() {
 #[test]
 fn the_exact_fig_7_3() {
     // One line per element, so that a difference can be read.
-    let drawing = drawn(&library("fig_7_3_exact.tool"), TextRendering::Page).replace('>', ">\n");
+    let drawing = drawn(&checked("fig_7_3_exact"), TextRendering::Page).replace('>', ">\n");
     insta::with_settings!({ omit_expression => true }, {
         insta::assert_snapshot!("drawing_fig_7_3_exact", drawing);
     });

@@ -4,11 +4,11 @@
 //! After a change of the emitter, run `INSTA_UPDATE=always cargo test -p touchoff-tests --test compiler generated`
 //! and read the difference.
 
-use std::path::Path;
+use std::path::PathBuf;
 use syn::visit::{self, Visit};
 use touchoff_dsl::source::Source;
 use touchoff_dsl::{compile, emit};
-use touchoff_tests::library::library;
+use touchoff_tests::library::{self, checked, library};
 
 /// Methods that generated code may call: none panics, none is a libm function.
 const METHODS: [&str; 4] = ["sqrt", "abs", "of", "assign"];
@@ -35,11 +35,14 @@ const FUNCTIONS: [&str; 18] = [
 ];
 
 /// Returns the code for a tool of the library.
-fn generated(file: &str) -> String {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tools-library/tools").join(file);
-    let source = Source::read(path).expect("the library has the file");
-    let tool = compile(&source).into_tool().expect("a tool of the library has no error");
-    emit::source_code(&tool)
+fn generated(name: &str) -> String {
+    emit::source_code(&checked(name))
+}
+
+/// Returns the names of the library's files without their endings, sorted.
+fn names() -> Vec<String> {
+    let stem = |path: PathBuf| path.file_stem().and_then(|stem| Some(stem.to_str()?.to_owned()));
+    library::files().into_iter().filter_map(stem).collect()
 }
 
 /// Collects constructs that generated code must not have.
@@ -91,32 +94,23 @@ impl<'ast> Visit<'ast> for Refused {
 
 #[test]
 fn every_tool_of_the_library_is_straight_line_code() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tools-library/tools");
-    let there = std::fs::read_dir(folder).expect("the library's folder");
-    let files = there.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
-    let mut seen = 0;
-    for file in files.filter(|file| file.ends_with(".tool")) {
-        let tree = syn::parse_file(&generated(&file)).expect("generated code is Rust");
+    let names = names();
+    assert_eq!(names.len(), touchoff_tools::TOOLS.len());
+    for name in names {
+        let tree = syn::parse_file(&generated(&name)).expect("generated code is Rust");
         let mut refused = Refused::default();
         refused.visit_file(&tree);
-        assert_eq!(refused.0, Vec::<String>::new(), "{file}");
-        seen += 1;
+        assert_eq!(refused.0, Vec::<String>::new(), "{name}");
     }
-    assert_eq!(seen, touchoff_tools::TOOLS.len());
 }
 
 #[test]
 fn every_tool_of_the_library_has_a_feature() {
-    let package = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tools-library");
-    let there = std::fs::read_dir(package.join("tools")).expect("the library's folder");
-    let files = there.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
-    let mut tools: Vec<String> =
-        files.filter_map(|file| file.strip_suffix(".tool").map(str::to_owned)).collect();
-    tools.sort();
-    let manifest = std::fs::read_to_string(package.join("Cargo.toml")).expect("its manifest");
+    let manifest = library::folder().join("../Cargo.toml");
+    let manifest = std::fs::read_to_string(manifest).expect("the library's manifest");
     let features = manifest.lines().filter_map(|line| line.strip_suffix(" = []"));
     let features: Vec<&str> = features.filter(|feature| *feature != "all").collect();
-    assert_eq!(features, tools);
+    assert_eq!(features, names());
 }
 
 /// One line per tool with a digest of its code: shows which tools a change of the compiler affects.
@@ -143,7 +137,7 @@ fn fnv(bytes: &[u8]) -> u64 {
 /// A tool cannot have a name that its own code imports.
 #[test]
 fn imported_names_are_reserved() {
-    let code = generated("ball.tool");
+    let code = generated("ball");
     let (_, imports) = code.split_once("use ::touchoff::tool::{").expect("an import");
     let (imports, _) = imports.split_once('}').expect("its end");
     let mut names = 0;
@@ -160,10 +154,9 @@ macro_rules! snapshots {
     ($($test:ident),*) => {
         $(#[test]
         fn $test() {
-            let file = concat!(stringify!($test), ".tool");
-            let code = generated(file);
+            let code = generated(stringify!($test));
             // A hash map's order, which differs every time, must not show.
-            assert_eq!(code, generated(file));
+            assert_eq!(code, generated(stringify!($test)));
             insta::with_settings!({ omit_expression => true }, {
                 insta::assert_snapshot!(stringify!($test), code);
             });

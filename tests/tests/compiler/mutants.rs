@@ -5,7 +5,6 @@
 //! library tool, and prints how they were detected.
 
 use rayon::prelude::*;
-use std::path::Path;
 use touchoff_dsl::diagnostic::any_error;
 use touchoff_dsl::expr::Id;
 use touchoff_dsl::expr::value::{EvaluationPoint, Evaluator};
@@ -16,7 +15,7 @@ use touchoff_dsl::prove::Certificate;
 use touchoff_dsl::source::Source;
 use touchoff_dsl::{CheckedTool, compile};
 use touchoff_tests::count::case_count;
-use touchoff_tests::library::library;
+use touchoff_tests::library::{self, library};
 use touchoff_tests::oracle::rng::Rng;
 
 /// Number of points at which a mutant is compared with the original tool.
@@ -324,7 +323,7 @@ fn bound_violation(tool: &CheckedTool, proved: &Certificate, rng: &mut Rng) -> O
         let p = [rng.between(x.low, x.high), rng.between(z.low, z.high)];
         let Some(evaluation) = interpreter.evaluate([p[0], 0.0, p[1]], 1.0) else { continue };
         let direction = rng.direction();
-        let step = 10f64.powf(rng.between(-5.0, -1.0));
+        let step = rng.power(-5.0, -1.0);
         let q = [(p[0] + step * direction[0]).abs(), p[1] + step * direction[1]];
         let other_depth =
             interpreter.evaluate([q[0], 0.0, q[1]], 1.0).map_or(0.0, |evaluation| evaluation.depth);
@@ -354,10 +353,9 @@ fn bound_violation(tool: &CheckedTool, proved: &Certificate, rng: &mut Rng) -> O
 
 #[test]
 fn accepted_variants_keep_their_proved_bounds() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tools-library/tools");
     let (mut rejected, mut jumps, mut bounded, mut open) = (0, 0, 0, 0);
-    for name in ["fig_7_3.tool", "cylinder.tool", "unit_sphere.tool"] {
-        let text = std::fs::read_to_string(folder.join(name)).expect("the library has the file");
+    for name in ["fig_7_3", "cylinder", "unit_sphere"] {
+        let text = library::source(name).text;
         let mut rng = Rng::new(5);
         for text in variants_with_one_defect(&text) {
             let Some(tool) = compile(&Source::new(name, &text)).into_tool() else {

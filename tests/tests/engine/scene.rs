@@ -5,9 +5,10 @@ use touchoff::mesh::shapes;
 use touchoff::scenes::ScenePath;
 use touchoff::{Part, Pose, Probe, Sampling, Scene, Tool, Unit};
 use touchoff_tests::fixtures::{part, poses};
+use touchoff_tests::library::tool;
 
 fn fig73() -> &'static dyn Tool {
-    touchoff_tools::find("Fig73").expect("a tool of the library")
+    tool("Fig73")
 }
 
 fn near(what: &str, found: Vector3<f64>, expected: Vector3<f64>) {

@@ -1,6 +1,5 @@
 //! Solids without an axis: evaluations of the library's at stated points, and refusals of others.
 
-use std::path::Path;
 use touchoff::Interval;
 use touchoff::Unit;
 use touchoff::tool::{Evaluators, PointEvaluation, Symmetry};
@@ -8,8 +7,9 @@ use touchoff_dsl::diagnostic::any_error;
 use touchoff_dsl::interpret::Interpreter;
 use touchoff_dsl::source::Source;
 use touchoff_dsl::{CheckedTool, compile, compile_with_arguments};
+use touchoff_tests::library;
 use touchoff_tests::oracle::rng::Rng;
-use touchoff_tests::oracle::{self, Oracle};
+use touchoff_tests::oracle::{Body, Oracle};
 use touchoff_tools::{Block, LBracket};
 
 /// Returns the region and the depth at a point.
@@ -98,8 +98,8 @@ fn a_bracket_at_its_hole_and_edges() {
 /// Outside, clearance is the distance to the solid's box: the true distance for a block, else a bound.
 #[test]
 fn clearance_is_that_of_the_box() {
-    for oracle in [&oracle::Block as &dyn Oracle, &oracle::LBracket] {
-        let tool = touchoff_tools::find(oracle.name()).expect("in the library");
+    for oracle in [Body::Block, Body::LBracket] {
+        let tool = library::tool(oracle.name());
         assert!(!tool.info().is_exact());
         let mut rng = Rng::new(8);
         for _ in 0..20_000 {
@@ -116,8 +116,7 @@ fn clearance_is_that_of_the_box() {
 /// A block of any sides, given from outside, is divided as well.
 #[test]
 fn a_block_with_other_dimensions() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tools-library/tools");
-    let block = Source::read(folder.join("block.tool")).expect("the library has it");
+    let block = library::source("block");
     for (w, l, h) in [(10, 50, 80), (30, 30, 30), (100, 1, 1)] {
         let given = [("w", w), ("l", l), ("h", h)]
             .map(|(name, value)| Source::new("a test", format!("{name} = {value}")));

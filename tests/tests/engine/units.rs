@@ -4,57 +4,55 @@ use nalgebra::{Point3, Vector3};
 use touchoff::TriangleId;
 use touchoff::mesh::shapes;
 use touchoff::scenes::{HEIGHT, ScenePath};
+use touchoff::tool::Interpreted;
 use touchoff::{Cloud, Law, Part, Pose, Probe, Sampling, Tool, Unit, Weights, Wrench};
+use touchoff_tests::library::tool;
 use touchoff_tests::oracle::brute::{self, Query};
 use touchoff_tests::oracle::{Fig73, Oracle, d2_ball, fig_7_3_exact};
 
-touchoff::tool! {
-    /// D2Ball's 2 mm ball, flute and shank, in inches: 1 mm is 1/25.4 inch.
-    tool InchBall "2 mm ball end mill, written in inches" {
-        units inch;
-        let mm = 1/25.4;
-        let r = mm;
+/// D2Ball's 2 mm ball, flute and shank, in inches: 1 mm is 1/25.4 inch.
+const INCH_BALL: &str = r#"tool InchBall "2 mm ball end mill, written in inches" {
+    units inch;
+    let mm = 1/25.4;
+    let r = mm;
 
-        curve nose = hypot(d, z - r) - r;
-        curve side = r - d;
-        curve end  = 40*mm - z;
+    curve nose = hypot(d, z - r) - r;
+    curve side = r - d;
+    curve end  = 40*mm - z;
 
-        region ball as ball cutting where z <= r, nose <= 0 {
-            depth:     -nose;
-            direction: away from (0, r);
-        }
-        region flute as flute cutting where r <= z <= 5*mm, side >= 0 {
-            depth:     side;
-            direction: (1, 0);
-        }
-        region shank where z >= 5*mm, 0 <= side <= end {
-            depth:     side;
-            direction: (1, 0);
-        }
-        region end as shank where 0 <= end <= side {
-            depth:     end;
-            direction: (0, 1);
-        }
-        niceness cutting: 1 - depth/r;
+    region ball as ball cutting where z <= r, nose <= 0 {
+        depth:     -nose;
+        direction: away from (0, r);
     }
-}
-
-touchoff::tool! {
-    /// The unit sphere with a magnitude of its own formula, a plain number of the file's unit.
-    tool Written "a ball of 1 inch with a written magnitude" {
-        units inch;
-        region ball where hypot(d, z - 1) <= 1 {
-            magnitude: 1 - hypot(d, z - 1);
-            direction: away from (0, 1);
-        }
+    region flute as flute cutting where r <= z <= 5*mm, side >= 0 {
+        depth:     side;
+        direction: (1, 0);
     }
+    region shank where z >= 5*mm, 0 <= side <= end {
+        depth:     side;
+        direction: (1, 0);
+    }
+    region end as shank where 0 <= end <= side {
+        depth:     end;
+        direction: (0, 1);
+    }
+    niceness cutting: 1 - depth/r;
+}"#;
+
+/// The unit sphere with a magnitude of its own formula, a plain number of the file's unit.
+const WRITTEN: &str = r#"tool Written "a ball of 1 inch with a written magnitude" {
+    units inch;
+    region ball where hypot(d, z - 1) <= 1 {
+        magnitude: 1 - hypot(d, z - 1);
+        direction: away from (0, 1);
+    }
+}"#;
+
+fn parsed(text: &str) -> Interpreted {
+    text.parse().expect("a tool")
 }
 
 const UNITS: [Unit; 3] = [Unit::Millimetre, Unit::Inch, Unit::Metre];
-
-fn tool(name: &str) -> &'static dyn Tool {
-    touchoff_tools::find(name).expect("in the library")
-}
 
 /// Returns the scenes' tube, given in mm and scaled to a unit.
 fn tube(unit: Unit, count: usize) -> Part {
@@ -159,12 +157,13 @@ fn one_scene_in_three_units() {
 /// The same solid in inches and in mm is the same tool.
 #[test]
 fn one_tool_in_two_units() {
+    let inch_ball = parsed(INCH_BALL);
     for unit in UNITS {
         let part = tube(unit, 6_000);
         let length_unit = Unit::Millimetre.factor_to(unit);
         for law in [Law::Thesis, Law::Gradient, Law::Facing] {
             let mm = evaluation(&part, tool("D2Ball"), law, Weights::Area);
-            let inch = evaluation(&part, &InchBall, law, Weights::Area);
+            let inch = evaluation(&part, &inch_ball, law, Weights::Area);
             for (a, b) in mm.iter().zip(&inch) {
                 // Points are the same; only lengths of the tool are rounded elsewhere.
                 let size = a.integral + length_unit.powi(3) * 1e-9;
@@ -190,6 +189,7 @@ fn one_tool_in_two_units() {
 /// the part.
 #[test]
 fn a_written_magnitude_stays() {
+    let written = parsed(WRITTEN);
     for unit in UNITS {
         let inch = Unit::Inch.factor_to(unit);
         let at = Point3::new(7.0, 8.0, 9.0);
@@ -199,7 +199,7 @@ fn a_written_magnitude_stays() {
         let part = Part::from_cloud(&cloud);
         // A quarter of an inch deep.
         let pose = Pose::from_axis(at - 0.25 * inch * Vector3::z(), Vector3::z()).expect("a pose");
-        let wrench = Probe::new(&part, &Written).with_law(Law::Gradient).wrench(&pose);
+        let wrench = Probe::new(&part, &written).with_law(Law::Gradient).wrench(&pose);
         let assert_near = |got: f64, want: f64| {
             assert!((got - want).abs() < 1e-12 * want.abs(), "{unit}: {got}, not {want}");
         };
@@ -207,7 +207,7 @@ fn a_written_magnitude_stays() {
         assert_near(wrench.integral, 3.0 * 0.25);
         assert_near(wrench.energy, 0.5 * 3.0 * 0.0625);
         assert_near(wrench.force.z, 3.0 * 0.25 / inch);
-        let mut probe = Probe::new(&part, &Written);
+        let mut probe = Probe::new(&part, &written);
         assert_near(probe.wrench(&pose).force.z, 3.0 * 0.25 * 2.0);
         let contact = probe.contacts(&pose)[0];
         assert_near(contact.magnitude, 0.25);
@@ -219,12 +219,13 @@ fn a_written_magnitude_stays() {
 /// Compares with brute force, which handles units by itself.
 #[test]
 fn every_unit_agrees_with_the_oracle() {
+    let inch_ball = parsed(INCH_BALL);
     let tools: [(&dyn Tool, &dyn Oracle); 4] = [
         (tool("Fig73"), &Fig73::default()),
         (tool("Fig73Exact"), &fig_7_3_exact()),
         (tool("D2Ball"), &d2_ball()),
         // The oracle's file is in mm.
-        (&InchBall, &d2_ball()),
+        (&inch_ball, &d2_ball()),
     ];
     for unit in UNITS {
         let part = tube(unit, 1_500);

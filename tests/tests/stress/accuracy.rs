@@ -3,11 +3,11 @@
 //!
 //! With `--nocapture` the test prints one line per tool.
 
-use crate::checks::{Checks, assert_no_misses};
 use crate::points::points;
 use crate::truth::Profiled;
 use crate::validator::{DEPTH, Validator};
 use rayon::prelude::*;
+use touchoff_tests::checks::{Checks, assert_no_misses};
 use touchoff_tests::count::case_count;
 use touchoff_tests::oracle::Nearest;
 use touchoff_tests::profiles::tools;

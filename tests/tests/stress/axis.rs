@@ -4,6 +4,7 @@
 use crate::truth::Subject;
 use crate::validator::Validator;
 use crate::{check_tools, extent};
+use touchoff_tests::points::heights;
 
 #[test]
 fn points_on_the_axis_keep_the_contract() {
@@ -24,18 +25,10 @@ fn points(subject: &Subject) -> Vec<[f64; 3]> {
     if !subject.oracle.is_revolved() {
         return corners.into_iter().flat_map(points_near_planes).collect();
     }
-    let mut corner_heights: Vec<f64> = corners.into_iter().map(|[.., z]| z).collect();
-    corner_heights.sort_by(f64::total_cmp);
-    corner_heights.dedup();
-    let count = extent(4, 200);
-    let top = subject.oracle.extent()[1];
-    let mut heights: Vec<f64> =
-        corner_heights.iter().flat_map(|z| [*z, z.next_up(), z.next_down()]).collect();
-    heights.extend((0..=count).map(|k| top * k as f64 / count as f64));
-    heights.extend([-0.0, 5e-324, -5e-324, 2f64.powi(-540)]);
     let around = |z: f64| {
         distances().map(|d| [[d, 0.0, z], [-0.0, d, z], [-d, d, z], [-d, -0.0, z]]).into_iter()
     };
+    let heights = heights(&*subject.oracle, extent(4, 200) as u32);
     heights.into_iter().flat_map(around).flatten().collect()
 }
 

@@ -6,11 +6,11 @@
 //! the other agrees with that of the truth.
 
 use crate::borders::{Bracket, brackets, rotated_copies};
-use crate::checks::Checks;
 use crate::truth::{Subject, to_exact};
 use crate::validator::Validator;
 use crate::{check_tools, extent};
 use touchoff::tool::PointEvaluation;
+use touchoff_tests::checks::Checks;
 use touchoff_tests::oracle::big::Big;
 use touchoff_tests::oracle::rng::Rng;
 
@@ -105,7 +105,7 @@ fn points_one_ulp_beside_borders_keep_the_contract() {
             for [x, y, z] in neighbours(subject, centre) {
                 if subject.oracle.is_revolved() {
                     let copies = rotated_copies(subject, [x.abs(), 0.0, z], rng);
-                    points.push(copies[rng.bits() as usize % copies.len()]);
+                    points.push(copies[rng.index(copies.len())]);
                 } else {
                     points.push([x, y, z]);
                 }

@@ -1,6 +1,5 @@
 //! Item 9: profiles that hardly are any. Each is refused by the compiler, or keeps the contract.
 
-use crate::checks::{Checks, assert_no_misses, print_worst};
 use crate::extent;
 use crate::text::profile_text;
 use crate::truth::Profiled;
@@ -8,8 +7,9 @@ use crate::validator::Validator;
 use std::f64::consts::TAU;
 use touchoff::tool::Interpreted;
 use touchoff_dsl::source::Source;
-use touchoff_tests::oracle::big::Big;
-use touchoff_tests::oracle::restated::{Point, Restated, Segment};
+use touchoff_tests::checks::{Checks, assert_no_misses, print_worst};
+use touchoff_tests::oracle::profile::Profile;
+use touchoff_tests::oracle::restated::Restated;
 use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::{Nearest, Oracle};
 
@@ -79,25 +79,7 @@ fn degenerate_profiles_are_refused_or_exact() {
 }
 
 fn restated(profile: &str) -> Restated {
-    let point = |text: &str| -> Point {
-        let (d, z) = text.split_once(' ').expect("two coordinates");
-        [d, z].map(|text| Big::decimal(text.parse().expect("a number")))
-    };
-    let mut vertices = profile.split(", ");
-    let start = point(vertices.next().expect("a first vertex"));
-    let segments = vertices.map(|vertex| match vertex.split_once(" about ") {
-        None => Segment { to: point(vertex), centre: None, surface: "side" },
-        Some((to, centre)) => {
-            Segment { to: point(to), centre: Some(point(centre)), surface: "side" }
-        }
-    });
-    Restated {
-        name: "Case",
-        start,
-        segments: segments.collect(),
-        cutting: Vec::new(),
-        niceness: |_, _, _| 1.0,
-    }
+    Restated::of_profile("Case", &Profile::parse(profile))
 }
 
 /// Compiles a profile; `None` if it is refused.
@@ -116,8 +98,8 @@ fn points(oracle: &Nearest, rng: &mut Rng) -> Vec<[f64; 3]> {
         }
     }
     while points.len() < extent(200, 4_000) {
-        let [d, z] = surface[rng.bits() as usize % surface.len()];
-        let distance = 10f64.powf(rng.between(-16.0, 0.0));
+        let [d, z] = surface[rng.index(surface.len())];
+        let distance = rng.power(-16.0, 0.0);
         let beside_d = d + distance * radius * rng.between(-1.0, 1.0);
         let beside_z = z + distance * height * rng.between(-1.0, 1.0);
         let (sin, cos) = rng.between(0.0, TAU).sin_cos();

@@ -3,13 +3,13 @@
 //! `Fig73` these are the points where its own regions meet, in the two solids those where four faces do.
 
 use crate::border_points::{compare_neighbours, neighbours, owners_at};
-use crate::checks::{assert_no_misses, print_worst};
 use crate::truth::Subject;
 use crate::validator::Validator;
 use crate::voronoi::{Search, find_voronoi_vertices};
 use crate::{extent, run};
 use std::f64::consts::TAU;
-use touchoff_tests::oracle::restated;
+use touchoff_tests::checks::{assert_no_misses, print_worst};
+use touchoff_tests::oracle::Nearest;
 use touchoff_tests::oracle::rng::Rng;
 
 #[test]
@@ -41,8 +41,8 @@ fn equidistant_points(subject: &Subject, rng: &mut Rng) -> Vec<[f64; 3]> {
     let starts = extent(1, 3);
     let search = Search { starts, stride: 3_usize.div_ceil(starts) };
     let of_profile = |name: &str, rng: &mut Rng| {
-        let tool = restated::of(name).expect("every profile is restated");
-        let vertices = find_voronoi_vertices(&tool, subject.scale(), search, rng);
+        let tool = Nearest::of(name);
+        let vertices = find_voronoi_vertices(tool.profile(), subject.scale(), search, rng);
         vertices.into_iter().map(|vertex| [vertex.point[0], 0.0, vertex.point[1]]).collect()
     };
     match subject.name() {

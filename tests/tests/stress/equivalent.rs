@@ -3,7 +3,6 @@
 //! `Part::converted_to`. What loses no bit has the same bits, otherwise depths differ by no more than both clouds'
 //! `Probe::rounding_error_bound` and the rounding of coordinates.
 
-use crate::checks::Checks;
 use crate::leaves::by_triangle;
 use crate::scene::{
     PointSet, Scene, compare_depths, format_pose, in_sum_roundings, pose, random_pose, with_tip,
@@ -12,6 +11,7 @@ use crate::{check_tools, extent};
 use nalgebra::{Matrix3, Point3, Rotation3, UnitQuaternion};
 use std::f64::consts::TAU;
 use touchoff::{Contact, Pose, Unit};
+use touchoff_tests::checks::Checks;
 use touchoff_tests::oracle::rng::Rng;
 
 /// Spacing of the coordinates' grid. Near the tool, its multiples are stored without rounding in any tree.

@@ -53,7 +53,7 @@ fn orders(count: usize, rng: &mut Rng) -> Vec<Vec<usize>> {
     while orders.len() < extent(2, 8) {
         let mut order: Vec<usize> = (0..count).collect();
         for k in (1..count).rev() {
-            order.swap(k, rng.bits() as usize % (k + 1));
+            order.swap(k, rng.index(k + 1));
         }
         orders.push(order);
     }

@@ -25,7 +25,6 @@ mod aligned;
 mod axis;
 mod border_points;
 mod borders;
-mod checks;
 mod cycles;
 mod degenerate;
 mod denormal;
@@ -43,9 +42,9 @@ mod truth;
 mod validator;
 mod voronoi;
 
-use checks::{Checks, assert_no_misses, print_worst};
 use rayon::prelude::*;
 use std::sync::LazyLock;
+use touchoff_tests::checks::{Checks, assert_no_misses, print_worst};
 use touchoff_tests::count::case_count;
 use touchoff_tests::oracle::rng::Rng;
 use truth::{Subject, subjects};

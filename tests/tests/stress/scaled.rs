@@ -9,7 +9,6 @@
 //!   `Oval`), the distance from its centre is rounded relative to the larger number: depths and distances outside are
 //!   within 2 ulp(S) there, and miss the contract's 1 ulp(S).
 
-use crate::checks::Checks;
 use crate::text::{hand_written_text, power_of_two, profile_text, with_plain_names};
 use crate::truth::{ExactPoint, Profiled, RegionValues, Subject, Truth};
 use crate::validator::Validator;
@@ -18,10 +17,12 @@ use std::f64::consts::TAU;
 use touchoff::Level;
 use touchoff::tool::{Interpreted, PointEvaluation, ToolError};
 use touchoff_dsl::source::Source;
+use touchoff_tests::checks::Checks;
 use touchoff_tests::evaluations::evaluate_points;
 use touchoff_tests::oracle::big::Big;
 use touchoff_tests::oracle::displaced;
-use touchoff_tests::oracle::restated::{self, Segment};
+use touchoff_tests::oracle::reference::power_above;
+use touchoff_tests::oracle::restated;
 use touchoff_tests::oracle::rng::Rng;
 
 #[test]
@@ -66,8 +67,8 @@ fn points(subject: &Subject, count: usize, rng: &mut Rng) -> Vec<[f64; 3]> {
     let mut points: Vec<[f64; 3]> = subject.oracle.corner_points();
     let [radius, height] = subject.oracle.extent();
     while points.len() < count {
-        let origin = curves[rng.bits() as usize % curves.len()];
-        let distance = 10f64.powf(rng.between(-16.0, -1.0));
+        let origin = curves[rng.index(curves.len())];
+        let distance = rng.power(-16.0, -1.0);
         let step = rng.direction().map(|c| distance * c * radius);
         points.push(displaced(&*subject.oracle, origin, step, rng.between(0.0, TAU)));
         let xy = [0; 2].map(|_| rng.between(-1.1 * radius, 1.1 * radius));
@@ -132,12 +133,8 @@ fn max_coordinate(subject: &Subject) -> f64 {
 /// Returns the largest radius of the tool's arcs.
 fn max_radius(subject: &Subject) -> f64 {
     let Some(tool) = restated::of(subject.name()) else { return 0.0 };
-    let radius = |segment: &Segment| {
-        let centre = segment.centre.as_ref()?;
-        let [d, z] = [0, 1].map(|k| (&segment.to[k] - &centre[k]).to_f64());
-        Some(d.hypot(z))
-    };
-    tool.segments.iter().filter_map(radius).fold(0.0, f64::max)
+    let circles = tool.segments.iter().filter_map(|segment| segment.circle.as_ref());
+    circles.map(|circle| circle.radius.to_f64()).fold(0.0, f64::max)
 }
 
 /// True values with all lengths multiplied by a factor.
@@ -150,11 +147,7 @@ struct Scaled<'a> {
 impl<'a> Scaled<'a> {
     /// Scales true values. `size` is the unscaled tool's largest coordinate.
     fn new(unscaled: &'a dyn Truth, factor: f64, size: f64) -> Scaled<'a> {
-        let mut scale = 2f64.powi((size * factor).log2().floor() as i32);
-        while scale <= size * factor {
-            scale *= 2.0;
-        }
-        Scaled { unscaled, factor: Big::decimal(factor), scale }
+        Scaled { unscaled, factor: Big::decimal(factor), scale: power_above(size * factor) }
     }
 
     fn to_unscaled(&self, p: &ExactPoint) -> ExactPoint {

@@ -1,11 +1,11 @@
 //! Points near a tool as a part, a pose of the tool, and the answers of a probe there against 256 bits.
 
-use crate::checks::Checks;
 use crate::truth::{ExactPoint, Subject};
 use nalgebra::{Point3, Vector3};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use touchoff::{Cloud, Contact, Part, Pose, Probe, TriangleId, Unit, Wrench};
+use touchoff_tests::checks::Checks;
 use touchoff_tests::oracle::big::Big;
 use touchoff_tests::oracle::displaced;
 use touchoff_tests::oracle::rng::Rng;
@@ -34,8 +34,8 @@ impl PointSet {
             unit: subject.tool.info().unit,
         };
         for k in 0..count {
-            let curve = &curves[rng.bits() as usize % curves.len()];
-            let origin = curve[rng.bits() as usize % curve.len()];
+            let curve = &curves[rng.index(curves.len())];
+            let origin = curve[rng.index(curve.len())];
             let step = rng.direction().map(|c| c * reach * if k % 2 == 0 { 0.05 } else { 1.0 });
             let p = displaced(&*subject.oracle, origin, step, rng.between(0.0, TAU));
             point_set.points.push(Point3::from(p.map(|c| (c / grid).round() * grid)));
@@ -80,13 +80,7 @@ pub(crate) fn pose(tip: Point3<f64>, quaternion: [f64; 4]) -> Pose {
 
 /// Returns a pose with a random orientation.
 pub(crate) fn random_pose(tip: Point3<f64>, rng: &mut Rng) -> Pose {
-    loop {
-        let q = [0; 4].map(|_| rng.between(-1.0, 1.0));
-        let norm = q.iter().map(|c| c * c).sum::<f64>().sqrt();
-        if (0.1..=1.0).contains(&norm) {
-            return pose(tip, q.map(|c| c / norm));
-        }
-    }
+    pose(tip, rng.quaternion())
 }
 
 /// Returns the pose with another tip.

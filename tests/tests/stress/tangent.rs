@@ -2,7 +2,6 @@
 //! wider by a tenth, by 1e-1 … 1e-15. The deepest place of the part is a point of the cloud at the world's origin, so the
 //! depth follows from the pose alone. The certifier's interval, from triangles, contains it.
 
-use crate::checks::Checks;
 use crate::scene::{PointSet, Scene, format_pose, pose};
 use crate::truth::Subject;
 use crate::{check_tools, extent};
@@ -11,6 +10,7 @@ use std::f64::consts::PI;
 use touchoff::certify::{Certifier, TriangleBvh};
 use touchoff::mesh::shapes;
 use touchoff::{Interval, Mesh, TriangleId};
+use touchoff_tests::checks::Checks;
 use touchoff_tests::oracle::big::Big;
 use touchoff_tests::oracle::restated;
 use touchoff_tests::oracle::rng::Rng;
@@ -77,16 +77,14 @@ fn longest_side(subject: &Subject) -> Option<Side> {
         "Fig73" => return Some(Side { radius: 1.0, middle: 3.0, length: 4.0 }),
         _ => {}
     }
-    let tool = restated::of(subject.name())?;
-    let mut from = tool.start;
     let mut longest: Option<Side> = None;
-    for segment in tool.segments {
-        let [radius, low, high] = [&segment.to[0], &from[1], &segment.to[1]].map(Big::to_f64);
-        if segment.centre.is_none() && from[0] == segment.to[0] && high > low {
+    for segment in restated::of(subject.name())?.segments {
+        let [radius, low, high] =
+            [&segment.to[0], &segment.from[1], &segment.to[1]].map(Big::to_f64);
+        if segment.circle.is_none() && segment.from[0] == segment.to[0] && high > low {
             let side = Side { radius, middle: (low + high) / 2.0, length: high - low };
             longest = longest.filter(|longest| longest.length >= side.length).or(Some(side));
         }
-        from = segment.to;
     }
     longest
 }
@@ -96,8 +94,8 @@ fn longest_side(subject: &Subject) -> Option<Side> {
 fn max_press_depth(subject: &Subject) -> f64 {
     let Some(tool) = restated::of(subject.name()) else { return 0.5 };
     let (zero, first) = (Big::zero(), &tool.segments[0]);
-    let has_flat_end = first.centre.is_none() && first.to[1] == zero && tool.start[1] == zero;
-    let has_ball_end = first.centre.as_ref().is_some_and(|centre| centre[0] == zero);
+    let has_flat_end = first.circle.is_none() && first.to[1] == zero && first.from[1] == zero;
+    let has_ball_end = first.centre().is_some_and(|centre| centre[0] == zero);
     if has_flat_end || has_ball_end { 0.5 * first.to[0].to_f64() } else { 0.0 }
 }
 
@@ -110,7 +108,7 @@ fn points(
     let mut points = vec![Point3::origin()];
     points.extend((0..extent(1, 25)).map(|_| {
         // As many within 1e-8 as within 1e-1.
-        let spread = 10f64.powf(rng.between(-8.0, 0.0));
+        let spread = rng.power(-8.0, 0.0);
         point_at([0; 2].map(|_| spread * rng.between(-1.0, 1.0)))
     }));
     PointSet {

@@ -1,8 +1,7 @@
 //! Source text of tools in which every length is multiplied by a number `s`.
 
-use std::fmt::Write;
 use touchoff_tests::oracle::big::Big;
-use touchoff_tests::oracle::restated::{Point, Restated};
+use touchoff_tests::oracle::restated::Restated;
 
 /// Returns a power of two in the tool language, whose exponents are at most 16.
 pub(crate) fn power_of_two(k: i32) -> String {
@@ -19,9 +18,7 @@ pub(crate) fn with_plain_names(tool: &Restated) -> Restated {
         if name.contains('.') { name.replace('.', "_").leak() } else { name }
     };
     let mut tool = tool.clone();
-    for surface in
-        tool.segments.iter_mut().map(|segment| &mut segment.surface).chain(&mut tool.cutting)
-    {
+    for surface in tool.surfaces.iter_mut().chain(&mut tool.cutting) {
         *surface = plain(surface);
     }
     tool
@@ -29,32 +26,13 @@ pub(crate) fn with_plain_names(tool: &Restated) -> Restated {
 
 /// Returns the source text of a profile. Its surfaces need [plain names][with_plain_names].
 pub(crate) fn profile_text(tool: &Restated, scale: &str) -> String {
-    let point =
-        |[d, z]: &Point| format!("({}*s, {}*s)", d.to_decimal_string(), z.to_decimal_string());
-    let mut text = format!("tool {} {{ units mm; let s = {scale};\nprofile {{\n", tool.name);
-    let _ = writeln!(text, "start {};", point(&tool.start));
-    let mut from = tool.start.clone();
-    for segment in &tool.segments {
-        let cutting = if tool.cutting.contains(&segment.surface) { " cutting" } else { "" };
-        let to = point(&segment.to);
-        let command = match &segment.centre {
-            None => format!("line to {to}"),
-            Some(centre) => {
-                let concave = if is_concave(&from, &segment.to, centre) { " concave" } else { "" };
-                format!("arc to {to} center {}{concave}", point(centre))
-            }
-        };
-        let _ = writeln!(text, "{command} as {}{cutting};", segment.surface);
-        from = segment.to.clone();
-    }
-    text + "} }"
-}
-
-/// Returns whether an arc bends into the material, that is, runs clockwise.
-fn is_concave(from: &Point, to: &Point, centre: &Point) -> bool {
-    let arm = |p: &Point| [&p[0] - &centre[0], &p[1] - &centre[1]];
-    let (a, b) = (arm(from), arm(to));
-    (&(&a[0] * &b[1]) - &(&a[1] * &b[0])) < Big::zero()
+    let surface = |k: usize| {
+        let cutting = if tool.cutting.contains(&tool.surfaces[k]) { " cutting" } else { "" };
+        format!("{}{cutting}", tool.surfaces[k])
+    };
+    let number = |number: &Big| format!("{}*s", number.to_decimal_string());
+    let profile = tool.profile().text(number, surface);
+    format!("tool {} {{ units mm; let s = {scale};\n{profile} }}", tool.name)
 }
 
 /// Returns the source text of the thesis's tool and of the solids, whose regions are written by hand.

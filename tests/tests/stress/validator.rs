@@ -1,9 +1,9 @@
 //! The contract of an evaluator, at given points.
 
-use crate::checks::Checks;
 use crate::truth::{RegionValues, Truth, to_exact};
 use touchoff::tool::PointEvaluation;
 use touchoff::{Level, Tool};
+use touchoff_tests::checks::Checks;
 use touchoff_tests::evaluations::evaluate_points;
 use touchoff_tests::oracle::big::Big;
 

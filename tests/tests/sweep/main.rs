@@ -25,6 +25,7 @@ use touchoff_postures::sweep::{PostureSweep, SweepStats};
 use touchoff_postures::{Accessibility, Directions, MapRow, Rules};
 use touchoff_tests::count::case_count;
 use touchoff_tests::oracle::rng::Rng;
+use touchoff_tests::tally::Tally;
 
 /// Number of postures of each kind that are validated per part, unless `POSTURES` is set.
 const DRAWS: usize = 300;
@@ -47,39 +48,11 @@ struct ComparisonSettings<'a> {
     seed: u64,
 }
 
-/// The answer of brute force to a verdict of the sweep. The texts have triangle, tool, direction and the verdicts of brute
-/// force.
-enum Outcome {
-    /// It agrees.
-    Agrees,
-    /// It contradicts.
-    Contradicted(String),
-    /// It cannot tell from rounding.
-    Undecided(String),
-}
-
-/// The validated postures of one kind.
-#[derive(Clone, Debug, Default)]
-struct ValidatedPostures {
-    /// Number of postures.
-    count: usize,
-    /// Postures on which brute force contradicts the sweep.
-    contradicted: Vec<String>,
-    /// Postures that brute force leaves undecided.
-    undecided: Vec<String>,
-}
-
-/// The results of a comparison.
-struct Comparison {
-    /// The sweep's statistics.
-    stats: SweepStats,
-    /// Number of postures in the map.
-    in_map: u64,
-    /// The validated accessible postures.
-    accessible: ValidatedPostures,
-    /// The validated postures that face their triangle but are not accessible.
-    inaccessible: ValidatedPostures,
-}
+/// Names of counts: postures that are validated; those on which brute force contradicts the sweep; those that it leaves
+/// undecided. A text has triangle, tool, direction and the verdicts of brute force.
+const POSTURES: &str = "postures";
+const CONTRADICTED: &str = "contradicted";
+const UNDECIDED: &str = "undecided";
 
 /// A posture, by indices.
 #[derive(Clone, Copy)]
@@ -96,8 +69,9 @@ const NEAR_COLLISION_SHARES: [f64; 7] = [1e-9, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-
 const ROUNDING: f64 = 1e-9;
 
 impl ComparisonSettings<'_> {
-    /// Runs a sweep and validates random postures of it.
-    fn compare(&self) -> Comparison {
+    /// Runs a sweep, validates random postures of it, and asserts that brute force contradicts none and leaves few
+    /// undecided.
+    fn check(&self) {
         let mesh = self.mesh;
         let tools: Vec<&dyn Tool> = self
             .tools
@@ -106,7 +80,7 @@ impl ComparisonSettings<'_> {
             .collect();
         let models = tools.iter().zip(self.tools).map(|(tool, name)| {
             let length = tool.info().unit.factor_to(mesh.unit());
-            ToolModel::new(name, length, self.tolerance).expect("a restated tool")
+            ToolModel::new(name, length, self.tolerance)
         });
         let tool_models: Vec<ToolModel> = models.collect();
         let directions = Directions::spread(self.hemisphere);
@@ -135,33 +109,34 @@ impl ComparisonSettings<'_> {
             rounding: ROUNDING * (part.size + size.fold(0.0, f64::max)),
         };
         let mut rng = Rng::new(self.seed);
-        let choices = draw_accessible(&rows, self.draws, &mut rng);
-        let accessible = choices.into_par_iter().map(|choice| validation.check_accessible(&choice));
-        let accessible = ValidatedPostures::collect(accessible.collect());
-        let choices = validation.draw_inaccessible(&rows, self.draws, &mut rng);
-        let inaccessible =
-            choices.into_par_iter().map(|choice| validation.check_inaccessible(&choice));
-        let inaccessible = ValidatedPostures::collect(inaccessible.collect());
-        let in_map = rows.iter().flat_map(|row| &row.access).map(posture_count).sum();
-        Comparison { stats, in_map, accessible, inaccessible }
-    }
-
-    /// Asserts that brute force contradicts no posture and leaves few undecided.
-    fn check(&self) {
-        let Comparison { stats, in_map, accessible, inaccessible } = self.compare();
-        for (kind, drawn) in [("accessible", &accessible), ("inaccessible", &inaccessible)] {
-            assert_eq!(drawn.count, self.draws, "{kind}");
-            assert!(drawn.contradicted.is_empty(), "{kind}: {:#?}", drawn.contradicted);
-            assert!(20 * drawn.undecided.len() <= self.draws, "{kind}: {:#?}", drawn.undecided);
-            let (count, undecided) = (drawn.count, drawn.undecided.len());
-            eprintln!("{kind} with {:?}: {count} postures, {undecided} undecided", self.tools);
+        let accessible = draw_accessible(&rows, self.draws, &mut rng);
+        let accessible: Tally =
+            accessible.into_par_iter().map(|choice| validation.check_accessible(&choice)).sum();
+        let inaccessible = validation.draw_inaccessible(&rows, self.draws, &mut rng);
+        let inaccessible: Tally =
+            inaccessible.into_par_iter().map(|choice| validation.check_inaccessible(&choice)).sum();
+        for (kind, drawn) in [("accessible", accessible), ("inaccessible", inaccessible)] {
+            eprintln!("{kind} with {:?}: {drawn}", self.tools);
+            assert_eq!(drawn.count(POSTURES), self.draws as u64, "{kind}");
+            drawn.assert_none(CONTRADICTED);
+            assert!(20 * drawn.count(UNDECIDED) <= self.draws as u64, "{kind}: {drawn:#?}");
         }
-        let directions = 2 * self.hemisphere as u64;
-        assert_eq!(stats.postures(), stats.triangles * directions);
+        assert_eq!(stats.postures(), stats.triangles * 2 * self.hemisphere as u64);
         assert!(stats.cached_obstruction > 0 && stats.obstructed > 0);
         assert!(stats.acceptable > 0 && stats.not_facing > 0);
+        let in_map: u64 = rows.iter().flat_map(|row| &row.access).map(posture_count).sum();
         assert_eq!(in_map, stats.acceptable);
     }
+}
+
+/// Returns the tally of one posture, with a finding if there is one.
+fn outcome(finding: Option<(&'static str, String)>) -> Tally {
+    let mut tally = Tally::default();
+    tally.add(POSTURES, 1);
+    if let Some((name, text)) = finding {
+        tally.find(name, text);
+    }
+    tally
 }
 
 /// Returns the number of postures in which a tool reaches a triangle.
@@ -179,7 +154,7 @@ fn draw_accessible(rows: &[MapRow], count: usize, rng: &mut Rng) -> Vec<Choice> 
     let mut sum = 0u64;
     for (triangle, row) in rows.iter().enumerate() {
         for access in &row.access {
-            sum += access.directions.iter().map(|word| u64::from(word.count_ones())).sum::<u64>();
+            sum += posture_count(access);
             cumulative.push((sum, triangle as u32, access));
         }
     }
@@ -198,21 +173,6 @@ fn draw_accessible(rows: &[MapRow], count: usize, rng: &mut Rng) -> Vec<Choice> 
         Some(Choice { triangle, tool: access.tool.into(), direction })
     };
     (0..count).filter_map(choice).collect()
-}
-
-impl ValidatedPostures {
-    fn collect(outcomes: Vec<Outcome>) -> ValidatedPostures {
-        let mut validated =
-            ValidatedPostures { count: outcomes.len(), ..ValidatedPostures::default() };
-        for outcome in outcomes {
-            match outcome {
-                Outcome::Agrees => (),
-                Outcome::Contradicted(finding) => validated.contradicted.push(finding),
-                Outcome::Undecided(finding) => validated.undecided.push(finding),
-            }
-        }
-        validated
-    }
 }
 
 /// The data for the validation of postures.
@@ -252,19 +212,15 @@ impl Validation<'_> {
     }
 
     /// Checks that one of the postures of a choice is free.
-    fn check_accessible(&self, choice: &Choice) -> Outcome {
+    fn check_accessible(&self, choice: &Choice) -> Tally {
         let postures = self.postures(choice, 2.0);
         let verdicts = postures.iter().map(|posture| self.check(choice, posture, self.rounding));
         let verdicts: Vec<Verdict> = verdicts.collect();
         if verdicts.contains(&Verdict::Free) {
-            return Outcome::Agrees;
+            return outcome(None);
         }
-        let finding = format!("{}: {verdicts:?}", self.describe(choice));
-        if verdicts.contains(&Verdict::Open) {
-            Outcome::Undecided(finding)
-        } else {
-            Outcome::Contradicted(finding)
-        }
+        let name = if verdicts.contains(&Verdict::Open) { UNDECIDED } else { CONTRADICTED };
+        outcome(Some((name, format!("{}: {verdicts:?}", self.describe(choice)))))
     }
 
     /// Draws postures that face a triangle and that the sweep did not find accessible.
@@ -274,9 +230,8 @@ impl Validation<'_> {
             if choices.len() == count {
                 break;
             }
-            let mut random_below = |limit: usize| (rng.bits() % limit as u64) as usize;
-            let (triangle, tool) = (random_below(rows.len()), random_below(self.tool_models.len()));
-            let direction = random_below(self.directions.len());
+            let (triangle, tool) = (rng.index(rows.len()), rng.index(self.tool_models.len()));
+            let direction = rng.index(self.directions.len());
             let tool_access =
                 rows[triangle].access.iter().find(|access| usize::from(access.tool) == tool);
             let choice = Choice { triangle: triangle as u32, tool, direction };
@@ -290,7 +245,7 @@ impl Validation<'_> {
     }
 
     /// Checks that all postures of a choice are blocked.
-    fn check_inaccessible(&self, choice: &Choice) -> Outcome {
+    fn check_inaccessible(&self, choice: &Choice) -> Tally {
         for posture in self.postures(choice, -1.0) {
             let verdict = self.check(choice, &posture, 0.0);
             if matches!(verdict, Verdict::Blocked(_)) {
@@ -307,13 +262,9 @@ impl Validation<'_> {
             let finding = format!("{}: {verdict:?}, {near}", self.describe(choice));
             // A near collision within the certifier's rounding is undecided in the sweep, not wrong.
             let is_open = verdict == Verdict::Open || near_share.is_some_and(|share| share <= 1e-6);
-            return if is_open {
-                Outcome::Undecided(finding)
-            } else {
-                Outcome::Contradicted(finding)
-            };
+            return outcome(Some((if is_open { UNDECIDED } else { CONTRADICTED }, finding)));
         }
-        Outcome::Agrees
+        outcome(None)
     }
 }
 
@@ -368,7 +319,7 @@ fn brute_force_rejects_blocked_postures() {
     let high = nalgebra::Point3::new(20.0, 20.0, 0.0);
     let block = shapes::cuboid(low, high, Unit::Millimetre).expect("a block");
     let part = TrianglePart::new(&block);
-    let stand = ToolModel::new("D2Ball", 1.0, 0.01).expect("a restated tool");
+    let stand = ToolModel::new("D2Ball", 1.0, 0.01);
     let verdict_at = |tip: [f64; 3], allowance: f64| {
         let posture = Posture { tip: tip.into(), axis: nalgebra::Vector3::z(), niceness: 1.0 };
         part.check(&stand, &posture, 0.01, allowance)

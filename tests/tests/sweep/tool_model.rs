@@ -1,26 +1,14 @@
 //! Postures of a tool at a triangle, derived from the tool's restatement alone.
 
 use nalgebra::{Point3, Vector3};
-use touchoff_tests::oracle::restated;
+use touchoff_tests::oracle::plane::{Point, add, cross, dot, left, opposite, sub, unit};
+use touchoff_tests::oracle::profile::Feature;
 use touchoff_tests::oracle::{Nearest, Oracle};
-
-type P2 = [f64; 2];
-
-/// A line or an arc of the outline, with lengths in the tool's unit.
-struct Segment {
-    from: P2,
-    to: P2,
-    centre: Option<P2>,
-    is_cutting: bool,
-}
 
 /// A tool whose postures are derived.
 pub(super) struct ToolModel {
-    segments: Vec<Segment>,
-    /// The oracle for its depths.
+    /// The oracle for its profile and its depths.
     pub(super) oracle: Nearest,
-    /// The names of its surfaces, and whether each cuts.
-    pub(super) surfaces: Vec<(&'static str, bool)>,
     /// The tool's unit of length, in the part's unit.
     pub(super) length: f64,
     /// Up to two heights on the axis, in the tool's unit: the deepest point owned by a cutting surface, if deeper than
@@ -42,64 +30,13 @@ pub(super) struct Posture {
 /// A sine, or a share of the tool's size, that counts as rounding.
 const ROUNDING: f64 = 1e-9;
 
-fn subtract(a: P2, b: P2) -> P2 {
-    [a[0] - b[0], a[1] - b[1]]
-}
-
-fn dot(a: P2, b: P2) -> f64 {
-    a[0] * b[0] + a[1] * b[1]
-}
-
-fn cross(a: P2, b: P2) -> f64 {
-    a[0] * b[1] - a[1] * b[0]
-}
-
-fn unit(a: P2) -> P2 {
-    let size = a[0].hypot(a[1]);
-    a.map(|component| component / size)
-}
-
-impl Segment {
-    /// Returns the tangent of the outline at a point of the piece. The material is on the left.
-    fn tangent(&self, point: P2) -> P2 {
-        let Some(centre) = self.centre else { return unit(subtract(self.to, self.from)) };
-        let [d, z] = unit(subtract(point, centre));
-        if self.is_convex() { [-z, d] } else { [z, -d] }
-    }
-
-    /// Returns whether the piece is an arc whose material is around its centre.
-    fn is_convex(&self) -> bool {
-        let is_left_turn =
-            |centre| cross(subtract(self.from, centre), subtract(self.to, centre)) > 0.0;
-        self.centre.is_some_and(is_left_turn)
-    }
-}
-
 impl ToolModel {
     /// Derives a tool from its restatement. `length` is the tool's unit of length in the part's unit. `tolerance` is
     /// the allowed depth of cutting surfaces, in the part's unit.
-    ///
-    /// # Errors
-    /// If the tool has no restatement.
-    pub(super) fn new(name: &str, length: f64, tolerance: f64) -> Result<ToolModel, String> {
-        let tool = restated::of(name).ok_or_else(|| format!("`{name}` is not restated"))?;
-        let point = |[d, z]: &restated::Point| [d.to_f64(), z.to_f64()];
-        let mut from = point(&tool.start);
-        let mut segments = Vec::new();
-        let mut surfaces: Vec<(&'static str, bool)> = Vec::new();
-        for segment in &tool.segments {
-            let (to, centre) = (point(&segment.to), segment.centre.as_ref().map(point));
-            let is_cutting = tool.cutting.contains(&segment.surface);
-            segments.push(Segment { from, to, centre, is_cutting });
-            if surfaces.iter().all(|(name, _)| *name != segment.surface) {
-                surfaces.push((segment.surface, is_cutting));
-            }
-            from = to;
-        }
-        let oracle = Nearest::new(&tool);
-        let mut model = ToolModel { segments, oracle, surfaces, length, core_heights: Vec::new() };
+    pub(super) fn new(name: &str, length: f64, tolerance: f64) -> ToolModel {
+        let mut model = ToolModel { oracle: Nearest::of(name), length, core_heights: Vec::new() };
         model.core_heights = model.deepest(tolerance);
-        Ok(model)
+        model
     }
 
     /// Returns all postures in which a cutting surface touches the plane through a point, on a convex arc or at a
@@ -115,60 +52,58 @@ impl ToolModel {
         let axial = -normal.dot(&axis);
         let radial_vector = -normal - axial * axis;
         let radial_length = radial_vector.norm();
-        let direction: P2 = [radial_length, axial];
+        let direction = [radial_length, axial];
         let size = self.oracle.extent()[0].max(self.oracle.extent()[1]);
-        // The contact point, and a point slightly inside the piece that touches there.
-        let small_step = ROUNDING * size;
-        let slightly_inside = |corner: P2, backward: P2, segment: P2| {
-            [
-                corner[0] + small_step * (backward[0] - 0.02 * segment[1]),
-                corner[1] + small_step * (backward[1] + 0.02 * segment[0]),
-            ]
-        };
-        let mut contacts: Vec<(P2, [P2; 2])> = Vec::new();
-        for (k, segment) in
-            self.segments.iter().enumerate().filter(|(_, segment)| segment.is_cutting)
-        {
-            if let Some(centre) = segment.centre
-                && segment.is_convex()
+        let (small_step, rounding) = (ROUNDING * size, factor * ROUNDING);
+        let profile = self.oracle.profile();
+        let cutting = profile.owners().iter().zip(self.oracle.surfaces());
+        let cutting: Vec<usize> = cutting
+            .filter_map(|(owner, (_, cuts))| match owner {
+                Feature::Segment(k) if cuts => Some(*k),
+                _ => None,
+            })
+            .collect();
+        // The contact point, and a point slightly inside the segments that touch there.
+        let mut contacts: Vec<(Point<f64>, [Point<f64>; 2])> = Vec::new();
+        for &k in &cutting {
+            let segment = &profile.segments()[k];
+            if let Some(circle) = &segment.circle
+                && circle.convex
             {
-                let radius = subtract(segment.from, centre);
-                let radius = radius[0].hypot(radius[1]);
-                let arms = [segment.from, segment.to].map(|end| unit(subtract(end, centre)));
-                if cross(arms[0], direction) >= -factor * ROUNDING
-                    && cross(direction, arms[1]) >= -factor * ROUNDING
+                let arms = [segment.from, segment.to].map(|end| unit(&sub(&end, &circle.centre)));
+                if cross(&arms[0], &direction) >= -rounding
+                    && cross(&direction, &arms[1]) >= -rounding
                 {
-                    let at_radius = |radius: f64| [0, 1].map(|k| centre[k] + radius * direction[k]);
-                    contacts.push((at_radius(radius), [at_radius(radius - small_step); 2]));
+                    let at_radius = |radius: f64| add(&circle.centre, &direction, &radius);
+                    let inner = at_radius(circle.radius - small_step);
+                    contacts.push((at_radius(circle.radius), [inner; 2]));
                 }
             }
-            // The corner before the piece. On the axis, the outline continues as its mirror image.
-            let after = segment.tangent(segment.from);
-            let before = match k.checked_sub(1) {
-                Some(k) if self.segments[k].is_cutting => self.segments[k].tangent(segment.from),
-                Some(_) => continue,
-                None => [after[0], -after[1]],
-            };
-            let is_convex_corner = cross(before, after) > ROUNDING;
-            let is_extreme = dot(before, direction) >= -factor * ROUNDING
-                && dot(after, direction) <= factor * ROUNDING;
-            if is_convex_corner && is_extreme {
-                let backward = before.map(|component| -component);
-                let inner_points = [
-                    slightly_inside(segment.from, backward, before),
-                    slightly_inside(segment.from, after, after),
-                ];
+            // The corner before the segment.
+            if k > 0 && !cutting.contains(&(k - 1)) {
+                continue;
+            }
+            let [before, after] = profile.tangents(k);
+            let is_extreme =
+                dot(before, &direction) >= -rounding && dot(after, &direction) <= rounding;
+            if profile.turn(k) > ROUNDING && is_extreme {
+                let slightly_inside = |along: Point<f64>, tangent: &Point<f64>| {
+                    let step = add(&along, &left(tangent), &0.02);
+                    add(&segment.from, &step, &small_step)
+                };
+                let inner_points =
+                    [slightly_inside(opposite(before), before), slightly_inside(*after, after)];
                 contacts.push((segment.from, inner_points));
             }
         }
-        let posture = |([d, z], inner_points): (P2, [P2; 2])| {
+        let posture = |([d, z], inner_points): (Point<f64>, [Point<f64>; 2])| {
             // If the tool's axis is parallel to the normal, the contact is a ring without a distinguished point.
             if radial_length < ROUNDING && d > ROUNDING * size {
                 return None;
             }
             let radial =
                 if radial_length > 0.0 { radial_vector / radial_length } else { Vector3::zeros() };
-            let niceness_at = |[d, z]: P2| {
+            let niceness_at = |[d, z]: Point<f64>| {
                 self.oracle.evaluate([d, 0.0, z]).map(|evaluation| evaluation.niceness)
             };
             // At a corner both pieces touch, and the lower niceness counts.
@@ -187,13 +122,8 @@ impl ToolModel {
     /// Returns the depth of a point of the tool's frame, which is negative outside, and its distances from the cutting
     /// surfaces and from the others. The point is in the tool's unit, the results in the part's.
     pub(super) fn depth_and_distances(&self, point: [f64; 3]) -> [f64; 3] {
-        let distance_to = |is_cutting: bool| {
-            let surfaces = self.surfaces.iter().filter(|(_, cutting)| *cutting == is_cutting);
-            surfaces
-                .map(|(name, _)| self.oracle.distance_to_surface(name, point))
-                .fold(f64::INFINITY, f64::min)
-        };
-        let (cutting_distance, non_cutting_distance) = (distance_to(true), distance_to(false));
+        let [cutting_distance, non_cutting_distance] =
+            [true, false].map(|cuts| self.oracle.distance_to_cutting(cuts, point));
         let depth = -self.oracle.signed_distance(point);
         [depth, cutting_distance, non_cutting_distance].map(|value| value * self.length)
     }
@@ -228,7 +158,7 @@ mod tests {
         let mut rng = Rng::new(5);
         for name in ["D2Ball", "BullNose", "TaperedBall", "Flat", "Drill", "HalfInchBallCat40"] {
             let length = if name.starts_with("Half") { 25.4 } else { 1.0 };
-            let model = ToolModel::new(name, length, 0.01).expect("a restated tool");
+            let model = ToolModel::new(name, length, 0.01);
             let mut count = 0;
             for _ in 0..2_000 {
                 let (normal, axis) =

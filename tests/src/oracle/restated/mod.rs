@@ -8,33 +8,24 @@ mod plain;
 mod thesis;
 
 use super::big::Big;
-
-/// A point `[d, z]`.
-pub type Point = [Big; 2];
+use super::plane::Point;
+use super::profile::Profile;
+use super::segment::Segment;
 
 /// Niceness of a surface that cuts, from its name, the depth and `[d, z]`; below 0 counts as 0.
 pub type Niceness = fn(&str, f64, [f64; 2]) -> f64;
-
-/// A line, or an arc of less than 180°, to a point.
-#[derive(Clone, Debug)]
-pub struct Segment {
-    /// Its end.
-    pub to: Point,
-    /// The centre if it is an arc.
-    pub centre: Option<Point>,
-    /// The surface that it belongs to.
-    pub surface: &'static str,
-}
 
 /// A tool by its profile, from the tip up, with the material on the left.
 #[derive(Clone, Debug)]
 pub struct Restated {
     /// The tool's name.
     pub name: &'static str,
-    /// The start of the profile.
-    pub start: Point,
-    /// Its pieces.
-    pub segments: Vec<Segment>,
+    /// The end of the profile so far.
+    end: Point<Big>,
+    /// The segments of the profile; arcs are of less than 180°.
+    pub segments: Vec<Segment<Big>>,
+    /// The surface that each segment belongs to.
+    pub surfaces: Vec<&'static str>,
     /// Surfaces that cut.
     pub cutting: Vec<&'static str>,
     /// Niceness of a contact where the tool cuts.
@@ -44,14 +35,33 @@ pub struct Restated {
 impl Restated {
     /// Creates a tool whose profile begins on the axis at `z`.
     pub fn new(name: &'static str, z: f64) -> Restated {
-        let start = [Big::zero(), Big::decimal(z)];
-        Restated { name, start, segments: Vec::new(), cutting: Vec::new(), niceness: |_, _, _| 1.0 }
+        let end = [Big::zero(), Big::decimal(z)];
+        let (segments, surfaces, cutting) = (Vec::new(), Vec::new(), Vec::new());
+        Restated { name, end, segments, surfaces, cutting, niceness: |_, _, _| 1.0 }
+    }
+
+    /// Creates a tool of one surface that does not cut.
+    pub fn of_profile(name: &'static str, profile: &Profile<Big>) -> Restated {
+        let segments = profile.segments().iter().cloned();
+        segments.fold(Restated::new(name, 0.0), |tool, segment| tool.segment("side", segment))
+    }
+
+    /// Returns the profile.
+    pub fn profile(&self) -> Profile<Big> {
+        Profile::new(self.segments.clone())
+    }
+
+    fn segment(mut self, surface: &'static str, segment: Segment<Big>) -> Restated {
+        self.end = segment.to.clone();
+        self.segments.push(segment);
+        self.surfaces.push(surface);
+        self
     }
 
     /// Adds a line to a point.
-    pub fn line(mut self, surface: &'static str, d: impl Into<Big>, z: impl Into<Big>) -> Restated {
-        self.segments.push(Segment { to: [d.into(), z.into()], centre: None, surface });
-        self
+    pub fn line(self, surface: &'static str, d: impl Into<Big>, z: impl Into<Big>) -> Restated {
+        let line = Segment::line(self.end.clone(), [d.into(), z.into()]);
+        self.segment(surface, line)
     }
 
     /// Adds lines to points, one after the other.
@@ -64,14 +74,13 @@ impl Restated {
 
     /// Adds an arc to a point about a centre.
     pub fn arc(
-        mut self,
+        self,
         surface: &'static str,
         [d, z]: [impl Into<Big>; 2],
         [cd, cz]: [impl Into<Big>; 2],
     ) -> Restated {
-        let centre = Some([cd.into(), cz.into()]);
-        self.segments.push(Segment { to: [d.into(), z.into()], centre, surface });
-        self
+        let arc = Segment::arc(self.end.clone(), [d.into(), z.into()], [cd.into(), cz.into()]);
+        self.segment(surface, arc)
     }
 
     /// Sets the surfaces that cut, and their niceness.

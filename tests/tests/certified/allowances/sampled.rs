@@ -5,7 +5,7 @@
 //! over the allowances.
 
 use super::names;
-use crate::brute::{BruteForce, Point, distance, nearest};
+use crate::brute::BruteForce;
 use crate::motions::MotionKind;
 use crate::pair::{Part, generated_parts};
 use crate::{motion, oracle, overhang, tool};
@@ -14,6 +14,7 @@ use touchoff::certify::{Certifier, MotionVerdict, PoseVerdict, Witness};
 use touchoff::{Interval, Pose, SurfaceId};
 use touchoff_tests::oracle::Oracle;
 use touchoff_tests::oracle::rng::Rng;
+use touchoff_tests::oracle::triangle::{Point, advance, distance, nearest};
 
 const TOOLS: [&str; 10] = [
     "Fig73Exact",
@@ -69,7 +70,7 @@ impl<'a> SurfaceAllowances<'a> {
     /// Sets random allowances of the order of the depths that occur.
     fn set_random_allowances(&mut self, rng: &mut Rng) {
         for allowed in &mut self.allowances {
-            let size = 10f64.powf(rng.between(-3.0, 0.7));
+            let size = rng.power(-3.0, 0.7);
             *allowed = match rng.bits() % 5 {
                 0 => 0.0,
                 1 => f64::INFINITY,
@@ -163,7 +164,7 @@ impl<'a> SurfaceAllowances<'a> {
         };
         let mut near: Vec<usize> = (0..brute.bounding_balls.len()).filter(near).collect();
         while near.len() > MAX_TRIANGLES {
-            near.swap_remove(rng.bits() as usize % near.len());
+            near.swap_remove(rng.index(near.len()));
         }
         let count = SAMPLES_PER_TRIANGLE * (MAX_TRIANGLES / near.len().max(1)).clamp(1, 8);
         let mut samples = Vec::new();
@@ -172,7 +173,7 @@ impl<'a> SurfaceAllowances<'a> {
             let mut add = |point| samples.push(Sample { triangle, point, value: f64::NAN });
             corners.into_iter().for_each(&mut add);
             for _ in 0..count {
-                let max_height = if rng.bits().is_multiple_of(2) { height } else { 2.0 * radius };
+                let max_height = if rng.once_in(2) { height } else { 2.0 * radius };
                 let mut offset = || rng.between(-1.0, 1.0) * radius;
                 let tool_point = [offset(), offset(), rng.between(0.0, max_height)];
                 add(nearest(tool_point, &corners));
@@ -212,9 +213,7 @@ impl<'a> SurfaceAllowances<'a> {
         let (mut step, mut best, mut failed) =
             (longest_edge.min(self.brute.oracle.extent()[0]), start, 0);
         for _ in 0..STEPS_PER_CLIMB {
-            let direction = rng.direction();
-            let next = [0, 1, 2].map(|axis| best.point[axis] + step * direction[axis]);
-            let point = nearest(next, &triangle);
+            let point = nearest(advance(best.point, step, rng.direction()), &triangle);
             let new_value = value(point);
             if new_value > best.value {
                 (best, failed) = (Sample { point, value: new_value, ..best }, 0);

@@ -3,10 +3,13 @@
 use super::cutters::Cutter;
 use super::truth::Point;
 use nalgebra::{Point3, Vector3};
-use std::f64::consts::TAU;
 use touchoff::Pose;
-use touchoff_tests::oracle::outline::{MeridianPoint, Segment};
+use touchoff_tests::oracle::plane::{self, add, unit};
 use touchoff_tests::oracle::rng::Rng;
+use touchoff_tests::oracle::triangle::{advance, cross, dot, norm};
+
+/// A point or vector of the half plane.
+type MeridianPoint = plane::Point<f64>;
 
 /// A family of test cases.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,29 +66,14 @@ pub(crate) struct Case {
     pub(crate) tolerance: f64,
 }
 
-/// Returns a power of ten with a random exponent between two numbers.
-fn random_magnitude(low: f64, high: f64, rng: &mut Rng) -> f64 {
-    10f64.powf(rng.between(low, high))
-}
-
-fn pick<T: Copy>(list: &[T], rng: &mut Rng) -> T {
-    list[rng.bits() as usize % list.len()]
-}
-
-fn advance(point: Point, step: f64, direction: Point) -> Point {
-    [0, 1, 2].map(|k| point[k] + step * direction[k])
-}
-
 /// Returns a random unit vector perpendicular to `direction`.
 fn perpendicular(direction: Point, rng: &mut Rng) -> Point {
     loop {
         let candidate = rng.direction();
-        let dot =
-            direction[0] * candidate[0] + direction[1] * candidate[1] + direction[2] * candidate[2];
-        let orthogonal = advance(candidate, -dot, direction);
-        let norm = orthogonal.iter().map(|component| component * component).sum::<f64>().sqrt();
-        if norm > 0.1 {
-            return orthogonal.map(|component| component / norm);
+        let orthogonal = advance(candidate, -dot(direction, candidate), direction);
+        let length = norm(orthogonal);
+        if length > 0.1 {
+            return orthogonal.map(|component| component / length);
         }
     }
 }
@@ -93,11 +81,7 @@ fn perpendicular(direction: Point, rng: &mut Rng) -> Point {
 /// Returns a random triangle of about this size and with this normal. `point` is a corner, on an edge or inside.
 fn triangle_at(point: Point, normal: Point, size: f64, rng: &mut Rng) -> [Point; 3] {
     let first = perpendicular(normal, rng);
-    let second = [
-        normal[1] * first[2] - normal[2] * first[1],
-        normal[2] * first[0] - normal[0] * first[2],
-        normal[0] * first[1] - normal[1] * first[0],
-    ];
+    let second = cross(normal, first);
     let (width, height) = (size * rng.between(0.2, 1.0), size * rng.between(0.2, 1.0));
     let shift = size * rng.between(-0.5, 1.0);
     let fraction = rng.between(0.0, 1.0);
@@ -120,10 +104,10 @@ struct Sketch<'a> {
 impl Sketch<'_> {
     /// Rotates a point `[d, z]` and a vector with radial and axial components about the axis by one random angle.
     fn revolve(point: MeridianPoint, vector: MeridianPoint, rng: &mut Rng) -> (Point, Point) {
-        let (sin, cos) = match rng.bits() % 4 {
-            0 => (0.0, 1.0),
-            1 => (1.0, 0.0),
-            _ => rng.between(0.0, TAU).sin_cos(),
+        let [cos, sin] = match rng.bits() % 4 {
+            0 => [1.0, 0.0],
+            1 => [0.0, 1.0],
+            _ => rng.azimuth(),
         };
         let to_space = |[d, z]: MeridianPoint| [d * cos, d * sin, z];
         (to_space(point), to_space(vector))
@@ -132,8 +116,7 @@ impl Sketch<'_> {
     /// Returns a point inside the tool or slightly outside, mostly near the tip.
     fn random_point(&self, rng: &mut Rng) -> Point {
         let height = self.cutter.extent[1];
-        let max_height =
-            if rng.bits().is_multiple_of(2) { height } else { height.min(self.radius) };
+        let max_height = if rng.once_in(2) { height } else { height.min(self.radius) };
         let point = [rng.between(0.0, self.radius), rng.between(-0.02, 1.0) * max_height];
         Self::revolve(point, [1.0, 0.0], rng).0
     }
@@ -144,7 +127,7 @@ impl Sketch<'_> {
 
     /// Returns a random size of the order of the tool's radius.
     fn size(&self, rng: &mut Rng) -> f64 {
-        self.radius * random_magnitude(-1.5, 1.5, rng)
+        self.radius * rng.power(-1.5, 1.5)
     }
 
     fn sliver(&self, height: f64, rng: &mut Rng) -> [Point; 3] {
@@ -170,77 +153,62 @@ impl Sketch<'_> {
 
     /// Returns a point under a joint of the profile and the outward direction there, between the two normals.
     fn under_joint(&self, rng: &mut Rng) -> (Point, Point) {
-        let segments = &self.cutter.outline.segments;
-        let k = 1 + rng.bits() as usize % (segments.len() - 1);
-        let ([a, b], fraction) = (
-            [outward(&segments[k - 1], 1.0), outward(&segments[k], 0.0)],
-            pick(&[0.0, 1.0, 0.5, rng.between(0.0, 1.0)], rng),
-        );
-        let direction = unit([a[0] + fraction * (b[0] - a[0]), a[1] + fraction * (b[1] - a[1])]);
-        let depth = self.radius * pick(&[0.0, random_magnitude(-12.0, 0.0, rng)], rng);
-        let joint = segments[k].from;
-        let point = [(joint[0] - depth * direction[0]).max(0.0), joint[1] - depth * direction[1]];
-        Self::revolve(point, direction, rng)
+        let profile = &self.cutter.profile;
+        let k = 1 + rng.index(profile.segments().len() - 1);
+        let joint = profile.vertex(k);
+        let [a, b] = [k - 1, k].map(|k| profile.segments()[k].outward(joint));
+        let share = [0.0, 1.0, 0.5, rng.between(0.0, 1.0)][rng.index(4)];
+        let direction = unit(&add(&a, &plane::sub(&b, &a), &share));
+        let depth = self.radius * [0.0, rng.power(-12.0, 0.0)][rng.index(2)];
+        let [d, z] = add(joint, &direction, &-depth);
+        Self::revolve([d.max(0.0), z], direction, rng)
     }
 
     fn joint(&self, size: f64, rng: &mut Rng) -> [Point; 3] {
         let (point, outward_direction) = self.under_joint(rng);
-        let normal = if rng.bits().is_multiple_of(2) { outward_direction } else { rng.direction() };
+        let normal = if rng.once_in(2) { outward_direction } else { rng.direction() };
         triangle_at(point, normal, size, rng)
     }
 
     fn centre(&self, rng: &mut Rng) -> [Point; 3] {
-        let centres = self.cutter.outline.segments.iter().filter_map(|segment| segment.centre);
+        let centres = self.cutter.profile.segments().iter().filter_map(|segment| segment.centre());
         let axis = [0.0, rng.between(0.0, self.cutter.extent[1])];
         let points: Vec<MeridianPoint> =
-            centres.filter(|point| point[0] >= 0.0).chain([axis]).collect();
-        let sine_cosine = rng.between(0.0, TAU).sin_cos();
-        let (point, direction) =
-            Self::revolve(pick(&points, rng), [sine_cosine.0, sine_cosine.1], rng);
-        let normal = if rng.bits().is_multiple_of(2) { direction } else { rng.direction() };
+            centres.filter(|point| point[0] >= 0.0).copied().chain([axis]).collect();
+        let (point, direction) = Self::revolve(rng.pick(&points), rng.azimuth(), rng);
+        let normal = if rng.once_in(2) { direction } else { rng.direction() };
         triangle_at(point, normal, self.size(rng), rng)
     }
 
     fn level(&self, rng: &mut Rng) -> [Point; 3] {
         let mut point = self.random_point(rng);
-        let segment = pick(&self.cutter.outline.segments, rng);
-        let centre = segment.centre.unwrap_or(segment.to);
-        point[2] = pick(&[point[2], segment.from[1], segment.to[1], centre[1]], rng);
+        let segments = self.cutter.profile.segments();
+        let segment = &segments[rng.index(segments.len())];
+        let centre = segment.centre().unwrap_or(&segment.to);
+        point[2] = rng.pick(&[point[2], segment.from[1], segment.to[1], centre[1]]);
         let mut triangle = triangle_at(point, [0.0, 0.0, 1.0], self.size(rng), rng);
         triangle.iter_mut().for_each(|corner| corner[2] = point[2]);
         triangle
     }
 
     fn tangent(&self, rng: &mut Rng) -> [Point; 3] {
-        let segment = pick(&self.cutter.outline.segments, rng);
-        let fraction = rng.between(0.0, 1.0);
-        let normal = outward(&segment, fraction);
+        let segments = self.cutter.profile.segments();
+        let segment = &segments[rng.index(segments.len())];
+        let surface_point = segment.at(rng.between(0.0, 1.0));
+        let normal = segment.outward(&surface_point);
         let offset = match rng.bits() % 3 {
             0 => 0.0,
-            1 => random_magnitude(-17.0, -6.0, rng),
-            _ => -random_magnitude(-17.0, -6.0, rng),
+            1 => rng.power(-17.0, -6.0),
+            _ => -rng.power(-17.0, -6.0),
         };
-        let mut surface_point =
-            [0, 1].map(|k| segment.from[k] + fraction * (segment.to[k] - segment.from[k]));
-        if let Some(centre) = segment.centre {
-            let from_centre = [surface_point[0] - centre[0], surface_point[1] - centre[1]];
-            let radius = (segment.from[0] - centre[0]).hypot(segment.from[1] - centre[1]);
-            let factor = radius / from_centre[0].hypot(from_centre[1]);
-            surface_point =
-                [centre[0] + factor * from_centre[0], centre[1] + factor * from_centre[1]];
-        }
-        let offset = offset * self.radius;
-        let point = [
-            (surface_point[0] + offset * normal[0]).max(0.0),
-            surface_point[1] + offset * normal[1],
-        ];
-        let (point, normal) = Self::revolve(point, normal, rng);
+        let [d, z] = add(&surface_point, &normal, &(offset * self.radius));
+        let (point, normal) = Self::revolve([d.max(0.0), z], normal, rng);
         triangle_at(point, normal, self.size(rng), rng)
     }
 
     fn fan(&self, rng: &mut Rng) -> Vec<[Point; 3]> {
         let (apex, direction) = self.under_joint(rng);
-        let count = 2 + rng.bits() as usize % 4;
+        let count = 2 + rng.index(4);
         let size = self.size(rng);
         let rim = |rng: &mut Rng| {
             let base = advance(apex, size * rng.between(0.1, 1.0), perpendicular(direction, rng));
@@ -262,7 +230,7 @@ impl Sketch<'_> {
         match family {
             Family::Any => vec![self.triangle_in_any_orientation(size, rng)],
             Family::Sliver => {
-                let height = pick(&[1e-8, 1e-12, random_magnitude(-13.0, -2.0, rng)], rng);
+                let height = [1e-8, 1e-12, rng.power(-13.0, -2.0)][rng.index(3)];
                 vec![self.sliver(height, rng)]
             }
             Family::Degenerate => {
@@ -273,7 +241,7 @@ impl Sketch<'_> {
             Family::Level => vec![self.level(rng)],
             Family::Tangent => vec![self.tangent(rng)],
             Family::Size => {
-                let size = self.radius * random_magnitude(-6.0, 6.0, rng);
+                let size = self.radius * rng.power(-6.0, 6.0);
                 match rng.bits() % 2 {
                     0 => vec![self.triangle_in_any_orientation(size, rng)],
                     _ => vec![self.joint(size, rng)],
@@ -282,49 +250,28 @@ impl Sketch<'_> {
             Family::Fan => self.fan(rng),
             Family::Far | Family::Drift => {
                 let plain = &Family::ALL[..9];
-                self.triangles(pick(plain, rng), rng)
+                self.triangles(rng.pick(plain), rng)
             }
         }
     }
 }
 
-fn unit(v: MeridianPoint) -> MeridianPoint {
-    let norm = v[0].hypot(v[1]);
-    if norm > 0.0 { v.map(|component| component / norm) } else { [0.0, 1.0] }
-}
-
-/// Returns the unit normal of a profile segment, out of the material, at parameter `fraction` in 0 to 1.
-fn outward(segment: &Segment, fraction: f64) -> MeridianPoint {
-    let ([a, b], [c, d]) = (segment.from, segment.to);
-    let point = [a + fraction * (c - a), b + fraction * (d - b)];
-    let Some(centre) = segment.centre else { return unit([d - b, a - c]) };
-    let normal = unit([point[0] - centre[0], point[1] - centre[1]]);
-    if segment.is_concave() { normal.map(|component| -component) } else { normal }
-}
-
 /// Returns a random pose: the identity, an axis along a coordinate axis, or any rotation. The tip is within a few tool
 /// sizes of the origin, or farther for [`Family::Far`].
 fn pose(family: Family, size: f64, rng: &mut Rng) -> Pose {
-    let distance = if family == Family::Far { random_magnitude(0.0, 12.0, rng) } else { 3.0 };
+    let distance = if family == Family::Far { rng.power(0.0, 12.0) } else { 3.0 };
     let tip = Point3::from(rng.direction()) * (size * distance);
     match rng.bits() % 6 {
         0 if family != Family::Far => Pose::default(),
         0 | 1 => {
             let mut axis = Vector3::zeros();
-            axis[rng.bits() as usize % 3] = pick(&[1.0, -1.0], rng);
+            axis[rng.index(3)] = rng.pick(&[1.0, -1.0]);
             pose_from_axis(tip, axis)
         }
         2 => {
-            let quaternion = loop {
-                let quaternion = [0; 4].map(|_| rng.between(-1.0, 1.0));
-                let norm =
-                    quaternion.iter().map(|component| component * component).sum::<f64>().sqrt();
-                if norm > 0.1 {
-                    // The norm deviates from 1 by almost as much as a pose accepts.
-                    break quaternion
-                        .map(|component| component / norm * rng.between(0.9991, 1.0009));
-                }
-            };
+            // The norm deviates from 1 by almost as much as a pose accepts.
+            let quaternion =
+                rng.quaternion().map(|component| component * rng.between(0.9991, 1.0009));
             Pose::from_quaternion(tip, quaternion).expect("a quaternion")
         }
         _ => pose_from_axis(tip, Vector3::from(rng.direction()) * rng.between(0.9991, 1.0009)),
@@ -342,7 +289,7 @@ fn drift(pose: Pose, rng: &mut Rng) -> Pose {
         let axis = Vector3::from(rng.direction());
         let step = Pose::from_axis(Point3::origin(), axis).expect("an axis");
         pose = pose.then(&step);
-        if rng.bits().is_multiple_of(2) {
+        if rng.once_in(2) {
             pose = pose.relative_to(&step);
         }
     }
@@ -358,7 +305,7 @@ pub(crate) fn case(family: Family, cutter: &Cutter, rng: &mut Rng) -> Case {
         pose = drift(pose, rng);
     }
     let to_world = |p: Point| -> Point { (pose.tip() + pose.rotation() * Vector3::from(p)).into() };
-    let tolerance = pick(&[0.0, 1e-9], rng) * radius.max(height);
+    let tolerance = rng.pick(&[0.0, 1e-9]) * radius.max(height);
     Case {
         triangles: triangles.iter().map(|corners| corners.map(to_world)).collect(),
         pose,

@@ -17,49 +17,48 @@ use cases::{Case, Family};
 use cutters::Cutter;
 use nalgebra::Point3;
 use rayon::prelude::*;
+use std::iter::Sum;
 use touchoff::certify::{Certifier, TriangleBvh, Witness};
 use touchoff::{Interval, Mesh, Unit};
 use touchoff_tests::count::case_count;
 use touchoff_tests::oracle::big::Big;
 use touchoff_tests::oracle::rng::Rng;
+use touchoff_tests::oracle::triangle::{cross, distance, norm, sub};
+use touchoff_tests::tally::Tally;
 use truth::{Point, Scene, TrianglePoint};
 
 /// Number of cases of all families together, unless `CASES` is set.
 const CASES: usize = 33_000;
 const SEED: u64 = 7;
 
+/// Names of counts: a point of the triangles is inside the tool; the search without the witness comes within 1e-9 of the
+/// tool's size of the lower bound; an interval wider than the tolerance plus the promised widening at both ends; an upper
+/// bound below a depth in 256 bits, or an interval that is negative or not finite; a witness off its triangle, or not as
+/// deep as the lower bound.
+const QUERIED: &str = "cases";
+const IN_CONTACT: &str = "in contact";
+const REACHED: &str = "reached";
+const WIDER: &str = "wider";
+const UPPER: &str = "violations of upper bounds";
+const LOWER: &str = "violations of lower bounds";
+
 /// The results of a family's cases. A text has the tool, the triangles, the pose and the answer.
 #[derive(Clone, Debug, Default)]
 struct Results {
-    /// Number of cases queried.
-    cases: usize,
-    /// Number of cases in which a point of the triangles is inside the tool.
-    touching: usize,
-    /// Number of cases in which the search without the witness comes within 1e-9 of the tool's size of the lower bound.
-    reached: usize,
+    tally: Tally,
     /// The largest excess of the true depth over the computed depth, as a fraction of what the upper bound adds.
     above: f64,
     /// The largest excess of the computed depth over the true depth, as a fraction of what the lower bound subtracts.
     below: f64,
-    /// Intervals wider than the tolerance plus the promised widening at both ends.
-    too_wide: Vec<String>,
-    /// Upper bounds below a depth in 256 bits, and intervals that are negative or not finite.
-    upper_violations: Vec<String>,
-    /// Witnesses that are off their triangle, or not as deep as the lower bound.
-    lower_violations: Vec<String>,
 }
 
-impl Results {
-    fn add(mut self, other: Results) -> Results {
-        self.cases += other.cases;
-        self.touching += other.touching;
-        self.reached += other.reached;
-        self.above = self.above.max(other.above);
-        self.below = self.below.max(other.below);
-        self.too_wide.extend(other.too_wide);
-        self.upper_violations.extend(other.upper_violations);
-        self.lower_violations.extend(other.lower_violations);
-        self
+impl Sum for Results {
+    fn sum<I: Iterator<Item = Results>>(results: I) -> Results {
+        results.fold(Results::default(), |sum, other| Results {
+            tally: [sum.tally, other.tally].into_iter().sum(),
+            above: sum.above.max(other.above),
+            below: sum.below.max(other.below),
+        })
     }
 }
 
@@ -80,13 +79,13 @@ impl RoundingCheck {
     /// Queries the cases of a family, given by its index, that have numbers below `count`.
     fn run(&self, family: usize, count: usize) -> Results {
         let numbers = (family..count).into_par_iter().step_by(Family::ALL.len());
-        numbers.map(|number| self.run_case(number)).reduce(Results::default, Results::add)
+        numbers.map(|number| self.run_case(number)).sum()
     }
 
     /// Queries the case with this number.
     fn run_case(&self, number: usize) -> Results {
         let mut rng = Rng::new(SEED ^ (number as u64).wrapping_mul(0xa076_1d64_78bd_642f));
-        let cutter = &self.cutters[rng.bits() as usize % self.cutters.len()];
+        let cutter = &self.cutters[rng.index(self.cutters.len())];
         let case = cases::case(Family::ALL[number % Family::ALL.len()], cutter, &mut rng);
         let mut results = Results::default();
         let vertices = case.triangles.iter().flatten().map(|corner| Point3::from(*corner));
@@ -135,9 +134,10 @@ impl Validation<'_> {
         let is_near = &unaided_depth + &Big::exactly(1e-9 * size + widening) >= Big::exactly(low);
         let nearest = witness.map(|witness| self.nearest_to(&witness));
         let true_depth = self.best_depth(unaided_depth, nearest.as_ref(), rng);
-        results.cases = 1;
-        results.touching = usize::from(true_depth > Big::zero());
-        results.reached = usize::from(is_near);
+        let tally = &mut results.tally;
+        tally.add(QUERIED, 1);
+        tally.see(IN_CONTACT, true_depth > Big::zero());
+        tally.see(REACHED, is_near);
         let describe = || {
             let Validation { number, case, scene, .. } = self;
             format!(
@@ -147,26 +147,26 @@ impl Validation<'_> {
             )
         };
         if high - low - tolerance - rounding - 2.0 * widening > 0.01 * widening {
-            results.too_wide.push(describe());
+            tally.find(WIDER, describe());
         }
         if !(0.0 <= low && high.is_finite()) || true_depth > Big::exactly(high) {
-            results.upper_violations.push(format!("above it: {}", describe()));
+            tally.find(UPPER, format!("above it: {}", describe()));
         }
         let Some(NearestPoint { point_on_triangle, distance, rounding_distance }) = nearest else {
             if low > 0.0 {
-                results.lower_violations.push(format!("no witness: {}", describe()));
+                tally.find(LOWER, format!("no witness: {}", describe()));
             }
             return;
         };
         let depth = self.scene.exact_depth(&point_on_triangle);
         if distance > rounding_distance + widening {
             let text = format!("the witness is {distance:e} off its triangle: {}", describe());
-            results.lower_violations.push(text);
+            tally.find(LOWER, text);
         } else if low > 0.0
             && Big::exactly(low) > &depth + &Big::exactly(distance + rounding_distance)
         {
             let text = format!("the witness is {:e} deep: {}", depth.to_f64(), describe());
-            results.lower_violations.push(text);
+            tally.find(LOWER, text);
         }
         if low > 0.0 {
             // The certifier subtracts two roundings and the skew from the depth that it computed. It adds one rounding,
@@ -217,12 +217,11 @@ impl Validation<'_> {
         let tool_point: Point = (rotation.transpose() * (witness.point - tip)).into();
         let point_on_triangle = self.scene.nearest(witness.triangle.index(), tool_point);
         let point = self.scene.point(&point_on_triangle);
-        let distance = (0..3).map(|k| (tool_point[k] - point[k]).powi(2)).sum::<f64>().sqrt();
         let max_coordinate =
             tool_point.iter().fold(0.0f64, |max, coordinate| max.max(coordinate.abs()));
         NearestPoint {
             point_on_triangle,
-            distance,
+            distance: distance(tool_point, point),
             rounding_distance: 8.0 * f64::EPSILON * (tip.coords.amax() + max_coordinate),
         }
     }
@@ -248,14 +247,11 @@ struct NearestPoint {
 /// Returns the promised error bound of the line of greatest depth in a triangle: `12 ε r s/h`, at most `h`. `r` is the
 /// distance of the farthest corner from the tip, `s` the shortest edge and `h` the height over the longest edge.
 fn skew(corners: &[Point; 3]) -> f64 {
-    let edge = |a: Point, b: Point| [0, 1, 2].map(|k| b[k] - a[k]);
-    let norm = |v: Point| v.iter().map(|component| component * component).sum::<f64>().sqrt();
     let [a, b, c] = *corners;
-    let edges = [edge(a, b), edge(b, c), edge(c, a)];
+    let edges = [sub(b, a), sub(c, b), sub(a, c)];
     let longest = edges.iter().copied().map(norm).fold(0.0, f64::max);
     let shortest = edges.iter().copied().map(norm).fold(f64::INFINITY, f64::min);
-    let ([x, y, z], [u, v, w]) = (edges[0], edges[1]);
-    let area = norm([y * w - z * v, z * u - x * w, x * v - y * u]);
+    let area = norm(cross(edges[0], edges[1]));
     let height = if longest > 0.0 { area / longest } else { 0.0 };
     let max_distance = corners.iter().copied().map(norm).fold(0.0, f64::max);
     // Differences of corners that were rounded once determine the height to within a few units of rounding.
@@ -269,27 +265,18 @@ fn depths_in_256_bits_are_within_the_intervals() {
     let check = RoundingCheck::new(0.0);
     let families: Vec<Results> =
         (0..Family::ALL.len()).map(|family| check.run(family, count)).collect();
-    let total = families.iter().cloned().fold(Results::default(), Results::add);
-    eprintln!(
-        "256 bits: {} cases, {} in contact, {} reached, {} wider, {:.3} above, {:.3} below, {} violations",
-        total.cases,
-        total.touching,
-        total.reached,
-        total.too_wide.len(),
-        total.above,
-        total.below,
-        total.upper_violations.len() + total.lower_violations.len()
-    );
-    assert!(total.upper_violations.is_empty(), "{:#?}", total.upper_violations);
-    assert!(total.lower_violations.is_empty(), "{:#?}", total.lower_violations);
-    for (family, results) in Family::ALL.iter().zip(&families) {
-        let Results { cases, touching, reached, too_wide, .. } = results;
-        assert!(too_wide.is_empty(), "{family:?}: {too_wide:#?}");
+    let Results { tally: total, above, below } = families.iter().cloned().sum();
+    eprintln!("256 bits: {total}, {above:.3} above, {below:.3} below");
+    total.assert_none(UPPER);
+    total.assert_none(LOWER);
+    total.assert_none(WIDER);
+    for (family, Results { tally, .. }) in Family::ALL.iter().zip(&families) {
+        let cases = tally.count(QUERIED);
         // A sliver without an area is no mesh.
-        assert!(30 * cases > 29 * (count / Family::ALL.len()), "{family:?}: {cases} cases");
-        assert!(*touching > cases / 3, "{family:?}: {touching} of {cases} in contact");
+        assert!(30 * cases > 29 * (count / Family::ALL.len()) as u64, "{family:?}: {tally}");
+        assert!(3 * tally.count(IN_CONTACT) > cases, "{family:?}: {tally}");
         // A search that seldom comes near the lower bound would not contradict an upper bound either.
-        assert!(*reached > cases / 2, "{family:?}: {reached} of {cases} reached");
+        assert!(2 * tally.count(REACHED) > cases, "{family:?}: {tally}");
     }
 }
 
@@ -298,8 +285,7 @@ fn depths_in_256_bits_are_within_the_intervals() {
 fn bounds_without_widening_are_reported_as_violations() {
     let check = RoundingCheck::new(1.0);
     for (index, family) in Family::ALL.iter().enumerate() {
-        let results = check.run(index, 2_200);
-        let violations = results.upper_violations.len();
-        assert!(violations > results.cases / 20, "{family:?}: {violations} of {}", results.cases);
+        let Results { tally, .. } = check.run(index, 2_200);
+        assert!(20 * tally.count(UPPER) > tally.count(QUERIED), "{family:?}: {tally}");
     }
 }

@@ -8,9 +8,8 @@ use touchoff::Pose;
 use touchoff_tests::oracle::big::Big;
 use touchoff_tests::oracle::reference::QueryPoint;
 use touchoff_tests::oracle::rng::Rng;
-
-/// A point or vector in space.
-pub(crate) type Point = [f64; 3];
+pub(crate) use touchoff_tests::oracle::triangle::Point;
+use touchoff_tests::oracle::triangle::{mean, nearest_weights};
 
 /// Number of starting points of the search, steps per start, and additional steps for the best of them.
 const CLIMBS: usize = 3;
@@ -61,65 +60,6 @@ fn cross(a: &[Big; 3], b: &[Big; 3]) -> [Big; 3] {
     [component(1, 2), component(2, 0), component(0, 1)]
 }
 
-fn subtract(a: Point, b: Point) -> Point {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-fn product(a: Point, b: Point) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-/// Returns the weighted mean of a triangle's corners.
-fn mean([a, b, c]: &[Point; 3], [u, v, w]: Point) -> Point {
-    [0, 1, 2].map(|k| (u * a[k] + v * b[k] + w * c[k]) / (u + v + w))
-}
-
-/// Returns the weights of the point of a triangle that is approximately nearest to `p`. Candidates are the foot on the
-/// plane, if it is inside, and the feet on the edges, since the plane of a sliver is poorly conditioned.
-fn nearest(p: Point, corners: &[Point; 3]) -> Point {
-    let squared_distance = |weights: &Point| {
-        let difference = subtract(p, mean(corners, *weights));
-        product(difference, difference)
-    };
-    let edges = [[0, 1], [1, 2], [2, 0]].map(|[from, to]| {
-        let edge = subtract(corners[to], corners[from]);
-        let fraction = product(subtract(p, corners[from]), edge) / product(edge, edge);
-        // This form maps NaN to 0, so an edge without length gives its first end.
-        let fraction = if fraction > 0.0 { fraction.min(1.0) } else { 0.0 };
-        let mut weights = [0.0; 3];
-        weights[from] = 1.0 - fraction;
-        weights[to] = fraction;
-        weights
-    });
-    // The edges at the corner opposite the longest one determine the plane of a sliver best.
-    let squared_opposite_edge = |k: &usize| {
-        let edge = subtract(corners[(k + 1) % 3], corners[(k + 2) % 3]);
-        product(edge, edge)
-    };
-    let origin = (0..3)
-        .max_by(|j, k| squared_opposite_edge(j).total_cmp(&squared_opposite_edge(k)))
-        .unwrap_or(0);
-    let others = [(origin + 1) % 3, (origin + 2) % 3];
-    let [e, f] = others.map(|k| subtract(corners[k], corners[origin]));
-    let (ee, ef, ff) = (product(e, e), product(e, f), product(f, f));
-    let area = ee * ff - ef * ef;
-    // Iterative refinement: the first weights of a sliver have few correct digits.
-    let mut weights = [0.0; 3];
-    weights[origin] = 1.0;
-    for _ in 0..3 {
-        let residual = subtract(p, mean(corners, weights));
-        let (of_e, of_f) = (product(e, residual), product(f, residual));
-        weights[others[0]] += (ff * of_e - ef * of_f) / area;
-        weights[others[1]] += (ee * of_f - ef * of_e) / area;
-        weights[origin] = 1.0 - weights[others[0]] - weights[others[1]];
-    }
-    let inside = weights.iter().all(|weight| *weight >= 0.0).then_some(weights);
-    let candidates = edges.into_iter().chain(inside);
-    candidates
-        .min_by(|a, b| squared_distance(a).total_cmp(&squared_distance(b)))
-        .unwrap_or([1.0, 0.0, 0.0])
-}
-
 impl<'a> Scene<'a> {
     /// Transforms triangles from the world to the tool's frame. The pose maps that frame to the world: `p = R q + tip`.
     pub(crate) fn new(cutter: &'a Cutter, pose: &Pose, triangles: &[[Point; 3]]) -> Scene<'a> {
@@ -146,7 +86,7 @@ impl<'a> Scene<'a> {
     /// Returns the depth of a point, computed in doubles.
     pub(crate) fn depth(&self, point: &TrianglePoint) -> f64 {
         let [x, y, z] = self.point(point);
-        self.cutter.outline.depth([x.hypot(y), z])
+        self.cutter.profile.depth(&[x.hypot(y), z])
     }
 
     /// Returns the depth of a point, computed in 256 bits.
@@ -163,7 +103,7 @@ impl<'a> Scene<'a> {
 
     /// Returns the point of a triangle that is approximately nearest to `p`, which is in the tool's frame.
     pub(crate) fn nearest(&self, triangle: usize, p: Point) -> TrianglePoint {
-        TrianglePoint { triangle, weights: nearest(p, &self.triangles[triangle]) }
+        TrianglePoint { triangle, weights: nearest_weights(p, &self.triangles[triangle]) }
     }
 
     /// Returns the deepest point found by the random search.
@@ -203,12 +143,11 @@ impl<'a> Scene<'a> {
         let corners = &self.triangles[triangle];
         let height = self.cutter.extent[1];
         for _ in 0..4 {
-            add(nearest([0.0, 0.0, rng.between(0.0, height)], corners));
+            add(nearest_weights([0.0, 0.0, rng.between(0.0, height)], corners));
         }
-        for segment in &self.cutter.outline.segments {
-            let [d, z] = segment.centre.unwrap_or(segment.to);
-            let (sin, cos) = rng.between(0.0, std::f64::consts::TAU).sin_cos();
-            add(nearest([d * cos, d * sin, z], corners));
+        for segment in self.cutter.profile.segments() {
+            let ([d, z], [cos, sin]) = (segment.centre().unwrap_or(&segment.to), rng.azimuth());
+            add(nearest_weights([d * cos, d * sin, *z], corners));
         }
     }
 

@@ -4,7 +4,7 @@
 //! ([`crate::approach`]) know the tool from its restatement, and the motion from a separate formula.
 
 use crate::approach::{MotionSample, ReferenceMotion};
-use crate::brute::{BruteForce, distance, nearest};
+use crate::brute::BruteForce;
 use crate::motions::MotionKind;
 use crate::pair::{Pair, Pairs, is_full_run, parts};
 use crate::{motion, oracle};
@@ -14,6 +14,8 @@ use touchoff::{Mesh, Motion, Pose, TriangleId};
 use touchoff_tests::count::case_count;
 use touchoff_tests::oracle::Oracle;
 use touchoff_tests::oracle::rng::Rng;
+use touchoff_tests::oracle::triangle::{distance, nearest};
+use touchoff_tests::tally::Tally;
 
 /// The tolerances used, in the part's unit.
 const TOLERANCES: [f64; 3] = [0.0, 1e-6, 1e-3];
@@ -38,49 +40,29 @@ const TIME_SAMPLES: u32 = 64;
 /// Maximum number of motions drawn per motion that is proved clear.
 const MAX_DRAWS_PER_PROVED: usize = 20;
 
-/// The results of comparisons.
-#[derive(Clone, Debug, Default)]
-struct Results {
-    /// Number of motions queried.
-    motions: usize,
-    /// Number of motions proved clear.
-    proved: usize,
-    /// Number of motions proved clear that come nearer than 0.001.
-    near_misses: usize,
-    /// Number of motions with a witness of contact.
-    touching: usize,
-    /// Undecided motions.
-    undecided: Vec<String>,
-    /// Number of depths that were evaluated.
-    samples: u64,
-    /// Wrong answers, with tool, part and motion.
-    violations: Vec<String>,
-}
-
-impl Results {
-    fn add(mut self, other: Results) -> Results {
-        self.motions += other.motions;
-        self.proved += other.proved;
-        self.near_misses += other.near_misses;
-        self.touching += other.touching;
-        self.undecided.extend(other.undecided);
-        self.samples += other.samples;
-        self.violations.extend(other.violations);
-        self
-    }
-}
+/// Names of counts: a motion proved clear, one of these that comes nearer than 0.001, a witness of contact, an undecided
+/// motion, a wrong answer.
+const QUERIED: &str = "queried";
+const PROVED: &str = "proved";
+const NEAR: &str = "of them near";
+const IN_CONTACT: &str = "in contact";
+const UNDECIDED: &str = "undecided";
+const VIOLATIONS: &str = "violations";
 
 impl Pair<'_> {
     /// Compares random motions with samples until `count` of them are proved clear.
-    fn compare_motions(&self, count: usize) -> Results {
+    fn compare_motions(&self, count: usize) -> Tally {
         let mut rng = Rng::new(self.seed);
         let brute = BruteForce::new(&self.part.mesh, &self.oracle, self.length());
         let mut certifier =
             Certifier::new(&self.part.bvh, self.tool).expect("a tool with a profile");
-        let mut results = Results::default();
-        while results.proved < count && results.motions < MAX_DRAWS_PER_PROVED * count {
-            let kind = MotionKind::ALL[results.motions % MotionKind::ALL.len()];
-            let tolerance = TOLERANCES[results.motions % TOLERANCES.len()];
+        let mut tally = Tally::default();
+        for k in 0..MAX_DRAWS_PER_PROVED * count {
+            if tally.count(PROVED) == count as u64 {
+                break;
+            }
+            let kind = MotionKind::ALL[k % MotionKind::ALL.len()];
+            let tolerance = TOLERANCES[k % TOLERANCES.len()];
             let reference = brute.random_motion(kind, &mut rng);
             let motion = motion(&reference.from, &reference.to);
             let verdict = certifier.check_motion(&motion, tolerance);
@@ -89,7 +71,7 @@ impl Pair<'_> {
                 format_pose(&reference.from),
                 format_pose(&reference.to),
             );
-            results.motions += 1;
+            tally.add(QUERIED, 1);
             let mut validation = Validation {
                 pair: self,
                 brute: &brute,
@@ -98,13 +80,13 @@ impl Pair<'_> {
                 // Error bound of certified positions, and of the samples.
                 rounding: 64.0 * f64::EPSILON * (brute.size + motion.displacement().norm()),
                 tolerance,
-                results: &mut results,
+                tally: &mut tally,
                 case,
             };
             validation.run(verdict, &mut rng);
         }
-        results.samples = brute.evaluations.get();
-        results
+        tally.add("samples", brute.evaluations.get());
+        tally
     }
 }
 
@@ -120,7 +102,7 @@ struct Validation<'a> {
     motion: Motion,
     rounding: f64,
     tolerance: f64,
-    results: &'a mut Results,
+    tally: &'a mut Tally,
     case: String,
 }
 
@@ -131,14 +113,14 @@ impl Validation<'_> {
         }
         match verdict {
             MotionVerdict::Clear | MotionVerdict::Inside(_) | MotionVerdict::SurfaceOnly => {
-                self.results.proved += 1;
+                self.tally.add(PROVED, 1);
                 let deepest =
                     self.brute.deepest_in_motion(&self.reference, TIME_SAMPLES, true, rng);
                 self.check_proved(&deepest);
                 self.check_side(verdict);
             }
             MotionVerdict::Touching(t, witness) => {
-                self.results.touching += 1;
+                self.tally.add(IN_CONTACT, 1);
                 self.compare_pose(t);
                 self.check_witness(t, &witness);
             }
@@ -149,7 +131,7 @@ impl Validation<'_> {
     /// Validates an undecided motion: the part before time `t` must be clear.
     fn check_undecided(&mut self, t: f64, rng: &mut Rng) {
         let deepest = self.brute.deepest_in_motion(&self.reference, TIME_SAMPLES, true, rng);
-        self.results.undecided.push(format!("{}, {deepest:?}", self.case));
+        self.tally.find(UNDECIDED, format!("{}, {deepest:?}", self.case));
         if !(0.0..=1.0).contains(&t) {
             self.add_violation("undecided at no time");
         } else if t > 0.0 {
@@ -163,7 +145,7 @@ impl Validation<'_> {
     fn check_proved(&mut self, deepest: &MotionSample) {
         let allowed = self.tolerance.max(16.0 * self.rounding) + self.rounding;
         let excess = deepest.depth - allowed;
-        self.results.near_misses += usize::from(deepest.depth > -1e-3);
+        self.tally.see(NEAR, deepest.depth > -1e-3);
         if excess > 0.0 {
             self.add_violation(&format!("it is proved, but {deepest:?}"));
         }
@@ -220,7 +202,7 @@ impl Validation<'_> {
     }
 
     fn add_violation(&mut self, message: &str) {
-        self.results.violations.push(format!("{message}: {}", self.case));
+        self.tally.find(VIOLATIONS, format!("{message}: {}", self.case));
     }
 }
 
@@ -242,24 +224,16 @@ fn no_sample_of_a_clear_motion_is_inside() {
     let parts = parts("MOTIONS");
     let count = case_count("MOTIONS", 4);
     let tools: &[&str] = if is_full_run("MOTIONS") { &ALL_TOOLS } else { &ALL_TOOLS[..4] };
-    let results = Pairs { parts: &parts, tools, seed: 11 }.compare(oracle, |pair| {
-        let results = pair.compare_motions(count);
-        assert!(results.proved == count && results.touching > 0, "{pair}: {results:#?}");
-        results
+    let tallies = Pairs { parts: &parts, tools, seed: 11 }.compare(oracle, |pair| {
+        let tally = pair.compare_motions(count);
+        let is_enough = tally.count(PROVED) == count as u64 && tally.count(IN_CONTACT) > 0;
+        assert!(is_enough, "{pair}: {tally:#?}");
+        tally
     });
-    let total = results.into_iter().fold(Results::default(), Results::add);
-    eprintln!(
-        "motions: {} queried, {} proved, {} of them near, {} in contact, {} undecided, {} samples, {} violations",
-        total.motions,
-        total.proved,
-        total.near_misses,
-        total.touching,
-        total.undecided.len(),
-        total.samples,
-        total.violations.len()
-    );
-    assert!(total.violations.is_empty(), "{:#?}", total.violations);
+    let total: Tally = tallies.into_iter().sum();
+    eprintln!("motions: {total}");
+    total.assert_none(VIOLATIONS);
     // Motions that stay far away would prove little.
-    assert!(5 * total.near_misses > total.proved, "{} near", total.near_misses);
-    assert!(100 * total.undecided.len() <= total.motions, "{:#?}", total.undecided);
+    assert!(5 * total.count(NEAR) > total.count(PROVED), "{total}");
+    assert!(100 * total.count(UNDECIDED) <= total.count(QUERIED), "{total:#?}");
 }

@@ -1,12 +1,15 @@
 //! Profiles that are wrong, or nearly: each gives an exact result or an error at its place.
 
 use super::compare::compare;
-use super::outline::{Outline, P2, Piece, len, sub};
+use super::outline::Outline;
 use super::{said, tool};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use touchoff::tool::{Interpreted, Tool};
 use touchoff_dsl::source::Source;
+use touchoff_tests::oracle::plane::{norm, sub};
+use touchoff_tests::oracle::profile::Profile;
 use touchoff_tests::oracle::rng::Rng;
+use touchoff_tests::oracle::segment::Segment;
 
 fn text(profile: &str) -> String {
     format!("tool T {{ units mm; profile {{ start {profile} }} }}")
@@ -145,26 +148,24 @@ fn each_mistake_is_shown_at_its_segment() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Asserts that a profile which is odd but good is exact.
-fn exact(outline: &Outline) {
-    let text = outline.text();
-    let tool = tool(&text).unwrap_or_else(|said| panic!("{text}\n{said}"));
-    let planned = Interpreted::parse(&Source::new("t.tool", &text)).expect("as before");
-    let compared = compare(outline, (&tool, &planned), 2_000, &mut Rng::new(41));
-    compared.unwrap_or_else(|flaw| panic!("{flaw:?}\n{text}"));
-}
-
-fn path(points: &[P2]) -> Outline {
-    let pieces = points.windows(2).map(|pair| Piece::line(pair[0], pair[1])).collect();
-    Outline { pieces, down: false }
-}
-
+/// Dishes at the axis, and collinear and tangent joints, are exact; a sphere is one arc.
 #[test]
-fn a_sphere_is_one_arc() {
-    exact(&Outline {
-        pieces: vec![Piece::about([0.0, 0.0], [0.0, 6.0], [0.0, 3.0], true)],
-        down: false,
-    });
+fn odd_profiles_are_exact() {
+    let sphere = Segment::about([0.0, 0.0], [0.0, 6.0], [0.0, 3.0], true);
+    let others = [
+        "0 0, 1 0, 1 5, 0 4",
+        "0 1, 1 0, 1 5, 0 5",
+        "0 0, 1 0, 1 5, 0 4.5 about 0 5.75",
+        "0 0, 1 0, 2 0, 2 1, 2 3, 1 3, 0 3",
+        "0 0, 3 1 about 0 5, 4 2 about 0 5, 5 5 about 0 5, 5 8, 0 8",
+    ];
+    for outline in others.map(Outline::parse).into_iter().chain([Outline::up(vec![sphere])]) {
+        let text = outline.text();
+        let tool = tool(&text).unwrap_or_else(|said| panic!("{text}\n{said}"));
+        let planned = Interpreted::parse(&Source::new("t.tool", &text)).expect("as before");
+        let compared = compare(&outline, (&tool, &planned), 2_000, &mut Rng::new(41));
+        compared.unwrap_or_else(|flaw| panic!("{flaw:?}\n{text}"));
+    }
 }
 
 /// From corner to corner a half circle's chord is rounded as its ends are.
@@ -176,87 +177,34 @@ fn half_a_circle_takes_rounded_ends() {
     assert!(tool.is_ok(), "{}", tool.expect_err("refused"));
 }
 
-#[test]
-fn dishes_at_the_axis_are_exact() {
-    exact(&path(&[[0.0, 0.0], [1.0, 0.0], [1.0, 5.0], [0.0, 4.0]]));
-    exact(&path(&[[0.0, 1.0], [1.0, 0.0], [1.0, 5.0], [0.0, 5.0]]));
-    let dish = Piece::about([1.0, 5.0], [0.0, 4.5], [0.0, 5.75], false);
-    let lines = path(&[[0.0, 0.0], [1.0, 0.0], [1.0, 5.0]]).pieces;
-    exact(&Outline { pieces: lines.into_iter().chain([dish]).collect(), down: false });
-}
-
-#[test]
-fn collinear_and_tangent_joints_are_exact() {
-    exact(&path(&[
-        [0.0, 0.0],
-        [1.0, 0.0],
-        [2.0, 0.0],
-        [2.0, 1.0],
-        [2.0, 3.0],
-        [1.0, 3.0],
-        [0.0, 3.0],
-    ]));
-    let pieces = vec![
-        Piece::about([0.0, 0.0], [3.0, 1.0], [0.0, 5.0], true),
-        Piece::about([3.0, 1.0], [4.0, 2.0], [0.0, 5.0], true),
-        Piece::about([4.0, 2.0], [5.0, 5.0], [0.0, 5.0], true),
-        Piece::line([5.0, 5.0], [5.0, 8.0]),
-        Piece::line([5.0, 8.0], [0.0, 8.0]),
-    ];
-    exact(&Outline { pieces, down: false });
-}
-
 /// A disc, a slot and a bulge so thin that rounding is near: exact or refused at a segment.
 #[test]
 fn needles_are_exact_or_refused_at_their_place() {
     let mut tried = Vec::new();
     for thin in [1e-3, 1e-6, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13] {
-        let disc = [
-            [0.0, 0.0],
-            [1.0, 0.0],
-            [1.0, 2.0],
-            [3.0, 2.0],
-            [3.0, 2.0 + thin],
-            [1.0, 2.0 + thin],
-            [1.0, 5.0],
-            [0.0, 5.0],
-        ];
-        let slot = [
-            [0.0, 0.0],
-            [3.0, 0.0],
-            [3.0, 2.0],
-            [1.0, 2.0],
-            [1.0, 2.0 + thin],
-            [3.0, 2.0 + thin],
-            [3.0, 5.0],
-            [0.0, 5.0],
-        ];
-        let lance = [[0.0, 0.0], [thin, 0.0], [thin, 5.0], [0.0, 5.0]];
-        let coin = [[0.0, 0.0], [3.0, 0.0], [3.0, thin], [0.0, thin]];
-        let spike = [[0.0, 0.0], [thin, 4.0], [3.0, 4.0], [3.0, 5.0], [0.0, 5.0]];
-        let notch = [
-            [0.0, 0.0],
-            [3.0, 0.0],
-            [3.0, 2.0],
-            [1.0, 2.0],
-            [3.0, 2.0 + thin],
-            [3.0, 5.0],
-            [0.0, 5.0],
-        ];
-        for points in [&disc[..], &slot, &lance, &coin, &spike, &notch] {
-            tried.push(path(points));
-        }
-        let [low, high] = [[3.0, 2.0], [3.0, 2.0 + 2.0 * thin]];
+        let level = 2.0 + thin;
+        let inner = 3.0 - thin;
+        tried.extend(
+            [
+                // A disc and a slot, a lance and a coin, a spike and a notch, a rounded edge.
+                format!("0 0, 1 0, 1 2, 3 2, 3 {level}, 1 {level}, 1 5, 0 5"),
+                format!("0 0, 3 0, 3 2, 1 2, 1 {level}, 3 {level}, 3 5, 0 5"),
+                format!("0 0, {thin} 0, {thin} 5, 0 5"),
+                format!("0 0, 3 0, 3 {thin}, 0 {thin}"),
+                format!("0 0, {thin} 4, 3 4, 3 5, 0 5"),
+                format!("0 0, 3 0, 3 2, 1 2, 3 {level}, 3 5, 0 5"),
+                format!("0 0, {inner} 0, 3 {thin} about {inner} {thin}, 3 5, 0 5"),
+            ]
+            .map(|vertices| Outline::parse(&vertices)),
+        );
         for convex in [true, false] {
-            let mut pieces = path(&[[0.0, 0.0], [3.0, 0.0], low]).pieces;
-            pieces.push(Piece::about(low, high, [3.0, 2.0 + thin], convex));
-            pieces.extend(path(&[high, [3.0, 5.0], [0.0, 5.0]]).pieces);
-            tried.push(Outline { pieces, down: false });
+            let bulged =
+                Outline::parse(&format!("0 0, 3 0, 3 2, 3 {}, 3 5, 0 5", 2.0 + 2.0 * thin));
+            let mut segments = bulged.segments().to_vec();
+            let chord = segments[2];
+            segments[2] = Segment::about(chord.from, chord.to, [3.0, level], convex);
+            tried.push(Outline::up(segments));
         }
-        let mut pieces = path(&[[0.0, 0.0], [3.0 - thin, 0.0]]).pieces;
-        pieces.push(Piece::about([3.0 - thin, 0.0], [3.0, thin], [3.0 - thin, thin], true));
-        pieces.extend(path(&[[3.0, thin], [3.0, 5.0], [0.0, 5.0]]).pieces);
-        tried.push(Outline { pieces, down: false });
     }
     let mut flawed = Vec::new();
     for outline in tried {
@@ -289,7 +237,7 @@ fn refused_or_exact(outline: &Outline) -> Option<bool> {
     let near = 1e-8 * size;
     for p in super::compare::points(outline, 160, &mut Rng::new(42)) {
         let [d, z] = outline.turned(p);
-        let (_, least) = outline.nearest(p);
+        let least = outline.profile.depth(&p).abs();
         let (evaluation, clearance) =
             (reference.evaluate([d, 0.0, z], 1.0), planned.clearance([d, 0.0, z]));
         let depth = evaluation.map_or(0.0, |evaluation| evaluation.depth);
@@ -298,7 +246,7 @@ fn refused_or_exact(outline: &Outline) -> Option<bool> {
             "{depth}, {clearance}, {least} at {p:?}\n{text}"
         );
         if least > near {
-            assert_eq!(evaluation.is_some(), outline.contains(p), "at {p:?}\n{text}");
+            assert_eq!(evaluation.is_some(), outline.profile.encloses(&p), "at {p:?}\n{text}");
         }
     }
     None
@@ -308,7 +256,7 @@ fn refused_or_exact(outline: &Outline) -> Option<bool> {
 fn nearly(rng: &mut Rng) -> Outline {
     let pick = |rng: &mut Rng, count: u64| rng.bits() % count;
     let little = |rng: &mut Rng| match pick(rng, 3) {
-        0 => rng.between(-1.0, 1.0) * 10f64.powf(rng.between(-16.0, -5.0)),
+        0 => rng.between(-1.0, 1.0) * rng.power(-16.0, -5.0),
         _ => 0.0,
     };
     let count = 1 + pick(rng, 6);
@@ -323,20 +271,20 @@ fn nearly(rng: &mut Rng) -> Outline {
     points.push([0.0, end]);
     let mut pieces = Vec::new();
     for pair in points.windows(2) {
-        let chord = len(sub(pair[1], pair[0]));
+        let chord = norm(&sub(&pair[1], &pair[0]));
         if pick(rng, 3) > 0 || chord == 0.0 {
-            pieces.push(Piece::line(pair[0], pair[1]));
+            pieces.push(Segment::line(pair[0], pair[1]));
             continue;
         }
         let radius =
             chord / 2.0 * (1.0 + [0.0, 0.5, 2.0, 1e6][pick(rng, 4) as usize] + little(rng).abs());
-        let mut arc = Piece::by_radius(pair[0], pair[1], radius, pick(rng, 2) == 0);
-        if let Some(round) = &mut arc.round {
+        let mut arc = Segment::by_radius(pair[0], pair[1], radius, pick(rng, 2) == 0);
+        if let Some(round) = &mut arc.circle {
             round.by_radius = pick(rng, 2) == 0;
         }
         pieces.push(arc);
     }
-    Outline { pieces, down: pick(rng, 4) == 0 }
+    Outline { profile: Profile::new(pieces), down: pick(rng, 4) == 0 }
 }
 
 /// Corners from a small grid, some moved by next to nothing: nearly touching, nearly tangent, nearly without

@@ -1,10 +1,13 @@
 //! One compiled profile against brute force.
 
-use super::outline::{Feature, Outline, P2, add, len, sub, unit};
+use super::outline::{Outline, P2};
 use touchoff::Level;
-use touchoff::tool::{Evaluations, Interpreted, Outputs, PointBatch, Tool};
+use touchoff::tool::{Interpreted, PointEvaluation, Tool};
 use touchoff_dsl::CheckedTool;
 use touchoff_dsl::interpret::{Evaluation, Interpreter};
+use touchoff_tests::evaluations::evaluate_points;
+use touchoff_tests::oracle::plane::{add, norm, sub};
+use touchoff_tests::oracle::profile::Feature;
 use touchoff_tests::oracle::rng::Rng;
 
 /// The results of a comparison.
@@ -34,28 +37,29 @@ pub(crate) type Flaw = (&'static str, String);
 /// Returns points anywhere, beside the surface, beside borders, on the axis and at the corners.
 pub(crate) fn points(outline: &Outline, count: usize, rng: &mut Rng) -> Vec<P2> {
     let size = outline.size();
-    let [low, high] = outline.reach();
-    let span = sub(high, low).map(|component| component.max(0.05 * size));
+    let [low, high] = outline.profile.extent();
+    let span = sub(&high, &low).map(|component| component.max(0.05 * size));
     let random_point = |rng: &mut Rng| {
         let d = rng.between(0.0, high[0] + 0.2 * span[0]);
         [d, rng.between(low[1] - 0.2 * span[1], high[1] + 0.2 * span[1])]
     };
-    let random_small_distance = |rng: &mut Rng| size * 10f64.powf(rng.between(-6.0, -2.0));
-    let mut all: Vec<P2> = (0..=outline.pieces.len()).map(|k| outline.vertex(k)).collect();
+    let random_small_distance = |rng: &mut Rng| size * rng.power(-6.0, -2.0);
+    let mut all: Vec<P2> =
+        (0..=outline.segments().len()).map(|k| *outline.profile.vertex(k)).collect();
     for k in 0..count {
         all.push(match k % 8 {
             0..3 => random_point(rng),
             3 => [0.0, random_point(rng)[1]],
             4 | 5 => {
-                let piece = &outline.pieces[rng.bits() as usize % outline.pieces.len()];
+                let piece = &outline.segments()[rng.bits() as usize % outline.segments().len()];
                 let on = piece.at(rng.between(0.0, 1.0));
-                let offset = random_small_distance(rng)
-                    * if rng.bits().is_multiple_of(2) { 1.0 } else { -1.0 };
-                add(on, piece.outward(on), offset)
+                let offset = random_small_distance(rng) * if rng.once_in(2) { 1.0 } else { -1.0 };
+                add(&on, &piece.outward(&on), &offset)
             }
             _ => {
                 let (mut a, mut b) = (random_point(rng), random_point(rng));
-                let kind = |p: P2| (outline.nearest(p).0, outline.contains(p));
+                let kind =
+                    |p: P2| (outline.profile.nearest(&p).feature, outline.profile.encloses(&p));
                 let from = kind(a);
                 // Halves a segment down to a point where the nearest feature, or inside and outside, change, and
                 // steps aside from it.
@@ -64,12 +68,18 @@ pub(crate) fn points(outline: &Outline, count: usize, rng: &mut Rng) -> Vec<P2> 
                     if kind(middle) == from { a = middle } else { b = middle }
                 }
                 let direction = rng.direction();
-                add(a, [direction[0], direction[1]], random_small_distance(rng))
+                add(&a, &[direction[0], direction[1]], &random_small_distance(rng))
             }
         });
     }
     all.iter_mut().for_each(|p| p[0] = p[0].abs());
     all
+}
+
+/// Returns an evaluation as the reference interpreter gives it.
+pub(crate) fn interpreted(e: PointEvaluation) -> Evaluation {
+    let PointEvaluation { region, depth, magnitude, direction, gradient, niceness } = e;
+    Evaluation { region, depth, magnitude, direction, gradient, niceness }
 }
 
 /// Compares the reference and the planned tape with brute force at `count` points.
@@ -88,21 +98,11 @@ pub(crate) fn compare(
             [d, 0.0, z]
         })
         .collect();
-    let (mut batch, mut evaluations) = (PointBatch::default(), Evaluations::default());
-    points_in_space.iter().for_each(|p| batch.push(*p));
-    planned.evaluate(Level::new(), Outputs::EVERYTHING, &batch, 1.0, &mut evaluations);
-    for (k, point) in points_in_space.into_iter().enumerate() {
-        let tape = (evaluations.inside[k / 8] >> (k % 8) & 1 == 1).then(|| Evaluation {
-            region: evaluations.region[k] as usize,
-            depth: evaluations.depth[k],
-            magnitude: evaluations.magnitude[k],
-            direction: evaluations.direction.each_ref().map(|component| component[k]),
-            gradient: evaluations.gradient.each_ref().map(|component| component[k]),
-            niceness: evaluations.niceness[k],
-        });
+    let tapes = evaluate_points(planned, Level::new(), &points_in_space);
+    for (point, tape) in points_in_space.into_iter().zip(tapes) {
         let p = outline.back([point[0], point[2]]);
         let at = |(kind, text): Flaw, who: &str| {
-            let vertex = (0..=outline.pieces.len()).any(|k| outline.vertex(k) == p);
+            let vertex = (0..=outline.segments().len()).any(|k| *outline.profile.vertex(k) == p);
             let kind = match (p[0] == 0.0, vertex) {
                 (_, true) => "wrong at a vertex",
                 (true, _) => "wrong on the axis",
@@ -114,7 +114,8 @@ pub(crate) fn compare(
         let describe_evaluation = |found: Option<Evaluation>| {
             found.map_or("outside", |found| tool.model.regions[found.region].name.as_str())
         };
-        let results = [("reference", reference.evaluate(point, 1.0)), ("tape", tape)];
+        let results =
+            [("reference", reference.evaluate(point, 1.0)), ("tape", tape.map(interpreted))];
         for (who, got) in results {
             let who = || format!("{who} says {}", describe_evaluation(got));
             let one =
@@ -129,13 +130,13 @@ pub(crate) fn compare(
 /// The number after the point tells regions of one name apart.
 pub(crate) fn feature(outline: &Outline, name: &str) -> Option<Feature> {
     let number = |word: &str| word.strip_prefix('s')?.parse::<usize>().ok();
-    let Some((a, b)) = name.split_once('/') else { return number(name).map(Feature::Piece) };
+    let Some((a, b)) = name.split_once('/') else { return number(name).map(Feature::Segment) };
     let (a, b) = (number(a)?, number(b.split_once('.')?.0)?);
-    let last = outline.pieces.len() - 1;
+    let last = outline.segments().len() - 1;
     match (a.min(b), a.max(b)) {
         (low, high) if high == low + 1 => Some(Feature::Corner(high)),
         // At the axis the piece meets itself.
-        (0, 0) if last > 0 || outline.turn(0) < 0.0 => Some(Feature::Corner(0)),
+        (0, 0) if last > 0 || outline.profile.turn(0) < 0.0 => Some(Feature::Corner(0)),
         (low, high) if low == high && low == last => Some(Feature::Corner(last + 1)),
         _ => None,
     }
@@ -150,8 +151,8 @@ fn check_point(
 ) -> Result<ErrorStats, Flaw> {
     let size = outline.size();
     let tolerance = 1e-12 * size;
-    let (_, least) = outline.nearest(p);
-    let inside = outline.contains(p);
+    let least = outline.profile.depth(&p).abs();
+    let inside = outline.profile.encloses(&p);
     // Within the tolerance of the surface either side is right.
     let is_clear_of_surface = least > tolerance;
     if is_clear_of_surface && got.is_some() != inside {
@@ -184,23 +185,24 @@ fn check_point(
     };
     let stats = ErrorStats { inside: 1, ..worst(error) };
     // The distance to the nearest point at which the direction does not exist.
-    let (direction, distance_to_singularity) = match owner {
-        Feature::Piece(k) => {
-            let piece = &outline.pieces[k];
-            let to_centre = piece.round.map_or(f64::INFINITY, |r| len(sub(p, r.centre)));
-            (piece.outward(p), to_centre.min(len(sub(piece.to, piece.from))))
+    let direction = outline.profile.direction(owner, &p);
+    let distance_to_singularity = match owner {
+        Feature::Segment(k) => {
+            let segment = &outline.segments()[k];
+            let to_centre = segment.centre().map_or(f64::INFINITY, |c| norm(&sub(&p, c)));
+            to_centre.min(norm(&sub(&segment.to, &segment.from)))
         }
-        Feature::Corner(k) => (unit(sub(outline.vertex(k), p)), least),
+        Feature::Corner(_) => least,
     };
-    let norm = got.direction.iter().map(|component| component * component).sum::<f64>().sqrt();
-    if !((norm - 1.0).abs() < 1e-14 && got.direction[1] == 0.0) {
+    let length = got.direction.iter().map(|component| component * component).sum::<f64>().sqrt();
+    if !((length - 1.0).abs() < 1e-14 && got.direction[1] == 0.0) {
         return Err(("wrong direction", format!("{:?} is no unit vector", got.direction)));
     }
     if distance_to_singularity < 1e-9 * size {
         return Ok(stats);
     }
     let direction = if outline.down { [direction[0], -direction[1]] } else { direction };
-    let off = len(sub([got.direction[0], got.direction[2]], direction));
+    let off = norm(&sub(&[got.direction[0], got.direction[2]], &direction));
     if off > 1e-13 + 1e-13 * size / distance_to_singularity {
         return Err(("wrong direction", format!("{:?} is not {direction:?}", got.direction)));
     }

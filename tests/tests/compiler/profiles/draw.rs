@@ -1,7 +1,10 @@
 //! Random profiles as recipes, which shrink.
 
-use super::outline::{Outline, P2, Piece, add, cross, dot, len, sub};
+use super::outline::{Outline, P2};
 use proptest::prelude::*;
+use touchoff_tests::oracle::plane::{add, cross, dot, left, norm, right, sub, turned};
+use touchoff_tests::oracle::profile::Profile;
+use touchoff_tests::oracle::segment::Segment;
 
 /// Largest number of segments of a profile.
 const MAX_SEGMENTS: usize = 12;
@@ -117,7 +120,7 @@ pub(crate) fn recipe() -> impl Strategy<Value = Recipe> {
 
 /// A piece to be added, and the share of the shorter edge over which its first corner is rounded.
 struct Step {
-    piece: Piece,
+    piece: Segment<f64>,
     fillet: Option<(f64, bool)>,
 }
 
@@ -148,15 +151,19 @@ impl Recipe {
                 let h = pen.unit(below);
                 let (radius, sign) = (d.hypot(h), if below < 0 { -1.0 } else { 1.0 });
                 let centre = [0.0, z - h];
-                pen.push(Piece::about(
+                pen.push(Segment::about(
                     pen.at,
-                    add(centre, [0.0, sign * radius], 1.0),
+                    add(&centre, &[0.0, sign * radius], &1.0),
                     centre,
                     below >= 0,
                 ));
             }
         }
-        Outline { pieces: rounded(&pen.steps), down: self.down }
+        if pen.steps.is_empty() {
+            // A profile of nothing, which is not valid.
+            pen.steps.push(Step { piece: Segment::line(start, start), fillet: None });
+        }
+        Outline { profile: Profile::new(rounded(&pen.steps)), down: self.down }
     }
 }
 
@@ -167,11 +174,11 @@ impl Pen {
 
     /// Returns a point relative to the current one, kept off the axis.
     fn by(&self, d: i32, z: i32) -> P2 {
-        let [x, y] = add(self.at, [self.unit(d), self.unit(z)], 1.0);
+        let [x, y] = add(&self.at, &[self.unit(d), self.unit(z)], &1.0);
         [x.max(self.unit(8)), y]
     }
 
-    fn push(&mut self, piece: Piece) {
+    fn push(&mut self, piece: Segment<f64>) {
         if piece.from != piece.to {
             self.at = piece.to;
             self.steps.push(Step { piece, fillet: self.fillet.take() });
@@ -179,7 +186,7 @@ impl Pen {
     }
 
     fn line(&mut self, to: P2) {
-        self.push(Piece::line(self.at, to));
+        self.push(Segment::line(self.at, to));
     }
 }
 
@@ -196,13 +203,13 @@ impl Nose {
                 } else {
                     [radius * sin, z + radius * (1.0 - cos)]
                 };
-                pen.push(Piece::about(pen.at, to, [0.0, z + radius], true));
+                pen.push(Segment::about(pen.at, to, [0.0, z + radius], true));
             }
             Nose::Torus(face, radius) => {
                 let (face, radius) = (pen.unit(face), pen.unit(radius));
                 pen.line([face, z]);
                 let to = [face + radius, z + radius];
-                pen.push(Piece::about(pen.at, to, [face, z + radius], true));
+                pen.push(Segment::about(pen.at, to, [face, z + radius], true));
             }
             Nose::Cone(d, up) => pen.line([pen.unit(d), z + pen.unit(up)]),
         }
@@ -215,16 +222,16 @@ impl Move {
             Move::Line(d, z) => pen.line(pen.by(d, z)),
             Move::Arc { to: (d, z), ratio, convex, by_radius } => {
                 let to = pen.by(d, z);
-                let radius = f64::from(ratio) / 100.0 * len(sub(to, pen.at));
-                let arc = Piece::by_radius(pen.at, to, radius, convex);
-                let centre = arc.round.map_or([0.0; 2], |round| round.centre);
-                pen.push(if by_radius { arc } else { Piece::about(pen.at, to, centre, convex) });
+                let radius = f64::from(ratio) / 100.0 * norm(&sub(&to, &pen.at));
+                let arc = Segment::by_radius(pen.at, to, radius, convex);
+                let centre = arc.circle.map_or([0.0; 2], |round| round.centre);
+                pen.push(if by_radius { arc } else { Segment::about(pen.at, to, centre, convex) });
             }
             Move::Half { radius, convex } => {
                 let r = pen.unit(radius);
-                let (to, centre) = (add(pen.at, [0.0, r], 2.0), add(pen.at, [0.0, r], 1.0));
-                let mut arc = Piece::about(pen.at, to, centre, convex);
-                if let Some(round) = &mut arc.round {
+                let (to, centre) = (add(&pen.at, &[0.0, r], &2.0), add(&pen.at, &[0.0, r], &1.0));
+                let mut arc = Segment::about(pen.at, to, centre, convex);
+                if let Some(round) = &mut arc.circle {
                     // Elsewhere half of the rounded chord need not be the rounded radius.
                     let exact = |part: f64| pen.scale == 1.0 && (part * GRID).fract() == 0.0;
                     round.by_radius = exact(pen.at[1]) && radius % 2 == 0;
@@ -233,14 +240,13 @@ impl Move {
             }
             Move::Tangent { radius, degrees } => {
                 let Some(last) = pen.steps.last() else { return };
-                let t = last.piece.tangent(pen.at);
+                let t = last.piece.tangent(&pen.at);
                 let convex = degrees > 0;
-                let toward = if convex { [-t[1], t[0]] } else { [t[1], -t[0]] };
-                let centre = add(pen.at, toward, pen.unit(radius));
-                let (sin, cos) = f64::from(degrees).to_radians().sin_cos();
-                let a = sub(pen.at, centre);
-                let to = add(centre, [a[0] * cos - a[1] * sin, a[0] * sin + a[1] * cos], 1.0);
-                pen.push(Piece::about(pen.at, to, centre, convex));
+                let toward = if convex { left(&t) } else { right(&t) };
+                let centre = add(&pen.at, &toward, &pen.unit(radius));
+                let arm = turned(&sub(&pen.at, &centre), f64::from(degrees).to_radians());
+                let to = add(&centre, &arm, &1.0);
+                pen.push(Segment::about(pen.at, to, centre, convex));
             }
             Move::Groove { depth, width } => {
                 pen.line(pen.by(-depth, 0));
@@ -260,28 +266,29 @@ impl Move {
 }
 
 /// Returns the pieces, with corners between lines rounded where a step says so.
-fn rounded(steps: &[Step]) -> Vec<Piece> {
-    let mut pieces: Vec<Piece> = Vec::new();
+fn rounded(steps: &[Step]) -> Vec<Segment<f64>> {
+    let mut pieces: Vec<Segment<f64>> = Vec::new();
     for step in steps {
         let next = step.piece;
         let fillet = step.fillet.and_then(|fillet| Some((fillet, pieces.pop()?))).map(
             |((share, by_radius), last)| {
-                let (a, b) = (sub(last.to, last.from), sub(next.to, next.from));
+                let (a, b) = (sub(&last.to, &last.from), sub(&next.to, &next.from));
                 // A corner before may have taken half of the edge already.
                 let whole = steps.iter().map(|s| s.piece).find(|p| p.to == last.to);
-                let edge = whole.map_or(len(a), |piece| len(sub(piece.to, piece.from)));
-                let cut = (share * edge.min(len(b))).min(len(a));
+                let edge = whole.map_or(norm(&a), |piece| norm(&sub(&piece.to, &piece.from)));
+                let cut = (share * edge.min(norm(&b))).min(norm(&a));
                 (last, corner(last, next, cut, by_radius))
             },
         );
         match fillet {
             Some((last, Some((arc, rest)))) => {
                 // Two arcs that share an edge meet in its middle.
-                let used = len(sub(arc.from, last.from)) <= 1e-9 * len(sub(arc.to, arc.from));
+                let used =
+                    norm(&sub(&arc.from, &last.from)) <= 1e-9 * norm(&sub(&arc.to, &arc.from));
                 if used {
-                    pieces.push(Piece { from: last.from, ..arc });
+                    pieces.push(arc.between(last.from, arc.to));
                 } else {
-                    pieces.push(Piece::line(last.from, arc.from));
+                    pieces.push(Segment::line(last.from, arc.from));
                     pieces.push(arc);
                 }
                 pieces.push(rest);
@@ -295,22 +302,27 @@ fn rounded(steps: &[Step]) -> Vec<Piece> {
 
 /// Returns the arc that touches two lines at a distance of `cut` from their corner, and what it leaves of the
 /// second.
-fn corner(last: Piece, next: Piece, cut: f64, by_radius: bool) -> Option<(Piece, Piece)> {
-    if last.round.is_some() || next.round.is_some() {
+fn corner(
+    last: Segment<f64>,
+    next: Segment<f64>,
+    cut: f64,
+    by_radius: bool,
+) -> Option<(Segment<f64>, Segment<f64>)> {
+    if last.circle.is_some() || next.circle.is_some() {
         return None;
     }
-    let (a, b) = (last.tangent(last.to), next.tangent(next.from));
-    let turn = cross(a, b).atan2(dot(a, b));
+    let (a, b) = (last.tangent(&last.to), next.tangent(&next.from));
+    let turn = cross(&a, &b).atan2(dot(&a, &b));
     if !(0.02..3.0).contains(&turn.abs()) {
         return None;
     }
-    let (from, to) = (add(last.to, a, -cut), add(last.to, b, cut));
+    let (from, to) = (add(&last.to, &a, &-cut), add(&last.to, &b, &cut));
     let radius = cut / (turn.abs() / 2.0).tan();
-    let left = if turn > 0.0 { [-a[1], a[0]] } else { [a[1], -a[0]] };
+    let toward = if turn > 0.0 { left(&a) } else { right(&a) };
     let arc = if by_radius {
-        Piece::by_radius(from, to, radius, turn > 0.0)
+        Segment::by_radius(from, to, radius, turn > 0.0)
     } else {
-        Piece::about(from, to, add(from, left, radius), turn > 0.0)
+        Segment::about(from, to, add(&from, &toward, &radius), turn > 0.0)
     };
-    Some((arc, Piece::line(to, next.to)))
+    Some((arc, Segment::line(to, next.to)))
 }

@@ -1,12 +1,15 @@
 //! Regions by hand beside a profile: they determine the evaluation, never the solid.
 
-use super::outline::{Outline, P2, Piece, add, len, sub, unit};
+use super::compare::interpreted;
+use super::outline::{Outline, P2};
 use super::{said, tool, warned};
 use touchoff::Level;
-use touchoff::tool::{Interpreted, Outputs, PointBatch, Tool};
+use touchoff::tool::{Interpreted, Tool};
 use touchoff_dsl::CheckedTool;
-use touchoff_dsl::interpret::{Evaluation, Interpreter};
+use touchoff_dsl::interpret::Interpreter;
 use touchoff_dsl::source::Source;
+use touchoff_tests::evaluations::evaluate_points;
+use touchoff_tests::oracle::plane::{sub, unit};
 use touchoff_tests::oracle::rng::Rng;
 
 const PROFILE: &str = "profile {
@@ -28,12 +31,7 @@ const REGIONS: &str = "curve low = z - 1;
     niceness flute: 0.5;";
 
 fn outline(down: bool) -> Outline {
-    let points = [[3.0, 10.0], [3.0, 12.0], [6.0, 12.0], [6.0, 20.0], [0.0, 20.0]];
-    let mut pieces = vec![Piece::about([0.0, 0.0], [3.0, 3.0], [0.0, 3.0], true)];
-    for to in points {
-        pieces.push(Piece::line(pieces[pieces.len() - 1].to, to));
-    }
-    Outline { pieces, down }
+    Outline { down, ..Outline::parse("0 0, 3 3 about 0 3, 3 10, 3 12, 6 12, 6 20, 0 20") }
 }
 
 fn text(down: bool, regions: &str) -> String {
@@ -41,35 +39,21 @@ fn text(down: bool, regions: &str) -> String {
     format!("tool T {{ units mm; {frame} {PROFILE} {regions} }}")
 }
 
-/// Returns the foot of a point on the profile.
-fn foot(outline: &Outline, p: P2) -> P2 {
-    let on = |piece: &Piece| {
-        let (distance, end) = piece.clamped(p);
-        match end {
-            None => add(p, piece.outward(p), distance),
-            Some(end) => [piece.from, piece.to][end],
-        }
-    };
-    let feet = outline.pieces.iter().map(on);
-    feet.min_by(|a, b| len(sub(*a, p)).total_cmp(&len(sub(*b, p)))).expect("pieces")
-}
-
 /// Returns the values of the table of the language: region, surface, magnitude, direction, niceness.
 fn expected_evaluation(outline: &Outline, p: P2) -> (&'static str, &'static str, f64, P2, f64) {
-    let depth = outline.nearest(p).1;
-    let foot = foot(outline, p);
-    let nearest = unit(sub(foot, p));
+    let near = outline.profile.nearest(&p);
+    let (depth, nearest) = (near.distance, outline.profile.direction(near.feature, &p));
     let [d, z] = p;
     if z < 1.0 {
-        ("own", "ball", 2.0 * depth, unit([1.0, -2.0]), 1.0 - depth / 6.0)
+        ("own", "ball", 2.0 * depth, unit(&[1.0, -2.0]), 1.0 - depth / 6.0)
     } else if z < 3.0 {
-        ("slope", "ball", 5.0 - d - z / 10.0, unit([1.0, 0.1]), depth / 4.0)
+        ("slope", "ball", 5.0 - d - z / 10.0, unit(&[1.0, 0.1]), depth / 4.0)
     } else if z < 8.0 && d > 1.0 {
         ("law", "flute", 3.0 * depth.powf(1.5), nearest, 0.5)
     } else if z < 8.0 {
-        ("away", "flute", depth, unit(sub(p, [0.0, 20.0])), 0.25)
+        ("away", "flute", depth, unit(&sub(&p, &[0.0, 20.0])), 0.25)
     } else if z < 13.0 {
-        ("toward", "shank", 7.0 * depth, unit(sub([9.0, 20.0], p)), 0.0)
+        ("toward", "shank", 7.0 * depth, unit(&sub(&[9.0, 20.0], &p)), 0.0)
     } else {
         ("rest", "shank", 7.0 * depth, nearest, 0.0)
     }
@@ -86,7 +70,7 @@ fn each_region_has_the_tabulated_values() {
         for _ in 0..30_000 {
             let p = [rng.between(0.0, 7.0), rng.between(-1.0, 21.0)];
             let borders = [p[1] - 1.0, p[1] - 3.0, p[1] - 8.0, p[1] - 13.0, p[0] - 1.0];
-            let (_, depth) = outline.nearest(p);
+            let depth = outline.profile.depth(&p).abs();
             if depth > 1e-9 && borders.iter().all(|border| border.abs() > 1e-9) {
                 check_point(&tool, &planned, &outline, p);
             }
@@ -100,22 +84,15 @@ fn each_region_has_the_tabulated_values() {
 fn check_point(tool: &CheckedTool, planned: &Interpreted, outline: &Outline, p: P2) {
     let [d, z] = outline.turned(p);
     let point = [d, 0.0, z];
-    let (mut list, mut lists) = (PointBatch::default(), touchoff::tool::Evaluations::default());
-    list.push(point);
-    planned.evaluate(Level::new(), Outputs::EVERYTHING, &list, 1.0, &mut lists);
-    let tape = (lists.inside[0] & 1 == 1).then(|| Evaluation {
-        region: lists.region[0] as usize,
-        depth: lists.depth[0],
-        magnitude: lists.magnitude[0],
-        direction: lists.direction.each_ref().map(|list| list[0]),
-        gradient: lists.gradient.each_ref().map(|list| list[0]),
-        niceness: lists.niceness[0],
-    });
+    let tape = evaluate_points(planned, Level::new(), &[point])[0].map(interpreted);
     let reference = Interpreter::new(tool).evaluate(point, 1.0);
     assert_eq!(reference, tape, "at {p:?}");
-    assert_eq!(reference.is_some(), outline.contains(p), "at {p:?}");
+    assert_eq!(reference.is_some(), outline.profile.encloses(&p), "at {p:?}");
     let Some(evaluation) = reference else {
-        assert!((planned.clearance(point) - outline.nearest(p).1).abs() < 1e-12, "at {p:?}");
+        assert!(
+            (planned.clearance(point) - outline.profile.depth(&p).abs()).abs() < 1e-12,
+            "at {p:?}"
+        );
         return;
     };
     let (name, surface, magnitude, [e, f], niceness) = expected_evaluation(outline, p);
@@ -128,7 +105,7 @@ fn check_point(tool: &CheckedTool, planned: &Interpreted, outline: &Outline, p: 
     let near = |a: f64, b: f64, what: &str| {
         assert!((a - b).abs() < 1e-11, "{what} is {a}, not {b}, at {p:?} in {name}");
     };
-    near(evaluation.depth, outline.nearest(p).1, "depth");
+    near(evaluation.depth, outline.profile.depth(&p).abs(), "depth");
     near(evaluation.magnitude, magnitude, "magnitude");
     near(evaluation.niceness, niceness, "niceness");
     let f = if outline.down { -f } else { f };

@@ -2,7 +2,7 @@
 
 use super::compare::{ErrorStats, Flaw, compare};
 use super::draw::{Recipe, recipe};
-use super::outline::{Outline, Piece, cross, dot, len, sub};
+use super::outline::Outline;
 use super::tool;
 use super::valid::is_valid;
 use proptest::strategy::{Strategy, ValueTree};
@@ -13,7 +13,9 @@ use touchoff::tool::Interpreted;
 use touchoff_dsl::compile;
 use touchoff_dsl::prove::Certificate;
 use touchoff_dsl::source::Source;
+use touchoff_tests::oracle::plane::{cross, dot, norm, sub};
 use touchoff_tests::oracle::rng::Rng;
+use touchoff_tests::oracle::segment::Segment;
 
 /// Points per profile.
 const POINTS: usize = 320;
@@ -75,9 +77,9 @@ fn shrunk(mut tree: impl ValueTree<Value = Recipe>, flaw: Flaw) -> (Outline, Fla
 /// Returns the kinds of pieces and joints that occur in a profile.
 fn kinds(outline: &Outline) -> Vec<&'static str> {
     let mut all = Vec::new();
-    for (k, piece) in outline.pieces.iter().enumerate() {
+    for (k, piece) in outline.segments().iter().enumerate() {
         let [d, z] = [0, 1].map(|k| piece.to[k] - piece.from[k]);
-        all.push(match piece.round {
+        all.push(match piece.circle {
             None if z == 0.0 && d < 0.0 => "radial step inward",
             None if z == 0.0 => "radial step outward",
             None if d == 0.0 => "line along the axis",
@@ -91,12 +93,12 @@ fn kinds(outline: &Outline) -> Vec<&'static str> {
         if piece.sweep().abs() > std::f64::consts::PI - 1e-6 {
             all.push("half of a circle");
         }
-        if piece.round.is_some_and(|round| round.centre[0] == 0.0) {
+        if piece.circle.is_some_and(|round| round.centre[0] == 0.0) {
             all.push("arc about the axis");
         }
         if k > 0 {
-            let [a, b] = outline.tangents_at_vertex(k);
-            let round = [k - 1, k].map(|k| outline.pieces[k].round.is_some());
+            let [a, b] = outline.profile.tangents(k);
+            let round = [k - 1, k].map(|k| outline.segments()[k].circle.is_some());
             let tangent = cross(a, b).abs() < 1e-9 && dot(a, b) > 0.0;
             match (tangent, round) {
                 (true, [true, true]) => all.push("arc tangent to arc"),
@@ -105,11 +107,11 @@ fn kinds(outline: &Outline) -> Vec<&'static str> {
                 _ => {}
             }
         }
-        let thin = |next: &Piece| dot(sub(next.to, next.from), [d, z]);
-        if let Some(after) = outline.pieces.get(k + 2)
+        let thin = |next: &Segment<f64>| dot(&sub(&next.to, &next.from), &[d, z]);
+        if let Some(after) = outline.segments().get(k + 2)
             && thin(after) < 0.0
-            && outline.pieces[k + 1].round.is_none()
-            && len(sub(after.from, piece.to)) < 0.02 * outline.size()
+            && outline.segments()[k + 1].circle.is_none()
+            && norm(&sub(&after.from, &piece.to)) < 0.02 * outline.size()
         {
             all.push("thin piece or groove");
         }

@@ -1,20 +1,22 @@
 //! `regions smooth w`: the depth stays, the direction is the normal of the rounded profile.
 
 use super::derived::FIG_7_3;
-use super::outline::{Outline, P2, Piece, add, cross, dot, len, sub};
-use super::rounded::{lowered, rounded, size};
+use super::outline::{Outline, P2};
+use super::rounded::{lowered, rounded};
 use super::tool;
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 use touchoff_dsl::CheckedTool;
 use touchoff_dsl::interpret::{Evaluation, Interpreter};
+use touchoff_tests::oracle::plane::{add, cross, dot, norm, sub};
 use touchoff_tests::oracle::rng::Rng;
+use touchoff_tests::oracle::segment::Segment;
 
 /// A smoothed tool, and the same tool by nearest features.
 struct Pair {
     smooth: Box<CheckedTool>,
     nearest: Box<CheckedTool>,
     /// The rounded profile, in the file's frame.
-    rounded: Vec<Piece>,
+    rounded: Vec<Segment<f64>>,
     /// The tip's z if the spindle lies toward smaller z; otherwise the tip is at 0.
     down: Option<f64>,
     extent: P2,
@@ -24,18 +26,18 @@ struct Pair {
 fn thesis(w: f64) -> Pair {
     let (t, rho) = (w * FRAC_1_SQRT_2, w * (1.0 + SQRT_2));
     let rounded = vec![
-        Piece::line([0.0, 0.0], [5.0 - w, 0.0]),
-        Piece::about([5.0 - w, 0.0], [5.0, w], [5.0 - w, w], true),
-        Piece::line([5.0, w], [5.0, 11.0 - w]),
-        Piece::about([5.0, 11.0 - w], [5.0 - w, 11.0], [5.0 - w, 11.0 - w], true),
-        Piece::line([5.0 - w, 11.0], [3.0 + w, 11.0]),
-        Piece::about([3.0 + w, 11.0], [3.0, 11.0 + w], [3.0 + w, 11.0 + w], false),
-        Piece::line([3.0, 11.0 + w], [3.0, 13.0 - w]),
-        Piece::about([3.0, 13.0 - w], [3.0 - t, 13.0 + t], [3.0 - rho, 13.0 - w], true),
-        Piece::line([3.0 - t, 13.0 + t], [1.0 + t, 15.0 - t]),
-        Piece::about([1.0 + t, 15.0 - t], [1.0, 15.0 + w], [1.0 + rho, 15.0 + w], false),
-        Piece::line([1.0, 15.0 + w], [1.0, 19.0]),
-        Piece::about([1.0, 19.0], [0.0, 20.0], [0.0, 19.0], true),
+        Segment::line([0.0, 0.0], [5.0 - w, 0.0]),
+        Segment::about([5.0 - w, 0.0], [5.0, w], [5.0 - w, w], true),
+        Segment::line([5.0, w], [5.0, 11.0 - w]),
+        Segment::about([5.0, 11.0 - w], [5.0 - w, 11.0], [5.0 - w, 11.0 - w], true),
+        Segment::line([5.0 - w, 11.0], [3.0 + w, 11.0]),
+        Segment::about([3.0 + w, 11.0], [3.0, 11.0 + w], [3.0 + w, 11.0 + w], false),
+        Segment::line([3.0, 11.0 + w], [3.0, 13.0 - w]),
+        Segment::about([3.0, 13.0 - w], [3.0 - t, 13.0 + t], [3.0 - rho, 13.0 - w], true),
+        Segment::line([3.0 - t, 13.0 + t], [1.0 + t, 15.0 - t]),
+        Segment::about([1.0 + t, 15.0 - t], [1.0, 15.0 + w], [1.0 + rho, 15.0 + w], false),
+        Segment::line([1.0, 15.0 + w], [1.0, 19.0]),
+        Segment::about([1.0, 19.0], [0.0, 20.0], [0.0, 19.0], true),
     ];
     let text = FIG_7_3.replacen("} }", &format!("}} regions smooth {w}; }}"), 1);
     Pair {
@@ -43,25 +45,19 @@ fn thesis(w: f64) -> Pair {
         nearest: tool(FIG_7_3).expect("good"),
         rounded: rounded
             .into_iter()
-            .filter(|piece| len(sub(piece.to, piece.from)) > 1e-9)
+            .filter(|piece| norm(&sub(&piece.to, &piece.from)) > 1e-9)
             .collect(),
         down: Some(20.0),
         extent: [5.0, 20.0],
     }
 }
 
-/// Returns a profile of lines, its corners rounded in the order of the points.
-fn lines(points: &[P2], w: f64) -> Pair {
-    profile(surface_of(points), w)
-}
-
 /// Returns a profile whose corners are rounded.
-fn profile(pieces: Vec<Piece>, w: f64) -> Pair {
-    let outline = Outline { pieces, down: false };
-    let rounded = rounded(&outline, w);
-    let [low, high] = outline.reach();
+fn profile(outline: &Outline, w: f64) -> Pair {
+    let rounded = rounded(outline, w);
+    let [low, high] = outline.profile.extent();
     let nearest = outline.text();
-    let smooth = format!("{} regions smooth {w}; }}", nearest.trim_end_matches('}'));
+    let smooth = nearest.replacen("} }", &format!("}} regions smooth {w}; }}"), 1);
     Pair {
         smooth: tool(&smooth).expect("fits"),
         nearest: tool(&nearest).expect("good"),
@@ -87,14 +83,15 @@ impl Pair {
     /// Returns the normal of the rounded profile, the distance to its piece's centre, and how much farther the next
     /// piece with another normal is.
     fn normal(&self, p: P2) -> (P2, f64, f64) {
-        let facing = self.rounded.iter().filter(|piece| piece.faces(p));
-        let mut all: Vec<(f64, &Piece)> =
-            facing.map(|piece| (piece.signed(p).abs(), piece)).collect();
+        let facing = self.rounded.iter().filter(|piece| piece.faces(&p));
+        let mut all: Vec<(f64, &Segment<f64>)> =
+            facing.map(|piece| (piece.inward(&p).abs(), piece)).collect();
         all.sort_by(|a, b| a.0.total_cmp(&b.0));
         let Some(&(min_distance, owner)) = all.first() else { return ([0.0; 2], 0.0, 0.0) };
-        let normal = owner.outward(p);
-        let other = all.iter().find(|(_, piece)| len(sub(piece.outward(p), normal)) > 1e-6);
-        let centre_distance = owner.round.map_or(f64::INFINITY, |round| len(sub(p, round.centre)));
+        let normal = owner.outward(&p);
+        let other = all.iter().find(|(_, piece)| norm(&sub(&piece.outward(&p), &normal)) > 1e-6);
+        let centre_distance =
+            owner.circle.map_or(f64::INFINITY, |round| norm(&sub(&p, &round.centre)));
         (normal, centre_distance, other.map_or(f64::INFINITY, |other| other.0 - min_distance))
     }
 
@@ -129,7 +126,7 @@ impl Pair {
             if margin > 1e-9 && centre_distance > 1e-6 {
                 compared += 1;
                 assert!(
-                    len(sub(direction, expected_normal)) < 1e-12 + 1e-13 / centre_distance,
+                    norm(&sub(&direction, &expected_normal)) < 1e-12 + 1e-13 / centre_distance,
                     "{direction:?}, not {expected_normal:?} at {p:?}"
                 );
             }
@@ -139,15 +136,15 @@ impl Pair {
     }
 
     /// Returns the largest turn of the direction from step to step along the surface, just below it.
-    fn steps(&self, surface: &[Piece], step: f64) -> f64 {
+    fn steps(&self, surface: &[Segment<f64>], step: f64) -> f64 {
         let mut interpreter = Interpreter::new(&self.smooth);
         let (mut last, mut max_turn) = (None, 0.0f64);
         for piece in surface {
-            let length = size(piece);
+            let length = piece.length();
             let count = (length / step).ceil() as u32;
             for k in 0..=count {
                 let on = piece.at(f64::from(k) / f64::from(count));
-                let [d, z] = self.turned(add(on, piece.outward(on), -1e-9));
+                let [d, z] = self.turned(add(&on, &piece.outward(&on), &-1e-9));
                 let Some(evaluation) = interpreter.evaluate([d.abs(), 0.0, z], 1.0) else {
                     continue;
                 };
@@ -175,19 +172,19 @@ impl Pair {
             let a = [rng.between(0.0, self.extent[0]), rng.between(0.0, self.extent[1])];
             let b = [(a[0] + rng.between(-0.1, 0.1)).abs(), a[1] + rng.between(-0.1, 0.1)];
             let (mut a, mut b) = (a, b);
-            while len(sub(b, a)) > 1e-9 {
+            while norm(&sub(&b, &a)) > 1e-9 {
                 let middle = [0, 1].map(|k| f64::midpoint(a[k], b[k]));
                 let (Some(first), Some(half), Some(last)) =
                     (evaluation(a), evaluation(middle), evaluation(b))
                 else {
                     break;
                 };
-                if angle(first.0, last.0) < 1e-3 + 1e-6 * len(sub(b, a)) / rho {
+                if angle(first.0, last.0) < 1e-3 + 1e-6 * norm(&sub(&b, &a)) / rho {
                     break;
                 }
                 if angle(first.0, half.0) > angle(half.0, last.0) { b = middle } else { a = middle }
             }
-            if len(sub(b, a)) <= 1e-9 {
+            if norm(&sub(&b, &a)) <= 1e-9 {
                 depths.extend(evaluation(a).map(|evaluation| evaluation.1));
             }
         }
@@ -196,11 +193,7 @@ impl Pair {
 }
 
 fn angle(a: P2, b: P2) -> f64 {
-    cross(a, b).atan2(dot(a, b)).abs()
-}
-
-fn surface_of(points: &[P2]) -> Vec<Piece> {
-    points.windows(2).map(|pair| Piece::line(pair[0], pair[1])).collect()
+    cross(&a, &b).atan2(dot(&a, &b)).abs()
 }
 
 #[test]
@@ -209,18 +202,9 @@ fn the_thesis_tool_turns_in_fans() {
         let pair = thesis(w);
         let angle = pair.agrees(60_000);
         assert!((angle - mean).abs() < 2e-3, "{angle} rad on average for {w}");
-        let mut surface = surface_of(&[
-            [0.0, 0.0],
-            [5.0, 0.0],
-            [5.0, 11.0],
-            [3.0, 11.0],
-            [3.0, 13.0],
-            [1.0, 15.0],
-            [1.0, 19.0],
-        ]);
-        surface.push(Piece::about([1.0, 19.0], [0.0, 20.0], [0.0, 19.0], true));
+        let surface = Outline::parse("0 0, 5 0, 5 11, 3 11, 3 13, 1 15, 1 19, 0 20 about 0 19");
         for step in [1e-1, 1e-3, 1e-5] {
-            let most = pair.steps(&surface, step);
+            let most = pair.steps(surface.segments(), step);
             assert!(most <= step / w * (1.0 + 1e-6) + 1e-8, "{most} in {step} for {w}");
         }
         let jumps = pair.jumps(30_000, w);
@@ -228,120 +212,53 @@ fn the_thesis_tool_turns_in_fans() {
     }
 }
 
-/// A tip on the axis, one that points inward, a step under a flange, and skirts around a pin: fans of small corners
-/// reach under larger ones and must not claim points that are nearer to those.
+/// Fans of small corners reach under larger ones and must not claim points that are nearer to those. Beside arcs, the
+/// direction turns a little faster than beside lines.
 #[test]
 fn fans_are_the_rounded_profiles() {
-    let shapes: [(&[P2], f64); 6] = [
-        (&[[0.0, 0.0], [3.0, 3.0], [3.0, 10.0], [0.0, 10.0]], 0.5),
-        (&[[0.0, 1.0], [3.0, 0.0], [3.0, 10.0], [0.0, 10.0]], 0.5),
-        (&[[0.0, 0.0], [3.0, 1.0], [3.0, 10.0], [0.0, 12.0]], 1.0),
-        (&[[0.0, 0.0], [2.0, 0.0], [2.0, 3.0], [6.0, 3.0], [6.0, 4.0], [0.0, 4.0]], 0.5),
-        (&[[0.0, 0.0], [6.0, 0.0], [6.0, 1.0], [2.0, 1.0], [2.0, 3.0], [0.0, 3.0]], 0.5),
-        (
-            &[
-                [0.0, 0.0],
-                [2.0, 0.0],
-                [2.0, 3.0],
-                [4.0, 3.0],
-                [4.0, -2.0],
-                [9.0, -2.0],
-                [9.0, 8.0],
-                [0.0, 8.0],
-            ],
-            0.5,
-        ),
-    ];
-    for (points, w) in shapes {
-        let pair = lines(points, w);
-        pair.agrees(20_000);
-        let low = points.iter().map(|p| p[1]).fold(f64::INFINITY, f64::min);
-        let surface: Vec<Piece> =
-            surface_of(points).iter().map(|piece| lowered(piece, low)).collect();
-        let rho = pair.rounded.iter().filter_map(|piece| piece.round).map(|round| round.radius);
-        let rho = rho.fold(f64::INFINITY, f64::min);
-        for step in [1e-2, 1e-4] {
-            let most = pair.steps(&surface, step);
-            assert!(most <= step / rho * (1.0 + 1e-6) + 1e-8, "{most} in {step} on {points:?}");
-        }
-    }
-}
-
-/// Corners between lines and arcs, and between arcs, convex and reflex, on the axis too.
-#[test]
-fn fans_touch_arcs() {
-    let arc = |from, to, centre, convex| Piece::about(from, to, centre, convex);
-    let (line, round) = (Piece::line, Piece::by_radius);
-    let shapes: [(Vec<Piece>, f64); 5] = [
+    let of_lines = 1e-6;
+    let of_arcs = 1e-3;
+    for (vertices, w, excess) in [
+        // A tip on the axis, one that points inward, a blunt one.
+        ("0 0, 3 3, 3 10, 0 10", 0.5, of_lines),
+        ("0 1, 3 0, 3 10, 0 10", 0.5, of_lines),
+        ("0 0, 3 1, 3 10, 0 12", 1.0, of_lines),
+        // A step under a flange, a flange, and a skirt around a pin.
+        ("0 0, 2 0, 2 3, 6 3, 6 4, 0 4", 0.5, of_lines),
+        ("0 0, 6 0, 6 1, 2 1, 2 3, 0 3", 0.5, of_lines),
+        ("0 0, 2 0, 2 3, 4 3, 4 -2, 9 -2, 9 8, 0 8", 0.5, of_lines),
         // A ball under a step, and a dome.
-        (
-            vec![
-                arc([0.0, 0.0], [3.0, 3.0], [0.0, 3.0], true),
-                line([3.0, 3.0], [5.0, 3.0]),
-                line([5.0, 3.0], [5.0, 9.0]),
-                round([5.0, 9.0], [0.0, 10.0], 7.0, true),
-            ],
-            0.5,
-        ),
+        ("0 0, 3 3 about 0 3, 5 3, 5 9, 0 10 radius 7", 0.5, of_arcs),
         // A pointed tip of an arc, a groove between two beads, an edge between two hollows.
         (
-            vec![
-                round([0.0, 0.0], [3.0, 2.0], 4.0, true),
-                round([3.0, 2.0], [3.0, 4.0], 1.2, true),
-                round([3.0, 4.0], [3.0, 6.0], 1.2, true),
-                round([3.0, 6.0], [4.0, 9.0], 5.0, false),
-                round([4.0, 9.0], [2.0, 11.0], 4.0, false),
-                line([2.0, 11.0], [0.0, 11.0]),
-            ],
+            "0 0, 3 2 radius 4, 3 4 radius 1.2, 3 6 radius 1.2, 4 9 hollow radius 5,
+             2 11 hollow radius 4, 0 11",
             0.4,
+            of_arcs,
         ),
         // A hollow tip and a hollow flank.
-        (
-            vec![
-                round([0.0, 1.0], [2.0, 0.0], 5.0, true),
-                round([2.0, 0.0], [3.0, 4.0], 6.0, false),
-                round([3.0, 4.0], [5.0, 5.0], 2.5, false),
-                line([5.0, 5.0], [5.0, 9.0]),
-                line([5.0, 9.0], [0.0, 9.0]),
-            ],
-            0.4,
-        ),
+        ("0 1, 2 0 radius 5, 3 4 hollow radius 6, 5 5 hollow radius 2.5, 5 9, 0 9", 0.4, of_arcs),
         // A convex and a concave arc at a reflex corner, and at a convex one.
-        (
-            vec![
-                line([0.0, 0.0], [2.0, 0.0]),
-                round([2.0, 0.0], [2.5, 3.0], 3.0, true),
-                round([2.5, 3.0], [5.0, 4.0], 2.0, false),
-                round([5.0, 4.0], [4.0, 7.0], 3.0, true),
-                line([4.0, 7.0], [0.0, 7.0]),
-            ],
-            0.6,
-        ),
+        ("0 0, 2 0, 2.5 3 radius 3, 5 4 hollow radius 2, 4 7 radius 3, 0 7", 0.6, of_arcs),
         // Corners of two degrees, where the fan touches a tight arc far from the corner.
         (
-            vec![
-                line([0.0, 0.0], [3.0, 0.0]),
-                round([3.0, 0.0], [5.0, 1.9], 1.98, true),
-                line([5.0, 1.9], [5.0, 5.0]),
-                round([5.0, 5.0], [6.0, 5.98], 0.99, false),
-                line([6.0, 5.98], [8.0, 6.0]),
-                line([8.0, 6.0], [8.0, 9.0]),
-                line([8.0, 9.0], [0.0, 9.0]),
-            ],
+            "0 0, 3 0, 5 1.9 radius 1.98, 5 5, 6 5.98 hollow radius 0.99, 8 6, 8 9, 0 9",
             0.3,
+            of_arcs,
         ),
-    ];
-    for (pieces, w) in shapes {
-        // An arc may reach lower than its ends.
-        let low = Outline { pieces: pieces.clone(), down: false }.tip();
-        let surface: Vec<Piece> = pieces.iter().map(|piece| lowered(piece, low)).collect();
-        let pair = profile(pieces, w);
+    ] {
+        let outline = Outline::parse(vertices);
+        let pair = profile(&outline, w);
         pair.agrees(20_000);
-        let rho = pair.rounded.iter().filter_map(|piece| piece.round).map(|round| round.radius);
+        // An arc may reach lower than its ends.
+        let low = outline.tip();
+        let surface: Vec<Segment<f64>> =
+            outline.segments().iter().map(|piece| lowered(piece, low)).collect();
+        let rho = pair.rounded.iter().filter_map(|piece| piece.circle).map(|round| round.radius);
         let rho = rho.fold(f64::INFINITY, f64::min);
         for step in [1e-2, 1e-4] {
             let most = pair.steps(&surface, step);
-            assert!(most <= step / rho * (1.0 + 1e-3) + 1e-8, "{most} in {step} on {surface:?}");
+            assert!(most <= step / rho * (1.0 + excess) + 1e-8, "{most} in {step} on {vertices}");
         }
     }
 }
@@ -349,7 +266,7 @@ fn fans_touch_arcs() {
 /// On the axis itself the direction lies along it.
 #[test]
 fn a_smooth_tip_points_along_the_axis() {
-    let pair = lines(&[[0.0, 0.0], [3.0, 3.0], [3.0, 10.0], [0.0, 10.0]], 0.5);
+    let pair = profile(&Outline::parse("0 0, 3 3, 3 10, 0 10"), 0.5);
     let mut interpreter = Interpreter::new(&pair.smooth);
     for z in [1e-9, 0.1, 0.5] {
         let evaluation = interpreter.evaluate([0.0, 0.0, z], 1.0).expect("inside");

@@ -1,6 +1,8 @@
 //! Validity of a drawn profile, with room to spare, from points along it.
 
-use super::outline::{Outline, P2, Piece, add, cross, dot, len, sub};
+use super::outline::{Outline, P2};
+use touchoff_tests::oracle::plane::{cross, dot, norm, sub};
+use touchoff_tests::oracle::segment::Segment;
 
 /// Least distance of a profile from itself, as a fraction of its size.
 const MIN_DISTANCE_FRACTION: f64 = 3e-4;
@@ -12,22 +14,21 @@ const CHORDS: u32 = 48;
 pub(crate) fn is_valid(outline: &Outline) -> bool {
     let size = outline.size();
     let margin = MIN_DISTANCE_FRACTION * size;
-    let pieces = &outline.pieces;
+    let pieces = outline.segments();
     let count = pieces.len();
-    if count == 0 {
-        return false;
-    }
-    let [first, last] = [outline.vertex(0), outline.vertex(count)];
+    let [first, last] = [outline.profile.vertex(0), outline.profile.vertex(count)];
     let joined = pieces.windows(2).all(|pair| pair[0].to == pair[1].from);
     assert!(joined && first[0] == 0.0 && last[0] == 0.0, "{outline:?}");
     let lines: Vec<Vec<P2>> = pieces.iter().map(chords).collect();
-    let long = |piece: &Piece| {
-        len(sub(piece.to, piece.from)) >= margin
-            && piece.round.is_none_or(|r| r.radius <= 20.0 * size && r.radius >= margin)
+    let long = |piece: &Segment<f64>| {
+        let chord = norm(&sub(&piece.to, &piece.from));
+        chord > 0.0
+            && chord >= margin
+            && piece.circle.is_none_or(|r| r.radius <= 20.0 * size && r.radius >= margin)
             && piece.sweep().abs() <= std::f64::consts::PI * (1.0 + 1e-9)
     };
     let sharp = |k: usize| {
-        let [a, b] = outline.tangents_at_vertex(k);
+        let [a, b] = outline.profile.tangents(k);
         dot(a, b) < 0.0 && cross(a, b).abs() < MIN_CORNER_SINE
     };
     if !pieces.iter().all(long) || (0..=count).any(sharp) || area(&lines) < margin * size {
@@ -36,7 +37,7 @@ pub(crate) fn is_valid(outline: &Outline) -> bool {
     for (k, line) in lines.iter().enumerate() {
         // Off the axis, and beside the ends steadily away from it.
         let clear = |p: &P2| {
-            let from = len(sub(*p, first)).min(len(sub(*p, last)));
+            let from = norm(&sub(p, first)).min(norm(&sub(p, last)));
             p[0] >= margin.min(MIN_CORNER_SINE * from)
         };
         let ends = usize::from(k == 0)..line.len() - usize::from(k + 1 == count);
@@ -44,7 +45,7 @@ pub(crate) fn is_valid(outline: &Outline) -> bool {
             return false;
         }
         for (j, other) in lines.iter().enumerate().skip(k + 1) {
-            let joint = (j == k + 1).then(|| outline.vertex(j));
+            let joint = (j == k + 1).then(|| *outline.profile.vertex(j));
             if near(line, other, joint, margin) || near(other, line, joint, margin) {
                 return false;
             }
@@ -54,9 +55,9 @@ pub(crate) fn is_valid(outline: &Outline) -> bool {
 }
 
 /// Returns points along a piece; those of lines are close together near the ends.
-fn chords(piece: &Piece) -> Vec<P2> {
+fn chords(piece: &Segment<f64>) -> Vec<P2> {
     let fraction = |k: u32| f64::from(k) / f64::from(CHORDS);
-    match piece.round {
+    match piece.circle {
         None => (0..=CHORDS)
             .map(|k| piece.at(fraction(k).powi(2) * (3.0 - 2.0 * fraction(k))))
             .collect(),
@@ -68,30 +69,25 @@ fn chords(piece: &Piece) -> Vec<P2> {
 /// as it is.
 fn near(line: &[P2], other: &[P2], joint: Option<P2>, margin: f64) -> bool {
     let limit = |p: P2| {
-        joint.map_or(margin, |joint| margin.min(0.5 * MIN_CORNER_SINE * len(sub(p, joint))))
+        joint.map_or(margin, |joint| margin.min(0.5 * MIN_CORNER_SINE * norm(&sub(&p, &joint))))
     };
     line.windows(2).any(|a| {
         other.windows(2).any(|b| {
             let is_adjacent = joint.is_some_and(|joint| {
-                a.iter().chain(b).any(|p| len(sub(*p, joint)) < 1e-9 * margin)
+                a.iter().chain(b).any(|p| norm(&sub(p, &joint)) < 1e-9 * margin)
             });
-            distance(a[1], b[0], b[1]) < limit(a[1]) || (!is_adjacent && cross_each_other(a, b))
+            Segment::line(b[0], b[1]).distance(&a[1]) < limit(a[1])
+                || (!is_adjacent && cross_each_other(a, b))
         })
     })
 }
 
-fn distance(p: P2, a: P2, b: P2) -> f64 {
-    let vector = sub(b, a);
-    let fraction = (dot(sub(p, a), vector) / dot(vector, vector)).clamp(0.0, 1.0);
-    len(sub(p, add(a, vector, fraction)))
-}
-
 fn cross_each_other(a: &[P2], b: &[P2]) -> bool {
-    let side = |a: &[P2], p: P2| cross(sub(a[1], a[0]), sub(p, a[0])) > 0.0;
+    let side = |a: &[P2], p: P2| cross(&sub(&a[1], &a[0]), &sub(&p, &a[0])) > 0.0;
     side(a, b[0]) != side(a, b[1]) && side(b, a[0]) != side(b, a[1])
 }
 
 /// Returns the signed area, positive if the material is on the left.
 fn area(lines: &[Vec<P2>]) -> f64 {
-    lines.iter().flat_map(|line| line.windows(2)).map(|pair| cross(pair[0], pair[1]) / 2.0).sum()
+    lines.iter().flat_map(|line| line.windows(2)).map(|pair| cross(&pair[0], &pair[1]) / 2.0).sum()
 }

@@ -9,15 +9,12 @@ mod regular;
 
 use nalgebra::{Point3, Vector3};
 use touchoff::{Law, Part, Pose, Probe, Tool, Unit};
+use touchoff_tests::library::tool;
 use touchoff_tests::oracle::closed_forms::{
     Contact, ball_in_cavity, ball_in_plane, ball_on_ball, cylinder_in_bore, cylinder_in_plane,
 };
 
 const UNIT: Unit = Unit::Millimetre;
-
-fn tool(name: &str) -> &'static dyn Tool {
-    touchoff_tools::find(name).expect("in the library")
-}
 
 /// A contact to be measured: a pose, the expected result, the axis of the forces, and the point about which there
 /// is no torque.

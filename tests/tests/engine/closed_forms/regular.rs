@@ -159,23 +159,3 @@ fn cf5_a_side_in_a_bore() {
         }
     }
 }
-
-/// The printed figures, with the signs of forces on the tool: up out of a plane, away from a ball, back from a
-/// bore's wall.
-#[test]
-fn the_printed_figures() {
-    let part = plane([700, 700], [0.5; 2], [0.0, 0.0], 0.3);
-    let scene = ball_in_a_plane("UnitSphere", 0.1, 0.2, [0.001, 0.002]);
-    let ([integral, force, ..], _) = measure(&scene, &part);
-    assert!((integral / 0.029_321_531_433_504_737 - 1.0).abs() < 1e-4, "{integral}");
-    assert!((force / 0.057_595_865_315_812_88 - 1.0).abs() < 1e-4, "{force}");
-    let scene = side_in_a_bore("Fig73Exact", 1.0, 3.0, 0.2, 3.0, 0.5, 0.0);
-    let part = patch([4, 8000], |s, t| {
-        let (sin, cos) = (t * TAU).sin_cos();
-        let p = Point3::new(3.0 * cos, 3.0 * sin, s - 0.5);
-        (p, Vector3::new(-cos, -sin, 0.0), 3.0 * TAU)
-    });
-    let ([integral, force, gradient, _], _) = measure(&scene, &part);
-    assert!((integral / 0.182_863_132_313_677_82 - 1.0).abs() < 1e-4, "{integral}");
-    assert!(force < 0.0 && gradient < 0.0, "{force} {gradient}");
-}

@@ -2,12 +2,12 @@
 
 use super::compare::{LAWS_AND_WEIGHTS, tools};
 use super::{parts, poses};
-use std::path::Path;
 use touchoff::tool::Interpreted;
 use touchoff::{Level, Part, Pose, Probe, Tool};
 use touchoff_tests::evaluations::levels;
-use touchoff_tests::oracle::Oracle;
+use touchoff_tests::library;
 use touchoff_tests::oracle::rng::Rng;
+use touchoff_tests::oracle::{self, Oracle};
 
 /// Formats all results of a probe at a pose. No two different numbers have the same text, the sign of zeros
 /// included.
@@ -89,20 +89,15 @@ fn earlier_queries_do_not_change_the_bits() {
 
 #[test]
 fn compiled_and_interpreted_tools_give_the_same_bits() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tools-library/tools");
-    let oracles = touchoff_tests::oracle::all();
-    let files = std::fs::read_dir(folder).expect("the library's folder");
-    let files = files.map(|file| file.expect("a file").path());
     let mut count = 0;
-    for file in files.filter(|path| path.extension().is_some_and(|end| end == "tool")) {
+    for file in library::files() {
         let interpreted = Interpreted::load(file).expect("a tool");
         let name = &interpreted.info().name;
-        let tool = touchoff_tools::find(name).expect("compiled too");
-        let oracle = oracles.iter().find(|oracle| oracle.name() == *name).expect("it has one");
+        let (tool, oracle) = (library::tool(name), oracle::of(name));
         assert_eq!(interpreted.info(), tool.info());
         count += 1;
         for part in parts() {
-            for (k, pose) in random_poses(&part, &**oracle, 60, 6).iter().enumerate() {
+            for (k, pose) in random_poses(&part, &*oracle, 60, 6).iter().enumerate() {
                 let (law, weights) = LAWS_AND_WEIGHTS[k % 6];
                 let by = |tool| {
                     formatted_results(

@@ -13,15 +13,13 @@ use nalgebra::{Point3, Vector3};
 use std::collections::BTreeMap;
 use touchoff::TriangleId;
 use touchoff::{Contact, Law, Part, Pose, Probe, Tool, Weights, Wrench, summary};
+use touchoff_tests::library;
 use touchoff_tests::oracle::brute::{self, Answer, Query};
 use touchoff_tests::oracle::{Oracle, thesis};
 
 /// Returns the thesis's tools, each with its oracle.
 pub(crate) fn tools() -> Vec<(&'static dyn Tool, Box<dyn Oracle>)> {
-    thesis()
-        .into_iter()
-        .map(|oracle| (touchoff_tools::find(oracle.name()).expect("in the library"), oracle))
-        .collect()
+    thesis().into_iter().map(|oracle| (library::tool(oracle.name()), oracle)).collect()
 }
 
 /// All laws with all weights.

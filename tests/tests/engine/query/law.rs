@@ -4,6 +4,7 @@ use super::compare::tools;
 use super::{parts, poses};
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 use touchoff::{Law, Part, Pose, Probe};
+use touchoff_tests::library;
 use touchoff_tests::oracle::rng::Rng;
 
 /// Returns the energy at a pose.
@@ -70,7 +71,7 @@ fn plate() -> Part {
 fn the_force_points_out_of_a_plate() {
     let part = plate();
     for tool in ["UnitSphere", "Fig73", "Fig73Exact", "D2Ball"] {
-        let tool = touchoff_tools::find(tool).expect("in the library");
+        let tool = library::tool(tool);
         for law in LAWS {
             let mut last = 0.0;
             for depth in [0.01, 0.1, 0.2, 0.4] {
@@ -91,7 +92,7 @@ fn the_force_points_out_of_a_plate() {
 fn one_contact_agrees_with_a_hand_calculation() {
     let weight = 2.0;
     let part = parts::of(vec![Point3::new(10.0, 20.0, 30.0)], vec![Vector3::z()], vec![weight]);
-    let tool = touchoff_tools::find("UnitSphere").expect("in the library");
+    let tool = library::tool("UnitSphere");
     let pose = Pose::from_axis(Point3::new(10.0, 20.0, 29.75), Vector3::z()).expect("a pose");
     for (law, expected_force) in [(Law::Thesis, 2.0), (Law::Gradient, 1.0), (Law::Facing, 2.0)] {
         // Torque about a centre beside the tool, 3 below x: r = (3, 0, 0.25), F = (0, 0, f), r × F = (0, -3 f, 0).
@@ -113,7 +114,7 @@ fn one_contact_agrees_with_a_hand_calculation() {
 #[test]
 fn the_compliance_centre_turns_with_the_tool() {
     let part = parts::of(vec![Point3::origin()], vec![Vector3::x()], vec![1.0]);
-    let tool = touchoff_tools::find("UnitSphere").expect("in the library");
+    let tool = library::tool("UnitSphere");
     let pose = Pose::from_axis(Point3::new(-0.25, 0.0, 0.0), Vector3::x()).expect("a pose");
     let up = pose.rotation() * Vector3::x();
     let wrench = Probe::new(&part, tool).with_centre(Point3::new(2.0, 0.0, 0.0)).wrench(&pose);
@@ -128,7 +129,7 @@ fn the_compliance_centre_turns_with_the_tool() {
 fn the_facing_law_ignores_the_far_side_of_a_sheet() {
     let points = vec![Point3::new(0.0, 0.0, 0.0), Point3::new(0.0, 0.0, -0.0625)];
     let part = parts::of(points, vec![Vector3::z(), -Vector3::z()], vec![1.0; 2]);
-    let tool = touchoff_tools::find("UnitSphere").expect("in the library");
+    let tool = library::tool("UnitSphere");
     let pose = Pose::from_axis(Point3::new(0.0, 0.0, -0.25), Vector3::z()).expect("a pose");
     let evaluation = |law| Probe::new(&part, tool).with_law(law).wrench(&pose);
     let (thesis, facing) = (evaluation(Law::Thesis), evaluation(Law::Facing));

@@ -62,10 +62,5 @@ pub(crate) fn vector(rng: &mut Rng, half: f64) -> Vector3<f64> {
 }
 
 pub(crate) fn direction(rng: &mut Rng) -> Vector3<f64> {
-    loop {
-        let v = vector(rng, 1.0);
-        if (0.01..=1.0).contains(&v.norm()) {
-            return v.normalize();
-        }
-    }
+    Vector3::from(rng.direction())
 }

@@ -6,20 +6,9 @@ use touchoff::{Part, Pose};
 use touchoff_tests::oracle::Oracle;
 use touchoff_tests::oracle::rng::Rng;
 
-/// Returns a random orientation, as a unit quaternion.
-pub(crate) fn quaternion(rng: &mut Rng) -> [f64; 4] {
-    loop {
-        let v = [0; 4].map(|_| rng.between(-1.0, 1.0));
-        let norm = v.iter().map(|c| c * c).sum::<f64>().sqrt();
-        if (0.01..=1.0).contains(&norm) {
-            return v.map(|c| c / norm);
-        }
-    }
-}
-
 /// Returns a pose of random orientation that brings the tool's own point `in_tool` to `at`.
 pub(crate) fn bringing(in_tool: Vector3<f64>, at: Point3<f64>, rng: &mut Rng) -> Pose {
-    let turned = Pose::from_quaternion(Point3::origin(), quaternion(rng)).expect("a pose");
+    let turned = Pose::from_quaternion(Point3::origin(), rng.quaternion()).expect("a pose");
     Pose::from_quaternion(at - turned.rotation() * in_tool, quaternion_of(&turned)).expect("a pose")
 }
 
@@ -32,7 +21,7 @@ fn quaternion_of(pose: &Pose) -> [f64; 4] {
 /// outside.
 pub(crate) fn about(part: &Part, oracle: &dyn Oracle, k: usize, rng: &mut Rng) -> Pose {
     let tree = part.tree();
-    let point = tree.point(rng.bits() as usize % tree.len());
+    let point = tree.point(rng.index(tree.len()));
     let [width, height] = oracle.extent();
     if k % 8 == 7 {
         let distance = rng.between(1.0, 4.0) * 10f64.powi(rng.bits() as i32 & 3);
@@ -41,8 +30,8 @@ pub(crate) fn about(part: &Part, oracle: &dyn Oracle, k: usize, rng: &mut Rng) -
     if !oracle.is_revolved() {
         // A solid may fill little of the box about it, so the point is near a face or a splitting surface.
         let curves = oracle.curve_points();
-        let curve = &curves[rng.bits() as usize % curves.len()];
-        let own = Vector3::from(curve[rng.bits() as usize % curve.len()]);
+        let curve = &curves[rng.index(curves.len())];
+        let own = Vector3::from(curve[rng.index(curve.len())]);
         return bringing(own + vector(rng, 0.02 * height), point, rng);
     }
     let axis = direction(rng);

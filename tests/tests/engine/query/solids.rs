@@ -1,9 +1,10 @@
 //! Solids without an axis at full poses, with contacts that are known in closed form.
 
-use super::{parts, poses};
+use super::parts;
 use nalgebra::{Point3, Vector3};
 use touchoff::mesh::shapes;
 use touchoff::{Law, Part, Pose, Probe, Sampling, Unit};
+use touchoff_tests::library;
 use touchoff_tests::oracle::rng::Rng;
 use touchoff_tools::{Block, LBracket};
 
@@ -20,7 +21,7 @@ fn plane(pose: &Pose) -> Part {
 
 fn anywhere(rng: &mut Rng) -> Pose {
     let tip = Point3::from(parts::vector(rng, 100.0));
-    Pose::from_quaternion(tip, poses::quaternion(rng)).expect("a pose")
+    Pose::from_quaternion(tip, rng.quaternion()).expect("a pose")
 }
 
 /// Returns a pose moved by a step in its own frame.
@@ -117,7 +118,7 @@ fn a_bracket_around_a_rail() {
     assert!(!probe.detect(&at(0.0, 0.0).expect("a pose")));
     let mut surfaces = |x: f64, z: f64| {
         let contacts = probe.contacts(&at(x, z).expect("a pose")).to_vec();
-        let name = |id| &*touchoff_tools::find("LBracket").expect("there").info().surface(id).name;
+        let name = |id| &*library::tool("LBracket").info().surface(id).name;
         let deepest = contacts.iter().map(|c| c.depth).fold(0.0, f64::max);
         let mut names: Vec<String> = contacts.iter().map(|c| name(c.surface).to_owned()).collect();
         names.sort();

@@ -1,15 +1,14 @@
 //! True values at points in 256 bits, for every library tool: of a profile from its restatement, of the thesis's tool
 //! and the two solids from equations written separately.
 
-mod fig73;
 mod profile;
-mod solids;
+mod written;
 
 pub(crate) use profile::Profiled;
 
 use touchoff::Tool;
 use touchoff_tests::oracle::big::Big;
-use touchoff_tests::oracle::{Block, Fig73, LBracket, Nearest, Oracle, restated};
+use touchoff_tests::oracle::{Body, Fig73, Nearest, Oracle, restated};
 use touchoff_tests::profiles;
 
 /// A point of the tool's frame.
@@ -50,7 +49,7 @@ pub(crate) struct Subject {
     /// The true values.
     pub(crate) truth: Box<dyn Truth>,
     /// The oracle in doubles.
-    pub(crate) oracle: Box<dyn Oracle + Send + Sync>,
+    pub(crate) oracle: Box<dyn Oracle>,
 }
 
 impl Subject {
@@ -92,19 +91,14 @@ pub(crate) fn subjects() -> Vec<Subject> {
     let exact = restated::of("Fig73Exact").expect("it is restated");
     subjects.push(Subject {
         tool: find("Fig73"),
-        truth: Box::new(fig73::Magnitudes::new(find("Fig73"), &exact)),
+        truth: Box::new(written::Magnitudes::new(find("Fig73"), &exact)),
         oracle: Box::new(Fig73::default()),
     });
-    subjects.push(Subject {
-        tool: find("Block"),
-        truth: Box::new(solids::Faces::block(find("Block"))),
-        oracle: Box::new(Block),
-    });
-    subjects.push(Subject {
-        tool: find("LBracket"),
-        truth: Box::new(solids::Faces::bracket(find("LBracket"))),
-        oracle: Box::new(LBracket),
-    });
+    for body in [Body::Block, Body::LBracket] {
+        let tool = find(body.name());
+        let truth = Box::new(written::Faces::new(tool, body));
+        subjects.push(Subject { tool, truth, oracle: Box::new(body) });
+    }
     subjects.sort_by_key(Subject::name);
     subjects
 }
@@ -114,7 +108,7 @@ mod tests {
     use super::*;
     use touchoff_tests::oracle::rng::Rng;
 
-    /// The true values agree with the oracles in doubles, which are implemented independently.
+    /// The true values agree with the oracles in doubles, on which points are chosen.
     #[test]
     fn agrees_with_the_oracles_in_doubles() {
         let subjects = subjects();

@@ -5,7 +5,7 @@ const DESCRIBED_MISSES: usize = 3;
 
 /// The comparisons of one tool, or of one special case.
 #[derive(Debug)]
-pub(crate) struct Checks {
+pub struct Checks {
     tool: String,
     quantities: Vec<Quantity>,
     misses: Vec<String>,
@@ -33,12 +33,12 @@ impl Quantity {
 
 impl Checks {
     /// Makes an empty list.
-    pub(crate) fn new(tool: &str) -> Checks {
+    pub fn new(tool: &str) -> Checks {
         Checks { tool: tool.to_owned(), quantities: Vec::new(), misses: Vec::new() }
     }
 
     /// Compares a value with its limit. NaN is a miss.
-    pub(crate) fn within(
+    pub fn within(
         &mut self,
         name: &'static str,
         value: f64,
@@ -67,23 +67,23 @@ impl Checks {
     }
 
     /// Checks that an event did not occur.
-    pub(crate) fn never(&mut self, name: &'static str, occurred: bool, place: impl Fn() -> String) {
+    pub fn never(&mut self, name: &'static str, occurred: bool, place: impl Fn() -> String) {
         self.within(name, f64::from(occurred), 0.0, place);
     }
 
     /// Returns the number of comparisons.
-    pub(crate) fn cases(&self) -> usize {
+    pub fn cases(&self) -> usize {
         self.quantities.iter().map(|quantity| quantity.cases).sum()
     }
 
     /// Returns whether some value of a quantity exceeded its limit.
-    pub(crate) fn is_missed(&self, name: &str) -> bool {
+    pub fn is_missed(&self, name: &str) -> bool {
         let mut quantities = self.quantities.iter();
         quantities.any(|quantity| quantity.name == name && quantity.worst > quantity.limit)
     }
 
     /// Prints the worst value of each quantity on one line, and where that of `placed` occurred.
-    pub(crate) fn print_line(&self, placed: &str) {
+    pub fn print_line(&self, placed: &str) {
         let described = self.quantities.iter().map(|quantity| {
             let value = format!("{} {}", quantity.name, quantity.rounded());
             if quantity.name == placed { format!("{value} at {}", quantity.place) } else { value }
@@ -93,7 +93,7 @@ impl Checks {
 }
 
 /// Prints the worst value of each quantity over all tools, one line each.
-pub(crate) fn print_worst(item: &str, tools: &[Checks]) {
+pub fn print_worst(item: &str, tools: &[Checks]) {
     let mut worst: Vec<(&str, Quantity)> = Vec::new();
     for checks in tools {
         for quantity in &checks.quantities {
@@ -121,19 +121,27 @@ pub(crate) fn print_worst(item: &str, tools: &[Checks]) {
     }
 }
 
-/// Fails if a limit was exceeded, with the first misses of each tool.
-pub(crate) fn assert_no_misses(tools: &[Checks]) {
+/// Asserts that no limit was exceeded.
+///
+/// # Panics
+/// With the first misses of each tool.
+pub fn assert_no_misses(tools: &[Checks]) {
     let misses: Vec<&String> = tools.iter().flat_map(|checks| &checks.misses).collect();
     assert!(misses.is_empty(), "{misses:#?}");
 }
 
-#[test]
-fn what_exceeds_a_limit_or_is_nan_is_a_miss() {
-    for (value, is_miss) in [(1.0, false), (1.0f64.next_up(), true), (f64::NAN, true)] {
-        let mut checks = Checks::new("tool");
-        checks.within("value", value, 1.0, String::new);
-        checks.never("event", false, String::new);
-        assert_eq!((checks.is_missed("value"), checks.is_missed("event")), (is_miss, false));
-        assert_eq!(checks.misses.is_empty(), !is_miss);
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_exceeds_a_limit_or_is_nan_is_a_miss() {
+        for (value, is_miss) in [(1.0, false), (1.0f64.next_up(), true), (f64::NAN, true)] {
+            let mut checks = Checks::new("tool");
+            checks.within("value", value, 1.0, String::new);
+            checks.never("event", false, String::new);
+            assert_eq!((checks.is_missed("value"), checks.is_missed("event")), (is_miss, false));
+            assert_eq!(checks.misses.is_empty(), !is_miss);
+        }
     }
 }
