@@ -1,5 +1,6 @@
 //! Test points that are hard for an evaluator, and plenty of ordinary ones.
 
+use touchoff_tests::count::case_count;
 use touchoff_tests::oracle::reference::power_above;
 use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::{Meridian, Oracle};
@@ -7,20 +8,21 @@ use touchoff_tests::points::{
     BESIDE_AXIS, add_anywhere, add_beside_borders, azimuths, heights, neighbours, to_space,
 };
 
-/// Number of points spread over the box; as many are close to borders.
-const UNIFORM_POINTS: usize = 60_000;
-/// Number of border points to find, and of points beside each.
-const BORDER_POINTS: [usize; 2] = [15_000, 4];
+/// Number of points beside each border point.
+const POINTS_PER_BORDER_POINT: usize = 4;
 
-/// Returns at least 100,000 points for a tool, from a seed.
+/// Returns points for a tool, from a seed: 10,000 spread over the box, and as many close to borders, or as many as the variable `EVALUATED`
+/// says; corners, curves and the axis beside them.
 pub(crate) fn all(oracle: &dyn Oracle, seed: u64) -> Vec<[f64; 3]> {
     let mut rng = Rng::new(seed);
     let mut points = Vec::new();
-    add_anywhere(oracle, UNIFORM_POINTS, &mut rng, &mut points);
-    add_beside_borders(oracle, BORDER_POINTS, &mut rng, &mut points);
+    let count = case_count("EVALUATED", 10_000);
+    add_anywhere(oracle, count, &mut rng, &mut points);
+    let border_points = [count / POINTS_PER_BORDER_POINT, POINTS_PER_BORDER_POINT];
+    add_beside_borders(oracle, border_points, &mut rng, &mut points);
     exact(oracle, &mut rng, &mut points);
     axis(oracle, &mut rng, &mut points);
-    assert!(points.len() >= 100_000);
+    assert!(points.len() >= 15 * count / 10);
     points
 }
 

@@ -107,7 +107,7 @@ fn assert_bounded(contact: &ExactContact, count: usize, wrench: &Wrench, centre:
 }
 
 fn turned(rng: &mut Rng) -> Pose {
-    Pose::from_quaternion(Point3::origin(), poses::quaternion(rng)).expect("a pose")
+    Pose::from_quaternion(Point3::origin(), rng.quaternion()).expect("a pose")
 }
 
 /// Returns a pose with the tip at the origin and a point of the ball there, in the world's frame.
