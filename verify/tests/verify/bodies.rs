@@ -8,7 +8,7 @@ use std::fmt::Write;
 use touchoff::certify::TriangleBvh;
 use touchoff::{Mesh, Pose};
 use touchoff_verify::gcode::{ControlRules, ControlSetup};
-use touchoff_verify::job::{Body, BodyRole, FindingDetail, Moving, RevolvedBody};
+use touchoff_verify::job::{Body, BodyRole, FindingDetail, Moving, NoVerdict, RevolvedBody};
 use touchoff_verify::machine::{Letter, Link, Machine};
 use touchoff_verify::{ClData, Finding, FindingKind, Job, JobError, JobTool, Program, Verdict};
 
@@ -468,30 +468,26 @@ fn bodies_without_a_place_are_refused() {
         job.check(&|_| ()).map(|report| report.refusals())
     };
     let placed = setup();
-    let said = check(text, &placed, false).expect("a result").join("\n");
-    assert!(
-        said.contains("the bodies that the machine's file states are not checked here"),
-        "{said}"
-    );
-    assert_eq!(check(text, &placed, true).expect("a result"), Vec::<String>::new());
+    let refusals = check(text, &placed, false).expect("a result");
+    assert_eq!(refusals.iter().map(NoVerdict::code).collect::<Vec<_>>(), ["V0601"], "{refusals:?}");
+    assert_eq!(check(text, &placed, true).expect("a result"), []);
     let elsewhere = ControlSetup { work_offsets: [None; 9], ..placed.clone() };
-    let refused = check(text, &elsewhere, true).expect_err("no origin").to_string();
-    assert!(refused.contains("state it in `work_offsets`"), "{refused}");
+    let refused = check(text, &elsewhere, true).expect_err("no origin");
+    assert!(matches!(refused, JobError::NoPlace), "{refused}");
     let unknown = ControlSetup { lengths: [(2, 60.0)].into(), ..placed.clone() };
     let refused = check(text, &unknown, true).expect_err("no length");
-    assert!(matches!(refused, JobError::NoLength { number: Some(1), .. }), "{refused}");
+    assert!(matches!(refused, JobError::NoLength { number: 1, .. }), "{refused}");
     let unnamed = text.replace("T1 M6\nS900 M3\nG43 H1\n", "S900 M3\n");
     let refused = check(&unnamed, &placed, true).expect_err("no tool");
-    assert!(matches!(refused, JobError::NoLength { number: None, .. }), "{refused}");
-    assert!(refused.to_string().contains("write T and M6 before"), "{refused}");
+    assert!(matches!(refused, JobError::NoToolForLength { .. }), "{refused}");
     // Positions of tips have no machine.
     let positions = ClData::parse("0,0,20,0,0,1\n0,0,9,0,0,1\n", "a.csv").expect("positions");
     let positions = Program::Locations(vec![positions]);
     let mut job = Job::new(&positions, &part);
     job.tools.push(JobTool::of_all(&Mounted));
     job.bodies.push(Body::machine("the table", &part, Link::Base));
-    let refused = job.check(&|_| ()).expect_err("no machine").to_string();
-    assert!(refused.contains("bodies of a machine are for programs on a machine"), "{refused}");
+    let refused = job.check(&|_| ()).expect_err("no machine");
+    assert!(matches!(refused, JobError::BodiesForPositions), "{refused}");
 }
 
 /// In rapid traverse at unknown rates, a body on the slide of X is checked on all paths between those of the axes: a post beside the
