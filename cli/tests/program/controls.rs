@@ -77,22 +77,20 @@ fn a_control_is_read_from_a_file() {
 /// Findings and gaps in a file of subprograms name it in JSON and on the page of the report.
 #[test]
 fn a_line_of_a_subprogram_is_in_json_and_in_the_report() {
-    let bench = bench("T1 M6\nS9000 M3\nG43 H1 G0 X-6. Y0. Z20.\nM98 P9001\nG0 Z20.");
+    let bench = bench("T1 M6\nS9000 M3\nG43 H1 G0 X-6. Y0. Z20.\nM98 P9001\nM0\nG0 Z20.");
     let job = std::fs::read_to_string(bench.place("a.toml")).expect("the job");
     let job = bench.write("a.toml", format!("subprograms = [\"O9001.nc\"]\n{job}"));
     let lost = verify(&bench, &["--control", "haas"]);
     assert_eq!(lost.status.code(), Some(2));
     let said = stderr(&lost);
     assert!(said.starts_with("error[P0601]: ") && said.contains("O9001.nc"), "{said}");
-    bench.write("O9001.nc", "(PASS)\nG0 X0. Y0.\nG1 Z-1.\nM0\nM99\n");
+    bench.write("O9001.nc", "(PASS)\nG0 X0. Y0.\nG1 Z-1.\nM99\n");
     let output = verify(&bench, &["--control", "haas", "--json"]);
     assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
     let rows = objects(&output);
-    for (code, line) in [("V0101", 3), ("V0508", 4)] {
-        let row = rows.iter().find(|row| row["code"] == code).expect(code);
-        assert_eq!((&row["line"], &row["within"]["line"]), (&json!(5), &json!(line)), "{row}");
-        assert_eq!(row["within"]["file"], "O9001.nc", "{row}");
-    }
+    let row = rows.iter().find(|row| row["code"] == "V0101").expect("a finding");
+    let within = json!({ "file": "O9001.nc", "line": 3 });
+    assert_eq!((&row["line"], &row["within"]), (&json!(5), &within), "{row}");
     // What concerns the program itself has none.
     assert!(rows.iter().any(|row| row["reason"].is_string() && row["within"].is_null()));
     let page = bench.place("report.html");
@@ -101,7 +99,7 @@ fn a_line_of_a_subprogram_is_in_json_and_in_the_report() {
     for words in [
         "<summary>O9001.nc, lines 1 to 5</summary>",
         "&gt; 3  G1 Z-1.",
-        "during the stop are not checked (O9001.nc, line 4) [V0508]",
+        "during the stop are not checked [V0508]",
     ] {
         assert!(page.contains(words), "{words}: {said}");
     }
@@ -167,7 +165,7 @@ fn shards_of_a_job_give_its_output() {
         let refused = joined(&[&files[1], &changed, &files[0]]);
         assert_eq!(refused.status.code(), Some(2));
         let said = stderr(&refused);
-        assert!(said.starts_with("error[J0301]: ") && said.contains("changed.json"), "{said}");
+        assert!(said.contains("\nerror[J0301]: ") && said.contains("changed.json"), "{said}");
     }
 }
 

@@ -152,11 +152,21 @@ fn exports(tree: &UseTree, path: &[String], to: &mut Vec<(Option<String>, Vec<St
     }
 }
 
+/// Returns the enumeration that `faults!` declares; any other item as it is.
+fn declared(item: Item) -> Item {
+    match &item {
+        Item::Macro(invoked) if invoked.mac.path.is_ident("faults") => {
+            invoked.mac.parse_body().expect("an enumeration")
+        }
+        _ => item,
+    }
+}
+
 impl Crate {
     /// Reads a module's items, and the files of its children, which lie in a folder.
     fn read(&mut self, items: Vec<Item>, folder: &Path) -> Module {
         let mut module = Module::default();
-        for item in items {
+        for item in items.into_iter().map(declared) {
             let (name, attributes, visibility) = match &item {
                 Item::Struct(item) => (&item.ident, &item.attrs, Some(&item.vis)),
                 Item::Enum(item) => (&item.ident, &item.attrs, Some(&item.vis)),

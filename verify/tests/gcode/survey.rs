@@ -55,7 +55,7 @@ fn everything_that_stands_in_the_way_is_found() {
     expect(
         "linuxcnc",
         linuxcnc,
-        &[(2, "P0115 M130"), (3, "P0210 #500"), (4, "P0115 M131"), (6, "P0203 `FOO`")],
+        &[(2, "P0114 M130"), (3, "P0210 #500"), (4, "P0114 M131"), (6, "P0203 `FOO`")],
     );
     let sinumerik = "G54 G90 G0 X0 Y0\nR1=R7\nG41 D3 X5\nWAITM(1)\nX=R8\nGOTOF NOWHERE\nX7 OEMWORD\nMYCYCLE(1,2)\nM30\n";
     expect(
@@ -75,7 +75,7 @@ fn everything_that_stands_in_the_way_is_found() {
         "heidenhain",
         klartext,
         &[
-            (3, "P0114 M130"),
+            (3, "P0115 M130"),
             (4, "P0114 M222"),
             (4, "P0114 M223"),
             (5, "P0115 CYCL"),
@@ -264,7 +264,7 @@ fn loops_without_a_known_end_are_left() {
     for head in ["while [#500 LT 3]", "repeat [#500]"] {
         let end = head.split(' ').next().expect("a word");
         let linuxcnc = format!("G21 G90 G0 X0 Y0\no1 {head}\n{body}o1 end{end}\nM131\nM30\n");
-        expect("linuxcnc", &linuxcnc, &[(2, "P0210 #500"), (4, "P0115 M130"), (7, "P0115 M131")]);
+        expect("linuxcnc", &linuxcnc, &[(2, "P0210 #500"), (4, "P0114 M130"), (7, "P0114 M131")]);
     }
     for (head, end) in [("WHILE R5<3", "ENDWHILE"), ("FOR R1=1 TO R5", "ENDFOR")] {
         let sinumerik = format!("G54 G90 G0 X0 Y0\n{head}\nX1.\nWAITM(1)\nX0\n{end}\nM131\nM30\n");

@@ -10,4 +10,5 @@ mod jobs;
 mod motions;
 mod posts;
 mod scene;
+mod sentences;
 mod words;

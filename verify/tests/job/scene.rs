@@ -300,9 +300,10 @@ impl Scene {
 }
 
 /// Returns the line of the program at which a job is refused; 0 if it is no line.
-fn line_of(error: &JobError) -> usize {
+pub(crate) fn line_of(error: &JobError) -> usize {
     let mut error = match error {
         JobError::MachineProgram(error) => error,
+        JobError::File { line, .. } => return line.unwrap_or(0),
         JobError::NoTool { line, .. }
         | JobError::UnnamedTool { line }
         | JobError::MovedPart { line, .. } => return *line,

@@ -4,7 +4,7 @@
 //! All points of a part are equal here, so that its tree stores them exactly and each has the same evaluation. The
 //! exact sum is then the number of points times one product in 256 bits.
 
-use super::{parts, poses};
+use super::parts;
 use nalgebra::{Point3, Vector3};
 use touchoff::tool::{Interpreted, PointEvaluation, Tool};
 use touchoff::{Law, Level, Part, Pose, Probe, Scene, Weights, Wrench};
