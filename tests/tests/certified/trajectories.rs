@@ -1,12 +1,14 @@
 //! Trajectories that are no motions at constant speed: the tip of a ball end mill on an arc beside a wall, for which the
 //! greatest depth is known.
 
-use crate::{UP, block, pose, tool};
+use crate::{UP, block, motion, pose, soup, tool};
+use nalgebra::{Point3, Rotation3, Vector3};
 use touchoff::certify::{
     Approximation, Certifier, MotionDepth, MotionVerdict, Trajectory, TriangleBvh,
 };
 use touchoff::mesh::shapes;
-use touchoff::{Motion, Pose, SurfaceId, Unit};
+use touchoff::tool::Interpreted;
+use touchoff::{Interval, Mesh, Motion, Pose, SurfaceId, Unit};
 
 /// Radius of the arc about the z axis, and that of the tool, mm.
 const RADIUS: f64 = 20.0;
@@ -122,5 +124,83 @@ fn an_arc_about_a_pillar_is_clear_though_its_chords_are_not() {
             }
             other => panic!("{gap}: {other:?}"),
         }
+    }
+}
+
+/// Returns a wall turned about the z axis. The arc is deepest there at no time that halving its intervals reaches.
+fn turned_wall(depth: f64) -> TriangleBvh {
+    let near = RADIUS + BALL - depth;
+    let wall = block([near, -40.0, -30.0], [near + 10.0, 40.0, BALL]);
+    let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), 0.3);
+    let vertices = wall.vertices().iter().map(|vertex| turn * vertex);
+    let mesh = Mesh::new(vertices, wall.triangles().to_vec(), Unit::Millimetre);
+    TriangleBvh::new(&mesh.expect("a wall"))
+}
+
+/// Returns a small triangle outside the arc, whose nearest corner is so deep in the ball at 0.3 rad: at no time that
+/// halving intervals reaches. Bounds of a wall would be too loose to miss it.
+fn thorn(depth: f64) -> TriangleBvh {
+    let (sine, cosine) = 0.3f64.sin_cos();
+    let out = Vector3::new(cosine, sine, 0.0);
+    let corner = Point3::from((RADIUS + BALL - depth) * out) + BALL * Vector3::z();
+    let others = [Vector3::z(), -Vector3::z()].map(|side| corner + 0.05 * (out + side));
+    TriangleBvh::new(&soup(&[[corner, others[0], others[1]].map(Into::into)]))
+}
+
+/// Chords of the arc stay away from what is outside it and touches the arc itself between their ends.
+#[test]
+fn an_arc_that_touches_a_thorn_between_the_ends_of_its_chords_is_not_clear() {
+    for (depth, clear) in [(-1e-5, true), (1e-5, false), (1e-3, false)] {
+        let thorn = thorn(depth);
+        let mut certifier = Certifier::new(&thorn, tool("Ball")).expect("a profile");
+        let verdict = certifier.check_motion(&Arc { error: 0.0 }, 1e-7);
+        // The triangle is no solid.
+        assert_eq!(verdict == MotionVerdict::SurfaceOnly, clear, "{depth}: {verdict:?}");
+        let is_touching = matches!(verdict, MotionVerdict::Touching(..));
+        assert_eq!(is_touching, !clear, "{depth}: {verdict:?}");
+    }
+}
+
+/// The distance from a wall beside the arc, which is less than the margin of the surface.
+#[test]
+fn the_least_distance_on_an_arc_is_known() {
+    let ball = tool("Ball").info().surface_named("ball").expect("a surface");
+    for error in [0.0, 0.01] {
+        let (wall, arc) = (turned_wall(-0.5), Arc { error });
+        let mut certifier = Certifier::new(&wall, tool("Ball")).expect("a profile");
+        let found = certifier.motion_depth(ball, &arc, -1.0, 1e-6).expect("a surface");
+        let MotionDepth::Deeper { at, depth: Interval { low, high }, max_depth, .. } = found else {
+            panic!("{error}: {found:?}");
+        };
+        assert!((at - (0.5 + 0.3 / (2.0 * HALF_ANGLE))).abs() < 1e-2, "{at}");
+        // The bounds hold for every motion within the error.
+        assert!(low <= -0.5 - error && -0.5 + error <= high, "{error}: {low} to {high}");
+        assert!(high <= max_depth && max_depth < -0.5 + 0.1 + 20.0 * error, "{max_depth}");
+    }
+}
+
+/// A pin that swings about its tip reaches farthest with its upper edge, while its axis points beside the wall.
+#[test]
+fn the_edge_of_a_swinging_pin_touches_a_wall_that_no_end_of_the_swing_reaches() {
+    let pin: Interpreted =
+        "tool Pin { units mm; profile { start (0, 0); line to (1, 0), (1, 40), (0, 40) as pin cutting; } niceness cutting: 1; }"
+            .parse()
+            .expect("a tool");
+    let reach = 40f64.hypot(1.0);
+    let at = |angle: f64| pose([0.0; 3], [angle.sin(), 0.0, angle.cos()]);
+    let swing = motion(&at(-1.1), &at(1.0));
+    for (depth, clear) in [(-1e-2, true), (1e-2, false)] {
+        // The wall's face is across the direction at 0.2 rad.
+        let wall = block([-60.0, -9.0, reach - depth], [60.0, 9.0, reach + 10.0]);
+        let turn = Rotation3::from_axis_angle(&Vector3::y_axis(), 0.2);
+        let vertices: Vec<Point3<f64>> =
+            wall.vertices().iter().map(|vertex| turn * vertex).collect();
+        let mesh = Mesh::new(vertices, wall.triangles().to_vec(), Unit::Millimetre);
+        let wall = TriangleBvh::new(&mesh.expect("a wall"));
+        let mut certifier = Certifier::new(&wall, &pin).expect("a profile");
+        let verdict = certifier.check_motion(&swing, 1e-4);
+        assert_eq!(verdict.is_clear(), clear, "{depth}: {verdict:?}");
+        let is_touching = matches!(verdict, MotionVerdict::Touching(..));
+        assert_eq!(is_touching, !clear, "{depth}: {verdict:?}");
     }
 }

@@ -3,7 +3,9 @@
 mod closed_forms;
 mod evaluators;
 mod levels;
+mod posture;
 mod query;
+mod reach;
 mod scene;
 mod scene_sums;
 mod solids;

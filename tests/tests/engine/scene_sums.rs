@@ -83,31 +83,3 @@ fn force_and_torque_of_a_turned_part_are_in_the_frame_of_the_world() {
         near("torque", (moved.torque - turn * still.torque).norm(), 0.0);
     }
 }
-
-/// A disc as high as it is wide reaches farthest from its tip at its upper rim, and a cube from its middle at its
-/// corners: the one just touches the other, along the line from the tip to the middle.
-#[test]
-fn a_rim_that_just_touches_a_corner_is_detected() {
-    let disc: Interpreted =
-        "tool Disc { units mm; profile { start (0, 0); line to (10, 0) as face; line to (10, 10) as rim cutting; line to (0, 10) as top; } niceness cutting: 1; }"
-            .parse()
-            .expect("a tool");
-    let half = 4.0;
-    let corners: Vec<Point3<f64>> = (0..8)
-        .map(|k| Point3::from([0, 1, 2].map(|axis| if k >> axis & 1 == 0 { -half } else { half })))
-        .collect();
-    let cube = part_of(&corners);
-    let rim = Vector3::new(10.0, 0.0, 10.0);
-    let diagonal = Vector3::new(1.0, 1.0, 1.0);
-    let turn = UnitQuaternion::rotation_between(&-diagonal, &rim).expect("no half turn");
-    let mut scene = Scene::new(Unit::Millimetre);
-    let part = scene.add_part(&cube, Pose::default()).expect("millimetres");
-    let id = scene.add_tool(&disc);
-    for (inside, touches) in [(1e-3, true), (1e-5, true), (-1e-3, false)] {
-        let middle = Point3::from(rim.normalize() * (rim.norm() - inside + 3f64.sqrt() * half));
-        let frame = Isometry3::from_parts(middle.coords.into(), turn);
-        scene.move_part(part, Pose::try_from(frame).expect("a pose"));
-        assert_eq!(scene.detect(id), touches.then_some(part), "{inside}");
-        assert_eq!(scene.pair_wrench(id, part).colliding, usize::from(touches), "{inside}");
-    }
-}

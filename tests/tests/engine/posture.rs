@@ -1,0 +1,66 @@
+//! The quantities that a posture is judged by, for all sets of points whose depth and niceness are known.
+
+use nalgebra::{Point3, Vector3};
+use touchoff::tool::Interpreted;
+use touchoff::{Cloud, Part, Pose, Probe, TriangleId, Unit};
+
+/// A point in a ball end mill, its depth, its niceness and whether its surface cuts.
+type Known = ([f64; 3], f64, f64, bool);
+
+const POINTS: [Known; 5] = [
+    ([0.0, 0.0, 1.0], 1.0, 0.9, true),
+    ([0.0, 0.0, 2.0], 2.0, 0.8, true),
+    ([1.5, 0.0, 10.0], 1.5, 0.0, false),
+    ([0.0, 2.5, 12.0], 0.5, 0.0, false),
+    ([9.0, 0.0, 5.0], -6.0, 0.0, false),
+];
+
+fn mill() -> Interpreted {
+    "tool Mill { units mm; profile { start (0, 0); arc to (3, 3) center (0, 3) as ball cutting; line to (3, 20), (0, 20) as shank; } niceness cutting: 1 - z/10 allow rising; }"
+        .parse()
+        .expect("a tool")
+}
+
+fn near(found: Option<f64>, expected: Option<f64>, what: &str) {
+    let difference = found.unwrap_or(-1.0) - expected.unwrap_or(-1.0);
+    assert!(difference.abs() < 1e-9, "{what}: {found:?} for {expected:?}");
+}
+
+#[test]
+fn a_posture_has_the_greatest_depths_and_the_least_niceness_of_its_points() {
+    let mill = mill();
+    for set in 1..1u32 << POINTS.len() {
+        let chosen = POINTS.iter().enumerate().filter(|(k, _)| set >> k & 1 == 1);
+        let chosen: Vec<&Known> = chosen.map(|(_, known)| known).collect();
+        // In both orders, so that the first is the least and the greatest in turn.
+        for is_reversed in [false, true] {
+            let mut points: Vec<Point3<f64>> =
+                chosen.iter().map(|(at, ..)| Point3::from(*at)).collect();
+            if is_reversed {
+                points.reverse();
+            }
+            let count = points.len();
+            let ids = (0..count as u32).map(TriangleId).collect();
+            let normals = vec![Vector3::x(); count];
+            let cloud = Cloud::new(points, normals, ids, vec![1.0; count], Unit::Millimetre);
+            let part = Part::from_cloud(&cloud.expect("a cloud"));
+            let inside: Vec<&&Known> = chosen.iter().filter(|known| known.1 >= 0.0).collect();
+            let greatest = |is_counted: fn(&Known) -> bool| {
+                let depths = inside.iter().filter(|known| is_counted(known)).map(|known| known.1);
+                depths.reduce(f64::max)
+            };
+            let niceness = inside.iter().map(|known| known.2).reduce(f64::min);
+            let mut probe = Probe::new(&part, &mill);
+            let found = probe.posture(&Pose::default());
+            assert_eq!(found.colliding, inside.len());
+            near(found.niceness, niceness, "niceness");
+            near(found.non_cutting_depth, greatest(|known| !known.3), "non-cutting depth");
+            let deepest = greatest(|_| true);
+            near(found.deepest.map(|deepest| deepest.depth), deepest, "depth");
+            let alone = probe.deepest(&Pose::default());
+            assert_eq!(alone, found.deepest);
+            let wrench = probe.wrench(&Pose::default());
+            assert_eq!((wrench.deepest, wrench.niceness), (found.deepest, found.niceness));
+        }
+    }
+}
