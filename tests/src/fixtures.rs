@@ -1,7 +1,17 @@
-//! The thesis's tube as points, and poses along it.
+//! The thesis's tube as points, poses along it, and cuboids.
 
+use nalgebra::Point3;
+use touchoff::mesh::shapes;
 use touchoff::scenes::{ScenePath, tube};
-use touchoff::{Cloud, Part, Pose, Sampling};
+use touchoff::{Cloud, Mesh, Part, Pose, Sampling, Unit};
+
+/// Returns a cuboid with edges along the coordinate axes, in mm.
+///
+/// # Panics
+/// If it has no volume.
+pub fn cuboid(low: [f64; 3], high: [f64; 3]) -> Mesh {
+    shapes::cuboid(Point3::from(low), Point3::from(high), Unit::Millimetre).expect("a cuboid")
+}
 
 /// Returns the tube as `points` points.
 ///

@@ -4,14 +4,13 @@ pub mod energy;
 pub mod sheet;
 pub mod wall;
 
+use crate::fixtures::cuboid;
 use nalgebra::{Point3, Vector3};
-use touchoff::mesh::shapes;
-use touchoff::{Part, Pose, Sampling, Unit};
+use touchoff::{Part, Pose, Sampling};
 
 /// Returns a block whose top is z = 0, as `points` points.
 pub fn block(points: usize) -> Part {
-    let (low, high) = (Point3::new(-20., -20., -10.), Point3::new(20., 20., 0.));
-    let mesh = shapes::cuboid(low, high, Unit::Millimetre).expect("a block");
+    let mesh = cuboid([-20., -20., -10.], [20., 20., 0.]);
     Part::from_mesh(&mesh, Sampling::new(points)).expect("points of a block")
 }
 

@@ -2,15 +2,13 @@
 
 use super::wall::LIMITS;
 use super::{tool, upright};
-use nalgebra::Point3;
-use touchoff::mesh::shapes;
-use touchoff::{Law, Part, Probe, Sampling, Unit};
+use crate::fixtures::cuboid;
+use touchoff::{Law, Part, Probe, Sampling};
 use touchoff_haptics::{Rendering, Session, SessionSettings, SimulatedHand};
 
 /// Returns a sheet 0.5 mm thick, from z = -0.5 to 0.
 pub fn sheet_part() -> Part {
-    let (low, high) = (Point3::new(-15., -15., -0.5), Point3::new(15., 15., 0.));
-    let mesh = shapes::cuboid(low, high, Unit::Millimetre).expect("a sheet");
+    let mesh = cuboid([-15., -15., -0.5], [15., 15., 0.]);
     Part::from_mesh(&mesh, Sampling::new(40_000)).expect("points of a sheet")
 }
 

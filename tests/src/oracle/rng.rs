@@ -1,5 +1,7 @@
 //! Random numbers for oracles and tests: the same on every machine, from nothing but integers.
 
+use super::triangle::{advance, dot, norm, unit};
+
 /// A stream of pseudo-random numbers (splitmix64: Steele, Lea, Flood 2014).
 #[derive(Clone, Debug)]
 pub struct Rng(u64);
@@ -49,6 +51,17 @@ impl Rng {
     /// Returns a unit vector, uniform over all directions.
     pub fn direction(&mut self) -> [f64; 3] {
         self.unit_vector()
+    }
+
+    /// Returns a unit vector across a unit vector, uniform over all such.
+    pub fn across(&mut self, direction: [f64; 3]) -> [f64; 3] {
+        loop {
+            let candidate = self.direction();
+            let across = advance(candidate, -dot(direction, candidate), direction);
+            if norm(across) > 0.1 {
+                return unit(across);
+            }
+        }
     }
 
     /// Returns a unit quaternion, uniform over all rotations.

@@ -180,14 +180,28 @@ impl<'a> BruteForce<'a> {
         rng: &mut Rng,
     ) -> f64 {
         let triangle = self.triangle(frame, triangle);
-        let [a, b, c] = triangle;
-        let mut current = nearest(start, &triangle);
-        let mut best = self.depth(current);
+        let (depth, _) = self.climb_by(&triangle, start, STEPS_PER_CLIMB, |p| self.depth(p), rng);
+        depth * self.length
+    }
+
+    /// Climbs on a triangle toward larger values by random steps, which grow after an improvement and shrink otherwise.
+    /// Returns the largest value and its point.
+    pub(crate) fn climb_by(
+        &self,
+        triangle: &[Point; 3],
+        start: Point,
+        steps: usize,
+        value: impl Fn(Point) -> f64,
+        rng: &mut Rng,
+    ) -> (f64, Point) {
+        let [a, b, c] = *triangle;
+        let mut current = nearest(start, triangle);
+        let mut best = value(current);
         let mut last_direction = [0.0; 3];
         let mut step =
             distance(a, b).max(distance(b, c)).max(distance(c, a)).min(self.oracle.extent()[0]);
         let mut failed = 0;
-        for k in 0..STEPS_PER_CLIMB {
+        for k in 0..steps {
             if step < 1e-11 {
                 break;
             }
@@ -197,11 +211,11 @@ impl<'a> BruteForce<'a> {
             } else {
                 rng.direction()
             };
-            let next = nearest(advance(current, step, direction), &triangle);
-            let depth = self.depth(next);
-            if depth > best {
+            let next = nearest(advance(current, step, direction), triangle);
+            let new_value = value(next);
+            if new_value > best {
                 last_direction = unit(sub(next, current));
-                (best, current, failed) = (depth, next, 0);
+                (best, current, failed) = (new_value, next, 0);
                 step *= 1.5;
             } else {
                 failed += 1;
@@ -210,6 +224,6 @@ impl<'a> BruteForce<'a> {
                 }
             }
         }
-        best * self.length
+        (best, current)
     }
 }

@@ -1,6 +1,6 @@
 //! Clearance of a tool, checked against known geometry and against the points of a fine raster.
 
-use crate::{block, plate, pose, tool};
+use crate::{block, plate, pose, to_tool, tool};
 use nalgebra::{Point3, Vector3};
 use std::sync::Arc;
 use touchoff::certify::{Certifier, TriangleBvh};
@@ -39,7 +39,6 @@ fn clearance_in_material_is_the_distance_to_the_surface() {
 
 /// Returns the distance of a raster of a part's points, which is at least that of the part, and a bound on the excess.
 fn raster_distance(mesh: &Mesh, oracle: &Nearest, pose: &Pose) -> [f64; 2] {
-    let to_tool = pose.rotation().transpose();
     let (mut min_distance, mut spacing) = (f64::INFINITY, 0f64);
     for id in 0..mesh.triangles().len() as u32 {
         let [a, b, c] = mesh.triangle(TriangleId(id));
@@ -47,8 +46,8 @@ fn raster_distance(mesh: &Mesh, oracle: &Nearest, pose: &Pose) -> [f64; 2] {
         spacing = spacing.max(u.norm()).max(v.norm()).max((v - u).norm());
         for i in 0..=DIVISIONS {
             for j in 0..=DIVISIONS - i {
-                let p = to_tool * (a + u * f64::from(i) + v * f64::from(j) - pose.tip());
-                min_distance = min_distance.min(oracle.signed_distance([p.x, p.y, p.z]));
+                let p = to_tool(pose, 1.0, a + u * f64::from(i) + v * f64::from(j));
+                min_distance = min_distance.min(oracle.signed_distance(p));
             }
         }
     }
@@ -102,14 +101,14 @@ fn the_nearest_points_are_on_both_surfaces() {
             let axis = Vector3::from_fn(|_, _| rng.between(-1.0, 1.0)).normalize();
             let tip = Point3::from(Vector3::from_fn(|_, _| rng.between(-12.0, 12.0)));
             let Ok(pose) = Pose::from_axis(tip, axis) else { continue };
-            let to_tool = |point: Point3<f64>| -> [f64; 3] {
-                (pose.rotation().transpose() * (point - pose.tip())).into()
-            };
             let nearest = certifier.clearance(&pose, 1e-9);
             let (on_tool, witness) = (nearest.on_tool.expect("a point"), nearest.witness);
             let text = format!("{name} at {tip}, {axis}: {nearest:?}");
             // Both are known to the rounding error of the certifier, far below this.
-            assert!(oracle.signed_distance(to_tool(on_tool.point)).abs() < 1e-9, "{text}");
+            assert!(
+                oracle.signed_distance(to_tool(&pose, 1.0, on_tool.point)).abs() < 1e-9,
+                "{text}"
+            );
             assert!((on_tool.normal.norm() - 1.0).abs() < 1e-12, "{text}");
             let between = witness.expect("a point").point - on_tool.point;
             let signed = certifier.signed_distance(&pose, 1e-9);

@@ -1,6 +1,6 @@
 //! Tools known only by their depth field and its Lipschitz bound.
 
-use crate::{UP, block, motion, plate, pose, tool};
+use crate::{UP, block, motion, plate, pose, to_tool, tool};
 use nalgebra::{Point3, Vector3};
 use touchoff::certify::{
     AllowanceError, Certifier, MotionDepth, MotionVerdict, PoseVerdict, TriangleBvh,
@@ -22,10 +22,6 @@ fn random_pose_near(radius: f64, rng: &mut Rng) -> Pose {
     let quaternion = rng.quaternion();
     let tip = Vector3::from(rng.direction()) * radius * rng.between(0.7, 1.3);
     Pose::from_quaternion(Point3::from(tip), quaternion).expect("a quaternion")
-}
-
-fn to_tool(pose: &Pose, length: f64, point: Point3<f64>) -> [f64; 3] {
-    (pose.rotation().transpose() * (point - pose.tip()) / length).into()
 }
 
 /// Returns random points of each triangle.

@@ -43,8 +43,8 @@ mod trajectories;
 mod zoomed;
 
 use nalgebra::{Point3, Vector3};
-use touchoff::mesh::shapes;
 use touchoff::{Mesh, Motion, Pose, Tool, Unit};
+use touchoff_tests::fixtures::cuboid as block;
 use touchoff_tests::oracle::Nearest;
 
 const UP: [f64; 3] = [0.0, 0.0, 1.0];
@@ -63,13 +63,17 @@ fn pose(tip: [f64; 3], axis: [f64; 3]) -> Pose {
     Pose::from_axis(Point3::from(tip), Vector3::from(axis)).expect("an axis")
 }
 
-fn motion(from: &Pose, to: &Pose) -> Motion {
-    Motion::new(from, to).expect("an unambiguous rotation")
+fn pose_at(tip: Point3<f64>, axis: Vector3<f64>) -> Pose {
+    Pose::from_axis(tip, axis.normalize()).expect("an axis")
 }
 
-/// Returns a cuboid with edges along the coordinate axes, in mm.
-fn block(low: [f64; 3], high: [f64; 3]) -> Mesh {
-    shapes::cuboid(Point3::from(low), Point3::from(high), Unit::Millimetre).expect("a cuboid")
+/// Transforms a point to the frame of a tool, in its unit of `length`.
+fn to_tool(pose: &Pose, length: f64, point: Point3<f64>) -> [f64; 3] {
+    (pose.rotation().transpose() * (point - pose.tip()) / length).into()
+}
+
+fn motion(from: &Pose, to: &Pose) -> Motion {
+    Motion::new(from, to).expect("an unambiguous rotation")
 }
 
 /// Returns a plate of 40 by 30 mm whose upper face is at z = 0.

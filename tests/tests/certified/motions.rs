@@ -2,6 +2,7 @@
 
 use crate::approach::ReferenceMotion;
 use crate::brute::BruteForce;
+use crate::pose_at;
 use nalgebra::{Point3, Rotation3, Unit, Vector3};
 use touchoff::{Pose, TriangleId};
 use touchoff_tests::oracle::Oracle;
@@ -41,23 +42,14 @@ impl MotionKind {
 const SHIFTS: usize = 3;
 const TIME_SAMPLES_PER_SHIFT: u32 = 10;
 
-fn pose_at(tip: Point3<f64>, axis: Vector3<f64>) -> Pose {
-    Pose::from_axis(tip, axis.normalize()).expect("an axis")
-}
-
 fn random_direction(rng: &mut Rng) -> Vector3<f64> {
     Vector3::from(rng.direction())
-}
-
-/// Returns a random number between two powers of ten.
-fn random_power(rng: &mut Rng, low_exponent: f64, high_exponent: f64) -> f64 {
-    rng.power(low_exponent, high_exponent)
 }
 
 /// Returns a rotation about a random axis by 0.001 to 150 degrees.
 fn random_rotation(rng: &mut Rng) -> Rotation3<f64> {
     let about = Unit::new_normalize(random_direction(rng));
-    Rotation3::from_axis_angle(&about, random_power(rng, -3.0, 150f64.log10()).to_radians())
+    Rotation3::from_axis_angle(&about, rng.power(-3.0, 150f64.log10()).to_radians())
 }
 
 impl BruteForce<'_> {
@@ -89,7 +81,7 @@ impl BruteForce<'_> {
                     .unwrap_or_else(|| random_direction(rng));
                 let slide = normal.cross(&random_direction(rng)).normalize()
                     * part_size
-                    * random_power(rng, -3.0, 0.0);
+                    * rng.power(-3.0, 0.0);
                 let tilts = rng.once_in(2);
                 pose_at(tip + slide, if tilts { axis + 0.1 * random_direction(rng) } else { axis })
             }
@@ -102,17 +94,16 @@ impl BruteForce<'_> {
                 pose_at(about + rotation * (tip - about), rotation * axis)
             }
             MotionKind::Plunge => {
-                let distance = part_size * random_power(rng, -4.0, 0.3);
+                let distance = part_size * rng.power(-4.0, 0.3);
                 pose_at(tip + axis * if rng.once_in(2) { distance } else { -distance }, axis)
             }
-            MotionKind::Straight => pose_at(
-                tip + random_direction(rng) * part_size * random_power(rng, -4.0, 0.5),
-                axis,
-            ),
+            MotionKind::Straight => {
+                pose_at(tip + random_direction(rng) * part_size * rng.power(-4.0, 0.5), axis)
+            }
             MotionKind::Still => from,
             MotionKind::Rapid => {
                 let far_pose = pose_at(
-                    tip + random_direction(rng) * part_size * random_power(rng, 0.5, 3.0),
+                    tip + random_direction(rng) * part_size * rng.power(0.5, 3.0),
                     random_rotation(rng) * axis,
                 );
                 if rng.once_in(2) {
@@ -132,7 +123,7 @@ impl BruteForce<'_> {
 
     fn shift_to_near_miss(&self, mut motion: ReferenceMotion, rng: &mut Rng) -> ReferenceMotion {
         let [radius, _] = self.oracle.extent();
-        let gap = random_power(rng, -7.0, -0.3) * (radius * self.length / 5.0);
+        let gap = rng.power(-7.0, -0.3) * (radius * self.length / 5.0);
         let gap = if rng.once_in(10) { -gap } else { gap };
         for _ in 0..SHIFTS {
             let deepest = self.deepest_in_motion(&motion, TIME_SAMPLES_PER_SHIFT, false, rng);

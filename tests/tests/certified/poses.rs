@@ -1,6 +1,7 @@
 //! Random poses at which a tool is likely to touch a part, and a part with many ridges.
 
 use crate::brute::BruteForce;
+use crate::pose_at;
 use nalgebra::{Point3, Vector3};
 use touchoff::mesh::shapes;
 use touchoff::{Mesh, Pose, TriangleId, Unit};
@@ -17,25 +18,6 @@ pub(crate) fn bumpy(half: f64, divisions: u32) -> Mesh {
     };
     let vertices = flat.vertices().iter().map(raise);
     Mesh::new(vertices, flat.triangles().to_vec(), Unit::Millimetre).expect("a sheet")
-}
-
-fn random_direction(rng: &mut Rng) -> Vector3<f64> {
-    Vector3::from(rng.direction())
-}
-
-/// Returns a random unit vector perpendicular to `direction`.
-fn perpendicular(direction: &Vector3<f64>, rng: &mut Rng) -> Vector3<f64> {
-    loop {
-        let candidate = random_direction(rng);
-        let orthogonal = candidate - direction * direction.dot(&candidate);
-        if orthogonal.norm() > 0.1 {
-            return orthogonal.normalize();
-        }
-    }
-}
-
-fn pose_at(tip: Point3<f64>, axis: Vector3<f64>) -> Pose {
-    Pose::from_axis(tip, axis).expect("an axis")
 }
 
 /// Returns a random point of the tool's surface and the outward direction there, both as `[d, z]`.
@@ -71,17 +53,18 @@ impl BruteForce<'_> {
         let [v, w] = rng.weights();
         let target = a + v * (b - a) + w * (c - a);
         let ([d, z], [radial_part, axial_part]) = random_surface_point(self.oracle, rng);
-        let inward =
-            mesh.normal(TriangleId(id)).map_or_else(|| random_direction(rng), |normal| -normal);
+        let inward = mesh
+            .normal(TriangleId(id))
+            .map_or_else(|| Vector3::from(rng.direction()), |normal| -normal);
         let (axis, radial) = if is_facing {
-            let orthogonal = perpendicular(&inward, rng);
+            let orthogonal = Vector3::from(rng.across(inward.into()));
             (
                 axial_part * inward + radial_part * orthogonal,
                 radial_part * inward - axial_part * orthogonal,
             )
         } else {
-            let axis = random_direction(rng);
-            let radial = perpendicular(&axis, rng);
+            let axis = Vector3::from(rng.direction());
+            let radial = Vector3::from(rng.across(axis.into()));
             (axis, radial)
         };
         let outward = radial_part * radial + axial_part * axis;
@@ -118,7 +101,7 @@ impl BruteForce<'_> {
         let [low, high] = self.mesh.bounds();
         let centre = nalgebra::center(&low, &high);
         let tip = [0, 1, 2].map(|k| centre[k] + (high[k] - low[k]) * rng.between(-1.0, 1.0));
-        let axis = random_direction(rng);
+        let axis = Vector3::from(rng.direction());
         pose_at(Point3::from(tip), axis)
     }
 }

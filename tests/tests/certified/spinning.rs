@@ -150,9 +150,8 @@ fn samples_of_spinning_motions_are_within_the_bounds() {
                     MotionVerdict::Touching(at, witness) => {
                         touching += 1;
                         let contact_pose = motion.pose(at);
-                        let p = contact_pose.rotation().transpose()
-                            * (witness.point - contact_pose.tip());
-                        assert!(oracle.evaluate(p.into()).is_some_and(|s| s.depth > 0.0), "{text}");
+                        let p = crate::to_tool(&contact_pose, 1.0, witness.point);
+                        assert!(oracle.evaluate(p).is_some_and(|s| s.depth > 0.0), "{text}");
                     }
                     MotionVerdict::Inside(_) => assert_eq!(sampled, 0.0, "{text}"),
                     MotionVerdict::Undecided(_) => undecided += 1,

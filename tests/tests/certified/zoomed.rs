@@ -8,6 +8,7 @@
 use crate::brute::BruteForce;
 use crate::depth_oracle::{DepthOracle, FIELDS, PROFILES};
 use crate::pair::{Pair, Pairs, is_full_run, parts};
+use crate::to_tool;
 use nalgebra::{Point3, Vector3};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -230,9 +231,7 @@ impl Pair<'_, DepthOracle> {
     fn nearby_triangles(&self, pose: &Pose) -> Vec<[Point; 3]> {
         let (mesh, length) = (&self.part.mesh, self.length());
         let [radius, height] = self.oracle.oracle().extent();
-        let to_tool = pose.rotation().transpose();
-        let to_tool_frame =
-            |p: Point3<f64>| -> Point { (to_tool * (p - pose.tip()) / length).into() };
+        let to_tool_frame = |p| to_tool(pose, length, p);
         let overlaps = |corners: &[Point; 3]| {
             let tool_box = [[-radius, radius], [-radius, radius], [0.0, height]];
             (0..3).all(|axis| {

@@ -14,7 +14,7 @@ use touchoff::certify::{Certifier, MotionVerdict, PoseVerdict, Witness};
 use touchoff::{Interval, Pose, SurfaceId};
 use touchoff_tests::oracle::Oracle;
 use touchoff_tests::oracle::rng::Rng;
-use touchoff_tests::oracle::triangle::{Point, advance, distance, nearest};
+use touchoff_tests::oracle::triangle::{Point, nearest};
 
 const TOOLS: [&str; 10] = [
     "Fig73Exact",
@@ -208,24 +208,9 @@ impl<'a> SurfaceAllowances<'a> {
         rng: &mut Rng,
     ) -> Sample {
         let triangle = self.brute.triangle(&self.brute.tool_frame(pose), start.triangle);
-        let [a, b, c] = triangle;
-        let longest_edge = distance(a, b).max(distance(b, c)).max(distance(c, a));
-        let (mut step, mut best, mut failed) =
-            (longest_edge.min(self.brute.oracle.extent()[0]), start, 0);
-        for _ in 0..STEPS_PER_CLIMB {
-            let point = nearest(advance(best.point, step, rng.direction()), &triangle);
-            let new_value = value(point);
-            if new_value > best.value {
-                (best, failed) = (Sample { point, value: new_value, ..best }, 0);
-                step *= 1.5;
-            } else {
-                failed += 1;
-                if failed % 4 == 0 {
-                    step *= 0.6;
-                }
-            }
-        }
-        best
+        let (value, point) =
+            self.brute.climb_by(&triangle, start.point, STEPS_PER_CLIMB, value, rng);
+        Sample { point, value, ..start }
     }
 }
 

@@ -6,7 +6,7 @@ use nalgebra::{Point3, Vector3};
 use touchoff::Pose;
 use touchoff_tests::oracle::plane::{self, add, unit};
 use touchoff_tests::oracle::rng::Rng;
-use touchoff_tests::oracle::triangle::{advance, cross, dot, norm};
+use touchoff_tests::oracle::triangle::{advance, cross};
 
 /// A point or vector of the half plane.
 type MeridianPoint = plane::Point<f64>;
@@ -66,21 +66,9 @@ pub(crate) struct Case {
     pub(crate) tolerance: f64,
 }
 
-/// Returns a random unit vector perpendicular to `direction`.
-fn perpendicular(direction: Point, rng: &mut Rng) -> Point {
-    loop {
-        let candidate = rng.direction();
-        let orthogonal = advance(candidate, -dot(direction, candidate), direction);
-        let length = norm(orthogonal);
-        if length > 0.1 {
-            return orthogonal.map(|component| component / length);
-        }
-    }
-}
-
 /// Returns a random triangle of about this size and with this normal. `point` is a corner, on an edge or inside.
 fn triangle_at(point: Point, normal: Point, size: f64, rng: &mut Rng) -> [Point; 3] {
-    let first = perpendicular(normal, rng);
+    let first = rng.across(normal);
     let second = cross(normal, first);
     let (width, height) = (size * rng.between(0.2, 1.0), size * rng.between(0.2, 1.0));
     let shift = size * rng.between(-0.5, 1.0);
@@ -137,7 +125,7 @@ impl Sketch<'_> {
         let third = advance(
             advance(start, fraction * length, direction),
             height * length,
-            perpendicular(direction, rng),
+            rng.across(direction),
         );
         [start, advance(start, length, direction), third]
     }
@@ -211,7 +199,7 @@ impl Sketch<'_> {
         let count = 2 + rng.index(4);
         let size = self.size(rng);
         let rim = |rng: &mut Rng| {
-            let base = advance(apex, size * rng.between(0.1, 1.0), perpendicular(direction, rng));
+            let base = advance(apex, size * rng.between(0.1, 1.0), rng.across(direction));
             advance(base, size * rng.between(-0.5, 0.1), direction)
         };
         let first = rim(rng);

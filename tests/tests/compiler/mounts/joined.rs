@@ -1,8 +1,17 @@
 //! Mounted files, against the same tool written as one profile.
 
 use super::{mounts, same, tool};
+use touchoff_dsl::CheckedTool;
+use touchoff_dsl::interpret::Interpreter;
 
-fn names(tool: &touchoff_dsl::CheckedTool) -> Vec<&str> {
+/// Asserts that mounted files are the same tool as one profile, and returns it.
+fn joins(mounted: &str, written: &str) -> Box<CheckedTool> {
+    let joined = tool(&mounts(mounted));
+    same(&joined, &tool(&mounts(written)));
+    joined
+}
+
+fn names(tool: &CheckedTool) -> Vec<&str> {
     tool.model.regions.iter().map(|region| region.name.as_str()).collect()
 }
 
@@ -23,7 +32,7 @@ fn a_cutter_in_a_nut_is_one_profile() {
          mount \"ball.tool\" as cutter with D = 6, flute = 20;
          mount \"er16.tool\" as nut at z = stickout;",
     ));
-    same(&joined, &tool(IN_ER16), 0.0);
+    same(&joined, &tool(IN_ER16));
     let surfaces: Vec<(&str, bool)> =
         joined.model.surfaces.iter().map(|s| (s.name.as_str(), s.cutting)).collect();
     assert_eq!(
@@ -44,7 +53,7 @@ fn a_plane_at_the_top_takes_the_top() {
     let joined =
         tool(&mounts("mount \"ball.tool\" as cutter; mount \"er16.tool\" as nut at z = 50;"));
     let written = IN_ER16.replace("30", "50").replace("31.1", "51.1").replace("47.5", "67.5");
-    same(&joined, &tool(&written), 0.0);
+    same(&joined, &tool(&written));
 }
 
 #[test]
@@ -67,17 +76,14 @@ fn an_inch_cutter_in_a_metric_nut() {
     let mut order: Vec<&str> = joined.model.surfaces.iter().map(|s| s.name.as_str()).collect();
     order.sort_unstable();
     assert_eq!(order, ["cutter.face", "cutter.flute", "cutter.shank", "nut.nut"]);
-    let regions = |tool: &touchoff_dsl::CheckedTool| -> Vec<String> {
+    let regions = |tool: &CheckedTool| -> Vec<String> {
         names(tool)
             .iter()
             .map(|name| name.replace("cutter.", "").replace("nut.nut", "nut"))
             .collect()
     };
     assert_eq!(regions(&joined), regions(&written));
-    let (mut a, mut b) = (
-        touchoff_dsl::interpret::Interpreter::new(&joined),
-        touchoff_dsl::interpret::Interpreter::new(&written),
-    );
+    let (mut a, mut b) = (Interpreter::new(&joined), Interpreter::new(&written));
     for k in 0..4000 {
         let p = [f64::from(k % 40) * 0.4, 0.01, f64::from(k / 40) * 0.61 - 1.0];
         match (a.evaluate(p, 1.0), b.evaluate(p, 1.0)) {
@@ -92,17 +98,14 @@ fn an_inch_cutter_in_a_metric_nut() {
 /// The ring between the radii is a top face of the wider one below.
 #[test]
 fn a_wide_part_below_keeps_the_ring() {
-    let joined = tool(&mounts(
+    let joined = joins(
         "mount \"er16.tool\" as nut; mount \"pin.tool\" as pin with d0 = 2 at z = 10;",
-    ));
-    let written = tool(&mounts(
         "profile {
             start (0, 0);
             line to (12.9, 0), (14, 1.1), (14, 10), (1, 10)  as nut;
             line to (1, 20), (0, 20)                         as pin;
         }",
-    ));
-    same(&joined, &written, 0.0);
+    );
     // Nothing of the pin's foot is left.
     assert_eq!(joined.model.surfaces[1].name, "pin.pin");
 }
@@ -126,23 +129,21 @@ fn a_face_of_two_surfaces_keeps_its_rim() {
         )))
     };
     let thick = "line to (3, 0) as foot; line to (3, 10) as pin; line to (5, 10) as rim;";
-    same(&joined("6"), &written(thick), 0.0);
+    same(&joined("6"), &written(thick));
     let thin = "line to (1, 0) as foot; line to (1, 10) as pin;
                 line to (2, 10) as bore; line to (5, 10) as rim;";
-    same(&joined("2"), &written(thin), 0.0);
+    same(&joined("2"), &written(thin));
     let even = "line to (2, 0) as foot; line to (2, 10) as pin; line to (5, 10) as rim;";
-    same(&joined("4"), &written(even), 0.0);
+    same(&joined("4"), &written(even));
     let wide = "line to (6, 0) as foot; line to (6, 10), (5, 10) as pin;";
-    same(&joined("12"), &written(wide), 0.0);
+    same(&joined("12"), &written(wide));
 }
 
 /// Equal radii leave no ring, and a seam that is no corner.
 #[test]
 fn equal_radii_leave_no_ring() {
-    let joined = tool(&mounts(
+    joins(
         "mount \"ball.tool\" as cutter; mount \"pin.tool\" as pin with d0 = 6 at z = 30;",
-    ));
-    let written = tool(&mounts(
         "profile {
             start (0, 0);
             arc  to (3, 3) center (0, 3) as ball  cutting;
@@ -151,14 +152,13 @@ fn equal_radii_leave_no_ring() {
             line to (3, 40), (0, 40)     as pin;
         }
         niceness cutting: 1 - depth/3;",
-    ));
-    same(&joined, &written, 0.0);
+    );
 }
 
 #[test]
 fn the_plane_cuts_a_cone() {
-    let joined = tool(&mounts("mount \"cone.tool\" as cone; mount \"er16.tool\" as nut at z = 6;"));
-    let written = tool(&mounts(
+    joins(
+        "mount \"cone.tool\" as cone; mount \"er16.tool\" as nut at z = 6;",
         "profile {
             start (0, 0);
             line to (2, 0) as face cutting;
@@ -166,17 +166,14 @@ fn the_plane_cuts_a_cone() {
             line to (12.9, 6), (14, 7.1), (14, 23.5), (0, 23.5)  as nut;
         }
         niceness cone: 0.25;",
-    ));
-    same(&joined, &written, 0.0);
+    );
 }
 
 /// At z = 12 the cone ends and the collar begins: the collar's lower face is dropped with it.
 #[test]
 fn the_plane_runs_along_a_face() {
-    let joined = tool(&mounts(
+    joins(
         "mount \"cone.tool\" as cone; mount \"pin.tool\" as pin with d0 = 10 at z = 12;",
-    ));
-    let written = tool(&mounts(
         "profile {
             start (0, 0);
             line to (2, 0)           as face cutting;
@@ -184,15 +181,14 @@ fn the_plane_runs_along_a_face() {
             line to (5, 22), (0, 22) as pin;
         }
         niceness cone: 0.25;",
-    ));
-    same(&joined, &written, 0.0);
+    );
 }
 
 /// The ball of radius 5 about z = 9, cut below its middle and above it.
 #[test]
 fn the_plane_cuts_an_arc() {
-    let joined = tool(&mounts("mount \"bulb.tool\" as bulb; mount \"er16.tool\" as nut at z = 6;"));
-    let written = tool(&mounts(
+    joins(
+        "mount \"bulb.tool\" as bulb; mount \"er16.tool\" as nut at z = 6;",
         "profile {
             start (0, 0);
             line to (3, 0)               as face;
@@ -200,11 +196,9 @@ fn the_plane_cuts_an_arc() {
             arc  to (4, 6) center (0, 9) as ball cutting;
             line to (12.9, 6), (14, 7.1), (14, 23.5), (0, 23.5)  as nut;
         }",
-    ));
-    same(&joined, &written, 0.0);
-    let joined =
-        tool(&mounts("mount \"bulb.tool\" as bulb; mount \"er16.tool\" as nut at z = 12;"));
-    let written = tool(&mounts(
+    );
+    joins(
+        "mount \"bulb.tool\" as bulb; mount \"er16.tool\" as nut at z = 12;",
         "profile {
             start (0, 0);
             line to (3, 0)                as face;
@@ -213,8 +207,7 @@ fn the_plane_cuts_an_arc() {
             arc  to (4, 12) center (0, 9) as ball cutting;
             line to (12.9, 12), (14, 13.1), (14, 29.5), (0, 29.5)  as nut;
         }",
-    ));
-    same(&joined, &written, 0.0);
+    );
 }
 
 /// A concave arc rises on the other side of its centre.
@@ -238,7 +231,7 @@ fn the_plane_cuts_a_concave_arc() {
             line to (12.9, 2), (14, 3.1), (14, 19.5), (0, 19.5)  as nut;
         }",
     ));
-    same(&joined, &written, 0.0);
+    same(&joined, &written);
 }
 
 /// A holder of two files, in another unit, is mounted as one.
@@ -253,8 +246,8 @@ fn mounted_files_mount_files() {
          mount \"holder.tool\" as holder at z = 30;
          niceness cutter.flute: 0.75;",
     ));
-    same(&joined, &flat, 0.0);
-    let surfaces = |tool: &touchoff_dsl::CheckedTool| -> Vec<String> {
+    same(&joined, &flat);
+    let surfaces = |tool: &CheckedTool| -> Vec<String> {
         tool.model.surfaces.iter().map(|s| s.name.clone()).collect()
     };
     assert_eq!(

@@ -7,7 +7,7 @@ mod macros;
 mod refused;
 
 use std::path::Path;
-use touchoff_dsl::interpret::Interpreter;
+use touchoff_dsl::interpret::{Evaluation, Interpreter};
 use touchoff_dsl::source::Source;
 use touchoff_dsl::{CheckedTool, Compiled, compile};
 use touchoff_tests::oracle::rng::Rng;
@@ -39,15 +39,13 @@ fn mounts(items: &str) -> String {
     format!("tool T {{ units mm; {items} }}")
 }
 
-/// Asserts that both are the same solid with the same regions, and evaluate alike to a fraction `part` of the
-/// tool's size.
-fn same(a: &CheckedTool, b: &CheckedTool, part: f64) {
+/// Asserts that both are the same solid with the same regions, and evaluate alike.
+fn same(a: &CheckedTool, b: &CheckedTool) {
     let regions = |tool: &CheckedTool| -> Vec<(usize, bool)> {
         let cuts = |surface: usize| tool.model.surfaces[surface].cutting;
         tool.model.regions.iter().map(|r| (r.surface, cuts(r.surface))).collect()
     };
     assert_eq!(regions(a), regions(b));
-    let slack = part * a.extent.radius.max(a.extent.high);
     assert!(
         (a.extent.high - b.extent.high).abs() <= 1e-3
             && (a.extent.low - b.extent.low).abs() <= 1e-3
@@ -58,29 +56,10 @@ fn same(a: &CheckedTool, b: &CheckedTool, part: f64) {
     for _ in 0..20_000 {
         let [x, y] = [0, 1].map(|_| rng.between(-1.1 * a.extent.radius, 1.1 * a.extent.radius));
         let p = [x, y, rng.between(-0.05 * a.extent.high, 1.05 * a.extent.high)];
-        match (first.evaluate(p, 1.0), second.evaluate(p, 1.0)) {
-            (None, None) => {}
-            (Some(a), Some(b)) if part == 0.0 => {
-                evaluation += 1;
-                assert_eq!(
-                    (a.region, a.depth, a.direction),
-                    (b.region, b.depth, b.direction),
-                    "{p:?}"
-                );
-                assert_eq!((a.magnitude, a.niceness), (b.magnitude, b.niceness), "{p:?}");
-            }
-            (Some(a), Some(b)) => {
-                evaluation += 1;
-                let near = |a: f64, b: f64| assert!((a - b).abs() <= slack, "{a}, {b} at {p:?}");
-                near(a.depth, b.depth);
-                near(a.magnitude, b.magnitude);
-                near(a.niceness, b.niceness);
-            }
-            (a, b) => {
-                let depth = a.or(b).map_or(0.0, |evaluation| evaluation.depth);
-                assert!(part > 0.0 && depth <= slack, "one is inside at {p:?}");
-            }
-        }
+        let [a, b] = [first.evaluate(p, 1.0), second.evaluate(p, 1.0)];
+        evaluation += usize::from(a.is_some());
+        let values = |e: Evaluation| (e.region, e.depth, e.direction, e.magnitude, e.niceness);
+        assert_eq!(a.map(values), b.map(values), "{p:?}");
     }
     assert!(evaluation > 1_000, "{evaluation}");
 }
