@@ -73,7 +73,8 @@ fn located(text: &str) -> Refusal {
 
 /// Returns a text with a change.
 fn changed(text: &str, change: &str) -> String {
-    let (from, to) = change.split_once(" => ").expect("a change");
+    let (from, to) = change.split_once(" =>").expect("a change");
+    let to = to.trim_start();
     assert!(text.contains(from), "{from}");
     text.replacen(from, to, 1)
 }
