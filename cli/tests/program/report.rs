@@ -143,7 +143,9 @@ fn every_finding_has_a_row_and_a_camera() {
     assert!(printed.lines().count() > 0);
     for (line, row) in printed.lines().zip(page.rows()) {
         let (_, text) = line.split_once(": ").expect("a file and a line");
+        let (text, code) = text.rsplit_once(" [").expect("a code");
         assert!(row.contains(text), "{text} is not in {row}");
+        assert!(row.contains(&format!("title=\"{}\"", code.trim_end_matches(']'))), "{row}");
     }
     assert!(page.text.contains("<strong>3 violations</strong>"), "{}", page.rows().len());
 

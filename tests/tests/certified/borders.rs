@@ -73,7 +73,7 @@ fn a_corner_at_the_border_counts_for_the_surface_that_is_exactly_nearest() {
         for (strict, other) in [("lower", "upper"), ("upper", "lower")] {
             let all = [("face", 9.0), ("top", 9.0), (strict, 1.0), (other, 9.0)];
             let mut certifier = Certifier::new(&bvh, &tool)
-                .and_then(|certifier| Ok(certifier.with_allowances(all).expect("surfaces")))
+                .map(|certifier| certifier.with_allowances(all).expect("surfaces"))
                 .expect("a profile");
             let owner = usize::from(strict == "upper");
             let is_owned = corners.iter().any(|corner| {

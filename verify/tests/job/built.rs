@@ -270,12 +270,12 @@ fn a_work_offset_far_from_the_part_is_open() {
     }
 }
 
-/// Checks a program with the mill at a plate whose top is at 0, and returns the verdict, the lines of its findings, and the reasons
+/// The line of a finding, and the reading for which it holds.
+type FindingPlace = (usize, Option<String>);
+
+/// Checks a program with the mill at a plate whose top is at 0, and returns the verdict, the places of its findings, and the reasons
 /// against a verdict.
-fn checked(
-    text: &str,
-    setup: &ControlSetup,
-) -> (Verdict, Vec<(usize, Option<String>)>, Vec<NoVerdict>) {
+fn checked(text: &str, setup: &ControlSetup) -> (Verdict, Vec<FindingPlace>, Vec<NoVerdict>) {
     let [mill, _] = tools();
     let part = cuboid([-20.0, -20.0, -10.0], [20.0, 20.0, 0.0]);
     let machine = Machine::named("3-axis").expect("a machine");

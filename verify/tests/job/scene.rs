@@ -2,6 +2,7 @@
 
 use nalgebra::Point3;
 use std::collections::BTreeMap;
+use std::fmt::Display;
 use std::path::Path;
 use std::sync::Arc;
 use touchoff::certify::TriangleBvh;
@@ -82,7 +83,7 @@ pub(crate) struct Row {
 }
 
 impl Row {
-    fn new(code: &'static str, line: usize, text: impl ToString) -> Row {
+    fn new(code: &'static str, line: usize, text: &dyn Display) -> Row {
         Row { code, line, within: None, text: text.to_string() }
     }
 
@@ -132,7 +133,7 @@ impl Checked {
     }
 
     pub(crate) fn refused(error: &JobError) -> Checked {
-        let rows = vec![Row::new(error.code(), line_of(error), error)];
+        let rows = vec![Row::new(error.code(), line_of(error), &error)];
         Checked { verdict: Verdict::None, rows, times: Vec::new() }
     }
 
