@@ -1,7 +1,7 @@
 //! Codes: every reason for which a program, a machine, a control or a job is refused, every gap in a check and every finding has one.
 //!
 //! A code is stable; the words of a message may change. `touchoff explain` and `docs/refusals.md` print the table. An enumeration of
-//! errors is its own part of the table: [`faults`] declares both at once.
+//! errors is its own part of the table: the macro `faults` declares both at once.
 
 use crate::check::{CheckGap, MachineProgramError, StepFault, UnknownCause, VerifyError};
 use crate::gcode::{

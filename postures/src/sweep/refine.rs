@@ -141,6 +141,13 @@ impl<'a> Refiner<'a> {
         let mut next = Vec::new();
         // The first rounds divide what is too long; only when nothing is are neighbours compared.
         let long = leaves.iter().filter(|(_, corners)| longest_edge(*corners) > longest);
+        // A triangle whose edges are no longer than `longest` has at most the area of the equilateral one, so the pieces are at least as many
+        // as these fit into what is divided. The excess is far above the rounding of a sum of areas.
+        let divided: f64 = long.clone().map(|(_, corners)| area(*corners)).sum();
+        let largest = 0.25 * 3f64.sqrt() * longest * longest;
+        if divided > 1.001 * largest * room as f64 {
+            return Err(too_many);
+        }
         let mut open: Vec<Piece> = long.map(|(piece, _)| *piece).collect();
         // The stack gives the last first; reversed, the pieces of a triangle stay together and in order.
         open.reverse();
@@ -195,6 +202,11 @@ impl<'a> Refiner<'a> {
     fn pieces(&self, triangle: TriangleId) -> Vec<Piece> {
         tiling(Piece::whole(triangle), |piece| self.judged.contains_key(&piece), &self.inner)
     }
+}
+
+/// Returns the area of a triangle.
+fn area([a, b, c]: [Point3<f64>; 3]) -> f64 {
+    0.5 * (b - a).cross(&(c - a)).norm()
 }
 
 /// Summary of the judgements at the pieces that meet in a point.
