@@ -379,7 +379,7 @@ fn accepted_variants_keep_their_proved_bounds() {
 
 #[test]
 fn defects_of_library_tools_are_detected_without_the_originals() {
-    let count = case_count("DEFECTS", 1);
+    let count = case_count("DEFECTS", 2);
     // A source stays on its thread.
     let results = (0..library().len()).into_par_iter().flat_map_iter(|index| {
         let original = *compile(&library()[index]).into_tool().expect("the library compiles");
