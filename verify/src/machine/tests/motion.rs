@@ -182,9 +182,10 @@ fn values_out_of_range_are_refused() {
         assert_eq!(what(rotary, &line), "C");
         let path = LinearPath::Line { start: [0.0; 3], end: [0.0, bad, 0.0] };
         assert_eq!(what([[0.0; 3]; 2], &path), "Y");
-        for (centre, sweep, name) in
-            [([bad, 0.0], 1.0, "the centre of the arc"), ([0.0, 0.0], bad, "the sweep of the arc")]
-        {
+        for (centre, sweep, name) in [
+            ([bad, 0.0], 1.0, "the centre of the arc"),
+            ([0.0, 0.0], bad, "the sweep of the arc in radians"),
+        ] {
             let plane = crate::machine::Plane::Xy;
             let path = LinearPath::Arc { start: [0.0; 3], end: [0.0; 3], plane, centre, sweep };
             assert_eq!(what([[0.0; 3]; 2], &path), name);
