@@ -35,7 +35,7 @@ impl Shown {
 /// Returns the errors in the output of rustc.
 fn shown_by_rustc(output: &str) -> Vec<Shown> {
     let mut shown = Vec::new();
-    let mut lines = output.lines().peekable();
+    let mut lines = output.lines();
     while let Some(line) = lines.next() {
         let Some(title) = line.strip_prefix("error: ") else { continue };
         let title = title.strip_prefix("use of deprecated constant `_::TOOL_WARNING`: ");

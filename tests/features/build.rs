@@ -1,2 +1,2 @@
-//! Without a build script, Cargo passes over what one needs, and the features of what macros are made from.
+//! An empty build script: Cargo passes over build dependencies, and so over the features of what macros are made from, where there is none.
 fn main() {}

@@ -91,7 +91,7 @@ fn a_line_of_a_subprogram_is_in_json_and_in_the_report() {
     let row = rows.iter().find(|row| row["code"] == "V0101").expect("a finding");
     let within = json!({ "file": "O9001.nc", "line": 3 });
     assert_eq!((&row["line"], &row["within"]), (&json!(5), &within), "{row}");
-    // What concerns the program itself has none.
+    // Messages about the program itself have none.
     assert!(rows.iter().any(|row| row["reason"].is_string() && row["within"].is_null()));
     let page = bench.place("report.html");
     let said = stderr(&touchoff(&["report", &job, "--control", "haas", "-o", &page]));

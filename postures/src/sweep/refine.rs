@@ -143,7 +143,8 @@ impl<'a> Refiner<'a> {
         let long = leaves.iter().filter(|(_, corners)| longest_edge(*corners) > longest);
         // A triangle whose edges are no longer than `longest` has at most the area of the equilateral one, so the pieces are at least as many
         // as these fit into what is divided. The excess is far above the rounding of a sum of areas.
-        let divided: f64 = long.clone().map(|(_, corners)| area(*corners)).sum();
+        let area = |piece: &Piece| self.mesh.area(piece.triangle()) * piece.fraction();
+        let divided: f64 = long.clone().map(|(piece, _)| area(piece)).sum();
         let largest = 0.25 * 3f64.sqrt() * longest * longest;
         if divided > 1.001 * largest * room as f64 {
             return Err(too_many);
@@ -202,11 +203,6 @@ impl<'a> Refiner<'a> {
     fn pieces(&self, triangle: TriangleId) -> Vec<Piece> {
         tiling(Piece::whole(triangle), |piece| self.judged.contains_key(&piece), &self.inner)
     }
-}
-
-/// Returns the area of a triangle.
-fn area([a, b, c]: [Point3<f64>; 3]) -> f64 {
-    0.5 * (b - a).cross(&(c - a)).norm()
 }
 
 /// Summary of the judgements at the pieces that meet in a point.

@@ -87,7 +87,7 @@ impl<T: Real> ThesisPoint<T> {
             2 => slope(0.0, -1.0),
             3 | 5 => slope(-1.0, -1.0),
             6 => slope(-2.0, -1.0),
-            // Where the direction vanishes, the tool's +z is the thesis's -z.
+            // The direction where it vanishes is the tool's +z, the thesis's -z.
             _ if norm(&self.arm()) == T::zero() => slope(0.0, 1.0),
             _ => opposite(&unit(&self.arm())),
         };

@@ -69,7 +69,7 @@ fn a_corner_at_the_border_counts_for_the_surface_that_is_exactly_nearest() {
                 (&z - &Big::exactly(BORDER)).to_f64()
             );
         }
-        // Of two allowances the lesser holds at the border.
+        // The lesser of two allowances holds at the border.
         for (strict, other) in [("lower", "upper"), ("upper", "lower")] {
             let all = [("face", 9.0), ("top", 9.0), (strict, 1.0), (other, 9.0)];
             let mut certifier = Certifier::new(&bvh, &tool)
@@ -102,7 +102,7 @@ fn a_corner_at_the_end_of_a_tool_is_within_rounding_of_its_surface() {
         let bvh = TriangleBvh::new(&soup(&[corners.map(Into::into)]));
         let mut certifier = Certifier::new(&bvh, &tool).expect("a profile");
         let found = certifier.deepest(&pose, 0.0).depth;
-        // So near to the end, depth is the distance from its plane.
+        // Depth is the distance from the plane of the end, so near to it.
         let mut deepest = Big::zero();
         for corner in corners {
             let [_, _, z] = in_tool(&pose, corner);

@@ -33,7 +33,7 @@ fn entries_are_written_for_people() {
     }
 }
 
-/// What is refused has a remedy, but for messages of other libraries and those that name it among their data.
+/// Every refusal has a remedy, but for messages of other libraries and those that name it among their data.
 #[test]
 fn what_is_refused_has_a_remedy() {
     let is_refusal = |entry: &&Entry| entry.severity() == "error" && !entry.message().is_empty();

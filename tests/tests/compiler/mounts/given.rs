@@ -29,7 +29,7 @@ fn arguments_replace_defaults() {
     near(radius(&with(BALL, &[""])), 3.0);
 }
 
-/// What is given to the ball, and the words of the error.
+/// Arguments that are given to the ball, and the words of the error.
 const INVALID: &str = "\
 Dia = 8 => `BallCutter` has no param `Dia` | it has `D`, `flute` | given:1:1
 flut = 8 => did you mean `flute`?

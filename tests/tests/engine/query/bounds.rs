@@ -138,7 +138,7 @@ fn the_torque_bound_covers_a_centre_far_along_the_force() {
     }
 }
 
-/// Where the normal is the direction out of the tool, the two cancel, and their own rounding is all that is left.
+/// A normal that is the direction out of the tool cancels it, and their own rounding is all that is left.
 #[test]
 fn the_force_bound_covers_normals_that_face_the_way_out() {
     let tool = ball();
