@@ -255,7 +255,7 @@ fn a_flank_pass_gouges() {
     if let Some(data) = shared() {
         let place = |name: &str| data.join(name).display().to_string();
         let rows =
-            evaluation(&place("parts/impeller.stl"), &place("paths/impeller_flank.apt"), "1000000");
+            evaluation(&place("parts/impeller.stl"), &place("paths/impeller_flank.apt"), "300000");
         assert_eq!(rows.len(), 1302);
         let ball = deepest("ball", &rows);
         assert!((0.025..0.045).contains(&ball), "{ball}");

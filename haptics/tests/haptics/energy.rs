@@ -37,12 +37,12 @@ fn there_and_back(part: &Part, law: Law, settings: &SessionSettings, path: Scene
     let tool = tool("Fig73Exact");
     let probe = Probe::new(part, tool).with_law(law);
     let mut session = Session::new(probe, settings, STRONG).expect("settings");
-    const CYCLES_PER_DIRECTION: u64 = 20_000;
+    const CYCLES_PER_DIRECTION: u64 = 10_000;
     let mut device = ScriptedDevice::new(STRONG, |cycle| {
         let at =
             if cycle <= CYCLES_PER_DIRECTION { cycle } else { 2 * CYCLES_PER_DIRECTION - cycle };
-        // A tenth of the path, which takes seconds instead of minutes.
-        Ok(path.pose(at as usize, 10 * CYCLES_PER_DIRECTION as usize))
+        // A twentieth of the path, which takes seconds instead of minutes.
+        Ok(path.pose(at as usize, 20 * CYCLES_PER_DIRECTION as usize))
     });
     let (mut max_held, mut lag) = (0.0f64, 0.0);
     let mut last = session.cycle(&mut device).expect("it was somewhere");

@@ -7,7 +7,7 @@ use touchoff_tests::haptics::wall::{DIRECT, LIMITS, Wall, theoretical_limit};
 
 #[test]
 fn direct_rendering_is_stable_up_to_the_theoretical_stiffness() {
-    let part = block(100_000);
+    let part = block(5_000);
     for rate in [500.0, 1000.0, 5000.0] {
         let limit = theoretical_limit(&HandImpedance::default(), rate);
         let [below, above] = [0.95, 1.05].map(|share| {
@@ -20,7 +20,7 @@ fn direct_rendering_is_stable_up_to_the_theoretical_stiffness() {
 
 #[test]
 fn a_coupling_is_stable_for_any_wall_stiffness() {
-    let part = block(100_000);
+    let part = block(5_000);
     let limit = theoretical_limit(&HandImpedance::default(), 1000.0);
     let rendering = Rendering::Coupled(Coupling::of(&LIMITS));
     let wall = Wall { part: &part, rate: 1000.0, rendering, step: 0.0 };
@@ -32,7 +32,7 @@ fn a_coupling_is_stable_for_any_wall_stiffness() {
 
 #[test]
 fn scaled_rendering_is_stable() {
-    let part = block(100_000);
+    let part = block(5_000);
     let limit = theoretical_limit(&HandImpedance::default(), 1000.0);
     let rendering = Rendering::Direct { scaled: true, damping: 0.0 };
     let wall = Wall { part: &part, rate: 1000.0, rendering, step: 0.0 };

@@ -191,8 +191,10 @@ fn sphere() -> Mesh {
     shapes::sphere(10.0, 3, Unit::Millimetre).expect("a sphere")
 }
 
-fn plan_and_check(mesh: Mesh, normal: [f64; 3], spacing: [f64; 2]) -> ToolPath {
-    let case = Case::new(mesh, &*MILL);
+static SPHERE: LazyLock<Case> = LazyLock::new(|| Case::new(sphere(), &*MILL));
+static STEP: LazyLock<Case> = LazyLock::new(|| Case::new(step(), &*MILL));
+
+fn plan_and_check(case: &Case, normal: [f64; 3], spacing: [f64; 2]) -> ToolPath {
     let path = case.plan_over_planes(&*MILL, normal, spacing);
     let [feed, rapid] = max_depths(&case.mesh, &path);
     println!(
@@ -224,7 +226,7 @@ fn plan_and_check(mesh: Mesh, normal: [f64; 3], spacing: [f64; 2]) -> ToolPath {
 
 #[test]
 fn covers_a_sphere() {
-    let path = plan_and_check(sphere(), [0.0, 0.3, 1.0], [1.5, 1.0]);
+    let path = plan_and_check(&SPHERE, [0.0, 0.3, 1.0], [1.5, 1.0]);
     assert!(
         path.left_out.len() * 20 < path.contact_points,
         "{} of {}",
@@ -243,20 +245,20 @@ fn covers_a_sphere() {
 
 #[test]
 fn covers_a_block_with_a_step() {
-    let mesh = step();
-    assert!(mesh.diagnostics().is_solid(), "{:?}", mesh.diagnostics().findings());
-    plan_and_check(mesh, [0.0, 1.0, 0.0], [2.0, 1.0]);
+    let diagnostics = STEP.mesh.diagnostics();
+    assert!(diagnostics.is_solid(), "{:?}", diagnostics.findings());
+    plan_and_check(&STEP, [0.0, 1.0, 0.0], [2.0, 1.0]);
 }
 
 #[test]
 fn covers_an_open_sheet_and_a_bore() {
     plan_and_check(
-        shapes::plane(10.0, 4, Unit::Millimetre).expect("a sheet"),
+        &Case::new(shapes::plane(10.0, 4, Unit::Millimetre).expect("a sheet"), &*MILL),
         [1.0, 0.0, 0.0],
         [1.0, 1.0],
     );
     let path = plan_and_check(
-        shapes::tube(6.0, 12.0, 16.0, 24, 4, Unit::Millimetre).expect("a tube"),
+        &Case::new(shapes::tube(6.0, 12.0, 16.0, 24, 4, Unit::Millimetre).expect("a tube"), &*MILL),
         [0.0, 1.0, 0.0],
         [2.0, 1.5],
     );
@@ -267,7 +269,7 @@ fn covers_an_open_sheet_and_a_bore() {
 /// no trace in it: the oracle samples its surface, and locates the tips.
 #[test]
 fn rapid_traverse_keeps_clear_of_the_stock() {
-    let case = Case::new(step(), &*MILL);
+    let case = &*STEP;
     let [low, high] = [Point3::new(-15.0, -13.0, 0.0), Point3::new(15.0, 13.0, 17.0)];
     let stock = shapes::cuboid(low, high, Unit::Millimetre).expect("a stock");
     let bvh = TriangleBvh::new(&stock);
@@ -328,7 +330,7 @@ fn paths_are_reproducible_in_every_unit_and_position() {
 
 #[test]
 fn rejects_invalid_patterns() {
-    let case = Case::new(sphere(), &*MILL);
+    let case = &*SPHERE;
     let pattern = Pattern { normal: [0.0, 0.0, 1.0], stepover: 2.0, step: 1.0 };
     let error_of = |pattern: Pattern| case.plan(&*MILL, &pattern).expect_err("no path");
     for invalid in [0.0, -1.0, f64::NAN, f64::INFINITY] {
@@ -401,7 +403,7 @@ fn a_tool_larger_than_the_part_reaches_it() {
 
 #[test]
 fn no_axis_exceeds_the_largest_tilt() {
-    let case = Case::new(sphere(), &*MILL);
+    let case = &*SPHERE;
     let pattern = Pattern { normal: [0.0, 0.3, 1.0], stepover: 2.0, step: 1.0 };
     let plan = |max_tilt: f64| PathRequest { max_tilt, ..case.request(&*MILL, &pattern) }.plan();
     let lowest = |path: &ToolPath| {
@@ -463,7 +465,7 @@ impl ToolAxisLimits for ThreeAxes {
 
 #[test]
 fn all_axes_are_within_the_limits_of_a_machine() {
-    let case = Case::new(step(), &*MILL);
+    let case = &*STEP;
     let pattern = Pattern { normal: [0.0, 1.0, 0.0], stepover: 2.0, step: 1.0 };
     let plan = |axis_limits| PathRequest { axis_limits, ..case.request(&*MILL, &pattern) }.plan();
     let [free, limited] = [None, Some(&Trunnion as &dyn ToolAxisLimits)].map(|limits| {

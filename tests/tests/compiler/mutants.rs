@@ -62,11 +62,11 @@ enum Detection {
     Undetected,
 }
 
-/// Returns up to `count` mutants of a tool. The kinds of defects take turns, and each defect has a random location. A
-/// mutant is left out if the tool has no location for it.
-fn mutants(tool: &PlannedTool, count: usize, seed: u64) -> Vec<Mutant> {
-    let mut rng = Rng::new(seed);
-    (0..count).filter_map(|k| mutant(tool, k % KINDS.len(), &mut rng)).collect()
+/// Returns up to `count` mutants of a tool. The kinds of defects take turns, from tool to tool as well, and each defect has a random
+/// location. A mutant is left out if the tool has no location for it.
+fn mutants(tool: &PlannedTool, count: usize, index: usize) -> Vec<Mutant> {
+    let mut rng = Rng::new(1000 + index as u64);
+    (index..index + count).filter_map(|k| mutant(tool, k % KINDS.len(), &mut rng)).collect()
 }
 
 fn mutant(original: &PlannedTool, kind: usize, rng: &mut Rng) -> Option<Mutant> {
@@ -379,14 +379,14 @@ fn accepted_variants_keep_their_proved_bounds() {
 
 #[test]
 fn defects_of_library_tools_are_detected_without_the_originals() {
-    let count = case_count("DEFECTS", 2);
+    let count = case_count("DEFECTS", 1);
     // A source stays on its thread.
     let results = (0..library().len()).into_par_iter().flat_map_iter(|index| {
         let original = *compile(&library()[index]).into_tool().expect("the library compiles");
         let proved = Certificate::prove(&original);
         let diagnostics = proved.diagnostics(&original);
         assert!(diagnostics.is_empty(), "{}: {diagnostics:#?}", original.model.name);
-        let mut mutants = mutants(&original, count, 1000 + index as u64);
+        let mut mutants = mutants(&original, count, index);
         mutants.retain(|mutant| differs(&original, &mutant.tool, 1));
         let detected = |mutant: Mutant| {
             let Mutant { kind, location, tool } = mutant;
@@ -411,6 +411,6 @@ fn defects_of_library_tools_are_detected_without_the_originals() {
         undetected.len(),
     );
     let detected = errors + open + warnings;
-    assert!(detected > 50 && 9 * compared.len() <= detected, "by comparison only {compared:#?}");
+    assert!(detected > 20 && 9 * compared.len() <= detected, "by comparison only {compared:#?}");
     assert!(undetected.is_empty(), "{undetected:#?}");
 }

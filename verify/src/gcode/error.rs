@@ -410,10 +410,12 @@ faults! {
         /// Subprograms, loops and jumps that take too many blocks and steps.
         #[code = P0144]
         #[error(
-            "loops, jumps and subprograms take more than {} blocks and motions: end the loop, or reduce the repeats",
-            super::MAX_REPEATED
+            "loops, jumps and subprograms take more than {limit} blocks and motions: end the loop, or reduce the repeats"
         )]
-        TooLong,
+        TooLong {
+            /// The largest number of them.
+            limit: usize,
+        },
     }
 }
 
@@ -461,7 +463,7 @@ impl GcodeFault {
             | GcodeFault::OpenLoop
             | GcodeFault::Alarm { .. }
             | GcodeFault::TooDeep
-            | GcodeFault::TooLong
+            | GcodeFault::TooLong { .. }
             | GcodeFault::Unfinished => false,
             _ => true,
         }

@@ -92,7 +92,7 @@ pub const MAX_CALLS: usize = 9;
 /// The largest number of assignments in a block: LinuxCNC writes those beyond it over the values of the first ones
 /// (`MAX_NAMED_PARAMETERS` of its interpreter).
 const MAX_ASSIGNMENTS: usize = 50;
-/// Largest number of blocks and steps in subprograms, with all repeats.
+/// Largest number of blocks and steps in subprograms, with all repeats, unless [`ControlSetup::max_repeated`] has another.
 pub const MAX_REPEATED: usize = 10_000_000;
 /// Largest number of motions of one block with a canned cycle.
 pub const MAX_CYCLE_STEPS: usize = 100_000;
@@ -142,6 +142,8 @@ pub struct ControlSetup {
     /// Position in which M6 leaves the axes, in machine coordinates: `None` for an axis that stays. Without it, as the
     /// [rules](Rule::ToolChange) say.
     pub tool_change: Option<Position>,
+    /// Largest number of blocks and steps that are executed again or in subprograms; a program with more is refused.
+    pub max_repeated: usize,
 }
 
 impl Default for ControlSetup {
@@ -163,6 +165,30 @@ impl Default for ControlSetup {
             variables: BTreeMap::new(),
             subprograms: Vec::new(),
             tool_change: None,
+            max_repeated: MAX_REPEATED,
+        }
+    }
+}
+
+/// The number of blocks and steps that were executed again or in subprograms, and its limit. The others are limited by the text.
+#[derive(Clone, Copy, Debug)]
+struct Repeated {
+    count: usize,
+    limit: usize,
+}
+
+impl Repeated {
+    fn new(setup: &ControlSetup) -> Repeated {
+        Repeated { count: 0, limit: setup.max_repeated }
+    }
+
+    /// Counts more of them.
+    fn add(&mut self, number: usize) -> Result<(), GcodeFault> {
+        self.count = self.count.saturating_add(number);
+        if self.count > self.limit {
+            Err(GcodeFault::TooLong { limit: self.limit })
+        } else {
+            Ok(())
         }
     }
 }

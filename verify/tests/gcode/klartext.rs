@@ -21,6 +21,8 @@ pub(crate) fn at_zero() -> ControlSetup {
         work_offsets: [Some([0.0; 6]); 9],
         lengths: BTreeMap::from([(5, 80.0)]),
         rules: ControlRules::default().with(Rule::ToolChange, Choice::Stays),
+        // Endless loops are refused sooner.
+        max_repeated: 1_000_000,
         ..ControlSetup::default()
     }
 }

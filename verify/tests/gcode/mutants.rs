@@ -156,6 +156,7 @@ fn setups(dialect: Choice) -> [ControlSetup; 2] {
         home: Some([0.0, 0.0, 400.0, 0.0, 0.0, 0.0]),
         radius_offsets: BTreeMap::from([(1, 2.0), (2, 3.5)]),
         subprograms: vec![SubprogramFile { name: "sub.ngc".to_owned(), text: SUBPROGRAM.into() }],
+        max_repeated: 10_000,
         ..ControlSetup::default()
     };
     let rules = ControlRules::named("haas").expect("a control");
@@ -165,7 +166,12 @@ fn setups(dialect: Choice) -> [ControlSetup; 2] {
     let rules = rules.with(Rule::Dialect, dialect).with(Rule::PresetEnd, Choice::EndsPreset);
     let unknown = ControlRules::default().with(Rule::Dialect, dialect);
     let radius_offsets = known.radius_offsets.clone();
-    let unknown = ControlSetup { rules: unknown, radius_offsets, ..ControlSetup::default() };
+    let unknown = ControlSetup {
+        rules: unknown,
+        radius_offsets,
+        max_repeated: 10_000,
+        ..ControlSetup::default()
+    };
     [ControlSetup { rules, ..known }, unknown]
 }
 

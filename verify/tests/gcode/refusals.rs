@@ -10,6 +10,8 @@ fn at_zero() -> ControlSetup {
     ControlSetup {
         start: [Some(0.0); 6],
         work_offsets: [Some([0.0; 6]); 9],
+        // Endless loops are refused sooner.
+        max_repeated: 100_000,
         ..ControlSetup::default()
     }
 }
@@ -237,10 +239,10 @@ fn words_that_are_not_read_are_named() {
         ("GOTO 10\nN10\nN10", 1, "P0130 N10"),
         ("GOTO 10\nDO1\nN10\nEND1", 1, "P0120 into a loop"),
         ("GOTOF END", 1, "P0111 `END`"),
-        ("N1 GOTO 1", 1, "P0144 10000000 blocks"),
+        ("N1 GOTO 1", 1, "P0144 100000 blocks"),
         ("IF [1 EQ 1] G0 X1", 1, "P0119 IF"),
         ("WHILE [1 EQ 1] DO 4", 1, "P0110 `DO4`"),
-        ("WHILE[1EQ1]DO1\nEND1", 1, "P0144 10000000 blocks"),
+        ("WHILE[1EQ1]DO1\nEND1", 1, "P0144 100000 blocks"),
         ("END5", 1, "P0110 `END5`"),
         ("#1=#5061", 1, "P0211 #5061"),
         ("#1=#5041", 1, "P0211 #5041"),
@@ -384,7 +386,7 @@ fn words_that_are_not_read_are_named() {
         ("O5 sub\nG0 X1", 1, "P0128 it has no endsub"),
         ("O5 sub\nO6 endsub\nO5 endsub", 2, "P0128 another subprogram is open"),
         ("O5 endsub", 1, "P0136 O5 endsub"),
-        ("M98 P7 L99999999\nM30\nO7\nM99", 4, "P0144 10000000 blocks"),
+        ("M98 P7 L99999999\nM30\nO7\nM99", 4, "P0144 100000 blocks"),
         ("G93 G1 X1 F1\nX2", 2, "P0122 G93"),
         ("G5 X1 Y1 I1 J1 P1 Q1", 1, "P0115 G5"),
         ("G4 X1 Y2", 1, "P0118 Y"),

@@ -22,6 +22,8 @@ fn setup() -> ControlSetup {
         lengths: BTreeMap::from([(1, 80.0), (2, 50.0)]),
         tool_names: BTreeMap::from([("DRILL 8.5".to_owned(), 2)]),
         home: Some([1.0, 2.0, 400.0, 0.0, 0.0, 0.0]),
+        // Endless loops are refused sooner.
+        max_repeated: 1_000_000,
         ..ControlSetup::default()
     }
 }
@@ -424,7 +426,7 @@ fn what_is_outside_is_refused_by_name_with_its_line() {
         ("R1=\"A\"", 1, "P0219 a text stands where a number is needed"),
         ("R1=1 G0 X5", 1, "P0120 an assignment while its block has addresses"),
         ("R1=3\nFOR R2=1 TO R1\nR1=R1-1\nENDFOR", 2, "P0120 its last value changes"),
-        ("R1=1\nLOOP\nENDLOOP", 3, "P0144 10000000 blocks"),
+        ("R1=1\nLOOP\nENDLOOP", 3, "P0144 1000000 blocks"),
         ("R1=1\nG0 TRANS X5", 2, "P0115 no word that is read"),
         ("TRANS X5 F100", 1, "P0120 TRANS"),
         ("TRANS X5\nTRAORI", 2, "P0120 TRAORI"),
@@ -523,7 +525,7 @@ fn mutants_end_with_steps_or_with_a_line() {
     for seed in &seeds {
         assert!(steps(seed).len() > 5, "{seed}");
     }
-    let setups = [setup()];
+    let setups = [ControlSetup { max_repeated: 10_000, ..setup() }];
     let seeds = seeds.each_ref().map(|text| Seed { text, setups: &setups });
     assert_planted_are_found(&seeds, ["M777", "WAITM(1)", "X=R99"]);
     read_mutants(&seeds, &PIECES, 1_500, 11);

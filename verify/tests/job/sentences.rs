@@ -54,6 +54,8 @@ fn interpreted(control: Option<&str>, program: &str) -> Refusal {
         work_offsets: [Some([0.0; 6]); 9],
         lengths: [(1, 80.0), (2, 50.0), (5, 80.0)].into(),
         rules: control.map_or(stays, rules),
+        // Endless loops are refused sooner.
+        max_repeated: 10_000,
         ..ControlSetup::default()
     };
     let result = Interpreter::new(program, &setup)

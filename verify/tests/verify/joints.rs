@@ -118,7 +118,7 @@ fn rounded(blocks: Vec<Block>) -> Vec<Block> {
 fn motions() -> usize {
     match std::env::var("MOTIONS") {
         Ok(count) => count.parse().expect("MOTIONS is a number of motions"),
-        Err(_) => 400,
+        Err(_) => 320,
     }
 }
 

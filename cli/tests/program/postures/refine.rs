@@ -148,17 +148,17 @@ fn a_refinement_continues_where_it_ended() {
     let pocket = Pocket::new();
     let [whole, later, killed] =
         ["a.postures", "b.postures", "c.postures"].map(|name| pocket.bench.place(name));
-    let told = object(&pocket.sweep("--refine 0.5 --json -o a.postures"));
+    let told = object(&pocket.sweep("--refine 1 --json -o a.postures"));
     assert!(pocket.sweep("-o b.postures").status.success());
     std::fs::copy(&later, &killed).expect("a copy");
-    let after = object(&pocket.sweep("--refine 0.5 --json -o b.postures"));
+    let after = object(&pocket.sweep("--refine 1 --json -o b.postures"));
     assert_eq!(after["refinement"], told["refinement"]);
     let rows = PostureMap::read(&whole).expect("a map").piece_rows().expect("rows");
     let some: Vec<_> = rows.clone().into_iter().take(rows.len() / 2).collect();
     let map = PostureMap::resume(&killed).expect("a map");
     map.record_pieces(&some).expect("room");
     drop(map);
-    let continued = object(&pocket.sweep("--refine 0.5 --json -o c.postures"));
+    let continued = object(&pocket.sweep("--refine 1 --json -o c.postures"));
     assert_eq!(continued["refinement"], told["refinement"]);
     let postures = |told: &Value| told["postures"]["total"].as_u64();
     assert!(postures(&continued) < postures(&told), "{continued}");

@@ -7,7 +7,7 @@ use super::structure::{Structure, Subprogram};
 use super::variables::{Locals, Variables};
 use crate::gcode::error::combination;
 use crate::gcode::files::name;
-use crate::gcode::{GcodeError, GcodeFault, MAX_CALLS, MAX_REPEATED, SubprogramFile};
+use crate::gcode::{GcodeError, GcodeFault, MAX_CALLS, Repeated, SubprogramFile};
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::mem;
 use std::sync::{Arc, OnceLock};
@@ -282,12 +282,12 @@ pub(super) struct Flow<'a> {
     furthest: usize,
     /// The place after it.
     past: Place,
-    repeated: usize,
+    pub(super) repeated: Repeated,
 }
 
 impl<'a> Flow<'a> {
     /// Begins the first of several texts.
-    pub(super) fn new(sources: Arc<[Source<'a>]>) -> Flow<'a> {
+    pub(super) fn new(sources: Arc<[Source<'a>]>, repeated: Repeated) -> Flow<'a> {
         Flow {
             file: 0,
             is_inner: false,
@@ -302,7 +302,7 @@ impl<'a> Flow<'a> {
             furthest: 0,
             past: sources[0].extent.start,
             sources,
-            repeated: 0,
+            repeated,
         }
     }
 
@@ -329,8 +329,7 @@ impl<'a> Flow<'a> {
             // Its blocks are those of a subprogram.
             started: true,
             titled: true,
-            repeated: self.repeated,
-            ..Flow::new(Arc::clone(&self.sources))
+            ..Flow::new(Arc::clone(&self.sources), self.repeated)
         }
     }
 
@@ -408,8 +407,7 @@ impl<'a> Flow<'a> {
     /// Counts blocks or steps of a line that were executed before, or of a subprogram. The others are limited by the text.
     pub(super) fn count(&mut self, number: usize, line: usize) -> Result<(), GcodeFault> {
         let is_repeated = !self.is_main() || line <= self.furthest;
-        self.repeated += if is_repeated { number } else { 0 };
-        if self.repeated > MAX_REPEATED { Err(GcodeFault::TooLong) } else { Ok(()) }
+        if is_repeated { self.repeated.add(number) } else { Ok(()) }
     }
 
     /// Returns the line of text that follows the end of the main program and is no subprogram.

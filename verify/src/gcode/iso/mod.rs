@@ -23,7 +23,7 @@ use super::files::{self, in_file};
 use super::interpreter::{End, Progress};
 use super::note::NoteKind;
 use super::rules::{Choice, Rule};
-use super::{ControlSetup, GcodeError, GcodeFault, MAX_REPEATED, SubprogramFile, shown};
+use super::{ControlSetup, GcodeError, GcodeFault, Repeated, SubprogramFile, shown};
 use blank::{BlankLine, blank_line};
 use expression::{Cursor, Language, Value, condition, value};
 use flow::{Callee, Flow, Source, before_semicolon};
@@ -105,7 +105,7 @@ impl<'a> Program<'a> {
         let sources: Vec<Source> =
             [Source::new(None, extent, structure)].into_iter().chain(others).collect();
         flow::check_files(&sources, files, is_linuxcnc(control))?;
-        let flow = Flow::new(sources.into());
+        let flow = Flow::new(sources.into(), Repeated::new(setup));
         let (waiting, line) = (Vec::new(), Line::default());
         Ok(Program { flow, waiting, files, variables, line, switch: None, blank: [None; 2] })
     }
@@ -663,9 +663,9 @@ impl<'a> Program<'a> {
             Role::Repeat => {
                 let times = value(cursor, &scope)?.unwrap_or(0.0).round();
                 check_end(cursor)?;
-                if times > MAX_REPEATED as f64 {
-                    return Err(GcodeFault::TooLong);
-                }
+                // Refused before the first of too many.
+                let mut ahead = self.flow.repeated;
+                ahead.add(times as usize)?;
                 if !self.flow.repeat(line, times.max(0.0) as u32) {
                     self.flow.jump(clause.after);
                 }

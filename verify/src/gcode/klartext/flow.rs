@@ -7,7 +7,7 @@
 use super::expression::{Parameters, value};
 use super::line::{Cursor, Place, begin, block};
 use crate::gcode::error::{combination, missing};
-use crate::gcode::{GcodeError, GcodeFault, MAX_CALLS, MAX_REPEATED};
+use crate::gcode::{GcodeError, GcodeFault, MAX_CALLS, Repeated};
 use std::collections::HashMap;
 use std::fmt;
 use std::sync::Arc;
@@ -93,7 +93,7 @@ pub(super) struct Flow<'a> {
     repeats: Vec<Repeat>,
     /// Set once a block was called, repeated or jumped to.
     jumped: bool,
-    counted: usize,
+    pub(super) repeated: Repeated,
 }
 
 impl<'a> Flow<'a> {
@@ -101,7 +101,11 @@ impl<'a> Flow<'a> {
     ///
     /// # Errors
     /// A label that stands twice, with its line.
-    pub(super) fn new(text: &'a str, start: Place) -> Result<Flow<'a>, GcodeError> {
+    pub(super) fn new(
+        text: &'a str,
+        start: Place,
+        repeated: Repeated,
+    ) -> Result<Flow<'a>, GcodeError> {
         let mut labels = HashMap::new();
         let mut ends = Vec::new();
         let mut lines: HashMap<Label, usize> = HashMap::new();
@@ -135,7 +139,7 @@ impl<'a> Flow<'a> {
             calls: Vec::new(),
             repeats: Vec::new(),
             jumped: false,
-            counted: 0,
+            repeated,
         })
     }
 
@@ -147,14 +151,14 @@ impl<'a> Flow<'a> {
         // One for the call itself, which has no place here.
         let below = caller.below + caller.calls.len() + 1;
         match below <= MAX_CALLS {
-            true => Ok(Flow { below, jumped: true, counted: caller.counted, ..self }),
+            true => Ok(Flow { below, jumped: true, repeated: caller.repeated, ..self }),
             false => Err(GcodeFault::TooDeep),
         }
     }
 
     /// Goes on after the call of a program.
     pub(super) fn go_on_after(&mut self, called: &Flow) {
-        (self.jumped, self.counted) = (true, called.counted);
+        (self.jumped, self.repeated) = (true, called.repeated);
     }
 
     /// Returns the next block and its line.
@@ -187,8 +191,7 @@ impl<'a> Flow<'a> {
 
     /// Counts blocks or steps that are executed after a jump. Those before are limited by the text.
     pub(super) fn count(&mut self, number: usize) -> Result<(), GcodeFault> {
-        self.counted += if self.jumped { number } else { 0 };
-        if self.counted > MAX_REPEATED { Err(GcodeFault::TooLong) } else { Ok(()) }
+        if self.jumped { self.repeated.add(number) } else { Ok(()) }
     }
 
     /// Returns the first block from a place on that is neither blank nor a comment.

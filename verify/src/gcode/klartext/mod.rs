@@ -22,7 +22,7 @@ use super::files::{self, in_file};
 use super::interpreter::{End, Progress};
 use super::note::NoteKind;
 use super::rules::{Choice, ControlRules, Rule};
-use super::{ControlSetup, GcodeError, GcodeFault, SubprogramFile, shown, unquoted};
+use super::{ControlSetup, GcodeError, GcodeFault, Repeated, SubprogramFile, shown, unquoted};
 use block::{Feed, Scale, m_entry};
 use cycle::Cycle;
 pub(crate) use expression::is_variable;
@@ -129,7 +129,7 @@ impl<'a> Program<'a> {
         // Lengths are converted where they are read.
         (control.modal.unit, control.modal.unit_stated) = (Unit::Millimetre, true);
         Ok(Program {
-            flow: Flow::new(text, start)?,
+            flow: Flow::new(text, start, Repeated::new(setup))?,
             waiting: Vec::new(),
             file: 0,
             files: &setup.subprograms,
@@ -175,7 +175,7 @@ impl<'a> Program<'a> {
                     let error = GcodeError { line, fault: GcodeFault::OtherUnit };
                     return Err(in_file(self.files, file, error));
                 }
-                let flow = Flow::new(text, start);
+                let flow = Flow::new(text, start, self.flow.repeated);
                 let flow = flow.map_err(|error| in_file(self.files, file, error))?;
                 self.called.insert(file, flow.clone());
                 flow

@@ -6,7 +6,7 @@
 use super::text::{Cursor, start};
 use crate::gcode::error::{combination, missing, not_read};
 use crate::gcode::iso::{Place, line};
-use crate::gcode::{GcodeError, GcodeFault, MAX_CALLS, MAX_REPEATED, SubprogramFile, shown};
+use crate::gcode::{GcodeError, GcodeFault, MAX_CALLS, Repeated, SubprogramFile, shown};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -207,12 +207,12 @@ pub(super) struct Flow<'a> {
     furthest: usize,
     /// The place after the last line of the main program that was executed.
     past: Place,
-    repeated: usize,
+    repeated: Repeated,
 }
 
 impl<'a> Flow<'a> {
     /// Begins the main program of a text.
-    pub(super) fn new(source: Arc<Source<'a>>) -> Flow<'a> {
+    pub(super) fn new(source: Arc<Source<'a>>, repeated: Repeated) -> Flow<'a> {
         Flow {
             below: 0,
             place: source.sections[source.main].start,
@@ -223,7 +223,7 @@ impl<'a> Flow<'a> {
             calls: Vec::new(),
             repeats: Vec::new(),
             furthest: 0,
-            repeated: 0,
+            repeated,
         }
     }
 
@@ -242,7 +242,7 @@ impl<'a> Flow<'a> {
             return Err(GcodeFault::TooDeep);
         }
         let place = source.sections[section].start;
-        Ok(Flow { below, place, section, repeated: self.repeated, ..Flow::new(source) })
+        Ok(Flow { below, place, section, ..Flow::new(source, self.repeated) })
     }
 
     /// Goes on after a call of a subprogram in another file.
@@ -287,8 +287,7 @@ impl<'a> Flow<'a> {
 
     /// Counts blocks and steps that are executed again. Those of the main program are limited by its text.
     fn count(&mut self, number: usize) -> Result<(), GcodeFault> {
-        self.repeated += number;
-        if self.repeated > MAX_REPEATED { Err(GcodeFault::TooLong) } else { Ok(()) }
+        self.repeated.add(number)
     }
 
     /// Counts the steps of a block, if it is executed again.

@@ -23,7 +23,7 @@ use super::files::{in_file, without_folder};
 use super::interpreter::{End, Progress};
 use super::note::NoteKind;
 use super::rules::{Choice, Rule};
-use super::{ControlSetup, GcodeError, GcodeFault, SubprogramFile, shown};
+use super::{ControlSetup, GcodeError, GcodeFault, Repeated, SubprogramFile, shown};
 use expression::{Value, expression, number};
 use flow::{Direction, Flow, Left, RepeatWords, Source, Structure, no_target, title};
 use std::collections::HashMap;
@@ -180,7 +180,7 @@ impl<'a> Program<'a> {
         }
         control.settle(&NATIVE);
         Ok(Program {
-            flow: Flow::new(Arc::clone(&sources[0])),
+            flow: Flow::new(Arc::clone(&sources[0]), Repeated::new(setup)),
             waiting: Vec::new(),
             sources,
             files,

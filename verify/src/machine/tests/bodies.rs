@@ -131,7 +131,7 @@ fn deviations_between_bodies_are_within_their_bounds() {
     let machines = machines();
     let mut ratios = Vec::new();
     let mut moving = 0;
-    let count = cases("MOTIONS", 100_000);
+    let count = cases("MOTIONS", 40_000);
     for case in 0..count {
         let sampled = random.motion(&machines[case % machines.len()]);
         let (mover, reference) = bodies(&mut random, &sampled.machine);

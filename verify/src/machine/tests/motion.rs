@@ -79,7 +79,7 @@ fn deviations_are_within_their_bounds() {
     let machines = machines();
     let (mut ratios, mut tool_ratios, mut short) =
         (Vec::new(), [Vec::new(), Vec::new()], Vec::new());
-    let count = cases("MOTIONS", 100_000);
+    let count = cases("MOTIONS", 40_000);
     for case in 0..count {
         let sampled = random.motion(&machines[case % machines.len()]);
         let mut motion = sampled.motion();
