@@ -112,7 +112,7 @@ fn a_tool_file_has_the_same_contacts_as_the_built_in_tool() {
 fn law_weights_and_centre_change_the_wrench() {
     let bench = Bench::new();
     let row = |more: &[&str]| {
-        let all = [&["--json", "--points", "100000"], more].concat();
+        let all = [&["--json", "--points", "20000"], more].concat();
         rows(&bench.run("block.stl", "path.csv", "D2Ball", &all)).swap_remove(1)
     };
     let number = |value: &Value| value.as_f64().expect("a number");

@@ -23,7 +23,7 @@ fn params_are_set() {
     let expanded = touchoff(&["expand", &cutter, "--set", "D=8"]);
     assert!(stdout(&expanded).contains("4.0"), "{}", stderr(&expanded));
     let depth = |more: &[&str]| {
-        let all = [&["--json", "--points", "200000"], more].concat();
+        let all = [&["--json", "--points", "20000"], more].concat();
         let rows = rows(&bench.run("block.stl", "path.csv", "cutter.tool", &all));
         rows[1]["contacts"].as_u64().expect("a number")
     };
