@@ -16,6 +16,7 @@ pub mod big;
 pub mod bodies;
 pub mod brute;
 pub mod closed_forms;
+pub mod exact;
 pub mod fig73;
 #[cfg(test)]
 mod fig73_table;

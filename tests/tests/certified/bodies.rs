@@ -2,14 +2,8 @@
 
 use crate::{UP, block, pose};
 use touchoff::certify::{CertifiedScene, Certifier, MotionVerdict, PoseVerdict, TriangleBvh};
-use touchoff::tool::Interpreted;
 use touchoff::{Interval, Motion, Pose, Unit};
-
-fn ball() -> Interpreted {
-    "tool Ball { units mm; profile { start (0, 0); arc to (0, 6) center (0, 3) as ball cutting; } niceness cutting: 1; }"
-        .parse()
-        .expect("a tool")
-}
+use touchoff_tests::fixtures::ball;
 
 /// Returns a plate whose upper face is at a height.
 fn plate_at(height: f64) -> TriangleBvh {

@@ -1,14 +1,13 @@
 //! Corners at the height at which one surface ends and the next begins: rounding puts each on either side, and its depth
 //! counts for the surface to which it is exactly the nearest.
-//!
-//! The doubles of part and pose are exact numbers, and a pose is the map `p = R q + tip`, inverted here in 256 bits.
 
 use crate::soup;
-use nalgebra::{Matrix3, Point3, Vector3};
+use nalgebra::{Point3, Vector3};
 use touchoff::certify::{Certifier, PoseVerdict, TriangleBvh};
 use touchoff::tool::Interpreted;
-use touchoff::{Pose, Tool};
+use touchoff::{Level, Pose, Tool};
 use touchoff_tests::oracle::big::Big;
+use touchoff_tests::oracle::exact::{Frame, Triple, exactly};
 use touchoff_tests::oracle::rng::Rng;
 
 const RADIUS: f64 = 5.0;
@@ -22,19 +21,8 @@ fn pin() -> Interpreted {
 }
 
 /// Returns a point of the world in the tool's frame.
-fn in_tool(pose: &Pose, point: Point3<f64>) -> [Big; 3] {
-    let rotation: &Matrix3<f64> = pose.rotation();
-    let column = |k: usize| [0, 1, 2].map(|row| Big::exactly(rotation[(row, k)]));
-    let [x, y, z] = [column(0), column(1), column(2)];
-    let cross = |a: &[Big; 3], b: &[Big; 3]| {
-        [[1, 2], [2, 0], [0, 1]].map(|[i, j]| &(&a[i] * &b[j]) - &(&a[j] * &b[i]))
-    };
-    let dot =
-        |a: &[Big; 3], b: &[Big; 3]| &(&(&a[0] * &b[0]) + &(&a[1] * &b[1])) + &(&a[2] * &b[2]);
-    let from_tip = [0, 1, 2].map(|k| &Big::exactly(point[k]) - &Big::exactly(pose.tip()[k]));
-    let rows = [cross(&y, &z), cross(&z, &x), cross(&x, &y)];
-    let determinant = dot(&rows[0], &x);
-    rows.map(|row| &dot(&row, &from_tip) / &determinant)
+fn in_tool(pose: &Pose, point: Point3<f64>) -> Triple {
+    Frame::new(pose.rotation(), pose.tip()).to_tool(&exactly(point))
 }
 
 /// Triangles all of whose corners are at the border as nearly as doubles can be.
@@ -116,5 +104,23 @@ fn a_corner_at_the_end_of_a_tool_is_within_rounding_of_its_surface() {
             Big::exactly(found.low) <= deepest && deepest <= Big::exactly(found.high),
             "{text}"
         );
+    }
+}
+
+/// An edge just above the end of a tool, which counts for its slab within rounding, is not in the tool.
+#[test]
+fn an_edge_above_the_end_of_a_tool_is_not_deep() {
+    let tool = pin();
+    let mut rng = Rng::new(3);
+    for _ in 0..400 {
+        let [x, y] = [rng.between(0.5, 4.0), rng.between(-2.0, 2.0)];
+        let [from, to] = [rng.between(0.0, 1e-12), rng.between(0.01, 1.0)]
+            .map(|above| [x, y, 2.0 * BORDER + above]);
+        let beside = [[9.0, 0.0, 25.0], [9.5, 0.0, 25.0], [9.0, 0.5, 25.0]];
+        let bvh = TriangleBvh::new(&soup(&[[from, to, from], beside]));
+        let certifier = Certifier::new(&bvh, &tool).expect("a profile");
+        let mut certifier = certifier.with_level(Level::baseline());
+        let found = certifier.deepest(&Pose::default(), 0.0).depth;
+        assert!(found.low == 0.0 && found.high < 1e-11, "{found:?}: {from:?} to {to:?}");
     }
 }

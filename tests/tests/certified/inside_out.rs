@@ -8,7 +8,7 @@ use touchoff::certify::{
 use touchoff::tool::Interpreted;
 use touchoff::{Mesh, SurfaceId, Unit};
 
-use crate::{UP, motion, pose};
+use crate::{UP, block, motion, pose};
 
 fn bead() -> Interpreted {
     "tool Bead { units mm; profile { start (0, 0); arc to (0, 0.2) center (0, 0.1) as bead cutting; } niceness cutting: 1; }"
@@ -69,4 +69,28 @@ fn a_tool_in_a_lobe_that_is_inside_out_is_undecided() {
         assert_eq!(found, [1, 1]);
     }
     assert!(solids > 0);
+}
+
+/// Hardly any point of the shank is deeper than its allowance, and none of them is found within the budget.
+#[test]
+fn a_tool_of_which_no_point_is_found_is_undecided() {
+    let tool: Interpreted = "tool Regions { units mm;
+        curve nose = hypot(d, z - 1) - 1; curve side = 1 - d; curve end = 6 - z;
+        region ball as ball cutting where z <= 1, nose <= 0 { depth: -nose; }
+        region shank where z >= 1, 0 <= side <= end { depth: side; }
+        region end as shank where 0 <= end <= side { depth: end; }
+        niceness cutting: 1; }"
+        .parse()
+        .expect("a tool");
+    let bvh = TriangleBvh::new(&block([-50.0; 3], [50.0; 3]));
+    for (allowed, expected) in [
+        (0.5, PoseVerdict::Inside(SurfaceId(1))),
+        (1.0 - 1e-9, PoseVerdict::Undecided(0.0)),
+        (1.1, PoseVerdict::Clear),
+    ] {
+        let all = [("ball", f64::INFINITY), ("shank", allowed)];
+        let certifier = Certifier::new(&bvh, &tool).expect("a bounded depth");
+        let mut certifier = certifier.with_allowances(all).expect("surfaces");
+        assert_eq!(certifier.check_pose(&pose([0.0; 3], UP)), expected, "{allowed}");
+    }
 }

@@ -15,7 +15,6 @@
 //! `POSES`, `ZOOMED` and `MOTIONS` are numbers of poses, and of motions proved clear, per tool and part; `CASES` is the
 //! number of all cases together.
 
-mod afar;
 mod allowances;
 mod approach;
 mod bodies;
@@ -30,6 +29,7 @@ mod end_in_part;
 mod fields;
 mod hard_cases;
 mod inside_out;
+mod limits;
 mod motions;
 mod overhang;
 mod pair;

@@ -1,14 +1,15 @@
 //! Trajectories that are no motions at constant speed: the tip of a ball end mill on an arc beside a wall, for which the
 //! greatest depth is known.
 
-use crate::{UP, block, motion, pose, soup, tool};
+use crate::{block, motion, pose, soup, tool};
 use nalgebra::{Point3, Rotation3, Vector3};
 use touchoff::certify::{
     Approximation, Certifier, MotionDepth, MotionVerdict, Trajectory, TriangleBvh,
 };
 use touchoff::mesh::shapes;
 use touchoff::tool::Interpreted;
-use touchoff::{Interval, Mesh, Motion, Pose, SurfaceId, Unit};
+use touchoff::{Interval, Mesh, Pose, SurfaceId, Unit};
+use touchoff_tests::fixtures;
 
 /// Radius of the arc about the z axis, and that of the tool, mm.
 const RADIUS: f64 = 20.0;
@@ -16,26 +17,50 @@ const BALL: f64 = 5.0;
 /// The arc ends at this angle on either side of +x, in radians.
 const HALF_ANGLE: f64 = 1.4;
 
-/// The tip on an arc about the z axis, with constant speed and an upright tool.
-struct Arc {
-    /// Bound on the distance from the arc that is meant.
+/// A curved path of the tip, on which the axis turns about x at constant speed.
+struct Path {
+    /// The tip at a time.
+    tip: fn(f64) -> [f64; 3],
+    /// The angle between the axis and +z at either end.
+    lean: f64,
+    /// Bounds on speed and acceleration of the tip.
+    speed: f64,
+    acceleration: f64,
+    /// The longest time on which the path is approximated.
+    longest: f64,
+    /// Bound on the distance from the path that is meant.
     error: f64,
 }
 
-impl Trajectory for Arc {
+/// Returns the tip on an arc about the z axis, with constant speed and an upright tool.
+fn arc(error: f64) -> Path {
+    Path {
+        tip: |at| {
+            let (sine, cosine) = (HALF_ANGLE * (2.0 * at - 1.0)).sin_cos();
+            [RADIUS * cosine, RADIUS * sine, 0.0]
+        },
+        lean: 0.0,
+        speed: 2.0 * HALF_ANGLE * RADIUS,
+        acceleration: (2.0 * HALF_ANGLE).powi(2) * RADIUS,
+        // The chord of a longer arc says nothing, as axes that turn by half a turn say nothing.
+        longest: 0.5 / HALF_ANGLE,
+        error,
+    }
+}
+
+impl Trajectory for Path {
     fn pose(&self, at: f64) -> Pose {
-        let (sine, cosine) = (HALF_ANGLE * (2.0 * at - 1.0)).sin_cos();
-        pose([RADIUS * cosine, RADIUS * sine, 0.0], UP)
+        let (sine, cosine) = (self.lean * (2.0 * at - 1.0)).sin_cos();
+        pose((self.tip)(at), [0.0, sine, cosine])
     }
 
     fn approximation(&self, [from, to]: [f64; 2], _reach: f64) -> Option<Approximation> {
-        let angle = 2.0 * HALF_ANGLE * (to - from);
-        // The chord of a curve is as far from it as an eighth of the greatest acceleration. Of an arc so long it says
-        // nothing, as of axes that turn by half a turn.
-        (angle < 1.0).then(|| Approximation {
-            motion: Motion::new(&self.pose(from), &self.pose(to)).expect("no rotation"),
+        let time = to - from;
+        // The chord of a curve is as far from it as an eighth of the greatest acceleration.
+        (time <= self.longest).then(|| Approximation {
+            motion: motion(&self.pose(from), &self.pose(to)),
             times: [0.0, 1.0],
-            deviation: RADIUS * angle * angle / 8.0 + self.error,
+            deviation: self.acceleration * time * time / 8.0 + self.error,
         })
     }
 
@@ -43,8 +68,8 @@ impl Trajectory for Arc {
         self.error
     }
 
-    fn max_speed(&self, _reach: f64) -> f64 {
-        2.0 * HALF_ANGLE * RADIUS
+    fn max_speed(&self, reach: f64) -> f64 {
+        self.speed + 2.0 * self.lean * reach
     }
 
     fn has_spin(&self) -> bool {
@@ -62,7 +87,7 @@ fn wall(depth: f64) -> TriangleBvh {
 #[test]
 fn the_greatest_depth_on_an_arc_is_known() {
     for (depth, error) in [(0.5, 0.0), (0.5, 0.01), (0.003, 0.0)] {
-        let (wall, arc) = (wall(depth), Arc { error });
+        let (wall, arc) = (wall(depth), arc(error));
         let mut certifier = Certifier::new(&wall, tool("Ball")).expect("a profile");
         let surfaces = (0..tool("Ball").info().surfaces.len()).map(SurfaceId);
         let found: Vec<MotionDepth> = surfaces
@@ -89,7 +114,7 @@ fn the_greatest_depth_on_an_arc_is_known() {
 
 #[test]
 fn an_arc_beside_a_wall_is_decided_to_the_tolerance() {
-    let arc = Arc { error: 0.0 };
+    let arc = arc(0.0);
     for (depth, clear) in [(-1.0, true), (-1e-5, true), (1e-5, false), (1.0, false)] {
         let wall = wall(depth);
         let mut certifier = Certifier::new(&wall, tool("Ball")).expect("a profile");
@@ -111,11 +136,11 @@ fn an_arc_about_a_pillar_is_clear_though_its_chords_are_not() {
         let pillar = shapes::tube(4.0, RADIUS - BALL - gap, 8.0, 256, 1, Unit::Millimetre);
         let pillar = TriangleBvh::new(&pillar.expect("a tube"));
         let mut certifier = Certifier::new(&pillar, tool("Ball")).expect("a profile");
-        let verdict = certifier.check_motion(&Arc { error: 0.0 }, 1e-6);
+        let verdict = certifier.check_motion(&arc(0.0), 1e-6);
         match verdict {
             MotionVerdict::Clear => assert!(clear, "{gap}"),
             MotionVerdict::Touching(at, witness) => {
-                let from_tip = witness.point - Arc { error: 0.0 }.pose(at).tip();
+                let from_tip = witness.point - arc(0.0).pose(at).tip();
                 // Below the centre of the ball its distance from there counts, above it that from the axis.
                 let below = (BALL - from_tip.z).max(0.0);
                 let distance = from_tip.x.hypot(from_tip.y).hypot(below);
@@ -153,7 +178,7 @@ fn an_arc_that_touches_a_thorn_between_the_ends_of_its_chords_is_not_clear() {
     for (depth, clear) in [(-1e-5, true), (1e-5, false), (1e-3, false)] {
         let thorn = thorn(depth);
         let mut certifier = Certifier::new(&thorn, tool("Ball")).expect("a profile");
-        let verdict = certifier.check_motion(&Arc { error: 0.0 }, 1e-7);
+        let verdict = certifier.check_motion(&arc(0.0), 1e-7);
         // The triangle is no solid.
         assert_eq!(verdict == MotionVerdict::SurfaceOnly, clear, "{depth}: {verdict:?}");
         let is_touching = matches!(verdict, MotionVerdict::Touching(..));
@@ -166,7 +191,7 @@ fn an_arc_that_touches_a_thorn_between_the_ends_of_its_chords_is_not_clear() {
 fn the_least_distance_on_an_arc_is_known() {
     let ball = tool("Ball").info().surface_named("ball").expect("a surface");
     for error in [0.0, 0.01] {
-        let (wall, arc) = (turned_wall(-0.5), Arc { error });
+        let (wall, arc) = (turned_wall(-0.5), arc(error));
         let mut certifier = Certifier::new(&wall, tool("Ball")).expect("a profile");
         let found = certifier.motion_depth(ball, &arc, -1.0, 1e-6).expect("a surface");
         let MotionDepth::Deeper { at, depth: Interval { low, high }, max_depth, .. } = found else {
@@ -202,5 +227,28 @@ fn the_edge_of_a_swinging_pin_touches_a_wall_that_no_end_of_the_swing_reaches() 
         assert_eq!(verdict.is_clear(), clear, "{depth}: {verdict:?}");
         let is_touching = matches!(verdict, MotionVerdict::Touching(..));
         assert_eq!(is_touching, !clear, "{depth}: {verdict:?}");
+    }
+}
+
+/// A tool that goes out and back ends where it began, so that its chord does not move: only the deviation from the chord tells
+/// that it comes to the wall.
+#[test]
+fn a_wall_that_is_reached_on_the_way_out_and_back_is_touched() {
+    let path = Path {
+        tip: |at| [40.0 * at * (1.0 - at), 0.0, 0.0],
+        lean: 0.1,
+        speed: 40.0,
+        acceleration: 80.0,
+        longest: 1.0,
+        error: 0.0,
+    };
+    let ball = fixtures::ball();
+    for (depth, is_clear) in [(-1e-3, true), (1e-3, false)] {
+        let near = 10.0 + fixtures::BALL - depth;
+        let wall = TriangleBvh::new(&block([near, -90.0, -90.0], [near + 10.0, 90.0, 90.0]));
+        let mut certifier = Certifier::new(&wall, &ball).expect("a profile");
+        let verdict = certifier.check_motion(&path, 1e-4);
+        assert_eq!(verdict == MotionVerdict::Clear, is_clear, "{depth}: {verdict:?}");
+        assert_eq!(matches!(verdict, MotionVerdict::Touching(..)), !is_clear, "{verdict:?}");
     }
 }

@@ -4,7 +4,8 @@ mod sampled;
 
 use crate::{UP, block, motion, plate, pose, tool};
 use touchoff::certify::{AllowanceError, Certifier, MotionVerdict, PoseVerdict, TriangleBvh};
-use touchoff::{Mesh, Motion, Tool};
+use touchoff::mesh::shapes;
+use touchoff::{Mesh, Motion, Tool, Unit};
 
 fn names(tool: &dyn Tool) -> Vec<String> {
     tool.info().surfaces.iter().map(|surface| surface.name.to_string()).collect()
@@ -216,4 +217,14 @@ fn contact_with_the_flute_does_not_touch_the_neck() {
         let clear = certifier.check_pose(&pose([0.0; 3], UP));
         assert!(matches!(clear, PoseVerdict::Clear), "{step}: {clear:?}");
     }
+}
+
+/// The part is beside the shank and far from the face, which the first box tells: no triangle needs to be examined.
+#[test]
+fn a_margin_is_kept_from_a_part_beside_another_surface() {
+    let ball = shapes::sphere(8.0, 5, Unit::Millimetre).expect("a sphere");
+    let bvh = TriangleBvh::new(&ball);
+    let all = [("face", -0.5), ("flute", f64::INFINITY), ("shank", f64::INFINITY)];
+    let mut certifier = certifier_with(&bvh, "Flat", &all).with_budget(100);
+    assert_eq!(certifier.check_pose(&pose([14.1, 0.0, -50.0], UP)), PoseVerdict::Clear);
 }

@@ -28,7 +28,7 @@ pub(crate) struct Cutter {
 }
 
 /// Names and vertices of the profiles at scale 1, mm. An arc has its centre after `about`.
-const PROFILES: [(&str, &str); 11] = [
+const PROFILES: [(&str, &str); 12] = [
     ("Ball", "0 0, 5 5 about 0 5, 5 22, 0 22"),
     ("Flat", "0 0, 6 0, 6 26, 0 26"),
     ("BullNose", "0 0, 4 0, 6 2 about 4 2, 6 14, 5.5 14.5, 5.5 40, 6 40.5, 6 83, 0 83"),
@@ -43,6 +43,8 @@ const PROFILES: [(&str, &str); 11] = [
     ("Barrel", "0 0, 4 0, 4 26 about -80 13, 3.5 26.5, 3.5 50, 0 50"),
     // An arc of radius 4096.00390625, a hundred times the tool's size.
     ("Bowed", "0 0, 6 0, 6 16 about -4089.99609375 8, 5.5 16.5, 5.5 40, 0 40"),
+    // The same with a radius of 2^19 + 2^-15: ten thousand times the tool's size.
+    ("Arched", "0 0, 6 0, 6 16 about -524281.999969482421875 8, 5.5 16.5, 5.5 40, 0 40"),
     // A pointed tip: the depth has a kink on the axis.
     ("Point", "0 0, 6 6, 6 20, 0 20"),
     // A tool a hundred times as long as it is thick.

@@ -6,6 +6,7 @@
 use super::cutters::Cutter;
 use touchoff::Pose;
 use touchoff_tests::oracle::big::Big;
+use touchoff_tests::oracle::exact::{Frame, Triple, dot, exactly, to_f64};
 use touchoff_tests::oracle::reference::QueryPoint;
 use touchoff_tests::oracle::rng::Rng;
 pub(crate) use touchoff_tests::oracle::triangle::Point;
@@ -23,7 +24,7 @@ pub(crate) struct Scene<'a> {
     /// The corners of each triangle, in the tool's frame and in doubles.
     pub(crate) triangles: Vec<[Point; 3]>,
     /// The same corners in 256 bits.
-    exact: Vec<[[Big; 3]; 3]>,
+    exact: Vec<[Triple; 3]>,
 }
 
 /// A point on a triangle, by its unnormalised barycentric weights.
@@ -43,38 +44,13 @@ pub(crate) struct Climbed {
     pub(crate) step: f64,
 }
 
-/// Returns the inverse of a matrix, computed from cross products of its columns.
-fn inverse(columns: &[[Big; 3]; 3]) -> [[Big; 3]; 3] {
-    let [x, y, z] = columns;
-    let rows = [cross(y, z), cross(z, x), cross(x, y)];
-    let determinant = dot(&rows[0], x);
-    rows.map(|row| row.map(|component| &component / &determinant))
-}
-
-fn dot(a: &[Big; 3], b: &[Big; 3]) -> Big {
-    &(&(&a[0] * &b[0]) + &(&a[1] * &b[1])) + &(&a[2] * &b[2])
-}
-
-fn cross(a: &[Big; 3], b: &[Big; 3]) -> [Big; 3] {
-    let component = |i: usize, j: usize| &(&a[i] * &b[j]) - &(&a[j] * &b[i]);
-    [component(1, 2), component(2, 0), component(0, 1)]
-}
-
 impl<'a> Scene<'a> {
     /// Transforms triangles from the world to the tool's frame. The pose maps that frame to the world: `p = R q + tip`.
     pub(crate) fn new(cutter: &'a Cutter, pose: &Pose, triangles: &[[Point; 3]]) -> Scene<'a> {
-        let rotation = pose.rotation();
-        let columns = [0, 1, 2].map(|k| [0, 1, 2].map(|i| Big::exactly(rotation[(i, k)])));
-        let (rows, tip) = (inverse(&columns), pose.tip().coords);
-        let to_tool = |corner: Point| {
-            let offset = [0, 1, 2].map(|k| &Big::exactly(corner[k]) - &Big::exactly(tip[k]));
-            [0, 1, 2].map(|k| dot(&rows[k], &offset))
-        };
+        let frame = Frame::new(pose.rotation(), pose.tip());
+        let to_tool = |corner: Point| frame.to_tool(&exactly(corner));
         let exact: Vec<_> = triangles.iter().map(|corners| corners.map(to_tool)).collect();
-        let double = |corners: &[[Big; 3]; 3]| {
-            let [a, b, c] = corners;
-            [a, b, c].map(|[x, y, z]| [x.to_f64(), y.to_f64(), z.to_f64()])
-        };
+        let double = |corners: &[Triple; 3]| corners.each_ref().map(to_f64);
         Scene { cutter, triangles: exact.iter().map(double).collect(), exact }
     }
 

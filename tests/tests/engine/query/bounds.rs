@@ -6,41 +6,21 @@
 
 use super::parts;
 use nalgebra::{Point3, Vector3};
-use touchoff::tool::{Interpreted, PointEvaluation, Tool};
+use touchoff::tool::{PointEvaluation, Tool};
 use touchoff::{Law, Level, Part, Pose, Probe, Scene, Weights, Wrench};
 use touchoff_tests::evaluations::evaluate_points;
+use touchoff_tests::fixtures::ball;
 use touchoff_tests::oracle::big::Big;
+use touchoff_tests::oracle::exact::{Triple, cross, dot, exactly, norm, sub};
 use touchoff_tests::oracle::rng::Rng;
-
-type Triple = [Big; 3];
-
-fn ball() -> Interpreted {
-    "tool Ball { units mm; profile { start (0, 0); arc to (0, 6) center (0, 3) as ball cutting; } niceness cutting: 1; }"
-        .parse()
-        .expect("a tool")
-}
 
 /// Returns a part of one point, `count` times, with one normal and the weight 1.
 fn repeated(at: Point3<f64>, normal: Vector3<f64>, count: usize) -> Part {
     parts::of(vec![at; count], vec![normal; count], vec![1.0; count])
 }
 
-fn to_big(v: Vector3<f64>) -> Triple {
-    [v.x, v.y, v.z].map(Big::exactly)
-}
-
-fn dot(a: &Triple, b: &Triple) -> Big {
-    &(&(&a[0] * &b[0]) + &(&a[1] * &b[1])) + &(&a[2] * &b[2])
-}
-
-fn cross(a: &Triple, b: &Triple) -> Triple {
-    let part = |i: usize, j: usize| &(&a[i] * &b[j]) - &(&a[j] * &b[i]);
-    [part(1, 2), part(2, 0), part(0, 1)]
-}
-
 fn error_of(exact: &Triple, found: Vector3<f64>) -> f64 {
-    let square = (0..3).map(|k| &exact[k] - &Big::exactly(found[k])).map(|part| &part * &part);
-    square.fold(Big::zero(), |sum, part| &sum + &part).sqrt().to_f64()
+    norm(&sub(exact, &exactly(found))).to_f64()
 }
 
 /// A point in a tool whose tip is at the world's origin, where the difference of both is exact.
@@ -65,20 +45,20 @@ impl ExactContact {
 
     /// Returns the rows of the rotation.
     fn rows(&self) -> [Triple; 3] {
-        [0, 1, 2].map(|row| to_big(self.pose.rotation().row(row).transpose()))
+        [0, 1, 2].map(|row| exactly(self.pose.rotation().row(row).transpose()))
     }
 
     /// Returns the force of `count` such points under the law of the thesis, in the world's frame: `m (n - R u)`.
     fn force(&self, count: usize) -> Triple {
-        let direction = to_big(Vector3::from(self.evaluation.direction));
+        let direction = exactly(self.evaluation.direction);
         let scale = &Big::exactly(count as f64) * &Big::exactly(self.evaluation.magnitude);
-        let (rows, normal) = (self.rows(), to_big(self.normal));
+        let (rows, normal) = (self.rows(), exactly(self.normal));
         [0, 1, 2].map(|k| &scale * &(&normal[k] - &dot(&rows[k], &direction)))
     }
 
     /// Returns the torque of that force about a point of the tool's frame, in the world's frame.
     fn torque(&self, count: usize, centre: Point3<f64>) -> Triple {
-        let arm = [0, 1, 2].map(|k| &Big::exactly(self.position[k]) - &Big::exactly(centre[k]));
+        let arm = sub(&exactly(self.position), &exactly(centre));
         let arm = self.rows().map(|row| dot(&row, &arm));
         cross(&arm, &self.force(count))
     }
@@ -217,5 +197,26 @@ fn the_bounds_of_a_scene_cover_the_part_that_is_added_last() {
         let torque = error_of(&sum(&light.1, &heavy.1), wrench.torque);
         assert!(force <= wrench.rounding.force, "{force:e} of {:?}", wrench.rounding);
         assert!(torque <= wrench.rounding.torque, "{torque:e} of {:?}", wrench.rounding);
+    }
+}
+
+/// The same force is added a thousand times, so that each addition is rounded the same way.
+#[test]
+fn the_bounds_of_a_scene_cover_the_additions_of_many_equal_parts() {
+    const COUNT: usize = 1000;
+    let tool = ball();
+    let mut rng = Rng::new(6);
+    for _ in 0..8 {
+        let (pose, point) = touching(&mut rng);
+        let part = repeated(point, Vector3::from(rng.direction()), 1);
+        let mut scene = Scene::new(parts::UNIT).with_weights(Weights::Unit);
+        for _ in 0..COUNT {
+            scene.add_part(&part, Pose::default()).expect("millimetres");
+        }
+        let id = scene.add_tool(&tool);
+        scene.move_tool(id, pose);
+        let normal = Vector3::from(part.tree().normal(0));
+        let contact = ExactContact::new(&tool, pose, point, normal);
+        assert_bounded(&contact, COUNT, &scene.wrench(id), Point3::origin());
     }
 }
