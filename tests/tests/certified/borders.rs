@@ -14,14 +14,14 @@ const RADIUS: f64 = 5.0;
 /// The height of the border.
 const BORDER: f64 = 10.0;
 
-fn pin() -> Interpreted {
+pub(crate) fn pin() -> Interpreted {
     "tool Pin { units mm; profile { start (0, 0); line to (5, 0) as face; line to (5, 10) as lower cutting; line to (5, 20) as upper; line to (0, 20) as top; } niceness cutting: 1; }"
         .parse()
         .expect("a tool")
 }
 
 /// Returns a point of the world in the tool's frame.
-fn in_tool(pose: &Pose, point: Point3<f64>) -> Triple {
+pub(crate) fn in_tool(pose: &Pose, point: Point3<f64>) -> Triple {
     Frame::new(pose.rotation(), pose.tip()).to_tool(&exactly(point))
 }
 
@@ -116,8 +116,11 @@ fn an_edge_above_the_end_of_a_tool_is_not_deep() {
         let [x, y] = [rng.between(0.5, 4.0), rng.between(-2.0, 2.0)];
         let [from, to] = [rng.between(0.0, 1e-12), rng.between(0.01, 1.0)]
             .map(|above| [x, y, 2.0 * BORDER + above]);
-        let beside = [[9.0, 0.0, 25.0], [9.5, 0.0, 25.0], [9.0, 0.5, 25.0]];
-        let bvh = TriangleBvh::new(&soup(&[[from, to, from], beside]));
+        // With edges below the tool, the box of all is as deep as the tool. The triangle with area is in a leaf of its own.
+        let below = [[9.0, 0.0, -5.0], [9.0, 0.0, -4.0], [9.0, 0.0, -5.0]];
+        let beside = [[60.0, 0.0, 5.0], [61.0, 0.0, 5.0], [60.0, 0.5, 5.0]];
+        let edges = [[from, to, from], below].map(|edge| vec![edge; 8]).concat();
+        let bvh = TriangleBvh::new(&soup(&[edges, vec![beside]].concat()));
         let certifier = Certifier::new(&bvh, &tool).expect("a profile");
         let mut certifier = certifier.with_level(Level::baseline());
         let found = certifier.deepest(&Pose::default(), 0.0).depth;

@@ -235,16 +235,16 @@ fn the_edge_of_a_swinging_pin_touches_a_wall_that_no_end_of_the_swing_reaches() 
 #[test]
 fn a_wall_that_is_reached_on_the_way_out_and_back_is_touched() {
     let path = Path {
-        tip: |at| [40.0 * at * (1.0 - at), 0.0, 0.0],
+        tip: |at| [160.0 * at * (1.0 - at), 0.0, 0.0],
         lean: 0.1,
-        speed: 40.0,
-        acceleration: 80.0,
+        speed: 160.0,
+        acceleration: 320.0,
         longest: 1.0,
         error: 0.0,
     };
     let ball = fixtures::ball();
     for (depth, is_clear) in [(-1e-3, true), (1e-3, false)] {
-        let near = 10.0 + fixtures::BALL - depth;
+        let near = 40.0 + fixtures::BALL - depth;
         let wall = TriangleBvh::new(&block([near, -90.0, -90.0], [near + 10.0, 90.0, 90.0]));
         let mut certifier = Certifier::new(&wall, &ball).expect("a profile");
         let verdict = certifier.check_motion(&path, 1e-4);

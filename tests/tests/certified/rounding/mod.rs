@@ -254,9 +254,10 @@ fn skew(corners: &[Point; 3]) -> f64 {
     let area = norm(cross(edges[0], edges[1]));
     let height = if longest > 0.0 { area / longest } else { 0.0 };
     let max_distance = corners.iter().copied().map(norm).fold(0.0, f64::max);
-    // Differences of corners that were rounded once determine the height to within a few units of rounding.
-    let height = height + 8.0 * f64::EPSILON * longest;
-    (12.0 * f64::EPSILON * max_distance * (shortest / height)).min(height)
+    // Rounded corners determine the height to within this.
+    let rounding = 8.0 * f64::EPSILON * max_distance;
+    let least = (height - rounding).max(0.0);
+    (12.0 * f64::EPSILON * max_distance * (shortest / least)).min(height + rounding)
 }
 
 #[test]
