@@ -26,9 +26,6 @@ impl NearestTriangle<'_> {
     pub fn distance(&mut self, point: Point3<f64>) -> f64 {
         let frame = &self.bvh.frame;
         let p = frame.inside(point.into());
-        // Boxes and the point were converted with errors of a few units of roundoff of their coordinates, at most 1.
-        let farthest = p.iter().fold(1.0, |farthest: f64, part| farthest.max(part.abs()));
-        let margin = 16.0 * f64::EPSILON * farthest;
         let bvh = self.bvh;
         let mut nearest = squared_distance(point, bvh.corners[self.last].map(Point3::from));
         self.stack.clear();
@@ -56,7 +53,9 @@ impl NearestTriangle<'_> {
                 for axis in 0..3 {
                     let [centre, half] =
                         [boxes.centre, boxes.half].map(|list| f64::from(list[axis][lane]));
-                    let beyond = ((p[axis] - centre).abs() - half - margin).max(0.0);
+                    // Boxes and the point were converted with a rounding of their coordinates each: a triangle that they
+                    // rule out wrongly is nearer by no more than that.
+                    let beyond = ((p[axis] - centre).abs() - half).max(0.0);
                     low += beyond * beyond;
                 }
                 let low = low * frame.scale * frame.scale;

@@ -51,8 +51,9 @@
 //! it does so through an edge, which is searched too. The computed plane passes that point at another `2 η r`, where
 //! `r` is the largest distance of a corner from the tip. Some point of the computed meridian or of an edge is therefore
 //! within `4 η r`, the [`skew`], of a point that is as deep as `x`. Points within the skew of an owned point count as
-//! owned. No point of a triangle is farther than its [`height`] from its longest edge, which is searched too. Where the
-//! height is less than the skew, no meridian is used.
+//! owned. No point of a triangle is farther than its height from its longest edge, which is searched too. Where the
+//! height is less than the skew, no meridian is used. The computed height errs by `8u s`, less than the 18 uM that a
+//! meridian would have added.
 
 use crate::tool::ToolInfo;
 
@@ -77,12 +78,6 @@ pub(super) fn skew(height: f64, shortest: f64, far: f64) -> f64 {
     12.0 * f64::EPSILON * far * (shortest / height)
 }
 
-/// Returns the largest distance of a point of a triangle from its longest edge, given the height over it and the
-/// shortest edge. The rounding error is at most `8u s`.
-pub(super) fn height(height: f64, shortest: f64) -> f64 {
-    height + 4.0 * f64::EPSILON * shortest
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -94,7 +89,7 @@ mod tests {
         assert!(skew(0.8, 1.0, 2.0) < 1e-14);
         assert!(skew(1e-8, 1e-8, 1.0) < 1e-14);
         assert!((1e-10..1e-6).contains(&skew(1e-8, 1.0, 1.0)));
-        assert!(skew(1e-12, 1.0, 1.0) > height(1e-12, 1.0));
-        assert!(skew(0.0, 1.0, 1.0) > height(0.0, 1.0));
+        assert!(skew(1e-12, 1.0, 1.0) > 1e-12);
+        assert!(skew(0.0, 1.0, 1.0) > 0.0);
     }
 }

@@ -8,6 +8,7 @@ use touchoff::certify::{
 use touchoff::tool::Interpreted;
 use touchoff::{Mesh, SurfaceId, Unit};
 
+use crate::supports::REGIONS;
 use crate::{UP, block, motion, pose};
 
 fn bead() -> Interpreted {
@@ -74,14 +75,7 @@ fn a_tool_in_a_lobe_that_is_inside_out_is_undecided() {
 /// Hardly any point of the shank is deeper than its allowance, and none of them is found within the budget.
 #[test]
 fn a_tool_of_which_no_point_is_found_is_undecided() {
-    let tool: Interpreted = "tool Regions { units mm;
-        curve nose = hypot(d, z - 1) - 1; curve side = 1 - d; curve end = 6 - z;
-        region ball as ball cutting where z <= 1, nose <= 0 { depth: -nose; }
-        region shank where z >= 1, 0 <= side <= end { depth: side; }
-        region end as shank where 0 <= end <= side { depth: end; }
-        niceness cutting: 1; }"
-        .parse()
-        .expect("a tool");
+    let tool: Interpreted = REGIONS.parse().expect("a tool");
     let bvh = TriangleBvh::new(&block([-50.0; 3], [50.0; 3]));
     for (allowed, expected) in [
         (0.5, PoseVerdict::Inside(SurfaceId(1))),

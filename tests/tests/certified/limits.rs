@@ -186,6 +186,30 @@ fn a_depth_that_is_not_searched_for_is_within_the_interval() {
     }
 }
 
+/// A margin far larger than tool and part. `f32` rounds it, and the distance of a point that keeps it or not, by more than
+/// what the two differ.
+#[test]
+fn a_margin_far_larger_than_the_tool_is_judged_within_its_rounding() {
+    // `f32` rounds it down by almost the most.
+    const MARGIN: f64 = 1e6 + 0.03;
+    let tool = pin();
+    let mut rng = Rng::new(10);
+    for round in 0..100 {
+        let pose = any_pose(&mut rng);
+        let lack = if round % 2 == 0 { 1e-4 } else { -1e-4 };
+        let [below, behind] = [lack - MARGIN, -1.0 - MARGIN]
+            .map(|z| pose.tip() + pose.rotation() * Vector3::new(rng.between(0.0, 3.0), 1.0, z));
+        let behind = narrow(behind, -pose.axis(), 1.0, &mut rng);
+        let bvh = TriangleBvh::new(&soup(&[[below.into(); 3], behind]));
+        let certifier = Certifier::new(&bvh, &tool).expect("a profile");
+        let mut certifier = certifier.with_allowance("face", -MARGIN).expect("a surface");
+        let verdict = certifier.check_motion(&motion(&pose, &pose), 1e-6);
+        let text = format!("{lack}: {verdict:?} at {pose:?}");
+        assert_eq!(matches!(verdict, MotionVerdict::Touching(..)), lack > 0.0, "{text}");
+        assert_eq!(verdict == MotionVerdict::SurfaceOnly, lack < 0.0, "{text}");
+    }
+}
+
 /// Boxes of `f32` reach at least as far as their triangles. On both sides of a point they are nearly as far away.
 #[test]
 fn the_nearer_of_two_sides_is_found() {
@@ -227,12 +251,14 @@ fn check_passages(passage: &Passage, rounds: usize, rng: &mut Rng) {
     for round in 0..rounds {
         let way = any(rng, 1.0);
         let place = Point3::from(any(rng, 10.0) + any(rng, offset));
-        let from = pose((place - length * way).into(), rng.direction());
+        let out = across(way, rng);
+        // Half of the balls come near with an end of the tool.
+        let axis = if round % 4 < 2 { rng.direction() } else { out.into() };
+        let from = pose((place - length * way).into(), axis);
         let path = motion(&from, &pose((place + 0.01 * length * way).into(), from.axis().into()));
         // Some are far from both.
         let limit = [0.0, tolerance, 0.0, tolerance, -0.5, 0.5][round % 6];
         let depth = limit + rng.between(-near, near);
-        let out = across(way, rng);
         let corner = place + BALL * from.axis() + (BALL - depth) * out;
         let triangle = narrow(corner, out, size, rng);
         let along = exactly(path.displacement());
@@ -283,7 +309,7 @@ fn a_motion_far_from_the_origin_is_judged_within_the_rounding_of_its_places() {
     for offset in [1e9, 1e11, 1e12, 1e13, 1e14] {
         let near = f64::EPSILON * offset;
         let far = Passage { offset, length: 1e3, size: 1.0, near, tolerance: 1e-9 };
-        check_passages(&far, 48, &mut rng);
+        check_passages(&far, 240, &mut rng);
     }
 }
 

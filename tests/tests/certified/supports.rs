@@ -23,6 +23,14 @@ struct Convex {
     is_exact: bool,
 }
 
+/// A tool without a profile: a ball below a cylinder.
+pub(crate) const REGIONS: &str = "tool Regions { units mm;
+    curve nose = hypot(d, z - 1) - 1; curve side = 1 - d; curve end = 6 - z;
+    region ball as ball cutting where z <= 1, nose <= 0 { depth: -nose; }
+    region shank where z >= 1, 0 <= side <= end { depth: side; }
+    region end as shank where 0 <= end <= side { depth: end; }
+    niceness cutting: 1; }";
+
 const TOOLS: [Convex; 4] = [
     Convex {
         text: "tool Ball { units mm; profile { start (0, 0); arc to (0, 6) center (0, 3) as ball cutting; } niceness cutting: 1; }",
@@ -43,12 +51,7 @@ const TOOLS: [Convex; 4] = [
         is_exact: true,
     },
     Convex {
-        text: "tool Regions { units mm;
-            curve nose = hypot(d, z - 1) - 1; curve side = 1 - d; curve end = 6 - z;
-            region ball as ball cutting where z <= 1, nose <= 0 { depth: -nose; }
-            region shank where z >= 1, 0 <= side <= end { depth: side; }
-            region end as shank where 0 <= end <= side { depth: end; }
-            niceness cutting: 1; }",
+        text: REGIONS,
         circles: &[[1.0, 1.0], [1.0, 6.0]],
         balls: &[[1.0, 1.0]],
         is_exact: false,

@@ -283,7 +283,6 @@ fn min_at<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
 pub(crate) struct Moving<'a> {
     pub(crate) hull: &'a Hull<f32>,
     pub(crate) shift: Displacement,
-    pub(crate) required_clearance: f32,
     /// The transforms at the beginning and at the end of the interval.
     pub(crate) ends: &'a [PoseTransform; 2],
 }
@@ -330,7 +329,7 @@ fn of_leaf_on<S: Simd>(
         squared_distance(&middle[2], moving.shift.axis),
     ];
     let far = p.max(q).max(r).sqrt();
-    let grow = moving.shift.deviation_bound(simd, far) + moving.required_clearance;
+    let grow = moving.shift.deviation_bound(simd, far) + moving.shift.clearance;
     let triangles = MovingTriangles { ends: [a, b, c, d, e, f], middle };
     above(moving.hull.swept(simd, &triangles, grow, threshold), threshold)
 }

@@ -23,8 +23,8 @@ pub(crate) struct MotionInterval {
     bounds: MotionBounds,
     /// The axis of the rotation, in the tool's frame.
     axis: Vector3<f64>,
-    /// A bound on the coordinates of the tip, in the part's unit.
-    pub(crate) tip_size: f64,
+    /// A bound on the rounding of the tips of the poses, which are as large as their world coordinates, in the tool's unit.
+    tip_error: f64,
 }
 
 /// The tool's frame at one time.
@@ -83,7 +83,10 @@ impl MotionInterval {
             views,
             bounds: MotionBounds { straight: straight.into(), length, turn, reach, deviation },
             axis: motion.rotation_axis(),
-            tip_size: motion.start().coords.norm() + motion.displacement().norm(),
+            tip_error: 2.0
+                * f64::EPSILON
+                * (motion.start().coords.norm() + motion.displacement().norm())
+                * per_length,
         })
     }
 
@@ -148,7 +151,9 @@ impl MotionInterval {
         length + turn * radius.min(self.bounds.reach) + self.deviation_bound(radius)
     }
 
-    /// Returns the displacement in `f32`, rounded up, and the distance to be kept.
+    /// Returns the displacement in `f32`, rounded up, and the distance to be kept. Heights are compared without the margin of
+    /// bounds, so that both have to reach beyond the rounding of coordinates as far away, and of the poses from which these are
+    /// computed.
     pub(crate) fn shift(&self, required_clearance: f64) -> Displacement {
         let MotionBounds { straight, length, turn, reach, deviation } = self.bounds;
         Displacement {
@@ -158,12 +163,12 @@ impl MotionInterval {
             clearance: rounded_up(required_clearance),
             turn: rounded_up(turn),
             reach: rounded_up(reach),
-            deviation: rounded_up(deviation),
+            deviation: rounded_up(deviation + self.tip_error),
         }
     }
 }
 
-/// Returns a length or an angle in `f32`, larger in magnitude by some units of roundoff.
+/// Returns a length or an angle in `f32`, larger in magnitude by 16 units of roundoff: a coordinate errs by less than 8.
 fn rounded_up(value: f64) -> f32 {
     (value * (1.0 + 1e-6)) as f32
 }

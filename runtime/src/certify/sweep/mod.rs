@@ -201,15 +201,12 @@ impl Sweeper {
         setting.setup.set_pose(frame, first, &mut self.ends[0]);
         setting.setup.set_pose(frame, middle, &mut self.view);
         setting.setup.set_pose(frame, last, &mut self.ends[1]);
-        // 2^-18 of the displacement covers the rounding of `Displacement`'s bounds in `f32`, whose terms are no
-        // larger. The tips of poses are rounded relative to their world coordinates.
+        // 2^-18 of the displacement covers the rounding of `Displacement`'s bounds in `f32`, whose terms are no larger.
         let margin = setting.margin()
             + (interval.displacement_bound(f64::INFINITY) + task.required_clearance())
-                / f64::from(1 << 18)
-            + 2.0 * f64::EPSILON * interval.tip_size / setting.length;
+                / f64::from(1 << 18);
         let threshold = (task.above() - margin) as f32;
-        let (required_clearance, shift) =
-            (task.required_clearance() as f32, interval.shift(task.required_clearance()));
+        let shift = interval.shift(task.required_clearance());
         let small = MAX_NODE_FRACTION * interval.displacement_bound(f64::INFINITY);
         self.stack.clear();
         self.some.clear();
@@ -241,8 +238,7 @@ impl Sweeper {
                     self.pending.push(Undecided::Node(node));
                 } else {
                     let mut bounds = [node.bound; WIDTH];
-                    let moving =
-                        Moving { hull: &query.hull, shift, required_clearance, ends: &self.ends };
+                    let moving = Moving { hull: &query.hull, shift, ends: &self.ends };
                     let tree = BoundedTree { bvh, bounds: &moving, view: &self.view };
                     let hits = if margin > MARGIN {
                         u32::MAX

@@ -43,16 +43,11 @@ impl LocalTriangle {
         let shortest = lengths[0].min(lengths[1]).min(lengths[2]);
         let far = corners.map(norm).into_iter().fold(0.0, f64::max);
         let height = if longest > 0.0 { area / longest } else { 0.0 };
-        let edges = LocalTriangle {
-            corners,
-            normal: [0.0; 3],
-            base: a,
-            direction: [0.0; 3],
-            skew: rounding::height(height, shortest),
-        };
+        let edges =
+            LocalTriangle { corners, normal: [0.0; 3], base: a, direction: [0.0; 3], skew: height };
         let skew = rounding::skew(height, shortest, far);
         // A height below the skew makes the normal meaningless, and then every point is as near to an edge.
-        if skew.is_nan() || skew >= edges.skew || !area.is_finite() {
+        if skew.is_nan() || skew >= height || !area.is_finite() {
             return edges;
         }
         let normal = across.map(|part| part / area);
