@@ -79,7 +79,7 @@ fn degenerate_profiles_are_refused_or_exact() {
 }
 
 fn restated(profile: &str) -> Restated {
-    Restated::of_profile("Case", &Profile::parse(profile))
+    Restated::of_profile("Case", Profile::parse(profile))
 }
 
 /// Compiles a profile; `None` if it is refused.
