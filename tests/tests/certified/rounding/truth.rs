@@ -8,6 +8,7 @@ use touchoff::Pose;
 use touchoff_tests::oracle::big::Big;
 use touchoff_tests::oracle::reference::QueryPoint;
 use touchoff_tests::oracle::rng::Rng;
+use touchoff_tests::oracle::space::{Triple, cross, dot, exactly, sub};
 pub(crate) use touchoff_tests::oracle::triangle::Point;
 use touchoff_tests::oracle::triangle::{mean, nearest_weights};
 
@@ -16,20 +17,17 @@ const CLIMBS: usize = 3;
 const STEPS_PER_CLIMB: usize = 60;
 const FINAL_STEPS: usize = 120;
 
-/// A tool at a pose, and triangles.
 pub(crate) struct Scene<'a> {
-    /// The tool.
     pub(crate) cutter: &'a Cutter,
     /// The corners of each triangle, in the tool's frame and in doubles.
     pub(crate) triangles: Vec<[Point; 3]>,
     /// The same corners in 256 bits.
-    exact: Vec<[[Big; 3]; 3]>,
+    exact: Vec<[Triple; 3]>,
 }
 
 /// A point on a triangle, by its unnormalised barycentric weights.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TrianglePoint {
-    /// The index of the triangle.
     pub(crate) triangle: usize,
     /// Weights that are not negative and not all 0.
     pub(crate) weights: Point,
@@ -44,36 +42,26 @@ pub(crate) struct Climbed {
 }
 
 /// Returns the inverse of a matrix, computed from cross products of its columns.
-fn inverse(columns: &[[Big; 3]; 3]) -> [[Big; 3]; 3] {
+fn inverse(columns: &[Triple; 3]) -> [Triple; 3] {
     let [x, y, z] = columns;
     let rows = [cross(y, z), cross(z, x), cross(x, y)];
     let determinant = dot(&rows[0], x);
     rows.map(|row| row.map(|component| &component / &determinant))
 }
 
-fn dot(a: &[Big; 3], b: &[Big; 3]) -> Big {
-    &(&(&a[0] * &b[0]) + &(&a[1] * &b[1])) + &(&a[2] * &b[2])
-}
-
-fn cross(a: &[Big; 3], b: &[Big; 3]) -> [Big; 3] {
-    let component = |i: usize, j: usize| &(&a[i] * &b[j]) - &(&a[j] * &b[i]);
-    [component(1, 2), component(2, 0), component(0, 1)]
-}
-
 impl<'a> Scene<'a> {
     /// Transforms triangles from the world to the tool's frame. The pose maps that frame to the world: `p = R q + tip`.
     pub(crate) fn new(cutter: &'a Cutter, pose: &Pose, triangles: &[[Point; 3]]) -> Scene<'a> {
         let rotation = pose.rotation();
-        let columns = [0, 1, 2].map(|k| [0, 1, 2].map(|i| Big::exactly(rotation[(i, k)])));
-        let (rows, tip) = (inverse(&columns), pose.tip().coords);
+        let columns = [0, 1, 2].map(|k| exactly(rotation.column(k).into_owned()));
+        let (rows, tip) = (inverse(&columns), exactly(pose.tip()));
         let to_tool = |corner: Point| {
-            let offset = [0, 1, 2].map(|k| &Big::exactly(corner[k]) - &Big::exactly(tip[k]));
-            [0, 1, 2].map(|k| dot(&rows[k], &offset))
+            let offset = sub(&exactly(corner), &tip);
+            rows.each_ref().map(|row| dot(row, &offset))
         };
         let exact: Vec<_> = triangles.iter().map(|corners| corners.map(to_tool)).collect();
-        let double = |corners: &[[Big; 3]; 3]| {
-            let [a, b, c] = corners;
-            [a, b, c].map(|[x, y, z]| [x.to_f64(), y.to_f64(), z.to_f64()])
+        let double = |corners: &[Triple; 3]| {
+            corners.each_ref().map(|corner| corner.each_ref().map(Big::to_f64))
         };
         Scene { cutter, triangles: exact.iter().map(double).collect(), exact }
     }
@@ -92,7 +80,7 @@ impl<'a> Scene<'a> {
     /// Returns the depth of a point, computed in 256 bits.
     pub(crate) fn exact_depth(&self, triangle_point: &TrianglePoint) -> Big {
         let corners = &self.exact[triangle_point.triangle];
-        let weights = triangle_point.weights.map(Big::exactly);
+        let weights = exactly(triangle_point.weights);
         let sum = &(&weights[0] + &weights[1]) + &weights[2];
         let point = [0, 1, 2].map(|axis| {
             let column = [0, 1, 2].map(|k| corners[k][axis].clone());
@@ -106,7 +94,6 @@ impl<'a> Scene<'a> {
         TrianglePoint { triangle, weights: nearest_weights(p, &self.triangles[triangle]) }
     }
 
-    /// Returns the deepest point found by the random search.
     pub(crate) fn deepest(&self, rng: &mut Rng) -> TrianglePoint {
         let mut starts = Vec::new();
         for triangle in 0..self.triangles.len() {
