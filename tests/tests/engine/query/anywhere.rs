@@ -7,7 +7,7 @@ use touchoff::{Part, Pose, Probe};
 use touchoff_tests::oracle::rng::Rng;
 
 /// Checks every tool about a part; fails unless two fifths of the poses touch.
-fn all_tools(what: &str, part: &Part, count: usize) {
+pub(crate) fn all_tools(what: &str, part: &Part, count: usize) {
     for (at, (tool, oracle)) in tools().into_iter().enumerate() {
         let mut rng = Rng::new(31 + at as u64);
         let mut case = Case::new(part, tool, &*oracle);

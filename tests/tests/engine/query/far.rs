@@ -1,5 +1,6 @@
 //! Parts far from the world's origin, tiny and huge: the tree keeps its points relative to the centres of its leaves.
 
+use super::anywhere::all_tools;
 use super::compare::{Case, tools};
 use super::{parts, poses};
 use nalgebra::{Point3, Vector3};
@@ -62,15 +63,7 @@ fn other_translations_change_results_by_rounding_only() {
     for distance in [1e3, 1e6, 1e9, 1e12] {
         let by = distance * Vector3::new(1.0, -0.7, 0.3);
         let part = parts::carried(&parts::tube_mesh(), 2_000, |p| p + by);
-        for (tool, oracle) in tools() {
-            let mut rng = Rng::new(22);
-            let mut case = Case::new(&part, tool, &*oracle);
-            for k in 0..48 {
-                case.check(&poses::about(&part, &*oracle, k, &mut rng), k);
-            }
-            println!("{distance:e} {}: {:?}", oracle.name(), case.statistics);
-            assert!(case.statistics.touching > 20);
-        }
+        all_tools(&format!("translated by {distance:e}"), &part, 48);
     }
 }
 
@@ -78,16 +71,7 @@ fn other_translations_change_results_by_rounding_only() {
 #[test]
 fn tiny_and_huge_parts() {
     for size in [1e-30, 1e-9, 1e-4, 1e-2, 1e2, 1e4, 1e6, 1e9, 1e15, 1e30] {
-        let part = parts::soup(size, 2_000, 23);
-        for (tool, oracle) in tools() {
-            let mut rng = Rng::new(24);
-            let mut case = Case::new(&part, tool, &*oracle);
-            for k in 0..24 {
-                case.check(&poses::about(&part, &*oracle, k, &mut rng), k);
-            }
-            println!("{size:e} {}: {:?}", oracle.name(), case.statistics);
-            assert!(case.statistics.touching > 8, "{size:e} {}", oracle.name());
-        }
+        all_tools(&format!("soup of {size:e}"), &parts::soup(size, 2_000, 23), 24);
     }
 }
 
