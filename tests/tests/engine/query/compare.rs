@@ -14,11 +14,26 @@ use std::collections::BTreeMap;
 use touchoff::{Contact, Law, Part, Pose, Probe, Tool, TriangleId, Unit, Weights, Wrench, summary};
 use touchoff_tests::library;
 use touchoff_tests::oracle::brute::{self, Answer, Query};
+use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::{Oracle, thesis};
 
 /// Returns the thesis's tools, each with its oracle.
 pub(crate) fn tools() -> Vec<(&'static dyn Tool, Box<dyn Oracle>)> {
     thesis().into_iter().map(|oracle| (library::tool(oracle.name()), oracle)).collect()
+}
+
+/// Compares each of the [tools] with brute force at a part, with random numbers of its own.
+pub(crate) fn check_tools(
+    what: &str,
+    part: &Part,
+    seed: u64,
+    mut check: impl FnMut(&mut Case<'_>, &mut Rng),
+) {
+    for (seed, (tool, oracle)) in (seed..).zip(tools()) {
+        let mut case = Case::new(part, tool, &*oracle);
+        check(&mut case, &mut Rng::new(seed));
+        println!("{what} {}: {:?}", oracle.name(), case.statistics);
+    }
 }
 
 pub(crate) const LAWS_AND_WEIGHTS: [(Law, Weights); 6] = [
@@ -44,7 +59,7 @@ pub(crate) struct Statistics {
 pub(crate) struct Case<'a> {
     part: &'a Part,
     tool: &'a dyn Tool,
-    oracle: &'a dyn Oracle,
+    pub(crate) oracle: &'a dyn Oracle,
     points: Vec<[f64; 3]>,
     normals: Vec<[f64; 3]>,
     weights: Vec<f64>,
