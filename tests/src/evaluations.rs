@@ -2,6 +2,7 @@
 
 use touchoff::Level;
 use touchoff::tool::{Evaluations, Outputs, PointBatch, PointEvaluation, Tool};
+use touchoff_dsl::interpret::Evaluation;
 
 /// Returns points as evaluators take them.
 pub fn batch(points: &[[f64; 3]]) -> PointBatch {
@@ -36,6 +37,24 @@ pub fn evaluate_points(
     let mut evaluations = Evaluations::default();
     tool.evaluate(level, Outputs::EVERYTHING, &batch(points), 1.0, &mut evaluations);
     (0..points.len()).map(|index| at(&evaluations, index)).collect()
+}
+
+/// Returns an evaluation of the reference interpreter as others give it.
+pub fn of_reference(evaluation: Evaluation) -> PointEvaluation {
+    let Evaluation { region, depth, magnitude, direction, gradient, niceness } = evaluation;
+    PointEvaluation { region, depth, magnitude, direction, gradient, niceness }
+}
+
+/// Returns all numbers of an evaluation.
+pub fn numbers(evaluation: &PointEvaluation) -> [f64; 9] {
+    let ([ux, uy, uz], [gx, gy, gz]) = (evaluation.direction, evaluation.gradient);
+    let PointEvaluation { depth, magnitude, niceness, .. } = *evaluation;
+    [depth, magnitude, niceness, ux, uy, uz, gx, gy, gz]
+}
+
+/// Returns the region of an evaluation, and the bits of all numbers.
+pub fn bits(evaluation: &PointEvaluation) -> (usize, [u64; 9]) {
+    (evaluation.region, numbers(evaluation).map(f64::to_bits))
 }
 
 /// Returns every SIMD level of this machine with its name, the best of them first and again under its own name.

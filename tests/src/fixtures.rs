@@ -1,10 +1,45 @@
-//! The thesis's tube as points, poses along it, cuboids, and a ball for a tool.
+//! The thesis's tube as points, poses along it, cuboids, parts of given points, and tools of given profiles.
 
-use nalgebra::Point3;
+use crate::oracle::restated::Restated;
+use nalgebra::{Point3, Vector3};
 use touchoff::mesh::shapes;
 use touchoff::scenes::{ScenePath, tube};
 use touchoff::tool::Interpreted;
-use touchoff::{Cloud, Mesh, Part, Pose, Sampling, Unit};
+use touchoff::{Cloud, Mesh, Part, Pose, Sampling, TriangleId, Unit};
+
+/// Returns the tool that a restatement draws, read at run time; the niceness of what cuts is a formula.
+///
+/// # Panics
+/// If the compiler refuses it.
+pub fn interpreted(tool: &Restated, niceness: &str) -> Interpreted {
+    let profile = tool.text(|number| number.to_f64().to_string());
+    let law = format!("niceness cutting: {niceness};");
+    let law = if tool.cutting.is_empty() { "" } else { &law };
+    let text = format!("tool {} {{ units mm; {profile} {law} }}", tool.name);
+    text.parse().unwrap_or_else(|error| panic!("{text}: {error}"))
+}
+
+/// Returns the tool of a [drawing][Restated::drawn] and the surfaces that cut, with a niceness of 1.
+pub fn drawn(drawing: &'static str, cutting: &'static str) -> Interpreted {
+    let tool = Restated::drawn("Drawn", drawing, &[]).cuts(cutting, |_, _, _| 1.0);
+    interpreted(&tool, "1")
+}
+
+/// Returns the part of these points, in mm, with their normals and weights. The triangle of each is its index.
+///
+/// # Panics
+/// If they are no cloud.
+pub fn part_of(points: Vec<Point3<f64>>, normals: Vec<Vector3<f64>>, weights: Vec<f64>) -> Part {
+    let ids = (0..points.len() as u32).map(TriangleId).collect();
+    let cloud = Cloud::new(points, normals, ids, weights, Unit::Millimetre);
+    Part::from_cloud(&cloud.expect("a cloud"))
+}
+
+/// Returns the part of these points, in mm, all of weight 1 and with the same normal.
+pub fn part_at(points: &[Point3<f64>]) -> Part {
+    let count = points.len();
+    part_of(points.to_vec(), vec![Vector3::x(); count], vec![1.0; count])
+}
 
 /// Returns a cuboid with edges along the coordinate axes, in mm.
 ///

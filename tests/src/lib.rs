@@ -11,4 +11,5 @@ pub mod oracle;
 pub mod points;
 pub mod profiles;
 pub mod tally;
+pub mod texts;
 pub mod turns;

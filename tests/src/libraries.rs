@@ -65,60 +65,45 @@ fn scale(value: &mut Value, factor: f64) {
     }
 }
 
+/// Types of Fusion 360, and the dimensions beside the usual ones.
+const FUSION: &str = r#"[
+["flat end mill", {}],
+["ball end mill", { "RE": 5 }],
+["bull nose end mill", { "RE": 1.5 }],
+["tapered mill", { "RE": 0.5, "TA": 4, "tapered-type": "tapered_bull_nose" }],
+["tapered mill", { "RE": 5, "TA": 3, "tapered-type": "tapered_ball" }],
+["chamfer mill", { "tip-diameter": 1, "TA": 45, "LCF": 6 }],
+["dovetail mill", { "RE": 0.4, "TA": 30, "LCF": 4 }],
+["lollipop mill", { "LCF": 9 }],
+["slot mill", { "RE": 0.5, "LCF": 4 }],
+["radius mill", { "RE": 2 }],
+["face mill", { "RE": 0.8, "TA": 45, "DCX": 14, "LCF": 6, "upper-radius": 0.2 }],
+["corner chamfer end mill", { "chamfer-width": 1, "chamfer-angle": 45 }],
+["circle segment barrel", { "profile-radius": 80, "axial-distance": 8, "lower-radius": 1, "upper-radius": 1, "LCF": 16 }],
+["circle segment lens", { "lower-radius": 30, "RE": 1 }],
+["circle segment oval", { "lower-radius": 2, "profile-radius": 50 }],
+["circle segment taper", { "DC": 12, "LCF": 20, "SFDM": 12, "shoulder-diameter": 12, "shoulder-length": 20,
+    "tip-diameter": 0, "lower-radius": 3, "profile-radius": 375, "upper-radius": 6, "TA": 20 }],
+["thread mill", { "TP": 1.5, "thread-profile-angle": 60, "NT": 3, "LCF": 6 }],
+["thread mill", { "TP": 1.5, "thread-profile-angle": 60, "NT": 3, "LCF": 6, "thread-tip-type": "flat", "thread-tip-width": 0.2 }],
+["thread mill", { "TP": 1.5, "thread-profile-angle": 60, "NT": 3, "LCF": 6, "thread-tip-type": "round", "thread-tip-radius": 0.1 }],
+["drill", { "SIG": 118 }],
+["spot drill", { "SIG": 90, "tip-diameter": 0 }],
+["counter sink", { "SIG": 82, "tip-diameter": 2 }],
+["center drill", { "tip-diameter": 3, "tip-length": 4, "SIG": 118, "TA": 60 }],
+["reamer", { "SIG": 180, "RE": 0 }],
+["counter bore", { "SIG": 180, "RE": 0 }],
+["boring bar", { "SIG": 180, "RE": 0.4 }],
+["tap right hand", { "TP": 1.5 }],
+["probe", { "DC": 6, "shoulder-diameter": 3, "SFDM": 3 }],
+["flat end mill", { "SFDM": 10 }],
+["ball end mill", { "DC": 2, "RE": 1, "SFDM": 4, "LCF": 5, "shoulder-length": 5 }]
+]"#;
+
 /// Returns a tool of every type of Fusion 360 that has a shape. Two of them have a holder, and one a shaft.
 pub fn fusion() -> Vec<Value> {
-    let mut tools: Vec<Value> = [
-        ("flat end mill", json!({})),
-        ("ball end mill", json!({ "RE": 5 })),
-        ("bull nose end mill", json!({ "RE": 1.5 })),
-        ("tapered mill", json!({ "RE": 0.5, "TA": 4, "tapered-type": "tapered_bull_nose" })),
-        ("tapered mill", json!({ "RE": 5, "TA": 3, "tapered-type": "tapered_ball" })),
-        ("chamfer mill", json!({ "tip-diameter": 1, "TA": 45, "LCF": 6 })),
-        ("dovetail mill", json!({ "RE": 0.4, "TA": 30, "LCF": 4 })),
-        ("lollipop mill", json!({ "LCF": 9 })),
-        ("slot mill", json!({ "RE": 0.5, "LCF": 4 })),
-        ("radius mill", json!({ "RE": 2 })),
-        ("face mill", json!({ "RE": 0.8, "TA": 45, "DCX": 14, "LCF": 6, "upper-radius": 0.2 })),
-        ("corner chamfer end mill", json!({ "chamfer-width": 1, "chamfer-angle": 45 })),
-        (
-            "circle segment barrel",
-            json!({ "profile-radius": 80, "axial-distance": 8, "lower-radius": 1, "upper-radius": 1,
-                "LCF": 16 }),
-        ),
-        ("circle segment lens", json!({ "lower-radius": 30, "RE": 1 })),
-        ("circle segment oval", json!({ "lower-radius": 2, "profile-radius": 50 })),
-        (
-            "circle segment taper",
-            json!({ "DC": 12, "LCF": 20, "SFDM": 12, "shoulder-diameter": 12,
-            "shoulder-length": 20, "tip-diameter": 0, "lower-radius": 3, "profile-radius": 375,
-            "upper-radius": 6, "TA": 20 }),
-        ),
-        ("thread mill", json!({ "TP": 1.5, "thread-profile-angle": 60, "NT": 3, "LCF": 6 })),
-        (
-            "thread mill",
-            json!({ "TP": 1.5, "thread-profile-angle": 60, "NT": 3, "LCF": 6,
-            "thread-tip-type": "flat", "thread-tip-width": 0.2 }),
-        ),
-        (
-            "thread mill",
-            json!({ "TP": 1.5, "thread-profile-angle": 60, "NT": 3, "LCF": 6,
-            "thread-tip-type": "round", "thread-tip-radius": 0.1 }),
-        ),
-        ("drill", json!({ "SIG": 118 })),
-        ("spot drill", json!({ "SIG": 90, "tip-diameter": 0 })),
-        ("counter sink", json!({ "SIG": 82, "tip-diameter": 2 })),
-        ("center drill", json!({ "tip-diameter": 3, "tip-length": 4, "SIG": 118, "TA": 60 })),
-        ("reamer", json!({ "SIG": 180, "RE": 0 })),
-        ("counter bore", json!({ "SIG": 180, "RE": 0 })),
-        ("boring bar", json!({ "SIG": 180, "RE": 0.4 })),
-        ("tap right hand", json!({ "TP": 1.5 })),
-        ("probe", json!({ "DC": 6, "shoulder-diameter": 3, "SFDM": 3 })),
-        ("flat end mill", json!({ "SFDM": 10 })),
-        ("ball end mill", json!({ "DC": 2, "RE": 1, "SFDM": 4, "LCF": 5, "shoulder-length": 5 })),
-    ]
-    .into_iter()
-    .map(|(kind, more)| fusion_tool(kind, &more))
-    .collect();
+    let kinds: Vec<(String, Value)> = serde_json::from_str(FUSION).expect("types and dimensions");
+    let mut tools: Vec<Value> = kinds.iter().map(|(kind, more)| fusion_tool(kind, more)).collect();
     let holder = json!({ "type": "holder", "unit": "inches", "description": "nut", "gaugeLength": 1.5,
         "segments": [
             { "height": 0.25, "lower-diameter": 1, "upper-diameter": 1.25 },
@@ -174,40 +159,31 @@ pub fn bit(shape: &str, more: &[&str]) -> Value {
     json!({ "version": 2, "name": shape, "shape": format!("{shape}.fcstd"), "parameter": parameters })
 }
 
+/// Shapes of FreeCAD, and the parameters beside the usual ones.
+const BITS: &str = "\
+endmill:
+reamer:
+ballend:
+bullnose: CornerRadius=1.5 mm
+chamfer: TipDiameter=1 mm, CuttingEdgeAngle=60 deg, CuttingEdgeHeight=4 mm
+v-bit: TipDiameter=1 mm, CuttingEdgeAngle=90 deg
+dovetail: NeckDiameter=3 mm, NeckHeight=2 mm, CuttingEdgeAngle=30 deg, CuttingEdgeHeight=3 mm
+drill: TipAngle=118 deg
+tap: TipAngle=90 deg, CuttingEdgeLength=12 mm
+taperedballnose: TaperAngle=8 deg, TaperDiameter=9 mm, ShankDiameter=10 mm
+radius: CuttingRadius=2 mm, TipDiameter=2 mm
+slittingsaw: BladeThickness=2 mm, CapHeight=1 mm, CapDiameter=4 mm, Diameter=30 mm
+probe: ShaftDiameter=3 mm
+thread-mill: NeckDiameter=3 mm, NeckLength=12 mm, Crest=0.1 mm, cuttingAngle=60 deg";
+
 /// Returns a bit of every shape of FreeCAD.
 pub fn bits() -> Vec<Value> {
-    [
-        ("endmill", &[][..]),
-        ("reamer", &[]),
-        ("ballend", &[]),
-        ("bullnose", &["CornerRadius=1.5 mm"]),
-        ("chamfer", &["TipDiameter=1 mm", "CuttingEdgeAngle=60 deg", "CuttingEdgeHeight=4 mm"]),
-        ("v-bit", &["TipDiameter=1 mm", "CuttingEdgeAngle=90 deg"]),
-        (
-            "dovetail",
-            &[
-                "NeckDiameter=3 mm",
-                "NeckHeight=2 mm",
-                "CuttingEdgeAngle=30 deg",
-                "CuttingEdgeHeight=3 mm",
-            ],
-        ),
-        ("drill", &["TipAngle=118 deg"]),
-        ("tap", &["TipAngle=90 deg", "CuttingEdgeLength=12 mm"]),
-        ("taperedballnose", &["TaperAngle=8 deg", "TaperDiameter=9 mm", "ShankDiameter=10 mm"]),
-        ("radius", &["CuttingRadius=2 mm", "TipDiameter=2 mm"]),
-        (
-            "slittingsaw",
-            &["BladeThickness=2 mm", "CapHeight=1 mm", "CapDiameter=4 mm", "Diameter=30 mm"],
-        ),
-        ("probe", &["ShaftDiameter=3 mm"]),
-        (
-            "thread-mill",
-            &["NeckDiameter=3 mm", "NeckLength=12 mm", "Crest=0.1 mm", "cuttingAngle=60 deg"],
-        ),
-    ]
-    .map(|(shape, more)| bit(shape, more))
-    .into()
+    let bit_of = |line: &str| {
+        let (shape, more) = line.split_once(':').expect("a shape and parameters");
+        let more = more.split(',').map(str::trim).filter(|text| !text.is_empty());
+        bit(shape, &more.collect::<Vec<_>>())
+    };
+    BITS.lines().map(bit_of).collect()
 }
 
 fn fcholder() -> Value {

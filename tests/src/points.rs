@@ -20,6 +20,27 @@ pub fn neighbours(number: f64) -> [f64; 3] {
     [number, number.next_up(), number.next_down()]
 }
 
+/// Returns a point and those one ulp beside it; of a solid of revolution those in the half plane y = 0.
+pub fn neighbourhood(oracle: &dyn Oracle, [x, y, z]: [f64; 3]) -> Vec<[f64; 3]> {
+    let ys = if oracle.is_revolved() { vec![y] } else { neighbours(y).to_vec() };
+    let columns = neighbours(x).into_iter().flat_map(|x| neighbours(z).map(|z| [x, z]));
+    columns.flat_map(|[x, z]| ys.iter().map(move |y| [x, *y, z])).collect()
+}
+
+/// Adds a point of a solid of revolution turned by each azimuth; of another solid the point itself.
+pub fn add_turned(
+    oracle: &dyn Oracle,
+    p: [f64; 3],
+    azimuths: &[[f64; 2]],
+    points: &mut Vec<[f64; 3]>,
+) {
+    if oracle.is_revolved() {
+        points.extend(azimuths.iter().map(|azimuth| to_space([p[0].abs(), p[2]], *azimuth)));
+    } else {
+        points.push(p);
+    }
+}
+
 /// Returns unit vectors across the axis: exactly along x and y, and two in random directions.
 pub fn azimuths(rng: &mut Rng) -> [[f64; 2]; 6] {
     [[1.0, 0.0], [0.0, 1.0], [-1.0, -0.0], [0.0, -1.0], rng.azimuth(), rng.azimuth()]

@@ -52,13 +52,11 @@ impl Big {
     }
 
     /// Returns the absolute value.
-    #[must_use]
     pub fn abs(&self) -> Big {
         if self.is_negative() { -self } else { self.clone() }
     }
 
     /// Returns the square root of a number that is not below zero.
-    #[must_use]
     pub fn sqrt(&self) -> Big {
         if *self == Big::zero() { Big::zero() } else { Big(self.0.sqrt()) }
     }

@@ -20,13 +20,13 @@ pub enum Body {
 }
 
 /// The nearest feature of a region.
-#[derive(Clone, Copy)]
-enum Face {
-    /// The plane on which a coordinate equals `at`. The depth is `sign * (coordinate - at)`, so `sign` gives the side
-    /// of the material.
-    Plane { axis: usize, at: f64, sign: f64 },
-    /// Both planes `y = ±half`.
-    Sides { half: f64 },
+#[derive(Clone, Copy, Debug)]
+pub enum Face {
+    /// The plane on which a coordinate equals a number, and the side of the material. The depth is `sign * (coordinate -
+    /// number)`.
+    Plane(usize, f64, f64),
+    /// Both planes `y = ±10`.
+    Sides,
     /// The wall of the hole.
     Bore,
     /// The inner edge.
@@ -52,33 +52,29 @@ const LEDGE: f64 = 6.0;
 const BORE: f64 = 10.0;
 const BORE_RADIUS: f64 = 3.3;
 
-const fn plane(axis: usize, at: f64, sign: f64) -> Face {
-    Face::Plane { axis, at, sign }
-}
-
 const BLOCK: [(&str, Zone, Face); 6] = [
-    ("left", Zone::Anywhere, plane(0, -20.0, 1.0)),
-    ("right", Zone::Anywhere, plane(0, 20.0, -1.0)),
-    ("front", Zone::Anywhere, plane(1, -15.0, 1.0)),
-    ("back", Zone::Anywhere, plane(1, 15.0, -1.0)),
-    ("bottom", Zone::Anywhere, plane(2, 0.0, 1.0)),
-    ("top", Zone::Anywhere, plane(2, 20.0, -1.0)),
+    ("left", Zone::Anywhere, Face::Plane(0, -20.0, 1.0)),
+    ("right", Zone::Anywhere, Face::Plane(0, 20.0, -1.0)),
+    ("front", Zone::Anywhere, Face::Plane(1, -15.0, 1.0)),
+    ("back", Zone::Anywhere, Face::Plane(1, 15.0, -1.0)),
+    ("bottom", Zone::Anywhere, Face::Plane(2, 0.0, 1.0)),
+    ("top", Zone::Anywhere, Face::Plane(2, 20.0, -1.0)),
 ];
 
 const BRACKET: [(&str, Zone, Face); 13] = [
-    ("lying_bottom", Zone::Lying, plane(2, 0.0, 1.0)),
-    ("lying_top", Zone::Lying, plane(2, LEDGE, -1.0)),
-    ("lying_end", Zone::Lying, plane(0, 20.0, -1.0)),
-    ("lying_side", Zone::Lying, Face::Sides { half: 10.0 }),
+    ("lying_bottom", Zone::Lying, Face::Plane(2, 0.0, 1.0)),
+    ("lying_top", Zone::Lying, Face::Plane(2, LEDGE, -1.0)),
+    ("lying_end", Zone::Lying, Face::Plane(0, 20.0, -1.0)),
+    ("lying_side", Zone::Lying, Face::Sides),
     ("bore", Zone::Lying, Face::Bore),
-    ("heel_bottom", Zone::Heel, plane(2, 0.0, 1.0)),
-    ("heel_back", Zone::Heel, plane(0, -10.0, 1.0)),
-    ("heel_side", Zone::Heel, Face::Sides { half: 10.0 }),
+    ("heel_bottom", Zone::Heel, Face::Plane(2, 0.0, 1.0)),
+    ("heel_back", Zone::Heel, Face::Plane(0, -10.0, 1.0)),
+    ("heel_side", Zone::Heel, Face::Sides),
     ("heel_edge", Zone::Heel, Face::Edge),
-    ("standing_back", Zone::Standing, plane(0, -10.0, 1.0)),
-    ("standing_inner", Zone::Standing, plane(0, WALL, -1.0)),
-    ("standing_side", Zone::Standing, Face::Sides { half: 10.0 }),
-    ("standing_top", Zone::Standing, plane(2, 24.0, -1.0)),
+    ("standing_back", Zone::Standing, Face::Plane(0, -10.0, 1.0)),
+    ("standing_inner", Zone::Standing, Face::Plane(0, WALL, -1.0)),
+    ("standing_side", Zone::Standing, Face::Sides),
+    ("standing_top", Zone::Standing, Face::Plane(2, 24.0, -1.0)),
 ];
 
 /// Returns the vector from the hole's axis.
@@ -92,13 +88,11 @@ fn from_edge<T: Real>(p: &P3<T>) -> [T; 2] {
 }
 
 impl Face {
-    /// Returns the signed distance inside the face; for the edge, the distance from it.
-    fn inward<T: Real>(self, p: &P3<T>) -> T {
+    /// Returns the signed distance inside the face, which is the depth of its region; for the edge, the distance from it.
+    pub fn inward<T: Real>(self, p: &P3<T>) -> T {
         match self {
-            Face::Plane { axis, at, sign } => {
-                T::exactly(sign).times(&p[axis].minus(&T::exactly(at)))
-            }
-            Face::Sides { half } => T::exactly(half).minus(&p[1].absolute()),
+            Face::Plane(axis, at, sign) => T::exactly(sign).times(&p[axis].minus(&T::exactly(at))),
+            Face::Sides => T::exactly(10.0).minus(&p[1].absolute()),
             Face::Bore => {
                 let [x, y] = from_bore_axis(p);
                 x.hypot(&y).minus(&T::decimal(BORE_RADIUS))
@@ -110,12 +104,13 @@ impl Face {
         }
     }
 
-    fn direction<T: Real>(self, p: &P3<T>) -> P3<T> {
+    /// Returns the unit vector from a point inside to the face.
+    pub fn direction<T: Real>(self, p: &P3<T>) -> P3<T> {
         match self {
-            Face::Plane { axis, sign, .. } => {
+            Face::Plane(axis, _, sign) => {
                 std::array::from_fn(|k| T::exactly(if k == axis { -sign } else { 0.0 }))
             }
-            Face::Sides { .. } => {
+            Face::Sides => {
                 let sign = if p[1] < T::zero() { -1.0 } else { 1.0 };
                 [0.0, sign, 0.0].map(T::exactly)
             }
@@ -136,9 +131,9 @@ impl Face {
 
     /// Returns the distance to the nearest point at which the direction is undefined, or for which another direction is
     /// equally good.
-    fn singularity_distance<T: Real>(self, p: &P3<T>) -> f64 {
+    pub fn singularity_distance<T: Real>(self, p: &P3<T>) -> f64 {
         let [a, b] = match self {
-            Face::Plane { .. } | Face::Sides { .. } => return f64::INFINITY,
+            Face::Plane(..) | Face::Sides => return f64::INFINITY,
             Face::Bore => from_bore_axis(p),
             Face::Edge => from_edge(p),
         };
@@ -199,26 +194,16 @@ impl Body {
         if inward < T::zero() { self.distance_outside(p).negated() } else { inward }
     }
 
-    /// Returns the depth of a region at a point, whether or not the region owns it.
-    pub fn depth_of<T: Real>(self, region: usize, p: &P3<T>) -> T {
-        self.faces()[region].2.inward(p)
+    /// Returns the face of a region.
+    pub fn face(self, region: usize) -> Face {
+        self.faces()[region].2
     }
 
     /// Returns the distance by which a point misses a region: beyond the border to a neighbouring zone, at least its
     /// distance from the zone.
     pub fn excess_distance<T: Real>(self, region: usize, p: &P3<T>) -> T {
-        let excess = self.depth_of(region, p).minus(&self.nearest(p).1).absolute();
+        let excess = self.face(region).inward(p).minus(&self.nearest(p).1).absolute();
         excess.most(self.faces()[region].1.distance(p))
-    }
-
-    /// Returns the unit vector from a point inside to the face of a region.
-    pub fn direction_of<T: Real>(self, region: usize, p: &P3<T>) -> P3<T> {
-        self.faces()[region].2.direction(p)
-    }
-
-    /// Returns the distance to the nearest point at which the direction of a region does not exist.
-    pub fn singularity_distance_of<T: Real>(self, region: usize, p: &P3<T>) -> f64 {
-        self.faces()[region].2.singularity_distance(p)
     }
 
     /// Returns the distance from a point outside to the boxes of the solid, or to the hole if that is nearest.
@@ -288,7 +273,7 @@ impl Oracle for Body {
 
     fn evaluate(&self, p: P3<f64>) -> Option<OracleEvaluation> {
         let (owner, depth) = self.nearest(&p);
-        let direction = || self.direction_of(owner, &p);
+        let direction = || self.face(owner).direction(&p);
         (depth >= 0.0).then(|| OracleEvaluation {
             owner,
             depth,
@@ -323,7 +308,7 @@ impl Oracle for Body {
 
     fn singularity_distance(&self, p: P3<f64>) -> f64 {
         let owner = self.evaluate(p).map(|evaluation| evaluation.owner);
-        owner.map_or(f64::INFINITY, |owner| self.singularity_distance_of(owner, &p))
+        owner.map_or(f64::INFINITY, |owner| self.face(owner).singularity_distance(&p))
     }
 
     fn is_revolved(&self) -> bool {
@@ -372,37 +357,16 @@ fn grid(x: &[f64], y: &[f64], z: &[f64]) -> Vec<P3<f64>> {
 mod tests {
     use super::*;
 
-    fn at(body: Body, p: P3<f64>) -> Option<(&'static str, f64)> {
-        body.evaluate(p).map(|s| (body.faces()[s.owner].0, s.depth))
-    }
-
+    /// Inside the hole the wall is nearest, and below the hole its rim.
     #[test]
-    fn the_block_at_a_few_points() {
-        assert_eq!(at(Body::Block, [18.0, 0.0, 10.0]), Some(("right", 2.0)));
-        assert_eq!(at(Body::Block, [0.0, -14.5, 10.0]), Some(("front", 0.5)));
-        assert_eq!(at(Body::Block, [0.0, 0.0, 10.0]), Some(("bottom", 10.0)));
-        assert_eq!(at(Body::Block, [20.0, 15.0, 20.0]), Some(("right", 0.0)));
-        assert_eq!(at(Body::Block, [20.5, 0.0, 0.0]), None);
-        let directions = [[18.0, 0.0, 10.0], [0.0, -14.5, 10.0], [0.0, 0.0, 10.0]]
-            .map(|p| Body::Block.evaluate(p).map(|s| s.direction));
-        assert_eq!(directions, [[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, -1.0]].map(Some));
-        assert_eq!(Body::Block.signed_distance([23.0, 19.0, 10.0]), 5.0);
-    }
-
-    #[test]
-    fn the_bracket_at_a_few_points() {
-        let bracket = Body::LBracket;
-        assert_eq!(at(bracket, [0.0, 0.0, 2.0]), Some(("lying_bottom", 2.0)));
-        assert_eq!(at(bracket, [-7.5, 0.0, 15.0]), Some(("standing_back", 2.5)));
-        assert_eq!(at(bracket, [-5.0, 0.0, 5.0]), Some(("heel_edge", 2f64.sqrt())));
-        assert_eq!(at(bracket, [10.0, 0.0, 3.0]), None);
-        assert_eq!(at(bracket, [-3.0, 0.0, 7.0]), None);
-        let (region, depth) = at(bracket, [14.0, 0.0, 3.0]).expect("beside the hole");
-        assert_eq!(region, "bore");
-        assert!((depth - 0.7).abs() < 1e-15);
-        // Inside the hole the wall is nearest, and below the hole its rim.
-        assert!((bracket.signed_distance([10.0, 1.0, 3.0]) - 2.3).abs() < 1e-15);
-        assert!((bracket.signed_distance([10.0, 1.0, -1.0]) - 2.3f64.hypot(1.0)).abs() < 1e-15);
+    fn distances_outside_are_those_to_the_nearest_face_or_edge() {
+        for (body, p, distance) in [
+            (Body::Block, [23.0, 19.0, 10.0], 5.0),
+            (Body::LBracket, [10.0, 1.0, 3.0], 2.3),
+            (Body::LBracket, [10.0, 1.0, -1.0], 2.3f64.hypot(1.0)),
+        ] {
+            assert!((body.signed_distance(p) - distance).abs() < 1e-15, "{body:?} {p:?}");
+        }
     }
 
     /// The depth of a point is the distance to the nearest point of the other side, by steps along the axes and to the
@@ -422,7 +386,7 @@ mod tests {
                 }
                 if depth >= 0.0 {
                     let (owner, _) = body.nearest(&p);
-                    let q = step(depth + 1e-9, body.direction_of(owner, &p));
+                    let q = step(depth + 1e-9, body.face(owner).direction(&p));
                     assert!(body.depth(&q) < 0.0, "{body:?} {p:?} {q:?}");
                 }
             }

@@ -222,13 +222,14 @@ impl FromIterator<f64> for Sum {
 
 #[cfg(test)]
 mod tests {
-    use super::super::UnitSphere;
+    use super::super::Nearest;
     use super::*;
 
     #[test]
     fn without_contacts_the_wrench_is_zero() {
         let pose = Pose { tip: [0.0, 0.0, 9.0], ..Pose::IDENTITY };
-        let a = Query::new(&UnitSphere, pose, &[[0.0; 3]], &[[0.0, 0.0, 1.0]], &[1.0]).answer();
+        let sphere = Nearest::of("UnitSphere");
+        let a = Query::new(&sphere, pose, &[[0.0; 3]], &[[0.0, 0.0, 1.0]], &[1.0]).answer();
         assert_eq!((a.count, a.deepest, a.niceness, a.force), (0, None, None, [0.0; 3]));
     }
 

@@ -14,6 +14,7 @@ type Points = Vec<Point<f64>>;
 pub struct Nearest {
     name: &'static str,
     profile: Profile<f64>,
+    /// What each owner of the profile is to the tool.
     regions: Vec<Region>,
     niceness: Niceness,
     /// Largest `d` and `z`.
@@ -27,12 +28,14 @@ struct Region {
     name: String,
     surface: &'static str,
     cutting: bool,
+    /// Its index in the tool's list.
+    index: usize,
 }
 
 impl Nearest {
     /// Creates the oracle of a restated tool.
     pub fn new(tool: &Restated) -> Self {
-        let profile = tool.profile().map(super::big::Big::to_f64);
+        let profile = tool.profile.map(super::big::Big::to_f64);
         Self {
             name: tool.name,
             regions: regions(tool, &profile),
@@ -57,12 +60,18 @@ impl Nearest {
         self
     }
 
+    /// Lists the regions in another order than along the profile.
+    fn listed<const N: usize>(mut self, indices: [usize; N]) -> Self {
+        self.regions.iter_mut().zip(indices).for_each(|(region, index)| region.index = index);
+        self
+    }
+
     /// Returns the profile.
     pub fn profile(&self) -> &Profile<f64> {
         &self.profile
     }
 
-    /// Returns the surface that each region belongs to, and whether it cuts.
+    /// Returns the surface of each owner of the profile, and whether it cuts.
     pub fn surfaces(&self) -> impl Iterator<Item = (&'static str, bool)> {
         self.regions.iter().map(|region| (region.surface, region.cutting))
     }
@@ -123,7 +132,7 @@ fn regions(tool: &Restated, profile: &Profile<f64>) -> Vec<Region> {
     let cuts = |surface: &str| tool.cutting.contains(&surface);
     let last = tool.surfaces.len() - 1;
     let mut fans: Vec<String> = Vec::new();
-    let of = |feature: &Feature| match *feature {
+    let of = |(index, feature): (usize, &Feature)| match *feature {
         Feature::Segment(k) => {
             let surface = tool.surfaces[k];
             let count = |surfaces: &[&str]| surfaces.iter().filter(|s| **s == surface).count();
@@ -131,7 +140,7 @@ fn regions(tool: &Restated, profile: &Profile<f64>) -> Vec<Region> {
                 1 => surface.to_owned(),
                 _ => format!("{surface}.{}", count(&tool.surfaces[..=k])),
             };
-            Region { name, surface, cutting: cuts(surface) }
+            Region { name, surface, cutting: cuts(surface), index }
         }
         Feature::Corner(k) => {
             let [a, b] = [k.saturating_sub(1), k.min(last)].map(|k| tool.surfaces[k]);
@@ -139,10 +148,10 @@ fn regions(tool: &Restated, profile: &Profile<f64>) -> Vec<Region> {
             let pair = format!("{a}/{b}");
             fans.push(pair.clone());
             let count = fans.iter().filter(|other| **other == pair).count();
-            Region { name: format!("{pair}.{count}"), surface, cutting: cuts(surface) }
+            Region { name: format!("{pair}.{count}"), surface, cutting: cuts(surface), index }
         }
     };
-    profile.owners().iter().map(of).collect()
+    profile.owners().iter().enumerate().map(of).collect()
 }
 
 impl Oracle for Nearest {
@@ -151,7 +160,9 @@ impl Oracle for Nearest {
     }
 
     fn regions(&self) -> Vec<&str> {
-        self.regions.iter().map(|region| region.name.as_str()).collect()
+        let mut listed: Vec<&Region> = self.regions.iter().collect();
+        listed.sort_by_key(|region| region.index);
+        listed.into_iter().map(|region| region.name.as_str()).collect()
     }
 
     fn evaluate(&self, p: [f64; 3]) -> Option<OracleEvaluation> {
@@ -165,11 +176,10 @@ impl Oracle for Nearest {
         if depth > 0.0 && !self.profile.encloses(&m.dz) {
             return None;
         }
-        let owner = self.profile.owner(near.feature);
-        let region = &self.regions[owner];
+        let region = &self.regions[self.profile.owner(near.feature)];
         let niceness = || (self.niceness)(region.surface, depth, m.dz).max(0.0);
         Some(OracleEvaluation {
-            owner,
+            owner: region.index,
             depth,
             magnitude: depth,
             direction: m.lift(self.profile.direction(near.feature, &m.dz)),
@@ -215,6 +225,15 @@ impl Oracle for Nearest {
         self.extent
     }
 }
+
+/// Returns the finite cylinder of radius 2 and height 6 (Ho 1999, fig. 4.2), whose side is listed first.
+pub fn cylinder() -> Nearest {
+    Nearest::of("Cylinder").listed([1, 0, 2]).with(vec![
+        sample_line([2.0, 0.0], [0.0, 2.0]), // bottom | side
+        sample_line([2.0, 6.0], [0.0, 4.0]), // side | top
+    ])
+}
+
 /// Returns the half sphere of radius 2 joined to a cylinder of radius 1 (Ho 1999, fig. 2.2, 2.3), 8 long.
 pub fn half_sphere_cylinder() -> Nearest {
     Nearest::of("HalfSphereCylinder").with(vec![
@@ -280,22 +299,11 @@ mod tests {
         assert_eq!(region(1.0, 40.0), Some("shank.1"));
         assert_eq!(region(0.5, 40.0), Some("shank.2"));
         assert_eq!(region(1.0, 40.1), None);
-    }
-
-    #[test]
-    fn the_half_sphere_is_mostly_its_step_and_corner() {
-        let tool = half_sphere_cylinder();
-        let at = |d: f64, z: f64| {
-            let s = tool.evaluate([0.0, d, z]).expect("inside");
-            (tool.regions()[s.owner], s)
-        };
-        let (region, s) = at(0.0, 2.0); // the arc's centre: the corner is nearer than the ball
-        assert_eq!((region, s.depth, s.direction), ("step/stem.1", 1.0, [1.0, 0.0, 0.0]));
-        let (_, s) = at(0.0, 1.25); // ball and corner tie on the axis
-        assert!((s.depth - 1.25).abs() < 1e-15);
-        let (region, s) = at(1.5, 1.8);
-        assert_eq!((region, s.direction), ("step", [0.0, 0.0, 1.0]));
-        assert_eq!(at(0.1, 5.0).0, "stem.1");
-        assert_eq!(at(0.1, 7.5).0, "stem.2");
+        let cylinder = cylinder();
+        let region =
+            |d: f64, z: f64| cylinder.evaluate([d, 0.0, z]).map(|s| cylinder.regions()[s.owner]);
+        assert_eq!(region(0.5, 1.0), Some("bottom"));
+        assert_eq!(region(0.5, 5.0), Some("top"));
+        assert_eq!((region(1.9, 3.0), region(2.0, 6.5)), (Some("side"), None));
     }
 }

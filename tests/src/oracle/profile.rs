@@ -72,10 +72,15 @@ impl<T: Real> Profile<T> {
     /// # Panics
     /// If the text is none.
     pub fn parse(text: &str) -> Profile<T> {
-        let numbers = |text: &str| -> Vec<T> {
-            let words = text.split_whitespace();
-            words.map(|word| T::decimal(word.parse().expect("a number"))).collect()
-        };
+        Profile::read(text, |word| T::decimal(word.parse().expect("a number")))
+    }
+
+    /// Reads the profile of [these vertices][Profile::parse], each of whose words stands for a number.
+    ///
+    /// # Panics
+    /// If the text is none.
+    pub fn read(text: &str, number: impl Fn(&str) -> T) -> Profile<T> {
+        let numbers = |text: &str| -> Vec<T> { text.split_whitespace().map(&number).collect() };
         let point = |text: &str| <Point<T>>::try_from(numbers(text)).expect("two coordinates");
         let mut vertices = text.split(',');
         let mut from = point(vertices.next().unwrap_or_default());
@@ -316,7 +321,9 @@ impl Profile<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::plane::{add, unit};
+    use super::super::big::Big;
+    use super::super::plane::add;
+    use super::super::restated;
     use super::super::rng::Rng;
     use super::*;
 
@@ -325,66 +332,68 @@ mod tests {
         Profile::parse("0 0, 2 2 about 0 2, 1 3 about 2 3, 3 5, 3 6, 0 6")
     }
 
-    fn random_point(rng: &mut Rng) -> Point<f64> {
-        [rng.between(0.0, 4.0), rng.between(-1.0, 7.0)]
-    }
-
-    /// Compares with a polyline so fine that only its sagitta (below 1e-6) is left.
-    #[test]
-    fn distances_agree_with_a_fine_polyline() {
-        let vase = vase();
-        let share = |i: u32| f64::from(i) / 2000.0;
-        let chords = |segment: &Segment<f64>| -> Vec<[Point<f64>; 2]> {
-            (0..2000).map(|i| [segment.at(share(i)), segment.at(share(i + 1))]).collect()
-        };
-        let fine: Vec<_> = vase.segments().iter().flat_map(chords).collect();
-        let mut rng = Rng::new(5);
-        for _ in 0..2_000 {
-            let p = [rng.between(0.0, 5.0), rng.between(-2.0, 8.0)];
-            let polyline = fine.iter().map(|[a, b]| {
-                let e = sub(b, a);
-                let t = (dot(&sub(&p, a), &e) / dot(&e, &e)).clamp(0.0, 1.0);
-                norm(&sub(&p, &add(a, &e, &t)))
-            });
-            let least = polyline.fold(f64::INFINITY, f64::min);
-            let near = vase.nearest(&p);
-            assert!((least - near.distance).abs() < 1e-6, "{p:?}");
-            assert_eq!(vase.depth(&p).abs(), near.distance, "{p:?}");
+    /// Returns the point of a segment nearest to another, by trying points along it closer and closer together.
+    fn nearest_along(segment: &Segment<f64>, p: &Point<f64>) -> Point<f64> {
+        let distance = |share: &f64| norm(&sub(p, &segment.at(*share)));
+        let (mut best, mut step) = (0.5, 1.0 / 64.0);
+        while step > 1e-11 {
+            let around = (-32..=32).map(|k| (best + f64::from(k) * step).clamp(0.0, 1.0));
+            let measured = around.map(|share| (distance(&share), share));
+            best = measured.min_by(|a, b| a.0.total_cmp(&b.0)).map_or(best, |(_, share)| share);
+            step /= 16.0;
         }
+        segment.at(best)
     }
 
-    /// Compares two unlike tests: even-odd, and the side of the nearest feature.
+    /// Every thirtieth point is compared with a search along each segment, which uses nothing but its points.
     #[test]
-    fn inside_agrees_with_the_side_of_the_nearest_feature() {
-        let vase = vase();
-        let mut rng = Rng::new(6);
-        for _ in 0..100_000 {
-            let p = random_point(&mut rng);
-            let near = vase.nearest(&p);
-            if near.distance < 1e-12 {
-                continue;
-            }
-            let inside = match near.feature {
-                Feature::Segment(k) => vase.segments()[k].inward(&p) > 0.0,
-                Feature::Corner(k) => vase.is_reflex(k),
-            };
-            assert_eq!(inside, vase.encloses(&p), "{p:?} {near:?}");
-        }
-    }
-
-    #[test]
-    fn directions_step_onto_the_surface() {
-        let vase = vase();
-        let mut rng = Rng::new(7);
-        for _ in 0..100_000 {
-            let p = random_point(&mut rng);
-            let near = vase.nearest(&p);
-            if vase.encloses(&p) {
-                let u = vase.direction(near.feature, &p);
-                let foot = add(&p, &u, &near.distance);
-                assert!(vase.nearest(&foot).distance < 1e-13, "{p:?} {near:?} {u:?}");
-                if let Feature::Segment(k) = near.feature {
-                    assert!(norm(&sub(&vase.segments()[k].foot(&p), &foot)) < 1e-13);
+    fn the_nearest_feature_is_the_one_that_a_search_along_the_segments_finds() {
+        let restated = restated::all().into_iter().map(|tool| tool.profile.map(Big::to_f64));
+        for profile in restated.chain([vase()]) {
+            let [_, [radius, height]] = profile.extent();
+            let size = radius.max(height);
+            let mut rng = Rng::new(5);
+            for k in 0..6_000 {
+                let p = [rng.between(0.0, 1.5) * radius, rng.between(-0.2, 1.2) * height];
+                let near = profile.nearest(&p);
+                let depth = profile.depth(&p).abs();
+                assert!((depth - near.distance).abs() < 1e-13 * size, "{p:?}");
+                if near.distance < 1e-12 * size {
+                    continue;
+                }
+                // Even-odd, and the side of the nearest feature.
+                let is_inside = match near.feature {
+                    Feature::Segment(k) => profile.segments()[k].inward(&p) > 0.0,
+                    Feature::Corner(k) => profile.is_reflex(k),
+                };
+                assert_eq!(is_inside, profile.encloses(&p), "{p:?} {near:?}");
+                let foot = is_inside.then(|| {
+                    let u = profile.direction(near.feature, &p);
+                    add(&p, &u, &near.distance)
+                });
+                if let Some(foot) = foot {
+                    assert!(profile.nearest(&foot).distance < 1e-13 * size, "{p:?} {near:?}");
+                    if let Feature::Segment(k) = near.feature {
+                        let off = norm(&sub(&profile.segments()[k].foot(&p), &foot));
+                        assert!(off < 1e-13 * size, "{p:?} {near:?}");
+                    }
+                }
+                if k % 30 != 0 {
+                    continue;
+                }
+                let found = profile.segments().iter().map(|segment| nearest_along(segment, &p));
+                let found = found.map(|point| (norm(&sub(&p, &point)), point)).enumerate();
+                let (k, (least, point)) =
+                    found.min_by(|a, b| a.1.0.total_cmp(&b.1.0)).expect("a segment");
+                assert!((near.distance - least).abs() < 1e-13 * size, "{p:?}");
+                let is_clear = profile.border_distance(&p) > 1e-5 * size;
+                if let Some(foot) = foot.filter(|_| is_clear) {
+                    assert!(norm(&sub(&foot, &point)) < 1e-6 * size, "{p:?} {near:?}");
+                    let is_owner = match near.feature {
+                        Feature::Segment(owner) => owner == k,
+                        Feature::Corner(k) => norm(&sub(profile.vertex(k), &point)) < 1e-9 * size,
+                    };
+                    assert!(is_owner, "{p:?} {near:?}, not {k}");
                 }
             }
         }

@@ -12,56 +12,68 @@ pub trait Real: Clone + Debug + PartialOrd {
     /// Returns the nearest double.
     fn to_f64(&self) -> f64;
     /// Returns the sum.
-    #[must_use]
     fn plus(&self, other: &Self) -> Self;
     /// Returns the difference.
-    #[must_use]
     fn minus(&self, other: &Self) -> Self;
     /// Returns the product.
-    #[must_use]
     fn times(&self, other: &Self) -> Self;
     /// Returns the quotient.
-    #[must_use]
     fn over(&self, other: &Self) -> Self;
     /// Returns the square root.
-    #[must_use]
     fn root(&self) -> Self;
     /// Returns the length of the vector with these components, also where their squares leave the range.
-    #[must_use]
     fn hypot(&self, other: &Self) -> Self;
 
     /// Returns zero.
-    #[must_use]
     fn zero() -> Self {
         Self::exactly(0.0)
     }
 
     /// Returns the number with the other sign.
-    #[must_use]
-    fn negated(&self) -> Self {
-        Self::zero().minus(self)
-    }
-
+    fn negated(&self) -> Self;
     /// Returns the absolute value.
-    #[must_use]
-    fn absolute(&self) -> Self {
-        if *self < Self::zero() { self.negated() } else { self.clone() }
-    }
+    fn absolute(&self) -> Self;
 
     /// Returns the smaller of two.
-    #[must_use]
     fn least(self, other: Self) -> Self {
         if other < self { other } else { self }
     }
 
     /// Returns the larger of two.
-    #[must_use]
     fn most(self, other: Self) -> Self {
         if other > self { other } else { self }
     }
 }
 
+/// Implements what doubles and 256 bits have by the same names.
+macro_rules! operators {
+    () => {
+        fn plus(&self, other: &Self) -> Self {
+            self + other
+        }
+        fn minus(&self, other: &Self) -> Self {
+            self - other
+        }
+        fn times(&self, other: &Self) -> Self {
+            self * other
+        }
+        fn over(&self, other: &Self) -> Self {
+            self / other
+        }
+        fn root(&self) -> Self {
+            self.sqrt()
+        }
+        fn negated(&self) -> Self {
+            -self
+        }
+        fn absolute(&self) -> Self {
+            self.abs()
+        }
+    };
+}
+
 impl Real for f64 {
+    operators!();
     fn exactly(value: f64) -> f64 {
         value
     }
@@ -71,33 +83,13 @@ impl Real for f64 {
     fn to_f64(&self) -> f64 {
         *self
     }
-    fn plus(&self, other: &f64) -> f64 {
-        self + other
-    }
-    fn minus(&self, other: &f64) -> f64 {
-        self - other
-    }
-    fn times(&self, other: &f64) -> f64 {
-        self * other
-    }
-    fn over(&self, other: &f64) -> f64 {
-        self / other
-    }
-    fn root(&self) -> f64 {
-        self.sqrt()
-    }
     fn hypot(&self, other: &f64) -> f64 {
         f64::hypot(*self, *other)
-    }
-    fn absolute(&self) -> f64 {
-        self.abs()
-    }
-    fn negated(&self) -> f64 {
-        -self
     }
 }
 
 impl Real for Big {
+    operators!();
     fn exactly(value: f64) -> Big {
         Big::exactly(value)
     }
@@ -107,25 +99,7 @@ impl Real for Big {
     fn to_f64(&self) -> f64 {
         Big::to_f64(self)
     }
-    fn plus(&self, other: &Big) -> Big {
-        self + other
-    }
-    fn minus(&self, other: &Big) -> Big {
-        self - other
-    }
-    fn times(&self, other: &Big) -> Big {
-        self * other
-    }
-    fn over(&self, other: &Big) -> Big {
-        self / other
-    }
-    fn root(&self) -> Big {
-        self.sqrt()
-    }
     fn hypot(&self, other: &Big) -> Big {
         (&(self * self) + &(other * other)).sqrt()
-    }
-    fn negated(&self) -> Big {
-        -self
     }
 }

@@ -100,6 +100,31 @@ pub fn nearest_weights(p: Point, corners: &[Point; 3]) -> Point {
         .unwrap_or([1.0, 0.0, 0.0])
 }
 
+/// Bisects a triangle at its longest edge, whatever its corners are.
+pub fn bisected<P: Copy>(
+    corners: [P; 3],
+    distance: impl Fn(P, P) -> f64,
+    midpoint: impl Fn(P, P) -> P,
+) -> [[P; 3]; 2] {
+    let length = |k: &usize| distance(corners[*k], corners[(k + 1) % 3]);
+    let longest = (0..3).max_by(|j, k| length(j).total_cmp(&length(k))).unwrap_or(0);
+    let [a, b, c] = [0, 1, 2].map(|k| corners[(longest + k) % 3]);
+    let middle = midpoint(a, b);
+    [[a, middle, c], [middle, b, c]]
+}
+
+/// Returns the winding number of a surface about a point: the sum of its triangles' solid angles (Van Oosterom,
+/// Strackee 1983) over 4π.
+pub fn winding_number(triangles: impl Iterator<Item = [Point; 3]>, point: Point) -> f64 {
+    let angle = |corners: [Point; 3]| {
+        let [a, b, c] = corners.map(|corner| sub(corner, point));
+        let [x, y, z] = [a, b, c].map(norm);
+        let denominator = x * y * z + dot(a, b) * z + dot(b, c) * x + dot(c, a) * y;
+        2.0 * dot(a, cross(b, c)).atan2(denominator)
+    };
+    triangles.map(angle).sum::<f64>() / (4.0 * std::f64::consts::PI)
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::rng::Rng;

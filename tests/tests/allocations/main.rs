@@ -131,5 +131,4 @@ fn a_haptic_loop() {
     }
 }
 
-/// Allocations of a report's two histograms.
 const HISTOGRAMS: usize = 2;

@@ -5,15 +5,15 @@
 //! once.
 
 use crate::brute::{Ball, BruteForce, TRIANGLES_PER_GROUP, ToolFrame};
-use nalgebra::Point3;
+use nalgebra::{Point3, Vector3};
 use touchoff::{Pose, TriangleId};
 use touchoff_tests::oracle::Oracle;
 use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::triangle::{Point, advance, nearest};
 
-/// Maximum number of triangles sampled per pose, and number of samples per triangle.
+/// Maximum number of triangles sampled per pose, and number of samples of each kind per triangle.
 const MAX_TRIANGLES: usize = 40;
-const SAMPLES_PER_TRIANGLE: usize = 6;
+const SAMPLES_PER_TRIANGLE: usize = 4;
 /// Number of times that are refined, number of refinements of each, number of searches, and number of steps per
 /// search.
 const REFINED_TIMES: usize = 5;
@@ -24,9 +24,7 @@ const STEPS_PER_CLIMB: usize = 700;
 /// A tool's motion, as it is specified.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ReferenceMotion {
-    /// The first pose.
     pub(crate) from: Pose,
-    /// The last pose.
     pub(crate) to: Pose,
 }
 
@@ -56,7 +54,6 @@ impl ReferenceMotion {
 pub(crate) struct MotionSample {
     /// The time, 0 to 1.
     pub(crate) t: f64,
-    /// The index of the triangle.
     pub(crate) triangle: usize,
     /// The point, in the part's frame.
     pub(crate) point: Point,
@@ -73,14 +70,14 @@ impl BruteForce<'_> {
         self.depth(self.to_tool_frame(frame, Point3::from(p))) * self.length
     }
 
-    /// Returns the deepest sample at a time.
     pub(crate) fn deepest_at(
         &self,
         motion: &ReferenceMotion,
         t: f64,
         rng: &mut Rng,
     ) -> MotionSample {
-        let frame = self.tool_frame(&motion.pose(t));
+        let pose = motion.pose(t);
+        let frame = self.tool_frame(&pose);
         let [radius, height] = self.oracle.extent();
         let mut best =
             MotionSample { t, triangle: 0, point: [f64::NAN; 3], depth: f64::NEG_INFINITY };
@@ -118,21 +115,12 @@ impl BruteForce<'_> {
             if bound < best.depth {
                 break;
             }
-            let corners = self.mesh.triangle(TriangleId(id as u32)).map(point);
-            let (tip, rotation) = (motion.pose(t).tip(), *motion.pose(t).rotation());
-            let mut points = corners.to_vec();
-            for _ in 0..SAMPLES_PER_TRIANGLE {
-                let mut offset = || rng.between(-1.0, 1.0) * radius;
-                let (x, y) = (offset(), offset());
-                let z = rng.between(0.0, 1.0) * if rng.once_in(2) { height } else { radius };
-                let inside = tip + rotation * nalgebra::Vector3::new(x, y, z) * self.length;
-                points.push(nearest(point(inside), &corners));
-            }
-            for p in points {
-                let depth = self.evaluation(&frame, p);
-                if depth > best.depth {
-                    best = MotionSample { t, triangle: id, point: p, depth };
-                }
+            let value = |p| self.depth(p) * self.length;
+            let sample = self.sample(&frame, id, SAMPLES_PER_TRIANGLE, value, rng)[0];
+            if sample.value > best.depth {
+                let offset = pose.rotation() * Vector3::from(sample.point) * self.length;
+                let (point, depth) = (point(pose.tip() + offset), sample.value);
+                best = MotionSample { t, triangle: id, point, depth };
             }
         }
         best

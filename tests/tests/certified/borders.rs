@@ -7,8 +7,8 @@ use touchoff::certify::{Certifier, PoseVerdict, TriangleBvh};
 use touchoff::tool::Interpreted;
 use touchoff::{Level, Pose, Tool};
 use touchoff_tests::oracle::big::Big;
-use touchoff_tests::oracle::exact::{Frame, Triple, exactly};
 use touchoff_tests::oracle::rng::Rng;
+use touchoff_tests::oracle::space::{Frame, Triple, exactly};
 
 const RADIUS: f64 = 5.0;
 /// The height of the border.

@@ -20,7 +20,16 @@ const MAX_TRIANGLES: usize = 1000;
 /// Number of samples from which the search climbs, maximum number of them per triangle, and number of steps.
 const CLIMBS: usize = 6;
 const MAX_CLIMBS_PER_TRIANGLE: usize = 3;
-const STEPS_PER_CLIMB: usize = 500;
+pub(crate) const STEPS_PER_CLIMB: usize = 500;
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sample {
+    pub(crate) triangle: usize,
+    /// In the tool's frame and unit.
+    pub(crate) point: Point,
+    /// The depth, or another value to be maximised, in the part's unit.
+    pub(crate) value: f64,
+}
 
 /// A ball in the part's frame and unit.
 #[derive(Clone, Copy)]
@@ -29,7 +38,6 @@ pub(crate) struct Ball {
     pub(crate) radius: f64,
 }
 
-/// A part's triangles and a tool.
 pub(crate) struct BruteForce<'a> {
     pub(crate) mesh: &'a Mesh,
     pub(crate) oracle: &'a Nearest,
@@ -41,11 +49,9 @@ pub(crate) struct BruteForce<'a> {
     pub(crate) bounding_balls: Vec<Ball>,
     /// Bounding balls of groups of consecutive triangles.
     pub(crate) group_balls: Vec<Ball>,
-    /// Number of depths that were evaluated.
     pub(crate) evaluations: Cell<u64>,
 }
 
-/// Number of triangles per group.
 pub(crate) const TRIANGLES_PER_GROUP: usize = 32;
 
 /// A pose: its tip, and the tool's axes in the world frame.
@@ -54,7 +60,6 @@ pub(crate) struct ToolFrame {
     axes: [[f64; 3]; 3],
 }
 
-/// Returns a ball that contains several balls.
 fn bounding_ball(balls: &[Ball]) -> Ball {
     let centres = balls.iter().map(|ball| ball.centre.coords);
     let centre = Point3::from(centres.sum::<Vector3<f64>>() / balls.len() as f64);
@@ -88,7 +93,6 @@ impl<'a> BruteForce<'a> {
         }
     }
 
-    /// Converts a pose.
     pub(crate) fn tool_frame(&self, pose: &Pose) -> ToolFrame {
         let rotation = pose.rotation();
         ToolFrame {
@@ -121,72 +125,85 @@ impl<'a> BruteForce<'a> {
     /// Returns the greatest depth found, in the part's unit. It is negative if no sample is inside, and negative
     /// infinity if no triangle is near.
     pub(crate) fn deepest(&self, frame: &ToolFrame, rng: &mut Rng) -> f64 {
-        let [radius, height] = self.oracle.extent();
         let mut candidates = Vec::new();
         for (id, ball) in self.bounding_balls.iter().enumerate() {
             let p = self.to_tool_frame(frame, ball.centre);
             let reach = ball.radius / self.length * (1.0 + 1e-9);
-            if p[2] + reach < 0.0 || p[2] - reach > height || p[0].hypot(p[1]) > radius + reach {
-                continue;
+            if self.is_near(p, reach) {
+                candidates.push(((self.depth(p) + reach) * self.length, id));
             }
-            candidates.push((self.depth(p) + reach, id));
         }
         candidates.sort_by(|a, b| b.0.total_cmp(&a.0));
         let count =
             (TOTAL_SAMPLES / candidates.len().max(1)).clamp(SAMPLE_LIMITS[0], SAMPLE_LIMITS[1]);
+        let depth = |p| self.depth(p) * self.length;
         let mut best = f64::NEG_INFINITY;
-        let mut starts: Vec<(f64, usize, Point)> = Vec::new();
+        let mut starts: Vec<Sample> = Vec::new();
         for (bound, id) in candidates.into_iter().take(MAX_TRIANGLES) {
             if bound <= best {
                 break;
             }
-            let triangle_samples = self.sample(&self.triangle(frame, id), count, rng);
-            best = best.max(triangle_samples[0].0);
-            starts.extend(
-                triangle_samples
-                    .into_iter()
-                    .take(MAX_CLIMBS_PER_TRIANGLE)
-                    .map(|(depth, point)| (depth, id, point)),
-            );
+            let samples = self.sample(frame, id, count, depth, rng);
+            best = best.max(samples[0].value);
+            starts.extend(samples.into_iter().take(MAX_CLIMBS_PER_TRIANGLE));
         }
-        starts.sort_by(|a, b| b.0.total_cmp(&a.0));
+        starts.sort_by(|a, b| b.value.total_cmp(&a.value));
         let climbs = starts.into_iter().take(CLIMBS);
-        let reached = climbs.map(|(_, id, point)| self.climb(frame, id, point, rng));
+        let reached =
+            climbs.map(|start| self.climb(frame, start, STEPS_PER_CLIMB, depth, rng).value);
         reached.fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// Returns samples of a triangle, the deepest first.
-    fn sample(&self, triangle: &[Point; 3], count: usize, rng: &mut Rng) -> Vec<(f64, Point)> {
+    /// Returns whether a ball of the tool's frame overlaps the tool's bounding cylinder.
+    pub(crate) fn is_near(&self, centre: Point, reach: f64) -> bool {
         let [radius, height] = self.oracle.extent();
-        let mut points = triangle.to_vec();
-        for _ in 0..count {
-            points.push(point(triangle, rng.weights()));
-            // Half of the points are near the tip.
-            let max_height = if rng.once_in(2) { height } else { height.min(2.0 * radius) };
-            let mut offset = || rng.between(-0.5, 0.5) * radius;
-            points.push(nearest([offset(), offset(), rng.between(0.0, max_height)], triangle));
-        }
-        let mut samples: Vec<_> = points.into_iter().map(|p| (self.depth(p), p)).collect();
-        samples.sort_by(|a, b| b.0.total_cmp(&a.0));
-        samples
+        let [x, y, z] = centre;
+        z + reach >= 0.0 && z - reach <= height && x.hypot(y) <= radius + reach
     }
 
-    /// Climbs from a point of a triangle and returns the greatest depth reached, in the part's unit.
-    pub(crate) fn climb(
+    /// Returns samples of a triangle: its corners, and `count` points of each kind. The one with the largest value comes
+    /// first.
+    pub(crate) fn sample(
         &self,
         frame: &ToolFrame,
         triangle: usize,
-        start: Point,
+        count: usize,
+        value: impl Fn(Point) -> f64,
         rng: &mut Rng,
-    ) -> f64 {
-        let triangle = self.triangle(frame, triangle);
-        let (depth, _) = self.climb_by(&triangle, start, STEPS_PER_CLIMB, |p| self.depth(p), rng);
-        depth * self.length
+    ) -> Vec<Sample> {
+        let [radius, height] = self.oracle.extent();
+        let corners = self.triangle(frame, triangle);
+        let mut points = corners.to_vec();
+        for _ in 0..count {
+            points.push(point(&corners, rng.weights()));
+            // Half of the points are near the tip.
+            let max_height = if rng.once_in(2) { height } else { height.min(2.0 * radius) };
+            let mut offset = || rng.between(-1.0, 1.0) * radius;
+            points.push(nearest([offset(), offset(), rng.between(0.0, max_height)], &corners));
+        }
+        let sample = |point| Sample { triangle, point, value: value(point) };
+        let mut samples: Vec<Sample> = points.into_iter().map(sample).collect();
+        samples.sort_by(|a, b| b.value.total_cmp(&a.value));
+        samples
+    }
+
+    /// Climbs from a sample, and returns the one with the largest value reached.
+    pub(crate) fn climb(
+        &self,
+        frame: &ToolFrame,
+        start: Sample,
+        steps: usize,
+        value: impl Fn(Point) -> f64,
+        rng: &mut Rng,
+    ) -> Sample {
+        let triangle = self.triangle(frame, start.triangle);
+        let (value, point) = self.climb_by(&triangle, start.point, steps, value, rng);
+        Sample { value, point, ..start }
     }
 
     /// Climbs on a triangle toward larger values by random steps, which grow after an improvement and shrink otherwise.
     /// Returns the largest value and its point.
-    pub(crate) fn climb_by(
+    fn climb_by(
         &self,
         triangle: &[Point; 3],
         start: Point,

@@ -5,8 +5,8 @@ use nalgebra::{Point3, Vector3};
 use std::sync::Arc;
 use touchoff::certify::{Certifier, TriangleBvh};
 use touchoff::mesh::shapes;
-use touchoff::tool::Interpreted;
 use touchoff::{Interval, Mesh, Pose, Tool, TriangleId, Unit};
+use touchoff_tests::fixtures::drawn;
 use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::{Nearest, Oracle};
 
@@ -159,11 +159,7 @@ fn shared_and_cloned_certifiers_have_the_same_bits() {
     });
     let poses: Vec<Pose> = poses.collect();
     struct Held(Certifier<'static>);
-    let interpreted: Interpreted =
-        "tool Pin { units mm; profile { start (0, 0); line to (1, 0), (1, 9), (0, 9) as pin; } }"
-            .parse()
-            .expect("a tool");
-    let interpreted: Arc<dyn Tool> = Arc::new(interpreted);
+    let interpreted: Arc<dyn Tool> = Arc::new(drawn("0 0; pin 1 0, 1 9, 0 9", ""));
     let mut held =
         Held(Certifier::shared(Arc::clone(&bvh), Arc::clone(&interpreted)).expect("a profile"));
     let mut borrowed = Certifier::new(&bvh, &*interpreted).expect("a profile");

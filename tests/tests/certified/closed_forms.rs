@@ -7,7 +7,6 @@ use touchoff::certify::{Certifier, PoseVerdict, TriangleBvh};
 use touchoff::mesh::shapes;
 use touchoff::{Interval, Mesh, Pose, Unit, scenes};
 
-/// Asserts that the interval contains a depth and is not too wide.
 fn assert_interval_contains(mesh: &Mesh, name: &str, pose: &Pose, depth: f64) {
     let bvh = TriangleBvh::new(mesh);
     let mut certifier = Certifier::new(&bvh, tool(name)).expect("a profile");

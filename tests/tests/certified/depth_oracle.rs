@@ -2,7 +2,6 @@
 
 use touchoff_tests::oracle::{self, Nearest, Oracle, restated};
 
-/// Tools with a profile.
 pub(crate) const PROFILES: [&str; 6] =
     ["Fig73Exact", "BullNose", "Lollipop", "TSlot", "BallEr16", "TaperedBall"];
 
@@ -15,14 +14,11 @@ const FIELD_LIPSCHITZ_BOUND: f64 = 2.24;
 
 /// A tool whose depth is evaluated many times.
 pub(crate) enum DepthOracle {
-    /// A tool with a profile.
     Profile(Nearest),
-    /// A tool with a depth field.
     Field(Box<dyn Oracle>),
 }
 
 impl DepthOracle {
-    /// Returns a tool from the lists above.
     pub(crate) fn of(name: &str) -> DepthOracle {
         match restated::of(name) {
             Some(tool) if !FIELDS.contains(&name) => DepthOracle::Profile(Nearest::new(&tool)),
@@ -30,7 +26,6 @@ impl DepthOracle {
         }
     }
 
-    /// Returns the oracle of the tool.
     pub(crate) fn oracle(&self) -> &dyn Oracle {
         match self {
             DepthOracle::Profile(nearest) => nearest,
@@ -48,7 +43,6 @@ impl DepthOracle {
         }
     }
 
-    /// Returns a Lipschitz bound of the depth.
     pub(crate) fn lipschitz_bound(&self) -> f64 {
         match self {
             DepthOracle::Profile(..) => 1.0,

@@ -4,7 +4,7 @@
 //! restatement, samples triangles and climbs from the deepest samples, and from the witness. No depth that it finds may
 //! exceed the upper bound. The lower bound is proved by the witness, whose depth is evaluated by the same oracle.
 
-use crate::brute::{BruteForce, ToolFrame};
+use crate::brute::{BruteForce, STEPS_PER_CLIMB, Sample, ToolFrame};
 use crate::pair::{Pair, Pairs, parts};
 use crate::{oracle, overhang};
 use touchoff::certify::{Certifier, PoseVerdict, Witness};
@@ -56,7 +56,6 @@ impl Pair<'_> {
     }
 }
 
-/// A pose under validation.
 struct Validation<'a> {
     pair: &'a Pair<'a>,
     brute: &'a BruteForce<'a>,
@@ -88,9 +87,11 @@ impl Validation<'_> {
                 if low - self.witness_depth(&witness, &case) > self.rounding {
                     self.add_violation("the witness is not as deep as the lower bound", &case);
                 }
-                let start = self.brute.point_in_tool_frame(&self.pose, witness.point);
-                let triangle = witness.triangle.index();
-                max_depth = max_depth.max(self.brute.climb(&self.frame, triangle, start, rng));
+                let point = self.brute.to_tool_frame(&self.frame, witness.point);
+                let start = Sample { triangle: witness.triangle.index(), point, value: low };
+                let depth = |p| self.brute.depth(p) * self.brute.length;
+                let climbed = self.brute.climb(&self.frame, start, STEPS_PER_CLIMB, depth, rng);
+                max_depth = max_depth.max(climbed.value);
             }
             None if low > 0.0 => self.add_violation("a lower bound without a witness", &case),
             None => (),
@@ -154,7 +155,6 @@ impl Validation<'_> {
     }
 }
 
-/// Compares tools with all parts, from the seed on.
 fn check(tools: &[&str], poses: usize, seed: u64) {
     let parts = parts("POSES");
     let tallies = Pairs { parts: &parts, tools, seed }.compare(oracle, |pair| {

@@ -3,8 +3,7 @@
 use crate::{UP, block, motion, plate, pose, tool};
 use touchoff::Pose;
 use touchoff::certify::{Certifier, MotionVerdict, PoseVerdict, TriangleBvh};
-use touchoff::tool::Interpreted;
-use touchoff_dsl::source::Source;
+use touchoff_tests::fixtures::drawn;
 
 /// Returns a pose upside down, with the tool's upper end (z = 40) at this depth below the plate's face.
 fn upside_down(depth: f64) -> Pose {
@@ -42,19 +41,11 @@ fn a_tool_entirely_inside_is_inside_with_any_allowance() {
 
 #[test]
 fn the_margin_of_a_surface_smaller_than_the_tolerance_is_kept() {
-    let text = "tool Made { units mm; profile { start (0, 0); line to (4.98, 0) as face;
-        line to (5, 0.02) as chamfer; line to (5, 50), (0, 50) as flute; } niceness cutting: 1; }";
-    let text = text.replace("as flute", "as flute cutting");
-    let made = Interpreted::parse(&Source::new("made.tool", text.as_str())).expect("a tool");
+    let made = drawn("0 0; face 4.98 0; chamfer 5 0.02; flute 5 50, 0 50", "flute");
     let bvh = TriangleBvh::new(&plate());
-    let allow = |name: &str, allowed: f64, certifier: Certifier<'static>| {
-        certifier.with_allowance(name, allowed).expect("a surface")
-    };
-    let (bvh, made) = (Box::leak(Box::new(bvh)), Box::leak(Box::new(made)));
-    let certifier = Certifier::new(bvh, made).expect("a profile");
-    let certifier = allow("face", f64::INFINITY, certifier);
-    let certifier = allow("flute", f64::INFINITY, certifier);
-    let mut certifier = allow("chamfer", -1.0, certifier);
+    let allowed = [("face", f64::INFINITY), ("flute", f64::INFINITY), ("chamfer", -1.0)];
+    let certifier = Certifier::new(&bvh, &made).expect("a profile");
+    let mut certifier = certifier.with_allowances(allowed).expect("surfaces");
     let at_rest = |z: f64| {
         let pose = pose([0.0, 0.0, z], UP);
         motion(&pose, &pose)

@@ -7,90 +7,93 @@ use touchoff::certify::{
 };
 use touchoff::mesh::shapes;
 use touchoff::tool::Interpreted;
-use touchoff::{Interval, Mesh, Pose, SurfaceId, TriangleId, Unit};
+use touchoff::{Interval, Mesh, Pose, SurfaceId, Tool, TriangleId, Unit};
 use touchoff_dsl::source::Source;
 use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::{self, Oracle};
 
-/// Returns every library tool without a profile, and its oracle.
-fn tools_without_profile() -> [(&'static str, Box<dyn Oracle>); 5] {
-    ["Fig73", "Cylinder", "UnitSphere", "Block", "LBracket"].map(|name| (name, oracle::of(name)))
-}
+/// The library's tools without a profile.
+const TOOLS: [&str; 5] = ["Fig73", "Cylinder", "UnitSphere", "Block", "LBracket"];
 
-/// Returns a random pose near a sphere of this radius, in any orientation.
-fn random_pose_near(radius: f64, rng: &mut Rng) -> Pose {
-    let quaternion = rng.quaternion();
-    let tip = Vector3::from(rng.direction()) * radius * rng.between(0.7, 1.3);
-    Pose::from_quaternion(Point3::from(tip), quaternion).expect("a quaternion")
-}
-
-/// Returns random points of each triangle.
-fn random_points(mesh: &Mesh, rng: &mut Rng) -> Vec<Point3<f64>> {
-    let ids = (0..mesh.triangles().len() as u32).flat_map(|id| [id; 8]);
-    let random_point = |id: u32| {
-        let ([a, b, c], [v, w]) = (mesh.triangle(TriangleId(id)), rng.weights());
-        a + v * (b - a) + w * (c - a)
-    };
-    ids.map(random_point).collect()
-}
-
-/// Returns the greatest depth over random points of each triangle.
-fn max_sampled_depth(
-    mesh: &Mesh,
-    oracle: &dyn Oracle,
-    pose: &Pose,
+/// A sphere half as large as a tool without a profile, of which the tool may touch the surface.
+struct Sphere {
+    name: &'static str,
+    oracle: Box<dyn Oracle>,
+    tool: &'static dyn Tool,
+    /// The tool's unit of length, and its size, in mm.
     length: f64,
-    rng: &mut Rng,
-) -> f64 {
-    let evaluations = random_points(mesh, rng)
-        .into_iter()
-        .filter_map(|p| oracle.evaluate(to_tool(pose, length, p)));
-    evaluations.map(|evaluation| evaluation.depth * length).fold(0.0, f64::max)
+    size: f64,
+    mesh: Mesh,
+}
+
+impl Sphere {
+    fn new(name: &'static str) -> Sphere {
+        let (tool, oracle) = (tool(name), oracle::of(name));
+        let info = tool.info();
+        let length = info.unit.factor_to(Unit::Millimetre);
+        let size = length * info.radius().max(info.reach().high);
+        let mesh = shapes::sphere(0.5 * size, 3, Unit::Millimetre).expect("a sphere");
+        Sphere { name, oracle, tool, length, size, mesh }
+    }
+
+    /// Returns a random pose near the surface, in any orientation.
+    fn random_pose(&self, rng: &mut Rng) -> Pose {
+        let quaternion = rng.quaternion();
+        let tip = Vector3::from(rng.direction()) * 0.5 * self.size * rng.between(0.7, 1.3);
+        Pose::from_quaternion(Point3::from(tip), quaternion).expect("a quaternion")
+    }
+
+    /// Returns eight random points of each triangle.
+    fn random_points(&self, rng: &mut Rng) -> Vec<Point3<f64>> {
+        let ids = (0..self.mesh.triangles().len() as u32).flat_map(|id| [id; 8]);
+        let random_point = |id: u32| {
+            let ([a, b, c], [v, w]) = (self.mesh.triangle(TriangleId(id)), rng.weights());
+            a + v * (b - a) + w * (c - a)
+        };
+        ids.map(random_point).collect()
+    }
+
+    /// Returns the depth of a point in the tool, in mm, and the surface that owns it; `None` outside.
+    fn depth_and_owner(&self, pose: &Pose, point: Point3<f64>) -> Option<(f64, SurfaceId)> {
+        let evaluation = self.oracle.evaluate(to_tool(pose, self.length, point))?;
+        let surface = self.tool.info().regions[evaluation.owner].surface;
+        Some((evaluation.depth * self.length, surface))
+    }
 }
 
 #[test]
 fn sampled_depths_of_fields_are_within_the_interval() {
     const TOLERANCE: f64 = 2e-2;
     let mut rng = Rng::new(5);
-    for (name, oracle) in tools_without_profile() {
-        let tool = tool(name);
-        let length = tool.info().unit.factor_to(Unit::Millimetre);
-        let size = length * tool.info().radius().max(tool.info().reach().high);
-        let mesh = shapes::sphere(0.5 * size, 3, Unit::Millimetre).expect("a sphere");
-        let bvh = TriangleBvh::new(&mesh);
-        let mut certifier = Certifier::new(&bvh, tool).expect("a tool that is proved");
+    for sphere in TOOLS.map(Sphere::new) {
+        let (name, tolerance) = (sphere.name, TOLERANCE * sphere.size);
+        let bvh = TriangleBvh::new(&sphere.mesh);
+        let mut certifier = Certifier::new(&bvh, sphere.tool).expect("a tool that is proved");
         let (mut touching, mut decided) = (0, 0);
         for _ in 0..12 {
-            let pose = random_pose_near(0.5 * size, &mut rng);
-            let penetration = certifier.deepest(&pose, TOLERANCE * size);
+            let pose = sphere.random_pose(&mut rng);
+            let penetration = certifier.deepest(&pose, tolerance);
             let Interval { low, high } = penetration.depth;
-            let sampled = max_sampled_depth(&mesh, &*oracle, &pose, length, &mut rng);
-            assert!(
-                sampled <= high + 1e-9,
-                "{name} {pose:?}: {sampled} in {:?}",
-                penetration.depth
-            );
+            let points = sphere.random_points(&mut rng).into_iter();
+            let depths = points.filter_map(|p| Some(sphere.depth_and_owner(&pose, p)?.0));
+            let sampled = depths.fold(0.0, f64::max);
+            let text = format!("{name} {pose:?}: {sampled} in {penetration:?}");
+            assert!(sampled <= high + 1e-9, "{text}");
             if let Some(witness) = penetration.witness {
                 touching += 1;
-                let depth =
-                    oracle.evaluate(to_tool(&pose, length, witness.point)).expect("inside").depth;
-                assert!(low <= depth * length + 1e-9, "{name} {pose:?}: {depth} in {low}..{high}");
+                let (depth, _) = sphere.depth_and_owner(&pose, witness.point).expect("inside");
+                assert!(low <= depth + 1e-9, "{text}: {depth}");
             }
-            decided += usize::from(high - low <= 1.01 * TOLERANCE * size);
+            decided += usize::from(high - low <= 1.01 * tolerance);
             let verdict = certifier.check_pose(&pose);
             match verdict {
-                PoseVerdict::Touching(_) => assert!(high > 0.0, "{name} {pose:?}"),
-                PoseVerdict::Undecided(max_depth) => {
-                    assert!(sampled <= max_depth + 1e-9, "{name} {pose:?}");
-                }
-                _ => assert!(sampled == 0.0, "{name} {pose:?}: {verdict:?} at {sampled}"),
+                PoseVerdict::Touching(_) => assert!(high > 0.0, "{text}"),
+                PoseVerdict::Undecided(max_depth) => assert!(sampled <= max_depth + 1e-9, "{text}"),
+                _ => assert!(sampled == 0.0, "{text}: {verdict:?}"),
             }
-            let Interval { low: min_clearance, high: max_clearance } =
-                certifier.clearance(&pose, TOLERANCE * size).distance;
-            assert!(
-                min_clearance <= max_clearance && (sampled == 0.0 || min_clearance == 0.0),
-                "{name} {pose:?}: {min_clearance}..{max_clearance}"
-            );
+            let clearance = certifier.clearance(&pose, tolerance).distance;
+            let is_consistent = sampled == 0.0 || clearance.low == 0.0;
+            assert!(clearance.low <= clearance.high && is_consistent, "{text}: {clearance}");
         }
         assert!(touching > 3 && decided > 8, "{name}: {touching} and {decided} of 12");
     }
@@ -118,50 +121,37 @@ fn motions_of_a_field_tool_are_decided() {
 fn samples_of_a_field_are_within_the_certified_depth_of_their_surface() {
     const TOLERANCE: f64 = 1e-6;
     let mut rng = Rng::new(11);
-    for (name, oracle) in tools_without_profile() {
-        let tool = tool(name);
-        let info = tool.info();
-        let length = info.unit.factor_to(Unit::Millimetre);
-        let size = length * info.radius().max(info.reach().high);
-        let mesh = shapes::sphere(0.5 * size, 3, Unit::Millimetre).expect("a sphere");
-        let bvh = TriangleBvh::new(&mesh);
-        let mut certifier = Certifier::new(&bvh, tool).expect("a tool that is proved");
+    for sphere in TOOLS.map(Sphere::new) {
+        let name = sphere.name;
+        let bvh = TriangleBvh::new(&sphere.mesh);
+        let mut certifier = Certifier::new(&bvh, sphere.tool).expect("a tool that is proved");
         let (mut touching, mut wide) = (0, 0);
         for _ in 0..12 {
-            let pose = random_pose_near(0.5 * size, &mut rng);
+            let pose = sphere.random_pose(&mut rng);
             let tool_depth = certifier.deepest(&pose, TOLERANCE).depth;
             let mut max_depths = [0.0f64; 2];
-            for surface in 0..info.surfaces.len() {
+            for surface in (0..sphere.tool.info().surfaces.len()).map(SurfaceId) {
                 let penetration =
-                    certifier.deepest_on(SurfaceId(surface), &pose, TOLERANCE).expect("a surface");
-                let text = format!("{name} {surface} at {pose:?}: {penetration:?}");
+                    certifier.deepest_on(surface, &pose, TOLERANCE).expect("a surface");
+                let text = format!("{name} {surface:?} at {pose:?}: {penetration:?}");
                 let Interval { low, high } = penetration.depth;
                 max_depths = [max_depths[0].max(low), max_depths[1].max(high)];
                 wide += usize::from(high - low > 1.01 * TOLERANCE);
-                let depth_and_owner = |p: Point3<f64>| {
-                    let evaluation = oracle.evaluate(to_tool(&pose, length, p))?;
-                    Some((evaluation.depth * length, info.regions[evaluation.owner].surface))
-                };
-                for point in random_points(&mesh, &mut rng) {
-                    if let Some((depth, owner)) = depth_and_owner(point)
-                        && owner == SurfaceId(surface)
-                    {
-                        assert!(depth <= high + 1e-9, "{text}: {depth} at {point}");
-                    }
+                for point in sphere.random_points(&mut rng) {
+                    let found = sphere.depth_and_owner(&pose, point);
+                    let own = found.filter(|(_, owner)| *owner == surface);
+                    assert!(own.is_none_or(|(depth, _)| depth <= high + 1e-9), "{text}: {own:?}");
                 }
                 if let Some(witness) = penetration.witness {
                     touching += 1;
-                    assert_eq!(witness.surface, SurfaceId(surface), "{text}");
-                    let (depth, _) = depth_and_owner(witness.point).expect("inside");
+                    assert_eq!(witness.surface, surface, "{text}");
+                    let (depth, _) = sphere.depth_and_owner(&pose, witness.point).expect("inside");
                     assert!(low <= depth + 1e-9, "{text}: {depth}");
                 }
             }
-            let consistent =
+            let is_consistent =
                 max_depths[0] <= tool_depth.high + 1e-9 && tool_depth.low <= max_depths[1] + 1e-9;
-            assert!(
-                consistent,
-                "{name} at {pose:?}: {max_depths:?} of each, {tool_depth:?} of all"
-            );
+            assert!(is_consistent, "{name} at {pose:?}: {max_depths:?}, {tool_depth:?} of all");
         }
         assert!(touching > 5 && wide == 0, "{name}: {touching} touch, {wide} are wide");
     }

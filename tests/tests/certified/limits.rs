@@ -9,8 +9,8 @@ use touchoff::tool::Interpreted;
 use touchoff::{Interval, Level, Motion, Pose, SurfaceId};
 use touchoff_tests::fixtures::{BALL, ball};
 use touchoff_tests::oracle::big::Big;
-use touchoff_tests::oracle::exact::{Triple, advance, cross, exactly, norm, sub, to_f64};
 use touchoff_tests::oracle::rng::Rng;
+use touchoff_tests::oracle::space::{Triple, advance, cross, exactly, norm, sub, to_f64};
 use touchoff_tests::oracle::triangle::mean;
 
 /// Returns the centre of the ball.

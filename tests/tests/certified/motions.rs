@@ -8,7 +8,6 @@ use touchoff::{Pose, TriangleId};
 use touchoff_tests::oracle::Oracle;
 use touchoff_tests::oracle::rng::Rng;
 
-/// A kind of motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum MotionKind {
     /// Along a triangle's plane; half of these also tilt.
@@ -21,7 +20,6 @@ pub(crate) enum MotionKind {
     Still,
     /// To a pose far away; half of these also come from far away.
     Rapid,
-    /// Between two random poses.
     Any,
 }
 

@@ -19,9 +19,7 @@ const FILES: [(&str, Unit); 4] = [
     ("kiri_pocket_test.stl", Unit::Millimetre),
 ];
 
-/// A part.
 pub(crate) struct Part {
-    /// The name in messages.
     pub(crate) name: &'static str,
     pub(crate) mesh: Mesh,
     pub(crate) bvh: TriangleBvh,

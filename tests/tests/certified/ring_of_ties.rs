@@ -6,9 +6,8 @@ use crate::{UP, motion, pose, soup, tool};
 use touchoff::certify::{Certifier, MotionVerdict, PoseVerdict, TriangleBvh};
 use touchoff::tool::Interpreted;
 use touchoff::{Interval, Mesh, Pose, SurfaceId, Tool};
-use touchoff_dsl::source::Source;
+use touchoff_tests::fixtures::drawn;
 
-/// Returns a wall at y = 3 that is larger than the tool.
 fn wall() -> Mesh {
     soup(&[[[-200.0, 3.0, -150.0], [200.0, 3.0, -150.0], [0.0, 3.0, 400.0]]])
 }
@@ -53,13 +52,6 @@ fn a_corner_is_deepest_at_its_centre() {
     assert!(low <= 2.0 && 2.0 <= high, "{low} to {high}");
 }
 
-fn interpreted(profile: &str) -> Interpreted {
-    let text = format!(
-        "tool Made {{ units mm; profile {{ start (0, 0); {profile} }} niceness cutting: 1; }}"
-    );
-    Interpreted::parse(&Source::new("made.tool", text)).expect("a tool")
-}
-
 /// Returns the certified depth of a surface beside a wall at y = 2.
 fn deepest_on(tool: &Interpreted, surface: &str) -> [f64; 2] {
     let mesh = soup(&[[[-100.0, 2.0, -50.0], [100.0, 2.0, -50.0], [0.0, 2.0, 150.0]]]);
@@ -70,21 +62,14 @@ fn deepest_on(tool: &Interpreted, surface: &str) -> [f64; 2] {
 }
 
 #[test]
-fn a_border_between_ties_belongs_to_both_surfaces() {
-    // The wall meets the circle (2, 2), where the flute's upper end is as near as the face.
-    let tool = interpreted(
-        "line to (5, 0) as face; line to (5, 2) as flute cutting; line to (5, 50), (0, 50) as shank;",
-    );
-    let [low, high] = deepest_on(&tool, "flute");
-    assert!(low <= 2.0 && 2.0 <= high && high - low < 1e-8, "{low} to {high}");
-}
-
-#[test]
-fn a_reflex_corner_owns_points_as_near_to_another_surface() {
-    // Near (3, 2) the corner of the back owns the point, at the same distance as the face.
-    let tool = interpreted(
-        "line to (20, 0) as face; line to (20, 2) as rim cutting; line to (5, 2) as back; line to (5, 50), (0, 50) as neck;",
-    );
-    let [low, high] = deepest_on(&tool, "back");
-    assert!(low <= 2.0 && 2.0 <= high && high - low < 1e-8, "{low} to {high}");
+fn ties_belong_to_both_surfaces() {
+    for (drawing, cutting, surface) in [
+        // The wall meets the circle (2, 2), where the flute's upper end is as near as the face.
+        ("0 0; face 5 0; flute 5 2; shank 5 50, 0 50", "flute", "flute"),
+        // Near (3, 2) the corner of the back owns the point, at the same distance as the face.
+        ("0 0; face 20 0; rim 20 2; back 5 2; neck 5 50, 0 50", "rim", "back"),
+    ] {
+        let [low, high] = deepest_on(&drawn(drawing, cutting), surface);
+        assert!(low <= 2.0 && 2.0 <= high && high - low < 1e-8, "{surface}: {low} to {high}");
+    }
 }

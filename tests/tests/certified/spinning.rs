@@ -12,7 +12,6 @@ fn pose_from_rotation(tip: [f64; 3], turn: UnitQuaternion<f64>) -> Pose {
     Pose::from_quaternion(Point3::from(tip), turn.coords.into()).expect("a quaternion")
 }
 
-/// Returns a pose rotated about z by an angle.
 fn pose_about_z(tip: [f64; 3], degrees: f64) -> Pose {
     pose_from_rotation(
         tip,

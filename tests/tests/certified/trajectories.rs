@@ -7,9 +7,8 @@ use touchoff::certify::{
     Approximation, Certifier, MotionDepth, MotionVerdict, Trajectory, TriangleBvh,
 };
 use touchoff::mesh::shapes;
-use touchoff::tool::Interpreted;
 use touchoff::{Interval, Mesh, Pose, SurfaceId, Unit};
-use touchoff_tests::fixtures;
+use touchoff_tests::fixtures::{self, drawn};
 
 /// Radius of the arc about the z axis, and that of the tool, mm.
 const RADIUS: f64 = 20.0;
@@ -79,15 +78,15 @@ impl Trajectory for Path {
 
 /// Returns a wall across x whose near side is so deep in the ball at the middle of the arc; it ends at the height of the
 /// ball's centre.
-fn wall(depth: f64) -> TriangleBvh {
+fn wall(depth: f64) -> Mesh {
     let near = RADIUS + BALL - depth;
-    TriangleBvh::new(&block([near, -40.0, -30.0], [near + 10.0, 40.0, BALL]))
+    block([near, -40.0, -30.0], [near + 10.0, 40.0, BALL])
 }
 
 #[test]
 fn the_greatest_depth_on_an_arc_is_known() {
     for (depth, error) in [(0.5, 0.0), (0.5, 0.01), (0.003, 0.0)] {
-        let (wall, arc) = (wall(depth), arc(error));
+        let (wall, arc) = (TriangleBvh::new(&wall(depth)), arc(error));
         let mut certifier = Certifier::new(&wall, tool("Ball")).expect("a profile");
         let surfaces = (0..tool("Ball").info().surfaces.len()).map(SurfaceId);
         let found: Vec<MotionDepth> = surfaces
@@ -116,7 +115,7 @@ fn the_greatest_depth_on_an_arc_is_known() {
 fn an_arc_beside_a_wall_is_decided_to_the_tolerance() {
     let arc = arc(0.0);
     for (depth, clear) in [(-1.0, true), (-1e-5, true), (1e-5, false), (1.0, false)] {
-        let wall = wall(depth);
+        let wall = TriangleBvh::new(&wall(depth));
         let mut certifier = Certifier::new(&wall, tool("Ball")).expect("a profile");
         match certifier.check_motion(&arc, 1e-7) {
             MotionVerdict::Clear => assert!(clear, "{depth}"),
@@ -152,11 +151,9 @@ fn an_arc_about_a_pillar_is_clear_though_its_chords_are_not() {
     }
 }
 
-/// Returns a wall turned about the z axis. The arc is deepest there at no time that halving its intervals reaches.
-fn turned_wall(depth: f64) -> TriangleBvh {
-    let near = RADIUS + BALL - depth;
-    let wall = block([near, -40.0, -30.0], [near + 10.0, 40.0, BALL]);
-    let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), 0.3);
+/// Returns a wall turned about an axis.
+fn turned(wall: &Mesh, axis: Vector3<f64>, angle: f64) -> TriangleBvh {
+    let turn = Rotation3::new(angle * axis);
     let vertices = wall.vertices().iter().map(|vertex| turn * vertex);
     let mesh = Mesh::new(vertices, wall.triangles().to_vec(), Unit::Millimetre);
     TriangleBvh::new(&mesh.expect("a wall"))
@@ -191,7 +188,8 @@ fn an_arc_that_touches_a_thorn_between_the_ends_of_its_chords_is_not_clear() {
 fn the_least_distance_on_an_arc_is_known() {
     let ball = tool("Ball").info().surface_named("ball").expect("a surface");
     for error in [0.0, 0.01] {
-        let (wall, arc) = (turned_wall(-0.5), arc(error));
+        // Deepest at no time that halving the arc's intervals reaches.
+        let (wall, arc) = (turned(&wall(-0.5), Vector3::z(), 0.3), arc(error));
         let mut certifier = Certifier::new(&wall, tool("Ball")).expect("a profile");
         let found = certifier.motion_depth(ball, &arc, -1.0, 1e-6).expect("a surface");
         let MotionDepth::Deeper { at, depth: Interval { low, high }, max_depth, .. } = found else {
@@ -207,21 +205,14 @@ fn the_least_distance_on_an_arc_is_known() {
 /// A pin that swings about its tip reaches farthest with its upper edge, while its axis points beside the wall.
 #[test]
 fn the_edge_of_a_swinging_pin_touches_a_wall_that_no_end_of_the_swing_reaches() {
-    let pin: Interpreted =
-        "tool Pin { units mm; profile { start (0, 0); line to (1, 0), (1, 40), (0, 40) as pin cutting; } niceness cutting: 1; }"
-            .parse()
-            .expect("a tool");
+    let pin = drawn("0 0; pin 1 0, 1 40, 0 40", "pin");
     let reach = 40f64.hypot(1.0);
     let at = |angle: f64| pose([0.0; 3], [angle.sin(), 0.0, angle.cos()]);
     let swing = motion(&at(-1.1), &at(1.0));
     for (depth, clear) in [(-1e-2, true), (1e-2, false)] {
         // The wall's face is across the direction at 0.2 rad.
         let wall = block([-60.0, -9.0, reach - depth], [60.0, 9.0, reach + 10.0]);
-        let turn = Rotation3::from_axis_angle(&Vector3::y_axis(), 0.2);
-        let vertices: Vec<Point3<f64>> =
-            wall.vertices().iter().map(|vertex| turn * vertex).collect();
-        let mesh = Mesh::new(vertices, wall.triangles().to_vec(), Unit::Millimetre);
-        let wall = TriangleBvh::new(&mesh.expect("a wall"));
+        let wall = turned(&wall, Vector3::y(), 0.2);
         let mut certifier = Certifier::new(&wall, &pin).expect("a profile");
         let verdict = certifier.check_motion(&swing, 1e-4);
         assert_eq!(verdict.is_clear(), clear, "{depth}: {verdict:?}");

@@ -10,13 +10,12 @@ use crate::depth_oracle::{DepthOracle, FIELDS, PROFILES};
 use crate::pair::{Pair, Pairs, is_full_run, parts};
 use crate::to_tool;
 use nalgebra::{Point3, Vector3};
-use std::cmp::Ordering;
-use std::collections::BinaryHeap;
+use std::collections::BTreeMap;
 use touchoff::certify::Certifier;
 use touchoff::{Interval, Pose, TriangleId};
 use touchoff_tests::count::case_count;
 use touchoff_tests::oracle::rng::Rng;
-use touchoff_tests::oracle::triangle::{Point, distance, norm, point, sub};
+use touchoff_tests::oracle::triangle::{Point, bisected, distance, norm, point, sub};
 use touchoff_tests::tally::Tally;
 
 /// Number of points that are zoomed in on, at first and at last.
@@ -44,38 +43,21 @@ struct Sample {
 struct Piece {
     /// No point of the piece is deeper.
     bound: f64,
-    /// The largest distance from the centroid.
     radius: f64,
     triangle: usize,
     /// Two barycentric weights of each corner.
     corners: [[f64; 2]; 3],
 }
 
-impl Ord for Piece {
-    fn cmp(&self, other: &Piece) -> Ordering {
-        self.bound.total_cmp(&other.bound)
-    }
+/// Returns a number that is ordered as the double is.
+fn ordered(value: f64) -> i64 {
+    let bits = value.to_bits().cast_signed();
+    if bits < 0 { bits ^ i64::MAX } else { bits }
 }
 
-impl PartialOrd for Piece {
-    fn partial_cmp(&self, other: &Piece) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl PartialEq for Piece {
-    fn eq(&self, other: &Piece) -> bool {
-        self.cmp(other).is_eq()
-    }
-}
-
-impl Eq for Piece {}
-
-/// The samples at a pose.
 struct Search {
     /// The deepest samples, in the order of their depth.
     best: Vec<Sample>,
-    /// Number of samples.
     evaluations: u64,
 }
 
@@ -178,29 +160,35 @@ impl Pair<'_, DepthOracle> {
 
     /// Bisects triangles by up to `count` samples. Returns the size of the neighbourhoods to start with.
     fn bisect(&self, triangles: &[[Point; 3]], count: u64, search: &mut Search) -> f64 {
-        let mut pieces = BinaryHeap::new();
+        // The piece with the greatest bound is last.
+        let mut pieces = BTreeMap::new();
+        let key = |piece: &Piece, number: u64| (ordered(piece.bound), number);
         for (triangle, corners) in triangles.iter().enumerate() {
             let corner_weights = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
             for weights in corner_weights {
                 let depth = self.oracle.depth(point(corners, weights));
                 search.insert(Sample { depth, triangle, weights });
             }
-            pieces.push(self.piece(triangles, triangle, corner_weights, search));
+            let piece = self.piece(triangles, triangle, corner_weights, search);
             search.evaluations += 4;
+            pieces.insert(key(&piece, search.evaluations), piece);
         }
         let mut reach = f64::INFINITY;
-        while let Some(piece) = pieces.pop()
+        while let Some((_, piece)) = pieces.pop_last()
             && search.evaluations < count
             && piece.bound > search.best[0].depth
         {
-            for half in bisect_longest_edge(&triangles[piece.triangle], piece.corners) {
+            let at = |weights| point(&triangles[piece.triangle], weights);
+            let length = |a, b| distance(at(a), at(b));
+            let middle = |a: [f64; 2], b: [f64; 2]| [0, 1].map(|k| 0.5 * (a[k] + b[k]));
+            for half in bisected(piece.corners, length, middle) {
                 let half = self.piece(triangles, piece.triangle, half, search);
                 reach = half.radius;
+                search.evaluations += 1;
                 if half.bound > search.best[0].depth {
-                    pieces.push(half);
+                    pieces.insert(key(&half, search.evaluations), half);
                 }
             }
-            search.evaluations += 2;
         }
         let extent = self.oracle.oracle().extent();
         (4.0 * reach).min(extent[0].max(extent[1]))
@@ -266,16 +254,6 @@ impl Pair<'_, DepthOracle> {
             *best = Sample { depth, weights, ..*best };
         }
     }
-}
-
-/// Bisects a piece at its longest edge.
-fn bisect_longest_edge(triangle: &[Point; 3], corners: [[f64; 2]; 3]) -> [[[f64; 2]; 3]; 2] {
-    let points = corners.map(|corner| point(triangle, corner));
-    let lengths = [0, 1, 2].map(|k| distance(points[k], points[(k + 1) % 3]));
-    let k = (0..3).max_by(|a, b| lengths[*a].total_cmp(&lengths[*b])).unwrap_or(0);
-    let [a, b, c] = [0, 1, 2].map(|step| corners[(k + step) % 3]);
-    let middle = [0, 1].map(|axis| 0.5 * (a[axis] + b[axis]));
-    [[a, middle, c], [middle, b, c]]
 }
 
 #[test]

@@ -10,7 +10,6 @@ use syn::{Attribute, File, Item, ItemImpl, Type, UseTree, Visibility};
 /// A module of the crate, with the items that it declares.
 #[derive(Default)]
 struct Module {
-    /// Public items and child modules by name.
     items: BTreeMap<String, Vec<Item>>,
     children: BTreeMap<String, (bool, Module)>,
     /// Public re-exports: the new name, or none for a glob, and the path.
@@ -48,22 +47,31 @@ fn keep(attributes: &mut Vec<Attribute>) {
     attributes.retain(|attribute| kept.iter().any(|name| attribute.path().is_ident(name)));
 }
 
-/// Removes all that callers cannot see: documentation, bodies, private fields.
-fn stripped(mut item: Item) -> Item {
-    match &mut item {
-        Item::Struct(item) => {
-            keep(&mut item.attrs);
-            strip_fields(&mut item.fields);
-        }
+/// Returns the name, the attributes and the visibility of an item that can be part of an interface.
+fn parts(item: &mut Item) -> Option<(String, &mut Vec<Attribute>, &Visibility)> {
+    let (name, attributes, visibility) = match item {
+        Item::Struct(item) => (&item.ident, &mut item.attrs, &item.vis),
+        Item::Enum(item) => (&item.ident, &mut item.attrs, &item.vis),
+        Item::Trait(item) => (&item.ident, &mut item.attrs, &item.vis),
+        Item::Fn(item) => (&item.sig.ident, &mut item.attrs, &item.vis),
+        Item::Const(item) => (&item.ident, &mut item.attrs, &item.vis),
+        Item::Type(item) => (&item.ident, &mut item.attrs, &item.vis),
+        _ => return None,
+    };
+    Some((name.to_string(), attributes, visibility))
+}
+
+/// Removes what callers cannot see within an item: documentation, bodies, private fields.
+fn strip(item: &mut Item) {
+    match item {
+        Item::Struct(item) => strip_fields(&mut item.fields),
         Item::Enum(item) => {
-            keep(&mut item.attrs);
             for variant in &mut item.variants {
                 keep(&mut variant.attrs);
                 variant.fields.iter_mut().for_each(|field| keep(&mut field.attrs));
             }
         }
         Item::Trait(item) => {
-            keep(&mut item.attrs);
             for item in &mut item.items {
                 if let syn::TraitItem::Fn(item) = item {
                     keep(&mut item.attrs);
@@ -71,35 +79,18 @@ fn stripped(mut item: Item) -> Item {
                 }
             }
         }
-        Item::Fn(item) => {
-            keep(&mut item.attrs);
-            *item.block = syn::parse_quote!({});
-        }
-        Item::Const(item) => {
-            keep(&mut item.attrs);
-            *item.expr = syn::parse_quote!(..);
-        }
-        Item::Type(item) => keep(&mut item.attrs),
-        Item::Macro(item) => {
-            keep(&mut item.attrs);
-            item.mac.tokens = Default::default();
-        }
+        Item::Fn(item) => *item.block = syn::parse_quote!({}),
+        Item::Const(item) => *item.expr = syn::parse_quote!(..),
         _ => {}
     }
-    item
 }
 
 fn strip_fields(fields: &mut syn::Fields) {
     match fields {
         syn::Fields::Named(fields) => {
-            fields.named = std::mem::take(&mut fields.named)
-                .into_iter()
-                .filter(|field| is_public(&field.vis))
-                .map(|mut field| {
-                    keep(&mut field.attrs);
-                    field
-                })
-                .collect();
+            let all = std::mem::take(&mut fields.named).into_iter();
+            fields.named = all.filter(|field| is_public(&field.vis)).collect();
+            fields.named.iter_mut().for_each(|field| keep(&mut field.attrs));
         }
         syn::Fields::Unnamed(fields) => {
             for field in &mut fields.unnamed {
@@ -166,14 +157,8 @@ impl Crate {
     /// Reads a module's items, and the files of its children, which lie in a folder.
     fn read(&mut self, items: Vec<Item>, folder: &Path) -> Module {
         let mut module = Module::default();
-        for item in items.into_iter().map(declared) {
-            let (name, attributes, visibility) = match &item {
-                Item::Struct(item) => (&item.ident, &item.attrs, Some(&item.vis)),
-                Item::Enum(item) => (&item.ident, &item.attrs, Some(&item.vis)),
-                Item::Trait(item) => (&item.ident, &item.attrs, Some(&item.vis)),
-                Item::Fn(item) => (&item.sig.ident, &item.attrs, Some(&item.vis)),
-                Item::Const(item) => (&item.ident, &item.attrs, Some(&item.vis)),
-                Item::Type(item) => (&item.ident, &item.attrs, Some(&item.vis)),
+        for mut item in items.into_iter().map(declared) {
+            match &item {
                 Item::Mod(child) => {
                     if is_test(&child.attrs) || is_hidden(&child.attrs) {
                         continue;
@@ -203,10 +188,13 @@ impl Crate {
                     }
                     continue;
                 }
-                _ => continue,
-            };
-            if visibility.is_some_and(is_public) && !is_test(attributes) && !is_hidden(attributes) {
-                module.items.entry(name.to_string()).or_default().push(stripped(item.clone()));
+                _ => {}
+            }
+            let Some((name, attributes, visibility)) = parts(&mut item) else { continue };
+            if is_public(visibility) && !is_test(attributes) && !is_hidden(attributes) {
+                keep(attributes);
+                strip(&mut item);
+                module.items.entry(name).or_default().push(item);
             }
         }
         module
@@ -238,20 +226,16 @@ impl Crate {
     fn list(&self, at: &[String], public: &str, to: &mut BTreeMap<String, (String, Vec<Item>)>) {
         let (module, _) = self.module(at, &[]).expect("a module that was read");
         let mut add = |name: &str, home: &[String], items: &[Item]| {
-            to.insert(
-                format!("{public}::{name}"),
-                (format!("{}::{name}", home.join("::")), items.to_vec()),
-            );
+            let declared = format!("{}::{name}", home.join("::"));
+            to.insert(format!("{public}::{name}"), (declared, items.to_vec()));
         };
         for (name, items) in &module.items {
             add(name, at, items);
         }
+        let longer = |path: &[String], name: &String| [path, std::slice::from_ref(name)].concat();
         let mut below: Vec<(Vec<String>, String)> = Vec::new();
-        for (name, (is_public, _)) in &module.children {
-            if *is_public {
-                below
-                    .push(([at, std::slice::from_ref(name)].concat(), format!("{public}::{name}")));
-            }
+        for (name, _) in module.children.iter().filter(|(_, (is_public, _))| *is_public) {
+            below.push((longer(at, name), format!("{public}::{name}")));
         }
         for (name, path) in &module.exports {
             let Some(name) = name else {
@@ -266,10 +250,7 @@ impl Crate {
                 let (module, _) = self.module(&home, &[]).expect("a module that was read");
                 add(name, &home, &module.items[&last]);
             } else if home.children.contains_key(last) {
-                below.push((
-                    [place.as_slice(), std::slice::from_ref(last)].concat(),
-                    format!("{public}::{name}"),
-                ));
+                below.push((longer(&place, last), format!("{public}::{name}")));
             }
         }
         for (place, public) in below {
@@ -287,15 +268,11 @@ impl Crate {
         if module.items.contains_key(name) {
             return Some((at.to_vec(), name.to_owned()));
         }
+        let own = name.to_owned();
         module.exports.iter().find_map(|(known, path)| {
             let (last, parents) = match known {
                 Some(known) if known == name => path.split_last()?,
-                None => {
-                    return {
-                        let (home, place) = self.module(at, path)?;
-                        self.declaration(home, &place, name)
-                    };
-                }
+                None => (&own, path.as_slice()),
                 Some(_) => return None,
             };
             let (home, place) = self.module(at, parents)?;
@@ -316,10 +293,7 @@ fn parsed(folder: &Path, name: &str) -> File {
 fn interface(folder: &str, name: &str) -> String {
     let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(folder).join("src");
     let mut read = Crate::default();
-    read.root = {
-        let items = parsed(&source, "lib").items;
-        read.read(items, &source)
-    };
+    read.root = read.read(parsed(&source, "lib").items, &source);
     let mut listed = BTreeMap::new();
     read.list(&[], name, &mut listed);
     let mut text = String::new();

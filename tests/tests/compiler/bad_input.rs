@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use touchoff_dsl::diagnostic::{Diagnostic, Severity};
 use touchoff_dsl::source::Source;
 use touchoff_dsl::{Compiled, compile};
+use touchoff_tests::texts::{self, compiled};
 
 const BALL: &str = "region ball where hypot(d, z - 3) <= 3 { depth: 3 - hypot(d, z - 3); }";
 
@@ -29,7 +30,7 @@ fn errors(compiled: &Compiled) -> Vec<String> {
 
 /// Returns a text's errors: few enough to read, each with a remedy and a place that can be shown.
 fn refused(text: &str) -> Vec<String> {
-    let compiled = compile(&Source::new("t.tool", text));
+    let compiled = compiled(text);
     let start: String = text.chars().take(200).collect();
     assert!(compiled.tool().is_none() && !errors(&compiled).is_empty(), "{start} was taken");
     assert!(
@@ -140,11 +141,10 @@ fn rejects_text_that_is_not_a_tool() {
     ] {
         assert!(refused(&text)[0].contains(word), "{word}: {:?}", refused(&text));
     }
-    let windows = compile(&Source::new("t.tool", tool("").replace('\n', "\r\n")));
+    let windows = compiled(tool("").replace('\n', "\r\n"));
     assert!(windows.tool().is_some(), "{:?}", windows.diagnostics());
 }
 
-/// Returns the folder of this test's files.
 fn folder() -> PathBuf {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("bad_input");
     std::fs::create_dir_all(&folder).expect("cargo's target folder can be written to");
@@ -204,6 +204,5 @@ fn a_hundred_balls_in_a_row_compile() {
         format!("region r{k} where hypot(d, z - {z}) <= 1 {{ depth: 1 - hypot(d, z - {z}); }}\n")
     };
     let text = format!("tool T {{ units mm; {} }}", numbered(100, ball));
-    let compiled = compile(&Source::new("t.tool", text));
-    assert!(compiled.tool().is_some(), "{:?}", compiled.diagnostics());
+    texts::tool(text);
 }

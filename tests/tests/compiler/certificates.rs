@@ -15,14 +15,14 @@ use touchoff_tests::oracle::profile::Profile;
 use touchoff_tests::oracle::reference::{QueryPoint, Reference};
 use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::profiles::{owners, tools};
+use touchoff_tests::texts::{accepted, compiled, tool};
 
 fn checked(source: &Source) -> Box<CheckedTool> {
-    let compiled = compile(source);
-    compiled.outcome.unwrap_or_else(|refusal| panic!("{refusal:?}")).tool
+    accepted(compile(source))
 }
 
-fn text(text: &str) -> Box<CheckedTool> {
-    checked(&Source::new("test.tool", text))
+fn proved(text: &str) -> Certificate {
+    Certificate::prove(&tool(text))
 }
 
 /// Returns the least and the greatest ratio of depth to the distance to the surface.
@@ -114,7 +114,7 @@ fn every_tool_of_the_library_is_proved() {
 /// next piece.
 #[test]
 fn profiles_that_are_smooth_but_for_rounding_are_proved() {
-    let tool = text(
+    let proved = proved(
         "tool T { units mm; tip z = 7.03125; profile {
            start (0, 7.03125);
            arc to (1.6639025899620146, 7.897422863661937) center (0, 9.0625) as s0;
@@ -123,7 +123,6 @@ fn profiles_that_are_smooth_but_for_rounding_are_proved() {
            line to (0, 8.21620674298658) as s2;
          } }",
     );
-    let proved = Certificate::prove(&tool);
     assert!(proved.is_exact(), "{:?}", proved.undecided.first());
     assert!(proved.slack < 1e-7, "{}", proved.slack);
 }
@@ -177,11 +176,10 @@ fn sampled_values_keep_the_proved_bounds() {
 #[test]
 fn a_steeper_depth_has_a_larger_bound() {
     let of = |factor: &str| {
-        let tool = text(&format!(
+        let proved = proved(&format!(
             "tool Ball {{ units mm; region ball where hypot(d, z - 1) <= 1 {{
                depth: {factor}*(1 - hypot(d, z - 1)); direction: away from (0, 1); }} }}"
         ));
-        let proved = Certificate::prove(&tool);
         (bounds(&proved), proved.is_exact())
     };
     let ((least, most), exact) = of("1");
@@ -198,10 +196,6 @@ fn core(depth: &str) -> String {
            region shell where 1 <= r <= 3 {{ depth: 3 - r; direction: away from (0, 3); }}
          }}"
     )
-}
-
-fn cored(depth: &str) -> Certificate {
-    Certificate::prove(&text(&core(depth)))
 }
 
 /// Number of points of a region that are enough to show its rounding.
@@ -259,8 +253,7 @@ fn rounding_is_below_its_bound_and_above_a_tenth_of_it() {
 #[test]
 fn jumps_are_found() {
     let said = |depth: &str| {
-        let source = Source::new("core.tool", core(depth));
-        let compiled = compile(&source);
+        let compiled = compiled(core(depth));
         assert!(compiled.tool().is_none());
         compiled.diagnostics().iter().map(|report| report.message()).collect::<Vec<_>>()
     };
@@ -270,9 +263,9 @@ fn jumps_are_found() {
     // The difference is (1 + r)/2, whose square's other root is 0 at the core.
     let wrong = said("3.5 - r/2");
     assert!(wrong.len() == 1 && wrong[0].contains("depth jumps from 3 to 2"), "{wrong:?}");
-    assert!(cored("3 - r").is_exact());
+    assert!(proved(&core("3 - r")).is_exact());
     // No jump, but a kink: its steepness is known as precisely as its boxes are small.
-    let (least, most) = bounds(&cored("2 + 2*(1 - r)"));
+    let (least, most) = bounds(&proved(&core("2 + 2*(1 - r)")));
     assert!((0.85..=1.0).contains(&least) && (most - 2.0).abs() < 1e-12, "{least} {most}");
 }
 
@@ -280,25 +273,20 @@ fn jumps_are_found() {
 #[test]
 fn a_pit_in_the_middle_bounds_nothing() {
     let ring = |depth: &str| {
-        text(&format!(
+        proved(&format!(
             "tool Ring {{ units mm; let m = 6; curve r = hypot(d - m, z - 3);
                region core where r <= 1 {{ depth: {depth}; direction: away from (6, 3); }}
                region shell where 1 <= r, r <= 3 {{ depth: 3 - r; direction: away from (6, 3); }}
              }}"
         ))
     };
-    assert!(Certificate::prove(&ring("3 - r")).is_exact());
+    assert!(ring("3 - r").is_exact());
     // A depth of 1 in the middle, which is 3 from the surface.
-    let proved = Certificate::prove(&ring("1 + r"));
-    assert!(
-        proved.lipschitz().is_some() && proved.lower_slope().is_none(),
-        "{:?}",
-        proved.lower_slope()
-    );
-    let proved = Certificate::prove(&ring("1 + max(r, 0.5)"));
-    assert!(proved.lower_slope().is_none(), "{:?}", proved.lower_slope());
+    let pits = ["1 + r", "1 + max(r, 0.5)"].map(ring);
+    assert_eq!(pits.each_ref().map(Certificate::lower_slope), [None; 2]);
+    assert!(pits[0].lipschitz().is_some());
     // Four slopes that rise from a point.
-    let proved = Certificate::prove(&text(
+    let proved = proved(
         "tool Frame { units mm; tip z = 2; curve u = d - 5; curve v = z - 5;
            region low where abs(u) <= -v, -v <= 1 { depth: 1 - v; direction: (0, 1); }
            region high where abs(u) <= v, v <= 1 { depth: 1 + v; direction: (0, 1); }
@@ -309,7 +297,7 @@ fn a_pit_in_the_middle_bounds_nothing() {
            region inner where -3 <= u, u <= -1, abs(v) <= -u { depth: 3 + u; direction: (1, 0); }
            region outer where 1 <= u, u <= 3, abs(v) <= u { depth: 3 - u; direction: (1, 0); }
          }",
-    ));
+    );
     assert!(proved.is_continuous() && proved.lipschitz().is_some(), "{:?}", proved.undecided);
     assert!(
         proved.lower_slope().is_none_or(|least| least <= 1.0 / 3.0),
@@ -323,13 +311,13 @@ fn a_pit_in_the_middle_bounds_nothing() {
 #[test]
 fn a_step_along_a_border_leaves_no_lower_bound() {
     let rod = |step: &str| {
-        Certificate::prove(&text(&format!(
+        proved(&format!(
             "tool Rod {{ units mm; curve low = z - 3; curve top = 9 - z; curve r = 3 - hypot(d, z - 3);
                curve side = 3 - d;
                region ball where low <= 0, r >= 0 {{ depth: r; direction: away from (0, 3); }}
                region rod where low >= 0, 0 <= side <= top {{ depth: side + {step}; }}
                region end where low >= 0, 0 <= top <= side {{ depth: top + {step}; }} }}"
-        )))
+        ))
     };
     assert!(rod("0").is_exact());
     let proved = rod("1e-11");
@@ -345,11 +333,11 @@ fn a_step_along_a_border_leaves_no_lower_bound() {
 /// corners are.
 #[test]
 fn a_point_inside_at_which_depth_is_0_bounds_nothing() {
-    let proved = Certificate::prove(&text(
+    let proved = proved(
         "tool Point { units mm; curve ball = 3 - hypot(d, z - 3); curve spot = hypot(d - 1, z - 3);
            region ball where 0 <= ball <= spot { depth: ball; }
            region spot where spot <= ball { depth: spot; direction: toward (1, 3); } }",
-    ));
+    );
     assert!(proved.lipschitz().is_some_and(|most| (most - 1.0).abs() < 1e-12));
     assert!(proved.lower_slope().is_none() && !proved.is_exact(), "{:?}", proved.lower_slope());
 }
@@ -357,16 +345,13 @@ fn a_point_inside_at_which_depth_is_0_bounds_nothing() {
 /// Beside the corner of a convex and a concave arc, eight chords per edge gave a sliver to the wrong arc.
 #[test]
 fn slivers_beside_corners_have_their_own_depth() {
-    let tool = text(
-        "tool Sliver { units mm; profile { start (0, 0); line to (2.00214, 2.90705) as a cutting;
-           arc to (4.41515, 5.623) radius 1.869372 as b cutting; arc to (3.03072, 7.923) radius 8.06307 concave as c;
-           line to (1.144, 11.157) as e; arc to (4.66107, 14.59491) radius 4.88365 concave as a cutting;
-           line to (0, 13.587) as top; } }",
-    );
     let profile = Profile::<f64>::parse(
         "0 0, 2.00214 2.90705, 4.41515 5.623 radius 1.869372, 3.03072 7.923 hollow radius 8.06307,
          1.144 11.157, 4.66107 14.59491 hollow radius 4.88365, 0 13.587",
     );
+    let surfaces = ["a cutting", "b cutting", "c", "e", "a cutting", "top"];
+    let drawn = profile.text(f64::to_string, |k| surfaces[k].to_owned());
+    let tool = tool(format!("tool Sliver {{ units mm; {drawn} }}"));
     let mut interpreter = Interpreter::new(&tool);
     let mut rng = Rng::new(11);
     let mut inside = 0;
@@ -374,11 +359,8 @@ fn slivers_beside_corners_have_their_own_depth() {
         let p = [rng.between(4.3, 4.45), 0.0, rng.between(5.5, 5.7)];
         let Some(evaluation) = interpreter.evaluate(p, 1.0) else { continue };
         let distance = profile.depth(&[p[0], p[2]]);
-        assert!(
-            (evaluation.depth - distance).abs() < 1e-12,
-            "{p:?}: {} of {distance}",
-            evaluation.depth
-        );
+        let error = (evaluation.depth - distance).abs();
+        assert!(error < 1e-12, "{p:?}: {} of {distance}", evaluation.depth);
         inside += 1;
     }
     assert!(inside > 5_000, "{inside}");
@@ -387,11 +369,11 @@ fn slivers_beside_corners_have_their_own_depth() {
 /// A direction that vanishes wherever it could be compared is not reported as straight.
 #[test]
 fn a_direction_that_is_never_known_is_not_straight() {
-    let proved = Certificate::prove(&text(
+    let proved = proved(
         "solid Two { units mm; curve large = 20 - hypot(x, y, z); curve small = 2 - hypot(x - 30, y, z);
            region large where large >= 0 { depth: large; direction: away from (0, 0, 0); }
            region small where small >= 0 { depth: small; direction: (-y, x - 30, 0); } }",
-    ));
+    );
     let small = proved.regions[1].direction_error;
     assert!(small.is_none_or(|aside| aside.high > 1.5), "{small:?}");
 }
@@ -400,10 +382,10 @@ fn a_direction_that_is_never_known_is_not_straight() {
 #[test]
 fn direction_errors_are_reported() {
     let of = |direction: &str| {
-        Certificate::prove(&text(&format!(
+        proved(&format!(
             "tool Ball {{ units mm; region ball where hypot(d, z - 1) <= 1 {{
                depth: 1 - hypot(d, z - 1); direction: {direction}; }} }}"
-        )))
+        ))
         .regions
         .remove(0)
     };

@@ -2,20 +2,12 @@
 //! the bytes are the same every time. One is kept as a snapshot.
 
 use touchoff_drawing::{Content, TextRendering, svg};
-use touchoff_dsl::source::Source;
-use touchoff_dsl::{CheckedTool, compile, emit};
+use touchoff_dsl::{CheckedTool, emit};
 use touchoff_tests::library::checked;
-
-fn tool(name: &str, text: &str) -> Box<CheckedTool> {
-    let compiled = compile(&Source::new(name, text));
-    compiled.outcome.unwrap_or_else(|refusal| panic!("{name}: {refusal:?}")).tool
-}
+use touchoff_tests::texts::tool;
 
 fn profile(segments: &str) -> Box<CheckedTool> {
-    tool(
-        "profile",
-        &format!("tool T \"a <profile> & more\" {{ units mm; profile {{ {segments} }} }}"),
-    )
+    tool(format!("tool T \"a <profile> & more\" {{ units mm; profile {{ {segments} }} }}"))
 }
 
 /// Returns the drawing of a tool with its regions as SVG.

@@ -9,23 +9,32 @@ use touchoff_dsl::expr::value::{EvaluationPoint, Evaluator};
 use touchoff_dsl::expr::{Coord, Graph, Id};
 use touchoff_dsl::number::Number;
 
-/// An expression as it would be written.
 #[derive(Clone, Debug)]
 enum Tree {
     Const(f64),
     D,
     Z,
-    Neg(Box<Tree>),
-    Abs(Box<Tree>),
-    /// `sqrt(a² + b² + 1)`: a root without a kink
-    Hypot(Box<Tree>, Box<Tree>),
-    Add(Box<Tree>, Box<Tree>),
-    Sub(Box<Tree>, Box<Tree>),
-    Mul(Box<Tree>, Box<Tree>),
-    /// `a / (b² + 1)`: never a division by 0
-    Over(Box<Tree>, Box<Tree>),
-    Min(Box<Tree>, Box<Tree>),
-    Max(Box<Tree>, Box<Tree>),
+    One(One, Box<Tree>),
+    Two(Two, Box<Tree>, Box<Tree>),
+}
+
+#[derive(Clone, Copy, Debug)]
+enum One {
+    Neg,
+    Abs,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Two {
+    /// `sqrt(a² + b² + 1)`: a root without a kink.
+    Hypot,
+    Add,
+    Sub,
+    Mul,
+    /// `a / (b² + 1)`: never a division by 0.
+    Over,
+    Min,
+    Max,
 }
 
 /// A value and its two partial derivatives, carried along.
@@ -39,105 +48,82 @@ struct Dual {
 
 impl Tree {
     fn build(&self, graph: &mut Graph) -> Id {
-        let one = graph.int(1);
         match self {
-            Tree::Const(value) => {
-                let number = Number::from_f64(*value).expect("finite");
-                graph.number(number)
-            }
+            Tree::Const(value) => graph.number(Number::from_f64(*value).expect("finite")),
             Tree::D => graph.coord(Coord::D),
             Tree::Z => graph.coord(Coord::Z),
-            Tree::Neg(a) => {
+            Tree::One(one, a) => {
                 let a = a.build(graph);
-                graph.neg(a)
+                match one {
+                    One::Neg => graph.neg(a),
+                    One::Abs => graph.abs(a),
+                }
             }
-            Tree::Abs(a) => {
-                let a = a.build(graph);
-                graph.abs(a)
-            }
-            Tree::Hypot(a, b) => {
+            Tree::Two(two, a, b) => {
                 let (a, b) = (a.build(graph), b.build(graph));
-                let (aa, bb) = (graph.mul(a, a), graph.mul(b, b));
-                let sum = graph.add(aa, bb);
-                let sum = graph.add(sum, one);
-                graph.sqrt(sum).expect("at least 1")
+                let (one, bb) = (graph.int(1), graph.mul(b, b));
+                match two {
+                    Two::Hypot => {
+                        let aa = graph.mul(a, a);
+                        let sum = graph.add(aa, bb);
+                        let sum = graph.add(sum, one);
+                        graph.sqrt(sum).expect("at least 1")
+                    }
+                    Two::Over => {
+                        let below = graph.add(bb, one);
+                        graph.div(a, below).expect("at least 1")
+                    }
+                    Two::Add => graph.add(a, b),
+                    Two::Sub => graph.sub(a, b),
+                    Two::Mul => graph.mul(a, b),
+                    Two::Min => graph.min(a, b),
+                    Two::Max => graph.max(a, b),
+                }
             }
-            Tree::Over(a, b) => {
-                let (a, b) = (a.build(graph), b.build(graph));
-                let bb = graph.mul(b, b);
-                let below = graph.add(bb, one);
-                graph.div(a, below).expect("at least 1")
-            }
-            Tree::Add(a, b) => binary(graph, a, b, Graph::add),
-            Tree::Sub(a, b) => binary(graph, a, b, Graph::sub),
-            Tree::Mul(a, b) => binary(graph, a, b, Graph::mul),
-            Tree::Min(a, b) => binary(graph, a, b, Graph::min),
-            Tree::Max(a, b) => binary(graph, a, b, Graph::max),
         }
     }
 
     fn at(&self, d: f64, z: f64) -> Dual {
         let flat = |value, slope| Dual { value, slope, smooth: f64::INFINITY };
-        let two = |a: &Tree, b: &Tree| (a.at(d, z), b.at(d, z));
-        let join = |a: Dual, b: Dual, value: f64, by: [f64; 2]| Dual {
-            value,
-            slope: [0, 1].map(|k| by[0] * a.slope[k] + by[1] * b.slope[k]),
-            smooth: a.smooth.min(b.smooth),
-        };
         match self {
             Tree::Const(value) => flat(*value, [0.0; 2]),
             Tree::D => flat(d, [1.0, 0.0]),
             Tree::Z => flat(z, [0.0, 1.0]),
-            Tree::Neg(a) => {
+            Tree::One(one, a) => {
                 let a = a.at(d, z);
-                Dual { value: -a.value, slope: a.slope.map(|s| -s), ..a }
+                let (sign, kink) = match one {
+                    One::Neg => (-1.0, f64::INFINITY),
+                    One::Abs => (a.value.signum(), a.value.abs()),
+                };
+                let slope = a.slope.map(|s| s * sign);
+                Dual { value: sign * a.value, slope, smooth: a.smooth.min(kink) }
             }
-            Tree::Abs(a) => {
-                let a = a.at(d, z);
-                let sign = a.value.signum();
+            Tree::Two(two, a, b) => {
+                let (a, b) = (a.at(d, z), b.at(d, z));
+                let (u, v) = (a.value, b.value);
+                let root = (u * u + v * v + 1.0).sqrt();
+                let below = v * v + 1.0;
+                let first =
+                    if (u < v) == matches!(two, Two::Min) { [1.0, 0.0] } else { [0.0, 1.0] };
+                let (value, by) = match two {
+                    Two::Hypot => (root, [u / root, v / root]),
+                    Two::Over => (u / below, [1.0 / below, -u / (below * below) * 2.0 * v]),
+                    Two::Add => (u + v, [1.0, 1.0]),
+                    Two::Sub => (u - v, [1.0, -1.0]),
+                    Two::Mul => (u * v, [v, u]),
+                    Two::Min => (u.min(v), first),
+                    Two::Max => (u.max(v), first),
+                };
+                let is_kinked = matches!(two, Two::Min | Two::Max);
+                let kink = if is_kinked { (u - v).abs() } else { f64::INFINITY };
                 Dual {
-                    value: a.value.abs(),
-                    slope: a.slope.map(|s| s * sign),
-                    smooth: a.smooth.min(a.value.abs()),
+                    value,
+                    slope: [0, 1].map(|k| by[0] * a.slope[k] + by[1] * b.slope[k]),
+                    smooth: a.smooth.min(b.smooth).min(kink),
                 }
-            }
-            Tree::Hypot(a, b) => {
-                let (a, b) = two(a, b);
-                let value = (a.value * a.value + b.value * b.value + 1.0).sqrt();
-                join(a, b, value, [a.value / value, b.value / value])
-            }
-            Tree::Over(a, b) => {
-                let (a, b) = two(a, b);
-                let below = b.value * b.value + 1.0;
-                let by = [1.0 / below, -a.value / (below * below) * 2.0 * b.value];
-                join(a, b, a.value / below, by)
-            }
-            Tree::Add(a, b) => {
-                let (a, b) = two(a, b);
-                join(a, b, a.value + b.value, [1.0, 1.0])
-            }
-            Tree::Sub(a, b) => {
-                let (a, b) = two(a, b);
-                join(a, b, a.value - b.value, [1.0, -1.0])
-            }
-            Tree::Mul(a, b) => {
-                let (a, b) = two(a, b);
-                join(a, b, a.value * b.value, [b.value, a.value])
-            }
-            Tree::Min(a, b) | Tree::Max(a, b) => {
-                let (a, b) = two(a, b);
-                let first = (a.value < b.value) == matches!(self, Tree::Min(..));
-                let chosen = if first { a } else { b };
-                let smooth = a.smooth.min(b.smooth).min((a.value - b.value).abs());
-                Dual { smooth, ..chosen }
             }
         }
     }
-}
-
-fn binary(graph: &mut Graph, a: &Tree, b: &Tree, join: fn(&mut Graph, Id, Id) -> Id) -> Id {
-    let (a, b) = (a.build(graph), b.build(graph));
-    join(graph, a, b)
 }
 
 fn tree() -> impl Strategy<Value = Tree> {
@@ -146,19 +132,14 @@ fn tree() -> impl Strategy<Value = Tree> {
         Just(Tree::D),
         Just(Tree::Z),
     ];
-    leaf.prop_recursive(5, 24, 2, |inner| {
-        let one = inner.clone().prop_map(Box::new);
-        let two = (one.clone(), one.clone());
+    let one = || proptest::sample::select(&[One::Neg, One::Abs][..]);
+    let all = [Two::Hypot, Two::Add, Two::Sub, Two::Mul, Two::Over, Two::Min, Two::Max];
+    let two = move || proptest::sample::select(all.to_vec());
+    leaf.prop_recursive(5, 24, 2, move |inner| {
+        let inner = inner.prop_map(Box::new);
         prop_oneof![
-            one.clone().prop_map(Tree::Neg),
-            one.prop_map(Tree::Abs),
-            two.clone().prop_map(|(a, b)| Tree::Hypot(a, b)),
-            two.clone().prop_map(|(a, b)| Tree::Add(a, b)),
-            two.clone().prop_map(|(a, b)| Tree::Sub(a, b)),
-            two.clone().prop_map(|(a, b)| Tree::Mul(a, b)),
-            two.clone().prop_map(|(a, b)| Tree::Over(a, b)),
-            two.clone().prop_map(|(a, b)| Tree::Min(a, b)),
-            two.prop_map(|(a, b)| Tree::Max(a, b)),
+            2 => (one(), inner.clone()).prop_map(|(one, a)| Tree::One(one, a)),
+            7 => (two(), inner.clone(), inner).prop_map(|(two, a, b)| Tree::Two(two, a, b)),
         ]
     })
 }
@@ -195,26 +176,6 @@ proptest! {
     #[test]
     fn enclosures_contain_the_values(
         tree in tree(),
-        (d, z) in (0.0..3.0f64, -3.0..3.0f64),
-        (width, height) in (0.0..1.0f64, 0.0..1.0f64),
-        (u, v) in (0.0..=1.0f64, 0.0..=1.0f64),
-    ) {
-        let mut graph = Graph::default();
-        let root = tree.build(&mut graph);
-        let slope = derivative(&mut graph, root, Coord::Z);
-        let mut encloser = Encloser::new(&graph, [root, slope]);
-        encloser.set(Cell::half_plane(Interval::new(d, d + width), Interval::new(z, z + height)));
-        let mut evaluator = Evaluator::new(&graph, [root, slope]);
-        evaluator.evaluate(EvaluationPoint::on_meridian((d + u * width).min(d + width), (z + v * height).min(z + height)));
-        for id in [root, slope] {
-            let (value, within) = (evaluator.get(id), encloser.get(id));
-            prop_assert!(within.low <= value && value <= within.high, "{value} outside {within:?}");
-        }
-    }
-
-    #[test]
-    fn enclosures_enclose_in_space(
-        tree in tree(),
         p in [-3.0..3.0f64, -3.0..3.0f64, -3.0..3.0f64],
         width in [0.0..1.0f64, 0.0..1.0f64, 0.0..1.0f64],
         part in [0.0..=1.0f64, 0.0..=1.0f64, 0.0..=1.0f64],
@@ -235,12 +196,24 @@ proptest! {
                 prop_assert!(near(evaluator.get(id), slope, 1000.0), "{} {slope}", evaluator.get(id));
             }
         }
-        encloser.set(Cell { sides: [0, 1, 2].map(|k| Interval::new(p[k], p[k] + width[k])) });
-        let [x, y, z] = [0, 1, 2].map(|k| (p[k] + part[k] * width[k]).min(p[k] + width[k]));
-        evaluator.evaluate(EvaluationPoint::new(x, y, z));
-        for id in all {
-            let (value, within) = (evaluator.get(id), encloser.get(id));
-            prop_assert!(within.low <= value && value <= within.high, "{value} outside {within:?}");
+        // A cell of space, and one of the half plane.
+        let inside = |low: f64, k: usize| (low + part[k] * width[k]).min(low + width[k]);
+        let side = |low: f64, k: usize| Interval::new(low, low + width[k]);
+        let [x, y, z] = [0, 1, 2].map(|k| inside(p[k], k));
+        let space = Cell { sides: [0, 1, 2].map(|k| side(p[k], k)) };
+        let far = p[0].abs();
+        let half_plane = Cell::half_plane(side(far, 0), side(p[2], 2));
+        let on_meridian = EvaluationPoint::on_meridian(inside(far, 0), z);
+        for (cell, point, ids) in [
+            (space, EvaluationPoint::new(x, y, z), &all[..]),
+            (half_plane, on_meridian, &[root, slopes[2]]),
+        ] {
+            encloser.set(cell);
+            evaluator.evaluate(point);
+            for id in ids {
+                let (value, within) = (evaluator.get(*id), encloser.get(*id));
+                prop_assert!(within.low <= value && value <= within.high, "{value} outside {within:?}");
+            }
         }
     }
 

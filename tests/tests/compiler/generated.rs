@@ -12,7 +12,6 @@ use touchoff_tests::library::{self, checked, library};
 
 /// Methods that generated code may call: none panics, none is a libm function.
 const METHODS: [&str; 4] = ["sqrt", "abs", "of", "assign"];
-/// Functions that it may call.
 const FUNCTIONS: [&str; 18] = [
     "EvaluationEnclosure::of",
     "touchoff::Interval::new",
@@ -34,7 +33,6 @@ const FUNCTIONS: [&str; 18] = [
     "Surface::new",
 ];
 
-/// Returns the code for a tool of the library.
 fn generated(name: &str) -> String {
     emit::source_code(&checked(name))
 }

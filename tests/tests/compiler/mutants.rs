@@ -23,7 +23,6 @@ const COMPARED_POINTS: usize = 20_000;
 /// Relative difference, in units of the tool's size, below which two depths count as equal.
 const SAME_DEPTH_TOLERANCE: f64 = 1e-5;
 
-/// The kinds of defects.
 const KINDS: [&str; 10] = [
     "a depth's sign",
     "a depth's constant",
@@ -37,20 +36,16 @@ const KINDS: [&str; 10] = [
     "a curve's slope",
 ];
 
-/// A tool with one defect.
 struct Mutant {
     /// Index into [`KINDS`].
     kind: usize,
-    /// Description of the location of the defect.
     location: String,
-    /// The defective tool.
     tool: PlannedTool,
 }
 
 /// The evidence that a mutant is defective.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Detection {
-    /// An error.
     Error,
     /// A warning, while some part of the proof is undecided.
     Undecided,
@@ -58,7 +53,6 @@ enum Detection {
     Warning,
     /// Only a difference from the certificate of the original tool, which no user has.
     ByComparison,
-    /// No evidence.
     Undetected,
 }
 
@@ -129,7 +123,6 @@ fn mutant(original: &PlannedTool, kind: usize, rng: &mut Rng) -> Option<Mutant> 
     Some(Mutant { kind, location, tool })
 }
 
-/// Returns the tree with the owner of each leaf mapped.
 fn leaves(
     tree: &Tree<Option<usize>>,
     owner: &impl Fn(Option<usize>) -> Option<usize>,

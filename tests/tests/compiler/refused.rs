@@ -2,11 +2,11 @@
 
 use touchoff::{Pose, PoseError};
 use touchoff_dsl::diagnostic::{Diagnostic, any_error};
-use touchoff_dsl::source::Source;
-use touchoff_dsl::{Compiled, compile, emit};
+use touchoff_dsl::{Compiled, emit};
+use touchoff_tests::texts;
 
 fn compiled(items: &str) -> Compiled {
-    compile(&Source::new("t.tool", format!("tool T {{ units mm; {items} }}")))
+    texts::compiled(format!("tool T {{ units mm; {items} }}"))
 }
 
 /// Returns the codes of a tool's diagnostics, in the order of the text.
@@ -57,8 +57,7 @@ fn small_tools_are_linted_as_thoroughly() {
     let text = "tool T { units m; let r = 1e-5;
         region a where hypot(d, z - r) <= r { depth: r - hypot(d, z - r); }
         region b where hypot(d, z - 1.5*r) <= r { depth: r - hypot(d, z - 1.5*r); } }";
-    let compiled = compile(&Source::new("t.tool", text));
-    assert!(codes(&compiled).contains(&"T0608"));
+    assert!(codes(&texts::compiled(text)).contains(&"T0608"));
 }
 
 #[test]

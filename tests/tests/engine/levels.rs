@@ -13,6 +13,16 @@ fn detailed(points: usize) -> Part {
     Part::with_lods(&tube(), Sampling::new(points)).expect("the tube has a surface")
 }
 
+/// Returns the probe of a ball end mill with a budget of 90 nodes.
+fn graded(part: &Part) -> LodProbe<'_, Ball> {
+    LodProbe::new(part, &Ball, 90, Law::Gradient).expect("a budget that does")
+}
+
+/// Returns the pose of an upright tool over the tube's wall.
+fn over_the_wall(z: f64) -> Pose {
+    Pose::from_axis(Point3::new(4.0, 0.0, z), Vector3::z()).expect("a pose")
+}
+
 fn evaluation(part: &Part, budget: usize, path: ScenePath) -> Vec<touchoff::LodWrench> {
     let mut graded =
         LodProbe::new(part, &Fig73, budget, Law::Gradient).expect("a budget that does");
@@ -94,25 +104,20 @@ fn rejects_a_budget_that_is_too_small() {
 fn force_is_continuous_where_the_level_changes() {
     // Into the rim, slowly: the deeper, the more nodes.
     let part = detailed(200_000);
-    let slowly = |k: usize| {
-        let z = 13.4 - 1.0 * k as f64 / 20_000.0;
-        Pose::from_axis(Point3::new(4.0, 0.0, z), Vector3::z()).expect("a pose")
-    };
-    let mut graded = LodProbe::new(&part, &Ball, 90, Law::Gradient).expect("a budget that does");
+    let mut slow = graded(&part);
     let mut before: Option<touchoff::LodWrench> = None;
     let (mut changes, mut jumps) = (0, 0);
     for k in 0..20_000 {
-        let evaluation = graded.wrench(&slowly(k));
+        let pose = over_the_wall(13.4 - 1.0 * f64::from(k) / 20_000.0);
+        let evaluation = slow.wrench(&pose);
         if let Some(before) = before {
             let step = (evaluation.wrench.force - before.wrench.force).norm();
             // The step that the level's own force would have made.
             if evaluation.level != before.level {
                 changes += 1;
                 assert_eq!(evaluation.wrench.force, before.wrench.force);
-                let alone = LodProbe::new(&part, &Ball, 90, Law::Gradient)
-                    .expect("a budget that does")
-                    .wrench(&slowly(k));
-                jumps += usize::from((alone.wrench.force - before.wrench.force).norm() > 1e-4);
+                let alone = graded(&part).wrench(&pose).wrench;
+                jumps += usize::from((alone.force - before.wrench.force).norm() > 1e-4);
             }
             let scale = evaluation.wrench.force.norm().max(0.01);
             assert!(step < 0.02 * scale + 1e-3, "{k}: {step} of {scale}");
@@ -126,17 +131,16 @@ fn force_is_continuous_where_the_level_changes() {
 fn a_tool_oscillating_around_its_budget_keeps_its_forces() {
     let part = detailed(200_000);
     // Deep in the wall the budget is too small for the level that a light touch is evaluated at.
-    let pose = |z: f64| Pose::from_axis(Point3::new(4.0, 0.0, z), Vector3::z()).expect("a pose");
-    let mut graded = LodProbe::new(&part, &Ball, 90, Law::Gradient).expect("a budget that does");
-    let mut levels = |z: f64| graded.wrench(&pose(z)).level;
-    let (shallow, deep) = (levels(13.1), levels(12.2));
+    let pose = over_the_wall;
+    let mut fresh = graded(&part);
+    let [shallow, deep] = [13.1, 12.2].map(|z| fresh.wrench(&pose(z)).level);
     assert!(shallow < deep, "{shallow} {deep}");
-    let mut graded = LodProbe::new(&part, &Ball, 90, Law::Gradient).expect("a budget that does");
+    let mut oscillating = graded(&part);
     let mut alone = Probe::new(&part, &Ball).with_law(Law::Gradient);
     let (mut last, mut changes, mut near_count) = (None, 0, 0);
     for k in 0..2_000 {
         let z = if k % 2 == 0 { 13.1 } else { 12.2 };
-        let evaluation = graded.wrench(&pose(z));
+        let evaluation = oscillating.wrench(&pose(z));
         changes += usize::from(last.is_some_and(|level| level != evaluation.level));
         last = Some(evaluation.level);
         let true_force = alone.wrench(&pose(z)).force;
@@ -147,13 +151,9 @@ fn a_tool_oscillating_around_its_budget_keeps_its_forces() {
     assert!(changes <= 2 * 2_000 / 32 + 2, "{changes}");
     assert!(near_count > 1_000, "{near_count}");
     // Out of the part no force of it is left.
-    let away = graded.wrench(&pose(20.0)).wrench;
+    let away = oscillating.wrench(&pose(20.0)).wrench;
     assert_eq!((away.force, away.torque), (Vector3::zeros(), Vector3::zeros()));
-    let again = graded.wrench(&pose(12.2));
-    let fresh = LodProbe::new(&part, &Ball, 90, Law::Gradient)
-        .expect("a budget that does")
-        .wrench(&pose(12.2));
-    assert_eq!(again, fresh);
+    assert_eq!(oscillating.wrench(&pose(12.2)), graded(&part).wrench(&pose(12.2)));
 }
 
 /// Returns points all over a mesh that are outside the tool at all poses.

@@ -1,8 +1,10 @@
 //! The quantities that a posture is judged by, for all sets of points whose depth and niceness are known.
 
-use nalgebra::{Point3, Vector3};
+use nalgebra::Point3;
 use touchoff::tool::Interpreted;
-use touchoff::{Cloud, Part, Pose, Probe, TriangleId, Unit};
+use touchoff::{Pose, Probe};
+use touchoff_tests::fixtures::{interpreted, part_at};
+use touchoff_tests::oracle::restated::Restated;
 
 /// A point in a ball end mill, its depth, its niceness and whether its surface cuts.
 type Known = ([f64; 3], f64, f64, bool);
@@ -16,9 +18,8 @@ const POINTS: [Known; 5] = [
 ];
 
 fn mill() -> Interpreted {
-    "tool Mill { units mm; profile { start (0, 0); arc to (3, 3) center (0, 3) as ball cutting; line to (3, 20), (0, 20) as shank; } niceness cutting: 1 - z/10 allow rising; }"
-        .parse()
-        .expect("a tool")
+    let mill = Restated::drawn("Mill", "0 0; ball 3 3 about 0 3; shank 3 20, 0 20", &[]);
+    interpreted(&mill.cuts("ball", |_, _, _| 1.0), "1 - z/10 allow rising")
 }
 
 fn near(found: Option<f64>, expected: Option<f64>, what: &str) {
@@ -39,11 +40,7 @@ fn a_posture_has_the_greatest_depths_and_the_least_niceness_of_its_points() {
             if is_reversed {
                 points.reverse();
             }
-            let count = points.len();
-            let ids = (0..count as u32).map(TriangleId).collect();
-            let normals = vec![Vector3::x(); count];
-            let cloud = Cloud::new(points, normals, ids, vec![1.0; count], Unit::Millimetre);
-            let part = Part::from_cloud(&cloud.expect("a cloud"));
+            let part = part_at(&points);
             let inside: Vec<&&Known> = chosen.iter().filter(|known| known.1 >= 0.0).collect();
             let greatest = |is_counted: fn(&Known) -> bool| {
                 let depths = inside.iter().filter(|known| is_counted(known)).map(|known| known.1);

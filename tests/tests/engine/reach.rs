@@ -1,33 +1,22 @@
 //! How far tools reach: points at the limit of what is ruled out without being evaluated.
 
 use nalgebra::{Isometry3, Point3, UnitQuaternion, Vector3};
-use touchoff::tool::Interpreted;
-use touchoff::{Cloud, InsideQuery, Part, Pose, Scene, Tool, ToolEnvelope, TriangleId, Unit};
+use touchoff::{InsideQuery, Pose, Scene, Tool, ToolEnvelope, Unit};
+use touchoff_tests::fixtures::{drawn, part_at};
 
 /// A disc of 10 mm radius and height.
-fn disc() -> Interpreted {
-    "tool Disc { units mm; profile { start (0, 0); line to (10, 0) as face; line to (10, 10) as rim cutting; line to (0, 10) as top; } niceness cutting: 1; }"
-        .parse()
-        .expect("a tool")
-}
-
-fn part_of(points: &[Point3<f64>]) -> Part {
-    let ids = (0..points.len() as u32).map(TriangleId).collect();
-    let (normals, weights) = (vec![Vector3::x(); points.len()], vec![1.0; points.len()]);
-    let cloud = Cloud::new(points.to_vec(), normals, ids, weights, Unit::Millimetre);
-    Part::from_cloud(&cloud.expect("a cloud"))
-}
+const DISC: &str = "0 0; face 10 0; rim 10 10; top 0 10";
 
 /// A disc as high as it is wide reaches farthest from its tip at its upper rim, and a cube from its middle at its
 /// corners: the one just touches the other, along the line from the tip to the middle.
 #[test]
 fn a_rim_that_just_touches_a_corner_is_detected() {
-    let disc = disc();
+    let disc = drawn(DISC, "rim");
     let half = 4.0;
     let corners: Vec<Point3<f64>> = (0..8)
         .map(|k| Point3::from([0, 1, 2].map(|axis| if k >> axis & 1 == 0 { -half } else { half })))
         .collect();
-    let cube = part_of(&corners);
+    let cube = part_at(&corners);
     let rim = Vector3::new(10.0, 0.0, 10.0);
     let diagonal = Vector3::new(1.0, 1.0, 1.0);
     let turn = UnitQuaternion::rotation_between(&-diagonal, &rim).expect("no half turn");
@@ -47,14 +36,14 @@ fn a_rim_that_just_touches_a_corner_is_detected() {
 #[test]
 fn an_envelope_that_is_widened_reaches_points_as_far_as_that() {
     const DISTANCE: f64 = 2.0;
-    let disc = disc();
+    let disc = drawn(DISC, "rim");
     for (outward, beside) in [
         (Vector3::new(0.0, 0.0, -1.0), Point3::new(3.0, 0.0, 0.0)),
         (Vector3::new(0.0, 0.0, 1.0), Point3::new(3.0, 0.0, 10.0)),
         (Vector3::new(1.0, 0.0, 0.0), Point3::new(10.0, 0.0, 5.0)),
     ] {
         for (gap, is_reached) in [(0.1, true), (1.99, true), (2.01, false), (5.0, false)] {
-            let part = part_of(&[beside + gap * outward]);
+            let part = part_at(&[beside + gap * outward]);
             let tree = part.tree();
             let mut query = InsideQuery::default();
             let pose = Pose::default();
@@ -71,7 +60,7 @@ fn an_envelope_that_is_widened_reaches_points_as_far_as_that() {
 /// diagonal is turned away from the tool: the part's middle is as far from that point as it can be.
 #[test]
 fn points_just_inside_a_tool_are_found_however_far_the_part_reaches() {
-    let disc = disc();
+    let disc = drawn(DISC, "rim");
     for (inside, away) in [
         (Vector3::new(9.99, 0.0, 5.0), Vector3::x()),
         (Vector3::new(0.0, -9.99, 0.01), -Vector3::y()),
@@ -79,7 +68,7 @@ fn points_just_inside_a_tool_are_found_however_far_the_part_reaches() {
         (Vector3::new(-3.0, 1.0, 9.99), Vector3::z()),
     ] {
         for size in [1.0, 1e2, 1e3, 1e4] {
-            let part = part_of(&[Point3::origin(), Point3::new(size, size, size)]);
+            let part = part_at(&[Point3::origin(), Point3::new(size, size, size)]);
             let diagonal = Vector3::new(1.0, 1.0, 1.0);
             let turn = UnitQuaternion::rotation_between(&away, &diagonal).expect("no half turn");
             let [x, y, z, w] = turn.coords.into();

@@ -2,21 +2,14 @@
 
 use nalgebra::{Isometry3, Point3, UnitQuaternion, Vector3};
 use touchoff::tool::Interpreted;
-use touchoff::{Cloud, Part, Pose, Scene, TriangleId, Unit};
+use touchoff::{Pose, Scene, Unit};
+use touchoff_tests::fixtures::{interpreted, part_at};
+use touchoff_tests::oracle::restated::Restated;
 
-/// A ball of 3 mm radius about (0, 0, 3). Its niceness falls with the height, so that a deeper point may be nicer.
+/// Returns a ball of 3 mm radius about (0, 0, 3). Its niceness falls with the height, so that a deeper point may be nicer.
 fn ball() -> Interpreted {
-    "tool Ball { units mm; profile { start (0, 0); arc to (0, 6) center (0, 3) as ball cutting; } niceness cutting: 1 - z/10 allow rising; }"
-        .parse()
-        .expect("a tool")
-}
-
-fn part_of(points: &[Point3<f64>]) -> Part {
-    let ids = (0..points.len() as u32).map(TriangleId).collect();
-    let normals = vec![Vector3::x(); points.len()];
-    let weights = vec![1.0; points.len()];
-    let cloud = Cloud::new(points.to_vec(), normals, ids, weights, Unit::Millimetre);
-    Part::from_cloud(&cloud.expect("a cloud"))
+    let ball = Restated::drawn("Ball", "0 0; ball 0 6 about 0 3", &[]);
+    interpreted(&ball.cuts("ball", |_, _, _| 1.0), "1 - z/10 allow rising")
 }
 
 /// Returns the depth and the niceness of the point of the tool's axis at a height.
@@ -37,7 +30,7 @@ fn parts_together_have_the_greatest_depth_and_the_least_niceness() {
         [Isometry3::identity(), Isometry3::from_parts(Vector3::new(7.0, -2.0, 4.0).into(), turn)];
     for heights in [[1.0, 5.5], [5.5, 1.0], [1.0, 4.5], [4.5, 1.0], [2.0, 2.5], [2.5, 2.0]] {
         for frame in frames {
-            let parts = heights.map(|z| part_of(&[Point3::new(0.0, 0.0, z)]));
+            let parts = heights.map(|z| part_at(&[Point3::new(0.0, 0.0, z)]));
             let mut scene = Scene::new(Unit::Millimetre);
             let pose = Pose::try_from(frame).expect("a pose");
             let ids = parts.each_ref().map(|part| scene.add_part(part, pose).expect("millimetres"));
@@ -64,7 +57,7 @@ fn parts_together_have_the_greatest_depth_and_the_least_niceness() {
 fn force_and_torque_of_a_turned_part_are_in_the_frame_of_the_world() {
     let tool = ball();
     let points = [Point3::new(0.5, 1.0, 2.0), Point3::new(-1.5, 0.2, 4.0)];
-    let part = part_of(&points);
+    let part = part_at(&points);
     let measure = |frame: Isometry3<f64>| {
         let mut scene = Scene::new(Unit::Millimetre);
         let pose = Pose::try_from(frame).expect("a pose");

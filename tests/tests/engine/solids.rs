@@ -3,22 +3,22 @@
 use touchoff::Interval;
 use touchoff::Unit;
 use touchoff::tool::{Evaluators, PointEvaluation, Symmetry};
-use touchoff_dsl::diagnostic::any_error;
 use touchoff_dsl::interpret::Interpreter;
 use touchoff_dsl::source::Source;
-use touchoff_dsl::{CheckedTool, compile, compile_with_arguments};
+use touchoff_dsl::{Compiled, compile_with_arguments};
 use touchoff_tests::library;
 use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::{Body, Oracle};
+use touchoff_tests::texts::{
+    accepted, assert_each_refused, assert_refused, compiled, said, with_one_error,
+};
 use touchoff_tools::{Block, LBracket};
 
-/// Returns the region and the depth at a point.
 fn at<T: Evaluators>(p: [f64; 3]) -> Option<(&'static str, f64)> {
     let evaluation = T::evaluate_point(p, 1.0)?;
     Some((T::info().regions[evaluation.region].name.as_ref(), evaluation.depth))
 }
 
-/// Returns the evaluation at a point inside.
 fn inside<T: Evaluators>(p: [f64; 3], length: f64) -> PointEvaluation {
     T::evaluate_point(p, length).unwrap_or_else(|| panic!("{p:?} is outside"))
 }
@@ -120,9 +120,7 @@ fn a_block_with_other_dimensions() {
     for (w, l, h) in [(10, 50, 80), (30, 30, 30), (100, 1, 1)] {
         let given = [("w", w), ("l", l), ("h", h)]
             .map(|(name, value)| Source::new("a test", format!("{name} = {value}")));
-        let compiled = compile_with_arguments(&block, &given);
-        assert!(compiled.diagnostics().is_empty(), "{:?}", compiled.diagnostics());
-        let tool = compiled.into_tool().expect("a block");
+        let tool = accepted(compile_with_arguments(&block, &given));
         let mut reference = Interpreter::new(&tool);
         let mut rng = Rng::new(7);
         let half = [w, l, h].map(|side| f64::from(side) / 2.0);
@@ -162,23 +160,8 @@ fn info_has_the_extents_of_solids() {
     assert_eq!(touchoff_tools::Cylinder::info().symmetry, Symmetry::Revolved);
 }
 
-fn solid(items: &str) -> touchoff_dsl::Compiled {
-    compile(&Source::new("t.tool", format!("solid S {{ units mm; {items} }}")))
-}
-
-fn taken(items: &str) -> CheckedTool {
-    let compiled = solid(items);
-    assert!(!any_error(compiled.diagnostics()), "{:?}", compiled.diagnostics());
-    *compiled.into_tool().expect("no error, so a solid")
-}
-
-/// Returns the messages of a text that must be refused, with their help.
-fn refused(items: &str) -> String {
-    let compiled = solid(items);
-    assert!(any_error(compiled.diagnostics()) && compiled.tool().is_none(), "{items} was taken");
-    let format_diagnostic =
-        |r: &touchoff_dsl::diagnostic::Diagnostic| format!("{}: {}", r.message(), r.help());
-    compiled.diagnostics().iter().map(format_diagnostic).collect::<Vec<_>>().join("; ")
+fn solid(items: &str) -> Compiled {
+    compiled(format!("solid S {{ units mm; {items} }}"))
 }
 
 const BALL: &str = "region b where hypot(x, y, z) <= 3 { depth: 3 - hypot(x, y, z);";
@@ -189,7 +172,7 @@ fn a_round_solid_is_bounded_closely() {
     let items = "let r = 3; curve far = hypot(x - 5, y + 1, z);
         region b as ball cutting where far <= r { depth: r - far; direction: away from (5, -1, 0); }
         niceness cutting: 1 - depth/r;";
-    let tool = taken(items);
+    let tool = accepted(solid(items));
     let [x, y, z] = tool.extent.cell().sides;
     for (side, [low, high]) in [x, y, z].iter().zip([[2.0, 8.0], [-4.0, 2.0], [-3.0, 3.0]]) {
         assert!(side.low <= low && side.low > low - 0.1, "{side:?}");
@@ -199,82 +182,49 @@ fn a_round_solid_is_bounded_closely() {
     assert!((radius..1.05 * radius).contains(&tool.extent.radius), "{}", tool.extent.radius);
 }
 
+/// Properties of a ball, and the words of their one error.
+const PROPERTIES: &str = "\
+magnitude: d; => `d` is a coordinate of a `tool` only | in a `solid` use `hypot(x, y)`
+magnitude: 2d; => write `2*hypot(x, y)`
+direction: toward (1, 2); => a point in a solid has three numbers; this has 2 | write `(x, y, z)`
+direction: away from (1, 2, 0, 5); => a decimal comma? write `0.5`
+direction: (1, 0); => a direction in a solid has three numbers; this has 2 | write `(x, y, z)`
+direction: (x, y, z^2); => this direction mixes";
+
+/// Items beside a ball, and the words of their one error.
+const ITEMS: &str = "\
+let x = 3; => `x` is a coordinate and cannot be redefined
+let d = 3; => `d` is a reserved name
+tip z = 3; => `tip` exists in a `tool` only | a `solid` has no axis
+spindle -z; => `spindle` exists in a `tool` only | a `solid` has no axis
+profile { start (0, 0); line to (3, 0), (0, 3) as side; } => `profile` exists in a `tool` only | a `solid` has no axis
+regions nearest; => `regions` exists in a `tool` only | a `solid` has no axis";
+
+/// All items of a solid, and the words of its error: a point of space, or a coordinate.
+const SOLIDS: &str = "\
+region a where hypot(x, y, z) <= 3 { depth: 3 - hypot(x, y, z); } region b where hypot(x - 1, y, z) <= 3 { depth: 3 - hypot(x - 1, y, z); } => regions a and b overlap, for instance at (
+region a where -1 <= x <= 1, -1 <= y <= 1 { depth: min(1 - abs(x), 1 - abs(y)); } => region a has no proved bound toward large z
+region a where -1 <= x <= 1, -1 <= y <= 1, 0 <= z <= 2 { depth: min(1 - abs(x), 1 - abs(y), z); } => on the surface
+region a where x >= 1, x <= -1, 0 <= y <= 1, 0 <= z <= 1 { depth: z; } => no point belongs to this solid
+let a = 1; => `S` has no region";
+
 #[test]
-fn diagnostics_name_coordinates_of_the_other_domain() {
-    let message = refused(&format!("{BALL} magnitude: d; }}"));
-    assert_eq!(message, "`d` is a coordinate of a `tool` only: in a `solid` use `hypot(x, y)`");
+fn mistakes_in_a_solid_are_named() {
+    assert_each_refused(PROPERTIES, |items| with_one_error(solid(&format!("{BALL} {items} }}"))));
+    assert_each_refused(ITEMS, |items| with_one_error(solid(&format!("{items} {BALL} }}"))));
+    assert_each_refused(SOLIDS, solid);
+    // A point of space has three coordinates.
+    let overlap = said(&format!(
+        "solid S {{ units mm; {} }}",
+        SOLIDS.split(" => ").next().unwrap_or_default()
+    ));
+    assert_eq!(overlap[0].0.split(')').next().map(|head| head.matches(',').count()), Some(3));
     let tool = "tool T { units mm; region r where hypot(d, z - 3) <= 3, y <= 4 { depth: 3 - hypot(d, z - 3); } }";
-    let compiled = compile(&Source::new("t.tool", tool));
-    assert_eq!(compiled.diagnostics().len(), 1);
-    assert_eq!(compiled.diagnostics()[0].message(), "`y` is a coordinate of a `solid` only");
-    let help = compiled.diagnostics()[0].help();
-    assert!(help.contains("`d`, the distance from the axis"), "{help}");
-    assert!(refused("let x = 3;").contains("`x` is a coordinate and cannot be redefined"));
-    assert!(refused("let d = 3;").contains("`d` is a reserved name"));
-    assert!(refused(&format!("{BALL} magnitude: 2d; }}")).contains("write `2*hypot(x, y)`"));
-}
-
-#[test]
-fn diagnostics_name_items_that_only_tools_have() {
-    let ball = format!("{BALL} }}");
-    for (item, word) in [
-        ("tip z = 3;", "tip"),
-        ("spindle -z;", "spindle"),
-        ("profile { start (0, 0); line to (3, 0), (0, 3) as side; }", "profile"),
-        ("regions nearest;", "regions"),
-    ] {
-        let message = refused(&format!("{item} {ball}"));
-        let expected = format!("`{word}` exists in a `tool` only: a `solid` has no axis");
-        assert!(message.starts_with(&expected), "{message}");
-        assert!(!message.contains("; `"), "{message}");
-    }
-}
-
-#[test]
-fn points_have_three_numbers() {
-    let message = refused(&format!("{BALL} direction: toward (1, 2); }}"));
-    assert_eq!(message, "a point in a solid has three numbers; this has 2: write `(x, y, z)`");
-    let message = refused(&format!("{BALL} direction: away from (1, 2, 0, 5); }}"));
-    assert!(message.contains("a decimal comma? write `0.5`"), "{message}");
-    let message = refused(&format!("{BALL} direction: (1, 0); }}"));
-    assert_eq!(message, "a direction in a solid has three numbers; this has 2: write `(x, y, z)`");
-    assert!(
-        refused(&format!("{BALL} direction: (x, y, z^2); }}")).contains("this direction mixes")
-    );
-}
-
-/// Each mistake is shown with a point of space.
-#[test]
-fn diagnostics_include_a_point() {
-    let both = "region a where hypot(x, y, z) <= 3 { depth: 3 - hypot(x, y, z); }
-        region b where hypot(x - 1, y, z) <= 3 { depth: 3 - hypot(x - 1, y, z); }";
-    let message = refused(both);
-    assert!(message.starts_with("regions a and b overlap, for instance at ("), "{message}");
-    assert_eq!(message.split(')').next().map(|head| head.matches(',').count()), Some(3));
-    let slab = "region a where -1 <= x <= 1, -1 <= y <= 1 { depth: min(1 - abs(x), 1 - abs(y)); }";
-    let message = refused(slab);
-    assert!(message.starts_with("region a has no proved bound toward large z"), "{message}");
-    // A face that nothing closes.
-    let open = "region a where -1 <= x <= 1, -1 <= y <= 1, 0 <= z <= 2 {
-        depth: min(1 - abs(x), 1 - abs(y), z); }";
-    assert!(refused(open).contains("on the surface"));
-    assert!(
-        refused("region a where x >= 1, x <= -1, 0 <= y <= 1, 0 <= z <= 1 { depth: z; }")
-            .starts_with("no point belongs to this solid")
-    );
-    assert!(refused("").starts_with("`S` has no region"));
-}
-
-#[test]
-fn rejects_files_with_another_first_keyword() {
-    let message = |text: &str| {
-        let report = compile(&Source::new("t.tool", text)).diagnostics()[0].clone();
-        format!("{}: {}", report.message(), report.help())
-    };
-    assert_eq!(
-        message("sold S { units mm; }"),
-        "a file begins with `tool` or `solid`, not with `sold`: did you mean `solid`?"
-    );
+    let words = ["`y` is a coordinate of a `solid` only", "`d`, the distance from the axis"];
+    assert_refused(&with_one_error(compiled(tool)), &words);
+    let words = ["a file begins with `tool` or `solid`, not with `sold`", "did you mean `solid`?"];
+    assert_refused(&compiled("sold S { units mm; }"), &words);
     let two = format!("solid S {{ units mm; {BALL} }} }} solid T {{ units mm; }}");
-    assert_eq!(message(&two), "this is a second solid in one file: move it to a file of its own");
+    let words = ["this is a second solid in one file", "move it to a file of its own"];
+    assert_refused(&compiled(two), &words);
 }

@@ -13,6 +13,7 @@ use touchoff::tool::PointEvaluation;
 use touchoff_tests::checks::Checks;
 use touchoff_tests::oracle::big::Big;
 use touchoff_tests::oracle::rng::Rng;
+use touchoff_tests::points::neighbourhood;
 
 #[test]
 fn points_on_borders_keep_the_contract() {
@@ -102,7 +103,7 @@ fn points_one_ulp_beside_borders_keep_the_contract() {
         centres.extend(brackets.into_iter().flat_map(|bracket| bracket.ends));
         for centre in centres {
             let mut points = Vec::new();
-            for [x, y, z] in neighbours(subject, centre) {
+            for [x, y, z] in neighbourhood(&*subject.oracle, centre) {
                 if subject.oracle.is_revolved() {
                     let copies = rotated_copies(subject, [x.abs(), 0.0, z], rng);
                     points.push(copies[rng.index(copies.len())]);
@@ -113,17 +114,4 @@ fn points_one_ulp_beside_borders_keep_the_contract() {
             validator.validate(&points, checks);
         }
     });
-}
-
-/// Returns a point and those one ulp beside it; of a tool of revolution, those in the half plane y = 0.
-pub(crate) fn neighbours(subject: &Subject, [x, y, z]: [f64; 3]) -> Vec<[f64; 3]> {
-    let beside = |v: f64| [v, v.next_up(), v.next_down()];
-    let ys = if subject.oracle.is_revolved() { vec![y] } else { beside(y).to_vec() };
-    let mut points = Vec::new();
-    for x in beside(x) {
-        for z in beside(z) {
-            points.extend(ys.iter().map(|y| [x, *y, z]));
-        }
-    }
-    points
 }

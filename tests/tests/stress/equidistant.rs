@@ -2,29 +2,24 @@
 //! radius outside, and an ulp beside them. The contract; and all regions that such a point belongs to agree. Inside
 //! `Fig73` these are the points where its own regions meet, in the two solids those where four faces do.
 
-use crate::border_points::{compare_neighbours, neighbours, owners_at};
+use crate::border_points::{compare_neighbours, owners_at};
 use crate::truth::Subject;
 use crate::validator::Validator;
 use crate::voronoi::{Search, find_voronoi_vertices};
 use crate::{extent, run};
-use std::f64::consts::TAU;
 use touchoff_tests::checks::{assert_no_misses, print_worst};
 use touchoff_tests::oracle::Nearest;
 use touchoff_tests::oracle::rng::Rng;
+use touchoff_tests::points::{add_turned, neighbourhood};
 
 #[test]
 fn points_near_several_features_keep_the_contract() {
     let tools = run(3, |subject, rng, checks| {
         let validator = Validator::new(subject.tool, &*subject.truth);
-        for [x, y, z] in equidistant_points(subject, rng) {
+        for p in equidistant_points(subject, rng) {
             let mut points = Vec::new();
-            for [x, y, z] in neighbours(subject, [x, y, z]) {
-                if subject.oracle.is_revolved() {
-                    let (sin, cos) = rng.between(0.0, TAU).sin_cos();
-                    points.extend([[x.abs(), 0.0, z], [x * cos, x * sin, z]]);
-                } else {
-                    points.push([x, y, z]);
-                }
+            for p in neighbourhood(&*subject.oracle, p) {
+                add_turned(&*subject.oracle, p, &[[1.0, 0.0], rng.azimuth()], &mut points);
             }
             let evaluations = validator.validate(&points, checks);
             let (p, evaluation) = (points[0], evaluations[0].as_ref());

@@ -22,7 +22,6 @@
 
 mod accuracy;
 mod aligned;
-mod axis;
 mod border_points;
 mod borders;
 mod cycles;
@@ -50,10 +49,8 @@ use touchoff_tests::oracle::rng::Rng;
 use truth::{Subject, subjects};
 use validator::Validator;
 
-/// The seed of all random numbers.
 const SEED: u64 = 7;
 
-/// All library tools.
 static SUBJECTS: LazyLock<Vec<Subject>> = LazyLock::new(subjects);
 
 /// Returns how much to test: the extent of the sample times the variable `STRESS`, at most that of the full list.

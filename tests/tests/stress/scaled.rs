@@ -78,7 +78,6 @@ fn points(subject: &Subject, count: usize, rng: &mut Rng) -> Vec<[f64; 3]> {
     points
 }
 
-/// Compiles a tool with its lengths multiplied by the expression `scale`.
 fn compile_scaled(subject: &Subject, scale: &str) -> Result<Interpreted, ToolError> {
     let name = subject.name();
     let text = hand_written_text(name, scale).unwrap_or_else(|| {
@@ -124,16 +123,14 @@ fn check_contract(subject: &Subject, points: &[[f64; 3]], scale: &str, checks: &
     validator.validate(&multiplied(points, factor), checks);
 }
 
-/// Returns the largest coordinate of the tool's corners.
 fn max_coordinate(subject: &Subject) -> f64 {
     let corners = subject.oracle.corner_points().into_iter().flatten();
     corners.fold(0.0, |max: f64, c| max.max(c.abs()))
 }
 
-/// Returns the largest radius of the tool's arcs.
 fn max_radius(subject: &Subject) -> f64 {
     let Some(tool) = restated::of(subject.name()) else { return 0.0 };
-    let circles = tool.segments.iter().filter_map(|segment| segment.circle.as_ref());
+    let circles = tool.profile.segments().iter().filter_map(|segment| segment.circle.as_ref());
     circles.map(|circle| circle.radius.to_f64()).fold(0.0, f64::max)
 }
 

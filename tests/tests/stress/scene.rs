@@ -9,6 +9,7 @@ use touchoff_tests::checks::Checks;
 use touchoff_tests::oracle::big::Big;
 use touchoff_tests::oracle::displaced;
 use touchoff_tests::oracle::rng::Rng;
+use touchoff_tests::oracle::space::{add, cross, distance, dot, exactly, sub, times};
 
 const SENSELESS_NUMBER: &str = "senseless number";
 
@@ -67,23 +68,19 @@ impl PointSet {
         Part::from_cloud(&cloud.expect("points that make a cloud"))
     }
 
-    /// Builds the part of all points.
     pub(crate) fn part(&self) -> Part {
         self.part_of(0..self.points.len())
     }
 }
 
-/// Returns a pose from a quaternion `(x, y, z, w)`.
 pub(crate) fn pose(tip: Point3<f64>, quaternion: [f64; 4]) -> Pose {
     Pose::from_quaternion(tip, quaternion).expect("a unit quaternion")
 }
 
-/// Returns a pose with a random orientation.
 pub(crate) fn random_pose(tip: Point3<f64>, rng: &mut Rng) -> Pose {
     pose(tip, rng.quaternion())
 }
 
-/// Returns the pose with another tip.
 pub(crate) fn with_tip(old: &Pose, tip: Point3<f64>) -> Pose {
     let q = old.to_isometry().rotation.coords;
     pose(tip, [q.x, q.y, q.z, q.w])
@@ -95,7 +92,6 @@ pub(crate) fn format_pose(pose: &Pose) -> String {
     format!("tip {:?}, axes {:?}", tip.coords.as_slice(), axes.as_slice())
 }
 
-/// A tool at a pose, and the points of a part.
 pub(crate) struct Scene<'a> {
     pub(crate) subject: &'a Subject,
     pub(crate) points: PointSet,
@@ -103,14 +99,12 @@ pub(crate) struct Scene<'a> {
     pub(crate) pose: Pose,
 }
 
-/// The answers of a probe.
 pub(crate) struct Answers {
     pub(crate) contacts: Vec<Contact>,
     pub(crate) wrench: Wrench,
 }
 
 impl<'a> Scene<'a> {
-    /// Makes the scene of all points.
     pub(crate) fn new(subject: &'a Subject, points: PointSet, pose: Pose) -> Scene<'a> {
         Scene { subject, part: points.part(), points, pose }
     }
@@ -121,7 +115,6 @@ impl<'a> Scene<'a> {
         Answers { contacts: probe.contacts(&self.pose).to_vec(), wrench: probe.wrench(&self.pose) }
     }
 
-    /// Returns the error bound of a contact's depth.
     pub(crate) fn error_bound(&self) -> f64 {
         let probe = Probe::new(&self.part, self.subject.tool);
         probe.rounding_error_bound().expect("how steep depth is was proved of every tool")
@@ -177,12 +170,10 @@ impl<'a> Scene<'a> {
     /// Transforms a point to the tool's frame and unit.
     fn in_tool(&self, p: &Point3<f64>) -> ExactPoint {
         let (tip, rotation) = (self.pose.tip(), self.pose.rotation());
-        let arm = difference(p, &tip);
+        let arm = sub(&exactly(*p), &exactly(tip));
         let length = &millimetres(self.points.unit) / &millimetres(self.subject.tool.info().unit);
-        std::array::from_fn(|k| {
-            let terms = (0..3).map(|j| &Big::exactly(rotation[(j, k)]) * &arm[j]);
-            &terms.fold(Big::zero(), |sum, term| &sum + &term) * &length
-        })
+        let axes = [0, 1, 2].map(|k| exactly(rotation.column(k).into_owned()));
+        axes.map(|axis| &dot(&axis, &arm) * &length)
     }
 
     /// Compares force, torque and integral with the sums over the contacts.
@@ -195,15 +186,16 @@ impl<'a> Scene<'a> {
         if !is_finite {
             return;
         }
-        let zero = || [Big::zero(), Big::zero(), Big::zero()];
-        let (mut force, mut torque, mut integral) = (zero(), zero(), Big::zero());
+        let zero = exactly([0.0; 3]);
+        let (mut force, mut torque, mut integral) = (zero.clone(), zero, Big::zero());
         let (mut force_bound, mut torque_bound) = (0.0, 0.0);
         let tip = self.pose.tip();
         for contact in contacts {
             let magnitude = &Big::exactly(contact.weight) * &Big::exactly(contact.magnitude);
-            let [n, u] = [to_big(&contact.normal), to_big(&contact.direction)];
-            let push: ExactPoint = std::array::from_fn(|k| &(&n[k] - &u[k]) * &magnitude);
-            torque = add(&torque, &cross(&difference(&contact.point, &tip), &push));
+            let push = sub(&exactly(contact.normal), &exactly(contact.direction));
+            let push = times(&push, &magnitude);
+            let arm = sub(&exactly(contact.point), &exactly(tip));
+            torque = add(&torque, &cross(&arm, &push));
             force = add(&force, &push);
             integral = &integral + &magnitude;
             let max_push = 2.0 * magnitude.to_f64();
@@ -215,8 +207,8 @@ impl<'a> Scene<'a> {
         let rounding = sum_rounding(contacts.len());
         let integral_error = (&Big::exactly(wrench.integral) - &integral).abs().to_f64();
         for (error, bound) in [
-            (distance(&wrench.force, &force), force_bound),
-            (distance(&wrench.torque, &torque), torque_bound),
+            (distance(&force, wrench.force), force_bound),
+            (distance(&torque, wrench.torque), torque_bound),
             (integral_error, force_bound),
         ] {
             let ratio = if error == 0.0 { 0.0 } else { error / (rounding * bound + 1e-320) };
@@ -272,29 +264,4 @@ pub(crate) fn compare_depths(
 
 fn millimetres(unit: Unit) -> Big {
     Big::decimal(unit.millimetres())
-}
-
-fn to_big(v: &Vector3<f64>) -> ExactPoint {
-    [v.x, v.y, v.z].map(Big::exactly)
-}
-
-fn difference(a: &Point3<f64>, b: &Point3<f64>) -> ExactPoint {
-    std::array::from_fn(|k| &Big::exactly(a[k]) - &Big::exactly(b[k]))
-}
-
-fn add(a: &ExactPoint, b: &ExactPoint) -> ExactPoint {
-    std::array::from_fn(|k| &a[k] + &b[k])
-}
-
-fn cross(a: &ExactPoint, b: &ExactPoint) -> ExactPoint {
-    std::array::from_fn(|k| {
-        let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-        &(&a[i] * &b[j]) - &(&a[j] * &b[i])
-    })
-}
-
-/// Returns the distance between a vector of doubles and one of 256 bits.
-fn distance(a: &Vector3<f64>, b: &ExactPoint) -> f64 {
-    let squares = to_big(a).into_iter().zip(b).map(|(a, b)| (&a - b).to_f64().powi(2));
-    squares.sum::<f64>().sqrt()
 }

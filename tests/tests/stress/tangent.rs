@@ -78,7 +78,7 @@ fn longest_side(subject: &Subject) -> Option<Side> {
         _ => {}
     }
     let mut longest: Option<Side> = None;
-    for segment in restated::of(subject.name())?.segments {
+    for segment in restated::of(subject.name())?.profile.segments() {
         let [radius, low, high] =
             [&segment.to[0], &segment.from[1], &segment.to[1]].map(Big::to_f64);
         if segment.circle.is_none() && segment.from[0] == segment.to[0] && high > low {
@@ -93,10 +93,11 @@ fn longest_side(subject: &Subject) -> Option<Side> {
 /// on its axis: half the radius of its end face or ball. Returns 0 for a tool whose end is neither.
 fn max_press_depth(subject: &Subject) -> f64 {
     let Some(tool) = restated::of(subject.name()) else { return 0.5 };
-    let (zero, first) = (Big::zero(), &tool.segments[0]);
-    let has_flat_end = first.circle.is_none() && first.to[1] == zero && first.from[1] == zero;
-    let has_ball_end = first.centre().is_some_and(|centre| centre[0] == zero);
-    if has_flat_end || has_ball_end { 0.5 * first.to[0].to_f64() } else { 0.0 }
+    let first = tool.profile.map(Big::to_f64).segments()[0];
+    let has_flat_end = first.circle.is_none() && first.to[1] == 0.0 && first.from[1] == 0.0;
+    let has_ball_end = first.centre().is_some_and(|centre| centre[0] == 0.0);
+    let widest = first.extremes().map(|p| p[0]).fold(0.0, f64::max);
+    if has_flat_end || has_ball_end { 0.5 * widest } else { 0.0 }
 }
 
 /// Returns points of a surface: the origin, and others that `point_at` returns for numbers between -1 and 1.

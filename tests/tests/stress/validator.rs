@@ -1,11 +1,12 @@
 //! The contract of an evaluator, at given points.
 
-use crate::truth::{RegionValues, Truth, to_exact};
+use crate::truth::{RegionValues, Truth};
 use touchoff::tool::PointEvaluation;
 use touchoff::{Level, Tool};
 use touchoff_tests::checks::Checks;
-use touchoff_tests::evaluations::evaluate_points;
+use touchoff_tests::evaluations::{bits, evaluate_points, numbers};
 use touchoff_tests::oracle::big::Big;
+use touchoff_tests::oracle::space::{distance, exactly, norm};
 
 /// Distance in ulp(S) from a border within which both sides, or both owners, are accepted.
 const AMBIGUITY_ULPS: f64 = 2.0;
@@ -14,18 +15,6 @@ pub(crate) const DEPTH: &str = "depth [ulp(S)]";
 pub(crate) const WRONG_SIDE: &str = "wrong side";
 const WRONG_OWNER: &str = "wrong owner";
 const SENSELESS_NUMBER: &str = "senseless number";
-
-/// Returns all numbers of an evaluation.
-fn numbers(evaluation: &PointEvaluation) -> [f64; 9] {
-    let ([ux, uy, uz], [gx, gy, gz]) = (evaluation.direction, evaluation.gradient);
-    let PointEvaluation { depth, magnitude, niceness, .. } = *evaluation;
-    [depth, magnitude, niceness, ux, uy, uz, gx, gy, gz]
-}
-
-/// Returns the region of an evaluation, and the bits of all numbers.
-fn bits(evaluation: &PointEvaluation) -> (usize, [u64; 9]) {
-    (evaluation.region, numbers(evaluation).map(f64::to_bits))
-}
 
 /// A tool, its true values, and the limits of its errors.
 pub(crate) struct Validator<'a> {
@@ -38,7 +27,6 @@ pub(crate) struct Validator<'a> {
 }
 
 impl<'a> Validator<'a> {
-    /// Makes the validator of a tool by the contract.
     pub(crate) fn new(tool: &'a dyn Tool, truth: &'a dyn Truth) -> Validator<'a> {
         Validator { tool, truth, limit: 1.0, centres_are_rounded: true }
     }
@@ -48,7 +36,6 @@ impl<'a> Validator<'a> {
         f64::EPSILON * self.truth.scale()
     }
 
-    /// Validates all points and returns their evaluations.
     pub(crate) fn validate(
         &self,
         points: &[[f64; 3]],
@@ -70,7 +57,7 @@ impl<'a> Validator<'a> {
         evaluation: Option<&PointEvaluation>,
         checks: &mut Checks,
     ) {
-        let at = to_exact(p);
+        let at = exactly(p);
         let exact = self.truth.depth(&at);
         let is_near_border = exact.to_f64().abs() <= AMBIGUITY_ULPS * self.ulp();
         let is_wrong_side = evaluation.is_some() == exact.is_negative() && !is_near_border;
@@ -97,14 +84,10 @@ impl<'a> Validator<'a> {
         });
         checks.never(WRONG_OWNER, is_wrong_owner, place);
         let Some(values) = values else { return };
-        let u = evaluation.direction.map(Big::exactly);
-        let norm = (&(&(&u[0] * &u[0]) + &(&u[1] * &u[1])) + &(&u[2] * &u[2])).sqrt();
-        let length_error = (&norm - &Big::exactly(1.0)).abs().to_f64();
+        let length = norm(&exactly(evaluation.direction));
+        let length_error = (&length - &Big::exactly(1.0)).abs().to_f64();
         checks.within("length of u [ε]", length_error / f64::EPSILON, 4.0, place);
-        let error_from = |values: &RegionValues| {
-            let squares = u.iter().zip(&values.direction).map(|(a, b)| (a - b).to_f64().powi(2));
-            squares.sum::<f64>().sqrt()
-        };
+        let error_from = |values: &RegionValues| distance(&values.direction, evaluation.direction);
         let (rho, scale) = (values.singularity_distance, self.truth.scale());
         // At a singular point the direction fixed by the language is expected.
         let amplification = if rho == 0.0 { 1.0 } else { (scale / rho).max(1.0) };

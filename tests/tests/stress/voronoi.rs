@@ -10,17 +10,14 @@ use touchoff_tests::oracle::plane::{Point, add, cross, dot, opposite, sub, unit}
 use touchoff_tests::oracle::profile::{Feature, Profile};
 use touchoff_tests::oracle::rng::Rng;
 
-/// A vector in the half plane.
 type Vector = Point<f64>;
 
-/// A point, and the number of features that it is equally near to.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct VoronoiVertex {
     pub(crate) point: Vector,
     pub(crate) features: usize,
 }
 
-/// The extent of a search.
 #[derive(Clone, Copy)]
 pub(crate) struct Search {
     /// Number of random points per pair of borders at which Newton's method starts.
@@ -44,7 +41,6 @@ fn features(profile: &Profile<f64>) -> Vec<Feature> {
     segments.chain(corners.map(Feature::Corner)).collect()
 }
 
-/// Returns the distance to a feature and its gradient.
 fn distance(profile: &Profile<f64>, feature: Feature, p: &Vector) -> (f64, Vector) {
     match feature {
         Feature::Segment(k) => {

@@ -8,9 +8,8 @@ use super::tool_model::{Posture, ToolModel};
 use nalgebra::{Point3, Vector3};
 use std::collections::HashMap;
 use touchoff::{Mesh, TriangleId};
-use touchoff_tests::oracle::rng::Rng;
+use touchoff_tests::oracle::triangle::{bisected, winding_number};
 
-/// The verdict on a posture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Verdict {
     /// The posture is free of collision.
@@ -22,7 +21,6 @@ pub(super) enum Verdict {
     Open,
 }
 
-/// A part's triangles.
 pub(super) struct TrianglePart<'a> {
     mesh: &'a Mesh,
     /// Bounding ball of each triangle: centroid and radius.
@@ -33,7 +31,6 @@ pub(super) struct TrianglePart<'a> {
     pub(super) size: f64,
 }
 
-/// Maximum number of pieces examined.
 const MAX_PIECES: usize = 1_000_000;
 
 fn ball(corners: &[Vector3<f64>; 3]) -> (Vector3<f64>, f64) {
@@ -43,7 +40,6 @@ fn ball(corners: &[Vector3<f64>; 3]) -> (Vector3<f64>, f64) {
 }
 
 impl<'a> TrianglePart<'a> {
-    /// Prepares the triangles of a mesh.
     pub(super) fn new(mesh: &'a Mesh) -> TrianglePart<'a> {
         let ids = 0..mesh.triangles().len() as u32;
         let balls = ids.map(|id| {
@@ -111,12 +107,8 @@ impl<'a> TrianglePart<'a> {
                 undecided = true;
                 continue;
             }
-            let [a, b, c] = piece.corners;
-            let sides = [(b - a).norm(), (c - b).norm(), (a - c).norm()];
-            let longest = (0..3).max_by(|k, l| sides[*k].total_cmp(&sides[*l])).unwrap_or(0);
-            let [a, b, c] = [0, 1, 2].map(|k| piece.corners[(longest + k) % 3]);
-            let midpoint = 0.5 * (a + b);
-            for piece_half in [[a, midpoint, c], [midpoint, b, c]] {
+            let length = |a: Vector3<f64>, b: Vector3<f64>| (b - a).norm();
+            for piece_half in bisected(piece.corners, length, |a, b| 0.5 * (a + b)) {
                 pending.extend(limits.piece(&posture.axis, piece_half));
             }
         }
@@ -124,56 +116,13 @@ impl<'a> TrianglePart<'a> {
             return Verdict::Open;
         }
         // No triangle intersects the forbidden part of the tool, so that part is inside or outside as a whole.
-        let inside = tool
-            .core_heights
-            .iter()
-            .any(|z| self.closed && self.contains(posture.tip + length * *z * posture.axis));
+        let inside = tool.core_heights.iter().any(|z| {
+            let point = posture.tip + length * *z * posture.axis;
+            let ids = (0..self.balls.len() as u32).map(TriangleId);
+            let triangles = ids.map(|id| self.mesh.triangle(id).map(Into::into));
+            self.closed && winding_number(triangles, point.into()).round() > 0.0
+        });
         if inside { Verdict::Blocked(f64::INFINITY) } else { Verdict::Free }
-    }
-
-    /// Returns whether a point is inside a closed part, by counting the signed crossings of a random ray.
-    fn contains(&self, point: Point3<f64>) -> bool {
-        let mut rng = Rng::new(9);
-        for _ in 0..16 {
-            if let Some(crossings) = self.signed_crossings(point, Vector3::from(rng.direction())) {
-                return crossings > 0;
-            }
-        }
-        false
-    }
-
-    /// Returns the signed number of crossings of a ray. Returns `None` if the ray is too near to an edge.
-    fn signed_crossings(&self, point: Point3<f64>, direction: Vector3<f64>) -> Option<i32> {
-        let mut crossings = 0;
-        for (id, (centroid, reach)) in self.balls.iter().enumerate() {
-            let offset = centroid - point;
-            let distance_along = offset.dot(&direction);
-            if distance_along < -reach
-                || offset.norm_squared() - distance_along * distance_along > 1.1 * reach * reach
-            {
-                continue;
-            }
-            // Intersection of Möller and Trumbore 1997.
-            let [a, b, c] = self.mesh.triangle(TriangleId(id as u32));
-            let (u, v, offset_from_a) = (b - a, c - a, point - a);
-            let p = direction.cross(&v);
-            let det = u.dot(&p);
-            let scale = u.norm() * v.norm();
-            let q = offset_from_a.cross(&u);
-            let (s, t, ray_distance) =
-                (offset_from_a.dot(&p) / det, direction.dot(&q) / det, v.dot(&q) / det);
-            if det.abs() < 1e-9 * scale {
-                return None;
-            }
-            let inner = s.min(t).min(1.0 - s - t);
-            if inner.abs() < 1e-7 {
-                return None;
-            }
-            if inner > 0.0 && ray_distance > 0.0 {
-                crossings += if det > 0.0 { -1 } else { 1 };
-            }
-        }
-        Some(crossings)
     }
 }
 

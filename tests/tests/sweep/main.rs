@@ -24,27 +24,22 @@ use touchoff::{Mesh, Tool, TriangleId, Unit};
 use touchoff_postures::sweep::{PostureSweep, SweepStats};
 use touchoff_postures::{Accessibility, Directions, MapRow, Rules};
 use touchoff_tests::count::case_count;
+use touchoff_tests::fixtures::cuboid;
 use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::tally::Tally;
 
 /// Number of postures of each kind that are validated per part, unless `POSTURES` is set.
 const DRAWS: usize = 300;
 
-/// The settings of a comparison.
 struct ComparisonSettings<'a> {
-    /// The part.
     mesh: &'a Mesh,
-    /// Library tools, by name.
     tools: &'a [&'a str],
-    /// Number of directions per hemisphere.
     hemisphere: usize,
     /// Allowed depth of cutting surfaces, in the part's unit.
     tolerance: f64,
-    /// Niceness that contacts must exceed.
     niceness: f64,
     /// Number of postures of each kind that are validated.
     draws: usize,
-    /// Seed for the choice of postures.
     seed: u64,
 }
 
@@ -54,7 +49,6 @@ const POSTURES: &str = "postures";
 const CONTRADICTED: &str = "contradicted";
 const UNDECIDED: &str = "undecided";
 
-/// A posture, by indices.
 #[derive(Clone, Copy)]
 struct Choice {
     triangle: u32,
@@ -100,12 +94,10 @@ impl ComparisonSettings<'_> {
         let part = TrianglePart::new(mesh);
         let size = tool_models.iter().map(|model| model.extent()[0] + model.extent()[1]);
         let validation = Validation {
-            mesh,
+            settings: self,
             part: &part,
             directions: directions.list(),
             tool_models: &tool_models,
-            tolerance: self.tolerance,
-            niceness: self.niceness,
             rounding: ROUNDING * (part.size + size.fold(0.0, f64::max)),
         };
         let mut rng = Rng::new(self.seed);
@@ -129,7 +121,6 @@ impl ComparisonSettings<'_> {
     }
 }
 
-/// Returns the tally of one posture, with a finding if there is one.
 fn outcome(finding: Option<(&'static str, String)>) -> Tally {
     let mut tally = Tally::default();
     tally.add(POSTURES, 1);
@@ -175,26 +166,23 @@ fn draw_accessible(rows: &[MapRow], count: usize, rng: &mut Rng) -> Vec<Choice> 
     (0..count).filter_map(choice).collect()
 }
 
-/// The data for the validation of postures.
 struct Validation<'a> {
-    mesh: &'a Mesh,
+    settings: &'a ComparisonSettings<'a>,
     part: &'a TrianglePart<'a>,
     directions: &'a [[f64; 3]],
     tool_models: &'a [ToolModel],
-    tolerance: f64,
-    niceness: f64,
     rounding: f64,
 }
 
 impl Validation<'_> {
     fn postures(&self, choice: &Choice, tolerance_factor: f64) -> Vec<Posture> {
-        let [a, b, c] = self.mesh.triangle(TriangleId(choice.triangle));
+        let [a, b, c] = self.settings.mesh.triangle(TriangleId(choice.triangle));
         let centroid = Point3::from((a.coords + b.coords + c.coords) / 3.0);
         let Some(normal) = (b - a).cross(&(c - a)).try_normalize(0.0) else { return Vec::new() };
         let axis = Vector3::from(self.directions[choice.direction]);
         let mut postures =
             self.tool_models[choice.tool].postures(centroid, normal, axis, tolerance_factor);
-        postures.retain(|posture| posture.niceness > self.niceness);
+        postures.retain(|posture| posture.niceness > self.settings.niceness);
         postures
     }
 
@@ -208,10 +196,9 @@ impl Validation<'_> {
     }
 
     fn check(&self, choice: &Choice, posture: &Posture, allowance: f64) -> Verdict {
-        self.part.check(&self.tool_models[choice.tool], posture, self.tolerance, allowance)
+        self.part.check(&self.tool_models[choice.tool], posture, self.settings.tolerance, allowance)
     }
 
-    /// Checks that one of the postures of a choice is free.
     fn check_accessible(&self, choice: &Choice) -> Tally {
         let postures = self.postures(choice, 2.0);
         let verdicts = postures.iter().map(|posture| self.check(choice, posture, self.rounding));
@@ -244,7 +231,6 @@ impl Validation<'_> {
         choices
     }
 
-    /// Checks that all postures of a choice are blocked.
     fn check_inaccessible(&self, choice: &Choice) -> Tally {
         for posture in self.postures(choice, -1.0) {
             let verdict = self.check(choice, &posture, 0.0);
@@ -252,7 +238,7 @@ impl Validation<'_> {
                 continue;
             }
             let near_share = NEAR_COLLISION_SHARES.into_iter().find(|share| {
-                let closer = self.check(choice, &posture, -share * self.tolerance);
+                let closer = self.check(choice, &posture, -share * self.settings.tolerance);
                 matches!(closer, Verdict::Blocked(_))
             });
             let near = near_share.map_or_else(
@@ -315,13 +301,11 @@ fn postures_on_a_real_part_agree_with_brute_force() {
 /// The validation must be able to reject a posture.
 #[test]
 fn brute_force_rejects_blocked_postures() {
-    let low = nalgebra::Point3::new(-20.0, -20.0, -30.0);
-    let high = nalgebra::Point3::new(20.0, 20.0, 0.0);
-    let block = shapes::cuboid(low, high, Unit::Millimetre).expect("a block");
+    let block = cuboid([-20.0, -20.0, -30.0], [20.0, 20.0, 0.0]);
     let part = TrianglePart::new(&block);
     let stand = ToolModel::new("D2Ball", 1.0, 0.01);
     let verdict_at = |tip: [f64; 3], allowance: f64| {
-        let posture = Posture { tip: tip.into(), axis: nalgebra::Vector3::z(), niceness: 1.0 };
+        let posture = Posture { tip: tip.into(), axis: Vector3::z(), niceness: 1.0 };
         part.check(&stand, &posture, 0.01, allowance)
     };
     assert_eq!(verdict_at([0.0, 0.0, 0.0], 0.0), Verdict::Free);
@@ -333,15 +317,25 @@ fn brute_force_rejects_blocked_postures() {
     assert_eq!(verdict_at([21.0001, 0.0, -5.1], 0.0), Verdict::Free);
     assert!(matches!(verdict_at([21.0001, 0.0, -5.1], -0.001), Verdict::Blocked(_)));
     // A part far larger than the tool contains it.
-    let high = nalgebra::Point3::new(20.0, 20.0, 50.0);
-    let block = shapes::cuboid(low, high, Unit::Millimetre).expect("a block");
-    let posture = Posture {
-        tip: nalgebra::Point3::new(0.0, 0.0, -5.0),
-        axis: nalgebra::Vector3::z(),
-        niceness: 1.0,
-    };
+    let block = cuboid([-20.0, -20.0, -30.0], [20.0, 20.0, 50.0]);
+    let tip = Point3::new(0.0, 0.0, -5.0);
+    let posture = Posture { tip, axis: Vector3::z(), niceness: 1.0 };
     let verdict = TrianglePart::new(&block).check(&stand, &posture, 0.01, 0.0);
     assert_eq!(verdict, Verdict::Blocked(f64::INFINITY));
+}
+
+/// Returns the rows of the map of a tool in the first batch of triangles.
+fn first_rows(mesh: &Mesh, tool: &str, directions: &Directions, niceness: f64) -> Vec<MapRow> {
+    let bvh = TriangleBvh::new(mesh);
+    let rules = Rules { tolerance: 0.01, niceness, allowed: Vec::new() };
+    let tools = vec![touchoff_tests::library::tool(tool)];
+    let sweep = PostureSweep::new(mesh, &bvh, tools, directions, rules, NonZeroU16::MIN);
+    let mut rows = Vec::new();
+    let _: ControlFlow<()> = sweep.expect("a sweep").run(&[0], |batch| {
+        rows.extend(batch.rows.into_iter().map(|(_, row)| row));
+        ControlFlow::Continue(())
+    });
+    rows
 }
 
 /// From the centre of a plate's top a ball may lean until its flute would touch. That is the whole upper hemisphere,
@@ -349,21 +343,11 @@ fn brute_force_rejects_blocked_postures() {
 #[test]
 fn a_plate_is_reached_from_the_upper_hemisphere() {
     let plate = shapes::plane(0.5, 1, Unit::Millimetre).expect("a plate");
-    let bvh = TriangleBvh::new(&plate);
     let directions = Directions::spread(400);
-    let rules = Rules { tolerance: 0.01, niceness: 0.5, allowed: Vec::new() };
-    let tool = touchoff_tools::find("D2Ball").expect("a tool");
-    let sweep = PostureSweep::new(&plate, &bvh, vec![tool], &directions, rules, NonZeroU16::MIN)
-        .expect("a sweep");
-    let mut solid_angles = Vec::new();
-    let _: ControlFlow<()> = sweep.run(&[0], |batch| {
-        solid_angles.extend(
-            batch.rows.iter().map(|(_, row)| directions.solid_angle(&row.access[0].directions)),
-        );
-        ControlFlow::Continue(())
-    });
-    assert_eq!(solid_angles.len(), 2);
-    for angle in solid_angles {
+    let rows = first_rows(&plate, "D2Ball", &directions, 0.5);
+    assert_eq!(rows.len(), 2);
+    for row in rows {
+        let angle = directions.solid_angle(&row.access[0].directions);
         assert!((angle - std::f64::consts::TAU).abs() < 0.03, "{angle}");
     }
 }
@@ -372,11 +356,8 @@ fn a_plate_is_reached_from_the_upper_hemisphere() {
 /// the holder is assumed to extend above.
 #[test]
 fn required_stick_out_is_at_most_that_of_the_tool() {
-    let block = |low: [f64; 3], high: [f64; 3]| {
-        shapes::cuboid(low.into(), high.into(), Unit::Millimetre).expect("a block")
-    };
-    let plate = block([-1.0, -1.0, -2.0], [1.0, 1.0, 0.0]);
-    let [outer, hollow] = [80.0, 60.0].map(|half| block([-half; 3], [half; 3]));
+    let plate = cuboid([-1.0, -1.0, -2.0], [1.0, 1.0, 0.0]);
+    let [outer, hollow] = [80.0, 60.0].map(|half| cuboid([-half; 3], [half; 3]));
     let vertices = [plate.vertices(), outer.vertices(), hollow.vertices()].concat();
     let offset_corners = |corners: &[u32; 3], offset: u32| corners.map(|corner| corner + offset);
     let outside = outer.triangles().iter().map(|corners| offset_corners(corners, 8));
@@ -387,17 +368,8 @@ fn required_stick_out_is_at_most_that_of_the_tool() {
     });
     let triangles = plate.triangles().iter().copied().chain(outside).chain(inside);
     let mesh = Mesh::new(vertices, triangles, Unit::Millimetre).expect("a mesh");
-    let bvh = TriangleBvh::new(&mesh);
-    let directions = Directions::spread(200);
-    let rules = Rules { tolerance: 0.01, niceness: 0.1, allowed: Vec::new() };
-    let tool = touchoff_tools::find("BallEr16").expect("a tool");
-    let sweep = PostureSweep::new(&mesh, &bvh, vec![tool], &directions, rules, NonZeroU16::MIN)
-        .expect("a sweep");
-    let mut needed = Vec::new();
-    let _: ControlFlow<()> = sweep.run(&[0], |batch| {
-        needed.extend(batch.rows.iter().filter_map(|(_, row)| row.access[0].stickout));
-        ControlFlow::Continue(())
-    });
+    let rows = first_rows(&mesh, "BallEr16", &Directions::spread(200), 0.1);
+    let needed: Vec<_> = rows.iter().filter_map(|row| row.access[0].stickout).collect();
     assert!(needed.len() > 2 && needed.iter().all(|needed| *needed <= 30.0), "{needed:?}");
     assert!(needed.contains(&30.0), "nothing asks for all of it: {needed:?}");
 }

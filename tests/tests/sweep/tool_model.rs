@@ -5,7 +5,6 @@ use touchoff_tests::oracle::plane::{Point, add, cross, dot, left, opposite, sub,
 use touchoff_tests::oracle::profile::Feature;
 use touchoff_tests::oracle::{Nearest, Oracle};
 
-/// A tool whose postures are derived.
 pub(super) struct ToolModel {
     /// The oracle for its profile and its depths.
     pub(super) oracle: Nearest,
@@ -16,14 +15,12 @@ pub(super) struct ToolModel {
     pub(super) core_heights: Vec<f64>,
 }
 
-/// A posture of a tool.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Posture {
     /// The tip, in the part's unit.
     pub(super) tip: Point3<f64>,
     /// The axis, from the tip to the spindle.
     pub(super) axis: Vector3<f64>,
-    /// The quality of the contact.
     pub(super) niceness: f64,
 }
 

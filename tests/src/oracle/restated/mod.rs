@@ -1,16 +1,12 @@
 //! The library's tools restated: each profile in the tool's frame and the file's unit, from its drawing's numbers
 //! and not from its file. Points are exact to 256 bits, so that no part of an error comes from the restatement.
 
-mod assemblies;
-mod form;
-mod hole_making;
-mod plain;
+mod catalogue;
 mod thesis;
 
 use super::big::Big;
-use super::plane::Point;
 use super::profile::Profile;
-use super::segment::Segment;
+use super::real::Real;
 
 /// Niceness of a surface that cuts, from its name, the depth and `[d, z]`; below 0 counts as 0.
 pub type Niceness = fn(&str, f64, [f64; 2]) -> f64;
@@ -20,10 +16,8 @@ pub type Niceness = fn(&str, f64, [f64; 2]) -> f64;
 pub struct Restated {
     /// The tool's name.
     pub name: &'static str,
-    /// The end of the profile so far.
-    end: Point<Big>,
-    /// The segments of the profile; arcs are of less than 180°.
-    pub segments: Vec<Segment<Big>>,
+    /// The profile; arcs are of at most 180°.
+    pub profile: Profile<Big>,
     /// The surface that each segment belongs to.
     pub surfaces: Vec<&'static str>,
     /// Surfaces that cut.
@@ -33,69 +27,54 @@ pub struct Restated {
 }
 
 impl Restated {
-    /// Creates a tool whose profile begins on the axis at `z`.
-    pub fn new(name: &'static str, z: f64) -> Restated {
-        let end = [Big::zero(), Big::decimal(z)];
-        let (segments, surfaces, cutting) = (Vec::new(), Vec::new(), Vec::new());
-        Restated { name, end, segments, surfaces, cutting, niceness: |_, _, _| 1.0 }
-    }
-
     /// Creates a tool of one surface that does not cut.
-    pub fn of_profile(name: &'static str, profile: &Profile<Big>) -> Restated {
-        let segments = profile.segments().iter().cloned();
-        segments.fold(Restated::new(name, 0.0), |tool, segment| tool.segment("side", segment))
+    pub fn of_profile(name: &'static str, profile: Profile<Big>) -> Restated {
+        let surfaces = vec!["side"; profile.segments().len()];
+        Restated { name, profile, surfaces, cutting: Vec::new(), niceness: |_, _, _| 1.0 }
     }
 
-    /// Returns the profile.
-    pub fn profile(&self) -> Profile<Big> {
-        Profile::new(self.segments.clone())
-    }
-
-    fn segment(mut self, surface: &'static str, segment: Segment<Big>) -> Restated {
-        self.end = segment.to.clone();
-        self.segments.push(segment);
-        self.surfaces.push(surface);
-        self
-    }
-
-    /// Adds a line to a point.
-    pub fn line(self, surface: &'static str, d: impl Into<Big>, z: impl Into<Big>) -> Restated {
-        let line = Segment::line(self.end.clone(), [d.into(), z.into()]);
-        self.segment(surface, line)
-    }
-
-    /// Adds lines to points, one after the other.
-    pub fn lines(mut self, surface: &'static str, points: &[[f64; 2]]) -> Restated {
-        for [d, z] in points {
-            self = self.line(surface, *d, *z);
+    /// Reads a tool that does not cut: the start of its profile, and behind semicolons each surface with its
+    /// [vertices][Profile::parse]. A word stands for one of `lengths`.
+    ///
+    /// # Panics
+    /// If the text is none.
+    pub fn drawn(name: &'static str, drawing: &'static str, lengths: &[(&str, Big)]) -> Restated {
+        let mut parts = drawing.split(';').map(str::trim);
+        let mut vertices = parts.next().unwrap_or_default().to_owned();
+        let mut surfaces = Vec::new();
+        for part in parts {
+            let (surface, points) = part.split_once(' ').expect("a surface and its vertices");
+            surfaces.extend(points.split(',').map(|_| surface));
+            vertices += &format!(", {points}");
         }
-        self
+        let length = |word: &str| {
+            let known = lengths.iter().find(|(known, _)| *known == word);
+            known.map_or_else(|| Real::decimal(word.parse().expect("a number")), |(_, l)| l.clone())
+        };
+        let profile = Profile::read(&vertices, length);
+        Restated { surfaces, ..Restated::of_profile(name, profile) }
     }
 
-    /// Adds an arc to a point about a centre.
-    pub fn arc(
-        self,
-        surface: &'static str,
-        [d, z]: [impl Into<Big>; 2],
-        [cd, cz]: [impl Into<Big>; 2],
-    ) -> Restated {
-        let arc = Segment::arc(self.end.clone(), [d.into(), z.into()], [cd.into(), cz.into()]);
-        self.segment(surface, arc)
-    }
-
-    /// Sets the surfaces that cut, and their niceness.
-    pub fn cuts(mut self, surfaces: &[&'static str], niceness: Niceness) -> Restated {
-        self.cutting = surfaces.to_vec();
+    /// Sets the surfaces that cut, separated by spaces, and their niceness.
+    pub fn cuts(mut self, surfaces: &'static str, niceness: Niceness) -> Restated {
+        self.cutting = surfaces.split_whitespace().collect();
         self.niceness = niceness;
         self
+    }
+
+    /// Returns the commands of a `.tool` file that draw the profile, with the words for each number.
+    pub fn text(&self, number: impl Fn(&Big) -> String) -> String {
+        let surface = |k: usize| {
+            let cutting = if self.cutting.contains(&self.surfaces[k]) { " cutting" } else { "" };
+            format!("{}{cutting}", self.surfaces[k])
+        };
+        self.profile.text(number, surface)
     }
 }
 
 /// Returns every tool of the library but the thesis's own, whose magnitudes are no distances.
 pub fn all() -> Vec<Restated> {
-    let mut all = thesis();
-    all.extend(catalogue());
-    all
+    [thesis(), catalogue()].concat()
 }
 
 /// Returns the thesis's solids.
@@ -105,7 +84,7 @@ pub fn thesis() -> Vec<Restated> {
 
 /// Returns the cutters with a catalogue's dimensions.
 pub fn catalogue() -> Vec<Restated> {
-    [plain::all(), form::all(), hole_making::all(), assemblies::all()].concat()
+    catalogue::all()
 }
 
 /// Returns the restated tool of a name.

@@ -5,7 +5,7 @@ mod sampled;
 use crate::{UP, block, motion, plate, pose, tool};
 use touchoff::certify::{AllowanceError, Certifier, MotionVerdict, PoseVerdict, TriangleBvh};
 use touchoff::mesh::shapes;
-use touchoff::{Mesh, Motion, Tool, Unit};
+use touchoff::{Mesh, Motion, Pose, Tool, Unit};
 
 fn names(tool: &dyn Tool) -> Vec<String> {
     tool.info().surfaces.iter().map(|surface| surface.name.to_string()).collect()
@@ -19,6 +19,28 @@ fn certifier_with<'a>(bvh: &'a TriangleBvh, name: &str, allowed: &[(&str, f64)])
     })
 }
 
+/// Asserts that a tool at rest is clear, or touches with a surface.
+fn assert_at_rest(
+    certifier: &mut Certifier<'_>,
+    name: &str,
+    pose: &Pose,
+    touching: Option<&str>,
+    text: &str,
+) {
+    let verdict = certifier.check_pose(pose);
+    let at_rest = certifier.check_motion(&motion(pose, pose), 0.0);
+    let Some(surface) = touching else {
+        return assert_eq!(
+            (verdict, at_rest),
+            (PoseVerdict::Clear, MotionVerdict::Clear),
+            "{text}"
+        );
+    };
+    let PoseVerdict::Touching(witness) = verdict else { panic!("{text}: {verdict:?}") };
+    assert_eq!(names(tool(name))[witness.surface.0], surface, "{text}");
+    assert!(matches!(at_rest, MotionVerdict::Touching(..)), "{text}: {at_rest:?}");
+}
+
 #[test]
 fn a_flute_may_cut_and_a_shank_may_not() {
     // The flute extends from z = 0 to 26 and has a radius of 6; the shank above is as thick.
@@ -27,22 +49,8 @@ fn a_flute_may_cut_and_a_shank_may_not() {
         let wall = block([4.0, -30.0, 5.0], [40.0, 30.0, top]);
         let bvh = TriangleBvh::new(&wall);
         let mut certifier = certifier_with(&bvh, "Flat", &[("flute", f64::INFINITY)]);
-        let verdict = certifier.check_pose(&upright);
-        let verdict_at_rest = certifier.check_motion(&motion(&upright, &upright), 0.0);
-        if clear {
-            assert_eq!(
-                (verdict, verdict_at_rest),
-                (PoseVerdict::Clear, MotionVerdict::Clear),
-                "{top}"
-            );
-        } else {
-            let PoseVerdict::Touching(witness) = verdict else { panic!("{top}: {verdict:?}") };
-            assert_eq!(names(tool("Flat"))[witness.surface.0], "shank", "{top}");
-            assert!(
-                matches!(verdict_at_rest, MotionVerdict::Touching(..)),
-                "{top}: {verdict_at_rest:?}"
-            );
-        }
+        let touching = (!clear).then_some("shank");
+        assert_at_rest(&mut certifier, "Flat", &upright, touching, &format!("{top}"));
     }
     let wall = block([4.0, -30.0, 5.0], [40.0, 30.0, 20.0]);
     let bvh = TriangleBvh::new(&wall);
@@ -91,25 +99,14 @@ fn a_nut_keeps_its_margin_from_all_sides() {
             let bvh = TriangleBvh::new(&part(gap));
             let mut certifier = certifier_with(&bvh, "BallEr16", &[("nut.nut", -0.5)]);
             let end_pose = pose([0.0; 3], UP);
-            let verdict = certifier.check_pose(&end_pose);
-            let rest = motion(&pose([0.0; 3], UP), &end_pose);
-            let verdict_at_rest = certifier.check_motion(&rest, 0.0);
-            if clear {
-                assert_eq!(
-                    (verdict, verdict_at_rest),
-                    (PoseVerdict::Clear, MotionVerdict::Clear),
-                    "{case} {gap}"
-                );
-            } else {
-                let PoseVerdict::Touching(witness) = verdict else {
-                    panic!("{case} {gap}: {verdict:?}")
-                };
-                assert_eq!(names(tool("BallEr16"))[witness.surface.0], "nut.nut");
-                assert!(
-                    matches!(verdict_at_rest, MotionVerdict::Touching(..)),
-                    "{case} {gap}: {verdict_at_rest:?}"
-                );
-            }
+            let touching = (!clear).then_some("nut.nut");
+            assert_at_rest(
+                &mut certifier,
+                "BallEr16",
+                &end_pose,
+                touching,
+                &format!("{case} {gap}"),
+            );
             // Approach from far away along the axis.
             let lift = if case == "end" { -30.0 } else { 3.0 };
             let approach = motion(&pose([0.0, 0.0, lift], UP), &end_pose);

@@ -5,16 +5,15 @@
 //! over the allowances.
 
 use super::names;
-use crate::brute::BruteForce;
+use crate::brute::{BruteForce, Sample};
 use crate::motions::MotionKind;
 use crate::pair::{Part, generated_parts};
 use crate::{motion, oracle, overhang, tool};
 use std::fmt::{Display, Formatter};
 use touchoff::certify::{Certifier, MotionVerdict, PoseVerdict, Witness};
 use touchoff::{Interval, Pose, SurfaceId};
-use touchoff_tests::oracle::Oracle;
 use touchoff_tests::oracle::rng::Rng;
-use touchoff_tests::oracle::triangle::{Point, nearest};
+use touchoff_tests::oracle::triangle::Point;
 
 const TOOLS: [&str; 10] = [
     "Fig73Exact",
@@ -29,33 +28,19 @@ const TOOLS: [&str; 10] = [
     "Skirt",
 ];
 
-/// Number of poses and of motions per part and tool.
 const POSES: usize = 7;
 const MOTIONS: usize = 5;
-/// Number of times sampled per motion.
 const TIME_SAMPLES: u32 = 12;
 
-/// Maximum number of triangles sampled per pose, and number of samples per triangle.
+/// Maximum number of triangles sampled per pose, and number of samples of each kind per triangle.
 const MAX_TRIANGLES: usize = 300;
-const SAMPLES_PER_TRIANGLE: usize = 8;
+const SAMPLES_PER_TRIANGLE: usize = 6;
 /// Number of samples from which the search climbs, and number of steps.
 const CLIMBS: usize = 3;
 const STEPS_PER_CLIMB: usize = 250;
 
-/// A sample of a triangle, in the tool's frame and unit.
-#[derive(Clone, Copy, Debug)]
-struct Sample {
-    /// The index of the triangle.
-    triangle: usize,
-    /// The point.
-    point: Point,
-    /// The depth, or its excess over the allowance, in the part's unit.
-    value: f64,
-}
-
 /// A tool's surfaces with their allowances, and a part.
 struct SurfaceAllowances<'a> {
-    /// The tool's name.
     tool: &'a str,
     part: &'a Part,
     /// The part's triangles and the tool's oracle.
@@ -80,7 +65,6 @@ impl<'a> SurfaceAllowances<'a> {
         }
     }
 
-    /// Returns a certifier with these allowances.
     fn certifier(&self) -> Certifier<'a> {
         let certifier = Certifier::new(&self.part.bvh, tool(self.tool)).expect("a profile");
         let allowed = self.surface_names.iter().zip(&self.allowances);
@@ -153,33 +137,20 @@ impl<'a> SurfaceAllowances<'a> {
     /// Returns samples of the triangles near a pose, with the value NaN.
     fn samples(&self, pose: &Pose, rng: &mut Rng) -> Vec<Sample> {
         let (brute, frame) = (self.brute, self.brute.tool_frame(pose));
-        let [radius, height] = brute.oracle.extent();
         let max_margin =
             self.allowances.iter().fold(0.0, |max_margin: f64, allowed| max_margin.max(-allowed));
         let near = |id: &usize| {
             let ball = &brute.bounding_balls[*id];
             let p = brute.to_tool_frame(&frame, ball.centre);
-            let reach = (ball.radius + max_margin) / brute.length;
-            p[2] + reach >= 0.0 && p[2] - reach <= height && p[0].hypot(p[1]) <= radius + reach
+            brute.is_near(p, (ball.radius + max_margin) / brute.length)
         };
         let mut near: Vec<usize> = (0..brute.bounding_balls.len()).filter(near).collect();
         while near.len() > MAX_TRIANGLES {
             near.swap_remove(rng.index(near.len()));
         }
         let count = SAMPLES_PER_TRIANGLE * (MAX_TRIANGLES / near.len().max(1)).clamp(1, 8);
-        let mut samples = Vec::new();
-        for triangle in near {
-            let corners = brute.triangle(&frame, triangle);
-            let mut add = |point| samples.push(Sample { triangle, point, value: f64::NAN });
-            corners.into_iter().for_each(&mut add);
-            for _ in 0..count {
-                let max_height = if rng.once_in(2) { height } else { 2.0 * radius };
-                let mut offset = || rng.between(-1.0, 1.0) * radius;
-                let tool_point = [offset(), offset(), rng.between(0.0, max_height)];
-                add(nearest(tool_point, &corners));
-            }
-        }
-        samples
+        let samples = |id| brute.sample(&frame, id, count, |_| f64::NAN, rng);
+        near.into_iter().flat_map(samples).collect()
     }
 
     /// Returns the largest value over the samples and a search from the best of them.
@@ -196,21 +167,10 @@ impl<'a> SurfaceAllowances<'a> {
             evaluated.filter(|sample| sample.value > f64::NEG_INFINITY).collect();
         evaluated.sort_by(|a, b| b.value.total_cmp(&a.value));
         evaluated.truncate(CLIMBS);
-        let climbed = evaluated.into_iter().map(|from| self.climb(pose, from, &value, rng));
+        let frame = self.brute.tool_frame(pose);
+        let climb = |from| self.brute.climb(&frame, from, STEPS_PER_CLIMB, &value, rng);
+        let climbed = evaluated.into_iter().map(climb);
         climbed.max_by(|a, b| a.value.total_cmp(&b.value))
-    }
-
-    fn climb(
-        &self,
-        pose: &Pose,
-        start: Sample,
-        value: impl Fn(Point) -> f64,
-        rng: &mut Rng,
-    ) -> Sample {
-        let triangle = self.brute.triangle(&self.brute.tool_frame(pose), start.triangle);
-        let (value, point) =
-            self.brute.climb_by(&triangle, start.point, STEPS_PER_CLIMB, value, rng);
-        Sample { point, value, ..start }
     }
 }
 

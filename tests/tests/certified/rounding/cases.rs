@@ -8,10 +8,8 @@ use touchoff_tests::oracle::plane::{self, add, unit};
 use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::triangle::{advance, cross};
 
-/// A point or vector of the half plane.
 type MeridianPoint = plane::Point<f64>;
 
-/// A family of test cases.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Family {
     /// A triangle through a point of the tool, with any orientation.
@@ -55,12 +53,10 @@ impl Family {
     ];
 }
 
-/// A query to the certifier.
 #[derive(Clone, Debug)]
 pub(crate) struct Case {
     /// The triangles, in the world frame.
     pub(crate) triangles: Vec<[Point; 3]>,
-    /// The tool's pose.
     pub(crate) pose: Pose,
     /// The tolerance, in the unit of the triangles.
     pub(crate) tolerance: f64,
@@ -284,7 +280,6 @@ fn drift(pose: Pose, rng: &mut Rng) -> Pose {
     pose
 }
 
-/// Returns a random case of a family for a tool.
 pub(crate) fn case(family: Family, cutter: &Cutter, rng: &mut Rng) -> Case {
     let [radius, height] = cutter.extent;
     let triangles = Sketch { cutter, radius }.triangles(family, rng);

@@ -14,11 +14,8 @@ use touchoff_tests::oracle::restated::Restated;
 pub(crate) struct Cutter {
     /// The name and the scale.
     pub(crate) name: String,
-    /// The compiled tool.
     pub(crate) tool: Interpreted,
-    /// The profile in doubles.
     pub(crate) profile: Profile<f64>,
-    /// The profile in 256 bits.
     pub(crate) reference: Reference,
     /// The largest distance from the axis, and the height, mm.
     pub(crate) extent: [f64; 2],
@@ -80,34 +77,9 @@ pub(crate) fn cutter(number: usize) -> Result<Cutter, ToolError> {
         tool: Interpreted::parse(&Source::new("cutter.tool", text))?,
         reference: Reference::new(&Restated::of_profile(
             name,
-            &profile.map(|coordinate| Big::exactly(*coordinate)),
+            profile.map(|coordinate| Big::exactly(*coordinate)),
         )),
         extent,
         profile,
     })
-}
-
-mod tests {
-    use super::*;
-    use touchoff_tests::oracle::reference::QueryPoint;
-    use touchoff_tests::oracle::rng::Rng;
-
-    #[test]
-    fn doubles_and_256_bits_agree() {
-        let mut rng = Rng::new(1);
-        for number in 0..COUNT {
-            let cutter = cutter(number).expect("a tool");
-            let [radius, height] = cutter.extent;
-            for _ in 0..200 {
-                let (d, z) = (rng.between(0.0, 1.2 * radius), rng.between(-0.1, 1.1) * height);
-                let exact = cutter.reference.depth(&QueryPoint::new([d, 0.0, z])).to_f64();
-                let difference = (cutter.profile.depth(&[d, z]) - exact).abs();
-                assert!(
-                    difference < 1e-13 * (radius + height).max(cutter.reach),
-                    "{} {d} {z}: {difference:e}",
-                    cutter.name
-                );
-            }
-        }
-    }
 }

@@ -17,7 +17,6 @@ use cases::{Case, Family};
 use cutters::Cutter;
 use nalgebra::Point3;
 use rayon::prelude::*;
-use std::iter::Sum;
 use touchoff::certify::{Certifier, TriangleBvh, Witness};
 use touchoff::{Interval, Mesh, Unit};
 use touchoff_tests::count::case_count;
@@ -34,7 +33,7 @@ const SEED: u64 = 7;
 /// Names of counts: a point of the triangles is inside the tool; the search without the witness comes within 1e-9 of the
 /// tool's size of the lower bound; an interval wider than the tolerance plus the promised widening at both ends; an upper
 /// bound below a depth in 256 bits, or an interval that is negative or not finite; a witness off its triangle, or not as
-/// deep as the lower bound.
+/// deep as the lower bound. A text has the tool, the triangles, the pose and the answer.
 const QUERIED: &str = "cases";
 const IN_CONTACT: &str = "in contact";
 const REACHED: &str = "reached";
@@ -42,27 +41,6 @@ const WIDER: &str = "wider";
 const UPPER: &str = "violations of upper bounds";
 const LOWER: &str = "violations of lower bounds";
 
-/// The results of a family's cases. A text has the tool, the triangles, the pose and the answer.
-#[derive(Clone, Debug, Default)]
-struct Results {
-    tally: Tally,
-    /// The largest excess of the true depth over the computed depth, as a fraction of what the upper bound adds.
-    above: f64,
-    /// The largest excess of the computed depth over the true depth, as a fraction of what the lower bound subtracts.
-    below: f64,
-}
-
-impl Sum for Results {
-    fn sum<I: Iterator<Item = Results>>(results: I) -> Results {
-        results.fold(Results::default(), |sum, other| Results {
-            tally: [sum.tally, other.tally].into_iter().sum(),
-            above: sum.above.max(other.above),
-            below: sum.below.max(other.below),
-        })
-    }
-}
-
-/// The tools.
 struct RoundingCheck {
     cutters: Vec<Cutter>,
     /// The fraction of the rounding and tolerance added at each end that is removed before the answer is validated. It
@@ -77,22 +55,21 @@ impl RoundingCheck {
     }
 
     /// Queries the cases of a family, given by its index, that have numbers below `count`.
-    fn run(&self, family: usize, count: usize) -> Results {
+    fn run(&self, family: usize, count: usize) -> Tally {
         let numbers = (family..count).into_par_iter().step_by(Family::ALL.len());
         numbers.map(|number| self.run_case(number)).sum()
     }
 
-    /// Queries the case with this number.
-    fn run_case(&self, number: usize) -> Results {
+    fn run_case(&self, number: usize) -> Tally {
         let mut rng = Rng::new(SEED ^ (number as u64).wrapping_mul(0xa076_1d64_78bd_642f));
         let cutter = &self.cutters[rng.index(self.cutters.len())];
         let case = cases::case(Family::ALL[number % Family::ALL.len()], cutter, &mut rng);
-        let mut results = Results::default();
+        let mut tally = Tally::default();
         let vertices = case.triangles.iter().flatten().map(|corner| Point3::from(*corner));
         let ids = (0..case.triangles.len() as u32).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]);
         // A mesh needs a positive area; a sliver may have none.
         let Ok(mesh) = Mesh::new(vertices, ids, Unit::Millimetre) else {
-            return results;
+            return tally;
         };
         let bvh = TriangleBvh::new(&mesh);
         let mut certifier = Certifier::new(&bvh, &cutter.tool).expect("a tool with a profile");
@@ -105,12 +82,11 @@ impl RoundingCheck {
             interval: penetration.depth,
             tightening: self.tightening,
         };
-        validation.run(penetration.witness, &mut rng, &mut results);
-        results
+        validation.run(penetration.witness, &mut rng, &mut tally);
+        tally
     }
 }
 
-/// An answer to validate.
 struct Validation<'a> {
     number: usize,
     case: &'a Case,
@@ -120,7 +96,7 @@ struct Validation<'a> {
 }
 
 impl Validation<'_> {
-    fn run(&self, witness: Option<Witness>, rng: &mut Rng, results: &mut Results) {
+    fn run(&self, witness: Option<Witness>, rng: &mut Rng, tally: &mut Tally) {
         let Widening { rounding, skew } = self.promised_widening();
         let widening = rounding + skew;
         let tolerance = self.case.tolerance.max(4.0 * rounding);
@@ -134,7 +110,6 @@ impl Validation<'_> {
         let is_near = &unaided_depth + &Big::exactly(1e-9 * size + widening) >= Big::exactly(low);
         let nearest = witness.map(|witness| self.nearest_to(&witness));
         let true_depth = self.best_depth(unaided_depth, nearest.as_ref(), rng);
-        let tally = &mut results.tally;
         tally.add(QUERIED, 1);
         tally.see(IN_CONTACT, true_depth > Big::zero());
         tally.see(REACHED, is_near);
@@ -167,15 +142,6 @@ impl Validation<'_> {
         {
             let text = format!("the witness is {:e} deep: {}", depth.to_f64(), describe());
             tally.find(LOWER, text);
-        }
-        if low > 0.0 {
-            // The certifier subtracts two roundings and the skew from the depth that it computed. It adds one rounding,
-            // the skew and the tolerance.
-            let skewed = (0.5 * (high - low - tolerance - 3.0 * rounding)).clamp(0.0, skew);
-            let [subtracted, added] = [2.0, 1.0].map(|factor| factor * rounding + skewed);
-            let error = (&true_depth - &Big::exactly(low + subtracted)).to_f64();
-            results.above = ((error - tolerance) / added).max(0.0);
-            results.below = ((-error - rounding_distance) / subtracted).max(0.0);
         }
     }
 
@@ -235,10 +201,8 @@ struct Widening {
     skew: f64,
 }
 
-/// A point of a triangle next to a witness.
 struct NearestPoint {
     point_on_triangle: TrianglePoint,
-    /// The distance between the two.
     distance: f64,
     /// The distance by which rounding in the world frame may have moved the witness.
     rounding_distance: f64,
@@ -264,14 +228,14 @@ fn skew(corners: &[Point; 3]) -> f64 {
 fn depths_in_256_bits_are_within_the_intervals() {
     let count = case_count("CASES", CASES);
     let check = RoundingCheck::new(0.0);
-    let families: Vec<Results> =
+    let families: Vec<Tally> =
         (0..Family::ALL.len()).map(|family| check.run(family, count)).collect();
-    let Results { tally: total, above, below } = families.iter().cloned().sum();
-    eprintln!("256 bits: {total}, {above:.3} above, {below:.3} below");
+    let total: Tally = families.iter().cloned().sum();
+    eprintln!("256 bits: {total}");
     total.assert_none(UPPER);
     total.assert_none(LOWER);
     total.assert_none(WIDER);
-    for (family, Results { tally, .. }) in Family::ALL.iter().zip(&families) {
+    for (family, tally) in Family::ALL.iter().zip(&families) {
         let cases = tally.count(QUERIED);
         // A sliver without an area is no mesh.
         assert!(30 * cases > 29 * (count / Family::ALL.len()) as u64, "{family:?}: {tally}");
@@ -286,7 +250,7 @@ fn depths_in_256_bits_are_within_the_intervals() {
 fn bounds_without_widening_are_reported_as_violations() {
     let check = RoundingCheck::new(1.0);
     for (index, family) in Family::ALL.iter().enumerate() {
-        let Results { tally, .. } = check.run(index, 2_200);
+        let tally = check.run(index, 2_200);
         assert!(20 * tally.count(UPPER) > tally.count(QUERIED), "{family:?}: {tally}");
     }
 }

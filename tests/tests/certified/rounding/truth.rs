@@ -6,9 +6,9 @@
 use super::cutters::Cutter;
 use touchoff::Pose;
 use touchoff_tests::oracle::big::Big;
-use touchoff_tests::oracle::exact::{Frame, Triple, dot, exactly, to_f64};
 use touchoff_tests::oracle::reference::QueryPoint;
 use touchoff_tests::oracle::rng::Rng;
+use touchoff_tests::oracle::space::{Frame, Triple, dot, exactly, to_f64};
 pub(crate) use touchoff_tests::oracle::triangle::Point;
 use touchoff_tests::oracle::triangle::{mean, nearest_weights};
 
@@ -17,9 +17,7 @@ const CLIMBS: usize = 3;
 const STEPS_PER_CLIMB: usize = 60;
 const FINAL_STEPS: usize = 120;
 
-/// A tool at a pose, and triangles.
 pub(crate) struct Scene<'a> {
-    /// The tool.
     pub(crate) cutter: &'a Cutter,
     /// The corners of each triangle, in the tool's frame and in doubles.
     pub(crate) triangles: Vec<[Point; 3]>,
@@ -30,7 +28,6 @@ pub(crate) struct Scene<'a> {
 /// A point on a triangle, by its unnormalised barycentric weights.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TrianglePoint {
-    /// The index of the triangle.
     pub(crate) triangle: usize,
     /// Weights that are not negative and not all 0.
     pub(crate) weights: Point,
@@ -68,7 +65,7 @@ impl<'a> Scene<'a> {
     /// Returns the depth of a point, computed in 256 bits.
     pub(crate) fn exact_depth(&self, triangle_point: &TrianglePoint) -> Big {
         let corners = &self.exact[triangle_point.triangle];
-        let weights = triangle_point.weights.map(Big::exactly);
+        let weights = exactly(triangle_point.weights);
         let sum = &(&weights[0] + &weights[1]) + &weights[2];
         let point = [0, 1, 2].map(|axis| {
             let column = [0, 1, 2].map(|k| corners[k][axis].clone());
@@ -82,7 +79,6 @@ impl<'a> Scene<'a> {
         TrianglePoint { triangle, weights: nearest_weights(p, &self.triangles[triangle]) }
     }
 
-    /// Returns the deepest point found by the random search.
     pub(crate) fn deepest(&self, rng: &mut Rng) -> TrianglePoint {
         let mut starts = Vec::new();
         for triangle in 0..self.triangles.len() {

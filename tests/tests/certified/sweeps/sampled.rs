@@ -8,13 +8,12 @@ use crate::brute::BruteForce;
 use crate::motions::MotionKind;
 use crate::pair::{Pair, Pairs, is_full_run, parts};
 use crate::{motion, oracle};
-use nalgebra::Point3;
 use touchoff::certify::{Certifier, MotionVerdict, Witness};
-use touchoff::{Mesh, Motion, Pose, TriangleId};
+use touchoff::{Motion, Pose, TriangleId};
 use touchoff_tests::count::case_count;
 use touchoff_tests::oracle::Oracle;
 use touchoff_tests::oracle::rng::Rng;
-use touchoff_tests::oracle::triangle::{distance, nearest};
+use touchoff_tests::oracle::triangle::{distance, nearest, winding_number};
 use touchoff_tests::tally::Tally;
 
 /// The tolerances used, in the part's unit.
@@ -34,7 +33,6 @@ const ALL_TOOLS: [&str; 10] = [
     "HalfInchBallCat40",
 ];
 
-/// Number of times sampled per motion.
 const TIME_SAMPLES: u32 = 64;
 
 /// Maximum number of motions drawn per motion that is proved clear.
@@ -94,7 +92,6 @@ fn format_pose(pose: &Pose) -> String {
     format!("tip {:?} axis {:?}", pose.tip().coords.as_slice(), pose.axis().as_slice())
 }
 
-/// A motion under validation.
 struct Validation<'a> {
     pair: &'a Pair<'a>,
     brute: &'a BruteForce<'a>,
@@ -192,7 +189,10 @@ impl Validation<'_> {
         let [_, height] = self.pair.oracle.extent();
         let top = self.reference.from.tip()
             + self.reference.from.axis() * (0.9 * height * self.brute.length);
-        let inside = winding_number(&self.pair.part.mesh, top).round() > 0.0;
+        let mesh = &self.pair.part.mesh;
+        let ids = (0..mesh.triangles().len() as u32).map(TriangleId);
+        let triangles = ids.map(|id| mesh.triangle(id).map(Into::into));
+        let inside = winding_number(triangles, top.into()).round() > 0.0;
         if matches!(
             (verdict, inside),
             (MotionVerdict::Clear, true) | (MotionVerdict::Inside(_), false)
@@ -204,19 +204,6 @@ impl Validation<'_> {
     fn add_violation(&mut self, message: &str) {
         self.tally.find(VIOLATIONS, format!("{message}: {}", self.case));
     }
-}
-
-/// Returns the winding number of a surface about a point: the sum of its triangles' solid angles (Van Oosterom,
-/// Strackee 1983) over 4π.
-fn winding_number(mesh: &Mesh, point: Point3<f64>) -> f64 {
-    let angle = |id: u32| {
-        let [a, b, c] = mesh.triangle(TriangleId(id)).map(|corner| corner - point);
-        let (x, y, z) = (a.norm(), b.norm(), c.norm());
-        let denominator = x * y * z + a.dot(&b) * z + b.dot(&c) * x + c.dot(&a) * y;
-        2.0 * a.dot(&b.cross(&c)).atan2(denominator)
-    };
-    let total: f64 = (0..mesh.triangles().len() as u32).map(angle).sum();
-    total / (4.0 * std::f64::consts::PI)
 }
 
 #[test]

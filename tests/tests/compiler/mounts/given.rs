@@ -1,8 +1,10 @@
 //! Values that are given to a tool's params.
 
-use super::{mounts, said, source, tool};
+use super::{mounts, source, tool};
+use touchoff_dsl::interpret::Interpreter;
 use touchoff_dsl::source::Source;
 use touchoff_dsl::{Compiled, compile_with_arguments};
+use touchoff_tests::texts::{assert_each_refused, assert_refused, rendered, with_one_error};
 
 const BALL: &str = include_str!("tools/ball.tool");
 
@@ -12,12 +14,12 @@ fn with(text: &str, given: &[&str]) -> Compiled {
 }
 
 fn radius(compiled: &Compiled) -> f64 {
-    compiled.tool().unwrap_or_else(|| panic!("{}", said(compiled))).extent.radius
+    compiled.tool().unwrap_or_else(|| panic!("{}", rendered(compiled))).extent.radius
 }
 
 #[track_caller]
 fn refused(text: &str, given: &[&str], words: &[&str]) {
-    super::refused::refused(&with(text, given), words);
+    assert_refused(&with_one_error(with(text, given)), words);
 }
 
 #[test]
@@ -45,10 +47,7 @@ D = 2^16^2 => `^` cannot be chained";
 
 #[test]
 fn rejects_invalid_arguments() {
-    for case in INVALID.lines() {
-        let (given, words) = case.split_once(" => ").expect("a value and words");
-        refused(BALL, &[given], &words.split(" | ").collect::<Vec<_>>());
-    }
+    assert_each_refused(INVALID, |given| with_one_error(with(BALL, &[given])));
     refused(BALL, &["D = 8", "D = 9"], &["`D` is given twice", "first value"]);
     refused(
         "tool T { units mm; param D = 6mm; profile { start (0, 0); line to (D, 0), (D, 5), (0, 5) as a; } }",
@@ -63,8 +62,7 @@ fn a_mount_gives_lengths_in_its_own_unit() {
     let thin = tool(&mounts(
         "let thick = 2mm; mount \"inch_flat.tool\" as a with R = thick/2; mount \"er16.tool\" as b at z = 20;",
     ));
-    let evaluation =
-        touchoff_dsl::interpret::Interpreter::new(&thin).evaluate([0.75, 0.0, 10.0], 1.0);
+    let evaluation = Interpreter::new(&thin).evaluate([0.75, 0.0, 10.0], 1.0);
     assert!((evaluation.expect("inside").depth - 0.25).abs() < 1e-15);
     // A bare number is in the unit of the file that gives it, where the default is a length.
     let evaluation = |given: &str| {
@@ -81,16 +79,17 @@ fn a_mount_gives_lengths_in_its_own_unit() {
     );
     // A ratio is a mere number.
     let ratio = mounts("mount \"inch_flat.tool\" as a with edge = 0.25mm/1mm;");
-    let face =
-        touchoff_dsl::interpret::Interpreter::new(&tool(&ratio)).evaluate([0.0, 0.0, 0.1], 1.0);
+    let face = Interpreter::new(&tool(&ratio)).evaluate([0.0, 0.0, 0.1], 1.0);
     assert_eq!(face.expect("inside").niceness, 0.25);
 }
 
 #[test]
 fn params_of_mounted_files_are_linted() {
-    let ball = |with: &str| mounts(&format!("mount \"ball.tool\" as a with {with};"));
-    refused(&ball("Dia = 8"), &[], &["`BallCutter` has no param `Dia`", "own.tool:1:"]);
-    refused(&ball("D = 8, D = 9"), &[], &["`D` is given twice"]);
-    refused(&ball("D = 3deg"), &[], &["the given value is an angle", " ball.tool:3:15"]);
-    refused(&ball("D = dia"), &[], &["unknown name `dia`"]);
+    let cases = "\
+Dia = 8 => `BallCutter` has no param `Dia` | own.tool:1:
+D = 8, D = 9 => `D` is given twice
+D = 3deg => the given value is an angle |  ball.tool:3:15
+D = dia => unknown name `dia`";
+    let ball = |given: &str| mounts(&format!("mount \"ball.tool\" as a with {given};"));
+    assert_each_refused(cases, |given| with_one_error(with(&ball(given), &[])));
 }

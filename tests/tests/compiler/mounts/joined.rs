@@ -3,27 +3,25 @@
 use super::{mounts, same, tool};
 use touchoff_dsl::CheckedTool;
 use touchoff_dsl::interpret::Interpreter;
+use touchoff_tests::oracle::restated::Restated;
 
-/// Asserts that mounted files are the same tool as one profile, and returns it.
-fn joins(mounted: &str, written: &str) -> Box<CheckedTool> {
-    let joined = tool(&mounts(mounted));
-    same(&joined, &tool(&mounts(written)));
-    joined
+/// Returns the tool of one profile, by its [drawing][Restated::drawn], the surfaces that cut and the laws.
+fn written(drawing: &'static str, cutting: &'static str, laws: &str) -> Box<CheckedTool> {
+    let drawn = Restated::drawn("T", drawing, &[]).cuts(cutting, |_, _, _| 1.0);
+    let profile = drawn.text(|number| number.to_f64().to_string());
+    tool(&mounts(&format!("{profile} {laws}")))
 }
 
 fn names(tool: &CheckedTool) -> Vec<&str> {
     tool.model.regions.iter().map(|region| region.name.as_str()).collect()
 }
 
-const IN_ER16: &str = "tool T { units mm; let r = 6/2;
-    profile {
-        start (0, 0);
-        arc  to (r, r) center (0, r)                           as ball  cutting;
-        line to (r, 20)                                        as flute cutting;
-        line to (r, 30)                                        as shank;
-        line to (12.9, 30), (14, 31.1), (14, 47.5), (0, 47.5)  as nut;
-    }
-    niceness cutting: 1 - depth/r; }";
+fn surfaces(tool: &CheckedTool) -> Vec<&str> {
+    tool.model.surfaces.iter().map(|surface| surface.name.as_str()).collect()
+}
+
+const BALL_IN_NUT: &str =
+    "0 0; ball 3 3 about 0 3; flute 3 20; shank 3 30; nut 12.9 30, 14 31.1, 14 47.5, 0 47.5";
 
 #[test]
 fn a_cutter_in_a_nut_is_one_profile() {
@@ -32,28 +30,102 @@ fn a_cutter_in_a_nut_is_one_profile() {
          mount \"ball.tool\" as cutter with D = 6, flute = 20;
          mount \"er16.tool\" as nut at z = stickout;",
     ));
-    same(&joined, &tool(IN_ER16));
-    let surfaces: Vec<(&str, bool)> =
-        joined.model.surfaces.iter().map(|s| (s.name.as_str(), s.cutting)).collect();
-    assert_eq!(
-        surfaces,
-        [
-            ("cutter.ball", true),
-            ("cutter.flute", true),
-            ("cutter.shank", false),
-            ("nut.nut", false)
-        ]
-    );
+    same(&joined, &written(BALL_IN_NUT, "ball flute", "niceness cutting: 1 - depth/3;"));
+    assert_eq!(surfaces(&joined), ["cutter.ball", "cutter.flute", "cutter.shank", "nut.nut"]);
+    let cutting = joined.model.surfaces.iter().map(|surface| surface.cutting);
+    assert_eq!(cutting.collect::<Vec<_>>(), [true, true, false, false]);
     assert_eq!(names(&joined)[2..5], ["cutter.shank", "cutter.shank/nut.nut.1", "nut.nut.1"]);
 }
 
-/// The cutter's top is where the nut begins: nothing of it is left above.
+/// Mounted files; and the drawing, the surfaces that cut and the laws of the same tool as one profile.
+type Joined = (&'static str, &'static str, &'static str, &'static str);
+
+const JOINED: [Joined; 10] = [
+    // The cutter's top is where the nut begins: nothing of it is left above.
+    (
+        "mount \"ball.tool\" as cutter; mount \"er16.tool\" as nut at z = 50;",
+        "0 0; ball 3 3 about 0 3; flute 3 20; shank 3 50; nut 12.9 50, 14 51.1, 14 67.5, 0 67.5",
+        "ball flute",
+        "niceness cutting: 1 - depth/3;",
+    ),
+    // A face of several surfaces loses what is in the part below.
+    (
+        "mount \"pin.tool\" as pin with d0 = 6; mount \"stepped.tool\" as s at z = 10;",
+        "0 0; foot 3 0; pin 3 10; rim 5 10; body 5 19, 0 19",
+        "",
+        "",
+    ),
+    (
+        "mount \"pin.tool\" as pin with d0 = 2; mount \"stepped.tool\" as s at z = 10;",
+        "0 0; foot 1 0; pin 1 10; bore 2 10; rim 5 10; body 5 19, 0 19",
+        "",
+        "",
+    ),
+    (
+        "mount \"pin.tool\" as pin with d0 = 4; mount \"stepped.tool\" as s at z = 10;",
+        "0 0; foot 2 0; pin 2 10; rim 5 10; body 5 19, 0 19",
+        "",
+        "",
+    ),
+    (
+        "mount \"pin.tool\" as pin with d0 = 12; mount \"stepped.tool\" as s at z = 10;",
+        "0 0; foot 6 0; pin 6 10, 5 10; body 5 19, 0 19",
+        "",
+        "",
+    ),
+    // Equal radii leave no ring, and a seam that is no corner.
+    (
+        "mount \"ball.tool\" as cutter; mount \"pin.tool\" as pin with d0 = 6 at z = 30;",
+        "0 0; ball 3 3 about 0 3; flute 3 20; shank 3 30; pin 3 40, 0 40",
+        "ball flute",
+        "niceness cutting: 1 - depth/3;",
+    ),
+    // The plane cuts a cone.
+    (
+        "mount \"cone.tool\" as cone; mount \"er16.tool\" as nut at z = 6;",
+        "0 0; face 2 0; cone 5 6; nut 12.9 6, 14 7.1, 14 23.5, 0 23.5",
+        "face cone",
+        "niceness cone: 0.25;",
+    ),
+    // At z = 12 the cone ends and the collar begins: the collar's lower face is dropped with it.
+    (
+        "mount \"cone.tool\" as cone; mount \"pin.tool\" as pin with d0 = 10 at z = 12;",
+        "0 0; face 2 0; cone 8 12, 5 12; pin 5 22, 0 22",
+        "face cone",
+        "niceness cone: 0.25;",
+    ),
+    // The ball of radius 5 about z = 9, cut below its middle and above it.
+    (
+        "mount \"bulb.tool\" as bulb; mount \"er16.tool\" as nut at z = 6;",
+        "0 0; face 3 0; neck 3 5; ball 4 6 about 0 9; nut 12.9 6, 14 7.1, 14 23.5, 0 23.5",
+        "ball",
+        "",
+    ),
+    (
+        "mount \"bulb.tool\" as bulb; mount \"er16.tool\" as nut at z = 12;",
+        "0 0; face 3 0; neck 3 5; ball 5 9 about 0 9, 4 12 about 0 9;
+         nut 12.9 12, 14 13.1, 14 29.5, 0 29.5",
+        "ball",
+        "",
+    ),
+];
+
 #[test]
-fn a_plane_at_the_top_takes_the_top() {
-    let joined =
-        tool(&mounts("mount \"ball.tool\" as cutter; mount \"er16.tool\" as nut at z = 50;"));
-    let written = IN_ER16.replace("30", "50").replace("31.1", "51.1").replace("47.5", "67.5");
-    same(&joined, &tool(&written));
+fn mounted_files_are_the_same_tool_as_one_profile() {
+    for (mounted, drawing, cutting, laws) in JOINED {
+        println!("{mounted}");
+        same(&tool(&mounts(mounted)), &written(drawing, cutting, laws));
+    }
+}
+
+/// The ring between the radii is a top face of the wider one below. Nothing of the pin's foot is left.
+#[test]
+fn a_wide_part_below_keeps_the_ring() {
+    let joined = tool(&mounts(
+        "mount \"er16.tool\" as nut; mount \"pin.tool\" as pin with d0 = 2 at z = 10;",
+    ));
+    same(&joined, &written("0 0; nut 12.9 0, 14 1.1, 14 10, 1 10; pin 1 20, 0 20", "", ""));
+    assert_eq!(surfaces(&joined)[1], "pin.pin");
 }
 
 #[test]
@@ -63,26 +135,18 @@ fn an_inch_cutter_in_a_metric_nut() {
          mount \"er16.tool\" as nut at z = 1.5inch;
          niceness cutting: 1;",
     ));
-    let written = tool(&mounts(
-        "profile {
-            start (0, 0);
-            line to (3.175, 0)      as face  cutting;
-            line to (3.175, 19.05)  as flute cutting;
-            line to (3.175, 38.1)   as shank;
-            line to (12.9, 38.1), (14, 39.2), (14, 55.6), (0, 55.6)  as nut;
-        }",
-    ));
+    let written = written(
+        "0 0; face 3.175 0; flute 3.175 19.05; shank 3.175 38.1;
+         nut 12.9 38.1, 14 39.2, 14 55.6, 0 55.6",
+        "face flute",
+        "",
+    );
     // The profile is traversed the other way in the turned frame, so surfaces are listed in another order.
-    let mut order: Vec<&str> = joined.model.surfaces.iter().map(|s| s.name.as_str()).collect();
+    let mut order = surfaces(&joined);
     order.sort_unstable();
     assert_eq!(order, ["cutter.face", "cutter.flute", "cutter.shank", "nut.nut"]);
-    let regions = |tool: &CheckedTool| -> Vec<String> {
-        names(tool)
-            .iter()
-            .map(|name| name.replace("cutter.", "").replace("nut.nut", "nut"))
-            .collect()
-    };
-    assert_eq!(regions(&joined), regions(&written));
+    let own = |name: &&str| name.replace("cutter.", "").replace("nut.nut", "nut");
+    assert_eq!(names(&joined).iter().map(own).collect::<Vec<_>>(), names(&written));
     let (mut a, mut b) = (Interpreter::new(&joined), Interpreter::new(&written));
     for k in 0..4000 {
         let p = [f64::from(k % 40) * 0.4, 0.01, f64::from(k / 40) * 0.61 - 1.0];
@@ -93,121 +157,6 @@ fn an_inch_cutter_in_a_metric_nut() {
             (a, b) => assert_eq!(a.is_some(), b.is_some(), "{p:?}"),
         }
     }
-}
-
-/// The ring between the radii is a top face of the wider one below.
-#[test]
-fn a_wide_part_below_keeps_the_ring() {
-    let joined = joins(
-        "mount \"er16.tool\" as nut; mount \"pin.tool\" as pin with d0 = 2 at z = 10;",
-        "profile {
-            start (0, 0);
-            line to (12.9, 0), (14, 1.1), (14, 10), (1, 10)  as nut;
-            line to (1, 20), (0, 20)                         as pin;
-        }",
-    );
-    // Nothing of the pin's foot is left.
-    assert_eq!(joined.model.surfaces[1].name, "pin.pin");
-}
-
-/// A face of several surfaces loses what is in the part below.
-#[test]
-fn a_face_of_two_surfaces_keeps_its_rim() {
-    let joined = |below: &str| {
-        let mounts = format!(
-            "mount \"pin.tool\" as pin with d0 = {below}; mount \"stepped.tool\" as s at z = 10;"
-        );
-        tool(&super::mounts(&mounts))
-    };
-    let written = |pieces: &str| {
-        tool(&mounts(&format!(
-            "profile {{
-                start (0, 0);
-                {pieces}
-                line to (5, 19), (0, 19) as body;
-            }}",
-        )))
-    };
-    let thick = "line to (3, 0) as foot; line to (3, 10) as pin; line to (5, 10) as rim;";
-    same(&joined("6"), &written(thick));
-    let thin = "line to (1, 0) as foot; line to (1, 10) as pin;
-                line to (2, 10) as bore; line to (5, 10) as rim;";
-    same(&joined("2"), &written(thin));
-    let even = "line to (2, 0) as foot; line to (2, 10) as pin; line to (5, 10) as rim;";
-    same(&joined("4"), &written(even));
-    let wide = "line to (6, 0) as foot; line to (6, 10), (5, 10) as pin;";
-    same(&joined("12"), &written(wide));
-}
-
-/// Equal radii leave no ring, and a seam that is no corner.
-#[test]
-fn equal_radii_leave_no_ring() {
-    joins(
-        "mount \"ball.tool\" as cutter; mount \"pin.tool\" as pin with d0 = 6 at z = 30;",
-        "profile {
-            start (0, 0);
-            arc  to (3, 3) center (0, 3) as ball  cutting;
-            line to (3, 20)              as flute cutting;
-            line to (3, 30)              as shank;
-            line to (3, 40), (0, 40)     as pin;
-        }
-        niceness cutting: 1 - depth/3;",
-    );
-}
-
-#[test]
-fn the_plane_cuts_a_cone() {
-    joins(
-        "mount \"cone.tool\" as cone; mount \"er16.tool\" as nut at z = 6;",
-        "profile {
-            start (0, 0);
-            line to (2, 0) as face cutting;
-            line to (5, 6) as cone cutting;
-            line to (12.9, 6), (14, 7.1), (14, 23.5), (0, 23.5)  as nut;
-        }
-        niceness cone: 0.25;",
-    );
-}
-
-/// At z = 12 the cone ends and the collar begins: the collar's lower face is dropped with it.
-#[test]
-fn the_plane_runs_along_a_face() {
-    joins(
-        "mount \"cone.tool\" as cone; mount \"pin.tool\" as pin with d0 = 10 at z = 12;",
-        "profile {
-            start (0, 0);
-            line to (2, 0)           as face cutting;
-            line to (8, 12), (5, 12) as cone cutting;
-            line to (5, 22), (0, 22) as pin;
-        }
-        niceness cone: 0.25;",
-    );
-}
-
-/// The ball of radius 5 about z = 9, cut below its middle and above it.
-#[test]
-fn the_plane_cuts_an_arc() {
-    joins(
-        "mount \"bulb.tool\" as bulb; mount \"er16.tool\" as nut at z = 6;",
-        "profile {
-            start (0, 0);
-            line to (3, 0)               as face;
-            line to (3, 5)               as neck;
-            arc  to (4, 6) center (0, 9) as ball cutting;
-            line to (12.9, 6), (14, 7.1), (14, 23.5), (0, 23.5)  as nut;
-        }",
-    );
-    joins(
-        "mount \"bulb.tool\" as bulb; mount \"er16.tool\" as nut at z = 12;",
-        "profile {
-            start (0, 0);
-            line to (3, 0)                as face;
-            line to (3, 5)                as neck;
-            arc  to (5, 9) center (0, 9)  as ball cutting;
-            arc  to (4, 12) center (0, 9) as ball cutting;
-            line to (12.9, 12), (14, 13.1), (14, 29.5), (0, 29.5)  as nut;
-        }",
-    );
 }
 
 /// A concave arc rises on the other side of its centre.
@@ -223,15 +172,8 @@ fn the_plane_cuts_a_concave_arc() {
     let source = touchoff_dsl::source::Source::new("own.tool", text);
     let compiled = touchoff_dsl::compile(&source.with_path(folder.path().join("own.tool")));
     let joined = compiled.into_tool().expect("a tool without errors");
-    let written = tool(&mounts(
-        "profile {
-            start (0, 0);
-            line to (5, 0), (5, 1)               as face;
-            arc  to (4, 2) center (8, 5) concave as neck;
-            line to (12.9, 2), (14, 3.1), (14, 19.5), (0, 19.5)  as nut;
-        }",
-    ));
-    same(&joined, &written);
+    let drawing = "0 0; face 5 0, 5 1; neck 4 2 about 8 5; nut 12.9 2, 14 3.1, 14 19.5, 0 19.5";
+    same(&joined, &written(drawing, "", ""));
 }
 
 /// A holder of two files, in another unit, is mounted as one.
@@ -247,9 +189,6 @@ fn mounted_files_mount_files() {
          niceness cutter.flute: 0.75;",
     ));
     same(&joined, &flat);
-    let surfaces = |tool: &CheckedTool| -> Vec<String> {
-        tool.model.surfaces.iter().map(|s| s.name.clone()).collect()
-    };
     assert_eq!(
         surfaces(&joined),
         ["tool.cutter.ball", "tool.cutter.flute", "tool.cutter.shank", "tool.nut.nut", "body.body"]

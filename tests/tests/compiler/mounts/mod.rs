@@ -9,8 +9,9 @@ mod refused;
 use std::path::Path;
 use touchoff_dsl::interpret::{Evaluation, Interpreter};
 use touchoff_dsl::source::Source;
-use touchoff_dsl::{CheckedTool, Compiled, compile};
+use touchoff_dsl::{CheckedTool, compile};
 use touchoff_tests::oracle::rng::Rng;
+use touchoff_tests::texts::rendered;
 
 /// Returns a text that lies among the tools beside these tests.
 fn source(text: &str) -> Source {
@@ -18,20 +19,11 @@ fn source(text: &str) -> Source {
     Source::new("own.tool", text).with_path(tools.join("own.tool"))
 }
 
-fn said(compiled: &Compiled) -> String {
-    let all: Vec<String> = compiled
-        .diagnostics()
-        .iter()
-        .map(|report| report.render(&compiled.sources, false))
-        .collect();
-    all.join("\n")
-}
-
 /// Returns the tool of a text that must have no diagnostics, except that a mount may clamp a cutting surface.
 fn tool(text: &str) -> Box<CheckedTool> {
     let compiled = compile(&source(text));
     let is_expected = compiled.diagnostics().iter().all(|report| report.code() == "T0522");
-    assert!(is_expected, "{text}\n{}", said(&compiled));
+    assert!(is_expected, "{text}\n{}", rendered(&compiled));
     compiled.into_tool().expect("a tool without errors")
 }
 

@@ -1,29 +1,16 @@
 //! Mounts that are refused, each with its place and its message.
 
-use super::{mounts, said, source};
+use super::{mounts, source};
 use std::path::Path;
+use touchoff_dsl::compile;
 use touchoff_dsl::source::Source;
-use touchoff_dsl::{Compiled, compile};
+use touchoff_tests::texts::{assert_each_refused, assert_refused, rendered, with_one_error};
 
-/// Asserts that a text is refused with one error, which has all of some words.
-#[track_caller]
-pub(super) fn refused(compiled: &Compiled, words: &[&str]) {
-    let said = said(compiled);
-    assert!(compiled.tool().is_none(), "taken, not refused for {words:?}");
-    for word in words {
-        assert!(said.contains(word), "`{word}` is missing in:\n{said}");
-    }
-    assert_eq!(said.matches("error[").count(), 1, "{said}");
-}
-
-/// Asserts that each line of `cases` is refused: the items of a tool after `before`, and the words of its error.
+/// Asserts that each line of `cases` is refused: the items of a tool after `before`, and the words of its one error.
 #[track_caller]
 fn all_refused(before: &str, cases: &str) {
-    for case in cases.trim().lines() {
-        let (items, words) = case.split_once(" => ").expect("items and words");
-        let compiled = compile(&source(&mounts(&format!("{before} {items}"))));
-        refused(&compiled, &words.split(" | ").collect::<Vec<_>>());
-    }
+    let compiled = |items: &str| compile(&source(&mounts(&format!("{before} {items}"))));
+    assert_each_refused(cases, |items| with_one_error(compiled(items)));
 }
 
 /// A mistake in a mounted file is shown there, and once though the file is mounted twice.
@@ -44,7 +31,7 @@ mount "ring_a.tool" as a; => mounts itself | ring_a.tool mounts  | ring_b.tool m
     );
     let text = mounts("mount \"er16.tool\" as a;");
     let nowhere = compile(&Source::new("t.tool", text));
-    assert!(said(&nowhere).contains("this text does not come from a file"), "{}", said(&nowhere));
+    assert_refused(&nowhere, &["this text does not come from a file"]);
 }
 
 #[test]
@@ -52,9 +39,8 @@ fn the_compiled_file_is_part_of_the_mount_cycle() {
     let tools =
         Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/compiler/mounts/tools/ring_b.tool");
     let compiled = compile(&Source::read(tools).expect("a file beside these tests"));
-    let said = said(&compiled);
-    assert!(said.contains("`ring_b.tool` mounts itself"), "{said}");
-    assert_eq!(said.matches(" mounts ").count(), 3, "{said}");
+    assert_refused(&compiled, &["`ring_b.tool` mounts itself"]);
+    assert_eq!(rendered(&compiled).matches(" mounts ").count(), 3, "{}", rendered(&compiled));
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use super::compare::compare;
 use super::outline::Outline;
-use super::{said, tool};
+use super::tool;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use touchoff::tool::{Interpreted, Tool};
 use touchoff_dsl::source::Source;
@@ -10,6 +10,7 @@ use touchoff_tests::oracle::plane::{norm, sub};
 use touchoff_tests::oracle::profile::Profile;
 use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::segment::Segment;
+use touchoff_tests::texts::{assert_mistakes, said};
 
 fn text(profile: &str) -> String {
     format!("tool T {{ units mm; profile {{ start {profile} }} }}")
@@ -26,6 +27,10 @@ const MISTAKES: &str = "\
 (0, 0); line to (3, 0), (3, 5) as a; arc to (3, 9) radius 3 concave as b; line to (0, 9) as c; line to (0.5, 7) as d; line to (0, 9) as e; => this segment => line to (0, 9)
 (0, 0); line to (3, 0), (3, 0), (3, 5), (0, 5) as a; => has zero length => (3, 0)
 (0, 0); arc to (0, 0) radius 3 as a; line to (3, 5), (0, 5) as a; => has zero length => arc to (0, 0)
+(0, 0); line to (3, 0) as a; arc to (3, 0) center (2, 0) as b; line to (3, 5), (0, 5) as c; => has zero length => arc to (3, 0)
+(0, 0); line to (2, 0), (2, 4), (1, 2), (2, 4), (2, 9), (0, 9) as a; => turns straight back at (1, 2) => (2, 4)
+(0, 0); line to (2, 0), (0, 0) as a; => runs clockwise => (2, 0)
+(0, 0); line to (3, 0), (3, 5), (3.000000000005, 9), (0, 9) as a; => turns by less than 1e-9 rad at (3, 5) => (3.000000000005, 9)
 (0, 0); line to (0, 2), (3, 2), (3, 5), (0, 5) as a; => lies on the axis => (0, 2)
 (0, 0); line to (3, 0), (3, 5), (3.0000000005, 9), (0, 9) as a; => turns by less than 1e-9 rad at (3, 5) => (3.0000000005, 9)
 (0, 0); line to (3, 0), (3, 5), (0, 5) as a; line to (0, 9) as b; => lies on the axis => line to (0, 9)
@@ -49,20 +54,7 @@ const MISTAKES: &str = "\
 
 #[test]
 fn each_mistake_is_shown_at_its_segment() {
-    let mut wrong = Vec::new();
-    for case in MISTAKES.lines() {
-        let mut parts = case.split(" => ");
-        let profile = parts.next().unwrap_or_default();
-        let said = said(&text(profile));
-        let (words, place) = (parts.next(), parts.next().unwrap_or_default());
-        let is_as_said = words.map_or(said.is_empty(), |words| {
-            said.iter().any(|(message, at)| message.contains(words) && at.starts_with(place))
-        });
-        if !is_as_said {
-            wrong.push(format!("{case}\n  has {said:?}"));
-        }
-    }
-    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    assert_mistakes(MISTAKES, text);
 }
 
 /// Dishes at the axis, and collinear and tangent joints, are exact; a sphere is one arc.

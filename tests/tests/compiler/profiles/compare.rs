@@ -4,34 +4,12 @@ use super::outline::{Outline, P2};
 use touchoff::Level;
 use touchoff::tool::{Interpreted, PointEvaluation, Tool};
 use touchoff_dsl::CheckedTool;
-use touchoff_dsl::interpret::{Evaluation, Interpreter};
-use touchoff_tests::evaluations::evaluate_points;
+use touchoff_dsl::interpret::Interpreter;
+use touchoff_tests::evaluations::{evaluate_points, of_reference};
 use touchoff_tests::oracle::plane::{add, norm, sub};
 use touchoff_tests::oracle::profile::Feature;
 use touchoff_tests::oracle::rng::Rng;
 
-/// The results of a comparison.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct ErrorStats {
-    pub(crate) inside: usize,
-    pub(crate) outside: usize,
-    pub(crate) directions: usize,
-    /// The worst error of a depth or clearance, relative to the profile's size.
-    pub(crate) worst: f64,
-}
-
-impl ErrorStats {
-    pub(crate) fn and(self, other: ErrorStats) -> ErrorStats {
-        ErrorStats {
-            inside: self.inside + other.inside,
-            outside: self.outside + other.outside,
-            directions: self.directions + other.directions,
-            worst: self.worst.max(other.worst),
-        }
-    }
-}
-
-/// The kind of a mistake, and its details.
 pub(crate) type Flaw = (&'static str, String);
 
 /// Returns points anywhere, beside the surface, beside borders, on the axis and at the corners.
@@ -76,21 +54,14 @@ pub(crate) fn points(outline: &Outline, count: usize, rng: &mut Rng) -> Vec<P2> 
     all
 }
 
-/// Returns an evaluation as the reference interpreter gives it.
-pub(crate) fn interpreted(e: PointEvaluation) -> Evaluation {
-    let PointEvaluation { region, depth, magnitude, direction, gradient, niceness } = e;
-    Evaluation { region, depth, magnitude, direction, gradient, niceness }
-}
-
 /// Compares the reference and the planned tape with brute force at `count` points.
 pub(crate) fn compare(
     outline: &Outline,
     (tool, planned): (&CheckedTool, &Interpreted),
     count: usize,
     rng: &mut Rng,
-) -> Result<ErrorStats, Flaw> {
+) -> Result<(), Flaw> {
     let mut reference = Interpreter::new(tool);
-    let mut stats = ErrorStats::default();
     let points_in_space: Vec<[f64; 3]> = points(outline, count, rng)
         .into_iter()
         .map(|p| {
@@ -111,19 +82,17 @@ pub(crate) fn compare(
             (kind, format!("{who}, at {p:?}: {text}"))
         };
         let clearance = planned.clearance(point);
-        let describe_evaluation = |found: Option<Evaluation>| {
+        let describe_evaluation = |found: Option<PointEvaluation>| {
             found.map_or("outside", |found| tool.model.regions[found.region].name.as_str())
         };
         let results =
-            [("reference", reference.evaluate(point, 1.0)), ("tape", tape.map(interpreted))];
+            [("reference", reference.evaluate(point, 1.0).map(of_reference)), ("tape", tape)];
         for (who, got) in results {
             let who = || format!("{who} says {}", describe_evaluation(got));
-            let one =
-                check_point(outline, tool, p, got, clearance).map_err(|flaw| at(flaw, &who()))?;
-            stats = stats.and(one);
+            check_point(outline, tool, p, got, clearance).map_err(|flaw| at(flaw, &who()))?;
         }
     }
-    Ok(stats)
+    Ok(())
 }
 
 /// Returns the feature that a region is named after: `s3` is piece 3, `s3/s4.1` the corner between pieces 3 and 4.
@@ -146,9 +115,9 @@ fn check_point(
     outline: &Outline,
     tool: &CheckedTool,
     p: P2,
-    got: Option<Evaluation>,
+    got: Option<PointEvaluation>,
     clearance: f64,
-) -> Result<ErrorStats, Flaw> {
+) -> Result<(), Flaw> {
     let size = outline.size();
     let tolerance = 1e-12 * size;
     let least = outline.profile.depth(&p).abs();
@@ -164,17 +133,13 @@ fn check_point(
     if clearance < -tolerance || clearance.is_nan() {
         return Err(("wrong clearance", format!("{clearance} is below 0")));
     }
-    let worst = |error: f64| ErrorStats { worst: error / size, ..ErrorStats::default() };
     let Some(got) = got else {
-        let error = (clearance - least).abs();
-        if is_clear_of_surface && (error > tolerance || error.is_nan()) {
+        if is_clear_of_surface && (clearance - least).abs() > tolerance {
             return Err(("wrong clearance", format!("{clearance} is not {least}")));
         }
-        let error = if is_clear_of_surface { error } else { 0.0 };
-        return Ok(ErrorStats { outside: 1, ..worst(error) });
+        return Ok(());
     };
-    let error = (got.depth - least).abs();
-    if !(error <= tolerance && got.magnitude == got.depth) {
+    if !((got.depth - least).abs() <= tolerance && got.magnitude == got.depth) {
         return Err(("wrong depth", format!("{} is not {least}", got.depth)));
     }
     let name = &tool.model.regions[got.region].name;
@@ -183,7 +148,6 @@ fn check_point(
     let Some(owner) = owner.filter(|_| excess <= tolerance) else {
         return Err(("wrong owner", format!("{name} is {excess:e} farther than the nearest")));
     };
-    let stats = ErrorStats { inside: 1, ..worst(error) };
     // The distance to the nearest point at which the direction does not exist.
     let direction = outline.profile.direction(owner, &p);
     let distance_to_singularity = match owner {
@@ -199,12 +163,12 @@ fn check_point(
         return Err(("wrong direction", format!("{:?} is no unit vector", got.direction)));
     }
     if distance_to_singularity < 1e-9 * size {
-        return Ok(stats);
+        return Ok(());
     }
     let direction = if outline.down { [direction[0], -direction[1]] } else { direction };
     let off = norm(&sub(&[got.direction[0], got.direction[2]], &direction));
     if off > 1e-13 + 1e-13 * size / distance_to_singularity {
         return Err(("wrong direction", format!("{:?} is not {direction:?}", got.direction)));
     }
-    Ok(ErrorStats { directions: 1, ..stats })
+    Ok(())
 }

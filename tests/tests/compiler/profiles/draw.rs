@@ -6,7 +6,6 @@ use touchoff_tests::oracle::plane::{add, cross, dot, left, norm, right, sub, tur
 use touchoff_tests::oracle::profile::Profile;
 use touchoff_tests::oracle::segment::Segment;
 
-/// Largest number of segments of a profile.
 const MAX_SEGMENTS: usize = 12;
 /// Number of grid steps per unit of length in a recipe.
 const GRID: f64 = 64.0;

@@ -1,16 +1,15 @@
 //! Regions by hand beside a profile: they determine the evaluation, never the solid.
 
-use super::compare::interpreted;
 use super::outline::{Outline, P2};
-use super::{said, tool, warned};
 use touchoff::Level;
 use touchoff::tool::{Interpreted, Tool};
 use touchoff_dsl::CheckedTool;
 use touchoff_dsl::interpret::Interpreter;
 use touchoff_dsl::source::Source;
-use touchoff_tests::evaluations::evaluate_points;
+use touchoff_tests::evaluations::{evaluate_points, of_reference};
 use touchoff_tests::oracle::plane::{sub, unit};
 use touchoff_tests::oracle::rng::Rng;
+use touchoff_tests::texts::{self, assert_mistakes};
 
 const PROFILE: &str = "profile {
         start (0, 0);
@@ -63,7 +62,7 @@ fn expected_evaluation(outline: &Outline, p: P2) -> (&'static str, &'static str,
 fn each_region_has_the_tabulated_values() {
     for down in [false, true] {
         let text = text(down, REGIONS);
-        let tool = warned(&text).expect("good regions");
+        let tool = texts::tool(text.as_str());
         let planned = Interpreted::parse(&Source::new("t.tool", text.as_str())).expect("the same");
         let outline = outline(down);
         let mut rng = Rng::new(31);
@@ -84,8 +83,8 @@ fn each_region_has_the_tabulated_values() {
 fn check_point(tool: &CheckedTool, planned: &Interpreted, outline: &Outline, p: P2) {
     let [d, z] = outline.turned(p);
     let point = [d, 0.0, z];
-    let tape = evaluate_points(planned, Level::new(), &[point])[0].map(interpreted);
-    let reference = Interpreter::new(tool).evaluate(point, 1.0);
+    let tape = evaluate_points(planned, Level::new(), &[point])[0];
+    let reference = Interpreter::new(tool).evaluate(point, 1.0).map(of_reference);
     assert_eq!(reference, tape, "at {p:?}");
     assert_eq!(reference.is_some(), outline.profile.encloses(&p), "at {p:?}");
     let Some(evaluation) = reference else {
@@ -117,7 +116,7 @@ fn check_point(tool: &CheckedTool, planned: &Interpreted, outline: &Outline, p: 
 /// The gradient is the magnitude's slope.
 #[test]
 fn gradients_are_slopes() {
-    let tool = warned(&text(false, REGIONS)).expect("good regions");
+    let tool = texts::tool(text(false, REGIONS));
     let mut interpreter = Interpreter::new(&tool);
     let mut rng = Rng::new(32);
     for _ in 0..5_000 {
@@ -143,55 +142,24 @@ fn gradients_are_slopes() {
     }
 }
 
-/// Each mistake is shown at its place.
+/// Regions beside the profile, words of the message, and the beginning of its place.
+const MISTAKES: &str = "\
+region low as ball where z <= 3 {} region high as shank where z >= 3 {}
+region low as ball where z <= 3 {} region high as shank where z >= 4 {} => no region covers => profile
+region low as ball where z <= 3 {} region high as shank where z >= 2 {} => regions low and high overlap => high
+region low as ball where z <= 3 { depth: 3 - d; } region high as shank where z >= 3 {} => the profile already gives the depth => 3 - d
+region low as ball where z <= 3 {} region high as shnak where z >= 3 {} => unknown surface `shnak` => shnak
+region low as ball cutting where z <= 3 {} region high as shank where z >= 3 {} => the profile already tells which surfaces cut => cutting
+region low as ball where z <= 3 {} region high as shank where z >= 3 {} region far where z >= 30 {} => region far contains no point => far
+region low as ball where z <= 3 {} region high as shank where z >= 3 {} region never where z <= 1, z >= 2 {} => region never contains no point => never
+region low as ball where z <= 3 {} region high as shank where z >= 3 {} region late where z >= 15 {} => region late has no points of its own: high, listed before it, covers it => late
+region low as ball where z <= 3 {} region low as shank where z >= 3 {} => two regions are called `low` => low
+region low as ball where z <= 3 { direction: (0, 0); } region high as shank where z >= 3 {} => the direction of low is the zero vector => direction: (0, 0)
+region low as ball where z <= 3 {} region high as shank where z >= 3 { niceness: 1; } => is not marked `cutting` => 1
+region low as ball where z <= 3 {} region high as shank where z >= 3 { magnitude: d - 1; } => `magnitude` of high is - => d - 1
+region low as ball where z <= 3 {} region high as shank where z >= 3 {} regions nearest; => regions => regions nearest;";
+
 #[test]
 fn mistakes_of_regions_are_shown() {
-    let two = "region low as ball where z <= 3 {} region high as shank where z >= 3 {}";
-    assert!(tool(&text(false, two)).is_ok());
-    let cases = [
-        (two.replace("z >= 3", "z >= 4"), "no region covers", "profile"),
-        (two.replace("z >= 3", "z >= 2"), "regions low and high overlap", "high"),
-        (
-            two.replace("3 {}", "3 { depth: 3 - d; }"),
-            "the profile already gives the depth",
-            "3 - d",
-        ),
-        (two.replace("as shank", "as shnak"), "unknown surface `shnak`", "shnak"),
-        (
-            two.replace("as ball", "as ball cutting"),
-            "the profile already tells which surfaces cut",
-            "cutting",
-        ),
-        (two.to_owned() + " region far where z >= 30 {}", "region far contains no point", "far"),
-        (
-            two.to_owned() + " region never where z <= 1, z >= 2 {}",
-            "region never contains no point",
-            "never",
-        ),
-        (
-            two.to_owned() + " region late where z >= 15 {}",
-            "region late has no points of its own: high, listed before it, covers it",
-            "late",
-        ),
-        (two.replace("region high", "region low"), "two regions are called `low`", "low"),
-        (
-            two.replace("3 {}", "3 { direction: (0, 0); }"),
-            "the direction of low is the zero vector",
-            "direction: (0, 0)",
-        ),
-        (two.replace("z >= 3 {}", "z >= 3 { niceness: 1; }"), "is not marked `cutting`", "1"),
-        (
-            two.replace("z >= 3 {}", "z >= 3 { magnitude: d - 1; }"),
-            "`magnitude` of high is -",
-            "d - 1",
-        ),
-        (two.to_owned() + " regions nearest;", "regions", "regions nearest;"),
-    ];
-    for (regions, message, place) in cases {
-        let said = said(&text(false, &regions));
-        assert!(
-            said.iter().any(|(words, at)| words.contains(message) && at.starts_with(place)),
-            "{regions}\nwants `{message}` at `{place}`, has {said:?}"
-        );
-    }
+    assert_mistakes(MISTAKES, |regions| text(false, regions));
 }

@@ -4,10 +4,8 @@ use touchoff_tests::oracle::plane::Point;
 use touchoff_tests::oracle::profile::{Feature, Profile};
 use touchoff_tests::oracle::segment::Segment;
 
-/// A point or vector of the half plane.
 pub(crate) type P2 = Point<f64>;
 
-/// A profile in its file's frame.
 #[derive(Clone, Debug)]
 pub(crate) struct Outline {
     pub(crate) profile: Profile<f64>,
@@ -30,13 +28,11 @@ impl Outline {
         self.profile.segments()
     }
 
-    /// Returns the largest coordinate.
     pub(crate) fn size(&self) -> f64 {
         let ends = self.segments().iter().flat_map(|segment| [segment.from, segment.to]);
         ends.flatten().fold(0.0, |largest, part| part.abs().max(largest))
     }
 
-    /// Returns the tip's z.
     pub(crate) fn tip(&self) -> f64 {
         self.profile.extent()[usize::from(self.down)][1]
     }

@@ -66,7 +66,6 @@ fn fan(outline: &Outline, k: usize, w: f64) -> Option<Segment<f64>> {
     found.into_iter().min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, piece)| piece)
 }
 
-/// Returns a piece moved down.
 pub(crate) fn lowered(piece: &Segment<f64>, by: f64) -> Segment<f64> {
     piece.map(|p| add(p, &[0.0, by], &-1.0), f64::clone)
 }

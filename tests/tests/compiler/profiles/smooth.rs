@@ -10,6 +10,7 @@ use touchoff_dsl::interpret::{Evaluation, Interpreter};
 use touchoff_tests::oracle::plane::{add, cross, dot, norm, sub};
 use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::segment::Segment;
+use touchoff_tests::texts::{assert_each_refused, compiled};
 
 /// A smoothed tool, and the same tool by nearest features.
 struct Pair {
@@ -20,6 +21,11 @@ struct Pair {
     /// The tip's z if the spindle lies toward smaller z; otherwise the tip is at 0.
     down: Option<f64>,
     extent: P2,
+}
+
+/// Returns the text of a profile whose corners are rounded.
+fn smoothed(text: &str, w: &str) -> String {
+    text.replacen("} }", &format!("}} regions smooth {w}; }}"), 1)
 }
 
 /// Returns fig. 7.3 by the table of centres; every fan has the tangent length `w`.
@@ -39,9 +45,8 @@ fn thesis(w: f64) -> Pair {
         Segment::line([1.0, 15.0 + w], [1.0, 19.0]),
         Segment::about([1.0, 19.0], [0.0, 20.0], [0.0, 19.0], true),
     ];
-    let text = FIG_7_3.replacen("} }", &format!("}} regions smooth {w}; }}"), 1);
     Pair {
-        smooth: tool(&text).expect("fits"),
+        smooth: tool(&smoothed(FIG_7_3, &w.to_string())).expect("fits"),
         nearest: tool(FIG_7_3).expect("good"),
         rounded: rounded
             .into_iter()
@@ -57,9 +62,8 @@ fn profile(outline: &Outline, w: f64) -> Pair {
     let rounded = rounded(outline, w);
     let [low, high] = outline.profile.extent();
     let nearest = outline.text();
-    let smooth = nearest.replacen("} }", &format!("}} regions smooth {w}; }}"), 1);
     Pair {
-        smooth: tool(&smooth).expect("fits"),
+        smooth: tool(&smoothed(&nearest, &w.to_string())).expect("fits"),
         nearest: tool(&nearest).expect("good"),
         rounded: rounded.iter().map(|piece| lowered(piece, low[1])).collect(),
         down: None,
@@ -276,33 +280,16 @@ fn a_smooth_tip_points_along_the_axis() {
 
 #[test]
 fn fans_that_do_not_fit_are_refused() {
-    let with = |w: &str| FIG_7_3.replacen("} }", &format!("}} regions smooth {w}; }}"), 1);
-    let cases = [
-        ("1.5", &["do not fit on the segment of length 2", "(3, 11)", "at most 1"][..]),
-        ("1.0001", &["do not fit on the segment of length 2", "at most 1"]),
-        ("0", &["the tangent length must be more than 0"]),
-        ("-1", &["the tangent length must be more than 0"]),
-    ];
-    for (w, words) in cases {
-        let message = tool(&with(w)).expect_err("too long");
-        assert!(words.iter().all(|word| message.contains(word)), "{message}");
-    }
-    let round = |w: &str| {
-        format!(
-            "tool T {{ units mm; profile {{ start (0, 0); arc to (3, 3) center (0, 3) as ball;
-            arc to (4, 4) center (3, 4) as bead; arc to (3.4, 5.4) radius 1 concave as bead;
-            line to (4, 6), (4, 9), (0, 9) as shank; }} regions smooth {w}; }}"
-        )
-    };
-    let cases = [
-        (
-            "1.2",
-            &["do not fit on the segment of length", "write a tangent length of at most 0."][..],
-        ),
-        ("5", &["write a tangent length of at most 0."]),
-    ];
-    for (w, words) in cases {
-        let message = tool(&round(w)).expect_err("too long");
-        assert!(words.iter().all(|word| message.contains(word)), "{message}");
-    }
+    let thesis = "\
+1.5 => do not fit on the segment of length 2 | (3, 11) | at most 1
+1.0001 => do not fit on the segment of length 2 | at most 1
+0 => the tangent length must be more than 0
+-1 => the tangent length must be more than 0";
+    assert_each_refused(thesis, |w| compiled(smoothed(FIG_7_3, w)));
+    let beads =
+        Outline::parse("0 0, 3 3 about 0 3, 4 4 about 3 4, 3.4 5.4 hollow radius 1, 4 6, 4 9, 0 9");
+    let round = "\
+1.2 => do not fit on the segment of length | write a tangent length of at most 0.
+5 => write a tangent length of at most 0.";
+    assert_each_refused(round, |w| compiled(smoothed(&beads.text(), w)));
 }

@@ -3,10 +3,10 @@
 use super::points::{format_point, scale};
 use super::{LENGTHS, evaluate};
 use touchoff::Level;
-use touchoff::tool::{Evaluations, Interpreted, Outputs, PointBatch, PointEvaluation, Tool};
+use touchoff::tool::{Evaluations, Interpreted, Outputs, PointBatch, Tool};
 use touchoff_dsl::CheckedTool;
 use touchoff_dsl::interpret::Interpreter;
-use touchoff_tests::evaluations::{at, batch, is_inside, levels};
+use touchoff_tests::evaluations::{at, batch, bits, is_inside, levels, of_reference};
 use touchoff_tests::oracle::Oracle;
 
 /// The region, and the bits of depth, magnitude, niceness, direction and gradient; `None` outside.
@@ -42,7 +42,7 @@ pub(crate) fn of(
             assert_same_bits(name, &everything(tool, name, level, &list, length));
         }
         for (p, code) in points.iter().zip(&code) {
-            let expected = answer_of(reference.evaluate(*p, length));
+            let expected = reference.evaluate(*p, length).map(of_reference).as_ref().map(bits);
             if *code != expected {
                 let border = oracle.border_distance(*p) / (scale(oracle) * f64::EPSILON);
                 let (code, expected) = (numbers(*code), numbers(expected));
@@ -73,23 +73,11 @@ fn everything(
         let part = evaluate(tool, level, ask, list, length);
         same(what, ask, &part, &evaluation, list.len());
     }
-    (0..list.len()).map(|i| at(&evaluation, i).map(answer)).collect()
-}
-
-fn bits(depth: f64, magnitude: f64, niceness: f64, u: [f64; 3], g: [f64; 3]) -> [u64; 9] {
-    [depth, magnitude, niceness, u[0], u[1], u[2], g[0], g[1], g[2]].map(f64::to_bits)
+    (0..list.len()).map(|i| at(&evaluation, i).as_ref().map(bits)).collect()
 }
 
 fn numbers(answer: Answer) -> Option<(usize, [f64; 9])> {
     answer.map(|(region, bits)| (region, bits.map(f64::from_bits)))
-}
-
-fn answer_of(evaluation: Option<touchoff_dsl::interpret::Evaluation>) -> Answer {
-    evaluation.map(|f| (f.region, bits(f.depth, f.magnitude, f.niceness, f.direction, f.gradient)))
-}
-
-fn answer(e: PointEvaluation) -> (usize, [u64; 9]) {
-    (e.region, bits(e.depth, e.magnitude, e.niceness, e.direction, e.gradient))
 }
 
 /// Asserts that a request for fewer outputs gives the same values of these.

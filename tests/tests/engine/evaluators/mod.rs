@@ -32,7 +32,6 @@ fn interpreted(source: &Source) -> Interpreted {
     Interpreted::parse(source).expect("a tool of the library has no error")
 }
 
-/// Returns the requested outputs of a tool at some points.
 fn evaluate(
     tool: &dyn Tool,
     level: Level,

@@ -5,10 +5,10 @@ use touchoff_tests::oracle::reference::power_above;
 use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::{Meridian, Oracle};
 use touchoff_tests::points::{
-    BESIDE_AXIS, add_anywhere, add_beside_borders, azimuths, heights, neighbours, to_space,
+    BESIDE_AXIS, add_anywhere, add_beside_borders, add_turned, azimuths, heights, neighbourhood,
+    to_space,
 };
 
-/// Number of points beside each border point.
 const POINTS_PER_BORDER_POINT: usize = 4;
 
 /// Returns points for a tool, from a seed: 3,000 spread over the box, and as many close to borders, or as many as the variable `EVALUATED`
@@ -29,15 +29,9 @@ pub(crate) fn all(oracle: &dyn Oracle, seed: u64) -> Vec<[f64; 3]> {
 /// Adds every corner and every sample of a curve, and points one ulp to either side of it in each coordinate.
 fn exact(oracle: &dyn Oracle, rng: &mut Rng, points: &mut Vec<[f64; 3]>) {
     let curves = oracle.curve_points().into_iter().flatten();
-    for [x, y, z] in oracle.corner_points().into_iter().chain(curves) {
-        for x in neighbours(x) {
-            for z in neighbours(z) {
-                if oracle.is_revolved() {
-                    points.extend(azimuths(rng).map(|azimuth| to_space([x.abs(), z], azimuth)));
-                } else {
-                    points.extend(neighbours(y).map(|y| [x, y, z]));
-                }
-            }
+    for p in oracle.corner_points().into_iter().chain(curves) {
+        for neighbour in neighbourhood(oracle, p) {
+            add_turned(oracle, neighbour, &azimuths(rng), points);
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Poses that are aligned with the part to the last bit, and ones that hardly differ from that.
 
-use super::compare::{Case, tools};
+use super::compare::check_tools;
 use super::parts;
 use nalgebra::{Point3, Vector3};
 use touchoff::{Part, Pose};
@@ -29,9 +29,7 @@ fn tips() -> [Point3<f64>; 3] {
 
 #[test]
 fn quarter_and_half_turns_agree_with_the_oracle() {
-    let part = grid(7);
-    for (tool, oracle) in tools() {
-        let mut case = Case::new(&part, tool, &*oracle);
+    check_tools("turns", &grid(7), 0, |case, _| {
         let mut k = 0;
         for tip in tips() {
             let turns = EXACT_TURNS.into_iter().chain(ROUNDED_TURNS);
@@ -45,20 +43,17 @@ fn quarter_and_half_turns_agree_with_the_oracle() {
                 k += 1;
                 if pose.rotation().iter().all(|c| [-1.0, 0.0, 1.0].contains(c)) {
                     // Nothing is rounded: points on the surface belong to the tool on both sides.
-                    assert_eq!(case.statistics.disputed, before, "{} {pose:?}", oracle.name());
+                    assert_eq!(case.statistics.disputed, before, "{} {pose:?}", case.oracle.name());
                 }
             }
         }
-        println!("{}: {:?}", oracle.name(), case.statistics);
         assert!(case.statistics.doubtful > 50);
-    }
+    });
 }
 
 #[test]
 fn slightly_tilted_poses_agree_with_the_oracle() {
-    let part = grid(7);
-    for (tool, oracle) in tools() {
-        let mut case = Case::new(&part, tool, &*oracle);
+    check_tools("tilts", &grid(7), 0, |case, _| {
         let mut k = 0;
         for tilt in [1e-5, 1e-9, 1e-13, 1e-17, 1e-300] {
             for up in [Vector3::x(), -Vector3::y(), Vector3::z(), -Vector3::z()] {
@@ -69,6 +64,5 @@ fn slightly_tilted_poses_agree_with_the_oracle() {
                 }
             }
         }
-        println!("{}: {:?}", oracle.name(), case.statistics);
-    }
+    });
 }

@@ -1,28 +1,21 @@
 //! Any part and any tool, at any pose.
 
-use super::compare::{Case, tools};
+use super::compare::{check_tools, tools};
 use super::{parts, poses};
 use nalgebra::{Point3, Vector3};
 use touchoff::{Part, Pose, Probe};
 use touchoff_tests::oracle::rng::Rng;
 
 /// Checks every tool about a part; fails unless two fifths of the poses touch.
-fn all_tools(what: &str, part: &Part, count: usize) {
-    for (at, (tool, oracle)) in tools().into_iter().enumerate() {
-        let mut rng = Rng::new(31 + at as u64);
-        let mut case = Case::new(part, tool, &*oracle);
+pub(crate) fn all_tools(what: &str, part: &Part, count: usize) {
+    check_tools(what, part, 31, |case, rng| {
         for k in 0..count {
-            case.check(&poses::about(part, &*oracle, k, &mut rng), k);
+            case.check(&poses::about(part, case.oracle, k, rng), k);
         }
-        println!("{what} {}: {:?}", oracle.name(), case.statistics);
-        assert!(
-            5 * case.statistics.touching > 2 * count,
-            "{what} {}: {:?}",
-            oracle.name(),
-            case.statistics
-        );
-        assert_eq!(case.statistics.disputed, 0);
-    }
+        let (name, statistics) = (case.oracle.name(), case.statistics);
+        assert!(5 * statistics.touching > 2 * count, "{what} {name}: {statistics:?}");
+        assert_eq!(statistics.disputed, 0);
+    });
 }
 
 #[test]
@@ -69,36 +62,31 @@ fn thin_parts() {
 #[test]
 fn clear_of_the_part() {
     let part = parts::cuboid(120.0, 3_000);
-    let mut rng = Rng::new(5);
-    for (tool, oracle) in tools() {
-        let mut case = Case::new(&part, tool, &*oracle);
+    check_tools("hollow box", &part, 5, |case, rng| {
         for k in 0..60 {
-            let inside = Point3::from(parts::vector(&mut rng, 15.0));
-            let outside = inside + 200.0 * parts::direction(&mut rng);
-            let farther = inside + 1e6 * parts::direction(&mut rng);
-            let [_, height] = oracle.extent();
+            let inside = Point3::from(parts::vector(rng, 15.0));
+            let outside = inside + 200.0 * parts::direction(rng);
+            let farther = inside + 1e6 * parts::direction(rng);
+            let [_, height] = case.oracle.extent();
             let at = [inside, outside, farther][k % 3];
             if (at - inside).norm() < 300.0 && k % 3 == 1 && at.coords.amax() < 130.0 + height {
                 continue;
             }
-            let pose = poses::bringing(Vector3::zeros(), at, &mut rng);
-            assert_eq!(case.check(&pose, k), 0, "{}", oracle.name());
+            let pose = poses::bringing(Vector3::zeros(), at, rng);
+            assert_eq!(case.check(&pose, k), 0, "{}", case.oracle.name());
         }
-    }
+    });
 }
 
 /// All of the part is in the tool: every point counts.
 #[test]
 fn parts_inside_the_tool() {
-    for (tool, oracle) in tools() {
-        let part = parts::soup(0.2, 3_000, 3);
-        let mut case = Case::new(&part, tool, &*oracle);
-        let mut rng = Rng::new(6);
+    check_tools("inside", &parts::soup(0.2, 3_000, 3), 6, |case, rng| {
         for k in 0..30 {
-            let pose = poses::bringing(Vector3::new(0.0, 0.0, 1.0), Point3::origin(), &mut rng);
+            let pose = poses::bringing(Vector3::new(0.0, 0.0, 1.0), Point3::origin(), rng);
             assert_eq!(case.check(&pose, k), 3_000);
         }
-    }
+    });
 }
 
 /// A pose as far away as a pose may be: no contact, and no panic.

@@ -11,8 +11,8 @@ use touchoff::{Law, Level, Part, Pose, Probe, Scene, Weights, Wrench};
 use touchoff_tests::evaluations::evaluate_points;
 use touchoff_tests::fixtures::ball;
 use touchoff_tests::oracle::big::Big;
-use touchoff_tests::oracle::exact::{Triple, cross, dot, exactly, norm, sub};
 use touchoff_tests::oracle::rng::Rng;
+use touchoff_tests::oracle::space::{Triple, cross, dot, exactly, norm, sub};
 
 /// Returns a part of one point, `count` times, with one normal and the weight 1.
 fn repeated(at: Point3<f64>, normal: Vector3<f64>, count: usize) -> Part {

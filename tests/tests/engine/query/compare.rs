@@ -11,10 +11,10 @@
 
 use nalgebra::{Point3, Vector3};
 use std::collections::BTreeMap;
-use touchoff::TriangleId;
-use touchoff::{Contact, Law, Part, Pose, Probe, Tool, Weights, Wrench, summary};
+use touchoff::{Contact, Law, Part, Pose, Probe, Tool, TriangleId, Unit, Weights, Wrench, summary};
 use touchoff_tests::library;
 use touchoff_tests::oracle::brute::{self, Answer, Query};
+use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::{Oracle, thesis};
 
 /// Returns the thesis's tools, each with its oracle.
@@ -22,7 +22,20 @@ pub(crate) fn tools() -> Vec<(&'static dyn Tool, Box<dyn Oracle>)> {
     thesis().into_iter().map(|oracle| (library::tool(oracle.name()), oracle)).collect()
 }
 
-/// All laws with all weights.
+/// Compares each of the [tools] with brute force at a part, with random numbers of its own.
+pub(crate) fn check_tools(
+    what: &str,
+    part: &Part,
+    seed: u64,
+    mut check: impl FnMut(&mut Case<'_>, &mut Rng),
+) {
+    for (seed, (tool, oracle)) in (seed..).zip(tools()) {
+        let mut case = Case::new(part, tool, &*oracle);
+        check(&mut case, &mut Rng::new(seed));
+        println!("{what} {}: {:?}", oracle.name(), case.statistics);
+    }
+}
+
 pub(crate) const LAWS_AND_WEIGHTS: [(Law, Weights); 6] = [
     (Law::Thesis, Weights::Area),
     (Law::Gradient, Weights::Unit),
@@ -32,51 +45,51 @@ pub(crate) const LAWS_AND_WEIGHTS: [(Law, Weights); 6] = [
     (Law::Facing, Weights::Unit),
 ];
 
-/// Statistics over several poses.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Statistics {
-    pub(crate) poses: usize,
     pub(crate) touching: usize,
     pub(crate) contacts: usize,
     /// Number of points that may be assigned to either side.
     pub(crate) doubtful: usize,
     /// Number of points in contact for the probe or the oracle alone.
     pub(crate) disputed: usize,
-    /// The largest errors: of depth in ulp(S), of force and torque relative to the sums of their terms' sizes.
-    pub(crate) worst: [f64; 3],
 }
 
-/// A part and a tool.
+/// A part and a tool. Lengths are in the part's unit.
 pub(crate) struct Case<'a> {
     part: &'a Part,
     tool: &'a dyn Tool,
-    oracle: &'a dyn Oracle,
+    pub(crate) oracle: &'a dyn Oracle,
     points: Vec<[f64; 3]>,
     normals: Vec<[f64; 3]>,
     weights: Vec<f64>,
     ones: Vec<f64>,
     /// Per id, the index of its point in the tree.
     indices: Vec<usize>,
-    /// The largest coordinate.
     reach: f64,
-    /// S, 1 ulp(S) and the Lipschitz constant.
+    /// The part's unit in the oracle's, which is a millimetre; and the units of a magnitude and of its gradient in the
+    /// oracle's.
+    scale: f64,
+    magnitude_unit: f64,
+    gradient_unit: f64,
+    /// S, and the Lipschitz constant.
     size: f64,
-    ulp: f64,
     steep: f64,
     pub(crate) statistics: Statistics,
 }
 
-/// The results of both sides at one pose.
-struct CheckedQuery<'a> {
+struct Compared<'a> {
     query: Query<'a>,
     answer: Answer,
     wrench: Wrench,
     contacts: Vec<Contact>,
     noise: f64,
     band: f64,
+    /// Bound on the difference of magnitudes, and on a law's force per weight and magnitude.
+    level: f64,
+    push: f64,
 }
 
-/// Bounds on the differences of sums.
 #[derive(Default)]
 struct Bounds {
     force: f64,
@@ -87,8 +100,8 @@ struct Bounds {
     nice: bool,
 }
 
-/// Bound on the difference of two directions, and on a law's force per weight and magnitude.
-const MAX_FORCE_PER_MAGNITUDE: f64 = 2.3;
+/// Bound on the difference of two directions, and on the length of a push or of a gradient in the oracle's unit.
+const MAX_PUSH: f64 = 2.3;
 
 impl<'a> Case<'a> {
     pub(crate) fn new(part: &'a Part, tool: &'a dyn Tool, oracle: &'a dyn Oracle) -> Case<'a> {
@@ -97,12 +110,11 @@ impl<'a> Case<'a> {
         let points: Vec<[f64; 3]> = indices.clone().map(|i| tree.point(i).into()).collect();
         let ids: BTreeMap<TriangleId, usize> =
             indices.clone().map(|i| (tree.triangle(i), i)).collect();
-        assert!(
-            ids.keys().copied().eq((0..tree.len() as u32).map(TriangleId)),
-            "an id for every point"
-        );
+        let expected = (0..tree.len() as u32).map(TriangleId);
+        assert!(ids.keys().copied().eq(expected), "an id for every point");
+        let scale = part.unit().factor_to(Unit::Millimetre);
+        let magnitude_unit = if oracle.magnitude_is_depth() { 1.0 / scale } else { 1.0 };
         let largest = oracle.extent().into_iter().fold(0.0, f64::max);
-        let size = largest.log2().ceil().exp2();
         Case {
             part,
             tool,
@@ -113,8 +125,10 @@ impl<'a> Case<'a> {
             indices: ids.into_values().collect(),
             reach: points.iter().flatten().fold(0.0, |m, c| m.max(c.abs())),
             points,
-            size,
-            ulp: size * f64::EPSILON,
+            scale,
+            magnitude_unit,
+            gradient_unit: magnitude_unit * scale,
+            size: largest.log2().ceil().exp2() / scale,
             steep: if oracle.name() == "Fig73" { 5f64.sqrt() } else { 1.0 },
             statistics: Statistics::default(),
         }
@@ -124,7 +138,8 @@ impl<'a> Case<'a> {
     /// Returns the number of points that touch.
     pub(crate) fn check(&mut self, pose: &Pose, k: usize) -> usize {
         // A compliance centre at the tip, up the tool, and beside it.
-        let centre = [[0.0; 3], [0.0, 0.0, 1.5], [-2.0, 3.0, 0.7]][k / 6 % 3].into();
+        let centre = [[0.0; 3], [0.0, 0.0, 1.5], [-2.0, 3.0, 0.7]][k / 6 % 3];
+        let centre = Point3::from(centre.map(|c| c / self.scale));
         let (law, weights) = LAWS_AND_WEIGHTS[k % 6];
         let mut probe = Probe::new(self.part, self.tool)
             .with_law(law)
@@ -135,24 +150,24 @@ impl<'a> Case<'a> {
         assert_eq!(probe.detect(pose), wrench.colliding > 0, "detect at {pose:?}");
         let contacts = probe.contacts(pose).to_vec();
         let mut statistics = self.statistics;
-        let checked_query = self.checked_query(pose, wrench, contacts, centre);
-        self.compare_points(&checked_query, &mut statistics);
-        let bounds = self.compare_sums(&checked_query, &mut statistics);
-        assert_consistent(&checked_query, &bounds);
-        statistics.poses += 1;
+        let compared = self.compared(pose, wrench, contacts, centre);
+        self.compare_points(&compared, &mut statistics);
+        let bounds = self.bounds(&compared, &mut statistics);
+        self.compare_sums(&compared, &bounds);
+        assert_consistent(&compared, &bounds);
         statistics.touching += usize::from(wrench.colliding > 0);
         statistics.contacts += wrench.colliding;
         self.statistics = statistics;
         wrench.colliding
     }
 
-    fn checked_query(
+    fn compared(
         &self,
         pose: &Pose,
         wrench: Wrench,
         contacts: Vec<Contact>,
         centre: Point3<f64>,
-    ) -> CheckedQuery<'_> {
+    ) -> Compared<'_> {
         let axes = [0, 1, 2].map(|k| pose.rotation().column(k).into_owned().into());
         let brute_pose = brute::Pose { tip: pose.tip().into(), axes };
         let weights = match wrench.weights {
@@ -165,118 +180,97 @@ impl<'a> Case<'a> {
             Law::Gradient => brute::Law::Gradient,
             Law::Facing => brute::Law::Facing,
         };
+        query.scale = self.scale;
         query.centre = (pose.tip() + pose.rotation() * centre.coords).into();
         let world = pose.tip().coords.amax().max(self.reach);
-        let noise = 8.0 * self.ulp + 4.0 * f64::EPSILON * world;
-        let band = 1e-12 * self.size + 2.0 * noise;
-        CheckedQuery { answer: query.answer(), query, wrench, contacts, noise, band }
+        let noise = f64::EPSILON * (8.0 * self.size + 4.0 * world);
+        Compared {
+            answer: query.answer(),
+            query,
+            wrench,
+            contacts,
+            noise,
+            band: 1e-12 * self.size + 2.0 * noise,
+            level: self.steep * noise * self.gradient_unit,
+            push: MAX_PUSH * if wrench.law == Law::Gradient { self.gradient_unit } else { 1.0 },
+        }
     }
 
     /// Compares the points that touch, one by one; both sides list them in the tree's order.
-    fn compare_points(&self, checked_query: &CheckedQuery<'_>, statistics: &mut Statistics) {
+    fn compare_points(&self, compared: &Compared<'_>, statistics: &mut Statistics) {
         let index = |contact: &Contact| self.indices[contact.triangle.index()];
-        assert!(checked_query.contacts.is_sorted_by_key(index));
-        let mut evaluation: BTreeMap<usize, &Contact> =
-            checked_query.contacts.iter().map(|contact| (index(contact), contact)).collect();
-        for &i in &checked_query.answer.contacts {
-            let q = checked_query.query.to_tool_frame(self.points[i]);
-            match evaluation.remove(&i) {
-                Some(contact) => self.compare_point(checked_query, i, q, contact),
-                None => self.check_doubtful_point(checked_query, q, "was not felt", statistics),
+        assert!(compared.contacts.is_sorted_by_key(index));
+        let mut found: BTreeMap<usize, &Contact> =
+            compared.contacts.iter().map(|contact| (index(contact), contact)).collect();
+        // A point which touches for one side only is on the surface.
+        let mut dispute = |i: usize, what: &str| {
+            let q = compared.query.to_tool_frame(self.points[i]);
+            let distance = self.oracle.signed_distance(q) / self.scale;
+            let (name, pose) = (self.oracle.name(), compared.query.pose);
+            let is_near = distance.abs() <= compared.band;
+            assert!(is_near, "{name}: {q:?} {what}, {distance:e} outside; {pose:?}");
+            statistics.disputed += 1;
+        };
+        for &i in &compared.answer.contacts {
+            match found.remove(&i) {
+                Some(contact) => self.compare_point(compared, i, contact),
+                None => dispute(i, "was not felt"),
             }
         }
-        for i in evaluation.into_keys() {
-            self.check_doubtful_point(
-                checked_query,
-                checked_query.query.to_tool_frame(self.points[i]),
-                "should not be felt",
-                statistics,
-            );
-        }
+        found.into_keys().for_each(|i| dispute(i, "should not be felt"));
     }
 
-    /// Asserts that a point which touches for one side only is on the surface.
-    fn check_doubtful_point(
-        &self,
-        checked_query: &CheckedQuery<'_>,
-        q: [f64; 3],
-        what: &str,
-        statistics: &mut Statistics,
-    ) {
-        let distance = self.oracle.signed_distance(q);
-        let (name, pose) = (self.oracle.name(), checked_query.query.pose);
-        assert!(
-            distance.abs() <= checked_query.band,
-            "{name}: {q:?} {what}, {distance:e} outside; {pose:?}"
-        );
-        statistics.disputed += 1;
-    }
-
-    fn compare_point(
-        &self,
-        checked_query: &CheckedQuery<'_>,
-        i: usize,
-        q: [f64; 3],
-        contact: &Contact,
-    ) {
-        let tree = self.part.tree();
+    fn compare_point(&self, compared: &Compared<'_>, i: usize, contact: &Contact) {
+        let q = compared.query.to_tool_frame(self.points[i]);
         let expected = self.oracle.evaluate(q).expect("a contact");
-        let (name, query) = (self.oracle.name(), &checked_query.query);
+        let (name, query, noise) = (self.oracle.name(), &compared.query, compared.noise);
         let near = |got: f64, want: f64, bound: f64, what: &str| {
             assert!((got - want).abs() <= bound, "{name} {what} at {q:?}: {got}, not {want}");
         };
-        let level = self.steep * checked_query.noise;
-        near(contact.depth, expected.depth, level, "depth");
-        near(contact.magnitude, expected.magnitude, level, "magnitude");
-        assert!((contact.point - Point3::from(self.points[i])).norm() <= checked_query.noise);
-        assert_eq!(contact.normal, Vector3::from(tree.normal(i)));
+        near(contact.depth, expected.depth / self.scale, self.steep * noise, "depth");
+        let magnitude = expected.magnitude * self.magnitude_unit;
+        near(contact.magnitude, magnitude, compared.level, "magnitude");
+        assert!((contact.point - Point3::from(self.points[i])).norm() <= noise);
+        assert_eq!(contact.normal, Vector3::from(self.normals[i]));
         assert_eq!(contact.weight, query.weights[i]);
         assert_eq!(contact.surface, self.tool.info().regions[contact.region].surface);
-        let doubt = self.oracle.border_distance(q) <= checked_query.band;
-        if doubt {
+        if self.is_in_doubt(compared, q) {
             return;
         }
         assert_eq!(contact.region, expected.owner, "{name} region at {q:?}");
-        near(contact.niceness, expected.niceness, 16.0 * checked_query.noise, "niceness");
-        let turn = self.turn(checked_query, q);
+        near(contact.niceness, expected.niceness, 16.0 * noise * self.scale, "niceness");
+        let turn = self.turn(compared, q);
         let along = Vector3::from(query.pose.to_world_frame(expected.direction));
         near((contact.direction - along).norm(), 0.0, turn, "direction");
-        let slope =
-            Vector3::from(query.pose.to_world_frame(self.oracle.gradient(q).expect("inside")));
-        near((contact.gradient - slope).norm(), 0.0, self.steep * turn, "gradient");
+        let slope = query.pose.to_world_frame(self.oracle.gradient(q).expect("inside"));
+        let slope = self.gradient_unit * Vector3::from(slope);
+        let bound = self.steep * self.gradient_unit * turn;
+        near((contact.gradient - slope).norm(), 0.0, bound, "gradient");
+    }
+
+    fn is_in_doubt(&self, compared: &Compared<'_>, q: [f64; 3]) -> bool {
+        self.oracle.border_distance(q) / self.scale <= compared.band
     }
 
     /// Returns the bound on the difference of directions at a point.
-    fn turn(&self, checked_query: &CheckedQuery<'_>, q: [f64; 3]) -> f64 {
-        (16.0 * f64::EPSILON + 2.0 * checked_query.noise / self.oracle.singularity_distance(q))
-            .min(MAX_FORCE_PER_MAGNITUDE)
+    fn turn(&self, compared: &Compared<'_>, q: [f64; 3]) -> f64 {
+        let closeness = compared.noise * self.scale / self.oracle.singularity_distance(q);
+        (16.0 * f64::EPSILON + 2.0 * closeness).min(MAX_PUSH)
     }
 
-    /// Compares the wrenches.
-    fn compare_sums(
-        &self,
-        checked_query: &CheckedQuery<'_>,
-        statistics: &mut Statistics,
-    ) -> Bounds {
-        let (answer, wrench) = (&checked_query.answer, &checked_query.wrench);
-        let level = self.steep * checked_query.noise;
-        let (bounds, sizes) = self.bounds(checked_query, statistics);
+    fn compare_sums(&self, compared: &Compared<'_>, bounds: &Bounds) {
+        let (answer, wrench) = (&compared.answer, &compared.wrench);
         let name = self.oracle.name();
         let near = |got: f64, want: f64, bound: f64, what: &str| {
-            assert!(
-                (got - want).abs() <= bound,
-                "{name} {what}: {got}, not {want} to {bound:e}; {wrench:?}"
-            );
-            (got - want).abs()
+            let is_near = (got - want).abs() <= bound;
+            assert!(is_near, "{name} {what}: {got}, not {want} to {bound:e}; {wrench:?}");
         };
         let deepest = answer.deepest.map_or(0.0, |(depth, _)| depth);
         // A point that touches for one side only is no deeper than the band.
-        let deeper = if checked_query.contacts.len() == answer.count {
-            level
-        } else {
-            level + checked_query.band
-        };
-        let depth = near(wrench.depth(), deepest, self.steep * deeper, "depth");
+        let is_disputed = compared.contacts.len() != answer.count;
+        let slack = if is_disputed { compared.band } else { 0.0 };
+        let deeper = self.steep * (self.steep * compared.noise + slack);
+        near(wrench.depth(), deepest, deeper, "depth");
         near(wrench.integral, answer.integral, bounds.integral, "integral");
         near(wrench.energy, answer.energy, bounds.energy, "energy");
         let force = (wrench.force - Vector3::from(answer.force)).norm();
@@ -285,73 +279,57 @@ impl<'a> Case<'a> {
         near(torque, 0.0, bounds.torque, "torque");
         match (wrench.niceness, answer.niceness) {
             (Some(got), Some(want)) if !bounds.nice => {
-                near(got, want, 16.0 * checked_query.noise, "niceness");
+                near(got, want, 16.0 * compared.noise * self.scale, "niceness");
             }
             (got, want) => assert!(bounds.nice || got == want, "{got:?}, not {want:?}"),
         }
-        let relative = |error: f64, size: f64| if size > 0.0 { error / size } else { 0.0 };
-        let errors = [depth / self.ulp, relative(force, sizes[0]), relative(torque, sizes[1])];
-        for (worst, error) in statistics.worst.iter_mut().zip(errors) {
-            *worst = worst.max(error);
-        }
-        bounds
     }
 
-    /// Returns the bounds on the differences of sums, and the sums of the terms' sizes.
-    fn bounds(
-        &self,
-        checked_query: &CheckedQuery<'_>,
-        statistics: &mut Statistics,
-    ) -> (Bounds, [f64; 2]) {
-        let (query, noise) = (&checked_query.query, checked_query.noise);
+    fn bounds(&self, compared: &Compared<'_>, statistics: &mut Statistics) -> Bounds {
+        let Compared { query, noise, level, push, .. } = compared;
         let tip = Point3::from(query.pose.tip);
         let lever = (Point3::from(query.centre) - tip).norm();
-        let level = self.steep * noise;
         let mut bounds = Bounds::default();
-        let mut sizes = [0.0; 2];
-        let rounding = f64::EPSILON * (16.0 + checked_query.answer.count as f64 / 4.0);
-        for &i in &checked_query.answer.contacts {
+        let rounding = f64::EPSILON * (16.0 + compared.answer.count as f64 / 4.0);
+        for &i in &compared.answer.contacts {
             let p = self.points[i];
             let q = query.to_tool_frame(p);
             let s = self.oracle.evaluate(q).expect("a contact");
-            let (w, m, turn) = (query.weights[i], s.magnitude, self.turn(checked_query, q));
-            let doubt = self.oracle.border_distance(q) <= checked_query.band;
+            let (w, m) = (query.weights[i], s.magnitude * self.magnitude_unit);
+            let turn = self.turn(compared, q);
+            let doubt = self.is_in_doubt(compared, q);
             let normal = Vector3::from(self.normals[i]);
             let across = Vector3::from(query.pose.to_world_frame(s.direction)).dot(&normal).abs();
             let dropped = query.law == brute::Law::Facing && across <= 1e-12 + turn;
-            let swing = if doubt || dropped { 2.0 * MAX_FORCE_PER_MAGNITUDE } else { turn };
-            let force = w * MAX_FORCE_PER_MAGNITUDE * (level + m * (swing + rounding));
+            let swing = if doubt || dropped { 2.0 * MAX_PUSH } else { turn };
+            let force = w * push * (level + m * (swing + rounding));
             let arm = (Point3::from(p) - tip).norm() + lever;
             bounds.force += force;
-            bounds.torque += arm * force + noise * w * m * MAX_FORCE_PER_MAGNITUDE;
+            bounds.torque += arm * force + noise * w * m * push;
             bounds.integral += w * (level + rounding * m);
             bounds.energy += w * (m + level) * (level + rounding * m);
             bounds.nice |= doubt;
-            sizes[0] += w * m * MAX_FORCE_PER_MAGNITUDE;
-            sizes[1] += arm * w * m * MAX_FORCE_PER_MAGNITUDE;
             statistics.doubtful += usize::from(doubt);
         }
         // Points that touch for the probe only are hardly inside, if at all.
-        let total_weight = |contacts: &[Contact]| contacts.iter().map(|c| c.weight).sum::<f64>();
-        if checked_query.contacts.len() != checked_query.answer.count {
-            let slight = self.steep
-                * checked_query.band
-                * total_weight(&checked_query.contacts).max(1.0)
-                * MAX_FORCE_PER_MAGNITUDE;
+        if compared.contacts.len() != compared.answer.count {
+            let weight: f64 = compared.contacts.iter().map(|contact| contact.weight).sum();
+            let magnitude = self.steep * compared.band * self.gradient_unit;
+            let slight = magnitude * weight.max(1.0) * MAX_PUSH.max(*push);
             bounds.force += slight;
             bounds.torque += slight * (4.0 * self.size + lever);
             bounds.integral += slight;
             bounds.energy += slight;
             bounds.nice = true;
         }
-        (bounds, sizes)
+        bounds
     }
 }
 
 /// Asserts that wrench and contacts of one probe agree to the rounding of their sums, and exactly where nothing is
 /// added.
-fn assert_consistent(checked_query: &CheckedQuery<'_>, bounds: &Bounds) {
-    let (wrench, contacts) = (&checked_query.wrench, &checked_query.contacts[..]);
+fn assert_consistent(compared: &Compared<'_>, bounds: &Bounds) {
+    let (wrench, contacts) = (&compared.wrench, &compared.contacts[..]);
     assert_eq!(contacts.len(), wrench.colliding);
     let depths = summary(contacts, |contact| contact.depth);
     assert_eq!(depths.map(|depths| depths.max), wrench.deepest.map(|deepest| deepest.depth));
@@ -362,14 +340,13 @@ fn assert_consistent(checked_query: &CheckedQuery<'_>, bounds: &Bounds) {
         let first = first.map(|contact| (contact.point, contact.triangle));
         assert_eq!(first, Some((deepest.point, deepest.triangle)), "the first of the deepest");
     }
-    let summary_of_push = summary(contacts, |contact| contact.weight * contact.magnitude);
-    let (sum, mean) = summary_of_push
-        .map_or((0.0, 0.0), |summary_of_push| (summary_of_push.sum, summary_of_push.mean));
+    let push = summary(contacts, |contact| contact.weight * contact.magnitude);
+    let (sum, mean) = push.map_or((0.0, 0.0), |push| (push.sum, push.mean));
     assert!((sum - wrench.integral).abs() <= bounds.integral, "{sum} {}", wrench.integral);
     assert_eq!(mean, if contacts.is_empty() { 0.0 } else { sum / contacts.len() as f64 });
     let energy: f64 = contacts.iter().map(|c| 0.5 * c.weight * c.magnitude * c.magnitude).sum();
     assert!((energy - wrench.energy).abs() <= bounds.energy);
-    let centre = Point3::from(checked_query.query.centre);
+    let centre = Point3::from(compared.query.centre);
     let (mut force, mut torque) = (Vector3::zeros(), Vector3::zeros());
     for c in contacts {
         let direction = match wrench.law {

@@ -6,9 +6,9 @@ use touchoff::TriangleId;
 use touchoff::tool::Interpreted;
 use touchoff::{Cloud, Interval, Part, Pose, Probe};
 use touchoff_tests::oracle::big::Big;
-use touchoff_tests::oracle::exact::{Frame, Triple, exactly, norm};
 use touchoff_tests::oracle::reference::{QueryPoint, Reference};
 use touchoff_tests::oracle::rng::Rng;
+use touchoff_tests::oracle::space::{Frame, Triple, exactly, norm};
 use touchoff_tests::profiles::tools;
 
 #[test]

@@ -1,6 +1,7 @@
 //! Parts far from the world's origin, tiny and huge: the tree keeps its points relative to the centres of its leaves.
 
-use super::compare::{Case, tools};
+use super::anywhere::all_tools;
+use super::compare::{check_tools, tools};
 use super::{parts, poses};
 use nalgebra::{Point3, Vector3};
 use touchoff::{Part, Pose, Probe};
@@ -62,15 +63,7 @@ fn other_translations_change_results_by_rounding_only() {
     for distance in [1e3, 1e6, 1e9, 1e12] {
         let by = distance * Vector3::new(1.0, -0.7, 0.3);
         let part = parts::carried(&parts::tube_mesh(), 2_000, |p| p + by);
-        for (tool, oracle) in tools() {
-            let mut rng = Rng::new(22);
-            let mut case = Case::new(&part, tool, &*oracle);
-            for k in 0..48 {
-                case.check(&poses::about(&part, &*oracle, k, &mut rng), k);
-            }
-            println!("{distance:e} {}: {:?}", oracle.name(), case.statistics);
-            assert!(case.statistics.touching > 20);
-        }
+        all_tools(&format!("translated by {distance:e}"), &part, 48);
     }
 }
 
@@ -78,16 +71,7 @@ fn other_translations_change_results_by_rounding_only() {
 #[test]
 fn tiny_and_huge_parts() {
     for size in [1e-30, 1e-9, 1e-4, 1e-2, 1e2, 1e4, 1e6, 1e9, 1e15, 1e30] {
-        let part = parts::soup(size, 2_000, 23);
-        for (tool, oracle) in tools() {
-            let mut rng = Rng::new(24);
-            let mut case = Case::new(&part, tool, &*oracle);
-            for k in 0..24 {
-                case.check(&poses::about(&part, &*oracle, k, &mut rng), k);
-            }
-            println!("{size:e} {}: {:?}", oracle.name(), case.statistics);
-            assert!(case.statistics.touching > 8, "{size:e} {}", oracle.name());
-        }
+        all_tools(&format!("soup of {size:e}"), &parts::soup(size, 2_000, 23), 24);
     }
 }
 
@@ -104,17 +88,15 @@ fn a_small_tool_on_a_large_part() {
             let points: Vec<_> = near_points.into_iter().chain(far_points).collect();
             let normals = (0..2_000).map(|_| parts::direction(&mut rng)).collect();
             let part = parts::of(points, normals, vec![0.3; 2_000]);
-            for (tool, oracle) in tools() {
-                let mut case = Case::new(&part, tool, &*oracle);
+            check_tools(&format!("{size:e} at {offset:e}"), &part, 27, |case, rng| {
                 for k in 0..24 {
-                    let [_, height] = oracle.extent();
+                    let [_, height] = case.oracle.extent();
                     let own = Vector3::new(0.0, 0.0, rng.between(0.0, height));
-                    let at = original + parts::vector(&mut rng, 4.0);
-                    case.check(&poses::bringing(own, at, &mut rng), k);
+                    let at = original + parts::vector(rng, 4.0);
+                    case.check(&poses::bringing(own, at, rng), k);
                 }
-                println!("{size:e} at {offset:e} {}: {:?}", oracle.name(), case.statistics);
-                assert!(case.statistics.touching > 12, "{size:e} {}", oracle.name());
-            }
+                assert!(case.statistics.touching > 12, "{size:e} {}", case.oracle.name());
+            });
         }
     }
 }
@@ -125,14 +107,12 @@ fn parts_near_the_smallest_doubles() {
     for size in [5e-324, 1e-310, 1e-300, 1e-150] {
         let points = [0.0, 1.0, 2.0, -3.0, 5.0].map(|k| Point3::new(k * size, -k * size, size));
         let part = parts::of(points.to_vec(), vec![Vector3::x(); 5], vec![1.0; 5]);
-        for (tool, oracle) in tools() {
-            let mut case = Case::new(&part, tool, &*oracle);
-            let mut rng = Rng::new(26);
+        check_tools(&format!("{size:e}"), &part, 26, |case, rng| {
             for k in 0..12 {
                 let own = Vector3::new(0.3, 0.2, 0.7);
                 // All five points are inside the tool.
-                assert_eq!(case.check(&poses::bringing(own, Point3::origin(), &mut rng), k), 5);
+                assert_eq!(case.check(&poses::bringing(own, Point3::origin(), rng), k), 5);
             }
-        }
+        });
     }
 }

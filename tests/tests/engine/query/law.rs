@@ -7,7 +7,6 @@ use touchoff::{Law, Part, Pose, Probe};
 use touchoff_tests::library;
 use touchoff_tests::oracle::rng::Rng;
 
-/// Returns the energy at a pose.
 fn energy(probe: &mut Probe<'_>, at: Isometry3<f64>) -> f64 {
     probe.wrench(&Pose::try_from(at).expect("a pose")).energy
 }

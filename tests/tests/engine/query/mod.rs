@@ -6,7 +6,7 @@ mod aligned;
 mod anywhere;
 mod bits;
 mod bounds;
-mod compare;
+pub(crate) mod compare;
 mod composed;
 mod error;
 mod far;

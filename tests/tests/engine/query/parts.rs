@@ -2,18 +2,12 @@
 //! contact can be told from its neighbours.
 
 use nalgebra::{Point3, Vector3};
-use touchoff::TriangleId;
 use touchoff::mesh::shapes;
 use touchoff::{Cloud, Mesh, Part, Sampling, Unit};
+pub(crate) use touchoff_tests::fixtures::part_of as of;
 use touchoff_tests::oracle::rng::Rng;
 
 pub(crate) const UNIT: Unit = Unit::Millimetre;
-
-/// Returns a part of these points, normals and weights.
-pub(crate) fn of(points: Vec<Point3<f64>>, normals: Vec<Vector3<f64>>, weights: Vec<f64>) -> Part {
-    let ids = (0..points.len() as u32).map(TriangleId).collect();
-    Part::from_cloud(&Cloud::new(points, normals, ids, weights, UNIT).expect("a cloud"))
-}
 
 /// Returns a part of random points of a mesh, mapped by `at`.
 pub(crate) fn carried(mesh: &Mesh, count: usize, at: impl Fn(Point3<f64>) -> Point3<f64>) -> Part {
@@ -26,7 +20,6 @@ pub(crate) fn tube_mesh() -> Mesh {
     shapes::tube(3.0, 5.0, touchoff::scenes::HEIGHT, 256, 4, UNIT).expect("a tube")
 }
 
-/// Returns the tube of the scenes.
 pub(crate) fn tube(count: usize) -> Part {
     carried(&tube_mesh(), count, |p| p)
 }

@@ -2,51 +2,26 @@
 
 use super::compare::{LAWS_AND_WEIGHTS, tools};
 use super::{parts, poses};
-use nalgebra::{Point3, Vector3};
+use nalgebra::Point3;
 use touchoff::{Contact, Law, Pose, Probe};
 use touchoff_tests::oracle::big::Big;
 use touchoff_tests::oracle::rng::Rng;
-
-type Triple = [Big; 3];
-
-fn to_big(v: Vector3<f64>) -> Triple {
-    [v.x, v.y, v.z].map(Big::exactly)
-}
-
-fn cross(a: &Triple, b: &Triple) -> Triple {
-    let part = |i: usize, j: usize| &(&a[i] * &b[j]) - &(&a[j] * &b[i]);
-    [part(1, 2), part(2, 0), part(0, 1)]
-}
-
-fn add(sum: &mut Triple, more: &Triple) {
-    for (sum, more) in sum.iter_mut().zip(more) {
-        *sum = &*sum + more;
-    }
-}
-
-fn error_of(sum: &Triple, found: Vector3<f64>) -> f64 {
-    let parts = [0, 1, 2].map(|axis| (&sum[axis] - &Big::exactly(found[axis])).to_f64());
-    Vector3::from(parts).norm()
-}
+use touchoff_tests::oracle::space::{Triple, add, cross, distance, exactly, sub, times};
 
 /// Returns force and torque about the tip, the sum of weights times magnitudes, and that times the arm.
 fn sums(contacts: &[Contact], law: Law, tip: Point3<f64>) -> ([Triple; 2], [f64; 2]) {
-    let mut sums = [(); 2].map(|()| [(); 3].map(|()| Big::zero()));
+    let mut sums = [(); 2].map(|()| exactly([0.0; 3]));
     let mut sizes = [0.0; 2];
     for contact in contacts {
         let direction = match law {
-            Law::Gradient => to_big(contact.gradient),
+            Law::Gradient => exactly(contact.gradient),
             Law::Facing if contact.normal.dot(&contact.direction) > 0.0 => continue,
-            _ => {
-                let (n, u) = (to_big(contact.normal), to_big(contact.direction));
-                [0, 1, 2].map(|axis| &n[axis] - &u[axis])
-            }
+            _ => sub(&exactly(contact.normal), &exactly(contact.direction)),
         };
         let force_magnitude = &Big::exactly(contact.weight) * &Big::exactly(contact.magnitude);
-        let force = direction.map(|part| &force_magnitude * &part);
+        let force = times(&direction, &force_magnitude);
         let arm = contact.point - tip;
-        add(&mut sums[1], &cross(&to_big(arm), &force));
-        add(&mut sums[0], &force);
+        sums = [add(&sums[0], &force), add(&sums[1], &cross(&exactly(arm), &force))];
         let size = force_magnitude.to_f64() * contact.gradient.norm().max(1.0);
         sizes[0] += size;
         sizes[1] += size * (arm.norm() + contact.point.coords.norm());
@@ -75,7 +50,7 @@ fn sums_keep_the_stated_rounding_bound() {
                 touching += 1;
                 let stated = wrench.rounding;
                 let [by_force, by_torque] =
-                    [error_of(&force, wrench.force), error_of(&torque, wrench.torque)];
+                    [distance(&force, wrench.force), distance(&torque, wrench.torque)];
                 assert!(
                     by_force <= stated.force + LISTED_BOUND * sizes[0],
                     "{by_force:e} {stated:?}"
@@ -108,7 +83,7 @@ fn the_rounding_bound_covers_a_distant_compliance_centre() {
         let wrench = probe.wrench(&pose);
         let about = pose.tip() + pose.rotation() * centre.coords;
         let ([_, torque], [size, _]) = sums(probe.contacts(&pose), Law::Thesis, about);
-        let lost = error_of(&torque, wrench.torque);
+        let lost = distance(&torque, wrench.torque);
         assert!(lost <= wrench.rounding.torque + 64.0 * f64::EPSILON * 1100.0 * size, "{lost:e}");
     }
 }

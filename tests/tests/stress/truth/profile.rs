@@ -16,7 +16,6 @@ pub(crate) struct Profiled {
 }
 
 impl Profiled {
-    /// Computes the true values of a tool from its restatement.
     pub(crate) fn new(tool: &dyn Tool, restated: &Restated) -> Profiled {
         let owners = owners(tool, &Nearest::new(restated));
         Profiled { reference: Reference::new(restated), owners }

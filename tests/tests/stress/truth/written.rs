@@ -63,7 +63,6 @@ impl Truth for Magnitudes {
     }
 }
 
-/// The true values of a solid.
 pub(super) struct Faces {
     body: Body,
     size: f64,
@@ -94,11 +93,12 @@ impl Truth for Faces {
 
     fn region_values(&self, p: &ExactPoint, region: usize) -> Option<RegionValues> {
         let region = (*self.indices.get(region)?)?;
+        let face = self.body.face(region);
         Some(RegionValues {
-            depth: self.body.depth_of(region, p),
+            depth: face.inward(p),
             excess_distance: self.body.excess_distance(region, p).to_f64(),
-            direction: self.body.direction_of(region, p),
-            singularity_distance: self.body.singularity_distance_of(region, p),
+            direction: face.direction(p),
+            singularity_distance: face.singularity_distance(p),
         })
     }
 }

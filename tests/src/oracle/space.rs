@@ -18,14 +18,24 @@ pub fn to_f64([x, y, z]: &Triple) -> [f64; 3] {
     [x.to_f64(), y.to_f64(), z.to_f64()]
 }
 
+/// Returns the sum of two vectors.
+pub fn add(a: &Triple, b: &Triple) -> Triple {
+    [0, 1, 2].map(|k| &a[k] + &b[k])
+}
+
 /// Returns the difference of two vectors.
 pub fn sub(a: &Triple, b: &Triple) -> Triple {
     [0, 1, 2].map(|k| &a[k] - &b[k])
 }
 
+/// Returns a multiple of a vector.
+pub fn times(a: &Triple, factor: &Big) -> Triple {
+    a.each_ref().map(|component| component * factor)
+}
+
 /// Returns `a + t direction`.
 pub fn advance(a: &Triple, t: &Big, direction: &Triple) -> Triple {
-    [0, 1, 2].map(|k| &a[k] + &(t * &direction[k]))
+    add(a, &times(direction, t))
 }
 
 /// Returns the scalar product.
@@ -41,6 +51,11 @@ pub fn cross(a: &Triple, b: &Triple) -> Triple {
 /// Returns the length.
 pub fn norm(a: &Triple) -> Big {
     dot(a, a).sqrt()
+}
+
+/// Returns the distance between a vector and one of doubles.
+pub fn distance(a: &Triple, b: impl Into<[f64; 3]>) -> f64 {
+    norm(&sub(a, &exactly(b))).to_f64()
 }
 
 /// A tool's frame in the world: the map `p = R q + tip`, whose inverse needs no `R` that is exactly a rotation.
