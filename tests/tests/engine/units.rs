@@ -1,8 +1,7 @@
 //! One scene in millimetres, inches and metres.
 
-use crate::query::compare::{Case, LAWS_AND_WEIGHTS};
+use crate::query::compare::Case;
 use nalgebra::{Point3, Vector3};
-use rayon::prelude::*;
 use touchoff::TriangleId;
 use touchoff::mesh::shapes;
 use touchoff::scenes::{HEIGHT, ScenePath};
@@ -121,16 +120,15 @@ fn every_unit_agrees_with_the_oracle() {
         // The oracle's file is in mm.
         (&inch_ball, &d2_ball()),
     ];
-    UNITS.into_par_iter().for_each(|unit| {
+    for unit in UNITS {
         let part = tube(unit, 6_000);
         for (tool, oracle) in tools {
             let mut case = Case::new(&part, tool, oracle);
+            // Laws and weights take turns.
             for (k, pose) in poses().iter().enumerate() {
-                for law in 0..LAWS_AND_WEIGHTS.len() {
-                    case.check(&scaled(pose, unit), LAWS_AND_WEIGHTS.len() * k + law);
-                }
+                case.check(&scaled(pose, unit), k);
             }
-            assert!(case.statistics.touching > 300, "{unit} {:?}", case.statistics);
+            assert!(case.statistics.touching > 50, "{unit} {:?}", case.statistics);
         }
-    });
+    }
 }
