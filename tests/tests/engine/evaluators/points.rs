@@ -11,12 +11,12 @@ use touchoff_tests::points::{
 
 const POINTS_PER_BORDER_POINT: usize = 4;
 
-/// Returns points for a tool, from a seed: 3,000 spread over the box, and as many close to borders, or as many as the variable `EVALUATED`
+/// Returns points for a tool, from a seed: 2,000 spread over the box, and as many close to borders, or as many as the variable `EVALUATED`
 /// says; corners, curves and the axis beside them.
 pub(crate) fn all(oracle: &dyn Oracle, seed: u64) -> Vec<[f64; 3]> {
     let mut rng = Rng::new(seed);
     let mut points = Vec::new();
-    let count = case_count("EVALUATED", 3_000);
+    let count = case_count("EVALUATED", 2_000);
     add_anywhere(oracle, count, &mut rng, &mut points);
     let border_points = [count / POINTS_PER_BORDER_POINT, POINTS_PER_BORDER_POINT];
     add_beside_borders(oracle, border_points, &mut rng, &mut points);

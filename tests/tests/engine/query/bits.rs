@@ -80,7 +80,7 @@ fn compiled_and_interpreted_tools_give_the_same_bits() {
         assert_eq!(interpreted.info(), tool.info());
         count += 1;
         for part in parts() {
-            for (k, pose) in random_poses(&part, &*oracle, 60, 6).iter().enumerate() {
+            for (k, pose) in random_poses(&part, &*oracle, 24, 6).iter().enumerate() {
                 let (law, weights) = LAWS_AND_WEIGHTS[k % 6];
                 let by = |tool| {
                     formatted_results(
