@@ -39,7 +39,7 @@ fn main() {
     let part = part(20_000);
     for law in [Law::Thesis, Law::Gradient] {
         for path in ScenePath::ALL {
-            let poses = poses(path, 500);
+            let poses = poses(path, 200);
             let mut probe = Probe::new(&part, library::tool("Fig73")).with_law(law);
             let first = everything(&mut probe, &poses);
             assert!(first > 0);
@@ -94,7 +94,7 @@ fn a_certifier() {
 /// states.
 fn a_haptic_loop() {
     let part = part(20_000);
-    let (rate, cycles) = (1000.0, 3_000);
+    let (rate, cycles) = (1000.0, 1_000);
     for name in ["Fig73Exact", "Block"] {
         let tool = library::tool(name);
         let axes = if name == "Block" { DeviceAxes::Six } else { DeviceAxes::Five };
