@@ -12,7 +12,7 @@ use touchoff_tests::evaluations::evaluate_points;
 use touchoff_tests::fixtures::ball;
 use touchoff_tests::oracle::big::Big;
 use touchoff_tests::oracle::rng::Rng;
-use touchoff_tests::oracle::space::{Triple, cross, dot, exactly, norm, sub};
+use touchoff_tests::oracle::space::{Triple, add, cross, dot, exactly, norm, sub};
 
 /// Returns a part of one point, `count` times, with one normal and the weight 1.
 fn repeated(at: Point3<f64>, normal: Vector3<f64>, count: usize) -> Part {
@@ -192,9 +192,8 @@ fn the_bounds_of_a_scene_cover_the_part_that_is_added_last() {
             let contact = ExactContact::new(&tool, pose, at, normal);
             (contact.force(count), contact.torque(count, Point3::origin()))
         });
-        let sum = |a: &Triple, b: &Triple| [0, 1, 2].map(|k| &a[k] + &b[k]);
-        let force = error_of(&sum(&light.0, &heavy.0), wrench.force);
-        let torque = error_of(&sum(&light.1, &heavy.1), wrench.torque);
+        let force = error_of(&add(&light.0, &heavy.0), wrench.force);
+        let torque = error_of(&add(&light.1, &heavy.1), wrench.torque);
         assert!(force <= wrench.rounding.force, "{force:e} of {:?}", wrench.rounding);
         assert!(torque <= wrench.rounding.torque, "{torque:e} of {:?}", wrench.rounding);
     }
