@@ -5,7 +5,8 @@
 //! (R. Untch, J. Offutt and M. Harrold, *Mutation analysis using mutant schemata*, 1993).
 use proc_macro2::LineColumn;
 use serde::Deserialize;
-use std::collections::{BTreeMap, HashMap};
+use std::cmp::Reverse;
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::ops::Range;
 use std::path::Path;
 use syn::spanned::Spanned;
@@ -36,14 +37,28 @@ impl From<LineColumn> for Position {
     }
 }
 
-/// A change of the text: what stands in the place of a range. At one offset, ends of inner expressions come first, then beginnings of outer
-/// ones.
+/// A change of the text: what stands in the place of a range.
 struct Edit {
     at: Range<usize>,
-    order: (bool, i64),
+    order: Order,
     text: String,
     mutants: Vec<usize>,
     is_begin: bool,
+}
+
+/// The order of edits at one offset: inner expressions end, functions begin, expressions begin from the outermost on, and the rest.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Order {
+    End {
+        length: usize,
+    },
+    Function,
+    /// Of expressions of one length, the outer one is visited last.
+    Begin {
+        length: Reverse<usize>,
+        visited: Reverse<usize>,
+    },
+    Rest,
 }
 
 struct Edits<'a> {
@@ -64,19 +79,20 @@ impl Edits<'_> {
 
     /// Puts texts around an expression; the first replaces `begin`, which may be empty.
     fn wrap(&mut self, begin: Range<usize>, end: usize, texts: [String; 2], mutants: &[usize]) {
-        let length = (end - begin.start) as i64;
+        let length = end - begin.start;
+        let visited = Reverse(self.edits.len());
         let [first, last] = texts;
         let mutants = mutants.to_vec();
         self.edits.push(Edit {
             at: begin,
-            order: (true, -length),
+            order: Order::Begin { length: Reverse(length), visited },
             text: first,
             mutants: mutants.clone(),
             is_begin: true,
         });
         self.edits.push(Edit {
             at: end..end,
-            order: (false, length),
+            order: Order::End { length },
             text: last,
             mutants,
             is_begin: false,
@@ -84,29 +100,33 @@ impl Edits<'_> {
     }
 
     /// Inserts a text of its own.
-    fn insert(&mut self, at: usize, text: String, mutants: &[usize], order: i64) {
-        let edit = |text, is_begin| Edit {
-            at: at..at,
-            order: (true, order),
-            text,
-            mutants: mutants.to_vec(),
-            is_begin,
-        };
+    fn insert(&mut self, at: usize, text: String, mutants: &[usize], order: Order) {
+        let edit =
+            |text, is_begin| Edit { at: at..at, order, text, mutants: mutants.to_vec(), is_begin };
         self.edits.extend([edit(text, true), edit(String::new(), false)]);
     }
 
     fn replace(&mut self, at: Range<usize>, text: String) {
-        self.edits.push(Edit { at, order: (true, 0), text, mutants: Vec::new(), is_begin: false });
+        self.edits.push(Edit {
+            at,
+            order: Order::Rest,
+            text,
+            mutants: Vec::new(),
+            is_begin: false,
+        });
     }
+}
+
+/// Returns the beginning of a choice by the switches: what follows is the block of no switch.
+fn cases(options: &[(usize, String)]) -> String {
+    let case =
+        |(n, text): &(usize, String)| format!("if crate::mutant::on({n}) {{ {text} }} else ");
+    options.iter().map(case).collect()
 }
 
 /// Returns the choice of one of several texts, by the switches.
 fn choice(options: &[(usize, String)], otherwise: &str) -> String {
-    let cases: String = options
-        .iter()
-        .map(|(n, text)| format!("if crate::mutant::on({n}) {{ {text} }} else "))
-        .collect();
-    format!("{cases}{{ {otherwise} }}")
+    format!("{}{{ {otherwise} }}", cases(options))
 }
 
 impl<'ast> Visit<'ast> for Edits<'_> {
@@ -200,20 +220,21 @@ impl<'ast> Visit<'ast> for Edits<'_> {
         match condition {
             Some(guard) => {
                 let at = guard.span().byte_range();
-                let cases: String = tests
-                    .iter()
-                    .map(|(n, text)| format!("if crate::mutant::on({n}) {{ {text} }} else "))
-                    .collect();
                 self.wrap(
                     at.start..at.start,
                     at.end,
-                    [format!("({cases}{{ "), " })".into()],
+                    [format!("({}{{ ", cases(&tests)), " })".into()],
                     &numbers,
                 );
             }
             None => {
                 let end = arm.pat.span().byte_range().end;
-                self.insert(end, format!(" if !crate::mutant::on({})", numbers[0]), &numbers, 0);
+                self.insert(
+                    end,
+                    format!(" if !crate::mutant::on({})", numbers[0]),
+                    &numbers,
+                    Order::Rest,
+                );
             }
         }
     }
@@ -246,28 +267,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 let at = offset(&text, mutant.span.start);
                 let value = if mutant.replacement == "()" { "" } else { &mutant.replacement };
                 let insertion = format!("if crate::mutant::on({n}) {{ return {value}; }} ");
-                edits.insert(at, insertion, &[n], i64::MIN);
+                edits.insert(at, insertion, &[n], Order::Function);
             } else {
                 edits.mutants.entry(mutant.span.start).or_default().push((n, mutant));
             }
         }
         edits.visit_file(&syn::parse_file(&text)?);
-        let list = edits.edits;
-        // Of expressions of one length, the outer one was visited last.
-        let begins = |edit: &Edit| edit.order.0 && !edit.mutants.is_empty();
-        let mut indexed: Vec<(i64, Edit)> = (0..).zip(list).collect();
-        indexed.sort_by_key(|(index, edit)| {
-            (
-                edit.at.start,
-                edit.order,
-                if begins(edit) && edit.order.1 < 0 && edit.order.1 > i64::MIN {
-                    -index
-                } else {
-                    *index
-                },
-            )
-        });
-        let list: Vec<Edit> = indexed.into_iter().map(|(_, edit)| edit).collect();
+        let mut list = edits.edits;
+        list.sort_by_key(|edit| (edit.at.start, edit.order));
         let (mut written, mut from) = (String::new(), 0);
         let mut open: Vec<(Vec<usize>, usize)> = Vec::new();
         let mut ranges = Vec::new();
@@ -298,7 +305,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let text = std::fs::read_to_string(&library)?;
         std::fs::write(library, format!("{text}\nmod mutant;\n"))?;
     }
-    let placed: std::collections::BTreeSet<usize> =
+    let placed: BTreeSet<usize> =
         all_ranges.values().flatten().flat_map(|(_, _, mutants)| mutants.clone()).collect();
     println!("{} of {} mutants are placed", placed.len(), mutants.len());
     std::fs::write(ranges, serde_json::to_string(&(all_ranges, placed))?)?;
