@@ -193,10 +193,10 @@ const BALLS: [(&str, f64, f64); 8] = [
 fn cf1_a_ball_in_a_plane_regular() {
     for (name, h, tilt) in BALLS {
         let reach = 1.05 * (h * (2.0 - h)).sqrt();
-        converges(&format!("CF1 {name} {h} {tilt}"), [2e-5, 1e-6], 0.35, |n, rng| {
+        converges(&format!("CF1 {name} {h} {tilt}"), [8e-5, 4e-6], 0.35, |n, rng| {
             let middle = [rng.between(-3.0, 3.0), rng.between(-3.0, 3.0)];
             let jitter = [0, 1].map(|k| middle[k] + 0.01 * reach * rng.between(-1.0, 1.0));
-            let part = plane([n, n], [reach; 2], middle, rng.between(0.0, TAU));
+            let part = plane([n / 2; 2], [reach; 2], middle, rng.between(0.0, TAU));
             error(&ball_in_a_plane(name, h, tilt, jitter), &part)
         });
     }

@@ -129,7 +129,7 @@ fn program(blocks: &[Block]) -> String {
 fn motions() -> usize {
     match std::env::var("MOTIONS") {
         Ok(count) => count.parse().expect("MOTIONS is a number of motions"),
-        Err(_) => 80,
+        Err(_) => 40,
     }
 }
 
