@@ -103,7 +103,8 @@ pub trait Device {
     /// Applies a wrench to the hand until the next call.
     ///
     /// # Errors
-    /// Fails if the device cannot apply the wrench. The loop continues.
+    /// Fails if the device cannot apply the wrench. The loop continues, and counts the work of the wrench before, which goes on
+    /// to act.
     fn apply(&mut self, wrench: &DeviceWrench) -> Result<(), DeviceError>;
 
     /// Returns the limits of the device.

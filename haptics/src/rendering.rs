@@ -161,7 +161,7 @@ pub struct EnergyBalance {
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Passivity {
     pub(super) energy: EnergyBalance,
-    /// The controller's share of the last wrench.
+    /// The controller's share of the last wrench that the device took.
     damping: Vector6<f64>,
     /// The excess of stored over supplied energy, N·mm.
     excess: f64,
@@ -187,23 +187,27 @@ impl Passivity {
         self.energy.generated = self.energy.generated.max(self.excess);
     }
 
+    /// Notes the wrench that the device took, and what it would be without the damper.
+    pub(super) fn set_damping(&mut self, applied: &DeviceWrench, undamped: &DeviceWrench) {
+        self.damping = to_vector(applied) - to_vector(undamped);
+    }
+
     /// Returns a damper wrench against the displacement of the last cycle. It dissipates the excess if
     /// the next displacement is equally long. It is never stronger than [`MAX_DAMPING_FRACTION`] times the force of the
     /// stiffest springs that the device can render over that displacement.
     pub(super) fn damping_wrench(
-        &mut self,
+        &self,
         displacement: &Vector6<f64>,
         max_stiffness: &Vector6<f64>,
     ) -> DeviceWrench {
         let damper = max_stiffness.component_mul(displacement);
         let power = damper.dot(displacement);
-        self.damping = if self.excess > 0.0 && power > 0.0 {
+        if self.excess > 0.0 && power > 0.0 {
             // The same displacement again, against this force, takes out `excess`.
-            damper * -(self.excess / power).min(MAX_DAMPING_FRACTION)
+            to_wrench(&(damper * -(self.excess / power).min(MAX_DAMPING_FRACTION)))
         } else {
-            Vector6::zeros()
-        };
-        to_wrench(&self.damping)
+            DeviceWrench::default()
+        }
     }
 }
 

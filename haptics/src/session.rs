@@ -71,7 +71,7 @@ pub struct SessionState {
     pub device: Pose,
     /// The pose of the tool.
     pub tool: Pose,
-    /// The wrench that the device applies to the hand.
+    /// The wrench that the device applies to the hand: the last one that it took.
     pub wrench_on_hand: DeviceWrench,
     /// The contact wrench on the tool, as returned by the probe.
     pub wrench: Wrench,
@@ -218,22 +218,27 @@ impl<'a, T: BatchEvaluator + ?Sized> Session<'a, T> {
         self.ramp += ramp_step;
         self.passivity.supply(ramp_step * energy);
         self.passivity.set_stored(self.ramp * energy);
-        let mut device_wrench = saturate(&device_wrench.scaled(self.ramp), &self.limits);
+        let undamped = saturate(&device_wrench.scaled(self.ramp), &self.limits);
+        let mut device_wrench = undamped;
         if self.passive {
             let damping = self.passivity.damping_wrench(&displacement, &springs(&self.limits));
             // The sum may exceed what each of both keeps to.
-            device_wrench = saturate(&device_wrench.and(&damping), &self.limits);
+            device_wrench = saturate(&undamped.and(&damping), &self.limits);
         }
-        // The loop goes on without the force: a device that stops answering must not stop the cycles.
-        if device.apply(&device_wrench).is_err() {
-            self.input_filter.faults.failed_writes += 1;
+        // The loop goes on without the force: a device that stops answering must not stop the cycles. The wrench before
+        // goes on to act on the hand.
+        match device.apply(&device_wrench) {
+            Ok(()) => {
+                self.device_wrench = device_wrench;
+                self.passivity.set_damping(&device_wrench, &undamped);
+            }
+            Err(_) => self.input_filter.faults.failed_writes += 1,
         }
-        self.device_wrench = device_wrench;
         let state = SessionState {
             cycle: self.cycle,
             device: device_pose,
             tool: self.poses.map_or(device_pose, |poses| poses.tool),
-            wrench_on_hand: device_wrench,
+            wrench_on_hand: self.device_wrench,
             wrench: evaluations.wrench,
             stiffest: evaluations.stiffest,
             energy: self.passivity.energy,

@@ -111,8 +111,8 @@ pub(crate) fn wrench<'py>(
         .numbers("energy", columns.energy.into_iter())?
         .list("point", columns.point)?
         .numbers("triangle", columns.triangle.into_iter())?
-        .numbers("force_error", columns.force_error.into_iter())?
-        .numbers("torque_error", columns.torque_error.into_iter())?;
+        .numbers("force_rounding", columns.force_rounding.into_iter())?
+        .numbers("torque_rounding", columns.torque_rounding.into_iter())?;
     Ok(arrays.dict)
 }
 
@@ -127,8 +127,8 @@ struct WrenchColumns {
     energy: Vec<f64>,
     point: Vec<[f64; 3]>,
     triangle: Vec<i64>,
-    force_error: Vec<f64>,
-    torque_error: Vec<f64>,
+    force_rounding: Vec<f64>,
+    torque_rounding: Vec<f64>,
 }
 
 impl WrenchColumns {
@@ -141,8 +141,8 @@ impl WrenchColumns {
         self.energy.push(wrench.energy);
         self.point.push(wrench.deepest.map_or(NAN, |deepest| deepest.point.into()));
         self.triangle.push(wrench.deepest.map_or(NONE, |deepest| i64::from(deepest.triangle.0)));
-        self.force_error.push(wrench.rounding.force);
-        self.torque_error.push(wrench.rounding.torque);
+        self.force_rounding.push(wrench.rounding.force);
+        self.torque_rounding.push(wrench.rounding.torque);
     }
 }
 

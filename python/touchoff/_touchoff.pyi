@@ -90,8 +90,8 @@ class WrenchArrays(TypedDict):
     energy: _Floats
     point: _Floats
     triangle: _Ints
-    force_error: _Floats
-    torque_error: _Floats
+    force_rounding: _Floats
+    torque_rounding: _Floats
     rounding_error: float | None
     sampling_error: float | None
 

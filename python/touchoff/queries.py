@@ -36,10 +36,11 @@ class Wrench:
     point: Floats
     #: Its triangle; -1 without contact.
     triangle: Ints
-    #: Bound on the rounding error of the force.
-    force_error: Floats
-    #: Bound on the rounding error of the torque.
-    torque_error: Floats
+    #: Bound on the rounding of the force as a sum over the part's points. How far that sum is from the force of the surface between
+    #: them is not bounded.
+    force_rounding: Floats
+    #: The same of the torque.
+    torque_rounding: Floats
     #: Bound on the rounding error of a point's depth; None if it is unknown for the tool.
     rounding_error: float | None
     #: Bound on how much deeper the surface between the points is; None if it is unknown, and an estimate where the part's covering

@@ -116,6 +116,54 @@ fn failed_wrench_commands_are_counted() {
     assert_eq!(session.faults().failed_writes, 5);
 }
 
+/// A device that moves into the part and does not take a wrench in some cycles, with the work of what it did take.
+struct Forgetful {
+    cycle: u64,
+    applied: DeviceWrench,
+    height: f64,
+    work: f64,
+}
+
+impl Device for Forgetful {
+    fn pose(&mut self) -> Result<Pose, DeviceError> {
+        // The force is faded in before.
+        let height = 0.05 - 0.002 * self.cycle.saturating_sub(500) as f64;
+        self.work -= self.applied.force.z * (height - self.height);
+        (self.height, self.cycle) = (height, self.cycle + 1);
+        Ok(upright(height))
+    }
+    fn apply(&mut self, wrench: &DeviceWrench) -> Result<(), DeviceError> {
+        if self.cycle % 3 == 0 {
+            return Err(gone());
+        }
+        self.applied = *wrench;
+        Ok(())
+    }
+    fn limits(&self) -> DeviceLimits {
+        LIMITS
+    }
+}
+
+#[test]
+fn the_energy_balance_counts_what_the_device_has_applied() {
+    let part = block(20_000);
+    let mut session = session(&part);
+    let applied = DeviceWrench::default();
+    let mut device = Forgetful { cycle: 0, applied, height: 0.05, work: 0.0 };
+    let mut last = None;
+    for _ in 0..650 {
+        let state = session.cycle(&mut device).expect("a pose");
+        assert_eq!(state.wrench_on_hand, device.applied);
+        last = Some(state);
+    }
+    let input = last.expect("a state").energy.input;
+    assert!(
+        device.work > 0.01 && (input - device.work).abs() < 1e-9 * device.work,
+        "{input} {}",
+        device.work
+    );
+}
+
 #[test]
 fn wrenches_keep_the_device_limits() {
     let part = block(20_000);
