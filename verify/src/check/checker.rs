@@ -80,19 +80,19 @@ impl<'a> Checker<'a> {
         match &step.path {
             MovePath::Straight(motion) => {
                 if !self.is_free(step) {
-                    found = self.contacts(step.rapid, motion);
+                    found = self.contacts(step.rapid, motion, self.verifier.resolution);
                 }
             }
             MovePath::Joints(path) => {
                 if !self.is_free(step) {
                     let FreeSpace { reach, symmetry, .. } = self.free_space;
                     let trajectory = JointTrajectory::new(path, symmetry, reach);
-                    found = self.contacts(step.rapid, &trajectory);
+                    found = self.contacts(step.rapid, &trajectory, self.verifier.resolution);
                 }
             }
             MovePath::Box(path) => match Motion::with_spin(&path.pose(0.0), &path.pose(1.0)) {
                 Ok(straight) => {
-                    found = self.contacts(true, &straight);
+                    found = self.contacts(true, &straight, self.verifier.resolution);
                     // No pose of the box is farther from the straight line than from its middle.
                     let spread = path.radius() * self.verifier.lipschitz();
                     found.iter_mut().for_each(|found| widen(&mut found.kind, spread));
@@ -109,7 +109,7 @@ impl<'a> Checker<'a> {
             },
             MovePath::Ambiguous(error, rest) => {
                 found.push(TimedFinding::ambiguous(*error));
-                let at_end = self.contacts(step.rapid, rest).into_iter();
+                let at_end = self.contacts(step.rapid, rest, self.verifier.resolution).into_iter();
                 found.extend(at_end.map(|found| TimedFinding { time: 1.0, ..found }));
             }
         }
@@ -119,12 +119,18 @@ impl<'a> Checker<'a> {
 
     /// Returns the findings of rapid traverse through any poses of a box, each with its pose.
     ///
-    /// The box is halved until each piece is proved: around the pose in its middle the tool is in free space, or no deeper
-    /// than allowed by more than a pose in the piece is away from the middle. It ends at a pose in the middle of a piece
-    /// that is a finding by itself. A piece that would need more than [`MAX_PIECES`] is undecided.
+    /// The box is halved until each piece is proved: around the pose in its middle the tool is in free space, or its depth
+    /// there exceeds what is allowed by no more than half of the resolution, and changes by no more than the other half up to
+    /// any pose in the piece. It ends at a pose in the middle of a piece that is a finding by itself. A piece that would need
+    /// more than [`MAX_PIECES`] is undecided.
     fn rapid_box(&mut self, path: &RapidBox) -> Vec<(Pose, FindingKind)> {
         let margin = self.modes[1].margin;
         let lipschitz = self.verifier.lipschitz();
+        let half = 0.5 * self.verifier.resolution;
+        // On the way from the middle, a point may become another surface's, of which less is allowed.
+        let depths = self.modes[1].limits.iter().map(|limit| limit.max(0.0));
+        let max_limit = depths.clone().fold(0.0, f64::max);
+        let difference = max_limit - depths.fold(f64::INFINITY, f64::min);
         let mut open = VecDeque::from([path.clone()]);
         let mut count = 0;
         while let Some(piece) = open.pop_front() {
@@ -138,7 +144,7 @@ impl<'a> Checker<'a> {
                 continue;
             }
             let found = match Motion::with_spin(&middle, &middle) {
-                Ok(rest) => self.contacts(true, &rest),
+                Ok(rest) => self.contacts(true, &rest, half),
                 Err(error) => vec![TimedFinding::ambiguous(error)],
             };
             if !found.is_empty() {
@@ -150,7 +156,7 @@ impl<'a> Checker<'a> {
                 });
                 return over_box.collect();
             }
-            if radius * lipschitz <= self.verifier.resolution {
+            if radius * lipschitz + difference <= half {
                 continue;
             }
             count += 1;
@@ -171,9 +177,13 @@ impl<'a> Checker<'a> {
     }
 
     /// Returns the findings of a motion near the part.
-    fn contacts(&mut self, rapid: bool, motion: &dyn Trajectory) -> Vec<TimedFinding> {
-        let Checker { verifier, modes, max_depths, .. } = self;
-        modes[usize::from(rapid)].contacts(motion, max_depths, verifier.resolution)
+    fn contacts(
+        &mut self,
+        rapid: bool,
+        motion: &dyn Trajectory,
+        resolution: f64,
+    ) -> Vec<TimedFinding> {
+        self.modes[usize::from(rapid)].contacts(motion, &self.max_depths, resolution)
     }
 
     /// Returns the findings where nothing is known about any surface.

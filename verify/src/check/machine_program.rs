@@ -12,7 +12,7 @@ use crate::gcode::{
     self, BlockLine, Choice, ControlRules, ControlSetup, GcodeError, Interpreter, LengthOffset,
     Rule, Step, SubprogramFile,
 };
-use crate::machine::{JointError, JointMotion, Letter, Machine, Relation, Setup};
+use crate::machine::{JointError, JointMotion, Letter, Machine, Relation, Setup, Side};
 use nalgebra::Vector3;
 use resolve::{AnyRapid, Resolved, Resolver};
 use std::collections::{BTreeMap, HashSet};
@@ -232,6 +232,8 @@ impl MachineProgram {
             setup.rules = setup.rules.with(Rule::ToolChange, Choice::Moves);
         }
         setup.axes = Letter::ALL.map(|letter| machine.axis(letter).is_some());
+        setup.carries_tool = Letter::ALL
+            .map(|letter| machine.axis(letter).is_some_and(|axis| axis.side == Side::Tool));
         setup.tool_change = machine.tool_change();
         let is_placed = setup.work_offsets[0].is_some();
         // The position of the machine before the program is unknown; axes that it lacks are at 0.
@@ -654,9 +656,11 @@ impl MoveFrame {
 
     /// Returns the moves of a step. `from` is the line of the move before, if there is one.
     fn moves(&self, step: &Step, resolved: &Resolved, from: Option<usize>) -> Vec<Move> {
-        // Where no move comes before, the tool is checked at rest first.
+        // Where no move comes before, the tool is checked at rest first. It cuts nothing there, whatever the step is.
         let start = |motion: JointMotion| match from {
-            None => self.rest(motion, 0.0).map(|path| move_along(step, None, path)),
+            None => self
+                .rest(motion, 0.0)
+                .map(|path| Move { rapid: true, ..move_along(step, None, path) }),
             Some(_) => None,
         };
         // A move after a rest of its own begins at its own line.

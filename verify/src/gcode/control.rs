@@ -97,6 +97,7 @@ pub(super) struct Control {
     /// The rules that the program depends on, each with the first line.
     pub(super) asked: BTreeMap<Rule, BlockLine>,
     axes: [bool; 6],
+    carries_tool: [bool; 6],
     /// Position in which M6 leaves the axes, if the machine states it.
     change_position: Option<Position>,
     /// Set once a work offset was selected.
@@ -249,6 +250,7 @@ impl Control {
             tcp: Tcp::Off,
             tcp_starts: 0,
             rotation: Rotation::Off,
+            plane_starts: 0,
             orientation: None,
             shorter_way: false,
         };
@@ -286,6 +288,7 @@ impl Control {
             settled: ControlRules::default(),
             asked: BTreeMap::new(),
             axes: setup.axes,
+            carries_tool: setup.carries_tool,
             change_position: setup.tool_change,
             offset_stated: false,
             returned: None,

@@ -134,6 +134,8 @@ pub struct ControlSetup {
     pub rules: ControlRules,
     /// The axes that the machine has.
     pub axes: [bool; 6],
+    /// The axes that move the tool, and not the part. An origin of such a rotary axis leaves the tool where the machine has it.
+    pub carries_tool: [bool; 6],
     /// Values that variables can have before the program, by name: `#500`, `#<_depth>`, `R1`, `Q1`. Lengths are in the unit of the program. An
     /// [`Interpreter`] takes the first of each.
     pub variables: BTreeMap<String, Vec<f64>>,
@@ -162,6 +164,7 @@ impl Default for ControlSetup {
             top: None,
             rules: ControlRules::default(),
             axes: [true; 6],
+            carries_tool: [false; 6],
             variables: BTreeMap::new(),
             subprograms: Vec::new(),
             tool_change: None,

@@ -51,6 +51,8 @@ pub struct ControlState {
     pub tcp_starts: usize,
     /// The rotation of the program's coordinates.
     pub rotation: Rotation,
+    /// The number of tilted planes that have begun before.
+    pub plane_starts: usize,
     /// The tool axis between two positions of the rotary axes, where the program states it: [`Choice::ByAxes`] (ORIAXES) or
     /// [`Choice::GreatCircle`] (ORIVECT).
     pub orientation: Option<Choice>,
@@ -223,12 +225,30 @@ impl ControlState {
         self.tcp != Tcp::Off || matches!(self.rotation, Rotation::Tilted { aligned: true, .. })
     }
 
+    /// Returns for each of A, B and C whether it is certain that it turns nothing at a position in program coordinates: an
+    /// axis of the table at 0 of the work offset, with which the part is turned, and an axis that carries the tool at 0 of
+    /// the machine. An axis of such an offset that is not known has none.
+    pub(super) fn turns_nothing(&self, position: Position, carries_tool: [bool; 6]) -> [bool; 3] {
+        let workpiece = self.to_workpiece(position);
+        [3, 4, 5].map(|axis| {
+            let origin =
+                if carries_tool[axis] { self.origin[axis].unwrap_or_default() } else { 0.0 };
+            workpiece[axis].is_some_and(|angle| angle + origin == 0.0)
+        })
+    }
+
     /// Returns the program coordinates, after a change to `new`, of an unmoved machine that stood at
     /// `position`.
     ///
     /// A coordinate becomes unknown if it depends on an unknown work offset or tool length, or on the
-    /// kinematics of the machine. These have no part while A, B and C stand at 0 of the work offset.
-    pub(super) fn carry_over(&self, new: &ControlState, mut position: Position) -> Position {
+    /// kinematics of the machine. These have no part while A, B and C
+    /// [turn nothing](ControlState::turns_nothing).
+    pub(super) fn carry_over(
+        &self,
+        new: &ControlState,
+        mut position: Position,
+        carries_tool: [bool; 6],
+    ) -> Position {
         let turns = [self, new].map(ControlState::turns_with_workpiece);
         let lengths = self.length.length().zip(new.length.length());
         let lengthened =
@@ -252,7 +272,7 @@ impl ControlState {
             return position;
         }
         let mut workpiece = self.to_workpiece(position);
-        let at_zero = workpiece[3..].iter().all(|angle| *angle == Some(0.0));
+        let at_zero = self.turns_nothing(position, carries_tool) == [true; 3];
         // The kinematics of the machine have no part in it only while the rotary axes stand at 0.
         if (turns[0] != turns[1] || turns[0] && changes_machine) && !at_zero {
             workpiece[..3].fill(None);

@@ -6,6 +6,7 @@ mod built;
 mod codes;
 mod five_axes;
 mod folder;
+mod in_the_way;
 mod jobs;
 mod motions;
 mod posts;

@@ -294,6 +294,7 @@ impl Scene {
             job.stock = Some(stock.stock(None, &program, file.unit)?);
         }
         job.tolerance = file.tolerance;
+        job.resolution = file.resolution;
         job.allow.clone_from(&file.allow);
         (job.surface_only, job.anyway) = (file.surface_only, file.anyway);
         check(&job)

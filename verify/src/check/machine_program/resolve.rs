@@ -89,8 +89,8 @@ enum RapidPath {
 struct Turning {
     /// The start of tool centre point control.
     tcp: Option<usize>,
-    /// The tilted plane.
-    plane: Option<gcode::Frame>,
+    /// The start of a tilted plane, and its frame.
+    plane: Option<(usize, gcode::Frame)>,
 }
 
 /// The mapping of a step's coordinates.
@@ -297,8 +297,10 @@ impl<'a> Resolver<'a> {
         frame: &Frame,
         ends: [Joints; 2],
     ) -> Result<Resolved, StepFault> {
-        // Under tool centre point control rapid traverse is straight: Fanuc asks for that (parameter 1401).
-        if !step.rapid || step.state.tcp != Tcp::Off {
+        // Under tool centre point control rapid traverse is straight: Fanuc asks for that (parameter 1401). A path that is
+        // stated, such as an arc at FMAX, is that of the control at any rate.
+        let is_any_way = step.rapid && step.state.tcp == Tcp::Off;
+        if !(is_any_way && matches!(step.path, StepPath::Line)) {
             return Ok(Resolved::Motions(frame.motions(&step.path, ends)?));
         }
         let joints = if frame.is_tip {
@@ -411,7 +413,7 @@ impl<'a> Resolver<'a> {
         let turning = Turning {
             tcp: (state.tcp != Tcp::Off).then_some(state.tcp_starts),
             plane: match state.rotation {
-                Rotation::Tilted { frame, .. } => Some(frame),
+                Rotation::Tilted { frame, .. } => Some((state.plane_starts, frame)),
                 Rotation::Off | Rotation::Plane { .. } => None,
             },
         };

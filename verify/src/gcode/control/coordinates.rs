@@ -29,9 +29,20 @@ impl Control {
                 *changed |= new.origin[axis] != self.state.origin[axis]
                     || new.shift[axis] != self.state.shift[axis];
             }
-            self.position = self.state.carry_over(&new, self.position);
+            self.position = self.state.carry_over(&new, self.position, self.carries_tool);
             self.state = Arc::new(new);
         }
+    }
+
+    /// Returns whether it is certain that no rotary axis turns the tool or the part.
+    pub(in crate::gcode) fn turns_nothing(&self) -> bool {
+        self.state.turns_nothing(self.position, self.carries_tool) == [true; 3]
+    }
+
+    /// Counts a tilted plane that begins, also where its frame is that of the plane before.
+    pub(in crate::gcode) fn begin_plane(&mut self) {
+        let is_tilted = matches!(self.state.rotation, Rotation::Tilted { .. });
+        self.change(|state| state.plane_starts += usize::from(is_tilted));
     }
 
     /// Reads T, M6 and D.
@@ -283,7 +294,7 @@ impl Control {
 
     /// Executes G43, G49 and the words for tool centre point control of their group.
     fn length(&mut self, block: &mut Block, code: Code) -> Result<(), GcodeFault> {
-        let at_zero = self.position[3..].iter().all(|angle| *angle == Some(0.0));
+        let at_zero = self.turns_nothing();
         if self.transformed && self.state.tcp == Tcp::Rotary && !at_zero {
             let condition = "M428 is in force with turned axes, which LinuxCNC moves by it";
             return Err(combination(code, condition, "write it before M428, or at 0"));
@@ -800,6 +811,7 @@ impl Control {
         let rotation = about(2, i) * about(0, j) * about(2, k);
         let frame = Frame { rotation, origin };
         self.change(|state| state.rotation = Rotation::Tilted { frame, aligned: false });
+        self.begin_plane();
         Ok(())
     }
 

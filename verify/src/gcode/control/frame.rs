@@ -172,6 +172,7 @@ impl Control {
         }
         let programmed = composed(&before.programmed, &frame);
         self.set_frames(Frames { swivel: self.frames.swivel, programmed, rotary });
+        self.begin_plane();
         Ok(())
     }
 
@@ -214,6 +215,7 @@ impl Control {
         let mut frames = Frames::new();
         frames.swivel = Some(SwivelFrame { frame, aligned: false });
         self.set_frames(frames);
+        self.begin_plane();
         if swivel.turns {
             let mut end = self.position;
             end[3..].fill(None);
@@ -240,7 +242,7 @@ impl Control {
                 }
             }
             Retract::Tool { distance } => {
-                let stands = self.position[3..].iter().all(|angle| *angle == Some(0.0));
+                let stands = self.turns_nothing();
                 let is_aligned =
                     matches!(self.state.rotation, Rotation::Tilted { aligned: true, .. });
                 let is_plain =

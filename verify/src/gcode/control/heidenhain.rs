@@ -129,7 +129,9 @@ impl Control {
     /// Moves along the tool axis (M140) by a distance in millimetres, or to the end of the travel.
     pub(in crate::gcode) fn retract(&mut self, distance: Option<f64>, rapid: bool) {
         // A table or head that is turned about z leaves the tool along z.
-        let is_upright = self.position[3..5].iter().all(|angle| *angle == Some(0.0));
+        let [is_upright_in_a, is_upright_in_b, _] =
+            self.state.turns_nothing(self.position, self.carries_tool);
+        let is_upright = is_upright_in_a && is_upright_in_b;
         let is_along_z = match self.state.rotation {
             Rotation::Tilted { aligned, .. } => aligned,
             Rotation::Off | Rotation::Plane { .. } => is_upright,

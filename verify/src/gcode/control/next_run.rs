@@ -280,7 +280,7 @@ impl Control {
     fn stand_as(&mut self, left: &Control) {
         let mut state = (*self.state).clone();
         state.tool = left.state.tool;
-        self.position = left.state.carry_over(&state, left.position);
+        self.position = left.state.carry_over(&state, left.position, self.carries_tool);
         self.state = Arc::new(state);
     }
 
@@ -328,7 +328,7 @@ impl Control {
             }
         }
         (state.origin, state.origin_rotation) = self.origin_of(state.work_offset);
-        self.position = left.state.carry_over(&state, left.position);
+        self.position = left.state.carry_over(&state, left.position, self.carries_tool);
         self.state = Arc::new(state);
     }
 

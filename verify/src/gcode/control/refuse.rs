@@ -271,7 +271,7 @@ impl Control {
             return Err(combination("a position", condition, remedy));
         }
         let moved = AXES.into_iter().filter(|letter| block.has(*letter));
-        let at_zero = self.position[3..].iter().all(|angle| *angle == Some(0.0));
+        let at_zero = self.turns_nothing();
         for letter in moved {
             let is_rotary = AXES[3..].contains(&letter);
             let (condition, remedy) = match (aligned, is_rotary) {

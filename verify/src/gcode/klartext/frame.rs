@@ -305,6 +305,7 @@ impl Program<'_> {
         (self.frame.tilt, self.frame.aligned) = (Some(rotation), false);
         self.frame.master_is_positive = None;
         self.change_frame(control);
+        control.begin_plane();
         Ok(())
     }
 

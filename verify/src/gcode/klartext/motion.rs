@@ -280,8 +280,7 @@ impl Program<'_> {
         let has_rotary = words.axes[3..].iter().any(Option::is_some);
         if let Rotation::Tilted { aligned, frame } = control.rotation() {
             // A plane that keeps z needs no turn of axes at 0.
-            let at_zero = control.position()[3..].iter().all(|angle| *angle == Some(0.0));
-            let is_upright = frame.rotation[(2, 2)] == 1.0 && at_zero;
+            let is_upright = frame.rotation[(2, 2)] == 1.0 && control.turns_nothing();
             if has_rotary && (aligned || has_linear) && frame.rotation != Matrix3::identity() {
                 let condition = "a plane is tilted, in which the axes turn by themselves";
                 let remedy =

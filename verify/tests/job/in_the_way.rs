@@ -1,0 +1,150 @@
+//! Programs whose motion hits, though one reading of a word would not: each beside the same motion in other words.
+
+use crate::scene::{CLEAN, FANUC, FINDINGS, HEIDENHAIN, LINUXCNC, NONE, SIEMENS, Scene};
+
+/// A B axis that tilts the spindle 160 mm above its gauge point, over a table C.
+const B_HEAD: &str = r#"
+    name = "B head"
+    tool_change = { Z = 0 }
+    axis = [
+        { letter = "X", kind = "linear", carries = "table" },
+        { letter = "C", kind = "rotary", carries = "table", direction = [0, 0, 1], point = [0, 0, -600] },
+        { letter = "Y", kind = "linear", carries = "tool" },
+        { letter = "Z", kind = "linear", carries = "tool" },
+        { letter = "B", kind = "rotary", carries = "tool", direction = [0, 1, 0], point = [0, 0, 160] },
+    ]"#;
+
+/// A trunnion A with a table C.
+const TRUNNION: &str = r#"
+    name = "trunnion"
+    tool_change = { Z = 0 }
+    axis = [
+        { letter = "Y", kind = "linear", carries = "table", rapid = 10000 },
+        { letter = "A", kind = "rotary", carries = "table", direction = [1, 0, 0], point = [0, 0, -480], rapid = 10000 },
+        { letter = "C", kind = "rotary", carries = "table", direction = [0, 0, 1], point = [0, 0, -500], rapid = 10000 },
+        { letter = "X", kind = "linear", carries = "tool", rapid = 10000 },
+        { letter = "Z", kind = "linear", carries = "tool", rapid = 10000 },
+    ]"#;
+
+fn named(file: &'static str, text: &str) -> Scene {
+    let mut scene = Scene::of(text);
+    scene.file = file;
+    scene.job = scene.job.replace("a.nc", file);
+    scene
+}
+
+fn scene(file: &'static str, text: &str, machine: &str, offset: &str) -> Scene {
+    let mut scene =
+        named(file, text).with_file("mine.toml", machine).with("machine = \"mine.toml\"");
+    scene.job = scene.job.replace("LENGTH", "length = 80");
+    scene.job += &format!("[work_offsets]\nG54 = {offset}\n");
+    scene
+}
+
+/// The same path at any rate: an arc at FMAX about a centre is no chord.
+#[test]
+fn an_arc_in_rapid_traverse_is_an_arc() {
+    let arcs = [
+        "CC X+0 Y+0\nC X+50 Y+0 DR- FEED",
+        "CC X+0 Y+0\nCP IPA-180 DR- FEED",
+        "CR X+50 Y+0 R+50 DR- FEED",
+    ];
+    for arc in arcs {
+        for feed in ["F9000", "FMAX"] {
+            let text = format!(
+                "BEGIN PGM A MM\nTOOL CALL 1 Z S1000\nL X-50 Y+0 R0 FMAX M3\nL Z+5 R0 FMAX\n{}\nL Z+100 R0 FMAX\nM30\n\
+                 END PGM A MM\n",
+                arc.replace("FEED", feed)
+            );
+            let mut scene = named("a.h", &text).placed().with("anyway = true");
+            let hit = scene.obstacle([-5.0, 45.0, 0.0], [5.0, 55.0, 20.0]);
+            hit.gives(HEIDENHAIN, FINDINGS, &["V0101 the clamp"]);
+            let mut scene = named("a.h", &text).placed().with("anyway = true");
+            scene.obstacle([-5.0, -5.0, 0.0], [5.0, 5.0, 20.0]).gives(HEIDENHAIN, CLEAN, &[]);
+        }
+    }
+}
+
+/// The head stands at 30°, by the origin of B or by its angle. Under TRAORI an axis that is not programmed stays.
+#[test]
+fn an_origin_of_an_axis_of_the_head_turns_the_tool() {
+    for (offset, b) in [("[0, 0, -440, 0, 30, 0]", "B0"), ("[0, 0, -440, 0, 0, 0]", "B30")] {
+        let text = format!(
+            "G17 G90 G54 G71 G94\nT1 M6\nD1\nS1000 M3\nG0 {b} C0\nG0 X0 Y0 Z100\nTRAORI\nORIAXES\nG54\nG1 Z10 F500\n\
+             G1 X0 Y0 Z200\nTRAFOOF\nG54\nG0 {b} C0\nG0 X0 Y0 Z100\nM30\n"
+        );
+        let scene = scene("a.mpf", &text, B_HEAD, offset);
+        let scene = scene.obstacle([-124.0, -4.0, 40.0], [-116.0, 4.0, 60.0]);
+        scene.gives(SIEMENS, FINDINGS, &["V0101 10 the clamp"]);
+    }
+}
+
+/// M140 retracts along the tool, wherever the datum of its axis is.
+#[test]
+fn a_retract_along_a_tilted_tool_is_not_one_along_z() {
+    for (shift, b, verdict) in [("0", "0", CLEAN), ("30", "0", NONE), ("0", "30", NONE)] {
+        let text = format!(
+            "BEGIN PGM A MM\nTOOL CALL 1 Z S1000\nL B+0 C+0 R0 FMAX M3\nL X-30 Y+0 Z+200 R0 FMAX\n\
+             CYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 B+{shift}\nL B+{b} R0 FMAX\nL Z+50 R0 FMAX\nL M140 MB50 FMAX\n\
+             CYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 B+0\nM30\nEND PGM A MM\n"
+        );
+        let scene = scene("a.h", &text, B_HEAD, "[0, 0, -440]");
+        // Nothing is near the part.
+        let scene = if verdict == CLEAN { scene.with("anyway = true") } else { scene };
+        let scene = scene.obstacle([200.0, 200.0, 0.0], [210.0, 210.0, 10.0]);
+        let gap: &[&str] = if verdict == NONE { &["V0404 9"] } else { &[] };
+        scene.gives(HEIDENHAIN, verdict, gap);
+    }
+}
+
+/// The coordinates of a plane that begins on a turned table are those of the part as it stands, also if the plane is the one
+/// before.
+#[test]
+fn a_plane_that_begins_again_on_a_turned_table_is_another() {
+    let plane = "G68.2 X0. Y0. Z0. I0. J0. K0.";
+    for turn in [format!("{plane}\nG0 X0. Y0.\nG0 C90.\nG69\n{plane}"), format!("G0 C90.\n{plane}")]
+    {
+        let text = format!(
+            "G21 G90 G17 G94 G54\nT1 M6\nS1000 M3\nG0 A0. C0.\nG0 X0. Y0.\nG43 H1 Z20.\n{turn}\nG53.1\nG1 X15. Y0. F500.\n\
+             G1 Z5.\nG1 Z20.\nG0 X0. Y0.\nG69\nG0 X0. Y0.\nG0 Z20.\nM30\n"
+        );
+        let scene = scene("a.nc", &text, TRUNNION, "[0, 0, -440]");
+        let scene = scene.obstacle([-4.0, 11.0, 0.0], [4.0, 19.0, 15.0]);
+        scene.gives(FANUC, NONE, &["V0415"]);
+    }
+}
+
+/// After a tool change that stays, a longer tool stands in the stock: a rest cuts nothing, whatever the motion after it is.
+#[test]
+fn a_longer_tool_that_stands_in_the_stock_is_found() {
+    for word in ["G0", "G1"] {
+        let text = format!(
+            "G21 G90 G17 G94 G54\nT1 M6\nS1000 M3\nG0 X0 Y0\nG43 H1 Z5\nG1 X20 F200\nM5\nT2 M6\nS1000 M3\nG43 H2\n\
+             {word} X10 F200\nG0 Z20\nM2\n"
+        );
+        let mut scene =
+            Scene::of(&text).placed().on("3-axis", "name = ", "tool_change = \"stays\"\nname = ");
+        scene.job = scene
+            .job
+            .replace("length = 50", "length = 50\n[tool.2]\ntool = \"D2Ball\"\nlength = 70");
+        scene.job += "[stock]\nbox = [[-30, -30, -40], [30, 30, 0]]\nspacing = 1\n";
+        let scene = scene.with("anyway = true");
+        scene.gives(LINUXCNC, FINDINGS, &["V0110 11"]);
+    }
+}
+
+/// At some rates the ball runs 0.88 mm deep along the face of a block: more than the resolution allows.
+#[test]
+fn a_box_of_rapid_traverse_keeps_the_resolution_once() {
+    let text =
+        "G21 G90 G17 G94 G54\nT1 M6\nS1000 M3\nG0 X-60 Y4.12\nG43 H1 Z-1\nG0 X60 Y16.92\nM30\n";
+    let ball = "tool Ball { units mm; profile { start (0, 0); arc to (5, 5) center (0, 5) as ball cutting; \
+                line to (5, 30), (0, 30) as shank; } niceness cutting: 1; }";
+    for resolution in [0.5, 0.001] {
+        let mut scene = Scene::of(text).placed().with_file("ball.tool", ball).with("anyway = true");
+        scene.job = scene.job.replace("D2Ball", "ball.tool");
+        let scene = scene.with(&format!("resolution = {resolution}"));
+        let scene = scene.obstacle([-20.0, -40.0, -20.0], [20.0, 0.0, 3.0]);
+        scene.gives(None, FINDINGS, &["V0101 the clamp"]);
+    }
+}
