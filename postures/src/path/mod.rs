@@ -328,7 +328,9 @@ impl<'a> PathPlanner<'a> {
         let more = MOTION_TOLERANCE_FRACTION * self.rules.tolerance;
         match self.validator.certifier.check_motion(&motion, more) {
             MotionVerdict::Clear | MotionVerdict::SurfaceOnly => Some(true),
-            MotionVerdict::Touching(..) | MotionVerdict::Inside(_) => Some(false),
+            MotionVerdict::Touching(..) | MotionVerdict::Near(..) | MotionVerdict::Inside(_) => {
+                Some(false)
+            }
             MotionVerdict::Undecided(_) => None,
         }
     }

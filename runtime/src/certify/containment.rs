@@ -1,16 +1,20 @@
 //! Containment of a tool in the material. No triangle shows that a region of the tool is wholly inside, so one
 //! point of each connected piece of the restricted interior is located.
 
+use crate::certify::nearest::NearestTriangle;
 use crate::certify::part::Location;
 use crate::certify::search::QuerySetting;
 use crate::certify::space::Point;
-use crate::certify::tool_model::field::DeepestPoint;
-use crate::certify::tool_model::section::Owners;
+use crate::certify::tool_model::field::FieldCore;
 use crate::certify::tool_model::{ToolModel, interior};
 use crate::id::SurfaceId;
 use crate::pose::Pose;
-use crate::tool::ToolInfo;
-use nalgebra::Vector3;
+use crate::tool::{Symmetry, ToolInfo};
+use nalgebra::{Point3, Vector3};
+use std::f64::consts::TAU;
+
+/// The number of azimuths at which a ball of a tool with an axis is tried.
+const AZIMUTHS: u32 = 8;
 
 /// The location of the restricted interior of a tool, given that no triangle of the part meets it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,6 +43,8 @@ pub(crate) struct CorePoints {
 #[derive(Clone, Copy)]
 struct Core {
     point: Point,
+    /// The radius of a ball about the point that may have a piece; 0 if the point itself belongs to one.
+    radius: f64,
     surface: SurfaceId,
 }
 
@@ -84,32 +90,22 @@ impl CorePoints {
                 // Any azimuth will do: a tool with a profile is a solid of revolution.
                 let core_points = witnesses.iter().map(|witness| Core {
                     point: [witness.point[0], 0.0, witness.point[1]],
+                    radius: 0.0,
                     surface: tool_model.surface(witness.feature),
                 });
                 Some(core_points.collect())
             }
             ToolModel::Field(field) => {
-                // The tool is assumed to be connected. If not all limits are 0, the points of each region beyond its
-                // limit are.
-                let one = self.limits.iter().all(|limit| *limit == 0.0);
-                let mut core_points = Vec::new();
-                for (index, region) in info.regions.iter().enumerate() {
-                    let limit = self.limits[region.surface.0];
-                    // A connected tool needs one point.
-                    if limit.is_infinite() || (one && index > 0) {
-                        continue;
-                    }
-                    let owners = Owners::of_regions(info, |other, _| one || other == index);
-                    match field.deepest(&owners, limit + tolerance, 2.0) {
-                        DeepestPoint::Found { point, depth, .. } => {
-                            core_points
-                                .push(Core { point, surface: tool_model.surface(depth.feature) });
-                        }
-                        DeepestPoint::NoneDeeper => {}
-                        DeepestPoint::BudgetSpent => return None,
-                    }
-                }
-                Some(core_points)
+                let regions = info.regions.iter();
+                let limits: Vec<f64> =
+                    regions.map(|region| self.limits[region.surface.0]).collect();
+                let cores = field.core_points(&limits, tolerance)?.into_iter();
+                let cores = cores.map(|FieldCore { point, radius, region }| Core {
+                    point,
+                    radius,
+                    surface: tool_model.surface(region),
+                });
+                Some(cores.collect())
             }
         }
     }
@@ -128,10 +124,18 @@ impl QuerySetting<'_> {
         else {
             return Containment::Undecided;
         };
+        let place =
+            |point: Point| pose.tip() + pose.rotation() * Vector3::from(point) * self.length;
         let mut found = Containment::Outside;
-        for Core { point, surface } in core_points {
-            let point = pose.tip() + pose.rotation() * Vector3::from(*point) * self.length;
-            match self.bvh.locate(point) {
+        for Core { point, radius, surface } in core_points {
+            let location = if *radius > 0.0 {
+                self.locate_ball(*point, *radius, place)
+            } else {
+                self.bvh.locate(place(*point))
+            };
+            match location {
+                // A ball inside need not have a piece.
+                Location::Inside if *radius > 0.0 => found = Containment::Undecided,
                 Location::Inside => return Containment::Inside(*surface),
                 Location::Unknown => return Containment::Unknown,
                 // Another piece may still be certain to be inside.
@@ -142,10 +146,28 @@ impl QuerySetting<'_> {
         found
     }
 
+    /// Locates a ball that no triangle meets. Of a tool with an axis it may be turned about the axis: a piece there is a ring.
+    fn locate_ball(
+        &self,
+        [d, y, z]: Point,
+        radius: f64,
+        place: impl Fn(Point) -> Point3<f64>,
+    ) -> Location {
+        let turns = if self.info().symmetry == Symmetry::Revolved { AZIMUTHS } else { 1 };
+        let needed = (radius + 4.0 * self.error) * self.length;
+        for turn in 0..turns {
+            let (sin, cos) = (TAU * f64::from(turn) / f64::from(AZIMUTHS)).sin_cos();
+            let point = place([d * cos - y * sin, d * sin + y * cos, z]);
+            if NearestTriangle::new(&self.bvh).distance(point) > needed {
+                return self.bvh.locate(point);
+            }
+        }
+        Location::Undecided
+    }
+
     /// Returns whether the restricted interior is one connected piece.
     pub(crate) fn is_one_piece(&self, core_points: &mut CorePoints, tolerance: f64) -> bool {
-        core_points
-            .deeper_than(&self.tool_model, self.info(), tolerance)
-            .is_some_and(|core_points| core_points.len() == 1)
+        let known = core_points.deeper_than(&self.tool_model, self.info(), tolerance);
+        matches!(known, Some([core]) if core.radius == 0.0)
     }
 }

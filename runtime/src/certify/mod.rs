@@ -58,7 +58,6 @@ use std::slice;
 use std::sync::Arc;
 use sweep::Sweeper;
 use tool_model::ToolModel;
-use tool_model::field::DeepestPoint;
 use tool_model::section::Owners;
 use triangle::line_search::Goal;
 
@@ -131,20 +130,23 @@ struct Allowances {
 }
 
 impl Allowances {
-    /// Returns the queries that check them. `whole_query` is that of the whole tool with the limit 0.
+    /// Returns the queries that check allowed depths, and those that check margins. `whole_query` is that of the whole tool
+    /// with the limit 0.
     fn queries<'q>(
         &'q mut self,
         setting: &QuerySetting<'_>,
         whole_query: &'q DepthQuery,
-    ) -> &'q [DepthQuery] {
+    ) -> [&'q [DepthQuery]; 2] {
         if self.depths.iter().all(|depth| *depth == 0.0) {
-            return slice::from_ref(whole_query);
+            return [slice::from_ref(whole_query), &[]];
         }
         let Allowances { depths, queries } = self;
-        queries.get_or_insert_with(|| {
+        let queries = queries.get_or_insert_with(|| {
             let depths: Vec<f64> = depths.iter().map(|depth| depth / setting.length).collect();
             DepthQuery::all(setting, &depths)
-        })
+        });
+        // They are in descending order of their limits.
+        queries.split_at(queries.partition_point(|query| query.limit >= 0.0)).into()
     }
 }
 
@@ -310,15 +312,24 @@ impl<'a> Certifier<'a> {
     /// Checks whether the tool is clear of the part, or at most as deep in it as is
     /// [allowed](Certifier::with_allowance). The search stops at the first point that is deeper.
     pub fn check_pose(&mut self, pose: &Pose) -> PoseVerdict {
-        match self.touches(pose) {
-            ContactVerdict::Yes(witness) => PoseVerdict::Touching(witness),
+        let Certifier { setting, whole_query, allowances, core_points, state, budget, .. } = self;
+        let [depths, margins] = allowances.queries(setting, whole_query);
+        match touches(setting, depths, state, pose, *budget) {
+            ContactVerdict::Yes(witness) => return PoseVerdict::Touching(witness),
+            ContactVerdict::Undecided(high) => return PoseVerdict::Undecided(high),
+            ContactVerdict::No => {}
+        }
+        // A tool inside the material is at some distance from its surface, too: margins come last.
+        let clear = match setting.containment(core_points, pose, 4.0 * setting.error) {
+            Containment::Inside(surface) => return PoseVerdict::Inside(surface),
+            Containment::Undecided => return PoseVerdict::Undecided(0.0),
+            Containment::Outside => PoseVerdict::Clear,
+            Containment::Unknown => PoseVerdict::SurfaceOnly,
+        };
+        match touches(setting, margins, state, pose, *budget) {
+            ContactVerdict::Yes(witness) => PoseVerdict::Near(witness),
             ContactVerdict::Undecided(high) => PoseVerdict::Undecided(high),
-            ContactVerdict::No => match self.containment(pose) {
-                Containment::Inside(surface) => PoseVerdict::Inside(surface),
-                Containment::Outside => PoseVerdict::Clear,
-                Containment::Unknown => PoseVerdict::SurfaceOnly,
-                Containment::Undecided => PoseVerdict::Undecided(0.0),
-            },
+            ContactVerdict::No => clear,
         }
     }
 
@@ -380,11 +391,15 @@ impl<'a> Certifier<'a> {
         self.state.clear_cache();
     }
 
-    /// Checks whether a triangle of the part is deeper in the tool than is [allowed](Certifier::with_allowance). A tool wholly
-    /// inside the material touches none.
+    /// Checks whether a triangle of the part is deeper in the tool than is [allowed](Certifier::with_allowance), or else nearer
+    /// than a margin. A tool wholly inside the material touches none.
     pub fn touches(&mut self, pose: &Pose) -> ContactVerdict {
         let Certifier { setting, whole_query, allowances, state, budget, .. } = self;
-        touches(setting, allowances.queries(setting, whole_query), state, pose, *budget)
+        let [depths, margins] = allowances.queries(setting, whole_query);
+        match touches(setting, depths, state, pose, *budget) {
+            ContactVerdict::No => touches(setting, margins, state, pose, *budget),
+            found => found,
+        }
     }
 
     /// Runs a query for each item of a list, such as a pose or a motion, on all cores, and returns the results in its
@@ -416,9 +431,9 @@ impl<'a> Certifier<'a> {
         let offset = (point - tip) / setting.length;
         let z = offset.dot(axis);
         let d = (offset.norm_squared() - z * z).max(0.0).sqrt();
-        allowances.queries(setting, whole_query).iter().any(|query| {
-            query.limit >= 0.0
-                && state.depth(setting, query, [d, 0.0, z]) > query.limit + 2.0 * setting.error
+        let [depths, _] = allowances.queries(setting, whole_query);
+        depths.iter().any(|query| {
+            state.depth(setting, query, [d, 0.0, z]) > query.limit + 2.0 * setting.error
         })
     }
 }
@@ -538,11 +553,7 @@ fn max_possible_depth(setting: &QuerySetting<'_>, surface: usize) -> Option<f64>
         ToolModel::Field(field) => {
             let owners =
                 Owners::of_regions(setting.info(), |_, region| region.surface.0 == surface);
-            match field.deepest(&owners, 0.0, 1.01) {
-                DeepestPoint::Found { max_depth, .. } => Some(max_depth),
-                DeepestPoint::NoneDeeper => Some(0.0),
-                DeepestPoint::BudgetSpent => None,
-            }
+            field.greatest_depth(&owners)
         }
     }
 }

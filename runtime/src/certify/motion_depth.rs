@@ -14,7 +14,7 @@ use super::triangle::line_search::Goal;
 use super::verdict::{MotionDepth, MotionVerdict, Witness};
 use super::{
     Certifier, ContactVerdict, NoSuchSurface, PenetrationGoal, max_possible_depth, penetration,
-    rounding,
+    rounding, touches,
 };
 use crate::certify::search::DepthQuery;
 use crate::id::SurfaceId;
@@ -129,53 +129,37 @@ impl Certifier<'_> {
         if !determines_pose(self.setting.info(), motion) || self.setting.margin() > MARGIN {
             return MotionVerdict::Undecided(0.0);
         }
-        let setting = &self.setting;
-        let queries = self.allowances.queries(setting, &self.whole_query);
+        let Certifier { setting, whole_query, allowances, core_points, state, sweeper, .. } = self;
+        let [depths, margins] = allowances.queries(setting, whole_query);
         let errors = MotionErrors::new(setting, motion);
-        let error = errors.rounding;
         // Written so that a NaN tolerance is replaced.
         let tolerance = errors.min_sweep_tolerance().max(tolerance / setting.length);
-        let mut first: Option<SweepEnd> = None;
-        // A margin no larger than the tolerance requires no check.
-        for query in
-            queries.iter().filter(|query| query.limit >= 0.0 || query.limit + tolerance < 0.0)
-        {
-            let limit = query.limit;
-            let task = SweepTask { setting, query, trajectory: motion, limit, error, tolerance };
-            if let Some(end) = self.sweeper.run(&task, self.budget)
-                && first.as_ref().is_none_or(|first| end.before(first))
-            {
-                first = Some(end);
-            }
+        let mut check = MotionCheck {
+            setting,
+            motion,
+            error: errors.rounding,
+            tolerance,
+            budget: self.budget,
+            state,
+            sweeper,
+        };
+        match check.first(depths) {
+            Some(FirstContact::At(at, witness)) => return MotionVerdict::Touching(at, witness),
+            Some(FirstContact::Undecided(at)) => return MotionVerdict::Undecided(at),
+            None => {}
         }
-        match first {
-            Some(SweepEnd::Deeper { at, pose, best }) => {
-                MotionVerdict::Touching(at, setting.witness(&best, &pose))
-            }
-            // A proof is out of reach, but a contact later in the motion may still be found.
-            Some(SweepEnd::Spent { at }) => self.touches_from(motion, at),
-            None => {
-                let start = motion.pose(0.0);
-                match setting.containment(&mut self.core_points, &start, tolerance) {
-                    Containment::Inside(surface) => MotionVerdict::Inside(surface),
-                    Containment::Outside => MotionVerdict::Clear,
-                    Containment::Unknown => MotionVerdict::SurfaceOnly,
-                    Containment::Undecided => MotionVerdict::Undecided(0.0),
-                }
-            }
+        // A tool inside the material is at some distance from its surface, too: margins come last.
+        let clear = match setting.containment(core_points, &motion.pose(0.0), tolerance) {
+            Containment::Inside(surface) => return MotionVerdict::Inside(surface),
+            Containment::Undecided => return MotionVerdict::Undecided(0.0),
+            Containment::Outside => MotionVerdict::Clear,
+            Containment::Unknown => MotionVerdict::SurfaceOnly,
+        };
+        match check.first(margins) {
+            Some(FirstContact::At(at, witness)) => MotionVerdict::Near(at, witness),
+            Some(FirstContact::Undecided(at)) => MotionVerdict::Undecided(at),
+            None => clear,
         }
-    }
-
-    /// Probes a motion for contact at some times after the one at which the budget was spent. A sweep takes longest
-    /// just before contact, whereas deep contact is found at once.
-    fn touches_from(&mut self, motion: &dyn Trajectory, from: f64) -> MotionVerdict {
-        for step in 1..=INITIAL_TIMES {
-            let at = from + (1.0 - from) * f64::from(step) / f64::from(INITIAL_TIMES);
-            if let ContactVerdict::Yes(witness) = self.touches(&motion.pose(at)) {
-                return MotionVerdict::Touching(at, witness);
-            }
-        }
-        MotionVerdict::Undecided(from)
     }
 
     /// Computes the greatest depth of a surface along a motion, at points to which it is the nearest surface. If it
@@ -232,10 +216,11 @@ impl Certifier<'_> {
         let allowed = if allowed.is_nan() { 0.0 } else { allowed / setting.length };
         let inside_query = self.surface_queries[surface]
             .get_or_insert_with(|| setting.depth_query(0.0, |other| other == surface));
-        // No point is farther from the surface than the largest radius.
         let max_depth = *self.surface_max_depths[surface].get_or_insert_with(|| {
-            let radius = setting.info().radius();
-            max_possible_depth(setting, surface).map_or(radius, |depth| depth.min(radius))
+            // No point of the tool is farther from its surface than the largest radius.
+            let steepest = setting.tool_model.depth_error(0.0)
+                + setting.tool_model.lipschitz() * setting.info().radius();
+            max_possible_depth(setting, surface).map_or(steepest, |depth| depth.min(steepest))
         });
         let depth = allowed.max(0.0);
         let core_points = match &mut self.surface_core_points[surface] {
@@ -260,7 +245,7 @@ impl Certifier<'_> {
         };
         // With a margin, first whether the surface is in the part at all: that is the graver finding.
         let found = search.deepest(depth);
-        if allowed >= 0.0 || matches!(found, MotionDepth::Deeper { .. }) {
+        if allowed >= 0.0 || !matches!(found, MotionDepth::Within) {
             return Ok(found);
         }
         // Without a profile the distance of a surface from outside points is unknown.
@@ -274,6 +259,66 @@ impl Certifier<'_> {
             MotionDepth::Within => found,
             nearer => nearer,
         })
+    }
+}
+
+/// The check of one motion against allowances; lengths are in the tool's unit.
+struct MotionCheck<'a, 's> {
+    setting: &'a QuerySetting<'s>,
+    motion: &'a dyn Trajectory,
+    /// The error bound of a point along the motion.
+    error: f64,
+    tolerance: f64,
+    budget: u32,
+    state: &'a mut SearchState,
+    sweeper: &'a mut Sweeper,
+}
+
+/// What ends the check of a motion.
+enum FirstContact {
+    At(f64, Witness),
+    /// The motion is clear up to this fraction of it; the rest is unknown.
+    Undecided(f64),
+}
+
+impl MotionCheck<'_, '_> {
+    /// Returns the first contact beyond the limit of a query.
+    fn first(&mut self, queries: &[DepthQuery]) -> Option<FirstContact> {
+        let MotionCheck { setting, motion, error, tolerance, budget, .. } = *self;
+        let mut first: Option<SweepEnd> = None;
+        // A margin no larger than the tolerance requires no check.
+        for query in
+            queries.iter().filter(|query| query.limit >= 0.0 || query.limit + tolerance < 0.0)
+        {
+            let limit = query.limit;
+            let task = SweepTask { setting, query, trajectory: motion, limit, error, tolerance };
+            if let Some(end) = self.sweeper.run(&task, budget)
+                && first.as_ref().is_none_or(|first| end.before(first))
+            {
+                first = Some(end);
+            }
+        }
+        Some(match first? {
+            SweepEnd::Deeper { at, pose, best } => {
+                FirstContact::At(at, setting.witness(&best, &pose))
+            }
+            // A proof is out of reach, but a contact later in the motion may still be found.
+            SweepEnd::Spent { at } => self.probe(queries, at),
+        })
+    }
+
+    /// Probes the motion for contact at some times after the one at which the budget was spent. A sweep takes longest
+    /// just before contact, whereas deep contact is found at once.
+    fn probe(&mut self, queries: &[DepthQuery], from: f64) -> FirstContact {
+        for step in 1..=INITIAL_TIMES {
+            let at = from + (1.0 - from) * f64::from(step) / f64::from(INITIAL_TIMES);
+            let pose = self.motion.pose(at);
+            let found = touches(self.setting, queries, self.state, &pose, self.budget);
+            if let ContactVerdict::Yes(witness) = found {
+                return FirstContact::At(at, witness);
+            }
+        }
+        FirstContact::Undecided(from)
     }
 }
 

@@ -107,19 +107,21 @@ impl<'a> CertifiedScene<'a> {
     }
 
     /// Checks the tool at a pose as [`Certifier::check_pose`] does, and returns the gravest verdict: contact, inside the
-    /// material, undecided, only the surface checked, and then clear. `None` without a body.
+    /// material, undecided, nearer than a margin, only the surface checked, and then clear. `None` without a body.
     pub fn check_pose(&mut self, pose: &Pose) -> Option<BodyAnswer<'_, PoseVerdict>> {
         let answers =
             self.answers(|certifier, frame| match certifier.check_pose(&pose.relative_to(frame)) {
                 PoseVerdict::Touching(witness) => PoseVerdict::Touching(witness.in_world(frame)),
+                PoseVerdict::Near(witness) => PoseVerdict::Near(witness.in_world(frame)),
                 other => other,
             });
         answers.min_by_key(|answer| match answer.answer {
             PoseVerdict::Touching(_) => 0,
             PoseVerdict::Inside(_) => 1,
             PoseVerdict::Undecided(_) => 2,
-            PoseVerdict::SurfaceOnly => 3,
-            PoseVerdict::Clear => 4,
+            PoseVerdict::Near(_) => 3,
+            PoseVerdict::SurfaceOnly => 4,
+            PoseVerdict::Clear => 5,
         })
     }
 
@@ -135,6 +137,9 @@ impl<'a> CertifiedScene<'a> {
                 MotionVerdict::Touching(at, witness) => {
                     MotionVerdict::Touching(at, witness.in_world(frame))
                 }
+                MotionVerdict::Near(at, witness) => {
+                    MotionVerdict::Near(at, witness.in_world(frame))
+                }
                 other => other,
             }
         });
@@ -142,8 +147,9 @@ impl<'a> CertifiedScene<'a> {
             MotionVerdict::Touching(..) => 0,
             MotionVerdict::Inside(_) => 1,
             MotionVerdict::Undecided(_) => 2,
-            MotionVerdict::SurfaceOnly => 3,
-            MotionVerdict::Clear => 4,
+            MotionVerdict::Near(..) => 3,
+            MotionVerdict::SurfaceOnly => 4,
+            MotionVerdict::Clear => 5,
         })
     }
 

@@ -175,11 +175,10 @@ impl QuerySetting<'_> {
         let d = x.hypot(y);
         let [cosine, sine] = if d > 0.0 { [x / d, y / d] } else { [1.0, 0.0] };
         let to_tool = |[d, z]: MeridianPoint| Vector3::new(cosine * d, sine * d, z);
-        let feature = &section.features[best.feature];
-        let foot = to_tool(feature.foot([d, z]));
+        let foot = to_tool(section.features[best.feature].foot([d, z]));
         Some(ToolPoint {
             point: pose.tip() + pose.rotation() * foot * self.length,
-            normal: pose.rotation() * to_tool(feature.normal([d, z])),
+            normal: pose.rotation() * to_tool(section.normal(best.feature, [d, z])),
         })
     }
 
@@ -518,6 +517,13 @@ impl SearchState {
             };
             if let Some(LineMaximum { t, feature }) = found {
                 self.best = Some(DeepestCandidate { point: line.point(t), feature, index });
+            }
+        }
+        if let Side::Inside = side {
+            let rectangle = SubTriangle::new(corners).rectangle(of.error);
+            let bound = section.unresolved_depth(owners, &rectangle);
+            if bound > self.search.threshold() {
+                self.search.leave(bound);
             }
         }
         if before.is_some_and(|before| self.search.raise(before, triangle.skew)) {

@@ -121,14 +121,18 @@ pub enum PoseVerdict {
     /// consistently oriented. Whether the tool is inside the material is unknown.
     SurfaceOnly,
     /// A point of the part is deeper in the tool than its surface is [allowed](super::Certifier::with_allowance) to
-    /// be, or nearer to a surface than its margin.
+    /// be.
     Touching(Witness),
+    /// No point is too deep, and the tool is outside the part if that has an inside, but a point of the part is nearer to a
+    /// surface than its margin.
+    Near(Witness),
     /// A connected piece of the restricted interior is inside the material, where no triangle shows it. The
     /// restricted interior is the whole tool, or the points that are deeper than the allowance of their nearest
     /// surface. Holds a surface of that piece.
     Inside(SurfaceId),
-    /// Rounding decides, or the budget is spent: no point of the part exceeds its allowance by more than this, in the
-    /// part's unit. It is 0 if the only open question is whether the tool is inside the material.
+    /// Rounding decides, or the budget is spent: no point of the part is deeper than is allowed, or nearer than a margin if no
+    /// point is deeper, by more than this, in the part's unit. It is 0 if the open question is whether the tool is inside the
+    /// material. Where depth or the inside is undecided, nothing is said of margins.
     Undecided(f64),
 }
 
@@ -150,6 +154,7 @@ impl fmt::Display for PoseVerdict {
                 f.write_str("no triangle is too deep, and the part has no inside: repair its mesh")
             }
             PoseVerdict::Touching(witness) => write!(f, "too deep: {witness}"),
+            PoseVerdict::Near(witness) => write!(f, "nearer than a margin: {witness}"),
             PoseVerdict::Inside(surface) => {
                 write!(f, "inside the material, with surface {}", surface.0)
             }
@@ -177,13 +182,16 @@ pub enum MotionVerdict {
     /// The same, but the part has no inside: its mesh is open, inside out or not consistently oriented. Whether the
     /// tool is inside the material is unknown.
     SurfaceOnly,
-    /// At this fraction of the motion, from 0 to 1, a point exceeds its allowance. It may not be the first.
+    /// At this fraction of the motion, from 0 to 1, a point is deeper than is allowed. It may not be the first.
     Touching(f64, Witness),
+    /// No point is too deep at any time, and the tool is outside the part if that has an inside, but at this fraction of the
+    /// motion a point is nearer to a surface than its margin. It may not be the first.
+    Near(f64, Witness),
     /// A connected piece of the restricted interior is inside the material when the motion begins, where no triangle
     /// shows it. Holds a surface of that piece.
     Inside(SurfaceId),
     /// The budget is spent, or rounding decides. The motion is clear up to this fraction of it, from 0 to 1; the rest
-    /// is unknown.
+    /// is unknown. Where depth or the inside is undecided, nothing is said of margins.
     Undecided(f64),
 }
 
@@ -197,6 +205,9 @@ impl fmt::Display for MotionVerdict {
             }
             MotionVerdict::Touching(at, witness) => {
                 write!(f, "too deep at {:.1} % of the motion: {witness}", 100.0 * at)
+            }
+            MotionVerdict::Near(at, witness) => {
+                write!(f, "nearer than a margin at {:.1} % of the motion: {witness}", 100.0 * at)
             }
             MotionVerdict::Inside(surface) => {
                 write!(f, "begins inside the material, with surface {}", surface.0)

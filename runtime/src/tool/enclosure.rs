@@ -291,6 +291,18 @@ impl EvaluationEnclosure {
         self.depth.value.high
     }
 
+    /// Returns a lower bound on the depth of the points of the box that are inside.
+    pub fn min_depth(&self) -> f64 {
+        self.depth.value.low
+    }
+
+    /// Returns a lower bound on the rate at which the depth of points inside grows along a direction, anywhere in the box.
+    pub fn min_rise(&self, direction: [f64; 3]) -> f64 {
+        let rises =
+            [0, 1, 2].map(|k| self.depth.linear.slope[k].times(Interval::point(direction[k])));
+        rises.into_iter().fold(ZERO, Interval::plus).low
+    }
+
     /// Returns an upper bound on the depth of all points in the convex hull of three corners. Infinite or NaN where a
     /// slope is not known.
     ///

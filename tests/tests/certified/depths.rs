@@ -124,6 +124,7 @@ impl Validation<'_> {
                     self.add_violation("the witness of a touch is outside", case);
                 }
             }
+            PoseVerdict::Near(_) => self.add_violation("a margin that nobody asked for", case),
             PoseVerdict::Undecided(high) => {
                 self.tally.add("undecided", 1);
                 if max_depth > high + self.rounding {

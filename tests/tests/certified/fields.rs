@@ -206,3 +206,93 @@ fn rejects_a_tool_whose_depth_jumps() {
     let error = Certifier::new(&bvh, &tool).expect_err("a refusal").to_string();
     assert!(error.contains("Jump") && error.contains("profile"), "{error}");
 }
+
+/// A cube of 2 mm in the notch of the bracket. Its distance from the bracket's boxes is known by hand.
+#[test]
+fn a_part_in_a_notch_is_at_its_distance() {
+    for (low, high, distance) in [
+        ([8.0, -1.0, 14.0], [10.0, 1.0, 16.0], 8.0),
+        ([2.0, -1.0, 7.0], [4.0, 1.0, 9.0], 1.0),
+        ([14.0, -1.0, 18.0], [16.0, 1.0, 20.0], 12.0),
+    ] {
+        let cube = TriangleBvh::new(&block(low, high));
+        let mut certifier = Certifier::new(&cube, tool("LBracket")).expect("proved");
+        let turned = touchoff::Pose::from_quaternion(Point3::origin(), [0.0, 0.0, 0.0, 1.0]);
+        let pose = turned.expect("a quaternion");
+        let clearance = certifier.clearance(&pose, 1e-3).distance;
+        assert!(clearance.contains(distance) && clearance.low > 0.4 * distance, "{clearance}");
+        let signed = certifier.signed_distance(&pose, 1e-3);
+        assert!(signed.contains(distance) && signed.low > 0.0, "{signed}");
+        assert_eq!(certifier.check_pose(&pose), PoseVerdict::Clear, "{low:?}");
+        assert!(certifier.deepest(&pose, 1e-3).depth.high < 1e-9, "{low:?}");
+    }
+}
+
+/// The edge of a block beside a ball that is written as a region.
+#[test]
+fn the_distance_of_an_edge_from_a_region_is_not_below_its_interval() {
+    let text = "tool Sphere { units mm; tip z = -5; curve sphere = hypot(d, z) - 5;
+        region sphere as ball cutting where sphere <= 0 { depth: -sphere; direction: away from (0, 0); }
+        niceness cutting: 1; }";
+    let tool = Interpreted::parse(&Source::new("sphere.tool", text)).expect("a tool");
+    let edge = TriangleBvh::new(&block([0.0, -20.0, -20.0], [40.0, 20.0, 0.0]));
+    let mut certifier = Certifier::new(&edge, &tool).expect("proved");
+    let mut rng = Rng::new(1);
+    for gap in [1e-3, 0.05, 0.2, 1.0] {
+        for _ in 0..8 {
+            let angle = rng.between(1.65, 3.1);
+            let centre = Vector3::new(angle.cos(), 0.0, angle.sin()) * (5.0 + gap);
+            let axis = Vector3::from(rng.direction());
+            let pose = pose((centre - 5.0 * axis).into(), axis.into());
+            let found = certifier.clearance(&pose, 1e-4).distance;
+            assert!(
+                found.low <= gap + 1e-9 && gap <= found.high && found.low > 0.1 * gap,
+                "{gap}: {found}"
+            );
+            assert_eq!(certifier.check_pose(&pose), PoseVerdict::Clear, "{gap}");
+        }
+    }
+}
+
+/// Two balls of one tool: each that is inside the part is found.
+#[test]
+fn every_piece_of_a_tool_of_several_pieces_is_located() {
+    let two_regions = "tool Twin { units mm; tip z = 0;
+        curve a = hypot(d, z - 1) - 1; curve b = hypot(d, z - 11) - 2;
+        region low as low cutting where a <= 0 { depth: -a; }
+        region high as high where b <= 0 { depth: -b; } niceness cutting: 1; }";
+    let one_region = "tool Twin { units mm; tip z = 0; curve a = 3 - hypot(d, abs(z - 10) - 7);
+        region balls as balls cutting where a >= 0 { depth: a; } niceness cutting: 1; }";
+    for (text, balls) in
+        [(two_regions, [[0.0, 2.0], [9.0, 13.0]]), (one_region, [[0.0, 6.0], [14.0, 20.0]])]
+    {
+        let tool = Interpreted::parse(&Source::new("twin.tool", text)).expect("a tool");
+        for (k, [low, high]) in balls.into_iter().enumerate() {
+            let part = block([-20.0, -20.0, low - 2.0], [20.0, 20.0, high + 2.0]);
+            let part = TriangleBvh::new(&part);
+            let mut certifier = Certifier::new(&part, &tool).expect("proved");
+            let at = pose([0.0; 3], UP);
+            assert!(matches!(certifier.check_pose(&at), PoseVerdict::Inside(_)), "{k} of {text}");
+            let path = motion(&at, &pose([0.1, 0.0, 0.0], UP));
+            let verdict = certifier.check_motion(&path, 1e-3);
+            assert!(matches!(verdict, MotionVerdict::Inside(_)), "{k} of {text}: {verdict:?}");
+            assert_eq!(certifier.check_pose(&pose([60.0, 0.0, 0.0], UP)), PoseVerdict::Clear);
+        }
+    }
+}
+
+/// A depth of three times the distance, in the middle of a plate: 9 mm at 3 mm from the side.
+#[test]
+fn the_bound_of_a_motion_is_not_below_a_steep_depth() {
+    let text = "tool Steep { units mm; curve side = 3 - d; curve end = 30 - z;
+        region side as flute where 0 <= side <= min(z, end) { depth: 3*side; }
+        region low as flute where 0 <= z <= min(side, end) { depth: 3*z; }
+        region end as flute where 0 <= end <= min(side, z) { depth: 3*end; } }";
+    let tool = Interpreted::parse(&Source::new("steep.tool", text)).expect("a tool");
+    let plate = TriangleBvh::new(&block([-0.1, -20.0, -5.0], [0.1, 20.0, 40.0]));
+    let mut certifier = Certifier::new(&plate, &tool).expect("proved");
+    let path = motion(&pose([-4.5, 0.0, 0.0], UP), &pose([3.5, 0.0, 0.0], UP));
+    let found = certifier.motion_depth(SurfaceId(0), &path, 0.0, 1e-3).expect("a surface");
+    let MotionDepth::Deeper { max_depth, .. } = found else { panic!("{found:?}") };
+    assert!((9.0..9.5).contains(&max_depth), "{found:?}");
+}

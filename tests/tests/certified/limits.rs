@@ -205,7 +205,7 @@ fn a_margin_far_larger_than_the_tool_is_judged_within_its_rounding() {
         let mut certifier = certifier.with_allowance("face", -MARGIN).expect("a surface");
         let verdict = certifier.check_motion(&motion(&pose, &pose), 1e-6);
         let text = format!("{lack}: {verdict:?} at {pose:?}");
-        assert_eq!(matches!(verdict, MotionVerdict::Touching(..)), lack > 0.0, "{text}");
+        assert_eq!(matches!(verdict, MotionVerdict::Near(..)), lack > 0.0, "{text}");
         assert_eq!(verdict == MotionVerdict::SurfaceOnly, lack < 0.0, "{text}");
     }
 }

@@ -29,6 +29,7 @@ mod end_in_part;
 mod fields;
 mod hard_cases;
 mod inside_out;
+mod kinks;
 mod limits;
 mod motions;
 mod overhang;

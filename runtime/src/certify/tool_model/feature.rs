@@ -295,19 +295,6 @@ impl Feature {
         if length > 0.0 { vector.map(|part| part / length) } else { self.signed_gradient(p) }
     }
 
-    /// Returns the outward unit normal at the foot of a point. For a point beyond an end it points away from the foot.
-    pub(crate) fn normal(&self, p: MeridianPoint) -> MeridianPoint {
-        let inward = self.signed_gradient(p);
-        let away = minus(p, self.foot(p));
-        let length = norm(away);
-        if length == 0.0 {
-            return inward.map(|part| -part);
-        }
-        // Away from the foot is outward or inward, whichever is on the gradient's side.
-        let sense = if dot(inward, away) > 0.0 { -1.0 } else { 1.0 };
-        away.map(|part| sense * part / length)
-    }
-
     /// Returns at least the distance of every point in a triangle.
     #[inline]
     pub(crate) fn at_most(&self, triangle: &Triangle) -> f64 {
@@ -340,6 +327,93 @@ impl Feature {
         coarse.max(self.separation(triangle, middle)).max(self.separation(triangle, nearer))
     }
 
+    /// Returns whether another feature, which begins where this one ends, turns by little there.
+    pub(crate) fn continues_in(&self, other: &Feature) -> bool {
+        let [one, other] = [self.tangent_at(1), other.tangent_at(0)];
+        dot(one, other) > 0.0 && cross(one, other).abs() < MAX_TURN_IN_LINE
+    }
+
+    /// Returns whether this feature is farther than another from every point of a polygon, by more than a margin.
+    pub(crate) fn is_farther(
+        &self,
+        other: &Feature,
+        corners: &[MeridianPoint],
+        margin: f64,
+    ) -> bool {
+        // Affine less convex is concave, and least at a corner.
+        let centre = mean(corners);
+        corners.iter().all(|p| {
+            self.distance_lower(centre, *p) - other.distance_upper(centre, corners, *p) > margin
+        })
+    }
+
+    /// Returns a lower bound of the distance of a corner `p` of a polygon about `centre`, such that the affine function with
+    /// these values is one at every point of the polygon. It is exact for a line on one side of which the polygon lies.
+    fn distance_lower(&self, centre: MeridianPoint, p: MeridianPoint) -> f64 {
+        match &self.circle {
+            // The distance from a convex set is at least that from a line which separates the two.
+            None => {
+                let foot = self.foot(centre);
+                let away = minus(centre, foot);
+                let length = norm(away);
+                if length > 0.0 { dot(away, minus(p, foot)) / length } else { 0.0 }
+            }
+            // An arc is no nearer than its circle: of the two lower bounds inside and outside of it one is concave, and the
+            // other is at least its tangent.
+            Some(Circle { centre: middle, radius, .. }) => {
+                let out = minus(centre, *middle);
+                let length = norm(out);
+                if length < *radius {
+                    radius - norm(minus(p, *middle))
+                } else {
+                    dot(out, minus(p, *middle)) / length - radius
+                }
+            }
+        }
+    }
+
+    /// Returns an upper bound of the distance of a corner `p` of a polygon about `centre`, such that a convex function with
+    /// these values is one at every point of the polygon. It is exact for a line.
+    fn distance_upper(
+        &self,
+        centre: MeridianPoint,
+        corners: &[MeridianPoint],
+        p: MeridianPoint,
+    ) -> f64 {
+        let Some(circle @ Circle { centre: middle, radius, .. }) = &self.circle else {
+            return self.distance(p);
+        };
+        if corners.iter().all(|corner| self.sector(circle, *corner)) {
+            let out = minus(centre, *middle);
+            let length = norm(out);
+            let along = |p: MeridianPoint| {
+                if length > 0.0 { dot(out, minus(p, *middle)) / length } else { 0.0 }
+            };
+            if corners.iter().all(|corner| norm(minus(*corner, *middle)) <= *radius) {
+                return radius - along(p);
+            }
+            if corners.iter().all(|corner| along(*corner) >= *radius) {
+                return norm(minus(p, *middle)) - radius;
+            }
+        }
+        let [from, to] = self.ends.map(|end| norm(minus(centre, end)));
+        norm(minus(p, self.ends[usize::from(to < from)]))
+    }
+
+    /// Returns whether the distances of two features differ by at most `margin` at every point of a polygon.
+    pub(crate) fn is_as_far_as(
+        &self,
+        other: &Feature,
+        corners: &[MeridianPoint],
+        margin: f64,
+    ) -> bool {
+        let centre = mean(corners);
+        let is_within = |one: &Feature, other: &Feature, p: MeridianPoint| {
+            one.distance_upper(centre, corners, p) - other.distance_lower(centre, p) <= margin
+        };
+        corners.iter().all(|p| is_within(self, other, *p) && is_within(other, self, *p))
+    }
+
     /// Returns the signed distance of a triangle beyond the line that touches the feature on the side of `viewpoint`,
     /// normal to the direction of `viewpoint` from its foot; 0 if `viewpoint` is on the feature.
     fn separation(&self, triangle: &Triangle, viewpoint: MeridianPoint) -> f64 {
@@ -357,6 +431,14 @@ impl Feature {
         };
         (min3(triangle.map(|p| dot(vector, p))) - max_dot) / length
     }
+}
+
+/// The angle, in radians, up to which features meet nearly in line.
+const MAX_TURN_IN_LINE: f64 = 1.0 / 16.0;
+
+/// Returns the mean of the corners of a polygon.
+pub(crate) fn mean(corners: &[MeridianPoint]) -> MeridianPoint {
+    [0, 1].map(|k| corners.iter().map(|corner| corner[k]).sum::<f64>() / corners.len() as f64)
 }
 
 /// Returns at least the depth of every point of a triangle inside a circle. No point is deeper than under any

@@ -12,7 +12,7 @@ use crate::certify::triangle::{SubTriangle, TrianglePiece};
 use crate::handle::ToolHandle;
 use crate::interval::Interval;
 use crate::tool::{
-    EvaluationEnclosure, Evaluations, LANES, Outputs, PointBatch, Symmetry, ToolInfo,
+    EvaluationEnclosure, Evaluations, LANES, Outputs, PointBatch, Symmetry, ToolInfo, bit,
 };
 use fearless_simd::Level;
 use std::cmp::Ordering;
@@ -26,6 +26,8 @@ pub(crate) struct Field<'a> {
     pub(crate) steep: f64,
     /// The error bound of a depth.
     pub(crate) error: f64,
+    /// The error bound of a point.
+    point_error: f64,
     pub(crate) level: Level,
 }
 
@@ -79,8 +81,8 @@ impl Scratch {
 }
 
 impl<'a> Field<'a> {
-    /// Creates the field of a tool; `None` if no Lipschitz constant of its depth is proved.
-    pub(crate) fn new(tool: ToolHandle<'a>, level: Level) -> Option<Field<'a>> {
+    /// Creates the field of a tool, given the error bound of a point; `None` if no Lipschitz constant of its depth is proved.
+    pub(crate) fn new(tool: ToolHandle<'a>, level: Level, point_error: f64) -> Option<Field<'a>> {
         let info = tool.info();
         let steep = info.depth.lipschitz?.max(1.0);
         // Let u be the unit roundoff. Halving rounds a midpoint by u of its distance from the tip. A relevant piece of
@@ -90,10 +92,11 @@ impl<'a> Field<'a> {
         // 2^-40 of the tool's size, the finest depth that is reported, and 10 u size are left for the middle and the
         // radius of the last piece.
         let error = info.depth.rounding + 128.0 * f64::EPSILON * steep * info.size();
-        Some(Field { tool, steep, error, level })
+        Some(Field { tool, steep, error, point_error, level })
     }
 
-    /// Returns the depths of the points; outside, minus a lower bound of the distance from the tool.
+    /// Returns the depths of the points; outside, minus a lower bound of the distance from the tool, which is below 0 even where
+    /// nothing is known of that distance.
     fn depths(&self, scratch: &mut Scratch, count: usize) -> [Depth; LANES] {
         let Scratch { points, evaluations, .. } = scratch;
         let ask = Outputs { depth: true, region: true, ..Outputs::INSIDE };
@@ -106,7 +109,7 @@ impl<'a> Field<'a> {
                 depth.feature = evaluations.region[lane] as usize;
             } else {
                 let point = [0, 1, 2].map(|axis| lists[axis][lane]);
-                depth.value = -self.tool.clearance(point);
+                depth.value = -self.tool.clearance(point).max(f64::MIN_POSITIVE);
             }
         }
         depths
@@ -122,6 +125,30 @@ impl<'a> Field<'a> {
         scratch.points.clear();
         scratch.points.push(point);
         self.depths(scratch, 1)[0]
+    }
+
+    /// Returns a lower bound of the distance of a point outside from the tool, at least `known`: enclosures show that so large
+    /// a box about the point is free.
+    fn free_radius(&self, scratch: &mut Scratch, point: Point, known: f64) -> f64 {
+        let is_free = |scratch: &mut Scratch, radius: f64| {
+            self.about(scratch, point, radius).is_some_and(|found| !found.inside)
+        };
+        let mut radius = self.info().size();
+        for _ in 0..MAX_RADIUS_HALVINGS {
+            if radius <= known {
+                break;
+            }
+            if is_free(scratch, radius) {
+                // The next larger one tried is not: three more are tried between the two.
+                let step = 0.25 * radius;
+                while is_free(scratch, radius + step) && radius < self.info().size() {
+                    radius += step;
+                }
+                return radius;
+            }
+            radius *= 0.5;
+        }
+        known
     }
 
     /// Returns the depth that a search inside or outside the tool compares: with `outside`, points inside count as 0.
@@ -172,9 +199,22 @@ impl<'a> Field<'a> {
             }
             let mut depths = self.depths(scratch, count);
             for (lane, depth) in depths.iter_mut().enumerate().take(count) {
+                let known = -depth.value;
                 depth.value = self.searched_value(depth.value, outside);
+                // Enclosures cost more than the evaluation did.
+                let near = reach[lane].max(self.info().size() / 64.0);
+                if outside && known > 0.0 && known < near {
+                    depth.value = -self.free_radius(scratch, centres[lane], known);
+                    // That is not sharp, so that a piece this small tells no more than its middle.
+                    if reach[lane] < RESOLVED_FRACTION * -depth.value {
+                        depth.value += reach[lane];
+                        reach[lane] = 0.0;
+                    }
+                }
                 let point = centres[lane];
+                // A point outside is no contact, however small the known bound of its distance.
                 if depth.value > search.best
+                    && (outside || depth.value >= 0.0)
                     && let Some(depth) = self.owned(scratch, owners, point, *depth)
                     && search.take(&depth)
                 {
@@ -185,7 +225,8 @@ impl<'a> Field<'a> {
             for lane in 0..count {
                 let Bounded { bound: before, item: TrianglePiece { index, piece } } =
                     candidates[lane];
-                let bound = depths[lane].value + self.steep * reach[lane] + self.error;
+                let steep = if outside { 1.0 } else { self.steep };
+                let bound = depths[lane].value + steep * reach[lane] + self.error;
                 let mut bound = before.min(bound);
                 // Enclosures cost more than the evaluation did, and bound no distance.
                 if bound > search.threshold() && !outside {
@@ -285,6 +326,11 @@ impl Field<'_> {
         })
     }
 
+    /// Returns an interval with room for the error of a point.
+    fn widened(&self, Interval { low, high }: Interval) -> Interval {
+        Interval::new(low - self.point_error, high + self.point_error)
+    }
+
     /// Returns at least the depth of every owned point of a piece. `from` is a point of the piece.
     fn at_most(
         &self,
@@ -302,17 +348,18 @@ impl Field<'_> {
         let (sides, at) = if self.is_revolved() {
             let max_radius = hull(far, corners.map(|p| p[0].hypot(p[1]))).high;
             let min_radius = hull(far, outward).low.max(0.0);
-            ([Interval::new(min_radius, max_radius), Interval::default(), z], [far, 0.0, from[2]])
+            let radii = self.widened(Interval::new(min_radius, max_radius));
+            let radii = Interval::new(radii.low.max(0.0), radii.high);
+            ([radii, Interval::default(), self.widened(z)], [far, 0.0, from[2]])
         } else {
             let [x, y] = [0, 1].map(|k| hull(from[k], corners.map(|p| p[k])));
-            ([x, y, z], from)
+            ([x, y, z].map(|side| self.widened(side)), from)
         };
         let Some(found) = self.tool.enclose(sides, at, &mut scratch.evaluations) else {
             return f64::INFINITY;
         };
         if !found.inside {
-            // Nothing is inside, up to the error of a depth.
-            return self.error;
+            return f64::NEG_INFINITY;
         }
         if !owners.own_some(found.regions) {
             return f64::NEG_INFINITY;
@@ -335,17 +382,7 @@ impl Field<'_> {
     }
 }
 
-/// The result of a search for the deepest point of some owners, in the tool's frame and unit.
-pub(crate) enum DeepestPoint {
-    /// A point, its depth, and an upper bound on the depth of all the owners' points.
-    Found { point: Point, depth: Depth, max_depth: f64 },
-    /// Proof that no point is deeper than the least depth asked for.
-    NoneDeeper,
-    /// No point was found before the budget was spent.
-    BudgetSpent,
-}
-
-/// A box in the tool's frame.
+/// A box in the tool's frame. For a tool with an axis it lies in the half plane.
 #[derive(Clone, Copy)]
 struct Cell {
     low: Point,
@@ -353,9 +390,35 @@ struct Cell {
 }
 
 impl Cell {
+    fn middle(&self) -> Point {
+        [0, 1, 2].map(|k| f64::midpoint(self.low[k], self.high[k]))
+    }
+
+    fn size(&self) -> Point {
+        [0, 1, 2].map(|k| self.high[k] - self.low[k])
+    }
+
+    /// Returns the distance from its middle to its corners.
+    fn reach(&self) -> f64 {
+        0.5 * self.size().iter().map(|side| side * side).sum::<f64>().sqrt()
+    }
+
+    /// Returns the smallest box about both.
+    fn hull(&self, other: &Cell) -> Cell {
+        Cell {
+            low: [0, 1, 2].map(|k| self.low[k].min(other.low[k])),
+            high: [0, 1, 2].map(|k| self.high[k].max(other.high[k])),
+        }
+    }
+
+    /// Returns whether both have a point in common.
+    fn meets(&self, other: &Cell) -> bool {
+        (0..3).all(|k| self.low[k] <= other.high[k] && other.low[k] <= self.high[k])
+    }
+
     /// Returns both halves of its longest side.
     fn halves(self) -> [Cell; 2] {
-        let size = [0, 1, 2].map(|k| self.high[k] - self.low[k]);
+        let size = self.size();
         let longest = (0..3).fold(0, |best, k| if size[k] > size[best] { k } else { best });
         let middle = f64::midpoint(self.low[longest], self.high[longest]);
         let (mut lower, mut upper) = (self, self);
@@ -368,10 +431,34 @@ impl Cell {
 /// The number of boxes that are examined before the search gives up.
 const BUDGET: u32 = 1 << 18;
 
+/// The number of times that the radius of a box about a point outside is halved before nothing is known of its distance.
+const MAX_RADIUS_HALVINGS: u32 = 20;
+
+/// Pieces smaller than this fraction of their distance are not halved in the search for the least one.
+const RESOLVED_FRACTION: f64 = 0.125;
+
+/// A translation of a box into another one.
+struct Way {
+    way: Point,
+    /// The square of its length.
+    length: f64,
+    /// The length by which the box is larger than the other.
+    lack: f64,
+}
+
+/// A ball that stands for connected pieces of the restricted interior.
+#[derive(Clone, Copy)]
+pub(crate) struct FieldCore {
+    /// A point of a piece, or the middle of a box that may have pieces. For a tool with an axis it stands for a circle.
+    pub(crate) point: Point,
+    /// 0 for a point of a piece, else the radius of a ball about the box.
+    pub(crate) radius: f64,
+    pub(crate) region: usize,
+}
+
 impl Field<'_> {
-    /// Searches for a point of the owners that is deeper than `min_depth`. The bound on the depth of all their points is
-    /// at most `factor`, which is more than 1, times the depth found unless the budget is spent first.
-    pub(crate) fn deepest(&self, owners: &Owners, min_depth: f64, factor: f64) -> DeepestPoint {
+    /// Returns the smallest box about the tool that is known.
+    fn extent(&self) -> Cell {
         let info = self.info();
         let Interval { low: bottom, high: top } = info.reach();
         // For a tool with an axis the half plane is enough.
@@ -379,33 +466,136 @@ impl Field<'_> {
             Symmetry::Revolved => [Interval::new(0.0, info.radius()), Interval::default()],
             Symmetry::Solid { extent } => extent,
         };
-        let (low, high) = ([x.low, y.low, bottom], [x.high, y.high, top]);
+        Cell { low: [x.low, y.low, bottom], high: [x.high, y.high, top] }
+    }
+
+    /// Returns an enclosure of the evaluation over a box.
+    fn enclose(&self, scratch: &mut Scratch, cell: &Cell) -> Option<EvaluationEnclosure> {
+        let sides = [0, 1, 2].map(|k| Interval::new(cell.low[k], cell.high[k]));
+        self.tool.enclose(sides, cell.middle(), &mut scratch.evaluations)
+    }
+
+    /// Returns balls of which at least one contains a point of each connected piece of the restricted interior: the points
+    /// that are deeper than the limit of their region by more than a tolerance. Returns `None` if the tool has no enclosures.
+    ///
+    /// Boxes are halved. Those that enclosures show to be wholly in the interior are joined where they meet, and one point is
+    /// enough for all that are. Of the others, whose points may be inside, each is compared with a box near it that is
+    /// wholly inside: if depth does not fall on the way there, and no point of the way has another limit, each of its points
+    /// is connected with that box. What is left stands for itself.
+    pub(crate) fn core_points(&self, limits: &[f64], tolerance: f64) -> Option<Vec<FieldCore>> {
         let mut scratch = Scratch::default();
-        let mut cells =
-            BinaryHeap::from([Bounded { bound: f64::INFINITY, item: Cell { low, high } }]);
-        let mut best: Option<(Point, Depth)> = None;
-        for _ in 0..BUDGET {
-            let deepest = best.map_or(0.0, |(_, depth)| depth.value);
-            let Some(Bounded { bound, item: cell }) = cells.pop() else { break };
-            let Cell { low, high } = cell;
-            if bound <= min_depth || (deepest > min_depth && bound <= factor * deepest) {
-                return match best.filter(|_| deepest > min_depth) {
-                    Some((point, depth)) => {
-                        DeepestPoint::Found { point, depth, max_depth: depth.value.max(bound) }
-                    }
-                    None => DeepestPoint::NoneDeeper,
-                };
+        let (mut full, mut open) = (Vec::new(), vec![self.extent()]);
+        for level in 0..=HALVINGS {
+            for cell in std::mem::take(&mut open) {
+                let found = self.enclose(&mut scratch, &cell)?;
+                let [min_limit, max_limit] = range(limits, found.regions);
+                if !found.inside || found.max_depth() <= min_limit + tolerance {
+                    continue;
+                }
+                if !found.outside && found.min_depth() > max_limit + tolerance {
+                    full.push(cell);
+                } else {
+                    open.push(cell);
+                }
             }
-            let middle = [0, 1, 2].map(|k| f64::midpoint(low[k], high[k]));
-            let size = [0, 1, 2].map(|k| high[k] - low[k]);
-            let reach = 0.5 * size.iter().map(|side| side * side).sum::<f64>().sqrt();
+            if level >= COARSE_HALVINGS {
+                open.retain(|cell| !self.is_connected(&mut scratch, cell, &full, limits));
+            }
+            if level == HALVINGS || 2 * open.len() > MAX_OPEN_CELLS {
+                break;
+            }
+            open = open.into_iter().flat_map(Cell::halves).collect();
+        }
+        let mut cores: Vec<FieldCore> = Vec::new();
+        // The largest boxes come first.
+        while let Some(first) = full.first().copied() {
+            let region = self.depth(&mut scratch, first.middle()).feature;
+            cores.push(FieldCore { point: first.middle(), radius: 0.0, region });
+            let mut joined = vec![first];
+            while let Some(cell) = joined.pop() {
+                let (near, rest) = full.into_iter().partition(|other| other.meets(&cell));
+                full = rest;
+                joined.extend::<Vec<Cell>>(near);
+            }
+        }
+        // A piece that has no such box may still have one of these points.
+        let mut deepest: Vec<Option<(f64, Point)>> = vec![None; limits.len()];
+        for cell in &open {
+            let Depth { value, feature, .. } = self.depth(&mut scratch, cell.middle());
+            cores.push(FieldCore { point: cell.middle(), radius: cell.reach(), region: feature });
+            let excess = value - limits[feature] - tolerance - self.error;
+            if value >= 0.0 && excess > deepest[feature].map_or(0.0, |(excess, _)| excess) {
+                deepest[feature] = Some((excess, cell.middle()));
+            }
+        }
+        let found = deepest.into_iter().enumerate();
+        cores.extend(found.filter_map(|(region, deepest)| {
+            deepest.map(|(_, point)| FieldCore { point, radius: 0.0, region })
+        }));
+        Some(cores)
+    }
+
+    /// Returns whether every point of the restricted interior in a box is connected with one of some boxes that are wholly in
+    /// it.
+    fn is_connected(
+        &self,
+        scratch: &mut Scratch,
+        cell: &Cell,
+        full: &[Cell],
+        limits: &[f64],
+    ) -> bool {
+        // The shortest way into another box, if there is room for this one but for rounding.
+        let room = |to: &Cell| {
+            let least = [0, 1, 2].map(|k| to.low[k] - cell.low[k]);
+            let most = [0, 1, 2].map(|k| to.high[k] - cell.high[k]);
+            let lack = (0..3).map(|k| least[k] - most[k]).fold(0.0, f64::max);
+            (lack <= self.point_error).then(|| {
+                let way = [0, 1, 2].map(|k| {
+                    let middle = f64::midpoint(least[k], most[k]);
+                    if least[k] <= most[k] { 0.0f64.clamp(least[k], most[k]) } else { middle }
+                });
+                Way { way, length: way.iter().map(|part| part * part).sum(), lack }
+            })
+        };
+        let mut ways: Vec<Way> = full.iter().filter_map(room).collect();
+        let tried = MAX_WAYS.min(ways.len());
+        if tried < ways.len() {
+            ways.select_nth_unstable_by(tried, |a, b| a.length.total_cmp(&b.length));
+        }
+        ways[..tried].iter().any(|Way { way, lack, .. }| {
+            let moved = Cell {
+                low: [0, 1, 2].map(|k| cell.low[k] + way[k]),
+                high: [0, 1, 2].map(|k| cell.high[k] + way[k]),
+            };
+            self.enclose(scratch, &cell.hull(&moved)).is_some_and(|found| {
+                let [min_limit, max_limit] = range(limits, found.regions);
+                // Points that would end beside the other box take a way that differs by less than the lack of room. A rate of 0 is
+                // rounded down.
+                let min_rise = 2.0 * self.steep * lack - f64::MIN_POSITIVE;
+                min_limit == max_limit && found.min_rise(*way) >= min_rise
+            })
+        })
+    }
+
+    /// Returns an upper bound on the depth of the owners' points, at most 1 % above the depth of one of them unless the budget is
+    /// spent first; `None` if it is spent before any such point is found.
+    pub(crate) fn greatest_depth(&self, owners: &Owners) -> Option<f64> {
+        let mut scratch = Scratch::default();
+        let mut cells = BinaryHeap::from([Bounded { bound: f64::INFINITY, item: self.extent() }]);
+        let mut deepest = 0.0;
+        for _ in 0..BUDGET {
+            let Some(Bounded { bound, item: cell }) = cells.pop() else { break };
+            if bound <= 1.01 * deepest {
+                return Some(bound + self.error);
+            }
+            let (middle, reach) = (cell.middle(), cell.reach());
             let depth = self.depth(&mut scratch, middle);
             if depth.value > deepest
                 && let Some(depth) = self.owned(&mut scratch, owners, middle, depth)
             {
-                best = Some((middle, depth));
+                deepest = depth.value;
             }
-            if self.passes(&mut scratch, owners, middle, reach, min_depth) {
+            if self.passes(&mut scratch, owners, middle, reach, 0.0) {
                 continue;
             }
             // The depth of a point outside is minus a lower bound of its distance, and depth grows from the surface
@@ -413,17 +603,26 @@ impl Field<'_> {
             let bound = bound.min(depth.value + self.steep * reach);
             cells.extend(cell.halves().map(|item| Bounded { bound, item }));
         }
-        // No owner's point outside the cells that are left is deeper than the best one, or than `min_depth`.
+        // No owner's point outside the boxes that are left is deeper than the deepest one.
         let max_remaining = cells.peek().map_or(0.0, |cell| cell.bound);
-        match best.filter(|(_, depth)| depth.value > min_depth) {
-            Some((point, depth)) => {
-                DeepestPoint::Found { point, depth, max_depth: depth.value.max(max_remaining) }
-            }
-            // Every box was discarded: none has an owner's point that is deeper.
-            None if cells.is_empty() => DeepestPoint::NoneDeeper,
-            None => DeepestPoint::BudgetSpent,
-        }
+        (deepest > 0.0 || cells.is_empty()).then(|| deepest.max(max_remaining) + self.error)
     }
+}
+
+/// The number of times that a tool is halved in the search for pieces, and the number from which on boxes are connected.
+const HALVINGS: usize = 16;
+const COARSE_HALVINGS: usize = 8;
+
+/// The largest number of boxes of which it is open whether they are inside.
+const MAX_OPEN_CELLS: usize = 1 << 12;
+
+/// The number of boxes to which a way is tried.
+const MAX_WAYS: usize = 6;
+
+/// Returns the least and the greatest limit of some regions, a [bit] each.
+fn range(limits: &[f64], regions: u64) -> [f64; 2] {
+    let known = limits.iter().enumerate().filter(|(index, _)| regions & bit(*index) != 0);
+    known.fold([f64::INFINITY, 0.0], |[low, high], (_, limit)| [low.min(*limit), high.max(*limit)])
 }
 
 /// Returns the interval about a number.
@@ -462,20 +661,14 @@ mod tests {
     });
 
     #[test]
-    fn a_search_that_discards_every_box_proves_that_no_point_is_deeper() {
-        let field =
-            Field::new(ToolHandle::Borrowed(&*SPHERE), Level::new()).expect("a Lipschitz constant");
-        let of_regions = |is_owned: bool| Owners::of_regions(field.info(), |_, _| is_owned);
-        let DeepestPoint::Found { depth, max_depth, .. } =
-            field.deepest(&of_regions(true), 0.5, 1.01)
-        else {
-            panic!("the centre is 1 deep")
+    fn the_greatest_depth_of_a_ball_is_that_of_its_centre() {
+        let field = Field::new(ToolHandle::Borrowed(&*SPHERE), Level::new(), 1e-15);
+        let field = field.expect("a Lipschitz constant");
+        let greatest_depth = |is_owned: bool| {
+            field.greatest_depth(&Owners::of_regions(field.info(), |_, _| is_owned))
         };
-        assert!(depth.value <= 1.0 && 1.0 <= max_depth && max_depth <= 1.01 * depth.value);
-        let deeper = field.deepest(&of_regions(true), 100.0, 1.01);
-        assert!(matches!(deeper, DeepestPoint::NoneDeeper));
-        let without_owners = field.deepest(&of_regions(false), 0.0, 1.01);
-        assert!(matches!(without_owners, DeepestPoint::NoneDeeper));
+        assert!(greatest_depth(true).is_some_and(|depth| (1.0..=1.0101).contains(&depth)));
+        assert!(greatest_depth(false).is_some_and(|depth| depth < 1e-12));
     }
 
     #[test]

@@ -32,13 +32,14 @@ pub(crate) enum ToolModel<'a> {
 }
 
 impl<'a> ToolModel<'a> {
-    /// Creates the model of a tool; `error` is the error bound of a point. A tool whose overhangs are too many to
-    /// resolve is known by its depth alone. Returns `None` if no Lipschitz constant of that is proved either.
+    /// Creates the model of a tool; `error` is the error bound of a point. Returns `None` for a tool without a profile of
+    /// whose depth no Lipschitz constant is proved, and for a profile that bounds nothing.
     pub(crate) fn new(tool: &ToolHandle<'a>, level: Level, error: f64) -> Option<ToolModel<'a>> {
-        match Section::new(tool.info(), error).and_then(Section::with_circles) {
-            Some(section) => Some(ToolModel::Profile(section)),
-            None => Some(ToolModel::Field(Field::new(tool.clone(), level)?)),
+        if tool.info().outline.is_empty() {
+            return Some(ToolModel::Field(Field::new(tool.clone(), level, error)?));
         }
+        let section = Section::new(tool.info(), error)?;
+        Some(ToolModel::Profile(section.with_circles()))
     }
 
     /// Returns the error bound of a depth, given that of a point.
@@ -65,7 +66,8 @@ impl<'a> ToolModel<'a> {
         }
     }
 
-    /// Returns the depth of a point if it is owned. Otherwise the value is less than 0 or absent.
+    /// Returns the depth of a point if it is owned. Otherwise the value is less than 0 or absent; without a profile, of whose
+    /// outside only a bound is known, it is absent for a point outside.
     pub(crate) fn depth(
         &self,
         scratch: &mut Scratch,
@@ -74,7 +76,9 @@ impl<'a> ToolModel<'a> {
     ) -> Option<Depth> {
         match self {
             ToolModel::Profile(section) => section.depth_at(owners, meridian_point(point)),
-            ToolModel::Field(field) => Some(field.depth_of(scratch, owners, point)),
+            ToolModel::Field(field) => {
+                Some(field.depth_of(scratch, owners, point)).filter(|depth| depth.value >= 0.0)
+            }
         }
     }
 

@@ -18,7 +18,7 @@ use crate::tool::{Circle, Region, ToolInfo, bit};
 use std::collections::BinaryHeap;
 
 /// A rectangle of the half plane.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Rectangle {
     pub(crate) low: MeridianPoint,
     pub(crate) high: MeridianPoint,
@@ -88,16 +88,11 @@ impl Owners {
         let owned_features = owned_features.contains(&false).then_some(owned_features);
         let mut owners = Owners { owned_features, ..Owners::default() };
         if !owners.all() {
-            match owners.find_peaks(section, true) {
-                // Just below and just above: at a seam each side owns only points on its side.
-                Some(peaks) => {
-                    let beside = 0.25 * section.error;
-                    owners.peaks =
-                        peaks.iter().flat_map(|peak| [peak - beside, peak + beside]).collect();
-                }
-                // No realistic profile is like this. The depth of the whole tool is an upper bound.
-                None => owners.owned_features = None,
-            }
+            let Peaks { heights, unresolved } = owners.find_peaks(section, true);
+            // Just below and just above: at a seam each side owns only points on its side.
+            let beside = 0.25 * section.error;
+            owners.peaks = heights.iter().flat_map(|peak| [peak - beside, peak + beside]).collect();
+            owners.unresolved = unresolved;
         }
         owners
     }
@@ -126,7 +121,7 @@ impl Owners {
         Owners {
             owned_features: owned_features.contains(&false).then_some(owned_features),
             regions,
-            peaks: Vec::new(),
+            ..Owners::default()
         }
     }
 
@@ -190,6 +185,12 @@ impl Owners {
         if owner > other + uncertainty || owner.min(other) + reach <= deeper {
             return Some(false);
         }
+        if section.owned(self).all(|owner| {
+            section.hidden_by_neighbours(owner, &corners)
+                || section.is_owned_by_others(self, owner, &corners, 2.0 * section.error)
+        }) {
+            return Some(false);
+        }
         (owner + uncertainty < other && owner - reach > deeper).then_some(true)
     }
 
@@ -232,79 +233,118 @@ impl Owners {
 
     /// Returns the heights of points at which the depth of owned points can have a local maximum: points equally far
     /// from three features, of which there are few. Elsewhere depth grows in some direction in which the owners own
-    /// points, or does not grow away from the axis.
+    /// points, or does not grow away from the axis. With `others`, only those are returned near which other features own
+    /// points too.
     ///
-    /// The heights are found by halving rectangles, down to a fraction of the error bound of a point. Returns `None`
-    /// if there are too many. With `others`, only those are returned near which other features own points too.
-    fn find_peaks(&self, section: &Section, others: bool) -> Option<Vec<f64>> {
+    /// The heights are found by halving rectangles, each with the features that may be the nearest there. Two features that
+    /// meet nearly in line are equally far to within a fraction of the error bound all over some rectangles. There they count
+    /// as one, and the end of their border is [computed](Section::border_ends) by itself.
+    fn find_peaks(&self, section: &Section, others: bool) -> Peaks {
         let min_size = section.error / 32.0;
         // All points of an arc are equally far from its centre.
         let centres = section.features.iter().filter_map(|feature| feature.circle);
         let mut peaks: Vec<f64> = centres.map(|circle| circle.centre[1]).collect();
+        peaks.extend(section.border_ends());
+        let all: Vec<usize> = (0..section.features.len()).collect();
+        let whole = section.slabs.iter().map(Rectangle::of);
+        let mut cells: Vec<PeakCell> =
+            whole.map(|rectangle| PeakCell { rectangle, nearest: all.clone() }).collect();
         let mut examined = 0;
-        let mut stack: Vec<Rectangle> = section.slabs.iter().map(Rectangle::of).collect();
-        while let Some(rectangle) = stack.pop() {
-            examined += 1;
-            if examined > MAX_RECTANGLES {
-                return None;
+        while !cells.is_empty() {
+            examined += cells.len();
+            if examined > MAX_CELLS {
+                break;
             }
-            let (middle, reach) = rectangle.ball();
-            let corners = rectangle.corners();
-            if !self.may_peak(section, middle, reach, &corners, others) {
-                continue;
-            }
-            if reach <= min_size {
-                // Neighbouring rectangles at one point count once.
-                if peaks.iter().all(|peak| (peak - middle[1]).abs() > 2.0 * min_size) {
+            for PeakCell { rectangle, nearest } in std::mem::take(&mut cells) {
+                let Some(nearest) = self.peak_features(section, &rectangle, nearest, others) else {
+                    continue;
+                };
+                let (middle, reach) = rectangle.ball();
+                if reach > min_size {
+                    let halves = rectangle.halves();
+                    cells.extend(
+                        halves.map(|half| PeakCell { rectangle: half, nearest: nearest.clone() }),
+                    );
+                } else if peaks.iter().all(|peak| (peak - middle[1]).abs() > 2.0 * min_size) {
+                    // Neighbouring rectangles at one point count once.
                     peaks.push(middle[1]);
                 }
-                continue;
             }
-            stack.extend(rectangle.halves());
         }
-        Some(peaks)
+        Peaks { heights: peaks, unresolved: cells.into_iter().map(|cell| cell.rectangle).collect() }
     }
 
-    /// Returns whether a point within `reach` of another may be equally far from three features. With `others`, some
-    /// of these have to be owners and some not.
-    fn may_peak(
+    /// Returns those features of a list that may be the nearest to a point of a rectangle, if there may be a point equally
+    /// far from three. With `others`, some of these have to be owners and some not.
+    fn peak_features(
         &self,
         section: &Section,
-        middle: MeridianPoint,
-        reach: f64,
-        corners: &[MeridianPoint],
+        rectangle: &Rectangle,
+        nearest: Vec<usize>,
         others: bool,
-    ) -> bool {
-        let away: Vec<f64> = section.features.iter().map(|f| f.distance(middle)).collect();
-        let nearest = away.iter().copied().fold(f64::INFINITY, f64::min);
+    ) -> Option<Vec<usize>> {
+        let (middle, reach) = rectangle.ball();
+        let corners = rectangle.corners();
+        let margin = section.error / 64.0;
+        let feature = |index: usize| &section.features[index];
+        let mut distances: Vec<(f64, usize)> =
+            nearest.iter().map(|index| (feature(*index).distance(middle), *index)).collect();
+        distances.sort_by(|one, other| one.0.total_cmp(&other.0));
         // Within the reach, a distance changes by at most the reach, and so does the least of all.
-        let max_distance = nearest + 2.0 * reach + section.error / 64.0;
-        let mut nearby: Vec<(usize, MeridianPoint)> = Vec::new();
-        let mut owner_kinds = [false; 2];
-        for index in (0..away.len()).filter(|index| away[*index] <= max_distance) {
-            if section.hidden_by_neighbours(index, corners) {
-                continue;
-            }
-            owner_kinds[usize::from(self.is_owned(index))] = true;
-            let foot = section.features[index].foot(middle);
-            // Both sides of a reflex corner are equally far from a point nearest to that corner. Elsewhere one of two
-            // adjacent features is nearer on either side of a line.
-            let is_known = nearby.iter().any(|(other, known_foot)| {
-                // Shared ends are identical to the bit.
-                let same_foot = norm(minus(*known_foot, foot)) <= section.error;
-                let same_kind = self.is_owned(index) == self.is_owned(*other);
-                let both_end = || {
-                    [index, *other].map(|f| section.features[f].at_ends(corners).is_some())
-                        == [true; 2]
-                };
-                same_foot && (same_kind || both_end())
+        let max_distance = distances[0].0 + 2.0 * reach + margin;
+        distances.retain(|(distance, _)| *distance <= max_distance);
+        let mut nearest: Vec<usize> = Vec::new();
+        for (_, index) in distances {
+            let is_farther = nearest.iter().take(MAX_COMPARED).any(|nearer: &usize| {
+                feature(index).is_farther(feature(*nearer), &corners, margin)
             });
-            if !is_known {
-                nearby.push((index, foot));
+            if !is_farther && !section.hidden_by_neighbours(index, &corners) {
+                nearest.push(index);
             }
         }
-        nearby.len() > 2 && (owner_kinds == [true, true] || !others)
+        let mut owner_kinds = [false; 2];
+        let mut sites: Vec<usize> = Vec::new();
+        for index in &nearest {
+            owner_kinds[usize::from(self.is_owned(*index))] = true;
+            let foot = feature(*index).foot(middle);
+            let is_known = sites.iter().any(|site| {
+                // Both sides of a reflex corner are equally far from a point nearest to that corner. Elsewhere one of
+                // two adjacent features is nearer on either side of a line. Shared ends are identical to the bit.
+                let same_foot = norm(minus(feature(*site).foot(middle), foot)) <= section.error;
+                let same_kind = self.is_owned(*index) == self.is_owned(*site);
+                let both_end =
+                    || [*index, *site].map(|f| feature(f).at_ends(&corners).is_some()) == [true; 2];
+                let is_in_line = || {
+                    let (first, second) = (index.min(site), index.max(site));
+                    reach >= MIN_MERGED * section.error
+                        && first + 1 == *second
+                        && feature(*first).continues_in(feature(*second))
+                        && feature(*first).is_as_far_as(
+                            feature(*second),
+                            &corners,
+                            0.25 * section.error,
+                        )
+                };
+                (same_foot && (same_kind || both_end())) || is_in_line()
+            });
+            if !is_known {
+                sites.push(*index);
+            }
+        }
+        (sites.len() > 2 && (owner_kinds == [true, true] || !others)).then_some(nearest)
     }
+}
+
+/// A rectangle that is searched for peaks, and the features that may be the nearest to points of it.
+struct PeakCell {
+    rectangle: Rectangle,
+    nearest: Vec<usize>,
+}
+
+/// The heights at which depth can have a local maximum, and rectangles in which there may be more of them.
+struct Peaks {
+    heights: Vec<f64>,
+    unresolved: Vec<Rectangle>,
 }
 
 /// Returns the rectangle about a zone and another rectangle.
@@ -319,15 +359,23 @@ fn widened(zone: Option<Rectangle>, other: Rectangle) -> Option<Rectangle> {
 /// The resolution of zones: the tool's size divided by this.
 const ZONE_DIVISIONS: u32 = 1 << 11;
 
-/// The maximum number of rectangles examined for peaks, or for the deepest point.
+/// The maximum number of rectangles examined for the deepest point. The bound proved until then is the answer.
 const MAX_RECTANGLES: u32 = 1 << 17;
+
+/// The maximum number of rectangles examined for peaks. What is left of them is a part of the answer.
+const MAX_CELLS: usize = 1 << 17;
+
+/// The number of the nearest features to which others are compared.
+const MAX_COMPARED: usize = 8;
+
+/// The least size of a rectangle, in error bounds of a point, in which two features may count as one.
+const MIN_MERGED: f64 = 8.0;
 
 impl Section {
     /// Computes the heights of circles about the axis on which depth can be greatest, where the profile overhangs.
-    /// Returns `None` if there are too many.
-    pub(super) fn with_circles(mut self) -> Option<Section> {
+    pub(super) fn with_circles(mut self) -> Section {
         if self.overhangs {
-            let mut heights = Owners::default().find_peaks(&self, false)?;
+            let Peaks { mut heights, unresolved } = Owners::default().find_peaks(&self, false);
             heights.extend(
                 normal_pairs(&self.features)
                     .into_iter()
@@ -337,9 +385,62 @@ impl Section {
             );
             heights.sort_by(f64::total_cmp);
             heights.dedup_by(|upper, lower| *upper - *lower <= 0.25 * self.error);
-            self.circles = heights;
+            (self.circles, self.unresolved) = (heights, unresolved);
         }
-        Some(self)
+        self
+    }
+
+    /// Returns the heights of the ends of borders between features that meet nearly in line: where another feature is as near.
+    ///
+    /// The border is a ray from the point where they meet, normal to one of them or between both normals. Along it their
+    /// distance grows as the parameter does, and that of no other feature grows faster, so that halving finds the end.
+    fn border_ends(&self) -> Vec<f64> {
+        let mut heights = Vec::new();
+        for (index, pair) in self.features.windows(2).enumerate() {
+            if !pair[0].continues_in(&pair[1]) {
+                continue;
+            }
+            let [one, other] = [pair[0].tangent_at(1), pair[1].tangent_at(0)];
+            let mean = [0, 1].map(|k| one[k] + other[k]);
+            for [d, z] in [one, other, mean] {
+                let length = d.hypot(z);
+                let (normal, from) = ([-z / length, d / length], pair[1].ends[0]);
+                let point = |t: f64| [0, 1].map(|k| from[k] + t * normal[k]);
+                let is_other_nearer = |t: f64| {
+                    let others =
+                        (0..self.features.len()).filter(|k| *k != index && *k != index + 1);
+                    self.nearest(others, point(t)).0 <= t
+                };
+                let to_axis = if normal[0] < 0.0 { from[0] / -normal[0] } else { f64::INFINITY };
+                let [mut low, mut high] = [0.0, to_axis.min(2.0 * self.size)];
+                // Otherwise the border ends at the axis.
+                if !is_other_nearer(high) {
+                    continue;
+                }
+                while low < f64::midpoint(low, high) && f64::midpoint(low, high) < high {
+                    let middle = f64::midpoint(low, high);
+                    if is_other_nearer(middle) {
+                        high = middle;
+                    } else {
+                        low = middle;
+                    }
+                }
+                heights.push(point(high)[1]);
+            }
+        }
+        heights
+    }
+
+    /// Returns an upper bound on the depth of points of a rectangle near which a height at which depth can be greatest may not be
+    /// known; negative infinity if all are known.
+    pub(crate) fn unresolved_depth(&self, owners: &Owners, rectangle: &Rectangle) -> f64 {
+        let unresolved = self.unresolved.iter().chain(&owners.unresolved);
+        let near = unresolved.filter(|unresolved| unresolved.meets(rectangle));
+        let depths = near.map(|unresolved| {
+            let (middle, reach) = unresolved.ball();
+            self.signed(middle) + reach + self.error
+        });
+        depths.fold(f64::NEG_INFINITY, f64::max)
     }
 
     /// Returns whether a point midway between two points of the profile, `half` away from both, is inside and has no
@@ -449,7 +550,7 @@ mod tests {
     #[test]
     fn every_point_that_a_surface_owns_lies_in_a_zone() {
         for info in [HELD.info(), WAISTED.info()] {
-            let section = Section::new(info, ERROR).and_then(Section::with_circles);
+            let section = Section::new(info, ERROR).map(Section::with_circles);
             let section = section.expect("a profile");
             for surface in 0..info.surfaces.len() {
                 for deeper in [0.0, 0.5, 2.0] {

@@ -6,8 +6,9 @@
 //! overhangs. No feature ends between a slab's heights.
 
 use crate::certify::tool_model::feature::{
-    Feature, MeridianPoint, Triangle, cross, dot, minus, norm, quarters,
+    Feature, MeridianPoint, Triangle, cross, dot, mean, minus, norm, quarters,
 };
+use crate::certify::tool_model::owners::Rectangle;
 use crate::tool::ToolInfo;
 
 /// A region between two heights.
@@ -42,6 +43,8 @@ pub(crate) struct Section {
     /// The heights of circles about the axis on which depth can be greatest in a triangle: none before
     /// [`Section::with_circles`].
     pub(crate) circles: Vec<f64>,
+    /// Rectangles in which there may be more of them.
+    pub(crate) unresolved: Vec<Rectangle>,
     /// The largest distance of a point of the profile from the tip.
     pub(crate) size: f64,
     /// The error bound of heights: slabs are taken to reach farther by this.
@@ -74,6 +77,8 @@ pub(crate) struct Owners {
     pub(super) regions: u64,
     /// Heights of local maxima of depth among the points that the features own.
     pub(crate) peaks: Vec<f64>,
+    /// Rectangles in which there may be more of them.
+    pub(crate) unresolved: Vec<Rectangle>,
 }
 
 impl Owners {
@@ -107,7 +112,8 @@ impl Section {
             return None;
         }
         let overhangs = slabs.iter().any(|slab| slab.inner.is_some());
-        let mut section = Section { features, slabs, overhangs, circles: Vec::new(), size, error };
+        let (circles, unresolved) = (Vec::new(), Vec::new());
+        let mut section = Section { features, slabs, overhangs, circles, unresolved, size, error };
         for slab in 0..section.slabs.len() {
             let side = section.features[section.slabs[slab].side];
             section.slabs[slab].feet = section.feet(&side, slab);
@@ -235,6 +241,19 @@ impl Section {
         depths.reduce(|one, other| if other.value > one.value { other } else { one })
     }
 
+    /// Returns the outward unit normal at the foot of a point on a feature: for a point outside, the direction from its foot.
+    pub(crate) fn normal(&self, feature: usize, p: MeridianPoint) -> MeridianPoint {
+        let feature = &self.features[feature];
+        let away = minus(p, feature.foot(p));
+        let length = norm(away);
+        // So near to the surface rounding decides on which side the point is.
+        if length <= self.contact_tolerance() {
+            return feature.signed_gradient(p).map(|part| -part);
+        }
+        let sense = if self.contains(p) { -1.0 } else { 1.0 };
+        away.map(|part| sense * part / length)
+    }
+
     /// Returns the distance of a point from the profile.
     pub(crate) fn unsigned_distance(&self, p: MeridianPoint) -> f64 {
         self.nearest(0..self.features.len(), p).0
@@ -259,6 +278,7 @@ impl Section {
             && self.owned(owners).all(|owner| {
                 self.features[owner].distance(p) > depth + 2.0 * displacement
                     || self.hidden_by_neighbours(owner, rectangle)
+                    || self.is_owned_by_others(owners, owner, rectangle, 2.0 * self.error)
             })
     }
 
@@ -345,6 +365,7 @@ impl Section {
             let none_is_owned = self.owned(owners).all(|owner| {
                 self.hidden_by_neighbours(owner, triangle)
                     || self.features[owner].at_least(triangle) > separation
+                    || self.is_owned_by_others(owners, owner, triangle, 2.0 * (self.error + slack))
             });
             if none_is_owned {
                 return f64::NEG_INFINITY;
@@ -390,6 +411,19 @@ impl Section {
         [0, 1].into_iter().all(|end| !ends[end] || self.neighbour_is_nearer(feature, end, corners))
     }
 
+    /// Returns whether a feature that is no owner is nearer than an owner to all points of a polygon, by more than a margin.
+    pub(super) fn is_owned_by_others(
+        &self,
+        owners: &Owners,
+        owner: usize,
+        corners: &[MeridianPoint],
+        margin: f64,
+    ) -> bool {
+        let others = (0..self.features.len()).filter(|feature| !owners.is_owned(*feature));
+        let (_, other) = self.nearest(others, mean(corners));
+        self.features[owner].is_farther(&self.features[other], corners, margin)
+    }
+
     /// Returns whether the neighbour that shares an end of a feature comes nearer to all points of a polygon from there.
     fn neighbour_is_nearer(&self, feature: usize, end: usize, corners: &[MeridianPoint]) -> bool {
         let neighbour = if end == 0 { feature.checked_sub(1) } else { Some(feature + 1) };
@@ -407,7 +441,11 @@ impl Section {
         (0..self.features.len()).filter(|feature| owners.is_owned(*feature))
     }
 
-    fn nearest(&self, features: impl Iterator<Item = usize>, p: MeridianPoint) -> (f64, usize) {
+    pub(super) fn nearest(
+        &self,
+        features: impl Iterator<Item = usize>,
+        p: MeridianPoint,
+    ) -> (f64, usize) {
         features.fold((f64::INFINITY, 0), |nearest, feature| {
             let distance = self.features[feature].distance(p);
             if distance < nearest.0 { (distance, feature) } else { nearest }

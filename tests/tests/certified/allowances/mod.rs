@@ -2,10 +2,12 @@
 
 mod sampled;
 
-use crate::{UP, block, motion, plate, pose, tool};
-use touchoff::certify::{AllowanceError, Certifier, MotionVerdict, PoseVerdict, TriangleBvh};
+use crate::{UP, block, motion, plate, pose, soup, tool};
+use touchoff::certify::{
+    AllowanceError, Certifier, MotionDepth, MotionVerdict, PoseVerdict, TriangleBvh,
+};
 use touchoff::mesh::shapes;
-use touchoff::{Mesh, Motion, Pose, Tool, Unit};
+use touchoff::{Mesh, Motion, Pose, SurfaceId, Tool, Unit};
 
 fn names(tool: &dyn Tool) -> Vec<String> {
     tool.info().surfaces.iter().map(|surface| surface.name.to_string()).collect()
@@ -36,9 +38,14 @@ fn assert_at_rest(
             "{text}"
         );
     };
-    let PoseVerdict::Touching(witness) = verdict else { panic!("{text}: {verdict:?}") };
+    let (PoseVerdict::Touching(witness) | PoseVerdict::Near(witness)) = verdict else {
+        panic!("{text}: {verdict:?}")
+    };
     assert_eq!(names(tool(name))[witness.surface.0], surface, "{text}");
-    assert!(matches!(at_rest, MotionVerdict::Touching(..)), "{text}: {at_rest:?}");
+    assert!(
+        matches!(at_rest, MotionVerdict::Touching(..) | MotionVerdict::Near(..)),
+        "{text}: {at_rest:?}"
+    );
 }
 
 #[test]
@@ -82,6 +89,42 @@ fn a_flute_cuts_along_a_wall() {
 }
 
 /// A part at a given distance from the nut.
+/// A thorn 1 mm from the flute where the tool passes it between the times at which a motion is probed.
+#[test]
+fn a_margin_that_a_thorn_breaks_in_passing_is_found() {
+    for at in [0.03, 0.19, 0.44, 0.8] {
+        let x = 160.0 * at - 80.0;
+        let thorn = soup(&[[[x, 7.0, 5.0], [x - 0.1, 9.0, 5.0], [x + 0.1, 9.0, 5.0]]]);
+        let bvh = TriangleBvh::new(&thorn);
+        let mut certifier = certifier_with(&bvh, "Flat", &[("flute", -2.0)]);
+        let path = motion(&pose([-80.0, 0.0, 0.0], UP), &pose([80.0, 0.0, 0.0], UP));
+        let verdict = certifier.check_motion(&path, 1e-6);
+        assert!(matches!(verdict, MotionVerdict::Near(time, _) if (time - at).abs() < 0.03));
+        let flute = tool("Flat").info().surface_named("flute").expect("a surface");
+        let found = certifier.motion_depth(flute, &path, -2.0, 1e-6).expect("a surface");
+        let MotionDepth::Deeper { depth, max_depth, .. } = found else { panic!("{found:?}") };
+        assert!(depth.contains(-1.0) && (-1.0..-0.8).contains(&max_depth), "{found:?}");
+    }
+}
+
+/// A ball in a block, and a margin that it breaks in there: that it is inside is the graver finding.
+#[test]
+fn a_tool_inside_the_part_is_inside_whatever_its_margin() {
+    let block = TriangleBvh::new(&block([-20.0, -20.0, -40.0], [20.0, 20.0, 0.0]));
+    let ball = touchoff_tests::fixtures::drawn("0 0; ball 3 3 about 0 3, 0 6 about 0 3", "ball");
+    let buried = pose([0.0, 0.0, -7.0], UP);
+    let path = motion(&buried, &pose([0.5, 0.0, -7.0], UP));
+    for margin in [0.0, 0.5, 2.0, 5.0] {
+        let certifier = Certifier::new(&block, &ball).expect("a profile");
+        let mut certifier = certifier.with_allowance("ball", -margin).expect("a surface");
+        assert_eq!(certifier.check_pose(&buried), PoseVerdict::Inside(SurfaceId(0)), "{margin}");
+        let verdict = certifier.check_motion(&path, 1e-3);
+        assert_eq!(verdict, MotionVerdict::Inside(SurfaceId(0)), "{margin}");
+        let depth = certifier.motion_depth(SurfaceId(0), &path, -margin, 1e-3);
+        assert_eq!(depth, Ok(MotionDepth::Inside), "{margin}");
+    }
+}
+
 type Case = (&'static str, fn(f64) -> Mesh);
 
 #[test]

@@ -78,6 +78,11 @@ impl<'a> SurfaceAllowances<'a> {
         64.0 * f64::EPSILON * self.brute.size
     }
 
+    /// Forgets the margins: nothing is said of them where a tool is inside the part, or undecided.
+    fn forget_margins(&mut self) {
+        self.allowances.iter_mut().for_each(|allowed| *allowed = allowed.max(0.0));
+    }
+
     fn random_pose(&self, rng: &mut Rng) -> Pose {
         self.brute.random_motion(MotionKind::Still, rng).from
     }
@@ -281,17 +286,22 @@ fn pose_verdicts_respect_allowances() {
             let verdict = owned.certifier().check_pose(&pose);
             let text = format!("{owned} at {pose:?}: {verdict:?}");
             let max_excess = match verdict {
-                PoseVerdict::Clear | PoseVerdict::Inside(_) | PoseVerdict::SurfaceOnly => {
+                PoseVerdict::Clear | PoseVerdict::SurfaceOnly => {
                     clear += 1;
                     0.0
                 }
-                PoseVerdict::Touching(witness) => {
+                PoseVerdict::Inside(_) => {
+                    owned.forget_margins();
+                    0.0
+                }
+                PoseVerdict::Touching(witness) | PoseVerdict::Near(witness) => {
                     touching += 1;
                     owned.assert_violates_allowance(&witness, &pose, &text);
                     continue;
                 }
                 PoseVerdict::Undecided(high) => {
                     undecided += 1;
+                    owned.forget_margins();
                     high
                 }
             };
@@ -317,17 +327,22 @@ fn motion_verdicts_respect_allowances() {
             let verdict = certifier.check_motion(&motion, tolerance);
             let text = format!("{owned} on {path:?}, {tolerance:e}: {verdict:?}");
             let end = match verdict {
-                MotionVerdict::Touching(at, witness) => {
+                MotionVerdict::Touching(at, witness) | MotionVerdict::Near(at, witness) => {
                     touching += 1;
                     owned.assert_violates_allowance(&witness, &motion.pose(at), &text);
                     continue;
                 }
                 MotionVerdict::Undecided(at) => {
                     undecided += 1;
+                    owned.forget_margins();
                     at
                 }
-                MotionVerdict::Clear | MotionVerdict::Inside(_) | MotionVerdict::SurfaceOnly => {
+                MotionVerdict::Clear | MotionVerdict::SurfaceOnly => {
                     clear += 1;
+                    1.0
+                }
+                MotionVerdict::Inside(_) => {
+                    owned.forget_margins();
                     1.0
                 }
             };

@@ -116,6 +116,7 @@ impl Validation<'_> {
                 self.check_proved(&deepest);
                 self.check_side(verdict);
             }
+            MotionVerdict::Near(..) => self.add_violation("a margin that nobody asked for"),
             MotionVerdict::Touching(t, witness) => {
                 self.tally.add(IN_CONTACT, 1);
                 self.compare_pose(t);

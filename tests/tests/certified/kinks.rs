@@ -1,0 +1,260 @@
+//! Profiles of which some segments are nearly in line, as CAD draws balls by chords and as tapers are: the depth of each surface
+//! against samples of the triangles.
+//!
+//! `KINKS=2500 cargo test --release -p touchoff-tests --test certified kinks -- --nocapture` examines 10,000 tools.
+
+use crate::{UP, pose, soup, to_tool};
+use nalgebra::{Point3, Vector3};
+use std::fmt::Write;
+use touchoff::certify::{Certifier, PoseVerdict, TriangleBvh, Witness};
+use touchoff::mesh::shapes;
+use touchoff::tool::{
+    Circle, Derivatives, EnvelopeSlab, Evaluations, Outputs, PointBatch, ProfileSegment, Surface,
+    ToolInfo,
+};
+use touchoff::{Interval, Level, Pose, SurfaceId, Tool, Unit};
+use touchoff_tests::count::case_count;
+use touchoff_tests::fixtures::{cuboid, drawn as compiled};
+use touchoff_tests::oracle::Nearest;
+use touchoff_tests::oracle::restated::Restated;
+use touchoff_tests::oracle::rng::Rng;
+use touchoff_tests::tally::Tally;
+
+/// A tool of which nothing but the profile is known, which is all that the certifier asks for: the compiler divides profiles
+/// into regions, and refuses some of these.
+struct Outlined(ToolInfo);
+
+impl Outlined {
+    fn new(tool: &Restated) -> Outlined {
+        let mut info = compiled("0 0; side 1 0; side 0 1", "").info().clone();
+        let mut names = tool.surfaces.clone();
+        names.dedup();
+        let surface = |name: &str| names.iter().position(|known| *known == name).expect("it");
+        let oracle = Nearest::new(tool);
+        let segments = oracle.profile().segments().iter().zip(&tool.surfaces);
+        let outline: Vec<_> = segments
+            .map(|(segment, name)| ProfileSegment {
+                from: segment.from,
+                to: segment.to,
+                circle: segment.circle.map(|circle| Circle {
+                    centre: circle.centre,
+                    radius: circle.radius,
+                    convex: circle.convex,
+                }),
+                surface: SurfaceId(surface(name)),
+            })
+            .collect();
+        let [[_, low], [radius, high]] = oracle.profile().extent();
+        info.envelope = vec![EnvelopeSlab::new(low, high, radius)].into();
+        let named = |name: &&'static str| Surface { name: (*name).into(), cutting: false };
+        info.surfaces = names.iter().map(named).collect::<Vec<_>>().into();
+        info.outline = outline.into();
+        Outlined(info)
+    }
+}
+
+impl Tool for Outlined {
+    fn info(&self) -> &ToolInfo {
+        &self.0
+    }
+    fn clearance(&self, _: [f64; 3]) -> f64 {
+        unreachable!("the profile is known")
+    }
+    fn evaluate(&self, _: Level, _: Outputs, _: &PointBatch, _: f64, _: &mut Evaluations) {
+        unreachable!("the profile is known")
+    }
+    fn derivatives(&self, _: [f64; 3], _: f64, _: &mut Evaluations) -> Derivatives {
+        unreachable!("the profile is known")
+    }
+}
+
+/// Returns the tool of a drawing.
+fn drawn(drawing: String) -> Restated {
+    Restated::drawn("Drawn", drawing.leak(), &[])
+}
+
+/// A flute and a body above it that turns in or out by an angle.
+fn tapered(rng: &mut Rng) -> Restated {
+    let (radius, flute) = (rng.power(0.0, 1.5), rng.between(2.0, 20.0));
+    let height = rng.between(5.0, 40.0);
+    let shift = height * rng.power(-6.0, -2.0) * rng.pick(&[1.0, -1.0]);
+    let (top, out) = (flute + height, radius + shift.max(-0.5 * radius));
+    drawn(format!("0 0; face {radius} 0; flute {radius} {flute}; body {out} {top}, 0 {top}"))
+}
+
+/// The same with a groove in its end, so that the profile overhangs.
+fn grooved(rng: &mut Rng) -> Restated {
+    let shift = 7.0 * rng.power(-6.0, -2.0) * rng.pick(&[1.0, -1.0]);
+    let (low, out) = (rng.between(1.0, 5.0), 20.0 + shift);
+    let floor = rng.between(1.0, 6.0);
+    drawn(format!(
+        "0 0; face 20 0; rim 20 {low}, {out} 10; top 12 10, 12 {floor}, 6 {floor}, 6 10, 0 10"
+    ))
+}
+
+/// Chords of a quarter of a circle, rounded as in a file, below a shank.
+fn chords(rng: &mut Rng) -> Restated {
+    let (radius, count) = (rng.power(-0.3, 1.3), 6 + rng.index(19));
+    let mut drawing = "0 0; ball ".to_owned();
+    for k in 1..=count {
+        let (sin, cos) = (std::f64::consts::FRAC_PI_2 * k as f64 / count as f64).sin_cos();
+        let _ = write!(drawing, "{:.4} {:.4}, ", radius * sin, radius * (1.0 - cos));
+    }
+    let top = 6.0 * radius;
+    drawn(format!("{}; shank {radius:.4} {top}, 0 {top}", &drawing[..drawing.len() - 2]))
+}
+
+/// A tip of some hundredths below a shank of 20.
+fn tiny(rng: &mut Rng) -> Restated {
+    let (tip, out) = (rng.power(-3.0, -1.0), rng.power(-6.0, -2.0));
+    let (low, high) = (10.0 * tip, rng.between(5.0, 20.0));
+    let neck = tip + out * high;
+    drawn(format!(
+        "0 0; tip {tip} 0; side {tip} {low}, {neck} {high}; shank 20 {high}, 20 60, 0 60"
+    ))
+}
+
+/// Counts of verdicts, beside that of violations.
+const QUERIES: &str = "queries";
+const IN_CONTACT: &str = "in contact";
+const WIDE: &str = "wide";
+const VIOLATIONS: &str = "violations";
+
+/// Compares the depth of each surface with samples of a few triangles near a corner of the profile.
+fn compare(tool: &Restated, rng: &mut Rng, tally: &mut Tally) {
+    const TOLERANCE: f64 = 1e-6;
+    let (outlined, oracle) = (Outlined::new(tool), Nearest::new(tool));
+    let profile = oracle.profile();
+    let corners = profile.corners();
+    let [_, [far, top]] = profile.extent();
+    let size = far.max(top);
+    for _ in 0..3 {
+        let [d, z] = rng.pick(&corners);
+        let reach = size * rng.power(-3.0, 0.0);
+        let near: [f64; 3] = [d * 0.6, d * 0.8, z];
+        let triangles: Vec<[[f64; 3]; 3]> = (0..2)
+            .map(|_| {
+                let middle = Vector3::from(near) + Vector3::from(rng.direction()) * (0.3 * reach);
+                [0; 3].map(|_| (middle + Vector3::from(rng.direction()) * reach).into())
+            })
+            .collect();
+        let bvh = TriangleBvh::new(&soup(&triangles));
+        let pose = Pose::default();
+        let mut certifier =
+            Certifier::new(&bvh, &outlined).unwrap_or_else(|error| panic!("{error}: {tool:?}"));
+        for (index, surface) in outlined.info().surfaces.iter().enumerate() {
+            let found = certifier.deepest_on(SurfaceId(index), &pose, TOLERANCE).expect("it");
+            let Interval { low, high } = found.depth;
+            // Points as near to two surfaces count for both.
+            let owned_depth = |p: [f64; 3]| -> Option<f64> {
+                let depth = profile.depth(&[p[0].hypot(p[1]), p[2]]);
+                let owner = oracle.distance_to_surface(&surface.name, p);
+                (depth > 0.0 && owner <= depth + 1e-13 * size).then_some(depth)
+            };
+            let samples = triangles.iter().flat_map(|[a, b, c]| {
+                let [a, b, c] = [a, b, c].map(|corner| Vector3::from(*corner));
+                (0..=60).flat_map(move |i| (0..=60 - i).map(move |j| (i, j))).map(move |(i, j)| {
+                    let [s, t] = [i, j].map(|k| f64::from(k) / 60.0);
+                    (a + (b - a) * s + (c - a) * t).into()
+                })
+            });
+            let sampled = samples.filter_map(owned_depth).fold(0.0, f64::max);
+            tally.add(QUERIES, 1);
+            tally.see(IN_CONTACT, sampled > 0.0);
+            tally.see(WIDE, high - low > TOLERANCE + 1e-9);
+            let case = || {
+                format!(
+                    "{} on {}: {triangles:?}",
+                    tool.text(|n| n.to_f64().to_string()),
+                    surface.name
+                )
+            };
+            if sampled > high + 1e-12 * size {
+                tally.find(VIOLATIONS, format!("{sampled} above {high}: {}", case()));
+            }
+            let deep = |Witness { point, .. }: &Witness| {
+                let p = to_tool(&pose, 1.0, *point);
+                let depth = profile.depth(&[p[0].hypot(p[1]), p[2]]);
+                let owner = oracle.distance_to_surface(&surface.name, p);
+                depth >= low - 1e-12 * size && owner <= depth + 1e-11 * size
+            };
+            if low > 0.0 && !found.witness.as_ref().is_some_and(deep) {
+                tally.find(VIOLATIONS, format!("{:?} {low}: {}", found.witness, case()));
+            }
+        }
+    }
+}
+
+#[test]
+fn samples_are_within_the_depth_of_surfaces_nearly_in_line() {
+    let mut rng = Rng::new(70);
+    let mut tally = Tally::default();
+    for kind in [tapered, grooved, chords, tiny] {
+        for _ in 0..case_count("KINKS", 8) {
+            let tool = kind(&mut rng);
+            compare(&tool, &mut rng, &mut tally);
+        }
+    }
+    eprintln!("{tally}");
+    tally.assert_none(VIOLATIONS);
+    assert!(5 * tally.count(IN_CONTACT) > tally.count(QUERIES), "{tally}");
+    assert!(1000 * tally.count(WIDE) <= tally.count(QUERIES), "{tally}");
+}
+
+/// The tool point (16, 3) is 3 mm from the face, on a tube's edge: the part is in the way wherever the rim tapers.
+#[test]
+fn a_face_inside_the_part_is_seen_below_a_tapered_rim() {
+    let unlimited = f64::INFINITY;
+    for taper in [0.0, 1e-6, 1e-3, 0.02, 0.3] {
+        let drawing = format!(
+            "0 0; face 20 0; rim 20 3, {} 10; top 12 10, 12 1, 6 1, 6 10, 0 10",
+            20.0 - taper
+        );
+        let tool = Outlined::new(&drawn(drawing));
+        let part = shapes::tube(15.5, 16.5, 2.0, 96, 1, Unit::Millimetre).expect("a tube");
+        let part = TriangleBvh::new(&part);
+        let mut certifier = Certifier::new(&part, &tool).expect("a profile");
+        for surface in ["rim", "top"] {
+            certifier = certifier.with_allowance(surface, unlimited).expect("a surface");
+        }
+        let low = part.bounds()[0].z;
+        let verdict = certifier.check_pose(&pose([0.0, 0.0, low - 1.0], UP));
+        assert!(matches!(verdict, PoseVerdict::Touching(_)), "{taper}: {verdict:?}");
+        let deep = certifier.check_pose(&pose([0.0, 0.0, low - 3.5], UP));
+        assert_ne!(deep, PoseVerdict::Clear, "{taper}");
+    }
+}
+
+/// A tool 5 mm deep in a block, and its body, which begins 7 mm above it.
+#[test]
+fn a_body_above_the_part_is_clear_however_little_it_tapers() {
+    let block = TriangleBvh::new(&cuboid([-100.0, -100.0, -30.0], [100.0, 100.0, 0.0]));
+    for taper in [1e-6, 1e-4, 0.1, 1.0] {
+        let drawing = format!("0 0; face 25 0; flute 25 12; body {} 42, 0 42", 25.0 - taper);
+        let tool = Outlined::new(&drawn(drawing));
+        let mut certifier = Certifier::new(&block, &tool).expect("a profile");
+        let pose = pose([0.0, 0.0, -5.0], UP);
+        let body = certifier.deepest_on(SurfaceId(2), &pose, 1e-9).expect("a surface");
+        assert!(body.depth.high < 1e-9 && body.witness.is_none(), "{taper}: {body:?}");
+    }
+}
+
+/// Beside the acute edge of a dovetail the normal at the nearest point leads to the part.
+#[test]
+fn a_normal_at_an_acute_edge_leads_to_the_nearest_point() {
+    let tool = compiled("0 0; face 8 0; flank 3 6; shank 3 30, 0 30", "");
+    let mut rng = Rng::new(3);
+    for _ in 0..200 {
+        let [angle, away] = [rng.between(-1.2, 1.2), rng.power(-3.0, 0.7)];
+        let near = [8.0 + away * angle.cos(), 0.0, away * angle.sin()];
+        let part = [near, [near[0] + 0.5, 0.3, near[2]], [near[0] + 0.5, -0.3, near[2]]];
+        let bvh = TriangleBvh::new(&soup(&[part]));
+        let mut certifier = Certifier::new(&bvh, &tool).expect("a profile");
+        let found = certifier.clearance(&pose([0.0; 3], UP), 1e-9);
+        let [point, on_tool] = [found.witness.map(|w| w.point), found.on_tool.map(|t| t.point)]
+            .map(|point: Option<Point3<f64>>| point.expect("a point"));
+        let normal = found.on_tool.expect("a point").normal;
+        let toward = (point - on_tool).normalize();
+        assert!((normal - toward).norm() < 1e-6, "{near:?}: {normal:?} {toward:?}");
+    }
+}
