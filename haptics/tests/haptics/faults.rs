@@ -133,7 +133,7 @@ impl Device for Forgetful {
         Ok(upright(height))
     }
     fn apply(&mut self, wrench: &DeviceWrench) -> Result<(), DeviceError> {
-        if self.cycle % 3 == 0 {
+        if self.cycle.is_multiple_of(3) {
             return Err(gone());
         }
         self.applied = *wrench;

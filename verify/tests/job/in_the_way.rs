@@ -56,10 +56,10 @@ fn an_arc_in_rapid_traverse_is_an_arc() {
                  END PGM A MM\n",
                 arc.replace("FEED", feed)
             );
-            let mut scene = named("a.h", &text).placed().with("anyway = true");
+            let scene = named("a.h", &text).placed().with("anyway = true");
             let hit = scene.obstacle([-5.0, 45.0, 0.0], [5.0, 55.0, 20.0]);
             hit.gives(HEIDENHAIN, FINDINGS, &["V0101 the clamp"]);
-            let mut scene = named("a.h", &text).placed().with("anyway = true");
+            let scene = named("a.h", &text).placed().with("anyway = true");
             scene.obstacle([-5.0, -5.0, 0.0], [5.0, 5.0, 20.0]).gives(HEIDENHAIN, CLEAN, &[]);
         }
     }

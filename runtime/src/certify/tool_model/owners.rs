@@ -256,7 +256,8 @@ impl Owners {
                 break;
             }
             for PeakCell { rectangle, nearest } in std::mem::take(&mut cells) {
-                let Some(nearest) = self.peak_features(section, &rectangle, nearest, others) else {
+                let Some(nearest) = self.peak_features(section, &rectangle, &nearest, others)
+                else {
                     continue;
                 };
                 let (middle, reach) = rectangle.ball();
@@ -280,7 +281,7 @@ impl Owners {
         &self,
         section: &Section,
         rectangle: &Rectangle,
-        nearest: Vec<usize>,
+        nearest: &[usize],
         others: bool,
     ) -> Option<Vec<usize>> {
         let (middle, reach) = rectangle.ball();
