@@ -155,10 +155,11 @@ impl QuerySetting<'_> {
     ) -> Location {
         let turns = if self.info().symmetry == Symmetry::Revolved { AZIMUTHS } else { 1 };
         let needed = (radius + 4.0 * self.error) * self.length;
+        let mut triangles = NearestTriangle::new(&self.bvh);
         for turn in 0..turns {
             let (sin, cos) = (TAU * f64::from(turn) / f64::from(AZIMUTHS)).sin_cos();
             let point = place([d * cos - y * sin, d * sin + y * cos, z]);
-            if NearestTriangle::new(&self.bvh).distance(point) > needed {
+            if triangles.distance(point) > needed {
                 return self.bvh.locate(point);
             }
         }

@@ -274,7 +274,7 @@ struct MotionCheck<'a, 's> {
     sweeper: &'a mut Sweeper,
 }
 
-/// What ends the check of a motion.
+/// The end of the check of a motion that is not clear.
 enum FirstContact {
     At(f64, Witness),
     /// The motion is clear up to this fraction of it; the rest is unknown.

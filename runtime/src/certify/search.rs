@@ -520,11 +520,7 @@ impl SearchState {
             }
         }
         if let Side::Inside = side {
-            let rectangle = SubTriangle::new(corners).rectangle(of.error);
-            let bound = section.unresolved_depth(owners, &rectangle);
-            if bound > self.search.threshold() {
-                self.search.leave(bound);
-            }
+            section.leave_unresolved(owners, corners, of.error, &mut self.search);
         }
         if before.is_some_and(|before| self.search.raise(before, triangle.skew)) {
             self.best = best;

@@ -53,7 +53,7 @@ enum Order {
         length: usize,
     },
     Function,
-    /// Of expressions of one length, the outer one is visited last.
+    /// The outer of expressions of one length is visited last.
     Begin {
         length: Reverse<usize>,
         visited: Reverse<usize>,

@@ -656,7 +656,7 @@ impl MoveFrame {
 
     /// Returns the moves of a step. `from` is the line of the move before, if there is one.
     fn moves(&self, step: &Step, resolved: &Resolved, from: Option<usize>) -> Vec<Move> {
-        // Where no move comes before, the tool is checked at rest first. It cuts nothing there, whatever the step is.
+        // The tool is checked at rest first where no move comes before. It cuts nothing there, whatever the step is.
         let start = |motion: JointMotion| match from {
             None => self
                 .rest(motion, 0.0)

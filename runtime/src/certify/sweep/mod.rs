@@ -387,11 +387,7 @@ impl Sweeper {
             found = maximum.map(|maximum| line.point(maximum.t)).or(found);
         }
         if min_depth >= 0.0 {
-            let rectangle = SubTriangle::new(triangle.corners).rectangle(displacement);
-            let bound = section.unresolved_depth(owners, &rectangle);
-            if bound > self.search.threshold() {
-                self.search.leave(bound);
-            }
+            section.leave_unresolved(owners, triangle.corners, displacement, &mut self.search);
         }
         self.budget = self.search.remaining_budget();
         let Some(point) = found else {

@@ -12,8 +12,11 @@
 //! meridian (`docs/certified.md`). The others end on an edge, or at the height of an end of that line. At such an
 //! end a foot is an end of a feature, or a third feature is as near.
 
+use crate::certify::space::Point;
 use crate::certify::tool_model::feature::{Feature, MeridianPoint, minus, norm};
 use crate::certify::tool_model::section::{Owners, Section, SectionSlab};
+use crate::certify::triangle::SubTriangle;
+use crate::certify::triangle::line_search::DepthSearch;
 use crate::tool::{Circle, Region, ToolInfo, bit};
 use std::collections::BinaryHeap;
 
@@ -185,10 +188,7 @@ impl Owners {
         if owner > other + uncertainty || owner.min(other) + reach <= deeper {
             return Some(false);
         }
-        if section.owned(self).all(|owner| {
-            section.hidden_by_neighbours(owner, &corners)
-                || section.is_owned_by_others(self, owner, &corners, 2.0 * section.error)
-        }) {
+        if section.own_nothing(self, &corners, 2.0 * section.error, |_| false) {
             return Some(false);
         }
         (owner + uncertainty < other && owner - reach > deeper).then_some(true)
@@ -432,16 +432,28 @@ impl Section {
         heights
     }
 
-    /// Returns an upper bound on the depth of points of a rectangle near which a height at which depth can be greatest may not be
-    /// known; negative infinity if all are known.
-    pub(crate) fn unresolved_depth(&self, owners: &Owners, rectangle: &Rectangle) -> f64 {
+    /// Leaves open in a search how deep a triangle is within a distance of which a height at which depth can be greatest may not
+    /// be known.
+    pub(crate) fn leave_unresolved(
+        &self,
+        owners: &Owners,
+        corners: [Point; 3],
+        distance: f64,
+        search: &mut DepthSearch,
+    ) {
+        // Hardly any profile has some.
+        if self.unresolved.is_empty() && owners.unresolved.is_empty() {
+            return;
+        }
+        let rectangle = SubTriangle::new(corners).rectangle(distance);
         let unresolved = self.unresolved.iter().chain(&owners.unresolved);
-        let near = unresolved.filter(|unresolved| unresolved.meets(rectangle));
-        let depths = near.map(|unresolved| {
-            let (middle, reach) = unresolved.ball();
-            self.signed(middle) + reach + self.error
-        });
-        depths.fold(f64::NEG_INFINITY, f64::max)
+        for near in unresolved.filter(|unresolved| unresolved.meets(&rectangle)) {
+            let (middle, reach) = near.ball();
+            let bound = self.signed(middle) + reach + self.error;
+            if bound > search.threshold() {
+                search.leave(bound);
+            }
+        }
     }
 
     /// Returns whether a point midway between two points of the profile, `half` away from both, is inside and has no

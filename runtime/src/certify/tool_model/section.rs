@@ -10,6 +10,7 @@ use crate::certify::tool_model::feature::{
 };
 use crate::certify::tool_model::owners::Rectangle;
 use crate::tool::ToolInfo;
+use std::cell::LazyCell;
 
 /// A region between two heights.
 #[derive(Clone, Debug)]
@@ -246,7 +247,7 @@ impl Section {
         let feature = &self.features[feature];
         let away = minus(p, feature.foot(p));
         let length = norm(away);
-        // So near to the surface rounding decides on which side the point is.
+        // Rounding decides on which side of the surface a point so near to it is.
         if length <= self.contact_tolerance() {
             return feature.signed_gradient(p).map(|part| -part);
         }
@@ -275,10 +276,8 @@ impl Section {
         displacement: f64,
     ) -> bool {
         !owners.all()
-            && self.owned(owners).all(|owner| {
+            && self.own_nothing(owners, rectangle, 2.0 * self.error, |owner| {
                 self.features[owner].distance(p) > depth + 2.0 * displacement
-                    || self.hidden_by_neighbours(owner, rectangle)
-                    || self.is_owned_by_others(owners, owner, rectangle, 2.0 * self.error)
             })
     }
 
@@ -361,13 +360,10 @@ impl Section {
         if bound > threshold && !owners.all() {
             // Depth is the distance of the nearest feature. An owner that is farther by more than the errors of both
             // distances owns no point here.
-            let separation = bound + 2.0 * (self.error + slack);
-            let none_is_owned = self.owned(owners).all(|owner| {
-                self.hidden_by_neighbours(owner, triangle)
-                    || self.features[owner].at_least(triangle) > separation
-                    || self.is_owned_by_others(owners, owner, triangle, 2.0 * (self.error + slack))
-            });
-            if none_is_owned {
+            let margin = 2.0 * (self.error + slack);
+            if self.own_nothing(owners, triangle, margin, |owner| {
+                self.features[owner].at_least(triangle) > bound + margin
+            }) {
                 return f64::NEG_INFINITY;
             }
         }
@@ -411,17 +407,26 @@ impl Section {
         [0, 1].into_iter().all(|end| !ends[end] || self.neighbour_is_nearer(feature, end, corners))
     }
 
-    /// Returns whether a feature that is no owner is nearer than an owner to all points of a polygon, by more than a margin.
-    pub(super) fn is_owned_by_others(
+    /// Returns whether owners own no point of a polygon: each is known to be far away, or its neighbours are nearer to all
+    /// points, or a feature that is no owner is, by more than a margin.
+    #[inline]
+    pub(super) fn own_nothing(
         &self,
         owners: &Owners,
-        owner: usize,
         corners: &[MeridianPoint],
         margin: f64,
+        is_far: impl Fn(usize) -> bool,
     ) -> bool {
-        let others = (0..self.features.len()).filter(|feature| !owners.is_owned(*feature));
-        let (_, other) = self.nearest(others, mean(corners));
-        self.features[owner].is_farther(&self.features[other], corners, margin)
+        // The same for all owners, and needed for few polygons.
+        let nearest_other = LazyCell::new(|| {
+            let others = (0..self.features.len()).filter(|feature| !owners.is_owned(*feature));
+            &self.features[self.nearest(others, mean(corners)).1]
+        });
+        self.owned(owners).all(|owner| {
+            is_far(owner)
+                || self.hidden_by_neighbours(owner, corners)
+                || self.features[owner].is_farther(&nearest_other, corners, margin)
+        })
     }
 
     /// Returns whether the neighbour that shares an end of a feature comes nearer to all points of a polygon from there.
