@@ -42,7 +42,8 @@ pub struct DepthBounds {
     /// `L`: depth is at most `L` times the distance to the surface, and a Lipschitz constant of the depth. `None` if no
     /// such bound is proved.
     pub lipschitz: Option<f64>,
-    /// Upper bound on the error of a computed depth against the exact depth of its region, in the file's unit.
+    /// Upper bound on the error of a computed depth against the exact depth of its region, in the file's unit. With a
+    /// Lipschitz constant it includes what that constant neglects.
     pub rounding: f64,
 }
 

@@ -75,10 +75,13 @@ kinds! {
         message "square root of a negative number at {location}, in {subject}"
         help "add a condition that the radicand is at least 0, or write `max(0, …)` under the root"
         explain "Each quantity of a region must have a value at all of its points, and each curve at all points of the tool.";
-    error T0612 DivisionByZero { location: String, subject: Subject }
+    error T0612 DivisionByZero { location: String, subject: Subject, by_hand: bool }
         "division by zero at a point"
         message "division by zero at {location}, in {subject}"
-        help "add a condition that keeps the region away from this point"
+        help (by_hand) {
+            true => "add a condition that keeps the region away from this point",
+            false => "write a divisor that is nowhere 0, such as the sum of a length and a distance",
+        }
         explain "Each quantity of a region must have a value at all of its points, and each curve at all points of the tool.";
     error T0613 NumericOverflow { location: String, subject: Subject }
         "numeric overflow"
@@ -151,10 +154,19 @@ kinds! {
         help ((exact, factor)) {
             (true, _) => "no action needed: a profile's depth is exact by construction, although this proof is incomplete",
             (false, Some(factor)) => "the bound proved during compilation still holds: depth is at most {factor} times the distance",
-            (false, None) => "simplify the regions: without this proof, no constant times the distance is known to bound the depth",
+            (false, None) => "certified queries refuse this tool; write each depth as the distance to the nearest surface, or as a `min` of distances",
         }
-        explain "The prover divides the tool into a limited number of boxes. It found nothing wrong in those that are left."
-        without "only `touchoff check` proves this far; compilation stops earlier";
+        explain "The prover divides the tool into a limited number of boxes. It found nothing wrong in those that are left.";
+    warning T0625 NicenessNowherePositive { region: String, value: FormattedNumber, location: String }
+        "niceness that is never above 0"
+        message "`niceness` of {region} is above 0 at no sample point; its largest is {value}, at {location}"
+        help "write 0 if no contact here is good, or remove `cutting` from the surface"
+        explain "Niceness ranges from 0, a bad contact, to 1, the best. A value below 0 counts as 0.";
+    note T0626 NicenessAboveOne { region: String, value: FormattedNumber, location: String }
+        "niceness above 1"
+        message "`niceness` of {region} is {value} at {location}"
+        help "scale it to lie between 0 and 1, unless contacts here are meant to outweigh those of other tools and surfaces"
+        explain "By convention niceness ranges from 0, a bad contact, to 1, the best. Larger values are taken as they are.";
     error T0690 MoreErrors
         "more errors"
         message "more errors follow"

@@ -80,6 +80,10 @@ impl fmt::Display for MountChain {
 pub enum Expected {
     /// Any of these.
     OneOf(Vec<String>),
+    /// This word, which is spelt nearly like the one that is there.
+    Similar(String),
+    /// A segment instead of a second `start`.
+    OneStart,
     /// A param and its value.
     Argument,
     /// Not known.
@@ -94,8 +98,9 @@ impl fmt::Display for Expected {
                 [one] => f.write_str(one),
                 [most @ .., last] => write!(f, "{} or {last}", most.join(", ")),
             },
+            Expected::Similar(word) => f.write_str(word),
             Expected::Argument => f.write_str("`PARAM = VALUE`"),
-            Expected::Unknown => Ok(()),
+            Expected::OneStart | Expected::Unknown => Ok(()),
         }
     }
 }
@@ -230,6 +235,8 @@ pub enum Statement {
     NearestFeatures(Option<String>),
     /// Depth is continuous from one owner to another.
     ContinuousDepth(Option<String>, Option<String>),
+    /// The steepness of depth is bounded in this region.
+    BoundedSteepness(String),
     /// Depth is not negative in this owner.
     NonNegativeDepth(Option<String>),
     /// The regions that meet; this is their number.
@@ -249,6 +256,9 @@ impl fmt::Display for Statement {
             }
             Statement::ContinuousDepth(from, to) => {
                 write!(f, "whether depth is continuous from {} to {}", shown(from), shown(to))
+            }
+            Statement::BoundedSteepness(region) => {
+                write!(f, "whether the steepness of depth is bounded in `{region}`")
             }
             Statement::NonNegativeDepth(owner) => {
                 write!(f, "whether depth is at least 0 in {}", shown(owner))
@@ -271,7 +281,11 @@ pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Opti
     known
         .into_iter()
         .map(|candidate| (strsim::damerau_levenshtein(name, candidate), candidate))
-        .filter(|(edits, candidate)| *edits <= candidate.len().max(name.len()).div_ceil(3))
+        // A word of one letter is like no other.
+        .filter(|(edits, candidate)| {
+            let length = candidate.len().max(name.len());
+            *edits < length && *edits <= length.div_ceil(3)
+        })
         .min()
         .map(|(_, candidate)| candidate)
 }

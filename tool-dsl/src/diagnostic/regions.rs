@@ -240,4 +240,9 @@ kinds! {
             None => "define it above: `curve {name} = …;`",
         }
         explain "`bsp` lists curves by their names.";
+    warning T0439 NoCuttingSurface { quantity: &'static str }
+        "law for cutting surfaces of a tool without any"
+        message "this {quantity} holds for no surface: none is marked `cutting`"
+        help "mark a surface `cutting`, as in `line to (3, 20) as flute cutting;`"
+        explain "A law for `cutting` holds for all surfaces with that mark, and this tool has none.";
 }

@@ -115,7 +115,7 @@ kinds! {
         help (expected) {
             Expected::OneOf(_) => "expected {expected}",
             Expected::Argument => "write `PARAM = VALUE`, as in `D = 0.25inch, flute = 18`",
-            Expected::Unknown => "complete the statement",
+            _ => "complete the statement",
         }
         explain "The text ends inside an item, or inside a value that is given for a `param`.";
     error T0119 UnexpectedToken { token: String, expected: Expected }
@@ -123,6 +123,8 @@ kinds! {
         message "unexpected `{token}`"
         help (expected) {
             Expected::OneOf(_) => "expected {expected}",
+            Expected::Similar(_) => "did you mean `{expected}`?",
+            Expected::OneStart => "remove it: a profile is one line, and each segment begins where the one before it ends",
             Expected::Argument => "write `PARAM = VALUE`, as in `D = 0.25inch, flute = 18`",
             Expected::Unknown => "remove it",
         }

@@ -67,14 +67,14 @@ impl Linear {
         Linear { choices: Vec::new(), ..Linear::of(model, [], None) }
     }
 
-    /// Collects the linear curves, the depths of [`Model::depths`], and the choices for roots.
+    /// Collects the linear curves, depths that begin with those of [`Model::depths`], and the choices for roots.
     ///
     /// If some curve compares squares of expressions with roots, every comparison of squares becomes a
     /// comparison of the squared expressions, where their signs are known in a box that contains the tool.
-    pub(crate) fn with_depths(model: &Model, cell: Cell) -> Linear {
+    pub(crate) fn with_depths(model: &Model, depths: &[Id], cell: Cell) -> Linear {
         let compares_roots = model.curve_values().any(|value| compares_roots(&model.graph, value));
         let roots = compares_roots.then_some(cell);
-        Linear::of(model, model.depths(), roots)
+        Linear::of(model, depths.iter().copied(), roots)
     }
 
     fn of(model: &Model, depths: impl IntoIterator<Item = Id>, roots: Option<Cell>) -> Linear {
@@ -356,7 +356,7 @@ mod tests {
         for tool in library::tools_by_hand() {
             let model = &tool.model;
             let (curves, regions) = (model.curves.len(), model.regions.len());
-            let linear = Linear::with_depths(model, tool.extent.cell());
+            let linear = Linear::with_depths(model, &model.depths(), tool.extent.cell());
             let mut counts = [0; 2];
             for number in 0..400u32 {
                 // The signs at a point, some of them forgotten, so that queries resemble one another; or opposite ones.

@@ -85,14 +85,6 @@ impl<'g> Writer<'g> {
         code.done().to_string()
     }
 
-    /// Writes an expression for people.
-    pub(super) fn written(graph: &Graph, curves: &[Curve], id: Id) -> String {
-        let writer = Writer { graph, curves, form: Form::Scalar, use_counts: BTreeMap::new() };
-        let mut code = Tokens::default();
-        writer.leaf(&mut code, id);
-        code.done().to_string()
-    }
-
     fn mentions(&self, coord: Coord) -> bool {
         self.use_counts.keys().any(|id| *self.graph.node(*id) == Node::Coord(coord))
     }

@@ -4,11 +4,12 @@
 use super::code::Writer;
 use crate::checked::CheckedTool;
 use crate::diagnostic::format_number;
-use crate::expr::Id;
-use crate::formula::Formula;
+use crate::expr::{Coord, Graph, Id, Node};
+use crate::formula::{Curve, Formula};
 use crate::plan::Tree;
 use crate::source::Source;
 use crate::syntax;
+use std::collections::BTreeMap;
 use std::fmt::Write;
 
 /// Lists the syntax tree of a text, one line per item, without source locations.
@@ -65,7 +66,7 @@ pub fn regions(tool: &CheckedTool) -> String {
         // Writing to a String does not fail.
         let surface = &model.surfaces[region.surface].name;
         let _ = writeln!(text, "region {} as {surface}", region.name);
-        let _ = writeln!(text, "  where {}", condition(&region.inside));
+        let _ = writeln!(text, "  where {}", condition(tool, &region.inside));
         let evaluation = [
             ("depth", region.depth),
             ("magnitude", region.magnitude),
@@ -80,25 +81,123 @@ pub fn regions(tool: &CheckedTool) -> String {
     text
 }
 
-fn condition(formula: &Formula) -> String {
+fn condition(tool: &CheckedTool, formula: &Formula) -> String {
+    let joined = |parts: &[Formula], word: &str| {
+        let parts: Vec<String> = parts.iter().map(|part| condition(tool, part)).collect();
+        format!("({})", parts.join(word))
+    };
     match formula {
         Formula::Const(value) => value.to_string(),
         Formula::Atom { curve, below, strict } => {
+            let Curve { name, value } = &tool.model.curves[*curve];
+            let curve = name.clone().unwrap_or_else(|| expression(tool, *value));
             let sign = if *below { "<" } else { ">" };
-            format!("c{curve} {sign}{} 0", if *strict { "" } else { "=" })
+            format!("{curve} {sign}{} 0", if *strict { "" } else { "=" })
         }
         Formula::All(parts) => joined(parts, " and "),
         Formula::Any(parts) => joined(parts, " or "),
     }
 }
 
-fn joined(parts: &[Formula], word: &str) -> String {
-    let parts: Vec<String> = parts.iter().map(condition).collect();
-    format!("({})", parts.join(word))
+/// Writes an expression in the language, and after it the values that it mentions more than once.
+fn expression(tool: &CheckedTool, id: Id) -> String {
+    let graph = &tool.model.graph;
+    let needed = graph.dependencies([id]);
+    let mut uses: BTreeMap<Id, usize> = BTreeMap::new();
+    for operand in needed.iter().flat_map(|id| graph.node(*id).operands()) {
+        *uses.entry(operand).or_default() += 1;
+    }
+    let is_shared = |id: &Id| uses.get(id).is_some_and(|uses| *uses > 1) && graph.height(*id) > 0;
+    let mut names: BTreeMap<Id, String> = BTreeMap::new();
+    let mut shared = Vec::new();
+    for id in needed.iter().filter(|id| is_shared(id)) {
+        let name = format!("v{}", names.len() + 1);
+        shared.push(format!("{name} = {}", Infix { graph, names: &names }.text(*id).0));
+        names.insert(*id, name);
+    }
+    let text = match names.get(&id) {
+        Some(name) => name.clone(),
+        None => Infix { graph, names: &names }.text(id).0,
+    };
+    if shared.is_empty() { text } else { format!("{text}, where {}", shared.join(", ")) }
 }
 
-fn expression(tool: &CheckedTool, id: Id) -> String {
-    Writer::written(&tool.model.graph, &tool.model.curves, id)
+/// How tightly an expression's outermost operator binds.
+#[derive(Clone, Copy, PartialEq, PartialOrd)]
+enum Binding {
+    Sum,
+    Product,
+    Value,
+}
+
+/// Writes expressions with operators between operands, some of which have names.
+struct Infix<'g> {
+    graph: &'g Graph,
+    names: &'g BTreeMap<Id, String>,
+}
+
+impl Infix<'_> {
+    fn text(&self, id: Id) -> (String, Binding) {
+        use Binding::{Product, Sum, Value};
+        let call = |name: &str, operands: &[Id]| {
+            let operands: Vec<String> = operands.iter().map(|id| self.within(*id, Sum)).collect();
+            (format!("{name}({})", operands.join(", ")), Value)
+        };
+        match *self.graph.node(id) {
+            Node::Const(ref value) => {
+                let binding = if value.is_negative() { Sum } else { Value };
+                (format_number(value.to_f64()), binding)
+            }
+            Node::Coord(coord) => {
+                let name = match coord {
+                    Coord::X => "x",
+                    Coord::Y => "y",
+                    Coord::Z => "z",
+                    Coord::D => "d",
+                    Coord::Q => "d^2",
+                    Coord::Length => "unit",
+                    Coord::PerLength => "1/unit",
+                };
+                (name.to_owned(), if coord == Coord::PerLength { Product } else { Value })
+            }
+            Node::Neg(a) => (format!("-{}", self.within(a, Product)), Sum),
+            Node::Add(a, b) if let Some(x) = self.graph.constant(b).filter(|x| x.is_negative()) => {
+                let x = format_number((-x).to_f64());
+                (format!("{} - {x}", self.within(a, Sum)), Sum)
+            }
+            Node::Add(a, b) => {
+                (format!("{} + {}", self.within(a, Sum), self.within(b, Product)), Sum)
+            }
+            Node::Sub(a, b) => {
+                (format!("{} - {}", self.within(a, Sum), self.within(b, Product)), Sum)
+            }
+            Node::Mul(a, b) if a == b => (format!("{}^2", self.within(a, Value)), Value),
+            Node::Mul(a, b) => {
+                (format!("{}*{}", self.within(a, Product), self.within(b, Value)), Product)
+            }
+            Node::Div(a, b) | Node::Quotient(a, b) => {
+                (format!("{}/{}", self.within(a, Product), self.within(b, Value)), Product)
+            }
+            Node::Min(a, b) => call("min", &[a, b]),
+            Node::Max(a, b) => call("max", &[a, b]),
+            Node::Abs(a) => call("abs", &[a]),
+            Node::Sqrt(a) => call("sqrt", &[a]),
+            Node::Select { low, high, then, other } => {
+                let [low, high, then, other] =
+                    [low, high, then, other].map(|id| self.within(id, Sum));
+                (format!("({then} if {low} <= {high}, else {other})"), Value)
+            }
+        }
+    }
+
+    /// Returns an operand, in parentheses if its operator binds less than is needed.
+    fn within(&self, id: Id, needed: Binding) -> String {
+        if let Some(name) = self.names.get(&id) {
+            return name.clone();
+        }
+        let (text, binding) = self.text(id);
+        if binding < needed { format!("({text})") } else { text }
+    }
 }
 
 /// Writes the tree of owners: a box per test, whose left branch is taken if it holds, and a leaf per region.

@@ -65,6 +65,7 @@
 //!
 //! Nodes are only added. An [`Id`] stays valid, and keeps its meaning, for the lifetime of its graph.
 
+pub(crate) mod corner;
 pub mod derive;
 mod graph;
 pub mod interval;

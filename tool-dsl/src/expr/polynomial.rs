@@ -416,6 +416,15 @@ impl Polynomial {
         if self.0.len() == 1 { self.0.get(&[1, 0, 0, 0]) } else { None }
     }
 
+    /// Returns `a (d - r)` for `a (d² - r²)`, which has the same sign, since `d` is not negative.
+    pub(crate) fn without_square_of_d(&self) -> Option<Polynomial> {
+        let (a, constant) = (self.0.get(&[2, 0, 0, 0])?, self.0.get(&[0; 4])?);
+        let square = (-constant).checked_div(a).filter(|square| !square.is_negative())?;
+        let radius = square.sqrt().filter(|_| self.0.len() == 2)?;
+        let difference = Polynomial::coordinate(Coord::D);
+        Some(difference.plus(&Polynomial::from_constant(&-&radius)).scaled(a))
+    }
+
     /// Returns the monomials with their coefficients.
     pub fn terms(&self) -> impl Iterator<Item = (Monomial, &Number)> {
         self.0.iter().map(|(monomial, value)| (*monomial, value))

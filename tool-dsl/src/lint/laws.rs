@@ -1,11 +1,13 @@
 //! Checks of `magnitude` and `niceness` at points that samples of the inside do not reach: toward the
 //! surface, at its corners and on the axis.
 
-use super::{Linter, norm};
+use super::{Linter, ROUNDING, norm};
 use crate::bound::Extent;
 use crate::diagnostic::{CheckKind, Diagnostic, FormattedNumber, Subject};
-use crate::expr::Id;
+use crate::expr::{Id, Node};
 use crate::geometry::outline::{Point, Segment, points_with_normals};
+use crate::model::Model;
+use crate::number::Number;
 use crate::source::Span;
 
 /// The number of points along a segment of a profile.
@@ -21,6 +23,44 @@ const MIN_GROWTH_RATIO: f64 = 100.0;
 /// The ratio by which such a value must also exceed those at all samples, so that a value that passes through
 /// 0 is not reported.
 const MIN_RATIO_TO_SAMPLES: f64 = 1000.0;
+/// The ratio of a divisor near the surface to that farther in below which it is 0 on the surface. For a root it is 1/316.
+const MAX_FALL_RATIO: f64 = 0.01;
+/// The number of points that are kept for each sign of a divisor. Any two of opposite signs may have a zero between
+/// them, but not all are joined by a line in the region.
+const MAX_POINTS_OF_SIGN: usize = 6;
+
+/// A divisor in a law of a region.
+#[derive(Clone)]
+pub(super) struct Divisor {
+    region: usize,
+    quantity: &'static str,
+    span: Span,
+    law: Id,
+    id: Id,
+    /// Points of the region at which it is below 0, and above 0.
+    points: [Vec<[f64; 3]>; 2],
+}
+
+/// Returns the divisors of all regions' laws.
+pub(super) fn divisors(model: &Model) -> Vec<Divisor> {
+    let mut divisors = Vec::new();
+    for (index, region) in model.regions.iter().enumerate() {
+        let spans = region.law_spans;
+        for (quantity, law, span) in [
+            ("magnitude", region.magnitude, spans.magnitude),
+            ("niceness", region.niceness, spans.niceness),
+        ] {
+            for id in model.graph.dependencies([law]) {
+                if let Node::Div(_, divisor) = *model.graph.node(id) {
+                    let points = Default::default();
+                    let (region, id) = (index, divisor);
+                    divisors.push(Divisor { region, quantity, span, law, id, points });
+                }
+            }
+        }
+    }
+    divisors
+}
 
 /// Returns points on an outline, in the half plane's coordinates, each with a vector into the material: along
 /// its segments and at the corners between them.
@@ -48,12 +88,87 @@ impl Linter<'_> {
         ]
     }
 
-    /// Updates the largest values of the laws at the current point.
-    pub(super) fn measure(&mut self, owner: usize) {
+    /// Updates what is known of the laws' values and divisors by the current point.
+    pub(super) fn measure(&mut self, owner: usize, point: [f64; 3]) {
         for (law, (_, id, _)) in self.laws(owner).into_iter().enumerate() {
             let value = self.get(id).abs();
             let largest = &mut self.largest[owner][law];
             *largest = largest.max(if value.is_finite() { value } else { 0.0 });
+        }
+        let niceness = self.get(self.model.regions[owner].niceness);
+        if self.nicest[owner].is_none_or(|(_, largest)| niceness > largest) {
+            self.nicest[owner] = Some((point, niceness));
+        }
+        for index in 0..self.divisors.len() {
+            let Divisor { region, id, .. } = self.divisors[index];
+            let value = if region == owner { self.get(id) } else { 0.0 };
+            let seen = &mut self.divisors[index].points[usize::from(value > 0.0)];
+            if value != 0.0 && seen.len() < MAX_POINTS_OF_SIGN {
+                seen.push(point);
+            }
+        }
+    }
+
+    /// Reports divisors that are 0 inside a region: between points at which they have opposite signs.
+    pub(super) fn report_poles(&mut self) {
+        for divisor in std::mem::take(&mut self.divisors) {
+            let [below, above] = &divisor.points;
+            let pole = below.iter().find_map(|from| {
+                above.iter().find_map(|to| self.zero_between(&divisor, *from, *to))
+            });
+            if let Some(point) = pole {
+                let kind = self.division_by_zero(&divisor, point);
+                self.report(Diagnostic::new(divisor.span, kind));
+            }
+        }
+    }
+
+    /// Returns a point at which a divisor changes its sign between two others, if the way there is in its region.
+    fn zero_between(
+        &mut self,
+        divisor: &Divisor,
+        mut below: [f64; 3],
+        mut above: [f64; 3],
+    ) -> Option<[f64; 3]> {
+        for _ in 0..64 {
+            let middle = [0, 1, 2].map(|k| (below[k] + above[k]) / 2.0);
+            if self.owner(middle) != Some(divisor.region) {
+                return None;
+            }
+            // A divisor is computed with its law.
+            self.get(divisor.law);
+            if self.get(divisor.id) > 0.0 { above = middle } else { below = middle }
+        }
+        Some(above)
+    }
+
+    fn division_by_zero(&self, divisor: &Divisor, point: [f64; 3]) -> CheckKind {
+        let region = self.model.regions[divisor.region].name.clone();
+        CheckKind::DivisionByZero {
+            location: self.format_point(point),
+            subject: Subject::Quantity(divisor.quantity, region),
+            by_hand: !self.model.is_exact(),
+        }
+    }
+
+    /// Reports nicenesses of cutting surfaces that are nowhere above 0, or somewhere above 1.
+    pub(super) fn report_niceness_range(&mut self) {
+        for (index, nicest) in std::mem::take(&mut self.nicest).into_iter().enumerate() {
+            let region = &self.model.regions[index];
+            let Some((point, value)) = nicest else { continue };
+            // A constant 0 says that no contact is good.
+            let is_zero = self.model.graph.constant(region.niceness).is_some_and(Number::is_zero);
+            let (region_name, location) = (region.name.clone(), self.format_point(point));
+            let kind = match FormattedNumber(value) {
+                value if value.0 > 1.0 + ROUNDING => {
+                    CheckKind::NicenessAboveOne { region: region_name, value, location }
+                }
+                value if value.0 <= 0.0 && !is_zero => {
+                    CheckKind::NicenessNowherePositive { region: region_name, value, location }
+                }
+                _ => continue,
+            };
+            self.report(Diagnostic::new(region.law_spans.niceness, kind));
         }
     }
 
@@ -67,6 +182,10 @@ impl Linter<'_> {
         let Some(owner) = self.owner(near) else { return };
         self.report_missing_values(owner, near);
         let values = self.laws(owner).map(|(_, id, _)| self.get(id).abs());
+        let divisors: Vec<Divisor> =
+            self.divisors.iter().filter(|divisor| divisor.region == owner).cloned().collect();
+        let near_divisors: Vec<f64> =
+            divisors.iter().map(|divisor| self.get(divisor.id).abs()).collect();
         if self.owner(far) != Some(owner) {
             return;
         }
@@ -82,6 +201,14 @@ impl Linter<'_> {
                     location: self.format_point(surface_point),
                 };
                 self.report(Diagnostic::new(span, kind));
+                return;
+            }
+        }
+        // The law has a limit at the surface, and yet no value there: 0 divided by 0.
+        for (divisor, near) in divisors.iter().zip(near_divisors) {
+            if near < MAX_FALL_RATIO * self.get(divisor.id).abs() {
+                let kind = self.division_by_zero(divisor, surface_point);
+                self.report(Diagnostic::new(divisor.span, kind));
             }
         }
     }
@@ -118,14 +245,14 @@ impl Linter<'_> {
         place: String,
     ) -> Diagnostic {
         let subject = Subject::Quantity(quantity, self.model.regions[owner].name.clone());
-        Diagnostic::new(span, self.fault(id).kind(place, subject))
+        Diagnostic::new(span, self.fault(id).kind(place, subject, !self.model.is_exact()))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use crate::compile;
-    use crate::diagnostic::Diagnostic;
+    use crate::diagnostic::{Diagnostic, Severity};
     use crate::source::Source;
 
     /// Returns the messages for tools with a law: a profile with it as magnitude, one with it as niceness,
@@ -142,7 +269,10 @@ mod tests {
         .map(|items| {
             let compiled =
                 compile(&Source::new("a.tool", format!("tool A {{ units mm; {items} }}")));
-            compiled.diagnostics().iter().map(Diagnostic::message).collect()
+            // Notes tell of nicenesses above 1.
+            let found = compiled.diagnostics().iter();
+            let found = found.filter(|diagnostic| diagnostic.severity != Severity::Note);
+            found.map(Diagnostic::message).collect()
         })
     }
 

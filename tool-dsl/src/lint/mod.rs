@@ -10,6 +10,7 @@ use crate::formula::{Curve, CurveIndex, Formula};
 use crate::model::{Model, Region};
 use crate::resolve::{never_wins, off_tip, overlapping};
 use crate::source::Span;
+use laws::Divisor;
 use std::cell::RefCell;
 
 mod laws;
@@ -68,6 +69,8 @@ pub(crate) fn lint(model: &Model, extent: &Extent) -> Vec<Diagnostic> {
             linter.check_toward_surface(at, direction);
         }
         linter.on_axis(extent);
+        linter.report_poles();
+        linter.report_niceness_range();
         return linter.found;
     }
     linter.measure_curves(extent);
@@ -95,6 +98,8 @@ pub(crate) fn lint(model: &Model, extent: &Extent) -> Vec<Diagnostic> {
         if model.domain == Domain::HalfPlane {
             linter.on_axis(extent);
         }
+        linter.report_poles();
+        linter.report_niceness_range();
     }
     linter.found
 }
@@ -117,6 +122,10 @@ struct Linter<'m> {
     scales: Vec<f64>,
     /// The largest absolute magnitude and niceness of each region at the sample points.
     largest: Vec<[f64; 2]>,
+    /// The point of each region with the largest niceness, and that value.
+    nicest: Vec<Option<([f64; 3], f64)>>,
+    /// The divisors of magnitudes and nicenesses.
+    divisors: Vec<Divisor>,
 }
 
 impl<'m> Linter<'m> {
@@ -133,6 +142,8 @@ impl<'m> Linter<'m> {
             undefined: false,
             scales: vec![0.0; model.curves.len()],
             largest: vec![[0.0; 2]; model.regions.len()],
+            nicest: vec![None; model.regions.len()],
+            divisors: laws::divisors(model),
         }
     }
 
@@ -295,7 +306,7 @@ impl<'m> Linter<'m> {
     /// Reports invalid values at a point.
     fn check_evaluation(&mut self, owner: usize, point: [f64; 3]) {
         let region = &self.model.regions[owner];
-        self.measure(owner);
+        self.measure(owner, point);
         let (name, location) = (&region.name, self.format_point(point));
         let get = |id: Id| self.get(id);
         let spans = region.law_spans;
@@ -344,7 +355,7 @@ impl<'m> Linter<'m> {
                 Some(name) => Subject::Curve(name.clone()),
                 None => Subject::Condition,
             };
-            let kind = self.fault(*value).kind(self.format_point(point), subject);
+            let kind = self.fault(*value).kind(self.format_point(point), subject, true);
             self.report(Diagnostic::new(self.reader_of(curve), kind));
         }
     }
@@ -499,10 +510,10 @@ impl Linter<'_> {
 
 impl Fault {
     /// Returns the diagnostic for an expression that has no value at a point.
-    fn kind(&self, location: String, subject: Subject) -> CheckKind {
+    fn kind(&self, location: String, subject: Subject, by_hand: bool) -> CheckKind {
         match self {
             Fault::Root => CheckKind::RootOfNegative { location, subject },
-            Fault::Quotient => CheckKind::DivisionByZero { location, subject },
+            Fault::Quotient => CheckKind::DivisionByZero { location, subject, by_hand },
             Fault::Size => CheckKind::NumericOverflow { location, subject },
         }
     }

@@ -3,11 +3,12 @@
 
 use super::SMALL_BOX_FRACTION;
 use super::cover::{Claim, Cover, half_diagonal};
+use super::depths::{DepthCorner, Depths};
 use super::distances::{DepthDifference, Tangency, excess};
 use super::root::{Agreement, Difference, Forms, RootForm, RootSum};
 use super::tangency::Contact;
 use crate::elimination::Linear;
-use crate::expr::interval::Cell;
+use crate::expr::interval::{Cell, Interval, ZERO as NOTHING};
 use crate::expr::polynomial::{ClearSide, Polynomial};
 use crate::expr::value::{EvaluationPoint, Evaluator};
 use crate::expr::{Id, Node};
@@ -41,8 +42,10 @@ pub(super) struct Pair {
 pub(super) enum Joint {
     /// Nothing is known.
     None,
-    /// No jump. Each of two depths is the smaller on its own side, or both are 0.
+    /// No jump. Each of two depths is the smaller on its own side, or a region ends there.
     Lower,
+    /// No jump between two regions: both depths are 0 where they meet.
+    Zero,
     /// No jump.
     Kinked,
     /// No jump of depth or of its slope.
@@ -83,9 +86,10 @@ type Curve = (Polynomial, Option<Polynomial>);
 pub(super) struct BorderProver<'m> {
     model: &'m Model,
     size: f64,
-    /// The depths of [`Model::depths`], and their forms.
+    /// The depths, their forms, and which of them are the larger or the smaller of two others.
     ids: Vec<Id>,
     depths: Vec<Option<RootForm>>,
+    corners: Vec<Option<DepthCorner>>,
     /// True if depths of adjacent regions may differ by rounding, whatever their slopes.
     may_jump: bool,
     /// The largest such difference.
@@ -93,6 +97,8 @@ pub(super) struct BorderProver<'m> {
     /// True if owners are checked against the list of regions.
     check_listed_owners: bool,
     curves: Vec<Option<Curve>>,
+    /// For curves that compare `d²` with a constant, what compares `d` with its root.
+    cylinders: Vec<Option<Polynomial>>,
     /// The curves that are straight.
     is_straight: Vec<bool>,
     /// The curves that are not polynomials but sums of roots.
@@ -101,8 +107,8 @@ pub(super) struct BorderProver<'m> {
     /// For a depth, whether it is the greater of two, a straight curve, and the side below it: its excess there.
     beside_line: HashMap<(usize, bool, CurveIndex, bool), Option<ExcessBesideLine>>,
     zero: RootForm,
-    /// The curves on which the depths of two owners agree.
-    joints: BTreeMap<Pair, Vec<CurveIndex>>,
+    /// The curves on which the depths of two owners agree, by the owners and by their depths' parts.
+    joints: BTreeMap<(Pair, Pair), Vec<CurveIndex>>,
     /// For a depth, and for the outside and then each depth, the agreements of the two. Rows are empty until
     /// something is known.
     agreements: Vec<Vec<AgreementsByCurve>>,
@@ -116,9 +122,9 @@ pub(super) struct BorderProver<'m> {
     by_linear: HashMap<(Leaf, CurveIndex), Signs>,
     linear: Linear,
     /// The order of two depths, each at its own claim, according to linear curves.
-    lower: HashMap<[Leaf; 2], LowerByLinear>,
-    /// True if the first or the second depth is at most a third one that continues the other.
-    lower_by_third: HashMap<([Leaf; 2], usize), bool>,
+    lower: HashMap<([Leaf; 2], Pair), LowerByLinear>,
+    /// True if the first of two depths, at its own leaf, is at most a third one that continues the other.
+    lower_by_third: HashMap<([Leaf; 2], [usize; 2]), bool>,
     /// True if a claim has no point of a region.
     excluded: HashMap<(usize, usize), bool>,
     /// True if a depth is at most another at a leaf's points, according to linear curves.
@@ -140,14 +146,17 @@ impl<'m> BorderProver<'m> {
     /// tool's size.
     pub(super) fn new(
         model: &'m Model,
+        Depths { ids, corners }: Depths,
         cell: Cell,
         forms: &mut Forms<'_>,
         may_jump: bool,
         point_box_fraction: f64,
     ) -> BorderProver<'m> {
-        let (size, ids) = (half_diagonal(&cell), model.depths());
+        let size = half_diagonal(&cell);
         let depths: Vec<Option<RootForm>> = ids.iter().map(|depth| forms.of(*depth)).collect();
         let curves: Vec<_> = model.curve_values().map(|value| forms.of(value)?.curve()).collect();
+        let cylinders = curves.iter().map(|curve| curve.as_ref()?.0.without_square_of_d());
+        let cylinders = cylinders.collect();
         let sums = model.curve_values().zip(&curves).map(|(value, curve)| match curve {
             Some(_) => None,
             None => RootSum::of(&model.graph, forms, value),
@@ -168,7 +177,6 @@ impl<'m> BorderProver<'m> {
             // Where depth is the distance, the owner is proved to be the nearest instead.
             check_listed_owners: !model.is_exact(),
             values: Evaluator::new(&model.graph, ids.iter().copied()),
-            ids,
             sums: sums.collect(),
             differences: BTreeMap::new(),
             agreements: vec![Vec::new(); depths.len()],
@@ -176,10 +184,13 @@ impl<'m> BorderProver<'m> {
             is_straight: curves.iter().map(is_straight).collect(),
             clear_sides: vec![Vec::new(); curves.len()],
             curves,
+            cylinders,
             zero: RootForm::zero(),
             joints: BTreeMap::new(),
             by_linear: HashMap::new(),
-            linear: Linear::with_depths(model, cell),
+            linear: Linear::with_depths(model, &ids, cell),
+            ids,
+            corners,
             lower: HashMap::new(),
             lower_by_third: HashMap::new(),
             excluded: HashMap::new(),
@@ -218,8 +229,10 @@ impl<'m> BorderProver<'m> {
         check_overlaps: bool,
     ) -> bool {
         self.cell = cell;
-        // A claim with a zero sign is a line or a point.
-        if claim.signs.iter().any(|(_, signs)| *signs == ZERO) {
+        // A claim on a curve is a line or a point, unless that curve is 0 on an area, as `max(0, d - 2)` is.
+        let is_thin =
+            |curve: CurveIndex| self.curves[curve].is_some() || self.sums[curve].is_some();
+        if claim.signs.iter().any(|(curve, signs)| *signs == ZERO && is_thin(*curve)) {
             return true;
         }
         let model = self.model;
@@ -282,19 +295,35 @@ impl<'m> BorderProver<'m> {
     ) -> Option<Separation> {
         self.cell = cell;
         let curves = separating_curves(claims);
+        let owners = pair;
+        let pair = Pair { own: self.active(pair.own), other: pair.other.map(|k| self.active(k)) };
+        if let (Some(curve), true) = (curves.first(), Some(pair.own) == pair.other) {
+            // The same depth on both sides.
+            let joint = Joint::Smooth;
+            return Some(Separation { curve: *curve, joint, below: false, difference: 0.0 });
+        }
         // A curve on both paths separates the claims without further proof, so it is tried first.
         let agreed = curves.iter().copied().find(|curve| self.agreement(pair, *curve).is_some());
         let joint = agreed.or_else(|| {
-            self.joints(pair).into_iter().find(|curve| {
+            self.joints(owners, pair).into_iter().find(|curve| {
                 let [of_a, of_b] = claims.map(|claim| self.sign_on(claim, *curve, cover));
                 // On opposite sides, and together on the curve at most, where the depths agree.
                 of_a & of_b & !ZERO == 0
             })
         });
-        match joint {
-            Some(joint) => self.separation_by_joint(pair, claims, joint, cover, depths_differ),
-            None => self.separation_without_joint(pair, claims, &curves, cover, depths_differ),
+        let Some(joint) = joint else {
+            return self.separation_without_joint(pair, claims, &curves, cover, depths_differ);
+        };
+        let mut separation = self.separation_by_joint(pair, claims, joint, cover, depths_differ)?;
+        // Parts agree on more curves than whole depths do. The order of the depths on the claims' paths says more than
+        // that they agree.
+        if pair != owners
+            && separation.joint == Joint::Kinked
+            && self.linear_order(pair, claims) == LowerByLinear::Each([true; 2])
+        {
+            separation.joint = Joint::Lower;
         }
+        Some(separation)
     }
 
     /// Returns the separation of two claims by a curve on which their depths agree.
@@ -311,22 +340,34 @@ impl<'m> BorderProver<'m> {
         // A curve without an agreement is where the two depths do not differ.
         let agreement = self.agreement(pair, curve);
         let smooth = agreement.as_ref().is_some_and(|agreement| agreement.smooth);
-        let branch = agreement.and_then(|found| Some(found.branch.as_ref()?.over(&self.cell)));
-        let is_other_branch = branch.is_some_and(|branch| branch.high < 0.0);
-        let is_this_branch = branch.is_none_or(|branch| branch.low > 0.0);
-        let joint = if depths_differ || is_other_branch {
-            // The claims meet only where the depths agree, and here these differ: they do not meet.
-            if is_this_branch {
-                return None;
-            }
-            // The depths may agree on the root's other branch, so nothing is known about this one.
+        let is_this_branch = agreement.is_none_or(|agreement| {
+            agreement.branch.as_ref().is_none_or(|branch| {
+                branch.over(&self.cell).low >= 0.0 || self.is_multiple_of_depth(branch, pair)
+            })
+        });
+        let joint = if !is_this_branch {
+            // The depths may agree with the root's other branch, so nothing is known about this one.
             Joint::None
+        } else if depths_differ {
+            // The claims meet only where the depths agree, and here these differ: they do not meet.
+            return None;
         } else if smooth {
             Joint::Smooth
         } else {
             Joint::Kinked
         };
         Some(Separation { curve, joint, below, difference: 0.0 })
+    }
+
+    /// Returns whether a polynomial is a positive multiple of one of a pair's depths, which are not negative where the
+    /// two meet.
+    fn is_multiple_of_depth(&self, polynomial: &Polynomial, Pair { own, other }: Pair) -> bool {
+        let mut depths = [Some(own), other].into_iter().flatten();
+        depths.any(|owner| {
+            let depth = self.depths[owner].as_ref().and_then(RootForm::polynomial);
+            let ratio = depth.and_then(|depth| polynomial.ratio(depth));
+            ratio.is_some_and(|ratio| !ratio.is_negative())
+        })
     }
 
     /// Returns the separation of two claims by the first of the curves for which their paths demand opposite
@@ -351,7 +392,11 @@ impl<'m> BorderProver<'m> {
         // Ordered depths are equal where the claims meet, so depths that differ show that these do not. A
         // difference that is only bounded shows nothing.
         let meet = !depths_differ || difference != 0.0;
-        meet.then_some(Separation { curve, joint: Joint::Lower, below: false, difference })
+        let joint = match (self.linear_order(pair, claims), pair.other) {
+            (LowerByLinear::Zero, Some(_)) => Joint::Zero,
+            _ => Joint::Lower,
+        };
+        meet.then_some(Separation { curve, joint, below: false, difference })
     }
 
     /// Returns a straight curve that separates two claims, if depth is continuous across it up to rounding,
@@ -416,14 +461,28 @@ fn separating_curves([a, b]: [&Claim; 2]) -> Vec<CurveIndex> {
 }
 
 impl BorderProver<'_> {
-    /// Returns the curves on which the depths of two owners agree.
-    fn joints(&mut self, pair: Pair) -> Vec<CurveIndex> {
-        if let Some(known) = self.joints.get(&pair) {
+    /// Returns the depth itself, or its part that it equals throughout the current box.
+    fn active(&self, depth: usize) -> usize {
+        let Some(DepthCorner { is_larger, parts: [a, b] }) = self.corners[depth] else {
+            return depth;
+        };
+        if self.is_less_in_box([Some(a), Some(b)]) {
+            self.active(if is_larger { b } else { a })
+        } else if self.is_less_in_box([Some(b), Some(a)]) {
+            self.active(if is_larger { a } else { b })
+        } else {
+            depth
+        }
+    }
+
+    /// Returns the curves on which the depths of two owners agree, given as their parts in the current box.
+    fn joints(&mut self, owners: Pair, pair: Pair) -> Vec<CurveIndex> {
+        if let Some(known) = self.joints.get(&(owners, pair)) {
             return known.clone();
         }
         // The border of neighbours is among their own conditions.
         let mut atoms = Vec::new();
-        for owner in [Some(pair.own), pair.other].into_iter().flatten() {
+        for owner in [Some(owners.own), owners.other].into_iter().flatten() {
             self.model.regions[owner]
                 .inside
                 .undecided_atoms(&vec![ANY_SIGN; self.curves.len()], &mut atoms);
@@ -435,7 +494,7 @@ impl BorderProver<'_> {
         joints.extend(
             condition_curves.into_iter().filter(|curve| self.agreement(pair, *curve).is_some()),
         );
-        self.joints.insert(pair, joints.clone());
+        self.joints.insert((owners, pair), joints.clone());
         joints
     }
 
@@ -453,8 +512,11 @@ impl BorderProver<'_> {
                 self.depths[pair.own].as_ref()?.difference(other?)
             });
             let (polynomial, _) = self.curves[curve].as_ref()?;
-            let square = self.squares[curve].as_ref();
-            difference.as_ref()?.agreement_on(polynomial, square).map(Rc::new)
+            let (square, difference) = (self.squares[curve].as_ref(), difference.as_ref()?);
+            let agreement = difference
+                .agreement_on(polynomial, square)
+                .or_else(|| difference.agreement_on(self.cylinders[curve].as_ref()?, None));
+            agreement.map(Rc::new)
         });
         agreement.clone()
     }
@@ -655,8 +717,7 @@ enum ExcessBesideLine {
     Bound(f64),
 }
 
-/// The index of a depth in [`Model::depths`](crate::model::Model::depths); `None` for the outside, whose
-/// depth is 0.
+/// The index of a depth in [`Depths`]; `None` for the outside, whose depth is 0.
 type Owner = Option<usize>;
 
 impl BorderProver<'_> {
@@ -670,18 +731,9 @@ impl BorderProver<'_> {
         separating_curves: &[CurveIndex],
         cover: &mut Cover<'_>,
     ) -> Option<f64> {
-        let key = claims.map(leaf);
-        let linear = match self.lower.get(&key) {
-            Some(known) => *known,
-            None => {
-                let signs = claims.map(|claim| self.listed_signs(claim));
-                let known = self.lower_by_linear(pair, &signs);
-                self.lower.insert(key, known);
-                known
-            }
-        };
         // Both depths are 0 where the claims meet.
-        let LowerByLinear::Each(lesser) = linear else { return Some(0.0) };
+        let LowerByLinear::Each(lesser) = self.linear_order(pair, claims) else { return Some(0.0) };
+        let key = claims.map(leaf);
         let Pair { own, other: Some(other) } = pair else {
             let own = Some(pair.own);
             let below = self.excess_on(claims[1], separating_curves, [own, None], cover)?;
@@ -706,22 +758,34 @@ impl BorderProver<'_> {
             [Some(excess), None] => (1, excess),
             [None, Some(excess)] => (0, excess),
         };
-        let lower = match self.lower_by_third.get(&(key, side)) {
+        let lower = match self.lower_by_third.get(&(key, owners[side])) {
             Some(known) => *known,
             None => {
                 let signs = self.listed_signs(claims[side]);
                 let lower = self.lesser_than_third(owners[side], &signs, separating_curves);
-                self.lower_by_third.insert((key, side), lower);
+                self.lower_by_third.insert((key, owners[side]), lower);
                 lower
             }
         };
         lower.then_some(excess)
     }
 
+    /// Returns the order of two depths at their claims' points by linear curves, found once for each pair of leaves.
+    fn linear_order(&mut self, pair: Pair, claims: [&Claim; 2]) -> LowerByLinear {
+        let key = (claims.map(leaf), pair);
+        if let Some(known) = self.lower.get(&key) {
+            return *known;
+        }
+        let signs = claims.map(|claim| self.listed_signs(claim));
+        let order = self.lower_by_linear(pair, &signs);
+        self.lower.insert(key, order);
+        order
+    }
+
     /// Returns an upper bound of the excess of the first depth over the second at a claim's points in the
     /// current box, or at those on given borders. It is proved by the sign of a curve on the claim's path, or
     /// by a third depth between the two. The third is compared with one of them by such a sign, and with the
-    /// other everywhere or on such a border.
+    /// other everywhere or on such a border. A depth with a corner is compared by its parts.
     fn excess_on(
         &mut self,
         claim: &Claim,
@@ -729,8 +793,42 @@ impl BorderProver<'_> {
         [less, more]: [Owner; 2],
         cover: &mut Cover<'_>,
     ) -> Option<f64> {
+        let corner = |owner: Owner| self.corners[owner?];
+        // The excess over the smaller of two, like that of the larger, is the larger of two excesses; the other two
+        // cases come after these, because a part that suffices for one of two may not suffice for both.
+        let (parts, both) = match (corner(less), corner(more)) {
+            (Some(DepthCorner { is_larger: true, parts }), _) => {
+                (parts.map(|part| [Some(part), more]), true)
+            }
+            (_, Some(DepthCorner { is_larger: false, parts })) => {
+                (parts.map(|part| [less, Some(part)]), true)
+            }
+            (Some(DepthCorner { is_larger: false, parts }), _) => {
+                (parts.map(|part| [Some(part), more]), false)
+            }
+            (_, Some(DepthCorner { is_larger: true, parts })) => {
+                (parts.map(|part| [less, Some(part)]), false)
+            }
+            (None, None) => return self.excess_of_smooth(claim, borders, [less, more], cover),
+        };
+        let excesses = parts.map(|pair| self.excess_on(claim, borders, pair, cover));
+        match excesses {
+            [Some(a), Some(b)] => Some(if both { a.max(b) } else { a.min(b) }),
+            [known, other] if !both => known.or(other),
+            _ => None,
+        }
+    }
+
+    /// The same for depths without a corner.
+    fn excess_of_smooth(
+        &mut self,
+        claim: &Claim,
+        borders: &[CurveIndex],
+        [less, more]: [Owner; 2],
+        cover: &mut Cover<'_>,
+    ) -> Option<f64> {
         // The third depths come last: each costs a comparison with both.
-        if self.ordered([less, more], claim, cover) {
+        if self.ordered([less, more], claim, cover) || self.is_less_in_box([less, more]) {
             return Some(0.0);
         }
         let mut min_excess = self.excess_beside_line(claim, [less, more]);
@@ -746,6 +844,28 @@ impl BorderProver<'_> {
             }
         }
         min_excess
+    }
+
+    /// Returns whether the first of two depths is nowhere larger than the second in the current box. This tells apart
+    /// the parts of a depth, which do not all meet the neighbour's.
+    fn is_less_in_box(&self, [less, more]: [Owner; 2]) -> bool {
+        let enclosed = |owner: Owner| match owner {
+            Some(owner) => self.enclosed(owner),
+            None => Some(NOTHING),
+        };
+        let in_box = || enclosed(less).zip(enclosed(more)).is_some_and(|(a, b)| a.high <= b.low);
+        less == more || in_box()
+    }
+
+    /// Encloses a depth in the current box, if it or its parts have forms.
+    fn enclosed(&self, depth: usize) -> Option<Interval> {
+        match self.corners[depth] {
+            Some(DepthCorner { is_larger, parts: [a, b] }) => {
+                let (a, b) = (self.enclosed(a)?, self.enclosed(b)?);
+                Some(if is_larger { a.max(b) } else { a.min(b) })
+            }
+            None => Some(self.depths[depth].as_ref()?.over_box(&self.cell)),
+        }
     }
 
     /// Returns an upper bound of the amount by which a region's depth is above or below 0, on one side of a
@@ -882,16 +1002,18 @@ impl BorderProver<'_> {
 
     /// Returns the order of two depths according to all linear curves on the paths to the claims.
     fn lower_by_linear(&self, pair: Pair, signs: &[Vec<Signs>; 2]) -> LowerByLinear {
-        // This also settles a border with the outside, whose depth is 0.
-        if self.are_zero_where_claims_meet(pair, [&signs[0], &signs[1]]) {
+        let Pair { own, other } = pair;
+        let lesser = match other {
+            Some(other) => [(0, own, other), (1, other, own)]
+                .map(|(k, less, more)| self.linear.no_deeper(&signs[k], Some(less), Some(more))),
+            // Whether both are 0 also settles a border with the outside, whose depth is 0.
+            None => [false; 2],
+        };
+        // The order of two regions says more than that both are 0: their depths may fall toward each other.
+        if lesser != [true; 2] && self.are_zero_where_claims_meet(pair, [&signs[0], &signs[1]]) {
             return LowerByLinear::Zero;
         }
-        let Pair { own, other: Some(other) } = pair else {
-            return LowerByLinear::Each([false; 2]);
-        };
-        let lesser =
-            |k: usize, own, other| self.linear.no_deeper(&signs[k], Some(own), Some(other));
-        LowerByLinear::Each([lesser(0, own, other), lesser(1, other, own)])
+        LowerByLinear::Each(lesser)
     }
 
     fn are_zero_where_claims_meet(
@@ -928,9 +1050,6 @@ impl BorderProver<'_> {
         };
         // Without roots there is no other branch, and the slopes decide.
         let Some(branch) = &agreement.branch else { return agreement.smooth };
-        // A depth is not negative in its own region, and neither is a positive multiple of it.
-        let depth = self.depths[own].as_ref().and_then(RootForm::polynomial);
-        let ratio = depth.and_then(|depth| branch.ratio(depth));
-        agreement.smooth && ratio.is_some_and(|ratio| !ratio.is_negative())
+        agreement.smooth && self.is_multiple_of_depth(branch, Pair { own, other: None })
     }
 }

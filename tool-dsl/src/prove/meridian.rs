@@ -73,6 +73,7 @@ impl Meridian {
             // Angles and rates are the same at the point of the half plane in space.
             oblique_witness: facts.oblique_witness.map(|(angle, point)| (angle, self.point(point))),
             rising_witness: facts.rising_witness.map(|(rate, point)| (rate, self.point(point))),
+            steep_at: facts.steep_at.map(|point| self.point(point)),
             singular_cells: facts.singular_cells.iter().map(|cell| self.cell(cell)).collect(),
             rounding_error: errors.over(region.depth, &whole),
             ..facts

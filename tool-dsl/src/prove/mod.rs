@@ -17,6 +17,7 @@ use std::f64::consts::PI;
 
 mod borders;
 mod cover;
+mod depths;
 mod direction;
 mod distances;
 mod foot;
@@ -80,6 +81,8 @@ pub struct RegionFacts {
     pub depth: Interval,
     /// The range of the length of the depth's gradient.
     pub gradient_length: Interval,
+    /// A point of a box in which that length has no bound, in the tool's frame, if there is such a box.
+    pub steep_at: Option<[f64; 3]>,
     /// True if the depth is the distance to a line, a circle or a point.
     pub is_distance: bool,
     /// The range of magnitudes.
@@ -113,6 +116,7 @@ impl RegionFacts {
         share: 0.0,
         depth: ZERO,
         gradient_length: ZERO,
+        steep_at: None,
         is_distance: false,
         magnitude: ZERO,
         niceness: ZERO,
@@ -189,7 +193,7 @@ pub struct Bounds {
     /// The Lipschitz constant of the depth: see [`Certificate::lipschitz`].
     pub lipschitz: Option<f64>,
     /// A bound of the difference between a computed depth and one that satisfies these bounds, in the file's
-    /// unit: rounding, and [`Certificate::slack`].
+    /// unit: rounding, and [`Certificate::slack`]. Rounding alone without a Lipschitz constant.
     pub rounding_error: f64,
 }
 
@@ -205,15 +209,19 @@ impl Bounds {
         }
         // Overlaps of regions are left to [`Certificate::prove`].
         let certificate = prove_with_budget(tool, MAX_BOXES_IN_COMPILATION, false);
-        // A statement that is undecided here may be provable with more boxes.
-        let diagnostics = certificate.certain_diagnostics(tool);
+        let mut diagnostics = certificate.certain_diagnostics(tool);
         // A proof that stays open does not weaken what the construction gives; only its errors count.
         if tool.model.is_exact() {
             return (exact, diagnostics);
         }
-        let [min_slope, lipschitz] = [certificate.lower_slope(), certificate.lipschitz()];
+        let [lower_slope, lipschitz] = [certificate.lower_slope(), certificate.lipschitz()];
+        if lipschitz.is_none() {
+            // Slack without a bound would say nothing.
+            diagnostics.extend(certificate.undecided_diagnostics(tool, None));
+            return (Bounds { lower_slope, lipschitz, rounding_error }, diagnostics);
+        }
         let rounding_error = rounding_error + certificate.slack;
-        (Bounds { lower_slope: min_slope, lipschitz, rounding_error }, diagnostics)
+        (Bounds { lower_slope, lipschitz, rounding_error }, diagnostics)
     }
 }
 
@@ -221,10 +229,11 @@ impl Bounds {
 /// `check_overlaps` is set, that no two of them overlap.
 fn prove_with_budget(tool: &PlannedTool, boxes: usize, check_overlaps: bool) -> Certificate {
     match Meridian::of(tool) {
-        Some(meridian) => {
-            meridian.revolved(survey::survey(&meridian.tool, boxes, check_overlaps), tool)
+        Some(mut meridian) => {
+            let certificate = survey::survey(&mut meridian.tool, boxes, check_overlaps);
+            meridian.revolved(certificate, tool)
         }
-        None => survey::survey(tool, boxes, check_overlaps),
+        None => survey::survey(&mut tool.clone(), boxes, check_overlaps),
     }
 }
 
@@ -267,7 +276,8 @@ impl Certificate {
     /// Returns all diagnostics: errors with a counterexample, warnings with a point or a box.
     pub fn diagnostics(&self, tool: &PlannedTool) -> Vec<Diagnostic> {
         let mut diagnostics = self.certain_diagnostics(tool);
-        diagnostics.extend(self.undecided_diagnostics(tool));
+        let factor = Bounds::of(tool).0.lipschitz;
+        diagnostics.extend(self.undecided_diagnostics(tool, factor));
         diagnostics
     }
 
@@ -308,19 +318,25 @@ impl Certificate {
         diagnostics
     }
 
-    /// Returns the diagnostics of proofs that did not finish; more boxes might finish them.
-    fn undecided_diagnostics(&self, tool: &PlannedTool) -> Vec<Diagnostic> {
+    /// Returns the diagnostics of proofs that did not finish, which more boxes might finish, and of depths whose
+    /// steepness has no bound. `factor` is the Lipschitz constant that a build proves.
+    fn undecided_diagnostics(&self, tool: &PlannedTool, factor: Option<f64>) -> Vec<Diagnostic> {
         let model = &tool.model;
         let mut diagnostics = Vec::new();
+        let mut undecided = |span, statement, location, more| {
+            let (exact, factor) = (model.is_exact(), factor.map(FormattedNumber));
+            let location = model.format_point(location);
+            let kind = CheckKind::Undecided { statement, location, more, exact, factor };
+            diagnostics.push(Diagnostic::new(span, kind));
+        };
+        let steep = model.regions.iter().zip(&self.regions);
+        let steep = steep.filter_map(|(region, facts)| Some((region, facts.steep_at?))).next();
         if let Some(open_proof) = self.undecided.first() {
-            let kind = CheckKind::Undecided {
-                statement: open_proof.statement.clone(),
-                location: model.format_point(open_proof.cell.middle()),
-                more: self.undecided.len() - 1,
-                exact: model.is_exact(),
-                factor: Bounds::of(tool).0.lipschitz.map(FormattedNumber),
-            };
-            diagnostics.push(Diagnostic::new(model.name_span, kind));
+            let (statement, more) = (open_proof.statement.clone(), self.undecided.len() - 1);
+            undecided(model.name_span, statement, open_proof.cell.middle(), more);
+        } else if let Some((region, point)) = steep {
+            let statement = Statement::BoundedSteepness(region.name.clone());
+            undecided(region.law_spans.depth, statement, point, 0);
         } else if model.is_exact() && self.is_continuous() && !self.is_exact() {
             // Every proof is finished, and yet the depth is not proved to be the distance.
             diagnostics.push(Diagnostic::new(model.name_span, CheckKind::DepthNotProvedExact));

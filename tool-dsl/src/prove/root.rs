@@ -301,7 +301,7 @@ impl RootForm {
     }
 
     /// Encloses the form over a box.
-    fn over_box(&self, cell: &Cell) -> Interval {
+    pub(super) fn over_box(&self, cell: &Cell) -> Interval {
         let polynomial = self.polynomial.over(cell);
         let Some(RootTerm { factor, radicand }) = &self.root else { return polynomial };
         polynomial.plus(Interval::enclosing(factor).times(radicand.over(cell).sqrt()))

@@ -387,13 +387,11 @@ pub(super) fn angle(a: [Interval; 3], b: [Interval; 3]) -> Interval {
 
 /// Returns a lower bound of the rate at which depth falls toward one of the sides of a border on which two
 /// depths agree, and its uncertainty.
-pub(super) fn fall_rate_across(own: Slope, other: Slope, curve: Slope, below: bool) -> (f64, f64) {
+pub(super) fn fall_rate_across(slopes: [Slope; 2], curve: Slope, below: bool) -> (f64, f64) {
+    let [own, other] = &slopes;
     let products = [0, 1, 2]
         .map(|k| own.partials[k].plus(other.partials[k].negated()).times(curve.partials[k]));
     let rise = products.into_iter().fold(ZERO, Interval::plus);
-    let components = [0, 1, 2].map(|k| [own.partials[k].middle(), other.partials[k].middle()]);
-    let widths = own.partials.iter().chain(&other.partials).map(|part| part.high - part.low);
-    let slack = widths.fold(0.0, f64::max);
     let falls = if below { rise.low } else { -rise.high };
     // The two slopes differ only along the curve's gradient, since depths agree on the curve: by -falls
     // divided by its length.
@@ -401,32 +399,51 @@ pub(super) fn fall_rate_across(own: Slope, other: Slope, curve: Slope, below: bo
     if falls >= 0.0 || falls >= -SLOPE_TOLERANCE * curve.length.low {
         return (f64::INFINITY, 0.0);
     }
-    // Depth falls along every combination of the two slopes, and therefore at least at the rate of the shortest
-    // (Clarke 1983).
-    let difference = components.map(|[a, b]| b - a);
-    let [start, squared_length] = [components.map(|[a, _]| a), difference]
-        .map(|v| v.iter().zip(difference).map(|(a, b)| a * b).sum::<f64>());
-    // The shortest vector of the segment from one slope to the other.
-    let part = if squared_length > 0.0 { (-start / squared_length).clamp(0.0, 1.0) } else { 0.0 };
-    let nearest = components.map(|[a, b]| a + part * (b - a));
-    // Each component is known to half its width, and the vector to √3 times that.
-    let shortest = nearest.iter().map(|part| part * part).sum::<f64>().sqrt() - slack;
-    (shortest.min(shortest_along(nearest, [own, other])), slack)
+    shortest_combination(&slopes)
+}
+
+/// The number of steps toward the shortest combination of slopes. Any direction gives a bound, so their number decides
+/// only how good it is.
+const SHORTENING_STEPS: usize = 32;
+
+/// Returns a lower bound of the length of any convex combination of slopes, and its uncertainty. Depth falls along every
+/// combination of the slopes about a point, and therefore at least at the rate of the shortest (Clarke 1983).
+pub(super) fn shortest_combination(slopes: &[Slope]) -> (f64, f64) {
+    let widths = slopes.iter().flat_map(|slope| slope.partials).map(|part| part.high - part.low);
+    let slack = widths.fold(0.0, f64::max);
+    let middles: Vec<[f64; 3]> =
+        slopes.iter().map(|slope| slope.partials.map(Interval::middle)).collect();
+    let dot = |a: [f64; 3], b: [f64; 3]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    // Gilbert 1966: each step takes the nearest point to the origin on the way to the slope that reaches least far along
+    // the current one.
+    let mut nearest = middles.first().copied().unwrap_or_default();
+    for _ in 0..SHORTENING_STEPS {
+        let lowest =
+            middles.iter().copied().min_by(|a, b| dot(*a, nearest).total_cmp(&dot(*b, nearest)));
+        let Some(lowest) = lowest else { break };
+        let way = [0, 1, 2].map(|k| lowest[k] - nearest[k]);
+        let squared_length = dot(way, way);
+        if squared_length == 0.0 {
+            break;
+        }
+        let part = (-dot(nearest, way) / squared_length).clamp(0.0, 1.0);
+        nearest = [0, 1, 2].map(|k| nearest[k] + part * way[k]);
+    }
+    (shortest_along(nearest, slopes), slack)
 }
 
 /// Returns a lower bound of the length of any combination of slopes, from their components along a direction.
 /// The bound holds for any direction, so rounding in its choice does no harm.
-fn shortest_along(direction: [f64; 3], slopes: [Slope; 2]) -> f64 {
+fn shortest_along(direction: [f64; 3], slopes: &[Slope]) -> f64 {
     let direction = direction.map(|part| Interval::new(part, part));
     let squares = direction.map(Interval::square);
     let per_length = squares.into_iter().fold(ZERO, Interval::plus).sqrt().reciprocal();
-    slopes
-        .map(|slope| {
-            let parts = [0, 1, 2].map(|k| slope.partials[k].times(direction[k]));
-            parts.into_iter().fold(ZERO, Interval::plus).times(per_length).low
-        })
-        .into_iter()
-        .fold(f64::INFINITY, f64::min)
+    let along = slopes.iter().map(|slope| {
+        let parts = [0, 1, 2].map(|k| slope.partials[k].times(direction[k]));
+        parts.into_iter().fold(ZERO, Interval::plus).times(per_length).low
+    });
+    // Unbounded slopes, and a combination of length 0, have no direction; `min` would lose what is not a number.
+    along.map(|low| if low.is_nan() { 0.0 } else { low.max(0.0) }).fold(f64::INFINITY, f64::min)
 }
 
 #[cfg(test)]
@@ -452,9 +469,9 @@ mod tests {
         let mut slopes = Slopes::new(&graph, Domain::HalfPlane, [own, other, curve]);
         slopes.set(Cell::half_plane(Interval::new(0.0, 1.0), Interval::new(-1.0, 1.0)));
         let [own, other, curve] = [own, other, curve].map(|id| slopes.get(id));
-        let (fall, _) = fall_rate_across(own, other, curve, true);
+        let (fall, _) = fall_rate_across([own, other], curve, true);
         assert!((0.99..1.0).contains(&fall), "{fall}");
         // With the sides exchanged each is the smaller on its own.
-        assert_eq!(fall_rate_across(own, other, curve, false).0, f64::INFINITY);
+        assert_eq!(fall_rate_across([own, other], curve, false).0, f64::INFINITY);
     }
 }

@@ -1,7 +1,8 @@
 //! Converts conditions to formulas over splitting curves.
 
+use crate::expr::corner::Corner;
 use crate::expr::polynomial::Polynomials;
-use crate::expr::{Graph, Id, Node};
+use crate::expr::{Graph, Id};
 use crate::formula::{Curve, CurveIndex, Formula};
 use std::collections::BTreeMap;
 
@@ -73,66 +74,13 @@ impl Curves {
     }
 
     fn side(&mut self, graph: &mut Graph, value: Id, below: bool, parts: &mut usize) -> Formula {
-        let lifted = if *parts > 0 && has_corner(graph, value) { lift(graph, value) } else { None };
-        let Some((largest, a, b)) = lifted else {
+        let corner = if *parts > 0 { graph.corner(value) } else { None };
+        let Some(Corner { is_larger, parts: [a, b] }) = corner else {
             return self.atom(graph, value, below);
         };
         *parts -= 1;
         let sides = vec![self.side(graph, a, below, parts), self.side(graph, b, below, parts)];
         // max(a, b) ≤ 0 requires both sides, max(a, b) ≥ 0 one of them.
-        if largest == below { Formula::All(sides) } else { Formula::Any(sides) }
-    }
-}
-
-/// Returns whether a sum has a `min`, `max` or `abs` among its terms.
-fn has_corner(graph: &Graph, value: Id) -> bool {
-    let mut corner = std::collections::BTreeSet::new();
-    for id in graph.dependencies([value]) {
-        let has = match graph.node(id) {
-            Node::Max(..) | Node::Min(..) | Node::Abs(_) => true,
-            Node::Neg(a) => corner.contains(a),
-            Node::Add(a, b) | Node::Sub(a, b) => corner.contains(a) || corner.contains(b),
-            Node::Mul(c, v) => graph.constant(*c).is_some() && corner.contains(v),
-            _ => false,
-        };
-        if has {
-            corner.insert(id);
-        }
-    }
-    corner.contains(&value)
-}
-
-/// Rewrites a sum that has a `min`, `max` or `abs` term as the larger (`true`) or smaller of two sums.
-fn lift(graph: &mut Graph, value: Id) -> Option<(bool, Id, Id)> {
-    match *graph.node(value) {
-        Node::Max(a, b) => Some((true, a, b)),
-        Node::Min(a, b) => Some((false, a, b)),
-        Node::Abs(a) => Some((true, a, graph.neg(a))),
-        Node::Neg(inner) => {
-            let (largest, a, b) = lift(graph, inner)?;
-            Some((!largest, graph.neg(a), graph.neg(b)))
-        }
-        Node::Add(u, v) => {
-            if has_corner(graph, u) {
-                let (largest, a, b) = lift(graph, u)?;
-                return Some((largest, graph.add(a, v), graph.add(b, v)));
-            }
-            let (largest, a, b) = lift(graph, v)?;
-            Some((largest, graph.add(u, a), graph.add(u, b)))
-        }
-        Node::Sub(u, v) => {
-            if has_corner(graph, u) {
-                let (largest, a, b) = lift(graph, u)?;
-                return Some((largest, graph.sub(a, v), graph.sub(b, v)));
-            }
-            let (largest, a, b) = lift(graph, v)?;
-            Some((!largest, graph.sub(u, a), graph.sub(u, b)))
-        }
-        Node::Mul(c, v) => {
-            let negative = graph.constant(c)?.is_negative();
-            let (largest, a, b) = lift(graph, v)?;
-            Some((largest != negative, graph.mul(c, a), graph.mul(c, b)))
-        }
-        _ => None,
+        if is_larger == below { Formula::All(sides) } else { Formula::Any(sides) }
     }
 }

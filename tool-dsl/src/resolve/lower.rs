@@ -225,6 +225,10 @@ impl Lowering {
     }
 
     fn name(&mut self, word: &str, span: Span, may: Allowed) -> LoweringResult {
+        // A definition of a reserved name was rejected; what it would have meant is unknown.
+        if let Some(reported) = self.broken.get(word) {
+            return Err(without_value(span, word, *reported));
+        }
         let coordinate = match word {
             "pi" => {
                 return Ok(Lowered {
@@ -256,9 +260,6 @@ impl Lowering {
             return Ok(Lowered { id: self.coordinate_here(coordinate), dimension: LENGTH });
         }
         let Some(value) = self.values.get_mut(word) else {
-            if let Some(reported) = self.broken.get(word) {
-                return Err(without_value(span, word, *reported));
-            }
             if let Some(definition) = self.declared.get(word) {
                 // Constants are evaluated before curves, wherever they are written.
                 if definition.start < span.start
@@ -273,10 +274,10 @@ impl Lowering {
                 )
                 .with_label(*definition, "defined here"));
             }
-            let coordinates = self.domain.coordinates().iter().map(|(.., name)| *name);
-            let known = self.values.keys().map(String::as_str).chain(coordinates);
-            let known = known.chain(["pi", "depth"]);
-            let remedy = match nearest(word, known) {
+            let known = self.values.keys().map(String::as_str).chain(["pi"]);
+            // A coordinate or the depth would be the next mistake where a constant is needed.
+            let varying = (!matches!(may, Allowed::Constants(_))).then_some("depth");
+            let remedy = match nearest(word, known.chain(varying)) {
                 Some(suggestion) => NameRemedy::Similar(suggestion.to_owned()),
                 None => NameRemedy::Define,
             };

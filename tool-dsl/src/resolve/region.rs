@@ -597,6 +597,10 @@ impl<'t> Laws<'t> {
                 }
                 known_laws.push((law.quantity, word, span));
                 let surface = surfaces.iter().find(|surface| surface.name == word);
+                if word == "cutting" && !surfaces.iter().any(|surface| surface.cutting) {
+                    let kind = RegionKind::NoCuttingSurface { quantity: what };
+                    diagnostics.push(Diagnostic::new(span, kind));
+                }
                 if word.is_empty() || word == "cutting" {
                     continue;
                 }
@@ -607,7 +611,8 @@ impl<'t> Laws<'t> {
                         // The part may have been omitted from the name of a part's surface.
                         let of_part = format!(".{word}");
                         let qualified_name = known.clone().find(|name| name.ends_with(&of_part));
-                        let remedy = match qualified_name.or(nearest(word, known)) {
+                        let similar = nearest(word, known.chain(["cutting"]));
+                        let remedy = match qualified_name.or(similar) {
                             Some(suggestion) => SurfaceRemedy::Similar(suggestion.to_owned()),
                             None => named(word, surfaces),
                         };

@@ -147,3 +147,100 @@ fn solids_of_revolution_are_judged_in_space() {
         }
     }
 }
+
+/// Depths of one region that are the smaller or the larger of several, and what is proved of them: the factors by which
+/// they exceed the distance at most, and at least.
+#[test]
+fn the_smaller_and_the_larger_of_distances_are_proved_by_their_parts() {
+    let cases = [
+        // The cylinder of case 22, with its conditions in other forms, and with a part that is never the smallest.
+        ("tool", "region a where 0 <= z <= 20, d <= 3 { depth: min(3 - d, z, 20 - z); }", Some(1.0), Some(1.0)),
+        ("tool", "region a where 0 <= min(3 - d, z, 20 - z) { depth: min(3 - d, min(z, 20 - z)); }", Some(1.0), Some(1.0)),
+        ("tool", "region a where 0 <= z <= 2, d <= 3 { depth: min(3 - d, z, 2 - z, 5 - d); }", Some(1.0), Some(1.0)),
+        ("solid", "region a where 0 <= z <= 20, x^2 + y^2 <= 9 { depth: min(z, 20 - z, 3 - hypot(x, y)); }", Some(1.0), Some(1.0)),
+        ("solid", "region a where -9 <= x <= 9, -8 <= y <= 8, 0 <= z <= 2 { depth: min(9 - abs(x), 8 - abs(y), z, 2 - z); }", Some(1.0), Some(1.0)),
+        // With a part of twice the steepness.
+        ("tool", "region a where 0 <= z <= 20, d <= 3 { depth: min(2*(3 - d), z, 20 - z); }", Some(2.0), Some(1.0)),
+        // Two regions, each with such a depth; and a ball below one.
+        ("tool", "region a where 0 <= z <= 20, d <= 3 { depth: min(3 - d, z); }
+                  region b where 20 <= z <= 30, d <= 3 { depth: min(3 - d, 30 - z); }", Some(1.0), Some(1.0)),
+        ("tool", "region a where hypot(d, z - 3) <= 3, z <= 3 { depth: 3 - hypot(d, z - 3); }
+                  region b where 3 <= z <= 30, d <= 3 { depth: min(3 - d, 30 - z); }", Some(1.0), Some(1.0)),
+        // The larger of two blocks' depths is continuous; at the inner edge it is no multiple of the distance.
+        ("solid", "curve a = min(x, 20 - x, y, 10 - y, z, 5 - z); curve b = min(x, 5 - x, y, 10 - y, z, 30 - z);
+                   region l where max(a, b) >= 0 { depth: max(a, b); }", Some(1.0), None),
+        // A part that ends before the solid does leaves a depth of 0 inside.
+        ("tool", "region a where 0 <= z <= 20, d <= 3 { depth: min(3 - d, z, 20 - z); }
+                  region b where 20 <= z <= 30, d <= 3 { depth: min(3 - d, 30 - z, z - 20); }", Some(1.0), None),
+    ];
+    for (domain, regions, steepest, least) in cases {
+        let text = format!("{domain} T {{ units mm; {regions} }}");
+        let tool = tool(&text).unwrap_or_else(|| panic!("refused: {text}"));
+        let proved = Certificate::prove(&tool);
+        let near = |found: Option<f64>, expected: Option<f64>| match (found, expected) {
+            (Some(found), Some(expected)) => (found - expected).abs() < 1e-8,
+            (found, expected) => found == expected,
+        };
+        assert!(near(proved.lipschitz(), steepest), "{text}: {:?}", proved.lipschitz());
+        assert!(near(proved.lower_slope(), least), "{text}: {:?}", proved.lower_slope());
+    }
+}
+
+/// Depths that are less than any multiple of the distance at some point, where each two regions by themselves would
+/// lead down; and one that jumps between two of the points at which the prover's boxes see no jump.
+#[test]
+fn hollows_where_regions_meet_are_not_proved() {
+    // A pit in the middle of three slopes, where each two lead to the third.
+    let sides = "curve a = -(z - 3.1); curve b = 0.8*(d - 8) + 0.6*(z - 3.1); curve c = -0.8*(d - 8) + 0.6*(z - 3.1);";
+    let pit = |inner: &str, outer: &str| {
+        let region = |own: &str, [other, third]: [&str; 2]| {
+            format!(
+                "region in{own} where {own} >= {other}, {own} >= {third}, {own} <= 1 {{ depth: {inner}; }}
+                 region out{own} where {own} >= {other}, {own} >= {third}, 1 <= {own}, {outer} >= 0 {{ depth: {outer}; }} "
+            )
+            .replace("OWN", own)
+        };
+        let regions = [("a", ["b", "c"]), ("b", ["a", "c"]), ("c", ["a", "b"])];
+        let regions: String = regions.map(|(own, others)| region(own, others)).concat();
+        format!("tool T {{ units mm; {sides} {regions} }}")
+    };
+    let on_axis = "tool T { units mm; curve up = z - 3.1; curve a = d + up; curve b = d - up;
+        region inup where up >= 0, a <= 1 { depth: 0.1 + 2*a; } region inlow where up <= 0, b <= 1 { depth: 0.1 + 2*b; }
+        region outup where up >= 0, 1 <= a <= 3.1 { depth: 3.1 - a; }
+        region outlow where up <= 0, 1 <= b <= 3.1 { depth: 3.1 - b; } }";
+    // A ring around a circle on which depth is a little below 0, which is not the outside.
+    let ring = "tool T { units mm; curve r = hypot(d - 5, z - 2);
+        region inner where r <= 1 { depth: r - 0.000000001; }
+        region outer where 1 <= r <= 1.999999999 { depth: 1.999999999 - r; } }";
+    // On `wall` the depths differ by `l` where that is above 0, which is between two heights only.
+    let jump = "tool T { units mm; curve up = z - 3.2mm; curve wall = d - 1mm;
+        curve l = (z - 1.405mm)*(z - 1.445mm)/1mm; curve fu = 6*(3.2mm - d - up); curve fl = 6*(3.2mm - d + up);
+        curve au = fu - l + hypot(l, wall); curve al = fl - l + hypot(l, wall);
+        region iu where wall <= 0, up >= 0, fu >= 0 { depth: fu; } region il where wall <= 0, up <= 0, fl >= 0 { depth: fl; }
+        region ou where wall >= 0, up >= 0, au >= 0, d <= 5, z <= 9 { depth: au; }
+        region ol where wall >= 0, up <= 0, al >= 0, d <= 5, z >= -3 { depth: al; } }";
+    let texts = [
+        (pit("0.1 + 2*OWN", "3.1 - OWN"), true),
+        (on_axis.to_owned(), true),
+        (ring.to_owned(), true),
+        (jump.to_owned(), false),
+    ];
+    for (text, is_continuous) in texts {
+        let Some(tool) = tool(&text) else { panic!("refused: {text}") };
+        let proved = Certificate::prove(&tool);
+        assert_eq!(proved.lower_slope(), None, "{text}");
+        assert_eq!(tool.bounds().lower_slope, None, "{text}");
+        assert_eq!(proved.lipschitz().is_some(), is_continuous, "{text}");
+    }
+}
+
+/// A tool for which nothing is proved says so when it is built, and its table has no bound that says nothing.
+#[test]
+fn a_tool_that_cannot_be_certified_is_warned_of_while_it_is_compiled() {
+    let text = "tool T { units mm; region rod where d <= 3, 0 <= z <= 20 { depth: (3 - d)*z*(20 - z)/(100 + d*z); } }";
+    let compiled = compile(&Source::new("t.tool", text));
+    let codes: Vec<_> = compiled.diagnostics().iter().map(|found| found.code()).collect();
+    assert_eq!(codes, ["T0624"]);
+    let bounds = compiled.into_tool().expect("a tool").bounds();
+    assert!(bounds.lipschitz.is_none() && bounds.rounding_error < 1e-9, "{bounds:?}");
+}

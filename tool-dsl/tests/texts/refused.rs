@@ -416,3 +416,32 @@ fn a_tip_above_the_tools_end_is_refused() {
     );
     assert!(said.contains("the tool ends at z = -20.35"), "{said}");
 }
+
+/// Remedies that lead to the text that is meant, and not to the next error.
+#[test]
+fn remedies_name_what_was_meant() {
+    let profile = |items: &str| format!("tool T {{ units mm; {items} }}");
+    let pin = "profile { start (0, 0); line to (3, 0) as face; line to (3, 20) as flute cutting; line to (0, 20) as top; }";
+    for (text, codes, help) in [
+        (profile(&format!("let r = q + 3mm; {pin}")), &["T0201"][..], "define"),
+        (
+            profile(&pin.replace("3, 0", "x, 0").replace("profile", "let x = 3; profile")),
+            &["T0205"],
+            "another name",
+        ),
+        (
+            profile(&pin.replace("face;", "face; start (3, 0);")),
+            &["T0119"],
+            "a profile is one line",
+        ),
+        (profile(&pin.replace("cutting", "cuting")), &["T0119"], "did you mean `cutting`?"),
+        (profile(&format!("{pin} niceness cuting: 1;")), &["T0419"], "did you mean `cutting`?"),
+        (profile(&format!("{pin} magnitude: depth/d;")), &["T0612"], "write a divisor"),
+    ] {
+        let compiled = compile(&Source::new("t.tool", text.clone()));
+        let found = compiled.diagnostics();
+        let found_codes: Vec<_> = found.iter().map(|found| found.code()).collect();
+        assert_eq!(found_codes, codes, "{text}");
+        assert!(found[0].help().contains(help), "{text}: {}", found[0].help());
+    }
+}

@@ -163,9 +163,11 @@ fn regions_by_hand_are_warned_of_while_they_are_compiled() {
     let said = |side: &str| -> Vec<String> {
         let compiled = compiled(&pin(side));
         assert!(compiled.tool().is_some());
-        compiled.diagnostics().iter().map(|report| report.message()).collect()
+        let found = compiled.diagnostics().iter();
+        let warnings = found.filter(|report| report.severity == Severity::Warning);
+        warnings.map(|report| report.message()).collect()
     };
-    let both = said("direction: (0, 1); niceness: depth;");
+    let both = said("direction: (0, 1); niceness: depth/3;");
     assert_eq!(both.len(), 2, "{both:?}");
     assert!(both[0].contains("90°") && both[1].contains("increases with depth"), "{both:?}");
     assert_eq!(said("direction: (0, 1) allow oblique; niceness: depth allow rising;"), [""; 0]);
@@ -211,4 +213,25 @@ fn allow_is_a_name_where_one_stands() {
     let text =
         pin("niceness: allow allow rising;").replace("curve side", "let allow = 1; curve side");
     assert_eq!(warned(&text), []);
+}
+
+/// Magnitudes and nicenesses that are divided by 0 between samples or on the surface, and ranges of niceness.
+#[test]
+fn laws_without_a_value_or_out_of_range_are_reported() {
+    let flute = "profile { start (0, 0); line to (3, 0) as face; line to (3, 20) as flute cutting; line to (0, 20) as top; }";
+    let plain = flute.replace(" cutting", "");
+    for (items, expected) in [
+        (format!("{flute} niceness flute: 1mm/(d - 1.6180339mm);"), "T0612"),
+        (format!("{flute} niceness flute: 1mm/(z - 10.1234mm);"), "T0612"),
+        (format!("{flute} magnitude: depth/(2*(3 - d));"), "T0612"),
+        (format!("{flute} niceness flute: depth/3 - 2;"), "T0625"),
+        (format!("{flute} niceness flute: 5 - depth;"), "T0626"),
+        (format!("{plain} niceness cutting: 1;"), "T0439"),
+        (format!("{flute} niceness flute: 0;"), ""),
+        (format!("{flute} niceness flute: 1/(1 + d);"), ""),
+    ] {
+        let compiled = compiled(&format!("tool T {{ units mm; {items} }}"));
+        let codes: Vec<_> = compiled.diagnostics().iter().map(|found| found.code()).collect();
+        assert_eq!(codes.first().copied().unwrap_or_default(), expected, "{items}: {codes:?}");
+    }
 }

@@ -28,6 +28,14 @@ pub(super) struct Descent {
     step: Option<f64>,
 }
 
+/// The depth at a point.
+struct PointDepth {
+    /// An upper bound; 0 outside.
+    high: f64,
+    /// True if no region may own the point.
+    is_outside: bool,
+}
+
 impl Survey<'_> {
     /// Returns a lower bound of the rate at which a region's depth falls in a box, which is the current one and
     /// has the given owners.
@@ -36,20 +44,20 @@ impl Survey<'_> {
         // A length is not smooth where it is 0. On the surface depth need not fall.
         let is_smooth_length = self.border_prover.is_length(owner)
             && (depth.value.low > 0.0
-                || owners.contains(&None) && self.is_zero_on_surface_only(owner, cell));
+                || owners.contains(&None) && self.are_zero_on_surface_only(&[owner], cell));
         if is_smooth_length { depth.length.low } else { depth.fall() }
     }
 
-    /// Returns whether the points of a box at which a region's depth is 0 are proved to be next to points outside the
-    /// solid. Their distance from these is recorded.
-    fn is_zero_on_surface_only(&mut self, owner: usize, cell: Cell) -> bool {
+    /// Returns whether the points of a box at which some regions' depths are all 0 are proved to be next to points outside
+    /// the solid. Their distance from these is recorded.
+    pub(super) fn are_zero_on_surface_only(&mut self, owners: &[usize], cell: Cell) -> bool {
         // In the half plane a length is 0 at points, which a few point boxes cover.
         if self.tool.model.domain != Domain::Space {
             return false;
         }
         // An edge along an axis has too many point boxes. But the box shrinks to the edge, and the shrunk box is outside
         // if it is moved a little.
-        let zeros = self.shrunk_to_zeros(owner, cell);
+        let zeros = self.shrunk_to_zeros(owners, cell);
         self.slopes.set(cell);
         let step = ZERO_OFFSET_FRACTION * self.size;
         // To all neighbours of the box: an edge along an axis is left by one of them.
@@ -68,9 +76,9 @@ impl Survey<'_> {
         false
     }
 
-    /// Returns a part of a box that contains all its points at which a region's depth is 0.
-    fn shrunk_to_zeros(&mut self, owner: usize, mut cell: Cell) -> Cell {
-        let depth = self.tool.model.regions[owner].depth;
+    /// Returns a part of a box that contains all its points at which some regions' depths are all 0.
+    fn shrunk_to_zeros(&mut self, owners: &[usize], mut cell: Cell) -> Cell {
+        let regions = &self.tool.model.regions;
         for axis in 0..3 {
             for _ in 0..MAX_SHRINKS {
                 let side = cell.sides[axis];
@@ -80,7 +88,11 @@ impl Survey<'_> {
                 let upper = cell.with_side(axis, Interval::new(split, side.high));
                 let may_be_zero = [lower, upper].map(|part| {
                     self.slopes.set(part);
-                    self.slopes.get(depth).value.low <= 0.0
+                    let mut depths = owners.iter().map(|owner| regions[*owner].depth);
+                    depths.all(|depth| {
+                        let Interval { low, high } = self.slopes.get(depth).value;
+                        low <= 0.0 && high >= 0.0
+                    })
                 });
                 cell = match may_be_zero {
                     // Only one part may have zeros. With both, or none for want of accuracy, the box stays.
@@ -125,12 +137,17 @@ impl Survey<'_> {
         // On the axis, depth meets its mirror image.
         let axis = cell.with_side(0, NOTHING);
         self.slopes.set(axis);
-        for owner in self.cover.claims(axis).iter().filter_map(|claim| claim.owner) {
-            let depth = self.slopes.get(self.tool.model.regions[owner].depth);
-            if depth.partials[0].high > SLOPE_TOLERANCE {
-                self.min_slope = self.min_slope.min(depth.partials[2].abs().low);
-            }
+        let claims = self.cover.claims(axis);
+        let owners = claims.iter().filter_map(|claim| claim.owner);
+        let slopes =
+            owners.map(|owner| self.slopes.get(self.tool.model.regions[owner].depth).partials);
+        let slopes: Vec<[Interval; 3]> = slopes.collect();
+        // With their mirror images, slopes along the axis may have any mean of the regions'.
+        if slopes.iter().any(|partials| partials[0].high > SLOPE_TOLERANCE) {
+            let along = slopes.iter().map(|partials| partials[2]).reduce(Interval::hull);
+            self.min_slope = self.min_slope.min(along.map_or(0.0, |along| along.abs().low));
         }
+        self.slopes.set(cell);
     }
 
     /// Tries descents from a point box: straight down the owners' gradients, and if these do not suffice, in
@@ -164,7 +181,9 @@ impl Survey<'_> {
             for step_length in steps.clone().chain(STEP_FRACTIONS.map(|part| part * self.size)) {
                 let end_point = [0, 1, 2].map(|k| middle[k] - step_length * gradient[k] / length);
                 // A gradient of 0 has no direction either: the end is not a number then.
-                let Some(high) = self.deepest_at(end_point) else { continue };
+                let Some(PointDepth { high, is_outside }) = self.depth_at(end_point) else {
+                    continue;
+                };
                 // The rate must hold for every point of the box, the farthest from the end included.
                 let farthest =
                     farthest(&cell, end_point).max(step_length + 2.0 * half_diagonal_of_box);
@@ -172,7 +191,7 @@ impl Survey<'_> {
                     <= STEPS_IN_HALF_DIAGONALS[STEPS_IN_HALF_DIAGONALS.len() - 1]
                         * half_diagonal_of_box;
                 // The end is outside: the surface is nearer than it.
-                if high == 0.0 && is_near {
+                if is_outside && is_near {
                     self.surface_distance = self.surface_distance.max(farthest);
                     return Descent { steepest: f64::INFINITY, step: None };
                 }
@@ -188,9 +207,9 @@ impl Survey<'_> {
         best
     }
 
-    /// Returns the largest possible depth at a point, over all regions that may own it; 0 if none may.
-    /// Returns `None` if the point is not in the domain.
-    fn deepest_at(&mut self, point: [f64; 3]) -> Option<f64> {
+    /// Returns the largest possible depth at a point, over all regions that may own it. Returns `None` if the point is
+    /// not in the domain.
+    fn depth_at(&mut self, point: [f64; 3]) -> Option<PointDepth> {
         let off_axis = self.tool.model.domain == Domain::HalfPlane && point[0] < 0.0;
         if off_axis || !point.iter().all(|part| part.is_finite()) {
             return None;
@@ -199,7 +218,8 @@ impl Survey<'_> {
         self.slopes.set(Cell::point(point));
         let owners = claims.iter().filter_map(|claim| claim.owner);
         let depths = owners.map(|owner| self.tool.model.regions[owner].depth);
-        Some(depths.map(|depth| self.slopes.get(depth).value.high).fold(0.0, f64::max))
+        let high = depths.map(|depth| self.slopes.get(depth).value.high).fold(0.0, f64::max);
+        Some(PointDepth { high, is_outside: claims.iter().all(|claim| claim.owner.is_none()) })
     }
 
     /// Returns a lower bound of the rate at which depth falls toward the surface, and the distance by which

@@ -2,7 +2,7 @@
 
 use super::super::borders::{Joint, Pair, Separation};
 use super::super::cover::{Claim, half_diagonal};
-use super::super::slope::{angle, fall_rate_across};
+use super::super::slope::{Slope, angle, fall_rate_across, shortest_combination};
 use super::super::{Border, JumpPoint, OpenProof, SMALL_BOX_FRACTION, TOLERANCE};
 use super::{BoxSize, MAX_SLOPE_UNCERTAINTY, STEEP_SLOPE, Survey, sum_rounded_up};
 use crate::diagnostic::Statement;
@@ -23,6 +23,22 @@ struct Meeting {
     jump_point: Option<JumpPoint>,
 }
 
+/// Returns the groups of regions that pairs join, directly or through others. Between two groups each depth is the
+/// smaller on its own side, so that a descent by the slopes of one group leads down in the other, too.
+fn connected(pairs: &[[usize; 2]]) -> Vec<Vec<usize>> {
+    let mut groups: Vec<Vec<usize>> = Vec::new();
+    for pair in pairs {
+        let (joined, mut rest): (Vec<_>, Vec<_>) =
+            groups.into_iter().partition(|group| pair.iter().any(|owner| group.contains(owner)));
+        let mut group: Vec<usize> = joined.into_iter().flatten().chain(*pair).collect();
+        group.sort_unstable();
+        group.dedup();
+        rest.push(group);
+        groups = rest;
+    }
+    groups
+}
+
 impl Survey<'_> {
     /// Returns whether enough is known about the borders between the owners of the current box.
     pub(super) fn examine_borders(
@@ -34,6 +50,8 @@ impl Survey<'_> {
         let mut meetings = self.meetings(cell, claims);
         let is_small = half_diagonal(&cell) <= SMALL_BOX_FRACTION * self.size;
         let (mut min_fall, mut any_vague) = (f64::INFINITY, false);
+        // The pairs of regions that do not lead down each by its own slope.
+        let mut falling_across = Vec::new();
         for meeting in &mut meetings {
             let depths_differ =
                 meeting.separation.joint == Joint::None && self.jump(meeting.pair).low > 0.0;
@@ -60,11 +78,33 @@ impl Survey<'_> {
             }
             // In a point box other regions may lie between the two.
             if box_size != BoxSize::Point && self.feet.is_none() {
+                if meeting.separation.joint == Joint::Zero && !self.meet_on_surface(meeting, cell) {
+                    // Inside, a depth of 0 is as deep as any distance from the surface.
+                    if !box_size.is_last() {
+                        return false;
+                    }
+                    min_fall = 0.0;
+                }
                 let (fall, slack) = self.fall_across(meeting);
                 // A smaller box may show that both sides lead down.
                 any_vague |= fall < STEEP_SLOPE && slack > MAX_SLOPE_UNCERTAINTY;
                 min_fall = min_fall.min(fall);
+                if let (Pair { own, other: Some(other) }, true) = (meeting.pair, fall.is_finite()) {
+                    falling_across.push([own, other]);
+                }
             }
+        }
+        for group in connected(&falling_across).into_iter().filter(|group| group.len() > 2) {
+            let depths = group.iter().map(|owner| self.tool.model.regions[*owner].depth);
+            let slopes: Vec<Slope> = depths.map(|depth| self.slopes.get(depth)).collect();
+            let (fall, slack) = shortest_combination(&slopes);
+            // In the half plane smaller boxes lead down to points, at which descents are tried.
+            let is_plane = self.tool.model.domain == Domain::HalfPlane;
+            if is_plane && fall < min_fall.min(STEEP_SLOPE) && !box_size.is_last() {
+                return false;
+            }
+            any_vague |= fall < STEEP_SLOPE && slack > MAX_SLOPE_UNCERTAINTY;
+            min_fall = min_fall.min(fall);
         }
         // Small boxes resolve the turn of directions on the surface.
         let is_plane = self.tool.model.domain == Domain::HalfPlane;
@@ -135,15 +175,25 @@ impl Survey<'_> {
     /// uncertainty.
     fn fall_across(&mut self, meeting: &Meeting) -> (f64, f64) {
         let regions = &self.tool.model.regions;
-        let (Joint::Kinked, Pair { own, other: Some(other) }) =
-            (meeting.separation.joint, meeting.pair)
-        else {
-            // Otherwise each side leads down by its own slope, or both slopes agree.
-            return (f64::INFINITY, 0.0);
-        };
-        let [own, other] = [own, other].map(|owner| self.slopes.get(regions[owner].depth));
-        let curve = self.slopes.get(self.tool.model.curves[meeting.separation.curve].value);
-        fall_rate_across(own, other, curve, meeting.separation.below)
+        let Pair { own, other: Some(other) } = meeting.pair else { return (f64::INFINITY, 0.0) };
+        let slopes = [own, other].map(|owner| self.slopes.get(regions[owner].depth));
+        match meeting.separation.joint {
+            Joint::Kinked => {
+                let curve = self.slopes.get(self.tool.model.curves[meeting.separation.curve].value);
+                fall_rate_across(slopes, curve, meeting.separation.below)
+            }
+            // Each side leads down by its own slope, both slopes agree, or depth is 0.
+            _ => (f64::INFINITY, 0.0),
+        }
+    }
+
+    /// Returns whether the points at which two regions meet with a depth of 0 are proved to be on the surface.
+    fn meet_on_surface(&mut self, meeting: &Meeting, cell: Cell) -> bool {
+        let owners: Vec<usize> =
+            [Some(meeting.pair.own), meeting.pair.other].into_iter().flatten().collect();
+        let is_proved = self.are_zero_on_surface_only(&owners, cell);
+        self.slopes.set(cell);
+        is_proved
     }
 
     /// Returns the difference of two depths in the current box.

@@ -3,6 +3,7 @@
 
 use super::borders::{BorderProver, Pair};
 use super::cover::{Boxes, Claim, Cover, half_diagonal};
+use super::depths::Depths;
 use super::direction::{self, DirectionFacts, angle_to_descent};
 use super::foot::ProfileFeet;
 use super::jordan::Profile;
@@ -55,8 +56,9 @@ const STEEP_SLOPE: f64 = 0.9;
 const MAX_SLOPE_UNCERTAINTY: f64 = 0.1;
 
 /// Proves as much as possible with a number of boxes. For regions by hand this includes, if
-/// `check_overlaps` is set, that no two of them overlap.
-pub(super) fn survey(tool: &PlannedTool, boxes: usize, check_overlaps: bool) -> Certificate {
+/// `check_overlaps` is set, that no two of them overlap. The tool's graph receives the parts of depths.
+pub(super) fn survey(tool: &mut PlannedTool, boxes: usize, check_overlaps: bool) -> Certificate {
+    let depths = Depths::of(&mut tool.model);
     let boxes = boxes.min(MAX_BOXES_TIMES_REGIONS / tool.model.regions.len().max(1));
     // During compilation there are boxes for one try only.
     let single_try = [(POINT_BOX_FRACTIONS_AND_BUDGET_THIRDS[0].0, 3)];
@@ -65,13 +67,13 @@ pub(super) fn survey(tool: &PlannedTool, boxes: usize, check_overlaps: bool) -> 
     } else {
         &single_try
     } {
-        let mut survey = Survey::new(tool, *point_box_fraction, check_overlaps);
+        let mut survey = Survey::new(tool, &depths, *point_box_fraction, check_overlaps);
         // With an open proof, larger point boxes may still finish it, at the price of more slack.
         if survey.run(thirds * boxes / 3, false) && survey.undecided.is_empty() {
             return survey.certificate();
         }
     }
-    let mut survey = Survey::new(tool, LAST_POINT_BOX_FRACTION, check_overlaps);
+    let mut survey = Survey::new(tool, &depths, LAST_POINT_BOX_FRACTION, check_overlaps);
     survey.run(boxes, true);
     survey.certificate()
 }
@@ -149,13 +151,24 @@ struct Survey<'t> {
 }
 
 impl<'t> Survey<'t> {
-    fn new(tool: &'t PlannedTool, point_box_fraction: f64, check_overlaps: bool) -> Survey<'t> {
+    fn new(
+        tool: &'t PlannedTool,
+        depths: &Depths,
+        point_box_fraction: f64,
+        check_overlaps: bool,
+    ) -> Survey<'t> {
         let model = &tool.model;
         let whole = tool.extent.cell();
         let mut forms = Forms::new(&model.graph);
         let feet = ProfileFeet::of(tool, &mut forms, half_diagonal(&whole));
-        let border_prover =
-            BorderProver::new(model, whole, &mut forms, feet.is_some(), point_box_fraction);
+        let border_prover = BorderProver::new(
+            model,
+            depths.clone(),
+            whole,
+            &mut forms,
+            feet.is_some(),
+            point_box_fraction,
+        );
         let directions = model
             .regions
             .iter()
@@ -361,10 +374,12 @@ impl<'t> Survey<'t> {
             // A point of the region is not outside.
             depth: Interval { low: depth.value.low.max(0.0), ..depth.value },
             gradient_length: depth.length,
+            steep_at: (!depth.length.high.is_finite()).then(|| cell.middle()),
             magnitude: self.slopes.get(region.magnitude).value,
             niceness: niceness.value,
-            niceness_never_rises: dot_product.high
-                <= SLOPE_MARGIN * depth.length.high * niceness.length.high,
+            // Without bounds of the slopes nothing is known of their product.
+            niceness_never_rises: depth.length.high * niceness.length.high < f64::INFINITY
+                && dot_product.high <= SLOPE_MARGIN * depth.length.high * niceness.length.high,
             rounding_error: self.errors.over(region.depth, &cell),
             ..RegionFacts::NONE
         };
@@ -378,6 +393,7 @@ impl<'t> Survey<'t> {
             Some(known) => RegionFacts {
                 depth: known.depth.hull(facts_here.depth),
                 gradient_length: known.gradient_length.hull(facts_here.gradient_length),
+                steep_at: known.steep_at.or(facts_here.steep_at),
                 magnitude: known.magnitude.hull(facts_here.magnitude),
                 niceness: known.niceness.hull(facts_here.niceness),
                 niceness_never_rises: known.niceness_never_rises && facts_here.niceness_never_rises,

@@ -132,6 +132,20 @@ fn does_not_fit(stop: &StopPosition<'_>, expected: Expected) -> Diagnostic {
     match first_token(stop.rest()) {
         "" => Diagnostic::new(stop.next(0), SyntaxKind::UnexpectedEnd { expected }),
         token => {
+            let similar = match &expected {
+                Expected::OneOf(words) => {
+                    let words =
+                        words.iter().filter_map(|word| word.strip_prefix('`')?.strip_suffix('`'));
+                    nearest(token, words.filter(|word| !word.contains('`'))).map(str::to_owned)
+                }
+                _ => None,
+            };
+            let in_profile = word(stop.text.trim_start_matches(BLANK_CHARACTERS)) == "profile";
+            let expected = match similar {
+                Some(similar) => Expected::Similar(similar),
+                None if in_profile && token == "start" => Expected::OneStart,
+                None => expected,
+            };
             let kind = SyntaxKind::UnexpectedToken { token: token.to_owned(), expected };
             Diagnostic::new(stop.next(token.len()), kind)
         }

@@ -1,0 +1,10 @@
+tool Pin {
+    units mm;
+    profile {
+        start (0, 0);
+        line to (3, 0) as face;
+        line to (3, 20) as flute cutting;
+        line to (0, 20) as top;
+    }
+    niceness flute: depth/3 - 2;
+}
