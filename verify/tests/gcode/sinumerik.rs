@@ -451,7 +451,7 @@ fn what_is_outside_is_refused_by_name_with_its_line() {
         ("R1=1\n(A COMMENT)", 2, "P0101"),
         ("SELF\nM30\n%_N_SELF_SPF\nSELF\nM17", 4, "P0139"),
         ("G0 X=1\nPROC A_(VAR REAL B_)\nRET\n%_N_Z_MPF", 1, "P0115"),
-        ("F100\nCYCLE81(20,0,3,-10,,0,0,1,11,5)", 2, "P0115 argument 10 of CYCLE81"),
+        ("F100\nCYCLE81(20,0,3,-10,,0,0,1,12,5)", 2, "P0115 argument 10 of CYCLE81"),
         ("F100\nMCALL CYCLE81(20,0,3,-10)\nC90", 3, "P0120 a rotary axis"),
         ("T1 M6\nTRAORI\nG54\nF100\nG0 X1 A3=0 C3=1\nCYCLE832(0.1,112103)", 6, "P0115 CYCLE832"),
         ("R1=5\nCYCLE832(0.1,R1)", 2, "P0115 CYCLE832"),

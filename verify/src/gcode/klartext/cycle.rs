@@ -152,8 +152,8 @@ impl Given {
         for (parameter, value) in &self.values {
             let word = || format!("Q{parameter} of CYCL DEF {}", self.number);
             if *value == Some(f64::INFINITY) && !matches!(parameter, 208 | 253) {
-                let meaning = "rapid traverse where the cycle cuts, or no feed";
-                return Err(not_read(word(), meaning, "write a number instead of MAX"));
+                let meaning = "MAX where the cycle has a number, or a feed into the part";
+                return Err(not_read(word(), meaning, "write the number"));
             }
             if value.is_none() && !FEEDS.contains(parameter) {
                 let meaning = "a word where the cycle has a number";

@@ -281,9 +281,9 @@ fn function(cursor: &mut Cursor, known: &Parameters, depth: usize) -> Result<f64
         return Ok(std::f64::consts::PI);
     }
     let x = operand(cursor, known, depth + 1)?;
-    // Rounding can make 0 of any value that is as small.
+    // It is 0 or 1 there. Rounding can make 0 of any value that is as small.
     if operation == "SGN" && x.abs() < 1e-9 {
-        let condition = "its operand is 0, of which it is 0 or 1";
+        let condition = "its operand is 0";
         return Err(combination("SGN", condition, "decide on 0 before, as with FN 9"));
     }
     finite(apply(operation, x), operation)

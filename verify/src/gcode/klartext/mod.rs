@@ -774,7 +774,7 @@ impl<'a> Program<'a> {
             "MODE" if cursor.take_word("MILL") => {
                 if !cursor.is_at_end() {
                     let word = "FUNCTION MODE MILL with a name";
-                    let meaning = "a choice of kinematics, which the machine's file may not have";
+                    let meaning = "a choice of other kinematics than those of the machine's file";
                     return Err(not_read(word, meaning, "write FUNCTION MODE MILL alone"));
                 }
                 let word = "FUNCTION MODE".to_owned();
