@@ -222,7 +222,7 @@ pub struct Step {
     pub tool_vector: Option<[f64; 3]>,
     /// Set if the end is stated, in G90 or in machine coordinates, and not by increments.
     pub absolute: bool,
-    /// Set for the way home: to a reference position, and under G53 of Z to 0, or of other axes after it.
+    /// Set for the way home: of Z to a reference position or, under G53, to 0, and of other axes with it or after it.
     pub is_homeward: bool,
     /// Set for the motion to a reference position (G28, G30).
     pub is_return: bool,

@@ -628,11 +628,27 @@ fn what_is_not_read_is_named_with_its_line() {
         ("G1 X10", 2, "P0114 G"),
         ("L X+1 FMAX M140 MB MAX", 2, "P0120 M140"),
         ("CYCL DEF 247 ~\n Q339=PREDEF", 2, "P0115 PREDEF"),
+        ("CC X-1 Y+0\nLP PR+5 PA+90 FMAX M140 MB5", 3, "P0120 M140"),
+        ("CC X-1 Y+0\nCP PA+90 DR+ FMAX M140 MB5", 3, "P0120 M140"),
+        ("Q1 = 0\nQ2 = SGN Q1", 3, "P0120 SGN"),
+        ("TOOL CALL 5 Z S1\nTOOL DEF 5 L+60", 3, "P0120 TOOL DEF 5"),
+        ("TOOL DEF 5 R+5\nTOOL CALL 5 Z S1\nTOOL DEF 5 L+80 R+20", 4, "P0120 TOOL DEF 5"),
+        (
+            "TOOL DEF 6 L+80\nTOOL CALL 6 Z S1\nTOOL CALL 5 Z S1\nTOOL DEF 6 L+60",
+            5,
+            "P0115 TOOL DEF 6",
+        ),
+        ("FUNCTION MODE MILL \"HEAD_90\"", 2, "P0115 FUNCTION MODE"),
     ] {
         let text = program(body);
         let error = read(&text, &at_zero()).expect_err(body);
         assert_fault(&text, &error, line, message);
     }
+    // What they change nothing about is read.
+    steps(
+        "FUNCTION MODE MILL\nTOOL DEF 6 L+80 R+3\nTOOL CALL 6 Z S1\nTOOL DEF 6 L+80 R+3\nTOOL DEF 5\nTOOL CALL 5 Z S1\n\
+         TOOL DEF 6 L+80 R+2\nQ1 = SGN 2\nL X+1 FMAX",
+    );
     // An increment from a position that only the machine knows, and one that stands alone.
     let unknown = ControlSetup { start: [None; 6], ..at_zero() };
     let error = read(&program("L X+1 IY+2 FMAX"), &unknown).expect_err("an increment");

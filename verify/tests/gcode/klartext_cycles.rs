@@ -1,6 +1,6 @@
 //! Cycles of Heidenhain Klartext: their levels along the hole, and the helix of bore milling.
 
-use crate::common::is_fault;
+use crate::common::{assert_fault, is_fault};
 use crate::klartext::{at_zero, program, steps};
 use touchoff_verify::gcode::{NoteKind, Spindle, Step, StepPath, read};
 
@@ -98,6 +98,13 @@ fn cycles_move_along_the_hole() {
         holes("L X+1 FMAX M89\nL X+2 FMAX\nL X+3 FMAX M99\nL X+4 FMAX"),
         [[1.0, 20.0, -19.0], [2.0, 20.0, -19.0], [3.0, 20.0, -19.0]]
     );
+    assert_eq!(
+        holes(
+            "CC X+10 Y+10\nM89\nLP PR+10 PA+0 FMAX\nCP IPA+180 DR+ FMAX\nCTP PR+10 PA-90 FMAX M99"
+        )
+        .len(),
+        3
+    );
     assert_eq!(holes("CYCL CALL POS X+7 Y+8 Z+4"), [[7.0, 8.0, -15.0]]);
     let none = drill.replace("Q201=-20", "Q201=+0");
     assert_eq!(steps(&format!("{at}{none}\nCYCL CALL")).len(), steps(at).len());
@@ -177,6 +184,33 @@ fn a_parameter_of_another_depth_is_refused() {
         }
     }
     assert!(drilled(205, "Q379=+0 Q253=+750").is_ok());
+}
+
+/// Words in the place of numbers, parameters in lower case, and values that change before the call.
+#[test]
+fn parameters_mean_what_the_control_takes_for_them() {
+    for (cycle, body, line, message) in [
+        ("Q206=MAX", "M99", 5, "P0115 Q206 of CYCL DEF 200"),
+        ("Q211=AUTO", "M99", 5, "P0115 Q211 of CYCL DEF 200"),
+        ("q395=+1", "M99", 5, "P0115 Q395 of CYCL DEF 200"),
+        ("Q211=+0 NAME", "M99", 5, "P0110 NAME"),
+        ("", "Q201 = -15\nCYCL CALL", 7, "P0115 Q201 of CYCL DEF 200"),
+        ("", "FN 0: Q203 = -20\nL X+1 FMAX M99", 7, "P0115 Q203 of CYCL DEF 200"),
+        ("", "Q395 = 1\nM89\nL X+1 FMAX", 8, "P0115 Q395 of CYCL DEF 200"),
+        ("", "M89\nL X+0 FMAX M91", 7, "P0120 M91"),
+    ] {
+        let text = program(&format!(
+            "TOOL CALL 5 Z S900 F99\nL X+10 Y+20 FMAX M3\nL Z+100 FMAX\n\
+             CYCL DEF 200 NAME Q200=+2 Q201=-20 Q206=+100 Q202=+20 Q203=+1 Q204=+50 {cycle}\n{body}"
+        ));
+        let error = read(&text, &at_zero()).expect_err(body);
+        assert_fault(&text, &error, line, message);
+    }
+    // The same value, and a value of another cycle, change nothing.
+    let cycle = "CYCL DEF 200 NAME Q200=+2 Q201=Q1 q206=FZ0.1 Q202=+20 Q203=+1 Q204=+50\n";
+    steps(&format!(
+        "TOOL CALL 5 Z S900 F99\nL X+1 Y+2 Z+9 FMAX M3\nQ1 = -5\n{cycle}Q201 = -5\nQ343 = 1\nCYCL CALL\nQ201 = -9\n{cycle}CYCL CALL"
+    ));
 }
 
 /// A job states values that the machine has: a parameter that the program has not assigned, and one of the control.

@@ -83,6 +83,21 @@ fn modal_macros_are_called_after_each_motion() {
         O9200\nG91 Y#1\nG90\nM99\n";
     let expected = [[1.0, 0.0], [2.0, 0.0], [2.0, 0.5], [3.0, 1.0], [3.0, 1.5], [4.0, 1.5]];
     assert_ends(program, Choice::Iso, &expected);
+    // In a subprogram, too, but not in another macro; and after a full circle.
+    let calls = "G21 G90 G0 F100\nG66 P9200 A0.5\nM98 P9300\nG65 P9300\nG2 I9.\nX4.\nM30\n\
+        O9200\nG91 G0 Y#1\nG90\nM99\nO9300\nG0 X2.\nM99\n";
+    let expected =
+        [[2.0, 0.0], [2.0, 0.5], [2.0, 0.5], [2.0, 0.5], [2.0, 1.0], [4.0, 1.0], [4.0, 1.5]];
+    assert_ends(calls, Choice::Iso, &expected);
+    // G66 of a subprogram holds after it.
+    let inner =
+        "G21 G90 G0\nM98 P9300\nX4.\nM30\nO9200\nG91 Y#1\nG90\nM99\nO9300\nG66 P9200 A0.5\nM99\n";
+    assert_ends(inner, Choice::Iso, &[[4.0, 0.0], [4.0, 0.5]]);
+    for word in ["G28 X0.", "G91 G30 X0.", "G53 G0 X0."] {
+        let program = calls.replace("X4.", word);
+        let error = read(&program, &setup(Choice::Iso)).expect_err(word);
+        assert_fault(&program, &error, 6, "P0120 G66 is in force");
+    }
 }
 
 #[test]

@@ -127,7 +127,7 @@ fn words_and_statements_are_the_motions_of_iso_words() {
             "G0 X1\nX2",
         ),
         (
-            "WORKPIECE(,,,\"BOX\",64,0,50,-80,0,0,100,100)\nCYCLE832(0.01,_FINISH,1)\nFGROUP(X,Y) G0 X1",
+            "WORKPIECE(,,,\"BOX\",64,0,50,-80,0,0,100,100)\nCYCLE832(0.01,_FINISH,1)\nCYCLE832(0.01,13)\nCYCLE832()\nFGROUP(X,Y) G0 X1",
             "G0 X1",
         ),
     ];
@@ -260,7 +260,7 @@ fn cycle800_tilts_the_plane_axis_by_axis() {
     assert_eq!(ends, [[Some(0.0), Some(0.0), Some(400.0)], [Some(1.0), Some(2.0), Some(400.0)]]);
     let all = steps("CYCLE800(5,\"\",0,57,0,0,0,0,30,0,0,0,0,0,25,1)\nM30\n");
     assert_eq!(all[0].end[2], Some(25.0));
-    assert!(all[0].rapid && all[0].is_homeward);
+    assert!(all[0].rapid && !all[0].is_homeward);
     let all = steps("CYCLE800(4,\"\",0,57,0,0,0,0,30,0,0,0,0,0,,1)\nM30\n");
     assert_eq!((all[0].end[0], all[0].end[2], all[0].commanded[2]), (Some(0.0), None, true));
 }
@@ -311,6 +311,9 @@ fn drilling_cycles_move_to_their_levels() {
         "r2,2,20", "r3,2,20",
     ];
     assert_eq!(heights(&steps(modal)), expected);
+    // So does a full circle by its centre.
+    let circle = "G0 X1 Y1 Z50 F100\nMCALL CYCLE81(20,0,3,-10)\nG3 I9 J0\nMCALL\nG0 X3\nM30\n";
+    assert_eq!(heights(&steps(circle))[3], "1,1,-10");
 }
 
 #[test]
@@ -448,6 +451,14 @@ fn what_is_outside_is_refused_by_name_with_its_line() {
         ("R1=1\n(A COMMENT)", 2, "P0101"),
         ("SELF\nM30\n%_N_SELF_SPF\nSELF\nM17", 4, "P0139"),
         ("G0 X=1\nPROC A_(VAR REAL B_)\nRET\n%_N_Z_MPF", 1, "P0115"),
+        ("F100\nCYCLE81(20,0,3,-10,,0,0,1,12,5)", 2, "P0115 argument 10 of CYCLE81"),
+        ("F100\nMCALL CYCLE81(20,0,3,-10)\nC90", 3, "P0120 a rotary axis"),
+        ("T1 M6\nTRAORI\nG54\nF100\nG0 X1 A3=0 C3=1\nCYCLE832(0.1,112103)", 6, "P0115 CYCLE832"),
+        ("R1=5\nCYCLE832(0.1,R1)", 2, "P0115 CYCLE832"),
+        ("G1 X9 RND=2 F100\nCYCLE81(20,0,3,-10)\nY9", 2, "P0119 RND"),
+        ("F100\nMCALL CYCLE81(20,0,3,-10)\nG1 X9 RND=2\nMCALL\nY9", 3, "P0119 RND"),
+        ("G1 X9 CHR=2 F100\nCYCLE800(1)\nY9", 2, "P0119 CHR"),
+        ("G1 X9 CHF=2 F100\nTRANS X5\nY9", 2, "P0119 CHF"),
         ("G0 X=1", 1, "P0138"),
     ];
     for (program, line, words) in cases {

@@ -1,6 +1,7 @@
 //! Programs whose motion hits, though one reading of a word would not: each beside the same motion in other words.
 
 use crate::scene::{CLEAN, FANUC, FINDINGS, HEIDENHAIN, LINUXCNC, NONE, SIEMENS, Scene};
+use touchoff_verify::machine::Machine;
 
 /// A B axis that tilts the spindle 160 mm above its gauge point, over a table C.
 const B_HEAD: &str = r#"
@@ -146,5 +147,79 @@ fn a_box_of_rapid_traverse_keeps_the_resolution_once() {
         let scene = scene.with(&format!("resolution = {resolution}"));
         let scene = scene.obstacle([-20.0, -40.0, -20.0], [20.0, 0.0, 3.0]);
         scene.gives(None, FINDINGS, &["V0101 the clamp"]);
+    }
+}
+
+/// A cycle and a macro are called after each motion: also one in polar coordinates, a full circle, and one in a subprogram.
+#[test]
+fn a_modal_call_follows_every_motion() {
+    let klartext = |motion: &str| {
+        format!(
+            "BEGIN PGM A MM\nTOOL CALL 1 Z S1000 F500\nL X-30 Y-10 R0 FMAX M3\nL Z+20 R0 FMAX\nL Y+0 FMAX\nCC X+0 Y+0\n\
+             CYCL DEF 200 DRILLING Q200=2 Q201=-15 Q206=200 Q202=15 Q210=0 Q203=+0 Q204=20 Q211=0\nM89\n{motion}\n\
+             CYCL DEF 200 DRILLING Q200=2 Q201=-1 Q206=200 Q202=15 Q210=0 Q203=+0 Q204=20 Q211=0\nL Z+100 R0 FMAX\nM30\n\
+             END PGM A MM\n"
+        )
+    };
+    let siemens = "G17 G90 G54 G71 G94\nT1 M6\nD1\nS1000 M3 F200\nG0 X30 Y0\nG0 Z20\nMCALL CYCLE81(20,0,2,-15)\nG3 I-10 J0\nMCALL\n\
+                   G0 Z100\nM30\n"
+        .to_owned();
+    let fanuc = |motion: &str| {
+        format!(
+            "G21 G90 G17 G94 G54\nT1 M6\nS1000 M3 F500.\nG0 X-30. Y0.\nG43 H1 Z20.\n{motion}\nG67\nG0 Z100.\nM30\nO100\n\
+             G0 X30. Y0.\nM99\nO9100\nG1 Z#26 F200.\nG0 Z20.\nM99\n"
+        )
+    };
+    let modal = "G66 P9100 Z-15.";
+    for (control, file, text) in [
+        (HEIDENHAIN, "a.h", klartext("LP PR+30 PA+0 FMAX")),
+        (HEIDENHAIN, "a.h", klartext("CP PA+0 DR- FMAX")),
+        (HEIDENHAIN, "a.h", klartext("CTP PR+30 PA+0 FMAX")),
+        (SIEMENS, "a.mpf", siemens),
+        (FANUC, "a.nc", fanuc(&format!("{modal}\nM98 P100"))),
+        (FANUC, "a.nc", fanuc(&format!("G0 X30.\n{modal}\nG2 I-10."))),
+    ] {
+        let scene = named(file, &text).placed().with("anyway = true");
+        let scene = scene.obstacle([25.0, -5.0, -20.0], [35.0, 5.0, -8.0]);
+        scene.gives(control, FINDINGS, &["V0101 the clamp"]);
+    }
+}
+
+/// The tool stands in a pocket: its way home along X and Y leads where only the machine knows, unless Z returns before or with them.
+#[test]
+fn a_return_along_x_and_y_from_a_known_depth_is_not_free() {
+    let machine = Machine::file("3-axis").expect("a machine").replace("home = 0\n", "");
+    let machine = machine.replace("name = ", "tool_change = \"stays\"\nname = ");
+    for (control, word) in [(FANUC, "G28"), (FANUC, "G30"), (LINUXCNC, "G28")] {
+        for (blocks, verdict, gap) in [
+            (format!("G91 {word} X0. Y0."), NONE, "V0404 7"),
+            (format!("G91 {word} X0. Y0. Z0."), CLEAN, "V0405 7"),
+            (format!("G53 G0 Z0.\nG91 {word} X0. Y0."), CLEAN, "V0405 8"),
+        ] {
+            let text = format!(
+                "G21 G90 G17 G94 G54\nT1 M6\nS1000 M3\nG0 X0. Y0.\nG43 H1 Z20.\nG1 Z1. F200.\n{blocks}\nG90\nM30\n"
+            );
+            let scene = Scene::of(&text).placed().with("machine = \"mine.toml\"");
+            let scene = scene.with_file("mine.toml", &*machine);
+            scene.gives(control, verdict, &[gap]);
+        }
+    }
+}
+
+/// A retract by a distance along a tilted tool ends where the machine's file does not say.
+#[test]
+fn a_retract_by_a_distance_is_no_way_home() {
+    for (retract, verdict, gap) in [
+        ("4,\"TC\",0,57,0,0,0,0,0,0,0,0,0,0", CLEAN, "V0405 8"),
+        ("5,\"TC\",0,57,0,0,0,0,0,0,0,0,0,0,60", NONE, "V0404 8"),
+    ] {
+        let text = format!(
+            "G17 G90 G54 G71 G94\nT1 M6\nD1\nS1000 M3 F200\nG0 B0 C0\nG0 X0 Y0 Z200\nG0 B30\nCYCLE800({retract})\nCYCLE800()\nM30\n"
+        );
+        let scene = scene("a.mpf", &text, B_HEAD, "[0, 0, -440]");
+        // Nothing is near the part.
+        let scene = if verdict == CLEAN { scene.with("anyway = true") } else { scene };
+        let scene = scene.obstacle([300.0, 300.0, 0.0], [310.0, 310.0, 10.0]);
+        scene.gives(SIEMENS, verdict, &[gap]);
     }
 }

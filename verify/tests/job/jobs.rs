@@ -306,7 +306,7 @@ fn a_finding_in_a_file_of_subprograms_names_the_call_and_its_line() {
 fn a_gap_in_a_file_of_subprograms_names_the_call_and_its_line() {
     let scene = Scene::new("G0 X-6. Y0. Z20.\nM98 P9001\nM0");
     let scene = scene.with("subprograms = [\"O9001.nc\"]").with("anyway = true");
-    let scene = scene.with_file("O9001.nc", "(PASS)\nG0 X0. Y0.\nG1 Z15.\nM0\nG28 X0.\nM99\n");
+    let scene = scene.with_file("O9001.nc", "(PASS)\nG0 X0. Y0.\nG1 Z15.\nM0\nG28 Z15.\nM99\n");
     let patterns = [
         "V0508 3 (2 times) (O9001.nc, line 4)",
         "V0308 3 (O9001.nc, line 3)",

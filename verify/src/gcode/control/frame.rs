@@ -158,6 +158,7 @@ impl Frames {
 impl Control {
     /// Executes `TRANS`, `ATRANS`, `ROT` or `AROT`.
     pub(in crate::gcode) fn program_frame(&mut self, step: FrameStep) -> Result<(), GcodeFault> {
+        self.check_corner()?;
         self.check_uncompensated("a programmable frame")?;
         self.check_frame_change("a programmable frame")?;
         let [x, y, z, a, b, c] = step.shift;
@@ -178,6 +179,7 @@ impl Control {
 
     /// Executes CYCLE800.
     pub(in crate::gcode) fn swivel(&mut self, swivel: &Swivel) -> Result<(), GcodeFault> {
+        self.check_corner()?;
         self.check_uncompensated("CYCLE800")?;
         self.check_frame_change("CYCLE800")?;
         if self.state.tcp != Tcp::Off {
@@ -258,6 +260,10 @@ impl Control {
                     commanded[..3].fill(true);
                 }
                 self.push(true, end, commanded, StepPath::Line);
+                // A distance can end beside the part, and its way is not known then.
+                if distance.is_some() {
+                    return;
+                }
             }
         }
         self.mark_homeward();

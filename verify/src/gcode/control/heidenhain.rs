@@ -339,6 +339,21 @@ impl Control {
         self.radius_offsets.insert(tool, radius);
     }
 
+    /// Returns the length of a tool that is stated, in millimetres.
+    pub(in crate::gcode) fn defined_length(&self, tool: u32) -> Option<f64> {
+        self.lengths.get(&tool).copied()
+    }
+
+    /// Returns the radius offset of a tool that is stated, in millimetres.
+    pub(in crate::gcode) fn defined_radius(&self, tool: u32) -> Option<f64> {
+        self.radius_offsets.get(&tool).copied()
+    }
+
+    /// Returns whether a tool is in the spindle.
+    pub(in crate::gcode) fn has_in_spindle(&self, tool: u32) -> bool {
+        self.state.tool == Some(tool)
+    }
+
     /// Sets what the program adds to the radius offset of the tool in the spindle (DR), in millimetres.
     pub(in crate::gcode) fn set_radius_allowance(&mut self, allowance: f64) {
         self.radius_allowance = allowance;

@@ -26,6 +26,7 @@ pub(in crate::gcode) struct Hole {
 impl Control {
     /// Refuses a hole where the cycle cannot be executed.
     pub(in crate::gcode) fn check_hole(&self, hole: &Hole) -> Result<(), GcodeFault> {
+        self.check_corner()?;
         self.check_uncompensated(hole.cycle)?;
         let (condition, remedy) = if self.modal.plane != Plane::Xy {
             ("G18 or G19 is in force", "write G17 before")

@@ -313,11 +313,15 @@ impl Control {
             let remedy = "name X and Y, or neither";
             return Err(combination(word, condition, remedy));
         }
+        // The other axes are free where Z returns, too, or stands at its home or where nobody knows.
+        let machine = self.state.to_machine(self.position)[2];
+        let is_home = |z: f64| z == 0.0 || self.home.is_some_and(|home| home[2] == z);
+        let is_homeward = named[2] || self.position[2].is_none() || machine.is_some_and(is_home);
         let home = if word == "G28" { self.home } else { self.second_home };
         let target = home.map_or([None; 6], |home| home.map(Some));
         self.move_machine(named, target, StepPath::Line);
         let step = self.pending.back_mut().expect("the step that was added");
-        (step.is_return, step.is_homeward) = (true, true);
+        (step.is_return, step.is_homeward) = (true, is_homeward);
         self.returned = (self.state.length != LengthOffset::Off).then_some(false);
         Ok(())
     }

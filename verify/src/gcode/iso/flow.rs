@@ -220,18 +220,16 @@ struct Call {
     return_to: Place,
     /// Executions that follow the present one.
     repeats: u32,
-    /// The caller's variables that the subprogram does not see.
+    /// What the subprogram does not have of its caller.
     hidden: Hidden,
-    /// The macro that each motion calls, in the caller.
-    modal: Option<MacroCall>,
 }
 
-/// Variables of a caller.
+/// What a subprogram does not have of its caller.
 #[derive(Clone, Debug)]
 enum Hidden {
-    /// All local ones: the subprogram has its own.
-    Locals(Locals),
-    /// Names: it shares the numbered ones (M98).
+    /// All local variables, of which a macro has its own, and the macro that each motion calls.
+    Macro { locals: Locals, modal: Option<MacroCall> },
+    /// Names: it shares the numbered variables (M98).
     Names(BTreeMap<String, f64>),
 }
 
@@ -326,6 +324,7 @@ impl<'a> Flow<'a> {
             is_inner: true,
             below: self.depth(),
             place: self.sources[file].extent.start,
+            modal: self.modal.clone(),
             // Its blocks are those of a subprogram.
             started: true,
             titled: true,
@@ -336,6 +335,7 @@ impl<'a> Flow<'a> {
     /// Goes on after a call of a subprogram in another file, which has ended.
     pub(super) fn go_on_after(&mut self, called: &Flow<'a>) {
         self.repeated = called.repeated;
+        self.modal.clone_from(&called.modal);
     }
 
     /// Returns the number of calls that are being executed.
@@ -611,11 +611,13 @@ impl<'a> Flow<'a> {
         let return_to = self.place;
         self.place = body;
         let hidden = match locals {
-            Some(locals) => Hidden::Locals(mem::replace(&mut variables.locals, locals)),
+            Some(locals) => Hidden::Macro {
+                locals: mem::replace(&mut variables.locals, locals),
+                modal: self.modal.take(),
+            },
             None => Hidden::Names(mem::take(&mut variables.locals.named)),
         };
-        let modal = self.modal.take();
-        self.calls.push(Call { label, role, body, return_to, repeats: times - 1, hidden, modal });
+        self.calls.push(Call { label, role, body, return_to, repeats: times - 1, hidden });
         Ok(())
     }
 
@@ -708,9 +710,8 @@ impl<'a> Flow<'a> {
     /// Returns to the caller.
     fn end_call(&mut self, call: Call, variables: &mut Variables) {
         self.place = call.return_to;
-        self.modal = call.modal;
         match call.hidden {
-            Hidden::Locals(locals) => variables.locals = locals,
+            Hidden::Macro { locals, modal } => (variables.locals, self.modal) = (locals, modal),
             Hidden::Names(names) => variables.locals.named = names,
         }
     }

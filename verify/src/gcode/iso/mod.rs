@@ -330,8 +330,20 @@ impl<'a> Program<'a> {
         if block.passed_over.iter().any(|code| (code.letter, code.tenths) == ('G', 670)) {
             self.flow.modal = None;
         }
-        let moves = block.has_any("XYZABC") && !block.owns_axis_words();
+        if self.flow.modal.is_some() {
+            let is_return = |code: &Code| matches!(code.tenths, 280 | 300);
+            let one_shot = block.code_of(Group::OneShot).filter(is_return);
+            if let Some(code) = one_shot.or(block.code_of(Group::Machine)) {
+                let condition = "G66 is in force, which calls the macro after each motion";
+                return Err(combination(code, condition, "write G67 before"));
+            }
+        }
+        let owns = block.owns_axis_words();
+        let [has_end, has_centre] = ["XYZABC", "IJK"].map(|letters| block.has_any(letters));
+        let before = control.pending.len();
         control.execute(block)?;
+        // The centre of a full circle moves without an end.
+        let moves = !owns && (has_end || has_centre && control.pending.len() > before);
         // A canned cycle in a repeated subprogram has many steps per block.
         self.flow.count(control.pending.len(), number)?;
         match subprogram.map(|code| code.tenths) {

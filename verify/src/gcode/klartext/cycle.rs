@@ -89,6 +89,9 @@ struct Infeed {
     stop: f64,
 }
 
+/// The parameters that are feeds, for which a word can stand.
+const FEEDS: [u16; 4] = [206, 207, 208, 253];
+
 /// Difference of diameters below which they are the same, in millimetres.
 const SAME_DIAMETER: f64 = 1e-6;
 
@@ -148,6 +151,14 @@ impl Given {
         };
         for (parameter, value) in &self.values {
             let word = || format!("Q{parameter} of CYCL DEF {}", self.number);
+            if *value == Some(f64::INFINITY) && !matches!(parameter, 208 | 253) {
+                let meaning = "MAX where the cycle has a number, or a feed into the part";
+                return Err(not_read(word(), meaning, "write the number"));
+            }
+            if value.is_none() && !FEEDS.contains(parameter) {
+                let meaning = "a word where the cycle has a number";
+                return Err(not_read(word(), meaning, "write the number"));
+            }
             if zero.contains(parameter) {
                 if *value != Some(0.0) {
                     let meaning = "a parameter by which the tool goes to another depth than Q201";
@@ -236,8 +247,33 @@ impl Program<'_> {
             return self.preset(preset, control);
         }
         self.cycle = Some(cycle(&given, self.unit.millimetres())?);
+        self.keep_parameters(number);
         self.is_modal_call = false;
         Ok(())
+    }
+
+    /// Keeps the values of a cycle's parameters, which are those of the whole program.
+    fn keep_parameters(&mut self, number: u32) {
+        let known = PARAMETERS.iter().find(|cycle| cycle.number == number);
+        let numbers = known.into_iter().flat_map(|cycle| cycle.known.iter().chain(cycle.zero));
+        let values = numbers.map(|q| (*q, self.parameters.value(Parameter::global(*q))));
+        self.cycle_parameters = values.collect();
+    }
+
+    /// Refuses a call after a parameter of the cycle has got another value, which the control takes from there on.
+    fn check_parameters(&self, number: u32) -> Result<(), GcodeFault> {
+        let changed = self.cycle_parameters.iter().find(|(q, value)| {
+            let now = self.parameters.value(Parameter::global(*q));
+            now != *value && !(now.is_nan() && value.is_nan())
+        });
+        match changed {
+            Some((q, _)) => {
+                let word = format!("Q{q} of CYCL DEF {number}");
+                let meaning = "assigned between the definition and the call";
+                Err(not_read(word, meaning, "write its value in CYCL DEF"))
+            }
+            None => Ok(()),
+        }
     }
 
     /// Reads the Q parameters after the name of a cycle, and assigns them.
@@ -245,7 +281,11 @@ impl Program<'_> {
         let mut given = Given { number, values: Vec::new() };
         while cursor.peek().is_some() {
             let mut ahead = *cursor;
-            let is_parameter = ahead.take(b'Q') && ahead.here().is_some_and(|b| b.is_ascii_digit());
+            let is_parameter =
+                ahead.take_prefix("Q") && ahead.here().is_some_and(|b| b.is_ascii_digit());
+            if !is_parameter && !given.values.is_empty() {
+                return Err(cursor.unexpected("a parameter of the cycle, as Q201=-5"));
+            }
             if !is_parameter {
                 // The name of the cycle.
                 cursor
@@ -257,8 +297,7 @@ impl Program<'_> {
                 return Err(cursor.unexpected("Q0 to Q1999"));
             };
             ahead.take(b'=');
-            let is_word =
-                matches!(ahead.peek(), Some(byte) if byte.is_ascii_alphabetic() && byte != b'Q');
+            let is_word = matches!(ahead.peek(), Some(byte) if byte.is_ascii_alphabetic() && !matches!(byte, b'Q' | b'q'));
             let value = match is_word {
                 true => {
                     // A feed of the control's choice.
@@ -267,13 +306,18 @@ impl Program<'_> {
                         let meaning = "a value of GLOBAL DEF";
                         return Err(not_read("PREDEF", meaning, "write it in the cycle"));
                     }
+                    // A feed per turn or per tooth.
+                    if ["FU", "FZ"].iter().any(|known| word.eq_ignore_ascii_case(known)) {
+                        value(&mut ahead, &self.parameters)?;
+                    }
                     let is_rapid = ["MAX", "FMAX"].iter().any(|max| word.eq_ignore_ascii_case(max));
                     is_rapid.then_some(f64::INFINITY)
                 }
                 false => Some(value(&mut ahead, &self.parameters)?),
             };
-            if let Some(value) = value.filter(|value| value.is_finite()) {
-                self.parameters.assign(Parameter::global(parameter), value)?;
+            match value.filter(|value| value.is_finite()) {
+                Some(value) => self.parameters.assign(Parameter::global(parameter), value)?,
+                None => self.parameters.forget(Parameter::global(parameter)),
             }
             given.values.push((parameter, value));
             *cursor = ahead;
@@ -344,6 +388,7 @@ impl Program<'_> {
             return Err(missing("a call of a cycle", "a drilling cycle before (CYCL DEF 200)"));
         };
         let word = format!("CYCL DEF {}", cycle.number);
+        self.check_parameters(cycle.number)?;
         control.check_corner()?;
         control.check_uncompensated(&*word)?;
         if control.is_tcp() {

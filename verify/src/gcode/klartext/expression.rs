@@ -6,7 +6,7 @@
 //! states it. So do Q108 to Q199, by which the control reports its state.
 
 use super::line::Cursor;
-use crate::gcode::error::not_read;
+use crate::gcode::error::{combination, not_read};
 use crate::gcode::{ExpressionFault, GcodeFault, LARGEST_NUMBER, shown};
 use crate::machine::sin_cos_degrees;
 use std::collections::BTreeMap;
@@ -124,6 +124,16 @@ impl Parameters {
         }
         self.values[usize::from(parameter.0)] = value;
         Ok(())
+    }
+
+    /// Forgets the value of a parameter, which the control chooses.
+    pub(super) fn forget(&mut self, parameter: Parameter) {
+        self.values[usize::from(parameter.0)] = f64::NAN;
+    }
+
+    /// Returns the value of a parameter; NaN for one that has none.
+    pub(super) fn value(&self, parameter: Parameter) -> f64 {
+        self.values[usize::from(parameter.0)]
     }
 
     /// Returns the value of a parameter.
@@ -271,6 +281,11 @@ fn function(cursor: &mut Cursor, known: &Parameters, depth: usize) -> Result<f64
         return Ok(std::f64::consts::PI);
     }
     let x = operand(cursor, known, depth + 1)?;
+    // It is 0 or 1 there. Rounding can make 0 of any value that is as small.
+    if operation == "SGN" && x.abs() < 1e-9 {
+        let condition = "its operand is 0";
+        return Err(combination("SGN", condition, "decide on 0 before, as with FN 9"));
+    }
     finite(apply(operation, x), operation)
 }
 
@@ -297,7 +312,6 @@ fn apply(operation: &str, x: f64) -> f64 {
         "INT" => x.trunc(),
         "FRAC" => x.fract(),
         "NEG" => -x,
-        "SGN" if x == 0.0 => 0.0,
         "SGN" => x.signum(),
         "LN" => x.ln(),
         _ => x.exp(),

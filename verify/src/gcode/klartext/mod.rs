@@ -31,7 +31,7 @@ use flow::{Flow, Label, label};
 use frame::Frame;
 use line::{Cursor, Place, begin, expected, head};
 use motion::{Before, number};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::mem;
 use touchoff::Unit;
 use words::{Entry, FUNCTIONS, STATEMENTS, Treatment, find};
@@ -55,8 +55,13 @@ pub(super) struct Program<'a> {
     frame: Frame,
     before: Before,
     cycle: Option<Cycle>,
+    /// The parameters of the cycle at its definition, by their numbers; NaN for one without a value.
+    cycle_parameters: Vec<(u16, f64)>,
     /// Set by M89.
     is_modal_call: bool,
+    /// The tools that were called, and those whose length the job states.
+    called_tools: BTreeSet<u32>,
+    stated_lengths: BTreeSet<u32>,
     /// F of the last TOOL CALL.
     tool_feed: Option<Feed>,
     /// Set if the feed in force is per turn or per tooth.
@@ -139,7 +144,10 @@ impl<'a> Program<'a> {
             frame: Frame::new(),
             before: Before::new(),
             cycle: None,
+            cycle_parameters: Vec::new(),
             is_modal_call: false,
+            called_tools: BTreeSet::new(),
+            stated_lengths: setup.lengths.keys().copied().collect(),
             tool_feed: None,
             is_per_turn: false,
             feed_words: Vec::new(),
@@ -650,6 +658,9 @@ impl<'a> Program<'a> {
             }
         }
         if !is_call {
+            if let Some(tool) = tool {
+                self.check_definition(tool as u32, length, radius, control)?;
+            }
             if let (Some(tool), Some(radius)) = (tool, radius) {
                 control.define_radius(tool as u32, radius);
             }
@@ -662,6 +673,7 @@ impl<'a> Program<'a> {
             return Ok(());
         }
         if let Some(tool) = tool {
+            self.called_tools.insert(tool as u32);
             self.block.add('T', number(tool))?;
             self.before.leave();
             allowance.get_or_insert(0.0);
@@ -677,6 +689,29 @@ impl<'a> Program<'a> {
         }
         if let Some(allowance) = radius_allowance {
             control.set_radius_allowance(allowance);
+        }
+        Ok(())
+    }
+
+    /// Refuses a definition that changes the tool in the spindle, or the length of one whose motions took another length for its own.
+    fn check_definition(
+        &self,
+        tool: u32,
+        length: Option<f64>,
+        radius: Option<f64>,
+        control: &Control,
+    ) -> Result<(), GcodeFault> {
+        let word = format!("TOOL DEF {tool}");
+        let changes_length = length.is_some_and(|new| control.defined_length(tool) != Some(new));
+        let changes_radius = radius.is_some_and(|new| control.defined_radius(tool) != Some(new));
+        if control.has_in_spindle(tool) && (changes_length || changes_radius) {
+            let condition = "the tool is in the spindle with another length or radius";
+            return Err(combination(word, condition, "write it before TOOL CALL"));
+        }
+        let is_stated = self.stated_lengths.contains(&tool);
+        if changes_length && self.called_tools.contains(&tool) && !is_stated {
+            let meaning = "another length of a tool that was called, and the job states none";
+            return Err(not_read(word, meaning, "state its `length` in `[tool.N]` of the job"));
         }
         Ok(())
     }
@@ -737,6 +772,11 @@ impl<'a> Program<'a> {
                 Ok(())
             }
             "MODE" if cursor.take_word("MILL") => {
+                if !cursor.is_at_end() {
+                    let word = "FUNCTION MODE MILL with a name";
+                    let meaning = "a choice of other kinematics than those of the machine's file";
+                    return Err(not_read(word, meaning, "write FUNCTION MODE MILL alone"));
+                }
                 let word = "FUNCTION MODE".to_owned();
                 control.notes.add(control.block(), NoteKind::PassedOver { word });
                 Ok(())

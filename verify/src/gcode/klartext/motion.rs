@@ -60,6 +60,8 @@ impl Program<'_> {
         let scale = Scale::new(&self.parameters, self.unit);
         let words = scale.words(cursor, &mut self.codes)?;
         words.check_used(head)?;
+        // Words of an arc and polar ones move, also without a coordinate of an axis.
+        let has_end = words.has_axes() || head != "L";
         self.start_words(control)?;
         self.note_feed(&words);
         self.state_feed(control);
@@ -70,6 +72,10 @@ impl Program<'_> {
             if head != "L" {
                 let remedy = "write L with M91";
                 return Err(combination(head, "its block has M91", remedy));
+            }
+            if (self.is_modal_call || words.is_modal_call) && !words.is_call {
+                let condition = "M89 is in force, which calls the cycle after each position";
+                return Err(combination("M91", condition, "end M89 with M99 before"));
             }
             self.machine_position(&words, control)?;
         } else {
@@ -91,7 +97,7 @@ impl Program<'_> {
             }
         }
         if let Some(retract) = words.retract {
-            if words.has_axes() {
+            if has_end {
                 let condition = "its block has coordinates, before or after which it moves";
                 return Err(combination("M140", condition, "write it in a block of its own"));
             }
@@ -99,7 +105,7 @@ impl Program<'_> {
             self.before.heading = None;
             control.retract(retract.distance, retract.rapid);
         }
-        let is_motion = words.has_axes() && !words.is_machine;
+        let is_motion = has_end && !words.is_machine;
         if words.is_modal_call {
             self.is_modal_call = true;
         }

@@ -110,6 +110,12 @@ pub(super) fn hole(
     let layout = LAYOUTS.iter().find(|layout| name.eq_ignore_ascii_case(layout.cycle));
     let Some(Layout { cycle, axis, geometry, plane, depth }) = layout else { return Ok(None) };
     let given = Arguments { cycle, values: arguments(cursor, known)? };
+    // The meaning of the depth is the last one.
+    if let Some(more) = (depth + 1..given.values.len()).find(|index| given.values[*index].is_some())
+    {
+        let meaning = "more than the arguments of the cycle";
+        return Err(given.refused(more, meaning, "remove it"));
+    }
     // In G17 the third axis is the drilling axis.
     if let Some(axis) = axis
         && !matches!(given.digits(*axis)?, 0 | 3)

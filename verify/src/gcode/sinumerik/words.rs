@@ -132,7 +132,15 @@ impl<'a> Program<'a> {
         if is_transformation {
             control.check_no_frame()?;
         }
-        let is_motion = block.has_any("XYZ");
+        // The centre of a full circle moves without an end.
+        let is_motion = block.has_any("XYZIJK");
+        if self.modal_hole.is_some()
+            && !is_motion
+            && (block.has_any("ABC") || block.vector.is_some())
+        {
+            let condition = "MCALL is in force, and its block has none of X, Y and Z";
+            return Err(combination("a rotary axis", condition, "write MCALL alone before"));
+        }
         if !block.is_empty() || block.vector.is_some() || block.modal_corner_feed.is_some() {
             control.execute(block)?;
             self.flow.count_steps(control.pending.len())?;
@@ -346,6 +354,9 @@ impl<'a> Program<'a> {
             }
             _ => match use_of(name) {
                 Some(Use::PassedOver) => {
+                    if upper == "CYCLE832" {
+                        self.check_high_speed(*cursor)?;
+                    }
                     self.pass_over(cursor)?;
                     control.notes.add(control.block(), NoteKind::PassedOver { word: upper });
                     Ok(())
@@ -375,6 +386,30 @@ impl<'a> Program<'a> {
             feed if feed > 0.0 => CornerFeed::Own(feed),
             _ => CornerFeed::Unknown,
         })
+    }
+
+    /// Refuses CYCLE832 with more in its second argument than the kind of machining: other digits of it begin or end TRAORI on
+    /// controls of an older version.
+    fn check_high_speed(&self, mut cursor: Cursor) -> Result<(), GcodeFault> {
+        cursor.peek();
+        let arguments = cursor.bracketed([b'(', b')']).unwrap_or_default();
+        let kind = arguments.split(',').nth(1).unwrap_or_default().trim();
+        let is_name = kind.starts_with('_') && self.variables.find(kind).is_none();
+        if kind.is_empty() || is_name {
+            return Ok(());
+        }
+        let mut kind = Cursor::new(kind);
+        let value = number(&mut kind, &self.variables)?;
+        // The units are the kind, the tens a tolerance of the orientation.
+        let is_kind = value.fract() == 0.0 && (0.0..20.0).contains(&value) && value % 10.0 <= 4.0;
+        match is_kind && kind.is_at_end() {
+            true => Ok(()),
+            false => {
+                let meaning = "more than a kind of machining, and can begin or end TRAORI";
+                let remedy = "write 0 to 4, and TRAORI or TRAFOOF in a block of its own";
+                Err(not_read("argument 2 of CYCLE832", meaning, remedy))
+            }
+        }
     }
 
     /// Passes over the index, the arguments and the value of a word.
