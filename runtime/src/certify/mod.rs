@@ -314,7 +314,7 @@ impl<'a> Certifier<'a> {
     pub fn check_pose(&mut self, pose: &Pose) -> PoseVerdict {
         let Certifier { setting, whole_query, allowances, core_points, state, budget, .. } = self;
         let [depths, margins] = allowances.queries(setting, whole_query);
-        match touches(setting, depths, state, pose, *budget) {
+        match touches(setting, depths, state, pose, setting.error, *budget) {
             ContactVerdict::Yes(witness) => return PoseVerdict::Touching(witness),
             ContactVerdict::Undecided(high) => return PoseVerdict::Undecided(high),
             ContactVerdict::No => {}
@@ -326,7 +326,7 @@ impl<'a> Certifier<'a> {
             Containment::Outside => PoseVerdict::Clear,
             Containment::Unknown => PoseVerdict::SurfaceOnly,
         };
-        match touches(setting, margins, state, pose, *budget) {
+        match touches(setting, margins, state, pose, setting.error, *budget) {
             ContactVerdict::Yes(witness) => PoseVerdict::Near(witness),
             ContactVerdict::Undecided(high) => PoseVerdict::Undecided(high),
             ContactVerdict::No => clear,
@@ -344,7 +344,7 @@ impl<'a> Certifier<'a> {
     /// Returns `None` if that is unknown: the part has no inside, rounding decides, or the budget is spent.
     pub fn is_buried(&mut self, pose: &Pose) -> Option<bool> {
         let Certifier { setting, whole_query, whole_core_points, state, budget, .. } = self;
-        match touches(setting, slice::from_ref(whole_query), state, pose, *budget) {
+        match touches(setting, slice::from_ref(whole_query), state, pose, setting.error, *budget) {
             ContactVerdict::Yes(_) => Some(false),
             ContactVerdict::Undecided(_) => None,
             ContactVerdict::No => {
@@ -396,8 +396,8 @@ impl<'a> Certifier<'a> {
     pub fn touches(&mut self, pose: &Pose) -> ContactVerdict {
         let Certifier { setting, whole_query, allowances, state, budget, .. } = self;
         let [depths, margins] = allowances.queries(setting, whole_query);
-        match touches(setting, depths, state, pose, *budget) {
-            ContactVerdict::No => touches(setting, margins, state, pose, *budget),
+        match touches(setting, depths, state, pose, setting.error, *budget) {
+            ContactVerdict::No => touches(setting, margins, state, pose, setting.error, *budget),
             found => found,
         }
     }
@@ -493,13 +493,14 @@ impl Certifier<'_> {
             return Interval::new(-depth.high, -depth.low);
         }
         let distance = self.clearance(pose, tolerance).distance;
-        if distance.low == 0.0 {
-            return Interval::new(-depth.high, distance.high);
-        }
         let Certifier { setting, whole_core_points, .. } = self;
         match setting.containment(whole_core_points, pose, 4.0 * setting.error) {
+            // A distance below the tolerance may be a contact.
+            Containment::Outside | Containment::Unknown if distance.low == 0.0 => {
+                Interval::new(-depth.high, distance.high)
+            }
             Containment::Outside | Containment::Unknown => distance,
-            Containment::Inside(_) => Interval::new(f64::NEG_INFINITY, -distance.low),
+            Containment::Inside(_) => Interval::new(f64::NEG_INFINITY, 0.0 - distance.low),
             Containment::Undecided => Interval::new(f64::NEG_INFINITY, distance.high),
         }
     }
@@ -609,15 +610,16 @@ pub enum ContactVerdict {
     Undecided(f64),
 }
 
-/// Checks whether a triangle is deeper than the rules allow.
+/// Checks whether a triangle is deeper than the rules allow, for points of the tool with the given error, in its unit.
 fn touches(
     setting: &QuerySetting<'_>,
     allowance_queries: &[DepthQuery],
     state: &mut SearchState,
     pose: &Pose,
+    error: f64,
     budget: u32,
 ) -> ContactVerdict {
-    let touch = 2.0 * setting.error;
+    let touch = 2.0 * error;
     let mut undecided: Option<f64> = None;
     for query in allowance_queries {
         let min_depth = query.limit - touch;

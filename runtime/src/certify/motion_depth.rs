@@ -313,7 +313,7 @@ impl MotionCheck<'_, '_> {
         for step in 1..=INITIAL_TIMES {
             let at = from + (1.0 - from) * f64::from(step) / f64::from(INITIAL_TIMES);
             let pose = self.motion.pose(at);
-            let found = touches(self.setting, queries, self.state, &pose, self.budget);
+            let found = touches(self.setting, queries, self.state, &pose, self.error, self.budget);
             if let ContactVerdict::Yes(witness) = found {
                 return FirstContact::At(at, witness);
             }
@@ -475,7 +475,8 @@ impl MotionSearch<'_, '_> {
         let tolerance = self.climb_tolerance();
         let MotionSearch { setting, query, ref mut state, budget, .. } = *self;
         let pose = self.motion.pose(at);
-        let MotionErrors { rounding, trajectory: off } = self.errors;
+        let MotionErrors { rounding, trajectory } = self.errors;
+        let off = rounding + trajectory;
         if query.limit >= 0.0 {
             // `penetration` takes and returns lengths in the part's unit.
             let tolerance = tolerance * setting.length;
@@ -492,7 +493,7 @@ impl MotionSearch<'_, '_> {
         state.outside(setting, query, &pose, goal);
         let best = state.best?;
         let found = state.search.best;
-        let more = rounding + off + state.search.skew;
+        let more = off + state.search.skew;
         let high = (found + tolerance).max(state.search.open_bound) + more;
         Some(DepthPeak {
             depth: Interval::new(found - more, high),

@@ -3,10 +3,11 @@
 use crate::brute::BruteForce;
 use crate::pair::{Part, generated_parts};
 use crate::poses::bumpy;
-use crate::{UP, plate, pose, soup, tool};
+use crate::{UP, motion, plate, pose, soup, tool};
 use nalgebra::Point3;
-use touchoff::certify::{Certifier, PoseVerdict, TriangleBvh};
-use touchoff::{Interval, Mesh, Pose, TriangleId, Unit};
+use touchoff::certify::{Certifier, MotionDepth, PoseVerdict, TriangleBvh};
+use touchoff::tool::Interpreted;
+use touchoff::{Interval, Mesh, Pose, SurfaceId, TriangleId, Unit};
 use touchoff_tests::evaluations::levels;
 use touchoff_tests::oracle::Nearest;
 use touchoff_tests::oracle::rng::Rng;
@@ -200,5 +201,32 @@ fn coordinates_beyond_f32_give_valid_intervals() {
         let clearance = certifier.clearance(&pose([0.0, 0.0, size], [0.0, 0.0, 1.0]), 1e-6);
         let Interval { low, high } = clearance.distance;
         assert!(low <= size && size <= high, "{size:e}: {low:e} to {high:e}");
+    }
+}
+
+/// A cone over a ridge along very long motions, whose positions are rounded by about as much as the tolerance: the depth at
+/// the ridge is known exactly, and falls on both sides of it in proportion to the distance.
+#[test]
+fn depths_along_very_long_motions_contain_the_exact_depth() {
+    let cone: Interpreted =
+        "tool Cone { units mm; profile { start (0, 0); line to (10, 10) as cone cutting;
+        line to (10, 40), (0, 40) as shank; } niceness cutting: 1; }"
+            .parse()
+            .expect("a tool");
+    let ends = [-5.0, 5.0].map(|y| [[-5.0, y, -9.0], [5.0, y, -9.0], [0.0, y, 0.0]]);
+    let triangles =
+        [[0, 1, 2], [5, 4, 3], [0, 3, 4], [0, 4, 1], [1, 4, 5], [1, 5, 2], [2, 5, 3], [2, 3, 0]];
+    let corners: Vec<_> = ends.concat().into_iter().map(Point3::from).collect();
+    let bvh = TriangleBvh::new(&Mesh::new(corners, triangles, Unit::Millimetre).expect("a mesh"));
+    let mut certifier = Certifier::new(&bvh, &cone).expect("a profile");
+    let mut rng = Rng::new(61);
+    for _ in 0..60 {
+        let [from, to] = [0, 1].map(|_| rng.between(1e6, 2e6));
+        let below = rng.between(0.2, 0.8);
+        let [from, to] = [-from, to].map(|x| pose([x, 0.3, -below], UP));
+        let found = certifier.motion_depth(SurfaceId(0), &motion(&from, &to), 0.0, 1e-9);
+        let Ok(MotionDepth::Deeper { depth, .. }) = found else { panic!("{found:?}") };
+        let exact = below * std::f64::consts::FRAC_1_SQRT_2;
+        assert!(depth.low <= exact && exact <= depth.high, "{exact} and {depth:?}");
     }
 }

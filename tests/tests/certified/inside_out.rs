@@ -88,3 +88,19 @@ fn a_tool_of_which_no_point_is_found_is_undecided() {
         assert_eq!(certifier.check_pose(&pose([0.0; 3], UP)), expected, "{allowed}");
     }
 }
+
+/// Where the distance of a buried tool from the surface is within the tolerance, its lower bound is 0, as in contact.
+#[test]
+fn the_signed_distance_of_a_buried_tool_is_below_0_at_any_tolerance() {
+    let (tool, bvh) = (bead(), TriangleBvh::new(&block([-5.0; 3], [5.0; 3])));
+    let mut certifier = Certifier::new(&bvh, &tool).expect("a profile");
+    for tolerance in [1e-9, 1e-6, 0.5, 4.0, 50.0] {
+        for below in [5e-7, 0.4, 3.0] {
+            let found = certifier.signed_distance(&pose([1.0, 2.0, 4.8 - below], UP), tolerance);
+            assert_eq!(found.low, f64::NEG_INFINITY, "{below}, {tolerance}");
+            assert!(found.contains(-below), "{below}, {tolerance}: {found:?}");
+        }
+        let apart = certifier.signed_distance(&pose([1.0, 2.0, 5.3], UP), tolerance);
+        assert!(apart.contains(0.3) && apart.low > -0.2, "{tolerance}: {apart:?}");
+    }
+}

@@ -14,6 +14,8 @@ use crate::mesh::{self, Mesh, area_and_normal, inverted, neighbours};
 use crate::parallel;
 use crate::unit::Unit;
 use nalgebra::{Point3, Vector3};
+use std::cmp::Ordering;
+use std::collections::HashMap;
 
 pub(crate) use coplanar_faces::Face;
 pub use winding::Location;
@@ -150,8 +152,33 @@ impl TriangleBvh {
             solid: survey.is_solid(),
         };
         // The rays that decide this need the finished tree.
-        bvh.solid = bvh.solid && bvh.voids_are_voids(&neighbours);
+        bvh.solid = bvh.solid
+            && bvh.voids_are_voids(&neighbours)
+            && (survey.shared_edges == 0 || bvh.double_triangles_are_inside());
         bvh
+    }
+
+    /// Returns whether triangles that are stored in both directions are in the material, as where two solids touch. A body
+    /// all of whose triangles are stored so has no inside.
+    fn double_triangles_are_inside(&self) -> bool {
+        let turns = |triangle: &[Point; 3]| {
+            let mut sorted = [0, 1, 2];
+            sorted
+                .sort_by(|a, b| triangle[*a].partial_cmp(&triangle[*b]).unwrap_or(Ordering::Equal));
+            let is_turned = matches!(sorted, [0, 2, 1] | [1, 0, 2] | [2, 1, 0]);
+            (sorted.map(|k| triangle[k].map(|part| (part + 0.0).to_bits())), is_turned)
+        };
+        let mut first_by_corners = HashMap::new();
+        (0..self.corners.len()).all(|index| {
+            let (corners, is_turned) = turns(&self.corners[index]);
+            let (first, was_turned) =
+                *first_by_corners.entry(corners).or_insert((index, is_turned));
+            let has_sides = || area_and_normal(&self.corners[index].map(Point3::from)).is_some();
+            // The sides of the first one, which the second turns around.
+            is_turned == was_turned
+                || !has_sides()
+                || self.winding_beside(first).is_some_and(|winding| winding > 0)
+        })
     }
 
     /// Returns whether pieces that face inward are voids in the material. Next to none of their triangles is the
@@ -160,7 +187,7 @@ impl TriangleBvh {
         let corners: Vec<_> = self.corners().collect();
         inverted(&corners, neighbours).into_iter().all(|index| {
             let has_sides = area_and_normal(&corners[index as usize]).is_some();
-            !has_sides || !self.is_negative_beside(index as usize)
+            !has_sides || self.winding_beside(index as usize).is_some_and(|winding| winding >= 0)
         })
     }
 

@@ -73,30 +73,35 @@ impl TriangleBvh {
         Location::Undecided
     }
 
-    /// Returns whether the winding number just outside a triangle is negative, if a ray decides it.
+    /// Returns the winding number just outside a triangle, if a ray decides it.
     ///
-    /// The ray begins in the triangle's middle. It counts all other triangles, and this one if it leaves toward the
-    /// inner side. No offset from the triangle has to be chosen, and another surface may be arbitrarily near.
-    pub(super) fn is_negative_beside(&self, own: usize) -> bool {
+    /// The ray begins on the triangle. It counts all others, and this one if it leaves toward the inner side. No offset
+    /// from the triangle has to be chosen, and another surface may be arbitrarily near. A triangle in the same plane is
+    /// crossed where this one is.
+    pub(super) fn winding_beside(&self, own: usize) -> Option<i32> {
         let corners = self.corners[own];
-        // Rounded, the middle is not exactly in the plane. The side of the ray's end decides, not that of its
-        // beginning.
-        let middle = Point3::from([0, 1, 2].map(|k| {
-            let [a, b, c] = corners.map(|corner| corner[k]);
-            (a + b + c) / 3.0
-        }));
-        let mut windings = (0..RAYS).filter_map(|ray| {
+        (0..RAYS).find_map(|ray| {
+            // Other points of the triangle for other rays: some may lie on a triangle that crosses it.
+            let weights = [1.0 + f64::from(ray % 3), 1.0 + f64::from(ray / 3), 1.0];
+            let total: f64 = weights.iter().sum();
+            let point = Point3::from([0, 1, 2].map(|k| {
+                corners.iter().zip(weights).map(|(corner, weight)| corner[k] * weight).sum::<f64>()
+                    / total
+            }));
             let ray_direction = direction(ray);
-            let others = self.winding(middle, ray_direction, Some(own)).ok()?;
             let ([a, b, c], end) =
-                (corners.map(coord), coord(self.end(middle, ray_direction).into()));
-            match orient3d(a, b, c, end) {
-                inner if inner > 0.0 => Some(others - 1),
-                outer if outer < 0.0 => Some(others),
-                _ => None,
-            }
-        });
-        windings.next().is_some_and(|winding| winding < 0)
+                (corners.map(coord), coord(self.end(point, ray_direction).into()));
+            // Rounded, the point is not exactly in the plane. The side of the ray's end decides, not that of its
+            // beginning.
+            let toward_inner = match orient3d(a, b, c, end) {
+                inner if inner > 0.0 => true,
+                outer if outer < 0.0 => false,
+                _ => return None,
+            };
+            let beside = Beside { own, corners, toward_inner };
+            let others = self.winding(point, ray_direction, Some(&beside)).ok()?;
+            Some(others - i32::from(toward_inner))
+        })
     }
 
     /// Returns the end point of a ray.
@@ -115,7 +120,8 @@ impl TriangleBvh {
         f64::EPSILON * (16.0 + point.coords.amax() / self.frame.scale)
     }
 
-    /// Returns the winding number of the surface about a point, counted along a ray, with one triangle left out.
+    /// Returns the winding number of the surface about a point, counted along a ray. For a point beside a triangle that one
+    /// is left out.
     ///
     /// # Errors
     /// The crossing that does not decide it.
@@ -123,7 +129,7 @@ impl TriangleBvh {
         &self,
         point: Point3<f64>,
         ray_direction: Vector3<f64>,
-        without: Option<usize>,
+        beside: Option<&Beside>,
     ) -> Result<i32, Crossing> {
         let p = self.frame.inside([point.x, point.y, point.z]);
         let (end, margin) = (self.end(point, ray_direction), self.margin(point));
@@ -147,8 +153,15 @@ impl TriangleBvh {
                     if a.max(c).max(e).max(0.0) <= b.min(d).min(f) {
                         stack.push((level + 1, child));
                     }
-                } else if Some(child) != without {
-                    match crossing(self.corners[child], point, end) {
+                } else if beside.is_none_or(|beside| beside.own != child) {
+                    let corners = self.corners[child];
+                    let crossing = match beside {
+                        Some(beside) if beside.is_coplanar(&corners) => {
+                            beside.crossing(corners, point, end)
+                        }
+                        _ => crossing(corners, point, end),
+                    };
+                    match crossing {
                         Crossing::Misses => {}
                         Crossing::Through(side) => winding += side,
                         other => return Err(other),
@@ -160,6 +173,49 @@ impl TriangleBvh {
     }
 }
 
+/// A triangle beside which a ray begins, on its outer side.
+struct Beside {
+    own: usize,
+    corners: [[f64; 3]; 3],
+    /// True if the ray crosses the triangle, because it leads to its inner side.
+    toward_inner: bool,
+}
+
+impl Beside {
+    /// Returns whether a triangle lies in the same plane.
+    fn is_coplanar(&self, corners: &[[f64; 3]; 3]) -> bool {
+        let [a, b, c] = self.corners.map(coord);
+        corners.iter().all(|corner| orient3d(a, b, c, coord(*corner)) == 0.0)
+    }
+
+    /// Returns the relation of the ray to a triangle in the same plane.
+    fn crossing(&self, corners: [[f64; 3]; 3], from: Point3<f64>, to: Point3<f64>) -> Crossing {
+        match sides(corners, from, to) {
+            sides if are_mixed(sides) => Crossing::Misses,
+            // The ray does not reach the plane.
+            _ if !self.toward_inner => Crossing::Misses,
+            sides if sides.iter().any(|side| *side == 0.0 || side.is_nan()) => Crossing::Edge,
+            _ => {
+                let [own, other] = [self.corners, corners].map(|corners| {
+                    let [a, b, c] = corners.map(Vector3::from);
+                    (b - a).cross(&(c - a))
+                });
+                Crossing::Through(if own.dot(&other) > 0.0 { -1 } else { 1 })
+            }
+        }
+    }
+}
+
+/// Returns the sides of a triangle's edges on which a line passes: the same for all three if it crosses.
+fn sides(corners: [[f64; 3]; 3], from: Point3<f64>, to: Point3<f64>) -> [f64; 3] {
+    let ([a, b, c], [p, q]) = (corners.map(coord), [from, to].map(|point| coord(point.into())));
+    [orient3d(p, q, a, b), orient3d(p, q, b, c), orient3d(p, q, c, a)]
+}
+
+fn are_mixed(sides: [f64; 3]) -> bool {
+    sides.iter().any(|side| *side > 0.0) && sides.iter().any(|side| *side < 0.0)
+}
+
 fn coord([x, y, z]: [f64; 3]) -> Coord3D<f64> {
     Coord3D { x, y, z }
 }
@@ -167,9 +223,8 @@ fn coord([x, y, z]: [f64; 3]) -> Coord3D<f64> {
 /// Returns the relation of a line segment to a triangle.
 fn crossing(corners: [[f64; 3]; 3], from: Point3<f64>, to: Point3<f64>) -> Crossing {
     let ([a, b, c], [p, q]) = (corners.map(coord), [from, to].map(|point| coord(point.into())));
-    // The side of each edge on which the line passes: the same for all three if it crosses.
-    let sides = [orient3d(p, q, a, b), orient3d(p, q, b, c), orient3d(p, q, c, a)];
-    if sides.iter().any(|side| *side > 0.0) && sides.iter().any(|side| *side < 0.0) {
+    let sides = sides(corners, from, to);
+    if are_mixed(sides) {
         return Crossing::Misses;
     }
     // Positive on the inner side of the triangle's plane.
@@ -254,6 +309,56 @@ mod tests {
         let welded = mesh.triangles().iter().map(|corners| corners.each_ref().map(first));
         let welded = crate::Mesh::new(mesh.vertices().to_vec(), welded, Unit::Millimetre);
         assert!(!TriangleBvh::new(&welded.expect("a mesh")).has_inside());
+    }
+
+    /// A block that is inside out and sticks out of another, where good blocks touch it with whole faces: every ray from the
+    /// middle of one of its triangles begins on another triangle. And a body whose triangles are all stored in both
+    /// directions, beside a good one, and two good blocks that touch with a whole face.
+    #[test]
+    fn faces_that_coincide_hide_nothing() {
+        let block = |low: [f64; 3], high: [f64; 3]| {
+            shapes::cuboid(low.into(), high.into(), Unit::Millimetre).expect("a block")
+        };
+        let joined = |pieces: &[(crate::Mesh, bool)]| {
+            let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+            for (mesh, turned) in pieces {
+                let first = vertices.len() as u32;
+                vertices.extend_from_slice(mesh.vertices());
+                triangles.extend(mesh.triangles().iter().map(|corners| {
+                    let [a, b, c] = corners.map(|k| k + first);
+                    if *turned { [b, a, c] } else { [a, b, c] }
+                }));
+            }
+            // Vertices at the same place are one, as in files.
+            let place = |k: u32| {
+                let at = vertices[k as usize];
+                vertices.iter().position(|other| *other == at).unwrap_or_default() as u32
+            };
+            let triangles: Vec<_> =
+                triangles.iter().map(|corners: &[u32; 3]| corners.map(place)).collect();
+            crate::Mesh::new(vertices.clone(), triangles, Unit::Millimetre).expect("a mesh")
+        };
+        let has_inside =
+            |pieces: &[(crate::Mesh, bool)]| TriangleBvh::new(&joined(pieces)).has_inside();
+        let large = || (block([-10.0; 3], [10.0; 3]), false);
+        let stick = || (block([-2.0, -2.0, 5.0], [2.0, 2.0, 14.0]), true);
+        // On its five faces outside the large block.
+        let around = [
+            ([-2.0, -2.0, 14.0], [2.0, 2.0, 16.0]),
+            ([2.0, -2.0, 10.0], [4.0, 2.0, 14.0]),
+            ([-4.0, -2.0, 10.0], [-2.0, 2.0, 14.0]),
+            ([-2.0, 2.0, 10.0], [2.0, 4.0, 14.0]),
+            ([-2.0, -4.0, 10.0], [2.0, -2.0, 14.0]),
+        ]
+        .map(|(low, high)| (block(low, high), false));
+        let pieces: Vec<_> = [large(), stick()].into_iter().chain(around.clone()).collect();
+        assert!(!has_inside(&pieces));
+        let touching: Vec<_> = [large()].into_iter().chain(around).collect();
+        assert!(has_inside(&touching));
+        let other = || block([20.0, -10.0, -10.0], [40.0, 10.0, 10.0]);
+        assert!(!has_inside(&[large(), (other(), false), (other(), true)]));
+        let beside = || block([10.0, -10.0, -10.0], [40.0, 10.0, 10.0]);
+        assert!(has_inside(&[large(), (beside(), false)]));
     }
 
     /// A prism over a bow tie: material in one lobe, its opposite in the other.
