@@ -716,21 +716,21 @@ impl Planner<'_> {
     /// Returns the points and edges of some pieces that lie on a curve.
     fn border_points(&self, curve: CurveIndex, pieces: &[Rc<Piece>]) -> BorderPoints {
         let shape = &self.shapes[curve];
-        let mut border_points = BorderPoints::default();
+        let (mut points, mut edges) = (Vec::new(), Vec::new());
         for piece in pieces {
             let rank = rank(piece.owner);
             let is_on_curve: Vec<bool> =
                 piece.vertices.iter().map(|p| shape.side(*p, self.size) == 0).collect();
             for (k, p) in piece.vertices.iter().enumerate().filter(|(k, _)| is_on_curve[*k]) {
-                border_points.points.push((*p, rank));
+                points.push((*p, rank));
                 let next = (k + 1) % is_on_curve.len();
                 // The chord of a curved edge is on the curve only at its ends.
                 if is_on_curve[next] && piece.edges[k] == Edge::Straight {
-                    border_points.edges.push(([*p, piece.vertices[next]], rank));
+                    edges.push(([*p, piece.vertices[next]], rank));
                 }
             }
         }
-        border_points
+        BorderPoints::new(points, edges)
     }
 
     /// Returns the owners of the points on a curve: at each, the first listed of those on both sides.
@@ -757,25 +757,51 @@ impl Planner<'_> {
     }
 }
 
-/// Points and straight edges on a curve, with the rank of their owner: its index in the list of regions, or
-/// `usize::MAX` for the outside.
-#[derive(Default)]
+/// Points and straight edges on a curve, in order along an axis, with the rank of their owner: its index in the list of
+/// regions, or `usize::MAX` for the outside.
 struct BorderPoints {
+    axis: usize,
     points: Vec<(Point, usize)>,
+    /// The edges by their lower ends.
     edges: Vec<([Point; 2], usize)>,
+    /// The greatest upper end of each edge and those before it.
+    reaches: Vec<f64>,
 }
 
 impl BorderPoints {
+    /// Orders points and edges along the axis on which the points are farther apart.
+    fn new(mut points: Vec<(Point, usize)>, mut edges: Vec<([Point; 2], usize)>) -> BorderPoints {
+        let spread = |axis: usize| {
+            let ends = points.iter().map(|(p, _)| [p[axis], p[axis]]);
+            ends.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
+                .map_or(0.0, |[low, high]| high - low)
+        };
+        let axis = usize::from(spread(1) > spread(0));
+        let low = |[a, b]: &[Point; 2]| a[axis].min(b[axis]);
+        points.sort_by(|(p, _), (q, _)| p[axis].total_cmp(&q[axis]));
+        edges.sort_by(|(a, _), (b, _)| low(a).total_cmp(&low(b)));
+        let mut reach = f64::NEG_INFINITY;
+        let reaches = edges.iter().map(|([a, b], _)| {
+            reach = reach.max(a[axis]).max(b[axis]);
+            reach
+        });
+        BorderPoints { axis, reaches: reaches.collect(), points, edges }
+    }
+
     /// Returns the rank of the first listed owner that touches a point.
     fn first_at(&self, p: Point, tolerance: f64) -> usize {
-        let points = self.points.iter().filter(|(q, _)| are_near(p, *q, tolerance));
-        let points = points.map(|(_, rank)| *rank);
-        let edges = self
-            .edges
-            .iter()
-            .filter(|(edge, _)| is_along(p, *edge, tolerance))
-            .map(|(_, rank)| *rank);
-        points.chain(edges).min().unwrap_or(usize::MAX)
+        let axis = self.axis;
+        let [low, high] = [p[axis] - tolerance, p[axis] + tolerance];
+        let begin = self.points.partition_point(|(q, _)| q[axis] < low);
+        let points = self.points[begin..].iter().take_while(|(q, _)| q[axis] <= high);
+        let points = points.filter(|(q, _)| are_near(p, *q, tolerance));
+        // From the last edge that begins before the point, as long as one before it may reach the point.
+        let end = self.edges.partition_point(|([a, b], _)| a[axis].min(b[axis]) <= high);
+        let edges = self.edges[..end].iter().zip(&self.reaches).rev();
+        let edges = edges.take_while(|(_, reach)| **reach >= low).map(|(edge, _)| edge);
+        let edges = edges.filter(|(edge, _)| is_along(p, *edge, tolerance));
+        let ranks = points.map(|(_, rank)| *rank).chain(edges.map(|(_, rank)| *rank));
+        ranks.min().unwrap_or(usize::MAX)
     }
 }
 

@@ -58,6 +58,8 @@ pub(super) struct Separation {
     pub(super) joint: Joint,
     /// True if the first claim is where the curve is negative.
     pub(super) below: bool,
+    /// True if depths agree on the curve next to the box, and in it perhaps no longer.
+    pub(super) ends_here: bool,
     /// The largest difference of two joined depths in the box: rounding, where a profile is nearly smooth.
     pub(super) difference: f64,
 }
@@ -300,7 +302,8 @@ impl<'m> BorderProver<'m> {
         if let (Some(curve), true) = (curves.first(), Some(pair.own) == pair.other) {
             // The same depth on both sides.
             let joint = Joint::Smooth;
-            return Some(Separation { curve: *curve, joint, below: false, difference: 0.0 });
+            let (below, ends_here) = (false, false);
+            return Some(Separation { curve: *curve, joint, below, ends_here, difference: 0.0 });
         }
         // A curve on both paths separates the claims without further proof, so it is tried first.
         let agreed = curves.iter().copied().find(|curve| self.agreement(pair, *curve).is_some());
@@ -356,7 +359,8 @@ impl<'m> BorderProver<'m> {
         } else {
             Joint::Kinked
         };
-        Some(Separation { curve, joint, below, difference: 0.0 })
+        let ends_here = joint == Joint::None;
+        Some(Separation { curve, joint, below, ends_here, difference: 0.0 })
     }
 
     /// Returns whether a polynomial is a positive multiple of one of a pair's depths, which are not negative where the
@@ -386,7 +390,9 @@ impl<'m> BorderProver<'m> {
             return Some(smooth);
         }
         let Some(difference) = self.lower(pair, claims, curves, cover) else {
-            return Some(Separation { curve, joint: Joint::None, below: false, difference: 0.0 });
+            let (below, ends_here) = (false, false);
+            let joint = Joint::None;
+            return Some(Separation { curve, joint, below, ends_here, difference: 0.0 });
         };
         let difference = self.without_rounding(difference);
         // Ordered depths are equal where the claims meet, so depths that differ show that these do not. A
@@ -396,7 +402,8 @@ impl<'m> BorderProver<'m> {
             (LowerByLinear::Zero, Some(_)) => Joint::Zero,
             _ => Joint::Lower,
         };
-        meet.then_some(Separation { curve, joint, below: false, difference })
+        let (below, ends_here) = (false, false);
+        meet.then_some(Separation { curve, joint, below, ends_here, difference })
     }
 
     /// Returns a straight curve that separates two claims, if depth is continuous across it up to rounding,
@@ -413,6 +420,7 @@ impl<'m> BorderProver<'m> {
                 curve: *curve,
                 joint: Joint::Smooth,
                 below: false,
+                ends_here: false,
                 difference: jump,
             })
         })

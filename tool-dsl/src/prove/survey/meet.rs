@@ -124,7 +124,7 @@ impl Survey<'_> {
         self.min_slope = self.min_slope.min(min_fall);
         self.record_jumps(&meetings);
         for meeting in &meetings {
-            self.record_border(meeting, cell);
+            self.record_border(meeting, cell, box_size == BoxSize::Point);
         }
         true
     }
@@ -227,10 +227,12 @@ impl Survey<'_> {
         angle(a, b)
     }
 
-    fn record_border(&mut self, meeting: &Meeting, cell: Cell) {
+    fn record_border(&mut self, meeting: &Meeting, cell: Cell, is_point: bool) {
         let regions = &self.tool.model.regions;
         let Pair { own, other } = meeting.pair;
         let jump = match meeting.separation.joint {
+            // At a point, the other depths there are no part of the border. The slack has the difference.
+            Joint::None if meeting.separation.ends_here && is_point => NOTHING,
             Joint::None => self.jump(meeting.pair),
             _ => Interval { low: 0.0, high: meeting.separation.difference },
         };
