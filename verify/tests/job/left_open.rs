@@ -62,6 +62,16 @@ fn half_a_turn_to_a_direction_is_open() {
         let blocks = format!("{start}\n{blocks}");
         on_trunnion(&blocks).with("anyway = true").gives_by(straight(), CLEAN, &[]);
     }
+    for (tilt, is_half) in [("+36.87", true), ("-25", false)] {
+        for way in ["TURN FMAX", "MOVE DIST10 FMAX"] {
+            let text = format!(
+                "BEGIN PGM A MM\nTOOL CALL 1 Z S1000\nL A+0 C+0 FMAX M3\nL X+0 Y+0 Z+60 FMAX\n\
+                 PLANE SPATIAL SPA{tilt} SPB+0 SPC+0 {way}\nL X+0 Y+0 Z+60 FMAX\nPLANE RESET STAY\nM30\nEND PGM A MM\n"
+            );
+            let checked = scene("a.h", &text, &limited(), "[0, 0, -440]").check(HEIDENHAIN);
+            assert_eq!(checked.has("V0411 5"), is_half, "{checked:#?}\n{text}");
+        }
+    }
 }
 
 /// At the direction of the table any angle of it gives the tool axis, so that the one at which it stands stays unknown.

@@ -188,6 +188,8 @@ impl<'a> Resolver<'a> {
                 if self.joints[k].is_none() {
                     self.cause = UnknownCause::ToolChange;
                 }
+                // Without a head, Z alone depends on the length.
+                self.is_length_known |= k == 2 && self.joints[k].is_some() && !self.has_head;
             }
             return Ok(Resolved::ToolChange);
         }
@@ -219,6 +221,10 @@ impl<'a> Resolver<'a> {
         };
         self.blind_level = blind_level(&frame, step, &ends);
         let mut unknown_path = self.turn_endless(step, &frame, &mut ends);
+        if step.tool_vector.is_some() {
+            let angles = [3, 4, 5].map(|k| ends[1][k].map(|angle| angle + frame.rotary[k - 3]));
+            unknown_path = unknown_path.or(self.half_turn(&angles));
+        }
         let [start, end] = ends.map(|position| known(&position));
         let Some(end) = end else {
             self.forget(&frame, &ends[1]);
@@ -299,9 +305,6 @@ impl<'a> Resolver<'a> {
             let found = frame.guide.solutions(&tip, &Vector3::from(axis), &near)?;
             if !self.is_one_choice(&found) {
                 return Ok(Located::Unknown(UnknownCause::TwoPositions));
-            }
-            if self.is_half_turn(&found[0].joints) {
-                return Ok(Located::Unknown(UnknownCause::HalfTurn));
             }
             let angles = self.angles(&found[0]);
             if angles.contains(&None) {
@@ -476,17 +479,20 @@ impl<'a> Resolver<'a> {
         self.is_turned_table
     }
 
-    /// Returns whether a rotary axis turns to some joints by half a turn, and its limits allow both ways.
-    fn is_half_turn(&self, joints: &Joints) -> bool {
-        self.machine.axes().iter().filter(|axis| axis.letter.is_rotary()).any(|axis| {
+    /// Returns the cause for which the way to rotary joints is not known: if one of them is half a turn away, and the limits of its axis
+    /// allow both ways.
+    fn half_turn(&self, rotary: &[Option<f64>]) -> Option<UnknownCause> {
+        let mut axes = self.machine.axes().iter().filter(|axis| axis.letter.is_rotary());
+        let is_half = axes.any(|axis| {
             let k = axis.letter.index();
-            let Some(turn) = self.joints[k].map(|from| joints[k] - from) else { return false };
-            let other = joints[k] - 360.0_f64.copysign(turn);
+            let Some((from, to)) = self.joints[k].zip(rotary[k - 3]) else { return false };
+            let other = to - 360.0_f64.copysign(to - from);
             let is_allowed = axis.limits.is_none_or(|[low, high]| {
                 (low - ANGLE_INCREMENT..=high + ANGLE_INCREMENT).contains(&other)
             });
-            (turn.abs() - 180.0).abs() <= ANGLE_INCREMENT && is_allowed
-        })
+            ((to - from).abs() - 180.0).abs() <= ANGLE_INCREMENT && is_allowed
+        });
+        is_half.then_some(UnknownCause::HalfTurn)
     }
 
     /// Returns whether all controls take the first of some solutions: where no other one turns a rotary axis by less, and the
@@ -586,11 +592,14 @@ impl<'a> Resolver<'a> {
             Located::Unknown(cause) => return Ok(self.lose(cause)),
         };
         // The angles are known also where the way to them is not.
+        let way = self.half_turn(&found);
         self.joints[3..].copy_from_slice(&found);
         let Some(found) = self.all_angles(found) else {
             return Ok(Resolved::Unknown(UnknownCause::Axis));
         };
-        let Some(joints) = before else { return Ok(Resolved::Unknown(self.cause)) };
+        let Some(joints) = before else {
+            return Ok(Resolved::Unknown(way.unwrap_or(self.cause)));
+        };
         if self.part_position_unknown {
             return Ok(Resolved::Unknown(UnknownCause::NoPartPosition));
         }
@@ -599,7 +608,12 @@ impl<'a> Resolver<'a> {
         }
         let mut end = joints;
         end[3..].copy_from_slice(&found);
-        self.rapid(step, &frame.chain, [joints, end])
+        match way {
+            Some(cause) => {
+                Ok(Resolved::Arrival(Box::new(path::line(&frame.chain, [end, end])?), cause))
+            }
+            None => self.rapid(step, &frame.chain, [joints, end]),
+        }
     }
 
     /// Resolves a rotation about a point of the tool axis, below the tip by a distance in mm: to the angles that are stated, or to
@@ -618,7 +632,7 @@ impl<'a> Resolver<'a> {
             (found, way)
         } else {
             match self.aligned_angles(frame, step)? {
-                Located::Known(found) => (found, None),
+                Located::Known(found) => (found, self.half_turn(&found)),
                 Located::Unknown(cause) => return Ok(self.lose(cause)),
             }
         };
@@ -627,7 +641,9 @@ impl<'a> Resolver<'a> {
         let Some(found) = self.all_angles(found) else {
             return Ok(Resolved::Unknown(UnknownCause::Axis));
         };
-        let Some(joints) = before else { return Ok(Resolved::Unknown(self.cause)) };
+        let Some(joints) = before else {
+            return Ok(Resolved::Unknown(way.unwrap_or(self.cause)));
+        };
         if self.part_position_unknown {
             self.cause = UnknownCause::NoPartPosition;
             return Ok(Resolved::Unknown(self.cause));
@@ -675,9 +691,6 @@ impl<'a> Resolver<'a> {
             let is_known = (3..6).all(|k| self.joints[k].is_some());
             let cause = if is_known { UnknownCause::TwoPositions } else { self.cause };
             return Ok(Located::Unknown(cause));
-        }
-        if self.is_half_turn(&found[0].joints) {
-            return Ok(Located::Unknown(UnknownCause::HalfTurn));
         }
         Ok(Located::Known(self.angles(&found[0])))
     }
