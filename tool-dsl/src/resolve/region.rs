@@ -611,10 +611,14 @@ impl<'t> Laws<'t> {
                         // The part may have been omitted from the name of a part's surface.
                         let of_part = format!(".{word}");
                         let qualified_name = known.clone().find(|name| name.ends_with(&of_part));
-                        let similar = nearest(word, known.chain(["cutting"]));
-                        let remedy = match qualified_name.or(similar) {
+                        let remedy = match qualified_name.or(nearest(word, known)) {
                             Some(suggestion) => SurfaceRemedy::Similar(suggestion.to_owned()),
-                            None => named(word, surfaces),
+                            None => match (named(word, surfaces), nearest(word, ["cutting"])) {
+                                (SurfaceRemedy::List(_), Some(cutting)) => {
+                                    SurfaceRemedy::Similar(cutting.to_owned())
+                                }
+                                (named, _) => named,
+                            },
                         };
                         let kind = RegionKind::UnknownSurface { name: word.to_owned(), remedy };
                         diagnostics.push(Diagnostic::new(span, kind));

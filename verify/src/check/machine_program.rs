@@ -10,7 +10,7 @@
 use super::moves::{JointPath, Move, MovePath, RapidBox};
 use crate::gcode::{
     self, BlockLine, Choice, ControlRules, ControlSetup, GcodeError, Interpreter, LengthOffset,
-    Rule, Step, SubprogramFile,
+    Rule, Step, StepPath, SubprogramFile,
 };
 use crate::machine::{JointError, JointMotion, Letter, Machine, Relation, Setup, Side};
 use nalgebra::Vector3;
@@ -73,7 +73,7 @@ pub struct MachineProgram {
     assumed: Assumption,
     /// Set if the program has no length offset at all, and a tool whose length is not stated.
     off_is_tip: bool,
-    /// The register of the first length offset before a tool is named: the tool in the spindle.
+    /// The tool in the spindle before one is named: the register of the first length offset, or the only tool of the job.
     unnamed_tool: Option<u32>,
     summary: MachineSummary,
 }
@@ -259,7 +259,14 @@ impl MachineProgram {
             let mut causes = summary.unknown.iter().map(|unknown| unknown.cause);
             program.off_is_tip =
                 !offsets.any && causes.any(|cause| matches!(cause, UnknownCause::NoOffset { .. }));
-            program.unnamed_tool = offsets.unnamed;
+            // In a program that names tools, the only tool of the job is in the spindle before: its body is checked there.
+            let is_unnamed = summary.tools.iter().any(|tool| tool.number.is_none());
+            let mut lengths = program.setup.lengths.keys();
+            let only = match (lengths.next(), lengths.next()) {
+                (Some(tool), None) if is_unnamed && offsets.names_tool => Some(*tool),
+                _ => None,
+            };
+            program.unnamed_tool = offsets.unnamed.or(only);
             if program.off_is_tip || program.unnamed_tool.is_some() {
                 result = program.run(is_placed);
             }
@@ -384,7 +391,9 @@ impl MachineProgram {
         Ok(steps.map(move |(step, resolved)| {
             let tool = step.state.tool;
             from = from.filter(|(_, before)| !restarts || *before == tool);
-            if !is_wanted(tool) {
+            // What counts as one tool is not changed.
+            let is_same = !restarts && matches!(resolved, Resolved::Loaded(_));
+            if is_same || !is_wanted(tool) {
                 return (tool, vec![Vec::new(); frames.len()]);
             }
             let start = from.map(|(line, _)| line);
@@ -422,7 +431,8 @@ impl MachineProgram {
     /// Begins an execution of the program.
     fn execute(&self) -> Result<Execution<'_>, MachineProgramError> {
         let interpreter = Interpreter::new(&self.text, &self.setup)
-            .map_err(|error| self.error(self.unread(error)))?;
+            .map_err(|error| self.error(self.unread(error)))?
+            .with_loads();
         let resolver =
             Resolver::new(&self.machine, &self.setup, self.off_is_tip, self.unnamed_tool);
         Ok(Execution { program: self, interpreter, resolver, stop: None })
@@ -432,21 +442,19 @@ impl MachineProgram {
     fn run(&self, is_placed: bool) -> Result<(MachineSummary, LengthOffsets), MachineProgramError> {
         let mut offsets = LengthOffsets::default();
         let mut summary = MachineSummary::default();
-        let mut uses: BTreeMap<Option<u32>, usize> = BTreeMap::new();
         let mut seen: Vec<(Option<u32>, BlockLine)> = Vec::new();
         let mut is_last_singular = false;
         let mut execution = self.execute()?;
         while let Some((step, resolved)) = execution.next() {
             let number = step.state.tool;
-            // The time of a tool change is not counted.
-            if !matches!(resolved, Resolved::ToolChange) {
+            // A tool change is no motion of the program, and its time is not counted.
+            if !matches!(step.path, StepPath::ToolChange(_)) {
                 summary.time_of(number, &self.machine).add(&step, &resolved, &self.machine);
+                if !seen.iter().any(|(tool, _)| *tool == number) {
+                    seen.push((number, step.block()));
+                }
             }
-            if !matches!(resolved, Resolved::ToolChange)
-                && !seen.iter().any(|(tool, _)| *tool == number)
-            {
-                seen.push((number, step.block()));
-            }
+            offsets.names_tool |= number.is_some();
             if let LengthOffset::On { register, .. } = step.state.length {
                 offsets.any = true;
                 if number.is_none() {
@@ -466,7 +474,16 @@ impl MachineProgram {
             }
             let motions = match resolved {
                 Resolved::ToolChange => continue,
+                Resolved::Loaded(_) => {
+                    summary.use_of(&step);
+                    continue;
+                }
                 Resolved::Unknown(cause) | Resolved::Arrival(_, cause) => {
+                    if let (UnknownCause::Start, Some(level)) =
+                        (cause, execution.resolver.blind_level)
+                    {
+                        summary.add_blind(&step, level);
+                    }
                     summary.add_unknown(&step, cause);
                     continue;
                 }
@@ -481,11 +498,10 @@ impl MachineProgram {
                     vec![(straight, 0.0)]
                 }
             };
-            let index = *uses.entry(number).or_insert_with(|| {
-                summary.tools.push(ToolUse { number, line: step.line, motions: 0 });
-                summary.tools.len() - 1
-            });
-            summary.tools[index].motions += 1;
+            summary.use_of(&step).motions += 1;
+            if step.rapid {
+                summary.add_rapid(&step, self.off_is_tip, self.unnamed_tool);
+            }
             let other = execution.resolver.other_length(&step.state).filter(|_| !step.rapid);
             if let Some((register, tool)) = other
                 && !summary.other_lengths.iter().any(|known| (known.1, known.2) == (register, tool))
@@ -516,7 +532,11 @@ impl MachineProgram {
         summary.blank = execution.interpreter.blank();
         summary.open_rules.clone_from(execution.interpreter.asked());
         summary.open_rules.extend(execution.resolver.asked);
-        let unchecked = seen.into_iter().filter(|(tool, _)| !uses.contains_key(tool));
+        let is_checked = |number| {
+            let mut tools = summary.tools.iter();
+            tools.any(|tool| tool.number == number && tool.motions > 0)
+        };
+        let unchecked = seen.into_iter().filter(|(tool, _)| !is_checked(*tool));
         summary.unchecked_tools =
             unchecked.filter_map(|(tool, block)| Some((tool?, block))).collect();
         let mut linear = self.machine.axes().iter().filter(|axis| !axis.letter.is_rotary());
@@ -624,6 +644,8 @@ struct LengthOffsets {
     any: bool,
     /// The register of the first that is in force before a tool is named.
     unnamed: Option<u32>,
+    /// Set if a tool is named.
+    names_tool: bool,
 }
 
 /// The frame of moves.
@@ -667,6 +689,10 @@ impl MoveFrame {
         let arriving = |path: MovePath| move_along(step, Some(from.unwrap_or(step.line)), path);
         match resolved {
             Resolved::Unknown(_) | Resolved::ToolChange => Vec::new(),
+            Resolved::Loaded(motion) => {
+                let rest = self.rest(**motion, 0.0);
+                rest.map(|path| move_along(step, None, path)).into_iter().collect()
+            }
             Resolved::AnyRapid(any) => {
                 let AnyRapid { straight, edges } = &**any;
                 let straight = *straight;

@@ -130,6 +130,8 @@ pub(super) struct Control {
     pub(super) has_own_feed: bool,
     /// The dwells with each tool.
     pub(super) dwells: BTreeMap<Option<u32>, Dwells>,
+    /// Set to return a step per new tool in the spindle.
+    pub(super) has_loads: bool,
     /// Steps that were not yet returned.
     pub(super) pending: VecDeque<Step>,
 }
@@ -305,6 +307,7 @@ impl Control {
             spindle: SpindleWords::new(),
             has_own_feed: false,
             dwells: BTreeMap::new(),
+            has_loads: false,
             pending: VecDeque::new(),
         }
     }

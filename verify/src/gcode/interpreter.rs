@@ -109,6 +109,16 @@ impl<'a> Interpreter<'a> {
         Ok(Interpreter { first: Some(Box::new(first.clone())), ..first })
     }
 
+    /// Adds a step per new tool in the spindle, after its change: a [`StepPath::ToolChange`](super::StepPath::ToolChange) that moves no
+    /// axis, in the state of the new tool.
+    pub(crate) fn with_loads(mut self) -> Interpreter<'a> {
+        self.control.has_loads = true;
+        if let Some(first) = &mut self.first {
+            first.control.has_loads = true;
+        }
+        self
+    }
+
     /// Returns the rules of the control on which the blocks depend that were executed so far, each with the first block.
     pub fn asked(&self) -> &BTreeMap<Rule, BlockLine> {
         &self.control.asked

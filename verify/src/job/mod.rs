@@ -657,6 +657,15 @@ faults! {
             if *count == 1 { "" } else { "s" }
         )]
         ToolChange { count: usize, line: usize },
+        /// The way to the first position at a height at which something stands.
+        ///
+        /// The program states Z before X and Y, so that the tool comes from wherever it stands, at that height.
+        #[code = V0607]
+        #[error(
+            "the way to the first position in X and Y is not checked, and at Z it is lower than {name}: state X and Y before this Z, or a \
+             Z above it"
+        )]
+        LowWay { name: String },
     }
 }
 

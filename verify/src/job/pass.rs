@@ -6,7 +6,7 @@ use super::machine::MachineFinding;
 use super::program::BlockMoves;
 use super::report::{JobReport, Moving, PairReport, Remedy};
 use super::stock::{CutStock, StockCut};
-use super::{Body, BodyFrame, Job, JobError, JobGap, JobShard, JobTool};
+use super::{Body, BodyFrame, BodyRole, Job, JobError, JobGap, JobShard, JobTool, StockShape};
 use crate::check::{ApproachSearch, MoveCheck, MoveRequest, Tasks};
 use crate::gcode::{BlockLine, WorkOffset};
 use crate::machine::{Link, Machine, Side};
@@ -14,6 +14,9 @@ use crate::{FindingGroup, Move, Verifier};
 use std::collections::BTreeSet;
 use touchoff::Shard;
 use touchoff::tool::Symmetry;
+
+/// Rounding of heights, in the part's unit.
+const LEVEL_ROUNDING: f64 = 1e-6;
 
 /// The motions that a pass checks.
 #[derive(Clone, Copy)]
@@ -158,6 +161,12 @@ impl<'a> Job<'a> {
         {
             gaps.push(open(block, &JobGap::StockRapid));
         }
+        for (block, gap) in self.low_ways() {
+            let gap = open(block, &gap);
+            if !gaps.contains(&gap) {
+                gaps.push(gap);
+            }
+        }
         for reading in 0..self.program.reading_count() {
             let result = self.check_reading(reading, pass, progress)?;
             pairs.extend(result.pairs);
@@ -177,6 +186,35 @@ impl<'a> Job<'a> {
         let mut report = JobReport { job: self, pairs, machine, cuts, gaps, findings: Vec::new() };
         report.findings = finding::all(&report);
         Ok(report)
+    }
+
+    /// Returns the ways to the first position of each reading that are lower than the highest place of a body or of the stock. X and Y
+    /// are not known where they begin, and so what is between.
+    fn low_ways(&self) -> impl Iterator<Item = (BlockLine, JobGap)> + '_ {
+        let unit = self.unit();
+        // The frame of another link has other heights.
+        let bodies = self.bodies.iter().filter(|body| !matches!(body.frame, BodyFrame::Machine(_)));
+        let bodies = bodies.map(|body| {
+            let margin = match body.role {
+                BodyRole::Part => 0.0,
+                BodyRole::Fixture { margin } | BodyRole::Machine { margin, .. } => margin,
+            };
+            (&*body.name, body.bvh.bounds()[1].z + margin)
+        });
+        let stock = self.stock.iter().filter_map(|stock| match &stock.shape {
+            StockShape::Box([_, high]) => Some(("the stock", high.z)),
+            StockShape::Mesh(mesh) => Some(("the stock", mesh.bounds()[1].z)),
+            // What an earlier set-up leaves is no higher than its own stock.
+            StockShape::Points(_) => None,
+        });
+        let highest = bodies.chain(stock).max_by(|one, other| one.1.total_cmp(&other.1));
+        let readings = self.program.readings().iter();
+        let ways = readings.filter_map(|reading| reading.summary().blind_way);
+        ways.filter_map(move |(block, level)| {
+            let (name, top) = highest?;
+            let is_low = level / unit.millimetres() + LEVEL_ROUNDING < top;
+            is_low.then(|| (block, JobGap::LowWay { name: name.to_owned() }))
+        })
     }
 
     /// Returns the number of checks of motions at bodies, those of all readings together.

@@ -27,6 +27,25 @@ pub struct InverseSolution {
     /// Angle in radians by which the rotary axes miss the tool axis, at most 1e-4: above rounding where the
     /// machine cannot reach the direction exactly.
     pub axis_error: f64,
+    /// Set for each of A, B and C whose value is that of `near`: any other one gives the tool axis, too.
+    pub kept: [bool; 3],
+}
+
+/// A value of a rotary axis in degrees, and whether it is that of `near`.
+#[derive(Clone, Copy, Debug, Default)]
+struct RotaryValue {
+    degrees: f64,
+    is_kept: bool,
+}
+
+impl RotaryValue {
+    fn found(degrees: f64) -> RotaryValue {
+        RotaryValue { degrees, is_kept: false }
+    }
+
+    fn kept(degrees: f64) -> RotaryValue {
+        RotaryValue { degrees, is_kept: true }
+    }
 }
 
 impl Chain {
@@ -101,12 +120,16 @@ impl Chain {
         let candidates = self.rotary_values(&direction, near)?;
         let (mut solutions, mut fault) = (Vec::with_capacity(2), None);
         for candidate in candidates.into_iter().flatten() {
+            let mut kept = [false; 3];
+            for (axis, value) in self.rotary().iter().zip(candidate) {
+                kept[axis.letter.index() - 3] = value.is_kept;
+            }
             match self.solution(candidate, tip, near) {
                 Ok(joints) => {
                     let turned = Vector3::from(self.rotation(&self.turns(&joints)).column(2));
                     let asked = (axis / scale).normalize();
                     let axis_error = angle_between(&turned, &asked);
-                    solutions.push(InverseSolution { joints, axis_error });
+                    solutions.push(InverseSolution { joints, axis_error, kept });
                 }
                 // It is told only if the other solution is beyond limits, too.
                 Err(limit) => fault = fault.or(Some(limit)),
@@ -129,17 +152,17 @@ impl Chain {
         &self,
         direction: &Vector3<f64>,
         near: &Joints,
-    ) -> Result<[Option<[f64; 2]>; 2], InverseError> {
+    ) -> Result<[Option<[RotaryValue; 2]>; 2], InverseError> {
         let z = Vector3::z();
         let near_value = |axis: &RotaryAxis| near[axis.letter.index()];
         let (first, second) = match self.rotary() {
             [] => {
                 check_gap(angle_between(&z, direction))?;
-                return Ok([Some([0.0; 2]), None]);
+                return Ok([Some([RotaryValue::default(); 2]), None]);
             }
             [only] => {
                 let value = single(only, &z, direction, near_value(only))?;
-                return Ok([Some([value, 0.0]), None]);
+                return Ok([Some([value, RotaryValue::default()]), None]);
             }
             [first, second, ..] => (first, second),
         };
@@ -149,7 +172,7 @@ impl Chain {
             let value = near_value(second);
             let spindle = rotation(&d2, value) * z;
             let turned = single(first, &spindle, direction, near_value(first))?;
-            return Ok([Some([turned, value]), None]);
+            return Ok([Some([turned, RotaryValue::kept(value)]), None]);
         }
         let (a, b) = (angle_between(&d1, &d2), angle_between(&d2, &z));
         let c = angle_between(&d1, direction);
@@ -167,10 +190,10 @@ impl Chain {
             let tilted = rotation(&d2, value) * z;
             // Near the outer axis any value of it gives the direction.
             let turned = match c.min(PI - c) < SINGULAR {
-                true => near_value(first),
-                false => angle_about(&d1, &tilted, direction),
+                true => RotaryValue::kept(near_value(first)),
+                false => RotaryValue::found(angle_about(&d1, &tilted, direction)),
             };
-            Some([turned, value])
+            Some([turned, RotaryValue::found(value)])
         }))
     }
 
@@ -178,14 +201,15 @@ impl Chain {
     /// tip at its place.
     fn solution(
         &self,
-        rotary: [f64; 2],
+        rotary: [RotaryValue; 2],
         tip: &Point3<f64>,
         near: &Joints,
     ) -> Result<Joints, InverseError> {
         let mut joints = [0.0; 6];
-        for (axis, angle) in self.rotary().iter().zip(rotary) {
+        for (axis, value) in self.rotary().iter().zip(rotary) {
             let index = axis.letter.index();
-            joints[index] = nearest_turn(axis.letter, angle, near[index], self.limits[index])?;
+            joints[index] =
+                nearest_turn(axis.letter, value.degrees, near[index], self.limits[index])?;
         }
         let linear = self.follow(&self.turns(&joints), &tip.coords);
         for (index, value) in linear.iter().enumerate() {
@@ -207,11 +231,14 @@ fn single(
     from: &Vector3<f64>,
     to: &Vector3<f64>,
     near: f64,
-) -> Result<f64, InverseError> {
+) -> Result<RotaryValue, InverseError> {
     let [b, c] = [from, to].map(|vector| angle_between(&axis.direction, vector));
     check_gap((b - c).abs())?;
     let sine = b.sin().min(c.sin());
-    Ok(if sine < SINGULAR { near } else { angle_about(&axis.direction, from, to) })
+    Ok(match sine < SINGULAR {
+        true => RotaryValue::kept(near),
+        false => RotaryValue::found(angle_about(&axis.direction, from, to)),
+    })
 }
 
 /// Refuses a direction that is missed by more than the tolerance, in radians.

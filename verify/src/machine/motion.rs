@@ -110,6 +110,14 @@ impl JointMotion {
         Ok(motion)
     }
 
+    /// Returns the same motion of the axes with another tool in the spindle, whose tip need not be on the path.
+    pub(crate) fn with_tool(&self, chain: &Chain) -> JointMotion {
+        let mut motion =
+            JointMotion { chain: *chain, body: *chain, related: Related::Bodies, ..*self };
+        motion.set_rounding();
+        motion
+    }
+
     fn build(
         chain: &Chain,
         rotary: [[f64; 3]; 2],

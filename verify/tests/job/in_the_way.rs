@@ -4,7 +4,7 @@ use crate::scene::{CLEAN, FANUC, FINDINGS, HEIDENHAIN, LINUXCNC, NONE, SIEMENS, 
 use touchoff_verify::machine::Machine;
 
 /// A B axis that tilts the spindle 160 mm above its gauge point, over a table C.
-const B_HEAD: &str = r#"
+pub(crate) const B_HEAD: &str = r#"
     name = "B head"
     tool_change = { Z = 0 }
     axis = [
@@ -16,7 +16,7 @@ const B_HEAD: &str = r#"
     ]"#;
 
 /// A trunnion A with a table C.
-const TRUNNION: &str = r#"
+pub(crate) const TRUNNION: &str = r#"
     name = "trunnion"
     tool_change = { Z = 0 }
     axis = [
@@ -27,14 +27,14 @@ const TRUNNION: &str = r#"
         { letter = "Z", kind = "linear", carries = "tool", rapid = 10000 },
     ]"#;
 
-fn named(file: &'static str, text: &str) -> Scene {
+pub(crate) fn named(file: &'static str, text: &str) -> Scene {
     let mut scene = Scene::of(text);
     scene.file = file;
     scene.job = scene.job.replace("a.nc", file);
     scene
 }
 
-fn scene(file: &'static str, text: &str, machine: &str, offset: &str) -> Scene {
+pub(crate) fn scene(file: &'static str, text: &str, machine: &str, offset: &str) -> Scene {
     let mut scene =
         named(file, text).with_file("mine.toml", machine).with("machine = \"mine.toml\"");
     scene.job = scene.job.replace("LENGTH", "length = 80");

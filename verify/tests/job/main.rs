@@ -8,6 +8,7 @@ mod five_axes;
 mod folder;
 mod in_the_way;
 mod jobs;
+mod left_open;
 mod motions;
 mod posts;
 mod scene;

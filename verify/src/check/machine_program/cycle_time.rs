@@ -19,7 +19,8 @@ impl CycleTime {
             Resolved::AnyRapid(_)
             | Resolved::Arrival(..)
             | Resolved::Unknown(_)
-            | Resolved::ToolChange => None,
+            | Resolved::ToolChange
+            | Resolved::Loaded(_) => None,
         };
         let joints = motions.map(|motions| motions.iter().map(|(motion, _)| motion));
         let seconds = joints.and_then(|joints| match step.rapid {

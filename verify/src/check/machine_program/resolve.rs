@@ -17,6 +17,9 @@ const ANGLE_INCREMENT: f64 = 1e-3;
 /// degrees.
 const ALIGNED: f64 = 2e-3;
 
+/// Greatest distance between the tool axis and z, as unit vectors, at which the tool is along z.
+const UPRIGHT: f64 = 1e-9;
+
 /// Tolerance of tool lengths, in mm: registers are set to 0.001 mm.
 const LENGTH_TOLERANCE: f64 = 1e-3;
 
@@ -32,6 +35,8 @@ pub(super) enum Resolved {
     Unknown(UnknownCause),
     /// A tool change: no motion of the program.
     ToolChange,
+    /// A new tool in the spindle: it rests where the change has left the axes.
+    Loaded(Box<JointMotion>),
 }
 
 /// Rapid traverse of several axes whose rates are unknown.
@@ -57,7 +62,7 @@ pub(super) struct Resolver<'a> {
     turning: Turning,
     /// Set while they are, if they began on a turned table and the coordinates are not followed.
     is_turned_table: bool,
-    /// The register of the first length offset of a program that names no tool: its tool.
+    /// The tool in the spindle before the program names one, if it is known.
     unnamed_tool: Option<u32>,
     /// The rules of the control on which the steps depend, each with the first line.
     pub(super) asked: BTreeMap<Rule, BlockLine>,
@@ -67,8 +72,12 @@ pub(super) struct Resolver<'a> {
     is_placed: bool,
     /// Set if it is not, and a rotary axis turns the part.
     part_position_unknown: bool,
+    /// Set if the length of the tool is known by which the joints were computed.
+    is_length_known: bool,
     /// The chain for the last tool length.
     chain: Option<(f64, Chain)>,
+    /// The height of the tip over the part during the last step, in mm, if X or Y are not known at its start and it moves them.
+    pub(super) blind_level: Option<f64>,
     /// The joint values after the last step, as far as they are known.
     joints: Position,
     /// The reason for which others are not.
@@ -104,6 +113,9 @@ struct Frame {
     is_tip: bool,
     /// Set if a rotary axis carries the tool, whose length is unknown.
     has_unknown_lever: bool,
+    /// The chain of a tool as long as the length offset, whose tip is where the program says under tool centre point control. The
+    /// offset may differ from the length by the rounding of registers.
+    guide: Chain,
 }
 
 /// A value that follows from the program, unless only the machine knows it.
@@ -152,6 +164,8 @@ impl<'a> Resolver<'a> {
             is_placed: setup.work_offsets[0].is_some(),
             part_position_unknown: setup.work_offsets[0].is_none()
                 && machine.has_rotary(Side::Table),
+            is_length_known: true,
+            blind_level: None,
             chain: None,
             joints,
             cause: UnknownCause::Start,
@@ -163,13 +177,19 @@ impl<'a> Resolver<'a> {
     /// # Errors
     /// If the motion is not possible on the machine, or a length or an origin is missing.
     pub(super) fn resolve(&mut self, step: &Step) -> Result<Resolved, StepFault> {
+        self.blind_level = None;
         if let StepPath::ToolChange(target) = step.path {
+            if !step.commanded.contains(&true) {
+                return self.load(step);
+            }
             for k in (0..6).filter(|k| step.commanded[*k]) {
                 // Without the place of the part, machine coordinates lead nowhere that is known.
                 self.joints[k] = target[k].filter(|_| self.is_placed);
                 if self.joints[k].is_none() {
                     self.cause = UnknownCause::ToolChange;
                 }
+                // Without a head, Z alone depends on the length.
+                self.is_length_known |= k == 2 && self.joints[k].is_some() && !self.has_head;
             }
             return Ok(Resolved::ToolChange);
         }
@@ -199,7 +219,12 @@ impl<'a> Resolver<'a> {
             Located::Known(ends) => ends,
             Located::Unknown(cause) => return Ok(self.lose(cause)),
         };
-        let mut unknown_path = self.turn_endless(step, &mut ends);
+        self.blind_level = blind_level(&frame, step, &ends);
+        let mut unknown_path = self.turn_endless(step, &frame, &mut ends);
+        if step.tool_vector.is_some() {
+            let angles = [3, 4, 5].map(|k| ends[1][k].map(|angle| angle + frame.rotary[k - 3]));
+            unknown_path = unknown_path.or(self.half_turn(&angles));
+        }
         let [start, end] = ends.map(|position| known(&position));
         let Some(end) = end else {
             self.forget(&frame, &ends[1]);
@@ -212,7 +237,11 @@ impl<'a> Resolver<'a> {
         {
             unknown_path = Some(UnknownCause::GreatCircle);
         }
-        let is_determined = !matches!(step.path, StepPath::Undetermined) && unknown_path.is_none();
+        let is_undetermined = matches!(step.path, StepPath::Undetermined);
+        if is_undetermined && start.is_some() {
+            unknown_path = Some(UnknownCause::ArcStart);
+        }
+        let is_determined = !is_undetermined && unknown_path.is_none();
         let resolved = match start.filter(|_| is_determined) {
             Some(start) => self.motion(step, &frame, [start, end])?,
             // The way is not known, but its end: the tool is checked at rest there.
@@ -223,6 +252,21 @@ impl<'a> Resolver<'a> {
         };
         self.arrive(&frame, &resolved);
         Ok(resolved)
+    }
+
+    /// Resolves the rest of a new tool where its change has left the axes. Without their joints, or the lengths on which these depend,
+    /// only the machine knows the place.
+    fn load(&mut self, step: &Step) -> Result<Resolved, StepFault> {
+        let length = step.state.tool.and_then(|tool| self.setup.lengths.get(&tool).copied());
+        let joints = known(&self.joints).filter(|_| self.is_length_known);
+        let (Some(joints), Some(length)) = (joints, length) else {
+            return Ok(Resolved::ToolChange);
+        };
+        if self.part_position_unknown && self.rotary(Side::Table).any(|k| joints[k] != 0.0) {
+            return Ok(Resolved::Unknown(UnknownCause::NoPartPosition));
+        }
+        let chain = self.chain(length)?;
+        Ok(Resolved::Loaded(Box::new(path::line(&chain, [joints, joints])?)))
     }
 
     /// Resolves a step whose coordinates only the machine knows. Angles stay known: they do not depend on lengths.
@@ -258,11 +302,15 @@ impl<'a> Resolver<'a> {
         if let (Some(axis), Some([x, y, z, ..])) = (step.tool_vector, linear_only(&end)) {
             let near = self.joints.map(Option::unwrap_or_default);
             let tip = Point3::from(frame.map.apply([x, y, z]));
-            let found = frame.chain.solutions(&tip, &Vector3::from(axis), &near)?;
+            let found = frame.guide.solutions(&tip, &Vector3::from(axis), &near)?;
             if !self.is_one_choice(&found) {
                 return Ok(Located::Unknown(UnknownCause::TwoPositions));
             }
-            (3..6).for_each(|k| end[k] = Some(found[0].joints[k] - frame.rotary[k - 3]));
+            let angles = self.angles(&found[0]);
+            if angles.contains(&None) {
+                return Ok(Located::Unknown(UnknownCause::Axis));
+            }
+            (3..6).for_each(|k| end[k] = angles[k - 3].map(|angle| angle - frame.rotary[k - 3]));
         }
         Ok(Located::Known([start, end]))
     }
@@ -310,14 +358,7 @@ impl<'a> Resolver<'a> {
         } else {
             ends.map(|position| frame.joints(position))
         };
-        let resolved = self.rapid(&frame.chain, joints)?;
-        // Several motions are those of axes that arrive at different times, which they do not on a straight path.
-        if matches!(self.rapid, RapidPath::Rates(_))
-            && matches!(&resolved, Resolved::Motions(motions) if motions.len() > 1)
-        {
-            self.ask(Rule::Rapid, step);
-        }
-        Ok(resolved)
+        self.rapid(step, &frame.chain, joints)
     }
 
     /// Notes the joints at the end of a motion.
@@ -326,7 +367,7 @@ impl<'a> Resolver<'a> {
             Resolved::Motions(motions) => motions.last().map(|(motion, _)| motion),
             Resolved::AnyRapid(any) => Some(&any.straight),
             Resolved::Arrival(rest, _) => Some(&**rest),
-            Resolved::Unknown(_) | Resolved::ToolChange => None,
+            Resolved::Unknown(_) | Resolved::ToolChange | Resolved::Loaded(_) => None,
         };
         if let Some(last) = last {
             self.joints = last.joints(1.0).map(Some);
@@ -362,7 +403,8 @@ impl<'a> Resolver<'a> {
 
     /// Resolves rapid traverse of the axes from one joint position to another.
     fn rapid(
-        &self,
+        &mut self,
+        step: &Step,
         chain: &Chain,
         joints @ [start, end]: [Joints; 2],
     ) -> Result<Resolved, StepFault> {
@@ -385,6 +427,10 @@ impl<'a> Resolver<'a> {
             RapidPath::Any | RapidPath::Straight => None,
         };
         let motions = path::rapid(chain, rates, joints)?;
+        // Several motions are those of axes that arrive at different times, which they do not on a straight path.
+        if motions.len() > 1 {
+            self.ask(Rule::Rapid, step);
+        }
         Ok(Resolved::Motions(motions.into_iter().map(|motion| (motion, 0.0)).collect()))
     }
 
@@ -433,6 +479,22 @@ impl<'a> Resolver<'a> {
         self.is_turned_table
     }
 
+    /// Returns the cause for which the way to rotary joints is not known: if one of them is half a turn away, and the limits of its axis
+    /// allow both ways.
+    fn half_turn(&self, rotary: &[Option<f64>]) -> Option<UnknownCause> {
+        let mut axes = self.machine.axes().iter().filter(|axis| axis.letter.is_rotary());
+        let is_half = axes.any(|axis| {
+            let k = axis.letter.index();
+            let Some((from, to)) = self.joints[k].zip(rotary[k - 3]) else { return false };
+            let other = to - 360.0_f64.copysign(to - from);
+            let is_allowed = axis.limits.is_none_or(|[low, high]| {
+                (low - ANGLE_INCREMENT..=high + ANGLE_INCREMENT).contains(&other)
+            });
+            ((to - from).abs() - 180.0).abs() <= ANGLE_INCREMENT && is_allowed
+        });
+        is_half.then_some(UnknownCause::HalfTurn)
+    }
+
     /// Returns whether all controls take the first of some solutions: where no other one turns a rotary axis by less, and the
     /// axes are known.
     fn is_one_choice(&self, solutions: &[InverseSolution]) -> bool {
@@ -463,12 +525,19 @@ impl<'a> Resolver<'a> {
     fn turn_endless(
         &mut self,
         step: &Step,
+        frame: &Frame,
         [start, end]: &mut [Position; 2],
     ) -> Option<UnknownCause> {
         let mut cause = None;
         let endless = self.endless;
+        // Heidenhain counts a turn from the datum, by which it displays the axis. Others may count it on the machine.
+        let is_of_datum = self.setup.rules.get(Rule::Dialect) == Some(Choice::Heidenhain);
         for k in (3..6).filter(|k| step.absolute && step.commanded[*k] && endless[k - 3]) {
             let (Some(from), Some(to)) = (start[k], end[k]) else { continue };
+            // The angles of a tool vector are the control's own, which are the nearest.
+            if step.tool_vector.is_some() && step.end[k].is_none() {
+                continue;
+            }
             let turn = to - from;
             // Fanuc turns it in the direction of the reference position.
             if step.is_return
@@ -478,9 +547,14 @@ impl<'a> Resolver<'a> {
                 cause = Some(UnknownCause::ReturnWay);
                 continue;
             }
-            let within = to.rem_euclid(360.0) - from.rem_euclid(360.0);
+            let within_from =
+                |origin: f64| (to + origin).rem_euclid(360.0) - (from + origin).rem_euclid(360.0);
+            let within = within_from(0.0);
+            let on_machine = if is_of_datum { within } else { within_from(frame.rotary[k - 3]) };
             // Every choice is the same way.
-            if turn.abs() < 180.0 - ANGLE_INCREMENT && (within - turn).abs() < ANGLE_INCREMENT {
+            if turn.abs() < 180.0 - ANGLE_INCREMENT
+                && [within, on_machine].iter().all(|way| (way - turn).abs() < ANGLE_INCREMENT)
+            {
                 continue;
             }
             let way = match step.shortest[k] || step.state.shorter_way {
@@ -495,7 +569,12 @@ impl<'a> Resolver<'a> {
                         cause = Some(UnknownCause::HalfTurn);
                     }
                 }
-                Some(Choice::WithinTurn) => start[k] = Some(to - within),
+                Some(Choice::WithinTurn) => {
+                    start[k] = Some(to - within);
+                    if (within - on_machine).abs() >= ANGLE_INCREMENT {
+                        cause = Some(UnknownCause::TurnOrigin);
+                    }
+                }
                 _ => {}
             }
         }
@@ -513,8 +592,14 @@ impl<'a> Resolver<'a> {
             Located::Unknown(cause) => return Ok(self.lose(cause)),
         };
         // The angles are known also where the way to them is not.
-        (3..6).for_each(|k| self.joints[k] = Some(found[k - 3]));
-        let Some(joints) = before else { return Ok(Resolved::Unknown(self.cause)) };
+        let way = self.half_turn(&found);
+        self.joints[3..].copy_from_slice(&found);
+        let Some(found) = self.all_angles(found) else {
+            return Ok(Resolved::Unknown(UnknownCause::Axis));
+        };
+        let Some(joints) = before else {
+            return Ok(Resolved::Unknown(way.unwrap_or(self.cause)));
+        };
         if self.part_position_unknown {
             return Ok(Resolved::Unknown(UnknownCause::NoPartPosition));
         }
@@ -523,7 +608,12 @@ impl<'a> Resolver<'a> {
         }
         let mut end = joints;
         end[3..].copy_from_slice(&found);
-        self.rapid(&frame.chain, [joints, end])
+        match way {
+            Some(cause) => {
+                Ok(Resolved::Arrival(Box::new(path::line(&frame.chain, [end, end])?), cause))
+            }
+            None => self.rapid(step, &frame.chain, [joints, end]),
+        }
     }
 
     /// Resolves a rotation about a point of the tool axis, below the tip by a distance in mm: to the angles that are stated, or to
@@ -534,20 +624,26 @@ impl<'a> Resolver<'a> {
         let is_stated = (3..6).any(|k| step.end[k].is_some() && self.has_axis(k));
         let (found, way) = if is_stated {
             // Angles that are stated have the way of any other motion to them.
-            let way = self.turn_endless(step, &mut ends);
+            let way = self.turn_endless(step, frame, &mut ends);
             let found = [3, 4, 5].map(|k| match ends[1][k].filter(|_| self.has_axis(k)) {
-                Some(angle) => angle + frame.rotary[k - 3],
-                None => 0.0,
+                Some(angle) => Some(angle + frame.rotary[k - 3]),
+                None => Some(0.0),
             });
             (found, way)
         } else {
             match self.aligned_angles(frame, step)? {
-                Located::Known(found) => (found, None),
+                Located::Known(found) => (found, self.half_turn(&found)),
                 Located::Unknown(cause) => return Ok(self.lose(cause)),
             }
         };
-        self.joints = [None, None, None, Some(found[0]), Some(found[1]), Some(found[2])];
-        let Some(joints) = before else { return Ok(Resolved::Unknown(self.cause)) };
+        let [a, b, c] = found;
+        self.joints = [None, None, None, a, b, c];
+        let Some(found) = self.all_angles(found) else {
+            return Ok(Resolved::Unknown(UnknownCause::Axis));
+        };
+        let Some(joints) = before else {
+            return Ok(Resolved::Unknown(way.unwrap_or(self.cause)));
+        };
         if self.part_position_unknown {
             self.cause = UnknownCause::NoPartPosition;
             return Ok(Resolved::Unknown(self.cause));
@@ -578,7 +674,11 @@ impl<'a> Resolver<'a> {
     }
 
     /// Returns the rotary joints that align the tool with z of a tilted plane, in degrees.
-    fn aligned_angles(&self, frame: &Frame, step: &Step) -> Result<Located<[f64; 3]>, StepFault> {
+    fn aligned_angles(
+        &self,
+        frame: &Frame,
+        step: &Step,
+    ) -> Result<Located<[Option<f64>; 3]>, StepFault> {
         let near = self.joints.map(Option::unwrap_or_default);
         // The angles do not depend on the tip, whose linear joints are not those of the machine at rest.
         let chain = frame.chain.without_linear_limits();
@@ -592,8 +692,24 @@ impl<'a> Resolver<'a> {
             let cause = if is_known { UnknownCause::TwoPositions } else { self.cause };
             return Ok(Located::Unknown(cause));
         }
-        let [_, _, _, a, b, c] = found[0].joints;
-        Ok(Located::Known([a, b, c]))
+        Ok(Located::Known(self.angles(&found[0])))
+    }
+
+    /// Returns the rotary joints of a solution. One that any value solves keeps its own, also if that is unknown.
+    fn angles(&self, solution: &InverseSolution) -> [Option<f64>; 3] {
+        [0, 1, 2].map(|k| match solution.kept[k] && self.has_axis(k + 3) {
+            true => self.joints[k + 3],
+            false => Some(solution.joints[k + 3]),
+        })
+    }
+
+    /// Returns the angles, if all are known. If not, later motions are unknown for this cause.
+    fn all_angles(&mut self, angles: [Option<f64>; 3]) -> Option<[f64; 3]> {
+        if angles.contains(&None) {
+            self.cause = UnknownCause::Axis;
+        }
+        let [a, b, c] = angles;
+        Some([a?, b?, c?])
     }
 
     /// Refuses angles of the rotary axes at which the tool does not stand along z of a plane.
@@ -630,6 +746,21 @@ impl<'a> Resolver<'a> {
         }
     }
 
+    /// Returns the chain of a tool by its length, in mm.
+    fn chain(&mut self, length: f64) -> Result<Chain, StepFault> {
+        if let Some((known, chain)) = &self.chain
+            && *known == length
+        {
+            return Ok(*chain);
+        }
+        let setup = Setup { work_offset: self.origin, tool_length: length };
+        let chain = self.machine.chain(&setup)?;
+        // Without a work offset, linear joints are known up to a displacement only.
+        let chain = if self.is_placed { chain } else { chain.without_linear_limits() };
+        self.chain = Some((length, chain));
+        Ok(chain)
+    }
+
     /// Returns the mapping of a state's coordinates; the cause if only the machine knows it.
     fn frame(&mut self, step: &Step) -> Result<Located<Frame>, StepFault> {
         let state = &*step.state;
@@ -641,17 +772,9 @@ impl<'a> Resolver<'a> {
         let Some(shift) = self.known_in_machine(&state.shift) else {
             return Ok(Located::Unknown(UnknownCause::Shift));
         };
-        let chain = match &self.chain {
-            Some((known, chain)) if *known == length => *chain,
-            _ => {
-                let setup = Setup { work_offset: self.origin, tool_length: length };
-                let chain = self.machine.chain(&setup)?;
-                // Without a work offset, linear joints are known up to a displacement only.
-                let chain = if self.is_placed { chain } else { chain.without_linear_limits() };
-                self.chain = Some((length, chain));
-                chain
-            }
-        };
+        let guide = if is_tip { Some(self.chain(offset)?) } else { None };
+        let chain = self.chain(length)?;
+        let guide = guide.unwrap_or(chain);
         let origin = if state.work_offset == WorkOffset::Standard(1) {
             // G54 is the frame of the part: the program may set it to the same values, and to no others.
             let mut origin = state.origin.iter().zip(&self.origin);
@@ -694,9 +817,10 @@ impl<'a> Resolver<'a> {
             let origin_turn = gcode::about(2, state.origin_rotation);
             Map { rotation: origin_turn * turn, origin: origin_turn * about + linear }
         };
+        self.is_length_known = is_known;
         let rotary = [3, 4, 5].map(|k| origin[k] + shift[k]);
         let has_unknown_lever = self.has_head && !is_known;
-        Ok(Located::Known(Frame { chain, map, rotary, is_tip, has_unknown_lever }))
+        Ok(Located::Known(Frame { chain, guide, map, rotary, is_tip, has_unknown_lever }))
     }
 
     /// Returns the coordinates, if those of all axes of the machine are known. Others are 0.
@@ -777,7 +901,7 @@ impl<'a> Resolver<'a> {
         }
         let mapped = if frame.is_tip {
             let joints = known(&self.joints).filter(|_| !frame.has_unknown_lever);
-            let pose = joints.and_then(|joints| frame.chain.pose(&joints).ok());
+            let pose = joints.and_then(|joints| frame.guide.pose(&joints).ok());
             pose.map(|pose| pose.tip().coords)
         } else {
             linear_only(&self.joints).map(|[x, y, z, ..]| Vector3::new(x, y, z))
@@ -830,7 +954,10 @@ impl Frame {
                 })
             });
             let motion = match self.is_tip {
-                true => JointMotion::with_tcp(&self.chain, rotary, &segment.path)?,
+                true => {
+                    let motion = JointMotion::with_tcp(&self.guide, rotary, &segment.path)?;
+                    if self.guide == self.chain { motion } else { motion.with_tool(&self.chain) }
+                }
                 false => JointMotion::new(&self.chain, rotary, &segment.path)?,
             };
             Ok((motion, segment.error))
@@ -859,4 +986,23 @@ fn known(position: &Position) -> Option<[f64; 6]> {
 /// Returns the position with rotary coordinates of 0, if X, Y and Z are known.
 fn linear_only(position: &Position) -> Option<[f64; 6]> {
     known(&[position[0], position[1], position[2], Some(0.0), Some(0.0), Some(0.0)])
+}
+
+/// Returns the lowest height of the tip over the part at the ends of a step that moves X or Y from where they are not known, in mm:
+/// the way is at this level, wherever it begins. `None` if Z or a rotary axis is not known, too, or the tool is not along z.
+fn blind_level(frame: &Frame, step: &Step, ends: &[Position; 2]) -> Option<f64> {
+    let is_blind = (0..2).any(|k| ends[0][k].is_none()) && step.commanded[..2].contains(&true);
+    if !is_blind || !frame.is_plain() {
+        return None;
+    }
+    let mut level = f64::INFINITY;
+    for [_, _, z, a, b, c] in ends {
+        let position = known(&[Some(0.0), Some(0.0), *z, *a, *b, *c])?;
+        let pose = frame.chain.without_linear_limits().pose(&frame.joints(position)).ok()?;
+        if (pose.axis() - Vector3::z()).norm() > UPRIGHT {
+            return None;
+        }
+        level = level.min(pose.tip().z);
+    }
+    Some(level)
 }

@@ -31,6 +31,11 @@ pub struct MachineSummary {
     /// The block of the first feed without a tool length offset, in a program that names no tool or has no offset at all:
     /// positions are taken as those of the tip.
     pub no_offset: Option<BlockLine>,
+    /// As before, for the first motion in rapid traverse that is checked.
+    pub no_rapid_offset: Option<BlockLine>,
+    /// The block of the lowest way to the first position on which X or Y are not known at the start and Z is, with the height of the
+    /// tip over the origin of the part, in mm.
+    pub blind_way: Option<(BlockLine, f64)>,
     /// The block of the first motion under tool centre point control, or in an aligned plane, without a tool length offset, and with
     /// a tool whose length is not stated.
     pub tcp_without_length: Option<BlockLine>,
@@ -214,6 +219,21 @@ faults! {
              length, or G43 H before"
         )]
         TcpWithoutLength,
+        /// An arc whose start follows from the kinematics of the machine.
+        ///
+        /// The control knows it, as after tool centre point control with turned axes, and the program has not stated it.
+        #[code = V0417]
+        #[error("an arc begins at a position that the program does not state: write X, Y and Z before it")]
+        ArcStart,
+        /// A rotary axis that turns within 360 degrees, of which it is not stated where they begin.
+        ///
+        /// The origin of the axis is not 0, and the way is another one by the angles of the program than by those of the machine.
+        #[code = V0418]
+        #[error(
+            "a rotary axis turns between angles from 0 to 360, which its work offset shifts, by the angles of the program or of the \
+             machine: write an angle between, or state 0 for the axis in `work_offsets`"
+        )]
+        TurnOrigin,
     }
 }
 
@@ -357,6 +377,17 @@ impl MachineSummary {
         &mut self.times[index]
     }
 
+    /// Returns the use of the tool of a step, which begins with it if the tool is new.
+    pub(super) fn use_of(&mut self, step: &Step) -> &mut ToolUse {
+        let number = step.state.tool;
+        let known = self.tools.iter().position(|tool| tool.number == number);
+        let index = known.unwrap_or_else(|| {
+            self.tools.push(ToolUse { number, line: step.line, motions: 0 });
+            self.tools.len() - 1
+        });
+        &mut self.tools[index]
+    }
+
     /// Notes what a motion at feed rate needs.
     pub(super) fn add_feed(&mut self, step: &Step, off_is_tip: bool) {
         let tool = step.state.tool;
@@ -375,6 +406,21 @@ impl MachineSummary {
         let offset = step.state.work_offset;
         if !self.work_offsets.iter().any(|(known, _)| *known == offset) {
             self.work_offsets.push((offset, step.block()));
+        }
+    }
+
+    /// Notes a motion in rapid traverse that is checked as that of the tip without a length offset.
+    pub(super) fn add_rapid(&mut self, step: &Step, off_is_tip: bool, unnamed_tool: Option<u32>) {
+        let is_tip = off_is_tip || step.state.tool.is_none() && unnamed_tool.is_none();
+        if is_tip && step.state.length == LengthOffset::Off {
+            self.no_rapid_offset.get_or_insert(step.block());
+        }
+    }
+
+    /// Notes a way to the first position that is at a level whose X and Y are not known.
+    pub(super) fn add_blind(&mut self, step: &Step, level: f64) {
+        if self.blind_way.is_none_or(|(_, lowest)| level < lowest) {
+            self.blind_way = Some((step.block(), level));
         }
     }
 
@@ -469,7 +515,7 @@ impl MachineSummary {
             gaps.push(open(block, CheckGap::AfterTapping));
         }
         let said = |place: BlockLine, gap: CheckGap| Gap::said(place, gap.code(), gap.to_string());
-        if let Some(block) = self.no_offset {
+        if let Some(block) = self.no_offset.or(self.no_rapid_offset) {
             // A program that names no tool is set up with the one that is in the spindle.
             gaps.push(match self.tools.iter().any(|tool| tool.number.is_some()) {
                 true => open(block, CheckGap::NoOffset),
@@ -493,7 +539,15 @@ impl MachineSummary {
                 | NoteKind::RoundedRadius
                 | NoteKind::OffsetOrShift
                 | NoteKind::LeftModes { .. } => GapWeight::Open,
-                _ => GapWeight::Said,
+                NoteKind::RoundedCorners
+                | NoteKind::ToolChange
+                | NoteKind::Ignored { .. }
+                | NoteKind::Endless
+                | NoteKind::HelixStart
+                | NoteKind::Stop
+                | NoteKind::ExecutedOptionalBlock
+                | NoteKind::OmittedOptionalBlock
+                | NoteKind::TextAfterEnd => GapWeight::Said,
             };
             let times =
                 if note.count > 1 { format!(" ({} times)", note.count) } else { String::new() };

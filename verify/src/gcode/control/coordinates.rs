@@ -123,7 +123,8 @@ impl Control {
     fn change_tool(&mut self, tool: u32) {
         self.notes.add(self.block(), NoteKind::ToolChange);
         // The tool before the first change may be the same.
-        self.leave_for_change(self.state.tool.is_none_or(|before| before == tool));
+        let before = self.state.tool;
+        self.leave_for_change(before.is_none_or(|before| before == tool));
         self.length_cancelled = false;
         // The first edge of the new tool is in force.
         self.edge = None;
@@ -133,6 +134,10 @@ impl Control {
         let is_always = self.stated(Rule::ToolLength) == Some(Choice::Always);
         if self.length_implicit || is_always && self.state.length == LengthOffset::Off {
             self.imply_length(tool);
+        }
+        // The new tool is where the change has left the axes, also if it moves no more.
+        if self.has_loads && before != Some(tool) {
+            self.push(true, self.position, [false; 6], StepPath::ToolChange([None; 6]));
         }
     }
 

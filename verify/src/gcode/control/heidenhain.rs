@@ -156,8 +156,10 @@ impl Control {
         }
         let spindle = self.spindle(rapid);
         let step = self.pending.back_mut().expect("the step that was added");
-        // The way to the end of the travel leads away from the part, as that to a home does.
-        (step.rapid, step.spindle, step.is_homeward) = (rapid, spindle, distance.is_none());
+        // The way of Z to the end of its travel leads away from the part, as that to a home does. One along a tilted tool also leads
+        // sideways.
+        let is_homeward = distance.is_none() && is_upright && is_along_z;
+        (step.rapid, step.spindle, step.is_homeward) = (rapid, spindle, is_homeward);
         // Its feed is that of MB, which is not kept.
         step.feed = None;
     }

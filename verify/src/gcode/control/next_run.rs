@@ -155,7 +155,13 @@ fn run_beside(run: &mut Interpreter, next: &mut Interpreter) -> Option<BlockLine
             return Some(block);
         }
         let mut steps = std::mem::take(&mut run.control.pending);
-        let others = std::mem::take(&mut next.control.pending);
+        let mut others = std::mem::take(&mut next.control.pending);
+        // A new tool in the spindle is no motion.
+        for steps in [&mut steps, &mut others] {
+            steps.retain(|step| {
+                step.commanded.contains(&true) || !matches!(step.path, StepPath::ToolChange(_))
+            });
+        }
         // A length that changes moves Z on some controls. One that is in force already does not, and the first position after it is
         // the same.
         let changes = [(&*run, lengths[0]), (next, lengths[1])]
