@@ -23,7 +23,8 @@ fn source(text: &str) -> Source {
 /// niceness may be above 1.
 fn tool(text: &str) -> Box<CheckedTool> {
     let compiled = compile(&source(text));
-    let is_expected = compiled.diagnostics().iter().all(|report| ["T0522", "T0626"].contains(&report.code()));
+    let is_expected =
+        compiled.diagnostics().iter().all(|report| ["T0522", "T0626"].contains(&report.code()));
     assert!(is_expected, "{text}\n{}", rendered(&compiled));
     compiled.into_tool().expect("a tool without errors")
 }
