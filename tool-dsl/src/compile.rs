@@ -143,6 +143,7 @@ fn follows(diagnostic: &Diagnostic, broken: &BTreeSet<&str>) -> bool {
         Kind::RegionKind(kind) => match kind {
             RegionKind::UnknownCurve { name, .. } => has(name),
             RegionKind::UnknownSurface { name, .. } => has(name) || has("region"),
+            RegionKind::NoCuttingSurface { .. } => has("region") || has("profile"),
             RegionKind::NoRegion { .. } => true,
             _ => false,
         },

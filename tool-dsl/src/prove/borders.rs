@@ -206,9 +206,14 @@ impl<'m> BorderProver<'m> {
         }
     }
 
-    /// Returns whether a region's depth is the distance to a line, a circle or a point.
-    pub(super) fn is_distance(&self, region: usize) -> bool {
-        self.depths[region].as_ref().is_some_and(RootForm::is_distance)
+    /// Returns whether a depth is the distance to a line, a circle or a point, or the least of several.
+    pub(super) fn is_distance(&self, depth: usize) -> bool {
+        match self.corners[depth] {
+            Some(DepthCorner { is_larger, parts }) => {
+                !is_larger && parts.into_iter().all(|part| self.is_distance(part))
+            }
+            None => self.depths[depth].as_ref().is_some_and(RootForm::is_distance),
+        }
     }
 
     /// Returns whether a region's depth is a root without further terms.

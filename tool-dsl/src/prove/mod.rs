@@ -83,7 +83,7 @@ pub struct RegionFacts {
     pub gradient_length: Interval,
     /// A point of a box in which that length has no bound, in the tool's frame, if there is such a box.
     pub steep_at: Option<[f64; 3]>,
-    /// True if the depth is the distance to a line, a circle or a point.
+    /// True if the depth is the distance to a line, a circle or a point, or the least of several.
     pub is_distance: bool,
     /// The range of magnitudes.
     pub magnitude: Interval,

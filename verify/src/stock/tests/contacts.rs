@@ -205,10 +205,8 @@ fn what_is_no_motion_is_refused() {
     touchoff::tool! {
         solid Block "a block" {
             units mm;
-            curve side = 3 - max(x, -x, y, -y);
-            curve end = min(z, 3 - z);
-            region side as block cutting where 0 <= side <= end { depth: side; }
-            region end as block cutting where 0 <= end <= side { depth: end; }
+            curve inside = min(3 - abs(x), 3 - abs(y), z, 3 - z);
+            region block as block cutting where inside >= 0 { depth: inside; }
             niceness cutting: 1;
         }
     }

@@ -73,12 +73,8 @@ fn a_solid_cuts_by_its_sides() {
     touchoff::tool! {
         solid Punch "a box of 6 × 4 × 3 mm" {
             units mm;
-            curve along = 3 - max(x, -x);
-            curve across = 2 - max(y, -y);
-            curve end = min(z, 3 - z);
-            region along as punch cutting where 0 <= along <= min(across, end) { depth: along; }
-            region across as punch cutting where 0 <= across <= min(along, end) { depth: across; }
-            region end as punch cutting where 0 <= end <= min(along, across) { depth: end; }
+            curve inside = min(3 - abs(x), 2 - abs(y), z, 3 - z);
+            region punch as punch cutting where inside >= 0 { depth: inside; }
             niceness cutting: 1;
         }
     }
