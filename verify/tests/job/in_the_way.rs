@@ -209,12 +209,14 @@ fn a_return_along_x_and_y_from_a_known_depth_is_not_free() {
 /// A retract by a distance along a tilted tool ends where the machine's file does not say.
 #[test]
 fn a_retract_by_a_distance_is_no_way_home() {
-    for (retract, verdict, gap) in [
-        ("4,\"TC\",0,57,0,0,0,0,0,0,0,0,0,0", CLEAN, "V0405 8"),
-        ("5,\"TC\",0,57,0,0,0,0,0,0,0,0,0,0,60", NONE, "V0404 8"),
+    for (b, retract, verdict, gap) in [
+        (0, "4,\"TC\",0,57,0,0,0,0,0,0,0,0,0,0", CLEAN, "V0405 8"),
+        // Along a tilted tool the way also leads aside.
+        (30, "4,\"TC\",0,57,0,0,0,0,0,0,0,0,0,0", NONE, "V0404 8"),
+        (30, "5,\"TC\",0,57,0,0,0,0,0,0,0,0,0,0,60", NONE, "V0404 8"),
     ] {
         let text = format!(
-            "G17 G90 G54 G71 G94\nT1 M6\nD1\nS1000 M3 F200\nG0 B0 C0\nG0 X0 Y0 Z200\nG0 B30\nCYCLE800({retract})\nCYCLE800()\nM30\n"
+            "G17 G90 G54 G71 G94\nT1 M6\nD1\nS1000 M3 F200\nG0 B0 C0\nG0 X0 Y0 Z200\nG0 B{b}\nCYCLE800({retract})\nCYCLE800()\nM30\n"
         );
         let scene = scene("a.mpf", &text, B_HEAD, "[0, 0, -440]");
         // Nothing is near the part.

@@ -260,8 +260,8 @@ impl Control {
                     commanded[..3].fill(true);
                 }
                 self.push(true, end, commanded, StepPath::Line);
-                // A distance can end beside the part, and its way is not known then.
-                if distance.is_some() {
+                // A distance can end beside the part, and a way along a tilted tool also leads sideways.
+                if distance.is_some() || !(is_plain && stands) {
                     return;
                 }
             }
