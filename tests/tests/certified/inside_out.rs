@@ -89,7 +89,7 @@ fn a_tool_of_which_no_point_is_found_is_undecided() {
     }
 }
 
-/// Where the distance of a buried tool from the surface is within the tolerance, its lower bound is 0, as in contact.
+/// The lower bound of a buried tool's distance from the surface is 0 within the tolerance, as in contact.
 #[test]
 fn the_signed_distance_of_a_buried_tool_is_below_0_at_any_tolerance() {
     let (tool, bvh) = (bead(), TriangleBvh::new(&block([-5.0; 3], [5.0; 3])));

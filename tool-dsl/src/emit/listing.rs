@@ -122,7 +122,7 @@ fn expression(tool: &CheckedTool, id: Id) -> String {
     if shared.is_empty() { text } else { format!("{text}, where {}", shared.join(", ")) }
 }
 
-/// How tightly an expression's outermost operator binds.
+/// The binding strength of an expression's outermost operator.
 #[derive(Clone, Copy, PartialEq, PartialOrd)]
 enum Binding {
     Sum,

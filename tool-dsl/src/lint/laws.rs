@@ -30,7 +30,6 @@ const MAX_FALL_RATIO: f64 = 0.01;
 const MAX_POINTS_OF_SIGN: usize = 6;
 
 /// A divisor in a law of a region.
-#[derive(Clone)]
 pub(super) struct Divisor {
     region: usize,
     quantity: &'static str,
@@ -182,10 +181,9 @@ impl Linter<'_> {
         let Some(owner) = self.owner(near) else { return };
         self.report_missing_values(owner, near);
         let values = self.laws(owner).map(|(_, id, _)| self.get(id).abs());
-        let divisors: Vec<Divisor> =
-            self.divisors.iter().filter(|divisor| divisor.region == owner).cloned().collect();
-        let near_divisors: Vec<f64> =
-            divisors.iter().map(|divisor| self.get(divisor.id).abs()).collect();
+        let own = self.divisors.iter().enumerate().filter(|(_, divisor)| divisor.region == owner);
+        let near_divisors: Vec<(usize, f64)> =
+            own.map(|(index, divisor)| (index, self.get(divisor.id).abs())).collect();
         if self.owner(far) != Some(owner) {
             return;
         }
@@ -205,10 +203,12 @@ impl Linter<'_> {
             }
         }
         // The law has a limit at the surface, and yet no value there: 0 divided by 0.
-        for (divisor, near) in divisors.iter().zip(near_divisors) {
+        for (index, near) in near_divisors {
+            let divisor = &self.divisors[index];
             if near < MAX_FALL_RATIO * self.get(divisor.id).abs() {
+                let span = divisor.span;
                 let kind = self.division_by_zero(divisor, surface_point);
-                self.report(Diagnostic::new(divisor.span, kind));
+                self.report(Diagnostic::new(span, kind));
             }
         }
     }

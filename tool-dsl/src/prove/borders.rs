@@ -64,6 +64,12 @@ pub(super) struct Separation {
     pub(super) difference: f64,
 }
 
+impl Separation {
+    fn new(curve: CurveIndex, joint: Joint) -> Separation {
+        Separation { curve, joint, below: false, ends_here: false, difference: 0.0 }
+    }
+}
+
 /// An owner and the number of a path down the tree to it. What follows from the signs on that path alone is
 /// the same for all claims with it, in any box.
 type Leaf = (Option<usize>, usize);
@@ -306,9 +312,7 @@ impl<'m> BorderProver<'m> {
         let pair = Pair { own: self.active(pair.own), other: pair.other.map(|k| self.active(k)) };
         if let (Some(curve), true) = (curves.first(), Some(pair.own) == pair.other) {
             // The same depth on both sides.
-            let joint = Joint::Smooth;
-            let (below, ends_here) = (false, false);
-            return Some(Separation { curve: *curve, joint, below, ends_here, difference: 0.0 });
+            return Some(Separation::new(*curve, Joint::Smooth));
         }
         // A curve on both paths separates the claims without further proof, so it is tried first.
         let agreed = curves.iter().copied().find(|curve| self.agreement(pair, *curve).is_some());
@@ -365,7 +369,7 @@ impl<'m> BorderProver<'m> {
             Joint::Kinked
         };
         let ends_here = joint == Joint::None;
-        Some(Separation { curve, joint, below, ends_here, difference: 0.0 })
+        Some(Separation { below, ends_here, ..Separation::new(curve, joint) })
     }
 
     /// Returns whether a polynomial is a positive multiple of one of a pair's depths, which are not negative where the
@@ -395,9 +399,7 @@ impl<'m> BorderProver<'m> {
             return Some(smooth);
         }
         let Some(difference) = self.lower(pair, claims, curves, cover) else {
-            let (below, ends_here) = (false, false);
-            let joint = Joint::None;
-            return Some(Separation { curve, joint, below, ends_here, difference: 0.0 });
+            return Some(Separation::new(curve, Joint::None));
         };
         let difference = self.without_rounding(difference);
         // Ordered depths are equal where the claims meet, so depths that differ show that these do not. A
@@ -407,8 +409,7 @@ impl<'m> BorderProver<'m> {
             (LowerByLinear::Zero, Some(_)) => Joint::Zero,
             _ => Joint::Lower,
         };
-        let (below, ends_here) = (false, false);
-        meet.then_some(Separation { curve, joint, below, ends_here, difference })
+        meet.then_some(Separation { difference, ..Separation::new(curve, joint) })
     }
 
     /// Returns a straight curve that separates two claims, if depth is continuous across it up to rounding,
@@ -422,11 +423,8 @@ impl<'m> BorderProver<'m> {
             let DepthDifference { jump, slope_across: across } = self.tangency(pair, *curve)?;
             let is_smooth = self.may_jump || across <= MAX_TANGENT_SLOPE;
             (jump <= self.max_jump && is_smooth).then_some(Separation {
-                curve: *curve,
-                joint: Joint::Smooth,
-                below: false,
-                ends_here: false,
                 difference: jump,
+                ..Separation::new(*curve, Joint::Smooth)
             })
         })
     }
@@ -1019,7 +1017,7 @@ impl BorderProver<'_> {
         let lesser = match other {
             Some(other) => [(0, own, other), (1, other, own)]
                 .map(|(k, less, more)| self.linear.no_deeper(&signs[k], Some(less), Some(more))),
-            // Whether both are 0 also settles a border with the outside, whose depth is 0.
+            // The outside's depth is 0, so that zeros of both, below, settle its border.
             None => [false; 2],
         };
         // The order of two regions says more than that both are 0: their depths may fall toward each other.

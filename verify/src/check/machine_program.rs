@@ -391,7 +391,7 @@ impl MachineProgram {
         Ok(steps.map(move |(step, resolved)| {
             let tool = step.state.tool;
             from = from.filter(|(_, before)| !restarts || *before == tool);
-            // What counts as one tool is not changed.
+            // Tools that count as one are not changed.
             let is_same = !restarts && matches!(resolved, Resolved::Loaded(_));
             if is_same || !is_wanted(tool) {
                 return (tool, vec![Vec::new(); frames.len()]);

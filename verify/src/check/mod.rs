@@ -92,8 +92,6 @@ pub struct Verifier<'a> {
     /// Allowances by the surfaces' indices in the tool's list; `None` where the tolerance applies.
     allowed: Vec<Option<f64>>,
     budget: u32,
-    /// Bound on the change of depth per length.
-    lipschitz: f64,
 }
 
 impl fmt::Debug for Verifier<'_> {
@@ -130,12 +128,6 @@ impl<'a> Verifier<'a> {
             resolution: Verifier::default_resolution(bvh.unit()),
             allowed: vec![None; info.surfaces.len()],
             budget: 1 << 17,
-            // By a profile, depth is a distance. The certifier refuses another tool of which no constant is proved.
-            lipschitz: match (info.outline.is_empty(), info.depth.lipschitz) {
-                (false, proved) => proved.unwrap_or(1.0).max(1.0),
-                (true, Some(proved)) => proved.max(1.0),
-                (true, None) => f64::INFINITY,
-            },
         })
     }
 
@@ -279,7 +271,10 @@ impl<'a> Verifier<'a> {
 
     /// Returns a bound on the change of depth per length: 1 for a profile, or that of the depth function.
     fn lipschitz(&self) -> f64 {
-        self.lipschitz
+        let info = self.tool.info();
+        // By a profile, depth is a distance. The certifier refuses another tool of which no constant is proved.
+        let unproved = if info.is_exact() { 1.0 } else { f64::INFINITY };
+        info.depth.lipschitz.unwrap_or(unproved).max(1.0)
     }
 
     /// Returns the depth that each surface is allowed.

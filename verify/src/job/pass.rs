@@ -204,7 +204,7 @@ impl<'a> Job<'a> {
         let stock = self.stock.iter().filter_map(|stock| match &stock.shape {
             StockShape::Box([_, high]) => Some(("the stock", high.z)),
             StockShape::Mesh(mesh) => Some(("the stock", mesh.bounds()[1].z)),
-            // What an earlier set-up leaves is no higher than its own stock.
+            // The stock that an earlier set-up leaves is no higher than its own.
             StockShape::Points(_) => None,
         });
         let highest = bodies.chain(stock).max_by(|one, other| one.1.total_cmp(&other.1));

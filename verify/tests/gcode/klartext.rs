@@ -644,7 +644,7 @@ fn what_is_not_read_is_named_with_its_line() {
         let error = read(&text, &at_zero()).expect_err(body);
         assert_fault(&text, &error, line, message);
     }
-    // What they change nothing about is read.
+    // Statements that change nothing are read.
     steps(
         "FUNCTION MODE MILL\nTOOL DEF 6 L+80 R+3\nTOOL CALL 6 Z S1\nTOOL DEF 6 L+80 R+3\nTOOL DEF 5\nTOOL CALL 5 Z S1\n\
          TOOL DEF 6 L+80 R+2\nQ1 = SGN 2\nL X+1 FMAX",

@@ -271,6 +271,30 @@ mod tests {
         }
     }
 
+    /// Returns pieces as one mesh, each as it is or turned over.
+    fn joined(pieces: &[(crate::Mesh, bool)]) -> crate::Mesh {
+        let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+        for (mesh, turned) in pieces {
+            let first = vertices.len() as u32;
+            vertices.extend_from_slice(mesh.vertices());
+            triangles.extend(mesh.triangles().iter().map(|corners| {
+                let [a, b, c] = corners.map(|k| k + first);
+                if *turned { [b, a, c] } else { [a, b, c] }
+            }));
+        }
+        crate::Mesh::new(vertices, triangles, Unit::Millimetre).expect("a mesh")
+    }
+
+    /// Returns a mesh in which vertices at the same place are one, as in files.
+    fn welded(mesh: &crate::Mesh) -> crate::Mesh {
+        let first = |k: &u32| {
+            let place = mesh.vertices()[*k as usize];
+            mesh.vertices().iter().position(|other| *other == place).unwrap_or_default() as u32
+        };
+        let triangles = mesh.triangles().iter().map(|corners| corners.each_ref().map(first));
+        crate::Mesh::new(mesh.vertices().to_vec(), triangles, Unit::Millimetre).expect("a mesh")
+    }
+
     /// A piece that is inside out, next to a good one or sticking out of it, leaves no inside. A void leaves one.
     #[test]
     fn a_piece_inside_out_leaves_no_inside() {
@@ -278,15 +302,7 @@ mod tests {
             let [low, high] = [low, high].map(|z| Point3::new(z + at, z, z));
             shapes::cuboid(low, high, Unit::Millimetre).expect("a block")
         };
-        let with = |small: crate::Mesh, turned: bool| {
-            let large = block(-10.0, 10.0, 0.0);
-            let after = large.vertices().len() as u32;
-            let vertices = [large.vertices(), small.vertices()].concat();
-            let turn = |[a, b, c]: [u32; 3]| if turned { [b, a, c] } else { [a, b, c] };
-            let more = small.triangles().iter().map(|corners| turn(corners.map(|k| k + after)));
-            let triangles = large.triangles().iter().copied().chain(more);
-            crate::Mesh::new(vertices, triangles, Unit::Millimetre).expect("a mesh")
-        };
+        let with = |small, turned| joined(&[(block(-10.0, 10.0, 0.0), false), (small, turned)]);
         let has_inside = |small, turned| TriangleBvh::new(&with(small, turned)).has_inside();
         assert!(has_inside(block(-2.0, 2.0, 30.0), false));
         assert!(has_inside(block(-2.0, 2.0, 0.0), true));
@@ -302,13 +318,7 @@ mod tests {
         // Next to it in one vertex, which they share.
         let [low, high] = [10.0, 14.0].map(|c| Point3::new(c, c, c));
         let mesh = with(shapes::cuboid(low, high, Unit::Millimetre).expect("a block"), true);
-        let first = |k: &u32| {
-            let place = mesh.vertices()[*k as usize];
-            mesh.vertices().iter().position(|other| *other == place).unwrap_or_default() as u32
-        };
-        let welded = mesh.triangles().iter().map(|corners| corners.each_ref().map(first));
-        let welded = crate::Mesh::new(mesh.vertices().to_vec(), welded, Unit::Millimetre);
-        assert!(!TriangleBvh::new(&welded.expect("a mesh")).has_inside());
+        assert!(!TriangleBvh::new(&welded(&mesh)).has_inside());
     }
 
     /// A block that is inside out and sticks out of another, where good blocks touch it with whole faces: every ray from the
@@ -319,27 +329,9 @@ mod tests {
         let block = |low: [f64; 3], high: [f64; 3]| {
             shapes::cuboid(low.into(), high.into(), Unit::Millimetre).expect("a block")
         };
-        let joined = |pieces: &[(crate::Mesh, bool)]| {
-            let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
-            for (mesh, turned) in pieces {
-                let first = vertices.len() as u32;
-                vertices.extend_from_slice(mesh.vertices());
-                triangles.extend(mesh.triangles().iter().map(|corners| {
-                    let [a, b, c] = corners.map(|k| k + first);
-                    if *turned { [b, a, c] } else { [a, b, c] }
-                }));
-            }
-            // Vertices at the same place are one, as in files.
-            let place = |k: u32| {
-                let at = vertices[k as usize];
-                vertices.iter().position(|other| *other == at).unwrap_or_default() as u32
-            };
-            let triangles: Vec<_> =
-                triangles.iter().map(|corners: &[u32; 3]| corners.map(place)).collect();
-            crate::Mesh::new(vertices.clone(), triangles, Unit::Millimetre).expect("a mesh")
+        let has_inside = |pieces: &[(crate::Mesh, bool)]| {
+            TriangleBvh::new(&welded(&joined(pieces))).has_inside()
         };
-        let has_inside =
-            |pieces: &[(crate::Mesh, bool)]| TriangleBvh::new(&joined(pieces)).has_inside();
         let large = || (block([-10.0; 3], [10.0; 3]), false);
         let stick = || (block([-2.0, -2.0, 5.0], [2.0, 2.0, 14.0]), true);
         // On its five faces outside the large block.
@@ -527,13 +519,8 @@ mod tests {
                         high[axis] = reach;
                     }
                     let small = shapes::cuboid(low, high, Unit::Millimetre).expect("a block");
-                    let first = large.vertices().len() as u32;
-                    let turned = small.triangles().iter().map(|[a, b, c]| [*b, *a, *c]);
-                    let turned = turned.map(|triangle| triangle.map(|k| k + first));
-                    let vertices = [large.vertices(), small.vertices()].concat();
-                    let triangles = large.triangles().iter().copied().chain(turned);
-                    let mesh = crate::Mesh::new(vertices, triangles, Unit::Millimetre);
-                    let bvh = TriangleBvh::new(&mesh.expect("a mesh"));
+                    let mesh = joined(&[(large.clone(), false), (small, true)]);
+                    let bvh = TriangleBvh::new(&mesh);
                     assert_eq!(bvh.has_inside(), is_hidden, "axis {axis}, side {side}");
                 }
             }

@@ -31,7 +31,7 @@ pub struct MachineSummary {
     /// The block of the first feed without a tool length offset, in a program that names no tool or has no offset at all:
     /// positions are taken as those of the tip.
     pub no_offset: Option<BlockLine>,
-    /// As before, for the first motion in rapid traverse that is checked.
+    /// The same for the first motion in rapid traverse that is checked.
     pub no_rapid_offset: Option<BlockLine>,
     /// The block of the lowest way to the first position on which X or Y are not known at the start and Z is, with the height of the
     /// tip over the origin of the part, in mm.

@@ -220,11 +220,11 @@ struct Call {
     return_to: Place,
     /// Executions that follow the present one.
     repeats: u32,
-    /// What the subprogram does not have of its caller.
+    /// State of the caller that the subprogram does not have.
     hidden: Hidden,
 }
 
-/// What a subprogram does not have of its caller.
+/// State of a caller that a subprogram does not have.
 #[derive(Clone, Debug)]
 enum Hidden {
     /// All local variables, of which a macro has its own, and the macro that each motion calls.
