@@ -5,11 +5,13 @@ use super::draw::{Recipe, recipe};
 use super::outline::Outline;
 use super::tool;
 use super::valid::is_valid;
+use crate::generated::fnv;
 use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use touchoff::tool::Interpreted;
+use touchoff_dsl::emit;
 use touchoff_dsl::prove::Certificate;
 use touchoff_dsl::source::Source;
 use touchoff_tests::oracle::plane::{cross, dot, norm, sub};
@@ -21,6 +23,8 @@ const POINTS: usize = 320;
 const SHRINKS: usize = 250;
 /// Number of failures of one kind that are shrunk and shown.
 const SHOWN: usize = 4;
+/// Number of profiles, of those that every run has, whose proofs are compared with those before.
+const DIGESTS: usize = 20;
 
 fn tried(outline: &Outline) -> Result<(), Flaw> {
     let text = outline.text();
@@ -32,9 +36,15 @@ fn tried(outline: &Outline) -> Result<(), Flaw> {
     catch_unwind(AssertUnwindSafe(run)).unwrap_or_else(|_| Err(("panic", String::new())))
 }
 
-/// Returns whether depth is proved to be the distance to a profile's surface.
-fn is_proved(outline: &Outline) -> bool {
-    tool(&outline.text()).is_ok_and(|tool| Certificate::prove(&tool).is_exact())
+/// Returns whether depth is proved to be the distance to a profile's surface, and how: the boxes that the proof examines, and
+/// digests of the tool's code and of all that is proved.
+fn proof(outline: &Outline) -> (bool, String) {
+    let Ok(tool) = tool(&outline.text()) else { return (false, "refused".into()) };
+    let proved = Certificate::prove(&tool);
+    let digests =
+        [emit::source_code(&tool), format!("{proved:?}")].map(|text| fnv(text.as_bytes()));
+    let [code, facts] = digests;
+    (proved.is_exact(), format!("{} boxes, {code:016x}, {facts:016x}", proved.examined_boxes))
 }
 
 /// Returns the kind of a refusal, by the codes of its diagnostics.
@@ -126,6 +136,7 @@ fn random_profiles_of_every_kind() {
     let mut runner = TestRunner::new_with_rng(Config::default(), rng);
     let strategy = recipe();
     let (mut valid, mut drawn, mut proved) = (0, 0, 0);
+    let mut proofs = Vec::new();
     let mut seen: BTreeMap<&str, usize> = BTreeMap::new();
     let mut flaws: BTreeMap<&str, usize> = BTreeMap::new();
     while valid < count {
@@ -136,7 +147,9 @@ fn random_profiles_of_every_kind() {
             continue;
         }
         valid += 1;
-        proved += usize::from(is_proved(&outline));
+        let (is_proved, how) = proof(&outline);
+        proved += usize::from(is_proved);
+        proofs.push(how);
         kinds(&outline).into_iter().for_each(|kind| *seen.entry(kind).or_default() += 1);
         if let Err(flaw) = tried(&outline) {
             let times = flaws.entry(flaw.0).or_default();
@@ -148,6 +161,11 @@ fn random_profiles_of_every_kind() {
         }
     }
     println!("{valid} valid profiles of {drawn} drawn, {proved} proved: {seen:?}, {flaws:?}");
+    // Shows which profiles a change of the compiler affects, and what it costs to prove them.
+    proofs.truncate(DIGESTS);
+    insta::with_settings!({ omit_expression => true }, {
+        insta::assert_snapshot!("random_profiles", proofs.join("\n"));
+    });
     let is_refused = |kind: &str| kind.starts_with("refused");
     let refused: usize = flaws.iter().filter(|flaw| is_refused(flaw.0)).map(|flaw| flaw.1).sum();
     flaws.retain(|kind, _| !is_refused(kind));
