@@ -50,15 +50,24 @@ pub(crate) fn print_approach(report: &VerifyReport, unit: Unit) {
     );
     match (distance, proved_clearance) {
         (0.0, _) => message!("nearest approach: contact, line {line}"),
-        (_, None) => {
-            message!("nearest approach: {} or less, line {line}", unit.format(distance));
+        (f64::INFINITY, None) => {
+            message!("nearest approach: not known, as the tool has no profile");
         }
-        (_, Some(keeps)) => message!(
-            "nearest approach: {}, line {line}; at least {} on all motions, more than the tool's diameter of {}",
-            unit.format(distance),
-            unit.format(keeps),
-            unit.format(diameter),
+        (_, None) => message!(
+            "nearest approach: {}, line {line}; along the motions it may be less",
+            unit.format(distance)
         ),
+        (_, Some(keeps)) => {
+            let measured = match distance {
+                f64::INFINITY => String::new(),
+                _ => format!("{}, line {line}; ", unit.format(distance)),
+            };
+            message!(
+                "nearest approach: {measured}at least {} on all motions, more than the tool's diameter of {}",
+                unit.format(keeps),
+                unit.format(diameter),
+            );
+        }
     }
 }
 

@@ -21,7 +21,9 @@ pub struct Approach {
     /// The factor by which all positions in feed, which lie outside the part's box, would fit into it: a sign that the
     /// program or the part is in another unit.
     pub unit_factor: Option<f64>,
-    /// Upper bound on the least distance between the tool and a triangle of the part; 0 if they touch.
+    /// Upper bound on the least distance between the tool and a triangle of the part; 0 if they are found to touch. It is
+    /// that of the nearest end of a motion or finding: along a motion it may be less. Infinite for a tool without a profile
+    /// that is not found to touch: its distances have no upper bound.
     pub distance: f64,
     /// Line of the cutter location with that distance, or of the one at which the motion with it ends.
     pub line: usize,
@@ -57,6 +59,8 @@ pub(crate) struct ApproachSearch<'a> {
     diameter: f64,
     /// The least distance so far.
     distance: f64,
+    /// False if that is only a lower bound, of a tool without a profile.
+    is_measured: bool,
     /// The line of that distance.
     line: usize,
     /// A lower bound on the distance over all motions so far; `None` if one comes, or may come, as near as the diameter.
@@ -88,6 +92,7 @@ impl<'a> ApproachSearch<'a> {
             symmetry: info.symmetry,
             diameter: 2.0 * radius * info.unit.factor_to(verifier.bvh.unit()),
             distance: f64::INFINITY,
+            is_measured: false,
             line: 0,
             clearance: Some(f64::INFINITY),
             tips: [None; 2],
@@ -115,12 +120,15 @@ impl<'a> ApproachSearch<'a> {
         if self.line == 0 {
             self.line = moves.first().map_or(0, |step| step.line);
         }
-        let touching = findings.iter().find(|found| {
-            matches!(found.kind, FindingKind::Deep { .. } | FindingKind::Inside { .. })
-        });
-        if let (true, Some(found)) = (self.distance > 0.0, touching) {
-            (self.distance, self.line) = (0.0, found.line);
-            self.clearance = None;
+        for found in findings {
+            match found.kind {
+                FindingKind::Deep { .. } | FindingKind::Inside { .. } => {
+                    self.come(0.0, found.line);
+                    self.clearance = None;
+                }
+                FindingKind::Near { distance, .. } => self.come(distance.high, found.line),
+                FindingKind::Undecided { .. } | FindingKind::Ambiguous(_) => {}
+            }
         }
         for step in moves {
             // No motion comes nearer than one that touches.
@@ -128,6 +136,13 @@ impl<'a> ApproachSearch<'a> {
                 return;
             }
             self.add_move(step);
+        }
+    }
+
+    /// Takes a distance at which the tool is, if none before is as small.
+    fn come(&mut self, distance: f64, line: usize) {
+        if distance < self.distance || (distance == self.distance && !self.is_measured) {
+            (self.distance, self.is_measured, self.line) = (distance, true, line);
         }
     }
 
@@ -185,7 +200,7 @@ impl<'a> ApproachSearch<'a> {
             program: all.unwrap_or([Point3::origin(); 2]),
             travel: self.travel,
             unit_factor: feed.and_then(|feed| unit_factor(part, feed, self.diameter)),
-            distance: self.distance,
+            distance: if self.is_measured { self.distance } else { f64::INFINITY },
             line: self.line,
             diameter: self.diameter,
             proved_clearance: self.clearance.filter(|bound| bound.is_finite()),
@@ -195,18 +210,18 @@ impl<'a> ApproachSearch<'a> {
     /// Queries the distance at a pose, and returns a lower bound on it.
     fn query(&mut self, pose: &Pose, line: usize) -> f64 {
         let tolerance = TOLERANCE_FRACTION * self.diameter;
-        let Interval { mut low, mut high } = self.certifier.clearance(pose, tolerance).distance;
-        if high == f64::INFINITY {
-            // A tool without a profile (a field) gives no upper bound on the distance. A lower bound of 0 is
-            // refined.
-            if low == 0.0 {
-                let finer = TOLERANCE_FRACTION * TOLERANCE_FRACTION * tolerance;
-                Interval { low, .. } = self.certifier.clearance(pose, finer).distance;
-            }
-            high = low;
+        let Interval { mut low, high } = self.certifier.clearance(pose, tolerance).distance;
+        if high < f64::INFINITY {
+            self.come(high, line);
+            return low;
         }
-        if high < self.distance {
-            (self.distance, self.line) = (high, line);
+        // A tool without a profile has no upper bound on its distance. A lower bound of 0 is refined.
+        if low == 0.0 {
+            let finer = TOLERANCE_FRACTION * TOLERANCE_FRACTION * tolerance;
+            Interval { low, .. } = self.certifier.clearance(pose, finer).distance;
+        }
+        if low < self.distance {
+            (self.distance, self.is_measured, self.line) = (low, false, line);
         }
         low
     }

@@ -259,6 +259,24 @@ fn rejects_unsupported_tools_and_arguments() {
     assert_eq!(error.code(), "P0605", "{error}");
 }
 
+/// Both ends of the motion are less than the diameter from the pillar, and its middle is 1 mm above it.
+#[test]
+fn the_nearest_approach_is_that_of_ends_and_findings() {
+    let text = "-12,0,1,0,0,1\n12,0,1,0,0,1\n";
+    let at_ends = check(&pillar(), text, 0.0, &[]).approach;
+    assert!((5.0..5.1).contains(&at_ends.distance) && !at_ends.is_far(), "{at_ends:?}");
+    let near = check(&pillar(), text, 0.0, &[("ball", -2.0)]).approach;
+    assert!((1.0..1.01).contains(&near.distance), "{near:?}");
+    // The depth of a point outside a tool without a profile bounds its distance only from below.
+    let bvh = TriangleBvh::new(&pillar());
+    let distance = |text: &str| {
+        let program = ClData::parse(text, "a.csv").expect("a program");
+        let verifier = Verifier::new(&bvh, &BallByRegions).expect("proved");
+        verifier.check(&program).expect("it can be checked").approach.distance
+    };
+    assert_eq!([text, "-12,0,-1,0,0,1\n12,0,-1,0,0,1\n"].map(distance), [f64::INFINITY, 0.0]);
+}
+
 #[test]
 fn findings_are_ordered_and_reproducible() {
     let rows: String = (0..150)

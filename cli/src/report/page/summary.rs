@@ -145,6 +145,7 @@ fn travel(pair: &PairReport, number: Option<u32>, unit: Unit) -> [String; 3] {
     let approach = &report.approach;
     let nearest = match (approach.distance, approach.line) {
         (0.0, line) => format!("the tool touches the part, first at line {line}"),
+        (f64::INFINITY, _) => "the tool has no profile: its distance is not known".into(),
         (distance, line) => {
             format!("the tool comes within {} of the part, line {line}", unit.format(distance))
         }
