@@ -114,14 +114,8 @@ struct Skip {
 
 impl Speed {
     fn skipped(&self) -> Result<String, Box<dyn Error>> {
-        let on_one_core = [
-            self.outputs()?,
-            self.points()?,
-            self.regions(),
-            self.parts()?,
-            self.frames()?,
-            self.surfaces()?,
-        ];
+        let on_one_core =
+            [self.outputs()?, self.points()?, self.regions(), self.parts()?, self.surfaces()?];
         let rows = on_one_core.into_iter().chain([self.free_space()?, self.readings()?]);
         let mut body = String::from(
             "Each row does the same work in two ways, in turns, both with this library: as it does it, and as if it could not skip this. \
@@ -129,11 +123,11 @@ impl Speed {
              | stage | what is skipped | step | skipping | not skipping | saves |\n|---|---|---|--:|--:|--:|\n",
         );
         for Skip { stage, skipped, step, times: [with, without] } in rows {
-            // A sum with 0 turns -0 into 0.
-            let saved = (100.0 * (1.0 - with / without)).round() + 0.0;
+            let saved = (100.0 * (1.0 - with / without)).round();
+            let saved = if saved > 0.0 { format!("{saved:.0} %") } else { "nothing".into() };
             writeln!(
                 body,
-                "| {stage} | {skipped} | {step} | {with:.3} | {without:.3} | {saved:.0} % |"
+                "| {stage} | {skipped} | {step} | {with:.3} | {without:.3} | {saved} |"
             )?;
         }
         body += "\nTools are skipped before anything runs: a crate compiles those that it names (feature by feature of `touchoff-tools`), and a \
@@ -249,38 +243,6 @@ impl Speed {
             stage: "parts",
             skipped: "relative poses of parts that are out of reach as a whole",
             step: "wrench at one of 64 parts",
-            times,
-        })
-    }
-
-    /// A part that stands in its own frame, and one that is moved by a frame.
-    fn frames(&self) -> Result<Skip, Box<dyn Error>> {
-        let part = points_of(&tube(), 20_000)?;
-        let poses = poses(ScenePath::Outside);
-        let mut scenes = [Pose::default(), shift(1e-3)].map(|frame| {
-            let mut scene = Parts::new(Unit::Millimetre);
-            scene.add_part(&part, frame).map(|_| {
-                let tool = scene.add_tool(&Fig73Exact);
-                (scene, tool)
-            })
-        });
-        let [Ok((still, still_tool)), Ok((moved, moved_tool))] = &mut scenes else {
-            return Err("a scene refuses its part".into());
-        };
-        let times = self.race(
-            |k| {
-                still.move_tool(*still_tool, poses[k]);
-                still.wrench(*still_tool)
-            },
-            |k| {
-                moved.move_tool(*moved_tool, poses[k]);
-                moved.wrench(*moved_tool)
-            },
-        );
-        Ok(Skip {
-            stage: "frames",
-            skipped: "the way to a part's frame and back, where it is the world's",
-            step: "wrench, `outside`",
             times,
         })
     }
