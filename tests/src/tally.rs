@@ -36,9 +36,6 @@ impl Tally {
     }
 
     /// Asserts that there is no finding of a name.
-    ///
-    /// # Panics
-    /// If there is one.
     pub fn assert_none(&self, name: &str) {
         let found = self.findings.iter().filter(|(known, _)| *known == name);
         let found: Vec<&String> = found.map(|(_, text)| text).collect();

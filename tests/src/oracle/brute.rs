@@ -95,9 +95,6 @@ pub struct Answer {
 
 impl<'a> Query<'a> {
     /// Creates a query with the thesis's law, one unit, and torque about the tip.
-    ///
-    /// # Panics
-    /// If the lists differ in length.
     pub fn new(
         oracle: &'a dyn Oracle,
         pose: Pose,

@@ -123,9 +123,6 @@ pub fn all() -> Vec<Box<dyn Oracle>> {
 }
 
 /// Returns the oracle of a tool of the library.
-///
-/// # Panics
-/// If there is none of that name.
 pub fn of(name: &str) -> Box<dyn Oracle> {
     let known = thesis().into_iter().find(|oracle| oracle.name() == name);
     known.unwrap_or_else(|| Box::new(Nearest::of(name)))

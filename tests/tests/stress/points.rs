@@ -32,9 +32,6 @@ pub(crate) fn points(oracle: &dyn Oracle, count: usize, seed: u64) -> Vec<[f64; 
 }
 
 /// Returns the points with the largest known errors of a tool.
-///
-/// # Panics
-/// If a line of the list is not a name and three numbers.
 fn hard_points(tool: &str) -> impl Iterator<Item = [f64; 3]> {
     let coordinate = |word: &str| word.parse().expect("a coordinate");
     let line = move |line: &str| {

@@ -19,9 +19,6 @@ fn top_height(x: f64, y: f64) -> f64 {
 
 /// Returns a block with this top, in mm, closed and oriented outward. Its top has `squares` squares per side; its sides
 /// and its bottom are divided into strips.
-///
-/// # Errors
-/// If `squares` is 0.
 pub(super) fn relief(squares: u32) -> Result<Mesh, MeshError> {
     let n = squares;
     let coordinate = |k: u32| WIDTH * (f64::from(k) / f64::from(n) - 0.5);

@@ -64,9 +64,6 @@ impl Subject {
 }
 
 /// Returns every library tool, sorted by name.
-///
-/// # Panics
-/// If the library lacks a tool that is restated.
 pub(crate) fn subjects() -> Vec<Subject> {
     let find = |name: &str| touchoff_tools::find(name).expect("a tool of the library");
     let mut subjects: Vec<Subject> = profiles::tools()
