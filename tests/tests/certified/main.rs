@@ -41,6 +41,7 @@ mod spinning;
 mod supports;
 mod sweeps;
 mod trajectories;
+mod verdicts;
 mod zoomed;
 
 use nalgebra::{Point3, Vector3};

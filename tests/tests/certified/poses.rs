@@ -2,6 +2,7 @@
 
 use crate::brute::BruteForce;
 use crate::pose_at;
+use crate::verdicts::moved;
 use nalgebra::{Point3, Vector3};
 use touchoff::mesh::shapes;
 use touchoff::{Mesh, Pose, TriangleId, Unit};
@@ -16,8 +17,7 @@ pub(crate) fn bumpy(half: f64, divisions: u32) -> Mesh {
         let wave = 1.5 * (0.4 * p.x).sin() * (0.3 * p.y).cos();
         Point3::new(p.x, p.y, wave + rng.between(-0.3, 0.3))
     };
-    let vertices = flat.vertices().iter().map(raise);
-    Mesh::new(vertices, flat.triangles().to_vec(), Unit::Millimetre).expect("a sheet")
+    moved(&flat, raise)
 }
 
 /// Returns a random point of the tool's surface and the outward direction there, both as `[d, z]`.

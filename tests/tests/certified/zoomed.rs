@@ -78,18 +78,16 @@ impl Pair<'_, DepthOracle> {
     fn compare_zoomed(&self, poses: usize, samples: u64) -> Tally {
         let mut rng = Rng::new(self.seed);
         let (mesh, length) = (&self.part.mesh, self.length());
-        let [radius, height] = self.oracle.oracle().extent();
+        let [radius, height] = self.oracle.oracle.extent();
         let size = radius.max(height) * length;
-        let (tolerance, margin) = (self.oracle.tolerance(size), self.oracle.reach_margin(size));
+        let (tolerance, margin) = (self.oracle.tolerance(size), self.oracle.reach_margin * size);
         let [low, high] = mesh.bounds();
         let part_size = (high - low).norm() + low.coords.amax().max(high.coords.amax());
         let rounding = 64.0 * f64::EPSILON * (size + part_size);
         let mut certifier =
             Certifier::new(&self.part.bvh, self.tool).expect("a tool that is proved");
-        let brute = match &self.oracle {
-            DepthOracle::Profile(nearest) => Some(BruteForce::new(mesh, nearest, length)),
-            DepthOracle::Field(_) => None,
-        };
+        let profile = self.oracle.profile.as_ref();
+        let brute = profile.map(|nearest| BruteForce::new(mesh, nearest, length));
         let mut tally = Tally::default();
         for _ in 0..poses {
             let pose = match &brute {
@@ -119,7 +117,7 @@ impl Pair<'_, DepthOracle> {
         let [a, b, c] = mesh.triangle(TriangleId(id));
         let (v, w) = (rng.between(0.0, 0.5), rng.between(0.0, 0.5));
         let target = a + v * (b - a) + w * (c - a);
-        let [radius, height] = self.oracle.oracle().extent();
+        let [radius, height] = self.oracle.oracle.extent();
         let (d, direction) = (rng.between(0.0, radius), rng.direction());
         let inside =
             Vector3::new(d * direction[0], d * direction[1], rng.between(0.0, height)) * length;
@@ -139,7 +137,7 @@ impl Pair<'_, DepthOracle> {
         let mut search = Search { best: Vec::new(), evaluations: 0 };
         let mut reach = self.bisect(&triangles, samples / 2, &mut search);
         let Search { mut best, mut evaluations } = search;
-        let [radius, height] = self.oracle.oracle().extent();
+        let [radius, height] = self.oracle.oracle.extent();
         let size = radius.max(height);
         let rounds = ((1e-15 * size / reach).ln() / SHRINK_FACTOR.ln()).ceil().max(1.0) as u64;
         for round in 0..rounds {
@@ -190,7 +188,7 @@ impl Pair<'_, DepthOracle> {
                 }
             }
         }
-        let extent = self.oracle.oracle().extent();
+        let extent = self.oracle.oracle.extent();
         (4.0 * reach).min(extent[0].max(extent[1]))
     }
 
@@ -208,7 +206,7 @@ impl Pair<'_, DepthOracle> {
         search.insert(Sample { depth, triangle, weights });
         let radii = corners.map(|corner| distance(centroid, point(&triangles[triangle], corner)));
         let radius = radii[0].max(radii[1]).max(radii[2]);
-        let lipschitz = self.oracle.lipschitz_bound();
+        let lipschitz = self.oracle.lipschitz_bound;
         // Outside, the depth is minus the distance, which is 1-Lipschitz; it can be steeper only inside.
         let bound =
             if depth < 0.0 { lipschitz * (depth + radius) } else { depth + lipschitz * radius };
@@ -218,7 +216,7 @@ impl Pair<'_, DepthOracle> {
     /// Returns the triangles whose boxes overlap the tool's box, in the tool's frame and unit.
     fn nearby_triangles(&self, pose: &Pose) -> Vec<[Point; 3]> {
         let (mesh, length) = (&self.part.mesh, self.length());
-        let [radius, height] = self.oracle.oracle().extent();
+        let [radius, height] = self.oracle.oracle.extent();
         let to_tool_frame = |p| to_tool(pose, length, p);
         let overlaps = |corners: &[Point; 3]| {
             let tool_box = [[-radius, radius], [-radius, radius], [0.0, height]];
