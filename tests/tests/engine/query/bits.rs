@@ -83,10 +83,8 @@ fn compiled_and_interpreted_tools_give_the_same_bits() {
             for (k, pose) in random_poses(&part, &*oracle, 24, 6).iter().enumerate() {
                 let (law, weights) = LAWS_AND_WEIGHTS[k % 6];
                 let by = |tool| {
-                    formatted_results(
-                        &mut Probe::new(&part, tool).with_law(law).with_weights(weights),
-                        pose,
-                    )
+                    let probe = Probe::new(&part, tool).with_law(law);
+                    formatted_results(&mut probe.with_weights(weights), pose)
                 };
                 assert_eq!(by(tool), by(&interpreted), "{name}");
             }

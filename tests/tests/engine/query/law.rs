@@ -102,10 +102,8 @@ fn one_contact_agrees_with_a_hand_calculation() {
         assert_eq!(wrench.force, Vector3::new(0.0, 0.0, force));
         assert_eq!(wrench.torque, Vector3::new(0.0, -3.0 * force, 0.0));
         assert_eq!((wrench.depth(), wrench.integral, wrench.energy), (0.25, 0.5, 0.0625));
-        assert_eq!(
-            wrench.deepest.map(|deepest| deepest.point),
-            Some(Point3::new(10.0, 20.0, 30.0))
-        );
+        let deepest = wrench.deepest.expect("a contact").point;
+        assert_eq!(deepest, Point3::new(10.0, 20.0, 30.0));
     }
 }
 

@@ -9,12 +9,8 @@ use touchoff_tests::oracle::rng::Rng;
 /// Returns a pose of random orientation that brings the tool's own point `in_tool` to `at`.
 pub(crate) fn bringing(in_tool: Vector3<f64>, at: Point3<f64>, rng: &mut Rng) -> Pose {
     let turned = Pose::from_quaternion(Point3::origin(), rng.quaternion()).expect("a pose");
-    Pose::from_quaternion(at - turned.rotation() * in_tool, quaternion_of(&turned)).expect("a pose")
-}
-
-fn quaternion_of(pose: &Pose) -> [f64; 4] {
-    let q = pose.to_isometry().rotation.coords;
-    [q.x, q.y, q.z, q.w]
+    let quaternion = turned.to_isometry().rotation.coords.into();
+    Pose::from_quaternion(at - turned.rotation() * in_tool, quaternion).expect("a pose")
 }
 
 /// Returns a pose about a part: one in eight far off, the others with some point of the part in the tool or hardly

@@ -73,11 +73,8 @@ fn stiffness_agrees_with_finite_differences() {
             let relative_errors = relative_errors(&part, tool, &*oracle, law);
             assert!(relative_errors.len() >= 20, "{}: {}", oracle.name(), relative_errors.len());
             let ninth_decile = relative_errors[relative_errors.len() * 9 / 10];
-            assert!(
-                ninth_decile < 1e-6,
-                "{}, {law}: {ninth_decile:e} of {relative_errors:?}",
-                oracle.name()
-            );
+            let name = oracle.name();
+            assert!(ninth_decile < 1e-6, "{name}, {law}: {ninth_decile:e} of {relative_errors:?}");
         }
     }
 }

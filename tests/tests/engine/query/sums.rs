@@ -51,14 +51,9 @@ fn sums_keep_the_stated_rounding_bound() {
                 let stated = wrench.rounding;
                 let [by_force, by_torque] =
                     [distance(&force, wrench.force), distance(&torque, wrench.torque)];
-                assert!(
-                    by_force <= stated.force + LISTED_BOUND * sizes[0],
-                    "{by_force:e} {stated:?}"
-                );
-                assert!(
-                    by_torque <= stated.torque + LISTED_BOUND * sizes[1],
-                    "{by_torque:e} {stated:?}"
-                );
+                let [force, torque] = [stated.force, stated.torque];
+                assert!(by_force <= force + LISTED_BOUND * sizes[0], "{by_force:e} {stated:?}");
+                assert!(by_torque <= torque + LISTED_BOUND * sizes[1], "{by_torque:e} {stated:?}");
                 // Some hundred units of roundoff, not more.
                 let all = sizes[0] + wrench.integral;
                 assert!(stated.force <= 1e-13 * all * (1.0 + wrench.colliding as f64 / 100.0));
