@@ -5,7 +5,7 @@ use crate::truth::Subject;
 use crate::{check_tools, extent};
 use nalgebra::{Point3, Vector3};
 use std::error::Error;
-use std::fmt::Display;
+use std::fmt::Debug;
 use touchoff::{Cloud, CloudError, Mesh, Part, Pose, Probe, Sampling, TriangleId, Unit};
 use touchoff_tests::oracle::rng::Rng;
 
@@ -95,14 +95,12 @@ fn extreme_input_is_accepted() {
 
 #[track_caller]
 fn refused<T, E>(outcome: Result<T, E>) {
-    assert!(outcome.err().is_some(), "this input was accepted");
+    assert!(outcome.is_err(), "this input was accepted");
 }
 
 #[track_caller]
-fn accepted<T, E: Display>(outcome: Result<T, E>) {
-    if let Err(error) = outcome {
-        panic!("this input was refused: {error}");
-    }
+fn accepted<T, E: Debug>(outcome: Result<T, E>) {
+    outcome.expect("this input is sensible");
 }
 
 struct Lists {
