@@ -1,8 +1,8 @@
 //! Degenerate parts, tolerances and budgets.
 
 use crate::brute::BruteForce;
+use crate::motions::bumpy;
 use crate::pair::{Part, generated_parts};
-use crate::poses::bumpy;
 use crate::verdicts::{certifier, deeper, triangles};
 use crate::{UP, motion, plate, pose, soup, tool};
 use nalgebra::Point3;

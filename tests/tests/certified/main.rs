@@ -34,7 +34,6 @@ mod limits;
 mod motions;
 mod overhang;
 mod pair;
-mod poses;
 mod ring_of_ties;
 mod rounding;
 mod spinning;

@@ -1,7 +1,7 @@
 //! The same bits at every SIMD level, from a fresh probe and a used one, compiled or interpreted.
 
 use super::compare::{LAWS_AND_WEIGHTS, tools};
-use super::{parts, poses};
+use super::parts;
 use touchoff::tool::Interpreted;
 use touchoff::{Level, Part, Pose, Probe, Tool};
 use touchoff_tests::evaluations::levels;
@@ -26,7 +26,7 @@ fn parts() -> Vec<Part> {
 
 fn random_poses(part: &Part, oracle: &dyn Oracle, count: usize, seed: u64) -> Vec<Pose> {
     let mut rng = Rng::new(seed);
-    (0..count).map(|k| poses::about(part, oracle, k, &mut rng)).collect()
+    (0..count).map(|k| parts::about(part, oracle, k, &mut rng)).collect()
 }
 
 #[test]

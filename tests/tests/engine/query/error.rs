@@ -1,6 +1,6 @@
 //! The error bounds that a probe states, against the depth of the points that were given.
 
-use super::{parts, poses};
+use super::parts;
 use nalgebra::{Point3, Vector3};
 use touchoff::TriangleId;
 use touchoff::tool::Interpreted;
@@ -78,7 +78,7 @@ fn depths_of_points_that_are_stored_exactly_keep_the_bound() {
             let [x, y] = [0; 2].map(|_| rng.between(-2.0, 2.0));
             let own = Vector3::new(x, y, rng.between(heights[0], heights[1]));
             let at = Point3::from(10.0 * parts::direction(&mut rng));
-            let pose = poses::bringing(own, at, &mut rng);
+            let pose = parts::bringing(own, at, &mut rng);
             let part = parts::identical(at, 1);
             let mut probe = Probe::new(&part, tool);
             let stated = probe.rounding_error_bound().expect("its depth is bounded");
