@@ -61,11 +61,8 @@ impl Checks {
             (quantity.worst, quantity.place) = (magnitude, place());
         }
         if magnitude > limit && self.misses.len() < DESCRIBED_MISSES {
-            self.misses.push(format!(
-                "{}: {name} is {value:?}, above {limit}, at {}",
-                self.tool,
-                place()
-            ));
+            let (tool, place) = (&self.tool, place());
+            self.misses.push(format!("{tool}: {name} is {value:?}, above {limit}, at {place}"));
         }
     }
 

@@ -184,10 +184,6 @@ impl Oracle for Nearest {
         })
     }
 
-    fn gradient(&self, p: [f64; 3]) -> Option<[f64; 3]> {
-        Some(self.evaluate(p)?.direction.map(|c| -c))
-    }
-
     fn signed_distance(&self, p: [f64; 3]) -> f64 {
         -self.profile.depth(&Meridian::of(p).dz)
     }
