@@ -30,6 +30,13 @@ impl Tally {
         self.findings.push((name, text));
     }
 
+    /// Adds a finding if something occurred.
+    pub fn never(&mut self, name: &'static str, occurred: bool, text: impl Fn() -> String) {
+        if occurred {
+            self.find(name, text());
+        }
+    }
+
     /// Returns a count; 0 for a name that was never seen.
     pub fn count(&self, name: &str) -> u64 {
         self.counts.iter().find(|(known, _)| *known == name).map_or(0, |(_, count)| *count)

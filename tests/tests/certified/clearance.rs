@@ -1,12 +1,12 @@
 //! Clearance of a tool, checked against known geometry and against the points of a fine raster.
 
-use crate::verdicts::certifier;
+use crate::verdicts::{certifier, triangles};
 use crate::{UP, block, plate, pose, to_tool};
 use nalgebra::Vector3;
 use std::sync::Arc;
 use touchoff::certify::{Certifier, TriangleBvh};
 use touchoff::mesh::shapes;
-use touchoff::{Interval, Mesh, Pose, Tool, TriangleId, Unit};
+use touchoff::{Interval, Mesh, Pose, Tool, Unit};
 use touchoff_tests::checks::assert_contains;
 use touchoff_tests::fixtures::drawn;
 use touchoff_tests::oracle::rng::Rng;
@@ -47,8 +47,7 @@ fn random_pose(half: f64, rng: &mut Rng) -> Pose {
 /// Returns the distance of a raster of a part's points, which is at least that of the part, and a bound on the excess.
 fn raster_distance(mesh: &Mesh, oracle: &Nearest, pose: &Pose) -> [f64; 2] {
     let (mut min_distance, mut spacing) = (f64::INFINITY, 0f64);
-    for id in 0..mesh.triangles().len() as u32 {
-        let [a, b, c] = mesh.triangle(TriangleId(id));
+    for [a, b, c] in triangles(mesh) {
         let (u, v) = ((b - a) / f64::from(DIVISIONS), (c - a) / f64::from(DIVISIONS));
         spacing = spacing.max(u.norm()).max(v.norm()).max((v - u).norm());
         for i in 0..=DIVISIONS {

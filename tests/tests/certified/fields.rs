@@ -1,6 +1,6 @@
 //! Tools known only by their depth field and its Lipschitz bound.
 
-use crate::verdicts::{certifier, deeper, touching};
+use crate::verdicts::{certifier, deeper, touching, triangles};
 use crate::{UP, block, motion, plate, pose, to_tool, tool};
 use nalgebra::{Point3, Vector3};
 use touchoff::certify::{
@@ -8,7 +8,7 @@ use touchoff::certify::{
 };
 use touchoff::mesh::shapes;
 use touchoff::tool::Interpreted;
-use touchoff::{Interval, Mesh, Pose, SurfaceId, Tool, TriangleId, Unit};
+use touchoff::{Interval, Mesh, Pose, SurfaceId, Tool, Unit};
 use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::{self, Oracle};
 
@@ -45,12 +45,11 @@ impl Sphere {
 
     /// Returns eight random points of each triangle.
     fn random_points(&self, rng: &mut Rng) -> Vec<Point3<f64>> {
-        let ids = (0..self.mesh.triangles().len() as u32).flat_map(|id| [id; 8]);
-        let random_point = |id: u32| {
-            let ([a, b, c], [v, w]) = (self.mesh.triangle(TriangleId(id)), rng.weights());
+        let random_point = |[a, b, c]: [Point3<f64>; 3]| {
+            let [v, w] = rng.weights();
             a + v * (b - a) + w * (c - a)
         };
-        ids.map(random_point).collect()
+        triangles(&self.mesh).flat_map(|corners| [corners; 8]).map(random_point).collect()
     }
 
     /// Returns the depth of a point in the tool, in mm, and the surface that owns it; `None` outside.

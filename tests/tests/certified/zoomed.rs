@@ -9,6 +9,7 @@ use crate::brute::BruteForce;
 use crate::depth_oracle::{DepthOracle, FIELDS, PROFILES};
 use crate::pair::{Pair, Pairs, is_full_run, parts};
 use crate::to_tool;
+use crate::verdicts::triangles;
 use nalgebra::{Point3, Vector3};
 use std::collections::BTreeMap;
 use touchoff::certify::Certifier;
@@ -100,12 +101,8 @@ impl Pair<'_, DepthOracle> {
             tally.see(IN_CONTACT, max_depth > 0.0);
             tally.see(REACHED, max_depth >= low - margin);
             let case = format!("{self}: [{low:?}, {high:?}], {max_depth:?} at {pose:?}");
-            if high - low > 1.01 * tolerance + 8.0 * rounding {
-                tally.find(WIDER, case.clone());
-            }
-            if max_depth > high + rounding {
-                tally.find(VIOLATIONS, case);
-            }
+            tally.never(WIDER, high - low > 1.01 * tolerance + 8.0 * rounding, || case.clone());
+            tally.never(VIOLATIONS, max_depth > high + rounding, || case.clone());
         }
         tally
     }
@@ -215,7 +212,7 @@ impl Pair<'_, DepthOracle> {
 
     /// Returns the triangles whose boxes overlap the tool's box, in the tool's frame and unit.
     fn nearby_triangles(&self, pose: &Pose) -> Vec<[Point; 3]> {
-        let (mesh, length) = (&self.part.mesh, self.length());
+        let length = self.length();
         let [radius, height] = self.oracle.oracle.extent();
         let to_tool_frame = |p| to_tool(pose, length, p);
         let overlaps = |corners: &[Point; 3]| {
@@ -227,8 +224,8 @@ impl Pair<'_, DepthOracle> {
                 low <= tool_box[axis][1] && high >= tool_box[axis][0]
             })
         };
-        let ids = 0..mesh.triangles().len() as u32;
-        ids.map(|id| mesh.triangle(TriangleId(id)).map(to_tool_frame)).filter(overlaps).collect()
+        let all = triangles(&self.part.mesh).map(|corners| corners.map(to_tool_frame));
+        all.filter(overlaps).collect()
     }
 
     /// Draws a sample in the neighbourhood of another, and replaces that one if the new sample is deeper.

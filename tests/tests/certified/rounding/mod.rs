@@ -121,17 +121,12 @@ impl Validation<'_> {
                 true_depth.to_f64()
             )
         };
-        if high - low - tolerance - rounding - 2.0 * widening > 0.01 * widening {
-            tally.find(WIDER, describe());
-        }
-        if !(0.0 <= low && high.is_finite()) || true_depth > Big::exactly(high) {
-            tally.find(UPPER, format!("above it: {}", describe()));
-        }
+        let excess = high - low - tolerance - rounding - 2.0 * widening;
+        tally.never(WIDER, excess > 0.01 * widening, describe);
+        let is_above = !(0.0 <= low && high.is_finite()) || true_depth > Big::exactly(high);
+        tally.never(UPPER, is_above, describe);
         let Some(NearestPoint { point_on_triangle, distance, rounding_distance }) = nearest else {
-            if low > 0.0 {
-                tally.find(LOWER, format!("no witness: {}", describe()));
-            }
-            return;
+            return tally.never(LOWER, low > 0.0, || format!("no witness: {}", describe()));
         };
         let depth = self.scene.exact_depth(&point_on_triangle);
         if distance > rounding_distance + widening {
