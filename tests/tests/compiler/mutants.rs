@@ -204,31 +204,20 @@ fn detect(original: &Certificate, mutant: &PlannedTool) -> Detection {
         (Some(a), Some(b)) => (a - b).abs() <= 1e-9 * a.abs(),
         (a, b) => a == b,
     };
-    let direction_errors = |certificate: &Certificate| -> Vec<f64> {
-        certificate
-            .regions
-            .iter()
-            .map(|region| region.direction_error.map_or(0.0, |error| error.high))
-            .collect()
-    };
-    let has_larger_error = direction_errors(original)
-        .into_iter()
-        .zip(direction_errors(&certificate))
-        .any(|(a, b)| b > a + 1e-6);
+    let mut regions = original.regions.iter().zip(&certificate.regions);
+    let has_larger_error = regions.any(|(a, b)| {
+        let [a, b] = [a, b].map(|region| region.direction_error.map_or(0.0, |error| error.high));
+        b > a + 1e-6
+    });
     let has_same_bounds = same(original.lower_slope(), certificate.lower_slope())
         && same(original.lipschitz(), certificate.lipschitz());
-    if any_error(&diagnostics) {
-        Detection::Error
-    } else if diagnostics.is_empty() {
-        if has_larger_error || !has_same_bounds {
-            Detection::ByComparison
-        } else {
-            Detection::Undetected
-        }
-    } else if certificate.undecided.is_empty() {
-        Detection::Warning
-    } else {
-        Detection::Undecided
+    let differs = has_larger_error || !has_same_bounds;
+    match (any_error(&diagnostics), diagnostics.is_empty(), certificate.undecided.is_empty()) {
+        (true, ..) => Detection::Error,
+        (false, true, _) if differs => Detection::ByComparison,
+        (false, true, _) => Detection::Undetected,
+        (false, false, true) => Detection::Warning,
+        (false, false, false) => Detection::Undecided,
     }
 }
 

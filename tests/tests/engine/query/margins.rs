@@ -14,10 +14,8 @@ fn compare_surface_points(tool_at: usize, size: f64, offset: f64, seed: u64) -> 
     let mut rng = Rng::new(seed);
     let centre = Point3::from(offset * parts::direction(&mut rng));
     let pose = parts::bringing(Vector3::zeros(), centre, &mut rng);
-    let mut points: Vec<Point3<f64>> = own_points(&*oracle, &mut rng)
-        .into_iter()
-        .map(|q| pose.tip() + pose.rotation() * q)
-        .collect();
+    let own = own_points(&*oracle, &mut rng).into_iter();
+    let mut points: Vec<_> = own.map(|q| pose.tip() + pose.rotation() * q).collect();
     points.extend((0..500).map(|_| Point3::from(parts::vector(&mut rng, size))));
     let normals = points.iter().map(|_| parts::direction(&mut rng)).collect();
     let count = points.len();
