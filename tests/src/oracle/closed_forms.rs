@@ -249,7 +249,8 @@ mod tests {
     /// The gradient law is the slope of the energy, in every contact.
     #[test]
     fn gradient_forces_are_slopes_of_the_energy() {
-        let contacts: [(&str, f64, fn(f64) -> Contact); 5] = [
+        type At = fn(f64) -> Contact;
+        let contacts: [(&str, f64, At); 5] = [
             ("CF1", 1.0, |h| ball_in_plane(1.0, h)),
             ("CF2", 1.0, |h| cylinder_in_plane(1.0, h)),
             ("CF3", 1.0, |h| ball_on_ball(1.0, 4.0, h)),

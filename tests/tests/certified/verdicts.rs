@@ -22,8 +22,10 @@ pub(crate) fn touching(verdict: MotionVerdict) -> (f64, Witness) {
 /// Returns the time, the depth and its bound on the whole motion, where it is deeper than was asked.
 #[track_caller]
 pub(crate) fn deeper(found: Result<MotionDepth, impl Debug>) -> (f64, Interval, f64) {
-    let Ok(MotionDepth::Deeper { at, depth, max_depth, .. }) = found else { panic!("{found:?}") };
-    (at, depth, max_depth)
+    match found {
+        Ok(MotionDepth::Deeper { at, depth, max_depth, .. }) => (at, depth, max_depth),
+        other => panic!("{other:?}"),
+    }
 }
 
 /// Asserts that a verdict is the expected one, or without one that the motion touches.

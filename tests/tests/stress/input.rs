@@ -95,7 +95,7 @@ fn extreme_input_is_accepted() {
 
 #[track_caller]
 fn refused<T, E>(outcome: Result<T, E>) {
-    assert!(outcome.is_err(), "this input was accepted");
+    assert!(outcome.err().is_some(), "this input was accepted");
 }
 
 #[track_caller]

@@ -118,7 +118,8 @@ fn a_tool_inside_the_part_is_inside_whatever_its_margin() {
 fn a_nut_keeps_its_margin_from_all_sides() {
     // The nut's ring is at z = 30, its cone has radii 12.9 to 14, its side has radius 14 up to z = 47.5.
     let diagonal = std::f64::consts::FRAC_1_SQRT_2;
-    let cases: [(&str, fn(f64) -> Mesh); 4] = [
+    type PartAt = fn(f64) -> Mesh;
+    let cases: [(&str, PartAt); 4] = [
         ("ring", |gap| block([7.0, -1.0, 20.0], [9.0, 1.0, 30.0 - gap])),
         ("side", |gap| block([14.0 + gap, -9.0, 35.0], [30.0, 9.0, 40.0])),
         ("end", |gap| block([-9.0, -9.0, 47.5 + gap], [9.0, 9.0, 60.0])),
