@@ -1,5 +1,8 @@
 //! Values compared with their limits.
 
+use std::fmt::Debug;
+use touchoff::Interval;
+
 /// Number of misses per tool that a failing test describes.
 const DESCRIBED_MISSES: usize = 3;
 
@@ -58,11 +61,8 @@ impl Checks {
             (quantity.worst, quantity.place) = (magnitude, place());
         }
         if magnitude > limit && self.misses.len() < DESCRIBED_MISSES {
-            self.misses.push(format!(
-                "{}: {name} is {value:?}, above {limit}, at {}",
-                self.tool,
-                place()
-            ));
+            let (tool, place) = (&self.tool, place());
+            self.misses.push(format!("{tool}: {name} is {value:?}, above {limit}, at {place}"));
         }
     }
 
@@ -122,12 +122,23 @@ pub fn print_worst(item: &str, tools: &[Checks]) {
 }
 
 /// Asserts that no limit was exceeded.
-///
-/// # Panics
-/// With the first misses of each tool.
 pub fn assert_no_misses(tools: &[Checks]) {
     let misses: Vec<&String> = tools.iter().flat_map(|checks| &checks.misses).collect();
     assert!(misses.is_empty(), "{misses:#?}");
+}
+
+/// Asserts that two numbers differ by at most a tolerance.
+#[track_caller]
+pub fn assert_near(found: f64, expected: f64, tolerance: f64, case: impl Debug) {
+    let is_near = (found - expected).abs() <= tolerance;
+    assert!(is_near, "{found:?} is not {expected:?} within {tolerance:e}: {case:?}");
+}
+
+/// Asserts that an interval contains a number and is at most this wide.
+#[track_caller]
+pub fn assert_contains(found: Interval, expected: f64, width: f64, case: impl Debug) {
+    let is_right = found.contains(expected) && found.width() <= width;
+    assert!(is_right, "{expected:?} in {found:?}, at most {width:e} wide: {case:?}");
 }
 
 #[cfg(test)]

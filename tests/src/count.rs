@@ -3,10 +3,8 @@
 use std::env;
 use std::ffi::OsStr;
 
-/// Returns the number of cases to test: that of a variable, or `default` without it.
-///
-/// # Panics
-/// If the variable is no whole number above 0: a typing error must not pass for a long run.
+/// Returns the number of cases to test: that of a variable, or `default` without it. Panics if the variable is no whole
+/// number above 0: a typing error must not pass for a long run.
 pub fn case_count(variable: &str, default: usize) -> usize {
     match count(env::var_os(variable).as_deref(), default) {
         Ok(count) => count,

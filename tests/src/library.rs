@@ -11,9 +11,6 @@ pub fn folder() -> PathBuf {
 }
 
 /// Returns the files of the library's tools, in the order of their names.
-///
-/// # Panics
-/// If the library's folder cannot be read.
 pub fn files() -> Vec<PathBuf> {
     let files = std::fs::read_dir(folder()).expect("the library's folder");
     let mut files: Vec<PathBuf> = files.filter_map(|file| Some(file.ok()?.path())).collect();
@@ -23,43 +20,28 @@ pub fn files() -> Vec<PathBuf> {
 }
 
 /// Reads every tool of the library, in the order of file names.
-///
-/// # Panics
-/// If a file cannot be read.
 pub fn library() -> Vec<Source> {
     let read = |path| Source::read(path).expect("the library has the file");
     files().into_iter().map(read).collect()
 }
 
 /// Returns a compiled tool of the library.
-///
-/// # Panics
-/// If there is none of that name.
 pub fn tool(name: &str) -> &'static dyn Tool {
     touchoff_tools::find(name).unwrap_or_else(|| panic!("the library has no {name}"))
 }
 
 /// Reads a file of the library, by its name without the ending.
-///
-/// # Panics
-/// If the library has no such file.
 pub fn source(name: &str) -> Source {
     Source::read(folder().join(name).with_extension("tool")).expect("the library has the file")
 }
 
 /// Checks a file of the library, by its name without the ending.
-///
-/// # Panics
-/// If the library has no such file.
 pub fn checked(name: &str) -> Box<CheckedTool> {
     let compiled = touchoff_dsl::compile(&source(name));
     compiled.outcome.unwrap_or_else(|refusal| panic!("{name}: {refusal:?}")).tool
 }
 
 /// Compiles a tool of the library from its text, for the interpreter and for proofs.
-///
-/// # Panics
-/// If the library has no tool of that name.
 pub fn read(name: &str) -> (Interpreted, CheckedTool) {
     for source in library() {
         let compiled =

@@ -30,15 +30,19 @@ impl Tally {
         self.findings.push((name, text));
     }
 
+    /// Adds a finding if something occurred.
+    pub fn never(&mut self, name: &'static str, occurred: bool, text: impl Fn() -> String) {
+        if occurred {
+            self.find(name, text());
+        }
+    }
+
     /// Returns a count; 0 for a name that was never seen.
     pub fn count(&self, name: &str) -> u64 {
         self.counts.iter().find(|(known, _)| *known == name).map_or(0, |(_, count)| *count)
     }
 
     /// Asserts that there is no finding of a name.
-    ///
-    /// # Panics
-    /// If there is one.
     pub fn assert_none(&self, name: &str) {
         let found = self.findings.iter().filter(|(known, _)| *known == name);
         let found: Vec<&String> = found.map(|(_, text)| text).collect();

@@ -10,17 +10,11 @@ pub fn compiled(text: impl Into<String>) -> Compiled {
 }
 
 /// Returns the tool of a text, whatever its warnings.
-///
-/// # Panics
-/// If it has an error.
 pub fn tool(text: impl Into<String>) -> Box<CheckedTool> {
     accepted(compiled(text))
 }
 
 /// Returns the tool that was compiled, whatever its warnings.
-///
-/// # Panics
-/// If there is none.
 pub fn accepted(compiled: Compiled) -> Box<CheckedTool> {
     let said = rendered(&compiled);
     compiled.into_tool().unwrap_or_else(|| panic!("{said}"))
@@ -33,9 +27,6 @@ pub fn rendered(compiled: &Compiled) -> String {
 }
 
 /// Returns what was compiled.
-///
-/// # Panics
-/// If it has no error, or more than one.
 #[track_caller]
 pub fn with_one_error(compiled: Compiled) -> Compiled {
     let said = rendered(&compiled);
@@ -44,9 +35,6 @@ pub fn with_one_error(compiled: Compiled) -> Compiled {
 }
 
 /// Asserts that a text is refused, and that all of some words are shown.
-///
-/// # Panics
-/// If it is accepted, or a word is missing.
 #[track_caller]
 pub fn assert_refused(compiled: &Compiled, words: &[&str]) {
     let said = rendered(compiled);
@@ -57,9 +45,6 @@ pub fn assert_refused(compiled: &Compiled, words: &[&str]) {
 }
 
 /// Asserts that each line `items => word | word` is [refused][assert_refused].
-///
-/// # Panics
-/// If one is not.
 #[track_caller]
 pub fn assert_each_refused(cases: &str, compiled: impl Fn(&str) -> Compiled) {
     for case in cases.trim().lines() {
@@ -70,9 +55,6 @@ pub fn assert_each_refused(cases: &str, compiled: impl Fn(&str) -> Compiled) {
 
 /// Asserts that each line `items => message => place` is refused with a message of these words, at a place that begins
 /// so; one without a message has no diagnostics.
-///
-/// # Panics
-/// If one is not.
 pub fn assert_mistakes(cases: &str, text: impl Fn(&str) -> String) {
     let mut wrong = Vec::new();
     for case in cases.lines() {
@@ -90,9 +72,6 @@ pub fn assert_mistakes(cases: &str, text: impl Fn(&str) -> String) {
 }
 
 /// Returns the messages about a text, each with the text of its place.
-///
-/// # Panics
-/// If the text is refused without a word.
 pub fn said(text: &str) -> Vec<(String, String)> {
     let compiled = compiled(text);
     let place = |report: &Diagnostic| compiled.sources.text(report.span).to_owned();

@@ -18,18 +18,12 @@ impl Big {
     }
 
     /// Returns a finite double exactly, to the last bit.
-    ///
-    /// # Panics
-    /// If it is not finite.
     pub fn exactly(value: f64) -> Big {
         let exact = FBig::<HalfEven, 2>::try_from(value).expect("a finite number");
         Big(exact.with_precision(PRECISION).value())
     }
 
     /// Returns the decimal that a double was written as: 12.9 is 129/10.
-    ///
-    /// # Panics
-    /// If it is not finite.
     pub fn decimal(value: f64) -> Big {
         let text = DBig::from_str(&format!("{value}")).expect("a finite number");
         Big(text.with_rounding::<HalfEven>().with_base_and_precision::<2>(PRECISION).value())

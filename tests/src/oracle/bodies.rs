@@ -273,18 +273,10 @@ impl Oracle for Body {
 
     fn evaluate(&self, p: P3<f64>) -> Option<OracleEvaluation> {
         let (owner, depth) = self.nearest(&p);
-        let direction = || self.face(owner).direction(&p);
-        (depth >= 0.0).then(|| OracleEvaluation {
-            owner,
-            depth,
-            magnitude: depth,
-            direction: direction(),
-            niceness: 0.0,
+        (depth >= 0.0).then(|| {
+            let direction = self.face(owner).direction(&p);
+            OracleEvaluation { owner, depth, magnitude: depth, direction, niceness: 0.0 }
         })
-    }
-
-    fn gradient(&self, p: P3<f64>) -> Option<P3<f64>> {
-        Some(self.evaluate(p)?.direction.map(|c| -c))
     }
 
     fn signed_distance(&self, p: P3<f64>) -> f64 {

@@ -5,7 +5,7 @@
 //! agree too.
 
 use super::Oracle;
-use super::triangle::{cross, dot, norm, sub, unit};
+use super::triangle::{cross, dot, norm, sub};
 
 /// The pose of the tool.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,18 +17,6 @@ pub struct Pose {
 }
 
 impl Pose {
-    /// The pose at which the tool's frame is the world's.
-    pub const IDENTITY: Self =
-        Self { tip: [0.0; 3], axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] };
-
-    /// Returns the pose with its tip at `tip` and the spindle along `spindle` (any length but 0), spun arbitrarily.
-    pub fn from_axis(tip: [f64; 3], spindle: [f64; 3]) -> Self {
-        let z = unit(spindle);
-        let reference_axis = if z[0].abs() < 0.6 { [1.0, 0.0, 0.0] } else { [0.0, 1.0, 0.0] };
-        let x = unit(cross(reference_axis, z));
-        Self { tip, axes: [x, cross(z, x), z] }
-    }
-
     /// Rotates a vector from the tool's frame to the world.
     pub fn to_world_frame(&self, v: [f64; 3]) -> [f64; 3] {
         [0, 1, 2].map(|k| v[0] * self.axes[0][k] + v[1] * self.axes[1][k] + v[2] * self.axes[2][k])
@@ -95,9 +83,6 @@ pub struct Answer {
 
 impl<'a> Query<'a> {
     /// Creates a query with the thesis's law, one unit, and torque about the tip.
-    ///
-    /// # Panics
-    /// If the lists differ in length.
     pub fn new(
         oracle: &'a dyn Oracle,
         pose: Pose,
@@ -227,7 +212,8 @@ mod tests {
 
     #[test]
     fn without_contacts_the_wrench_is_zero() {
-        let pose = Pose { tip: [0.0, 0.0, 9.0], ..Pose::IDENTITY };
+        let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let pose = Pose { tip: [0.0, 0.0, 9.0], axes };
         let sphere = Nearest::of("UnitSphere");
         let a = Query::new(&sphere, pose, &[[0.0; 3]], &[[0.0, 0.0, 1.0]], &[1.0]).answer();
         assert_eq!((a.count, a.deepest, a.niceness, a.force), (0, None, None, [0.0; 3]));

@@ -63,7 +63,9 @@ pub trait Oracle: Send + Sync {
 
     /// Returns the gradient of the magnitude inside, in the tool's frame, per unit of the tool's file. For a
     /// magnitude that is the distance this is minus the direction; on the axis it follows the same convention.
-    fn gradient(&self, p: [f64; 3]) -> Option<[f64; 3]>;
+    fn gradient(&self, p: [f64; 3]) -> Option<[f64; 3]> {
+        Some(self.evaluate(p)?.direction.map(|c| -c))
+    }
 
     /// Returns the true signed distance to the solid's surface: negative inside, positive outside.
     fn signed_distance(&self, p: [f64; 3]) -> f64;
@@ -123,9 +125,6 @@ pub fn all() -> Vec<Box<dyn Oracle>> {
 }
 
 /// Returns the oracle of a tool of the library.
-///
-/// # Panics
-/// If there is none of that name.
 pub fn of(name: &str) -> Box<dyn Oracle> {
     let known = thesis().into_iter().find(|oracle| oracle.name() == name);
     known.unwrap_or_else(|| Box::new(Nearest::of(name)))
@@ -199,16 +198,11 @@ pub fn sample_curve(at: impl Fn(f64) -> [f64; 2]) -> Vec<[f64; 2]> {
 mod tests {
     use super::rng::Rng;
     use super::*;
-
-    /// Returns a point of space over `[d, z]`, at a random angle.
-    fn at_random_azimuth([d, z]: [f64; 2], rng: &mut Rng) -> [f64; 3] {
-        let a = rng.between(0.0, std::f64::consts::TAU);
-        [d * a.cos(), d * a.sin(), z]
-    }
+    use crate::points::to_space;
 
     fn random_point(o: &dyn Oracle, rng: &mut Rng) -> [f64; 3] {
         let [d, z] = o.extent();
-        at_random_azimuth([rng.between(0.0, 1.2 * d), rng.between(-0.2 * d, z + 0.2 * d)], rng)
+        to_space([rng.between(0.0, 1.2 * d), rng.between(-0.2 * d, z + 0.2 * d)], rng.azimuth())
     }
 
     #[test]
@@ -271,12 +265,11 @@ mod tests {
                     let rounding = 1e-14 * o.extent()[1].max(1.0);
                     assert!(o.border_distance(p) < rounding, "{} {p:?}", o.name());
                     let mut owners = (0..32).map(|k| {
-                        let (sin, cos) =
-                            (0.1 + f64::from(k) * std::f64::consts::FRAC_PI_8).sin_cos();
-                        let direction =
-                            if o.is_revolved() { [cos, 0.0, sin] } else { rng.direction() };
-                        o.evaluate(displaced(&*o, p, direction.map(|c| 1e-6 * c), 0.0))
-                            .map(|s| s.owner)
+                        let turn = 0.1 + f64::from(k) * std::f64::consts::FRAC_PI_8;
+                        let flat = [turn.cos(), 0.0, turn.sin()];
+                        let step = if o.is_revolved() { flat } else { rng.direction() };
+                        let q = displaced(&*o, p, step.map(|c| 1e-6 * c), 0.0);
+                        o.evaluate(q).map(|s| s.owner)
                     });
                     let first = owners.next().expect("many of them");
                     assert!(owners.any(|other| other != first), "{} {p:?}", o.name());
@@ -300,10 +293,8 @@ mod tests {
                 if owner(a) == owner(b) {
                     continue;
                 }
-                let near = all
-                    .iter()
-                    .map(|c| (c[0] - a[0]).hypot(c[1] - a[1]))
-                    .fold(f64::INFINITY, f64::min);
+                let distances = all.iter().map(|c| (c[0] - a[0]).hypot(c[1] - a[1]));
+                let near = distances.fold(f64::INFINITY, f64::min);
                 let spacing = height / 64.0;
                 assert!(near < 2.0 * step + spacing, "{} {a:?} {near}", o.name());
             }

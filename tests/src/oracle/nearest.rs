@@ -41,15 +41,12 @@ impl Nearest {
             regions: regions(tool, &profile),
             extent: profile.extent()[1],
             profile,
-            niceness: tool.niceness,
+            niceness: tool.niceness.clone(),
             splits: None,
         }
     }
 
     /// Creates the oracle of a restated tool, by its name.
-    ///
-    /// # Panics
-    /// If no restated tool has this name.
     pub fn of(name: &str) -> Self {
         let tool = restated::of(name);
         Self::new(&tool.unwrap_or_else(|| panic!("`{name}` is not restated")))
@@ -177,7 +174,7 @@ impl Oracle for Nearest {
             return None;
         }
         let region = &self.regions[self.profile.owner(near.feature)];
-        let niceness = || (self.niceness)(region.surface, depth, m.dz).max(0.0);
+        let niceness = || self.niceness.at(region.surface, depth, m.dz).max(0.0);
         Some(OracleEvaluation {
             owner: region.index,
             depth,
@@ -185,10 +182,6 @@ impl Oracle for Nearest {
             direction: m.lift(self.profile.direction(near.feature, &m.dz)),
             niceness: if region.cutting { niceness() } else { 0.0 },
         })
-    }
-
-    fn gradient(&self, p: [f64; 3]) -> Option<[f64; 3]> {
-        Some(self.evaluate(p)?.direction.map(|c| -c))
     }
 
     fn signed_distance(&self, p: [f64; 3]) -> f64 {

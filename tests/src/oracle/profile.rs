@@ -44,9 +44,6 @@ pub struct Profile<T> {
 
 impl<T: Real> Profile<T> {
     /// Creates the profile of segments, each of which begins where the last ends.
-    ///
-    /// # Panics
-    /// If there is none.
     pub fn new(segments: Vec<Segment<T>>) -> Profile<T> {
         assert!(!segments.is_empty(), "a profile has segments");
         let count = segments.len();
@@ -68,17 +65,11 @@ impl<T: Real> Profile<T> {
 
     /// Reads the profile of vertices separated by commas: `d z` after a line, `d z about c h` after an arc with its centre,
     /// `d z radius r` or `d z hollow radius r` after one with its radius.
-    ///
-    /// # Panics
-    /// If the text is none.
     pub fn parse(text: &str) -> Profile<T> {
         Profile::read(text, |word| T::decimal(word.parse().expect("a number")))
     }
 
     /// Reads the profile of [these vertices][Profile::parse], each of whose words stands for a number.
-    ///
-    /// # Panics
-    /// If the text is none.
     pub fn read(text: &str, number: impl Fn(&str) -> T) -> Profile<T> {
         let numbers = |text: &str| -> Vec<T> { text.split_whitespace().map(&number).collect() };
         let point = |text: &str| <Point<T>>::try_from(numbers(text)).expect("two coordinates");

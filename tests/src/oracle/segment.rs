@@ -95,11 +95,6 @@ impl<T: Real> Segment<T> {
         self.circle.as_ref().map(|circle| &circle.centre)
     }
 
-    /// Returns whether the segment is an arc that bulges out of the material.
-    pub fn is_convex(&self) -> bool {
-        self.circle.as_ref().is_some_and(|circle| circle.convex)
-    }
-
     /// Returns the unit vector of travel at a point of the segment.
     pub fn tangent(&self, at: &Point<T>) -> Point<T> {
         left(&self.outward(at))

@@ -31,11 +31,8 @@ pub(crate) fn no_cycle_allocates() {
         session(&part, &Probe::new(&part, &Cone).with_law(law), "compiled");
         session(&part, &Probe::new(&part, &Cone as &dyn Tool).with_law(law), "by its table");
         session(&part, &Probe::new(&part, &interpreted).with_law(law), "interpreted");
-        session(
-            &part,
-            &Probe::new(&part, &interpreted as &dyn Tool).with_law(law),
-            "interpreted, dyn",
-        );
+        let as_dyn = Probe::new(&part, &interpreted as &dyn Tool).with_law(law);
+        session(&part, &as_dyn, "interpreted, dyn");
     }
 }
 
@@ -63,14 +60,9 @@ fn session<T: BatchEvaluator + ?Sized>(part: &Part, probe: &Probe<'_, T>, name: 
         assert!(growing > 120, "{name}, {rendering:?}: {growing}");
         // The bound that `Session::new` states; the memory that an interpreted tool keeps is the same for all
         // parts.
-        let bytes_per_point = reserved as f64 / POINTS as f64;
-        println!(
-            "{name}, {rendering:?}: {bytes_per_point:.1} bytes per point, {growing} cycles larger"
-        );
-        assert!(
-            name.starts_with("interpreted") || bytes_per_point < 128.0,
-            "{name}: {bytes_per_point}"
-        );
+        let bytes = reserved as f64 / POINTS as f64;
+        println!("{name}, {rendering:?}: {bytes:.1} bytes per point, {growing} cycles larger");
+        assert!(name.starts_with("interpreted") || bytes < 128.0, "{name}: {bytes}");
     }
 }
 

@@ -77,11 +77,8 @@ fn a_certifier() {
         assert!((first - second).abs() <= 1e-6 * poses.len() as f64);
         let touches = |pose: &&Pose| certifier.deepest(pose, 1e-6).depth.low > 1e-3;
         let touching: Vec<Pose> = poses.iter().filter(touches).copied().collect();
-        let mut all_touch = || {
-            touching
-                .iter()
-                .all(|pose| matches!(certifier.check_pose(pose), PoseVerdict::Touching(_)))
-        };
+        let mut is_touching = |pose| matches!(certifier.check_pose(pose), PoseVerdict::Touching(_));
+        let mut all_touch = || touching.iter().all(&mut is_touching);
         assert!(all_touch());
         let region = Region::new(COUNTED);
         let again = all_touch();
@@ -122,10 +119,8 @@ fn a_haptic_loop() {
             let change = region.change();
             let was_published = latest.read().is_some();
             // Two histograms, before the first cycle.
-            assert_eq!(
-                (change.allocations, change.reallocations, was_published),
-                (HISTOGRAMS, 0, true)
-            );
+            assert_eq!((change.allocations, change.reallocations), (HISTOGRAMS, 0));
+            assert!(was_published);
             assert!(second > 0.0 && samples.count() == 2 * cycles as usize);
         }
     }

@@ -61,10 +61,6 @@ pub(crate) struct MotionSample {
     pub(crate) depth: f64,
 }
 
-fn point(p: Point3<f64>) -> Point {
-    [p.x, p.y, p.z]
-}
-
 impl BruteForce<'_> {
     fn evaluation(&self, frame: &ToolFrame, p: Point) -> f64 {
         self.depth(self.to_tool_frame(frame, Point3::from(p))) * self.length
@@ -96,17 +92,16 @@ impl BruteForce<'_> {
             if bound < best.depth {
                 break;
             }
-            for id in TRIANGLES_PER_GROUP * group
-                ..(TRIANGLES_PER_GROUP * (group + 1)).min(self.bounding_balls.len())
-            {
-                let ball = &self.bounding_balls[id];
+            let first = TRIANGLES_PER_GROUP * group;
+            let members = self.bounding_balls.iter().enumerate().skip(first);
+            for (id, ball) in members.take(TRIANGLES_PER_GROUP) {
                 if depth_bound(ball) < best.depth {
                     continue;
                 }
-                let depth = self.evaluation(&frame, point(ball.centre));
+                let depth = self.evaluation(&frame, ball.centre.into());
                 candidates.push((depth + ball.radius, id));
                 if depth > best.depth {
-                    best = MotionSample { t, triangle: id, point: point(ball.centre), depth };
+                    best = MotionSample { t, triangle: id, point: ball.centre.into(), depth };
                 }
             }
         }
@@ -119,8 +114,8 @@ impl BruteForce<'_> {
             let sample = self.sample(&frame, id, SAMPLES_PER_TRIANGLE, value, rng)[0];
             if sample.value > best.depth {
                 let offset = pose.rotation() * Vector3::from(sample.point) * self.length;
-                let (point, depth) = (point(pose.tip() + offset), sample.value);
-                best = MotionSample { t, triangle: id, point, depth };
+                let point = (pose.tip() + offset).into();
+                best = MotionSample { t, triangle: id, point, depth: sample.value };
             }
         }
         best
@@ -165,12 +160,11 @@ impl BruteForce<'_> {
         step: f64,
         rng: &mut Rng,
     ) -> MotionSample {
-        let corners = self.mesh.triangle(TriangleId(start.triangle as u32)).map(point);
+        let corners = self.mesh.triangle(TriangleId(start.triangle as u32)).map(Into::into);
         let mut best = start;
-        let (mut time_step, mut distance) = (
-            step,
-            self.bounding_balls[start.triangle].radius.min(self.length * self.oracle.extent()[0]),
-        );
+        let radius = self.bounding_balls[start.triangle].radius;
+        let mut distance = radius.min(self.length * self.oracle.extent()[0]);
+        let mut time_step = step;
         let mut failed = 0;
         for k in 0..STEPS_PER_CLIMB {
             if time_step < 1e-17 && distance < 1e-14 {

@@ -2,7 +2,8 @@
 
 use crate::{UP, block, pose};
 use touchoff::certify::{CertifiedScene, Certifier, MotionVerdict, PoseVerdict, TriangleBvh};
-use touchoff::{Interval, Motion, Pose, Unit};
+use touchoff::{Motion, Pose, Unit};
+use touchoff_tests::checks::assert_contains;
 use touchoff_tests::fixtures::ball;
 
 /// Returns a plate whose upper face is at a height.
@@ -24,10 +25,6 @@ fn assert_for_both_orders(bodies: [&TriangleBvh; 2], check: impl Fn(&mut Certifi
     }
 }
 
-fn assert_interval(found: Interval, expected: f64) {
-    assert!(found.contains(expected) && found.width() < 1e-8, "{expected} in {found}");
-}
-
 #[test]
 fn the_deepest_body_decides_depth_and_the_nearest_one_distance() {
     for [first, second] in
@@ -39,14 +36,14 @@ fn the_deepest_body_decides_depth_and_the_nearest_one_distance() {
             let tip = pose([0.3, 0.1, 0.0], UP);
             let found = scene.signed_distance(&tip, 1e-9).expect("bodies");
             assert_eq!(found.body, deepest, "{first} {second}");
-            assert_interval(found.answer, -depth);
+            assert_contains(found.answer, -depth, 1e-8, first);
             let found = scene.deepest(&tip, 1e-9).expect("bodies");
-            assert_interval(found.answer.depth, depth.max(0.0));
+            assert_contains(found.answer.depth, depth.max(0.0), 1e-8, first);
             if depth > 0.0 {
                 assert_eq!(found.body, deepest, "{first} {second}");
             }
             let found = scene.clearance(&tip, 1e-9).expect("bodies");
-            assert_interval(found.answer.distance, (-depth).max(0.0));
+            assert_contains(found.answer.distance, (-depth).max(0.0), 1e-8, first);
             if depth < 0.0 {
                 assert_eq!(found.body, deepest, "{first} {second}");
             }

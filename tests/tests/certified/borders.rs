@@ -6,6 +6,7 @@ use nalgebra::{Point3, Vector3};
 use touchoff::certify::{Certifier, PoseVerdict, TriangleBvh};
 use touchoff::tool::Interpreted;
 use touchoff::{Level, Pose, Tool};
+use touchoff_tests::fixtures::drawn;
 use touchoff_tests::oracle::big::Big;
 use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::space::{Frame, Triple, exactly};
@@ -15,9 +16,7 @@ const RADIUS: f64 = 5.0;
 const BORDER: f64 = 10.0;
 
 pub(crate) fn pin() -> Interpreted {
-    "tool Pin { units mm; profile { start (0, 0); line to (5, 0) as face; line to (5, 10) as lower cutting; line to (5, 20) as upper; line to (0, 20) as top; } niceness cutting: 1; }"
-        .parse()
-        .expect("a tool")
+    drawn("0 0; face 5 0; lower 5 10; upper 5 20; top 0 20", "lower")
 }
 
 /// Returns a point of the world in the tool's frame.
@@ -49,13 +48,9 @@ fn a_corner_at_the_border_counts_for_the_surface_that_is_exactly_nearest() {
             let depth = &Big::exactly(RADIUS) - &(&(&x * &x) + &(&y * &y)).sqrt();
             let owner = usize::from(z > Big::exactly(BORDER));
             owned[owner] += 1;
-            assert!(
-                depth <= Big::exactly(depths[owner]),
-                "surface {owner}: {:e} over {:?}, {:e} above the border, at {pose:?}",
-                depth.to_f64(),
-                depths,
-                (&z - &Big::exactly(BORDER)).to_f64()
-            );
+            let (deep, above) = (depth.to_f64(), (&z - &Big::exactly(BORDER)).to_f64());
+            let text = format!("{deep:e} over {depths:?}, {above:e} above the border, {pose:?}");
+            assert!(depth <= Big::exactly(depths[owner]), "surface {owner}: {text}");
         }
         // The lesser of two allowances holds at the border.
         for (strict, other) in [("lower", "upper"), ("upper", "lower")] {
@@ -99,11 +94,8 @@ fn a_corner_at_the_end_of_a_tool_is_within_rounding_of_its_surface() {
                 deepest = depth;
             }
         }
-        let text = format!("{:e} in {found:?} at {pose:?}", deepest.to_f64());
-        assert!(
-            Big::exactly(found.low) <= deepest && deepest <= Big::exactly(found.high),
-            "{text}"
-        );
+        let is_within = Big::exactly(found.low) <= deepest && deepest <= Big::exactly(found.high);
+        assert!(is_within, "{:e} in {found:?} at {pose:?}", deepest.to_f64());
     }
 }
 

@@ -4,8 +4,10 @@
 //! triangle's radius is skipped. The others are sampled at their corners, at random points and at the feet of random
 //! points of the tool. From the best samples a search climbs by decreasing random steps.
 
+use crate::verdicts::triangles;
 use nalgebra::{Point3, Vector3};
 use std::cell::Cell;
+use touchoff::certify::Witness;
 use touchoff::{Mesh, Pose, TriangleId};
 use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::triangle::{Point, advance, distance, dot, nearest, point, sub, unit};
@@ -73,11 +75,9 @@ impl<'a> BruteForce<'a> {
         let [low, high] = mesh.bounds();
         let [radius, height] = oracle.extent();
         let max_coordinate = low.coords.amax().max(high.coords.amax());
-        let ids = 0..mesh.triangles().len() as u32;
-        let balls = ids.map(|id| {
-            let corners = mesh.triangle(TriangleId(id));
-            let centre =
-                Point3::from((corners[0].coords + corners[1].coords + corners[2].coords) / 3.0);
+        let balls = triangles(mesh).map(|corners| {
+            let [a, b, c] = corners.map(|corner| corner.coords);
+            let centre = Point3::from((a + b + c) / 3.0);
             let radii = corners.map(|corner| (corner - centre).norm());
             Ball { centre, radius: radii[0].max(radii[1]).max(radii[2]) }
         });
@@ -109,6 +109,15 @@ impl<'a> BruteForce<'a> {
     /// Returns a point of the world in the tool's frame and unit.
     pub(crate) fn point_in_tool_frame(&self, pose: &Pose, point: Point3<f64>) -> Point {
         self.to_tool_frame(&self.tool_frame(pose), point)
+    }
+
+    /// Returns the depth of a witness and its distance from its triangle, in the part's unit.
+    pub(crate) fn witness(&self, pose: &Pose, witness: &Witness) -> (f64, f64) {
+        let frame = self.tool_frame(pose);
+        let point = self.to_tool_frame(&frame, witness.point);
+        let triangle = self.triangle(&frame, witness.triangle.index());
+        let off = distance(point, nearest(point, &triangle));
+        (self.depth(point) * self.length, off * self.length)
     }
 
     /// Returns a triangle in the tool's frame and unit.
@@ -148,10 +157,8 @@ impl<'a> BruteForce<'a> {
             starts.extend(samples.into_iter().take(MAX_CLIMBS_PER_TRIANGLE));
         }
         starts.sort_by(|a, b| b.value.total_cmp(&a.value));
-        let climbs = starts.into_iter().take(CLIMBS);
-        let reached =
-            climbs.map(|start| self.climb(frame, start, STEPS_PER_CLIMB, depth, rng).value);
-        reached.fold(f64::NEG_INFINITY, f64::max)
+        let climb = |start| self.climb(frame, start, STEPS_PER_CLIMB, depth, rng).value;
+        starts.into_iter().take(CLIMBS).map(climb).fold(f64::NEG_INFINITY, f64::max)
     }
 
     /// Returns whether a ball of the tool's frame overlaps the tool's bounding cylinder.
@@ -187,7 +194,8 @@ impl<'a> BruteForce<'a> {
         samples
     }
 
-    /// Climbs from a sample, and returns the one with the largest value reached.
+    /// Climbs from a sample on its triangle by random steps, which grow after an improvement and shrink otherwise. Returns
+    /// the sample with the largest value reached.
     pub(crate) fn climb(
         &self,
         frame: &ToolFrame,
@@ -197,22 +205,8 @@ impl<'a> BruteForce<'a> {
         rng: &mut Rng,
     ) -> Sample {
         let triangle = self.triangle(frame, start.triangle);
-        let (value, point) = self.climb_by(&triangle, start.point, steps, value, rng);
-        Sample { value, point, ..start }
-    }
-
-    /// Climbs on a triangle toward larger values by random steps, which grow after an improvement and shrink otherwise.
-    /// Returns the largest value and its point.
-    fn climb_by(
-        &self,
-        triangle: &[Point; 3],
-        start: Point,
-        steps: usize,
-        value: impl Fn(Point) -> f64,
-        rng: &mut Rng,
-    ) -> (f64, Point) {
-        let [a, b, c] = *triangle;
-        let mut current = nearest(start, triangle);
+        let [a, b, c] = triangle;
+        let mut current = nearest(start.point, &triangle);
         let mut best = value(current);
         let mut last_direction = [0.0; 3];
         let mut step =
@@ -228,7 +222,7 @@ impl<'a> BruteForce<'a> {
             } else {
                 rng.direction()
             };
-            let next = nearest(advance(current, step, direction), triangle);
+            let next = nearest(advance(current, step, direction), &triangle);
             let new_value = value(next);
             if new_value > best {
                 last_direction = unit(sub(next, current));
@@ -241,6 +235,6 @@ impl<'a> BruteForce<'a> {
                 }
             }
         }
-        (best, current)
+        Sample { value: best, point: current, ..start }
     }
 }

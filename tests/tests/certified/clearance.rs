@@ -1,11 +1,13 @@
 //! Clearance of a tool, checked against known geometry and against the points of a fine raster.
 
-use crate::{block, plate, pose, to_tool, tool};
-use nalgebra::{Point3, Vector3};
+use crate::verdicts::{certifier, triangles};
+use crate::{UP, block, plate, pose, to_tool};
+use nalgebra::Vector3;
 use std::sync::Arc;
 use touchoff::certify::{Certifier, TriangleBvh};
 use touchoff::mesh::shapes;
-use touchoff::{Interval, Mesh, Pose, Tool, TriangleId, Unit};
+use touchoff::{Interval, Mesh, Pose, Tool, Unit};
+use touchoff_tests::checks::assert_contains;
 use touchoff_tests::fixtures::drawn;
 use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::{Nearest, Oracle};
@@ -15,33 +17,37 @@ const DIVISIONS: u32 = 20;
 
 #[test]
 fn clearance_of_a_ball_above_a_plate_is_its_height() {
-    let bvh = TriangleBvh::new(&plate());
-    let mut certifier = Certifier::new(&bvh, tool("D2Ball")).expect("a profile");
+    let mut certifier = certifier(&plate(), "D2Ball");
     for gap in [1e-9, 1e-6, 1e-3, 0.5, 20.0, 1e4] {
-        let Interval { low, high } =
-            certifier.clearance(&pose([0.3, 0.1, gap], [0.0, 0.0, 1.0]), 1e-9).distance;
-        assert!(low <= gap && gap <= high, "{gap}: {low} to {high}");
-        assert!(high - low < 2e-9 + 1e-11 * gap, "{gap}: {low} to {high}");
+        let found = certifier.clearance(&pose([0.3, 0.1, gap], UP), 1e-9).distance;
+        assert_contains(found, gap, 2e-9 + 1e-11 * gap, "above a plate");
     }
-    let touching = certifier.clearance(&pose([0.3, 0.1, -0.5], [0.0, 0.0, 1.0]), 1e-9);
+    let touching = certifier.clearance(&pose([0.3, 0.1, -0.5], UP), 1e-9);
     assert_eq!(touching.distance, Interval::new(0.0, 0.0));
     assert!(touching.witness.is_some());
 }
 
 #[test]
 fn clearance_in_material_is_the_distance_to_the_surface() {
-    let bvh = TriangleBvh::new(&block([-90.0; 3], [90.0; 3]));
-    let mut certifier = Certifier::new(&bvh, tool("D2Ball")).expect("a profile");
-    let Interval { low, high } =
-        certifier.clearance(&pose([0.0, 0.0, -85.0], [0.0, 0.0, 1.0]), 1e-9).distance;
-    assert!(low <= 5.0 && 5.0 <= high && high - low < 2e-9, "{low} to {high}");
+    let mut certifier = certifier(&block([-90.0; 3], [90.0; 3]), "D2Ball");
+    let found = certifier.clearance(&pose([0.0, 0.0, -85.0], UP), 1e-9).distance;
+    assert_contains(found, 5.0, 2e-9, "in a block");
+}
+
+fn tube() -> Mesh {
+    shapes::tube(3.0, 5.0, 13.0, 24, 3, Unit::Millimetre).expect("a tube")
+}
+
+/// Returns a random pose with its tip in a cube.
+fn random_pose(half: f64, rng: &mut Rng) -> Pose {
+    let axis = Vector3::from_fn(|_, _| rng.between(-1.0, 1.0)).normalize();
+    pose([0; 3].map(|_| rng.between(-half, half)), axis.into())
 }
 
 /// Returns the distance of a raster of a part's points, which is at least that of the part, and a bound on the excess.
 fn raster_distance(mesh: &Mesh, oracle: &Nearest, pose: &Pose) -> [f64; 2] {
     let (mut min_distance, mut spacing) = (f64::INFINITY, 0f64);
-    for id in 0..mesh.triangles().len() as u32 {
-        let [a, b, c] = mesh.triangle(TriangleId(id));
+    for [a, b, c] in triangles(mesh) {
         let (u, v) = ((b - a) / f64::from(DIVISIONS), (c - a) / f64::from(DIVISIONS));
         spacing = spacing.max(u.norm()).max(v.norm()).max((v - u).norm());
         for i in 0..=DIVISIONS {
@@ -57,21 +63,17 @@ fn raster_distance(mesh: &Mesh, oracle: &Nearest, pose: &Pose) -> [f64; 2] {
 #[test]
 fn raster_points_are_within_the_certified_clearance() {
     let sphere = shapes::sphere(8.0, 2, Unit::Millimetre).expect("a sphere");
-    let tube = shapes::tube(3.0, 5.0, 13.0, 24, 3, Unit::Millimetre).expect("a tube");
     let mut rng = Rng::new(7);
-    for mesh in [&sphere, &tube] {
-        let bvh = TriangleBvh::new(mesh);
+    for mesh in [&sphere, &tube()] {
         for name in ["Fig73Exact", "BullNose", "Lollipop", "TSlot", "BallEr16", "TaperedBall"] {
             let oracle = Nearest::of(name);
-            let mut certifier = Certifier::new(&bvh, tool(name)).expect("a profile");
+            let mut certifier = certifier(mesh, name);
             let mut count = 0;
             while count < 8 {
-                let axis = Vector3::from_fn(|_, _| rng.between(-1.0, 1.0)).normalize();
-                let tip = Point3::from(Vector3::from_fn(|_, _| rng.between(-25.0, 25.0)));
-                let Ok(pose) = Pose::from_axis(tip, axis) else { continue };
+                let pose = random_pose(25.0, &mut rng);
                 let [nearest, spacing] = raster_distance(mesh, &oracle, &pose);
                 let Interval { low, high } = certifier.clearance(&pose, 1e-6).distance;
-                let text = format!("{name} at {tip}, {axis}: {nearest} by points, {low} to {high}");
+                let text = format!("{name} at {pose:?}: {nearest} by points, {low} to {high}");
                 if nearest <= 0.0 {
                     assert_eq!(low, 0.0, "{text}");
                     continue;
@@ -90,25 +92,19 @@ fn raster_points_are_within_the_certified_clearance() {
 /// the distance grows.
 #[test]
 fn the_nearest_points_are_on_both_surfaces() {
-    let tube = shapes::tube(3.0, 5.0, 13.0, 24, 3, Unit::Millimetre).expect("a tube");
-    let bvh = TriangleBvh::new(&tube);
     let mut rng = Rng::new(11);
     let (mut apart, mut contacts) = (0, 0);
     for name in ["Fig73Exact", "BullNose", "Lollipop", "TSlot", "BallEr16", "TaperedBall"] {
         let oracle = Nearest::of(name);
-        let mut certifier = Certifier::new(&bvh, tool(name)).expect("a profile");
+        let mut certifier = certifier(&tube(), name);
         for _ in 0..200 {
-            let axis = Vector3::from_fn(|_, _| rng.between(-1.0, 1.0)).normalize();
-            let tip = Point3::from(Vector3::from_fn(|_, _| rng.between(-12.0, 12.0)));
-            let Ok(pose) = Pose::from_axis(tip, axis) else { continue };
+            let pose = random_pose(12.0, &mut rng);
             let nearest = certifier.clearance(&pose, 1e-9);
             let (on_tool, witness) = (nearest.on_tool.expect("a point"), nearest.witness);
-            let text = format!("{name} at {tip}, {axis}: {nearest:?}");
+            let text = format!("{name} at {pose:?}: {nearest:?}");
             // Both are known to the rounding error of the certifier, far below this.
-            assert!(
-                oracle.signed_distance(to_tool(&pose, 1.0, on_tool.point)).abs() < 1e-9,
-                "{text}"
-            );
+            let off = oracle.signed_distance(to_tool(&pose, 1.0, on_tool.point));
+            assert!(off.abs() < 1e-9, "{text}");
             assert!((on_tool.normal.norm() - 1.0).abs() < 1e-12, "{text}");
             let between = witness.expect("a point").point - on_tool.point;
             let signed = certifier.signed_distance(&pose, 1e-9);
@@ -134,30 +130,22 @@ fn the_nearest_points_are_on_both_surfaces() {
 
 #[test]
 fn a_signed_distance_is_below_zero_in_the_material() {
-    let bvh = TriangleBvh::new(&block([-90.0; 3], [90.0; 3]));
-    let mut certifier = Certifier::new(&bvh, tool("D2Ball")).expect("a profile");
-    let buried = certifier.signed_distance(&pose([0.0, 0.0, -85.0], [0.0, 0.0, 1.0]), 1e-9);
+    let mut inside = certifier(&block([-90.0; 3], [90.0; 3]), "D2Ball");
+    let buried = inside.signed_distance(&pose([0.0, 0.0, -85.0], UP), 1e-9);
     assert_eq!(buried.low, f64::NEG_INFINITY);
     assert!((-5.0..-5.0 + 1e-8).contains(&buried.high), "{buried}");
     // An open sheet has no inside.
     let sheet = shapes::plane(20.0, 4, Unit::Millimetre).expect("a sheet");
-    let sheet = TriangleBvh::new(&sheet);
-    let mut certifier = Certifier::new(&sheet, tool("D2Ball")).expect("a profile");
-    let above = certifier.signed_distance(&pose([0.0, 0.0, 2.0], [0.0, 0.0, 1.0]), 1e-9);
-    assert!(above.contains(2.0) && above.width() < 2e-8, "{above}");
+    let above = certifier(&sheet, "D2Ball").signed_distance(&pose([0.0, 0.0, 2.0], UP), 1e-9);
+    assert_contains(above, 2.0, 2e-8, "above a sheet");
 }
 
 /// Certifiers that share their part and tool, clones and threads answer with the bits of the first.
 #[test]
 fn shared_and_cloned_certifiers_have_the_same_bits() {
-    let tube = shapes::tube(3.0, 5.0, 13.0, 24, 3, Unit::Millimetre).expect("a tube");
-    let bvh = Arc::new(TriangleBvh::new(&tube));
+    let bvh = Arc::new(TriangleBvh::new(&tube()));
     let mut rng = Rng::new(5);
-    let poses = (0..300).map(|_| {
-        let axis: [f64; 3] = Vector3::from_fn(|_, _| rng.between(-1.0, 1.0)).normalize().into();
-        pose([0, 1, 2].map(|_| rng.between(-12.0, 12.0)), axis)
-    });
-    let poses: Vec<Pose> = poses.collect();
+    let poses: Vec<Pose> = (0..300).map(|_| random_pose(12.0, &mut rng)).collect();
     struct Held(Certifier<'static>);
     let interpreted: Arc<dyn Tool> = Arc::new(drawn("0 0; pin 1 0, 1 9, 0 9", ""));
     let mut held =

@@ -1,23 +1,23 @@
 //! Certified depths compared with closed forms.
 
-use crate::{UP, block, plate, pose, soup, tool};
+use crate::verdicts::{certifier, moved};
+use crate::{UP, block, plate, pose, pose_at, soup};
 use nalgebra::{Point3, Vector3};
 use std::f64::consts::PI;
-use touchoff::certify::{Certifier, PoseVerdict, TriangleBvh};
+use touchoff::certify::PoseVerdict;
 use touchoff::mesh::shapes;
 use touchoff::{Interval, Mesh, Pose, Unit, scenes};
+use touchoff_tests::checks::assert_contains;
 
 fn assert_interval_contains(mesh: &Mesh, name: &str, pose: &Pose, depth: f64) {
-    let bvh = TriangleBvh::new(mesh);
-    let mut certifier = Certifier::new(&bvh, tool(name)).expect("a profile");
+    let mut certifier = certifier(mesh, name);
     let [lower_corner, upper_corner] = mesh.bounds();
     let size = 100.0 + lower_corner.coords.amax().max(upper_corner.coords.amax());
     let rounding = 1e3 * f64::EPSILON * size;
     for tolerance in [0.0, 1e-9, 1e-6, 1e-3, 1.0] {
         let Interval { low, high } = certifier.deepest(pose, tolerance).depth;
-        let text = format!("{name}: {depth:e} in {low:e} to {high:e}, tolerance {tolerance:e}");
-        assert!(low - rounding <= depth && depth <= high + rounding, "{text}");
-        assert!(high - low <= tolerance + rounding, "{text}");
+        let found = Interval::new(low - rounding, high + rounding);
+        assert_contains(found, depth, tolerance + 3.0 * rounding, (name, tolerance));
     }
 }
 
@@ -30,23 +30,16 @@ fn depth_of_a_ball_in_a_plane() {
         // Tilted by 30 degrees, the ball touches elsewhere with the same depth.
         let (axis, tilt) = (Vector3::new(0.5, 0.0, 0.75f64.sqrt()), 1.0 - depth);
         let tip = Point3::new(0.3, 0.1, tilt) - axis;
-        assert_interval_contains(
-            &plate(),
-            "D2Ball",
-            &Pose::from_axis(tip, axis).expect("an axis"),
-            depth,
-        );
+        assert_interval_contains(&plate(), "D2Ball", &pose_at(tip, axis), depth);
     }
 }
 
 #[test]
 fn a_flush_flat_end_has_no_depth() {
-    let bvh = TriangleBvh::new(&plate());
     for name in ["Flat", "BullNose", "TSlot", "Dovetail"] {
         let flush = pose([0.0, 0.0, 0.0], UP);
         assert_interval_contains(&plate(), name, &flush, 0.0);
-        let mut certifier = Certifier::new(&bvh, tool(name)).expect("a profile");
-        let clear = certifier.check_pose(&flush);
+        let clear = certifier(&plate(), name).check_pose(&flush);
         assert!(matches!(clear, PoseVerdict::Undecided(high) if high < 1e-10), "{name}: {clear:?}");
     }
 }
@@ -71,11 +64,7 @@ fn depth_of_a_ball_in_a_faceted_bore() {
 
 #[test]
 fn depth_is_valid_far_from_the_origin() {
-    let translate = |p: &Point3<f64>| p + Vector3::new(1e6, -1e6, 1e6);
-    let original = plate();
-    let vertices = original.vertices().iter().map(translate);
-    let moved =
-        Mesh::new(vertices, original.triangles().to_vec(), Unit::Millimetre).expect("a mesh");
+    let moved = moved(&plate(), |p| p + Vector3::new(1e6, -1e6, 1e6));
     for depth in [0.0, 1.0 / 1024.0, 0.5] {
         assert_interval_contains(&moved, "D2Ball", &pose([1e6, -1e6, 1e6 - depth], UP), depth);
     }
@@ -94,10 +83,9 @@ fn depth_is_in_the_unit_of_the_part() {
 
 #[test]
 fn pose_verdicts_tell_inside_from_outside() {
-    let solid = TriangleBvh::new(&block([-200.0; 3], [200.0; 3]));
-    let mut in_block = Certifier::new(&solid, tool("D2Ball")).expect("a profile");
-    let plane = TriangleBvh::new(&shapes::plane(10.0, 4, Unit::Millimetre).expect("a sheet"));
-    let mut on_plane = Certifier::new(&plane, tool("D2Ball")).expect("a profile");
+    let mut in_block = certifier(&block([-200.0; 3], [200.0; 3]), "D2Ball");
+    let plane = shapes::plane(10.0, 4, Unit::Millimetre).expect("a sheet");
+    let mut on_plane = certifier(&plane, "D2Ball");
     let mut rng = touchoff_tests::oracle::rng::Rng::new(3);
     for _ in 0..200 {
         let axis = rng.direction();
@@ -124,12 +112,10 @@ fn inverted_parts_and_holes_are_not_material() {
     let solid = block([-200.0; 3], [200.0; 3]);
     let turned = solid.triangles().iter().map(|[a, b, c]| [*a, *c, *b]);
     let inverted = Mesh::new(solid.vertices().to_vec(), turned, Unit::Millimetre).expect("a mesh");
-    let bvh = TriangleBvh::new(&inverted);
-    let mut certifier = Certifier::new(&bvh, tool("D2Ball")).expect("a profile");
-    assert_eq!(certifier.check_pose(&pose([1.0, 2.0, 3.0], UP)), PoseVerdict::SurfaceOnly);
-    let bore = TriangleBvh::new(&scenes::tube());
-    let mut certifier = Certifier::new(&bore, tool("D2Ball")).expect("a profile");
-    assert_eq!(certifier.check_pose(&pose([0.1, 0.2, 1.0], UP)), PoseVerdict::Clear);
+    let verdict = certifier(&inverted, "D2Ball").check_pose(&pose([1.0, 2.0, 3.0], UP));
+    assert_eq!(verdict, PoseVerdict::SurfaceOnly);
+    let verdict = certifier(&scenes::tube(), "D2Ball").check_pose(&pose([0.1, 0.2, 1.0], UP));
+    assert_eq!(verdict, PoseVerdict::Clear);
 }
 
 #[test]
@@ -139,8 +125,6 @@ fn a_neck_corner_limits_depth_above_the_ball_centre() {
     let triangle_at = |z: f64| [[1e-3, 0.0, z], [-1e-3, 1e-3, z], [-1e-3, -1e-3, z]];
     let mesh = soup(&[triangle_at(3.2), triangle_at(7.0)]);
     let depth = 13f64.sqrt();
-    let bvh = TriangleBvh::new(&mesh);
-    let mut certifier = Certifier::new(&bvh, tool("Lollipop")).expect("a profile");
-    let penetration = certifier.deepest(&pose([0.0; 3], UP), 1e-9);
+    let penetration = certifier(&mesh, "Lollipop").deepest(&pose([0.0; 3], UP), 1e-9);
     assert!(penetration.depth.high >= depth - 1e-12, "{depth} in {penetration:?}");
 }

@@ -11,7 +11,6 @@ use touchoff::certify::{Certifier, PoseVerdict, Witness};
 use touchoff::{Interval, Pose, SurfaceId};
 use touchoff_tests::count::case_count;
 use touchoff_tests::oracle::rng::Rng;
-use touchoff_tests::oracle::triangle::{distance, nearest};
 use touchoff_tests::tally::Tally;
 
 /// Number of poses per part and tool, unless `POSES` is set.
@@ -84,28 +83,21 @@ impl Validation<'_> {
         let mut max_depth = sampled_depth;
         match penetration.witness {
             Some(witness) => {
-                if low - self.witness_depth(&witness, &case) > self.rounding {
-                    self.add_violation("the witness is not as deep as the lower bound", &case);
-                }
+                let is_shallow = low - self.witness_depth(&witness, &case) > self.rounding;
+                self.never(is_shallow, "the witness is not as deep as the lower bound", &case);
                 let point = self.brute.to_tool_frame(&self.frame, witness.point);
                 let start = Sample { triangle: witness.triangle.index(), point, value: low };
                 let depth = |p| self.brute.depth(p) * self.brute.length;
                 let climbed = self.brute.climb(&self.frame, start, STEPS_PER_CLIMB, depth, rng);
                 max_depth = max_depth.max(climbed.value);
             }
-            None if low > 0.0 => self.add_violation("a lower bound without a witness", &case),
-            None => (),
+            None => self.never(low > 0.0, "a lower bound without a witness", &case),
         }
-        if max_depth > high + self.rounding {
-            self.add_violation(
-                &format!("a sample is {max_depth:e} deep, above the upper bound"),
-                &case,
-            );
-        }
+        let text = format!("a sample is {max_depth:e} deep, above the upper bound");
+        self.never(max_depth > high + self.rounding, &text, &case);
         // Written without `low > high`, which is false for NaN.
-        if !(0.0 <= low && low <= high && high.is_finite()) {
-            self.add_violation("no interval", &case);
-        }
+        let is_interval = 0.0 <= low && low <= high && high.is_finite();
+        self.never(!is_interval, "no interval", &case);
         // The rounding error counts twice at either end and four times in the tolerance.
         self.tally.see(WIDER, high - low - self.tolerance > 8.0 * self.rounding);
         let verdict = certifier.check_pose(&self.pose);
@@ -115,44 +107,33 @@ impl Validation<'_> {
     fn validate_verdict(&mut self, verdict: PoseVerdict, max_depth: f64, low: f64, case: &str) {
         match verdict {
             PoseVerdict::Clear | PoseVerdict::SurfaceOnly | PoseVerdict::Inside(_) => {
-                if max_depth > self.rounding || low > 0.0 {
-                    self.add_violation("said not to touch", case);
-                }
+                self.never(max_depth > self.rounding || low > 0.0, "said not to touch", case);
             }
             PoseVerdict::Touching(witness) => {
-                if self.witness_depth(&witness, case) < -self.rounding {
-                    self.add_violation("the witness of a touch is outside", case);
-                }
+                let is_outside = self.witness_depth(&witness, case) < -self.rounding;
+                self.never(is_outside, "the witness of a touch is outside", case);
             }
-            PoseVerdict::Near(_) => self.add_violation("a margin that nobody asked for", case),
+            PoseVerdict::Near(_) => self.never(true, "a margin that nobody asked for", case),
             PoseVerdict::Undecided(high) => {
                 self.tally.add("undecided", 1);
-                if max_depth > high + self.rounding {
-                    self.add_violation("deeper than what is undecided", case);
-                }
+                let is_deeper = max_depth > high + self.rounding;
+                self.never(is_deeper, "deeper than what is undecided", case);
             }
         }
     }
 
     /// Returns the depth of a witness, and checks that it lies on its triangle.
     fn witness_depth(&mut self, witness: &Witness, case: &str) -> f64 {
-        let triangle = self.brute.triangle(&self.frame, witness.triangle.index());
-        let point = self.brute.point_in_tool_frame(&self.pose, witness.point);
-        let triangle_distance = distance(point, nearest(point, &triangle)) * self.brute.length;
-        if triangle_distance > self.rounding {
-            self.add_violation(
-                &format!("the witness is {triangle_distance:e} from its triangle"),
-                case,
-            );
-        }
-        if witness.surface >= SurfaceId(self.pair.tool.info().surfaces.len()) {
-            self.add_violation("the witness is at no surface", case);
-        }
-        self.brute.depth(point) * self.brute.length
+        let (depth, off) = self.brute.witness(&self.pose, witness);
+        let text = format!("the witness is {off:e} from its triangle");
+        self.never(off > self.rounding, &text, case);
+        let is_nowhere = witness.surface >= SurfaceId(self.pair.tool.info().surfaces.len());
+        self.never(is_nowhere, "the witness is at no surface", case);
+        depth
     }
 
-    fn add_violation(&mut self, message: &str, case: &str) {
-        self.tally.find(VIOLATIONS, format!("{message}: {case}"));
+    fn never(&mut self, occurred: bool, message: &str, case: &str) {
+        self.tally.never(VIOLATIONS, occurred, || format!("{message}: {case}"));
     }
 }
 

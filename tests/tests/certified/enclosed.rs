@@ -5,11 +5,12 @@
 //! of them are there is known from samples of the tool's section, whose depth and nearest surface the oracle evaluates.
 
 use crate::depth_oracle::{DepthOracle, FIELDS, PROFILES};
+use crate::verdicts::moved;
 use crate::{block, pose, tool};
 use nalgebra::{Point3, Vector3};
 use touchoff::certify::{Certifier, MotionVerdict, PoseVerdict, TriangleBvh};
 use touchoff::mesh::shapes;
-use touchoff::{Mesh, Motion, Pose, SurfaceId, Tool, Unit};
+use touchoff::{Motion, Pose, SurfaceId, Tool, Unit};
 use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::{Nearest, Oracle};
 use touchoff_tests::tally::Tally;
@@ -29,10 +30,10 @@ fn check_blocks(name: &str, blocks: usize) -> Tally {
     let mut rng = Rng::new(5);
     let info = tool.info();
     let mut tally = Tally::default();
-    let [radius, height] = subject.oracle().extent();
+    let [radius, height] = subject.oracle.extent();
     let size = radius.max(height);
     for _ in 0..blocks {
-        let gap = size * rng.power(subject.min_gap().log10(), -1.0);
+        let gap = size * rng.power(subject.min_gap.log10(), -1.0);
         let inside = rng.once_in(2);
         let near_face = rng.index(6);
         let extent = [radius, radius, 0.0, radius, radius, height];
@@ -51,7 +52,8 @@ fn check_blocks(name: &str, blocks: usize) -> Tally {
         let cuboid = shapes::cuboid(low, high, info.unit).expect("a cuboid");
         let tip = Point3::from(rng.direction()) * size;
         let pose = Pose::from_axis(tip, Vector3::from(rng.direction())).expect("an axis");
-        let bvh = TriangleBvh::new(&to_world(&cuboid, &pose));
+        let to_world = |p: &Point3<f64>| pose.tip() + pose.rotation() * p.coords;
+        let bvh = TriangleBvh::new(&moved(&cuboid, to_world));
         let mut certifier = Certifier::new(&bvh, tool).expect("a tool that is proved");
         let verdict = certifier.check_pose(&pose);
         tally.add(POSES, 1);
@@ -59,20 +61,13 @@ fn check_blocks(name: &str, blocks: usize) -> Tally {
             (true, PoseVerdict::Inside(_)) => tally.add(INSIDE, 1),
             (false, PoseVerdict::Touching(_)) => tally.add(CUT, 1),
             (_, PoseVerdict::Undecided(_)) => {}
-            _ => tally.find(
-                VIOLATIONS,
-                format!("{name} in {faces:?}, inside {inside}: {verdict:?} at {pose:?}"),
-            ),
+            _ => {
+                let case = format!("{name} in {faces:?}, inside {inside}: {verdict:?} at {pose:?}");
+                tally.find(VIOLATIONS, case);
+            }
         }
     }
     tally
-}
-
-/// Transforms a mesh from the tool's frame to the world frame.
-fn to_world(mesh: &Mesh, pose: &Pose) -> Mesh {
-    let transform = |p: &Point3<f64>| pose.tip() + pose.rotation() * p.coords;
-    let vertices = mesh.vertices().iter().map(transform);
-    Mesh::new(vertices, mesh.triangles().to_vec(), mesh.unit()).expect("a mesh as before")
 }
 
 #[test]
@@ -128,15 +123,11 @@ fn each_restricted_surface_is_found_inside() {
         for (index, surface) in tool.info().surfaces.iter().enumerate() {
             let limit = |other: usize| (other == index).then_some(0.0);
             let Some(mut certifier) = restricted(&bvh, *tool, limit) else { continue };
-            let (name, surface) = (&tool.info().name, &surface.name);
-            assert_eq!(
-                certifier.check_pose(&start),
-                PoseVerdict::Inside(SurfaceId(index)),
-                "{name}/{surface}"
-            );
+            let (name, index) = (&tool.info().name, SurfaceId(index));
             checked += 1;
-            let verdict = certifier.check_motion(&motion, 1e-6);
-            assert_eq!(verdict, MotionVerdict::Inside(SurfaceId(index)), "{name}/{surface}");
+            let verdicts = (certifier.check_pose(&start), certifier.check_motion(&motion, 1e-6));
+            let expected = (PoseVerdict::Inside(index), MotionVerdict::Inside(index));
+            assert_eq!(verdicts, expected, "{name}/{}", surface.name);
         }
     }
     assert!(checked > 100, "{checked}");
@@ -155,18 +146,11 @@ fn random_sets_of_restricted_surfaces_are_found_inside() {
             let is_restricted = (0..count).any(|index| limit(index).is_some());
             let pose = Pose::from_axis(Point3::from([3.0; 3]), Vector3::from(rng.direction()));
             let verdict = certifier.check_pose(&pose.expect("an axis"));
-            match verdict {
-                PoseVerdict::Inside(surface) => {
-                    assert!(limit(surface.0).is_some(), "{}", tool.info().name);
-                }
-                other => {
-                    assert!(
-                        !is_restricted && other == PoseVerdict::Clear,
-                        "{}: {other:?}",
-                        tool.info().name
-                    );
-                }
-            }
+            let is_right = match verdict {
+                PoseVerdict::Inside(surface) => limit(surface.0).is_some(),
+                other => !is_restricted && other == PoseVerdict::Clear,
+            };
+            assert!(is_right, "{}: {verdict:?}", tool.info().name);
         }
     }
 }

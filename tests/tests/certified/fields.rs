@@ -1,14 +1,14 @@
 //! Tools known only by their depth field and its Lipschitz bound.
 
+use crate::verdicts::{certifier, deeper, touching, triangles};
 use crate::{UP, block, motion, plate, pose, to_tool, tool};
 use nalgebra::{Point3, Vector3};
 use touchoff::certify::{
-    AllowanceError, Certifier, MotionDepth, MotionVerdict, PoseVerdict, TriangleBvh,
+    AllowanceError, Certifier, MotionDepth, MotionVerdict, PoseVerdict, TriangleBvh, Witness,
 };
 use touchoff::mesh::shapes;
 use touchoff::tool::Interpreted;
-use touchoff::{Interval, Mesh, Pose, SurfaceId, Tool, TriangleId, Unit};
-use touchoff_dsl::source::Source;
+use touchoff::{Interval, Mesh, Pose, SurfaceId, Tool, Unit};
 use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::{self, Oracle};
 
@@ -45,12 +45,11 @@ impl Sphere {
 
     /// Returns eight random points of each triangle.
     fn random_points(&self, rng: &mut Rng) -> Vec<Point3<f64>> {
-        let ids = (0..self.mesh.triangles().len() as u32).flat_map(|id| [id; 8]);
-        let random_point = |id: u32| {
-            let ([a, b, c], [v, w]) = (self.mesh.triangle(TriangleId(id)), rng.weights());
+        let random_point = |[a, b, c]: [Point3<f64>; 3]| {
+            let [v, w] = rng.weights();
             a + v * (b - a) + w * (c - a)
         };
-        ids.map(random_point).collect()
+        triangles(&self.mesh).flat_map(|corners| [corners; 8]).map(random_point).collect()
     }
 
     /// Returns the depth of a point in the tool, in mm, and the surface that owns it; `None` outside.
@@ -61,130 +60,105 @@ impl Sphere {
     }
 }
 
+/// A surface owns the points of its regions. No sample is deeper than the certified depth, nor one of a surface deeper than
+/// that of the surface, and a witness is at least as deep as the lower bound.
 #[test]
-fn sampled_depths_of_fields_are_within_the_interval() {
-    const TOLERANCE: f64 = 2e-2;
+fn samples_of_fields_are_within_the_certified_depths() {
+    const TOLERANCE: f64 = 1e-6;
     let mut rng = Rng::new(5);
     for sphere in TOOLS.map(Sphere::new) {
-        let (name, tolerance) = (sphere.name, TOLERANCE * sphere.size);
+        let (name, coarse) = (sphere.name, 2e-2 * sphere.size);
         let bvh = TriangleBvh::new(&sphere.mesh);
         let mut certifier = Certifier::new(&bvh, sphere.tool).expect("a tool that is proved");
-        let (mut touching, mut decided) = (0, 0);
-        for _ in 0..12 {
+        let ([mut touching, mut touching_surfaces], [mut decided, mut wide]) = ([0; 2], [0; 2]);
+        for _ in 0..24 {
             let pose = sphere.random_pose(&mut rng);
-            let penetration = certifier.deepest(&pose, tolerance);
+            let at = |point| sphere.depth_and_owner(&pose, point);
+            let witness_depth = |witness: &Witness| at(witness.point).expect("inside").0;
+            let penetration = certifier.deepest(&pose, coarse);
             let Interval { low, high } = penetration.depth;
-            let points = sphere.random_points(&mut rng).into_iter();
-            let depths = points.filter_map(|p| Some(sphere.depth_and_owner(&pose, p)?.0));
-            let sampled = depths.fold(0.0, f64::max);
+            let samples = sphere.random_points(&mut rng).into_iter().filter_map(at);
+            let sampled = samples.map(|(depth, _)| depth).fold(0.0, f64::max);
             let text = format!("{name} {pose:?}: {sampled} in {penetration:?}");
             assert!(sampled <= high + 1e-9, "{text}");
             if let Some(witness) = penetration.witness {
                 touching += 1;
-                let (depth, _) = sphere.depth_and_owner(&pose, witness.point).expect("inside");
-                assert!(low <= depth + 1e-9, "{text}: {depth}");
+                assert!(low <= witness_depth(&witness) + 1e-9, "{text}");
             }
-            decided += usize::from(high - low <= 1.01 * tolerance);
+            decided += usize::from(high - low <= 1.01 * coarse);
             let verdict = certifier.check_pose(&pose);
             match verdict {
                 PoseVerdict::Touching(_) => assert!(high > 0.0, "{text}"),
                 PoseVerdict::Undecided(max_depth) => assert!(sampled <= max_depth + 1e-9, "{text}"),
                 _ => assert!(sampled == 0.0, "{text}: {verdict:?}"),
             }
-            let clearance = certifier.clearance(&pose, tolerance).distance;
+            let clearance = certifier.clearance(&pose, coarse).distance;
             let is_consistent = sampled == 0.0 || clearance.low == 0.0;
             assert!(clearance.low <= clearance.high && is_consistent, "{text}: {clearance}");
-        }
-        assert!(touching > 3 && decided > 8, "{name}: {touching} and {decided} of 12");
-    }
-}
 
-#[test]
-fn motions_of_a_field_tool_are_decided() {
-    let bvh = TriangleBvh::new(&plate());
-    let mut certifier = Certifier::new(&bvh, tool("Fig73")).expect("proved");
-    let at = |x: f64, z: f64| pose([x, 0.0, z], UP);
-    let motion = |from: [f64; 2], to: [f64; 2]| motion(&at(from[0], from[1]), &at(to[0], to[1]));
-    assert_eq!(
-        certifier.check_motion(&motion([-8.0, 0.2], [8.0, 0.3]), 1e-3),
-        MotionVerdict::Clear
-    );
-    let dive = certifier.check_motion(&motion([-8.0, 1.0], [8.0, -1.0]), 1e-3);
-    assert!(matches!(dive, MotionVerdict::Touching(at, _) if at >= 0.5), "{dive:?}");
-    let error = certifier.with_allowance("nose", -0.1).err();
-    assert!(matches!(error, Some(AllowanceError::NoMargin { .. })), "{error:?}");
-}
-
-/// A surface owns the points of its regions. No sample of a surface is deeper than its certified depth, and a witness
-/// is at least as deep as the lower bound.
-#[test]
-fn samples_of_a_field_are_within_the_certified_depth_of_their_surface() {
-    const TOLERANCE: f64 = 1e-6;
-    let mut rng = Rng::new(11);
-    for sphere in TOOLS.map(Sphere::new) {
-        let name = sphere.name;
-        let bvh = TriangleBvh::new(&sphere.mesh);
-        let mut certifier = Certifier::new(&bvh, sphere.tool).expect("a tool that is proved");
-        let (mut touching, mut wide) = (0, 0);
-        for _ in 0..12 {
-            let pose = sphere.random_pose(&mut rng);
             let tool_depth = certifier.deepest(&pose, TOLERANCE).depth;
             let mut max_depths = [0.0f64; 2];
             for surface in (0..sphere.tool.info().surfaces.len()).map(SurfaceId) {
-                let penetration =
-                    certifier.deepest_on(surface, &pose, TOLERANCE).expect("a surface");
-                let text = format!("{name} {surface:?} at {pose:?}: {penetration:?}");
-                let Interval { low, high } = penetration.depth;
+                let found = certifier.deepest_on(surface, &pose, TOLERANCE).expect("a surface");
+                let text = format!("{name} {surface:?} at {pose:?}: {found:?}");
+                let Interval { low, high } = found.depth;
                 max_depths = [max_depths[0].max(low), max_depths[1].max(high)];
                 wide += usize::from(high - low > 1.01 * TOLERANCE);
-                for point in sphere.random_points(&mut rng) {
-                    let found = sphere.depth_and_owner(&pose, point);
-                    let own = found.filter(|(_, owner)| *owner == surface);
-                    assert!(own.is_none_or(|(depth, _)| depth <= high + 1e-9), "{text}: {own:?}");
-                }
-                if let Some(witness) = penetration.witness {
-                    touching += 1;
+                let own = sphere.random_points(&mut rng).into_iter().filter_map(at);
+                let own = own.filter(|(_, owner)| *owner == surface);
+                let deeper: Vec<_> = own.filter(|(depth, _)| *depth > high + 1e-9).collect();
+                assert!(deeper.is_empty(), "{text}: {deeper:?}");
+                if let Some(witness) = found.witness {
+                    touching_surfaces += 1;
                     assert_eq!(witness.surface, surface, "{text}");
-                    let (depth, _) = sphere.depth_and_owner(&pose, witness.point).expect("inside");
-                    assert!(low <= depth + 1e-9, "{text}: {depth}");
+                    assert!(low <= witness_depth(&witness) + 1e-9, "{text}");
                 }
             }
             let is_consistent =
                 max_depths[0] <= tool_depth.high + 1e-9 && tool_depth.low <= max_depths[1] + 1e-9;
             assert!(is_consistent, "{name} at {pose:?}: {max_depths:?}, {tool_depth:?} of all");
         }
-        assert!(touching > 5 && wide == 0, "{name}: {touching} touch, {wide} are wide");
+        assert!(touching > 6 && decided > 16, "{name}: {touching} and {decided} of 24");
+        let counts = (touching_surfaces, wide);
+        assert!(touching_surfaces > 10 && wide == 0, "{name}: {counts:?} touch and are wide");
     }
+}
+
+#[test]
+fn motions_of_a_field_tool_are_decided() {
+    let mut certifier = certifier(&plate(), "Fig73");
+    let at = |x: f64, z: f64| pose([x, 0.0, z], UP);
+    let motion = |from: [f64; 2], to: [f64; 2]| motion(&at(from[0], from[1]), &at(to[0], to[1]));
+    let pass = certifier.check_motion(&motion([-8.0, 0.2], [8.0, 0.3]), 1e-3);
+    assert_eq!(pass, MotionVerdict::Clear);
+    let (at, _) = touching(certifier.check_motion(&motion([-8.0, 1.0], [8.0, -1.0]), 1e-3));
+    assert!(at >= 0.5, "{at}");
+    let error = certifier.with_allowance("nose", -0.1).err();
+    assert!(matches!(error, Some(AllowanceError::NoMargin { .. })), "{error:?}");
 }
 
 /// A cylinder beside a wall: its side may cut, its ends may not.
 #[test]
 fn allowances_apply_to_each_surface_of_a_field() {
-    let wall = TriangleBvh::new(&block([1.5, -30.0, 1.0], [40.0, 30.0, 5.0]));
+    let wall = block([1.5, -30.0, 1.0], [40.0, 30.0, 5.0]);
     let at = |y: f64, z: f64| pose([0.0, y, z], UP);
     // The wall is 0.5 mm deep in the side, and its edges are 1 mm from the ends.
-    let certifier = || Certifier::new(&wall, tool("Cylinder")).expect("proved");
+    let certifier = || certifier(&wall, "Cylinder");
     let mut side = certifier().with_allowance("side", f64::INFINITY).expect("a surface");
     assert_eq!(side.check_pose(&at(0.0, 0.0)), PoseVerdict::Clear);
     let slide = motion(&at(-1.0, 0.0), &at(1.0, 0.0));
     assert_eq!(side.check_motion(&slide, 1e-6), MotionVerdict::Clear);
-    let motion_depth =
-        certifier().motion_depth(SurfaceId(0), &slide, 0.4, 1e-6).expect("a surface");
-    let MotionDepth::Deeper { depth: Interval { low, high }, max_depth, .. } = motion_depth else {
-        panic!("{motion_depth:?}")
-    };
-    assert!(low <= 0.5 && 0.5 <= high + 1e-9 && max_depth < 0.52, "{motion_depth:?}");
-    assert_eq!(
-        certifier().motion_depth(SurfaceId(1), &slide, 0.0, 1e-6).expect("a surface"),
-        MotionDepth::Within
-    );
+    let (_, depth, max_depth) = deeper(certifier().motion_depth(SurfaceId(0), &slide, 0.4, 1e-6));
+    assert!(depth.low <= 0.5 && 0.5 <= depth.high + 1e-9 && max_depth < 0.52, "{depth}");
+    let bottom = certifier().motion_depth(SurfaceId(1), &slide, 0.0, 1e-6);
+    assert_eq!(bottom, Ok(MotionDepth::Within));
     // Raised by 0.8 mm, the wall's lower edge is nearer to the bottom.
     let PoseVerdict::Touching(witness) = side.check_pose(&at(0.0, 0.8)) else {
         panic!("it touches")
     };
     assert_eq!(witness.surface, SurfaceId(1));
     let rise = motion(&at(0.0, 0.0), &at(0.0, 0.8));
-    assert!(matches!(side.check_motion(&rise, 1e-6), MotionVerdict::Touching(at, _) if at > 0.6));
+    assert!(touching(side.check_motion(&rise, 1e-6)).0 > 0.6);
 }
 
 #[test]
@@ -201,7 +175,7 @@ fn rejects_a_tool_whose_depth_jumps() {
         region low as body cutting where d <= 2, 0 <= z, z <= 1 { depth: min(z, 2 - d); }
         region high as body cutting where d <= 2, 1 <= z, z <= 3 { depth: min(3 - z, 2 - d); }
         niceness cutting: 1; }";
-    let tool = Interpreted::parse(&Source::new("jump.tool", text)).expect("a tool");
+    let tool: Interpreted = text.parse().expect("a tool");
     let bvh = TriangleBvh::new(&plate());
     let error = Certifier::new(&bvh, &tool).expect_err("a refusal").to_string();
     assert!(error.contains("Jump") && error.contains("profile"), "{error}");
@@ -215,10 +189,9 @@ fn a_part_in_a_notch_is_at_its_distance() {
         ([2.0, -1.0, 7.0], [4.0, 1.0, 9.0], 1.0),
         ([14.0, -1.0, 18.0], [16.0, 1.0, 20.0], 12.0),
     ] {
-        let cube = TriangleBvh::new(&block(low, high));
-        let mut certifier = Certifier::new(&cube, tool("LBracket")).expect("proved");
-        let turned = touchoff::Pose::from_quaternion(Point3::origin(), [0.0, 0.0, 0.0, 1.0]);
-        let pose = turned.expect("a quaternion");
+        let mut certifier = certifier(&block(low, high), "LBracket");
+        let pose = Pose::from_quaternion(Point3::origin(), [0.0, 0.0, 0.0, 1.0]);
+        let pose = pose.expect("a quaternion");
         let clearance = certifier.clearance(&pose, 1e-3).distance;
         assert!(clearance.contains(distance) && clearance.low > 0.4 * distance, "{clearance}");
         let signed = certifier.signed_distance(&pose, 1e-3);
@@ -234,7 +207,7 @@ fn the_distance_of_an_edge_from_a_region_is_not_below_its_interval() {
     let text = "tool Sphere { units mm; tip z = -5; curve sphere = hypot(d, z) - 5;
         region sphere as ball cutting where sphere <= 0 { depth: -sphere; direction: away from (0, 0); }
         niceness cutting: 1; }";
-    let tool = Interpreted::parse(&Source::new("sphere.tool", text)).expect("a tool");
+    let tool: Interpreted = text.parse().expect("a tool");
     let edge = TriangleBvh::new(&block([0.0, -20.0, -20.0], [40.0, 20.0, 0.0]));
     let mut certifier = Certifier::new(&edge, &tool).expect("proved");
     let mut rng = Rng::new(1);
@@ -244,11 +217,9 @@ fn the_distance_of_an_edge_from_a_region_is_not_below_its_interval() {
             let centre = Vector3::new(angle.cos(), 0.0, angle.sin()) * (5.0 + gap);
             let axis = Vector3::from(rng.direction());
             let pose = pose((centre - 5.0 * axis).into(), axis.into());
-            let found = certifier.clearance(&pose, 1e-4).distance;
-            assert!(
-                found.low <= gap + 1e-9 && gap <= found.high && found.low > 0.1 * gap,
-                "{gap}: {found}"
-            );
+            let Interval { low, high } = certifier.clearance(&pose, 1e-4).distance;
+            let is_right = low <= gap + 1e-9 && gap <= high && low > 0.1 * gap;
+            assert!(is_right, "{gap}: {low} to {high}");
             assert_eq!(certifier.check_pose(&pose), PoseVerdict::Clear, "{gap}");
         }
     }
@@ -266,7 +237,7 @@ fn every_piece_of_a_tool_of_several_pieces_is_located() {
     for (text, balls) in
         [(two_regions, [[0.0, 2.0], [9.0, 13.0]]), (one_region, [[0.0, 6.0], [14.0, 20.0]])]
     {
-        let tool = Interpreted::parse(&Source::new("twin.tool", text)).expect("a tool");
+        let tool: Interpreted = text.parse().expect("a tool");
         for (k, [low, high]) in balls.into_iter().enumerate() {
             let part = block([-20.0, -20.0, low - 2.0], [20.0, 20.0, high + 2.0]);
             let part = TriangleBvh::new(&part);
@@ -288,11 +259,10 @@ fn the_bound_of_a_motion_is_not_below_a_steep_depth() {
         region side as flute where 0 <= side <= min(z, end) { depth: 3*side; }
         region low as flute where 0 <= z <= min(side, end) { depth: 3*z; }
         region end as flute where 0 <= end <= min(side, z) { depth: 3*end; } }";
-    let tool = Interpreted::parse(&Source::new("steep.tool", text)).expect("a tool");
+    let tool: Interpreted = text.parse().expect("a tool");
     let plate = TriangleBvh::new(&block([-0.1, -20.0, -5.0], [0.1, 20.0, 40.0]));
     let mut certifier = Certifier::new(&plate, &tool).expect("proved");
     let path = motion(&pose([-4.5, 0.0, 0.0], UP), &pose([3.5, 0.0, 0.0], UP));
-    let found = certifier.motion_depth(SurfaceId(0), &path, 0.0, 1e-3).expect("a surface");
-    let MotionDepth::Deeper { max_depth, .. } = found else { panic!("{found:?}") };
-    assert!((9.0..9.5).contains(&max_depth), "{found:?}");
+    let (.., max_depth) = deeper(certifier.motion_depth(SurfaceId(0), &path, 0.0, 1e-3));
+    assert!((9.0..9.5).contains(&max_depth), "{max_depth}");
 }

@@ -1,31 +1,31 @@
 //! Degenerate parts, tolerances and budgets.
 
 use crate::brute::BruteForce;
+use crate::motions::bumpy;
 use crate::pair::{Part, generated_parts};
-use crate::poses::bumpy;
+use crate::verdicts::{certifier, deeper, triangles};
 use crate::{UP, motion, plate, pose, soup, tool};
 use nalgebra::Point3;
-use touchoff::certify::{Certifier, MotionDepth, PoseVerdict, TriangleBvh};
-use touchoff::tool::Interpreted;
-use touchoff::{Interval, Mesh, Pose, SurfaceId, TriangleId, Unit};
+use touchoff::certify::{Certifier, PoseVerdict, TriangleBvh};
+use touchoff::{Interval, Level, Mesh, Pose, SurfaceId, TriangleId, Unit};
+use touchoff_tests::checks::assert_contains;
 use touchoff_tests::evaluations::levels;
+use touchoff_tests::fixtures::drawn;
 use touchoff_tests::oracle::Nearest;
 use touchoff_tests::oracle::rng::Rng;
 
-fn depth(mesh: &Mesh, name: &str, pose: &Pose, tolerance: f64) -> [f64; 2] {
-    let bvh = TriangleBvh::new(mesh);
-    let mut certifier = Certifier::new(&bvh, tool(name)).expect("a profile");
-    certifier.deepest(pose, tolerance).depth.into()
+fn depth(mesh: &Mesh, name: &str, pose: &Pose, tolerance: f64) -> Interval {
+    certifier(mesh, name).deepest(pose, tolerance).depth
 }
 
 #[test]
 fn invalid_tolerances_are_treated_as_rounding() {
     for tolerance in [0.0, -0.0, -1.0, f64::NAN, f64::NEG_INFINITY, 5e-324] {
-        let [low, high] = depth(&plate(), "D2Ball", &pose([0.3, 0.1, -0.5], UP), tolerance);
-        assert!(low <= 0.5 && 0.5 <= high && high - low < 1e-11, "{tolerance}: {low} to {high}");
+        let found = depth(&plate(), "D2Ball", &pose([0.3, 0.1, -0.5], UP), tolerance);
+        assert_contains(found, 0.5, 1e-11, tolerance);
     }
-    let [low, high] = depth(&plate(), "D2Ball", &pose([0.3, 0.1, -0.5], UP), f64::INFINITY);
-    assert!(0.0 < low && low <= 0.5 && 0.5 <= high, "{low} to {high}");
+    let found = depth(&plate(), "D2Ball", &pose([0.3, 0.1, -0.5], UP), f64::INFINITY);
+    assert!(0.0 < found.low && found.contains(0.5), "{found}");
 }
 
 #[test]
@@ -36,13 +36,12 @@ fn slivers_and_degenerate_triangles_are_as_deep_as_their_points() {
         let sliver = [[-10.0, 0.0, -0.5], [10.0, 0.0, -0.5], [0.0, width, -0.5]];
         let mesh = soup(&[sliver, far]);
         // The line lies half a millimetre deep in the ball and passes through the tool's axis.
-        let [low, high] = depth(&mesh, "D2Ball", &pose([0.0, 0.0, -1.0], UP), 1e-9);
-        assert!(low <= 0.5 && 0.5 <= high, "{width:e}: {low} to {high}");
-        assert!(high - low < 1e-6, "{width:e}: {low} to {high}");
+        let found = depth(&mesh, "D2Ball", &pose([0.0, 0.0, -1.0], UP), 1e-9);
+        assert_contains(found, 0.5, 1e-6, width);
     }
     let point = [[0.0, 0.0, -0.5]; 3];
-    let [low, high] = depth(&soup(&[point, far]), "D2Ball", &pose([0.0, 0.0, -1.0], UP), 0.0);
-    assert!(low <= 0.5 && 0.5 <= high && high - low < 1e-11, "{low} to {high}");
+    let found = depth(&soup(&[point, far]), "D2Ball", &pose([0.0, 0.0, -1.0], UP), 0.0);
+    assert_contains(found, 0.5, 1e-11, point);
 }
 
 #[test]
@@ -58,8 +57,8 @@ fn duplicate_and_inverted_triangles_do_not_change_depth() {
     for _ in 0..200 {
         let pose = brute.random_pose(&mut rng);
         let [a, b] = [&once, &twice].map(|mesh| depth(mesh, "Fig73Exact", &pose, 1e-9));
-        assert!(a[0] <= b[1] && b[0] <= a[1], "{a:?} {b:?} {pose:?}");
-        assert!((a[0] - b[0]).abs() <= 2e-9, "{a:?} {b:?} {pose:?}");
+        assert!(a.low <= b.high && b.low <= a.high, "{a:?} {b:?} {pose:?}");
+        assert!((a.low - b.low).abs() <= 2e-9, "{a:?} {b:?} {pose:?}");
     }
 }
 
@@ -84,10 +83,8 @@ fn an_exhausted_budget_leaves_a_valid_interval() {
                 wide_count += usize::from(high - low > 1e-6);
                 let verdict = limited.check_pose(&pose);
                 let same = std::mem::discriminant(&verdict) == std::mem::discriminant(&clear);
-                assert!(
-                    same || matches!(verdict, PoseVerdict::Undecided(_)),
-                    "{text}: {verdict:?}"
-                );
+                let is_undecided = matches!(verdict, PoseVerdict::Undecided(_));
+                assert!(same || is_undecided, "{text}: {verdict:?}");
             }
         }
         assert!(wide_count > 0, "no budget was too small for {name}");
@@ -97,12 +94,10 @@ fn an_exhausted_budget_leaves_a_valid_interval() {
 /// The tree of one triangle has a root, a leaf and the triangle: a budget of three examines all of them.
 #[test]
 fn a_budget_counts_nodes_and_triangles() {
-    let bvh = TriangleBvh::new(&soup(&[[[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [0.0, 1.0, 0.0]]]));
+    let single = soup(&[[[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [0.0, 1.0, 0.0]]]);
     let deep = pose([0.0, 0.0, -0.5], UP);
     for (budget, is_decided) in [(0, false), (1, false), (2, false), (3, true), (4, true)] {
-        let certifier = Certifier::new(&bvh, tool("D2Ball")).expect("a profile");
-        let mut certifier = certifier.with_budget(budget);
-        let verdict = certifier.check_pose(&deep);
+        let verdict = certifier(&single, "D2Ball").with_budget(budget).check_pose(&deep);
         let is_touching = matches!(verdict, PoseVerdict::Touching(_));
         assert_eq!(is_touching, is_decided, "{budget}: {verdict:?}");
         assert!(is_touching || matches!(verdict, PoseVerdict::Undecided(_)), "{verdict:?}");
@@ -116,29 +111,19 @@ fn every_simd_level_gives_a_valid_interval() {
         for tool_name in ["Fig73Exact", "BallEr16"] {
             let oracle = Nearest::of(tool_name);
             let brute = BruteForce::new(&mesh, &oracle, 1.0);
-            let mut certifiers: Vec<_> = levels
-                .iter()
-                .map(|(_, level)| {
-                    Certifier::new(&bvh, tool(tool_name)).expect("a profile").with_level(*level)
-                })
-                .collect();
+            let certifier = Certifier::new(&bvh, tool(tool_name)).expect("a profile");
+            let at_level = |(_, level): &(_, Level)| certifier.clone().with_level(*level);
+            let mut certifiers: Vec<_> = levels.iter().map(at_level).collect();
             let mut rng = Rng::new(6);
             for _ in 0..20 {
                 let pose = brute.random_pose(&mut rng);
                 let penetrations: Vec<_> =
                     certifiers.iter_mut().map(|c| c.deepest(&pose, 1e-6)).collect();
-                for (penetration, level) in penetrations.iter().zip(&levels) {
-                    let Interval { low, high } = penetration.depth;
-                    let text =
-                        format!("{tool_name} in {name}, {level:?}, {pose:?}: {penetrations:?}");
-                    assert!(high - low < 2e-6, "{text}");
-                    assert!(
-                        penetrations
-                            .iter()
-                            .all(|other| low <= other.depth.high && other.depth.low <= high),
-                        "{text}"
-                    );
-                }
+                let depths = || penetrations.iter().map(|penetration| penetration.depth);
+                let highest_low = depths().map(|depth| depth.low).fold(0.0, f64::max);
+                let is_right = |depth: Interval| depth.width() < 2e-6 && highest_low <= depth.high;
+                let text = || format!("{tool_name} in {name}, {pose:?}: {penetrations:?}");
+                assert!(depths().all(is_right), "{}", text());
             }
         }
     }
@@ -147,14 +132,12 @@ fn every_simd_level_gives_a_valid_interval() {
 #[test]
 fn a_face_pressed_slightly_into_a_part_is_not_clear() {
     let mesh = touchoff::mesh::shapes::sphere(8.0, 4, Unit::Millimetre).expect("a sphere");
-    let bvh = TriangleBvh::new(&mesh);
-    let mut certifier = Certifier::new(&bvh, tool("BullNose")).expect("a profile");
+    let mut certifier = certifier(&mesh, "BullNose");
     let mut missed = Vec::new();
     for id in 0..mesh.triangles().len() as u32 {
         let normal = mesh.normal(TriangleId(id)).expect("it has an area");
-        let corners = mesh.triangle(TriangleId(id));
-        let centroid =
-            Point3::from((corners[0].coords + corners[1].coords + corners[2].coords) / 3.0);
+        let [a, b, c] = mesh.triangle(TriangleId(id)).map(|corner| corner.coords);
+        let centroid = Point3::from((a + b + c) / 3.0);
         let pose = Pose::from_axis(centroid - 1e-8 * normal, normal).expect("an axis");
         let penetration = certifier.deepest(&pose, 1e-9);
         let verdict = certifier.check_pose(&pose);
@@ -169,12 +152,12 @@ fn a_face_pressed_slightly_into_a_part_is_not_clear() {
 fn a_sheet_that_ends_above_a_bull_nose_is_as_deep_as_its_deepest_triangle() {
     let mesh = bumpy(20.0, 32);
     let above = pose([12.5, -19.173505112635194, -0.5], [0.0, 0.0, -1.0]);
-    let [_, high] = depth(&mesh, "BullNose", &above, 1e-6);
+    let Interval { high, .. } = depth(&mesh, "BullNose", &above, 1e-6);
     let oracle = Nearest::of("BullNose");
     let mut rng = Rng::new(1);
     let mut deeper = Vec::new();
-    for id in 0..mesh.triangles().len() as u32 {
-        let corners = mesh.triangle(TriangleId(id)).map(|p| [p.x, p.y, p.z]);
+    for (id, corners) in triangles(&mesh).enumerate() {
+        let corners = corners.map(Into::into);
         let single = soup(&[corners]);
         let brute = BruteForce::new(&single, &oracle, 1.0);
         let sampled_depth = brute.deepest(&brute.tool_frame(&above), &mut rng);
@@ -193,14 +176,11 @@ fn coordinates_beyond_f32_give_valid_intervals() {
             [[-size, -size, 0.0], [size, -size, 0.0], [0.0, size, 0.0]],
             [[0.0, 0.0, 5.0], [size, 1.0, 5.0], [size, 2.0, 5.0]],
         ]);
-        let ball = pose([0.0, 0.0, -0.5], [0.0, 0.0, 1.0]);
-        let [low, high] = depth(&mesh, "D2Ball", &ball, 1e-6);
-        assert!(low <= 0.5 && 0.5 <= high, "{size:e}: {low:e} to {high:e}");
-        let bvh = TriangleBvh::new(&plate());
-        let mut certifier = Certifier::new(&bvh, tool("D2Ball")).expect("a profile");
-        let clearance = certifier.clearance(&pose([0.0, 0.0, size], [0.0, 0.0, 1.0]), 1e-6);
-        let Interval { low, high } = clearance.distance;
-        assert!(low <= size && size <= high, "{size:e}: {low:e} to {high:e}");
+        let found = depth(&mesh, "D2Ball", &pose([0.0, 0.0, -0.5], UP), 1e-6);
+        assert_contains(found, 0.5, f64::INFINITY, size);
+        let far = pose([0.0, 0.0, size], UP);
+        let found = certifier(&plate(), "D2Ball").clearance(&far, 1e-6).distance;
+        assert_contains(found, size, f64::INFINITY, "far away");
     }
 }
 
@@ -208,11 +188,7 @@ fn coordinates_beyond_f32_give_valid_intervals() {
 /// any time is known, and falls on both sides of the ridge in proportion to the distance.
 #[test]
 fn depths_along_very_long_motions_contain_the_exact_depth() {
-    let cone: Interpreted =
-        "tool Cone { units mm; profile { start (0, 0); line to (10, 10) as cone cutting;
-        line to (10, 40), (0, 40) as shank; } niceness cutting: 1; }"
-            .parse()
-            .expect("a tool");
+    let cone = drawn("0 0; cone 10 10; shank 10 40, 0 40", "cone");
     let ends = [-5.0, 5.0].map(|y| [[-5.0, y, -9.0], [5.0, y, -9.0], [0.0, y, 0.0]]);
     let triangles =
         [[0, 1, 2], [5, 4, 3], [0, 3, 4], [0, 4, 1], [1, 4, 5], [1, 5, 2], [2, 5, 3], [2, 3, 0]];
@@ -226,8 +202,7 @@ fn depths_along_very_long_motions_contain_the_exact_depth() {
         let below = rng.between(0.2, 0.8);
         let ends = [-from, to].map(|x| pose([x, 0.3, -below], UP));
         let motion = motion(&ends[0], &ends[1]);
-        let found = certifier.motion_depth(SurfaceId(0), &motion, 0.0, 1e-9);
-        let Ok(MotionDepth::Deeper { depth, at, .. }) = found else { panic!("{found:?}") };
+        let (at, depth, _) = deeper(certifier.motion_depth(SurfaceId(0), &motion, 0.0, 1e-9));
         let beside = at.mul_add(from + to, -from).abs();
         let exact = (below - beside) * std::f64::consts::FRAC_1_SQRT_2;
         assert!(depth.low <= exact && exact <= depth.high, "{exact} and {depth:?}");

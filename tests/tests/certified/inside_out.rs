@@ -7,14 +7,13 @@ use touchoff::certify::{
 };
 use touchoff::tool::Interpreted;
 use touchoff::{Mesh, SurfaceId, Unit};
+use touchoff_tests::fixtures::drawn;
 
 use crate::supports::REGIONS;
 use crate::{UP, block, motion, pose};
 
 fn bead() -> Interpreted {
-    "tool Bead { units mm; profile { start (0, 0); arc to (0, 0.2) center (0, 0.1) as bead cutting; } niceness cutting: 1; }"
-        .parse()
-        .expect("a tool")
+    drawn("0 0; bead 0 0.2 about 0 0.1", "bead")
 }
 
 /// Returns the prism, with its triangles as they are or turned over.

@@ -162,25 +162,19 @@ fn compare(tool: &Restated, rng: &mut Rng, tally: &mut Tally) {
             tally.add(QUERIES, 1);
             tally.see(IN_CONTACT, sampled > 0.0);
             tally.see(WIDE, high - low > TOLERANCE + 1e-9);
-            let case = || {
-                format!(
-                    "{} on {}: {triangles:?}",
-                    tool.text(|n| n.to_f64().to_string()),
-                    surface.name
-                )
-            };
-            if sampled > high + 1e-12 * size {
-                tally.find(VIOLATIONS, format!("{sampled} above {high}: {}", case()));
-            }
+            let text = tool.text(|n| n.to_f64().to_string());
+            let case = || format!("{} of {text}: {triangles:?}", surface.name);
+            let is_above = sampled > high + 1e-12 * size;
+            tally.never(VIOLATIONS, is_above, || format!("{sampled} above {high}: {}", case()));
             let deep = |Witness { point, .. }: &Witness| {
                 let p = to_tool(&pose, 1.0, *point);
                 let depth = profile.depth(&[p[0].hypot(p[1]), p[2]]);
                 let owner = oracle.distance_to_surface(&surface.name, p);
                 depth >= low - 1e-12 * size && owner <= depth + 1e-11 * size
             };
-            if low > 0.0 && !found.witness.as_ref().is_some_and(deep) {
-                tally.find(VIOLATIONS, format!("{:?} {low}: {}", found.witness, case()));
-            }
+            let is_missing = low > 0.0 && !found.witness.as_ref().is_some_and(deep);
+            let text = || format!("{:?} {low}: {}", found.witness, case());
+            tally.never(VIOLATIONS, is_missing, text);
         }
     }
 }
@@ -204,19 +198,16 @@ fn samples_are_within_the_depth_of_surfaces_nearly_in_line() {
 /// The tool point (16, 3) is 3 mm from the face, on a tube's edge: the part is in the way wherever the rim tapers.
 #[test]
 fn a_face_inside_the_part_is_seen_below_a_tapered_rim() {
-    let unlimited = f64::INFINITY;
+    let unlimited = ["rim", "top"].map(|surface| (surface, f64::INFINITY));
     for taper in [0.0, 1e-6, 1e-3, 0.02, 0.3] {
-        let drawing = format!(
-            "0 0; face 20 0; rim 20 3, {} 10; top 12 10, 12 1, 6 1, 6 10, 0 10",
-            20.0 - taper
-        );
+        let top = 20.0 - taper;
+        let drawing =
+            format!("0 0; face 20 0; rim 20 3, {top} 10; top 12 10, 12 1, 6 1, 6 10, 0 10");
         let tool = Outlined::new(&drawn(drawing));
         let part = shapes::tube(15.5, 16.5, 2.0, 96, 1, Unit::Millimetre).expect("a tube");
         let part = TriangleBvh::new(&part);
         let mut certifier = Certifier::new(&part, &tool).expect("a profile");
-        for surface in ["rim", "top"] {
-            certifier = certifier.with_allowance(surface, unlimited).expect("a surface");
-        }
+        certifier = certifier.with_allowances(unlimited).expect("surfaces");
         let low = part.bounds()[0].z;
         let verdict = certifier.check_pose(&pose([0.0, 0.0, low - 1.0], UP));
         assert!(matches!(verdict, PoseVerdict::Touching(_)), "{taper}: {verdict:?}");

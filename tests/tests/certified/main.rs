@@ -34,13 +34,13 @@ mod limits;
 mod motions;
 mod overhang;
 mod pair;
-mod poses;
 mod ring_of_ties;
 mod rounding;
 mod spinning;
 mod supports;
 mod sweeps;
 mod trajectories;
+mod verdicts;
 mod work;
 mod zoomed;
 

@@ -1,9 +1,10 @@
 //! Tools with overhanging profiles, and their oracles.
 
+use crate::verdicts::certifier;
 use crate::{UP, block, pose, soup};
 use nalgebra::Point3;
 use std::sync::LazyLock;
-use touchoff::certify::{Certifier, PoseVerdict, TriangleBvh};
+use touchoff::certify::PoseVerdict;
 use touchoff::tool::Interpreted;
 use touchoff::{Interval, SurfaceId, Tool};
 use touchoff_tests::fixtures::interpreted;
@@ -73,7 +74,7 @@ pub(crate) fn oracle(name: &str) -> Option<Nearest> {
 fn a_rim_is_as_deep_as_its_circle() {
     let corners = [[9.4, 1.0, 1.4], [10.8, -0.6, 1.3], [9.6, -0.13, 3.1]];
     let far = [[90.0, 0.0, 0.0], [91.0, 0.0, 0.0], [90.0, 1.0, 0.0]];
-    let bvh = TriangleBvh::new(&soup(&[corners, far]));
+    let part = soup(&[corners, far]);
     let pose = pose([0.0; 3], UP);
     for name in ["Torus", "Wheel"] {
         let oracle = oracle(name).expect("one of those above");
@@ -85,8 +86,7 @@ fn a_rim_is_as_deep_as_its_circle() {
             oracle.evaluate(p.into()).map_or(0.0, |evaluation| evaluation.depth)
         };
         let sampled = samples.map(depth).fold(0.0, f64::max);
-        let Interval { low, high } =
-            Certifier::new(&bvh, tool(name).expect("it")).expect("it").deepest(&pose, 0.0).depth;
+        let Interval { low, high } = certifier(&part, name).deepest(&pose, 0.0).depth;
         assert!(sampled <= high && low <= sampled + 0.01, "{name}: {sampled} in {low}..{high}");
     }
 }
@@ -94,14 +94,12 @@ fn a_rim_is_as_deep_as_its_circle() {
 /// Points above the tip of the cone are nearest to that tip, a corner on the axis.
 #[test]
 fn a_zone_of_a_corner_on_the_axis_is_found_inside() {
-    let bvh = TriangleBvh::new(&block([-30.0, -30.0, -40.0], [30.0, 30.0, 40.0]));
+    let part = block([-30.0, -30.0, -40.0], [30.0, 30.0, 40.0]);
     for limit in [0.0, 0.5, 0.8, 0.9] {
-        let mut certifier = Certifier::new(&bvh, tool("Dimple").expect("it")).expect("a profile");
         let unlimited = f64::INFINITY;
-        for (surface, limit) in [("dimple", limit), ("flute", unlimited), ("top", unlimited)] {
-            certifier = certifier.with_allowance(surface, limit).expect("a surface");
-        }
-        let verdict = certifier.check_pose(&pose([0.0; 3], UP));
+        let all = [("dimple", limit), ("flute", unlimited), ("top", unlimited)];
+        let certifier = certifier(&part, "Dimple").with_allowances(all);
+        let verdict = certifier.expect("surfaces").check_pose(&pose([0.0; 3], UP));
         assert_eq!(verdict, PoseVerdict::Inside(SurfaceId(0)), "{limit}");
     }
 }

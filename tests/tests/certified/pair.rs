@@ -1,6 +1,6 @@
 //! Parts and tools to compare, each part with each tool.
 
-use crate::poses::bumpy;
+use crate::motions::bumpy;
 use crate::{plate, tool};
 use rayon::prelude::*;
 use std::env;

@@ -1,10 +1,11 @@
 //! Motions of solids without an axis of symmetry, whose spin is known and enters the proof.
 
+use crate::verdicts::{certifier, touching, triangles};
 use crate::{block, pose};
 use nalgebra::{Point3, Quaternion, UnitQuaternion, Vector3};
 use touchoff::certify::{Certifier, MotionDepth, MotionVerdict, TriangleBvh};
 use touchoff::mesh::shapes;
-use touchoff::{Motion, Pose, SurfaceId, TriangleId, Unit};
+use touchoff::{Motion, Pose, SurfaceId, Unit};
 use touchoff_tests::count::case_count;
 use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::{self, Oracle};
@@ -14,10 +15,8 @@ fn pose_from_rotation(tip: [f64; 3], turn: UnitQuaternion<f64>) -> Pose {
 }
 
 fn pose_about_z(tip: [f64; 3], degrees: f64) -> Pose {
-    pose_from_rotation(
-        tip,
-        UnitQuaternion::from_axis_angle(&Vector3::z_axis(), degrees.to_radians()),
-    )
+    let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), degrees.to_radians());
+    pose_from_rotation(tip, turn)
 }
 
 fn motion(from: &Pose, to: &Pose) -> Motion {
@@ -30,12 +29,10 @@ fn motion(from: &Pose, to: &Pose) -> Motion {
 fn a_corner_of_a_block_reaches_a_wall_when_it_points_there() {
     let rotation_at =
         |x: f64| motion(&pose_about_z([x, 0.0, 0.0], 0.0), &pose_about_z([x, 0.0, 0.0], 90.0));
-    let wall = TriangleBvh::new(&block([0.0, -60.0, -20.0], [30.0, 60.0, 40.0]));
-    let mut certifier = Certifier::new(&wall, crate::tool("Block")).expect("proved");
+    let mut certifier = certifier(&block([0.0, -60.0, -20.0], [30.0, 60.0, 40.0]), "Block");
     assert_eq!(certifier.check_motion(&rotation_at(-25.003), 1e-6), MotionVerdict::Clear);
     for reach in [24.9, 24.0, 21.0] {
-        let verdict = certifier.check_motion(&rotation_at(-reach), 1e-6);
-        let MotionVerdict::Touching(at, witness) = verdict else { panic!("{verdict:?}") };
+        let (at, witness) = touching(certifier.check_motion(&rotation_at(-reach), 1e-6));
         // The corner at (20, -15) points at the wall after 36.87 degrees. It is in the wall while 25 mm times the
         // cosine of the deviation exceeds the wall's distance.
         let (corner, half) = (0.75f64.atan(), (reach / 25.0).acos());
@@ -44,20 +41,15 @@ fn a_corner_of_a_block_reaches_a_wall_when_it_points_there() {
         assert!(witness.point.x.abs() < 1e-9, "{witness:?}");
     }
     // During the motion the deepest point is on the wall beside the corner. At both ends the block is outside.
-    let bounds = (0..6)
-        .filter_map(|surface| {
-            match certifier
-                .motion_depth(SurfaceId(surface), &rotation_at(-24.5), 0.0, 1e-6)
-                .expect("a surface")
-            {
-                MotionDepth::Deeper { depth, max_depth, .. } => Some((depth, max_depth)),
-                MotionDepth::Within => None,
-                other => panic!("{other:?}"),
+    let mut bounds = [0.0f64; 2];
+    for surface in (0..6).map(SurfaceId) {
+        match certifier.motion_depth(surface, &rotation_at(-24.5), 0.0, 1e-6).expect("a surface") {
+            MotionDepth::Deeper { depth, max_depth, .. } => {
+                bounds = [bounds[0].max(depth.low), bounds[1].max(max_depth)];
             }
-        })
-        .fold([0.0f64; 2], |[low, high], (depth, max_depth)| {
-            [low.max(depth.low), high.max(max_depth)]
-        });
+            other => assert_eq!(other, MotionDepth::Within),
+        }
+    }
     // With `a` the angle between the wall's normal and a side's, the wall's point equally far from both sides has depth
     // `h / (cos a + sin a)` if the corner extends `h` beyond the wall. It is largest when the corner points slightly
     // past the wall's normal.
@@ -75,15 +67,12 @@ fn a_corner_of_a_block_reaches_a_wall_when_it_points_there() {
 
 #[test]
 fn a_solid_without_spin_is_undecided() {
-    let bvh = TriangleBvh::new(&crate::plate());
-    let mut certifier = Certifier::new(&bvh, crate::tool("Block")).expect("proved");
+    let mut certifier = certifier(&crate::plate(), "Block");
     let rest_pose = pose([0.0, 0.0, 50.0], [0.0, 0.0, 1.0]);
     let motion = crate::motion(&rest_pose, &rest_pose);
     assert_eq!(certifier.check_motion(&motion, 1e-3), MotionVerdict::Undecided(0.0));
-    assert_eq!(
-        certifier.motion_depth(SurfaceId(0), &motion, 0.0, 1e-3).expect("a surface"),
-        MotionDepth::Undecided(0.0)
-    );
+    let depth = certifier.motion_depth(SurfaceId(0), &motion, 0.0, 1e-3);
+    assert_eq!(depth, Ok(MotionDepth::Undecided(0.0)));
 }
 
 /// Random motions, short and long, past a ball and a plate. The oracle rotates each point by the quaternion formula and
@@ -111,10 +100,8 @@ fn samples_of_spinning_motions_are_within_the_bounds() {
                 let end_rotation = start_rotation * UnitQuaternion::new(axis * angle);
                 let tip = Vector3::from(rng.direction()) * rng.between(20.0, 42.0);
                 let displacement = Vector3::from(rng.direction()) * [30.0, 3.0, 0.3][k % 3];
-                let (from, to) = (
-                    pose_from_rotation(tip.into(), start_rotation),
-                    pose_from_rotation((tip + displacement).into(), end_rotation),
-                );
+                let from = pose_from_rotation(tip.into(), start_rotation);
+                let to = pose_from_rotation((tip + displacement).into(), end_rotation);
                 let motion = motion(&from, &to);
                 let depths = |t: f64| {
                     let half = 0.5 * t * angle;
@@ -125,16 +112,9 @@ fn samples_of_spinning_motions_are_within_the_bounds() {
                         let q = Quaternion::from_parts(0.0, p.coords - tip_at_t);
                         (rotation.conjugate() * q * rotation).imag().into()
                     };
-                    let points = (0..mesh.triangles().len() as u32).flat_map(|id| {
-                        let [a, b, c] = mesh.triangle(TriangleId(id));
-                        [
-                            a,
-                            b,
-                            c,
-                            nalgebra::center(&a, &b),
-                            nalgebra::center(&b, &c),
-                            a + ((b - a) + (c - a)) / 3.0,
-                        ]
+                    let points = triangles(mesh).flat_map(|[a, b, c]| {
+                        let centroid = a + ((b - a) + (c - a)) / 3.0;
+                        [a, b, c, nalgebra::center(&a, &b), nalgebra::center(&b, &c), centroid]
                     });
                     let evaluations = points.filter_map(move |p| oracle.evaluate(to_tool(p)));
                     evaluations.map(|evaluation| evaluation.depth).fold(0.0, f64::max)
@@ -161,12 +141,10 @@ fn samples_of_spinning_motions_are_within_the_bounds() {
                     MotionVerdict::SurfaceOnly | MotionVerdict::Near(..) => panic!("{text}"),
                 }
                 if k % 3 == 0 {
-                    let surfaces = 0..tool.info().surfaces.len();
+                    let surfaces = (0..tool.info().surfaces.len()).map(SurfaceId);
                     let max_bound = surfaces.map(|surface| {
-                        match certifier
-                            .motion_depth(SurfaceId(surface), &motion, 0.0, TOLERANCE)
-                            .expect("a surface")
-                        {
+                        let depth = certifier.motion_depth(surface, &motion, 0.0, TOLERANCE);
+                        match depth.expect("a surface") {
                             MotionDepth::Deeper { max_depth, .. } => max_depth,
                             MotionDepth::Within | MotionDepth::Inside => TOLERANCE,
                             MotionDepth::Undecided(_) => f64::INFINITY,

@@ -7,14 +7,14 @@ use touchoff::certify::{Certifier, TriangleBvh};
 use touchoff::mesh::shapes;
 use touchoff::tool::Interpreted;
 use touchoff::{Mesh, Pose, TriangleId, Unit};
+use touchoff_tests::fixtures::drawn;
 use touchoff_tests::oracle::rng::Rng;
 
 const SIZE: f64 = 20.0;
 
-/// A convex tool: its text, the least and greatest height that reach farthest in some direction with their radii, and
-/// balls on the axis.
+/// A convex tool, and what of it reaches farthest in some direction.
 struct Convex {
-    text: &'static str,
+    tool: Interpreted,
     /// Circles of its surface, as radius and height.
     circles: &'static [[f64; 2]],
     /// Balls about points of the axis, as radius and height of the centre.
@@ -31,32 +31,29 @@ pub(crate) const REGIONS: &str = "tool Regions { units mm;
     region end as shank where 0 <= end <= side { depth: end; }
     niceness cutting: 1; }";
 
-const TOOLS: [Convex; 4] = [
-    Convex {
-        text: "tool Ball { units mm; profile { start (0, 0); arc to (0, 6) center (0, 3) as ball cutting; } niceness cutting: 1; }",
-        circles: &[],
-        balls: &[[3.0, 3.0]],
+fn tools() -> [Convex; 4] {
+    let profile = |drawing, circles, balls| Convex {
+        tool: drawn(drawing, ""),
+        circles,
+        balls,
         is_exact: true,
-    },
-    Convex {
-        text: "tool Pin { units mm; profile { start (0, 0); line to (2, 0) as face cutting; line to (2, 5), (0, 5) as side; } niceness cutting: 1; }",
-        circles: &[[2.0, 0.0], [2.0, 5.0]],
-        balls: &[],
-        is_exact: true,
-    },
-    Convex {
-        text: "tool Mill { units mm; profile { start (0, 0); arc to (1, 1) center (0, 1) as nose cutting; line to (1, 3), (2, 6), (0, 6) as side; } niceness cutting: 1; }",
-        circles: &[[1.0, 1.0], [2.0, 6.0]],
-        balls: &[[1.0, 1.0]],
-        is_exact: true,
-    },
-    Convex {
-        text: REGIONS,
-        circles: &[[1.0, 1.0], [1.0, 6.0]],
-        balls: &[[1.0, 1.0]],
-        is_exact: false,
-    },
-];
+    };
+    [
+        profile("0 0; ball 0 6 about 0 3", &[], &[[3.0, 3.0]]),
+        profile("0 0; face 2 0; side 2 5, 0 5", &[[2.0, 0.0], [2.0, 5.0]], &[]),
+        profile(
+            "0 0; nose 1 1 about 0 1; side 1 3, 2 6, 0 6",
+            &[[1.0, 1.0], [2.0, 6.0]],
+            &[[1.0, 1.0]],
+        ),
+        Convex {
+            tool: REGIONS.parse().expect("a tool"),
+            circles: &[[1.0, 1.0], [1.0, 6.0]],
+            balls: &[[1.0, 1.0]],
+            is_exact: false,
+        },
+    ]
+}
 
 impl Convex {
     /// Returns how far the tool reaches in a direction of the world, a unit vector.
@@ -88,9 +85,8 @@ fn a_convex_tool_in_a_convex_part_is_as_far_as_the_nearest_face() {
     }
     let bvh = TriangleBvh::new(&mesh);
     let mut rng = Rng::new(1);
-    for convex in &TOOLS {
-        let tool: Interpreted = convex.text.parse().expect("a tool");
-        let mut certifier = Certifier::new(&bvh, &tool).expect("a bounded depth");
+    for convex in tools() {
+        let mut certifier = Certifier::new(&bvh, &convex.tool).expect("a bounded depth");
         let mut count = 0;
         while count < if convex.is_exact { 60 } else { 6 } {
             let tip = Point3::from(rng.between(0.0, SIZE) * Vector3::from(rng.direction()));
@@ -102,7 +98,8 @@ fn a_convex_tool_in_a_convex_part_is_as_far_as_the_nearest_face() {
             count += 1;
             let found =
                 certifier.clearance(&pose, if convex.is_exact { 1e-7 } else { 1e-2 }).distance;
-            let text = format!("{}: {expected} in {found:?} at {pose:?}", convex.text);
+            let circles = convex.circles;
+            let text = format!("{circles:?}: {expected} in {found:?} at {pose:?}");
             assert!(found.low <= expected + 1e-12, "{text}");
             if convex.is_exact {
                 assert!(expected - 1e-12 <= found.high && found.width() < 2e-7, "{text}");

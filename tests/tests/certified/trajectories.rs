@@ -1,13 +1,14 @@
 //! Trajectories that are no motions at constant speed: the tip of a ball end mill on an arc beside a wall, for which the
 //! greatest depth is known.
 
+use crate::verdicts::{assert_verdict, certifier, deeper, moved};
 use crate::{block, motion, pose, soup, tool};
 use nalgebra::{Point3, Rotation3, Vector3};
 use touchoff::certify::{
     Approximation, Certifier, MotionDepth, MotionVerdict, Trajectory, TriangleBvh,
 };
 use touchoff::mesh::shapes;
-use touchoff::{Interval, Mesh, Pose, SurfaceId, Unit};
+use touchoff::{Mesh, Pose, SurfaceId, Unit};
 use touchoff_tests::fixtures::{self, drawn};
 
 /// Radius of the arc about the z axis, and that of the tool, mm.
@@ -86,27 +87,23 @@ fn wall(depth: f64) -> Mesh {
 #[test]
 fn the_greatest_depth_on_an_arc_is_known() {
     for (depth, error) in [(0.5, 0.0), (0.5, 0.01), (0.003, 0.0)] {
-        let (wall, arc) = (TriangleBvh::new(&wall(depth)), arc(error));
-        let mut certifier = Certifier::new(&wall, tool("Ball")).expect("a profile");
-        let surfaces = (0..tool("Ball").info().surfaces.len()).map(SurfaceId);
-        let found: Vec<MotionDepth> = surfaces
-            .map(|surface| certifier.motion_depth(surface, &arc, 0.0, 1e-6).expect("a surface"))
-            .collect();
-        let deepest = found.iter().find_map(|found| match found {
-            MotionDepth::Deeper { at, depth, max_depth, witness } => {
-                Some((*at, *depth, *max_depth, *witness))
+        let (mut certifier, arc) = (certifier(&wall(depth), "Ball"), arc(error));
+        let mut surfaces = (0..tool("Ball").info().surfaces.len()).map(SurfaceId);
+        let deepest = surfaces.find_map(|surface| {
+            match certifier.motion_depth(surface, &arc, 0.0, 1e-6).expect("a surface") {
+                MotionDepth::Deeper { at, depth, max_depth, witness } => {
+                    Some((at, depth, max_depth, witness))
+                }
+                _ => None,
             }
-            _ => None,
         });
         let (at, interval, max_depth, witness) = deepest.expect("the ball is in the wall");
         assert!((at - 0.5).abs() < 1e-2, "{at}");
         // The bounds hold for every motion within the error. Depths are searched no finer than half of that.
         assert!(interval.low <= depth - error && depth + error <= interval.high, "{interval:?}");
         assert!(interval.high - interval.low < 2.5 * error + 2e-6, "{interval:?}");
-        assert!(
-            interval.high <= max_depth && max_depth < 1.2 * depth + 20.0 * error,
-            "{max_depth}"
-        );
+        let most = 1.2 * depth + 20.0 * error;
+        assert!(interval.high <= max_depth && max_depth < most, "{max_depth}");
         assert!((witness.point.x - (RADIUS + BALL - depth)).abs() < 1e-9, "{witness:?}");
     }
 }
@@ -115,15 +112,11 @@ fn the_greatest_depth_on_an_arc_is_known() {
 fn an_arc_beside_a_wall_is_decided_to_the_tolerance() {
     let arc = arc(0.0);
     for (depth, clear) in [(-1.0, true), (-1e-5, true), (1e-5, false), (1.0, false)] {
-        let wall = TriangleBvh::new(&wall(depth));
-        let mut certifier = Certifier::new(&wall, tool("Ball")).expect("a profile");
-        match certifier.check_motion(&arc, 1e-7) {
-            MotionVerdict::Clear => assert!(clear, "{depth}"),
-            MotionVerdict::Touching(at, witness) => {
-                assert!(!clear && (at - 0.5).abs() < 0.25, "{depth}, {at}");
-                assert!((witness.point.x - (RADIUS + BALL - depth)).abs() < 1e-9, "{witness:?}");
-            }
-            other => panic!("{depth}: {other:?}"),
+        let verdict = certifier(&wall(depth), "Ball").check_motion(&arc, 1e-7);
+        assert_verdict(verdict, clear.then_some(MotionVerdict::Clear), depth);
+        if let MotionVerdict::Touching(at, witness) = verdict {
+            assert!((at - 0.5).abs() < 0.25, "{depth}, {at}");
+            assert!((witness.point.x - (RADIUS + BALL - depth)).abs() < 1e-9, "{witness:?}");
         }
     }
 }
@@ -133,53 +126,42 @@ fn an_arc_beside_a_wall_is_decided_to_the_tolerance() {
 fn an_arc_about_a_pillar_is_clear_though_its_chords_are_not() {
     for (gap, clear) in [(1.0, true), (1e-2, true), (1e-4, true), (-1e-4, false), (-1.0, false)] {
         let pillar = shapes::tube(4.0, RADIUS - BALL - gap, 8.0, 256, 1, Unit::Millimetre);
-        let pillar = TriangleBvh::new(&pillar.expect("a tube"));
-        let mut certifier = Certifier::new(&pillar, tool("Ball")).expect("a profile");
-        let verdict = certifier.check_motion(&arc(0.0), 1e-6);
-        match verdict {
-            MotionVerdict::Clear => assert!(clear, "{gap}"),
-            MotionVerdict::Touching(at, witness) => {
-                let from_tip = witness.point - arc(0.0).pose(at).tip();
-                // Below the centre of the ball its distance from there counts, above it that from the axis.
-                let below = (BALL - from_tip.z).max(0.0);
-                let distance = from_tip.x.hypot(from_tip.y).hypot(below);
-                // The point is inside the tool at the arc's own pose, not only at that of a chord.
-                assert!(!clear && distance < BALL, "{gap}: {verdict:?}");
-            }
-            other => panic!("{gap}: {other:?}"),
+        let verdict = certifier(&pillar.expect("a tube"), "Ball").check_motion(&arc(0.0), 1e-6);
+        assert_verdict(verdict, clear.then_some(MotionVerdict::Clear), gap);
+        if let MotionVerdict::Touching(at, witness) = verdict {
+            let from_tip = witness.point - arc(0.0).pose(at).tip();
+            // Below the centre of the ball its distance from there counts, above it that from the axis.
+            let below = (BALL - from_tip.z).max(0.0);
+            let distance = from_tip.x.hypot(from_tip.y).hypot(below);
+            // The point is inside the tool at the arc's own pose, not only at that of a chord.
+            assert!(distance < BALL, "{gap}: {verdict:?}");
         }
     }
 }
 
 /// Returns a wall turned about an axis.
-fn turned(wall: &Mesh, axis: Vector3<f64>, angle: f64) -> TriangleBvh {
+fn turned(wall: &Mesh, axis: Vector3<f64>, angle: f64) -> Mesh {
     let turn = Rotation3::new(angle * axis);
-    let vertices = wall.vertices().iter().map(|vertex| turn * vertex);
-    let mesh = Mesh::new(vertices, wall.triangles().to_vec(), Unit::Millimetre);
-    TriangleBvh::new(&mesh.expect("a wall"))
+    moved(wall, |vertex| turn * vertex)
 }
 
 /// Returns a small triangle outside the arc, whose nearest corner is so deep in the ball at 0.3 rad: at no time that
 /// halving intervals reaches. Bounds of a wall would be too loose to miss it.
-fn thorn(depth: f64) -> TriangleBvh {
+fn thorn(depth: f64) -> Mesh {
     let (sine, cosine) = 0.3f64.sin_cos();
     let out = Vector3::new(cosine, sine, 0.0);
     let corner = Point3::from((RADIUS + BALL - depth) * out) + BALL * Vector3::z();
     let others = [Vector3::z(), -Vector3::z()].map(|side| corner + 0.05 * (out + side));
-    TriangleBvh::new(&soup(&[[corner, others[0], others[1]].map(Into::into)]))
+    soup(&[[corner, others[0], others[1]].map(Into::into)])
 }
 
 /// Chords of the arc stay away from what is outside it and touches the arc itself between their ends.
 #[test]
 fn an_arc_that_touches_a_thorn_between_the_ends_of_its_chords_is_not_clear() {
     for (depth, clear) in [(-1e-5, true), (1e-5, false), (1e-3, false)] {
-        let thorn = thorn(depth);
-        let mut certifier = Certifier::new(&thorn, tool("Ball")).expect("a profile");
-        let verdict = certifier.check_motion(&arc(0.0), 1e-7);
+        let verdict = certifier(&thorn(depth), "Ball").check_motion(&arc(0.0), 1e-7);
         // The triangle is no solid.
-        assert_eq!(verdict == MotionVerdict::SurfaceOnly, clear, "{depth}: {verdict:?}");
-        let is_touching = matches!(verdict, MotionVerdict::Touching(..));
-        assert_eq!(is_touching, !clear, "{depth}: {verdict:?}");
+        assert_verdict(verdict, clear.then_some(MotionVerdict::SurfaceOnly), depth);
     }
 }
 
@@ -190,15 +172,12 @@ fn the_least_distance_on_an_arc_is_known() {
     for error in [0.0, 0.01] {
         // Deepest at no time that halving the arc's intervals reaches.
         let (wall, arc) = (turned(&wall(-0.5), Vector3::z(), 0.3), arc(error));
-        let mut certifier = Certifier::new(&wall, tool("Ball")).expect("a profile");
-        let found = certifier.motion_depth(ball, &arc, -1.0, 1e-6).expect("a surface");
-        let MotionDepth::Deeper { at, depth: Interval { low, high }, max_depth, .. } = found else {
-            panic!("{error}: {found:?}");
-        };
+        let found = certifier(&wall, "Ball").motion_depth(ball, &arc, -1.0, 1e-6);
+        let (at, depth, max_depth) = deeper(found);
         assert!((at - (0.5 + 0.3 / (2.0 * HALF_ANGLE))).abs() < 1e-2, "{at}");
         // The bounds hold for every motion within the error.
-        assert!(low <= -0.5 - error && -0.5 + error <= high, "{error}: {low} to {high}");
-        assert!(high <= max_depth && max_depth < -0.5 + 0.1 + 20.0 * error, "{max_depth}");
+        assert!(depth.low <= -0.5 - error && -0.5 + error <= depth.high, "{error}: {depth}");
+        assert!(depth.high <= max_depth && max_depth < -0.5 + 0.1 + 20.0 * error, "{max_depth}");
     }
 }
 
@@ -212,12 +191,10 @@ fn the_edge_of_a_swinging_pin_touches_a_wall_that_no_end_of_the_swing_reaches() 
     for (depth, clear) in [(-1e-2, true), (1e-2, false)] {
         // The wall's face is across the direction at 0.2 rad.
         let wall = block([-60.0, -9.0, reach - depth], [60.0, 9.0, reach + 10.0]);
-        let wall = turned(&wall, Vector3::y(), 0.2);
+        let wall = TriangleBvh::new(&turned(&wall, Vector3::y(), 0.2));
         let mut certifier = Certifier::new(&wall, &pin).expect("a profile");
         let verdict = certifier.check_motion(&swing, 1e-4);
-        assert_eq!(verdict.is_clear(), clear, "{depth}: {verdict:?}");
-        let is_touching = matches!(verdict, MotionVerdict::Touching(..));
-        assert_eq!(is_touching, !clear, "{depth}: {verdict:?}");
+        assert_verdict(verdict, clear.then_some(MotionVerdict::Clear), depth);
     }
 }
 
@@ -239,7 +216,6 @@ fn a_wall_that_is_reached_on_the_way_out_and_back_is_touched() {
         let wall = TriangleBvh::new(&block([near, -90.0, -90.0], [near + 10.0, 90.0, 90.0]));
         let mut certifier = Certifier::new(&wall, &ball).expect("a profile");
         let verdict = certifier.check_motion(&path, 1e-4);
-        assert_eq!(verdict == MotionVerdict::Clear, is_clear, "{depth}: {verdict:?}");
-        assert_eq!(matches!(verdict, MotionVerdict::Touching(..)), !is_clear, "{verdict:?}");
+        assert_verdict(verdict, is_clear.then_some(MotionVerdict::Clear), depth);
     }
 }

@@ -9,6 +9,7 @@ use crate::brute::BruteForce;
 use crate::depth_oracle::{DepthOracle, FIELDS, PROFILES};
 use crate::pair::{Pair, Pairs, is_full_run, parts};
 use crate::to_tool;
+use crate::verdicts::triangles;
 use nalgebra::{Point3, Vector3};
 use std::collections::BTreeMap;
 use touchoff::certify::Certifier;
@@ -78,18 +79,16 @@ impl Pair<'_, DepthOracle> {
     fn compare_zoomed(&self, poses: usize, samples: u64) -> Tally {
         let mut rng = Rng::new(self.seed);
         let (mesh, length) = (&self.part.mesh, self.length());
-        let [radius, height] = self.oracle.oracle().extent();
+        let [radius, height] = self.oracle.oracle.extent();
         let size = radius.max(height) * length;
-        let (tolerance, margin) = (self.oracle.tolerance(size), self.oracle.reach_margin(size));
+        let (tolerance, margin) = (self.oracle.tolerance(size), self.oracle.reach_margin * size);
         let [low, high] = mesh.bounds();
         let part_size = (high - low).norm() + low.coords.amax().max(high.coords.amax());
         let rounding = 64.0 * f64::EPSILON * (size + part_size);
         let mut certifier =
             Certifier::new(&self.part.bvh, self.tool).expect("a tool that is proved");
-        let brute = match &self.oracle {
-            DepthOracle::Profile(nearest) => Some(BruteForce::new(mesh, nearest, length)),
-            DepthOracle::Field(_) => None,
-        };
+        let profile = self.oracle.profile.as_ref();
+        let brute = profile.map(|nearest| BruteForce::new(mesh, nearest, length));
         let mut tally = Tally::default();
         for _ in 0..poses {
             let pose = match &brute {
@@ -102,12 +101,8 @@ impl Pair<'_, DepthOracle> {
             tally.see(IN_CONTACT, max_depth > 0.0);
             tally.see(REACHED, max_depth >= low - margin);
             let case = format!("{self}: [{low:?}, {high:?}], {max_depth:?} at {pose:?}");
-            if high - low > 1.01 * tolerance + 8.0 * rounding {
-                tally.find(WIDER, case.clone());
-            }
-            if max_depth > high + rounding {
-                tally.find(VIOLATIONS, case);
-            }
+            tally.never(WIDER, high - low > 1.01 * tolerance + 8.0 * rounding, || case.clone());
+            tally.never(VIOLATIONS, max_depth > high + rounding, || case.clone());
         }
         tally
     }
@@ -119,7 +114,7 @@ impl Pair<'_, DepthOracle> {
         let [a, b, c] = mesh.triangle(TriangleId(id));
         let (v, w) = (rng.between(0.0, 0.5), rng.between(0.0, 0.5));
         let target = a + v * (b - a) + w * (c - a);
-        let [radius, height] = self.oracle.oracle().extent();
+        let [radius, height] = self.oracle.oracle.extent();
         let (d, direction) = (rng.between(0.0, radius), rng.direction());
         let inside =
             Vector3::new(d * direction[0], d * direction[1], rng.between(0.0, height)) * length;
@@ -139,7 +134,7 @@ impl Pair<'_, DepthOracle> {
         let mut search = Search { best: Vec::new(), evaluations: 0 };
         let mut reach = self.bisect(&triangles, samples / 2, &mut search);
         let Search { mut best, mut evaluations } = search;
-        let [radius, height] = self.oracle.oracle().extent();
+        let [radius, height] = self.oracle.oracle.extent();
         let size = radius.max(height);
         let rounds = ((1e-15 * size / reach).ln() / SHRINK_FACTOR.ln()).ceil().max(1.0) as u64;
         for round in 0..rounds {
@@ -190,7 +185,7 @@ impl Pair<'_, DepthOracle> {
                 }
             }
         }
-        let extent = self.oracle.oracle().extent();
+        let extent = self.oracle.oracle.extent();
         (4.0 * reach).min(extent[0].max(extent[1]))
     }
 
@@ -208,7 +203,7 @@ impl Pair<'_, DepthOracle> {
         search.insert(Sample { depth, triangle, weights });
         let radii = corners.map(|corner| distance(centroid, point(&triangles[triangle], corner)));
         let radius = radii[0].max(radii[1]).max(radii[2]);
-        let lipschitz = self.oracle.lipschitz_bound();
+        let lipschitz = self.oracle.lipschitz_bound;
         // Outside, the depth is minus the distance, which is 1-Lipschitz; it can be steeper only inside.
         let bound =
             if depth < 0.0 { lipschitz * (depth + radius) } else { depth + lipschitz * radius };
@@ -217,8 +212,8 @@ impl Pair<'_, DepthOracle> {
 
     /// Returns the triangles whose boxes overlap the tool's box, in the tool's frame and unit.
     fn nearby_triangles(&self, pose: &Pose) -> Vec<[Point; 3]> {
-        let (mesh, length) = (&self.part.mesh, self.length());
-        let [radius, height] = self.oracle.oracle().extent();
+        let length = self.length();
+        let [radius, height] = self.oracle.oracle.extent();
         let to_tool_frame = |p| to_tool(pose, length, p);
         let overlaps = |corners: &[Point; 3]| {
             let tool_box = [[-radius, radius], [-radius, radius], [0.0, height]];
@@ -229,8 +224,8 @@ impl Pair<'_, DepthOracle> {
                 low <= tool_box[axis][1] && high >= tool_box[axis][0]
             })
         };
-        let ids = 0..mesh.triangles().len() as u32;
-        ids.map(|id| mesh.triangle(TriangleId(id)).map(to_tool_frame)).filter(overlaps).collect()
+        let all = triangles(&self.part.mesh).map(|corners| corners.map(to_tool_frame));
+        all.filter(overlaps).collect()
     }
 
     /// Draws a sample in the neighbourhood of another, and replaces that one if the new sample is deeper.

@@ -23,18 +23,20 @@ struct Crate {
     impls: BTreeMap<String, Vec<ItemImpl>>,
 }
 
-fn is_test(attributes: &[Attribute]) -> bool {
+/// Returns whether an item has an attribute with a word, as `cfg(test)` or `doc(hidden)`.
+fn has(attributes: &[Attribute], name: &str, word: &str) -> bool {
     attributes.iter().any(|attribute| {
         let syn::Meta::List(list) = &attribute.meta else { return false };
-        list.path.is_ident("cfg") && list.tokens.to_string().contains("test")
+        list.path.is_ident(name) && list.tokens.to_string().contains(word)
     })
 }
 
+fn is_test(attributes: &[Attribute]) -> bool {
+    has(attributes, "cfg", "test")
+}
+
 fn is_hidden(attributes: &[Attribute]) -> bool {
-    attributes.iter().any(|attribute| {
-        let syn::Meta::List(list) = &attribute.meta else { return false };
-        list.path.is_ident("doc") && list.tokens.to_string() == "hidden"
-    })
+    has(attributes, "doc", "hidden")
 }
 
 fn is_public(visibility: &Visibility) -> bool {
@@ -130,14 +132,13 @@ fn strip_impl(mut item: ItemImpl) -> Option<ItemImpl> {
 
 fn exports(tree: &UseTree, path: &[String], to: &mut Vec<(Option<String>, Vec<String>)>) {
     let longer = |name: String| [path, &[name]].concat();
+    let mut add = |name: &syn::Ident, as_name: &syn::Ident| {
+        to.push((Some(as_name.to_string()), longer(name.to_string())));
+    };
     match tree {
         UseTree::Path(tree) => exports(&tree.tree, &longer(tree.ident.to_string()), to),
-        UseTree::Name(tree) => {
-            to.push((Some(tree.ident.to_string()), longer(tree.ident.to_string())));
-        }
-        UseTree::Rename(tree) => {
-            to.push((Some(tree.rename.to_string()), longer(tree.ident.to_string())));
-        }
+        UseTree::Name(tree) => add(&tree.ident, &tree.ident),
+        UseTree::Rename(tree) => add(&tree.ident, &tree.rename),
         UseTree::Glob(_) => to.push((None, path.to_vec())),
         UseTree::Group(tree) => tree.items.iter().for_each(|tree| exports(tree, path, to)),
     }
@@ -164,11 +165,11 @@ impl Crate {
                         continue;
                     }
                     let name = child.ident.to_string();
-                    let (items, below) = match &child.content {
-                        Some((_, items)) => (items.clone(), folder.join(&name)),
-                        None => (parsed(folder, &name).items, folder.join(&name)),
+                    let items = match &child.content {
+                        Some((_, items)) => items.clone(),
+                        None => parsed(folder, &name).items,
                     };
-                    let read = self.read(items, &below);
+                    let read = self.read(items, &folder.join(&name));
                     module.children.insert(name, (is_public(&child.vis), read));
                     continue;
                 }
@@ -300,13 +301,11 @@ fn interface(folder: &str, name: &str) -> String {
     let mut homes: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
     for (path, (home, items)) in listed {
         let name = path.rsplit("::").next().expect("a name").to_owned();
-        let types = items
-            .iter()
-            .any(|item| matches!(item, Item::Struct(_) | Item::Enum(_) | Item::Trait(_)));
+        let is_type =
+            |item: &Item| matches!(item, Item::Struct(_) | Item::Enum(_) | Item::Trait(_));
         let mut shown = items;
-        if types {
-            let first = homes.entry(name.clone()).or_default();
-            first.insert(home);
+        if shown.iter().any(is_type) {
+            homes.entry(name.clone()).or_default().insert(home);
             let impls = read.impls.get(&name).cloned().unwrap_or_default();
             shown.extend(impls.into_iter().map(Item::Impl));
         }

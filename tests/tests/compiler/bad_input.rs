@@ -33,11 +33,8 @@ fn refused(text: &str) -> Vec<String> {
     let compiled = compiled(text);
     let start: String = text.chars().take(200).collect();
     assert!(compiled.tool().is_none() && !errors(&compiled).is_empty(), "{start} was taken");
-    assert!(
-        compiled.diagnostics().len() <= 51,
-        "{} reports of {start}",
-        compiled.diagnostics().len()
-    );
+    let count = compiled.diagnostics().len();
+    assert!(count <= 51, "{count} reports of {start}");
     for report in compiled.diagnostics() {
         assert!(!report.help().is_empty(), "no remedy: {}", report.message());
         assert!(report.render(&compiled.sources, false).contains(&report.message()));
@@ -60,16 +57,13 @@ fn rejects_sizes_beyond_the_limits() {
         let said = refused(&text);
         assert!(said.iter().all(|said| said.contains("out of range")), "{said:?}");
     }
-    assert!(
-        refused(&tool("curve a = d^1000000000;"))[0].contains("an exponent must be a multiple")
-    );
     let tower = format!("let a = {}2{};", "2^(".repeat(30), ")".repeat(30));
-    assert!(refused(&tool(&tower))[0].contains("an exponent must be a multiple"));
+    for text in ["curve a = d^1000000000;", &tower] {
+        assert!(refused(&tool(text))[0].contains("an exponent must be a multiple"));
+    }
     let arc = "profile { start (0, 0); arc to (3, 3) radius 1e80 as ball; line to (0, 9) as top; }";
-    assert!(
-        refused(&format!("tool T {{ units mm; {arc} }}"))[0]
-            .contains("is too flat between these points")
-    );
+    let said = refused(&format!("tool T {{ units mm; {arc} }}"));
+    assert!(said[0].contains("is too flat between these points"), "{said:?}");
     let huge = "region far where ((d^16)^16)^16 <= 1, 0 <= z <= 1 { depth: 1 - z; }";
     let said = refused(&format!("tool T {{ units m; {huge} }}"));
     assert!(!said[0].contains("square root"), "{said:?}");
@@ -169,10 +163,8 @@ fn rejects_endless_mounts() {
     write("part.tool", format!("tool Part {{ units mm; {part} }}"));
     for k in 0..80 {
         let next = k + 1;
-        write(
-            &format!("deep{k}.tool"),
-            format!("tool Deep {{ units mm; mount \"deep{next}.tool\" as a; }}"),
-        );
+        let deep = format!("tool Deep {{ units mm; mount \"deep{next}.tool\" as a; }}");
+        write(&format!("deep{k}.tool"), deep);
         let twins =
             format!("mount \"twin{next}.tool\" as a; mount \"twin{next}.tool\" as b at z = 4;");
         write(&format!("twin{k}.tool"), format!("tool Twin {{ units mm; {twins} }}"));

@@ -14,6 +14,8 @@ use touchoff_tests::oracle::big::Big;
 use touchoff_tests::oracle::profile::Profile;
 use touchoff_tests::oracle::reference::{QueryPoint, Reference};
 use touchoff_tests::oracle::rng::Rng;
+use touchoff_tests::oracle::triangle::{advance, distance, sub};
+use touchoff_tests::points::to_space;
 use touchoff_tests::profiles::{owners, tools};
 use touchoff_tests::texts::{accepted, compiled, tool};
 
@@ -37,10 +39,8 @@ fn border(tool: &CheckedTool, proved: &Certificate, names: [&str; 2]) -> ([f64; 
     let mut found = proved.borders.iter().filter(|b| b.sides == pair && b.has_equal_depths());
     let border = found.next().expect("a border");
     assert!(found.next().is_none());
-    (
-        [border.direction_angle.low.to_degrees(), border.direction_angle.high.to_degrees()],
-        border.depth.low,
-    )
+    let angle = border.direction_angle;
+    ([angle.low, angle.high].map(f64::to_degrees), border.depth.low)
 }
 
 #[test]
@@ -138,37 +138,24 @@ fn sampled_values_keep_the_proved_bounds() {
         let slack = 1e-12 * tool.extent.scale();
         let mut before: Option<([f64; 3], f64)> = None;
         for k in 0..4_000 {
-            let p =
-                cell.sides.map(|side| side.low + rng.between(0.0, 1.0) * (side.high - side.low));
+            let p = cell.sides.map(|side| rng.between(side.low, side.high));
             // Every second point lies close to the one before.
-            let p = match before {
-                Some((last, _)) if k % 2 == 1 => {
-                    [0, 1, 2].map(|axis| last[axis] * 0.999 + p[axis] * 0.001)
-                }
-                _ => p,
-            };
+            let last = before.filter(|_| k % 2 == 1);
+            let p = last.map_or(p, |(last, _)| advance(last, 0.001, sub(p, last)));
             let Some(evaluation) = interpreter.evaluate(p, 1.0) else { continue };
             let facts = &proved.regions[evaluation.region];
-            let name =
-                format!("{}, {}", tool.model.name, tool.model.regions[evaluation.region].name);
+            let depth = evaluation.depth;
+            let region = &tool.model.regions[evaluation.region].name;
+            let name = format!("{}, {region}: {depth}", tool.model.name);
             let [low, high] = [facts.depth.low - slack, facts.depth.high + slack];
-            assert!(
-                low <= evaluation.depth && evaluation.depth <= high,
-                "{name} is {} deep",
-                evaluation.depth
-            );
+            assert!(low <= depth && depth <= high, "{name}");
             assert!(evaluation.niceness <= facts.niceness.high.max(0.0) + 1e-12, "{name}");
-            if let (Some(most), Some((last, depth))) = (proved.lipschitz(), before) {
-                let step_length =
-                    (0..3).map(|axis| (p[axis] - last[axis]).powi(2)).sum::<f64>().sqrt();
-                let changed = (evaluation.depth - depth).abs();
+            if let (Some(most), Some((last, last_depth))) = (proved.lipschitz(), before) {
+                let step = distance(p, last);
                 // Regions that no border joins may lie between two points of different parts.
-                assert!(
-                    changed <= most * step_length + slack,
-                    "{name}: {changed} over {step_length}"
-                );
+                assert!((depth - last_depth).abs() <= most * step + slack, "{name} after {step}");
             }
-            before = Some((p, evaluation.depth));
+            before = Some((p, depth));
         }
     }
 }
@@ -217,9 +204,8 @@ fn rounding_is_below_its_bound_and_above_a_tenth_of_it() {
         let [x, _, z] = tool.extent.cell().sides;
         let points: Vec<[f64; 3]> = (0..40_000)
             .map(|_| {
-                let (d, turn) =
-                    (rng.between(x.low, x.high), rng.between(0.0, std::f64::consts::TAU));
-                [d * turn.cos(), d * turn.sin(), rng.between(z.low, z.high)]
+                let (d, azimuth) = (rng.between(x.low, x.high), rng.azimuth());
+                to_space([d, rng.between(z.low, z.high)], azimuth)
             })
             .collect();
         let evaluations = evaluate_points(compiled, Level::new(), &points);
@@ -238,11 +224,8 @@ fn rounding_is_below_its_bound_and_above_a_tenth_of_it() {
             // The reference has 256 bits.
             assert!(seen <= bound + 1e-60, "{place}: {seen:e} over {bound:e}");
             // A proof that did not finish has boxes that are too large to be tight.
-            if proved.undecided.is_empty()
-                && counts[region] >= MIN_POINTS
-                && seen > 1e-60
-                && bound / seen > loosest.0
-            {
+            let is_tight = proved.undecided.is_empty() && counts[region] >= MIN_POINTS;
+            if is_tight && seen > 1e-60 && bound / seen > loosest.0 {
                 loosest = (bound / seen, place);
             }
         }
@@ -299,11 +282,8 @@ fn a_pit_in_the_middle_bounds_nothing() {
          }",
     );
     assert!(proved.is_continuous() && proved.lipschitz().is_some(), "{:?}", proved.undecided);
-    assert!(
-        proved.lower_slope().is_none_or(|least| least <= 1.0 / 3.0),
-        "{:?}",
-        proved.lower_slope()
-    );
+    let slope = proved.lower_slope();
+    assert!(slope.is_none_or(|least| least <= 1.0 / 3.0), "{slope:?}");
 }
 
 /// On the lower side of a step the slopes of both sides may lead on, so that depth is least there. The step is as
@@ -321,11 +301,8 @@ fn a_step_along_a_border_leaves_no_lower_bound() {
     };
     assert!(rod("0").is_exact());
     let proved = rod("1e-11");
-    assert!(
-        proved.lipschitz().is_some() && proved.slack >= 1e-11,
-        "{:?}",
-        proved.undecided.first()
-    );
+    let is_continuous = proved.lipschitz().is_some() && proved.slack >= 1e-11;
+    assert!(is_continuous, "{:?}", proved.undecided.first());
     assert_eq!(proved.lower_slope(), None);
 }
 
@@ -391,19 +368,12 @@ fn direction_errors_are_reported() {
     };
     let straight = of("away from (0, 1)");
     assert_eq!(straight.direction_error.map(|a| (a.low, a.high)), Some((0.0, 0.0)));
-    assert!(
-        straight.turns_on_axis && straight.singular_cells.len() == 1,
-        "{:?}",
-        straight.singular_cells
-    );
-    let [d, _, z] = straight.singular_cells[0].sides;
+    let [cell] = &straight.singular_cells[..] else { panic!("{:?}", straight.singular_cells) };
+    assert!(straight.turns_on_axis);
+    let [d, _, z] = cell.sides;
     assert!(d.low <= 0.0 && z.low <= 1.0 && 1.0 <= z.high && z.high - z.low < 0.01);
-    let reversed = of("toward (0, 1)");
-    assert!(
-        reversed.direction_error.is_some_and(|aside| aside.low > 3.1),
-        "{:?}",
-        reversed.direction_error
-    );
+    let reversed = of("toward (0, 1)").direction_error;
+    assert!(reversed.is_some_and(|aside| aside.low > 3.1), "{reversed:?}");
     let aside = of("(1, 0)");
     let off = aside.direction_error.expect("it is known somewhere");
     let [least, most] = [off.low, off.high].map(f64::to_degrees);

@@ -26,6 +26,13 @@ fn texts(svg: &str) -> Vec<String> {
     texts
 }
 
+#[track_caller]
+fn assert_has(texts: &[String], expected: &[&str]) {
+    for text in expected {
+        assert!(texts.iter().any(|own| own == text), "no {text} in {texts:?}");
+    }
+}
+
 /// Asserts that every element of an SVG document ends, and ends in the element in which it begins.
 fn well_formed(svg: &str) {
     let mut open = Vec::new();
@@ -67,11 +74,7 @@ fn holds(tool: &CheckedTool) {
 fn explains_surfaces(tool: &CheckedTool, texts: &[String]) {
     let name = &tool.model.name;
     for surface in &tool.model.surfaces {
-        let words = if surface.cutting {
-            format!("{}, cutting", surface.name)
-        } else {
-            surface.name.clone()
-        };
+        let words = format!("{}{}", surface.name, if surface.cutting { ", cutting" } else { "" });
         assert!(texts.contains(&words), "{name}: no legend for {words} in {texts:?}");
     }
 }
@@ -114,26 +117,18 @@ fn dimensions_are_in_the_unit_of_the_file() {
          line to (3, 30) as shank; line to (12.9, 30), (14, 31.1), (14, 47.5), (0, 47.5) as nut;",
     );
     let texts = texts(&drawn(&tool, TextRendering::Strokes));
-    let expected = ["ball R3", "flute ⌀6", "shank ⌀6", "nut ⌀28"];
-    for text in expected {
-        assert!(texts.iter().any(|own| own == text), "no {text} in {texts:?}");
-    }
-    let heights: Vec<&str> = texts
-        .iter()
-        .map(String::as_str)
-        .filter(|text| text.starts_with(|first: char| first.is_ascii_digit()))
-        .collect();
+    let title = "a <profile> & more";
+    assert_has(&texts, &["ball R3", "flute ⌀6", "shank ⌀6", "nut ⌀28", title]);
+    let mut heights = texts;
+    heights.retain(|text| text.starts_with(|first: char| first.is_ascii_digit()));
     assert_eq!(heights, ["0", "3", "20", "30", "31.1", "47.5 mm"]);
-    assert!(texts.iter().any(|text| text == "a <profile> & more"), "{texts:?}");
 }
 
 /// A shortened needle is marked as such, and still shows its true length.
 #[test]
 fn long_tools_are_shortened() {
     let needle = profile("start (0, 0); line to (0.5, 0), (0.5, 60), (0, 60) as shank;");
-    let texts = texts(&drawn(&needle, TextRendering::Strokes));
-    assert!(texts.iter().any(|text| text == "shortened"), "{texts:?}");
-    assert!(texts.iter().any(|text| text == "60 mm"), "{texts:?}");
+    assert_has(&texts(&drawn(&needle, TextRendering::Strokes)), &["shortened", "60 mm"]);
 }
 
 /// The dimensions of the cutter stand in the detail, and those of the holder in the whole view.
@@ -143,10 +138,8 @@ fn assemblies_have_a_detail() {
     for content in [Content::Outline, Content::Regions] {
         let drawing = svg(&tool, content, TextRendering::Strokes);
         well_formed(&drawing);
-        let texts = texts(&drawing);
-        for text in ["A", "A (2 : 1)", "cutter.ball R3", "18 mm", "nut.nut ⌀28", "47.5 mm"] {
-            assert!(texts.iter().any(|own| own == text), "{content:?}: no {text} in {texts:?}");
-        }
+        let detail = ["A", "A (2 : 1)", "cutter.ball R3", "18 mm", "nut.nut ⌀28", "47.5 mm"];
+        assert_has(&texts(&drawing), &detail);
     }
 }
 
@@ -158,15 +151,9 @@ fn solids_are_drawn_in_three_sections() {
         let drawing = svg(&tool, content, TextRendering::Strokes);
         well_formed(&drawing);
         let texts = texts(&drawing);
-        let figures = [
-            "section y = 0",
-            "section x = 0",
-            "section z = 10",
-            "x 40 (-20 to 20)",
-            "y 30 (-15 to 15)",
-            "z 20 (0 to 20)",
-        ];
-        for text in figures {
+        let sections = ["section y = 0", "section x = 0", "section z = 10"];
+        let sides = ["x 40 (-20 to 20)", "y 30 (-15 to 15)", "z 20 (0 to 20)"];
+        for text in [sections, sides].concat() {
             let count = texts.iter().filter(|own| *own == text).count();
             assert_eq!(count, 1, "{content:?}: {text} in {texts:?}");
         }

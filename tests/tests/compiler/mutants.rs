@@ -17,6 +17,7 @@ use touchoff_dsl::{CheckedTool, compile};
 use touchoff_tests::count::case_count;
 use touchoff_tests::library::{self, library};
 use touchoff_tests::oracle::rng::Rng;
+use touchoff_tests::oracle::triangle::{dot, norm};
 
 /// Number of points at which a mutant is compared with the original tool.
 const COMPARED_POINTS: usize = 20_000;
@@ -161,10 +162,8 @@ fn evaluation(
     let owner =
         *tool.plan.owner.leaf_at(&|curve: usize| evaluator.get(tool.model.curves[curve].value));
     let region = &tool.model.regions[owner?];
-    Some((
-        evaluator.get(region.depth),
-        region.raw_direction.0.map(|component| evaluator.get(component)),
-    ))
+    let direction = region.raw_direction.0.map(|component| evaluator.get(component));
+    Some((evaluator.get(region.depth), direction))
 }
 
 fn evaluator(tool: &PlannedTool) -> Evaluator<'_> {
@@ -184,15 +183,11 @@ fn differs(original: &PlannedTool, mutant: &PlannedTool, seed: u64) -> bool {
     let slack = SAME_DEPTH_TOLERANCE * original.extent.scale();
     (0..COMPARED_POINTS).any(|_| {
         let p = sides.map(|side| rng.between(side.low, side.high));
-        match (
-            evaluation(original, &mut original_values, p),
-            evaluation(mutant, &mut mutant_values, p),
-        ) {
+        let first = evaluation(original, &mut original_values, p);
+        match (first, evaluation(mutant, &mut mutant_values, p)) {
             (None, None) => false,
             (Some((a, u)), Some((b, v))) => {
-                let dot: f64 = u.iter().zip(v).map(|(u, v)| u * v).sum();
-                let norm = |v: [f64; 3]| v.iter().map(|c| c * c).sum::<f64>().sqrt();
-                (a - b).abs() > slack || dot < 0.999 * norm(u) * norm(v)
+                (a - b).abs() > slack || dot(u, v) < 0.999 * norm(u) * norm(v)
             }
             // Within rounding of the surface, inside and outside may differ.
             (first, second) => first.or(second).is_some_and(|(depth, _)| depth.abs() > slack),
@@ -209,31 +204,20 @@ fn detect(original: &Certificate, mutant: &PlannedTool) -> Detection {
         (Some(a), Some(b)) => (a - b).abs() <= 1e-9 * a.abs(),
         (a, b) => a == b,
     };
-    let direction_errors = |certificate: &Certificate| -> Vec<f64> {
-        certificate
-            .regions
-            .iter()
-            .map(|region| region.direction_error.map_or(0.0, |error| error.high))
-            .collect()
-    };
-    let has_larger_error = direction_errors(original)
-        .into_iter()
-        .zip(direction_errors(&certificate))
-        .any(|(a, b)| b > a + 1e-6);
+    let mut regions = original.regions.iter().zip(&certificate.regions);
+    let has_larger_error = regions.any(|(a, b)| {
+        let [a, b] = [a, b].map(|region| region.direction_error.map_or(0.0, |error| error.high));
+        b > a + 1e-6
+    });
     let has_same_bounds = same(original.lower_slope(), certificate.lower_slope())
         && same(original.lipschitz(), certificate.lipschitz());
-    if any_error(&diagnostics) {
-        Detection::Error
-    } else if diagnostics.is_empty() {
-        if has_larger_error || !has_same_bounds {
-            Detection::ByComparison
-        } else {
-            Detection::Undetected
-        }
-    } else if certificate.undecided.is_empty() {
-        Detection::Warning
-    } else {
-        Detection::Undecided
+    let differs = has_larger_error || !has_same_bounds;
+    match (any_error(&diagnostics), diagnostics.is_empty(), certificate.undecided.is_empty()) {
+        (true, ..) => Detection::Error,
+        (false, true, _) if differs => Detection::ByComparison,
+        (false, true, _) => Detection::Undetected,
+        (false, false, true) => Detection::Warning,
+        (false, false, false) => Detection::Undecided,
     }
 }
 
@@ -322,22 +306,16 @@ fn bound_violation(tool: &CheckedTool, proved: &Certificate, rng: &mut Rng) -> O
             interpreter.evaluate([q[0], 0.0, q[1]], 1.0).map_or(0.0, |evaluation| evaluation.depth);
         let distance_moved = (q[0] - p[0]).hypot(q[1] - p[1]);
         let slack = 1e-9 + proved.tolerance;
-        if let Some(lipschitz) = lipschitz
-            && (other_depth - evaluation.depth).abs() > lipschitz * distance_moved + slack
-        {
-            return Some(format!(
-                "{} to {other_depth} over {distance_moved} at {p:?}",
-                evaluation.depth
-            ));
+        let depth = evaluation.depth;
+        let change = (other_depth - depth).abs();
+        if lipschitz.is_some_and(|lipschitz| change > lipschitz * distance_moved + slack) {
+            return Some(format!("{depth} to {other_depth} over {distance_moved} at {p:?}"));
         }
         if let Some(lower_slope) = proved.lower_slope() {
             // Between two of the directions, the surface may be slightly nearer.
             let outside_distance = distance(&mut interpreter, p, size);
-            if evaluation.depth < lower_slope * outside_distance * 0.99 - slack {
-                return Some(format!(
-                    "{} deep and {outside_distance} from outside at {p:?}",
-                    evaluation.depth
-                ));
+            if depth < lower_slope * outside_distance * 0.99 - slack {
+                return Some(format!("{depth} deep, {outside_distance} from outside at {p:?}"));
             }
         }
     }

@@ -67,10 +67,8 @@ fn rejects_tools_beyond_the_limits() {
         for k in 1..=count {
             items += &format!("curve c{k} = {};", step(k - 1));
         }
-        items
-            + &format!(
-                "region r where hypot(d, z - 3) <= 3 {{ depth: 3 - hypot(d, z - 3); niceness: c{count}; }}"
-            )
+        let ball = "region r where hypot(d, z - 3) <= 3 { depth: 3 - hypot(d, z - 3);";
+        format!("{items} {ball} niceness: c{count}; }}")
     };
     let steps = chain("d*d", |k| format!("c{k} + d*d*{}", k + 1), 1000);
     for (items, code) in [

@@ -3,6 +3,7 @@
 use nalgebra::Point3;
 use touchoff::tool::Interpreted;
 use touchoff::{Pose, Probe};
+use touchoff_tests::checks::assert_near;
 use touchoff_tests::fixtures::{interpreted, part_at};
 use touchoff_tests::oracle::restated::Restated;
 
@@ -23,8 +24,7 @@ fn mill() -> Interpreted {
 }
 
 fn near(found: Option<f64>, expected: Option<f64>, what: &str) {
-    let difference = found.unwrap_or(-1.0) - expected.unwrap_or(-1.0);
-    assert!(difference.abs() < 1e-9, "{what}: {found:?} for {expected:?}");
+    assert_near(found.unwrap_or(-1.0), expected.unwrap_or(-1.0), 1e-9, what);
 }
 
 #[test]

@@ -1,10 +1,10 @@
 //! Scenes of several parts and tools: each pair has the results of a probe alone, wherever the part is put.
 
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
-use touchoff::mesh::shapes;
 use touchoff::scenes::ScenePath;
 use touchoff::{Part, Pose, Probe, Sampling, Scene, Tool, Unit};
-use touchoff_tests::fixtures::{part, poses};
+use touchoff_tests::checks::assert_near;
+use touchoff_tests::fixtures::{cuboid, part, poses};
 use touchoff_tests::library::tool;
 
 fn fig73() -> &'static dyn Tool {
@@ -12,8 +12,7 @@ fn fig73() -> &'static dyn Tool {
 }
 
 fn near(what: &str, found: Vector3<f64>, expected: Vector3<f64>) {
-    let difference = (found - expected).norm();
-    assert!(difference <= 1e-9 * (1.0 + expected.norm()), "{what}: {found} for {expected}");
+    assert_near((found - expected).norm(), 0.0, 1e-9 * (1.0 + expected.norm()), what);
 }
 
 #[test]
@@ -66,29 +65,22 @@ fn moving_tool_and_part_together_keeps_the_wrench() {
 
 #[test]
 fn parts_add_up_and_move() {
-    let cube = shapes::cuboid(Point3::origin(), Point3::new(20., 20., 20.), Unit::Millimetre);
-    let cube = Part::from_mesh(&cube.expect("a cube"), Sampling::new(4_000)).expect("a part");
+    let cube = Part::from_mesh(&cuboid([0.0; 3], [20.0; 3]), Sampling::new(4_000));
+    let cube = cube.expect("a part");
     let mut scene = Scene::new(Unit::Millimetre);
     let shifted = |x: f64| Pose::try_from(Isometry3::translation(x, 0.0, 0.0)).expect("finite");
     let left_part = scene.add_part(&cube, shifted(-20.5)).expect("millimetres");
     let tool = scene.add_tool(fig73());
     let right_part = scene.add_part(&cube, shifted(0.5)).expect("millimetres");
     // The cutter of radius 1 stands in a slot 1 wide.
-    scene.move_tool(
-        tool,
-        Pose::from_axis(Point3::new(0.0, 10.0, 15.0), Vector3::z()).expect("unit"),
-    );
+    let pose = Pose::from_axis(Point3::new(0.0, 10.0, 15.0), Vector3::z());
+    scene.move_tool(tool, pose.expect("unit"));
     let [a, b] = [left_part, right_part].map(|part| scene.pair_wrench(tool, part));
     assert!(a.colliding > 10 && b.colliding > 10 && a.force.x > 0.0 && b.force.x < 0.0);
     let both = scene.wrench(tool);
-    let mut sum = a;
-    sum.force += b.force;
-    sum.torque += b.torque;
-    sum.colliding += b.colliding;
-    sum.integral += b.integral;
-    sum.energy += b.energy;
-    assert_eq!((both.force, both.torque, both.colliding), (sum.force, sum.torque, sum.colliding));
-    assert_eq!((both.integral, both.energy), (sum.integral, sum.energy));
+    assert_eq!((both.force, both.torque), (a.force + b.force, a.torque + b.torque));
+    assert_eq!(both.colliding, a.colliding + b.colliding);
+    assert_eq!((both.integral, both.energy), (a.integral + b.integral, a.energy + b.energy));
     assert_eq!(both.depth(), a.depth().max(b.depth()));
     assert_eq!(scene.detect(tool), Some(left_part));
     scene.move_part(left_part, shifted(-60.0));

@@ -3,6 +3,7 @@
 use nalgebra::{Isometry3, Point3, UnitQuaternion, Vector3};
 use touchoff::tool::Interpreted;
 use touchoff::{Pose, Scene, Unit};
+use touchoff_tests::checks::assert_near;
 use touchoff_tests::fixtures::{interpreted, part_at};
 use touchoff_tests::oracle::restated::Restated;
 
@@ -18,7 +19,7 @@ fn known(z: f64) -> [f64; 2] {
 }
 
 fn near(what: &str, found: f64, expected: f64) {
-    assert!((found - expected).abs() < 1e-9, "{what}: {found} for {expected}");
+    assert_near(found, expected, 1e-9, what);
 }
 
 /// One point per part, in both orders: the deeper of the two is nicer in some pairs and less nice in others.

@@ -1,13 +1,14 @@
 //! Solids without an axis: evaluations of the library's at stated points, and refusals of others.
 
-use touchoff::Interval;
-use touchoff::Unit;
 use touchoff::tool::{Evaluators, PointEvaluation, Symmetry};
+use touchoff::{Interval, Unit};
 use touchoff_dsl::interpret::Interpreter;
 use touchoff_dsl::source::Source;
 use touchoff_dsl::{Compiled, compile_with_arguments};
+use touchoff_tests::checks::assert_near;
 use touchoff_tests::library;
 use touchoff_tests::oracle::rng::Rng;
+use touchoff_tests::oracle::triangle::distance;
 use touchoff_tests::oracle::{Body, Oracle};
 use touchoff_tests::texts::{
     accepted, assert_each_refused, assert_refused, compiled, said, with_one_error,
@@ -55,10 +56,7 @@ fn a_bracket_at_its_hole_and_edges() {
     let assert_close = |p: [f64; 3], region: &str, depth: f64| {
         let (name, evaluation) = at::<LBracket>(p).unwrap_or_else(|| panic!("{p:?} is outside"));
         assert_eq!(name, region, "{p:?}");
-        assert!(
-            (evaluation - depth).abs() <= 32.0 * f64::EPSILON,
-            "{p:?}: {evaluation}, not {depth}"
-        );
+        assert_near(evaluation, depth, 32.0 * f64::EPSILON, p);
     };
     assert_close([0.0, 0.0, 2.0], "lying_bottom", 2.0);
     assert_close([0.0, 9.0, 3.0], "lying_side", 1.0);
@@ -88,11 +86,8 @@ fn a_bracket_at_its_hole_and_edges() {
     let toward = inside::<LBracket>([14.0, 0.0, 3.0], 1.0).direction;
     assert_eq!(toward, [-1.0, 0.0, 0.0]);
     let half = 0.5f64.sqrt();
-    for (part, expected) in
-        inside::<LBracket>([-5.0, 0.0, 5.0], 1.0).direction.into_iter().zip([half, 0.0, half])
-    {
-        assert!((part - expected).abs() < 1e-15);
-    }
+    let toward = inside::<LBracket>([-5.0, 0.0, 5.0], 1.0).direction;
+    assert!(distance(toward, [half, 0.0, half]) < 1e-15, "{toward:?}");
 }
 
 /// Outside, clearance is the distance to the solid's box: the true distance for a block, else a bound.
@@ -128,11 +123,7 @@ fn a_block_with_other_dimensions() {
             let p = half.map(|half| rng.between(-half, half));
             let depth = (0..3).map(|k| half[k] - p[k].abs()).fold(f64::INFINITY, f64::min);
             let evaluation = reference.evaluate([p[0], p[1], p[2] + half[2]], 1.0).expect("inside");
-            assert!(
-                (evaluation.depth - depth).abs() < 1e-13,
-                "{p:?}: {}, not {depth}",
-                evaluation.depth
-            );
+            assert_near(evaluation.depth, depth, 1e-13, p);
         }
     }
 }
@@ -151,9 +142,8 @@ fn info_has_the_extents_of_solids() {
     }
     let info = LBracket::info();
     let Symmetry::Solid { extent: [x, y] } = info.symmetry else { panic!("a solid") };
-    assert!(
-        x.low <= -10.0 && x.high >= 20.0 && x.high < 20.001 && y.high >= 10.0 && y.high < 10.001
-    );
+    assert!(x.low <= -10.0 && (20.0..20.001).contains(&x.high), "{x}");
+    assert!((10.0..10.001).contains(&y.high), "{y}");
     // The standing leg is slimmer than the lying one.
     let top = info.envelope.last().expect("slabs");
     assert!(top.low < 6.01 && top.radius >= 200f64.sqrt() && top.radius < 14.2, "{top:?}");
@@ -214,10 +204,8 @@ fn mistakes_in_a_solid_are_named() {
     assert_each_refused(ITEMS, |items| with_one_error(solid(&format!("{items} {BALL} }}"))));
     assert_each_refused(SOLIDS, solid);
     // A point of space has three coordinates.
-    let overlap = said(&format!(
-        "solid S {{ units mm; {} }}",
-        SOLIDS.split(" => ").next().unwrap_or_default()
-    ));
+    let (items, _) = SOLIDS.split_once(" => ").expect("items and words");
+    let overlap = said(&format!("solid S {{ units mm; {items} }}"));
     assert_eq!(overlap[0].0.split(')').next().map(|head| head.matches(',').count()), Some(3));
     let tool = "tool T { units mm; region r where hypot(d, z - 3) <= 3, y <= 4 { depth: 3 - hypot(d, z - 3); } }";
     let words = ["`y` is a coordinate of a `solid` only", "`d`, the distance from the axis"];

@@ -7,6 +7,7 @@ use touchoff::mesh::shapes;
 use touchoff::scenes::{HEIGHT, ScenePath};
 use touchoff::tool::Interpreted;
 use touchoff::{Cloud, Law, Part, Pose, Probe, Sampling, Tool, Unit};
+use touchoff_tests::checks::assert_near;
 use touchoff_tests::library::tool;
 use touchoff_tests::oracle::{Fig73, Oracle, cylinder, d2_ball, fig_7_3_exact};
 
@@ -91,19 +92,17 @@ fn a_written_magnitude_stays() {
         // A quarter of an inch deep.
         let pose = Pose::from_axis(at - 0.25 * inch * Vector3::z(), Vector3::z()).expect("a pose");
         let wrench = Probe::new(&part, &written).with_law(Law::Gradient).wrench(&pose);
-        let assert_near = |got: f64, want: f64| {
-            assert!((got - want).abs() < 1e-12 * want.abs(), "{unit}: {got}, not {want}");
-        };
-        assert_near(wrench.depth(), 0.25 * inch);
-        assert_near(wrench.integral, 3.0 * 0.25);
-        assert_near(wrench.energy, 0.5 * 3.0 * 0.0625);
-        assert_near(wrench.force.z, 3.0 * 0.25 / inch);
+        let near = |got: f64, want: f64| assert_near(got, want, 1e-12 * want.abs(), unit);
+        near(wrench.depth(), 0.25 * inch);
+        near(wrench.integral, 3.0 * 0.25);
+        near(wrench.energy, 0.5 * 3.0 * 0.0625);
+        near(wrench.force.z, 3.0 * 0.25 / inch);
         let mut probe = Probe::new(&part, &written);
-        assert_near(probe.wrench(&pose).force.z, 3.0 * 0.25 * 2.0);
+        near(probe.wrench(&pose).force.z, 3.0 * 0.25 * 2.0);
         let contact = probe.contacts(&pose)[0];
-        assert_near(contact.magnitude, 0.25);
-        assert_near(contact.depth, 0.25 * inch);
-        assert_near(contact.gradient.z, 1.0 / inch);
+        near(contact.magnitude, 0.25);
+        near(contact.depth, 0.25 * inch);
+        near(contact.gradient.z, 1.0 / inch);
     }
 }
 

@@ -40,14 +40,11 @@ fn the_order_of_points_does_not_matter() {
 
 /// Returns all orders of up to three items; of more, the reverse and some at random.
 fn orders(count: usize, rng: &mut Rng) -> Vec<Vec<usize>> {
-    match count {
-        1 => return vec![vec![0]],
-        2 => return vec![vec![0, 1], vec![1, 0]],
-        3 => {
-            let orders = [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]];
-            return orders.map(Vec::from).into();
-        }
-        _ => {}
+    if count <= 3 {
+        let orders = [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]];
+        // Those of fewer items are the ones that leave the last items in place.
+        let orders = orders.into_iter().filter(|order| order[count..] == [0, 1, 2][count..]);
+        return orders.map(|order| order[..count].to_vec()).collect();
     }
     let mut orders = vec![(0..count).rev().collect::<Vec<_>>()];
     while orders.len() < extent(2, 8) {

@@ -23,7 +23,6 @@
 mod accuracy;
 mod aligned;
 mod border_points;
-mod borders;
 mod cycles;
 mod degenerate;
 mod denormal;
@@ -31,7 +30,6 @@ mod equidistant;
 mod equivalent;
 mod input;
 mod leaves;
-mod points;
 mod scaled;
 mod scene;
 mod tangent;
@@ -39,7 +37,6 @@ mod text;
 mod translated;
 mod truth;
 mod validator;
-mod voronoi;
 
 use rayon::prelude::*;
 use std::sync::LazyLock;

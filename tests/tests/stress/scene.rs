@@ -28,22 +28,17 @@ impl PointSet {
     pub(crate) fn near_tool(subject: &Subject, count: usize, grid: f64, rng: &mut Rng) -> PointSet {
         let curves = subject.oracle.curve_points();
         let reach = 0.2 * subject.oracle.extent()[0];
-        let mut point_set = PointSet {
-            points: Vec::new(),
-            normals: Vec::new(),
-            weights: Vec::new(),
-            unit: subject.tool.info().unit,
-        };
+        let (mut points, mut normals, mut weights) = (Vec::new(), Vec::new(), Vec::new());
         for k in 0..count {
             let curve = &curves[rng.index(curves.len())];
             let origin = curve[rng.index(curve.len())];
             let step = rng.direction().map(|c| c * reach * if k % 2 == 0 { 0.05 } else { 1.0 });
             let p = displaced(&*subject.oracle, origin, step, rng.between(0.0, TAU));
-            point_set.points.push(Point3::from(p.map(|c| (c / grid).round() * grid)));
-            point_set.normals.push(Vector3::from(rng.direction()));
-            point_set.weights.push(rng.between(0.1, 2.0));
+            points.push(Point3::from(p.map(|c| (c / grid).round() * grid)));
+            normals.push(Vector3::from(rng.direction()));
+            weights.push(rng.between(0.1, 2.0));
         }
-        point_set
+        PointSet { points, normals, weights, unit: subject.tool.info().unit }
     }
 
     /// Returns the same normals and weights at other points.

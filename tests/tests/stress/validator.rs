@@ -100,12 +100,8 @@ impl<'a> Validator<'a> {
                 error = values.map_or(error, |values| error.min(error_from(&values)));
             }
         }
-        checks.within(
-            "u [8 ε max(1, S/ρ)]",
-            error / (8.0 * f64::EPSILON * amplification),
-            1.0,
-            place,
-        );
+        let error = error / (8.0 * f64::EPSILON * amplification);
+        checks.within("u [8 ε max(1, S/ρ)]", error, 1.0, place);
     }
 
     fn validate_outside(&self, p: [f64; 3], exact: &Big, checks: &mut Checks) {

@@ -25,6 +25,7 @@ use touchoff_postures::sweep::{PostureSweep, SweepStats};
 use touchoff_postures::{Accessibility, Directions, MapRow, Rules};
 use touchoff_tests::count::case_count;
 use touchoff_tests::fixtures::cuboid;
+use touchoff_tests::library;
 use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::tally::Tally;
 
@@ -67,11 +68,7 @@ impl ComparisonSettings<'_> {
     /// undecided.
     fn check(&self) {
         let mesh = self.mesh;
-        let tools: Vec<&dyn Tool> = self
-            .tools
-            .iter()
-            .map(|name| touchoff_tools::find(name).expect("a tool of the library") as &dyn Tool)
-            .collect();
+        let tools: Vec<&dyn Tool> = self.tools.iter().map(|name| library::tool(name)).collect();
         let models = tools.iter().zip(self.tools).map(|(tool, name)| {
             let length = tool.info().unit.factor_to(mesh.unit());
             ToolModel::new(name, length, self.tolerance)
@@ -154,12 +151,11 @@ fn draw_accessible(rows: &[MapRow], count: usize, rng: &mut Rng) -> Vec<Choice> 
     }
     let choice = |_| {
         let draw = rng.bits() % sum;
-        let index =
-            cumulative.partition_point(|(cumulative_count, _, _)| *cumulative_count <= draw);
-        let (cumulative_count, triangle, access) = cumulative[index];
+        let index = cumulative.partition_point(|(count, ..)| *count <= draw);
+        let (count, triangle, access) = cumulative[index];
         let members =
             (0..64 * access.directions.len()).filter(|k| contains(&access.directions, *k));
-        let remaining = (cumulative_count - draw - 1) as usize;
+        let remaining = (count - draw - 1) as usize;
         let direction = members.rev().nth(remaining)?;
         Some(Choice { triangle, tool: access.tool.into(), direction })
     };
@@ -201,8 +197,8 @@ impl Validation<'_> {
 
     fn check_accessible(&self, choice: &Choice) -> Tally {
         let postures = self.postures(choice, 2.0);
-        let verdicts = postures.iter().map(|posture| self.check(choice, posture, self.rounding));
-        let verdicts: Vec<Verdict> = verdicts.collect();
+        let verdict = |posture| self.check(choice, posture, self.rounding);
+        let verdicts: Vec<Verdict> = postures.iter().map(verdict).collect();
         if verdicts.contains(&Verdict::Free) {
             return outcome(None);
         }
@@ -241,11 +237,8 @@ impl Validation<'_> {
                 let closer = self.check(choice, &posture, -share * self.settings.tolerance);
                 matches!(closer, Verdict::Blocked(_))
             });
-            let near = near_share.map_or_else(
-                || "blocked by nothing near".to_owned(),
-                |share| format!("blocked if {share:e} of the tolerance nearer"),
-            );
-            let finding = format!("{}: {verdict:?}, {near}", self.describe(choice));
+            let text = self.describe(choice);
+            let finding = format!("{text}: {verdict:?}, blocked if nearer by {near_share:?} of it");
             // A near collision within the certifier's rounding is undecided in the sweep, not wrong.
             let is_open = verdict == Verdict::Open || near_share.is_some_and(|share| share <= 1e-6);
             return outcome(Some((if is_open { UNDECIDED } else { CONTRADICTED }, finding)));
@@ -328,7 +321,7 @@ fn brute_force_rejects_blocked_postures() {
 fn first_rows(mesh: &Mesh, tool: &str, directions: &Directions, niceness: f64) -> Vec<MapRow> {
     let bvh = TriangleBvh::new(mesh);
     let rules = Rules { tolerance: 0.01, niceness, allowed: Vec::new() };
-    let tools = vec![touchoff_tests::library::tool(tool)];
+    let tools = vec![library::tool(tool)];
     let sweep = PostureSweep::new(mesh, &bvh, tools, directions, rules, NonZeroU16::MIN);
     let mut rows = Vec::new();
     let _: ControlFlow<()> = sweep.expect("a sweep").run(&[0], |batch| {

@@ -19,51 +19,34 @@ fn top_height(x: f64, y: f64) -> f64 {
 
 /// Returns a block with this top, in mm, closed and oriented outward. Its top has `squares` squares per side; its sides
 /// and its bottom are divided into strips.
-///
-/// # Errors
-/// If `squares` is 0.
 pub(super) fn relief(squares: u32) -> Result<Mesh, MeshError> {
     let n = squares;
     let coordinate = |k: u32| WIDTH * (f64::from(k) / f64::from(n) - 0.5);
     let mut vertices = Vec::new();
     for j in 0..=n {
         for i in 0..=n {
-            vertices.push(Point3::new(
-                coordinate(i),
-                coordinate(j),
-                top_height(coordinate(i), coordinate(j)),
-            ));
+            let [x, y] = [i, j].map(coordinate);
+            vertices.push(Point3::new(x, y, top_height(x, y)));
         }
     }
-    let top_index = |i: u32, j: u32| j * (n + 1) + i;
+    let top_index = |[i, j]: [u32; 2]| j * (n + 1) + i;
     let mut triangles = Vec::new();
     for j in 0..n {
         for i in 0..n {
-            let [a, b, c, d] = [
-                top_index(i, j),
-                top_index(i + 1, j),
-                top_index(i + 1, j + 1),
-                top_index(i, j + 1),
-            ];
+            let [a, b, c, d] = [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]].map(top_index);
             triangles.extend([[a, b, c], [a, c, d]]);
         }
     }
     // Duplicate the rim, counter-clockwise from above, at the height of the bottom, and add the bottom's centre.
-    let rim: Vec<u32> = (0..n)
-        .map(|k| top_index(k, 0))
-        .chain((0..n).map(|k| top_index(n, k)))
-        .chain((0..n).map(|k| top_index(n - k, n)))
-        .chain((0..n).map(|k| top_index(0, n - k)))
-        .collect();
+    let side = |side: fn(u32, u32) -> [u32; 2]| (0..n).map(move |k| top_index(side(k, n)));
+    let sides = side(|k, _| [k, 0]).chain(side(|k, n| [n, k]));
+    let sides = sides.chain(side(|k, n| [n - k, n])).chain(side(|k, n| [0, n - k]));
+    let rim: Vec<u32> = sides.collect();
     let first = vertices.len() as u32;
-    let bottom_rim: Vec<Point3<f64>> = rim
-        .iter()
-        .map(|k| {
-            let vertex = vertices[*k as usize];
-            Point3::new(vertex.x, vertex.y, BOTTOM_HEIGHT)
-        })
-        .collect();
-    vertices.extend(bottom_rim);
+    for k in &rim {
+        let Point3 { coords: top } = vertices[*k as usize];
+        vertices.push(Point3::new(top.x, top.y, BOTTOM_HEIGHT));
+    }
     let bottom_centre = vertices.len() as u32;
     vertices.push(Point3::new(0.0, 0.0, BOTTOM_HEIGHT));
     let count = rim.len() as u32;

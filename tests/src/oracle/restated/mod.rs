@@ -2,14 +2,32 @@
 //! and not from its file. Points are exact to 256 bits, so that no part of an error comes from the restatement.
 
 mod catalogue;
-mod thesis;
 
 use super::big::Big;
 use super::profile::Profile;
 use super::real::Real;
 
-/// Niceness of a surface that cuts, from its name, the depth and `[d, z]`; below 0 counts as 0.
-pub type Niceness = fn(&str, f64, [f64; 2]) -> f64;
+/// Niceness of the surfaces that cut; below 0 counts as 0.
+#[derive(Clone, Debug)]
+pub enum Niceness {
+    /// Its formula, from the surface's name, the depth and `[d, z]`.
+    Formula(fn(&str, f64, [f64; 2]) -> f64),
+    /// For each surface what it is there, and the depth over which it falls by 1.
+    Linear(Vec<(&'static str, [f64; 2])>),
+}
+
+impl Niceness {
+    /// Returns the niceness of a contact with a surface that cuts.
+    pub fn at(&self, surface: &str, depth: f64, dz: [f64; 2]) -> f64 {
+        match self {
+            Niceness::Formula(formula) => formula(surface, depth, dz),
+            Niceness::Linear(laws) => {
+                let law = laws.iter().find(|(name, _)| *name == surface);
+                law.map_or(f64::NAN, |(_, [most, fall])| most - depth / fall)
+            }
+        }
+    }
+}
 
 /// A tool by its profile, from the tip up, with the material on the left.
 #[derive(Clone, Debug)]
@@ -30,14 +48,12 @@ impl Restated {
     /// Creates a tool of one surface that does not cut.
     pub fn of_profile(name: &'static str, profile: Profile<Big>) -> Restated {
         let surfaces = vec!["side"; profile.segments().len()];
-        Restated { name, profile, surfaces, cutting: Vec::new(), niceness: |_, _, _| 1.0 }
+        let niceness = Niceness::Linear(Vec::new());
+        Restated { name, profile, surfaces, cutting: Vec::new(), niceness }
     }
 
     /// Reads a tool that does not cut: the start of its profile, and behind semicolons each surface with its
     /// [vertices][Profile::parse]. A word stands for one of `lengths`.
-    ///
-    /// # Panics
-    /// If the text is none.
     pub fn drawn(name: &'static str, drawing: &'static str, lengths: &[(&str, Big)]) -> Restated {
         let mut parts = drawing.split(';').map(str::trim);
         let mut vertices = parts.next().unwrap_or_default().to_owned();
@@ -56,9 +72,29 @@ impl Restated {
     }
 
     /// Sets the surfaces that cut, separated by spaces, and their niceness.
-    pub fn cuts(mut self, surfaces: &'static str, niceness: Niceness) -> Restated {
+    pub fn cuts(
+        mut self,
+        surfaces: &'static str,
+        niceness: fn(&str, f64, [f64; 2]) -> f64,
+    ) -> Restated {
         self.cutting = surfaces.split_whitespace().collect();
-        self.niceness = niceness;
+        self.niceness = Niceness::Formula(niceness);
+        self
+    }
+
+    /// Sets the surfaces that cut and their niceness: before each colon some surfaces, behind it their law, which is a
+    /// number, `number - depth` or `number - depth/number`.
+    fn laws(mut self, laws: &'static str) -> Restated {
+        let number = |word: &str| word.parse::<f64>().expect("a number");
+        let mut all = Vec::new();
+        for part in laws.split("; ").filter(|part| !part.is_empty()) {
+            let (surfaces, law) = part.split_once(": ").expect("surfaces and a law");
+            let (most, fall) = law.split_once(" - depth").unwrap_or((law, "/inf"));
+            let law = [number(most), fall.strip_prefix('/').map_or(1.0, number)];
+            all.extend(surfaces.split(' ').map(|surface| (surface, law)));
+        }
+        self.cutting = all.iter().map(|(surface, _)| *surface).collect();
+        self.niceness = Niceness::Linear(all);
         self
     }
 
@@ -77,14 +113,22 @@ pub fn all() -> Vec<Restated> {
     [thesis(), catalogue()].concat()
 }
 
-/// Returns the thesis's solids.
-pub fn thesis() -> Vec<Restated> {
-    thesis::all()
+/// Returns the thesis's solids; the niceness of fig. 7.3 is that of eq. 7.3.
+fn thesis() -> Vec<Restated> {
+    let formula = |surface: &str, _, [d, z]: [f64; 2]| match surface {
+        "flute" => 2.0 * d * d,
+        _ => 2.0 * d * d + (z - 1.0) * (z - 1.0),
+    };
+    let fig_7_3 = |tool: Restated| match tool.name {
+        "Fig73Exact" => tool.cuts("nose flute", formula),
+        _ => tool,
+    };
+    catalogue::read(catalogue::THESIS).into_iter().map(fig_7_3).collect()
 }
 
 /// Returns the cutters with a catalogue's dimensions.
 pub fn catalogue() -> Vec<Restated> {
-    catalogue::all()
+    catalogue::read(catalogue::CATALOGUE)
 }
 
 /// Returns the restated tool of a name.

@@ -67,10 +67,8 @@ impl<'a> SurfaceAllowances<'a> {
 
     fn certifier(&self) -> Certifier<'a> {
         let certifier = Certifier::new(&self.part.bvh, tool(self.tool)).expect("a profile");
-        let allowed = self.surface_names.iter().zip(&self.allowances);
-        allowed.fold(certifier, |certifier, (surface, allowed)| {
-            certifier.with_allowance(surface, *allowed).expect("a surface")
-        })
+        let allowed = self.surface_names.iter().map(String::as_str).zip(self.allowances.clone());
+        certifier.with_allowances(allowed).expect("surfaces")
     }
 
     /// Returns the error bound of a depth.
@@ -106,10 +104,8 @@ impl<'a> SurfaceAllowances<'a> {
         let depth = self.brute.depth(p) * self.brute.length;
         let own_distance =
             self.distance_to_surface(surface, p) + 8.0 * f64::EPSILON * self.brute.size;
-        let other_surfaces = (0..self.surface_names.len()).filter(|other| *other != surface);
-        let is_nearest = other_surfaces
-            .into_iter()
-            .all(|other| own_distance <= self.distance_to_surface(other, p));
+        let mut others = (0..self.surface_names.len()).filter(|other| *other != surface);
+        let is_nearest = others.all(|other| own_distance <= self.distance_to_surface(other, p));
         if depth >= 0.0 && is_nearest { depth } else { f64::NEG_INFINITY }
     }
 
@@ -119,11 +115,8 @@ impl<'a> SurfaceAllowances<'a> {
         let excess = |surface: usize| {
             let allowed = self.allowances[surface];
             let excess_depth = self.depth(surface, p) - allowed.max(0.0);
-            if allowed < 0.0 {
-                excess_depth.max(-self.distance_to_surface(surface, p) - allowed)
-            } else {
-                excess_depth
-            }
+            let lack = || -self.distance_to_surface(surface, p) - allowed;
+            if allowed < 0.0 { excess_depth.max(lack()) } else { excess_depth }
         };
         let excesses = (0..self.surface_names.len()).map(excess).filter(|over| !over.is_nan());
         excesses.fold(f64::NEG_INFINITY, f64::max)
@@ -166,16 +159,14 @@ impl<'a> SurfaceAllowances<'a> {
         value: impl Fn(Point) -> f64,
         rng: &mut Rng,
     ) -> Option<Sample> {
-        let evaluated =
-            samples.iter().map(|sample| Sample { value: value(sample.point), ..*sample });
-        let mut evaluated: Vec<Sample> =
-            evaluated.filter(|sample| sample.value > f64::NEG_INFINITY).collect();
+        let evaluated = |sample: &Sample| Sample { value: value(sample.point), ..*sample };
+        let mut evaluated: Vec<Sample> = samples.iter().map(evaluated).collect();
+        evaluated.retain(|sample| sample.value > f64::NEG_INFINITY);
         evaluated.sort_by(|a, b| b.value.total_cmp(&a.value));
         evaluated.truncate(CLIMBS);
         let frame = self.brute.tool_frame(pose);
         let climb = |from| self.brute.climb(&frame, from, STEPS_PER_CLIMB, &value, rng);
-        let climbed = evaluated.into_iter().map(climb);
-        climbed.max_by(|a, b| a.value.total_cmp(&b.value))
+        evaluated.into_iter().map(climb).max_by(|a, b| a.value.total_cmp(&b.value))
     }
 }
 
@@ -211,24 +202,22 @@ fn for_all_parts_and_tools(
 
 #[test]
 fn samples_are_within_the_certified_depth_of_their_surface() {
-    let owners = check_surface_depths(&["Fig73Exact", "TSlot", "BallEr16", "Lollipop"]);
-    assert!(owners > 80, "{owners}");
+    check_surface_depths(&["Fig73Exact", "TSlot", "BallEr16", "Lollipop"], 80);
 }
 
 #[test]
 fn samples_are_within_the_certified_depth_of_corners() {
-    let owners = check_surface_depths(&["BullNose", "Barrel", "CornerRounding"]);
-    assert!(owners > 60, "{owners}");
+    check_surface_depths(&["BullNose", "Barrel", "CornerRounding"], 60);
 }
 
 #[test]
 fn samples_are_within_the_certified_depth_of_overhanging_profiles() {
-    let owners = check_surface_depths(&[&["FaceMill", "BoringBar"], &overhang::ALL[..]].concat());
-    assert!(owners > 100, "{owners}");
+    check_surface_depths(&[&["FaceMill", "BoringBar"], &overhang::ALL[..]].concat(), 100);
 }
 
-/// Checks the certified depth of each surface against samples. Returns the number of surfaces and poses with samples.
-fn check_surface_depths(tools: &[&str]) -> usize {
+/// Checks the certified depth of each surface against samples; fails unless there are samples of more than `least` surfaces
+/// and poses.
+fn check_surface_depths(tools: &[&str], least: usize) {
     let mut owners = 0;
     for_all_parts_and_tools(tools, |owned, rng| {
         let mut certifier = Certifier::new(&owned.part.bvh, tool(owned.tool)).expect("a profile");
@@ -240,8 +229,7 @@ fn check_surface_depths(tools: &[&str]) -> usize {
             for surface in 0..owned.surface_names.len() {
                 let penetration =
                     certifier.deepest_on(SurfaceId(surface), &pose, tolerance).expect("a surface");
-                let text =
-                    format!("{owned}, {surface} at {pose:?}, {tolerance:e}: {penetration:?}");
+                let text = format!("{owned}, {surface} at {pose:?}, {tolerance}: {penetration:?}");
                 let Interval { low, high } = penetration.depth;
                 assert!(0.0 <= low && low <= high, "{text}");
                 let best = owned.max_sample(&pose, &samples, |p| owned.depth(surface, p), rng);
@@ -253,10 +241,8 @@ fn check_surface_depths(tools: &[&str]) -> usize {
                     let p = owned.brute.point_in_tool_frame(&pose, witness.point);
                     let depth = owned.brute.depth(p) * owned.brute.length;
                     assert!(depth >= low - rounding, "{text}: {depth}");
-                    assert!(
-                        owned.distance_to_surface(surface, p) <= depth.abs() + 4.0 * rounding,
-                        "{text}"
-                    );
+                    let distance = owned.distance_to_surface(surface, p);
+                    assert!(distance <= depth.abs() + 4.0 * rounding, "{text}");
                     assert_eq!(witness.surface, SurfaceId(surface), "{text}");
                 } else {
                     assert_eq!(low, 0.0, "{text}");
@@ -266,14 +252,12 @@ fn check_surface_depths(tools: &[&str]) -> usize {
             let tool_depth = certifier.deepest(&pose, tolerance).depth;
             let consistent = max_depths[0] <= tool_depth.high + rounding
                 && tool_depth.low <= max_depths[1] + rounding;
-            assert!(
-                consistent,
-                "{owned} at {pose:?}: {max_depths:?} of each, {tool_depth:?} of all"
-            );
+            let text = format!("{max_depths:?} of each, {tool_depth:?} of all");
+            assert!(consistent, "{owned} at {pose:?}: {text}");
         }
     });
     eprintln!("depths of surfaces: {owners} surfaces and poses with samples");
-    owners
+    assert!(owners > least, "{owners}");
 }
 
 #[test]
@@ -286,25 +270,20 @@ fn pose_verdicts_respect_allowances() {
             let verdict = owned.certifier().check_pose(&pose);
             let text = format!("{owned} at {pose:?}: {verdict:?}");
             let max_excess = match verdict {
-                PoseVerdict::Clear | PoseVerdict::SurfaceOnly => {
-                    clear += 1;
-                    0.0
-                }
-                PoseVerdict::Inside(_) => {
-                    owned.forget_margins();
-                    0.0
-                }
                 PoseVerdict::Touching(witness) | PoseVerdict::Near(witness) => {
                     touching += 1;
                     owned.assert_violates_allowance(&witness, &pose, &text);
                     continue;
                 }
-                PoseVerdict::Undecided(high) => {
-                    undecided += 1;
-                    owned.forget_margins();
-                    high
-                }
+                PoseVerdict::Undecided(high) => high,
+                _ => 0.0,
             };
+            let is_clear = matches!(verdict, PoseVerdict::Clear | PoseVerdict::SurfaceOnly);
+            clear += usize::from(is_clear);
+            undecided += usize::from(matches!(verdict, PoseVerdict::Undecided(_)));
+            if !is_clear {
+                owned.forget_margins();
+            }
             let excess = owned.max_excess_at(&pose, rng);
             assert!(excess <= max_excess + 4.0 * owned.rounding(), "{text}: {excess}");
         }
@@ -332,33 +311,25 @@ fn motion_verdicts_respect_allowances() {
                     owned.assert_violates_allowance(&witness, &motion.pose(at), &text);
                     continue;
                 }
-                MotionVerdict::Undecided(at) => {
-                    undecided += 1;
-                    owned.forget_margins();
-                    at
-                }
-                MotionVerdict::Clear | MotionVerdict::SurfaceOnly => {
-                    clear += 1;
-                    1.0
-                }
-                MotionVerdict::Inside(_) => {
-                    owned.forget_margins();
-                    1.0
-                }
+                MotionVerdict::Undecided(at) => at,
+                _ => 1.0,
             };
+            let is_clear = matches!(verdict, MotionVerdict::Clear | MotionVerdict::SurfaceOnly);
+            clear += usize::from(is_clear);
+            undecided += usize::from(matches!(verdict, MotionVerdict::Undecided(_)));
+            if !is_clear {
+                owned.forget_margins();
+            }
             let rounding = owned.rounding() + 64.0 * f64::EPSILON * motion.displacement().norm();
             for time in 0..TIME_SAMPLES {
                 let t = end * f64::from(time) / f64::from(TIME_SAMPLES - 1);
                 let excess = owned.max_excess_at(&path.pose(t), rng);
-                assert!(
-                    excess <= tolerance.max(16.0 * rounding) + 4.0 * rounding,
-                    "{text}: {excess} at {t}"
-                );
+                let most = tolerance.max(16.0 * rounding) + 4.0 * rounding;
+                assert!(excess <= most, "{text}: {excess} at {t}");
             }
         }
     });
-    eprintln!(
-        "motions with allowances: {clear} clear, {touching} in contact, {undecided} undecided"
-    );
-    assert!(clear > 10 && touching > 20, "{clear} clear, {touching} in contact");
+    let text = format!("{clear} clear, {touching} in contact, {undecided} undecided");
+    eprintln!("motions with allowances: {text}");
+    assert!(clear > 10 && touching > 20, "{text}");
 }

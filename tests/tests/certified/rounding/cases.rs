@@ -10,48 +10,48 @@ use touchoff_tests::oracle::triangle::{advance, cross};
 
 type MeridianPoint = plane::Point<f64>;
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Family {
-    /// A triangle through a point of the tool, with any orientation.
-    Any,
-    /// Slivers: heights of 1e-13 to 1e-2 of the length.
-    Sliver,
-    /// A triangle with collinear or equal corners, beside a sound triangle.
-    Degenerate,
-    /// A corner, an edge or a face at a point whose nearest point is a joint of the profile.
-    Joint,
-    /// The same at the centre of an arc, or on the axis.
-    Centre,
-    /// A triangle normal to the axis, at the height of a joint or a centre of the profile, or at any height.
-    Level,
-    /// A triangle in a plane that is tangent to the profile, or off by 1e-17 to 1e-6 of the tool's radius.
-    Tangent,
-    /// A triangle whose size is 1e-6 to 1e6 of the tool's radius.
-    Size,
-    /// Several triangles around a point whose nearest point is a joint of the profile.
-    Fan,
-    /// One of the former, with the tip 1 to 1e12 tool sizes away from the origin.
-    Far,
-    /// One of the former, with a rotation composed of many rotations.
-    Drift,
-}
+/// Returns the triangles of a case, which are about as large as a number, in the tool's frame.
+type Triangles = fn(&Sketch<'_>, f64, &mut Rng) -> Vec<[Point; 3]>;
 
-impl Family {
-    /// All families, in the order in which case numbers cycle through them.
-    pub(crate) const ALL: [Family; 11] = [
-        Family::Any,
-        Family::Sliver,
-        Family::Degenerate,
-        Family::Joint,
-        Family::Centre,
-        Family::Level,
-        Family::Tangent,
-        Family::Size,
-        Family::Fan,
-        Family::Far,
-        Family::Drift,
-    ];
-}
+/// The families of cases, in the order in which case numbers cycle through them: a triangle
+/// - through a point of the tool, with any orientation;
+/// - of a height of 1e-13 to 1e-2 of its length;
+/// - with collinear or equal corners, beside a sound triangle;
+/// - with a corner, an edge or its face at a point whose nearest point is a joint of the profile;
+/// - the same at the centre of an arc, or on the axis;
+/// - normal to the axis, at the height of a joint or a centre of the profile, or at any height;
+/// - in a plane that is tangent to the profile, or off by 1e-17 to 1e-6 of the tool's radius;
+/// - whose size is 1e-6 to 1e6 of the tool's radius;
+///
+/// and several triangles around a point whose nearest point is a joint of the profile.
+const PLAIN: [Triangles; 9] = [
+    |sketch, size, rng| vec![sketch.triangle_in_any_orientation(size, rng)],
+    |sketch, _, rng| {
+        let height = [1e-8, 1e-12, rng.power(-13.0, -2.0)][rng.index(3)];
+        vec![sketch.sliver(height, rng)]
+    },
+    |sketch, size, rng| {
+        vec![sketch.degenerate(rng), sketch.triangle_in_any_orientation(0.1 * size, rng)]
+    },
+    |sketch, size, rng| vec![sketch.joint(size, rng)],
+    |sketch, _, rng| vec![sketch.centre(rng)],
+    |sketch, _, rng| vec![sketch.level(rng)],
+    |sketch, _, rng| vec![sketch.tangent(rng)],
+    |sketch, _, rng| {
+        let size = sketch.radius * rng.power(-6.0, 6.0);
+        match rng.bits() % 2 {
+            0 => vec![sketch.triangle_in_any_orientation(size, rng)],
+            _ => vec![sketch.joint(size, rng)],
+        }
+    },
+    |sketch, _, rng| sketch.fan(rng),
+];
+
+/// The number of families. Two more are any of these with the tip 1 to 1e12 tool sizes away from the origin, and with a
+/// rotation composed of many rotations.
+pub(crate) const FAMILIES: usize = PLAIN.len() + 2;
+const FAR: usize = PLAIN.len();
+const DRIFT: usize = FAR + 1;
 
 #[derive(Clone, Debug)]
 pub(crate) struct Case {
@@ -209,48 +209,26 @@ impl Sketch<'_> {
         triangles
     }
 
-    fn triangles(&self, family: Family, rng: &mut Rng) -> Vec<[Point; 3]> {
+    fn triangles(&self, family: usize, rng: &mut Rng) -> Vec<[Point; 3]> {
         let size = self.size(rng);
-        match family {
-            Family::Any => vec![self.triangle_in_any_orientation(size, rng)],
-            Family::Sliver => {
-                let height = [1e-8, 1e-12, rng.power(-13.0, -2.0)][rng.index(3)];
-                vec![self.sliver(height, rng)]
-            }
-            Family::Degenerate => {
-                vec![self.degenerate(rng), self.triangle_in_any_orientation(0.1 * size, rng)]
-            }
-            Family::Joint => vec![self.joint(size, rng)],
-            Family::Centre => vec![self.centre(rng)],
-            Family::Level => vec![self.level(rng)],
-            Family::Tangent => vec![self.tangent(rng)],
-            Family::Size => {
-                let size = self.radius * rng.power(-6.0, 6.0);
-                match rng.bits() % 2 {
-                    0 => vec![self.triangle_in_any_orientation(size, rng)],
-                    _ => vec![self.joint(size, rng)],
-                }
-            }
-            Family::Fan => self.fan(rng),
-            Family::Far | Family::Drift => {
-                let plain = &Family::ALL[..9];
-                self.triangles(rng.pick(plain), rng)
-            }
+        match PLAIN.get(family) {
+            Some(triangles) => triangles(self, size, rng),
+            None => self.triangles(rng.index(PLAIN.len()), rng),
         }
     }
 }
 
 /// Returns a random pose: the identity, an axis along a coordinate axis, or any rotation. The tip is within a few tool
-/// sizes of the origin, or farther for [`Family::Far`].
-fn pose(family: Family, size: f64, rng: &mut Rng) -> Pose {
-    let distance = if family == Family::Far { rng.power(0.0, 12.0) } else { 3.0 };
+/// sizes of the origin, or farther if it is [`FAR`].
+fn pose(family: usize, size: f64, rng: &mut Rng) -> Pose {
+    let distance = if family == FAR { rng.power(0.0, 12.0) } else { 3.0 };
     let tip = Point3::from(rng.direction()) * (size * distance);
     match rng.bits() % 6 {
-        0 if family != Family::Far => Pose::default(),
+        0 if family != FAR => Pose::default(),
         0 | 1 => {
             let mut axis = Vector3::zeros();
             axis[rng.index(3)] = rng.pick(&[1.0, -1.0]);
-            pose_from_axis(tip, axis)
+            Pose::from_axis(tip, axis).expect("an axis")
         }
         2 => {
             // The norm deviates from 1 by almost as much as a pose accepts.
@@ -258,12 +236,11 @@ fn pose(family: Family, size: f64, rng: &mut Rng) -> Pose {
                 rng.quaternion().map(|component| component * rng.between(0.9991, 1.0009));
             Pose::from_quaternion(tip, quaternion).expect("a quaternion")
         }
-        _ => pose_from_axis(tip, Vector3::from(rng.direction()) * rng.between(0.9991, 1.0009)),
+        _ => {
+            let axis = Vector3::from(rng.direction()) * rng.between(0.9991, 1.0009);
+            Pose::from_axis(tip, axis).expect("an axis")
+        }
     }
-}
-
-fn pose_from_axis(tip: Point3<f64>, axis: Vector3<f64>) -> Pose {
-    Pose::from_axis(tip, axis).expect("an axis")
 }
 
 /// Returns a pose after many rotations about the origin, some of which are undone immediately.
@@ -280,11 +257,11 @@ fn drift(pose: Pose, rng: &mut Rng) -> Pose {
     pose
 }
 
-pub(crate) fn case(family: Family, cutter: &Cutter, rng: &mut Rng) -> Case {
+pub(crate) fn case(family: usize, cutter: &Cutter, rng: &mut Rng) -> Case {
     let [radius, height] = cutter.extent;
     let triangles = Sketch { cutter, radius }.triangles(family, rng);
     let mut pose = pose(family, radius + height, rng);
-    if family == Family::Drift {
+    if family == DRIFT {
         pose = drift(pose, rng);
     }
     let to_world = |p: Point| -> Point { (pose.tip() + pose.rotation() * Vector3::from(p)).into() };

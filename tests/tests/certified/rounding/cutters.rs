@@ -55,9 +55,6 @@ const SCALES: [i32; 5] = [-20, -10, 0, 10, 20];
 pub(crate) const COUNT: usize = PROFILES.len() * SCALES.len();
 
 /// Returns the tool with a number below [`COUNT`].
-///
-/// # Errors
-/// If the compiler rejects the tool.
 pub(crate) fn cutter(number: usize) -> Result<Cutter, ToolError> {
     let (name, vertices) = PROFILES[number % PROFILES.len()];
     let exponent = SCALES[number / PROFILES.len()];

@@ -2,16 +2,14 @@
 
 mod sampled;
 
-use crate::{UP, block, motion, plate, pose, soup, tool};
-use nalgebra::{Point3, Vector3};
-use touchoff::certify::{Certifier, MotionVerdict, PoseVerdict, TriangleBvh};
+use crate::verdicts::{certifier, touching};
+use crate::{UP, block, motion, plate, pose, soup};
+use touchoff::certify::{MotionVerdict, PoseVerdict};
 use touchoff::mesh::shapes;
-use touchoff::{Mesh, Motion, MotionError, Pose, Unit};
+use touchoff::{Mesh, Motion, MotionError, Unit};
 
 fn sweep(mesh: &Mesh, name: &str, path: &Motion, tolerance: f64) -> MotionVerdict {
-    let bvh = TriangleBvh::new(mesh);
-    let mut certifier = Certifier::new(&bvh, tool(name)).expect("a profile");
-    certifier.check_motion(path, tolerance)
+    certifier(mesh, name).check_motion(path, tolerance)
 }
 
 /// Returns an axis that leans from z toward x.
@@ -36,15 +34,11 @@ fn a_ball_slides_along_a_plate_at_any_height() {
         }
     }
     for depth in [0.5, 1e-3, 1e-6, 1e-9] {
-        let verdict = sweep(&plate(), "D2Ball", &level(-depth), 0.0);
-        let MotionVerdict::Touching(at, witness) = verdict else {
-            panic!("{depth:e}: {verdict:?}")
-        };
-        assert!((0.0..=1.0).contains(&at) && witness.point.z.abs() < 1e-12, "{verdict:?}");
-        let verdict = sweep(&plate(), "D2Ball", &slide(sinks - depth), 0.0);
-        let MotionVerdict::Touching(at, _) = verdict else { panic!("{depth:e}: {verdict:?}") };
+        let (at, witness) = touching(sweep(&plate(), "D2Ball", &level(-depth), 0.0));
+        assert!((0.0..=1.0).contains(&at) && witness.point.z.abs() < 1e-12, "{at} {witness:?}");
+        let (at, _) = touching(sweep(&plate(), "D2Ball", &slide(sinks - depth), 0.0));
         let lean = (1.0 - (sinks - depth).max(0.0)).acos().to_degrees();
-        assert!(at >= lean / 40.0 - 1e-6, "{verdict:?}");
+        assert!(at >= lean / 40.0 - 1e-6, "{depth:e}: {at}");
     }
     // Flush contact is no deeper than rounding.
     assert_eq!(sweep(&plate(), "D2Ball", &level(0.0), 1e-6), MotionVerdict::Clear);
@@ -56,8 +50,7 @@ fn a_ball_slides_along_a_plate_at_any_height() {
 fn contact_deeper_than_the_tolerance_is_found() {
     let path = |depth: f64| motion(&pose([-9.0, 0.0, 2.0], UP), &pose([3.0, 1.0, -depth], UP));
     for tolerance in [1e-6, 1e-3, 0.1] {
-        let verdict = sweep(&plate(), "BullNose", &path(1.001 * tolerance), tolerance);
-        assert!(matches!(verdict, MotionVerdict::Touching(..)), "{tolerance:e}: {verdict:?}");
+        touching(sweep(&plate(), "BullNose", &path(1.001 * tolerance), tolerance));
         assert_eq!(sweep(&plate(), "BullNose", &path(-1e-9), tolerance), MotionVerdict::Clear);
     }
 }
@@ -66,23 +59,17 @@ fn contact_deeper_than_the_tolerance_is_found() {
 fn a_plunge_touches_at_the_end_of_its_descent() {
     let plunge = |to: f64| motion(&pose([0.3, 0.1, 5.0], UP), &pose([0.3, 0.1, to], UP));
     for name in ["D2Ball", "Flat", "BullNose", "TSlot", "Lollipop"] {
-        let verdict = sweep(&plate(), name, &plunge(-1.0), 0.0);
-        let MotionVerdict::Touching(at, witness) = verdict else { panic!("{name}: {verdict:?}") };
-        assert!((5.0 / 6.0..=1.0).contains(&at), "{name}: {verdict:?}");
-        assert!(
-            witness.point.z.abs() < 1e-12 && witness.point.xy().coords.norm() < 11.0,
-            "{verdict:?}"
-        );
+        let (at, witness) = touching(sweep(&plate(), name, &plunge(-1.0), 0.0));
+        assert!((5.0 / 6.0..=1.0).contains(&at), "{name}: {at}");
+        let point = witness.point;
+        assert!(point.z.abs() < 1e-12 && point.xy().coords.norm() < 11.0, "{name}: {point}");
         for gap in [1e-3, 1e-9] {
             assert_eq!(sweep(&plate(), name, &plunge(gap), 0.0), MotionVerdict::Clear, "{name}");
             let back = motion(&plunge(gap).pose(1.0), &plunge(gap).pose(0.0));
             assert_eq!(sweep(&plate(), name, &back, 0.0), MotionVerdict::Clear, "{name}");
         }
-        let verdict = sweep(&plate(), name, &plunge(-1e-9), 0.0);
-        assert!(
-            matches!(verdict, MotionVerdict::Touching(at, _) if at > 1.0 - 1e-9),
-            "{name}: {verdict:?}"
-        );
+        let (at, _) = touching(sweep(&plate(), name, &plunge(-1e-9), 0.0));
+        assert!(at > 1.0 - 1e-9, "{name}: {at}");
     }
 }
 
@@ -95,12 +82,9 @@ fn a_long_cylinder_swings_against_a_wall() {
     let swing = |to: f64| motion(&pose([0.0; 3], leaning(-70.0)), &pose([0.0; 3], leaning(to)));
     for short in [1.0, 1e-3, 1e-6] {
         assert_eq!(sweep(&wall, "Flat", &swing(contact - short), 0.0), MotionVerdict::Clear);
-        let verdict = sweep(&wall, "Flat", &swing(contact + short), 0.0);
-        let MotionVerdict::Touching(at, witness) = verdict else {
-            panic!("{short:e}: {verdict:?}")
-        };
+        let (at, witness) = touching(sweep(&wall, "Flat", &swing(contact + short), 0.0));
         let first = (70.0 + contact) / (70.0 + contact + short);
-        assert!((first - 1e-12..=1.0).contains(&at), "{short:e}: {verdict:?}");
+        assert!((first - 1e-12..=1.0).contains(&at), "{short:e}: {at}");
         assert!((witness.point.x - 20.0).abs() < 1e-12, "{witness:?}");
     }
 }
@@ -114,8 +98,7 @@ fn a_long_cylinder_swings_below_a_ceiling() {
         let ceiling = block([-300.0, -300.0, top + gap], [300.0, 300.0, 200.0]);
         assert_eq!(sweep(&ceiling, "Flat", &swing, 0.0), MotionVerdict::Clear, "{gap:e}");
         let ceiling = block([-300.0, -300.0, top - gap], [300.0, 300.0, 200.0]);
-        let verdict = sweep(&ceiling, "Flat", &swing, 0.0);
-        assert!(matches!(verdict, MotionVerdict::Touching(..)), "{gap:e}: {verdict:?}");
+        touching(sweep(&ceiling, "Flat", &swing, 0.0));
         // The motion also passes over an edge at that height.
         let fence = soup(&[[[0.0, 0.0, top + gap], [-5.0, 100.0, 100.0], [5.0, 100.0, 100.0]]]);
         assert_eq!(sweep(&fence, "Flat", &swing, 0.0), MotionVerdict::SurfaceOnly, "{gap:e}");
@@ -124,8 +107,7 @@ fn a_long_cylinder_swings_below_a_ceiling() {
 
 #[test]
 fn a_motion_at_rest_has_the_verdict_of_its_pose() {
-    let bvh = TriangleBvh::new(&plate());
-    let mut certifier = Certifier::new(&bvh, tool("BullNose")).expect("a profile");
+    let mut certifier = certifier(&plate(), "BullNose");
     for height in [0.5, 1e-9, -1e-9, -0.5, -3.0] {
         for lean in [0.0, 20.0, 170.0] {
             let pose_at_rest = pose([1.0, 2.0, height], leaning(lean));
@@ -155,15 +137,12 @@ fn opposite_axes_are_rejected() {
 
 #[test]
 fn without_a_budget_nothing_is_decided() {
-    let bvh = TriangleBvh::new(&plate());
     let path = motion(&pose([-9.0, 0.0, 1e-6], UP), &pose([9.0, 0.0, 1e-6], UP));
     for budget in [0, 1, 3] {
-        let certifier = Certifier::new(&bvh, tool("BullNose")).expect("a profile");
-        let verdict = certifier.with_budget(budget).check_motion(&path, 0.0);
-        assert!(
-            matches!(verdict, MotionVerdict::Undecided(at) if (0.0..1.0).contains(&at)),
-            "{verdict:?}"
-        );
+        let mut certifier = certifier(&plate(), "BullNose").with_budget(budget);
+        let verdict = certifier.check_motion(&path, 0.0);
+        let MotionVerdict::Undecided(at) = verdict else { panic!("{verdict:?}") };
+        assert!((0.0..1.0).contains(&at), "{verdict:?}");
     }
 }
 
@@ -173,12 +152,12 @@ fn a_motion_may_stay_in_material_or_beside_an_open_sheet() {
     let inside = motion(&pose([-90.0, 0.0, -90.0], UP), &pose([90.0, 20.0, 0.0], leaning(100.0)));
     assert!(matches!(sweep(&large, "D2Ball", &inside, 0.0), MotionVerdict::Inside(_)));
     let out = motion(&pose([-90.0, 0.0, -90.0], UP), &pose([300.0, 20.0, 0.0], UP));
-    assert!(matches!(sweep(&large, "D2Ball", &out, 0.0), MotionVerdict::Touching(..)));
+    touching(sweep(&large, "D2Ball", &out, 0.0));
     let sheet = shapes::plane(20.0, 4, Unit::Millimetre).expect("a sheet");
     let above = motion(&pose([-9.0, 0.0, 1e-3], UP), &pose([9.0, 0.0, 1e-3], UP));
     assert_eq!(sweep(&sheet, "D2Ball", &above, 0.0), MotionVerdict::SurfaceOnly);
     let through = motion(&pose([-9.0, 0.0, 50.0], UP), &pose([9.0, 0.0, -100.0], UP));
-    assert!(matches!(sweep(&sheet, "D2Ball", &through, 0.0), MotionVerdict::Touching(..)));
+    touching(sweep(&sheet, "D2Ball", &through, 0.0));
 }
 
 #[test]
@@ -190,15 +169,11 @@ fn long_rapid_motions_are_decided() {
         assert_eq!(sweep(&plate(), "D2Ball", &rapid(height, UP), 0.0), MotionVerdict::Clear);
     }
     for depth in [1e-3, 0.5, 5.0] {
-        let verdict = sweep(&plate(), "D2Ball", &rapid(-depth, UP), 0.0);
-        let MotionVerdict::Touching(at, _) = verdict else { panic!("{depth}: {verdict:?}") };
-        assert!((at - 0.5).abs() < 1.1e-5, "{verdict:?}");
+        let (at, _) = touching(sweep(&plate(), "D2Ball", &rapid(-depth, UP), 0.0));
+        assert!((at - 0.5).abs() < 1.1e-5, "{depth}: {at}");
     }
     let turning = sweep(&plate(), "D2Ball", &rapid(30.0, leaning(150.0)), 0.0);
     assert_eq!(turning, MotionVerdict::Clear);
-    let diagonal = motion(
-        &Pose::from_axis(Point3::new(1e6, 0.0, 0.0), Vector3::z()).expect("an axis"),
-        &pose([0.0, 1e6, 0.0], leaning(150.0)),
-    );
+    let diagonal = motion(&pose([1e6, 0.0, 0.0], UP), &pose([0.0, 1e6, 0.0], leaning(150.0)));
     assert_eq!(sweep(&plate(), "HalfInchBallCat40", &diagonal, 0.0), MotionVerdict::Clear);
 }

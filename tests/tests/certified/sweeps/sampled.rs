@@ -7,13 +7,14 @@ use crate::approach::{MotionSample, ReferenceMotion};
 use crate::brute::BruteForce;
 use crate::motions::MotionKind;
 use crate::pair::{Pair, Pairs, is_full_run, parts};
+use crate::verdicts::triangles;
 use crate::{motion, oracle};
 use touchoff::certify::{Certifier, MotionVerdict, Witness};
-use touchoff::{Motion, Pose, TriangleId};
+use touchoff::{Motion, Pose};
 use touchoff_tests::count::case_count;
 use touchoff_tests::oracle::Oracle;
 use touchoff_tests::oracle::rng::Rng;
-use touchoff_tests::oracle::triangle::{distance, nearest, winding_number};
+use touchoff_tests::oracle::triangle::winding_number;
 use touchoff_tests::tally::Tally;
 
 /// The tolerances used, in the part's unit.
@@ -116,7 +117,7 @@ impl Validation<'_> {
                 self.check_proved(&deepest);
                 self.check_side(verdict);
             }
-            MotionVerdict::Near(..) => self.add_violation("a margin that nobody asked for"),
+            MotionVerdict::Near(..) => self.never(true, "a margin that nobody asked for"),
             MotionVerdict::Touching(t, witness) => {
                 self.tally.add(IN_CONTACT, 1);
                 self.compare_pose(t);
@@ -130,9 +131,8 @@ impl Validation<'_> {
     fn check_undecided(&mut self, t: f64, rng: &mut Rng) {
         let deepest = self.brute.deepest_in_motion(&self.reference, TIME_SAMPLES, true, rng);
         self.tally.find(UNDECIDED, format!("{}, {deepest:?}", self.case));
-        if !(0.0..=1.0).contains(&t) {
-            self.add_violation("undecided at no time");
-        } else if t > 0.0 {
+        self.never(!(0.0..=1.0).contains(&t), "undecided at no time");
+        if t > 0.0 {
             let clear_part =
                 ReferenceMotion { from: self.reference.from, to: self.reference.pose(t) };
             let closest = self.brute.deepest_in_motion(&clear_part, TIME_SAMPLES, true, rng);
@@ -144,9 +144,7 @@ impl Validation<'_> {
         let allowed = self.tolerance.max(16.0 * self.rounding) + self.rounding;
         let excess = deepest.depth - allowed;
         self.tally.see(NEAR, deepest.depth > -1e-3);
-        if excess > 0.0 {
-            self.add_violation(&format!("it is proved, but {deepest:?}"));
-        }
+        self.never(excess > 0.0, &format!("it is proved, but {deepest:?}"));
     }
 
     /// Checks tip and axis of the motion at a time.
@@ -158,31 +156,20 @@ impl Validation<'_> {
         let axis_tolerance = 16.0 * f64::EPSILON / if sine > 0.0 { sine.min(1.0) } else { 1.0 };
         let deviation =
             tip.max((pose.axis() - reference_pose.axis()).norm() - axis_tolerance.min(1e-13));
-        if deviation > 0.0 || !(0.0..=1.0).contains(&t) {
-            self.add_violation(&format!("the pose is off by {deviation:e} at {t:?}"));
-        }
+        let is_off = deviation > 0.0 || !(0.0..=1.0).contains(&t);
+        self.never(is_off, &format!("the pose is off by {deviation:e} at {t:?}"));
     }
 
     fn check_witness(&mut self, t: f64, witness: &Witness) {
         let (brute, pose) = (self.brute, self.motion.pose(t));
-        let point = brute.point_in_tool_frame(&pose, witness.point);
-        let depth = brute.depth(point) * brute.length;
-        if depth < -self.rounding {
-            self.add_violation(&format!("the witness is {depth:e} deep"));
-        }
-        let triangle = brute.triangle(&brute.tool_frame(&pose), witness.triangle.index());
-        let triangle_distance = distance(point, nearest(point, &triangle)) * brute.length;
-        if triangle_distance > self.rounding {
-            self.add_violation(&format!("the witness is {triangle_distance:e} from its triangle"));
-        }
+        let (depth, off) = brute.witness(&pose, witness);
+        self.never(depth < -self.rounding, &format!("the witness is {depth:e} deep"));
+        self.never(off > self.rounding, &format!("the witness is {off:e} from its triangle"));
         let surface = self.pair.tool.info().surface(witness.surface);
-        let surface_distance =
-            self.pair.oracle.distance_to_surface(&surface.name, point) * brute.length;
-        if surface_distance > depth.abs() + self.rounding {
-            self.add_violation(&format!(
-                "its surface is {surface_distance:e} away, but it is {depth:e} deep"
-            ));
-        }
+        let point = brute.point_in_tool_frame(&pose, witness.point);
+        let away = self.pair.oracle.distance_to_surface(&surface.name, point) * brute.length;
+        let text = format!("its surface is {away:e} away, but it is {depth:e} deep");
+        self.never(away > depth.abs() + self.rounding, &text);
     }
 
     /// Checks a verdict of inside or outside by the part's winding number about a point of the tool.
@@ -191,19 +178,18 @@ impl Validation<'_> {
         let top = self.reference.from.tip()
             + self.reference.from.axis() * (0.9 * height * self.brute.length);
         let mesh = &self.pair.part.mesh;
-        let ids = (0..mesh.triangles().len() as u32).map(TriangleId);
-        let triangles = ids.map(|id| mesh.triangle(id).map(Into::into));
+        let triangles = triangles(mesh).map(|corners| corners.map(Into::into));
         let inside = winding_number(triangles, top.into()).round() > 0.0;
-        if matches!(
-            (verdict, inside),
-            (MotionVerdict::Clear, true) | (MotionVerdict::Inside(_), false)
-        ) {
-            self.add_violation("it is on the other side");
-        }
+        let is_wrong = match verdict {
+            MotionVerdict::Clear => inside,
+            MotionVerdict::Inside(_) => !inside,
+            _ => false,
+        };
+        self.never(is_wrong, "it is on the other side");
     }
 
-    fn add_violation(&mut self, message: &str) {
-        self.tally.find(VIOLATIONS, format!("{message}: {}", self.case));
+    fn never(&mut self, occurred: bool, message: &str) {
+        self.tally.never(VIOLATIONS, occurred, || format!("{message}: {}", self.case));
     }
 }
 

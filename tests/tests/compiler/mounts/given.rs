@@ -72,11 +72,8 @@ fn a_mount_gives_lengths_in_its_own_unit() {
     assert!((evaluation("1") - 1.0).abs() < 1e-3);
     // Where it is not, 1 would be 1 mm or 1 inch.
     let bare = mounts("mount \"body.tool\" as a with wide = 1;");
-    refused(
-        &bare,
-        &[],
-        &["the unit of `wide` is ambiguous: 1mm or 1inch", "write the unit", "`1mm/1mm`"],
-    );
+    let words = ["the unit of `wide` is ambiguous: 1mm or 1inch", "write the unit", "`1mm/1mm`"];
+    refused(&bare, &[], &words);
     // A ratio is a mere number.
     let ratio = mounts("mount \"inch_flat.tool\" as a with edge = 0.25mm/1mm;");
     let face = Interpreter::new(&tool(&ratio)).evaluate([0.0, 0.0, 0.1], 1.0);

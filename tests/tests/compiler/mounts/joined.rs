@@ -37,84 +37,42 @@ fn a_cutter_in_a_nut_is_one_profile() {
     assert_eq!(names(&joined)[2..5], ["cutter.shank", "cutter.shank/nut.nut.1", "nut.nut.1"]);
 }
 
-/// Mounted files; and the drawing, the surfaces that cut and the laws of the same tool as one profile.
-type Joined = (&'static str, &'static str, &'static str, &'static str);
-
-const JOINED: [Joined; 10] = [
-    // The cutter's top is where the nut begins: nothing of it is left above.
-    (
-        "mount \"ball.tool\" as cutter; mount \"er16.tool\" as nut at z = 50;",
-        "0 0; ball 3 3 about 0 3; flute 3 20; shank 3 50; nut 12.9 50, 14 51.1, 14 67.5, 0 67.5",
-        "ball flute",
-        "niceness cutting: 1 - depth/3;",
-    ),
-    // A face of several surfaces loses what is in the part below.
-    (
-        "mount \"pin.tool\" as pin with d0 = 6; mount \"stepped.tool\" as s at z = 10;",
-        "0 0; foot 3 0; pin 3 10; rim 5 10; body 5 19, 0 19",
-        "",
-        "",
-    ),
-    (
-        "mount \"pin.tool\" as pin with d0 = 2; mount \"stepped.tool\" as s at z = 10;",
-        "0 0; foot 1 0; pin 1 10; bore 2 10; rim 5 10; body 5 19, 0 19",
-        "",
-        "",
-    ),
-    (
-        "mount \"pin.tool\" as pin with d0 = 4; mount \"stepped.tool\" as s at z = 10;",
-        "0 0; foot 2 0; pin 2 10; rim 5 10; body 5 19, 0 19",
-        "",
-        "",
-    ),
-    (
-        "mount \"pin.tool\" as pin with d0 = 12; mount \"stepped.tool\" as s at z = 10;",
-        "0 0; foot 6 0; pin 6 10, 5 10; body 5 19, 0 19",
-        "",
-        "",
-    ),
-    // Equal radii leave no ring, and a seam that is no corner.
-    (
-        "mount \"ball.tool\" as cutter; mount \"pin.tool\" as pin with d0 = 6 at z = 30;",
-        "0 0; ball 3 3 about 0 3; flute 3 20; shank 3 30; pin 3 40, 0 40",
-        "ball flute",
-        "niceness cutting: 1 - depth/3;",
-    ),
-    // The plane cuts a cone.
-    (
-        "mount \"cone.tool\" as cone; mount \"er16.tool\" as nut at z = 6;",
-        "0 0; face 2 0; cone 5 6; nut 12.9 6, 14 7.1, 14 23.5, 0 23.5",
-        "face cone",
-        "niceness cone: 0.25;",
-    ),
-    // At z = 12 the cone ends and the collar begins: the collar's lower face is dropped with it.
-    (
-        "mount \"cone.tool\" as cone; mount \"pin.tool\" as pin with d0 = 10 at z = 12;",
-        "0 0; face 2 0; cone 8 12, 5 12; pin 5 22, 0 22",
-        "face cone",
-        "niceness cone: 0.25;",
-    ),
-    // The ball of radius 5 about z = 9, cut below its middle and above it.
-    (
-        "mount \"bulb.tool\" as bulb; mount \"er16.tool\" as nut at z = 6;",
-        "0 0; face 3 0; neck 3 5; ball 4 6 about 0 9; nut 12.9 6, 14 7.1, 14 23.5, 0 23.5",
-        "ball",
-        "",
-    ),
-    (
-        "mount \"bulb.tool\" as bulb; mount \"er16.tool\" as nut at z = 12;",
-        "0 0; face 3 0; neck 3 5; ball 5 9 about 0 9, 4 12 about 0 9;
-         nut 12.9 12, 14 13.1, 14 29.5, 0 29.5",
-        "ball",
-        "",
-    ),
-];
+/// Mounted files with the height of the upper one; and the drawing, the surfaces that cut and the laws of the same tool as
+/// one profile. Behind each mount stand the values that it is given. In these rows
+/// - the cutter's top is where the nut begins: nothing of it is left above;
+/// - a face of several surfaces loses what is in the part below, in four ways;
+/// - equal radii leave no ring, and a seam that is no corner;
+/// - the plane cuts a cone;
+/// - the cone ends at z = 12 and the collar begins there: the collar's lower face is dropped with it;
+/// - the ball of radius 5 about z = 9 is cut below its middle and above it.
+const JOINED: &str = "\
+ball + er16 at 50 => 0 0; ball 3 3 about 0 3; flute 3 20; shank 3 50; nut 12.9 50, 14 51.1, 14 67.5, 0 67.5 \
+    => ball flute => niceness cutting: 1 - depth/3;
+pin with d0 = 6 + stepped at 10 => 0 0; foot 3 0; pin 3 10; rim 5 10; body 5 19, 0 19 => =>
+pin with d0 = 2 + stepped at 10 => 0 0; foot 1 0; pin 1 10; bore 2 10; rim 5 10; body 5 19, 0 19 => =>
+pin with d0 = 4 + stepped at 10 => 0 0; foot 2 0; pin 2 10; rim 5 10; body 5 19, 0 19 => =>
+pin with d0 = 12 + stepped at 10 => 0 0; foot 6 0; pin 6 10, 5 10; body 5 19, 0 19 => =>
+ball + pin with d0 = 6 at 30 => 0 0; ball 3 3 about 0 3; flute 3 20; shank 3 30; pin 3 40, 0 40 \
+    => ball flute => niceness cutting: 1 - depth/3;
+cone + er16 at 6 => 0 0; face 2 0; cone 5 6; nut 12.9 6, 14 7.1, 14 23.5, 0 23.5 => face cone => niceness cone: 0.25;
+cone + pin with d0 = 10 at 12 => 0 0; face 2 0; cone 8 12, 5 12; pin 5 22, 0 22 => face cone => niceness cone: 0.25;
+bulb + er16 at 6 => 0 0; face 3 0; neck 3 5; ball 4 6 about 0 9; nut 12.9 6, 14 7.1, 14 23.5, 0 23.5 => ball =>
+bulb + er16 at 12 => 0 0; face 3 0; neck 3 5; ball 5 9 about 0 9, 4 12 about 0 9; \
+    nut 12.9 12, 14 13.1, 14 29.5, 0 29.5 => ball =>";
 
 #[test]
 fn mounted_files_are_the_same_tool_as_one_profile() {
-    for (mounted, drawing, cutting, laws) in JOINED {
-        println!("{mounted}");
-        same(&tool(&mounts(mounted)), &written(drawing, cutting, laws));
+    let mounted = |part: &str| {
+        let (name, rest) = part.split_once(' ').unwrap_or((part, ""));
+        let rest = rest.replace("at ", "at z = ");
+        format!("mount \"{name}.tool\" as {name} {rest};")
+    };
+    for row in JOINED.lines() {
+        println!("{row}");
+        let parts: Vec<&str> = row.split("=>").map(str::trim).collect();
+        let [files, drawing, cutting, laws] = parts[..] else { panic!("not a row") };
+        let files: String = files.split(" + ").map(mounted).collect();
+        same(&tool(&mounts(&files)), &written(drawing, cutting, laws));
     }
 }
 
@@ -189,12 +147,8 @@ fn mounted_files_mount_files() {
          niceness cutter.flute: 0.75;",
     ));
     same(&joined, &flat);
-    assert_eq!(
-        surfaces(&joined),
-        ["tool.cutter.ball", "tool.cutter.flute", "tool.cutter.shank", "tool.nut.nut", "body.body"]
-    );
-    assert_eq!(
-        surfaces(&flat),
-        ["cutter.ball", "cutter.flute", "cutter.shank", "holder.nut.nut", "holder.body.body"]
-    );
+    let names = "tool.cutter.ball tool.cutter.flute tool.cutter.shank tool.nut.nut body.body";
+    assert_eq!(surfaces(&joined).join(" "), names);
+    let names = "cutter.ball cutter.flute cutter.shank holder.nut.nut holder.body.body";
+    assert_eq!(surfaces(&flat).join(" "), names);
 }

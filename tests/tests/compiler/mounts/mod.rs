@@ -10,6 +10,7 @@ use std::path::Path;
 use touchoff_dsl::interpret::{Evaluation, Interpreter};
 use touchoff_dsl::source::Source;
 use touchoff_dsl::{CheckedTool, compile};
+use touchoff_tests::checks::assert_near;
 use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::texts::rendered;
 
@@ -40,10 +41,8 @@ fn same(a: &CheckedTool, b: &CheckedTool) {
         tool.model.regions.iter().map(|r| (r.surface, cuts(r.surface))).collect()
     };
     assert_eq!(regions(a), regions(b));
-    assert!(
-        (a.extent.high - b.extent.high).abs() <= 1e-3
-            && (a.extent.low - b.extent.low).abs() <= 1e-3
-    );
+    assert_near(a.extent.high, b.extent.high, 1e-3, "high");
+    assert_near(a.extent.low, b.extent.low, 1e-3, "low");
     let (mut first, mut second) = (Interpreter::new(a), Interpreter::new(b));
     let mut rng = Rng::new(5);
     let mut evaluation = 0;

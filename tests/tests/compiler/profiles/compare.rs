@@ -62,13 +62,8 @@ pub(crate) fn compare(
     rng: &mut Rng,
 ) -> Result<(), Flaw> {
     let mut reference = Interpreter::new(tool);
-    let points_in_space: Vec<[f64; 3]> = points(outline, count, rng)
-        .into_iter()
-        .map(|p| {
-            let [d, z] = outline.turned(p);
-            [d, 0.0, z]
-        })
-        .collect();
+    let turned = points(outline, count, rng).into_iter().map(|p| outline.turned(p));
+    let points_in_space: Vec<[f64; 3]> = turned.map(|[d, z]| [d, 0.0, z]).collect();
     let tapes = evaluate_points(planned, Level::new(), &points_in_space);
     for (point, tape) in points_in_space.into_iter().zip(tapes) {
         let p = outline.back([point[0], point[2]]);

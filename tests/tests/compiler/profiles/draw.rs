@@ -150,12 +150,8 @@ impl Recipe {
                 let h = pen.unit(below);
                 let (radius, sign) = (d.hypot(h), if below < 0 { -1.0 } else { 1.0 });
                 let centre = [0.0, z - h];
-                pen.push(Segment::about(
-                    pen.at,
-                    add(&centre, &[0.0, sign * radius], &1.0),
-                    centre,
-                    below >= 0,
-                ));
+                let to = [0.0, centre[1] + sign * radius];
+                pen.push(Segment::about(pen.at, to, centre, below >= 0));
             }
         }
         if pen.steps.is_empty() {
@@ -282,15 +278,12 @@ fn rounded(steps: &[Step]) -> Vec<Segment<f64>> {
         match fillet {
             Some((last, Some((arc, rest)))) => {
                 // Two arcs that share an edge meet in its middle.
-                let used =
-                    norm(&sub(&arc.from, &last.from)) <= 1e-9 * norm(&sub(&arc.to, &arc.from));
-                if used {
-                    pieces.push(arc.between(last.from, arc.to));
+                let left = norm(&sub(&arc.from, &last.from));
+                if left <= 1e-9 * norm(&sub(&arc.to, &arc.from)) {
+                    pieces.extend([arc.between(last.from, arc.to), rest]);
                 } else {
-                    pieces.push(Segment::line(last.from, arc.from));
-                    pieces.push(arc);
+                    pieces.extend([Segment::line(last.from, arc.from), arc, rest]);
                 }
-                pieces.push(rest);
             }
             Some((last, None)) => pieces.extend([last, next]),
             None => pieces.push(next),

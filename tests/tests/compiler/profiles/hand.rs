@@ -6,6 +6,7 @@ use touchoff::tool::{Interpreted, Tool};
 use touchoff_dsl::CheckedTool;
 use touchoff_dsl::interpret::Interpreter;
 use touchoff_dsl::source::Source;
+use touchoff_tests::checks::assert_near;
 use touchoff_tests::evaluations::{evaluate_points, of_reference};
 use touchoff_tests::oracle::plane::{sub, unit};
 use touchoff_tests::oracle::rng::Rng;
@@ -87,24 +88,16 @@ fn check_point(tool: &CheckedTool, planned: &Interpreted, outline: &Outline, p: 
     let reference = Interpreter::new(tool).evaluate(point, 1.0).map(of_reference);
     assert_eq!(reference, tape, "at {p:?}");
     assert_eq!(reference.is_some(), outline.profile.encloses(&p), "at {p:?}");
+    let depth = outline.profile.depth(&p).abs();
     let Some(evaluation) = reference else {
-        assert!(
-            (planned.clearance(point) - outline.profile.depth(&p).abs()).abs() < 1e-12,
-            "at {p:?}"
-        );
-        return;
+        return assert_near(planned.clearance(point), depth, 1e-12, p);
     };
     let (name, surface, magnitude, [e, f], niceness) = expected_evaluation(outline, p);
     let region = &tool.model.regions[evaluation.region];
-    assert_eq!(
-        (region.name.as_str(), tool.model.surfaces[region.surface].name.as_str()),
-        (name, surface),
-        "at {p:?}"
-    );
-    let near = |a: f64, b: f64, what: &str| {
-        assert!((a - b).abs() < 1e-11, "{what} is {a}, not {b}, at {p:?} in {name}");
-    };
-    near(evaluation.depth, outline.profile.depth(&p).abs(), "depth");
+    let found = (region.name.as_str(), tool.model.surfaces[region.surface].name.as_str());
+    assert_eq!(found, (name, surface), "at {p:?}");
+    let near = |a: f64, b: f64, what: &str| assert_near(a, b, 1e-11, (what, p, name));
+    near(evaluation.depth, depth, "depth");
     near(evaluation.magnitude, magnitude, "magnitude");
     near(evaluation.niceness, niceness, "niceness");
     let f = if outline.down { -f } else { f };
@@ -133,10 +126,7 @@ fn gradients_are_slopes() {
         });
         if evaluation.depth > 1e-3 && slopes.iter().all(Option::is_some) {
             for (slope, part) in slopes.iter().zip(evaluation.gradient) {
-                assert!(
-                    (slope.unwrap_or(f64::NAN) - part).abs() < 1e-4,
-                    "{slopes:?} at {p:?}, {evaluation:?}"
-                );
+                assert_near(slope.unwrap_or(f64::NAN), part, 1e-4, (p, evaluation));
             }
         }
     }

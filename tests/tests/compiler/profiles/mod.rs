@@ -7,7 +7,6 @@ mod draw;
 mod hand;
 mod outline;
 mod random;
-mod rounded;
 mod smooth;
 mod valid;
 

@@ -57,12 +57,8 @@ pub(crate) fn is_valid(outline: &Outline) -> bool {
 /// Returns points along a piece; those of lines are close together near the ends.
 fn chords(piece: &Segment<f64>) -> Vec<P2> {
     let fraction = |k: u32| f64::from(k) / f64::from(CHORDS);
-    match piece.circle {
-        None => (0..=CHORDS)
-            .map(|k| piece.at(fraction(k).powi(2) * (3.0 - 2.0 * fraction(k))))
-            .collect(),
-        Some(_) => (0..=CHORDS).map(|k| piece.at(fraction(k))).collect(),
-    }
+    let share = |f: f64| if piece.circle.is_some() { f } else { f.powi(2) * (3.0 - 2.0 * f) };
+    (0..=CHORDS).map(|k| piece.at(share(fraction(k)))).collect()
 }
 
 /// Returns whether a point of one polyline is too near the other, or they cross. Beside a joint they may be as near

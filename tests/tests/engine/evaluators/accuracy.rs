@@ -61,13 +61,8 @@ fn evaluation(
 ) {
     let PointEvaluation { region: owner, depth, niceness, direction, .. } = by_length[0];
     let whole = [depth, niceness].into_iter().chain(direction);
-    assert!(
-        whole.clone().all(f64::is_finite),
-        "{:?} at {}",
-        whole.collect::<Vec<_>>(),
-        format_point(p)
-    );
-    assert!(depth >= 0.0 && niceness >= 0.0, "{depth} {niceness} at {}", format_point(p));
+    let is_sensible = whole.clone().all(f64::is_finite) && depth >= 0.0 && niceness >= 0.0;
+    assert!(is_sensible, "{:?} at {}", whole.collect::<Vec<_>>(), format_point(p));
     // The oracle has no evaluation of a point that rounding alone puts inside: its depth is 0.
     let mut deep = expected.map_or(0.0, |expected| expected.depth);
     if (depth - deep).abs() > ULPS_IN_DOUBT * ulp
@@ -78,22 +73,19 @@ fn evaluation(
     let is_depth = oracle.magnitude_is_depth();
     let hard = if is_depth { deep } else { expected.map_or(0.0, |expected| expected.magnitude) };
     let place = |what: String| format!("{}; {what}", format_point(p));
-    checks.within(DEPTH, (depth - deep).abs() / ulp, 1.0, || {
-        place(format!("{depth:e}, not {deep:e}"))
-    });
+    let compared = || place(format!("{depth:e}, not {deep:e}"));
+    checks.within(DEPTH, (depth - deep).abs() / ulp, 1.0, compared);
     for (length, PointEvaluation { magnitude, gradient, .. }) in LENGTHS.into_iter().zip(by_length)
     {
         let unit = if is_depth { length } else { 1.0 };
         let error = (magnitude / unit - hard).abs() / ulp;
-        checks.within("magnitude [ulp(S)]", error, 1.0, || {
-            place(format!("{magnitude:e} at length {length}"))
-        });
+        let compared = || place(format!("{magnitude:e} at length {length}"));
+        checks.within("magnitude [ulp(S)]", error, 1.0, compared);
         assert!(gradient.into_iter().all(f64::is_finite), "{gradient:?} at {}", format_point(p));
     }
     let size = norm(direction);
-    checks.within("||u| - 1| [ε]", (size - 1.0).abs() / f64::EPSILON, 4.0, || {
-        place(format!("{direction:?}"))
-    });
+    let error = (size - 1.0).abs() / f64::EPSILON;
+    checks.within("||u| - 1| [ε]", error, 4.0, || place(format!("{direction:?}")));
     // On a border each of the two neighbours has its own direction.
     let Some(expected) = expected.filter(|expected| expected.owner == owner) else { return };
     let rho = oracle.singularity_distance(p);
@@ -106,13 +98,11 @@ fn evaluation(
     };
     let doubt = closeness * f64::EPSILON;
     let error = distance(direction, expected.direction) / doubt;
-    checks.within("direction [ε max(1, S/ρ)]", error, 8.0, || {
-        place(format!("{direction:?}, not {:?}, rho {rho:e}", expected.direction))
-    });
+    let compared = || place(format!("{direction:?}, not {expected:?}, rho {rho:e}"));
+    checks.within("direction [ε max(1, S/ρ)]", error, 8.0, compared);
     let error = (niceness - expected.niceness).abs() / ulp;
-    checks.within("niceness [ulp(S)]", error, 1.0, || {
-        place(format!("{niceness:e}, not {:e}", expected.niceness))
-    });
+    let compared = || place(format!("{niceness:e}, not {:e}", expected.niceness));
+    checks.within("niceness [ulp(S)]", error, 1.0, compared);
     if rho == 0.0 {
         // A distance has no gradient at a centre; the language fixes a direction only.
         return;
@@ -122,8 +112,7 @@ fn evaluation(
         let per = if is_depth { 1.0 } else { length };
         let gradient = evaluated.gradient.map(|part| part * per);
         let error = distance(gradient, slope) / norm(slope).max(1.0) / doubt;
-        checks.within("gradient [ε max(1, S/ρ)]", error, 8.0, || {
-            place(format!("{gradient:?}, not {slope:?}"))
-        });
+        let compared = || place(format!("{gradient:?}, not {slope:?}"));
+        checks.within("gradient [ε max(1, S/ρ)]", error, 8.0, compared);
     }
 }

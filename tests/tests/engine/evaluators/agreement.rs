@@ -33,8 +33,7 @@ pub(crate) fn of(
         let code = everything(tool, "baseline", Level::baseline(), &list, length);
         let assert_same_bits = |what: &str, got: &[Answer]| {
             for ((got, expected), p) in got.iter().zip(&code).zip(points) {
-                let message = || format!("{what} at {}: {:?}", format_point(*p), numbers(*got));
-                assert_eq!(got, expected, "{}", message());
+                assert_eq!(got, expected, "{what} at {}: {:?}", format_point(*p), numbers(*got));
             }
         };
         assert_same_bits("tape", &everything(tape, "the tape", Level::baseline(), &list, length));

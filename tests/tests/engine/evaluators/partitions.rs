@@ -29,12 +29,9 @@ fn agree(source: &Source) {
     }
     let evaluations = evaluate_points(&tape, Level::baseline(), &points);
     for (p, evaluation) in points.iter().zip(evaluations) {
-        assert_eq!(
-            evaluation.map(|evaluation| evaluation.region),
-            reference.evaluate(*p, 1.0).map(|evaluation| evaluation.region),
-            "{p:?} of {}",
-            source.text
-        );
+        let expected = reference.evaluate(*p, 1.0).map(|evaluation| evaluation.region);
+        let found = evaluation.map(|evaluation| evaluation.region);
+        assert_eq!(found, expected, "{p:?} of {}", source.text);
     }
 }
 

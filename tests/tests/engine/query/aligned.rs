@@ -9,15 +9,10 @@ use touchoff_tests::turns::{EXACT_TURNS, ROUNDED_TURNS};
 /// Returns a grid of points half a unit apart: on faces, axes, edges and splitting curves of the tools, all at
 /// once.
 fn grid(half: i32) -> Part {
-    let at = |i: i32| 0.5 * f64::from(i);
-    let mut points = Vec::new();
-    for i in -half..=half {
-        for j in -half..=half {
-            for k in -half..=half {
-                points.push(Point3::new(at(i), at(j), at(k)));
-            }
-        }
-    }
+    let side = 2 * half + 1;
+    let at = |i: i32| 0.5 * f64::from(i % side - half);
+    let point = |k: i32| Point3::new(at(k / side / side), at(k / side), at(k));
+    let points: Vec<_> = (0..side.pow(3)).map(point).collect();
     let count = points.len();
     let normals = (0..count).map(|i| Vector3::ith(i % 3, if i % 2 == 0 { 1.0 } else { -1.0 }));
     parts::of(points, normals.collect(), vec![0.25; count])

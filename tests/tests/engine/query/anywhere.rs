@@ -1,8 +1,9 @@
-//! Any part and any tool, at any pose.
+//! Any part and any tool at any pose, and the scenes that figures are quoted on.
 
-use super::compare::{check_tools, tools};
-use super::{parts, poses};
+use super::compare::{Case, Statistics, check_tools, tools};
+use super::parts;
 use nalgebra::{Point3, Vector3};
+use touchoff::scenes::ScenePath;
 use touchoff::{Part, Pose, Probe};
 use touchoff_tests::oracle::rng::Rng;
 
@@ -10,7 +11,7 @@ use touchoff_tests::oracle::rng::Rng;
 pub(crate) fn all_tools(what: &str, part: &Part, count: usize) {
     check_tools(what, part, 31, |case, rng| {
         for k in 0..count {
-            case.check(&poses::about(part, case.oracle, k, rng), k);
+            case.check(&parts::about(part, case.oracle, k, rng), k);
         }
         let (name, statistics) = (case.oracle.name(), case.statistics);
         assert!(5 * statistics.touching > 2 * count, "{what} {name}: {statistics:?}");
@@ -72,7 +73,7 @@ fn clear_of_the_part() {
             if (at - inside).norm() < 300.0 && k % 3 == 1 && at.coords.amax() < 130.0 + height {
                 continue;
             }
-            let pose = poses::bringing(Vector3::zeros(), at, rng);
+            let pose = parts::bringing(Vector3::zeros(), at, rng);
             assert_eq!(case.check(&pose, k), 0, "{}", case.oracle.name());
         }
     });
@@ -83,7 +84,7 @@ fn clear_of_the_part() {
 fn parts_inside_the_tool() {
     check_tools("inside", &parts::soup(0.2, 3_000, 3), 6, |case, rng| {
         for k in 0..30 {
-            let pose = poses::bringing(Vector3::new(0.0, 0.0, 1.0), Point3::origin(), rng);
+            let pose = parts::bringing(Vector3::new(0.0, 0.0, 1.0), Point3::origin(), rng);
             assert_eq!(case.check(&pose, k), 3_000);
         }
     });
@@ -98,18 +99,45 @@ fn poses_at_the_largest_coordinates() {
         for distance in [1e20, 1e38, 1e39, 1e50, 1e60] {
             for direction in [Vector3::x(), -Vector3::y(), Vector3::z(), -Vector3::z()] {
                 for axis in [Vector3::x(), Vector3::z(), Vector3::new(0.6, 0.0, -0.8)] {
-                    let pose =
-                        Pose::from_axis(Point3::from(distance * direction), axis).expect("a pose");
-                    assert!(
-                        !probe.detect(&pose),
-                        "{} {distance:e} {direction} {axis}",
-                        tool.info().name
-                    );
+                    let pose = Pose::from_axis(Point3::from(distance * direction), axis);
+                    let pose = pose.expect("a pose");
+                    assert!(!probe.detect(&pose), "{} {pose:?}", tool.info().name);
                     let wrench = probe.wrench(&pose);
                     assert_eq!((wrench.colliding, wrench.force.norm()), (0, 0.0));
                     assert!(probe.contacts(&pose).is_empty());
                 }
             }
+        }
+    }
+}
+
+/// Checks the poses of a path cut into `poses`, with every tool. Returns the statistics of the thesis's tool.
+fn along(path: ScenePath, count: usize, poses: usize) -> Statistics {
+    let part = parts::tube(count);
+    let mut fig73 = Statistics::default();
+    for (tool, oracle) in tools() {
+        let mut case = Case::new(&part, tool, &*oracle);
+        // The scenes are those of the thesis's tool; for the others every fifth pose is enough.
+        let step = if oracle.name() == "Fig73" { 1 } else { 5 };
+        for k in (0..poses).step_by(step) {
+            case.check(&path.pose(k, poses), k / step);
+        }
+        println!("{} {count} {}: {:?}", path.name(), oracle.name(), case.statistics);
+        assert_eq!(case.statistics.disputed, 0);
+        if step == 1 {
+            fig73 = case.statistics;
+        }
+    }
+    fig73
+}
+
+#[test]
+fn paths_along_the_tube_agree_with_the_oracle() {
+    for (points, poses) in [(1_000, 600), (5_000, 240), (20_000, 120)] {
+        for path in ScenePath::ALL {
+            let seen = along(path, points, poses);
+            let is_busy = points < 20_000 || seen.contacts > 5 * poses;
+            assert!(is_busy, "{path:?} hardly touches: {seen:?}");
         }
     }
 }

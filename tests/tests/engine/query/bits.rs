@@ -1,7 +1,7 @@
 //! The same bits at every SIMD level, from a fresh probe and a used one, compiled or interpreted.
 
 use super::compare::{LAWS_AND_WEIGHTS, tools};
-use super::{parts, poses};
+use super::parts;
 use touchoff::tool::Interpreted;
 use touchoff::{Level, Part, Pose, Probe, Tool};
 use touchoff_tests::evaluations::levels;
@@ -26,7 +26,7 @@ fn parts() -> Vec<Part> {
 
 fn random_poses(part: &Part, oracle: &dyn Oracle, count: usize, seed: u64) -> Vec<Pose> {
     let mut rng = Rng::new(seed);
-    (0..count).map(|k| poses::about(part, oracle, k, &mut rng)).collect()
+    (0..count).map(|k| parts::about(part, oracle, k, &mut rng)).collect()
 }
 
 #[test]
@@ -83,10 +83,8 @@ fn compiled_and_interpreted_tools_give_the_same_bits() {
             for (k, pose) in random_poses(&part, &*oracle, 24, 6).iter().enumerate() {
                 let (law, weights) = LAWS_AND_WEIGHTS[k % 6];
                 let by = |tool| {
-                    formatted_results(
-                        &mut Probe::new(&part, tool).with_law(law).with_weights(weights),
-                        pose,
-                    )
+                    let probe = Probe::new(&part, tool).with_law(law);
+                    formatted_results(&mut probe.with_weights(weights), pose)
                 };
                 assert_eq!(by(tool), by(&interpreted), "{name}");
             }

@@ -12,16 +12,7 @@ use touchoff_tests::evaluations::evaluate_points;
 use touchoff_tests::fixtures::ball;
 use touchoff_tests::oracle::big::Big;
 use touchoff_tests::oracle::rng::Rng;
-use touchoff_tests::oracle::space::{Triple, add, cross, dot, exactly, norm, sub};
-
-/// Returns a part of one point, `count` times, with one normal and the weight 1.
-fn repeated(at: Point3<f64>, normal: Vector3<f64>, count: usize) -> Part {
-    parts::of(vec![at; count], vec![normal; count], vec![1.0; count])
-}
-
-fn error_of(exact: &Triple, found: Vector3<f64>) -> f64 {
-    norm(&sub(exact, &exactly(found))).to_f64()
-}
+use touchoff_tests::oracle::space::{Triple, add, cross, distance, dot, exactly, sub};
 
 /// A point in a tool whose tip is at the world's origin, where the difference of both is exact.
 struct ExactContact {
@@ -41,6 +32,19 @@ impl ExactContact {
         });
         let evaluation = evaluate_points(tool, Level::new(), &[position])[0].expect("a contact");
         ExactContact { pose, position, evaluation, normal }
+    }
+
+    /// Returns the part of one point, `count` times with the weight 1, and its contact. The tree stores the normal rounded.
+    fn repeated(
+        tool: &dyn Tool,
+        pose: Pose,
+        point: Point3<f64>,
+        normal: Vector3<f64>,
+        count: usize,
+    ) -> (Part, ExactContact) {
+        let part = parts::of(vec![point; count], vec![normal; count], vec![1.0; count]);
+        let normal = Vector3::from(part.tree().normal(0));
+        (part, ExactContact::new(tool, pose, point, normal))
     }
 
     /// Returns the rows of the rotation.
@@ -75,8 +79,8 @@ impl ExactContact {
 /// Asserts that force, torque and integral err by no more than the wrench states.
 fn assert_bounded(contact: &ExactContact, count: usize, wrench: &Wrench, centre: Point3<f64>) {
     assert_eq!(wrench.colliding, count);
-    let force = error_of(&contact.force(count), wrench.force);
-    let torque = error_of(&contact.torque(count, centre), wrench.torque);
+    let force = distance(&contact.force(count), wrench.force);
+    let torque = distance(&contact.torque(count, centre), wrench.torque);
     let stated = wrench.rounding;
     assert!(force <= stated.force, "{count} points: {force:e} of {stated:?}");
     assert!(torque <= stated.torque, "{count} points: {torque:e} of {stated:?}");
@@ -86,116 +90,108 @@ fn assert_bounded(contact: &ExactContact, count: usize, wrench: &Wrench, centre:
     assert!(lost <= ulps, "{count} points: {lost:e} of the integral");
 }
 
-fn turned(rng: &mut Rng) -> Pose {
-    Pose::from_quaternion(Point3::origin(), rng.quaternion()).expect("a pose")
-}
-
-/// Returns a pose with the tip at the origin and a point of the ball there, in the world's frame.
-fn touching(rng: &mut Rng) -> (Pose, Point3<f64>) {
-    let pose = turned(rng);
-    let own = Vector3::new(0.0, 0.0, 3.0) + rng.between(0.3, 2.9) * Vector3::from(rng.direction());
-    (pose, Point3::from(pose.rotation() * own))
+/// Runs a check at random contacts of the ball: its pose, with the tip at the origin, and a point in it.
+fn at_contacts(seed: u64, rounds: usize, check: impl Fn(&dyn Tool, Pose, Point3<f64>, &mut Rng)) {
+    let tool = ball();
+    let mut rng = Rng::new(seed);
+    for _ in 0..rounds {
+        let pose = Pose::from_quaternion(Point3::origin(), rng.quaternion()).expect("a pose");
+        let own =
+            Vector3::new(0.0, 0.0, 3.0) + rng.between(0.3, 2.9) * Vector3::from(rng.direction());
+        check(&tool, pose, Point3::from(pose.rotation() * own), &mut rng);
+    }
 }
 
 /// The torque about a centre far away along the force is small, and its error that of the arm.
 #[test]
 fn the_torque_bound_covers_a_centre_far_along_the_force() {
-    let tool = ball();
-    let mut rng = Rng::new(1);
-    for _ in 0..20 {
-        let (pose, point) = touching(&mut rng);
+    at_contacts(1, 20, |tool, pose, point, rng| {
         let normal = Vector3::from(rng.direction()).map(|part| f64::from(part as f32));
-        let part = repeated(point, normal, 1);
-        let normal = Vector3::from(part.tree().normal(0));
-        let contact = ExactContact::new(&tool, pose, point, normal);
-        let at_tip = contact.wrench(&tool, &part, Point3::origin());
+        let (part, contact) = ExactContact::repeated(tool, pose, point, normal, 1);
+        let at_tip = contact.wrench(tool, &part, Point3::origin());
         let along = pose.rotation().transpose() * at_tip.force.normalize();
         for distance in [0.0, 1.0, 1e3, 1e6, 1e9] {
             let centre = Point3::from(distance * along);
-            let wrench = contact.wrench(&tool, &part, centre);
-            assert_bounded(&contact, 1, &wrench, centre);
+            assert_bounded(&contact, 1, &contact.wrench(tool, &part, centre), centre);
         }
-    }
+    });
 }
 
 /// A normal that is the direction out of the tool cancels it, and their own rounding is all that is left.
 #[test]
 fn the_force_bound_covers_normals_that_face_the_way_out() {
-    let tool = ball();
-    let mut rng = Rng::new(2);
-    for _ in 0..40 {
-        let (pose, point) = touching(&mut rng);
-        let out = ExactContact::new(&tool, pose, point, Vector3::z()).evaluation.direction;
-        let part = repeated(point, pose.rotation() * Vector3::from(out), 1);
-        let contact = ExactContact::new(&tool, pose, point, Vector3::from(part.tree().normal(0)));
-        let wrench = contact.wrench(&tool, &part, Point3::origin());
+    at_contacts(2, 40, |tool, pose, point, _| {
+        let out = ExactContact::new(tool, pose, point, Vector3::z()).evaluation.direction;
+        let normal = pose.rotation() * Vector3::from(out);
+        let (part, contact) = ExactContact::repeated(tool, pose, point, normal, 1);
+        let wrench = contact.wrench(tool, &part, Point3::origin());
         assert!(wrench.force.norm() < 1e-6 * wrench.integral);
         assert_bounded(&contact, 1, &wrench, Point3::origin());
-    }
+    });
 }
 
 /// The same number is added thousands of times, so that each addition is rounded the same way.
 #[test]
 fn the_force_bound_covers_the_additions_of_many_equal_points() {
     const COUNT: usize = 20_000;
-    let tool = ball();
-    let mut rng = Rng::new(3);
-    for _ in 0..8 {
-        let (pose, point) = touching(&mut rng);
-        let part = repeated(point, Vector3::from(rng.direction()), COUNT);
-        let contact = ExactContact::new(&tool, pose, point, Vector3::from(part.tree().normal(0)));
-        let wrench = contact.wrench(&tool, &part, Point3::origin());
+    at_contacts(3, 8, |tool, pose, point, rng| {
+        let normal = Vector3::from(rng.direction());
+        let (part, contact) = ExactContact::repeated(tool, pose, point, normal, COUNT);
+        let wrench = contact.wrench(tool, &part, Point3::origin());
         assert_bounded(&contact, COUNT, &wrench, Point3::origin());
-    }
+    });
 }
 
 /// A force along its arm has no torque about the tip, only the error of the moments.
 #[test]
 fn the_torque_bound_covers_moments_that_cancel() {
-    let tool = ball();
-    let mut rng = Rng::new(4);
-    for _ in 0..40 {
-        let (pose, point) = touching(&mut rng);
-        let out = ExactContact::new(&tool, pose, point, Vector3::z()).evaluation.direction;
+    at_contacts(4, 40, |tool, pose, point, _| {
+        let out = ExactContact::new(tool, pose, point, Vector3::z()).evaluation.direction;
         // The direction mirrored along the arm differs from itself along the arm.
         let (out, arm) = (pose.rotation() * Vector3::from(out), point.coords.normalize());
         let normal = out - 2.0 * out.dot(&arm) * arm;
-        let part = repeated(point, normal, 1);
-        let contact = ExactContact::new(&tool, pose, point, Vector3::from(part.tree().normal(0)));
-        let wrench = contact.wrench(&tool, &part, Point3::origin());
+        let (part, contact) = ExactContact::repeated(tool, pose, point, normal, 1);
+        let wrench = contact.wrench(tool, &part, Point3::origin());
         assert!(wrench.torque.norm() < 1e-5 * wrench.integral, "{wrench:?}");
         assert_bounded(&contact, 1, &wrench, Point3::origin());
+    });
+}
+
+/// Returns the wrench of a tool at a pose on parts of a scene.
+fn scene_wrench<'a>(
+    tool: &dyn Tool,
+    pose: Pose,
+    parts: impl IntoIterator<Item = &'a Part>,
+) -> Wrench {
+    let mut scene = Scene::new(parts::UNIT).with_weights(Weights::Unit);
+    for part in parts {
+        scene.add_part(part, Pose::default()).expect("millimetres");
     }
+    let id = scene.add_tool(tool);
+    scene.move_tool(id, pose);
+    scene.wrench(id)
 }
 
 /// The first part is hardly touched, so that all of the error is that of the second.
 #[test]
 fn the_bounds_of_a_scene_cover_the_part_that_is_added_last() {
-    let tool = ball();
-    let mut rng = Rng::new(5);
-    for round in 0..40 {
-        let (pose, point) = touching(&mut rng);
-        let normals = [rng.direction(), rng.direction()].map(Vector3::from);
-        let barely = Point3::from(pose.rotation() * Vector3::new(0.0, 0.0, 1e-9));
-        let (light, heavy) = (repeated(barely, normals[0], 1), repeated(point, normals[1], 40));
-        let mut scene = Scene::new(parts::UNIT).with_weights(Weights::Unit);
-        let order = if round % 2 == 0 { [&light, &heavy] } else { [&heavy, &light] };
-        for part in order {
-            scene.add_part(part, Pose::default()).expect("millimetres");
-        }
-        let id = scene.add_tool(&tool);
-        scene.move_tool(id, pose);
-        let wrench = scene.wrench(id);
-        assert_eq!(wrench.colliding, 41);
-        let [light, heavy] = [(barely, &light, 1), (point, &heavy, 40)].map(|(at, part, count)| {
-            let normal = Vector3::from(part.tree().normal(0));
-            let contact = ExactContact::new(&tool, pose, at, normal);
-            (contact.force(count), contact.torque(count, Point3::origin()))
+    for is_reversed in [false, true] {
+        at_contacts(5, 20, |tool, pose, point, rng| {
+            let barely = Point3::from(pose.rotation() * Vector3::new(0.0, 0.0, 1e-9));
+            let [light, heavy] = [(barely, 1), (point, 40)].map(|(at, count)| {
+                let normal = Vector3::from(rng.direction());
+                let (part, contact) = ExactContact::repeated(tool, pose, at, normal, count);
+                (part, [contact.force(count), contact.torque(count, Point3::origin())])
+            });
+            let order = if is_reversed { [&heavy.0, &light.0] } else { [&light.0, &heavy.0] };
+            let wrench = scene_wrench(tool, pose, order);
+            assert_eq!(wrench.colliding, 41);
+            let [force, torque] = [0, 1].map(|k| add(&light.1[k], &heavy.1[k]));
+            let [force, torque] =
+                [distance(&force, wrench.force), distance(&torque, wrench.torque)];
+            assert!(force <= wrench.rounding.force, "{force:e} of {:?}", wrench.rounding);
+            assert!(torque <= wrench.rounding.torque, "{torque:e} of {:?}", wrench.rounding);
         });
-        let force = error_of(&add(&light.0, &heavy.0), wrench.force);
-        let torque = error_of(&add(&light.1, &heavy.1), wrench.torque);
-        assert!(force <= wrench.rounding.force, "{force:e} of {:?}", wrench.rounding);
-        assert!(torque <= wrench.rounding.torque, "{torque:e} of {:?}", wrench.rounding);
     }
 }
 
@@ -203,19 +199,10 @@ fn the_bounds_of_a_scene_cover_the_part_that_is_added_last() {
 #[test]
 fn the_bounds_of_a_scene_cover_the_additions_of_many_equal_parts() {
     const COUNT: usize = 1000;
-    let tool = ball();
-    let mut rng = Rng::new(6);
-    for _ in 0..8 {
-        let (pose, point) = touching(&mut rng);
-        let part = repeated(point, Vector3::from(rng.direction()), 1);
-        let mut scene = Scene::new(parts::UNIT).with_weights(Weights::Unit);
-        for _ in 0..COUNT {
-            scene.add_part(&part, Pose::default()).expect("millimetres");
-        }
-        let id = scene.add_tool(&tool);
-        scene.move_tool(id, pose);
-        let normal = Vector3::from(part.tree().normal(0));
-        let contact = ExactContact::new(&tool, pose, point, normal);
-        assert_bounded(&contact, COUNT, &scene.wrench(id), Point3::origin());
-    }
+    at_contacts(6, 8, |tool, pose, point, rng| {
+        let normal = Vector3::from(rng.direction());
+        let (part, contact) = ExactContact::repeated(tool, pose, point, normal, 1);
+        let wrench = scene_wrench(tool, pose, std::iter::repeat_n(&part, COUNT));
+        assert_bounded(&contact, COUNT, &wrench, Point3::origin());
+    });
 }

@@ -141,10 +141,8 @@ impl<'a> Case<'a> {
         let centre = [[0.0; 3], [0.0, 0.0, 1.5], [-2.0, 3.0, 0.7]][k / 6 % 3];
         let centre = Point3::from(centre.map(|c| c / self.scale));
         let (law, weights) = LAWS_AND_WEIGHTS[k % 6];
-        let mut probe = Probe::new(self.part, self.tool)
-            .with_law(law)
-            .with_weights(weights)
-            .with_centre(centre);
+        let probe = Probe::new(self.part, self.tool).with_law(law).with_weights(weights);
+        let mut probe = probe.with_centre(centre);
         let wrench = probe.wrench(pose);
         assert_eq!((wrench.law, wrench.weights), (law, weights));
         assert_eq!(probe.detect(pose), wrench.colliding > 0, "detect at {pose:?}");

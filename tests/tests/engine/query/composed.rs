@@ -52,10 +52,8 @@ fn turn((axis, angle): ([f64; 3], f64), times: f64) -> UnitQuaternion<f64> {
 fn motion(by: ([f64; 3], f64)) -> Pose {
     let turn = turn(by, 1.0);
     let fixed = Point3::new(10.0, -20.0, 5.0);
-    let q = turn.coords;
     let tip = fixed - turn * fixed.coords;
-    Pose::from_quaternion(Point3::from(tip.coords), [q.x, q.y, q.z, q.w])
-        .expect("a unit quaternion")
+    Pose::from_quaternion(tip, turn.coords.into()).expect("a unit quaternion")
 }
 
 #[test]
@@ -71,10 +69,8 @@ fn rotations_stay_rotations() {
         // Each composition, and the step itself, is off by some ε.
         let exact = turn(by, f64::from(COMPOSITIONS)).to_rotation_matrix();
         let difference = (pose.rotation() - exact.matrix()).norm();
-        assert!(
-            difference <= 2.0 * f64::EPSILON * f64::from(COMPOSITIONS),
-            "{by:?}: {difference:e}"
-        );
+        let bound = 2.0 * f64::EPSILON * f64::from(COMPOSITIONS);
+        assert!(difference <= bound, "{by:?}: {difference:e}");
     }
 }
 
@@ -95,10 +91,8 @@ fn any_chain_of_poses_ends_in_a_rotation() {
     let mut pose = Pose::default();
     for _ in 0..20_000 {
         for other in any() {
-            assert!(
-                orthogonality_error(other.rotation()) <= 2.0 * MAX_ORTHOGONALITY_ERROR,
-                "{other:?}"
-            );
+            let error = orthogonality_error(other.rotation());
+            assert!(error <= 2.0 * MAX_ORTHOGONALITY_ERROR, "{other:?}");
             pose = pose.then(&other).relative_to(&any()[1]);
             assert!(orthogonality_error(pose.rotation()) <= MAX_ORTHOGONALITY_ERROR, "{pose:?}");
             // A pose composed with another and taken relative to it is the same again.

@@ -1,10 +1,11 @@
 //! The error bounds that a probe states, against the depth of the points that were given.
 
-use super::{parts, poses};
+use super::parts;
 use nalgebra::{Point3, Vector3};
 use touchoff::TriangleId;
 use touchoff::tool::Interpreted;
 use touchoff::{Cloud, Interval, Part, Pose, Probe};
+use touchoff_tests::fixtures::drawn;
 use touchoff_tests::oracle::big::Big;
 use touchoff_tests::oracle::reference::{QueryPoint, Reference};
 use touchoff_tests::oracle::rng::Rng;
@@ -31,15 +32,10 @@ fn depths_keep_the_stated_error_bound() {
             Point3::new(across(rng), across(rng), rng.between(low, high)) + far
         };
         let points: Vec<Point3<f64>> = (0..count).map(|_| within(&mut rng)).collect();
-        let cloud = Cloud::new(
-            points.clone(),
-            vec![Vector3::z(); count],
-            (0..count as u32).map(TriangleId).collect(),
-            vec![1.0; count],
-            info.unit,
-        )
-        .expect("a cloud");
-        let part = Part::from_cloud(&cloud);
+        let ids = (0..count as u32).map(TriangleId).collect();
+        let (normals, weights) = (vec![Vector3::z(); count], vec![1.0; count]);
+        let cloud = Cloud::new(points.clone(), normals, ids, weights, info.unit);
+        let part = Part::from_cloud(&cloud.expect("a cloud"));
         let mut probe = Probe::new(&part, tool);
         let stated = probe.rounding_error_bound().expect("the library's depths are bounded");
         let pose = Pose::from_axis(Point3::from(far), Vector3::z()).expect("a pose");
@@ -61,18 +57,15 @@ fn depths_keep_the_stated_error_bound() {
 /// hardly, that below a large sphere by much.
 #[test]
 fn depths_of_points_that_are_stored_exactly_keep_the_bound() {
-    let tool = |text: &str| text.parse::<Interpreted>().expect("a tool");
-    let pin = tool(
-        "tool Pin { units mm; profile { start (0, 0); line to (4, 0), (4, 32), (0, 32) as pin cutting; } niceness cutting: 1; }",
-    );
-    let dish = tool(
-        "tool Dish { units mm;
+    let pin = drawn("0 0; pin 4 0, 4 32, 0 32", "pin");
+    let dish: Interpreted = "tool Dish { units mm;
             curve face = 1000000 - hypot(d, z - 1000000); curve side = 5 - d; curve end = 8 - z;
             region face as face cutting where 0 <= face <= side, face <= end { depth: face; }
             region side where 0 <= side <= face, side <= end { depth: side; }
             region end as side where 0 <= end <= face, end <= side { depth: end; }
-            niceness cutting: 1; }",
-    );
+            niceness cutting: 1; }"
+        .parse()
+        .expect("a tool");
     let below_top: fn(&Triple) -> Big = |[_, _, z]| &Big::exactly(32.0) - z;
     let above_face: fn(&Triple) -> Big = |[x, y, z]| {
         let from_centre = [x.clone(), y.clone(), z - &Big::exactly(1e6)];
@@ -85,7 +78,7 @@ fn depths_of_points_that_are_stored_exactly_keep_the_bound() {
             let [x, y] = [0; 2].map(|_| rng.between(-2.0, 2.0));
             let own = Vector3::new(x, y, rng.between(heights[0], heights[1]));
             let at = Point3::from(10.0 * parts::direction(&mut rng));
-            let pose = poses::bringing(own, at, &mut rng);
+            let pose = parts::bringing(own, at, &mut rng);
             let part = parts::identical(at, 1);
             let mut probe = Probe::new(&part, tool);
             let stated = probe.rounding_error_bound().expect("its depth is bounded");

@@ -2,7 +2,7 @@
 
 use super::anywhere::all_tools;
 use super::compare::{check_tools, tools};
-use super::{parts, poses};
+use super::parts;
 use nalgebra::{Point3, Vector3};
 use touchoff::{Part, Pose, Probe};
 use touchoff_tests::oracle::rng::Rng;
@@ -34,7 +34,7 @@ fn exact_translations_do_not_change_the_result() {
             let mut rng = Rng::new(21);
             let mut compared = 0;
             for k in 0..30 {
-                let pose = poses::about(&original, &*oracle, k, &mut rng);
+                let pose = parts::about(&original, &*oracle, k, &mut rng);
                 let tip = on_a_grid(pose.tip());
                 // Larger tips would lose bits in the sum with `by`.
                 if tip.coords.amax() > 1024.0 {
@@ -93,7 +93,7 @@ fn a_small_tool_on_a_large_part() {
                     let [_, height] = case.oracle.extent();
                     let own = Vector3::new(0.0, 0.0, rng.between(0.0, height));
                     let at = original + parts::vector(rng, 4.0);
-                    case.check(&poses::bringing(own, at, rng), k);
+                    case.check(&parts::bringing(own, at, rng), k);
                 }
                 assert!(case.statistics.touching > 12, "{size:e} {}", case.oracle.name());
             });
@@ -111,7 +111,7 @@ fn parts_near_the_smallest_doubles() {
             for k in 0..12 {
                 let own = Vector3::new(0.3, 0.2, 0.7);
                 // All five points are inside the tool.
-                assert_eq!(case.check(&poses::bringing(own, Point3::origin(), rng), k), 5);
+                assert_eq!(case.check(&parts::bringing(own, Point3::origin(), rng), k), 5);
             }
         });
     }

@@ -1,7 +1,7 @@
 //! Properties of the laws: signs by hand, and the gradient law as the slope of the energy.
 
 use super::compare::tools;
-use super::{parts, poses};
+use super::parts;
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 use touchoff::{Law, Part, Pose, Probe};
 use touchoff_tests::library;
@@ -31,7 +31,7 @@ fn the_gradient_law_is_the_slope_of_the_energy() {
         let mut probe = Probe::new(&part, tool).with_law(Law::Gradient).with_centre(centre);
         let (mut touching, mut worst) = (0, [0f64; 2]);
         for k in 0..60 {
-            let pose = poses::about(&part, &*oracle, k, &mut rng);
+            let pose = parts::about(&part, &*oracle, k, &mut rng);
             let evaluation = probe.wrench(&pose);
             let at = pose.to_isometry();
             let about = (at * centre).coords;
@@ -102,10 +102,8 @@ fn one_contact_agrees_with_a_hand_calculation() {
         assert_eq!(wrench.force, Vector3::new(0.0, 0.0, force));
         assert_eq!(wrench.torque, Vector3::new(0.0, -3.0 * force, 0.0));
         assert_eq!((wrench.depth(), wrench.integral, wrench.energy), (0.25, 0.5, 0.0625));
-        assert_eq!(
-            wrench.deepest.map(|deepest| deepest.point),
-            Some(Point3::new(10.0, 20.0, 30.0))
-        );
+        let deepest = wrench.deepest.expect("a contact").point;
+        assert_eq!(deepest, Point3::new(10.0, 20.0, 30.0));
     }
 }
 

@@ -2,7 +2,7 @@
 //! to the tool must be found, however large the part that it lies on.
 
 use super::compare::{Case, Statistics, tools};
-use super::{parts, poses};
+use super::parts;
 use nalgebra::{Point3, Vector3};
 use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::{Oracle, displaced};
@@ -13,11 +13,9 @@ fn compare_surface_points(tool_at: usize, size: f64, offset: f64, seed: u64) -> 
     let (tool, oracle) = tools().swap_remove(tool_at);
     let mut rng = Rng::new(seed);
     let centre = Point3::from(offset * parts::direction(&mut rng));
-    let pose = poses::bringing(Vector3::zeros(), centre, &mut rng);
-    let mut points: Vec<Point3<f64>> = own_points(&*oracle, &mut rng)
-        .into_iter()
-        .map(|q| pose.tip() + pose.rotation() * q)
-        .collect();
+    let pose = parts::bringing(Vector3::zeros(), centre, &mut rng);
+    let own = own_points(&*oracle, &mut rng).into_iter();
+    let mut points: Vec<_> = own.map(|q| pose.tip() + pose.rotation() * q).collect();
     points.extend((0..500).map(|_| Point3::from(parts::vector(&mut rng, size))));
     let normals = points.iter().map(|_| parts::direction(&mut rng)).collect();
     let count = points.len();
@@ -63,7 +61,7 @@ fn one_point_at_a_time() {
         let mut statistics = Statistics::default();
         for (k, own) in own_points(&*oracle, &mut rng).into_iter().enumerate() {
             let at = [0.0, 0.0, 1e2, 1e5][k % 4] * parts::direction(&mut rng);
-            let pose = poses::bringing(own, Point3::from(at), &mut rng);
+            let pose = parts::bringing(own, Point3::from(at), &mut rng);
             let part = parts::identical(Point3::from(at), 1);
             let mut case = Case::new(&part, tool, &*oracle);
             case.check(&pose, k);
@@ -84,7 +82,7 @@ fn points_just_outside_never_touch_and_points_just_inside_do() {
         for size in [1e2, 1e4, 1e6] {
             for hair in [1e-3, 1e-6, 1e-8] {
                 let centre = Point3::from(0.3 * size * parts::direction(&mut rng));
-                let pose = poses::bringing(Vector3::zeros(), centre, &mut rng);
+                let pose = parts::bringing(Vector3::zeros(), centre, &mut rng);
                 // Points at a step of `hair` from the curves, kept if they are about as far off the surface.
                 let mut both = [Vec::new(), Vec::new()];
                 for p in oracle.curve_points().into_iter().flatten() {

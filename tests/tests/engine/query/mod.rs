@@ -1,6 +1,6 @@
 //! The tree query against evaluations of the oracle at every point.
 //!
-//! [`compare`] has the comparison and its bounds, [`parts`] and [`poses`] the inputs.
+//! [`compare`] has the comparison and its bounds, [`parts`] the inputs.
 
 mod aligned;
 mod anywhere;
@@ -13,8 +13,6 @@ mod far;
 mod law;
 mod margins;
 mod parts;
-mod poses;
-mod scenes;
 mod solids;
 mod stiffness;
 mod sums;

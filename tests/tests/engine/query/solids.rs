@@ -3,6 +3,7 @@
 use super::parts;
 use nalgebra::{Point3, Vector3};
 use touchoff::{Law, Part, Pose, Probe};
+use touchoff_tests::checks::assert_near;
 use touchoff_tests::oracle::rng::Rng;
 use touchoff_tools::Block;
 
@@ -17,9 +18,8 @@ fn plane(pose: &Pose) -> Part {
     parts::of(points, vec![pose.rotation() * Vector3::z(); count], vec![1.0 / 16.0; count])
 }
 
-fn anywhere(rng: &mut Rng) -> Pose {
-    let tip = Point3::from(parts::vector(rng, 100.0));
-    Pose::from_quaternion(tip, rng.quaternion()).expect("a pose")
+fn pose(tip: Point3<f64>, quaternion: [f64; 4]) -> Pose {
+    Pose::from_quaternion(tip, quaternion).expect("a pose")
 }
 
 /// Returns a pose moved by a step in its own frame.
@@ -37,9 +37,9 @@ fn a_block_on_a_plane() {
     let (w, l) = (40.0, 30.0);
     for k in 0..8 {
         let block_pose = if k == 0 {
-            Pose::from_quaternion(Point3::origin(), [0.0, 0.0, 0.0, 1.0]).expect("a pose")
+            pose(Point3::origin(), [0.0, 0.0, 0.0, 1.0])
         } else {
-            anywhere(&mut rng)
+            pose(parts::vector(&mut rng, 100.0).into(), rng.quaternion())
         };
         let part = plane(&block_pose);
         for h in [0.5, 1.5, 4.0] {
@@ -47,21 +47,15 @@ fn a_block_on_a_plane() {
             let mut probe = Probe::new(&part, &Block).with_law(Law::Gradient);
             let evaluation = probe.wrench(&pose);
             assert!(probe.detect(&pose));
-            assert!((evaluation.depth() - h).abs() < 1e-5, "{} at {h}", evaluation.depth());
+            assert_near(evaluation.depth(), h, 1e-5, "depth");
             let integral = h * w * l - h * h * (w + l) + 4.0 * h.powi(3) / 3.0;
-            assert!(
-                (evaluation.integral / integral - 1.0).abs() < 1e-3,
-                "{} {integral}",
-                evaluation.integral
-            );
+            assert_near(evaluation.integral / integral, 1.0, 1e-3, h);
             let up = h * (w - 2.0 * h) * (l - 2.0 * h);
             let force_in_tool = pose.rotation().transpose() * evaluation.force;
-            assert!((force_in_tool.z / up - 1.0).abs() < 0.03, "{force_in_tool} {up}");
+            assert_near(force_in_tool.z / up, 1.0, 0.03, h);
             // Everything cancels but the points of the hips themselves, which may fall to either side.
-            assert!(
-                force_in_tool.xy().norm() < 0.01 * up && evaluation.torque.norm() < 0.1 * up,
-                "{force_in_tool} {up}"
-            );
+            let (across, torque) = (force_in_tool.xy().norm(), evaluation.torque.norm());
+            assert!(across < 0.01 * up && torque < 0.1 * up, "{force_in_tool} {torque} {up}");
         }
         let clear = shifted(&block_pose, Vector3::new(0.0, 0.0, 1e-3));
         assert!(!Probe::new(&part, &Block).detect(&clear));
@@ -71,13 +65,12 @@ fn a_block_on_a_plane() {
 /// Spin matters without an axis: a pose from an axis does not place a solid, and reports that it has no spin.
 #[test]
 fn the_spin_matters() {
-    let pose = Pose::from_quaternion(Point3::origin(), [0.0, 0.0, 0.0, 1.0]).expect("a pose");
-    let point = Point3::new(18.0, 0.0, 5.0);
-    let part = parts::identical(point, 1);
+    let still = pose(Point3::origin(), [0.0, 0.0, 0.0, 1.0]);
+    let part = parts::identical(Point3::new(18.0, 0.0, 5.0), 1);
     let mut probe = Probe::new(&part, &Block);
-    assert!(pose.has_spin() && probe.detect(&pose));
+    assert!(still.has_spin() && probe.detect(&still));
     let half = 0.5f64.sqrt();
-    let turned = Pose::from_quaternion(Point3::origin(), [0.0, 0.0, half, half]).expect("a pose");
+    let turned = pose(Point3::origin(), [0.0, 0.0, half, half]);
     assert!(turned.has_spin() && !probe.detect(&turned));
     let axial = Pose::from_axis(Point3::origin(), Vector3::z()).expect("a pose");
     assert!(!axial.has_spin());

@@ -1,7 +1,7 @@
 //! The derivative of the wrench against its finite differences.
 
 use super::compare::tools;
-use super::{parts, poses};
+use super::parts;
 use nalgebra::{Matrix6, Point3, Rotation3, UnitQuaternion, Vector3, Vector6};
 use touchoff::{Law, Part, Pose, Probe, Tool, Wrench};
 use touchoff_tests::haptics::{block, tool, upright};
@@ -49,7 +49,7 @@ fn relative_errors(part: &Part, tool: &dyn Tool, oracle: &dyn Oracle, law: Law) 
     let mut probe = Probe::new(part, tool).with_law(law).with_centre(centre);
     let mut relative_errors = Vec::new();
     for k in 0..60 {
-        let pose = poses::about(part, oracle, k, &mut rng);
+        let pose = parts::about(part, oracle, k, &mut rng);
         let found = probe.stiffness(&pose);
         assert_eq!(found.wrench, probe.wrench(&pose));
         if found.wrench.colliding > 0 {
@@ -73,11 +73,8 @@ fn stiffness_agrees_with_finite_differences() {
             let relative_errors = relative_errors(&part, tool, &*oracle, law);
             assert!(relative_errors.len() >= 20, "{}: {}", oracle.name(), relative_errors.len());
             let ninth_decile = relative_errors[relative_errors.len() * 9 / 10];
-            assert!(
-                ninth_decile < 1e-6,
-                "{}, {law}: {ninth_decile:e} of {relative_errors:?}",
-                oracle.name()
-            );
+            let name = oracle.name();
+            assert!(ninth_decile < 1e-6, "{name}, {law}: {ninth_decile:e} of {relative_errors:?}");
         }
     }
 }
@@ -91,7 +88,7 @@ fn an_interpreted_tool_has_the_same_stiffness() {
         let mut compiled = Probe::new(&part, tool).with_law(Law::Gradient);
         let mut read = Probe::new(&part, &interpreted as &dyn Tool).with_law(Law::Gradient);
         for k in 0..30 {
-            let pose = poses::about(&part, &*oracle, k, &mut rng);
+            let pose = parts::about(&part, &*oracle, k, &mut rng);
             let [one, other] = [compiled.stiffness(&pose), read.stiffness(&pose)];
             let difference = (one.matrix - other.matrix).norm();
             assert!(difference <= 1e-12 * one.matrix.norm(), "{}: {difference:e}", oracle.name());

@@ -1,7 +1,7 @@
 //! The rounding that a wrench states, against sums of the same contacts with 256 bits.
 
 use super::compare::{LAWS_AND_WEIGHTS, tools};
-use super::{parts, poses};
+use super::parts;
 use nalgebra::Point3;
 use touchoff::{Contact, Law, Pose, Probe};
 use touchoff_tests::oracle::big::Big;
@@ -39,7 +39,7 @@ fn sums_keep_the_stated_rounding_bound() {
         for (tool, oracle) in tools() {
             let mut rng = Rng::new(17);
             for k in 0..60 {
-                let pose: Pose = poses::about(&part, &*oracle, k, &mut rng);
+                let pose: Pose = parts::about(&part, &*oracle, k, &mut rng);
                 let (law, weights) = LAWS_AND_WEIGHTS[k % 6];
                 let mut probe = Probe::new(&part, tool).with_law(law).with_weights(weights);
                 let wrench = probe.wrench(&pose);
@@ -51,14 +51,9 @@ fn sums_keep_the_stated_rounding_bound() {
                 let stated = wrench.rounding;
                 let [by_force, by_torque] =
                     [distance(&force, wrench.force), distance(&torque, wrench.torque)];
-                assert!(
-                    by_force <= stated.force + LISTED_BOUND * sizes[0],
-                    "{by_force:e} {stated:?}"
-                );
-                assert!(
-                    by_torque <= stated.torque + LISTED_BOUND * sizes[1],
-                    "{by_torque:e} {stated:?}"
-                );
+                let [force, torque] = [stated.force, stated.torque];
+                assert!(by_force <= force + LISTED_BOUND * sizes[0], "{by_force:e} {stated:?}");
+                assert!(by_torque <= torque + LISTED_BOUND * sizes[1], "{by_torque:e} {stated:?}");
                 // Some hundred units of roundoff, not more.
                 let all = sizes[0] + wrench.integral;
                 assert!(stated.force <= 1e-13 * all * (1.0 + wrench.colliding as f64 / 100.0));
@@ -78,7 +73,7 @@ fn the_rounding_bound_covers_a_distant_compliance_centre() {
     let centre = Point3::new(300.0, -200.0, 1000.0);
     let mut rng = Rng::new(4);
     for k in 0..40 {
-        let pose = poses::about(&part, &*oracle, k, &mut rng);
+        let pose = parts::about(&part, &*oracle, k, &mut rng);
         let mut probe = Probe::new(&part, tool).with_centre(centre);
         let wrench = probe.wrench(&pose);
         let about = pose.tip() + pose.rotation() * centre.coords;

@@ -1,0 +1,50 @@
+//! Certifiers of whole meshes, and what their verdicts and depths hold.
+
+use crate::tool;
+use nalgebra::Point3;
+use std::fmt::Debug;
+use touchoff::certify::{Certifier, MotionDepth, MotionVerdict, TriangleBvh, Witness};
+use touchoff::{Interval, Mesh, TriangleId};
+
+/// Returns the certifier of a mesh and the tool of a name.
+pub(crate) fn certifier(mesh: &Mesh, name: &str) -> Certifier<'static> {
+    let bvh = Box::leak(Box::new(TriangleBvh::new(mesh)));
+    Certifier::new(bvh, tool(name)).expect("a tool that is proved")
+}
+
+/// Returns the time and the witness of a motion that touches.
+#[track_caller]
+pub(crate) fn touching(verdict: MotionVerdict) -> (f64, Witness) {
+    let MotionVerdict::Touching(at, witness) = verdict else { panic!("{verdict:?}") };
+    (at, witness)
+}
+
+/// Returns the time, the depth and its bound on the whole motion, where it is deeper than was asked.
+#[track_caller]
+pub(crate) fn deeper(found: Result<MotionDepth, impl Debug>) -> (f64, Interval, f64) {
+    match found {
+        Ok(MotionDepth::Deeper { at, depth, max_depth, .. }) => (at, depth, max_depth),
+        other => panic!("{other:?}"),
+    }
+}
+
+/// Asserts that a verdict is the expected one, or without one that the motion touches.
+#[track_caller]
+pub(crate) fn assert_verdict(found: MotionVerdict, clear: Option<MotionVerdict>, case: impl Debug) {
+    let is_touching = matches!(found, MotionVerdict::Touching(..));
+    assert!(
+        clear.map_or(is_touching, |clear| found == clear),
+        "{found:?}, not {clear:?}: {case:?}"
+    );
+}
+
+/// Returns a mesh with each vertex moved.
+pub(crate) fn moved(mesh: &Mesh, to: impl FnMut(&Point3<f64>) -> Point3<f64>) -> Mesh {
+    let vertices = mesh.vertices().iter().map(to);
+    Mesh::new(vertices, mesh.triangles().to_vec(), mesh.unit()).expect("a mesh as before")
+}
+
+/// Returns the corners of each triangle.
+pub(crate) fn triangles(mesh: &Mesh) -> impl Iterator<Item = [Point3<f64>; 3]> {
+    (0..mesh.triangles().len() as u32).map(|id| mesh.triangle(TriangleId(id)))
+}
