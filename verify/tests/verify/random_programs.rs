@@ -1,0 +1,380 @@
+//! Random programs in the languages of controls, against an interpreter of their intents that shares no code with the package: none that
+//! collides is clean.
+
+mod draw;
+mod kinematics;
+mod meaning;
+mod text;
+mod truth;
+
+use crate::oracle::{Mounted, Random};
+use draw::draw;
+use kinematics::Machine;
+use meaning::{Control, Intent, LENGTHS, Language, Way};
+use nalgebra::{Point3, Vector3};
+use touchoff::certify::TriangleBvh;
+use touchoff::{Unit, mesh::shapes};
+use touchoff_verify::gcode::{Choice, ControlRules, ControlSetup, Rule};
+use touchoff_verify::job::{Body, NoVerdict};
+use touchoff_verify::{Job, JobTool, Program, Verdict};
+use truth::{Cuboid, Limited};
+
+/// Values of X, Y, Z in mm and A, B, C in degrees.
+type Axes = [f64; 6];
+
+const LANGUAGES: [Language; 5] =
+    [Language::LinuxCnc, Language::Fanuc, Language::Haas, Language::Klartext, Language::Sinumerik];
+
+/// A program by its intents, and the job in which it is checked.
+struct Case {
+    language: Language,
+    machine: Machine,
+    origins: [Axes; 2],
+    rates: Axes,
+    unit: f64,
+    way: Way,
+    takes_table_as_it_stands: bool,
+    intents: Vec<Intent>,
+    /// The part, then fixtures.
+    boxes: Vec<Cuboid>,
+}
+
+/// What a check ends with.
+#[derive(Debug, PartialEq)]
+enum Outcome {
+    Clean,
+    Findings,
+    Open,
+    Refused,
+}
+
+/// Numbers of programs.
+#[derive(Debug, Default)]
+struct Counts {
+    clean: usize,
+    findings: usize,
+    open: usize,
+    refused: usize,
+    colliding: usize,
+    false_findings: usize,
+}
+
+impl Case {
+    fn draw(random: &mut Random) -> Case {
+        let language = LANGUAGES[random.between(0.0, 5.0) as usize];
+        let machine = Machine::draw(random);
+        let mut origins = [[0.0; 6]; 2];
+        for origin in &mut origins {
+            for (k, value) in origin.iter_mut().enumerate().take(3) {
+                *value = random.between(-20.0, 20.0).round() + if k == 2 { -440.0 } else { 0.0 };
+            }
+        }
+        if random.between(0.0, 1.0) < 0.3 {
+            for origin in &mut origins {
+                for k in 3..6 {
+                    if machine.has(k) && random.between(0.0, 1.0) < 0.4 {
+                        origin[k] = random.between(-40.0, 40.0).round();
+                    }
+                }
+            }
+        }
+        let rates = machine.rates.unwrap_or_else(|| [0; 6].map(|_| random.between(5e3, 3e4)));
+        let way = match language {
+            Language::LinuxCnc | Language::Haas => Way::Counts,
+            Language::Fanuc => Way::Shortest,
+            Language::Klartext => [Way::Counts, Way::Shortest][random.between(0.0, 2.0) as usize],
+            Language::Sinumerik => Way::WithinTurn,
+        };
+        let mut case = Case {
+            language,
+            machine,
+            origins,
+            rates,
+            unit: if random.between(0.0, 1.0) < 0.15 { 25.4 } else { 1.0 },
+            way,
+            takes_table_as_it_stands: language == Language::Fanuc && random.between(0.0, 1.0) < 0.3,
+            intents: Vec::new(),
+            boxes: Vec::new(),
+        };
+        let mut control = case.start();
+        let count = random.between(3.0, 14.0) as usize;
+        for _ in 0..count {
+            for intent in draw(random, &control) {
+                control.perform(&intent);
+                case.intents.push(intent);
+            }
+        }
+        case.place_boxes(random);
+        case
+    }
+
+    fn start(&self) -> Control {
+        let mut control =
+            Control::new(self.language, self.machine.clone(), self.origins, self.rates);
+        (control.unit, control.way) = (self.unit, self.way);
+        control.takes_table_as_it_stands = self.takes_table_as_it_stands;
+        control.write_head();
+        control.rest();
+        control
+    }
+
+    fn play(&self) -> Control {
+        let mut control = self.start();
+        self.intents.iter().for_each(|intent| control.perform(intent));
+        control.finish();
+        control
+    }
+
+    /// Places boxes at the tool on its way, or beside it: of several, the one that the fewest motions meet.
+    fn place_boxes(&mut self, random: &mut Random) {
+        let played = self.play();
+        for index in 0..3 {
+            let meets = random.between(0.0, 1.0) < 0.3;
+            let mut best: Option<(usize, Cuboid)> = None;
+            for _ in 0..10 {
+                let motion =
+                    &played.motions[random.between(0.0, played.motions.len() as f64) as usize];
+                let pose = motion.poses[random.between(0.0, motion.poses.len() as f64) as usize];
+                let side = pose.axis.cross(&random.vector(1.0)).normalize();
+                let away = if meets { random.between(0.0, 3.0) } else { random.between(6.0, 14.0) };
+                let along = if index == 0 { 13.0 } else { 0.0 };
+                let centre = pose.tip + random.between(along, 36.0) * pose.axis + away * side;
+                let half = Vector3::from([0; 3].map(|_| random.between(0.8, 3.0)));
+                let cuboid = Cuboid { centre, half };
+                let met =
+                    played.motions.iter().filter(|motion| collides(motion, &cuboid, index == 0));
+                let met = met.count();
+                let is_better =
+                    |best: &Option<(usize, Cuboid)>| best.is_none_or(|(least, _)| met < least);
+                if (met > 0) == meets && is_better(&best) {
+                    best = Some((met, cuboid));
+                }
+            }
+            let far = Vector3::new(2000.0, 100.0 * index as f64, 0.0);
+            let nowhere = Cuboid { centre: far, half: Vector3::repeat(5.0) };
+            self.boxes.push(best.map_or(nowhere, |(_, cuboid)| cuboid));
+        }
+    }
+
+    fn setup(&self) -> (ControlSetup, &'static str) {
+        let (name, file) = match self.language {
+            Language::LinuxCnc => ("linuxcnc", "a.ngc"),
+            Language::Fanuc => ("fanuc", "a.nc"),
+            Language::Haas => ("haas", "a.nc"),
+            Language::Klartext => ("heidenhain", "a.h"),
+            Language::Sinumerik => ("siemens", "a.mpf"),
+        };
+        let mut rules = ControlRules::named(name).expect("a control");
+        if matches!(self.language, Language::Fanuc | Language::Haas) {
+            rules = rules
+                .with(Rule::ReferenceReturn, Choice::KeepsLength)
+                .with(Rule::LengthChange, Choice::WithNextZ)
+                .with(Rule::CycleRepeats, Choice::RepeatsByL)
+                .with(Rule::WholeRadii, Choice::Units);
+        }
+        if self.language == Language::Fanuc && !self.takes_table_as_it_stands {
+            rules = rules.with(Rule::TcpStart, Choice::TableAtZero);
+        }
+        if self.language == Language::Sinumerik {
+            rules = rules
+                .with(Rule::ToolLength, Choice::Always)
+                .with(Rule::Rotary, Choice::WithinTurn)
+                .with(Rule::TransformationOffset, Choice::DeselectsOffset);
+        }
+        let setup = ControlSetup {
+            work_offsets: std::array::from_fn(|k| self.origins.get(k).copied()),
+            lengths: [(1, LENGTHS[0]), (2, LENGTHS[1])].into(),
+            presets: [(1, 1), (2, 2)].into(),
+            rules,
+            ..ControlSetup::default()
+        };
+        (setup, file)
+    }
+
+    /// Checks the program. Returns reasons with the outcome.
+    fn check(&self, text: &str) -> (Outcome, String) {
+        let (setup, name) = self.setup();
+        let machine =
+            touchoff_verify::machine::Machine::parse(&self.machine.file(), "machine.toml");
+        let program = Program::parse(text, name, machine.expect("a machine"), &setup);
+        let program = match program {
+            Ok(program) => program,
+            Err(error) => return (Outcome::Refused, error.to_string()),
+        };
+        let meshes: Vec<TriangleBvh> = self.boxes.iter().map(mesh).collect();
+        let mut job = Job::new(&program, &meshes[0]);
+        for number in [1, 2] {
+            let mut tool = JobTool::numbered(number, &Mounted);
+            tool.allow = ["ball", "flute"].map(|name| (name.to_owned(), f64::INFINITY)).to_vec();
+            job.tools.push(tool);
+        }
+        job.bodies.extend(meshes[1..].iter().map(|mesh| Body::fixture("the clamp", mesh)));
+        let report = match job.check(&|_| ()) {
+            Ok(report) => report,
+            Err(error) => return (Outcome::Refused, error.to_string()),
+        };
+        let findings: Vec<String> = report.findings().iter().map(ToString::to_string).collect();
+        // A program that is far from the part is as clean as one that is near.
+        let mut refusals = report.refusals();
+        refusals.retain(|refusal| !matches!(refusal, NoVerdict::Far | NoVerdict::OtherUnit { .. }));
+        let reasons: Vec<String> = refusals.iter().map(ToString::to_string).collect();
+        let is_unread = refusals.iter().any(|refusal| matches!(refusal, NoVerdict::Unread { .. }));
+        match report.verdict() {
+            Verdict::Findings => (Outcome::Findings, findings.join("\n")),
+            _ if !findings.is_empty() => (Outcome::Findings, findings.join("\n")),
+            _ if is_unread => (Outcome::Refused, reasons.join("\n")),
+            _ if !reasons.is_empty() => (Outcome::Open, reasons.join("\n")),
+            _ => (Outcome::Clean, String::new()),
+        }
+    }
+
+    /// Returns the line of a motion that collides, and the box.
+    fn collision(&self, played: &Control) -> Option<(usize, usize)> {
+        played.motions.iter().find_map(|motion| {
+            let mut boxes = self.boxes.iter().enumerate();
+            let hit = boxes.find(|(index, cuboid)| collides(motion, cuboid, *index == 0))?;
+            Some((motion.line, hit.0))
+        })
+    }
+
+    fn is_clear(&self, played: &Control) -> bool {
+        let mut poses = played.motions.iter().flat_map(|motion| &motion.poses);
+        poses.all(|pose| self.boxes.iter().all(|cuboid| cuboid.is_clear(pose)))
+    }
+
+    /// Returns whether the program collides and is clean.
+    fn is_missed(&self) -> bool {
+        let played = self.play();
+        self.collision(&played).is_some() && self.check(&played.text).0 == Outcome::Clean
+    }
+
+    /// Drops intents while a predicate holds.
+    fn reduce(&mut self, holds: impl Fn(&Case) -> bool) {
+        let mut index = 0;
+        while index < self.intents.len() {
+            let intent = self.intents.remove(index);
+            if !holds(self) {
+                self.intents.insert(index, intent);
+                index += 1;
+            }
+        }
+    }
+
+    fn describe(&self) -> String {
+        let played = self.play();
+        let lines: Vec<String> = played
+            .text
+            .lines()
+            .enumerate()
+            .map(|(k, line)| format!("{:3} {line}", k + 1))
+            .collect();
+        format!(
+            "{:?}, collision (line, box) {:?}, origins {:?}, boxes {:#?}\n{}\n{}\n{}",
+            self.language,
+            self.collision(&played),
+            self.origins,
+            self.boxes.iter().map(|b| (b.centre, b.half)).collect::<Vec<_>>(),
+            self.machine.file(),
+            lines.join("\n"),
+            self.check(&played.text).1
+        )
+    }
+}
+
+impl Control {
+    fn perform(&mut self, intent: &Intent) {
+        self.write(intent);
+        self.execute(intent);
+    }
+
+    /// Ends what is in force, and the program.
+    fn finish(&mut self) {
+        if self.is_tcp {
+            self.perform(&Intent::Tcp(false));
+        }
+        if self.is_tilted
+            || self.inner.rotation.angle() > 0.0
+            || self.language == Language::Sinumerik
+        {
+            self.perform(&Intent::Level);
+        }
+        if self.shift != [0.0; 6] || self.inner.translation.vector.norm() > 0.0 {
+            self.perform(&Intent::Shift { axes: [Some(0.0); 6], adds: false });
+        }
+        if self.offset != 0 {
+            self.perform(&Intent::Offset(0));
+        }
+        self.write_end();
+    }
+}
+
+/// Returns whether a motion collides with a box. In feed the part may be cut.
+fn collides(motion: &meaning::Motion, cuboid: &Cuboid, is_part: bool) -> bool {
+    let limited = if is_part && !motion.rapid { Limited::NotCutting } else { Limited::All };
+    motion.poses.iter().any(|pose| cuboid.collides(pose, limited))
+}
+
+fn mesh(cuboid: &Cuboid) -> TriangleBvh {
+    let [low, high] = [-1.0, 1.0].map(|sign| Point3::from(cuboid.centre + sign * cuboid.half));
+    TriangleBvh::new(&shapes::cuboid(low, high, Unit::Millimetre).expect("a cuboid"))
+}
+
+/// Returns the number of programs: 10,000 with `PROGRAMS=10000`.
+fn programs() -> u64 {
+    match std::env::var("PROGRAMS") {
+        Ok(count) => count.parse().expect("PROGRAMS is a number of programs"),
+        Err(_) => 200,
+    }
+}
+
+#[test]
+fn no_program_that_collides_is_clean() {
+    let mut counts = LANGUAGES.map(|_| Counts::default());
+    let mut reasons: std::collections::BTreeMap<String, usize> = Default::default();
+    let first: u64 = std::env::var("SEED").map_or(1, |seed| seed.parse().expect("a number"));
+    for seed in first..first + programs() {
+        let mut case = Case::draw(&mut Random::new(seed));
+        let played = case.play();
+        let is_colliding = case.collision(&played).is_some();
+        let (outcome, reason) = case.check(&played.text);
+        let index = LANGUAGES.iter().position(|language| *language == case.language);
+        let count = &mut counts[index.expect("a language")];
+        count.colliding += usize::from(is_colliding);
+        match outcome {
+            Outcome::Clean => count.clean += 1,
+            Outcome::Findings => count.findings += 1,
+            Outcome::Open => count.open += 1,
+            Outcome::Refused => count.refused += 1,
+        }
+        if matches!(outcome, Outcome::Open | Outcome::Refused) && std::env::var("REASONS").is_ok() {
+            let key = format!(
+                "{:?} {:?} {}",
+                case.language,
+                outcome,
+                reason.lines().next().unwrap_or("")
+            );
+            let key: String = key.chars().filter(|c| !c.is_ascii_digit()).collect();
+            *reasons.entry(key).or_default() += 1;
+        }
+        if outcome == Outcome::Clean && is_colliding {
+            case.reduce(Case::is_missed);
+            panic!("seed {seed}: a collision is clean: {}", case.describe());
+        }
+        if outcome == Outcome::Findings && case.is_clear(&played) {
+            count.false_findings += 1;
+            if std::env::var("FALSE").is_ok() {
+                case.reduce(|case| {
+                    let played = case.play();
+                    case.is_clear(&played) && case.check(&played.text).0 == Outcome::Findings
+                });
+                panic!("seed {seed}: a free program has findings: {}", case.describe());
+            }
+        }
+    }
+    let mut reasons: Vec<_> = reasons.into_iter().collect();
+    reasons.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+    reasons.iter().take(60).for_each(|(reason, count)| println!("{count:4} {reason}"));
+    for (language, count) in LANGUAGES.iter().zip(&counts) {
+        println!("{language:?}: {count:?}");
+    }
+}

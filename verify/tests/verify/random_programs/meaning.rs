@@ -1,0 +1,538 @@
+//! What a program means: intents, and the motions of a machine that executes them.
+
+use super::Axes;
+use super::kinematics::{Machine, ToolPose, about};
+use nalgebra::{Isometry3, Rotation3, Translation3, Vector3};
+
+/// Samples of a motion.
+const SAMPLES: usize = 240;
+/// Lengths of the tools T1 and T2, in mm.
+pub(crate) const LENGTHS: [f64; 2] = [60.0, 85.0];
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Language {
+    LinuxCnc,
+    Fanuc,
+    Haas,
+    Klartext,
+    Sinumerik,
+}
+
+/// The way of a rotary axis without limits to an angle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Way {
+    Counts,
+    Shortest,
+    WithinTurn,
+}
+
+/// What a block or a few blocks are meant to do. Lengths are in mm and program coordinates.
+#[derive(Clone, Debug)]
+pub(crate) enum Intent {
+    Line {
+        axes: [Option<f64>; 6],
+        incremental: [bool; 6],
+        rapid: bool,
+    },
+    Arc(Arc),
+    Offset(usize),
+    /// A datum shift, or one that is added to that before.
+    Shift {
+        axes: [Option<f64>; 6],
+        adds: bool,
+    },
+    /// A rotation about the normal of XY, by degrees.
+    Rotate(f64),
+    /// A tilted plane by an origin and three angles in the order of the language.
+    Tilt {
+        origin: [f64; 3],
+        angles: [f64; 3],
+        align: Align,
+    },
+    /// The end of rotations and tilted planes.
+    Level,
+    Tcp(bool),
+    Change(usize),
+    Length(bool),
+    /// Machine coordinates.
+    Machine {
+        axes: [Option<f64>; 6],
+    },
+    /// A return of X, Y, Z to the reference position over a place.
+    Home {
+        via: [Option<f64>; 3],
+    },
+    Drill(Drill),
+    /// A retract along the tool.
+    Retract(f64),
+}
+
+/// An arc by its centre from the start, its sweep in degrees, and what it rises along the normal.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Arc {
+    pub(crate) normal: usize,
+    pub(crate) centre: [f64; 2],
+    pub(crate) sweep: f64,
+    pub(crate) rise: f64,
+    pub(crate) rapid: bool,
+    /// The form in which it is written.
+    pub(crate) form: usize,
+}
+
+/// How the rotary axes turn to a plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Align {
+    /// The other axes rest.
+    Turn,
+    /// A block of its own turns them.
+    Separately,
+    /// About a point below the tip.
+    About(f64),
+}
+
+/// Holes.
+#[derive(Clone, Debug)]
+pub(crate) struct Drill {
+    pub(crate) points: Vec<[f64; 2]>,
+    /// The level from which the tool drills, the bottom, and the level above to which it returns in Klartext and Sinumerik.
+    pub(crate) top: f64,
+    pub(crate) bottom: f64,
+    pub(crate) clear: f64,
+    pub(crate) infeed: Option<f64>,
+    /// Set for a return to `top` in ISO words.
+    pub(crate) returns_to_top: bool,
+    pub(crate) form: usize,
+}
+
+/// Poses of the tool relative to the part during a motion, and the line of its block.
+pub(crate) struct Motion {
+    pub(crate) line: usize,
+    pub(crate) rapid: bool,
+    pub(crate) poses: Vec<ToolPose>,
+}
+
+/// A control with its machine.
+pub(crate) struct Control {
+    pub(crate) language: Language,
+    pub(crate) machine: Machine,
+    pub(crate) joints: Axes,
+    pub(crate) origins: [Axes; 2],
+    pub(crate) offset: usize,
+    /// The shift outside of a plane.
+    pub(crate) shift: Axes,
+    /// The tilted plane, and the frame in it.
+    pub(crate) plane: Isometry3<f64>,
+    pub(crate) inner: Isometry3<f64>,
+    pub(crate) is_tilted: bool,
+    pub(crate) is_aligned: bool,
+    pub(crate) is_tcp: bool,
+    /// The tool in the spindle, and the one whose length is in force.
+    pub(crate) tool: usize,
+    pub(crate) length: Option<usize>,
+    /// The origin by which coordinates of the tip are those of the part, if they are not those of the work offset.
+    standing: Option<Axes>,
+    pub(crate) takes_table_as_it_stands: bool,
+    pub(crate) each_axis: bool,
+    pub(crate) rates: Axes,
+    pub(crate) way: Way,
+    /// The direction of the last motion in program coordinates, while these hold.
+    pub(crate) tangent: Option<Vector3<f64>>,
+    pub(crate) motions: Vec<Motion>,
+    pub(crate) text: String,
+    /// The unit of the program's lengths, in mm.
+    pub(crate) unit: f64,
+    pub(crate) is_incremental: bool,
+}
+
+/// Returns the plane of an arc: its axes in order.
+pub(crate) fn plane_axes(normal: usize) -> [usize; 2] {
+    [(normal + 1) % 3, (normal + 2) % 3]
+}
+
+impl Control {
+    pub(crate) fn new(
+        language: Language,
+        machine: Machine,
+        origins: [Axes; 2],
+        rates: Axes,
+    ) -> Control {
+        let mut control = Control {
+            language,
+            machine,
+            joints: [0.0; 6],
+            origins,
+            offset: 0,
+            shift: [0.0; 6],
+            plane: Isometry3::identity(),
+            inner: Isometry3::identity(),
+            is_tilted: false,
+            is_aligned: false,
+            is_tcp: false,
+            tool: 0,
+            length: Some(0),
+            standing: None,
+            takes_table_as_it_stands: false,
+            each_axis: matches!(language, Language::Fanuc | Language::Haas),
+            rates,
+            way: Way::Counts,
+            tangent: None,
+            motions: Vec::new(),
+            text: String::new(),
+            unit: 1.0,
+            is_incremental: false,
+        };
+        control.joints = control.joints_at(&[0.0, 0.0, 100.0, 0.0, 0.0, 0.0]);
+        control
+    }
+
+    pub(crate) fn is_iso(&self) -> bool {
+        !matches!(self.language, Language::Klartext | Language::Sinumerik)
+    }
+
+    /// Returns whether coordinates are those of the tip on a table that turns.
+    pub(crate) fn is_tip(&self) -> bool {
+        self.is_tcp || self.is_aligned
+    }
+
+    fn length_in_force(&self) -> f64 {
+        self.length.map_or(0.0, |tool| LENGTHS[tool])
+    }
+
+    fn tip_frame(&self) -> Isometry3<f64> {
+        let mut origin = self.origins[self.offset];
+        if let Some(standing) = self.standing {
+            origin[3..].copy_from_slice(&standing[3..]);
+        }
+        self.machine.part_frame(&origin)
+    }
+
+    /// Returns the joints at program coordinates.
+    pub(crate) fn joints_at(&self, position: &Axes) -> Axes {
+        let origin = &self.origins[self.offset];
+        let mut joints: Axes = std::array::from_fn(|k| position[k] + origin[k] + self.shift[k]);
+        for k in 3..6 {
+            if !self.machine.has(k) {
+                joints[k] = 0.0;
+            }
+        }
+        let place = nalgebra::Point3::new(position[0], position[1], position[2]);
+        let shift = Vector3::new(self.shift[0], self.shift[1], self.shift[2]);
+        let place = (self.plane * self.inner * place).coords + shift;
+        if self.is_tip() {
+            return self.machine.reach(&joints, place, self.length_in_force(), &self.tip_frame());
+        }
+        for k in 0..3 {
+            joints[k] = place[k] + origin[k];
+        }
+        joints[2] += self.length_in_force();
+        joints
+    }
+
+    /// Returns the program coordinates of the machine as it stands.
+    pub(crate) fn position(&self) -> Axes {
+        let origin = &self.origins[self.offset];
+        let mut position: Axes =
+            std::array::from_fn(|k| self.joints[k] - origin[k] - self.shift[k]);
+        let shift = Vector3::new(self.shift[0], self.shift[1], self.shift[2]);
+        let mut place = Vector3::new(
+            self.joints[0] - origin[0],
+            self.joints[1] - origin[1],
+            self.joints[2] - origin[2] - self.length_in_force(),
+        );
+        if self.is_tip() {
+            let frame = self.tip_frame();
+            place = self.machine.pose(&self.joints, self.length_in_force(), &frame).tip;
+        }
+        let place = (self.plane * self.inner).inverse() * nalgebra::Point3::from(place - shift);
+        position[..3].copy_from_slice(place.coords.as_slice());
+        position
+    }
+
+    /// Returns the pose of the tool in the spindle relative to the part, which stands at the first work offset.
+    fn pose(&self, joints: &Axes) -> ToolPose {
+        let part = self.machine.part_frame(&self.origins[0]);
+        self.machine.pose(joints, LENGTHS[self.tool], &part)
+    }
+
+    fn line_number(&self) -> usize {
+        self.text.lines().count()
+    }
+
+    /// Moves the joints on a path over time from 0 to 1.
+    fn follow(&mut self, rapid: bool, path: impl Fn(&Control, f64) -> Axes) {
+        let at = |k: usize| path(self, k as f64 / SAMPLES as f64);
+        let joints: Vec<Axes> = (0..=SAMPLES).map(at).collect();
+        let poses = joints.iter().map(|joints| self.pose(joints)).collect();
+        self.joints = joints[SAMPLES];
+        self.motions.push(Motion { line: self.line_number(), rapid, poses });
+    }
+
+    /// Lets a tool rest where it is.
+    pub(crate) fn rest(&mut self) {
+        let poses = vec![self.pose(&self.joints)];
+        self.motions.push(Motion { line: self.line_number(), rapid: true, poses });
+    }
+
+    /// Moves the joints in rapid traverse: on a straight line, or each by itself.
+    fn traverse(&mut self, end: Axes) {
+        let start = self.joints;
+        let durations: [f64; 6] = std::array::from_fn(|k| match self.each_axis {
+            true => (end[k] - start[k]).abs() / self.rates[k],
+            false => 1.0,
+        });
+        let longest = durations.iter().copied().fold(1e-9, f64::max);
+        self.follow(true, |_, time| {
+            std::array::from_fn(|k| {
+                let share =
+                    if durations[k] > 0.0 { (time * longest / durations[k]).min(1.0) } else { 1.0 };
+                start[k] + share * (end[k] - start[k])
+            })
+        });
+    }
+
+    /// Moves to program coordinates, of which the rotary ones may begin at another turn.
+    fn move_to(&mut self, start: Axes, end: Axes, rapid: bool) {
+        let ends = [start, end];
+        let linear = Vector3::from([0, 1, 2].map(|k| end[k] - start[k]));
+        if linear.norm() > 1e-9 {
+            self.tangent = Some(linear.normalize());
+        }
+        if rapid && !self.is_tcp {
+            self.joints = self.joints_at(&start);
+            return self.traverse(self.joints_at(&end));
+        }
+        self.follow(rapid, |control, time| {
+            control
+                .joints_at(&std::array::from_fn(|k| ends[0][k] + time * (ends[1][k] - ends[0][k])))
+        });
+    }
+
+    /// Moves some coordinates.
+    fn go(&mut self, axes: &[(usize, f64)], rapid: bool) {
+        let start = self.position();
+        let mut end = start;
+        axes.iter().for_each(|(axis, value)| end[*axis] = *value);
+        self.move_to(start, end, rapid);
+    }
+
+    fn line(&mut self, axes: &[Option<f64>; 6], incremental: &[bool; 6], rapid: bool) {
+        let mut start = self.position();
+        let mut end = start;
+        for k in 0..6 {
+            let Some(value) = axes[k] else { continue };
+            end[k] = if incremental[k] { start[k] + value } else { value };
+            if k == 5 && self.machine.is_endless && !incremental[k] {
+                let turn = match self.way {
+                    Way::Counts => end[k] - start[k],
+                    Way::Shortest => (end[k] - start[k] + 180.0).rem_euclid(360.0) - 180.0,
+                    Way::WithinTurn => end[k].rem_euclid(360.0) - start[k].rem_euclid(360.0),
+                };
+                start[k] = end[k] - turn;
+            }
+        }
+        self.move_to(start, end, rapid);
+    }
+
+    /// Returns the arc with the centre that follows from the direction before, if it is tangent.
+    pub(crate) fn resolved(&self, arc: &Arc) -> Arc {
+        let is_tangent = self.language == Language::Klartext && arc.form == 3;
+        let direction = self.tangent.filter(|_| is_tangent);
+        let [u, v] = plane_axes(arc.normal);
+        let Some(direction) = direction.filter(|d| d[u].hypot(d[v]) > 0.2) else {
+            return Arc { form: if is_tangent { 0 } else { arc.form }, ..*arc };
+        };
+        let radius = arc.centre[0].hypot(arc.centre[1]) * arc.sweep.signum();
+        let length = direction[u].hypot(direction[v]);
+        let centre = [-direction[v] / length * radius, direction[u] / length * radius];
+        let sweep = arc.sweep.signum() * arc.sweep.abs().min(300.0);
+        Arc { centre, sweep, rise: 0.0, ..*arc }
+    }
+
+    /// Returns program coordinates on an arc.
+    pub(crate) fn on_arc(start: &Axes, arc: &Arc, time: f64) -> Axes {
+        let [u, v] = plane_axes(arc.normal);
+        let (sine, cosine) = (time * arc.sweep).to_radians().sin_cos();
+        let [x, y] = arc.centre;
+        let mut at = *start;
+        at[u] += x - x * cosine + y * sine;
+        at[v] += y - y * cosine - x * sine;
+        at[arc.normal] += time * arc.rise;
+        at
+    }
+
+    fn drill(&mut self, drill: &Drill) {
+        let initial = self.position()[2];
+        let Drill { top, bottom, infeed, .. } = *drill;
+        if self.language == Language::LinuxCnc && initial < top {
+            self.go(&[(2, top)], true);
+        }
+        let back = match self.language {
+            Language::Klartext | Language::Sinumerik => drill.clear,
+            Language::LinuxCnc if !drill.returns_to_top => initial.max(top),
+            _ if !drill.returns_to_top => initial,
+            _ => top,
+        };
+        for [x, y] in &drill.points {
+            self.go(&[(0, *x), (1, *y)], true);
+            self.go(&[(2, top)], true);
+            // Klartext counts infeeds from the surface, which is 2 mm below.
+            let surface = if self.language == Language::Klartext { top - 2.0 } else { top };
+            let mut level = surface;
+            while let Some(infeed) = infeed
+                && level - infeed > bottom + 1e-9
+            {
+                level -= infeed;
+                self.go(&[(2, level)], false);
+                self.go(&[(2, top)], true);
+                self.go(&[(2, level)], true);
+            }
+            self.go(&[(2, bottom)], false);
+            self.go(&[(2, back)], true);
+        }
+    }
+
+    /// Executes an intent, whose text has been written.
+    pub(crate) fn execute(&mut self, intent: &Intent) {
+        if !matches!(intent, Intent::Line { .. } | Intent::Arc(_)) {
+            self.tangent = None;
+        }
+        match intent {
+            Intent::Line { axes, incremental, rapid } => self.line(axes, incremental, *rapid),
+            Intent::Arc(arc) => {
+                let (start, arc) = (self.position(), self.resolved(arc));
+                self.follow(arc.rapid, |control, time| {
+                    control.joints_at(&Control::on_arc(&start, &arc, time))
+                });
+                let ahead = [0.999, 1.0].map(|time| Control::on_arc(&start, &arc, time));
+                let direction = [0, 1, 2].map(|k| ahead[1][k] - ahead[0][k]);
+                self.tangent = Some(Vector3::from(direction).normalize());
+            }
+            Intent::Offset(offset) => self.offset = *offset,
+            Intent::Shift { axes, adds } => self.set_shift(axes, *adds),
+            Intent::Rotate(angle) => {
+                let turn = Isometry3::from_parts(Translation3::identity(), about(2, *angle).into());
+                self.inner = match self.language {
+                    Language::Sinumerik => self.inner * turn,
+                    _ => self.inner.translation * turn,
+                };
+            }
+            Intent::Tilt { origin, angles, align } => self.tilt(*origin, *angles, *align),
+            Intent::Level => {
+                if self.language == Language::Sinumerik {
+                    self.shift[3..].fill(0.0);
+                }
+                (self.plane, self.inner) = (Isometry3::identity(), Isometry3::identity());
+                (self.is_tilted, self.is_aligned, self.standing) = (false, false, None);
+            }
+            Intent::Tcp(is_on) => {
+                self.is_tcp = *is_on;
+                self.stand(*is_on);
+                if self.is_iso() && self.language != Language::LinuxCnc {
+                    self.length = is_on.then_some(self.tool);
+                }
+            }
+            Intent::Change(tool) => {
+                self.tool = *tool;
+                if !self.is_iso() {
+                    self.length = Some(*tool);
+                }
+                for (joint, change) in self.joints.iter_mut().zip(self.machine.change) {
+                    *joint = change.unwrap_or(*joint);
+                }
+                self.rest();
+            }
+            Intent::Length(is_on) => self.length = is_on.then_some(self.tool),
+            Intent::Machine { axes } => {
+                let mut end: Axes = std::array::from_fn(|k| axes[k].unwrap_or(self.joints[k]));
+                if self.language == Language::Sinumerik && axes[2].is_some() {
+                    end[2] += self.length_in_force();
+                }
+                self.traverse(end);
+            }
+            Intent::Home { via } => {
+                let places: Vec<(usize, f64)> = (0..3).filter_map(|k| Some((k, via[k]?))).collect();
+                self.go(&places, true);
+                let mut end = self.joints;
+                places.iter().for_each(|(axis, _)| end[*axis] = 0.0);
+                self.traverse(end);
+            }
+            Intent::Drill(drill) => self.drill(drill),
+            Intent::Retract(distance) => {
+                let part = self.machine.part_frame(&self.origins[0]);
+                let (start, length) = (self.joints, LENGTHS[self.tool]);
+                let pose = self.pose(&start);
+                self.follow(true, |control, time| {
+                    let tip = pose.tip + time * distance * pose.axis;
+                    control.machine.reach(&start, tip, length, &part)
+                });
+            }
+        }
+    }
+
+    /// Fixes coordinates of the tip to the table as it stands, on controls that do so.
+    fn stand(&mut self, is_on: bool) {
+        self.standing = (is_on && self.takes_table_as_it_stands).then_some(self.joints);
+    }
+
+    fn set_shift(&mut self, axes: &[Option<f64>; 6], adds: bool) {
+        let mut shift = self.shift;
+        if self.language != Language::Sinumerik {
+            let inside = self.inner.translation.vector;
+            for k in 0..6 {
+                let before = if self.is_tilted && k < 3 { inside[k] } else { shift[k] };
+                shift[k] =
+                    axes[k].map_or(before, |value| if adds { before + value } else { value });
+            }
+            if self.is_tilted {
+                // Along the axes of the plane.
+                self.inner.translation.vector = Vector3::new(shift[0], shift[1], shift[2]);
+            } else {
+                self.shift = shift;
+            }
+            return;
+        }
+        let by = Vector3::from([0, 1, 2].map(|k| axes[k].unwrap_or(0.0)));
+        let before = if adds { self.inner } else { Isometry3::identity() };
+        self.inner = before * Translation3::from(by);
+        for k in 3..6 {
+            let before = if adds { shift[k] } else { 0.0 };
+            self.shift[k] = before + axes[k].unwrap_or(0.0);
+        }
+    }
+
+    fn tilt(&mut self, origin: [f64; 3], angles: [f64; 3], align: Align) {
+        let [first, second, third] = angles;
+        let rotation: Rotation3<f64> = match self.language {
+            Language::Klartext => about(2, third) * about(1, second) * about(0, first),
+            Language::Sinumerik => about(0, first) * about(1, second) * about(2, third),
+            _ => about(2, first) * about(0, second) * about(2, third),
+        };
+        // Klartext begins the plane at the datum.
+        let origin = if self.language == Language::Klartext { [0.0; 3] } else { origin };
+        self.plane = Isometry3::from_parts(Vector3::from(origin).into(), rotation.into());
+        self.inner = Isometry3::identity();
+        if self.language == Language::Sinumerik {
+            self.shift[3..].fill(0.0);
+        }
+        self.is_tilted = true;
+        self.stand(true);
+        let start = self.joints;
+        let along = self.tip_frame() * (rotation * Vector3::z());
+        let end = self.machine.align(&start, along).unwrap_or(start);
+        match align {
+            Align::Turn | Align::Separately => self.traverse(end),
+            Align::About(distance) => {
+                let part = self.machine.part_frame(&self.origins[0]);
+                let (pose, length) = (self.pose(&start), LENGTHS[self.tool]);
+                let fixed = pose.tip - distance * pose.axis;
+                self.follow(true, |control, time| {
+                    let mut joints = start;
+                    (3..6).for_each(|k| joints[k] += time * (end[k] - start[k]));
+                    let axis = control.machine.pose(&joints, length, &part).axis;
+                    control.machine.reach(&joints, fixed + distance * axis, length, &part)
+                });
+            }
+        }
+        self.is_aligned = true;
+    }
+}
