@@ -15,7 +15,7 @@ use nalgebra::{Point3, Vector3};
 use touchoff::certify::TriangleBvh;
 use touchoff::{Unit, mesh::shapes};
 use touchoff_verify::gcode::{Choice, ControlRules, ControlSetup, Rule};
-use touchoff_verify::job::{Body, NoVerdict};
+use touchoff_verify::job::{Body, NoVerdict, Severity};
 use touchoff_verify::{Job, JobTool, Program, Verdict};
 use truth::{Cuboid, Limited};
 
@@ -114,7 +114,7 @@ impl Case {
         (control.unit, control.way) = (self.unit, self.way);
         control.takes_table_as_it_stands = self.takes_table_as_it_stands;
         control.write_head();
-        control.rest();
+        control.approach();
         control
     }
 
@@ -128,15 +128,16 @@ impl Case {
     /// Places boxes at the tool on its way, or beside it: of several, the one that the fewest motions meet.
     fn place_boxes(&mut self, random: &mut Random) {
         let played = self.play();
+        let met_index = random.between(0.0, 6.0) as usize;
         for index in 0..3 {
-            let meets = random.between(0.0, 1.0) < 0.3;
+            let meets = index == met_index;
             let mut best: Option<(usize, Cuboid)> = None;
             for _ in 0..10 {
                 let motion =
                     &played.motions[random.between(0.0, played.motions.len() as f64) as usize];
                 let pose = motion.poses[random.between(0.0, motion.poses.len() as f64) as usize];
                 let side = pose.axis.cross(&random.vector(1.0)).normalize();
-                let away = if meets { random.between(0.0, 3.0) } else { random.between(6.0, 14.0) };
+                let away = if meets { random.between(0.0, 3.0) } else { random.between(12.0, 30.0) };
                 let along = if index == 0 { 13.0 } else { 0.0 };
                 let centre = pose.tip + random.between(along, 36.0) * pose.axis + away * side;
                 let half = Vector3::from([0; 3].map(|_| random.between(0.8, 3.0)));
@@ -146,7 +147,9 @@ impl Case {
                 let met = met.count();
                 let is_better =
                     |best: &Option<(usize, Cuboid)>| best.is_none_or(|(least, _)| met < least);
-                if (met > 0) == meets && is_better(&best) {
+                let is_clear =
+                    || played.motions.iter().flat_map(|motion| &motion.poses).all(|pose| cuboid.is_clear(pose));
+                if (if meets { met > 0 } else { met == 0 && is_clear() }) && is_better(&best) {
                     best = Some((met, cuboid));
                 }
             }
@@ -213,7 +216,8 @@ impl Case {
             Ok(report) => report,
             Err(error) => return (Outcome::Refused, error.to_string()),
         };
-        let findings: Vec<String> = report.findings().iter().map(ToString::to_string).collect();
+        let violations = report.findings().iter().filter(|f| f.severity == Severity::Violation);
+        let findings: Vec<String> = violations.map(ToString::to_string).collect();
         // A program that is far from the part is as clean as one that is near.
         let mut refusals = report.refusals();
         refusals.retain(|refusal| !matches!(refusal, NoVerdict::Far | NoVerdict::OtherUnit { .. }));
@@ -221,7 +225,6 @@ impl Case {
         let is_unread = refusals.iter().any(|refusal| matches!(refusal, NoVerdict::Unread { .. }));
         match report.verdict() {
             Verdict::Findings => (Outcome::Findings, findings.join("\n")),
-            _ if !findings.is_empty() => (Outcome::Findings, findings.join("\n")),
             _ if is_unread => (Outcome::Refused, reasons.join("\n")),
             _ if !reasons.is_empty() => (Outcome::Open, reasons.join("\n")),
             _ => (Outcome::Clean, String::new()),
@@ -329,14 +332,21 @@ fn programs() -> u64 {
 
 #[test]
 fn no_program_that_collides_is_clean() {
+    let mut spent = [0.0f64; 3];
     let mut counts = LANGUAGES.map(|_| Counts::default());
     let mut reasons: std::collections::BTreeMap<String, usize> = Default::default();
     let first: u64 = std::env::var("SEED").map_or(1, |seed| seed.parse().expect("a number"));
     for seed in first..first + programs() {
+        let t0 = std::time::Instant::now();
         let mut case = Case::draw(&mut Random::new(seed));
+        spent[0] += t0.elapsed().as_secs_f64();
+        let t2 = std::time::Instant::now();
         let played = case.play();
         let is_colliding = case.collision(&played).is_some();
+        spent[2] += t2.elapsed().as_secs_f64();
+        let t1 = std::time::Instant::now();
         let (outcome, reason) = case.check(&played.text);
+        spent[1] += t1.elapsed().as_secs_f64();
         let index = LANGUAGES.iter().position(|language| *language == case.language);
         let count = &mut counts[index.expect("a language")];
         count.colliding += usize::from(is_colliding);
@@ -346,7 +356,7 @@ fn no_program_that_collides_is_clean() {
             Outcome::Open => count.open += 1,
             Outcome::Refused => count.refused += 1,
         }
-        if matches!(outcome, Outcome::Open | Outcome::Refused) && std::env::var("REASONS").is_ok() {
+        if (matches!(outcome, Outcome::Open | Outcome::Refused) || outcome == Outcome::Findings && !is_colliding) && std::env::var("REASONS").is_ok() {
             let key = format!(
                 "{:?} {:?} {}",
                 case.language,
@@ -360,7 +370,8 @@ fn no_program_that_collides_is_clean() {
             case.reduce(Case::is_missed);
             panic!("seed {seed}: a collision is clean: {}", case.describe());
         }
-        if outcome == Outcome::Findings && case.is_clear(&played) {
+        let is_any_way = played.each_axis && case.machine.rates.is_none();
+        if outcome == Outcome::Findings && !is_any_way && !reason.contains("with the length offset") && case.is_clear(&played) {
             count.false_findings += 1;
             if std::env::var("FALSE").is_ok() {
                 case.reduce(|case| {
@@ -371,6 +382,7 @@ fn no_program_that_collides_is_clean() {
             }
         }
     }
+    println!("{spent:?}");
     let mut reasons: Vec<_> = reasons.into_iter().collect();
     reasons.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
     reasons.iter().take(60).for_each(|(reason, count)| println!("{count:4} {reason}"));

@@ -5,7 +5,7 @@ use super::kinematics::{Machine, ToolPose, about};
 use nalgebra::{Isometry3, Rotation3, Translation3, Vector3};
 
 /// Samples of a motion.
-const SAMPLES: usize = 240;
+const SAMPLES: usize = 120;
 /// Lengths of the tools T1 and T2, in mm.
 pub(crate) const LENGTHS: [f64; 2] = [60.0, 85.0];
 
@@ -267,8 +267,19 @@ impl Control {
         self.motions.push(Motion { line: self.line_number(), rapid, poses });
     }
 
+    /// Comes to the first position from where the first tool change has left the axes, as far as that is known.
+    pub(crate) fn approach(&mut self) {
+        let (end, [x, y, z, ..]) = (self.joints, self.machine.change);
+        if let (Some(x), Some(y), Some(z)) = (x, y, z) {
+            (self.joints[0], self.joints[1], self.joints[2]) = (x, y, z);
+            self.traverse([end[0], end[1], z, end[3], end[4], end[5]]);
+        }
+        self.joints[2] = z.unwrap_or(end[2]);
+        self.traverse(end);
+    }
+
     /// Lets a tool rest where it is.
-    pub(crate) fn rest(&mut self) {
+    fn rest(&mut self) {
         let poses = vec![self.pose(&self.joints)];
         self.motions.push(Motion { line: self.line_number(), rapid: true, poses });
     }

@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 /// Depth from which a tool collides for certain, in mm.
 const MARGIN: f64 = 0.05;
 /// Distance from which it is free for certain, in mm: more than it moves between two samples.
-const CLEARANCE: f64 = 1.5;
+const CLEARANCE: f64 = 3.0;
 
 /// A box in the frame of the part.
 #[derive(Clone, Copy, Debug)]
@@ -57,16 +57,19 @@ impl Cuboid {
         capsule.radius - self.distance(pose.tip + 0.5 * (low + high) * pose.axis)
     }
 
-    fn is_far(&self, pose: &ToolPose) -> bool {
-        (pose.tip + 20.0 * pose.axis - self.centre).norm() > 32.0 + self.half.norm()
+    /// Returns whether a ball around the box is away from the tool.
+    fn is_far(&self, pose: &ToolPose, distance: f64) -> bool {
+        let from_tip = self.centre - pose.tip;
+        let along = from_tip.dot(&pose.axis).clamp(0.0, 40.0);
+        (from_tip - along * pose.axis).norm() > 8.0 + self.half.norm() + distance
     }
 
     pub(crate) fn collides(&self, pose: &ToolPose, limited: Limited) -> bool {
         let capsules = if limited == Limited::All { &INSIDE } else { &NOT_CUTTING };
-        !self.is_far(pose) && capsules.iter().any(|capsule| self.depth(pose, capsule) > MARGIN)
+        !self.is_far(pose, 0.0) && capsules.iter().any(|capsule| self.depth(pose, capsule) > MARGIN)
     }
 
     pub(crate) fn is_clear(&self, pose: &ToolPose) -> bool {
-        self.is_far(pose) || AROUND.iter().all(|capsule| self.depth(pose, capsule) < -CLEARANCE)
+        self.is_far(pose, CLEARANCE) || AROUND.iter().all(|capsule| self.depth(pose, capsule) < -CLEARANCE)
     }
 }
