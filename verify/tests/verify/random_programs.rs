@@ -137,7 +137,8 @@ impl Case {
                     &played.motions[random.between(0.0, played.motions.len() as f64) as usize];
                 let pose = motion.poses[random.between(0.0, motion.poses.len() as f64) as usize];
                 let side = pose.axis.cross(&random.vector(1.0)).normalize();
-                let away = if meets { random.between(0.0, 3.0) } else { random.between(12.0, 30.0) };
+                let away =
+                    if meets { random.between(0.0, 3.0) } else { random.between(12.0, 30.0) };
                 let along = if index == 0 { 13.0 } else { 0.0 };
                 let centre = pose.tip + random.between(along, 36.0) * pose.axis + away * side;
                 let half = Vector3::from([0; 3].map(|_| random.between(0.8, 3.0)));
@@ -147,8 +148,13 @@ impl Case {
                 let met = met.count();
                 let is_better =
                     |best: &Option<(usize, Cuboid)>| best.is_none_or(|(least, _)| met < least);
-                let is_clear =
-                    || played.motions.iter().flat_map(|motion| &motion.poses).all(|pose| cuboid.is_clear(pose));
+                let is_clear = || {
+                    played
+                        .motions
+                        .iter()
+                        .flat_map(|motion| &motion.poses)
+                        .all(|pose| cuboid.is_clear(pose))
+                };
                 if (if meets { met > 0 } else { met == 0 && is_clear() }) && is_better(&best) {
                     best = Some((met, cuboid));
                 }
@@ -293,16 +299,22 @@ impl Control {
     /// Ends what is in force, and the program.
     fn finish(&mut self) {
         if self.is_tcp {
-            self.perform(&Intent::Tcp(false));
+            self.perform(&Intent::Tcp { is_on: false, is_vector: false });
+        }
+        if self.mirror != Vector3::repeat(1.0) {
+            self.perform(&Intent::Mirror([false; 2]));
         }
         if self.is_tilted
             || self.inner.rotation.angle() > 0.0
             || self.language == Language::Sinumerik
         {
-            self.perform(&Intent::Level);
+            self.perform(&Intent::Level(None));
         }
         if self.shift != [0.0; 6] || self.inner.translation.vector.norm() > 0.0 {
             self.perform(&Intent::Shift { axes: [Some(0.0); 6], adds: false });
+        }
+        if self.preset != [0.0; 6] {
+            self.text.push_str("G92.1\n");
         }
         if self.offset != 0 {
             self.perform(&Intent::Offset(0));
@@ -347,6 +359,15 @@ fn no_program_that_collides_is_clean() {
         let t1 = std::time::Instant::now();
         let (outcome, reason) = case.check(&played.text);
         spent[1] += t1.elapsed().as_secs_f64();
+        if std::env::var("TIMES").is_ok() {
+            println!(
+                "{outcome:?} {:?} readings {} motions {} {:.3}",
+                case.language,
+                reason.matches("under").count(),
+                played.motions.len(),
+                t1.elapsed().as_secs_f64()
+            );
+        }
         let index = LANGUAGES.iter().position(|language| *language == case.language);
         let count = &mut counts[index.expect("a language")];
         count.colliding += usize::from(is_colliding);
@@ -356,7 +377,10 @@ fn no_program_that_collides_is_clean() {
             Outcome::Open => count.open += 1,
             Outcome::Refused => count.refused += 1,
         }
-        if (matches!(outcome, Outcome::Open | Outcome::Refused) || outcome == Outcome::Findings && !is_colliding) && std::env::var("REASONS").is_ok() {
+        if (matches!(outcome, Outcome::Open | Outcome::Refused)
+            || outcome == Outcome::Findings && !is_colliding)
+            && std::env::var("REASONS").is_ok()
+        {
             let key = format!(
                 "{:?} {:?} {}",
                 case.language,
@@ -371,7 +395,11 @@ fn no_program_that_collides_is_clean() {
             panic!("seed {seed}: a collision is clean: {}", case.describe());
         }
         let is_any_way = played.each_axis && case.machine.rates.is_none();
-        if outcome == Outcome::Findings && !is_any_way && !reason.contains("with the length offset") && case.is_clear(&played) {
+        if outcome == Outcome::Findings
+            && !is_any_way
+            && !reason.contains("with the length offset")
+            && case.is_clear(&played)
+        {
             count.false_findings += 1;
             if std::env::var("FALSE").is_ok() {
                 case.reduce(|case| {

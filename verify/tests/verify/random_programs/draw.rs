@@ -1,7 +1,10 @@
 //! Random intents that fit the state of the control.
 
-use super::meaning::{Align, Arc, Control, Drill, Intent, Language};
+use super::meaning::{
+    Align, Arc, Control, Drill, Intent, Language, PlaneForm, SwivelRetract, Tilt,
+};
 use crate::oracle::Random;
+use nalgebra::Vector3;
 
 /// Returns one of the first `count` numbers.
 fn choice(random: &mut Random, count: usize) -> usize {
@@ -43,7 +46,7 @@ impl Control {
             (axes[axis], incremental[axis]) =
                 (Some(self.length_between(random, -20.0, 20.0)), true);
         }
-        if !is_full && !self.is_aligned && chance(random, 0.4) {
+        if !is_full && !self.is_aligned && !self.is_vector && chance(random, 0.4) {
             for k in (3..6).filter(|k| self.machine.has(*k)) {
                 if chance(random, 0.6) {
                     axes[k] = Some(self.angle_of(random, k));
@@ -73,7 +76,19 @@ impl Control {
         let has_rise = chance(random, 0.3) && !(klartext && form == 3);
         let normal =
             if chance(random, 0.7) || klartext && form == 3 { 2 } else { choice(random, 2) };
+        let can_turn = match self.language {
+            Language::LinuxCnc | Language::Sinumerik => form == 0,
+            Language::Klartext => form == 1,
+            _ => false,
+        };
+        let turns = if can_turn && chance(random, 0.2) { 1 } else { 0 };
+        let is_heading =
+            !klartext && turns == 0 && self.machine.has(5) && !self.is_aligned && !self.is_vector;
+        let heading =
+            (is_heading && chance(random, 0.15)).then(|| random.between(-90.0, 90.0).round());
         Intent::Arc(Arc {
+            turns,
+            heading,
             normal,
             centre: [radius * angle.cos(), radius * angle.sin()]
                 .map(|c| self.length_between(random, c, c)),
@@ -100,19 +115,53 @@ impl Control {
     }
 
     fn plane(&self, random: &mut Random) -> Intent {
-        let mut angles = [0; 3]
-            .map(|_| if chance(random, 0.3) { 0.0 } else { random.between(-50.0, 50.0).round() });
-        if self.is_iso() {
+        let is_level = chance(random, 0.15);
+        let mut angles = [0; 3].map(|_| match is_level || chance(random, 0.3) {
+            true => 0.0,
+            false => random.between(-50.0, 50.0).round(),
+        });
+        let klartext = self.language == Language::Klartext;
+        let form = match choice(random, 4) {
+            _ if self.language == Language::Sinumerik => {
+                let [first, step] = [choice(random, 3), 1 + choice(random, 2)];
+                let second = (first + step) % 3;
+                PlaneForm::Axes { order: [first, second, 3 - first - second], adds: self.is_tilted }
+            }
+            _ if !klartext => PlaneForm::Euler,
+            0 if self.is_tilted => PlaneForm::Relative(choice(random, 3)),
+            0 | 1 => PlaneForm::Vectors,
+            2 => PlaneForm::Euler,
+            _ => PlaneForm::Spatial,
+        };
+        if form == PlaneForm::Euler && !is_level {
             angles[0] = random.between(-180.0, 180.0).round();
         }
-        let klartext = self.language == Language::Klartext;
         let align = match choice(random, 3) {
             1 if klartext => Align::Separately,
             2 if klartext => Align::About([0.0, 20.0][choice(random, 2)]),
             _ => Align::Turn,
         };
-        let origin = [0; 3].map(|_| self.length_between(random, -15.0, 15.0));
-        Intent::Tilt { origin: if klartext { [0.0; 3] } else { origin }, angles, align }
+        let mut point = || [0; 3].map(|_| self.length_between(random, -15.0, 15.0));
+        let [mut before, mut after] = [point(), point()];
+        let mut retract = SwivelRetract::None;
+        if self.language == Language::Sinumerik {
+            retract = match choice(random, 7) {
+                0 => SwivelRetract::Z,
+                1 => SwivelRetract::All,
+                2 => SwivelRetract::Along(self.length_between(random, 5.0, 30.0)),
+                _ => SwivelRetract::None,
+            };
+        } else {
+            after = [0.0; 3];
+            before = if klartext { after } else { before };
+        }
+        Intent::Tilt(Tilt { before, angles, after, form, align, retract })
+    }
+
+    fn vector(&self, random: &mut Random) -> Intent {
+        let place = [0; 3].map(|_| self.length_between(random, -40.0, 60.0));
+        let axis = Vector3::z() + random.vector(0.6);
+        Intent::Vector { place, axis: axis.normalize().into() }
     }
 
     fn holes(&self, random: &mut Random) -> Intent {
@@ -138,6 +187,9 @@ impl Control {
 
     fn machine_place(&self, random: &mut Random) -> Intent {
         let mut axes = [None; 6];
+        if self.machine.limits(5).is_some() && self.machine.has(5) && chance(random, 0.3) {
+            axes[5] = Some((self.joints[5] + random.between(-40.0, 40.0)).round());
+        }
         for k in 0..3 {
             if chance(random, 0.5) {
                 let at = self.joints[k] + random.between(-20.0, 20.0);
@@ -152,69 +204,102 @@ impl Control {
 /// Draws the next intent, and a position with all of X, Y and Z after most of those that change coordinates.
 pub(crate) fn draw(random: &mut Random, control: &Control) -> Vec<Intent> {
     let is_rotated = control.inner.rotation.angle() > 0.0;
-    let is_plain = !control.is_tilted && !is_rotated;
+    let is_mirrored = control.mirror != Vector3::repeat(1.0);
+    let is_plain = !control.is_tilted && !is_rotated && !is_mirrored;
     let (iso, klartext) = (control.is_iso(), control.language == Language::Klartext);
     let sinumerik = control.language == Language::Sinumerik;
-    let turns = control.machine.tilting.is_some();
     let linuxcnc = control.language == Language::LinuxCnc;
-    let is_plain_frame = is_plain && control.inner.translation.vector.norm() == 0.0;
+    let turns = control.machine.has(5);
+    let can_align = control.machine.tilting.is_some();
+    let has_inner = control.inner.translation.vector.norm() > 0.0;
+    let is_shifted = control.shift != [0.0; 6];
+    let can_frame = is_plain && (!sinumerik || !has_inner && !is_shifted);
+    let can_plane = can_frame || !iso && control.is_tilted && !is_rotated && !has_inner;
+    let can_shift = is_plain || sinumerik || klartext && control.is_tilted && !is_shifted;
+    let can_rotate = !is_rotated && !is_mirrored && !linuxcnc && (is_plain || !iso);
+    let whole = |random: &mut Random, reach: f64| random.between(-reach, reach).round();
     for _ in 0..100 {
-        let intent = match choice(random, 24) {
+        let intent = match choice(random, 28) {
             0..8 => return vec![control.line_to(random, false)],
             8..11 => return vec![control.arc(random)],
             11 if is_plain => Intent::Offset(1 - control.offset),
-            12 if is_plain
-                || sinumerik
-                || klartext && control.is_tilted && control.shift == [0.0; 6] =>
-            {
-                control.shift_by(random)
+            12 if can_shift && control.preset == [0.0; 6] => control.shift_by(random),
+            13 if sinumerik && control.is_tcp => {
+                Intent::Rotate { axis: choice(random, 3), angle: whole(random, 60.0) }
             }
-            13 if is_plain && !control.is_tcp && !linuxcnc => {
-                Intent::Rotate(random.between(-90.0, 90.0).round())
+            13 if can_rotate && !control.is_tcp => {
+                Intent::Rotate { axis: 2, angle: whole(random, 90.0) }
             }
-            14 | 15
-                if turns
-                    && is_plain
-                    && !control.is_tcp
-                    && !linuxcnc
-                    && (!sinumerik || is_plain_frame) =>
-            {
+            14..17 if can_align && can_plane && !control.is_tcp && !linuxcnc => {
                 control.plane(random)
             }
-            16 | 17 if !is_plain => Intent::Level,
-            18 | 19 if turns && is_plain && (!sinumerik || is_plain_frame) => {
-                Intent::Tcp(!control.is_tcp)
+            17 | 18 if is_rotated || control.is_tilted || sinumerik && !can_frame => {
+                let align = [Some(Align::Turn), Some(Align::About(0.0)), None][choice(random, 3)];
+                Intent::Level(align.filter(|_| klartext && control.is_tilted))
             }
-            20 if !control.is_tcp => Intent::Change(1 - control.tool),
-            21 if !control.is_tcp && !klartext => match control.length {
+            19 | 20 if turns && can_frame => {
+                let is_on = !control.is_tcp;
+                let can_point = control.language == Language::Fanuc && can_align;
+                Intent::Tcp { is_on, is_vector: is_on && can_point && chance(random, 0.4) }
+            }
+            21 if !control.is_tcp => {
+                let allowance = control.length_between(random, -2.0, 2.0);
+                let has_allowance = klartext && chance(random, 0.3);
+                let allowance = if has_allowance { allowance } else { 0.0 };
+                Intent::Change { tool: 1 - control.tool, allowance }
+            }
+            22 if !control.is_tcp && !klartext => match control.length {
                 Some(length) if length == control.tool && chance(random, 0.7) => continue,
                 Some(length) if length == control.tool => Intent::Length(false),
                 _ => Intent::Length(true),
             },
-            22 if !control.is_tcp => control.holes(random),
-            23 if !control.is_tcp && (is_plain || !iso) => match choice(random, 3) {
+            23 if !control.is_tcp => control.holes(random),
+            24 if !control.is_tcp && (is_plain || !iso) => match choice(random, 3) {
                 0 if klartext => Intent::Retract(control.length_between(random, 5.0, 40.0)),
-                1 if iso => Intent::Home {
-                    via: [None, None, Some(control.length_between(random, 40.0, 90.0))],
-                },
+                1 if iso => {
+                    let height = control.length_between(random, 40.0, 90.0);
+                    Intent::Home { via: [None, None, Some(height)] }
+                }
                 _ => control.machine_place(random),
             },
+            25 | 26 if control.is_tcp && can_align && (control.is_vector || sinumerik) => {
+                return vec![control.vector(random)];
+            }
+            27 if linuxcnc && control.offset == 0 && chance(random, 0.5) => {
+                let [x, y, z, ..] = control.origins[1];
+                let origin =
+                    [x, y, z].map(|value| control.length_between(random, value, value + 9.0));
+                let turn = if chance(random, 0.5) { 0.0 } else { whole(random, 90.0) };
+                Intent::Origin { origin, turn }
+            }
+            27 if linuxcnc && !is_shifted && !control.is_tcp => {
+                let mut axes = [None; 6];
+                axes[0] = Some(control.length_between(random, -30.0, 30.0));
+                axes[2] = Some(control.length_between(random, 0.0, 60.0));
+                Intent::Preset { axes }
+            }
+            27 if !control.is_tilted
+                && !is_rotated
+                && !sinumerik
+                && !linuxcnc
+                && !control.is_tcp =>
+            {
+                Intent::Mirror([chance(random, 0.5), chance(random, 0.5)])
+            }
             _ => continue,
         };
-        let mut intents = vec![intent];
-        let is_open = match intents[0] {
-            Intent::Change(_) if iso && chance(random, 0.9) => {
-                intents.push(Intent::Length(true));
-                true
-            }
-            Intent::Tcp(false) if iso && !linuxcnc => {
-                intents.push(Intent::Length(true));
-                true
-            }
-            Intent::Retract(_) | Intent::Machine { .. } | Intent::Drill(_) => false,
-            _ => true,
+        let has_position =
+            matches!(intent, Intent::Retract(_) | Intent::Machine { .. } | Intent::Drill(_));
+        let needs_length = match intent {
+            Intent::Change { .. } => iso && chance(random, 0.9),
+            Intent::Tcp { is_on: false, .. } => iso && !linuxcnc,
+            _ => false,
         };
-        if is_open && chance(random, 0.75) {
+        let mut intents = vec![intent];
+        if needs_length {
+            intents.push(Intent::Length(true));
+        }
+        if !has_position && chance(random, 0.75) {
             intents.push(control.line_to(random, true));
         }
         return intents;

@@ -15,6 +15,7 @@ pub(crate) const LETTERS: [char; 6] = ['X', 'Y', 'Z', 'A', 'B', 'C'];
 struct Axis {
     index: usize,
     is_of_table: bool,
+    direction: Vector3<f64>,
     /// A point of a rotary axis.
     point: [f64; 3],
 }
@@ -24,7 +25,7 @@ struct Axis {
 pub(crate) struct Machine {
     /// The axes, those of each side from the base outwards.
     axes: Vec<Axis>,
-    /// The index of the axis that tilts the tool relative to the part.
+    /// The index of the axis that tilts the tool relative to the part, if it is along a coordinate axis.
     pub(crate) tilting: Option<usize>,
     pub(crate) is_endless: bool,
     /// Rates of the axes in rapid traverse, if the file states them.
@@ -44,9 +45,17 @@ impl Machine {
     pub(crate) fn draw(random: &mut Random) -> Machine {
         let mut point = |low| [random.between(-9.0, 9.0), random.between(-9.0, 9.0), low];
         let (table, tool) = ([point(-480.0), point(-500.0)], [point(190.0), point(160.0)]);
-        let axis = |index, is_of_table, point| Axis { index, is_of_table, point };
-        let kind = random.between(0.0, 6.0) as usize;
+        let kind = random.between(0.0, 7.0) as usize;
         let tilting = if random.between(0.0, 1.0) < 0.5 { 3 } else { 4 };
+        let is_nutating = random.between(0.0, 1.0) < 0.15;
+        let axis = |index: usize, is_of_table, point| {
+            let mut direction = Vector3::zeros();
+            direction[index % 3] = 1.0;
+            if is_nutating && index == tilting {
+                direction = Vector3::new(0.0, 1.0, 1.0).normalize();
+            }
+            Axis { index, is_of_table, direction, point }
+        };
         let mut axes: Vec<Axis> =
             (0..3).map(|k| axis(k, random.between(0.0, 1.0) < 0.4, [0.0; 3])).collect();
         match kind {
@@ -55,15 +64,19 @@ impl Machine {
             3 | 4 => axes.extend([axis(5, true, table[1]), axis(tilting, false, tool[1])]),
             _ => axes.extend([axis(5, false, tool[0]), axis(tilting, false, tool[1])]),
         }
+        let is_aligned = kind > 0 && !is_nutating;
         let rates = (random.between(0.0, 1.0) < 0.5)
             .then(|| [0; 6].map(|_| random.between(5000.0, 30_000.0).round()));
         let change = match random.between(0.0, 3.0) as usize {
             0 => [None; 6],
             1 => [None, None, Some(0.0), None, None, None],
-            _ => [Some(-50.0), Some(20.0), Some(-100.0), None, None, None],
+            _ => {
+                let c = (kind > 0 && random.between(0.0, 1.0) < 0.3).then_some(30.0);
+                [Some(-50.0), Some(20.0), Some(-100.0), None, None, c]
+            }
         };
         let is_endless = random.between(0.0, 1.0) < 0.5;
-        Machine { axes, tilting: (kind > 0).then_some(tilting), is_endless, rates, change }
+        Machine { axes, tilting: is_aligned.then_some(tilting), is_endless, rates, change }
     }
 
     /// Returns the machine's file.
@@ -81,7 +94,7 @@ impl Machine {
         let change =
             if change.is_empty() { "\"stays\"".to_owned() } else { format!("{{ {change} }}") };
         let mut text = format!("name = \"random\"\ntool_change = {change}\n");
-        for Axis { index, is_of_table, point } in &self.axes {
+        for Axis { index, is_of_table, direction, point } in &self.axes {
             let side = if *is_of_table { "table" } else { "tool" };
             let kind = if *index < 3 { "linear" } else { "rotary" };
             let _ = write!(
@@ -90,8 +103,7 @@ impl Machine {
                 LETTERS[*index]
             );
             if *index > 2 {
-                let mut direction = [0; 3];
-                direction[index - 3] = 1;
+                let direction = <[f64; 3]>::from(*direction);
                 let _ = writeln!(text, "direction = {direction:?}\npoint = {point:?}");
             }
             if let Some([low, high]) = self.limits(*index) {
@@ -108,10 +120,6 @@ impl Machine {
         self.axes.iter().any(|axis| axis.index == index)
     }
 
-    pub(crate) fn is_of_table(&self, index: usize) -> bool {
-        self.axes.iter().any(|axis| axis.index == index && axis.is_of_table)
-    }
-
     /// Returns the limits of a rotary axis.
     pub(crate) fn limits(&self, index: usize) -> Option<[f64; 2]> {
         match index {
@@ -126,15 +134,13 @@ impl Machine {
         let mut link = Isometry3::identity();
         for axis in self.axes.iter().filter(|axis| axis.is_of_table == is_of_table) {
             let value = joints[axis.index] * if is_of_table { -1.0 } else { 1.0 };
-            let mut direction = Vector3::zeros();
-            direction[axis.index % 3] = 1.0;
             link *= if axis.index < 3 {
                 Isometry3::from_parts(
-                    Translation3::from(direction * value),
+                    Translation3::from(axis.direction * value),
                     UnitQuaternion::identity(),
                 )
             } else {
-                let direction = Unit::new_unchecked(direction);
+                let direction = Unit::new_unchecked(axis.direction);
                 let turn = UnitQuaternion::from_axis_angle(&direction, value.to_radians());
                 Isometry3::rotation_wrt_point(turn, Point3::from(axis.point))
             };

@@ -2,7 +2,7 @@
 
 use super::Axes;
 use super::kinematics::{Machine, ToolPose, about};
-use nalgebra::{Isometry3, Rotation3, Translation3, Vector3};
+use nalgebra::{Isometry3, Point3, Rotation3, Translation3, Vector3};
 
 /// Samples of a motion.
 const SAMPLES: usize = 120;
@@ -41,18 +41,39 @@ pub(crate) enum Intent {
         axes: [Option<f64>; 6],
         adds: bool,
     },
-    /// A rotation about the normal of XY, by degrees.
-    Rotate(f64),
-    /// A tilted plane by an origin and three angles in the order of the language.
-    Tilt {
+    /// A rotation about an axis, 2 but under `TRAORI`, by degrees.
+    Rotate {
+        axis: usize,
+        angle: f64,
+    },
+    Tilt(Tilt),
+    /// Mirrored axes, X and Y.
+    Mirror([bool; 2]),
+    /// New coordinates of the present position.
+    Preset {
+        axes: [Option<f64>; 6],
+    },
+    /// The origin of the second work offset, and its rotation about z.
+    Origin {
         origin: [f64; 3],
-        angles: [f64; 3],
-        align: Align,
+        turn: f64,
     },
     /// The end of rotations and tilted planes.
-    Level,
-    Tcp(bool),
-    Change(usize),
+    Level(Option<Align>),
+    Tcp {
+        is_on: bool,
+        is_vector: bool,
+    },
+    /// A place of the tip, and a direction of the tool.
+    Vector {
+        place: [f64; 3],
+        axis: [f64; 3],
+    },
+    /// A tool, and an allowance on its length.
+    Change {
+        tool: usize,
+        allowance: f64,
+    },
     Length(bool),
     /// Machine coordinates.
     Machine {
@@ -77,6 +98,44 @@ pub(crate) struct Arc {
     pub(crate) rapid: bool,
     /// The form in which it is written.
     pub(crate) form: usize,
+    /// Whole turns beside the sweep.
+    pub(crate) turns: usize,
+    /// The angle of C at its end.
+    pub(crate) heading: Option<f64>,
+}
+
+/// A tilted plane: a point about which it is rotated, three angles, its origin in the rotated plane.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Tilt {
+    pub(crate) before: [f64; 3],
+    pub(crate) angles: [f64; 3],
+    pub(crate) after: [f64; 3],
+    pub(crate) form: PlaneForm,
+    pub(crate) align: Align,
+    pub(crate) retract: SwivelRetract,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum PlaneForm {
+    /// About the fixed axes.
+    Spatial,
+    /// By a vector of x and the normal.
+    Vectors,
+    /// About z, the new x and the new z.
+    Euler,
+    /// About one more axis of the plane before.
+    Relative(usize),
+    /// About axes in an order, of a new plane or of one that is added.
+    Axes { order: [usize; 3], adds: bool },
+}
+
+/// The retract of CYCLE800.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum SwivelRetract {
+    None,
+    Z,
+    All,
+    Along(f64),
 }
 
 /// How the rotary axes turn to a plane.
@@ -123,9 +182,17 @@ pub(crate) struct Control {
     /// The tilted plane, and the frame in it.
     pub(crate) plane: Isometry3<f64>,
     pub(crate) inner: Isometry3<f64>,
+    /// Signs of X and Y, and the shift of G92.
+    pub(crate) mirror: Vector3<f64>,
+    pub(crate) preset: Axes,
+    /// Rotations of the work offsets about z, in degrees.
+    pub(crate) turns: [f64; 2],
     pub(crate) is_tilted: bool,
     pub(crate) is_aligned: bool,
     pub(crate) is_tcp: bool,
+    pub(crate) is_vector: bool,
+    /// The allowance on the length of the tool (DL).
+    pub(crate) allowance: f64,
     /// The tool in the spindle, and the one whose length is in force.
     pub(crate) tool: usize,
     pub(crate) length: Option<usize>,
@@ -165,6 +232,11 @@ impl Control {
             shift: [0.0; 6],
             plane: Isometry3::identity(),
             inner: Isometry3::identity(),
+            mirror: Vector3::repeat(1.0),
+            preset: [0.0; 6],
+            turns: [0.0; 2],
+            is_vector: false,
+            allowance: 0.0,
             is_tilted: false,
             is_aligned: false,
             is_tcp: false,
@@ -195,7 +267,7 @@ impl Control {
     }
 
     fn length_in_force(&self) -> f64 {
-        self.length.map_or(0.0, |tool| LENGTHS[tool])
+        self.length.map_or(0.0, |tool| LENGTHS[tool] + self.allowance)
     }
 
     fn tip_frame(&self) -> Isometry3<f64> {
@@ -206,45 +278,44 @@ impl Control {
         self.machine.part_frame(&origin)
     }
 
+    /// Returns the shift outside of planes.
+    fn whole_shift(&self) -> Axes {
+        std::array::from_fn(|k| self.shift[k] + self.preset[k])
+    }
+
     /// Returns the joints at program coordinates.
     pub(crate) fn joints_at(&self, position: &Axes) -> Axes {
-        let origin = &self.origins[self.offset];
-        let mut joints: Axes = std::array::from_fn(|k| position[k] + origin[k] + self.shift[k]);
-        for k in 3..6 {
-            if !self.machine.has(k) {
-                joints[k] = 0.0;
-            }
-        }
-        let place = nalgebra::Point3::new(position[0], position[1], position[2]);
-        let shift = Vector3::new(self.shift[0], self.shift[1], self.shift[2]);
-        let place = (self.plane * self.inner * place).coords + shift;
+        let (origin, shift) = (&self.origins[self.offset], self.whole_shift());
+        let mut joints: Axes = std::array::from_fn(|k| position[k] + origin[k] + shift[k]);
+        (3..6).filter(|k| !self.machine.has(*k)).for_each(|k| joints[k] = 0.0);
+        let place = Vector3::new(position[0], position[1], position[2]);
+        let place = Point3::from(place.component_mul(&self.mirror));
+        let place =
+            (self.plane * self.inner * place).coords + Vector3::new(shift[0], shift[1], shift[2]);
         if self.is_tip() {
             return self.machine.reach(&joints, place, self.length_in_force(), &self.tip_frame());
         }
-        for k in 0..3 {
-            joints[k] = place[k] + origin[k];
-        }
+        let place = about(2, self.turns[self.offset]) * place;
+        (0..3).for_each(|k| joints[k] = place[k] + origin[k]);
         joints[2] += self.length_in_force();
         joints
     }
 
     /// Returns the program coordinates of the machine as it stands.
     pub(crate) fn position(&self) -> Axes {
-        let origin = &self.origins[self.offset];
-        let mut position: Axes =
-            std::array::from_fn(|k| self.joints[k] - origin[k] - self.shift[k]);
-        let shift = Vector3::new(self.shift[0], self.shift[1], self.shift[2]);
-        let mut place = Vector3::new(
-            self.joints[0] - origin[0],
-            self.joints[1] - origin[1],
-            self.joints[2] - origin[2] - self.length_in_force(),
-        );
-        if self.is_tip() {
-            let frame = self.tip_frame();
-            place = self.machine.pose(&self.joints, self.length_in_force(), &frame).tip;
-        }
-        let place = (self.plane * self.inner).inverse() * nalgebra::Point3::from(place - shift);
-        position[..3].copy_from_slice(place.coords.as_slice());
+        let (origin, shift) = (&self.origins[self.offset], self.whole_shift());
+        let mut position: Axes = std::array::from_fn(|k| self.joints[k] - origin[k] - shift[k]);
+        let place = match self.is_tip() {
+            true => self.machine.pose(&self.joints, self.length_in_force(), &self.tip_frame()).tip,
+            false => {
+                let [x, y, z] = [0, 1, 2].map(|k| self.joints[k] - origin[k]);
+                about(2, -self.turns[self.offset]) * Vector3::new(x, y, z - self.length_in_force())
+            }
+        };
+        let place = Point3::from(place - Vector3::new(shift[0], shift[1], shift[2]));
+        let place =
+            ((self.plane * self.inner).inverse() * place).coords.component_mul(&self.mirror);
+        position[..3].copy_from_slice(place.as_slice());
         position
     }
 
@@ -332,16 +403,24 @@ impl Control {
         for k in 0..6 {
             let Some(value) = axes[k] else { continue };
             end[k] = if incremental[k] { start[k] + value } else { value };
-            if k == 5 && self.machine.is_endless && !incremental[k] {
-                let turn = match self.way {
-                    Way::Counts => end[k] - start[k],
-                    Way::Shortest => (end[k] - start[k] + 180.0).rem_euclid(360.0) - 180.0,
-                    Way::WithinTurn => end[k].rem_euclid(360.0) - start[k].rem_euclid(360.0),
-                };
-                start[k] = end[k] - turn;
+            if k == 5 && !incremental[k] {
+                start = self.turned(start, Some(value));
             }
         }
         self.move_to(start, end, rapid);
+    }
+
+    /// Counts C of a start so that its way to an angle is that of the control.
+    fn turned(&self, mut start: Axes, angle: Option<f64>) -> Axes {
+        if let Some(end) = angle.filter(|_| self.machine.is_endless) {
+            start[5] = end
+                - match self.way {
+                    Way::Counts => end - start[5],
+                    Way::Shortest => (end - start[5] + 180.0).rem_euclid(360.0) - 180.0,
+                    Way::WithinTurn => end.rem_euclid(360.0) - start[5].rem_euclid(360.0),
+                };
+        }
+        start
     }
 
     /// Returns the arc with the centre that follows from the direction before, if it is tangent.
@@ -356,15 +435,19 @@ impl Control {
         let length = direction[u].hypot(direction[v]);
         let centre = [-direction[v] / length * radius, direction[u] / length * radius];
         let sweep = arc.sweep.signum() * arc.sweep.abs().min(300.0);
-        Arc { centre, sweep, rise: 0.0, ..*arc }
+        Arc { centre, sweep, rise: 0.0, turns: 0, ..*arc }
     }
 
     /// Returns program coordinates on an arc.
     pub(crate) fn on_arc(start: &Axes, arc: &Arc, time: f64) -> Axes {
         let [u, v] = plane_axes(arc.normal);
-        let (sine, cosine) = (time * arc.sweep).to_radians().sin_cos();
+        let whole = 360.0 * arc.turns as f64 * arc.sweep.signum();
+        let (sine, cosine) = (time * (arc.sweep + whole)).to_radians().sin_cos();
         let [x, y] = arc.centre;
         let mut at = *start;
+        if let Some(heading) = arc.heading {
+            at[5] += time * (heading - start[5]);
+        }
         at[u] += x - x * cosine + y * sine;
         at[v] += y - y * cosine - x * sine;
         at[arc.normal] += time * arc.rise;
@@ -411,6 +494,7 @@ impl Control {
             Intent::Line { axes, incremental, rapid } => self.line(axes, incremental, *rapid),
             Intent::Arc(arc) => {
                 let (start, arc) = (self.position(), self.resolved(arc));
+                let start = self.turned(start, arc.heading);
                 self.follow(arc.rapid, |control, time| {
                     control.joints_at(&Control::on_arc(&start, &arc, time))
                 });
@@ -420,30 +504,62 @@ impl Control {
             }
             Intent::Offset(offset) => self.offset = *offset,
             Intent::Shift { axes, adds } => self.set_shift(axes, *adds),
-            Intent::Rotate(angle) => {
-                let turn = Isometry3::from_parts(Translation3::identity(), about(2, *angle).into());
+            Intent::Rotate { axis, angle } => {
+                let turn =
+                    Isometry3::from_parts(Translation3::identity(), about(*axis, *angle).into());
                 self.inner = match self.language {
                     Language::Sinumerik => self.inner * turn,
                     _ => self.inner.translation * turn,
                 };
             }
-            Intent::Tilt { origin, angles, align } => self.tilt(*origin, *angles, *align),
-            Intent::Level => {
+            Intent::Tilt(tilt) => self.tilt(tilt),
+            Intent::Mirror(mirrored) => {
+                (0..2).for_each(|k| self.mirror[k] = if mirrored[k] { -1.0 } else { 1.0 });
+            }
+            Intent::Preset { axes } => {
+                let position = self.position();
+                for k in 0..6 {
+                    self.preset[k] += axes[k].map_or(0.0, |value| position[k] - value);
+                }
+            }
+            Intent::Origin { origin, turn } => {
+                self.origins[1][..3].copy_from_slice(origin);
+                self.turns[1] = *turn;
+            }
+            Intent::Level(align) => {
                 if self.language == Language::Sinumerik {
                     self.shift[3..].fill(0.0);
                 }
                 (self.plane, self.inner) = (Isometry3::identity(), Isometry3::identity());
                 (self.is_tilted, self.is_aligned, self.standing) = (false, false, None);
+                if let Some(align) = align {
+                    let mut end = self.position();
+                    end[3..].fill(0.0);
+                    let end = self.joints_at(&end);
+                    self.turn_to(end, *align);
+                }
             }
-            Intent::Tcp(is_on) => {
-                self.is_tcp = *is_on;
+            Intent::Tcp { is_on, is_vector } => {
+                (self.is_tcp, self.is_vector) = (*is_on, *is_vector);
                 self.stand(*is_on);
                 if self.is_iso() && self.language != Language::LinuxCnc {
                     self.length = is_on.then_some(self.tool);
                 }
             }
-            Intent::Change(tool) => {
-                self.tool = *tool;
+            Intent::Vector { place, axis } => {
+                let start = self.position();
+                let direction = self.plane * self.inner * Vector3::from(*axis);
+                let along = self.tip_frame() * direction;
+                let aligned = self.machine.align(&self.joints, along).unwrap_or(self.joints);
+                let mut end = start;
+                end[..3].copy_from_slice(place);
+                for k in 3..6 {
+                    end[k] += aligned[k] - self.joints[k];
+                }
+                self.move_to(start, end, false);
+            }
+            Intent::Change { tool, allowance } => {
+                (self.tool, self.allowance) = (*tool, *allowance);
                 if !self.is_iso() {
                     self.length = Some(*tool);
                 }
@@ -468,16 +584,36 @@ impl Control {
                 self.traverse(end);
             }
             Intent::Drill(drill) => self.drill(drill),
-            Intent::Retract(distance) => {
-                let part = self.machine.part_frame(&self.origins[0]);
-                let (start, length) = (self.joints, LENGTHS[self.tool]);
-                let pose = self.pose(&start);
-                self.follow(true, |control, time| {
-                    let tip = pose.tip + time * distance * pose.axis;
-                    control.machine.reach(&start, tip, length, &part)
-                });
-            }
+            Intent::Retract(distance) => self.retract(*distance),
         }
+    }
+
+    /// Moves along the tool.
+    fn retract(&mut self, distance: f64) {
+        let part = self.machine.part_frame(&self.origins[0]);
+        let (start, length) = (self.joints, LENGTHS[self.tool]);
+        let pose = self.pose(&start);
+        self.follow(true, |control, time| {
+            let tip = pose.tip + time * distance * pose.axis;
+            control.machine.reach(&start, tip, length, &part)
+        });
+    }
+
+    /// Turns the rotary axes to those of some joints.
+    fn turn_to(&mut self, end: Axes, align: Align) {
+        let start = self.joints;
+        let Align::About(distance) = align else {
+            return self.traverse([start[0], start[1], start[2], end[3], end[4], end[5]]);
+        };
+        let part = self.machine.part_frame(&self.origins[0]);
+        let (pose, length) = (self.pose(&start), LENGTHS[self.tool]);
+        let fixed = pose.tip - distance * pose.axis;
+        self.follow(true, |control, time| {
+            let mut joints = start;
+            (3..6).for_each(|k| joints[k] += time * (end[k] - start[k]));
+            let axis = control.machine.pose(&joints, length, &part).axis;
+            control.machine.reach(&joints, fixed + distance * axis, length, &part)
+        });
     }
 
     /// Fixes coordinates of the tip to the table as it stands, on controls that do so.
@@ -511,38 +647,52 @@ impl Control {
         }
     }
 
-    fn tilt(&mut self, origin: [f64; 3], angles: [f64; 3], align: Align) {
-        let [first, second, third] = angles;
-        let rotation: Rotation3<f64> = match self.language {
-            Language::Klartext => about(2, third) * about(1, second) * about(0, first),
-            Language::Sinumerik => about(0, first) * about(1, second) * about(2, third),
-            _ => about(2, first) * about(0, second) * about(2, third),
-        };
-        // Klartext begins the plane at the datum.
-        let origin = if self.language == Language::Klartext { [0.0; 3] } else { origin };
-        self.plane = Isometry3::from_parts(Vector3::from(origin).into(), rotation.into());
+    /// Returns the rotation of a plane.
+    pub(crate) fn rotation_of(&self, tilt: &Tilt) -> Rotation3<f64> {
+        let [first, second, third] = tilt.angles;
+        match tilt.form {
+            PlaneForm::Spatial | PlaneForm::Vectors => {
+                about(2, third) * about(1, second) * about(0, first)
+            }
+            PlaneForm::Euler => about(2, first) * about(0, second) * about(2, third),
+            PlaneForm::Relative(axis) => {
+                self.plane.rotation.to_rotation_matrix() * about(axis, first)
+            }
+            PlaneForm::Axes { order, .. } => {
+                about(order[0], first) * about(order[1], second) * about(order[2], third)
+            }
+        }
+    }
+
+    fn tilt(&mut self, tilt: &Tilt) {
+        let mut end = self.joints;
+        match tilt.retract {
+            SwivelRetract::None => {}
+            SwivelRetract::Along(distance) => self.retract(distance),
+            SwivelRetract::Z | SwivelRetract::All => {
+                end[2] = 0.0;
+                self.traverse(end);
+                if tilt.retract == SwivelRetract::All {
+                    (end[0], end[1]) = (0.0, 0.0);
+                    self.traverse(end);
+                }
+            }
+        }
+        let rotation = self.rotation_of(tilt);
+        let place = |at: [f64; 3]| Translation3::from(Vector3::from(at));
+        let turn = Isometry3::from_parts(Translation3::identity(), rotation.into());
+        let plane = place(tilt.before) * turn * place(tilt.after);
+        let is_added = matches!(tilt.form, PlaneForm::Axes { adds: true, .. });
+        self.plane = if is_added { self.plane * plane } else { plane };
         self.inner = Isometry3::identity();
         if self.language == Language::Sinumerik {
             self.shift[3..].fill(0.0);
         }
-        self.is_tilted = true;
+        (self.is_tilted, self.is_aligned) = (true, false);
         self.stand(true);
-        let start = self.joints;
-        let along = self.tip_frame() * (rotation * Vector3::z());
-        let end = self.machine.align(&start, along).unwrap_or(start);
-        match align {
-            Align::Turn | Align::Separately => self.traverse(end),
-            Align::About(distance) => {
-                let part = self.machine.part_frame(&self.origins[0]);
-                let (pose, length) = (self.pose(&start), LENGTHS[self.tool]);
-                let fixed = pose.tip - distance * pose.axis;
-                self.follow(true, |control, time| {
-                    let mut joints = start;
-                    (3..6).for_each(|k| joints[k] += time * (end[k] - start[k]));
-                    let axis = control.machine.pose(&joints, length, &part).axis;
-                    control.machine.reach(&joints, fixed + distance * axis, length, &part)
-                });
-            }
+        let along = self.tip_frame() * (self.plane * Vector3::z());
+        if let Some(end) = self.machine.align(&self.joints, along) {
+            self.turn_to(end, tilt.align);
         }
         self.is_aligned = true;
     }

@@ -1,7 +1,10 @@
 //! Intents as blocks of a program.
 
 use super::kinematics::LETTERS;
-use super::meaning::{Align, Arc, Control, Drill, Intent, Language, Way, plane_axes};
+use super::meaning::{
+    Align, Arc, Control, Drill, Intent, Language, PlaneForm, SwivelRetract, Tilt, Way, plane_axes,
+};
+use nalgebra::Vector3;
 use std::fmt::Write;
 
 impl Control {
@@ -90,7 +93,7 @@ impl Control {
 
     /// Writes the blocks of an intent at the present position.
     pub(crate) fn write(&mut self, intent: &Intent) {
-        if !matches!(intent, Intent::Line { .. } | Intent::Level | Intent::Tcp(_)) {
+        if !matches!(intent, Intent::Line { .. }) {
             self.distances(false);
         }
         match (self.language, intent) {
@@ -131,15 +134,16 @@ impl Control {
         let start = self.position();
         let end = Control::on_arc(&start, arc, 1.0);
         let [u, v] = plane_axes(arc.normal);
-        let mut axes = [None; 3];
+        let mut axes = [None; 6];
         (axes[u], axes[v]) = (Some(end[u]), Some(end[v]));
         if arc.rise != 0.0 {
             axes[arc.normal] = Some(end[arc.normal]);
         }
-        let radius = arc.centre[0].hypot(arc.centre[1]);
-        let signed = self.length(if arc.sweep.abs() > 180.0 { -radius } else { radius });
-        let pole = [(u, start[u] + arc.centre[0]), (v, start[v] + arc.centre[1])];
+        axes[5] = arc.heading;
         let end = self.words(&axes);
+        let radius = arc.centre[0].hypot(arc.centre[1]);
+        let radius = self.length(if arc.sweep.abs() > 180.0 { -radius } else { radius });
+        let pole = [(u, start[u] + arc.centre[0]), (v, start[v] + arc.centre[1])];
         if self.language == Language::Klartext {
             let sense = if arc.sweep > 0.0 { "DR+" } else { "DR-" };
             let feed = if arc.rapid { "FMAX" } else { "F500" };
@@ -152,36 +156,39 @@ impl Control {
                 0.0 => String::new(),
                 rise => format!(" I{}{}", LETTERS[arc.normal], self.length(rise)),
             };
+            let sweep = arc.sweep + 360.0 * arc.turns as f64 * arc.sweep.signum();
             self.add(match arc.form {
                 0 => format!("C{end} {sense} R0 {feed}"),
-                1 => format!("CP IPA{:+.5}{rise} {sense} R0 {feed}", arc.sweep),
-                2 => format!("CR{end} R{signed} {sense} R0 {feed}"),
+                1 => format!("CP IPA{sweep:+.5}{rise} {sense} R0 {feed}"),
+                2 => format!("CR{end} R{radius} {sense} R0 {feed}"),
                 _ => format!("CT{end} R0 {feed}"),
             });
             return;
         }
-        let is_turned = arc.normal != 2;
-        if is_turned {
+        if arc.normal != 2 {
             self.add(["G19", "G18"][arc.normal]);
         }
         let word = if arc.sweep > 0.0 { "G3" } else { "G2" };
         let letters = ["I", "J", "K"];
-        let from_start: String = [(u, arc.centre[0]), (v, arc.centre[1])]
-            .map(|(k, c)| format!(" {}{}", letters[k], self.length(c)))
-            .concat();
-        let absolute = |text: &Control, before: &str, after: &str| {
-            pole.map(|(k, c)| format!(" {}{before}{}{after}", letters[k], text.length(c))).concat()
+        let from_start = [(u, arc.centre[0]), (v, arc.centre[1])];
+        let from_start =
+            from_start.map(|(k, c)| format!(" {}{}", letters[k], self.length(c))).concat();
+        let absolute = |before: &str, after: &str| {
+            pole.map(|(k, c)| format!(" {}{before}{}{after}", letters[k], self.length(c))).concat()
+        };
+        let turns = match (self.language, arc.turns) {
+            (_, 0) => String::new(),
+            (Language::LinuxCnc, turns) => format!(" P{}", turns + 1),
+            (_, turns) => format!(" TURN={turns}"),
         };
         self.add(match (self.language, arc.form) {
-            (Language::Sinumerik, 1) => format!("{word}{end} CR={signed}"),
-            (Language::Sinumerik, 2) => format!("{word}{end}{}", absolute(self, "=AC(", ")")),
-            (Language::LinuxCnc, 2) => {
-                format!("G90.1 {word}{end}{}\nG91.1", absolute(self, "", ""))
-            }
-            (_, 1) => format!("{word}{end} R{signed}"),
-            _ => format!("{word}{end}{from_start}"),
+            (Language::Sinumerik, 1) => format!("{word}{end} CR={radius}"),
+            (Language::Sinumerik, 2) => format!("{word}{end}{}", absolute("=AC(", ")")),
+            (Language::LinuxCnc, 2) => format!("G90.1 {word}{end}{}\nG91.1", absolute("", "")),
+            (_, 1) => format!("{word}{end} R{radius}"),
+            _ => format!("{word}{end}{from_start}{turns}"),
         });
-        if is_turned {
+        if arc.normal != 2 {
             self.add("G17");
         }
     }
@@ -245,22 +252,37 @@ impl Control {
         match intent {
             Intent::Offset(offset) => self.add(["G54", "G55"][*offset]),
             Intent::Shift { axes, .. } => self.add(format!("G52{}", self.words(axes))),
-            Intent::Rotate(angle) => {
-                self.add(format!("G68 {} R{angle:.5}", self.words(&[Some(0.0), Some(0.0)])))
+            Intent::Rotate { angle, .. } => {
+                self.add(format!("G68{} R{angle:.5}", self.words(&[Some(0.0), Some(0.0)])));
             }
-            Intent::Tilt { origin: [x, y, z], angles: [i, j, k], .. } => {
-                let origin = self.words(&[Some(*x), Some(*y), Some(*z)]);
+            Intent::Tilt(Tilt { before, angles: [i, j, k], .. }) => {
+                let origin = self.words(&before.map(Some));
                 self.add(format!("G68.2{origin} I{i:.5} J{j:.5} K{k:.5}\nG0\nG53.1"));
             }
-            Intent::Level => self.add("G69"),
-            Intent::Tcp(is_on) => self.add(match (self.language, is_on) {
+            Intent::Mirror(mirrored) => {
+                for (k, letter) in ["X", "Y"].iter().enumerate() {
+                    if mirrored[k] != (self.mirror[k] < 0.0) {
+                        self.add(format!("G5{}.1 {letter}0.", u8::from(mirrored[k])));
+                    }
+                }
+            }
+            Intent::Preset { axes } => self.add(format!("G92{}", self.words(axes))),
+            Intent::Origin { origin, turn } => {
+                self.add(format!("G10 L2 P2{} R{turn:.5}", self.words(&origin.map(Some))));
+            }
+            Intent::Level(_) => self.add("G69"),
+            Intent::Tcp { is_on, is_vector } => self.add(match (self.language, is_on) {
                 (Language::LinuxCnc, true) => "M428".to_owned(),
                 (Language::LinuxCnc, false) => "M429".to_owned(),
                 (Language::Haas, true) => format!("G234 H{tool}"),
+                (_, true) if *is_vector => format!("G43.5 H{tool}"),
                 (_, true) => format!("G43.4 H{tool}"),
                 (_, false) => "G49".to_owned(),
             }),
-            Intent::Change(tool) => self.add(format!("T{} M6\nS1000 M3", tool + 1)),
+            Intent::Vector { place, axis: [i, j, k] } => {
+                self.add(format!("G1{} I{i:.8} J{j:.8} K{k:.8}", self.words(&place.map(Some))));
+            }
+            Intent::Change { tool, .. } => self.add(format!("T{} M6\nS1000 M3", tool + 1)),
             Intent::Length(true) => self.add(format!("G43 H{tool}")),
             Intent::Length(false) => self.add("G49"),
             Intent::Machine { axes } => self.add(format!("G53 G0{}", self.words(axes))),
@@ -275,48 +297,79 @@ impl Control {
             Intent::Shift { axes, adds } => {
                 self.add("CYCL DEF 7.0 DATUM SHIFT");
                 let sign = if *adds { "I" } else { "" };
-                let words = self.words(axes);
-                for (k, word) in words.split_whitespace().enumerate() {
+                for (k, word) in self.words(axes).split_whitespace().enumerate() {
                     self.add(format!("CYCL DEF 7.{} {sign}{word}", k + 1));
                 }
             }
-            Intent::Rotate(angle) => {
-                self.add("CYCL DEF 10.0 ROTATION");
-                self.add(format!("CYCL DEF 10.1 ROT{angle:+.5}"));
+            Intent::Rotate { angle, .. } => {
+                self.add(format!("CYCL DEF 10.0 ROTATION\nCYCL DEF 10.1 ROT{angle:+.5}"));
             }
-            Intent::Tilt { angles: [a, b, c], align, .. } => {
-                let (positioning, block) = match align {
-                    Align::Turn => ("TURN FMAX".to_owned(), false),
-                    Align::Separately => ("STAY".to_owned(), true),
-                    Align::About(distance) => {
-                        (format!("MOVE DIST{} FMAX", self.length(*distance)), false)
-                    }
-                };
-                self.add(format!("PLANE SPATIAL SPA{a:+.5} SPB{b:+.5} SPC{c:+.5} {positioning}"));
-                if block {
-                    let words = ["A+Q120", "B+Q121", "C+Q122"].into_iter().enumerate();
-                    let words: Vec<&str> = words
-                        .filter(|(k, _)| self.machine.has(k + 3))
-                        .map(|(_, word)| word)
-                        .collect();
-                    self.add(format!("L {} R0 FMAX", words.join(" ")));
+            Intent::Mirror(mirrored) => {
+                let words = [("X ", mirrored[0]), ("Y ", mirrored[1])];
+                let words = words.map(|(word, is_mirrored)| if is_mirrored { word } else { "" });
+                self.add(format!("CYCL DEF 8.0 MIRROR\nCYCL DEF 8.1 {}", words.concat()));
+            }
+            Intent::Tilt(tilt) => {
+                self.add(format!(
+                    "PLANE {} {}",
+                    self.plane_form(tilt),
+                    self.positioning(tilt.align)
+                ));
+                if tilt.align == Align::Separately {
+                    let words = ["A+Q120 ", "B+Q121 ", "C+Q122 "].into_iter().enumerate();
+                    let words =
+                        words.filter(|(k, _)| self.machine.has(k + 3)).map(|(_, word)| word);
+                    self.add(format!("L {}R0 FMAX", words.collect::<String>()));
                 }
             }
-            Intent::Level => {
+            Intent::Level(align) => {
                 if self.inner.rotation.angle() > 1e-12 {
                     self.add("CYCL DEF 10.0 ROTATION\nCYCL DEF 10.1 ROT+0");
                 }
                 if self.is_tilted {
-                    self.add("PLANE RESET STAY");
+                    let positioning = self.positioning(align.unwrap_or(Align::Separately));
+                    self.add(format!("PLANE RESET {positioning}"));
                 }
             }
-            Intent::Tcp(is_on) => self.add(if *is_on { "M128" } else { "M129" }),
-            Intent::Change(tool) => self.add(format!("TOOL CALL {} Z S1000\nM3", tool + 1)),
+            Intent::Tcp { is_on, .. } => self.add(if *is_on { "M128" } else { "M129" }),
+            Intent::Change { tool, allowance } => {
+                let number = tool + 1;
+                let allowance = match allowance {
+                    0.0 => String::new(),
+                    allowance => format!(" DL{}", self.length(*allowance)),
+                };
+                self.add(format!("TOOL CALL {number} Z S1000{allowance}\nM3"));
+            }
             Intent::Machine { axes } => self.add(format!("L{} R0 FMAX M91", self.words(axes))),
             Intent::Retract(distance) => {
-                self.add(format!("L M140 MB{:.5} FMAX", distance / self.unit))
+                self.add(format!("L M140 MB{:.5} FMAX", distance / self.unit));
             }
             _ => {}
+        }
+    }
+
+    fn positioning(&self, align: Align) -> String {
+        match align {
+            Align::Turn => "TURN FMAX".to_owned(),
+            Align::Separately => "STAY".to_owned(),
+            Align::About(distance) => format!("MOVE DIST{} FMAX", self.length(distance)),
+        }
+    }
+
+    fn plane_form(&self, tilt: &Tilt) -> String {
+        let [a, b, c] = tilt.angles;
+        match tilt.form {
+            PlaneForm::Euler => format!("EULER EULPR{a:+.5} EULNU{b:+.5} EULROT{c:+.5}"),
+            PlaneForm::Vectors => {
+                let rotation = self.rotation_of(tilt);
+                let (x, z) = (rotation * Vector3::x(), rotation * Vector3::z());
+                format!(
+                    "VECTOR BX{:+.8} BY{:+.8} BZ{:+.8} NX{:+.8} NY{:+.8} NZ{:+.8}",
+                    x.x, x.y, x.z, z.x, z.y, z.z
+                )
+            }
+            PlaneForm::Relative(axis) => format!("RELATIV {}{a:+.5}", ["SPA", "SPB", "SPC"][axis]),
+            _ => format!("SPATIAL SPA{a:+.5} SPB{b:+.5} SPC{c:+.5}"),
         }
     }
 
@@ -327,22 +380,39 @@ impl Control {
                 let word = if *adds { "ATRANS" } else { "TRANS" };
                 self.add(format!("{word}{}", self.words(axes)));
             }
-            Intent::Rotate(angle) => self.add(format!("AROT Z{angle:.5}")),
-            Intent::Tilt { origin, angles: [a, b, c], .. } => {
-                let origin = origin.map(|value| self.length(value)).join(",");
-                self.add(format!(
-                    "CYCLE800(0,\"TC1\",200000,57,{origin},{a:.5},{b:.5},{c:.5},0,0,0,-1,,1)"
-                ));
+            Intent::Rotate { axis, angle } => {
+                self.add(format!("AROT {}{angle:.5}", LETTERS[*axis]));
             }
-            Intent::Level => self.add(if self.is_tilted { "CYCLE800()" } else { "TRANS" }),
-            Intent::Tcp(true) => self.add("TRAORI\nG54"),
-            Intent::Tcp(false) => self.add("TRAFOOF\nG54"),
-            Intent::Change(tool) => self.add(format!("T{} M6\nD1\nS1000 M3", tool + 1)),
+            Intent::Tilt(tilt) => self.write_swivel(tilt),
+            Intent::Level(_) => self.add(if self.is_tilted { "CYCLE800()" } else { "TRANS" }),
+            Intent::Tcp { is_on: true, .. } => self.add("TRAORI\nG54"),
+            Intent::Tcp { is_on: false, .. } => self.add("TRAFOOF\nG54"),
+            Intent::Vector { place, axis: [i, j, k] } => {
+                let place = self.words(&place.map(Some));
+                self.add(format!("G1{place} A3={i:.8} B3={j:.8} C3={k:.8}"));
+            }
+            Intent::Change { tool, .. } => self.add(format!("T{} M6\nD1\nS1000 M3", tool + 1)),
             Intent::Length(is_on) => self.add(if *is_on { "D1" } else { "D0" }),
-            Intent::Machine { axes } => {
-                self.add(format!("G0 SUPA{}", self.words(axes)));
-            }
+            Intent::Machine { axes } => self.add(format!("G0 SUPA{}", self.words(axes))),
             _ => {}
         }
+    }
+
+    fn write_swivel(&mut self, tilt: &Tilt) {
+        let PlaneForm::Axes { order: [first, second, third], adds } = tilt.form else { return };
+        let lengths = |point: [f64; 3]| point.map(|value| self.length(value)).join(",");
+        let (before, after) = (lengths(tilt.before), lengths(tilt.after));
+        let angles = tilt.angles.map(|angle| format!("{angle:.5}")).join(",");
+        let mode = first + 1 + 4 * (second + 1) + 16 * (third + 1);
+        let (retract, distance) = match tilt.retract {
+            SwivelRetract::None => (0, String::new()),
+            SwivelRetract::Z => (1, String::new()),
+            SwivelRetract::All => (2, String::new()),
+            SwivelRetract::Along(distance) => (5, self.length(distance)),
+        };
+        self.add(format!(
+            "CYCLE800({retract},\"TC1\",20000{},{mode},{before},{angles},{after},-1,{distance},1)",
+            u8::from(adds)
+        ));
     }
 }

@@ -70,6 +70,7 @@ impl Cuboid {
     }
 
     pub(crate) fn is_clear(&self, pose: &ToolPose) -> bool {
-        self.is_far(pose, CLEARANCE) || AROUND.iter().all(|capsule| self.depth(pose, capsule) < -CLEARANCE)
+        self.is_far(pose, CLEARANCE)
+            || AROUND.iter().all(|capsule| self.depth(pose, capsule) < -CLEARANCE)
     }
 }
