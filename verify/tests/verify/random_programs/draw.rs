@@ -63,8 +63,10 @@ impl Control {
     }
 
     fn arc(&self, random: &mut Random) -> Intent {
-        let radius = random.between(5.0, 30.0);
-        let angle = random.between(0.0, 360.0).to_radians();
+        // A radius and a centre of few digits.
+        let radius = random.between(5.0, 30.0).round() * if self.unit == 1.0 { 1.0 } else { 1.27 };
+        let [x, y] =
+            [[0.6, 0.8], [0.8, -0.6], [-0.96, 0.28], [0.0, 1.0], [-0.28, -0.96]][choice(random, 5)];
         let sweep = loop {
             let sweep = random.between(25.0, 330.0);
             if (sweep - 180.0f64).abs() > 20.0 {
@@ -90,8 +92,7 @@ impl Control {
             turns,
             heading,
             normal,
-            centre: [radius * angle.cos(), radius * angle.sin()]
-                .map(|c| self.length_between(random, c, c)),
+            centre: [radius * x, radius * y],
             sweep: if chance(random, 0.5) { sweep } else { -sweep },
             rise: if has_rise { self.length_between(random, -10.0, 10.0) } else { 0.0 },
             rapid: klartext && chance(random, 0.4),
@@ -148,7 +149,9 @@ impl Control {
             retract = match choice(random, 7) {
                 0 => SwivelRetract::Z,
                 1 => SwivelRetract::All,
-                2 => SwivelRetract::Along(self.length_between(random, 5.0, 30.0)),
+                2 if !self.is_tilted => {
+                    SwivelRetract::Along(self.length_between(random, 5.0, 30.0))
+                }
                 _ => SwivelRetract::None,
             };
         } else {
@@ -217,11 +220,15 @@ pub(crate) fn draw(random: &mut Random, control: &Control) -> Vec<Intent> {
     let can_plane = can_frame || !iso && control.is_tilted && !is_rotated && !has_inner;
     let can_shift = is_plain || sinumerik || klartext && control.is_tilted && !is_shifted;
     let can_rotate = !is_rotated && !is_mirrored && !linuxcnc && (is_plain || !iso);
+    let has_turned_offset = (3..6).any(|k| {
+        let [first, second] = control.origins.map(|origin| origin[k]);
+        first != second || control.shift[k] != 0.0 || first != 0.0 && control.machine.is_of_table(k)
+    });
     let whole = |random: &mut Random, reach: f64| random.between(-reach, reach).round();
     for _ in 0..100 {
         let intent = match choice(random, 28) {
             0..8 => return vec![control.line_to(random, false)],
-            8..11 => return vec![control.arc(random)],
+            8..11 if !control.is_vector => return vec![control.arc(random)],
             11 if is_plain => Intent::Offset(1 - control.offset),
             12 if can_shift && control.preset == [0.0; 6] => control.shift_by(random),
             13 if sinumerik && control.is_tcp => {
@@ -237,7 +244,12 @@ pub(crate) fn draw(random: &mut Random, control: &Control) -> Vec<Intent> {
                 let align = [Some(Align::Turn), Some(Align::About(0.0)), None][choice(random, 3)];
                 Intent::Level(align.filter(|_| klartext && control.is_tilted))
             }
-            19 | 20 if turns && can_frame => {
+            19 | 20
+                if turns
+                    && can_frame
+                    && (control.is_tcp
+                        || chance(random, if has_turned_offset { 0.1 } else { 1.0 })) =>
+            {
                 let is_on = !control.is_tcp;
                 let can_point = control.language == Language::Fanuc && can_align;
                 Intent::Tcp { is_on, is_vector: is_on && can_point && chance(random, 0.4) }
@@ -299,7 +311,7 @@ pub(crate) fn draw(random: &mut Random, control: &Control) -> Vec<Intent> {
         if needs_length {
             intents.push(Intent::Length(true));
         }
-        if !has_position && chance(random, 0.75) {
+        if !has_position && chance(random, 0.9) {
             intents.push(control.line_to(random, true));
         }
         return intents;

@@ -65,7 +65,7 @@ impl Machine {
             _ => axes.extend([axis(5, false, tool[0]), axis(tilting, false, tool[1])]),
         }
         let is_aligned = kind > 0 && !is_nutating;
-        let rates = (random.between(0.0, 1.0) < 0.5)
+        let rates = (random.between(0.0, 1.0) < 0.75)
             .then(|| [0; 6].map(|_| random.between(5000.0, 30_000.0).round()));
         let change = match random.between(0.0, 3.0) as usize {
             0 => [None; 6],
@@ -118,6 +118,10 @@ impl Machine {
 
     pub(crate) fn has(&self, index: usize) -> bool {
         self.axes.iter().any(|axis| axis.index == index)
+    }
+
+    pub(crate) fn is_of_table(&self, index: usize) -> bool {
+        self.axes.iter().any(|axis| axis.index == index && axis.is_of_table)
     }
 
     /// Returns the limits of a rotary axis.

@@ -13,12 +13,13 @@ impl Control {
         self.text.push('\n');
     }
 
-    /// Returns a number of a length in the unit of the program, or an angle of an axis.
+    /// Returns a number of a length in the unit of the program, to its least increment, or of an angle.
     fn number(&self, axis: usize, value: f64) -> String {
         let value = if axis < 3 { value / self.unit } else { value };
+        let digits = if self.unit == 1.0 { 3 } else { 4 };
         match self.language {
-            Language::Klartext => format!("{value:+.5}"),
-            _ => format!("{value:.5}"),
+            Language::Klartext => format!("{value:+.digits$}"),
+            _ => format!("{value:.digits$}"),
         }
     }
 
@@ -45,7 +46,7 @@ impl Control {
         match self.language {
             Language::Klartext => {
                 self.add(format!("BEGIN PGM A {}", if is_inch { "INCH" } else { "MM" }));
-                self.add("TOOL CALL 1 Z S1000");
+                self.add("CYCL DEF 247 Q339=+1\nTOOL CALL 1 Z S1000");
                 let shorter = if self.way == Way::Shortest { " M126" } else { "" };
                 self.add(format!("L{rotary} R0 FMAX M3{shorter}"));
                 self.add(format!("L{place} R0 FMAX"));
@@ -253,7 +254,7 @@ impl Control {
             Intent::Offset(offset) => self.add(["G54", "G55"][*offset]),
             Intent::Shift { axes, .. } => self.add(format!("G52{}", self.words(axes))),
             Intent::Rotate { angle, .. } => {
-                self.add(format!("G68{} R{angle:.5}", self.words(&[Some(0.0), Some(0.0)])));
+                self.add(format!("G0\nG68{} R{angle:.5}", self.words(&[Some(0.0), Some(0.0)])));
             }
             Intent::Tilt(Tilt { before, angles: [i, j, k], .. }) => {
                 let origin = self.words(&before.map(Some));
@@ -268,7 +269,7 @@ impl Control {
             }
             Intent::Preset { axes } => self.add(format!("G92{}", self.words(axes))),
             Intent::Origin { origin, turn } => {
-                self.add(format!("G10 L2 P2{} R{turn:.5}", self.words(&origin.map(Some))));
+                self.add(format!("G0\nG10 L2 P2{} R{turn:.5}", self.words(&origin.map(Some))));
             }
             Intent::Level(_) => self.add("G69"),
             Intent::Tcp { is_on, is_vector } => self.add(match (self.language, is_on) {
@@ -385,8 +386,10 @@ impl Control {
             }
             Intent::Tilt(tilt) => self.write_swivel(tilt),
             Intent::Level(_) => self.add(if self.is_tilted { "CYCLE800()" } else { "TRANS" }),
-            Intent::Tcp { is_on: true, .. } => self.add("TRAORI\nG54"),
-            Intent::Tcp { is_on: false, .. } => self.add("TRAFOOF\nG54"),
+            Intent::Tcp { is_on, .. } => {
+                let word = if *is_on { "TRAORI" } else { "TRAFOOF" };
+                self.add(format!("{word}\n{}", ["G54", "G55"][self.offset]));
+            }
             Intent::Vector { place, axis: [i, j, k] } => {
                 let place = self.words(&place.map(Some));
                 self.add(format!("G1{place} A3={i:.8} B3={j:.8} C3={k:.8}"));
