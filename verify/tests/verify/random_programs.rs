@@ -137,8 +137,11 @@ impl Case {
             let meets = index == met_index;
             let mut best: Option<(usize, Cuboid)> = None;
             for _ in 0..10 {
-                let motion =
-                    &played.motions[random.between(0.0, played.motions.len() as f64) as usize];
+                // A cycle has many motions in one block.
+                let first = random.between(0.0, played.motions.len() as f64) as usize;
+                let line = random.between(0.0, played.text.lines().count() as f64) as usize;
+                let mut of_line = played.motions.iter().filter(|motion| motion.line == line);
+                let motion = of_line.next().unwrap_or(&played.motions[first]);
                 let pose = motion.poses[random.between(0.0, motion.poses.len() as f64) as usize];
                 let side = pose.axis.cross(&random.vector(1.0)).normalize();
                 let away =
@@ -285,8 +288,9 @@ impl Case {
             .map(|(k, line)| format!("{:3} {line}", k + 1))
             .collect();
         format!(
-            "{:?}, collision (line, box) {:?}, origins {:?}, boxes {:#?}\n{}\n{}\n{}",
+            "{:?} {:#?}, collision (line, box) {:?}, origins {:?}, boxes {:#?}\n{}\n{}\n{}",
             self.language,
+            self.intents,
             self.collision(&played),
             self.origins,
             self.boxes
@@ -369,9 +373,9 @@ fn no_program_that_collides_is_clean() {
         let t1 = std::time::Instant::now();
         let (outcome, reason) = case.check(&played.text);
         spent[1] += t1.elapsed().as_secs_f64();
-        if std::env::var("TIMES").is_ok() {
+        if t1.elapsed().as_secs_f64() > 3.0 || std::env::var("TIMES").is_ok() {
             println!(
-                "{outcome:?} {:?} readings {} motions {} {:.3}",
+                "seed {seed} {outcome:?} {:?} readings {} motions {} {:.3}",
                 case.language,
                 reason.matches("under").count(),
                 played.motions.len(),

@@ -94,7 +94,11 @@ impl Control {
             normal,
             centre: [radius * x, radius * y],
             sweep: if chance(random, 0.5) { sweep } else { -sweep },
-            rise: if has_rise { self.length_between(random, -10.0, 10.0) } else { 0.0 },
+            rise: if has_rise && (!klartext || form < 2 || normal == 2) {
+                self.length_between(random, -10.0, 10.0)
+            } else {
+                0.0
+            },
             rapid: klartext && chance(random, 0.4),
             form,
         })
@@ -122,6 +126,12 @@ impl Control {
             false => random.between(-50.0, 50.0).round(),
         });
         let klartext = self.language == Language::Klartext;
+        if is_level && self.is_iso() && chance(random, 0.5) {
+            // A plane that keeps Z, without the alignment.
+            let (form, retract) = (PlaneForm::Euler, SwivelRetract::None);
+            let (before, after, align) = ([0.0; 3], [0.0; 3], Align::Rest);
+            return Intent::Tilt(Tilt { before, angles, after, form, align, retract });
+        }
         let form = match choice(random, 4) {
             _ if self.language == Language::Sinumerik => {
                 let [first, step] = [choice(random, 3), 1 + choice(random, 2)];
@@ -158,7 +168,8 @@ impl Control {
             after = [0.0; 3];
             before = if klartext { after } else { before };
         }
-        Intent::Tilt(Tilt { before, angles, after, form, align, retract })
+        let again = self.last_plane.filter(|_| chance(random, 0.3));
+        Intent::Tilt(again.unwrap_or(Tilt { before, angles, after, form, align, retract }))
     }
 
     fn vector(&self, random: &mut Random) -> Intent {
@@ -226,7 +237,7 @@ pub(crate) fn draw(random: &mut Random, control: &Control) -> Vec<Intent> {
     });
     let whole = |random: &mut Random, reach: f64| random.between(-reach, reach).round();
     for _ in 0..100 {
-        let intent = match choice(random, 28) {
+        let intent = match choice(random, 30) {
             0..8 => return vec![control.line_to(random, false)],
             8..11 if !control.is_vector => return vec![control.arc(random)],
             11 if is_plain => Intent::Offset(1 - control.offset),
@@ -277,6 +288,10 @@ pub(crate) fn draw(random: &mut Random, control: &Control) -> Vec<Intent> {
             25 | 26 if control.is_tcp && can_align && (control.is_vector || sinumerik) => {
                 return vec![control.vector(random)];
             }
+            28 if klartext && !control.is_tcp => {
+                Intent::Retract(control.length_between(random, 5.0, 40.0))
+            }
+            29 if klartext && control.is_tilted && !is_shifted => control.shift_by(random),
             27 if linuxcnc && control.offset == 0 && chance(random, 0.5) => {
                 let [x, y, z, ..] = control.origins[1];
                 let origin =
@@ -311,7 +326,13 @@ pub(crate) fn draw(random: &mut Random, control: &Control) -> Vec<Intent> {
         if needs_length {
             intents.push(Intent::Length(true));
         }
-        if !has_position && chance(random, 0.9) {
+        let is_open = match intents[0] {
+            Intent::Rotate { .. } | Intent::Level(_) | Intent::Tilt(_) | Intent::Tcp { .. } => {
+                iso && !linuxcnc || matches!(intents[0], Intent::Rotate { .. } | Intent::Level(_))
+            }
+            _ => false,
+        };
+        if !has_position && chance(random, if is_open { 0.92 } else { 0.4 }) {
             intents.push(control.line_to(random, true));
         }
         return intents;

@@ -141,6 +141,8 @@ pub(crate) enum SwivelRetract {
 /// How the rotary axes turn to a plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Align {
+    /// They rest, and are not those of the plane.
+    Rest,
     /// The other axes rest.
     Turn,
     /// A block of its own turns them.
@@ -188,6 +190,7 @@ pub(crate) struct Control {
     /// Rotations of the work offsets about z, in degrees.
     pub(crate) turns: [f64; 2],
     pub(crate) is_tilted: bool,
+    pub(crate) last_plane: Option<Tilt>,
     pub(crate) is_aligned: bool,
     pub(crate) is_tcp: bool,
     pub(crate) is_vector: bool,
@@ -238,6 +241,7 @@ impl Control {
             is_vector: false,
             allowance: 0.0,
             is_tilted: false,
+            last_plane: None,
             is_aligned: false,
             is_tcp: false,
             tool: 0,
@@ -688,8 +692,11 @@ impl Control {
         if self.language == Language::Sinumerik {
             self.shift[3..].fill(0.0);
         }
-        (self.is_tilted, self.is_aligned) = (true, false);
+        (self.is_tilted, self.is_aligned, self.last_plane) = (true, false, Some(*tilt));
         self.stand(true);
+        if tilt.align == Align::Rest {
+            return;
+        }
         let along = self.tip_frame() * (self.plane * Vector3::z());
         if let Some(end) = self.machine.align(&self.joints, along) {
             self.turn_to(end, tilt.align);

@@ -256,9 +256,12 @@ impl Control {
             Intent::Rotate { angle, .. } => {
                 self.add(format!("G0\nG68{} R{angle:.5}", self.words(&[Some(0.0), Some(0.0)])));
             }
-            Intent::Tilt(Tilt { before, angles: [i, j, k], .. }) => {
+            Intent::Tilt(Tilt { before, angles: [i, j, k], align, .. }) => {
                 let origin = self.words(&before.map(Some));
-                self.add(format!("G68.2{origin} I{i:.5} J{j:.5} K{k:.5}\nG0\nG53.1"));
+                self.add(format!("G68.2{origin} I{i:.5} J{j:.5} K{k:.5}"));
+                if *align != Align::Rest {
+                    self.add("G0\nG53.1");
+                }
             }
             Intent::Mirror(mirrored) => {
                 for (k, letter) in ["X", "Y"].iter().enumerate() {
@@ -352,7 +355,7 @@ impl Control {
     fn positioning(&self, align: Align) -> String {
         match align {
             Align::Turn => "TURN FMAX".to_owned(),
-            Align::Separately => "STAY".to_owned(),
+            Align::Rest | Align::Separately => "STAY".to_owned(),
             Align::About(distance) => format!("MOVE DIST{} FMAX", self.length(distance)),
         }
     }
