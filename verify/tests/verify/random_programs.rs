@@ -241,7 +241,7 @@ impl Case {
         };
         let meshes: Vec<TriangleBvh> = self.boxes.iter().map(mesh).collect();
         let mut job = Job::new(&program, &meshes[0]);
-        job.resolution = Some(0.01);
+        job.resolution = Some(0.02);
         for number in [1, 2] {
             let mut tool = JobTool::numbered(number, &Mounted);
             tool.allow = ["ball", "flute"].map(|name| (name.to_owned(), f64::INFINITY)).to_vec();

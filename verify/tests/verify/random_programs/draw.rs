@@ -76,8 +76,9 @@ impl Control {
         let klartext = self.language == Language::Klartext;
         let form = choice(random, if klartext { 4 } else { 3 });
         let has_rise = chance(random, 0.3) && !(klartext && form == 3);
-        let normal =
-            if chance(random, 0.7) || klartext && form == 3 { 2 } else { choice(random, 2) };
+        // Sinumerik counts the length of the tool across the plane.
+        let is_flat = self.language == Language::Sinumerik || klartext && form == 3;
+        let normal = if is_flat || chance(random, 0.7) { 2 } else { choice(random, 2) };
         let can_turn = match self.language {
             Language::LinuxCnc | Language::Sinumerik => form == 0,
             Language::Klartext => form == 1,

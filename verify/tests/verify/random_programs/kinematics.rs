@@ -65,7 +65,7 @@ impl Machine {
             _ => axes.extend([axis(5, false, tool[0]), axis(tilting, false, tool[1])]),
         }
         let is_aligned = kind > 0 && !is_nutating;
-        let rates = (random.between(0.0, 1.0) < 0.75)
+        let rates = (random.between(0.0, 1.0) < 0.92)
             .then(|| [0; 6].map(|_| random.between(5000.0, 30_000.0).round()));
         let change = match random.between(0.0, 3.0) as usize {
             0 => [None; 6],
