@@ -265,8 +265,11 @@ impl Case {
         let findings = report.findings().iter().map(ToString::to_string);
         let reasons = refusals.iter().map(ToString::to_string);
         let text = findings.chain(reasons).collect::<Vec<_>>().join("\n");
-        let is_surface =
-            |finding: &JobFinding| matches!(finding.rule, FindingRule::Deep | FindingRule::Inside);
+        // A finding under one of several ways of a control may lie beside the one that is taken for the truth.
+        let is_surface = |finding: &JobFinding| {
+            finding.under.is_none()
+                && matches!(finding.rule, FindingRule::Deep | FindingRule::Inside)
+        };
         Checked { outcome, touches: report.findings().iter().any(is_surface), text }
     }
 
