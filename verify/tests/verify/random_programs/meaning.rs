@@ -506,7 +506,14 @@ impl Control {
                 let direction = [0, 1, 2].map(|k| ahead[1][k] - ahead[0][k]);
                 self.tangent = Some(Vector3::from(direction).normalize());
             }
-            Intent::Offset(offset) => self.offset = *offset,
+            Intent::Offset(offset) => {
+                self.offset = *offset;
+                // Another preset ends the shift, mirrored axes and the rotation.
+                if self.language == Language::Klartext {
+                    (self.shift, self.inner) = ([0.0; 6], Isometry3::identity());
+                    self.mirror = Vector3::repeat(1.0);
+                }
+            }
             Intent::Shift { axes, adds } => self.set_shift(axes, *adds),
             Intent::Rotate { axis, angle } => {
                 let turn =
