@@ -43,6 +43,24 @@ fn a_tool_that_moves_no_more_after_its_change_is_found() {
     }
 }
 
+/// A tool change moves axes of the machine, also while program coordinates are rotated: X and Y stay, where a longer tool stands in the
+/// part.
+#[test]
+fn a_tool_change_in_a_rotated_plane_leaves_other_axes() {
+    for rotation in ["", "G68 X0 Y0 R30\nG0 X0 Y0\n"] {
+        let text = format!("{START}G0 X0 Y0\nG43 H1 Z5\n{rotation}G1 Z4 F200\nT2 M6\nG69\nM30\n");
+        for (length, verdict) in [(51, FINDINGS), (49, CLEAN)] {
+            let mut scene = Scene::of(&text).placed().on("3-axis", "home = 0\n", "");
+            scene.files.values_mut().for_each(|machine| {
+                machine.insert_str(0, "tool_change = { Z = -350 }\n");
+            });
+            let second = format!("length = 50\n[tool.2]\ntool = \"D2Ball\"\nlength = {length}");
+            scene.job = scene.job.replace("length = 50", &second);
+            scene.with("anyway = true").gives_by(straight(), verdict, &[]);
+        }
+    }
+}
+
 /// Both ways of half a turn are as short, also if the program states no angle.
 #[test]
 fn half_a_turn_to_a_direction_is_open() {

@@ -7,6 +7,7 @@ mod cycle_time;
 mod joints;
 mod machines;
 mod oracle;
+mod random_programs;
 mod rapid;
 
 use nalgebra::Point3;

@@ -445,7 +445,8 @@ impl Control {
             self.transformation_changed = true;
         }
         if word == "M429" || word == "TRAFOOF" {
-            self.transformed = false;
+            // A tool vector ends with the transformation.
+            (self.transformed, self.vector) = (false, None);
             self.change(|state| state.tcp = Tcp::Off);
             return Ok(());
         }

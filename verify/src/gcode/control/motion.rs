@@ -346,6 +346,7 @@ impl Control {
             (Rotation::Off, false) => [true, true, false, false, false, false],
             _ => [true, true, true, false, false, false],
         };
+        let moved = commanded;
         let moves_coupled = (0..6).any(|axis| commanded[axis] && is_coupled[axis]);
         for axis in 0..6 {
             if is_coupled[axis] && moves_coupled {
@@ -354,6 +355,8 @@ impl Control {
                 end[axis] = self.position[axis];
             }
         }
+        // A tool change states which axes of the machine it moves: the others stay, also in a rotated plane.
+        let commanded = if matches!(path, StepPath::ToolChange(_)) { moved } else { commanded };
         self.push(true, end, commanded, path);
         // Machine coordinates are stated in G91, too.
         self.pending.back_mut().expect("the step that was added").absolute = true;
