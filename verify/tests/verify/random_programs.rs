@@ -95,9 +95,9 @@ impl Case {
         }
         if random.between(0.0, 1.0) < 0.3 {
             for origin in &mut origins {
-                for k in 3..6 {
+                for (k, value) in origin.iter_mut().enumerate().skip(3) {
                     if machine.has(k) && random.between(0.0, 1.0) < 0.5 {
-                        origin[k] = random.between(-40.0, 40.0).round();
+                        *value = random.between(-40.0, 40.0).round();
                     }
                 }
             }

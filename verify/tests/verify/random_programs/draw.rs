@@ -32,12 +32,12 @@ impl Control {
         let all = if is_full { 1.0 } else { 0.6 };
         let is_incremental = !is_full && chance(random, 0.2);
         let mut incremental = [is_incremental; 6];
-        for k in 0..3 {
+        for (k, to) in axes.iter_mut().enumerate().take(3) {
             if chance(random, all) {
                 let [low, high] = if k == 2 { [5.0, 80.0] } else { [-50.0, 50.0] };
-                axes[k] = Some(self.length_between(random, low, high));
+                *to = Some(self.length_between(random, low, high));
                 if is_incremental {
-                    axes[k] = Some(self.length_between(random, -25.0, 25.0));
+                    *to = Some(self.length_between(random, -25.0, 25.0));
                 }
             }
         }
@@ -107,11 +107,11 @@ impl Control {
 
     fn shift_by(&self, random: &mut Random) -> Intent {
         let mut axes = [None; 6];
-        for k in 0..6 {
+        for (k, by) in axes.iter_mut().enumerate() {
             if k < 3 && chance(random, 0.6) {
-                axes[k] = Some(self.length_between(random, -15.0, 15.0));
+                *by = Some(self.length_between(random, -15.0, 15.0));
             } else if k > 2 && self.machine.has(k) && !self.is_tilted && chance(random, 0.3) {
-                axes[k] = Some(random.between(-30.0, 30.0).round());
+                *by = Some(random.between(-30.0, 30.0).round());
             }
         }
         if axes == [None; 6] {
@@ -205,10 +205,10 @@ impl Control {
         if self.machine.limits(5).is_some() && self.machine.has(5) && chance(random, 0.3) {
             axes[5] = Some((self.joints[5] + random.between(-40.0, 40.0)).round());
         }
-        for k in 0..3 {
+        for (k, to) in axes.iter_mut().enumerate().take(3) {
             if chance(random, 0.5) {
                 let at = self.joints[k] + random.between(-20.0, 20.0);
-                axes[k] = Some(self.length_between(random, at, at));
+                *to = Some(self.length_between(random, at, at));
             }
         }
         axes[2] = axes[2].or((axes == [None; 6]).then_some(0.0));

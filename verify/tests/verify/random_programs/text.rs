@@ -99,7 +99,7 @@ impl Control {
         }
         match (self.language, intent) {
             (_, Intent::Line { axes, incremental, rapid }) => {
-                self.write_line(axes, incremental, *rapid)
+                self.write_line(axes, incremental, *rapid);
             }
             (_, Intent::Arc(arc)) => self.write_arc(&self.resolved(arc)),
             (_, Intent::Drill(drill)) => self.write_drill(drill),
