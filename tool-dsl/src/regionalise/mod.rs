@@ -135,9 +135,8 @@ impl Bound {
         Bound { border, unless: Vec::new() }
     }
 
-    fn holds_by(&self, section: &Section<'_>, p: Point, margin: f64) -> bool {
-        self.border.holds_by(section, p, margin)
-            || self.unless.iter().any(|border| border.holds(section, p))
+    fn holds(&self, section: &Section<'_>, p: Point) -> bool {
+        self.border.holds(section, p) || self.unless.iter().any(|border| border.holds(section, p))
     }
 
     fn test(&self, section: &Section<'_>, graph: &mut Graph) -> Option<Test> {
@@ -242,27 +241,25 @@ impl Section<'_> {
         bounds
     }
 
-    fn is_within(&self, bounds: &[Bound], p: Point, margin: f64) -> bool {
-        bounds.iter().all(|bound| bound.holds_by(self, p, margin))
+    fn is_within(&self, bounds: &[Bound], p: Point) -> bool {
+        bounds.iter().all(|bound| bound.holds(self, p))
     }
 
-    /// Returns a point that the borders to neighbours assign wrongly to the cell, or wrongly cut off, by more than rounding.
+    /// Returns a point that the borders to neighbours assign wrongly to the cell, or wrongly cut off.
     fn wrong_point(&self, bounds: &[Bound], slices: &[Slice]) -> Option<Point> {
         for slice in slices.iter().filter(|slice| !slice.is_thin(self)) {
             for fraction in SAMPLE_FRACTIONS {
                 let foot_point = slice.foot_at(self, fraction);
                 let radius = slice.radius(self, fraction);
-                let margin = ROUNDING * self.size.max(radius);
                 let own =
                     [0.0, 0.2, 0.5, 0.8, 1.0 - 1e-6].map(|share| foot_point.at(share * radius));
-                if let Some(p) = own.into_iter().find(|p| !self.is_within(bounds, *p, -margin)) {
+                if let Some(p) = own.into_iter().find(|p| !self.is_within(bounds, *p)) {
                     return Some(p);
                 }
                 if let Obstacle::Feature(_) = slice.obstacle {
                     let max_distance = self.focus(slice.feature);
                     let beyond = self.points_beyond(&foot_point, radius, max_distance, bounds);
-                    if let Some(p) = beyond.into_iter().find(|p| self.is_within(bounds, *p, margin))
-                    {
+                    if let Some(p) = beyond.into_iter().find(|p| self.is_within(bounds, *p)) {
                         return Some(p);
                     }
                 }

@@ -66,7 +66,7 @@ pub(super) struct Section<'o> {
     /// The diagonal of the outline's bounding box.
     pub(super) size: f64,
     /// True if the left side is the outside, which is unbounded.
-    pub(super) outer: bool,
+    outer: bool,
     /// A box of each feature, by centre and half the sides, with a margin above the tolerances of contact.
     boxes: Vec<[Point; 2]>,
 }
@@ -156,21 +156,6 @@ impl<'o> Section<'o> {
                 [Some((piece, 1)), next]
             }
         }
-    }
-
-    /// Returns the features that meet a feature at its ends.
-    pub(super) fn adjacent_features(&self, feature: usize) -> Vec<usize> {
-        let meets = |other: &Feature| match (self.features[feature], *other) {
-            (Feature::Piece(a), Feature::Piece(b)) => a.abs_diff(b) == 1,
-            (Feature::Piece(piece), Feature::Corner(previous))
-            | (Feature::Corner(previous), Feature::Piece(piece)) => self
-                .adjacent_segments(previous)
-                .into_iter()
-                .flatten()
-                .any(|(next, _)| next == piece),
-            (Feature::Corner(_), Feature::Corner(_)) => false,
-        };
-        (0..self.features.len()).filter(|other| meets(&self.features[*other])).collect()
     }
 
     /// Returns the point and normal of a feature at a parameter from 0 to 1, which is linear along a line and in the
