@@ -18,7 +18,7 @@ pub(crate) struct DepthOracle {
     pub(crate) lipschitz_bound: f64,
     /// The smallest gap to validate, as a share of the tool's size. The certifier resolves a field only to a thousandth.
     pub(crate) min_gap: f64,
-    /// How near samples should come to the lower bound, as a share of the tool's size.
+    /// The distance of samples from the lower bound, at most, as a share of the tool's size.
     pub(crate) reach_margin: f64,
 }
 

@@ -120,9 +120,9 @@ fn digests_of_code_and_proofs() {
         let tool = compile(&source).into_tool().expect("a tool of the library has no error");
         let code = emit::source_code(&tool);
         let proved = Certificate::prove(&tool);
-        let [code_digest, facts] = [&code, &format!("{proved:?}")].map(|text| fnv(text.as_bytes()));
+        let [digest, facts] = digests(&code, &proved);
         let (name, lines, boxes) = (&tool.model.name, code.lines().count(), proved.examined_boxes);
-        format!("{name} {lines} lines {code_digest:016x}, {boxes} boxes {facts:016x}\n")
+        format!("{name} {lines} lines {digest:016x}, {boxes} boxes {facts:016x}\n")
     });
     let all: String = lines.collect();
     insta::with_settings!({ omit_expression => true }, {
@@ -130,8 +130,13 @@ fn digests_of_code_and_proofs() {
     });
 }
 
+/// Returns digests of a tool's code, and of all that is proved of the tool.
+pub(crate) fn digests(code: &str, proved: &Certificate) -> [u64; 2] {
+    [code, &format!("{proved:?}")].map(|text| fnv(text.as_bytes()))
+}
+
 /// Computes Fowler, Noll and Vo's hash, 1a: the same on every machine.
-pub(crate) fn fnv(bytes: &[u8]) -> u64 {
+fn fnv(bytes: &[u8]) -> u64 {
     let next = |hash: u64, byte: &u8| (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
     bytes.iter().fold(0xcbf2_9ce4_8422_2325, next)
 }

@@ -98,11 +98,11 @@ fn blocks(random: &mut Random, count: usize) -> Vec<Block> {
     let round = |value: f64| -> f64 { format!("{value:.6}").parse().expect("a number") };
     let (mut b, mut c) = (0.0, 0.0);
     let blocks = (0..count).map(|k| {
-        let reach = if random.between(0.0, 1.0) < 0.3 { 40.0 } else { 6.0 };
+        let reach = if random.chance(0.3) { 40.0 } else { 6.0 };
         b = f64::clamp(b + random.between(-reach, reach), -60.0, 60.0);
         c += random.between(-reach, reach);
         let linear: [f64; 3] = random.vector(14.0).into();
-        let rapid = random.between(0.0, 1.0) < 0.2;
+        let rapid = random.chance(0.2);
         let tcp = (k / 10) % 2 == 1;
         Block { linear: linear.map(round), b: round(b), c: round(c), rapid, tcp }
     });

@@ -76,13 +76,13 @@ fn blocks(random: &mut Random, count: usize) -> Vec<Block> {
     let mut blocks = Vec::new();
     let mut angles = [0.0; 2];
     for k in 0..count {
-        let reach = if random.between(0.0, 1.0) < 0.3 { 40.0 } else { 6.0 };
+        let reach = if random.chance(0.3) { 40.0 } else { 6.0 };
         angles =
             [angles[0] + random.between(-reach, reach), angles[1] + random.between(-reach, reach)];
         angles[0] = f64::clamp(angles[0], -80.0, 80.0);
         let tcp = (k / 10) % 2 == 1;
         let tip: [f64; 3] = random.vector(14.0).into();
-        blocks.push(Block { linear: tip, angles, rapid: random.between(0.0, 1.0) < 0.2, tcp });
+        blocks.push(Block { linear: tip, angles, rapid: random.chance(0.2), tcp });
     }
     blocks
 }

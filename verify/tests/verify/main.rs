@@ -33,8 +33,8 @@ fn walk(random: &mut Random, count: usize) -> Vec<(ToolPose, bool)> {
     let mut axis = random.vector(1.0).normalize();
     let mut walk = Vec::new();
     for _ in 0..count {
-        walk.push(((tip, axis), random.between(0.0, 1.0) < 0.2));
-        let step = if random.between(0.0, 1.0) < 0.3 { 9.0 } else { 1.5 };
+        walk.push(((tip, axis), random.chance(0.2)));
+        let step = if random.chance(0.3) { 9.0 } else { 1.5 };
         // The factor keeps the walk near the block.
         tip = Point3::from((tip.coords + random.vector(step)) * 0.95);
         axis = (axis + random.vector(0.25)).normalize();

@@ -137,6 +137,16 @@ impl Random {
         low + (high - low) * ((self.0 >> 11) as f64 / (1u64 << 53) as f64)
     }
 
+    /// Returns one of the first `count` numbers.
+    pub(crate) fn choice(&mut self, count: usize) -> usize {
+        self.between(0.0, count as f64) as usize
+    }
+
+    /// Returns true in a share of all calls.
+    pub(crate) fn chance(&mut self, share: f64) -> bool {
+        self.between(0.0, 1.0) < share
+    }
+
     pub(crate) fn vector(&mut self, size: f64) -> Vector3<f64> {
         Vector3::from([0; 3].map(|_| self.between(-size, size)))
     }

@@ -39,7 +39,7 @@ struct Case {
     boxes: Vec<Cuboid>,
 }
 
-/// What a check ends with, with its findings or the reasons against a verdict.
+/// The end of a check, with its findings or the reasons against a verdict.
 struct Checked {
     outcome: Outcome,
     /// Set if a surface is in a box.
@@ -85,7 +85,7 @@ impl Counts {
 
 impl Case {
     fn draw(random: &mut Random) -> Case {
-        let language = LANGUAGES[random.between(0.0, 5.0) as usize];
+        let language = LANGUAGES[random.choice(5)];
         let machine = Machine::draw(random);
         let mut origins = [[0.0; 6]; 2];
         for origin in &mut origins {
@@ -93,16 +93,16 @@ impl Case {
                 *value = random.between(-20.0, 20.0).round() + if k == 2 { -440.0 } else { 0.0 };
             }
         }
-        if random.between(0.0, 1.0) < 0.3 {
+        if random.chance(0.3) {
             for origin in &mut origins {
                 for (k, value) in origin.iter_mut().enumerate().skip(3) {
-                    if machine.has(k) && random.between(0.0, 1.0) < 0.5 {
+                    if machine.has(k) && random.chance(0.5) {
                         *value = random.between(-40.0, 40.0).round();
                     }
                 }
             }
         }
-        if random.between(0.0, 1.0) < 0.6 {
+        if random.chance(0.6) {
             let [first, second] = &mut origins;
             second[3..].copy_from_slice(&first[3..]);
         }
@@ -110,7 +110,7 @@ impl Case {
         let way = match language {
             Language::LinuxCnc | Language::Haas => Way::Counts,
             Language::Fanuc => Way::Shortest,
-            Language::Klartext => [Way::Counts, Way::Shortest][random.between(0.0, 2.0) as usize],
+            Language::Klartext => [Way::Counts, Way::Shortest][random.choice(2)],
             Language::Sinumerik => Way::WithinTurn,
         };
         let mut case = Case {
@@ -118,9 +118,9 @@ impl Case {
             machine,
             origins,
             rates,
-            unit: if random.between(0.0, 1.0) < 0.15 { 25.4 } else { 1.0 },
+            unit: if random.chance(0.15) { 25.4 } else { 1.0 },
             way,
-            takes_table_as_it_stands: language == Language::Fanuc && random.between(0.0, 1.0) < 0.3,
+            takes_table_as_it_stands: language == Language::Fanuc && random.chance(0.3),
             intents: Vec::new(),
             boxes: Vec::new(),
         };
@@ -156,17 +156,17 @@ impl Case {
     /// Places boxes at the tool on its way, or beside it: of several, the one that the fewest motions meet.
     fn place_boxes(&mut self, random: &mut Random) {
         let played = self.play();
-        let met_index = random.between(0.0, 6.0) as usize;
+        let met_index = random.choice(6);
         for index in 0..3 {
             let meets = index == met_index;
             let mut best: Option<(usize, Cuboid)> = None;
             for _ in 0..10 {
                 // A cycle has many motions in one block.
-                let first = random.between(0.0, played.motions.len() as f64) as usize;
-                let line = random.between(0.0, played.text.lines().count() as f64) as usize;
+                let first = random.choice(played.motions.len());
+                let line = random.choice(played.text.lines().count());
                 let mut of_line = played.motions.iter().filter(|motion| motion.line == line);
                 let motion = of_line.next().unwrap_or(&played.motions[first]);
-                let pose = motion.poses[random.between(0.0, motion.poses.len() as f64) as usize];
+                let pose = motion.poses[random.choice(motion.poses.len())];
                 let side = pose.axis.cross(&random.vector(1.0)).normalize();
                 let away =
                     if meets { random.between(0.0, 3.0) } else { random.between(12.0, 30.0) };

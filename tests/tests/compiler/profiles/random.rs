@@ -5,7 +5,7 @@ use super::draw::{Recipe, recipe};
 use super::outline::Outline;
 use super::tool;
 use super::valid::is_valid;
-use crate::generated::fnv;
+use crate::generated::digests;
 use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use std::collections::BTreeMap;
@@ -41,9 +41,7 @@ fn tried(outline: &Outline) -> Result<(), Flaw> {
 fn proof(outline: &Outline) -> (bool, String) {
     let Ok(tool) = tool(&outline.text()) else { return (false, "refused".into()) };
     let proved = Certificate::prove(&tool);
-    let digests =
-        [emit::source_code(&tool), format!("{proved:?}")].map(|text| fnv(text.as_bytes()));
-    let [code, facts] = digests;
+    let [code, facts] = digests(&emit::source_code(&tool), &proved);
     (proved.is_exact(), format!("{} boxes, {code:016x}, {facts:016x}", proved.examined_boxes))
 }
 

@@ -6,15 +6,6 @@ use super::meaning::{
 use crate::oracle::Random;
 use nalgebra::Vector3;
 
-/// Returns one of the first `count` numbers.
-fn choice(random: &mut Random, count: usize) -> usize {
-    random.between(0.0, count as f64) as usize
-}
-
-fn chance(random: &mut Random, of: f64) -> bool {
-    random.between(0.0, 1.0) < of
-}
-
 impl Control {
     /// Returns a random length that the program can state exactly.
     fn length_between(&self, random: &mut Random, low: f64, high: f64) -> f64 {
@@ -24,16 +15,16 @@ impl Control {
 
     fn angle_of(&self, random: &mut Random, axis: usize) -> f64 {
         let reach = if axis == 5 { 300.0 } else { 70.0 };
-        if chance(random, 0.3) { 0.0 } else { random.between(-reach, reach).round() }
+        if random.chance(0.3) { 0.0 } else { random.between(-reach, reach).round() }
     }
 
     fn line_to(&self, random: &mut Random, is_full: bool) -> Intent {
         let mut axes = [None; 6];
         let all = if is_full { 1.0 } else { 0.6 };
-        let is_incremental = !is_full && chance(random, 0.2);
+        let is_incremental = !is_full && random.chance(0.2);
         let mut incremental = [is_incremental; 6];
         for (k, to) in axes.iter_mut().enumerate().take(3) {
-            if chance(random, all) {
+            if random.chance(all) {
                 let [low, high] = if k == 2 { [5.0, 80.0] } else { [-50.0, 50.0] };
                 *to = Some(self.length_between(random, low, high));
                 if is_incremental {
@@ -41,14 +32,14 @@ impl Control {
                 }
             }
         }
-        if !self.is_iso() && !is_full && chance(random, 0.2) {
-            let axis = choice(random, 3);
+        if !self.is_iso() && !is_full && random.chance(0.2) {
+            let axis = random.choice(3);
             (axes[axis], incremental[axis]) =
                 (Some(self.length_between(random, -20.0, 20.0)), true);
         }
-        if !is_full && !self.is_aligned && !self.is_vector && chance(random, 0.4) {
+        if !is_full && !self.is_aligned && !self.is_vector && random.chance(0.4) {
             for k in (3..6).filter(|k| self.machine.has(*k)) {
-                if chance(random, 0.6) {
+                if random.chance(0.6) {
                     axes[k] = Some(self.angle_of(random, k));
                     if incremental[k] {
                         axes[k] = Some(random.between(-20.0, 20.0).round());
@@ -59,14 +50,14 @@ impl Control {
         if axes == [None; 6] {
             axes[0] = Some(self.length_between(random, -50.0, 50.0));
         }
-        Intent::Line { axes, incremental, rapid: chance(random, 0.4) }
+        Intent::Line { axes, incremental, rapid: random.chance(0.4) }
     }
 
     fn arc(&self, random: &mut Random) -> Intent {
         // A radius and a centre of few digits.
         let radius = random.between(5.0, 30.0).round() * if self.unit == 1.0 { 1.0 } else { 1.27 };
         let [x, y] =
-            [[0.6, 0.8], [0.8, -0.6], [-0.96, 0.28], [0.0, 1.0], [-0.28, -0.96]][choice(random, 5)];
+            [[0.6, 0.8], [0.8, -0.6], [-0.96, 0.28], [0.0, 1.0], [-0.28, -0.96]][random.choice(5)];
         let sweep = loop {
             let sweep = random.between(25.0, 330.0);
             if (sweep - 180.0f64).abs() > 20.0 {
@@ -74,33 +65,33 @@ impl Control {
             }
         };
         let klartext = self.language == Language::Klartext;
-        let form = choice(random, if klartext { 4 } else { 3 });
-        let has_rise = chance(random, 0.3) && !(klartext && form == 3);
+        let form = random.choice(if klartext { 4 } else { 3 });
+        let has_rise = random.chance(0.3) && !(klartext && form == 3);
         // Sinumerik counts the length of the tool across the plane.
         let is_flat = self.language == Language::Sinumerik || klartext && form == 3;
-        let normal = if is_flat || chance(random, 0.7) { 2 } else { choice(random, 2) };
+        let normal = if is_flat || random.chance(0.7) { 2 } else { random.choice(2) };
         let can_turn = match self.language {
             Language::LinuxCnc | Language::Sinumerik => form == 0,
             Language::Klartext => form == 1,
             _ => false,
         };
-        let turns = if can_turn && chance(random, 0.2) { 1 } else { 0 };
+        let turns = if can_turn && random.chance(0.2) { 1 } else { 0 };
         let is_heading =
             !klartext && turns == 0 && self.machine.has(5) && !self.is_aligned && !self.is_vector;
         let heading =
-            (is_heading && chance(random, 0.15)).then(|| random.between(-90.0, 90.0).round());
+            (is_heading && random.chance(0.15)).then(|| random.between(-90.0, 90.0).round());
         Intent::Arc(Arc {
             turns,
             heading,
             normal,
             centre: [radius * x, radius * y],
-            sweep: if chance(random, 0.5) { sweep } else { -sweep },
+            sweep: if random.chance(0.5) { sweep } else { -sweep },
             rise: if has_rise && (!klartext || form < 2 || normal == 2) {
                 self.length_between(random, -10.0, 10.0)
             } else {
                 0.0
             },
-            rapid: klartext && chance(random, 0.4),
+            rapid: klartext && random.chance(0.4),
             form,
         })
     }
@@ -108,39 +99,39 @@ impl Control {
     fn shift_by(&self, random: &mut Random) -> Intent {
         let mut axes = [None; 6];
         for (k, by) in axes.iter_mut().enumerate() {
-            if k < 3 && chance(random, 0.6) {
+            if k < 3 && random.chance(0.6) {
                 *by = Some(self.length_between(random, -15.0, 15.0));
-            } else if k > 2 && self.machine.has(k) && !self.is_tilted && chance(random, 0.3) {
+            } else if k > 2 && self.machine.has(k) && !self.is_tilted && random.chance(0.3) {
                 *by = Some(random.between(-30.0, 30.0).round());
             }
         }
         if axes == [None; 6] {
             axes[1] = Some(self.length_between(random, -15.0, 15.0));
         }
-        Intent::Shift { axes, adds: !self.is_iso() && chance(random, 0.4) }
+        Intent::Shift { axes, adds: !self.is_iso() && random.chance(0.4) }
     }
 
     fn plane(&self, random: &mut Random) -> Intent {
-        let is_level = chance(random, 0.15);
-        let mut angles = [0; 3].map(|_| match is_level || chance(random, 0.3) {
+        let is_level = random.chance(0.15);
+        let mut angles = [0; 3].map(|_| match is_level || random.chance(0.3) {
             true => 0.0,
             false => random.between(-50.0, 50.0).round(),
         });
         let klartext = self.language == Language::Klartext;
-        if is_level && self.is_iso() && chance(random, 0.5) {
+        if is_level && self.is_iso() && random.chance(0.5) {
             // A plane that keeps Z, without the alignment.
             let (form, retract) = (PlaneForm::Euler, SwivelRetract::None);
             let (before, after, align) = ([0.0; 3], [0.0; 3], Align::Rest);
             return Intent::Tilt(Tilt { before, angles, after, form, align, retract });
         }
-        let form = match choice(random, 4) {
+        let form = match random.choice(4) {
             _ if self.language == Language::Sinumerik => {
-                let [first, step] = [choice(random, 3), 1 + choice(random, 2)];
+                let [first, step] = [random.choice(3), 1 + random.choice(2)];
                 let second = (first + step) % 3;
                 PlaneForm::Axes { order: [first, second, 3 - first - second], adds: self.is_tilted }
             }
             _ if !klartext => PlaneForm::Euler,
-            0 if self.is_tilted => PlaneForm::Relative(choice(random, 3)),
+            0 if self.is_tilted => PlaneForm::Relative(random.choice(3)),
             0 | 1 => PlaneForm::Vectors,
             2 => PlaneForm::Euler,
             _ => PlaneForm::Spatial,
@@ -148,16 +139,16 @@ impl Control {
         if form == PlaneForm::Euler && !is_level {
             angles[0] = random.between(-180.0, 180.0).round();
         }
-        let align = match choice(random, 3) {
+        let align = match random.choice(3) {
             1 if klartext => Align::Separately,
-            2 if klartext => Align::About([0.0, 20.0][choice(random, 2)]),
+            2 if klartext => Align::About([0.0, 20.0][random.choice(2)]),
             _ => Align::Turn,
         };
         let mut point = || [0; 3].map(|_| self.length_between(random, -15.0, 15.0));
         let [mut before, mut after] = [point(), point()];
         let mut retract = SwivelRetract::None;
         if self.language == Language::Sinumerik {
-            retract = match choice(random, 7) {
+            retract = match random.choice(7) {
                 0 => SwivelRetract::Z,
                 1 => SwivelRetract::All,
                 2 if !self.is_tilted => {
@@ -169,7 +160,7 @@ impl Control {
             after = [0.0; 3];
             before = if klartext { after } else { before };
         }
-        let again = self.last_plane.filter(|_| chance(random, 0.3));
+        let again = self.last_plane.filter(|_| random.chance(0.3));
         Intent::Tilt(again.unwrap_or(Tilt { before, angles, after, form, align, retract }))
     }
 
@@ -180,15 +171,15 @@ impl Control {
     }
 
     fn holes(&self, random: &mut Random) -> Intent {
-        let count = 1 + choice(random, 3);
+        let count = 1 + random.choice(3);
         let points = (0..count).map(|_| [0; 2].map(|_| self.length_between(random, -40.0, 40.0)));
         let points = points.collect();
         let top = self.length_between(random, 10.0, 40.0);
         let depth = self.length_between(random, 5.0, 20.0);
         let clear = top + self.length_between(random, 0.0, 30.0);
-        let infeed = chance(random, 0.5).then(|| self.length_between(random, 3.0, 8.0));
+        let infeed = random.chance(0.5).then(|| self.length_between(random, 3.0, 8.0));
         let infeed = infeed.filter(|_| self.language != Language::Sinumerik);
-        let (returns_to_top, form) = (chance(random, 0.5), choice(random, 3));
+        let (returns_to_top, form) = (random.chance(0.5), random.choice(3));
         Intent::Drill(Drill {
             points,
             top,
@@ -202,11 +193,11 @@ impl Control {
 
     fn machine_place(&self, random: &mut Random) -> Intent {
         let mut axes = [None; 6];
-        if self.machine.limits(5).is_some() && self.machine.has(5) && chance(random, 0.3) {
+        if self.machine.limits(5).is_some() && self.machine.has(5) && random.chance(0.3) {
             axes[5] = Some((self.joints[5] + random.between(-40.0, 40.0)).round());
         }
         for (k, to) in axes.iter_mut().enumerate().take(3) {
-            if chance(random, 0.5) {
+            if random.chance(0.5) {
                 let at = self.joints[k] + random.between(-20.0, 20.0);
                 *to = Some(self.length_between(random, at, at));
             }
@@ -238,13 +229,13 @@ pub(crate) fn draw(random: &mut Random, control: &Control) -> Vec<Intent> {
     });
     let whole = |random: &mut Random, reach: f64| random.between(-reach, reach).round();
     for _ in 0..100 {
-        let intent = match choice(random, 30) {
+        let intent = match random.choice(30) {
             0..8 => return vec![control.line_to(random, false)],
             8..11 if !control.is_vector => return vec![control.arc(random)],
             11 if is_plain => Intent::Offset(1 - control.offset),
             12 if can_shift && control.preset == [0.0; 6] => control.shift_by(random),
             13 if sinumerik && control.is_tcp => {
-                Intent::Rotate { axis: choice(random, 3), angle: whole(random, 60.0) }
+                Intent::Rotate { axis: random.choice(3), angle: whole(random, 60.0) }
             }
             13 if can_rotate && !control.is_tcp => {
                 Intent::Rotate { axis: 2, angle: whole(random, 90.0) }
@@ -253,32 +244,32 @@ pub(crate) fn draw(random: &mut Random, control: &Control) -> Vec<Intent> {
                 control.plane(random)
             }
             17 | 18 if is_rotated || control.is_tilted || sinumerik && !can_frame => {
-                let align = [Some(Align::Turn), Some(Align::About(0.0)), None][choice(random, 3)];
+                let align = [Some(Align::Turn), Some(Align::About(0.0)), None][random.choice(3)];
                 Intent::Level(align.filter(|_| klartext && control.is_tilted))
             }
             19 | 20
                 if turns
                     && can_frame
                     && (control.is_tcp
-                        || chance(random, if has_turned_offset { 0.1 } else { 1.0 })) =>
+                        || random.chance(if has_turned_offset { 0.1 } else { 1.0 })) =>
             {
                 let is_on = !control.is_tcp;
                 let can_point = control.language == Language::Fanuc && can_align;
-                Intent::Tcp { is_on, is_vector: is_on && can_point && chance(random, 0.4) }
+                Intent::Tcp { is_on, is_vector: is_on && can_point && random.chance(0.4) }
             }
             21 if !control.is_tcp => {
                 let allowance = control.length_between(random, -2.0, 2.0);
-                let has_allowance = klartext && chance(random, 0.3);
+                let has_allowance = klartext && random.chance(0.3);
                 let allowance = if has_allowance { allowance } else { 0.0 };
                 Intent::Change { tool: 1 - control.tool, allowance }
             }
             22 if !control.is_tcp && !klartext => match control.length {
-                Some(length) if length == control.tool && chance(random, 0.7) => continue,
+                Some(length) if length == control.tool && random.chance(0.7) => continue,
                 Some(length) if length == control.tool => Intent::Length(false),
                 _ => Intent::Length(true),
             },
             23 if !control.is_tcp => control.holes(random),
-            24 if !control.is_tcp && (is_plain || !iso) => match choice(random, 3) {
+            24 if !control.is_tcp && (is_plain || !iso) => match random.choice(3) {
                 0 if klartext => Intent::Retract(control.length_between(random, 5.0, 40.0)),
                 1 if iso => {
                     let height = control.length_between(random, 40.0, 90.0);
@@ -293,11 +284,11 @@ pub(crate) fn draw(random: &mut Random, control: &Control) -> Vec<Intent> {
                 Intent::Retract(control.length_between(random, 5.0, 40.0))
             }
             29 if klartext && control.is_tilted && !is_shifted => control.shift_by(random),
-            27 if linuxcnc && control.offset == 0 && chance(random, 0.5) => {
+            27 if linuxcnc && control.offset == 0 && random.chance(0.5) => {
                 let [x, y, z, ..] = control.origins[1];
                 let origin =
                     [x, y, z].map(|value| control.length_between(random, value, value + 9.0));
-                let turn = if chance(random, 0.5) { 0.0 } else { whole(random, 90.0) };
+                let turn = if random.chance(0.5) { 0.0 } else { whole(random, 90.0) };
                 Intent::Origin { origin, turn }
             }
             27 if linuxcnc && !is_shifted && !control.is_tcp => {
@@ -312,14 +303,14 @@ pub(crate) fn draw(random: &mut Random, control: &Control) -> Vec<Intent> {
                 && !linuxcnc
                 && !control.is_tcp =>
             {
-                Intent::Mirror([chance(random, 0.5), chance(random, 0.5)])
+                Intent::Mirror([random.chance(0.5), random.chance(0.5)])
             }
             _ => continue,
         };
         let has_position =
             matches!(intent, Intent::Retract(_) | Intent::Machine { .. } | Intent::Drill(_));
         let needs_length = match intent {
-            Intent::Change { .. } => iso && chance(random, 0.9),
+            Intent::Change { .. } => iso && random.chance(0.9),
             Intent::Tcp { is_on: false, .. } => iso && !linuxcnc,
             _ => false,
         };
@@ -333,7 +324,7 @@ pub(crate) fn draw(random: &mut Random, control: &Control) -> Vec<Intent> {
             }
             _ => false,
         };
-        if !has_position && chance(random, if is_open { 0.92 } else { 0.4 }) {
+        if !has_position && random.chance(if is_open { 0.92 } else { 0.4 }) {
             intents.push(control.line_to(random, true));
         }
         return intents;

@@ -45,9 +45,9 @@ impl Machine {
     pub(crate) fn draw(random: &mut Random) -> Machine {
         let mut point = |low| [random.between(-9.0, 9.0), random.between(-9.0, 9.0), low];
         let (table, tool) = ([point(-480.0), point(-500.0)], [point(190.0), point(160.0)]);
-        let kind = random.between(0.0, 7.0) as usize;
-        let tilting = if random.between(0.0, 1.0) < 0.5 { 3 } else { 4 };
-        let is_nutating = random.between(0.0, 1.0) < 0.15;
+        let kind = random.choice(7);
+        let tilting = if random.chance(0.5) { 3 } else { 4 };
+        let is_nutating = random.chance(0.15);
         let axis = |index: usize, is_of_table, point| {
             let mut direction = Vector3::zeros();
             direction[index % 3] = 1.0;
@@ -56,8 +56,7 @@ impl Machine {
             }
             Axis { index, is_of_table, direction, point }
         };
-        let mut axes: Vec<Axis> =
-            (0..3).map(|k| axis(k, random.between(0.0, 1.0) < 0.4, [0.0; 3])).collect();
+        let mut axes: Vec<Axis> = (0..3).map(|k| axis(k, random.chance(0.4), [0.0; 3])).collect();
         match kind {
             0 => {}
             1 | 2 => axes.extend([axis(tilting, true, table[0]), axis(5, true, table[1])]),
@@ -65,17 +64,17 @@ impl Machine {
             _ => axes.extend([axis(5, false, tool[0]), axis(tilting, false, tool[1])]),
         }
         let is_aligned = kind > 0 && !is_nutating;
-        let rates = (random.between(0.0, 1.0) < 0.92)
-            .then(|| [0; 6].map(|_| random.between(5000.0, 30_000.0).round()));
-        let change = match random.between(0.0, 3.0) as usize {
+        let rates =
+            (random.chance(0.92)).then(|| [0; 6].map(|_| random.between(5000.0, 30_000.0).round()));
+        let change = match random.choice(3) {
             0 => [None; 6],
             1 => [None, None, Some(0.0), None, None, None],
             _ => {
-                let c = (kind > 0 && random.between(0.0, 1.0) < 0.3).then_some(30.0);
+                let c = (kind > 0 && random.chance(0.3)).then_some(30.0);
                 [Some(-50.0), Some(20.0), Some(-100.0), None, None, c]
             }
         };
-        let is_endless = random.between(0.0, 1.0) < 0.5;
+        let is_endless = random.chance(0.5);
         Machine { axes, tilting: is_aligned.then_some(tilting), is_endless, rates, change }
     }
 

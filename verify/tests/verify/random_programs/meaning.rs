@@ -1,4 +1,4 @@
-//! What a program means: intents, and the motions of a machine that executes them.
+//! The meaning of a program: intents, and the motions of a machine that executes them.
 
 use super::Axes;
 use super::kinematics::{Machine, ToolPose, about};
@@ -26,7 +26,7 @@ pub(crate) enum Way {
     WithinTurn,
 }
 
-/// What a block or a few blocks are meant to do. Lengths are in mm and program coordinates.
+/// The purpose of a block or a few blocks. Lengths are in mm and program coordinates.
 #[derive(Clone, Debug)]
 pub(crate) enum Intent {
     Line {
@@ -88,7 +88,7 @@ pub(crate) enum Intent {
     Retract(f64),
 }
 
-/// An arc by its centre from the start, its sweep in degrees, and what it rises along the normal.
+/// An arc by its centre from the start, its sweep in degrees, and its rise along the normal.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Arc {
     pub(crate) normal: usize,
@@ -138,7 +138,7 @@ pub(crate) enum SwivelRetract {
     Along(f64),
 }
 
-/// How the rotary axes turn to a plane.
+/// The way of the rotary axes to a plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Align {
     /// They rest, and are not those of the plane.
