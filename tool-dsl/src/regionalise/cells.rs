@@ -1,5 +1,6 @@
 //! The partition as polygons, for the planner and for drawings.
 
+use super::ROUNDING;
 use super::section::{Feature, Obstacle, Section};
 use super::slices::Slice;
 use crate::geometry::outline::{Point, cross, minus, norm};
@@ -214,7 +215,17 @@ fn samples(section: &Section<'_>, slice: &Slice) -> Vec<(Point, f64)> {
     samples
 }
 
+/// Returns points of a slice, most densely near its ends, to which no neighbour is as near within rounding.
 fn witnesses(section: &Section<'_>, slice: &Slice) -> Vec<Point> {
+    let mut rivals = section.adjacent_features(slice.feature);
+    if let Obstacle::Feature(other) = slice.obstacle {
+        rivals.push(other);
+    }
+    let is_clear = |p: &Point| {
+        let own = section.depth_at(slice.feature, *p);
+        let margin = ROUNDING * section.size.max(own);
+        rivals.iter().all(|other| (section.depth_at(*other, *p) - own).abs() > margin)
+    };
     let mut witnesses = Vec::new();
     for k in 0..24 {
         let part = (f64::from(k) + 0.5) / 24.0;
@@ -224,5 +235,6 @@ fn witnesses(section: &Section<'_>, slice: &Slice) -> Vec<Point> {
             [0.002, 0.15, 0.4, 0.7, 0.93, 0.998].map(|share| foot_point.at(share * radius)),
         );
     }
+    witnesses.retain(is_clear);
     witnesses
 }

@@ -67,6 +67,17 @@ impl Border {
         }
     }
 
+    /// Returns whether a point is on this side for certain, or with a negative `margin` whether it may be: two features within
+    /// the margin are equally near, which they are for long where they hardly turn.
+    pub(super) fn holds_by(&self, section: &Section<'_>, p: Point, margin: f64) -> bool {
+        match *self {
+            Border::Nearer { this, other } => {
+                section.depth_at(this, p) + margin <= section.depth_at(other, p)
+            }
+            _ => self.holds(section, p),
+        }
+    }
+
     /// Returns the distance along a normal at which a straight border is met; NaN for other borders.
     pub(super) fn intersection_distance(
         &self,

@@ -135,8 +135,9 @@ impl Bound {
         Bound { border, unless: Vec::new() }
     }
 
-    fn holds(&self, section: &Section<'_>, p: Point) -> bool {
-        self.border.holds(section, p) || self.unless.iter().any(|border| border.holds(section, p))
+    fn holds_by(&self, section: &Section<'_>, p: Point, margin: f64) -> bool {
+        self.border.holds_by(section, p, margin)
+            || self.unless.iter().any(|border| border.holds(section, p))
     }
 
     fn test(&self, section: &Section<'_>, graph: &mut Graph) -> Option<Test> {
@@ -241,11 +242,13 @@ impl Section<'_> {
         bounds
     }
 
-    fn is_within(&self, bounds: &[Bound], p: Point) -> bool {
-        bounds.iter().all(|bound| bound.holds(self, p))
+    /// Returns whether a point is within all borders by a margin, given in units of the rounding there.
+    fn is_within(&self, bounds: &[Bound], p: Point, margin: f64) -> bool {
+        let margin = margin * self.rounding(p);
+        bounds.iter().all(|bound| bound.holds_by(self, p, margin))
     }
 
-    /// Returns a point that the borders to neighbours assign wrongly to the cell, or wrongly cut off.
+    /// Returns a point that the borders to neighbours assign wrongly to the cell, or wrongly cut off, by more than rounding.
     fn wrong_point(&self, bounds: &[Bound], slices: &[Slice]) -> Option<Point> {
         for slice in slices.iter().filter(|slice| !slice.is_thin(self)) {
             for fraction in SAMPLE_FRACTIONS {
@@ -253,13 +256,13 @@ impl Section<'_> {
                 let radius = slice.radius(self, fraction);
                 let own =
                     [0.0, 0.2, 0.5, 0.8, 1.0 - 1e-6].map(|share| foot_point.at(share * radius));
-                if let Some(p) = own.into_iter().find(|p| !self.is_within(bounds, *p)) {
+                if let Some(p) = own.into_iter().find(|p| !self.is_within(bounds, *p, -1.0)) {
                     return Some(p);
                 }
                 if let Obstacle::Feature(_) = slice.obstacle {
                     let max_distance = self.focus(slice.feature);
                     let beyond = self.points_beyond(&foot_point, radius, max_distance, bounds);
-                    if let Some(p) = beyond.into_iter().find(|p| self.is_within(bounds, *p)) {
+                    if let Some(p) = beyond.into_iter().find(|p| self.is_within(bounds, *p, 1.0)) {
                         return Some(p);
                     }
                 }

@@ -84,15 +84,28 @@ impl Section<'_> {
         let is_axis_parallel =
             [&ad, &az, &bd, &bz].into_iter().filter(|part| part.is_zero()).count() == 2;
         let sine = &(&ad * &bz) - &(&az * &bd);
-        if is_axis_parallel || sine.to_f64().abs() < 1e-3 {
+        // Neighbours meet at their joint, however little they turn there. Outside, where nothing is proved, their difference does.
+        let joint = match (a.abs_diff(b) == 1 && !self.outer, a < b) {
+            (true, true) => Some(first.to.clone()),
+            (true, false) => Some(second.to.clone()),
+            _ => None,
+        };
+        let is_nearly_parallel = joint.is_none() && sine.to_f64().abs() < 1e-3;
+        if is_axis_parallel || is_nearly_parallel {
             let (a, b) = (first.depth(graph)?, second.depth(graph)?);
             let difference = graph.sub(a, b);
             return Some(if is_axis_parallel { expanded(graph, difference) } else { difference });
         }
-        let offset = [0, 1].map(|k| &second.from[k] - &first.from[k]);
-        let along = (&(&offset[0] * &bz) - &(&offset[1] * &bd)).checked_div(&sine)?;
-        let intersection = [&ad, &az].map(|direction| direction * &along);
-        let intersection = [0, 1].map(|k| &first.from[k] + &intersection[k]);
+        let crossing = || {
+            let offset = [0, 1].map(|k| &second.from[k] - &first.from[k]);
+            let along = (&(&offset[0] * &bz) - &(&offset[1] * &bd)).checked_div(&sine)?;
+            let along = [&ad, &az].map(|direction| direction * &along);
+            Some([0, 1].map(|k| &first.from[k] + &along[k]))
+        };
+        let intersection = match joint {
+            Some(joint) => joint,
+            None => crossing()?,
+        };
         // Normals are the directions turned left.
         Some(outline::anchored(graph, [&bz - &az, &ad - &bd], &intersection))
     }

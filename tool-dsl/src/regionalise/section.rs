@@ -65,8 +65,10 @@ pub(super) struct Section<'o> {
     fans: Vec<[f64; 2]>,
     /// The diagonal of the outline's bounding box.
     pub(super) size: f64,
+    /// The largest coordinate or radius of the outline, by which depths are rounded.
+    largest: f64,
     /// True if the left side is the outside, which is unbounded.
-    outer: bool,
+    pub(super) outer: bool,
     /// A box of each feature, by centre and half the sides, with a margin above the tolerances of contact.
     boxes: Vec<[Point; 2]>,
 }
@@ -78,8 +80,11 @@ impl<'o> Section<'o> {
     pub(super) fn new(outline: &'o [Segment], outer: bool) -> Section<'o> {
         let [low, high] = bounding_box(outline);
         let size = norm(minus(high, low));
+        let radii = outline.iter().filter_map(|segment| Some(segment.round()?.1));
+        let largest =
+            [low, high].as_flattened().iter().map(|x| x.abs()).chain(radii).fold(0.0, f64::max);
         let (features, fans, boxes) = (Vec::new(), Vec::new(), Vec::new());
-        let mut section = Section { outline, features, fans, size, outer, boxes };
+        let mut section = Section { outline, features, fans, size, largest, outer, boxes };
         section.find_features();
         section.boxes =
             section.features.iter().map(|feature| section.feature_box(*feature)).collect();
@@ -158,6 +163,21 @@ impl<'o> Section<'o> {
         }
     }
 
+    /// Returns the features that meet a feature at its ends.
+    pub(super) fn adjacent_features(&self, feature: usize) -> Vec<usize> {
+        let meets = |other: &Feature| match (self.features[feature], *other) {
+            (Feature::Piece(a), Feature::Piece(b)) => a.abs_diff(b) == 1,
+            (Feature::Piece(piece), Feature::Corner(previous))
+            | (Feature::Corner(previous), Feature::Piece(piece)) => self
+                .adjacent_segments(previous)
+                .into_iter()
+                .flatten()
+                .any(|(next, _)| next == piece),
+            (Feature::Corner(_), Feature::Corner(_)) => false,
+        };
+        (0..self.features.len()).filter(|other| meets(&self.features[*other])).collect()
+    }
+
     /// Returns the point and normal of a feature at a parameter from 0 to 1, which is linear along a line and in the
     /// angle of an arc or fan.
     pub(super) fn foot_point(&self, feature: usize, t: f64) -> FootPoint {
@@ -225,6 +245,11 @@ impl<'o> Section<'o> {
             Feature::Piece(piece) => self.outline[piece].signed(p),
             Feature::Corner(previous) => norm(minus(p, self.corner_at(previous))),
         }
+    }
+
+    /// Bounds the difference by which rounding alone may make one of two features the nearer at a point.
+    pub(super) fn rounding(&self, [d, z]: Point) -> f64 {
+        16.0 * f64::EPSILON * self.largest.max(d.abs()).max(z.abs())
     }
 
     /// Returns the distances of points from the outline, which is fastest if most of them are nearest to the given feature.

@@ -127,6 +127,37 @@ fn kinds(outline: &Outline) -> Vec<&'static str> {
     all
 }
 
+/// Profiles with a taper: a number with a sign is larger or smaller by it.
+const TAPERED: [&str; 8] = [
+    "0 0, 10 0, 10+ 30, 0 30",
+    "0 0, 10 0, 10- 30, 0 30",
+    "0 0, 5 5 about 0 5, 5+ 35, 0 35",
+    "0 0, 8 0, 10 2 about 8 2, 10+ 32, 0 32",
+    "0 0, 10 0, 10+ 30, 10+ 60, 0 60",
+    "0 0, 10 0, 10 30, 10+ 60, 0 60",
+    "0 0, 10 0, 10- 20, 10 40, 0 40",
+    "0 0, 10 0, 10 10, 8 10, 8+ 40, 12 40, 12 60, 0 60",
+];
+
+/// Neighbours that hardly turn are equally near for long, and no matter which of them owns a point, its depth is the distance.
+#[test]
+fn tapers_of_any_angle_are_divided() {
+    for drawing in TAPERED {
+        for taper in [1e-6, 1e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2] {
+            let number = |word: &str| match word.split_at(word.len() - 1) {
+                (number, "+") => (number.parse::<f64>().expect("a number") + taper).to_string(),
+                (number, "-") => (number.parse::<f64>().expect("a number") - taper).to_string(),
+                _ => word.to_owned(),
+            };
+            let words: Vec<String> = drawing.replace(',', " ,").split(' ').map(number).collect();
+            let outline = Outline::parse(&words.join(" ").replace(" ,", ","));
+            // A corner that turns by some 1e-4 to 1e-3 may spend the boxes of the proof.
+            assert!(taper > 3e-3 || proof(&outline).0, "{drawing} by {taper} is not proved");
+            assert_eq!(tried(&outline), Ok(()), "{drawing} by {taper}");
+        }
+    }
+}
+
 #[test]
 fn random_profiles_of_every_kind() {
     let count = super::profiles();
