@@ -4,7 +4,7 @@
 
 use super::samples::{ONE_SIDED_GAIN, Sample, SampleSubset, Samples};
 use super::{BITS_PER_ADDITION, MAX_TESTS, Tree, costs};
-use crate::diagnostic::{CheckKind, Diagnostic};
+use crate::diagnostic::{CheckKind, Diagnostic, Kind};
 use crate::expr::Id;
 use crate::formula::{CurveIndex, Formula};
 use crate::geometry::cut::{
@@ -16,6 +16,7 @@ use crate::regionalise::overlay::{self, ConditionedPart};
 use crate::regionalise::{ROUNDING, cells};
 use std::cell::Cell;
 use std::cmp::Ordering;
+use std::collections::BinaryHeap;
 use std::rc::Rc;
 
 /// The number of chords per curved edge: at first, and on retries after coarser polygons gave a wrong tree.
@@ -31,12 +32,17 @@ const REPEATED_TEST_COST_FACTOR: f64 = 0.3;
 
 /// Returns the tree of owners, and that of the distances to the features that are nearest outside.
 pub(super) fn trees(model: &Model, section: &Section) -> Result<(Owners, Tree<Id>), Diagnostic> {
-    let mut result = try_trees(model, section, CHORDS_PER_EDGE[0]);
-    // More chords cost time in every cut, and few tools need them.
-    for chords in &CHORDS_PER_EDGE[1..] {
-        if result.is_err() {
-            result = try_trees(model, section, *chords);
+    let [few, more @ ..] = CHORDS_PER_EDGE;
+    let mut result = try_trees(model, section, few);
+    // More chords cost time in every cut, and few tools need them. They separate features, but with no fewer tests.
+    for chords in more {
+        let is_inseparable = |failed: &Diagnostic| {
+            matches!(failed.kind, Kind::CheckKind(CheckKind::Inseparable { .. }))
+        };
+        if !result.as_ref().is_err_and(is_inseparable) {
+            break;
         }
+        result = try_trees(model, section, chords);
     }
     result
 }
@@ -344,26 +350,33 @@ struct Candidate {
     is_one_sided: bool,
 }
 
-/// A candidate with its rank: the least in the list of `bsp`, and then the one of greatest gain.
+/// A candidate with its rank: greatest is the first in the list of `bsp`, then the one of greatest gain, then the first.
 struct Ranked {
     listed: usize,
     gain: f64,
     curve: CurveIndex,
 }
 
-/// Removes and returns the best curve of a list, the first of equals.
-fn take_best(remaining: &mut Vec<Ranked>) -> Option<CurveIndex> {
-    let mut best = 0;
-    for (index, candidate) in remaining.iter().enumerate() {
-        let Ranked { listed, gain, .. } = remaining[best];
-        if candidate.listed < listed
-            || candidate.listed == listed && candidate.gain.total_cmp(&gain).is_gt()
-        {
-            best = index;
-        }
+impl Ord for Ranked {
+    fn cmp(&self, other: &Ranked) -> Ordering {
+        let listed = other.listed.cmp(&self.listed);
+        listed.then(self.gain.total_cmp(&other.gain)).then(other.curve.cmp(&self.curve))
     }
-    (!remaining.is_empty()).then(|| remaining.remove(best).curve)
 }
+
+impl PartialOrd for Ranked {
+    fn partial_cmp(&self, other: &Ranked) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Ranked {
+    fn eq(&self, other: &Ranked) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+
+impl Eq for Ranked {}
 
 impl Candidate {
     fn new(curve: CurveIndex) -> Candidate {
@@ -436,7 +449,7 @@ impl Planner<'_> {
         candidates: &mut Vec<Candidate>,
     ) -> Option<Choice> {
         let uncertain = self.samples.entropy(samples);
-        let mut remaining: Vec<Ranked> = Vec::with_capacity(candidates.len());
+        let mut ranked = Vec::with_capacity(candidates.len());
         for Candidate { curve, is_one_sided } in &mut *candidates {
             let cost_factor = if self.used[*curve] { REPEATED_TEST_COST_FACTOR } else { 1.0 };
             let gain =
@@ -444,19 +457,32 @@ impl Planner<'_> {
             *is_one_sided = gain.is_none();
             let cost = BITS_PER_ADDITION * cost_factor * self.costs[*curve];
             let gain = gain.unwrap_or(ONE_SIDED_GAIN) - cost;
-            remaining.push(Ranked { listed: self.listed_rank(*curve), gain, curve: *curve });
+            ranked.push(Ranked { listed: self.listed_rank(*curve), gain, curve: *curve });
         }
+        let mut divides_nothing = vec![false; self.shapes.len()];
+        let choice = self.first_separating(pieces, ranked.into(), &mut divides_nothing);
+        // What divides nothing here divides nothing below.
+        candidates.retain(|candidate| !divides_nothing[candidate.curve]);
+        choice
+    }
+
+    /// Returns the best curve that separates owners, and marks those before it that divide no piece.
+    fn first_separating(
+        &mut self,
+        pieces: &[Rc<Piece>],
+        mut ranked: BinaryHeap<Ranked>,
+        divides_nothing: &mut [bool],
+    ) -> Option<Choice> {
+        let count = owner_count(pieces);
         let (mut fallback, mut with_double_zeros, mut skipped_count) = (None, None, 0);
         // One of the first few is mostly chosen, so they are not sorted.
-        while let Some(curve) = take_best(&mut remaining) {
+        while let Some(Ranked { curve, .. }) = ranked.pop() {
             let halves = self.halves(curve, pieces);
-            // It divides nothing here, and so nothing below.
             if halves.below.is_empty() || halves.above.is_empty() {
-                candidates.retain(|other| other.curve != curve);
+                divides_nothing[curve] = true;
                 continue;
             }
             // A curve that cuts through cells without separating owners is kept as a last resort.
-            let count = owner_count(pieces);
             if owner_count(&halves.below) == count && owner_count(&halves.above) == count {
                 fallback.get_or_insert((curve, halves));
                 continue;
