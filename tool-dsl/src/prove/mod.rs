@@ -44,9 +44,10 @@ const SMALL_BOX_FRACTION: f64 = 1.0 / 1024.0;
 /// [`Certificate::is_exact`]. `c` of a distance is lowered by a tenth of it ([`slope::SLOPE_MARGIN`]).
 const EXACT_TOLERANCE: f64 = 1e-8;
 
-/// The number of boxes that a proof may use, and that a proof during compilation may use.
+/// The number of boxes that a proof may use.
 const MAX_BOXES: usize = 35_000;
-const MAX_BOXES_IN_COMPILATION: usize = 4_000;
+/// The number of boxes in which a compilation looks for errors of a tool whose construction gives the bounds of its depth.
+const MAX_BOXES_OF_EXACT: usize = 4_000;
 
 /// The facts proved about a tool.
 #[derive(Clone, Debug)]
@@ -208,7 +209,8 @@ impl Bounds {
             return (exact, Vec::new());
         }
         // Overlaps of regions are left to [`Certificate::prove`].
-        let certificate = prove_with_budget(tool, MAX_BOXES_IN_COMPILATION, false);
+        let boxes = if tool.model.is_exact() { MAX_BOXES_OF_EXACT } else { MAX_BOXES };
+        let certificate = prove_with_budget(tool, boxes, false);
         let mut diagnostics = certificate.certain_diagnostics(tool);
         // A proof that stays open does not weaken what the construction gives; only its errors count.
         if tool.model.is_exact() {

@@ -13,8 +13,8 @@ use super::rounding::RoundingErrors;
 use super::slope::{SLOPE_MARGIN, Slopes};
 use super::witness::{TEST_OFFSET_FRACTION, Witness};
 use super::{
-    Border, Certificate, JumpPoint, MAX_BOXES_IN_COMPILATION, OpenProof, RegionFacts,
-    SMALL_BOX_FRACTION, TOLERANCE,
+    Border, Certificate, JumpPoint, MAX_BOXES_OF_EXACT, OpenProof, RegionFacts, SMALL_BOX_FRACTION,
+    TOLERANCE,
 };
 use crate::diagnostic::Statement;
 use crate::domain::Domain;
@@ -60,9 +60,9 @@ const MAX_SLOPE_UNCERTAINTY: f64 = 0.1;
 pub(super) fn survey(tool: &mut PlannedTool, boxes: usize, check_overlaps: bool) -> Certificate {
     let depths = Depths::of(&mut tool.model);
     let boxes = boxes.min(MAX_BOXES_TIMES_REGIONS / tool.model.regions.len().max(1));
-    // During compilation there are boxes for one try only.
+    // So few boxes are for one try only.
     let single_try = [(POINT_BOX_FRACTIONS_AND_BUDGET_THIRDS[0].0, 3)];
-    for (point_box_fraction, thirds) in if boxes > MAX_BOXES_IN_COMPILATION {
+    for (point_box_fraction, thirds) in if boxes > MAX_BOXES_OF_EXACT {
         &POINT_BOX_FRACTIONS_AND_BUDGET_THIRDS[..]
     } else {
         &single_try
