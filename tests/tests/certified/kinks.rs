@@ -1,5 +1,5 @@
-//! Profiles of which some segments are nearly in line, as CAD draws balls by chords and as tapers are: the depth of each surface
-//! against samples of the triangles.
+//! Profiles of which some segments are nearly in line, as CAD draws balls by chords and as tapers are: the depth of each surface,
+//! and verdicts with allowances and margins, against samples of the triangles.
 //!
 //! `KINKS=2500 cargo test --release -p touchoff-tests --test certified kinks -- --nocapture` examines 10,000 tools.
 
@@ -117,17 +117,60 @@ fn tiny(rng: &mut Rng) -> Restated {
 /// Counts of verdicts, beside that of violations.
 const QUERIES: &str = "queries";
 const IN_CONTACT: &str = "in contact";
-const WIDE: &str = "wide";
+const WIDE: &str = "wide or undecided";
+const CLEAR: &str = "clear";
+const NEAR: &str = "near";
 const VIOLATIONS: &str = "violations";
 
-/// Compares the depth of each surface with samples of a few triangles near a corner of the profile.
-fn compare(tool: &Restated, rng: &mut Rng, tally: &mut Tally) {
+/// A tool, and what is known of it from its drawing alone.
+struct Subject {
+    outlined: Outlined,
+    oracle: Nearest,
+    /// The tool in the language, for messages.
+    text: String,
+    size: f64,
+}
+
+impl Subject {
+    fn new(tool: &Restated) -> Subject {
+        let (outlined, oracle) = (Outlined::new(tool), Nearest::new(tool));
+        let [_, [far, top]] = oracle.profile().extent();
+        let text = tool.text(|n| n.to_f64().to_string());
+        Subject { outlined, oracle, text, size: far.max(top) }
+    }
+
+    fn depth(&self, [x, y, z]: [f64; 3]) -> f64 {
+        self.oracle.profile().depth(&[x.hypot(y), z])
+    }
+
+    /// Returns a point's distance from a surface.
+    fn distance(&self, SurfaceId(surface): SurfaceId, p: [f64; 3]) -> f64 {
+        self.oracle.distance_to_surface(&self.outlined.info().surfaces[surface].name, p)
+    }
+
+    /// Returns the depth of an inner point to which a surface is the nearest. Points as near to two count for both.
+    fn owned_depth(&self, surface: SurfaceId, p: [f64; 3]) -> Option<f64> {
+        let depth = self.depth(p);
+        let is_owned = depth > 0.0 && self.distance(surface, p) <= depth + 1e-13 * self.size;
+        is_owned.then_some(depth)
+    }
+
+    /// Returns whether a witness is below its surface by at least a depth, or by a negative one at most so far from it.
+    fn shows(&self, depth: f64, Witness { point, surface, .. }: &Witness) -> bool {
+        let p = to_tool(&Pose::default(), 1.0, *point);
+        let (deep, away) = (self.depth(p), self.distance(*surface, p));
+        let rounding = 1e-11 * self.size;
+        let is_deep = deep >= depth.max(0.0) - 0.1 * rounding && away <= deep + rounding;
+        is_deep || away <= rounding - depth
+    }
+}
+
+/// Compares depths and verdicts with samples of a few triangles near a corner of the profile.
+fn compare(subject: &Subject, rng: &mut Rng, tally: &mut Tally) {
     const TOLERANCE: f64 = 1e-6;
-    let (outlined, oracle) = (Outlined::new(tool), Nearest::new(tool));
-    let profile = oracle.profile();
-    let corners = profile.corners();
-    let [_, [far, top]] = profile.extent();
-    let size = far.max(top);
+    let Subject { outlined, oracle, text, size } = subject;
+    let corners = oracle.profile().corners();
+    let surfaces = || (0..outlined.info().surfaces.len()).map(SurfaceId);
     for _ in 0..3 {
         let [d, z] = rng.pick(&corners);
         let reach = size * rng.power(-3.0, 0.0);
@@ -138,45 +181,71 @@ fn compare(tool: &Restated, rng: &mut Rng, tally: &mut Tally) {
                 [0; 3].map(|_| (middle + Vector3::from(rng.direction()) * reach).into())
             })
             .collect();
+        let samples: Vec<[f64; 3]> = triangles.iter().flat_map(samples).collect();
         let bvh = TriangleBvh::new(&soup(&triangles));
         let pose = Pose::default();
-        let mut certifier =
-            Certifier::new(&bvh, &outlined).unwrap_or_else(|error| panic!("{error}: {tool:?}"));
-        for (index, surface) in outlined.info().surfaces.iter().enumerate() {
-            let found = certifier.deepest_on(SurfaceId(index), &pose, TOLERANCE).expect("it");
+        let new = || Certifier::new(&bvh, outlined).unwrap_or_else(|e| panic!("{e}: {text}"));
+        let mut certifier = new();
+        for surface in surfaces() {
+            let found = certifier.deepest_on(surface, &pose, TOLERANCE).expect("it");
             let Interval { low, high } = found.depth;
-            // Points as near to two surfaces count for both.
-            let owned_depth = |p: [f64; 3]| -> Option<f64> {
-                let depth = profile.depth(&[p[0].hypot(p[1]), p[2]]);
-                let owner = oracle.distance_to_surface(&surface.name, p);
-                (depth > 0.0 && owner <= depth + 1e-13 * size).then_some(depth)
-            };
-            let samples = triangles.iter().flat_map(|[a, b, c]| {
-                let [a, b, c] = [a, b, c].map(|corner| Vector3::from(*corner));
-                (0..=60).flat_map(move |i| (0..=60 - i).map(move |j| (i, j))).map(move |(i, j)| {
-                    let [s, t] = [i, j].map(|k| f64::from(k) / 60.0);
-                    (a + (b - a) * s + (c - a) * t).into()
-                })
-            });
-            let sampled = samples.filter_map(owned_depth).fold(0.0, f64::max);
+            let owned = samples.iter().filter_map(|p| subject.owned_depth(surface, *p));
+            let sampled = owned.fold(0.0, f64::max);
             tally.add(QUERIES, 1);
             tally.see(IN_CONTACT, sampled > 0.0);
             tally.see(WIDE, high - low > TOLERANCE + 1e-9);
-            let text = tool.text(|n| n.to_f64().to_string());
-            let case = || format!("{} of {text}: {triangles:?}", surface.name);
+            let told = || format!("{found:?} of {surface:?} of {text}: {triangles:?}");
             let is_above = sampled > high + 1e-12 * size;
-            tally.never(VIOLATIONS, is_above, || format!("{sampled} above {high}: {}", case()));
-            let deep = |Witness { point, .. }: &Witness| {
-                let p = to_tool(&pose, 1.0, *point);
-                let depth = profile.depth(&[p[0].hypot(p[1]), p[2]]);
-                let owner = oracle.distance_to_surface(&surface.name, p);
-                depth >= low - 1e-12 * size && owner <= depth + 1e-11 * size
-            };
-            let is_missing = low > 0.0 && !found.witness.as_ref().is_some_and(deep);
-            let text = || format!("{:?} {low}: {}", found.witness, case());
-            tally.never(VIOLATIONS, is_missing, text);
+            tally.never(VIOLATIONS, is_above, || format!("{sampled} deep: {}", told()));
+            let is_shown = found.witness.as_ref().is_some_and(|w| subject.shows(low, w));
+            tally.never(VIOLATIONS, low > 0.0 && !is_shown, told);
         }
+
+        let allowed: Vec<f64> = surfaces()
+            .map(|_| {
+                let depth = size * rng.power(-4.0, 0.0);
+                rng.pick(&[0.0, f64::INFINITY, depth, -depth])
+            })
+            .collect();
+        let names = outlined.info().surfaces.iter().map(|surface| &*surface.name);
+        let mut certifier =
+            new().with_allowances(names.zip(allowed.iter().copied())).expect("surfaces");
+        let verdict = certifier.check_pose(&pose);
+        // How much deeper than allowed a point is, or how much nearer than a margin.
+        let excess = |p: &[f64; 3]| {
+            let of_surface = |surface: SurfaceId| {
+                let allowed = allowed[surface.0];
+                let owned = subject.owned_depth(surface, *p).unwrap_or(f64::NEG_INFINITY);
+                let lack =
+                    if allowed < 0.0 { -allowed - subject.distance(surface, *p) } else { 0.0 };
+                lack.max(owned - allowed.max(0.0))
+            };
+            surfaces().map(of_surface).fold(0.0, f64::max)
+        };
+        tally.add(QUERIES, 1);
+        tally.see(CLEAR, matches!(verdict, PoseVerdict::Clear | PoseVerdict::SurfaceOnly));
+        tally.see(NEAR, matches!(verdict, PoseVerdict::Near(_)));
+        tally.see(WIDE, matches!(verdict, PoseVerdict::Undecided(_)));
+        let is_false = match &verdict {
+            PoseVerdict::Touching(witness) | PoseVerdict::Near(witness) => {
+                !subject.shows(allowed[witness.surface.0], witness)
+            }
+            PoseVerdict::Undecided(_) => false,
+            PoseVerdict::Inside(_) => true,
+            _ => samples.iter().map(excess).fold(0.0, f64::max) > 1e-12 * size,
+        };
+        let told = || format!("{verdict:?}, allowed {allowed:?}, of {text}: {triangles:?}");
+        tally.never(VIOLATIONS, is_false, told);
     }
+}
+
+/// Returns points of a triangle in a grid, its corners among them.
+fn samples(triangle: &[[f64; 3]; 3]) -> impl Iterator<Item = [f64; 3]> {
+    let [a, b, c] = triangle.map(Vector3::from);
+    (0..=60).flat_map(move |i| (0..=60 - i).map(move |j| (i, j))).map(move |(i, j)| {
+        let [s, t] = [i, j].map(|k| f64::from(k) / 60.0);
+        (a + (b - a) * s + (c - a) * t).into()
+    })
 }
 
 #[test]
@@ -186,12 +255,16 @@ fn samples_are_within_the_depth_of_surfaces_nearly_in_line() {
     for kind in [tapered, grooved, chords, tiny] {
         for _ in 0..case_count("KINKS", 8) {
             let tool = kind(&mut rng);
-            compare(&tool, &mut rng, &mut tally);
+            compare(&Subject::new(&tool), &mut rng, &mut tally);
         }
     }
     eprintln!("{tally}");
     tally.assert_none(VIOLATIONS);
     assert!(5 * tally.count(IN_CONTACT) > tally.count(QUERIES), "{tally}");
+    assert!(
+        [CLEAR, NEAR].into_iter().all(|kind| 100 * tally.count(kind) > tally.count(QUERIES)),
+        "{tally}"
+    );
     assert!(1000 * tally.count(WIDE) <= tally.count(QUERIES), "{tally}");
 }
 
