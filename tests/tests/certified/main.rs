@@ -37,6 +37,7 @@ mod pair;
 mod pieces;
 mod ring_of_ties;
 mod rounding;
+mod sharp_cases;
 mod spinning;
 mod supports;
 mod sweeps;

@@ -864,10 +864,25 @@ mod tests {
         };
         let mut sorted: Vec<Ranked> = (0..60).map(candidate).collect();
         sorted.sort_by(|a, b| a.listed.cmp(&b.listed).then(b.gain.total_cmp(&a.gain)));
-        let mut remaining: Vec<Ranked> = (0..60).map(candidate).collect();
+        let mut ranked: BinaryHeap<Ranked> = (0..60).map(candidate).collect();
         for expected in sorted {
-            assert_eq!(take_best(&mut remaining), Some(expected.curve));
+            assert_eq!(ranked.pop().expect("a candidate").curve, expected.curve);
         }
-        assert_eq!(take_best(&mut remaining), None);
+    }
+
+    /// Every direction of the half plane has a point at eight sizes.
+    #[test]
+    fn points_far_away_are_all_around() {
+        let points = ring_points(2.0, 3.0);
+        for degrees in -90..=90 {
+            let (sine, cosine) = f64::from(degrees).to_radians().sin_cos();
+            let is_near = |[d, z]: &Point| {
+                let length = d.hypot(z - 2.0);
+                let turned = (d * cosine + (z - 2.0) * sine) / length;
+                // Neighbours are 1.41 degrees apart.
+                (length - 24.0).abs() < 1e-9 && turned > 0.0125f64.cos()
+            };
+            assert!(points.iter().any(is_near), "{degrees}");
+        }
     }
 }

@@ -424,3 +424,31 @@ impl RootSum {
         RootSum { polynomial: self.polynomial.plus(&other.polynomial), roots: self.roots }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::expr::Coord;
+
+    #[test]
+    fn the_opposite_of_a_sum_of_roots_has_the_opposite_ratio() {
+        let mut graph = Graph::default();
+        let [d, z] = [Coord::D, Coord::Z].map(|coord| graph.coord(coord));
+        let four = graph.int(4);
+        let up = graph.sub(z, four);
+        let [p, q] = [z, up].map(|z| {
+            let [d, z] = [d, z].map(|part| graph.mul(part, part));
+            let under = graph.add(d, z);
+            graph.sqrt(under).expect("a root")
+        });
+        let sum = graph.add(p, q);
+        let [opposite, minus_q] = [sum, q].map(|id| graph.neg(id));
+        let mut forms = Forms::new(&graph);
+        let [a, b] = [p, minus_q].map(|id| forms.of(id).expect("a form"));
+        for (id, expected) in [(sum, 1), (opposite, -1)] {
+            let sum = RootSum::of(&graph, &mut forms, id).expect("a sum of roots");
+            let ratio = sum.ratio_to_difference(&a, &b).expect("a multiple");
+            assert!(ratio.nearly_equals(&Number::int(expected)), "{expected}");
+        }
+    }
+}

@@ -801,4 +801,15 @@ mod tests {
         }
         assert!(inside > 200, "{inside}");
     }
+
+    /// A triangle that is beside the housing where it is as high, and below it where it is nearer to the axis.
+    #[test]
+    fn a_triangle_that_passes_below_a_step_is_not_deep() {
+        let section = Section::new(NECKED.info(), ERROR).expect("a profile");
+        let zones: Vec<_> = section.slabs.iter().map(|slab| Some(Rectangle::of(slab))).collect();
+        let hull = Hull::<f64>::new(&section, &zones, ERROR);
+        let corners = [[3.5, 0.0, 8.9], [8.5, 0.0, 9.2], [8.5, 1.0, 9.2]];
+        let [bound, _] = dispatch!(Level::new(), simd => both_bounds(simd, &hull, &corners));
+        assert!(bound < 0.0, "{bound}");
+    }
 }

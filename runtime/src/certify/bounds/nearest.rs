@@ -597,4 +597,15 @@ mod tests {
         }
         assert!(longest <= 1.0 && directions > 1000, "{longest} in {directions}");
     }
+
+    #[test]
+    fn the_nearest_point_inside_a_triangle_is_its_foot() {
+        dispatch!(Level::new(), simd => {
+            let at = |p: [f64; 3]| p.map(|part| f64x8::splat(simd, part));
+            let triangle = [at([1.0, -2.0, -1.0]), at([1.0, 3.0, -1.0]), at([1.0, 1.0, 2.0])];
+            let found = NearestPoint::to_axis_point(simd, &triangle, 0.0).point.map(|part| part[0]);
+            let is_near = |(found, expected): (&f64, f64)| (found - expected).abs() < 1e-12;
+            assert!(found.iter().zip([1.0, 0.0, 0.0]).all(is_near), "{found:?}");
+        });
+    }
 }

@@ -399,3 +399,19 @@ impl SweptBatch {
             .store_slice(&mut self.bounds);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fearless_simd::{Level, dispatch, f64x8};
+
+    /// The way from (1, -2, -2) to (1, 6, 8) is nearest to the axis at (1, 0, 0.5).
+    #[test]
+    fn a_point_slides_to_where_it_is_nearest_to_the_axis() {
+        dispatch!(Level::new(), simd => {
+            let at = |p: [f64; 3]| p.map(|part| f64x8::splat(simd, part));
+            let found = slide(simd, &at([1.0, 2.0, 3.0]), &at([0.0, 4.0, 5.0]), None);
+            assert_eq!(found.map(|part| part[0]), [1.0, 0.0, 0.5]);
+        });
+    }
+}

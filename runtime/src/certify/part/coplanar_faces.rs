@@ -199,3 +199,16 @@ impl Rectangle {
         Some(Rectangle { area: (u1 - u0) * (v1 - v0), corners })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A side that leaves the plane within the tolerance does not tilt the rectangle.
+    #[test]
+    fn a_rectangle_lies_in_its_plane() {
+        let points = [[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0]].into_iter();
+        let found = Rectangle::along([1.0, 0.0, 1e-9], [0.0, 0.0, 1.0], &points).expect("a side");
+        assert!(found.corners.iter().all(|corner| corner[2].abs() < 1e-15), "{:?}", found.corners);
+    }
+}

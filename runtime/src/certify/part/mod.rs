@@ -412,4 +412,37 @@ mod tests {
             assert!(ends[1] - ends[0] < 1e-15 + thin, "2^{exponent}: {ends:?}");
         }
     }
+
+    /// Enters the boxes that contain a point.
+    struct About {
+        origin: Point3<f64>,
+        place: Point3<f64>,
+        found: usize,
+        visited: usize,
+    }
+
+    impl BoxVisitor for About {
+        fn enters(&mut self, centre: Vector3<f64>, half: Vector3<f64>) -> bool {
+            let off = self.place - self.origin - centre;
+            (0..3).all(|k| off[k].abs() <= half[k] * (1.0 + 1e-5) + 1e-9)
+        }
+
+        fn triangle(&mut self, corners: [Point3<f64>; 3]) {
+            self.visited += 1;
+            self.found += usize::from(corners.contains(&self.place));
+        }
+    }
+
+    #[test]
+    fn a_corner_is_found_in_the_boxes_that_contain_it() {
+        let mesh = crate::mesh::shapes::sphere(30.0, 3, Unit::Millimetre).expect("a sphere");
+        let bvh = TriangleBvh::new(&mesh);
+        for place in mesh.vertices() {
+            let mut about = About { origin: bvh.origin(), place: *place, found: 0, visited: 0 };
+            bvh.visit(&mut about);
+            // Five or six triangles meet in a corner of a divided icosahedron.
+            let is_found = (5..=6).contains(&about.found) && 2 * about.visited < bvh.len();
+            assert!(is_found, "{place}");
+        }
+    }
 }

@@ -245,7 +245,7 @@ fn crossing(corners: [[f64; 3]; 3], from: Point3<f64>, to: Point3<f64>) -> Cross
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::shapes;
+    use crate::mesh::{Mesh, shapes};
     use crate::unit::Unit;
 
     /// Points in the planes of a block's faces, on lines through its corners and edges, and on its surface.
@@ -525,5 +525,23 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// The first ray begins on a wall through the middle of a void's face. Others begin elsewhere on that face, not beside it.
+    #[test]
+    fn a_void_that_a_wall_crosses_is_a_void() {
+        let block = |low: [f64; 3], high: [f64; 3]| {
+            shapes::cuboid(low.into(), high.into(), Unit::Millimetre).expect("a block")
+        };
+        let corners = [[0.0, 0.0, 0.0], [9.0, 0.0, 0.0], [0.0, 9.0, 0.0], [2.0, 2.0, -3.0]];
+        let faces = [[0, 2, 1], [0, 3, 2], [2, 3, 1], [1, 3, 0]];
+        let void = Mesh::new(corners.map(Point3::from), faces, Unit::Millimetre).expect("a mesh");
+        let pieces = [
+            (block([-20.0; 3], [20.0; 3]), false),
+            (void, false),
+            (block([3.0, 1.0, -1.0], [4.0, 4.0, 1.0]), false),
+            (block([8.0, 8.0, -1.0], [10.0, 10.0, 1.0]), true),
+        ];
+        assert!(TriangleBvh::new(&joined(&pieces)).has_inside());
     }
 }

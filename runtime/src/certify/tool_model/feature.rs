@@ -520,4 +520,28 @@ mod tests {
             );
         }
     }
+
+    /// The square about (1, 2) is at least 1.515 from the arc and at most 1.05 from the line, that about (7, 3) at least 3.95
+    /// and at most 0.55.
+    #[test]
+    fn an_arc_is_farther_than_a_line_beside_it() {
+        let circle = Some(Circle { centre: [0.0, 3.0], radius: 3.0, convex: true });
+        let [from, to] = [[0.0, 0.0], [3.0, 3.0]];
+        let arc = quarters(&ProfileSegment { from, to, circle, surface: SurfaceId(0) })[0];
+        for (centre, beside, margin) in [([1.0, 2.0], 2.0, 0.4), ([7.0, 3.0], 6.5, 3.0)] {
+            let line = Feature::new([[beside, 0.0], [beside, 6.0]], None, 0);
+            let corners = [[-0.05, -0.05], [0.05, -0.05], [0.05, 0.05], [-0.05, 0.05]]
+                .map(|off| [0, 1].map(|k| centre[k] + off[k]));
+            assert!(arc.is_farther(&line, &corners, margin), "{centre:?}");
+        }
+    }
+
+    /// Both the nearer end of an edge and the apex are the arc's centre, whose depth is the radius.
+    #[test]
+    fn the_centre_of_an_arc_is_as_deep_as_its_radius() {
+        let circle = Some(Circle { centre: [2.0, 2.0], radius: 2.0, convex: true });
+        let [from, to] = [[2.0, 0.0], [4.0, 2.0]];
+        let arc = quarters(&ProfileSegment { from, to, circle, surface: SurfaceId(0) })[0];
+        assert!(arc.at_most(&[[2.0, 2.0], [3.0, 2.0], [2.0, 2.0]]) >= 2.0);
+    }
 }

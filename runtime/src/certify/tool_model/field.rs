@@ -638,7 +638,7 @@ fn hull(at: f64, [a, b, c]: [f64; 3]) -> Interval {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::certify::{Certifier, PoseVerdict, TriangleBvh};
+    use crate::certify::{Certifier, Goal, PoseVerdict, TriangleBvh};
     use crate::mesh::shapes;
     use crate::tool::Interpreted;
     use crate::{Pose, Unit};
@@ -680,5 +680,28 @@ mod tests {
         let pose = Pose::from_axis(Point3::new(0.0, 0.0, 3.0), Vector3::z())?;
         assert!(matches!(certifier.check_pose(&pose), PoseVerdict::Clear));
         Ok(())
+    }
+
+    /// The free box about a point 0.1 beside the ball reaches up to 0.1. Of 2, 1, 1/2, … the first that is free is 1/16; steps between lead on.
+    #[test]
+    fn a_free_radius_is_known_to_a_quarter() {
+        let field = Field::new(ToolHandle::Borrowed(&*SPHERE), Level::new(), 1e-15);
+        let field = field.expect("a Lipschitz constant");
+        let found = field.free_radius(&mut Scratch::default(), [1.1, 0.0, 1.0], 0.0);
+        assert!((0.079..=0.1 + 1e-9).contains(&found), "{found}");
+    }
+
+    /// A depth of 0.5 to within 0.01 may exceed 0.505.
+    #[test]
+    fn a_depth_within_its_error_of_the_threshold_stays_open() {
+        let field = Field::new(ToolHandle::Borrowed(&*SPHERE), Level::new(), 1e-15);
+        let field = Field { error: 0.01, ..field.expect("a Lipschitz constant") };
+        let (mut search, mut scratch) = (DepthSearch::default(), Scratch::default());
+        let stop_depth = f64::INFINITY;
+        search.begin(Goal { min_depth: 0.505, tolerance: 0.0, stop_depth, budget: 1000 });
+        scratch.hold([[0.5, 0.0, 1.0], [0.5, 1e-6, 1.0], [0.5, 0.0, 1.0 + 1e-6]], 0);
+        let owners = Owners::of_regions(field.info(), |_, _| true);
+        assert!(field.search_triangles(&mut search, &mut scratch, &owners, false).is_none());
+        assert!(search.has_open());
     }
 }

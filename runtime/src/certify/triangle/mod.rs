@@ -247,3 +247,23 @@ impl SubTriangle {
         halves.into_iter().filter(move |_| half != a && half != b)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_nearest_point_is_on_the_side_that_faces() {
+        let triangle = [[0.0; 3], [4.0, 0.0, 0.0], [0.0, 3.0, 0.0]];
+        for (from, expected) in [
+            ([1.0, 1.0, 5.0], [1.0, 1.0, 0.0]),
+            ([-1.0, 2.0, 7.0], [0.0, 2.0, 0.0]),
+            ([-1.0, 5.0, 2.0], [0.0, 3.0, 0.0]),
+            // On 3x + 4y = 12: (4, 3) - 12/25 (3, 4).
+            ([4.0, 3.0, 1.0], [2.56, 1.08, 0.0]),
+        ] {
+            let found = nearest(from, &triangle);
+            assert!(norm(minus(found, expected)) < 1e-12, "{from:?}: {found:?}");
+        }
+    }
+}

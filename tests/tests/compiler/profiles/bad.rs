@@ -23,6 +23,8 @@ const MISTAKES: &str = "\
 (1, 0); line to (3, 0), (3, 20), (0, 20) as a; => starts at (1, 0), not on the axis => (1, 0)
 (0, 20); line to (3, 20), (3, 0), (0, 0) as a; => runs clockwise => (3, 20)
 (0, 0); line to (4, 0), (1, 5), (4, 5), (1, 1), (0, 9) as a; => crosses another one at (2.33333, 2.77778) => (1, 1)
+(0, 0); line to (10, 0) as a; arc to (10, 10) center (10, 5) as b; line to (20, 5), (20, 12), (0, 12) as c; => crosses another one at (14, 8) => (20, 5)
+(0, 0); line to (10, 0) as a; arc to (10, 10) center (10, 5) as b; arc to (19, 3) center (18, 11) as c; line to (30, 3), (30, 20), (0, 20) as d; => crosses another one at (14.8, 3.6) => arc to (19, 3)
 (0, 0); line to (4, 0), (4, 5), (2, 5), (2, 0), (1, 0), (1, 9), (0, 9) as a; => touches another one at (2, 0) => (2, 0)
 (0, 0); line to (4, 0), (4, 2), (3, 2), (4, 1), (5, 6), (0, 6) as a; => touches another one at (4, 1) => (4, 1)
 (0, 0); line to (3, 0), (3, 5) as a; arc to (3, 9) radius 3 concave as b; line to (0, 9) as c; line to (0.5, 7) as d; line to (0, 9) as e; => this segment => line to (0, 9)

@@ -102,6 +102,9 @@ fn one_contact_agrees_with_a_hand_calculation() {
         assert_eq!(wrench.force, Vector3::new(0.0, 0.0, force));
         assert_eq!(wrench.torque, Vector3::new(0.0, -3.0 * force, 0.0));
         assert_eq!((wrench.depth(), wrench.integral, wrench.energy), (0.25, 0.5, 0.0625));
+        // Some tens of units of roundoff of forces up to 1 on arms up to 5.
+        let rounding = wrench.rounding;
+        assert!(rounding.torque < 1e-13 && rounding.force < 1e-13, "{rounding:?}");
         let deepest = wrench.deepest.expect("a contact").point;
         assert_eq!(deepest, Point3::new(10.0, 20.0, 30.0));
     }
