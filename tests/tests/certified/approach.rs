@@ -5,10 +5,7 @@
 //! once.
 
 use crate::brute::{Ball, BruteForce, TRIANGLES_PER_GROUP, ToolFrame};
-use nalgebra::{Point3, Vector3};
-use touchoff::{Pose, TriangleId};
-use touchoff_tests::oracle::Oracle;
-use touchoff_tests::oracle::rng::Rng;
+use crate::prelude::*;
 use touchoff_tests::oracle::triangle::{Point, advance, nearest};
 
 /// Maximum number of triangles sampled per pose, and number of samples of each kind per triangle.

@@ -1,14 +1,8 @@
 //! Corners at the height at which one surface ends and the next begins: rounding puts each on either side, and its depth
 //! counts for the surface to which it is exactly the nearest.
 
-use crate::soup;
-use nalgebra::{Point3, Vector3};
-use touchoff::certify::{Certifier, PoseVerdict, TriangleBvh};
-use touchoff::tool::Interpreted;
-use touchoff::{Level, Pose, Tool};
-use touchoff_tests::fixtures::drawn;
+use crate::prelude::*;
 use touchoff_tests::oracle::big::Big;
-use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::space::{Frame, Triple, exactly};
 
 const RADIUS: f64 = 5.0;

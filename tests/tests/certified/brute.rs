@@ -4,14 +4,10 @@
 //! triangle's radius is skipped. The others are sampled at their corners, at random points and at the feet of random
 //! points of the tool. From the best samples a search climbs by decreasing random steps.
 
-use crate::verdicts::triangles;
-use nalgebra::{Point3, Vector3};
+use crate::prelude::*;
 use std::cell::Cell;
-use touchoff::certify::Witness;
-use touchoff::{Mesh, Pose, TriangleId};
-use touchoff_tests::oracle::rng::Rng;
+use touchoff_tests::oracle::Meridian;
 use touchoff_tests::oracle::triangle::{Point, advance, distance, dot, nearest, point, sub, unit};
-use touchoff_tests::oracle::{Meridian, Nearest, Oracle};
 
 /// Minimum and maximum number of samples of each kind per triangle. Fewer triangles nearby get more samples each.
 const SAMPLE_LIMITS: [usize; 2] = [8, 150];

@@ -6,12 +6,9 @@
 
 use crate::brute::{BruteForce, STEPS_PER_CLIMB, Sample, ToolFrame};
 use crate::pair::{Pair, Pairs, parts};
+use crate::prelude::*;
 use crate::{oracle, overhang};
-use touchoff::certify::{Certifier, PoseVerdict, Witness};
-use touchoff::{Interval, Pose, SurfaceId};
 use touchoff_tests::count::case_count;
-use touchoff_tests::oracle::rng::Rng;
-use touchoff_tests::tally::Tally;
 
 /// Number of poses per part and tool, unless `POSES` is set.
 const POSES: usize = 24;

@@ -5,15 +5,7 @@
 //! of them are there is known from samples of the tool's section, whose depth and nearest surface the oracle evaluates.
 
 use crate::depth_oracle::{DepthOracle, FIELDS, PROFILES};
-use crate::verdicts::moved;
-use crate::{block, pose, tool};
-use nalgebra::{Point3, Vector3};
-use touchoff::certify::{Certifier, MotionVerdict, PoseVerdict, TriangleBvh};
-use touchoff::mesh::shapes;
-use touchoff::{Motion, Pose, SurfaceId, Tool, Unit};
-use touchoff_tests::oracle::rng::Rng;
-use touchoff_tests::oracle::{Nearest, Oracle};
-use touchoff_tests::tally::Tally;
+use crate::prelude::*;
 use touchoff_tools::TOOLS;
 
 /// Names of counts: poses with the tool entirely inside and with a face that cuts it, those with the correct verdict, and

@@ -1,10 +1,6 @@
 //! A tool whose end is in a part within its tolerance or allowance is beside the part, not inside it.
 
-use crate::verdicts::certifier;
-use crate::{UP, block, motion, plate, pose, tool};
-use touchoff::Pose;
-use touchoff::certify::{Certifier, MotionVerdict, PoseVerdict, TriangleBvh};
-use touchoff_tests::fixtures::drawn;
+use crate::prelude::*;
 
 /// Returns a pose upside down, with the tool's upper end (z = 40) at this depth below the plate's face.
 fn upside_down(depth: f64) -> Pose {

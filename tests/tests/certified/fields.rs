@@ -1,16 +1,9 @@
 //! Tools known only by their depth field and its Lipschitz bound.
 
-use crate::verdicts::{certifier, deeper, touching, triangles};
-use crate::{UP, block, motion, plate, pose, to_tool, tool};
-use nalgebra::{Point3, Vector3};
-use touchoff::certify::{
-    AllowanceError, Certifier, MotionDepth, MotionVerdict, PoseVerdict, TriangleBvh, Witness,
-};
-use touchoff::mesh::shapes;
-use touchoff::tool::Interpreted;
-use touchoff::{Interval, Mesh, Pose, SurfaceId, Tool, Unit};
-use touchoff_tests::oracle::rng::Rng;
-use touchoff_tests::oracle::{self, Oracle};
+use crate::prelude::*;
+use crate::to_tool;
+use touchoff::certify::AllowanceError;
+use touchoff_tests::oracle;
 
 /// The library's tools without a profile.
 const TOOLS: [&str; 5] = ["Fig73", "Cylinder", "UnitSphere", "Block", "LBracket"];

@@ -3,16 +3,9 @@
 use crate::brute::BruteForce;
 use crate::motions::bumpy;
 use crate::pair::{Part, generated_parts};
-use crate::verdicts::{certifier, deeper, triangles};
-use crate::{UP, motion, plate, pose, soup, tool};
-use nalgebra::Point3;
-use touchoff::certify::{Certifier, PoseVerdict, TriangleBvh};
-use touchoff::{Interval, Level, Mesh, Pose, SurfaceId, TriangleId, Unit};
+use crate::prelude::*;
 use touchoff_tests::checks::assert_contains;
 use touchoff_tests::evaluations::levels;
-use touchoff_tests::fixtures::drawn;
-use touchoff_tests::oracle::Nearest;
-use touchoff_tests::oracle::rng::Rng;
 
 fn depth(mesh: &Mesh, name: &str, pose: &Pose, tolerance: f64) -> Interval {
     certifier(mesh, name).deepest(pose, tolerance).depth

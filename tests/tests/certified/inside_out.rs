@@ -1,16 +1,10 @@
 //! A surface that crosses itself: a prism over a bow tie has material in one lobe and its opposite in the other. A tool
 //! in the latter is neither inside nor outside, and no answer may take it for clear.
 
-use nalgebra::Point3;
-use touchoff::certify::{
-    Certifier, Containment, MotionDepth, MotionVerdict, PoseVerdict, TriangleBvh,
-};
-use touchoff::tool::Interpreted;
-use touchoff::{Mesh, SurfaceId, Unit};
-use touchoff_tests::fixtures::drawn;
+use crate::prelude::*;
+use touchoff::certify::Containment;
 
 use crate::supports::REGIONS;
-use crate::{UP, block, motion, pose};
 
 fn bead() -> Interpreted {
     drawn("0 0; bead 0 0.2 about 0 0.1", "bead")

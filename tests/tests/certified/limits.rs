@@ -2,15 +2,11 @@
 //! 256 bits from the doubles of part and pose.
 
 use crate::borders::{in_tool, pin};
-use crate::verdicts::{assert_verdict, deeper};
-use crate::{motion, pose, soup};
-use nalgebra::{Point3, Vector3};
-use touchoff::certify::{Certifier, MotionVerdict, NearestTriangle, TriangleBvh};
-use touchoff::tool::Interpreted;
-use touchoff::{Interval, Level, Motion, Pose, SurfaceId};
+use crate::prelude::*;
+use crate::verdicts::assert_verdict;
+use touchoff::certify::NearestTriangle;
 use touchoff_tests::fixtures::{BALL, ball};
 use touchoff_tests::oracle::big::Big;
-use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::space::{Triple, advance, cross, exactly, norm, sub, to_f64};
 use touchoff_tests::oracle::triangle::mean;
 

@@ -34,6 +34,7 @@ mod limits;
 mod motions;
 mod overhang;
 mod pair;
+mod prelude;
 mod ring_of_ties;
 mod rounding;
 mod spinning;

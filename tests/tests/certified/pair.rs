@@ -1,15 +1,12 @@
 //! Parts and tools to compare, each part with each tool.
 
 use crate::motions::bumpy;
-use crate::{plate, tool};
+use crate::prelude::*;
 use rayon::prelude::*;
 use std::env;
 use std::fmt::{Display, Formatter};
 use std::path::Path;
-use touchoff::certify::TriangleBvh;
-use touchoff::mesh::shapes;
-use touchoff::{Mesh, Tool, Unit, scenes};
-use touchoff_tests::oracle::Nearest;
+use touchoff::scenes;
 
 /// Files of real parts, and their units.
 const FILES: [(&str, Unit); 4] = [

@@ -2,12 +2,8 @@
 //! their zones. Revolved about the axis, it is a ring. A triangle that the ring intersects may be deepest there,
 //! neither on an edge nor on its meridian.
 
-use crate::verdicts::{certifier, touching};
-use crate::{UP, motion, pose, soup};
-use touchoff::certify::{Certifier, PoseVerdict, TriangleBvh};
-use touchoff::{Mesh, Pose, SurfaceId, Tool};
+use crate::prelude::*;
 use touchoff_tests::checks::assert_contains;
-use touchoff_tests::fixtures::drawn;
 
 fn wall() -> Mesh {
     soup(&[[[-200.0, 3.0, -150.0], [200.0, 3.0, -150.0], [0.0, 3.0, 400.0]]])

@@ -1,14 +1,9 @@
 //! Motions of solids without an axis of symmetry, whose spin is known and enters the proof.
 
-use crate::verdicts::{certifier, touching, triangles};
-use crate::{block, pose};
-use nalgebra::{Point3, Quaternion, UnitQuaternion, Vector3};
-use touchoff::certify::{Certifier, MotionDepth, MotionVerdict, TriangleBvh};
-use touchoff::mesh::shapes;
-use touchoff::{Motion, Pose, SurfaceId, Unit};
+use crate::prelude::*;
+use nalgebra::{Quaternion, UnitQuaternion};
 use touchoff_tests::count::case_count;
-use touchoff_tests::oracle::rng::Rng;
-use touchoff_tests::oracle::{self, Oracle};
+use touchoff_tests::oracle;
 
 fn pose_from_rotation(tip: [f64; 3], turn: UnitQuaternion<f64>) -> Pose {
     Pose::from_quaternion(Point3::from(tip), turn.coords.into()).expect("a quaternion")

@@ -1,14 +1,7 @@
 //! Distances of convex tools inside a convex part. The part's surface is as far away as the nearest plane of a face is
 //! from the tool, along the face's normal: the difference of the support functions of both.
 
-use crate::pose;
-use nalgebra::{Point3, Vector3};
-use touchoff::certify::{Certifier, TriangleBvh};
-use touchoff::mesh::shapes;
-use touchoff::tool::Interpreted;
-use touchoff::{Mesh, Pose, TriangleId, Unit};
-use touchoff_tests::fixtures::drawn;
-use touchoff_tests::oracle::rng::Rng;
+use crate::prelude::*;
 
 const SIZE: f64 = 20.0;
 

@@ -1,15 +1,11 @@
 //! Trajectories that are no motions at constant speed: the tip of a ball end mill on an arc beside a wall, for which the
 //! greatest depth is known.
 
-use crate::verdicts::{assert_verdict, certifier, deeper, moved};
-use crate::{block, motion, pose, soup, tool};
-use nalgebra::{Point3, Rotation3, Vector3};
-use touchoff::certify::{
-    Approximation, Certifier, MotionDepth, MotionVerdict, Trajectory, TriangleBvh,
-};
-use touchoff::mesh::shapes;
-use touchoff::{Mesh, Pose, SurfaceId, Unit};
-use touchoff_tests::fixtures::{self, drawn};
+use crate::prelude::*;
+use crate::verdicts::assert_verdict;
+use nalgebra::Rotation3;
+use touchoff::certify::{Approximation, Trajectory};
+use touchoff_tests::fixtures;
 
 /// Radius of the arc about the z axis, and that of the tool, mm.
 const RADIUS: f64 = 20.0;

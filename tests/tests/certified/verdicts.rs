@@ -1,10 +1,7 @@
 //! Certifiers of whole meshes, and what their verdicts and depths hold.
 
-use crate::tool;
-use nalgebra::Point3;
+use crate::prelude::*;
 use std::fmt::Debug;
-use touchoff::certify::{Certifier, MotionDepth, MotionVerdict, TriangleBvh, Witness};
-use touchoff::{Interval, Mesh, TriangleId};
 
 /// Returns the certifier of a mesh and the tool of a name.
 pub(crate) fn certifier(mesh: &Mesh, name: &str) -> Certifier<'static> {

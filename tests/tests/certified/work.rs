@@ -5,12 +5,8 @@
 
 use crate::brute::BruteForce;
 use crate::pair::generated_parts;
-use crate::{motion, tool};
+use crate::prelude::*;
 use std::fmt::{Debug, Write};
-use touchoff::certify::Certifier;
-use touchoff::{Level, Pose, SurfaceId, Tool};
-use touchoff_tests::oracle::Nearest;
-use touchoff_tests::oracle::rng::Rng;
 
 /// Tools with a profile, and at the end one without.
 const TOOLS: [&str; 7] =

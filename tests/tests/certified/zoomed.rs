@@ -8,16 +8,11 @@
 use crate::brute::BruteForce;
 use crate::depth_oracle::{DepthOracle, FIELDS, PROFILES};
 use crate::pair::{Pair, Pairs, is_full_run, parts};
+use crate::prelude::*;
 use crate::to_tool;
-use crate::verdicts::triangles;
-use nalgebra::{Point3, Vector3};
 use std::collections::BTreeMap;
-use touchoff::certify::Certifier;
-use touchoff::{Interval, Pose, TriangleId};
 use touchoff_tests::count::case_count;
-use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::triangle::{Point, bisected, distance, norm, point, sub};
-use touchoff_tests::tally::Tally;
 
 /// Number of points that are zoomed in on, at first and at last.
 const POINT_COUNTS: [usize; 2] = [48, 6];

@@ -1,15 +1,14 @@
 //! Contacts against their closed forms (`oracle::closed_forms`), with clouds of the midpoints of regular cells: weights
 //! are exact, and errors fall as the cells' area.
 
-use nalgebra::{Point3, Rotation3, Vector3};
+use crate::prelude::*;
+use nalgebra::Rotation3;
 use std::f64::consts::TAU;
-use touchoff::{Law, Part, Pose, Probe, Tool};
 use touchoff_tests::fixtures::part_of;
 use touchoff_tests::library::tool;
 use touchoff_tests::oracle::closed_forms::{
     Contact, ball_in_cavity, ball_in_plane, ball_on_ball, cylinder_in_bore, cylinder_in_plane,
 };
-use touchoff_tests::oracle::rng::Rng;
 
 /// A contact to be measured: a pose, the expected result, the axis of the forces, and the point about which there
 /// is no torque.

@@ -1,11 +1,10 @@
 //! Levels of detail within a budget, and parts that change between queries.
 
-use nalgebra::{Point3, Vector3};
+use crate::prelude::*;
 use std::collections::BTreeSet;
 use touchoff::scenes::{ScenePath, tube};
-use touchoff::{Cloud, Law, LodProbe, Mesh, Part, Pose, Probe, Sampling, Wrench};
+use touchoff::{Cloud, LodProbe, Mesh, Sampling, Wrench};
 use touchoff_tests::fixtures::cuboid;
-use touchoff_tests::oracle::rng::Rng;
 use touchoff_tools::{Ball, Fig73, Fig73Exact};
 
 const POSES: usize = 2_000;

@@ -1,15 +1,13 @@
 //! One scene in millimetres, inches and metres.
 
+use crate::prelude::*;
 use crate::query::compare::Case;
-use nalgebra::{Point3, Vector3};
 use touchoff::TriangleId;
 use touchoff::mesh::shapes;
 use touchoff::scenes::{HEIGHT, ScenePath};
-use touchoff::tool::Interpreted;
-use touchoff::{Cloud, Law, Part, Pose, Probe, Sampling, Tool, Unit};
-use touchoff_tests::checks::assert_near;
+use touchoff::{Cloud, Sampling};
 use touchoff_tests::library::tool;
-use touchoff_tests::oracle::{Fig73, Oracle, cylinder, d2_ball, fig_7_3_exact};
+use touchoff_tests::oracle::{Fig73, cylinder, d2_ball, fig_7_3_exact};
 
 /// D2Ball's 2 mm ball, flute and shank, in inches: 1 mm is 1/25.4 inch.
 const INCH_BALL: &str = r#"tool InchBall "2 mm ball end mill, written in inches" {

@@ -2,10 +2,7 @@
 //! with that of the given point at the pose as it is in doubles. A scene turned as a whole without rounding has the same
 //! bits.
 
-use crate::scene::{PointSet, Scene, format_pose, pose};
-use crate::{check_tools, extent};
-use nalgebra::{Point3, Vector3};
-use touchoff::Pose;
+use crate::prelude::*;
 use touchoff_tests::turns::{EXACT_TURNS, ROUNDED_TURNS};
 
 /// Spacing of the coordinates' grid, so that its multiples keep all bits near the tips used here.

@@ -5,14 +5,10 @@
 //! contract is kept, the depth agrees with the depth of *each* neighbour, and the step of the depth from one double to
 //! the other agrees with that of the truth.
 
-use crate::truth::{Subject, to_exact};
-use crate::validator::Validator;
-use crate::{check_tools, extent};
+use crate::prelude::*;
+use crate::truth::to_exact;
 use std::f64::consts::TAU;
 use touchoff::tool::PointEvaluation;
-use touchoff_tests::checks::Checks;
-use touchoff_tests::oracle::big::Big;
-use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::points::neighbourhood;
 
 #[test]

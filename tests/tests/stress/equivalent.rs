@@ -4,15 +4,11 @@
 //! `Probe::rounding_error_bound` and the rounding of coordinates.
 
 use crate::leaves::by_triangle;
-use crate::scene::{
-    PointSet, Scene, compare_depths, format_pose, in_sum_roundings, pose, random_pose, with_tip,
-};
-use crate::{check_tools, extent};
-use nalgebra::{Matrix3, Point3, Rotation3, UnitQuaternion};
+use crate::prelude::*;
+use crate::scene::{compare_depths, in_sum_roundings, with_tip};
+use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
 use std::f64::consts::TAU;
-use touchoff::{Contact, Pose, Unit};
-use touchoff_tests::checks::Checks;
-use touchoff_tests::oracle::rng::Rng;
+use touchoff::{Contact, Unit};
 
 /// Spacing of the coordinates' grid. Near the tool, its multiples are stored without rounding in any tree.
 const GRID: f64 = 1.0 / 1024.0;

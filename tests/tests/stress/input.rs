@@ -1,13 +1,9 @@
 //! Item 10: invalid or minimal input. It is refused with an error, or gives sensible results.
 
-use crate::scene::{PointSet, Scene, random_pose};
-use crate::truth::Subject;
-use crate::{check_tools, extent};
-use nalgebra::{Point3, Vector3};
+use crate::prelude::*;
 use std::error::Error;
 use std::fmt::Debug;
-use touchoff::{Cloud, CloudError, Mesh, Part, Pose, Probe, Sampling, TriangleId, Unit};
-use touchoff_tests::oracle::rng::Rng;
+use touchoff::{Cloud, CloudError, Mesh, Part, Probe, Sampling, TriangleId, Unit};
 
 const MM: Unit = Unit::Millimetre;
 const GRID: f64 = 1.0 / (1 << 30) as f64;

@@ -1,14 +1,11 @@
 //! Points near a tool as a part, a pose of the tool, and the answers of a probe there against 256 bits.
 
-use crate::truth::{ExactPoint, Subject};
-use nalgebra::{Point3, Vector3};
+use crate::prelude::*;
+use crate::truth::ExactPoint;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
-use touchoff::{Cloud, Contact, Part, Pose, Probe, TriangleId, Unit, Wrench};
-use touchoff_tests::checks::Checks;
-use touchoff_tests::oracle::big::Big;
+use touchoff::{Cloud, Contact, Part, Probe, TriangleId, Unit, Wrench};
 use touchoff_tests::oracle::displaced;
-use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::space::{add, cross, distance, dot, exactly, sub, times};
 
 const SENSELESS_NUMBER: &str = "senseless number";

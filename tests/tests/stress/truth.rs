@@ -1,13 +1,12 @@
 //! True values at points in 256 bits, for every library tool: of a profile from its restatement, of the thesis's tool
 //! and the two solids from equations written separately.
 
+use crate::prelude::*;
 use touchoff::Tool;
-use touchoff_tests::oracle::big::Big;
 use touchoff_tests::oracle::fig73::{REGIONS, ThesisPoint};
 use touchoff_tests::oracle::reference::{QueryPoint, Reference, power_above};
 use touchoff_tests::oracle::restated::Restated;
-use touchoff_tests::oracle::rng::Rng;
-use touchoff_tests::oracle::{Body, Fig73, Nearest, Oracle, restated};
+use touchoff_tests::oracle::{Body, Fig73, restated};
 use touchoff_tests::profiles::{self, owners};
 
 pub(crate) use touchoff_tests::oracle::space::{Triple as ExactPoint, exactly as to_exact};

@@ -1,11 +1,10 @@
 //! The contract of an evaluator, at given points.
 
+use crate::prelude::*;
 use crate::truth::{RegionValues, Truth};
 use touchoff::tool::PointEvaluation;
 use touchoff::{Level, Tool};
-use touchoff_tests::checks::Checks;
 use touchoff_tests::evaluations::{bits, evaluate_points, numbers};
-use touchoff_tests::oracle::big::Big;
 use touchoff_tests::oracle::space::{distance, exactly, norm};
 
 /// Distance in ulp(S) from a border within which both sides, or both owners, are accepted.

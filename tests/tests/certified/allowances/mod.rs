@@ -2,13 +2,8 @@
 
 mod sampled;
 
-use crate::verdicts::{certifier, deeper};
-use crate::{UP, block, motion, plate, pose, soup, tool};
-use touchoff::certify::{
-    AllowanceError, Certifier, MotionDepth, MotionVerdict, PoseVerdict, TriangleBvh,
-};
-use touchoff::mesh::shapes;
-use touchoff::{Mesh, Motion, Pose, SurfaceId, Tool, Unit};
+use crate::prelude::*;
+use touchoff::certify::AllowanceError;
 
 fn names(tool: &dyn Tool) -> Vec<String> {
     tool.info().surfaces.iter().map(|surface| surface.name.to_string()).collect()

@@ -8,11 +8,9 @@ use super::names;
 use crate::brute::{BruteForce, Sample};
 use crate::motions::MotionKind;
 use crate::pair::{Part, generated_parts};
-use crate::{motion, oracle, overhang, tool};
+use crate::prelude::*;
+use crate::{oracle, overhang};
 use std::fmt::{Display, Formatter};
-use touchoff::certify::{Certifier, MotionVerdict, PoseVerdict, Witness};
-use touchoff::{Interval, Pose, SurfaceId};
-use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::triangle::Point;
 
 const TOOLS: [&str; 10] = [

@@ -4,10 +4,9 @@
 //! 256 bits is a lower bound of the greatest depth, however the point was found.
 
 use super::cutters::Cutter;
-use touchoff::Pose;
+use crate::prelude::*;
 use touchoff_tests::oracle::big::Big;
 use touchoff_tests::oracle::reference::QueryPoint;
-use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::space::{Frame, Triple, dot, exactly, to_f64};
 pub(crate) use touchoff_tests::oracle::triangle::Point;
 use touchoff_tests::oracle::triangle::{mean, nearest_weights};

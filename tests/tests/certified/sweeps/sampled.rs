@@ -6,16 +6,11 @@
 use crate::approach::{MotionSample, ReferenceMotion};
 use crate::brute::BruteForce;
 use crate::motions::MotionKind;
+use crate::oracle;
 use crate::pair::{Pair, Pairs, is_full_run, parts};
-use crate::verdicts::triangles;
-use crate::{motion, oracle};
-use touchoff::certify::{Certifier, MotionVerdict, Witness};
-use touchoff::{Motion, Pose};
+use crate::prelude::*;
 use touchoff_tests::count::case_count;
-use touchoff_tests::oracle::Oracle;
-use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::triangle::winding_number;
-use touchoff_tests::tally::Tally;
 
 /// The tolerances used, in the part's unit.
 const TOLERANCES: [f64; 3] = [0.0, 1e-6, 1e-3];

@@ -4,13 +4,13 @@
 
 use super::points::{format_point, scale};
 use super::{LENGTHS, evaluate};
-use touchoff::Level;
-use touchoff::tool::{Outputs, PointEvaluation, Tool};
+use crate::prelude::*;
+use touchoff::tool::{Outputs, PointEvaluation};
 use touchoff_tests::checks::{Checks, assert_no_misses};
 use touchoff_tests::evaluations::{at, batch};
 use touchoff_tests::oracle::reference::{QueryPoint, Reference};
 use touchoff_tests::oracle::triangle::{distance, norm};
-use touchoff_tests::oracle::{Oracle, OracleEvaluation, restated};
+use touchoff_tests::oracle::{OracleEvaluation, restated};
 
 /// Distance from a border, as a fraction of S, within which either neighbour may own a point.
 const BORDER_DISTANCE_FRACTION: f64 = 1e-12;

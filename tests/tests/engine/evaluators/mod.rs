@@ -9,13 +9,12 @@ mod info;
 mod partitions;
 mod points;
 
-use touchoff::Level;
-use touchoff::tool::{Evaluations, Interpreted, Outputs, PointBatch, Tool};
+use crate::prelude::*;
+use touchoff::tool::{Evaluations, Outputs, PointBatch};
 use touchoff_dsl::diagnostic::Severity;
 use touchoff_dsl::source::Source;
 use touchoff_dsl::{CheckedTool, compile};
-use touchoff_tests::library;
-use touchoff_tests::oracle::{self, Nearest, Oracle, restated};
+use touchoff_tests::oracle::{self, Nearest, restated};
 use touchoff_tools::TOOLS;
 
 /// Lengths of the file's unit in the part's that are tested: the same unit, and mm in inches.

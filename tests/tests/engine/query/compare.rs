@@ -9,13 +9,11 @@
 //! side of it. Such points are counted, and widen the bounds by their possible effect; no other point may be
 //! missing or belong elsewhere.
 
-use nalgebra::{Point3, Vector3};
+use crate::prelude::*;
 use std::collections::BTreeMap;
-use touchoff::{Contact, Law, Part, Pose, Probe, Tool, TriangleId, Unit, Weights, Wrench, summary};
-use touchoff_tests::library;
+use touchoff::{Contact, TriangleId, Weights, Wrench, summary};
 use touchoff_tests::oracle::brute::{self, Answer, Query};
-use touchoff_tests::oracle::rng::Rng;
-use touchoff_tests::oracle::{Oracle, thesis};
+use touchoff_tests::oracle::thesis;
 
 /// Returns the thesis's tools, each with its oracle.
 pub(crate) fn tools() -> Vec<(&'static dyn Tool, Box<dyn Oracle>)> {

@@ -1,9 +1,8 @@
 //! Poses that are composed many times stay rotations, and stay where they should be.
 
-use nalgebra::{Matrix3, Point3, Unit, UnitQuaternion, Vector3};
+use crate::prelude::*;
+use nalgebra::{Matrix3, Unit};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, TAU};
-use touchoff::Pose;
-use touchoff_tests::oracle::rng::Rng;
 
 /// Largest entry of `RᵀR - I` of a composed rotation, in ε.
 const MAX_ORTHOGONALITY_ERROR: f64 = 4.0;

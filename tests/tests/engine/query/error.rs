@@ -1,14 +1,12 @@
 //! The error bounds that a probe states, against the depth of the points that were given.
 
 use super::parts;
-use nalgebra::{Point3, Vector3};
+use crate::prelude::*;
 use touchoff::TriangleId;
-use touchoff::tool::Interpreted;
-use touchoff::{Cloud, Interval, Part, Pose, Probe};
+use touchoff::{Cloud, Interval};
 use touchoff_tests::fixtures::drawn;
 use touchoff_tests::oracle::big::Big;
 use touchoff_tests::oracle::reference::{QueryPoint, Reference};
-use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::space::{Frame, Triple, exactly, norm};
 use touchoff_tests::profiles::tools;
 

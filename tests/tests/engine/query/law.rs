@@ -2,10 +2,8 @@
 
 use super::compare::tools;
 use super::parts;
-use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
-use touchoff::{Law, Part, Pose, Probe};
-use touchoff_tests::library;
-use touchoff_tests::oracle::rng::Rng;
+use crate::prelude::*;
+use nalgebra::{Isometry3, Translation3};
 
 fn energy(probe: &mut Probe<'_>, at: Isometry3<f64>) -> f64 {
     probe.wrench(&Pose::try_from(at).expect("a pose")).energy

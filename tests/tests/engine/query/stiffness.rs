@@ -2,12 +2,11 @@
 
 use super::compare::tools;
 use super::parts;
-use nalgebra::{Matrix6, Point3, Rotation3, UnitQuaternion, Vector3, Vector6};
-use touchoff::{Law, Part, Pose, Probe, Tool, Wrench};
+use crate::prelude::*;
+use nalgebra::{Matrix6, Rotation3, Vector6};
+use touchoff::Wrench;
 use touchoff_tests::haptics::{block, tool, upright};
 use touchoff_tests::library::read;
-use touchoff_tests::oracle::Oracle;
-use touchoff_tests::oracle::rng::Rng;
 
 /// Step of the finite differences: a length in the part's unit, and an angle in rad.
 const STEP: f64 = 1e-6;
