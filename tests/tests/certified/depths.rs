@@ -84,7 +84,7 @@ impl Validation<'_> {
                 self.never(is_shallow, "the witness is not as deep as the lower bound", &case);
                 let point = self.brute.to_tool_frame(&self.frame, witness.point);
                 let start = Sample { triangle: witness.triangle.index(), point, value: low };
-                let depth = |p| self.brute.depth(p) * self.brute.length;
+                let depth = |p| self.brute.depth(p);
                 let climbed = self.brute.climb(&self.frame, start, STEPS_PER_CLIMB, depth, rng);
                 max_depth = max_depth.max(climbed.value);
             }

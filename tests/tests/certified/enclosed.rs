@@ -45,8 +45,7 @@ fn check_blocks(name: &str, blocks: usize) -> Tally {
         let tip = Point3::from(rng.direction()) * size;
         let pose = Pose::from_axis(tip, Vector3::from(rng.direction())).expect("an axis");
         let to_world = |p: &Point3<f64>| pose.tip() + pose.rotation() * p.coords;
-        let bvh = TriangleBvh::new(&moved(&cuboid, to_world));
-        let mut certifier = Certifier::new(&bvh, tool).expect("a tool that is proved");
+        let mut certifier = certifier_of(&moved(&cuboid, to_world), tool);
         let verdict = certifier.check_pose(&pose);
         tally.add(POSES, 1);
         match (inside, verdict) {

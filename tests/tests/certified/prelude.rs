@@ -1,6 +1,6 @@
 //! What most modules of these tests use.
 
-pub(crate) use crate::verdicts::{certifier, deeper, moved, touching, triangles};
+pub(crate) use crate::verdicts::{certifier, certifier_of, deeper, moved, touching, triangles};
 pub(crate) use crate::{UP, block, motion, plate, pose, soup, tool};
 pub(crate) use nalgebra::{Point3, Vector3};
 pub(crate) use touchoff::certify::{

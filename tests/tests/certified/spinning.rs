@@ -82,11 +82,10 @@ fn samples_of_spinning_motions_are_within_the_bounds() {
     ];
     let [mut clear, mut touching, mut inside, mut undecided, mut bounded] = [0; 5];
     for mesh in &parts {
-        let bvh = TriangleBvh::new(mesh);
         for name in ["Block", "LBracket"] {
             let oracle: &dyn Oracle = &*oracle::of(name);
             let tool = crate::tool(name);
-            let mut certifier = Certifier::new(&bvh, tool).expect("proved");
+            let mut certifier = certifier_of(mesh, tool);
             for k in 0..case_count("MOTIONS", 12) {
                 let start_rotation =
                     UnitQuaternion::new(Vector3::from(rng.direction()) * rng.between(0.0, 3.0));

@@ -76,10 +76,9 @@ fn a_convex_tool_in_a_convex_part_is_as_far_as_the_nearest_face() {
         let (normal, base) = (mesh.normal(id).expect("it has an area"), mesh.triangle(id)[0]);
         assert!(mesh.vertices().iter().all(|p| normal.dot(&(p - base)) < 1e-12), "not convex");
     }
-    let bvh = TriangleBvh::new(&mesh);
     let mut rng = Rng::new(1);
     for convex in tools() {
-        let mut certifier = Certifier::new(&bvh, &convex.tool).expect("a bounded depth");
+        let mut certifier = certifier_of(&mesh, &convex.tool);
         let mut count = 0;
         while count < if convex.is_exact { 60 } else { 6 } {
             let tip = Point3::from(rng.between(0.0, SIZE) * Vector3::from(rng.direction()));

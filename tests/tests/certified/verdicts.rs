@@ -5,8 +5,13 @@ use std::fmt::Debug;
 
 /// Returns the certifier of a mesh and the tool of a name.
 pub(crate) fn certifier(mesh: &Mesh, name: &str) -> Certifier<'static> {
+    certifier_of(mesh, tool(name))
+}
+
+/// Returns the certifier of a mesh and a tool.
+pub(crate) fn certifier_of<'a>(mesh: &Mesh, tool: &'a dyn Tool) -> Certifier<'a> {
     let bvh = Box::leak(Box::new(TriangleBvh::new(mesh)));
-    Certifier::new(bvh, tool(name)).expect("a tool that is proved")
+    Certifier::new(bvh, tool).expect("a tool that is proved")
 }
 
 /// Returns the time and the witness of a motion that touches.
