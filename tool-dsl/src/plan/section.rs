@@ -864,10 +864,10 @@ mod tests {
         };
         let mut sorted: Vec<Ranked> = (0..60).map(candidate).collect();
         sorted.sort_by(|a, b| a.listed.cmp(&b.listed).then(b.gain.total_cmp(&a.gain)));
-        let mut remaining: Vec<Ranked> = (0..60).map(candidate).collect();
+        let mut remaining: BinaryHeap<Ranked> = (0..60).map(candidate).collect();
         for expected in sorted {
-            assert_eq!(take_best(&mut remaining), Some(expected.curve));
+            assert_eq!(remaining.pop().map(|best| best.curve), Some(expected.curve));
         }
-        assert_eq!(take_best(&mut remaining), None);
+        assert!(remaining.is_empty());
     }
 }
