@@ -6,9 +6,8 @@
 
 use std::path::{Path, PathBuf};
 use touchoff_dsl::compile;
-use touchoff_dsl::diagnostic::Severity;
+use touchoff_dsl::diagnostic::{Diagnostic, Severity};
 use touchoff_dsl::source::Source;
-use touchoff_tests::texts::rendered;
 
 const LANGUAGE_PAGE: &str = include_str!("../../../docs/language.md");
 const ERROR_PREFIX: &str = "// error: ";
@@ -48,7 +47,10 @@ impl Example {
 
     /// Returns the diagnostics of a good example; `None` if there are none.
     fn compiles(source: &Source) -> Option<String> {
-        Some(rendered(&compile(source))).filter(|said| !said.is_empty())
+        let compiled = compile(source);
+        let render = |report: &Diagnostic| report.render(&compiled.sources, false);
+        let said: Vec<String> = compiled.diagnostics().iter().map(render).collect();
+        (!said.is_empty()).then(|| said.join("\n"))
     }
 
     /// Returns the complaint about a bad example; `None` if it fails as expected.
