@@ -16,6 +16,14 @@ const FILES: [(&str, Unit); 4] = [
     ("kiri_pocket_test.stl", Unit::Millimetre),
 ];
 
+/// Names of counts: what is queried, a sample inside the tool, samples near the lower bound, an interval wider than tolerance
+/// and rounding together, a wrong answer.
+pub(crate) const QUERIED: &str = "queried";
+pub(crate) const IN_CONTACT: &str = "in contact";
+pub(crate) const REACHED: &str = "reached";
+pub(crate) const WIDER: &str = "wider";
+pub(crate) const VIOLATIONS: &str = "violations";
+
 pub(crate) struct Part {
     pub(crate) name: &'static str,
     pub(crate) mesh: Mesh,

@@ -7,7 +7,9 @@
 
 use crate::brute::BruteForce;
 use crate::depth_oracle::{DepthOracle, FIELDS, PROFILES};
-use crate::pair::{Pair, Pairs, is_full_run, parts};
+use crate::pair::{
+    IN_CONTACT, Pair, Pairs, QUERIED, REACHED, VIOLATIONS, WIDER, is_full_run, parts,
+};
 use crate::prelude::*;
 use crate::to_tool;
 use std::collections::BTreeMap;
@@ -18,14 +20,6 @@ use touchoff_tests::oracle::triangle::{Point, bisected, distance, norm, point, s
 const POINT_COUNTS: [usize; 2] = [48, 6];
 /// Ratio of the sizes of successive neighbourhoods.
 const SHRINK_FACTOR: f64 = 0.4;
-
-/// Names of counts: a sample inside the tool, samples near the lower bound, an interval wider than tolerance and rounding
-/// together, a sample that exceeds the upper bound.
-const POSES: &str = "poses";
-const IN_CONTACT: &str = "in contact";
-const REACHED: &str = "reached";
-const WIDER: &str = "wider";
-const VIOLATIONS: &str = "violations";
 
 /// A sample: its depth, its triangle, and two of its barycentric weights.
 #[derive(Clone, Copy, Debug)]
@@ -92,7 +86,7 @@ impl Pair<'_, DepthOracle> {
             };
             let Interval { low, high } = certifier.deepest(&pose, tolerance).depth;
             let max_depth = (self.deepest(&pose, samples, &mut rng) * length).max(0.0);
-            tally.add(POSES, 1);
+            tally.add(QUERIED, 1);
             tally.see(IN_CONTACT, max_depth > 0.0);
             tally.see(REACHED, max_depth >= low - margin);
             let case = format!("{self}: [{low:?}, {high:?}], {max_depth:?} at {pose:?}");
@@ -265,5 +259,5 @@ fn samples_that_zoom_in_are_within_the_interval() {
     eprintln!("samples that zoom in: {total}");
     total.assert_none(VIOLATIONS);
     total.assert_none(WIDER);
-    assert!(10 * total.count(REACHED) > 9 * total.count(POSES), "{total}");
+    assert!(10 * total.count(REACHED) > 9 * total.count(QUERIED), "{total}");
 }
