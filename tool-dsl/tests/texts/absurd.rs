@@ -173,6 +173,8 @@ fn rejects_endless_mounts() {
     assert_eq!(mounted("mount \"twin0.tool\" as a;"), "more than 64 mounted files");
     let many = numbered(70, |k| format!("mount \"part.tool\" as a{k} at z = {k};"));
     assert!(mounted(&many).contains("more than 64 mounted files"));
+    write("ring.tool", "tool Ring { units mm; mount \"ring.tool\" as a; }");
+    assert!(mounted("mount \"ring.tool\" as a;").contains("mounts itself"));
 }
 
 #[test]
@@ -182,6 +184,8 @@ fn rejects_files_that_are_not_text() {
     write("long.tool", vec![b' '; 10_000_000]);
     assert!(mounted("mount \"long.tool\" as a;").contains("longer than 1048576 bytes"));
     assert!(mounted("mount \".\" as a;").contains("cannot read"));
+    #[cfg(unix)]
+    assert!(mounted("mount \"/dev/zero\" as a;").contains("is outside the tool's folder"));
 }
 
 /// Many regions by hand are planned in seconds.
