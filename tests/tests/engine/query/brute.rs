@@ -50,10 +50,11 @@ impl Query<'_> {
         self.pose.rotation() * Vector3::from(v)
     }
 
-    /// Evaluates the oracle at every point and adds up the results. The force of a point is, by the thesis's law, `w m (n -
-    /// u)` (Ho 1999, eq. 5.1, without the factor ½); by the gradient law `w m ∇m`, the gradient of `½ Σ w m²` over the
-    /// point in the world; by the facing law the thesis's without points whose normal faces away (`u·n > 0`), which still
-    /// count as contact.
+    /// Evaluates the oracle at every point and adds up the results. The force of a point is
+    /// - by the thesis's law `w m (n - u)` (Ho 1999, eq. 5.1, without the factor ½);
+    /// - by the gradient law `w m ∇m`, the gradient of `½ Σ w m²` over the point in the world;
+    /// - by the facing law that of the thesis, or none if the point's normal faces away (`u·n > 0`). The point still counts as
+    ///   contact.
     pub(super) fn answer(&self) -> Answer {
         let mut contacts = Vec::new();
         let (mut depth, mut niceness) = (0.0, None::<f64>);
