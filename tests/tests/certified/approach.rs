@@ -4,7 +4,7 @@
 //! triangle's radius is skipped; the others are sampled. From the best samples a search climbs in time and position at
 //! once.
 
-use crate::brute::{Ball, BruteForce, TRIANGLES_PER_GROUP};
+use crate::brute::{Ball, TRIANGLES_PER_GROUP};
 use crate::prelude::*;
 use touchoff_tests::oracle::triangle::{Point, advance, nearest};
 

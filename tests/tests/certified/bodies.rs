@@ -2,7 +2,6 @@
 
 use crate::prelude::*;
 use touchoff::certify::CertifiedScene;
-use touchoff_tests::checks::assert_contains;
 use touchoff_tests::fixtures::ball;
 
 /// Returns a plate whose upper face is at a height.

@@ -3,7 +3,6 @@
 use crate::prelude::*;
 use crate::to_tool;
 use std::sync::Arc;
-use touchoff_tests::checks::assert_contains;
 
 /// Number of divisions of the triangles' sides.
 const DIVISIONS: u32 = 20;

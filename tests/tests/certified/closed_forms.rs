@@ -4,7 +4,6 @@ use crate::pose_at;
 use crate::prelude::*;
 use std::f64::consts::PI;
 use touchoff::scenes;
-use touchoff_tests::checks::assert_contains;
 
 fn assert_interval_contains(mesh: &Mesh, name: &str, pose: &Pose, depth: f64) {
     let mut certifier = certifier(mesh, name);

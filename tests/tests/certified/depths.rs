@@ -4,12 +4,11 @@
 //! restatement, samples triangles and climbs from the deepest samples, and from the witness. No depth that it finds may
 //! exceed the upper bound. The lower bound is proved by the witness, whose depth is evaluated by the same oracle.
 
-use crate::brute::{BruteForce, STEPS_PER_CLIMB, Sample, ToolFrame};
+use crate::brute::{STEPS_PER_CLIMB, Sample, ToolFrame};
 use crate::pair::{IN_CONTACT, Pair, Pairs, QUERIED, REACHED, VIOLATIONS, WIDER, parts};
 use crate::prelude::*;
 use crate::{oracle, overhang};
 use touchoff::certify::Penetration;
-use touchoff_tests::count::case_count;
 
 /// Number of poses per part and tool, unless `POSES` is set.
 const POSES: usize = 24;

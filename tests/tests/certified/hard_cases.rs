@@ -1,10 +1,8 @@
 //! Degenerate parts, tolerances and budgets.
 
-use crate::brute::BruteForce;
 use crate::motions::bumpy;
 use crate::pair::{Part, generated_parts};
 use crate::prelude::*;
-use touchoff_tests::checks::assert_contains;
 use touchoff_tests::evaluations::levels;
 
 fn depth(mesh: &Mesh, name: &str, pose: &Pose, tolerance: f64) -> Interval {

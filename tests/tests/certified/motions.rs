@@ -2,7 +2,6 @@
 //! many ridges.
 
 use crate::approach::ReferenceMotion;
-use crate::brute::BruteForce;
 use crate::pose_at;
 use crate::prelude::*;
 use nalgebra::Rotation3;

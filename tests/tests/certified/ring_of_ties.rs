@@ -3,7 +3,6 @@
 //! neither on an edge nor on its meridian.
 
 use crate::prelude::*;
-use touchoff_tests::checks::assert_contains;
 
 fn wall() -> Mesh {
     soup(&[[[-200.0, 3.0, -150.0], [200.0, 3.0, -150.0], [0.0, 3.0, 400.0]]])

@@ -2,7 +2,6 @@
 
 use crate::prelude::*;
 use nalgebra::{Quaternion, UnitQuaternion};
-use touchoff_tests::count::case_count;
 use touchoff_tests::oracle;
 
 fn pose_from_rotation(tip: [f64; 3], turn: UnitQuaternion<f64>) -> Pose {

@@ -3,7 +3,6 @@
 //! A bound that is weaker than it was changes no answer, only the number of nodes, triangles and intervals of edges that are
 //! examined before it is proved. The numbers are in a snapshot: a change of the certifier shows there what it costs.
 
-use crate::brute::BruteForce;
 use crate::pair::generated_parts;
 use crate::prelude::*;
 use std::fmt::{Debug, Write};

@@ -5,7 +5,6 @@
 //! these. Their neighbourhoods shrink from round to round until they are as small as rounding. The greatest depth must
 //! not exceed the upper bound, and should reach the lower bound, which the search does not know.
 
-use crate::brute::BruteForce;
 use crate::depth_oracle::{DepthOracle, FIELDS, PROFILES};
 use crate::pair::{
     IN_CONTACT, Pair, Pairs, QUERIED, REACHED, VIOLATIONS, WIDER, is_full_run, parts,
@@ -13,7 +12,6 @@ use crate::pair::{
 use crate::prelude::*;
 use crate::to_tool;
 use std::collections::BTreeMap;
-use touchoff_tests::count::case_count;
 use touchoff_tests::oracle::triangle::{Point, bisected, distance, norm, point, sub};
 
 /// Number of points that are zoomed in on, at first and at last.

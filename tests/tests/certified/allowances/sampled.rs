@@ -5,7 +5,7 @@
 //! over the allowances.
 
 use super::names;
-use crate::brute::{BruteForce, Sample};
+use crate::brute::Sample;
 use crate::motions::MotionKind;
 use crate::pair::{Part, generated_parts};
 use crate::prelude::*;

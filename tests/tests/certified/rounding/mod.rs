@@ -17,7 +17,6 @@ use crate::prelude::*;
 use cases::{Case, FAMILIES};
 use cutters::Cutter;
 use rayon::prelude::*;
-use touchoff_tests::count::case_count;
 use touchoff_tests::oracle::big::Big;
 use touchoff_tests::oracle::triangle::{cross, distance, norm, sub};
 use truth::{Point, Scene, TrianglePoint};

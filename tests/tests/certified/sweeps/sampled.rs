@@ -4,12 +4,10 @@
 //! ([`crate::approach`]) know the tool from its restatement, and the motion from a separate formula.
 
 use crate::approach::{MotionSample, ReferenceMotion};
-use crate::brute::BruteForce;
 use crate::motions::MotionKind;
 use crate::oracle;
 use crate::pair::{IN_CONTACT, Pair, Pairs, QUERIED, VIOLATIONS, is_full_run, parts};
 use crate::prelude::*;
-use touchoff_tests::count::case_count;
 use touchoff_tests::oracle::triangle::winding_number;
 
 /// The tolerances used, in the part's unit.
