@@ -30,9 +30,21 @@ pub fn drawn(drawing: &'static str, cutting: &'static str) -> Interpreted {
 /// # Panics
 /// If they are no cloud.
 pub fn part_of(points: Vec<Point3<f64>>, normals: Vec<Vector3<f64>>, weights: Vec<f64>) -> Part {
+    part_in(Unit::Millimetre, points, normals, weights)
+}
+
+/// Returns the [part of points][part_of] that are given in a unit.
+///
+/// # Panics
+/// If they are no cloud.
+pub fn part_in(
+    unit: Unit,
+    points: Vec<Point3<f64>>,
+    normals: Vec<Vector3<f64>>,
+    weights: Vec<f64>,
+) -> Part {
     let ids = (0..points.len() as u32).map(TriangleId).collect();
-    let cloud = Cloud::new(points, normals, ids, weights, Unit::Millimetre);
-    Part::from_cloud(&cloud.expect("a cloud"))
+    Part::from_cloud(&Cloud::new(points, normals, ids, weights, unit).expect("a cloud"))
 }
 
 /// Returns the part of these points, in mm, all of weight 1 and with the same normal.

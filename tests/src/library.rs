@@ -41,15 +41,8 @@ pub fn checked(name: &str) -> Box<CheckedTool> {
     compiled.outcome.unwrap_or_else(|refusal| panic!("{name}: {refusal:?}")).tool
 }
 
-/// Compiles a tool of the library from its text, for the interpreter and for proofs.
-pub fn read(name: &str) -> (Interpreted, CheckedTool) {
-    for source in library() {
-        let compiled =
-            touchoff_dsl::compile(&source).into_tool().expect("a tool of the library has no error");
-        if compiled.model.name == name {
-            let interpreted = Interpreted::parse(&source).expect("it has none");
-            return (interpreted, *compiled);
-        }
-    }
-    panic!("the library has no {name}")
+/// Reads a tool of the library at run time.
+pub fn interpreted(name: &str) -> Interpreted {
+    let mut read = files().into_iter().map(|file| Interpreted::load(file).expect("a tool"));
+    read.find(|tool| tool.info().name == name).expect("a tool of the library")
 }

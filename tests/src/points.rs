@@ -46,11 +46,6 @@ pub fn azimuths(rng: &mut Rng) -> [[f64; 2]; 6] {
     [[1.0, 0.0], [0.0, 1.0], [-1.0, -0.0], [0.0, -1.0], rng.azimuth(), rng.azimuth()]
 }
 
-/// Returns a point in the half plane y = 0 turned about z if the solid is one of revolution; of another solid as it is.
-pub fn turned(oracle: &dyn Oracle, p: [f64; 3], azimuth: [f64; 2]) -> [f64; 3] {
-    if oracle.is_revolved() { to_space([p[0], p[2]], azimuth) } else { p }
-}
-
 /// Adds points anywhere in a box a tenth larger than the tool.
 pub fn add_anywhere(oracle: &dyn Oracle, count: usize, rng: &mut Rng, points: &mut Vec<[f64; 3]>) {
     let [radius, height] = oracle.extent();
@@ -95,7 +90,7 @@ pub fn add_beside_borders(
             let size = rng.power(-16.0, -6.0);
             let neighbour = displaced(oracle, a, rng.direction().map(|c| size * c), 0.0);
             let azimuth = azimuths(rng)[rng.index(6)];
-            points.push(turned(oracle, neighbour, azimuth));
+            add_turned(oracle, neighbour, &[azimuth], points);
         }
     }
 }

@@ -7,9 +7,10 @@ use touchoff::{Law, Part, Sampling};
 use touchoff_bench::haptics::latency;
 use touchoff_bench::haptics::page::{Measurements, page, plots};
 use touchoff_bench::haptics::roughness::{Case, ForceStats, HandPath, force_stats, tools};
+use touchoff_bench::haptics::wall;
 use touchoff_bench::page::{Page, Section};
 use touchoff_haptics::{EnergyBalance, Rendering};
-use touchoff_tests::haptics::{energy, sheet, wall};
+use touchoff_tests::haptics::{energy, sheet};
 
 /// Measures the haptic loop: stable wall stiffness, force roughness, energy, a thin sheet and latencies.
 #[derive(Args)]

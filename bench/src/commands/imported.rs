@@ -1,6 +1,7 @@
 //! Measures the import of tool libraries: reading, compiling and proving.
 
 use rayon::prelude::*;
+use serde_json::{Value, json};
 use std::error::Error;
 use std::time::Instant;
 use touchoff_bench::page::Section;
@@ -8,7 +9,7 @@ use touchoff_dsl::compile;
 use touchoff_dsl::prove::Certificate;
 use touchoff_dsl::source::Source;
 use touchoff_import::{ImportedTool, Library};
-use touchoff_tests::libraries::fusion_library;
+use touchoff_tests::fusion;
 
 /// Number of tools of the library.
 const TOOLS: usize = 1_000;
@@ -34,6 +35,35 @@ pub(super) fn section() -> Result<Section, Box<dyn Error>> {
         proofs.iter().filter(|proof| proof.is_none()).count(),
     );
     Ok(Section { title: "Imported", body })
+}
+
+/// Returns a library of Fusion 360 with so many tools, of every type and in sizes from a half to twice the usual.
+fn fusion_library(count: usize) -> String {
+    let kinds = fusion::tools();
+    let tool = |k: usize| {
+        let mut tool = kinds[k % kinds.len()].clone();
+        scale(&mut tool["geometry"], 0.5 + 1.5 * k as f64 / count as f64);
+        tool["description"] = json!(format!("tool {k}"));
+        tool
+    };
+    json!({ "data": (0..count).map(tool).collect::<Vec<_>>() }).to_string()
+}
+
+/// Scales the lengths of a tool.
+fn scale(value: &mut Value, factor: f64) {
+    match value {
+        Value::Object(object) => {
+            let not_lengths = ["SIG", "TA", "NT", "NOF", "thread-profile-angle", "chamfer-angle"];
+            let lengths = object.iter_mut().filter(|(key, _)| !not_lengths.contains(&&***key));
+            lengths.for_each(|(_, value)| scale(value, factor));
+        }
+        Value::Array(list) => list.iter_mut().for_each(|value| scale(value, factor)),
+        Value::Number(number) => {
+            let scaled = number.as_f64().unwrap_or(0.0) * factor;
+            *value = json!((scaled * 1e4).round() / 1e4);
+        }
+        _ => {}
+    }
 }
 
 /// Writes, compiles and proves a tool: true if depth is the distance, `None` if it does not compile.

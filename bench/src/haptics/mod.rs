@@ -1,6 +1,7 @@
-//! The haptic loop with a simulated hand: force roughness, and the time per cycle.
+//! The haptic loop with a simulated hand: the stiffest walls, force roughness, and the time per cycle.
 
 pub mod latency;
 pub mod page;
 pub mod roughness;
 mod smooth;
+pub mod wall;

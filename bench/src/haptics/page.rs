@@ -1,10 +1,10 @@
 //! The page `docs/measured/haptics.md`.
 
 use super::roughness::{Case, ForceStats};
+use super::wall::{ENCODER_STEP, Row};
 use crate::plot::{Axis, Plot, Series};
 use std::fmt::{self, Write};
 use touchoff_haptics::{EnergyBalance, LoopReport};
-use touchoff_tests::haptics::wall::{ENCODER_STEP, Row};
 
 /// The measurements of the page.
 pub struct Measurements {

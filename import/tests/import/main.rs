@@ -2,6 +2,7 @@
 //! exported tools.
 
 mod exported;
+mod libraries;
 mod mutated;
 mod notations;
 mod omitted;

@@ -4,12 +4,12 @@
 //! `MUTANTS=100000 cargo test -p touchoff-import --test import mutated -- --nocapture` runs 10⁵ mutants of each format, `mutated_tables`
 //! instead of `mutated` those of one.
 
+use crate::libraries::{self, LibraryFile};
 use std::collections::HashSet;
 use std::io::Write;
 use std::time::{Duration, Instant};
 use touchoff_import::{ImportError, ImportedTool, Library, Note};
 use touchoff_tests::count::case_count;
-use touchoff_tests::libraries::{self, LibraryFile};
 use touchoff_tests::oracle::rng::Rng;
 use zip::write::SimpleFileOptions;
 

@@ -1,12 +1,13 @@
 //! One tool in all notations is one solid, and fig. 7.3 of Ho (1999) from a tool library is the tool by hand.
 
+use crate::libraries;
 use serde_json::{Value, json};
 use touchoff::Level;
 use touchoff::tool::{Evaluations, Interpreted, Outputs, PointBatch, Tool};
 use touchoff_dsl::source::Source;
 use touchoff_import::Library;
 use touchoff_tests::count::case_count;
-use touchoff_tests::libraries;
+use touchoff_tests::fusion;
 use touchoff_tests::oracle::rng::Rng;
 
 /// Number of points per comparison; the variable `POINTS` changes it.
@@ -22,7 +23,7 @@ pub(super) fn load(name: &str, text: &str) -> Interpreted {
 /// A ball end mill of 6 mm as six systems state it.
 fn ball() -> [(&'static str, String); 6] {
     let dimensions = json!({ "DC": 6, "RE": 3, "SFDM": 6, "OAL": 50, "shoulder-diameter": 6 });
-    let fusion = libraries::fusion_tool("ball end mill", &dimensions);
+    let fusion = fusion::tool("ball end mill", &dimensions);
     let kiri = json!([{ "number": 1, "type": "ballmill", "name": "ball", "metric": true, "shaft_diam": 6,
         "shaft_len": 30, "flute_diam": 6, "flute_len": 20, "taper_tip": 0 }]);
     let camotics =
@@ -93,7 +94,7 @@ fn a_ball_end_mill_is_one_solid_in_all_notations() {
 #[test]
 fn fig_7_3_from_a_library_is_the_tool_by_hand() {
     let segment = |height: f64, lower: f64, upper: f64| json!({ "height": height, "lower-diameter": lower, "upper-diameter": upper });
-    let mut tool: Value = libraries::fusion_tool(
+    let mut tool: Value = fusion::tool(
         "ball end mill",
         &json!({ "DC": 2, "RE": 1, "LCF": 5, "shoulder-length": 5, "shoulder-diameter": 2, "LB": 5,
             "SFDM": 2, "OAL": 20 }),

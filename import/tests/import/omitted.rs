@@ -1,9 +1,10 @@
 //! Libraries that leave something out, or write it in a way that cannot be read. Nothing is invented: the tool stays
 //! the same because the value has no influence, or it is left out, or a note says what was taken.
 
+use crate::libraries;
 use serde_json::{Value, json};
 use touchoff_import::Library;
-use touchoff_tests::libraries;
+use touchoff_tests::fusion;
 
 /// Keys whose absence has a meaning in the format itself: a tool without a neck, without a shaft, without a holder.
 const OPTIONAL: [&str; 5] =
@@ -102,7 +103,7 @@ fn assert_each_value_counts(name: &str, tool: &Value, wrap: impl Fn(&Value) -> V
 
 #[test]
 fn fusion_tools_invent_nothing() {
-    for tool in libraries::fusion() {
+    for tool in fusion::tools() {
         assert_each_value_counts("l.json", &tool, |tool| json!({ "data": [tool] }));
     }
 }

@@ -4,12 +4,11 @@
 //! unit circle (Gil et al., *Stability boundary for haptic rendering*, 2004). This module has the theory, by a two
 //! by two matrix, and the behaviour of the loop.
 
-use super::{block, tool, upright};
+use super::{tool, upright};
 use nalgebra::{Matrix2, Vector2};
 use touchoff::{Law, Part, Probe};
 use touchoff_haptics::{
-    Coupling, DeviceAxes, DeviceLimits, HandImpedance, Rendering, Session, SessionSettings,
-    SimulatedHand,
+    DeviceAxes, DeviceLimits, HandImpedance, Rendering, Session, SessionSettings, SimulatedHand,
 };
 
 /// The device that the hand holds.
@@ -51,7 +50,7 @@ pub fn theoretical_limit(grip: &HandImpedance, rate: f64) -> f64 {
 }
 
 /// Returns the largest number for which `is_stable` is true, to one part in a hundred; infinity if it is beyond 10^5.
-fn largest(is_stable: impl Fn(f64) -> bool) -> f64 {
+pub fn largest(is_stable: impl Fn(f64) -> bool) -> f64 {
     const MAX_STIFFNESS: f64 = 1e5;
     let mut high = 0.1;
     while is_stable(high) {
@@ -116,44 +115,4 @@ impl Wall<'_> {
         }
         high - low
     }
-
-    /// Returns the largest stiffness of a wall at which the tip comes to rest, N/mm: it swings by no more than a
-    /// micrometre, or two steps of the encoders.
-    pub fn max_stable_stiffness(&self) -> f64 {
-        let rest = (2.0 * self.step).max(1e-3);
-        largest(|stiffness| self.oscillation(stiffness) <= rest)
-    }
-}
-
-/// Results at one rate.
-pub struct Row {
-    /// Cycle rate, Hz.
-    pub rate: f64,
-    /// The limit by theory, N/mm.
-    pub theory: f64,
-    /// The measured limits, N/mm: direct; with encoders of 0.01 mm; scaled; coupled.
-    pub measured: [f64; 4],
-    /// The largest stiffness of a coupling at which the tip comes to rest, N/mm.
-    pub coupling: f64,
-}
-
-/// Resolution of the encoders, mm.
-pub const ENCODER_STEP: f64 = 0.01;
-
-/// Measures the limits at a rate.
-pub fn row(rate: f64) -> Row {
-    let part = block(5_000);
-    let theory = theoretical_limit(&HandImpedance::default(), rate);
-    let limits = DeviceLimits { force: 1e6, torque: 1e9, ..LIMITS };
-    let scaled = Rendering::Direct { scaled: true, damping: 0.0 };
-    let coupled = Rendering::Coupled(Coupling::of(&limits));
-    let renderings = [(DIRECT, 0.0), (DIRECT, ENCODER_STEP), (scaled, 0.0), (coupled, 0.0)];
-    let measured = renderings.map(|(rendering, step)| {
-        Wall { part: &part, rate, rendering, step }.max_stable_stiffness()
-    });
-    let coupling = largest(|stiffness| {
-        let rendering = Rendering::Coupled(Coupling { stiffness, ..Coupling::of(&limits) });
-        Wall { part: &part, rate, rendering, step: 0.0 }.oscillation(1e4) <= 1e-3
-    });
-    Row { rate, theory, measured, coupling }
 }

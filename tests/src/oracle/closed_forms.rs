@@ -149,7 +149,7 @@ pub fn quadrature(a: f64, b: f64, f: impl Fn(f64) -> f64) -> f64 {
         let pairs = RULE.iter().map(|(x, w)| w * (f(middle - half * x) + f(middle + half * x)));
         half * pairs.sum::<f64>()
     };
-    (0..PANELS).map(panel).collect::<super::brute::Sum>().value()
+    (0..PANELS).map(panel).collect::<super::sum::Sum>().value()
 }
 
 #[cfg(test)]

@@ -142,7 +142,7 @@ impl Oracle for Fig73 {
             owner,
             depth: magnitude,
             magnitude,
-            direction: m.lift(point.direction(owner)),
+            direction: m.lift(&point.direction(owner)),
             niceness: match owner {
                 7 => 2.0 * d * d,
                 8 => 2.0 * d * d + (z - 19.0) * (z - 19.0),
@@ -154,7 +154,7 @@ impl Oracle for Fig73 {
     fn gradient(&self, p: [f64; 3]) -> Option<[f64; 3]> {
         let m = Meridian::of(p);
         let point = ThesisPoint::new(&m.dz);
-        Some(m.lift(point.slope(point.owner()?)))
+        Some(m.lift(&point.slope(point.owner()?)))
     }
 
     fn signed_distance(&self, p: [f64; 3]) -> f64 {

@@ -3,8 +3,7 @@
 //! An [`Oracle`] evaluates one tool at one point. Nothing here shares code with the project. Solids that the
 //! compiler derives from a profile are evaluated by brute force over the profile's segments ([`profile`]), the
 //! thesis's own tool by its equations written out by hand ([`fig73`]), contacts by textbook integrals
-//! ([`closed_forms`]) and by a plain loop over the points ([`brute`]). Profiles, fig. 7.3 and the solids are generic
-//! over the number: doubles, or 256 bits ([`real`]).
+//! ([`closed_forms`]). Profiles, fig. 7.3 and the solids are generic over the number: doubles, or 256 bits ([`real`]).
 //!
 //! **Frame.** Everything is in the tool frame: tip at the origin, +z from the tip to the spindle, lengths in the
 //! tool file's unit. `[d, z]` is a point of the half plane `d >= 0`, `d` being the distance from the axis.
@@ -14,7 +13,6 @@
 
 pub mod big;
 pub mod bodies;
-pub mod brute;
 pub mod closed_forms;
 pub mod fig73;
 #[cfg(test)]
@@ -28,11 +26,14 @@ pub mod restated;
 pub mod rng;
 pub mod segment;
 pub mod space;
+pub mod sum;
 pub mod triangle;
 
 pub use bodies::Body;
 pub use fig73::Fig73;
 pub use nearest::{Nearest, cylinder, d2_ball, fig_7_3_exact, half_sphere_cylinder};
+use plane::{Point, unit};
+use real::Real;
 
 /// The evaluation of a tool at a point inside.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -158,28 +159,27 @@ pub fn displaced(o: &dyn Oracle, [x, y, z]: [f64; 3], step: [f64; 3], angle: f64
 
 /// A point in the half plane through it and the axis.
 #[derive(Clone, Copy, Debug)]
-pub struct Meridian {
+pub struct Meridian<T> {
     /// Distance from the axis, and z.
-    pub dz: [f64; 2],
+    pub dz: Point<T>,
     /// Unit vector away from the axis; +x on the axis.
-    pub radial: [f64; 2],
+    pub radial: [T; 2],
 }
 
-impl Meridian {
-    /// Returns the half plane through `p`.
-    pub fn of(p: [f64; 3]) -> Self {
-        let [x, y, z] = p;
-        let d = x.hypot(y);
+impl<T: Real> Meridian<T> {
+    /// Returns the half plane through a point.
+    pub fn of([x, y, z]: [T; 3]) -> Self {
+        let d = x.hypot(&y);
         // A denormal `d` has too few bits to divide by: the quotient would not be a unit vector.
-        let (sx, sy) = if d < 1e-290 { (x * 2f64.powi(600), y * 2f64.powi(600)) } else { (x, y) };
-        let s = sx.hypot(sy);
-        let radial = if s > 0.0 { [sx / s, sy / s] } else { [1.0, 0.0] };
+        let scale = T::exactly(if d.to_f64() < 1e-290 { 2f64.powi(600) } else { 1.0 });
+        let across = [x.times(&scale), y.times(&scale)];
+        let radial = if d > T::zero() { unit(&across) } else { [T::exactly(1.0), T::zero()] };
         Self { dz: [d, z], radial }
     }
 
     /// Returns the vector with these radial and axial parts, in space.
-    pub fn lift(&self, [e_d, e_z]: [f64; 2]) -> [f64; 3] {
-        [e_d * self.radial[0], e_d * self.radial[1], e_z]
+    pub fn lift(&self, [e_d, e_z]: &Point<T>) -> [T; 3] {
+        [e_d.times(&self.radial[0]), e_d.times(&self.radial[1]), e_z.clone()]
     }
 }
 

@@ -179,7 +179,7 @@ impl Oracle for Nearest {
             owner: region.index,
             depth,
             magnitude: depth,
-            direction: m.lift(self.profile.direction(near.feature, &m.dz)),
+            direction: m.lift(&self.profile.direction(near.feature, &m.dz)),
             niceness: if region.cutting { niceness() } else { 0.0 },
         })
     }

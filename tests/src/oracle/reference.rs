@@ -3,47 +3,14 @@
 //! Candidates for the nearest segment are found in doubles, with a margin of 1e-9 of the tool's size, a million times
 //! the error of doubles. All results are computed from these segments with 256 bits.
 
+use super::Meridian;
 use super::big::Big;
-use super::plane::{Point, norm};
 use super::profile::{Feature, NearestFeature, Profile};
 use super::restated::Restated;
 
 /// Margin, as a fraction of the tool's size, by which a segment may be farther than the nearest in doubles and is
 /// still considered.
 const MARGIN: f64 = 1e-9;
-
-/// A point, and the half plane through it and the axis.
-pub struct QueryPoint {
-    dz: Point<Big>,
-    /// Unit vector away from the axis; +x on the axis.
-    radial: [Big; 2],
-    dz_f64: Point<f64>,
-}
-
-impl QueryPoint {
-    /// Creates the point with these coordinates, taken exactly.
-    pub fn new(p: [f64; 3]) -> Self {
-        Self::of(p.map(Big::exactly))
-    }
-
-    /// Creates the point with coordinates of 256 bits.
-    pub fn of([x, y, z]: [Big; 3]) -> Self {
-        let d = norm(&[x.clone(), y.clone()]);
-        let radial =
-            if d == Big::zero() { [Big::exactly(1.0), Big::zero()] } else { [&x / &d, &y / &d] };
-        Self { dz_f64: [d.to_f64(), z.to_f64()], dz: [d, z], radial }
-    }
-
-    /// Returns the point of the half plane.
-    pub fn dz(&self) -> &Point<Big> {
-        &self.dz
-    }
-
-    /// Returns the vector with these radial and axial parts, in space.
-    pub fn lift(&self, [d, z]: &Point<Big>) -> [Big; 3] {
-        [d * &self.radial[0], d * &self.radial[1], z.clone()]
-    }
-}
 
 /// A tool's profile with 256 bits.
 pub struct Reference {
@@ -62,18 +29,19 @@ impl Reference {
     }
 
     /// Returns the nearest feature.
-    fn nearest(&self, at: &QueryPoint) -> NearestFeature<Big> {
+    fn nearest(&self, at: &Meridian<Big>) -> NearestFeature<Big> {
         let segments = self.sketch.segments().iter();
-        let distances: Vec<f64> = segments.map(|segment| segment.distance(&at.dz_f64)).collect();
+        let dz = at.dz.each_ref().map(Big::to_f64);
+        let distances: Vec<f64> = segments.map(|segment| segment.distance(&dz)).collect();
         let reach = distances.iter().copied().fold(f64::INFINITY, f64::min) + MARGIN * self.size;
         self.profile.nearest_of(|k| distances[k] <= reach, &at.dz)
     }
 
     /// Returns the nearest feature of a point, and the depth: the distance, negative outside.
-    fn feature_and_depth(&self, at: &QueryPoint) -> (Feature, Big) {
+    fn feature_and_depth(&self, at: &Meridian<Big>) -> (Feature, Big) {
         let NearestFeature { feature, distance } = self.nearest(at);
         let is_inside = if distance.to_f64() > MARGIN * self.size {
-            self.sketch.encloses(&at.dz_f64)
+            self.sketch.encloses(&at.dz.each_ref().map(Big::to_f64))
         } else {
             distance == Big::zero() || self.profile.encloses(&at.dz)
         };
@@ -81,30 +49,30 @@ impl Reference {
     }
 
     /// Returns the depth of a point: the distance to the surface, negative outside.
-    pub fn depth(&self, at: &QueryPoint) -> Big {
+    pub fn depth(&self, at: &Meridian<Big>) -> Big {
         self.feature_and_depth(at).1
     }
 
     /// Returns the owner of a point of the solid: the nearest feature, among equals the first listed. `None` outside.
-    pub fn owner(&self, at: &QueryPoint) -> Option<usize> {
+    pub fn owner(&self, at: &Meridian<Big>) -> Option<usize> {
         let (feature, depth) = self.feature_and_depth(at);
         (!depth.is_negative()).then(|| self.profile.owner(feature))
     }
 
     /// Returns the distance to an owner: a segment with its ends, or a corner.
-    pub fn distance_to(&self, at: &QueryPoint, owner: usize) -> Big {
+    pub fn distance_to(&self, at: &Meridian<Big>, owner: usize) -> Big {
         self.profile.distance(self.profile.owners()[owner], &at.dz)
     }
 
     /// Returns the unit vector from a point that an owner owns to its nearest point of the surface; where there is
     /// none, +z.
-    pub fn direction(&self, at: &QueryPoint, owner: usize) -> [Big; 3] {
+    pub fn direction(&self, at: &Meridian<Big>, owner: usize) -> [Big; 3] {
         at.lift(&self.profile.direction(self.profile.owners()[owner], &at.dz))
     }
 
     /// Returns the distance from a point to the nearest one at which its owner's direction does not exist. The axis
     /// counts, unless the owner is level.
-    pub fn singularity_distance(&self, at: &QueryPoint, owner: usize) -> f64 {
+    pub fn singularity_distance(&self, at: &Meridian<Big>, owner: usize) -> f64 {
         let owner = self.profile.owners()[owner];
         let distance = self.profile.singularity_distance(owner, &at.dz);
         let is_level = |segment: &super::segment::Segment<Big>| {

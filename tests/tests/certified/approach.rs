@@ -4,11 +4,8 @@
 //! triangle's radius is skipped; the others are sampled. From the best samples a search climbs in time and position at
 //! once.
 
-use crate::brute::{Ball, BruteForce, TRIANGLES_PER_GROUP, ToolFrame};
-use nalgebra::{Point3, Vector3};
-use touchoff::{Pose, TriangleId};
-use touchoff_tests::oracle::Oracle;
-use touchoff_tests::oracle::rng::Rng;
+use crate::brute::{Ball, TRIANGLES_PER_GROUP};
+use crate::prelude::*;
 use touchoff_tests::oracle::triangle::{Point, advance, nearest};
 
 /// Maximum number of triangles sampled per pose, and number of samples of each kind per triangle.
@@ -62,10 +59,6 @@ pub(crate) struct MotionSample {
 }
 
 impl BruteForce<'_> {
-    fn evaluation(&self, frame: &ToolFrame, p: Point) -> f64 {
-        self.depth(self.to_tool_frame(frame, Point3::from(p))) * self.length
-    }
-
     pub(crate) fn deepest_at(
         &self,
         motion: &ReferenceMotion,
@@ -98,7 +91,7 @@ impl BruteForce<'_> {
                 if depth_bound(ball) < best.depth {
                     continue;
                 }
-                let depth = self.evaluation(&frame, ball.centre.into());
+                let depth = self.depth(self.to_tool_frame(&frame, ball.centre));
                 candidates.push((depth + ball.radius, id));
                 if depth > best.depth {
                     best = MotionSample { t, triangle: id, point: ball.centre.into(), depth };
@@ -110,8 +103,7 @@ impl BruteForce<'_> {
             if bound < best.depth {
                 break;
             }
-            let value = |p| self.depth(p) * self.length;
-            let sample = self.sample(&frame, id, SAMPLES_PER_TRIANGLE, value, rng)[0];
+            let sample = self.sample(&frame, id, SAMPLES_PER_TRIANGLE, |p| self.depth(p), rng)[0];
             if sample.value > best.depth {
                 let offset = pose.rotation() * Vector3::from(sample.point) * self.length;
                 let point = (pose.tip() + offset).into();
@@ -175,7 +167,7 @@ impl BruteForce<'_> {
             let offset = if k % 3 == 1 { 0.0 } else { distance };
             let direction = rng.direction();
             let p = nearest(advance(best.point, offset, direction), &corners);
-            let depth = self.evaluation(&self.tool_frame(&motion.pose(t)), p);
+            let depth = self.depth(self.point_in_tool_frame(&motion.pose(t), Point3::from(p)));
             if depth > best.depth {
                 best = MotionSample { t, point: p, depth, ..best };
                 failed = 0;

@@ -1,9 +1,7 @@
 //! A tool among several bodies whose depths and distances are known: one answer for all, whatever their order.
 
-use crate::{UP, block, pose};
-use touchoff::certify::{CertifiedScene, Certifier, MotionVerdict, PoseVerdict, TriangleBvh};
-use touchoff::{Motion, Pose, Unit};
-use touchoff_tests::checks::assert_contains;
+use crate::prelude::*;
+use touchoff::certify::CertifiedScene;
 use touchoff_tests::fixtures::ball;
 
 /// Returns a plate whose upper face is at a height.

@@ -1,14 +1,8 @@
 //! Corners at the height at which one surface ends and the next begins: rounding puts each on either side, and its depth
 //! counts for the surface to which it is exactly the nearest.
 
-use crate::soup;
-use nalgebra::{Point3, Vector3};
-use touchoff::certify::{Certifier, PoseVerdict, TriangleBvh};
-use touchoff::tool::Interpreted;
-use touchoff::{Level, Pose, Tool};
-use touchoff_tests::fixtures::drawn;
+use crate::prelude::*;
 use touchoff_tests::oracle::big::Big;
-use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::space::{Frame, Triple, exactly};
 
 const RADIUS: f64 = 5.0;
@@ -38,8 +32,8 @@ fn a_corner_at_the_border_counts_for_the_surface_that_is_exactly_nearest() {
         let pose = Pose::from_axis(tip, Vector3::from(rng.direction())).expect("an axis");
         let corners = [[3.0, 0.0], [3.5, 0.3], [3.5, -0.3]]
             .map(|[x, y]| tip + pose.rotation() * Vector3::new(x, y, BORDER));
-        let bvh = TriangleBvh::new(&soup(&[corners.map(Into::into)]));
-        let mut certifier = Certifier::new(&bvh, &tool).expect("a profile");
+        let part = soup(&[corners.map(Into::into)]);
+        let mut certifier = certifier_of(&part, &tool);
         let depths = [lower, upper].map(|surface| {
             certifier.deepest_on(surface, &pose, 0.0).expect("a surface").depth.high
         });
@@ -55,15 +49,13 @@ fn a_corner_at_the_border_counts_for_the_surface_that_is_exactly_nearest() {
         // The lesser of two allowances holds at the border.
         for (strict, other) in [("lower", "upper"), ("upper", "lower")] {
             let all = [("face", 9.0), ("top", 9.0), (strict, 1.0), (other, 9.0)];
-            let mut certifier = Certifier::new(&bvh, &tool)
-                .map(|certifier| certifier.with_allowances(all).expect("surfaces"))
-                .expect("a profile");
+            let certifier = certifier_of(&part, &tool).with_allowances(all);
             let owner = usize::from(strict == "upper");
             let is_owned = corners.iter().any(|corner| {
                 let [_, _, z] = in_tool(&pose, *corner);
                 usize::from(z > Big::exactly(BORDER)) == owner
             });
-            let verdict = certifier.check_pose(&pose);
+            let verdict = certifier.expect("surfaces").check_pose(&pose);
             // The triangle is no solid, so that no pose is clear of more than its surface.
             assert!(!is_owned || verdict != PoseVerdict::SurfaceOnly, "{strict}: {verdict:?}");
         }
@@ -82,8 +74,7 @@ fn a_corner_at_the_end_of_a_tool_is_within_rounding_of_its_surface() {
         let pose = Pose::from_axis(tip, Vector3::from(rng.direction())).expect("an axis");
         let corners = [[0.1, 0.0], [2.5, 0.3], [2.5, -0.3]]
             .map(|[x, y]| tip + pose.rotation() * Vector3::new(x, y, 2.0 * BORDER));
-        let bvh = TriangleBvh::new(&soup(&[corners.map(Into::into)]));
-        let mut certifier = Certifier::new(&bvh, &tool).expect("a profile");
+        let mut certifier = certifier_of(&soup(&[corners.map(Into::into)]), &tool);
         let found = certifier.deepest(&pose, 0.0).depth;
         // Depth is the distance from the plane of the end, so near to it.
         let mut deepest = Big::zero();
@@ -112,8 +103,7 @@ fn an_edge_above_the_end_of_a_tool_is_not_deep() {
         let below = [[9.0, 0.0, -5.0], [9.0, 0.0, -4.0], [9.0, 0.0, -5.0]];
         let beside = [[60.0, 0.0, 5.0], [61.0, 0.0, 5.0], [60.0, 0.5, 5.0]];
         let edges = [[from, to, from], below].map(|edge| vec![edge; 8]).concat();
-        let bvh = TriangleBvh::new(&soup(&[edges, vec![beside]].concat()));
-        let certifier = Certifier::new(&bvh, &tool).expect("a profile");
+        let certifier = certifier_of(&soup(&[edges, vec![beside]].concat()), &tool);
         let mut certifier = certifier.with_level(Level::baseline());
         let found = certifier.deepest(&Pose::default(), 0.0).depth;
         assert!(found.low == 0.0 && found.high < 1e-11, "{found:?}: {from:?} to {to:?}");

@@ -4,14 +4,10 @@
 //! triangle's radius is skipped. The others are sampled at their corners, at random points and at the feet of random
 //! points of the tool. From the best samples a search climbs by decreasing random steps.
 
-use crate::verdicts::triangles;
-use nalgebra::{Point3, Vector3};
+use crate::prelude::*;
 use std::cell::Cell;
-use touchoff::certify::Witness;
-use touchoff::{Mesh, Pose, TriangleId};
-use touchoff_tests::oracle::rng::Rng;
+use touchoff_tests::oracle::Meridian;
 use touchoff_tests::oracle::triangle::{Point, advance, distance, dot, nearest, point, sub, unit};
-use touchoff_tests::oracle::{Meridian, Nearest, Oracle};
 
 /// Minimum and maximum number of samples of each kind per triangle. Fewer triangles nearby get more samples each.
 const SAMPLE_LIMITS: [usize; 2] = [8, 150];
@@ -117,7 +113,7 @@ impl<'a> BruteForce<'a> {
         let point = self.to_tool_frame(&frame, witness.point);
         let triangle = self.triangle(&frame, witness.triangle.index());
         let off = distance(point, nearest(point, &triangle));
-        (self.depth(point) * self.length, off * self.length)
+        (self.depth(point), off * self.length)
     }
 
     /// Returns a triangle in the tool's frame and unit.
@@ -125,10 +121,10 @@ impl<'a> BruteForce<'a> {
         self.mesh.triangle(TriangleId(id as u32)).map(|corner| self.to_tool_frame(frame, corner))
     }
 
-    /// Returns the depth of a point of the tool's frame, in the tool's unit; it is negative outside.
+    /// Returns the depth of a point of the tool's frame, in the part's unit; it is negative outside.
     pub(crate) fn depth(&self, p: Point) -> f64 {
         self.evaluations.set(self.evaluations.get() + 1);
-        self.oracle.profile().depth(&Meridian::of(p).dz)
+        self.oracle.profile().depth(&Meridian::of(p).dz) * self.length
     }
 
     /// Returns the greatest depth found, in the part's unit. It is negative if no sample is inside, and negative
@@ -137,15 +133,15 @@ impl<'a> BruteForce<'a> {
         let mut candidates = Vec::new();
         for (id, ball) in self.bounding_balls.iter().enumerate() {
             let p = self.to_tool_frame(frame, ball.centre);
-            let reach = ball.radius / self.length * (1.0 + 1e-9);
-            if self.is_near(p, reach) {
-                candidates.push(((self.depth(p) + reach) * self.length, id));
+            let radius = ball.radius * (1.0 + 1e-9);
+            if self.is_near(p, radius / self.length) {
+                candidates.push((self.depth(p) + radius, id));
             }
         }
         candidates.sort_by(|a, b| b.0.total_cmp(&a.0));
         let count =
             (TOTAL_SAMPLES / candidates.len().max(1)).clamp(SAMPLE_LIMITS[0], SAMPLE_LIMITS[1]);
-        let depth = |p| self.depth(p) * self.length;
+        let depth = |p| self.depth(p);
         let mut best = f64::NEG_INFINITY;
         let mut starts: Vec<Sample> = Vec::new();
         for (bound, id) in candidates.into_iter().take(MAX_TRIANGLES) {

@@ -1,16 +1,8 @@
 //! Clearance of a tool, checked against known geometry and against the points of a fine raster.
 
-use crate::verdicts::{certifier, triangles};
-use crate::{UP, block, plate, pose, to_tool};
-use nalgebra::Vector3;
+use crate::prelude::*;
+use crate::to_tool;
 use std::sync::Arc;
-use touchoff::certify::{Certifier, TriangleBvh};
-use touchoff::mesh::shapes;
-use touchoff::{Interval, Mesh, Pose, Tool, Unit};
-use touchoff_tests::checks::assert_contains;
-use touchoff_tests::fixtures::drawn;
-use touchoff_tests::oracle::rng::Rng;
-use touchoff_tests::oracle::{Nearest, Oracle};
 
 /// Number of divisions of the triangles' sides.
 const DIVISIONS: u32 = 20;

@@ -1,13 +1,9 @@
 //! Certified depths compared with closed forms.
 
-use crate::verdicts::{certifier, moved};
-use crate::{UP, block, plate, pose, pose_at, soup};
-use nalgebra::{Point3, Vector3};
+use crate::pose_at;
+use crate::prelude::*;
 use std::f64::consts::PI;
-use touchoff::certify::PoseVerdict;
-use touchoff::mesh::shapes;
-use touchoff::{Interval, Mesh, Pose, Unit, scenes};
-use touchoff_tests::checks::assert_contains;
+use touchoff::scenes;
 
 fn assert_interval_contains(mesh: &Mesh, name: &str, pose: &Pose, depth: f64) {
     let mut certifier = certifier(mesh, name);

@@ -1,6 +1,7 @@
 //! Tools as oracles whose depth is fast enough for millions of evaluations.
 
-use touchoff_tests::oracle::{self, Nearest, Oracle, restated};
+use crate::prelude::*;
+use touchoff_tests::oracle::{self, restated};
 
 pub(crate) const PROFILES: [&str; 6] =
     ["Fig73Exact", "BullNose", "Lollipop", "TSlot", "BallEr16", "TaperedBall"];

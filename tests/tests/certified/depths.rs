@@ -4,25 +4,14 @@
 //! restatement, samples triangles and climbs from the deepest samples, and from the witness. No depth that it finds may
 //! exceed the upper bound. The lower bound is proved by the witness, whose depth is evaluated by the same oracle.
 
-use crate::brute::{BruteForce, STEPS_PER_CLIMB, Sample, ToolFrame};
-use crate::pair::{Pair, Pairs, parts};
+use crate::brute::{STEPS_PER_CLIMB, Sample, ToolFrame};
+use crate::pair::{IN_CONTACT, Pair, Pairs, QUERIED, REACHED, VIOLATIONS, WIDER, parts};
+use crate::prelude::*;
 use crate::{oracle, overhang};
-use touchoff::certify::{Certifier, PoseVerdict, Witness};
-use touchoff::{Interval, Pose, SurfaceId};
-use touchoff_tests::count::case_count;
-use touchoff_tests::oracle::rng::Rng;
-use touchoff_tests::tally::Tally;
+use touchoff::certify::Penetration;
 
 /// Number of poses per part and tool, unless `POSES` is set.
 const POSES: usize = 24;
-
-/// Names of counts: a sample inside the tool, brute force near the lower bound, an interval wider than tolerance and
-/// rounding together, a wrong answer.
-const POSES_QUERIED: &str = "poses";
-const IN_CONTACT: &str = "in contact";
-const REACHED: &str = "reached";
-const WIDER: &str = "wider";
-const VIOLATIONS: &str = "violations";
 
 /// The tolerances used, in the part's unit.
 const TOLERANCES: [f64; 4] = [0.0, 1e-9, 1e-6, 1e-3];
@@ -35,20 +24,32 @@ impl Pair<'_> {
         let mut certifier =
             Certifier::new(&self.part.bvh, self.tool).expect("a tool with a profile");
         let mut tally = Tally::default();
-        tally.add(POSES_QUERIED, poses as u64);
+        tally.add(QUERIED, poses as u64);
         for k in 0..poses {
             let pose = brute.random_pose(&mut rng);
+            let tolerance = TOLERANCES[k % TOLERANCES.len()];
+            let penetration = certifier.deepest(&pose, tolerance);
+            let verdict = certifier.check_pose(&pose);
+            let frame = brute.tool_frame(&pose);
+            let sampled_depth = brute.deepest(&frame, &mut rng);
+            let case = format!(
+                "{self} at tip {:?} axis {:?}, tolerance {tolerance:e}: {penetration:?}, {verdict:?}, brute force {sampled_depth:?}",
+                pose.tip().coords.as_slice(),
+                pose.axis().as_slice(),
+            );
             let mut validation = Validation {
                 pair: self,
                 brute: &brute,
-                frame: brute.tool_frame(&pose),
+                frame,
                 // Error bound of the oracle and of the coordinates of a sample.
                 rounding: 64.0 * f64::EPSILON * brute.size,
                 pose,
-                tolerance: TOLERANCES[k % TOLERANCES.len()],
+                tolerance,
                 tally: &mut tally,
+                case,
             };
-            validation.validate(&mut certifier, &mut rng);
+            let max_depth = validation.check_interval(&penetration, sampled_depth, &mut rng);
+            validation.check_verdict(verdict, max_depth, penetration.depth.low);
         }
         tally.add("samples", brute.evaluations.get());
         tally
@@ -63,77 +64,69 @@ struct Validation<'a> {
     pose: Pose,
     tolerance: f64,
     tally: &'a mut Tally,
+    case: String,
 }
 
 impl Validation<'_> {
-    fn validate(&mut self, certifier: &mut Certifier<'_>, rng: &mut Rng) {
-        let penetration = certifier.deepest(&self.pose, self.tolerance);
-        let Interval { low, high } = penetration.depth;
-        let sampled_depth = self.brute.deepest(&self.frame, rng);
-        let case = format!(
-            "{} at tip {:?} axis {:?}, tolerance {:e}: {penetration:?}, brute force {sampled_depth:?}",
-            self.pair,
-            self.pose.tip().coords.as_slice(),
-            self.pose.axis().as_slice(),
-            self.tolerance,
-        );
+    /// Checks an interval and its witness. Returns the greatest depth that is found.
+    fn check_interval(&mut self, found: &Penetration, sampled_depth: f64, rng: &mut Rng) -> f64 {
+        let Interval { low, high } = found.depth;
         self.tally.see(IN_CONTACT, sampled_depth > 0.0);
         // Brute force without the witness comes near the lower bound.
         self.tally.see(REACHED, low - sampled_depth.max(0.0) <= 1e-6);
         let mut max_depth = sampled_depth;
-        match penetration.witness {
+        match found.witness {
             Some(witness) => {
-                let is_shallow = low - self.witness_depth(&witness, &case) > self.rounding;
-                self.never(is_shallow, "the witness is not as deep as the lower bound", &case);
+                let is_shallow = low - self.witness_depth(&witness) > self.rounding;
+                self.never(is_shallow, "the witness is not as deep as the lower bound");
                 let point = self.brute.to_tool_frame(&self.frame, witness.point);
                 let start = Sample { triangle: witness.triangle.index(), point, value: low };
-                let depth = |p| self.brute.depth(p) * self.brute.length;
+                let depth = |p| self.brute.depth(p);
                 let climbed = self.brute.climb(&self.frame, start, STEPS_PER_CLIMB, depth, rng);
                 max_depth = max_depth.max(climbed.value);
             }
-            None => self.never(low > 0.0, "a lower bound without a witness", &case),
+            None => self.never(low > 0.0, "a lower bound without a witness"),
         }
         let text = format!("a sample is {max_depth:e} deep, above the upper bound");
-        self.never(max_depth > high + self.rounding, &text, &case);
+        self.never(max_depth > high + self.rounding, &text);
         // Written without `low > high`, which is false for NaN.
         let is_interval = 0.0 <= low && low <= high && high.is_finite();
-        self.never(!is_interval, "no interval", &case);
+        self.never(!is_interval, "no interval");
         // The rounding error counts twice at either end and four times in the tolerance.
         self.tally.see(WIDER, high - low - self.tolerance > 8.0 * self.rounding);
-        let verdict = certifier.check_pose(&self.pose);
-        self.validate_verdict(verdict, max_depth, low, &format!("{case}, {verdict:?}"));
+        max_depth
     }
 
-    fn validate_verdict(&mut self, verdict: PoseVerdict, max_depth: f64, low: f64, case: &str) {
+    fn check_verdict(&mut self, verdict: PoseVerdict, max_depth: f64, low: f64) {
         match verdict {
             PoseVerdict::Clear | PoseVerdict::SurfaceOnly | PoseVerdict::Inside(_) => {
-                self.never(max_depth > self.rounding || low > 0.0, "said not to touch", case);
+                self.never(max_depth > self.rounding || low > 0.0, "said not to touch");
             }
             PoseVerdict::Touching(witness) => {
-                let is_outside = self.witness_depth(&witness, case) < -self.rounding;
-                self.never(is_outside, "the witness of a touch is outside", case);
+                let is_outside = self.witness_depth(&witness) < -self.rounding;
+                self.never(is_outside, "the witness of a touch is outside");
             }
-            PoseVerdict::Near(_) => self.never(true, "a margin that nobody asked for", case),
+            PoseVerdict::Near(_) => self.never(true, "a margin that nobody asked for"),
             PoseVerdict::Undecided(high) => {
                 self.tally.add("undecided", 1);
                 let is_deeper = max_depth > high + self.rounding;
-                self.never(is_deeper, "deeper than what is undecided", case);
+                self.never(is_deeper, "deeper than what is undecided");
             }
         }
     }
 
     /// Returns the depth of a witness, and checks that it lies on its triangle.
-    fn witness_depth(&mut self, witness: &Witness, case: &str) -> f64 {
+    fn witness_depth(&mut self, witness: &Witness) -> f64 {
         let (depth, off) = self.brute.witness(&self.pose, witness);
         let text = format!("the witness is {off:e} from its triangle");
-        self.never(off > self.rounding, &text, case);
+        self.never(off > self.rounding, &text);
         let is_nowhere = witness.surface >= SurfaceId(self.pair.tool.info().surfaces.len());
-        self.never(is_nowhere, "the witness is at no surface", case);
+        self.never(is_nowhere, "the witness is at no surface");
         depth
     }
 
-    fn never(&mut self, occurred: bool, message: &str, case: &str) {
-        self.tally.never(VIOLATIONS, occurred, || format!("{message}: {case}"));
+    fn never(&mut self, occurred: bool, message: &str) {
+        self.tally.never(VIOLATIONS, occurred, || format!("{message}: {}", self.case));
     }
 }
 
@@ -150,7 +143,7 @@ fn check(tools: &[&str], poses: usize, seed: u64) {
     eprintln!("brute force: {total}");
     total.assert_none(VIOLATIONS);
     // Brute force that seldom comes near the lower bound would not contradict an upper bound either.
-    assert!(2 * total.count(REACHED) > total.count(POSES_QUERIED), "{total}");
+    assert!(2 * total.count(REACHED) > total.count(QUERIED), "{total}");
 }
 
 #[test]

@@ -5,23 +5,13 @@
 //! of them are there is known from samples of the tool's section, whose depth and nearest surface the oracle evaluates.
 
 use crate::depth_oracle::{DepthOracle, FIELDS, PROFILES};
-use crate::verdicts::moved;
-use crate::{block, pose, tool};
-use nalgebra::{Point3, Vector3};
-use touchoff::certify::{Certifier, MotionVerdict, PoseVerdict, TriangleBvh};
-use touchoff::mesh::shapes;
-use touchoff::{Motion, Pose, SurfaceId, Tool, Unit};
-use touchoff_tests::oracle::rng::Rng;
-use touchoff_tests::oracle::{Nearest, Oracle};
-use touchoff_tests::tally::Tally;
+use crate::pair::{QUERIED, VIOLATIONS};
+use crate::prelude::*;
 use touchoff_tools::TOOLS;
 
-/// Names of counts: poses with the tool entirely inside and with a face that cuts it, those with the correct verdict, and
-/// verdicts that are neither correct nor undecided.
-const POSES: &str = "poses";
+/// Names of counts: the correct verdict on a tool that is entirely inside, and on one that a face cuts.
 const INSIDE: &str = "found inside";
 const CUT: &str = "found cut";
-const VIOLATIONS: &str = "violations";
 
 /// Checks the verdicts on random blocks around a tool. One face of each is a small distance inside or outside the tool's
 /// extent, and the others are farther away.
@@ -53,10 +43,9 @@ fn check_blocks(name: &str, blocks: usize) -> Tally {
         let tip = Point3::from(rng.direction()) * size;
         let pose = Pose::from_axis(tip, Vector3::from(rng.direction())).expect("an axis");
         let to_world = |p: &Point3<f64>| pose.tip() + pose.rotation() * p.coords;
-        let bvh = TriangleBvh::new(&moved(&cuboid, to_world));
-        let mut certifier = Certifier::new(&bvh, tool).expect("a tool that is proved");
+        let mut certifier = certifier_of(&moved(&cuboid, to_world), tool);
         let verdict = certifier.check_pose(&pose);
-        tally.add(POSES, 1);
+        tally.add(QUERIED, 1);
         match (inside, verdict) {
             (true, PoseVerdict::Inside(_)) => tally.add(INSIDE, 1),
             (false, PoseVerdict::Touching(_)) => tally.add(CUT, 1),

@@ -1,10 +1,6 @@
 //! A tool whose end is in a part within its tolerance or allowance is beside the part, not inside it.
 
-use crate::verdicts::certifier;
-use crate::{UP, block, motion, plate, pose, tool};
-use touchoff::Pose;
-use touchoff::certify::{Certifier, MotionVerdict, PoseVerdict, TriangleBvh};
-use touchoff_tests::fixtures::drawn;
+use crate::prelude::*;
 
 /// Returns a pose upside down, with the tool's upper end (z = 40) at this depth below the plate's face.
 fn upside_down(depth: f64) -> Pose {
@@ -39,10 +35,8 @@ fn a_tool_entirely_inside_is_inside_with_any_allowance() {
 #[test]
 fn the_margin_of_a_surface_smaller_than_the_tolerance_is_kept() {
     let made = drawn("0 0; face 4.98 0; chamfer 5 0.02; flute 5 50, 0 50", "flute");
-    let bvh = TriangleBvh::new(&plate());
     let allowed = [("face", f64::INFINITY), ("flute", f64::INFINITY), ("chamfer", -1.0)];
-    let certifier = Certifier::new(&bvh, &made).expect("a profile");
-    let mut certifier = certifier.with_allowances(allowed).expect("surfaces");
+    let mut certifier = certifier_of(&plate(), &made).with_allowances(allowed).expect("surfaces");
     let at_rest = |z: f64| {
         let pose = pose([0.0, 0.0, z], UP);
         motion(&pose, &pose)

@@ -1,16 +1,9 @@
 //! Tools known only by their depth field and its Lipschitz bound.
 
-use crate::verdicts::{certifier, deeper, touching, triangles};
-use crate::{UP, block, motion, plate, pose, to_tool, tool};
-use nalgebra::{Point3, Vector3};
-use touchoff::certify::{
-    AllowanceError, Certifier, MotionDepth, MotionVerdict, PoseVerdict, TriangleBvh, Witness,
-};
-use touchoff::mesh::shapes;
-use touchoff::tool::Interpreted;
-use touchoff::{Interval, Mesh, Pose, SurfaceId, Tool, Unit};
-use touchoff_tests::oracle::rng::Rng;
-use touchoff_tests::oracle::{self, Oracle};
+use crate::prelude::*;
+use crate::to_tool;
+use touchoff::certify::AllowanceError;
+use touchoff_tests::oracle;
 
 /// The library's tools without a profile.
 const TOOLS: [&str; 5] = ["Fig73", "Cylinder", "UnitSphere", "Block", "LBracket"];
@@ -68,8 +61,7 @@ fn samples_of_fields_are_within_the_certified_depths() {
     let mut rng = Rng::new(5);
     for sphere in TOOLS.map(Sphere::new) {
         let (name, coarse) = (sphere.name, 2e-2 * sphere.size);
-        let bvh = TriangleBvh::new(&sphere.mesh);
-        let mut certifier = Certifier::new(&bvh, sphere.tool).expect("a tool that is proved");
+        let mut certifier = certifier_of(&sphere.mesh, sphere.tool);
         let ([mut touching, mut touching_surfaces], [mut decided, mut wide]) = ([0; 2], [0; 2]);
         for _ in 0..24 {
             let pose = sphere.random_pose(&mut rng);
@@ -208,8 +200,7 @@ fn the_distance_of_an_edge_from_a_region_is_not_below_its_interval() {
         region sphere as ball cutting where sphere <= 0 { depth: -sphere; direction: away from (0, 0); }
         niceness cutting: 1; }";
     let tool: Interpreted = text.parse().expect("a tool");
-    let edge = TriangleBvh::new(&block([0.0, -20.0, -20.0], [40.0, 20.0, 0.0]));
-    let mut certifier = Certifier::new(&edge, &tool).expect("proved");
+    let mut certifier = certifier_of(&block([0.0, -20.0, -20.0], [40.0, 20.0, 0.0]), &tool);
     let mut rng = Rng::new(1);
     for gap in [1e-3, 0.05, 0.2, 1.0] {
         for _ in 0..8 {
@@ -240,8 +231,7 @@ fn every_piece_of_a_tool_of_several_pieces_is_located() {
         let tool: Interpreted = text.parse().expect("a tool");
         for (k, [low, high]) in balls.into_iter().enumerate() {
             let part = block([-20.0, -20.0, low - 2.0], [20.0, 20.0, high + 2.0]);
-            let part = TriangleBvh::new(&part);
-            let mut certifier = Certifier::new(&part, &tool).expect("proved");
+            let mut certifier = certifier_of(&part, &tool);
             let at = pose([0.0; 3], UP);
             assert!(matches!(certifier.check_pose(&at), PoseVerdict::Inside(_)), "{k} of {text}");
             let path = motion(&at, &pose([0.1, 0.0, 0.0], UP));
@@ -260,8 +250,7 @@ fn the_bound_of_a_motion_is_not_below_a_steep_depth() {
         region low as flute where 0 <= z <= min(side, end) { depth: 3*z; }
         region end as flute where 0 <= end <= min(side, z) { depth: 3*end; } }";
     let tool: Interpreted = text.parse().expect("a tool");
-    let plate = TriangleBvh::new(&block([-0.1, -20.0, -5.0], [0.1, 20.0, 40.0]));
-    let mut certifier = Certifier::new(&plate, &tool).expect("proved");
+    let mut certifier = certifier_of(&block([-0.1, -20.0, -5.0], [0.1, 20.0, 40.0]), &tool);
     let path = motion(&pose([-4.5, 0.0, 0.0], UP), &pose([3.5, 0.0, 0.0], UP));
     let (.., max_depth) = deeper(certifier.motion_depth(SurfaceId(0), &path, 0.0, 1e-3));
     assert!((9.0..9.5).contains(&max_depth), "{max_depth}");

@@ -1,18 +1,9 @@
 //! Degenerate parts, tolerances and budgets.
 
-use crate::brute::BruteForce;
 use crate::motions::bumpy;
 use crate::pair::{Part, generated_parts};
-use crate::verdicts::{certifier, deeper, triangles};
-use crate::{UP, motion, plate, pose, soup, tool};
-use nalgebra::Point3;
-use touchoff::certify::{Certifier, PoseVerdict, TriangleBvh};
-use touchoff::{Interval, Level, Mesh, Pose, SurfaceId, TriangleId, Unit};
-use touchoff_tests::checks::assert_contains;
+use crate::prelude::*;
 use touchoff_tests::evaluations::levels;
-use touchoff_tests::fixtures::drawn;
-use touchoff_tests::oracle::Nearest;
-use touchoff_tests::oracle::rng::Rng;
 
 fn depth(mesh: &Mesh, name: &str, pose: &Pose, tolerance: f64) -> Interval {
     certifier(mesh, name).deepest(pose, tolerance).depth
@@ -193,8 +184,8 @@ fn depths_along_very_long_motions_contain_the_exact_depth() {
     let triangles =
         [[0, 1, 2], [5, 4, 3], [0, 3, 4], [0, 4, 1], [1, 4, 5], [1, 5, 2], [2, 5, 3], [2, 3, 0]];
     let corners: Vec<_> = ends.concat().into_iter().map(Point3::from).collect();
-    let bvh = TriangleBvh::new(&Mesh::new(corners, triangles, Unit::Millimetre).expect("a mesh"));
-    let mut certifier = Certifier::new(&bvh, &cone).expect("a profile");
+    let ridge = Mesh::new(corners, triangles, Unit::Millimetre).expect("a mesh");
+    let mut certifier = certifier_of(&ridge, &cone);
     let mut rng = Rng::new(61);
     for _ in 0..60 {
         // Integers, so that their sum is exact, and with it the position at any time but for one rounding.

@@ -1,16 +1,10 @@
 //! A surface that crosses itself: a prism over a bow tie has material in one lobe and its opposite in the other. A tool
 //! in the latter is neither inside nor outside, and no answer may take it for clear.
 
-use nalgebra::Point3;
-use touchoff::certify::{
-    Certifier, Containment, MotionDepth, MotionVerdict, PoseVerdict, TriangleBvh,
-};
-use touchoff::tool::Interpreted;
-use touchoff::{Mesh, SurfaceId, Unit};
-use touchoff_tests::fixtures::drawn;
+use crate::prelude::*;
+use touchoff::certify::Containment;
 
 use crate::supports::REGIONS;
-use crate::{UP, block, motion, pose};
 
 fn bead() -> Interpreted {
     drawn("0 0; bead 0 0.2 about 0 0.1", "bead")
@@ -75,15 +69,14 @@ fn a_tool_in_a_lobe_that_is_inside_out_is_undecided() {
 #[test]
 fn a_tool_of_which_no_point_is_found_is_undecided() {
     let tool: Interpreted = REGIONS.parse().expect("a tool");
-    let bvh = TriangleBvh::new(&block([-50.0; 3], [50.0; 3]));
+    let part = block([-50.0; 3], [50.0; 3]);
     for (allowed, expected) in [
         (0.5, PoseVerdict::Inside(SurfaceId(1))),
         (1.0 - 1e-9, PoseVerdict::Undecided(0.0)),
         (1.1, PoseVerdict::Clear),
     ] {
         let all = [("ball", f64::INFINITY), ("shank", allowed)];
-        let certifier = Certifier::new(&bvh, &tool).expect("a bounded depth");
-        let mut certifier = certifier.with_allowances(all).expect("surfaces");
+        let mut certifier = certifier_of(&part, &tool).with_allowances(all).expect("surfaces");
         assert_eq!(certifier.check_pose(&pose([0.0; 3], UP)), expected, "{allowed}");
     }
 }
@@ -91,8 +84,8 @@ fn a_tool_of_which_no_point_is_found_is_undecided() {
 /// The lower bound of a buried tool's distance from the surface is 0 within the tolerance, as in contact.
 #[test]
 fn the_signed_distance_of_a_buried_tool_is_below_0_at_any_tolerance() {
-    let (tool, bvh) = (bead(), TriangleBvh::new(&block([-5.0; 3], [5.0; 3])));
-    let mut certifier = Certifier::new(&bvh, &tool).expect("a profile");
+    let tool = bead();
+    let mut certifier = certifier_of(&block([-5.0; 3], [5.0; 3]), &tool);
     for tolerance in [1e-9, 1e-6, 0.5, 4.0, 50.0] {
         for below in [5e-7, 0.4, 3.0] {
             let found = certifier.signed_distance(&pose([1.0, 2.0, 4.8 - below], UP), tolerance);

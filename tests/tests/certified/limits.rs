@@ -2,15 +2,11 @@
 //! 256 bits from the doubles of part and pose.
 
 use crate::borders::{in_tool, pin};
-use crate::verdicts::{assert_verdict, deeper};
-use crate::{motion, pose, soup};
-use nalgebra::{Point3, Vector3};
-use touchoff::certify::{Certifier, MotionVerdict, NearestTriangle, TriangleBvh};
-use touchoff::tool::Interpreted;
-use touchoff::{Interval, Level, Motion, Pose, SurfaceId};
+use crate::prelude::*;
+use crate::verdicts::assert_verdict;
+use touchoff::certify::NearestTriangle;
 use touchoff_tests::fixtures::{BALL, ball};
 use touchoff_tests::oracle::big::Big;
-use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::space::{Triple, advance, cross, exactly, norm, sub, to_f64};
 use touchoff_tests::oracle::triangle::mean;
 
@@ -82,8 +78,7 @@ fn distances_far_away_contain_those_in_256_bits() {
         }
         let far = pose.tip() + (distance + behind) * toward;
         triangles.push(narrow(far, toward, behind, &mut rng));
-        let bvh = TriangleBvh::new(&soup(&triangles));
-        let mut certifier = Certifier::new(&bvh, &tool).expect("a profile");
+        let mut certifier = certifier_of(&soup(&triangles), &tool);
         let found = certifier.clearance(&pose, 0.0).distance;
         let centre = centre(&pose);
         let depths = triangles.iter().map(|corners| depth(&centre, corners[0]));
@@ -107,8 +102,7 @@ fn depths_at_long_edges_contain_those_in_256_bits() {
         let [from, to] = [-1.0, 1.0].map(|sense| (inside + sense * length * along).into());
         let beside =
             narrow(inside + length * across(along, &mut rng), along, 0.1 * length, &mut rng);
-        let bvh = TriangleBvh::new(&soup(&[[from, to, from], beside]));
-        let mut certifier = Certifier::new(&bvh, &tool).expect("a profile");
+        let mut certifier = certifier_of(&soup(&[[from, to, from], beside]), &tool);
         let found = certifier.deepest(&pose, 0.0).depth;
         assert_contains(found, &depth_of_line(&centre(&pose), [from, to]), &format!("{pose:?}"));
         assert!(found.width() < 1e-12 * (10.0 + length), "{found:?} at {length}");
@@ -133,9 +127,8 @@ fn distances_of_slivers_contain_those_in_256_bits() {
         let above = Vector3::new(0.0, 0.0, BALL + rng.between(-1.5, 1.5));
         let axis = rng.direction();
         let pose = pose((Point3::from(foot) + above - BALL * Vector3::from(axis)).into(), axis);
-        let bvh = TriangleBvh::new(&soup(&[sliver]));
         let level = if round % 2 == 0 { Level::new() } else { Level::baseline() };
-        let mut certifier = Certifier::new(&bvh, &tool).expect("a profile").with_level(level);
+        let mut certifier = certifier_of(&soup(&[sliver]), &tool).with_level(level);
         let found = certifier.signed_distance(&pose, 0.0);
         let exact = &centre(&pose)[2] - &Big::exactly(BALL);
         assert_contains(found, &exact, &format!("{sliver:?} at {pose:?}"));
@@ -154,8 +147,7 @@ fn a_margin_that_a_point_violates_is_known_to_rounding() {
         let out = any(&mut rng, 1.0);
         let point = pose.tip() + BALL * pose.axis() + (BALL + rng.between(0.1, 0.9)) * out;
         let beside = narrow(point + 20.0 * out, out, 1.0, &mut rng);
-        let bvh = TriangleBvh::new(&soup(&[[point.into(); 3], beside]));
-        let mut certifier = Certifier::new(&bvh, &tool).expect("a profile");
+        let mut certifier = certifier_of(&soup(&[[point.into(); 3], beside]), &tool);
         let found = certifier.motion_depth(SurfaceId(0), &motion(&pose, &pose), -1.0, 0.0);
         let (_, found, _) = deeper(found);
         assert_contains(found, &depth(&centre(&pose), point.into()), &format!("{pose:?}"));
@@ -174,8 +166,8 @@ fn a_depth_that_is_not_searched_for_is_within_the_interval() {
         let to_world = |x: f64, z: f64| at.tip() + at.rotation() * Vector3::new(x, 0.0, z);
         let [known, other] = [to_world(-2.0, 0.5), to_world(2.0, rng.between(1.0, 2.0))];
         let beside = narrow(to_world(50.0, 0.0), Vector3::x(), 1.0, &mut rng);
-        let bvh = TriangleBvh::new(&soup(&[[known.into(); 3], [other.into(); 3], beside]));
-        let mut certifier = Certifier::new(&bvh, &tool).expect("a profile");
+        let mut certifier =
+            certifier_of(&soup(&[[known.into(); 3], [other.into(); 3], beside]), &tool);
         let aside = pose(to_world(-4.0, 0.0).into(), axis);
         assert!(certifier.deepest(&aside, 0.0).depth.contains(0.5));
         let [[_, _, known], [_, _, other]] = [known, other].map(|point| in_tool(&at, point));
@@ -199,8 +191,7 @@ fn a_margin_far_larger_than_the_tool_is_judged_within_its_rounding() {
         let [below, behind] = [lack - MARGIN, -1.0 - MARGIN]
             .map(|z| pose.tip() + pose.rotation() * Vector3::new(rng.between(0.0, 3.0), 1.0, z));
         let behind = narrow(behind, -pose.axis(), 1.0, &mut rng);
-        let bvh = TriangleBvh::new(&soup(&[[below.into(); 3], behind]));
-        let certifier = Certifier::new(&bvh, &tool).expect("a profile");
+        let certifier = certifier_of(&soup(&[[below.into(); 3], behind]), &tool);
         let mut certifier = certifier.with_allowance("face", -MARGIN).expect("a surface");
         let verdict = certifier.check_motion(&motion(&pose, &pose), 1e-6);
         let text = format!("{lack}: {verdict:?} at {pose:?}");
@@ -289,8 +280,7 @@ fn verdict(
     path: &Motion,
     tolerance: f64,
 ) -> MotionVerdict {
-    let bvh = TriangleBvh::new(&soup(&[triangle]));
-    Certifier::new(&bvh, tool).expect("a profile").check_motion(path, tolerance)
+    certifier_of(&soup(&[triangle]), tool).check_motion(path, tolerance)
 }
 
 /// Places on the way are rounded by more than the bound of the tool and the part alone.

@@ -35,6 +35,7 @@ mod motions;
 mod overhang;
 mod pair;
 mod pieces;
+mod prelude;
 mod ring_of_ties;
 mod rounding;
 mod sharp_cases;

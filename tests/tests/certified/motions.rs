@@ -2,14 +2,9 @@
 //! many ridges.
 
 use crate::approach::ReferenceMotion;
-use crate::brute::BruteForce;
 use crate::pose_at;
-use crate::verdicts::moved;
-use nalgebra::{Point3, Rotation3, Vector3};
-use touchoff::mesh::shapes;
-use touchoff::{Mesh, Pose, TriangleId, Unit};
-use touchoff_tests::oracle::rng::Rng;
-use touchoff_tests::oracle::{Nearest, Oracle};
+use crate::prelude::*;
+use nalgebra::Rotation3;
 
 /// Returns a wavy sheet `2 half` mm wide, with `divisions` squares per side and ridges between its triangles.
 pub(crate) fn bumpy(half: f64, divisions: u32) -> Mesh {

@@ -1,15 +1,9 @@
 //! Tools with overhanging profiles, and their oracles.
 
-use crate::verdicts::certifier;
-use crate::{UP, block, pose, soup};
-use nalgebra::Point3;
+use crate::prelude::*;
 use std::sync::LazyLock;
-use touchoff::certify::PoseVerdict;
-use touchoff::tool::Interpreted;
-use touchoff::{Interval, SurfaceId, Tool};
 use touchoff_tests::fixtures::interpreted;
 use touchoff_tests::oracle::restated::Restated;
-use touchoff_tests::oracle::{Nearest, Oracle};
 
 /// Names, [drawings][Restated::drawn] and the surfaces that cut.
 const DRAWN: [(&str, &str, &str); 7] = [

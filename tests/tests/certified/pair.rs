@@ -1,15 +1,12 @@
 //! Parts and tools to compare, each part with each tool.
 
 use crate::motions::bumpy;
-use crate::{plate, tool};
+use crate::prelude::*;
 use rayon::prelude::*;
 use std::env;
 use std::fmt::{Display, Formatter};
 use std::path::Path;
-use touchoff::certify::TriangleBvh;
-use touchoff::mesh::shapes;
-use touchoff::{Mesh, Tool, Unit, scenes};
-use touchoff_tests::oracle::Nearest;
+use touchoff::scenes;
 
 /// Files of real parts, and their units.
 const FILES: [(&str, Unit); 4] = [
@@ -18,6 +15,14 @@ const FILES: [(&str, Unit); 4] = [
     ("octagonal_pocket_metre.stl", Unit::Metre),
     ("kiri_pocket_test.stl", Unit::Millimetre),
 ];
+
+/// Names of counts: what is queried, a sample inside the tool, samples near the lower bound, an interval wider than tolerance
+/// and rounding together, a wrong answer.
+pub(crate) const QUERIED: &str = "queried";
+pub(crate) const IN_CONTACT: &str = "in contact";
+pub(crate) const REACHED: &str = "reached";
+pub(crate) const WIDER: &str = "wider";
+pub(crate) const VIOLATIONS: &str = "violations";
 
 pub(crate) struct Part {
     pub(crate) name: &'static str,

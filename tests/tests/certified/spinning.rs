@@ -1,14 +1,8 @@
 //! Motions of solids without an axis of symmetry, whose spin is known and enters the proof.
 
-use crate::verdicts::{certifier, touching, triangles};
-use crate::{block, pose};
-use nalgebra::{Point3, Quaternion, UnitQuaternion, Vector3};
-use touchoff::certify::{Certifier, MotionDepth, MotionVerdict, TriangleBvh};
-use touchoff::mesh::shapes;
-use touchoff::{Motion, Pose, SurfaceId, Unit};
-use touchoff_tests::count::case_count;
-use touchoff_tests::oracle::rng::Rng;
-use touchoff_tests::oracle::{self, Oracle};
+use crate::prelude::*;
+use nalgebra::{Quaternion, UnitQuaternion};
+use touchoff_tests::oracle;
 
 fn pose_from_rotation(tip: [f64; 3], turn: UnitQuaternion<f64>) -> Pose {
     Pose::from_quaternion(Point3::from(tip), turn.coords.into()).expect("a quaternion")
@@ -87,11 +81,10 @@ fn samples_of_spinning_motions_are_within_the_bounds() {
     ];
     let [mut clear, mut touching, mut inside, mut undecided, mut bounded] = [0; 5];
     for mesh in &parts {
-        let bvh = TriangleBvh::new(mesh);
         for name in ["Block", "LBracket"] {
             let oracle: &dyn Oracle = &*oracle::of(name);
             let tool = crate::tool(name);
-            let mut certifier = Certifier::new(&bvh, tool).expect("proved");
+            let mut certifier = certifier_of(mesh, tool);
             for k in 0..case_count("MOTIONS", 12) {
                 let start_rotation =
                     UnitQuaternion::new(Vector3::from(rng.direction()) * rng.between(0.0, 3.0));

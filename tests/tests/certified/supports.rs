@@ -1,14 +1,7 @@
 //! Distances of convex tools inside a convex part. The part's surface is as far away as the nearest plane of a face is
 //! from the tool, along the face's normal: the difference of the support functions of both.
 
-use crate::pose;
-use nalgebra::{Point3, Vector3};
-use touchoff::certify::{Certifier, TriangleBvh};
-use touchoff::mesh::shapes;
-use touchoff::tool::Interpreted;
-use touchoff::{Mesh, Pose, TriangleId, Unit};
-use touchoff_tests::fixtures::drawn;
-use touchoff_tests::oracle::rng::Rng;
+use crate::prelude::*;
 
 const SIZE: f64 = 20.0;
 
@@ -83,10 +76,9 @@ fn a_convex_tool_in_a_convex_part_is_as_far_as_the_nearest_face() {
         let (normal, base) = (mesh.normal(id).expect("it has an area"), mesh.triangle(id)[0]);
         assert!(mesh.vertices().iter().all(|p| normal.dot(&(p - base)) < 1e-12), "not convex");
     }
-    let bvh = TriangleBvh::new(&mesh);
     let mut rng = Rng::new(1);
     for convex in tools() {
-        let mut certifier = Certifier::new(&bvh, &convex.tool).expect("a bounded depth");
+        let mut certifier = certifier_of(&mesh, &convex.tool);
         let mut count = 0;
         while count < if convex.is_exact { 60 } else { 6 } {
             let tip = Point3::from(rng.between(0.0, SIZE) * Vector3::from(rng.direction()));

@@ -1,15 +1,11 @@
 //! Trajectories that are no motions at constant speed: the tip of a ball end mill on an arc beside a wall, for which the
 //! greatest depth is known.
 
-use crate::verdicts::{assert_verdict, certifier, deeper, moved};
-use crate::{block, motion, pose, soup, tool};
-use nalgebra::{Point3, Rotation3, Vector3};
-use touchoff::certify::{
-    Approximation, Certifier, MotionDepth, MotionVerdict, Trajectory, TriangleBvh,
-};
-use touchoff::mesh::shapes;
-use touchoff::{Mesh, Pose, SurfaceId, Unit};
-use touchoff_tests::fixtures::{self, drawn};
+use crate::prelude::*;
+use crate::verdicts::assert_verdict;
+use nalgebra::Rotation3;
+use touchoff::certify::{Approximation, Trajectory};
+use touchoff_tests::fixtures;
 
 /// Radius of the arc about the z axis, and that of the tool, mm.
 const RADIUS: f64 = 20.0;
@@ -191,8 +187,7 @@ fn the_edge_of_a_swinging_pin_touches_a_wall_that_no_end_of_the_swing_reaches() 
     for (depth, clear) in [(-1e-2, true), (1e-2, false)] {
         // The wall's face is across the direction at 0.2 rad.
         let wall = block([-60.0, -9.0, reach - depth], [60.0, 9.0, reach + 10.0]);
-        let wall = TriangleBvh::new(&turned(&wall, Vector3::y(), 0.2));
-        let mut certifier = Certifier::new(&wall, &pin).expect("a profile");
+        let mut certifier = certifier_of(&turned(&wall, Vector3::y(), 0.2), &pin);
         let verdict = certifier.check_motion(&swing, 1e-4);
         assert_verdict(verdict, clear.then_some(MotionVerdict::Clear), depth);
     }
@@ -213,8 +208,8 @@ fn a_wall_that_is_reached_on_the_way_out_and_back_is_touched() {
     let ball = fixtures::ball();
     for (depth, is_clear) in [(-1e-3, true), (1e-3, false)] {
         let near = 40.0 + fixtures::BALL - depth;
-        let wall = TriangleBvh::new(&block([near, -90.0, -90.0], [near + 10.0, 90.0, 90.0]));
-        let mut certifier = Certifier::new(&wall, &ball).expect("a profile");
+        let mut certifier =
+            certifier_of(&block([near, -90.0, -90.0], [near + 10.0, 90.0, 90.0]), &ball);
         let verdict = certifier.check_motion(&path, 1e-4);
         assert_verdict(verdict, is_clear.then_some(MotionVerdict::Clear), depth);
     }

@@ -1,15 +1,17 @@
 //! Certifiers of whole meshes, and what their verdicts and depths hold.
 
-use crate::tool;
-use nalgebra::Point3;
+use crate::prelude::*;
 use std::fmt::Debug;
-use touchoff::certify::{Certifier, MotionDepth, MotionVerdict, TriangleBvh, Witness};
-use touchoff::{Interval, Mesh, TriangleId};
 
 /// Returns the certifier of a mesh and the tool of a name.
 pub(crate) fn certifier(mesh: &Mesh, name: &str) -> Certifier<'static> {
+    certifier_of(mesh, tool(name))
+}
+
+/// Returns the certifier of a mesh and a tool.
+pub(crate) fn certifier_of<'a>(mesh: &Mesh, tool: &'a dyn Tool) -> Certifier<'a> {
     let bvh = Box::leak(Box::new(TriangleBvh::new(mesh)));
-    Certifier::new(bvh, tool(name)).expect("a tool that is proved")
+    Certifier::new(bvh, tool).expect("a tool that is proved")
 }
 
 /// Returns the time and the witness of a motion that touches.

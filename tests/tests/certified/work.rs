@@ -3,14 +3,9 @@
 //! A bound that is weaker than it was changes no answer, only the number of nodes, triangles and intervals of edges that are
 //! examined before it is proved. The numbers are in a snapshot: a change of the certifier shows there what it costs.
 
-use crate::brute::BruteForce;
 use crate::pair::generated_parts;
-use crate::{motion, tool};
+use crate::prelude::*;
 use std::fmt::{Debug, Write};
-use touchoff::certify::Certifier;
-use touchoff::{Level, Pose, SurfaceId, Tool};
-use touchoff_tests::oracle::Nearest;
-use touchoff_tests::oracle::rng::Rng;
 
 /// Tools with a profile, and at the end one without.
 const TOOLS: [&str; 8] =

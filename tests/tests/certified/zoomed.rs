@@ -5,32 +5,19 @@
 //! these. Their neighbourhoods shrink from round to round until they are as small as rounding. The greatest depth must
 //! not exceed the upper bound, and should reach the lower bound, which the search does not know.
 
-use crate::brute::BruteForce;
 use crate::depth_oracle::{DepthOracle, FIELDS, PROFILES};
-use crate::pair::{Pair, Pairs, is_full_run, parts};
+use crate::pair::{
+    IN_CONTACT, Pair, Pairs, QUERIED, REACHED, VIOLATIONS, WIDER, is_full_run, parts,
+};
+use crate::prelude::*;
 use crate::to_tool;
-use crate::verdicts::triangles;
-use nalgebra::{Point3, Vector3};
 use std::collections::BTreeMap;
-use touchoff::certify::Certifier;
-use touchoff::{Interval, Pose, TriangleId};
-use touchoff_tests::count::case_count;
-use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::triangle::{Point, bisected, distance, norm, point, sub};
-use touchoff_tests::tally::Tally;
 
 /// Number of points that are zoomed in on, at first and at last.
 const POINT_COUNTS: [usize; 2] = [48, 6];
 /// Ratio of the sizes of successive neighbourhoods.
 const SHRINK_FACTOR: f64 = 0.4;
-
-/// Names of counts: a sample inside the tool, samples near the lower bound, an interval wider than tolerance and rounding
-/// together, a sample that exceeds the upper bound.
-const POSES: &str = "poses";
-const IN_CONTACT: &str = "in contact";
-const REACHED: &str = "reached";
-const WIDER: &str = "wider";
-const VIOLATIONS: &str = "violations";
 
 /// A sample: its depth, its triangle, and two of its barycentric weights.
 #[derive(Clone, Copy, Debug)]
@@ -97,7 +84,7 @@ impl Pair<'_, DepthOracle> {
             };
             let Interval { low, high } = certifier.deepest(&pose, tolerance).depth;
             let max_depth = (self.deepest(&pose, samples, &mut rng) * length).max(0.0);
-            tally.add(POSES, 1);
+            tally.add(QUERIED, 1);
             tally.see(IN_CONTACT, max_depth > 0.0);
             tally.see(REACHED, max_depth >= low - margin);
             let case = format!("{self}: [{low:?}, {high:?}], {max_depth:?} at {pose:?}");
@@ -270,5 +257,5 @@ fn samples_that_zoom_in_are_within_the_interval() {
     eprintln!("samples that zoom in: {total}");
     total.assert_none(VIOLATIONS);
     total.assert_none(WIDER);
-    assert!(10 * total.count(REACHED) > 9 * total.count(POSES), "{total}");
+    assert!(10 * total.count(REACHED) > 9 * total.count(QUERIED), "{total}");
 }

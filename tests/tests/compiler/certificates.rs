@@ -9,12 +9,13 @@ use touchoff_dsl::source::Source;
 use touchoff_dsl::{CheckedTool, compile};
 use touchoff_tests::evaluations::evaluate_points;
 use touchoff_tests::library::{self, library};
-use touchoff_tests::oracle::Nearest;
 use touchoff_tests::oracle::big::Big;
 use touchoff_tests::oracle::profile::Profile;
-use touchoff_tests::oracle::reference::{QueryPoint, Reference};
+use touchoff_tests::oracle::reference::Reference;
 use touchoff_tests::oracle::rng::Rng;
+use touchoff_tests::oracle::space::exactly;
 use touchoff_tests::oracle::triangle::{advance, distance, sub};
+use touchoff_tests::oracle::{Meridian, Nearest};
 use touchoff_tests::points::to_space;
 use touchoff_tests::profiles::{owners, tools};
 use touchoff_tests::texts::{accepted, compiled, tool};
@@ -162,17 +163,20 @@ fn sampled_values_keep_the_proved_bounds() {
 
 #[test]
 fn a_steeper_depth_has_a_larger_bound() {
-    let of = |factor: &str| {
-        let proved = proved(&format!(
-            "tool Ball {{ units mm; region ball where hypot(d, z - 1) <= 1 {{
-               depth: {factor}*(1 - hypot(d, z - 1)); direction: away from (0, 1); }} }}"
-        ));
-        (bounds(&proved), proved.is_exact())
-    };
-    let ((least, most), exact) = of("1");
-    assert!(exact && (most - 1.0).abs() < 1e-12 && (least - 1.0).abs() < 1e-8);
-    let ((least, most), exact) = of("2.5");
-    assert!(!exact && (most - 2.5).abs() < 1e-12 && (least - 2.5).abs() < 1e-8);
+    for factor in [1.0, 2.5] {
+        let proved = ball(&format!("{factor}*(1 - hypot(d, z - 1))"), "away from (0, 1)");
+        let (least, most) = bounds(&proved);
+        assert_eq!(proved.is_exact(), factor == 1.0);
+        assert!((most - factor).abs() < 1e-12 && (least - factor).abs() < 1e-8);
+    }
+}
+
+/// Returns what is proved of a ball of radius 1.
+fn ball(depth: &str, direction: &str) -> Certificate {
+    proved(&format!(
+        "tool Ball {{ units mm; region ball where hypot(d, z - 1) <= 1 {{
+           depth: {depth}; direction: {direction}; }} }}"
+    ))
 }
 
 /// Returns a ball of radius 3 with a core of radius 1 that has a depth of its own.
@@ -211,7 +215,7 @@ fn rounding_is_below_its_bound_and_above_a_tenth_of_it() {
         let evaluations = evaluate_points(compiled, Level::new(), &points);
         for (p, evaluation) in points.iter().zip(evaluations) {
             let Some(PointEvaluation { region, depth, .. }) = evaluation else { continue };
-            let at = QueryPoint::new(*p);
+            let at = Meridian::of(exactly(*p));
             let exact = owners[region].iter().map(|owner| reference.distance_to(&at, *owner));
             let off = exact.map(|exact| (&Big::exactly(depth) - &exact).abs().to_f64());
             let off = off.fold(f64::INFINITY, f64::min);
@@ -358,14 +362,7 @@ fn a_direction_that_is_never_known_is_not_straight() {
 /// The certificate has the exact angle of a direction, and the points where it vanishes.
 #[test]
 fn direction_errors_are_reported() {
-    let of = |direction: &str| {
-        proved(&format!(
-            "tool Ball {{ units mm; region ball where hypot(d, z - 1) <= 1 {{
-               depth: 1 - hypot(d, z - 1); direction: {direction}; }} }}"
-        ))
-        .regions
-        .remove(0)
-    };
+    let of = |direction: &str| ball("1 - hypot(d, z - 1)", direction).regions.remove(0);
     let straight = of("away from (0, 1)");
     assert_eq!(straight.direction_error.map(|a| (a.low, a.high)), Some((0.0, 0.0)));
     let [cell] = &straight.singular_cells[..] else { panic!("{:?}", straight.singular_cells) };

@@ -91,7 +91,7 @@ fn mutant(original: &PlannedTool, kind: usize, rng: &mut Rng) -> Option<Mutant> 
             let [x, y, z] = changed.raw_direction.0;
             changed.raw_direction.0 = [z, y, graph.neg(x)];
         }
-        5 => tool.plan.owner = leaves(&tool.plan.owner, &|owner| owner.filter(|o| *o != region)),
+        5 => tool.plan.owner = owned(&tool.plan.owner, |owner| owner.filter(|o| *o != region)),
         6 => {
             let other = (region + 1 + pick(tool.model.regions.len().max(2) - 1))
                 .checked_rem(tool.model.regions.len())
@@ -99,7 +99,7 @@ fn mutant(original: &PlannedTool, kind: usize, rng: &mut Rng) -> Option<Mutant> 
             location = format!("{location} as {}", tool.model.regions[other].name);
             let new_owner =
                 |owner: Option<usize>| owner.map(|o| if o == region { other } else { o });
-            tool.plan.owner = leaves(&tool.plan.owner, &new_owner);
+            tool.plan.owner = owned(&tool.plan.owner, new_owner);
         }
         7 => {
             let mut split = pick(tool.plan.owner.test_count());
@@ -124,19 +124,12 @@ fn mutant(original: &PlannedTool, kind: usize, rng: &mut Rng) -> Option<Mutant> 
     Some(Mutant { kind, location, tool })
 }
 
-fn leaves(
+/// Returns the tree with another owner for each one.
+fn owned(
     tree: &Tree<Option<usize>>,
-    owner: &impl Fn(Option<usize>) -> Option<usize>,
+    owner: impl Fn(Option<usize>) -> Option<usize>,
 ) -> Tree<Option<usize>> {
-    match tree {
-        Tree::Leaf(leaf) => Tree::Leaf(owner(*leaf)),
-        Tree::Split { curve, strict, below, above } => Tree::Split {
-            curve: *curve,
-            strict: *strict,
-            below: Box::new(leaves(below, owner)),
-            above: Box::new(leaves(above, owner)),
-        },
-    }
+    tree.map(&|leaf| Some(owner(*leaf))).expect("every leaf is kept")
 }
 
 /// Returns the tree with the two sides of one split exchanged. `remaining` is the number of that split in preorder.

@@ -1,22 +1,21 @@
 //! Contacts against their closed forms (`oracle::closed_forms`), with clouds of the midpoints of regular cells: weights
 //! are exact, and errors fall as the cells' area.
 
-use nalgebra::{Point3, Rotation3, Vector3};
+use crate::prelude::*;
+use nalgebra::Rotation3;
 use std::f64::consts::TAU;
-use touchoff::{Law, Part, Pose, Probe, Tool};
 use touchoff_tests::fixtures::part_of;
 use touchoff_tests::library::tool;
 use touchoff_tests::oracle::closed_forms::{
     Contact, ball_in_cavity, ball_in_plane, ball_on_ball, cylinder_in_bore, cylinder_in_plane,
 };
-use touchoff_tests::oracle::rng::Rng;
 
 /// A contact to be measured: a pose, the expected result, the axis of the forces, and the point about which there
 /// is no torque.
 struct Scene {
     tool: &'static dyn Tool,
     pose: Pose,
-    want: Contact,
+    want: Figures,
     axis: Vector3<f64>,
     balance: Point3<f64>,
 }
@@ -60,7 +59,7 @@ fn ball_in_a_plane(name: &str, h: f64, tilt: f64, [x, y]: [f64; 2]) -> Scene {
     Scene {
         tool: tool(name),
         pose: Pose::from_axis(balance - axis, axis).expect("a pose"),
-        want: ball_in_plane(1.0, h),
+        want: figures(&ball_in_plane(1.0, h)),
         axis: Vector3::z(),
         balance,
     }
@@ -70,23 +69,13 @@ fn ball_in_a_plane(name: &str, h: f64, tilt: f64, [x, y]: [f64; 2]) -> Scene {
 /// at an angle of `turn` (rad) from x, and its `z` is over the middle.
 fn side_in_a_plane(name: &str, radius: f64, h: f64, z: f64, long: f64, turn: f64) -> Scene {
     let along = Vector3::new(turn.cos(), turn.sin(), 0.0);
-    let c = cylinder_in_plane(radius, h);
     let balance = Point3::new(0.0, 0.0, radius - h);
     Scene {
         tool: tool(name),
         pose: Pose::from_axis(balance - z * along, along).expect("a pose"),
-        want: times(&c, 2.0 * long),
+        want: figures(&cylinder_in_plane(radius, h)).map(|figure| 2.0 * long * figure),
         axis: Vector3::z(),
         balance,
-    }
-}
-
-fn times(c: &Contact, by: f64) -> Contact {
-    Contact {
-        integral: by * c.integral,
-        force: by * c.force,
-        gradient_force: by * c.gradient_force,
-        energy: by * c.energy,
     }
 }
 
@@ -101,7 +90,7 @@ fn ball_on_a_ball(sigma: f64, part: f64, h: f64, along: Vector3<f64>) -> Scene {
     let balance = Point3::from(dist * along);
     // The spindle points away from the part, or toward its middle.
     let pose = Pose::from_axis(balance - sigma * along, sigma * along).expect("a pose");
-    Scene { tool: tool("UnitSphere"), pose, want, axis: along, balance }
+    Scene { tool: tool("UnitSphere"), pose, want: figures(&want), axis: along, balance }
 }
 
 /// Returns the height of the cap of the part that lies in the tool.
@@ -118,7 +107,7 @@ fn side_in_a_bore(name: &str, radius: f64, bore: f64, h: f64, z: f64, long: f64,
     Scene {
         tool: tool(name),
         pose: Pose::from_axis(balance - z * Vector3::z(), Vector3::z()).expect("a pose"),
-        want: times(&cylinder_in_bore(radius, bore, offset), 2.0 * long),
+        want: figures(&cylinder_in_bore(radius, bore, offset)).map(|figure| 2.0 * long * figure),
         axis: out,
         balance,
     }
@@ -128,9 +117,8 @@ fn side_in_a_bore(name: &str, radius: f64, bore: f64, h: f64, z: f64, long: f64,
 /// relative to the thesis's force.
 fn error(scene: &Scene, part: &Part) -> f64 {
     let (got, across) = measure(scene, part);
-    let want = figures(&scene.want);
-    let along = got.iter().zip(want).map(|(got, want)| (got / want - 1.0).abs());
-    along.fold((across / scene.want.force).abs(), f64::max)
+    let along = got.iter().zip(scene.want).map(|(got, want)| (got / want - 1.0).abs());
+    along.fold((across / scene.want[1]).abs(), f64::max)
 }
 
 /// Returns the midpoints of `n × m` cells of the unit square, mapped by `at`, which gives point, normal and area

@@ -1,11 +1,11 @@
 //! Levels of detail within a budget, and parts that change between queries.
 
-use nalgebra::{Point3, Vector3};
+use crate::prelude::*;
 use std::collections::BTreeSet;
 use touchoff::scenes::{ScenePath, tube};
-use touchoff::{Cloud, Law, LodProbe, Mesh, Part, Pose, Probe, Sampling, Wrench};
+use touchoff::{Cloud, LodProbe, Mesh, Sampling, Wrench};
 use touchoff_tests::fixtures::cuboid;
-use touchoff_tests::oracle::rng::Rng;
+use touchoff_tests::oracle::Nearest;
 use touchoff_tools::{Ball, Fig73, Fig73Exact};
 
 const POSES: usize = 2_000;
@@ -156,13 +156,11 @@ fn left<'a>(
 ) -> impl Iterator<Item = Point3<f64>> + 'a {
     let seed = (1e9 * rng.between(0.0, 1.0)) as u64;
     let cloud = Cloud::sample(mesh, Sampling::monte_carlo(60_000).with_seed(seed));
+    let ball = Nearest::of("Ball");
     cloud.expect("a cloud").points().to_vec().into_iter().filter(move |point| {
         poses.iter().all(|pose| {
             let from = pose.rotation().transpose() * (point - pose.tip());
-            // The ball end mill's ball and flute, restated.
-            let (d, z) = (from.x.hypot(from.y), from.z);
-            let inside = if z < 5.0 { d.hypot(z - 5.0) < 5.0 } else { d < 5.0 && z < 72.0 };
-            !inside
+            ball.signed_distance(from.into()) >= 0.0
         })
     })
 }

@@ -4,6 +4,7 @@ mod closed_forms;
 mod evaluators;
 mod levels;
 mod posture;
+mod prelude;
 mod query;
 mod reach;
 mod scene;

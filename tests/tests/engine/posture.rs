@@ -1,9 +1,6 @@
 //! The quantities that a posture is judged by, for all sets of points whose depth and niceness are known.
 
-use nalgebra::Point3;
-use touchoff::tool::Interpreted;
-use touchoff::{Pose, Probe};
-use touchoff_tests::checks::assert_near;
+use crate::prelude::*;
 use touchoff_tests::fixtures::{interpreted, part_at};
 use touchoff_tests::oracle::restated::Restated;
 

@@ -1,7 +1,8 @@
 //! How far tools reach: points at the limit of what is ruled out without being evaluated.
 
-use nalgebra::{Isometry3, Point3, UnitQuaternion, Vector3};
-use touchoff::{InsideQuery, Pose, Scene, Tool, ToolEnvelope, Unit};
+use crate::prelude::*;
+use nalgebra::Isometry3;
+use touchoff::{InsideQuery, Scene, ToolEnvelope};
 use touchoff_tests::fixtures::{drawn, part_at};
 
 /// A disc of 10 mm radius and height.

@@ -1,9 +1,9 @@
 //! Scenes of several parts and tools: each pair has the results of a probe alone, wherever the part is put.
 
-use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
+use crate::prelude::*;
+use nalgebra::{Isometry3, Translation3};
 use touchoff::scenes::ScenePath;
-use touchoff::{Part, Pose, Probe, Sampling, Scene, Tool, Unit};
-use touchoff_tests::checks::assert_near;
+use touchoff::{Sampling, Scene};
 use touchoff_tests::fixtures::{cuboid, part, poses};
 use touchoff_tests::library::tool;
 

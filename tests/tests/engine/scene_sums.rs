@@ -1,9 +1,8 @@
 //! Sums over the parts of a scene, for contacts whose depth and niceness are known.
 
-use nalgebra::{Isometry3, Point3, UnitQuaternion, Vector3};
-use touchoff::tool::Interpreted;
-use touchoff::{Pose, Scene, Unit};
-use touchoff_tests::checks::assert_near;
+use crate::prelude::*;
+use nalgebra::Isometry3;
+use touchoff::Scene;
 use touchoff_tests::fixtures::{interpreted, part_at};
 use touchoff_tests::oracle::restated::Restated;
 

@@ -1,15 +1,13 @@
 //! One scene in millimetres, inches and metres.
 
+use crate::prelude::*;
 use crate::query::compare::Case;
-use nalgebra::{Point3, Vector3};
-use touchoff::TriangleId;
 use touchoff::mesh::shapes;
 use touchoff::scenes::{HEIGHT, ScenePath};
-use touchoff::tool::Interpreted;
-use touchoff::{Cloud, Law, Part, Pose, Probe, Sampling, Tool, Unit};
-use touchoff_tests::checks::assert_near;
+use touchoff::{Cloud, Sampling};
+use touchoff_tests::fixtures::part_in;
 use touchoff_tests::library::tool;
-use touchoff_tests::oracle::{Fig73, Oracle, cylinder, d2_ball, fig_7_3_exact};
+use touchoff_tests::oracle::{Fig73, cylinder, d2_ball, fig_7_3_exact};
 
 /// D2Ball's 2 mm ball, flute and shank, in inches: 1 mm is 1/25.4 inch.
 const INCH_BALL: &str = r#"tool InchBall "2 mm ball end mill, written in inches" {
@@ -62,9 +60,7 @@ fn tube(unit: Unit, count: usize) -> Part {
     let cloud = Cloud::sample(&mesh, Sampling::monte_carlo(count).with_seed(3)).expect("a cloud");
     let points = cloud.points().iter().map(|p| p * length_unit).collect();
     let weights = cloud.weights().iter().map(|w| w * length_unit * length_unit).collect();
-    let ids = (0..count as u32).map(TriangleId).collect();
-    let scaled = Cloud::new(points, cloud.normals().to_vec(), ids, weights, unit);
-    Part::from_cloud(&scaled.expect("a cloud"))
+    part_in(unit, points, cloud.normals().to_vec(), weights)
 }
 
 /// Scales a pose given in mm to a unit.
@@ -85,10 +81,7 @@ fn a_written_magnitude_stays() {
     for unit in UNITS {
         let inch = Unit::Inch.factor_to(unit);
         let at = Point3::new(7.0, 8.0, 9.0);
-        let ids = vec![TriangleId(0)];
-        let cloud =
-            Cloud::new(vec![at], vec![Vector3::z()], ids, vec![3.0], unit).expect("a cloud");
-        let part = Part::from_cloud(&cloud);
+        let part = part_in(unit, vec![at], vec![Vector3::z()], vec![3.0]);
         // A quarter of an inch deep.
         let pose = Pose::from_axis(at - 0.25 * inch * Vector3::z(), Vector3::z()).expect("a pose");
         let wrench = Probe::new(&part, &written).with_law(Law::Gradient).wrench(&pose);

@@ -4,12 +4,11 @@
 //!
 //! With `--nocapture` the test prints one line per tool.
 
+use crate::prelude::*;
 use crate::run;
-use crate::validator::{DEPTH, Validator};
-use touchoff_tests::checks::assert_no_misses;
+use crate::validator::DEPTH;
 use touchoff_tests::count::case_count;
-use touchoff_tests::oracle::rng::Rng;
-use touchoff_tests::oracle::{Oracle, restated};
+use touchoff_tests::oracle::restated;
 use touchoff_tests::points::{
     add_anywhere, add_beside_borders, add_turned, heights, neighbourhood,
 };

@@ -2,10 +2,8 @@
 //! with that of the given point at the pose as it is in doubles. A scene turned as a whole without rounding has the same
 //! bits.
 
-use crate::scene::{PointSet, Scene, format_pose, pose};
-use crate::{check_tools, extent};
-use nalgebra::{Point3, Vector3};
-use touchoff::Pose;
+use crate::equivalent::values;
+use crate::prelude::*;
 use touchoff_tests::turns::{EXACT_TURNS, ROUNDED_TURNS};
 
 /// Spacing of the coordinates' grid, so that its multiples keep all bits near the tips used here.
@@ -18,10 +16,11 @@ fn aligned_poses_are_exact() {
         for pose in poses(subject.oracle.is_revolved()) {
             Scene::new(subject, points.transformed(&pose, GRID), pose).check(checks);
         }
-        let original = values(&Scene::new(subject, points.clone(), Pose::default()));
+        let original = values(&Scene::new(subject, points.clone(), Pose::default()), true);
         for turn in EXACT_TURNS {
             let pose = pose(Point3::origin(), turn);
-            let turned = values(&Scene::new(subject, points.transformed(&pose, GRID), pose));
+            let turned = Scene::new(subject, points.transformed(&pose, GRID), pose);
+            let turned = values(&turned, true);
             checks.never("quarter turn: other bits", turned != original, || format_pose(&pose));
         }
     });
@@ -41,18 +40,4 @@ fn poses(is_revolved: bool) -> Vec<Pose> {
     let tilts = [[1e-9, 0.0], [0.0, -1e-9], [1e-9, 1e-9]];
     poses.extend(tilts.map(|[x, y]| pose(tip, [x / 2.0, y / 2.0, 0.0, 1.0])));
     poses
-}
-
-/// Returns triangle, region and the bits of depth and magnitude of each contact, sorted by triangle.
-fn values(scene: &Scene<'_>) -> Vec<(u32, usize, [u64; 2])> {
-    let contacts = scene.query().contacts.into_iter();
-    let mut values: Vec<_> = contacts
-        .map(|c| {
-            // Adding 0 makes -0 equal to 0.
-            let bits = [c.depth, c.magnitude].map(|v| (v + 0.0).to_bits());
-            (c.triangle.0, c.region, bits)
-        })
-        .collect();
-    values.sort_unstable();
-    values
 }

@@ -5,14 +5,10 @@
 //! contract is kept, the depth agrees with the depth of *each* neighbour, and the step of the depth from one double to
 //! the other agrees with that of the truth.
 
-use crate::truth::{Subject, to_exact};
-use crate::validator::Validator;
-use crate::{check_tools, extent};
+use crate::prelude::*;
+use crate::truth::to_exact;
 use std::f64::consts::TAU;
 use touchoff::tool::PointEvaluation;
-use touchoff_tests::checks::Checks;
-use touchoff_tests::oracle::big::Big;
-use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::points::neighbourhood;
 
 #[test]
@@ -58,7 +54,7 @@ pub(crate) fn owners_at(subject: &Subject, p: [f64; 3]) -> Vec<Option<usize>> {
     let at = to_exact(p);
     let owns = |region: &usize| {
         let values = subject.truth.region_values(&at, *region);
-        values.is_some_and(|values| values.excess_distance <= subject.ulp() / 2.0)
+        values.is_some_and(|values| values.excess_distance <= subject.truth.ulp() / 2.0)
     };
     (0..subject.tool.info().regions.len()).filter(owns).map(Some).collect()
 }
@@ -74,7 +70,7 @@ pub(crate) fn compare_neighbours(
     let Some(evaluation) = evaluation else { return };
     for owner in owners {
         let exact = region_depth(subject, p, *owner);
-        let error = (&Big::exactly(evaluation.depth) - &exact).abs().to_f64() / subject.ulp();
+        let error = (&Big::exactly(evaluation.depth) - &exact).abs().to_f64() / subject.truth.ulp();
         let place = || format!("{p:?} of region {owner:?}");
         checks.within("depth of each neighbour [ulp(S)]", error, 1.0, place);
     }
@@ -90,7 +86,7 @@ fn compare_step(
     let [Some(a), Some(b)] = evaluations else { return };
     let exact = bracket.ends.map(|p| subject.truth.depth(&to_exact(p)));
     let step = &Big::exactly(a.depth) - &Big::exactly(b.depth);
-    let error = (&step - &(&exact[0] - &exact[1])).abs().to_f64() / subject.ulp();
+    let error = (&step - &(&exact[0] - &exact[1])).abs().to_f64() / subject.truth.ulp();
     checks.within("step across [ulp(S)]", error, 1.0, || format!("{:?}", bracket.ends));
 }
 

@@ -1,15 +1,11 @@
 //! Item 12: many cycles of a pose and a wrench, ten million over all tools in the full list, repeated on two threads and
 //! at every SIMD level of this machine. All bits of each wrench are the same.
 
-use crate::scene::{PointSet, pose};
-use crate::truth::Subject;
-use crate::{check_tools, extent};
-use nalgebra::Point3;
+use crate::prelude::*;
 use std::ops::Range;
 use std::thread;
 use touchoff::{Level, Part, Probe};
 use touchoff_tests::evaluations::levels;
-use touchoff_tests::oracle::rng::Rng;
 
 #[test]
 fn cycles_have_the_same_bits_on_all_threads_and_levels() {

@@ -1,17 +1,13 @@
 //! Item 9: profiles that hardly are any. Each is refused by the compiler, or keeps the contract.
 
-use crate::extent;
+use crate::prelude::*;
 use crate::text::profile_text;
 use crate::truth::Profiled;
-use crate::validator::Validator;
 use std::f64::consts::TAU;
 use touchoff::tool::Interpreted;
 use touchoff_dsl::source::Source;
-use touchoff_tests::checks::{Checks, assert_no_misses, print_worst};
 use touchoff_tests::oracle::profile::Profile;
 use touchoff_tests::oracle::restated::Restated;
-use touchoff_tests::oracle::rng::Rng;
-use touchoff_tests::oracle::{Nearest, Oracle};
 
 /// Profiles that may be refused. An arc has its centre after `about`.
 const DEGENERATE: [(&str, &str); 23] = [

@@ -1,12 +1,7 @@
 //! Item 13: coordinates, depths, weights and poses of 5e-324 to 1e-300. The contract; and a stored weight differs from
 //! the given one by at most 2^-24 of the largest.
 
-use crate::scene::{PointSet, Scene, pose};
-use crate::truth::Subject;
-use crate::validator::Validator;
-use crate::{check_tools, extent};
-use nalgebra::{Point3, Vector3};
-use touchoff_tests::checks::Checks;
+use crate::prelude::*;
 
 const TINY: [f64; 8] = [5e-324, -5e-324, 1e-323, 1e-310, -1e-310, 2.2e-308, 1e-300, 1e-160];
 

@@ -9,14 +9,10 @@
 //! the points found are validated in 256 bits wherever they are.
 
 use crate::border_points::{compare_neighbours, owners_at};
-use crate::truth::Subject;
-use crate::validator::Validator;
-use crate::{extent, run};
-use touchoff_tests::checks::{assert_no_misses, print_worst};
-use touchoff_tests::oracle::Nearest;
+use crate::prelude::*;
+use crate::run;
 use touchoff_tests::oracle::plane::{Point, add, cross, dot, opposite, sub, unit};
 use touchoff_tests::oracle::profile::{Feature, Profile};
-use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::points::{add_turned, neighbourhood};
 
 #[test]

@@ -1,13 +1,10 @@
 //! Item 10: invalid or minimal input. It is refused with an error, or gives sensible results.
 
-use crate::scene::{PointSet, Scene, random_pose};
-use crate::truth::Subject;
-use crate::{check_tools, extent};
-use nalgebra::{Point3, Vector3};
+use crate::prelude::*;
 use std::error::Error;
 use std::fmt::Debug;
-use touchoff::{Cloud, CloudError, Mesh, Part, Pose, Probe, Sampling, TriangleId, Unit};
-use touchoff_tests::oracle::rng::Rng;
+use touchoff::{Cloud, CloudError, Mesh, PoseError, Probe, Sampling, Unit};
+use touchoff_tests::fixtures::part_of;
 
 const MM: Unit = Unit::Millimetre;
 const GRID: f64 = 1.0 / (1 << 30) as f64;
@@ -60,21 +57,23 @@ fn points_inside(subject: &Subject, rng: &mut Rng) -> PointSet {
 #[test]
 fn input_beyond_all_limits_is_refused() {
     for y in [f64::NAN, f64::NEG_INFINITY, 1e61] {
-        refused(cloud(|lists| lists.points[1].y = y));
+        refused(cloud(|set| set.points[1].y = y));
     }
-    refused(cloud(|lists| lists.normals[2] *= 1e-320));
+    refused(cloud(|set| set.normals[2] *= 1e-320));
     refused(mesh(&[], &[]));
     // Only triangles without area.
     let flat = [[0.0; 3], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0], [3.0, 0.0, 0.0]];
     refused(mesh(&flat, &[[0, 1, 2], [1, 2, 3]]));
     refused(Pose::from_quaternion(Point3::origin(), [1e-160, 0.0, 0.0, 1e-160]));
+    let far = Point3::new(0.0, 0.0, -1.7e308);
+    assert_eq!(Pose::from_axis(far, Vector3::z()), Err(PoseError::NotFinite));
 }
 
 #[test]
 fn extreme_input_is_accepted() {
-    accepted(cloud(|lists| lists.points[1].y = 1e60));
-    accepted(cloud(|lists| lists.weights = vec![0.0; 3]));
-    accepted(cloud(|lists| lists.weights = vec![1e308; 3]));
+    accepted(cloud(|set| set.points[1].y = 1e60));
+    accepted(cloud(|set| set.weights = vec![0.0; 3]));
+    accepted(cloud(|set| set.weights = vec![1e308; 3]));
     accepted(mesh(&TETRAHEDRON, &FACES));
     // A triangle without area, and a sliver.
     accepted(mesh(&TETRAHEDRON, &[&FACES[..], &[[0, 1, 1]]].concat()));
@@ -84,9 +83,7 @@ fn extreme_input_is_accepted() {
 
     // Sums of weights near overflow stay finite.
     let points = vec![Point3::new(0.0, 0.0, 0.5); 20];
-    let ids = (0..20).map(TriangleId).collect();
-    let cloud = Cloud::new(points, vec![Vector3::z(); 20], ids, vec![1e300; 20], MM);
-    let part = Part::from_cloud(&cloud.expect("finite weights"));
+    let part = part_of(points, vec![Vector3::z(); 20], vec![1e300; 20]);
     let tool = touchoff_tools::find("D2Ball").expect("a tool of the library");
     let wrench = Probe::new(&part, tool).wrench(&Pose::default());
     assert!(wrench.colliding == 20, "{wrench:?}");
@@ -103,23 +100,16 @@ fn accepted<T, E: Debug>(outcome: Result<T, E>) {
     outcome.expect("this input is sensible");
 }
 
-struct Lists {
-    points: Vec<Point3<f64>>,
-    normals: Vec<Vector3<f64>>,
-    ids: Vec<TriangleId>,
-    weights: Vec<f64>,
-}
-
 /// Makes a cloud of three points after `change` has made one thing wrong.
-fn cloud(change: impl Fn(&mut Lists)) -> Result<Cloud, CloudError> {
-    let mut lists = Lists {
+fn cloud(change: impl Fn(&mut PointSet)) -> Result<Cloud, CloudError> {
+    let mut set = PointSet {
         points: vec![Point3::origin(); 3],
         normals: vec![Vector3::z(); 3],
-        ids: [0, 1, 2].map(TriangleId).to_vec(),
         weights: vec![1.0; 3],
+        unit: MM,
     };
-    change(&mut lists);
-    Cloud::new(lists.points, lists.normals, lists.ids, lists.weights, MM)
+    change(&mut set);
+    set.cloud(0..3)
 }
 
 const TETRAHEDRON: [[f64; 3]; 4] =

@@ -1,11 +1,9 @@
 //! Item 11: trees of few points. A leaf has 16 points by design, so there are 1, 2, 3 and about 16 and 256 points. Every
 //! order of up to three points, and some of more, give the same contacts to the last bit, and those agree with 256 bits.
 
-use crate::scene::{Answers, PointSet, Scene, format_pose, in_sum_roundings, random_pose};
-use crate::{check_tools, extent};
-use nalgebra::Point3;
-use touchoff::{Contact, Pose};
-use touchoff_tests::oracle::rng::Rng;
+use crate::prelude::*;
+use crate::scene::{Answers, in_sum_roundings};
+use touchoff::Contact;
 
 const GRID: f64 = 1.0 / 1024.0;
 

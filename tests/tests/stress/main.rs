@@ -30,6 +30,7 @@ mod equidistant;
 mod equivalent;
 mod input;
 mod leaves;
+mod prelude;
 mod scaled;
 mod scene;
 mod tangent;

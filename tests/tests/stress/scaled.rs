@@ -9,21 +9,17 @@
 //!   `Oval`), the distance from its centre is rounded relative to the larger number: depths and distances outside are
 //!   within 2 ulp(S) there, and miss the contract's 1 ulp(S).
 
+use crate::prelude::*;
 use crate::text::{hand_written_text, power_of_two, profile_text, with_plain_names};
-use crate::truth::{ExactPoint, Profiled, RegionValues, Subject, Truth};
-use crate::validator::Validator;
-use crate::{check_tools, extent};
+use crate::truth::{ExactPoint, Profiled, RegionValues, Truth};
 use std::f64::consts::TAU;
 use touchoff::Level;
 use touchoff::tool::{Interpreted, PointEvaluation, ToolError};
 use touchoff_dsl::source::Source;
-use touchoff_tests::checks::Checks;
 use touchoff_tests::evaluations::evaluate_points;
-use touchoff_tests::oracle::big::Big;
 use touchoff_tests::oracle::displaced;
 use touchoff_tests::oracle::reference::power_above;
 use touchoff_tests::oracle::restated;
-use touchoff_tests::oracle::rng::Rng;
 
 #[test]
 fn scaled_scenes_have_scaled_values() {

@@ -1,14 +1,11 @@
 //! Points near a tool as a part, a pose of the tool, and the answers of a probe there against 256 bits.
 
-use crate::truth::{ExactPoint, Subject};
-use nalgebra::{Point3, Vector3};
+use crate::prelude::*;
+use crate::truth::ExactPoint;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
-use touchoff::{Cloud, Contact, Part, Pose, Probe, TriangleId, Unit, Wrench};
-use touchoff_tests::checks::Checks;
-use touchoff_tests::oracle::big::Big;
+use touchoff::{Cloud, CloudError, Contact, Part, Probe, TriangleId, Unit, Wrench};
 use touchoff_tests::oracle::displaced;
-use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::space::{add, cross, distance, dot, exactly, sub, times};
 
 const SENSELESS_NUMBER: &str = "senseless number";
@@ -51,16 +48,23 @@ impl PointSet {
         self.map(|p| (pose.tip() + pose.rotation() * p.coords).map(|c| (c / grid).round() * grid))
     }
 
-    /// Builds the part of these points, in this order. The triangle of each point is its index.
-    pub(crate) fn part_of(&self, indices: impl Iterator<Item = usize> + Clone) -> Part {
-        let cloud = Cloud::new(
+    /// Makes the cloud of these points, in this order. The triangle of each point is its index.
+    pub(crate) fn cloud(
+        &self,
+        indices: impl Iterator<Item = usize> + Clone,
+    ) -> Result<Cloud, CloudError> {
+        Cloud::new(
             indices.clone().map(|k| self.points[k]).collect(),
             indices.clone().map(|k| self.normals[k]).collect(),
             indices.clone().map(|k| TriangleId(k as u32)).collect(),
             indices.map(|k| self.weights[k]).collect(),
             self.unit,
-        );
-        Part::from_cloud(&cloud.expect("points that make a cloud"))
+        )
+    }
+
+    /// Builds the part of these points, in this order.
+    pub(crate) fn part_of(&self, indices: impl Iterator<Item = usize> + Clone) -> Part {
+        Part::from_cloud(&self.cloud(indices).expect("points that make a cloud"))
     }
 
     pub(crate) fn part(&self) -> Part {

@@ -2,18 +2,12 @@
 //! wider by a tenth, by 1e-1 … 1e-15. The deepest place of the part is a point of the cloud at the world's origin, so the
 //! depth follows from the pose alone. The certifier's interval, from triangles, contains it.
 
-use crate::scene::{PointSet, Scene, format_pose, pose};
-use crate::truth::Subject;
-use crate::{check_tools, extent};
-use nalgebra::{Point3, Vector3};
+use crate::prelude::*;
 use std::f64::consts::PI;
 use touchoff::certify::{Certifier, TriangleBvh};
 use touchoff::mesh::shapes;
 use touchoff::{Interval, Mesh, TriangleId};
-use touchoff_tests::checks::Checks;
-use touchoff_tests::oracle::big::Big;
 use touchoff_tests::oracle::restated;
-use touchoff_tests::oracle::rng::Rng;
 
 /// Maximum number of nodes per query for a tool without a profile. The certifier knows its depth only by a bound on its
 /// change and stops when the budget is spent, so the interval is valid but wide.

@@ -4,9 +4,8 @@
 //! 0.3): depths differ by no more than both clouds' `Probe::rounding_error_bound` and the rounding of the coordinates;
 //! and each scene is checked on its own.
 
-use crate::scene::{PointSet, Scene, compare_depths, format_pose, random_pose, with_tip};
-use crate::{check_tools, extent};
-use nalgebra::{Point3, Vector3};
+use crate::prelude::*;
+use crate::scene::{compare_depths, with_tip};
 
 /// Spacing of the coordinates' grid, so that sums with 2^40 are exact.
 const GRID: f64 = 1.0 / 1024.0;

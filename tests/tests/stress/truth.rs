@@ -1,13 +1,12 @@
 //! True values at points in 256 bits, for every library tool: of a profile from its restatement, of the thesis's tool
 //! and the two solids from equations written separately.
 
+use crate::prelude::*;
 use touchoff::Tool;
-use touchoff_tests::oracle::big::Big;
 use touchoff_tests::oracle::fig73::{REGIONS, ThesisPoint};
-use touchoff_tests::oracle::reference::{QueryPoint, Reference, power_above};
+use touchoff_tests::oracle::reference::{Reference, power_above};
 use touchoff_tests::oracle::restated::Restated;
-use touchoff_tests::oracle::rng::Rng;
-use touchoff_tests::oracle::{Body, Fig73, Nearest, Oracle, restated};
+use touchoff_tests::oracle::{Body, Fig73, Meridian, restated};
 use touchoff_tests::profiles::{self, owners};
 
 pub(crate) use touchoff_tests::oracle::space::{Triple as ExactPoint, exactly as to_exact};
@@ -28,6 +27,11 @@ pub(crate) struct RegionValues {
 pub(crate) trait Truth: Send + Sync {
     /// Returns S, the next power of two above the tool's largest coordinate.
     fn scale(&self) -> f64;
+
+    /// Returns 1 ulp(S).
+    fn ulp(&self) -> f64 {
+        f64::EPSILON * self.scale()
+    }
 
     /// Returns the depth of a point inside, 0 on the surface, and minus the distance from the surface outside.
     fn depth(&self, p: &ExactPoint) -> Big;
@@ -54,11 +58,6 @@ impl Subject {
     /// Returns S.
     pub(crate) fn scale(&self) -> f64 {
         self.truth.scale()
-    }
-
-    /// Returns 1 ulp(S).
-    pub(crate) fn ulp(&self) -> f64 {
-        f64::EPSILON * self.scale()
     }
 }
 
@@ -108,16 +107,16 @@ impl Truth for Profiled {
     }
 
     fn depth(&self, p: &ExactPoint) -> Big {
-        self.reference.depth(&QueryPoint::of(p.clone()))
+        self.reference.depth(&Meridian::of(p.clone()))
     }
 
     fn owner(&self, p: &ExactPoint) -> Option<usize> {
-        let owner = self.reference.owner(&QueryPoint::of(p.clone()))?;
+        let owner = self.reference.owner(&Meridian::of(p.clone()))?;
         self.owners.iter().position(|owners| owners.contains(&owner))
     }
 
     fn region_values(&self, p: &ExactPoint, region: usize) -> Option<RegionValues> {
-        let point = QueryPoint::of(p.clone());
+        let point = Meridian::of(p.clone());
         let distance_to = |owner: &usize| self.reference.distance_to(&point, *owner);
         let mut nearest = None;
         for owner in self.owners.get(region)? {
@@ -165,8 +164,8 @@ impl Truth for Magnitudes {
     }
 
     fn depth(&self, p: &ExactPoint) -> Big {
-        let at = QueryPoint::of(p.clone());
-        let point = ThesisPoint::new(at.dz());
+        let at = Meridian::of(p.clone());
+        let point = ThesisPoint::new(&at.dz);
         match point.owner() {
             Some(region) => point.magnitude(region),
             None => -&self.solid.depth(&at).abs(),
@@ -174,14 +173,14 @@ impl Truth for Magnitudes {
     }
 
     fn owner(&self, p: &ExactPoint) -> Option<usize> {
-        let owner = ThesisPoint::new(QueryPoint::of(p.clone()).dz()).owner()?;
+        let owner = ThesisPoint::new(&Meridian::of(p.clone()).dz).owner()?;
         region_of(&self.indices, owner)
     }
 
     fn region_values(&self, p: &ExactPoint, region: usize) -> Option<RegionValues> {
         let region = (*self.indices.get(region)?)?;
-        let at = QueryPoint::of(p.clone());
-        let point = ThesisPoint::new(at.dz());
+        let at = Meridian::of(p.clone());
+        let point = ThesisPoint::new(&at.dz);
         Some(RegionValues {
             depth: point.magnitude(region),
             excess_distance: point.outside(region).to_f64(),

@@ -1,11 +1,10 @@
 //! The contract of an evaluator, at given points.
 
+use crate::prelude::*;
 use crate::truth::{RegionValues, Truth};
 use touchoff::tool::PointEvaluation;
 use touchoff::{Level, Tool};
-use touchoff_tests::checks::Checks;
 use touchoff_tests::evaluations::{bits, evaluate_points, numbers};
-use touchoff_tests::oracle::big::Big;
 use touchoff_tests::oracle::space::{distance, exactly, norm};
 
 /// Distance in ulp(S) from a border within which both sides, or both owners, are accepted.
@@ -31,11 +30,6 @@ impl<'a> Validator<'a> {
         Validator { tool, truth, limit: 1.0, centres_are_rounded: true }
     }
 
-    /// Returns 1 ulp(S).
-    fn ulp(&self) -> f64 {
-        f64::EPSILON * self.truth.scale()
-    }
-
     pub(crate) fn validate(
         &self,
         points: &[[f64; 3]],
@@ -59,7 +53,7 @@ impl<'a> Validator<'a> {
     ) {
         let at = exactly(p);
         let exact = self.truth.depth(&at);
-        let is_near_border = exact.to_f64().abs() <= AMBIGUITY_ULPS * self.ulp();
+        let is_near_border = exact.to_f64().abs() <= AMBIGUITY_ULPS * self.truth.ulp();
         let is_wrong_side = evaluation.is_some() == exact.is_negative() && !is_near_border;
         let Some(evaluation) = evaluation else {
             checks.never(WRONG_SIDE, is_wrong_side, || format!("{p:?}"));
@@ -77,10 +71,10 @@ impl<'a> Validator<'a> {
         // A point that is inside only by rounding has depth 0.
         let exact_depth = if exact.is_negative() { Big::zero() } else { exact.clone() };
         let error = (&Big::exactly(depth) - &exact_depth).abs().to_f64();
-        checks.within(DEPTH, error / self.ulp(), self.limit, place);
+        checks.within(DEPTH, error / self.truth.ulp(), self.limit, place);
         let values = self.truth.region_values(&at, region);
         let is_wrong_owner = values.as_ref().is_none_or(|values| {
-            values.excess_distance > AMBIGUITY_ULPS * self.ulp() && !exact.is_negative()
+            values.excess_distance > AMBIGUITY_ULPS * self.truth.ulp() && !exact.is_negative()
         });
         checks.never(WRONG_OWNER, is_wrong_owner, place);
         let Some(values) = values else { return };
@@ -95,7 +89,7 @@ impl<'a> Validator<'a> {
         if rho == 0.0 && self.centres_are_rounded {
             for ulps in [-1.0, 1.0] {
                 let [x, y, z] = at.clone();
-                let beside = [x, y, &z + &Big::exactly(ulps * self.ulp())];
+                let beside = [x, y, &z + &Big::exactly(ulps * self.truth.ulp())];
                 let values = self.truth.region_values(&beside, region);
                 error = values.map_or(error, |values| error.min(error_from(&values)));
             }
@@ -120,7 +114,7 @@ impl<'a> Validator<'a> {
         // Beyond the tool's size, rounding grows with the coordinates: of the point, and of its place in the half plane.
         let [x, y, z] = p;
         let power_above = x.hypot(y).hypot(z).log2().ceil().exp2();
-        let ulp = self.ulp().max(f64::EPSILON * power_above);
+        let ulp = self.truth.ulp().max(f64::EPSILON * power_above);
         checks.within("distance outside [ulp(S)]", error / ulp, self.limit, || format!("{p:?}"));
     }
 }

@@ -70,6 +70,8 @@ pub mod derive;
 mod graph;
 pub mod interval;
 pub mod polynomial;
+#[cfg(test)]
+mod tests;
 pub mod value;
 
 pub(crate) use graph::EvaluationOrders;

@@ -2,13 +2,8 @@
 
 mod sampled;
 
-use crate::verdicts::{certifier, deeper};
-use crate::{UP, block, motion, plate, pose, soup, tool};
-use touchoff::certify::{
-    AllowanceError, Certifier, MotionDepth, MotionVerdict, PoseVerdict, TriangleBvh,
-};
-use touchoff::mesh::shapes;
-use touchoff::{Mesh, Motion, Pose, SurfaceId, Tool, Unit};
+use crate::prelude::*;
+use touchoff::certify::AllowanceError;
 
 fn names(tool: &dyn Tool) -> Vec<String> {
     tool.info().surfaces.iter().map(|surface| surface.name.to_string()).collect()
@@ -99,12 +94,12 @@ fn a_margin_that_a_thorn_breaks_in_passing_is_found() {
 /// A ball in a block, and a margin that it breaks in there: that it is inside is the graver finding.
 #[test]
 fn a_tool_inside_the_part_is_inside_whatever_its_margin() {
-    let block = TriangleBvh::new(&block([-20.0, -20.0, -40.0], [20.0, 20.0, 0.0]));
+    let block = block([-20.0, -20.0, -40.0], [20.0, 20.0, 0.0]);
     let ball = touchoff_tests::fixtures::ball();
     let buried = pose([0.0, 0.0, -7.0], UP);
     let path = motion(&buried, &pose([0.5, 0.0, -7.0], UP));
     for margin in [0.0, 0.5, 2.0, 5.0] {
-        let certifier = Certifier::new(&block, &ball).expect("a profile");
+        let certifier = certifier_of(&block, &ball);
         let mut certifier = certifier.with_allowance("ball", -margin).expect("a surface");
         assert_eq!(certifier.check_pose(&buried), PoseVerdict::Inside(SurfaceId(0)), "{margin}");
         let verdict = certifier.check_motion(&path, 1e-3);

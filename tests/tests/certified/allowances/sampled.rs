@@ -5,14 +5,12 @@
 //! over the allowances.
 
 use super::names;
-use crate::brute::{BruteForce, Sample};
+use crate::brute::Sample;
 use crate::motions::MotionKind;
 use crate::pair::{Part, generated_parts};
-use crate::{motion, oracle, overhang, tool};
+use crate::prelude::*;
+use crate::{oracle, overhang};
 use std::fmt::{Display, Formatter};
-use touchoff::certify::{Certifier, MotionVerdict, PoseVerdict, Witness};
-use touchoff::{Interval, Pose, SurfaceId};
-use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::triangle::Point;
 
 const TOOLS: [&str; 10] = [
@@ -101,7 +99,7 @@ impl<'a> SurfaceAllowances<'a> {
     /// than rounding. Returns negative infinity otherwise. At 2e-9 from a tangent joint, two distances differ by only
     /// 1e-18.
     fn depth(&self, surface: usize, p: Point) -> f64 {
-        let depth = self.brute.depth(p) * self.brute.length;
+        let depth = self.brute.depth(p);
         let own_distance =
             self.distance_to_surface(surface, p) + 8.0 * f64::EPSILON * self.brute.size;
         let mut others = (0..self.surface_names.len()).filter(|other| *other != surface);
@@ -126,7 +124,7 @@ impl<'a> SurfaceAllowances<'a> {
     fn assert_violates_allowance(&self, witness: &Witness, pose: &Pose, text: &str) {
         let p = self.brute.point_in_tool_frame(pose, witness.point);
         let (slack, allowed) = (4.0 * self.rounding(), self.allowances[witness.surface.0]);
-        let depth = self.brute.depth(p) * self.brute.length;
+        let depth = self.brute.depth(p);
         let distance = self.distance_to_surface(witness.surface.0, p);
         let is_deeper = distance <= depth + slack && depth >= allowed.max(0.0) - slack;
         assert!(is_deeper || distance <= -allowed + slack, "{text}: {depth} deep, {distance} away");
@@ -239,7 +237,7 @@ fn check_surface_depths(tools: &[&str], least: usize) {
                 }
                 if let Some(witness) = penetration.witness {
                     let p = owned.brute.point_in_tool_frame(&pose, witness.point);
-                    let depth = owned.brute.depth(p) * owned.brute.length;
+                    let depth = owned.brute.depth(p);
                     assert!(depth >= low - rounding, "{text}: {depth}");
                     let distance = owned.distance_to_surface(surface, p);
                     assert!(distance <= depth.abs() + 4.0 * rounding, "{text}");

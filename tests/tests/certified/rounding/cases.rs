@@ -2,10 +2,8 @@
 
 use super::cutters::Cutter;
 use super::truth::Point;
-use nalgebra::{Point3, Vector3};
-use touchoff::Pose;
+use crate::prelude::*;
 use touchoff_tests::oracle::plane::{self, add, unit};
-use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::triangle::{advance, cross};
 
 type MeridianPoint = plane::Point<f64>;

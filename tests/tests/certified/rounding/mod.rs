@@ -13,17 +13,12 @@ mod cases;
 mod cutters;
 mod truth;
 
+use crate::prelude::*;
 use cases::{Case, FAMILIES};
 use cutters::Cutter;
-use nalgebra::Point3;
 use rayon::prelude::*;
-use touchoff::certify::{Certifier, TriangleBvh, Witness};
-use touchoff::{Interval, Mesh, Unit};
-use touchoff_tests::count::case_count;
 use touchoff_tests::oracle::big::Big;
-use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::triangle::{cross, distance, norm, sub};
-use touchoff_tests::tally::Tally;
 use truth::{Point, Scene, TrianglePoint};
 
 /// Number of cases of all families together, unless `CASES` is set.

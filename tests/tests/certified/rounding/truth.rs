@@ -4,10 +4,9 @@
 //! 256 bits is a lower bound of the greatest depth, however the point was found.
 
 use super::cutters::Cutter;
-use touchoff::Pose;
+use crate::prelude::*;
+use touchoff_tests::oracle::Meridian;
 use touchoff_tests::oracle::big::Big;
-use touchoff_tests::oracle::reference::QueryPoint;
-use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::space::{Frame, Triple, dot, exactly, to_f64};
 pub(crate) use touchoff_tests::oracle::triangle::Point;
 use touchoff_tests::oracle::triangle::{mean, nearest_weights};
@@ -71,7 +70,7 @@ impl<'a> Scene<'a> {
             let column = [0, 1, 2].map(|k| corners[k][axis].clone());
             &dot(&weights, &column) / &sum
         });
-        self.cutter.reference.depth(&QueryPoint::of(point))
+        self.cutter.reference.depth(&Meridian::of(point))
     }
 
     /// Returns the point of a triangle that is approximately nearest to `p`, which is in the tool's frame.

@@ -2,11 +2,8 @@
 
 mod sampled;
 
-use crate::verdicts::{certifier, touching};
-use crate::{UP, block, motion, plate, pose, soup};
-use touchoff::certify::{MotionVerdict, PoseVerdict};
-use touchoff::mesh::shapes;
-use touchoff::{Mesh, Motion, MotionError, Unit};
+use crate::prelude::*;
+use touchoff::MotionError;
 
 fn sweep(mesh: &Mesh, name: &str, path: &Motion, tolerance: f64) -> MotionVerdict {
     certifier(mesh, name).check_motion(path, tolerance)

@@ -4,18 +4,11 @@
 //! ([`crate::approach`]) know the tool from its restatement, and the motion from a separate formula.
 
 use crate::approach::{MotionSample, ReferenceMotion};
-use crate::brute::BruteForce;
 use crate::motions::MotionKind;
-use crate::pair::{Pair, Pairs, is_full_run, parts};
-use crate::verdicts::triangles;
-use crate::{motion, oracle};
-use touchoff::certify::{Certifier, MotionVerdict, Witness};
-use touchoff::{Motion, Pose};
-use touchoff_tests::count::case_count;
-use touchoff_tests::oracle::Oracle;
-use touchoff_tests::oracle::rng::Rng;
+use crate::oracle;
+use crate::pair::{IN_CONTACT, Pair, Pairs, QUERIED, VIOLATIONS, is_full_run, parts};
+use crate::prelude::*;
 use touchoff_tests::oracle::triangle::winding_number;
-use touchoff_tests::tally::Tally;
 
 /// The tolerances used, in the part's unit.
 const TOLERANCES: [f64; 3] = [0.0, 1e-6, 1e-3];
@@ -39,14 +32,10 @@ const TIME_SAMPLES: u32 = 64;
 /// Maximum number of motions drawn per motion that is proved clear.
 const MAX_DRAWS_PER_PROVED: usize = 20;
 
-/// Names of counts: a motion proved clear, one of these that comes nearer than 0.001, a witness of contact, an undecided
-/// motion, a wrong answer.
-const QUERIED: &str = "queried";
+/// Names of counts: a motion proved clear, one of these that comes nearer than 0.001, an undecided motion.
 const PROVED: &str = "proved";
 const NEAR: &str = "of them near";
-const IN_CONTACT: &str = "in contact";
 const UNDECIDED: &str = "undecided";
-const VIOLATIONS: &str = "violations";
 
 impl Pair<'_> {
     /// Compares random motions with samples until `count` of them are proved clear.

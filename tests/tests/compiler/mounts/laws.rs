@@ -9,25 +9,20 @@ fn evaluation(text: &str, p: [f64; 3]) -> (f64, f64) {
     (evaluation.magnitude, evaluation.niceness)
 }
 
-/// The file's law uses its own radius and z in inches, with z = 2 at the tip and the spindle toward smaller z.
+/// The file's law uses its own radius and z in inches, with z = 2 at the tip and the spindle toward smaller z. It keeps its
+/// frame when mounted farther up, by files in two units.
 #[test]
 fn a_law_keeps_its_unit_and_frame() {
     let text = mounts("mount \"inch_flat.tool\" as cutter; mount \"er16.tool\" as nut at z = 30;");
-    let (magnitude, niceness) = evaluation(&text, [3.0, 0.0, 12.7]);
-    let depth = 0.125 - 3.0 / 25.4;
-    assert!((niceness - (1.0 - depth / 0.125 + 0.5 / 8.0)).abs() < 1e-14, "{niceness}");
-    // Its magnitude does not come along.
-    assert!((magnitude - depth * 25.4).abs() < 1e-14, "{magnitude}");
     assert_eq!(evaluation(&text, [0.0, 0.0, 0.25]).1, 0.5);
-}
-
-/// A law also keeps its frame when mounted farther up, by files in two units.
-#[test]
-fn a_law_keeps_its_location() {
-    let text = mounts("mount \"pin.tool\" as pin; mount \"inch_flat.tool\" as mill at z = 5;");
-    let (_, niceness) = evaluation(&text, [3.0, 0.0, 17.7]);
-    let depth = 0.125 - 3.0 / 25.4;
-    assert!((niceness - (1.0 - depth / 0.125 + 0.5 / 8.0)).abs() < 1e-14, "{niceness}");
+    let higher = mounts("mount \"pin.tool\" as pin; mount \"inch_flat.tool\" as mill at z = 5;");
+    for (text, z) in [(text, 12.7), (higher, 17.7)] {
+        let (magnitude, niceness) = evaluation(&text, [3.0, 0.0, z]);
+        let depth = 0.125 - 3.0 / 25.4;
+        assert!((niceness - (1.0 - depth / 0.125 + 0.5 / 8.0)).abs() < 1e-14, "{niceness}");
+        // Its magnitude does not come along.
+        assert!((magnitude - depth * 25.4).abs() < 1e-14, "{magnitude}");
+    }
 }
 
 #[test]

@@ -4,13 +4,14 @@
 
 use super::points::{format_point, scale};
 use super::{LENGTHS, evaluate};
-use touchoff::Level;
-use touchoff::tool::{Outputs, PointEvaluation, Tool};
+use crate::prelude::*;
+use touchoff::tool::{Outputs, PointEvaluation};
 use touchoff_tests::checks::{Checks, assert_no_misses};
 use touchoff_tests::evaluations::{at, batch};
-use touchoff_tests::oracle::reference::{QueryPoint, Reference};
+use touchoff_tests::oracle::reference::Reference;
+use touchoff_tests::oracle::space::exactly;
 use touchoff_tests::oracle::triangle::{distance, norm};
-use touchoff_tests::oracle::{Oracle, OracleEvaluation, restated};
+use touchoff_tests::oracle::{Meridian, OracleEvaluation, restated};
 
 /// Distance from a border, as a fraction of S, within which either neighbour may own a point.
 const BORDER_DISTANCE_FRACTION: f64 = 1e-12;
@@ -68,7 +69,7 @@ fn evaluation(
     if (depth - deep).abs() > ULPS_IN_DOUBT * ulp
         && let Some(reference) = reference
     {
-        deep = reference.depth(&QueryPoint::new(p)).to_f64().max(0.0);
+        deep = reference.depth(&Meridian::of(exactly(p))).to_f64().max(0.0);
     }
     let is_depth = oracle.magnitude_is_depth();
     let hard = if is_depth { deep } else { expected.map_or(0.0, |expected| expected.magnitude) };

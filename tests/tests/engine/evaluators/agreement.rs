@@ -2,12 +2,11 @@
 
 use super::points::{format_point, scale};
 use super::{LENGTHS, evaluate};
-use touchoff::Level;
-use touchoff::tool::{Evaluations, Interpreted, Outputs, PointBatch, Tool};
+use crate::prelude::*;
+use touchoff::tool::{Evaluations, Outputs, PointBatch};
 use touchoff_dsl::CheckedTool;
 use touchoff_dsl::interpret::Interpreter;
 use touchoff_tests::evaluations::{at, batch, bits, is_inside, levels, of_reference};
-use touchoff_tests::oracle::Oracle;
 
 /// The region, and the bits of depth, magnitude, niceness, direction and gradient; `None` outside.
 type Answer = Option<(usize, [u64; 9])>;

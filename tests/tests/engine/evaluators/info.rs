@@ -1,7 +1,7 @@
 //! The names of a tool's regions and surfaces, against its restatement.
 
-use touchoff::Tool;
-use touchoff_tests::oracle::{Nearest, Oracle};
+use crate::prelude::*;
+use touchoff_tests::oracle::Nearest;
 
 /// Compares a tool's info with the regions that a restated profile should have.
 pub(crate) fn of(tool: &dyn Tool, oracle: &Nearest) {

@@ -9,13 +9,12 @@ mod info;
 mod partitions;
 mod points;
 
-use touchoff::Level;
-use touchoff::tool::{Evaluations, Interpreted, Outputs, PointBatch, Tool};
+use crate::prelude::*;
+use touchoff::tool::{Evaluations, Outputs, PointBatch};
 use touchoff_dsl::diagnostic::Severity;
 use touchoff_dsl::source::Source;
 use touchoff_dsl::{CheckedTool, compile};
-use touchoff_tests::library;
-use touchoff_tests::oracle::{self, Nearest, Oracle, restated};
+use touchoff_tests::oracle::{self, Nearest, restated};
 use touchoff_tools::TOOLS;
 
 /// Lengths of the file's unit in the part's that are tested: the same unit, and mm in inches.
@@ -50,19 +49,15 @@ fn evaluate(
 fn for_each_tool(check: fn(&'static dyn Tool, &dyn Oracle, &Source)) {
     let files = library::files();
     assert_eq!([files.len(), oracle::all().len()], [TOOLS.len(); 2]);
-    let threads = TOOLS.iter().zip(files).map(|(tool, file)| {
-        let name = tool.info().name.to_string();
-        let oracle = move || {
-            let mut all = oracle::all().into_iter();
-            all.find(|oracle| oracle.name() == tool.info().name).expect("every tool has an oracle")
-        };
-        let thread = std::thread::Builder::new().name(name.clone());
-        let read = move || Source::read(file).expect("the library has the file");
-        (name, thread.spawn(move || check(*tool, &*oracle(), &read())).expect("a thread"))
+    std::thread::scope(|scope| {
+        for (tool, file) in TOOLS.iter().zip(files) {
+            let name = &tool.info().name;
+            let read = move || Source::read(file).expect("the library has the file");
+            let thread = std::thread::Builder::new().name(name.to_string());
+            let check = move || check(*tool, &*oracle::of(name), &read());
+            thread.spawn_scoped(scope, check).expect("a thread");
+        }
     });
-    let threads: Vec<_> = threads.collect();
-    let failed = threads.into_iter().filter_map(|(name, thread)| thread.join().err().map(|_| name));
-    assert_eq!(failed.collect::<Vec<_>>(), Vec::<String>::new());
 }
 
 #[test]

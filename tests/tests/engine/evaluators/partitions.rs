@@ -1,11 +1,10 @@
 //! Artificial tools of many regions: the plan finds the owner that the list of regions has, however the regions
 //! lie.
 
-use touchoff::Level;
+use crate::prelude::*;
 use touchoff_dsl::interpret::Interpreter;
 use touchoff_dsl::source::Source;
 use touchoff_tests::evaluations::evaluate_points;
-use touchoff_tests::oracle::rng::Rng;
 
 /// Returns a rod of radius 5 from z = 0 to 20 with these regions, which all have the same depth and direction.
 fn rod(curves: &str, conditions: impl IntoIterator<Item = String>) -> Source {

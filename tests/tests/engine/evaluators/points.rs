@@ -1,9 +1,9 @@
 //! Test points that are hard for an evaluator, and plenty of ordinary ones.
 
+use crate::prelude::*;
 use touchoff_tests::count::case_count;
+use touchoff_tests::oracle::Meridian;
 use touchoff_tests::oracle::reference::power_above;
-use touchoff_tests::oracle::rng::Rng;
-use touchoff_tests::oracle::{Meridian, Oracle};
 use touchoff_tests::points::{
     BESIDE_AXIS, add_anywhere, add_beside_borders, add_turned, azimuths, heights, neighbourhood,
     to_space,

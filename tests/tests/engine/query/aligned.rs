@@ -2,8 +2,7 @@
 
 use super::compare::check_tools;
 use super::parts;
-use nalgebra::{Point3, Vector3};
-use touchoff::{Part, Pose};
+use crate::prelude::*;
 use touchoff_tests::turns::{EXACT_TURNS, ROUNDED_TURNS};
 
 /// Returns a grid of points half a unit apart: on faces, axes, edges and splitting curves of the tools, all at

@@ -2,10 +2,8 @@
 
 use super::compare::{Case, Statistics, check_tools, tools};
 use super::parts;
-use nalgebra::{Point3, Vector3};
+use crate::prelude::*;
 use touchoff::scenes::ScenePath;
-use touchoff::{Part, Pose, Probe};
-use touchoff_tests::oracle::rng::Rng;
 
 /// Checks every tool about a part; fails unless two fifths of the poses touch.
 pub(crate) fn all_tools(what: &str, part: &Part, count: usize) {

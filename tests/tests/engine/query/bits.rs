@@ -2,12 +2,9 @@
 
 use super::compare::{LAWS_AND_WEIGHTS, tools};
 use super::parts;
-use touchoff::tool::Interpreted;
-use touchoff::{Level, Part, Pose, Probe, Tool};
+use crate::prelude::*;
 use touchoff_tests::evaluations::levels;
-use touchoff_tests::library;
-use touchoff_tests::oracle::rng::Rng;
-use touchoff_tests::oracle::{self, Oracle};
+use touchoff_tests::oracle;
 
 /// Formats all results of a probe at a pose. No two different numbers have the same text, the sign of zeros
 /// included.

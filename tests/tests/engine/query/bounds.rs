@@ -5,13 +5,12 @@
 //! exact sum is then the number of points times one product in 256 bits.
 
 use super::parts;
-use nalgebra::{Point3, Vector3};
-use touchoff::tool::{PointEvaluation, Tool};
-use touchoff::{Law, Level, Part, Pose, Probe, Scene, Weights, Wrench};
+use crate::prelude::*;
+use touchoff::tool::PointEvaluation;
+use touchoff::{Scene, Weights, Wrench};
 use touchoff_tests::evaluations::evaluate_points;
 use touchoff_tests::fixtures::ball;
 use touchoff_tests::oracle::big::Big;
-use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::space::{Triple, add, cross, distance, dot, exactly, sub};
 
 /// A point in a tool whose tip is at the world's origin, where the difference of both is exact.

@@ -9,13 +9,11 @@
 //! side of it. Such points are counted, and widen the bounds by their possible effect; no other point may be
 //! missing or belong elsewhere.
 
-use nalgebra::{Point3, Vector3};
+use super::brute::{Answer, Query};
+use crate::prelude::*;
 use std::collections::BTreeMap;
-use touchoff::{Contact, Law, Part, Pose, Probe, Tool, TriangleId, Unit, Weights, Wrench, summary};
-use touchoff_tests::library;
-use touchoff_tests::oracle::brute::{self, Answer, Query};
-use touchoff_tests::oracle::rng::Rng;
-use touchoff_tests::oracle::{Oracle, thesis};
+use touchoff::{Contact, TriangleId, Weights, Wrench, summary};
+use touchoff_tests::oracle::thesis;
 
 /// Returns the thesis's tools, each with its oracle.
 pub(crate) fn tools() -> Vec<(&'static dyn Tool, Box<dyn Oracle>)> {
@@ -60,8 +58,8 @@ pub(crate) struct Case<'a> {
     part: &'a Part,
     tool: &'a dyn Tool,
     pub(crate) oracle: &'a dyn Oracle,
-    points: Vec<[f64; 3]>,
-    normals: Vec<[f64; 3]>,
+    points: Vec<Point3<f64>>,
+    normals: Vec<Vector3<f64>>,
     weights: Vec<f64>,
     ones: Vec<f64>,
     /// Per id, the index of its point in the tree.
@@ -107,7 +105,7 @@ impl<'a> Case<'a> {
     pub(crate) fn new(part: &'a Part, tool: &'a dyn Tool, oracle: &'a dyn Oracle) -> Case<'a> {
         let tree = part.tree();
         let indices = 0..tree.len();
-        let points: Vec<[f64; 3]> = indices.clone().map(|i| tree.point(i).into()).collect();
+        let points: Vec<Point3<f64>> = indices.clone().map(|i| tree.point(i)).collect();
         let ids: BTreeMap<TriangleId, usize> =
             indices.clone().map(|i| (tree.triangle(i), i)).collect();
         let expected = (0..tree.len() as u32).map(TriangleId);
@@ -119,11 +117,11 @@ impl<'a> Case<'a> {
             part,
             tool,
             oracle,
-            normals: indices.clone().map(|i| tree.normal(i)).collect(),
+            normals: indices.clone().map(|i| tree.normal(i).into()).collect(),
             weights: indices.map(|i| tree.weight(i)).collect(),
             ones: vec![1.0; points.len()],
             indices: ids.into_values().collect(),
-            reach: points.iter().flatten().fold(0.0, |m, c| m.max(c.abs())),
+            reach: points.iter().map(|p| p.coords.amax()).fold(0.0, f64::max),
             points,
             scale,
             magnitude_unit,
@@ -166,20 +164,19 @@ impl<'a> Case<'a> {
         contacts: Vec<Contact>,
         centre: Point3<f64>,
     ) -> Compared<'_> {
-        let axes = [0, 1, 2].map(|k| pose.rotation().column(k).into_owned().into());
-        let brute_pose = brute::Pose { tip: pose.tip().into(), axes };
-        let weights = match wrench.weights {
-            Weights::Area => &self.weights,
-            Weights::Unit => &self.ones,
+        let query = Query {
+            oracle: self.oracle,
+            pose: *pose,
+            scale: self.scale,
+            law: wrench.law,
+            centre: pose.tip() + pose.rotation() * centre.coords,
+            points: &self.points,
+            normals: &self.normals,
+            weights: match wrench.weights {
+                Weights::Area => &self.weights,
+                Weights::Unit => &self.ones,
+            },
         };
-        let mut query = Query::new(self.oracle, brute_pose, &self.points, &self.normals, weights);
-        query.law = match wrench.law {
-            Law::Thesis => brute::Law::Thesis,
-            Law::Gradient => brute::Law::Gradient,
-            Law::Facing => brute::Law::Facing,
-        };
-        query.scale = self.scale;
-        query.centre = (pose.tip() + pose.rotation() * centre.coords).into();
         let world = pose.tip().coords.amax().max(self.reach);
         let noise = f64::EPSILON * (8.0 * self.size + 4.0 * world);
         Compared {
@@ -228,8 +225,8 @@ impl<'a> Case<'a> {
         near(contact.depth, expected.depth / self.scale, self.steep * noise, "depth");
         let magnitude = expected.magnitude * self.magnitude_unit;
         near(contact.magnitude, magnitude, compared.level, "magnitude");
-        assert!((contact.point - Point3::from(self.points[i])).norm() <= noise);
-        assert_eq!(contact.normal, Vector3::from(self.normals[i]));
+        assert!((contact.point - self.points[i]).norm() <= noise);
+        assert_eq!(contact.normal, self.normals[i]);
         assert_eq!(contact.weight, query.weights[i]);
         assert_eq!(contact.surface, self.tool.info().regions[contact.region].surface);
         if self.is_in_doubt(compared, q) {
@@ -238,10 +235,10 @@ impl<'a> Case<'a> {
         assert_eq!(contact.region, expected.owner, "{name} region at {q:?}");
         near(contact.niceness, expected.niceness, 16.0 * noise * self.scale, "niceness");
         let turn = self.turn(compared, q);
-        let along = Vector3::from(query.pose.to_world_frame(expected.direction));
+        let along = query.to_world_frame(expected.direction);
         near((contact.direction - along).norm(), 0.0, turn, "direction");
-        let slope = query.pose.to_world_frame(self.oracle.gradient(q).expect("inside"));
-        let slope = self.gradient_unit * Vector3::from(slope);
+        let slope = query.to_world_frame(self.oracle.gradient(q).expect("inside"));
+        let slope = self.gradient_unit * slope;
         let bound = self.steep * self.gradient_unit * turn;
         near((contact.gradient - slope).norm(), 0.0, bound, "gradient");
     }
@@ -263,17 +260,16 @@ impl<'a> Case<'a> {
             let is_near = (got - want).abs() <= bound;
             assert!(is_near, "{name} {what}: {got}, not {want} to {bound:e}; {wrench:?}");
         };
-        let deepest = answer.deepest.map_or(0.0, |(depth, _)| depth);
         // A point that touches for one side only is no deeper than the band.
-        let is_disputed = compared.contacts.len() != answer.count;
+        let is_disputed = compared.contacts.len() != answer.contacts.len();
         let slack = if is_disputed { compared.band } else { 0.0 };
         let deeper = self.steep * (self.steep * compared.noise + slack);
-        near(wrench.depth(), deepest, deeper, "depth");
+        near(wrench.depth(), answer.depth, deeper, "depth");
         near(wrench.integral, answer.integral, bounds.integral, "integral");
         near(wrench.energy, answer.energy, bounds.energy, "energy");
-        let force = (wrench.force - Vector3::from(answer.force)).norm();
+        let force = (wrench.force - answer.force).norm();
         near(force, 0.0, bounds.force, "force");
-        let torque = (wrench.torque - Vector3::from(answer.torque)).norm();
+        let torque = (wrench.torque - answer.torque).norm();
         near(torque, 0.0, bounds.torque, "torque");
         match (wrench.niceness, answer.niceness) {
             (Some(got), Some(want)) if !bounds.nice => {
@@ -285,10 +281,10 @@ impl<'a> Case<'a> {
 
     fn bounds(&self, compared: &Compared<'_>, statistics: &mut Statistics) -> Bounds {
         let Compared { query, noise, level, push, .. } = compared;
-        let tip = Point3::from(query.pose.tip);
-        let lever = (Point3::from(query.centre) - tip).norm();
+        let tip = query.pose.tip();
+        let lever = (query.centre - tip).norm();
         let mut bounds = Bounds::default();
-        let rounding = f64::EPSILON * (16.0 + compared.answer.count as f64 / 4.0);
+        let rounding = f64::EPSILON * (16.0 + compared.answer.contacts.len() as f64 / 4.0);
         for &i in &compared.answer.contacts {
             let p = self.points[i];
             let q = query.to_tool_frame(p);
@@ -296,12 +292,11 @@ impl<'a> Case<'a> {
             let (w, m) = (query.weights[i], s.magnitude * self.magnitude_unit);
             let turn = self.turn(compared, q);
             let doubt = self.is_in_doubt(compared, q);
-            let normal = Vector3::from(self.normals[i]);
-            let across = Vector3::from(query.pose.to_world_frame(s.direction)).dot(&normal).abs();
-            let dropped = query.law == brute::Law::Facing && across <= 1e-12 + turn;
+            let across = query.to_world_frame(s.direction).dot(&self.normals[i]).abs();
+            let dropped = query.law == Law::Facing && across <= 1e-12 + turn;
             let swing = if doubt || dropped { 2.0 * MAX_PUSH } else { turn };
             let force = w * push * (level + m * (swing + rounding));
-            let arm = (Point3::from(p) - tip).norm() + lever;
+            let arm = (p - tip).norm() + lever;
             bounds.force += force;
             bounds.torque += arm * force + noise * w * m * push;
             bounds.integral += w * (level + rounding * m);
@@ -310,7 +305,7 @@ impl<'a> Case<'a> {
             statistics.doubtful += usize::from(doubt);
         }
         // Points that touch for the probe only are hardly inside, if at all.
-        if compared.contacts.len() != compared.answer.count {
+        if compared.contacts.len() != compared.answer.contacts.len() {
             let weight: f64 = compared.contacts.iter().map(|contact| contact.weight).sum();
             let magnitude = self.steep * compared.band * self.gradient_unit;
             let slight = magnitude * weight.max(1.0) * MAX_PUSH.max(*push);
@@ -344,7 +339,7 @@ fn assert_consistent(compared: &Compared<'_>, bounds: &Bounds) {
     assert_eq!(mean, if contacts.is_empty() { 0.0 } else { sum / contacts.len() as f64 });
     let energy: f64 = contacts.iter().map(|c| 0.5 * c.weight * c.magnitude * c.magnitude).sum();
     assert!((energy - wrench.energy).abs() <= bounds.energy);
-    let centre = Point3::from(compared.query.centre);
+    let centre = compared.query.centre;
     let (mut force, mut torque) = (Vector3::zeros(), Vector3::zeros());
     for c in contacts {
         let direction = match wrench.law {

@@ -1,9 +1,10 @@
 //! Poses that are composed many times stay rotations, and stay where they should be.
 
-use nalgebra::{Matrix3, Point3, Unit, UnitQuaternion, Vector3};
+use crate::prelude::*;
+use nalgebra::{Matrix3, Unit};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, TAU};
-use touchoff::Pose;
-use touchoff_tests::oracle::rng::Rng;
+use touchoff_tests::oracle::big::Big;
+use touchoff_tests::oracle::space::{dot, exactly};
 
 /// Largest entry of `RᵀR - I` of a composed rotation, in ε.
 const MAX_ORTHOGONALITY_ERROR: f64 = 4.0;
@@ -19,24 +20,15 @@ const TURNS: [([f64; 3], f64); 7] = [
     ([0.6, -0.5, 2.0], TAU / 7.0),
 ];
 
-/// Returns the largest entry of `RᵀR - I`, in ε: products without rounding, sums of six as if in twice the
-/// precision.
+/// Returns the largest entry of `RᵀR - I`, in ε.
 fn orthogonality_error(rotation: &Matrix3<f64>) -> f64 {
+    let columns = [0, 1, 2].map(|k| exactly(rotation.column(k).into_owned()));
     let mut largest = 0f64;
     for i in 0..3 {
         for j in i..3 {
-            let (mut sum, mut rest) = (if i == j { -1.0 } else { 0.0 }, 0.0);
-            for k in 0..3 {
-                let (a, b) = (rotation[(k, i)], rotation[(k, j)]);
-                let product = a * b;
-                rest += a.mul_add(b, -product);
-                // Knuth's two-sum: the part that is rounded away is known.
-                let total: f64 = sum + product;
-                let back = total - sum;
-                rest += (sum - (total - back)) + (product - back);
-                sum = total;
-            }
-            largest = largest.max((sum + rest).abs());
+            let entry = Big::exactly(if i == j { 1.0 } else { 0.0 });
+            let off = &dot(&columns[i], &columns[j]) - &entry;
+            largest = largest.max(off.abs().to_f64());
         }
     }
     largest / f64::EPSILON

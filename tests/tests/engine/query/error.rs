@@ -1,14 +1,12 @@
 //! The error bounds that a probe states, against the depth of the points that were given.
 
 use super::parts;
-use nalgebra::{Point3, Vector3};
-use touchoff::TriangleId;
-use touchoff::tool::Interpreted;
-use touchoff::{Cloud, Interval, Part, Pose, Probe};
-use touchoff_tests::fixtures::drawn;
+use crate::prelude::*;
+use touchoff::Interval;
+use touchoff_tests::fixtures::{drawn, part_in};
+use touchoff_tests::oracle::Meridian;
 use touchoff_tests::oracle::big::Big;
-use touchoff_tests::oracle::reference::{QueryPoint, Reference};
-use touchoff_tests::oracle::rng::Rng;
+use touchoff_tests::oracle::reference::Reference;
 use touchoff_tests::oracle::space::{Frame, Triple, exactly, norm};
 use touchoff_tests::profiles::tools;
 
@@ -32,10 +30,8 @@ fn depths_keep_the_stated_error_bound() {
             Point3::new(across(rng), across(rng), rng.between(low, high)) + far
         };
         let points: Vec<Point3<f64>> = (0..count).map(|_| within(&mut rng)).collect();
-        let ids = (0..count as u32).map(TriangleId).collect();
         let (normals, weights) = (vec![Vector3::z(); count], vec![1.0; count]);
-        let cloud = Cloud::new(points.clone(), normals, ids, weights, info.unit);
-        let part = Part::from_cloud(&cloud.expect("a cloud"));
+        let part = part_in(info.unit, points.clone(), normals, weights);
         let mut probe = Probe::new(&part, tool);
         let stated = probe.rounding_error_bound().expect("the library's depths are bounded");
         let pose = Pose::from_axis(Point3::from(far), Vector3::z()).expect("a pose");
@@ -43,7 +39,7 @@ fn depths_keep_the_stated_error_bound() {
         for contact in probe.contacts(&pose) {
             let given = points[contact.triangle.index()] - far;
             let at = [given.x, given.y, given.z];
-            let exact = reference.depth(&QueryPoint::new(at));
+            let exact = reference.depth(&Meridian::of(exactly(at)));
             worst = worst.max((&Big::exactly(contact.depth) - &exact).abs().to_f64());
         }
         assert!(worst <= stated, "{}: {worst:e} over {stated:e}", info.name);

@@ -3,9 +3,7 @@
 use super::anywhere::all_tools;
 use super::compare::{check_tools, tools};
 use super::parts;
-use nalgebra::{Point3, Vector3};
-use touchoff::{Part, Pose, Probe};
-use touchoff_tests::oracle::rng::Rng;
+use crate::prelude::*;
 
 /// Rounds coordinates to multiples of 2^-10, so that sums with 2^40 are exact.
 fn on_a_grid(p: Point3<f64>) -> Point3<f64> {

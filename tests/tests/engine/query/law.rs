@@ -2,10 +2,9 @@
 
 use super::compare::tools;
 use super::parts;
-use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
-use touchoff::{Law, Part, Pose, Probe};
-use touchoff_tests::library;
-use touchoff_tests::oracle::rng::Rng;
+use crate::prelude::*;
+use nalgebra::{Isometry3, Translation3};
+use touchoff_tests::haptics::upright;
 
 fn energy(probe: &mut Probe<'_>, at: Isometry3<f64>) -> f64 {
     probe.wrench(&Pose::try_from(at).expect("a pose")).energy
@@ -74,9 +73,7 @@ fn the_force_points_out_of_a_plate() {
         for law in LAWS {
             let mut last = 0.0;
             for depth in [0.01, 0.1, 0.2, 0.4] {
-                let pose = Pose::from_axis(Point3::new(0.0, 0.0, -depth), Vector3::z());
-                let wrench = Probe::new(&part, tool).with_law(law).wrench(&pose.expect("a pose"));
-                let force = wrench.force;
+                let force = Probe::new(&part, tool).with_law(law).wrench(&upright(-depth)).force;
                 assert!(force.z > last, "{law} {depth} {force}");
                 assert!(force.x.hypot(force.y) < 0.1 * force.z);
                 last = force.z;
@@ -130,8 +127,7 @@ fn the_facing_law_ignores_the_far_side_of_a_sheet() {
     let points = vec![Point3::new(0.0, 0.0, 0.0), Point3::new(0.0, 0.0, -0.0625)];
     let part = parts::of(points, vec![Vector3::z(), -Vector3::z()], vec![1.0; 2]);
     let tool = library::tool("UnitSphere");
-    let pose = Pose::from_axis(Point3::new(0.0, 0.0, -0.25), Vector3::z()).expect("a pose");
-    let evaluation = |law| Probe::new(&part, tool).with_law(law).wrench(&pose);
+    let evaluation = |law| Probe::new(&part, tool).with_law(law).wrench(&upright(-0.25));
     let (thesis, facing) = (evaluation(Law::Thesis), evaluation(Law::Facing));
     assert_eq!((thesis.colliding, facing.colliding), (2, 2));
     assert_eq!(facing.force, Vector3::new(0.0, 0.0, 0.5));

@@ -3,9 +3,8 @@
 
 use super::compare::{Case, Statistics, tools};
 use super::parts;
-use nalgebra::{Point3, Vector3};
-use touchoff_tests::oracle::rng::Rng;
-use touchoff_tests::oracle::{Oracle, displaced};
+use crate::prelude::*;
+use touchoff_tests::oracle::displaced;
 
 /// Checks points by the tool's curves, displaced by 0 and from 1e-15 to 1e-3, moved to a pose, among others over a
 /// part of `size`.

@@ -6,6 +6,7 @@ mod aligned;
 mod anywhere;
 mod bits;
 mod bounds;
+mod brute;
 pub(crate) mod compare;
 mod composed;
 mod error;

@@ -1,12 +1,10 @@
 //! Parts for the queries, and random poses. The triangle ids of their clouds are the points' own indices in the cloud, so that a
 //! contact can be told from its neighbours.
 
-use nalgebra::{Point3, Vector3};
+use crate::prelude::*;
 use touchoff::mesh::shapes;
-use touchoff::{Cloud, Mesh, Part, Pose, Sampling, Unit};
+use touchoff::{Cloud, Mesh, Sampling};
 pub(crate) use touchoff_tests::fixtures::part_of as of;
-use touchoff_tests::oracle::Oracle;
-use touchoff_tests::oracle::rng::Rng;
 
 pub(crate) const UNIT: Unit = Unit::Millimetre;
 

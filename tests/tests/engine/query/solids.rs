@@ -1,10 +1,7 @@
 //! Solids without an axis at full poses, with contacts that are known in closed form.
 
 use super::parts;
-use nalgebra::{Point3, Vector3};
-use touchoff::{Law, Part, Pose, Probe};
-use touchoff_tests::checks::assert_near;
-use touchoff_tests::oracle::rng::Rng;
+use crate::prelude::*;
 use touchoff_tools::Block;
 
 /// Returns the plane z = 0 of a pose's own frame, 60 by 60 in squares of a quarter, facing up.

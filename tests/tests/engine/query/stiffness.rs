@@ -2,12 +2,10 @@
 
 use super::compare::tools;
 use super::parts;
-use nalgebra::{Matrix6, Point3, Rotation3, UnitQuaternion, Vector3, Vector6};
-use touchoff::{Law, Part, Pose, Probe, Tool, Wrench};
+use crate::prelude::*;
+use nalgebra::{Matrix6, Rotation3, Vector6};
+use touchoff::Wrench;
 use touchoff_tests::haptics::{block, tool, upright};
-use touchoff_tests::library::read;
-use touchoff_tests::oracle::Oracle;
-use touchoff_tests::oracle::rng::Rng;
 
 /// Step of the finite differences: a length in the part's unit, and an angle in rad.
 const STEP: f64 = 1e-6;
@@ -83,7 +81,7 @@ fn stiffness_agrees_with_finite_differences() {
 fn an_interpreted_tool_has_the_same_stiffness() {
     let part = parts::soup(6.0, 1_500, 6);
     for (tool, oracle) in tools() {
-        let (interpreted, _) = read(oracle.name());
+        let interpreted = library::interpreted(oracle.name());
         let mut rng = Rng::new(32);
         let mut compiled = Probe::new(&part, tool).with_law(Law::Gradient);
         let mut read = Probe::new(&part, &interpreted as &dyn Tool).with_law(Law::Gradient);

@@ -2,10 +2,9 @@
 
 use super::compare::{LAWS_AND_WEIGHTS, tools};
 use super::parts;
-use nalgebra::Point3;
-use touchoff::{Contact, Law, Pose, Probe};
+use crate::prelude::*;
+use touchoff::Contact;
 use touchoff_tests::oracle::big::Big;
-use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::space::{Triple, add, cross, distance, exactly, sub, times};
 
 /// Returns force and torque about the tip, the sum of weights times magnitudes, and that times the arm.

@@ -1,13 +1,13 @@
 //! The expression graph against a plain tree of the same operations: values, derivatives, enclosures. The tree is
 //! evaluated by itself, so folding cannot hide a mistake.
 
+use super::derive::derivative;
+use super::interval::{Cell, Encloser, Interval};
+use super::polynomial::Polynomial;
+use super::value::{EvaluationPoint, Evaluator};
+use super::{Coord, Graph, Id};
+use crate::number::Number;
 use proptest::prelude::*;
-use touchoff_dsl::expr::derive::derivative;
-use touchoff_dsl::expr::interval::{Cell, Encloser, Interval};
-use touchoff_dsl::expr::polynomial::Polynomial;
-use touchoff_dsl::expr::value::{EvaluationPoint, Evaluator};
-use touchoff_dsl::expr::{Coord, Graph, Id};
-use touchoff_dsl::number::Number;
 
 #[derive(Clone, Debug)]
 enum Tree {

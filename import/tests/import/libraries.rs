@@ -1,0 +1,127 @@
+//! A tool library of every format, with every type that can be read.
+
+use serde_json::{Map, Value, json};
+use touchoff_tests::fusion;
+
+/// A file of a tool library.
+pub(crate) struct LibraryFile {
+    /// Its name; the ending gives the format.
+    pub(crate) name: &'static str,
+    /// Its content.
+    pub(crate) text: String,
+}
+
+/// Returns a file of each format.
+pub(crate) fn files() -> Vec<LibraryFile> {
+    let file = |name, text| LibraryFile { name, text };
+    vec![
+        file("fusion.json", json!({ "version": 33, "data": fusion::tools() }).to_string()),
+        file("kiri.json", kiri().to_string()),
+        file("camotics.json", camotics().to_string()),
+        file("bits.fctb", bit("endmill", &["Diameter=6 mm", "ShankDiameter=8 mm"]).to_string()),
+        file("holder.fcholder", fcholder().to_string()),
+        file("hsm.hsmlib", HSM.to_owned()),
+        file("cutters.apt", APT.to_owned()),
+        file("table.tbl", "T1 P1 Z47.5 D6 ; ball\nT2 P2 Z40. D8.2 ; drill\n".to_owned()),
+    ]
+}
+
+/// Returns the tools of Kiri:Moto, one of each type.
+pub(crate) fn kiri() -> Value {
+    let tool = |number: u32, kind: &str, tip: f64| {
+        json!({ "id": number, "number": number, "type": kind, "name": kind, "metric": number < 4,
+            "shaft_diam": 8, "shaft_len": 15, "flute_diam": 6, "flute_len": 20, "taper_tip": tip })
+    };
+    json!([
+        tool(1, "endmill", 0.0),
+        tool(2, "ballmill", 0.0),
+        tool(3, "tapermill", 1.0),
+        tool(4, "drill", 0.0)
+    ])
+}
+
+/// Returns a tool table of CAMotics with each shape.
+pub(crate) fn camotics() -> Value {
+    let tool = |units: &str, shape: &str| {
+        json!({ "units": units, "shape": shape, "length": 30, "diameter": 6, "snub_diameter": 2,
+            "description": shape })
+    };
+    json!({ "1": tool("metric", "cylindrical"), "2": tool("metric", "conical"),
+        "3": tool("imperial", "ballnose"), "4": tool("imperial", "snubnose") })
+}
+
+/// Returns a FreeCAD bit of a shape with these parameters, written `Name=value unit`, beside the usual ones.
+pub(crate) fn bit(shape: &str, more: &[&str]) -> Value {
+    let mut parameters = Map::new();
+    let usual = ["Diameter=6 mm", "Length=50 mm", "CuttingEdgeHeight=20 mm", "ShankDiameter=6 mm"];
+    for text in usual.iter().chain(more) {
+        let (name, value) = text.split_once('=').expect("a name and a value");
+        parameters.insert(name.to_owned(), json!(value));
+    }
+    json!({ "version": 2, "name": shape, "shape": format!("{shape}.fcstd"), "parameter": parameters })
+}
+
+/// Shapes of FreeCAD, and the parameters beside the usual ones.
+const BITS: &str = "\
+endmill:
+reamer:
+ballend:
+bullnose: CornerRadius=1.5 mm
+chamfer: TipDiameter=1 mm, CuttingEdgeAngle=60 deg, CuttingEdgeHeight=4 mm
+v-bit: TipDiameter=1 mm, CuttingEdgeAngle=90 deg
+dovetail: NeckDiameter=3 mm, NeckHeight=2 mm, CuttingEdgeAngle=30 deg, CuttingEdgeHeight=3 mm
+drill: TipAngle=118 deg
+tap: TipAngle=90 deg, CuttingEdgeLength=12 mm
+taperedballnose: TaperAngle=8 deg, TaperDiameter=9 mm, ShankDiameter=10 mm
+radius: CuttingRadius=2 mm, TipDiameter=2 mm
+slittingsaw: BladeThickness=2 mm, CapHeight=1 mm, CapDiameter=4 mm, Diameter=30 mm
+probe: ShaftDiameter=3 mm
+thread-mill: NeckDiameter=3 mm, NeckLength=12 mm, Crest=0.1 mm, cuttingAngle=60 deg";
+
+/// Returns a bit of every shape of FreeCAD.
+pub(crate) fn bits() -> Vec<Value> {
+    let bit_of = |line: &str| {
+        let (shape, more) = line.split_once(':').expect("a shape and parameters");
+        let more = more.split(',').map(str::trim).filter(|text| !text.is_empty());
+        bit(shape, &more.collect::<Vec<_>>())
+    };
+    BITS.lines().map(bit_of).collect()
+}
+
+fn fcholder() -> Value {
+    json!({ "version": 1, "name": "nut", "units": "mm", "id": "nut-1",
+        "profile": [[11, 0], [14, 2], [14, 18]] })
+}
+
+const HSM: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
+<tool-library xmlns="http://www.hsmworks.com/xml/2004/cnc/tool-library" guid="library" version="10">
+  <tool guid="a" type="tapered mill" tapered-type="tapered_ball" unit="millimeters" version="1.5">
+    <description>ball &amp; cone</description>
+    <nc diameter-offset="7" length-offset="7" number="7"/>
+    <body diameter="1" corner-radius="0.5" taper-angle="5" flute-length="20" body-length="30"
+      overall-length="50" shaft-diameter="6" shoulder-length="25" number-of-flutes="2"/>
+    <holder guid="h"><section diameter="20" length="0"/><section diameter="25" length="10"/></holder>
+  </tool>
+  <tool guid="b" type="drill" unit="inches" version="1.5">
+    <description>drill</description>
+    <nc number="8"/>
+    <body diameter="0.25" taper-angle="118" flute-length="1" body-length="1.5" overall-length="2.5"
+      shaft-diameter="0.25" shoulder-length="1"/>
+    <shaft><section diameter="0.25" length="0"/><section diameter="0.3" length="0.5"/></shaft>
+  </tool>
+</tool-library>
+"#;
+
+const APT: &str = "PARTNO/CUTTERS
+UNITS/MM
+CUTTER/6.,3.,0.,3.,0.,0.,30.
+LOADTL/1
+CUTTER/10,1.5,3.5,1.5,0,0,40
+LOADTL/2
+TLDATA/MILL,8.0000,0.5000,50.0000,0.0000,0.0000
+LOADTL/3
+TLDATA/DRILL,MILL,5.0000,0.0000,60.0000,118.0000,35.0000
+LOADTL/4
+GOTO/0,0,0
+FINI
+";
