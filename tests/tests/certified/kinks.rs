@@ -3,22 +3,14 @@
 //!
 //! `KINKS=2500 cargo test --release -p touchoff-tests --test certified kinks -- --nocapture` examines 10,000 tools.
 
-use crate::{UP, pose, soup, to_tool};
-use nalgebra::{Point3, Vector3};
+use crate::prelude::*;
+use crate::to_tool;
 use std::fmt::Write;
-use touchoff::certify::{Certifier, PoseVerdict, TriangleBvh, Witness};
-use touchoff::mesh::shapes;
 use touchoff::tool::{
     Circle, Derivatives, EnvelopeSlab, Evaluations, Outputs, PointBatch, ProfileSegment, Surface,
     ToolInfo,
 };
-use touchoff::{Interval, Level, Pose, SurfaceId, Tool, Unit};
-use touchoff_tests::count::case_count;
-use touchoff_tests::fixtures::{cuboid, drawn as compiled};
-use touchoff_tests::oracle::Nearest;
 use touchoff_tests::oracle::restated::Restated;
-use touchoff_tests::oracle::rng::Rng;
-use touchoff_tests::tally::Tally;
 
 /// A tool of which nothing but the profile is known, which is all that the certifier asks for: the compiler divides profiles
 /// into regions, and refuses some of these.
@@ -26,7 +18,7 @@ struct Outlined(ToolInfo);
 
 impl Outlined {
     fn new(tool: &Restated) -> Outlined {
-        let mut info = compiled("0 0; side 1 0; side 0 1", "").info().clone();
+        let mut info = drawn("0 0; side 1 0; side 0 1", "").info().clone();
         let mut names = tool.surfaces.clone();
         names.dedup();
         let surface = |name: &str| names.iter().position(|known| *known == name).expect("it");
@@ -69,7 +61,7 @@ impl Tool for Outlined {
 }
 
 /// Returns the tool of a drawing.
-fn drawn(drawing: String) -> Restated {
+fn restated(drawing: String) -> Restated {
     Restated::drawn("Drawn", drawing.leak(), &[])
 }
 
@@ -79,7 +71,7 @@ fn tapered(rng: &mut Rng) -> Restated {
     let height = rng.between(5.0, 40.0);
     let shift = height * rng.power(-6.0, -2.0) * rng.pick(&[1.0, -1.0]);
     let (top, out) = (flute + height, radius + shift.max(-0.5 * radius));
-    drawn(format!("0 0; face {radius} 0; flute {radius} {flute}; body {out} {top}, 0 {top}"))
+    restated(format!("0 0; face {radius} 0; flute {radius} {flute}; body {out} {top}, 0 {top}"))
 }
 
 /// The same with a groove in its end, so that the profile overhangs.
@@ -87,7 +79,7 @@ fn grooved(rng: &mut Rng) -> Restated {
     let shift = 7.0 * rng.power(-6.0, -2.0) * rng.pick(&[1.0, -1.0]);
     let (low, out) = (rng.between(1.0, 5.0), 20.0 + shift);
     let floor = rng.between(1.0, 6.0);
-    drawn(format!(
+    restated(format!(
         "0 0; face 20 0; rim 20 {low}, {out} 10; top 12 10, 12 {floor}, 6 {floor}, 6 10, 0 10"
     ))
 }
@@ -101,7 +93,7 @@ fn chords(rng: &mut Rng) -> Restated {
         let _ = write!(drawing, "{:.4} {:.4}, ", radius * sin, radius * (1.0 - cos));
     }
     let top = 6.0 * radius;
-    drawn(format!("{}; shank {radius:.4} {top}, 0 {top}", &drawing[..drawing.len() - 2]))
+    restated(format!("{}; shank {radius:.4} {top}, 0 {top}", &drawing[..drawing.len() - 2]))
 }
 
 /// A tip of some hundredths below a shank of 20.
@@ -109,7 +101,7 @@ fn tiny(rng: &mut Rng) -> Restated {
     let (tip, out) = (rng.power(-3.0, -1.0), rng.power(-6.0, -2.0));
     let (low, high) = (10.0 * tip, rng.between(5.0, 20.0));
     let neck = tip + out * high;
-    drawn(format!(
+    restated(format!(
         "0 0; tip {tip} 0; side {tip} {low}, {neck} {high}; shank 20 {high}, 20 60, 0 60"
     ))
 }
@@ -276,7 +268,7 @@ fn a_face_inside_the_part_is_seen_below_a_tapered_rim() {
         let top = 20.0 - taper;
         let drawing =
             format!("0 0; face 20 0; rim 20 3, {top} 10; top 12 10, 12 1, 6 1, 6 10, 0 10");
-        let tool = Outlined::new(&drawn(drawing));
+        let tool = Outlined::new(&restated(drawing));
         let part = shapes::tube(15.5, 16.5, 2.0, 96, 1, Unit::Millimetre).expect("a tube");
         let part = TriangleBvh::new(&part);
         let mut certifier = Certifier::new(&part, &tool).expect("a profile");
@@ -292,10 +284,10 @@ fn a_face_inside_the_part_is_seen_below_a_tapered_rim() {
 /// A tool 5 mm deep in a block, and its body, which begins 7 mm above it.
 #[test]
 fn a_body_above_the_part_is_clear_however_little_it_tapers() {
-    let block = TriangleBvh::new(&cuboid([-100.0, -100.0, -30.0], [100.0, 100.0, 0.0]));
+    let block = TriangleBvh::new(&block([-100.0, -100.0, -30.0], [100.0, 100.0, 0.0]));
     for taper in [1e-6, 1e-4, 0.1, 1.0] {
         let drawing = format!("0 0; face 25 0; flute 25 12; body {} 42, 0 42", 25.0 - taper);
-        let tool = Outlined::new(&drawn(drawing));
+        let tool = Outlined::new(&restated(drawing));
         let mut certifier = Certifier::new(&block, &tool).expect("a profile");
         let pose = pose([0.0, 0.0, -5.0], UP);
         let body = certifier.deepest_on(SurfaceId(2), &pose, 1e-9).expect("a surface");
@@ -306,7 +298,7 @@ fn a_body_above_the_part_is_clear_however_little_it_tapers() {
 /// Beside the acute edge of a dovetail the normal at the nearest point leads to the part.
 #[test]
 fn a_normal_at_an_acute_edge_leads_to_the_nearest_point() {
-    let tool = compiled("0 0; face 8 0; flank 3 6; shank 3 30, 0 30", "");
+    let tool = drawn("0 0; face 8 0; flank 3 6; shank 3 30, 0 30", "");
     let mut rng = Rng::new(3);
     for _ in 0..200 {
         let [angle, away] = [rng.between(-1.2, 1.2), rng.power(-3.0, 0.7)];

@@ -3,16 +3,9 @@
 //!
 //! `PIECES=10000 cargo test --release -p touchoff-tests --test certified pieces -- --nocapture` examines 10,000 tools.
 
-use crate::verdicts::moved;
-use crate::{block, motion, to_tool};
-use nalgebra::{Point3, Vector3};
+use crate::prelude::*;
+use crate::to_tool;
 use std::fmt::Write;
-use touchoff::certify::{Certifier, MotionVerdict, PoseVerdict, TriangleBvh, Witness};
-use touchoff::tool::Interpreted;
-use touchoff::{Interval, Mesh, Pose, SurfaceId};
-use touchoff_tests::count::case_count;
-use touchoff_tests::oracle::rng::Rng;
-use touchoff_tests::tally::Tally;
 
 const QUERIES: &str = "queries";
 const CLEAR: &str = "clear";

@@ -1,19 +1,13 @@
 //! Small cases that need one part of the certifier's reasoning in full: without it, the answer is wrong. Expected numbers are
 //! worked out by hand.
 
+use crate::prelude::*;
 use crate::supports::REGIONS;
-use crate::{UP, block, motion, plate, pose, soup};
-use nalgebra::Vector3;
-use touchoff::certify::{Certifier, PoseVerdict, Trajectory, TriangleBvh};
-use touchoff::tool::Interpreted;
-use touchoff::{Interval, Mesh, SurfaceId};
-use touchoff_tests::fixtures::drawn;
+use touchoff::certify::Trajectory;
 
 /// Returns the depth of a part in a tool that stands upright at the origin.
 fn depth(tool: &Interpreted, part: &Mesh) -> Interval {
-    let bvh = TriangleBvh::new(part);
-    let mut certifier = Certifier::new(&bvh, tool).expect("a profile");
-    certifier.deepest(&pose([0.0; 3], UP), 1e-9).depth
+    certifier_of(part, tool).deepest(&pose([0.0; 3], UP), 1e-9).depth
 }
 
 /// A cup's cone from (1, 4) to (4, 0); the outside has a corner half way up. Of the part, (3, 1.8) is deepest: 0.8·2 - 0.6·2.2 from
@@ -44,9 +38,8 @@ fn a_rim_above_a_dish_is_as_deep_as_its_circle() {
 #[test]
 fn a_piece_beside_the_middle_of_an_arc_is_found_inside() {
     let tool = drawn("0 0; face 25.6 0.8; nose 39.2 14.4 about 20 20; top 39.2 18, 0 18", "face");
-    let bvh = TriangleBvh::new(&block([-60.0; 3], [60.0; 3]));
     let all = [("face", f64::INFINITY), ("nose", 7.5), ("top", f64::INFINITY)];
-    let certifier = Certifier::new(&bvh, &tool).expect("a profile");
+    let certifier = certifier_of(&block([-60.0; 3], [60.0; 3]), &tool);
     let mut certifier = certifier.with_allowances(all).expect("surfaces");
     let verdict = certifier.check_pose(&pose([0.0; 3], UP));
     assert_eq!(verdict, PoseVerdict::Inside(SurfaceId(1)));
@@ -57,9 +50,8 @@ fn a_piece_beside_the_middle_of_an_arc_is_found_inside() {
 #[test]
 fn a_tool_about_a_thin_rod_is_not_taken_for_clear() {
     let tool: Interpreted = REGIONS.parse().expect("a tool");
-    let bvh = TriangleBvh::new(&block([-1e-3, -1e-3, -50.0], [1e-3, 1e-3, 50.0]));
     let all = [("ball", f64::INFINITY), ("shank", 1.0 - 1e-9)];
-    let certifier = Certifier::new(&bvh, &tool).expect("a bounded depth");
+    let certifier = certifier_of(&block([-1e-3, -1e-3, -50.0], [1e-3, 1e-3, 50.0]), &tool);
     let mut certifier = certifier.with_allowances(all).expect("surfaces");
     assert_eq!(certifier.check_pose(&pose([0.0; 3], UP)), PoseVerdict::Undecided(0.0));
 }
@@ -67,13 +59,12 @@ fn a_tool_about_a_thin_rod_is_not_taken_for_clear() {
 /// A flat end and a ball that just touch: rounding would decide on the direction from a point to itself.
 #[test]
 fn the_normal_at_a_contact_without_depth_is_that_of_the_tool() {
-    let bvh = TriangleBvh::new(&plate());
     for drawing in
         ["0 0; face 3 0; flute 3 20; top 0 20", "0 0; ball 3 3 about 0 3; top 3 20, 0 20"]
     {
         let tool = drawn(drawing, "");
-        let mut certifier = Certifier::new(&bvh, &tool).expect("a profile");
-        let found = certifier.clearance(&pose([1.0, 2.0, 0.0], UP), 1e-9);
+        let at = pose([1.0, 2.0, 0.0], UP);
+        let found = certifier_of(&plate(), &tool).clearance(&at, 1e-9);
         let normal = found.on_tool.expect("a point").normal;
         assert!((normal + Vector3::z()).norm() < 1e-6, "{drawing}: {normal}");
     }

@@ -269,11 +269,11 @@ impl Slice {
         }
     }
 
-    /// Returns whether the slice has negligible width.
+    /// Returns whether the slice has negligible width, however different its normals' lengths.
     pub(super) fn is_thin(&self, section: &Section<'_>) -> bool {
-        let feet = [0.0, 1.0].map(|fraction| self.foot_at(section, fraction).foot);
-        let far_ends = [0.0, 1.0].map(|fraction| self.far_end_at(section, fraction));
-        let width = |[a, b]: [Point; 2]| norm(minus(a, b));
-        width(feet).max(width(far_ends)) < 1e-10 * section.size
+        let ends = [0.0, 1.0].map(|fraction| self.foot_at(section, fraction));
+        let radius = self.radius(section, 0.0).max(self.radius(section, 1.0));
+        let width = |radius: f64| norm(minus(ends[0].at(radius), ends[1].at(radius)));
+        width(0.0).max(width(radius)) < 1e-10 * section.size
     }
 }
