@@ -143,18 +143,23 @@ impl Certifier<'_> {
             state,
             sweeper,
         };
-        match check.first(depths) {
+        let undecided_from = match check.first(depths) {
             Some(FirstContact::At(at, witness)) => return MotionVerdict::Touching(at, witness),
-            Some(FirstContact::Undecided(at)) => return MotionVerdict::Undecided(at),
-            None => {}
-        }
-        // A tool inside the material is at some distance from its surface, too: margins come last.
+            Some(FirstContact::Undecided(0.0)) => return MotionVerdict::Undecided(0.0),
+            Some(FirstContact::Undecided(at)) => Some(at),
+            None => None,
+        };
+        // Where no triangle shows it, a piece of the tool may be inside the material. It is then at some distance from its surface,
+        // too: margins come last.
         let clear = match setting.containment(core_points, &motion.pose(0.0), tolerance) {
             Containment::Inside(surface) => return MotionVerdict::Inside(surface),
             Containment::Undecided => return MotionVerdict::Undecided(0.0),
             Containment::Outside => MotionVerdict::Clear,
             Containment::Unknown => MotionVerdict::SurfaceOnly,
         };
+        if let Some(at) = undecided_from {
+            return MotionVerdict::Undecided(at);
+        }
         match check.first(margins) {
             Some(FirstContact::At(at, witness)) => MotionVerdict::Near(at, witness),
             Some(FirstContact::Undecided(at)) => MotionVerdict::Undecided(at),
@@ -357,8 +362,9 @@ impl MotionSearch<'_, '_> {
         let first = match deepest {
             Some(peak) => peak,
             None => match self.sweep(allowed, self.tolerance, self.budget) {
-                None => return self.within(),
-                Some(SweepEnd::Spent { at }) => return MotionDepth::Undecided(at),
+                None => return self.within(MotionDepth::Within),
+                Some(SweepEnd::Spent { at: 0.0 }) => return MotionDepth::Undecided(0.0),
+                Some(SweepEnd::Spent { at }) => return self.within(MotionDepth::Undecided(at)),
                 Some(SweepEnd::Deeper { at, pose, best }) => {
                     let witness = self.setting.witness(&best, &pose);
                     let depth = Interval::new(allowed, allowed + self.tolerance);
@@ -430,12 +436,13 @@ impl MotionSearch<'_, '_> {
         self.sweeper.run(&task, budget)
     }
 
-    /// Returns the result if no triangle is too deep.
-    fn within(&mut self) -> MotionDepth {
+    /// Returns the result if no triangle is too deep, or none up to where they are undecided: that of the triangles, unless the
+    /// motion begins inside the material.
+    fn within(&mut self, by_triangles: MotionDepth) -> MotionDepth {
         let MotionSearch { setting, motion, tolerance, .. } = *self;
         match setting.containment(self.core_points, &motion.pose(0.0), tolerance) {
             Containment::Inside(_) => MotionDepth::Inside,
-            Containment::Outside | Containment::Unknown => MotionDepth::Within,
+            Containment::Outside | Containment::Unknown => by_triangles,
             Containment::Undecided => MotionDepth::Undecided(0.0),
         }
     }

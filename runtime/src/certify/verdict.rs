@@ -130,7 +130,7 @@ pub enum PoseVerdict {
     /// restricted interior is the whole tool, or the points that are deeper than the allowance of their nearest
     /// surface. Holds a surface of that piece.
     Inside(SurfaceId),
-    /// Rounding decides, or the budget is spent: no point of the part is deeper than is allowed, or nearer than a margin if no
+    /// Rounding decides, or the budget is spent: no point of a triangle is deeper than is allowed, or nearer than a margin if no
     /// point is deeper, by more than this, in the part's unit. It is 0 if the open question is whether the tool is inside the
     /// material. Where depth or the inside is undecided, nothing is said of margins.
     Undecided(f64),
@@ -246,8 +246,8 @@ pub enum MotionDepth {
         /// The point with that depth at that time.
         witness: Witness,
     },
-    /// No triangle exceeds the allowance, but a region that the surface owns is inside the material when the motion
-    /// begins.
+    /// No triangle exceeds the allowance, or none that is decided, but a region that the surface owns is inside the material when
+    /// the motion begins.
     Inside,
     /// The budget is spent, or rounding decides. The allowance holds up to this fraction of the motion, from 0 to 1;
     /// the rest is unknown.

@@ -162,15 +162,13 @@ fn every_tool_of_the_library_is_certified() {
 }
 
 #[test]
-fn rejects_a_tool_whose_depth_jumps() {
-    let text = "tool Jump { units mm;
-        region low as body cutting where d <= 2, 0 <= z, z <= 1 { depth: min(z, 2 - d); }
-        region high as body cutting where d <= 2, 1 <= z, z <= 3 { depth: min(3 - z, 2 - d); }
-        niceness cutting: 1; }";
+fn rejects_a_tool_whose_depth_has_no_bound_of_its_slope() {
+    let text = "tool Steep { units mm; tip z = -2; curve ball = 4 - d^2 - z^2;
+        region ball as body cutting where 0 <= ball { depth: sqrt(ball); } niceness cutting: 1; }";
     let tool: Interpreted = text.parse().expect("a tool");
     let bvh = TriangleBvh::new(&plate());
     let error = Certifier::new(&bvh, &tool).expect_err("a refusal").to_string();
-    assert!(error.contains("Jump") && error.contains("profile"), "{error}");
+    assert!(error.contains("Steep") && error.contains("profile"), "{error}");
 }
 
 /// A cube of 2 mm in the notch of the bracket. Its distance from the bracket's boxes is known by hand.
@@ -254,4 +252,26 @@ fn the_bound_of_a_motion_is_not_below_a_steep_depth() {
     let path = motion(&pose([-4.5, 0.0, 0.0], UP), &pose([3.5, 0.0, 0.0], UP));
     let (.., max_depth) = deeper(certifier.motion_depth(SurfaceId(0), &path, 0.0, 1e-3));
     assert!((9.0..9.5).contains(&max_depth), "{max_depth}");
+}
+
+/// One ball is in the block, another on its way into it: with whatever budget, no part of the way is called clear.
+#[test]
+fn a_piece_inside_is_told_where_another_is_undecided() {
+    let tool: Interpreted = "tool Twin { units mm; tip z = 0;
+        curve a = hypot(d, z - 1) - 1; curve b = hypot(d, z - 11) - 2;
+        region low as low cutting where a <= 0 { depth: -a; }
+        region high as high where b <= 0 { depth: -b; } niceness cutting: 1; }"
+        .parse()
+        .expect("a tool");
+    let mut certifier = certifier_of(&block([-20.0, -20.0, -4.0], [20.0, 20.0, 6.0]), &tool);
+    let path = motion(&pose([0.0; 3], UP), &pose([0.0, 0.0, -4.0], UP));
+    for budget in 0..400 {
+        certifier = certifier.with_budget(budget);
+        let verdict = certifier.check_motion(&path, 1e-3);
+        let is_told = !matches!(verdict, MotionVerdict::Undecided(at) if at > 0.0);
+        assert!(is_told, "{budget}: {verdict:?}");
+        let depth = certifier.motion_depth(SurfaceId(0), &path, 0.0, 1e-3).expect("a surface");
+        let is_told = !matches!(depth, MotionDepth::Undecided(at) if at > 0.0);
+        assert!(is_told, "{budget}: {depth:?}");
+    }
 }

@@ -226,16 +226,21 @@ impl Case {
         (0..400).map(near).collect()
     }
 
-    /// Returns by how much a sampled point of the block is too deep; 0 if none is.
-    fn excess(&self, pose: &Pose, rng: &mut Rng) -> f64 {
+    /// Returns by how much one of some points of the block is too deep; 0 if none is.
+    fn excess(&self, pose: &Pose, points: &[Point3<f64>]) -> f64 {
+        let excess = |p: &Point3<f64>| {
+            let over = self.depths(pose, *p).zip(&self.allowed).map(|(depth, most)| depth - most);
+            over.fold(f64::NEG_INFINITY, f64::max)
+        };
+        points.iter().map(excess).fold(0.0, f64::max)
+    }
+
+    /// Returns samples of the block's faces and of what of the tool is in the block.
+    fn samples(&self, pose: &Pose, rng: &mut Rng) -> Vec<Point3<f64>> {
         let mut points = self.faces(pose, rng);
         let solid = (0..400).map(|_| self.tool_point(pose, rng).1);
         points.extend(solid.filter(|p| self.inside_block(*p) > 0.0));
-        let excess = |p| {
-            let over = self.depths(pose, p).zip(&self.allowed).map(|(depth, most)| depth - most);
-            over.fold(f64::NEG_INFINITY, f64::max)
-        };
-        points.into_iter().map(excess).fold(0.0, f64::max)
+        points
     }
 
     /// Returns bounds of the distance between tool and block: by balls that contain its pieces, and by samples.
@@ -319,11 +324,13 @@ fn examine(case: &Case, rng: &mut Rng, tally: &mut Tally) {
 
         let verdict = case.certifier(&bvh, &tool).check_pose(&pose);
         tally.add(QUERIES, 1);
-        let excess = case.excess(&pose, rng);
+        let excess = case.excess(&pose, &case.samples(&pose, rng));
         let is_false = match &verdict {
             PoseVerdict::Touching(witness) => !case.is_witness(&pose, witness),
             PoseVerdict::Inside(surface) => !case.has_inside(&pose, surface.0, rng),
-            PoseVerdict::Undecided(most) => excess > *most + rounding && *most > 0.0,
+            PoseVerdict::Undecided(most) => {
+                *most > 0.0 && case.excess(&pose, &faces) > *most + rounding
+            }
             _ => excess > rounding,
         };
         tally.see(CLEAR, verdict == PoseVerdict::Clear);
@@ -346,7 +353,8 @@ fn examine(case: &Case, rng: &mut Rng, tally: &mut Tally) {
             MotionVerdict::Inside(_) => 0.0,
             _ => 1.0,
         };
-        let excess = (0..=8).map(|k| case.excess(&at(until * f64::from(k) / 8.0), rng));
+        let times = (0..=8).map(|k| until * f64::from(k) / 8.0);
+        let excess = times.map(|time| case.excess(&at(time), &case.samples(&at(time), rng)));
         let most = if until > 0.0 { excess.fold(0.0, f64::max) } else { 0.0 };
         let is_false = match &verdict {
             MotionVerdict::Touching(time, witness) => !case.is_witness(&at(*time), witness),
