@@ -5,24 +5,35 @@ use nalgebra::{Point3, Vector3};
 use std::error::Error;
 use std::f64::consts::PI;
 use std::fmt::Write;
+use std::sync::LazyLock;
 use touchoff::certify::{Certifier, MotionVerdict, PoseVerdict, TriangleBvh};
 use touchoff::mesh::shapes;
 use touchoff::scenes::{BALL, HEIGHT, INNER, POSES, ScenePath, pose_at_gap};
-use touchoff::{Interval, Mesh, Motion, Pose, Tool, Unit};
+use touchoff::tool::Interpreted;
+use touchoff::{Interval, Mesh, Motion, Pose, SurfaceId, Tool, Unit};
 use touchoff_bench::page::{Page, Section};
 #[cfg(feature = "peers")]
 use touchoff_bench::peers::parry_contact::ParryContact;
 use touchoff_bench::race::clock::{self, Times};
 use touchoff_bench::race::contender::{Answer, Contender};
-use touchoff_tools::{Fig73Exact, Flat};
+use touchoff_tools::{Fig73, Fig73Exact, Flat};
 
 /// Tolerance of certified depths, mm.
 const TOLERANCE: f64 = 1e-9;
 /// Depth in the scenes where many triangles are equally deep, mm.
 const TIED_DEPTH: f64 = 0.1;
 
-/// Names of the methods that return a verdict without a depth.
-const VERDICT_METHODS: [&str; 2] = ["touchoff clear", "touchoff sweep"];
+/// Tolerance of certified distances, and of depths along a motion, mm.
+const COARSE_TOLERANCE: f64 = 1e-3;
+
+/// Names of the methods that return no depth at a pose.
+const OTHER_METHODS: [&str; 5] = [
+    "touchoff clear",
+    "touchoff sweep",
+    "touchoff distance",
+    "touchoff distance by hand",
+    "touchoff motion depth",
+];
 
 /// Times certified depths and the verdicts on poses and motions, on meshes of several sizes.
 #[derive(Args)]
@@ -44,6 +55,7 @@ impl Certified {
                 rows(&mut body, scene, &scene.mesh(*size), self.seconds)?;
             }
         }
+        rows(&mut body, Scene::Kinked, &Scene::Kinked.mesh(2), self.seconds)?;
         Ok(Some(Page {
             name: "certified",
             title: "How long proofs of depth take",
@@ -73,7 +85,16 @@ pub(crate) enum Scene {
     Line,
     /// A flat end mill in a bore of its own diameter, less twice the depth.
     Bore,
+    /// A tool whose body is wider than its flute by a ten thousandth of a millimetre, with its side along two triangles.
+    Kinked,
 }
+
+static KINKED: LazyLock<Interpreted> = LazyLock::new(|| {
+    "tool Kinked { units mm; profile { start (0, 0); line to (6, 0) as face cutting; line to (6, 10) as flute cutting;
+        line to (6.0001, 40) as body; line to (0, 40) as top; } niceness cutting: 1; }"
+        .parse()
+        .expect("a tool")
+});
 
 impl Scene {
     const ALL: [Scene; 8] = [
@@ -94,6 +115,7 @@ impl Scene {
             Scene::Flat => "flat".to_owned(),
             Scene::Line => "line".to_owned(),
             Scene::Bore => "bore".to_owned(),
+            Scene::Kinked => "kinked".to_owned(),
         }
     }
 
@@ -101,6 +123,7 @@ impl Scene {
         match self {
             Scene::Along(_) | Scene::Apart(_) => &Fig73Exact,
             Scene::Flat | Scene::Line | Scene::Bore => &Flat,
+            Scene::Kinked => &*KINKED,
         }
     }
 
@@ -122,7 +145,7 @@ impl Scene {
         };
         match self {
             Scene::Along(_) | Scene::Apart(_) => tube(INNER, HEIGHT),
-            Scene::Flat | Scene::Line => {
+            Scene::Flat | Scene::Line | Scene::Kinked => {
                 shapes::plane(30.0, (root / 2f64.sqrt()).round() as u32, Unit::Millimetre)
             }
             Scene::Bore => tube(6.0 - TIED_DEPTH, 20.0),
@@ -140,7 +163,7 @@ impl Scene {
             Scene::Along(path) => path.pose(k, n),
             Scene::Apart(gap) => pose_at_gap(gap, k, n),
             Scene::Flat => pose_at(Point3::new(x, y, -TIED_DEPTH), Vector3::z()),
-            Scene::Line => {
+            Scene::Line | Scene::Kinked => {
                 let angle = 2.0 * PI * u;
                 let axis = Vector3::new(angle.cos(), angle.sin(), 0.0);
                 pose_at(Point3::new(x, y, 6.0 - TIED_DEPTH), axis)
@@ -204,6 +227,49 @@ impl Contender for MotionCheck<'_> {
     }
 }
 
+/// The distance from the part.
+struct Distance<'a> {
+    name: &'static str,
+    certifier: Certifier<'a>,
+}
+
+impl Contender for Distance<'_> {
+    fn name(&self) -> &'static str {
+        self.name
+    }
+
+    fn query(&mut self, pose: &Pose) -> Answer {
+        let distance = self.certifier.clearance(pose, COARSE_TOLERANCE).distance;
+        Answer { colliding: usize::from(distance.low == 0.0), depth: 0.0, wrench: None }
+    }
+}
+
+/// The depths of all surfaces on a motion by 3 mm, with a turn.
+struct MotionDepths<'a> {
+    certifier: Certifier<'a>,
+    surfaces: usize,
+}
+
+impl Contender for MotionDepths<'_> {
+    fn name(&self) -> &'static str {
+        "touchoff motion depth"
+    }
+
+    fn query(&mut self, pose: &Pose) -> Answer {
+        let up: Vector3<f64> = Vector3::z();
+        let aside = pose.axis().cross(&up);
+        let axis = (pose.axis() + 0.02 * up).normalize();
+        let to = Pose::from_axis(pose.tip() + 3.0 * aside, axis).expect("a unit vector");
+        let motion = Motion::new(pose, &to).expect("axes that are not opposite");
+        let MotionDepths { certifier, surfaces } = self;
+        let found = (0..*surfaces).map(SurfaceId).filter(|surface| {
+            let found = certifier.motion_depth(*surface, &motion, 0.0, COARSE_TOLERANCE);
+            !found.expect("a surface").is_clear()
+        });
+        Answer { colliding: usize::from(found.count() > 0), depth: 0.0, wrench: None }
+    }
+}
+
 /// Times the methods of a scene on a mesh, and adds one row per method.
 fn rows(body: &mut String, scene: Scene, mesh: &Mesh, seconds: f64) -> std::fmt::Result {
     let bvh = TriangleBvh::new(mesh);
@@ -212,6 +278,14 @@ fn rows(body: &mut String, scene: Scene, mesh: &Mesh, seconds: f64) -> std::fmt:
         vec![Box::new(CertifiedDepth(certifier())), Box::new(PoseCheck(certifier()))];
     if let Scene::Apart(_) = scene {
         methods.push(Box::new(MotionCheck(certifier())));
+        let by_hand = Certifier::new(&bvh, &Fig73).expect("a tool that is proved");
+        methods.push(Box::new(Distance { name: "touchoff distance", certifier: certifier() }));
+        let name = "touchoff distance by hand";
+        methods.push(Box::new(Distance { name, certifier: by_hand }));
+    }
+    if let Scene::Kinked = scene {
+        let surfaces = scene.tool().info().surfaces.len();
+        methods.push(Box::new(MotionDepths { certifier: certifier(), surfaces }));
     }
     #[cfg(feature = "peers")]
     if let Scene::Along(_) | Scene::Apart(_) = scene {
@@ -230,7 +304,7 @@ fn rows(body: &mut String, scene: Scene, mesh: &Mesh, seconds: f64) -> std::fmt:
 /// Returns the largest difference between a method's depths and the certified ones, mm. Returns `None` for methods
 /// without a depth.
 fn error(method: &mut dyn Contender, certifier: &mut Certifier<'_>, poses: &[Pose]) -> Option<f64> {
-    if VERDICT_METHODS.contains(&method.name()) {
+    if OTHER_METHODS.contains(&method.name()) {
         return None;
     }
     let sampled = poses.iter().step_by(poses.len() / 50);
@@ -270,8 +344,11 @@ fn introduction() -> String {
         "How deep the part's triangles are in the tool. `touchoff` proves it to {TOLERANCE:e} mm (`Certifier::deepest`), with the tool of
 fig. 7.3 as its profile has it on `outside`, `inside`, `hold` and `apart`, where its ball is that many mm off; `touchoff clear`
 only asks whether anything touches; `touchoff sweep` whether it stays clear on a way of 1 mm, the ball's radius, along the wall, in
-half of the poses swung by 0.1 rad the while. In `flat`, `line` and `bore` a square end mill of 12 mm lies {TIED_DEPTH} mm deep with its end or
-its side in a plate, or in a bore, where a great many triangles are as deep. `parry-contact` is `parry3d`'s `contact` of a compound and
+half of the poses swung by 0.1 rad the while; `touchoff distance` proves the distance to {COARSE_TOLERANCE} mm (`Certifier::clearance`), and `by hand`
+its lower bound alone, of the tool that the thesis writes as regions, `Fig73`. In `flat`, `line` and `bore` a square end mill of 12 mm lies {TIED_DEPTH} mm deep with its end or
+its side in a plate, or in a bore, where a great many triangles are as deep. In `kinked` the body of such a mill
+is 0.0001 mm wider than its flute 30 mm above, and `touchoff motion depth` bounds the depth of each surface (`Certifier::motion_depth`) on a way of 3 mm
+along two triangles. `parry-contact` is `parry3d`'s `contact` of a compound and
 the triangle mesh, without sweeps and without a proof; of convex shapes it takes the way out of one, which in `hold` is another depth.
 **In contact** is the part of the poses at which something is inside, **error** the largest distance of a depth from the proved one, in mm,
 and of the proved one the width of its interval.
