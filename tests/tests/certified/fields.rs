@@ -214,17 +214,19 @@ fn the_distance_of_an_edge_from_a_region_is_not_below_its_interval() {
     }
 }
 
+/// Two balls that do not touch.
+const TWIN: &str = "tool Twin { units mm; tip z = 0;
+    curve a = hypot(d, z - 1) - 1; curve b = hypot(d, z - 11) - 2;
+    region low as low cutting where a <= 0 { depth: -a; }
+    region high as high where b <= 0 { depth: -b; } niceness cutting: 1; }";
+
 /// Two balls of one tool: each that is inside the part is found.
 #[test]
 fn every_piece_of_a_tool_of_several_pieces_is_located() {
-    let two_regions = "tool Twin { units mm; tip z = 0;
-        curve a = hypot(d, z - 1) - 1; curve b = hypot(d, z - 11) - 2;
-        region low as low cutting where a <= 0 { depth: -a; }
-        region high as high where b <= 0 { depth: -b; } niceness cutting: 1; }";
     let one_region = "tool Twin { units mm; tip z = 0; curve a = 3 - hypot(d, abs(z - 10) - 7);
         region balls as balls cutting where a >= 0 { depth: a; } niceness cutting: 1; }";
     for (text, balls) in
-        [(two_regions, [[0.0, 2.0], [9.0, 13.0]]), (one_region, [[0.0, 6.0], [14.0, 20.0]])]
+        [(TWIN, [[0.0, 2.0], [9.0, 13.0]]), (one_region, [[0.0, 6.0], [14.0, 20.0]])]
     {
         let tool: Interpreted = text.parse().expect("a tool");
         for (k, [low, high]) in balls.into_iter().enumerate() {
@@ -257,12 +259,7 @@ fn the_bound_of_a_motion_is_not_below_a_steep_depth() {
 /// One ball is in the block, another on its way into it: with whatever budget, no part of the way is called clear.
 #[test]
 fn a_piece_inside_is_told_where_another_is_undecided() {
-    let tool: Interpreted = "tool Twin { units mm; tip z = 0;
-        curve a = hypot(d, z - 1) - 1; curve b = hypot(d, z - 11) - 2;
-        region low as low cutting where a <= 0 { depth: -a; }
-        region high as high where b <= 0 { depth: -b; } niceness cutting: 1; }"
-        .parse()
-        .expect("a tool");
+    let tool: Interpreted = TWIN.parse().expect("a tool");
     let mut certifier = certifier_of(&block([-20.0, -20.0, -4.0], [20.0, 20.0, 6.0]), &tool);
     let path = motion(&pose([0.0; 3], UP), &pose([0.0, 0.0, -4.0], UP));
     for budget in 0..400 {

@@ -203,7 +203,7 @@ fn compare(subject: &Subject, rng: &mut Rng, tally: &mut Tally) {
         let mut certifier =
             new().with_allowances(names.zip(allowed.iter().copied())).expect("surfaces");
         let verdict = certifier.check_pose(&pose);
-        // How much deeper than allowed a point is, or how much nearer than a margin.
+        // The excess of a point's depth over what is allowed, or of a margin over its distance.
         let excess = |p: &[f64; 3]| {
             let of_surface = |surface: SurfaceId| {
                 let allowed = allowed[surface.0];

@@ -1,4 +1,4 @@
-//! What most modules of these tests use.
+//! Imports of most modules of these tests.
 
 pub(crate) use crate::brute::BruteForce;
 pub(crate) use crate::verdicts::{certifier, certifier_of, deeper, moved, touching, triangles};

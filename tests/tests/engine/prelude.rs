@@ -1,4 +1,4 @@
-//! What most modules of these tests use.
+//! Imports of most modules of these tests.
 
 pub(crate) use nalgebra::{Point3, UnitQuaternion, Vector3};
 pub(crate) use touchoff::tool::Interpreted;

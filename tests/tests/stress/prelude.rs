@@ -1,4 +1,4 @@
-//! What most modules of these tests use.
+//! Imports of most modules of these tests.
 
 pub(crate) use crate::scene::{PointSet, Scene, format_pose, pose, random_pose};
 pub(crate) use crate::truth::Subject;
