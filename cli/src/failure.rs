@@ -30,6 +30,7 @@ impl Failure {
         match self {
             Failure::Usage(_)
             | Failure::IsInput { .. }
+            | Failure::SameOutput { .. }
             | Failure::Refused { .. }
             | Failure::MeshForJob { .. }
             | Failure::Find(FindError::Several { .. } | FindError::Numbers { .. })
@@ -224,6 +225,9 @@ pub(crate) enum Failure {
         /// The input that is the same file.
         input: String,
     },
+    /// Two outputs are one file.
+    #[error("`{output}` is named for two outputs: write one of them to another file")]
+    SameOutput { output: String },
     /// A file could not be written.
     #[error("cannot write `{file}`: {}", cause(source))]
     Unwritable { file: String, source: std::io::Error },

@@ -27,7 +27,7 @@ impl LoadedTool {
     pub(crate) fn load(name: &OsStr, arguments: &ToolArguments) -> Result<LoadedTool, Failure> {
         let params = &arguments.params;
         if let Some(library) = &arguments.library {
-            let tool = in_library(name, library, true, |file| load_file(file, params))?;
+            let tool = in_library(name, library, params, true, load_file)?;
             return Ok(LoadedTool::File(Box::new(tool)));
         }
         if Path::new(name).extension().is_some_and(|extension| extension == "tool") {
@@ -62,7 +62,7 @@ impl AsRef<dyn Tool> for LoadedTool {
 pub(crate) fn compile_named(name: &OsStr, arguments: &ToolArguments) -> Result<Compiled, Failure> {
     let params = &arguments.params;
     if let Some(library) = &arguments.library {
-        return in_library(name, library, false, |file| compile_quietly(file, params));
+        return in_library(name, library, params, false, compile_quietly);
     }
     if Path::new(name).extension().is_some_and(|extension| extension == "tool") {
         return compile_quietly(Path::new(name), params);
@@ -108,14 +108,18 @@ pub(crate) fn source_files(name: &str) -> Result<SourceFiles, Failure> {
 fn in_library<R>(
     name: &OsStr,
     library: &Path,
+    params: &ParamArguments,
     notes: bool,
-    read: impl FnOnce(&Path) -> Result<R, Failure>,
+    read: impl FnOnce(&Path, &ParamArguments) -> Result<R, Failure>,
 ) -> Result<R, Failure> {
     if library.is_dir() {
-        return read(&find_in_folder(library, name)?);
+        return read(&find_in_folder(library, name)?, params);
     }
     let name = name.to_string_lossy();
-    let imported = Library::read(library)?;
+    let imported = match params.root() {
+        Some(root) => Library::read_within(library, root)?,
+        None => Library::read(library)?,
+    };
     let folder = tempfile::tempdir()?;
     let tool = imported.select(&name)?;
     let tool_file = tool.write_to(folder.path())?;
@@ -124,7 +128,8 @@ fn in_library<R>(
             message!("warning: {}: {note}", Escaped(tool.entry.label()));
         }
     }
-    read(&tool_file)
+    // What it mounts is in the temporary folder.
+    read(&tool_file, &params.without_root())
 }
 
 /// Returns a built-in tool by its name.

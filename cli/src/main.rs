@@ -29,9 +29,14 @@ mod verify;
 
 use arguments::{Arguments, Command};
 use std::process::ExitCode;
+use std::time::Duration;
 
 fn main() -> ExitCode {
-    let Arguments { command, json } = Arguments::read();
+    end_when_memory_is_used_up();
+    let Arguments { command, json, max_time } = Arguments::read();
+    if let Some(seconds) = max_time {
+        end_after(seconds);
+    }
     // A program that could not be checked must not look like one with findings.
     let min_status = match command {
         Command::Verify(_) | Command::Report(_) => verify::NOT_CHECKED,
@@ -64,6 +69,45 @@ fn main() -> ExitCode {
     };
     result.unwrap_or_else(|failure| fail(&failure, min_status))
 }
+
+/// The exit status of a command that had no time or no memory left.
+const OUT_OF_RESOURCES: i32 = 2;
+
+/// Ends the program after a time. What it does then, a proof or the reader of a file, need not be able to stop.
+fn end_after(seconds: f64) {
+    std::thread::spawn(move || {
+        // A time too long for a duration does not pass.
+        std::thread::sleep(Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX));
+        message!(
+            "error: not done after {seconds} s (`--max-time`): allow more time, or ask for less"
+        );
+        std::process::exit(OUT_OF_RESOURCES);
+    });
+}
+
+/// Ends the program with a status of its own, and not by a signal, when the system refuses memory: the library aborts then.
+#[cfg(unix)]
+#[expect(
+    unsafe_code,
+    reason = "handlers of signals are the system's, and what one may call is for its author to ensure"
+)]
+fn end_when_memory_is_used_up() {
+    extern "C" fn end(_: libc::c_int) {
+        const MESSAGE: &[u8] =
+            b"error: the system has no more memory for the program: allow more, or ask for less\n";
+        // SAFETY: a handler may call both, and the bytes are those of the message.
+        unsafe {
+            libc::write(libc::STDERR_FILENO, MESSAGE.as_ptr().cast(), MESSAGE.len());
+            libc::_exit(OUT_OF_RESOURCES);
+        }
+    }
+    let end: extern "C" fn(libc::c_int) = end;
+    // SAFETY: the handler has the signature that the system calls.
+    unsafe { libc::signal(libc::SIGABRT, end as libc::sighandler_t) };
+}
+
+#[cfg(not(unix))]
+fn end_when_memory_is_used_up() {}
 
 /// Reports a failure, and returns its exit status, which is `min_status` or higher.
 fn fail(failure: &failure::Failure, min_status: u8) -> ExitCode {

@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 use touchoff::{AtomicFile, EscapedLines};
 use touchoff_dsl::diagnostic::Diagnostic;
 use touchoff_dsl::source::{Source, Sources};
+use touchoff_import::Library;
 
 /// A writer to standard output.
 ///
@@ -145,22 +146,28 @@ pub(crate) fn unwritable(file: &Path, source: io::Error) -> Failure {
     Failure::Unwritable { file: file.display().to_string(), source }
 }
 
-/// Refuses outputs that are inputs, before anything is written. Files are compared, not names, so that links are
-/// found; files that a tool's file mounts are inputs too.
+/// Refuses outputs that are inputs or one another, before anything is written. Files are compared, not names, so that links are
+/// found; what an input lists is an input too ([`listed`]).
 ///
 /// # Errors
-/// [`Failure::IsInput`] for the first of them.
+/// [`Failure::IsInput`] or [`Failure::SameOutput`] for the first of them.
 pub(crate) fn refuse_inputs<'a>(
     outputs: impl IntoIterator<Item = &'a Path>,
     inputs: impl IntoIterator<Item = &'a Path>,
 ) -> Result<(), Failure> {
+    let outputs: Vec<&Path> = outputs.into_iter().collect();
+    for (index, output) in outputs.iter().enumerate() {
+        if outputs[..index].iter().any(|other| other == output || is_same_file(other, output)) {
+            return Err(Failure::SameOutput { output: output.display().to_string() });
+        }
+    }
     // A file that does not exist yet is no input.
     let outputs: Vec<&Path> = outputs.into_iter().filter(|output| output.is_file()).collect();
     if outputs.is_empty() {
         return Ok(());
     }
     for input in inputs {
-        for read in std::iter::once(input.to_owned()).chain(mounted(input)) {
+        for read in std::iter::once(input.to_owned()).chain(listed(input)) {
             if let Some(output) = outputs.iter().find(|output| is_same_file(output, &read)) {
                 let [output, input] = [*output, &read].map(|file| file.display().to_string());
                 return Err(Failure::IsInput { output, input });
@@ -170,14 +177,30 @@ pub(crate) fn refuse_inputs<'a>(
     Ok(())
 }
 
-/// Returns the files that a tool's file mounts, as far as they can be read.
-fn mounted(tool: &Path) -> Vec<PathBuf> {
-    if tool.extension().is_none_or(|extension| extension != "tool") {
-        return Vec::new();
+/// Returns the files that are read for an input, as far as they can be: those that a tool's file mounts, those that a tool library
+/// lists, and all tools of a folder with its list of numbers.
+fn listed(input: &Path) -> Vec<PathBuf> {
+    if let Ok(entries) = std::fs::read_dir(input) {
+        let files: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
+        let mounted = files.iter().filter(|file| !file.is_dir()).flat_map(|file| listed(file));
+        return mounted.chain(files.iter().cloned()).collect();
     }
-    let Ok(source) = Source::read(tool) else { return Vec::new() };
-    let compiled = touchoff_dsl::compile(&source);
-    compiled.sources.all().iter().filter_map(|source| source.path().map(Path::to_owned)).collect()
+    match extension(input).as_deref() {
+        Some("tool") => {
+            let Ok(source) = Source::read(input) else { return Vec::new() };
+            let compiled = touchoff_dsl::compile(&source);
+            compiled
+                .sources
+                .all()
+                .iter()
+                .filter_map(|source| source.path().map(Path::to_owned))
+                .collect()
+        }
+        Some("fctl") => {
+            Library::read(input).map_or(Vec::new(), |library| library.listed_files().to_vec())
+        }
+        _ => Vec::new(),
+    }
 }
 
 /// Returns whether two paths lead to the same existing regular file.

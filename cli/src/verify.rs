@@ -3,7 +3,7 @@
 use crate::arguments::{CheckArguments, ParamArguments, ToolArguments, Verify};
 use crate::failure::Failure;
 use crate::loaded_tool::{LoadedTool, compile_named};
-use crate::output::{Output, extension, unreadable, write_file};
+use crate::output::{Output, extension, refuse_inputs, write_file};
 use crate::part;
 use crate::program::{print_approach, print_ignored, warn_of_cutter};
 use crate::progress::Progress;
@@ -12,12 +12,11 @@ use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use touchoff::Shard;
 use touchoff::certify::TriangleBvh;
 use touchoff_dsl::Compiled;
 use touchoff_verify::job::{
-    CutStock, Hand, JobError, JobInputs, JobShard, JobShardError, JobStock, JobTools, NO_INSIDE,
-    NamedTool, Severity, StockEntry, StockShape,
+    CutStock, Hand, JobInputs, JobStock, JobTools, NO_INSIDE, NamedTool, Severity, StockEntry,
+    StockShape,
 };
 use touchoff_verify::machine::Machine;
 use touchoff_verify::{GapWeight, Job, JobFile, JobReport, Program, ToolSelection, Verdict};
@@ -28,13 +27,23 @@ pub(crate) const NOT_CHECKED: u8 = 2;
 /// A job and the files that it names, read.
 pub(crate) type Inputs = JobInputs<LoadedTool>;
 
-/// Reads program, tools, part, fixtures and stock of a job, and prints what is noteworthy about them.
+/// Reads program, tools, part, fixtures and stock of a job, and prints what is noteworthy about them. `outputs` are the files
+/// that the command writes, beside those of the job; `other_inputs` are the job's own file and what else the command reads.
 ///
 /// # Errors
-/// If one of them cannot be read, or they do not fit.
-pub(crate) fn read(file: JobFile) -> Result<Inputs, Failure> {
+/// If one of them cannot be read, or they do not fit, or if an output is an input.
+pub(crate) fn read(
+    file: JobFile,
+    outputs: &[&Path],
+    other_inputs: &[&Path],
+) -> Result<Inputs, Failure> {
     let inputs =
         JobInputs::read::<Failure>(file, |named| LoadedTool::load(&named.name, &arguments(named)))?;
+    let outputs = outputs.iter().copied().chain(inputs.file.outputs().map(|(_, file)| file));
+    refuse_inputs(outputs, {
+        let files = inputs.files().into_iter().map(|(_, file)| file);
+        other_inputs.iter().copied().chain(files)
+    })?;
     for (named, loaded) in &inputs.tools {
         let info = loaded.tool().info();
         if let Some(line) = inputs.program.check_tool(named.motions, info, inputs.file.unit)? {
@@ -84,7 +93,14 @@ pub(crate) fn job_file(
         {
             return Err(Failure::MeshForJob { file: file.display().to_string() });
         }
-        let mut job = JobFile::read(&file)?;
+        let ToolArguments { library, params } = options.params;
+        let (set, root) = params.into_parts();
+        if !set.is_empty() || library.is_some() {
+            return Err(Failure::Usage(
+                "a job file states its tools with their params: leave out `--tools` and `--set`",
+            ));
+        }
+        let mut job = JobFile::read(&file, root.as_deref())?;
         // Options go before the file; leniency holds if either states it.
         job.control = options.control.or(job.control);
         job.resolution = options.resolution.or(job.resolution);
@@ -113,6 +129,7 @@ pub(crate) fn job_file(
         (None, None) => return Err(missing),
     };
     Ok(JobFile {
+        root: None,
         part,
         unit,
         program,
@@ -149,15 +166,11 @@ pub(crate) fn check<'a>(job: &'a Job<'_>, json: bool) -> Result<JobReport<'a>, F
 
 /// Checks a program, and returns the exit status.
 pub(crate) fn verify(arguments: Verify, json: bool) -> Result<ExitCode, Failure> {
-    let inputs = read(job_file(arguments.job, arguments.part, arguments.check)?)?;
+    let Verify { job, part, check: options, sarif } = arguments;
+    let file = job_file(job.clone(), part, options)?;
+    let inputs = read(file, sarif.as_deref().as_slice(), job.as_deref().as_slice())?;
     let job = inputs.job();
-    if let Some((shard, file)) = arguments.shard.zip(arguments.output.as_deref()) {
-        return check_shard(&job, shard, file, json);
-    }
-    let report = match arguments.checked.is_empty() {
-        true => check(&job, json)?,
-        false => check_joined(&job, &arguments.checked, json)?,
-    };
+    let report = check(&job, json)?;
     let mut out = Output::rows();
     for finding in report.findings() {
         if json {
@@ -178,52 +191,10 @@ pub(crate) fn verify(arguments: Verify, json: bool) -> Result<ExitCode, Failure>
     }
     out.flush()?;
     print(&inputs, &report)?;
-    if let Some(file) = arguments.sarif {
+    if let Some(file) = sarif {
         write_file(&file, serde_json::to_vec_pretty(&report.sarif())?)?;
     }
     Ok(exit(report.verdict()))
-}
-
-/// Checks the motions of a shard, and writes in which tasks there are findings.
-///
-/// # Errors
-/// As for [`Job::check_shard`], and if the file cannot be written.
-fn check_shard(job: &Job<'_>, shard: Shard, file: &Path, json: bool) -> Result<ExitCode, Failure> {
-    let progress = Progress::steps(job.motion_checks(), "motions", json);
-    let found = job.check_shard(shard, &|count| progress.advance(count))?;
-    drop(progress);
-    write_file(file, serde_json::to_vec(&found)?)?;
-    let tasks = found.tasks_with_findings();
-    let mut out = Output::lines();
-    match json {
-        true => out.json(
-            &serde_json::json!({ "shard": shard.to_string(), "tasks_with_findings": tasks }),
-        )?,
-        false => writeln!(out, "shard {shard}: findings in {tasks} tasks of 32 motions")?,
-    }
-    out.flush()?;
-    Ok(ExitCode::SUCCESS)
-}
-
-/// Checks a job whose shards were checked before.
-///
-/// # Errors
-/// As for [`Job::check_joined`], and if a file cannot be read.
-fn check_joined<'a>(
-    job: &'a Job<'_>,
-    files: &[PathBuf],
-    json: bool,
-) -> Result<JobReport<'a>, Failure> {
-    let mut shards: Vec<(String, JobShard)> = Vec::new();
-    for file in files {
-        let bytes = touchoff::read_regular_file(file).map_err(|source| unreadable(file, source))?;
-        let name = file.display().to_string();
-        let shard = serde_json::from_slice(&bytes);
-        let damaged = |_| JobError::from(JobShardError::Damaged { file: name.clone() });
-        shards.push((name.clone(), shard.map_err(damaged)?));
-    }
-    let progress = Progress::steps(job.motion_checks(), "motions", json);
-    Ok(job.check_joined(&shards, &|count| progress.advance(count))?)
 }
 
 /// Returns the exit status of a verdict.
@@ -284,7 +255,7 @@ pub(crate) fn print(inputs: &Inputs, report: &JobReport<'_>) -> Result<(), Failu
         message!("{summary}");
     }
     if let (Some(cut), Some(entry)) = (report.cut(), &inputs.file.stock) {
-        print_stock(cut, entry, &inputs.bodies[0].bvh)?;
+        print_stock(cut, entry, &inputs.bodies[0].bvh, report.verdict())?;
     }
     if report.is_surface_only() {
         message!("{NO_INSIDE}; only its surface was checked");
@@ -293,7 +264,12 @@ pub(crate) fn print(inputs: &Inputs, report: &JobReport<'_>) -> Result<(), Failu
 }
 
 /// Prints what remains of the stock, and writes it as an STL file and its deviations from the part as CSV or PLY if asked to.
-fn print_stock(cut: &CutStock, entry: &StockEntry, part: &TriangleBvh) -> Result<(), Failure> {
+fn print_stock(
+    cut: &CutStock,
+    entry: &StockEntry,
+    part: &TriangleBvh,
+    verdict: Verdict,
+) -> Result<(), Failure> {
     let stock = &cut.stock;
     let comparison = stock.compare(part)?;
     message!(
@@ -304,6 +280,14 @@ fn print_stock(cut: &CutStock, entry: &StockEntry, part: &TriangleBvh) -> Result
         cut.farthest("most over the part", comparison.greatest_excess()),
         cut.farthest("most cut from the part", comparison.deepest_gouge()),
     );
+    // What remains after a program that was not verified is not known.
+    if verdict == Verdict::None {
+        let files = [&entry.output, &entry.map].into_iter().flatten();
+        files.for_each(|file| {
+            message!("not written: {}, as the program was not verified", file.display())
+        });
+        return Ok(());
+    }
     if let Some(output) = &entry.output {
         let mut bytes = Vec::new();
         stock.remaining_mesh()?.write_stl(&mut bytes)?;

@@ -10,7 +10,7 @@
 
 use super::entry::{Entry, Note};
 use super::shape::{Cutter, Shape};
-use super::{Found, Problem};
+use super::{Found, MAX_TOOLS, Problem};
 use std::collections::HashSet;
 use touchoff::Unit;
 
@@ -49,6 +49,10 @@ pub(super) fn read(text: &str) -> Result<Vec<Found>, String> {
     // A `$` continues a statement in the next line.
     let mut continued = String::new();
     for (index, line) in text.lines().enumerate() {
+        // The library is refused then.
+        if found.len() > MAX_TOOLS {
+            break;
+        }
         // NX also writes `TLDATA` into comments, for controls that do not know it.
         let code = line.split_once("$$").map_or(line, |(code, _)| code).trim();
         if let Some((part, _)) = code.split_once('$') {

@@ -7,7 +7,7 @@
 use super::entry::{Entry, Note};
 use super::json::{Object, number_of, string};
 use super::shape::{Cutter, Shape};
-use super::{Found, Problem};
+use super::{Found, MAX_TOOLS, Problem};
 use serde_json::Value;
 use touchoff::Unit;
 
@@ -22,7 +22,7 @@ pub(super) fn read(table: &Object) -> Vec<Found> {
     let mut tools: Vec<(u32, &Value)> =
         table.iter().filter_map(|(key, tool)| Some((key.parse().ok()?, tool))).collect();
     tools.sort_by_key(|(number, _)| *number);
-    tools.into_iter().map(|(number, tool)| read_tool(number, tool)).collect()
+    tools.into_iter().take(MAX_TOOLS + 1).map(|(number, tool)| read_tool(number, tool)).collect()
 }
 
 fn read_tool(number: u32, value: &Value) -> Found {

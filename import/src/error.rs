@@ -14,14 +14,6 @@ pub enum ImportError {
         /// The cause.
         source: std::io::Error,
     },
-    /// The file is longer than the limit.
-    #[error("{} is larger than {limit} bytes, more than any tool library: name a tool library", .file.display())]
-    TooLarge {
-        /// The file.
-        file: PathBuf,
-        /// The limit, in bytes.
-        limit: u64,
-    },
     /// Neither the name's ending nor the content is that of a format that can be read.
     #[error(
         "{} is none of the formats that can be read: Fusion 360 (`.json`, `.tools`), Kiri:Moto (`.json`), \

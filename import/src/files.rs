@@ -236,7 +236,14 @@ const MAX_NAME: usize = 48;
 
 /// Gives each tool and file a name of its own.
 #[derive(Debug, Default)]
-struct Names(BTreeSet<String>);
+struct Names {
+    given: BTreeSet<String>,
+    /// The number that tells the next of equal names apart.
+    next: BTreeMap<String, usize>,
+}
+
+/// Names of devices on Windows, which no file may have, whatever its ending.
+const DEVICES: [&str; 6] = ["con", "prn", "aux", "nul", "com", "lpt"];
 
 impl Names {
     /// Returns the words of a label as a file name without ending, such as `d6_ball_er16`, different from all
@@ -245,14 +252,24 @@ impl Names {
         let name = snake(label);
         let name = if name.is_empty() { snake(otherwise) } else { name };
         let name = if name.is_empty() { "tool".to_owned() } else { name };
+        let name = if is_device(&name) { format!("tool_{name}") } else { name };
         let mut unique = name.clone();
-        let mut k = 2;
-        while !self.0.insert(unique.clone()) {
-            unique = format!("{name}_{k}");
-            k += 1;
+        let next = self.next.entry(name.clone()).or_insert(2);
+        while !self.given.insert(unique.clone()) {
+            unique = format!("{name}_{next}");
+            *next += 1;
         }
         unique
     }
+}
+
+/// Returns whether a name is that of a device: one of [`DEVICES`], of which the last two have a digit.
+fn is_device(name: &str) -> bool {
+    let (word, numbered) = match name.strip_suffix(|c: char| c.is_ascii_digit()) {
+        Some(word) => (word, true),
+        None => (name, false),
+    };
+    DEVICES.iter().position(|known| *known == word).is_some_and(|known| numbered == (known >= 4))
 }
 
 /// Returns the ASCII letters and digits of a label, in lower case and joined by `_`.

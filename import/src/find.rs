@@ -3,10 +3,9 @@
 use super::{ImportedTool, Library};
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
-use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
-use touchoff::AtomicFile;
+use touchoff::{AtomicFile, FileKind, is_within, read_text_file};
 
 /// A reason for which no tool is selected, or no number is listed.
 #[derive(thiserror::Error)]
@@ -31,6 +30,14 @@ pub enum FindError {
         file: String,
         /// The tools, each in backquotes.
         tools: Vec<String>,
+    },
+    /// The file of a tool lies outside the folder of tools.
+    #[error("{file} is outside the folder of tools {folder}: name it as a file, or copy it there")]
+    Outside {
+        /// The file.
+        file: String,
+        /// The folder.
+        folder: String,
     },
     /// The list of numbers in a folder is refused.
     #[error("{file}: {message}")]
@@ -94,19 +101,30 @@ impl Library {
 pub fn find_in_folder(folder: &Path, name: &OsStr) -> Result<PathBuf, FindError> {
     let file = folder.join(name);
     if file.is_file() {
-        return Ok(file);
+        return within(folder, file);
     }
     // A file with the tool's name goes before a number of the list.
     let file = file.with_extension("tool");
     let name = name.to_string_lossy().to_ascii_uppercase();
     match read_numbers(folder)?.get(&name).map(Vec::as_slice) {
-        Some([listed]) if !file.is_file() => Ok(folder.join(listed)),
+        Some([listed]) if !file.is_file() => within(folder, folder.join(listed)),
         Some(several) if !file.is_file() => Err(FindError::Several {
             name,
             file: folder.display().to_string(),
             tools: several.iter().map(|tool| format!("`{tool}`")).collect(),
         }),
-        _ => Ok(file),
+        _ => within(folder, file),
+    }
+}
+
+/// Returns the file of a tool of a folder, which must lie within it: a list or a link can be a stranger's.
+fn within(folder: &Path, file: PathBuf) -> Result<PathBuf, FindError> {
+    match is_within(&file, folder) {
+        true => Ok(file),
+        false => Err(FindError::Outside {
+            file: file.display().to_string(),
+            folder: folder.display().to_string(),
+        }),
     }
 }
 
@@ -139,7 +157,7 @@ pub fn write_numbers(folder: &Path, tools: &[&ImportedTool]) -> Result<(), FindE
 fn read_numbers(folder: &Path) -> Result<Numbers, FindError> {
     let path = folder.join(NUMBERS);
     let file = path.display().to_string();
-    match fs::read_to_string(&path) {
+    match read_text_file(&path, FileKind::Settings) {
         Ok(text) => toml::from_str(&text)
             .map_err(|error| FindError::Numbers { file, message: error.message().to_owned() }),
         // A folder of tools without numbers has no list.

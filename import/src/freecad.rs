@@ -4,12 +4,12 @@
 //! point or a comma. A bit whose shape was changed by its user cannot be told from one of FreeCAD's own.
 
 use super::entry::{Entry, Holder, Note, Section, Stated};
-use super::json::{Object, pair, string, tool_number};
+use super::json::{self, Object, pair, string, tool_number};
 use super::shape::{Cutter, Shape};
-use super::{Found, Problem, bytes, text};
+use super::{Found, MAX_TOOLS, Problem, bytes, text};
 use serde_json::Value;
 use std::path::{Component, Path, PathBuf};
-use touchoff::Unit;
+use touchoff::{FileKind, Unit, is_within};
 
 /// Reads a tool bit.
 pub(super) fn bit(content: &str) -> Result<Vec<Found>, String> {
@@ -17,17 +17,55 @@ pub(super) fn bit(content: &str) -> Result<Vec<Found>, String> {
     Ok(vec![read_bit(&bit, None)])
 }
 
-/// Reads a library and the bits that it lists, which are in its folder or in `Bit` beside it.
-pub(super) fn library(content: &str, file: &Path) -> Result<Vec<Found>, String> {
-    let library = object(content)?;
-    let tools = library.get("tools").and_then(Value::as_array).ok_or("there is no list `tools`")?;
-    let folder = file.parent().unwrap_or(Path::new(""));
-    Ok(tools.iter().map(|tool| listed_bit(tool, folder)).collect())
+/// A library with the bits that it lists.
+pub(super) struct ListedBits {
+    pub(super) found: Vec<Found>,
+    /// The files of the bits.
+    pub(super) files: Vec<PathBuf>,
 }
 
-fn listed_bit(tool: &Value, folder: &Path) -> Found {
-    let path = tool.get("path").and_then(Value::as_str).unwrap_or("");
-    let number = tool.get("nr").and_then(tool_number);
+/// Reads a library and the bits that it lists, which are in its folder or in `Bit` beside it, and within `root`.
+pub(super) fn library(
+    content: &str,
+    file: &Path,
+    root: Option<&Path>,
+) -> Result<ListedBits, String> {
+    let library = object(content)?;
+    let tools = library.get("tools").and_then(Value::as_array).ok_or("there is no list `tools`")?;
+    if tools.len() > MAX_TOOLS {
+        return Err(format!("it lists more than {MAX_TOOLS} tools"));
+    }
+    let folder = file.parent().unwrap_or(Path::new(""));
+    let mut files = Vec::new();
+    // One file can be listed many times.
+    let max_bytes = FileKind::Library.max_bytes();
+    let mut read_bytes = 0;
+    let found = tools.iter().map(|tool| {
+        let bit = find_bit(tool, folder, root)?;
+        let problem = |reason: String| Problem::new(listed_name(tool), &reason);
+        let content = bytes(&bit).map_err(|error| problem(error.to_string()))?;
+        files.push(bit);
+        read_bytes += content.len() as u64;
+        if read_bytes > max_bytes {
+            let reason =
+                format!("the bits before it and this one are longer than {max_bytes} bytes");
+            return Err(problem(reason));
+        }
+        let bit = text(&content).and_then(|text| object(&text)).map_err(problem)?;
+        read_bit(&bit, tool.get("nr").and_then(tool_number))
+    });
+    let found = found.collect();
+    Ok(ListedBits { found, files })
+}
+
+/// Returns the name of a bit in the list of a library.
+fn listed_name(tool: &Value) -> &str {
+    tool.get("path").and_then(Value::as_str).unwrap_or("")
+}
+
+/// Returns the file of a bit.
+fn find_bit(tool: &Value, folder: &Path, root: Option<&Path>) -> Result<PathBuf, Problem> {
+    let path = listed_name(tool);
     let problem = |reason: String| Problem::new(path, &reason);
     let relative = Path::new(path);
     // A library must not read files elsewhere.
@@ -39,14 +77,13 @@ fn listed_bit(tool: &Value, folder: &Path) -> Found {
         folder.join("../Bit").join(relative),
         folder.join("Bit").join(relative),
     ];
-    let Some(file) = places.iter().find(|place| place.is_file()) else {
+    let is_readable =
+        |place: &PathBuf| place.is_file() && root.is_none_or(|root| is_within(place, root));
+    places.into_iter().find(is_readable).ok_or_else(|| {
         let reason =
             "there is no such file in the library's folder, `Bit` or `../Bit`: copy it there";
-        return Err(problem(reason.to_owned()));
-    };
-    let content = bytes(file).map_err(|error| problem(error.to_string()))?;
-    let bit = text(&content).and_then(|text| object(&text)).map_err(problem)?;
-    read_bit(&bit, number)
+        problem(reason.to_owned())
+    })
 }
 
 /// Reads a holder.
@@ -325,9 +362,8 @@ impl Parameters<'_> {
 }
 
 fn object(content: &str) -> Result<Object, String> {
-    match serde_json::from_str(content) {
-        Ok(Value::Object(object)) => Ok(object),
-        Ok(_) => Err("it is no JSON object".to_owned()),
-        Err(error) => Err(error.to_string()),
+    match json::parse(content)? {
+        Value::Object(object) => Ok(object),
+        _ => Err("it is no JSON object".to_owned()),
     }
 }

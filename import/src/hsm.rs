@@ -6,7 +6,7 @@
 //! length, so that the first one is the lower end.
 
 use super::json::Object;
-use super::{Found, fusion};
+use super::{Found, MAX_TOOLS, fusion};
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 use serde_json::{Value, json};
@@ -63,6 +63,8 @@ pub(super) fn read(text: &str) -> Result<Vec<Found>, String> {
         let at = |error: &dyn std::fmt::Display| format!("byte {position}: {error}");
         match reader.read_event().map_err(|error| at(&error))? {
             Event::Eof => break,
+            // The library is refused then.
+            _ if found.len() > MAX_TOOLS => break,
             Event::Start(element) => {
                 let name = local_name(&element);
                 match (name.as_str(), &mut open) {

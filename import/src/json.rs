@@ -4,6 +4,23 @@ use serde_json::{Map, Value};
 
 pub(super) type Object = Map<String, Value>;
 
+/// The memory that the values of a text may take, in bytes.
+const MAX_MEMORY: usize = 640 << 20;
+
+/// Returns the value of a text.
+///
+/// # Errors
+/// If it is no JSON, or its values would take much memory, which few bytes can ask for.
+pub(super) fn parse(text: &str) -> Result<Value, String> {
+    // An object takes at least a node of a tree, and a value 32 bytes in a list that may have grown to twice its length.
+    let count = |wanted: &[u8]| text.bytes().filter(|byte| wanted.contains(byte)).count();
+    let memory = 700 * count(b"{") + 64 * count(b",[");
+    if memory > MAX_MEMORY {
+        return Err(format!("its values may take {} MiB of memory: split it", memory >> 20));
+    }
+    serde_json::from_str(text).map_err(|error| error.to_string())
+}
+
 /// Returns the object of a key, if there is one.
 pub(super) fn object<'a>(value: &'a Object, key: &str) -> Result<Option<&'a Object>, String> {
     match value.get(key) {

@@ -47,12 +47,11 @@ use entry::reason;
 use files::Writer;
 use serde_json::Value;
 use std::fs;
-use std::io::Read as _;
+use std::io::{self, Read as _};
 use std::path::{Path, PathBuf};
 use touchoff::tool::Interpreted;
+use touchoff::{FileKind, read_regular_file};
 
-/// The largest file that is read, and the largest text that an archive may hold, in bytes.
-const MAX_BYTES: u64 = 64 << 20;
 /// The largest number of tools in a library.
 const MAX_TOOLS: usize = 20_000;
 
@@ -62,6 +61,7 @@ pub struct Library {
     file: PathBuf,
     tools: Vec<ImportedTool>,
     skipped: Vec<Skipped>,
+    listed_files: Vec<PathBuf>,
 }
 
 /// A tool of a library, with its files.
@@ -100,23 +100,48 @@ impl Library {
         Library::parse(file, &bytes(file)?)
     }
 
+    /// Reads a tool library like [`Library::read`], and lists as missing what lies outside a folder, with links followed: for
+    /// a library that a stranger has chosen.
+    ///
+    /// # Errors
+    /// As for [`Library::read`].
+    pub fn read_within(file: &Path, root: &Path) -> Result<Library, ImportError> {
+        Library::parse_within(file, &bytes(file)?, Some(root))
+    }
+
     /// Reads a tool library from the content of a file. The name gives the format by its ending, and the folder of the
     /// files that a FreeCAD `.fctl` lists.
     ///
     /// # Errors
     /// If the content is not in the format.
     pub fn parse(file: &Path, content: &[u8]) -> Result<Library, ImportError> {
+        Library::parse_within(file, content, None)
+    }
+
+    fn parse_within(
+        file: &Path,
+        content: &[u8],
+        root: Option<&Path>,
+    ) -> Result<Library, ImportError> {
+        let mut listed_files = Vec::new();
         let ending = file.extension().map(|ending| ending.to_ascii_lowercase());
         let ending = ending.as_deref().and_then(|ending| ending.to_str()).unwrap_or("");
         let (format, found) = match ending {
             "json" | "camotics" => (
                 "a tool library of Fusion 360, Kiri:Moto or CAMotics",
-                text(content).and_then(|t| json(&t)),
+                text(content).and_then(|t| json_tools(&t)),
             ),
-            "tools" => ("a Fusion 360 tool library", unzipped(content).and_then(|t| json(&t))),
+            "tools" => {
+                ("a Fusion 360 tool library", unzipped(content).and_then(|t| json_tools(&t)))
+            }
             "fctb" => ("a FreeCAD tool bit", text(content).and_then(|t| freecad::bit(&t))),
             "fctl" => {
-                ("a FreeCAD tool library", text(content).and_then(|t| freecad::library(&t, file)))
+                let bits = text(content).and_then(|t| freecad::library(&t, file, root));
+                let found = bits.map(|bits| {
+                    listed_files = bits.files;
+                    bits.found
+                });
+                ("a FreeCAD tool library", found)
             }
             "fcholder" => {
                 ("a FreeCAD tool holder", text(content).and_then(|t| freecad::holder(&t)))
@@ -139,13 +164,18 @@ impl Library {
         if found.len() > MAX_TOOLS {
             return Err(ImportError::TooManyTools { file: file.to_owned(), limit: MAX_TOOLS });
         }
-        Ok(Library::of(file, found))
+        Ok(Library { listed_files, ..Library::of(file, found) })
     }
 
     fn of(file: &Path, found: Vec<Found>) -> Library {
         let source = file.file_name().map(|name| name.to_string_lossy()).unwrap_or_default();
         let mut writer = Writer::default();
-        let mut library = Library { file: file.to_owned(), tools: Vec::new(), skipped: Vec::new() };
+        let mut library = Library {
+            file: file.to_owned(),
+            tools: Vec::new(),
+            skipped: Vec::new(),
+            listed_files: Vec::new(),
+        };
         for (index, found) in found.into_iter().enumerate() {
             let position = index + 1;
             match found {
@@ -173,6 +203,11 @@ impl Library {
     /// Returns the tools that have a shape, in the library's order.
     pub fn tools(&self) -> &[ImportedTool] {
         &self.tools
+    }
+
+    /// Returns the further files that it was read from: the bits that a FreeCAD library lists.
+    pub fn listed_files(&self) -> &[PathBuf] {
+        &self.listed_files
     }
 
     /// Returns the tools that were left out.
@@ -209,11 +244,11 @@ impl ImportedTool {
         for ToolFile { path, text } in &self.files {
             let file = folder.join(path);
             let unwritable = |source| ImportError::Unwritable { file: file.clone(), source };
-            match fs::read(&file) {
+            match read_regular_file(&file, FileKind::Library) {
                 // Tools share files of holders, and a library can be imported again.
                 Ok(known) if known == text.as_bytes() => continue,
-                Ok(_) => return Err(ImportError::Exists { file }),
-                Err(_) => {}
+                Err(error) if error.kind() == io::ErrorKind::NotFound => {}
+                Ok(_) | Err(_) => return Err(ImportError::Exists { file }),
             }
             if let Some(parent) = file.parent() {
                 fs::create_dir_all(parent).map_err(unwritable)?;
@@ -235,17 +270,10 @@ impl ImportedTool {
     }
 }
 
-/// Reads a file, up to the limit.
+/// Reads a file.
 fn bytes(file: &Path) -> Result<Vec<u8>, ImportError> {
-    let mut content = Vec::new();
-    // A byte beyond the limit tells a file that is longer.
-    fs::File::open(file)
-        .and_then(|opened| opened.take(MAX_BYTES + 1).read_to_end(&mut content))
-        .map_err(|source| ImportError::Unreadable { file: file.to_owned(), source })?;
-    if content.len() as u64 > MAX_BYTES {
-        return Err(ImportError::TooLarge { file: file.to_owned(), limit: MAX_BYTES });
-    }
-    Ok(content)
+    read_regular_file(file, FileKind::Library)
+        .map_err(|source| ImportError::Unreadable { file: file.to_owned(), source })
 }
 
 /// Decodes a text by its byte-order mark; without one it has to be UTF-8.
@@ -259,8 +287,8 @@ fn text(content: &[u8]) -> Result<String, String> {
 }
 
 /// Reads the tools of a JSON text; their keys tell which program wrote it.
-fn json(text: &str) -> Result<Vec<Found>, String> {
-    let value: Value = serde_json::from_str(text).map_err(|error| error.to_string())?;
+fn json_tools(text: &str) -> Result<Vec<Found>, String> {
+    let value = json::parse(text)?;
     if kiri::is_tool(&value) {
         return Ok(vec![kiri::tool(&value)]);
     }
@@ -273,8 +301,10 @@ fn json(text: &str) -> Result<Vec<Found>, String> {
         _ => value.get("data").or_else(|| value.get("tools")).and_then(Value::as_array),
     };
     let tools = tools.ok_or("there is no list of tools, neither `data` nor `tools`")?;
+    // One more tells a library that is refused.
     Ok(tools
         .iter()
+        .take(MAX_TOOLS + 1)
         .map(|tool| if kiri::is_tool(tool) { kiri::tool(tool) } else { fusion::tool(tool) })
         .collect())
 }
@@ -288,9 +318,11 @@ fn unzipped(content: &[u8]) -> Result<String, String> {
         .ok_or("the archive has no `.json` file")?;
     let file = archive.by_index(json).map_err(|error| error.to_string())?;
     let mut content = Vec::new();
-    file.take(MAX_BYTES + 1).read_to_end(&mut content).map_err(|error| error.to_string())?;
-    if content.len() as u64 > MAX_BYTES {
-        return Err(format!("its content is larger than {MAX_BYTES} bytes"));
+    let max_bytes = FileKind::Library.max_bytes();
+    // A byte beyond the limit tells a text that is longer.
+    file.take(max_bytes + 1).read_to_end(&mut content).map_err(|error| error.to_string())?;
+    if content.len() as u64 > max_bytes {
+        return Err(format!("its content is larger than {max_bytes} bytes"));
     }
     text(&content)
 }

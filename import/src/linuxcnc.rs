@@ -4,7 +4,7 @@
 //! are in the machine's unit, which it does not state. LinuxCNC skips a line that it cannot read, such as the heading
 //! of tables before its version 2.4.
 
-use super::{Found, Problem};
+use super::{Found, MAX_TOOLS, Problem};
 
 /// Reads the tools of a table. None has a shape.
 ///
@@ -17,6 +17,10 @@ pub(super) fn read(text: &str) -> Result<Vec<Found>, String> {
         let (words, comment) = line.split_once(';').unwrap_or((line, ""));
         if words.trim().is_empty() {
             continue;
+        }
+        // The library is refused then.
+        if found.len() > MAX_TOOLS {
+            break;
         }
         let problem = match number(words) {
             Ok(number) => {

@@ -178,6 +178,34 @@ fn the_same_library_gives_the_same_files() {
 }
 
 #[test]
+fn tools_have_names_that_every_system_takes() {
+    let named = |name: &str| {
+        let mut tool = fusion("flat end mill", &json!({}));
+        tool["description"] = name.into();
+        tool
+    };
+    let names = ["con", "NUL", "com1", "lpt9", "com10", "console", "com", "tool_con"];
+    let tools: Vec<Value> = names.map(named).into();
+    let text = json!({ "data": tools }).to_string();
+    let library = Library::parse("l.json".as_ref(), text.as_bytes()).expect("a library");
+    let paths: Vec<String> = library.tools().iter().map(super::ImportedTool::path).collect();
+    let expected =
+        ["tool_con", "tool_nul", "tool_com1", "tool_lpt9", "com10", "console", "com", "tool_con_2"];
+    assert_eq!(paths, expected.map(|name| format!("{name}.tool")));
+}
+
+/// Values of few bytes take much memory.
+#[test]
+fn a_text_whose_values_do_not_fit_into_memory_is_refused() {
+    for value in ["{}", "0", "[]", "{\"a\":0}"] {
+        let count = (12 << 20) / value.len();
+        let text = format!("{{\"data\":[{}{value}]}}", format!("{value},").repeat(count));
+        let error = Library::parse("l.json".as_ref(), text.as_bytes()).expect_err("too many");
+        assert!(error.to_string().contains("memory: split it"), "{error}");
+    }
+}
+
+#[test]
 fn entries_without_a_solid_are_left_out_with_the_reason() {
     let reason = |tool: &Value| library(tool).skipped()[0].reason.clone();
     assert!(reason(&fusion("laser cutter", &json!({}))).contains("no solid"));

@@ -109,19 +109,20 @@ fn table(key: &str, entries: &Bound<'_, PyDict>) -> PyResult<toml::Table> {
     entries.collect()
 }
 
-/// Checks a job: `keys` has those of a job file, whose paths are relative to the folder of `path`, or `path` is a job file.
-/// Returns the result as JSON.
+/// Checks a job: `keys` has those of a job file, whose paths are relative to the folder of `path`, or `path` is a job file, whose
+/// inputs lie within `root`. Returns the result as JSON.
 #[pyfunction]
-#[pyo3(signature = (path, keys))]
+#[pyo3(signature = (path, keys, root))]
 pub(crate) fn check_job(
     py: Python<'_>,
     path: PathBuf,
     keys: Option<Bound<'_, PyDict>>,
+    root: Option<PathBuf>,
 ) -> PyResult<String> {
     let keys = keys.map(|keys| table("", &keys)).transpose()?;
     let checked: Result<String, CheckError> = py.detach(|| {
         let file = match keys {
-            None => JobFile::read(&path)?,
+            None => JobFile::read(&path, root.as_deref())?,
             Some(keys) => {
                 let text =
                     toml::to_string(&keys).map_err(|error| CheckError::Keys(error.to_string()))?;
@@ -129,7 +130,8 @@ pub(crate) fn check_job(
             }
         };
         let inputs = JobInputs::read::<CheckError>(file, |named| {
-            Ok(LoadedTool::named(&named.name, named.library.as_deref(), &named.params)?)
+            let (library, root) = (named.library.as_deref(), named.root.as_deref());
+            Ok(LoadedTool::named(&named.name, library, &named.params, root)?)
         })?;
         let job = inputs.job();
         let report = on_all_cores(|| job.check(&|_| ()))??;

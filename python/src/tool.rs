@@ -32,7 +32,11 @@ pub(crate) enum LoadedTool {
 
 /// The text of a tool.
 pub(crate) enum ToolText {
-    File(PathBuf),
+    File {
+        path: PathBuf,
+        /// The folder within which the file may mount others, if not its own.
+        root: Option<PathBuf>,
+    },
     Text {
         name: String,
         text: String,
@@ -53,7 +57,13 @@ impl ToolText {
     /// Returns the source to compile. A source is bound to a thread, so it is made where it is needed.
     fn source(&self) -> Result<Source, ToolError> {
         match self {
-            ToolText::File(path) => Interpreted::source(path),
+            ToolText::File { path, root } => {
+                let source = Interpreted::source(path)?;
+                Ok(match root {
+                    Some(root) => source.with_root(root),
+                    None => source,
+                })
+            }
             ToolText::Text { name, text } => Ok(Source::new(name, text)),
             ToolText::Files { own, texts } => {
                 let text = texts.get(own).map_or("", String::as_str);
@@ -83,20 +93,26 @@ impl LoadedTool {
         Ok(LoadedTool::Interpreted { tool, text, params: params.to_vec() })
     }
 
-    /// Loads a tool by the name of a built-in tool, by its file, or from a library.
+    /// Loads a tool by the name of a built-in tool, by its file, or from a library. The files that these name lie within `root`, if
+    /// it is given.
     pub(crate) fn named(
         name: &OsStr,
         library: Option<&Path>,
         params: &[String],
+        root: Option<&Path>,
     ) -> Result<LoadedTool, LoadError> {
         let read = |file: &Path| {
-            LoadedTool::compile(ToolText::File(file.to_owned()), params).map_err(LoadError::Tool)
+            let text = ToolText::File { path: file.to_owned(), root: root.map(Path::to_owned) };
+            LoadedTool::compile(text, params).map_err(LoadError::Tool)
         };
         if let Some(library) = library {
             if library.is_dir() {
                 return read(&find_in_folder(library, name)?);
             }
-            let imported = Library::read(library)?;
+            let imported = match root {
+                Some(root) => Library::read_within(library, root)?,
+                None => Library::read(library)?,
+            };
             let tool = imported.select(&name.to_string_lossy())?;
             return Ok(LoadedTool::imported(tool)?);
         }
@@ -162,7 +178,7 @@ impl Tool {
     /// A built-in tool.
     #[staticmethod]
     fn library(name: &str) -> PyResult<Tool> {
-        Ok(Tool { loaded: LoadedTool::named(name.as_ref(), None, &[])? })
+        Ok(Tool { loaded: LoadedTool::named(name.as_ref(), None, &[], None)? })
     }
 
     /// A tool from its text.
@@ -176,7 +192,8 @@ impl Tool {
     /// A tool from its file.
     #[staticmethod]
     fn load(py: Python<'_>, path: PathBuf, params: Vec<String>) -> PyResult<Tool> {
-        let loaded = py.detach(|| LoadedTool::compile(ToolText::File(path), &params));
+        let loaded =
+            py.detach(|| LoadedTool::compile(ToolText::File { path, root: None }, &params));
         Ok(Tool { loaded: loaded.map_err(tool_error)? })
     }
 

@@ -99,12 +99,17 @@ class Job:
         # The name gives the folder; the file need not exist.
         self._path = os.path.join(_arrays.path("folder", folder), "job.toml")
         self._keys: dict[str, Any] | None = _plain(keys)
+        self._root: str | None = None
 
     @classmethod
-    def load(cls, path: str | os.PathLike[str]) -> Job:
-        """Take a job from its file, which is read by :meth:`check`."""
+    def load(cls, path: str | os.PathLike[str], *, root: str | os.PathLike[str] | None = None) -> Job:
+        """Take a job from its file, which is read by :meth:`check`.
+
+        The file may be a stranger's: it may name files within `root` only, its own folder by default.
+        """
         job = cls.__new__(cls)
         job._path, job._keys = _arrays.path("path", path), None
+        job._root = None if root is None else _arrays.path("root", root)
         return job
 
     def check(self) -> Report:
@@ -116,7 +121,7 @@ class Job:
             If the job or a file that it names cannot be read; the message names the file. A line of a program that is not
             understood is among the refusals, and the program is checked up to there.
         """
-        checked = json.loads(_touchoff.check_job(self._path, self._keys))
+        checked = json.loads(_touchoff.check_job(self._path, self._keys, self._root))
         return Report(
             verdict=checked["verdict"],
             findings=[_finding(row) for row in checked["findings"]],

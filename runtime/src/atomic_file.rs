@@ -44,17 +44,21 @@ enum Sink {
     Direct(File),
 }
 
-/// A temporary file, which is removed when it is dropped.
+/// A file that does not have its name yet.
 #[derive(Debug)]
 struct Temporary {
     file: File,
     path: PathBuf,
+    /// Set if it stays when it is dropped.
+    is_kept: bool,
 }
 
 impl Drop for Temporary {
     fn drop(&mut self) {
-        // After a rename there is no file of that name.
-        let _ = fs::remove_file(&self.path);
+        if !self.is_kept {
+            // After a rename there is no file of that name.
+            let _ = fs::remove_file(&self.path);
+        }
     }
 }
 
@@ -87,6 +91,8 @@ impl Write for AtomicFile {
 /// Prefix and suffix of the names of temporary files.
 const PREFIX: &str = ".touchoff-";
 const SUFFIX: &str = ".tmp";
+/// What follows the name of a file that is kept while it is written.
+const PART_SUFFIX: &str = ".part";
 
 impl AtomicFile {
     /// Begins a file.
@@ -95,7 +101,38 @@ impl AtomicFile {
     /// Fails if the folder does not exist or is not writable, if the target is not writable or is a
     /// folder, and for any other error of the file system.
     pub fn create(path: impl AsRef<Path>) -> io::Result<AtomicFile> {
-        let path = path.as_ref();
+        AtomicFile::begin(path.as_ref(), create_temporary)
+    }
+
+    /// Begins a file of which nothing may be lost, such as a recording: until it is committed, its bytes are in `NAME.part` beside
+    /// the target. That file stays if the value is dropped or the process is killed.
+    ///
+    /// # Errors
+    /// As for [`AtomicFile::create`], and `AlreadyExists` if `NAME.part` is there already.
+    pub fn create_kept(path: impl AsRef<Path>) -> io::Result<AtomicFile> {
+        AtomicFile::begin(path.as_ref(), |target| {
+            let mut path = target.as_os_str().to_owned();
+            path.push(PART_SUFFIX);
+            let path = PathBuf::from(path);
+            match OpenOptions::new().write(true).create_new(true).open(&path) {
+                Ok(file) => Ok(Temporary { file, path, is_kept: true }),
+                Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
+                    let name = path.display();
+                    let reason = format!(
+                        "{name} is there already, from one that was not completed: rename or remove it"
+                    );
+                    Err(io::Error::new(error.kind(), reason))
+                }
+                Err(error) => Err(error),
+            }
+        })
+    }
+
+    /// Begins a file; `make` makes that of its bytes for the target.
+    fn begin(
+        path: &Path,
+        make: impl FnOnce(&Path) -> io::Result<Temporary>,
+    ) -> io::Result<AtomicFile> {
         let direct =
             |file| AtomicFile { out: BufWriter::new(Sink::Direct(file)), target: PathBuf::new() };
         if let Some(stream) = standard_stream(path) {
@@ -112,9 +149,8 @@ impl AtomicFile {
             OpenOptions::new().write(true).open(path)?;
         }
         let target = resolve_links(path)?;
-        let folder = folder_of(&target);
-        remove_abandoned(folder);
-        let temporary = create_temporary(folder)?;
+        remove_abandoned(folder_of(&target));
+        let temporary = make(&target)?;
         if let Some(old) = old {
             copy_permissions(&temporary.file, &old)?;
         }
@@ -208,20 +244,20 @@ fn standard_stream(_: &Path) -> Option<io::Result<File>> {
     None
 }
 
-/// Creates a temporary file in a folder, locked so that no process treats it as abandoned.
-fn create_temporary(folder: &Path) -> io::Result<Temporary> {
+/// Creates a temporary file beside a target, locked so that no process treats it as abandoned.
+fn create_temporary(target: &Path) -> io::Result<Temporary> {
     /// Number of attempts, more than chance and a few other processes require.
     const MAX_ATTEMPTS: usize = 16;
     for _ in 0..MAX_ATTEMPTS {
         // Each `RandomState` has keys of its own, so that an empty hash is a random number.
         let random = RandomState::new().hash_one(());
-        let path = folder.join(format!("{PREFIX}{random:016x}{SUFFIX}"));
+        let path = folder_of(target).join(format!("{PREFIX}{random:016x}{SUFFIX}"));
         let file = match OpenOptions::new().write(true).create_new(true).open(&path) {
             Ok(file) => file,
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => continue,
             Err(error) => return Err(error),
         };
-        let temporary = Temporary { file, path };
+        let temporary = Temporary { file, path, is_kept: false };
         match temporary.file.try_lock() {
             // Another process took the file for abandoned before it was locked, and removes it.
             Err(TryLockError::WouldBlock) => {}

@@ -7,7 +7,7 @@ use crate::check::{CheckGap, MachineProgramError, StepFault, UnknownCause, Verif
 use crate::gcode::{
     ArcFault, CompensationFault, ControlError, ControlFault, ExpressionFault, GcodeFault, NoteKind,
 };
-use crate::job::{FindingRule, JobError, JobFileFault, JobGap, JobShardError, NoVerdict};
+use crate::job::{FindingRule, JobError, JobFileFault, JobGap, NoVerdict};
 use crate::machine::{BodyFault, InverseError, JointError, MachineError, MachineFault};
 use crate::program::{ProgramError, ProgramFault, WriteError};
 use crate::stock::StockError;
@@ -216,7 +216,6 @@ pub(crate) use faults;
 pub const FAMILIES: &[Family] = &[
     JobError::FAMILY,
     JobFileFault::FAMILY,
-    JobShardError::FAMILY,
     StockError::FAMILY,
     VerifyError::FAMILY,
     MachineFault::FAMILY,

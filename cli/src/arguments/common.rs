@@ -14,7 +14,7 @@ pub(crate) struct ParamArguments {
     /// holds for all tools named.
     #[arg(long, value_name = "PARAM=VALUE")]
     set: Vec<String>,
-    /// Folder below which the `.tool` file may mount others [default: its own folder].
+    /// Folder below which the `.tool` file may mount others, and a job may read files [default: its own folder].
     #[arg(long, value_name = "DIR")]
     root: Option<PathBuf>,
 }
@@ -32,6 +32,16 @@ impl ParamArguments {
 
     pub(crate) fn is_empty(&self) -> bool {
         self.set.is_empty()
+    }
+
+    /// Returns the root of mounts and of a library's files.
+    pub(crate) fn root(&self) -> Option<&Path> {
+        self.root.as_deref()
+    }
+
+    /// Returns the values without a root.
+    pub(crate) fn without_root(&self) -> ParamArguments {
+        ParamArguments { set: self.set.clone(), root: None }
     }
 
     /// Returns the values as sources for the compiler.

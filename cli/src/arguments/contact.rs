@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 use nalgebra::Point3;
 use std::ffi::OsString;
 use std::path::PathBuf;
-use touchoff::{Law, Shard, Unit, Weights};
+use touchoff::{Law, Unit, Weights};
 
 #[derive(Args)]
 pub(crate) struct Sample {
@@ -63,16 +63,6 @@ pub(crate) struct Verify {
     /// Write the findings as SARIF 2.1.0, for services of continuous integration.
     #[arg(long, value_name = "OUT.sarif")]
     pub(crate) sarif: Option<PathBuf>,
-    /// Check one part of the motions only, such as 3/8, the third of eight, and write in which of them there are findings,
-    /// for `--checked`.
-    #[arg(long, value_name = "NUMBER/COUNT", requires = "output", conflicts_with = "sarif")]
-    pub(crate) shard: Option<Shard>,
-    /// Output file of `--shard`.
-    #[arg(short, long, value_name = "SHARD.json", requires = "shard")]
-    pub(crate) output: Option<PathBuf>,
-    /// File of a shard that was checked, once per shard: only motions in which one has found something are checked again.
-    #[arg(long, value_name = "SHARD.json", conflicts_with = "shard")]
-    pub(crate) checked: Vec<PathBuf>,
 }
 
 /// The check of a program against a part.
@@ -195,8 +185,8 @@ pub(crate) struct Haptic {
     /// Busy waiting before each cycle, in µs, to cover the system's delay in waking a thread.
     #[arg(long, value_name = "MICROSECONDS", default_value_t = 60, value_parser = count)]
     pub(crate) spin: u64,
-    /// Write every state to a table, which takes its name when the session ends. A full disk is reported at once,
-    /// and the session goes on without the table; the exit status is then 1.
+    /// Write every state to a table, which takes its name when the session ends, and is `FILE.csv.part` until then. A full disk is
+    /// reported at once, and the session goes on without the table; the exit status is then 1.
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) record: Option<PathBuf>,
     /// Posture map, old or new, to which acceptable postures of the session are added.

@@ -27,8 +27,8 @@ Exit status:
   0  success; `verify` without findings, `check` without warnings
   1  failure, or something is wrong: findings of `verify` and `report`, errors of `check`, files that
      `fmt --check` would rewrite
-  2  wrong options, an output that is also an input, a part whose inside is undefined where it is needed, or a
-     program that could not be checked
+  2  wrong options, an output that is also an input, a part whose inside is undefined where it is needed, a
+     program that could not be checked, or no time (`--max-time`) or memory left
   3  `check` only warns; `import` or `export` left a tool out
   130  a signal ended `haptic`
 The status is the same if the reader of the output closes it early. Output that cannot be written, as on a full
@@ -44,6 +44,9 @@ pub(crate) struct Arguments {
     /// `draw` print no rows.
     #[arg(long, global = true)]
     pub(crate) json: bool,
+    /// End with status 2 after this time, in seconds, whatever is left to do.
+    #[arg(long, global = true, value_name = "SECONDS", value_parser = values::positive)]
+    pub(crate) max_time: Option<f64>,
 }
 
 #[derive(Subcommand)]

@@ -12,7 +12,8 @@ use touchoff_postures::{MapError, MapIdentity, PostureMap, Recorder, RecorderSta
 const COLUMNS: &str = "cycle,time_s,device_x,device_y,device_z,device_i,device_j,device_k,tool_x,tool_y,tool_z,\
     tool_i,tool_j,tool_k,force_x,force_y,force_z,torque_x,torque_y,torque_z,depth,contacts,energy_in,energy_stored";
 
-/// A table of all states. The file takes its name when the session is over.
+/// A table of all states. The file takes its name when the session is over, and is `NAME.part` until then, which a killed session
+/// leaves.
 pub(super) struct Table {
     out: AtomicFile,
     file: PathBuf,
@@ -21,7 +22,7 @@ pub(super) struct Table {
 
 impl Table {
     pub(super) fn create(path: &Path, rate: f64) -> Result<Table, Failure> {
-        let created = AtomicFile::create(path).and_then(|mut out| {
+        let created = AtomicFile::create_kept(path).and_then(|mut out| {
             writeln!(out, "{COLUMNS}").and_then(|()| out.flush())?;
             Ok(out)
         });

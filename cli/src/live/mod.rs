@@ -14,7 +14,7 @@ use std::ffi::{OsStr, OsString};
 use std::io::Write;
 use std::net::{Ipv4Addr, TcpListener};
 use std::path::Path;
-use touchoff::Unit;
+use touchoff::{FileKind, Unit, read_regular_file, read_text_file};
 use touchoff_dsl::compile;
 use touchoff_verify::Program;
 use touchoff_verify::gcode::ControlSetup;
@@ -109,7 +109,7 @@ pub(crate) fn live(arguments: &Live, json: bool) -> Result<(), Failure> {
 /// Reads a part's file, after a check that it is a mesh.
 fn read_part(file: &Path, unit: Unit) -> Result<(BeginPart, Vec<u8>), Failure> {
     part::mesh(file, unit, "`touchoff live`")?;
-    let bytes = std::fs::read(file)?;
+    let bytes = read_regular_file(file, FileKind::Geometry)?;
     Ok((BeginPart { name: file_name(file), unit: unit.symbol() }, bytes))
 }
 
@@ -123,11 +123,14 @@ fn read_program(file: &Path, machine: Option<&Path>) -> Result<(BeginProgram, Ve
             let machine = machine.unwrap_or(Path::new(DEFAULT_MACHINE));
             // The page has the machines of the library, by their names.
             let is_file = machine.extension().is_some_and(|extension| extension == "toml");
-            let text = is_file.then(|| std::fs::read_to_string(machine));
+            let text = is_file.then(|| read_text_file(machine, FileKind::Settings));
             Some(BeginMachine { name: file_name(machine), text: text.transpose()? })
         }
     };
-    Ok((BeginProgram { name: file_name(file), machine }, std::fs::read(file)?))
+    Ok((
+        BeginProgram { name: file_name(file), machine },
+        read_regular_file(file, FileKind::Program)?,
+    ))
 }
 
 /// Returns the tools as the page takes them: one for all motions, or each with its number in the program.

@@ -6,7 +6,7 @@ use serde::Serialize;
 use std::io::Write;
 use std::path::Path;
 use touchoff::certify::TriangleBvh;
-use touchoff::{Mesh, Part, Pose, Probe, Sampling, Tool, TriangleId};
+use touchoff::{FileKind, Mesh, Part, Pose, Probe, Sampling, Tool, TriangleId, read_text_file};
 use touchoff_postures::sweep::SweepError;
 use touchoff_postures::{PostureMap, PostureRecord, Validator};
 
@@ -47,7 +47,8 @@ pub(super) fn record(
     tools: &[&dyn Tool],
     json: bool,
 ) -> Result<(), Failure> {
-    let text = std::fs::read_to_string(file).map_err(|source| unreadable(file, source))?;
+    let text =
+        read_text_file(file, FileKind::Program).map_err(|source| unreadable(file, source))?;
     let touched = read(&text, mesh, tools).map_err(|(line, reason)| Failure::Touched {
         file: file.display().to_string(),
         line,

@@ -18,7 +18,7 @@ mod shapes;
 
 use crate::arguments::Report;
 use crate::failure::Failure;
-use crate::output::{extension, file_name, refuse_inputs, unreadable, write_file};
+use crate::output::{extension, file_name, unreadable, write_file};
 use crate::picture::{Heading, Legend, close_up, facets, sheet};
 use crate::postures::map::check_part;
 use crate::progress::Progress;
@@ -34,7 +34,7 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
-use touchoff::Escaped;
+use touchoff::{Escaped, FileKind, read_regular_file};
 use touchoff_postures::PostureMap;
 use touchoff_verify::JobReport;
 use touchoff_verify::job::JobFinding;
@@ -67,14 +67,13 @@ pub(crate) fn report(arguments: Report, json: bool) -> Result<ExitCode, Failure>
     let (job_file, part) =
         if is_job { (Some(subject.clone()), None) } else { (None, Some(subject.clone())) };
     let job = verify::job_file(job_file, part, check)?;
-    let named = job.files().into_iter().map(|(_, file)| file.to_owned());
-    let named: Vec<PathBuf> = named.chain([subject.clone()]).chain(map.clone()).collect();
-    refuse_inputs([&*output], named.iter().map(|file| &**file))?;
+    let others: Vec<PathBuf> = [Some(subject.clone()), map.clone()].into_iter().flatten().collect();
+    let others: Vec<&Path> = others.iter().map(|file| &**file).collect();
     let map = match map {
         Some(file) => Some((PostureMap::read(&file)?, file)),
         None => None,
     };
-    let inputs = verify::read(job)?;
+    let inputs = verify::read(job, &[&output], &others)?;
     if let Some((map, file)) = &map {
         check_part(map, file, &inputs.bodies[0].mesh, &inputs.file.part)?;
     }
@@ -120,7 +119,8 @@ impl InputFile {
     /// [`Failure::Unreadable`].
     fn read(role: String, file: &Path) -> Result<InputFile, Failure> {
         let name = file.display().to_string();
-        let content = std::fs::read(file).map_err(|source| unreadable(file, source))?;
+        let content = read_regular_file(file, FileKind::Geometry)
+            .map_err(|source| unreadable(file, source))?;
         let mut digest = String::new();
         for byte in Sha256::digest(&content) {
             // Writing to a String does not fail.

@@ -131,44 +131,6 @@ fn gaps_and_cycle_times_are_in_the_json() {
     assert!(under.starts_with("under cycle_return"), "{under}");
 }
 
-/// Shards are written to files, and joined to the output of the whole check, byte by byte.
-#[test]
-fn shards_of_a_job_give_its_output() {
-    let mut blocks = "G43 H1\nS900 M3\n".to_owned();
-    for k in 0..300 {
-        let depth = if [150, 151, 190].contains(&k) { -1.0 } else { 3.0 };
-        blocks += &format!("G1 X{} Y{:.1} Z{depth:.1}\n", k % 20 - 10, f64::from(k / 20) - 7.5);
-    }
-    let bench = bench(&blocks);
-    let options = [&LINUXCNC[..], &["--json"]].concat();
-    let whole = verify(&bench, &options);
-    assert_eq!(whole.status.code(), Some(1), "{}", stderr(&whole));
-    let files = [3, 1, 2].map(|number| {
-        let file = bench.place(&format!("{number}-of-3.json"));
-        let shard = format!("{number}/3");
-        let run = verify(&bench, &[&options[..2], &["--shard", &shard, "-o", &file]].concat());
-        assert_eq!(run.status.code(), Some(0), "{}", stderr(&run));
-        assert!(stdout(&run).contains(&format!("shard {shard}: findings in")));
-        file
-    });
-    let joined = |files: &[&String]| {
-        let checked = files.iter().flat_map(|file| ["--checked", file]);
-        verify(&bench, &options.iter().copied().chain(checked).collect::<Vec<_>>())
-    };
-    let all = joined(&files.each_ref());
-    assert_eq!(all.status.code(), Some(1));
-    assert_eq!((stdout(&all), stderr(&all)), (stdout(&whole), stderr(&whole)));
-    let text = std::fs::read_to_string(&files[2]).expect("a shard");
-    for changed in [text.replace("2/3", "3/3"), text[..text.len() / 2].to_owned(), "{}".to_owned()]
-    {
-        let changed = bench.write("changed.json", changed);
-        let refused = joined(&[&files[1], &changed, &files[0]]);
-        assert_eq!(refused.status.code(), Some(2));
-        let said = stderr(&refused);
-        assert!(said.contains("\nerror[J0301]: ") && said.contains("changed.json"), "{said}");
-    }
-}
-
 #[test]
 fn a_number_that_two_tools_of_a_library_have_is_refused() {
     let bench = bench("T1 M6\nS9000 M3\nG43 H1 G0 X-6. Y0. Z20.\nG1 X4. Z1.");

@@ -1,7 +1,8 @@
 //! `touchoff haptic` from the user's side.
 
 use crate::bench::{Bench, rows, stderr, stdout};
-use std::process::Output;
+use std::process::{Output, Stdio};
+use std::time::{Duration, Instant};
 
 fn haptic(bench: &Bench, more: &str) -> Output {
     let inputs = "--part block.stl --unit mm --tool D2Ball --points 5000";
@@ -58,7 +59,7 @@ fn a_session_of_the_hand_is_summarised() {
 #[test]
 fn a_full_disk_is_reported_at_once() {
     use std::io::{BufRead, BufReader};
-    use std::process::{Command, Stdio};
+    use std::process::Command;
     let bench = Bench::new();
     let table = bench.write("record.csv", "old");
     let script = "trap '' XFSZ; ulimit -f 40; exec \"$@\"";
@@ -83,7 +84,36 @@ fn a_full_disk_is_reported_at_once() {
     assert!(lines.last().is_some_and(|line| line.contains("the recording is incomplete")));
     assert_eq!(std::fs::read_to_string(&table).expect("a file"), "old");
     let names = std::fs::read_dir(bench.folder.path()).expect("a folder").count();
-    assert_eq!(names, 3, "something is left behind");
+    assert_eq!(names, 4, "something is left behind");
+    // What was recorded is kept.
+    let part = std::fs::read_to_string(table + ".part").expect("a part");
+    assert!(part.starts_with("cycle,time_s") && part.lines().count() > 10);
+}
+
+/// What a killed session has recorded stays, whatever is written beside it later.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_killed_recording_is_kept() {
+    let bench = Bench::new();
+    let line = "haptic --part block.stl --unit mm --tool D2Ball --points 2000 --duration 60 --record r.csv";
+    let mut child =
+        bench.command(line).stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("it runs");
+    let part = bench.place("r.csv.part");
+    let lines = || std::fs::read_to_string(&part).map_or(0, |text| text.lines().count());
+    let deadline = Instant::now() + Duration::from_secs(60);
+    while lines() < 100 {
+        assert!(Instant::now() < deadline, "nothing is recorded");
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    child.kill().expect("killed");
+    child.wait().expect("it ended");
+    let kept = std::fs::read_to_string(&part).expect("the part");
+    let again = haptic(&bench, "--record r.csv");
+    assert_eq!(again.status.code(), Some(1), "{}", stderr(&again));
+    assert!(stderr(&again).contains("r.csv.part is there already"), "{}", stderr(&again));
+    assert!(haptic(&bench, "--record other.csv").status.success());
+    assert!(bench.touchoff("tools show D2Ball -o d2.tool").status.success());
+    assert_eq!(std::fs::read_to_string(&part).expect("the part"), kept);
 }
 
 #[test]
@@ -120,7 +150,7 @@ fn invalid_devices_are_refused() {
 #[test]
 fn an_interrupted_session_keeps_its_recording() {
     use std::io::{BufRead, BufReader};
-    use std::process::{Command, Stdio};
+    use std::process::Command;
     let bench = Bench::new();
     let inputs = "--part block.stl --unit mm --tool D2Ball --points 2000";
     let line = format!("haptic {inputs} --duration 600 --record record.csv");

@@ -58,14 +58,11 @@ fn script(command: &str, folder: &Path, arguments: &[String]) -> Output {
 
 #[test]
 fn the_action_and_the_hook_verify_jobs() {
-    let jobs: Vec<String> = expected().keys().map(|name| job(name)).collect();
+    let jobs: Vec<String> = expected().keys().map(|name| format!("{name}.toml")).collect();
     let hooks = std::fs::read_to_string(root().join(".pre-commit-hooks.yaml")).expect("hooks");
     let entry = hooks.lines().find_map(|line| line.trim().strip_prefix("entry: "));
-    let action =
-        std::fs::read_to_string(root().join("integrations/github/action.yml")).expect("an action");
-    assert!(action.contains("/../verify-jobs\" \"${{ inputs.sarif }}\" ${{ inputs.jobs }}"));
     for command in [entry.expect("an entry"), "integrations/verify-jobs touchoff-sarif"] {
-        let folder = tempfile::tempdir().expect("a folder");
+        let folder = jobs_folder();
         let output = script(command, folder.path(), &jobs);
         assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
         let files = std::fs::read_dir(folder.path().join("touchoff-sarif")).expect("a folder");
@@ -79,12 +76,90 @@ fn the_action_and_the_hook_verify_jobs() {
         results.sort_unstable();
         assert!(results.len() == 3 && results[1] > 0, "{results:?}");
     }
+    let folder = jobs_folder();
+    let status = |jobs: &[&str]| {
+        let jobs: Vec<String> = jobs.iter().map(|job| (*job).to_owned()).collect();
+        let output = script("integrations/verify-jobs out", folder.path(), &jobs);
+        (output.status.code().expect("a status"), stderr(&output))
+    };
+    assert_eq!(status(&["clean.toml"]).0, 0);
+    assert_eq!(status(&["clean.toml", "none.toml"]).0, 2);
+    let (none, said) = status(&[]);
+    assert!(none == 2 && said.contains("usage"), "{said}");
+}
+
+/// Returns a copy of the folder of jobs.
+fn jobs_folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().expect("a folder");
-    let clean = script("integrations/verify-jobs out", folder.path(), &[job("clean")]);
-    assert_eq!(clean.status.code(), Some(0), "{}", stderr(&clean));
-    let missing =
-        script("integrations/verify-jobs out", folder.path(), &[job("clean"), job("none")]);
-    assert_eq!(missing.status.code(), Some(2), "{}", stderr(&missing));
-    let none = script("integrations/verify-jobs out", folder.path(), &[]);
-    assert!(none.status.code() == Some(2) && stderr(&none).contains("usage"));
+    for file in std::fs::read_dir(root().join("integrations/jobs")).expect("the jobs") {
+        let file = file.expect("a file");
+        std::fs::copy(file.path(), folder.path().join(file.file_name())).expect("copied");
+    }
+    folder
+}
+
+/// Jobs of a stranger, whose names and links the script must not obey.
+#[test]
+#[cfg(unix)]
+fn names_and_links_of_jobs_are_no_commands() {
+    use std::os::unix::fs::symlink;
+    let folder = jobs_folder();
+    let place = |name: &str| folder.path().join(name);
+    for inner in ["a", "a%2Fb.toml.d"] {
+        std::fs::create_dir(place(inner)).expect("a folder");
+    }
+    let text = std::fs::read_to_string(place("shank.toml")).expect("a job");
+    let below = ["bracket.stl", "shank.nc", "mill.tool", "clamp.stl"]
+        .iter()
+        .fold(text.clone(), |text, file| {
+            text.replace(&format!("\"{file}"), &format!("\"../{file}"))
+        });
+    let names = ["-h.toml", "--help", "a b.toml", "$(touch broken).toml", "é.toml", "a-b.toml"];
+    for name in names {
+        std::fs::write(place(name), &text).expect("written");
+    }
+    std::fs::write(place("a/b.toml"), &below).expect("written");
+    // Without an ending it is no job file.
+    let jobs = names.iter().filter(|name| **name != "--help").chain(&["a/b.toml"]);
+    let jobs: Vec<String> = jobs.map(|name| (*name).to_owned()).collect();
+    for job in &jobs {
+        let output =
+            script("integrations/verify-jobs out", folder.path(), std::slice::from_ref(job));
+        assert_eq!(output.status.code(), Some(1), "{job}: {}", stderr(&output));
+    }
+    let help = script("integrations/verify-jobs out", folder.path(), &["--help".to_owned()]);
+    assert_eq!(help.status.code(), Some(2), "{}", stderr(&help));
+    assert!(!place("broken").exists());
+    let count = std::fs::read_dir(place("out")).expect("the findings").count();
+    assert_eq!(count, jobs.len());
+    // A link where findings go is replaced, and one instead of the folder is refused.
+    std::fs::write(place("victim"), "kept").expect("written");
+    let findings = place("out/a-b.toml.sarif");
+    std::fs::remove_file(&findings).expect("removed");
+    symlink("../victim", &findings).expect("a link");
+    let again = script("integrations/verify-jobs out", folder.path(), &["a-b.toml".to_owned()]);
+    assert_eq!(again.status.code(), Some(1), "{}", stderr(&again));
+    assert_eq!(std::fs::read_to_string(place("victim")).expect("read"), "kept");
+    assert!(!findings.is_symlink());
+    symlink("a", place("linked")).expect("a link");
+    let linked = script("integrations/verify-jobs linked", folder.path(), &["a-b.toml".to_owned()]);
+    assert_eq!(linked.status.code(), Some(2), "{}", stderr(&linked));
+    // A program that is not there, or is killed, is no verdict.
+    let mut missing = Command::new(root().join("integrations/verify-jobs"));
+    missing.args(["out", "clean.toml"]).current_dir(folder.path()).env("TOUCHOFF", "./none");
+    assert_eq!(missing.status().expect("bash").code(), Some(2));
+}
+
+/// Text of inputs reaches the shell of the action as variables alone.
+#[test]
+fn the_action_interpolates_no_input_into_a_shell() {
+    let text = std::fs::read_to_string(root().join("integrations/github/action.yml"));
+    let action = text.expect("an action");
+    let mut in_script = false;
+    for line in action.lines() {
+        let key = line.trim_start().trim_start_matches("- ");
+        in_script = key.starts_with("run:") || (in_script && line.starts_with("        "));
+        assert!(!in_script || !line.contains("${{"), "{line}");
+    }
+    assert!(action.contains("bash \"$ACTION/../verify-jobs\" \"$SARIF\" $JOBS"));
 }

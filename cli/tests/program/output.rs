@@ -1,6 +1,6 @@
 //! Outputs that cannot be written, or must not be.
 
-use crate::bench::{Bench, stderr, touchoff};
+use crate::bench::{Bench, TOOL, stderr, touchoff};
 use std::fs;
 use std::io;
 use std::path::Path;
@@ -196,6 +196,91 @@ fn an_output_that_is_an_input_is_refused() {
         assert_eq!(output.status.code(), Some(2), "{line}: {said}");
         assert!(said.contains("is also an input"), "{line}: {said}");
         assert!(output.stdout.is_empty() && content(bench.folder.path()) == kept, "{line}");
+    }
+}
+
+/// Neither what options name nor what a job names may be an input, or another output: not through links, and not what an input
+/// lists.
+#[test]
+fn outputs_of_a_job_are_no_inputs() {
+    let bench = Bench::new();
+    for folder in ["tools", "Bit"] {
+        fs::create_dir(bench.place(folder)).expect("a folder");
+    }
+    bench.write("tools/T1.tool", TOOL);
+    let holder = "tool Holder { units mm; profile { start (0, 0); line to (9, 0), (9, 20), (0, 20) as holder; } }";
+    bench.write("holder.tool", holder);
+    let mounting =
+        TOOL.replace("units mm;", "units mm;\n    mount \"holder.tool\" as holder at 15;");
+    bench.write("mounting.tool", mounting);
+    bench.write("library.fctl", r#"{"tools": [{"nr": 1, "path": "Ball.fctb"}]}"#);
+    let bit = r#"{"shape": "ballend.fcstd", "name": "Ball", "parameter": {"Diameter": "4 mm", "Length": "20 mm",
+        "CuttingEdgeHeight": "10 mm", "ShankDiameter": "4 mm"}}"#;
+    bench.write("Bit/Ball.fctb", bit);
+    bench.write("a.csv", "0,0,3,0,0,1\n1,0,3,0,0,1\n");
+    let job = |tools: &str, more: &str| {
+        let text = format!(
+            "part = \"block.stl\"\nunit = \"mm\"\nprogram = \"a.csv\"\n{tools}\n[stock]\nbox = [[-3, -3, -2], [3, 3, 1]]\n\
+             spacing = 1\n{more}\n"
+        );
+        bench.write("job.toml", text);
+    };
+    let [built_in, mounting, folder, library] = [
+        "[tool.1]\ntool = \"D2Ball\"",
+        "[tool.1]\ntool = \"mounting.tool\"",
+        "tools = \"tools\"",
+        "tools = \"library.fctl\"",
+    ];
+    #[cfg(unix)]
+    std::os::unix::fs::symlink("a.csv", bench.place("link.sarif")).expect("a link");
+    fs::hard_link(bench.place("block.stl"), bench.place("same.stl")).expect("a link");
+    let (plain, said) = ("verify job.toml", "is also an input");
+    for (tools, more, line, said) in [
+        (built_in, "", "verify job.toml --sarif a.csv", said),
+        (built_in, "", "verify job.toml --sarif block.stl", said),
+        (built_in, "", "verify job.toml --sarif ./job.toml", said),
+        #[cfg(unix)]
+        (built_in, "", "verify job.toml --sarif link.sarif", said),
+        (built_in, "output = \"block.stl\"", plain, said),
+        (built_in, "output = \"same.stl\"", plain, said),
+        (built_in, "map = \"a.csv\"", plain, said),
+        (built_in, "map = \"a.csv\"", "report job.toml -o report.html", said),
+        (built_in, "map = \"rest.csv\"", "verify job.toml --sarif rest.csv", "two outputs"),
+        (mounting, "", "verify job.toml --sarif holder.tool", said),
+        (folder, "", "verify job.toml --sarif tools/T1.tool", said),
+        (library, "", "verify job.toml --sarif Bit/Ball.fctb", said),
+    ] {
+        job(tools, more);
+        let kept = content(bench.folder.path());
+        let output = bench.touchoff(line);
+        assert_eq!(output.status.code(), Some(2), "{line}, {more}: {}", stderr(&output));
+        assert!(stderr(&output).contains(said), "{line}, {more}: {}", stderr(&output));
+        assert!(content(bench.folder.path()) == kept, "{line}, {more}");
+    }
+    // What a program that was not verified leaves is not written.
+    job(built_in, "output = \"rest.stl\"");
+    bench.write("a.csv", "0,0,3,0,0,1\n0,0,3,0,0,-1\n");
+    let output = bench.touchoff(plain);
+    assert!(!Path::new(&bench.place("rest.stl")).exists(), "{}", stderr(&output));
+}
+
+/// A command ends in time, and when there is no memory, with a status of its own.
+#[test]
+fn a_command_ends_when_time_or_memory_is_used_up() {
+    let bench = Bench::new();
+    let line = "sample --part block.stl --unit mm --points 100000000 -o points.touchoff";
+    let output = bench.touchoff(&format!("{line} --max-time 0.2"));
+    assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+    assert!(stderr(&output).contains("--max-time"), "{}", stderr(&output));
+    assert!(!Path::new(&bench.place("points.touchoff")).exists());
+    #[cfg(target_os = "linux")]
+    {
+        let limited = format!("ulimit -v 1000000; exec \"$0\" {line}");
+        let mut shell = std::process::Command::new("bash");
+        shell.args(["-c", &limited, env!("CARGO_BIN_EXE_touchoff")]).current_dir(&bench.folder);
+        let output = shell.output().expect("bash");
+        assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+        assert!(stderr(&output).contains("no more memory"), "{}", stderr(&output));
     }
 }
 

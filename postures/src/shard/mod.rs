@@ -21,7 +21,9 @@ use crate::record::area_reached;
 use crate::{MapError, MapIdentity, MapRow, Piece, PostureMap};
 use std::io::{self, Write};
 use std::path::Path;
-use touchoff::{AtomicFile, Mesh, Shard, ShardSet, ShardSetError, TriangleId, read_regular_file};
+use touchoff::{
+    AtomicFile, FileKind, Mesh, Shard, ShardSet, ShardSetError, TriangleId, read_regular_file,
+};
 
 /// A reason for which shards cannot be written, read or merged.
 #[derive(thiserror::Error)]
@@ -154,7 +156,7 @@ pub fn write_shard(path: impl AsRef<Path>, bytes: &[u8]) -> Result<(), ShardErro
 /// Reads a table from a file.
 fn read_file(path: &Path) -> Result<table::Table, ShardError> {
     let file = path.display().to_string();
-    let bytes = read_regular_file(path)
+    let bytes = read_regular_file(path, FileKind::Geometry)
         .map_err(|source| ShardError::Unreadable { file: file.clone(), source })?;
     table::read(&file, bytes)
 }

@@ -21,7 +21,7 @@ use std::path::Path;
 use nalgebra::{Point3, Vector3};
 
 use crate::id::TriangleId;
-use crate::input;
+use crate::input::{self, FileKind};
 use crate::unit::Unit;
 
 pub use diagnostics::MeshDiagnostics;
@@ -181,7 +181,7 @@ impl Mesh {
     pub fn read_stl(path: impl AsRef<Path>, unit: Unit) -> Result<Mesh, StlError> {
         let path = path.as_ref();
         let file = path.display().to_string();
-        match input::read_regular_file(path) {
+        match input::read_regular_file(path, FileKind::Geometry) {
             Ok(bytes) => Mesh::from_stl(&bytes, &file, unit),
             Err(source) => Err(StlError::Unreadable { file, source }),
         }

@@ -4,7 +4,7 @@ use std::io;
 use std::path::Path;
 
 use super::{Mesh, ObjError, OrientedPoints, PlyError, StlError, ply};
-use crate::input;
+use crate::input::{self, FileKind};
 use crate::unit::Unit;
 
 /// The content of a part file.
@@ -59,7 +59,7 @@ impl Geometry {
     pub fn read(path: impl AsRef<Path>, unit: Unit) -> Result<Geometry, GeometryError> {
         let path = path.as_ref();
         let file = path.display().to_string();
-        match input::read_regular_file(path) {
+        match input::read_regular_file(path, FileKind::Geometry) {
             Ok(bytes) => Geometry::from_bytes(&bytes, &file, unit),
             Err(source) => Err(GeometryError::Unreadable { file, source }),
         }

@@ -15,7 +15,7 @@ mod layout;
 mod read;
 
 use crate::atomic_file::AtomicFile;
-use crate::input;
+use crate::input::{self, FileKind};
 use crate::part::Part;
 use layout::ALIGN;
 use std::io::{self, Write};
@@ -174,7 +174,7 @@ impl Part {
         let path = path.as_ref();
         refuse_big_endian(path)?;
         let file = path.display().to_string();
-        match input::open(path) {
+        match input::open(path, FileKind::Geometry) {
             Ok((source, length)) => read::part(source, length, &file),
             Err(source) => Err(SavedError::Unreadable { file, source }),
         }

@@ -9,8 +9,8 @@
 
 use super::moves::{JointPath, Move, MovePath, RapidBox};
 use crate::gcode::{
-    self, BlockLine, Choice, ControlRules, ControlSetup, GcodeError, Interpreter, LengthOffset,
-    Rule, Step, StepPath, SubprogramFile,
+    self, BlockLine, Choice, ControlRules, ControlSetup, GcodeError, GcodeFault, Interpreter,
+    LengthOffset, Rule, Step, StepPath, SubprogramFile,
 };
 use crate::machine::{JointError, JointMotion, Letter, Machine, Relation, Setup, Side};
 use nalgebra::Vector3;
@@ -114,23 +114,6 @@ pub(crate) enum MoveRequest {
 }
 
 impl MachineProgram {
-    /// Returns what decides about its motions, as text: all but the name of its file.
-    pub(crate) fn identity(&self) -> impl fmt::Display + '_ {
-        fmt::from_fn(|f| {
-            let MachineProgram {
-                file: _,
-                text,
-                machine,
-                setup,
-                assumed,
-                off_is_tip,
-                unnamed_tool,
-                ..
-            } = self;
-            write!(f, "{text} {machine:?} {setup:?} {assumed:?} {off_is_tip} {unnamed_tool:?}")
-        })
-    }
-
     /// Interprets a program on a machine. `name` is the program's name in errors.
     ///
     /// `setup` states work offsets, tool lengths, and the rules of the control. The frame of the part is that of G54. If its
@@ -185,6 +168,9 @@ impl MachineProgram {
                 let rules = rules.collect::<Vec<_>>().join(", ");
                 return Err(MachineProgramError::Readings { file: name.to_owned(), rules });
             }
+            // Few bytes can ask for much work, so that all readings together have one budget.
+            let count = assumed.len() * values.len();
+            let shared = ControlSetup { max_repeated: setup.max_repeated / count, ..setup.clone() };
             let assumed = assumed.into_iter().flat_map(|rules| {
                 let with = move |variables: &BTreeMap<String, f64>| Assumption {
                     rules: rules.clone(),
@@ -194,7 +180,7 @@ impl MachineProgram {
             });
             let programs = assumed.map(|assumed| {
                 let (text, machine) = (Arc::clone(&text), Arc::clone(&machine));
-                MachineProgram::reading(name, text, machine, setup.clone(), assumed)
+                MachineProgram::reading(name, text, machine, shared.clone(), assumed)
             });
             let programs = programs.collect::<Result<Vec<_>, _>>()?;
             // A choice can lead to blocks that depend on further rules. Without such, every reading is known.
@@ -521,6 +507,11 @@ impl MachineProgram {
             }
         }
         if let Some(error) = execution.stop.take() {
+            // What a program without an end does up to its limit is worth no check.
+            if matches!(&error.fault, BlockFault::Gcode(fault) if matches!(fault.innermost(), GcodeFault::TooLong { .. }))
+            {
+                return Err(self.error(error));
+            }
             let mut obstacles = execution.obstacles(&error);
             let count = obstacles.remove(0).count;
             summary.stop = Some(ProgramStop { error, count, obstacles });

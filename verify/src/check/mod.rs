@@ -46,12 +46,11 @@ pub use remedy::Tilt;
 use crate::program::ClData;
 pub(crate) use approach::ApproachSearch;
 use checker::Checker;
-use std::collections::BTreeSet;
 use std::fmt;
 use std::sync::Mutex;
 use touchoff::certify::{Certifier, TriangleBvh};
 use touchoff::tool::{Tool, ToolInfo};
-use touchoff::{Shard, SurfaceId, Unit};
+use touchoff::{SurfaceId, Unit};
 
 /// Checks programs of a tool against a part.
 ///
@@ -238,7 +237,7 @@ impl<'a> Verifier<'a> {
         moves: impl IntoIterator<Item = Move>,
         progress: &(dyn Fn(usize) + Sync),
     ) -> Result<VerifyReport, VerifyError> {
-        let mut check = MoveCheck::new(self, Tasks::All)?;
+        let mut check = MoveCheck::new(self)?;
         for step in moves {
             check.add(step, progress)?;
         }
@@ -288,30 +287,9 @@ impl<'a> Verifier<'a> {
     }
 }
 
-/// The tasks of a check that are executed. The findings of a task depend on its motions alone.
-#[derive(Clone, Debug)]
-pub(super) enum Tasks {
-    All,
-    /// Those of a shard. The closest approach is not searched.
-    Shard(Shard),
-    /// Those that have findings: all others are known to have none.
-    With(BTreeSet<usize>),
-}
-
-impl Tasks {
-    fn has(&self, task: usize) -> bool {
-        match self {
-            Tasks::All => true,
-            Tasks::Shard(shard) => shard.is_dealt(task),
-            Tasks::With(tasks) => tasks.contains(&task),
-        }
-    }
-}
-
 /// A check of motions that are added one by one, in the order of the program.
 pub(super) struct MoveCheck<'a> {
     verifier: &'a Verifier<'a>,
-    tasks: Tasks,
     max_depths: Vec<f64>,
     /// The checkers that no task uses: one per core in the end.
     checkers: Mutex<Vec<Checker<'a>>>,
@@ -330,13 +308,9 @@ impl<'a> MoveCheck<'a> {
     ///
     /// # Errors
     /// If the tool cannot be certified.
-    pub(super) fn new(
-        verifier: &'a Verifier<'a>,
-        tasks: Tasks,
-    ) -> Result<MoveCheck<'a>, VerifyError> {
+    pub(super) fn new(verifier: &'a Verifier<'a>) -> Result<MoveCheck<'a>, VerifyError> {
         Ok(MoveCheck {
             verifier,
-            tasks,
             max_depths: verifier.max_depths()?,
             checkers: Mutex::default(),
             approach: ApproachSearch::new(verifier)?,
@@ -364,12 +338,8 @@ impl<'a> MoveCheck<'a> {
     }
 
     fn check_batch(&mut self, progress: &(dyn Fn(usize) + Sync)) -> Result<(), VerifyError> {
-        let MoveCheck { verifier, tasks, max_depths, checkers, count, .. } = &*self;
+        let MoveCheck { verifier, max_depths, checkers, count, .. } = &*self;
         let found = map_tasks(&self.batch, |first, moves| {
-            if !tasks.has((count + first) / MOVES_PER_TASK) {
-                progress(moves.len());
-                return Ok(Vec::new());
-            }
             // The queries of a tool take longer to prepare than most tasks, so that a checker is used again.
             let free = checkers.lock().expect("no task panics with it").pop();
             let mut checker = match free {
@@ -386,26 +356,12 @@ impl<'a> MoveCheck<'a> {
         });
         let found: Vec<_> = found.into_iter().collect::<Result<_, VerifyError>>()?;
         let found: Vec<Finding> = found.into_iter().flatten().collect();
-        if !matches!(self.tasks, Tasks::Shard(_)) {
-            self.approach.add(&self.batch, &found);
-        }
+        self.approach.add(&self.batch, &found);
         self.batch.iter().for_each(|step| self.modes[usize::from(step.rapid)] = true);
         self.findings.extend(found);
         self.count += self.batch.len();
         self.batch.clear();
         Ok(())
-    }
-
-    /// Checks the motions that wait, and returns the tasks that have findings.
-    ///
-    /// # Errors
-    /// If the tool cannot be certified.
-    pub(super) fn finish_shard(
-        mut self,
-        progress: &(dyn Fn(usize) + Sync),
-    ) -> Result<BTreeSet<usize>, VerifyError> {
-        self.check_batch(progress)?;
-        Ok(self.findings.iter().map(|finding| finding.location / MOVES_PER_TASK).collect())
     }
 
     /// Checks the motions that wait, and returns the result.

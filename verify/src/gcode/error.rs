@@ -410,7 +410,8 @@ faults! {
         /// Subprograms, loops and jumps that take too many blocks and steps.
         #[code = P0144]
         #[error(
-            "loops, jumps and subprograms take more than {limit} blocks and motions: end the loop, or reduce the repeats"
+            "loops, jumps and subprograms take more than {limit} blocks and motions in each reading of the program: end the loop, reduce the \
+             repeats, or state the control and the variables, so that there are fewer readings"
         )]
         TooLong {
             /// The largest number of them.

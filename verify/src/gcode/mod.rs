@@ -92,8 +92,9 @@ pub const MAX_CALLS: usize = 9;
 /// The largest number of assignments in a block: LinuxCNC writes those beyond it over the values of the first ones
 /// (`MAX_NAMED_PARAMETERS` of its interpreter).
 const MAX_ASSIGNMENTS: usize = 50;
-/// Largest number of blocks and steps in subprograms, with all repeats, unless [`ControlSetup::max_repeated`] has another.
-pub const MAX_REPEATED: usize = 10_000_000;
+/// Largest number of blocks and steps in subprograms, with all repeats, unless [`ControlSetup::max_repeated`] has another: some
+/// seconds of work.
+pub const MAX_REPEATED: usize = 2_000_000;
 /// Largest number of motions of one block with a canned cycle.
 pub const MAX_CYCLE_STEPS: usize = 100_000;
 
@@ -144,7 +145,8 @@ pub struct ControlSetup {
     /// Position in which M6 leaves the axes, in machine coordinates: `None` for an axis that stays. Without it, as the
     /// [rules](Rule::ToolChange) say.
     pub tool_change: Option<Position>,
-    /// Largest number of blocks and steps that are executed again or in subprograms; a program with more is refused.
+    /// Largest number of blocks and steps that are executed again or in subprograms; a program with more is refused. The readings of
+    /// a program share it.
     pub max_repeated: usize,
 }
 

@@ -1,7 +1,7 @@
 //! The bodies of a machine in a job: meshes that tools must not touch, and solids of revolution that must not touch meshes.
 
 use super::inputs::{self, JobBody, Load};
-use super::{BodyFrame, BodyRole, Hand, JobError, NamedTool};
+use super::{BodyFrame, BodyRole, Hand, JobError, JobFile, NamedTool};
 use crate::ToolSelection;
 use crate::machine::{BodyShape, Link, Machine, MachineBody, Opponent, Side};
 use nalgebra::{Point3, Vector3};
@@ -153,7 +153,7 @@ pub(super) fn meshes(machine: &Machine, unit: Unit) -> Result<Vec<JobBody>, JobE
 pub(super) fn revolved<T, E: From<JobError>>(
     machine: &Machine,
     bodies: &[JobBody],
-    unit: Unit,
+    job: &JobFile,
     load: Load<'_, T, E>,
 ) -> Result<Vec<LoadedBody<T>>, E> {
     let mut revolved = Vec::new();
@@ -167,7 +167,7 @@ pub(super) fn revolved<T, E: From<JobError>>(
                 name: OsString::from(name),
                 library: None,
                 params: Vec::new(),
-                root: None,
+                root: job.root.clone(),
                 hand: Hand::Right,
                 allow: Vec::new(),
             })?),
@@ -178,7 +178,7 @@ pub(super) fn revolved<T, E: From<JobError>>(
             shape,
             link: body.link,
             mount: *place,
-            margin: body.margin * Unit::Millimetre.factor_to(unit),
+            margin: body.margin * Unit::Millimetre.factor_to(job.unit),
             against: against.map(|(index, _)| index).collect(),
         });
     }

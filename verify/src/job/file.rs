@@ -11,12 +11,14 @@ use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
-use touchoff::Unit;
+use touchoff::{FileKind, Unit, is_within, read_text_file};
 
 /// A job as a file states it, or the options of a command: names and paths of what a [`Job`](super::Job) is made of. Lengths are in the
 /// part's unit.
 #[derive(Clone, Debug)]
 pub struct JobFile {
+    /// The folder within which all inputs lie; `None` if they may lie anywhere.
+    pub root: Option<PathBuf>,
     /// The finished part, a mesh.
     pub part: PathBuf,
     /// Its unit.
@@ -88,7 +90,7 @@ pub struct NamedTool {
     pub library: Option<PathBuf>,
     /// Values of the params of the file: `name=value`.
     pub params: Vec<String>,
-    /// The folder below which the file may mount others, if not its own.
+    /// The folder within which its files lie: those that it mounts, if not in its own folder, and those that the library lists.
     pub root: Option<PathBuf>,
     /// The hand of its cutting edges.
     pub hand: Hand,
@@ -294,15 +296,55 @@ impl JobFile {
         files
     }
 
-    /// Reads a job file.
+    /// Reads a job file, which may be a stranger's: it names inputs within `root` only, its own folder by default, and outputs
+    /// within its own folder. Links are followed.
     ///
     /// # Errors
-    /// If it cannot be read, or as for [`JobFile::parse`].
-    pub fn read(file: &Path) -> Result<JobFile, JobError> {
-        match std::fs::read_to_string(file) {
-            Ok(text) => JobFile::parse(&text, file),
-            Err(source) => Err(JobError::Unreadable { file: file.display().to_string(), source }),
+    /// If it cannot be read or names a file elsewhere, or as for [`JobFile::parse`].
+    pub fn read(file: &Path, root: Option<&Path>) -> Result<JobFile, JobError> {
+        let text = read_text_file(file, FileKind::Settings)
+            .map_err(|source| JobError::Unreadable { file: file.display().to_string(), source })?;
+        let mut job = JobFile::parse(&text, file)?;
+        let folder = file.parent().unwrap_or(Path::new(""));
+        job.root = Some(root.unwrap_or(folder).to_owned());
+        job.check_within("job", file)?;
+        for (role, input) in job.files() {
+            job.check_within(&role, input)?;
         }
+        for (key, output) in job.outputs() {
+            if !is_within(output, folder) {
+                let (key, output) = (format!("stock.{key}"), output.display().to_string());
+                let fault = JobFileFault::OutputOutside { key, output };
+                return Err(JobError::File { file: file.display().to_string(), line: None, fault });
+            }
+        }
+        Ok(job)
+    }
+
+    /// Checks that an input is one that the job may read.
+    ///
+    /// # Errors
+    /// [`JobError::Outside`] if it lies outside the root.
+    pub(super) fn check_within(&self, role: &str, input: &Path) -> Result<(), JobError> {
+        match &self.root {
+            Some(root) if !is_within(input, root) => Err(JobError::Outside {
+                role: role.to_owned(),
+                file: input.display().to_string(),
+                root: match root.display().to_string() {
+                    here if here.is_empty() => ".".to_owned(),
+                    root => root,
+                },
+            }),
+            _ => Ok(()),
+        }
+    }
+
+    /// Returns the files that it has written, each with its key in `[stock]`.
+    pub fn outputs(&self) -> impl Iterator<Item = (&'static str, &Path)> {
+        let stock = self.stock.iter();
+        stock
+            .flat_map(|stock| [("output", &stock.output), ("map", &stock.map)])
+            .filter_map(|(key, file)| Some((key, file.as_deref()?)))
     }
 
     /// Reads the text of a job file. Paths in it are relative to the folder of `file`.
@@ -363,7 +405,21 @@ impl JobFile {
         let named = |name: String| -> OsString {
             if name.ends_with(".toml") { folder.join(name).into() } else { name.into() }
         };
+        if let Some(stock) = &job.stock {
+            let kinds =
+                [("output", &stock.output, &["stl"][..]), ("map", &stock.map, &["csv", "ply"])];
+            for (key, file, endings) in kinds {
+                let is_kind =
+                    |file: &PathBuf| endings.iter().any(|ending| has_ending(file, ending));
+                if let Some(file) = file.as_ref().filter(|file| !is_kind(file)) {
+                    let endings = endings.join("` or `.");
+                    let (key, file) = (format!("stock.{key}"), file.display().to_string());
+                    return Err(refused(JobFileFault::OutputEnding { key, file, endings }));
+                }
+            }
+        }
         Ok(JobFile {
+            root: None,
             part: beside(job.part),
             unit,
             program: beside(job.program),
@@ -492,7 +548,7 @@ impl JobFile {
                 name,
                 library,
                 params: entry.params,
-                root: None,
+                root: self.root.clone(),
                 hand: entry.hand,
                 allow: entry.allow.into_iter().collect(),
             });
@@ -552,7 +608,7 @@ impl PartEntry {
 }
 
 fn has_ending(file: &Path, ending: &str) -> bool {
-    file.extension().is_some_and(|end| end == ending)
+    file.extension().is_some_and(|end| end.eq_ignore_ascii_case(ending))
 }
 
 /// Returns the radius offsets that are stated, by D or tool number: those by their names, `D21`, and those of the tools.

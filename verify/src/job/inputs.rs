@@ -34,8 +34,19 @@ pub struct JobInputs<T> {
     revolved: Vec<LoadedBody<T>>,
     /// The stock.
     pub stock: Option<JobStock>,
+    /// Files that the jobs of earlier set-ups were read from, each with its role.
+    earlier_files: Vec<(String, PathBuf)>,
     /// Gaps in these inputs.
     gaps: Vec<Gap>,
+}
+
+/// What the job of an earlier set-up leaves.
+struct EarlierSetup {
+    remaining: RemainingPoints,
+    /// The files that it was read from, each with its role.
+    files: Vec<(String, PathBuf)>,
+    /// Set if it has no clean verdict.
+    gap: Option<Gap>,
 }
 
 /// Loads a tool by its name.
@@ -143,6 +154,9 @@ impl<T: AsRef<dyn Tool>> JobInputs<T> {
         later: &mut Vec<PathBuf>,
     ) -> Result<JobInputs<T>, E> {
         let program = file.program()?;
+        for (name, body) in body_files(&program) {
+            file.check_within(name, body)?;
+        }
         let mut tools = Vec::new();
         for named in file.used_tools(&program)? {
             let tool = load(&named)?;
@@ -165,30 +179,34 @@ impl<T: AsRef<dyn Tool>> JobInputs<T> {
         let mut revolved = Vec::new();
         if let Some(machine) = program.machine() {
             bodies.extend(bodies::meshes(machine, file.unit)?);
-            revolved = bodies::revolved(machine, &bodies, file.unit, load)?;
+            revolved = bodies::revolved(machine, &bodies, &file, load)?;
         }
-        let (mut stock, mut gaps) = (None, Vec::new());
+        let (mut stock, mut earlier_files, mut gaps) = (None, Vec::new(), Vec::new());
         if let Some(entry) = &file.stock {
             let left = match &entry.from {
-                Some(earlier) => Some(Self::remaining(earlier, file.unit, load, later, &mut gaps)?),
+                Some(earlier) => {
+                    let earlier = Self::earlier(earlier, &file, load, later)?;
+                    earlier_files = earlier.files;
+                    gaps.extend(earlier.gap);
+                    Some(earlier.remaining)
+                }
                 None => None,
             };
             stock = Some(entry.stock(left, &program, file.unit)?);
         }
-        Ok(JobInputs { file, program, tools, bodies, revolved, stock, gaps })
+        Ok(JobInputs { file, program, tools, bodies, revolved, stock, earlier_files, gaps })
     }
 
-    /// Checks the job of an earlier set-up, and returns what it leaves of its stock, in its own frame.
+    /// Checks the job of an earlier set-up, and returns what it leaves of its stock, in its own frame. `later` are the job files that it is read for.
     ///
     /// # Errors
     /// If the job cannot be checked, has no stock or another unit, leaves several stocks, or is among those that it is read for.
-    fn remaining<E: From<JobError>>(
+    fn earlier<E: From<JobError>>(
         file: &Path,
-        unit: Unit,
+        job: &JobFile,
         load: Load<'_, T, E>,
         later: &mut Vec<PathBuf>,
-        gaps: &mut Vec<Gap>,
-    ) -> Result<RemainingPoints, E> {
+    ) -> Result<EarlierSetup, E> {
         let name = || file.display().to_string();
         let refused =
             |fault: JobFileFault| E::from(JobError::File { file: name(), line: None, fault });
@@ -198,8 +216,8 @@ impl<T: AsRef<dyn Tool>> JobInputs<T> {
             return Err(refused(JobFileFault::OwnStock));
         }
         later.push(place);
-        let earlier = JobFile::read(file)?;
-        if earlier.unit != unit {
+        let earlier = JobFile::read(file, job.root.as_deref())?;
+        if earlier.unit != job.unit {
             return Err(refused(JobFileFault::OtherUnit));
         }
         let inputs = JobInputs::read_after(earlier, load, later)?;
@@ -213,24 +231,19 @@ impl<T: AsRef<dyn Tool>> JobInputs<T> {
         if left.any(|other| other != first) {
             return Err(refused(JobFileFault::SeveralStocks));
         }
-        if report.verdict() != Verdict::Clean {
-            gaps.push(JobGap::EarlierSetup { file: name() }.open(0));
-        }
-        Ok(first)
+        let gap = (report.verdict() != Verdict::Clean)
+            .then(|| JobGap::EarlierSetup { file: name() }.open(0));
+        let own = inputs.files().into_iter();
+        let files = own.map(|(role, file)| (format!("{}: {role}", name()), file.to_owned()));
+        Ok(EarlierSetup { remaining: first, files: files.collect(), gap })
     }
 
-    /// Returns the files that it was read from, each with its role: those of [`JobFile::files`], and those of the machine's bodies.
+    /// Returns the files that it was read from, each with its role: those of [`JobFile::files`], those of the machine's bodies, and
+    /// those of earlier set-ups.
     pub fn files(&self) -> Vec<(String, &Path)> {
         let mut files = self.file.files();
-        let bodies = self.program.machine().map_or(&[][..], Machine::bodies).iter();
-        files.extend(bodies.filter_map(|body| {
-            let file = match &body.shape {
-                BodyShape::Mesh { file, .. } => &**file,
-                BodyShape::Tool { name, .. } if name.ends_with(".tool") => Path::new(name),
-                _ => return None,
-            };
-            Some((body.name.clone(), file))
-        }));
+        files.extend(body_files(&self.program).map(|(name, file)| (name.to_owned(), file)));
+        files.extend(self.earlier_files.iter().map(|(role, file)| (role.clone(), &**file)));
         files
     }
 
@@ -257,6 +270,19 @@ impl<T: AsRef<dyn Tool>> JobInputs<T> {
         (job.surface_only, job.anyway) = (self.file.surface_only, self.file.anyway);
         job
     }
+}
+
+/// Returns the files of the bodies of a program's machine, each with the name of its body.
+fn body_files(program: &Program) -> impl Iterator<Item = (&str, &Path)> {
+    let bodies = program.machine().map_or(&[][..], Machine::bodies).iter();
+    bodies.filter_map(|body| {
+        let file = match &body.shape {
+            BodyShape::Mesh { file, .. } => &**file,
+            BodyShape::Tool { name, .. } if name.ends_with(".tool") => Path::new(name),
+            _ => return None,
+        };
+        Some((&*body.name, file))
+    })
 }
 
 pub(super) fn mesh(file: &Path, unit: Unit) -> Result<Mesh, JobError> {

@@ -16,7 +16,6 @@ mod machine;
 mod pass;
 mod program;
 mod report;
-mod shard;
 mod stock;
 
 pub use bodies::RevolvedBody;
@@ -29,7 +28,6 @@ pub use report::{
     FindingDetail, JobFinding, JobReport, Moving, NO_INSIDE, NoVerdict, PairReport, Remedy,
     Severity, Verdict,
 };
-pub use shard::{JobShard, JobShardError};
 pub use stock::{CutStock, StockFinding};
 
 use crate::codes::faults;
@@ -228,10 +226,6 @@ faults! {
     #[derive(thiserror::Error)]
     #[non_exhaustive]
     pub enum JobError {
-        /// Shards that are not those of the job.
-        #[code_of(0)]
-        #[error(transparent)]
-        Shards(#[from] JobShardError),
         /// The job's file is refused.
         #[code_of(fault)]
         #[error("{file}: {}{fault}", line.map_or(String::new(), |line| format!("line {line}: ")))]
@@ -493,6 +487,22 @@ faults! {
             /// The part's name.
             name: String,
         },
+        /// An input in another folder.
+        ///
+        /// A job can be a stranger's, of a pull request or an archive: it reads within its own folder, or within the one that
+        /// whoever runs it names.
+        #[code = J0132]
+        #[error(
+            "{role}: {file} is outside {root}: a job reads within its own folder, or within that of `--root` (`root` in Python)"
+        )]
+        Outside {
+            /// The role of the file in the job.
+            role: String,
+            /// The file.
+            file: String,
+            /// The folder.
+            root: String,
+        },
     }
 }
 
@@ -604,6 +614,28 @@ faults! {
         #[code = J0216]
         #[error("this set-up leaves one stock or another, by the control: state its `control`")]
         SeveralStocks,
+        /// An output in another folder.
+        ///
+        /// A job can be a stranger's, of a pull request or an archive: it writes within its own folder only.
+        #[code = J0217]
+        #[error("`{key}` is written to `{output}`, which is outside the folder of the job: name a file within it")]
+        OutputOutside {
+            /// The key.
+            key: String,
+            /// The output.
+            output: String,
+        },
+        /// An output whose name has not the ending of its kind.
+        #[code = J0218]
+        #[error("`{key}` is written to `{file}`: its name ends in `.{endings}`")]
+        OutputEnding {
+            /// The key.
+            key: String,
+            /// The output.
+            file: String,
+            /// The endings of its kind.
+            endings: String,
+        },
     }
 }
 

@@ -6,29 +6,17 @@ use super::machine::MachineFinding;
 use super::program::BlockMoves;
 use super::report::{JobReport, Moving, PairReport, Remedy};
 use super::stock::{CutStock, StockCut};
-use super::{Body, BodyFrame, BodyRole, Job, JobError, JobGap, JobShard, JobTool, StockShape};
-use crate::check::{ApproachSearch, MoveCheck, MoveRequest, Tasks};
+use super::{Body, BodyFrame, BodyRole, Job, JobError, JobGap, JobTool, StockShape};
+use crate::check::{ApproachSearch, MoveCheck, MoveRequest};
 use crate::gcode::{BlockLine, WorkOffset};
 use crate::machine::{Link, Machine, Side};
 use crate::{FindingGroup, Move, Verifier};
-use std::collections::BTreeSet;
-use touchoff::Shard;
 use touchoff::tool::Symmetry;
 
 /// Rounding of heights, in the part's unit.
 const LEVEL_ROUNDING: f64 = 1e-6;
 
-/// The motions that a pass checks.
-#[derive(Clone, Copy)]
-enum Pass<'s> {
-    Whole,
-    Shard(Shard),
-    /// Those of the tasks with findings, per reading and pair: the others were checked before.
-    Joined(&'s [BTreeSet<usize>]),
-}
-
 /// The results of one reading.
-#[derive(Default)]
 struct ReadingResult {
     /// Each tool at each body.
     pairs: Vec<PairReport>,
@@ -36,8 +24,6 @@ struct ReadingResult {
     cut: Option<CutStock>,
     /// The work offsets under which no tool comes near the part, with their blocks, if the reading has several.
     far_offsets: Vec<(WorkOffset, BlockLine)>,
-    /// Tasks with findings, per pair: the only result of a shard.
-    found: Vec<BTreeSet<usize>>,
 }
 
 /// Something that moves, and the index of the body against which it is checked.
@@ -79,57 +65,9 @@ impl<'a> Job<'a> {
     /// If the program states another unit or cutter than the job, a tool cannot be certified or has not a surface that is allowed a
     /// depth, or the stock cannot be made or cut.
     pub fn check(&self, progress: &(dyn Fn(usize) + Sync)) -> Result<JobReport<'_>, JobError> {
-        self.check_pass(Pass::Whole, progress)
-    }
-
-    /// Checks the motions of a shard in every reading, which may be on another machine: some tasks of 32 motions of each tool at each
-    /// body. The stock is not cut.
-    ///
-    /// # Errors
-    /// As for [`Job::check`], but for those about the stock.
-    pub fn check_shard(
-        &self,
-        shard: Shard,
-        progress: &(dyn Fn(usize) + Sync),
-    ) -> Result<JobShard, JobError> {
-        self.check_inputs()?;
-        let mut found = Vec::new();
-        for reading in 0..self.program.reading_count() {
-            found.extend(self.check_reading(reading, Pass::Shard(shard), progress)?.found);
-        }
-        Ok(JobShard::new(self, shard, found))
-    }
-
-    /// Checks the program in every reading, of which all shards were checked before, each with the name of its file for messages: only
-    /// tasks in which one of them has found something are checked again. The report is that of [`Job::check`].
-    ///
-    /// # Errors
-    /// [`JobError::Shards`] if they are not all shards of this job, each once, and as for [`Job::check`].
-    pub fn check_joined(
-        &self,
-        shards: &[(String, JobShard)],
-        progress: &(dyn Fn(usize) + Sync),
-    ) -> Result<JobReport<'_>, JobError> {
-        let pairs = self.program.reading_count() * self.moving_pairs().len();
-        let found = JobShard::join(self, shards, pairs)?;
-        self.check_pass(Pass::Joined(&found), progress)
-    }
-
-    /// Refuses inputs that do not fit each other.
-    fn check_inputs(&self) -> Result<(), JobError> {
         for JobTool { motions, tool, .. } in &self.tools {
             self.program.check_tool(*motions, tool.info(), self.unit())?;
         }
-        Ok(())
-    }
-
-    /// Checks the motions of a pass, and reports.
-    fn check_pass(
-        &self,
-        pass: Pass<'_>,
-        progress: &(dyn Fn(usize) + Sync),
-    ) -> Result<JobReport<'_>, JobError> {
-        self.check_inputs()?;
         let (mut pairs, mut cuts) = (Vec::new(), Vec::new());
         let mut gaps = self.program.gaps();
         gaps.extend(self.gaps.iter().cloned());
@@ -168,7 +106,7 @@ impl<'a> Job<'a> {
             }
         }
         for reading in 0..self.program.reading_count() {
-            let result = self.check_reading(reading, pass, progress)?;
+            let result = self.check_reading(reading, progress)?;
             pairs.extend(result.pairs);
             let far = result.far_offsets.into_iter();
             let far = far.map(|(offset, block)| (block, JobGap::FarOffset { offset }));
@@ -244,7 +182,6 @@ impl<'a> Job<'a> {
     fn check_reading(
         &self,
         reading: usize,
-        pass: Pass<'_>,
         progress: &(dyn Fn(usize) + Sync),
     ) -> Result<ReadingResult, JobError> {
         let moving = self.moving_pairs();
@@ -272,20 +209,10 @@ impl<'a> Job<'a> {
                 requests.push(request);
             }
         }
-        let checks = verifiers.iter().enumerate();
-        let checks = checks.map(|(pair, verifier)| {
-            let tasks = match pass {
-                Pass::Whole => Tasks::All,
-                Pass::Shard(shard) => Tasks::Shard(shard),
-                Pass::Joined(found) => Tasks::With(found[reading * verifiers.len() + pair].clone()),
-            };
-            MoveCheck::new(verifier, tasks)
-        });
+        let checks = verifiers.iter().map(MoveCheck::new);
         let mut checks: Vec<MoveCheck<'_>> = checks.collect::<Result<_, _>>()?;
-        // A shard does nothing that joins all motions.
-        let is_shard = matches!(pass, Pass::Shard(_));
         let offsets = match self.program.readings().get(reading) {
-            Some(program) if !is_shard && program.summary().work_offsets.len() > 1 => {
+            Some(program) if program.summary().work_offsets.len() > 1 => {
                 program.summary().work_offsets.clone()
             }
             _ => Vec::new(),
@@ -303,10 +230,8 @@ impl<'a> Job<'a> {
                 approaches.push(OffsetApproach { offset: *offset, tool, search, has_moves: false });
             }
         }
-        let mut cut = match self.stock.as_ref().filter(|_| !is_shard) {
-            Some(stock) => Some(StockCut::new(stock, self)?),
-            None => None,
-        };
+        let cut = self.stock.as_ref().map(|stock| StockCut::new(stock, self));
+        let mut cut = cut.transpose()?;
 
         // A tool that makes all motions is not changed, whatever numbers the program has.
         let restarts = !self.tools.iter().any(|tool| tool.motions == crate::ToolSelection::All);
@@ -336,11 +261,6 @@ impl<'a> Job<'a> {
             }
         }
 
-        if is_shard {
-            let found = checks.into_iter().map(|check| check.finish_shard(progress));
-            let found = found.collect::<Result<_, _>>()?;
-            return Ok(ReadingResult { found, ..ReadingResult::default() });
-        }
         let mut pairs = Vec::new();
         for ((MovingPair { moving, body }, verifier), check) in
             moving.into_iter().zip(&verifiers).zip(checks)
@@ -356,8 +276,7 @@ impl<'a> Job<'a> {
         let near: Vec<WorkOffset> = near.collect();
         let far_offsets =
             offsets.into_iter().filter(|(offset, _)| !near.contains(offset)).collect();
-        let (cut, found) = (cut.map(StockCut::finish), Vec::new());
-        Ok(ReadingResult { pairs, cut, far_offsets, found })
+        Ok(ReadingResult { pairs, cut: cut.map(StockCut::finish), far_offsets })
     }
 
     /// Returns the changes that clear the worst motion of a group: a travel along the axis where a longer tool makes it, and a tilt of

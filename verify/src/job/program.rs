@@ -9,7 +9,7 @@ use crate::{ClData, CycleTime, Gap, MachineProgram, Move, ProgramError, ToolSele
 use std::iter;
 use std::path::{Path, PathBuf};
 use touchoff::tool::{Symmetry, ToolInfo};
-use touchoff::{Pose, Unit};
+use touchoff::{FileKind, Pose, Unit, read_text_file};
 
 /// The machine of G-code for which none is named.
 pub const DEFAULT_MACHINE: &str = "3-axis";
@@ -446,7 +446,7 @@ fn toml_text(name: &Path) -> Result<Option<(String, String)>, JobError> {
         return Ok(None);
     }
     let file = name.display().to_string();
-    match std::fs::read_to_string(name) {
+    match read_text_file(name, FileKind::Settings) {
         Ok(text) => Ok(Some((text, file))),
         Err(source) => Err(JobError::Unreadable { file, source }),
     }

@@ -24,9 +24,8 @@ pub use write::{AptHeader, Decimals, WriteError, apt_unit};
 use std::path::Path;
 
 use nalgebra::{Point3, Vector3};
-use touchoff::read_regular_file;
 use touchoff::tool::{Symmetry, ToolInfo};
-use touchoff::{Pose, Unit};
+use touchoff::{FileKind, Pose, Unit, read_regular_file};
 
 /// CL data, a program of one tool: its cutter locations, in order.
 #[derive(Clone, Debug, PartialEq)]
@@ -67,7 +66,7 @@ impl ProgramFile {
     /// If the file cannot be read, or as for [`ProgramFile::parse`].
     pub fn read(path: impl AsRef<Path>) -> Result<ProgramFile, ProgramError> {
         let file = path.as_ref().display().to_string();
-        match read_regular_file(path) {
+        match read_regular_file(path, FileKind::Program) {
             Ok(bytes) => ProgramFile::parse(bytes, &file),
             Err(source) => Err(ProgramError::Read { file, source }),
         }
@@ -94,7 +93,7 @@ impl ProgramFile {
 /// If it cannot be read, or is no text.
 pub(crate) fn read_text(path: &Path) -> Result<String, ProgramError> {
     let file = path.display().to_string();
-    match read_regular_file(path) {
+    match read_regular_file(path, FileKind::Program) {
         Ok(bytes) => match decode(&bytes) {
             Ok(text) => Ok(text.to_owned()),
             Err((line, fault)) => Err(ProgramError::Line { file, line, fault }),
@@ -163,7 +162,7 @@ impl ClData {
     /// If the file cannot be read, or as for [`ClData::parse`].
     pub fn read(path: impl AsRef<Path>) -> Result<ClData, ProgramError> {
         let file = path.as_ref().display().to_string();
-        match read_regular_file(path) {
+        match read_regular_file(path, FileKind::Program) {
             Ok(bytes) => ClData::parse(bytes, &file),
             Err(source) => Err(ProgramError::Read { file, source }),
         }

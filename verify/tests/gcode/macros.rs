@@ -1,7 +1,10 @@
 //! Macros of Fanuc and of LinuxCNC, against programs whose motions are computed here.
 
 use crate::common::assert_fault;
+use std::collections::BTreeMap;
+use touchoff_verify::MachineProgram;
 use touchoff_verify::gcode::{Choice, ControlRules, ControlSetup, NoteKind, Rule, Step, read};
+use touchoff_verify::machine::Machine;
 
 /// A control at the origin that executes the macros of one dialect.
 fn setup(dialect: Choice) -> ControlSetup {
@@ -43,6 +46,40 @@ fn circle(count: u32, radius: f64, [x, y]: [f64; 2], start: f64) -> Vec<[f64; 2]
             [x + radius * angle.cos(), y + radius * angle.sin()]
         })
         .collect()
+}
+
+/// The readings of a program share one budget of work, and a program that uses it up is refused as a whole.
+#[test]
+fn loops_of_all_readings_share_a_budget() {
+    let read = |passes: usize, values: usize| {
+        let text = format!(
+            "G21 G17 G90 G40 G80 G94\nG54 S1000 M3\nG0 X[#500] Y0 Z50\n#1=0\nWHILE [#1 LT {passes}] DO1\n#1=#1+1\nEND1\nM30\n"
+        );
+        let setup = ControlSetup {
+            rules: ControlRules::named("fanuc").expect("a control"),
+            variables: BTreeMap::from([(
+                "#500".to_owned(),
+                (0..values).map(|k| k as f64).collect(),
+            )]),
+            max_repeated: 12_000,
+            ..ControlSetup::default()
+        };
+        let machine = Machine::named("3-axis").expect("a machine");
+        MachineProgram::readings("a.nc", text, machine, &setup)
+            .map(|readings| readings.len())
+            .map_err(|error| error.code())
+    };
+    // Each pass executes three blocks again.
+    assert_eq!(read(3_900, 1), Ok(1));
+    assert_eq!(read(4_100, 1), Err("P0144"));
+    assert_eq!(read(950, 4), Ok(4));
+    assert_eq!(read(1_050, 4), Err("P0144"));
+    assert_eq!(read(1_050, 3), Ok(3));
+    let endless = "G54 S1000 M3\nG0 X0 Y0 Z50\nN10 G1 X1 F100\nGOTO 10\nM30\n".to_owned();
+    let setup = ControlSetup { max_repeated: 10_000, ..setup(Choice::Iso) };
+    let machine = Machine::named("3-axis").expect("a machine");
+    let error = MachineProgram::new("a.nc", endless, machine, setup).expect_err("no end");
+    assert_eq!(error.code(), "P0144");
 }
 
 #[test]

@@ -2,11 +2,12 @@
 
 use crate::scene::{CLEAN, Checked, FINDINGS, NONE};
 use nalgebra::Point3;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 use touchoff::mesh::shapes;
 use touchoff::tool::{Interpreted, ToolError};
 use touchoff::{Mesh, Tool, Unit};
+use touchoff_verify::gcode::ControlRules;
 use touchoff_verify::job::{FindingDetail, FindingRule, JobInputs};
 use touchoff_verify::machine::Machine;
 use touchoff_verify::{FindingKind, JobError, JobFile, JobReport, Verdict};
@@ -30,15 +31,19 @@ enum ReadError {
 }
 
 /// A folder with the files of a job.
-struct Folder(TempDir);
+struct Folder {
+    folder: TempDir,
+    /// The folder within which the job may read, if not this one.
+    root: Option<PathBuf>,
+}
 
 impl Folder {
     fn new() -> Folder {
-        Folder(tempfile::tempdir().expect("a folder"))
+        Folder { folder: tempfile::tempdir().expect("a folder"), root: None }
     }
 
     fn place(&self, name: &str) -> PathBuf {
-        self.0.path().join(name)
+        self.folder.path().join(name)
     }
 
     fn write(&self, name: &str, content: impl AsRef<[u8]>) {
@@ -63,7 +68,7 @@ impl Folder {
         found: impl FnOnce(&JobReport<'_>) -> T,
     ) -> Result<T, ReadError> {
         self.write("job.toml", job);
-        let file = JobFile::read(&self.place("job.toml"))?;
+        let file = JobFile::read(&self.place("job.toml"), self.root.as_deref())?;
         let inputs = JobInputs::read::<ReadError>(file, |named| {
             Ok(Loaded(Interpreted::load(&named.name)?))
         })?;
@@ -205,6 +210,179 @@ fn a_stock_is_what_an_earlier_set_up_leaves() {
     ] {
         folder.write("op10.toml", earlier);
         folder.gives(&text("op20", turned), NONE, &[pattern]);
+    }
+}
+
+/// A job, of which every file is another kind of input.
+const OF_ALL_KINDS: &str = "part = \"plate.stl\"\nunit = \"mm\"\nprogram = \"a.nc\"\ncontrol = \"c.toml\"\n\
+    machine = \"m.toml\"\nsubprograms = [\"s.nc\"]\n[work_offsets]\nG54 = [0, 0, -300]\nG55 = [100, 0, -300]\n[tool.1]\n\
+    tool = \"mill10.tool\"\nlength = 60\n[[other_part]]\nwork_offset = \"G55\"\nmesh = \"other.stl\"\n[[fixture]]\n\
+    name = \"clamp\"\nmesh = \"clamp.stl\"\n[stock]\nmesh = \"stock.stl\"\nspacing = 2\noutput = \"rest.stl\"\nmap = \"map.csv\"\n";
+
+/// Returns a folder `job` with such a job beside a folder `outside`, and a file of each kind there.
+fn of_all_kinds() -> Folder {
+    let folder = Folder::new();
+    for name in ["job", "outside"] {
+        std::fs::create_dir(folder.place(name)).expect("a folder");
+        let within = |file: &str| format!("{name}/{file}");
+        folder.cuboid(&within("plate.stl"), [-20.0, -20.0, -10.0], [20.0, 20.0, 0.0]);
+        folder.cuboid(&within("other.stl"), [-20.0, -5.0, -10.0], [20.0, 5.0, 4.0]);
+        folder.cuboid(&within("clamp.stl"), [-60.0, -5.0, -10.0], [-50.0, 5.0, 4.0]);
+        folder.cuboid(&within("stock.stl"), [-20.0, -20.0, -10.0], [20.0, 20.0, 1.0]);
+        folder.cuboid(&within("vice.stl"), [60.0, -5.0, -10.0], [70.0, 5.0, 4.0]);
+        folder.write(&within("mill10.tool"), MILL);
+        folder.write(
+            &within("a.nc"),
+            "G21 G90 G54 G94 F300.\nT1 M6\nS900 M3\nG0 X-30. Y0.\nG43 H1 Z20.\nM30\n",
+        );
+        folder.write(&within("s.nc"), "o<s> sub\no<s> endsub\nM2\n");
+        folder
+            .write(&within("c.toml"), ControlRules::named("linuxcnc").expect("it ships").to_toml());
+        folder.write(&within("m.toml"), machine("vice.stl"));
+    }
+    folder
+}
+
+/// Returns the file of a machine on three axes with a mesh on its table.
+fn machine(vice: &str) -> String {
+    let text = Machine::file("3-axis").expect("it ships");
+    format!(
+        "{text}\n[[body]]\nname = \"the vice\"\nmoves_with = \"base\"\nmesh = \"{vice}\"\nagainst = [\"tool\"]\n"
+    )
+}
+
+#[test]
+fn a_job_reads_within_its_folder_or_the_root_and_writes_within_its_folder() {
+    let mut folder = of_all_kinds();
+    let inside = folder.place("job");
+    let check = |folder: &Folder, text: &str| {
+        folder.write("job/job.toml", text);
+        let file = JobFile::read(&inside.join("job.toml"), folder.root.as_deref());
+        file.map_err(ReadError::Job).and_then(|file| {
+            JobInputs::read::<ReadError>(file, |named| {
+                let source = Interpreted::source(&named.name)?
+                    .with_root(named.root.as_ref().expect("a root"));
+                Ok(Loaded(Interpreted::parse(&source)?))
+            })
+        })
+    };
+    let code = |folder: &Folder, text: &str| match check(folder, text) {
+        Err(ReadError::Job(error)) => error.code(),
+        Err(error) => panic!("{error}"),
+        Ok(_) => "",
+    };
+    assert_eq!(code(&folder, OF_ALL_KINDS), "");
+    let inputs = [
+        "plate.stl",
+        "a.nc",
+        "c.toml",
+        "m.toml",
+        "s.nc",
+        "mill10.tool",
+        "other.stl",
+        "clamp.stl",
+        "stock.stl",
+    ];
+    let absolute = folder.place("outside").display().to_string();
+    for input in inputs {
+        for outside in ["../outside", &*absolute, "../job/../outside"] {
+            let changed =
+                OF_ALL_KINDS.replace(&format!("\"{input}"), &format!("\"{outside}/{input}"));
+            assert_eq!(code(&folder, &changed), "J0132", "{input} in {outside}");
+        }
+    }
+    // What a machine names is the job's too, and so is what an earlier set-up reads.
+    folder.write("job/m.toml", machine("../outside/vice.stl"));
+    assert_eq!(code(&folder, OF_ALL_KINDS), "J0132");
+    folder.write("job/m.toml", machine("vice.stl"));
+    let earlier =
+        OF_ALL_KINDS.replace("mesh = \"stock.stl\"\nspacing = 2\n", "from = \"first.toml\"\n");
+    folder.write("job/first.toml", OF_ALL_KINDS.replace("clamp.stl", "../outside/clamp.stl"));
+    assert_eq!(code(&folder, &earlier), "J0132");
+    folder.write("job/job.toml", OF_ALL_KINDS);
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::symlink;
+        for input in inputs.iter().chain(&["job.toml"]) {
+            let (place, kept) = (inside.join(input), inside.join("kept"));
+            std::fs::rename(&place, &kept).expect("renamed");
+            std::fs::write(folder.place("outside/job.toml"), OF_ALL_KINDS).expect("written");
+            symlink(folder.place("outside").join(input), &place).expect("a link");
+            let file = JobFile::read(&inside.join("job.toml"), None);
+            let code = file.err().map(|error| error.code());
+            assert_eq!(code, Some("J0132"), "a link to {input}");
+            std::fs::rename(&kept, &place).expect("renamed");
+        }
+    }
+    // Whoever runs the job allows more. What it writes stays within its own folder.
+    folder.root = Some(folder.folder.path().to_owned());
+    for input in inputs {
+        let changed = OF_ALL_KINDS.replace(&format!("\"{input}"), &format!("\"../outside/{input}"));
+        assert_eq!(code(&folder, &changed), "", "{input}");
+    }
+    for (from, to, expected) in [
+        ("rest.stl", "../rest.stl", "J0217"),
+        ("rest.stl", "../outside/rest.stl", "J0217"),
+        ("map.csv", "../map.csv", "J0217"),
+        ("rest.stl", "rest", "J0218"),
+        ("rest.stl", ".bashrc", "J0218"),
+        ("map.csv", "a.nc", "J0218"),
+        ("map.csv", "map.stl", "J0218"),
+        ("map.csv", "map.PLY", ""),
+        ("rest.stl", "new.STL", ""),
+    ] {
+        assert_eq!(code(&folder, &OF_ALL_KINDS.replace(from, to)), expected, "{to}");
+    }
+    #[cfg(unix)]
+    for target in ["../outside/plate.stl", "../outside/none.stl"] {
+        let link = inside.join("rest.stl");
+        std::os::unix::fs::symlink(target, &link).expect("a link");
+        assert_eq!(code(&folder, OF_ALL_KINDS), "J0217", "{target}");
+        std::fs::remove_file(link).expect("removed");
+    }
+}
+
+/// Files without end, and such that wait for a writer, are refused at once.
+#[test]
+#[cfg(unix)]
+fn what_is_no_regular_file_is_not_read() {
+    let folder = of_all_kinds();
+    let (inside, root) = (folder.place("job"), Some(Path::new("/")));
+    std::fs::write(inside.join("job.toml"), OF_ALL_KINDS).expect("written");
+    assert!(
+        std::process::Command::new("mkfifo")
+            .arg(inside.join("pipe"))
+            .status()
+            .expect("mkfifo")
+            .success()
+    );
+    let inputs = [
+        "plate.stl",
+        "a.nc",
+        "c.toml",
+        "m.toml",
+        "s.nc",
+        "other.stl",
+        "clamp.stl",
+        "stock.stl",
+        "job.toml",
+    ];
+    for special in [Path::new("/dev/zero"), &*inside.join("pipe")] {
+        for input in inputs {
+            let (place, kept) = (inside.join(input), inside.join("kept"));
+            std::fs::rename(&place, &kept).expect("renamed");
+            std::os::unix::fs::symlink(special, &place).expect("a link");
+            let read = JobFile::read(&inside.join("job.toml"), root)
+                .map_err(ReadError::Job)
+                .and_then(|file| {
+                    JobInputs::read::<ReadError>(file, |named| {
+                        Ok(Loaded(Interpreted::load(&named.name)?))
+                    })
+                });
+            let said = read.err().expect("a refusal").to_string();
+            assert!(said.contains("no regular file"), "{input}: {said}");
+            std::fs::rename(&kept, &place).expect("renamed");
+        }
     }
 }
 

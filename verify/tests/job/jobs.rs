@@ -4,8 +4,7 @@ use crate::scene::{
     ANY, CLEAN, FANUC, FINDINGS, HAAS, HEIDENHAIN, LINUXCNC, NONE, SIEMENS, Scene, rules,
 };
 use touchoff_verify::gcode::{ControlRules, Rule};
-use touchoff_verify::job::JobShard;
-use touchoff_verify::{Gap, Job, JobReport};
+use touchoff_verify::{Gap, JobReport};
 
 /// Every tool with motions is in the verdict.
 #[test]
@@ -352,63 +351,4 @@ fn cycle_times_are_those_of_each_tool() {
     // 10 mm of Z at 3000 mm/min.
     let [time] = scene.with_rates([3000; 3]).check(LINUXCNC).times[..] else { panic!("a time") };
     assert!((time.rapid.expect("rates") - 0.2).abs() < 1e-9 && time.unknown == 1, "{time:?}");
-}
-
-/// The report of a job whose shards were checked before is that of the whole check: findings of tools at the part and a fixture, in
-/// several readings, and of the stock.
-#[test]
-fn shards_of_a_job_give_its_report() {
-    let mut blocks = "S900 M3\n".to_owned();
-    for k in 0..300 {
-        let depth = if [40, 41, 200].contains(&k) { -1.0 } else { 3.0 };
-        let x = f64::from(k % 20) - 10.0;
-        blocks += &format!("G1 X{x:.1} Y{:.1} Z{depth:.1}\n", f64::from(k / 20) - 7.5);
-    }
-    let scene = |blocks: &str| {
-        let mut scene = Scene::new(blocks).placed().obstacle([8.0, -9.0, 0.0], [12.0, 9.0, 4.0]);
-        scene.job += "[stock]\nbox = [[-8, -8, -8], [8, 8, 1]]\nspacing = 0.5\n";
-        scene
-    };
-    let shards = |job: &Job<'_>, count: u32| -> Vec<(String, JobShard)> {
-        let shards = (1..=count).rev().map(|number| {
-            let name = format!("{number}/{count}");
-            let shard = name.parse().expect("a shard");
-            (name, job.check_shard(shard, &|_| ()).expect("a shard"))
-        });
-        shards.collect()
-    };
-    // All that is said of a job, with every digit.
-    let said = |report: &JobReport<'_>| {
-        let cuts: Vec<_> = report.cuts.iter().map(|cut| cut.stock.remaining_points()).collect();
-        let found: Vec<_> = report.findings().iter().map(|finding| finding.text.clone()).collect();
-        let pairs: Vec<_> = report.pairs.iter().map(|pair| pair.report.clone()).collect();
-        (report.verdict(), found, pairs, report.gaps.clone(), report.summaries(), cuts)
-    };
-    for rules in [rules("linuxcnc"), ControlRules::default()] {
-        let compared = scene(&blocks).with_job(rules, |job| {
-            let whole = said(&job.check(&|_| ())?);
-            assert!(whole.0 == FINDINGS && !whole.1.is_empty());
-            for count in [1, 3, 7] {
-                let joined = said(&job.check_joined(&shards(job, count), &|_| ())?);
-                assert!(joined == whole, "{count}");
-            }
-            Ok(())
-        });
-        compared.expect("a result");
-    }
-    let others = scene(&blocks.replace("Z-1.0", "Z-1.1"));
-    let others = others.with_job(rules("linuxcnc"), |job| Ok(shards(job, 3))).expect("shards");
-    let refused = scene(&blocks).with_job(rules("linuxcnc"), |job| {
-        let (three, seven) = (shards(job, 3), shards(job, 7));
-        let own = |indices: &[usize]| indices.iter().map(|k| three[*k].clone()).collect::<Vec<_>>();
-        let code = |shards: &[(String, JobShard)]| {
-            job.check_joined(shards, &|_| ()).expect_err("a fault").code()
-        };
-        assert_eq!(code(&own(&[0, 2])), "J0305");
-        assert_eq!(code(&own(&[0, 1, 1])), "J0304");
-        assert_eq!(code(&[three[0].clone(), seven[0].clone()]), "J0304");
-        assert_eq!(code(&others), "J0303");
-        Ok(())
-    });
-    refused.expect("a result");
 }
