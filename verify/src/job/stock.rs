@@ -3,7 +3,7 @@
 use super::{Job, JobError, JobGap, JobStock, JobTool};
 use crate::Move;
 use crate::gcode::BlockLine;
-use crate::stock::{DeviationPoint, MotionMode, Stock, StockContact};
+use crate::stock::{self, DeviationPoint, MotionMode, Stock, StockContact};
 use nalgebra::Point3;
 use serde::Serialize;
 use touchoff::Unit;
@@ -90,6 +90,8 @@ impl StockCut {
     /// If it cannot be made.
     pub(super) fn new(entry: &JobStock, job: &Job<'_>) -> Result<StockCut, JobError> {
         let stock = entry.build(job.unit())?;
+        // The report keeps the stock of each reading.
+        stock::check_count(stock.len() * job.program.reading_count(), stock.spacing())?;
         let tolerance = entry.tolerance.unwrap_or(stock.step());
         let found_layer = stock.found_layer(tolerance);
         let cut =

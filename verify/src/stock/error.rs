@@ -86,13 +86,13 @@ faults! {
         /// The stock has too many points.
         #[code = J0407]
         #[error(
-            "the stock has {points} points at a spacing of {spacing}, more than {MAX_POINTS}: give a spacing of about \
-             {coarser:.3e} or more"
+            "the stock has {points} points at a spacing of {spacing}, those of all readings of the program together, more than \
+             {MAX_POINTS}: give a spacing of about {coarser:.3e} or more, or state the control and the variables"
         )]
         TooManyPoints {
             /// The given spacing.
             spacing: f64,
-            /// The number of points inside.
+            /// The number of points inside, of all readings together.
             points: usize,
             /// A spacing that gives about the greatest number of points.
             coarser: f64,

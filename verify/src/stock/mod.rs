@@ -371,7 +371,7 @@ impl Stock {
 }
 
 /// Fails for a number of points of 0 or more than [`MAX_POINTS`].
-fn check_count(points: usize, spacing: f64) -> Result<(), StockError> {
+pub(crate) fn check_count(points: usize, spacing: f64) -> Result<(), StockError> {
     match points {
         0 => Err(StockError::Empty { spacing }),
         1..=MAX_POINTS => Ok(()),

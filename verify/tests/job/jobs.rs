@@ -352,3 +352,19 @@ fn cycle_times_are_those_of_each_tool() {
     let [time] = scene.with_rates([3000; 3]).check(LINUXCNC).times[..] else { panic!("a time") };
     assert!((time.rapid.expect("rates") - 0.2).abs() < 1e-9 && time.unknown == 1, "{time:?}");
 }
+
+/// Each reading of a program keeps its stock: together they have no more points than one may have.
+#[test]
+fn stocks_of_all_readings_share_a_budget() {
+    let check = |values: usize| {
+        let mut scene = Scene::new("G0 X[#500] Y0 Z20.").placed();
+        let values: Vec<String> = (0..values).map(|k| k.to_string()).collect();
+        scene.job += &format!(
+            "[stock]\nbox = [[-20, -20, -10], [20, 20, 2]]\nspacing = 0.45\n[variables]\n\"#500\" = [{}]\n",
+            values.join(", ")
+        );
+        scene
+    };
+    check(100).gives(FANUC, NONE, &["J0407 those of all readings"]);
+    assert!(!check(2).check(FANUC).has("J0407"));
+}
