@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use touchoff::{AtomicFile, EscapedLines};
 use touchoff_dsl::diagnostic::Diagnostic;
 use touchoff_dsl::source::{Source, Sources};
-use touchoff_import::Library;
+use touchoff_import::{Library, NUMBERS};
 
 /// A writer to standard output.
 ///
@@ -177,18 +177,26 @@ pub(crate) fn refuse_inputs<'a>(
     Ok(())
 }
 
-/// Returns the files that are read for an input, as far as they can be: those that a tool's file mounts, those that a tool library
-/// lists, and all tools of a folder with its list of numbers.
-fn listed(input: &Path) -> Vec<PathBuf> {
+/// Returns the files that are read for an input beside it, as far as they can be: those that a tool's file mounts, those that a tool
+/// library lists, and of a folder its tools, with what they mount, and the list of their numbers.
+pub(crate) fn listed(input: &Path) -> Vec<PathBuf> {
     if let Ok(entries) = std::fs::read_dir(input) {
-        let files: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
-        let mounted = files.iter().filter(|file| !file.is_dir()).flat_map(|file| listed(file));
-        return mounted.chain(files.iter().cloned()).collect();
+        let of_tools = |file: &PathBuf| {
+            let name = file.file_name().unwrap_or_default();
+            file.is_file() && (extension(file).as_deref() == Some("tool") || name == NUMBERS)
+        };
+        let mut files: Vec<PathBuf> =
+            entries.flatten().map(|entry| entry.path()).filter(of_tools).collect();
+        files.sort();
+        let mounted: Vec<PathBuf> = files.iter().flat_map(|file| listed(file)).collect();
+        files.extend(mounted);
+        return files;
     }
     match extension(input).as_deref() {
         Some("tool") => {
             let Ok(source) = Source::read(input) else { return Vec::new() };
-            let compiled = touchoff_dsl::compile(&source);
+            // Whoever loads the tool decides which files it may mount.
+            let compiled = touchoff_dsl::compile(&source.with_root("/"));
             compiled
                 .sources
                 .all()

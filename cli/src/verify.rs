@@ -37,13 +37,16 @@ pub(crate) fn read(
     outputs: &[&Path],
     other_inputs: &[&Path],
 ) -> Result<Inputs, Failure> {
+    let refuse = |file: &JobFile, inputs: Vec<(String, &Path)>| {
+        let outputs = outputs.iter().copied().chain(file.outputs().map(|(_, file)| file));
+        let inputs = inputs.into_iter().map(|(_, file)| file);
+        refuse_inputs(outputs, other_inputs.iter().copied().chain(inputs))
+    };
+    refuse(&file, file.files())?;
     let inputs =
         JobInputs::read::<Failure>(file, |named| LoadedTool::load(&named.name, &arguments(named)))?;
-    let outputs = outputs.iter().copied().chain(inputs.file.outputs().map(|(_, file)| file));
-    refuse_inputs(outputs, {
-        let files = inputs.files().into_iter().map(|(_, file)| file);
-        other_inputs.iter().copied().chain(files)
-    })?;
+    // Those that a machine and earlier set-ups name are known by now.
+    refuse(&inputs.file, inputs.files())?;
     for (named, loaded) in &inputs.tools {
         let info = loaded.tool().info();
         if let Some(line) = inputs.program.check_tool(named.motions, info, inputs.file.unit)? {

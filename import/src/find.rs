@@ -70,7 +70,7 @@ pub enum FindError {
 touchoff::debug_as_sentence!(FindError);
 
 /// The file of a folder that lists the numbers of its tools.
-const NUMBERS: &str = "tools.toml";
+pub const NUMBERS: &str = "tools.toml";
 
 /// The tools of a folder: file names by the number of the tool, as `T1`.
 type Numbers = BTreeMap<String, Vec<String>>;

@@ -41,7 +41,7 @@ mod tests;
 pub use entry::{Entry, Note, Skipped, Stated};
 pub use error::ImportError;
 pub use files::ToolFile;
-pub use find::{FindError, find_in_folder, write_numbers};
+pub use find::{FindError, NUMBERS, find_in_folder, write_numbers};
 
 use entry::reason;
 use files::Writer;

@@ -18,7 +18,7 @@ mod shapes;
 
 use crate::arguments::Report;
 use crate::failure::Failure;
-use crate::output::{extension, file_name, unreadable, write_file};
+use crate::output::{extension, file_name, listed, unreadable, write_file};
 use crate::picture::{Heading, Legend, close_up, facets, sheet};
 use crate::postures::map::check_part;
 use crate::progress::Progress;
@@ -31,7 +31,7 @@ use scene::{Place, Scene};
 use sha2::{Digest, Sha256};
 use shapes::ToolShape;
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 use touchoff::{Escaped, FileKind, read_regular_file};
@@ -67,13 +67,13 @@ pub(crate) fn report(arguments: Report, json: bool) -> Result<ExitCode, Failure>
     let (job_file, part) =
         if is_job { (Some(subject.clone()), None) } else { (None, Some(subject.clone())) };
     let job = verify::job_file(job_file, part, check)?;
-    let others: Vec<PathBuf> = [Some(subject.clone()), map.clone()].into_iter().flatten().collect();
-    let others: Vec<&Path> = others.iter().map(|file| &**file).collect();
+    let other_inputs: Vec<&Path> =
+        [Some(&subject), map.as_ref()].into_iter().flatten().map(|file| &**file).collect();
+    let inputs = verify::read(job, &[&output], &other_inputs)?;
     let map = match map {
         Some(file) => Some((PostureMap::read(&file)?, file)),
         None => None,
     };
-    let inputs = verify::read(job, &[&output], &others)?;
     if let Some((map, file)) = &map {
         check_part(map, file, &inputs.bodies[0].mesh, &inputs.file.part)?;
     }
@@ -221,15 +221,23 @@ impl<'a> Content<'a> {
 
         let job_file = job_file.map(|file| ("job".to_owned(), file));
         let map_file = map.map(|map| ("posture map".to_owned(), map.file));
-        let files = job_file.into_iter().chain(inputs.files()).chain(map_file);
+        let named = job_file.into_iter().chain(inputs.files()).chain(map_file);
+        let mut files: Vec<InputFile> = Vec::new();
+        for (role, input) in named {
+            // A folder of tools is what it lists.
+            let own = (!input.is_dir()).then(|| input.to_owned());
+            for file in own.into_iter().chain(listed(input)) {
+                if !files.iter().any(|known| known.name == file.display().to_string()) {
+                    files.push(InputFile::read(role.clone(), &file)?);
+                }
+            }
+        }
         Ok(Content {
             inputs,
             checked,
             map,
             comparison,
-            files: files
-                .map(|(role, file)| InputFile::read(role, file))
-                .collect::<Result<_, _>>()?,
+            files,
             scene_json: scene::json(&scene)?,
             scene_rounding: scene.map(|scene| scene.rounding_error()),
             path_caption: path.caption(unit),

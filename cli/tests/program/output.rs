@@ -261,6 +261,13 @@ fn outputs_of_a_job_are_no_inputs() {
         assert!(stderr(&output).contains(said), "{line}, {more}: {}", stderr(&output));
         assert!(content(bench.folder.path()) == kept, "{line}, {more}");
     }
+    // Without such outputs all that was read is in the report.
+    job(folder, "");
+    bench.write("tools/notes.txt", "no tool");
+    let output = bench.touchoff("report job.toml -o report.html");
+    let page = fs::read_to_string(bench.place("report.html"))
+        .unwrap_or_else(|_| panic!("{}", stderr(&output)));
+    assert!(page.contains("tools/T1.tool") && !page.contains("notes.txt"));
     // What a program that was not verified leaves is not written.
     job(built_in, "output = \"rest.stl\"");
     let output = bench.touchoff(plain);

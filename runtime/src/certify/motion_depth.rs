@@ -149,7 +149,7 @@ impl Certifier<'_> {
             Some(FirstContact::Undecided(at)) => Some(at),
             None => None,
         };
-        // Where no triangle shows it, a piece of the tool may be inside the material. It is then at some distance from its surface,
+        // A piece of the tool may be inside the material where no triangle shows it. It is then at some distance from its surface,
         // too: margins come last.
         let clear = match setting.containment(core_points, &motion.pose(0.0), tolerance) {
             Containment::Inside(surface) => return MotionVerdict::Inside(surface),

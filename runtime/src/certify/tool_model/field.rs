@@ -66,7 +66,7 @@ pub(crate) struct Scratch {
     pieces: BinaryHeap<Bounded<TrianglePiece>>,
     points: PointBatch,
     evaluations: Evaluations,
-    /// What is known of cells outside the tool, by the grid and the cell's place in it: [`Field::free_cells`].
+    /// Distances of cells outside the tool, by the grid and the cell's place in it: [`Field::free_cells`].
     free_cells: HashMap<(i32, [i64; 3]), f64>,
 }
 
