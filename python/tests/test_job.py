@@ -57,6 +57,16 @@ def test_a_gouge_is_found_and_a_clean_program_is_proved(folder):
     assert clean.verdict == "clean" and clean.findings == [] and clean.summaries
 
 
+def test_a_job_file_reads_within_its_folder_or_the_root(folder):
+    job(folder, 1.0)
+    (folder / "jobs").mkdir()
+    text = 'part = "../block.ply"\nunit = "mm"\nprogram = "../plate.nc"\ncontrol = "linuxcnc"\n[tool.1]\ntool = "../mill.tool"\n'
+    (folder / "jobs" / "job.toml").write_text(text)
+    with pytest.raises(touchoff.JobError, match="outside"):
+        touchoff.Job.load(folder / "jobs" / "job.toml").check()
+    assert touchoff.Job.load(folder / "jobs" / "job.toml", root=folder).check().summaries
+
+
 def test_findings_are_those_of_the_program(folder, program):
     job(folder, -0.5)
     text = 'part = "block.ply"\nunit = "mm"\nprogram = "plate.nc"\ncontrol = "linuxcnc"\ntolerance = 0.01\n'
