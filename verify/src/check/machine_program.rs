@@ -464,7 +464,12 @@ impl MachineProgram {
                     summary.use_of(&step);
                     continue;
                 }
-                Resolved::Unknown(cause) | Resolved::Arrival(_, cause) => {
+                Resolved::Unknown(cause)
+                | Resolved::Arrival(_, cause)
+                | Resolved::Departure(_, cause) => {
+                    if let Some(level) = execution.resolver.home_level {
+                        summary.add_way_home(&step, level);
+                    }
                     if let (UnknownCause::Start, Some(level)) =
                         (cause, execution.resolver.blind_level)
                     {
@@ -697,6 +702,10 @@ impl MoveFrame {
                 });
                 let all = MovePath::Box(Box::new(RapidBox::new(corner, ways.collect())));
                 start(straight).into_iter().chain([arriving(all)]).collect()
+            }
+            Resolved::Departure(motion, _) => {
+                let path = MovePath::Joints(Box::new(self.path(**motion, 0.0)));
+                start(**motion).into_iter().chain([arriving(path)]).collect()
             }
             Resolved::Arrival(motion, _) => {
                 let rest = self.rest(**motion, 1.0);

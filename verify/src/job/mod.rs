@@ -698,6 +698,16 @@ faults! {
              Z above it"
         )]
         LowWay { name: String },
+        /// The way to a reference position from a height at which something stands.
+        ///
+        /// G28, G30 or G53 moves Z with other axes to where only the machine knows, and so in a direction that is not known. Z alone goes
+        /// straight up, which is checked.
+        #[code = V0608]
+        #[error(
+            "the way to the reference position in X and Y is not checked, and begins lower than {name}: move Z there first, or state the \
+             origin of G54 in `work_offsets`, and `home` of the axes"
+        )]
+        LowWayHome { name: String },
     }
 }
 

@@ -10,7 +10,7 @@ use super::{Body, BodyFrame, BodyRole, Job, JobError, JobGap, JobTool, StockShap
 use crate::check::{ApproachSearch, MoveCheck, MoveRequest};
 use crate::gcode::{BlockLine, WorkOffset};
 use crate::machine::{Link, Machine, Side};
-use crate::{FindingGroup, Move, Verifier};
+use crate::{FindingGroup, MachineSummary, Move, Verifier};
 use touchoff::tool::Symmetry;
 
 /// Rounding of heights, in the part's unit.
@@ -126,8 +126,8 @@ impl<'a> Job<'a> {
         Ok(report)
     }
 
-    /// Returns the ways to the first position of each reading that are lower than the highest place of a body or of the stock. X and Y
-    /// are not known where they begin, and so what is between.
+    /// Returns the ways of each reading to the first position, and to a reference position that is not known, that are lower than the
+    /// highest place of a body or of the stock: X and Y are not known at one of their ends, and so what is between.
     fn low_ways(&self) -> impl Iterator<Item = (BlockLine, JobGap)> + '_ {
         let unit = self.unit();
         // The frame of another link has other heights.
@@ -146,12 +146,17 @@ impl<'a> Job<'a> {
             StockShape::Points(_) => None,
         });
         let highest = bodies.chain(stock).max_by(|one, other| one.1.total_cmp(&other.1));
-        let readings = self.program.readings().iter();
-        let ways = readings.filter_map(|reading| reading.summary().blind_way);
-        ways.filter_map(move |(block, level)| {
+        let ways = self.program.readings().iter().flat_map(|reading| {
+            let MachineSummary { blind_way, way_home, .. } = reading.summary();
+            let to_first = blind_way.map(|way| (way, false));
+            to_first.into_iter().chain(way_home.map(|way| (way, true)))
+        });
+        ways.filter_map(move |((block, level), leads_home)| {
             let (name, top) = highest?;
             let is_low = level / unit.millimetres() + LEVEL_ROUNDING < top;
-            is_low.then(|| (block, JobGap::LowWay { name: name.to_owned() }))
+            let name = name.to_owned();
+            let gap = if leads_home { JobGap::LowWayHome { name } } else { JobGap::LowWay { name } };
+            is_low.then_some((block, gap))
         })
     }
 

@@ -233,3 +233,28 @@ fn a_turn_whose_origin_is_not_stated_is_open() {
     let checked = scene.check_by(stated);
     assert!(!checked.has("V0418"), "{checked:#?}");
 }
+
+/// Only the machine knows its reference position, and yet Z alone goes straight up from where the tool stands: into an overhang. With
+/// other axes the way goes in any direction, and the tool must be above all when it begins.
+#[test]
+fn a_way_to_an_unknown_reference_position_is_checked_as_far_as_it_is_known() {
+    let leaving = |level: f64, way: &str| {
+        format!("{START}G0 X-30. Y0.\nG43 H1 Z5.\nG1 X0. Z{level} F200.\n{way}\nM30\n")
+    };
+    let below = |text: &str| Scene::of(text).obstacle([-1.0, -5.0, 60.0], [5.0, 5.0, 70.0]);
+    for way in ["G91 G28 Z0", "G91 G30 Z0", "G53 G0 Z0"] {
+        let text = leaving(1.0, way);
+        Scene::of(&text).gives(LINUXCNC, CLEAN, &["V0405 7"]);
+        below(&text).gives(LINUXCNC, FINDINGS, &["V0101 7 in rapid traverse"]);
+        // Beside the overhang.
+        below(&text.replace("G1 X0.", "G1 X-2.5")).gives(LINUXCNC, CLEAN, &["V0405 7"]);
+    }
+    for way in ["G91 G28 X0 Y0 Z0", "G53 G0 X0 Y0 Z0", "G91 G28 X0 Z0"] {
+        // In a pocket, whose walls are as high as the obstacle.
+        let text = leaving(1.0, way);
+        let low = Scene::of(&text).obstacle([5.0, -5.0, -5.0], [8.0, 5.0, 4.0]);
+        low.gives(LINUXCNC, NONE, &["V0608 7"]);
+        let high = Scene::of(&leaving(4.5, way)).obstacle([5.0, -5.0, -5.0], [8.0, 5.0, 4.0]);
+        high.gives(LINUXCNC, CLEAN, &["V0405 7"]);
+    }
+}

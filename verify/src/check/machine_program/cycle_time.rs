@@ -18,6 +18,7 @@ impl CycleTime {
             Resolved::Motions(motions) => Some(motions),
             Resolved::AnyRapid(_)
             | Resolved::Arrival(..)
+            | Resolved::Departure(..)
             | Resolved::Unknown(_)
             | Resolved::ToolChange
             | Resolved::Loaded(_) => None,

@@ -31,6 +31,8 @@ pub(super) enum Resolved {
     AnyRapid(Box<AnyRapid>),
     /// Only the end is known: a motion that rests there.
     Arrival(Box<JointMotion>, UnknownCause),
+    /// Only the direction is known: a motion from the start that goes as far as the axis can.
+    Departure(Box<JointMotion>, UnknownCause),
     /// The end is unknown.
     Unknown(UnknownCause),
     /// A tool change: no motion of the program.
@@ -78,6 +80,9 @@ pub(super) struct Resolver<'a> {
     chain: Option<(f64, Chain)>,
     /// The height of the tip over the part during the last step, in mm, if X or Y are not known at its start and it moves them.
     pub(super) blind_level: Option<f64>,
+    /// The height of the tip over the part, in mm, where the last step leaves for a reference position that is not known, in more axes
+    /// than Z; below all for a tilted tool.
+    pub(super) home_level: Option<f64>,
     /// The joint values after the last step, as far as they are known.
     joints: Position,
     /// The reason for which others are not.
@@ -166,6 +171,7 @@ impl<'a> Resolver<'a> {
                 && machine.has_rotary(Side::Table),
             is_length_known: true,
             blind_level: None,
+            home_level: None,
             chain: None,
             joints,
             cause: UnknownCause::Start,
@@ -177,7 +183,7 @@ impl<'a> Resolver<'a> {
     /// # Errors
     /// If the motion is not possible on the machine, or a length or an origin is missing.
     pub(super) fn resolve(&mut self, step: &Step) -> Result<Resolved, StepFault> {
-        self.blind_level = None;
+        (self.blind_level, self.home_level) = (None, None);
         if let StepPath::ToolChange(target) = step.path {
             if !step.commanded.contains(&true) {
                 return self.load(step);
@@ -228,7 +234,11 @@ impl<'a> Resolver<'a> {
         let [start, end] = ends.map(|position| known(&position));
         let Some(end) = end else {
             self.forget(&frame, &ends[1]);
-            return Ok(Resolved::Unknown(self.unknown_end(step, &current)));
+            let cause = self.unknown_end(step, &current);
+            return match start.filter(|_| cause == UnknownCause::Home) {
+                Some(start) => self.leave(step, &frame, start),
+                None => Ok(Resolved::Unknown(cause)),
+            };
         };
         self.refuse_unknown_levers(&frame, start, end)?;
         if step.state.tcp == Tcp::Transformation
@@ -252,6 +262,31 @@ impl<'a> Resolver<'a> {
         };
         self.arrive(&frame, &resolved);
         Ok(resolved)
+    }
+
+    /// Resolves the way from a known position to a reference position that is not known. Z alone goes straight up, and is followed as
+    /// far as its travel is long. With other axes the way goes in any direction; where it begins is noted.
+    fn leave(
+        &mut self,
+        step: &Step,
+        frame: &Frame,
+        start: [f64; 6],
+    ) -> Result<Resolved, StepFault> {
+        /// The travel of Z where it is not stated, in mm.
+        const TRAVEL: f64 = 1000.0;
+        let joints = frame.joints(start);
+        let chain = frame.chain.without_linear_limits();
+        if step.commanded != [false, false, true, false, false, false] {
+            let pose = chain.pose(&joints)?;
+            let is_upright = (pose.axis() - Vector3::z()).norm() <= UPRIGHT;
+            self.home_level = Some(if is_upright { pose.tip().z } else { f64::NEG_INFINITY });
+            return Ok(Resolved::Unknown(UnknownCause::Home));
+        }
+        let limits = self.machine.axis(Letter::Z).and_then(|axis| axis.limits);
+        let mut end = joints;
+        end[2] += limits.map_or(TRAVEL, |[low, high]| high - low);
+        let rise = path::line(&chain, [joints, end])?;
+        Ok(Resolved::Departure(Box::new(rise), UnknownCause::Home))
     }
 
     /// Resolves the rest of a new tool where its change has left the axes. Without their joints, or the lengths on which these depend,
@@ -367,7 +402,10 @@ impl<'a> Resolver<'a> {
             Resolved::Motions(motions) => motions.last().map(|(motion, _)| motion),
             Resolved::AnyRapid(any) => Some(&any.straight),
             Resolved::Arrival(rest, _) => Some(&**rest),
-            Resolved::Unknown(_) | Resolved::ToolChange | Resolved::Loaded(_) => None,
+            Resolved::Departure(..)
+            | Resolved::Unknown(_)
+            | Resolved::ToolChange
+            | Resolved::Loaded(_) => None,
         };
         if let Some(last) = last {
             self.joints = last.joints(1.0).map(Some);

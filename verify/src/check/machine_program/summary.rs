@@ -36,6 +36,9 @@ pub struct MachineSummary {
     /// The block of the lowest way to the first position on which X or Y are not known at the start and Z is, with the height of the
     /// tip over the origin of the part, in mm.
     pub blind_way: Option<(BlockLine, f64)>,
+    /// The block of the lowest way to a reference position that is not known, in more axes than Z, with the height of the tip over the
+    /// origin of the part where it begins, in mm.
+    pub way_home: Option<(BlockLine, f64)>,
     /// The block of the first motion under tool centre point control, or in an aligned plane, without a tool length offset, and with
     /// a tool whose length is not stated.
     pub tcp_without_length: Option<BlockLine>,
@@ -421,6 +424,13 @@ impl MachineSummary {
     pub(super) fn add_blind(&mut self, step: &Step, level: f64) {
         if self.blind_way.is_none_or(|(_, lowest)| level < lowest) {
             self.blind_way = Some((step.block(), level));
+        }
+    }
+
+    /// Notes a way from a level to a reference position that is not known, in more axes than Z.
+    pub(super) fn add_way_home(&mut self, step: &Step, level: f64) {
+        if self.way_home.is_none_or(|(_, lowest)| level < lowest) {
+            self.way_home = Some((step.block(), level));
         }
     }
 
