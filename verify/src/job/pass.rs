@@ -155,7 +155,8 @@ impl<'a> Job<'a> {
             let (name, top) = highest?;
             let is_low = level / unit.millimetres() + LEVEL_ROUNDING < top;
             let name = name.to_owned();
-            let gap = if leads_home { JobGap::LowWayHome { name } } else { JobGap::LowWay { name } };
+            let gap =
+                if leads_home { JobGap::LowWayHome { name } } else { JobGap::LowWay { name } };
             is_low.then_some((block, gap))
         })
     }
