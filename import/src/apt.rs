@@ -255,6 +255,7 @@ impl Statement {
             flute_length,
             length,
             shoulder: None,
+            cutting_neck: 0.0,
             shank_diameter: None,
         });
         Ok(entry)

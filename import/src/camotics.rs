@@ -60,6 +60,7 @@ fn entry(number: u32, tool: &Object) -> Result<Entry, String> {
         flute_length: length,
         length,
         shoulder: None,
+        cutting_neck: 0.0,
         shank_diameter: None,
     });
     Ok(entry)

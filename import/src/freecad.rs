@@ -1,7 +1,7 @@
 //! Tool bits (`.fctb`), libraries (`.fctl`) and holders (`.fcholder`) of FreeCAD.
 //!
 //! A bit names one of FreeCAD's shapes and the values of its parameters, as texts with units, whose decimals follow a
-//! point or a comma. A bit whose shape was changed by its user cannot be told from one of FreeCAD's own.
+//! point or a comma. A length without a unit is in inches if the parameter `Units` says so, and else in millimetres. A bit whose shape was changed by its user cannot be told from one of FreeCAD's own.
 
 use super::entry::{Entry, Holder, Note, Section, Stated};
 use super::json::{self, Object, pair, string, tool_number};
@@ -72,14 +72,12 @@ fn find_bit(tool: &Value, folder: &Path, root: Option<&Path>) -> Result<PathBuf,
     if path.is_empty() || !relative.components().all(|part| matches!(part, Component::Normal(_))) {
         return Err(problem("its path is not below the library's folder".to_owned()));
     }
-    let places: [PathBuf; 3] = [
-        folder.join(relative),
-        folder.join("../Bit").join(relative),
-        folder.join("Bit").join(relative),
-    ];
+    // Folders of vendors have names in lower case.
+    let folders = ["", "../Bit", "../bit", "Bit", "bit"];
     let is_readable =
         |place: &PathBuf| place.is_file() && root.is_none_or(|root| is_within(place, root));
-    places.into_iter().find(is_readable).ok_or_else(|| {
+    let mut places = folders.iter().map(|place| folder.join(place).join(relative));
+    places.find(is_readable).ok_or_else(|| {
         let reason =
             "there is no such file in the library's folder, `Bit` or `../Bit`: copy it there";
         problem(reason.to_owned())
@@ -136,7 +134,7 @@ fn read_shape(bit: &Object, title: &str, number: Option<u32>) -> Result<Entry, S
     entry.number = number;
     let empty = Object::new();
     let parameters = bit.get("parameter").and_then(Value::as_object).unwrap_or(&empty);
-    entry.cutter = Some(cutter(shape, &Parameters(parameters), &mut entry.notes)?);
+    entry.cutter = Some(cutter(shape, &Parameters::new(parameters), &mut entry.notes)?);
     Ok(entry)
 }
 
@@ -154,6 +152,11 @@ fn cutter(stated: &str, of: &Parameters<'_>, notes: &mut Vec<Note>) -> Result<Cu
     let shape = match plain.as_str() {
         "torus" => "bullnose",
         "taperballnose" | "conicalballnose" => "taperedballnose",
+        // Shapes of add-ons that bring libraries of Fusion 360.
+        "fusionflatendmill" => "endmill",
+        "fusionballendmill" => "ballend",
+        "fusionbullnoseendmill" => "bullnose",
+        "fusiondrill" => "drill",
         other => other,
     };
     if shape.starts_with("iso") {
@@ -174,9 +177,18 @@ fn cutter(stated: &str, of: &Parameters<'_>, notes: &mut Vec<Note>) -> Result<Cu
             taken: "shape",
         });
     }
-    let mut shoulder = None;
+    let (mut shoulder, mut cutting_neck) = (None, 0.0);
     let flutes = || of.length("CuttingEdgeHeight");
-    let mut diameter = of.length("Diameter")?;
+    let mut diameter = match (shape, of.optional_length("Diameter")?) {
+        (_, Some(diameter)) => diameter,
+        // It follows from the others.
+        ("chamfer", None) => {
+            let tip_diameter = of.optional_length("TipDiameter")?.unwrap_or(0.0);
+            let half_angle = of.angle("CuttingEdgeAngle")? / 2.0;
+            super::outline::rounded(tip_diameter + 2.0 * flutes()? * half_angle.to_radians().tan())
+        }
+        (_, None) => of.length("Diameter")?,
+    };
     let (shape, flute_length) = match shape {
         "endmill" | "reamer" => (Shape::Flat { corner: 0.0 }, flutes()?),
         "ballend" => (Shape::Ball, flutes()?),
@@ -205,10 +217,20 @@ fn cutter(stated: &str, of: &Parameters<'_>, notes: &mut Vec<Note>) -> Result<Cu
             let flute_length = super::outline::rounded(cone + flutes()?);
             (Shape::Drill { tip_diameter, point_angle }, flute_length)
         }
+        "fusionchamfermill" => {
+            let tip_diameter = of.length_or("TipDiameter", "tip diameter", 0.0, notes)?;
+            (Shape::Chamfer { tip_diameter, half_angle: of.angle("TipAngle")? / 2.0 }, flutes()?)
+        }
+        "keyway" => {
+            (shoulder, cutting_neck) = of.neck(flutes()?)?;
+            (Shape::Slot { corner: 0.0 }, flutes()?)
+        }
+        "lollipop" => {
+            (shoulder, cutting_neck) = of.neck(flutes()?)?;
+            (Shape::Lollipop, flutes()?)
+        }
         "dovetail" => {
-            let neck = of.length("NeckDiameter")?;
-            shoulder =
-                Some((super::outline::rounded(flutes()? + of.length("NeckHeight")?), Some(neck)));
+            (shoulder, cutting_neck) = of.neck(flutes()?)?;
             (
                 Shape::Dovetail { corner: 0.0, half_angle: of.angle("CuttingEdgeAngle")? / 2.0 },
                 flutes()?,
@@ -221,7 +243,10 @@ fn cutter(stated: &str, of: &Parameters<'_>, notes: &mut Vec<Note>) -> Result<Cu
                 notes.push(Note::Unstated("flute length", drawn));
                 length
             });
-            (Shape::Drill { tip_diameter: 0.0, point_angle: of.angle("TipAngle")? }, flutes)
+            let point_angle = of.optional_angle("TipAngle")?;
+            let point_angle = point_angle
+                .unwrap_or_else(|| Note::default_taken(notes, "tip angle", DRILL_TIP_ANGLE));
+            (Shape::Drill { tip_diameter: 0.0, point_angle }, flutes)
         }
         "tap" => {
             let point_angle = of.angle("TipAngle")?;
@@ -254,16 +279,27 @@ fn cutter(stated: &str, of: &Parameters<'_>, notes: &mut Vec<Note>) -> Result<Cu
                 flute_length: super::outline::rounded(thickness + cap_height),
                 length: super::outline::rounded(length + cap_height),
                 shoulder: None,
+                cutting_neck: 0.0,
                 shank_diameter,
             });
         }
         "probe" => (Shape::Probe, diameter / 2.0),
         "threadmill" => {
-            let neck_diameter = of.length("NeckDiameter")?;
-            shoulder = Some((of.length("NeckLength")?, Some(neck_diameter)));
+            // The shape's own values stand for those that a bit leaves out.
+            let own = match THREAD_NECK_DIAMETER < diameter {
+                true => THREAD_NECK_DIAMETER,
+                false => super::outline::rounded(THREAD_NECK_FRACTION * diameter),
+            };
+            let neck_diameter = of.length_or("NeckDiameter", "neck diameter", own, notes)?;
+            let own = THREAD_NECK_LENGTH.min(length);
+            let neck_length = of.length_or("NeckLength", "length of the neck", own, notes)?;
+            shoulder = Some((neck_length, Some(neck_diameter)));
             let crest = of.length_or("Crest", "width of the crest", 0.0, notes)?;
-            let key =
-                if of.0.contains_key("CuttingAngle") { "CuttingAngle" } else { "cuttingAngle" };
+            let key = if of.values.contains_key("CuttingAngle") {
+                "CuttingAngle"
+            } else {
+                "cuttingAngle"
+            };
             let angle = of.optional_angle(key)?;
             let angle =
                 angle.unwrap_or_else(|| Note::default_taken(notes, "angle of the thread", 60.0));
@@ -271,7 +307,7 @@ fn cutter(stated: &str, of: &Parameters<'_>, notes: &mut Vec<Note>) -> Result<Cu
         }
         _ => return Err(format!("the shape `{stated}` is none of FreeCAD's own")),
     };
-    Ok(Cutter { shape, diameter, flute_length, length, shoulder, shank_diameter })
+    Ok(Cutter { shape, diameter, flute_length, length, shoulder, cutting_neck, shank_diameter })
 }
 
 /// Returns the corner radius of a bull nose; older bits state the flat part or the torus instead.
@@ -286,10 +322,38 @@ fn corner(of: &Parameters<'_>, diameter: f64) -> Result<f64, String> {
     }
 }
 
+/// The tip angle of FreeCAD's drill, in degrees.
+const DRILL_TIP_ANGLE: f64 = 119.0;
+
+/// Diameter and length of the neck of FreeCAD's thread mill, in mm, and the fraction of the cutter that the neck of a thinner one has.
+const THREAD_NECK_DIAMETER: f64 = 3.0;
+const THREAD_NECK_LENGTH: f64 = 20.0;
+const THREAD_NECK_FRACTION: f64 = 0.6;
+
 /// The parameters of a bit.
-struct Parameters<'a>(&'a Object);
+struct Parameters<'a> {
+    values: &'a Object,
+    /// The unit of lengths without one, in mm.
+    bare: f64,
+}
 
 impl Parameters<'_> {
+    fn new(values: &Object) -> Parameters<'_> {
+        let units = string(values, "Units").to_ascii_lowercase();
+        let bare = match units.as_str() {
+            "imperial" | "inch" | "in" => 25.4,
+            _ => 1.0,
+        };
+        Parameters { values, bare }
+    }
+
+    /// Returns the height and the diameter of the neck above a cutting part, and the length of its lower end that cuts.
+    fn neck(&self, cutting: f64) -> Result<(Option<(f64, Option<f64>)>, f64), String> {
+        let height = super::outline::rounded(cutting + self.length("NeckHeight")?);
+        let edges = self.optional_length("NeckCuttingHeight")?.unwrap_or(0.0);
+        Ok((Some((height, Some(self.length("NeckDiameter")?))), edges))
+    }
+
     /// Returns a length in mm.
     fn length(&self, key: &str) -> Result<f64, String> {
         self.optional_length(key)?.ok_or_else(|| format!("it does not state its `{key}`"))
@@ -297,7 +361,8 @@ impl Parameters<'_> {
 
     fn optional_length(&self, key: &str) -> Result<Option<f64>, String> {
         self.quantity(key, |unit| match unit {
-            "" | "mm" => Some(1.0),
+            "" => Some(self.bare),
+            "mm" => Some(1.0),
             "cm" => Some(10.0),
             "m" => Some(1000.0),
             "in" | "\"" | "inch" => Some(25.4),
@@ -337,9 +402,17 @@ impl Parameters<'_> {
         key: &str,
         factor: impl Fn(&str) -> Option<f64>,
     ) -> Result<Option<f64>, String> {
-        let text = match self.0.get(key) {
+        let text = match self.values.get(key) {
             None | Some(Value::Null) => return Ok(None),
-            Some(Value::Number(number)) => return Ok(number.as_f64()),
+            Some(Value::Number(number)) => {
+                let value = number.as_f64();
+                return Ok(match factor("") {
+                    Some(bare) if bare != 1.0 => {
+                        value.map(|value| super::outline::rounded(value * bare))
+                    }
+                    _ => value,
+                });
+            }
             Some(Value::String(text)) => text.trim(),
             Some(other) => return Err(format!("its `{key}` is {other}, no quantity")),
         };

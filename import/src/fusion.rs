@@ -166,13 +166,16 @@ fn cutter(
             ));
             Shape::Form(profile(geometry.0.get("profile"))?)
         }
-        "thread mill" => Shape::Thread {
-            pitch: pitch(geometry, notes)?,
-            angle: geometry.or("thread-profile-angle", "angle of the thread", 60.0, notes)?,
+        "thread mill" => {
             // Teeth that do not fit the length of the flutes are not drawn.
-            teeth: geometry.or("NT", "number of teeth", 1.0, notes)?.clamp(1.0, 1e6) as u32,
-            crest: crest(geometry, notes)?,
-        },
+            let teeth = geometry.or("NT", "number of teeth", 1.0, notes)?.clamp(1.0, 1e6) as u32;
+            Shape::Thread {
+                pitch: pitch(geometry, teeth, notes)?,
+                angle: geometry.or("thread-profile-angle", "angle of the thread", 60.0, notes)?,
+                teeth,
+                crest: crest(geometry, notes)?,
+            }
+        }
         "drill" => {
             Shape::Drill { tip_diameter: 0.0, point_angle: geometry.require("SIG", "point angle")? }
         }
@@ -208,19 +211,63 @@ fn cutter(
     if shank_diameter.is_none() {
         notes.push(Note::no_shank_diameter());
     }
+    // Probes state neither since version 36.
+    let (flute_length, length) = match kind {
+        "probe" => {
+            let length = geometry.get("OAL")?;
+            let length = match length.filter(|length| *length > 0.0) {
+                Some(length) => length,
+                None => {
+                    let below = geometry.require("LB", "overall length")?;
+                    let drawn = "the stem is drawn up to the length below the holder".to_owned();
+                    notes.push(Note::Unstated("overall length", drawn));
+                    below
+                }
+            };
+            (geometry.or("LCF", "flute length", diameter / 2.0, notes)?, length)
+        }
+        _ => (geometry.require("LCF", "flute length")?, geometry.require("OAL", "overall length")?),
+    };
     Ok(Cutter {
         shape,
         diameter,
-        flute_length: geometry.require("LCF", "flute length")?,
-        length: geometry.require("OAL", "overall length")?,
+        flute_length,
+        length,
         shoulder,
+        cutting_neck: 0.0,
         shank_diameter: shank_diameter.filter(|shank| *shank > 0.0),
     })
 }
 
-/// Returns the pitch of a thread mill. Samples of Fusion 360 have 0, which states none.
-fn pitch(geometry: &Geometry<'_>, notes: &mut Vec<Note>) -> Result<f64, String> {
-    let pitch = geometry.require("TP", "thread pitch")?;
+/// Returns the pitch of a thread mill: `TP`, or from version 36 on the least and the greatest that it cuts, `TPN` and `TPX`. Samples of
+/// Fusion 360 have 0, which states none. A single tooth cuts several pitches, and is drawn for the greatest; several teeth have one.
+fn pitch(geometry: &Geometry<'_>, teeth: u32, notes: &mut Vec<Note>) -> Result<f64, String> {
+    let stated = |key| geometry.get(key).map(|pitch| pitch.filter(|pitch| *pitch != 0.0));
+    let (least, greatest) = (stated("TPN")?, stated("TPX")?);
+    let pitch = match (least.or(greatest), greatest.or(least)) {
+        (Some(least), Some(greatest)) if least < greatest => {
+            if teeth > 1 {
+                return Err(format!(
+                    "it has {teeth} teeth and pitches from {least} to {greatest}, but teeth are one pitch apart: state one pitch in \
+                     the library and export it again"
+                ));
+            }
+            let drawn = format!("the tooth is drawn for the greatest pitch, {greatest}");
+            notes.push(Note::Unstated("pitch of the thread that is cut", drawn));
+            greatest
+        }
+        (Some(_), Some(greatest)) => {
+            if let Some(other) = stated("TP")?.filter(|pitch| *pitch != greatest) {
+                notes.push(Note::Contradiction {
+                    first: Stated { what: "thread pitch", value: other },
+                    second: Stated { what: "least and greatest pitch", value: greatest },
+                    taken: "latter",
+                });
+            }
+            greatest
+        }
+        _ => geometry.require("TP", "thread pitch")?,
+    };
     if pitch == 0.0 {
         let drawn = "the teeth are drawn as a cylinder".to_owned();
         notes.push(Note::Unstated("thread pitch", drawn));

@@ -12,7 +12,9 @@ use quick_xml::events::{BytesStart, Event};
 use serde_json::{Value, json};
 
 /// The names of dimensions in HSM and in Fusion 360.
-const DIMENSIONS: [(&str, &str); 25] = [
+const DIMENSIONS: [(&str, &str); 27] = [
+    ("TPN", "TPN"),
+    ("TPX", "TPX"),
     ("axial-distance", "axial-distance"),
     ("body-length", "LB"),
     ("corner-radius", "RE"),

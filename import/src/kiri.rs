@@ -53,6 +53,7 @@ fn read_tool(tool: &Object) -> Result<Entry, String> {
         flute_length,
         length: super::outline::rounded(flute_length + shaft_length),
         shoulder: None,
+        cutting_neck: 0.0,
         shank_diameter: Some(shank).filter(|shank| *shank > 0.0),
     });
     Ok(entry)

@@ -5,8 +5,10 @@ use serde_json::{Value, json};
 use touchoff::tool::{Interpreted, Tool};
 
 mod formats;
+mod freecad;
 mod segments;
 mod threads;
+mod versions;
 
 fn library(tool: &Value) -> Library {
     let text = json!({ "version": 33, "data": [tool] }).to_string();

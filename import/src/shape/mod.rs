@@ -20,6 +20,8 @@ pub(super) struct Cutter {
     pub(super) length: f64,
     /// The length and the diameter of the neck above the flutes.
     pub(super) shoulder: Option<(f64, Option<f64>)>,
+    /// The length of the neck's lower end that cuts.
+    pub(super) cutting_neck: f64,
     pub(super) shank_diameter: Option<f64>,
 }
 
@@ -352,6 +354,13 @@ impl Cutter {
                 None => from.d.clone(),
             };
             outline.line(&d, &from.z, NECK);
+            if self.cutting_neck > 0.0 {
+                // Cutting edges end with the neck.
+                let edges = outline.param("cutting_neck", self.cutting_neck);
+                let end = from.z.plus(&edges);
+                let end = if end.value() < shoulder { end } else { z.clone() };
+                outline.line(&d, &end, FLUTE);
+            }
             outline.line(&d, &z, NECK);
         }
         let from = outline.end().clone();

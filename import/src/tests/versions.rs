@@ -1,0 +1,85 @@
+//! Libraries of Fusion 360 and HSM since version 36: pitches of thread mills, and probes.
+
+use super::super::{Library, Note};
+use super::{corners, fusion, library, loaded};
+use serde_json::{Value, json};
+
+/// Returns a thread mill with some teeth, 4 mm wide, and these pitches.
+fn mill(teeth: u32, pitches: &Value) -> Value {
+    let mut dimensions = json!({ "DC": 4, "NT": teeth, "LCF": 8, "SFDM": 6, "shoulder-length": 10,
+        "shoulder-diameter": 2.5, "thread-profile-angle": 60, "thread-tip-type": "point" });
+    for (key, pitch) in pitches.as_object().expect("an object") {
+        dimensions[key] = pitch.clone();
+    }
+    fusion("thread mill", &dimensions)
+}
+
+#[test]
+fn a_thread_mill_has_its_least_and_greatest_pitch() {
+    for teeth in [1, 5] {
+        let (entry, _) = loaded(&mill(teeth, &json!({ "TPN": 0.8, "TPX": 0.8 })));
+        assert_eq!(entry.notes, []);
+        let both = corners(&mill(teeth, &json!({ "TPN": 0.8, "TPX": 0.8 })));
+        assert_eq!(both, corners(&mill(teeth, &json!({ "TP": 0.8 }))));
+        // Fusion 360 writes 0 for what it does not know.
+        assert_eq!(both, corners(&mill(teeth, &json!({ "TPN": 0, "TPX": 0.8, "TP": 0 }))));
+    }
+    // One tooth cuts several pitches, several teeth are one pitch apart.
+    let range = json!({ "TPN": 0.6, "TPX": 1.0 });
+    let (entry, _) = loaded(&mill(1, &range));
+    let [Note::Unstated("pitch of the thread that is cut", drawn)] = &entry.notes[..] else {
+        panic!("{:?}", entry.notes);
+    };
+    assert!(drawn.ends_with("greatest pitch, 1"), "{drawn}");
+    assert_eq!(corners(&mill(1, &range)), corners(&mill(1, &json!({ "TP": 1.0 }))));
+    let several = library(&mill(5, &range));
+    assert!(several.tools().is_empty());
+    let reason = &several.skipped()[0].reason;
+    assert!(reason.contains("5 teeth and pitches from 0.6 to 1"), "{reason}");
+    let other = loaded(&mill(1, &json!({ "TPN": 0.8, "TPX": 0.8, "TP": 0.5 }))).0;
+    assert!(matches!(other.notes[..], [Note::Contradiction { .. }]), "{:?}", other.notes);
+}
+
+#[test]
+fn hsm_has_the_pitches_of_fusion() {
+    let text = r#"<tool-library version="36"><tool type="thread mill" unit="millimeters"><description>a tool</description>
+        <body TPN="0.8" TPX="0.8" diameter="4" flute-length="8" number-of-flutes="3" number-of-teeth="5"
+        overall-length="60" shaft-diameter="6" shoulder-diameter="2.5" shoulder-length="10" thread-profile-angle="60"
+        thread-tip-type="point"/></tool></tool-library>"#;
+    let hsm = Library::parse("l.hsmlib".as_ref(), text.as_bytes()).expect("a library");
+    let fusion = library(&mill(5, &json!({ "TPN": 0.8, "TPX": 0.8 })));
+    let body = |library: &Library| {
+        let text = library.tools()[0].files[0].text.clone();
+        // The first line names the library.
+        text.split_once('\n').map(|(_, rest)| rest.to_owned())
+    };
+    assert_eq!(body(&hsm), body(&fusion));
+}
+
+#[test]
+fn a_probe_without_lengths_ends_at_its_holder() {
+    let probe = |dimensions: Value| {
+        json!({ "type": "probe", "unit": "millimeters", "description": "a probe",
+            "geometry": dimensions })
+    };
+    let (entry, tool) = loaded(&probe(json!({ "DC": 6, "SFDM": 4, "LB": 35 })));
+    let unstated: Vec<&str> = entry
+        .notes
+        .iter()
+        .map(|note| match note {
+            Note::Unstated(what, _) => *what,
+            other => panic!("{other}"),
+        })
+        .collect();
+    assert_eq!(unstated, ["overall length", "flute length"]);
+    let found: Vec<[f64; 2]> =
+        touchoff::Tool::info(&tool).outline.iter().map(|segment| segment.to).collect();
+    let neck = 3.0 + 5f64.sqrt();
+    let expected = [[3.0, 3.0], [2.0, neck], [2.0, 35.0], [0.0, 35.0]];
+    assert_eq!(found.len(), expected.len(), "{found:?}");
+    for (found, expected) in found.iter().zip(expected) {
+        assert!((found[0] - expected[0]).hypot(found[1] - expected[1]) < 1e-12, "{found:?}");
+    }
+    let nowhere = library(&probe(json!({ "DC": 6, "SFDM": 4 })));
+    assert!(nowhere.skipped()[0].reason.contains("overall length"), "{:?}", nowhere.skipped());
+}
