@@ -49,6 +49,7 @@ use checker::Checker;
 use std::collections::BTreeSet;
 use std::fmt;
 use std::sync::Mutex;
+use touchoff::cancellation;
 use touchoff::certify::{Certifier, TriangleBvh};
 use touchoff::tool::{Tool, ToolInfo};
 use touchoff::{Shard, SurfaceId, Unit};
@@ -432,7 +433,12 @@ impl<'a> MoveCheck<'a> {
 /// Applies a function to consecutive moves that share certifiers, with the feature `parallel` on all cores. It is given the index
 /// of the first.
 fn map_tasks<R: Send>(moves: &[Move], map: impl Fn(usize, &[Move]) -> R + Sync) -> Vec<R> {
-    let task = |(task, moves): (usize, &[Move])| map(task * MOVES_PER_TASK, moves);
+    let current = cancellation::current();
+    let task = |(task, moves): (usize, &[Move])| {
+        let _entered = current.enter();
+        cancellation::check();
+        map(task * MOVES_PER_TASK, moves)
+    };
     #[cfg(feature = "parallel")]
     {
         use rayon::prelude::*;
