@@ -36,7 +36,7 @@ pub(crate) fn sweep<'py>(
     allow: Vec<(String, f64)>,
     surface_only: bool,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let directions = spread(directions)?;
+    let directions = spread(py, directions)?;
     let tools: Vec<&Tool> = tools.iter().map(|tool| &**tool).collect();
     check_size(part.mesh()?.triangles().len(), tools.len(), directions.list().len())?;
     let (mesh, bvh) = (part.mesh()?, part.triangles(py)?);
@@ -98,7 +98,7 @@ impl Study {
         allow: Vec<(String, f64)>,
         surface_only: bool,
     ) -> PyResult<Study> {
-        let directions = spread(directions)?;
+        let directions = spread(py, directions)?;
         let mesh = part.get().mesh()?;
         if !surface_only {
             part.get().require_inside(py)?;
@@ -183,9 +183,9 @@ pub(crate) fn merge_shards(py: Python<'_>, files: Vec<PathBuf>, table: PathBuf) 
 }
 
 /// Returns directions, given their number per hemisphere.
-fn spread(hemisphere: usize) -> PyResult<Directions> {
+fn spread(py: Python<'_>, hemisphere: usize) -> PyResult<Directions> {
     if (1..=Directions::MAX_HEMISPHERE).contains(&hemisphere) {
-        return Ok(Directions::spread(hemisphere));
+        return on_all_cores(py, || Directions::spread(hemisphere));
     }
     let limit = Directions::MAX_HEMISPHERE;
     Err(refused(format!("directions: {hemisphere} per hemisphere: give 1 to {limit}")))

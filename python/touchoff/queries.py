@@ -201,7 +201,7 @@ def wrench(
     part: Part,
     poses: ArrayLike,
     *,
-    law: Literal["thesis", "gradient", "facing"] = "thesis",
+    law: Literal["thesis", "gradient", "facing"] = "gradient",
     weights: Literal["area", "unit"] = "area",
     centre: ArrayLike = (0.0, 0.0, 0.0),
 ) -> Wrench:
@@ -214,7 +214,9 @@ def wrench(
     poses
         Tips and axes (n, 6), tips and quaternions x, y, z, w (n, 7), or matrices (n, 4, 4); or one pose.
     law
-        The force of a contact: that of Ho's thesis, the gradient of an energy, or the thesis's without points that face away.
+        The force of a contact: the gradient of an energy, that of Ho's thesis, or the thesis's without points that face away. Under
+        `gradient` it is the magnitude times its slope: a constant magnitude exerts no force, a factor counts squared, and directions
+        that the tool's file writes are not used.
     weights
         A point's weight: its share of the surface, or 1.
     centre

@@ -357,6 +357,7 @@ impl<'a> MoveCheck<'a> {
         step: Move,
         progress: &(dyn Fn(usize) + Sync),
     ) -> Result<(), VerifyError> {
+        cancellation::check();
         self.batch.push(step);
         match self.batch.len() < MOVES_PER_BATCH {
             true => Ok(()),

@@ -11,7 +11,7 @@
 
 use super::{CutterLocation, Located, PLAIN_NUMBER, ProgramFault, axis_pose, lines, number, shown};
 use nalgebra::Point3;
-use touchoff::Pose;
+use touchoff::{Pose, cancellation};
 
 const AXIS: [&str; 6] = ["x", "y", "z", "i", "j", "k"];
 const QUATERNION: [&str; 7] = ["x", "y", "z", "qx", "qy", "qz", "qw"];
@@ -34,6 +34,7 @@ pub(super) fn read(text: &str) -> Result<Vec<CutterLocation>, Located> {
     // The rows so far have a column for the end mark; and whether it was there.
     let (mut is_marked, mut has_ended) = (false, false);
     for (line, raw) in lines(text) {
+        cancellation::check();
         let row = raw.split_once('#').map_or(raw, |(row, _)| row.trim_end());
         if row.is_empty() {
             continue;
