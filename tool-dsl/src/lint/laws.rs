@@ -3,7 +3,7 @@
 
 use super::{Linter, ROUNDING, norm};
 use crate::bound::Extent;
-use crate::diagnostic::{CheckKind, Diagnostic, FormattedNumber, Subject};
+use crate::diagnostic::{CheckKind, Diagnostic, FormattedNumber, Subject, any_error};
 use crate::expr::{Id, Node};
 use crate::geometry::outline::{Point, Segment, points_with_normals};
 use crate::model::{DirectionSource, Model};
@@ -161,6 +161,13 @@ impl Linter<'_> {
 
     /// Reports what the force law `gradient` makes of magnitudes and directions that the file writes, if that is surprising.
     pub(super) fn report_slopes(&mut self) {
+        // Of a tool that is refused, no force is asked.
+        if any_error(&self.found) {
+            return;
+        }
+        // Directions of `regions smooth` are no mistake.
+        let over = self.model.section.as_ref().and_then(|section| section.over.as_ref());
+        let is_smooth = over.is_some_and(|over| !over.distances.is_empty());
         for (index, slopes) in std::mem::take(&mut self.slopes).into_iter().enumerate() {
             let MagnitudeSlope { farthest, largest, oblique } = slopes;
             let region = &self.model.regions[index];
@@ -181,7 +188,8 @@ impl Linter<'_> {
                 let kind = CheckKind::SlopeOfMagnitude { region, slope, unit, location };
                 self.report(Diagnostic::new(of_magnitude, kind));
             }
-            if let Some((point, angle)) = oblique.filter(|(_, angle)| *angle > ANGLE_TOLERANCE) {
+            let oblique = oblique.filter(|(_, angle)| *angle > ANGLE_TOLERANCE && !is_smooth);
+            if let Some((point, angle)) = oblique {
                 let degrees = FormattedNumber(angle.to_degrees());
                 let location = self.format_point(point);
                 let kind = CheckKind::UnusedDirection { region: name, degrees, location };
