@@ -214,3 +214,29 @@ def test_a_map_of_the_program_is_read(program, block, tmp_path):
     assert (read.tip == found.tip).all() and (read.clearance == found.clearance).all()
     with pytest.raises(ValueError, match="block.stl"):
         touchoff.PostureMap.read(stl)
+
+
+def test_a_path_is_a_table_for_any_reader(program, tmp_path):
+    import csv
+    import subprocess
+
+    from conftest import write_ply
+
+    block = touchoff.Part.cuboid((-6, -6, -4), (6, 6, 0), unit="mm")
+    write_ply(tmp_path / "block.ply", block)
+    part = ["--part", tmp_path / "block.ply"]
+    sweep = [program, "sweep", *part, "--unit", "mm", "--tool", "D2Ball", "--directions", "20", "-o", tmp_path / "block.postures"]
+    path = [program, "path", tmp_path / "block.postures", *part, "--tool", "D2Ball", "--stepover", "4", "-o", tmp_path / "path.csv"]
+    for command in (sweep, path):
+        subprocess.run(command, check=True, capture_output=True)
+    with open(tmp_path / "path.csv", newline="") as file:
+        rows = list(csv.DictReader(file, strict=True))
+    poses = np.array([[float(row[name]) for name in "xyzijk"] for row in rows])
+    assert len(poses) > 20 and np.allclose(np.linalg.norm(poses[:, 3:], axis=1), 1)
+    assert (touchoff.certified_depth(touchoff.Tool.library("D2Ball"), block, poses).low < 0.02).all()
+    keys = {"part": "block.ply", "unit": "mm", "program": "path.csv", "tolerance": 0.02, "tool": {1: {"tool": "D2Ball"}}}
+    assert touchoff.Job(folder=tmp_path, **keys).check().verdict == "clean"
+    # The same with pandas, which knows no comments unless it is told.
+    pandas = pytest.importorskip("pandas")
+    table = pandas.read_csv(tmp_path / "path.csv")
+    assert (table[list("xyzijk")].to_numpy(float) == poses).all()
