@@ -1,8 +1,9 @@
 //! A contact stiffness that suits a tool, a part and a device.
 //!
 //! The stiffness follows from the depth to which the device's largest force may press the tool into a plane. On the one hand that depth is
-//! small against the tool, so that the contact is that of its shape. On the other hand it is small against the thinnest place of the
-//! part, so that the tool does not come near the other side, where the points of both sides would push it through.
+//! small against the tool and the deflection of the device, so that the hand feels the shape of the part. On the other hand it is small
+//! against the thinnest place of the part, so that the tool does not come near the other side, where the points of both sides would
+//! push it through.
 
 use super::DeviceLimits;
 use nalgebra::{Point3, Vector3};
@@ -12,6 +13,8 @@ use touchoff::{Cloud, Law, Part, Pose, Probe, Tool, Unit};
 
 /// The depth relative to the radius of the contact on a plane: a ball is then pressed in by an eighth of its radius at most.
 const DEPTH_OF_CONTACT: f64 = 0.25;
+/// The depth relative to the deflection of the device's stiffest spring: the contact is that much stiffer than the device.
+const DEPTH_OF_DEVICE: f64 = 0.1;
 /// The depth relative to the thinnest place of the part.
 const DEPTH_OF_THICKNESS: f64 = 0.25;
 /// The least depth relative to that which follows from the tool: thinner places cannot be rendered.
@@ -107,6 +110,8 @@ pub enum StiffnessSource {
     Given,
     /// The depth of the contact is a fraction of its radius.
     Tool,
+    /// The depth of the contact is a fraction of the deflection of the device's stiffest spring.
+    Device,
     /// The depth of the contact is a fraction of the part's least thickness.
     Thickness,
     /// It is 1, since the tool exerts no force under the law.
@@ -196,8 +201,9 @@ impl OnPlane<'_> {
 }
 
 impl ContactStiffness {
-    /// Derives a stiffness from a tool, a part and a device: the device's largest force presses the tool by an eighth of a ball's radius,
-    /// a quarter of the radius of a flat end, or a quarter of the part's least thickness, whichever is less.
+    /// Derives a stiffness from a tool, a part and a device. The device's largest force presses the tool by an eighth of a ball's radius
+    /// or a quarter of the radius of a flat end, a tenth of the deflection of the device's stiffest spring, or a quarter of the part's
+    /// least thickness, whichever is less.
     pub fn derived(
         part: &Part,
         tool: &dyn Tool,
@@ -206,13 +212,18 @@ impl ContactStiffness {
     ) -> ContactStiffness {
         let plane = ContactStiffness::plane(part, tool, law);
         let thin = ThinPlace::of(part);
-        let of_tool = plane.depth();
+        let of_device = DEPTH_OF_DEVICE * limits.force / limits.stiffness;
+        let of_device = of_device * Unit::Millimetre.factor_to(part.unit());
+        let (of_tool, source) = match plane.depth() {
+            of_tool if of_tool <= of_device => (of_tool, StiffnessSource::Tool),
+            _ => (of_device, StiffnessSource::Device),
+        };
         let of_part = thin.map(|thin| DEPTH_OF_THICKNESS * thin.thickness);
         let (depth, source) = match of_part {
             Some(of_part) if of_part < of_tool => {
                 (of_part.max(MIN_THIN_DEPTH * of_tool), StiffnessSource::Thickness)
             }
-            _ => (of_tool, StiffnessSource::Tool),
+            _ => (of_tool, source),
         };
         let known = |stiffness, depth, radius, source| {
             let made = ContactStiffness::given(1.0, part, law, limits);
@@ -286,6 +297,9 @@ impl ContactStiffness {
                 unit.format(thin.thickness),
                 unit.format_point(&thin.point)
             ),
+            (StiffnessSource::Device, _) => {
+                "a tenth of the deflection of the device's stiffest spring".to_owned()
+            }
             _ => "a quarter of the radius of that contact at most".to_owned(),
         };
         format!("{value}, derived from tool and part: {pressed}, {why}")
