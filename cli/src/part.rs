@@ -71,6 +71,15 @@ pub(crate) fn print_findings(file: &Path, mesh: &Mesh) {
     }
 }
 
+/// Prints the finding about the normals of a part that has no mesh.
+fn print_normals(file: &Path, part: &Part) {
+    if part.diagnostics().is_none() {
+        for finding in part.findings() {
+            message!("{}: {finding}", file.display());
+        }
+    }
+}
+
 /// Reads a part and samples its points. `--sampling-error` bounds the error of depth for the tool `info`; without a
 /// tool, for every tool whose depth is a distance (L = 1). `json` suppresses the progress display.
 pub(crate) fn load(
@@ -85,6 +94,7 @@ pub(crate) fn load(
             return Err(no_triangles(&arguments.part, "--sampling-error"));
         }
         let part = Part::open(&arguments.part)?.converted_to(arguments.unit);
+        print_normals(&arguments.part, &part);
         return Ok(LoadedPart { part, mesh: None, certify: None });
     }
     match read_geometry(&arguments.part, arguments.unit)? {
@@ -107,6 +117,7 @@ pub(crate) fn load(
                 points.points.len()
             );
             let part = Part::from_cloud(&Cloud::from_points(points, arguments.unit)?);
+            print_normals(&arguments.part, &part);
             Ok(LoadedPart { part, mesh: None, certify: None })
         }
     }

@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::time::Instant;
 use touchoff::scenes::{POSES, ScenePath, tube};
-use touchoff::{Cloud, Part, Pose, Probe, Sampling};
+use touchoff::{Cloud, Law, Part, Pose, Probe, Sampling};
 
 touchoff::include_tool!("../tools-library/tools/fig_7_3.tool");
 
@@ -80,7 +80,7 @@ pub(crate) fn measure() -> Result<(), Box<dyn Error>> {
 /// Queries every pose of a path.
 fn along(part: &Part, path: ScenePath) -> Measured {
     let poses: Vec<Pose> = (0..POSES).map(|k| path.pose(k, POSES)).collect();
-    let mut probe = Probe::new(part, &Fig73);
+    let mut probe = Probe::new(part, &Fig73).with_law(Law::Thesis);
     // Warm-up: the first queries allocate their memory.
     for pose in poses.iter().step_by(POSES / 100) {
         probe.wrench(pose);

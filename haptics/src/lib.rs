@@ -52,6 +52,7 @@ mod session;
 mod setting;
 #[cfg(all(unix, feature = "realtime"))]
 pub mod spacenav;
+mod stiffness;
 
 pub use device::{
     Device, DeviceAxes, DeviceError, DeviceLimits, DeviceWrench, PlaybackDevice, ScriptedDevice,
@@ -66,3 +67,4 @@ pub use run::{
 };
 pub use session::{Session, SessionSettings, SessionState};
 pub use setting::SettingError;
+pub use stiffness::{ContactStiffness, StiffnessSource, ThinPlace};

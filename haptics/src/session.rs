@@ -20,6 +20,7 @@ pub struct SessionSettings {
     /// Cycles per second, 0.001 to 1,000,000.
     pub rate: f64,
     /// Force in N per unit of a [`Wrench`]'s force: N/mm³ if the part is in mm and the magnitude is the depth.
+    /// [`ContactStiffness::derived`](crate::ContactStiffness::derived) has one that suits a tool and a part.
     pub stiffness: f64,
     /// The rendering method; `None` for a coupling as stiff as the device can render.
     pub rendering: Option<Rendering>,

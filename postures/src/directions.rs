@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 use std::f64::consts::PI;
+use touchoff::cancellation;
 
 /// A list of directions from which a part is approached.
 #[derive(Clone, Debug, PartialEq)]
@@ -79,6 +80,7 @@ impl From<Vec<[f64; 3]>> for Directions {
         let vectors: Vec<Vector3<f64>> =
             list.iter().map(|direction| Vector3::from(*direction)).collect();
         let by_angle = vectors.iter().map(|direction| {
+            cancellation::check();
             let mut others: Vec<(f64, u16)> =
                 vectors.iter().zip(0..).map(|(other, k)| (-direction.dot(other), k)).collect();
             // Descending cosines; ties by index, so that the order is the same everywhere.

@@ -1,7 +1,6 @@
 //! The verified job.
 
-use crate::error::JobError as PyJobError;
-use crate::error::refused;
+use crate::error::{job as job_error, refused};
 use crate::pool::on_all_cores;
 use crate::tool::{LoadError, LoadedTool};
 use pyo3::exceptions::PyTypeError;
@@ -22,8 +21,6 @@ enum CheckError {
     /// The keys of a job that is made in Python.
     #[error("job: {0}")]
     Keys(String),
-    #[error(transparent)]
-    Interrupted(#[from] PyErr),
 }
 
 /// Returns the error about keys that stand in no file.
@@ -31,15 +28,6 @@ fn without_line(error: JobError) -> CheckError {
     match error {
         JobError::File { fault, .. } => CheckError::Keys(fault.to_string()),
         other => CheckError::Job(other),
-    }
-}
-
-impl From<CheckError> for PyErr {
-    fn from(error: CheckError) -> PyErr {
-        match error {
-            CheckError::Interrupted(error) => error,
-            other => PyJobError::new_err(other.to_string()),
-        }
     }
 }
 
@@ -120,7 +108,7 @@ pub(crate) fn check_job(
     root: Option<PathBuf>,
 ) -> PyResult<String> {
     let keys = keys.map(|keys| table("", &keys)).transpose()?;
-    let checked: Result<String, CheckError> = py.detach(|| {
+    let checked: Result<String, CheckError> = on_all_cores(py, || {
         let file = match keys {
             None => JobFile::read(&path, root.as_deref())?,
             Some(keys) => {
@@ -134,7 +122,7 @@ pub(crate) fn check_job(
             Ok(LoadedTool::named(&named.name, library, &named.params, root)?)
         })?;
         let job = inputs.job();
-        let report = on_all_cores(|| job.check(&|_| ()))??;
+        let report = job.check(&|_| ())?;
         let checked = Checked {
             verdict: match report.verdict() {
                 Verdict::Clean => "clean",
@@ -153,6 +141,6 @@ pub(crate) fn check_job(
             sarif: report.sarif(),
         };
         serde_json::to_string(&checked).map_err(|error| CheckError::Keys(error.to_string()))
-    });
-    Ok(checked?)
+    })?;
+    checked.map_err(job_error)
 }

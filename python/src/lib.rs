@@ -41,6 +41,6 @@ mod _touchoff {
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
         let empty = numpy::PyArray1::<f64>::zeros(module.py(), 0, false);
         drop(empty);
-        Ok(())
+        module.add("JobFileNotFoundError", crate::error::job_file_not_found(module.py())?)
     }
 }

@@ -7,8 +7,8 @@ use nalgebra::{Matrix3, Point3, Vector3};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 use rayon::prelude::*;
-use touchoff::Pose;
 use touchoff::tool::Symmetry;
+use touchoff::{Pose, cancellation};
 
 /// Largest deviation from `[0, 0, 0, 1]` of the last row of a matrix.
 const LAST_ROW: f64 = 1e-9;
@@ -18,7 +18,11 @@ const LAST_ROW: f64 = 1e-9;
 ///
 /// # Errors
 /// `ValueError` for the first row that is no pose, or that lacks the spin of a solid without an axis.
-pub(crate) fn read_poses(tool: &Tool, rows: &PyReadonlyArray2<'_, f64>) -> PyResult<Vec<Pose>> {
+pub(crate) fn read_poses(
+    py: Python<'_>,
+    tool: &Tool,
+    rows: &PyReadonlyArray2<'_, f64>,
+) -> PyResult<Vec<Pose>> {
     let (columns, rows) = (rows.as_array().ncols(), rows.as_slice()?);
     let read = match columns {
         6 => axis,
@@ -28,8 +32,16 @@ pub(crate) fn read_poses(tool: &Tool, rows: &PyReadonlyArray2<'_, f64>) -> PyRes
             return Err(refused("poses: an array with rows of 6, 7 or 16 numbers is expected"));
         }
     };
-    let poses = on_all_cores(|| {
-        rows.par_chunks_exact(columns).map(|row| read(row).ok()).collect::<Option<Vec<Pose>>>()
+    let poses = on_all_cores(py, || {
+        let current = cancellation::current();
+        let rows = rows.par_chunks_exact(columns).map_init(
+            || current.enter(),
+            |_, row| {
+                cancellation::check();
+                read(row).ok()
+            },
+        );
+        rows.collect::<Option<Vec<Pose>>>()
     })?;
     if let Some(poses) = poses {
         let is_solid = matches!(tool.get().info().symmetry, Symmetry::Solid { .. });

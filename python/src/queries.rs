@@ -2,7 +2,7 @@
 
 use crate::error::refused;
 use crate::part::{Part, rows};
-use crate::pool::interruptible;
+use crate::pool::{in_stretches, on_all_cores};
 use crate::poses::read_poses;
 use crate::tool::Tool;
 use nalgebra::{Point3, Vector3};
@@ -62,6 +62,7 @@ impl<'py> Arrays<'py> {
 
 /// Makes the probe of a tool at the points of a part.
 fn probe<'a>(
+    py: Python<'_>,
     tool: &'a Tool,
     part: &'a Part,
     law: &str,
@@ -71,7 +72,7 @@ fn probe<'a>(
     let law: Law = law.parse().map_err(|error| refused(format!("law: {error}")))?;
     let weights: Weights = weights.parse().map_err(|error| refused(format!("weights: {error}")))?;
     let centre = Point3::from(centre);
-    let probe: Probe<'a> = Probe::new(part.points()?, tool.get());
+    let probe: Probe<'a> = Probe::new(part.points(py)?, tool.get());
     Ok(probe.with_law(law).with_weights(weights).with_centre(centre))
 }
 
@@ -86,7 +87,7 @@ pub(crate) fn wrench<'py>(
     weights: &str,
     centre: [f64; 3],
 ) -> PyResult<Bound<'py, PyDict>> {
-    let poses = read_poses(tool, &poses)?;
+    let poses = read_poses(py, tool, &poses)?;
     let is_off_axis = centre[0] != 0.0 || centre[1] != 0.0;
     if let Some(index) = poses.iter().position(|pose| is_off_axis && !pose.has_spin()) {
         return Err(refused(format!(
@@ -94,11 +95,11 @@ pub(crate) fn wrench<'py>(
              centre whose x and y are 0"
         )));
     }
-    let probe = py.detach(|| probe(tool, part, law, weights, centre))?;
+    let probe = probe(py, tool, part, law, weights, centre)?;
     let mut columns = WrenchColumns::default();
     let query =
         |poses: &[Pose]| probe.par_map(poses, |probe: &mut Probe<'_>, pose| probe.wrench(pose));
-    interruptible(py, &poses, query, |found| found.iter().for_each(|wrench| columns.push(wrench)))?;
+    in_stretches(py, &poses, query, |found| found.iter().for_each(|wrench| columns.push(wrench)))?;
     let arrays = Arrays::new(py);
     arrays.dict.set_item("rounding_error", probe.rounding_error_bound())?;
     arrays.dict.set_item("sampling_error", probe.sampling_error_bound())?;
@@ -154,14 +155,14 @@ pub(crate) fn contacts<'py>(
     part: &Part,
     poses: PyReadonlyArray2<'py, f64>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let poses = read_poses(tool, &poses)?;
-    let points = py.detach(|| part.points())?;
+    let poses = read_poses(py, tool, &poses)?;
+    let points = part.points(py)?;
     let probe: Probe<'_> = Probe::new(points, tool.get());
     let mut found: Vec<Vec<Contact>> = Vec::with_capacity(poses.len());
     let query = |poses: &[Pose]| {
         probe.par_map(poses, |probe: &mut Probe<'_>, pose| probe.contacts(pose).to_vec())
     };
-    interruptible(py, &poses, query, |stretch| found.extend(stretch))?;
+    in_stretches(py, &poses, query, |stretch| found.extend(stretch))?;
     let arrays = Arrays::new(py);
     arrays.dict.set_item("rounding_error", probe.rounding_error_bound())?;
     let mut offset = 0;
@@ -197,12 +198,12 @@ pub(crate) fn detect<'py>(
     part: &Part,
     poses: PyReadonlyArray2<'py, f64>,
 ) -> PyResult<Bound<'py, PyArray1<bool>>> {
-    let poses = read_poses(tool, &poses)?;
-    let points = py.detach(|| part.points())?;
+    let poses = read_poses(py, tool, &poses)?;
+    let points = part.points(py)?;
     let probe: Probe<'_> = Probe::new(points, tool.get());
     let mut found: Vec<bool> = Vec::with_capacity(poses.len());
     let query = |poses: &[Pose]| probe.par_map(poses, Probe::detect);
-    interruptible(py, &poses, query, |stretch| found.extend(stretch))?;
+    in_stretches(py, &poses, query, |stretch| found.extend(stretch))?;
     Ok(PyArray1::from_vec(py, found))
 }
 
@@ -214,13 +215,14 @@ fn certified<R: Send>(
     poses: &PyReadonlyArray2<'_, f64>,
     query: impl Fn(&mut Certifier<'_>, &Pose) -> R + Sync,
 ) -> PyResult<Vec<R>> {
-    let poses = read_poses(tool, poses)?;
-    let bvh: &TriangleBvh = py.detach(|| part.triangles())?;
-    let certifier = Certifier::new(bvh, tool.get()).map_err(refused)?;
+    let poses = read_poses(py, tool, poses)?;
+    let bvh: &TriangleBvh = part.triangles(py)?;
+    let tool = tool.get();
+    let certifier = on_all_cores(py, || Certifier::new(bvh, tool))?.map_err(refused)?;
     let mut found: Vec<R> = Vec::with_capacity(poses.len());
     let stretch =
         |poses: &[Pose]| certifier.par_map(poses, |certifier, pose| query(certifier, pose));
-    interruptible(py, &poses, stretch, |answers| found.extend(answers))?;
+    in_stretches(py, &poses, stretch, |answers| found.extend(answers))?;
     Ok(found)
 }
 
@@ -295,7 +297,7 @@ pub(crate) fn signed_distance<'py>(
     surface_only: bool,
 ) -> PyResult<Bound<'py, PyDict>> {
     if !surface_only {
-        part.require_inside()?;
+        part.require_inside(py)?;
     }
     let found: Vec<Interval> = certified(py, tool, part, &poses, |certifier, pose| {
         certifier.signed_distance(pose, tolerance)

@@ -1,18 +1,20 @@
 //! Sweeps and posture maps.
 
-use crate::error::refused;
+use crate::error::{reading, refused};
 use crate::part::{Part, rows};
+use crate::pool::on_all_cores;
 use crate::tool::Tool;
 use numpy::{PyArray1, PyArrayMethods};
-use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
+use std::convert::Infallible;
 use std::num::{NonZeroU16, NonZeroUsize};
 use std::ops::{ControlFlow, Range};
 use std::path::PathBuf;
-use touchoff::{Shard, TriangleId, Unit};
+use touchoff::certify::TriangleBvh;
+use touchoff::{Shard, TriangleId, Unit, cancellation};
 use touchoff_postures::shard::{self, Merge, ShardError, is_done, shard_bytes};
-use touchoff_postures::sweep::{PostureSweep, SweepStats};
+use touchoff_postures::sweep::{PostureSweep, SweepError, SweepStats};
 use touchoff_postures::{Accessibility, Directions, MapIdentity, MapRow, PostureMap, Rules};
 
 /// The largest table of triangles, tools and directions, in bytes.
@@ -34,24 +36,23 @@ pub(crate) fn sweep<'py>(
     allow: Vec<(String, f64)>,
     surface_only: bool,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let directions = spread(directions)?;
+    let directions = spread(py, directions)?;
     let tools: Vec<&Tool> = tools.iter().map(|tool| &**tool).collect();
     check_size(part.mesh()?.triangles().len(), tools.len(), directions.list().len())?;
-    let (rows, stats) = py.detach(|| {
-        let (mesh, bvh) = (part.mesh()?, part.triangles()?);
-        if !surface_only {
-            part.require_inside()?;
-        }
-        let rules = rules(mesh.unit(), tolerance, min_niceness, allow);
+    let (mesh, bvh) = (part.mesh()?, part.triangles(py)?);
+    if !surface_only {
+        part.require_inside(py)?;
+    }
+    let rules = rules(mesh.unit(), tolerance, min_niceness, allow);
+    let swept = on_all_cores(py, || {
         let tools = tools.iter().map(|tool| tool.get() as &dyn touchoff::Tool).collect();
-        let sweep = PostureSweep::new(mesh, bvh, tools, &directions, rules, NonZeroU16::MIN);
-        let sweep = sweep.map_err(refused)?;
-        let batches = 0..sweep.batches();
-        let (rows, stats) = run(&sweep, batches)?;
+        let sweep = PostureSweep::new(mesh, bvh, tools, &directions, rules, NonZeroU16::MIN)?;
+        let (rows, stats) = run(&sweep, 0..sweep.batches());
         let rows = rows.into_iter().map(|(id, row)| (id.index(), row)).collect();
-        Ok::<_, PyErr>((rows, stats))
+        Ok::<_, SweepError>((rows, stats))
     })?;
-    let count = part.mesh()?.triangles().len();
+    let (rows, stats) = swept.map_err(refused)?;
+    let count = mesh.triangles().len();
     let names = tools.iter().map(|tool| tool.get().info().name.to_string()).collect();
     let dict = Map { count, tools: names, directions, rows }.arrays(py)?;
     dict.set_item("postures", stats.postures())?;
@@ -60,28 +61,17 @@ pub(crate) fn sweep<'py>(
     Ok(dict)
 }
 
-/// Runs batches of a sweep, unless a signal ends them.
-///
-/// # Errors
-/// That of a handler of signals, such as `KeyboardInterrupt`.
-fn run(
-    sweep: &PostureSweep<'_>,
-    batches: Range<usize>,
-) -> PyResult<(Vec<(TriangleId, MapRow)>, SweepStats)> {
+/// Runs batches of a sweep.
+fn run(sweep: &PostureSweep<'_>, batches: Range<usize>) -> (Vec<(TriangleId, MapRow)>, SweepStats) {
     let batches: Vec<usize> = batches.collect();
     let (mut rows, mut stats) = (Vec::new(), SweepStats::default());
-    let flow = sweep.run(&batches, |batch| {
+    let flow: ControlFlow<Infallible> = sweep.run(&batches, |batch| {
         stats += batch.stats;
         rows.extend(batch.rows);
-        match Python::attach(|py| py.check_signals()) {
-            Ok(()) => ControlFlow::Continue(()),
-            Err(interrupt) => ControlFlow::Break(interrupt),
-        }
+        ControlFlow::Continue(())
     });
-    match flow {
-        ControlFlow::Break(interrupt) => Err(interrupt),
-        ControlFlow::Continue(()) => Ok((rows, stats)),
-    }
+    let ControlFlow::Continue(()) = flow;
+    (rows, stats)
 }
 
 /// A sweep whose shards are computed one by one, here or elsewhere.
@@ -108,21 +98,19 @@ impl Study {
         allow: Vec<(String, f64)>,
         surface_only: bool,
     ) -> PyResult<Study> {
-        let directions = spread(directions)?;
-        let (rules, identity) = py.detach(|| {
-            let mesh = part.get().mesh()?;
-            if !surface_only {
-                part.get().require_inside()?;
-            }
-            let rules = rules(mesh.unit(), tolerance, min_niceness, allow);
-            let tools: Vec<_> = tools.iter().map(|tool| tool.get().get()).collect();
-            let identity = MapIdentity::new(mesh, &tools, rules.clone()).map_err(refused)?;
-            let identity = identity.with_directions(directions.list().to_vec());
-            Ok::<_, PyErr>((rules, identity))
-        })?;
+        let directions = spread(py, directions)?;
+        let mesh = part.get().mesh()?;
+        if !surface_only {
+            part.get().require_inside(py)?;
+        }
+        let rules = rules(mesh.unit(), tolerance, min_niceness, allow);
+        let listed: Vec<_> = tools.iter().map(|tool| tool.get().get()).collect();
+        let identity = on_all_cores(py, || MapIdentity::new(mesh, &listed, rules.clone()))?;
+        let identity = identity.map_err(refused)?.with_directions(directions.list().to_vec());
         let study = Study { part, tools, directions, rules, identity };
         // Errors of the sweep are raised here, and not by each shard.
-        study.swept()?;
+        let bvh = study.part.get().triangles(py)?;
+        on_all_cores(py, || study.swept(bvh).map(drop))?.map_err(refused)?;
         Ok(study)
     }
 
@@ -137,28 +125,29 @@ impl Study {
         let shard = shard(number, count)?;
         let threads =
             NonZeroUsize::new(threads).ok_or_else(|| refused("threads: give 1 or more"))?;
-        let bytes = py.detach(|| {
-            let sweep = self.swept()?.with_threads(threads);
-            let (rows, _) = run(&sweep, shard.range(sweep.batches()))?;
-            Ok::<_, PyErr>(shard_bytes(self.part.get().mesh()?, &self.identity, shard, rows))
+        let part = self.part.get();
+        let (mesh, bvh) = (part.mesh()?, part.triangles(py)?);
+        let bytes = on_all_cores(py, || {
+            let sweep = self.swept(bvh)?.with_threads(threads);
+            let (rows, _) = run(&sweep, shard.range(sweep.batches()));
+            Ok::<_, SweepError>(shard_bytes(mesh, &self.identity, shard, rows))
         })?;
-        Ok(PyBytes::new(py, &bytes))
+        Ok(PyBytes::new(py, &bytes.map_err(refused)?))
     }
 
     /// Returns whether a file has a shard of this sweep, complete.
     fn is_done(&self, py: Python<'_>, path: PathBuf, number: u32, count: u32) -> PyResult<bool> {
         let shard = shard(number, count)?;
-        py.detach(|| is_done(path, &self.identity, shard)).map_err(shard_error)
+        on_all_cores(py, || is_done(path, &self.identity, shard))?.map_err(shard_error)
     }
 }
 
 impl Study {
-    fn swept(&self) -> PyResult<PostureSweep<'_>> {
-        let (mesh, bvh) = (self.part.get().mesh()?, self.part.get().triangles()?);
+    fn swept<'a>(&'a self, bvh: &'a TriangleBvh) -> Result<PostureSweep<'a>, SweepError> {
+        let mesh = self.part.get().mesh.as_ref().expect("a study is made of a part with a mesh");
         let tools = self.tools.iter().map(|tool| tool.get().get() as &dyn touchoff::Tool).collect();
         let rules = self.rules.clone();
         PostureSweep::new(mesh, bvh, tools, &self.directions, rules, NonZeroU16::MIN)
-            .map_err(refused)
     }
 }
 
@@ -168,39 +157,35 @@ fn shard(number: u32, count: u32) -> PyResult<Shard> {
 }
 
 fn shard_error(error: ShardError) -> PyErr {
-    match error {
-        ShardError::Unreadable { .. } | ShardError::Unwritable { .. } => {
-            PyOSError::new_err(error.to_string())
-        }
-        other => refused(other),
-    }
+    reading(error)
 }
 
 /// Writes the bytes of a shard to a file, completely or not at all.
 #[pyfunction]
 pub(crate) fn write_shard(py: Python<'_>, path: PathBuf, bytes: &[u8]) -> PyResult<()> {
-    py.detach(|| shard::write_shard(path, bytes)).map_err(shard_error)
+    on_all_cores(py, || shard::write_shard(path, bytes))?.map_err(shard_error)
 }
 
 /// Joins shards to a table, and returns its number of triangles.
 #[pyfunction]
 pub(crate) fn merge_shards(py: Python<'_>, files: Vec<PathBuf>, table: PathBuf) -> PyResult<u32> {
-    let merged = py.detach(|| {
+    let merged = on_all_cores(py, || {
         let mut merge = Merge::new();
         for file in files {
+            cancellation::check();
             merge.add(file)?;
         }
         let merged = merge.finish()?;
         merged.write_table(table)?;
         Ok(merged.identity().part.triangles)
-    });
+    })?;
     merged.map_err(shard_error)
 }
 
 /// Returns directions, given their number per hemisphere.
-fn spread(hemisphere: usize) -> PyResult<Directions> {
+fn spread(py: Python<'_>, hemisphere: usize) -> PyResult<Directions> {
     if (1..=Directions::MAX_HEMISPHERE).contains(&hemisphere) {
-        return Ok(Directions::spread(hemisphere));
+        return on_all_cores(py, || Directions::spread(hemisphere));
     }
     let limit = Directions::MAX_HEMISPHERE;
     Err(refused(format!("directions: {hemisphere} per hemisphere: give 1 to {limit}")))
@@ -215,12 +200,13 @@ fn rules(unit: Unit, tolerance: Option<f64>, niceness: f64, allowed: Vec<(String
 /// Reads a posture map.
 #[pyfunction]
 pub(crate) fn read_map(py: Python<'_>, path: PathBuf) -> PyResult<Bound<'_, PyDict>> {
-    let read = py.detach(|| {
+    let read = on_all_cores(py, || {
         let map = PostureMap::read(&path)?;
         let identity = map.identity();
         let keep = identity.keep;
         let mut rows = Vec::new();
         map.for_each_triangle(|triangle, pieces| {
+            cancellation::check();
             rows.push((triangle.index(), MapRow::joined(&pieces, keep)));
             Ok::<(), touchoff_postures::MapError>(())
         })?;
@@ -230,12 +216,8 @@ pub(crate) fn read_map(py: Python<'_>, path: PathBuf) -> PyResult<Bound<'_, PyDi
             directions: Directions::from(identity.directions.clone()),
             rows,
         })
-    });
-    let read = read.map_err(|error: touchoff_postures::MapError| match error {
-        touchoff_postures::MapError::Unreadable { .. } => PyOSError::new_err(error.to_string()),
-        other => refused(other),
-    });
-    read?.arrays(py)
+    })?;
+    read.map_err(reading)?.arrays(py)
 }
 
 /// Refuses a table that is longer than the limit.

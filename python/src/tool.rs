@@ -1,7 +1,7 @@
 //! Tools: built in, from a text or a file, or from a library of a CAM system.
 
-use crate::error::{refused, tool as tool_error};
-use pyo3::exceptions::{PyOSError, PyValueError};
+use crate::error::{reading, refused, tool as tool_error};
+use crate::pool::in_own_thread;
 use pyo3::prelude::*;
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
@@ -159,10 +159,7 @@ impl From<LoadError> for PyErr {
     fn from(error: LoadError) -> PyErr {
         match error {
             LoadError::Tool(error) => tool_error(error),
-            LoadError::Import(ImportError::Unreadable { .. }) => {
-                PyOSError::new_err(error.to_string())
-            }
-            other => PyValueError::new_err(other.to_string()),
+            other => reading(other),
         }
     }
 }
@@ -175,26 +172,36 @@ impl Tool {
 
 #[pymethods]
 impl Tool {
-    /// A built-in tool.
+    /// A built-in tool, with values for its params if there are any.
     #[staticmethod]
-    fn library(name: &str) -> PyResult<Tool> {
-        Ok(Tool { loaded: LoadedTool::named(name.as_ref(), None, &[], None)? })
+    fn library(py: Python<'_>, name: String, params: Vec<String>) -> PyResult<Tool> {
+        let load = move || match (source_files(&name), params.is_empty()) {
+            (Some(text), false) => Ok(LoadedTool::compile(text, &params)?),
+            _ => LoadedTool::named(name.as_ref(), None, &params, None),
+        };
+        Ok(Tool { loaded: in_own_thread(py, load)?? })
     }
 
     /// A tool from its text.
     #[staticmethod]
-    fn parse(py: Python<'_>, text: &str, params: Vec<String>, name: &str) -> PyResult<Tool> {
-        let text = ToolText::Text { name: name.to_owned(), text: text.to_owned() };
-        let loaded = py.detach(|| LoadedTool::compile(text, &params)).map_err(tool_error)?;
-        Ok(Tool { loaded })
+    fn parse(py: Python<'_>, text: String, params: Vec<String>, name: String) -> PyResult<Tool> {
+        let text = ToolText::Text { name, text };
+        let loaded = in_own_thread(py, move || LoadedTool::compile(text, &params))?;
+        Ok(Tool { loaded: loaded.map_err(tool_error)? })
     }
 
     /// A tool from its file.
     #[staticmethod]
     fn load(py: Python<'_>, path: PathBuf, params: Vec<String>) -> PyResult<Tool> {
-        let loaded =
-            py.detach(|| LoadedTool::compile(ToolText::File { path, root: None }, &params));
+        let text = ToolText::File { path, root: None };
+        let loaded = in_own_thread(py, move || LoadedTool::compile(text, &params))?;
         Ok(Tool { loaded: loaded.map_err(tool_error)? })
+    }
+
+    /// A number that two tools share if all their values at all points are the same.
+    #[getter]
+    fn digest(&self) -> u64 {
+        self.loaded.info().digest
     }
 
     #[getter]
@@ -257,11 +264,8 @@ impl Tool {
     fn svg(&self) -> PyResult<String> {
         let compiled = match &self.loaded {
             LoadedTool::BuiltIn(tool) => {
-                let position = TOOLS.iter().position(|known| known.info().name == tool.info().name);
-                let files = position.map_or(&[][..], |position| SOURCES[position]);
-                let own = files.first().map_or("", |(file, _)| file);
-                let texts = files.iter().map(|(file, text)| (file.into(), (*text).to_owned()));
-                let text = ToolText::files(own, texts);
+                let text = source_files(&tool.info().name);
+                let text = text.ok_or_else(|| refused("the tool has no text to draw from"))?;
                 compile_with_arguments(&text.source().map_err(tool_error)?, &[])
             }
             LoadedTool::Interpreted { text, params, .. } => {
@@ -275,6 +279,14 @@ impl Tool {
             }
         }
     }
+}
+
+/// Returns the files of a built-in tool.
+fn source_files(name: &str) -> Option<ToolText> {
+    let position = TOOLS.iter().position(|known| known.info().name == name)?;
+    let files = SOURCES[position];
+    let (own, _) = files.first()?;
+    Some(ToolText::files(*own, files.iter().map(|(file, text)| (file.into(), (*text).to_owned()))))
 }
 
 /// The names of the built-in tools.
@@ -292,7 +304,7 @@ type Imported = (Vec<ImportedEntry>, Vec<(String, String)>);
 /// The tools of a library of a CAM system, and the names and reasons of those that are left out.
 #[pyfunction]
 pub(crate) fn import_library(py: Python<'_>, path: PathBuf) -> PyResult<Imported> {
-    let read = py.detach(|| {
+    let read = in_own_thread(py, move || {
         let library = Library::read(&path)?;
         let mut skipped: Vec<(String, String)> =
             library.skipped().iter().map(|one| (one.name.clone(), one.reason.clone())).collect();
@@ -308,6 +320,6 @@ pub(crate) fn import_library(py: Python<'_>, path: PathBuf) -> PyResult<Imported
             }
         }
         Ok((tools, skipped))
-    });
+    })?;
     read.map_err(|error: ImportError| LoadError::Import(error).into())
 }

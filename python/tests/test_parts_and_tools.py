@@ -60,44 +60,6 @@ def test_copies_and_errors_go_to_other_processes(ball, block, tmp_path):
     assert not block.vertices.flags.writeable
 
 
-def test_a_forked_process_has_threads_of_its_own(ball, block):
-    import multiprocessing
-
-    poses = np.tile([0.0, 0, -0.5, 0, 0, 1], (5_000, 1))
-    assert touchoff.detect(ball, block, poses).all()
-    with multiprocessing.get_context("fork").Pool(2) as pool:
-        found = pool.starmap_async(touchoff.detect, [(ball, block, poses)] * 4).get(timeout=60)
-    assert all(one.all() for one in found)
-
-
-def test_an_interrupt_ends_a_long_query(ball, block):
-    import signal
-    import time
-
-    poses = np.tile([0.0, 0, -0.5, 0, 0, 1], (3_000_000, 1))
-    trimesh = pytest.importorskip("trimesh")
-    # 80,000 triangles: a sweep takes many seconds.
-    sphere = touchoff.Part(trimesh.creation.icosphere(subdivisions=6, radius=20), unit="mm")
-    for query in (
-        lambda: touchoff.certified_depth(ball, block, poses),
-        lambda: touchoff.sweep(sphere, ball, directions=200),
-    ):
-        signal.setitimer(signal.ITIMER_REAL, 0.5)
-        previous = signal.signal(signal.SIGALRM, interrupted)
-        begin = time.perf_counter()
-        try:
-            with pytest.raises(KeyboardInterrupt):
-                query()
-        finally:
-            signal.setitimer(signal.ITIMER_REAL, 0)
-            signal.signal(signal.SIGALRM, previous)
-        print(f"{time.perf_counter() - begin:.2f} s until the interrupt")
-
-
-def interrupted(number, frame):
-    raise KeyboardInterrupt
-
-
 def test_assemblies_are_drawn():
     assert all(touchoff.Tool.library(name).svg().startswith("<svg") for name in touchoff.tool_names())
 
@@ -126,6 +88,74 @@ def test_tools_from_everywhere(tmp_path):
         touchoff.Tool.parse(text, {"q": 3})
     with pytest.raises(TypeError, match="params"):
         touchoff.Tool.parse(text, ["r=3"])
+
+
+def test_built_in_tools_take_params():
+    import pickle
+
+    wide = touchoff.Tool.library("Ball", D=6, flute="2*8")
+    assert wide.radius == 3 and touchoff.Tool.library("Ball").radius == 5
+    assert pickle.loads(pickle.dumps(wide)).radius == 3
+    # A tool that mounts a holder finds it.
+    assert touchoff.Tool.library("BallEr16", stickout=40).is_exact
+
+
+def test_fields_of_results_are_documented():
+    import dataclasses
+
+    classes = [value for value in vars(touchoff).values() if dataclasses.is_dataclass(value)]
+    assert len(classes) > 10
+    for one in classes:
+        documented = one.__doc__.split("Attributes\n    ----------")[1]
+        listed = {name.strip() for line in documented.splitlines() if line.startswith("    ") for name in line.strip().split(",")}
+        missing = {field.name for field in dataclasses.fields(one)} - listed
+        assert not missing, (one, missing)
+
+
+def test_the_first_query_shows_the_warnings_of_a_tool(block):
+    import re
+    import warnings
+
+    text = "tool B { units mm; profile { start (0,0); arc to (0,6) center (0,3) as ball cutting; } %s }"
+    pose = [0, 0, -0.5, 0, 0, 1]
+    for law, words in (
+        ("magnitude: 5;", "T0627.*exert no force"),
+        ("magnitude: 2*depth;", "T0628.*counts in the force"),
+        ("region low where z <= 3 { direction: (0, -1) allow oblique; } region high where z >= 3 {}", "T0629.*direction of low"),
+    ):
+        tool = touchoff.Tool.parse(text % law)
+        with pytest.warns(touchoff.ToolWarning) as said:
+            touchoff.wrench(tool, block, pose)
+        assert len(said) == 1 and said[0].filename == __file__
+        assert re.search(words, str(said[0].message), re.S), said[0].message
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            touchoff.wrench(tool, block, pose)
+            touchoff.wrench(touchoff.Tool.parse(text % ""), block, pose)
+
+
+def test_the_default_law_is_that_of_an_energy(block):
+    """A factor of the magnitude counts squared, a constant one has no slope."""
+    text = "tool B { units mm; profile { start (0,0); arc to (0,6) center (0,3) as ball cutting; } magnitude: %s; }"
+    import warnings
+
+    forces = {}
+    for law in ("depth", "2*depth", "5"):
+        tool = touchoff.Tool.parse(text % law)
+        with warnings.catch_warnings(action="ignore"):
+            found = touchoff.wrench(tool, block, [0, 0, -0.5, 0, 0, 1])
+            assert (found.force == touchoff.wrench(tool, block, [0, 0, -0.5, 0, 0, 1], law="gradient").force).all()
+        forces[law] = found.force[0, 2]
+    assert forces["5"] == 0 and forces["2*depth"] == pytest.approx(4 * forces["depth"])
+
+
+def test_normals_that_face_inward_are_named(tmp_path):
+    from test_processes import write_cloud
+
+    for inward, words in ((False, []), (True, ["the normals face into the material", "100 %"])):
+        write_cloud(tmp_path / "scan.ply", 3_000, inward=inward)
+        said = touchoff.Part.read(tmp_path / "scan.ply", unit="mm").diagnostics
+        assert len(said) == (1 if inward else 0) and all(word in said[0] for word in words)
 
 
 def test_libraries_of_cam_systems(tmp_path):
@@ -184,3 +214,29 @@ def test_a_map_of_the_program_is_read(program, block, tmp_path):
     assert (read.tip == found.tip).all() and (read.clearance == found.clearance).all()
     with pytest.raises(ValueError, match="block.stl"):
         touchoff.PostureMap.read(stl)
+
+
+def test_a_path_is_a_table_for_any_reader(program, tmp_path):
+    import csv
+    import subprocess
+
+    from conftest import write_ply
+
+    block = touchoff.Part.cuboid((-6, -6, -4), (6, 6, 0), unit="mm")
+    write_ply(tmp_path / "block.ply", block)
+    part = ["--part", tmp_path / "block.ply"]
+    sweep = [program, "sweep", *part, "--unit", "mm", "--tool", "D2Ball", "--directions", "20", "-o", tmp_path / "block.postures"]
+    path = [program, "path", tmp_path / "block.postures", *part, "--tool", "D2Ball", "--stepover", "4", "-o", tmp_path / "path.csv"]
+    for command in (sweep, path):
+        subprocess.run(command, check=True, capture_output=True)
+    with open(tmp_path / "path.csv", newline="") as file:
+        rows = list(csv.DictReader(file, strict=True))
+    poses = np.array([[float(row[name]) for name in "xyzijk"] for row in rows])
+    assert len(poses) > 20 and np.allclose(np.linalg.norm(poses[:, 3:], axis=1), 1)
+    assert (touchoff.certified_depth(touchoff.Tool.library("D2Ball"), block, poses).low < 0.02).all()
+    keys = {"part": "block.ply", "unit": "mm", "program": "path.csv", "tolerance": 0.02, "tool": {1: {"tool": "D2Ball"}}}
+    assert touchoff.Job(folder=tmp_path, **keys).check().verdict == "clean"
+    # The same with pandas, which knows no comments unless it is told.
+    pandas = pytest.importorskip("pandas")
+    table = pandas.read_csv(tmp_path / "path.csv")
+    assert (table[list("xyzijk")].to_numpy(float) == poses).all()

@@ -81,7 +81,7 @@ def test_poses_agree_in_all_formats(ball, block):
 
 def test_wrench_and_contacts_agree(ball, block):
     poses = random_poses(500, seed=3)
-    found = touchoff.wrench(ball, block, poses)
+    found = touchoff.wrench(ball, block, poses, law="thesis")
     listed = touchoff.contacts(ball, block, poses)
     assert listed.offsets[0] == 0 and listed.offsets[-1] == len(listed) == found.colliding.sum()
     assert (np.diff(listed.offsets) == found.colliding).all()

@@ -12,7 +12,7 @@ array([0.5])
 Lengths are in the part's unit, frames are right-handed, and a tool's axis points from the tip to the spindle.
 """
 
-from ._touchoff import JobError, ToolError, tool_names
+from ._touchoff import JobError, JobFileNotFoundError, ToolError, tool_names
 from .job import Finding, Gap, Job, Report
 from .part import Part
 from .queries import (
@@ -29,7 +29,7 @@ from .queries import (
     wrench,
 )
 from .sweep import PostureMap, sweep
-from .tool import ImportedTool, Surface, Tool, ToolLibrary, import_tools
+from .tool import ImportedTool, Surface, Tool, ToolLibrary, ToolWarning, import_tools
 
 __all__ = [
     "Clearance",
@@ -41,6 +41,7 @@ __all__ = [
     "ImportedTool",
     "Job",
     "JobError",
+    "JobFileNotFoundError",
     "Part",
     "PostureMap",
     "Report",
@@ -48,6 +49,7 @@ __all__ = [
     "Tool",
     "ToolError",
     "ToolLibrary",
+    "ToolWarning",
     "Wrench",
     "certified_depth",
     "clearance",

@@ -1,7 +1,7 @@
-"""Sweeps and jobs on a cluster of Ray: ``pip install "touchoff[ray]"``.
+"""Sweeps and jobs on a cluster of Ray: `pip install "touchoff[ray]"`.
 
 A sweep runs in shards, each a task. Parts lie in Ray's object store; a shard comes back as the bytes of its file, which is
-written on the machine of the caller. Ray runs tasks again whose machine is lost, and at most ``in_flight`` of them are
+written on the machine of the caller. Ray runs tasks again whose machine is lost, and at most `in_flight` of them are
 submitted at a time. Shards that a folder has already are kept, so that a study goes on where it was stopped.
 
 >>> import touchoff.distributed
@@ -29,11 +29,11 @@ if TYPE_CHECKING:
     import pyarrow.dataset
 
 Progress = Callable[[int, int], None]
-#: The vertices, the triangles and the unit of a part.
+# The vertices, the triangles and the unit of a part.
 _Arrays = tuple[Any, Any, str]
 
 
-#: The key and the sweep of the part that this worker had last, with its tree of triangles.
+# The key and the sweep of the part that this worker had last, with its tree of triangles.
 _kept: tuple[str, _touchoff.Study] | None = None
 
 

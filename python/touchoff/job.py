@@ -19,16 +19,26 @@ Verdict = Literal["clean", "findings", "none"]
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """What is wrong on some consecutive motions of a program."""
+    """What is wrong on some consecutive motions of a program.
 
-    #: The sentence, as the program `touchoff verify` prints it.
+    Attributes
+    ----------
+    text
+        The sentence, as the program `touchoff verify` prints it.
+    kind
+        `deep`, `near`, `inside`, `stock`, `limit` and others; see docs/verify.md.
+    file
+        The program.
+    line
+        The line of the worst motion, from 1.
+    row
+        All of the finding, in the format of `touchoff verify --json`.
+    """
+
     text: str
-    #: `deep`, `near`, `inside`, `stock`, `limit` and others; see docs/verify.md.
     kind: str
     file: str
-    #: The line of the worst motion, from 1.
     line: int
-    #: All of the finding, in the format of `touchoff verify --json`.
     row: dict[str, Any]
 
     @property
@@ -46,30 +56,52 @@ class Finding:
 
 @dataclass(frozen=True, slots=True)
 class Gap:
-    """What was not checked."""
+    """What was not checked.
+
+    Attributes
+    ----------
+    file, line
+        The program, and the line, from 1.
+    open
+        Set if there is no verdict because of it.
+    reason
+        The sentence.
+    """
 
     file: str
     line: int
-    #: Set if there is no verdict because of it.
     open: bool
     reason: str
 
 
 @dataclass(frozen=True, slots=True)
 class Report:
-    """The result of a check."""
+    """The result of a check.
 
-    #: `clean` if the program is proved, `none` if something stands in the way of a verdict.
+    Attributes
+    ----------
+    verdict
+        `clean` if the program is proved, `findings`, or `none` if something stands in the way of a verdict.
+    findings
+        What is wrong.
+    gaps
+        What was not checked.
+    refusals
+        Obstacles to a proof; without findings there is no verdict because of it.
+    summaries
+        A sentence for each tool at each body.
+    surface_only
+        Set if only the surface of the part was checked, since its mesh has no inside.
+    sarif
+        The findings in SARIF 2.1.0, for services of continuous integration.
+    """
+
     verdict: Verdict
     findings: list[Finding]
     gaps: list[Gap]
-    #: Obstacles to a proof; without findings there is no verdict because of it.
     refusals: list[str]
-    #: A sentence for each tool at each body.
     summaries: list[str]
-    #: Set if only the surface of the part was checked, since its mesh has no inside.
     surface_only: bool
-    #: The findings in SARIF 2.1.0, for services of continuous integration.
     sarif: dict[str, Any]
 
     def to_dataframe(self) -> pandas.DataFrame:
@@ -118,8 +150,9 @@ class Job:
         Raises
         ------
         JobError
-            If the job or a file that it names cannot be read; the message names the file. A line of a program that is not
-            understood is among the refusals, and the program is checked up to there.
+            If the job or a file that it names cannot be read; the message names the file. If a file is missing, it is a
+            `JobFileNotFoundError`, which is a `FileNotFoundError`, too. A line of a program that is not understood is among the
+            refusals, and the program is checked up to there.
         """
         checked = json.loads(_touchoff.check_job(self._path, self._keys, self._root))
         return Report(

@@ -52,7 +52,7 @@ class Part:
     """
 
     _rust: _touchoff.Part
-    #: The call that made the part, for copies in other processes.
+    # The call that made the part, for copies in other processes.
     _made: tuple[Any, tuple[Any, ...], dict[str, Any]]
 
     def __init__(
@@ -82,18 +82,25 @@ class Part:
     def read(
         cls, path: str | os.PathLike[str], *, unit: str | None = None, points: int = _DEFAULT_POINTS
     ) -> Part:
-        """Read a mesh in STL, PLY or OBJ, or points with normals in PLY.
+        """Read a mesh in STL, PLY or OBJ, points with normals in PLY, or points that `touchoff sample` saved (`.touchoff`).
+
+        A pickle of the part has the path of the file and the SHA-256 of its content: it is read again, and refused if its content is
+        another. Points from a file are all used, whatever `points` is.
 
         Raises
         ------
         OSError
-            If the file cannot be read.
+            If the file cannot be read; `FileNotFoundError` if there is none.
         ValueError
             If it is damaged; the message names the line or the byte.
         """
-        file = _arrays.path("path", path)
-        part = cls._of(_touchoff.Part.read(file, _unit(unit), _arrays.count("points", points)))
-        part._made = (cls.read, (file,), {"unit": unit, "points": points})
+        return cls._read(_arrays.path("path", path), unit, points, None)
+
+    @classmethod
+    def _read(cls, file: str, unit: str | None, points: int, digest: str | None) -> Part:
+        """Read a file, which must have the digest if one is given."""
+        part = cls._of(_touchoff.Part.read(file, _unit(unit), _arrays.count("points", points), digest))
+        part._made = (cls._read, (os.path.abspath(file), unit, points, part._rust.digest), {})
         return part
 
     @classmethod
@@ -152,7 +159,7 @@ class Part:
 
     @property
     def diagnostics(self) -> list[str]:
-        """What is noteworthy about the mesh, a sentence each."""
+        """What is noteworthy about the mesh, or about the normals of points, a sentence each."""
         return self._rust.diagnostics
 
     @property

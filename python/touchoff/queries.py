@@ -18,33 +18,49 @@ Ints = NDArray[np.int64]
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Wrench:
-    """Force and torque of the whole contact at n poses, in the world's frame."""
+    """Force and torque of the whole contact at n poses, in the world's frame.
 
-    #: Force, n × 3.
+    Attributes
+    ----------
+    force
+        Force, n × 3.
+    torque
+        Torque about the compliance centre, n × 3.
+    depth
+        Depth of the deepest point; 0 without contact.
+    niceness
+        Least niceness of the contact; NaN without contact.
+    colliding
+        Number of points inside.
+    energy
+        Energy of the contact, half the weighted sum of squared magnitudes.
+    point
+        The deepest point, n × 3; NaN without contact.
+    triangle
+        Its triangle; -1 without contact.
+    force_rounding
+        Bound on the rounding of the force as a sum over the part's points. How far that sum is from the force of the surface
+        between them is not bounded.
+    torque_rounding
+        The same of the torque.
+    rounding_error
+        Bound on the rounding error of a point's depth; None if it is unknown for the tool.
+    sampling_error
+        Bound on how much deeper the surface between the points is; None if it is unknown, and an estimate where the part's
+        covering radius is one.
+    """
+
     force: Floats
-    #: Torque about the compliance centre, n × 3.
     torque: Floats
-    #: Depth of the deepest point; 0 without contact.
     depth: Floats
-    #: Least niceness of the contact; NaN without contact.
     niceness: Floats
-    #: Number of points inside.
     colliding: NDArray[np.uint64]
-    #: Energy of the contact, half the weighted sum of squared magnitudes.
     energy: Floats
-    #: The deepest point, n × 3; NaN without contact.
     point: Floats
-    #: Its triangle; -1 without contact.
     triangle: Ints
-    #: Bound on the rounding of the force as a sum over the part's points. How far that sum is from the force of the surface between
-    #: them is not bounded.
     force_rounding: Floats
-    #: The same of the torque.
     torque_rounding: Floats
-    #: Bound on the rounding error of a point's depth; None if it is unknown for the tool.
     rounding_error: float | None
-    #: Bound on how much deeper the surface between the points is; None if it is unknown, and an estimate where the part's covering
-    #: radius is one.
     sampling_error: float | None
 
     def __repr__(self) -> str:
@@ -56,29 +72,50 @@ class Contacts:
     """The points of the part inside the tool at n poses, one after the other.
 
     Those of pose k are from `offsets[k]` to `offsets[k + 1]`.
+
+    Attributes
+    ----------
+    offsets
+        n + 1 positions.
+    pose
+        The index of the pose.
+    point, normal
+        The point, and the part's outward normal there.
+    direction
+        Unit vector to the tool's nearest surface.
+    gradient
+        The gradient of the magnitude.
+    triangle
+        The triangle that the point lies on.
+    surface
+        Index in `Tool.surfaces`.
+    region
+        Index of the tool's region, in the order of its file.
+    depth
+        Depth of the point in the tool.
+    magnitude
+        The number from which the force law computes the force.
+    niceness
+        Rating of the contact.
+    weight
+        The point's share of the surface.
+    rounding_error
+        Bound on the rounding error of a point's depth; None if it is unknown for the tool.
     """
 
-    #: n + 1 positions.
     offsets: Ints
-    #: The index of the pose.
     pose: Ints
-    #: The point, and the part's outward normal there.
     point: Floats
     normal: Floats
-    #: Unit vector to the tool's nearest surface.
     direction: Floats
-    #: The gradient of the magnitude.
     gradient: Floats
     triangle: Ints
-    #: Index in `Tool.surfaces`.
     surface: Ints
     region: Ints
     depth: Floats
     magnitude: Floats
     niceness: Floats
-    #: The point's share of the surface.
     weight: Floats
-    #: Bound on the rounding error of a point's depth; None if it is unknown for the tool.
     rounding_error: float | None
 
     def __len__(self) -> int:
@@ -90,13 +127,21 @@ class Contacts:
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Depth:
-    """Proved bounds on the greatest depth of the part's triangles in the tool, at n poses."""
+    """Proved bounds on the greatest depth of the part's triangles in the tool, at n poses.
+
+    Attributes
+    ----------
+    low, high
+        The bounds, n.
+    point
+        A point at least as deep as the lower bound, n × 3; NaN if none was found inside.
+    triangle, surface
+        Its triangle, and the index of the nearest surface of the tool; -1 without a point.
+    """
 
     low: Floats
     high: Floats
-    #: A point at least as deep as the lower bound, n × 3; NaN if none was found inside.
     point: Floats
-    #: Its triangle, and the index of the nearest surface of the tool; -1 without a point.
     triangle: Ints
     surface: Ints
 
@@ -109,15 +154,24 @@ class Clearance:
     """Proved bounds on the distance between the surfaces of part and tool at n poses; 0 in contact.
 
     A tool that is wholly inside the material has a distance, too: see `signed_distance`.
+
+    Attributes
+    ----------
+    low, high
+        The bounds, n.
+    point
+        The nearest point of the part, n × 3.
+    triangle, surface
+        Its triangle, and the index of the nearest surface of the tool.
+    tool_point, normal
+        The nearest point of the tool, and the tool's outward unit normal there, n × 3.
     """
 
     low: Floats
     high: Floats
-    #: The nearest point of the part, n × 3.
     point: Floats
     triangle: Ints
     surface: Ints
-    #: The nearest point of the tool, and the tool's outward unit normal there, n × 3.
     tool_point: Floats
     normal: Floats
 
@@ -127,7 +181,13 @@ class Clearance:
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Distance:
-    """Proved bounds on the signed distance between part and tool at n poses: below 0 the depth in contact."""
+    """Proved bounds on the signed distance between part and tool at n poses: below 0 the depth in contact.
+
+    Attributes
+    ----------
+    low, high
+        The bounds, n.
+    """
 
     low: Floats
     high: Floats
@@ -141,7 +201,7 @@ def wrench(
     part: Part,
     poses: ArrayLike,
     *,
-    law: Literal["thesis", "gradient", "facing"] = "thesis",
+    law: Literal["thesis", "gradient", "facing"] = "gradient",
     weights: Literal["area", "unit"] = "area",
     centre: ArrayLike = (0.0, 0.0, 0.0),
 ) -> Wrench:
@@ -154,7 +214,9 @@ def wrench(
     poses
         Tips and axes (n, 6), tips and quaternions x, y, z, w (n, 7), or matrices (n, 4, 4); or one pose.
     law
-        The force of a contact: that of Ho's thesis, the gradient of an energy, or the thesis's without points that face away.
+        The force of a contact: the gradient of an energy, that of Ho's thesis, or the thesis's without points that face away. Under
+        `gradient` it is the magnitude times its slope: a constant magnitude exerts no force, a factor counts squared, and directions
+        that the tool's file writes are not used.
     weights
         A point's weight: its share of the surface, or 1.
     centre
@@ -213,6 +275,7 @@ def signed_distance(
 def _tool(tool: object) -> _touchoff.Tool:
     if not isinstance(tool, Tool):
         raise TypeError(f"tool: a Tool is expected, not {type(tool).__name__}: see Tool.library and Tool.load")
+    tool._warn()
     return tool._rust
 
 

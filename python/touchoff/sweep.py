@@ -18,22 +18,33 @@ from .tool import Tool
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class PostureMap:
-    """Where t tools reach a part of n triangles, from m directions."""
+    """Where t tools reach a part of n triangles, from m directions.
 
-    #: The names of the tools.
+    Attributes
+    ----------
+    tools
+        The names of the tools.
+    directions
+        The axes of the directions, m × 3.
+    reached
+        Set where a tool reaches a triangle from a direction, n × t × m.
+    stickout
+        The least stick-out that a tool needs for a triangle, n × t; NaN if it has no holder or does not reach it.
+    tool
+        The index of the tool with the best posture of a triangle; -1 if none reaches it.
+    tip, axis
+        The tip and the axis of the best posture, n × 3; NaN without one.
+    niceness, depth, clearance
+        The niceness of the best posture, its proved greatest depth, and the proved clearance of surfaces that do not cut.
+    """
+
     tools: list[str]
-    #: The axes of the directions, m × 3.
     directions: Floats
-    #: Set where a tool reaches a triangle from a direction, n × t × m.
     reached: NDArray[np.bool_]
-    #: The least stick-out that a tool needs for a triangle, n × t; NaN if it has no holder or does not reach it.
     stickout: Floats
-    #: The index of the tool with the best posture of a triangle; -1 if none reaches it.
     tool: Ints
-    #: The tip and the axis of the best posture, n × 3; NaN without one.
     tip: Floats
     axis: Floats
-    #: The niceness of the best posture, its proved greatest depth, and the proved clearance of surfaces that do not cut.
     niceness: Floats
     depth: Floats
     clearance: Floats

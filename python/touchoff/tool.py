@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -14,11 +15,22 @@ Params = Mapping[str, float | int | str]
 
 @dataclass(frozen=True, slots=True)
 class Surface:
-    """A surface of a tool."""
+    """A surface of a tool.
+
+    Attributes
+    ----------
+    name
+        The name, as in findings.
+    cutting
+        Set if it cuts.
+    """
 
     name: str
-    #: Set if it cuts.
     cutting: bool
+
+
+class ToolWarning(UserWarning):
+    """What the compiler notices about a tool that is in use; see `Tool.warnings`."""
 
 
 class Tool:
@@ -28,16 +40,32 @@ class Tool:
     """
 
     _rust: _touchoff.Tool
-    #: The call that made the tool, for copies in other processes.
+    # The call that made the tool, for copies in other processes.
     _made: tuple[Callable[..., Tool], tuple[Any, ...]]
+    # Set once the compiler's warnings were shown.
+    _warned: bool
 
     def __init__(self) -> None:
         raise TypeError("make a tool by Tool.library, Tool.load, Tool.parse or import_tools")
 
     @classmethod
-    def library(cls, name: str) -> Tool:
-        """Take a built-in tool, of those that `tool_names` lists. It is compiled, and faster than one from a file."""
-        return cls._of(_touchoff.Tool.library(_arrays.text("name", name)), cls.library, name)
+    def library(cls, name: str, **params: float | int | str) -> Tool:
+        """Take a built-in tool, of those that `tool_names` lists, with values for its params: numbers in its unit, or expressions.
+
+        Without params it is compiled to machine code, and faster than one from a file.
+
+        >>> Tool.library("Ball", D=6).radius
+        3.0
+
+        Raises
+        ------
+        ValueError
+            If no built-in tool has the name.
+        ToolError
+            If the tool has no such params, or does not compile with these.
+        """
+        rust = _touchoff.Tool.library(_arrays.text("name", name), _assignments(params))
+        return cls._of(rust, _from_library, name, params)
 
     @classmethod
     def load(cls, path: str | os.PathLike[str], params: Params | None = None) -> Tool:
@@ -46,12 +74,13 @@ class Tool:
         Raises
         ------
         OSError
-            If the file cannot be read.
+            If the file cannot be read; `FileNotFoundError` if there is none.
         ToolError
             If it does not compile; the message has the diagnostics with their codes.
         """
         file = _arrays.path("path", path)
-        return cls._of(_touchoff.Tool.load(file, _assignments(params)), cls.load, file, params)
+        rust = _touchoff.Tool.load(file, _assignments(params))
+        return cls._of(rust, _load_again, os.path.abspath(file), params, rust.digest)
 
     @classmethod
     def parse(cls, text: str, params: Params | None = None, *, name: str = "tool") -> Tool:
@@ -90,7 +119,16 @@ class Tool:
         tool = cls.__new__(cls)
         tool._rust = rust
         tool._made = (make, arguments)
+        tool._warned = False
         return tool
+
+    def _warn(self) -> None:
+        """Show the compiler's warnings, at the first query with the tool."""
+        if not self._warned:
+            self._warned = True
+            if self.warnings:
+                # Shown where the query is called.
+                warnings.warn(self.warnings, ToolWarning, stacklevel=4)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return self._made
@@ -133,7 +171,7 @@ class Tool:
 
     @property
     def warnings(self) -> str:
-        """The compiler's warnings; empty if there are none."""
+        """The compiler's warnings and notes, which the first query shows as a `ToolWarning`; empty if there are none."""
         return self._rust.warnings
 
     def svg(self) -> str:
@@ -152,21 +190,39 @@ class Tool:
 
 @dataclass(frozen=True, slots=True)
 class ImportedTool:
-    """A tool of a library of a CAM system."""
+    """A tool of a library of a CAM system.
+
+    Attributes
+    ----------
+    tool
+        The tool.
+    number
+        Its number; None if it has none.
+    title
+        Its description in the library.
+    notes
+        Notes on what the format leaves open or contradicts, a sentence each.
+    """
 
     tool: Tool
     number: int | None
     title: str
-    #: Notes on what the format leaves open or contradicts, a sentence each.
     notes: list[str]
 
 
 @dataclass(frozen=True, slots=True)
 class ToolLibrary:
-    """A library of a CAM system."""
+    """A library of a CAM system.
+
+    Attributes
+    ----------
+    tools
+        The tools, in the order of the library.
+    left_out
+        The names of tools that are left out, with the reasons.
+    """
 
     tools: list[ImportedTool]
-    #: The names of tools that are left out, with the reasons.
     left_out: list[tuple[str, str]]
 
 
@@ -183,14 +239,32 @@ def import_tools(path: str | os.PathLike[str]) -> ToolLibrary:
     file = _arrays.path("path", path)
     tools, left_out = _touchoff.import_library(file)
     imported = [
-        ImportedTool(Tool._of(tool, _listed, file, index), number, title, notes)
+        ImportedTool(Tool._of(tool, _import_again, os.path.abspath(file), index, tool.digest), number, title, notes)
         for index, (tool, number, title, notes) in enumerate(tools)
     ]
     return ToolLibrary(imported, left_out)
 
 
-def _listed(path: str, index: int) -> Tool:
-    return import_tools(path).tools[index].tool
+def _from_library(name: str, params: dict[str, float | int | str]) -> Tool:
+    return Tool.library(name, **params)
+
+
+def _load_again(path: str, params: Params | None, digest: int) -> Tool:
+    return _same(Tool.load(path, params), digest, path)
+
+
+def _import_again(path: str, index: int, digest: int) -> Tool:
+    tools = import_tools(path).tools
+    return _same(tools[index].tool if index < len(tools) else None, digest, path)
+
+
+def _same(tool: Tool | None, digest: int, path: str) -> Tool:
+    """Return a tool if it is the one that was pickled."""
+    if tool is None or tool._rust.digest != digest:
+        raise ValueError(
+            f"{path} has changed since the tool was loaded from it: load the tool anew, and pickle that; or restore the file"
+        )
+    return tool
 
 
 def _assignments(params: Params | None) -> list[str]:

@@ -116,6 +116,7 @@ extern crate self as touchoff;
 
 mod atomic_file;
 mod bvh;
+pub mod cancellation;
 pub mod certify;
 pub mod cloud;
 mod debug;

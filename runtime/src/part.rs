@@ -3,7 +3,7 @@
 use crate::cloud::{Cloud, CloudError, CoveringRadius, Sampling, check_position, unit_normal};
 use crate::handle::Handle;
 use crate::mesh::{Geometry, GeometryError, Mesh, MeshDiagnostics};
-use crate::point_bvh::{PointBvh, TreePoint};
+use crate::point_bvh::{Enclosure, PointBvh, TreePoint};
 use crate::pose::Pose;
 use crate::probe::{BudgetError, Law, LodProbe, PartPoints, Probe};
 use crate::tool::{BatchEvaluator, Tool};
@@ -185,10 +185,20 @@ impl Part {
     pub fn diagnostics(&self) -> Option<&MeshDiagnostics> {
         self.diagnostics.as_ref()
     }
+
+    /// Returns the findings about the part, a sentence each: those about its mesh ([`MeshDiagnostics::findings`]); of a part of points,
+    /// whether their normals face into the material, or may do so. That is decided by whether the surface closes around the side that
+    /// the normals face. Of points on a plane it cannot be known.
+    pub fn findings(&self) -> Vec<String> {
+        match &self.diagnostics {
+            Some(diagnostics) => diagnostics.findings(),
+            None => Enclosure::of(self.tree()).finding().into_iter().collect(),
+        }
+    }
 }
 
 impl<'a, T: BatchEvaluator + ?Sized> Probe<'a, T> {
-    /// Creates a probe with the thesis's law, area weights and the tip as compliance centre.
+    /// Creates a probe with the gradient law, area weights and the tip as compliance centre.
     pub fn new(part: &'a Part, tool: &'a T) -> Probe<'a, T> {
         Probe::of(PartPoints::Level(part.tree()), part.unit(), Handle::Borrowed(tool))
     }

@@ -86,7 +86,7 @@ struct Pair<'a> {
 }
 
 impl<'a> Scene<'a> {
-    /// Creates an empty scene whose poses and results are in `unit`, with the thesis's law and area weights.
+    /// Creates an empty scene whose poses and results are in `unit`, with the gradient law and area weights.
     pub fn new(unit: Unit) -> Scene<'a> {
         let (law, weights) = (Law::default(), Weights::default());
         Scene { unit, law, weights, parts: Vec::new(), tools: Vec::new() }

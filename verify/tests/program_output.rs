@@ -99,8 +99,7 @@ fn writes_programs_in_the_usual_form() {
     );
     assert_eq!(
         csv(&program),
-        "# touchoff program: complete only with its last line `# end of program`\nx,y,z,i,j,k\n1,2.5,0,0,0,1\n\
-         0.0000001,-2,1000000000,0.6,0,0.8\n# end of program\n"
+        "x,y,z,i,j,k,end\n1,2.5,0,0,0,1,\n0.0000001,-2,1000000000,0.6,0,0.8,end of program\n"
     );
     let read = ClData::parse(&text, "again.cl").expect("it is a program");
     assert_eq!(read.ignored, [(1, "PARTNO".to_owned())]);

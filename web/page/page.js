@@ -126,6 +126,10 @@ const replies = {
     program.replacePart();
     openLater();
   },
+  /** The contact stiffness that follows from tool and part: in use while the field is empty. */
+  stiffness({ derived }) {
+    if (derived) id('stiffness').placeholder = derived.toPrecision(3);
+  },
   text({ text }) {
     editor.text = libraryText = text;
   },

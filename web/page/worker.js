@@ -103,6 +103,7 @@ const requests = {
   stiffness({ value }) { engine.setStiffness(value); },
   start({ pose }) {
     engine.start(new Float64Array(pose));
+    postMessage({ kind: 'stiffness', derived: engine.derivedStiffness() });
     lastPose = pose.join();
     wake();
   },
@@ -140,5 +141,6 @@ function answer(data) {
 onmessage = ({ data }) => answer(data);
 
 await init({ module_or_path: await engineModule() });
-engine = new Engine(1000 / PERIOD, 4000);
+// The contact stiffness follows from tool and part, until the page states one.
+engine = new Engine(1000 / PERIOD, 0);
 postMessage({ kind: 'ready', library: JSON.parse(Engine.library()) });

@@ -7,9 +7,9 @@ use crate::{part, tool};
 use serde::Serialize;
 use std::rc::Rc;
 use touchoff::tool::{Interpreted, Symmetry};
-use touchoff::{Mesh, Part, Pose, Sampling, Tool};
+use touchoff::{Law, Mesh, Part, Pose, Sampling, Tool};
 use touchoff_haptics::{
-    Coupling, DeviceAxes, DeviceLimits, Rendering, SessionSettings, SessionState,
+    ContactStiffness, Coupling, DeviceAxes, DeviceLimits, Rendering, SessionSettings, SessionState,
 };
 use wasm_bindgen::prelude::{JsError, wasm_bindgen};
 
@@ -24,8 +24,10 @@ const MAX_DRAWN_CONTACTS: usize = 4000;
 #[derive(Debug)]
 pub struct Engine {
     rate: f64,
-    /// Contact stiffness, N/mm³.
+    /// Contact stiffness, N/mm³; 0 to derive it from tool and part.
     stiffness: f64,
+    /// The derived stiffness of this tool and part, N per cube of the part's unit.
+    derived: Option<f64>,
     mesh: Option<Rc<Mesh>>,
     part: Option<Rc<Part>>,
     tool: Option<Rc<Interpreted>>,
@@ -38,12 +40,14 @@ pub struct Engine {
 
 #[wasm_bindgen]
 impl Engine {
-    /// Makes an engine without a part and a tool: `rate` cycles per second, contact stiffness in N/mm³.
+    /// Makes an engine without a part and a tool: `rate` cycles per second, contact stiffness in N/mm³; with 0 it follows from tool and
+    /// part.
     #[wasm_bindgen(constructor)]
     pub fn new(rate: f64, stiffness: f64) -> Engine {
         Engine {
             rate,
             stiffness,
+            derived: None,
             mesh: None,
             part: None,
             tool: None,
@@ -122,6 +126,7 @@ impl Engine {
             // The session is one of the old tool.
             self.tool = Some(Rc::new(tool));
             self.touch = None;
+            self.derived = None;
             self.make_triangles();
         }
         Ok(json(&compiled))
@@ -145,11 +150,19 @@ impl Engine {
         self.triangles.surfaces.clone()
     }
 
-    /// Sets the contact stiffness, N/mm³; it holds from the next [`start`](Engine::start).
+    /// Sets the contact stiffness, N/mm³, or 0 for one that follows from tool and part; it holds from the next
+    /// [`start`](Engine::start).
     #[wasm_bindgen(js_name = setStiffness)]
     pub fn set_stiffness(&mut self, stiffness: f64) {
         self.stiffness = stiffness;
         self.touch = None;
+    }
+
+    /// Returns the contact stiffness that is derived from tool and part, N/mm³; 0 if none was needed yet.
+    #[wasm_bindgen(js_name = derivedStiffness)]
+    pub fn derived_stiffness(&self) -> f64 {
+        let unit = self.part.as_ref().map_or(1.0, |part| part.unit().millimetres());
+        self.derived.map_or(0.0, |stiffness| stiffness / unit.powi(3))
     }
 
     /// Begins a session with the hand at a pose: the tip, and a quaternion x, y, z, w.
@@ -277,6 +290,7 @@ impl Engine {
         self.mesh = Some(Rc::new(mesh));
         self.part = None;
         self.touch = None;
+        self.derived = None;
         self.make_triangles();
     }
 
@@ -286,6 +300,7 @@ impl Engine {
         let cover = part.tree().covering_radius().map(|cover| cover.radius);
         self.part = Some(Rc::new(part));
         self.touch = None;
+        self.derived = None;
         Ok(cover)
     }
 
@@ -306,9 +321,17 @@ impl Engine {
         };
         let limits = DeviceLimits { axes, ..DeviceLimits::default() };
         self.hand = Hand::new(pose_of(pose)?, limits);
-        let settings = SessionSettings {
+        let stiffness = if self.stiffness > 0.0 {
             // From N/mm³ to N per cube of the part's unit.
-            stiffness: self.stiffness * part.unit().millimetres().powi(3),
+            self.stiffness * part.unit().millimetres().powi(3)
+        } else {
+            *self.derived.get_or_insert_with(|| {
+                let law = Law::default();
+                ContactStiffness::derived(part, &**tool as &dyn Tool, law, &limits).stiffness
+            })
+        };
+        let settings = SessionSettings {
+            stiffness,
             rendering: Some(Rendering::Coupled(Coupling {
                 damping: DAMPING,
                 ..Coupling::of(&limits)

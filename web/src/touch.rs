@@ -57,7 +57,7 @@ impl Touch {
         hand: &Hand,
     ) -> Result<Touch, EngineError> {
         Touch::try_new(touched, |touched| {
-            let probe = Probe::new(&touched.part, &*touched.tool).with_law(Law::Gradient);
+            let probe = Probe::new(&touched.part, &*touched.tool).with_law(Law::default());
             let session = Session::new(probe.clone(), settings, hand.limits())?;
             Ok(Queries { session, probe })
         })

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use std::time::Instant;
 use touchoff::scenes::{ScenePath, tube};
 use touchoff::tool::{Interpreted, Tool};
-use touchoff::{Cloud, Part, Pose, Probe, Sampling};
+use touchoff::{Cloud, Law, Part, Pose, Probe, Sampling};
 use touchoff_bench::page::Section;
 use touchoff_tests::library::library;
 
@@ -50,7 +50,7 @@ The forces are equal to the bit.
 
 /// Returns the mean number of contacts, and the median time per query of each tool, ns.
 fn measure(part: &Part, tools: [&dyn Tool; 2], path: ScenePath) -> (f64, [f64; 2]) {
-    let mut probes = tools.map(|tool| Probe::new(part, tool));
+    let mut probes = tools.map(|tool| Probe::new(part, tool).with_law(Law::Thesis));
     let mut times = [Vec::with_capacity(POSES), Vec::with_capacity(POSES)];
     let mut contacts = 0;
     for k in 0..POSES {

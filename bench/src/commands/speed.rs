@@ -16,7 +16,7 @@ use touchoff::mesh::shapes;
 use touchoff::scenes::{POSES, ScenePath, tube};
 use touchoff::tool::{Evaluations, Outputs, PointBatch};
 use touchoff::{
-    Cloud, Level, Mesh, Part, Pose, Probe, Sampling, Scene as Parts, SurfaceId, Tool, Unit,
+    Cloud, Law, Level, Mesh, Part, Pose, Probe, Sampling, Scene as Parts, SurfaceId, Tool, Unit,
 };
 use touchoff_bench::page::{Page, Section};
 #[cfg(feature = "peers")]
@@ -222,12 +222,12 @@ impl Speed {
         let part = points_of(&tube(), 20_000)?;
         let poses = poses(ScenePath::Outside);
         let frames: Vec<Pose> = (0..PARTS).map(|index| shift(50.0 * index as f64)).collect();
-        let mut scene = Parts::new(Unit::Millimetre);
+        let mut scene = Parts::new(Unit::Millimetre).with_law(Law::Thesis);
         for frame in &frames {
             scene.add_part(&part, *frame)?;
         }
         let tool = scene.add_tool(&Fig73Exact);
-        let mut probe = Probe::new(&part, &Fig73Exact);
+        let mut probe = Probe::new(&part, &Fig73Exact).with_law(Law::Thesis);
         let times = self.race(
             |k| {
                 scene.move_tool(tool, poses[k]);
@@ -393,7 +393,7 @@ impl Speed {
         let part = Part::from_cloud(&cloud);
         for path in ScenePath::ALL {
             let poses = poses(path);
-            let mut probe = Probe::new(&part, &Fig73Exact);
+            let mut probe = Probe::new(&part, &Fig73Exact).with_law(Law::Thesis);
             #[cfg(feature = "peers")]
             {
                 let mut parry = ParryBvh::new(&cloud);
@@ -407,7 +407,9 @@ impl Speed {
                 });
             }
             if let Some(avx2) = Level::new().as_avx2() {
-                let mut narrow = Probe::new(&part, &Fig73Exact).with_level(Level::Avx2(avx2));
+                let mut narrow = Probe::new(&part, &Fig73Exact)
+                    .with_law(Law::Thesis)
+                    .with_level(Level::Avx2(avx2));
                 let [wide, narrow] =
                     self.race(|k| probe.wrench(&poses[k]), |k| narrow.wrench(&poses[k]));
                 rows.push(Measured {
@@ -495,7 +497,7 @@ impl Speed {
         for _ in 0..9 {
             let start = Instant::now();
             let part = Part::open(&saved)?;
-            black_box(Probe::new(&part, &Fig73Exact).wrench(&pose));
+            black_box(Probe::new(&part, &Fig73Exact).with_law(Law::Thesis).wrench(&pose));
             best = best.min(start.elapsed().as_secs_f64());
         }
         rows.push(Measured {

@@ -7,7 +7,7 @@ use super::sampling::{Pattern, equal};
 use super::truth::{ErrorStats, Errors, Truth, check};
 use crate::race::clock::{Times, race};
 use crate::race::contender::Contender;
-use touchoff::{Cloud, CloudError, Mesh, Part, Pose, Probe, Sampling};
+use touchoff::{Cloud, CloudError, Law, Mesh, Part, Pose, Probe, Sampling};
 
 /// A cloud with its labels and its tree.
 pub(super) struct LabelledCloud {
@@ -121,7 +121,8 @@ impl<'a> Lineup<'a> {
     /// surface.
     pub(super) fn add_clouds(&mut self, clouds: &'a [LabelledCloud], cutter: Cutter<'a>) {
         for cloud in clouds {
-            let probe = CloudProbe(Probe::new(&cloud.part, cutter.tool()));
+            let probe = Probe::new(&cloud.part, cutter.tool()).with_law(Law::Thesis);
+            let probe = CloudProbe(probe);
             self.add(cloud.label(probe.name()), Box::new(probe));
         }
         for cloud in clouds {

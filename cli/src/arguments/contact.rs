@@ -36,7 +36,7 @@ pub(crate) struct Run {
     #[arg(long, value_name = "FILE")]
     pub(crate) program: PathBuf,
     /// Force law: `thesis`, `gradient` or `facing`.
-    #[arg(long, default_value_t = Law::Thesis)]
+    #[arg(long, default_value_t = Law::default())]
     pub(crate) law: Law,
     /// Weights of the points: `area` or `unit`.
     #[arg(long, default_value_t = Weights::Area)]
@@ -151,9 +151,19 @@ pub(crate) struct Haptic {
     /// Device that moves the tool.
     #[arg(long, value_enum, default_value_t = DeviceKind::Hand)]
     pub(crate) device: DeviceKind,
-    /// Program that `--device playback` plays once: APT-CL, or a table of poses, in the part's unit.
+    /// Program that `--device playback` plays once, and that `--device hand` follows once while it presses: APT-CL, or a table of poses,
+    /// in the part's unit.
     #[arg(long, value_name = "FILE", required_if_eq("device", "playback"))]
     pub(crate) program: Option<PathBuf>,
+    /// Place above which the hand begins and that it presses, in the part's unit [default: the middle of the part's highest surface].
+    #[arg(long, value_name = "X,Y,Z", value_parser = point, conflicts_with = "program")]
+    pub(crate) at: Option<Point3<f64>>,
+    /// Radius of the circles on which the hand moves while it presses, in mm.
+    #[arg(long, value_name = "MM", default_value_t = 1.0, value_parser = length)]
+    pub(crate) circle: f64,
+    /// Force with which the hand presses, in N.
+    #[arg(long, value_name = "NEWTON", default_value_t = 0.5, value_parser = positive)]
+    pub(crate) press: f64,
     /// Rate of the loop, in cycles per second, from 1 to 100000.
     #[arg(long, value_name = "HZ", default_value_t = 1000.0, value_parser = rate)]
     pub(crate) rate: f64,
@@ -161,11 +171,12 @@ pub(crate) struct Haptic {
     #[arg(long, value_name = "SECONDS", default_value_t = 10.0, value_parser = positive)]
     pub(crate) duration: f64,
     /// Force law: `thesis`, `gradient` or `facing`.
-    #[arg(long, default_value_t = Law::Gradient)]
+    #[arg(long, default_value_t = Law::default())]
     pub(crate) law: Law,
-    /// Stiffness of contact, in N per unit of the law's force: N/mm³ for a part in mm.
-    #[arg(long, value_name = "NUMBER", default_value_t = 1.0, value_parser = positive)]
-    pub(crate) stiffness: f64,
+    /// Stiffness of contact, in N per unit of the law's force: N/mm³ for a part in mm [default: such that `--max-force` presses the tool
+    /// by a quarter of the contact's radius, or of the part's least thickness].
+    #[arg(long, value_name = "NUMBER", value_parser = positive)]
+    pub(crate) stiffness: Option<f64>,
     /// Stiffest spring that the device can render, in N/mm.
     #[arg(long, value_name = "NUMBER", default_value_t = 1.0, value_parser = positive)]
     pub(crate) device_stiffness: f64,

@@ -7,21 +7,45 @@ use nalgebra::{Point3, Vector3};
 use std::path::Path;
 use touchoff::tool::Symmetry;
 use touchoff::{Pose, Unit};
-use touchoff_haptics::{Device, DeviceAxes, DeviceLimits, PlaybackDevice, SimulatedHand, Tremor};
+use touchoff_haptics::{
+    Device, DeviceAxes, DeviceLimits, HandImpedance, PlaybackDevice, SimulatedHand, Tremor,
+};
 
-/// Height above the part at which a hand begins, and depth to which it presses, in mm.
+/// Height above the part at which a hand begins, in mm.
 const START_HEIGHT: f64 = 2.0;
-const PRESS_DEPTH: f64 = 3.0;
+/// Fraction of the part's height that counts as its highest surface, for rounding.
+const TOP_FRACTION: f64 = 1e-3;
 
 impl HapticRun<'_> {
-    /// Creates a hand that presses down on the part again and again.
+    /// Creates a hand that presses down on the part again and again, or that presses while it follows the program.
     pub(super) fn hand(&self) -> Result<impl Device + Send + use<>, Failure> {
         let unit = self.arguments.part.unit;
-        let motion = pressing(self.start(), unit);
+        let depth = self.press_depth() * Unit::Millimetre.factor_to(unit);
+        let mut motion: Box<dyn FnMut(f64) -> Pose + Send> = match &self.arguments.program {
+            None => Box::new(pressing(self.start(), unit, self.arguments.circle, depth)),
+            Some(_) => {
+                let mut path = self.playback()?;
+                let mut last = Pose::default();
+                Box::new(move |_| {
+                    // The last pose is held at the end.
+                    last = path.pose().unwrap_or(last);
+                    last.translated(last.axis() * -depth).unwrap_or(last)
+                })
+            }
+        };
+        let motion = move |time| motion(time);
         let tremor = Tremor { size: 0.02, frequency: 10.0, seed: self.arguments.part.seed };
         Ok(SimulatedHand::new(self.limits(), self.arguments.rate, motion)?
             .with_centre(Point3::origin(), unit)?
             .with_tremor(&tremor)?)
+    }
+
+    /// Returns the depth below a surface, in mm, at which the hand wants the tool so that it presses with its force: that stretches the
+    /// grip, and the coupling if there is one.
+    fn press_depth(&self) -> f64 {
+        let grip = HandImpedance::default().stiffness;
+        let coupling = if self.arguments.direct { 0.0 } else { 1.0 / self.limits().stiffness };
+        self.arguments.press * (1.0 / grip + coupling)
     }
 
     /// Creates a device that plays the program.
@@ -44,7 +68,7 @@ impl HapticRun<'_> {
     }
 
     /// Returns the limits of a simulated device.
-    fn limits(&self) -> DeviceLimits {
+    pub(super) fn limits(&self) -> DeviceLimits {
         DeviceLimits {
             axes: match self.tool.info().symmetry {
                 Symmetry::Revolved => DeviceAxes::Five,
@@ -56,13 +80,29 @@ impl HapticRun<'_> {
         }
     }
 
-    /// Returns the pose of the tool upright above the highest point of the part.
-    fn start(&self) -> Pose {
+    /// Returns the place that the hand presses: the given one, or the point in the middle of the part's highest surface.
+    fn place(&self) -> Point3<f64> {
+        if let Some(at) = self.arguments.at {
+            return at;
+        }
         let tree = self.part.tree();
-        let points = (0..tree.len()).map(|index| tree.point(index));
-        let highest = points.max_by(|a, b| a.z.total_cmp(&b.z)).unwrap_or_default();
+        let points =
+            || (0..tree.slots()).filter(|slot| tree.has_point(*slot)).map(|k| tree.point(k));
+        let heights = points().map(|point| point.z);
+        let [low, high] = heights
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], z| [low.min(z), high.max(z)]);
+        let top = || points().filter(|point| point.z >= high - TOP_FRACTION * (high - low));
+        let count = top().count().max(1) as f64;
+        let middle = top().fold(Vector3::zeros(), |sum, point| sum + point.coords) / count;
+        let from_middle = |point: &Point3<f64>| (point.coords - middle).norm_squared();
+        let nearest = top().min_by(|a, b| from_middle(a).total_cmp(&from_middle(b)));
+        nearest.unwrap_or_default()
+    }
+
+    /// Returns the pose of the tool upright above the place that the hand presses.
+    fn start(&self) -> Pose {
         let height = START_HEIGHT * Unit::Millimetre.factor_to(self.arguments.part.unit);
-        let tip = highest + Vector3::z() * height;
+        let tip = self.place() + Vector3::z() * height;
         match self.tool.info().symmetry {
             Symmetry::Revolved => Pose::from_axis(tip, Vector3::z()),
             Symmetry::Solid { .. } => Pose::from_quaternion(tip, [0.0, 0.0, 0.0, 1.0]),
@@ -71,15 +111,15 @@ impl HapticRun<'_> {
     }
 }
 
-/// Returns the motion of a hand that presses down and lets go every five seconds. Meanwhile it goes round once a
-/// second, on circles with a radius of up to a millimetre.
-fn pressing(start: Pose, unit: Unit) -> impl FnMut(f64) -> Pose {
+/// Returns the motion of a hand that presses down to a depth below the surface and lets go every five seconds. Meanwhile it goes round
+/// once a second, on circles with a radius of up to `circle` mm.
+fn pressing(start: Pose, unit: Unit, circle: f64, depth: f64) -> impl FnMut(f64) -> Pose {
     let mm = Unit::Millimetre.factor_to(unit);
     move |time| {
         let turn = std::f64::consts::TAU * time;
         let down = 0.5 - 0.5 * (turn / 5.0).cos();
-        let displacement =
-            Vector3::new(turn.cos() - 1.0, turn.sin(), -START_HEIGHT - PRESS_DEPTH) * (down * mm);
-        start.translated(displacement).unwrap_or(start)
+        let aside = Vector3::new(turn.cos() - 1.0, turn.sin(), 0.0) * (circle * mm);
+        let displacement = aside - Vector3::z() * (START_HEIGHT * mm + depth);
+        start.translated(displacement * down).unwrap_or(start)
     }
 }

@@ -18,8 +18,8 @@ use std::time::Duration;
 use touchoff::certify::TriangleBvh;
 use touchoff::{Part, Probe, Tool};
 use touchoff_haptics::{
-    Coupling, Device, DeviceLimits, MonotonicClock, Realtime, Rendering, Session, SessionSettings,
-    check_core, state_channel,
+    ContactStiffness, Coupling, Device, DeviceLimits, MonotonicClock, Realtime, Rendering, Session,
+    SessionSettings, check_core, state_channel,
 };
 use touchoff_postures::Recorder;
 
@@ -49,7 +49,8 @@ pub(crate) fn haptic(arguments: &Haptic, json: bool) -> Result<(), Failure> {
     let recordings = Recordings::new(table.transpose()?, recorder.transpose()?);
     // At least one cycle is run, however short the duration.
     let cycles = (arguments.duration * arguments.rate).round().max(1.0) as u64;
-    let run = HapticRun { arguments, json, cycles, part: &part, tool };
+    let mut run = HapticRun { arguments, json, cycles, part: &part, tool, contact: None };
+    run.choose_stiffness();
     match arguments.device {
         DeviceKind::Hand => run.drive(run.hand()?, recordings),
         DeviceKind::Playback => run.drive(run.playback()?, recordings),
@@ -64,9 +65,14 @@ pub(crate) fn haptic(arguments: &Haptic, json: bool) -> Result<(), Failure> {
 
 /// Refuses options that do not go together, outputs that are inputs, and a core that the machine does not have.
 fn check_arguments(arguments: &Haptic) -> Result<(), Failure> {
-    if arguments.program.is_some() && arguments.device != DeviceKind::Playback {
+    if arguments.program.is_some() && arguments.device == DeviceKind::Spacenav {
         return Err(Failure::Usage(
-            "`--program` is what `--device playback` plays: give both, or neither",
+            "`--program` is what `--device playback` plays and `--device hand` follows: take one of these devices, or no program",
+        ));
+    }
+    if arguments.press > arguments.max_force {
+        return Err(Failure::Usage(
+            "`--press` is a force that the device renders, up to `--max-force`: lower the one, or raise the other",
         ));
     }
     let program = arguments.program.as_deref();
@@ -86,9 +92,25 @@ struct HapticRun<'a> {
     cycles: u64,
     part: &'a Part,
     tool: &'a dyn Tool,
+    /// The contact stiffness, once it is chosen.
+    contact: Option<ContactStiffness>,
 }
 
 impl<'a> HapticRun<'a> {
+    /// Takes the stiffness of the command line, or derives one, and says what may happen with it.
+    fn choose_stiffness(&mut self) {
+        let HapticRun { arguments, part, tool, .. } = *self;
+        let (law, limits) = (arguments.law, self.limits());
+        let contact = match arguments.stiffness {
+            Some(stiffness) => ContactStiffness::of(stiffness, part, tool, law, &limits),
+            None => ContactStiffness::derived(part, tool, law, &limits),
+        };
+        for warning in contact.warnings() {
+            message!("{warning}");
+        }
+        self.contact = Some(contact);
+    }
+
     /// Creates the session.
     fn session(&self, limits: DeviceLimits) -> Result<Session<'a>, Failure> {
         let rendering = match self.arguments.direct {
@@ -96,7 +118,7 @@ impl<'a> HapticRun<'a> {
             false => Rendering::Coupled(Coupling::of(&limits)),
         };
         let settings = SessionSettings {
-            stiffness: self.arguments.stiffness,
+            stiffness: self.contact.map_or(1.0, |contact| contact.stiffness),
             rendering: Some(rendering),
             ..SessionSettings::new(self.arguments.rate)
         };
@@ -110,7 +132,7 @@ impl<'a> HapticRun<'a> {
         mut device: impl Device + Send,
         mut recordings: Recordings<'_>,
     ) -> Result<(), Failure> {
-        let HapticRun { arguments, json, cycles, .. } = *self;
+        let HapticRun { arguments, json, cycles, contact, .. } = *self;
         // Created before memory is locked, so that a lock which has no room for it is refused and reported.
         let mut session = self.session(device.limits())?;
         let (mut publisher, mut latest, mut states) = state_channel(STATE_BUFFER);
@@ -147,7 +169,10 @@ impl<'a> HapticRun<'a> {
         recordings.take(&mut states);
         let recorded = recordings.end();
         // The report is printed even if a recording failed.
-        if json { print_json(&report, arguments) } else { print_text(&report, arguments) }?;
+        match json {
+            true => print_json(&report, arguments, contact.as_ref()),
+            false => print_text(&report, arguments, contact.as_ref()),
+        }?;
         recorded?;
         if stop.load(Ordering::Relaxed) { Err(Failure::Interrupted) } else { Ok(()) }
     }

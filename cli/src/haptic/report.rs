@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::output::Output;
 use serde::Serialize;
 use std::io::Write;
-use touchoff_haptics::{LatencyHistogram, LoopReport, SessionState};
+use touchoff_haptics::{ContactStiffness, LatencyHistogram, LoopReport, SessionState};
 
 /// Prints the current state on one line.
 pub(super) fn show(state: &SessionState, rate: f64) {
@@ -41,6 +41,14 @@ struct RunSummary<'a> {
     faults: FaultCounts,
     dropped_states: u64,
     law: String,
+    /// In N per unit of the law's force.
+    stiffness: Option<f64>,
+    /// The stiffness with the reason for it.
+    stiffness_reason: Option<String>,
+    /// The depth to which the device's largest force presses the tool into a plane, in the part's unit.
+    depth_at_max_force: Option<f64>,
+    /// The thinnest place of the part that was found, in its unit.
+    least_thickness: Option<f64>,
 }
 
 /// Numbers of cycles with a fault of the device.
@@ -74,7 +82,11 @@ impl Quantiles {
 }
 
 /// Prints the report as one JSON object.
-pub(super) fn print_json(report: &LoopReport, arguments: &Haptic) -> Result<(), Failure> {
+pub(super) fn print_json(
+    report: &LoopReport,
+    arguments: &Haptic,
+    contact: Option<&ContactStiffness>,
+) -> Result<(), Failure> {
     let energy = report.last.map(|state| state.energy).unwrap_or_default();
     let faults = report.faults;
     let summary = RunSummary {
@@ -100,6 +112,10 @@ pub(super) fn print_json(report: &LoopReport, arguments: &Haptic) -> Result<(), 
         },
         dropped_states: report.dropped_states,
         law: arguments.law.to_string(),
+        stiffness: contact.map(|contact| contact.stiffness),
+        stiffness_reason: contact.map(ContactStiffness::reason),
+        depth_at_max_force: contact.and_then(|contact| contact.depth),
+        least_thickness: contact.and_then(|contact| contact.thin).map(|thin| thin.thickness),
     };
     let mut out = Output::lines();
     out.json(&summary)?;
@@ -107,7 +123,11 @@ pub(super) fn print_json(report: &LoopReport, arguments: &Haptic) -> Result<(), 
 }
 
 /// Prints the report as text.
-pub(super) fn print_text(report: &LoopReport, arguments: &Haptic) -> Result<(), Failure> {
+pub(super) fn print_text(
+    report: &LoopReport,
+    arguments: &Haptic,
+    contact: Option<&ContactStiffness>,
+) -> Result<(), Failure> {
     let mut out = Output::lines();
     let energy = report.last.map(|state| state.energy).unwrap_or_default();
     let faults = report.faults;
@@ -118,6 +138,9 @@ pub(super) fn print_text(report: &LoopReport, arguments: &Haptic) -> Result<(), 
         "{cycles} cycles at {of} Hz, {missed} missed their deadline, {skipped} skipped; law {}",
         arguments.law
     )?;
+    if let Some(contact) = contact {
+        writeln!(out, "  stiffness:        {}", contact.reason())?;
+    }
     writeln!(out, "  cycle time, µs:   {}", Quantiles::of(&report.durations).format())?;
     writeln!(out, "  start delay, µs:  {}", Quantiles::of(&report.start_delays).format())?;
     let [force, torque] = report.peak_wrench;

@@ -1,6 +1,6 @@
 //! `touchoff haptic` from the user's side.
 
-use crate::bench::{Bench, rows, stderr, stdout};
+use crate::bench::{Bench, cuboid, rows, stderr, stdout};
 use std::process::{Output, Stdio};
 use std::time::{Duration, Instant};
 
@@ -52,6 +52,75 @@ fn a_session_of_the_hand_is_summarised() {
     for word in ["cycles at 500 Hz", "cycle time, µs", "energy", "law gradient"] {
         assert!(stdout(&output).contains(word), "{}", stdout(&output));
     }
+}
+
+/// Returns the lowest height of the tip, and the place of the tip at the last state, from a record.
+fn recorded(bench: &Bench) -> (f64, [f64; 3]) {
+    let record = std::fs::read_to_string(bench.place("record.csv")).expect("a record");
+    let mut lines = record.lines();
+    let names: Vec<&str> = lines.next().expect("a head").split(',').collect();
+    let columns = ["tool_x", "tool_y", "tool_z"]
+        .map(|name| names.iter().position(|known| *known == name).expect(&record[..200]));
+    let tips: Vec<[f64; 3]> = lines
+        .map(|line| {
+            let cells: Vec<&str> = line.split(',').collect();
+            columns.map(|column| cells[column].parse().expect("a number"))
+        })
+        .collect();
+    (tips.iter().map(|tip| tip[2]).fold(f64::INFINITY, f64::min), *tips.last().expect("states"))
+}
+
+/// A sheet has its highest points at its edges, too: the hand presses its middle and stays on it.
+#[test]
+fn the_hand_stays_on_a_flat_part() {
+    let bench = Bench::new();
+    bench.part("sheet.stl", &cuboid([-15.0, -15.0, -0.3], [15.0, 15.0, 0.0]));
+    let line = "haptic --part sheet.stl --unit mm --tool D2Ball --points 60000 --duration 4 --record record.csv --json";
+    let said = rows(&bench.touchoff(line)).swap_remove(0);
+    let (lowest, [x, y, _]) = recorded(&bench);
+    assert!(lowest > -0.15 && x.hypot(y) < 3.0, "{lowest} {x} {y}");
+    // The largest force is that of `--press`, but for the tremor and the damper.
+    let peak = said["peak_force"].as_f64().expect("a force");
+    assert!((0.3..0.9).contains(&peak), "{said}");
+    assert!(said["stiffness"].as_f64().is_some_and(|stiffness| stiffness > 100.0), "{said}");
+    let reason = said["stiffness_reason"].as_str().expect("a sentence");
+    assert!(reason.contains("a quarter of the part's thickness of 0.3000 mm at ("), "{reason}");
+}
+
+#[test]
+fn place_path_and_force_of_the_hand_are_options() {
+    let bench = Bench::new();
+    let output = haptic(&bench, "--at 1,2,0 --circle 0 --press 2 --rate 500 --record record.csv");
+    assert!(output.status.success(), "{}", stderr(&output));
+    let (_, [x, y, z]) = recorded(&bench);
+    assert!((x - 1.0).abs() < 0.2 && (y - 2.0).abs() < 0.2 && z < 2.0, "{x} {y} {z}");
+    // Along a path on the block's top, pressed into it.
+    bench.write("along.csv", "-2,0,0,0,0,1\n2,0,0,0,0,1\n");
+    let output = haptic(&bench, "--program along.csv --press 1 --record record.csv --json");
+    let said = rows(&output).swap_remove(0);
+    assert!(said["peak_force"].as_f64().is_some_and(|force| force > 0.5), "{said}");
+    let (lowest, [x, ..]) = recorded(&bench);
+    assert!(x > 1.0 && lowest > -0.5, "{x} {lowest}");
+}
+
+/// The report and the messages say which stiffness is in use, and what may happen with it.
+#[test]
+fn the_stiffness_is_stated_with_its_reason() {
+    let bench = Bench::new();
+    let derived = haptic(&bench, "--rate 500");
+    assert!(
+        stdout(&derived)
+            .contains("N/mm³, derived from tool and part: the device's 8 N press the tool")
+    );
+    let given = haptic(&bench, "--rate 500 --stiffness 1");
+    assert!(stdout(&given).contains("1.00 N/mm³, as given"), "{}", stdout(&given));
+    bench.part("sheet.stl", &cuboid([-3.0, -3.0, -0.3], [3.0, 3.0, 0.0]));
+    let line = "haptic --part sheet.stl --unit mm --tool D2Ball --points 5000 --duration 0.1 --stiffness 1";
+    let soft = stderr(&bench.touchoff(line));
+    assert!(
+        soft.contains("the part is 0.3000 mm thin at (") && soft.contains("may break through"),
+        "{soft}"
+    );
 }
 
 /// A limit on the size of files stands for a full disk.
@@ -133,7 +202,10 @@ fn invalid_devices_are_refused() {
     for (more, status, words) in [
         ("--device glove", 2, "[possible values: hand, playback, spacenav]"),
         ("--device playback", 2, "--program <FILE>"),
-        ("--program path.csv", 2, "`--device playback`"),
+        ("--device spacenav --program path.csv", 2, "`--device playback`"),
+        ("--program path.csv --at 0,0,0", 2, "--at"),
+        ("--press 9", 2, "`--max-force`"),
+        ("--at 0,0", 2, "three numbers"),
         ("--device playback --program nowhere.csv", 2, "nowhere.csv"),
         ("--record no/record.csv", 1, "record.csv"),
     ] {
@@ -141,7 +213,9 @@ fn invalid_devices_are_refused() {
         assert_eq!(output.status.code(), Some(status), "{more}");
         assert!(stderr(&output).contains(words), "{}", stderr(&output));
     }
-    for wrong in ["--rate 0", "--rate 1e9", "--stiffness -1", "--duration NaN"] {
+    for wrong in
+        ["--rate 0", "--rate 1e9", "--stiffness -1", "--duration NaN", "--press 0", "--circle -1"]
+    {
         assert_eq!(haptic(&bench, wrong).status.code(), Some(2), "{wrong}");
     }
 }

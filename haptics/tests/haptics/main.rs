@@ -7,5 +7,6 @@ mod sheet;
 mod solid;
 #[cfg(unix)]
 mod spacenav;
+mod stiffness;
 mod time;
 mod wall;

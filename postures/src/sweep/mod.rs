@@ -21,6 +21,7 @@ use std::num::{NonZeroU16, NonZeroUsize};
 use std::ops::{AddAssign, ControlFlow};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc;
+use touchoff::cancellation;
 use touchoff::certify::TriangleBvh;
 use touchoff::{Mesh, Tool, TriangleId};
 use worker::Worker;
@@ -210,8 +211,8 @@ impl<'a> PostureSweep<'a> {
     }
 
     /// Processes the given batches on all cores, or on the threads of [`PostureSweep::with_threads`], and passes each to `each` as it
-    /// is done, in no particular order, until all are done or `each` breaks. The content of a batch depends neither on the thread nor
-    /// on the time.
+    /// is done, in no particular order, until all are done, `each` breaks, or the computation is [cancelled](touchoff::cancellation). The
+    /// content of a batch depends neither on the thread nor on the time.
     pub fn run<B>(
         &self,
         batches: &[usize],
@@ -254,19 +255,23 @@ impl<'a> PostureSweep<'a> {
         mut each: impl FnMut(T) -> ControlFlow<B>,
     ) -> ControlFlow<B> {
         let workers = self.threads.get();
+        let current = cancellation::current();
         let (next, stop) = (AtomicUsize::new(0), AtomicBool::new(false));
         std::thread::scope(|scope| {
             // Bounded, so that workers wait for an `each` that is slower than they are, and rows do not pile up in memory.
             let (done, batch) = mpsc::sync_channel(2 * workers);
             for _ in 0..workers.min(batches.len()) {
                 let (done, next, stop, judge) = (done.clone(), &next, &stop, &judge);
+                let current = &current;
                 scope.spawn(move || {
                     // `new` has reported the errors.
                     let Ok(mut worker) = Worker::new(self) else { return };
                     while !stop.load(Ordering::Relaxed)
                         && let Some(index) = batches.get(next.fetch_add(1, Ordering::Relaxed))
                     {
-                        if done.send(judge(&mut worker, *index)).is_err() {
+                        // A thread whose work is cancelled ends in order: the caller's thread unwinds.
+                        let Ok(batch) = current.run(|| judge(&mut worker, *index)) else { return };
+                        if done.send(batch).is_err() {
                             return;
                         }
                     }
@@ -281,6 +286,8 @@ impl<'a> PostureSweep<'a> {
                     return flow;
                 }
             }
+            // The channel also closes when all workers were cancelled.
+            cancellation::check();
             ControlFlow::Continue(())
         })
     }

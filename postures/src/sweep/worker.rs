@@ -6,6 +6,7 @@ use crate::placement::{CandidatePosture, SurfacePoint, ToolPlacement};
 use crate::record::merge;
 use crate::{Accessibility, MapRow, Piece, PostureRecord, Validator};
 use nalgebra::{Point3, Vector3};
+use touchoff::cancellation;
 use touchoff::certify::{ContactVerdict, Containment, Location};
 use touchoff::{Mesh, Pose, Tool};
 
@@ -55,6 +56,7 @@ impl<'a> Worker<'a> {
             candidate.clear_caches();
             for (surface_point, row) in points.iter().zip(&mut rows) {
                 stats.triangles += 1;
+                cancellation::check();
                 let access =
                     candidate.access(self.sweep, *surface_point, &mut row.best, &mut stats);
                 row.access.push(access);

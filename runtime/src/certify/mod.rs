@@ -46,10 +46,10 @@ use crate::debug::debug;
 use crate::handle::{Handle, ToolHandle};
 use crate::id::SurfaceId;
 use crate::interval::Interval;
-#[cfg(feature = "parallel")]
-use crate::parallel;
 use crate::pose::Pose;
 use crate::tool::Tool;
+#[cfg(feature = "parallel")]
+use crate::{cancellation, parallel};
 use containment::CorePoints;
 use fearless_simd::Level;
 use nalgebra::{Point3, Vector3};
@@ -414,7 +414,11 @@ impl<'a> Certifier<'a> {
         const ITEMS_PER_TASK: usize = 64;
         let run = |certifier: &mut Certifier<'a>, items: &[I]| {
             certifier.clear_caches();
-            items.iter().map(|item| query(certifier, item)).collect()
+            let one = |item| {
+                cancellation::check();
+                query(certifier, item)
+            };
+            items.iter().map(one).collect()
         };
         parallel::stretches(items, ITEMS_PER_TASK, || self.clone(), run)
     }

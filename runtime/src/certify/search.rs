@@ -2,6 +2,7 @@
 //! search of the part's triangles that answers them. The search keeps its state between queries.
 
 use crate::bvh::{PoseTransform, QuerySetup};
+use crate::cancellation;
 use crate::certify::bounds::batch::Batch;
 use crate::certify::bounds::descent::{BoundedTree, Descent};
 use crate::certify::bounds::hull::Hull;
@@ -385,6 +386,7 @@ impl SearchState {
                 if indices.is_empty() {
                     continue;
                 }
+                cancellation::check();
                 self.batch.begin(bvh, pose, indices);
                 match side {
                     Side::Inside => self.search_batch(of, query),

@@ -11,6 +11,7 @@
 //! pieces. Results computed from the pieces hold for pieces of any size.
 
 use super::sampling::AreaSampler;
+use crate::cancellation;
 use crate::mesh::{Mesh, area_and_normal};
 use nalgebra::{Point3, Vector3};
 use std::ops::Range;
@@ -90,6 +91,7 @@ impl Surface {
 
     /// Adds a part of a triangle. It is cut across its longer extent until few points have a cell in each piece.
     fn add(&mut self, triangle_pieces: &TrianglePieces, part: Vec<Corner>, area: f64) {
+        cancellation::check();
         let TrianglePieces { triangle, copies, origin, normal, axes } = *triangle_pieces;
         let ends = ends(&part, &axes);
         if expected_points(&ends, self.grain) <= MAX_POINTS_PER_PIECE {

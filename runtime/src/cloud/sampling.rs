@@ -1,6 +1,7 @@
 //! Random sampling of points on a mesh: the number, the method and the seed of the points, and how they are drawn.
 //! Coincident triangles (the same three vertices in the same cyclic order) count once where points are spread evenly.
 
+use crate::cancellation;
 use crate::cloud::Cloud;
 use crate::id::TriangleId;
 use crate::keywords::keyword_enum;
@@ -138,6 +139,7 @@ impl AreaSampler {
         let mut cloud = Cloud::with_capacity(count, mesh.unit());
         let area = self.area();
         for _ in 0..count {
+            cancellation::check();
             let target = fraction(&mut random) * area;
             self.push_sample(mesh, target, area / count as f64, &mut random, &mut cloud);
         }

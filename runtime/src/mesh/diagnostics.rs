@@ -1,5 +1,6 @@
 //! Diagnostics of a mesh as numbers and sentences: closed or open, orientation, shells, and irregularities.
 
+use crate::cancellation;
 use crate::mesh::{CompensatedSum, Mesh, area_and_normal, bounds};
 use crate::unit::Unit;
 use nalgebra::Point3;
@@ -347,6 +348,7 @@ fn shells(mesh: &Mesh) -> (Vec<u32>, usize) {
     const UNUSED: u32 = u32::MAX;
     let mut parent = vec![UNUSED; mesh.vertices().len()];
     for triangle in mesh.triangles() {
+        cancellation::check();
         for &vertex in triangle {
             if parent[vertex as usize] == UNUSED {
                 parent[vertex as usize] = vertex;

@@ -7,6 +7,7 @@ use super::faces::Faces;
 use super::location::{SourceLocation, Tokens, number, printable};
 use super::outlier::Outlier;
 use super::{LARGEST_COORDINATE, Mesh, MeshError, is_valid_coordinate};
+use crate::cancellation;
 use crate::unit::Unit;
 
 /// Reasons why an OBJ file could not be read. Lines count from 1.
@@ -137,6 +138,7 @@ impl Mesh {
         let mut faces = Faces::default();
         let mut corners = Vec::new();
         while lines.next() {
+            cancellation::check();
             match lines.word() {
                 Some(b"v") => vertices.push(lines.vertex()?),
                 Some(b"f") => {

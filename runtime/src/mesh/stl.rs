@@ -8,6 +8,7 @@ use nalgebra::{Point3, Vector3};
 use super::location::{SourceLocation, Tokens, number, printable};
 use super::outlier::{Outlier, OutlyingVertex, find_outlier};
 use super::{LARGEST_COORDINATE, Mesh, MeshError, area_and_normal, is_valid_coordinate};
+use crate::cancellation;
 
 /// Bytes of a binary file before its first triangle: 80 of header, 4 of count.
 const HEADER: usize = 84;
@@ -304,6 +305,7 @@ fn read_binary(body: &[u8], name: &str) -> Result<StlFacets, StlError> {
     let mut facets = StlFacets::default();
     let (records, _) = body.as_chunks::<RECORD>();
     for (triangle, record) in records.iter().enumerate() {
+        cancellation::check();
         // The attributes have no agreed meaning.
         let (fields, _attributes) = record.as_chunks::<4>();
         let mut numbers = [0f32; 12];
@@ -334,6 +336,7 @@ fn read_ascii(bytes: &[u8], name: &str) -> Result<StlFacets, StlError> {
         text.keyword("`solid`, or the end of the file", b"solid")?;
         text.tokens.skip_line();
         while text.either("`facet` or `endsolid`", b"facet", b"endsolid")? {
+            cancellation::check();
             let (stated_normal, corners) = text.facet()?;
             facets.push(stated_normal, corners);
         }

@@ -13,10 +13,12 @@
 
 mod build;
 mod filter;
+mod orientation;
 mod traverse;
 
 pub(crate) use build::TreePoint;
 pub(crate) use filter::{Candidates, filter};
+pub(crate) use orientation::Enclosure;
 pub(crate) use traverse::{Traversal, TraversalInput};
 
 use crate::bvh::{Boxes, Frame, PoseTransform, WIDTH};

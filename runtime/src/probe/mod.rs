@@ -21,11 +21,11 @@ pub use wrench::{Stiffness, Wrench, WrenchRounding};
 use crate::bvh::WIDTH;
 use crate::debug::debug;
 use crate::handle::Handle;
-#[cfg(feature = "parallel")]
-use crate::parallel;
 use crate::pose::Pose;
 use crate::tool::{BatchEvaluator, OutputSelection, Outputs, Tool, reserve};
 use crate::unit::Unit;
+#[cfg(feature = "parallel")]
+use crate::{cancellation, parallel};
 use fearless_simd::Level;
 use nalgebra::Point3;
 pub(crate) use state::PartPoints;
@@ -305,7 +305,11 @@ impl<'a, T: BatchEvaluator + ?Sized> Probe<'a, T> {
         // Enough poses that cloning the probe costs nothing in comparison.
         const POSES_PER_TASK: usize = 256;
         let run = |probe: &mut Probe<'a, T>, poses: &[Pose]| {
-            poses.iter().map(|pose| query(probe, pose)).collect()
+            let one = |pose| {
+                cancellation::check();
+                query(probe, pose)
+            };
+            poses.iter().map(one).collect()
         };
         parallel::stretches(poses, POSES_PER_TASK, || self.clone(), run)
     }

@@ -21,12 +21,16 @@ use std::sync::Arc;
 
 /// The force on the tool as a function of a contact's magnitude. `m` is the magnitude, `w` the weight, `n` the part's
 /// outward normal, `u` the direction to the tool's nearest surface.
+///
+/// `Gradient` is the default everywhere: of all laws it alone has an energy, so that no path gains any, the stiffness of a contact is
+/// symmetric, and a haptic loop can account for what it stores. The law leaves out directions that a tool's file writes, and a factor of
+/// a magnitude counts squared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Law {
     /// `w m (n − u)` (Ho 1999, eq. 5.1, without the factor ½). Not conservative.
-    #[default]
     Thesis,
     /// `w m ∇m`, the gradient of the energy `½ Σ w m²`: conservative.
+    #[default]
     Gradient,
     /// The law `Thesis` without points whose normal faces away (`u · n > 0`), for thin sheets.
     Facing,
@@ -96,8 +100,8 @@ impl<'a> QueryState<'a> {
             unit,
             length,
             tool_size: info.size(),
-            law: Law::Thesis,
-            weights: Weights::Area,
+            law: Law::default(),
+            weights: Weights::default(),
             centre: Point3::origin(),
             level: Level::new(),
             setup: QuerySetup::new(&tree.frame, info, length),

@@ -167,6 +167,21 @@ kinds! {
         message "`niceness` of {region} is {value} at {location}"
         help "scale it to lie between 0 and 1, unless contacts here are meant to outweigh those of other tools and surfaces"
         explain "By convention niceness ranges from 0, a bad contact, to 1, the best. Larger values are taken as they are.";
+    warning T0627 ForcelessMagnitude { region: String }
+        "magnitude that does not grow with depth"
+        message "`magnitude` of {region} is the same at every depth: under the force law `gradient` its contacts exert no force"
+        help "let it grow inward from the surface, as `magnitude: 2*depth;` does, or query with the law `thesis`"
+        explain "The law `gradient`, the default, takes the magnitude times its slope as force, the slope of an energy. The law `thesis` takes the magnitude alone.";
+    note T0628 SlopeOfMagnitude { region: String, slope: FormattedNumber, unit: &'static str, location: String }
+        "magnitude whose slope is not 1"
+        message "the slope of `magnitude` of {region} is {slope} per {unit} at {location}: under the force law `gradient` it counts in the force, too"
+        help "no action needed if this is meant; for k times the force under `gradient` write the root of k as the factor, or query with the law `thesis`"
+        explain "The law `gradient`, the default, takes the magnitude times its slope as force, so that a factor of the magnitude counts squared. The law `thesis` takes the magnitude alone.";
+    note T0629 UnusedDirection { region: String, degrees: FormattedNumber, location: String }
+        "direction that a force law does not use"
+        message "the direction of {region} is {degrees}° off the steepest descent of its magnitude at {location}: the force law `gradient` uses the latter only"
+        help "no action needed if this is meant; for forces along the direction, query with the law `thesis`"
+        explain "The law `gradient`, the default, pushes along the steepest descent of the magnitude. The law `thesis` pushes along the direction.";
     error T0690 MoreErrors
         "more errors"
         message "more errors follow"

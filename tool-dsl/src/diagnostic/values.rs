@@ -174,7 +174,7 @@ kinds! {
             Operation::Divide => "this divides {left} by {right}",
         }
         help ((left, right)) {
-            (Dimension::Angle, _) | (_, Dimension::Angle) => "combine angles with angles only, or take `sin`, `cos` or `tan` first",
+            (Dimension::Angle, _) | (_, Dimension::Angle) => "combine angles with angles only, or use `sin`, `cos` or `tan` of the constant angle, as in `z*tan(10deg)`",
             _ => "give both sides the same power of length; a number without a unit fits any",
         }
         explain "Every expression is a number, a power of length, or an angle. A sum of different dimensions would depend on the unit.";

@@ -3,10 +3,10 @@
 
 use super::{Linter, ROUNDING, norm};
 use crate::bound::Extent;
-use crate::diagnostic::{CheckKind, Diagnostic, FormattedNumber, Subject};
+use crate::diagnostic::{CheckKind, Diagnostic, FormattedNumber, Subject, any_error};
 use crate::expr::{Id, Node};
 use crate::geometry::outline::{Point, Segment, points_with_normals};
-use crate::model::Model;
+use crate::model::{DirectionSource, Model};
 use crate::number::Number;
 use crate::source::Span;
 
@@ -28,6 +28,22 @@ const MAX_FALL_RATIO: f64 = 0.01;
 /// The number of points that are kept for each sign of a divisor. Any two of opposite signs may have a zero between
 /// them, but not all are joined by a line in the region.
 const MAX_POINTS_OF_SIGN: usize = 6;
+
+/// The smallest difference of a magnitude's slope from 1, and the smallest angle between a direction and the steepest descent of the
+/// magnitude, that are noted: more than the rounding of four decimals.
+const SLOPE_TOLERANCE: f64 = 1e-4;
+const ANGLE_TOLERANCE: f64 = 1e-4;
+
+/// The slopes of a region's magnitude at the samples, if the file writes one: what the force law `gradient` makes of it.
+#[derive(Clone, Copy, Default)]
+pub(super) struct MagnitudeSlope {
+    /// The slope that differs most from 1, and its point.
+    farthest: Option<([f64; 3], f64)>,
+    /// The largest slope.
+    largest: f64,
+    /// The largest angle of the direction with the steepest descent, rad, and its point.
+    oblique: Option<([f64; 3], f64)>,
+}
 
 /// A divisor in a law of a region.
 pub(super) struct Divisor {
@@ -98,12 +114,86 @@ impl Linter<'_> {
         if self.nicest[owner].is_none_or(|(_, largest)| niceness > largest) {
             self.nicest[owner] = Some((point, niceness));
         }
+        self.measure_slope(owner, point);
         for index in 0..self.divisors.len() {
             let Divisor { region, id, .. } = self.divisors[index];
             let value = if region == owner { self.get(id) } else { 0.0 };
             let seen = &mut self.divisors[index].points[usize::from(value > 0.0)];
             if value != 0.0 && seen.len() < MAX_POINTS_OF_SIGN {
                 seen.push(point);
+            }
+        }
+    }
+
+    /// Returns whether the file writes a magnitude for a region. Otherwise it is the depth in the part's unit.
+    fn has_magnitude(&self, owner: usize) -> bool {
+        let region = &self.model.regions[owner];
+        region.outputs.magnitude == region.magnitude
+    }
+
+    /// Updates what is known of the slope of a region's magnitude and of its direction by the current point.
+    fn measure_slope(&mut self, owner: usize, point: [f64; 3]) {
+        let region = &self.model.regions[owner];
+        let is_written = region.source != DirectionSource::Derived;
+        if !self.has_magnitude(owner) && !is_written {
+            return;
+        }
+        let gradient = region.outputs.gradient.map(|id| self.get(id));
+        let slope = norm(gradient);
+        if !slope.is_finite() {
+            return;
+        }
+        let direction = region.direction.map(|id| self.get(id));
+        let known = &mut self.slopes[owner];
+        known.largest = known.largest.max(slope);
+        if known.farthest.is_none_or(|(_, other)| (slope - 1.0).abs() > (other - 1.0).abs()) {
+            known.farthest = Some((point, slope));
+        }
+        if is_written && slope > 0.0 {
+            let cosine: f64 = (0..3).map(|k| -gradient[k] / slope * direction[k]).sum();
+            let across = [0, 1, 2].map(|k| direction[k] + gradient[k] / slope * cosine);
+            let angle = norm(across).atan2(cosine);
+            if known.oblique.is_none_or(|(_, other)| angle > other) {
+                known.oblique = Some((point, angle));
+            }
+        }
+    }
+
+    /// Reports what the force law `gradient` makes of magnitudes and directions that the file writes, if that is surprising.
+    pub(super) fn report_slopes(&mut self) {
+        // Of a tool that is refused, no force is asked.
+        if any_error(&self.found) {
+            return;
+        }
+        // Directions of `regions smooth` are no mistake.
+        let over = self.model.section.as_ref().and_then(|section| section.over.as_ref());
+        let is_smooth = over.is_some_and(|over| !over.distances.is_empty());
+        for (index, slopes) in std::mem::take(&mut self.slopes).into_iter().enumerate() {
+            let MagnitudeSlope { farthest, largest, oblique } = slopes;
+            let region = &self.model.regions[index];
+            let (name, unit) = (region.name.clone(), self.model.unit.symbol());
+            let (of_magnitude, of_direction) = (region.law_spans.magnitude, region.raw_direction.1);
+            let Some((point, slope)) = farthest else { continue };
+            if self.has_magnitude(index) && largest == 0.0 {
+                // A magnitude of 0 says that contacts exert no force.
+                if self.largest[index][0] > 0.0 {
+                    let kind = CheckKind::ForcelessMagnitude { region: name };
+                    self.report(Diagnostic::new(of_magnitude, kind));
+                }
+                continue;
+            }
+            if self.has_magnitude(index) && (slope - 1.0).abs() > SLOPE_TOLERANCE {
+                let (region, slope) = (name.clone(), FormattedNumber(slope));
+                let location = self.format_point(point);
+                let kind = CheckKind::SlopeOfMagnitude { region, slope, unit, location };
+                self.report(Diagnostic::new(of_magnitude, kind));
+            }
+            let oblique = oblique.filter(|(_, angle)| *angle > ANGLE_TOLERANCE && !is_smooth);
+            if let Some((point, angle)) = oblique {
+                let degrees = FormattedNumber(angle.to_degrees());
+                let location = self.format_point(point);
+                let kind = CheckKind::UnusedDirection { region: name, degrees, location };
+                self.report(Diagnostic::new(of_direction, kind));
             }
         }
     }

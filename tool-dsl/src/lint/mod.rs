@@ -10,7 +10,7 @@ use crate::formula::{Curve, CurveIndex, Formula};
 use crate::model::{Model, Region};
 use crate::resolve::{never_wins, off_tip, overlapping};
 use crate::source::Span;
-use laws::Divisor;
+use laws::{Divisor, MagnitudeSlope};
 use std::cell::RefCell;
 
 mod laws;
@@ -71,6 +71,7 @@ pub(crate) fn lint(model: &Model, extent: &Extent) -> Vec<Diagnostic> {
         linter.on_axis(extent);
         linter.report_poles();
         linter.report_niceness_range();
+        linter.report_slopes();
         return linter.found;
     }
     linter.measure_curves(extent);
@@ -100,6 +101,7 @@ pub(crate) fn lint(model: &Model, extent: &Extent) -> Vec<Diagnostic> {
         }
         linter.report_poles();
         linter.report_niceness_range();
+        linter.report_slopes();
     }
     linter.found
 }
@@ -126,6 +128,8 @@ struct Linter<'m> {
     nicest: Vec<Option<([f64; 3], f64)>>,
     /// The divisors of magnitudes and nicenesses.
     divisors: Vec<Divisor>,
+    /// The slopes of each region's own magnitude.
+    slopes: Vec<MagnitudeSlope>,
 }
 
 impl<'m> Linter<'m> {
@@ -133,7 +137,10 @@ impl<'m> Linter<'m> {
         Linter {
             model,
             size: extent.scale(),
-            evaluator: RefCell::new(LazyEvaluator::new(&model.graph, model.roots())),
+            evaluator: RefCell::new(LazyEvaluator::new(
+                &model.graph,
+                model.roots().chain(model.regions.iter().flat_map(|r| r.outputs.gradient)),
+            )),
             last_region: 0,
             found: Vec::new(),
             owned_points: vec![0; model.regions.len()],
@@ -144,6 +151,7 @@ impl<'m> Linter<'m> {
             largest: vec![[0.0; 2]; model.regions.len()],
             nicest: vec![None; model.regions.len()],
             divisors: laws::divisors(model),
+            slopes: vec![MagnitudeSlope::default(); model.regions.len()],
         }
     }
 

@@ -49,7 +49,9 @@ impl Example {
     fn compiles(source: &Source) -> Option<String> {
         let compiled = compile(source);
         let render = |report: &Diagnostic| report.render(&compiled.sources, false);
-        let said: Vec<String> = compiled.diagnostics().iter().map(render).collect();
+        // Notes tell what a force law makes of an example.
+        let found = compiled.diagnostics().iter().filter(|one| one.severity != Severity::Note);
+        let said: Vec<String> = found.map(render).collect();
         (!said.is_empty()).then(|| said.join("\n"))
     }
 

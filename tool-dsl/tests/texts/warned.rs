@@ -106,7 +106,11 @@ fn regions_of_a_profile_are_held_to_its_depth() {
     let [(message, place)] = said.as_slice() else { panic!("{said:#?}") };
     assert!(message.starts_with("the direction of low is 90° off"), "{message}");
     assert_eq!(place, "direction: (0, -1);");
-    assert_eq!(compiled(&split("direction: (0, -1);")).diagnostics().len(), 1);
+    // Beside the note that one force law does not use it.
+    let compiled = compiled(&split("direction: (0, -1);"));
+    let mut codes: Vec<&str> = compiled.diagnostics().iter().map(|found| found.code()).collect();
+    codes.sort_unstable();
+    assert_eq!(codes, ["T0621", "T0629"]);
     assert_eq!(warned(&split("direction: (0, -1) allow oblique;")), []);
     // The gradient of a magnitude is a direction too.
     let said = warned(&split("magnitude: 3 - d;"));
@@ -233,5 +237,47 @@ fn laws_without_a_value_or_out_of_range_are_reported() {
         let compiled = compiled(&format!("tool T {{ units mm; {items} }}"));
         let codes: Vec<_> = compiled.diagnostics().iter().map(|found| found.code()).collect();
         assert_eq!(codes.first().copied().unwrap_or_default(), expected, "{items}: {codes:?}");
+    }
+}
+
+/// Returns the codes about the force law `gradient` for a profile with a law, and for a pin with a property of its side.
+fn of_force(law: &str, property: &str) -> [Vec<String>; 2] {
+    [profile(law), pin(property)].map(|text| {
+        let compiled = compiled(&text);
+        let found = compiled.diagnostics().iter();
+        let found = found.filter(|one| ("T0627".."T0630").contains(&one.code()));
+        found.map(|one| format!("{} {:?} {}", one.code(), one.severity, one.message())).collect()
+    })
+}
+
+#[test]
+fn a_magnitude_without_a_slope_is_warned_of_once() {
+    let [of_law, of_region] = of_force("magnitude: 5;", "magnitude: 5;");
+    let said = "T0627 Warning `magnitude` of";
+    assert!(matches!(&of_law[..], [one] if one.starts_with(said)), "{of_law:?}");
+    assert!(matches!(&of_region[..], [one] if one.contains("of side is the same at every depth")));
+    // No force is meant by a magnitude of 0.
+    assert_eq!(of_force("magnitude: 0;", "magnitude: 0;").concat(), Vec::<String>::new());
+}
+
+#[test]
+fn a_slope_that_counts_is_noted() {
+    let [of_law, of_region] = of_force("magnitude: 2*depth;", "magnitude: 0.5*depth;");
+    assert!(of_law.concat().starts_with("T0628 Note the slope of `magnitude` of"), "{of_law:?}");
+    assert!(of_law.concat().contains(" is 2 per mm at ("), "{of_law:?}");
+    assert!(of_region.concat().contains("of side is 0.5 per mm at ("), "{of_region:?}");
+    for law in ["", "magnitude: depth;", "magnitude: depth + 1;"] {
+        assert_eq!(of_force(law, law).concat(), Vec::<String>::new(), "{law}");
+    }
+}
+
+#[test]
+fn a_direction_that_is_not_used_is_noted() {
+    let [_, of_region] = of_force("", "direction: (1, 1) allow oblique;");
+    let said =
+        "T0629 Note the direction of side is 45° off the steepest descent of its magnitude at (";
+    assert!(of_region.concat().starts_with(said), "{of_region:?}");
+    for used in ["direction: (1, 0);", "direction: (3 - d, 0);"] {
+        assert_eq!(of_force("regions smooth 0.5;", used).concat(), Vec::<String>::new(), "{used}");
     }
 }

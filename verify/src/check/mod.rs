@@ -48,6 +48,7 @@ pub(crate) use approach::ApproachSearch;
 use checker::Checker;
 use std::fmt;
 use std::sync::Mutex;
+use touchoff::cancellation;
 use touchoff::certify::{Certifier, TriangleBvh};
 use touchoff::tool::{Tool, ToolInfo};
 use touchoff::{SurfaceId, Unit};
@@ -330,6 +331,7 @@ impl<'a> MoveCheck<'a> {
         step: Move,
         progress: &(dyn Fn(usize) + Sync),
     ) -> Result<(), VerifyError> {
+        cancellation::check();
         self.batch.push(step);
         match self.batch.len() < MOVES_PER_BATCH {
             true => Ok(()),
@@ -388,7 +390,12 @@ impl<'a> MoveCheck<'a> {
 /// Applies a function to consecutive moves that share certifiers, with the feature `parallel` on all cores. It is given the index
 /// of the first.
 fn map_tasks<R: Send>(moves: &[Move], map: impl Fn(usize, &[Move]) -> R + Sync) -> Vec<R> {
-    let task = |(task, moves): (usize, &[Move])| map(task * MOVES_PER_TASK, moves);
+    let current = cancellation::current();
+    let task = |(task, moves): (usize, &[Move])| {
+        let _entered = current.enter();
+        cancellation::check();
+        map(task * MOVES_PER_TASK, moves)
+    };
     #[cfg(feature = "parallel")]
     {
         use rayon::prelude::*;

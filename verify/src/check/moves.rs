@@ -7,7 +7,7 @@ use nalgebra::{Point3, Vector3};
 use std::iter;
 use touchoff::certify::{Approximation, Trajectory};
 use touchoff::tool::{Symmetry, ToolInfo};
-use touchoff::{Motion, MotionError, Pose, Unit};
+use touchoff::{Motion, MotionError, Pose, Unit, cancellation};
 
 /// A motion of a program.
 #[derive(Clone, Debug)]
@@ -158,6 +158,7 @@ impl Move {
     /// # Panics
     /// Panics if a solid is given a pose without a spin ([`ClData::check_poses`](crate::ClData::check_poses)).
     pub fn between(from: Option<&CutterLocation>, to: &CutterLocation, symmetry: Symmetry) -> Move {
+        cancellation::check();
         let before = from.map_or(&to.pose, |from| &from.pose);
         let path = match between(before, &to.pose, symmetry) {
             Ok(motion) => MovePath::Straight(motion),

@@ -9,6 +9,7 @@ use super::{
     sinumerik,
 };
 use std::collections::BTreeMap;
+use touchoff::cancellation;
 
 /// An interpreter of a program: an iterator over its steps.
 ///
@@ -182,6 +183,7 @@ impl<'a> Interpreter<'a> {
 
     /// Executes the next line, and returns whether the program goes on.
     pub(super) fn execute_line(&mut self) -> Result<bool, GcodeError> {
+        cancellation::check();
         self.lines += 1;
         let file = self.called_file();
         let next = match &mut self.front {

@@ -27,7 +27,7 @@ use super::{
 use rates::Rates;
 use std::collections::BTreeMap;
 use std::mem;
-use touchoff::{Pose, Unit};
+use touchoff::{Pose, Unit, cancellation};
 
 /// The axis of a tool along +Z.
 const UPRIGHT: [f64; 3] = [0.0, 0.0, 1.0];
@@ -45,6 +45,7 @@ pub(super) fn read(text: &str) -> Result<Tapes, Located> {
     let mut reader = Reader::default();
     let mut end = 0;
     for (index, (line, statement)) in statements.iter().enumerate() {
+        cancellation::check();
         let is_last = unfinished_line.is_none() && index + 1 == statements.len();
         reader.statement(*line, statement, is_last)?;
         end = *line;

@@ -5,22 +5,25 @@
 //! Columns are separated by commas, semicolons or tabs, as the first row has them; `#` opens a comment, blank lines
 //! are skipped, and a first row may have the names above.
 //!
-//! A table that [`ClData::write_csv`](super::ClData::write_csv) wrote announces in its first line, a comment,
-//! that it ends with an end mark, another comment. Without that mark the table was truncated and is refused.
-//! Tables of other programs need none.
+//! A table that [`ClData::write_csv`](super::ClData::write_csv) wrote has a further column, `end`, which is empty in all rows but
+//! the last. Without that mark the table was truncated and is refused. Earlier versions wrote comments instead, which are read, too: the
+//! first line announces the last. Tables of other programs need no mark.
 
 use super::{CutterLocation, Located, PLAIN_NUMBER, ProgramFault, axis_pose, lines, number, shown};
 use nalgebra::Point3;
-use touchoff::Pose;
+use touchoff::{Pose, cancellation};
 
 const AXIS: [&str; 6] = ["x", "y", "z", "i", "j", "k"];
 const QUATERNION: [&str; 7] = ["x", "y", "z", "qx", "qy", "qz", "qw"];
 
-/// The first line of a table that this library wrote.
-pub(super) const HEAD: &str =
-    "# touchoff program: complete only with its last line `# end of program`";
-/// The last line of a table that this library wrote.
-pub(super) const END: &str = "# end of program";
+/// The name of the column with the end mark.
+pub(super) const END_COLUMN: &str = "end";
+/// The end mark, in the last row.
+pub(super) const END_MARK: &str = "end of program";
+/// The first line of a table that an earlier version wrote.
+const HEAD: &str = "# touchoff program: complete only with its last line `# end of program`";
+/// The last line of a table that an earlier version wrote.
+const END: &str = "# end of program";
 
 /// Reads the positions of a table.
 pub(super) fn read(text: &str) -> Result<Vec<CutterLocation>, Located> {
@@ -28,13 +31,27 @@ pub(super) fn read(text: &str) -> Result<Vec<CutterLocation>, Located> {
     let mut locations = Vec::new();
     let mut columns = None;
     let mut separator = None;
+    // The rows so far have a column for the end mark; and whether it was there.
+    let (mut is_marked, mut has_ended) = (false, false);
     for (line, raw) in lines(text) {
+        cancellation::check();
         let row = raw.split_once('#').map_or(raw, |(row, _)| row.trim_end());
         if row.is_empty() {
             continue;
         }
         let separator = *separator.get_or_insert_with(|| separator_of(row));
-        let cells: Vec<&str> = row.split(separator).map(str::trim).collect();
+        let mut cells: Vec<&str> = row.split(separator).map(str::trim).collect();
+        if columns.is_none() && cells.last().is_some_and(|cell| is_named(cell, END_COLUMN)) {
+            is_marked = true;
+            cells.pop();
+        } else if is_marked {
+            // Nothing follows the mark.
+            let mark = if has_ended { None } else { cells.pop() };
+            has_ended = mark.is_some_and(|mark| is_named(mark, END_MARK));
+            if !has_ended && mark.is_none_or(|mark| !mark.is_empty()) {
+                return Err((line, ProgramFault::NoEndMark));
+            }
+        }
         let is_header =
             columns.is_none() && is_names(row, &cells).map_err(|fault| (line, fault))?;
         if !is_header {
@@ -43,7 +60,15 @@ pub(super) fn read(text: &str) -> Result<Vec<CutterLocation>, Located> {
         }
         columns = Some(cells.len());
     }
+    if is_marked && !has_ended {
+        return Err((lines(text).last().map_or(1, |(line, _)| line), ProgramFault::NoEndMark));
+    }
     Ok(locations)
+}
+
+/// Returns whether a cell is a name, in quotes or not.
+fn is_named(cell: &str, name: &str) -> bool {
+    cell.trim_matches('"').eq_ignore_ascii_case(name)
 }
 
 /// Returns the separator of a first row. A comma beside semicolons is a decimal comma, which is refused later.
@@ -81,14 +106,11 @@ fn is_names(row: &str, cells: &[&str]) -> Result<bool, ProgramFault> {
     {
         return Ok(false);
     }
-    let is_named = [&AXIS[..], &QUATERNION].into_iter().any(|names| {
+    let is_known = [&AXIS[..], &QUATERNION].into_iter().any(|names| {
         cells.len() == names.len()
-            && cells
-                .iter()
-                .zip(names)
-                .all(|(cell, name)| cell.trim_matches('"').eq_ignore_ascii_case(name))
+            && cells.iter().zip(names).all(|(cell, name)| is_named(cell, name))
     });
-    if is_named { Ok(true) } else { Err(ProgramFault::Names { names: shown(row) }) }
+    if is_known { Ok(true) } else { Err(ProgramFault::Names { names: shown(row) }) }
 }
 
 /// Returns the pose of a row, which must have `columns` cells if an earlier row has set that number.
@@ -150,7 +172,7 @@ fn with_remedy(fault: ProgramFault) -> ProgramFault {
 #[cfg(test)]
 mod tests {
     use super::super::tests::{fan, line_of, refusal, shared};
-    use super::END;
+    use super::{END, HEAD};
     use crate::program::{ClData, CutterLocation};
     use nalgebra::{Point3, Vector3};
     use std::path::Path;
@@ -168,21 +190,43 @@ mod tests {
         let mut whole = Vec::new();
         made.expect("poses").write_csv(&mut whole).expect("memory");
         let whole = String::from_utf8(whole).expect("UTF-8");
-        assert_eq!(locations(&whole).iter().map(|stop| stop.line).collect::<Vec<_>>(), [3, 4, 5]);
+        assert_eq!(locations(&whole).iter().map(|stop| stop.line).collect::<Vec<_>>(), [2, 3, 4]);
         let last = whole.trim_end().len();
         assert_eq!(locations(&whole[..last]).len(), 3);
         for end in 0..last {
             assert!(ClData::parse(&whole[..end], "part.csv").is_err(), "{:?}", &whole[..end]);
         }
-        assert_eq!(refusal(whole.trim_end().trim_end_matches(END)), (5, "P0529"));
+        assert_eq!(refusal(whole.trim_end().trim_end_matches("end of program")), (4, "P0529"));
+        // As a spreadsheet saves it.
+        let sheet = whole.replace('\n', "\r\n").replace(',', ";").replace("end of", "\"end of");
+        assert_eq!(locations(&sheet.replace("program", "program\"")).len(), 3, "{sheet}");
+        for after in ["4,5,6,0,0,1,\n", "4,5,6,0,0,1\n", "4,5,6,0,0,1,end of program\n"] {
+            assert_eq!(refusal(&format!("{whole}{after}")), (5, "P0529"));
+        }
+    }
+
+    /// Readers of CSV know neither comments nor marks: each row has the cells that the first row names.
+    #[test]
+    fn a_table_is_plain_csv() {
+        let pose = |x| Pose::from_axis(Point3::new(x, 0.5, -12.25), Vector3::z()).expect("a pose");
+        let made = ClData::new("made", None, [1.0, 2.0].map(|x| (pose(x), false)));
+        let mut whole = Vec::new();
+        made.expect("poses").write_csv(&mut whole).expect("memory");
+        let rows = "x,y,z,i,j,k,end\n1,0.5,-12.25,0,0,1,\n2,0.5,-12.25,0,0,1,end of program\n";
+        assert_eq!(String::from_utf8(whole).expect("UTF-8"), rows);
+    }
+
+    /// Earlier versions wrote their marks as comments.
+    #[test]
+    fn reads_marks_that_are_comments() {
+        let whole = format!("{HEAD}\nx,y,z,i,j,k\n1,2,3,0,0,1\n4,5,6,0,0,1\n{END}\n");
+        assert_eq!(locations(&whole).len(), 2);
+        assert_eq!(refusal(whole.trim_end().trim_end_matches(END)), (4, "P0529"));
         // As a spreadsheet saves it: comment lines are padded with empty cells.
-        let sheet = whole
-            .replace('\n', ",,,,,\r\n")
-            .replace("k,,,,,", "k")
-            .replace("25,0,0,1,,,,,", "25,0,0,1");
-        assert_eq!(locations(&sheet).len(), 3, "{sheet}");
-        let after = format!("{whole}4,5,6,0,0,1\n");
-        assert!(ClData::parse(after, "part.csv").is_err());
+        let sheet =
+            whole.replace(HEAD, &format!("{HEAD},,,,,")).replace(END, &format!("{END},,,,,"));
+        assert_eq!(locations(&sheet).len(), 2, "{sheet}");
+        assert!(ClData::parse(format!("{whole}4,5,6,0,0,1\n"), "part.csv").is_err());
     }
 
     #[test]

@@ -315,11 +315,11 @@ faults! {
         #[code = P0528]
         #[error("the program stops here without FINI: post it again, or add FINI if this is the end")]
         Unfinished,
-        /// The end of the file before the end mark that its first line announces.
+        /// The end of the file before its end mark, or rows behind it.
         #[code = P0529]
         #[error(
-            "the table stops here without its end mark `{}`: write it again, or add the mark if this is the end",
-            super::csv::END
+            "the table does not end with its end mark `{}`: write it again, or correct the mark if this is the end",
+            super::csv::END_MARK
         )]
         NoEndMark,
         /// A statement after the end.

@@ -5,7 +5,7 @@
 //! which may change its components by a unit of roundoff. APT-CL can also be rounded to [`Decimals`].
 
 use super::ClData;
-use super::csv::{END, HEAD};
+use super::csv::{END_COLUMN, END_MARK};
 use super::cutter::Cutter;
 use crate::codes::faults;
 use std::fmt::{self, Display, Formatter};
@@ -147,27 +147,28 @@ impl ClData {
         Ok(())
     }
 
-    /// Writes the program as a table with a row of names: `x,y,z,i,j,k`, or `x,y,z,qx,qy,qz,qw` if every pose
-    /// has a given spin. A table states neither its unit nor which motions are rapid. Its first line, a
-    /// comment, announces an end mark, so that a reader of this library never takes a truncated table for the
-    /// whole.
+    /// Writes the program as a table with a row of names: `x,y,z,i,j,k,end`, or `x,y,z,qx,qy,qz,qw,end` if every pose
+    /// has a given spin. A table states neither its unit nor which motions are rapid. The column `end` is empty but in the last row,
+    /// so that a reader of this library never takes a truncated table for the whole.
     ///
     /// # Errors
     /// If `out` fails.
     pub fn write_csv(&self, out: &mut impl Write) -> io::Result<()> {
-        writeln!(out, "{HEAD}")?;
         let has_spin = self.locations.iter().all(|location| location.pose.has_spin());
-        writeln!(out, "{}", if has_spin { "x,y,z,qx,qy,qz,qw" } else { "x,y,z,i,j,k" })?;
-        for location in &self.locations {
+        let columns = if has_spin { "x,y,z,qx,qy,qz,qw" } else { "x,y,z,i,j,k" };
+        writeln!(out, "{columns},{END_COLUMN}")?;
+        for (index, location) in self.locations.iter().enumerate() {
+            let mark = if index + 1 == self.locations.len() { END_MARK } else { "" };
             let TipAxis(tip, axis) = TipAxis::of(&location.pose);
             if has_spin {
                 let turn = location.pose.to_isometry().rotation.coords;
-                writeln!(out, "{},{}", Listed(&tip), Listed(&[turn.x, turn.y, turn.z, turn.w]))?;
+                let turn = [turn.x, turn.y, turn.z, turn.w];
+                writeln!(out, "{},{},{mark}", Listed(&tip), Listed(&turn))?;
             } else {
-                writeln!(out, "{},{}", Listed(&tip), Listed(&axis))?;
+                writeln!(out, "{},{},{mark}", Listed(&tip), Listed(&axis))?;
             }
         }
-        writeln!(out, "{END}")
+        Ok(())
     }
 }
 

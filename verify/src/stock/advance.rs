@@ -8,6 +8,7 @@
 use super::lattice::BitSet;
 use super::{Stock, StockError};
 use nalgebra::Point3;
+use touchoff::cancellation;
 use touchoff::certify::Trajectory;
 use touchoff::tool::{Symmetry, Tool};
 use touchoff::{InsidePoint, Motion, Pose, SurfaceId, ToolEnvelope};
@@ -119,6 +120,7 @@ impl Sampler<'_> {
         let mut levels: Vec<ToolEnvelope> = Vec::new();
         let mut ranges = vec![(0, intervals, 0)];
         while let Some((first, last, level)) = ranges.pop() {
+            cancellation::check();
             let span = last - first;
             if span < MIN_TESTED_INTERVALS {
                 for sample in first..=last {

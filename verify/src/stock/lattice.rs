@@ -14,6 +14,7 @@
 use super::StockError;
 use nalgebra::{Point3, Vector3};
 use robust::{Coord, Coord3D, orient2d, orient3d};
+use touchoff::cancellation;
 
 /// The greatest number of nodes of a lattice: an index fits 32 bits, and a set of nodes half a gigabyte.
 const MAX_NODES: usize = u32::MAX as usize;
@@ -310,6 +311,7 @@ fn cross(lattice: &Lattice, corners: [[f64; 3]; 3], crossings: &mut Vec<Crossing
         lattice.between(axis, a.min(b).min(c), a.max(b).max(c))
     });
     for i in rows {
+        cancellation::check();
         for j in columns.clone() {
             let at =
                 Coord { x: lattice.coordinate(0, i as f64), y: lattice.coordinate(1, j as f64) };

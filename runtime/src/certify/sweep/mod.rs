@@ -8,6 +8,7 @@
 pub(crate) mod interval;
 
 use crate::bvh::{PoseTransform, WIDTH};
+use crate::cancellation;
 use crate::certify::bounds::descent::{BoundedTree, Node, of_children};
 use crate::certify::bounds::swept::{Moving, SweptBatch, of_leaf};
 use crate::certify::search::{DepthQuery, MARGIN, QuerySetting};
@@ -158,6 +159,7 @@ impl Sweeper {
         [from, to]: [f64; 2],
         first: usize,
     ) -> Option<SweepEnd> {
+        cancellation::check();
         let last = self.pending.len();
         let (times, clearance) = ([from, to], task.required_clearance());
         match MotionInterval::new(task.setting, task.trajectory, times, clearance) {

@@ -5,6 +5,7 @@
 //! slopes from the piece's middle. A triangle is halved, longest side first, until no piece can be deeper than
 //! the deepest point found. Boxes of the tool itself are halved in the same way to find its deepest point.
 
+use crate::cancellation;
 use crate::certify::space::{Point, dot, minus};
 use crate::certify::tool_model::section::{Depth, Owners};
 use crate::certify::triangle::line_search::{DeepestCandidate, DepthSearch};
@@ -225,6 +226,7 @@ impl<'a> Field<'a> {
     ) -> Option<DeepestCandidate> {
         let mut best = None;
         loop {
+            cancellation::check();
             let mut candidates = [Bounded::<TrianglePiece>::default(); LANES];
             let (mut reach, mut count) = ([0.0; LANES], 0);
             let mut centres = [[0.0; 3]; LANES];

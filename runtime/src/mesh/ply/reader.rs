@@ -1,5 +1,6 @@
 //! Reader of a PLY file: the header, then the body, one element after another.
 
+use crate::cancellation;
 use crate::mesh::location::{SourceLocation, Tokens, number, printable};
 use crate::mesh::ply::error::PlyError;
 use std::collections::HashSet;
@@ -296,6 +297,7 @@ impl<'a, 'n> Body<'a, 'n> {
             .collect();
         let mut items = Vec::new();
         for index in 0..element.count {
+            cancellation::check();
             self.index = index;
             let location = self.start();
             let mut numbers = [0.0; N];
