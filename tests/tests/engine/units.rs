@@ -90,7 +90,7 @@ fn a_written_magnitude_stays() {
         near(wrench.integral, 3.0 * 0.25);
         near(wrench.energy, 0.5 * 3.0 * 0.0625);
         near(wrench.force.z, 3.0 * 0.25 / inch);
-        let mut probe = Probe::new(&part, &written);
+        let mut probe = Probe::new(&part, &written).with_law(Law::Thesis);
         near(probe.wrench(&pose).force.z, 3.0 * 0.25 * 2.0);
         let contact = probe.contacts(&pose)[0];
         near(contact.magnitude, 0.25);

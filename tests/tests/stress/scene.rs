@@ -4,7 +4,7 @@ use crate::prelude::*;
 use crate::truth::ExactPoint;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
-use touchoff::{Cloud, CloudError, Contact, Part, Probe, TriangleId, Unit, Wrench};
+use touchoff::{Cloud, CloudError, Contact, Law, Part, Probe, TriangleId, Unit, Wrench};
 use touchoff_tests::oracle::displaced;
 use touchoff_tests::oracle::space::{add, cross, distance, dot, exactly, sub, times};
 
@@ -110,7 +110,7 @@ impl<'a> Scene<'a> {
 
     /// Returns the answers of a probe, unchecked.
     pub(crate) fn query(&self) -> Answers {
-        let mut probe = Probe::new(&self.part, self.subject.tool);
+        let mut probe = Probe::new(&self.part, self.subject.tool).with_law(Law::Thesis);
         Answers { contacts: probe.contacts(&self.pose).to_vec(), wrench: probe.wrench(&self.pose) }
     }
 
@@ -122,7 +122,7 @@ impl<'a> Scene<'a> {
     /// Queries a probe, compares its answers with each other and with 256 bits, and returns them.
     pub(crate) fn check(&self, checks: &mut Checks) -> Answers {
         // One probe for all queries, so that what it keeps of one meets the next.
-        let mut probe = Probe::new(&self.part, self.subject.tool);
+        let mut probe = Probe::new(&self.part, self.subject.tool).with_law(Law::Thesis);
         let contacts = probe.contacts(&self.pose).to_vec();
         let wrench = probe.wrench(&self.pose);
         let deepest = contacts.iter().map(|c| c.depth).reduce(f64::max);

@@ -20,12 +20,12 @@ fn source(text: &str) -> Source {
     Source::new("own.tool", text).with_path(tools.join("own.tool"))
 }
 
-/// Returns the tool of a text that must have no diagnostics, except that a mount may clamp a cutting surface, and that a
-/// niceness may be above 1.
+/// Returns the tool of a text that must have no diagnostics, except that a mount may clamp a cutting surface, that a
+/// niceness may be above 1, and that a magnitude may be steeper than the depth.
 fn tool(text: &str) -> Box<CheckedTool> {
     let compiled = compile(&source(text));
-    let is_expected =
-        compiled.diagnostics().iter().all(|report| ["T0522", "T0626"].contains(&report.code()));
+    let expected = ["T0522", "T0626", "T0628"];
+    let is_expected = compiled.diagnostics().iter().all(|report| expected.contains(&report.code()));
     assert!(is_expected, "{text}\n{}", rendered(&compiled));
     compiled.into_tool().expect("a tool without errors")
 }

@@ -4,6 +4,7 @@ use super::tool;
 use std::collections::BTreeSet;
 use touchoff_dsl::formula::Formula;
 use touchoff_dsl::interpret::Interpreter;
+use touchoff_tests::texts::compiled;
 
 pub(crate) const FIG_7_3: &str = "tool Fig73 { units mm; tip z = 20; spindle -z;
     profile {
@@ -50,7 +51,9 @@ fn mentioned(formula: &Formula, curves: &mut BTreeSet<usize>) {
 #[test]
 fn a_law_that_is_the_depth_is_a_length() {
     let evaluation = |law: &str| {
-        let tool = tool(&D2_BALL.replace("niceness cutting", &format!("{law} niceness cutting")));
+        let text = D2_BALL.replace("niceness cutting", &format!("{law} niceness cutting"));
+        // A note gives the slope of another law.
+        let tool = compiled(&text).into_tool();
         Interpreter::new(&tool.expect("a good profile"))
             .evaluate([0.5, 0.0, 3.0], 0.25)
             .expect("inside")

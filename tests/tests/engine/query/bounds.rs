@@ -162,7 +162,7 @@ fn scene_wrench<'a>(
     pose: Pose,
     parts: impl IntoIterator<Item = &'a Part>,
 ) -> Wrench {
-    let mut scene = Scene::new(parts::UNIT).with_weights(Weights::Unit);
+    let mut scene = Scene::new(parts::UNIT).with_law(Law::Thesis).with_weights(Weights::Unit);
     for part in parts {
         scene.add_part(part, Pose::default()).expect("millimetres");
     }

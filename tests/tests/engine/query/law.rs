@@ -114,7 +114,9 @@ fn the_compliance_centre_turns_with_the_tool() {
     let tool = library::tool("UnitSphere");
     let pose = Pose::from_axis(Point3::new(-0.25, 0.0, 0.0), Vector3::x()).expect("a pose");
     let up = pose.rotation() * Vector3::x();
-    let wrench = Probe::new(&part, tool).with_centre(Point3::new(2.0, 0.0, 0.0)).wrench(&pose);
+    let centre = Point3::new(2.0, 0.0, 0.0);
+    let mut probe = Probe::new(&part, tool).with_law(Law::Thesis).with_centre(centre);
+    let wrench = probe.wrench(&pose);
     assert_eq!(wrench.force, Vector3::new(0.5, 0.0, 0.0));
     // From the centre, 2 along the tool's x, to the contact.
     let want = (Vector3::new(0.25, 0.0, 0.0) - 2.0 * up).cross(&wrench.force);

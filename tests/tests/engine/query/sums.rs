@@ -73,7 +73,7 @@ fn the_rounding_bound_covers_a_distant_compliance_centre() {
     let mut rng = Rng::new(4);
     for k in 0..40 {
         let pose = parts::about(&part, &*oracle, k, &mut rng);
-        let mut probe = Probe::new(&part, tool).with_centre(centre);
+        let mut probe = Probe::new(&part, tool).with_law(Law::Thesis).with_centre(centre);
         let wrench = probe.wrench(&pose);
         let about = pose.tip() + pose.rotation() * centre.coords;
         let ([_, torque], [size, _]) = sums(probe.contacts(&pose), Law::Thesis, about);
