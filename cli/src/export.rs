@@ -36,7 +36,7 @@ pub(crate) fn export(arguments: &Export, json: bool) -> Result<ExitCode, Failure
             return Err(Failure::extension(rule, output, "json"));
         }
     };
-    refuse_inputs([&**output], names.iter().map(Path::new))?;
+    refuse_inputs([&**output], names.iter().map(Path::new).chain(tool.library.as_deref()))?;
     let tools: Vec<LoadedTool> =
         names.iter().map(|name| LoadedTool::load(name, tool)).collect::<Result<_, _>>()?;
     let infos: Vec<&ToolInfo> = tools.iter().map(|tool| tool.tool().info()).collect();

@@ -2,7 +2,7 @@
 
 use crate::arguments::{ParamArguments, ToolArguments};
 use crate::failure::Failure;
-use crate::output::show;
+use crate::output::{show, show_lines};
 use std::ffi::OsStr;
 use std::path::Path;
 use touchoff::tool::Interpreted;
@@ -148,7 +148,7 @@ fn built_in(name: &str) -> Result<&'static dyn Tool, Failure> {
         let is_tool_file = Path::new(name).extension().is_some_and(|ending| ending == "tool");
         let hint = if is_tool_file {
             "`touchoff tools` lists them; this command takes no files".to_owned()
-        } else if Path::new(name).is_file() {
+        } else if Path::new(name).components().count() == 1 && Path::new(name).is_file() {
             "a tool's file ends in `.tool`: rename it".to_owned()
         } else if Path::new(name).with_extension("tool").is_file() {
             format!("did you mean the file `{}.tool`?", escaped(name))
@@ -179,7 +179,7 @@ pub(crate) fn read_source(file: &Path, params: &ParamArguments) -> Result<Source
 pub(crate) fn load_file(file: &Path, params: &ParamArguments) -> Result<Interpreted, Failure> {
     let tool = Interpreted::parse_with(&read_source(file, params)?, &params.sources())?;
     if !tool.warnings().is_empty() {
-        message!("{}", tool.warnings());
+        show_lines(tool.warnings());
     }
     Ok(tool)
 }

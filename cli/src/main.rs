@@ -29,13 +29,13 @@ mod verify;
 
 use arguments::{Arguments, Command};
 use std::process::ExitCode;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 fn main() -> ExitCode {
     end_when_memory_is_used_up();
     let Arguments { command, json, max_time } = Arguments::read();
-    if let Some(seconds) = max_time {
-        end_after(seconds);
+    if let Some(Err(failure)) = max_time.map(end_after) {
+        return fail(&failure, verify::NOT_CHECKED);
     }
     // A program that could not be checked must not look like one with findings.
     let min_status = match command {
@@ -74,15 +74,41 @@ fn main() -> ExitCode {
 const OUT_OF_RESOURCES: i32 = 2;
 
 /// Ends the program after a time. What it does then, a proof or the reader of a file, need not be able to stop.
-fn end_after(seconds: f64) {
-    std::thread::spawn(move || {
+///
+/// # Errors
+/// If the system allows no thread for it.
+fn end_after(seconds: f64) -> Result<(), failure::Failure> {
+    let timer = move || {
         // A time too long for a duration does not pass.
         std::thread::sleep(Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX));
-        message!(
-            "error: not done after {seconds} s (`--max-time`): allow more time, or ask for less"
-        );
-        std::process::exit(OUT_OF_RESOURCES);
-    });
+        // Whoever reads standard error may have stopped reading: the message has a moment.
+        let say = move || {
+            message!(
+                "error: not done after {seconds} s (`--max-time`): allow more time, or ask for less"
+            );
+        };
+        if let Ok(said) = std::thread::Builder::new().spawn(say) {
+            let end = Instant::now() + Duration::from_millis(200);
+            while !said.is_finished() && Instant::now() < end {
+                std::thread::sleep(Duration::from_millis(5));
+            }
+        }
+        end_at_once();
+    };
+    std::thread::Builder::new().spawn(timer)?;
+    Ok(())
+}
+
+/// Ends the program without anything that could wait.
+fn end_at_once() {
+    #[cfg(unix)]
+    #[expect(unsafe_code, reason = "the standard library has no exit that waits for nothing")]
+    // SAFETY: it ends the process.
+    unsafe {
+        libc::_exit(OUT_OF_RESOURCES)
+    };
+    #[cfg(not(unix))]
+    std::process::exit(OUT_OF_RESOURCES);
 }
 
 /// Ends the program with a status of its own, and not by a signal, when the system refuses memory: the library aborts then.
@@ -112,7 +138,7 @@ fn end_when_memory_is_used_up() {}
 /// Reports a failure, and returns its exit status, which is `min_status` or higher.
 fn fail(failure: &failure::Failure, min_status: u8) -> ExitCode {
     match failure.code() {
-        _ if failure.is_rendered() => message!("{failure}"),
+        _ if failure.is_rendered() => output::show_lines(&failure.to_string()),
         Some(code) => message!("error[{code}]: {failure}"),
         None => message!("error: {failure}"),
     }

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use touchoff::{AtomicFile, EscapedLines};
 use touchoff_dsl::diagnostic::Diagnostic;
 use touchoff_dsl::source::{Source, Sources};
-use touchoff_import::{Library, NUMBERS};
+use touchoff_import::{Library, files_in_folder};
 
 /// A writer to standard output.
 ///
@@ -101,14 +101,19 @@ fn open_or<T>(written: io::Result<T>, gone: T) -> io::Result<T> {
     }
 }
 
-/// Prints a line on standard error, with its control characters escaped. Write errors are ignored, as there is no
-/// other place to report them.
+/// Prints a line on standard error, with its control characters escaped, line breaks included: names from files have them, too. Write
+/// errors are ignored, as there is no other place to report them.
 macro_rules! message {
     ($($arguments:tt)*) => {{
         use std::io::Write as _;
         let text = format!($($arguments)*);
-        let _ = writeln!(std::io::stderr(), "{}", touchoff::EscapedLines(&text));
+        let _ = writeln!(std::io::stderr(), "{}", touchoff::Escaped(&text));
     }};
+}
+
+/// Prints lines of the compiler on standard error, which has escaped what it shows of files.
+pub(crate) fn show_lines(text: &str) {
+    let _ = writeln!(io::stderr(), "{}", EscapedLines(text));
 }
 
 /// Shows a diagnostic of the compiler on standard error, in colours if that is a terminal.
@@ -157,7 +162,8 @@ pub(crate) fn refuse_inputs<'a>(
 ) -> Result<(), Failure> {
     let outputs: Vec<&Path> = outputs.into_iter().collect();
     for (index, output) in outputs.iter().enumerate() {
-        if outputs[..index].iter().any(|other| other == output || is_same_file(other, output)) {
+        let is_same = |other: &&Path| place(other) == place(output) || is_same_file(other, output);
+        if outputs[..index].iter().any(is_same) {
             return Err(Failure::SameOutput { output: output.display().to_string() });
         }
     }
@@ -180,17 +186,10 @@ pub(crate) fn refuse_inputs<'a>(
 /// Returns the files that are read for an input beside it, as far as they can be: those that a tool's file mounts, those that a tool
 /// library lists, and of a folder its tools, with what they mount, and the list of their numbers.
 pub(crate) fn listed(input: &Path) -> Vec<PathBuf> {
-    if let Ok(entries) = std::fs::read_dir(input) {
-        let of_tools = |file: &PathBuf| {
-            let name = file.file_name().unwrap_or_default();
-            file.is_file() && (extension(file).as_deref() == Some("tool") || name == NUMBERS)
-        };
-        let mut files: Vec<PathBuf> =
-            entries.flatten().map(|entry| entry.path()).filter(of_tools).collect();
-        files.sort();
+    if input.is_dir() {
+        let files = files_in_folder(input);
         let mounted: Vec<PathBuf> = files.iter().flat_map(|file| listed(file)).collect();
-        files.extend(mounted);
-        return files;
+        return files.into_iter().chain(mounted).collect();
     }
     match extension(input).as_deref() {
         Some("tool") => {
@@ -208,6 +207,20 @@ pub(crate) fn listed(input: &Path) -> Vec<PathBuf> {
             Library::read(input).map_or(Vec::new(), |library| library.listed_files().to_vec())
         }
         _ => Vec::new(),
+    }
+}
+
+/// Returns the place to which a file is written, which need not exist yet, with links followed.
+fn place(output: &Path) -> PathBuf {
+    let output = match output.canonicalize() {
+        Ok(place) => return place,
+        // A link that leads nowhere is kept, and its target is made.
+        Err(_) => AtomicFile::target(output).unwrap_or_else(|_| output.to_owned()),
+    };
+    let folder = output.parent().filter(|folder| *folder != Path::new(""));
+    match folder.unwrap_or(Path::new(".")).canonicalize() {
+        Ok(folder) => folder.join(output.file_name().unwrap_or_default()),
+        Err(_) => output,
     }
 }
 

@@ -222,7 +222,8 @@ pub(crate) fn print_covering_radius(part: &Part, tool: Option<&dyn Tool>, unit: 
 /// Samples points of a part and saves them.
 pub(crate) fn sample(arguments: &Sample, json: bool) -> Result<(), Failure> {
     let tool = arguments.tool.as_deref().map(Path::new);
-    refuse_inputs([&*arguments.output], std::iter::once(&*arguments.part.part).chain(tool))?;
+    let inputs = std::iter::once(&*arguments.part.part).chain(tool);
+    refuse_inputs([&*arguments.output], inputs.chain(arguments.params.library.as_deref()))?;
     let loaded = match &arguments.tool {
         Some(name) => Some(LoadedTool::load(name, &arguments.params)?),
         None if arguments.params.is_empty() => None,

@@ -9,7 +9,7 @@ use serde::Serialize;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use touchoff::tool::{Interpreted, Symmetry, ToolInfo};
-use touchoff::{Escaped, Tool};
+use touchoff::{Escaped, FileKind, Tool, read_regular_file};
 use touchoff_tools::TOOLS;
 
 /// One line of `tools list --json`.
@@ -157,7 +157,7 @@ fn write_tool(name: &str, output: &Path, files: &SourceFiles) -> Result<(), Fail
     let mounted: Vec<(PathBuf, &str)> = mounted.collect();
     // Nothing is written before it is certain that nothing is overwritten.
     for (file, text) in &mounted {
-        let differs = match std::fs::read(file) {
+        let differs = match read_regular_file(file, FileKind::Settings) {
             Ok(present) => present != text.as_bytes(),
             Err(error) => error.kind() != ErrorKind::NotFound,
         };

@@ -12,6 +12,7 @@ use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use touchoff::Escaped;
 use touchoff::certify::TriangleBvh;
 use touchoff_dsl::Compiled;
 use touchoff_verify::job::{
@@ -169,8 +170,11 @@ pub(crate) fn check<'a>(job: &'a Job<'_>, json: bool) -> Result<JobReport<'a>, F
 
 /// Checks a program, and returns the exit status.
 pub(crate) fn verify(arguments: Verify, json: bool) -> Result<ExitCode, Failure> {
-    let Verify { job, part, check: options, sarif } = arguments;
-    let file = job_file(job.clone(), part, options)?;
+    let Verify { job, part, check: options, read_only, sarif } = arguments;
+    let mut file = job_file(job.clone(), part, options)?;
+    if let Some(stock) = file.stock.as_mut().filter(|_| read_only) {
+        (stock.output, stock.map) = (None, None);
+    }
     let inputs = read(file, sarif.as_deref().as_slice(), job.as_deref().as_slice())?;
     let job = inputs.job();
     let report = check(&job, json)?;
@@ -179,9 +183,9 @@ pub(crate) fn verify(arguments: Verify, json: bool) -> Result<ExitCode, Failure>
         if json {
             out.json(&report.row(finding))?;
         } else {
-            let place = format!("{}:{}:", inputs.program.name(), finding.line);
+            let place = format!("{}:{}:", Escaped(inputs.program.name()), finding.line);
             out.styled(style(finding.severity), &place)?;
-            writeln!(out, " {} [{}]", finding.text, finding.rule.code())?;
+            writeln!(out, " {} [{}]", Escaped(&finding.text), finding.rule.code())?;
         }
     }
     if json {

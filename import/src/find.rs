@@ -70,7 +70,7 @@ pub enum FindError {
 touchoff::debug_as_sentence!(FindError);
 
 /// The file of a folder that lists the numbers of its tools.
-pub const NUMBERS: &str = "tools.toml";
+const NUMBERS: &str = "tools.toml";
 
 /// The tools of a folder: file names by the number of the tool, as `T1`.
 type Numbers = BTreeMap<String, Vec<String>>;
@@ -105,6 +105,7 @@ pub fn find_in_folder(folder: &Path, name: &OsStr) -> Result<PathBuf, FindError>
     }
     // A file with the tool's name goes before a number of the list.
     let file = file.with_extension("tool");
+    within(folder, folder.join(NUMBERS))?;
     let name = name.to_string_lossy().to_ascii_uppercase();
     match read_numbers(folder)?.get(&name).map(Vec::as_slice) {
         Some([listed]) if !file.is_file() => within(folder, folder.join(listed)),
@@ -115,6 +116,21 @@ pub fn find_in_folder(folder: &Path, name: &OsStr) -> Result<PathBuf, FindError>
         }),
         _ => within(folder, file),
     }
+}
+
+/// Returns the files that tools of a folder are read from, as far as they can be read: those that end in `.tool`, those that its list
+/// of numbers names, and the list.
+pub fn files_in_folder(folder: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let is_tool = |file: &PathBuf| file.extension().is_some_and(|ending| ending == "tool");
+    let mut files: Vec<PathBuf> = entries.map(|entry| entry.path()).filter(is_tool).collect();
+    let listed = read_numbers(folder).unwrap_or_default().into_values().flatten();
+    files.extend(listed.map(|file| folder.join(file)));
+    files.push(folder.join(NUMBERS));
+    files.retain(|file| file.is_file() && is_within(file, folder));
+    files.sort();
+    files.dedup();
+    files
 }
 
 /// Returns the file of a tool of a folder, which must lie within it: a list or a link can be a stranger's.

@@ -41,7 +41,7 @@ mod tests;
 pub use entry::{Entry, Note, Skipped, Stated};
 pub use error::ImportError;
 pub use files::ToolFile;
-pub use find::{FindError, NUMBERS, find_in_folder, write_numbers};
+pub use find::{FindError, files_in_folder, find_in_folder, write_numbers};
 
 use entry::reason;
 use files::Writer;
@@ -247,7 +247,8 @@ impl ImportedTool {
             match read_regular_file(&file, FileKind::Library) {
                 // Tools share files of holders, and a library can be imported again.
                 Ok(known) if known == text.as_bytes() => continue,
-                Err(error) if error.kind() == io::ErrorKind::NotFound => {}
+                // A link that leads nowhere would be followed.
+                Err(error) if error.kind() == io::ErrorKind::NotFound && !file.is_symlink() => {}
                 Ok(_) | Err(_) => return Err(ImportError::Exists { file }),
             }
             if let Some(parent) = file.parent() {

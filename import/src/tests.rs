@@ -196,6 +196,31 @@ fn tools_have_names_that_every_system_takes() {
     assert_eq!(paths, expected.map(|name| format!("{name}.tool")));
 }
 
+/// A folder of tools can be a stranger's.
+#[test]
+#[cfg(unix)]
+fn a_folder_of_tools_leads_nowhere_else() {
+    use std::os::unix::fs::symlink;
+    let folder = tempfile::tempdir().expect("a folder");
+    let [tools, outside] = ["tools", "outside"].map(|name| folder.path().join(name));
+    for made in [&tools, &outside] {
+        std::fs::create_dir(made).expect("a folder");
+    }
+    let refused = || {
+        let found = crate::find_in_folder(&tools, "T1".as_ref());
+        matches!(found, Err(crate::FindError::Outside { .. }))
+    };
+    std::fs::write(outside.join("secret.tool"), "secret").expect("written");
+    std::fs::write(tools.join("tools.toml"), "T1 = [\"../outside/secret.tool\"]").expect("written");
+    assert!(refused() && crate::files_in_folder(&tools) == [tools.join("tools.toml")]);
+    std::fs::remove_file(tools.join("tools.toml")).expect("removed");
+    symlink("../outside/secret.tool", tools.join("tools.toml")).expect("a link");
+    assert!(refused() && crate::files_in_folder(&tools).is_empty());
+    std::fs::remove_file(tools.join("tools.toml")).expect("removed");
+    symlink("../outside/secret.tool", tools.join("T1.tool")).expect("a link");
+    assert!(refused() && crate::files_in_folder(&tools).is_empty());
+}
+
 /// Values of few bytes take much memory.
 #[test]
 fn a_text_whose_values_do_not_fit_into_memory_is_refused() {

@@ -157,6 +157,14 @@ impl AtomicFile {
         Ok(AtomicFile { out: BufWriter::new(Sink::Temporary(temporary)), target })
     }
 
+    /// Returns the path that is written to for a path: the one to which its symbolic links lead, which need not exist.
+    ///
+    /// # Errors
+    /// If too many links lead on from it.
+    pub fn target(path: impl AsRef<Path>) -> io::Result<PathBuf> {
+        resolve_links(path.as_ref())
+    }
+
     /// Writes a whole file.
     ///
     /// # Errors
@@ -274,7 +282,10 @@ fn remove_abandoned(folder: &Path) {
     let Ok(entries) = fs::read_dir(folder) else { return };
     for entry in entries.flatten() {
         let name = entry.file_name();
-        let is_ours = name.to_str().is_some_and(|n| n.starts_with(PREFIX) && n.ends_with(SUFFIX));
+        let random = name.to_str().and_then(|n| n.strip_prefix(PREFIX)?.strip_suffix(SUFFIX));
+        let is_ours = random.is_some_and(|digits| {
+            digits.len() == 16 && digits.bytes().all(|b| b.is_ascii_hexdigit())
+        });
         if is_ours && entry.file_type().is_ok_and(|kind| kind.is_file()) {
             let path = entry.path();
             let open = OpenOptions::new().write(true).open(&path);

@@ -60,6 +60,9 @@ pub(crate) struct Verify {
     pub(crate) part: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) check: CheckArguments,
+    /// Write nothing that the job asks for.
+    #[arg(long, requires = "job")]
+    pub(crate) read_only: bool,
     /// Write the findings as SARIF 2.1.0, for services of continuous integration.
     #[arg(long, value_name = "OUT.sarif")]
     pub(crate) sarif: Option<PathBuf>,

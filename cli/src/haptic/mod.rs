@@ -77,8 +77,9 @@ fn check_arguments(arguments: &Haptic) -> Result<(), Failure> {
     }
     let program = arguments.program.as_deref();
     let inputs = [&*arguments.part.part, Path::new(&arguments.tool)].into_iter().chain(program);
-    refuse_inputs(arguments.postures.as_deref(), inputs.clone())?;
-    refuse_inputs(arguments.record.as_deref(), inputs.chain(arguments.postures.as_deref()))?;
+    let inputs = inputs.chain(arguments.params.library.as_deref());
+    let outputs = arguments.postures.as_deref().into_iter().chain(arguments.record.as_deref());
+    refuse_inputs(outputs, inputs)?;
     match arguments.core {
         Some(core) => Ok(check_core(core)?),
         None => Ok(()),

@@ -159,6 +159,7 @@ pub(crate) fn path(arguments: &Arguments, json: bool) -> Result<(), Failure> {
         [&*arguments.output].into_iter().chain(arguments.picture.as_deref()),
         [&*arguments.map, &arguments.part, Path::new(&arguments.tool)]
             .into_iter()
+            .chain(arguments.params.library.as_deref())
             .chain(arguments.stock.as_deref())
             .chain(arguments.machine.machine.as_deref()),
     )?;

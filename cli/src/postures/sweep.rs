@@ -296,6 +296,7 @@ impl TriangleTotals {
 /// Sweeps a part with tools, and prints a summary.
 pub(crate) fn sweep(arguments: &Sweep, json: bool) -> Result<(), Failure> {
     let inputs = arguments.tools.iter().map(Path::new).chain([&*arguments.mesh.part]);
+    let inputs = inputs.chain(arguments.params.library.as_deref());
     let inputs = inputs.chain(arguments.touched.as_deref());
     refuse_inputs(arguments.output.as_deref(), inputs)?;
     let loaded = arguments.tools.iter().map(|name| LoadedTool::load(name, &arguments.params));

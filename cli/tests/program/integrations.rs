@@ -141,6 +141,18 @@ fn names_and_links_of_jobs_are_no_commands() {
     symlink("a", place("linked")).expect("a link");
     let linked = script("integrations/verify-jobs linked", folder.path(), &["a-b.toml".to_owned()]);
     assert_eq!(linked.status.code(), Some(2), "{}", stderr(&linked));
+    // A job writes nothing: not over what another one reads, whatever its ending.
+    let victim = std::fs::read(place("clamp.stl")).expect("a mesh");
+    let clean = std::fs::read_to_string(place("clean.toml")).expect("a job");
+    let stock = "[stock]\nbox = [[0, 0, 0], [60, 40, 41]]\nspacing = 4\noutput = \"clamp.stl\"\n";
+    std::fs::write(place("over.toml"), format!("{clean}\n{stock}")).expect("written");
+    script("integrations/verify-jobs out", folder.path(), &["over.toml".to_owned()]);
+    assert_eq!(std::fs::read(place("clamp.stl")).expect("a mesh"), victim);
+    // Limits are numbers, and no expressions.
+    let mut limited = Command::new(root().join("integrations/verify-jobs"));
+    limited.args(["out", "clean.toml"]).current_dir(folder.path());
+    let status = limited.env("TOUCHOFF_MAX_MEMORY", "x[$(touch broken)]").status();
+    assert!(status.expect("bash").code() == Some(2) && !place("broken").exists());
     // A program that is not there, or is killed, is no verdict.
     let mut missing = Command::new(root().join("integrations/verify-jobs"));
     missing.args(["out", "clean.toml"]).current_dir(folder.path()).env("TOUCHOFF", "./none");

@@ -95,6 +95,8 @@ const MAX_ASSIGNMENTS: usize = 50;
 /// Largest number of blocks and steps in subprograms, with all repeats, unless [`ControlSetup::max_repeated`] has another: some
 /// seconds of work.
 pub const MAX_REPEATED: usize = 2_000_000;
+/// Number of steps of a block that are not counted: those of a cycle can be many more than its text.
+const FREE_STEPS: usize = 100;
 /// Largest number of motions of one block with a canned cycle.
 pub const MAX_CYCLE_STEPS: usize = 100_000;
 

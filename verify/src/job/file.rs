@@ -302,17 +302,21 @@ impl JobFile {
     /// # Errors
     /// If it cannot be read or names a file elsewhere, or as for [`JobFile::parse`].
     pub fn read(file: &Path, root: Option<&Path>) -> Result<JobFile, JobError> {
+        let folder = file.parent().unwrap_or(Path::new(""));
+        let root = root.unwrap_or(folder);
+        // Not even a message about its text may show what is elsewhere.
+        check_within(root, "job", file)?;
         let text = read_text_file(file, FileKind::Settings)
             .map_err(|source| JobError::Unreadable { file: file.display().to_string(), source })?;
         let mut job = JobFile::parse(&text, file)?;
-        let folder = file.parent().unwrap_or(Path::new(""));
-        job.root = Some(root.unwrap_or(folder).to_owned());
-        job.check_within("job", file)?;
+        job.root = Some(root.to_owned());
         for (role, input) in job.files() {
             job.check_within(&role, input)?;
         }
         for (key, output) in job.outputs() {
-            if !is_within(output, folder) {
+            // A link has another name than the file that it leads to, which can be of any kind.
+            let is_other = output.is_symlink() || output.exists() && !output.is_file();
+            if is_other || !is_within(output, folder) {
                 let (key, output) = (format!("stock.{key}"), output.display().to_string());
                 let fault = JobFileFault::OutputOutside { key, output };
                 return Err(JobError::File { file: file.display().to_string(), line: None, fault });
@@ -326,17 +330,7 @@ impl JobFile {
     /// # Errors
     /// [`JobError::Outside`] if it lies outside the root.
     pub(super) fn check_within(&self, role: &str, input: &Path) -> Result<(), JobError> {
-        match &self.root {
-            Some(root) if !is_within(input, root) => Err(JobError::Outside {
-                role: role.to_owned(),
-                file: input.display().to_string(),
-                root: match root.display().to_string() {
-                    here if here.is_empty() => ".".to_owned(),
-                    root => root,
-                },
-            }),
-            _ => Ok(()),
-        }
+        self.root.as_ref().map_or(Ok(()), |root| check_within(root, role, input))
     }
 
     /// Returns the files that it has written, each with its key in `[stock]`.
@@ -605,6 +599,17 @@ impl PartEntry {
             _ => Err(JobError::OtherPartOffset { name: self.name() }),
         }
     }
+}
+
+fn check_within(root: &Path, role: &str, input: &Path) -> Result<(), JobError> {
+    if is_within(input, root) {
+        return Ok(());
+    }
+    let root = match root.display().to_string() {
+        here if here.is_empty() => ".".to_owned(),
+        root => root,
+    };
+    Err(JobError::Outside { role: role.to_owned(), file: input.display().to_string(), root })
 }
 
 fn has_ending(file: &Path, ending: &str) -> bool {

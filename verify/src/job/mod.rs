@@ -614,11 +614,13 @@ faults! {
         #[code = J0216]
         #[error("this set-up leaves one stock or another, by the control: state its `control`")]
         SeveralStocks,
-        /// An output in another folder.
+        /// An output in another folder, or one that is there and is a link or no regular file.
         ///
         /// A job can be a stranger's, of a pull request or an archive: it writes within its own folder only.
         #[code = J0217]
-        #[error("`{key}` is written to `{output}`, which is outside the folder of the job: name a file within it")]
+        #[error(
+            "`{key}` is written to `{output}`, which is outside the folder of the job, a link or no regular file: name another file"
+        )]
         OutputOutside {
             /// The key.
             key: String,

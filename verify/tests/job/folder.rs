@@ -306,7 +306,8 @@ fn a_job_reads_within_its_folder_or_the_root_and_writes_within_its_folder() {
         for input in inputs.iter().chain(&["job.toml"]) {
             let (place, kept) = (inside.join(input), inside.join("kept"));
             std::fs::rename(&place, &kept).expect("renamed");
-            std::fs::write(folder.place("outside/job.toml"), OF_ALL_KINDS).expect("written");
+            // A message about this text would show it.
+            std::fs::write(folder.place("outside/job.toml"), "a secret").expect("written");
             symlink(folder.place("outside").join(input), &place).expect("a link");
             let file = JobFile::read(&inside.join("job.toml"), None);
             let code = file.err().map(|error| error.code());
@@ -334,7 +335,7 @@ fn a_job_reads_within_its_folder_or_the_root_and_writes_within_its_folder() {
         assert_eq!(code(&folder, &OF_ALL_KINDS.replace(from, to)), expected, "{to}");
     }
     #[cfg(unix)]
-    for target in ["../outside/plate.stl", "../outside/none.stl"] {
+    for target in ["../outside/plate.stl", "../outside/none.stl", "a.nc", "none.stl"] {
         let link = inside.join("rest.stl");
         std::os::unix::fs::symlink(target, &link).expect("a link");
         assert_eq!(code(&folder, OF_ALL_KINDS), "J0217", "{target}");

@@ -7,7 +7,7 @@ use super::structure::{Structure, Subprogram};
 use super::variables::{Locals, Variables};
 use crate::gcode::error::combination;
 use crate::gcode::files::name;
-use crate::gcode::{GcodeError, GcodeFault, MAX_CALLS, Repeated, SubprogramFile};
+use crate::gcode::{FREE_STEPS, GcodeError, GcodeFault, MAX_CALLS, Repeated, SubprogramFile};
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::mem;
 use std::sync::{Arc, OnceLock};
@@ -404,10 +404,12 @@ impl<'a> Flow<'a> {
         self.depth() == 0
     }
 
-    /// Counts blocks or steps of a line that were executed before, or of a subprogram. The others are limited by the text.
+    /// Counts blocks or steps of a line that were executed before, of a subprogram or of a long cycle. The others are limited by the
+    /// text.
     pub(super) fn count(&mut self, number: usize, line: usize) -> Result<(), GcodeFault> {
         let is_repeated = !self.is_main() || line <= self.furthest;
-        if is_repeated { self.repeated.add(number) } else { Ok(()) }
+        let is_counted = is_repeated || number > FREE_STEPS;
+        if is_counted { self.repeated.add(number) } else { Ok(()) }
     }
 
     /// Returns the line of text that follows the end of the main program and is no subprogram.

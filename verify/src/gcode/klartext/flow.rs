@@ -7,7 +7,7 @@
 use super::expression::{Parameters, value};
 use super::line::{Cursor, Place, begin, block};
 use crate::gcode::error::{combination, missing};
-use crate::gcode::{GcodeError, GcodeFault, MAX_CALLS, Repeated};
+use crate::gcode::{FREE_STEPS, GcodeError, GcodeFault, MAX_CALLS, Repeated};
 use std::collections::HashMap;
 use std::fmt;
 use std::sync::Arc;
@@ -189,9 +189,10 @@ impl<'a> Flow<'a> {
         is_behind
     }
 
-    /// Counts blocks or steps that are executed after a jump. Those before are limited by the text.
+    /// Counts blocks or steps that are executed after a jump, or those of a long cycle. Those before are limited by the text.
     pub(super) fn count(&mut self, number: usize) -> Result<(), GcodeFault> {
-        if self.jumped { self.repeated.add(number) } else { Ok(()) }
+        let is_counted = self.jumped || number > FREE_STEPS;
+        if is_counted { self.repeated.add(number) } else { Ok(()) }
     }
 
     /// Returns the first block from a place on that is neither blank nor a comment.

@@ -6,7 +6,9 @@
 use super::text::{Cursor, start};
 use crate::gcode::error::{combination, missing, not_read};
 use crate::gcode::iso::{Place, line};
-use crate::gcode::{GcodeError, GcodeFault, MAX_CALLS, Repeated, SubprogramFile, shown};
+use crate::gcode::{
+    FREE_STEPS, GcodeError, GcodeFault, MAX_CALLS, Repeated, SubprogramFile, shown,
+};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -293,7 +295,8 @@ impl<'a> Flow<'a> {
     /// Counts the steps of a block, if it is executed again.
     pub(super) fn count_steps(&mut self, number: usize) -> Result<(), GcodeFault> {
         let is_repeated = self.place.offset < self.furthest || self.is_called();
-        if is_repeated { self.count(number) } else { Ok(()) }
+        let is_counted = is_repeated || number > FREE_STEPS;
+        if is_counted { self.count(number) } else { Ok(()) }
     }
 
     /// Goes on behind the last line of the main program that was executed, and returns whether it was not there.

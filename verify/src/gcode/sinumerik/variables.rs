@@ -14,6 +14,9 @@ const MAX_R: f64 = 32_534.0;
 /// The largest number of elements of an array.
 const MAX_ELEMENTS: f64 = 10_000.0;
 
+/// The largest number of elements of all variables that are defined.
+const MAX_ALL_ELEMENTS: usize = 200_000;
+
 /// The type of a variable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
@@ -252,6 +255,10 @@ impl Variables {
         if self.find(name).is_some() {
             let remedy = "define each name once, at the start of the program";
             return Err(combination(shown(name), "it is already defined", remedy));
+        }
+        let elements = self.named.iter().map(|known| known.values.len()).sum::<usize>();
+        if elements + lengths[0] * lengths[1] > MAX_ALL_ELEMENTS {
+            return Err(no_element(name));
         }
         let values = vec![value; lengths[0] * lengths[1]];
         self.named.push(Variable { name: name.to_owned(), kind, lengths, dimensions, values });
