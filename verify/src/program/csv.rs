@@ -203,7 +203,7 @@ mod tests {
         let sheet = whole.replace('\n', "\r\n").replace(',', ";").replace("end of", "\"end of");
         assert_eq!(locations(&sheet.replace("program", "program\"")).len(), 3, "{sheet}");
         for after in ["4,5,6,0,0,1,\n", "4,5,6,0,0,1\n", "4,5,6,0,0,1,end of program\n"] {
-            assert_eq!(refusal(&format!("{whole}{after}")), (5, "P0530"));
+            assert_eq!(refusal(format!("{whole}{after}")), (5, "P0530"));
         }
     }
 
