@@ -137,7 +137,7 @@ mod tests {
         let (outer, inner) = (Cancellation::new(), Cancellation::new());
         inner.cancel();
         let both = outer.run(|| {
-            let ended = inner.run(|| check());
+            let ended = inner.run(check);
             // The outer one holds again.
             check();
             ended

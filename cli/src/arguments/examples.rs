@@ -37,10 +37,8 @@ Examples:
 
 pub(super) const HAPTIC: &str = "\
 Examples:
-  A simulated hand presses a ball onto the part for 5 seconds:
-    touchoff haptic --part part.stl --unit mm --tool D2Ball --duration 5
-  It presses one place, with 2 N and without moving aside:
-    touchoff haptic --part part.stl --unit mm --tool D2Ball --at 5,5,0 --press 2 --circle 0 --duration 5
+  A simulated hand presses a ball onto a place of the part with 1 N for 5 seconds:
+    touchoff haptic --part part.stl --unit mm --tool D2Ball --at 1,2,0 --press 1 --duration 5
   Play a program once in 5 seconds, and record every state:
     touchoff haptic --part part.stl --unit mm --tool D2Ball --device playback --program program.apt --duration 5 --record states.csv";
 

@@ -13,6 +13,8 @@ use touchoff_haptics::{
 
 /// Height above the part at which a hand begins, in mm.
 const START_HEIGHT: f64 = 2.0;
+/// Fraction of the session in which a hand that follows a program comes down onto its first location.
+const APPROACH: f64 = 0.2;
 /// Fraction of the part's height that counts as its highest surface, for rounding.
 const TOP_FRACTION: f64 = 1e-3;
 
@@ -24,12 +26,19 @@ impl HapticRun<'_> {
         let mut motion: Box<dyn FnMut(f64) -> Pose + Send> = match &self.arguments.program {
             None => Box::new(pressing(self.start(), unit, self.arguments.circle, depth)),
             Some(_) => {
-                let mut path = self.playback()?;
-                let mut last = Pose::default();
-                Box::new(move |_| {
-                    // The last pose is held at the end.
-                    last = path.pose().unwrap_or(last);
-                    last.translated(last.axis() * -depth).unwrap_or(last)
+                // The hand comes down onto the first location before it follows the others.
+                let approach = APPROACH * self.cycles as f64 / self.arguments.rate;
+                let mut path = self.path(((1.0 - APPROACH) * self.cycles as f64) as u64)?;
+                let mut location = path.pose().unwrap_or_default();
+                let height = START_HEIGHT * Unit::Millimetre.factor_to(unit);
+                Box::new(move |time| {
+                    if time > approach {
+                        // The last location is held at the end.
+                        location = path.pose().unwrap_or(location);
+                    }
+                    let down = (time / approach).min(1.0);
+                    let along = height - (height + depth) * down;
+                    location.translated(location.axis() * along).unwrap_or(location)
                 })
             }
         };
@@ -50,11 +59,16 @@ impl HapticRun<'_> {
 
     /// Creates a device that plays the program.
     pub(super) fn playback(&self) -> Result<PlaybackDevice, Failure> {
+        self.path(self.cycles)
+    }
+
+    /// Returns the path of the program, which takes some cycles.
+    fn path(&self, cycles: u64) -> Result<PlaybackDevice, Failure> {
         let file = self.arguments.program.as_deref();
         let file = file.ok_or(Failure::Usage("`--device playback` plays `--program FILE`"))?;
         let program = program::read(file, self.tool.info(), self.arguments.part.unit)?;
         let poses: Vec<Pose> = program.locations.iter().map(|location| location.pose).collect();
-        Ok(PlaybackDevice::new(poses, self.cycles, self.limits())?)
+        Ok(PlaybackDevice::new(poses, cycles, self.limits())?)
     }
 
     /// Opens the SpaceMouse, which moves the tool from above the part.

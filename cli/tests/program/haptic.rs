@@ -96,7 +96,8 @@ fn place_path_and_force_of_the_hand_are_options() {
     assert!((x - 1.0).abs() < 0.2 && (y - 2.0).abs() < 0.2 && z < 2.0, "{x} {y} {z}");
     // Along a path on the block's top, pressed into it.
     bench.write("along.csv", "-2,0,0,0,0,1\n2,0,0,0,0,1\n");
-    let output = haptic(&bench, "--program along.csv --press 1 --record record.csv --json");
+    let line = "haptic --part block.stl --unit mm --tool D2Ball --points 20000 --duration 2 --program along.csv --press 1";
+    let output = bench.touchoff(&format!("{line} --record record.csv --json"));
     let said = rows(&output).swap_remove(0);
     assert!(said["peak_force"].as_f64().is_some_and(|force| force > 0.5), "{said}");
     let (lowest, [x, ..]) = recorded(&bench);

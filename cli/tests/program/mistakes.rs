@@ -54,7 +54,7 @@ const MISTAKES: [&str; 83] = [
     "export Fig73 -o tool.json",
     "haptic PART --tool D2Ball --device glove",
     "haptic PART --tool D2Ball --device playback",
-    "haptic PART --tool D2Ball --program program.apt",
+    "haptic PART --tool D2Ball --device spacenav --program program.apt",
     // Values.
     "run --part part.stl --unit cm --tool D2Ball --program program.apt",
     "run PART --tool D2Ball --program program.apt --points 0",

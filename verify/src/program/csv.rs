@@ -45,10 +45,12 @@ pub(super) fn read(text: &str) -> Result<Vec<CutterLocation>, Located> {
             is_marked = true;
             cells.pop();
         } else if is_marked {
-            // Nothing follows the mark.
-            let mark = if has_ended { None } else { cells.pop() };
-            has_ended = mark.is_some_and(|mark| is_named(mark, END_MARK));
-            if !has_ended && mark.is_none_or(|mark| !mark.is_empty()) {
+            if has_ended {
+                return Err((line, ProgramFault::AfterEnd { end: END_MARK }));
+            }
+            let mark = cells.pop().unwrap_or_default();
+            has_ended = is_named(mark, END_MARK);
+            if !has_ended && !mark.is_empty() {
                 return Err((line, ProgramFault::NoEndMark));
             }
         }
@@ -201,7 +203,7 @@ mod tests {
         let sheet = whole.replace('\n', "\r\n").replace(',', ";").replace("end of", "\"end of");
         assert_eq!(locations(&sheet.replace("program", "program\"")).len(), 3, "{sheet}");
         for after in ["4,5,6,0,0,1,\n", "4,5,6,0,0,1\n", "4,5,6,0,0,1,end of program\n"] {
-            assert_eq!(refusal(&format!("{whole}{after}")), (5, "P0529"));
+            assert_eq!(refusal(format!("{whole}{after}")), (5, "P0530"));
         }
     }
 

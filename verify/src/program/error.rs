@@ -315,10 +315,10 @@ faults! {
         #[code = P0528]
         #[error("the program stops here without FINI: post it again, or add FINI if this is the end")]
         Unfinished,
-        /// The end of the file before its end mark, or rows behind it.
+        /// The end of the file before its end mark.
         #[code = P0529]
         #[error(
-            "the table does not end with its end mark `{}`: write it again, or correct the mark if this is the end",
+            "the table stops here without its end mark `{}`: write it again, or add the mark if this is the end",
             super::csv::END_MARK
         )]
         NoEndMark,
