@@ -316,7 +316,7 @@ fn binary(kind: u8, bytes: &[u8]) -> Option<f64> {
         (b'U', 1) => f64::from(bytes[0]),
         (b'U', 2) => f64::from(u16::from_le_bytes(bytes.try_into().ok()?)),
         (b'U', 4) => f64::from(u32::from_le_bytes(bytes.try_into().ok()?)),
-        (b'I', 1) => f64::from(bytes[0] as i8),
+        (b'I', 1) => f64::from(bytes[0].cast_signed()),
         (b'I', 2) => f64::from(i16::from_le_bytes(bytes.try_into().ok()?)),
         (b'I', 4) => f64::from(i32::from_le_bytes(bytes.try_into().ok()?)),
         _ => return None,

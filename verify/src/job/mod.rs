@@ -8,6 +8,7 @@
 //! body, and to the stock.
 
 mod bodies;
+mod comment;
 mod file;
 mod finding;
 mod inputs;
@@ -666,6 +667,15 @@ faults! {
              Z above it"
         )]
         LowWay { name: String },
+        /// A comment of the program that describes another tool than the job has.
+        ///
+        /// Post-processors write the tools for which a program was made. A verdict about another tool says nothing about them.
+        #[code = V0608]
+        #[error(
+            "the comment {comment} describes another T{number} than the job has, which is {mounted}: give the tool of the program, or \
+             correct the comment"
+        )]
+        OtherTool { comment: String, number: u32, mounted: String },
     }
 }
 
