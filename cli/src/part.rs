@@ -26,6 +26,8 @@ pub(crate) struct LoadedPart {
     pub(crate) mesh: Option<Mesh>,
     /// Tolerance of certified depth, in the part's unit, if the sampling error needs too many points.
     pub(crate) certify: Option<f64>,
+    /// Set unless it has points whose outer side is unknown.
+    pub(crate) has_normals: bool,
 }
 
 /// Handling of a sampling error that needs very many points.
@@ -95,13 +97,13 @@ pub(crate) fn load(
         }
         let part = Part::open(&arguments.part)?.converted_to(arguments.unit);
         print_normals(&arguments.part, &part);
-        return Ok(LoadedPart { part, mesh: None, certify: None });
+        return Ok(LoadedPart { part, mesh: None, certify: None, has_normals: true });
     }
     match read_geometry(&arguments.part, arguments.unit)? {
         Geometry::Mesh(mesh) => {
             let (cloud, certify) = sample_cloud(&mesh, arguments, info, dense, json)?;
             let part = Part::new(&cloud, mesh.diagnostics());
-            Ok(LoadedPart { part, mesh: Some(mesh), certify })
+            Ok(LoadedPart { part, mesh: Some(mesh), certify, has_normals: true })
         }
         Geometry::Points(_) if arguments.sampling_error.is_some() => {
             Err(no_triangles(&arguments.part, "--sampling-error"))
@@ -116,9 +118,22 @@ pub(crate) fn load(
                 "{file}: {} points without triangles: {estimated} are estimated",
                 points.points.len()
             );
-            let part = Part::from_cloud(&Cloud::from_points(points, arguments.unit)?);
-            print_normals(&arguments.part, &part);
-            Ok(LoadedPart { part, mesh: None, certify: None })
+            let has_normals = !points.normals.is_empty();
+            // Depth, and the directions of the tool, need none: `run` alone is content with them.
+            let cloud = match has_normals || dense != DenseSampling::Certify {
+                true => Cloud::from_points(points, arguments.unit)?,
+                false => {
+                    message!(
+                        "{file}: the points have no normals: forces are along the directions of the tool"
+                    );
+                    Cloud::from_points_without_normals(points, arguments.unit)?
+                }
+            };
+            let part = Part::from_cloud(&cloud);
+            if has_normals {
+                print_normals(&arguments.part, &part);
+            }
+            Ok(LoadedPart { part, mesh: None, certify: None, has_normals })
         }
     }
 }

@@ -15,7 +15,7 @@ use std::io::{IsTerminal, Write};
 use std::time::Instant;
 use touchoff::certify::{Certifier, Penetration, TriangleBvh};
 use touchoff::tool::ToolInfo;
-use touchoff::{Contact, Interval, Part, Probe, Unit, Wrench};
+use touchoff::{Contact, Interval, Law, Part, Probe, Unit, Wrench};
 use touchoff_verify::ClData;
 use touchoff_verify::job::NO_INSIDE;
 
@@ -107,7 +107,7 @@ struct Certified<'a> {
     triangle: Option<u32>,
     /// The tool's surface nearest to it there.
     surface: Option<&'a str>,
-    /// True if the tool is wholly inside the material, which no triangle shows; null if that is unknown.
+    /// True if the tool is inside the material deeper than the triangles show; null if that is unknown.
     inside: Option<bool>,
 }
 
@@ -123,12 +123,13 @@ impl<'a> Certified<'a> {
 
     /// Formats the proved depth for people, as one number if both bounds print alike.
     fn format(&self, unit: Unit) -> String {
-        if self.inside == Some(true) {
+        if self.inside == Some(true) && self.triangle.is_none() {
             return "wholly inside the material".to_owned();
         }
         let [low, high] = self.certified_depth.map(|depth| unit.format_number(depth));
         let depth = if low == high { high } else { format!("{low} to {high}") };
-        format!("{depth} {}", self.surface.unwrap_or_default())
+        let inside = if self.inside == Some(true) { ", inside the material" } else { "" };
+        format!("{depth} {}{inside}", self.surface.unwrap_or_default())
     }
 }
 
@@ -139,7 +140,7 @@ pub(crate) fn run(arguments: &Run, json: bool) -> Result<(), Failure> {
     let tool = loaded.tool();
     let unit = arguments.part.unit;
     let program = program::read(&arguments.program, tool.info(), unit)?;
-    let LoadedPart { part, mesh, certify } =
+    let LoadedPart { part, mesh, certify, has_normals } =
         part::load(&arguments.part, Some(tool.info()), DenseSampling::Certify, json)?;
     // A sampling error that needs too many points has become a tolerance of its own; the stricter one holds.
     let certify = [arguments.certify, certify].into_iter().flatten().reduce(f64::min);
@@ -154,7 +155,9 @@ pub(crate) fn run(arguments: &Run, json: bool) -> Result<(), Failure> {
         Some((bvh, tolerance)) => Some((Certifier::new(bvh, tool)?, *tolerance)),
         None => None,
     };
-    about(arguments, &part, &program, tool.info());
+    // The other laws depend on the side of the material.
+    let law = if has_normals { arguments.law } else { Law::Gradient };
+    about(arguments, law, &part, &program, tool.info());
     part::print_covering_radius(&part, Some(tool), unit);
 
     let mut out = Output::rows();
@@ -163,7 +166,7 @@ pub(crate) fn run(arguments: &Run, json: bool) -> Result<(), Failure> {
         writeln!(out, "    line  points   depth ({unit})  {proved}by surface")?;
     }
     let mut probe = Probe::new(&part, tool)
-        .with_law(arguments.law)
+        .with_law(law)
         .with_weights(arguments.weights)
         .with_centre(arguments.center.unwrap_or(Point3::origin()));
     let proved = part.tree().covering_radius().is_some_and(|cover| cover.proved);
@@ -185,11 +188,7 @@ pub(crate) fn run(arguments: &Run, json: bool) -> Result<(), Failure> {
             let start = Instant::now();
             let penetration = certifier.deepest(&location.pose, *tolerance);
             let ns = nanoseconds(start.elapsed());
-            // A triangle in the tool shows that some of the tool is outside the material.
-            let inside = match penetration.witness {
-                Some(_) => Some(false),
-                None => certifier.is_buried(&location.pose),
-            };
+            let inside = certifier.is_inside(&location.pose, penetration.depth.high);
             summary.certify(location.line, &penetration, inside, ns);
             Certified::new(&penetration, inside, tool.info())
         });
@@ -218,14 +217,14 @@ pub(crate) fn run(arguments: &Run, json: bool) -> Result<(), Failure> {
 }
 
 /// Prints a description of the input.
-fn about(arguments: &Run, part: &Part, program: &ClData, info: &ToolInfo) {
+fn about(arguments: &Run, law: Law, part: &Part, program: &ClData, info: &ToolInfo) {
     program::print_ignored(std::slice::from_ref(program));
     message!(
         "{} on {} points, {} poses; law {}, weights {}, lengths in {}",
         info.name,
         part.tree().len(),
         program.locations.len(),
-        arguments.law,
+        law,
         arguments.weights,
         arguments.part.unit,
     );
@@ -269,7 +268,7 @@ struct SurfaceSummary {
 #[derive(Default)]
 struct Proved {
     in_contact: usize,
-    /// Number of poses at which the tool is wholly inside the material.
+    /// Number of poses at which the tool is inside the material deeper than the triangles show.
     inside: usize,
     /// The line of the first of them.
     first_inside_line: usize,
@@ -339,7 +338,7 @@ impl Summary {
         if let Some(mut proved) = self.proved {
             if proved.inside > 0 {
                 message!(
-                    "proved: wholly inside the material at {} of {} poses, first at line {}",
+                    "proved: inside the material, deeper than its triangles show, at {} of {} poses, first at line {}",
                     proved.inside,
                     self.poses,
                     proved.first_inside_line

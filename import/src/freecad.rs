@@ -337,6 +337,9 @@ struct Parameters<'a> {
     bare: f64,
 }
 
+/// The height of a neck, and its diameter where that is stated.
+type Neck = (f64, Option<f64>);
+
 impl Parameters<'_> {
     fn new(values: &Object) -> Parameters<'_> {
         let units = string(values, "Units").to_ascii_lowercase();
@@ -348,7 +351,7 @@ impl Parameters<'_> {
     }
 
     /// Returns the height and the diameter of the neck above a cutting part, and the length of its lower end that cuts.
-    fn neck(&self, cutting: f64) -> Result<(Option<(f64, Option<f64>)>, f64), String> {
+    fn neck(&self, cutting: f64) -> Result<(Option<Neck>, f64), String> {
         let height = super::outline::rounded(cutting + self.length("NeckHeight")?);
         let edges = self.optional_length("NeckCuttingHeight")?.unwrap_or(0.0);
         Ok((Some((height, Some(self.length("NeckDiameter")?))), edges))

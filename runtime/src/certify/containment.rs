@@ -146,6 +146,30 @@ impl QuerySetting<'_> {
         found
     }
 
+    /// Returns the radius of a ball about a core point inside the material that is in the tool and in the material, in the part's unit; 0
+    /// for a tool without a profile.
+    pub(crate) fn common_ball(
+        &self,
+        core_points: &mut CorePoints,
+        pose: &Pose,
+        tolerance: f64,
+    ) -> f64 {
+        let ToolModel::Profile(section) = &self.tool_model else { return 0.0 };
+        let Some(core_points) = core_points.deeper_than(&self.tool_model, self.info(), tolerance)
+        else {
+            return 0.0;
+        };
+        let mut triangles = NearestTriangle::new(&self.bvh);
+        let error = 4.0 * self.error * self.length;
+        let radii = core_points.iter().filter_map(|Core { point, .. }| {
+            let place = pose.tip() + pose.rotation() * Vector3::from(*point) * self.length;
+            let in_tool = section.unsigned_distance([point[0], point[2]]) * self.length;
+            let is_inside = self.bvh.locate(place) == Location::Inside;
+            is_inside.then(|| in_tool.min(triangles.distance(place)) - error)
+        });
+        radii.fold(0.0, f64::max)
+    }
+
     /// Locates a ball that no triangle meets. Of a tool with an axis it may be turned about the axis: a piece there is a ring.
     fn locate_ball(
         &self,

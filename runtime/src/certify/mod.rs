@@ -357,6 +357,38 @@ impl<'a> Certifier<'a> {
         }
     }
 
+    /// Returns whether some of the tool is inside the material where no triangle reaches: of the points of the tool that are deeper than
+    /// `depth`, the upper bound of [`Certifier::deepest`] at the pose. Such a piece is wholly inside or wholly outside, since no triangle
+    /// meets it. A tool whose surface coincides with the part's has no depth, and is in the material all the same.
+    /// Returns `None` if that is unknown: the part has no inside, rounding decides, or the tool has no profile and touches.
+    pub fn is_inside(&mut self, pose: &Pose, depth: f64) -> Option<bool> {
+        let (location, _) = self.located_piece(pose, depth);
+        match location {
+            Containment::Inside(_) => Some(true),
+            Containment::Outside => Some(false),
+            Containment::Unknown | Containment::Undecided => None,
+        }
+    }
+
+    /// Locates the pieces of the tool that are deeper than the triangles. Returns also the radius of a ball in both the tool and the
+    /// material, in the part's unit, or 0 if none is known.
+    fn located_piece(&mut self, pose: &Pose, depth: f64) -> (Containment, f64) {
+        let Certifier { setting, whole_core_points, .. } = self;
+        let error = 4.0 * setting.error;
+        let tolerance = error.max(depth / setting.length + error);
+        // The points for each depth anew would be a search of its own for a tool without a profile.
+        let is_new = tolerance > 8.0 * setting.error;
+        if is_new && matches!(setting.tool_model, ToolModel::Field(_)) {
+            return (Containment::Undecided, 0.0);
+        }
+        let location = setting.containment(whole_core_points, pose, tolerance);
+        let ball = match location {
+            Containment::Inside(_) => setting.common_ball(whole_core_points, pose, tolerance),
+            _ => 0.0,
+        };
+        (location, ball)
+    }
+
     /// Returns an upper bound on the depth that a surface can have, in the
     /// part's unit. The depth occurs where the part's surface passes through the deepest point of the tool to which
     /// that surface is the nearest. The bound is at most 1 % above it unless a fixed budget is spent first; `None` if
@@ -464,9 +496,9 @@ impl Certifier<'_> {
     /// the deepest point of the part's triangles in the tool. Both bounds are proved, and as wide as those of
     /// [`Certifier::deepest`] and [`Certifier::clearance`]; 0 is between them where rounding decides.
     ///
-    /// A tool that is wholly inside the material touches no triangle: it has to move at least by its distance from the
-    /// surface to come out, which is the upper bound, and there is no lower one. Of a part without an inside only the
-    /// surface counts.
+    /// A tool that is inside the material and touches no triangle has to move at least by its distance from the surface to come out,
+    /// or by a ball that it and the material share, if its surface coincides with the part's: the upper bound is below 0, and there
+    /// is no lower one. Of a part without an inside only the surface counts.
     ///
     /// ```
     /// use nalgebra::{Point3, Vector3};
@@ -496,15 +528,19 @@ impl Certifier<'_> {
         if depth.low > 0.0 {
             return Interval::new(-depth.high, -depth.low);
         }
+        let (location, ball) = self.located_piece(pose, depth.high);
         let distance = self.clearance(pose, tolerance).distance;
-        let Certifier { setting, whole_core_points, .. } = self;
-        match setting.containment(whole_core_points, pose, 4.0 * setting.error) {
+        match location {
             // A distance below the tolerance may be a contact.
             Containment::Outside | Containment::Unknown if distance.low == 0.0 => {
                 Interval::new(-depth.high, distance.high)
             }
             Containment::Outside | Containment::Unknown => distance,
-            Containment::Inside(_) => Interval::new(f64::NEG_INFINITY, 0.0 - distance.low),
+            // It may touch the surface from inside.
+            Containment::Inside(_) => {
+                let least = if distance.low > 0.0 { distance.low } else { ball };
+                Interval::new(f64::NEG_INFINITY, 0.0 - least)
+            }
             Containment::Undecided => Interval::new(f64::NEG_INFINITY, distance.high),
         }
     }

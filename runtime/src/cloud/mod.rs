@@ -3,6 +3,7 @@
 mod blue_noise;
 mod estimate;
 mod neighbours;
+mod orient;
 mod pieces;
 mod sampling;
 mod voronoi;
@@ -132,6 +133,12 @@ pub enum CloudError {
         /// The normal's norm; NaN if a component is NaN.
         norm: f64,
     },
+    /// Points without normals, so that their outer side is unknown.
+    #[error(
+        "the points have no normals, so their outer side is unknown: export them with `nx`, `ny` and `nz`, or export the mesh, with \
+         its faces"
+    )]
+    NoNormals,
     /// A weight is not a valid area.
     #[error("the weight of point {point} is {weight}: give a finite area, 0 or more")]
     Weight {
@@ -226,9 +233,12 @@ impl Cloud {
     /// is always estimated that way. Without given triangles, each point has its own.
     ///
     /// # Errors
-    /// See [`Cloud::new`].
+    /// See [`Cloud::new`], and [`CloudError::NoNormals`] for points without normals.
     pub fn from_points(points: OrientedPoints, unit: Unit) -> Result<Cloud, CloudError> {
         let OrientedPoints { points, normals, triangles, areas } = points;
+        if normals.is_empty() && !points.is_empty() {
+            return Err(CloudError::NoNormals);
+        }
         let count = points.len();
         let triangles = triangles.unwrap_or_else(|| (0..count as u32).map(TriangleId).collect());
         let estimated = areas.is_none();
@@ -241,6 +251,26 @@ impl Cloud {
             cloud.weights = areas;
         }
         Ok(cloud)
+    }
+
+    /// Builds a cloud from points of a surface without a mesh and without normals. Depths and the tool's directions need none; normals
+    /// are fitted to neighbours, for the estimate of areas alone: on which side of the points the material is cannot be known, and laws
+    /// of force that depend on it ([`Law`](crate::Law)) have no meaning.
+    ///
+    /// # Errors
+    /// See [`Cloud::new`].
+    pub fn from_points_without_normals(
+        points: OrientedPoints,
+        unit: Unit,
+    ) -> Result<Cloud, CloudError> {
+        for (index, point) in points.points.iter().enumerate() {
+            check_position(index, point)?;
+        }
+        let normals = match points.points.is_empty() {
+            true => Vec::new(),
+            false => orient::estimate(&points.points),
+        };
+        Cloud::from_points(OrientedPoints { normals, ..points }, unit)
     }
 
     /// Returns the same points, weighted by the areas of their cells on the mesh that they were sampled

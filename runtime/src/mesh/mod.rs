@@ -11,6 +11,7 @@ mod location;
 mod obj;
 mod outlier;
 mod ply;
+mod points;
 mod read;
 pub mod shapes;
 mod stl;
@@ -30,6 +31,7 @@ pub use location::SourceLocation;
 pub use obj::ObjError;
 pub use outlier::Outlier;
 pub use ply::{OrientedPoints, PlyError};
+pub use points::PointsError;
 pub use read::{Geometry, GeometryError};
 pub use stl::StlError;
 

@@ -3,7 +3,7 @@
 use std::io;
 use std::path::Path;
 
-use super::{Mesh, ObjError, OrientedPoints, PlyError, StlError, ply};
+use super::{Mesh, ObjError, OrientedPoints, PlyError, PointsError, StlError, ply};
 use crate::input::{self, FileKind};
 use crate::unit::Unit;
 
@@ -31,7 +31,7 @@ pub enum GeometryError {
     /// The format is not recognised.
     #[error(
         "{file} is of no known format: read are meshes in STL, PLY and OBJ (`.stl`, `.ply`, \
-         `.obj`) and points with normals in PLY: convert the part to one of these"
+         `.obj`) and points in PLY, PCD and tables of x y z (`.pcd`, `.xyz`): convert the part to one of these"
     )]
     Unknown {
         /// The file name.
@@ -46,13 +46,16 @@ pub enum GeometryError {
     /// The file is not a valid OBJ file.
     #[error(transparent)]
     Obj(#[from] ObjError),
+    /// The file is not a valid cloud of points in PCD or XYZ.
+    #[error(transparent)]
+    Points(#[from] PointsError),
 }
 
 crate::debug_as_sentence!(GeometryError);
 
 impl Geometry {
     /// Reads a file whose lengths are in `unit`. A file that begins with `ply` is read as PLY; otherwise the file
-    /// extension decides between STL, PLY and OBJ. PLY with faces is a mesh, PLY without faces is points.
+    /// extension decides between STL, PLY, OBJ, PCD and XYZ. PLY with faces is a mesh, PLY without faces is points.
     ///
     /// # Errors
     /// Every defect of the file is reported with the file name and the location.
@@ -83,6 +86,10 @@ impl Geometry {
             Geometry::Mesh(Mesh::from_stl(bytes, name, unit)?)
         } else if has_extension("obj") {
             Geometry::Mesh(Mesh::from_obj(bytes, name, unit)?)
+        } else if has_extension("pcd") {
+            Geometry::Points(OrientedPoints::from_pcd(bytes, name)?)
+        } else if has_extension("xyz") {
+            Geometry::Points(OrientedPoints::from_xyz(bytes, name)?)
         } else {
             return Err(GeometryError::Unknown { file: name.to_owned() });
         })

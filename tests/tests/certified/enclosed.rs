@@ -210,3 +210,31 @@ fn inside_verdicts_agree_with_samples_of_the_section() {
     }
     assert!(inside > 30 && clear > 60, "{inside} inside, {clear} clear");
 }
+
+/// A tool in the material whose surface meets the part's without a depth, or reaches out of it: what the triangles show is not all that
+/// is in the material.
+#[test]
+fn tools_that_meet_the_surface_from_inside_are_inside() {
+    let drum = drawn("0 0; drum 5 0, 5 20, 0 20", "");
+    let part = block([-10.0, -10.0, 0.0], [10.0, 10.0, 30.0]);
+    let mut certifier = certifier_of(&part, &drum);
+    // The height of the tip, whether the tool is inside, and a bound of the signed distance.
+    for (tip, is_inside, ends_below) in [
+        (0.0, true, -1.0),
+        (5.0, true, -1.0),
+        (10.0, true, -1.0),
+        (-1.0, true, -0.9),
+        (-4.0, true, -3.9),
+        (29.0, false, -0.9),
+        (30.0, false, 1e-6),
+        (31.0, false, 1.1),
+    ] {
+        let tip_at = pose([0.0, 0.0, tip], UP);
+        let depth = certifier.deepest(&tip_at, 1e-9).depth;
+        assert_eq!(certifier.is_inside(&tip_at, depth.high), Some(is_inside), "{tip}: {depth:?}");
+        let signed = certifier.signed_distance(&tip_at, 1e-9);
+        assert!(signed.high < ends_below, "{tip}: {signed:?}");
+        let is_open = is_inside && depth.low == 0.0;
+        assert_eq!(signed.low == f64::NEG_INFINITY, is_open, "{tip}: {signed:?}");
+    }
+}

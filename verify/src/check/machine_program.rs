@@ -14,7 +14,7 @@ use crate::gcode::{
 };
 use crate::machine::{JointError, JointMotion, Letter, Machine, Relation, Setup, Side};
 use nalgebra::Vector3;
-use resolve::{AnyRapid, Resolved, Resolver};
+use resolve::{AnyRapid, Band, Resolved, Resolver};
 use std::collections::{BTreeMap, HashSet};
 use std::fmt;
 use std::sync::Arc;
@@ -158,7 +158,9 @@ impl MachineProgram {
             for rule in branched.keys() {
                 assumed = assumed
                     .into_iter()
-                    .flat_map(|rules| rule.choices().map(move |c| rules.clone().with(*rule, c)))
+                    .flat_map(|rules| {
+                        choices(*rule, &machine).map(move |c| rules.clone().with(*rule, c))
+                    })
                     .collect();
             }
             if assumed.len() > MAX_READINGS {
@@ -221,6 +223,13 @@ impl MachineProgram {
         setup.carries_tool = Letter::ALL
             .map(|letter| machine.axis(letter).is_some_and(|axis| axis.side == Side::Tool));
         setup.tool_change = machine.tool_change();
+        setup.builder_point = machine.builder_point();
+        let machine = match setup.rules.get(Rule::RotaryDirection) {
+            Some(choice) if !machine.states_directions() => {
+                Arc::new(machine.reversed(|letter| is_reversed(choice, letter)))
+            }
+            _ => machine,
+        };
         let is_placed = setup.work_offsets[0].is_some();
         // The position of the machine before the program is unknown; axes that it lacks are at 0.
         setup.start = Letter::ALL.map(|letter| machine.axis(letter).is_none().then_some(0.0));
@@ -269,6 +278,14 @@ impl MachineProgram {
             .summary
             .open_rules
             .retain(|rule, _| stated.get(*rule).is_none() && assumed.rules.get(*rule).is_none());
+        // The interpreter does not know the machine.
+        let (has_head, states_directions) =
+            (program.machine.has_rotary(Side::Tool), program.machine.states_directions());
+        program.summary.open_rules.retain(|rule, _| match rule {
+            Rule::RotaryDirection => !states_directions,
+            Rule::HeadLength => has_head,
+            _ => true,
+        });
         Ok(program)
     }
 
@@ -430,9 +447,15 @@ impl MachineProgram {
         let mut summary = MachineSummary::default();
         let mut seen: Vec<(Option<u32>, BlockLine)> = Vec::new();
         let mut is_last_singular = false;
+        // The other controls turn axes by ISO 841.
+        let asks_direction = !self.machine.states_directions()
+            && self.setup.rules.get(Rule::Dialect) == Some(Choice::Rs274Ngc);
         let mut execution = self.execute()?;
         while let Some((step, resolved)) = execution.next() {
             let number = step.state.tool;
+            if asks_direction && resolved.is_turned() {
+                execution.resolver.note(Rule::RotaryDirection, &step);
+            }
             // A tool change is no motion of the program, and its time is not counted.
             if !matches!(step.path, StepPath::ToolChange(_)) {
                 summary.time_of(number, &self.machine).add(&step, &resolved, &self.machine);
@@ -475,10 +498,11 @@ impl MachineProgram {
                     {
                         summary.add_blind(&step, level);
                     }
-                    summary.add_unknown(&step, cause);
+                    let leaves_change = execution.resolver.leaves_change(&step);
+                    summary.add_unknown(&step, cause, leaves_change);
                     continue;
                 }
-                Resolved::Motions(motions) => motions,
+                Resolved::Motions(motions) | Resolved::Band(Band { motions, .. }) => motions,
                 Resolved::AnyRapid(any) => {
                     let AnyRapid { straight, edges } = *any;
                     let found = match edges {
@@ -526,6 +550,7 @@ impl MachineProgram {
         }
         summary.notes = execution.interpreter.notes();
         summary.blank = execution.interpreter.blank();
+        summary.stated_tools = gcode::stated_tools(&self.text, execution.interpreter.unit());
         summary.open_rules.clone_from(execution.interpreter.asked());
         summary.open_rules.extend(execution.resolver.asked);
         let is_checked = |number| {
@@ -538,6 +563,30 @@ impl MachineProgram {
         let mut linear = self.machine.axes().iter().filter(|axis| !axis.letter.is_rotary());
         summary.limits_unchecked = !is_placed && linear.any(|axis| axis.limits.is_some());
         Ok((summary, offsets))
+    }
+}
+
+/// Returns the choices of a rule on a machine. Axes of a table turn all one way or all the other, those of a head each by itself: the
+/// kinematics of LinuxCNC mix both.
+fn choices(rule: Rule, machine: &Machine) -> impl Iterator<Item = Choice> + '_ {
+    let rotary = || machine.axes().iter().map(|axis| axis.letter).filter(|l| l.is_rotary());
+    let is_mixed = machine.has_rotary(Side::Tool) && rotary().count() > 1;
+    rule.choices().filter(move |choice| match choice {
+        Choice::ReversedA | Choice::ReversedB | Choice::ReversedC => {
+            is_mixed && rotary().any(|letter| is_reversed(*choice, letter))
+        }
+        _ => true,
+    })
+}
+
+/// Returns whether a rotary axis of a machine of the library turns against ISO 841.
+fn is_reversed(direction: Choice, letter: Letter) -> bool {
+    match direction {
+        Choice::Reversed => true,
+        Choice::ReversedA => letter == Letter::A,
+        Choice::ReversedB => letter == Letter::B,
+        Choice::ReversedC => letter == Letter::C,
+        _ => false,
     }
 }
 
@@ -706,6 +755,14 @@ impl MoveFrame {
             Resolved::Departure(motion, _) => {
                 let path = MovePath::Joints(Box::new(self.path(**motion, 0.0)));
                 start(**motion).into_iter().chain([arriving(path)]).collect()
+            }
+            Resolved::Band(Band { motions, curves }) => {
+                // The tool ends where the spiral ends, which is the last.
+                let first = motions.first().and_then(|(motion, _)| start(*motion));
+                let motions = curves.iter().chain(motions).map(|(motion, error)| {
+                    arriving(MovePath::Joints(Box::new(self.path(*motion, *error))))
+                });
+                first.into_iter().chain(motions).collect()
             }
             Resolved::Arrival(motion, _) => {
                 let rest = self.rest(**motion, 1.0);

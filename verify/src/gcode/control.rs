@@ -16,6 +16,7 @@ mod refuse;
 mod report;
 
 pub(super) use corner::{Corner, CornerFeed, CornerShape, WRITE_OUT};
+pub(crate) use refuse::band_radii;
 pub(super) use report::Report;
 
 pub(super) use heidenhain::{Circle, Curve};
@@ -63,6 +64,8 @@ pub(super) struct Control {
     second_home: Option<[f64; 6]>,
     /// Upper end of the travel of Z.
     top: Option<f64>,
+    /// The point from which M92 counts, in machine coordinates.
+    builder_point: Option<[f64; 6]>,
     /// Shift by G52.
     local: [f64; 6],
     /// Shift by G92.
@@ -126,6 +129,8 @@ pub(super) struct Control {
     /// Set by G49, until the next tool change.
     length_cancelled: bool,
     spindle: SpindleWords,
+    /// The modes that the program states, or does not need to.
+    pub(super) stated: StatedModes,
     /// Set while F is no speed along the path, so that no feed is known (Heidenhain Klartext).
     pub(super) has_own_feed: bool,
     /// The dwells with each tool.
@@ -157,6 +162,19 @@ pub(super) struct Modal {
     pub(super) exact_path: bool,
     /// G99: canned cycles end in the plane R; `None` before G98 or G99.
     retract_to_r: Option<bool>,
+}
+
+/// Modes that a program has stated.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct StatedModes {
+    distance: bool,
+    plane: bool,
+    feed: bool,
+}
+
+impl StatedModes {
+    /// Those of a language in which no mode is assumed.
+    pub(super) const ALL: StatedModes = StatedModes { distance: true, plane: true, feed: true };
 }
 
 /// The word that a block with axis words obeys.
@@ -271,6 +289,7 @@ impl Control {
             home: setup.home,
             second_home: setup.second_home,
             top: setup.top,
+            builder_point: setup.builder_point,
             local: [0.0; 6],
             preset: [Some(0.0); 6],
             frames: frame::Frames::new(),
@@ -305,6 +324,7 @@ impl Control {
             length_implicit: false,
             length_cancelled: false,
             spindle: SpindleWords::new(),
+            stated: StatedModes::default(),
             has_own_feed: false,
             dwells: BTreeMap::new(),
             has_loads: false,
@@ -352,8 +372,13 @@ impl Control {
 
     /// Returns the number of the tool with a name.
     pub(super) fn tool_number(&self, name: &str) -> Option<u32> {
+        self.tool_named(name).or_else(|| name.parse().ok())
+    }
+
+    /// Returns the number of the tool with a name that the job states.
+    pub(super) fn tool_named(&self, name: &str) -> Option<u32> {
         let known = self.tool_names.iter().find(|(known, _)| known.eq_ignore_ascii_case(name));
-        known.map(|(_, number)| *number).or_else(|| name.parse().ok())
+        known.map(|(_, number)| *number)
     }
 
     /// Returns the place of the block that is executed.
@@ -409,6 +434,7 @@ impl Control {
         }
         self.check_offset(block)?;
         self.check_staged_edge(block)?;
+        self.note_assumed(block);
         self.motion(block)?;
         self.corners(block.corner.take(), known)?;
         self.compensate(known)?;
@@ -621,6 +647,35 @@ impl Control {
             self.notes.add(self.block(), NoteKind::PassedOver { word: code.to_string() });
         }
         Ok(())
+    }
+
+    /// Notes the modes on which a motion depends, and which the program has not stated.
+    fn note_assumed(&mut self, block: &Block) {
+        let StatedModes { distance, plane, feed } = &mut self.stated;
+        let has = |group| block.code_of(group).is_some();
+        *distance |= has(Group::Distance);
+        *plane |= has(Group::Plane);
+        *feed |= has(Group::FeedMode);
+        if !block.is_programmed() || block.owns_axis_words() {
+            return;
+        }
+        let is_own = |letter| block.has(letter) && block.own_distance(letter).is_none();
+        let depends = [
+            ("G90", distance, AXES.into_iter().any(is_own)),
+            (
+                "G17",
+                plane,
+                matches!(self.modal.motion, Some(Motion::Arc { .. } | Motion::Cycle(_))),
+            ),
+            ("G94", feed, self.modal.is_feed()),
+        ];
+        let block = BlockLine { line: self.line, within: self.within };
+        for (word, is_stated, depends) in depends {
+            if depends && !*is_stated {
+                *is_stated = true;
+                self.notes.add_once(block, NoteKind::AssumedMode { word });
+            }
+        }
     }
 
     /// Reads the motion mode.

@@ -9,7 +9,7 @@ use super::{
     sinumerik,
 };
 use std::collections::BTreeMap;
-use touchoff::cancellation;
+use touchoff::{Unit, cancellation};
 
 /// An interpreter of a program: an iterator over its steps.
 ///
@@ -150,6 +150,14 @@ impl<'a> Interpreter<'a> {
             Front::Iso(_) => Language::Iso,
             Front::Klartext(_) => Language::Klartext,
             Front::Sinumerik(_) => Language::Sinumerik,
+        }
+    }
+
+    /// Returns the unit of the program: the last that it has stated.
+    pub(crate) fn unit(&self) -> Unit {
+        match &self.front {
+            Front::Klartext(program) => program.unit(),
+            Front::Iso(_) | Front::Sinumerik(_) => self.control.modal.unit,
         }
     }
 

@@ -55,6 +55,7 @@
 //! their caller; macros and O-words have their own.
 
 mod block;
+mod comment;
 mod control;
 mod error;
 mod files;
@@ -68,7 +69,10 @@ mod state;
 mod survey;
 mod words;
 
+pub(crate) use comment::stated_tools;
+pub use comment::{StatedEnd, StatedTool};
 pub use control::Spindle;
+pub(crate) use control::band_radii;
 pub use error::{ArcFault, CompensationFault, GcodeError, GcodeFault};
 pub(crate) use files::line_of;
 pub use files::{BlockLine, SubprogramFile, SubprogramLine};
@@ -125,7 +129,8 @@ pub struct ControlSetup {
     /// The work offset of each preset of Heidenhain by its number: 1 stands for G54, 9 for G59.3. Without any, a program selects one
     /// preset, which is that of the part.
     pub presets: BTreeMap<u32, u8>,
-    /// The numbers of tools, by the names that programs of Sinumerik give them (`T="NAME"`), in either case.
+    /// The numbers of tools, by the names that programs of Sinumerik (`T="NAME"`) and Klartext (`TOOL CALL "NAME"`) give them, in either
+    /// case.
     pub tool_names: BTreeMap<String, u32>,
     /// Position of G28 in machine coordinates.
     pub home: Option<[f64; 6]>,
@@ -133,6 +138,8 @@ pub struct ControlSetup {
     pub second_home: Option<[f64; 6]>,
     /// Upper end of the travel of Z in machine coordinates, to which M140 MB MAX of Heidenhain moves.
     pub top: Option<f64>,
+    /// Machine coordinates of the point from which M92 of Heidenhain counts.
+    pub builder_point: Option<[f64; 6]>,
     /// The choices of the control where controls differ.
     pub rules: ControlRules,
     /// The axes that the machine has.
@@ -166,6 +173,7 @@ impl Default for ControlSetup {
             home: None,
             second_home: None,
             top: None,
+            builder_point: None,
             rules: ControlRules::default(),
             axes: [true; 6],
             carries_tool: [false; 6],

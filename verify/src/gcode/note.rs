@@ -116,6 +116,35 @@ faults! {
             /// The words that left them, as a list.
             words: String,
         },
+        /// An arc whose radii at its start and its end differ, of which every curve between both is checked.
+        ///
+        /// Controls take different curves, or stop.
+        #[code = V0517]
+        #[error(
+            "the radii of an arc differ at its start and its end: every curve between both is checked, and {stops} there: correct the arc"
+        )]
+        Spiral {
+            /// The controls that stop.
+            stops: String,
+        },
+        /// A canned cycle that goes no lower than its plane R, or has no depth.
+        ///
+        /// It positions the tool, and cuts nothing: often Z in a further block of the cycle, which is its depth, was meant as a level.
+        #[code = V0518]
+        #[error(
+            "a cycle cuts nothing, since its depth is not below the plane at which its feed begins: write the depth, or G80 and G0 for a \
+             position"
+        )]
+        EmptyCycle,
+        /// A mode that the program does not state before it depends on it.
+        ///
+        /// It is taken as on a control as delivered; one that keeps modes, or is set otherwise, reads the program in another way.
+        #[code = V0519]
+        #[error("{word} is not written before a motion that depends on it, and is assumed: write it at the start")]
+        AssumedMode {
+            /// The word.
+            word: &'static str,
+        },
     }
 }
 

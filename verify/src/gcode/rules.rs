@@ -4,7 +4,7 @@
 //! [`Rule`], and a control makes one [`Choice`] of each. `docs/controls.md` has the sources.
 
 use super::block::{Code, is_keyword};
-use super::sinumerik;
+use super::{klartext, sinumerik};
 use crate::codes::faults;
 use crate::gcode::shown;
 use std::collections::BTreeMap;
@@ -65,6 +65,10 @@ pub enum Rule {
     OutsideCorner,
     /// The first and the last motion of cutter compensation.
     CompensationStart,
+    /// The directions of the rotary axes of a machine of the library, whose file is not that of a real one.
+    RotaryDirection,
+    /// The length of a tool that a rotary axis of the head tilts, under M428.
+    HeadLength,
     /// Blocks that begin with `/`: the operator's switch, which no control states.
     OptionalBlocks,
 }
@@ -129,6 +133,13 @@ pub enum Choice {
     NextMotion,
     OutsideCorners,
     EntryMotion,
+    Iso841,
+    Reversed,
+    ReversedA,
+    ReversedB,
+    ReversedC,
+    Compensated,
+    AlongZ,
     Executed,
     LeftOut,
 }
@@ -142,7 +153,7 @@ struct Entry {
 }
 
 /// All rules. Without a statement the interpreter makes the first choice of each.
-const RULES: [Entry; 26] = [
+const RULES: [Entry; 28] = [
     Entry {
         rule: Rule::ToolChange,
         key: "tool_change",
@@ -426,6 +437,43 @@ const RULES: [Entry; 26] = [
         ],
     },
     Entry {
+        rule: Rule::RotaryDirection,
+        key: "rotary_direction",
+        about: "a positive command of a rotary axis of a built-in machine",
+        choices: &[
+            (
+                Choice::Iso841,
+                "iso 841",
+                "turns the tool counter-clockwise relative to the part, a table clockwise",
+            ),
+            (
+                Choice::Reversed,
+                "reversed",
+                "turns the other way: a table counter-clockwise, as LinuxCNC's xyzac-trt and xyzbc-trt without `conventional-directions`",
+            ),
+            (Choice::ReversedA, "A reversed", "turns the other way on A alone"),
+            (Choice::ReversedB, "B reversed", "turns the other way on B alone"),
+            (Choice::ReversedC, "C reversed", "turns the other way on C alone"),
+        ],
+    },
+    Entry {
+        rule: Rule::HeadLength,
+        key: "head_length",
+        about: "the length of a tool that the head tilts, under M428",
+        choices: &[
+            (
+                Choice::Compensated,
+                "compensated",
+                "is along the tool, so that the tip is where the program says",
+            ),
+            (
+                Choice::AlongZ,
+                "along z",
+                "is along z of the machine, as in releases of LinuxCNC's maxkins, and is not followed",
+            ),
+        ],
+    },
+    Entry {
         rule: Rule::OptionalBlocks,
         key: "optional_blocks",
         about: "blocks that begin with `/`",
@@ -442,7 +490,7 @@ const CONTROLS: [&str; 5] = ["fanuc", "haas", "linuxcnc", "siemens", "heidenhain
 /// Their choices, a column per control, in the order of [`RULES`] without the operator's switch. Each is the control as
 /// delivered: a builder can set most of them otherwise.
 #[rustfmt::skip]
-const CONTROL_CHOICES: [[Choice; 5]; 25] = {
+const CONTROL_CHOICES: [[Choice; 5]; 27] = {
     use Choice::*;
     [
         [Moves,           Retracts,      Stays,         Moves,         Moves],
@@ -470,11 +518,13 @@ const CONTROL_CHOICES: [[Choice; 5]; 25] = {
         [KeepsModes,      KeepsModes,    SetsModes,     KeepsModes,    KeepsModes],
         [StraightCorner,  StraightCorner, ArcCorner,    ArcCorner,     ArcCorner],
         [NextMotion,      NextMotion,    EntryMotion,   NextMotion,    NextMotion],
+        [Iso841,          Iso841,        Iso841,        Iso841,        Iso841],
+        [Compensated,     Compensated,   Compensated,   Compensated,   Compensated],
     ]
 };
 
 /// Rules that a control leaves to a parameter without a usual value: every choice is a reading.
-const OPEN: [(&str, Rule); 10] = [
+const OPEN: [(&str, Rule); 12] = [
     ("fanuc", Rule::ReferenceReturn),
     ("fanuc", Rule::LengthChange),
     // K, and L on the Series 15 and in its format.
@@ -482,6 +532,9 @@ const OPEN: [(&str, Rule); 10] = [
     ("haas", Rule::LengthChange),
     // Setting 162 does not list R and Q.
     ("haas", Rule::WholeRadii),
+    // The pin `conventional-directions` of its kinematics, which is off unless a configuration sets it.
+    ("linuxcnc", Rule::RotaryDirection),
+    ("linuxcnc", Rule::HeadLength),
     // Native programs have no G43, and those in ISO mode need it.
     ("siemens", Rule::ToolLength),
     // Within a turn in native programs, the shorter way in ISO mode (MD20734).
@@ -520,6 +573,16 @@ impl Rule {
             self,
             Rule::ToolChange | Rule::Unit | Rule::StartOffset | Rule::Dialect | Rule::ProgramEnd
         )
+    }
+
+    /// Returns whether each choice is a reading, and decides what the interpreter does.
+    pub(super) fn is_of_interpreter(self) -> bool {
+        self.is_branched() && !matches!(self, Rule::RotaryDirection | Rule::HeadLength)
+    }
+
+    /// Returns whether a control's file need not state the rule: the operator's switch, and what depends on the machine.
+    fn is_optional(self) -> bool {
+        matches!(self, Rule::RotaryDirection | Rule::HeadLength | Rule::OptionalBlocks)
     }
 
     /// Returns the choices, of which the first is made where none is stated.
@@ -573,8 +636,8 @@ impl ControlRules {
         })
     }
 
-    /// Parses a control from TOML: every rule by its key, but for the operator's switch, and in the table `ignore` the words that
-    /// it passes over, each with a reason. `file` is the file's name in errors.
+    /// Parses a control from TOML: every rule by its key, but for the operator's switch and rules that depend on the machine, which may
+    /// be missing, and in the table `ignore` the words that it passes over, each with a reason. `file` is the file's name in errors.
     ///
     /// # Errors
     /// If the text is not TOML, or if a key is unknown or missing, or its value is no choice.
@@ -633,7 +696,7 @@ impl ControlRules {
         }
         match RULES
             .iter()
-            .find(|entry| entry.rule != Rule::OptionalBlocks && !stated.contains_key(&entry.rule))
+            .find(|entry| !entry.rule.is_optional() && !stated.contains_key(&entry.rule))
         {
             None => Ok(ControlRules { stated, ignored: ignoring.ignored }),
             Some(Entry { key, about, .. }) => {
@@ -737,6 +800,9 @@ impl ControlRules {
 
 /// Returns whether nothing is known of an effect of a word, in capitals.
 fn can_be_ignored(word: &str) -> bool {
+    if klartext::is_ignorable(word) {
+        return true;
+    }
     let is_name = word.len() > 1
         && word.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
         && word.starts_with(|c: char| c.is_ascii_alphabetic());
@@ -881,7 +947,8 @@ mod tests {
         }
         for name in ControlRules::names() {
             let mut control = ControlRules::named(name).expect("a control");
-            for (_, rule) in OPEN.iter().filter(|(open, _)| *open == name) {
+            let open = OPEN.iter().filter(|(open, rule)| *open == name && !rule.is_optional());
+            for (_, rule) in open {
                 let error = ControlRules::parse(&control.to_toml(), name).expect_err("it is open");
                 assert!(error.to_string().contains("is missing"), "{error}");
                 let first = rule.choices().next().expect("a choice");

@@ -8,6 +8,7 @@
 //! body, and to the stock.
 
 mod bodies;
+mod comment;
 mod file;
 mod finding;
 mod inputs;
@@ -700,11 +701,20 @@ faults! {
              Z above it"
         )]
         LowWay { name: String },
+        /// A comment of the program that describes another tool than the job has.
+        ///
+        /// Post-processors write the tools for which a program was made. A verdict about another tool says nothing about them.
+        #[code = V0608]
+        #[error(
+            "the comment {comment} describes another T{number} than the job has, which is {mounted}: give the tool of the program, or \
+             correct the comment"
+        )]
+        OtherTool { comment: String, number: u32, mounted: String },
         /// The way to a reference position from a height at which something stands.
         ///
         /// G28, G30 or G53 moves Z with other axes to where only the machine knows, and so in a direction that is not known. Z alone goes
         /// straight up, which is checked.
-        #[code = V0608]
+        #[code = V0609]
         #[error(
             "the way to the reference position in X and Y is not checked, and begins lower than {name}: move Z there first, or state the \
              origin of G54 in `work_offsets`, and `home` of the axes"

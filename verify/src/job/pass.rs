@@ -71,6 +71,7 @@ impl<'a> Job<'a> {
         let (mut pairs, mut cuts) = (Vec::new(), Vec::new());
         let mut gaps = self.program.gaps();
         gaps.extend(self.gaps.iter().cloned());
+        gaps.extend(self.contradicted_comments());
         let against = self.revolved.iter().flat_map(|body| &body.against);
         if against.into_iter().any(|body| *body >= self.bodies.len()) {
             return Err(JobError::NoSuchBody);
@@ -208,7 +209,7 @@ impl<'a> Job<'a> {
                     Some(revolved)
                 }
             };
-            let request = self.program.request(revolved, body.frame)?;
+            let request = self.program.request(reading, revolved, body.frame)?;
             let known = requests.iter().position(|known| *known == request);
             request_of.push(known.unwrap_or(requests.len()));
             if known.is_none() {

@@ -311,12 +311,13 @@ impl Program {
         })
     }
 
-    /// Returns the request for the moves of the tools, or of a body of the machine, at a body with a frame.
+    /// Returns the request for the moves of the tools, or of a body of the machine, at a body with a frame, in a reading.
     ///
     /// # Errors
     /// If the program is not for a machine, or that lacks a link.
     pub(super) fn request(
         &self,
+        reading: usize,
         revolved: Option<&RevolvedBody<'_>>,
         frame: BodyFrame,
     ) -> Result<MoveRequest, JobError> {
@@ -325,7 +326,7 @@ impl Program {
             (None, BodyFrame::Table(link)) => return Ok(MoveRequest::AtTable(link)),
             _ => {}
         }
-        let Some(machine) = self.machine() else {
+        let Some(machine) = self.readings().get(reading).map(MachineProgram::machine) else {
             return Err(JobError::BodiesForPositions);
         };
         let mover = match revolved {

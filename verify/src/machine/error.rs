@@ -201,6 +201,10 @@ faults! {
             /// The second axis.
             letter: Letter,
         },
+        /// The point of M92 is none.
+        #[code = K0117]
+        #[error("`m92` is three lengths within 1,000,000 mm, such as [0, 0, -100]: correct them")]
+        BuilderPoint,
     }
 }
 

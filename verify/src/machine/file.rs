@@ -22,6 +22,7 @@ const SMALLEST_SINE: f64 = 1e-3;
 struct MachineFile {
     name: Spanned<String>,
     tool_change: Option<Spanned<ToolChangeEntry>>,
+    m92: Option<Spanned<[f64; 3]>>,
     axis: Vec<Spanned<AxisEntry>>,
     #[serde(default)]
     body: Vec<BodyEntry>,
@@ -69,7 +70,10 @@ pub(super) fn parse(text: &str, file: &str) -> Result<Machine, MachineError> {
         let name = name(parsed.name)?;
         let axes = axes(text, &parsed.axis)?;
         let tool_change = parsed.tool_change.map(|entry| tool_change(entry, &axes)).transpose()?;
-        let mut machine = Machine { name, axes, tool_change, bodies: Vec::new() };
+        let builder_point = parsed.m92.map(builder_point).transpose()?;
+        let (none_yet, is_of_library) = (Vec::new(), false);
+        let mut machine =
+            Machine { name, axes, tool_change, builder_point, bodies: none_yet, is_of_library };
         machine.bodies = bodies(parsed.body, &machine, Path::new(file))?;
         Ok(machine)
     });
@@ -109,6 +113,16 @@ fn bodies(
         let name = names[index].get_ref().clone();
         (names[index].span(), MachineFault::Body { name, fault })
     })
+}
+
+/// Returns the point from which M92 counts.
+fn builder_point(entry: Spanned<[f64; 3]>) -> Result<[f64; 6], Located> {
+    let span = entry.span();
+    let [x, y, z] = entry.into_inner();
+    match [x, y, z].iter().all(|value| is_within(*value, MAX_LENGTH)) {
+        true => Ok([x, y, z, 0.0, 0.0, 0.0]),
+        false => Err((span, MachineFault::BuilderPoint)),
+    }
 }
 
 /// Returns the joint values after a tool change, of the axes that it moves.

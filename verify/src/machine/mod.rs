@@ -20,6 +20,8 @@
 //! The file can state `tool_change`: `"stays"` if M6 leaves the axes where they are, or the joint values at which it leaves
 //! axes, such as `{ Z = 0 }`; axes that are not named stay. Without it, the control's rules decide.
 //!
+//! The file can state `m92 = [x, y, z]`: the machine coordinates of the point from which M92 of Heidenhain counts, in mm.
+//!
 //! A `[[body]]` states a body of the machine, for a check of its motions against others. Lengths are in mm, in machine coordinates
 //! with all axes at 0.
 //!
@@ -42,7 +44,8 @@
 //! Linear axes move along the machine coordinate of their letter, and no rotary axis carries one. Directions
 //! are those of ISO 841, also for axes of the table: a positive command turns such a table clockwise. A
 //! control that turns it counter-clockwise, as LinuxCNC's `xyzac-trt-kins` does by default, needs the
-//! opposite direction, such as `[-1, 0, 0]`.
+//! opposite direction, such as `[-1, 0, 0]`. A machine of the library turns by ISO 841 unless
+//! [`Rule::RotaryDirection`](crate::gcode::Rule::RotaryDirection) says otherwise.
 //!
 //! # Kinematics
 //! With all axes at 0, the gauge point of the spindle is at the origin of machine coordinates and the spindle
@@ -109,8 +112,9 @@ pub const MAX_LENGTH: f64 = 1e6;
 pub const MAX_DEGREES: f64 = 1e6;
 
 /// The machines that come with the library: names and files.
-const LIBRARY: [(&str, &str); 14] = [
+const LIBRARY: [(&str, &str); 15] = [
     ("3-axis", include_str!("machines/3-axis.toml")),
+    ("4-axis", include_str!("machines/4-axis.toml")),
     ("A-C trunnion", include_str!("machines/a-c-trunnion.toml")),
     ("B-C table-table", include_str!("machines/b-c-table.toml")),
     ("A-B table-table", include_str!("machines/a-b-table.toml")),
@@ -215,7 +219,10 @@ pub struct Machine {
     name: String,
     axes: Vec<Axis>,
     tool_change: Option<[Option<f64>; 6]>,
+    builder_point: Option<[f64; 6]>,
     bodies: Vec<MachineBody>,
+    /// Set for a machine of the library, whose rotary axes turn by convention.
+    is_of_library: bool,
 }
 
 impl Machine {
@@ -252,7 +259,9 @@ impl Machine {
     /// [`MachineError::UnknownName`] for another name.
     pub fn named(name: &str) -> Result<Machine, MachineError> {
         match LIBRARY.iter().find(|(known, _)| *known == name) {
-            Some((name, text)) => Machine::parse(text, name),
+            Some((name, text)) => {
+                Ok(Machine { is_of_library: true, ..Machine::parse(text, name)? })
+            }
             None => Err(MachineError::UnknownName {
                 name: name.to_owned(),
                 known: LIBRARY.map(|(name, _)| format!("`{name}`")).join(", "),
@@ -295,6 +304,22 @@ impl Machine {
         self.axes.iter().any(|axis| axis.letter.is_rotary() && axis.side == side)
     }
 
+    /// Returns whether its file states how its rotary axes turn. A machine of the library turns by ISO 841, which a control may not
+    /// share ([`Rule::RotaryDirection`](crate::gcode::Rule::RotaryDirection)).
+    pub(crate) fn states_directions(&self) -> bool {
+        !self.is_of_library || !self.axes.iter().any(|axis| axis.letter.is_rotary())
+    }
+
+    /// Returns the machine with opposite directions of some rotary axes.
+    pub(crate) fn reversed(&self, is_reversed: impl Fn(Letter) -> bool) -> Machine {
+        let mut machine = self.clone();
+        let rotary = machine.axes.iter_mut().filter(|axis| axis.letter.is_rotary());
+        for axis in rotary.filter(|axis| is_reversed(axis.letter)) {
+            axis.direction = -axis.direction;
+        }
+        machine
+    }
+
     /// Returns the joint values of the reference position, in mm and degrees, as far as the file states them.
     pub fn home(&self) -> [Option<f64>; 6] {
         Letter::ALL.map(|letter| self.axis(letter).and_then(|axis| axis.home))
@@ -304,6 +329,11 @@ impl Machine {
     /// `None` for all if the file does not state it.
     pub fn tool_change(&self) -> Option<[Option<f64>; 6]> {
         self.tool_change
+    }
+
+    /// Returns the machine coordinates of the point from which M92 of Heidenhain counts, in mm, if the file states it.
+    pub fn builder_point(&self) -> Option<[f64; 6]> {
+        self.builder_point
     }
 
     /// Returns the chain from the workpiece to the tool's tip.

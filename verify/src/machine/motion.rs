@@ -303,6 +303,9 @@ pub(super) fn checked_time(t: f64) -> f64 {
     t.clamp(0.0, 1.0)
 }
 
+/// Largest magnitude of a coordinate of an arc's centre, in mm. Rounding is below 1e-5 mm then.
+const MAX_CENTRE: f64 = 1e9;
+
 /// Largest magnitude of an arc's sweep, in radians: some 1,600 turns.
 const MAX_SWEEP: f64 = 1e4;
 
@@ -438,7 +441,11 @@ impl PreparedPath {
             return Ok(PreparedPath { start, end, arc: None, size });
         };
         for value in centre {
-            check_length("the centre of the arc", value)?;
+            // The limit of positions is not that of a centre: shallow arcs have radii of kilometres.
+            if !is_within(value, MAX_CENTRE) {
+                let what = "the centre of the arc".to_owned();
+                return Err(JointError::Range { what, value, limit: MAX_CENTRE });
+            }
         }
         if !is_within(sweep, MAX_SWEEP) {
             let what = "the sweep of the arc in radians".to_owned();

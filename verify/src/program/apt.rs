@@ -2,7 +2,9 @@
 //!
 //! These statements are read: `GOTO/x,y,z[,i,j,k]` and, as the first position of a tool, `FROM/` (the tip, and
 //! the unit vector from the tip to the spindle; without one, `0,0,1`, or the last given in NX's files), `RAPID`
-//! (for the next `GOTO`), `MULTAX`, `UNITS`, `LOADTL`, `CUTTER`, and `FINI` or NX's `END-OF-PATH`.
+//! (for the next `GOTO`), `MULTAX`, `UNITS` (`UNIT`), `LOADTL` (`LOAD/TOOL`), `CUTTER`, [arcs and cycles](cycle) by `CIRCLE` and
+//! `CYCLE`, and `FINI` or NX's `END-OF-PATH`. Positions are those of the tool's tip: `CUTCOM` beside them lets the control correct a
+//! worn tool, and is passed over.
 //! One of the last two has to end the program, so that a truncated file is never taken for a whole one. `$$`
 //! opens a comment, a trailing `$` continues the statement, `;` separates two statements, and case does not
 //! matter. Two comments state the frame of the positions, which may be repeated and not changed: CATIA's machining axis and
@@ -19,11 +21,14 @@
 //! [`ClData::ignored`](super::ClData::ignored), with any arguments or with those given; so is a rate that is not understood. Every
 //! other word is refused: an unknown one could be a motion.
 
+mod cycle;
 mod rates;
 
 use super::{
-    CutterLocation, Delay, Located, ProgramFault, Tape, Tapes, axis_pose, lines, number, shown,
+    CutterLocation, Delay, Faults, Located, ProgramFault, Tape, Tapes, axis_pose, lines, number,
+    shown,
 };
+use cycle::{Arc, Cycle, Stop};
 use rates::Rates;
 use std::collections::BTreeMap;
 use std::mem;
@@ -38,28 +43,40 @@ const CATIA_AXIS: &str = "$$*CATIA0";
 /// The comment with which Creo begins its coordinate system. Rows of numbers may follow.
 const CREO_SYSTEM: &str = "$$-> CSYS";
 
-/// Reads an APT-CL program.
-pub(super) fn read(text: &str) -> Result<Tapes, Located> {
-    check_catia_axes(text)?;
+/// Reads an APT-CL program. All statements that are refused are found, each fault once.
+pub(super) fn read(text: &str) -> Result<Tapes, Faults> {
+    let mut faults = Faults::new();
+    let mut refuse = |(line, fault): Located| {
+        if !faults.iter().any(|(_, known)| known.is_same(&fault)) {
+            faults.push((line, fault));
+        }
+    };
+    check_catia_axes(text).unwrap_or_else(&mut refuse);
     let (statements, unfinished_line) = statements(text);
     let mut reader = Reader::default();
     let mut end = 0;
     for (index, (line, statement)) in statements.iter().enumerate() {
         cancellation::check();
         let is_last = unfinished_line.is_none() && index + 1 == statements.len();
-        reader.statement(*line, statement, is_last)?;
+        reader.statement(*line, statement, is_last).unwrap_or_else(&mut refuse);
         end = *line;
     }
-    reader.change_tool()?;
+    reader.change_tool().unwrap_or_else(&mut refuse);
+    if reader.arc.is_some() {
+        refuse((end, ProgramFault::Arc { what: "ends at no position" }));
+    }
     // A file without positions is refused as such, whether it ends or not.
     let whole = (reader.finished || reader.path_ended) && unfinished_line.is_none();
     let is_empty = reader.tapes.is_empty() && reader.tape.locations.is_empty();
-    if whole || is_empty && unfinished_line.is_none() {
-        reader.tapes.push(reader.tape);
-        Ok(Tapes { tapes: reader.tapes, several: reader.several })
-    } else {
-        Err((unfinished_line.unwrap_or(end), ProgramFault::Unfinished))
+    if !(whole || is_empty && unfinished_line.is_none()) {
+        refuse((unfinished_line.unwrap_or(end), ProgramFault::Unfinished));
     }
+    if !faults.is_empty() {
+        faults.sort_by_key(|(line, _)| *line);
+        return Err(faults);
+    }
+    reader.tapes.push(reader.tape);
+    Ok(Tapes { tapes: reader.tapes, several: reader.several })
 }
 
 /// Refuses a second machining axis of CATIA, which stands among the comments: `$$*CATIA0`, then a name and three rows.
@@ -139,6 +156,10 @@ struct Reader {
     is_nx: bool,
     rapid: bool,
     rates: Rates,
+    /// The arc to the next position.
+    arc: Option<Arc>,
+    /// The cycle at each position.
+    cycle: Option<Cycle>,
     /// Set once there was a `GOTO`.
     has_moved: bool,
     /// Statements about the present tool, by word: the line and the arguments.
@@ -192,7 +213,27 @@ impl Reader {
                 end: if self.finished { "FINI" } else { "END-OF-PATH" },
             });
         }
+        // Other words for the same statements.
+        let (word, rest) = match (word, rest.split_once(',')) {
+            ("UNIT", _) => ("UNITS", rest),
+            ("LOAD", Some((tool, rest))) if tool.trim().eq_ignore_ascii_case("TOOL") => {
+                ("LOADTL", rest.trim())
+            }
+            _ => (word, rest),
+        };
         match word {
+            "CIRCLE" => {
+                if self.arc.is_some() {
+                    return Err(ProgramFault::Arc { what: "ends at no position" });
+                }
+                self.arc = Some(Arc::read(rest)?);
+            }
+            "CYCLE" => {
+                self.cycle = Cycle::read(rest)?;
+                if self.cycle.is_none() {
+                    self.tape.ignored.push((line, word.to_owned()));
+                }
+            }
             "GOTO" => {
                 let rapid = mem::take(&mut self.rapid);
                 self.has_moved = true;
@@ -242,8 +283,23 @@ impl Reader {
     ) -> Result<(), ProgramFault> {
         match self.pose(word, rest) {
             Ok(pose) => {
-                let feed = self.rates.feed().filter(|_| !rapid);
-                self.tape.locations.push(CutterLocation { line, pose, rapid, feed });
+                let before = self.tape.locations.last().map(|location| location.pose);
+                let stops = match (self.arc.take(), &self.cycle) {
+                    (Some(arc), None) => {
+                        let unit = self.tape.unit.map(|(unit, _)| unit);
+                        let poses = arc.stops(before.as_ref(), &pose, unit)?.into_iter();
+                        poses.map(|pose| Stop { pose, rapid }).collect()
+                    }
+                    (None, Some(cycle)) => cycle.stops(&pose, before.as_ref())?,
+                    (Some(_), Some(_)) => {
+                        return Err(ProgramFault::Arc { what: "is within a cycle" });
+                    }
+                    (None, None) => vec![Stop { pose, rapid }],
+                };
+                for Stop { pose, rapid } in stops {
+                    let feed = self.rates.feed().filter(|_| !rapid && self.cycle.is_none());
+                    self.tape.locations.push(CutterLocation { line, pose, rapid, feed });
+                }
                 Ok(())
             }
             Err(_) if is_last => Err(ProgramFault::Unfinished),
@@ -503,7 +559,16 @@ fn skip_statement(word: &str, arguments: &str) -> Result<String, ProgramFault> {
         return Ok((*prose).to_owned());
     }
     if let Some(verbatim) = VERBATIM_WORDS.iter().find(|verbatim| word.starts_with(**verbatim)) {
-        return Err(ProgramFault::Verbatim { word: (*verbatim).to_owned() });
+        let text = format!("{} {}", &word[verbatim.len()..], arguments.to_ascii_uppercase());
+        return match could_move(text.trim()) {
+            true => Err(ProgramFault::Verbatim { word: (*verbatim).to_owned() }),
+            false => Ok((*verbatim).to_owned()),
+        };
+    }
+    // Settings of SolidWorks CAM about tools.
+    if word.starts_with("CSI_") {
+        refuse_motions(word, arguments)?;
+        return Ok(word.to_owned());
     }
     if IGNORED_WORDS.contains(&word) || is_inert_with(word, arguments) {
         refuse_motions(word, arguments)?;
@@ -522,11 +587,53 @@ fn skip_statement(word: &str, arguments: &str) -> Result<String, ProgramFault> {
         word.split([' ', ')', ',', '=']).find(|part| list.contains(part)).map(str::to_owned)
     });
     match (frame, motion) {
-        (Some(word), _) if word == "CUTCOM" => Err(ProgramFault::Compensation),
+        (Some(word), _) if word == "CUTCOM" => {
+            Err(ProgramFault::Compensation { argument: unquoted(arguments) })
+        }
         (Some(word), _) => Err(ProgramFault::Frame { word }),
         (None, Some(word)) => Err(ProgramFault::Moves { word }),
         (None, None) => Err(ProgramFault::UnknownWord { word: shown(word) }),
     }
+}
+
+/// Words of controls that can move the tool or change what positions mean, without a number: of Sinumerik, Heidenhain and macros.
+#[rustfmt::skip]
+const CONTROL_WORDS: [&str; 31] = [
+    "ATRANS", "TRANS", "AROT", "ROT", "AMIRROR", "MIRROR", "ASCALE", "SCALE", "SUPA", "POS", "POSA", "SPOS", "MCALL", "EXTCALL",
+    "TRAORI", "TRAFOOF", "TRANSMIT", "TRACYL", "CALL", "CYCL", "PLANE", "LBL", "L", "LN", "LP", "CC", "CR", "IF", "WHILE", "GOTO",
+    "REPEAT",
+];
+
+/// Returns whether a text, in capitals, could be a block for a control: if it has a code, a word of a control or a variable, or words
+/// with numbers alone. A comment in parentheses and prose are none.
+fn could_move(text: &str) -> bool {
+    if text.starts_with('(') && text.find(')') == Some(text.len() - 1) {
+        return false;
+    }
+    let has_code = text.split(|c: char| !c.is_ascii_alphanumeric() && c != '.').any(|word| {
+        let number = word.strip_prefix("CYCLE");
+        let number = number.or_else(|| word.strip_prefix(['G', 'M', 'O', 'T', 'N', 'L', 'P']));
+        CONTROL_WORDS.contains(&word)
+            || number.is_some_and(|number| number.starts_with(|c: char| c.is_ascii_digit()))
+    });
+    // `X=5` and `R1=5` of Sinumerik.
+    let assigns = text.split_whitespace().any(|word| {
+        word.split_once('=').is_some_and(|(name, _)| {
+            let mut name = name.chars();
+            name.next().is_some_and(|c| c.is_ascii_alphabetic()) && name.all(|c| c.is_ascii_digit())
+        })
+    });
+    let mut words = text.split_whitespace().peekable();
+    has_code
+        || assigns
+        || text.contains(['#', '%'])
+        || words.peek().is_some() && words.all(is_word_of_block)
+}
+
+/// Returns whether a word is a letter with a number.
+fn is_word_of_block(word: &str) -> bool {
+    let number = word.strip_prefix(|c: char| c.is_ascii_alphabetic());
+    number.is_some_and(|number| number.parse::<f64>().is_ok())
 }
 
 /// Returns the words and numbers among arguments.
@@ -551,10 +658,7 @@ fn refuse_motions(word: &str, arguments: &str) -> Result<(), ProgramFault> {
 
 /// Returns whether a statement is a block of G-code: letters, each with a number.
 fn is_g_code(statement: &str) -> bool {
-    statement.split(' ').all(|word| {
-        let number = word.strip_prefix(|c: char| c.is_ascii_alphabetic());
-        number.is_some_and(|number| number.parse::<f64>().is_ok())
-    })
+    statement.split(' ').all(is_word_of_block)
 }
 
 /// Returns whether a word that could have an effect has none with these arguments.
@@ -562,7 +666,29 @@ fn is_inert_with(word: &str, arguments: &str) -> bool {
     let is = |word: &str| arguments.eq_ignore_ascii_case(word);
     let numbers = || arguments.split(',').map(number).collect::<Result<Vec<f64>, ProgramFault>>();
     match word {
-        "CYCLE" | "CUTCOM" | "OPSKIP" => is("OFF"),
+        "OPSKIP" => is("OFF"),
+        // The side of the contour and a register of the control.
+        "CUTCOM" => {
+            let known = ["ON", "OFF", "LEFT", "RIGHT", "NORMPS", "XYPLAN", "YZPLAN", "ZXPLAN"];
+            let upper = arguments.to_ascii_uppercase();
+            upper
+                .split(',')
+                .map(str::trim)
+                .all(|word| known.contains(&word) || number(word).is_ok())
+        }
+        // The tool that is fetched for the next change.
+        "SELECT" => {
+            arguments.split(',').next().is_some_and(|word| word.trim().eq_ignore_ascii_case("TOOL"))
+        }
+        "TRNTYP" => {
+            let mut words = arguments.split(',').map(str::trim);
+            words.next().is_some_and(|word| word.eq_ignore_ascii_case("WORLD"))
+                && words.all(|word| number(word).is_ok_and(|value| value == 0.0))
+        }
+        // The rows of the identity, each with a coordinate of the origin.
+        "CSYS" => numbers().is_ok_and(|values| {
+            values == [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0]
+        }),
         "TRACUT" | "COPY" => is("NOMORE"),
         "MODE" => is("ABSOL"),
         "ORIGIN" | "TRANS" | "THICK" => {

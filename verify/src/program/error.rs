@@ -61,7 +61,7 @@ faults! {
         },
         /// A line is refused.
         #[code_of(fault)]
-        #[error("{file}:{line}: {fault}")]
+        #[error("{file}:{line}: {fault}{}", shown_others(file, others))]
         Line {
             /// The file.
             file: String,
@@ -69,6 +69,8 @@ faults! {
             line: usize,
             /// The fault in it.
             fault: ProgramFault,
+            /// What else is refused, each fault with its first line.
+            others: Vec<(usize, ProgramFault)>,
         },
         /// The program states another unit than the part's.
         #[code = P0605]
@@ -188,13 +190,15 @@ faults! {
             /// The word.
             word: String,
         },
-        /// Cutter compensation of the control.
+        /// Cutter compensation of the control that is not about its wear.
         #[code = P0511]
         #[error(
-            "CUTCOM is cutter compensation, under which the control moves the tool beside these positions by a radius that it has: post the \
-             program with the path of the tool"
+            "CUTCOM/{argument} is cutter compensation that is not read: post the program with the path of the tool"
         )]
-        Compensation,
+        Compensation {
+            /// The arguments.
+            argument: String,
+        },
         /// A word that changes the meaning of positions.
         #[code = P0512]
         #[error(
@@ -329,7 +333,39 @@ faults! {
             /// The word that ended the program.
             end: &'static str,
         },
+        /// A cycle with a word that is not read.
+        #[code = P0531]
+        #[error("{word} of CYCLE is not read: post the holes as GOTO points, or as DRILL with FEDTO, RAPTO and RTRCTO")]
+        Cycle {
+            /// The word.
+            word: String,
+        },
+        /// An arc that is none.
+        #[code = P0532]
+        #[error("the arc of CIRCLE {what}: write CIRCLE/xc,yc,zc,i,j,k before the GOTO that ends it, or post the arc as GOTO points")]
+        Arc {
+            /// The reason.
+            what: &'static str,
+        },
     }
+}
+
+impl ProgramFault {
+    /// Returns whether two faults are one obstacle: each block of G-code is the same one.
+    pub(super) fn is_same(&self, other: &ProgramFault) -> bool {
+        let is_block = |fault: &ProgramFault| matches!(fault, ProgramFault::GCode { .. });
+        self == other || is_block(self) && is_block(other)
+    }
+}
+
+/// Largest number of further faults that a message lists.
+const MAX_SHOWN: usize = 100;
+
+/// Lists further faults, each on a line of its own.
+fn shown_others(file: &str, others: &[(usize, ProgramFault)]) -> String {
+    let shown = others.iter().take(MAX_SHOWN);
+    let shown = shown.map(|(line, fault)| format!("\n{file}:{line}: {fault} [{}]", fault.code()));
+    shown.collect()
 }
 
 /// Returns the plural's ending for a number of things.

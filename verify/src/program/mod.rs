@@ -96,7 +96,7 @@ pub(crate) fn read_text(path: &Path) -> Result<String, ProgramError> {
     match read_regular_file(path, FileKind::Program) {
         Ok(bytes) => match decode(&bytes) {
             Ok(text) => Ok(text.to_owned()),
-            Err((line, fault)) => Err(ProgramError::Line { file, line, fault }),
+            Err((line, fault)) => Err(ProgramError::Line { file, line, fault, others: Vec::new() }),
         },
         Err(source) => Err(ProgramError::Read { file, source }),
     }
@@ -174,7 +174,10 @@ impl ClData {
     /// If a line is refused, the tool changes, or there is no position.
     pub fn parse(content: impl AsRef<[u8]>, name: &str) -> Result<ClData, ProgramError> {
         let tapes = assemble(content.as_ref());
-        let tapes = tapes.and_then(|Tapes { tapes, several }| several.map_or(Ok(tapes), Err));
+        let tapes = tapes.and_then(|Tapes { tapes, several }| match several {
+            None => Ok(tapes),
+            Some(fault) => Err(vec![fault]),
+        });
         ClData::from_tapes(tapes, name).map(|mut programs| programs.swap_remove(0))
     }
 
@@ -188,12 +191,15 @@ impl ClData {
     }
 
     fn from_tapes(
-        tapes: Result<Vec<Tape>, Located>,
+        tapes: Result<Vec<Tape>, Faults>,
         name: &str,
     ) -> Result<Vec<ClData>, ProgramError> {
         let file = name.to_owned();
         let mut tapes = match tapes {
-            Err((line, fault)) => return Err(ProgramError::Line { file, line, fault }),
+            Err(mut faults) => {
+                let (line, fault) = faults.remove(0);
+                return Err(ProgramError::Line { file, line, fault, others: faults });
+            }
             Ok(tapes) => tapes,
         };
         // A tool that is loaded and never moved makes no program.
@@ -275,6 +281,9 @@ impl ClData {
 /// A fault, with its 1-based line.
 type Located = (usize, ProgramFault);
 
+/// The faults of a file, in the order of lines: at least one.
+type Faults = Vec<Located>;
+
 /// The data read from a file of either format.
 #[derive(Default)]
 struct Tapes {
@@ -321,18 +330,18 @@ fn begins_word(line: &str) -> bool {
 }
 
 /// Decodes bytes as text, and reads its positions.
-fn assemble(bytes: &[u8]) -> Result<Tapes, Located> {
-    let text = decode(bytes)?;
+fn assemble(bytes: &[u8]) -> Result<Tapes, Faults> {
+    let text = decode(bytes).map_err(|fault| vec![fault])?;
     let Some((line, first)) = lines(text).find(|(_, line)| !is_comment(line)) else {
         return Ok(Tapes::default());
     };
     if begins_table(first) {
-        let locations = csv::read(text)?;
+        let locations = csv::read(text).map_err(|fault| vec![fault])?;
         Ok(Tapes { tapes: vec![Tape { locations, ..Tape::default() }], several: None })
     } else if first.starts_with(|c: char| c.is_ascii_alphabetic()) {
         apt::read(text)
     } else {
-        Err((line, ProgramFault::Unrecognised { start: shown(first) }))
+        Err(vec![(line, ProgramFault::Unrecognised { start: shown(first) })])
     }
 }
 

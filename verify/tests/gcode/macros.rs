@@ -309,6 +309,26 @@ fn g10_sets_origins() {
     assert_eq!(places, expected);
 }
 
+/// Fanuc's table of operations writes a quotient as `#i=#j/#k`. A `/` at the beginning of a block is that of an optional block.
+#[test]
+fn quotients_need_no_brackets_on_fanuc() {
+    let macro_of = |angle: &str, y: &str| {
+        format!(
+            "G21 G90 G0\n#1=8\n#3=1\nWHILE [#3 LE #1] DO1\n{angle}\nX[10.*COS[#4]]\n{y}\n#3=#3+1\nEND1\nM30\n"
+        )
+    };
+    let bare = macro_of("#4=#3*360/#1", "/Y7.");
+    assert_ends(&bare, Choice::Iso, &ends(&macro_of("#4=[[#3*360]/#1]", "/Y7."), Choice::Iso));
+    assert_ends("G21 G90 G0\n#1=8.\n#4=-#1/2-6/3/2\nX#4\nM30\n", Choice::Iso, &[[-5.0, 0.0]]);
+    // LinuxCNC refuses it, so that a program with it is Fanuc's where no control is stated.
+    let setup = ControlSetup { start: [Some(0.0); 6], ..ControlSetup::default() };
+    let stated = read("G21 G90 G0\n#1=8.\n#4=3*#1/4\nX#4\nM30\n", &setup).expect("a quotient");
+    assert_eq!(stated.0[0].end[0], Some(6.0));
+    let linuxcnc = self::setup(Choice::Rs274Ngc);
+    let error = read("g21 g90 g0\n#4=6/2\nx#4\nm30\n", &linuxcnc).expect_err("no quotient");
+    assert_fault("", &error, 2, "P0203 `/`");
+}
+
 /// A loop of 10^6 blocks.
 #[test]
 fn long_loops_are_executed_to_their_end() {

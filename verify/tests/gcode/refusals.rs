@@ -335,7 +335,7 @@ fn words_that_are_not_read_are_named() {
             "P0120 changes the length offset, before or after",
         ),
         ("T1 M6\nTRAORI\nG0 X1", 3, "P0119 TRAORI"),
-        ("#1=6/2", 1, "P0204 `/`"),
+        ("#1=6\nG0 X#1/2", 2, "P0204 `/`"),
         ("M98 P7 #1=2\nM30\nO7\nM99", 1, "P0120 M98"),
         ("#1=7\nM98 P#1 L2\nM30\nO7\nM99", 2, "P0120 M98"),
         ("#<a>=1\nM98 P7\nM30\nO7\nG0 X#<a>\nM99", 5, "P0210 #<a>"),
@@ -416,7 +416,7 @@ fn words_of_one_dialect() {
     let circle = execute("haas", "G70 I5. J15. L12\nM30").expect_err("a bolt circle");
     assert!(is_fault(&circle, "P0115 G70"), "{circle}");
     for (division, reason) in
-        [("#100=4.\n#1=#100/0", "P0204 `/`"), ("#100=4.\n#1=[#100/0]", "P0216 `/`")]
+        [("#100=4.\nX#100/2", "P0204 `/`"), ("#100=4.\n#1=#100/0", "P0216 `/`")]
     {
         let error = execute("fanuc", division).expect_err("a division");
         assert!(is_fault(&error, reason), "{error}");
@@ -455,10 +455,11 @@ fn notes_name_what_is_left_to_the_control() {
         (4, 1, NoteKind::ToolChange),
         (6, 1, NoteKind::Stop),
         (10, 1, NoteKind::TextAfterEnd),
+        (3, 1, NoteKind::AssumedMode { word: "G90" }),
     ] {
         assert!(kinds.contains(&expected), "{expected:?} is not in {kinds:?}");
     }
-    assert_eq!(kinds.len(), 8, "{kinds:?}");
+    assert_eq!(kinds.len(), 9, "{kinds:?}");
     // Text after M30 that is no subprogram, and Fanuc's path modes, on and off.
     let program = "G61\nG0 X0\nG5.1 Q0\nG0 X1\nG61\nM30\n(end)\n\nG0 X1\n";
     let (_, notes) = read(program, &at_zero()).expect("a program");

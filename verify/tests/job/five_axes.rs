@@ -4,7 +4,56 @@ use crate::scene::{
     ANY, CLEAN, FANUC, FINDINGS, HAAS, LINUXCNC, NONE, SIEMENS, Scene, native, program, rules,
     straight,
 };
-use touchoff_verify::gcode::{Choice, Rule};
+use touchoff_verify::gcode::{Choice, ControlRules, Rule};
+
+/// LinuxCNC's kinematics of tilting tables turn the work by a positive command unless they are configured otherwise: the tool leans to
+/// the other side, into a wall.
+#[test]
+fn linuxcnc_turns_axes_either_way_unless_the_direction_is_stated() {
+    let linuxcnc = || ControlRules::named("linuxcnc").expect("a control");
+    let blocks = "T1 M6\nS9000 M3\nG43 H1\nG0 X0. Y0. Z60. A0. C0.\nM428\nG0 A30.\nG1 Z1.\nG1 Z60.\nG0 A0.\nM429";
+    let walled = |blocks: &str| {
+        let scene = Scene::new(blocks).placed().obstacle([-3.0, 4.0, 3.0], [3.0, 6.0, 30.0]);
+        scene.with("anyway = true")
+    };
+    let named = walled(blocks).with("machine = \"A-C trunnion\"");
+    let reversed = ["V0101 8 the clamp", "V0101 8 under rotary_direction = \"reversed\""];
+    named.gives_by(linuxcnc(), FINDINGS, &reversed);
+    let stated = |choice| linuxcnc().with(Rule::RotaryDirection, choice);
+    named.gives_by(stated(Choice::Iso841), CLEAN, &[]);
+    named.gives_by(stated(Choice::Reversed), FINDINGS, &["V0101 8 the clamp"]);
+    // A machine's own file states how its axes turn.
+    let own = |to: &str| walled(blocks).on("A-C trunnion", "direction = [1, 0, 0]", to);
+    own("direction = [1, 0, 0]").gives_by(linuxcnc(), CLEAN, &[]);
+    own("direction = [-1, 0, 0]").gives_by(linuxcnc(), FINDINGS, &["V0101 8 the clamp"]);
+    // Without kinematics the table turns the same way: 80 mm above its axis.
+    let indexed = Scene::new(&blocks.replace("M428\n", "").replace("\nM429", "")).placed();
+    let indexed = indexed.with("machine = \"A-C trunnion\"\nanyway = true");
+    let indexed = indexed.obstacle([-3.0, 38.0, -12.0], [3.0, 43.0, 20.0]);
+    indexed.gives_by(linuxcnc(), FINDINGS, &["V0101 under rotary_direction = \"reversed\""]);
+    // Other controls turn axes by ISO 841.
+    let fanuc = blocks.replace("G43 H1\n", "").replace("M428", "G43.4 H1").replace("M429", "G49");
+    let fanuc = fanuc.replace("A0. C0.\n", "A0. C0.\n").replace("G0 X0.", "G43 H1\nG0 X0.");
+    walled(&fanuc).with("machine = \"A-C trunnion\"").gives(FANUC, CLEAN, &[]);
+}
+
+/// The axes of a head turn each by itself in LinuxCNC's kinematics, and some releases leave the length of the tool along z.
+#[test]
+fn linuxcnc_leaves_the_length_of_a_tilted_tool_along_z_in_some_releases() {
+    let blocks = "T1 M6\nS9000 M3\nG43 H1\nG0 X0. Y0. Z60. B0. C0.\nM428\nG0 B30.\nG1 Z1.\nG1 Z60.\nG0 B0.\nM429";
+    let scene = Scene::new(blocks).placed().with("machine = \"B head + C table\"");
+    let linuxcnc = || ControlRules::named("linuxcnc").expect("a control");
+    scene.gives_by(linuxcnc(), NONE, &["V0419 7 `head_length`"]);
+    let compensated = linuxcnc().with(Rule::HeadLength, Choice::Compensated);
+    scene.gives_by(compensated.clone(), CLEAN, &[]);
+    let wall = scene.obstacle([-6.0, -3.0, 3.0], [-4.0, 3.0, 30.0]);
+    wall.gives_by(
+        compensated.clone(),
+        FINDINGS,
+        &["V0101 8 under rotary_direction = \"reversed\""],
+    );
+    wall.gives_by(compensated.with(Rule::RotaryDirection, Choice::Iso841), CLEAN, &[]);
+}
 
 /// An endless table turns by -330 or by +30 degrees; a post on it is at 180.
 #[test]

@@ -1,6 +1,6 @@
 //! Jobs that name other files: further parts, earlier set-ups, machines with bodies.
 
-use crate::scene::{CLEAN, Checked, FINDINGS, NONE};
+use crate::scene::{CLEAN, Checked, FINDINGS, NONE, rules};
 use nalgebra::Point3;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
@@ -401,8 +401,9 @@ fn slot() -> (Folder, String) {
     folder.cuboid("block.stl", [-60.0, -60.0, -60.0], [60.0, 60.0, 0.0]);
     folder.write("slot.nc", SLOT);
     folder.write("mill10.tool", MILL_IN_HOLDER);
+    folder.write("linuxcnc.toml", rules("linuxcnc").to_toml());
     let job = "part = \"block.stl\"\nunit = \"mm\"\nprogram = \"slot.nc\"\nmachine = \"A-C trunnion with bodies\"\n\
-               control = \"linuxcnc\"\ntolerance = 2.1\n[work_offsets]\nG54 = [0, 0, -440]\n[tool.1]\ntool = \"mill10.tool\"\n\
+               control = \"linuxcnc.toml\"\ntolerance = 2.1\n[work_offsets]\nG54 = [0, 0, -440]\n[tool.1]\ntool = \"mill10.tool\"\n\
                length = 95\n";
     (folder, job.to_owned())
 }
@@ -494,8 +495,9 @@ fn an_arm_of_a_fork_head_touches_a_wall() {
     folder.cuboid("block.stl", [-60.0, -60.0, -60.0], [60.0, 60.0, 0.0]);
     folder.cuboid("walls.stl", [-170.0, -330.0, -60.0], [-110.0, 330.0, 53.0]);
     folder.write("mill10.tool", MILL_IN_HOLDER);
+    folder.write("linuxcnc.toml", rules("linuxcnc").to_toml());
     let job = "part = \"block.stl\"\nunit = \"mm\"\nprogram = \"slot.nc\"\nmachine = \"A-C fork head with bodies\"\n\
-               control = \"linuxcnc\"\ntolerance = 2.1\n[work_offsets]\nG54 = [0, 0, -700]\n[tool.1]\ntool = \"mill10.tool\"\n\
+               control = \"linuxcnc.toml\"\ntolerance = 2.1\n[work_offsets]\nG54 = [0, 0, -700]\n[tool.1]\ntool = \"mill10.tool\"\n\
                length = 95\n[[fixture]]\nname = \"the wall\"\nmesh = \"walls.stl\"\n";
     // The pivot is 95 + 220 mm from the tip, and at the cosine of the tilt above it: the arm's radius is 110.
     let clear = |angle: f64| 3.0 + 315.0 * f64::cos(angle.to_radians()) - 110.0 - 53.0 - 1.0;

@@ -253,7 +253,7 @@ fn a_way_to_an_unknown_reference_position_is_checked_as_far_as_it_is_known() {
         // In a pocket, whose walls are as high as the obstacle.
         let text = leaving(1.0, way);
         let low = Scene::of(&text).obstacle([5.0, -5.0, -5.0], [8.0, 5.0, 1.5]);
-        low.gives(LINUXCNC, NONE, &["V0608 7"]);
+        low.gives(LINUXCNC, NONE, &["V0609 7"]);
         let high = Scene::of(&leaving(1.6, way)).obstacle([5.0, -5.0, -5.0], [8.0, 5.0, 1.5]);
         high.gives(LINUXCNC, CLEAN, &["V0405 7"]);
     }

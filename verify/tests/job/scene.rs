@@ -31,9 +31,11 @@ pub(crate) const HAAS: Control = Some("haas");
 pub(crate) const SIEMENS: Control = Some("siemens");
 pub(crate) const HEIDENHAIN: Control = Some("heidenhain");
 
-/// Returns the rules of a known control.
+/// Returns the rules of a known control. LinuxCNC is configured as machines of the library turn, and compensates lengths.
 pub(crate) fn rules(name: &str) -> ControlRules {
-    ControlRules::named(name).expect("a control")
+    let rules = ControlRules::named(name).expect("a control");
+    let rules = rules.with(Rule::RotaryDirection, Choice::Iso841);
+    rules.with(Rule::HeadLength, Choice::Compensated)
 }
 
 /// Returns the rules of a Sinumerik that reads native programs, with what TRAORI does to the work offset.

@@ -70,7 +70,9 @@ fn located(text: &str) -> Refusal {
         ProgramError::Line { line, .. } | ProgramError::OnePosition { line, .. } => *line,
         _ => 0,
     };
-    Some((error.code(), line, error.to_string()))
+    // Lines after it are about further faults.
+    let sentence = error.to_string().lines().next().unwrap_or_default().to_owned();
+    Some((error.code(), line, sentence))
 }
 
 /// Returns a text with a change.

@@ -130,7 +130,7 @@ fn other_words_on_which_controls_differ_are_refused() {
         ("G99 G81 X4. Z0.5 R2.\nG20 X0.1", "P0120 5 G81"),
         ("T1 M6\nS900 M3\nG91 G43 H1 Z20.", "P0120 6 Z"),
         ("/1 G0 X5.\n/2 G0 X6.", "V0513 5"),
-        ("G0 X0. Y0. Z20.\nG2 X20.02 Y0. I10. J0.", "V0514 5"),
+        ("G0 X0. Y0. Z20.\nG2 X0.02 Y0. I10. J0.", "V0514 5"),
         ("G0 Z30.\rG0 X5.", "P0102 4"),
         ("G91 G28 X0. Y0. Z0.\nG0 X-10.\nG90", "V040"),
         ("G53 G0 Z-30.\nG53 G0 X10.\nG53 G0 X0.", "V040"),
@@ -339,7 +339,7 @@ fn a_block_after_a_semicolon_can_begin_with_a_comment() {
         scene(after).gives(ANY, FINDINGS, &["V0101 4 the clamp"]);
         scene(after).gives(LINUXCNC, CLEAN, &[]);
     }
-    scene("(A)/(B)Y10.").gives(FANUC, NONE, &["P0101 4 `/`"]);
+    scene("(A)/(B)Y10.").gives(FANUC, NONE, &["P0204 4 `/`"]);
     scene("(NOTE").gives(FANUC, NONE, &["P0103 4 comment"]);
 }
 

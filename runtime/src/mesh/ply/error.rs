@@ -189,15 +189,6 @@ pub enum PlyError {
         /// The file name.
         file: String,
     },
-    /// The points have no normals, so the outward direction is unknown.
-    #[error(
-        "{file} holds points without normals, so its outer side is unknown: export them \
-         with `nx`, `ny` and `nz`, or export the mesh, with its faces"
-    )]
-    NoNormals {
-        /// The file name.
-        file: String,
-    },
     /// A vertex is far outside the rest of the part.
     #[error(
         "{file}, {location}: vertex {vertex} (from 0): {outlier}: mend the coordinate, or export or copy the part again"

@@ -28,14 +28,15 @@ const UNSUPPORTED_ELEMENTS: [&[u8]; 3] = [b"tristrips", b"trifans", b"patches"];
 
 const COORDINATE_RULE: &str = "finite and within 1e60";
 
-/// Points of a part's surface with normals, as read from a file.
+/// Points of a part's surface, as read from a file.
 ///
-/// The lists have the same, non-zero length. Coordinates are finite; normals are unit vectors.
+/// The lists have the same, non-zero length, but for normals, of which there are none if the file has none. Coordinates are finite;
+/// normals are unit vectors.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct OrientedPoints {
     /// The positions of the points.
     pub points: Vec<Point3<f64>>,
-    /// The outward directions, away from the material, of norm 1.
+    /// The outward directions, away from the material, of norm 1; empty if the file has none.
     pub normals: Vec<Vector3<f64>>,
     /// The id of the face that each point lies on, if the file contains it.
     pub triangles: Option<Vec<TriangleId>>,
@@ -46,19 +47,19 @@ pub struct OrientedPoints {
 impl OrientedPoints {
     /// Reads a PLY file's vertices as points; errors name the file as `name`. No input makes this function panic.
     ///
-    /// Each vertex needs `x y z` and a normal `nx ny nz`, which is normalised because exporters round it. It may have a
-    /// `face`, the id of the face it lies on, and an `area`. Everything else, including faces, is skipped.
+    /// Each vertex needs `x y z`. It may have a normal `nx ny nz`, or `normal_x normal_y normal_z` as the Point Cloud Library writes it,
+    /// which is normalised because exporters round it; a `face`, the id of the face it lies on; and an `area`. Everything else,
+    /// including faces, is skipped.
     ///
     /// # Errors
     /// See [`PlyError`].
     pub fn from_ply(bytes: &[u8], name: &str) -> Result<OrientedPoints, PlyError> {
         let (header, mut body) = Body::new(bytes, name)?;
         let (vertex, [x, y, z]) = vertex(&header, name)?;
-        let normal = ["nx", "ny", "nz"].map(|name| vertex.number(name));
-        let [Some(_), Some(_), Some(_)] = normal else {
-            return Err(PlyError::NoNormals { file: name.to_owned() });
-        };
-        let [nx, ny, nz] = normal;
+        let named = [["nx", "ny", "nz"], ["normal_x", "normal_y", "normal_z"]];
+        let mut normals = named.map(|names| names.map(|name| vertex.number(name))).into_iter();
+        let normal = normals.find(|normal| normal.iter().all(Option::is_some));
+        let [nx, ny, nz] = normal.unwrap_or_default();
         let (face, area) = (vertex.number("face"), vertex.number("area"));
         let mut points = OrientedPoints {
             triangles: face.map(|_| Vec::new()),
@@ -73,14 +74,17 @@ impl OrientedPoints {
             body.read(element, [x, y, z, nx, ny, nz, face, area], None, |record| {
                 points.points.push(position(&record, name)?);
                 let [_, _, _, nx, ny, nz, face, area] = record.numbers;
-                let normal = Vector3::new(nx, ny, nz);
-                let norm = normal.norm();
-                // Where the square underflows, the norm is too inaccurate to divide by. NaN is not normal.
-                if !norm.is_normal() || norm * norm < f64::MIN_POSITIVE {
-                    let (file, location, point) = (name.to_owned(), record.location, record.index);
-                    return Err(PlyError::Normal { file, location, point, norm });
+                if normal.is_some() {
+                    let normal = Vector3::new(nx, ny, nz);
+                    let norm = normal.norm();
+                    // Where the square underflows, the norm is too inaccurate to divide by. NaN is not normal.
+                    if !norm.is_normal() || norm * norm < f64::MIN_POSITIVE {
+                        let (file, location) = (name.to_owned(), record.location);
+                        let point = record.index;
+                        return Err(PlyError::Normal { file, location, point, norm });
+                    }
+                    points.normals.push(normal / norm);
                 }
-                points.normals.push(normal / norm);
                 if let Some(triangles) = &mut points.triangles {
                     let rule = "a whole number, 0 or more, below 2^32";
                     let Some(face_id) = to_u32(face) else {

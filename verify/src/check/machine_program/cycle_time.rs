@@ -1,6 +1,6 @@
 //! The time of steps on a machine, by the programmed feed and the rates of its axes.
 
-use super::resolve::Resolved;
+use super::resolve::{Band, Resolved};
 use crate::check::CycleTime;
 use crate::gcode::{Dwells, Feed, Step, StepPath};
 use crate::machine::{JointMotion, Machine};
@@ -15,7 +15,7 @@ impl CycleTime {
     /// Adds a step that is no tool change, with what the machine makes of it.
     pub(super) fn add(&mut self, step: &Step, resolved: &Resolved, machine: &Machine) {
         let motions = match resolved {
-            Resolved::Motions(motions) => Some(motions),
+            Resolved::Motions(motions) | Resolved::Band(Band { motions, .. }) => Some(motions),
             Resolved::AnyRapid(_)
             | Resolved::Arrival(..)
             | Resolved::Departure(..)

@@ -6,7 +6,7 @@
 //! given u > 0 there are times for which all are reached at t = 1.
 
 use super::StepFault;
-use crate::gcode::StepPath;
+use crate::gcode::{StepPath, band_radii};
 use crate::machine::{Chain, JointError, JointMotion, Joints, Letter, LinearPath, Machine, Plane};
 use nalgebra::{Matrix3, Vector3};
 
@@ -124,6 +124,37 @@ fn chords(
         error,
     });
     Ok(chord.collect())
+}
+
+/// Half the distance between the curves that stand for a band, in mm: a quarter of the usual resolution of a check.
+const BAND_TOLERANCE: f64 = 2.5e-4;
+
+/// Largest number of curves that stand for a band.
+const MAX_CURVES: f64 = 256.0;
+
+/// Curves for the band of an arc whose radii differ: arcs between the least and the greatest radius, each with its ends in program
+/// coordinates, and the distance within which every point of the band has one, in mm. None for an arc without a band, or while rotary
+/// axes turn.
+pub(super) fn band(path: &StepPath, [start, end]: [Joints; 2]) -> (Vec<[Joints; 2]>, f64) {
+    let none = (Vec::new(), 0.0);
+    let StepPath::Arc { plane, centre, sweep } = *path else { return none };
+    let [first, second] = plane.axes();
+    let arms = [start, end].map(|end| [end[first] - centre[0], end[second] - centre[1]]);
+    let radii = arms.map(|[u, v]| u.hypot(v));
+    let Some([least, most]) = band_radii(arms, sweep).filter(|_| start[3..] == end[3..]) else {
+        return none;
+    };
+    let count = ((most - least) / (2.0 * BAND_TOLERANCE)).ceil().min(MAX_CURVES);
+    let curves = (0..=count as u32).map(|k| {
+        let radius = least + f64::from(k) / count * (most - least);
+        let mut ends = [start, end];
+        for ((end, arm), own) in ends.iter_mut().zip(arms).zip(radii) {
+            end[first] = centre[0] + arm[0] * (radius / own);
+            end[second] = centre[1] + arm[1] * (radius / own);
+        }
+        ends
+    });
+    (curves.collect(), 0.5 * (most - least) / count)
 }
 
 /// Returns the rates of the axes in mm and degrees per minute, if the machine states them. Axes that it lacks do not

@@ -29,6 +29,8 @@ pub(super) enum Resolved {
     Motions(Vec<(JointMotion, f64)>),
     /// Rapid traverse of several axes whose rates are unknown.
     AnyRapid(Box<AnyRapid>),
+    /// Any curve between the circles of an arc whose radii differ.
+    Band(Band),
     /// Only the end is known: a motion that rests there.
     Arrival(Box<JointMotion>, UnknownCause),
     /// Only the direction is known: a motion from the start that goes as far as the axis can.
@@ -39,6 +41,33 @@ pub(super) enum Resolved {
     ToolChange,
     /// A new tool in the spindle: it rests where the change has left the axes.
     Loaded(Box<JointMotion>),
+}
+
+impl Resolved {
+    /// Returns whether a rotary axis is off 0.
+    pub(super) fn is_turned(&self) -> bool {
+        let is_turned = |motion: &JointMotion| {
+            [0.0, 1.0].iter().any(|at| motion.joints(*at)[3..].iter().any(|angle| *angle != 0.0))
+        };
+        match self {
+            Resolved::Motions(motions) | Resolved::Band(Band { motions, .. }) => {
+                motions.iter().any(|(motion, _)| is_turned(motion))
+            }
+            Resolved::AnyRapid(any) => is_turned(&any.straight),
+            Resolved::Arrival(motion, _)
+            | Resolved::Departure(motion, _)
+            | Resolved::Loaded(motion) => is_turned(motion),
+            Resolved::Unknown(_) | Resolved::ToolChange => false,
+        }
+    }
+}
+
+/// An arc whose radii differ.
+pub(super) struct Band {
+    /// The motions along a spiral, as of other paths.
+    pub(super) motions: Vec<(JointMotion, f64)>,
+    /// Motions along arcs of the radii between, as near to each other as their errors say.
+    pub(super) curves: Vec<(JointMotion, f64)>,
 }
 
 /// Rapid traverse of several axes whose rates are unknown.
@@ -78,6 +107,8 @@ pub(super) struct Resolver<'a> {
     is_length_known: bool,
     /// The chain for the last tool length.
     chain: Option<(f64, Chain)>,
+    /// Set while Z is at the top of its travel, to which the program has moved it.
+    is_at_top: bool,
     /// The height of the tip over the part during the last step, in mm, if X or Y are not known at its start and it moves them.
     pub(super) blind_level: Option<f64>,
     /// The height of the tip over the part, in mm, where the last step leaves for a reference position that is not known, in more axes
@@ -170,6 +201,7 @@ impl<'a> Resolver<'a> {
             part_position_unknown: setup.work_offsets[0].is_none()
                 && machine.has_rotary(Side::Table),
             is_length_known: true,
+            is_at_top: false,
             blind_level: None,
             home_level: None,
             chain: None,
@@ -184,6 +216,9 @@ impl<'a> Resolver<'a> {
     /// If the motion is not possible on the machine, or a length or an origin is missing.
     pub(super) fn resolve(&mut self, step: &Step) -> Result<Resolved, StepFault> {
         (self.blind_level, self.home_level) = (None, None);
+        if step.commanded[2] {
+            self.is_at_top = step.is_homeward;
+        }
         if let StepPath::ToolChange(target) = step.path {
             if !step.commanded.contains(&true) {
                 return self.load(step);
@@ -225,6 +260,9 @@ impl<'a> Resolver<'a> {
             Located::Known(ends) => ends,
             Located::Unknown(cause) => return Ok(self.lose(cause)),
         };
+        if self.is_length_along_z(step, &frame, [&ends[0], &ends[1]]) {
+            return Ok(self.lose(UnknownCause::HeadLength));
+        }
         self.blind_level = blind_level(&frame, step, &ends);
         let mut unknown_path = self.turn_endless(step, &frame, &mut ends);
         if step.tool_vector.is_some() {
@@ -287,6 +325,12 @@ impl<'a> Resolver<'a> {
         end[2] += limits.map_or(TRAVEL, |[low, high]| high - low);
         let rise = path::line(&chain, [joints, end])?;
         Ok(Resolved::Departure(Box::new(rise), UnknownCause::Home))
+    }
+
+    /// Returns whether an unknown motion is on the way from a tool change: that of Z to the top of its travel, or of other axes while it is
+    /// there.
+    pub(super) fn leaves_change(&self, step: &Step) -> bool {
+        step.rapid && self.is_at_top && (step.is_homeward || !step.commanded[2])
     }
 
     /// Resolves the rest of a new tool where its change has left the axes. Without their joints, or the lengths on which these depend,
@@ -383,6 +427,16 @@ impl<'a> Resolver<'a> {
         // Under tool centre point control rapid traverse is straight: Fanuc asks for that (parameter 1401). A path that is
         // stated, such as an arc at FMAX, is that of the control at any rate.
         let is_any_way = step.rapid && step.state.tcp == Tcp::Off;
+        let (arcs, width) = path::band(&step.path, ends);
+        if !arcs.is_empty() {
+            let mut curves = Vec::new();
+            for ends in arcs {
+                let motions = frame.motions(&step.path, ends)?.into_iter();
+                curves.extend(motions.map(|(motion, error)| (motion, error + width)));
+            }
+            let motions = frame.motions(&step.path, ends)?;
+            return Ok(Resolved::Band(Band { motions, curves }));
+        }
         if !(is_any_way && matches!(step.path, StepPath::Line)) {
             return Ok(Resolved::Motions(frame.motions(&step.path, ends)?));
         }
@@ -399,7 +453,9 @@ impl<'a> Resolver<'a> {
     /// Notes the joints at the end of a motion.
     fn arrive(&mut self, frame: &Frame, resolved: &Resolved) {
         let last = match resolved {
-            Resolved::Motions(motions) => motions.last().map(|(motion, _)| motion),
+            Resolved::Motions(motions) | Resolved::Band(Band { motions, .. }) => {
+                motions.last().map(|(motion, _)| motion)
+            }
             Resolved::AnyRapid(any) => Some(&any.straight),
             Resolved::Arrival(rest, _) => Some(&**rest),
             Resolved::Departure(..)
@@ -474,8 +530,32 @@ impl<'a> Resolver<'a> {
 
     /// Returns what the control does under a rule, if that is stated, and notes that a step depends on it.
     fn ask(&mut self, rule: Rule, step: &Step) -> Option<Choice> {
-        self.asked.entry(rule).or_insert(step.block());
+        self.note(rule, step);
         self.setup.rules.get(rule)
+    }
+
+    /// Notes that a step depends on a rule.
+    pub(super) fn note(&mut self, rule: Rule, step: &Step) {
+        self.asked.entry(rule).or_insert(step.block());
+    }
+
+    /// Returns whether the head tilts the tool under M428 at one of the ends of a step, and the control leaves its length along z.
+    fn is_length_along_z(&mut self, step: &Step, frame: &Frame, ends: [&Position; 2]) -> bool {
+        let rules = &self.setup.rules;
+        let is_linuxcnc = rules.get(Rule::Dialect) == Some(Choice::Rs274Ngc)
+            || rules.get(Rule::HeadLength) == Some(Choice::AlongZ);
+        if !is_linuxcnc || step.state.tcp != Tcp::Rotary {
+            return false;
+        }
+        let mut axes = self.machine.axes().iter();
+        let is_tilted = axes.any(|axis| {
+            let k = axis.letter.index();
+            let turns = axis.letter.is_rotary() && axis.side == Side::Tool;
+            turns
+                && axis.direction.cross(&Vector3::z()).norm() > UPRIGHT
+                && ends.iter().any(|end| end[k].is_some_and(|v| v + frame.rotary[k - 3] != 0.0))
+        });
+        is_tilted && self.ask(Rule::HeadLength, step) == Some(Choice::AlongZ)
     }
 
     /// Returns the tool axis between two positions: as the program states it, or as the control does it.

@@ -4,7 +4,7 @@ use super::{Assumption, BlockError, MachineProgram, Obstacle};
 use crate::check::CycleTime;
 use crate::codes::faults;
 use crate::gcode::{
-    BlockLine, ControlSetup, LengthOffset, NoteKind, ProgramNote, Rule, Spindle, Step,
+    BlockLine, ControlSetup, LengthOffset, NoteKind, ProgramNote, Rule, Spindle, StatedTool, Step,
     SubprogramLine, WorkOffset,
 };
 use crate::machine::{LimitViolation, Machine, SingularPass};
@@ -62,6 +62,8 @@ pub struct MachineSummary {
     pub times: Vec<CycleTime>,
     /// The lowest and the highest corner of the blank that the program states, in program coordinates and in millimetres.
     pub blank: Option<[[f64; 3]; 2]>,
+    /// The tools that comments of the program describe.
+    pub stated_tools: Vec<StatedTool>,
     /// Notes of the interpreter.
     pub notes: Vec<ProgramNote>,
     /// The line at which the program stops being read, if it does.
@@ -124,6 +126,8 @@ faults! {
         #[error("the position of another axis is not stated before: write all axes of the machine in the first blocks")]
         Axis,
         /// A motion from where a tool change leaves the axes.
+        ///
+        /// A verdict is possible if Z moves to the top of its travel first, and the other axes while it is there.
         #[code = V0403]
         #[error(
             "only the machine knows where the tool change leaves its axes: state `tool_change` in the machine's file, or the control"
@@ -133,7 +137,7 @@ faults! {
         #[code = V0404]
         #[error(
             "only the machine knows where its coordinates and its reference position are: state the origin of G54 in `work_offsets`, and \
-             `home` of its axes"
+             `home` of its axes; for M92 `m92` of the machine's file"
         )]
         Return,
         /// The way of axes from known positions to machine coordinates that are not known.
@@ -142,7 +146,7 @@ faults! {
         #[code = V0405]
         #[error(
             "only the machine knows where its coordinates and its reference position are: state the origin of G54 in `work_offsets`, and \
-             `home` of its axes"
+             `home` of its axes; for M92 `m92` of the machine's file"
         )]
         Home,
         /// A shift by G92 at an unknown position.
@@ -237,6 +241,15 @@ faults! {
              machine: write an angle between, or state 0 for the axis in `work_offsets`"
         )]
         TurnOrigin,
+        /// A tool that the head tilts under M428.
+        ///
+        /// Releases of LinuxCNC's maxkins add the length of the tool along z of the machine, and not along the tool.
+        #[code = V0419]
+        #[error(
+            "the head tilts the tool under M428, whose length some releases of LinuxCNC's kinematics add along z: state `head_length` of \
+             the control"
+        )]
+        HeadLength,
     }
 }
 
@@ -453,7 +466,8 @@ impl MachineSummary {
         }
     }
 
-    pub(super) fn add_unknown(&mut self, step: &Step, cause: UnknownCause) {
+    /// Notes a motion that is not checked. `leaves_change` is set on the way from a tool change at the top of the travel of Z.
+    pub(super) fn add_unknown(&mut self, step: &Step, cause: UnknownCause, leaves_change: bool) {
         let position = self.unknown.iter().position(|known| known.cause == cause);
         let position = position.unwrap_or_else(|| {
             let motions = UnknownMotions { cause, count: 0, first: step.block(), first_open: None };
@@ -463,7 +477,8 @@ impl MachineSummary {
         let unknown = &mut self.unknown[position];
         unknown.count += 1;
         // The way to the first position is the operator's, and that to the reference position the machine's.
-        let is_said = matches!(cause, UnknownCause::Start | UnknownCause::Home);
+        let is_said = matches!(cause, UnknownCause::Start | UnknownCause::Home)
+            || cause == UnknownCause::ToolChange && leaves_change;
         if !step.rapid || !is_said {
             unknown.first_open.get_or_insert(step.block());
         }
@@ -546,10 +561,13 @@ impl MachineSummary {
                 NoteKind::OtherProgram
                 | NoteKind::OptionalSwitches
                 | NoteKind::TwoRadii
+                | NoteKind::EmptyCycle
                 | NoteKind::RoundedRadius
                 | NoteKind::OffsetOrShift
                 | NoteKind::LeftModes { .. } => GapWeight::Open,
                 NoteKind::RoundedCorners
+                | NoteKind::Spiral { .. }
+                | NoteKind::AssumedMode { .. }
                 | NoteKind::ToolChange
                 | NoteKind::Ignored { .. }
                 | NoteKind::Endless

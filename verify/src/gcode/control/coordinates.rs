@@ -459,6 +459,11 @@ impl Control {
             length = self.registered(tool);
         }
         self.transformed = true;
+        // Only LinuxCNC has M428, also where its dialect follows from the program.
+        if block.keyword.is_none() {
+            self.choice(Rule::RotaryDirection);
+            self.choice(Rule::HeadLength);
+        }
         let tcp = if block.keyword.is_some() { Tcp::Transformation } else { Tcp::Rotary };
         self.change(|state| {
             (state.length, state.tcp) = (length, tcp);

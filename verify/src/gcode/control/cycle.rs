@@ -14,6 +14,7 @@
 use super::{AXES, Control, Cycle, FeedMode, Spindle, linuxcnc};
 use crate::gcode::block::{Block, Group};
 use crate::gcode::error::{combination, missing};
+use crate::gcode::note::NoteKind;
 use crate::gcode::rules::{Choice, Rule};
 use crate::gcode::state::{Position, Tcp};
 use crate::gcode::{GcodeFault, MAX_CYCLE_STEPS, Plane, StepPath};
@@ -58,6 +59,9 @@ impl Control {
         // The way to a hole takes three steps at most, and each stroke as many.
         if f64::from(repeats) * (3.0 * strokes + 3.0) > MAX_CYCLE_STEPS as f64 {
             return Err(GcodeFault::CycleTooLong);
+        }
+        if levels.depth.is_some() && levels.depth == levels.retract {
+            self.notes.add(self.block(), NoteKind::EmptyCycle);
         }
         let axes = self.take_axes(block);
         if has_dwell {

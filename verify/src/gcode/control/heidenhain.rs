@@ -105,25 +105,48 @@ impl Control {
         Ok(path)
     }
 
-    /// Moves to the machine coordinates of a block (M91).
+    /// Moves to the machine coordinates of a block (M91), or to coordinates from a point of the machine's builder (M92).
     pub(in crate::gcode) fn machine_position(
         &mut self,
         block: &mut Block,
         rapid: bool,
+        is_from_point: bool,
     ) -> Result<(), GcodeFault> {
+        let word = if is_from_point { "M92" } else { "M91" };
         if self.is_tcp() {
-            return Err(combination("M91", "M128 is in force", "write M129 before"));
+            return Err(combination(word, "M128 is in force", "write M129 before"));
         }
         self.feed(block)?;
         if !rapid {
             self.check_feed("L")?;
         }
         let axes = self.take_axes(block);
-        self.move_to_machine(axes);
+        match (is_from_point, self.builder_point) {
+            (false, _) => self.move_to_machine(axes),
+            (true, Some(point)) => {
+                let mut target = axes;
+                for (value, point) in target.iter_mut().zip(point) {
+                    *value = value.map(|value| value + point);
+                }
+                self.move_to_machine(target);
+                self.go_home(axes);
+            }
+            // Only the machine knows where it is.
+            (true, None) => {
+                self.move_machine(axes.map(|value| value.is_some()), [None; 6], StepPath::Line);
+                self.go_home(axes);
+            }
+        }
         let spindle = self.spindle(rapid);
         let step = self.pending.back_mut().expect("the step that was added");
         (step.rapid, step.spindle) = (rapid, spindle);
         Ok(())
+    }
+
+    /// Notes that the last step is the way home, if it moves Z to the point of the builder, or other axes while Z can be there.
+    fn go_home(&mut self, axes: Position) {
+        let is_homeward = axes[2].map_or(self.position[2].is_none(), |z| z == 0.0);
+        self.pending.back_mut().expect("the step that was added").is_homeward = is_homeward;
     }
 
     /// Moves along the tool axis (M140) by a distance in millimetres, or to the end of the travel.

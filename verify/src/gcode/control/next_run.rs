@@ -124,7 +124,7 @@ fn first_difference(first: &Interpreter, left: &Interpreter, kept: &[Mode]) -> O
         }
         let mut asked = run.control.asked.keys().chain(next.control.asked.keys());
         if let Some(rule) =
-            asked.find(|rule| rule.is_branched() && start.control.stated(**rule).is_none())
+            asked.find(|rule| rule.is_of_interpreter() && start.control.stated(**rule).is_none())
         {
             // From here on a rule decides which the first run has not asked: each of its choices is a run of its own.
             starts.extend(under_each(&start, *rule));

@@ -9,11 +9,58 @@ use crate::gcode::note::NoteKind;
 use crate::gcode::rules::{Choice, Rule};
 use crate::gcode::state::{LengthOffset, Position, Rotation, Tcp};
 use crate::gcode::{GcodeFault, StepPath};
-use std::f64::consts::SQRT_2;
+use std::f64::consts::{PI, SQRT_2, TAU};
 
 /// Distance between the paths of controls on an arc with two radii, in mm, up to which it is rounding: of I and J with three
 /// decimals, or four in inches.
 const RADII_TOLERANCE: f64 = 5e-3;
+
+/// Controls that stop at an arc whose radii differ by more than a length in mm, and by more than a fraction of the radius.
+const RADII_LIMITS: [(&str, f64, f64); 3] =
+    [("grbl", 5e-3, 1e-3), ("Siemens", 1e-2, 1e-3), ("Heidenhain", 1.6e-2, 0.0)];
+
+/// Names the controls that stop at an arc whose radii differ, in mm.
+fn stops(difference: f64, radius: f64) -> String {
+    let limits = RADII_LIMITS.iter();
+    let stop = limits.filter(|(_, length, part)| difference > length.max(part * radius));
+    match &stop.map(|(name, ..)| *name).collect::<Vec<_>>()[..] {
+        [] => "some controls stop".to_owned(),
+        [name] => format!("{name} stops"),
+        names => format!("{} stop", names.join(", ")),
+    }
+}
+
+/// Greatest width of a band that is checked as a whole, in mm, about an arc of more than half a turn.
+const MAX_BAND: f64 = 0.12;
+
+/// Least radius of a band, in mm.
+const LEAST_RADIUS: f64 = 2e-4;
+
+/// Returns the radii between which every curve of an arc is that controls take, from the vectors from its centre to its ends. There are
+/// none if the radii differ by no more than rounding, or if the curves are far from each other.
+///
+/// Up to half a turn, curves are between the circles through both ends. A control that moves the centre to the same distance from both
+/// ends moves it along the chord, and by more than the difference of the radii if the arc is longer. Its circle then winds around the
+/// programmed centre, too, or the arc is a full turn, which covers every direction.
+pub(crate) fn band_radii(arms: [[f64; 2]; 2], sweep: f64) -> Option<[f64; 2]> {
+    let [from, to] = arms.map(|[u, v]| u.hypot(v));
+    let difference = (from - to).abs();
+    if difference <= RADII_TOLERANCE {
+        return None;
+    }
+    let [least, most] = [from.min(to), from.max(to)];
+    if sweep.abs() <= PI {
+        return Some([least, most]);
+    }
+    let [[a, b], [c, d]] = arms;
+    let chord = (c - a).hypot(d - b);
+    let along = [(c - a) / chord, (d - b) / chord];
+    let shift = 0.5 * ((a + c) * along[0] + (b + d) * along[1]);
+    let radius = (a - shift * along[0]).hypot(b - shift * along[1]);
+    let is_around = shift.abs() < radius || sweep.abs() > TAU - 1e-9;
+    let band = [(least - shift.abs()).max(LEAST_RADIUS), most + shift.abs()];
+    (is_around && band[1] - band[0] <= MAX_BAND).then_some(band)
+}
 
 impl Control {
     /// Refuses words that mean something else in the dialect of the control.
@@ -294,7 +341,7 @@ impl Control {
         path: &StepPath,
         end: &Position,
     ) -> Result<(), GcodeFault> {
-        let StepPath::Arc { plane, centre, .. } = path else { return Ok(()) };
+        let StepPath::Arc { plane, centre, sweep } = path else { return Ok(()) };
         let [first, second] = plane.axes();
         let (Some([x, y]), Some([u, v])) =
             (in_plane(&self.position, [first, second]), in_plane(end, [first, second]))
@@ -313,12 +360,23 @@ impl Control {
             let remedy = "leave the end out for a full circle, or leave out the arc";
             return Err(combination("an arc", condition, remedy));
         }
-        // A control that moves the centre across the chord turns the arc about its start by the difference over the chord.
         let [from, to] = [[x, y], [u, v]].map(|[x, y]| (x - centre[0]).hypot(y - centre[1]));
-        let turn = if chord > 0.0 { from.max(to) / chord } else { 0.0 };
-        if (from - to).abs() * turn.max(1.0) > RADII_TOLERANCE {
-            self.notes.add(self.block(), NoteKind::TwoRadii);
+        let difference = (from - to).abs();
+        // A control that moves the centre across the chord turns the arc about its start by the difference over the chord. Up to half a
+        // turn, all curves that begin and end there are between both circles.
+        let is_minor = sweep.abs() <= PI;
+        let turn = if chord > 0.0 && !is_minor { from.max(to) / chord } else { 0.0 };
+        if difference * turn.max(1.0) <= RADII_TOLERANCE {
+            return Ok(());
         }
+        // The band of all curves is checked where the rotary axes rest.
+        let turns = (3..6).any(|axis| end[axis] != self.position[axis]);
+        let arms = [[x, y], [u, v]].map(|[x, y]| [x - centre[0], y - centre[1]]);
+        let kind = match band_radii(arms, *sweep).is_some() && !turns {
+            true => NoteKind::Spiral { stops: stops(difference, from.min(to)) },
+            false => NoteKind::TwoRadii,
+        };
+        self.notes.add(self.block(), kind);
         Ok(())
     }
 

@@ -59,10 +59,11 @@ faults! {
             /// Its name.
             name: String,
         },
-        /// A division outside of brackets.
+        /// A division in the value of a word, outside of brackets.
         #[code = P0204]
         #[error(
-            "`/` outside of brackets is the sign of an optional block on Fanuc, and no division: write it in brackets, as in `[#1/2]`"
+            "`/` after the value of a word is the sign of an optional block on Fanuc, and no division: write it in brackets, as in \
+             `X[#1/2]`, or at the beginning of the block"
         )]
         Slash,
         /// An expression with a value that depends on the control.
@@ -189,7 +190,6 @@ impl ExpressionFault {
         matches!(
             self,
             ExpressionFault::Operation { .. }
-                | ExpressionFault::Slash
                 | ExpressionFault::OpenBracket
                 | ExpressionFault::Value { .. }
         )
@@ -391,7 +391,8 @@ pub(super) fn value(cursor: &mut Cursor, scope: &Scope) -> Result<Value, Express
     agreed(cursor, scope, |reader, cursor| reader.unary(cursor, 0))
 }
 
-/// Reads an expression, as after `=`. LinuxCNC reads one value there.
+/// Reads an expression, as after `=`. LinuxCNC reads one value there. Fanuc's table of operations has sums, products and quotients
+/// without brackets (`#i=#j/#k`): `/` is a division there, and begins no optional block.
 pub(super) fn expression(cursor: &mut Cursor, scope: &Scope) -> Result<Value, ExpressionFault> {
     agreed(cursor, scope, |reader, cursor| match reader.language {
         Language::Fanuc => reader.binary(cursor, 0, 1),
@@ -475,9 +476,6 @@ impl Reader<'_> {
         while let Some((operator, own, after)) = self.operator(*cursor) {
             if own < precedence {
                 break;
-            }
-            if operator == Operator::Over && depth == 0 {
-                return Err(ExpressionFault::Slash);
             }
             *cursor = after;
             let right = self.binary(cursor, depth, own + 1)?;

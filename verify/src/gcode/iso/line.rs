@@ -103,6 +103,7 @@ impl Line {
                 }
                 _ if byte.is_ascii_alphabetic() => self.word(&mut cursor, scope)?,
                 b',' => self.corner(&mut cursor, scope)?,
+                b'/' => return Err(ExpressionFault::Slash.into()),
                 b'0'..=b'9' if self.is_empty() => return Err(numbered_line(cursor)),
                 _ => return Err(unexpected(&cursor)),
             }

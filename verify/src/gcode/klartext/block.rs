@@ -81,8 +81,10 @@ pub(super) struct Words {
     pub(super) clockwise: Option<bool>,
     pub(super) feed: Option<Feed>,
     pub(super) retract: Option<Retract>,
-    /// M91.
+    /// M91 or M92.
     pub(super) is_machine: bool,
+    /// M92.
+    pub(super) is_from_point: bool,
     /// M99.
     pub(super) is_call: bool,
     /// M89.
@@ -307,6 +309,7 @@ impl<'a> Scale<'a> {
         }
         match number {
             91 => words.is_machine = true,
+            92 => (words.is_machine, words.is_from_point) = (true, true),
             99 => words.is_call = true,
             89 => words.is_modal_call = true,
             140 => words.retract = Some(self.retract(cursor)?),

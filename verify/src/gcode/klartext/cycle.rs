@@ -12,7 +12,7 @@ use super::Program;
 use super::block::Coordinate;
 use super::expression::{Parameter, value};
 use super::line::Cursor;
-use super::words::{CYCLES, Treatment, find};
+use super::words::{CYCLES, Entry, Treatment, find};
 use crate::gcode::control::Control;
 use crate::gcode::error::{combination, missing, not_read};
 use crate::gcode::note::NoteKind;
@@ -206,8 +206,10 @@ impl Program<'_> {
             return Err(cursor.unexpected("the number of a cycle after CYCL DEF"));
         };
         // Old cycles have a line for each of their values, the first of which is the name alone.
-        let part = match cursor.here() {
+        let mut ahead = *cursor;
+        let part = match ahead.peek() {
             Some(b'.') => {
+                *cursor = ahead;
                 cursor.advance();
                 let part = cursor.take_while(|byte| byte.is_ascii_digit());
                 Some(part.parse::<u32>().map_err(|_| cursor.unexpected("the line of the cycle"))?)
@@ -215,6 +217,11 @@ impl Program<'_> {
             _ => None,
         };
         let word = || format!("CYCL DEF {number}");
+        // The builder of a machine has cycles of its own.
+        if control.ignores(&word()) && is_ignorable(&word()) {
+            control.ignore(word());
+            return Ok(());
+        }
         let Some(entry) = find(&CYCLES, &number.to_string()) else {
             let remedy = "post the program with its motions";
             return Err(not_read(word(), "a cycle that is not known", remedy));
@@ -396,6 +403,7 @@ impl Program<'_> {
         }
         self.check_level(control)?;
         if cycle.depth == 0.0 {
+            control.notes.add(control.block(), NoteKind::EmptyCycle);
             return Ok(());
         }
         if cycle.dwell > 0.0 {
@@ -453,6 +461,13 @@ impl Program<'_> {
         control.move_to_level(clear, true, false);
         Ok(())
     }
+}
+
+/// Returns whether a job can pass over a cycle, `CYCL DEF` with its number: one of the machine's builder, or one that is not known.
+pub(in crate::gcode) fn is_ignorable(word: &str) -> bool {
+    let Some(number) = word.strip_prefix("CYCL DEF ") else { return false };
+    let is_number = !number.starts_with('0') && number.bytes().all(|byte| byte.is_ascii_digit());
+    is_number && find(&CYCLES, number).is_none_or(Entry::is_of_builder)
 }
 
 /// Moves to the depths of all infeeds but the last.

@@ -286,6 +286,24 @@ impl<'a> Flow<'a> {
         Ok(())
     }
 
+    /// Returns whether only labels stand before a label that is next.
+    pub(super) fn leads_to(&self, wanted: Label, known: &Parameters) -> bool {
+        let mut place = self.place;
+        while let Some(Ahead { mut cursor, is_optional, after }) = self.ahead(place) {
+            if is_optional || !cursor.take_word("LBL") {
+                return false;
+            }
+            match label(&mut cursor, known) {
+                Ok(found) if found == wanted => return true,
+                // It ends a subprogram.
+                Ok(Label::Number(0)) if !self.calls.is_empty() => return false,
+                Ok(_) => place = after,
+                Err(_) => return false,
+            }
+        }
+        false
+    }
+
     /// Obeys `LBL 0`.
     pub(super) fn end_subprogram(&mut self) {
         if let Some(call) = self.calls.pop() {

@@ -36,6 +36,8 @@ pub(super) struct Frame {
     tilt: Option<Matrix3<f64>>,
     /// Set if the rotary axes stand as the plane needs them.
     aligned: bool,
+    /// Set if they are all at 0 then.
+    is_at_zero: bool,
     /// The sign of the master axis in the plane, if the program states it (SEQ).
     master_is_positive: Option<bool>,
     /// The reason for which the shift depends on the control.
@@ -55,6 +57,7 @@ impl Frame {
             mirror: [1.0; 3],
             tilt: None,
             aligned: false,
+            is_at_zero: false,
             master_is_positive: None,
             doubt: None,
             preset: None,
@@ -303,7 +306,7 @@ impl Program<'_> {
             return Err(combination(word, condition, "write PLANE RESET before"));
         }
         (self.frame.tilt, self.frame.aligned) = (Some(rotation), false);
-        self.frame.master_is_positive = None;
+        (self.frame.master_is_positive, self.frame.is_at_zero) = (None, false);
         self.change_frame(control);
         control.begin_plane();
         Ok(())
@@ -392,14 +395,20 @@ impl Program<'_> {
         }
         match rotation {
             Some(rotation) => {
-                // Where the normal stays, only the table or only the plane turns.
-                if words.turns_table && (rotation[(2, 2)] - 1.0).abs() < 1e-12 {
+                // Where the normal stays, only the table or only the plane turns. Without any turn, the table is at 0.
+                let is_at_zero = words.turns_table && rotation == Matrix3::identity();
+                if words.turns_table && !is_at_zero && (rotation[(2, 2)] - 1.0).abs() < 1e-12 {
                     let meaning = "a turn of the table about the tool, which leaves the plane";
                     return Err(not_read("TABLE ROT", meaning, "write COORD ROT"));
                 }
                 self.tilt("PLANE", rotation, control)?;
                 self.frame.master_is_positive = words.master_is_positive;
-                if turns {
+                self.frame.is_at_zero = is_at_zero;
+                if turns && is_at_zero {
+                    control.turn_to_zero(pivot);
+                    self.frame.aligned = true;
+                    self.change_frame(control);
+                } else if turns {
                     control.align_with_plane(pivot, words.master_is_positive);
                     self.frame.aligned = true;
                 }
@@ -491,7 +500,13 @@ impl Program<'_> {
             return Err(missing(format!("Q120 to Q122 without {letter}"), needed));
         }
         control.execute(&mut self.block)?;
-        control.align_with_plane(None, self.frame.master_is_positive);
+        if self.frame.is_at_zero {
+            control.turn_to_zero(None);
+            self.frame.aligned = true;
+            self.change_frame(control);
+        } else {
+            control.align_with_plane(None, self.frame.master_is_positive);
+        }
         self.frame.aligned = true;
         self.before.forget();
         Ok(())

@@ -16,7 +16,7 @@ mod motion;
 mod words;
 
 use super::block::{Block, Code};
-use super::control::Control;
+use super::control::{Control, StatedModes};
 use super::error::{combination, missing, not_read};
 use super::files::{self, in_file};
 use super::interpreter::{End, Progress};
@@ -25,6 +25,7 @@ use super::rules::{Choice, ControlRules, Rule};
 use super::{ControlSetup, GcodeError, GcodeFault, Repeated, SubprogramFile, shown, unquoted};
 use block::{Feed, Scale, m_entry};
 use cycle::Cycle;
+pub(super) use cycle::is_ignorable;
 pub(crate) use expression::is_variable;
 use expression::{Parameters, angle, finite, formula, parameter, value};
 use flow::{Flow, Label, label};
@@ -131,6 +132,7 @@ impl<'a> Program<'a> {
                 control.state_rule(rule, choice);
             }
         }
+        control.stated = StatedModes::ALL;
         // Lengths are converted where they are read.
         (control.modal.unit, control.modal.unit_stated) = (Unit::Millimetre, true);
         Ok(Program {
@@ -156,6 +158,11 @@ impl<'a> Program<'a> {
             block: Block::default(),
             codes: Vec::new(),
         })
+    }
+
+    /// Returns the unit of the program.
+    pub(super) fn unit(&self) -> Unit {
+        self.unit
     }
 
     /// Returns the number of the file of a called program.
@@ -555,6 +562,9 @@ impl<'a> Program<'a> {
 
     /// Executes a jump after IF.
     fn jump(&mut self, cursor: &mut Cursor<'a>) -> Result<(), GcodeFault> {
+        if self.leads_on_anyway(*cursor) {
+            return Ok(());
+        }
         let first = value(cursor, &self.parameters)?;
         let comparison = cursor.letters().to_ascii_uppercase();
         let second = value(cursor, &self.parameters)?;
@@ -580,6 +590,21 @@ impl<'a> Program<'a> {
         if holds { self.flow.jump(label) } else { Ok(()) }
     }
 
+    /// Returns whether a jump leads to where the program goes on without it, over labels alone: its condition, which only the machine may
+    /// know, does not matter.
+    fn leads_on_anyway(&self, mut cursor: Cursor<'a>) -> bool {
+        let upper = cursor.rest().to_ascii_uppercase();
+        let Some(at) = upper.find("GOTO") else { return false };
+        for _ in 0..at + "GOTO".len() {
+            cursor.advance();
+        }
+        let label = match cursor.take_word("LBL") {
+            true => label(&mut cursor, &self.parameters),
+            false => return false,
+        };
+        label.is_ok_and(|label| self.flow.leads_to(label, &self.parameters))
+    }
+
     /// Executes TOOL CALL and TOOL DEF, after TOOL.
     fn tool(&mut self, cursor: &mut Cursor, control: &mut Control) -> Result<(), GcodeFault> {
         let is_call = cursor.take_word("CALL");
@@ -587,16 +612,24 @@ impl<'a> Program<'a> {
             return Err(cursor.unexpected("CALL or DEF after TOOL"));
         }
         let word = if is_call { "TOOL CALL" } else { "TOOL DEF" };
+        let mut named = None;
         if cursor.peek() == Some(b'"') {
             let name = cursor.quoted()?;
             if is_call {
-                let meaning = "a tool by its name, whose number only the machine knows";
-                let word = format!("TOOL CALL \"{}\"", unquoted(name));
-                return Err(not_read(word, meaning, "write the number of the tool"));
+                let Some(number) = control.tool_named(name) else {
+                    let meaning = "a tool by its name, whose number the job does not state";
+                    let word = format!("TOOL CALL \"{}\"", unquoted(name));
+                    let remedy = "state `name` in `[tool.N]` of the job, or write the number";
+                    return Err(not_read(word, meaning, remedy));
+                };
+                named = Some(f64::from(number));
             }
         }
         let has_number = matches!(cursor.peek(), Some(b'0'..=b'9' | b'+' | b'Q'));
-        let tool = if has_number { Some(value(cursor, &self.parameters)?) } else { None };
+        let tool = match named {
+            None if has_number => Some(value(cursor, &self.parameters)?),
+            named => named,
+        };
         if let Some(tool) = tool
             && (tool.fract() != 0.0 || !(0.0..=MAX_TOOL).contains(&tool))
         {

@@ -269,7 +269,7 @@ impl Program<'_> {
         }
         control.check_uncompensated("M91")?;
         self.before.heading = None;
-        control.machine_position(&mut self.block, words.is_rapid())
+        control.machine_position(&mut self.block, words.is_rapid(), words.is_from_point)
     }
 
     /// Refuses coordinates whose meaning depends on what stands before them.

@@ -32,6 +32,13 @@ impl Entry {
     }
 }
 
+impl Entry {
+    /// Returns whether it is a cycle of the machine's builder, which a job can pass over.
+    pub(super) fn is_of_builder(&self) -> bool {
+        self.treatment == Treatment::Refused(BUILDER)
+    }
+}
+
 /// Returns the entry of a word.
 pub(super) fn find(table: &'static [Entry], word: &str) -> Option<&'static Entry> {
     table.iter().find(|entry| entry.word == word)
@@ -54,6 +61,7 @@ const LINES: &str = "post the program with L, C, CR and CT";
 const WITHOUT: &str = "check the program without it";
 const SPATIAL: &str = "write PLANE SPATIAL";
 const CENTRE: &str = "post the program with the path of the tool's centre, R0";
+const BUILDER: &str = "name it in `[ignore]` of the job with the reason for which it moves nothing, or check the program without it";
 const OWN: &str = "the path of the cycle is the control's own: post the program with its motions";
 
 /// The words that begin a block.
@@ -70,7 +78,10 @@ pub(super) const STATEMENTS: [Entry; 50] = [
     read("CTP", "CT to polar coordinates"),
     read("RND", "a rounded corner between two lines or arcs in the plane"),
     read("CHF", "a chamfer between two lines in the plane at a right angle"),
-    read("TOOL CALL", "a tool change, by the number of the tool; DL raises the tip along the tool"),
+    read(
+        "TOOL CALL",
+        "a tool change, by the number of the tool, or by the `name` that the job's `[tool.N]` states; DL raises the tip along the tool",
+    ),
     read("TOOL DEF", "the length of a tool, or the tool that is called next"),
     read("LBL", "a label"),
     read("CALL LBL", "a subprogram, or a section that is repeated (REP)"),
@@ -136,6 +147,7 @@ pub(super) const M_WORDS: [Entry; 57] = [
     read("M30", "the end of the program"),
     read("M89", "the cycle after each motion, until M99"),
     read("M91", "machine coordinates"),
+    read("M92", "coordinates from a point of the builder, which the machine's file states (`m92`)"),
     read("M99", "the cycle after the motion"),
     read("M126", "the shorter way of rotary axes"),
     read("M127", "its end"),
@@ -166,7 +178,6 @@ pub(super) const M_WORDS: [Entry; 57] = [
     passed("M149", "its end"),
     refused("M6", "a tool change by hand", "write TOOL CALL"),
     refused("M60", "a pallet change, which moves the part", "give one program per setup"),
-    refused("M92", "positions from a point that the builder sets", "write M91"),
     refused("M94", "another count of a rotary axis", "write angles from 0 to 360"),
     refused("M97", "small steps of a compensated contour", CENTRE),
     refused("M98", "open corners of a compensated contour", CENTRE),
@@ -262,7 +273,7 @@ pub(super) const PLANES: [Entry; 18] = [
     ),
     read(
         "TABLE",
-        "TABLE ROT: the table turns, and not the plane, where both are possible; a plane that keeps z is refused",
+        "TABLE ROT: the table turns, and not the plane, where both are possible; a plane that turns about z alone is refused",
     ),
 ];
 
@@ -350,7 +361,7 @@ pub(super) const CYCLES: [Entry; 71] = [
     refused("270", "data of a contour train", OWN),
     refused("275", "a trochoidal slot", OWN),
     refused("276", "a contour train in space", OWN),
-    refused("392", "a cycle of the machine's builder", WITHOUT),
+    refused("392", "a cycle of the machine's builder", BUILDER),
 ];
 
 #[cfg(test)]

@@ -34,9 +34,14 @@ fn machines_of_the_library_have_their_names() {
         assert_eq!(machine.name(), name);
         assert!(machine.axes().iter().all(|axis| axis.home == Some(0.0)));
         let rotary = machine.axes().iter().filter(|axis| axis.letter.is_rotary()).count();
-        assert_eq!(rotary, if name == "3-axis" { 0 } else { 2 });
+        let expected = match name {
+            "3-axis" => 0,
+            "4-axis" => 1,
+            _ => 2,
+        };
+        assert_eq!(rotary, expected, "{name}");
     }
-    assert_eq!(machines.len(), 14);
+    assert_eq!(machines.len(), 15);
     let error = Machine::named("lathe").expect_err("no machine");
     assert!(
         matches!(&error, MachineError::UnknownName { known, .. } if known.contains("`A-C trunnion`"))

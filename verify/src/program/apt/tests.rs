@@ -177,8 +177,9 @@ fn a_feed_has_its_unit() {
 #[test]
 fn what_could_be_a_motion_is_refused() {
     let words = "GOTOX/1,2,3|GOOT/1,2,3|GO TO/1,2,3|GOABS/1,2,3|LINEAR/1,2,3|MOVE/1,2,3|MOVETO/1,2,3|\
-                 ARC/1,2,3|CIRC/1,2,3|ARCDAT/1,2,3|DRILL/1,2,3|GODLT/1,2,3|ORIGIN/0,0,35|CUTCOM/LEFT|\
-                 MODE/INCR|THICK/-5|HEAD/2|LOADTL/2|CUTTER/50|INSERT G0 Z-5|LETTER/HI|RAPID/ON|OPSKIP/ON|\
+                 ARC/1,2,3|CIRC/1,2,3|ARCDAT/1,2,3|DRILL/1,2,3|GODLT/1,2,3|ORIGIN/0,0,35|CUTCOM/3DCOMP|\
+                 MODE/INCR|THICK/-5|HEAD/2|LOADTL/2|CUTTER/50|INSERT G0 Z-5|LETTER/G1 Z-5|INSERT/X5 Y-2.|INSERT/TRANS X10|INSERT/R1=5|INSERT/L X+5|\
+                 INSERT/CYCLE800(1)|INSERT/#1=2|INSERT/CALL LBL 5|RAPID/ON|OPSKIP/ON|\
                  TRACUT/M1|C1 = CIRCLE/0,0,1|M1 = MACRO/|AUXFUN/98|PREFUN/91|X|GOTO|TLDATA/MILL,50.,0.";
     for word in words.split('|') {
         let text =
@@ -378,5 +379,67 @@ fn no_beginning_is_a_program() {
     assert_eq!(program(whole).locations.len(), 2);
     for end in 0..whole.len() {
         assert!(ClData::parse(&whole[..end], "part.cl").is_err(), "{:?}", &whole[..end]);
+    }
+}
+
+/// A program as SolidWorks CAM posts it: settings of its own, prose of the control, a frame that is none, arcs and holes.
+#[test]
+fn programs_of_solidworks_are_read() {
+    let text = "PARTNO/PLATE\nUNIT/MM\nINSERT/TOOL AT DOOR 2, X9. [HOLDER=ER32] 10MM 2FL\nCSI_TOOL/1,\"END MILL\"\n\
+        CSYS/1,0,0,0,0,1,0,0,0,0,1,0\nTRNTYP/WORLD,0,0,0\nLOAD/TOOL,3\nSPINDL/RPM,4000,CLW\n\
+        RAPID/\nGOTO/20,0,10\nFEDRAT/300,MMPM\nGOTO/20,0,-2\nCUTCOM/LEFT,3\n\
+        CIRCLE/0,0,-2,0,0,1,20\nGOTO/0,20,-2\nCUTCOM/OFF\nRAPID/\nGOTO/0,20,10\nFINI\n";
+    let read = program(text);
+    assert_eq!((read.unit, read.tool), (Some(Unit::Millimetre), Some(3)));
+    let arc: Vec<_> = read.locations.iter().filter(|stop| stop.line == 15).collect();
+    assert!(arc.len() > 100 && arc.iter().all(|stop| !stop.rapid));
+    for stop in &arc {
+        let tip = stop.pose.tip();
+        assert!((tip.coords.xy().norm() - 20.0).abs() < 1e-9 && tip.z == -2.0, "{tip}");
+        assert!(tip.x > -1e-9 && tip.y > 0.0, "{tip}");
+    }
+    let rapids = read.locations.iter().filter(|stop| stop.rapid).map(|stop| stop.line);
+    assert_eq!(rapids.collect::<Vec<_>>(), [10, 18]);
+    // The other way round is three quarters of the circle.
+    let other = program(&text.replace("0,0,1,20", "0,0,-1,20"));
+    let lowest = other.locations.iter().map(|stop| stop.pose.tip().y).fold(0.0, f64::min);
+    assert!((lowest + 20.0).abs() < 1e-4, "{lowest}");
+}
+
+/// The ways of a cycle at its holes: heights and rapid traverse.
+#[test]
+fn cycles_drill_at_each_position() {
+    let heights = |cycle: &str| -> Vec<(f64, bool)> {
+        let text = format!("UNITS/MM\nRAPID\nGOTO/0,0,30\n{cycle}\nGOTO/5,0,0\nCYCLE/OFF\nFINI\n");
+        let stops = program(&text).locations.into_iter().skip(1);
+        stops.map(|stop| (stop.pose.tip().z, stop.rapid)).collect()
+    };
+    let down = [(30.0, true), (3.0, true), (-5.0, false)];
+    let drilled = heights("CYCLE/DRILL,FEDTO,5,MMPM,125,RAPTO,3,RTRCTO,25,DWELL,0");
+    assert_eq!(drilled, [&down[..], &[(25.0, true)]].concat());
+    assert_eq!(heights("cycle/deep,fedto,-5,rapto,3"), [&down[..], &[(3.0, true)]].concat());
+    let back = [&down[..], &[(3.0, false), (30.0, true)]].concat();
+    assert_eq!(heights("CYCLE/TAP,FEDTO,5,RAPTO,3,RTRCTO,AUTO"), back);
+    // A hole that is higher than the one before is reached from above it.
+    let text = "UNITS/MM\nGOTO/0,0,3\nCYCLE/DRILL,FEDTO,5,RAPTO,3\nGOTO/5,0,20\nCYCLE/OFF\nGOTO/9,0,40\nFINI\n";
+    let stops = program(text).locations;
+    let ends: Vec<_> = stops.iter().map(|stop| (stop.pose.tip().x, stop.pose.tip().z)).collect();
+    let expected = [(0.0, 3.0), (0.0, 23.0), (5.0, 23.0), (5.0, 15.0), (5.0, 23.0), (9.0, 40.0)];
+    assert_eq!(ends, expected);
+}
+
+/// Every obstacle is said at once, each with its first line.
+#[test]
+fn all_obstacles_are_found_at_once() {
+    let text = "UNITS/MM\nGOTO/0,0,3\nCYCLE/THREAD,FEDTO,5\nGOTO/5,0,0\nTRACUT/1,2\nCUTCOM/3DCOMP\n\
+        GOFWD/A\nTRACUT/3,4\nCIRCLE/1,2\nGOTO/5,0,5\nFINI\n";
+    let error = ClData::parse(text, "part.cl").expect_err("obstacles");
+    let ProgramError::Line { line, others, .. } = &error else { panic!("{error}") };
+    let codes: Vec<_> = others.iter().map(|(line, fault)| (*line, fault.code())).collect();
+    assert_eq!((*line, error.code()), (3, "P0531"));
+    assert_eq!(codes, [(5, "P0512"), (6, "P0511"), (7, "P0510"), (9, "P0532")], "{error}");
+    let said = error.to_string();
+    for line in [3, 5, 6, 7, 9] {
+        assert!(said.contains(&format!("part.cl:{line}: ")), "{said}");
     }
 }

@@ -1,0 +1,380 @@
+//! Reading clouds of points: PCD of the Point Cloud Library, and tables `x y z` (`.xyz`).
+
+use super::is_valid_coordinate;
+use super::location::printable;
+use super::outlier::{Outlier, find_outlier};
+use super::ply::OrientedPoints;
+use nalgebra::{Point3, Vector3};
+
+/// Largest difference from 1 of the norms of three columns that are taken for a normal: files have few decimals.
+const UNIT_TOLERANCE: f64 = 0.02;
+
+/// Names of the coordinates of a normal in PCD.
+const NORMAL_FIELDS: [&str; 3] = ["normal_x", "normal_y", "normal_z"];
+
+/// Reasons why a cloud of points could not be read. Lines count from 1, points from 0.
+#[derive(thiserror::Error)]
+#[non_exhaustive]
+pub enum PointsError {
+    /// A line does not match the format.
+    #[error(
+        "{file}, line {line}: expected {expected}, found {found}: mend the line, or export the points again"
+    )]
+    Expected {
+        /// The file name.
+        file: String,
+        /// The line number, from 1.
+        line: usize,
+        /// The expected content.
+        expected: &'static str,
+        /// The content found instead.
+        found: String,
+    },
+    /// The data of a PCD file is in a form that is not read.
+    #[error("{file}: the data is `{data}`: save the cloud as `ascii` or `binary`")]
+    Data {
+        /// The file name.
+        file: String,
+        /// The form.
+        data: String,
+    },
+    /// The file has other points than its header declares.
+    #[error(
+        "{file} has {found} points, and its header declares {declared}: export or copy it again"
+    )]
+    Count {
+        /// The file name.
+        file: String,
+        /// The number of points found.
+        found: usize,
+        /// The number declared.
+        declared: usize,
+    },
+    /// There are no points, or they lack coordinates.
+    #[error("{file} has no points with `x`, `y` and `z`: export the points again")]
+    NoPoints {
+        /// The file name.
+        file: String,
+    },
+    /// A coordinate is not finite or too large, or a normal is no direction.
+    #[error(
+        "{file}: {what} of point {point} (from 0) is {value}: remove the point, or compute it anew"
+    )]
+    Value {
+        /// The file name.
+        file: String,
+        /// The point, from 0.
+        point: usize,
+        /// The coordinate or the normal.
+        what: &'static str,
+        /// The value found.
+        value: f64,
+    },
+    /// A point is far outside the rest of the part.
+    #[error(
+        "{file}: point {point} (from 0): {outlier}: mend the coordinate, or export or copy the part again"
+    )]
+    Outlier {
+        /// The file name.
+        file: String,
+        /// The point, from 0.
+        point: usize,
+        /// The outlying coordinate and its statistics.
+        outlier: Outlier,
+    },
+}
+
+crate::debug_as_sentence!(PointsError);
+
+/// A field of a point in PCD.
+struct Field<'a> {
+    name: &'a str,
+    /// Bytes of a number.
+    size: usize,
+    /// `F`, `I` or `U`.
+    kind: u8,
+    /// The number of numbers.
+    count: usize,
+}
+
+impl OrientedPoints {
+    /// Reads a PCD file with `ascii` or `binary` data; errors name the file as `name`. Points without finite coordinates, which scanners
+    /// write where nothing was measured, are left out. Without the fields `normal_x`, `normal_y` and `normal_z` there are no normals.
+    ///
+    /// # Errors
+    /// See [`PointsError`].
+    pub fn from_pcd(bytes: &[u8], name: &str) -> Result<OrientedPoints, PointsError> {
+        let file = || name.to_owned();
+        let mut fields: Vec<Field<'_>> = Vec::new();
+        let (mut declared, mut width, mut height) = (None, 1, 1);
+        let mut rest = bytes;
+        let mut line = 0;
+        let data = loop {
+            let end = rest.iter().position(|byte| *byte == b'\n').unwrap_or(rest.len());
+            let text = std::str::from_utf8(&rest[..end]).unwrap_or_default().trim();
+            let is_last = end == rest.len();
+            rest = &rest[(end + 1).min(rest.len())..];
+            line += 1;
+            let expected = |expected| PointsError::Expected {
+                file: file(),
+                line,
+                expected,
+                found: format!("`{}`", printable(text.as_bytes())),
+            };
+            let mut words = text.split_whitespace();
+            let key = words.next().unwrap_or_default();
+            let words: Vec<&str> = words.collect();
+            let whole = || words.first().and_then(|word| word.parse::<usize>().ok());
+            match key {
+                "DATA" => break words.first().copied().unwrap_or_default(),
+                "FIELDS" => {
+                    let field = |name| Field { name, size: 4, kind: b'F', count: 1 };
+                    fields = words.into_iter().map(field).collect();
+                }
+                "SIZE" | "TYPE" | "COUNT" => {
+                    if words.len() != fields.len() {
+                        return Err(expected("a value for each of `FIELDS`"));
+                    }
+                    for (field, word) in fields.iter_mut().zip(words) {
+                        let number = word.parse().ok().filter(|number| (1..=4096).contains(number));
+                        match (key, number) {
+                            ("TYPE", _) => field.kind = word.as_bytes()[0],
+                            ("SIZE", Some(size)) => field.size = size,
+                            ("COUNT", Some(count)) => field.count = count,
+                            _ => return Err(expected("whole numbers from 1")),
+                        }
+                    }
+                }
+                "WIDTH" => width = whole().ok_or_else(|| expected("a whole number"))?,
+                "HEIGHT" => height = whole().ok_or_else(|| expected("a whole number"))?,
+                "POINTS" => declared = Some(whole().ok_or_else(|| expected("a whole number"))?),
+                _ if is_last => return Err(expected("`DATA`")),
+                _ => {}
+            }
+        };
+        let declared = declared.unwrap_or_else(|| width.saturating_mul(height));
+        let place = |wanted: &str| {
+            let index = fields.iter().position(|field| field.name == wanted && field.count == 1)?;
+            Some(fields[..index].iter().map(|field| field.count).sum::<usize>())
+        };
+        let xyz = ["x", "y", "z"].map(place);
+        let normal = NORMAL_FIELDS.map(place);
+        let [Some(_), Some(_), Some(_)] = xyz else {
+            return Err(PointsError::NoPoints { file: file() });
+        };
+        let mut reader = Reader::new(name, normal.iter().all(Option::is_some));
+        let columns: Vec<usize> = xyz.iter().chain(&normal).filter_map(|column| *column).collect();
+        let columns = if reader.has_normals { &columns[..] } else { &columns[..3] };
+        let mut found = 0;
+        match data {
+            "ascii" => {
+                let text = String::from_utf8_lossy(rest);
+                for (index, row) in (line + 1..).zip(text.lines()) {
+                    let numbers: Vec<&str> = row.split_whitespace().collect();
+                    if numbers.is_empty() {
+                        continue;
+                    }
+                    let number = |column: &usize| numbers.get(*column)?.parse::<f64>().ok();
+                    let values: Option<Vec<f64>> = columns.iter().map(number).collect();
+                    let values = values.ok_or_else(|| PointsError::Expected {
+                        file: file(),
+                        line: index,
+                        expected: "a number for each of `FIELDS`",
+                        found: format!("`{}`", printable(row.as_bytes())),
+                    })?;
+                    reader.push(&values)?;
+                    found += 1;
+                }
+            }
+            "binary" => {
+                let stride: usize = fields.iter().map(|field| field.size * field.count).sum();
+                for point in rest.chunks_exact(stride.max(1)).take(declared) {
+                    let mut numbers = Vec::new();
+                    let mut at = 0;
+                    for field in &fields {
+                        for _ in 0..field.count {
+                            let bytes = &point[at..at + field.size];
+                            numbers.push(binary(field.kind, bytes).unwrap_or(f64::NAN));
+                            at += field.size;
+                        }
+                    }
+                    let values: Vec<f64> = columns.iter().map(|column| numbers[*column]).collect();
+                    reader.push(&values)?;
+                    found += 1;
+                }
+            }
+            other => {
+                return Err(PointsError::Data { file: file(), data: printable(other.as_bytes()) });
+            }
+        }
+        if found != declared {
+            return Err(PointsError::Count { file: file(), found, declared });
+        }
+        reader.finish()
+    }
+
+    /// Reads a table of points; errors name the file as `name`. The columns are separated by blanks, commas or semicolons: the
+    /// coordinates, then a normal if the next three are unit vectors in all rows, or anything else, which is skipped. Lines that begin
+    /// with `#` or `//` are comments, and a first line of words or of one number is a heading.
+    ///
+    /// # Errors
+    /// See [`PointsError`].
+    pub fn from_xyz(bytes: &[u8], name: &str) -> Result<OrientedPoints, PointsError> {
+        let text = String::from_utf8_lossy(bytes);
+        let mut rows: Vec<[f64; 6]> = Vec::new();
+        let mut has_normals = true;
+        for (index, line) in text.lines().enumerate() {
+            let line = line.trim();
+            if line.is_empty() || line.starts_with('#') || line.starts_with("//") {
+                continue;
+            }
+            let cells = line.split([' ', '\t', ',', ';']).filter(|cell| !cell.is_empty());
+            let numbers: Vec<Option<f64>> = cells.map(|cell| cell.parse().ok()).collect();
+            let coordinates: Option<Vec<f64>> = numbers.iter().take(3).copied().collect();
+            let Some([x, y, z]) = coordinates.as_deref() else {
+                let is_heading =
+                    rows.is_empty() && (numbers.len() == 1 || numbers.iter().all(Option::is_none));
+                if is_heading {
+                    continue;
+                }
+                return Err(PointsError::Expected {
+                    file: name.to_owned(),
+                    line: 1 + index,
+                    expected: "the coordinates x, y and z",
+                    found: format!("`{}`", printable(line.as_bytes())),
+                });
+            };
+            let normal = [3, 4, 5].map(|k| numbers.get(k).copied().flatten().unwrap_or(f64::NAN));
+            has_normals &= (Vector3::from(normal).norm() - 1.0).abs() < UNIT_TOLERANCE;
+            rows.push([*x, *y, *z, normal[0], normal[1], normal[2]]);
+        }
+        let mut reader = Reader::new(name, has_normals);
+        for row in &rows {
+            reader.push(if has_normals { row } else { &row[..3] })?;
+        }
+        reader.finish()
+    }
+}
+
+/// Points that are read one by one.
+struct Reader<'n> {
+    name: &'n str,
+    has_normals: bool,
+    /// The number of points so far, those that were left out included.
+    count: usize,
+    points: OrientedPoints,
+}
+
+impl Reader<'_> {
+    fn new(name: &str, has_normals: bool) -> Reader<'_> {
+        Reader { name, has_normals, count: 0, points: OrientedPoints::default() }
+    }
+
+    /// Adds a point: its coordinates, and its normal if the points have some.
+    fn push(&mut self, values: &[f64]) -> Result<(), PointsError> {
+        let (file, point) = (|| self.name.to_owned(), self.count);
+        self.count += 1;
+        if values[..3].iter().any(|value| value.is_nan()) {
+            return Ok(());
+        }
+        if let Some(value) = values[..3].iter().find(|value| !is_valid_coordinate(**value)) {
+            let (what, value) = ("a coordinate", *value);
+            return Err(PointsError::Value { file: file(), point, what, value });
+        }
+        if self.has_normals {
+            let normal = Vector3::new(values[3], values[4], values[5]);
+            let norm = normal.norm();
+            if !norm.is_normal() || norm * norm < f64::MIN_POSITIVE {
+                let what = "the norm of the normal";
+                return Err(PointsError::Value { file: file(), point, what, value: norm });
+            }
+            self.points.normals.push(normal / norm);
+        }
+        self.points.points.push(Point3::new(values[0], values[1], values[2]));
+        Ok(())
+    }
+
+    fn finish(self) -> Result<OrientedPoints, PointsError> {
+        let file = self.name.to_owned();
+        if self.points.points.is_empty() {
+            return Err(PointsError::NoPoints { file });
+        }
+        match find_outlier(&self.points.points) {
+            None => Ok(self.points),
+            Some(found) => {
+                Err(PointsError::Outlier { file, point: found.index, outlier: found.outlier })
+            }
+        }
+    }
+}
+
+/// Returns a number in little-endian order, of a kind and a size that PCD has.
+fn binary(kind: u8, bytes: &[u8]) -> Option<f64> {
+    Some(match (kind, bytes.len()) {
+        (b'F', 4) => f64::from(f32::from_le_bytes(bytes.try_into().ok()?)),
+        (b'F', 8) => f64::from_le_bytes(bytes.try_into().ok()?),
+        (b'U', 1) => f64::from(bytes[0]),
+        (b'U', 2) => f64::from(u16::from_le_bytes(bytes.try_into().ok()?)),
+        (b'U', 4) => f64::from(u32::from_le_bytes(bytes.try_into().ok()?)),
+        (b'I', 1) => f64::from(bytes[0].cast_signed()),
+        (b'I', 2) => f64::from(i16::from_le_bytes(bytes.try_into().ok()?)),
+        (b'I', 4) => f64::from(i32::from_le_bytes(bytes.try_into().ok()?)),
+        _ => return None,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const HEADER: &str = "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z intensity normal_x normal_y normal_z\n\
+        SIZE 4 4 4 4 4 4 4\nTYPE F F F F F F F\nCOUNT 1 1 1 1 1 1 1\nWIDTH 3\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 3\n";
+
+    const ROWS: [[f32; 7]; 3] = [
+        [1.0, 2.0, 3.0, 9.0, 0.0, 0.0, 2.0],
+        [f32::NAN, f32::NAN, f32::NAN, 9.0, 0.0, 0.0, 1.0],
+        [4.0, 5.0, 6.0, 9.0, 1.0, 0.0, 0.0],
+    ];
+
+    #[test]
+    fn clouds_of_pcd_are_read_as_text_and_as_bytes() {
+        let rows = ROWS.map(|row| row.map(|value| value.to_string()).join(" ")).join("\n");
+        let ascii =
+            OrientedPoints::from_pcd(format!("{HEADER}DATA ascii\n{rows}\n").as_bytes(), "a");
+        let ascii = ascii.expect("a cloud");
+        assert_eq!(ascii.points, [Point3::new(1.0, 2.0, 3.0), Point3::new(4.0, 5.0, 6.0)]);
+        assert_eq!(ascii.normals, [Vector3::z(), Vector3::x()]);
+        let mut bytes = format!("{HEADER}DATA binary\n").into_bytes();
+        bytes.extend(ROWS.iter().flatten().flat_map(|value| value.to_le_bytes()));
+        assert_eq!(OrientedPoints::from_pcd(&bytes, "a").expect("a cloud"), ascii);
+        let cut = OrientedPoints::from_pcd(&bytes[..bytes.len() - 1], "a.pcd");
+        assert!(matches!(cut, Err(PointsError::Count { found: 2, declared: 3, .. })), "{cut:?}");
+        let bare = HEADER.replace("normal_", "n");
+        let bare = format!("{bare}DATA ascii\n{rows}\n");
+        let bare = OrientedPoints::from_pcd(bare.as_bytes(), "a").expect("a cloud");
+        assert_eq!((bare.points.len(), bare.normals.len()), (2, 0));
+        for (text, what) in [
+            (format!("{HEADER}DATA binary_compressed\n"), "ascii"),
+            (HEADER.to_owned(), "DATA"),
+            (format!("{}DATA ascii\n{rows}\n", HEADER.replace(" x ", " u ")), "no points"),
+            (format!("{HEADER}DATA ascii\n1 2\n"), "line 12"),
+        ] {
+            let error = OrientedPoints::from_pcd(text.as_bytes(), "a.pcd").expect_err(what);
+            assert!(error.to_string().contains(what), "{error}");
+        }
+    }
+
+    #[test]
+    fn tables_of_points_are_read_with_their_normals_or_without() {
+        let read = |text: &str| OrientedPoints::from_xyz(text.as_bytes(), "a.xyz");
+        let plain = read("2\n// of a scanner\n1 2 3\n4;5;6\n").expect("a cloud");
+        assert_eq!(plain.points, [Point3::new(1.0, 2.0, 3.0), Point3::new(4.0, 5.0, 6.0)]);
+        assert!(plain.normals.is_empty());
+        let oriented = read("x y z nx ny nz\n1,2,3,0,0,1\n4,5,6,0.999,0.01,0\n").expect("a cloud");
+        assert_eq!((oriented.points.len(), oriented.normals[0]), (2, Vector3::z()));
+        // Colours are no normals.
+        assert!(read("1 2 3 255 0 0\n4 5 6 0 0 1\n").expect("a cloud").normals.is_empty());
+        assert!(matches!(read("1 2 3\n1 2\n"), Err(PointsError::Expected { line: 2, .. })));
+        assert!(matches!(read("# none\n"), Err(PointsError::NoPoints { .. })));
+    }
+}
