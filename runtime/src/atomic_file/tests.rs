@@ -34,13 +34,13 @@ fn removes_only_abandoned_temporary_files() {
     let folder = tempfile::tempdir().expect("a folder");
     let path_of = |name: &str| folder.path().join(name);
     let live = AtomicFile::create(path_of("b")).expect("begun");
-    let unrelated = [".touchoff-notes", "touchoff.tmp", ".other.tmp"];
-    for name in unrelated.iter().chain(&[".touchoff-Ab3xyz.tmp"]) {
+    let unrelated = [".touchoff-notes", ".touchoff-notes.tmp", "touchoff.tmp", ".other.tmp"];
+    for name in unrelated.iter().chain(&[".touchoff-0123456789abcdef.tmp"]) {
         fs::write(path_of(name), "x").expect("written");
     }
     AtomicFile::write(path_of("a"), "a").expect("written");
     let found = names(folder.path());
-    assert_eq!(found.len(), 5, "{found:?}");
+    assert_eq!(found.len(), 6, "{found:?}");
     assert!(unrelated.iter().all(|name| found.contains(&(*name).to_owned())), "{found:?}");
     // The file being written is not treated as abandoned.
     live.commit().expect("written");
