@@ -154,3 +154,33 @@ fn a_coordinate_far_outside_is_named() {
         ["far.stl, triangle 5 (from 0), byte 350: the coordinate", "is far outside the part"];
     bench.refused("far.stl", "path.csv", "D2Ball", &says);
 }
+
+/// A scan does not say which side is out: normals that face the side around which the surface closes are named.
+#[test]
+fn inward_normals_of_a_scan_are_named() {
+    let bench = Bench::new();
+    for (name, sign) in [("outward.ply", 1.0), ("inward.ply", -1.0)] {
+        let mut ply = "ply\nformat ascii 1.0\nelement vertex 2000\n".to_owned();
+        for column in ["x", "y", "z", "nx", "ny", "nz"] {
+            ply += &format!("property double {column}\n");
+        }
+        ply += "end_header\n";
+        for k in 0..2_000 {
+            let z = 1.0 - (2.0 * f64::from(k) + 1.0) / 2_000.0;
+            let (sine, cosine) = (2.4 * f64::from(k)).sin_cos();
+            let [x, y] = [cosine, sine].map(|part| part * (1.0 - z * z).sqrt());
+            let [nx, ny, nz] = [x, y, z].map(|part| sign * part);
+            ply += &format!("{} {} {} {nx} {ny} {nz}\n", 5.0 * x, 5.0 * y, 5.0 * z);
+        }
+        bench.write(name, ply);
+        for line in [
+            format!("sample --part {name} --unit mm -o {name}.touchoff"),
+            format!("run --part {name}.touchoff --unit mm --tool D2Ball --program path.csv"),
+        ] {
+            let output = bench.touchoff(&line);
+            assert!(output.status.success(), "{line}: {}", stderr(&output));
+            let words = ": the normals face into the material: at 100 % of the points";
+            assert_eq!(stderr(&output).contains(words), sign < 0.0, "{line}: {}", stderr(&output));
+        }
+    }
+}
