@@ -61,9 +61,13 @@ impl PlayedStock {
         step: &Move,
         position: f64,
     ) -> Result<(), EngineError> {
-        let Move { path, rapid, .. } = step;
+        let Move { path, rapid, alternative, .. } = step;
         let end = self.at.floor() + 1.0;
         let until = position.min(end);
+        if *alternative {
+            self.at = until;
+            return Ok(());
+        }
         let [from, to] = [self.at, until].map(|at| 1.0 - (end - at));
         let max_travel = path.max_speed(tool.info(), self.stock.unit()) * (to - from);
         let mode = if *rapid { MotionMode::Rapid } else { MotionMode::Feed };

@@ -57,7 +57,8 @@ impl ToolPath {
         let (program, unit) = (checked.job.program, checked.job.unit());
         for (index, tool) in checked.job.tools.iter().enumerate() {
             let symmetry = tool.tool.info().symmetry;
-            for step in program.moves(0, tool.motions, symmetry, None, unit)? {
+            let moves = program.moves(0, tool.motions, symmetry, None, unit)?;
+            for step in moves.filter(|step| !step.alternative) {
                 path.add(&step, index);
             }
         }

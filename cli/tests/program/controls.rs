@@ -188,7 +188,7 @@ fn controls_and_machines_are_listed() {
         let stated = row["rules"].as_object().map_or(0, |rules| rules.len());
         let open = match row["name"].as_str() {
             Some("fanuc") => 3,
-            Some("haas") => 2,
+            Some("haas" | "linuxcnc") => 2,
             Some("siemens") => 4,
             Some("heidenhain") => 1,
             _ => 0,
@@ -198,6 +198,6 @@ fn controls_and_machines_are_listed() {
     let machines = stdout(&touchoff(&["machines"]));
     let trunnion = "A moves the table, from -120 to 30°, home 0, about [1.0, 0.0, 0.0] through [0.0, 0.0, -480.0]";
     assert!(machines.contains(trunnion), "{machines}");
-    let unknown = touchoff(&["machines", "4-axis"]);
+    let unknown = touchoff(&["machines", "9-axis"]);
     assert!(!unknown.status.success() && stderr(&unknown).contains("A-C trunnion"));
 }

@@ -5,6 +5,7 @@ use crate::help::page_commands;
 use std::process::Output;
 use touchoff::Mesh;
 use touchoff::Unit;
+use touchoff_verify::gcode::{Choice, ControlRules, Rule};
 
 /// A posted program: it faces the bracket, mills its ends, and runs a ball along an edge, tilted by 80 degrees.
 const PROGRAM: &str = "%
@@ -86,6 +87,13 @@ fn joined(meshes: &[Mesh]) -> Mesh {
     Mesh::new(vertices, triangles, Unit::Millimetre).expect("a mesh")
 }
 
+/// Returns the file of LinuxCNC with rotary axes that turn as ISO 841 states.
+pub(super) fn linuxcnc() -> String {
+    let rules = ControlRules::named("linuxcnc").expect("a control");
+    let rules = rules.with(Rule::RotaryDirection, Choice::Iso841);
+    rules.with(Rule::HeadLength, Choice::Compensated).to_toml()
+}
+
 /// Returns the job of docs/verify.md, and a folder with its files.
 pub(super) fn bracket() -> (Bench, String) {
     let bench = Bench::new();
@@ -96,6 +104,7 @@ pub(super) fn bracket() -> (Bench, String) {
     ];
     bench.part("vise.stl", &joined(&jaws));
     bench.write("bracket.nc", PROGRAM);
+    bench.write("mill.toml", linuxcnc());
     bench.write("face40.tool", end_mill("Face40", 40.0));
     bench.write("ball6.tool", BALL);
     bench.write("mill10.tool", end_mill("Mill10", 10.0));

@@ -148,7 +148,7 @@ fn wrong_parts_and_tools_are_refused() {
     refused(&["--part", &part, "--unit", "mm"], 1, "empty.stl");
     let program = bench.write("bad.nc", "G21 G90\nG1 X#1 F100.\n");
     refused(&["--program", &program], 2, "bad.nc:2");
-    refused(&["--program", &program, "--machine", "4-axis"], 2, "4-axis");
+    refused(&["--program", &program, "--machine", "9-axis"], 2, "9-axis");
     let table = bench.write("table.csv", "0,0,9,0,0,1\n");
     refused(
         &["--program", &table, "--machine", "3-axis"],

@@ -32,6 +32,7 @@ fn slot() -> (Bench, String) {
     let bench = Bench::new();
     bench.part("block.stl", &cuboid([-60.0, -60.0, -60.0], [60.0, 60.0, 0.0]));
     bench.write("slot.nc", SLOT);
+    bench.write("mill.toml", crate::job::linuxcnc());
     bench.write("mill10.tool", MILL);
     let page = include_str!("../../../docs/verify.md");
     let (_, job) = page.split_once("```toml\n# slot.toml\n").expect("the job of the page");

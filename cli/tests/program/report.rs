@@ -205,7 +205,7 @@ fn a_job_has_tools_fixtures_and_stock() {
     for tool in ["T1 Face40", "T2 Ball6", "T3 Mill10"] {
         assert!(page.text.contains(&format!("<h3>{tool}")), "{tool}");
     }
-    for line in ["Machine: A-C trunnion", "Control: linuxcnc", "3 motions not checked"] {
+    for line in ["Machine: A-C trunnion", "Control: mill.toml", "3 motions not checked"] {
         assert!(page.text.contains(line), "{line}");
     }
     // 230 mm at F800, 112 mm at F600 and 80 mm at F1000, on a machine that states no rates.
@@ -216,8 +216,8 @@ fn a_job_has_tools_fixtures_and_stock() {
         );
         assert!(page.text.contains(&row), "{row}");
     }
-    // Job, part, program, three tools and the vise.
-    assert_eq!(page.between("<td><code>", "</code>").len(), 7);
+    // Job, part, program, control, three tools and the vise.
+    assert_eq!(page.between("<td><code>", "</code>").len(), 8);
 }
 
 /// The path of a tip: down in rapid traverse, around a circle at feed rate, and up. The circle is drawn within a thousandth of

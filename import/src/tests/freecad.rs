@@ -6,7 +6,7 @@ use std::fs;
 use touchoff::tool::Tool;
 
 /// Returns a bit of a shape.
-fn bit(shape: &str, parameters: Value) -> Value {
+fn bit(shape: &str, parameters: &Value) -> Value {
     json!({ "version": 2, "name": shape, "shape": format!("{shape}.fcstd"), "parameter": parameters })
 }
 
@@ -40,7 +40,7 @@ fn notes(library: &Library) -> Vec<Note> {
 fn a_keyway_cutter_is_a_disc_on_a_neck() {
     let keyway = bit(
         "keyway",
-        json!({ "CuttingEdgeHeight": "0.2500 in", "Diameter": "0.5000 in", "Length": "2.0000 in",
+        &json!({ "CuttingEdgeHeight": "0.2500 in", "Diameter": "0.5000 in", "Length": "2.0000 in",
             "LowerCuttingHeight": "0.2500 in", "NeckCuttingHeight": "0.0000 in", "NeckDiameter": "0.2500 in",
             "NeckHeight": "0.7500 in", "ShankDiameter": "0.5000 in", "Units": "Imperial" }),
     );
@@ -61,7 +61,7 @@ fn a_lollipop_is_a_ball_on_a_neck() {
     let neck = 5.0 + 21f64.sqrt();
     let lollipop = bit(
         "lollipop",
-        json!({ "CuttingEdgeHeight": format!("{neck:.4} mm"), "Diameter": "10 mm", "Length": "60 mm",
+        &json!({ "CuttingEdgeHeight": format!("{neck:.4} mm"), "Diameter": "10 mm", "Length": "60 mm",
             "NeckDiameter": "4 mm", "NeckHeight": "15 mm", "ShankDiameter": "10 mm" }),
     );
     let top = (neck * 1e4).round() / 1e4 + 15.0;
@@ -84,7 +84,7 @@ fn a_neck_cuts_as_far_as_it_states() {
         let narrow = 12.0 - half / 3f64.sqrt();
         let bit = bit(
             "dovetail",
-            json!({ "CuttingEdgeAngle": "60 °", "CuttingEdgeHeight": format!("{half} mm"), "Diameter": "24 mm",
+            &json!({ "CuttingEdgeAngle": "60 °", "CuttingEdgeHeight": format!("{half} mm"), "Diameter": "24 mm",
                 "Length": "60 mm", "NeckCuttingHeight": edges, "NeckDiameter": "10 mm", "NeckHeight": "6 mm",
                 "ShankDiameter": "10 mm" }),
         );
@@ -112,7 +112,7 @@ fn the_diameter_of_a_chamfer_mill_follows_from_its_cone() {
         let mut parameters = json!({ "CuttingEdgeAngle": "90 °", "CuttingEdgeHeight": "4 mm", "Length": "40 mm",
             "ShankDiameter": "6 mm", "TipDiameter": "2 mm" });
         parameters["Diameter"] = diameter;
-        read(&bit("chamfer", parameters))
+        read(&bit("chamfer", &parameters))
     };
     let derived = chamfer(Value::Null);
     assert_eq!(derived.tools()[0].entry.diameter(), Some(10.0));
@@ -125,7 +125,7 @@ fn a_length_without_a_unit_is_in_that_of_the_bit() {
     let endmill = |diameter: Value, units: &str| {
         read(&bit(
             "endmill",
-            json!({ "CuttingEdgeHeight": "1 in", "Diameter": diameter, "Length": "3 in",
+            &json!({ "CuttingEdgeHeight": "1 in", "Diameter": diameter, "Length": "3 in",
                 "ShankDiameter": "0.5 in", "Units": units }),
         ))
     };
@@ -150,7 +150,7 @@ fn folders_of_vendors_have_names_in_lower_case() {
     let endmill = json!({ "CuttingEdgeHeight": "10 mm", "Diameter": "3 mm", "Length": "40 mm",
         "ShankDiameter": "3 mm" });
     let place = folder.path().join("bit/Mill_3.fctb");
-    fs::write(place, bit("endmill", endmill).to_string()).expect("a file");
+    fs::write(place, bit("endmill", &endmill).to_string()).expect("a file");
     let list = json!({ "label": "Shop", "tools": [{ "nr": 4, "path": "Mill_3.fctb" }] });
     let file = folder.path().join("library/Shop.fctl");
     fs::write(&file, list.to_string()).expect("a file");
@@ -164,7 +164,7 @@ fn folders_of_vendors_have_names_in_lower_case() {
 fn shapes_have_values_of_their_own() {
     let drill = read(&bit(
         "drill",
-        json!({ "CuttingEdgeAngle": 236.0, "CuttingEdgeHeight": "20 mm", "Diameter": "4 mm", "Length": "60 mm",
+        &json!({ "CuttingEdgeAngle": 236.0, "CuttingEdgeHeight": "20 mm", "Diameter": "4 mm", "Length": "60 mm",
             "ShankDiameter": "4" }),
     ));
     let point = 2.0 / f64::to_radians(59.5).tan();
@@ -176,7 +176,7 @@ fn shapes_have_values_of_their_own() {
     for (diameter, neck) in [("5 mm", 3.0), ("2 mm", 1.2)] {
         let mill = read(&bit(
             "thread-mill",
-            json!({ "Crest": "0.1 mm", "Diameter": diameter, "Length": "50 mm", "ShankDiameter": "6 mm",
+            &json!({ "Crest": "0.1 mm", "Diameter": diameter, "Length": "50 mm", "ShankDiameter": "6 mm",
                 "cuttingAngle": "60" }),
         ));
         let taken = |what, value: f64| Note::Unstated(what, format!("taken: {value}"));
@@ -191,7 +191,7 @@ fn shapes_have_values_of_their_own() {
 fn chamfer_mills_of_an_add_on_are_cones() {
     let mill = read(&bit(
         "_fusion_chamfer_mill",
-        json!({ "CuttingEdgeHeight": "30,5 mm", "Diameter": "8,0 mm", "Length": "60,0 mm",
+        &json!({ "CuttingEdgeHeight": "30,5 mm", "Diameter": "8,0 mm", "Length": "60,0 mm",
             "NeckLength": "30,5 mm", "ShankDiameter": "8,0 mm", "TipAngle": "15,0 deg", "TipDiameter": "0,2 mm" }),
     ));
     let cone = 3.9 / f64::to_radians(7.5).tan();

@@ -105,7 +105,7 @@ impl<'a> ApproachSearch<'a> {
 
     /// Adds motions with their findings.
     pub(crate) fn add(&mut self, moves: &[Move], findings: &[Finding]) {
-        for step in moves {
+        for step in moves.iter().filter(|step| !step.alternative) {
             self.travel[usize::from(step.rapid)] += path_length(&step.path);
             self.feeds += usize::from(!step.rapid);
         }

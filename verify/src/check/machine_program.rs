@@ -759,10 +759,11 @@ impl MoveFrame {
             Resolved::Band(Band { motions, curves }) => {
                 // The tool ends where the spiral ends, which is the last.
                 let first = motions.first().and_then(|(motion, _)| start(*motion));
-                let motions = curves.iter().chain(motions).map(|(motion, error)| {
+                let along = |(motion, error): &(_, f64)| {
                     arriving(MovePath::Joints(Box::new(self.path(*motion, *error))))
-                });
-                first.into_iter().chain(motions).collect()
+                };
+                let curves = curves.iter().map(|curve| Move { alternative: true, ..along(curve) });
+                first.into_iter().chain(curves).chain(motions.iter().map(along)).collect()
             }
             Resolved::Arrival(motion, _) => {
                 let rest = self.rest(**motion, 1.0);
@@ -786,6 +787,7 @@ fn move_along(step: &Step, from: Option<usize>, path: MovePath) -> Move {
         within: step.within,
         from,
         rapid: step.rapid,
+        alternative: false,
         tool: step.state.tool,
         work_offset: Some(step.state.work_offset),
         path,

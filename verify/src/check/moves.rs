@@ -20,6 +20,8 @@ pub struct Move {
     pub from: Option<usize>,
     /// Set in rapid traverse.
     pub rapid: bool,
+    /// Set on a path beside that of the program, which some control takes instead: it is checked, but cuts no stock and has no length.
+    pub alternative: bool,
     /// Number of the tool in the spindle, if the program states it.
     pub tool: Option<u32>,
     /// The work offset, in a program on a machine.
@@ -173,6 +175,7 @@ impl Move {
             within: None,
             from,
             rapid: to.rapid,
+            alternative: false,
             tool: None,
             work_offset: None,
             path,

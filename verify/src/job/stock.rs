@@ -128,6 +128,9 @@ impl StockCut {
     /// If it cannot be cut.
     pub(super) fn advance(&mut self, tool: &JobTool<'_>, step: &Move) -> Result<(), JobError> {
         self.see(tool, step.block());
+        if step.alternative {
+            return Ok(());
+        }
         let CutStock { findings, stock, tolerance, .. } = &mut self.cut;
         let info = tool.tool.info();
         let max_speed = step.path.max_speed(info, self.unit);

@@ -33,7 +33,7 @@ fn linuxcnc_turns_axes_either_way_unless_the_direction_is_stated() {
     indexed.gives_by(linuxcnc(), FINDINGS, &["V0101 under rotary_direction = \"reversed\""]);
     // Other controls turn axes by ISO 841.
     let fanuc = blocks.replace("G43 H1\n", "").replace("M428", "G43.4 H1").replace("M429", "G49");
-    let fanuc = fanuc.replace("A0. C0.\n", "A0. C0.\n").replace("G0 X0.", "G43 H1\nG0 X0.");
+    let fanuc = fanuc.replace("G0 X0.", "G43 H1\nG0 X0.");
     walled(&fanuc).with("machine = \"A-C trunnion\"").gives(FANUC, CLEAN, &[]);
 }
 
