@@ -138,9 +138,11 @@ fn names_and_links_of_jobs_are_no_commands() {
     assert_eq!(again.status.code(), Some(1), "{}", stderr(&again));
     assert_eq!(std::fs::read_to_string(place("victim")).expect("read"), "kept");
     assert!(!findings.is_symlink());
-    symlink("a", place("linked")).expect("a link");
+    let elsewhere = tempfile::tempdir().expect("a folder");
+    symlink(elsewhere.path(), place("linked")).expect("a link");
     let linked = script("integrations/verify-jobs linked", folder.path(), &["a-b.toml".to_owned()]);
     assert_eq!(linked.status.code(), Some(2), "{}", stderr(&linked));
+    assert_eq!(std::fs::read_dir(elsewhere.path()).expect("a folder").count(), 0);
     // A job writes nothing: not over what another one reads, whatever its ending.
     let victim = std::fs::read(place("clamp.stl")).expect("a mesh");
     let clean = std::fs::read_to_string(place("clean.toml")).expect("a job");
