@@ -33,6 +33,12 @@ use std::time::{Duration, Instant};
 
 fn main() -> ExitCode {
     end_when_memory_is_used_up();
+    // A panic, as where the system refuses a thread, has a status of the manual, too.
+    let report = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |panic| {
+        report(panic);
+        end_at_once();
+    }));
     let Arguments { command, json, max_time } = Arguments::read();
     if let Some(Err(failure)) = max_time.map(end_after) {
         return fail(&failure, verify::NOT_CHECKED);
@@ -70,7 +76,7 @@ fn main() -> ExitCode {
     result.unwrap_or_else(|failure| fail(&failure, min_status))
 }
 
-/// The exit status of a command that had no time or no memory left.
+/// The exit status of a command that had no time or no memory left, or has a fault itself.
 const OUT_OF_RESOURCES: i32 = 2;
 
 /// Ends the program after a time. What it does then, a proof or the reader of a file, need not be able to stop.

@@ -291,7 +291,7 @@ fn print_stock(
     if verdict == Verdict::None {
         let files = [&entry.output, &entry.map].into_iter().flatten();
         files.for_each(|file| {
-            message!("not written: {}, as the program was not verified", file.display())
+            message!("not written: {}, as the program was not verified", file.display());
         });
         return Ok(());
     }

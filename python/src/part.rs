@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use touchoff::certify::TriangleBvh;
 use touchoff::mesh::{Geometry, GeometryError};
-use touchoff::{Cloud, CloudError, Mesh, Sampling, Unit, read_regular_file};
+use touchoff::{Cloud, CloudError, FileKind, Mesh, Sampling, Unit, read_regular_file};
 
 /// A workpiece. Its points are sampled, and its triangles sorted, when a query first needs them.
 #[pyclass(frozen, module = "touchoff._touchoff")]
@@ -39,7 +39,7 @@ impl Read {
         let name = path.display().to_string();
         let is_saved = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case(SAVED));
         let unreadable = |source| GeometryError::Unreadable { file: name.clone(), source };
-        let bytes = read_regular_file(path).map_err(unreadable)?;
+        let bytes = read_regular_file(path, FileKind::Geometry).map_err(unreadable)?;
         let digest: String =
             Sha256::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect();
         if let Some(expected) = expected.filter(|expected| **expected != *digest) {

@@ -9,6 +9,7 @@
 //! | Makera Studio | `;@MKR\|TOOL\|number=2\|type=Flat End\|diameter=3\|cornerradius=0`, in millimetres |
 
 use super::shown;
+use std::collections::HashSet;
 use touchoff::Unit;
 
 /// A tool that a comment describes. Lengths are in millimetres.
@@ -30,7 +31,7 @@ pub struct StatedTool {
 }
 
 /// The form of a tool's end, as a comment names it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum StatedEnd {
     /// A flat end mill.
     Flat,
@@ -47,14 +48,12 @@ pub enum StatedEnd {
 /// Returns the tools that the comments of a program describe, each description once. `unit` is that of the program.
 pub(crate) fn stated_tools(text: &str, unit: Unit) -> Vec<StatedTool> {
     let mut found: Vec<StatedTool> = Vec::new();
+    let mut known = HashSet::new();
     for (index, line) in text.lines().enumerate() {
         for comment in comments(line) {
             let Some(tool) = stated_tool(1 + index, comment, unit) else { continue };
-            let is_known = |known: &StatedTool| {
-                StatedTool { line: tool.line, comment: tool.comment.clone(), ..known.clone() }
-                    == tool
-            };
-            if !found.iter().any(is_known) {
+            let StatedTool { number, diameter, corner, end, .. } = tool;
+            if known.insert((number, diameter.to_bits(), corner.map(f64::to_bits), end)) {
                 found.push(tool);
             }
         }
