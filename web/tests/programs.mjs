@@ -135,7 +135,7 @@ const far = JSON.parse(checker.check(0.01));
 assert.ok(far.far && far.clear && Math.abs(far.unit_factor * 25.4 - 1) < 1e-9, JSON.stringify(far));
 
 // What is refused, with its reason.
-refused(() => checker.readProgram(gcode, 'along.nc', '4-axis'), /4-axis/);
+refused(() => checker.readProgram(gcode, 'along.nc', '7-axis'), /7-axis/);
 refused(() => checker.readProgram(bytes('0,0,x,0,0,1\n'), 'bad.csv', '3-axis'), /bad\.csv/);
 refused(() => checker.check(-1), /tolerance/);
 refused(() => checker.setTool(undefined, 'x.tool', 'tool X { units mm; }', '{}'), /x\.tool has errors/);
