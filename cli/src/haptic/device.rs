@@ -7,9 +7,7 @@ use nalgebra::{Point3, Vector3};
 use std::path::Path;
 use touchoff::tool::Symmetry;
 use touchoff::{Pose, Unit};
-use touchoff_haptics::{
-    Device, DeviceAxes, DeviceLimits, HandImpedance, PlaybackDevice, SimulatedHand, Tremor,
-};
+use touchoff_haptics::{Device, HandImpedance, PlaybackDevice, SimulatedHand, Tremor};
 
 /// Height above the part at which a hand begins, in mm.
 const START_HEIGHT: f64 = 2.0;
@@ -44,7 +42,7 @@ impl HapticRun<'_> {
         };
         let motion = move |time| motion(time);
         let tremor = Tremor { size: 0.02, frequency: 10.0, seed: self.arguments.part.seed };
-        Ok(SimulatedHand::new(self.limits(), self.arguments.rate, motion)?
+        Ok(SimulatedHand::new(self.limits, self.arguments.rate, motion)?
             .with_centre(Point3::origin(), unit)?
             .with_tremor(&tremor)?)
     }
@@ -53,7 +51,7 @@ impl HapticRun<'_> {
     /// grip, and the coupling if there is one.
     fn press_depth(&self) -> f64 {
         let grip = HandImpedance::default().stiffness;
-        let coupling = if self.arguments.direct { 0.0 } else { 1.0 / self.limits().stiffness };
+        let coupling = if self.arguments.direct { 0.0 } else { 1.0 / self.limits.stiffness };
         self.arguments.press * (1.0 / grip + coupling)
     }
 
@@ -68,7 +66,7 @@ impl HapticRun<'_> {
         let file = file.ok_or(Failure::Usage("`--device playback` plays `--program FILE`"))?;
         let program = program::read(file, self.tool.info(), self.arguments.part.unit)?;
         let poses: Vec<Pose> = program.locations.iter().map(|location| location.pose).collect();
-        Ok(PlaybackDevice::new(poses, cycles, self.limits())?)
+        Ok(PlaybackDevice::new(poses, cycles, self.limits)?)
     }
 
     /// Opens the SpaceMouse, which moves the tool from above the part.
@@ -79,19 +77,6 @@ impl HapticRun<'_> {
         let (unit, rate) = (self.arguments.part.unit, self.arguments.rate);
         Spacenav::open(Path::new(SOCKET), self.start(), unit, rate, gains)
             .map_err(|source| Failure::Spacenav { socket: SOCKET, source })
-    }
-
-    /// Returns the limits of a simulated device.
-    pub(super) fn limits(&self) -> DeviceLimits {
-        DeviceLimits {
-            axes: match self.tool.info().symmetry {
-                Symmetry::Revolved => DeviceAxes::Five,
-                Symmetry::Solid { .. } => DeviceAxes::Six,
-            },
-            force: self.arguments.max_force,
-            stiffness: self.arguments.device_stiffness,
-            ..DeviceLimits::default()
-        }
     }
 
     /// Returns the place that the hand presses: the given one, or the point in the middle of the part's highest surface.

@@ -16,10 +16,11 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 use touchoff::certify::TriangleBvh;
+use touchoff::tool::Symmetry;
 use touchoff::{Part, Probe, Tool};
 use touchoff_haptics::{
-    ContactStiffness, Coupling, Device, DeviceLimits, MonotonicClock, Realtime, Rendering, Session,
-    SessionSettings, check_core, state_channel,
+    ContactStiffness, Coupling, Device, DeviceAxes, DeviceLimits, MonotonicClock, Realtime,
+    Rendering, Session, SessionSettings, check_core, state_channel,
 };
 use touchoff_postures::Recorder;
 
@@ -49,8 +50,9 @@ pub(crate) fn haptic(arguments: &Haptic, json: bool) -> Result<(), Failure> {
     let recordings = Recordings::new(table.transpose()?, recorder.transpose()?);
     // At least one cycle is run, however short the duration.
     let cycles = (arguments.duration * arguments.rate).round().max(1.0) as u64;
-    let mut run = HapticRun { arguments, json, cycles, part: &part, tool, contact: None };
-    run.choose_stiffness();
+    let limits = limits(arguments, tool);
+    let contact = contact_stiffness(arguments, &part, tool, &limits);
+    let run = HapticRun { arguments, json, cycles, part: &part, tool, limits, contact };
     match arguments.device {
         DeviceKind::Hand => run.drive(run.hand()?, recordings),
         DeviceKind::Playback => run.drive(run.playback()?, recordings),
@@ -93,25 +95,41 @@ struct HapticRun<'a> {
     cycles: u64,
     part: &'a Part,
     tool: &'a dyn Tool,
-    /// The contact stiffness, once it is chosen.
-    contact: Option<ContactStiffness>,
+    limits: DeviceLimits,
+    contact: ContactStiffness,
+}
+
+/// Returns the limits of a simulated device.
+fn limits(arguments: &Haptic, tool: &dyn Tool) -> DeviceLimits {
+    DeviceLimits {
+        axes: match tool.info().symmetry {
+            Symmetry::Revolved => DeviceAxes::Five,
+            Symmetry::Solid { .. } => DeviceAxes::Six,
+        },
+        force: arguments.max_force,
+        stiffness: arguments.device_stiffness,
+        ..DeviceLimits::default()
+    }
+}
+
+/// Takes the stiffness of the command line, or derives one, and says what may happen with it.
+fn contact_stiffness(
+    arguments: &Haptic,
+    part: &Part,
+    tool: &dyn Tool,
+    limits: &DeviceLimits,
+) -> ContactStiffness {
+    let contact = match arguments.stiffness {
+        Some(stiffness) => ContactStiffness::of(stiffness, part, tool, arguments.law, limits),
+        None => ContactStiffness::derived(part, tool, arguments.law, limits),
+    };
+    for warning in contact.warnings() {
+        message!("{warning}");
+    }
+    contact
 }
 
 impl<'a> HapticRun<'a> {
-    /// Takes the stiffness of the command line, or derives one, and says what may happen with it.
-    fn choose_stiffness(&mut self) {
-        let HapticRun { arguments, part, tool, .. } = *self;
-        let (law, limits) = (arguments.law, self.limits());
-        let contact = match arguments.stiffness {
-            Some(stiffness) => ContactStiffness::of(stiffness, part, tool, law, &limits),
-            None => ContactStiffness::derived(part, tool, law, &limits),
-        };
-        for warning in contact.warnings() {
-            message!("{warning}");
-        }
-        self.contact = Some(contact);
-    }
-
     /// Creates the session.
     fn session(&self, limits: DeviceLimits) -> Result<Session<'a>, Failure> {
         let rendering = match self.arguments.direct {
@@ -119,7 +137,7 @@ impl<'a> HapticRun<'a> {
             false => Rendering::Coupled(Coupling::of(&limits)),
         };
         let settings = SessionSettings {
-            stiffness: self.contact.map_or(1.0, |contact| contact.stiffness),
+            stiffness: self.contact.stiffness,
             rendering: Some(rendering),
             ..SessionSettings::new(self.arguments.rate)
         };
@@ -171,8 +189,8 @@ impl<'a> HapticRun<'a> {
         let recorded = recordings.end();
         // The report is printed even if a recording failed.
         match json {
-            true => print_json(&report, arguments, contact.as_ref()),
-            false => print_text(&report, arguments, contact.as_ref()),
+            true => print_json(&report, arguments, &contact),
+            false => print_text(&report, arguments, &contact),
         }?;
         recorded?;
         if stop.load(Ordering::Relaxed) { Err(Failure::Interrupted) } else { Ok(()) }

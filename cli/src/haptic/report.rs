@@ -41,10 +41,10 @@ struct RunSummary<'a> {
     faults: FaultCounts,
     dropped_states: u64,
     law: String,
-    /// In N per unit of the law's force.
-    stiffness: Option<f64>,
+    /// Force in N per unit of the law's force.
+    stiffness: f64,
     /// The stiffness with the reason for it.
-    stiffness_reason: Option<String>,
+    stiffness_reason: String,
     /// The depth to which the device's largest force presses the tool into a plane, in the part's unit.
     depth_at_max_force: Option<f64>,
     /// The thinnest place of the part that was found, in its unit.
@@ -85,7 +85,7 @@ impl Quantiles {
 pub(super) fn print_json(
     report: &LoopReport,
     arguments: &Haptic,
-    contact: Option<&ContactStiffness>,
+    contact: &ContactStiffness,
 ) -> Result<(), Failure> {
     let energy = report.last.map(|state| state.energy).unwrap_or_default();
     let faults = report.faults;
@@ -112,10 +112,10 @@ pub(super) fn print_json(
         },
         dropped_states: report.dropped_states,
         law: arguments.law.to_string(),
-        stiffness: contact.map(|contact| contact.stiffness),
-        stiffness_reason: contact.map(ContactStiffness::reason),
-        depth_at_max_force: contact.and_then(|contact| contact.depth),
-        least_thickness: contact.and_then(|contact| contact.thin).map(|thin| thin.thickness),
+        stiffness: contact.stiffness,
+        stiffness_reason: contact.reason(),
+        depth_at_max_force: contact.depth,
+        least_thickness: contact.thin.map(|thin| thin.thickness),
     };
     let mut out = Output::lines();
     out.json(&summary)?;
@@ -126,7 +126,7 @@ pub(super) fn print_json(
 pub(super) fn print_text(
     report: &LoopReport,
     arguments: &Haptic,
-    contact: Option<&ContactStiffness>,
+    contact: &ContactStiffness,
 ) -> Result<(), Failure> {
     let mut out = Output::lines();
     let energy = report.last.map(|state| state.energy).unwrap_or_default();
@@ -138,9 +138,7 @@ pub(super) fn print_text(
         "{cycles} cycles at {of} Hz, {missed} missed their deadline, {skipped} skipped; law {}",
         arguments.law
     )?;
-    if let Some(contact) = contact {
-        writeln!(out, "  stiffness:        {}", contact.reason())?;
-    }
+    writeln!(out, "  stiffness:        {}", contact.reason())?;
     writeln!(out, "  cycle time, µs:   {}", Quantiles::of(&report.durations).format())?;
     writeln!(out, "  start delay, µs:  {}", Quantiles::of(&report.start_delays).format())?;
     let [force, torque] = report.peak_wrench;
