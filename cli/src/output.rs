@@ -185,7 +185,7 @@ pub(crate) fn refuse_inputs<'a>(
 
 /// Returns the files that are read for an input beside it, as far as they can be: those that a tool's file mounts, those that a tool
 /// library lists, and of a folder its tools, with what they mount, and the list of their numbers.
-pub(crate) fn listed(input: &Path) -> Vec<PathBuf> {
+fn listed(input: &Path) -> Vec<PathBuf> {
     if input.is_dir() {
         let files = files_in_folder(input);
         let mounted: Vec<PathBuf> = files.iter().flat_map(|file| listed(file)).collect();
@@ -194,7 +194,7 @@ pub(crate) fn listed(input: &Path) -> Vec<PathBuf> {
     match extension(input).as_deref() {
         Some("tool") => {
             let Ok(source) = Source::read(input) else { return Vec::new() };
-            // Whoever loads the tool decides which files it may mount.
+            // The loader of the tool decides which files it may mount.
             let compiled = touchoff_dsl::compile(&source.with_root("/"));
             compiled
                 .sources

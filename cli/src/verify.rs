@@ -47,7 +47,7 @@ pub(crate) fn read(
     let inputs =
         JobInputs::read::<Failure>(file, |named| LoadedTool::load(&named.name, &arguments(named)))?;
     // Those that a machine and earlier set-ups name are known by now.
-    refuse(&inputs.file, inputs.files())?;
+    refuse(&inputs.file, inputs.further_files())?;
     for (named, loaded) in &inputs.tools {
         let info = loaded.tool().info();
         if let Some(line) = inputs.program.check_tool(named.motions, info, inputs.file.unit)? {
@@ -287,7 +287,7 @@ fn print_stock(
         cut.farthest("most over the part", comparison.greatest_excess()),
         cut.farthest("most cut from the part", comparison.deepest_gouge()),
     );
-    // What remains after a program that was not verified is not known.
+    // The material that a program leaves which was not verified is not known.
     if verdict == Verdict::None {
         let files = [&entry.output, &entry.map].into_iter().flatten();
         files.for_each(|file| {

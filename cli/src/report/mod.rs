@@ -18,7 +18,7 @@ mod shapes;
 
 use crate::arguments::Report;
 use crate::failure::Failure;
-use crate::output::{extension, file_name, listed, unreadable, write_file};
+use crate::output::{extension, file_name, unreadable, write_file};
 use crate::picture::{Heading, Legend, close_up, facets, sheet};
 use crate::postures::map::check_part;
 use crate::progress::Progress;
@@ -35,6 +35,7 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 use touchoff::{Escaped, FileKind, read_regular_file};
+use touchoff_import::files_in_folder;
 use touchoff_postures::PostureMap;
 use touchoff_verify::JobReport;
 use touchoff_verify::job::JobFinding;
@@ -224,12 +225,12 @@ impl<'a> Content<'a> {
         let named = job_file.into_iter().chain(inputs.files()).chain(map_file);
         let mut files: Vec<InputFile> = Vec::new();
         for (role, input) in named {
-            // A folder of tools is what it lists.
-            let own = (!input.is_dir()).then(|| input.to_owned());
-            for file in own.into_iter().chain(listed(input)) {
-                if !files.iter().any(|known| known.name == file.display().to_string()) {
+            if input.is_dir() {
+                for file in files_in_folder(input) {
                     files.push(InputFile::read(role.clone(), &file)?);
                 }
+            } else {
+                files.push(InputFile::read(role, input)?);
             }
         }
         Ok(Content {

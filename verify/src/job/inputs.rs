@@ -40,7 +40,7 @@ pub struct JobInputs<T> {
     gaps: Vec<Gap>,
 }
 
-/// What the job of an earlier set-up leaves.
+/// Material that the job of an earlier set-up leaves.
 struct EarlierSetup {
     remaining: RemainingPoints,
     /// The files that it was read from, each with its role.
@@ -242,6 +242,13 @@ impl<T: AsRef<dyn Tool>> JobInputs<T> {
     /// those of earlier set-ups.
     pub fn files(&self) -> Vec<(String, &Path)> {
         let mut files = self.file.files();
+        files.extend(self.further_files());
+        files
+    }
+
+    /// Returns the files that [`JobFile::files`] does not know: those of the machine's bodies, and those of earlier set-ups.
+    pub fn further_files(&self) -> Vec<(String, &Path)> {
+        let mut files = Vec::new();
         files.extend(body_files(&self.program).map(|(name, file)| (name.to_owned(), file)));
         files.extend(self.earlier_files.iter().map(|(role, file)| (role.clone(), &**file)));
         files
