@@ -45,11 +45,6 @@ impl Shard {
             |shards: u32| (u128::from(shards) * total as u128 / u128::from(self.count)) as usize;
         bound(self.number - 1)..bound(self.number)
     }
-
-    /// Returns whether it has an item where items are dealt out in turn, as those of a work whose end is not known.
-    pub fn is_dealt(self, item: usize) -> bool {
-        item as u64 % u64::from(self.count) == u64::from(self.number - 1)
-    }
 }
 
 impl fmt::Display for Shard {
@@ -189,9 +184,6 @@ mod tests {
             let shards = || (1..=count).map(|number| Shard::new(number, count).expect("a shard"));
             let ranges: Vec<usize> = shards().flat_map(|shard| shard.range(total)).collect();
             assert_eq!(ranges, (0..total).collect::<Vec<_>>());
-            for item in 0..total {
-                assert_eq!(shards().filter(|shard| shard.is_dealt(item)).count(), 1);
-            }
         }
         let all = Shard::new(1_000_000, 1_000_000).expect("a shard");
         assert_eq!(all.range(usize::MAX).end, usize::MAX);

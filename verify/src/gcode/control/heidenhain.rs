@@ -129,24 +129,19 @@ impl Control {
                     *value = value.map(|value| value + point);
                 }
                 self.move_to_machine(target);
-                self.go_home(axes);
             }
-            // Only the machine knows where it is.
+            // The place of an unstated point is the machine's alone.
             (true, None) => {
                 self.move_machine(axes.map(|value| value.is_some()), [None; 6], StepPath::Line);
-                self.go_home(axes);
             }
+        }
+        if is_from_point {
+            self.set_homeward(self.leads_home(axes));
         }
         let spindle = self.spindle(rapid);
         let step = self.pending.back_mut().expect("the step that was added");
         (step.rapid, step.spindle) = (rapid, spindle);
         Ok(())
-    }
-
-    /// Notes that the last step is the way home, if it moves Z to the point of the builder, or other axes while Z can be there.
-    fn go_home(&mut self, axes: Position) {
-        let is_homeward = axes[2].map_or(self.position[2].is_none(), |z| z == 0.0);
-        self.pending.back_mut().expect("the step that was added").is_homeward = is_homeward;
     }
 
     /// Moves along the tool axis (M140) by a distance in millimetres, or to the end of the travel.

@@ -271,9 +271,18 @@ impl Control {
         {
             target[2] = length.map(|length| z + length);
         }
-        // Home of Z is the top of its travel; from there on the other axes are free.
-        let is_homeward = axes[2].map_or(self.position[2].is_none(), |z| z == 0.0);
+        let is_homeward = self.leads_home(axes);
         self.move_machine(axes.map(|value| value.is_some()), target, StepPath::Line);
+        self.set_homeward(is_homeward);
+    }
+
+    /// Returns whether axes move to the top of Z's travel, which is at 0, or from there, where they are free.
+    pub(super) fn leads_home(&self, axes: Position) -> bool {
+        axes[2].map_or(self.position[2].is_none(), |z| z == 0.0)
+    }
+
+    /// Notes whether the last step is the way home.
+    pub(super) fn set_homeward(&mut self, is_homeward: bool) {
         self.pending.back_mut().expect("the step that was added").is_homeward = is_homeward;
     }
 
