@@ -128,7 +128,7 @@ fn in_library<R>(
             message!("warning: {}: {note}", Escaped(tool.entry.label()));
         }
     }
-    // What it mounts is in the temporary folder.
+    // Files that it mounts are in the temporary folder.
     read(&tool_file, &params.without_root())
 }
 

@@ -87,7 +87,7 @@ fn end_after(seconds: f64) -> Result<(), failure::Failure> {
     let timer = move || {
         // A time too long for a duration does not pass.
         std::thread::sleep(Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX));
-        // Whoever reads standard error may have stopped reading: the message has a moment.
+        // The reader of standard error may have stopped: the message has a moment.
         let say = move || {
             message!(
                 "error: not done after {seconds} s (`--max-time`): allow more time, or ask for less"

@@ -91,7 +91,7 @@ impl Write for AtomicFile {
 /// Prefix and suffix of the names of temporary files.
 const PREFIX: &str = ".touchoff-";
 const SUFFIX: &str = ".tmp";
-/// What follows the name of a file that is kept while it is written.
+/// Ending of the name of a file that is kept while it is written.
 const PART_SUFFIX: &str = ".part";
 
 impl AtomicFile {

@@ -14,7 +14,7 @@ pub enum FileKind {
     Program,
     /// A tool library: 64 MiB.
     Library,
-    /// What a person writes: a job, a machine, a control, a list of tools: 4 MiB.
+    /// Text that a person writes: a job, a machine, a control, a list of tools: 4 MiB.
     Settings,
 }
 

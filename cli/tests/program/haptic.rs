@@ -155,12 +155,12 @@ fn a_full_disk_is_reported_at_once() {
     assert_eq!(std::fs::read_to_string(&table).expect("a file"), "old");
     let names = std::fs::read_dir(bench.folder.path()).expect("a folder").count();
     assert_eq!(names, 4, "something is left behind");
-    // What was recorded is kept.
+    // The recorded part is kept.
     let part = std::fs::read_to_string(table + ".part").expect("a part");
     assert!(part.starts_with("cycle,time_s") && part.lines().count() > 10);
 }
 
-/// What a killed session has recorded stays, whatever is written beside it later.
+/// Records of a killed session stay, whatever is written beside them later.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_killed_recording_is_kept() {

@@ -150,7 +150,7 @@ fn a_full_disk_leaves_old_files_and_no_others() {
         let said = stderr(&output);
         assert_eq!(output.status.code(), Some(1), "{line}: {said}");
         assert!(said.contains("File too large") && said.contains("error: "), "{line}: {said}");
-        // What was recorded is kept.
+        // The recorded part is kept.
         if line.contains("--record") {
             fs::remove_file(bench.place("o.csv.part")).expect("a part");
         }
@@ -282,7 +282,7 @@ fn outputs_of_a_job_are_no_inputs() {
     let page = fs::read_to_string(bench.place("report.html"))
         .unwrap_or_else(|_| panic!("{}", stderr(&output)));
     assert!(page.contains("tools/T1.tool") && !page.contains("notes.txt"));
-    // What a program that was not verified leaves is not written.
+    // The rest of the stock after a program that was not verified is not written.
     job(built_in, "output = \"rest.stl\"");
     let output = bench.touchoff(plain);
     assert!(stderr(&output).contains("not verified: "), "{}", stderr(&output));

@@ -159,7 +159,7 @@ fn folders_of_vendors_have_names_in_lower_case() {
     assert_eq!((entry.number, entry.diameter()), (Some(4), Some(3.0)));
 }
 
-/// What a bit leaves out is its shape's. The angle of an edge is not that of a tip.
+/// Values that a bit leaves out are its shape's. The angle of an edge is not that of a tip.
 #[test]
 fn shapes_have_values_of_their_own() {
     let drill = read(&bit(

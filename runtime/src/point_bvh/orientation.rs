@@ -16,7 +16,7 @@ const INWARD: f64 = -0.75;
 /// Enclosure from which that is likely. A hollow half sphere has -0.63, a bowl of a third of that depth -0.35.
 const LIKELY_INWARD: f64 = -0.35;
 
-/// How far a surface closes around the side that its normals face away from.
+/// Degree to which a surface closes around the side that its normals face away from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Enclosure {
     /// 1 for a closed surface whose normals face outward, -1 if they face inward, 0 for a plane; in between for an open surface,

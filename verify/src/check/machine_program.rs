@@ -536,7 +536,7 @@ impl MachineProgram {
             }
         }
         if let Some(error) = execution.stop.take() {
-            // What a program without an end does up to its limit is worth no check.
+            // Motions of a program without an end, up to its limit, are worth no check.
             if matches!(&error.fault, BlockFault::Gcode(fault) if matches!(fault.innermost(), GcodeFault::TooLong { .. }))
             {
                 return Err(self.error(error));

@@ -304,7 +304,7 @@ impl JobFile {
     pub fn read(file: &Path, root: Option<&Path>) -> Result<JobFile, JobError> {
         let folder = file.parent().unwrap_or(Path::new(""));
         let root = root.unwrap_or(folder);
-        // Not even a message about its text may show what is elsewhere.
+        // A message about its text would show what is elsewhere.
         check_within(root, "job", file)?;
         let text = read_text_file(file, FileKind::Settings)
             .map_err(|source| JobError::Unreadable { file: file.display().to_string(), source })?;

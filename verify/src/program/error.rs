@@ -69,7 +69,7 @@ faults! {
             line: usize,
             /// The fault in it.
             fault: ProgramFault,
-            /// What else is refused, each fault with its first line.
+            /// Further faults, each with its first line.
             others: Vec<(usize, ProgramFault)>,
         },
         /// The program states another unit than the part's.
