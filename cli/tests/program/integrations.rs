@@ -142,7 +142,21 @@ fn names_and_links_of_jobs_are_no_commands() {
     symlink(elsewhere.path(), place("linked")).expect("a link");
     let linked = script("integrations/verify-jobs linked", folder.path(), &["a-b.toml".to_owned()]);
     assert_eq!(linked.status.code(), Some(2), "{}", stderr(&linked));
+    let below = script("integrations/verify-jobs linked/out", folder.path(), &["a-b.toml".to_owned()]);
+    assert_eq!(below.status.code(), Some(2), "{}", stderr(&below));
     assert_eq!(std::fs::read_dir(elsewhere.path()).expect("a folder").count(), 0);
+    // Findings that a repository brings along are removed where those of the run go, and nowhere else.
+    std::fs::write(elsewhere.path().join("kept.sarif"), "").expect("written");
+    std::fs::write(place("out/brought.sarif"), "").expect("written");
+    for (findings, status) in [("linked/", 2), ("out", 0)] {
+        let mut clearing = Command::new(root().join("integrations/verify-jobs"));
+        clearing.args([findings, "clean.toml"]).current_dir(folder.path());
+        clearing.env("TOUCHOFF", env!("CARGO_BIN_EXE_touchoff")).env("TOUCHOFF_CLEAR", "1");
+        // A shell that looks for folders elsewhere, too.
+        clearing.env("CDPATH", "/");
+        assert_eq!(clearing.status().expect("bash").code(), Some(status), "{findings}");
+    }
+    assert!(elsewhere.path().join("kept.sarif").exists() && !place("out/brought.sarif").exists());
     // A job writes nothing: not over what another one reads, whatever its ending.
     let victim = std::fs::read(place("clamp.stl")).expect("a mesh");
     let clean = std::fs::read_to_string(place("clean.toml")).expect("a job");
