@@ -10,6 +10,7 @@ use super::{FindingRule, JobTool};
 use crate::gcode::SubprogramLine;
 use crate::{CYCLE_TIME_ASSUMPTIONS, FindingGroup, FindingKind};
 use serde::Serialize;
+use touchoff::Escaped;
 use touchoff::certify::Witness;
 use touchoff::tool::{Symmetry, ToolInfo};
 
@@ -430,7 +431,7 @@ fn log(report: &JobReport<'_>) -> Log {
         .map(|finding| Finding {
             rule_id: finding.rule.code(),
             level: if finding.severity == Severity::Violation { "error" } else { "warning" },
-            message: Text { text: finding.text.clone() },
+            message: Text { text: message(&finding.text) },
             locations: [Location {
                 physical_location: PhysicalLocation {
                     artifact_location: Artifact { uri: uri.clone() },
@@ -455,10 +456,26 @@ fn log(report: &JobReport<'_>) -> Log {
     }
 }
 
+/// Returns a text as the message of a result, whose names are no links (section 3.11.6 of SARIF 2.1.0), no placeholders (3.11.5) and
+/// no control characters.
+fn message(text: &str) -> String {
+    let mut message = String::new();
+    for character in Escaped(text).to_string().chars() {
+        match character {
+            '\\' | '[' | ']' => message.push('\\'),
+            '{' | '}' => message.push(character),
+            _ => {}
+        }
+        message.push(character);
+    }
+    message
+}
+
 /// Returns a relative URI reference for a path, with all but unreserved characters and `/` percent-encoded (RFC 3986).
 fn uri(path: &str) -> String {
     let mut uri = String::new();
-    for byte in path.replace('\\', "/").bytes() {
+    let path = if cfg!(windows) { path.replace('\\', "/") } else { path.to_owned() };
+    for byte in path.bytes() {
         match byte {
             b'A'..=b'Z' | b'a'..=b'z' | b'0'..=b'9' | b'-' | b'.' | b'_' | b'~' | b'/' => {
                 uri.push(char::from(byte));
@@ -467,4 +484,19 @@ fn uri(path: &str) -> String {
         }
     }
     uri
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_no_links_and_no_other_files() {
+        let name = "[a](http://b) \\[c\\](d) {0} \u{1b}[31m é";
+        let shown = "\\[a\\](http://b) \\\\\\[c\\\\\\](d) {{0}} \\\\u001b\\[31m é";
+        assert_eq!(message(name), shown);
+        assert_eq!(uri("a b/%é.nc"), "a%20b/%25%C3%A9.nc");
+        #[cfg(not(windows))]
+        assert_eq!(uri("a\\b.nc"), "a%5Cb.nc");
+    }
 }
