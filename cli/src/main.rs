@@ -36,6 +36,7 @@ fn main() -> ExitCode {
     // A panic, as where the system refuses a thread, has a status of the manual, too.
     let report = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |panic| {
+        end_soon();
         report(panic);
         end_at_once();
     }));
@@ -124,22 +125,45 @@ fn end_at_once() {
     reason = "handlers of signals are the system's, and what one may call is for its author to ensure"
 )]
 fn end_when_memory_is_used_up() {
-    extern "C" fn end(_: libc::c_int) {
-        const MESSAGE: &[u8] =
-            b"error: the system has no more memory for the program: allow more, or ask for less\n";
-        // SAFETY: a handler may call both, and the bytes are those of the message.
-        unsafe {
-            libc::write(libc::STDERR_FILENO, MESSAGE.as_ptr().cast(), MESSAGE.len());
-            libc::_exit(OUT_OF_RESOURCES);
-        }
-    }
-    let end: extern "C" fn(libc::c_int) = end;
+    let end: extern "C" fn(libc::c_int) = end_without_memory;
     // SAFETY: the handler has the signature that the system calls.
     unsafe { libc::signal(libc::SIGABRT, end as libc::sighandler_t) };
 }
 
+/// Handles a signal: says that there is no memory, and ends the program.
+#[cfg(unix)]
+#[expect(unsafe_code, reason = "a handler of a signal may call the system alone")]
+extern "C" fn end_without_memory(_: libc::c_int) {
+    const MESSAGE: &[u8] =
+        b"error: the system has no more memory for the program: allow more, or ask for less\n";
+    // SAFETY: a handler may call both, and the bytes are those of the message.
+    unsafe {
+        libc::write(libc::STDERR_FILENO, MESSAGE.as_ptr().cast(), MESSAGE.len());
+        libc::_exit(OUT_OF_RESOURCES);
+    }
+}
+
 #[cfg(not(unix))]
 fn end_when_memory_is_used_up() {}
+
+/// Ends the program after seconds that the report of a panic may take. Where the system refuses memory, its backtrace waits for itself.
+#[cfg(unix)]
+#[expect(unsafe_code, reason = "alarms are the system's")]
+fn end_soon() {
+    /// More than a backtrace takes.
+    const SECONDS: libc::c_uint = 10;
+    // SAFETY: both are calls of the system without pointers of ours; the handler ends the process.
+    unsafe {
+        libc::signal(
+            libc::SIGALRM,
+            end_without_memory as extern "C" fn(libc::c_int) as libc::sighandler_t,
+        );
+        libc::alarm(SECONDS);
+    }
+}
+
+#[cfg(not(unix))]
+fn end_soon() {}
 
 /// Reports a failure, and returns its exit status, which is `min_status` or higher.
 fn fail(failure: &failure::Failure, min_status: u8) -> ExitCode {

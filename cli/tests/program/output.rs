@@ -308,6 +308,12 @@ fn a_command_ends_when_time_or_memory_is_used_up() {
         let output = shell.output().expect("bash");
         assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
         assert!(stderr(&output).contains("no more memory"), "{}", stderr(&output));
+        // The backtrace of a thread that is refused needs memory itself.
+        let limited = "ulimit -d 3500; exec \"$0\" verify --part block.stl --unit mm --tool D2Ball --program path.csv";
+        let mut shell = std::process::Command::new("bash");
+        shell.args(["-c", limited, env!("CARGO_BIN_EXE_touchoff")]).current_dir(&bench.folder);
+        let output = shell.env("RUST_BACKTRACE", "1").output().expect("bash");
+        assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
     }
 }
 
