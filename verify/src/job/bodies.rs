@@ -6,7 +6,6 @@ use crate::ToolSelection;
 use crate::machine::{BodyShape, Link, Machine, MachineBody, Opponent, Side};
 use nalgebra::{Point3, Vector3};
 use std::f64::consts::{PI, TAU};
-use std::ffi::OsString;
 use touchoff::certify::TriangleBvh;
 use touchoff::mesh::{MeshError, shapes};
 use touchoff::tool::Symmetry;
@@ -164,7 +163,7 @@ pub(super) fn revolved<T, E: From<JobError>>(
             Some(index) => Shape::BuiltIn(index),
             None => Shape::Loaded(load(&NamedTool {
                 motions: ToolSelection::All,
-                name: OsString::from(name),
+                name: name.clone(),
                 library: None,
                 params: Vec::new(),
                 root: job.root.clone(),

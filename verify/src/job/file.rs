@@ -6,9 +6,10 @@ use crate::gcode::{
     Choice, ControlRules, ControlSetup, LARGEST_NUMBER, Rule, SubprogramFile, WorkOffset,
     is_variable,
 };
+use crate::machine::is_name;
 use crate::{ToolSelection, ToolUse};
 use serde::{Deserialize, Deserializer};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use touchoff::{FileKind, Unit, is_within, read_text_file};
@@ -103,7 +104,7 @@ pub struct NamedTool {
 #[serde(deny_unknown_fields)]
 pub struct ToolEntry {
     /// A `.tool` file or a built-in tool, instead of the library's tool with this number.
-    pub tool: Option<String>,
+    pub tool: Option<PathBuf>,
     /// The name by which programs of Sinumerik select it: `T="NAME"`.
     pub name: Option<String>,
     /// Values of the params of the file: `name=value`.
@@ -278,7 +279,7 @@ impl JobFile {
             JobTools::Numbered { library, entries } => {
                 files.extend(library.as_deref().map(|file| ("tool library".to_owned(), file)));
                 for (number, entry) in entries {
-                    let file = entry.tool.as_deref().map(Path::new);
+                    let file = entry.tool.as_deref();
                     let file = file.filter(|file| has_ending(file, "tool"));
                     files.extend(file.map(|file| (format!("tool T{number}"), file)));
                 }
@@ -359,6 +360,11 @@ impl JobFile {
         if lengths.into_iter().flatten().any(|length| !(0.0..f64::INFINITY).contains(&length)) {
             return Err(refused(JobFileFault::Length));
         }
+        let others = job.other_part.iter().filter_map(|part| part.name.as_ref());
+        let mut names = job.fixture.iter().map(|fixture| &fixture.name).chain(others);
+        if !names.all(|name| is_name(name)) {
+            return Err(refused(JobFileFault::Name));
+        }
         for fixture in &job.fixture {
             checked_margin(fixture.margin).map_err(|_| refused(JobFileFault::Margin))?;
         }
@@ -376,18 +382,16 @@ impl JobFile {
         }
         let folder = file.parent().unwrap_or(Path::new(""));
         let beside = |path: PathBuf| folder.join(path);
-        let mut entries = BTreeMap::new();
+        let (mut entries, mut tool_names) = (BTreeMap::new(), BTreeSet::new());
         for (number, mut entry) in job.tool {
             let number = number
                 .trim_start_matches(['T', 't'])
                 .parse::<u32>()
                 .map_err(|_| refused(JobFileFault::ToolNumber { number: number.clone() }))?;
-            if let Some(tool) = entry.tool.as_mut().filter(|tool| tool.ends_with(".tool")) {
-                *tool = folder.join(&*tool).display().to_string();
+            if let Some(tool) = entry.tool.as_mut().filter(|tool| has_ending(tool, "tool")) {
+                *tool = folder.join(&*tool);
             }
-            let same = |other: &ToolEntry| entry.name.is_some() && other.name == entry.name;
-            if entries.values().any(same) {
-                let name = entry.name.unwrap_or_default();
+            if let Some(name) = entry.name.clone().filter(|name| !tool_names.insert(name.clone())) {
                 return Err(refused(JobFileFault::SecondToolName { name }));
             }
             if entries.insert(number, entry).is_some() {
@@ -612,7 +616,7 @@ fn check_within(root: &Path, role: &str, input: &Path) -> Result<(), JobError> {
     Err(JobError::Outside { role: role.to_owned(), file: input.display().to_string(), root })
 }
 
-fn has_ending(file: &Path, ending: &str) -> bool {
+pub(super) fn has_ending(file: &Path, ending: &str) -> bool {
     file.extension().is_some_and(|end| end.eq_ignore_ascii_case(ending))
 }
 

@@ -1,7 +1,7 @@
 //! A job and the files that it names, read.
 
 use super::bodies::{self, LoadedBody};
-use super::file::{JobFile, NamedTool, PartEntry, StockEntry};
+use super::file::{JobFile, NamedTool, PartEntry, StockEntry, has_ending};
 use super::program::Program;
 use super::report::Verdict;
 use super::{
@@ -48,6 +48,9 @@ struct EarlierSetup {
     /// Set if it has no clean verdict.
     gap: Option<Gap>,
 }
+
+/// The largest number of set-ups before one. Each needs a part of the stack while those before it are read.
+const MAX_SETUPS: usize = 20;
 
 /// Loads a tool by its name.
 pub(super) type Load<'l, T, E> = &'l mut dyn FnMut(&NamedTool) -> Result<T, E>;
@@ -215,6 +218,9 @@ impl<T: AsRef<dyn Tool>> JobInputs<T> {
         if later.contains(&place) {
             return Err(refused(JobFileFault::OwnStock));
         }
+        if later.len() == MAX_SETUPS {
+            return Err(refused(JobFileFault::Setups { limit: MAX_SETUPS }));
+        }
         later.push(place);
         let earlier = JobFile::read(file, job.root.as_deref())?;
         if earlier.unit != job.unit {
@@ -285,7 +291,7 @@ fn body_files(program: &Program) -> impl Iterator<Item = (&str, &Path)> {
     bodies.filter_map(|body| {
         let file = match &body.shape {
             BodyShape::Mesh { file, .. } => &**file,
-            BodyShape::Tool { name, .. } if name.ends_with(".tool") => Path::new(name),
+            BodyShape::Tool { name, .. } if has_ending(Path::new(name), "tool") => Path::new(name),
             _ => return None,
         };
         Some((&*body.name, file))

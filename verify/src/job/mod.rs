@@ -33,7 +33,7 @@ pub use stock::{CutStock, StockFinding};
 
 use crate::codes::faults;
 use crate::gcode::{BlockLine, ControlError, WorkOffset};
-use crate::machine::{JointError, Letter, Link, Machine, MachineError, Side};
+use crate::machine::{JointError, Letter, Link, MAX_NAME, Machine, MachineError, Side};
 use crate::program::ProgramError;
 use crate::stock::{RemainingPoints, Stock, StockError};
 use crate::{Gap, MachineProgramError, ToolSelection, Verifier, VerifyError};
@@ -638,6 +638,21 @@ faults! {
             file: String,
             /// The endings of its kind.
             endings: String,
+        },
+        /// A name of a fixture or of another part that is empty, is long, or has a control character.
+        #[code = J0219]
+        #[error(
+            "the name of a fixture or of another part is empty, is long, or has a control character: give it one line, of up to {MAX_NAME} characters"
+        )]
+        Name,
+        /// A set-up after too many others.
+        #[code = J0220]
+        #[error(
+            "more than {limit} set-ups come one after the other: give this one its stock by a `mesh`"
+        )]
+        Setups {
+            /// The largest number of set-ups.
+            limit: usize,
         },
     }
 }

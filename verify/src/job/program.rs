@@ -433,7 +433,7 @@ pub(super) fn read_subprograms(files: &[PathBuf]) -> Result<Vec<SubprogramFile>,
 /// If there is no such machine, or its file is refused.
 pub fn read_machine(name: &Path) -> Result<Machine, JobError> {
     Ok(match toml_text(name)? {
-        Some((text, file)) => Machine::parse(&text, &file)?,
+        Some((text, _)) => Machine::parse(&text, name)?,
         None => Machine::named(&name.to_string_lossy())?,
     })
 }

@@ -1,10 +1,11 @@
 //! Bodies of a machine, as its file states them, and the pairs in which they are checked.
 
 use super::chain::is_within;
-use super::{Letter, Link, MAX_LENGTH, Machine, Side};
+use super::{Letter, Link, MAX_LENGTH, MAX_NAME, Machine, Side, is_name};
 use crate::codes::faults;
 use nalgebra::{Point3, Vector3};
 use serde::Deserialize;
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use toml::Spanned;
 use touchoff::Pose;
@@ -50,7 +51,7 @@ pub enum BodyShape {
     /// A solid of revolution in the tool language.
     Tool {
         /// A `.tool` file, or a built-in tool.
-        name: String,
+        name: OsString,
         /// The pose of its frame.
         place: Pose,
     },
@@ -114,10 +115,10 @@ faults! {
     #[derive(Clone, PartialEq, thiserror::Error)]
     #[non_exhaustive]
     pub enum BodyFault {
-        /// The name is empty, stands for something else, or has a control character.
+        /// The name is empty, is long, stands for something else, or has a control character.
         #[code = K0301]
         #[error(
-            "give it another name of one line: `tool`, `part` and `fixtures` stand for those of the job"
+            "give it another name of one line, of up to {MAX_NAME} characters: `tool`, `part` and `fixtures` stand for those of the job"
         )]
         Name,
         /// Another body has the same name.
@@ -237,7 +238,7 @@ pub(super) fn bodies(
 fn body(entry: BodyEntry, machine: &Machine, file: &Path) -> Result<MachineBody, BodyFault> {
     let name = entry.name.into_inner();
     let is_reserved = ["tool", "part", "fixtures"].contains(&&*name);
-    if name.trim().is_empty() || name.contains(char::is_control) || is_reserved {
+    if !is_name(&name) || is_reserved {
         return Err(BodyFault::Name);
     }
     let link = match &*entry.moves_with {
@@ -297,7 +298,7 @@ fn body(entry: BodyEntry, machine: &Machine, file: &Path) -> Result<MachineBody,
         }
         (None, None, None, Some(tool)) => {
             let is_file = tool.ends_with(".tool");
-            let name = if is_file { beside(Path::new(&tool)).display().to_string() } else { tool };
+            let name = if is_file { beside(Path::new(&tool)).into() } else { tool.into() };
             BodyShape::Tool { name, place: place()? }
         }
         _ => return Err(BodyFault::Shape),

@@ -1,6 +1,6 @@
 //! Errors of machines, of joint values and of the inverse kinematics.
 
-use super::{BodyFault, Letter};
+use super::{BodyFault, Letter, MAX_NAME};
 use crate::codes::faults;
 
 faults! {
@@ -55,9 +55,11 @@ faults! {
             /// The parser's message.
             message: String,
         },
-        /// The name is empty or has a control character.
+        /// The name is empty, is long, or has a control character.
         #[code = K0102]
-        #[error("the name is empty or has a control character: give the machine a name of one line")]
+        #[error(
+            "the name is empty, is long, or has a control character: give the machine a name of one line, of up to {MAX_NAME} characters"
+        )]
         Name,
         /// The position of a tool change is none.
         #[code = K0103]

@@ -4,6 +4,7 @@ use super::body::{self, BodyEntry};
 use super::chain::is_within;
 use super::{
     Axis, Letter, MAX_DEGREES, MAX_LENGTH, Machine, MachineBody, MachineError, MachineFault, Side,
+    is_name,
 };
 use nalgebra::{Point3, Vector3};
 use serde::Deserialize;
@@ -60,8 +61,8 @@ enum Kind {
 /// A fault, with its span in the text.
 type Located = (Range<usize>, MachineFault);
 
-/// Parses a machine. `file` is the file's name in errors.
-pub(super) fn parse(text: &str, file: &str) -> Result<Machine, MachineError> {
+/// Parses a machine from the text of a file.
+pub(super) fn parse(text: &str, file: &Path) -> Result<Machine, MachineError> {
     let parsed = toml::from_str::<MachineFile>(text).map_err(|error| {
         let message = error.message().trim().replace('\n', ", ");
         (error.span().unwrap_or(0..0), MachineFault::Syntax { message })
@@ -74,16 +75,18 @@ pub(super) fn parse(text: &str, file: &str) -> Result<Machine, MachineError> {
         let (none_yet, is_of_library) = (Vec::new(), false);
         let mut machine =
             Machine { name, axes, tool_change, builder_point, bodies: none_yet, is_of_library };
-        machine.bodies = bodies(parsed.body, &machine, Path::new(file))?;
+        machine.bodies = bodies(parsed.body, &machine, file)?;
         Ok(machine)
     });
     let machine = assembled.map_err(|(span, fault)| MachineError::Line {
-        file: file.to_owned(),
+        file: file.display().to_string(),
         line: line_of(text, span.start),
         fault,
     })?;
     match Letter::ALL[..3].iter().find(|letter| machine.axis(**letter).is_none()) {
-        Some(&letter) => Err(MachineError::MissingAxis { file: file.to_owned(), letter }),
+        Some(&letter) => {
+            Err(MachineError::MissingAxis { file: file.display().to_string(), letter })
+        }
         None => Ok(machine),
     }
 }
@@ -96,7 +99,7 @@ fn line_of(text: &str, offset: usize) -> usize {
 fn name(name: Spanned<String>) -> Result<String, Located> {
     let span = name.span();
     let name = name.into_inner();
-    if name.trim().is_empty() || name.contains(char::is_control) {
+    if !is_name(&name) {
         return Err((span, MachineFault::Name));
     }
     Ok(name)

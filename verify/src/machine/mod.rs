@@ -101,6 +101,7 @@ pub use motion::{JointMotion, LinearPath, Plane};
 use nalgebra::{Point3, Vector3};
 use serde::{Deserialize, Serialize};
 use std::fmt;
+use std::path::Path;
 
 /// Values of the axes X, Y, Z in millimetres and A, B, C in degrees. An axis that the machine lacks is at 0.
 pub type Joints = [f64; 6];
@@ -225,8 +226,18 @@ pub struct Machine {
     is_of_library: bool,
 }
 
+/// The length of the longest name of a machine, a body, a fixture or a part, in characters: each finding has it.
+pub(crate) const MAX_NAME: usize = 100;
+
+/// Returns whether a name is one line that findings can have.
+pub(crate) fn is_name(name: &str) -> bool {
+    !name.trim().is_empty()
+        && name.chars().nth(MAX_NAME).is_none()
+        && !name.contains(char::is_control)
+}
+
 impl Machine {
-    /// Parses a machine from TOML. `file` is the file's name in errors.
+    /// Parses a machine from TOML. `file` is its path, for errors and for the files of its bodies.
     ///
     /// # Errors
     /// If the text is not TOML, if a key is unknown or missing, or if the axes are no machine that is
@@ -249,8 +260,8 @@ impl Machine {
     /// assert!(error.to_string().starts_with("lathe.toml:2: unknown field `spindles`"));
     /// # Ok::<(), touchoff_verify::machine::MachineError>(())
     /// ```
-    pub fn parse(text: &str, file: &str) -> Result<Machine, MachineError> {
-        file::parse(text, file)
+    pub fn parse(text: &str, file: impl AsRef<Path>) -> Result<Machine, MachineError> {
+        file::parse(text, file.as_ref())
     }
 
     /// Returns a machine of the library: one of [`Machine::names`].

@@ -213,6 +213,23 @@ fn a_stock_is_what_an_earlier_set_up_leaves() {
     }
 }
 
+/// Each set-up takes a part of the stack while those before it are read.
+#[test]
+fn a_chain_of_set_ups_is_short() {
+    let folder = of_all_kinds();
+    for setup in 0..=21 {
+        let from = format!("from = \"{}.toml\"", setup + 1);
+        let text = OF_ALL_KINDS.replace("mesh = \"stock.stl\"\nspacing = 2", &from);
+        folder.write(&format!("job/{setup}.toml"), text);
+    }
+    let file = JobFile::read(&folder.place("job/0.toml"), None).expect("a job");
+    let read =
+        JobInputs::read::<ReadError>(file, |named| Ok(Loaded(Interpreted::load(&named.name)?)));
+    let Err(ReadError::Job(error)) = read else { panic!("a chain without end is read") };
+    assert_eq!(error.code(), "J0220", "{error}");
+    assert!(error.to_string().contains("21.toml"), "{error}");
+}
+
 /// A job, of which every file is another kind of input.
 const OF_ALL_KINDS: &str = "part = \"plate.stl\"\nunit = \"mm\"\nprogram = \"a.nc\"\ncontrol = \"c.toml\"\n\
     machine = \"m.toml\"\nsubprograms = [\"s.nc\"]\n[work_offsets]\nG54 = [0, 0, -300]\nG55 = [100, 0, -300]\n[tool.1]\n\
@@ -348,6 +365,23 @@ fn a_job_reads_within_its_folder_or_the_root_and_writes_within_its_folder() {
         assert_eq!(code(&folder, OF_ALL_KINDS), "J0217", "{target}");
         std::fs::remove_file(link).expect("removed");
     }
+}
+
+/// Names of folders are bytes, which need be no text.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_job_stands_in_a_folder_of_any_name() {
+    use std::os::unix::ffi::OsStrExt;
+    let folder = of_all_kinds();
+    let head = "[[body]]\nname = \"head\"\nmoves_with = \"spindle\"\ntool = \"mill10.tool\"\nagainst = [\"the vice\"]\n";
+    folder.write("job/m.toml", format!("{}\n{head}", machine("vice.stl")));
+    folder.write("job/job.toml", OF_ALL_KINDS);
+    let inside = folder.folder.path().join(std::ffi::OsStr::from_bytes(b"j\xff"));
+    std::fs::rename(folder.place("job"), &inside).expect("renamed");
+    let file = JobFile::read(&inside.join("job.toml"), None).expect("a job");
+    let read =
+        JobInputs::read::<ReadError>(file, |named| Ok(Loaded(Interpreted::load(&named.name)?)));
+    read.expect("its files");
 }
 
 /// Files without end, and such that wait for a writer, are refused at once.
@@ -521,7 +555,10 @@ fn a_wrong_job_is_refused_with_its_key() {
         + "[[fixture]]\nname = \"the vise\"\nmesh = \"vise.stl\"\nmoves_with = \"C\"\n[stock]\n\
            box = [[-60, -60, -60], [60, 60, 0]]\nspacing = 2\n";
     folder.gives(&job, FINDINGS, &["V0101 the table"]);
+    // Each finding has the name.
+    let long = "v".repeat(101);
     for (change, pattern) in [
+        (["the vise", &*long], "J0219"),
         (["unit = \"mm\"", "unit = \"yard\""], "J0202 yard"),
         (["tolerance = 2.1", "tolerances = 2.1"], "J0201 line 6: unknown field `tolerances`"),
         (["tolerance = 2.1", "tolerance = -1"], "J0203"),

@@ -95,7 +95,7 @@ fn a_file_gives_bodies_in_its_order() {
     let [head, table, bed, post] = machine.bodies() else { panic!("{:?}", machine.bodies()) };
     assert_eq!((&*head.name, head.link, head.margin), ("the head", Link::Axis(Letter::Z), 2.0));
     let BodyShape::Tool { name, place } = &head.shape else { panic!("{head:?}") };
-    assert_eq!((&**name, place.tip().z, place.axis().z), ("shop/head.tool", 5.0, 1.0));
+    assert_eq!((name.to_str(), place.tip().z, place.axis().z), (Some("shop/head.tool"), 5.0, 1.0));
     let beside =
         [Opponent::Part, Opponent::Body("the table".into()), Opponent::Body("the bed".into())];
     assert_eq!(head.against, beside);
@@ -129,9 +129,11 @@ fn faults_of_bodies_are_refused_with_their_line() {
         1 + text.lines().position(|line| line == format!("name = {name:?}")).expect("a line")
     };
     assert_eq!(first, line("the head"));
+    let long = format!("name = {:?}", "p".repeat(101));
     #[rustfmt::skip]
     let faults = [
         ("name = \"the head\"", "name = \"part\"", "the head", "K0301"),
+        ("name = \"the post\"", &*long, "the post", "K0301"),
         ("name = \"the bed\"", "name = \"the table\"", "the bed", "K0302"),
         ("moves_with = \"X\"", "moves_with = \"B\"", "the post", "K0303"),
         ("box = [[0, 0, 0], [1, 2, 3]]", "", "the post", "K0304"),
