@@ -3,10 +3,12 @@
 use crate::arguments::{ParamArguments, ToolArguments};
 use crate::failure::Failure;
 use crate::output::{show, show_lines};
+use std::collections::BTreeMap;
 use std::ffi::OsStr;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use touchoff::tool::Interpreted;
-use touchoff::{Escaped, Tool};
+use touchoff::{Escaped, Tool, is_within};
 use touchoff_dsl::diagnostic::escaped;
 use touchoff_dsl::source::Source;
 use touchoff_dsl::{Compiled, compile_with_arguments};
@@ -27,13 +29,13 @@ impl LoadedTool {
     pub(crate) fn load(name: &OsStr, arguments: &ToolArguments) -> Result<LoadedTool, Failure> {
         let params = &arguments.params;
         if let Some(library) = &arguments.library {
-            let tool = in_library(name, library, params, true, load_file)?;
-            return Ok(LoadedTool::File(Box::new(tool)));
+            let source = in_library(name, library, params, true)?;
+            return Ok(LoadedTool::File(Box::new(load_source(&source, params)?)));
         }
         if Path::new(name).extension().is_some_and(|extension| extension == "tool") {
             return Ok(LoadedTool::File(Box::new(load_file(Path::new(name), params)?)));
         }
-        let tool = built_in(&name.to_string_lossy())?;
+        let tool = built_in(&name.to_string_lossy(), params.root())?;
         if params.is_empty() {
             Ok(LoadedTool::BuiltIn(tool))
         } else {
@@ -62,20 +64,17 @@ impl AsRef<dyn Tool> for LoadedTool {
 pub(crate) fn compile_named(name: &OsStr, arguments: &ToolArguments) -> Result<Compiled, Failure> {
     let params = &arguments.params;
     if let Some(library) = &arguments.library {
-        return in_library(name, library, params, false, compile_quietly);
+        let source = in_library(name, library, params, false)?;
+        return Ok(compile_with_arguments(&source, &params.sources()));
     }
     if Path::new(name).extension().is_some_and(|extension| extension == "tool") {
         return compile_quietly(Path::new(name), params);
     }
     let SourceFiles { file, text, mounted } = source_files(&name.to_string_lossy())?;
-    // Mounts are found beside the file that names them.
-    let folder = tempfile::tempdir()?;
-    for (file, text) in [(file, text)].iter().chain(mounted) {
-        let file = folder.path().join(file);
-        std::fs::create_dir_all(file.parent().unwrap_or(folder.path()))?;
-        std::fs::write(&file, text)?;
-    }
-    compile_quietly(&folder.path().join(file), params)
+    let files = mounted.iter().map(|(file, text)| (PathBuf::from(file), (*text).to_owned()));
+    let files = Arc::new(files.collect::<BTreeMap<_, _>>());
+    let source = Source::new(file, text).with_path(file).with_files(files);
+    Ok(compile_with_arguments(&source, &params.sources()))
 }
 
 /// Compiles the tool of a file. Its diagnostics are not shown.
@@ -96,7 +95,7 @@ pub(crate) struct SourceFiles {
 /// # Errors
 /// As [`built_in`].
 pub(crate) fn source_files(name: &str) -> Result<SourceFiles, Failure> {
-    let info = built_in(name)?.info();
+    let info = built_in(name, None)?.info();
     let position = TOOLS.iter().position(|tool| tool.info().name == info.name);
     let Some([(file, text), mounted @ ..]) = position.map(|position| SOURCES[position]) else {
         unreachable!("every built-in tool has a source")
@@ -104,39 +103,34 @@ pub(crate) fn source_files(name: &str) -> Result<SourceFiles, Failure> {
     Ok(SourceFiles { file, text, mounted })
 }
 
-/// Reads the file of a tool of a library, or of a folder of `.tool` files. Prints what the import noted if `notes` is set.
-fn in_library<R>(
+/// Reads the text of a tool of a library, or of a folder of `.tool` files. Prints what the import noted if `notes` is set.
+fn in_library(
     name: &OsStr,
     library: &Path,
     params: &ParamArguments,
     notes: bool,
-    read: impl FnOnce(&Path, &ParamArguments) -> Result<R, Failure>,
-) -> Result<R, Failure> {
+) -> Result<Source, Failure> {
     if library.is_dir() {
-        return read(&find_in_folder(library, name)?, params);
+        return read_source(&find_in_folder(library, name)?, params);
     }
-    let name = name.to_string_lossy();
     let imported = match params.root() {
         Some(root) => Library::read_within(library, root)?,
         None => Library::read(library)?,
     };
-    let folder = tempfile::tempdir()?;
-    let tool = imported.select(&name)?;
-    let tool_file = tool.write_to(folder.path())?;
+    let tool = imported.select(&name.to_string_lossy())?;
     if notes {
         for note in &tool.entry.notes {
             message!("warning: {}: {note}", Escaped(tool.entry.label()));
         }
     }
-    // Files that it mounts are in the temporary folder.
-    read(&tool_file, &params.without_root())
+    Ok(tool.source())
 }
 
 /// Returns a built-in tool by its name.
 ///
 /// # Errors
-/// [`Failure::UnknownTool`], with a hint at what may be meant.
-fn built_in(name: &str) -> Result<&'static dyn Tool, Failure> {
+/// [`Failure::UnknownTool`], with a hint at what may be meant: at files within `root` alone, if it is given.
+fn built_in(name: &str, root: Option<&Path>) -> Result<&'static dyn Tool, Failure> {
     touchoff_tools::find(name).ok_or_else(|| {
         let near = TOOLS.iter().map(|tool| {
             let known = &*tool.info().name;
@@ -145,12 +139,13 @@ fn built_in(name: &str) -> Result<&'static dyn Tool, Failure> {
         });
         // A longer name has room for more slips.
         let near = near.filter(|(distance, _)| *distance <= 1 + name.len() / 4);
+        let is_file = |file: &Path| file.is_file() && root.is_none_or(|root| is_within(file, root));
         let is_tool_file = Path::new(name).extension().is_some_and(|ending| ending == "tool");
         let hint = if is_tool_file {
             "`touchoff tools` lists them; this command takes no files".to_owned()
-        } else if Path::new(name).components().count() == 1 && Path::new(name).is_file() {
+        } else if Path::new(name).components().count() == 1 && is_file(Path::new(name)) {
             "a tool's file ends in `.tool`: rename it".to_owned()
-        } else if Path::new(name).with_extension("tool").is_file() {
+        } else if is_file(&Path::new(name).with_extension("tool")) {
             format!("did you mean the file `{}.tool`?", escaped(name))
         } else if let Some((_, nearest)) = near.min_by_key(|(distance, _)| *distance) {
             format!("did you mean `{nearest}`? `touchoff tools` lists them")
@@ -177,7 +172,12 @@ pub(crate) fn read_source(file: &Path, params: &ParamArguments) -> Result<Source
 
 /// Loads the tool of a file, and prints its warnings.
 pub(crate) fn load_file(file: &Path, params: &ParamArguments) -> Result<Interpreted, Failure> {
-    let tool = Interpreted::parse_with(&read_source(file, params)?, &params.sources())?;
+    load_source(&read_source(file, params)?, params)
+}
+
+/// Loads a tool from its text, and prints its warnings.
+fn load_source(source: &Source, params: &ParamArguments) -> Result<Interpreted, Failure> {
+    let tool = Interpreted::parse_with(source, &params.sources())?;
     if !tool.warnings().is_empty() {
         show_lines(tool.warnings());
     }

@@ -50,6 +50,12 @@ pub enum ImportError {
         /// The cause.
         source: std::io::Error,
     },
+    /// A link leads out of the folder of tools.
+    #[error("{} leads out of the folder of tools: remove the link, or choose another folder", .file.display())]
+    Outside {
+        /// The file.
+        file: PathBuf,
+    },
     /// A file exists and is not what would be written.
     #[error("{} exists with other content: remove it, or choose another folder", .file.display())]
     Exists {

@@ -124,7 +124,9 @@ pub fn files_in_folder(folder: &Path) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
     let is_tool = |file: &PathBuf| file.extension().is_some_and(|ending| ending == "tool");
     let mut files: Vec<PathBuf> = entries.map(|entry| entry.path()).filter(is_tool).collect();
-    let listed = read_numbers(folder).unwrap_or_default().into_values().flatten();
+    let is_own = is_within(folder.join(NUMBERS), folder);
+    let numbers = if is_own { read_numbers(folder).unwrap_or_default() } else { Numbers::new() };
+    let listed = numbers.into_values().flatten();
     files.extend(listed.map(|file| folder.join(file)));
     files.push(folder.join(NUMBERS));
     files.retain(|file| file.is_file() && is_within(file, folder));
@@ -149,6 +151,11 @@ fn within(folder: &Path, file: PathBuf) -> Result<PathBuf, FindError> {
 /// # Errors
 /// If the list that is there cannot be read, or the new one cannot be written.
 pub fn write_numbers(folder: &Path, tools: &[&ImportedTool]) -> Result<(), FindError> {
+    // The folder is made with its first tool.
+    if tools.is_empty() {
+        return Ok(());
+    }
+    let path = within(folder, folder.join(NUMBERS))?;
     let mut numbers = read_numbers(folder)?;
     for tool in tools {
         let Some(number) = tool.entry.number else { continue };
@@ -165,7 +172,6 @@ pub fn write_numbers(folder: &Path, tools: &[&ImportedTool]) -> Result<(), FindE
     for (number, files) in &numbers {
         text += &format!("{number} = {files:?}\n");
     }
-    let path = folder.join(NUMBERS);
     AtomicFile::write(&path, text)
         .map_err(|source| FindError::Unwritable { file: path.display().to_string(), source })
 }

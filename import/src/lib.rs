@@ -46,11 +46,14 @@ pub use find::{FindError, files_in_folder, find_in_folder, write_numbers};
 use entry::reason;
 use files::Writer;
 use serde_json::Value;
+use std::collections::BTreeMap;
 use std::fs;
 use std::io::{self, Read as _};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use touchoff::tool::Interpreted;
-use touchoff::{FileKind, read_regular_file};
+use touchoff::{FileKind, is_within, read_regular_file};
+use touchoff_dsl::source::Source;
 
 /// The largest number of tools in a library.
 const MAX_TOOLS: usize = 20_000;
@@ -241,14 +244,19 @@ impl ImportedTool {
     /// # Errors
     /// If a file exists with other content, or cannot be written.
     pub fn write_to(&self, folder: &Path) -> Result<PathBuf, ImportError> {
+        fs::create_dir_all(folder)
+            .map_err(|source| ImportError::Unwritable { file: folder.to_owned(), source })?;
         for ToolFile { path, text } in &self.files {
             let file = folder.join(path);
             let unwritable = |source| ImportError::Unwritable { file: file.clone(), source };
+            // The folder can be a stranger's, with links.
+            if !is_within(&file, folder) {
+                return Err(ImportError::Outside { file });
+            }
             match read_regular_file(&file, FileKind::Library) {
                 // Tools share files of holders, and a library can be imported again.
                 Ok(known) if known == text.as_bytes() => continue,
-                // A link that leads nowhere would be followed.
-                Err(error) if error.kind() == io::ErrorKind::NotFound && !file.is_symlink() => {}
+                Err(error) if error.kind() == io::ErrorKind::NotFound => {}
                 Ok(_) | Err(_) => return Err(ImportError::Exists { file }),
             }
             if let Some(parent) = file.parent() {
@@ -259,15 +267,21 @@ impl ImportedTool {
         Ok(folder.join(self.path()))
     }
 
+    /// Returns the tool's own text for the compiler, with those that it mounts.
+    pub fn source(&self) -> Source {
+        let path = self.path();
+        let texts = self.files.iter().map(|file| (PathBuf::from(&file.path), file.text.clone()));
+        let texts: BTreeMap<PathBuf, String> = texts.collect();
+        let text = texts.get(Path::new(&path)).cloned().unwrap_or_default();
+        Source::new(&path, text).with_path(path).with_files(Arc::new(texts))
+    }
+
     /// Loads the tool, interpreted.
     ///
     /// # Errors
-    /// [`ImportError::Unwritable`] if no temporary folder can be written, [`ImportError::Tool`] if the tool does not
-    /// compile: its dimensions are no solid.
+    /// [`ImportError::Tool`] if the tool does not compile: its dimensions are no solid.
     pub fn load(&self) -> Result<Interpreted, ImportError> {
-        let folder = tempfile::tempdir()
-            .map_err(|source| ImportError::Unwritable { file: std::env::temp_dir(), source })?;
-        Ok(Interpreted::load(self.write_to(folder.path())?)?)
+        Ok(Interpreted::parse(&self.source())?)
     }
 }
 

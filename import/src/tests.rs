@@ -219,6 +219,18 @@ fn a_folder_of_tools_leads_nowhere_else() {
     std::fs::remove_file(tools.join("tools.toml")).expect("removed");
     symlink("../outside/secret.tool", tools.join("T1.tool")).expect("a link");
     assert!(refused() && crate::files_in_folder(&tools).is_empty());
+    // Nor does an import into it.
+    let library = library(&fusion("flat end mill", &json!({})));
+    let tool = &library.tools()[0];
+    for (target, link) in
+        [("../outside/new.tool", tool.path()), ("../outside/new.toml", "tools.toml".to_owned())]
+    {
+        symlink(target, tools.join(&link)).expect("a link");
+    }
+    assert!(matches!(tool.write_to(&tools), Err(ImportError::Outside { .. })));
+    let numbers = crate::write_numbers(&tools, &[tool]);
+    assert!(matches!(numbers, Err(crate::FindError::Outside { .. })), "{numbers:?}");
+    assert_eq!(std::fs::read_dir(&outside).expect("a folder").count(), 1);
 }
 
 /// Values of few bytes take much memory.

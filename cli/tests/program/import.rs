@@ -76,6 +76,22 @@ fn importing_again_changes_nothing() {
     assert_eq!(std::fs::read_to_string(&file).expect("the file"), "mine");
 }
 
+/// A tool of a library is read without files, which a command that is ended would leave.
+#[test]
+fn a_tool_of_a_library_needs_no_temporary_folder() {
+    let bench = Bench::new();
+    let library = bench.write("library.json", LIBRARY);
+    for line in [
+        ["tools", &library].to_vec(),
+        ["export", "T3", "--tools", &library, "-o", "a.json"].to_vec(),
+    ] {
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_touchoff"));
+        command.args(&line).current_dir(bench.folder.path());
+        let output = command.env("TMPDIR", bench.place("none")).output().expect("the program");
+        assert!(output.status.success(), "{line:?}: {}", stderr(&output));
+    }
+}
+
 /// The commands of docs/import.md lead from a library to a checked program.
 #[test]
 fn the_commands_of_the_page_work() {
