@@ -160,6 +160,18 @@ pub(crate) fn refuse_inputs<'a>(
     outputs: impl IntoIterator<Item = &'a Path>,
     inputs: impl IntoIterator<Item = &'a Path>,
 ) -> Result<(), Failure> {
+    refuse_inputs_within(Path::new("/"), outputs, inputs)
+}
+
+/// Refuses outputs like [`refuse_inputs`]; what inputs list outside of `root` is not read.
+///
+/// # Errors
+/// As [`refuse_inputs`].
+pub(crate) fn refuse_inputs_within<'a>(
+    root: &Path,
+    outputs: impl IntoIterator<Item = &'a Path>,
+    inputs: impl IntoIterator<Item = &'a Path>,
+) -> Result<(), Failure> {
     let outputs: Vec<&Path> = outputs.into_iter().collect();
     for (index, output) in outputs.iter().enumerate() {
         let is_same = |other: &&Path| place(other) == place(output) || is_same_file(other, output);
@@ -173,7 +185,7 @@ pub(crate) fn refuse_inputs<'a>(
         return Ok(());
     }
     for input in inputs {
-        for read in std::iter::once(input.to_owned()).chain(listed(input)) {
+        for read in std::iter::once(input.to_owned()).chain(listed(input, root)) {
             if let Some(output) = outputs.iter().find(|output| is_same_file(output, &read)) {
                 let [output, input] = [*output, &read].map(|file| file.display().to_string());
                 return Err(Failure::IsInput { output, input });
@@ -185,17 +197,17 @@ pub(crate) fn refuse_inputs<'a>(
 
 /// Returns the files that are read for an input beside it, as far as they can be: those that a tool's file mounts, those that a tool
 /// library lists, and of a folder its tools, with what they mount, and the list of their numbers.
-fn listed(input: &Path) -> Vec<PathBuf> {
+fn listed(input: &Path, root: &Path) -> Vec<PathBuf> {
     if input.is_dir() {
         let files = files_in_folder(input);
-        let mounted: Vec<PathBuf> = files.iter().flat_map(|file| listed(file)).collect();
+        let mounted: Vec<PathBuf> = files.iter().flat_map(|file| listed(file, root)).collect();
         return files.into_iter().chain(mounted).collect();
     }
     match extension(input).as_deref() {
         Some("tool") => {
             let Ok(source) = Source::read(input) else { return Vec::new() };
-            // The loader of the tool decides which files it may mount.
-            let compiled = touchoff_dsl::compile(&source.with_root("/"));
+            // The loader of the tool decides which files within the root it may mount.
+            let compiled = touchoff_dsl::compile(&source.with_root(root));
             compiled
                 .sources
                 .all()
@@ -204,7 +216,8 @@ fn listed(input: &Path) -> Vec<PathBuf> {
                 .collect()
         }
         Some("fctl") => {
-            Library::read(input).map_or(Vec::new(), |library| library.listed_files().to_vec())
+            let library = Library::read_within(input, root);
+            library.map_or(Vec::new(), |library| library.listed_files().to_vec())
         }
         _ => Vec::new(),
     }
@@ -239,4 +252,25 @@ fn is_same_file(one: &Path, other: &Path) -> bool {
 fn is_same_file(one: &Path, other: &Path) -> bool {
     let identity = |path: &Path| path.canonicalize().ok().filter(|path| path.is_file());
     identity(one).is_some_and(|one| Some(one) == identity(other))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What a stranger's tool mounts outside of the root is not even opened.
+    #[test]
+    fn files_outside_of_the_root_are_not_listed() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let inside = folder.path().join("inside");
+        std::fs::create_dir(&inside).expect("a folder");
+        let mounted = "tool Outer { units mm; profile { start (0, 0); arc to (0, 6) center (0, 3) as ball cutting; } \
+                       niceness cutting: 1; }";
+        std::fs::write(folder.path().join("outer.tool"), mounted).expect("written");
+        let tool = inside.join("tool.tool");
+        let mounting = "tool Inner { units mm; mount \"../outer.tool\" as outer; }";
+        std::fs::write(&tool, mounting).expect("written");
+        let count = |root: &Path| listed(&tool, root).len();
+        assert_eq!((count(&inside), count(folder.path())), (1, 2));
+    }
 }

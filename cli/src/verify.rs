@@ -3,7 +3,7 @@
 use crate::arguments::{CheckArguments, ParamArguments, ToolArguments, Verify};
 use crate::failure::Failure;
 use crate::loaded_tool::{LoadedTool, compile_named};
-use crate::output::{Output, extension, refuse_inputs, write_file};
+use crate::output::{Output, extension, refuse_inputs_within, write_file};
 use crate::part;
 use crate::program::{print_approach, print_ignored, warn_of_cutter};
 use crate::progress::Progress;
@@ -41,7 +41,8 @@ pub(crate) fn read(
     let refuse = |file: &JobFile, inputs: Vec<(String, &Path)>| {
         let outputs = outputs.iter().copied().chain(file.outputs().map(|(_, file)| file));
         let inputs = inputs.into_iter().map(|(_, file)| file);
-        refuse_inputs(outputs, other_inputs.iter().copied().chain(inputs))
+        let root = file.root.as_deref().unwrap_or(Path::new("/"));
+        refuse_inputs_within(root, outputs, other_inputs.iter().copied().chain(inputs))
     };
     refuse(&file, file.files())?;
     let inputs =

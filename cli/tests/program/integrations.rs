@@ -142,7 +142,8 @@ fn names_and_links_of_jobs_are_no_commands() {
     symlink(elsewhere.path(), place("linked")).expect("a link");
     let linked = script("integrations/verify-jobs linked", folder.path(), &["a-b.toml".to_owned()]);
     assert_eq!(linked.status.code(), Some(2), "{}", stderr(&linked));
-    let below = script("integrations/verify-jobs linked/out", folder.path(), &["a-b.toml".to_owned()]);
+    let below =
+        script("integrations/verify-jobs linked/out", folder.path(), &["a-b.toml".to_owned()]);
     assert_eq!(below.status.code(), Some(2), "{}", stderr(&below));
     assert_eq!(std::fs::read_dir(elsewhere.path()).expect("a folder").count(), 0);
     // Findings that a repository brings along are removed where those of the run go, and nowhere else.
@@ -154,9 +155,17 @@ fn names_and_links_of_jobs_are_no_commands() {
         clearing.env("TOUCHOFF", env!("CARGO_BIN_EXE_touchoff")).env("TOUCHOFF_CLEAR", "1");
         // A shell that looks for folders elsewhere, too.
         clearing.env("CDPATH", "/");
-        assert_eq!(clearing.status().expect("bash").code(), Some(status), "{findings}");
+        let output = clearing.output().expect("bash");
+        assert_eq!(output.status.code(), Some(status), "{findings}: {}", stderr(&output));
     }
     assert!(elsewhere.path().join("kept.sarif").exists() && !place("out/brought.sarif").exists());
+    // A message does not tell what there is elsewhere.
+    std::fs::write(elsewhere.path().join("mill.tool"), "").expect("written");
+    let named = elsewhere.path().join("mill").display().to_string();
+    std::fs::write(place("hint.toml"), text.replace("mill.tool", &named)).expect("written");
+    let hinted = script("integrations/verify-jobs out", folder.path(), &["hint.toml".to_owned()]);
+    assert_eq!(hinted.status.code(), Some(2), "{}", stderr(&hinted));
+    assert!(!stderr(&hinted).contains("mill.tool"), "{}", stderr(&hinted));
     // A job writes nothing: not over what another one reads, whatever its ending.
     let victim = std::fs::read(place("clamp.stl")).expect("a mesh");
     let clean = std::fs::read_to_string(place("clean.toml")).expect("a job");
