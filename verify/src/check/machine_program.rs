@@ -550,7 +550,8 @@ impl MachineProgram {
         }
         summary.notes = execution.interpreter.notes();
         summary.blank = execution.interpreter.blank();
-        summary.stated_tools = gcode::stated_tools(&self.text, execution.interpreter.unit());
+        summary.stated_tools =
+            gcode::stated_tools(&self.text, execution.interpreter.unit(), &self.setup.tool_names);
         summary.open_rules.clone_from(execution.interpreter.asked());
         summary.open_rules.extend(execution.resolver.asked);
         let is_checked = |number| {
