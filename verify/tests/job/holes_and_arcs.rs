@@ -152,9 +152,14 @@ fn klartext_of_cam_systems_is_read() {
     let mut unnamed = job(text, TRUNNION);
     unnamed.job = unnamed.job.replace("BALL 2", "DRILL");
     unnamed.gives(HEIDENHAIN, NONE, &["P0115 8 `[tool.N]`"]);
-    let mut builder = job(text, TRUNNION);
-    builder.job = builder.job.replace("392", "391");
-    builder.gives(HEIDENHAIN, NONE, &["P0115 2 `[ignore]`"]);
+    // Cycles 300 to 399 are those of builders, and others that are not known can be named, too.
+    for number in ["391", "512"] {
+        let other = text.replace("392", number);
+        job(&other, TRUNNION).gives(HEIDENHAIN, NONE, &["P0115 2 `[ignore]`"]);
+        let mut ignored = job(&other, TRUNNION);
+        ignored.job = ignored.job.replace("392", number);
+        ignored.gives(HEIDENHAIN, CLEAN, &["V0505 2 tunes the drives"]);
+    }
     job(text, &TRUNNION.replace("m92 = [0, 0, -20]", "")).gives(HEIDENHAIN, NONE, &["V0404 9"]);
     // The point is above the travel.
     job(text, &TRUNNION.replace("-20]", "20]")).gives(
@@ -170,3 +175,18 @@ fn klartext_of_cam_systems_is_read() {
     let decides = text.replace("\nLBL 0\nLBL \"On\"", "\nL Z2 R0 FMAX\nLBL \"On\"");
     job(&decides, TRUNNION).gives(HEIDENHAIN, NONE, &["P0210 24 Q1900"]);
 }
+    // A plane that turns nothing leaves nothing open: the sign of the axes, and which coordinate is stated first.
+    for plane in ["SPATIAL SPA0 SPB0 SPC0 STAY SYM- TABLE ROT", "RELATIV SPC+0 STAY TABLE ROT"] {
+        let other = text.replace("SPATIAL SPA0 SPB0 SPC0 STAY SEQ+ TABLE ROT", plane);
+        let other = other.replace("M126\nL X-2 Y0", "M126\nL X-2");
+        job(&other, TRUNNION).gives(HEIDENHAIN, CLEAN, &[]);
+    }
+    let retracts = text
+        .replace("SEQ+ TABLE ROT\nL A+Q120 C+Q122 R0 FMAX M126", "TABLE ROT\nM126")
+        .replace("STAY TABLE", "TURN MB MAX FMAX TABLE");
+    let retracts = retracts
+        .replace("PLANE RESET STAY", "PLANE RESET TURN MB MAX FMAX")
+        .replace("DWELL5\n", "DWELL5\nL A0 C0 R0 FMAX\n");
+    job(&retracts, TRUNNION).gives(HEIDENHAIN, CLEAN, &[]);
+    let tilted = text.replace("SPA0 SPB0 SPC0 STAY SEQ+ TABLE ROT", "SPA+10 SPB0 SPC0 STAY SYM+");
+    job(&tilted, TRUNNION).gives(HEIDENHAIN, NONE, &["P0115 13 SYM+"]);

@@ -12,7 +12,7 @@ use super::Program;
 use super::block::Coordinate;
 use super::expression::{Parameter, value};
 use super::line::Cursor;
-use super::words::{CYCLES, Entry, Treatment, find};
+use super::words::{Entry, Treatment, find_cycle};
 use crate::gcode::control::Control;
 use crate::gcode::error::{combination, missing, not_read};
 use crate::gcode::note::NoteKind;
@@ -222,8 +222,8 @@ impl Program<'_> {
             control.ignore(word());
             return Ok(());
         }
-        let Some(entry) = find(&CYCLES, &number.to_string()) else {
-            let remedy = "post the program with its motions";
+        let Some(entry) = find_cycle(number) else {
+            let remedy = "post the program with its motions, or name it in `[ignore]` of the job with the reason for which it moves nothing";
             return Err(not_read(word(), "a cycle that is not known", remedy));
         };
         match entry.treatment {
@@ -467,7 +467,8 @@ impl Program<'_> {
 pub(in crate::gcode) fn is_ignorable(word: &str) -> bool {
     let Some(number) = word.strip_prefix("CYCL DEF ") else { return false };
     let is_number = !number.starts_with('0') && number.bytes().all(|byte| byte.is_ascii_digit());
-    is_number && find(&CYCLES, number).is_none_or(Entry::is_of_builder)
+    let number = number.parse::<u32>().ok().filter(|_| is_number);
+    number.is_some_and(|number| find_cycle(number).is_none_or(Entry::is_of_builder))
 }
 
 /// Moves to the depths of all infeeds but the last.
