@@ -576,6 +576,7 @@ impl MachineSummary {
                 | NoteKind::OptionalSwitches
                 | NoteKind::TwoRadii
                 | NoteKind::EmptyCycle
+                | NoteKind::UncalledCycle
                 | NoteKind::RoundedRadius
                 | NoteKind::OffsetOrShift
                 | NoteKind::LeftModes { .. } => GapWeight::Open,

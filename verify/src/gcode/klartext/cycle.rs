@@ -256,6 +256,7 @@ impl Program<'_> {
         self.cycle = Some(cycle(&given, self.unit.millimetres())?);
         self.keep_parameters(number);
         self.is_modal_call = false;
+        control.define_cycle();
         Ok(())
     }
 
@@ -395,6 +396,7 @@ impl Program<'_> {
             return Err(missing("a call of a cycle", "a drilling cycle before (CYCL DEF 200)"));
         };
         let word = format!("CYCL DEF {}", cycle.number);
+        control.call_cycle();
         self.check_parameters(cycle.number)?;
         control.check_corner()?;
         control.check_uncompensated(&*word)?;
