@@ -72,7 +72,8 @@ impl Control {
             self.add_dwell(None, repeats as usize);
         }
         // LinuxCNC compares the initial level, and not the present one, with R.
-        if is_below(cycle.initial, levels.retract)
+        if repeats > 0
+            && is_below(cycle.initial, levels.retract)
             && self.position[normal] != levels.retract
             && self.choice(Rule::CycleBelowR) == Choice::RaisesFirst
         {
