@@ -407,7 +407,7 @@ mod tests {
             ("T1 M6 (D=6. CR=0. - FLAT END MILL)", (1, 6.0, Some(0.0), Flat)),
             ("T02 M06 (END MILL DIA 8.0MM)", (2, 8.0, None, Unnamed)),
             ("TOOL CALL \"Flat 6\" Z S900 ; 6MM FLAT ENDMILL", (4, 6.0, None, Flat)),
-            ("( TOOL - 2 DIA. OFF. - 2 LEN. - 2 DIA. - 8. )", (2, 8.0, None, Unnamed)),
+            ("( TOOL - 2 DIA. OFF. - 2 LEN. - 2 DIA. - 8. )", (2, 8.0, None, Other)),
             ("(T1 | 1/2 FLAT ENDMILL | H1 | D1 | TOOL DIA. - 12.5)", (1, 12.5, None, Flat)),
             ("( T1 |6MM FLAT ENDMILL| H1 | D1 | DIAMETER - 6. )", (1, 6.0, None, Flat)),
             ("(T10|5/8 BALL ENDMILL|H16)", (10, 15.875, None, Ball)),
