@@ -10,7 +10,7 @@
 use super::moves::{JointPath, Move, MovePath, RapidBox};
 use crate::gcode::{
     self, BlockLine, Choice, ControlRules, ControlSetup, GcodeError, GcodeFault, Interpreter,
-    LengthOffset, Rule, Step, StepPath, SubprogramFile,
+    LengthOffset, Rotation, Rule, Step, StepPath, SubprogramFile, Tcp,
 };
 use crate::machine::{JointError, JointMotion, Letter, Machine, Relation, Setup, Side};
 use nalgebra::Vector3;
@@ -451,8 +451,18 @@ impl MachineProgram {
         let asks_direction = !self.machine.states_directions()
             && self.setup.rules.get(Rule::Dialect) == Some(Choice::Rs274Ngc);
         let mut execution = self.execute()?;
+        // LinuxCNC has neither tool centre point control nor tilted planes by the words of other controls.
+        let assumes_direction = !self.machine.states_directions()
+            && self.setup.rules.get(Rule::Dialect).is_none()
+            && self.setup.rules.get(Rule::RotaryDirection).is_none()
+            && execution.interpreter.is_iso();
         while let Some((step, resolved)) = execution.next() {
             let number = step.state.tool;
+            let is_plain = step.state.tcp == Tcp::Off
+                && !matches!(step.state.rotation, Rotation::Tilted { .. });
+            if assumes_direction && is_plain && resolved.is_turned() {
+                summary.direction_assumed.get_or_insert(step.block());
+            }
             if asks_direction && resolved.is_turned() {
                 execution.resolver.note(Rule::RotaryDirection, &step);
             }
@@ -550,7 +560,8 @@ impl MachineProgram {
         }
         summary.notes = execution.interpreter.notes();
         summary.blank = execution.interpreter.blank();
-        summary.stated_tools = gcode::stated_tools(&self.text, execution.interpreter.unit());
+        summary.stated_tools =
+            gcode::stated_tools(&self.text, execution.interpreter.unit(), &self.setup.tool_names);
         summary.open_rules.clone_from(execution.interpreter.asked());
         summary.open_rules.extend(execution.resolver.asked);
         let is_checked = |number| {

@@ -1,15 +1,18 @@
 //! Tools that the comments of a program describe.
 //!
-//! Post-processors write a comment for each tool at the head of a program, or before its change:
+//! Post-processors write a comment for each tool at the head of a program, before its change, or in the block of the change:
 //!
 //! | written by | comment |
 //! |---|---|
-//! | Fusion 360, Inventor CAM, HSMWorks | `(T1  D=0.375 CR=0. - ZMIN=-0.08 - FLAT END MILL)`, or after `;` |
+//! | Fusion 360, Inventor CAM, HSMWorks | `(T1  D=0.375 CR=0. - ZMIN=-0.08 - FLAT END MILL)`, or after `;`; `#1 D=6 - ZMIN=-1 - ball end mill` in Klartext |
 //! | Mastercam | `(T1 \| 3/8 FLAT ENDMILL \| H1 \| TOOL DIA. - .375)`, `( TOOL - 1 DIA. OFF. - 1 LEN. - 1 DIA. - .375 )` |
+//! | SolidCAM | `(TOOL -1- MILL DIA 10.0 R0. MM )` |
+//! | Vectric | `(1 = End Mill {6 mm})`, `(T2 = V-Bit {90 deg 0.5 inches})` |
+//! | FreeCAD, CamBam | `(T1=6mm_Endmill)`, `( T1 : 6.0 )` |
 //! | Makera Studio | `;@MKR\|TOOL\|number=2\|type=Flat End\|diameter=3\|cornerradius=0`, in millimetres |
 
 use super::shown;
-use std::collections::HashSet;
+use std::collections::{BTreeMap, HashSet};
 use touchoff::Unit;
 
 /// A tool that a comment describes. Lengths are in millimetres.
@@ -24,6 +27,8 @@ pub struct StatedTool {
     pub diameter: f64,
     /// The radius of its corners.
     pub corner: Option<f64>,
+    /// The angle of its cone in degrees: to the axis for a [`StatedEnd::Cone`], of the whole point for another.
+    pub taper: Option<f64>,
     /// The form of its end.
     pub end: StatedEnd,
     /// The escaped comment.
@@ -39,131 +44,332 @@ pub enum StatedEnd {
     Ball,
     /// A bull nose.
     BullNose,
+    /// A chamfer mill, a V-bit or a tapered mill.
+    Cone,
     /// Another type.
     Other,
     /// No type.
     Unnamed,
 }
 
-/// Returns the tools that the comments of a program describe, each description once. `unit` is that of the program.
-pub(crate) fn stated_tools(text: &str, unit: Unit) -> Vec<StatedTool> {
+/// Returns the tools that the comments of a program describe, each description once. `unit` is that of the program, and `names` has the
+/// numbers of tools that the program selects by their names.
+pub(crate) fn stated_tools(
+    text: &str,
+    unit: Unit,
+    names: &BTreeMap<String, u32>,
+) -> Vec<StatedTool> {
     let mut found: Vec<StatedTool> = Vec::new();
     let mut known = HashSet::new();
     for (index, line) in text.lines().enumerate() {
-        for comment in comments(line) {
-            let Some(tool) = stated_tool(1 + index, comment, unit) else { continue };
-            let StatedTool { number, diameter, corner, end, .. } = tool;
-            if known.insert((number, diameter.to_bits(), corner.map(f64::to_bits), end)) {
-                found.push(tool);
-            }
+        let (code, comments) = comments(line);
+        let selected = selected(code, names);
+        let mut tools = comments.into_iter().filter_map(|comment| {
+            let tool = description(comment, selected, names)?;
+            tool.stated(1 + index, comment, unit)
+        });
+        let Some(tool) = tools.next() else { continue };
+        let StatedTool { number, diameter, corner, taper, end, .. } = tool;
+        let lengths = [Some(diameter), corner, taper].map(|length| length.map(f64::to_bits));
+        if known.insert((number, lengths, end)) {
+            found.push(tool);
         }
     }
     found
 }
 
-/// Returns the comments of a line: in parentheses, after a semicolon, or as a heading of Klartext.
-fn comments(line: &str) -> impl Iterator<Item = &str> {
+/// Splits a line into its words and its comments: after a semicolon, each in parentheses to the last one, since names of tools can have
+/// parentheses, and a heading of Klartext.
+fn comments(line: &str) -> (&str, Vec<&str>) {
     let (before, after) = match line.split_once(';') {
         Some((before, after)) => (before, Some(after)),
         None => (line, None),
     };
-    // Names of tools can have parentheses.
-    let inner = before.split_once('(').map(|(_, rest)| rest.rsplit_once(')').map_or(rest, |p| p.0));
-    let heading = before.trim_start_matches(|c: char| c.is_ascii_digit() || c == ' ');
-    let heading = heading.strip_prefix('*');
-    [inner, heading.filter(|_| inner.is_none()), after].into_iter().flatten()
+    let last = before.rfind(')').unwrap_or(before.len());
+    let opened = before[..last].match_indices('(');
+    let mut found: Vec<&str> = opened.map(|(at, _)| &before[at + 1..last]).collect();
+    let words = before.split('(').next().unwrap_or_default();
+    if found.is_empty() {
+        let heading = words.trim_start_matches(|c: char| c.is_ascii_digit() || c == ' ');
+        found.extend(heading.strip_prefix('*'));
+    }
+    found.extend(after);
+    (words, found)
 }
 
-/// Reads a comment, if it states the number and the diameter of a tool.
-fn stated_tool(line: usize, comment: &str, unit: Unit) -> Option<StatedTool> {
-    let upper = comment.trim().to_ascii_uppercase();
-    let text = upper.trim_start_matches(['-', ' ', '"']);
-    let (number, diameter, corner, kind, scale) = match text.strip_prefix("@MKR|TOOL|") {
-        Some(fields) => {
-            let field = |key: &str| {
-                let pairs = fields.split('|').filter_map(|field| field.split_once('='));
-                pairs.into_iter().find(|(known, _)| *known == key).map(|(_, value)| value.trim())
-            };
-            let number = field("NUMBER")?.parse().ok()?;
-            let corner = field("CORNERRADIUS").and_then(leading_number);
-            let kind = field("TYPE").unwrap_or_default();
-            (number, leading_number(field("DIAMETER")?)?, corner, kind.to_owned(), 1.0)
-        }
-        None => {
-            let (number, rest) = tool_number(text)?;
-            let diameter = value(rest, &["D="]).or_else(|| diameter(rest))?;
-            let corner = value(rest, &["CR="]);
-            // The type is the last field that is no value.
-            let fields = rest.split(" - ").skip(1).filter(|field| !field.contains('='));
-            let is_mastercam = value(rest, &["D="]).is_none();
-            let kind = if is_mastercam { Some(rest) } else { fields.last() };
-            (number, diameter, corner, kind.unwrap_or_default().to_owned(), unit.millimetres())
-        }
-    };
-    let is_length = |length: &f64| (0.0..1e6).contains(length);
-    if !is_length(&diameter) || diameter == 0.0 {
-        return None;
+/// Returns the tool that the words of a block select: `T1` or `TOOL CALL 1`.
+fn selected(words: &str, names: &BTreeMap<String, u32>) -> Option<u32> {
+    let words = words.to_ascii_uppercase();
+    if let Some((_, rest)) = words.split_once("TOOL CALL") {
+        let rest = rest.trim_start();
+        return quoted(rest, names).or_else(|| digits(rest)).map(|(number, _)| number);
     }
-    Some(StatedTool {
-        line,
-        number,
-        diameter: scale * diameter,
-        corner: corner.filter(is_length).map(|corner| scale * corner),
-        end: end(&kind),
-        comment: shown(comment.trim()),
+    let mut found = words
+        .match_indices('T')
+        .filter(|(at, _)| !words[..*at].ends_with(|c: char| c.is_ascii_alphabetic() || c == '_'));
+    found.find_map(|(at, _)| digits(&words[at + 1..])).map(|(number, _)| number)
+}
+
+/// Returns the number of the tool whose name a text begins with in quotes, and the rest.
+fn quoted<'a>(text: &'a str, names: &BTreeMap<String, u32>) -> Option<(u32, &'a str)> {
+    let (name, rest) = text.strip_prefix('"')?.split_once('"')?;
+    let (_, number) = names.iter().find(|(known, _)| known.eq_ignore_ascii_case(name))?;
+    Some((*number, rest))
+}
+
+/// Returns the whole number at the beginning of a text, and the rest.
+fn digits(text: &str) -> Option<(u32, &str)> {
+    let length = text.bytes().take_while(u8::is_ascii_digit).count();
+    let (number, rest) = text.split_at(length);
+    Some((number.parse().ok()?, rest))
+}
+
+/// A length of a comment: its value, and its unit if the comment has one beside it.
+type Measure = (f64, Option<Unit>);
+
+/// What a comment states.
+struct Description {
+    number: u32,
+    diameter: Measure,
+    corner: Option<Measure>,
+    taper: Option<f64>,
+    end: StatedEnd,
+    /// The unit of lengths that have none, if it is not that of the program.
+    unit: Option<Unit>,
+}
+
+impl Description {
+    fn stated(&self, line: usize, comment: &str, unit: Unit) -> Option<StatedTool> {
+        let scaled =
+            |(value, own): Measure| value * own.or(self.unit).unwrap_or(unit).millimetres();
+        let is_length = |length: &f64| (0.0..1e6).contains(length);
+        let diameter =
+            Some(scaled(self.diameter)).filter(|length| is_length(length) && *length > 0.0);
+        Some(StatedTool {
+            line,
+            number: self.number,
+            diameter: diameter?,
+            corner: self.corner.map(scaled).filter(is_length),
+            taper: self.taper.filter(|angle| (0.0..=180.0).contains(angle)),
+            end: self.end,
+            comment: shown(comment.trim()),
+        })
+    }
+}
+
+/// Reads a comment, if it states the diameter of a tool, and its number or stands in the block that `selected` it.
+fn description(
+    comment: &str,
+    selected: Option<u32>,
+    names: &BTreeMap<String, u32>,
+) -> Option<Description> {
+    let upper = comment.trim().to_ascii_uppercase();
+    let text = upper.strip_prefix("MSG,").unwrap_or(&upper).trim_start_matches(['-', ' ']);
+    if let Some(fields) = text.strip_prefix("@MKR|TOOL|") {
+        return makera(fields);
+    }
+    let named = quoted(text.strip_prefix("T=").unwrap_or(text), names);
+    let text = text.trim_start_matches('"');
+    let numbered = named.or_else(|| tool_number(text)).or_else(|| numbered_name(text));
+    let (number, rest) = numbered.or(selected.map(|number| (number, text)))?;
+    // The size of an engraving bit is that of its tip.
+    let braced = rest.split_once('{').and_then(|(_, inner)| inner.split('}').next());
+    let braced = braced.filter(|inner| !inner.contains("TIP"));
+    let diameter = value(rest, &["D"])
+        .or_else(|| diameter(rest))
+        .or_else(|| braced.and_then(last_measure))
+        .or_else(|| measure(rest.trim_start().strip_prefix(':')?).map(|found| found.0))
+        .or_else(|| named_diameter(rest))?;
+    let corner = ["CR", "CORNER RADIUS", "CORNER RAD.", "CORNER RAD"];
+    let corner = value(rest, &corner).or_else(|| radius(rest));
+    let taper = value(rest, &["TAPER"]).map(|(angle, _)| angle);
+    // The type is the last field that is no value.
+    let fields = rest.split(" - ").skip(1).filter(|field| !field.contains('='));
+    let has_values = value(rest, &["D"]).is_some();
+    let kind = if has_values { fields.last().unwrap_or_default() } else { rest };
+    let mut end = end(kind);
+    if end == StatedEnd::Unnamed && braced.is_some() && kind.contains("END MILL") {
+        end = StatedEnd::Flat;
+    }
+    // The angle of a V-bit is that of the whole point.
+    let whole = || {
+        braced?.split_once("DEG").and_then(|(angle, _)| number_in(angle)).map(|angle| 0.5 * angle)
+    };
+    let taper = taper.or_else(|| whole().filter(|_| end == StatedEnd::Cone));
+    let unit = match rest.split_whitespace().next_back() {
+        Some("MM") => Some(Unit::Millimetre),
+        Some("IN" | "INCH" | "INCHES") => Some(Unit::Inch),
+        _ => None,
+    };
+    Some(Description { number, diameter, corner, taper, end, unit })
+}
+
+/// Reads the fields of Makera Studio.
+fn makera(fields: &str) -> Option<Description> {
+    let field = |key: &str| {
+        let mut pairs = fields.split('|').filter_map(|field| field.split_once('='));
+        pairs.find(|(known, _)| *known == key).map(|(_, value)| value.trim())
+    };
+    Some(Description {
+        number: field("NUMBER")?.parse().ok()?,
+        diameter: measure(field("DIAMETER")?)?.0,
+        corner: field("CORNERRADIUS").and_then(measure).map(|(corner, _)| corner),
+        taper: None,
+        end: end(field("TYPE").unwrap_or_default()),
+        unit: Some(Unit::Millimetre),
     })
 }
 
-/// Returns the number after `T` or `TOOL` at the beginning, and the rest.
+/// Returns the number after `T`, `TOOL` or `#` at the beginning, and the rest.
 fn tool_number(text: &str) -> Option<(u32, &str)> {
     let rest = match text.strip_prefix("TOOL") {
-        Some(rest) => rest.trim_start_matches([' ', '-', '#', ':', '=', '.']),
-        None => text.strip_prefix('T')?,
+        Some(rest) => {
+            let rest = rest.trim_start();
+            let rest = rest.strip_prefix("NUMBER").or(rest.strip_prefix("NO.")).unwrap_or(rest);
+            rest.trim_start_matches([' ', '-', '#', ':', '=', '.'])
+        }
+        None => text.strip_prefix(['T', '#'])?,
     };
-    let digits = rest.bytes().take_while(u8::is_ascii_digit).count();
-    let (number, rest) = rest.split_at(digits);
-    let is_word = rest.starts_with(|c: char| c.is_ascii_alphanumeric() || c == '.');
-    Some((number.parse().ok()?, rest)).filter(|_| !is_word)
+    let is_word = |rest: &str| rest.starts_with(|c: char| c.is_ascii_alphanumeric() || c == '.');
+    digits(rest).filter(|(_, rest)| !is_word(rest))
 }
 
-/// Returns the number after a key that begins a word.
-fn value(text: &str, keys: &[&str]) -> Option<f64> {
-    keys.iter().find_map(|key| {
-        let mut found = text.match_indices(key);
-        let (at, _) = found.find(|(at, _)| {
-            !text[..*at].ends_with(|c: char| c.is_ascii_alphanumeric() || c == '_')
-        })?;
-        leading_number(&text[at + key.len()..])
+/// Returns the number before the name of a tool with its size in braces or parentheses: `1 = End Mill {6 mm}`.
+fn numbered_name(text: &str) -> Option<(u32, &str)> {
+    let (number, rest) = digits(text)?;
+    let rest = rest.trim_start().strip_prefix('=')?;
+    let (_, size) = rest.split_once(['{', '('])?;
+    last_measure(size)?;
+    Some((number, rest))
+}
+
+/// Returns the length after a key that begins a word, and `=`, `:` or `-`.
+fn value(text: &str, keys: &[&str]) -> Option<Measure> {
+    let after = |key: &&str| {
+        let mut found = text.match_indices(*key).filter(|(at, _)| begins_word(text, *at));
+        found.find_map(|(at, _)| {
+            let rest = text[at + key.len()..].trim_start();
+            measure(rest.strip_prefix(['=', ':', '-'])?).map(|found| found.0)
+        })
+    };
+    keys.iter().find_map(after)
+}
+
+fn begins_word(text: &str, at: usize) -> bool {
+    !text[..at].ends_with(|c: char| c.is_ascii_alphanumeric() || c == '_')
+}
+
+/// Returns the length after the last `DIA` or `DIAMETER` that is not the number of an offset, or `D6.` with its point.
+fn diameter(text: &str) -> Option<Measure> {
+    let named = text.match_indices("DIA").filter_map(|(at, key)| {
+        let rest = &text[at + key.len()..];
+        let rest = rest.strip_prefix("METER").or(rest.strip_prefix('M')).unwrap_or(rest);
+        let rest = rest.trim_start_matches('.').trim_start();
+        let rest = rest.strip_prefix(['-', '=', ':']).unwrap_or(rest);
+        measure(rest).filter(|_| begins_word(text, at)).map(|found| found.0)
+    });
+    named.last().or_else(|| pointed(text, 'D'))
+}
+
+/// Returns the length of a word of a letter and a number with a decimal point, as the numbers of offsets have none.
+fn pointed(text: &str, letter: char) -> Option<Measure> {
+    let mut found = text.match_indices(letter).filter(|(at, _)| begins_word(text, *at));
+    found.find_map(|(at, _)| {
+        let rest = &text[at + 1..];
+        let length = rest.bytes().take_while(|byte| byte.is_ascii_digit() || *byte == b'.').count();
+        measure(rest).filter(|_| rest[..length].contains('.')).map(|found| found.0)
     })
 }
 
-/// Returns the number after the last `DIA.` that is not the one of an offset.
-fn diameter(text: &str) -> Option<f64> {
-    let numbers = text.match_indices("DIA.").filter_map(|(at, key)| {
-        let rest = text[at + key.len()..].trim_start();
-        leading_number(rest.strip_prefix(['-', '=', ':'])?)
+/// Returns the radius of a corner: `R0.5`, or `1. RAD`.
+fn radius(text: &str) -> Option<Measure> {
+    let mut words = text.split_whitespace().zip(text.split_whitespace().skip(1));
+    let before = words.find(|(_, word)| word.starts_with("RAD"));
+    before.and_then(|(word, _)| measure(word)).map(|found| found.0).or_else(|| pointed(text, 'R'))
+}
+
+/// Returns the length with which the name of a cutter begins: `6MM FLAT ENDMILL`, `3/8 DRILL`.
+fn named_diameter(text: &str) -> Option<Measure> {
+    const CUTTERS: [&str; 7] = ["MILL", "DRILL", "BALL", "BULL", "REAMER", "V-BIT", "COUNTERSINK"];
+    let (found, rest) = measure(text.trim_start_matches([' ', '|', '-', '=', ':']))?;
+    let is_ended = rest.starts_with([' ', '_', '"', '|']);
+    let name = rest.split('|').next().unwrap_or_default();
+    Some(found).filter(|_| is_ended && CUTTERS.iter().any(|cutter| name.contains(cutter)))
+}
+
+/// Returns the last length with a unit.
+fn last_measure(text: &str) -> Option<Measure> {
+    let starts = text.char_indices().filter(|(at, c)| {
+        (c.is_ascii_digit() || *c == '.')
+            && !text[..*at].ends_with(|c: char| c.is_ascii_digit() || "./,".contains(c))
     });
-    numbers.last()
+    let found = starts.filter_map(|(at, _)| measure(&text[at..])).map(|(found, _)| found);
+    found.filter(|(_, unit)| unit.is_some()).last()
 }
 
 /// Returns the number at the beginning of a text.
-fn leading_number(text: &str) -> Option<f64> {
+fn number_in(text: &str) -> Option<f64> {
+    measure(text).map(|((value, _), _)| value)
+}
+
+/// Reads a length at the beginning of a text, as `6`, `.375`, `6,5`, `1/4"` or `6 mm`, and returns the rest. A fraction is in inches.
+fn measure(text: &str) -> Option<(Measure, &str)> {
     let text = text.trim_start();
-    let length = text.bytes().take_while(|byte| byte.is_ascii_digit() || *byte == b'.').count();
-    text[..length].parse().ok()
+    let is_digit = |byte: u8| byte.is_ascii_digit();
+    let count = |text: &str| text.bytes().take_while(|byte| is_digit(*byte)).count();
+    let whole = count(text);
+    let mut length = whole;
+    if text[whole..].starts_with(['.', ',']) {
+        let decimals = count(&text[whole + 1..]);
+        if decimals > 0 || whole > 0 && text[whole..].starts_with('.') {
+            length += 1 + decimals;
+        }
+    }
+    let mut value: f64 = text[..length].replace(',', ".").parse().ok()?;
+    let mut rest = &text[length..];
+    let mut unit = None;
+    if let Some((below, behind)) = rest.strip_prefix('/').and_then(digits)
+        && length == whole
+        && below > 0
+    {
+        value /= f64::from(below);
+        (unit, rest) = (Some(Unit::Inch), behind);
+    }
+    let word = rest.trim_start();
+    for (name, named) in [
+        ("MM", Unit::Millimetre),
+        ("INCHES", Unit::Inch),
+        ("INCH", Unit::Inch),
+        ("IN", Unit::Inch),
+        ("\"", Unit::Inch),
+    ] {
+        if let Some(behind) = word.strip_prefix(name)
+            && !(name != "\"" && behind.starts_with(|c: char| c.is_ascii_alphanumeric()))
+        {
+            return Some(((value, Some(named)), behind));
+        }
+    }
+    Some(((value, unit), rest))
 }
 
 /// Returns the form of an end by the name of a type.
 fn end(kind: &str) -> StatedEnd {
-    let has = |words: &[&str]| words.iter().all(|word| kind.contains(word));
+    let has = |words: &[&str]| words.iter().any(|word| kind.contains(word));
+    let is_mill = has(&["MILL", "END", "NOSE"]);
     if kind.trim().is_empty() {
         StatedEnd::Unnamed
+    } else if has(&["CHAMFER", "V-BIT", "V BIT", "TAPERED MILL"]) {
+        StatedEnd::Cone
+    } else if has(&["TAPER"]) {
+        StatedEnd::Other
     } else if has(&["BULL"]) {
         StatedEnd::BullNose
-    } else if has(&["BALL", "MILL"]) || has(&["BALL", "END"]) {
+    } else if has(&["BALL"]) && is_mill {
         StatedEnd::Ball
-    } else if has(&["FLAT", "MILL"]) || has(&["FLAT", "END"]) {
+    } else if has(&["FLAT"]) && is_mill {
         StatedEnd::Flat
+    } else if has(&["END MILL", "ENDMILL"]) {
+        StatedEnd::Unnamed
     } else {
         StatedEnd::Other
     }
@@ -174,13 +380,14 @@ mod tests {
     use super::*;
 
     fn stated(text: &str, unit: Unit) -> Vec<(usize, u32, f64, Option<f64>, StatedEnd)> {
-        let tools = stated_tools(text, unit).into_iter();
+        let names = BTreeMap::from([("Flat 6".to_owned(), 4)]);
+        let tools = stated_tools(text, unit, &names).into_iter();
         tools.map(|tool| (tool.line, tool.number, tool.diameter, tool.corner, tool.end)).collect()
     }
 
     #[test]
     fn comments_of_post_processors_describe_tools() {
-        use StatedEnd::{Ball, BullNose, Flat, Other, Unnamed};
+        use StatedEnd::{Ball, BullNose, Cone, Flat, Other, Unnamed};
         let mm = Unit::Millimetre;
         for (text, expected) in [
             ("(T3  D=10. CR=0. - ZMIN=-4. - FLAT END MILL)", (3, 10.0, Some(0.0), Flat)),
@@ -188,9 +395,31 @@ mod tests {
             ("; T4 D=12 CR=1.5 - ZMIN=-1 - bull nose end mill", (4, 12.0, Some(1.5), BullNose)),
             ("3 * T5 D=5 CR=0 TAPER=118deg - ZMIN=-9 - drill", (5, 5.0, Some(0.0), Other)),
             ("7 ; T5 D=5 CR=0 - ZMIN=-9 - drill", (5, 5.0, Some(0.0), Other)),
+            ("7 ;   #5 D=5 - ZMIN=-9 - flat end mill", (5, 5.0, None, Flat)),
+            ("7 ; \"FLAT 6\" D=5 - ZMIN=-9 - flat end mill", (4, 5.0, None, Flat)),
+            ("; T=\"FLAT 6\" D=5 CR=0 - ZMIN=-9 - flat end mill", (4, 5.0, Some(0.0), Flat)),
+            ("MSG(\"T5 D=5 CR=0 - flat end mill\")", (5, 5.0, Some(0.0), Flat)),
+            ("(MSG, T5 D=5 CR=0 - FLAT END MILL)", (5, 5.0, Some(0.0), Flat)),
             ("N10 (T1 D=.5 CR=0.)", (1, 0.5, Some(0.0), Unnamed)),
+            ("(T1 D=6,5 CR=0,25 - BULL NOSE END MILL)", (1, 6.5, Some(0.25), BullNose)),
+            ("(T1 D=1/2in CR=0 - FLAT END MILL)", (1, 12.7, Some(0.0), Flat)),
+            ("(OP 1) (T1 D=6. CR=0. TAPER=45DEG - CHAMFER MILL)", (1, 6.0, Some(0.0), Cone)),
+            ("T1 M6 (D=6. CR=0. - FLAT END MILL)", (1, 6.0, Some(0.0), Flat)),
+            ("T02 M06 (END MILL DIA 8.0MM)", (2, 8.0, None, Unnamed)),
+            ("TOOL CALL \"Flat 6\" Z S900 ; 6MM FLAT ENDMILL", (4, 6.0, None, Flat)),
             ("( TOOL - 2 DIA. OFF. - 2 LEN. - 2 DIA. - 8. )", (2, 8.0, None, Other)),
             ("(T1 | 1/2 FLAT ENDMILL | H1 | D1 | TOOL DIA. - 12.5)", (1, 12.5, None, Flat)),
+            ("( T1 |6MM FLAT ENDMILL| H1 | D1 | DIAMETER - 6. )", (1, 6.0, None, Flat)),
+            ("(T10|5/8 BALL ENDMILL|H16)", (10, 15.875, None, Ball)),
+            ("(T1|6. BULL ENDMILL 1. RAD|H1)", (1, 6.0, Some(1.0), BullNose)),
+            ("(T1 - 1/4 FLAT ENDMILL - H1 - D1 - D0.2500\")", (1, 6.35, None, Flat)),
+            ("(TOOL -1- BULL NOSE MILL DIA 10.0 R0.5 MM )", (1, 10.0, Some(0.5), BullNose)),
+            ("(1 = End Mill {6 mm})", (1, 6.0, None, Flat)),
+            ("(5 = Ball Nose {0.2500 inch} UpDown)", (5, 6.35, None, Ball)),
+            ("(T2 = V-Bit {90 deg 1/2\"})", (2, 12.7, None, Cone)),
+            ("( T3 : 50.8 surfacing bit )", (3, 50.8, None, Other)),
+            ("(T1=6mm_Endmill)", (1, 6.0, None, Unnamed)),
+            ("(T1=6mm_Ball_End)", (1, 6.0, None, Ball)),
             (
                 ";@MKR|TOOL|number=2|name=3mm|type=Flat End|diameter=3|cornerradius=0|angle=0",
                 (2, 3.0, Some(0.0), Flat),
@@ -201,21 +430,38 @@ mod tests {
         }
         let inch = stated("%\nO1\n(T1 D=0.5 CR=0.0625 - BULL NOSE END MILL)", Unit::Inch);
         assert_eq!(inch, [(3, 1, 12.7, Some(1.5875), BullNose)]);
-        // Makera writes millimetres whatever the unit of the program.
-        let makera = ";@MKR|TOOL|number=2|type=Ball End|diameter=3|cornerradius=1.5";
-        assert_eq!(stated(makera, Unit::Inch), [(1, 2, 3.0, Some(1.5), Ball)]);
+        // A unit beside the number counts, and Makera writes millimetres whatever the unit of the program.
+        for ball in [
+            "(T2 D=3mm CR=1.5mm - BALL END MILL)",
+            ";@MKR|TOOL|number=2|type=Ball End|diameter=3|cornerradius=1.5",
+        ] {
+            assert_eq!(stated(ball, Unit::Inch), [(1, 2, 3.0, Some(1.5), Ball)]);
+        }
+        for (text, taper) in [
+            ("(T1 D=6. CR=0. TAPER=45DEG - CHAMFER MILL)", Some(45.0)),
+            ("(T1 D=6. CR=0. TAPER=118DEG - DRILL)", Some(118.0)),
+            ("(1 = V-Bit {90 deg 12.7 mm})", Some(45.0)),
+            ("(T1 D=6. CR=0. - DRILL)", None),
+        ] {
+            assert_eq!(stated_tools(text, mm, &BTreeMap::new())[0].taper, taper, "{text}");
+        }
     }
 
     #[test]
     fn other_comments_describe_no_tool() {
         for text in [
-            "(T1 = 6 MM END MILL)",
+            "(T1 NEXT)",
             "(TEST D=3)",
             "(T1.5 D=3)",
             "(TOOL LIST)",
             "G1 X5 (D=3 CR=0)",
             "T1 D1",
             "(T1 D=0. CR=0.)",
+            "(1 = Profile 2)",
+            "(1 = Engraving {30 deg 0.5 mm Tip})",
+            "(T3|NO. 7 DRILL|H3|D3)",
+            "(T1 1/4-20 TAP)",
+            "; \"OTHER\" D=5 - flat end mill",
         ] {
             assert_eq!(stated(text, Unit::Millimetre), [], "{text}");
         }

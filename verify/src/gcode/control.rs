@@ -116,6 +116,8 @@ pub(super) struct Control {
     origin_changed: [bool; 6],
     /// Set by G68 and G69, until a position in the plane is stated.
     rotation_changed: bool,
+    /// The block that has defined a cycle, until it is called.
+    uncalled: Option<BlockLine>,
     /// The reason for which a work offset has to be selected before a position.
     needs_offset: Option<&'static str>,
     /// Set by TRAORI and TRAFOOF, until a work offset is selected.
@@ -317,6 +319,7 @@ impl Control {
             length_changed: false,
             origin_changed: [false; 6],
             rotation_changed: false,
+            uncalled: None,
             needs_offset: None,
             transformation_changed: false,
             tcp_position_needed: false,

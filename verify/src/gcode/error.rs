@@ -226,10 +226,10 @@ faults! {
         #[code_of(0)]
         #[error(transparent)]
         Compensation(#[from] CompensationFault),
-        /// A canned cycle whose plane R is below its depth.
+        /// A canned cycle whose plane R is not above its depth.
         #[code = P0123]
         #[error(
-            "the retract plane R {retract} is below the depth {depth} of the cycle (mm): exchange them"
+            "the plane R {retract} is not above the depth {depth} of the cycle (mm): correct or exchange them"
         )]
         CycleBelow {
             /// The plane, in millimetres.

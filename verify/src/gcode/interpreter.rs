@@ -144,6 +144,11 @@ impl<'a> Interpreter<'a> {
         Survey::new(rest, self.is_stopped)
     }
 
+    /// Returns whether it is a program of ISO words, which several controls read.
+    pub(crate) fn is_iso(&self) -> bool {
+        self.language() == Language::Iso
+    }
+
     /// Returns the language of the program.
     pub(super) fn language(&self) -> Language {
         match &self.front {

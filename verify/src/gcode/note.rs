@@ -145,6 +145,12 @@ faults! {
             /// The word.
             word: &'static str,
         },
+        /// A cycle that is defined, and executed nowhere.
+        ///
+        /// CYCL DEF without M99, M89 or CYCL CALL, MCALL without a position after it, or L0 without a block after it.
+        #[code = V0520]
+        #[error("a cycle is defined and never called, and cuts nothing: write its call or a position of a hole, or remove it")]
+        UncalledCycle,
     }
 }
 

@@ -8,6 +8,8 @@ use touchoff::tool::{ProfileSegment, ToolInfo};
 
 /// Tolerance of lengths as a fraction of the diameter: comments have few digits.
 const ROUNDED: f64 = 1e-3;
+/// Tolerance of angles, which comments state in whole degrees.
+const DEGREES: f64 = 0.51;
 
 impl Job<'_> {
     /// Returns the comments of the program that describe another tool than the job has under their numbers.
@@ -39,32 +41,84 @@ fn contradiction(stated: &StatedTool, info: &ToolInfo, unit: Unit) -> Option<Str
     let scale = info.unit.millimetres();
     let tolerance = ROUNDED * stated.diameter;
     let is_near = |one: f64, other: f64| (one - other).abs() <= tolerance;
-    // The diameter of a cone is that of its tip or that of its end, by the type.
-    let diameters = || {
-        let ends = cutting.iter().flat_map(|segment| [segment.from[0], segment.to[0]]);
-        ends.map(|radius| 2.0 * scale * radius)
+    let points = || cutting.iter().flat_map(|segment| [segment.from, segment.to]);
+    // An arc beyond its middle, as of a lollipop mill, is wider than its ends.
+    let middles = || {
+        cutting.iter().filter_map(|segment| {
+            let circle = segment.circle.filter(|circle| circle.convex)?;
+            let [low, high] =
+                [segment.from[1].min(segment.to[1]), segment.from[1].max(segment.to[1])];
+            let has_middle = (low..=high).contains(&circle.centre[1]);
+            has_middle.then_some(circle.centre[0] + circle.radius)
+        })
     };
+    let radii = || points().map(|[radius, _]| radius).chain(middles());
+    let diameters = || radii().map(|radius| 2.0 * scale * radius);
+    let widest = diameters().fold(0.0, f64::max);
     let rounded = || {
         let circles = cutting.iter().filter_map(|segment| segment.circle);
         circles.filter(|circle| circle.convex).map(|circle| scale * circle.radius)
     };
     let has_corner = |corner: f64| rounded().any(|radius| is_near(radius, corner));
     let is_sharp = rounded().all(|radius| radius <= tolerance);
+    let is_ball = has_corner(0.5 * widest);
+    let cones: Vec<f64> = cutting.iter().filter_map(|segment| cone(segment)).collect();
+    let has_cone = |angle: f64| cones.iter().any(|cone| (cone - angle).abs() <= DEGREES);
+    // A flat end, with its corner, is as wide as the cutter near the tip.
+    let lowest = points().map(|[_, z]| z).fold(f64::INFINITY, f64::min);
+    let is_flat = points().any(|[radius, z]| {
+        let height = scale * (z - lowest) - stated.corner.unwrap_or(0.0).max(0.0);
+        2.0 * scale * radius >= stated.diameter - tolerance && height <= 0.1 * stated.diameter
+    });
     let is_end = match (stated.end, stated.corner) {
-        (StatedEnd::Other, _) | (StatedEnd::Unnamed, None) => true,
         (StatedEnd::Ball, _) => has_corner(0.5 * stated.diameter),
-        (_, Some(corner)) if corner > tolerance => has_corner(corner),
-        (StatedEnd::Flat | StatedEnd::Unnamed, _) => is_sharp,
-        (StatedEnd::BullNose, _) => !is_sharp,
+        (StatedEnd::Cone, corner) => {
+            let is_rounded = corner.is_none_or(|corner| corner <= tolerance || has_corner(corner));
+            is_rounded && stated.taper.map_or(!cones.is_empty(), has_cone)
+        }
+        (StatedEnd::Other, Some(corner)) => corner > tolerance || !is_ball,
+        (StatedEnd::Other, None) | (StatedEnd::Unnamed, None) => true,
+        (end, Some(corner)) if corner > tolerance => {
+            has_corner(corner) && (end == StatedEnd::Unnamed || is_flat)
+        }
+        (StatedEnd::Flat, _) => is_sharp && is_flat,
+        (StatedEnd::Unnamed, _) => is_sharp,
+        (StatedEnd::BullNose, _) => !is_sharp && !is_ball,
     };
-    if diameters().any(|diameter| is_near(diameter, stated.diameter)) && is_end {
+    // The angle of a point is that between its sides, and a drill can be drawn flat.
+    let is_pointed = match (stated.end, stated.taper) {
+        (StatedEnd::Other | StatedEnd::Unnamed, Some(angle)) => {
+            let needs_cone = stated.end == StatedEnd::Unnamed && angle < 60.0;
+            has_cone(angle) || has_cone(0.5 * angle) || cones.is_empty() && !needs_cone
+        }
+        _ => true,
+    };
+    // The diameter of a cone is that of its tip or that of its end, by the type.
+    let is_wide = match stated.end {
+        StatedEnd::Flat | StatedEnd::Ball | StatedEnd::BullNose if stated.taper.is_none() => {
+            is_near(widest, stated.diameter)
+        }
+        // A ball at the end of a cone is tangent to it, and a little wider.
+        _ => {
+            diameters().any(|diameter| is_near(diameter, stated.diameter))
+                || has_corner(0.5 * stated.diameter)
+        }
+    };
+    if is_wide && is_end && is_pointed {
         return None;
     }
     let to_unit = Unit::Millimetre.factor_to(unit);
-    let widest = diameters().fold(0.0, f64::max);
     let end = match rounded().reduce(f64::max).filter(|_| !is_sharp) {
         Some(radius) => format!("an end of radius {}", unit.format(to_unit * radius)),
+        None if !cones.is_empty() => format!("a cone at {:.1}° to the axis", cones[0]),
         None => "a sharp end".to_owned(),
     };
     Some(format!("`{}` of diameter {}, with {end}", info.name, unit.format(to_unit * widest)))
+}
+
+/// Returns the angle to the axis of a segment that is a cone, in degrees.
+fn cone(segment: &ProfileSegment) -> Option<f64> {
+    let [wide, high] = [0, 1].map(|axis| (segment.to[axis] - segment.from[axis]).abs());
+    let angle = wide.atan2(high).to_degrees();
+    Some(angle).filter(|angle| segment.circle.is_none() && (0.2..89.8).contains(angle))
 }

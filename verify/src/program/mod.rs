@@ -75,7 +75,7 @@ impl ProgramFile {
     /// Reads positions or G-code from the content of a file. `name` is the file's name in errors.
     ///
     /// The first line that is neither blank nor a comment decides: G-code begins with `%`, a comment in parentheses, a
-    /// letter with a number, or the head of a Heidenhain program.
+    /// letter with a number, a call of Sinumerik as `MSG("A")`, or the head of a Heidenhain program.
     ///
     /// # Errors
     /// If the content is not text, or as for [`ClData::parse_tools`].
@@ -315,7 +315,10 @@ fn is_gcode(text: &str) -> bool {
     code.next().is_some_and(|line| {
         let line = line.trim_start_matches(|c: char| c == '/' || c.is_whitespace());
         // A number of its block precedes the head of a program in Klartext.
-        line.starts_with(['%', '(']) || line.contains("BEGIN PGM") || begins_word(line)
+        line.starts_with(['%', '('])
+            || line.contains("BEGIN PGM")
+            || begins_word(line)
+            || begins_call(line)
     })
 }
 
@@ -326,7 +329,16 @@ fn begins_word(line: &str) -> bool {
         && characters
             .as_str()
             .trim_start()
-            .starts_with(|c: char| c.is_ascii_digit() || "+-.#[<".contains(c))
+            .starts_with(|c: char| c.is_ascii_digit() || "+-.#[<=".contains(c))
+}
+
+/// Returns whether a line begins with a name and `(`, or with a declaration of Sinumerik. Statements of APT have `/` after their name.
+fn begins_call(line: &str) -> bool {
+    let name = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    let rest = line.trim_start_matches(name);
+    let word = &line[..line.len() - rest.len()];
+    let is_declared = ["DEF", "PROC"].iter().any(|known| word.eq_ignore_ascii_case(known));
+    !word.is_empty() && rest.trim_start().starts_with('(') || is_declared
 }
 
 /// Decodes bytes as text, and reads its positions.

@@ -98,6 +98,33 @@ fn refuses_what_is_neither_format() {
     }
 }
 
+/// The first line tells G-code, also where it is a call or a declaration of Sinumerik.
+#[test]
+fn the_first_line_tells_g_code() {
+    for first in [
+        "G17 G90",
+        "%",
+        "(A)",
+        "O<a> sub",
+        "0 BEGIN PGM A MM",
+        "MSG(\"T1 D=6\")",
+        "CYCLE832(0.01, _FINISH, 1)",
+        "N10 MSG(\"A\")",
+        "DEF REAL A",
+        "PROC A",
+        "T=\"MILL 6\"",
+    ] {
+        let read = ProgramFile::parse(format!("; A\n\n{first}\n"), "a.mpf");
+        assert!(matches!(read, Ok(ProgramFile::Gcode(_))), "{first}: {read:?}");
+    }
+    for first in
+        ["PARTNO/A", "GOTO/1,2,3,0,0,1", "UNITS/MM", "1,2,3,0,0,1", "x,y,z,i,j,k", "PARTNO A (B)"]
+    {
+        let read = ProgramFile::parse(format!("{first}\n"), "a.cl");
+        assert!(!matches!(read, Ok(ProgramFile::Gcode(_))), "{first}: {read:?}");
+    }
+}
+
 #[test]
 fn names_a_file_that_is_absent() {
     let error = ClData::read("no/such.cl").expect_err("it is absent");

@@ -31,6 +31,11 @@ fn linuxcnc_turns_axes_either_way_unless_the_direction_is_stated() {
     let indexed = indexed.with("machine = \"A-C trunnion\"\nanyway = true");
     let indexed = indexed.obstacle([-3.0, 38.0, -12.0], [3.0, 43.0, 20.0]);
     indexed.gives_by(linuxcnc(), FINDINGS, &["V0101 under rotary_direction = \"reversed\""]);
+    // Without a control ISO 841 is taken, and said.
+    let known = blocks.replace("T1 M6\n", "").replace("M428\n", "").replace("\nM429", "");
+    let unstated = Scene::new(&known).placed().with("machine = \"A-C trunnion\"\nanyway = true");
+    unstated.gives(ANY, CLEAN, &["V0310 5 `rotary_direction`"]);
+    assert!(!unstated.check(FANUC).has("V0310"));
     // Other controls turn axes by ISO 841.
     let fanuc = blocks.replace("G43 H1\n", "").replace("M428", "G43.4 H1").replace("M429", "G49");
     let fanuc = fanuc.replace("G0 X0.", "G43 H1\nG0 X0.");
@@ -50,7 +55,8 @@ fn linuxcnc_leaves_the_length_of_a_tilted_tool_along_z_in_some_releases() {
     wall.gives_by(
         compensated.clone(),
         FINDINGS,
-        &["V0101 8 under rotary_direction = \"reversed\""],
+        // All choices are named for which it holds.
+        &["V0101 8 under rotary_direction = \"reversed\" or \"B reversed\""],
     );
     wall.gives_by(compensated.with(Rule::RotaryDirection, Choice::Iso841), CLEAN, &[]);
 }

@@ -32,6 +32,41 @@ fn cycles_that_cut_nothing_are_named() {
     };
     klartext("+0").gives(HEIDENHAIN, NONE, &["V0518 15"]);
     klartext("-2").gives(HEIDENHAIN, CLEAN, &[]);
+    // A cycle that is defined and never called.
+    let mut uncalled = klartext("-2");
+    uncalled.text = uncalled.text.replace(" M99", "");
+    uncalled.gives(HEIDENHAIN, NONE, &["V0520 6"]);
+    let modal = "G0 X0 Y0 Z5\nS900 M3 F100\nMCALL CYCLE81(5,2,1,1)\nX=1\nMCALL\nG0 Z=5\nM30\n";
+    named("a.mpf", &format!("G71 G90 G54 G17 G94\n{modal}")).placed().gives(SIEMENS, CLEAN, &[]);
+    let modal = format!("G71 G90 G54 G17 G94\n{}", modal.replace("X=1\n", ""));
+    named("a.mpf", &modal).placed().gives(SIEMENS, NONE, &["V0520 4"]);
+}
+
+/// Words of a cycle before its first place (L0 of Haas), and places that a rotary axis turns to.
+#[test]
+fn a_cycle_waits_for_its_place() {
+    let holes = |first: &str, further: &str| {
+        Scene::new(&format!(
+            "G0 X-2. Y0. Z10.\nG99 G81 Z1. R1.5 F200.{first}\n{further}\nG80\nG0 Z20."
+        ))
+        .placed()
+    };
+    holes(" L0", "X1.\nX2.").gives(HAAS, CLEAN, &[]);
+    holes(" L0", "X1. Z-0.5").gives(HAAS, FINDINGS, &["V0101 4 0.5000 mm deep in the part"]);
+    holes(" L0 X1.", "X2.").gives(HAAS, NONE, &["P0120 3 L0"]);
+    holes(" L0", "").gives(HAAS, NONE, &["V0520 3"]);
+    // The table turns about the middle of the block, whose corner is then 2.16 mm above its top, and whose side is 2 mm above.
+    let turned = |retract: f64, further: &str| {
+        let blocks =
+            format!("G0 X-2. Y0. Z10. A0.\nG99 G81 Z1. R{retract} F200.\n{further}\nG80\nG0 Z20.");
+        let mut scene = Scene::new(&blocks).placed().with("machine = \"4-axis\"");
+        scene.job = scene.job.replace("[0, 0, -400]", "[0, 0, -499]");
+        scene
+    };
+    turned(2.5, "A180.").gives(HAAS, CLEAN, &[]);
+    turned(2.5, "X1. A90.").gives(HAAS, FINDINGS, &["V0101 4 ball and flute"]);
+    turned(1.5, "A180.").gives(HAAS, FINDINGS, &["V0101 4 in rapid traverse"]);
+    turned(2.5, "A180.").gives(LINUXCNC, NONE, &["P0120 4 A"]);
 }
 
 /// Modes that the program leaves to the control are named where they matter first.
@@ -47,6 +82,7 @@ fn assumed_modes_are_named() {
     none.assert(CLEAN, &["V0519 3 G90", "V0519 4 G94", "V0519 5 G17"], arc);
     let all = modes("G21 G54 G90 G17 G94", arc);
     assert!(!all.has("V0519"), "{:#?}", all.rows);
+    modes("G21 G54 G90 G17 G94", "G81 Z1. R2.").assert(CLEAN, &["V0519 4 G98 or G99"], arc);
     // No motion depends on a plane without an arc or a cycle.
     assert!(!modes("G21 G54 G90 G94", "G1 Z1.\nX2.").has("V0519"));
     let klartext = "BEGIN PGM A MM\nTOOL CALL 1 Z S1000\nL X+0 Y+0 R0 FMAX M3\nL Z+3 R0 F100\nM30\nEND PGM A MM\n";
@@ -146,15 +182,35 @@ fn klartext_of_cam_systems_is_read() {
         scene
     };
     job(text, TRUNNION).gives(HEIDENHAIN, CLEAN, &["V0505 2 tunes the drives"]);
+    // A plane that turns nothing leaves nothing open: the sign of the axes, and which coordinate is stated first.
+    for plane in ["SPATIAL SPA0 SPB0 SPC0 STAY SYM- TABLE ROT", "RELATIV SPC+0 STAY TABLE ROT"] {
+        let other = text.replace("SPATIAL SPA0 SPB0 SPC0 STAY SEQ+ TABLE ROT", plane);
+        let other = other.replace("M126\nL X-2 Y0", "M126\nL X-2");
+        job(&other, TRUNNION).gives(HEIDENHAIN, CLEAN, &[]);
+    }
+    let retracts = text
+        .replace("SEQ+ TABLE ROT\nL A+Q120 C+Q122 R0 FMAX M126", "TABLE ROT\nM126")
+        .replace("STAY TABLE", "TURN MB MAX FMAX TABLE");
+    let retracts = retracts
+        .replace("PLANE RESET STAY", "PLANE RESET TURN MB MAX FMAX")
+        .replace("DWELL5\n", "DWELL5\nL A0 C0 R0 FMAX\n");
+    job(&retracts, TRUNNION).gives(HEIDENHAIN, CLEAN, &[]);
+    let tilted = text.replace("SPA0 SPB0 SPC0 STAY SEQ+ TABLE ROT", "SPA+10 SPB0 SPC0 STAY SYM+");
+    job(&tilted, TRUNNION).gives(HEIDENHAIN, NONE, &["P0115 13 SYM+"]);
     let low = text.replace("L Z0 R0 F100", "L Z-0.5 R0 F100");
     job(&low, TRUNNION).gives(HEIDENHAIN, FINDINGS, &["V0101 18 0.5000 mm deep in the part"]);
     // Without the reason, the name or the point, there is no verdict.
     let mut unnamed = job(text, TRUNNION);
     unnamed.job = unnamed.job.replace("BALL 2", "DRILL");
     unnamed.gives(HEIDENHAIN, NONE, &["P0115 8 `[tool.N]`"]);
-    let mut builder = job(text, TRUNNION);
-    builder.job = builder.job.replace("392", "391");
-    builder.gives(HEIDENHAIN, NONE, &["P0115 2 `[ignore]`"]);
+    // Cycles 300 to 399 are those of builders, and others that are not known can be named, too.
+    for number in ["391", "512"] {
+        let other = text.replace("392", number);
+        job(&other, TRUNNION).gives(HEIDENHAIN, NONE, &["P0115 2 `[ignore]`"]);
+        let mut ignored = job(&other, TRUNNION);
+        ignored.job = ignored.job.replace("392", number);
+        ignored.gives(HEIDENHAIN, CLEAN, &["V0505 2 tunes the drives"]);
+    }
     job(text, &TRUNNION.replace("m92 = [0, 0, -20]", "")).gives(HEIDENHAIN, NONE, &["V0404 9"]);
     // The point is above the travel.
     job(text, &TRUNNION.replace("-20]", "20]")).gives(

@@ -27,6 +27,14 @@ fn another_tool_than_that_of_a_comment_is_named() {
         // A tool that the program does not use.
         ("(T2  D=9. CR=0. - ZMIN=-1. - DRILL)", None),
         ("(D=9. OF THE HOLE)", None),
+        // The forms of other posts, in `comments_of_post_processors_describe_tools`.
+        ("( T1 |2MM BALL ENDMILL| H1 | D1 | DIAMETER - 2. )", None),
+        ("( T1 |2MM FLAT ENDMILL| H1 | D1 | DIAMETER - 2. )", Some(1)),
+        ("(1 = Ball Nose {2 mm})", None),
+        ("(1 = Ball Nose {1/8\"})", Some(1)),
+        ("(T1  D=2. CR=0. TAPER=118DEG - ZMIN=-1. - DRILL)", Some(1)),
+        ("(T1  D=2. CR=0. TAPER=45DEG - ZMIN=-1. - CHAMFER MILL)", Some(1)),
+        ("(T1  D=2,0 CR=1,0 - BALL END MILL)", None),
     ] {
         let checked = commented(comment).check(LINUXCNC);
         match line {
@@ -59,4 +67,48 @@ fn a_comment_has_the_unit_of_its_program() {
     named("a.h", klartext).placed().gives(HEIDENHAIN, NONE, &["V0608 2 another T1"]);
     let ball = klartext.replace("CR=0 - ZMIN=-1 - flat", "CR=1 - ZMIN=-1 - ball");
     assert!(!named("a.h", &ball).placed().check(HEIDENHAIN).has("V0608"));
+}
+
+/// The end of a cutter and the angle of its cone are compared, and a drill may be drawn flat.
+#[test]
+fn ends_and_cones_are_compared() {
+    let pointed = |half: f64| 3.0 / half.to_radians().tan();
+    let cone = |height: f64| {
+        format!(
+            "tool Cone \"c\" {{ units mm; profile {{ start (0, 0); line to (3, {height}) as cone cutting; line to (3, 40) as shank; line \
+             to (0, 40) as top; }} niceness cutting: 1; }}"
+        )
+    };
+    let flat = "tool Flat \"f\" { units mm; profile { start (0, 0); line to (3, 0) as face cutting; line to (3, 40) as flute cutting; line \
+                to (0, 40) as top; } niceness cutting: 1; }";
+    let [chamfer, bit, drill] = [45.0, 30.0, 59.0].map(|half| cone(pointed(half)));
+    let lollipop = "tool Ball \"l\" { units mm; profile { start (0, 0); arc to (2.4, 4.8) center (0, 3) as ball cutting; line to (2.4, 40) as neck; \
+                    line to (0, 40) as top; } niceness cutting: 1; }";
+    for (comment, tool, is_same) in [
+        ("(T1 D=6. CR=3. - LOLLIPOP MILL)", lollipop, true),
+        ("(T1 D=8. CR=4. - LOLLIPOP MILL)", lollipop, false),
+        ("(T1 D=6. CR=0. TAPER=45DEG - CHAMFER MILL)", &*chamfer, true),
+        ("(T1 D=6. CR=0. TAPER=45DEG - CHAMFER MILL)", &*bit, false),
+        ("(T1 D=6. CR=0. TAPER=45DEG - CHAMFER MILL)", flat, false),
+        ("(T1 D=6. CR=0. TAPER=45DEG)", &*chamfer, true),
+        ("(T1 D=6. CR=0. TAPER=45DEG)", flat, false),
+        ("(1 = V-Bit {60 deg 6 mm})", &*bit, true),
+        ("(1 = V-Bit {90 deg 6 mm})", &*bit, false),
+        ("(T1 D=6. CR=0. - FLAT END MILL)", &*chamfer, false),
+        ("(T1 D=6. CR=0. - FLAT END MILL)", &*drill, false),
+        ("(T1 D=6. CR=0. - FLAT END MILL)", flat, true),
+        ("(T1 D=6. CR=0. TAPER=118DEG - DRILL)", &*drill, true),
+        ("(T1 D=6. CR=0. TAPER=118DEG - DRILL)", flat, true),
+        ("(T1 D=6. CR=0. TAPER=118DEG - DRILL)", &*bit, false),
+    ] {
+        let mut scene = commented(comment).with_file("own.tool", tool);
+        scene.job = scene.job.replace("D2Ball", "own.tool");
+        let checked = scene.check(LINUXCNC);
+        assert_eq!(
+            checked.has("V0608 1 another T1"),
+            !is_same,
+            "{comment}, {tool}: {:#?}",
+            checked.rows
+        );
+    }
 }

@@ -4,11 +4,11 @@ use super::{Assumption, BlockError, MachineProgram, Obstacle};
 use crate::check::CycleTime;
 use crate::codes::faults;
 use crate::gcode::{
-    BlockLine, ControlSetup, LengthOffset, NoteKind, ProgramNote, Rule, Spindle, StatedTool, Step,
-    SubprogramLine, WorkOffset,
+    BlockLine, Choice, ControlSetup, LengthOffset, NoteKind, ProgramNote, Rule, Spindle,
+    StatedTool, Step, SubprogramLine, WorkOffset,
 };
 use crate::machine::{LimitViolation, Machine, SingularPass};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
 /// Summary of a program on its machine.
@@ -56,6 +56,8 @@ pub struct MachineSummary {
     pub limits: Vec<(BlockLine, LimitViolation)>,
     /// Set if the machine states limits of X, Y or Z that are not checked.
     pub limits_unchecked: bool,
+    /// The first block with a turned axis whose direction is that of ISO 841, as no control is stated.
+    pub(crate) direction_assumed: Option<BlockLine>,
     /// Singular passes, each with its line.
     pub singular: Vec<(BlockLine, SingularPass)>,
     /// The time of each tool, in the order of their first motions.
@@ -315,6 +317,15 @@ faults! {
         #[code = V0309]
         #[error("the limits of X, Y and Z are not checked: state the origin of G54 in `work_offsets`")]
         Limits,
+        /// Rotary axes of a built-in machine, whose directions are taken as those of ISO 841.
+        ///
+        /// LinuxCNC turns them as its kinematics or its drives do, and no control is stated. A verdict is possible.
+        #[code = V0310]
+        #[error(
+            "the rotary axes are taken to turn as ISO 841 says, which LinuxCNC leaves to the machine: state the control, with \
+             `rotary_direction` for LinuxCNC, or a machine's file"
+        )]
+        RotaryDirection,
     }
 }
 
@@ -552,6 +563,9 @@ impl MachineSummary {
             let reason = format!("tips are taken as programmed, but {cause}");
             gaps.push(Gap::open(block, cause.code(), reason));
         }
+        if let Some(block) = self.direction_assumed {
+            gaps.push(said(block, CheckGap::RotaryDirection));
+        }
         if self.limits_unchecked {
             gaps.push(said(BlockLine::from(0), CheckGap::Limits));
         }
@@ -562,6 +576,7 @@ impl MachineSummary {
                 | NoteKind::OptionalSwitches
                 | NoteKind::TwoRadii
                 | NoteKind::EmptyCycle
+                | NoteKind::UncalledCycle
                 | NoteKind::RoundedRadius
                 | NoteKind::OffsetOrShift
                 | NoteKind::LeftModes { .. } => GapWeight::Open,
@@ -645,22 +660,27 @@ impl MachineProgram {
         if holds.len() == readings.len() {
             return None;
         }
-        // A rule with one choice in all of these, and with another elsewhere, is a condition.
+        // A rule whose choices in these are not all that it has in the readings is a condition.
         let first = holds.first()?;
-        let mut common = Assumption::default();
+        let mut common: Vec<String> = Vec::new();
         for rule in Rule::all() {
-            let Some(choice) = first.rules.get(rule) else { continue };
-            if holds.iter().all(|assumed| assumed.rules.get(rule) == Some(choice)) {
-                common.rules = common.rules.with(rule, choice);
+            let choices = |of: &mut dyn Iterator<Item = &Assumption>| -> BTreeSet<Choice> {
+                of.filter_map(|assumed| assumed.rules.get(rule)).collect()
+            };
+            let held = choices(&mut holds.iter().copied());
+            if held.len() < choices(&mut readings.iter().map(|reading| &reading.assumed)).len() {
+                let words = held.iter().map(|choice| format!("\"{}\"", rule.describe(*choice)[0]));
+                let words: Vec<String> = words.collect();
+                common.push(format!("{} = {}", rule.key(), words.join(" or ")));
             }
         }
         for (name, value) in &first.variables {
             if holds.iter().all(|assumed| assumed.variables.get(name) == Some(value)) {
-                common.variables.insert(name.clone(), *value);
+                common.push(format!("{name} = {value}"));
             }
         }
-        match common == Assumption::default() {
-            false => Some(format!("under {common}")),
+        match common.is_empty() {
+            false => Some(format!("under {}", common.join(", "))),
             true if holds.len() <= 3 => {
                 let each: Vec<String> = holds.iter().map(|assumed| assumed.to_string()).collect();
                 Some(format!("under {}", each.join(", or ")))

@@ -10,7 +10,7 @@ use crate::gcode::state::{
     ControlState, Frame, LengthOffset, Position, Rotation, Tcp, WorkOffset, about,
 };
 use crate::gcode::{GcodeFault, Plane, StepPath};
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 use std::sync::Arc;
 
 /// Largest number of a tool or a register.
@@ -24,7 +24,11 @@ impl Control {
         // Steps share the state until it changes.
         if new != *self.state {
             self.length_changed |= new.length != self.state.length;
-            self.rotation_changed |= new.rotation != self.state.rotation;
+            // A plane that turns nothing leaves nothing open.
+            let is_upright = [&new, &self.state].iter().all(|state| {
+                state.rotation.frame().is_none_or(|frame| frame.rotation == Matrix3::identity())
+            });
+            self.rotation_changed |= new.rotation != self.state.rotation && !is_upright;
             for (axis, changed) in self.origin_changed.iter_mut().enumerate() {
                 *changed |= new.origin[axis] != self.state.origin[axis]
                     || new.shift[axis] != self.state.shift[axis];

@@ -51,6 +51,10 @@ impl Control {
         let cycle = self.cycle_words(block, number, &word)?;
         let levels = self.levels(&cycle)?;
         let repeats = self.repeats(block)?;
+        match repeats {
+            0 => self.define_cycle(),
+            _ => self.call_cycle(),
+        }
         // Only G83 leaves the hole between its pecks.
         let strokes = match (number, cycle.peck, levels.retract.zip(levels.depth)) {
             (83, Some(peck), Some((retract, depth))) => ((retract - depth) / peck).ceil().max(1.0),
@@ -68,7 +72,8 @@ impl Control {
             self.add_dwell(None, repeats as usize);
         }
         // LinuxCNC compares the initial level, and not the present one, with R.
-        if is_below(cycle.initial, levels.retract)
+        if repeats > 0
+            && is_below(cycle.initial, levels.retract)
             && self.position[normal] != levels.retract
             && self.choice(Rule::CycleBelowR) == Choice::RaisesFirst
         {
@@ -85,23 +90,35 @@ impl Control {
         Ok(())
     }
 
+    /// Notes that a cycle is defined, which has to be called, and the one before if it was not.
+    pub(in crate::gcode) fn define_cycle(&mut self) {
+        if let Some(before) = self.uncalled.replace(self.block()) {
+            self.notes.add(before, NoteKind::UncalledCycle);
+        }
+    }
+
+    /// Notes that the cycle is called.
+    pub(in crate::gcode) fn call_cycle(&mut self) {
+        self.uncalled = None;
+    }
+
     /// Returns how often the cycle is executed. The word that is not that of the control says nothing.
     fn repeats(&mut self, block: &mut Block) -> Result<u32, GcodeFault> {
         let by_l = block.take_whole('L', 0, 1_000_000, "a number of repeats after L")?.unwrap_or(1);
         let by_k = block.take_whole('K', 0, 1_000_000, "a number of repeats after K")?.unwrap_or(1);
-        if by_l == 0 || by_k == 0 {
-            let condition = "its block has a canned cycle, to whose place Haas moves";
-            let remedy = "write G80 and G0, and the cycle again";
-            return Err(combination(if by_l == 0 { "L0" } else { "K0" }, condition, remedy));
+        let (word, repeats) = match by_l == by_k {
+            // One number, whichever word the control reads.
+            true => ("L0", by_l),
+            false if self.choice(Rule::CycleRepeats) == Choice::RepeatsByK => ("K0", by_k),
+            false => ("L0", by_l),
+        };
+        // Without a place the words of the cycle are stored, and nothing moves.
+        if repeats == 0 && block.has_any("XYABC") {
+            let condition = "its block has a canned cycle and a place, to which Haas moves";
+            let remedy = "write the place in a block before, or after it with G80 and G0";
+            return Err(combination(word, condition, remedy));
         }
-        // One number, whichever word the control reads.
-        if by_l == by_k {
-            return Ok(by_l);
-        }
-        Ok(match self.choice(Rule::CycleRepeats) {
-            Choice::RepeatsByK => by_k,
-            _ => by_l,
-        })
+        Ok(repeats)
     }
 
     /// Refuses a cycle that controls execute in different ways.
@@ -118,8 +135,8 @@ impl Control {
         }
         // LinuxCNC drills again at Z, R or Q alone, Haas does not.
         let in_plane = self.modal.plane.axes().map(|axis| AXES[axis]);
-        if self.cycle.is_some() && !is_linuxcnc && !in_plane.iter().any(|letter| block.has(*letter))
-        {
+        let has_place = in_plane.iter().chain(&AXES[3..]).any(|letter| block.has(*letter));
+        if self.cycle.is_some() && !is_linuxcnc && !has_place {
             let condition = "its block goes on with a series and has no place of a hole, and is executed or not";
             let remedy = "write X or Y";
             return Err(combination(word, condition, remedy));
@@ -160,7 +177,9 @@ impl Control {
 
     /// Refuses a cycle under another state than that of its series.
     fn check_series(&self, block: &Block, word: &str) -> Result<(), GcodeFault> {
-        let rotary = AXES[3..].iter().find(|letter| block.has(**letter));
+        // On Fanuc and Haas rotary axes turn to the place of the hole with X and Y.
+        let is_refused = self.stated(Rule::Dialect) != Some(Choice::Iso);
+        let rotary = AXES[3..].iter().find(|letter| is_refused && block.has(**letter));
         let changed = self
             .cycle
             .as_ref()
@@ -249,7 +268,10 @@ impl Control {
             Some(to_r) => to_r,
             // A cycle that begins at R returns there in either case.
             None if cycle.initial.is_some() && cycle.initial == retract => true,
-            None => self.choice(Rule::CycleReturn) == Choice::PlaneR,
+            None => {
+                self.notes.add_once(self.block(), NoteKind::AssumedMode { word: "G98 or G99" });
+                self.choice(Rule::CycleReturn) == Choice::PlaneR
+            }
         };
         let clear = match to_r {
             true => retract,
@@ -279,7 +301,7 @@ impl Control {
             end[normal] = clear;
             commanded[normal] = true;
         }
-        for axis in self.modal.plane.axes() {
+        for axis in self.modal.plane.axes().into_iter().chain(3..AXES.len()) {
             if let Some(value) = axes[axis] {
                 let origin = if self.modal.incremental { end[axis] } else { Some(0.0) };
                 end[axis] = origin.map(|origin| origin + value);

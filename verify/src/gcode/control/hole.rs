@@ -41,6 +41,7 @@ impl Control {
     /// Drills a hole at the present position.
     pub(in crate::gcode) fn drill(&mut self, hole: &Hole) -> Result<(), GcodeFault> {
         self.check_hole(hole)?;
+        self.call_cycle();
         if !hole.has_feed {
             self.check_feed(hole.cycle)?;
         }

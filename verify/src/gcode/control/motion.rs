@@ -342,13 +342,26 @@ impl Control {
         target: Position,
         path: StepPath,
     ) {
-        let mut machine = self.state.to_machine(self.position);
+        // The kinematics have no part while the rotary axes turn nothing.
+        let mut state = (*self.state).clone();
+        if self.turns_nothing() {
+            state.tcp = Tcp::Off;
+            if let Rotation::Tilted { aligned, .. } = &mut state.rotation {
+                *aligned = false;
+            }
+        }
+        let mut machine = state.to_machine(self.position);
         for axis in 0..6 {
             if commanded[axis] {
                 machine[axis] = target[axis];
             }
         }
-        let mut end = self.state.from_machine(machine);
+        let mut end = state.from_machine(machine);
+        // A target that turns an axis moves the part.
+        let turned = (3..6).any(|axis| commanded[axis] && end[axis] != self.position[axis]);
+        if turned && self.state.turns_with_workpiece() {
+            end[..3].fill(None);
+        }
         // A rotation makes program axes depend on several machine axes.
         let is_coupled = match (self.state.rotation, self.state.origin_rotation == 0.0) {
             (Rotation::Off, true) => [false; 6],

@@ -64,7 +64,11 @@ const MODES: [Mode; 16] = [
 impl Interpreter<'_> {
     /// Returns the notes about the blocks that were executed so far, by line.
     pub fn notes(&self) -> Vec<ProgramNote> {
-        let mut notes = self.control.notes.list();
+        let mut notes = self.control.notes.clone();
+        if let Some(block) = self.control.uncalled.filter(|_| self.end.is_some()) {
+            notes.add(block, NoteKind::UncalledCycle);
+        }
+        let mut notes = notes.list();
         if let (Some(first), Some(end)) = (&self.first, self.end) {
             notes.extend(note(first, self, end));
         }

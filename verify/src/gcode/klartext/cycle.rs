@@ -12,7 +12,7 @@ use super::Program;
 use super::block::Coordinate;
 use super::expression::{Parameter, value};
 use super::line::Cursor;
-use super::words::{CYCLES, Entry, Treatment, find};
+use super::words::{Entry, Treatment, find_cycle};
 use crate::gcode::control::Control;
 use crate::gcode::error::{combination, missing, not_read};
 use crate::gcode::note::NoteKind;
@@ -222,8 +222,8 @@ impl Program<'_> {
             control.ignore(word());
             return Ok(());
         }
-        let Some(entry) = find(&CYCLES, &number.to_string()) else {
-            let remedy = "post the program with its motions";
+        let Some(entry) = find_cycle(number) else {
+            let remedy = "post the program with its motions, or name it in `[ignore]` of the job with the reason for which it moves nothing";
             return Err(not_read(word(), "a cycle that is not known", remedy));
         };
         match entry.treatment {
@@ -256,6 +256,7 @@ impl Program<'_> {
         self.cycle = Some(cycle(&given, self.unit.millimetres())?);
         self.keep_parameters(number);
         self.is_modal_call = false;
+        control.define_cycle();
         Ok(())
     }
 
@@ -395,6 +396,7 @@ impl Program<'_> {
             return Err(missing("a call of a cycle", "a drilling cycle before (CYCL DEF 200)"));
         };
         let word = format!("CYCL DEF {}", cycle.number);
+        control.call_cycle();
         self.check_parameters(cycle.number)?;
         control.check_corner()?;
         control.check_uncompensated(&*word)?;
@@ -467,7 +469,8 @@ impl Program<'_> {
 pub(in crate::gcode) fn is_ignorable(word: &str) -> bool {
     let Some(number) = word.strip_prefix("CYCL DEF ") else { return false };
     let is_number = !number.starts_with('0') && number.bytes().all(|byte| byte.is_ascii_digit());
-    is_number && find(&CYCLES, number).is_none_or(Entry::is_of_builder)
+    let number = number.parse::<u32>().ok().filter(|_| is_number);
+    number.is_some_and(|number| find_cycle(number).is_none_or(Entry::is_of_builder))
 }
 
 /// Moves to the depths of all infeeds but the last.

@@ -11,7 +11,7 @@ use super::Program;
 use super::block::{Coordinate, Feed, Retract, Scale, Words};
 use super::expression::value;
 use super::line::{Cursor, expected};
-use super::words::{PLANES, find};
+use super::words::{Entry, PLANES, find};
 use crate::gcode::GcodeFault;
 use crate::gcode::control::Control;
 use crate::gcode::error::{combination, missing, not_read, same_group};
@@ -362,9 +362,8 @@ impl Program<'_> {
                 Some(from_vectors(base, normal)?)
             }
             "RELATIV" => {
-                let Some(tilt) = self.frame.tilt else {
-                    return Err(missing("PLANE RELATIV", "a tilted plane before"));
-                };
+                // Without a plane before, the angle is about an axis of the untilted one.
+                let tilt = self.frame.tilt.unwrap_or_else(Matrix3::identity);
                 let (axis, angle) = match (spa, spb, spc) {
                     (Some(angle), None, None) => (0, angle),
                     (None, Some(angle), None) => (1, angle),
@@ -397,6 +396,9 @@ impl Program<'_> {
             Some(rotation) => {
                 // Where the normal stays, only the table or only the plane turns. Without any turn, the table is at 0.
                 let is_at_zero = words.turns_table && rotation == Matrix3::identity();
+                if let Some(entry) = words.symmetry.filter(|_| !is_at_zero) {
+                    entry.check()?;
+                }
                 if words.turns_table && !is_at_zero && (rotation[(2, 2)] - 1.0).abs() < 1e-12 {
                     let meaning = "a turn of the table about the tool, which leaves the plane";
                     return Err(not_read("TABLE ROT", meaning, "write COORD ROT"));
@@ -436,11 +438,14 @@ impl Program<'_> {
                 words.values[index] = Some(value(cursor, &self.parameters)?);
                 continue;
             }
-            let refused = PLANES.iter().filter(|entry| entry.check().is_err());
-            for entry in refused {
-                if cursor.take_prefix(entry.word) {
-                    entry.check()?;
+            let mut refused = PLANES.iter().filter(|entry| entry.check().is_err());
+            match refused.find(|entry| cursor.take_prefix(entry.word)) {
+                Some(entry) if entry.word.starts_with("SYM") => {
+                    words.symmetry = Some(entry);
+                    continue;
                 }
+                Some(entry) => entry.check()?,
+                None => {}
             }
             if cursor.take_prefix("TURN") {
                 words.set(Positioning::Turn)?;
@@ -565,6 +570,8 @@ struct PlaneWords {
     turns_table: bool,
     /// SEQ+ or SEQ-.
     master_is_positive: Option<bool>,
+    /// SYM+ or SYM-, which says nothing where nothing turns.
+    symmetry: Option<&'static Entry>,
     retract: Option<Retract>,
 }
 

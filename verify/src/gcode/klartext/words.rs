@@ -39,6 +39,15 @@ impl Entry {
     }
 }
 
+/// Returns the entry of a cycle.
+pub(super) fn find_cycle(number: u32) -> Option<&'static Entry> {
+    let word = match number {
+        300..400 => BUILDERS.to_owned(),
+        number => number.to_string(),
+    };
+    find(&CYCLES, &word)
+}
+
 /// Returns the entry of a word.
 pub(super) fn find(table: &'static [Entry], word: &str) -> Option<&'static Entry> {
     table.iter().find(|entry| entry.word == word)
@@ -61,6 +70,8 @@ const LINES: &str = "post the program with L, C, CR and CT";
 const WITHOUT: &str = "check the program without it";
 const SPATIAL: &str = "write PLANE SPATIAL";
 const CENTRE: &str = "post the program with the path of the tool's centre, R0";
+/// The numbers that are left to the builders of machines.
+const BUILDERS: &str = "300 to 399";
 const BUILDER: &str = "name it in `[ignore]` of the job with the reason for which it moves nothing, or check the program without it";
 const OWN: &str = "the path of the cycle is the control's own: post the program with its motions";
 
@@ -263,12 +274,12 @@ pub(super) const PLANES: [Entry; 18] = [
     read("SEQ-", "it is below 0"),
     refused(
         "SYM+",
-        "one of two positions of the axes, by the master axis",
+        "one of two positions of the axes, by the master axis, where the plane turns them",
         "remove it: where two positions differ, this is said",
     ),
     refused(
         "SYM-",
-        "one of two positions of the axes, by the master axis",
+        "one of two positions of the axes, by the master axis, where the plane turns them",
         "remove it: where two positions differ, this is said",
     ),
     read(
@@ -361,7 +372,7 @@ pub(super) const CYCLES: [Entry; 71] = [
     refused("270", "data of a contour train", OWN),
     refused("275", "a trochoidal slot", OWN),
     refused("276", "a contour train in space", OWN),
-    refused("392", "a cycle of the machine's builder", BUILDER),
+    refused(BUILDERS, "a cycle of the machine's builder", BUILDER),
 ];
 
 #[cfg(test)]

@@ -133,9 +133,11 @@ pub(super) fn hole(
     let reference = given.number_or_zero(1)?;
     let safe = reference + given.number_or_zero(2)?.abs();
     let depth = final_depth(&given, reference, *depth)?;
-    if depth >= reference || retract < reference {
-        let (retract, depth) = (retract.min(reference), depth);
-        return Err(GcodeFault::CycleBelow { retract, depth });
+    if retract < reference {
+        return Err(missing(*cycle, "a retract plane that is not below its reference plane"));
+    }
+    if depth >= reference {
+        return Err(GcodeFault::CycleBelow { retract: reference, depth });
     }
     let mut hole = Hole {
         cycle,

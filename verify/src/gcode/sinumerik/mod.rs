@@ -405,6 +405,7 @@ impl<'a> Program<'a> {
                     ));
                 };
                 control.check_hole(&hole)?;
+                control.define_cycle();
                 self.modal_hole = Some(hole);
             }
             "TRANS" | "ATRANS" | "ROT" | "AROT" => {
