@@ -306,7 +306,10 @@ fn of_points_alone_cells_are_estimated() {
     let mesh = shapes::tube(3.0, 5.0, 13.0, 512, 8, UNIT).expect("a tube");
     let points = |cloud: Cloud, areas: Option<Vec<f64>>| {
         let Cloud { points, normals, .. } = cloud;
-        Cloud::from_points(OrientedPoints { points, normals, triangles: None, areas }, UNIT)
+        Cloud::from_points(
+            OrientedPoints { points, normals, triangles: None, areas, left_out: 0 },
+            UNIT,
+        )
     };
     for (cloud, close, near) in [
         (Cloud::sample(&mesh, Sampling::new(5_000)), 0.05, 0.25),
@@ -328,6 +331,7 @@ fn of_points_alone_cells_are_estimated() {
         normals: vec![Vector3::z(); 20],
         triangles: None,
         areas: None,
+        left_out: 0,
     };
     let cloud = Cloud::from_points(all.clone(), UNIT).expect("points");
     assert!(cloud.weights().iter().all(|weight| *weight == 0.0));
@@ -400,7 +404,10 @@ fn points_that_repeat_share_their_cells() {
     let thrice = |list: &[Point3<f64>]| [list, list, list].concat();
     let oriented = |points: Vec<Point3<f64>>, areas| {
         let normals = vec![Vector3::z(); points.len()];
-        Cloud::from_points(OrientedPoints { points, normals, triangles: None, areas }, UNIT)
+        Cloud::from_points(
+            OrientedPoints { points, normals, triangles: None, areas, left_out: 0 },
+            UNIT,
+        )
     };
     let [one, three] = [cloud.points().to_vec(), thrice(cloud.points())]
         .map(|points| oriented(points, None).expect("points"));
