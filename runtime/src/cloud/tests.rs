@@ -511,8 +511,11 @@ fn coincident_points_share_a_cell() {
         points.extend(vec![Point3::new(15.0, 15.0, 0.0); repeated]);
         let normal = |k: usize| Vector3::new(tilt * k as f64, 0.0, 1.0).normalize();
         let normals = (0..points.len()).map(|k| normal(k.saturating_sub(900))).collect();
-        Cloud::from_points(OrientedPoints { points, normals, triangles: None, areas: None }, UNIT)
-            .expect("a cloud")
+        Cloud::from_points(
+            OrientedPoints { points, normals, triangles: None, areas: None, left_out: 0 },
+            UNIT,
+        )
+        .expect("a cloud")
     };
     let one = of(0, 0.0);
     let whole = one.weights()[465];
@@ -529,6 +532,7 @@ fn coincident_points_share_a_cell() {
         normals: vec![Vector3::z(); 5_000],
         triangles: None,
         areas: None,
+        left_out: 0,
     };
     assert_eq!(Cloud::from_points(alone, UNIT).expect("a cloud").covering_radius(), None);
 }

@@ -271,7 +271,7 @@ fn a_tool_change_begins_another_program() {
     let programs = ClData::parse_tools(text, "part.cl").expect("three programs");
     assert!(programs.iter().all(|program| program.unit == Some(Unit::Inch)));
     assert_eq!(programs[2].locations[0].pose.axis(), Vector3::x());
-    assert_eq!(refusal(text), (6, "P0519"));
+    assert_eq!(refusal(text), (8, "P0517"));
 }
 
 #[test]
