@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use touchoff::tool::ToolError;
 use touchoff_import::FindError;
 use touchoff_verify::stock::StockError;
+use touchoff_verify::{JobError, ProgramError};
 
 /// The exit status of a session that a signal ended, by the shells' convention.
 pub(crate) const INTERRUPTED: u8 = 130;
@@ -13,6 +14,16 @@ impl Failure {
     /// Returns whether the message is the compiler's own, which begins with its severity.
     pub(crate) fn is_rendered(&self) -> bool {
         matches!(self, Failure::Tool(ToolError::Invalid(_)))
+    }
+
+    /// Returns whether the message lists the faults of a program, one per line, and has escaped what it shows of files.
+    pub(crate) fn has_lines(&self) -> bool {
+        let Failure::Refused { error, .. } = self else { return false };
+        let error = match error.downcast_ref() {
+            Some(JobError::Program(error)) => Some(error),
+            _ => error.downcast_ref(),
+        };
+        matches!(error, Some(ProgramError::Line { .. }))
     }
 
     /// Returns the code of the [table](touchoff_verify::codes), if the failure has one.

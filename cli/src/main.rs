@@ -169,6 +169,10 @@ fn end_soon() {}
 fn fail(failure: &failure::Failure, min_status: u8) -> ExitCode {
     match failure.code() {
         _ if failure.is_rendered() => output::show_lines(&failure.to_string()),
+        // Each line is escaped by itself.
+        Some(code) if failure.has_lines() => {
+            output::show_lines(&format!("error[{code}]: {failure}"));
+        }
         Some(code) => message!("error[{code}]: {failure}"),
         None => message!("error: {failure}"),
     }

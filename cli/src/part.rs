@@ -118,6 +118,10 @@ pub(crate) fn load(
                 "{file}: {} points without triangles: {estimated} are estimated",
                 points.points.len()
             );
+            if points.left_out > 0 {
+                let count = points.left_out;
+                message!("{file}: {count} points without coordinates (NaN) are left out");
+            }
             let has_normals = !points.normals.is_empty();
             // Depth, and the directions of the tool, need none: `run` alone is content with them.
             let cloud = match has_normals || dense != DenseSampling::Certify {

@@ -3,7 +3,7 @@
 //! `CUTTER/d,r,e,f,a,b,h` has a diameter, the radius of the corner, the distances of the corner's centre from the axis
 //! and from the tip, the angle of the end from the plane across the axis, the angle of the side from the axis, and the
 //! height. The diameter is where end and side, continued, intersect (ISO 3592). Post processors of Autodesk write both
-//! distances as 0, which states no centre. `TLDATA/MILL,d,r,h,b,a` has diameter, corner radius, height, and the angles
+//! distances as 0, or a centre on the axis for any corner, which states no centre. `TLDATA/MILL,d,r,h,b,a` has diameter, corner radius, height, and the angles
 //! of side and end; the corner's centre may follow, and after it the radius and the centre of an upper corner.
 //! `TLDATA/DRILL,MILL,d,r,h,p,l` has the angle of the point and the length of the flutes. `TOOL PATH/path,TOOL,name`
 //! names the tool of the next `TLDATA`. `LOADTL`, `TOOLNO` and NX's `LOAD/TOOL` give the number.
@@ -64,7 +64,7 @@ pub(super) fn read(text: &str) -> Result<Vec<Found>, String> {
         let mut fields = rest.split(',').map(str::trim);
         let mut next = || fields.next().unwrap_or_default();
         match word.trim().to_ascii_uppercase().as_str() {
-            "UNITS" => {
+            "UNITS" | "UNIT" => {
                 unit = Some(match rest.trim().to_ascii_uppercase().as_str() {
                     "MM" | "MMS" => Unit::Millimetre,
                     "INCHES" | "INCH" | "IN" => Unit::Inch,
@@ -206,7 +206,8 @@ impl Statement {
         let corner = numbers[1].unwrap_or(0.0);
         let mut notes = Vec::new();
         let mut centre = |d: Option<f64>, z: Option<f64>| {
-            let is_unstated = corner > 0.0 && d == Some(0.0) && z == Some(0.0);
+            let is_on_axis = z == Some(corner) && 2.0 * corner < diameter;
+            let is_unstated = corner > 0.0 && d == Some(0.0) && (z == Some(0.0) || is_on_axis);
             if is_unstated {
                 let drawn = "the corner is drawn between a flat end and a straight side".to_owned();
                 notes.push(Note::Unstated("centre of the corner", drawn));

@@ -1,7 +1,8 @@
 //! Tool bits (`.fctb`), libraries (`.fctl`) and holders (`.fcholder`) of FreeCAD.
 //!
 //! A bit names one of FreeCAD's shapes and the values of its parameters, as texts with units, whose decimals follow a
-//! point or a comma. A length without a unit is in inches if the parameter `Units` says so, and else in millimetres. A bit whose shape was changed by its user cannot be told from one of FreeCAD's own.
+//! point or a comma. Texts of FreeCAD's imperial units have fractions and sums, such as `2" + 1/2"`. A length without a unit is in
+//! inches if the parameter or the attribute `Units` says so, and else in millimetres. A bit whose shape was changed by its user cannot be told from one of FreeCAD's own.
 
 use super::entry::{Entry, Holder, Note, Section, Stated};
 use super::json::{self, Object, pair, string, tool_number};
@@ -67,10 +68,13 @@ fn listed_name(tool: &Value) -> &str {
 fn find_bit(tool: &Value, folder: &Path, root: Option<&Path>) -> Result<PathBuf, Problem> {
     let path = listed_name(tool);
     let problem = |reason: String| Problem::new(path, &reason);
-    let relative = Path::new(path);
+    // Paths of either kind of system.
+    let plain = path.replace('\\', "/");
+    let relative = Path::new(&plain);
     // A library must not read files elsewhere.
     if path.is_empty() || !relative.components().all(|part| matches!(part, Component::Normal(_))) {
-        return Err(problem("its path is not below the library's folder".to_owned()));
+        let reason = "its path is not below the library's folder: copy the bit to `Bit`, and list it by its name";
+        return Err(problem(reason.to_owned()));
     }
     // Folders of vendors have names in lower case.
     let folders = ["", "../Bit", "../bit", "Bit", "bit"];
@@ -133,8 +137,9 @@ fn read_shape(bit: &Object, title: &str, number: Option<u32>) -> Result<Entry, S
     let mut entry = entry(Unit::Millimetre, shape, title, bit);
     entry.number = number;
     let empty = Object::new();
-    let parameters = bit.get("parameter").and_then(Value::as_object).unwrap_or(&empty);
-    entry.cutter = Some(cutter(shape, &Parameters::new(parameters), &mut entry.notes)?);
+    let values = |key| bit.get(key).and_then(Value::as_object).unwrap_or(&empty);
+    let parameters = Parameters::new(values("parameter"), values("attribute"));
+    entry.cutter = Some(cutter(shape, &parameters, &mut entry.notes)?);
     Ok(entry)
 }
 
@@ -163,8 +168,10 @@ fn cutter(stated: &str, of: &Parameters<'_>, notes: &mut Vec<Note>) -> Result<Cu
         return Err("it is a turning insert, which is no solid of revolution".to_owned());
     }
     let length = of.length("Length")?;
-    let shank = if shape == "probe" { "ShaftDiameter" } else { "ShankDiameter" };
-    let shank_diameter = of.optional_length(shank)?;
+    // Probes have a name of their own for it.
+    let shaft = if shape == "probe" { of.optional_length("ShaftDiameter")? } else { None };
+    let shank_diameter =
+        shaft.map_or_else(|| of.optional_length("ShankDiameter"), |d| Ok(Some(d)))?;
     if shank_diameter.is_none() {
         notes.push(Note::no_shank_diameter());
     }
@@ -223,10 +230,28 @@ fn cutter(stated: &str, of: &Parameters<'_>, notes: &mut Vec<Note>) -> Result<Cu
         }
         "keyway" => {
             (shoulder, cutting_neck) = of.neck(flutes()?)?;
+            if let Some(lower) = of.optional_length("LowerCuttingHeight")? {
+                let lower = Stated { what: "lower cutting height", value: lower };
+                add_contradiction(notes, lower, "cutting edge height", flutes()?, "latter");
+            }
             (Shape::Slot { corner: 0.0 }, flutes()?)
         }
         "lollipop" => {
             (shoulder, cutting_neck) = of.neck(flutes()?)?;
+            if let Some((_, Some(neck))) = shoulder
+                && neck < diameter
+            {
+                let high = (diameter + (diameter * diameter - neck * neck).sqrt()) / 2.0;
+                let edges = Stated { what: "cutting edge height", value: flutes()? };
+                let high = super::outline::rounded(high);
+                add_contradiction(
+                    notes,
+                    edges,
+                    "height at which the neck leaves the ball",
+                    high,
+                    "latter",
+                );
+            }
             (Shape::Lollipop, flutes()?)
         }
         "dovetail" => {
@@ -305,9 +330,24 @@ fn cutter(stated: &str, of: &Parameters<'_>, notes: &mut Vec<Note>) -> Result<Cu
                 angle.unwrap_or_else(|| Note::default_taken(notes, "angle of the thread", 60.0));
             (Shape::Tooth { neck_diameter, crest, angle }, diameter / 2.0)
         }
+        "" => return Err("it names no `shape`".to_owned()),
+        "fillet" => return Err("the shape `fillet` cannot be read yet".to_owned()),
         _ => return Err(format!("the shape `{stated}` is none of FreeCAD's own")),
     };
     Ok(Cutter { shape, diameter, flute_length, length, shoulder, cutting_neck, shank_diameter })
+}
+
+/// Adds a note if two statements of a bit differ by more than its rounding.
+fn add_contradiction(
+    notes: &mut Vec<Note>,
+    first: Stated,
+    what: &'static str,
+    value: f64,
+    taken: &'static str,
+) {
+    if (first.value - value).abs() > 0.01 * value {
+        notes.push(Note::Contradiction { first, second: Stated { what, value }, taken });
+    }
 }
 
 /// Returns the corner radius of a bull nose; older bits state the flat part or the torus instead.
@@ -318,7 +358,7 @@ fn corner(of: &Parameters<'_>, diameter: f64) -> Result<f64, String> {
     }
     match of.optional_length("FlatRadius")? {
         Some(flat) => Ok(super::outline::rounded(diameter / 2.0 - flat)),
-        None => Err("it does not state its `CornerRadius`".to_owned()),
+        None => Err(unstated("CornerRadius")),
     }
 }
 
@@ -341,8 +381,10 @@ struct Parameters<'a> {
 type Neck = (f64, Option<f64>);
 
 impl Parameters<'_> {
-    fn new(values: &Object) -> Parameters<'_> {
-        let units = string(values, "Units").to_ascii_lowercase();
+    fn new<'a>(values: &'a Object, attributes: &Object) -> Parameters<'a> {
+        let units = [values, attributes].map(|object| string(object, "Units"));
+        let units = units.into_iter().find(|units| !units.is_empty()).unwrap_or_default();
+        let units = units.to_ascii_lowercase();
         let bare = match units.as_str() {
             "imperial" | "inch" | "in" => 25.4,
             _ => 1.0,
@@ -359,7 +401,7 @@ impl Parameters<'_> {
 
     /// Returns a length in mm.
     fn length(&self, key: &str) -> Result<f64, String> {
-        self.optional_length(key)?.ok_or_else(|| format!("it does not state its `{key}`"))
+        self.optional_length(key)?.ok_or_else(|| unstated(key))
     }
 
     fn optional_length(&self, key: &str) -> Result<Option<f64>, String> {
@@ -369,7 +411,8 @@ impl Parameters<'_> {
             "cm" => Some(10.0),
             "m" => Some(1000.0),
             "in" | "\"" | "inch" => Some(25.4),
-            "ft" => Some(304.8),
+            "thou" | "mil" => Some(0.0254),
+            "ft" | "'" => Some(304.8),
             "um" | "µm" | "μm" => Some(1e-3),
             _ => None,
         })
@@ -389,7 +432,7 @@ impl Parameters<'_> {
 
     /// Returns an angle in degrees.
     fn angle(&self, key: &str) -> Result<f64, String> {
-        self.optional_angle(key)?.ok_or_else(|| format!("it does not state its `{key}`"))
+        self.optional_angle(key)?.ok_or_else(|| unstated(key))
     }
 
     fn optional_angle(&self, key: &str) -> Result<Option<f64>, String> {
@@ -417,24 +460,76 @@ impl Parameters<'_> {
                 });
             }
             Some(Value::String(text)) => text.trim(),
-            Some(other) => return Err(format!("its `{key}` is {other}, no quantity")),
+            Some(other) => return Err(format!("its `{key}` is {other}, no quantity: {REMEDY}")),
         };
-        let end = text
-            .find(|c: char| !(c.is_ascii_digit() || matches!(c, '.' | ',' | '-' | '+' | 'e' | 'E')))
-            .unwrap_or(text.len());
-        let (number, unit) = text.split_at(end);
-        let value: Option<f64> = match number.split_once(',') {
-            Some((whole, decimals)) if !decimals.contains(['.', ',']) => {
-                format!("{whole}.{decimals}").parse().ok()
-            }
-            _ => number.parse().ok(),
-        };
-        match (value.filter(|value| value.is_finite()), factor(unit.trim())) {
-            (Some(value), Some(1.0)) => Ok(Some(value)),
-            (Some(value), Some(factor)) => Ok(Some(super::outline::rounded(value * factor))),
-            _ => Err(format!("its `{key}` is `{text}`, no number with a unit")),
+        match sum(text, &factor) {
+            Some(value) => Ok(Some(value)),
+            None => Err(format!("its `{key}` is `{text}`, no number with a unit: {REMEDY}")),
         }
     }
+}
+
+/// What to do about a value that is missing or cannot be read.
+const REMEDY: &str = "correct the bit in FreeCAD, and save it again";
+
+fn unstated(key: &str) -> String {
+    format!("it does not state its `{key}`: {REMEDY}")
+}
+
+/// Returns the sum of quantities, such as `2.5 mm` or `1' + 2 1/2"`, by the factors of their units.
+fn sum(text: &str, factor: &impl Fn(&str) -> Option<f64>) -> Option<f64> {
+    let mut terms: Vec<f64> = Vec::new();
+    let mut rest = text.trim();
+    let mut is_exact = true;
+    while !rest.is_empty() {
+        if !terms.is_empty() {
+            rest = rest.trim_start_matches('+').trim_start();
+        }
+        let (number, after) = mixed_number(rest)?;
+        let end = after.find(|c: char| c.is_ascii_digit() || c == '+').unwrap_or(after.len());
+        let (unit, after) = after.split_at(end);
+        let factor = factor(unit.trim())?;
+        is_exact &= factor == 1.0;
+        terms.push(number * factor);
+        rest = after.trim_start();
+        // Only the last one can do without a unit, and then is the only one.
+        if unit.trim().is_empty() && !(rest.is_empty() && terms.len() == 1) {
+            return None;
+        }
+    }
+    let sum: f64 = terms.iter().sum();
+    let is_exact = is_exact && terms.len() == 1;
+    (!terms.is_empty() && sum.is_finite())
+        .then(|| if is_exact { sum } else { super::outline::rounded(sum) })
+}
+
+/// Returns the number at the beginning of a text, `2.5`, `2,5`, `1/2` or `2 1/2`, and what follows.
+fn mixed_number(text: &str) -> Option<(f64, &str)> {
+    let (whole, rest) = decimal_number(text)?;
+    if let Some((divisor, rest)) = rest.strip_prefix('/').and_then(decimal_number) {
+        return Some((whole / divisor, rest));
+    }
+    let fraction = decimal_number(rest.trim_start()).and_then(|(dividend, rest)| {
+        let (divisor, rest) = decimal_number(rest.strip_prefix('/')?)?;
+        Some((whole + dividend / divisor, rest))
+    });
+    Some(fraction.unwrap_or((whole, rest)))
+}
+
+fn decimal_number(text: &str) -> Option<(f64, &str)> {
+    let is_part = |(at, c): (usize, char)| match c {
+        '-' | '+' => at == 0 || text[..at].ends_with(['e', 'E']),
+        _ => c.is_ascii_digit() || matches!(c, '.' | ',' | 'e' | 'E'),
+    };
+    let end = text.char_indices().find(|part| !is_part(*part)).map_or(text.len(), |(at, _)| at);
+    let (number, rest) = text.split_at(end);
+    let value: Option<f64> = match number.split_once(',') {
+        Some((whole, decimals)) if !decimals.contains(['.', ',']) => {
+            format!("{whole}.{decimals}").parse().ok()
+        }
+        _ => number.parse().ok(),
+    };
+    Some((value?, rest))
 }
 
 fn object(content: &str) -> Result<Object, String> {

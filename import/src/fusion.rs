@@ -35,6 +35,7 @@ fn read_tool(tool: &Object, kind: &str, title: &str) -> Result<Entry, String> {
     let empty = Object::new();
     let geometry = Geometry(object(tool, "geometry")?.unwrap_or(&empty));
     entry.cutter = Some(cutter(kind, tool, &geometry, &mut entry.notes)?);
+    entry.notes.extend(contradicted_expressions(tool, &geometry, unit)?);
     if let Some(shaft) = object(tool, "shaft")? {
         entry.shaft = sections(shaft).map_err(|error| format!("its shaft: {error}"))?;
         if !shaft.get("segments").is_some_and(Value::is_array) {
@@ -80,6 +81,54 @@ fn read_tool(tool: &Object, kind: &str, title: &str) -> Result<Entry, String> {
     Ok(entry)
 }
 
+/// The expressions of dimensions, from which Fusion 360 computes them anew when it reads the library.
+const EXPRESSIONS: [(&str, &str, &str); 9] = [
+    ("tool_diameter", "DC", "diameter"),
+    ("tool_fluteLength", "LCF", "flute length"),
+    ("tool_overallLength", "OAL", "overall length"),
+    ("tool_bodyLength", "LB", "length below the holder"),
+    ("tool_shaftDiameter", "SFDM", "shank diameter"),
+    ("tool_cornerRadius", "RE", "corner radius"),
+    ("tool_shoulderLength", "shoulder-length", "shoulder length"),
+    ("tool_shoulderDiameter", "shoulder-diameter", "shoulder diameter"),
+    ("tool_tipDiameter", "tip-diameter", "tip diameter"),
+];
+
+/// Returns a note for each dimension whose expression is a length that differs. Other expressions are not computed.
+fn contradicted_expressions(
+    tool: &Object,
+    geometry: &Geometry<'_>,
+    unit: Unit,
+) -> Result<Vec<Note>, String> {
+    let mut notes = Vec::new();
+    let Some(expressions) = object(tool, "expressions")? else { return Ok(notes) };
+    for (expression, key, what) in EXPRESSIONS {
+        let text = string(expressions, expression);
+        let (number, of) = match text.find(|c: char| c.is_ascii_alphabetic()) {
+            Some(at) => text.split_at(at),
+            None => (text, ""),
+        };
+        let of = match of {
+            "mm" => Unit::Millimetre,
+            "in" => Unit::Inch,
+            "" => unit,
+            _ => continue,
+        };
+        let (Ok(value), Some(stated)) = (number.trim().parse::<f64>(), geometry.get(key)?) else {
+            continue;
+        };
+        let value = super::outline::rounded(value * of.factor_to(unit));
+        if (value - stated).abs() > 1e-4 * stated.abs() {
+            notes.push(Note::Contradiction {
+                first: Stated { what, value: stated },
+                second: Stated { what: "expression of it", value },
+                taken: "former",
+            });
+        }
+    }
+    Ok(notes)
+}
+
 fn cutter(
     kind: &str,
     tool: &Object,
@@ -108,7 +157,9 @@ fn cutter(
         "tapered mill" => {
             let corner = geometry.or("RE", "corner radius", 0.0, notes)?;
             let half_angle = geometry.require("TA", "taper angle")?;
-            match string(tool, "tapered-type") {
+            // Some exporters write it among the dimensions.
+            let stated = [tool, geometry.0].map(|object| string(object, "tapered-type"));
+            match stated.into_iter().find(|kind| !kind.is_empty()).unwrap_or_default() {
                 "tapered_ball" => Shape::TaperedBall { radius: corner, half_angle, cone_to: 0.0 },
                 "" | "tapered_bull_nose" => Shape::Tapered { corner, half_angle },
                 other => return Err(format!("the taper `{other}` cannot be read yet")),
@@ -243,8 +294,16 @@ fn cutter(
 /// Fusion 360 have 0, which states none. A single tooth cuts several pitches, and is drawn for the greatest; several teeth have one.
 fn pitch(geometry: &Geometry<'_>, teeth: u32, notes: &mut Vec<Note>) -> Result<f64, String> {
     let stated = |key| geometry.get(key).map(|pitch| pitch.filter(|pitch| *pitch != 0.0));
-    let (least, greatest) = (stated("TPN")?, stated("TPX")?);
-    let pitch = match (least.or(greatest), greatest.or(least)) {
+    let (first, second) = (stated("TPN")?, stated("TPX")?);
+    let pitch = match (first.or(second), second.or(first)) {
+        (Some(least), Some(greatest)) if least > greatest => {
+            return Err(super::entry::reason(&ShapeError::Contradiction(
+                "least pitch",
+                least,
+                "greatest pitch",
+                greatest,
+            )));
+        }
         (Some(least), Some(greatest)) if least < greatest => {
             if teeth > 1 {
                 return Err(format!(

@@ -30,9 +30,10 @@ pub(super) fn object<'a>(value: &'a Object, key: &str) -> Result<Option<&'a Obje
     }
 }
 
-/// Returns a tool number.
+/// Returns a tool number, which some libraries have as a text or with decimals.
 pub(super) fn tool_number(value: &Value) -> Option<u32> {
-    value.as_u64().and_then(|number| u32::try_from(number).ok())
+    let number = number(value)? as u32;
+    (f64::from(number) == self::number(value)?).then_some(number)
 }
 
 /// Returns a finite number of an object.

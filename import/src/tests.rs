@@ -326,6 +326,15 @@ fn cutters_of_programs_keep_their_numbers() {
     assert_eq!(library.tools()[0].entry.length(), Some(30.0));
     let wrong = read("UNITS/MM\nCUTTER/6,x,3,0,0,0,30\n");
     assert!(wrong.skipped()[0].reason.contains("corner radius is `x`"), "{:?}", wrong.skipped());
+    // Autodesk's post processors state no centre of a corner.
+    let corner = |centre: &str| {
+        let library = read(&format!("UNITS/MM\nCUTTER/6,1,{centre},0,0,30\n"));
+        let outline = library.tools()[0].load().expect("a tool").info().outline.clone();
+        outline.iter().map(|segment| segment.to).collect::<Vec<_>>()
+    };
+    assert_eq!([corner("0,0"), corner("0,1")], [corner("2,1"), corner("2,1")]);
+    // SolidWorks CAM has another word for the unit.
+    assert_eq!(read(&format!("UNIT/MM\n{cutter}")).tools()[0].entry.unit.symbol(), "mm");
     let units = read(&format!("UNITS/MM\n{cutter}UNITS/INCHES\n{cutter}"));
     let units: Vec<&str> = units.tools().iter().map(|tool| tool.entry.unit.symbol()).collect();
     assert_eq!(units, ["mm", "inch"]);

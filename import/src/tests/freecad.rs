@@ -140,6 +140,70 @@ fn a_length_without_a_unit_is_in_that_of_the_bit() {
     }
 }
 
+/// Texts of FreeCAD's imperial units.
+#[test]
+fn imperial_lengths_have_fractions_and_sums() {
+    let endmill = |length: &str| {
+        read(&bit(
+            "endmill",
+            &json!({ "CuttingEdgeHeight": "500 thou", "Diameter": "1/4\"", "Length": length, "ShankDiameter": "250 mil" }),
+        ))
+    };
+    let expected = [
+        ([3.175, 0.0], true),
+        ([3.175, 12.7], true),
+        ([3.175, 368.3], false),
+        ([0.0, 368.3], false),
+    ];
+    for length in
+        ["14.5 in", "14 1/2\"", "1' 2 1/2\"", "1' + 2\" + 1/2\"", "1 ft + 2,5 in", "14\" + 12.7 mm"]
+    {
+        assert_outline(&endmill(length), &expected);
+    }
+    for wrong in ["1' 2", "2 + 1/2\"", "1/0 in", "1' x", "2\" +", "1,000.5 mm", "\""] {
+        let left_out = endmill(wrong);
+        assert!(
+            left_out.skipped()[0].reason.ends_with("save it again"),
+            "{wrong}: {:?}",
+            left_out.skipped()
+        );
+    }
+    let attribute = json!({ "name": "a", "shape": "endmill.fcstd", "attribute": { "Units": "Imperial" },
+        "parameter": { "CuttingEdgeHeight": "0.5", "Diameter": 0.25, "Length": "14.5", "ShankDiameter": "0.25" } });
+    assert_outline(&read(&attribute), &expected);
+}
+
+/// Heights of edges that do not fit the rest are noted, and a probe has its shank by either name.
+#[test]
+fn contradictions_of_bits_are_noted() {
+    let lollipop = |high: &str| {
+        let bit = bit(
+            "lollipop",
+            &json!({ "CuttingEdgeHeight": high, "Diameter": "10 mm", "Length": "60 mm", "NeckDiameter": "6 mm",
+                "NeckHeight": "15 mm", "ShankDiameter": "10 mm" }),
+        );
+        notes(&read(&bit))
+    };
+    assert_eq!(lollipop("9 mm"), []);
+    assert!(
+        matches!(&lollipop("5 mm")[..], [Note::Contradiction { second, .. }] if second.value == 9.0)
+    );
+    let keyway = bit(
+        "keyway",
+        &json!({ "CuttingEdgeHeight": "4 mm", "Diameter": "10 mm", "Length": "60 mm", "LowerCuttingHeight": "2 mm",
+            "NeckDiameter": "6 mm", "NeckHeight": "15 mm", "ShankDiameter": "10 mm" }),
+    );
+    assert!(
+        matches!(&notes(&read(&keyway))[..], [Note::Contradiction { first, .. }] if first.value == 2.0)
+    );
+    let [shaft, shank] = ["ShaftDiameter", "ShankDiameter"].map(|name| {
+        let mut stem = json!({ "Diameter": "6 mm", "Length": "50 mm" });
+        stem[name] = "4 mm".into();
+        outline(&read(&bit("probe", &stem)))
+    });
+    assert_eq!(shaft, shank);
+}
+
 /// Bits beside their library, in folders of which the names are in lower case.
 #[test]
 fn folders_of_vendors_have_names_in_lower_case() {
@@ -151,12 +215,28 @@ fn folders_of_vendors_have_names_in_lower_case() {
         "ShankDiameter": "3 mm" });
     let place = folder.path().join("bit/Mill_3.fctb");
     fs::write(place, bit("endmill", &endmill).to_string()).expect("a file");
-    let list = json!({ "label": "Shop", "tools": [{ "nr": 4, "path": "Mill_3.fctb" }] });
     let file = folder.path().join("library/Shop.fctl");
-    fs::write(&file, list.to_string()).expect("a file");
-    let library = Library::read(&file).expect("a library");
-    let [ImportedTool { entry, .. }] = library.tools() else { panic!("{:?}", library.skipped()) };
-    assert_eq!((entry.number, entry.diameter()), (Some(4), Some(3.0)));
+    let read = |tool: Value| {
+        let list = json!({ "label": "Shop", "tools": [tool] });
+        fs::write(&file, list.to_string()).expect("a file");
+        Library::read(&file).expect("a library")
+    };
+    fs::create_dir(folder.path().join("bit/mills")).expect("a folder");
+    fs::copy(folder.path().join("bit/Mill_3.fctb"), folder.path().join("bit/mills/M.fctb"))
+        .expect("a file");
+    for tool in [
+        json!({ "nr": 4, "path": "Mill_3.fctb" }),
+        json!({ "nr": "4", "path": "mills/M.fctb" }),
+        json!({ "nr": 4.0, "path": "mills\\M.fctb" }),
+    ] {
+        let library = read(tool);
+        let [ImportedTool { entry, .. }] = library.tools() else {
+            panic!("{:?}", library.skipped())
+        };
+        assert_eq!((entry.number, entry.diameter()), (Some(4), Some(3.0)));
+    }
+    let elsewhere = read(json!({ "nr": 4, "path": "../bit/Mill_3.fctb" }));
+    assert!(elsewhere.skipped()[0].reason.contains(": copy the bit"), "{:?}", elsewhere.skipped());
 }
 
 /// Values that a bit leaves out are its shape's. The angle of an edge is not that of a tip.

@@ -40,6 +40,49 @@ fn a_thread_mill_has_its_least_and_greatest_pitch() {
     assert!(matches!(other.notes[..], [Note::Contradiction { .. }]), "{:?}", other.notes);
 }
 
+/// A least pitch above the greatest is a mistake, and no pitch.
+#[test]
+fn pitches_that_contradict_each_other_are_refused() {
+    for teeth in [1, 5] {
+        let swapped = library(&mill(teeth, &json!({ "TPN": 1.0, "TPX": 0.6 })));
+        let reason = &swapped.skipped()[0].reason;
+        assert!(
+            reason.contains("the least pitch, 1, does not fit the greatest pitch, 0.6"),
+            "{reason}"
+        );
+    }
+}
+
+/// Fusion 360 computes dimensions anew from their expressions.
+#[test]
+fn an_expression_of_another_length_is_noted() {
+    let notes = |expressions: Value| {
+        let mut tool = fusion("flat end mill", &json!({ "SFDM": 10 }));
+        tool["expressions"] = expressions;
+        loaded(&tool).0.notes
+    };
+    let same = json!({ "tool_diameter": "10 mm", "tool_fluteLength": "0.7874015748 in", "tool_overallLength": "60",
+        "tool_bodyLength": "tool_overallLength - 20 mm", "tool_description": "'a'" });
+    assert_eq!(notes(same), []);
+    let other = notes(json!({ "tool_diameter": "0.5in" }));
+    assert!(
+        matches!(&other[..], [Note::Contradiction { second, .. }] if second.value == 12.7),
+        "{other:?}"
+    );
+}
+
+#[test]
+fn the_kind_of_a_taper_may_stand_among_the_dimensions() {
+    let taper = |mut tool: Value, place: &str| {
+        let place = if place.is_empty() { &mut tool } else { &mut tool[place] };
+        place["tapered-type"] = "tapered_ball".into();
+        corners(&tool)
+    };
+    let tool = fusion("tapered mill", &json!({ "RE": 2, "TA": 5, "DC": 4, "SFDM": 10 }));
+    assert_eq!(taper(tool.clone(), "geometry"), taper(tool.clone(), ""));
+    assert_ne!(taper(tool.clone(), ""), corners(&tool));
+}
+
 #[test]
 fn hsm_has_the_pitches_of_fusion() {
     let text = r#"<tool-library version="36"><tool type="thread mill" unit="millimeters"><description>a tool</description>

@@ -235,7 +235,7 @@ impl Cloud {
     /// # Errors
     /// See [`Cloud::new`], and [`CloudError::NoNormals`] for points without normals.
     pub fn from_points(points: OrientedPoints, unit: Unit) -> Result<Cloud, CloudError> {
-        let OrientedPoints { points, normals, triangles, areas } = points;
+        let OrientedPoints { points, normals, triangles, areas, left_out: _ } = points;
         if normals.is_empty() && !points.is_empty() {
             return Err(CloudError::NoNormals);
         }

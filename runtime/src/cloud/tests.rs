@@ -306,7 +306,10 @@ fn of_points_alone_cells_are_estimated() {
     let mesh = shapes::tube(3.0, 5.0, 13.0, 512, 8, UNIT).expect("a tube");
     let points = |cloud: Cloud, areas: Option<Vec<f64>>| {
         let Cloud { points, normals, .. } = cloud;
-        Cloud::from_points(OrientedPoints { points, normals, triangles: None, areas }, UNIT)
+        Cloud::from_points(
+            OrientedPoints { points, normals, triangles: None, areas, left_out: 0 },
+            UNIT,
+        )
     };
     for (cloud, close, near) in [
         (Cloud::sample(&mesh, Sampling::new(5_000)), 0.05, 0.25),
@@ -328,6 +331,7 @@ fn of_points_alone_cells_are_estimated() {
         normals: vec![Vector3::z(); 20],
         triangles: None,
         areas: None,
+        left_out: 0,
     };
     let cloud = Cloud::from_points(all.clone(), UNIT).expect("points");
     assert!(cloud.weights().iter().all(|weight| *weight == 0.0));
@@ -400,7 +404,10 @@ fn points_that_repeat_share_their_cells() {
     let thrice = |list: &[Point3<f64>]| [list, list, list].concat();
     let oriented = |points: Vec<Point3<f64>>, areas| {
         let normals = vec![Vector3::z(); points.len()];
-        Cloud::from_points(OrientedPoints { points, normals, triangles: None, areas }, UNIT)
+        Cloud::from_points(
+            OrientedPoints { points, normals, triangles: None, areas, left_out: 0 },
+            UNIT,
+        )
     };
     let [one, three] = [cloud.points().to_vec(), thrice(cloud.points())]
         .map(|points| oriented(points, None).expect("points"));
@@ -504,8 +511,11 @@ fn coincident_points_share_a_cell() {
         points.extend(vec![Point3::new(15.0, 15.0, 0.0); repeated]);
         let normal = |k: usize| Vector3::new(tilt * k as f64, 0.0, 1.0).normalize();
         let normals = (0..points.len()).map(|k| normal(k.saturating_sub(900))).collect();
-        Cloud::from_points(OrientedPoints { points, normals, triangles: None, areas: None }, UNIT)
-            .expect("a cloud")
+        Cloud::from_points(
+            OrientedPoints { points, normals, triangles: None, areas: None, left_out: 0 },
+            UNIT,
+        )
+        .expect("a cloud")
     };
     let one = of(0, 0.0);
     let whole = one.weights()[465];
@@ -522,6 +532,7 @@ fn coincident_points_share_a_cell() {
         normals: vec![Vector3::z(); 5_000],
         triangles: None,
         areas: None,
+        left_out: 0,
     };
     assert_eq!(Cloud::from_points(alone, UNIT).expect("a cloud").covering_radius(), None);
 }

@@ -70,10 +70,10 @@ pub enum ObjError {
         /// The number of vertices before the face.
         vertices: usize,
     },
-    /// The fan of triangles from the first corner of a polygon does not fill it.
+    /// No triangles between the corners of a polygon fill it.
     #[error(
-        "{file}, {location}: the polygon is too hollow or too bent to be cut into triangles from its \
-         first corner: export the part in triangles"
+        "{file}, {location}: the polygon crosses itself or is too bent to be cut into triangles: export \
+         the part in triangles"
     )]
     Folded {
         /// The file name.
@@ -157,7 +157,7 @@ impl Mesh {
         if faces.is_empty() {
             return Err(ObjError::NoFaces { file });
         }
-        if let Some(location) = faces.folded(&vertices) {
+        if let Some(location) = faces.fill(&vertices) {
             return Err(ObjError::Folded { file, location });
         }
         if let Some((vertex, outlier)) = faces.outlier(&vertices) {
@@ -337,7 +337,7 @@ mod tests {
     }
 
     #[test]
-    fn fans_polygons_unless_they_fold() {
+    fn polygons_are_filled_or_refused() {
         let with = |face: &str| {
             format!("v 0 0 0\nv 2 0 0\nv 2 2 0\nv 1 .5 0\nv 0 2 0\nf {face}\nf 1 2 5\n")
         };
@@ -346,8 +346,11 @@ mod tests {
             (mesh.triangles().len(), mesh.area(TriangleId(0)) + mesh.area(TriangleId(1))),
             (4, 1.5)
         );
-        let folded = refusal(with("2 3 4 5 1"));
-        assert!(folded.contains("part.obj, line 6: the polygon is too hollow"), "{folded}");
+        // Its first corner does not see all of it.
+        let mesh = Mesh::from_obj(with("2 3 4 5 1").as_bytes(), "", UNIT).expect("ears");
+        assert_eq!((0..3).map(|id| mesh.area(TriangleId(id))).sum::<f64>(), 2.5);
+        let folded = refusal(with("1 2 5 3"));
+        assert!(folded.contains("part.obj, line 6: the polygon crosses itself"), "{folded}");
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! Reading clouds of points: PCD of the Point Cloud Library, and tables `x y z` (`.xyz`).
+//! Reading clouds of points: PCD of the Point Cloud Library, and tables `x y z` (`.xyz`, `.txt`, `.asc`, `.pts` and `.csv`).
 
 use super::is_valid_coordinate;
 use super::location::printable;
@@ -31,7 +31,9 @@ pub enum PointsError {
         found: String,
     },
     /// The data of a PCD file is in a form that is not read.
-    #[error("{file}: the data is `{data}`: save the cloud as `ascii` or `binary`")]
+    #[error(
+        "{file}: the data is `{data}`: save the cloud as `ascii`, `binary` or `binary_compressed`"
+    )]
     Data {
         /// The file name.
         file: String,
@@ -98,8 +100,8 @@ struct Field<'a> {
 }
 
 impl OrientedPoints {
-    /// Reads a PCD file with `ascii` or `binary` data; errors name the file as `name`. Points without finite coordinates, which scanners
-    /// write where nothing was measured, are left out. Without the fields `normal_x`, `normal_y` and `normal_z` there are no normals.
+    /// Reads a PCD file with `ascii`, `binary` or `binary_compressed` data; errors name the file as `name`. Points with a coordinate NaN,
+    /// which scanners write where nothing was measured, are left out. Without the fields `normal_x`, `normal_y` and `normal_z` there are no normals.
     ///
     /// # Errors
     /// See [`PointsError`].
@@ -153,18 +155,23 @@ impl OrientedPoints {
             }
         };
         let declared = declared.unwrap_or_else(|| width.saturating_mul(height));
-        let place = |wanted: &str| {
-            let index = fields.iter().position(|field| field.name == wanted && field.count == 1)?;
-            Some(fields[..index].iter().map(|field| field.count).sum::<usize>())
-        };
+        let place =
+            |wanted: &str| fields.iter().position(|field| field.name == wanted && field.count == 1);
         let xyz = ["x", "y", "z"].map(place);
         let normal = NORMAL_FIELDS.map(place);
         let [Some(_), Some(_), Some(_)] = xyz else {
             return Err(PointsError::NoPoints { file: file() });
         };
         let mut reader = Reader::new(name, normal.iter().all(Option::is_some));
-        let columns: Vec<usize> = xyz.iter().chain(&normal).filter_map(|column| *column).collect();
-        let columns = if reader.has_normals { &columns[..] } else { &columns[..3] };
+        let wanted: Vec<usize> = xyz.iter().chain(&normal).filter_map(|index| *index).collect();
+        let wanted = if reader.has_normals { &wanted[..] } else { &wanted[..3] };
+        let size = |field: &Field<'_>| field.size * field.count;
+        let bytes_before = |index: usize| fields[..index].iter().map(size).sum::<usize>();
+        let stride = bytes_before(fields.len());
+        let columns: Vec<usize> = wanted
+            .iter()
+            .map(|index| fields[..*index].iter().map(|field| field.count).sum())
+            .collect();
         let mut found = 0;
         match data {
             "ascii" => {
@@ -186,22 +193,29 @@ impl OrientedPoints {
                     found += 1;
                 }
             }
-            "binary" => {
-                let stride: usize = fields.iter().map(|field| field.size * field.count).sum();
-                for point in rest.chunks_exact(stride.max(1)).take(declared) {
-                    let mut numbers = Vec::new();
-                    let mut at = 0;
-                    for field in &fields {
-                        for _ in 0..field.count {
-                            let bytes = &point[at..at + field.size];
-                            numbers.push(binary(field.kind, bytes).unwrap_or(f64::NAN));
-                            at += field.size;
-                        }
-                    }
-                    let values: Vec<f64> = columns.iter().map(|column| numbers[*column]).collect();
-                    reader.push(&values)?;
-                    found += 1;
+            "binary" | "binary_compressed" => {
+                // Compressed data has one field of all points after another.
+                let is_packed = data == "binary_compressed";
+                let unpacked = if is_packed { unpacked(rest) } else { Some(Vec::new()) };
+                let Some(unpacked) = unpacked else {
+                    return Err(PointsError::Count { file: file(), found, declared });
+                };
+                let bytes = if is_packed { &unpacked[..] } else { rest };
+                let whole = (bytes.len() / stride).min(declared);
+                let is_whole = !is_packed || bytes.len() / stride == declared;
+                for point in 0..if is_whole { whole } else { 0 } {
+                    let value = |index: &usize| {
+                        let (Field { size, kind, .. }, before) =
+                            (&fields[*index], bytes_before(*index));
+                        let at = match is_packed {
+                            true => declared * before + point * size,
+                            false => point * stride + before,
+                        };
+                        binary(*kind, &bytes[at..at + size]).unwrap_or(f64::NAN)
+                    };
+                    reader.push(&wanted.iter().map(value).collect::<Vec<f64>>())?;
                 }
+                found = whole;
             }
             other => {
                 return Err(PointsError::Data { file: file(), data: printable(other.as_bytes()) });
@@ -213,8 +227,8 @@ impl OrientedPoints {
         reader.finish()
     }
 
-    /// Reads a table of points; errors name the file as `name`. The columns are separated by blanks, commas or semicolons: the
-    /// coordinates, then a normal if the next three are unit vectors in all rows, or anything else, which is skipped. Lines that begin
+    /// Reads a table of points; errors name the file as `name`. The columns are separated by blanks, commas or semicolons; between blanks or
+    /// semicolons, a comma is a decimal point. They are the coordinates, then a normal if the next three are unit vectors in all rows, or anything else, which is skipped. Lines that begin
     /// with `#` or `//` are comments, and a first line of words or of one number is a heading.
     ///
     /// # Errors
@@ -228,8 +242,8 @@ impl OrientedPoints {
             if line.is_empty() || line.starts_with('#') || line.starts_with("//") {
                 continue;
             }
-            let cells = line.split([' ', '\t', ',', ';']).filter(|cell| !cell.is_empty());
-            let numbers: Vec<Option<f64>> = cells.map(|cell| cell.parse().ok()).collect();
+            let numbers: Vec<Option<f64>> =
+                cells(line).iter().map(|cell| cell.parse().ok()).collect();
             let coordinates: Option<Vec<f64>> = numbers.iter().take(3).copied().collect();
             let Some([x, y, z]) = coordinates.as_deref() else {
                 let is_heading =
@@ -275,6 +289,7 @@ impl Reader<'_> {
         let (file, point) = (|| self.name.to_owned(), self.count);
         self.count += 1;
         if values[..3].iter().any(|value| value.is_nan()) {
+            self.points.left_out += 1;
             return Ok(());
         }
         if let Some(value) = values[..3].iter().find(|value| !is_valid_coordinate(**value)) {
@@ -306,6 +321,63 @@ impl Reader<'_> {
             }
         }
     }
+}
+
+/// Returns the cells of a row of a table, with decimal points.
+fn cells(row: &str) -> Vec<String> {
+    let blank = [' ', '\t', ';'];
+    let pieces: Vec<&str> = row.split(blank).filter(|piece| !piece.is_empty()).collect();
+    let is_number = |piece: &&str| {
+        piece.split_once(',').is_none_or(|(whole, decimals)| {
+            whole.ends_with(|c: char| c.is_ascii_digit())
+                && decimals.starts_with(|c: char| c.is_ascii_digit())
+                && !decimals.contains(',')
+        })
+    };
+    match pieces.len() >= 3 && pieces.iter().all(is_number) {
+        true => pieces.into_iter().map(|piece| piece.replace(',', ".")).collect(),
+        false => {
+            let cells = pieces.into_iter().flat_map(|piece| piece.split(','));
+            cells.filter(|cell| !cell.is_empty()).map(str::to_owned).collect()
+        }
+    }
+}
+
+/// Returns the data of `binary_compressed`: two lengths of 4 bytes, and then LZF, which is groups of literal bytes, up to 32 of them, and of
+/// references to at least 3 bytes up to 8192 before. `None` if it is damaged or cut off.
+fn unpacked(data: &[u8]) -> Option<Vec<u8>> {
+    /// The most bytes that a reference of 3 bytes stands for.
+    const LONGEST: usize = 264;
+    let (lengths, data) = data.split_first_chunk::<8>()?;
+    let length = |at: usize| u32::from_le_bytes(std::array::from_fn(|k| lengths[at + k])) as usize;
+    let (packed, whole) = (data.get(..length(0))?, length(4));
+    // A wrong length must not reserve memory.
+    if whole > packed.len().saturating_mul(LONGEST) {
+        return None;
+    }
+    let mut out = Vec::with_capacity(whole);
+    let mut bytes = packed.iter().map(|byte| usize::from(*byte));
+    while let Some(control) = bytes.next() {
+        if control < 32 {
+            for _ in 0..=control {
+                out.push(bytes.next()? as u8);
+            }
+            continue;
+        }
+        let mut count = (control >> 5) + 2;
+        if count == 9 {
+            count += bytes.next()?;
+        }
+        let back = ((control & 31) << 8) + bytes.next()? + 1;
+        let start = out.len().checked_sub(back)?;
+        for at in start..start + count {
+            out.push(out[at]);
+        }
+        if out.len() > whole {
+            return None;
+        }
+    }
+    (out.len() == whole).then_some(out)
 }
 
 /// Returns a number in little-endian order, of a kind and a size that PCD has.
@@ -347,6 +419,31 @@ mod tests {
         let mut bytes = format!("{HEADER}DATA binary\n").into_bytes();
         bytes.extend(ROWS.iter().flatten().flat_map(|value| value.to_le_bytes()));
         assert_eq!(OrientedPoints::from_pcd(&bytes, "a").expect("a cloud"), ascii);
+        assert_eq!(ascii.left_out, 1);
+        // One field of all points after another: literal bytes.
+        let fields: Vec<u8> =
+            (0..7).flat_map(|k| ROWS.map(|row| row[k].to_le_bytes())).flatten().collect();
+        let mut packed: Vec<u8> =
+            fields.chunks(32).flat_map(|part| [&[part.len() as u8 - 1], part].concat()).collect();
+        let lengths = |packed: &[u8], whole: usize| {
+            [packed.len() as u32, whole as u32].map(u32::to_le_bytes).concat()
+        };
+        let file = |packed: &[u8]| {
+            let header = format!("{HEADER}DATA binary_compressed\n").into_bytes();
+            [header, lengths(packed, fields.len()), packed.to_vec()].concat()
+        };
+        assert_eq!(OrientedPoints::from_pcd(&file(&packed), "a").expect("a cloud"), ascii);
+        packed.pop();
+        assert!(OrientedPoints::from_pcd(&file(&packed), "a").is_err());
+        // "ab" and a reference to 2 bytes before, of 3 and of 264 bytes.
+        assert_eq!(unpacked(&[5, 0, 0, 0, 5, 0, 0, 0, 1, 97, 98, 32, 1]), Some(b"ababa".to_vec()));
+        let long = unpacked(&[6, 0, 0, 0, 10, 1, 0, 0, 1, 97, 98, 0xe0, 0xff, 1]);
+        assert_eq!(long, Some(b"ab".repeat(133)));
+        for damaged in
+            [[5, 0, 0, 0, 5, 0, 0, 0, 1, 97, 98, 32, 2], [5, 0, 0, 0, 6, 0, 0, 0, 1, 97, 98, 32, 1]]
+        {
+            assert_eq!(unpacked(&damaged), None);
+        }
         let cut = OrientedPoints::from_pcd(&bytes[..bytes.len() - 1], "a.pcd");
         assert!(matches!(cut, Err(PointsError::Count { found: 2, declared: 3, .. })), "{cut:?}");
         let bare = HEADER.replace("normal_", "n");
@@ -354,7 +451,8 @@ mod tests {
         let bare = OrientedPoints::from_pcd(bare.as_bytes(), "a").expect("a cloud");
         assert_eq!((bare.points.len(), bare.normals.len()), (2, 0));
         for (text, what) in [
-            (format!("{HEADER}DATA binary_compressed\n"), "ascii"),
+            (format!("{HEADER}DATA binary_compressed\n"), "0 points"),
+            (format!("{HEADER}DATA zip\n"), "ascii"),
             (HEADER.to_owned(), "DATA"),
             (format!("{}DATA ascii\n{rows}\n", HEADER.replace(" x ", " u ")), "no points"),
             (format!("{HEADER}DATA ascii\n1 2\n"), "line 12"),
@@ -372,6 +470,15 @@ mod tests {
         assert!(plain.normals.is_empty());
         let oriented = read("x y z nx ny nz\n1,2,3,0,0,1\n4,5,6,0.999,0.01,0\n").expect("a cloud");
         assert_eq!((oriented.points.len(), oriented.normals[0]), (2, Vector3::z()));
+        // Decimal commas are no separators.
+        for decimal in ["1,5 -2,25 3\n4 5 6\n", "1,5;-2,25;3,0\n4;5;6\n"] {
+            let decimal = read(decimal).expect("a cloud").points;
+            assert_eq!(decimal, [Point3::new(1.5, -2.25, 3.0), Point3::new(4.0, 5.0, 6.0)]);
+        }
+        assert_eq!(
+            read("1, 2, 3\n1 ,2 ,3\n").expect("a cloud").points,
+            [Point3::new(1.0, 2.0, 3.0); 2]
+        );
         // Colours are no normals.
         assert!(read("1 2 3 255 0 0\n4 5 6 0 0 1\n").expect("a cloud").normals.is_empty());
         assert!(matches!(read("1 2 3\n1 2\n"), Err(PointsError::Expected { line: 2, .. })));

@@ -31,7 +31,7 @@ pub enum GeometryError {
     /// The format is not recognised.
     #[error(
         "{file} is of no known format: read are meshes in STL, PLY and OBJ (`.stl`, `.ply`, \
-         `.obj`) and points in PLY, PCD and tables of x y z (`.pcd`, `.xyz`): convert the part to one of these"
+         `.obj`) and points in PLY, PCD and tables of x y z (`.pcd`, `.xyz`, `.txt`, `.asc`, `.pts`, `.csv`): convert the part to one of these"
     )]
     Unknown {
         /// The file name.
@@ -52,6 +52,9 @@ pub enum GeometryError {
 }
 
 crate::debug_as_sentence!(GeometryError);
+
+/// The extensions of tables of points.
+const TABLES: [&str; 5] = ["xyz", "txt", "asc", "pts", "csv"];
 
 impl Geometry {
     /// Reads a file whose lengths are in `unit`. A file that begins with `ply` is read as PLY; otherwise the file
@@ -88,7 +91,7 @@ impl Geometry {
             Geometry::Mesh(Mesh::from_obj(bytes, name, unit)?)
         } else if has_extension("pcd") {
             Geometry::Points(OrientedPoints::from_pcd(bytes, name)?)
-        } else if has_extension("xyz") {
+        } else if TABLES.iter().any(|table| has_extension(table)) {
             Geometry::Points(OrientedPoints::from_xyz(bytes, name)?)
         } else {
             return Err(GeometryError::Unknown { file: name.to_owned() });

@@ -114,7 +114,7 @@ mod tests {
         let cloud = Cloud::sample(mesh, Sampling::new(3_000)).expect("a cloud");
         let kept = cloud.points().iter().zip(cloud.normals()).filter(|(point, _)| keep(point));
         let (points, normals) = kept.map(|(point, normal)| (*point, normal * sign)).unzip();
-        let points = OrientedPoints { points, normals, triangles: None, areas: None };
+        let points = OrientedPoints { points, normals, ..OrientedPoints::default() };
         Part::from_cloud(&Cloud::from_points(points, UNIT).expect("a cloud")).findings()
     }
 

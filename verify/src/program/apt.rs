@@ -2,13 +2,13 @@
 //!
 //! These statements are read: `GOTO/x,y,z[,i,j,k]` and, as the first position of a tool, `FROM/` (the tip, and
 //! the unit vector from the tip to the spindle; without one, `0,0,1`, or the last given in NX's files), `RAPID`
-//! (for the next `GOTO`), `MULTAX`, `UNITS` (`UNIT`), `LOADTL` (`LOAD/TOOL`), `CUTTER`, [arcs and cycles](cycle) by `CIRCLE` and
-//! `CYCLE`, and `FINI` or NX's `END-OF-PATH`. Positions are those of the tool's tip: `CUTCOM` beside them lets the control correct a
+//! (for the next `GOTO`), `MULTAX`, `UNITS` (`UNIT`), `LOADTL` (`LOAD/TOOL`), `CUTTER`, [arcs and cycles](cycle) by `CIRCLE`,
+//! `MOVARC`, `TLON,GOFWD` and `CYCLE`, and `FINI` or NX's `END-OF-PATH`. Positions are those of the tool's tip: `CUTCOM` beside them lets the control correct a
 //! worn tool, and is passed over.
-//! One of the last two has to end the program, so that a truncated file is never taken for a whole one. `$$`
+//! One of the last two, or CATIA's `END`, has to end the program, so that a truncated file is never taken for a whole one. `$$`
 //! opens a comment, a trailing `$` continues the statement, `;` separates two statements, and case does not
 //! matter. Two comments state the frame of the positions, which may be repeated and not changed: CATIA's machining axis and
-//! Creo's coordinate system.
+//! Creo's coordinate system. Creo states several positions on an arc after one `CIRCLE`.
 //!
 //! Statements about the tool hold for the positions that follow them: `LOADTL` between two positions changes the tool,
 //! and the cutters stated before or after it, up to the next position, are those of the new one. In NX's files,
@@ -29,6 +29,7 @@ use super::{
     shown,
 };
 use cycle::{Arc, Cycle, Stop};
+use nalgebra::Vector3;
 use rates::Rates;
 use std::collections::BTreeMap;
 use std::mem;
@@ -43,6 +44,12 @@ const CATIA_AXIS: &str = "$$*CATIA0";
 /// The comment with which Creo begins its coordinate system. Rows of numbers may follow.
 const CREO_SYSTEM: &str = "$$-> CSYS";
 
+/// The comment with which Creo says whether positions are those of the tool's centre or of the contour.
+const CREO_CONTOUR: &str = "$$-> CUTCOM_GEOMETRY_TYPE";
+
+/// The beginning of Creo's comments.
+const CREO_COMMENT: &str = "$$->";
+
 /// Reads an APT-CL program. All statements that are refused are found, each fault once.
 pub(super) fn read(text: &str) -> Result<Tapes, Faults> {
     let mut faults = Faults::new();
@@ -53,7 +60,8 @@ pub(super) fn read(text: &str) -> Result<Tapes, Faults> {
     };
     check_catia_axes(text).unwrap_or_else(&mut refuse);
     let (statements, unfinished_line) = statements(text);
-    let mut reader = Reader::default();
+    let is_creo = lines(text).any(|(_, line)| line.starts_with(CREO_COMMENT));
+    let mut reader = Reader { is_creo, ..Reader::default() };
     let mut end = 0;
     for (index, (line, statement)) in statements.iter().enumerate() {
         cancellation::check();
@@ -66,7 +74,9 @@ pub(super) fn read(text: &str) -> Result<Tapes, Faults> {
         refuse((end, ProgramFault::Arc { what: "ends at no position" }));
     }
     // A file without positions is refused as such, whether it ends or not.
-    let whole = (reader.finished || reader.path_ended) && unfinished_line.is_none();
+    // In a file of NX it is the beginning of `END-OF-PATH`.
+    let is_at_end = reader.is_at_end && !reader.is_nx;
+    let whole = (reader.finished || reader.path_ended || is_at_end) && unfinished_line.is_none();
     let is_empty = reader.tapes.is_empty() && reader.tape.locations.is_empty();
     if !(whole || is_empty && unfinished_line.is_none()) {
         refuse((unfinished_line.unwrap_or(end), ProgramFault::Unfinished));
@@ -113,7 +123,7 @@ fn statements(text: &str) -> (Vec<(usize, String)>, Option<usize>) {
             statements.push((line, system));
             continue;
         }
-        if open.is_none() && is_prose(raw) {
+        if open.is_none() && (is_prose(raw) || raw.starts_with(CREO_CONTOUR)) {
             statements.push((line, raw.to_owned()));
             continue;
         }
@@ -158,6 +168,14 @@ struct Reader {
     rates: Rates,
     /// The arc to the next position.
     arc: Option<Arc>,
+    /// Set in a file of Creo, which states several positions on an arc.
+    is_creo: bool,
+    /// The arc that the last statement ended.
+    ended_arc: Option<Arc>,
+    /// The direction in which CATIA's next arc begins.
+    direction: Option<Vector3<f64>>,
+    /// Set where Creo's positions are those of the contour.
+    is_contour: bool,
     /// The cycle at each position.
     cycle: Option<Cycle>,
     /// Set once there was a `GOTO`.
@@ -171,6 +189,8 @@ struct Reader {
     /// The first statement that a program of one tool and one operation cannot have.
     several: Option<Located>,
     path_ended: bool,
+    /// Set if the last statement is `END`, with which CATIA's programs end.
+    is_at_end: bool,
     finished: bool,
 }
 
@@ -190,9 +210,13 @@ impl Reader {
         let (head, rest) = text.split_once('/').unwrap_or((text, ""));
         let word = head.split_whitespace().collect::<Vec<_>>().join(" ").to_ascii_uppercase();
         let rest = rest.trim();
-        if matches!(word.as_str(), "GOTO" | "FROM") && !self.finished {
+        if matches!(word.as_str(), "GOTO" | "FROM" | "TLON,GOFWD") && !self.finished {
             self.change_tool()?;
         }
+        if word != "GOTO" {
+            self.ended_arc = None;
+        }
+        self.is_at_end = word == "END";
         self.word(line, text, &word, rest, is_last).map_err(|fault| (line, fault))
     }
 
@@ -206,6 +230,10 @@ impl Reader {
     ) -> Result<(), ProgramFault> {
         if word == CREO_SYSTEM {
             return self.coordinate_system(rest);
+        }
+        if word == CREO_CONTOUR {
+            self.is_contour = rest.eq_ignore_ascii_case("OUTPUT_ON_PROFILE");
+            return Ok(());
         }
         let ended = self.finished || self.path_ended && !matches!(word, "FINI" | "TOOL PATH");
         if ended && !is_prose(text) {
@@ -222,14 +250,29 @@ impl Reader {
             _ => (word, rest),
         };
         match word {
-            "CIRCLE" => {
+            "CIRCLE" | "MOVARC" => {
                 if self.arc.is_some() {
                     return Err(ProgramFault::Arc { what: "ends at no position" });
                 }
-                self.arc = Some(Arc::read(rest)?);
+                self.arc = Some(match word {
+                    "CIRCLE" => Arc::circle(rest, self.is_nx)?,
+                    _ => Arc::movarc(rest)?,
+                });
+            }
+            "INDIRV" => {
+                let values = rest.split(',').map(number).collect::<Result<Vec<f64>, _>>()?;
+                let &[i, j, k] = &values[..] else {
+                    return Err(ProgramFault::Moves { word: word.to_owned() });
+                };
+                self.direction = Some(Vector3::new(i, j, k));
+            }
+            "TLON,GOFWD" => self.catia_arc(line, rest)?,
+            "CUTCOM" if self.is_contour && !rest.eq_ignore_ascii_case("OFF") => {
+                let argument = format!("{}, with OUTPUT_ON_PROFILE,", unquoted(rest));
+                return Err(ProgramFault::Compensation { argument });
             }
             "CYCLE" => {
-                self.cycle = Cycle::read(rest)?;
+                self.cycle = Cycle::read(rest, self.cycle.as_ref())?;
                 if self.cycle.is_none() {
                     self.tape.ignored.push((line, word.to_owned()));
                 }
@@ -284,11 +327,14 @@ impl Reader {
         match self.pose(word, rest) {
             Ok(pose) => {
                 let before = self.tape.locations.last().map(|location| location.pose);
-                let stops = match (self.arc.take(), &self.cycle) {
+                let unit = self.tape.unit.map(|(unit, _)| unit);
+                let ended_arc = self.ended_arc.take().filter(|_| self.is_creo && !rapid);
+                let further = || ended_arc?.continued(&before?, &pose, unit);
+                let stops = match (self.arc.take().or_else(further), &self.cycle) {
                     (Some(arc), None) => {
-                        let unit = self.tape.unit.map(|(unit, _)| unit);
-                        let poses = arc.stops(before.as_ref(), &pose, unit)?.into_iter();
-                        poses.map(|pose| Stop { pose, rapid }).collect()
+                        let (poses, arc) = arc.stops(before.as_ref(), &pose, unit)?;
+                        self.ended_arc = Some(arc);
+                        poses.into_iter().map(|pose| Stop { pose, rapid }).collect()
                     }
                     (None, Some(cycle)) => cycle.stops(&pose, before.as_ref())?,
                     (Some(_), Some(_)) => {
@@ -296,15 +342,34 @@ impl Reader {
                     }
                     (None, None) => vec![Stop { pose, rapid }],
                 };
-                for Stop { pose, rapid } in stops {
-                    let feed = self.rates.feed().filter(|_| !rapid && self.cycle.is_none());
-                    self.tape.locations.push(CutterLocation { line, pose, rapid, feed });
-                }
+                self.add(line, stops);
                 Ok(())
             }
             Err(_) if is_last => Err(ProgramFault::Unfinished),
             Err(fault) => Err(fault),
         }
+    }
+
+    fn add(&mut self, line: usize, stops: Vec<Stop>) {
+        for Stop { pose, rapid } in stops {
+            let feed = self.rates.feed().filter(|_| !rapid && self.cycle.is_none());
+            self.tape.locations.push(CutterLocation { line, pose, rapid, feed });
+        }
+    }
+
+    /// Reads an arc of CATIA, which states its own end.
+    fn catia_arc(&mut self, line: usize, rest: &str) -> Result<(), ProgramFault> {
+        let rapid = mem::take(&mut self.rapid);
+        let before = self.tape.locations.last().map(|location| location.pose);
+        let (Some(before), Some(direction), None) = (before, self.direction.take(), &self.cycle)
+        else {
+            return Err(ProgramFault::Arc { what: "begins at no position or in no direction" });
+        };
+        let (arc, end) = Arc::catia(rest, &before, direction)?;
+        let unit = self.tape.unit.map(|(unit, _)| unit);
+        let (poses, _) = arc.stops(Some(&before), &end, unit)?;
+        self.add(line, poses.into_iter().map(|pose| Stop { pose, rapid }).collect());
+        Ok(())
     }
 
     fn pose(&mut self, word: &'static str, rest: &str) -> Result<Pose, ProgramFault> {
@@ -474,7 +539,13 @@ fn tool_statement(line: usize, word: &str, rest: &str) -> Result<ToolStatement, 
 impl ToolStatement {
     /// Returns the number of the tool, if the first argument is one.
     fn number(&self) -> Option<u32> {
-        self.arguments.first()?.parse().ok()
+        number_of_tool(&self.arguments)
+    }
+
+    /// Returns whether a tool with these arguments is loaded again: CATIA does so in each operation, with fewer arguments.
+    fn is_same_number(&self, known: &[String]) -> bool {
+        let number = self.number();
+        self.word == "LOADTL" && number.is_some() && number == number_of_tool(known)
     }
 
     /// Returns the fault if the statement contradicts the tool that is known, or adds to it too late.
@@ -484,7 +555,7 @@ impl ToolStatement {
         is_late: bool,
     ) -> Option<Located> {
         let fault = match known.get(&self.word) {
-            Some((first, known)) if *known != self.arguments || self.word == "LOADTL" => {
+            Some((first, known)) if *known != self.arguments && !self.is_same_number(known) => {
                 ProgramFault::SecondTool { first: *first }
             }
             None if is_late => ProgramFault::LateTool { word: self.word.clone() },
@@ -492,6 +563,10 @@ impl ToolStatement {
         };
         Some((self.line, fault))
     }
+}
+
+fn number_of_tool(arguments: &[String]) -> Option<u32> {
+    arguments.first()?.parse().ok()
 }
 
 /// Returns the text as [`shown`] quotes it, without the quotes; empty for empty text.
@@ -509,12 +584,11 @@ const VERBATIM_WORDS: [&str; 2] = ["INSERT", "LETTER"];
 /// that were used in computing the positions, speeds and feeds, coolant, stops and delays, the block numbers and
 /// the file of the post-processor, planes that only other words use, displays.
 #[rustfmt::skip]
-const IGNORED_WORDS: [&str; 35] = [
+const IGNORED_WORDS: [&str; 36] = [
     "PARTNO", "PPRINT", "REMARK", "TITLES", "MACHIN", "ISN", "SEQNO", "LEADER", "TMARK", "CLPRNT",
     "INTOL", "OUTTOL", "TOLER", "LINTOL", "MCHTOL", "CUT",
     "FEDRAT", "FEDTO", "SPINDL", "COOLNT", "OPSTOP", "STOP", "DELAY", "DWELL", "END", "REWIND",
-    "CLEARP", "CLRSRF", "SELCTL", "PAINT", "DISPLY", "PLOT", "NOPLOT", "NOPOST", "VERIFY",
-
+    "CLEARP", "CLRSRF", "SELCTL", "PAINT", "DISPLY", "PLOT", "NOPLOT", "NOPOST", "VERIFY", "AUTOPS",
 ];
 
 /// Words that move the tool, or decide whether and how often it moves.
@@ -565,9 +639,9 @@ fn skip_statement(word: &str, arguments: &str) -> Result<String, ProgramFault> {
             false => Ok((*verbatim).to_owned()),
         };
     }
-    // Settings of SolidWorks CAM about tools.
-    if word.starts_with("CSI_") {
-        refuse_motions(word, arguments)?;
+    // Settings of SolidWorks CAM about tools, and names of CATIA's.
+    if word.starts_with("CSI_") || word == "TPRINT" {
+        refuse_motions(word, &arguments.replace('/', " "))?;
         return Ok(word.to_owned());
     }
     if IGNORED_WORDS.contains(&word) || is_inert_with(word, arguments) {
@@ -690,7 +764,7 @@ fn is_inert_with(word: &str, arguments: &str) -> bool {
             values == [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0]
         }),
         "TRACUT" | "COPY" => is("NOMORE"),
-        "MODE" => is("ABSOL"),
+        "MODE" => is("ABSOL") || is("MILL"),
         "ORIGIN" | "TRANS" | "THICK" => {
             numbers().is_ok_and(|values| values.iter().all(|v| *v == 0.0))
         }

@@ -73,7 +73,7 @@ impl ClData {
     ///
     /// `CUTTER/d,r,e,f,a,b,h` is the diameter, the radius of the corner, the distances of its centre from the
     /// axis and from the tip, the angles of end and side in degrees, and the height. Those of the first six
-    /// that are given are compared.
+    /// that are given are compared, but for a centre of 0, which states none.
     ///
     /// # Errors
     /// If a stated cutter is not the tool's.
@@ -88,8 +88,12 @@ impl ClData {
         let lengths = [ROUNDED * diameter; 4];
         let tolerances = lengths.into_iter().chain([ROUNDED.to_degrees(); 2]);
         let other = self.cutters.iter().find(|(_, stated)| {
-            let mut pairs = stated.iter().zip(&expected).zip(tolerances.clone());
-            pairs.any(|((stated, expected), tolerance)| (stated - expected).abs() > tolerance)
+            // Autodesk's post processors state the corner's centre as 0, or on the axis, whatever the cutter.
+            let is_unstated = matches!(stated[..], [_, r, 0.0, z, ..] if z == 0.0 || z == r);
+            let pairs = stated.iter().zip(&expected).zip(tolerances.clone()).enumerate();
+            pairs
+                .filter(|(at, _)| !(is_unstated && matches!(at, 2 | 3)))
+                .any(|(_, ((stated, expected), tolerance))| (stated - expected).abs() > tolerance)
         });
         let Some((line, stated)) = other else { return Ok(None) };
         // The arguments after those that are stated would explain nothing, and two always describe the tool.

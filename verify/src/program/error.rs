@@ -3,7 +3,7 @@
 use crate::codes::faults;
 use std::io;
 
-use touchoff::{PoseError, Unit};
+use touchoff::{Escaped, PoseError, Unit};
 
 faults! {
     #[family("P06", "Tables and APT: files")]
@@ -61,7 +61,7 @@ faults! {
         },
         /// A line is refused.
         #[code_of(fault)]
-        #[error("{file}:{line}: {fault}{}", shown_others(file, others))]
+        #[error("{}:{line}: {fault}{}", Escaped(file), shown_others(file, others))]
         Line {
             /// The file.
             file: String,
@@ -363,7 +363,7 @@ const MAX_SHOWN: usize = 100;
 
 /// Lists further faults, each on a line of its own.
 fn shown_others(file: &str, others: &[(usize, ProgramFault)]) -> String {
-    let shown = others.iter().take(MAX_SHOWN);
+    let (file, shown) = (Escaped(file), others.iter().take(MAX_SHOWN));
     let shown = shown.map(|(line, fault)| format!("\n{file}:{line}: {fault} [{}]", fault.code()));
     shown.collect()
 }

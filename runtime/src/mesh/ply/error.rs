@@ -147,8 +147,8 @@ pub enum PlyError {
     },
     /// The fan of triangles from the first corner of a polygon does not fill it.
     #[error(
-        "{file}, {location}: the polygon is too hollow or too bent to be cut into triangles from its \
-         first corner: export the part in triangles"
+        "{file}, {location}: the polygon crosses itself or is too bent to be cut into triangles: export \
+         the part in triangles"
     )]
     Folded {
         /// The file name.

@@ -42,6 +42,9 @@ pub struct OrientedPoints {
     pub triangles: Option<Vec<TriangleId>>,
     /// The area that each point represents, from 0 to 1e60, if the file contains it.
     pub areas: Option<Vec<f64>>,
+    /// The number of further points of the file that are left out, because a coordinate is NaN: scanners write them where nothing
+    /// was measured.
+    pub left_out: usize,
 }
 
 impl OrientedPoints {
@@ -49,7 +52,7 @@ impl OrientedPoints {
     ///
     /// Each vertex needs `x y z`. It may have a normal `nx ny nz`, or `normal_x normal_y normal_z` as the Point Cloud Library writes it,
     /// which is normalised because exporters round it; a `face`, the id of the face it lies on; and an `area`. Everything else,
-    /// including faces, is skipped.
+    /// including faces, is skipped. Vertices with a coordinate NaN are left out.
     ///
     /// # Errors
     /// See [`PlyError`].
@@ -72,6 +75,10 @@ impl OrientedPoints {
                 continue;
             }
             body.read(element, [x, y, z, nx, ny, nz, face, area], None, |record| {
+                if record.numbers[..3].iter().any(|coordinate| coordinate.is_nan()) {
+                    points.left_out += 1;
+                    return Ok(());
+                }
                 points.points.push(position(&record, name)?);
                 let [_, _, _, nx, ny, nz, face, area] = record.numbers;
                 if normal.is_some() {
@@ -103,6 +110,9 @@ impl OrientedPoints {
             })?;
         }
         body.end()?;
+        if points.points.is_empty() {
+            return Err(PlyError::NoPoints { file: name.to_owned() });
+        }
         match find_outlier(&points.points) {
             None => Ok(points),
             Some(found) => Err(outlier_vertex(bytes, name, found.index, found.outlier)),
@@ -114,8 +124,8 @@ impl Mesh {
     /// Reads a PLY file's faces as a mesh, whose numbers are in `unit` (PLY states none); errors name
     /// the file as `name`. No input makes this function panic.
     ///
-    /// A face with more than three corners is divided into a fan of triangles from its first corner, and refused if the
-    /// fan does not fill it; ids count the resulting triangles. Corners with equal coordinates become one vertex, as in
+    /// A face with more than three corners is divided into a fan of triangles from its first corner, or cut at its ears if the
+    /// fan does not fill it, and refused if it crosses itself; ids count the resulting triangles. Corners with equal coordinates become one vertex, as in
     /// [`Mesh::read_stl`], because exporters double the vertices of sharp edges. Other elements and properties are
     /// skipped, except triangle strips and a second list of corners, which are refused.
     ///
@@ -165,7 +175,7 @@ impl Mesh {
         if faces.is_empty() {
             return Err(PlyError::NoFaces { file });
         }
-        if let Some(location) = faces.folded(&vertices) {
+        if let Some(location) = faces.fill(&vertices) {
             return Err(PlyError::Folded { file, location });
         }
         if let Some((vertex, outlier)) = faces.outlier(&vertices) {

@@ -154,6 +154,7 @@ fn reads_points_in_every_encoding() {
             normals: vec![Vector3::z(), Vector3::new(0.6, 0.0, 0.8)],
             triangles: Some(vec![TriangleId(7), TriangleId(0)]),
             areas: Some(vec![0.25, 0.0]),
+            left_out: 0,
         };
         assert_eq!(read, expected, "{encoding}");
         let text = String::from_utf8_lossy(&bytes).replace(" face\n", " f\n").replace("area", "a");
@@ -199,7 +200,7 @@ fn binary_body_begins_after_one_line_end() {
 }
 
 #[test]
-fn fans_polygons_unless_they_fold() {
+fn polygons_are_filled_or_refused() {
     let with = |corners: &str, y: f64| {
         format!(
             "ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_index\nelement \
@@ -211,9 +212,54 @@ fn fans_polygons_unless_they_fold() {
     assert_eq!(areas, [2.0, 2.0, 1.0]);
     let hollow = Mesh::from_ply(with("5 3 4 0 1 2", 0.5).as_bytes(), "", UNIT);
     assert_eq!(hollow.expect("seen whole from its first corner").diagnostics().area, 2.5);
-    for corners in ["5 1 2 3 4 0", "4 0 1 4 2"] {
-        let message = refusal(with(corners, 0.5));
-        assert!(message.starts_with("part.ply, line 10: the polygon is too hollow"), "{message}");
+    let behind = Mesh::from_ply(with("5 1 2 3 4 0", 0.5).as_bytes(), "", UNIT);
+    assert_eq!(behind.expect("cut at its ears").diagnostics().area, 2.5);
+    let message = refusal(with("4 0 1 4 2", 0.5));
+    assert!(message.starts_with("part.ply, line 10: the polygon crosses itself"), "{message}");
+}
+
+/// No corner sees all of a comb, in any of the planes and from either side.
+#[test]
+fn a_comb_is_cut_at_its_ears() {
+    let comb = [(0, 0), (9, 0), (9, 9), (6, 9), (6, 3), (3, 3), (3, 9), (0, 9)];
+    for axis in 0..3 {
+        for first in 0..8 {
+            let corners = |k: usize| {
+                let mut point = [1.0, 1.0, 1.0];
+                point[(axis + 1) % 3] = f64::from(comb[k].0);
+                point[(axis + 2) % 3] = f64::from(comb[k].1);
+                format!("{} {} {}\n", point[0], point[1], point[2])
+            };
+            for turned in [false, true] {
+                let order = (0..8).map(|k| (first + if turned { 7 - k } else { k }) % 8);
+                let order: String = order.map(|k| format!(" {k}")).collect();
+                let rows: String = (0..8).map(corners).collect();
+                let file = format!(
+                    "ply\nformat ascii 1.0\nelement vertex 8\n{XYZ}element face 1\nproperty list uchar int \
+                     vertex_index\nend_header\n{rows}8{order}\n"
+                );
+                let mesh = Mesh::from_ply(file.as_bytes(), "", UNIT).expect("a comb");
+                assert_eq!((mesh.triangles().len(), mesh.diagnostics().area), (6, 63.0));
+                let sense = if turned { -1.0 } else { 1.0 };
+                let is_turned = |id| mesh.normal(id).is_some_and(|normal| normal[axis] == sense);
+                assert!(mesh.ids().all(is_turned), "{axis} {first} {turned}");
+            }
+        }
+    }
+}
+
+/// Scanners write points without coordinates where nothing was measured.
+#[test]
+fn points_without_coordinates_are_left_out() {
+    let nan = f32::NAN;
+    let normal = [0.0, 0.0, 1.0];
+    let points = [[1.0, 2.0, 3.0], [nan; 3], [4.0, 5.0, nan], [6.0, 7.0, 8.0]];
+    let points = points.map(|[x, y, z]| ([x, y, z, normal[0], normal[1], normal[2]], 0, 0.5));
+    for encoding in ENCODINGS {
+        let read = OrientedPoints::from_ply(&cloud_file(encoding, &points), "").expect(encoding);
+        assert_eq!(read.points, [Point3::new(1.0, 2.0, 3.0), Point3::new(6.0, 7.0, 8.0)]);
+        assert_eq!((read.normals.len(), read.left_out), (2, 2), "{encoding}");
+        assert_eq!(read.areas, Some(vec![0.5; 2]));
     }
 }
 

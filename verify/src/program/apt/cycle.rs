@@ -2,14 +2,17 @@
 //!
 //! `CYCLE/DRILL,FEDTO,5.,MMPM,125.,RAPTO,3.,RTRCTO,25.,DWELL,0` drills at each `GOTO` after it, up to `CYCLE/OFF`: the tool moves at its
 //! height over the point, in rapid traverse to `RAPTO` above it, at feed rate to `FEDTO` below it, and back to `RTRCTO` above it. Lengths
-//! are along the tool axis, from the point.
+//! are along the tool axis, from the point. Creo's words for them are `DEPTH`, `CLEAR` and `RETURN`. NX writes `DRILL,DEEP` and
+//! `DRILL,BRKCHP`, and changes single lengths by `CYCLE/ON`.
 //!
 //! `CIRCLE/xc,yc,zc,i,j,k` states the centre of the arc to the next `GOTO` and the normal of its plane, about which it turns
-//! counter-clockwise. The arc becomes chords.
+//! counter-clockwise, but clockwise in files of NX. `MOVARC` of Autodesk's post processors states the angle of the turn as well. CATIA
+//! states the direction at the start, `INDIRV/x,y,z`, then circle and end, `TLON,GOFWD/(CIRCLE/xc,yc,zc,r),ON,(LINE/xc,yc,zc,x,y,z)`, where
+//! `ON,2,INTOF` tells an arc of more than half a turn. Arcs become chords.
 
 use super::super::{ProgramFault, number};
 use nalgebra::{Point3, Vector3};
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 use touchoff::{Pose, Unit};
 
 /// Distance between an arc and its chords, in mm.
@@ -48,25 +51,38 @@ pub(super) struct Stop {
 }
 
 impl Cycle {
-    /// Reads the arguments of `CYCLE`; `None` for its end.
-    pub(super) fn read(arguments: &str) -> Result<Option<Cycle>, ProgramFault> {
+    /// Reads the arguments of `CYCLE`, which may change the cycle in force; `None` for its end.
+    pub(super) fn read(
+        arguments: &str,
+        in_force: Option<&Cycle>,
+    ) -> Result<Option<Cycle>, ProgramFault> {
         let upper = arguments.to_ascii_uppercase();
-        let mut words = upper.split(',').map(str::trim);
+        let mut words = upper.split(',').map(str::trim).peekable();
         let kind = words.next().unwrap_or_default();
         let refused = |word: &str| ProgramFault::Cycle { word: super::unquoted(word) };
-        let feeds_out = match kind {
-            "OFF" | "NOMORE" | "INIT" => return Ok(None),
-            "DRILL" | "DEEP" | "BRKCHP" | "FACE" => false,
-            "TAP" | "REAM" | "BORE" => true,
-            other => return Err(refused(other)),
-        };
         let (mut depth, mut rapid_to, mut retract) = (None, 0.0, Retract::RapidTo);
+        let feeds_out = match (kind, in_force) {
+            ("OFF" | "NOMORE" | "INIT", _) => return Ok(None),
+            ("DRILL", _) => {
+                words.next_if(|word| matches!(*word, "DEEP" | "BRKCHP"));
+                false
+            }
+            ("DEEP" | "BRKCHP" | "FACE", _) => false,
+            ("TAP" | "REAM" | "BORE", _) => true,
+            ("ON", Some(cycle)) => {
+                (depth, rapid_to, retract) = (Some(cycle.depth), cycle.rapid_to, cycle.retract);
+                cycle.feeds_out
+            }
+            (other, _) => return Err(refused(other)),
+        };
+        let mut start = None;
         while let Some(word) = words.next() {
             let mut value = || words.next().ok_or_else(|| refused(word)).and_then(number);
             match word {
-                "FEDTO" => depth = Some(value()?.abs()),
-                "RAPTO" => rapid_to = value()?,
-                "RTRCTO" => {
+                "FEDTO" | "DEPTH" => depth = Some(value()?.abs()),
+                // Of two, one may count from the other.
+                "RAPTO" | "CLEAR" if start.replace(word).is_none() => rapid_to = value()?,
+                "RTRCTO" | "RETURN" => {
                     let word = words.next().unwrap_or_default();
                     retract = match word {
                         "AUTO" => Retract::Before,
@@ -75,12 +91,13 @@ impl Cycle {
                     };
                 }
                 // The feed, and times and amounts on the way down.
-                "MMPM" | "IPM" | "MMPR" | "IPR" | "DWELL" | "STEP" | "INCR" => drop(value()?),
+                "MMPM" | "IPM" | "MMPR" | "IPR" | "PERMIN" | "PERREV" | "DWELL" | "STEP"
+                | "INCR" => drop(value()?),
                 other => return Err(refused(other)),
             }
         }
         let Some(depth) = depth.filter(|depth| *depth > 0.0) else {
-            return Err(refused("a cycle without FEDTO"));
+            return Err(refused("a cycle without FEDTO or DEPTH"));
         };
         Ok(Some(Cycle { depth, rapid_to, retract, feeds_out }))
     }
@@ -135,29 +152,127 @@ impl Cycle {
 pub(super) struct Arc {
     centre: Point3<f64>,
     normal: Vector3<f64>,
+    /// The angle of the turn in radians, where it is stated.
+    angle: Option<f64>,
+    /// The angles up to the last position on the arc, and between two of them, where several are on it.
+    turned: f64,
+    step: f64,
 }
 
+/// Largest difference between a stated angle and that of an arc's ends, in radians.
+const ANGLE_TOLERANCE: f64 = 1e-2;
+
 impl Arc {
-    /// Reads the arguments of `CIRCLE`: the centre, the normal, and possibly the radius, which follows from the ends.
-    pub(super) fn read(arguments: &str) -> Result<Arc, ProgramFault> {
-        let values = arguments.split(',').map(number).collect::<Result<Vec<f64>, _>>()?;
-        let (&[x, y, z, i, j, k] | &[x, y, z, i, j, k, _]) = &values[..] else {
-            return Err(arc("has other numbers than a centre and a normal"));
-        };
-        let normal = Vector3::new(i, j, k);
+    fn new([x, y, z]: [f64; 3], normal: [f64; 3]) -> Result<Arc, ProgramFault> {
+        let normal = Vector3::from(normal);
         match (normal.norm() - 1.0).abs() < 1e-3 {
-            true => Ok(Arc { centre: Point3::new(x, y, z), normal: normal.normalize() }),
+            true => {
+                let centre = Point3::new(x, y, z);
+                let normal = normal.normalize();
+                Ok(Arc { centre, normal, angle: None, turned: 0.0, step: 0.0 })
+            }
             false => Err(arc("has a normal that is no unit vector")),
         }
     }
 
-    /// Returns the positions along the arc, the last of which is its end.
+    /// Reads the arguments of `CIRCLE`: the centre and the normal, and possibly the radius, which follows from the ends. NX adds four
+    /// numbers about tolerances and the tool.
+    pub(super) fn circle(arguments: &str, is_nx: bool) -> Result<Arc, ProgramFault> {
+        let values = arguments.split(',').map(number).collect::<Result<Vec<f64>, _>>()?;
+        let (6 | 7 | 11, &[x, y, z, i, j, k, ..]) = (values.len(), &values[..]) else {
+            return Err(arc("has other numbers than a centre and a normal"));
+        };
+        Arc::new([x, y, z], if is_nx { [-i, -j, -k] } else { [i, j, k] })
+    }
+
+    /// Reads the arguments of `MOVARC`: centre, normal, radius and angle in degrees, or the first three by their names.
+    pub(super) fn movarc(arguments: &str) -> Result<Arc, ProgramFault> {
+        let upper = arguments.to_ascii_uppercase();
+        let words: Vec<&str> = upper.split(',').map(str::trim).collect();
+        let (place, angle) = match &words[..] {
+            ["CENTER", x, y, z, "AXIS", i, j, k, "RADIUS", _] => ([x, y, z, i, j, k], None),
+            [x, y, z, i, j, k, _, "ANGLE", angle] => ([x, y, z, i, j, k], Some(number(angle)?)),
+            _ => return Err(arc("has other arguments than centre, normal, radius and angle")),
+        };
+        let mut values = [0.0; 6];
+        for (value, word) in values.iter_mut().zip(place) {
+            *value = number(word)?;
+        }
+        let [x, y, z, i, j, k] = values;
+        let angle = angle.map(|angle| angle.abs().to_radians());
+        Ok(Arc { angle, ..Arc::new([x, y, z], [i, j, k])? })
+    }
+
+    /// Reads the arguments of CATIA's `TLON,GOFWD`, the arc from a position in a direction, and returns it with its end.
+    pub(super) fn catia(
+        arguments: &str,
+        from: &Pose,
+        direction: Vector3<f64>,
+    ) -> Result<(Arc, Pose), ProgramFault> {
+        let text: String = arguments.chars().filter(|c| !c.is_whitespace()).collect();
+        let text = text.to_ascii_uppercase().replace("ON,2,INTOF", "INTOF");
+        let cells = text.split([',', '(', ')', '/']).filter(|cell| !cell.is_empty());
+        let (numbers, words): (Vec<&str>, Vec<&str>) = cells.partition(|cell| number(cell).is_ok());
+        let values = numbers.into_iter().map(number).collect::<Result<Vec<f64>, _>>()?;
+        let (["CIRCLE", side @ ("ON" | "INTOF"), "LINE"], &[xc, yc, zc, _, _, _, _, x, y, z]) =
+            (&words[..], &values[..])
+        else {
+            return Err(arc("of CATIA is not understood"));
+        };
+        let centre = Point3::new(xc, yc, zc);
+        let Some(normal) = (from.tip() - centre).cross(&direction).try_normalize(0.0) else {
+            return Err(arc("begins in no direction"));
+        };
+        let end = Pose::from_axis(Point3::new(x, y, z), from.axis())?;
+        let found = Arc { centre, normal, angle: None, turned: 0.0, step: 0.0 };
+        // The line through centre and end meets the circle twice.
+        let is_long = found.turn(from, &end) > PI - ANGLE_TOLERANCE;
+        let is_short = found.turn(from, &end) < PI + ANGLE_TOLERANCE;
+        match if *side == "ON" { is_short } else { is_long } {
+            true => Ok((found, end)),
+            false => Err(arc("ends elsewhere than its line says")),
+        }
+    }
+
+    /// Returns the angle from a position to another about the normal, above 0 and at most a whole turn.
+    fn turn(&self, from: &Pose, to: &Pose) -> f64 {
+        let [from, to] = [from, to].map(|pose| self.arm(pose).0);
+        let turn = from.cross(&to).dot(&self.normal).atan2(from.dot(&to));
+        let is_full = (from - to).norm() < 1e-6 * from.norm();
+        if is_full { TAU } else { turn.rem_euclid(TAU) }
+    }
+
+    /// Returns the way from the axis of the arc to a position, and its height along the axis.
+    fn arm(&self, pose: &Pose) -> (Vector3<f64>, f64) {
+        let arm = pose.tip() - self.centre;
+        let height = arm.dot(&self.normal);
+        (arm - height * self.normal, height)
+    }
+
+    /// Returns the arc from a position on to another, if both are on it: Creo states several, three or more of a whole circle, equally far
+    /// from each other. A longer way is a chord of a straight motion.
+    pub(super) fn continued(&self, before: &Pose, end: &Pose, unit: Option<Unit>) -> Option<Arc> {
+        let is_straight = (before.axis() - end.axis()).norm() <= 1e-9;
+        let turn = self.turn(before, end);
+        let is_step = turn < self.step.min(TAU / 3.0) + ANGLE_TOLERANCE;
+        let is_on = is_step && self.turned + turn < TAU + ANGLE_TOLERANCE;
+        (is_straight && is_on && self.radii(before, end, unit).is_some()).then_some(*self)
+    }
+
+    /// Returns the radii at two positions, if they are one up to rounding.
+    fn radii(&self, before: &Pose, end: &Pose, unit: Option<Unit>) -> Option<[f64; 2]> {
+        let radii = [before, end].map(|pose| self.arm(pose).0.norm());
+        let allowed = (RADII[0] * radii[0]).max(RADII[1] / scale(unit));
+        (radii[0] > 0.0 && (radii[0] - radii[1]).abs() <= allowed).then_some(radii)
+    }
+
+    /// Returns the positions along the arc, the last of which is its end, and the arc on from there.
     pub(super) fn stops(
-        &self,
+        mut self,
         before: Option<&Pose>,
         end: &Pose,
         unit: Option<Unit>,
-    ) -> Result<Vec<Pose>, ProgramFault> {
+    ) -> Result<(Vec<Pose>, Arc), ProgramFault> {
         let Some(before) = before else {
             return Err(arc("begins at no position"));
         };
@@ -165,21 +280,23 @@ impl Arc {
         if (before.axis() - axis).norm() > 1e-9 {
             return Err(arc("turns the tool axis"));
         }
-        let arms = [before, end].map(|pose| {
-            let arm = pose.tip() - self.centre;
-            (arm - arm.dot(&self.normal) * self.normal, arm.dot(&self.normal))
-        });
-        let [(from, low), (to, high)] = arms;
-        let (start_radius, end_radius) = (from.norm(), to.norm());
-        let scale = unit.unwrap_or(Unit::Millimetre).millimetres();
-        let allowed = (RADII[0] * start_radius).max(RADII[1] / scale);
-        if start_radius == 0.0 || (start_radius - end_radius).abs() > allowed {
+        let Some([start_radius, end_radius]) = self.radii(before, end, unit) else {
             return Err(arc("has another radius at its start than at its end"));
+        };
+        let mut sweep = self.turn(before, end);
+        if let Some(angle) = self.angle
+            && (sweep - angle).abs() > ANGLE_TOLERANCE
+        {
+            // Older post processors state one normal for both directions.
+            self.normal = -self.normal;
+            sweep = self.turn(before, end);
+            if (sweep - angle).abs() > ANGLE_TOLERANCE {
+                return Err(arc("has another angle than its ends"));
+            }
         }
-        let turn = from.cross(&to).dot(&self.normal).atan2(from.dot(&to));
-        let is_full = (from - to).norm() < 1e-6 * start_radius;
-        let sweep = if is_full { TAU } else { turn.rem_euclid(TAU) };
-        let angle = (8.0 * CHORD_TOLERANCE / scale / start_radius.max(end_radius)).sqrt().min(0.1);
+        let [(from, low), (_, high)] = [before, end].map(|pose| self.arm(pose));
+        let angle =
+            (8.0 * CHORD_TOLERANCE / scale(unit) / start_radius.max(end_radius)).sqrt().min(0.1);
         let count = (sweep / angle).ceil().clamp(1.0, MAX_CHORDS);
         let (along, across) = (from / start_radius, self.normal.cross(&from) / start_radius);
         let poses = (1..count as u32).map(|k| {
@@ -191,8 +308,15 @@ impl Arc {
                 self.centre + radius * (cosine * along + sine * across) + height * self.normal;
             Ok(Pose::from_axis(tip, axis)?)
         });
-        poses.chain([Ok(*end)]).collect()
+        let poses = poses.chain([Ok(*end)]).collect::<Result<_, ProgramFault>>()?;
+        let step = if self.step == 0.0 { sweep } else { self.step };
+        Ok((poses, Arc { turned: self.turned + sweep, step, ..self }))
     }
+}
+
+/// Returns the millimetres of a unit; a program without one is in millimetres.
+fn scale(unit: Option<Unit>) -> f64 {
+    unit.unwrap_or(Unit::Millimetre).millimetres()
 }
 
 fn arc(what: &'static str) -> ProgramFault {

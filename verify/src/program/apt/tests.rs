@@ -209,7 +209,7 @@ fn what_could_be_a_motion_is_refused() {
         "CUTTER/2,1,0,1,45,30",
         "TOOLNO/2",
         "TOOL PATH/B,TOOL,D50",
-        "LOADTL/1",
+        "LOADTL/2",
     ] {
         let text = format!(
             "TOOL PATH/A,TOOL,D2\nTLDATA/MILL,2,1\nTOOLNO/1\nLOADTL/1\nCUTTER/2\nGOTO/1,2,3\n{word}\nFINI\n"
@@ -271,7 +271,7 @@ fn a_tool_change_begins_another_program() {
     let programs = ClData::parse_tools(text, "part.cl").expect("three programs");
     assert!(programs.iter().all(|program| program.unit == Some(Unit::Inch)));
     assert_eq!(programs[2].locations[0].pose.axis(), Vector3::x());
-    assert_eq!(refusal(text), (6, "P0519"));
+    assert_eq!(refusal(text), (8, "P0517"));
 }
 
 #[test]
@@ -309,6 +309,7 @@ fn the_cutter_is_compared_with_the_tool() {
         "CUTTER/6",
         "CUTTER/6.0,3.0",
         "CUTTER/6.,3.,0.,3.,0.,0.,30.",
+        "CUTTER/6.,3.,0.,0.,0.,0.,30.",
         "CUTTER/6.001,3",
         "TLDATA/MILL,6.0000,3.0000,30.0000,0.0000,0.0000",
         "UNITS/INCHES\nCUTTER/.23622,.11811",
@@ -406,6 +407,90 @@ fn programs_of_solidworks_are_read() {
     assert!((lowest + 20.0).abs() < 1e-4, "{lowest}");
 }
 
+/// The lengths and the ranges of y of paths with arcs, as several systems write them.
+#[test]
+fn arcs_of_several_systems_are_read() {
+    let creo = "$$-> MFGNO / A\n";
+    let third = "CIRCLE/0,0,0,0,0,1,10\nGOTO/-5,8.6602540378,0\nGOTO/-5,-8.6602540378,0\nGOTO/10,0,0\nGOTO/30,0,0\nFINI";
+    let catia = |end: &str| {
+        format!(
+            "GOTO/0,-10,0\nAUTOPS\nINDIRV/ 1.0, 0.0, 0.0\nTLON,GOFWD/ (CIRCLE/ 0.0, 0.0, 0.0,$\n 10.0),{end}\nFINI"
+        )
+    };
+    let movarc = |arc: &str| format!("GOTO/10,0,0\nMOVARC/{arc}\nGOTO/0,-10,0\nFINI");
+    let turn = std::f64::consts::TAU * 10.0;
+    for (text, length, [lowest, highest]) in [
+        // NX turns clockwise about the vector, and adds four numbers.
+        (
+            "TOOL PATH/A,TOOL,B\nGOTO/-10,0,0,0,0,1\nCIRCLE/0,0,0,0,0,1,10,.06,.5,10,0\nGOTO/0,10,0\nEND-OF-PATH".to_owned(),
+            turn / 4.0,
+            [0.0, 10.0],
+        ),
+        // Creo states several positions on one arc; elsewhere the next position is its end.
+        (format!("{creo}GOTO/10,0,0\n{third}"), turn + 20.0, [-10.0, 10.0]),
+        (format!("GOTO/10,0,0\n{third}"), turn / 3.0 + 20.0 * 3f64.sqrt() + 20.0, [-8.66025, 10.0]),
+        // Half a circle, and back along its diameter.
+        (
+            format!("{creo}GOTO/10,0,0\nCIRCLE/0,0,0,0,0,1,10\nGOTO/0,10,0\nGOTO/-10,0,0\nGOTO/10,0,0\nFINI"),
+            turn / 2.0 + 20.0,
+            [0.0, 10.0],
+        ),
+        (catia("ON,(LINE/ 0.0, 0.0, 0.0, 10.0, 0.0, 0.0)"), turn / 4.0, [-10.0, 0.0]),
+        (catia("ON,2,INTOF,$\n(LINE/ 0.0, 0.0, 0.0,$\n -10.0, 0.0, 0.0)"), 0.75 * turn, [-10.0, 10.0]),
+        // Autodesk's post processors state the angle, some of them with one normal for both directions.
+        (movarc("0, 0, 0, 0, 0, -1., 10., ANGLE, 90."), turn / 4.0, [-10.0, 0.0]),
+        (movarc("0, 0, 0, 0, 0, 1., 10., ANGLE, 90."), turn / 4.0, [-10.0, 0.0]),
+        (movarc("0, 0, 0, 0, 0, 1., 10., ANGLE, 270."), 0.75 * turn, [-10.0, 10.0]),
+        (movarc(" CENTER, 0, 0, 0, AXIS, 0, 0, 1, RADIUS, 10"), 0.75 * turn, [-10.0, 10.0]),
+    ] {
+        let stops = program(&text).locations;
+        let tips: Vec<_> = stops.iter().map(|stop| stop.pose.tip()).collect();
+        let found: f64 = tips.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum();
+        assert!((found - length).abs() < 1e-3, "{found}, not {length}: {text}");
+        let ends = tips.iter().fold([f64::MAX, f64::MIN], |[a, b], tip| [a.min(tip.y), b.max(tip.y)]);
+        assert!((ends[0] - lowest).abs() < 1e-3 && (ends[1] - highest).abs() < 1e-3, "{ends:?}: {text}");
+    }
+    for text in [
+        movarc("0, 0, 0, 0, 0, 1., 10., ANGLE, 45."),
+        movarc("0, 0, 0, 0, 0, 1., 10."),
+        catia("ON,2,INTOF,(LINE/ 0.0, 0.0, 0.0, 10.0, 0.0, 0.0)"),
+        catia("ON,(LINE/ 0.0, 0.0, 0.0, -10.0, 0.0, 0.0)"),
+        catia("PAST,(LINE/ 0.0, 0.0, 0.0, 10.0, 0.0, 0.0)"),
+        catia("ON,(LINE/ 0.0, 0.0, 0.0, 10.0, 0.0, 0.0)")
+            .replace("INDIRV/ 1.0, 0.0, 0.0", "PPRINT"),
+        "GOTO/10,0,0\nCIRCLE/0,0,0,0,0,1,10,1\nGOTO/0,10,0\nFINI".to_owned(),
+    ] {
+        assert_eq!(refusal(&text).1, "P0532", "{text}");
+    }
+}
+
+/// CATIA names the tool and loads it again in each operation, and ends without `FINI`.
+#[test]
+fn programs_of_catia_are_read() {
+    let text = "MULTAX\nTOOLNO/1,MILL,1,0, 100.0,$\n 60.0,,RPM,CLW,$\nON,,NOTE\nTPRINT/T1 DRILL 1/2,T1 DRILL\nLOADTL/1,1,1\n\
+        LOADTL/1,1\nGOTO / 1.0, 2.0, 3.0, 0.0, 0.0, 1.0\nEND\nLOADTL/1,1\nGOTO / 4.0, 2.0, 3.0, 0.0, 0.0, 1.0\n\
+        SPINDL/OFF\nREWIND/0\nEND\n";
+    assert_eq!(program(text).locations.len(), 2);
+    assert_eq!(refusal(text.replace("\nEND\n", "\n")).1, "P0528");
+    assert_eq!(refusal(text.replace("\nLOADTL/1,1\n", "\nLOADTL/2,1\n")), (7, "P0519"));
+    // The beginning of `END-OF-PATH` ends nothing.
+    assert_eq!(refusal("TOOL PATH/A,TOOL,B\nGOTO/1,2,3\nGOTO/4,5,6\nEND").1, "P0528");
+}
+
+/// Creo says whether positions are those of the contour, about which the control has to correct the whole radius.
+#[test]
+fn positions_of_the_contour_are_refused() {
+    let text = |kind: &str, side: &str| {
+        format!(
+            "$$-> CUTCOM_GEOMETRY_TYPE / {kind}\nGOTO/1,2,3\nCUTCOM / {side}\nGOTO/4,5,6\nFINI\n"
+        )
+    };
+    assert_eq!(refusal(text("OUTPUT_ON_PROFILE", "LEFT, 1")), (3, "P0511"));
+    for (kind, side) in [("OUTPUT_ON_CENTER", "LEFT, 1"), ("OUTPUT_ON_PROFILE", "OFF")] {
+        assert_eq!(program(&text(kind, side)).locations.len(), 2);
+    }
+}
+
 /// The ways of a cycle at its holes: heights and rapid traverse.
 #[test]
 fn cycles_drill_at_each_position() {
@@ -418,6 +503,20 @@ fn cycles_drill_at_each_position() {
     let drilled = heights("CYCLE/DRILL,FEDTO,5,MMPM,125,RAPTO,3,RTRCTO,25,DWELL,0");
     assert_eq!(drilled, [&down[..], &[(25.0, true)]].concat());
     assert_eq!(heights("cycle/deep,fedto,-5,rapto,3"), [&down[..], &[(3.0, true)]].concat());
+    // Other words for the same lengths, and a cycle that changes one of them.
+    for cycle in [
+        "CYCLE/DEEP,DEPTH,5,STEP,2,PERMIN,125,CLEAR,3,RETURN,25",
+        "CYCLE/DRILL,DEEP,STEP,2,CLEAR,3,FEDTO,-5,RTRCTO,25",
+        "CYCLE/DRILL,BRKCHP,STEP,2,RAPTO,3,FEDTO,-9,RTRCTO,25\nCYCLE/ON,FEDTO,-5",
+    ] {
+        assert_eq!(heights(cycle), drilled, "{cycle}");
+    }
+    for cycle in
+        ["CYCLE/ON,FEDTO,5", "CYCLE/DRILL,DEPTH,5,CLEAR,3,RAPTO,1", "CYCLE/DRILL,5,MMPM,100,3"]
+    {
+        let text = format!("GOTO/0,0,30\n{cycle}\nGOTO/5,0,0\nFINI\n");
+        assert_eq!(refusal(text), (2, "P0531"), "{cycle}");
+    }
     let back = [&down[..], &[(3.0, false), (30.0, true)]].concat();
     assert_eq!(heights("CYCLE/TAP,FEDTO,5,RAPTO,3,RTRCTO,AUTO"), back);
     // A hole that is higher than the one before is reached from above it.
