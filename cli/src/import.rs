@@ -13,8 +13,7 @@ use std::thread;
 use touchoff::Escaped;
 use touchoff_dsl::compile;
 use touchoff_dsl::prove::Certificate;
-use touchoff_dsl::source::Source;
-use touchoff_import::{ImportError, ImportedTool, Library, write_numbers};
+use touchoff_import::{ImportedTool, Library, write_numbers};
 
 /// The exit status if a tool was left out; `check` has the same for warnings.
 pub(crate) const LEFT_OUT: u8 = 3;
@@ -110,7 +109,7 @@ impl Run<'_> {
             }
             return Ok(left_out);
         }
-        for (tool, proof) in tools.iter().zip(prove(&tools, self.json)?) {
+        for (tool, proof) in tools.iter().zip(prove(&tools, self.json)) {
             match proof {
                 Ok(exact) => {
                     if let Target::Folder(folder) = &self.target {
@@ -223,23 +222,19 @@ fn length(length: Option<f64>) -> String {
 /// The proof of a tool: whether depth is proved to be the distance, or why it does not compile.
 type Proof = Result<bool, String>;
 
-/// Compiles and proves tools on all cores, in a temporary folder.
-fn prove(tools: &[&ImportedTool], json: bool) -> Result<Vec<Proof>, Failure> {
-    let folder = tempfile::tempdir()
-        .map_err(|source| ImportError::Unwritable { file: std::env::temp_dir(), source })?;
-    let files = tools.iter().map(|tool| tool.write_to(folder.path()));
-    let files: Vec<PathBuf> = files.collect::<Result<_, _>>()?;
-    let progress = Progress::steps(files.len(), "tools", json);
+/// Compiles and proves tools on all cores.
+fn prove(tools: &[&ImportedTool], json: bool) -> Vec<Proof> {
+    let progress = Progress::steps(tools.len(), "tools", json);
     let next = AtomicUsize::new(0);
-    let cores = thread::available_parallelism().map_or(1, Into::into).min(files.len().max(1));
+    let cores = thread::available_parallelism().map_or(1, Into::into).min(tools.len().max(1));
     let mut proofs: Vec<(usize, Proof)> = thread::scope(|scope| {
         // Each takes the next open file, since the time of a proof varies with the tool.
         let work = || {
             let mut proofs = Vec::new();
             loop {
                 let index = next.fetch_add(1, Ordering::Relaxed);
-                let Some(file) = files.get(index) else { return proofs };
-                proofs.push((index, proof(file)));
+                let Some(tool) = tools.get(index) else { return proofs };
+                proofs.push((index, proof(tool)));
                 progress.advance(1);
             }
         };
@@ -251,12 +246,11 @@ fn prove(tools: &[&ImportedTool], json: bool) -> Result<Vec<Proof>, Failure> {
     });
     // Threads end in any order.
     proofs.sort_by_key(|(index, _)| *index);
-    Ok(proofs.into_iter().map(|(_, proof)| proof).collect())
+    proofs.into_iter().map(|(_, proof)| proof).collect()
 }
 
-fn proof(file: &Path) -> Proof {
-    let source = Source::read(file).map_err(|error| error.to_string())?;
-    let compiled = compile(&source);
+fn proof(tool: &ImportedTool) -> Proof {
+    let compiled = compile(&tool.source());
     match compiled.tool() {
         Some(tool) => Ok(Certificate::prove(tool).is_exact()),
         None => {

@@ -5,6 +5,7 @@ use crate::failure::Failure;
 use crate::output::{show, show_lines};
 use std::ffi::OsStr;
 use std::path::Path;
+use std::sync::Arc;
 use touchoff::tool::Interpreted;
 use touchoff::{Escaped, Tool};
 use touchoff_dsl::diagnostic::escaped;
@@ -27,7 +28,7 @@ impl LoadedTool {
     pub(crate) fn load(name: &OsStr, arguments: &ToolArguments) -> Result<LoadedTool, Failure> {
         let params = &arguments.params;
         if let Some(library) = &arguments.library {
-            let tool = in_library(name, library, params, true, load_file)?;
+            let tool = load(&in_library(name, library, params, true)?, params)?;
             return Ok(LoadedTool::File(Box::new(tool)));
         }
         if Path::new(name).extension().is_some_and(|extension| extension == "tool") {
@@ -62,25 +63,22 @@ impl AsRef<dyn Tool> for LoadedTool {
 pub(crate) fn compile_named(name: &OsStr, arguments: &ToolArguments) -> Result<Compiled, Failure> {
     let params = &arguments.params;
     if let Some(library) = &arguments.library {
-        return in_library(name, library, params, false, compile_quietly);
+        return Ok(compile_source(&in_library(name, library, params, false)?, params));
     }
     if Path::new(name).extension().is_some_and(|extension| extension == "tool") {
-        return compile_quietly(Path::new(name), params);
+        return Ok(compile_source(&read_source(Path::new(name), params)?, params));
     }
     let SourceFiles { file, text, mounted } = source_files(&name.to_string_lossy())?;
-    // Mounts are found beside the file that names them.
-    let folder = tempfile::tempdir()?;
-    for (file, text) in [(file, text)].iter().chain(mounted) {
-        let file = folder.path().join(file);
-        std::fs::create_dir_all(file.parent().unwrap_or(folder.path()))?;
-        std::fs::write(&file, text)?;
-    }
-    compile_quietly(&folder.path().join(file), params)
+    // Nothing is written: a temporary folder would stay if the program is ended.
+    let files = std::iter::once((file, text)).chain(mounted.iter().copied());
+    let files = files.map(|(file, text)| (file.into(), text.to_owned())).collect();
+    let source = Source::new(file, text).with_path(file).with_files(Arc::new(files));
+    Ok(compile_source(&source, params))
 }
 
-/// Compiles the tool of a file. Its diagnostics are not shown.
-fn compile_quietly(file: &Path, params: &ParamArguments) -> Result<Compiled, Failure> {
-    Ok(compile_with_arguments(&read_source(file, params)?, &params.sources()))
+/// Compiles a tool. Its diagnostics are not shown.
+fn compile_source(source: &Source, params: &ParamArguments) -> Compiled {
+    compile_with_arguments(source, &params.sources())
 }
 
 /// The files of a built-in tool. Their paths are relative to the library's folder.
@@ -104,32 +102,28 @@ pub(crate) fn source_files(name: &str) -> Result<SourceFiles, Failure> {
     Ok(SourceFiles { file, text, mounted })
 }
 
-/// Reads the file of a tool of a library, or of a folder of `.tool` files. Prints what the import noted if `notes` is set.
-fn in_library<R>(
+/// Reads a tool of a library, or of a folder of `.tool` files. Prints what the import noted if `notes` is set.
+fn in_library(
     name: &OsStr,
     library: &Path,
     params: &ParamArguments,
     notes: bool,
-    read: impl FnOnce(&Path, &ParamArguments) -> Result<R, Failure>,
-) -> Result<R, Failure> {
+) -> Result<Source, Failure> {
     if library.is_dir() {
-        return read(&find_in_folder(library, name)?, params);
+        return read_source(&find_in_folder(library, name)?, params);
     }
     let name = name.to_string_lossy();
     let imported = match params.root() {
         Some(root) => Library::read_within(library, root)?,
         None => Library::read(library)?,
     };
-    let folder = tempfile::tempdir()?;
     let tool = imported.select(&name)?;
-    let tool_file = tool.write_to(folder.path())?;
     if notes {
         for note in &tool.entry.notes {
             message!("warning: {}: {note}", Escaped(tool.entry.label()));
         }
     }
-    // Files that it mounts are in the temporary folder.
-    read(&tool_file, &params.without_root())
+    Ok(tool.source())
 }
 
 /// Returns a built-in tool by its name.
@@ -177,7 +171,12 @@ pub(crate) fn read_source(file: &Path, params: &ParamArguments) -> Result<Source
 
 /// Loads the tool of a file, and prints its warnings.
 pub(crate) fn load_file(file: &Path, params: &ParamArguments) -> Result<Interpreted, Failure> {
-    let tool = Interpreted::parse_with(&read_source(file, params)?, &params.sources())?;
+    load(&read_source(file, params)?, params)
+}
+
+/// Loads a tool, and prints its warnings.
+fn load(source: &Source, params: &ParamArguments) -> Result<Interpreted, Failure> {
+    let tool = Interpreted::parse_with(source, &params.sources())?;
     if !tool.warnings().is_empty() {
         show_lines(tool.warnings());
     }
@@ -189,7 +188,7 @@ pub(crate) fn load_file(file: &Path, params: &ParamArguments) -> Result<Interpre
 /// # Errors
 /// If the file cannot be read.
 pub(crate) fn compile_file(file: &Path, params: &ParamArguments) -> Result<Compiled, Failure> {
-    let compiled = compile_quietly(file, params)?;
+    let compiled = compile_source(&read_source(file, params)?, params);
     for diagnostic in compiled.diagnostics() {
         show(diagnostic, &compiled.sources);
     }

@@ -46,11 +46,14 @@ pub use find::{FindError, files_in_folder, find_in_folder, write_numbers};
 use entry::reason;
 use files::Writer;
 use serde_json::Value;
+use std::collections::BTreeMap;
 use std::fs;
 use std::io::{self, Read as _};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use touchoff::tool::Interpreted;
 use touchoff::{FileKind, read_regular_file};
+use touchoff_dsl::source::Source;
 
 /// The largest number of tools in a library.
 const MAX_TOOLS: usize = 20_000;
@@ -259,15 +262,21 @@ impl ImportedTool {
         Ok(folder.join(self.path()))
     }
 
+    /// Returns the text of the tool with those that it mounts. Nothing is written or read.
+    pub fn source(&self) -> Source {
+        let files = self.files.iter().map(|file| (PathBuf::from(&file.path), file.text.clone()));
+        let files: BTreeMap<PathBuf, String> = files.collect();
+        let path = self.path();
+        let text = files.get(Path::new(&path)).cloned().unwrap_or_default();
+        Source::new(&path, text).with_path(&path).with_files(Arc::new(files))
+    }
+
     /// Loads the tool, interpreted.
     ///
     /// # Errors
-    /// [`ImportError::Unwritable`] if no temporary folder can be written, [`ImportError::Tool`] if the tool does not
-    /// compile: its dimensions are no solid.
+    /// [`ImportError::Tool`] if the tool does not compile: its dimensions are no solid.
     pub fn load(&self) -> Result<Interpreted, ImportError> {
-        let folder = tempfile::tempdir()
-            .map_err(|source| ImportError::Unwritable { file: std::env::temp_dir(), source })?;
-        Ok(Interpreted::load(self.write_to(folder.path())?)?)
+        Ok(Interpreted::parse(&self.source())?)
     }
 }
 

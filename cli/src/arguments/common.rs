@@ -39,11 +39,6 @@ impl ParamArguments {
         self.root.as_deref()
     }
 
-    /// Returns the values without a root.
-    pub(crate) fn without_root(&self) -> ParamArguments {
-        ParamArguments { set: self.set.clone(), root: None }
-    }
-
     /// Returns the values as sources for the compiler.
     pub(crate) fn sources(&self) -> Vec<Source> {
         self.set.iter().map(|text| Source::new("--set", text)).collect()
