@@ -351,12 +351,12 @@ fn many_findings_of_a_large_tool_colour_a_bounded_number_of_places() {
         format!("tool Large {{ units mm; profile {{ {profile} }} niceness cutting: 1; }}"),
     );
     let rows: String =
-        (0..120).map(|row| format!("0,0,{},0,0,1\n", -10.0 - 0.01 * f64::from(row))).collect();
+        (0..60).map(|row| format!("0,0,{},0,0,1\n", -10.0 - 0.01 * f64::from(row))).collect();
     bench.write("rows.csv", rows);
     let page = Page::write(&bench, "block.stl --unit mm --tool large.tool --program rows.csv");
     let scene = page.data("scene");
     let quantity = scene["layers"][0]["quantity"].as_str().expect("a name");
-    assert!(quantity.contains(" of 120; of the others, at the deepest point)"), "{quantity}");
+    assert!(quantity.contains(" of 60; of the others, at the deepest point)"), "{quantity}");
 }
 
 #[test]
