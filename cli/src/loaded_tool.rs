@@ -3,9 +3,8 @@
 use crate::arguments::{ParamArguments, ToolArguments};
 use crate::failure::Failure;
 use crate::output::{show, show_lines};
-use std::collections::BTreeMap;
 use std::ffi::OsStr;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 use touchoff::tool::Interpreted;
 use touchoff::{Escaped, Tool, is_within};
@@ -29,8 +28,8 @@ impl LoadedTool {
     pub(crate) fn load(name: &OsStr, arguments: &ToolArguments) -> Result<LoadedTool, Failure> {
         let params = &arguments.params;
         if let Some(library) = &arguments.library {
-            let source = in_library(name, library, params, true)?;
-            return Ok(LoadedTool::File(Box::new(load_source(&source, params)?)));
+            let tool = load(&in_library(name, library, params, true)?, params)?;
+            return Ok(LoadedTool::File(Box::new(tool)));
         }
         if Path::new(name).extension().is_some_and(|extension| extension == "tool") {
             return Ok(LoadedTool::File(Box::new(load_file(Path::new(name), params)?)));
@@ -64,22 +63,22 @@ impl AsRef<dyn Tool> for LoadedTool {
 pub(crate) fn compile_named(name: &OsStr, arguments: &ToolArguments) -> Result<Compiled, Failure> {
     let params = &arguments.params;
     if let Some(library) = &arguments.library {
-        let source = in_library(name, library, params, false)?;
-        return Ok(compile_with_arguments(&source, &params.sources()));
+        return Ok(compile_source(&in_library(name, library, params, false)?, params));
     }
     if Path::new(name).extension().is_some_and(|extension| extension == "tool") {
-        return compile_quietly(Path::new(name), params);
+        return Ok(compile_source(&read_source(Path::new(name), params)?, params));
     }
     let SourceFiles { file, text, mounted } = source_files(&name.to_string_lossy())?;
-    let files = mounted.iter().map(|(file, text)| (PathBuf::from(file), (*text).to_owned()));
-    let files = Arc::new(files.collect::<BTreeMap<_, _>>());
-    let source = Source::new(file, text).with_path(file).with_files(files);
-    Ok(compile_with_arguments(&source, &params.sources()))
+    // Nothing is written: a temporary folder would stay if the program is ended.
+    let files = std::iter::once((file, text)).chain(mounted.iter().copied());
+    let files = files.map(|(file, text)| (file.into(), text.to_owned())).collect();
+    let source = Source::new(file, text).with_path(file).with_files(Arc::new(files));
+    Ok(compile_source(&source, params))
 }
 
-/// Compiles the tool of a file. Its diagnostics are not shown.
-fn compile_quietly(file: &Path, params: &ParamArguments) -> Result<Compiled, Failure> {
-    Ok(compile_with_arguments(&read_source(file, params)?, &params.sources()))
+/// Compiles a tool. Its diagnostics are not shown.
+fn compile_source(source: &Source, params: &ParamArguments) -> Compiled {
+    compile_with_arguments(source, &params.sources())
 }
 
 /// The files of a built-in tool. Their paths are relative to the library's folder.
@@ -103,7 +102,7 @@ pub(crate) fn source_files(name: &str) -> Result<SourceFiles, Failure> {
     Ok(SourceFiles { file, text, mounted })
 }
 
-/// Reads the text of a tool of a library, or of a folder of `.tool` files. Prints what the import noted if `notes` is set.
+/// Reads a tool of a library, or of a folder of `.tool` files. Prints what the import noted if `notes` is set.
 fn in_library(
     name: &OsStr,
     library: &Path,
@@ -172,11 +171,11 @@ pub(crate) fn read_source(file: &Path, params: &ParamArguments) -> Result<Source
 
 /// Loads the tool of a file, and prints its warnings.
 pub(crate) fn load_file(file: &Path, params: &ParamArguments) -> Result<Interpreted, Failure> {
-    load_source(&read_source(file, params)?, params)
+    load(&read_source(file, params)?, params)
 }
 
-/// Loads a tool from its text, and prints its warnings.
-fn load_source(source: &Source, params: &ParamArguments) -> Result<Interpreted, Failure> {
+/// Loads a tool, and prints its warnings.
+fn load(source: &Source, params: &ParamArguments) -> Result<Interpreted, Failure> {
     let tool = Interpreted::parse_with(source, &params.sources())?;
     if !tool.warnings().is_empty() {
         show_lines(tool.warnings());
@@ -189,7 +188,7 @@ fn load_source(source: &Source, params: &ParamArguments) -> Result<Interpreted, 
 /// # Errors
 /// If the file cannot be read.
 pub(crate) fn compile_file(file: &Path, params: &ParamArguments) -> Result<Compiled, Failure> {
-    let compiled = compile_quietly(file, params)?;
+    let compiled = compile_source(&read_source(file, params)?, params);
     for diagnostic in compiled.diagnostics() {
         show(diagnostic, &compiled.sources);
     }

@@ -4,9 +4,10 @@ use crate::failure::Failure;
 use anstream::{AutoStream, ColorChoice};
 use anstyle::Style;
 use serde::Serialize;
+use std::borrow::Cow;
 use std::io::{self, BufWriter, IsTerminal, StdoutLock, Write};
 use std::path::{Path, PathBuf};
-use touchoff::{AtomicFile, EscapedLines};
+use touchoff::{AtomicFile, Escaped, EscapedLines};
 use touchoff_dsl::diagnostic::Diagnostic;
 use touchoff_dsl::source::{Source, Sources};
 use touchoff_import::{Library, files_in_folder};
@@ -17,11 +18,17 @@ use touchoff_import::{Library, files_in_folder};
 /// verdict. Any other error is a failure, such as a full disk; [`Write::flush`] at the end of a command reports the
 /// last of them.
 ///
-/// Control characters are escaped, except in raw bytes, so that a terminal does not obey names from files.
+/// Control characters are escaped, except in raw bytes, so that a terminal does not obey names from files. Lines of text end after
+/// [`MAX_LINE`] bytes; those of JSON are whole.
 pub(crate) struct Output {
     out: Buffered,
     escaped: bool,
+    /// Number of bytes of the current line of text.
+    line: usize,
 }
+
+/// Number of bytes of a line of text above which the rest is left out: a name from a file may be of any length.
+const MAX_LINE: usize = 16_384;
 
 enum Buffered {
     /// Line by line, so that lines on standard error keep their order among them.
@@ -33,12 +40,16 @@ enum Buffered {
 impl Output {
     /// Returns an output for lines of text and of JSON.
     pub(crate) fn lines() -> Output {
-        Output { out: Buffered::Lines(io::stdout().lock()), escaped: true }
+        Output { out: Buffered::Lines(io::stdout().lock()), escaped: true, line: 0 }
     }
 
     /// Returns an output for very many lines.
     pub(crate) fn rows() -> Output {
-        Output { out: Buffered::Blocks(BufWriter::new(io::stdout().lock())), escaped: true }
+        Output {
+            out: Buffered::Blocks(BufWriter::new(io::stdout().lock())),
+            escaped: true,
+            line: 0,
+        }
     }
 
     /// Returns an output for a file's content, byte for byte.
@@ -48,8 +59,8 @@ impl Output {
 
     /// Writes a row as a line of JSON.
     pub(crate) fn json(&mut self, row: &impl Serialize) -> Result<(), Failure> {
-        serde_json::to_writer(&mut *self, row)?;
-        Ok(writeln!(self)?)
+        let row = serde_json::to_string(row)?;
+        Ok(open_or(writeln!(self.out(), "{}", Escaped(&row)), ())?)
     }
 
     /// Writes a text in a style, if standard output is a terminal that shows colours; otherwise without it.
@@ -72,8 +83,7 @@ impl Output {
 
 impl Write for Output {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        // Most writes have nothing to escape.
-        if !self.escaped || bytes.iter().all(|byte| matches!(byte, b' '..=b'~' | b'\n' | b'\t')) {
+        if !self.escaped {
             return open_or(self.out().write(bytes), bytes.len());
         }
         // Callers write whole characters; bytes that are not UTF-8 pass unchanged.
@@ -84,13 +94,45 @@ impl Write for Output {
             }
             Err(_) => return open_or(self.out().write(bytes), bytes.len()),
         };
-        let written = write!(self.out(), "{}", EscapedLines(text));
-        open_or(written.map(|()| text.len()), text.len())
+        for line in text.split_inclusive('\n') {
+            let (content, end) = match line.strip_suffix('\n') {
+                Some(content) => (content, "\n"),
+                None => (line, ""),
+            };
+            let left = MAX_LINE.saturating_sub(self.line);
+            let kept = &content[..content.floor_char_boundary(left)];
+            // Said once a line, where its rest begins.
+            let cut = if kept.len() < content.len() && left > 0 { LEFT_OUT } else { "" };
+            self.line = if end.is_empty() { self.line.saturating_add(content.len()) } else { 0 };
+            open_or(write!(self.out(), "{}{cut}{end}", EscapedLines(kept)), ())?;
+        }
+        Ok(text.len())
     }
 
     fn flush(&mut self) -> io::Result<()> {
         open_or(self.out().flush(), ())
     }
+}
+
+/// The end of a line whose rest is left out.
+const LEFT_OUT: &str = " … (the rest of this line is left out; `--json` has it)";
+
+/// Returns lines without what is beyond the beginning and the end of a line that is longer than [`MAX_LINE`].
+pub(crate) fn shortened(text: &str) -> Cow<'_, str> {
+    const HALF: usize = MAX_LINE / 2;
+    if text.len() <= MAX_LINE || text.lines().all(|line| line.len() <= MAX_LINE) {
+        return Cow::Borrowed(text);
+    }
+    let lines = text.split_inclusive('\n').map(|line| {
+        if line.len() <= MAX_LINE {
+            return Cow::Borrowed(line);
+        }
+        let begin = &line[..line.floor_char_boundary(HALF)];
+        let end = &line[line.ceil_char_boundary(line.len() - HALF)..];
+        let bytes = line.len() - begin.len() - end.len();
+        Cow::Owned(format!("{begin} … ({bytes} bytes left out) … {end}"))
+    });
+    Cow::Owned(lines.collect())
 }
 
 /// Returns the outcome of writing, or `gone` if the reader has closed the pipe.
@@ -107,19 +149,20 @@ macro_rules! message {
     ($($arguments:tt)*) => {{
         use std::io::Write as _;
         let text = format!($($arguments)*);
-        let _ = writeln!(std::io::stderr(), "{}", touchoff::Escaped(&text));
+        let text = touchoff::Escaped(&text).to_string();
+        let _ = writeln!(std::io::stderr(), "{}", $crate::output::shortened(&text));
     }};
 }
 
 /// Prints lines of the compiler on standard error, which has escaped what it shows of files.
 pub(crate) fn show_lines(text: &str) {
-    let _ = writeln!(io::stderr(), "{}", EscapedLines(text));
+    let _ = writeln!(io::stderr(), "{}", shortened(&EscapedLines(text).to_string()));
 }
 
 /// Shows a diagnostic of the compiler on standard error, in colours if that is a terminal.
 pub(crate) fn show(diagnostic: &Diagnostic, sources: &Sources) {
     let plain = diagnostic.render(sources, false);
-    let escaped = EscapedLines(&plain).to_string();
+    let escaped = shortened(&EscapedLines(&plain).to_string()).into_owned();
     // Colours are control characters too, so they are left out if the text has others.
     let colours = io::stderr().is_terminal() && escaped == plain;
     let shown = if colours { diagnostic.render(sources, true) } else { escaped };
@@ -272,5 +315,16 @@ mod tests {
         std::fs::write(&tool, mounting).expect("written");
         let count = |root: &Path| listed(&tool, root).len();
         assert_eq!((count(&inside), count(folder.path())), (1, 2));
+    }
+
+    #[test]
+    fn long_lines_keep_their_beginning_and_their_end() {
+        let name = "é".repeat(MAX_LINE);
+        let text = format!("short\nerror: {name}: give another\n");
+        let shown = shortened(&text);
+        assert!(shown.starts_with("short\nerror: é"), "{}", &shown[..40]);
+        assert!(shown.ends_with("é: give another\n"));
+        assert!(shown.contains(" bytes left out) … ") && shown.len() < MAX_LINE + 200);
+        assert_eq!(shortened("short\n"), "short\n");
     }
 }

@@ -313,8 +313,11 @@ fn type_name(file: &str) -> String {
     if name.starts_with(|c: char| c.is_ascii_digit()) { format!("T{name}") } else { name }
 }
 
+/// Number of characters of a text of the library that are written.
+const MAX_TEXT: usize = 500;
+
 /// Returns a text as it may stand in quotes: without control characters, quotes and characters that reverse the
-/// direction of writing.
+/// direction of writing, and no longer than [`MAX_TEXT`].
 fn quotable(text: &str) -> String {
     let text: String = text
         .chars()
@@ -325,7 +328,11 @@ fn quotable(text: &str) -> String {
             c => c,
         })
         .collect();
-    text.split_whitespace().collect::<Vec<_>>().join(" ")
+    let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    match text.char_indices().nth(MAX_TEXT) {
+        Some((end, _)) => format!("{}…", &text[..end]),
+        None => text,
+    }
 }
 
 fn is_bidirectional(c: char) -> bool {

@@ -267,13 +267,13 @@ impl ImportedTool {
         Ok(folder.join(self.path()))
     }
 
-    /// Returns the tool's own text for the compiler, with those that it mounts.
+    /// Returns the text of the tool with those that it mounts. Nothing is written or read.
     pub fn source(&self) -> Source {
+        let files = self.files.iter().map(|file| (PathBuf::from(&file.path), file.text.clone()));
+        let files: BTreeMap<PathBuf, String> = files.collect();
         let path = self.path();
-        let texts = self.files.iter().map(|file| (PathBuf::from(&file.path), file.text.clone()));
-        let texts: BTreeMap<PathBuf, String> = texts.collect();
-        let text = texts.get(Path::new(&path)).cloned().unwrap_or_default();
-        Source::new(&path, text).with_path(path).with_files(Arc::new(texts))
+        let text = files.get(Path::new(&path)).cloned().unwrap_or_default();
+        Source::new(&path, text).with_path(&path).with_files(Arc::new(files))
     }
 
     /// Loads the tool, interpreted.

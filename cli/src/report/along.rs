@@ -14,6 +14,8 @@ use touchoff_verify::{FindingKind, JobReport};
 
 /// Number of positions per tool at which force and distances are computed.
 const SAMPLES: usize = 2000;
+/// Number of positions of all tools together.
+const MAX_SAMPLES: usize = 20_000;
 /// Number of points of the part from which forces are summed.
 pub(super) const POINTS: usize = 100_000;
 /// Tolerance of clearances, as a fraction of the tool's size.
@@ -57,7 +59,7 @@ pub(super) fn points(inputs: &Inputs) -> Result<Part, Failure> {
     Ok(Part::new(&Cloud::sample(mesh, Sampling::new(POINTS))?, mesh.diagnostics()))
 }
 
-/// Follows the tool of a pair along the program; `None` if it is a body of the machine.
+/// Follows the tool of a pair along the program; `None` if it is a body of the machine. `count` is the number of pairs that are followed.
 ///
 /// # Errors
 /// If the tool cannot be certified.
@@ -65,6 +67,7 @@ pub(super) fn follow(
     checked: &JobReport<'_>,
     part: &Part,
     pair: &PairReport,
+    count: usize,
 ) -> Result<Option<Along>, Failure> {
     let (Some(index), Some(tool)) = (pair.moving.tool(), checked.tool(pair)) else {
         return Ok(None);
@@ -77,7 +80,8 @@ pub(super) fn follow(
     let reach = info.reach();
     let size = reach.high.max(-reach.low).max(info.radius()) * info.unit.factor_to(unit);
     let tolerance = size * 1e-6;
-    let stride = pair.report.moves.div_ceil(SAMPLES).max(1);
+    let samples = SAMPLES.min(MAX_SAMPLES / count).max(1);
+    let stride = pair.report.moves.div_ceil(samples).max(1);
     let mut along =
         Along { tool: index, lines: Vec::new(), stride, samples: Vec::new(), findings: Vec::new() };
     let program = checked.job.program;

@@ -116,34 +116,66 @@ impl ColouredBodies {
     }
 }
 
+/// Number of contacts that are computed for the colours of a body at most: a large tool touches all points of the part at each finding.
+const MAX_CONTACTS: usize = 8_000_000;
+/// Number of contacts for which a query counts that finds none.
+const QUERY_CONTACTS: usize = 256;
+
 /// Returns the depth of the deepest finding at each triangle of a body: at its centre, near its corners, and at the
-/// deepest points of findings.
+/// deepest points of findings. Above [`MAX_CONTACTS`], only the deepest findings of each tool count at centres and near corners.
 ///
 /// # Errors
 /// If the points of the body cannot be made ready for queries.
 fn depths(checked: &JobReport<'_>, index: usize, shown: &Shown) -> Result<Layer, Failure> {
     let mut values = vec![None; shown.triangles.len()];
     let part = Part::from_cloud(&cloud(shown)?);
-    let pairs = checked.pairs.iter().filter(|pair| pair.body == index);
-    for pair in pairs.filter(|pair| !pair.report.findings.is_empty()) {
+    let pieces = Pieces::new(shown);
+    let pairs: Vec<_> = checked
+        .pairs
+        .iter()
+        .filter(|pair| pair.body == index && !pair.report.findings.is_empty())
+        .collect();
+    let (mut queried, mut deep) = (0, 0);
+    for pair in &pairs {
         let mut probe = Probe::new(&part, checked.shape(pair));
-        for finding in &pair.report.findings {
-            let FindingKind::Deep { surface, allowed, depth, witness, .. } = finding.kind else {
-                continue;
-            };
-            for contact in probe.contacts(&finding.pose) {
-                if contact.surface == surface && contact.depth > allowed {
-                    include(&mut values[contact.triangle.index()], contact.depth);
+        let mut findings: Vec<_> = pair
+            .report
+            .findings
+            .iter()
+            .filter_map(|finding| match finding.kind {
+                FindingKind::Deep { surface, allowed, depth, witness, .. } => {
+                    Some((depth.low, surface, allowed, witness, finding.pose))
+                }
+                _ => None,
+            })
+            .collect();
+        findings.sort_by(|one, other| other.0.total_cmp(&one.0));
+        deep += findings.len();
+        let mut left = MAX_CONTACTS / pairs.len();
+        for (depth, surface, allowed, witness, pose) in findings {
+            if left > 0 {
+                queried += 1;
+                let contacts = probe.contacts(&pose);
+                left = left.saturating_sub(contacts.len() + QUERY_CONTACTS);
+                for contact in contacts {
+                    if contact.surface == surface && contact.depth > allowed {
+                        include(&mut values[contact.triangle.index()], contact.depth);
+                    }
                 }
             }
             // The deepest point is seldom one of the samples.
-            if let Some(piece) = piece(shown, witness.triangle, &witness.point) {
-                include(&mut values[piece], depth.low);
+            if let Some(piece) = pieces.nearest(witness.triangle, &witness.point) {
+                include(&mut values[piece], depth);
             }
         }
     }
     let place = if index == 0 { String::new() } else { format!(" in {}", Escaped(&shown.name)) };
-    let quantity = format!("depth of the deepest finding{place}, {}", shown.unit);
+    let of = if queried < deep {
+        format!(" ({queried} of {deep}; of the others, at the deepest point)")
+    } else {
+        String::new()
+    };
+    let quantity = format!("depth of the deepest finding{place}{of}, {}", shown.unit);
     let scale = scale_of_lengths(quantity, "no finding", &values, shown.unit);
     Ok(Layer { body: index, scale, values })
 }
@@ -174,15 +206,47 @@ fn cloud(shown: &Shown) -> Result<Cloud, Failure> {
     Ok(Cloud::new(points, normals, triangles, areas, shown.unit)?)
 }
 
-/// Returns the piece of a triangle of the file whose centre is the nearest to a point.
-fn piece(shown: &Shown, source: TriangleId, point: &Point3<f64>) -> Option<usize> {
-    let first = shown.sources.partition_point(|known| *known < source.0);
-    let pieces = first..shown.sources.partition_point(|known| *known <= source.0);
-    let distance = |piece: &usize| {
-        let [a, b, c] = shown.triangles[*piece].map(|vertex| shown.vertices[vertex as usize]);
-        (a.coords + b.coords + c.coords - 3.0 * point.coords).norm_squared()
-    };
-    pieces.min_by(|one, other| distance(one).total_cmp(&distance(other)))
+/// The pieces of a body's triangles, by places of their centres.
+struct Pieces<'s> {
+    shown: &'s Shown,
+    /// The longest edge of a piece.
+    longest: f64,
+    /// Pieces by the triangle of the file, and the cell of side `longest` around their centres.
+    cells: HashMap<(u32, [i64; 3]), Vec<usize>>,
+}
+
+impl Pieces<'_> {
+    fn new(shown: &Shown) -> Pieces<'_> {
+        let edges = shown.corners().flat_map(|[a, b, c]| [b - a, c - b, a - c]);
+        let longest = edges.map(|edge| edge.norm()).fold(f64::MIN_POSITIVE, f64::max);
+        let mut pieces = Pieces { shown, longest, cells: HashMap::new() };
+        for (piece, source) in shown.sources.iter().enumerate() {
+            let cell = pieces.cell(&pieces.centre(piece));
+            pieces.cells.entry((*source, cell)).or_default().push(piece);
+        }
+        pieces
+    }
+
+    fn centre(&self, piece: usize) -> Point3<f64> {
+        let [a, b, c] =
+            self.shown.triangles[piece].map(|vertex| self.shown.vertices[vertex as usize]);
+        Point3::from((a.coords + b.coords + c.coords) / 3.0)
+    }
+
+    fn cell(&self, point: &Point3<f64>) -> [i64; 3] {
+        key(*point, 4.0 * self.longest)
+    }
+
+    /// Returns the piece of a triangle of the file whose centre is the nearest to a point of that triangle. The point lies in a
+    /// piece, whose centre is nearer than its longest edge: it is in the same cell or beside it.
+    fn nearest(&self, source: TriangleId, point: &Point3<f64>) -> Option<usize> {
+        let cells = near(self.cell(point)).filter_map(|cell| self.cells.get(&(source.0, cell)));
+        let distance = |piece: &usize| (self.centre(*piece) - point).norm_squared();
+        cells
+            .flatten()
+            .copied()
+            .min_by(|one, other| distance(one).total_cmp(&distance(other)).then(one.cmp(other)))
+    }
 }
 
 /// Returns a scale of lengths from 0 to the greatest value.
@@ -229,4 +293,30 @@ fn near([x, y, z]: [i64; 3]) -> impl Iterator<Item = [i64; 3]> {
     around.into_iter().flat_map(move |i| {
         around.into_iter().flat_map(move |j| around.map(move |k| [x + i, y + j, z + k]))
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use touchoff::mesh::shapes;
+
+    #[test]
+    fn the_nearest_piece_is_that_of_all_pieces_of_the_triangle() {
+        let (low, high) = (Point3::new(0.0, 0.0, 0.0), Point3::new(8.0, 3.0, 1.0));
+        let cuboid = shapes::cuboid(low, high, Unit::Millimetre).expect("a cuboid");
+        let shown = Shown::new("part", &cuboid);
+        let pieces = Pieces::new(&shown);
+        for id in cuboid.ids() {
+            let [a, b, c] = cuboid.triangle(id);
+            for (s, t) in [(0.0, 0.0), (1.0, 0.0), (0.31, 0.57), (0.02, 0.9), (0.5, 0.5)] {
+                let point = a + (b - a) * s + (c - a) * t;
+                let distance = |piece: usize| (pieces.centre(piece) - point).norm();
+                let of_triangle = (0..shown.sources.len()).filter(|k| shown.sources[*k] == id.0);
+                let nearest = of_triangle.map(distance).fold(f64::INFINITY, f64::min);
+                let found = pieces.nearest(id, &point).expect("a piece");
+                assert_eq!(shown.sources[found], id.0);
+                assert_eq!(distance(found), nearest, "{point}");
+            }
+        }
+    }
 }

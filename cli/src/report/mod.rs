@@ -177,9 +177,10 @@ impl<'a> Content<'a> {
         let (unit, bodies) = (inputs.file.unit, &inputs.bodies);
         let start = Instant::now();
         let points = along::points(inputs)?;
-        let pairs = checked.tools_at_part();
-        let along = pairs.filter_map(|pair| along::follow(checked, &points, pair).transpose());
-        let along = along.collect::<Result<_, Failure>>()?;
+        let count = checked.tools_at_part().count();
+        let along = checked.tools_at_part();
+        let along = along.map(|pair| along::follow(checked, &points, pair, count));
+        let along = along.filter_map(Result::transpose).collect::<Result<_, Failure>>()?;
         times.push(("depth, clearance and force along the program", start.elapsed()));
 
         let start = Instant::now();

@@ -340,6 +340,25 @@ fn a_long_program_makes_a_short_report() {
     assert!(shown <= 6 * rows.len() && shown > 0, "{shown}");
 }
 
+/// The colours of findings are computed from a bounded number of contacts: all points of the part lie in a large tool at each finding.
+#[test]
+fn many_findings_of_a_large_tool_colour_a_bounded_number_of_places() {
+    let bench = Bench::new();
+    let profile =
+        "start (0, 0); arc to (90, 90) center (0, 90) as ball cutting; line to (0, 90) as top;";
+    bench.write(
+        "large.tool",
+        format!("tool Large {{ units mm; profile {{ {profile} }} niceness cutting: 1; }}"),
+    );
+    let rows: String =
+        (0..60).map(|row| format!("0,0,{},0,0,1\n", -10.0 - 0.01 * f64::from(row))).collect();
+    bench.write("rows.csv", rows);
+    let page = Page::write(&bench, "block.stl --unit mm --tool large.tool --program rows.csv");
+    let scene = page.data("scene");
+    let quantity = scene["layers"][0]["quantity"].as_str().expect("a name");
+    assert!(quantity.contains(" of 60; of the others, at the deepest point)"), "{quantity}");
+}
+
 #[test]
 fn files_have_their_digests() {
     let bench = Bench::new();

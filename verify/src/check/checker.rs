@@ -3,6 +3,7 @@
 use super::moves::{JointTrajectory, Move, MovePath, RapidBox, displacement};
 use super::{Finding, FindingKind, Verifier, VerifyError};
 use std::collections::VecDeque;
+use std::sync::Arc;
 use touchoff::certify::{Certifier, MotionDepth, MotionVerdict, THROUGH_FRACTION, Trajectory};
 use touchoff::tool::Symmetry;
 use touchoff::{Interval, Motion, MotionError, Pose, SurfaceId};
@@ -13,7 +14,7 @@ pub(super) struct Checker<'a> {
     /// The certifiers for feed and for rapid traverse, in this order.
     modes: [Mode<'a>; 2],
     /// The greatest possible depth of each surface.
-    max_depths: Vec<f64>,
+    max_depths: Arc<[f64]>,
     free_space: FreeSpace<'a>,
 }
 
@@ -37,7 +38,7 @@ const MAX_PIECES: usize = 1 << 14;
 impl<'a> Checker<'a> {
     pub(super) fn new(
         verifier: &'a Verifier<'a>,
-        max_depths: Vec<f64>,
+        max_depths: Arc<[f64]>,
     ) -> Result<Checker<'a>, VerifyError> {
         let certifier = Certifier::new(verifier.bvh, verifier.tool)?.with_budget(verifier.budget);
         let free_space = FreeSpace {

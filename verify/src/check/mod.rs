@@ -47,7 +47,7 @@ use crate::program::ClData;
 pub(crate) use approach::ApproachSearch;
 use checker::Checker;
 use std::fmt;
-use std::sync::Mutex;
+use std::sync::{Arc, Mutex};
 use touchoff::cancellation;
 use touchoff::certify::{Certifier, TriangleBvh};
 use touchoff::tool::{Tool, ToolInfo};
@@ -238,15 +238,18 @@ impl<'a> Verifier<'a> {
         moves: impl IntoIterator<Item = Move>,
         progress: &(dyn Fn(usize) + Sync),
     ) -> Result<VerifyReport, VerifyError> {
-        let mut check = MoveCheck::new(self)?;
+        let mut check = MoveCheck::new(self, self.max_depths()?)?;
         for step in moves {
             check.add(step, progress)?;
         }
         check.finish(progress)
     }
 
-    /// Returns the greatest depth that each surface can have.
-    fn max_depths(&self) -> Result<Vec<f64>, VerifyError> {
+    /// Returns the greatest depth that each surface can have, which is the tool's, at any part.
+    ///
+    /// # Errors
+    /// If the tool cannot be certified.
+    pub(crate) fn max_depths(&self) -> Result<Arc<[f64]>, VerifyError> {
         let certifier = Certifier::new(self.bvh, self.tool)?;
         let max_depths = (0..self.allowed.len()).map(|index| {
             let depth = certifier.max_possible_depth(SurfaceId(index));
@@ -291,7 +294,7 @@ impl<'a> Verifier<'a> {
 /// A check of motions that are added one by one, in the order of the program.
 pub(super) struct MoveCheck<'a> {
     verifier: &'a Verifier<'a>,
-    max_depths: Vec<f64>,
+    max_depths: Arc<[f64]>,
     /// The checkers that no task uses: one per core in the end.
     checkers: Mutex<Vec<Checker<'a>>>,
     approach: ApproachSearch<'a>,
@@ -305,14 +308,18 @@ pub(super) struct MoveCheck<'a> {
 }
 
 impl<'a> MoveCheck<'a> {
-    /// Begins a check.
+    /// Begins a check. `max_depths` are those of the tool, whose checks at several parts share them: they take longer than some
+    /// hundreds of motions.
     ///
     /// # Errors
     /// If the tool cannot be certified.
-    pub(super) fn new(verifier: &'a Verifier<'a>) -> Result<MoveCheck<'a>, VerifyError> {
+    pub(super) fn new(
+        verifier: &'a Verifier<'a>,
+        max_depths: Arc<[f64]>,
+    ) -> Result<MoveCheck<'a>, VerifyError> {
         Ok(MoveCheck {
             verifier,
-            max_depths: verifier.max_depths()?,
+            max_depths,
             checkers: Mutex::default(),
             approach: ApproachSearch::new(verifier)?,
             findings: Vec::new(),

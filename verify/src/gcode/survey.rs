@@ -6,6 +6,7 @@
 
 use super::control::Control;
 use super::interpreter::{Interpreter, Language};
+use super::note::Notes;
 use super::{BlockLine, CompensationFault, GcodeError, GcodeFault, Step};
 use std::collections::{HashSet, VecDeque};
 
@@ -57,6 +58,8 @@ impl<'a> Survey<'a> {
 
     /// Executes the next block.
     fn execute(&mut self) {
+        // Its notes are not the program's, and each block copies the state: with them, the time would grow with the square of the errors.
+        self.interpreter.control.notes = Notes::default();
         let before = self.interpreter.control.clone();
         let result = self.interpreter.execute_line();
         if self.executed.insert(self.interpreter.control.block()) {

@@ -11,6 +11,7 @@ use crate::check::{ApproachSearch, MoveCheck, MoveRequest};
 use crate::gcode::{BlockLine, WorkOffset};
 use crate::machine::{Link, Machine, Side};
 use crate::{FindingGroup, MachineSummary, Move, Verifier};
+use std::sync::Arc;
 use touchoff::tool::Symmetry;
 
 /// Rounding of heights, in the part's unit.
@@ -216,8 +217,17 @@ impl<'a> Job<'a> {
                 requests.push(request);
             }
         }
-        let checks = verifiers.iter().map(MoveCheck::new);
-        let mut checks: Vec<MoveCheck<'_>> = checks.collect::<Result<_, _>>()?;
+        let mut checks: Vec<MoveCheck<'_>> = Vec::new();
+        let mut known: Option<(Moving, Arc<[f64]>)> = None;
+        for (pair, verifier) in moving.iter().zip(&verifiers) {
+            // The pairs of a tool follow each other.
+            let max_depths = match &known {
+                Some((moving, depths)) if *moving == pair.moving => depths.clone(),
+                _ => verifier.max_depths()?,
+            };
+            known = Some((pair.moving, max_depths.clone()));
+            checks.push(MoveCheck::new(verifier, max_depths)?);
+        }
         let offsets = match self.program.readings().get(reading) {
             Some(program) if program.summary().work_offsets.len() > 1 => {
                 program.summary().work_offsets.clone()

@@ -10,7 +10,8 @@ use crate::gcode::{
     FREE_STEPS, GcodeError, GcodeFault, MAX_CALLS, Repeated, SubprogramFile, shown,
 };
 use std::collections::HashMap;
-use std::sync::Arc;
+use std::hash::{DefaultHasher, Hasher};
+use std::sync::{Arc, OnceLock};
 
 /// A program of a file.
 #[derive(Clone, Debug)]
@@ -155,6 +156,8 @@ pub(super) struct Source<'a> {
     sections: Vec<Section<'a>>,
     /// Targets of the statements that do not go on to the next line, by their lines.
     partners: HashMap<usize, Place>,
+    /// The lines with a label or a block number, by the hash of its capitals, and then in their order; found at the first jump.
+    labels: OnceLock<Vec<(u64, Place)>>,
     /// The program that is executed first.
     main: usize,
 }
@@ -169,7 +172,7 @@ impl<'a> Source<'a> {
         let main =
             sections.iter().position(|section| section.name.is_empty() || section.is_main(text));
         let (main, partners) = (main.unwrap_or(0), partners(text, &sections)?);
-        Ok(Source { text, sections, partners, main })
+        Ok(Source { text, sections, partners, labels: OnceLock::new(), main })
     }
 
     /// Returns the program with a name in a file of subprograms: one with that title, or the first one of a file of that name.
@@ -359,30 +362,31 @@ impl<'a> Flow<'a> {
     fn find(&self, target: &str, from: usize, direction: Direction) -> Option<Place> {
         let Section { start: begin, end, .. } = self.source.sections[self.section];
         let is_number = matches!(target.as_bytes(), [b'N' | b'n', rest @ ..] if rest.iter().all(u8::is_ascii_digit));
-        let (mut before, mut after) = (None, None);
-        let mut place = begin;
-        while let Some((text, next)) = line(self.text(), place).filter(|_| place.offset < end) {
-            let parts = start(text);
-            let found = if is_number { parts.number } else { parts.label };
-            if found.is_some_and(|found| found.eq_ignore_ascii_case(target)) {
-                match place.line > from {
-                    true => {
-                        after.get_or_insert(place);
-                    }
-                    // A jump back goes to the nearest, its own line included.
-                    false if direction == Direction::Backward => before = Some(place),
-                    false => {
-                        before.get_or_insert(place);
-                    }
-                }
-            }
-            place = next;
-        }
-        match direction {
+        let is_target = |(_, place): &&(u64, Place)| {
+            let parts = line(self.text(), *place).map(|(text, _)| start(text));
+            let found = parts.and_then(|parts| if is_number { parts.number } else { parts.label });
+            found.is_some_and(|found| found.eq_ignore_ascii_case(target))
+        };
+        let labels = self.source.labels.get_or_init(|| labels(self.text()));
+        let hash = label_hash(target);
+        let to = |offset| {
+            labels.partition_point(|(known, place)| (*known, place.offset) < (hash, offset))
+        };
+        let places = &labels[to(begin.offset)..to(end)];
+        let (earlier, later) =
+            places.split_at(places.partition_point(|(_, place)| place.line <= from));
+        let after = later.iter().find(is_target);
+        // A jump back goes to the nearest, its own line included.
+        let before = match direction {
+            Direction::Backward => earlier.iter().rfind(is_target),
+            Direction::Forward | Direction::Both => earlier.iter().find(is_target),
+        };
+        let found = match direction {
             Direction::Forward => after,
             Direction::Backward => before,
             Direction::Both => after.or(before),
-        }
+        };
+        found.map(|(_, place)| *place)
     }
 
     /// Executes `REPEAT` with labels, or `REPEATB`, which repeats one line. `line` is its own.
@@ -644,6 +648,27 @@ fn check_attributes(words: &mut Cursor) -> Result<(), GcodeFault> {
         }
     }
     Ok(())
+}
+
+/// Finds the lines with a label or a block number: a program may have as many jumps as lines.
+fn labels(text: &str) -> Vec<(u64, Place)> {
+    let mut labels = Vec::new();
+    let mut place = Place { offset: 0, line: 1 };
+    while let Some((content, after)) = line(text, place) {
+        let parts = start(content);
+        let found = [parts.number, parts.label].into_iter().flatten();
+        labels.extend(found.map(|label| (label_hash(label), place)));
+        place = after;
+    }
+    labels.sort_by_key(|(hash, place)| (*hash, place.offset));
+    labels
+}
+
+/// Returns the hash of a label in capitals.
+fn label_hash(label: &str) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    label.bytes().for_each(|byte| hasher.write_u8(byte.to_ascii_uppercase()));
+    hasher.finish()
 }
 
 /// Finds where the statements of loops and branches go.
