@@ -17,7 +17,7 @@ use crate::domain::Domain;
 use crate::expr::{Graph, Id};
 use crate::formula::Formula;
 use crate::geometry::outline::{Segment, nearest_span};
-use crate::model::{DirectionSource, OutsidePart, Over, Region, Section, Surface};
+use crate::model::{DirectionSource, Over, Region, Section, Surface};
 use crate::regionalise::overlay::{self, ConditionedPart, Overlay};
 use crate::regionalise::smooth::{self, Origin, Rough};
 use crate::regionalise::{self, Derived, Feature, Partition, Test, Undivided};
@@ -76,9 +76,8 @@ pub(super) fn derived(
     let inner = Partition::new(outline.segments.clone(), false);
     let outer = Partition::new(reversed, true);
     let graph = &mut lowering.graph;
-    let divided = inner.parts(graph).and_then(|parts| Ok((parts, outer.parts(graph)?)));
-    let (derived, beside) = match divided {
-        Ok(both) => both,
+    let derived = match inner.parts(graph) {
+        Ok(derived) => derived,
         Err(Undivided([d, z])) => {
             let at = nearest_span(&outline.segments, [d, z]).unwrap_or(outline.span);
             let z = lowering.frame.to_file(z);
@@ -123,16 +122,8 @@ pub(super) fn derived(
         }
         Some(_) => {}
     }
-    let zero = lowering.graph.int(0);
-    let outside = beside
-        .iter()
-        .map(|part| OutsidePart {
-            condition: formula(&part.inside, curves, &mut lowering.graph),
-            clearance: lowering.graph.max(zero, part.depth),
-        })
-        .collect();
     let Outline { segments, surfaces, .. } = outline;
-    let section = Section { outline: segments, inner, outer, outside, over };
+    let section = Section { outline: segments, inner, outer, over };
     FromProfile { surfaces, regions, section: Some(section) }
 }
 
