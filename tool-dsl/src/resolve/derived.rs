@@ -14,7 +14,7 @@ use crate::diagnostic::{
     any_error, enough, nearest,
 };
 use crate::domain::Domain;
-use crate::expr::{Graph, Id};
+use crate::expr::{Coord, Graph, Id};
 use crate::formula::Formula;
 use crate::geometry::outline::{Segment, nearest_span};
 use crate::model::{DirectionSource, Over, Region, Section, Surface};
@@ -87,6 +87,7 @@ pub(super) fn derived(
         }
     };
     let parts = parts(&derived, &outline, lowering, curves);
+    add_lines_through_corners(&outline.segments, curves, &mut lowering.graph);
     let inside = Inside { outline: &outline, inner: &inner, parts: &parts };
     let mut regions = Vec::new();
     let before = diagnostics.len();
@@ -125,6 +126,22 @@ pub(super) fn derived(
     let Outline { segments, surfaces, .. } = outline;
     let section = Section { outline: segments, inner, outer, over };
     FromProfile { surfaces, regions, section: Some(section) }
+}
+
+/// Adds the normals at the ends of level and upright segments, which are level and upright too, as curves that a plan may split
+/// by: no test is cheaper, and one often rules out the outside where the border of a part would cross it.
+fn add_lines_through_corners(outline: &[Segment], curves: &mut Curves, graph: &mut Graph) {
+    for segment in outline.iter().filter(|segment| segment.circle.is_none()) {
+        for (across, axis, coord) in [(1, 0, Coord::D), (0, 1, Coord::Z)] {
+            if segment.from[across] != segment.to[across] {
+                continue;
+            }
+            for end in [&segment.from, &segment.to] {
+                let (coord, at) = (graph.coord(coord), graph.number(end[axis].clone()));
+                curves.at_most(graph, coord, at);
+            }
+        }
+    }
 }
 
 /// Returns the parts of the inside with their names and directions.
