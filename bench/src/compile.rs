@@ -99,7 +99,7 @@ pub fn tool_stats(source: &Source) -> ToolStats {
         regions: regions.len(),
         segments: tool.model.is_exact().then_some(segments),
         curves: tool.model.curves.len(),
-        tests: tool.plan.owner.test_count(),
+        tests: tool.tree.test_count(),
         splits: splits(&tool),
         operations: operations(&emit::source_code(&tool)),
     }
@@ -141,7 +141,7 @@ impl<'t> TreeWalk<'t> {
     /// Returns whether a point is inside, and the number of tests on its path.
     fn walk(&mut self, [d, z]: [f64; 2]) -> (bool, usize) {
         self.curves.evaluate(EvaluationPoint::on_meridian(d, z));
-        let (mut tree, mut tests) = (&self.tool.plan.owner, 0);
+        let (mut tree, mut tests) = (&self.tool.tree, 0);
         loop {
             match tree {
                 Tree::Leaf(owner) => return (owner.is_some(), tests),

@@ -129,7 +129,7 @@ fn trace(
     [unit, size]: [f64; 2],
 ) -> Traced {
     let fineness = Fineness { cell: 10.0 * unit, flat: 0.06 * unit, same: 1e-10 * size };
-    let pieces = section::divide(curves, &tool.plan.owner, window, fineness);
+    let pieces = section::divide(curves, &tool.tree, window, fineness);
     let near = Nearness { weld: 1e-9 * size, visible_length: 0.1 * unit, reach: unit };
     Traced { borders: borders::borders(curves, &pieces, near), size }
 }

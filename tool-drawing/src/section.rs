@@ -11,9 +11,6 @@ use touchoff_dsl::formula::{CurveIndex, NEGATIVE, ZERO};
 use touchoff_dsl::plan::Tree;
 use touchoff_dsl::vector::{Point, cross, minus, norm};
 
-/// The plan's tree of owners.
-type Owners = Tree<Option<usize>>;
-
 /// A convex polygon of the section with one owner, counter-clockwise.
 pub(super) struct Piece {
     pub(super) owner: Option<usize>,
@@ -74,7 +71,7 @@ impl Lattice {
 /// Divides the box from the axis to `high[0]` and from height `low[1]` to `high[1]`.
 pub(super) fn divide(
     curves: &mut Curves<'_>,
-    owners: &Owners,
+    owners: &Tree,
     [low, high]: [Point; 2],
     fineness: Fineness,
 ) -> Vec<Piece> {
@@ -99,14 +96,14 @@ struct Division<'c, 'm> {
     curves: &'c mut Curves<'m>,
     lattice: Lattice,
     fineness: Fineness,
-    cells: Vec<(Cell, Owners)>,
+    cells: Vec<(Cell, Tree)>,
     /// Corners of all cells. A side of a cell may have corners of its neighbours on it.
     corners: HashSet<[u64; 2]>,
 }
 
 impl Division<'_, '_> {
     /// Prunes the tree to the splits that are open in a cell, and halves the cell until it is fine enough.
-    fn cell(&mut self, cell: Cell, tree: &Owners) {
+    fn cell(&mut self, cell: Cell, tree: &Tree) {
         let [low, high] = self.ends(cell);
         let tree = self.subdivide(tree, low, high);
         if cell.side == 1 || self.cells.len() > MAX_CELLS || self.is_fine_enough(&tree, low, high) {
@@ -130,7 +127,7 @@ impl Division<'_, '_> {
     }
 
     /// Returns the part of a tree that is open in a box.
-    fn subdivide(&mut self, tree: &Owners, low: Point, high: Point) -> Owners {
+    fn subdivide(&mut self, tree: &Tree, low: Point, high: Point) -> Tree {
         let Tree::Split { curve, strict, below, above } = tree else { return tree.clone() };
         let signs = self.curves.signs(*curve, low, high);
         let side = if *strict { NEGATIVE } else { NEGATIVE | ZERO };
@@ -150,7 +147,7 @@ impl Division<'_, '_> {
     }
 
     /// Returns whether cutting a cell by this tree is accurate enough.
-    fn is_fine_enough(&mut self, tree: &Owners, low: Point, high: Point) -> bool {
+    fn is_fine_enough(&mut self, tree: &Tree, low: Point, high: Point) -> bool {
         let mut splits = Vec::new();
         tested(tree, &mut splits);
         let side = high[0] - low[0];
@@ -232,7 +229,7 @@ impl Division<'_, '_> {
     }
 
     /// Returns the polygons of a cell.
-    fn pieces(&mut self, cell: Cell, tree: &Owners) -> Vec<Piece> {
+    fn pieces(&mut self, cell: Cell, tree: &Tree) -> Vec<Piece> {
         let [i, j] = cell.corner;
         let s = cell.side;
         let ends = [[i, j], [i + s, j], [i + s, j + s], [i, j + s]];
@@ -262,7 +259,7 @@ impl Division<'_, '_> {
     }
 
     /// Cuts a convex polygon by a tree.
-    fn cut(&mut self, corners: Vec<Corner>, tree: &Owners, pieces: &mut Vec<Piece>) {
+    fn cut(&mut self, corners: Vec<Corner>, tree: &Tree, pieces: &mut Vec<Piece>) {
         match tree {
             Tree::Leaf(owner) => pieces.push(Piece { owner: *owner, corners }),
             Tree::Split { curve, below, above, .. } => {
@@ -332,7 +329,7 @@ impl Division<'_, '_> {
 }
 
 /// Collects the curves that a tree tests.
-fn tested(tree: &Owners, curves: &mut Vec<CurveIndex>) {
+fn tested(tree: &Tree, curves: &mut Vec<CurveIndex>) {
     if let Tree::Split { curve, below, above, .. } = tree {
         if !curves.contains(curve) {
             curves.push(*curve);

@@ -26,7 +26,6 @@ fn meaning(tool: &CheckedTool) -> String {
     let model = &tool.model;
     let mut needed: Vec<Id> = model.curve_values().collect();
     needed.extend(model.regions.iter().flat_map(|region| region.outputs.roots()));
-    needed.extend(tool.plan.clearance.leaves());
     let needed = model.graph.dependencies(needed);
     let indices: HashMap<Id, usize> =
         needed.iter().enumerate().map(|(index, id)| (*id, index)).collect();
@@ -54,8 +53,7 @@ fn meaning(tool: &CheckedTool) -> String {
         line(&(&region.name, region.surface, outputs));
     }
     model.curves.iter().for_each(|curve| line(&index(curve.value)));
-    line(&tests(&tool.plan.owner, &|owner| format!("{owner:?}")));
-    line(&tests(&tool.plan.clearance, &|id| index(*id).to_string()));
+    line(&tests(&tool.tree));
     for id in &needed {
         match model.graph.node(*id) {
             // The rounded value, as in the generated code.
@@ -94,12 +92,12 @@ fn operation(node: &Node) -> &'static str {
     }
 }
 
-/// Writes a tree as nested tests, with its leaves as text.
-fn tests<L>(tree: &Tree<L>, leaf: &dyn Fn(&L) -> String) -> String {
+/// Writes a tree as nested tests.
+fn tests(tree: &Tree) -> String {
     match tree {
-        Tree::Leaf(value) => leaf(value),
+        Tree::Leaf(owner) => format!("{owner:?}"),
         Tree::Split { curve, strict, below, above } => {
-            format!("({curve} {strict} {} {})", tests(below, leaf), tests(above, leaf))
+            format!("({curve} {strict} {} {})", tests(below), tests(above))
         }
     }
 }

@@ -34,9 +34,6 @@
 //!   the file's own number and does not change with the unit. [`RegionOutputs::gradient`] is its gradient
 //!   with respect to the position in the part's unit.
 //! - **Niceness** is a number without a unit, `max(0, niceness)`.
-//! - **Outside.** With a section, `Section::outside` has a distance for each part of the outside up to 64
-//!   sizes. Farther out, and without a section, `plan` takes the distance to a box or a cylinder around the
-//!   solid, a lower bound.
 //!
 //! # Guarantees of each pass
 //!
@@ -56,9 +53,7 @@
 //! | `checked` (`finite`) | constants that code needs are finite doubles | `checked::finite` |
 //! | `bound` | [`Extent`](crate::bound::Extent): the solid lies in a box and a cylinder, is bounded, and is not empty. [`EnvelopeSlab`](crate::bound::EnvelopeSlab): its largest radius between two heights | interval branch and bound; a section's segments in closed form |
 //! | `lint` | nothing. It refutes overlapping owners, regions that own nothing, depths below 0 or above 0 on the surface, undefined values, and a misplaced tip, each with a counterexample | samples |
-//! | `plan` | `Plan::owner` gives each point the owner that the list of regions gives it | `plan::empty` proves which sides need no test; a section's cells are cut exactly; tests that are left out cannot hold in real arithmetic |
-//! | | `Plan::inside` holds where `owner` is a region | by construction: it is the same tree with other leaves |
-//! | | `Plan::clearance` is the distance, or a lower bound of it, wherever `inside` does not hold | as for `owner` |
+//! | `plan` | `PlannedTool::tree` gives each point the owner that the list of regions gives it | `plan::empty` proves which sides need no test; a section's cells are cut exactly; tests that are left out cannot hold in real arithmetic |
 //! | | trees have at most 20,000 tests | `plan::MAX_TESTS` |
 //! | `prove` | [`Bounds`](crate::prove::Bounds) of the depth by the distance: for a section 1 and 1 by construction, which `touchoff check` proves; for regions by hand the bounds that a few thousand boxes prove | `docs/proofs.md` |
 //! | | depth jumps at no point that was found | enclosures of both depths there |
@@ -156,10 +151,8 @@ pub(crate) struct Section {
     pub(crate) outline: Vec<Segment>,
     /// The partition of the inside. Its parts are the regions, unless `over` divides them further.
     pub(crate) inner: Partition,
-    /// The partition of the outside, up to 64 sizes. Its parts are those of `outside`.
+    /// The partition of the outside, up to 64 sizes.
     pub(crate) outer: Partition,
-    /// The features that are nearest outside, each with its distance.
-    pub(crate) outside: Vec<OutsidePart>,
     /// The further division of the inside, if there is one.
     pub(crate) over: Option<Over>,
 }
@@ -208,7 +201,7 @@ impl Model {
         depths
     }
 
-    /// Returns whether depth and clearance are exact distances.
+    /// Returns whether depth is an exact distance.
     pub fn is_exact(&self) -> bool {
         self.section.is_some()
     }
@@ -233,15 +226,6 @@ pub struct ProfileSegment {
     pub circle: Option<([f64; 2], f64, bool)>,
     /// The index of its surface.
     pub surface: usize,
-}
-
-/// A part of the outside and the distance to the tool there.
-#[derive(Clone, Debug)]
-pub struct OutsidePart {
-    /// The condition of its points, among those outside the solid.
-    pub condition: Formula,
-    /// The distance to the tool, in the file's unit.
-    pub clearance: Id,
 }
 
 /// The transform from the file's z to the tool's: `z_tool = z_file - tip`, or `tip - z_file` if the spindle

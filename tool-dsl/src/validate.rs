@@ -68,10 +68,6 @@ pub(crate) fn model(model: &Model) -> Result<(), Broken> {
     let Some(section) = &model.section else { return Ok(()) };
     section.outline.iter().try_for_each(|segment| surface(segment.surface))?;
     outline(section)?;
-    for part in &section.outside {
-        formula(model, &part.condition)?;
-        function(model, "a clearance", [part.clearance])?;
-    }
     let Some(over) = &section.over else { return Ok(()) };
     over.conditions.iter().try_for_each(|condition| formula(model, condition))?;
     function(model, "a distance", over.distances.iter().copied())?;
@@ -85,19 +81,14 @@ pub(crate) fn model(model: &Model) -> Result<(), Broken> {
 
 /// Checks what `plan` guarantees besides. `file_curves` are the curves of the model before it.
 pub(crate) fn planned(file_curves: &[Id], tool: &PlannedTool) -> Result<(), Broken> {
-    let PlannedTool { model: planned, plan, .. } = tool;
+    let PlannedTool { model: planned, .. } = tool;
     model(planned)?;
     for (index, curve) in file_curves.iter().enumerate() {
         if planned.curves.get(index).is_none_or(|known| known.value != *curve) {
             return Err(Broken::FileCurve { index });
         }
     }
-    let region = |owner: &Option<usize>| match owner {
-        Some(index) if *index >= planned.regions.len() => Err(Broken::Region { index: *index }),
-        _ => Ok(()),
-    };
-    tree(planned, &plan.owner, &region)?;
-    tree(planned, &plan.clearance, &|value| function(planned, "a clearance", [*value]))?;
+    tree(planned, &tool.tree)?;
     let outputs = planned.regions.iter().flat_map(|region| region.outputs.roots());
     let curves = planned.curves.iter().map(|curve| curve.value);
     let is_finite =
@@ -108,19 +99,18 @@ pub(crate) fn planned(file_curves: &[Id], tool: &PlannedTool) -> Result<(), Brok
     }
 }
 
-/// Checks a tree: its curves, its leaves, and its size.
-fn tree<L: Clone + PartialEq>(
-    model: &Model,
-    tree: &Tree<L>,
-    leaf: &impl Fn(&L) -> Result<(), Broken>,
-) -> Result<(), Broken> {
+/// Checks a tree: its curves, its owners, and its size.
+fn tree(model: &Model, tree: &Tree) -> Result<(), Broken> {
     if tree.test_count() > MAX_TESTS {
         return Err(Broken::Tests);
     }
     let mut rest = vec![tree];
     while let Some(tree) = rest.pop() {
         match tree {
-            Tree::Leaf(value) => leaf(value)?,
+            Tree::Leaf(Some(index)) if *index >= model.regions.len() => {
+                return Err(Broken::Region { index: *index });
+            }
+            Tree::Leaf(_) => {}
             Tree::Split { curve, below, above, .. } => {
                 self::curve(model, *curve)?;
                 rest.extend([&**below, &**above]);
@@ -267,10 +257,6 @@ mod tests {
         let mut model = resolved(SPHERE);
         model.regions[0].inside = Formula::All(vec![beyond(&model)]);
         assert_eq!(self::model(&model), Err(Broken::Curve { index: model.curves.len() }));
-        let mut model = resolved(MILL);
-        let condition = beyond(&model);
-        model.section.as_mut().expect("a section").outside[0].condition = condition;
-        assert_eq!(self::model(&model), Err(Broken::Curve { index: model.curves.len() }));
         let found = broken(MILL, |model| model.regions[0].depth = model.graph.coord(Coord::X));
         let what = "a depth, magnitude or niceness";
         assert_eq!(found, Some(Broken::Coordinate { what, coord: Coord::X }));
@@ -305,18 +291,13 @@ mod tests {
         };
         let found = broken(|tool| tool.model.curves.swap(0, 1));
         assert_eq!(found, Some(Broken::FileCurve { index: 0 }));
-        let found = broken(|tool| tool.plan.owner = Tree::Leaf(Some(5)));
+        let found = broken(|tool| tool.tree = Tree::Leaf(Some(5)));
         assert_eq!(found, Some(Broken::Region { index: 5 }));
         let found = broken(|tool| {
             let [below, above] = [Tree::Leaf(Some(0)), Tree::Leaf(None)].map(Box::new);
-            tool.plan.owner = Tree::Split { curve: 99, strict: false, below, above };
+            tool.tree = Tree::Split { curve: 99, strict: false, below, above };
         });
         assert_eq!(found, Some(Broken::Curve { index: 99 }));
-        let found = broken(|tool| {
-            tool.plan.clearance = Tree::Leaf(tool.model.graph.coord(Coord::PerLength));
-        });
-        let coord = Coord::PerLength;
-        assert_eq!(found, Some(Broken::Coordinate { what: "a clearance", coord }));
         let found = broken(|tool| {
             let huge = crate::number::Number::from_f64(1e300).expect("a number");
             tool.model.regions[0].outputs.depth = tool.model.graph.number(&huge * &huge);
@@ -328,7 +309,7 @@ mod tests {
                 let [below, above] = [Tree::Leaf(Some(k % 2)), tree].map(Box::new);
                 tree = Tree::Split { curve: 0, strict: false, below, above };
             }
-            tool.plan.owner = tree;
+            tool.tree = tree;
         });
         assert_eq!(found, Some(Broken::Tests));
     }

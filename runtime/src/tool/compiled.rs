@@ -25,10 +25,6 @@ pub trait Evaluators: Copy + Send + Sync + 'static {
         outputs: Outputs,
     ) -> LaneEvaluation<L>;
 
-    /// Returns the distance from a point outside to the tool, in the file's unit, as specified by [`Tool::clearance`].
-    /// Its result at a point of the solid is meaningless.
-    fn clearance(point: [f64; 3]) -> f64;
-
     /// Returns an enclosure of the evaluation over a box, for a tool without a profile; see [`Tool::enclose`].
     fn enclose(_sides: [Interval; 3], _reference: [f64; 3]) -> Option<EvaluationEnclosure> {
         None
@@ -108,16 +104,47 @@ impl<L: Lane> LaneEvaluation<L> {
         self.inside = self.inside | lanes;
         self.region = L::pick(lanes, region, self.region);
     }
+
+    /// Sets the depth of some lanes.
+    #[inline(always)]
+    pub fn set_depth(&mut self, lanes: L::Mask, depth: L) {
+        self.depth = L::select(lanes, depth, self.depth);
+    }
+
+    /// Sets the magnitude of some lanes.
+    #[inline(always)]
+    pub fn set_magnitude(&mut self, lanes: L::Mask, magnitude: L) {
+        self.magnitude = L::select(lanes, magnitude, self.magnitude);
+    }
+
+    /// Sets the niceness of some lanes.
+    #[inline(always)]
+    pub fn set_niceness(&mut self, lanes: L::Mask, niceness: L) {
+        self.niceness = L::select(lanes, niceness, self.niceness);
+    }
+
+    /// Sets the direction of some lanes.
+    #[inline(always)]
+    pub fn set_direction(&mut self, lanes: L::Mask, direction: [L; 3]) {
+        self.direction = selected(lanes, direction, self.direction);
+    }
+
+    /// Sets the gradient of some lanes.
+    #[inline(always)]
+    pub fn set_gradient(&mut self, lanes: L::Mask, gradient: [L; 3]) {
+        self.gradient = selected(lanes, gradient, self.gradient);
+    }
+}
+
+#[inline(always)]
+fn selected<L: Lane>(lanes: L::Mask, [x, y, z]: [L; 3], before: [L; 3]) -> [L; 3] {
+    let [x_before, y_before, z_before] = before;
+    [L::select(lanes, x, x_before), L::select(lanes, y, y_before), L::select(lanes, z, z_before)]
 }
 
 impl<T: Evaluators> Tool for T {
     fn info(&self) -> &ToolInfo {
         T::info()
-    }
-
-    fn clearance(&self, point: [f64; 3]) -> f64 {
-        // The formulas of the clearance hold outside only.
-        if T::contains(point) { 0.0 } else { T::clearance(point) }
     }
 
     fn evaluate(

@@ -60,9 +60,8 @@ pub enum Symmetry {
 }
 
 impl ToolInfo {
-    /// Returns whether depth and clearance are true distances, which holds for a tool with a profile. Even then,
-    /// farther out than 48 sizes of the tool the clearance is a lower bound. Without a profile, depth is whatever the
-    /// file defines, and clearance is a lower bound everywhere.
+    /// Returns whether depth and clearance are true distances, which holds for a tool with a profile. Without one, depth is
+    /// whatever the file defines, and clearance is a lower bound.
     pub fn is_exact(&self) -> bool {
         !self.outline.is_empty()
     }
@@ -171,6 +170,18 @@ pub struct Circle {
     pub radius: f64,
     /// True if the material lies inside the circle; the arc then runs counter-clockwise.
     pub convex: bool,
+}
+
+impl Circle {
+    /// Returns the circle of an arc that bulges out of the material.
+    pub const fn convex(centre: [f64; 2], radius: f64) -> Circle {
+        Circle { centre, radius, convex: true }
+    }
+
+    /// Returns the circle of an arc that bulges into the material.
+    pub const fn concave(centre: [f64; 2], radius: f64) -> Circle {
+        Circle { centre, radius, convex: false }
+    }
 }
 
 impl ProfileSegment {

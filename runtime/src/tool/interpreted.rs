@@ -17,7 +17,7 @@ use std::str::FromStr;
 use touchoff_dsl::bound::lateral_extent;
 use touchoff_dsl::domain::Domain;
 use touchoff_dsl::interpret::{
-    BLOCK_POINTS, Block, Lanes, OUTPUT_COUNT, PlanEvaluator, Scratch, Tape, Value,
+    BLOCK_POINTS, Block, Lanes, OUTPUT_COUNT, PlanEvaluator, Tape, Value,
 };
 use touchoff_dsl::prove::Bounds;
 use touchoff_dsl::source::Source;
@@ -28,7 +28,6 @@ pub struct Interpreted {
     info: ToolInfo,
     evaluations: Vec<Tape>,
     plan: PlanEvaluator,
-    clearance_tape: Tape,
     warnings: String,
 }
 
@@ -121,7 +120,6 @@ impl Interpreted {
                     .map(|k| Tape::evaluation(&tool, k))
                     .collect(),
                 plan: PlanEvaluator::new(&tool),
-                clearance_tape: Tape::clearance(&tool),
                 warnings: diagnostics,
             }),
             Err(_) => Err(ToolError::Invalid(diagnostics)),
@@ -200,20 +198,6 @@ fn profile_segment(segment: model::ProfileSegment) -> ProfileSegment {
 impl Tool for Interpreted {
     fn info(&self) -> &ToolInfo {
         &self.info
-    }
-
-    fn clearance(&self, point: [f64; 3]) -> f64 {
-        let mut owner = [0.0];
-        self.plan.run(point, 1.0, &mut Scratch::default(), &mut owner);
-        if owner[0] >= 0.0 {
-            return 0.0;
-        }
-        // A tape runs on blocks, so the point is put in every lane.
-        let points = point.map(|coordinate| [coordinate; BLOCK_POINTS]);
-        let block = Block { points: points.each_ref(), count: 1, length: 1.0 };
-        let (mut registers, mut results) = (Vec::new(), [[0.0; BLOCK_POINTS]]);
-        self.clearance_tape.run(block, &mut registers, &mut results);
-        results[0][0]
     }
 
     fn evaluate(

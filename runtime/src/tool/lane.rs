@@ -7,6 +7,9 @@
 use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask, f64x8, mask64x8};
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
+/// The square of the length below which a vector has no direction, 2^-960: smaller squares lose digits.
+const SHORTEST_SQUARE: f64 = f64::from_bits((1023 - 960) << 52);
+
 /// A number, or several numbers side by side.
 ///
 /// Every operation is IEEE 754 double precision, rounded once, in every lane, so generated code produces the same bits
@@ -66,6 +69,13 @@ pub trait Lane:
     #[inline(always)]
     fn pick(mask: Self::Mask, region: Self, before: Self) -> Self {
         Self::select(mask, region, before)
+    }
+
+    /// Returns a component of a unit vector: `part / length`, or `short` where the vector, whose length has this `square`, is too
+    /// short to have a direction.
+    #[inline(always)]
+    fn component(square: Self, part: Self, length: Self, short: f64) -> Self {
+        Self::select(Self::le(square, part.of(SHORTEST_SQUARE)), part.of(short), part / length)
     }
 
     /// Returns `a / b`, and 0 where `b` is 0.

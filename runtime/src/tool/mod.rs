@@ -5,6 +5,7 @@
 //! frame) and in the unit of the tool's file, unless stated otherwise.
 
 mod compiled;
+mod distance;
 mod enclosure;
 mod info;
 #[cfg(feature = "interpreter")]
@@ -64,13 +65,14 @@ pub trait Tool: Send + Sync {
     /// The tool's name, surfaces, regions and extent.
     fn info(&self) -> &ToolInfo;
 
-    /// Returns the distance from a point of the tool's frame to the tool, in the file's unit.
-    ///
-    /// It is 0 inside, and a lower bound unless [`ToolInfo::is_exact`]. Farther away than 48 sizes of the tool it
-    /// is the distance to a cylinder around the tool, and therefore too small by less than one size. Of the
-    /// library's tools no rounding error was found above 2^-52 times the power of two above the tool's largest
-    /// coordinate and the point's distance from the origin.
-    fn clearance(&self, point: [f64; 3]) -> f64;
+    /// Returns the distance from a point of the tool's frame to the tool, in the file's unit: 0 inside, and outside
+    /// [`ToolInfo::distance_from_outside`].
+    fn clearance(&self, point: [f64; 3]) -> f64 {
+        let (mut points, mut evaluations) = (PointBatch::default(), Evaluations::default());
+        points.push(point);
+        self.evaluate(Level::baseline(), Outputs::INSIDE, &points, 1.0, &mut evaluations);
+        if evaluations.count() > 0 { 0.0 } else { self.info().distance_from_outside(point) }
+    }
 
     /// Evaluates the requested outputs at points of the tool's frame.
     ///

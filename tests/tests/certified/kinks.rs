@@ -49,9 +49,6 @@ impl Tool for Outlined {
     fn info(&self) -> &ToolInfo {
         &self.0
     }
-    fn clearance(&self, _: [f64; 3]) -> f64 {
-        unreachable!("the profile is known")
-    }
     fn evaluate(&self, _: Level, _: Outputs, _: &PointBatch, _: f64, _: &mut Evaluations) {
         unreachable!("the profile is known")
     }

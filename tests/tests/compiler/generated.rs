@@ -12,23 +12,36 @@ use touchoff_dsl::{compile, emit};
 use touchoff_tests::library::{self, checked, library};
 
 /// Methods that generated code may call: none panics, none is a libm function.
-const METHODS: [&str; 4] = ["sqrt", "abs", "of", "assign"];
-const FUNCTIONS: [&str; 18] = [
+const METHODS: [&str; 9] = [
+    "sqrt",
+    "abs",
+    "of",
+    "assign",
+    "set_depth",
+    "set_magnitude",
+    "set_niceness",
+    "set_direction",
+    "set_gradient",
+];
+const FUNCTIONS: [&str; 21] = [
     "EvaluationEnclosure::of",
     "touchoff::Interval::new",
     "Some",
     "Lane::of",
-    "Lane::le",
-    "Lane::lt",
-    "Lane::select",
-    "Lane::min",
-    "Lane::max",
-    "Lane::quotient",
+    "L::le",
+    "L::lt",
+    "L::select",
+    "L::min",
+    "L::max",
+    "L::component",
+    "L::quotient",
     "L::any",
     "LaneEvaluation::none",
-    "std::borrow::Cow::Borrowed",
+    "Cow::Borrowed",
     "ProfileSegment::line",
     "ProfileSegment::arc",
+    "Circle::convex",
+    "Circle::concave",
     "Region::new",
     "EnvelopeSlab::new",
     "Surface::new",

@@ -91,7 +91,7 @@ fn mutant(original: &PlannedTool, kind: usize, rng: &mut Rng) -> Option<Mutant> 
             let [x, y, z] = changed.raw_direction.0;
             changed.raw_direction.0 = [z, y, graph.neg(x)];
         }
-        5 => tool.plan.owner = owned(&tool.plan.owner, |owner| owner.filter(|o| *o != region)),
+        5 => tool.tree = owned(&tool.tree, &|owner| owner.filter(|o| *o != region)),
         6 => {
             let other = (region + 1 + pick(tool.model.regions.len().max(2) - 1))
                 .checked_rem(tool.model.regions.len())
@@ -99,12 +99,12 @@ fn mutant(original: &PlannedTool, kind: usize, rng: &mut Rng) -> Option<Mutant> 
             location = format!("{location} as {}", tool.model.regions[other].name);
             let new_owner =
                 |owner: Option<usize>| owner.map(|o| if o == region { other } else { o });
-            tool.plan.owner = owned(&tool.plan.owner, new_owner);
+            tool.tree = owned(&tool.tree, &new_owner);
         }
         7 => {
-            let mut split = pick(tool.plan.owner.test_count());
+            let mut split = pick(tool.tree.test_count());
             location = format!("split {split}");
-            tool.plan.owner = with_split_exchanged(&tool.plan.owner, &mut split);
+            tool.tree = with_split_exchanged(&tool.tree, &mut split);
         }
         _ => {
             let curve = pick(tool.model.curves.len());
@@ -125,15 +125,18 @@ fn mutant(original: &PlannedTool, kind: usize, rng: &mut Rng) -> Option<Mutant> 
 }
 
 /// Returns the tree with another owner for each one.
-fn owned(
-    tree: &Tree<Option<usize>>,
-    owner: impl Fn(Option<usize>) -> Option<usize>,
-) -> Tree<Option<usize>> {
-    tree.map(&|leaf| Some(owner(*leaf))).expect("every leaf is kept")
+fn owned(tree: &Tree, other: &impl Fn(Option<usize>) -> Option<usize>) -> Tree {
+    match tree {
+        Tree::Leaf(owner) => Tree::Leaf(other(*owner)),
+        Tree::Split { curve, strict, below, above } => {
+            let [below, above] = [below, above].map(|side| Box::new(owned(side, other)));
+            Tree::Split { curve: *curve, strict: *strict, below, above }
+        }
+    }
 }
 
 /// Returns the tree with the two sides of one split exchanged. `remaining` is the number of that split in preorder.
-fn with_split_exchanged(tree: &Tree<Option<usize>>, remaining: &mut usize) -> Tree<Option<usize>> {
+fn with_split_exchanged(tree: &Tree, remaining: &mut usize) -> Tree {
     let Tree::Split { curve, strict, below, above } = tree else { return tree.clone() };
     let is_chosen = *remaining == 0;
     *remaining = remaining.wrapping_sub(1);
@@ -152,8 +155,7 @@ fn evaluation(
     [x, y, z]: [f64; 3],
 ) -> Option<Value> {
     evaluator.evaluate(EvaluationPoint::new(x, y, z));
-    let owner =
-        *tool.plan.owner.leaf_at(&|curve: usize| evaluator.get(tool.model.curves[curve].value));
+    let owner = tool.tree.owner_at(&|curve: usize| evaluator.get(tool.model.curves[curve].value));
     let region = &tool.model.regions[owner?];
     let direction = region.raw_direction.0.map(|component| evaluator.get(component));
     Some((evaluator.get(region.depth), direction))

@@ -1,23 +1,17 @@
-//! Expressions and trees of splits as Rust. A tree becomes nested `if`s where each leaf is an expression, masks
-//! where it is an owner.
+//! Expressions and the tree of splits as Rust: each test gives a mask of lanes, and each leaf adds lanes to the mask of its
+//! region.
 
+use super::names::Names;
 use super::tokens::Tokens;
 use crate::expr::{Coord, Graph, Id, Node};
 use crate::formula::{Curve, CurveIndex};
+use crate::model::Model;
 use crate::number::Number;
 use crate::plan::Tree;
+use crate::resolve::SHORTEST_SQUARE;
 use proc_macro2::TokenStream;
 use quote::quote;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
-
-/// The two forms of generated code.
-#[derive(Clone, Copy, PartialEq)]
-pub(super) enum Form {
-    /// `f64`, with nested `if`
-    Scalar,
-    /// Any lanes, with selects
-    Lanes,
-}
 
 /// One side of a comparison.
 enum Operand {
@@ -25,28 +19,26 @@ enum Operand {
     Constant(f64),
 }
 
-/// A writer of the body of one function.
-pub(super) struct Writer<'g> {
-    graph: &'g Graph,
-    curves: &'g [Curve],
-    form: Form,
-    /// The number of uses of each node in this function. A node that is used once is written inline.
+/// A writer of the body of the evaluator.
+pub(super) struct Writer<'m> {
+    graph: &'m Graph,
+    curves: &'m [Curve],
+    names: Names,
+    /// The number of uses of each node. A node that is used once is written inline.
     use_counts: BTreeMap<Id, usize>,
 }
 
-impl<'g> Writer<'g> {
-    /// Makes a writer for a function that computes some roots and tests some curves.
-    fn new(
-        graph: &'g Graph,
-        curves: &'g [Curve],
-        form: Form,
-        roots: &[Id],
-        tested: &BTreeSet<(CurveIndex, bool)>,
-    ) -> Writer<'g> {
-        let mut writer = Writer { graph, curves, form, use_counts: BTreeMap::new() };
+impl<'m> Writer<'m> {
+    /// Makes a writer of code that descends a tree and computes some roots.
+    pub(super) fn new(model: &'m Model, tree: &Tree, roots: &[Id]) -> Writer<'m> {
+        let (graph, curves) = (&model.graph, &model.curves);
+        let names = Names::new(model);
+        let mut writer = Writer { graph, curves, names, use_counts: BTreeMap::new() };
+        let mut tests = BTreeSet::new();
+        tested(tree, &mut tests);
         let mut all: Vec<Id> = roots.to_vec();
-        for (curve, _) in tested {
-            all.extend(writer.compared(*curve));
+        for (curve, _) in tests {
+            all.extend(writer.compared(curve));
         }
         for root in &all {
             *writer.use_counts.entry(*root).or_default() += 1;
@@ -59,30 +51,9 @@ impl<'g> Writer<'g> {
         writer
     }
 
-    /// Makes a writer for a function that computes some roots and descends a tree.
-    pub(super) fn of_tree<L>(
-        graph: &'g Graph,
-        curves: &'g [Curve],
-        form: Form,
-        roots: &[Id],
-        tree: &Tree<L>,
-    ) -> Writer<'g> {
-        let mut tests = BTreeSet::new();
-        tested(tree, &mut tests);
-        Writer::new(graph, curves, form, roots, &tests)
-    }
-
-    /// Writes the test of a curve for people.
-    pub(super) fn shown(
-        graph: &Graph,
-        curves: &[Curve],
-        curve: CurveIndex,
-        strict: bool,
-    ) -> String {
-        let writer = Writer { graph, curves, form: Form::Scalar, use_counts: BTreeMap::new() };
-        let mut code = Tokens::default();
-        writer.test(&mut code, curve, strict);
-        code.done().to_string()
+    /// Returns the name of the mask of the lanes in a region.
+    pub(super) fn mask(&self, region: usize) -> &str {
+        self.names.mask(region)
     }
 
     fn mentions(&self, coord: Coord) -> bool {
@@ -134,50 +105,30 @@ impl<'g> Writer<'g> {
         })
     }
 
-    /// Writes the test of a curve, whose shared operands are already bound. In scalar code a constant is on
-    /// the right.
+    /// Writes the test of a curve, whose shared operands are already bound.
     fn test(&self, code: &mut Tokens, curve: CurveIndex, strict: bool) {
         let [left, right] = self.sides(curve);
-        if self.form == Form::Lanes {
-            code.lane(if strict { "lt" } else { "le" }, |code| {
-                self.side(code, &left);
-                code.sign(",");
-                self.side(code, &right);
-            });
-            return;
-        }
-        let mirrored = matches!(left, Operand::Constant(_));
-        let (first, second) = if mirrored { (right, left) } else { (left, right) };
-        self.side(code, &first);
-        code.sign(match (mirrored, strict) {
-            (false, false) => "<=",
-            (false, true) => "<",
-            (true, false) => ">=",
-            (true, true) => ">",
+        code.lane(if strict { "lt" } else { "le" }, |code| {
+            self.side(code, &left);
+            code.sign(",");
+            self.side(code, &right);
         });
-        self.side(code, &second);
     }
 
     /// Writes one side of a comparison.
     fn side(&self, code: &mut Tokens, side: &Operand) {
         match side {
             Operand::Node(id) => self.value(code, *id),
-            Operand::Constant(value) => self.constant(code, *value),
+            Operand::Constant(value) => {
+                code.of_lanes(*value);
+            }
         }
-    }
-
-    /// Writes a constant as an operand of its own.
-    fn constant(&self, code: &mut Tokens, value: f64) {
-        match self.form {
-            Form::Scalar => code.number(value),
-            Form::Lanes => code.of_lanes(value),
-        };
     }
 
     /// Writes a node as an operand: its name if it has one, else its expression.
     pub(super) fn value(&self, code: &mut Tokens, id: Id) {
         if self.named(id) {
-            code.word(&name(id));
+            code.word(&self.names.value(id));
             return;
         }
         match self.graph.node(id) {
@@ -188,15 +139,15 @@ impl<'g> Writer<'g> {
         }
     }
 
-    /// Writes a node as the value of a block.
-    fn leaf(&self, code: &mut Tokens, id: Id) {
-        if self.named(id) { self.value(code, id) } else { self.operation(code, id) }
-    }
-
     /// Returns whether a node has its own `let`.
     fn named(&self, id: Id) -> bool {
         let free = matches!(self.graph.node(id), Node::Const(_) | Node::Coord(_));
         !free && self.use_counts.get(&id).is_some_and(|count| *count > 1)
+    }
+
+    /// Returns whether a node is the square of the length below which a vector has no direction.
+    fn is_shortest(&self, id: &Id) -> bool {
+        self.known(id) == Some(SHORTEST_SQUARE)
     }
 
     fn known(&self, id: &Id) -> Option<f64> {
@@ -216,9 +167,11 @@ impl<'g> Writer<'g> {
     }
 
     /// Writes a node's operation, even if the node has a name.
-    fn operation(&self, code: &mut Tokens, id: Id) {
+    pub(super) fn operation(&self, code: &mut Tokens, id: Id) {
         match self.graph.node(id) {
-            Node::Const(value) => self.constant(code, value.to_f64()),
+            Node::Const(value) => {
+                code.of_lanes(value.to_f64());
+            }
             Node::Coord(coord) => {
                 code.word(match coord {
                     Coord::X => "x",
@@ -242,14 +195,17 @@ impl<'g> Writer<'g> {
                 None => self.two(code, a, "+", b),
             },
             Node::Sub(a, b) => self.two(code, a, "-", b),
-            // The graph has a product's constant on the left. It is written on the right, since the trait `Lane`
-            // has `Self * f64` but not `f64 * Self`.
-            Node::Mul(a, b) => match self.known(a) {
-                Some(factor) => {
+            // A product's constant is written on the right, since the trait `Lane` has `Self * f64` but not `f64 * Self`.
+            Node::Mul(a, b) => match (self.known(a), self.known(b)) {
+                (Some(factor), _) => {
                     self.value(code, *b);
                     code.sign("*").number(factor);
                 }
-                None => self.two(code, a, "*", b),
+                (None, Some(factor)) => {
+                    self.value(code, *a);
+                    code.sign("*").number(factor);
+                }
+                (None, None) => self.two(code, a, "*", b),
             },
             Node::Div(a, b) => self.two(code, a, "/", b),
             Node::Quotient(a, b) => self.call(code, "quotient", a, b),
@@ -263,21 +219,24 @@ impl<'g> Writer<'g> {
                 self.value(code, *a);
                 code.sign(".").word("sqrt").paren(|_| {});
             }
-            Node::Select { low, high, then, other } => match self.form {
-                Form::Scalar => {
-                    code.word("if");
-                    self.two(code, low, "<=", high);
-                    code.brace(|code| self.value(code, *then));
-                    code.word("else").brace(|code| self.value(code, *other));
-                }
-                Form::Lanes => {
-                    code.lane("select", |code| {
-                        self.call(code, "le", low, high);
-                        code.sign(",");
-                        self.two(code, then, ",", other);
-                    });
-                }
-            },
+            Node::Select { low, high, then, other }
+                if let (Node::Div(part, whole), Some(short), true) =
+                    (self.graph.node(*other), self.known(then), self.is_shortest(high)) =>
+            {
+                code.lane("component", |code| {
+                    self.two(code, low, ",", part);
+                    code.sign(",");
+                    self.value(code, *whole);
+                    code.sign(",").number(short);
+                });
+            }
+            Node::Select { low, high, then, other } => {
+                code.lane("select", |code| {
+                    self.call(code, "le", low, high);
+                    code.sign(",");
+                    self.two(code, then, ",", other);
+                });
+            }
         }
     }
 
@@ -291,7 +250,7 @@ impl<'g> Writer<'g> {
         // Operands come first, so every name is defined before its use.
         for id in self.graph.dependencies(roots) {
             if self.named(id) && scope.insert(id) {
-                code.word("let").word(&name(id)).sign("=");
+                code.word("let").word(&self.names.value(id)).sign("=");
                 self.operation(code, id);
                 code.sign(";");
             }
@@ -300,7 +259,7 @@ impl<'g> Writer<'g> {
 }
 
 /// Collects the curves that a tree tests, each with the strictness of the test.
-fn tested<L>(tree: &Tree<L>, tests: &mut BTreeSet<(CurveIndex, bool)>) {
+fn tested(tree: &Tree, tests: &mut BTreeSet<(CurveIndex, bool)>) {
     if let Tree::Split { curve, strict, below, above } = tree {
         tests.insert((*curve, *strict));
         tested(below, tests);
@@ -308,70 +267,22 @@ fn tested<L>(tree: &Tree<L>, tests: &mut BTreeSet<(CurveIndex, bool)>) {
     }
 }
 
-fn name(id: Id) -> String {
-    format!("t{}", id.index())
-}
-
 impl Writer<'_> {
-    /// Writes a tree of expressions as nested `if`s. Nodes that every path down the tree needs are computed
-    /// before the first test.
-    pub(super) fn nested(&self, code: &mut Tokens, tree: &Tree<Id>) {
+    /// Writes a descent of the tree, which sets the mask of each region. Returns the nodes that have a name at its end.
+    pub(super) fn descent(&self, code: &mut Tokens, tree: &Tree) -> BTreeSet<Id> {
         let mut always = HashMap::new();
-        self.always(tree, &|id| vec![*id], &mut always);
-        self.branch(code, tree, &always, &BTreeSet::new());
-    }
-
-    /// Writes a tree's code, and returns whether it is a single `if`.
-    fn branch(
-        &self,
-        code: &mut Tokens,
-        tree: &Tree<Id>,
-        always: &HashMap<*const Tree<Id>, BTreeSet<Id>>,
-        scope: &BTreeSet<Id>,
-    ) -> bool {
-        let mut scope = scope.clone();
-        let needed = always.get(&std::ptr::from_ref(tree)).into_iter().flatten().copied();
-        let mut lets = Tokens::default();
-        self.lets(&mut lets, needed, &mut scope);
-        let without_lets = lets.is_empty();
-        code.add(lets);
-        let (curve, strict, below, above) = match tree {
-            Tree::Leaf(id) => {
-                self.leaf(code, *id);
-                return false;
-            }
-            Tree::Split { curve, strict, below, above } => (*curve, *strict, below, above),
-        };
-        code.word("if");
-        self.test(code, curve, strict);
-        code.brace(|code| {
-            self.branch(code, below, always, &scope);
-        });
-        let mut other = Tokens::default();
-        let is_chain = self.branch(&mut other, above, always, &scope);
-        code.word("else");
-        if is_chain {
-            code.add(other);
-        } else {
-            code.brace(|code| {
-                code.add(other);
-            });
-        }
-        without_lets
+        self.always(tree, &mut always);
+        let mut descent = Descent { writer: self, always, masks: 0 };
+        descent.below(code, tree, "present", &BTreeSet::new())
     }
 
     /// Records, for each subtree, the nodes that every path down from it needs.
-    fn always<L>(
-        &self,
-        tree: &Tree<L>,
-        needs: &impl Fn(&L) -> Vec<Id>,
-        known: &mut HashMap<*const Tree<L>, BTreeSet<Id>>,
-    ) {
+    fn always(&self, tree: &Tree, known: &mut HashMap<*const Tree, BTreeSet<Id>>) {
         let own = match tree {
-            Tree::Leaf(leaf) => self.graph.dependencies(needs(leaf)).into_iter().collect(),
+            Tree::Leaf(_) => BTreeSet::new(),
             Tree::Split { curve, below, above, .. } => {
-                self.always(below, needs, known);
-                self.always(above, needs, known);
+                self.always(below, known);
+                self.always(above, known);
                 let [below, above] =
                     [below, above].map(|side| &known[&std::ptr::from_ref(&**side)]);
                 let compared = self.graph.dependencies(self.compared(*curve));
@@ -380,29 +291,14 @@ impl Writer<'_> {
         };
         known.insert(std::ptr::from_ref(tree), own);
     }
-
-    /// Writes a tree as a traversal by lanes. `leaf` receives the mask of the lanes that reach it. Returns
-    /// the nodes that have a name at the end.
-    pub(super) fn walked<L: PartialEq + Default>(
-        &self,
-        code: &mut Tokens,
-        tree: &Tree<L>,
-        leaf: &impl Fn(&mut Tokens, &str, &L),
-    ) -> BTreeSet<Id> {
-        let mut always = HashMap::new();
-        self.always(tree, &|_| vec![], &mut always);
-        let mut walk = Walk { writer: self, always, masks: 0, leaf };
-        walk.below(code, tree, "present", &BTreeSet::new())
-    }
 }
 
-/// The state while writing a traversal by lanes.
-struct Walk<'w, 'g, L, F> {
-    writer: &'w Writer<'g>,
-    always: HashMap<*const Tree<L>, BTreeSet<Id>>,
+/// The state while writing a descent.
+struct Descent<'w, 'm> {
+    writer: &'w Writer<'m>,
+    always: HashMap<*const Tree, BTreeSet<Id>>,
     /// The number of masks named so far.
     masks: usize,
-    leaf: &'w F,
 }
 
 /// The lanes of a mask on one side of a test, by the names of both; `not` is `!` where the test fails.
@@ -412,12 +308,12 @@ struct LanesOfSide<'n> {
     test: &'n str,
 }
 
-impl<L: PartialEq + Default, F: Fn(&mut Tokens, &str, &L)> Walk<'_, '_, L, F> {
+impl Descent<'_, '_> {
     /// Writes the code for the lanes of a mask, and returns the nodes named in it.
     fn below(
         &mut self,
         code: &mut Tokens,
-        tree: &Tree<L>,
+        tree: &Tree,
         mask: &str,
         scope: &BTreeSet<Id>,
     ) -> BTreeSet<Id> {
@@ -425,7 +321,10 @@ impl<L: PartialEq + Default, F: Fn(&mut Tokens, &str, &L)> Walk<'_, '_, L, F> {
         let needed = self.always.get(&std::ptr::from_ref(tree)).into_iter().flatten().copied();
         self.writer.lets(code, needed, &mut scope);
         match tree {
-            Tree::Leaf(own) => (self.leaf)(code, mask, own),
+            Tree::Leaf(None) => {}
+            Tree::Leaf(Some(region)) => {
+                code.word(self.writer.mask(*region)).sign("=").word(mask).sign(";");
+            }
             Tree::Split { curve, strict, below, above } => {
                 self.masks += 1;
                 let test = format!("test{}", self.masks);
@@ -439,29 +338,36 @@ impl<L: PartialEq + Default, F: Fn(&mut Tokens, &str, &L)> Walk<'_, '_, L, F> {
         scope
     }
 
-    /// Writes one side of a split, unless it is the default leaf.
+    /// Writes one side of a split, unless it is outside.
     fn side(
         &mut self,
         code: &mut Tokens,
-        tree: &Tree<L>,
+        tree: &Tree,
         LanesOfSide { mask, not, test }: LanesOfSide<'_>,
         scope: &BTreeSet<Id>,
     ) {
-        if *tree == Tree::Leaf(L::default()) {
-            return;
+        match tree {
+            Tree::Leaf(None) => {}
+            Tree::Leaf(Some(region)) => {
+                let own = self.writer.mask(*region);
+                code.word(own).sign("=").word(own).sign("|").paren(|code| {
+                    code.word(mask).sign("&").sign(not).word(test);
+                });
+                code.sign(";");
+            }
+            Tree::Split { .. } => {
+                self.masks += 1;
+                let lanes = format!("lanes{}", self.masks);
+                code.word("let").word(&lanes).sign("=").word(mask).sign("&").sign(not).word(test);
+                code.sign(";").word("if").any(|code| {
+                    code.word(&lanes);
+                });
+                let mut inner = Tokens::default();
+                self.below(&mut inner, tree, &lanes, scope);
+                code.brace(|code| {
+                    code.add(inner);
+                });
+            }
         }
-        self.masks += 1;
-        let own = format!("lanes{}", self.masks);
-        code.word("let").word(&own).sign("=").word(mask).sign("&").sign(not).word(test).sign(";");
-        if let Tree::Leaf(leaf) = tree {
-            (self.leaf)(code, &own, leaf);
-            return;
-        }
-        code.word("if").any(&own);
-        let mut inner = Tokens::default();
-        self.below(&mut inner, tree, &own, scope);
-        code.brace(|code| {
-            code.add(inner);
-        });
     }
 }

@@ -1,7 +1,6 @@
 //! The intermediate stages of a tool as text, which reviewers compare after a change of the compiler. The tree of
 //! splits is a graph in Graphviz's DOT.
 
-use super::code::Writer;
 use crate::checked::CheckedTool;
 use crate::diagnostic::format_number;
 use crate::expr::{Coord, Graph, Id, Node};
@@ -203,7 +202,7 @@ impl Infix<'_> {
 /// Writes the tree of owners: a box per test, whose left branch is taken if it holds, and a leaf per region.
 pub fn dot(tool: &CheckedTool) -> String {
     let mut graph = Dot { tool, text: String::new(), nodes: 0 };
-    graph.tree(&tool.plan.owner);
+    graph.tree(&tool.tree);
     let name = &tool.model.name;
     format!("digraph {name} {{\n    node [fontname=\"monospace\", shape=box];\n{}}}\n", graph.text)
 }
@@ -223,7 +222,7 @@ impl Dot<'_> {
         node
     }
 
-    fn tree(&mut self, tree: &Tree<Option<usize>>) -> usize {
+    fn tree(&mut self, tree: &Tree) -> usize {
         match tree {
             Tree::Leaf(None) => self.node("outside", ", shape=plaintext"),
             Tree::Leaf(Some(owner)) => {
@@ -232,7 +231,9 @@ impl Dot<'_> {
             }
             Tree::Split { curve, strict, below, above } => {
                 let model = &self.tool.model;
-                let test = Writer::shown(&model.graph, &model.curves, *curve, *strict);
+                let sign = if *strict { "<" } else { "<=" };
+                let test =
+                    format!("{} {sign} 0", expression(self.tool, model.curves[*curve].value));
                 let name = model.curves[*curve].name.as_ref();
                 let label = name.map_or(test.clone(), |name| format!("{name}\\n{test}"));
                 let node = self.node(&label, "");

@@ -1,10 +1,11 @@
-//! Emission of a checked tool as Rust: straight-line code without loops, recursion, tables or panics. Points
-//! inside have one evaluator, generic over numbers, vectors of numbers, duals and enclosures; the distance from
-//! a point outside is a function of `f64`. Emission cannot fail, since all errors are found earlier.
+//! Emission of a checked tool as Rust: one evaluator without loops, recursion, tables or panics, generic over numbers, vectors
+//! of numbers, duals and enclosures. It branches only where no lane takes a side of a split or is in a region; everything
+//! between two branches is straight-line code. Emission cannot fail, since all errors are found earlier.
 
 mod code;
 mod lanes;
 mod listing;
+mod names;
 mod tokens;
 
 pub use listing::dot;
@@ -17,11 +18,10 @@ use crate::digest;
 use crate::domain::Domain;
 use crate::expr::Id;
 use crate::model::RegionOutputs;
-use code::{Form, Writer};
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::quote;
 use std::fmt::Write;
-use tokens::{Tokens, literal};
+use tokens::literal;
 
 /// Emits the type and its evaluators. The documentation of the type has no drawing, since an editor would
 /// show it as text; see [`with_drawing`].
@@ -40,7 +40,6 @@ fn code(tool: &CheckedTool, drawing: &TokenStream) -> TokenStream {
     let name = Ident::new(&tool.model.name, Span::call_site());
     let docs = documentation(tool);
     let info = info(tool);
-    let clearance = clearance(tool);
     let lanes = lanes::evaluator(tool);
     // A profile needs no enclosure by interval evaluation: its geometry is known.
     let enclose = tool.model.outline().next().is_none().then(|| {
@@ -58,14 +57,14 @@ fn code(tool: &CheckedTool, drawing: &TokenStream) -> TokenStream {
 
         #[allow(clippy::all, clippy::pedantic, unused_imports, unused_variables, unused_parens)]
         const _: () = {
+            use ::std::borrow::Cow;
             use ::touchoff::tool::{
-                Outputs, ToolInfo, Circle, DepthBounds, EvaluationEnclosure, Evaluators, LaneEvaluation, Lane, ProfileSegment, Region, Symmetry,
-                EnvelopeSlab, Surface,
+                Circle, DepthBounds, EnvelopeSlab, EvaluationEnclosure, Evaluators, Lane, LaneEvaluation, Outputs, ProfileSegment, Region,
+                Surface, Symmetry, ToolInfo,
             };
 
             impl Evaluators for #name {
                 #info
-                #clearance
                 #enclose
                 #lanes
             }
@@ -87,7 +86,6 @@ pub fn placeholder(name: &str) -> TokenStream {
             use ::touchoff::tool::{Outputs, ToolInfo, Evaluators, LaneEvaluation, Lane};
             impl Evaluators for #name {
                 fn info() -> &'static ToolInfo { ::core::unreachable!() }
-                fn clearance(point: [f64; 3]) -> f64 { ::core::unreachable!() }
                 fn evaluate_lanes<L: Lane>(
                     point: [L; 3], length: L, present: L::Mask, outputs: Outputs,
                 ) -> LaneEvaluation<L> { ::core::unreachable!() }
@@ -157,13 +155,8 @@ fn info(tool: &CheckedTool) -> TokenStream {
             None => quote! { ProfileSegment::line([#fd, #fz], [#td, #tz], #surface) },
             Some((centre, radius, convex)) => {
                 let ([cd, cz], radius) = (centre.map(literal), literal(radius));
-                quote! {
-                    ProfileSegment::arc(
-                        [[#fd, #fz], [#td, #tz]],
-                        Circle { centre: [#cd, #cz], radius: #radius, convex: #convex },
-                        #surface,
-                    )
-                }
+                let circle = if convex { quote! { Circle::convex } } else { quote! { Circle::concave } };
+                quote! { ProfileSegment::arc([[#fd, #fz], [#td, #tz]], #circle([#cd, #cz], #radius), #surface) }
             }
         }
     });
@@ -190,14 +183,14 @@ fn info(tool: &CheckedTool) -> TokenStream {
     quote! {
         fn info() -> &'static ToolInfo {
             static INFO: ToolInfo = ToolInfo {
-                name: ::std::borrow::Cow::Borrowed(#name),
-                title: ::std::borrow::Cow::Borrowed(#title),
+                name: Cow::Borrowed(#name),
+                title: Cow::Borrowed(#title),
                 unit: ::touchoff::Unit::#unit,
-                surfaces: ::std::borrow::Cow::Borrowed(&[#(#surfaces),*]),
-                regions: ::std::borrow::Cow::Borrowed(&[#(#regions),*]),
-                envelope: ::std::borrow::Cow::Borrowed(&[#(#slabs),*]),
+                surfaces: Cow::Borrowed(&[#(#surfaces),*]),
+                regions: Cow::Borrowed(&[#(#regions),*]),
+                envelope: Cow::Borrowed(&[#(#slabs),*]),
                 symmetry: #symmetry,
-                outline: ::std::borrow::Cow::Borrowed(&[#(#pieces),*]),
+                outline: Cow::Borrowed(&[#(#pieces),*]),
                 depth: DepthBounds { lower_slope: #lower_slope, lipschitz: #lipschitz, rounding: #rounding },
                 digest: #digest,
             };
@@ -209,31 +202,18 @@ fn info(tool: &CheckedTool) -> TokenStream {
 /// One quantity that the evaluator computes.
 struct Output {
     name: &'static str,
+    /// The function of `LaneEvaluation` that sets it.
+    set: &'static str,
     of: fn(&RegionOutputs) -> Vec<Id>,
 }
 
 const OUTPUTS: [Output; 5] = [
-    Output { name: "depth", of: |o| vec![o.depth] },
-    Output { name: "magnitude", of: |o| vec![o.magnitude] },
-    Output { name: "niceness", of: |o| vec![o.niceness] },
-    Output { name: "direction", of: |o| o.direction.to_vec() },
-    Output { name: "gradient", of: |o| o.gradient.to_vec() },
+    Output { name: "depth", set: "set_depth", of: |o| vec![o.depth] },
+    Output { name: "magnitude", set: "set_magnitude", of: |o| vec![o.magnitude] },
+    Output { name: "niceness", set: "set_niceness", of: |o| vec![o.niceness] },
+    Output { name: "direction", set: "set_direction", of: |o| o.direction.to_vec() },
+    Output { name: "gradient", set: "set_gradient", of: |o| o.gradient.to_vec() },
 ];
-
-/// Emits the distance from a point outside, a tree of nested `if`s.
-fn clearance(tool: &CheckedTool) -> TokenStream {
-    let model = &tool.model;
-    let tree = &tool.plan.clearance;
-    let roots: Vec<Id> = tree.leaves().into_iter().copied().collect();
-    let writer = Writer::of_tree(&model.graph, &model.curves, Form::Scalar, &roots, tree);
-    let mut code = Tokens::default();
-    writer.nested(&mut code, tree);
-    let (given, code) = (writer.given(), code.done());
-    quote! {
-        #[inline]
-        fn clearance([x, y, z]: [f64; 3]) -> f64 { #given #code }
-    }
-}
 
 /// Formats the code for people, without the drawing in its documentation.
 #[cfg(feature = "source-code")]

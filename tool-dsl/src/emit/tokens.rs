@@ -12,10 +12,6 @@ impl Tokens {
         self.0
     }
 
-    pub(super) fn is_empty(&self) -> bool {
-        self.0.is_empty()
-    }
-
     pub(super) fn add(&mut self, more: Tokens) -> &mut Tokens {
         self.0.extend(more.0);
         self
@@ -73,14 +69,12 @@ impl Tokens {
 
     /// Appends a call of one of `Lane`'s functions.
     pub(super) fn lane(&mut self, name: &str, inner: impl FnOnce(&mut Tokens)) -> &mut Tokens {
-        self.word("Lane").sign("::").word(name).paren(inner)
+        self.word("L").sign("::").word(name).paren(inner)
     }
 
     /// Appends a test for any lane set in a mask.
-    pub(super) fn any(&mut self, mask: &str) -> &mut Tokens {
-        self.word("L").sign("::").word("any").paren(|code| {
-            code.word(mask);
-        })
+    pub(super) fn any(&mut self, mask: impl FnOnce(&mut Tokens)) -> &mut Tokens {
+        self.word("L").sign("::").word("any").paren(mask)
     }
 
     /// Appends a constant for all lanes.

@@ -100,19 +100,7 @@ enum Operation {
     Max(Slot, Slot),
     Abs(Slot),
     Sqrt(Slot),
-    Select {
-        low: Slot,
-        high: Slot,
-        then: Slot,
-        other: Slot,
-    },
-    /// `then` where `value < 0`, or `≤ 0` if not strict.
-    Side {
-        value: Slot,
-        strict: bool,
-        then: Slot,
-        other: Slot,
-    },
+    Select { low: Slot, high: Slot, then: Slot, other: Slot },
 }
 
 impl Operation {

@@ -4,8 +4,6 @@ use super::{OUTPUT_COUNT, Operation, Slot};
 use crate::checked::CheckedTool;
 use crate::expr::value::{max, min, quotient};
 use crate::expr::{Coord, Id};
-use crate::formula::CurveIndex;
-use crate::plan::Tree;
 use std::collections::HashMap;
 
 /// The number of points that a tape evaluates at a time.
@@ -43,13 +41,6 @@ impl Tape {
             outputs.push((slot, writer.operations.len()));
         }
         Tape { operations: writer.operations, outputs }
-    }
-
-    /// Makes the tape whose only output is the distance from points outside to the tool.
-    pub fn clearance(tool: &CheckedTool) -> Tape {
-        let mut writer = TapeWriter { tool, operations: Vec::new(), slots: HashMap::new() };
-        let slot = writer.tree(&tool.plan.clearance);
-        Tape { outputs: vec![(slot, writer.operations.len())], operations: writer.operations }
     }
 
     /// Allocates the registers that [`Tape::run`] needs.
@@ -137,14 +128,6 @@ pub(super) fn perform(
             let low = low; let high = high; let then = then; let other = other;
             if low <= high { then } else { other }
         },
-        Operation::Side { value, strict: false, then, other } => each! {
-            let value = value; let then = then; let other = other;
-            if value <= 0.0 { then } else { other }
-        },
-        Operation::Side { value, strict: true, then, other } => each! {
-            let value = value; let then = then; let other = other;
-            if value < 0.0 { then } else { other }
-        },
     }
 }
 
@@ -170,20 +153,5 @@ impl TapeWriter<'_> {
             self.slots.insert(id, slot);
         }
         self.slots[&root]
-    }
-
-    fn split(&mut self, curve: CurveIndex, strict: bool, then: Slot, other: Slot) -> Slot {
-        let value = self.expression(self.tool.model.curves[curve].value);
-        self.put(Operation::Side { value, strict, then, other })
-    }
-
-    fn tree(&mut self, tree: &Tree<Id>) -> Slot {
-        match tree {
-            Tree::Leaf(id) => self.expression(*id),
-            Tree::Split { curve, strict, below, above } => {
-                let (then, other) = (self.tree(below), self.tree(above));
-                self.split(*curve, *strict, then, other)
-            }
-        }
     }
 }

@@ -128,7 +128,7 @@ impl PlanEvaluator {
         let slot = |id: &Id| id.index() as Slot;
         let list = |id: Id| graph.dependencies([id]).iter().map(slot).collect::<List>();
         let mut forks = Vec::new();
-        flatten(&tool.plan.owner, &mut forks);
+        flatten(&tool.tree, &mut forks);
         PlanEvaluator {
             operations: graph.nodes().iter().map(|node| Operation::of(node, slot)).collect(),
             curves: tool.model.curves.iter().map(|curve| list(curve.value)).collect(),
@@ -335,7 +335,7 @@ impl Registers {
     }
 }
 
-fn flatten(tree: &Tree<Option<usize>>, forks: &mut Vec<PlanNode>) {
+fn flatten(tree: &Tree, forks: &mut Vec<PlanNode>) {
     match tree {
         Tree::Leaf(owner) => forks.push(PlanNode::Owner(*owner)),
         Tree::Split { curve, strict, below, above } => {
@@ -382,9 +382,6 @@ fn perform<V: Value>(operation: Operation, [x, y, z]: [V; 3], length: V, values:
         Operation::Sqrt(a) => v(a).sqrt(),
         Operation::Select { low, high, then, other } => {
             pick(V::le(v(low), v(high)), v(then), v(other))
-        }
-        Operation::Side { value, strict, then, other } => {
-            pick(below(v(value), strict), v(then), v(other))
         }
     }
 }

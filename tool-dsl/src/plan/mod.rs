@@ -26,9 +26,9 @@ pub(crate) const MAX_TESTS: usize = 20_000;
 
 /// A binary decision tree over the signs of curves.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Tree<L> {
-    /// A decision.
-    Leaf(L),
+pub enum Tree {
+    /// The index of the region that owns a point; `None` outside.
+    Leaf(Option<usize>),
     /// A test of one more sign.
     Split {
         /// The index of the curve.
@@ -36,15 +36,15 @@ pub enum Tree<L> {
         /// True if its zeros go to `above`: the test is `c < 0` rather than `c ≤ 0`.
         strict: bool,
         /// The subtree where the test holds.
-        below: Box<Tree<L>>,
+        below: Box<Tree>,
         /// The subtree where it does not.
-        above: Box<Tree<L>>,
+        above: Box<Tree>,
     },
 }
 
-impl<L: Clone + PartialEq> Tree<L> {
+impl Tree {
     /// Returns a split, or the common subtree if both sides are equal.
-    fn split(curve: CurveIndex, strict: bool, below: Tree<L>, above: Tree<L>) -> Tree<L> {
+    fn split(curve: CurveIndex, strict: bool, below: Tree, above: Tree) -> Tree {
         // The test decides nothing.
         if below == above {
             return below;
@@ -52,21 +52,8 @@ impl<L: Clone + PartialEq> Tree<L> {
         Tree::Split { curve, strict, below: Box::new(below), above: Box::new(above) }
     }
 
-    /// Replaces the leaves. A leaf mapped to `None` is never reached; its sibling takes its place.
-    pub fn map<M: Clone + PartialEq>(&self, leaf: &impl Fn(&L) -> Option<M>) -> Option<Tree<M>> {
-        match self {
-            Tree::Leaf(own) => leaf(own).map(Tree::Leaf),
-            Tree::Split { curve, strict, below, above } => {
-                match (below.map(leaf), above.map(leaf)) {
-                    (Some(below), Some(above)) => Some(Tree::split(*curve, *strict, below, above)),
-                    (one, other) => one.or(other),
-                }
-            }
-        }
-    }
-
     /// Simplifies the tree, given that a test of the curve `known` holds or fails.
-    fn simplified(&self, known: CurveIndex, strictly: bool, holds: bool) -> Tree<L> {
+    fn simplified(&self, known: CurveIndex, strictly: bool, holds: bool) -> Tree {
         match self {
             Tree::Leaf(_) => self.clone(),
             Tree::Split { curve, strict, below, above } if *curve == known => {
@@ -95,16 +82,16 @@ impl<L: Clone + PartialEq> Tree<L> {
         }
     }
 
-    /// Returns the leaves, those below a test first.
-    pub fn leaves(&self) -> Vec<&L> {
-        let (mut leaves, mut pending) = (Vec::new(), vec![self]);
+    /// Returns the owners of the leaves, those below a test first.
+    pub(crate) fn owners(&self) -> Vec<Option<usize>> {
+        let (mut owners, mut pending) = (Vec::new(), vec![self]);
         while let Some(tree) = pending.pop() {
             match tree {
-                Tree::Leaf(leaf) => leaves.push(leaf),
+                Tree::Leaf(owner) => owners.push(*owner),
                 Tree::Split { below, above, .. } => pending.extend([&**above, &**below]),
             }
         }
-        leaves
+        owners
     }
 
     /// Returns the number of tests.
@@ -115,26 +102,17 @@ impl<L: Clone + PartialEq> Tree<L> {
         }
     }
 
-    /// Returns the leaf of a point where the curves have these values.
-    pub fn leaf_at(&self, value: &impl Fn(CurveIndex) -> f64) -> &L {
+    /// Returns the owner of a point where the curves have these values.
+    pub fn owner_at(&self, value: &impl Fn(CurveIndex) -> f64) -> Option<usize> {
         match self {
-            Tree::Leaf(leaf) => leaf,
+            Tree::Leaf(owner) => *owner,
             Tree::Split { curve, strict, below, above } => {
                 let value_here = value(*curve);
                 let holds = if *strict { value_here < 0.0 } else { value_here <= 0.0 };
-                if holds { below.leaf_at(value) } else { above.leaf_at(value) }
+                if holds { below.owner_at(value) } else { above.owner_at(value) }
             }
         }
     }
-}
-
-/// The trees of a tool.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Plan {
-    /// The index of the region that owns a point.
-    pub owner: Tree<Option<usize>>,
-    /// The distance from a point outside to the tool; without a profile, a lower bound of it.
-    pub clearance: Tree<Id>,
 }
 
 /// A tool with the order of its splits.
@@ -145,7 +123,7 @@ pub struct PlannedTool {
     /// The extent of the solid.
     pub extent: Extent,
     /// The order of splits.
-    pub plan: Plan,
+    pub tree: Tree,
 }
 
 /// Plans the splits of a tool.
@@ -153,30 +131,21 @@ pub struct PlannedTool {
 /// # Errors
 /// If a tree would have more than [`MAX_TESTS`] tests, or a profile's cells cannot be separated.
 pub(crate) fn plan(mut model: Model, extent: Extent) -> Result<PlannedTool, Diagnostic> {
-    let plan = trees(&mut model, &extent)?;
-    Ok(PlannedTool { model, extent, plan })
-}
-
-fn trees(model: &mut Model, extent: &Extent) -> Result<Plan, Diagnostic> {
-    let (owner, clearance) = match &model.section {
+    let tree = match &model.section {
+        None => by_signs(&model, &extent)?,
         Some(section) => {
-            let (owner, clearance) = section::trees(model, section)?;
-            let is_owned_far_outside = section::has_owner_far_outside(model, section, &owner);
-            let owner =
-                if is_owned_far_outside { limited_to_box(model, extent, owner) } else { owner };
-            (owner, limited_outside(model, extent, clearance))
+            let tree = section::tree(&model, section)?;
+            match section::has_owner_far_outside(&model, section, &tree) {
+                true => limited_to_box(&mut model, &extent, tree),
+                false => tree,
+            }
         }
-        None => (by_signs(model, extent)?, Tree::Leaf(distance_to_box(model, extent))),
     };
-    Ok(Plan { owner, clearance })
+    Ok(PlannedTool { model, extent, tree })
 }
 
 /// Returns a tree that tests the section's box first, since curves may recur beyond it.
-fn limited_to_box(
-    model: &mut Model,
-    extent: &Extent,
-    tree: Tree<Option<usize>>,
-) -> Tree<Option<usize>> {
+fn limited_to_box(model: &mut Model, extent: &Extent, tree: Tree) -> Tree {
     let graph = &mut model.graph;
     let [d, z] = [Coord::D, Coord::Z].map(|coord| graph.coord(coord));
     let [radius, low, high] =
@@ -192,50 +161,6 @@ fn limited_to_box(
         // Inside the side, the tree need not test it again.
         Tree::split(curve, false, tree.simplified(curve, false, true), Tree::Leaf(None))
     })
-}
-
-/// The distance up to which the division of the outside is used, in sizes of the tool from the middle of its
-/// axis.
-const OUTSIDE_RANGE_IN_SIZES: f64 = 48.0;
-
-/// Returns a tree of the distances to the nearest feature up to [`OUTSIDE_RANGE_IN_SIZES`] sizes,
-/// and of the distance to the cylinder farther out.
-fn limited_outside(model: &mut Model, extent: &Extent, tree: Tree<Id>) -> Tree<Id> {
-    let bound = distance_to_box(model, extent);
-    let graph = &mut model.graph;
-    let (height, middle) = (extent.high - extent.low, extent.high / 2.0 + extent.low / 2.0);
-    let limit = OUTSIDE_RANGE_IN_SIZES * height.hypot(extent.radius);
-    let (z, q) = (graph.coord(Coord::Z), graph.coord(Coord::Q));
-    // Squares, so that the test needs no root.
-    let (middle, limit) = (constant(graph, middle), constant(graph, limit * limit));
-    let up = graph.sub(z, middle);
-    let up = graph.mul(up, up);
-    let squared_distance = graph.add(q, up);
-    let value = graph.sub(squared_distance, limit);
-    model.curves.push(Curve { name: None, value });
-    Tree::split(model.curves.len() - 1, false, tree, Tree::Leaf(bound))
-}
-
-/// Returns the distance to the box around the solid; for a tool, to its cylinder.
-fn distance_to_box(model: &mut Model, extent: &Extent) -> Id {
-    let graph = &mut model.graph;
-    let zero = graph.int(0);
-    let mut square = zero;
-    for (coord, axis, _) in model.domain.coordinates().iter().rev() {
-        let coordinate = graph.coord(*coord);
-        let side = extent.cell().sides[*axis];
-        let [low, high] = [side.low, side.high].map(|value| constant(graph, value));
-        let mut excess = graph.sub(coordinate, high);
-        // The half plane has no points beyond the axis.
-        if *coord != Coord::D {
-            let below = graph.sub(low, coordinate);
-            excess = graph.max(below, excess);
-        }
-        let excess = graph.max(zero, excess);
-        let square_of_excess = graph.mul(excess, excess);
-        square = graph.add(square, square_of_excess);
-    }
-    graph.sqrt(square).unwrap_or(zero)
 }
 
 /// Returns the error for a tree that exceeds its limit.

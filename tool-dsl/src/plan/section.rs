@@ -5,15 +5,14 @@
 use super::samples::{ONE_SIDED_GAIN, Sample, SampleSubset, Samples};
 use super::{BITS_PER_ADDITION, MAX_TESTS, Tree, costs};
 use crate::diagnostic::{CheckKind, Diagnostic, Kind};
-use crate::expr::Id;
-use crate::formula::{CurveIndex, Formula};
+use crate::formula::CurveIndex;
 use crate::geometry::cut::{
     COINCIDENCE_FRACTION, CurveFunction, Cut, Cutter, Edge, Piece, Position, is_along,
 };
 use crate::geometry::outline::{self, Point, minus, norm};
 use crate::model::{Model, Over, Section};
+use crate::regionalise::cells;
 use crate::regionalise::overlay::{self, ConditionedPart};
-use crate::regionalise::{ROUNDING, cells};
 use std::cell::Cell;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -25,15 +24,13 @@ const CHORDS_PER_EDGE: [u32; 3] = [8, 40, 200];
 /// The number of curves that may be passed over because their zeros belong to both sides.
 const MAX_SKIPPED_CURVES: usize = 6;
 
-type Owners = Tree<Option<usize>>;
-
 /// The relative cost of a test that the tree also makes elsewhere: code for lanes computes it once.
 const REPEATED_TEST_COST_FACTOR: f64 = 0.3;
 
-/// Returns the tree of owners, and that of the distances to the features that are nearest outside.
-pub(super) fn trees(model: &Model, section: &Section) -> Result<(Owners, Tree<Id>), Diagnostic> {
+/// Returns the tree of owners.
+pub(super) fn tree(model: &Model, section: &Section) -> Result<Tree, Diagnostic> {
     let [few, more @ ..] = CHORDS_PER_EDGE;
-    let mut result = try_trees(model, section, few);
+    let mut result = tree_with_chords(model, section, few);
     // More chords cost time in every cut, and few tools need them. They separate features, but with no fewer tests.
     for chords in more {
         let is_inseparable = |failed: &Diagnostic| {
@@ -42,7 +39,7 @@ pub(super) fn trees(model: &Model, section: &Section) -> Result<(Owners, Tree<Id
         if !result.as_ref().is_err_and(is_inseparable) {
             break;
         }
-        result = try_trees(model, section, chords);
+        result = tree_with_chords(model, section, chords);
     }
     result
 }
@@ -81,7 +78,7 @@ fn strip_points(end: Point, direction: Point, size: f64) -> Vec<Point> {
 
 /// Returns whether a tree has an owner far outside, where there was no piece. The test uses points all
 /// around, and points in thin strips along the lines and normals of the outline.
-pub(super) fn has_owner_far_outside(model: &Model, section: &Section, tree: &Owners) -> bool {
+pub(super) fn has_owner_far_outside(model: &Model, section: &Section, tree: &Tree) -> bool {
     let (shapes, size) = overlay::shapes(&model.graph, &model.curves, &section.outline);
     let [low, high] = outline::bounding_box(&section.outline).map(|end| end[1]);
     let mut points = ring_points(low / 2.0 + high / 2.0, size);
@@ -94,111 +91,42 @@ pub(super) fn has_owner_far_outside(model: &Model, section: &Section, tree: &Own
         }
     }
     let mut in_half_plane = points.into_iter().filter(|p| p[0] >= 0.0);
-    in_half_plane.any(|p| tree.leaf_at(&|curve| shapes[curve].value(p)).is_some())
+    in_half_plane.any(|p| tree.owner_at(&|curve| shapes[curve].value(p)).is_some())
 }
 
-fn try_trees(
-    model: &Model,
-    section: &Section,
-    chords: u32,
-) -> Result<(Owners, Tree<Id>), Diagnostic> {
+/// Returns the tree of a section whose curved edges are chords, `chords` per edge.
+fn tree_with_chords(model: &Model, section: &Section, chords: u32) -> Result<Tree, Diagnostic> {
     let (shapes, size) = overlay::shapes(&model.graph, &model.curves, &section.outline);
-    let outer = section.outer.cells(chords);
-    let polygons = Polygons { model, section, chords, outer, shapes: &shapes, size };
-    let owners = polygons.plan_inside()?;
-    // The division of the outside is checked where no region owns the point.
-    let clearances = polygons.plan_outside(&owners)?;
-    Ok((owners, clearances))
-}
-
-/// A section whose curved edges are chords.
-struct Polygons<'m> {
-    model: &'m Model,
-    section: &'m Section,
-    /// The number of chords per curved edge.
-    chords: u32,
-    /// The cells outside the solid.
-    outer: Vec<cells::Cell>,
-    /// The model's curves.
-    shapes: &'m [CurveFunction<'m>],
-    /// The diagonal of the outline's bounding box, in the file's unit.
-    size: f64,
-}
-
-impl Polygons<'_> {
-    fn piece(&self, cell: &cells::Cell, owner: Option<usize>) -> Piece {
-        overlay::piece(cell, owner, self.shapes, self.size)
-    }
-
-    /// Returns the leaf of a tree at a point.
-    fn leaf_at(&self, tree: &Owners, p: Point) -> Option<usize> {
-        *tree.leaf_at(&|curve| self.shapes[curve].value(p))
-    }
-
-    /// Plans the tree of regions.
-    fn plan_inside(&self) -> Result<Owners, Diagnostic> {
-        let Polygons { model, section, shapes, size, .. } = *self;
-        let mut input = PlanInput::default();
-        for cell in section.inner.cells(self.chords) {
-            let Some(over) = &section.over else {
-                input.add_whole(&cell, self.piece(&cell, Some(cell.part)));
-                continue;
-            };
-            let whole = self.piece(&cell, None);
-            for (piece, holding) in overlay::divided(whole, &over.conditions, shapes, size) {
-                let first = holding.first().copied();
-                let region = first.and_then(|condition| over.region(cell.part, condition));
-                // Only slivers beside a curved edge can be without a region.
-                if region.is_some() {
-                    input.add_piece(Piece { owner: region, ..piece });
-                }
-            }
-            input.add_points(&cell, |p| over.owner_at(cell.part, p, shapes, size));
-        }
-        for cell in &self.outer {
-            input.add_whole(cell, self.piece(cell, None));
-        }
-        let inside = model.regions.iter().map(|region| &region.inside).collect();
-        let owners = plan(model, shapes, size, input, inside)?;
-        // A sliver between a curve and its chord may have been given to the wrong owner.
-        let wrong = section.inner.wrongly_assigned_point(|p, _| {
-            let region = self.leaf_at(&owners, p)?;
-            Some(section.over.as_ref().map_or(region, |over| over.regions[region].part))
-        });
-        match wrong {
-            Some(p) => Err(inseparable_owners(model, p)),
-            None => Ok(owners),
-        }
-    }
-
-    /// Plans the tree of distances to the nearest features outside, given that of regions.
-    fn plan_outside(&self, owners: &Owners) -> Result<Tree<Id>, Diagnostic> {
-        let Polygons { model, section, shapes, size, .. } = *self;
-        let mut input = PlanInput::default();
-        for cell in &self.outer {
-            input.add_whole(cell, self.piece(cell, Some(cell.part)));
-        }
-        // Rounding may move a point of the surface just below it, so the same features continue there.
-        for (piece, cell) in section.inner.shell(self.chords) {
-            // The outside runs along the same segments in reverse.
-            let outer_piece = section.outer.segment_count() - 1 - piece;
-            if let Some(part) = section.outer.part_of(outer_piece) {
-                input.add_whole(&cell, self.piece(&cell, Some(part)));
+    let piece = |cell: &cells::Cell, owner| overlay::piece(cell, owner, &shapes, size);
+    let mut input = PlanInput::default();
+    for cell in section.inner.cells(chords) {
+        let Some(over) = &section.over else {
+            input.add_whole(&cell, piece(&cell, Some(cell.part)));
+            continue;
+        };
+        let whole = piece(&cell, None);
+        for (piece, holding) in overlay::divided(whole, &over.conditions, &shapes, size) {
+            let first = holding.first().copied();
+            let region = first.and_then(|condition| over.region(cell.part, condition));
+            // Only slivers beside a curved edge can be without a region.
+            if region.is_some() {
+                input.add_piece(Piece { owner: region, ..piece });
             }
         }
-        let conditions = section.outside.iter().map(|part| &part.condition).collect();
-        let nearest = plan(model, shapes, size, input, conditions)?;
-        let wrong = section.outer.wrongly_assigned_point(|p, distance| {
-            // A region may own an outside point only within rounding of the surface.
-            let is_free = distance <= ROUNDING * size || self.leaf_at(owners, p).is_none();
-            self.leaf_at(&nearest, p).filter(|_| is_free)
-        });
-        if let Some(p) = wrong {
-            return Err(inseparable_owners(model, p));
-        }
-        let clearances =
-            nearest.map(&|part: &Option<usize>| part.map(|part| section.outside[part].clearance));
-        Ok(clearances.unwrap_or(Tree::Leaf(section.outside[0].clearance)))
+        input.add_points(&cell, |p| over.owner_at(cell.part, p, &shapes, size));
+    }
+    for cell in section.outer.cells(chords) {
+        input.add_whole(&cell, piece(&cell, None));
+    }
+    let tree = plan(model, &shapes, size, input)?;
+    // A sliver between a curve and its chord may have been given to the wrong owner.
+    let wrong = section.inner.wrongly_assigned_point(|p| {
+        let region = tree.owner_at(&|curve| shapes[curve].value(p))?;
+        Some(section.over.as_ref().map_or(region, |over| over.regions[region].part))
+    });
+    match wrong {
+        Some(p) => Err(inseparable_owners(model, p)),
+        None => Ok(tree),
     }
 }
 
@@ -282,15 +210,14 @@ impl Over {
 
 /// Plans the splits that separate the pieces of a ground.
 ///
-/// Curved edges are chords here, so a cut may leave a sliver that belongs to no owner. The owners'
-/// conditions, `inside`, identify such slivers.
+/// Curved edges are chords here, so a cut may leave a sliver that belongs to no owner. The regions' conditions identify
+/// such slivers.
 fn plan<'m>(
     model: &'m Model,
     shapes: &'m [CurveFunction<'m>],
     size: f64,
     input: PlanInput,
-    inside: Vec<&'m Formula>,
-) -> Result<Owners, Diagnostic> {
+) -> Result<Tree, Diagnostic> {
     let samples = Samples::new(&input.samples, shapes);
     let all = samples.all();
     let whole_pieces: Vec<WholePiece> = input.pieces.iter().map(WholePiece::new).collect();
@@ -302,7 +229,6 @@ fn plan<'m>(
         costs: costs(model),
         samples,
         corners,
-        inside,
         used: vec![false; model.curves.len()],
         whole_pieces,
         sides: vec![Vec::new(); model.curves.len()],
@@ -312,7 +238,7 @@ fn plan<'m>(
     let candidates = (0..model.curves.len()).map(Candidate::new).collect();
     let tree = planner.tree(&input.pieces, &all, &all_corners, candidates)?;
     for (p, owner) in input.witnesses {
-        if *tree.leaf_at(&|curve| shapes[curve].value(p)) != owner {
+        if tree.owner_at(&|curve| shapes[curve].value(p)) != owner {
             return Err(inseparable_owners(model, p));
         }
     }
@@ -325,7 +251,6 @@ struct Planner<'m> {
     costs: Vec<f64>,
     samples: Samples,
     corners: Vec<Corner>,
-    inside: Vec<&'m Formula>,
     used: Vec<bool>,
     whole_pieces: Vec<WholePiece>,
     /// For each curve that was tried, the side of each whole piece.
@@ -404,7 +329,7 @@ impl Planner<'_> {
         samples: &SampleSubset,
         corners: &[usize],
         mut candidates: Vec<Candidate>,
-    ) -> Result<Owners, Diagnostic> {
+    ) -> Result<Tree, Diagnostic> {
         let first = pieces.first().and_then(|piece| piece.owner);
         if pieces.iter().all(|piece| piece.owner == first) {
             return Ok(self.leaf(first, pieces, corners));
@@ -525,9 +450,10 @@ impl Planner<'_> {
     fn owns(&self, piece: &Piece) -> bool {
         let middle = piece.middle();
         let mut value = |curve: CurveIndex| self.shapes[curve].value(middle);
+        let regions = &self.model.regions;
         match piece.owner {
-            Some(owner) => self.inside[owner].holds(&mut value),
-            None => !self.inside.iter().any(|inside| inside.holds(&mut value)),
+            Some(owner) => regions[owner].inside.holds(&mut value),
+            None => !regions.iter().any(|region| region.inside.holds(&mut value)),
         }
     }
 
@@ -657,7 +583,7 @@ impl Planner<'_> {
 
     /// Returns a leaf for an owner, with the corners split off at which only pieces of other owners meet.
     /// Rounding may bring a point near such a corner here, where its owner has no piece.
-    fn leaf(&self, owner: Option<usize>, pieces: &[Rc<Piece>], corners: &[usize]) -> Owners {
+    fn leaf(&self, owner: Option<usize>, pieces: &[Rc<Piece>], corners: &[usize]) -> Tree {
         let foreign = corners.iter().find(|at| !self.corners[**at].owners.contains(&owner));
         let Some(corner) = foreign.map(|at| &self.corners[*at]) else {
             return Tree::Leaf(owner);
@@ -766,7 +692,7 @@ impl Planner<'_> {
         halves: &Halves,
         corners: &[usize],
         open: &[Candidate],
-    ) -> Result<Owners, Diagnostic> {
+    ) -> Result<Tree, Diagnostic> {
         let shape = &self.shapes[curve];
         // Only pieces that reach the curve can own its points.
         let touches =
@@ -837,14 +763,15 @@ fn rank(owner: Option<usize>) -> usize {
 }
 
 /// Returns a tree whose leaves are the first listed of the owners in two trees.
-fn first(a: &Owners, b: &Owners) -> Owners {
-    match a {
-        Tree::Leaf(own) => {
-            let first_listed =
-                |other: &Option<usize>| Some(if rank(*other) < rank(*own) { *other } else { *own });
-            b.map(&first_listed).unwrap_or(Tree::Leaf(*own))
+fn first(a: &Tree, b: &Tree) -> Tree {
+    match (a, b) {
+        (Tree::Leaf(own), Tree::Leaf(other)) => {
+            Tree::Leaf(if rank(*other) < rank(*own) { *other } else { *own })
         }
-        Tree::Split { curve, strict, below, above } => {
+        (Tree::Leaf(_), Tree::Split { curve, strict, below, above }) => {
+            Tree::split(*curve, *strict, first(a, below), first(a, above))
+        }
+        (Tree::Split { curve, strict, below, above }, _) => {
             let [low, high] = [true, false].map(|holds| b.simplified(*curve, *strict, holds));
             Tree::split(*curve, *strict, first(below, &low), first(above, &high))
         }

@@ -17,7 +17,7 @@ use crate::model::Model;
 ///
 /// # Errors
 /// If the tree would have more than [`MAX_TESTS`] tests.
-pub(super) fn by_signs(model: &Model, extent: &Extent) -> Result<Tree<Option<usize>>, Diagnostic> {
+pub(super) fn by_signs(model: &Model, extent: &Extent) -> Result<Tree, Diagnostic> {
     let samples = samples(model, extent);
     let all_samples: Vec<u32> = (0..samples.len() as u32).collect();
     let costs = costs(model);
@@ -66,11 +66,7 @@ struct Planner<'m> {
 
 impl Planner<'_> {
     /// Returns the tree for the points at which curves have these signs.
-    fn tree(
-        &mut self,
-        mut signs: Vec<Signs>,
-        samples: &[u32],
-    ) -> Result<Tree<Option<usize>>, Diagnostic> {
+    fn tree(&mut self, mut signs: Vec<Signs>, samples: &[u32]) -> Result<Tree, Diagnostic> {
         loop {
             let possible = self.possible(&signs);
             // All regions but one are excluded, or one contains every such point.

@@ -19,7 +19,7 @@ pub(super) struct Claim {
 /// Determines the leaves that a box may have points of.
 pub(super) struct Cover<'m> {
     model: &'m Model,
-    tree: &'m Tree<Option<usize>>,
+    tree: &'m Tree,
     encloser: Encloser<'m>,
     /// For each path found so far, of which the first is empty, the paths that continue it at the split where
     /// it leads, by the side and the signs there; 0 for those not found yet.
@@ -32,7 +32,7 @@ type Continuations = [[usize; ANY_SIGN as usize + 1]; 2];
 const NO_CONTINUATIONS: Continuations = [[0; ANY_SIGN as usize + 1]; 2];
 
 impl<'m> Cover<'m> {
-    pub(super) fn new(model: &'m Model, tree: &'m Tree<Option<usize>>) -> Cover<'m> {
+    pub(super) fn new(model: &'m Model, tree: &'m Tree) -> Cover<'m> {
         let encloser = Encloser::new(&model.graph, model.curve_values());
         Cover { model, tree, encloser, paths: vec![NO_CONTINUATIONS] }
     }
@@ -59,7 +59,7 @@ impl<'m> Cover<'m> {
 
     fn descend(
         &mut self,
-        tree: &Tree<Option<usize>>,
+        tree: &Tree,
         path: &mut Vec<(CurveIndex, Signs)>,
         path_number: usize,
         claims: &mut Vec<Claim>,

@@ -57,7 +57,7 @@ impl Meridian {
         let radius = reach[0].min(reach[1]);
         let cell = Cell::half_plane(Interval::new(0.0, radius), sides[axis]);
         let extent = Extent::of(cell, radius);
-        let tool = PlannedTool { model, extent, plan: tool.plan.clone() };
+        let tool = PlannedTool { model, extent, tree: tool.tree.clone() };
         Some(Meridian { tool, axis, perpendicular })
     }
 

@@ -109,11 +109,7 @@ impl<'t> Witness<'t> {
         self.values.set(EvaluationPoint::new(x, y, z));
         let curves = &self.tool.model.curves;
         let values = RefCell::new(&mut self.values);
-        *self
-            .tool
-            .plan
-            .owner
-            .leaf_at(&|curve: CurveIndex| values.borrow_mut().get(curves[curve].value))
+        self.tool.tree.owner_at(&|curve: CurveIndex| values.borrow_mut().get(curves[curve].value))
     }
 
     /// Returns points of a profile beside which the solid does not end, from a few per segment, and whether

@@ -61,41 +61,6 @@ pub(super) fn cells(section: &Section<'_>, slices: &[Vec<Slice>], chords: u32) -
         .collect()
 }
 
-/// The thickness of the layer returned by [`surface_layer`], in sizes.
-const LAYER_FRACTION: f64 = 1e-6;
-
-/// Returns the cells of a thin layer next to the outline.
-pub(super) fn surface_layer(
-    section: &Section<'_>,
-    slices: &[Vec<Slice>],
-    chords: u32,
-) -> Vec<Cell> {
-    let min_area = 1e-16 * section.size * section.size * LAYER_FRACTION;
-    let mut cells = Vec::new();
-    for slice in slices.iter().flatten() {
-        let steps = match section.features[slice.feature] {
-            Feature::Piece(piece) if section.outline[piece].circle.is_none() => 1,
-            _ => chords,
-        };
-        let ends_at = |k: u32| {
-            let part = f64::from(k) / f64::from(steps);
-            let foot_point = slice.foot_at(section, part);
-            let depth = slice.radius(section, part).min(LAYER_FRACTION * section.size);
-            (foot_point.foot, foot_point.at(depth))
-        };
-        let quads = (0..steps).map(|k| {
-            let ((a, c), (b, d)) = (ends_at(k), ends_at(k + 1));
-            let straight = [steps == 1, true, true, true];
-            let (vertices, straight) =
-                without_short_edges(&[a, b, d, c], &straight, 1e-14 * section.size);
-            let (samples, witnesses) = (vec![], vec![]);
-            Cell { part: slice.feature, vertices, straight, corners: vec![], samples, witnesses }
-        });
-        cells.extend(quads.filter(|cell| cell.area() > min_area));
-    }
-    cells
-}
-
 fn far_end(section: &Section<'_>, slice: &Slice, chords: u32) -> Vec<Point> {
     if slice.obstacle == Obstacle::Centre {
         return vec![slice.far_end_at(section, 0.5)];

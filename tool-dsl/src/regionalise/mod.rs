@@ -72,35 +72,12 @@ impl Partition {
         Section::new(&self.outline, self.outer).features
     }
 
-    /// Returns the part of a segment, by the segment's index in the outline.
-    pub(crate) fn part_of(&self, piece: usize) -> Option<usize> {
-        let section = Section::new(&self.outline, self.outer);
-        section.features.iter().position(|feature| *feature == Feature::Piece(piece))
-    }
-
-    /// Returns a thin layer of the partition next to the outline. Each cell has the index of the segment on which it
-    /// lies or which its corner follows.
-    pub(crate) fn shell(&self, chords: u32) -> Vec<(usize, cells::Cell)> {
-        let section = Section::new(&self.outline, self.outer);
-        let shell = cells::surface_layer(&section, &self.slices, chords);
-        let with_segments = shell.into_iter().map(|cell| match section.features[cell.part] {
-            Feature::Piece(piece) => (piece, cell),
-            Feature::Corner(previous) => (previous.unwrap_or(0), cell),
-        });
-        with_segments.collect()
-    }
-
-    /// Returns the number of segments of the outline.
-    pub(crate) fn segment_count(&self) -> usize {
-        self.outline.len()
-    }
-
     /// Returns a point whose distance from the outline, computed by brute force, differs from its distance from the
-    /// line, circle or corner of the part assigned to it. `part_at` assigns a part, given the point and its distance.
+    /// line, circle or corner of the part assigned to it by `part_at`.
     /// The points are taken along the normals of all cells, most densely near the ends.
     pub(crate) fn wrongly_assigned_point(
         &self,
-        part_at: impl Fn(Point, f64) -> Option<usize>,
+        part_at: impl Fn(Point) -> Option<usize>,
     ) -> Option<Point> {
         let section = Section::new(&self.outline, self.outer);
         for slice in self.slices.iter().flatten() {
@@ -108,7 +85,7 @@ impl Partition {
             let distances = section.distances_to_outline(&points, slice.feature);
             for (p, distance) in points.into_iter().zip(distances) {
                 let slack = ROUNDING * section.size.max(distance);
-                let is_right = part_at(p, distance)
+                let is_right = part_at(p)
                     .is_some_and(|part| (section.depth_at(part, p) - distance).abs() <= slack);
                 if !is_right {
                     return Some(p);

@@ -84,8 +84,8 @@ impl Section<'_> {
         let is_axis_parallel =
             [&ad, &az, &bd, &bz].into_iter().filter(|part| part.is_zero()).count() == 2;
         let sine = &(&ad * &bz) - &(&az * &bd);
-        // Neighbours meet at their joint, however little they turn there. Outside, where nothing is proved, their difference does.
-        let joint = match (a.abs_diff(b) == 1 && !self.outer, a < b) {
+        // Neighbours meet at their joint, however little they turn there.
+        let joint = match (a.abs_diff(b) == 1, a < b) {
             (true, true) => Some(first.to.clone()),
             (true, false) => Some(second.to.clone()),
             _ => None,

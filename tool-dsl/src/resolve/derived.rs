@@ -14,10 +14,10 @@ use crate::diagnostic::{
     any_error, enough, nearest,
 };
 use crate::domain::Domain;
-use crate::expr::{Graph, Id};
+use crate::expr::{Coord, Graph, Id};
 use crate::formula::Formula;
 use crate::geometry::outline::{Segment, nearest_span};
-use crate::model::{DirectionSource, OutsidePart, Over, Region, Section, Surface};
+use crate::model::{DirectionSource, Over, Region, Section, Surface};
 use crate::regionalise::overlay::{self, ConditionedPart, Overlay};
 use crate::regionalise::smooth::{self, Origin, Rough};
 use crate::regionalise::{self, Derived, Feature, Partition, Test, Undivided};
@@ -76,9 +76,8 @@ pub(super) fn derived(
     let inner = Partition::new(outline.segments.clone(), false);
     let outer = Partition::new(reversed, true);
     let graph = &mut lowering.graph;
-    let divided = inner.parts(graph).and_then(|parts| Ok((parts, outer.parts(graph)?)));
-    let (derived, beside) = match divided {
-        Ok(both) => both,
+    let derived = match inner.parts(graph) {
+        Ok(derived) => derived,
         Err(Undivided([d, z])) => {
             let at = nearest_span(&outline.segments, [d, z]).unwrap_or(outline.span);
             let z = lowering.frame.to_file(z);
@@ -88,6 +87,7 @@ pub(super) fn derived(
         }
     };
     let parts = parts(&derived, &outline, lowering, curves);
+    add_lines_through_corners(&outline.segments, curves, &mut lowering.graph);
     let inside = Inside { outline: &outline, inner: &inner, parts: &parts };
     let mut regions = Vec::new();
     let before = diagnostics.len();
@@ -123,17 +123,25 @@ pub(super) fn derived(
         }
         Some(_) => {}
     }
-    let zero = lowering.graph.int(0);
-    let outside = beside
-        .iter()
-        .map(|part| OutsidePart {
-            condition: formula(&part.inside, curves, &mut lowering.graph),
-            clearance: lowering.graph.max(zero, part.depth),
-        })
-        .collect();
     let Outline { segments, surfaces, .. } = outline;
-    let section = Section { outline: segments, inner, outer, outside, over };
+    let section = Section { outline: segments, inner, outer, over };
     FromProfile { surfaces, regions, section: Some(section) }
+}
+
+/// Adds the normals at the ends of level and upright segments, which are level and upright too, as curves that a plan may split
+/// by: no test is cheaper, and one often rules out the outside where the border of a part would cross it.
+fn add_lines_through_corners(outline: &[Segment], curves: &mut Curves, graph: &mut Graph) {
+    for segment in outline.iter().filter(|segment| segment.circle.is_none()) {
+        for (across, axis, coord) in [(1, 0, Coord::D), (0, 1, Coord::Z)] {
+            if segment.from[across] != segment.to[across] {
+                continue;
+            }
+            for end in [&segment.from, &segment.to] {
+                let (coord, at) = (graph.coord(coord), graph.number(end[axis].clone()));
+                curves.at_most(graph, coord, at);
+            }
+        }
+    }
 }
 
 /// Returns the parts of the inside with their names and directions.

@@ -11,6 +11,7 @@ mod scope;
 
 pub(crate) use derived::{never_wins, overlapping};
 pub(crate) use mount::off_tip;
+pub(crate) use outputs::SHORTEST_SQUARE;
 
 use crate::diagnostic::{
     Diagnostic, MountKind, RegionKind, Reported, Role, ValueKind, enough, nearest,

@@ -6,8 +6,10 @@ use crate::expr::{Coord, Graph, Id, Node};
 use crate::model::RegionOutputs;
 use crate::number::Number;
 
-/// Returns the unit vector of a vector. A vector shorter than 2^-480, whose square would lose digits, becomes the unit
-/// vector along `axis`. `None` for a constant vector of zero length.
+/// The square of the length below which a vector has no direction, 2^-960: smaller squares lose digits.
+pub(crate) const SHORTEST_SQUARE: f64 = f64::from_bits((1023 - 960) << 52);
+
+/// Returns the unit vector of a vector. A vector shorter than 2^-480 becomes the unit vector along `axis`. `None` for a constant vector of zero length.
 pub(super) fn unit(graph: &mut Graph, vector: [Id; 3], axis: usize) -> Option<[Id; 3]> {
     let constants = vector.map(|part| graph.constant(part).cloned());
     if let [Some(x), Some(y), Some(z)] = constants {
@@ -19,7 +21,7 @@ pub(super) fn unit(graph: &mut Graph, vector: [Id; 3], axis: usize) -> Option<[I
     let across = graph.add(x, y);
     let square = graph.add(across, z);
     let norm = graph.sqrt(square)?;
-    let short = graph.number(Number::from_f64(2f64.powi(-960))?);
+    let short = graph.number(Number::from_f64(SHORTEST_SQUARE)?);
     let mut unit = vector;
     for (k, part) in unit.iter_mut().enumerate() {
         let along = graph.int(i64::from(k == axis));

@@ -113,7 +113,7 @@ impl<'a> Field<'a> {
                 depth.feature = evaluations.region[lane] as usize;
             } else {
                 let point = [0, 1, 2].map(|axis| lists[axis][lane]);
-                depth.value = -self.tool.clearance(point).max(f64::MIN_POSITIVE);
+                depth.value = -self.info().distance_from_outside(point).max(f64::MIN_POSITIVE);
             }
         }
         depths

@@ -180,7 +180,7 @@ impl<'t> Survey<'t> {
             .collect();
         Survey {
             tool,
-            cover: Cover::new(model, &tool.plan.owner),
+            cover: Cover::new(model, &tool.tree),
             slopes: Slopes::new(&model.graph, model.domain, model.roots()),
             errors: RoundingErrors::new(
                 &model.graph,
