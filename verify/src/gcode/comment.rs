@@ -303,8 +303,8 @@ fn last_measure(text: &str) -> Option<Measure> {
         (c.is_ascii_digit() || *c == '.')
             && !text[..*at].ends_with(|c: char| c.is_ascii_digit() || "./,".contains(c))
     });
-    let found = starts.filter_map(|(at, _)| measure(&text[at..])).map(|(found, _)| found);
-    found.filter(|(_, unit)| unit.is_some()).last()
+    let mut found = starts.filter_map(|(at, _)| measure(&text[at..])).map(|(found, _)| found);
+    found.rfind(|(_, unit)| unit.is_some())
 }
 
 /// Returns the number at the beginning of a text.
