@@ -174,6 +174,8 @@ fn cutter(stated: &str, of: &Parameters<'_>, notes: &mut Vec<Note>) -> Result<Cu
         shaft.map_or_else(|| of.optional_length("ShankDiameter"), |d| Ok(Some(d)))?;
     if shank_diameter.is_none() {
         notes.push(Note::no_shank_diameter());
+    } else if shape == "probe" && shaft.is_none() {
+        notes.push(Note::Unstated("shaft diameter", "the shank diameter is taken".to_owned()));
     }
     if shape != "taperedballnose"
         && let Some(angle) = of.optional_angle("TaperAngle")?.filter(|angle| *angle != 0.0)

@@ -161,7 +161,13 @@ fn cutter(
             let stated = [tool, geometry.0].map(|object| string(object, "tapered-type"));
             match stated.into_iter().find(|kind| !kind.is_empty()).unwrap_or_default() {
                 "tapered_ball" => Shape::TaperedBall { radius: corner, half_angle, cone_to: 0.0 },
-                "" | "tapered_bull_nose" => Shape::Tapered { corner, half_angle },
+                kind @ ("" | "tapered_bull_nose") => {
+                    if kind.is_empty() && corner > 0.0 {
+                        let drawn = "a bull nose is drawn".to_owned();
+                        notes.push(Note::Unstated("type of taper", drawn));
+                    }
+                    Shape::Tapered { corner, half_angle }
+                }
                 other => return Err(format!("the taper `{other}` cannot be read yet")),
             }
         }

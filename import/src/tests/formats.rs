@@ -111,7 +111,9 @@ fn freecad_has_commas_and_names_of_other_releases() {
     let wrong = bit("endmill", r#""CuttingEdgeHeight": "1,030.25 mm""#);
     assert_eq!(
         reasons(&wrong),
-        ["its `CuttingEdgeHeight` is `1,030.25 mm`, no number with a unit"]
+        [
+            "its `CuttingEdgeHeight` is `1,030.25 mm`, no number with a unit: correct the bit in FreeCAD, and save it again"
+        ]
     );
     let cut = r#""CuttingEdgeHeight": "30 mm", "TipDiameter": "1 mm", "CuttingEdgeAngle": "60 °""#;
     let torus = r#""CuttingEdgeHeight": "30 mm", "TorusRadius": "1 mm""#;
