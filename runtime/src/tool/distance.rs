@@ -10,22 +10,23 @@ impl ToolInfo {
     /// Returns the distance from a point outside the tool to the tool, in the tool's frame and the file's unit.
     ///
     /// With a profile it is the least distance of the profile's segments in the half plane through the point. Without one it is
-    /// a lower bound: the distance from the envelope and, for a solid without an axis, that from its box if it is larger.
-    /// Rounding is a few units in the last place of the largest coordinate. At a point inside the result is a distance
-    /// from the surface, or 0, and says nothing.
+    /// a lower bound: the distance from the envelope or, for a solid without an axis, from its box. Both are rounded outward,
+    /// to 1e-4 mm for a tool of some centimetres. Rounding is a few units in the last place of the largest coordinate. At a
+    /// point inside the result is a distance from the surface, or 0, and says nothing.
     pub fn distance_from_outside(&self, [x, y, z]: [f64; 3]) -> f64 {
         let p = [x.hypot(y), z];
         if !self.outline.is_empty() {
             let distances = self.outline.iter().map(|segment| segment.distance(p));
             return distances.fold(f64::INFINITY, f64::min);
         }
-        let from_slabs = self.envelope.iter().map(|slab| slab.distance(p));
-        let from_envelope = from_slabs.fold(f64::INFINITY, f64::min);
         match &self.symmetry {
-            Symmetry::Revolved => from_envelope,
+            Symmetry::Revolved => {
+                let distances = self.envelope.iter().map(|slab| slab.distance(p));
+                distances.fold(f64::INFINITY, f64::min)
+            }
             Symmetry::Solid { extent: [along_x, along_y] } => {
                 let across = along_x.distance(x).hypot(along_y.distance(y));
-                from_envelope.max(across.hypot(self.reach().distance(z)))
+                across.hypot(self.reach().distance(z))
             }
         }
     }

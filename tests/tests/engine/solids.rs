@@ -102,7 +102,8 @@ fn clearance_is_that_of_the_box() {
             let (clearance, distance) = (tool.clearance(p), oracle.signed_distance(p));
             assert!(clearance <= distance.max(0.0), "{clearance} > {distance} at {p:?}");
             if oracle.name() == "Block" {
-                assert!((clearance - distance.max(0.0)).abs() < 1e-9, "{clearance} {distance}");
+                // The sides of the box are rounded outward to 1e-4 mm.
+                assert!(clearance > distance.max(0.0) - 3e-4, "{clearance} {distance}");
             }
         }
     }
