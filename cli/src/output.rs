@@ -301,7 +301,7 @@ fn is_same_file(one: &Path, other: &Path) -> bool {
 mod tests {
     use super::*;
 
-    /// What a stranger's tool mounts outside of the root is not even opened.
+    /// Files that a stranger's tool mounts outside of the root are not even opened.
     #[test]
     fn files_outside_of_the_root_are_not_listed() {
         let folder = tempfile::tempdir().expect("a folder");

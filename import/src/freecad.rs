@@ -2,7 +2,8 @@
 //!
 //! A bit names one of FreeCAD's shapes and the values of its parameters, as texts with units, whose decimals follow a
 //! point or a comma. Texts of FreeCAD's imperial units have fractions and sums, such as `2" + 1/2"`. A length without a unit is in
-//! inches if the parameter or the attribute `Units` says so, and else in millimetres. A bit whose shape was changed by its user cannot be told from one of FreeCAD's own.
+//! inches if the parameter or the attribute `Units` says so, and else in millimetres. A bit whose shape was changed by its
+//! user cannot be told from one of FreeCAD's own.
 
 use super::entry::{Entry, Holder, Note, Section, Stated};
 use super::json::{self, Object, pair, string, tool_number};
@@ -471,7 +472,7 @@ impl Parameters<'_> {
     }
 }
 
-/// What to do about a value that is missing or cannot be read.
+/// Remedy for a value that is missing or cannot be read.
 const REMEDY: &str = "correct the bit in FreeCAD, and save it again";
 
 fn unstated(key: &str) -> String {

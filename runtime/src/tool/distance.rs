@@ -4,7 +4,7 @@ use super::{Circle, EnvelopeSlab, ProfileSegment, Symmetry, ToolInfo};
 use crate::interval::Interval;
 
 /// A point of the half plane, `[d, z]`.
-type MeridianPoint = [f64; 2];
+pub(crate) type MeridianPoint = [f64; 2];
 
 impl ToolInfo {
     /// Returns the distance from a point outside the tool to the tool, in the tool's frame and the file's unit.
@@ -75,18 +75,19 @@ impl ProfileSegment {
     }
 }
 
-fn minus(a: MeridianPoint, b: MeridianPoint) -> MeridianPoint {
+pub(crate) fn minus(a: MeridianPoint, b: MeridianPoint) -> MeridianPoint {
     [a[0] - b[0], a[1] - b[1]]
 }
 
-fn dot(a: MeridianPoint, b: MeridianPoint) -> f64 {
+pub(crate) fn dot(a: MeridianPoint, b: MeridianPoint) -> f64 {
     a[0] * b[0] + a[1] * b[1]
 }
 
-fn cross(a: MeridianPoint, b: MeridianPoint) -> f64 {
+pub(crate) fn cross(a: MeridianPoint, b: MeridianPoint) -> f64 {
     a[0] * b[1] - a[1] * b[0]
 }
 
+/// Returns the length of a vector, of any size: neither its square nor a tiny one's is out of range.
 fn norm([d, z]: MeridianPoint) -> f64 {
     d.hypot(z)
 }

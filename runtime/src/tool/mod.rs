@@ -5,7 +5,7 @@
 //! frame) and in the unit of the tool's file, unless stated otherwise.
 
 mod compiled;
-mod distance;
+pub(crate) mod distance;
 mod enclosure;
 mod info;
 #[cfg(feature = "interpreter")]

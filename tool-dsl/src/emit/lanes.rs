@@ -243,7 +243,7 @@ impl GroupWriter<'_> {
                 code.word(names[k]);
             }
         };
-        code.word("result").sign(".").word(output.set).paren(|code| {
+        code.word("result").sign(".").word(&format!("set_{}", output.name)).paren(|code| {
             self.mask_of(code, regions);
             code.sign(",");
             match values.len() {

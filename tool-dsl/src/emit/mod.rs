@@ -202,17 +202,15 @@ fn info(tool: &CheckedTool) -> TokenStream {
 /// One quantity that the evaluator computes.
 struct Output {
     name: &'static str,
-    /// The function of `LaneEvaluation` that sets it.
-    set: &'static str,
     of: fn(&RegionOutputs) -> Vec<Id>,
 }
 
 const OUTPUTS: [Output; 5] = [
-    Output { name: "depth", set: "set_depth", of: |o| vec![o.depth] },
-    Output { name: "magnitude", set: "set_magnitude", of: |o| vec![o.magnitude] },
-    Output { name: "niceness", set: "set_niceness", of: |o| vec![o.niceness] },
-    Output { name: "direction", set: "set_direction", of: |o| o.direction.to_vec() },
-    Output { name: "gradient", set: "set_gradient", of: |o| o.gradient.to_vec() },
+    Output { name: "depth", of: |o| vec![o.depth] },
+    Output { name: "magnitude", of: |o| vec![o.magnitude] },
+    Output { name: "niceness", of: |o| vec![o.niceness] },
+    Output { name: "direction", of: |o| o.direction.to_vec() },
+    Output { name: "gradient", of: |o| o.gradient.to_vec() },
 ];
 
 /// Formats the code for people, without the drawing in its documentation.

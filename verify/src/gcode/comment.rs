@@ -127,7 +127,7 @@ fn digits(text: &str) -> Option<(u32, &str)> {
 /// A length of a comment: its value, and its unit if the comment has one beside it.
 type Measure = (f64, Option<Unit>);
 
-/// What a comment states.
+/// Statements of a comment.
 struct Description {
     number: u32,
     diameter: Measure,

@@ -709,7 +709,7 @@ fn words_that_the_documentation_refuses_are_refused() {
         let cells = rows.map(|row| row.split('|').map(str::trim).collect::<Vec<_>>());
         cells
             .filter(|cells| cells[3].starts_with("refused"))
-            // Of a range of numbers the first.
+            // First number of a range.
             .map(|cells| cells[1].split(" to ").next().unwrap_or_default())
             .collect::<Vec<_>>()
     });

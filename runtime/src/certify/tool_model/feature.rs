@@ -1,10 +1,8 @@
 //! Features: the monotone pieces of a profile, as geometry of the half plane.
 
+pub(crate) use crate::tool::distance::{MeridianPoint, cross, dot, minus};
 use crate::tool::{Circle, ProfileSegment};
 use std::f64::consts::TAU;
-
-/// A point in the half plane, `[d, z]`.
-pub(crate) type MeridianPoint = [f64; 2];
 
 /// Three points. In a triangle that encloses a curve between two ends, the third is the apex.
 pub(crate) type Triangle = [MeridianPoint; 3];
@@ -18,18 +16,6 @@ pub(crate) struct Feature {
     pub(crate) length: f64,
     pub(crate) circle: Option<Circle>,
     pub(crate) surface: usize,
-}
-
-pub(crate) fn minus(a: MeridianPoint, b: MeridianPoint) -> MeridianPoint {
-    [a[0] - b[0], a[1] - b[1]]
-}
-
-pub(crate) fn dot(a: MeridianPoint, b: MeridianPoint) -> f64 {
-    a[0] * b[0] + a[1] * b[1]
-}
-
-pub(crate) fn cross(a: MeridianPoint, b: MeridianPoint) -> f64 {
-    a[0] * b[1] - a[1] * b[0]
 }
 
 pub(crate) fn norm(a: MeridianPoint) -> f64 {

@@ -80,7 +80,7 @@ impl Cycle {
             let mut value = || words.next().ok_or_else(|| refused(word)).and_then(number);
             match word {
                 "FEDTO" | "DEPTH" => depth = Some(value()?.abs()),
-                // Of two, one may count from the other.
+                // One of two may count from the other.
                 "RAPTO" | "CLEAR" if start.replace(word).is_none() => rapid_to = value()?,
                 "RTRCTO" | "RETURN" => {
                     let word = words.next().unwrap_or_default();
