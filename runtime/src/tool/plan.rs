@@ -1,8 +1,8 @@
 //! Evaluation of a tool's plan on any type of lane: what generated code does, operation by operation, without a compiler.
 //!
-//! A point, eight points, a box: all descend the tree of tests from its root. Where lanes go both ways the descent of one side is put
-//! off. At a leaf the outputs of its region are computed and selected for the lanes that arrived. No value depends on the way to
-//! it, so each is computed once, when it is first needed.
+//! A point, eight points or a box descends the tree of tests from its root. Where lanes go both ways one of the ways is put off.
+//! At a leaf the outputs of its region are computed, and selected for the lanes that arrived. No value depends on the way to it,
+//! so each is computed once, when it is first needed.
 
 use super::enclosure::Ternary;
 use super::{Dual, Enclosure, Lane, LaneEvaluation, Outputs};
@@ -39,12 +39,8 @@ enum Operation {
     Max(Operand, Operand),
     Abs(Operand),
     Sqrt(Operand),
-    Select {
-        low: Operand,
-        high: Operand,
-        then: Operand,
-        other: Operand,
-    },
+    /// The third where the first is at most the second, else the fourth.
+    Select([Operand; 4]),
 }
 
 /// Operations in the order of their evaluation, each with the index of its result.
@@ -112,8 +108,9 @@ impl Plan {
         memory.pending.reserve(self.forks.len());
     }
 
-    /// Evaluates the requested outputs in the lanes that are `present`, as [`Evaluators::evaluate_lanes`](super::Evaluators::evaluate_lanes)
-    /// does. The function is inlined so that it is compiled for the caller's vector instructions.
+    /// Evaluates the requested outputs in the lanes that are `present`, as
+    /// [`Evaluators::evaluate_lanes`](super::Evaluators::evaluate_lanes) does. The function is inlined so that it is compiled for the
+    /// caller's vector instructions.
     #[inline(always)]
     pub(super) fn evaluate_lanes<L: Register>(
         &self,
@@ -248,7 +245,7 @@ impl Lister<'_> {
             Node::Abs(a) => Operation::Abs(v(a)),
             Node::Sqrt(a) => Operation::Sqrt(v(a)),
             Node::Select { low, high, then, other } => {
-                Operation::Select { low: v(low), high: v(high), then: v(then), other: v(other) }
+                Operation::Select([low, high, then, other].map(v))
             }
         })
     }
@@ -439,7 +436,7 @@ impl<L: Register> Walk<'_, L> {
             Operation::Max(a, b) => L::max(self.get(a), self.get(b)),
             Operation::Abs(a) => self.get(a).abs(),
             Operation::Sqrt(a) => self.get(a).sqrt(),
-            Operation::Select { low, high, then, other } => {
+            Operation::Select([low, high, then, other]) => {
                 L::select(L::le(self.get(low), self.get(high)), self.get(then), self.get(other))
             }
         }
