@@ -1,7 +1,7 @@
 //! Formulas for the points of a region: "and" and "or" over the sides of splitting curves.
 
-use crate::expr::Id;
 use crate::expr::interval::Interval;
+use crate::expr::{Graph, Id, Node};
 
 /// The index of a curve in a list of curves.
 pub type CurveIndex = usize;
@@ -13,6 +13,44 @@ pub struct Curve {
     pub name: Option<String>,
     /// The expression that is zero on the curve.
     pub value: Id,
+}
+
+/// One side of a comparison.
+#[derive(Clone, Copy, Debug)]
+pub enum Side {
+    /// A node's value.
+    Node(Id),
+    /// A constant.
+    Constant(f64),
+}
+
+impl Side {
+    /// Returns the node, unless the side is a constant.
+    pub fn node(&self) -> Option<Id> {
+        match *self {
+            Side::Node(id) => Some(id),
+            Side::Constant(_) => None,
+        }
+    }
+}
+
+impl Curve {
+    /// Returns the two sides of `c ≤ 0` as `left ≤ right`. A rounded sum has the sign of its comparison exactly, so
+    /// nothing is lost by not adding.
+    pub fn sides(&self, graph: &Graph) -> [Side; 2] {
+        let operand = |id: Id| {
+            let constant = graph.constant(id).map(|value| Side::Constant(value.to_f64()));
+            constant.unwrap_or(Side::Node(id))
+        };
+        match *graph.node(self.value) {
+            Node::Sub(a, b) => [operand(a), operand(b)],
+            Node::Neg(a) => [Side::Constant(0.0), operand(a)],
+            Node::Add(a, b) if let Some(shift) = graph.constant(b) => {
+                [operand(a), Side::Constant(-shift.to_f64())]
+            }
+            _ => [operand(self.value), Side::Constant(0.0)],
+        }
+    }
 }
 
 /// A condition on the signs of curves. Except for strict atoms, both sides of a curve are closed: `below`

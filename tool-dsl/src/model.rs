@@ -341,8 +341,7 @@ pub struct RegionOutputs {
 }
 
 impl RegionOutputs {
-    /// Returns the expressions in the order of a tape's outputs after the owner, which the documentation of
-    /// [`OUTPUT_COUNT`](crate::interpret::OUTPUT_COUNT) states.
+    /// Returns all expressions: depth, magnitude, niceness, direction, gradient.
     pub(crate) fn roots(&self) -> [Id; 9] {
         let [ux, uy, uz] = self.direction;
         let [gx, gy, gz] = self.gradient;

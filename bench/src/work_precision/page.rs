@@ -44,7 +44,6 @@ pub fn page(measured: &Measurements, plan: &Plan) -> Result<Page, Error> {
             "runtime/src/pose.rs",
             "runtime/src/probe",
             "runtime/src/tool",
-            "tool-dsl/src/interpret",
             GENERATED_CODE,
             "tools-library/tools",
         ],

@@ -156,8 +156,8 @@ impl<T: Evaluators> Tool for T {
         evaluations: &mut Evaluations,
     ) {
         evaluations.reserve(points, outputs);
-        on_vectors!(level, simd => evaluate_blocks::<T, _>(simd, outputs, points, length, evaluations));
-        evaluate_points::<T>(outputs, points, length, evaluations);
+        on_vectors!(level, simd => evaluate_blocks(simd, outputs, points, length, evaluations, T::evaluate_lanes));
+        evaluate_points(outputs, points, length, evaluations, T::evaluate_lanes);
     }
 
     fn enclose(
@@ -187,8 +187,8 @@ impl<T: Evaluators> BatchEvaluator for T {
         evaluations: &mut Evaluations,
     ) {
         evaluations.reserve(points, O::OUTPUTS);
-        on_vectors!(level, simd => evaluate_blocks::<T, _>(simd, O::OUTPUTS, points, length, evaluations));
-        evaluate_points::<T>(O::OUTPUTS, points, length, evaluations);
+        on_vectors!(level, simd => evaluate_blocks(simd, O::OUTPUTS, points, length, evaluations, T::evaluate_lanes));
+        evaluate_points(O::OUTPUTS, points, length, evaluations, T::evaluate_lanes);
     }
 }
 
@@ -200,14 +200,15 @@ fn store_vector<S: Simd>(lists: &mut [Vec<f64>; 3], block: Range<usize>, values:
 }
 
 /// Evaluates the points in blocks of eight. Vector code is kept in functions that are always inlined: a closure would
-/// be compiled without the vector instructions of its surroundings.
+/// be compiled without the vector instructions of its surroundings, and so would `evaluate` unless it is always inlined.
 #[inline(always)]
-fn evaluate_blocks<T: Evaluators, S: Simd>(
+pub(super) fn evaluate_blocks<S: Simd>(
     simd: S,
     outputs: Outputs,
     points: &PointBatch,
     length: f64,
     evaluations: &mut Evaluations,
+    mut evaluate: impl FnMut([f64x8<S>; 3], f64x8<S>, mask64x8<S>, Outputs) -> LaneEvaluation<f64x8<S>>,
 ) {
     let length = f64x8::splat(simd, length);
     let lists = points.coordinates();
@@ -220,7 +221,7 @@ fn evaluate_blocks<T: Evaluators, S: Simd>(
             f64x8::from_slice(simd, &lists[1][block.clone()]),
             f64x8::from_slice(simd, &lists[2][block.clone()]),
         ];
-        let evaluation = T::evaluate_lanes(p, length, present, outputs);
+        let evaluation = evaluate(p, length, present, outputs);
         evaluations.inside[index] = evaluation.inside.to_bitmask() as u8;
         if outputs.depth {
             evaluation.depth.store_slice(&mut evaluations.depth[block.clone()]);
@@ -244,15 +245,16 @@ fn evaluate_blocks<T: Evaluators, S: Simd>(
 }
 
 /// Evaluates the points one by one, without vectors.
-fn evaluate_points<T: Evaluators>(
+pub(super) fn evaluate_points(
     outputs: Outputs,
     points: &PointBatch,
     length: f64,
     evaluations: &mut Evaluations,
+    mut evaluate: impl FnMut([f64; 3], f64, bool, Outputs) -> LaneEvaluation<f64>,
 ) {
     let [x, y, z] = points.coordinates();
     for index in 0..points.len() {
-        let evaluation = T::evaluate_lanes([x[index], y[index], z[index]], length, true, outputs);
+        let evaluation = evaluate([x[index], y[index], z[index]], length, true, outputs);
         if !evaluation.inside {
             continue;
         }

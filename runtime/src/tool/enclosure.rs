@@ -273,11 +273,20 @@ impl EvaluationEnclosure {
     /// Evaluates a compiled tool over a box. `sides` is the extent of the box along x, y and z; for a tool with an axis
     /// the box lies in the half plane `y = 0`, `x ≥ 0`. Slopes are taken from `reference`, a point of the box.
     pub fn of<T: Evaluators>(sides: [Interval; 3], reference: [f64; 3]) -> EvaluationEnclosure {
+        EvaluationEnclosure::evaluated(sides, reference, T::evaluate_lanes)
+    }
+
+    /// Does the same with any evaluator.
+    pub(in crate::tool) fn evaluated(
+        sides: [Interval; 3],
+        reference: [f64; 3],
+        evaluate: impl FnOnce([Enclosure; 3], Enclosure, Ternary, Outputs) -> LaneEvaluation<Enclosure>,
+    ) -> EvaluationEnclosure {
         let present = Ternary { yes: true, no: false, gaps: [None; 2] };
         let outputs = Outputs { depth: true, region: true, ..Outputs::INSIDE };
         let one = Enclosure::constant(1.0);
         let LaneEvaluation { inside, depth, region, .. } =
-            T::evaluate_lanes(Enclosure::of_box(sides, reference), one, present, outputs);
+            evaluate(Enclosure::of_box(sides, reference), one, present, outputs);
         EvaluationEnclosure {
             inside: inside.yes,
             outside: inside.no,
@@ -356,33 +365,6 @@ fn lagrangian_bound(corners: &[CornerExtremes; 3], multiplier: f64) -> f64 {
         })
         .reduce(f64::max)
         .expect("there are three corners")
-}
-
-#[cfg(feature = "interpreter")]
-impl EvaluationEnclosure {
-    /// Returns an enclosure of no points.
-    pub(in crate::tool) fn empty() -> EvaluationEnclosure {
-        EvaluationEnclosure { inside: false, outside: false, depth: Enclosure::EMPTY, regions: 0 }
-    }
-
-    /// Adds the points of a region with their depth, or points outside if `owner` is `None`. `test` is the undecided
-    /// comparison with 0 that leads there, and whether the points are those below 0.
-    pub(in crate::tool) fn include(
-        &mut self,
-        owner: Option<(usize, Enclosure)>,
-        test: Option<(Enclosure, bool)>,
-    ) {
-        let Some((region, depth)) = owner else {
-            self.outside = true;
-            return;
-        };
-        let gap =
-            test.map(|(value, below)| if below { value.linear } else { value.linear.negated() });
-        let choices = self.depth.choices.and(depth.choices(gap));
-        self.inside = true;
-        self.regions |= bit(region);
-        self.depth = Enclosure { choices, ..self.depth.hull(depth) };
-    }
 }
 
 /// A first-order enclosure of a function over a box: its value at a reference point, and its slopes.

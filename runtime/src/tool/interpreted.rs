@@ -1,9 +1,11 @@
 //! Tools that are loaded at run time.
 
+use super::compiled::{evaluate_blocks, evaluate_points};
+use super::plan::{Eight, Memory, Plan};
 use super::{
     BatchEvaluator, Circle, DepthBounds, Derivatives, Dual, Enclosure, EnvelopeSlab,
-    EvaluationEnclosure, Evaluations, LANES, Lane, OutputSelection, Outputs, PointBatch,
-    ProfileSegment, Region, Surface, Symmetry, Ternary, Tool, ToolInfo,
+    EvaluationEnclosure, Evaluations, OutputSelection, Outputs, PointBatch, ProfileSegment, Region,
+    Surface, Symmetry, Ternary, Tool, ToolInfo,
 };
 use crate::debug::debug;
 use crate::id::SurfaceId;
@@ -11,14 +13,11 @@ use crate::interval::Interval;
 use crate::unit::Unit;
 use fearless_simd::{Level, Simd, dispatch};
 use std::borrow::Cow;
-use std::ops::Range;
+use std::mem;
 use std::path::Path;
 use std::str::FromStr;
 use touchoff_dsl::bound::lateral_extent;
 use touchoff_dsl::domain::Domain;
-use touchoff_dsl::interpret::{
-    BLOCK_POINTS, Block, Lanes, OUTPUT_COUNT, PlanEvaluator, Tape, Value,
-};
 use touchoff_dsl::prove::Bounds;
 use touchoff_dsl::source::Source;
 use touchoff_dsl::{Accepted, CheckedTool, compile_with_arguments, diagnostic, digest, model};
@@ -26,8 +25,7 @@ use touchoff_dsl::{Accepted, CheckedTool, compile_with_arguments, diagnostic, di
 /// A tool from a `.tool` file, evaluated by the interpreter.
 pub struct Interpreted {
     info: ToolInfo,
-    evaluations: Vec<Tape>,
-    plan: PlanEvaluator,
+    plan: Plan,
     warnings: String,
 }
 
@@ -114,14 +112,9 @@ impl Interpreted {
             compiled.diagnostics().iter().map(|r| r.render(&compiled.sources, false)).collect();
         let diagnostics = diagnostics.join("\n\n");
         match compiled.outcome {
-            Ok(Accepted { tool, .. }) => Ok(Interpreted {
-                info: info(&tool),
-                evaluations: (0..tool.model.regions.len())
-                    .map(|k| Tape::evaluation(&tool, k))
-                    .collect(),
-                plan: PlanEvaluator::new(&tool),
-                warnings: diagnostics,
-            }),
+            Ok(Accepted { tool, .. }) => {
+                Ok(Interpreted { info: info(&tool), plan: Plan::new(&tool), warnings: diagnostics })
+            }
             Err(_) => Err(ToolError::Invalid(diagnostics)),
         }
     }
@@ -195,6 +188,15 @@ fn profile_segment(segment: model::ProfileSegment) -> ProfileSegment {
     ProfileSegment { from, to, circle, surface: SurfaceId(surface) }
 }
 
+/// The memory of evaluations, for each type of lane. Enclosures are not reserved.
+#[derive(Clone, Debug, Default)]
+pub(super) struct EvaluationMemory {
+    numbers: Memory<f64, bool>,
+    vectors: Memory<Eight, u8>,
+    duals: Memory<Dual, bool>,
+    enclosures: Memory<Enclosure, Ternary>,
+}
+
 impl Tool for Interpreted {
     fn info(&self) -> &ToolInfo {
         &self.info
@@ -209,10 +211,34 @@ impl Tool for Interpreted {
         evaluations: &mut Evaluations,
     ) {
         evaluations.reserve(points, outputs);
+        // The memory is taken out while the results are written.
+        if points.len() == 1 {
+            let mut memory = mem::take(&mut evaluations.memory.numbers);
+            let plan = &self.plan;
+            evaluate_points(
+                outputs,
+                points,
+                length,
+                evaluations,
+                |point, unit, present, outputs| {
+                    plan.evaluate_lanes(point, unit, present, outputs, &mut memory)
+                },
+            );
+            evaluations.memory.numbers = memory;
+            return;
+        }
+        let mut memory = mem::take(&mut evaluations.memory.vectors);
         dispatch!(level, simd => simd.vectorize(
             #[inline(always)]
-            || self.evaluate_blocks(outputs, points, length, evaluations),
+            || evaluate_blocks(
+                simd, outputs, points, length, evaluations,
+                #[inline(always)]
+                |point, unit, present, outputs| {
+                    self.plan.evaluate_lanes(point, unit, present, outputs, &mut memory)
+                },
+            ),
         ));
+        evaluations.memory.vectors = memory;
     }
 
     fn enclose(
@@ -225,82 +251,25 @@ impl Tool for Interpreted {
         if !self.info.outline.is_empty() {
             return None;
         }
-        let (point, one) = (Enclosure::of_box(sides, reference), Enclosure::constant(1.0));
-        let mut enclosure = EvaluationEnclosure::empty();
-        self.plan.for_each_owner(point, one, &mut scratch.enclosures, |owner, test| {
-            enclosure.include(owner, test);
-        });
-        Some(enclosure)
+        let memory = &mut scratch.memory.enclosures;
+        Some(EvaluationEnclosure::evaluated(sides, reference, |point, unit, present, outputs| {
+            self.plan.evaluate_lanes(point, unit, present, outputs, memory)
+        }))
     }
 
     fn derivatives(&self, point: [f64; 3], length: f64, scratch: &mut Evaluations) -> Derivatives {
-        let mut results = [Dual::default(); OUTPUT_COUNT];
-        let duals = (Dual::point(point), Dual::constant(length));
-        self.plan.run(duals.0, duals.1, &mut scratch.duals, &mut results);
-        let [_, _, _, _, direction @ .., gx, gy, gz] = results;
-        Derivatives::of(direction, [gx, gy, gz], length)
+        let outputs = Outputs { direction: true, gradient: true, ..Outputs::INSIDE };
+        let (point, unit) = (Dual::point(point), Dual::constant(length));
+        let memory = &mut scratch.memory.duals;
+        let found = self.plan.evaluate_lanes(point, unit, true, outputs, memory);
+        Derivatives::of(found.direction, found.gradient, length)
     }
 
     fn reserve(&self, evaluations: &mut Evaluations) {
-        self.plan.reserve(&mut evaluations.scratch);
-        self.plan.reserve(&mut evaluations.duals);
-        self.plan.reserve_block(&mut evaluations.lanes);
-        for tape in &self.evaluations {
-            tape.reserve(&mut evaluations.registers);
-        }
-    }
-}
-
-impl Value for Dual {
-    fn constant(value: f64) -> Dual {
-        Dual::constant(value)
-    }
-    fn sqrt(self) -> Dual {
-        Lane::sqrt(self)
-    }
-    fn abs(self) -> Dual {
-        Lane::abs(self)
-    }
-    fn le(a: Dual, b: Dual) -> [bool; 2] {
-        Value::le(a.value, b.value)
-    }
-    fn lt(a: Dual, b: Dual) -> [bool; 2] {
-        Value::lt(a.value, b.value)
-    }
-}
-
-impl Default for Enclosure {
-    fn default() -> Enclosure {
-        Enclosure::constant(0.0)
-    }
-}
-
-impl Value for Enclosure {
-    fn constant(value: f64) -> Enclosure {
-        Enclosure::constant(value)
-    }
-    fn sqrt(self) -> Enclosure {
-        Lane::sqrt(self)
-    }
-    fn abs(self) -> Enclosure {
-        Lane::abs(self)
-    }
-    fn le(a: Enclosure, b: Enclosure) -> [bool; 2] {
-        let Ternary { yes, no, .. } = Lane::le(a, b);
-        [yes, no]
-    }
-    fn lt(a: Enclosure, b: Enclosure) -> [bool; 2] {
-        let Ternary { yes, no, .. } = Lane::lt(a, b);
-        [yes, no]
-    }
-    fn hull(self, other: Enclosure) -> Enclosure {
-        self.hull(other)
-    }
-    fn min(a: Enclosure, b: Enclosure) -> Enclosure {
-        Lane::min(a, b)
-    }
-    fn max(a: Enclosure, b: Enclosure) -> Enclosure {
-        Lane::max(a, b)
+        let EvaluationMemory { numbers, vectors, duals, .. } = &mut evaluations.memory;
+        self.plan.reserve(numbers);
+        self.plan.reserve(vectors);
+        self.plan.reserve(duals);
     }
 }
 
@@ -313,186 +282,5 @@ impl BatchEvaluator for Interpreted {
         evaluations: &mut Evaluations,
     ) {
         self.evaluate(level, O::OUTPUTS, points, length, evaluations);
-    }
-}
-
-impl Interpreted {
-    #[inline(always)]
-    fn evaluate_blocks(
-        &self,
-        outputs: Outputs,
-        points: &PointBatch,
-        length: f64,
-        evaluations: &mut Evaluations,
-    ) {
-        // Results are in this order: owner, depth, magnitude, niceness, direction, gradient.
-        let result_count = match outputs {
-            Outputs { gradient: true, .. } => OUTPUT_COUNT,
-            Outputs { direction: true, .. } => 7,
-            Outputs { niceness: true, .. } => 4,
-            Outputs { magnitude: true, .. } => 3,
-            Outputs { depth: true, .. } => 2,
-            _ => 1,
-        };
-        let request = EvaluationRequest { outputs, result_count, length };
-        let coordinates = points.coordinates();
-        for start in (0..points.len()).step_by(BLOCK_POINTS) {
-            let count = BLOCK_POINTS.min(points.len() - start);
-            // Both ways give the same bits; which one is taken is a question of speed alone.
-            if count <= MAX_SEPARATE_POINTS {
-                self.evaluate_points(start..start + count, coordinates, request, evaluations);
-            } else {
-                self.evaluate_block(start..start + count, coordinates, request, evaluations);
-            }
-        }
-    }
-}
-
-/// The requested outputs of an evaluation, the number of results that they need, and the unit of length.
-#[derive(Clone, Copy)]
-struct EvaluationRequest {
-    outputs: Outputs,
-    /// The results are in a fixed order, of which only the first ones are computed.
-    result_count: usize,
-    /// The tool's unit in the part's unit.
-    length: f64,
-}
-
-/// Maximum number of points of a block that are evaluated one by one, because a tape computes all lanes of a block.
-const MAX_SEPARATE_POINTS: usize = 8;
-/// Minimum number of points of a region for which its tape is faster than an evaluation per point.
-const MIN_TAPE_POINTS: usize = 8;
-
-impl Interpreted {
-    fn evaluate_points(
-        &self,
-        indices: Range<usize>,
-        [x, y, z]: [&[f64]; 3],
-        request: EvaluationRequest,
-        evaluations: &mut Evaluations,
-    ) {
-        let EvaluationRequest { outputs, result_count, length } = request;
-        let mut results = [0.0; OUTPUT_COUNT];
-        for index in indices {
-            let point = [x[index], y[index], z[index]];
-            self.plan.run(point, length, &mut evaluations.scratch, &mut results[..result_count]);
-            if results[0] < 0.0 {
-                continue;
-            }
-            evaluations.inside[index / LANES] |= 1 << (index % LANES);
-            store(evaluations, outputs, |list, result| list[index] = results[result]);
-        }
-    }
-
-    #[inline(always)]
-    fn evaluate_block(
-        &self,
-        indices: Range<usize>,
-        coordinates: [&[f64]; 3],
-        request: EvaluationRequest,
-        evaluations: &mut Evaluations,
-    ) {
-        let EvaluationRequest { outputs, result_count, length } = request;
-        let (start, count) = (indices.start, indices.len());
-        let mut block: [Lanes; 3] = [[0.0; BLOCK_POINTS]; 3];
-        let mut owners = [-1.0; BLOCK_POINTS];
-        for (component, list) in block.iter_mut().zip(coordinates) {
-            component[..count].copy_from_slice(&list[indices.clone()]);
-        }
-        let points = Block { points: block.each_ref(), count, length };
-        self.plan.owners(points, &mut evaluations.lanes, &mut owners);
-        for (index, _) in owners[..count].iter().enumerate().filter(|(_, owner)| **owner >= 0.0) {
-            evaluations.inside[(start + index) / LANES] |= 1 << (index % LANES);
-        }
-        if outputs == Outputs::INSIDE {
-            return;
-        }
-        // Fixed-size lists, since a haptic loop may not allocate.
-        let (mut remaining, mut owned) = ([0; BLOCK_POINTS], [0; BLOCK_POINTS]);
-        let mut remaining_count = 0;
-        for index in (0..count).filter(|index| owners[*index] >= 0.0) {
-            remaining[remaining_count] = index;
-            remaining_count += 1;
-        }
-        let mut results = [[0.0; BLOCK_POINTS]; OUTPUT_COUNT];
-        // Region by region: the points of one are gathered, so that its tape runs on full lanes.
-        while remaining_count > 0 {
-            let region = owners[remaining[0]];
-            let (mut owned_count, mut other_count) = (0, 0);
-            for k in 0..remaining_count {
-                let index = remaining[k];
-                let (list, count_in_list) = match owners[index] == region {
-                    true => (&mut owned, &mut owned_count),
-                    false => (&mut remaining, &mut other_count),
-                };
-                list[*count_in_list] = index;
-                *count_in_list += 1;
-            }
-            let owned = &owned[..owned_count];
-            let mut gathered: [Lanes; 3] = [[0.0; BLOCK_POINTS]; 3];
-            for (lane, index) in owned.iter().enumerate() {
-                for (component, list) in gathered.iter_mut().zip(&block) {
-                    component[lane] = list[*index];
-                }
-            }
-            // The first result is the owner, which a tape of one region does not compute.
-            results[0] = [region; BLOCK_POINTS];
-            if owned.len() < MIN_TAPE_POINTS {
-                let mut values = [0.0; OUTPUT_COUNT];
-                for lane in 0..owned.len() {
-                    let point = [0, 1, 2].map(|k| gathered[k][lane]);
-                    let values = &mut values[..result_count - 1];
-                    self.plan.evaluate(
-                        region as usize,
-                        point,
-                        length,
-                        &mut evaluations.scratch,
-                        values,
-                    );
-                    for (result, value) in results[1..].iter_mut().zip(values) {
-                        result[lane] = *value;
-                    }
-                }
-            } else {
-                let tape = &self.evaluations[region as usize];
-                let results = &mut results[1..result_count];
-                let owned = Block { points: gathered.each_ref(), count: owned.len(), length };
-                tape.run(owned, &mut evaluations.registers, results);
-            }
-            store(evaluations, outputs, |list, result| {
-                for (lane, index) in owned.iter().enumerate() {
-                    list[start + index] = results[result][lane];
-                }
-            });
-            remaining_count = other_count;
-        }
-    }
-}
-
-/// Calls `copy` for each component of the requested outputs, with its list and the index of its result.
-fn store(
-    evaluations: &mut Evaluations,
-    outputs: Outputs,
-    mut copy: impl FnMut(&mut Vec<f64>, usize),
-) {
-    if outputs.depth {
-        copy(&mut evaluations.depth, 1);
-    }
-    if outputs.magnitude {
-        copy(&mut evaluations.magnitude, 2);
-    }
-    if outputs.niceness {
-        copy(&mut evaluations.niceness, 3);
-    }
-    for axis in 0..3 {
-        if outputs.direction {
-            copy(&mut evaluations.direction[axis], 4 + axis);
-        }
-        if outputs.gradient {
-            copy(&mut evaluations.gradient[axis], 7 + axis);
-        }
-    }
-    if outputs.region {
-        copy(&mut evaluations.region, 0);
     }
 }

@@ -11,6 +11,8 @@ mod info;
 #[cfg(feature = "interpreter")]
 mod interpreted;
 mod lane;
+#[cfg(feature = "interpreter")]
+mod plan;
 
 pub use compiled::{Evaluators, LaneEvaluation, PointEvaluation};
 pub(crate) use enclosure::bit;
@@ -299,21 +301,9 @@ pub struct Evaluations {
     pub gradient: [Vec<f64>; 3],
     /// Index of the region in the tool's list.
     pub region: Vec<f64>,
-    /// Registers of the interpreter's tapes.
+    /// Memory of interpreted tools.
     #[cfg(feature = "interpreter")]
-    registers: Vec<touchoff_dsl::interpret::Lanes>,
-    /// Scratch memory of the interpreter for a point.
-    #[cfg(feature = "interpreter")]
-    scratch: touchoff_dsl::interpret::Scratch,
-    /// Scratch memory of the interpreter for a point with derivatives.
-    #[cfg(feature = "interpreter")]
-    duals: touchoff_dsl::interpret::Scratch<Dual>,
-    /// Scratch memory of the interpreter for a box.
-    #[cfg(feature = "interpreter")]
-    enclosures: touchoff_dsl::interpret::Scratch<Enclosure>,
-    /// Scratch memory of the interpreter for a block of points.
-    #[cfg(feature = "interpreter")]
-    lanes: touchoff_dsl::interpret::Registers,
+    memory: interpreted::EvaluationMemory,
 }
 
 impl Evaluations {

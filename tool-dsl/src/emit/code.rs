@@ -4,7 +4,7 @@
 use super::names::Names;
 use super::tokens::Tokens;
 use crate::expr::{Coord, Graph, Id, Node};
-use crate::formula::{Curve, CurveIndex};
+use crate::formula::{Curve, CurveIndex, Side};
 use crate::model::Model;
 use crate::number::Number;
 use crate::plan::Tree;
@@ -12,12 +12,6 @@ use crate::resolve::SHORTEST_SQUARE;
 use proc_macro2::TokenStream;
 use quote::quote;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
-
-/// One side of a comparison.
-enum Operand {
-    Node(Id),
-    Constant(f64),
-}
 
 /// A writer of the body of the evaluator.
 pub(super) struct Writer<'m> {
@@ -75,39 +69,14 @@ impl<'m> Writer<'m> {
         quote! { #per_length #across }
     }
 
-    /// Returns the two sides of `c ≤ 0` as `left ≤ right`. A rounded sum has the sign of its comparison
-    /// exactly, so nothing is lost by not adding.
-    fn sides(&self, curve: CurveIndex) -> [Operand; 2] {
-        let value = self.curves[curve].value;
-        match *self.graph.node(value) {
-            Node::Sub(a, b) => [self.operand(a), self.operand(b)],
-            Node::Neg(a) => [Operand::Constant(0.0), self.operand(a)],
-            Node::Add(a, b) => match self.graph.constant(b) {
-                Some(shift) => [self.operand(a), Operand::Constant(-shift.to_f64())],
-                None => [self.operand(value), Operand::Constant(0.0)],
-            },
-            _ => [self.operand(value), Operand::Constant(0.0)],
-        }
-    }
-
-    fn operand(&self, id: Id) -> Operand {
-        match self.graph.constant(id) {
-            Some(constant) => Operand::Constant(constant.to_f64()),
-            None => Operand::Node(id),
-        }
-    }
-
     /// Returns the nodes that a curve's test needs.
     fn compared(&self, curve: CurveIndex) -> impl Iterator<Item = Id> {
-        self.sides(curve).into_iter().filter_map(|operand| match operand {
-            Operand::Node(id) => Some(id),
-            Operand::Constant(_) => None,
-        })
+        self.curves[curve].sides(self.graph).into_iter().filter_map(|side| side.node())
     }
 
     /// Writes the test of a curve, whose shared operands are already bound.
     fn test(&self, code: &mut Tokens, curve: CurveIndex, strict: bool) {
-        let [left, right] = self.sides(curve);
+        let [left, right] = self.curves[curve].sides(self.graph);
         code.lane(if strict { "lt" } else { "le" }, |code| {
             self.side(code, &left);
             code.sign(",");
@@ -116,10 +85,10 @@ impl<'m> Writer<'m> {
     }
 
     /// Writes one side of a comparison.
-    fn side(&self, code: &mut Tokens, side: &Operand) {
+    fn side(&self, code: &mut Tokens, side: &Side) {
         match side {
-            Operand::Node(id) => self.value(code, *id),
-            Operand::Constant(value) => {
+            Side::Node(id) => self.value(code, *id),
+            Side::Constant(value) => {
                 code.of_lanes(*value);
             }
         }

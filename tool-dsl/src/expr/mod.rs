@@ -2,7 +2,7 @@
 //!
 //! All statements about a tool are statements about this graph. The derivative ([`mod@derive`]) adds nodes to
 //! it. Enclosures ([`interval`]) and values ([`value`]) are computed by walks over it. The emitted Rust and
-//! the interpreter's tape are listings of it.
+//! the plan that the runtime evaluates are listings of it.
 //!
 //! # Meaning of a node
 //!
@@ -35,7 +35,7 @@
 //!
 //! | walk | result | difference from the meaning |
 //! |---|---|---|
-//! | [`Evaluator`](value::Evaluator), emitted code, tape | `f64`, one IEEE operation per node in the order of ids | one rounding per node and per constant; a partial function gives NaN or an infinity |
+//! | [`Evaluator`](value::Evaluator), emitted code, the runtime's plan | `f64`, one IEEE operation per node in the order of ids | one rounding per node and per constant; a partial function gives NaN or an infinity |
 //! | [`Encloser`](interval::Encloser) | an interval that contains the value at every point of a box where the node is defined | none: ends are rounded outward |
 //! | constants, [`Number`](crate::number::Number) | 256 bits, rounded half to even | `2^-256` relative per operation |
 //!

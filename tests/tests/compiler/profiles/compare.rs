@@ -54,7 +54,7 @@ pub(crate) fn points(outline: &Outline, count: usize, rng: &mut Rng) -> Vec<P2> 
     all
 }
 
-/// Compares the reference and the planned tape with brute force at `count` points.
+/// Compares the reference and the planned tool with brute force at `count` points.
 pub(crate) fn compare(
     outline: &Outline,
     (tool, planned): (&CheckedTool, &Interpreted),
@@ -64,8 +64,8 @@ pub(crate) fn compare(
     let mut reference = Interpreter::new(tool);
     let turned = points(outline, count, rng).into_iter().map(|p| outline.turned(p));
     let points_in_space: Vec<[f64; 3]> = turned.map(|[d, z]| [d, 0.0, z]).collect();
-    let tapes = evaluate_points(planned, Level::new(), &points_in_space);
-    for (point, tape) in points_in_space.into_iter().zip(tapes) {
+    let planned_evaluations = evaluate_points(planned, Level::new(), &points_in_space);
+    for (point, found) in points_in_space.into_iter().zip(planned_evaluations) {
         let p = outline.back([point[0], point[2]]);
         let at = |(kind, text): Flaw, who: &str| {
             let vertex = (0..=outline.segments().len()).any(|k| *outline.profile.vertex(k) == p);
@@ -81,7 +81,7 @@ pub(crate) fn compare(
             found.map_or("outside", |found| tool.model.regions[found.region].name.as_str())
         };
         let results =
-            [("reference", reference.evaluate(point, 1.0).map(of_reference)), ("tape", tape)];
+            [("reference", reference.evaluate(point, 1.0).map(of_reference)), ("plan", found)];
         for (who, got) in results {
             let who = || format!("{who} says {}", describe_evaluation(got));
             check_point(outline, tool, p, got, clearance).map_err(|flaw| at(flaw, &who()))?;

@@ -84,9 +84,9 @@ fn each_region_has_the_tabulated_values() {
 fn check_point(tool: &CheckedTool, planned: &Interpreted, outline: &Outline, p: P2) {
     let [d, z] = outline.turned(p);
     let point = [d, 0.0, z];
-    let tape = evaluate_points(planned, Level::new(), &[point])[0];
+    let found = evaluate_points(planned, Level::new(), &[point])[0];
     let reference = Interpreter::new(tool).evaluate(point, 1.0).map(of_reference);
-    assert_eq!(reference, tape, "at {p:?}");
+    assert_eq!(reference, found, "at {p:?}");
     assert_eq!(reference.is_some(), outline.profile.encloses(&p), "at {p:?}");
     let depth = outline.profile.depth(&p).abs();
     let Some(evaluation) = reference else {

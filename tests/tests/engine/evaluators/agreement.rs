@@ -3,7 +3,8 @@
 use super::points::{format_point, scale};
 use super::{LENGTHS, evaluate};
 use crate::prelude::*;
-use touchoff::tool::{Evaluations, Outputs, PointBatch};
+use touchoff::Interval;
+use touchoff::tool::{Evaluations, Outputs, PointBatch, Symmetry};
 use touchoff_dsl::CheckedTool;
 use touchoff_dsl::interpret::Interpreter;
 use touchoff_tests::evaluations::{at, batch, bits, is_inside, levels, of_reference};
@@ -16,13 +17,13 @@ type Answer = Option<(usize, [u64; 9])>;
 /// geometry has not.
 const CORNER: f64 = 1.0;
 
-/// Compares all evaluators at some points. Those that follow the plan (code on numbers and on vectors, the tape) have the same
-/// bits everywhere; the reference has them too, but for [`CORNER`]s.
+/// Compares all evaluators at some points. Those that follow the plan (generated code and the tool loaded at run time, on
+/// numbers and on vectors) have the same bits everywhere; the reference has them too, but for [`CORNER`]s.
 pub(crate) fn of(
     tool: &dyn Tool,
     oracle: &dyn Oracle,
     checked: &CheckedTool,
-    tape: &Interpreted,
+    loaded: &Interpreted,
     points: &[[f64; 3]],
 ) {
     let list = batch(points);
@@ -35,9 +36,14 @@ pub(crate) fn of(
                 assert_eq!(got, expected, "{what} at {}: {:?}", format_point(*p), numbers(*got));
             }
         };
-        assert_same_bits("tape", &everything(tape, "the tape", Level::baseline(), &list, length));
         for (name, level) in levels() {
             assert_same_bits(name, &everything(tool, name, level, &list, length));
+            let loaded = everything(loaded, &format!("loaded, {name}"), level, &list, length);
+            assert_same_bits(&format!("loaded, {name}"), &loaded);
+        }
+        for (p, code) in points.iter().zip(&code).step_by(7) {
+            let alone = everything(loaded, "alone", Level::new(), &batch(&[*p]), length);
+            assert_eq!(alone, [*code], "alone at {}", format_point(*p));
         }
         for (p, code) in points.iter().zip(&code) {
             let expected = reference.evaluate(*p, length).map(of_reference).as_ref().map(bits);
@@ -51,11 +57,56 @@ pub(crate) fn of(
         }
     }
     println!(
-        "{:20} {:7} points: code, tape and lanes at {} alike; reference too, but for {corners} answers at corners",
+        "{:20} {:7} points: code and the loaded tool alike at {}; reference too, but for {corners} answers at corners",
         tool.info().name,
         points.len(),
         levels().iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", "),
     );
+}
+
+/// Compares the evaluators that follow the plan on dual numbers at some points and, without a profile, on boxes about them.
+pub(crate) fn of_slopes_and_boxes(
+    tool: &dyn Tool,
+    size: f64,
+    loaded: &Interpreted,
+    points: &[[f64; 3]],
+) {
+    let mut rng = Rng::new(3);
+    let (mut ours, mut others) = (Evaluations::default(), Evaluations::default());
+    for p in points {
+        let [code, plan] =
+            [tool.derivatives(*p, 2.0, &mut ours), loaded.derivatives(*p, 2.0, &mut others)]
+                .map(|found| [found.direction, found.gradient].map(|rows| rows.map(exact)));
+        assert_eq!(plan, code, "derivatives at {}", format_point(*p));
+        let revolved = matches!(tool.info().symmetry, Symmetry::Revolved);
+        let [x, y, z] = *p;
+        let at = if revolved { [x.hypot(y), 0.0, z] } else { *p };
+        let half = size * 10f64.powf(rng.between(-4.0, 0.0));
+        let mut sides = at.map(|middle| Interval { low: middle - half, high: middle + half });
+        if revolved {
+            sides[0].low = sides[0].low.max(0.0);
+            sides[1] = Interval { low: 0.0, high: 0.0 };
+        }
+        let found = (tool.enclose(sides, at, &mut ours), loaded.enclose(sides, at, &mut others));
+        let (Some(code), Some(plan)) = found else {
+            assert!(tool.info().is_exact() && found.0.is_none() && found.1.is_none());
+            continue;
+        };
+        let [code_values, plan_values] = [&code, &plan].map(|found| {
+            let depths = [found.min_depth(), found.max_depth(), found.min_rise([0.6, 0.0, 0.8])];
+            (found.inside, found.regions, exact(depths))
+        });
+        assert_eq!(plan_values, code_values, "{sides:?}");
+        // Code does not record that regions side by side leave nothing outside.
+        assert!(code.outside || !plan.outside, "{sides:?}");
+    }
+}
+
+/// Returns the bits of numbers, without the signs of zeros and NaNs: a constant as an operand is a number in code and a dual in
+/// the plan, and the slopes of both are 0.
+fn exact(numbers: [f64; 3]) -> [u64; 3] {
+    numbers
+        .map(|number| if number.is_nan() { f64::NAN.to_bits() } else { (number + 0.0).to_bits() })
 }
 
 /// Returns all outputs of a tool, after a check that a request for fewer outputs gives the same values.

@@ -18,7 +18,7 @@ fn rod(curves: &str, conditions: impl IntoIterator<Item = String>) -> Source {
 
 /// Compares the plan's owners with the list's.
 fn agree(source: &Source) {
-    let (checked, tape) = (super::checked(source), super::interpreted(source));
+    let (checked, loaded) = (super::checked(source), super::interpreted(source));
     let mut reference = Interpreter::new(&checked);
     let mut rng = Rng::new(9);
     let mut points = Vec::new();
@@ -26,7 +26,7 @@ fn agree(source: &Source) {
         let mut across = || rng.between(-5.5, 5.5);
         points.push([across(), across(), rng.between(-1.0, 21.0)]);
     }
-    let evaluations = evaluate_points(&tape, Level::baseline(), &points);
+    let evaluations = evaluate_points(&loaded, Level::baseline(), &points);
     for (p, evaluation) in points.iter().zip(evaluations) {
         let expected = reference.evaluate(*p, 1.0).map(|evaluation| evaluation.region);
         let found = evaluation.map(|evaluation| evaluation.region);
