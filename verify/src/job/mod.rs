@@ -260,7 +260,7 @@ faults! {
         #[code = J0103]
         #[error(
             "no tool is given for T{number}{}: state `tools = \"LIBRARY\"` or `[tool.{number}]` with `tool = \"FILE.tool\"` in the job",
-            others.iter().map(|number| format!(", T{number}")).collect::<String>()
+            further_tools(others)
         )]
         NoTool {
             /// The number.
@@ -505,6 +505,17 @@ faults! {
             root: String,
         },
     }
+}
+
+/// Lists further tools without a file, and the number of those left out.
+fn further_tools(numbers: &[u32]) -> String {
+    const MAX_SHOWN: usize = 20;
+    let (shown, left_out) = numbers.split_at(numbers.len().min(MAX_SHOWN));
+    let mut text: String = shown.iter().map(|number| format!(", T{number}")).collect();
+    if !left_out.is_empty() {
+        text += &format!(" and {} more tools", left_out.len());
+    }
+    text
 }
 
 // A pose needs no conversion.
