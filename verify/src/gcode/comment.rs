@@ -175,6 +175,7 @@ fn description(
     // The size of an engraving bit is that of its tip.
     let braced = rest.split_once('{').and_then(|(_, inner)| inner.split('}').next());
     let braced = braced.filter(|inner| !inner.contains("TIP"));
+    let rest = &*without_work(rest);
     let diameter = value(rest, &["D"])
         .or_else(|| diameter(rest))
         .or_else(|| braced.and_then(last_measure))
@@ -202,6 +203,26 @@ fn description(
         _ => None,
     };
     Some(Description { number, diameter, corner, taper, end, unit })
+}
+
+/// Returns what the fields of a comment say about the tool: none from the word on that begins to say what it makes, and nothing of one that
+/// names features of the part, whose size can stand there: `DRILLS DIA 8 HOLES`.
+fn without_work(text: &str) -> String {
+    const WORK: [&str; 10] =
+        ["FOR", "TO", "DRILLS", "MILLS", "CUTS", "BORES", "REAMS", "TAPS", "ROUGHS", "FINISHES"];
+    const FEATURES: [&str; 6] = ["HOLE", "HOLES", "POCKET", "POCKETS", "BOSS", "BOSSES"];
+    let position = |field: &str, word: &&str| {
+        let mut found = field.match_indices(*word).map(|(at, _)| at);
+        let is_ended =
+            |at: usize| !field[at + word.len()..].starts_with(|c: char| c.is_ascii_alphanumeric());
+        found.find(|at| begins_word(field, *at) && is_ended(*at))
+    };
+    let fields = text.split('|').map(|field| {
+        let end = WORK.iter().filter_map(|word| position(field, word)).min();
+        let field = &field[..end.unwrap_or(field.len())];
+        if FEATURES.iter().any(|word| position(field, word).is_some()) { "" } else { field }
+    });
+    fields.collect::<Vec<_>>().join("|")
 }
 
 /// Reads the fields of Makera Studio.
@@ -420,6 +441,10 @@ mod tests {
             ("( T3 : 50.8 surfacing bit )", (3, 50.8, None, Other)),
             ("(T1=6mm_Endmill)", (1, 6.0, None, Unnamed)),
             ("(T1=6mm_Ball_End)", (1, 6.0, None, Ball)),
+            // The size of what the tool makes is another one.
+            ("(T3 DRILL DIA 6.8 FOR M8 HOLES DIA 8)", (3, 6.8, None, Other)),
+            ("(T1 | 6MM DRILL FOR HOLES | H1 | TOOL DIA. - 6.)", (1, 6.0, None, Other)),
+            ("(T1 6MM ENDMILL FOR 8MM POCKET)", (1, 6.0, None, Unnamed)),
             (
                 ";@MKR|TOOL|number=2|name=3mm|type=Flat End|diameter=3|cornerradius=0|angle=0",
                 (2, 3.0, Some(0.0), Flat),
@@ -461,6 +486,13 @@ mod tests {
             "(1 = Engraving {30 deg 0.5 mm Tip})",
             "(T3|NO. 7 DRILL|H3|D3)",
             "(T1 1/4-20 TAP)",
+            "(T1 DRILLS DIA 8 HOLES)",
+            "(T1 DRILL, 4 HOLES DIA 8)",
+            "(T1 CUTS D=20 POCKET)",
+            "(T1 FOR DIA. 8.5)",
+            "(T2 SPOT DRILL TO DIA 8)",
+            "T1 M6 (POCKET DIA. 30)",
+            "(T1: 8 HOLES)",
             "; \"OTHER\" D=5 - flat end mill",
         ] {
             assert_eq!(stated(text, Unit::Millimetre), [], "{text}");
