@@ -52,6 +52,9 @@ pub enum StatedEnd {
     Unnamed,
 }
 
+/// Length of the longest line that is read, in bytes: each comment of a line is tried with all behind it.
+const MAX_LINE: usize = 500;
+
 /// Returns the tools that the comments of a program describe, each description once. `unit` is that of the program, and `names` has the
 /// numbers of tools that the program selects by their names.
 pub(crate) fn stated_tools(
@@ -61,7 +64,8 @@ pub(crate) fn stated_tools(
 ) -> Vec<StatedTool> {
     let mut found: Vec<StatedTool> = Vec::new();
     let mut known = HashSet::new();
-    for (index, line) in text.lines().enumerate() {
+    let lines = text.lines().enumerate().filter(|(_, line)| line.len() <= MAX_LINE);
+    for (index, line) in lines {
         let (code, comments) = comments(line);
         let selected = selected(code, names);
         let mut tools = comments.into_iter().filter_map(|comment| {
@@ -497,6 +501,7 @@ mod tests {
         ] {
             assert_eq!(stated(text, Unit::Millimetre), [], "{text}");
         }
+        assert_eq!(stated(&"(T1 D=A)".repeat(100_000), Unit::Millimetre), []);
         let twice =
             "(T1 D=6. CR=0. - DRILL)\nG0 X1\n(T1 D=6. CR=0. - DRILL)\n(T1 D=8. CR=0. - DRILL)";
         assert_eq!(stated(twice, Unit::Millimetre).len(), 2);

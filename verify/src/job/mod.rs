@@ -507,6 +507,15 @@ faults! {
     }
 }
 
+/// Tells how many other comments describe another tool.
+fn more_comments(count: usize) -> String {
+    match count {
+        0 => String::new(),
+        1 => " (and 1 more comment)".to_owned(),
+        count => format!(" (and {count} more comments)"),
+    }
+}
+
 /// Lists further tools without a file, and the number of those left out.
 fn further_tools(numbers: &[u32]) -> String {
     const MAX_SHOWN: usize = 20;
@@ -732,10 +741,10 @@ faults! {
         /// Post-processors write the tools for which a program was made. A verdict about another tool says nothing about them.
         #[code = V0608]
         #[error(
-            "the comment {comment} describes another T{number} than the job has, which is {mounted}: give the tool of the program, or \
-             correct the comment"
+            "the comment {comment} describes another T{number} than the job has, which is {mounted}{}: give the tool of the program, or \
+             correct the comment", more_comments(*others)
         )]
-        OtherTool { comment: String, number: u32, mounted: String },
+        OtherTool { comment: String, number: u32, mounted: String, others: usize },
         /// The way to a reference position from a height at which something stands.
         ///
         /// G28, G30 or G53 moves Z with other axes to where only the machine knows, and so in a direction that is not known. Z alone goes
