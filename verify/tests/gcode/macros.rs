@@ -339,6 +339,21 @@ fn long_loops_are_executed_to_their_end() {
     assert_eq!(found.last().map(|step| step.end[1]), Some(Some(400_000.0)));
 }
 
+/// A jump finds its line in a time that does not grow with the loops, programs and equal numbers of the text.
+#[test]
+fn jumps_pass_any_number_of_loops_and_programs() {
+    let loops = "WHILE [1 EQ 0] DO1\nEND1\n".repeat(100_000);
+    let others: String = (10..100_010).map(|number| format!("O{number}\nN1 M99\n")).collect();
+    let program = format!(
+        "O1\nG21 G90 G0\n{loops}#1=0\nN1 #1=#1+1\nIF [#1 LT 300000] GOTO 1\nX#1\nM30\n{others}"
+    );
+    assert_ends(&program, Choice::Iso, &[[300_000.0, 0.0]]);
+    // From inside of a loop outwards, within one, and past another in it.
+    let nested = "G21 G90 G0\n#1=0\nWHILE [#1 LT 2] DO1\nWHILE [1 EQ 1] DO2\n#1=#1+1\nGOTO 10\nEND2\nN10 X#1\nEND1\n\
+        WHILE [1 EQ 1] DO1\nGOTO 20\nEND1\nN20 Y#1\nM30\n";
+    assert_ends(nested, Choice::Iso, &[[1.0, 0.0], [2.0, 0.0], [2.0, 2.0]]);
+}
+
 #[test]
 fn ignored_words_are_noted_with_their_reason() {
     let mut setup = setup(Choice::Iso);

@@ -506,12 +506,10 @@ impl<'a> Flow<'a> {
     /// Returns the place of a sequence number in the program that is executed.
     fn sequence(&self, number: u32, line_of_jump: usize) -> Result<Place, GcodeFault> {
         let [first, last] = self.structure().program(line_of_jump);
-        let places = self.source().sequence_numbers().get(&number);
-        let mut places = places
-            .into_iter()
-            .flatten()
-            .filter(|place| (first..=last).contains(&place.line))
-            .copied();
+        let places = self.source().sequence_numbers().get(&number).map_or(&[][..], Vec::as_slice);
+        // In the order of lines.
+        let places = &places[places.partition_point(|place| place.line < first)..];
+        let mut places = places.iter().take_while(|place| place.line <= last).copied();
         let Some(place) = places.next() else {
             return Err(GcodeFault::NoSequenceNumber { number });
         };

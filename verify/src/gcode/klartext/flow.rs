@@ -242,7 +242,8 @@ impl<'a> Flow<'a> {
             let condition = "the label stands after the call";
             return Err(combination(word, condition, "write the call after the section"));
         }
-        if self.ends.iter().any(|end| (section[0]..section[1]).contains(end)) {
+        let next_end = self.ends.partition_point(|end| *end < section[0]);
+        if self.ends.get(next_end).is_some_and(|end| *end < section[1]) {
             let condition = "LBL 0 stands in the section, which ends a subprogram";
             let remedy = "remove LBL 0, or write a CALL LBL without REP for each execution";
             return Err(combination(word, condition, remedy));
