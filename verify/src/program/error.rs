@@ -351,10 +351,12 @@ faults! {
 }
 
 impl ProgramFault {
-    /// Returns whether two faults are one obstacle: each block of G-code is the same one.
-    pub(super) fn is_same(&self, other: &ProgramFault) -> bool {
-        let is_block = |fault: &ProgramFault| matches!(fault, ProgramFault::GCode { .. });
-        self == other || is_block(self) && is_block(other)
+    /// Returns what tells it from other obstacles: its sentence. Each block of G-code is the same one.
+    pub(super) fn obstacle(&self) -> String {
+        match self {
+            ProgramFault::GCode { .. } => String::new(),
+            fault => fault.to_string(),
+        }
     }
 }
 
