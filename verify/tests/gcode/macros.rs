@@ -82,6 +82,28 @@ fn loops_of_all_readings_share_a_budget() {
     assert_eq!(error.code(), "P0144");
 }
 
+/// A long block takes as much of the budget as its text does, in every language.
+#[test]
+fn long_blocks_of_loops_share_the_budget() {
+    let long = "A".repeat(640);
+    for (language, text) in [
+        (Choice::Iso, "G54 G0 X0.\n#1=0\nN1 (LONG)\n#1=#1+1\nIF [#1 LT 1000] GOTO 1\nM30\n"),
+        (
+            Choice::Heidenhain,
+            "BEGIN PGM A MM\nL X+0 FMAX\nQ1 = 0\nLBL 1\n; LONG\nQ1 = Q1 + 1\nFN 12: IF +Q1 LT +1000 GOTO LBL 1\nM30\nEND PGM A MM\n",
+        ),
+        (
+            Choice::Sinumerik,
+            "G54 G0 X0\nR1=0\nBEGINS: ; LONG\nR1=R1+1\nIF R1<1000 GOTOB BEGINS\nM30\n",
+        ),
+    ] {
+        let setup = ControlSetup { max_repeated: 8_000, ..setup(language) };
+        let code = |text: &str| read(text, &setup).err().map(|error| error.code());
+        assert_eq!(code(&text.replace("LONG", "SHORT")), None, "{text}");
+        assert_eq!(code(&text.replace("LONG", &long)), Some("P0144"), "{text}");
+    }
+}
+
 #[test]
 fn a_bolt_circle_is_the_same_in_every_form() {
     let expected = circle(7, 40.0, [10.0, -5.0], 15.0);

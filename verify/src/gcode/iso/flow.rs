@@ -7,7 +7,7 @@ use super::structure::{Structure, Subprogram};
 use super::variables::{Locals, Variables};
 use crate::gcode::error::combination;
 use crate::gcode::files::name;
-use crate::gcode::{FREE_STEPS, GcodeError, GcodeFault, MAX_CALLS, Repeated, SubprogramFile};
+use crate::gcode::{FREE_STEPS, GcodeError, GcodeFault, MAX_CALLS, Repeated, SubprogramFile, work};
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::mem;
 use std::sync::{Arc, OnceLock};
@@ -369,7 +369,7 @@ impl<'a> Flow<'a> {
         };
         let number = self.place.line;
         self.place = after;
-        self.count(1, number).map_err(|fault| GcodeError { line: number, fault })?;
+        self.count(work(line), number).map_err(|fault| GcodeError { line: number, fault })?;
         if self.is_main() && number > self.furthest {
             (self.furthest, self.past) = (number, after);
         }

@@ -7,7 +7,7 @@ use super::text::{Cursor, start};
 use crate::gcode::error::{combination, missing, not_read};
 use crate::gcode::iso::{Place, line};
 use crate::gcode::{
-    FREE_STEPS, GcodeError, GcodeFault, MAX_CALLS, Repeated, SubprogramFile, shown,
+    FREE_STEPS, GcodeError, GcodeFault, MAX_CALLS, Repeated, SubprogramFile, shown, work,
 };
 use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hasher};
@@ -280,7 +280,7 @@ impl<'a> Flow<'a> {
             self.past = after;
         }
         if is_repeated {
-            self.count(1).map_err(|fault| GcodeError { line: number, fault })?;
+            self.count(work(text)).map_err(|fault| GcodeError { line: number, fault })?;
         }
         Ok((number, text))
     }
