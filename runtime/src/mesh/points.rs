@@ -12,9 +12,12 @@ const UNIT_TOLERANCE: f64 = 0.02;
 /// Names of the coordinates of a normal in PCD.
 const NORMAL_FIELDS: [&str; 3] = ["normal_x", "normal_y", "normal_z"];
 
-/// Names of the coordinates of a normal in the heading of a table.
-const NORMAL_COLUMNS: [[&str; 3]; 3] =
-    [["nx", "ny", "nz"], NORMAL_FIELDS, ["normalx", "normaly", "normalz"]];
+/// Names of the coordinates of a normal in the heading of a table; `i j k` in metrology.
+const NORMAL_COLUMNS: [[&str; 3]; 4] =
+    [["nx", "ny", "nz"], NORMAL_FIELDS, ["normalx", "normaly", "normalz"], ["i", "j", "k"]];
+
+/// Names of colours in the heading of a table.
+const COLOUR_COLUMNS: [[&str; 3]; 2] = [["r", "g", "b"], ["red", "green", "blue"]];
 
 /// Reasons why a cloud of points could not be read. Lines count from 1, points from 0.
 #[derive(thiserror::Error)]
@@ -244,8 +247,8 @@ impl OrientedPoints {
 
     /// Reads a table of points; errors name the file as `name`. The columns are separated by blanks, commas or semicolons; between blanks or
     /// semicolons, a comma is a decimal point. Lines that begin with `#` or `//` are comments, and a first line of words or of one number is a heading.
-    /// A heading, which may be a comment, can name the columns: `x y z`, and `nx ny nz` for a normal. Without names the first three are the
-    /// coordinates, and the next three a normal if they are unit vectors in all rows, one of which has a number below 0. Other columns are skipped.
+    /// A heading, or a comment that begins with `x`, can name the columns: `x y z`, and `nx ny nz` for a normal or `r g b`. Without names the first three
+    /// are the coordinates, and the next three a normal if they are unit vectors in all rows, one of which has a number below 0. Other columns are skipped.
     ///
     /// # Errors
     /// See [`PointsError`].
@@ -259,8 +262,9 @@ impl OrientedPoints {
             let line = line.trim();
             let is_comment = line.starts_with('#') || line.starts_with("//");
             if is_comment && rows.is_empty() {
-                let content = cells(line.trim_start_matches(['#', '/']));
-                heading = Heading::of(&content).or(heading);
+                // Other comments are prose, which may have an x, too.
+                let named = Heading::of(&cells(line.trim_start_matches(['#', '/'])));
+                heading = named.filter(|named| named.columns.coordinates[0] == 0).or(heading);
             }
             if line.is_empty() || is_comment {
                 continue;
@@ -340,7 +344,8 @@ impl Heading {
         };
         let coordinates = all(["x", "y", "z"])?;
         let normal = NORMAL_COLUMNS.into_iter().find_map(all);
-        let has_normals = Some(normal.is_some());
+        let has_colours = COLOUR_COLUMNS.into_iter().any(|names| all(names).is_some());
+        let has_normals = (normal.is_some() || has_colours).then_some(normal.is_some());
         let normal = normal.unwrap_or(Columns::default().normal);
         Some(Heading { columns: Columns { coordinates, normal, has_normals }, count: cells.len() })
     }
@@ -569,6 +574,10 @@ mod tests {
             ("#x y z normal_x normal_y normal_z\n1 2 3 1 0 0\n", Some(1)),
             ("x y z intensity nx ny nz\n1 2 3 9 0 0 5\n", Some(1)),
             ("id x y z\n7 1 2 3\n", Some(0)),
+            ("# export in x y z\n1 2 3 7 8\n", Some(0)),
+            ("x,y,z,i,j,k\n1,2,3,0,0,1\n", Some(1)),
+            ("x y z a b c\n1 2 3 0 0 1\n", None),
+            ("x y z a b c\n1 2 3 0 0 -1\n", Some(1)),
         ] {
             match (read(text), normals) {
                 (Ok(cloud), Some(normals)) => {
