@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use touchoff::tool::ToolError;
 use touchoff_import::FindError;
 use touchoff_verify::stock::StockError;
-use touchoff_verify::{JobError, ProgramError};
+use touchoff_verify::{JobError, ProgramError, VerifyError};
 
 /// The exit status of a session that a signal ended, by the shells' convention.
 pub(crate) const INTERRUPTED: u8 = 130;
@@ -16,10 +16,11 @@ impl Failure {
         matches!(self, Failure::Tool(ToolError::Invalid(_)))
     }
 
-    /// Returns whether the message lists the faults of a program, one per line, and has escaped what it shows of files.
+    /// Returns whether the message lists faults, one per line, and has escaped what it shows of files.
     pub(crate) fn has_lines(&self) -> bool {
         let Failure::Refused { error, .. } = self else { return false };
         let error = match error.downcast_ref() {
+            Some(JobError::Verify(VerifyError::Allowances(_))) => return true,
             Some(JobError::Program(error)) => Some(error),
             _ => error.downcast_ref(),
         };

@@ -131,8 +131,9 @@ fn in_library(
 /// [`Failure::UnknownTool`], with a hint at what may be meant: at files within `root` alone, if it is given.
 fn built_in(name: &str, root: Option<&Path>) -> Result<&'static dyn Tool, Failure> {
     touchoff_tools::find(name).ok_or_else(|| {
-        let near = TOOLS.iter().map(|tool| {
-            let known = &*tool.info().name;
+        // A name of any length is not compared as a whole.
+        let known = TOOLS.iter().map(|tool| &*tool.info().name);
+        let near = known.filter(|known| name.len() <= 2 * known.len()).map(|known| {
             let distance = strsim::damerau_levenshtein(&known.to_lowercase(), &name.to_lowercase());
             (distance, known)
         });

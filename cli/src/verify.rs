@@ -111,6 +111,9 @@ pub(crate) fn job_file(
         job.resolution = options.resolution.or(job.resolution);
         job.surface_only |= options.surface_only;
         job.anyway |= options.anyway;
+        if let Some(stock) = job.stock.as_mut().filter(|_| options.read_only) {
+            (stock.output, stock.map) = (None, None);
+        }
         return Ok(job);
     }
     let missing =
@@ -171,11 +174,8 @@ pub(crate) fn check<'a>(job: &'a Job<'_>, json: bool) -> Result<JobReport<'a>, F
 
 /// Checks a program, and returns the exit status.
 pub(crate) fn verify(arguments: Verify, json: bool) -> Result<ExitCode, Failure> {
-    let Verify { job, part, check: options, read_only, sarif } = arguments;
-    let mut file = job_file(job.clone(), part, options)?;
-    if let Some(stock) = file.stock.as_mut().filter(|_| read_only) {
-        (stock.output, stock.map) = (None, None);
-    }
+    let Verify { job, part, check: options, sarif } = arguments;
+    let file = job_file(job.clone(), part, options)?;
     let inputs = read(file, sarif.as_deref().as_slice(), job.as_deref().as_slice())?;
     let job = inputs.job();
     let report = check(&job, json)?;

@@ -1,6 +1,7 @@
 """Sweeps and jobs on a cluster of Ray: the bytes of one machine, also if a machine is lost half way."""
 
 import os
+import signal
 import subprocess
 from pathlib import Path
 
@@ -171,3 +172,31 @@ def test_jobs_are_checked_and_none_is_lost(cluster, tmp_path):
     assert missing["verdict"] is None and "missing.toml" in missing["error"]
     deep = dataset.to_table(filter=pyarrow.compute.field("verdict") == "findings")
     assert set(deep["job"].to_pylist()) == {str(jobs[1]), str(jobs[3])}
+
+
+def test_a_job_that_loses_its_process_is_a_failure(cluster, tmp_path, monkeypatch):
+    attempts = tmp_path / "attempts"
+
+    def check(path):
+        if path.endswith("other.toml"):
+            return ValueError("no job")
+        with attempts.open("a") as file:
+            file.write("x")
+        if path.endswith("fails.toml"):
+            raise MemoryError
+        os.kill(os.getpid(), signal.SIGKILL)
+
+    monkeypatch.setattr(touchoff.distributed, "_check", check)
+    jobs = [str(tmp_path / name) for name in ["kills.toml", "other.toml"]]
+    found = dict(touchoff.distributed.verify_many(jobs, max_retries=1))
+    assert attempts.read_text() == "xx"
+    lost = found[jobs[0]]
+    assert isinstance(lost, touchoff.distributed.LostWorkerError)
+    assert "kills.toml: no report after 2 attempts" in str(lost)
+    assert str(found[jobs[1]]) == "no job"
+    # What a check raises is its answer, which another attempt would not change.
+    [(_, failure)] = touchoff.distributed.verify_many([tmp_path / "fails.toml"])
+    assert isinstance(failure, MemoryError) and attempts.read_text() == "xxx"
+    for count in [-1, 0.5]:
+        with pytest.raises((TypeError, ValueError), match="max_retries"):
+            list(touchoff.distributed.verify_many(jobs, max_retries=count))

@@ -89,21 +89,21 @@ def path(name: str, value: object) -> str:
     return os.fsdecode(value)
 
 
-def count(name: str, value: object) -> int:
-    """Return a count as an int, at least 1.
+def count(name: str, value: object, *, least: int = 1) -> int:
+    """Return a count as an int.
 
     Raises
     ------
     TypeError
         If it is no whole number.
     ValueError
-        If it is below 1 or beyond 10⁸.
+        If it is below the least one or beyond 10⁸.
     """
     if isinstance(value, bool) or not isinstance(value, (int, np.integer)):
         raise TypeError(f"{name}: a whole number is expected, not {type(value).__name__}")
     number = int(value)
-    if not 1 <= number <= 100_000_000:
-        raise ValueError(f"{name}: {number} is not between 1 and 100,000,000")
+    if not least <= number <= 100_000_000:
+        raise ValueError(f"{name}: {number} is not between {least} and 100,000,000")
     return number
 
 

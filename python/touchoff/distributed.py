@@ -50,20 +50,51 @@ def _study(part: Part, tools: list[Tool], rules: Rules) -> _touchoff.Study:
     return _touchoff.Study(_part(part), [_tool(tool) for tool in tools], *rules.arguments())
 
 
-def _results(calls: Iterator[tuple[Any, Callable[[], Any]]], in_flight: int) -> Iterator[tuple[Any, Any]]:
-    """Submit tasks, some at a time, and yield the label and the result of each as it ends."""
+class LostWorkerError(RuntimeError):
+    """The failure of a job whose process ended without a report as often as it was tried.
+
+    It was killed, as for the memory that it took, or its machine was lost.
+    """
+
+
+def _results(
+    calls: Iterator[tuple[Any, Callable[[], Any]]], in_flight: int, max_retries: int | None = None
+) -> Iterator[tuple[Any, Any]]:
+    """Submit tasks, some at a time, and yield the label and the result of each as it ends.
+
+    With `max_retries`, one whose process is lost is submitted again as often, and a failure is yielded in place of the result.
+    """
     import ray
 
-    open_tasks: dict[Any, Any] = {}
+    open_tasks: dict[Any, tuple[Any, Callable[[], Any], int]] = {}
     while True:
         while len(open_tasks) < in_flight and (call := next(calls, None)) is not None:
             label, submit = call
-            open_tasks[submit()] = label
+            open_tasks[submit()] = label, submit, 1
         if not open_tasks:
             return
         ready, _ = ray.wait(list(open_tasks), num_returns=1)
         for reference in ready:
-            yield open_tasks.pop(reference), ray.get(reference)
+            label, submit, attempts = open_tasks.pop(reference)
+            result: Any
+            try:
+                result = ray.get(reference)
+            except ray.exceptions.RayTaskError as error:
+                if max_retries is None:
+                    raise
+                result = error
+            except ray.exceptions.RayError as error:
+                if max_retries is None:
+                    raise
+                if attempts <= max_retries:
+                    open_tasks[submit()] = label, submit, attempts + 1
+                    continue
+                reason = str(error).strip().partition("\n")[0]
+                result = LostWorkerError(
+                    f"{label}: no report after {attempts} attempts, as the process that checks it was lost ({reason}): verify it alone, "
+                    "with a limit of memory, or raise `max_retries` if machines of the cluster are taken away"
+                )
+            yield label, result
 
 
 def sweep(
@@ -172,27 +203,30 @@ def verify_many(
     jobs: Sequence[str | os.PathLike[str]],
     *,
     num_cpus: int = 1,
-    max_retries: int = -1,
+    max_retries: int = 2,
     in_flight: int = 64,
 ) -> Iterator[tuple[str, Report | Exception]]:
     """Check jobs as tasks of Ray, each as :meth:`touchoff.Job.check` does, in the order in which they end.
 
     The files of a job have to be on each machine, as in a folder that all share. A job that cannot be checked yields its
-    exception in place of a report; the others go on.
+    exception in place of a report, and one whose process is lost each time a :class:`LostWorkerError`; the others go on.
 
     Parameters
     ----------
     jobs
         Job files.
-    num_cpus, max_retries, in_flight
+    num_cpus, in_flight
         As in :func:`sweep`.
+    max_retries
+        How often a job is tried again whose process or machine is lost. A job that takes more memory than there is loses each.
     """
     import ray
 
-    task = ray.remote(num_cpus=_arrays.count("num_cpus", num_cpus), max_retries=max_retries)(_check)
+    # Ray itself would try a task without end that the system killed for its memory, whatever the number.
+    task = ray.remote(num_cpus=_arrays.count("num_cpus", num_cpus), max_retries=0)(_check)
     paths = [os.path.abspath(_arrays.path("jobs", job)) for job in jobs]
-    limit = _arrays.count("in_flight", in_flight)
-    yield from _results(((path, functools.partial(task.remote, path)) for path in paths), limit)
+    limit, retries = _arrays.count("in_flight", in_flight), _arrays.count("max_retries", max_retries, least=0)
+    yield from _results(((path, functools.partial(task.remote, path)) for path in paths), limit, retries)
 
 
 def write_reports(

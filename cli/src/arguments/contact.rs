@@ -60,9 +60,6 @@ pub(crate) struct Verify {
     pub(crate) part: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) check: CheckArguments,
-    /// Write nothing that the job asks for.
-    #[arg(long, requires = "job")]
-    pub(crate) read_only: bool,
     /// Write the findings as SARIF 2.1.0, for services of continuous integration.
     #[arg(long, value_name = "OUT.sarif")]
     pub(crate) sarif: Option<PathBuf>,
@@ -106,6 +103,9 @@ pub(crate) struct CheckArguments {
     /// is inside the material. Without this option, such a part ends with status 2.
     #[arg(long)]
     pub(crate) surface_only: bool,
+    /// Write nothing that the job asks for.
+    #[arg(long, requires = "job")]
+    pub(crate) read_only: bool,
     /// Accept what is left open: motions that only the machine knows, and an implausible program, which never comes within
     /// the tool's diameter of the part or would fit it in another unit. Without this option, these end with status 2.
     #[arg(long)]

@@ -60,6 +60,11 @@ pub(crate) fn report(arguments: Report, json: bool) -> Result<ExitCode, Failure>
             "a job file states unit, tools, program, machine and tolerances: leave out these options",
         ));
     }
+    if !is_job && check.read_only {
+        return Err(Failure::Usage(
+            "`--read-only` writes nothing that a job asks for: name a job file, or leave it out",
+        ));
+    }
     if !is_job && !check.has_subject() {
         return Err(Failure::Usage(
             "a report on a part needs `--unit`, `--tool` and `--program`; or name a job file",

@@ -150,6 +150,29 @@ fn the_job_of_the_page_becomes_clean() {
     assert!(stderr(&clean).contains("T2 at the vise: no findings"), "{}", stderr(&clean));
 }
 
+/// Neither of the two commands that check a job writes what a stranger's asks for, if they are told so.
+#[test]
+fn a_job_that_is_only_read_writes_nothing() {
+    let (bench, text) = bracket();
+    bench.write("bracket.toml", text);
+    let outputs = ["rest.stl", "rest.csv"].map(|file| bench.folder.path().join(file));
+    for command in ["verify bracket.toml", "report bracket.toml -o report.html"] {
+        let read_only = bench.touchoff(&format!("{command} --read-only"));
+        assert_eq!(read_only.status.code(), Some(1), "{command}: {}", stderr(&read_only));
+        assert!(!outputs.iter().any(|output| output.exists()), "{command}");
+        assert_eq!(bench.touchoff(command).status.code(), Some(1), "{command}");
+        for output in &outputs {
+            std::fs::remove_file(output).expect("what the job asks for");
+        }
+    }
+    // Without a job there is nothing to leave out.
+    let options = "--unit mm --tool ball6.tool --program bracket.nc --read-only";
+    for command in ["verify --part bracket.stl", "report bracket.stl -o report.html"] {
+        let refused = bench.touchoff(&format!("{command} {options}"));
+        assert_eq!(refused.status.code(), Some(2), "{command}: {}", stderr(&refused));
+    }
+}
+
 /// Cutter locations of two tools: each tool is checked on its own positions, against its own cutter.
 #[test]
 fn cutter_locations_change_tools() {

@@ -98,8 +98,10 @@ def _bit(bit):
     shape = os.path.basename(getattr(bit, "BitShape", "") or getattr(bit, "ShapeID", "") or "endmill.fcstd")
     parameters = {}
     for name in bit.PropertiesList:
-        if bit.getGroupOfProperty(name) in ("Shape", "Bit") and hasattr(getattr(bit, name), "UserString"):
-            parameters[name] = f"{getattr(bit, name).Value} mm"
+        quantity = getattr(bit, name)
+        if bit.getGroupOfProperty(name) in ("Shape", "Bit") and hasattr(quantity, "UserString"):
+            # Values are in millimetres and degrees, whatever the user is shown.
+            parameters[name] = f"{quantity.Value} {'deg' if quantity.Unit.Type == 'Angle' else 'mm'}"
     return {"version": 2, "name": bit.Label, "shape": shape, "parameter": parameters, "attribute": {}}
 
 

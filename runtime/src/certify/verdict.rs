@@ -1,5 +1,6 @@
 //! The results of a certifier.
 
+use crate::escape::Escaped;
 use crate::id::{SurfaceId, TriangleId};
 use crate::interval::Interval;
 use nalgebra::{Point3, Vector3};
@@ -40,7 +41,7 @@ crate::debug_as_sentence!(NoSuchSurface);
 #[non_exhaustive]
 pub enum AllowanceError {
     /// The tool has no surface of that name.
-    #[error("{tool} has no surface `{surface}`; it has {known}")]
+    #[error("{tool} has no surface `{}`; it has {known}", Escaped(surface))]
     NoSurface {
         /// The name of the tool.
         tool: String,
@@ -62,7 +63,8 @@ pub enum AllowanceError {
     },
     /// The allowance is not a length.
     #[error(
-        "an allowance of {allowed} for `{surface}` is not a length: give a finite number, or no allowance"
+        "an allowance of {allowed} for `{}` is not a length: give a finite number, or no allowance",
+        Escaped(surface)
     )]
     NoLength {
         /// The name of the surface.
@@ -74,14 +76,23 @@ pub enum AllowanceError {
 
 crate::debug_as_sentence!(AllowanceError);
 
-/// Several invalid allowances, a sentence each.
+/// Several invalid allowances. The message has a line for each of the first, and the number of those left out.
 #[derive(Clone, PartialEq)]
 pub struct AllowanceErrors(pub Vec<AllowanceError>);
 
+impl AllowanceErrors {
+    /// Largest number of allowances that the message lists.
+    const MAX_SHOWN: usize = 20;
+}
+
 impl fmt::Display for AllowanceErrors {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let sentences: Vec<String> = self.0.iter().map(ToString::to_string).collect();
-        f.write_str(&sentences.join("\n"))
+        let (shown, left_out) = self.0.split_at(self.0.len().min(AllowanceErrors::MAX_SHOWN));
+        let mut lines: Vec<String> = shown.iter().map(ToString::to_string).collect();
+        if !left_out.is_empty() {
+            lines.push(format!("{} more allowances are invalid", left_out.len()));
+        }
+        f.write_str(&lines.join("\n"))
     }
 }
 

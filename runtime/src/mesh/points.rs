@@ -12,6 +12,13 @@ const UNIT_TOLERANCE: f64 = 0.02;
 /// Names of the coordinates of a normal in PCD.
 const NORMAL_FIELDS: [&str; 3] = ["normal_x", "normal_y", "normal_z"];
 
+/// Names of the coordinates of a normal in the heading of a table; `i j k` in metrology.
+const NORMAL_COLUMNS: [[&str; 3]; 4] =
+    [["nx", "ny", "nz"], NORMAL_FIELDS, ["normalx", "normaly", "normalz"], ["i", "j", "k"]];
+
+/// Names of colours in the heading of a table.
+const COLOUR_COLUMNS: [[&str; 3]; 2] = [["r", "g", "b"], ["red", "green", "blue"]];
+
 /// Reasons why a cloud of points could not be read. Lines count from 1, points from 0.
 #[derive(thiserror::Error)]
 #[non_exhaustive]
@@ -57,6 +64,17 @@ pub enum PointsError {
     NoPoints {
         /// The file name.
         file: String,
+    },
+    /// Columns of a table are normals or colours.
+    #[error(
+        "{file}, line {line}: columns 4 to 6 are normals or colours, as they have length 1 in all rows and no number below 0: name the columns in a \
+         first line, `x y z nx ny nz` or `x y z r g b`"
+    )]
+    Ambiguous {
+        /// The file name.
+        file: String,
+        /// The line of the first point, from 1.
+        line: usize,
     },
     /// A coordinate is not finite or too large, or a normal is no direction.
     #[error(
@@ -228,29 +246,44 @@ impl OrientedPoints {
     }
 
     /// Reads a table of points; errors name the file as `name`. The columns are separated by blanks, commas or semicolons; between blanks or
-    /// semicolons, a comma is a decimal point. They are the coordinates, then a normal if the next three are unit vectors in all rows, or anything else, which is skipped. Lines that begin
-    /// with `#` or `//` are comments, and a first line of words or of one number is a heading.
+    /// semicolons, a comma is a decimal point. Lines that begin with `#` or `//` are comments, and a first line of words or of one number is a heading.
+    /// A heading, or a comment that begins with `x`, can name the columns: `x y z`, and `nx ny nz` for a normal or `r g b`. Without names the first three
+    /// are the coordinates, and the next three a normal if they are unit vectors in all rows, one of which has a number below 0. Other columns are skipped.
     ///
     /// # Errors
     /// See [`PointsError`].
     pub fn from_xyz(bytes: &[u8], name: &str) -> Result<OrientedPoints, PointsError> {
         let text = String::from_utf8_lossy(bytes);
+        let mut columns = Columns::default();
         let mut rows: Vec<[f64; 6]> = Vec::new();
-        let mut has_normals = true;
+        let (mut first, mut heading) = (0, None);
+        let (mut are_units, mut has_negative) = (true, false);
         for (index, line) in text.lines().enumerate() {
             let line = line.trim();
-            if line.is_empty() || line.starts_with('#') || line.starts_with("//") {
+            let is_comment = line.starts_with('#') || line.starts_with("//");
+            if is_comment && rows.is_empty() {
+                // Other comments are prose, which may have an x, too.
+                let named = Heading::of(&cells(line.trim_start_matches(['#', '/'])));
+                heading = named.filter(|named| named.columns.coordinates[0] == 0).or(heading);
+            }
+            if line.is_empty() || is_comment {
                 continue;
             }
-            let numbers: Vec<Option<f64>> =
-                cells(line).iter().map(|cell| cell.parse().ok()).collect();
-            let coordinates: Option<Vec<f64>> = numbers.iter().take(3).copied().collect();
-            let Some([x, y, z]) = coordinates.as_deref() else {
-                let is_heading =
-                    rows.is_empty() && (numbers.len() == 1 || numbers.iter().all(Option::is_none));
-                if is_heading {
-                    continue;
-                }
+            let cells = cells(line);
+            let numbers: Vec<Option<f64>> = cells.iter().map(|cell| cell.parse().ok()).collect();
+            let is_heading =
+                rows.is_empty() && (numbers.len() == 1 || numbers.iter().all(Option::is_none));
+            if is_heading {
+                heading = Heading::of(&cells).or(heading);
+                continue;
+            }
+            if rows.is_empty() {
+                first = 1 + index;
+                let named = heading.take().filter(|heading: &Heading| heading.count == cells.len());
+                columns = named.map_or(columns, |heading| heading.columns);
+            }
+            let number = |column: usize| numbers.get(column).copied().flatten();
+            let [Some(x), Some(y), Some(z)] = columns.coordinates.map(number) else {
                 return Err(PointsError::Expected {
                     file: name.to_owned(),
                     line: 1 + index,
@@ -258,15 +291,63 @@ impl OrientedPoints {
                     found: format!("`{}`", printable(line.as_bytes())),
                 });
             };
-            let normal = [3, 4, 5].map(|k| numbers.get(k).copied().flatten().unwrap_or(f64::NAN));
-            has_normals &= (Vector3::from(normal).norm() - 1.0).abs() < UNIT_TOLERANCE;
-            rows.push([*x, *y, *z, normal[0], normal[1], normal[2]]);
+            let normal = columns.normal.map(|column| number(column).unwrap_or(f64::NAN));
+            are_units &= (Vector3::from(normal).norm() - 1.0).abs() < UNIT_TOLERANCE;
+            has_negative |= normal.iter().any(|value| value.is_sign_negative());
+            rows.push([x, y, z, normal[0], normal[1], normal[2]]);
         }
+        let has_normals = match columns.has_normals {
+            Some(named) => named,
+            None if are_units && !rows.is_empty() && !has_negative => {
+                return Err(PointsError::Ambiguous { file: name.to_owned(), line: first });
+            }
+            None => are_units,
+        };
         let mut reader = Reader::new(name, has_normals);
         for row in &rows {
             reader.push(if has_normals { row } else { &row[..3] })?;
         }
         reader.finish()
+    }
+}
+
+/// Places of the columns of a table of points.
+struct Columns {
+    coordinates: [usize; 3],
+    normal: [usize; 3],
+    /// `None` if only the numbers can tell.
+    has_normals: Option<bool>,
+}
+
+impl Default for Columns {
+    fn default() -> Columns {
+        Columns { coordinates: [0, 1, 2], normal: [3, 4, 5], has_normals: None }
+    }
+}
+
+/// A heading of a table of points that names the coordinates.
+struct Heading {
+    columns: Columns,
+    /// The number of its columns.
+    count: usize,
+}
+
+impl Heading {
+    fn of(cells: &[String]) -> Option<Heading> {
+        let place = |wanted: &str| {
+            let mut names = cells.iter().map(|name| name.trim_matches('"'));
+            names.position(|name| name.eq_ignore_ascii_case(wanted))
+        };
+        let all = |wanted: [&str; 3]| match wanted.map(place) {
+            [Some(x), Some(y), Some(z)] => Some([x, y, z]),
+            _ => None,
+        };
+        let coordinates = all(["x", "y", "z"])?;
+        let normal = NORMAL_COLUMNS.into_iter().find_map(all);
+        let has_colours = COLOUR_COLUMNS.into_iter().any(|names| all(names).is_some());
+        let has_normals = (normal.is_some() || has_colours).then_some(normal.is_some());
+        let normal = normal.unwrap_or(Columns::default().normal);
+        Some(Heading { columns: Columns { coordinates, normal, has_normals }, count: cells.len() })
     }
 }
 
@@ -479,8 +560,40 @@ mod tests {
             read("1, 2, 3\n1 ,2 ,3\n").expect("a cloud").points,
             [Point3::new(1.0, 2.0, 3.0); 2]
         );
-        // Colours are no normals.
-        assert!(read("1 2 3 255 0 0\n4 5 6 0 0 1\n").expect("a cloud").normals.is_empty());
+        // Colours are no normals, and what may be either is named.
+        for (text, normals) in [
+            ("1 2 3 255 0 0\n4 5 6 0 0 1\n", Some(0)),
+            ("1 2 3 1 0 0\n4 5 6 0 0 1\n", None),
+            ("1 2 3 0.6 0.8 0\n", None),
+            ("x y z\n1 2 3 1 0 0\n", None),
+            ("# a scan in mm\n1 2 3 1 0 0\n", None),
+            ("1 2 3 -1 0 0\n4 5 6 0 0 1\n", Some(2)),
+            ("x y z r g b\n1 2 3 1 0 0\n", Some(0)),
+            ("//X,Y,Z,R,G,B\n// of a scanner\n1,2,3,1,0,0\n", Some(0)),
+            ("\"X\";\"Y\";\"Z\";\"Nx\";\"Ny\";\"Nz\"\n1;2;3;1;0;0\n", Some(1)),
+            ("#x y z normal_x normal_y normal_z\n1 2 3 1 0 0\n", Some(1)),
+            ("x y z intensity nx ny nz\n1 2 3 9 0 0 5\n", Some(1)),
+            ("id x y z\n7 1 2 3\n", Some(0)),
+            ("# export in x y z\n1 2 3 7 8\n", Some(0)),
+            ("x,y,z,i,j,k\n1,2,3,0,0,1\n", Some(1)),
+            ("x y z a b c\n1 2 3 0 0 1\n", None),
+            ("x y z a b c\n1 2 3 0 0 -1\n", Some(1)),
+        ] {
+            match (read(text), normals) {
+                (Ok(cloud), Some(normals)) => {
+                    assert_eq!(cloud.normals.len(), normals, "{text}");
+                    assert_eq!(cloud.points[0], Point3::new(1.0, 2.0, 3.0), "{text}");
+                }
+                (Err(PointsError::Ambiguous { line, .. }), None) => {
+                    assert_eq!(
+                        line,
+                        text.lines().count() - usize::from(text.contains("4 5 6")),
+                        "{text}"
+                    );
+                }
+                (found, _) => panic!("{text}: {found:?}"),
+            }
+        }
         assert!(matches!(read("1 2 3\n1 2\n"), Err(PointsError::Expected { line: 2, .. })));
         assert!(matches!(read("# none\n"), Err(PointsError::NoPoints { .. })));
     }

@@ -52,6 +52,9 @@ pub enum StatedEnd {
     Unnamed,
 }
 
+/// Length of the longest line that is read, in bytes: each comment of a line is tried with all behind it.
+const MAX_LINE: usize = 500;
+
 /// Returns the tools that the comments of a program describe, each description once. `unit` is that of the program, and `names` has the
 /// numbers of tools that the program selects by their names.
 pub(crate) fn stated_tools(
@@ -61,7 +64,8 @@ pub(crate) fn stated_tools(
 ) -> Vec<StatedTool> {
     let mut found: Vec<StatedTool> = Vec::new();
     let mut known = HashSet::new();
-    for (index, line) in text.lines().enumerate() {
+    let lines = text.lines().enumerate().filter(|(_, line)| line.len() <= MAX_LINE);
+    for (index, line) in lines {
         let (code, comments) = comments(line);
         let selected = selected(code, names);
         let mut tools = comments.into_iter().filter_map(|comment| {
@@ -175,6 +179,7 @@ fn description(
     // The size of an engraving bit is that of its tip.
     let braced = rest.split_once('{').and_then(|(_, inner)| inner.split('}').next());
     let braced = braced.filter(|inner| !inner.contains("TIP"));
+    let rest = &*without_work(rest);
     let diameter = value(rest, &["D"])
         .or_else(|| diameter(rest))
         .or_else(|| braced.and_then(last_measure))
@@ -202,6 +207,26 @@ fn description(
         _ => None,
     };
     Some(Description { number, diameter, corner, taper, end, unit })
+}
+
+/// Returns what the fields of a comment say about the tool: none from the word on that begins to say what it makes, and nothing of one that
+/// names features of the part, whose size can stand there: `DRILLS DIA 8 HOLES`.
+fn without_work(text: &str) -> String {
+    const WORK: [&str; 10] =
+        ["FOR", "TO", "DRILLS", "MILLS", "CUTS", "BORES", "REAMS", "TAPS", "ROUGHS", "FINISHES"];
+    const FEATURES: [&str; 6] = ["HOLE", "HOLES", "POCKET", "POCKETS", "BOSS", "BOSSES"];
+    let position = |field: &str, word: &&str| {
+        let mut found = field.match_indices(*word).map(|(at, _)| at);
+        let is_ended =
+            |at: usize| !field[at + word.len()..].starts_with(|c: char| c.is_ascii_alphanumeric());
+        found.find(|at| begins_word(field, *at) && is_ended(*at))
+    };
+    let fields = text.split('|').map(|field| {
+        let end = WORK.iter().filter_map(|word| position(field, word)).min();
+        let field = &field[..end.unwrap_or(field.len())];
+        if FEATURES.iter().any(|word| position(field, word).is_some()) { "" } else { field }
+    });
+    fields.collect::<Vec<_>>().join("|")
 }
 
 /// Reads the fields of Makera Studio.
@@ -420,6 +445,10 @@ mod tests {
             ("( T3 : 50.8 surfacing bit )", (3, 50.8, None, Other)),
             ("(T1=6mm_Endmill)", (1, 6.0, None, Unnamed)),
             ("(T1=6mm_Ball_End)", (1, 6.0, None, Ball)),
+            // The size of what the tool makes is another one.
+            ("(T3 DRILL DIA 6.8 FOR M8 HOLES DIA 8)", (3, 6.8, None, Other)),
+            ("(T1 | 6MM DRILL FOR HOLES | H1 | TOOL DIA. - 6.)", (1, 6.0, None, Other)),
+            ("(T1 6MM ENDMILL FOR 8MM POCKET)", (1, 6.0, None, Unnamed)),
             (
                 ";@MKR|TOOL|number=2|name=3mm|type=Flat End|diameter=3|cornerradius=0|angle=0",
                 (2, 3.0, Some(0.0), Flat),
@@ -461,10 +490,18 @@ mod tests {
             "(1 = Engraving {30 deg 0.5 mm Tip})",
             "(T3|NO. 7 DRILL|H3|D3)",
             "(T1 1/4-20 TAP)",
+            "(T1 DRILLS DIA 8 HOLES)",
+            "(T1 DRILL, 4 HOLES DIA 8)",
+            "(T1 CUTS D=20 POCKET)",
+            "(T1 FOR DIA. 8.5)",
+            "(T2 SPOT DRILL TO DIA 8)",
+            "T1 M6 (POCKET DIA. 30)",
+            "(T1: 8 HOLES)",
             "; \"OTHER\" D=5 - flat end mill",
         ] {
             assert_eq!(stated(text, Unit::Millimetre), [], "{text}");
         }
+        assert_eq!(stated(&"(T1 D=A)".repeat(100_000), Unit::Millimetre), []);
         let twice =
             "(T1 D=6. CR=0. - DRILL)\nG0 X1\n(T1 D=6. CR=0. - DRILL)\n(T1 D=8. CR=0. - DRILL)";
         assert_eq!(stated(twice, Unit::Millimetre).len(), 2);

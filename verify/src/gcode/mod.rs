@@ -99,6 +99,12 @@ const MAX_ASSIGNMENTS: usize = 50;
 /// Largest number of blocks and steps in subprograms, with all repeats, unless [`ControlSetup::max_repeated`] has another: some
 /// seconds of work.
 pub const MAX_REPEATED: usize = 2_000_000;
+
+/// Returns how much a block that is executed again takes of [`MAX_REPEATED`]: one for each 64 bytes, since the work grows with its text.
+fn work(block: &str) -> usize {
+    const BYTES: usize = 64;
+    1 + block.len() / BYTES
+}
 /// Number of steps of a block that are not counted: those of a cycle can be many more than its text.
 const FREE_STEPS: usize = 100;
 /// Largest number of motions of one block with a canned cycle.

@@ -933,7 +933,9 @@ faults! {
 
 /// Returns the known word with the fewest changes of letters.
 fn closest(word: &str, known: impl Iterator<Item = &'static str>) -> &'static str {
-    known.min_by_key(|known| strsim::damerau_levenshtein(known, word)).unwrap_or_default()
+    // A word of any length is not compared as a whole.
+    let word: String = word.chars().take(40).collect();
+    known.min_by_key(|known| strsim::damerau_levenshtein(known, &word)).unwrap_or_default()
 }
 
 #[cfg(test)]

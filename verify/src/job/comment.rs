@@ -3,6 +3,7 @@
 use super::{Job, JobGap};
 use crate::Gap;
 use crate::gcode::{StatedEnd, StatedTool};
+use std::collections::{BTreeMap, BTreeSet};
 use touchoff::Unit;
 use touchoff::tool::{ProfileSegment, ToolInfo};
 
@@ -12,22 +13,27 @@ const ROUNDED: f64 = 1e-3;
 const DEGREES: f64 = 0.51;
 
 impl Job<'_> {
-    /// Returns the comments of the program that describe another tool than the job has under their numbers.
+    /// Returns the first comment of the program that describes another tool than the job has under a number, for each number.
     pub(super) fn contradicted_comments(&self) -> Vec<Gap> {
         let Some(program) = self.program.readings().first() else { return Vec::new() };
-        let used = self.program.tools();
-        let stated = program.summary().stated_tools.iter();
-        let found = stated.filter_map(|stated| {
-            let number = Some(stated.number);
-            if !used.iter().any(|tool| tool.number == number) {
-                return None;
-            }
-            let info = self.tool_of(number)?.tool.info();
-            let mounted = contradiction(stated, info, self.unit())?;
-            let (comment, number) = (stated.comment.clone(), stated.number);
-            Some(JobGap::OtherTool { comment, number, mounted }.open(stated.line))
-        });
-        found.collect()
+        let used: BTreeSet<u32> =
+            self.program.tools().into_iter().filter_map(|tool| tool.number).collect();
+        let mut found: BTreeMap<u32, (&StatedTool, String, usize)> = BTreeMap::new();
+        for stated in &program.summary().stated_tools {
+            let number = Some(stated.number).filter(|number| used.contains(number));
+            let Some(tool) = number.and_then(|number| self.tool_of(Some(number))) else { continue };
+            let Some(mounted) = contradiction(stated, tool.tool.info(), self.unit()) else {
+                continue;
+            };
+            let first = found.entry(stated.number).or_insert((stated, mounted, 0));
+            first.2 += usize::from(first.0.line != stated.line);
+        }
+        let mut gaps: Vec<Gap> = Vec::new();
+        for (number, (stated, mounted, others)) in found {
+            let comment = stated.comment.clone();
+            gaps.push(JobGap::OtherTool { comment, number, mounted, others }.open(stated.line));
+        }
+        gaps
     }
 }
 

@@ -260,7 +260,7 @@ faults! {
         #[code = J0103]
         #[error(
             "no tool is given for T{number}{}: state `tools = \"LIBRARY\"` or `[tool.{number}]` with `tool = \"FILE.tool\"` in the job",
-            others.iter().map(|number| format!(", T{number}")).collect::<String>()
+            further_tools(others)
         )]
         NoTool {
             /// The number.
@@ -507,6 +507,26 @@ faults! {
     }
 }
 
+/// Tells how many other comments describe another tool.
+fn more_comments(count: usize) -> String {
+    match count {
+        0 => String::new(),
+        1 => " (and 1 more comment)".to_owned(),
+        count => format!(" (and {count} more comments)"),
+    }
+}
+
+/// Lists further tools without a file, and the number of those left out.
+fn further_tools(numbers: &[u32]) -> String {
+    const MAX_SHOWN: usize = 20;
+    let (shown, left_out) = numbers.split_at(numbers.len().min(MAX_SHOWN));
+    let mut text: String = shown.iter().map(|number| format!(", T{number}")).collect();
+    if !left_out.is_empty() {
+        text += &format!(" and {} more tools", left_out.len());
+    }
+    text
+}
+
 // A pose needs no conversion.
 impl From<Infallible> for JobError {
     fn from(never: Infallible) -> JobError {
@@ -721,10 +741,10 @@ faults! {
         /// Post-processors write the tools for which a program was made. A verdict about another tool says nothing about them.
         #[code = V0608]
         #[error(
-            "the comment {comment} describes another T{number} than the job has, which is {mounted}: give the tool of the program, or \
-             correct the comment"
+            "the comment {comment} describes another T{number} than the job has, which is {mounted}{}: give the tool of the program, or \
+             correct the comment", more_comments(*others)
         )]
-        OtherTool { comment: String, number: u32, mounted: String },
+        OtherTool { comment: String, number: u32, mounted: String, others: usize },
         /// The way to a reference position from a height at which something stands.
         ///
         /// G28, G30 or G53 moves Z with other axes to where only the machine knows, and so in a direction that is not known. Z alone goes

@@ -31,7 +31,7 @@ use super::{
 use cycle::{Arc, Cycle, Stop};
 use nalgebra::Vector3;
 use rates::Rates;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 use std::mem;
 use touchoff::{Pose, Unit, cancellation};
 
@@ -52,9 +52,9 @@ const CREO_COMMENT: &str = "$$->";
 
 /// Reads an APT-CL program. All statements that are refused are found, each fault once.
 pub(super) fn read(text: &str) -> Result<Tapes, Faults> {
-    let mut faults = Faults::new();
+    let (mut faults, mut known) = (Faults::new(), HashSet::new());
     let mut refuse = |(line, fault): Located| {
-        if !faults.iter().any(|(_, known)| known.is_same(&fault)) {
+        if known.insert(fault.obstacle()) {
             faults.push((line, fault));
         }
     };

@@ -351,10 +351,12 @@ faults! {
 }
 
 impl ProgramFault {
-    /// Returns whether two faults are one obstacle: each block of G-code is the same one.
-    pub(super) fn is_same(&self, other: &ProgramFault) -> bool {
-        let is_block = |fault: &ProgramFault| matches!(fault, ProgramFault::GCode { .. });
-        self == other || is_block(self) && is_block(other)
+    /// Returns what tells it from other obstacles: its sentence. Each block of G-code is the same one.
+    pub(super) fn obstacle(&self) -> String {
+        match self {
+            ProgramFault::GCode { .. } => String::new(),
+            fault => fault.to_string(),
+        }
     }
 }
 
@@ -363,9 +365,15 @@ const MAX_SHOWN: usize = 100;
 
 /// Lists further faults, each on a line of its own.
 fn shown_others(file: &str, others: &[(usize, ProgramFault)]) -> String {
-    let (file, shown) = (Escaped(file), others.iter().take(MAX_SHOWN));
-    let shown = shown.map(|(line, fault)| format!("\n{file}:{line}: {fault} [{}]", fault.code()));
-    shown.collect()
+    let (shown, left_out) = others.split_at(others.len().min(MAX_SHOWN));
+    let file = Escaped(file);
+    let lines = shown.iter();
+    let lines = lines.map(|(line, fault)| format!("\n{file}:{line}: {fault} [{}]", fault.code()));
+    let mut text: String = lines.collect();
+    if let [(first, _), ..] = left_out {
+        text += &format!("\n{file}: {} more faults from line {first} on", left_out.len());
+    }
+    text
 }
 
 /// Returns the plural's ending for a number of things.

@@ -759,6 +759,29 @@ fn a_hundred_thousand_blocks_are_read() {
     }
 }
 
+/// Whether a jump passes labels alone is found in a time that does not grow with them: then its condition, which is not known here, does not
+/// matter.
+#[test]
+fn jumps_pass_any_number_of_labels() {
+    let labels: String = (0..50_000).map(|k| format!("LBL \"a{k}\"\n")).collect();
+    let jump = "FN 9: IF +Q9 EQU +1 GOTO LBL 2\n";
+    let many = format!(
+        "Q1 = 0\nLBL 1\nQ1 = Q1 + 1\nFN 12: IF +Q1 LT +100000 GOTO LBL 1\n{labels}L X+Q1 FMAX\n{jump}; a comment\nLBL 3\n* - a heading\n\
+         LBL 2\nL X+2 FMAX"
+    );
+    let found = ends(&many);
+    assert_eq!((found[0][0], found[1][0], found.len()), (Some(100_000.0), Some(2.0), 2));
+    for text in [
+        format!("{jump}/LBL 3\nLBL 2\nL X+2 FMAX"),
+        format!("{jump}L X+1 FMAX\nLBL 2\nL X+2 FMAX"),
+        format!("LBL 2\n{jump}L X+2 FMAX"),
+        format!("CALL LBL 4\nM30\nLBL 4\n{jump}LBL 0\nLBL 2\nL X+2 FMAX\nLBL 0"),
+    ] {
+        let error = read(&program(&text), &at_zero()).expect_err(&text);
+        assert!(error.to_string().contains("Q9"), "{text}: {error}");
+    }
+}
+
 const MILLING: &str = "0 BEGIN PGM MILL MM\n1 BLK FORM 0.1 Z X+0 Y+0 Z-20\n2 BLK FORM 0.2 X+100 Y+100 Z+0\n; a comment\n* - heading\n\
     3 TOOL DEF 4 L+30 R+4\n4 TOOL CALL 5 Z S3000 F200 DL+0 DR+0\n5 L M140 MB MAX\n6 L X-10.5 Y+20 R0 FMAX M3\n7 L Z+2 FMAX M8\n\
     8 L Z-5 F AUTO\n9 CC X+10 Y+20\n10 CP IPA-180 DR- F500\n11 C X-10.5 Y+20 DR+\n12 L X+40\n13 RND R5\n14 L IY+30\n15 CHF 2\n\

@@ -82,6 +82,28 @@ fn loops_of_all_readings_share_a_budget() {
     assert_eq!(error.code(), "P0144");
 }
 
+/// A long block takes as much of the budget as its text does, in every language.
+#[test]
+fn long_blocks_of_loops_share_the_budget() {
+    let long = "A".repeat(640);
+    for (language, text) in [
+        (Choice::Iso, "G54 G0 X0.\n#1=0\nN1 (LONG)\n#1=#1+1\nIF [#1 LT 1000] GOTO 1\nM30\n"),
+        (
+            Choice::Heidenhain,
+            "BEGIN PGM A MM\nL X+0 FMAX\nQ1 = 0\nLBL 1\n; LONG\nQ1 = Q1 + 1\nFN 12: IF +Q1 LT +1000 GOTO LBL 1\nM30\nEND PGM A MM\n",
+        ),
+        (
+            Choice::Sinumerik,
+            "G54 G0 X0\nR1=0\nBEGINS: ; LONG\nR1=R1+1\nIF R1<1000 GOTOB BEGINS\nM30\n",
+        ),
+    ] {
+        let setup = ControlSetup { max_repeated: 8_000, ..setup(language) };
+        let code = |text: &str| read(text, &setup).err().map(|error| error.code());
+        assert_eq!(code(&text.replace("LONG", "SHORT")), None, "{text}");
+        assert_eq!(code(&text.replace("LONG", &long)), Some("P0144"), "{text}");
+    }
+}
+
 #[test]
 fn a_bolt_circle_is_the_same_in_every_form() {
     let expected = circle(7, 40.0, [10.0, -5.0], 15.0);
@@ -337,6 +359,21 @@ fn long_loops_are_executed_to_their_end() {
     let found = steps(program, Choice::Iso);
     assert_eq!(found.len(), 400_000);
     assert_eq!(found.last().map(|step| step.end[1]), Some(Some(400_000.0)));
+}
+
+/// A jump finds its line in a time that does not grow with the loops, programs and equal numbers of the text.
+#[test]
+fn jumps_pass_any_number_of_loops_and_programs() {
+    let loops = "WHILE [1 EQ 0] DO1\nEND1\n".repeat(100_000);
+    let others: String = (10..100_010).map(|number| format!("O{number}\nN1 M99\n")).collect();
+    let program = format!(
+        "O1\nG21 G90 G0\n{loops}#1=0\nN1 #1=#1+1\nIF [#1 LT 300000] GOTO 1\nX#1\nM30\n{others}"
+    );
+    assert_ends(&program, Choice::Iso, &[[300_000.0, 0.0]]);
+    // From inside of a loop outwards, within one, and past another in it.
+    let nested = "G21 G90 G0\n#1=0\nWHILE [#1 LT 2] DO1\nWHILE [1 EQ 1] DO2\n#1=#1+1\nGOTO 10\nEND2\nN10 X#1\nEND1\n\
+        WHILE [1 EQ 1] DO1\nGOTO 20\nEND1\nN20 Y#1\nM30\n";
+    assert_ends(nested, Choice::Iso, &[[1.0, 0.0], [2.0, 0.0], [2.0, 2.0]]);
 }
 
 #[test]

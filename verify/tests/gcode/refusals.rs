@@ -238,6 +238,8 @@ fn words_that_are_not_read_are_named() {
         ("GOTO 10", 1, "P0129 N10"),
         ("GOTO 10\nN10\nN10", 1, "P0130 N10"),
         ("GOTO 10\nDO1\nN10\nEND1", 1, "P0120 into a loop"),
+        ("GOTO 10\nDO1\nDO2\nEND2\nN10\nEND1", 1, "P0120 into a loop"),
+        ("DO1\nDO2\nGOTO 10\nEND2\nDO2\nN10\nEND2\nEND1", 3, "P0120 into a loop"),
         ("GOTOF END", 1, "P0111 `END`"),
         ("N1 GOTO 1", 1, "P0144 100000 blocks"),
         ("IF [1 EQ 1] G0 X1", 1, "P0119 IF"),

@@ -563,6 +563,29 @@ fn a_loop_of_a_hundred_thousand_blocks_moves_as_text() {
     }
 }
 
+/// Programs of a file and variables are found by their names in a time that does not grow with their number. Names of a subprogram are its own.
+#[test]
+fn many_programs_and_variables_are_found_by_name() {
+    let count = 100_000;
+    let text = |line: &dyn Fn(usize) -> String| (0..count).map(line).collect::<String>();
+    let program = [
+        text(&|k| format!("DEF REAL LEVEL{k}={k}\n")),
+        text(&|k| format!("level{k}=LEVEL{k}+1\n")),
+        "G0 X=LEVEL0 Y=LEVEL99999\n".to_owned(),
+        text(&|k| format!("HOLE{k}\n")),
+        "G0 X=LEVEL1\nM30\n".to_owned(),
+        text(&|k| format!("PROC HOLE{k}\nDEF REAL LEVEL1={k}\nG0 X=LEVEL1\nRET\n")),
+    ];
+    let found = execute(&program.concat()).unwrap_or_else(|error| panic!("{error}"));
+    let ends: Vec<_> = found.iter().map(|step| step.end).collect();
+    assert_eq!(ends.len(), count + 2);
+    assert_eq!((ends[0][0], ends[0][1]), (Some(1.0), Some(100_000.0)));
+    assert_eq!((ends[count][0], ends[count + 1][0]), (Some(99_999.0), Some(2.0)));
+    let twice = "HOLE1\nM30\nPROC HOLE1\nRET\nPROC hole1\nRET\n";
+    let error = execute(twice).expect_err("two programs of one name");
+    assert_fault(twice, &error, 5, "P0127 hole1");
+}
+
 /// The corners of a square and of a triangle whose lines meet at 60 degrees, at points that are worked out by hand.
 #[test]
 fn corners_are_rounded_or_chamfered() {

@@ -49,6 +49,16 @@ fn another_tool_than_that_of_a_comment_is_named() {
     accepted.gives(HAAS, CLEAN, &["V0608 1 diameter 2.0000 mm, with an end of radius 1.0000 mm"]);
 }
 
+/// A tool that many comments describe is named once.
+#[test]
+fn comments_about_one_tool_are_counted() {
+    let describe = |number: usize| format!("(T1 D={}. CR=0. - FLAT END MILL)\n", number + 3);
+    let many: String = (0..1000).map(describe).collect();
+    let checked = commented(&many).check(LINUXCNC);
+    checked.assert(NONE, &["V0608 1 another T1", "V0608 (and 999 more comments)"], "1000 comments");
+    assert_eq!(checked.rows.iter().filter(|row| row.code == "V0608").count(), 1);
+}
+
 /// Lengths in a comment are in the unit of the program.
 #[test]
 fn a_comment_has_the_unit_of_its_program() {

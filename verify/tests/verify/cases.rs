@@ -245,6 +245,12 @@ fn rejects_unsupported_tools_and_arguments() {
         told.iter().all(|word| message.contains(word)) && message.lines().count() == 3,
         "{message}"
     );
+    // A stranger's job may have any number of them, and names of any text.
+    let names: Vec<String> = (0..200_000).map(|number| format!("line\nbreak{number}")).collect();
+    let many = names.iter().map(|name| (&**name, 0.1));
+    let message = verifier().with_allowances(many).expect_err("as many mistakes").to_string();
+    assert!(message.len() < 5_000 && message.lines().count() == 21, "{message}");
+    assert!(message.ends_with("199980 more allowances are invalid"), "{message}");
     for invalid in [f64::NAN, f64::NEG_INFINITY] {
         assert!(verifier().with_allowance("flute", invalid).is_err());
     }

@@ -7,7 +7,7 @@ use super::structure::{Structure, Subprogram};
 use super::variables::{Locals, Variables};
 use crate::gcode::error::combination;
 use crate::gcode::files::name;
-use crate::gcode::{FREE_STEPS, GcodeError, GcodeFault, MAX_CALLS, Repeated, SubprogramFile};
+use crate::gcode::{FREE_STEPS, GcodeError, GcodeFault, MAX_CALLS, Repeated, SubprogramFile, work};
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::mem;
 use std::sync::{Arc, OnceLock};
@@ -369,7 +369,7 @@ impl<'a> Flow<'a> {
         };
         let number = self.place.line;
         self.place = after;
-        self.count(1, number).map_err(|fault| GcodeError { line: number, fault })?;
+        self.count(work(line), number).map_err(|fault| GcodeError { line: number, fault })?;
         if self.is_main() && number > self.furthest {
             (self.furthest, self.past) = (number, after);
         }
@@ -506,12 +506,10 @@ impl<'a> Flow<'a> {
     /// Returns the place of a sequence number in the program that is executed.
     fn sequence(&self, number: u32, line_of_jump: usize) -> Result<Place, GcodeFault> {
         let [first, last] = self.structure().program(line_of_jump);
-        let places = self.source().sequence_numbers().get(&number);
-        let mut places = places
-            .into_iter()
-            .flatten()
-            .filter(|place| (first..=last).contains(&place.line))
-            .copied();
+        let places = self.source().sequence_numbers().get(&number).map_or(&[][..], Vec::as_slice);
+        // In the order of lines.
+        let places = &places[places.partition_point(|place| place.line < first)..];
+        let mut places = places.iter().take_while(|place| place.line <= last).copied();
         let Some(place) = places.next() else {
             return Err(GcodeFault::NoSequenceNumber { number });
         };

@@ -5,7 +5,7 @@ use super::flow::{Place, line};
 use super::line::{Label, OWord, Role, begin, loop_number, next, o_word, statement};
 use super::variables::Scope;
 use crate::gcode::{GcodeError, GcodeFault};
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
 /// A subprogram.
 #[derive(Clone, Copy, Debug)]
@@ -49,6 +49,14 @@ struct Group {
     jumps: Vec<(Role, Place)>,
 }
 
+/// A loop of Fanuc.
+#[derive(Clone, Copy, Debug)]
+struct Loop {
+    last: usize,
+    /// The first line of the one around it.
+    outer: Option<usize>,
+}
+
 /// The structure of a text.
 #[derive(Debug, Default)]
 pub(super) struct Structure {
@@ -57,8 +65,8 @@ pub(super) struct Structure {
     clauses: HashMap<usize, Clause>,
     /// The lines of titles of programs, in order.
     titles: Vec<Place>,
-    /// The first and the last line of each loop of Fanuc.
-    loops: Vec<[usize; 2]>,
+    /// The loops of Fanuc, by their first lines.
+    loops: BTreeMap<usize, Loop>,
     pub(super) lines: usize,
     /// The first line with a statement that only macros of Fanuc and Haas have.
     pub(super) fanuc: Option<usize>,
@@ -132,7 +140,10 @@ impl Structure {
         }
         match open {
             Some((label, line)) => Err(nesting(line, &label, "sub", "it has no endsub: add it")),
-            None => Ok(found),
+            None => {
+                found.nest_loops();
+                Ok(found)
+            }
         }
     }
 
@@ -201,7 +212,7 @@ impl Structure {
     fn close(&mut self, group: Group, after: Place) {
         let (head, last) = (group.lines[0].1, group.lines[group.lines.len() - 1].1);
         if matches!(group.key, Key::Loop(_)) {
-            self.loops.push([head.line, last.line]);
+            self.loops.insert(head.line, Loop { last: last.line, outer: None });
         }
         let nexts = group.lines.iter().skip(1).map(|(_, place)| *place).chain([last]);
         for ((role, here), next) in group.lines.iter().zip(nexts) {
@@ -209,6 +220,16 @@ impl Structure {
         }
         for (role, here) in group.jumps {
             self.clauses.insert(here.line, Clause { role, head, next: last, last, after });
+        }
+    }
+
+    /// Finds the loop around each loop.
+    fn nest_loops(&mut self) {
+        let mut open: Vec<(usize, usize)> = Vec::new();
+        for (first, found) in &mut self.loops {
+            while open.pop_if(|(_, last)| *last < *first).is_some() {}
+            found.outer = open.last().map(|(outer, _)| *outer);
+            open.push((*first, found.last));
         }
     }
 
@@ -239,15 +260,22 @@ impl Structure {
 
     /// Returns whether a line is in each loop of Fanuc in which another line is.
     pub(super) fn can_jump(&self, from: usize, to: usize) -> bool {
-        let contains = |[first, last]: &[usize; 2], line| (*first..=*last).contains(&line);
-        self.loops.iter().filter(|range| contains(range, to)).all(|range| contains(range, from))
+        let mut around = self.loops.range(..=to).next_back();
+        while let Some((first, Loop { last, outer })) = around {
+            if to <= *last {
+                // Loops around it contain both.
+                return (*first..=*last).contains(&from);
+            }
+            around = outer.and_then(|outer| self.loops.get_key_value(&outer));
+        }
+        true
     }
 
     /// Returns the lines of the program that has a line: from its title, or from the first line, to the next title.
     pub(super) fn program(&self, line: usize) -> [usize; 2] {
-        let first = self.titles.iter().rev().find(|title| title.line <= line);
-        let next = self.titles.iter().find(|title| title.line > line);
-        [first.map_or(1, |title| title.line), next.map_or(usize::MAX, |title| title.line - 1)]
+        let next = self.titles.partition_point(|title| title.line <= line);
+        let first = next.checked_sub(1).map_or(1, |last| self.titles[last].line);
+        [first, self.titles.get(next).map_or(usize::MAX, |title| title.line - 1)]
     }
 }
 

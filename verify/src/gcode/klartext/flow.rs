@@ -7,7 +7,7 @@
 use super::expression::{Parameters, value};
 use super::line::{Cursor, Place, begin, block};
 use crate::gcode::error::{combination, missing};
-use crate::gcode::{FREE_STEPS, GcodeError, GcodeFault, MAX_CALLS, Repeated};
+use crate::gcode::{FREE_STEPS, GcodeError, GcodeFault, MAX_CALLS, Repeated, work};
 use std::collections::HashMap;
 use std::fmt;
 use std::sync::Arc;
@@ -64,6 +64,17 @@ struct Repeat {
     left: u32,
 }
 
+/// The place of a label.
+#[derive(Clone, Copy, Debug)]
+struct Target {
+    /// The place after it.
+    after: Place,
+    /// The first byte of its block.
+    at: usize,
+    /// The first byte before it from which on only labels stand, and comments.
+    run: usize,
+}
+
 /// A block that is read before it is executed.
 pub(super) struct Ahead<'a> {
     pub(super) cursor: Cursor<'a>,
@@ -85,8 +96,7 @@ pub(super) struct Flow<'a> {
     present: Place,
     /// The place after the last block of the main program that was executed.
     past: Place,
-    /// The places after labels.
-    labels: Arc<HashMap<Label<'a>, Place>>,
+    labels: Arc<HashMap<Label<'a>, Target>>,
     /// The bytes at which `LBL 0` stands, in order.
     ends: Arc<[usize]>,
     calls: Vec<Call>,
@@ -111,21 +121,29 @@ impl<'a> Flow<'a> {
         let mut lines: HashMap<Label, usize> = HashMap::new();
         let known = Parameters::new();
         let mut place = start;
+        let mut run = start.offset;
         while let Some((found, after)) = block(text, place) {
             let at = std::mem::replace(&mut place, after);
-            let (mut cursor, _) = begin(found);
-            if cursor.peek() != Some(b'L') || !cursor.take_word("LBL") {
+            let (mut cursor, is_optional) = begin(found);
+            if matches!(cursor.peek(), None | Some(b'*')) {
                 continue;
             }
+            let is_label = cursor.peek() == Some(b'L') && cursor.take_word("LBL");
             // A label that is not understood is refused where it is executed.
-            let Ok(label) = label(&mut cursor, &known) else { continue };
+            let Some(label) = is_label.then(|| label(&mut cursor, &known).ok()).flatten() else {
+                run = after.offset;
+                continue;
+            };
+            if is_optional {
+                run = after.offset;
+            }
             if label == Label::Number(0) {
                 ends.push(at.offset);
             } else if let Some(first) = lines.insert(label, at.line) {
                 let fault = GcodeFault::SecondLabel { label: label.to_string(), first };
                 return Err(GcodeError { line: at.line, fault });
             } else {
-                labels.insert(label, after);
+                labels.insert(label, Target { after, at: at.offset, run });
             }
         }
         Ok(Flow {
@@ -176,7 +194,7 @@ impl<'a> Flow<'a> {
         if self.below == 0 && self.calls.is_empty() && self.past.offset < after.offset {
             self.past = after;
         }
-        self.count(1).map_err(|fault| GcodeError { line, fault })?;
+        self.count(work(found)).map_err(|fault| GcodeError { line, fault })?;
         Ok((line, found))
     }
 
@@ -218,7 +236,7 @@ impl<'a> Flow<'a> {
     }
 
     fn find(&self, label: Label) -> Result<Place, GcodeFault> {
-        let found = self.labels.get(&label).copied();
+        let found = self.labels.get(&label).map(|target| target.after);
         found.ok_or_else(|| GcodeFault::NoLabel { label: label.to_string() })
     }
 
@@ -242,7 +260,8 @@ impl<'a> Flow<'a> {
             let condition = "the label stands after the call";
             return Err(combination(word, condition, "write the call after the section"));
         }
-        if self.ends.iter().any(|end| (section[0]..section[1]).contains(end)) {
+        let next_end = self.ends.partition_point(|end| *end < section[0]);
+        if self.ends.get(next_end).is_some_and(|end| *end < section[1]) {
             let condition = "LBL 0 stands in the section, which ends a subprogram";
             let remedy = "remove LBL 0, or write a CALL LBL without REP for each execution";
             return Err(combination(word, condition, remedy));
@@ -287,21 +306,14 @@ impl<'a> Flow<'a> {
     }
 
     /// Returns whether only labels stand before a label that is next.
-    pub(super) fn leads_to(&self, wanted: Label, known: &Parameters) -> bool {
-        let mut place = self.place;
-        while let Some(Ahead { mut cursor, is_optional, after }) = self.ahead(place) {
-            if is_optional || !cursor.take_word("LBL") {
-                return false;
-            }
-            match label(&mut cursor, known) {
-                Ok(found) if found == wanted => return true,
-                // It ends a subprogram.
-                Ok(Label::Number(0)) if !self.calls.is_empty() => return false,
-                Ok(_) => place = after,
-                Err(_) => return false,
-            }
-        }
-        false
+    pub(super) fn leads_to(&self, wanted: Label) -> bool {
+        let Some(Target { at, run, .. }) = self.labels.get(&wanted) else { return false };
+        let from = self.place.offset;
+        // LBL 0 ends a subprogram.
+        let next_end = self.ends.partition_point(|end| *end < from);
+        let is_ended =
+            !self.calls.is_empty() && self.ends.get(next_end).is_some_and(|end| end < at);
+        (*run..=*at).contains(&from) && !is_ended
     }
 
     /// Obeys `LBL 0`.

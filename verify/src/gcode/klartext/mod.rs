@@ -602,7 +602,7 @@ impl<'a> Program<'a> {
             true => label(&mut cursor, &self.parameters),
             false => return false,
         };
-        label.is_ok_and(|label| self.flow.leads_to(label, &self.parameters))
+        label.is_ok_and(|label| self.flow.leads_to(label))
     }
 
     /// Executes TOOL CALL and TOOL DEF, after TOOL.

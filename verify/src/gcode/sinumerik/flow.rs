@@ -7,7 +7,7 @@ use super::text::{Cursor, start};
 use crate::gcode::error::{combination, missing, not_read};
 use crate::gcode::iso::{Place, line};
 use crate::gcode::{
-    FREE_STEPS, GcodeError, GcodeFault, MAX_CALLS, Repeated, SubprogramFile, shown,
+    FREE_STEPS, GcodeError, GcodeFault, MAX_CALLS, Repeated, SubprogramFile, shown, work,
 };
 use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hasher};
@@ -154,6 +154,8 @@ struct Repeat {
 pub(super) struct Source<'a> {
     text: &'a str,
     sections: Vec<Section<'a>>,
+    /// The programs by their names in capitals.
+    names: HashMap<String, usize>,
     /// Targets of the statements that do not go on to the next line, by their lines.
     partners: HashMap<usize, Place>,
     /// The lines with a label or a block number, by the hash of its capitals, and then in their order; found at the first jump.
@@ -168,11 +170,11 @@ impl<'a> Source<'a> {
     /// # Errors
     /// If two programs have one name, or a loop or a branch has no end or no begin.
     pub(super) fn new(text: &'a str) -> Result<Source<'a>, GcodeError> {
-        let sections = sections(text)?;
+        let (sections, names) = sections(text)?;
         let main =
             sections.iter().position(|section| section.name.is_empty() || section.is_main(text));
         let (main, partners) = (main.unwrap_or(0), partners(text, &sections)?);
-        Ok(Source { text, sections, partners, labels: OnceLock::new(), main })
+        Ok(Source { text, sections, names, partners, labels: OnceLock::new(), main })
     }
 
     /// Returns the program with a name in a file of subprograms: one with that title, or the first one of a file of that name.
@@ -188,11 +190,8 @@ impl<'a> Source<'a> {
 
     /// Returns the subprogram with a name.
     fn subprogram(&self, name: &str) -> Option<usize> {
-        let plain = plain_name(name);
-        let found = |section: &Section| {
-            !section.name.is_empty() && section.name.eq_ignore_ascii_case(plain)
-        };
-        self.sections.iter().position(found)
+        let plain = Some(plain_name(name)).filter(|plain| !plain.is_empty())?;
+        self.names.get(&plain.to_ascii_uppercase()).copied()
     }
 }
 
@@ -281,7 +280,7 @@ impl<'a> Flow<'a> {
             self.past = after;
         }
         if is_repeated {
-            self.count(1).map_err(|fault| GcodeError { line: number, fault })?;
+            self.count(work(text)).map_err(|fault| GcodeError { line: number, fault })?;
         }
         Ok((number, text))
     }
@@ -565,8 +564,8 @@ impl Section<'_> {
     }
 }
 
-/// Finds the programs of a text.
-fn sections(text: &str) -> Result<Vec<Section<'_>>, GcodeError> {
+/// Finds the programs of a text, and their places by their names in capitals.
+fn sections(text: &str) -> Result<(Vec<Section<'_>>, HashMap<String, usize>), GcodeError> {
     let begin = Place { offset: 0, line: 1 };
     let main = Section { name: "", start: begin, end: text.len(), parameters: "" };
     let mut found: Vec<(Section, usize)> = vec![(main, 1)];
@@ -596,15 +595,15 @@ fn sections(text: &str) -> Result<Vec<Section<'_>>, GcodeError> {
         }
         place = after;
     }
+    let mut names = HashMap::new();
     for (index, (section, line)) in found.iter().enumerate() {
-        let same = |(other, _): &&(Section, usize)| other.name.eq_ignore_ascii_case(section.name);
-        if let Some((_, first)) = found[..index].iter().find(same) {
-            let label = shown(section.name);
-            let fault = GcodeFault::SecondLabel { label, first: *first };
+        if let Some(first) = names.insert(section.name.to_ascii_uppercase(), index) {
+            let (label, first) = (shown(section.name), found[first].1);
+            let fault = GcodeFault::SecondLabel { label, first };
             return Err(GcodeError { line: *line, fault });
         }
     }
-    Ok(found.into_iter().map(|(section, _)| section).collect())
+    Ok((found.into_iter().map(|(section, _)| section).collect(), names))
 }
 
 /// Begins a program at a title, or names the one that has only a title so far.

@@ -7,7 +7,7 @@ use super::expression::{Value, expression, number};
 use super::text::Cursor;
 use crate::gcode::error::{combination, not_read};
 use crate::gcode::{ExpressionFault, GcodeFault, shown};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 
 /// The greatest R parameter (MD28050 allows as many).
 const MAX_R: f64 = 32_534.0;
@@ -66,6 +66,12 @@ pub(super) struct Variables {
     /// The variables of all programs that are being executed. Those of the present one begin at `base`.
     named: Vec<Variable>,
     base: usize,
+    /// The places of those of the present program by their names in capitals.
+    own: HashMap<String, usize>,
+    /// Those of its callers.
+    callers: Vec<HashMap<String, usize>>,
+    /// The number of elements of all variables.
+    elements: usize,
 }
 
 /// Returns whether a name is that of an R parameter.
@@ -101,24 +107,27 @@ impl Variables {
 
     /// Begins the variables of a subprogram, and returns where those of the caller begin.
     pub(super) fn enter(&mut self) -> usize {
+        self.callers.push(std::mem::take(&mut self.own));
         std::mem::replace(&mut self.base, self.named.len())
     }
 
     /// Ends the variables of a subprogram.
     pub(super) fn leave(&mut self, base: usize) {
-        self.named.truncate(self.base);
+        self.clear();
+        self.own = self.callers.pop().unwrap_or_default();
         self.base = base;
     }
 
     /// Removes the variables of the present program.
     pub(super) fn clear(&mut self) {
-        self.named.truncate(self.base);
+        let removed = self.named.drain(self.base..);
+        self.elements -= removed.map(|variable| variable.values.len()).sum::<usize>();
+        self.own.clear();
     }
 
     /// Returns the variable with a name.
     pub(super) fn find(&self, name: &str) -> Option<usize> {
-        let own = &self.named[self.base..];
-        own.iter().position(|known| known.name.eq_ignore_ascii_case(name)).map(|at| at + self.base)
+        self.own.get(&name.to_ascii_uppercase()).copied()
     }
 
     /// Returns an element of a variable.
@@ -256,11 +265,13 @@ impl Variables {
             let remedy = "define each name once, at the start of the program";
             return Err(combination(shown(name), "it is already defined", remedy));
         }
-        let elements = self.named.iter().map(|known| known.values.len()).sum::<usize>();
-        if elements + lengths[0] * lengths[1] > MAX_ALL_ELEMENTS {
+        let elements = lengths[0] * lengths[1];
+        if self.elements + elements > MAX_ALL_ELEMENTS {
             return Err(no_element(name));
         }
-        let values = vec![value; lengths[0] * lengths[1]];
+        self.elements += elements;
+        self.own.insert(name.to_ascii_uppercase(), self.named.len());
+        let values = vec![value; elements];
         self.named.push(Variable { name: name.to_owned(), kind, lengths, dimensions, values });
         Ok(())
     }

@@ -541,4 +541,9 @@ fn all_obstacles_are_found_at_once() {
     for line in [3, 5, 6, 7, 9] {
         assert!(said.contains(&format!("part.cl:{line}: ")), "{said}");
     }
+    // The message lists the first of them, and says how many it leaves out.
+    let many: String = (0..200_000).map(|number| format!("WORD{number}/1\n")).collect();
+    let said = ClData::parse(&many, "part.cl").expect_err("obstacles").to_string();
+    assert!(said.lines().count() == 102, "{said}");
+    assert!(said.ends_with("\npart.cl: 199899 more faults from line 102 on"), "{said}");
 }
