@@ -34,6 +34,13 @@ pub struct Enclosure {
     form: Form,
 }
 
+/// Encloses 0, as the memory of an evaluation does before it begins.
+impl Default for Enclosure {
+    fn default() -> Enclosure {
+        Enclosure::constant(0.0)
+    }
+}
+
 impl Enclosure {
     const EMPTY: Enclosure = {
         let linear = LinearEnclosure { at: EMPTY, slope: [EMPTY; 3] };

@@ -49,9 +49,9 @@ type Steps = Box<[(usize, Operation)]>;
 /// A test of the tree, or its result.
 enum Fork {
     Owner(Option<usize>),
-    /// Where `left ≤ right` (`left < right` if strict) the descent continues at the next fork, elsewhere at `above`.
+    /// A test of `left ≤ right`, or `left < right` if strict. The descent continues at the next fork where it holds, elsewhere at `above`.
     Test {
-        /// What the sides need and no test before has computed.
+        /// Operations that the sides need and no test before has taken.
         steps: Steps,
         sides: [Operand; 2],
         strict: bool,
@@ -137,15 +137,14 @@ impl Plan {
                     let (left, right) = (walk.get(*left), walk.get(*right));
                     let test = if *strict { L::lt(left, right) } else { L::le(left, right) };
                     let (yes, no) = (lanes & test, lanes & !test);
-                    match (L::any(yes), L::any(no)) {
-                        (true, both) => {
-                            if both {
-                                walk.memory.pending.push((*above, L::keep(no)));
-                            }
-                            (at, lanes) = (at + 1, yes);
-                        }
-                        (false, _) => (at, lanes) = (*above, no),
+                    if !L::any(yes) {
+                        (at, lanes) = (*above, no);
+                        continue;
                     }
+                    if L::any(no) {
+                        walk.memory.pending.push((*above, L::keep(no)));
+                    }
+                    (at, lanes) = (at + 1, yes);
                     continue;
                 }
                 Fork::Owner(None) => result.inside = result.inside & !lanes,
@@ -343,12 +342,6 @@ impl<V: Copy + Default, M> Memory<V, M> {
             self.now = 0;
         }
         self.now += 1;
-    }
-}
-
-impl Default for Enclosure {
-    fn default() -> Enclosure {
-        Enclosure::constant(0.0)
     }
 }
 

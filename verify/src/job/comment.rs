@@ -12,28 +12,37 @@ const ROUNDED: f64 = 1e-3;
 /// Tolerance of angles, which comments state in whole degrees.
 const DEGREES: f64 = 0.51;
 
+/// The first comment that describes another tool than the job has under a number.
+struct Contradiction<'a> {
+    stated: &'a StatedTool,
+    /// Description of the job's tool.
+    mounted: String,
+    /// The number of further lines with such comments.
+    others: usize,
+}
+
 impl Job<'_> {
     /// Returns the first comment of the program that describes another tool than the job has under a number, for each number.
     pub(super) fn contradicted_comments(&self) -> Vec<Gap> {
         let Some(program) = self.program.readings().first() else { return Vec::new() };
         let used: BTreeSet<u32> =
             self.program.tools().into_iter().filter_map(|tool| tool.number).collect();
-        let mut found: BTreeMap<u32, (&StatedTool, String, usize)> = BTreeMap::new();
+        let mut found: BTreeMap<u32, Contradiction<'_>> = BTreeMap::new();
         for stated in &program.summary().stated_tools {
             let number = Some(stated.number).filter(|number| used.contains(number));
             let Some(tool) = number.and_then(|number| self.tool_of(Some(number))) else { continue };
             let Some(mounted) = contradiction(stated, tool.tool.info(), self.unit()) else {
                 continue;
             };
-            let first = found.entry(stated.number).or_insert((stated, mounted, 0));
-            first.2 += usize::from(first.0.line != stated.line);
+            let first = Contradiction { stated, mounted, others: 0 };
+            let first = found.entry(stated.number).or_insert(first);
+            first.others += usize::from(first.stated.line != stated.line);
         }
-        let mut gaps: Vec<Gap> = Vec::new();
-        for (number, (stated, mounted, others)) in found {
+        let gap = |(number, Contradiction { stated, mounted, others })| {
             let comment = stated.comment.clone();
-            gaps.push(JobGap::OtherTool { comment, number, mounted, others }.open(stated.line));
-        }
-        gaps
+            JobGap::OtherTool { comment, number, mounted, others }.open(stated.line)
+        };
+        found.into_iter().map(gap).collect()
     }
 }
 

@@ -759,7 +759,7 @@ fn a_hundred_thousand_blocks_are_read() {
     }
 }
 
-/// Whether a jump passes labels alone is found in a time that does not grow with them: then its condition, which is not known here, does not
+/// A jump is known to pass labels alone in a time that does not grow with them: then its condition, which is not known here, does not
 /// matter.
 #[test]
 fn jumps_pass_any_number_of_labels() {

@@ -120,7 +120,7 @@ fn a_call_that_controls_read_in_two_ways_is_refused() {
     // T alone changes the tool of a Heidenhain.
     let text = "G71 G90 S9000 M3 F100.\nT1\nS9000 M3\nG0 X-6. Y0. Z20.\nG1 X4. Z1.\nT3\nS9000 M3\nG1 X5.\nM30\n";
     Scene::of(text).gives(HEIDENHAIN, NONE, &["J0103 8 T3"]);
-    // Of many tools without a file the first are named.
+    // The first of many tools without a file are named.
     let tools: String = (2..1000).map(|number| format!("T{number} M6\nG0 X1.\n")).collect();
     let many = format!("G21 G90 G54 S900 M3\nG0 X-6. Y0. Z20.\n{tools}M30\n");
     Scene::of(&many).gives(HAAS, NONE, &["J0103 T22 and 977 more tools"]);

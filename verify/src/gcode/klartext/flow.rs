@@ -260,8 +260,7 @@ impl<'a> Flow<'a> {
             let condition = "the label stands after the call";
             return Err(combination(word, condition, "write the call after the section"));
         }
-        let next_end = self.ends.partition_point(|end| *end < section[0]);
-        if self.ends.get(next_end).is_some_and(|end| *end < section[1]) {
+        if self.ends_between(section[0], section[1]) {
             let condition = "LBL 0 stands in the section, which ends a subprogram";
             let remedy = "remove LBL 0, or write a CALL LBL without REP for each execution";
             return Err(combination(word, condition, remedy));
@@ -310,10 +309,14 @@ impl<'a> Flow<'a> {
         let Some(Target { at, run, .. }) = self.labels.get(&wanted) else { return false };
         let from = self.place.offset;
         // LBL 0 ends a subprogram.
-        let next_end = self.ends.partition_point(|end| *end < from);
-        let is_ended =
-            !self.calls.is_empty() && self.ends.get(next_end).is_some_and(|end| end < at);
+        let is_ended = !self.calls.is_empty() && self.ends_between(from, *at);
         (*run..=*at).contains(&from) && !is_ended
+    }
+
+    /// Returns whether `LBL 0` begins at a byte or behind it, and before another byte.
+    fn ends_between(&self, from: usize, to: usize) -> bool {
+        let next = self.ends.partition_point(|end| *end < from);
+        self.ends.get(next).is_some_and(|end| *end < to)
     }
 
     /// Obeys `LBL 0`.
