@@ -6,7 +6,7 @@ use touchoff_dsl::expr::polynomial::{Monomial, Polynomial};
 use touchoff_dsl::expr::value::{EvaluationPoint, Evaluator};
 use touchoff_dsl::formula::{ANY_SIGN, CurveIndex, NEGATIVE, POSITIVE, Signs, ZERO};
 use touchoff_dsl::model::Model;
-use touchoff_dsl::vector::{Point, dot, minus, norm};
+use touchoff_dsl::vector::{Point, minus, norm};
 
 /// The plane of a section, which has two coordinates.
 #[derive(Clone, Copy, Debug)]
@@ -58,14 +58,6 @@ impl Plane {
             _ => None,
         }
     }
-
-    /// Returns the least first coordinate: the axis of a tool is a mirror.
-    fn leftmost(self) -> f64 {
-        match self {
-            Plane::Meridian => 0.0,
-            Plane::Across { .. } => f64::NEG_INFINITY,
-        }
-    }
 }
 
 /// Returns the two values with a third one inserted at an index.
@@ -112,13 +104,24 @@ impl<'m> Curves<'m> {
         })
     }
 
+    /// Returns whether the plane ends at an axis.
+    pub(super) fn has_axis(&self) -> bool {
+        matches!(self.plane, Plane::Meridian)
+    }
+
     /// Returns whether a curve is a straight line.
-    pub(super) fn straight(&mut self, curve: CurveIndex) -> bool {
+    pub(super) fn is_straight(&mut self, curve: CurveIndex) -> bool {
         matches!(self.evaluator(curve), CurveEvaluator::Line(_))
     }
 
+    /// Returns whether a test of the plan's tree holds at a point.
+    pub(super) fn holds(&mut self, curve: CurveIndex, strict: bool, p: Point) -> bool {
+        let value = self.value(curve, p);
+        if strict { value < 0.0 } else { value <= 0.0 }
+    }
+
     /// Returns a curve's value at a point; +∞ where it is undefined.
-    pub(super) fn value(&mut self, curve: CurveIndex, p: Point) -> f64 {
+    fn value(&mut self, curve: CurveIndex, p: Point) -> f64 {
         let (id, plane) = (self.model.curves[curve].value, self.plane);
         let value = match self.evaluator(curve) {
             CurveEvaluator::Line([a, b, c]) => *a * p[0] + *b * p[1] + *c,
@@ -136,15 +139,12 @@ impl<'m> Curves<'m> {
         let (id, plane) = (self.model.curves[curve].value, self.plane);
         let range = match self.evaluator(curve) {
             CurveEvaluator::Line([a, b, c]) => {
-                let of = |factor: f64, low: f64, high: f64| {
-                    if factor < 0.0 {
-                        (factor * high, factor * low)
-                    } else {
-                        (factor * low, factor * high)
-                    }
-                };
-                let (d, z) = (of(*a, low[0], high[0]), of(*b, low[1], high[1]));
-                Interval::new(d.0 + z.0 + *c, d.1 + z.1 + *c)
+                let (mut least, mut most) = (*c, *c);
+                for (k, factor) in [*a, *b].into_iter().enumerate() {
+                    let [from, to] = [factor * low[k], factor * high[k]];
+                    (least, most) = (least + from.min(to), most + from.max(to));
+                }
+                Interval::new(least, most)
             }
             CurveEvaluator::Bent(bent) => {
                 bent.1.set(plane.cell(low, high));
@@ -171,27 +171,10 @@ impl<'m> Curves<'m> {
             return [*a, *b];
         }
         // A difference across the axis would see the mirror image.
-        let low = (u - h).max(self.plane.leftmost());
+        let low = if self.has_axis() { (u - h).max(0.0) } else { u - h };
         let along = (self.value(curve, [u + h, v]) - self.value(curve, [low, v])) / (u + h - low);
         let up = (self.value(curve, [u, v + h]) - self.value(curve, [u, v - h])) / (2.0 * h);
         [along, up]
-    }
-
-    /// Returns the first-order estimate of a point's distance from a curve.
-    pub(super) fn distance(&mut self, curve: CurveIndex, p: Point) -> f64 {
-        self.value(curve, p).abs() / norm(self.slope(curve, p))
-    }
-
-    /// Returns the foot of a point on a curve by Newton's method, or the point itself if the foot is farther away than
-    /// `reach`.
-    pub(super) fn foot(&mut self, curve: CurveIndex, from: Point, reach: f64) -> Point {
-        let mut p = from;
-        for _ in 0..4 {
-            let slope = self.slope(curve, p);
-            let step = self.value(curve, p) / dot(slope, slope);
-            p = [p[0] - step * slope[0], p[1] - step * slope[1]];
-        }
-        if norm(minus(p, from)) <= reach { p } else { from }
     }
 
     /// Returns the intersection of two constraints near a point, by Newton's method, and the sine of the angle at which
@@ -218,7 +201,9 @@ impl<'m> Curves<'m> {
             }
             p = [p[0] - (u * gv[1] - v * gu[1]) / sine, p[1] - (v * gu[0] - u * gv[0]) / sine];
             // Beyond the axis there is no section.
-            p[0] = p[0].max(self.plane.leftmost());
+            if self.has_axis() {
+                p[0] = p[0].max(0.0);
+            }
         }
         (norm(minus(p, from)) <= reach).then_some((square, p))
     }

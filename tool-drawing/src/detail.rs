@@ -1,12 +1,9 @@
 //! The detail: the cutting part of a tool at a larger scale, beside the view of the whole tool.
 
-use super::borders::Side;
-use super::curves::{Curves, Plane};
 use super::regions::Marks;
 use super::sheet::{Anchor, DEFAULT_COLOUR, Look, Sheet, lines};
-use super::stroke::Stroke;
-use super::view::{View, is_outline};
-use super::{Content, Part, Picture, trace};
+use super::view::View;
+use super::{Content, Part, Picture, meridian_section};
 use touchoff_dsl::CheckedTool;
 use touchoff_dsl::model::Model;
 use touchoff_dsl::vector::Point;
@@ -55,15 +52,14 @@ impl<'m> Detail<'m> {
             return None;
         }
         let height = top - cutting.low;
-        let size = height.max(width);
         let unit = (height / MAX_EXTENT[1]).min(cutting.radius / 60.0);
-        let mut curves = Curves::new(whole.model, &tool.extent, Plane::Meridian);
-        let traced = trace(&mut curves, tool, window(cutting.low, corner), [unit, size]);
-        let view = View::new(&traced.borders, MAX_EXTENT);
+        let section = meridian_section(tool, unit).clipped(corner);
+        let view = View::new(&section, MAX_EXTENT);
         let factor = scale_factor(view.scale / whole.view.scale)?;
         let view = view.rescaled(factor * whole.view.scale);
         let fills = whole.fills.clone();
-        let mut picture = Picture::of(whole.model, whole.content, traced, view, fills);
+        let size = height.max(width);
+        let mut picture = Picture::of(whole.model, whole.content, section, size, view, fills);
         picture.part = Part::Detail(corner);
         let View { half, height, .. } = picture.view;
         // No name and no arrow lies on the break line.
@@ -112,17 +108,20 @@ struct CuttingPart {
 
 impl CuttingPart {
     fn new(whole: &Picture<'_>) -> Option<CuttingPart> {
-        let cutting = || {
-            outline(whole).filter_map(|(side, stroke)| match side {
-                Side::Region(r) if whole.model.surfaces[whole.surface(r)].cutting => Some(stroke),
-                _ => None,
-            })
-        };
-        let high = cutting().map(|stroke| stroke.span()[1]).reduce(f64::max)?;
-        // From the tool's lowest point, even if that does not cut.
-        let low = outline(whole).map(|(_, stroke)| stroke.span()[0]).fold(high, f64::min);
-        let radius = cutting().map(Stroke::widest).fold(radius(whole, high), f64::max);
-        Some(CuttingPart { low, high, radius })
+        let (mut low, mut high, mut radius) = (f64::INFINITY, f64::NEG_INFINITY, 0.0f64);
+        for edge in &whole.section.edges {
+            for stroke in &edge.strokes {
+                let span = stroke.span();
+                // From the tool's lowest point, even if that does not cut.
+                low = low.min(span[0]);
+                if whole.model.surfaces[edge.surface].cutting {
+                    high = high.max(span[1]);
+                    radius = radius.max(stroke.widest());
+                }
+            }
+        }
+        let radius = radius.max(radius_below(whole, high));
+        high.is_finite().then_some(CuttingPart { low, high, radius })
     }
 
     /// Returns the distance from the axis and the height at which the detail ends.
@@ -130,48 +129,27 @@ impl CuttingPart {
         let above = MARGIN_ABOVE[0] * (self.high - self.low);
         let top = self.high + above.max(MARGIN_ABOVE[1] * self.radius);
         // A cone above the cutting part is shown, a shoulder is cut off.
-        let widest = radius(whole, top);
+        let widest = radius_below(whole, top);
         let shown = if widest < MAX_WIDENING * self.radius { widest } else { self.radius };
         [(1.0 + MARGIN_BESIDE) * shown, top]
     }
 }
 
-/// Returns the strokes of the surface with the areas inside.
-fn outline<'p>(whole: &'p Picture<'_>) -> impl Iterator<Item = (Side, &'p Stroke)> {
-    let outline = whole.borders.iter().filter(|border| is_outline(border));
-    outline.flat_map(|border| border.strokes.iter().map(|stroke| (border.sides[0], stroke)))
-}
-
 /// Returns the largest radius of the tool below a height.
-fn radius(whole: &Picture<'_>, top: f64) -> f64 {
+fn radius_below(whole: &Picture<'_>, top: f64) -> f64 {
     let near = 1e-6 * whole.size;
-    let radii = outline(whole).map(|(_, stroke)| {
-        let [low, high] = stroke.span();
-        if low >= top - near {
-            0.0
-        } else if high <= top + near {
-            stroke.widest()
-        } else {
-            // The part of the stroke below the height.
-            let points = (0..=64).map(|k| stroke.at(f64::from(k) / 64.0));
-            points.filter(|p| p[1] <= top).map(|p| p[0]).fold(0.0, f64::max)
+    let mut radius = 0.0f64;
+    for stroke in whole.section.surface().filter(|stroke| stroke.span()[0] < top - near) {
+        for part in stroke.clipped([f64::INFINITY, top + near]) {
+            radius = radius.max(part.widest());
         }
-    });
-    radii.fold(0.0, f64::max)
+    }
+    radius
 }
 
 /// Returns whether a tool consists of mounted files: their surfaces have names such as `cutter.ball`.
 fn is_assembly(model: &Model) -> bool {
     model.surfaces.iter().any(|surface| surface.name.contains('.'))
-}
-
-/// Returns the window of the section that a detail shows, from below the lowest point up to the corner.
-///
-/// The division begins at the lower end with square cells, so the height is a multiple of the width.
-fn window(low: f64, [width, top]: Point) -> [Point; 2] {
-    // By rounding alone there must not be one cell more.
-    let height = (1.02 * (top - low) / width).ceil() * width * (1.0 - 1e-12);
-    [[0.0, top - height], [width, top]]
 }
 
 /// Returns the largest usual scale factor up to a number, if it is at least 2.

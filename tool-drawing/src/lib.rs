@@ -3,12 +3,13 @@
 //! sections.
 //!
 //! ```text
-//! plan ──section──▶ pieces ──borders──▶ lines and arcs with their neighbours ──view──▶ the sheet
+//! profile ─────cells─▶ surface, areas and splits ──view──▶ the sheet
+//! plan's tree ─trace─▶
 //! ```
 //!
-//! The drawing is derived only from the plan's tree and its curves, so profiles and regions written by hand are drawn
-//! the same way. Corners are computed as intersections of curves, to full precision, so the dimensions are exact. Text
-//! is drawn in strokes of a built-in alphabet (`lettering`). The same tool always gives the same bytes.
+//! The surface of a profile is its segments, and the borders of its regions are computed in closed form. Regions by hand
+//! and solids are traced; their corners are computed as intersections of curves, to full precision, so that dimensions are
+//! exact. Text is drawn in strokes of a built-in alphabet (`lettering`). The same tool always gives the same bytes.
 
 #![deny(missing_docs, missing_debug_implementations, unnameable_types)]
 
@@ -17,7 +18,7 @@
 #[doc = include_str!("../README.md")]
 struct Readme;
 
-mod borders;
+mod cells;
 mod curves;
 mod detail;
 mod legend;
@@ -30,13 +31,13 @@ mod shape;
 mod sheet;
 mod solid;
 mod stroke;
+mod trace;
 mod view;
 
-use borders::{Border, Nearness, Side};
-use curves::{Curves, Plane};
+use curves::Plane;
 use detail::Detail;
 use regions::Marks;
-use section::Fineness;
+use section::Section;
 use shape::Shape;
 pub use sheet::TextRendering;
 use sheet::{Anchor, Look, Sheet};
@@ -94,7 +95,7 @@ struct Picture<'m> {
     model: &'m Model,
     content: Content,
     part: Part,
-    borders: Vec<Border>,
+    section: Section,
     view: View,
     /// The regions' shapes on the sheet, in the order of the model's regions, and their colours.
     shapes: Vec<Shape>,
@@ -114,52 +115,29 @@ enum Part {
     Detail(Point),
 }
 
-/// The borders of a section, and its size, the scale of tolerances for rounding.
-struct Traced {
-    borders: Vec<Border>,
-    size: f64,
-}
-
-/// Traces the borders in a window of a section. `unit` is a lower bound on one unit of the sheet and `size` the section's
-/// size, both in the tool's unit.
-fn trace(
-    curves: &mut Curves<'_>,
-    tool: &CheckedTool,
-    window: [Point; 2],
-    [unit, size]: [f64; 2],
-) -> Traced {
-    let fineness = Fineness { cell: 10.0 * unit, flat: 0.06 * unit, same: 1e-10 * size };
-    let pieces = section::divide(curves, &tool.tree, window, fineness);
-    let near = Nearness { weld: 1e-9 * size, visible_length: 0.1 * unit, reach: unit };
-    Traced { borders: borders::borders(curves, &pieces, near), size }
-}
-
 impl<'m> Picture<'m> {
     /// Returns the view of a whole tool with an axis.
     fn new(tool: &'m CheckedTool, content: Content) -> Picture<'m> {
-        let (model, extent) = (&tool.model, &tool.extent);
-        let height = extent.high - extent.low;
-        let unit = (height / 500.0).min(extent.radius / 60.0);
-        // Odd shares, so that no side of a cell runs along a curve.
-        let low = [0.0, extent.low - 0.0213 * height];
-        let high = [1.0371 * extent.radius, extent.high + 0.0197 * height];
-        let mut curves = Curves::new(model, extent, Plane::Meridian);
-        let size = height.max(extent.radius);
-        let traced = trace(&mut curves, tool, [low, high], [unit, size]);
-        let view = View::new(&traced.borders, MAX_TOOL_EXTENT);
-        let fills = paint::area_colours(model.regions.len(), &traced.borders);
-        Picture::of(model, content, traced, view, fills)
+        let extent = &tool.extent;
+        let unit = ((extent.high - extent.low) / MAX_TOOL_EXTENT[1]).min(extent.radius / 60.0);
+        let section = meridian_section(tool, unit);
+        let view = View::new(&section, MAX_TOOL_EXTENT);
+        let fills = paint::area_colours(tool.model.regions.len(), &section.splits);
+        let size = (extent.high - extent.low).max(extent.radius);
+        Picture::of(&tool.model, content, section, size, view, fills)
     }
 
     fn of(
         model: &'m Model,
         content: Content,
-        Traced { borders, size }: Traced,
+        section: Section,
+        size: f64,
         view: View,
         fills: Vec<&'static str>,
     ) -> Picture<'m> {
-        let shapes = (0..model.regions.len()).map(|region| {
-            let mut shape = Shape::new(&borders, &view, |side| side == Side::Region(region));
+        let mut shapes = Vec::new();
+        for polygons in &section.areas {
+            let mut shape = Shape::new(polygons, &view);
             let half = view.half + 1.0;
             // Marks keep off the break lines.
             for y in view.seams() {
@@ -167,15 +145,9 @@ impl<'m> Picture<'m> {
                     [-5.0, 0.0, 5.0].map(|shift| [[-half, y + shift], [half, y + shift]]),
                 );
             }
-            shape
-        });
-        let shapes = shapes.collect();
-        Picture { model, content, part: Part::Whole, borders, view, shapes, fills, size }
-    }
-
-    /// Returns the index of a region's surface.
-    fn surface(&self, region: usize) -> usize {
-        self.model.regions[region].surface
+            shapes.push(shape);
+        }
+        Picture { model, content, part: Part::Whole, section, view, shapes, fills, size }
     }
 
     /// Draws the section with its notes.
@@ -200,6 +172,16 @@ impl<'m> Picture<'m> {
     fn names(&self, middle: Point) -> bool {
         matches!(self.part, Part::Detail(_)) || self.describes(self.view.point(middle))
     }
+}
+
+/// Returns the section of a tool through its axis.
+fn meridian_section(tool: &CheckedTool, unit: f64) -> Section {
+    let extent = &tool.extent;
+    let height = extent.high - extent.low;
+    // Odd shares, so that no side of the lattice runs along a curve.
+    let low = [0.0, extent.low - 0.0213 * height];
+    let high = [1.0371 * extent.radius, extent.high + 0.0197 * height];
+    Section::new(tool, Plane::Meridian, [low, high], unit)
 }
 
 /// Writes name, description and unit above the drawing.

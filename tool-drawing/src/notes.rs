@@ -1,14 +1,13 @@
 //! Notes beside the section: names and dimensions of faces on the left, names of small regions and heights on the
 //! right. The dimensions are those of the tool's surface.
 
-use super::borders::{Border, Side};
 use super::lettering::width;
 use super::regions::{Marks, head};
+use super::section::{Edge, Section};
 use super::sheet::{Anchor, Look, SECONDARY_COLOUR, Sheet, lines};
 use super::stroke::Stroke;
-use super::view::is_outline;
 use super::{Picture, paint};
-use touchoff_dsl::model::{Model, Unit};
+use touchoff_dsl::model::Unit;
 use touchoff_dsl::vector::{Point, cross, dot, minus, norm};
 
 /// The height of capitals, in sheet units.
@@ -83,7 +82,7 @@ fn draw_left_notes(picture: &Picture<'_>, sheet: &mut Sheet) {
 /// `capacity`, the longest ones are kept.
 fn chosen(picture: &Picture<'_>, capacity: usize) -> Vec<Face> {
     let unit = picture.model.unit;
-    let all = faces(picture.model, &picture.borders, picture.size);
+    let all = faces(&picture.section, picture.size);
     let mut chosen: Vec<Face> = Vec::new();
     let described =
         |face: &&Face| picture.describes([face.longest.widest(), face.longest.span()[1]]);
@@ -198,18 +197,15 @@ fn right(picture: &Picture<'_>, marks: &Marks, levels: &[Point], sheet: &mut She
 
 /// Returns the radius of the tool on the sheet between two heights of the sheet.
 fn widest(picture: &Picture<'_>, [low, high]: [f64; 2]) -> f64 {
-    picture
-        .borders
-        .iter()
-        .filter(|border| is_outline(border))
-        .flat_map(|border| &border.strokes)
-        .map(|stroke| picture.view.stroke(stroke))
-        .filter(|stroke| {
-            let [top, bottom] = stroke.span();
-            top <= high && bottom >= low
-        })
-        .map(|stroke| stroke.widest())
-        .fold(0.0, f64::max)
+    let mut widest = 0.0f64;
+    for stroke in picture.section.surface() {
+        let stroke = picture.view.stroke(stroke);
+        let [top, bottom] = stroke.span();
+        if top <= high && bottom >= low {
+            widest = widest.max(stroke.widest());
+        }
+    }
+    widest
 }
 
 /// Returns a height at which a note lies between dimension lines rather than on one.
@@ -224,8 +220,7 @@ fn sheet_height(y: f64, levels: &[f64]) -> f64 {
 /// Returns the heights to note, of which the first is the tip. If there are too many, the most crowded ones are left
 /// out.
 fn steps(picture: &Picture<'_>) -> Vec<Point> {
-    let mut steps =
-        heights(picture.model, &picture.borders, picture.size, |p| picture.describes(p));
+    let mut steps = heights(&picture.section, picture.size, |p| picture.describes(p));
     let max_notes = ((picture.view.height + 80.0) / 11.5) as usize;
     while steps.len() > max_notes.max(3) {
         let crowded = |k: &usize| steps[k + 1][1] - steps[k - 1][1];
@@ -375,17 +370,15 @@ fn trimmed(text: &str) -> String {
 }
 
 /// Returns the faces of the surface.
-fn faces(model: &Model, borders: &[Border], size: f64) -> Vec<Face> {
+fn faces(section: &Section, size: f64) -> Vec<Face> {
     let mut faces: Vec<Face> = Vec::new();
-    for border in borders.iter().filter(|border| is_outline(border)) {
-        let Side::Region(region) = border.sides[0] else { continue };
-        let surface = model.regions[region].surface;
-        for stroke in &border.strokes {
-            let measure = measure(stroke, border.exact, size);
+    for Edge { surface, strokes, exact } in &section.edges {
+        for stroke in strokes {
+            let measure = if *exact { measure(stroke, size) } else { Measure::Other };
             let length = stroke.length();
             let known = faces
                 .iter_mut()
-                .find(|face| face.surface == surface && are_equal(face.measure, measure, size));
+                .find(|face| face.surface == *surface && are_equal(face.measure, measure, size));
             match known {
                 Some(face) => {
                     face.length += length;
@@ -394,17 +387,16 @@ fn faces(model: &Model, borders: &[Border], size: f64) -> Vec<Face> {
                         face.longest = *stroke;
                     }
                 }
-                None => faces.push(Face { surface, measure, length, longest: *stroke }),
+                None => faces.push(Face { surface: *surface, measure, length, longest: *stroke }),
             }
         }
     }
     faces
 }
 
-fn measure(stroke: &Stroke, exact: bool, size: f64) -> Measure {
+fn measure(stroke: &Stroke, size: f64) -> Measure {
     match stroke.circle {
-        // Only an exact arc has a radius that may be printed.
-        Some((centre, radius)) if exact => Measure::Arc(centre, radius),
+        Some((centre, radius)) => Measure::Arc(centre, radius),
         None if (stroke.from[0] - stroke.to[0]).abs() < LENGTH_TOLERANCE_FRACTION * size => {
             Measure::Cylinder(stroke.from[0] / 2.0 + stroke.to[0] / 2.0)
         }
@@ -430,40 +422,45 @@ fn are_equal(a: Measure, b: Measure, size: f64) -> bool {
 /// Returns the heights at which the surface has a corner, a tangent joint of two faces, or an end, from bottom to top.
 /// Each is given with its outermost point. Except for the lowest, only points that are `described` count.
 pub(super) fn heights(
-    model: &Model,
-    borders: &[Border],
+    section: &Section,
     size: f64,
     described: impl Fn(Point) -> bool,
 ) -> Vec<Point> {
-    let outline: Vec<&Border> = borders.iter().filter(|border| is_outline(border)).collect();
-    let surface = |border: &Border| match border.sides[0] {
-        Side::Region(region) => model.regions[region].surface,
-        _ => 0,
-    };
+    let near = LENGTH_TOLERANCE_FRACTION * size;
     let mut steps: Vec<Point> = Vec::new();
-    for border in &outline {
-        let Some(first) = border.strokes.first() else { continue };
-        let goes_on = outline.iter().any(|before| {
-            before.ends[1] == border.ends[0]
-                && surface(before) == surface(border)
-                && before.strokes.last().is_some_and(|last| one(last, first, size))
-        });
+    for edge in &section.edges {
+        let (Some(first), Some(last)) = (edge.strokes.first(), edge.strokes.last()) else {
+            continue;
+        };
         // A joint within one face is no height of its own.
+        let goes_on = section.edges.iter().any(|before| {
+            before.surface == edge.surface
+                && before.strokes.last().is_some_and(|before| {
+                    norm(minus(before.to, first.from)) < near && one(before, first, size)
+                })
+        });
         if !goes_on {
             steps.push(first.from);
         }
-        if !outline.iter().any(|after| after.ends[0] == border.ends[1]) {
-            steps.extend(border.strokes.last().map(|last| last.to));
+        let is_joint = |after: &Stroke| norm(minus(after.from, last.to)) < near;
+        if !section.edges.iter().any(|after| after.strokes.first().is_some_and(is_joint)) {
+            steps.push(last.to);
         }
     }
     // An arc may reach beyond its ends.
-    let strokes = || outline.iter().flat_map(|border| &border.strokes);
-    for (k, of) in [(0, f64::min as fn(f64, f64) -> f64), (1, f64::max)] {
-        let ends = strokes().map(|stroke| (stroke.span()[k], stroke.from[0].max(stroke.to[0])));
-        if let Some((z, d)) = ends.reduce(|a, b| if of(a.0, b.0) == a.0 { a } else { b }) {
-            steps.push([d.min(strokes().map(|s| s.from[0]).fold(0.0, f64::max)), z]);
-        }
+    let mut ends: Option<[Point; 2]> = None;
+    let mut widest = 0.0f64;
+    for stroke in section.surface() {
+        let [low, high] = stroke.span();
+        let d = stroke.from[0].max(stroke.to[0]);
+        widest = widest.max(stroke.from[0]);
+        let [lowest, highest] = ends.unwrap_or([[d, low], [d, high]]);
+        ends = Some([
+            if low < lowest[1] { [d, low] } else { lowest },
+            if high > highest[1] { [d, high] } else { highest },
+        ]);
     }
+    steps.extend(ends.into_iter().flatten().map(|[d, z]| [d.min(widest), z]));
     steps.sort_by(|a, b| a[1].total_cmp(&b[1]));
     let mut levels: Vec<Point> = Vec::new();
     for step in steps {
@@ -471,9 +468,7 @@ pub(super) fn heights(
             continue;
         }
         match levels.last_mut() {
-            Some(level) if step[1] - level[1] < LENGTH_TOLERANCE_FRACTION * size => {
-                level[0] = level[0].max(step[0]);
-            }
+            Some(level) if step[1] - level[1] < near => level[0] = level[0].max(step[0]),
             _ => levels.push(step),
         }
     }

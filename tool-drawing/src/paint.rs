@@ -4,11 +4,10 @@
 //! them, and his "bright" scheme for more (SRON/EPS/TN/09-002, 2021), reds for cutting surfaces, dark colours for the
 //! others.
 
-use super::borders::{Border, Side};
+use super::section::{Polygon, Split};
 use super::shape::Shape;
 use super::sheet::{Sheet, data, lines};
 use super::stroke::Stroke;
-use super::view::{is_outline, mirrored};
 use super::{Content, Picture};
 use touchoff_dsl::model::Model;
 use touchoff_dsl::vector::Point;
@@ -27,14 +26,15 @@ pub(super) fn halves(picture: &Picture<'_>, sheet: &mut Sheet) {
     let material = material(picture);
     match picture.content {
         Content::Regions => regions(picture, sheet),
-        Content::Outline => sheet.path(PLAIN_AREA, &data(material.loops.iter().flatten())),
+        Content::Outline => sheet.path(PLAIN_AREA, &areas(&material.polygons)),
     }
-    let mirrored_strokes: Vec<Stroke> = material.loops.iter().flatten().map(mirrored).collect();
-    sheet.path(HATCHED_AREA, &data(&mirrored_strokes));
+    let mirror = |[x, y]: &Point| [-x, *y];
+    let mirrored: Vec<Polygon> =
+        material.polygons.iter().map(|polygon| polygon.iter().map(mirror).collect()).collect();
+    sheet.path(HATCHED_AREA, &areas(&mirrored));
     // The shape is the right half, so its hatch lines are mirrored for the left half.
     let hatches = material.hatched(HATCH_STEP);
-    let mirrored = hatches.iter().map(|row| row.map(|[x, y]| [-x, y]));
-    sheet.path(HATCH, &lines(mirrored));
+    sheet.path(HATCH, &lines(hatches.iter().map(|[from, to]| [mirror(from), mirror(to)])));
 }
 
 /// Draws the area of a solid's section: regions, or hatched.
@@ -43,7 +43,7 @@ pub(super) fn whole(picture: &Picture<'_>, sheet: &mut Sheet) {
         Content::Regions => regions(picture, sheet),
         Content::Outline => {
             let material = material(picture);
-            sheet.path(HATCHED_AREA, &data(material.loops.iter().flatten()));
+            sheet.path(HATCHED_AREA, &areas(&material.polygons));
             sheet.path(HATCH, &lines(material.hatched(HATCH_STEP)));
         }
     }
@@ -51,7 +51,17 @@ pub(super) fn whole(picture: &Picture<'_>, sheet: &mut Sheet) {
 
 /// Returns the area of all regions.
 pub(super) fn material(picture: &Picture<'_>) -> Shape {
-    Shape::new(&picture.borders, &picture.view, |side| matches!(side, Side::Region(_)))
+    Shape::new(&picture.section.material, &picture.view)
+}
+
+/// Returns the path data of polygons.
+fn areas(polygons: &[Polygon]) -> String {
+    let mut data = String::new();
+    for polygon in polygons {
+        data.push_str(&lines([polygon]));
+        data.push('z');
+    }
+    data
 }
 
 /// Draws the regions' areas.
@@ -59,52 +69,40 @@ fn regions(picture: &Picture<'_>, sheet: &mut Sheet) {
     // A thin outline in the area's own colour hides the seams between areas.
     sheet.group("fill-rule=\"evenodd\" stroke-width=\".6\" opacity=\".62\"", |sheet| {
         for (shape, colour) in picture.shapes.iter().zip(&picture.fills) {
-            let all = data(shape.loops.iter().flatten());
-            sheet.path(&format!("fill=\"{colour}\" stroke=\"{colour}\""), &all);
+            let look = format!("fill=\"{colour}\" stroke=\"{colour}\"");
+            sheet.path(&look, &areas(&shape.polygons));
         }
     });
 }
 
 /// Draws the curves between regions as dashed lines. Returns whether there are any.
 pub(super) fn splits(picture: &Picture<'_>, sheet: &mut Sheet) -> bool {
-    let between: Vec<Stroke> = picture
-        .borders
-        .iter()
-        .filter(|border| matches!(border.sides, [Side::Region(_), Side::Region(_)]))
-        .flat_map(|border| border.strokes.iter().map(|stroke| picture.view.stroke(stroke)))
-        .collect();
+    let mut rows: Vec<Vec<Point>> = Vec::new();
+    for Split { line, .. } in &picture.section.splits {
+        rows.push(line.iter().map(|p| picture.view.to_sheet(*p)).collect());
+    }
     let look = "fill=\"none\" stroke=\"#3f4650\" stroke-width=\".9\" stroke-dasharray=\"5 3\"";
-    sheet.path(look, &data(&between));
-    !between.is_empty()
+    sheet.path(look, &lines(&rows));
+    !rows.is_empty()
 }
 
 /// Draws the surfaces, cutting surfaces on top. Those of a tool are drawn on both halves.
 pub(super) fn outline(picture: &Picture<'_>, both_halves: bool, sheet: &mut Sheet) {
-    let colours = surface_colours(picture.model);
+    let mut surfaces: Vec<(usize, &str)> =
+        surface_colours(picture.model).into_iter().enumerate().collect();
+    surfaces.sort_by_key(|(surface, _)| picture.model.surfaces[*surface].cutting);
     let look = "fill=\"none\" stroke-linecap=\"round\" stroke-linejoin=\"round\"";
     sheet.group(look, |sheet| {
-        for cutting in [false, true] {
-            for (index, surface) in picture.model.surfaces.iter().enumerate() {
-                if surface.cutting != cutting {
-                    continue;
-                }
-                let mut strokes: Vec<Stroke> = picture
-                    .borders
-                    .iter()
-                    .filter(|border| is_outline(border))
-                    .filter(|border| {
-                        matches!(border.sides[0], Side::Region(r) if picture.surface(r) == index)
-                    })
-                    .flat_map(|border| border.strokes.iter().map(|s| picture.view.stroke(s)))
-                    .collect();
-                if both_halves {
-                    let mirrored_strokes: Vec<Stroke> = strokes.iter().map(mirrored).collect();
-                    strokes.extend(mirrored_strokes);
-                }
-                let (colour, wide) = (colours[index], if cutting { 3.0 } else { 2.0 });
-                sheet
-                    .path(&format!("stroke=\"{colour}\" stroke-width=\"{wide}\""), &data(&strokes));
+        for (surface, colour) in surfaces {
+            let mut strokes: Vec<Stroke> = Vec::new();
+            for edge in picture.section.edges.iter().filter(|edge| edge.surface == surface) {
+                strokes.extend(edge.strokes.iter().map(|stroke| picture.view.stroke(stroke)));
             }
+            if both_halves {
+                strokes.extend(strokes.clone().into_iter().map(Stroke::mirrored));
+            }
+            let wide = if picture.model.surfaces[surface].cutting { 3.0 } else { 2.0 };
+            sheet.path(&format!("stroke=\"{colour}\" stroke-width=\"{wide}\""), &data(&strokes));
         }
     });
 }
@@ -162,24 +160,22 @@ const NON_CUTTING_STROKES: [&str; 8] =
     ["#1f2933", "#1d5fa8", "#6b4a1f", "#2f6f4f", "#6d4aa5", "#0e8a93", "#8a7a00", "#7f8794"];
 
 /// Returns a colour for each region, different for neighbours as far as the palette allows.
-pub(super) fn area_colours(regions: usize, borders: &[Border]) -> Vec<&'static str> {
+pub(super) fn area_colours(regions: usize, splits: &[Split]) -> Vec<&'static str> {
     let mut chosen: Vec<usize> = Vec::new();
     let mut used = [0; REGION_FILLS.len()];
     for region in 0..regions {
-        let neighbour_colours: Vec<usize> = borders
-            .iter()
-            .filter_map(|border| match border.sides {
-                [Side::Region(a), Side::Region(b)] if a == region => chosen.get(b).copied(),
-                [Side::Region(a), Side::Region(b)] if b == region => chosen.get(a).copied(),
-                _ => None,
-            })
-            .collect();
-        let colour = (0..REGION_FILLS.len())
-            .filter(|colour| !neighbour_colours.contains(colour))
-            // The least used colour, so that the palette is used evenly.
-            .min_by_key(|colour| used[*colour])
-            // Neighbours have all of them.
-            .unwrap_or(region % REGION_FILLS.len());
+        let mut is_near = [false; REGION_FILLS.len()];
+        for Split { regions: [a, b], .. } in splits {
+            let (first, last) = (a.min(b), a.max(b));
+            if *last == region && *first < region {
+                is_near[chosen[*first]] = true;
+            }
+        }
+        // The least used colour, so that the palette is used evenly.
+        let free = (0..REGION_FILLS.len()).filter(|colour| !is_near[*colour]);
+        let colour = free.min_by_key(|colour| used[*colour]);
+        // Neighbours may have all of them.
+        let colour = colour.unwrap_or(region % REGION_FILLS.len());
         used[colour] += 1;
         chosen.push(colour);
     }

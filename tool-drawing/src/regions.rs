@@ -1,6 +1,5 @@
 //! Draws the section of a tool about its axis; of regions, also names, directions and singular points.
 
-use super::borders::Side;
 use super::lettering::width;
 use super::shape::{Frame, Shape};
 use super::sheet::{Anchor, DEFAULT_COLOUR, Look, Sheet, lines};
@@ -195,14 +194,8 @@ fn singular(picture: &Picture<'_>, directions: &mut Directions<'_>) -> Vec<Point
 
 /// Returns whether directions next to the axis have a radial component.
 fn axis(picture: &Picture<'_>, directions: &mut Directions<'_>) -> bool {
-    picture.borders.iter().any(|border| {
-        let ([Side::Region(region), Side::Axis], Some(stroke)) =
-            (border.sides, border.strokes.first())
-        else {
-            return false;
-        };
-        let [_, z] = stroke.at(0.5);
-        let direction = directions.at(region, [1e-6 * picture.size, z]);
+    picture.section.axis.iter().any(|(region, [_, z])| {
+        let direction = directions.at(*region, [1e-6 * picture.size, *z]);
         // A direction toward a centre on the axis points along the axis, as seen from beside it.
         direction.is_some_and(|direction| direction[0].abs() > 1e-3)
     })

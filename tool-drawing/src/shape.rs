@@ -1,17 +1,13 @@
 //! A region on the sheet: its outline, point queries, and the position with most room.
 
-use super::borders::{Border, Side};
-use super::stroke::Stroke;
+use super::section::Polygon;
 use super::view::View;
-use touchoff_dsl::vector::{Point, dot, minus, norm};
+use touchoff_dsl::vector::{Point, cross, dot, minus, norm};
 
-/// The chord tolerance of the outline that distances are measured from, in sheet units.
-const CHORD_TOLERANCE: f64 = 0.3;
-
-/// An area of the sheet within closed loops of strokes.
+/// An area of the sheet within polygons.
 pub(super) struct Shape {
-    pub(super) loops: Vec<Vec<Stroke>>,
-    /// The outline as short line segments.
+    pub(super) polygons: Vec<Polygon>,
+    /// The sides of the polygons, and other lines that nothing may cross.
     lines: Vec<[Point; 2]>,
 }
 
@@ -19,38 +15,19 @@ pub(super) struct Shape {
 pub(super) type Frame = [Point; 2];
 
 impl Shape {
-    /// Returns the area bounded by those borders for which `inside` holds on exactly one side.
-    pub(super) fn new(borders: &[Border], view: &View, inside: impl Fn(Side) -> bool) -> Shape {
-        let mut rest: Vec<([usize; 2], Vec<Stroke>)> = Vec::new();
-        for border in borders {
-            let strokes = border.strokes.iter().map(|stroke| view.stroke(stroke));
-            match border.sides.map(&inside) {
-                [true, false] => rest.push((border.ends, strokes.collect())),
-                [false, true] => {
-                    let strokes = strokes.rev().map(Stroke::reversed).collect();
-                    rest.push(([border.ends[1], border.ends[0]], strokes));
-                }
-                _ => {}
+    /// Returns an area of a section on the sheet.
+    pub(super) fn new(polygons: &[Polygon], view: &View) -> Shape {
+        let mut shape = Shape { polygons: Vec::new(), lines: Vec::new() };
+        for polygon in polygons {
+            let polygon: Polygon = polygon.iter().map(|p| view.to_sheet(*p)).collect();
+            let mut before = polygon[polygon.len() - 1];
+            for p in &polygon {
+                shape.lines.push([before, *p]);
+                before = *p;
             }
+            shape.polygons.push(polygon);
         }
-        rest.reverse();
-        let mut loops = Vec::new();
-        while let Some(([start, mut end], mut strokes)) = rest.pop() {
-            while end != start {
-                let Some(next) = rest.iter().rposition(|(ends, _)| ends[0] == end) else { break };
-                let (ends, more) = rest.remove(next);
-                end = ends[1];
-                strokes.extend(more);
-            }
-            loops.push(strokes);
-        }
-        let mut lines = Vec::new();
-        for row in &loops {
-            let points: Vec<Point> =
-                row.iter().flat_map(|stroke| stroke.points(CHORD_TOLERANCE)).collect();
-            lines.extend((0..points.len()).map(|k| [points[k], points[(k + 1) % points.len()]]));
-        }
-        Shape { loops, lines }
+        shape
     }
 
     /// Adds lines that nothing may cross, all of them horizontal.
@@ -60,13 +37,13 @@ impl Shape {
 
     /// Returns whether the shape is empty.
     pub(super) fn is_empty(&self) -> bool {
-        self.loops.is_empty()
+        self.polygons.is_empty()
     }
 
     /// Returns the bounding box.
     pub(super) fn frame(&self) -> Frame {
         let mut frame = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
-        for p in self.loops.iter().flatten().flat_map(|stroke| stroke.points(CHORD_TOLERANCE)) {
+        for p in self.polygons.iter().flatten() {
             for k in 0..2 {
                 frame[0][k] = frame[0][k].min(p[k]);
                 frame[1][k] = frame[1][k].max(p[k]);
@@ -77,15 +54,13 @@ impl Shape {
 
     /// Returns the area, in squared sheet units.
     pub(super) fn area(&self) -> f64 {
-        let rows = self.loops.iter().map(|row| {
-            let points: Vec<Point> =
-                row.iter().flat_map(|stroke| stroke.points(CHORD_TOLERANCE)).collect();
-            let next = |k: usize| points[(k + 1) % points.len()];
-            (0..points.len())
-                .map(|k| points[k][0] * next(k)[1] - points[k][1] * next(k)[0])
-                .sum::<f64>()
-        });
-        rows.sum::<f64>().abs() / 2.0
+        let mut twice = 0.0;
+        for polygon in &self.polygons {
+            for k in 0..polygon.len() {
+                twice += cross(polygon[k], polygon[(k + 1) % polygon.len()]);
+            }
+        }
+        twice.abs() / 2.0
     }
 
     /// Returns the signed distance of a point from the outline, positive inside. Horizontal distances are multiplied by

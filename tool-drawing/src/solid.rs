@@ -3,14 +3,14 @@
 //! They are arranged in third-angle projection: the view from the front (from −y), to its right the view from the right
 //! (from +x), and above it the view from above (from +z).
 
-use super::borders::Border;
-use super::curves::{Curves, Plane};
+use super::curves::Plane;
 use super::legend::{self, Entry, Sign};
 use super::notes::tidy;
 use super::regions::{head, name};
+use super::section::Section;
 use super::sheet::{Anchor, Look, SECONDARY_COLOUR, Sheet, lines};
-use super::view::{View, is_outline};
-use super::{Content, Picture, Traced, paint, trace};
+use super::view::View;
+use super::{Content, Picture, paint};
 use touchoff_dsl::CheckedTool;
 use touchoff_dsl::expr::interval::Interval;
 use touchoff_dsl::vector::Point;
@@ -50,7 +50,7 @@ pub(super) fn draw(tool: &CheckedTool, content: Content, sheet: &mut Sheet) {
 }
 
 /// The section in the plane perpendicular to an axis at a coordinate.
-pub(super) struct Section<'m> {
+pub(super) struct SectionView<'m> {
     normal: usize,
     pub(super) at: f64,
     pub(super) picture: Picture<'m>,
@@ -60,46 +60,45 @@ pub(super) struct Section<'m> {
 type Dimension = (usize, [f64; 2]);
 
 /// Returns the three sections through the middle, in the order of `NORMALS` and to one scale.
-pub(super) fn sections<'m>(tool: &'m CheckedTool, content: Content) -> [Section<'m>; 3] {
+pub(super) fn sections<'m>(tool: &'m CheckedTool, content: Content) -> [SectionView<'m>; 3] {
     let proved = tool.extent.cell().sides;
-    // Proved extents may be a few percent too wide, so the middle is that of the sections through their middle.
-    let rough = traced(tool, proved.map(Interval::middle));
     let size = proved.iter().map(|side| side.high - side.low).fold(0.0, f64::max);
-    let middle = extents(&rough, proved).map(|side| match side.middle() {
-        middle if middle.abs() < 1e-6 * size => 0.0,
-        middle => middle,
-    });
-    let sections = traced(tool, middle);
+    // Proved extents may be a few percent too wide, so the middle is that of the sections through their middle.
+    let rough = planes(tool, proved.map(Interval::middle));
+    let mut middle = extents(&rough, proved).map(Interval::middle);
+    for coordinate in &mut middle {
+        if coordinate.abs() < 1e-6 * size {
+            *coordinate = 0.0;
+        }
+    }
+    let sections = planes(tool, middle);
     let sides = extents(&sections, proved);
     let [x, y, z] = sides.map(|side| side.high - side.low);
     let scale = MAX_EXTENT / (x + y).max(z + y);
     let fills = paint::distinct_area_colours(tool.model.regions.len());
     let [front, side, top] = sections;
-    [(1, front), (0, side), (2, top)].map(|(normal, traced)| {
+    [(1, front), (0, side), (2, top)].map(|(normal, section)| {
         let [u, v] = axes(normal).map(|axis| sides[axis]);
         let view = View::framed([[u.low, v.low], [u.high, v.high]], scale);
-        let picture = Picture::of(&tool.model, content, traced, view, fills.clone());
-        Section { normal, at: middle[normal], picture }
+        let picture = Picture::of(&tool.model, content, section, size, view, fills.clone());
+        SectionView { normal, at: middle[normal], picture }
     })
 }
 
-/// Returns the borders in the planes at these coordinates along x, y and z, in the order of `NORMALS`.
-fn traced(tool: &CheckedTool, at: [f64; 3]) -> [Traced; 3] {
+/// Returns the sections in the planes at these coordinates along x, y and z, in the order of `NORMALS`.
+fn planes(tool: &CheckedTool, at: [f64; 3]) -> [Section; 3] {
     let sides = tool.extent.cell().sides;
     let [x, y, z] = sides.map(|side| side.high - side.low);
-    let size = x.max(y).max(z);
     let unit = (x + y).max(z + y) / (1.1 * MAX_EXTENT);
     NORMALS.map(|normal| {
-        let plane = Plane::Across { axis: normal, at: at[normal] };
-        let mut curves = Curves::new(&tool.model, &tool.extent, plane);
-        // Odd shares, so that no side of a cell runs along a curve.
+        // Odd shares, so that no side of the lattice runs along a curve.
         let [low, high] = [(0, -0.0213), (1, 0.0197)].map(|(end, share)| {
             axes(normal).map(|axis| {
                 let side = sides[axis];
                 [side.low, side.high][end] + share * (side.high - side.low)
             })
         });
-        trace(&mut curves, tool, [low, high], [unit, size])
+        Section::new(tool, Plane::Across { axis: normal, at: at[normal] }, [low, high], unit)
     })
 }
 
@@ -109,10 +108,10 @@ fn axes(normal: usize) -> [usize; 2] {
 }
 
 /// Returns the box around three sections; `proved` where there is none.
-fn extents(sections: &[Traced; 3], proved: [Interval; 3]) -> [Interval; 3] {
+fn extents(sections: &[Section; 3], proved: [Interval; 3]) -> [Interval; 3] {
     let mut sides: [Option<Interval>; 3] = [None; 3];
-    for (normal, traced) in NORMALS.into_iter().zip(sections) {
-        let Some(bounds) = bounds(&traced.borders) else { continue };
+    for (normal, section) in NORMALS.into_iter().zip(sections) {
+        let Some(bounds) = bounds(section) else { continue };
         for (axis, side) in axes(normal).into_iter().zip(bounds) {
             sides[axis] = Some(sides[axis].map_or(side, |known| known.hull(side)));
         }
@@ -121,17 +120,16 @@ fn extents(sections: &[Traced; 3], proved: [Interval; 3]) -> [Interval; 3] {
 }
 
 /// Returns the extent of a section along its two coordinates, unless it is empty.
-fn bounds(borders: &[Border]) -> Option<[Interval; 2]> {
-    let outline = borders.iter().filter(|border| is_outline(border));
-    outline
-        .flat_map(|border| &border.strokes)
+fn bounds(section: &Section) -> Option<[Interval; 2]> {
+    let strokes = section.surface();
+    strokes
         .map(|stroke| [stroke.breadth(), stroke.span()].map(|[low, high]| Interval::new(low, high)))
         .reduce(|[a, b], [c, d]| [a.hull(c), b.hull(d)])
 }
 
-impl Section<'_> {
+impl SectionView<'_> {
     /// Draws areas, surfaces and the names of regions, and beside them the ends of the other sections' planes.
-    fn draw(&self, all: &[Section<'_>; 3], sheet: &mut Sheet) {
+    fn draw(&self, all: &[SectionView<'_>; 3], sheet: &mut Sheet) {
         let picture = &self.picture;
         let view = &picture.view;
         paint::whole(picture, sheet);
@@ -169,8 +167,8 @@ impl Section<'_> {
 
     /// Draws the dimensions of the section except those that are `known` from other views.
     fn draw_dimensions(&self, known: &mut Vec<Dimension>, sheet: &mut Sheet) {
-        let Picture { borders, size, .. } = &self.picture;
-        let Some(bounds) = bounds(borders) else { return };
+        let Picture { section, size, .. } = &self.picture;
+        let Some(bounds) = bounds(section) else { return };
         for (k, (axis, side)) in axes(self.normal).into_iter().zip(bounds).enumerate() {
             let ends = [side.low, side.high];
             let is_known = known.iter().any(|(other, known)| {
@@ -198,13 +196,9 @@ impl Section<'_> {
     /// Draws a dimension line between two coordinates of the sheet, below the section if they are horizontal, otherwise
     /// on the left, and lines that extend to it from the contour. Returns the line's other coordinate.
     fn draw_dimension_line(&self, k: usize, ends: [f64; 2], sheet: &mut Sheet) -> f64 {
-        let Picture { borders, view, .. } = &self.picture;
-        let contour: Vec<Point> = borders
-            .iter()
-            .filter(|border| is_outline(border))
-            .flat_map(|border| &border.strokes)
-            .flat_map(|stroke| view.stroke(stroke).points(0.05))
-            .collect();
+        let Picture { section, view, .. } = &self.picture;
+        let strokes = section.surface().map(|stroke| view.stroke(stroke));
+        let contour: Vec<Point> = strokes.flat_map(|stroke| stroke.points(0.05)).collect();
         let line = [DIMENSION_DISTANCE, -view.half - DIMENSION_DISTANCE][k];
         let outward = line.signum();
         let point =
@@ -240,8 +234,8 @@ impl Section<'_> {
 }
 
 /// Returns the legend's entries of the regions that appear in a section.
-fn regions(sections: &[Section<'_>; 3]) -> Vec<Entry> {
-    let [Section { picture, .. }, ..] = sections;
+fn regions(sections: &[SectionView<'_>; 3]) -> Vec<Entry> {
+    let [SectionView { picture, .. }, ..] = sections;
     (0..picture.shapes.len())
         .filter(|region| sections.iter().any(|s| !s.picture.shapes[*region].is_empty()))
         .map(|region| {

@@ -1,7 +1,7 @@
 //! The map from a section to the sheet. On the sheet the axis is x = 0, the lowest point is at y = 0, and the spindle
 //! is above. Long plain cylinders are shortened, as in technical drawings, so that thin tools stay readable.
 
-use super::borders::{Border, Side};
+use super::section::{Section, Split};
 use super::stroke::Stroke;
 use touchoff_dsl::vector::Point;
 
@@ -32,31 +32,25 @@ pub(super) struct View {
 
 impl View {
     /// Returns the view of a tool's section, as large as fits in a width and a height of the sheet.
-    pub(super) fn new(borders: &[Border], [wide, tall]: [f64; 2]) -> View {
-        let strokes = || borders.iter().flat_map(|border| &border.strokes);
-        let radius = strokes().map(Stroke::widest).fold(0.0, f64::max);
-        let mut levels: Vec<f64> = strokes().flat_map(Stroke::span).collect();
+    pub(super) fn new(section: &Section, [wide, tall]: [f64; 2]) -> View {
+        let radius = section.surface().map(Stroke::widest).fold(0.0, f64::max);
+        let lines = level_lines(section, 1e-6 * radius);
+        let mut levels: Vec<f64> = lines.iter().flat_map(|line| line.span).collect();
         levels.sort_by(f64::total_cmp);
-        let (low, high) = match (levels.first(), levels.last()) {
-            (Some(low), Some(high)) => (*low, *high),
-            _ => (0.0, 0.0),
-        };
-        let length = high - low;
+        let low = levels.first().copied().unwrap_or(0.0);
+        let length = levels.last().copied().unwrap_or(0.0) - low;
         // Levels that differ by rounding are one.
         levels.dedup_by(|a, b| *a - *b < 1e-6 * length);
-        let plain: Vec<[f64; 2]> = levels
-            .windows(2)
-            .map(|pair| [pair[0], pair[1]])
-            .filter(|[a, b]| {
-                let middle = a / 2.0 + b / 2.0;
-                strokes()
-                    .filter(|stroke| (stroke.span()[0]..stroke.span()[1]).contains(&middle))
-                    .all(|stroke| {
-                        let aside = (stroke.from[0] - stroke.to[0]).abs();
-                        stroke.circle.is_none() && aside < 1e-6 * radius
-                    })
-            })
-            .collect();
+        let mut plain = Vec::new();
+        for pair in levels.windows(2) {
+            let middle = f64::midpoint(pair[0], pair[1]);
+            let is_bent = |line: &LevelLine| {
+                !line.is_upright && (line.span[0]..line.span[1]).contains(&middle)
+            };
+            if !lines.iter().any(is_bent) {
+                plain.push([pair[0], pair[1]]);
+            }
+        }
         let cuts = cuts(&plain, length, 2.0 * radius);
         let remaining = length - cuts.iter().map(|cut| cut.high - cut.low).sum::<f64>();
         let scale = (wide / (2.0 * radius)).min(tall / remaining);
@@ -109,6 +103,30 @@ impl View {
     }
 }
 
+/// The heights between which a line of a section runs, and whether it is upright.
+struct LevelLine {
+    span: [f64; 2],
+    is_upright: bool,
+}
+
+/// Returns the heights of a section's lines, of which those are upright that lean by less than `near`.
+fn level_lines(section: &Section, near: f64) -> Vec<LevelLine> {
+    let mut lines = Vec::new();
+    for stroke in section.surface() {
+        let [left, right] = stroke.breadth();
+        lines.push(LevelLine { span: stroke.span(), is_upright: right - left < near });
+    }
+    for Split { line, .. } in &section.splits {
+        let mut ends = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
+        for p in line {
+            ends = [[0, 1].map(|k| ends[0][k].min(p[k])), [0, 1].map(|k| ends[1][k].max(p[k]))];
+        }
+        let [low, high] = ends;
+        lines.push(LevelLine { span: [low[1], high[1]], is_upright: high[0] - low[0] < near });
+    }
+    lines
+}
+
 /// Returns the intervals to leave out of the plain cylinders, so that the whole is about `MAX_ASPECT_RATIO` widths long.
 fn cuts(plain: &[[f64; 2]], length: f64, width: f64) -> Vec<Cut> {
     let target_length = MAX_ASPECT_RATIO * width;
@@ -128,19 +146,4 @@ fn cuts(plain: &[[f64; 2]], length: f64, width: f64) -> Vec<Cut> {
         .filter(|[a, b]| b - a > 1.5 * least)
         .map(|[a, b]| Cut { low: a + least / 2.0, high: b - least / 2.0 })
         .collect()
-}
-
-/// Returns the mirror image of a stroke.
-pub(super) fn mirrored(stroke: &Stroke) -> Stroke {
-    let Stroke { from, to, circle } = *stroke;
-    Stroke {
-        from: [-from[0], from[1]],
-        to: [-to[0], to[1]],
-        circle: circle.map(|([x, y], radius)| ([-x, y], radius)),
-    }
-}
-
-/// Returns whether a border is part of the tool's surface.
-pub(super) fn is_outline(border: &Border) -> bool {
-    border.sides[1] == Side::Outside
 }

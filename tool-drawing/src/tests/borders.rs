@@ -1,8 +1,8 @@
 //! Borders of regions and of surfaces.
 
 use super::{library, tool, whole};
-use crate::borders::{Border, Side};
-use crate::{Picture, view};
+use crate::{Picture, paint};
+use touchoff_dsl::expr::value::{EvaluationPoint, Evaluator};
 
 /// The areas of the regions of the exact fig. 7.3 have closed forms.
 #[test]
@@ -25,22 +25,16 @@ fn regions_have_their_areas() {
     }
 }
 
-/// Asserts that at every joint as many borders of a region end as begin.
+/// Asserts that the regions' areas add up to that of the section, and that none is missing.
 fn closed(picture: &Picture<'_>) {
-    for region in 0..picture.model.regions.len() {
-        let mut open = std::collections::BTreeMap::new();
-        for border in &picture.borders {
-            for (k, sign) in [(0, 1), (1, -1)] {
-                if border.sides[k] == Side::Region(region) {
-                    *open.entry(border.ends[0]).or_insert(0) += sign;
-                    *open.entry(border.ends[1]).or_insert(0) -= sign;
-                }
-            }
-        }
-        let name = &picture.model.regions[region].name;
-        assert!(open.values().all(|count| *count == 0), "{name} is open: {open:?}");
-        assert!(!picture.shapes[region].is_empty(), "{name} is nowhere");
+    let mut sum = 0.0;
+    for (region, shape) in picture.model.regions.iter().zip(&picture.shapes) {
+        assert!(!shape.is_empty(), "{} is nowhere", region.name);
+        sum += shape.area();
     }
+    let whole = paint::material(picture).area();
+    let name = &picture.model.name;
+    assert!((sum - whole).abs() < 1e-3 * whole, "{name}: {sum}, not {whole}");
 }
 
 /// The regions of all these tools meet without a gap, whatever curves bound them.
@@ -67,6 +61,52 @@ fn regions_are_closed() {
     }
 }
 
+/// Points within a region's area belong to it by the plan, whether the area is computed or traced.
+#[test]
+fn areas_belong_to_the_owners_of_their_points() {
+    let smooth = tool(
+        "tool T { units mm; profile { start (0, 0); line to (4, 0), (4, 20), (9, 20), (9, 32), (0, 32) as a; }
+         regions smooth 0.5; }",
+    );
+    let names = [
+        "ball_er16",
+        "bull_nose",
+        "fig_7_3",
+        "half_sphere_cylinder",
+        "lens",
+        "oval",
+        "t_slot",
+        "thread_mill",
+    ];
+    let tools: Vec<_> = names.into_iter().map(library).chain([smooth]).collect();
+    for tool in &tools {
+        let picture = whole(tool);
+        let values = tool.model.curves.iter().map(|curve| curve.value);
+        let mut evaluator = Evaluator::new(&tool.model.graph, values);
+        for i in 0..60 {
+            for j in 0..200 {
+                let at = [
+                    (f64::from(i) + 0.5) / 60.0 * picture.view.half,
+                    -f64::from(j) / 200.0 * picture.view.height,
+                ];
+                let [d, z] = picture.view.point(at);
+                evaluator.evaluate(EvaluationPoint::on_meridian(d, z));
+                let owner =
+                    tool.tree.owner_at(&|curve| evaluator.get(tool.model.curves[curve].value));
+                for (region, shape) in picture.shapes.iter().enumerate() {
+                    // Break lines are lines of a shape, too.
+                    let clearance = if shape.is_empty() { -1.0 } else { shape.clearance(at, 1.0) };
+                    let (name, own) = (&tool.model.name, owner == Some(region));
+                    assert!(
+                        clearance.abs() < 0.3 || own == (clearance > 0.0),
+                        "{name}: {region} at {d}, {z}: {clearance}"
+                    );
+                }
+            }
+        }
+    }
+}
+
 /// The surface is connected: from the axis, from joint to joint, back to the axis.
 #[test]
 fn a_drawn_profile_matches_its_outline() {
@@ -83,10 +123,7 @@ fn a_drawn_profile_matches_its_outline() {
     }"#;
     let tool = tool(text);
     let picture = whole(&tool);
-    let outline: Vec<&Border> =
-        picture.borders.iter().filter(|border| view::is_outline(border)).collect();
-    let mut points: Vec<[f64; 2]> =
-        outline.iter().flat_map(|border| &border.strokes).map(|stroke| stroke.from).collect();
+    let mut points: Vec<[f64; 2]> = picture.section.surface().map(|stroke| stroke.from).collect();
     points.sort_by(|a, b| a[1].total_cmp(&b[1]).then(a[0].total_cmp(&b[0])));
     let expected = [
         [0.0, 0.0],
@@ -104,12 +141,8 @@ fn a_drawn_profile_matches_its_outline() {
         let distance = (point[0] - expected[0]).hypot(point[1] - expected[1]);
         assert!(distance < 1e-9, "{point:?}, not {expected:?}");
     }
-    let arcs: Vec<f64> = outline
-        .iter()
-        .filter(|border| border.exact)
-        .flat_map(|border| &border.strokes)
-        .filter_map(|stroke| stroke.circle.map(|(_, radius)| radius))
-        .collect();
+    let arcs = picture.section.surface().filter_map(|stroke| stroke.circle);
+    let arcs: Vec<f64> = arcs.map(|(_, radius)| radius).collect();
     assert_eq!(arcs.len(), 2);
     assert!(arcs.iter().all(|r| (r - 1.0).abs() < 1e-9 || (r - 2.0).abs() < 1e-9), "{arcs:?}");
 }

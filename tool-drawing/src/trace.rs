@@ -1,0 +1,419 @@
+//! Traces the borders of regions by hand on a lattice over the section.
+//!
+//! The plan's tree has the owner of each lattice point. A side of a lattice cell whose ends have different owners is crossed
+//! by a border, and bisection has the point and the curve. The crossings of a cell are linked if they continue one curve
+//! between the same owners. Otherwise they meet in a joint, at the intersection of their curves.
+
+use super::curves::Curves;
+use super::section::{Polygon, simplified};
+use super::stroke::{Stroke, circle};
+use std::collections::HashMap;
+use std::f64::consts::PI;
+use touchoff_dsl::formula::{CurveIndex, NEGATIVE, ZERO};
+use touchoff_dsl::plan::Tree;
+use touchoff_dsl::vector::{Point, minus, norm};
+
+/// The side of a lattice cell, in units of the sheet.
+const CELL: f64 = 0.5;
+/// The greatest number of lattice cells along a side of the window, since a needle is long for its width.
+const MAX_CELLS: f64 = 4_000.0;
+/// Points are on a circle within this distance, relative to its radius.
+const ROUND_FRACTION: f64 = 1e-9;
+/// The greatest distance of chords from a curve that is no line, in cells.
+const FLATNESS: f64 = 0.1;
+
+/// The area on one side of a border.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Side {
+    /// A region, by its index.
+    Region(usize),
+    /// Outside the tool.
+    Outside,
+    /// The mirror image, across the axis.
+    Axis,
+}
+
+/// A line with the same owners on both sides all along.
+#[derive(Clone, Debug)]
+pub(super) struct Border {
+    /// The areas on its left and its right. A region is on the left; of two regions, the one listed first.
+    pub(super) sides: [Side; 2],
+    /// The joints at its ends; a closed line has one of its own.
+    ends: [usize; 2],
+    /// Its points, ends included.
+    pub(super) line: Vec<Point>,
+    /// The same as lines and arcs; none if its ends coincide.
+    pub(super) strokes: Vec<Stroke>,
+    /// True if these are exact, and not chords.
+    pub(super) exact: bool,
+}
+
+/// The point where a border crosses a side of the lattice.
+struct Crossing {
+    at: Point,
+    /// The owners at the side's ends, the lower or left one first.
+    sides: [Side; 2],
+    /// True if the side is upright.
+    upright: bool,
+    /// The curve that is crossed; `None` for the axis.
+    curve: Option<CurveIndex>,
+    /// The next point in the cell below or left of the side, and in the other one.
+    next: [Option<Next>; 2],
+}
+
+/// The point to which a crossing is linked.
+#[derive(Clone, Copy, PartialEq)]
+enum Next {
+    Crossing(usize),
+    Joint(usize),
+}
+
+/// A side of the lattice: its lower or left end, and whether it is upright.
+type LatticeSide = ([i64; 2], bool);
+
+struct Tracer<'c, 'm, 't> {
+    curves: &'c mut Curves<'m>,
+    tree: &'t Tree,
+    low: Point,
+    step: Point,
+    owners: HashMap<[i64; 2], Side>,
+    known: HashMap<LatticeSide, Option<usize>>,
+    crossings: Vec<Crossing>,
+    joints: Vec<Point>,
+}
+
+/// Traces the borders in a window around a section. `unit` is a lower bound on one unit of the sheet.
+pub(super) fn trace(
+    curves: &mut Curves<'_>,
+    tree: &Tree,
+    [low, high]: [Point; 2],
+    unit: f64,
+) -> Vec<Border> {
+    let step = [0, 1].map(|k| (CELL * unit).max((high[k] - low[k]) / MAX_CELLS));
+    let mut low = low;
+    // The axis runs through the middle of cells, so that it is traced like a border.
+    if curves.has_axis() {
+        low[0] = -0.5 * step[0];
+    }
+    let (owners, known) = (HashMap::new(), HashMap::new());
+    let (crossings, joints) = (Vec::new(), Vec::new());
+    let mut tracer = Tracer { curves, tree, low, step, owners, known, crossings, joints };
+    let counts = [0, 1].map(|k| ((high[k] - low[k]) / step[k]).ceil() as i64);
+    let side = (counts[0].max(counts[1]) as u64).next_power_of_two() as i64;
+    let mut cells = Vec::new();
+    tracer.find_cells([0, 0], side, counts, tree, &mut cells);
+    for cell in cells {
+        tracer.link(cell);
+    }
+    tracer.borders()
+}
+
+impl Tracer<'_, '_, '_> {
+    /// Returns a point of the lattice.
+    fn at(&self, [i, j]: [i64; 2]) -> Point {
+        [self.low[0] + i as f64 * self.step[0], self.low[1] + j as f64 * self.step[1]]
+    }
+
+    /// Finds the cells of the lattice in a square of it that may have several owners.
+    fn find_cells(
+        &mut self,
+        corner @ [i, j]: [i64; 2],
+        side: i64,
+        counts: [i64; 2],
+        tree: &Tree,
+        cells: &mut Vec<[i64; 2]>,
+    ) {
+        if i >= counts[0] || j >= counts[1] {
+            return;
+        }
+        let [mut low, high] = [corner, [i + side, j + side]].map(|corner| self.at(corner));
+        let has_axis = self.curves.has_axis() && low[0] < 0.0;
+        if has_axis {
+            low[0] = 0.0;
+        }
+        let tree = self.pruned(tree, low, high);
+        if matches!(tree, Tree::Leaf(owner) if owner.is_none() || !has_axis) {
+            return;
+        }
+        if side == 1 {
+            return cells.push(corner);
+        }
+        let half = side / 2;
+        for [right, up] in [[0, 0], [1, 0], [0, 1], [1, 1]] {
+            self.find_cells([i + right * half, j + up * half], half, counts, &tree, cells);
+        }
+    }
+
+    /// Returns the part of a tree that is open in a box.
+    fn pruned(&mut self, tree: &Tree, low: Point, high: Point) -> Tree {
+        let Tree::Split { curve, strict, below, above } = tree else { return tree.clone() };
+        let signs = self.curves.signs(*curve, low, high);
+        let side = if *strict { NEGATIVE } else { NEGATIVE | ZERO };
+        if signs & !side == 0 {
+            return self.pruned(below, low, high);
+        }
+        if signs & side == 0 {
+            return self.pruned(above, low, high);
+        }
+        let (below, above) = (self.pruned(below, low, high), self.pruned(above, low, high));
+        // The curve separates owners elsewhere only.
+        if below == above {
+            return below;
+        }
+        let (below, above) = (Box::new(below), Box::new(above));
+        Tree::Split { curve: *curve, strict: *strict, below, above }
+    }
+
+    /// Returns the owner of a point.
+    fn owner(&mut self, p: Point) -> Side {
+        if self.curves.has_axis() && p[0] < 0.0 {
+            return Side::Axis;
+        }
+        let mut tree = self.tree;
+        loop {
+            match tree {
+                Tree::Leaf(None) => return Side::Outside,
+                Tree::Leaf(Some(region)) => return Side::Region(*region),
+                Tree::Split { curve, strict, below, above } => {
+                    tree = if self.curves.holds(*curve, *strict, p) { below } else { above };
+                }
+            }
+        }
+    }
+
+    /// Returns the curve of the first test whose result differs at two points.
+    fn curve_between(&mut self, p: Point, q: Point) -> Option<CurveIndex> {
+        let mut tree = self.tree;
+        while let Tree::Split { curve, strict, below, above } = tree {
+            let holds = self.curves.holds(*curve, *strict, p);
+            if holds != self.curves.holds(*curve, *strict, q) {
+                return Some(*curve);
+            }
+            tree = if holds { below } else { above };
+        }
+        None
+    }
+
+    fn lattice_owner(&mut self, corner: [i64; 2]) -> Side {
+        if let Some(owner) = self.owners.get(&corner) {
+            return *owner;
+        }
+        let owner = self.owner(self.at(corner));
+        self.owners.insert(corner, owner);
+        owner
+    }
+
+    /// Returns the crossing of a side of the lattice, if its ends have different owners.
+    fn crossing(&mut self, side @ ([i, j], upright): LatticeSide) -> Option<usize> {
+        if let Some(known) = self.known.get(&side) {
+            return *known;
+        }
+        let ends = [[i, j], if upright { [i, j + 1] } else { [i + 1, j] }];
+        let sides = ends.map(|end| self.lattice_owner(end));
+        let mut crossing = None;
+        if sides[0] != sides[1] {
+            let [mut p, mut q] = ends.map(|end| self.at(end));
+            for _ in 0..48 {
+                let middle = [0, 1].map(|k| f64::midpoint(p[k], q[k]));
+                if self.owner(middle) == sides[0] { p = middle } else { q = middle }
+            }
+            let is_axis = self.curves.has_axis() && p[0].min(q[0]) < 0.0;
+            let curve = if is_axis { None } else { self.curve_between(p, q) };
+            let at = if is_axis { [0.0, q[1]] } else { q };
+            self.crossings.push(Crossing { at, sides, upright, curve, next: [None; 2] });
+            crossing = Some(self.crossings.len() - 1);
+        }
+        self.known.insert(side, crossing);
+        crossing
+    }
+
+    /// Links the crossings of a cell with each other, or with a joint.
+    fn link(&mut self, [i, j]: [i64; 2]) {
+        let mut found: Vec<(usize, usize)> = Vec::new();
+        // Of each side, whether the cell is the one above or right of it.
+        let sides =
+            [([i, j], false, 1), ([i, j], true, 1), ([i, j + 1], false, 0), ([i + 1, j], true, 0)];
+        for (corner, upright, place) in sides {
+            found.extend(self.crossing((corner, upright)).map(|crossing| (crossing, place)));
+        }
+        if let [(a, place_a), (b, place_b)] = found[..] {
+            let [first, second] = [&self.crossings[a], &self.crossings[b]];
+            let is_same =
+                first.sides == second.sides || first.sides == [second.sides[1], second.sides[0]];
+            if is_same && first.curve == second.curve {
+                self.crossings[a].next[place_a] = Some(Next::Crossing(b));
+                self.crossings[b].next[place_b] = Some(Next::Crossing(a));
+                return;
+            }
+        }
+        if found.is_empty() {
+            return;
+        }
+        let at = self.joint(&found);
+        self.joints.push(at);
+        for (crossing, place) in found {
+            self.crossings[crossing].next[place] = Some(Next::Joint(self.joints.len() - 1));
+        }
+    }
+
+    /// Returns the intersection of the curves of a cell's crossings, of the two at the largest angle.
+    fn joint(&mut self, found: &[(usize, usize)]) -> Point {
+        let crossings: Vec<(Point, Option<CurveIndex>)> = found
+            .iter()
+            .map(|(index, _)| (self.crossings[*index].at, self.crossings[*index].curve))
+            .collect();
+        let count = crossings.len() as f64;
+        let middle = [0, 1].map(|k| crossings.iter().map(|(at, _)| at[k]).sum::<f64>() / count);
+        let reach = 2.0 * norm(self.step);
+        let (mut best, mut joint) = (0.0, middle);
+        for (k, (_, a)) in crossings.iter().enumerate() {
+            for (_, b) in &crossings[k + 1..] {
+                if a != b
+                    && let Some((sine, at)) = self.curves.meet([*a, *b], middle, reach)
+                    && sine > best + 1e-9
+                {
+                    (best, joint) = (sine, at);
+                }
+            }
+        }
+        joint
+    }
+
+    /// Returns the borders along linked crossings, those between joints first.
+    fn borders(&mut self) -> Vec<Border> {
+        let mut borders = Vec::new();
+        let mut taken = vec![false; self.crossings.len()];
+        for closed in [false, true] {
+            for start in 0..self.crossings.len() {
+                for place in [0, 1] {
+                    let begins =
+                        matches!(self.crossings[start].next[1 - place], Some(Next::Joint(_)));
+                    if taken[start] || begins == closed {
+                        continue;
+                    }
+                    if let Some((border, curve)) = self.border(start, place, &mut taken) {
+                        borders.push(self.shaped(border, curve));
+                    }
+                }
+            }
+        }
+        borders
+    }
+
+    /// Returns the border that begins at a crossing and goes on in one of its cells, if it is one of a region, and its curve.
+    fn border(
+        &self,
+        start: usize,
+        place: usize,
+        taken: &mut [bool],
+    ) -> Option<(Border, Option<CurveIndex>)> {
+        let Crossing { sides, upright, curve, next, .. } = self.crossings[start];
+        let mut line = Vec::new();
+        // A closed line has a number beyond those of joints.
+        let mut ends = [self.joints.len() + start; 2];
+        if let Some(Next::Joint(joint)) = next[1 - place] {
+            ends[0] = joint;
+            line.push(self.joints[joint]);
+        }
+        let (mut at, mut after) = (start, next[place]);
+        taken[start] = true;
+        line.push(self.crossings[start].at);
+        while let Some(Next::Crossing(index)) = after {
+            line.push(self.crossings[index].at);
+            if index == start {
+                break;
+            }
+            taken[index] = true;
+            let [below, above] = self.crossings[index].next;
+            after = if below == Some(Next::Crossing(at)) { above } else { below };
+            at = index;
+        }
+        if let Some(Next::Joint(joint)) = after {
+            ends[1] = joint;
+            line.push(self.joints[joint]);
+        }
+        // Upward through a level side, its left end is on the left; to the right through an upright one, its upper end is.
+        let is_first_left = (place == 1) != upright;
+        let mut sides = if is_first_left { sides } else { [sides[1], sides[0]] };
+        if sides[0] > sides[1] {
+            (sides, ends) = ([sides[1], sides[0]], [ends[1], ends[0]]);
+            line.reverse();
+        }
+        let border = Border { sides, ends, line, strokes: Vec::new(), exact: true };
+        matches!(sides[0], Side::Region(_)).then_some((border, curve))
+    }
+}
+
+impl Tracer<'_, '_, '_> {
+    /// Returns a border with its lines and arcs.
+    fn shaped(&mut self, mut border: Border, curve: Option<CurveIndex>) -> Border {
+        let cell = norm(self.step);
+        let line = &border.line;
+        let (first, last) = (line[0], line[line.len() - 1]);
+        // Joints of neighbouring cells may be one.
+        if line.len() == 3 && norm(minus(last, first)) < 1e-6 * cell {
+            border.line = vec![first, last];
+            return border;
+        }
+        let is_straight = curve.is_none_or(|curve| self.curves.is_straight(curve));
+        if is_straight && border.ends[0] != border.ends[1] {
+            border.line = vec![first, last];
+            border.strokes = vec![Stroke::line(first, last)];
+            return border;
+        }
+        let arcs = arcs(line);
+        border.line = simplified(line, FLATNESS * cell);
+        border.exact = arcs.is_some();
+        border.strokes = arcs.unwrap_or_else(|| {
+            border.line.windows(2).map(|pair| Stroke::line(pair[0], pair[1])).collect()
+        });
+        border
+    }
+}
+
+/// Returns the arcs of less than half a circle through points, if they are on one circle.
+fn arcs(line: &[Point]) -> Option<Vec<Stroke>> {
+    let last = line.len() - 1;
+    // The last point of a closed circle is the first.
+    let spread = if line[0] == line[last] { 3 } else { 2 };
+    let (centre, radius) = circle([line[0], line[last / spread], line[last * 2 / spread]])?;
+    let mut swept = 0.0;
+    for pair in line.windows(2) {
+        if (norm(minus(pair[1], centre)) - radius).abs() > ROUND_FRACTION * radius {
+            return None;
+        }
+        swept += Stroke { from: pair[0], to: pair[1], circle: Some((centre, radius)) }.turn().abs();
+    }
+    let parts = ((swept / (0.9 * PI)).ceil() as usize).clamp(1, last);
+    let mut arcs = Vec::new();
+    for k in 0..parts {
+        let [from, to] = [k, k + 1].map(|k| line[k * last / parts]);
+        arcs.push(Stroke { from, to, circle: Some((centre, radius)) });
+    }
+    Some(arcs)
+}
+
+/// Returns the area bounded by those borders for which `inside` holds on exactly one side, as polygons.
+pub(super) fn loops(borders: &[Border], inside: impl Fn(Side) -> bool) -> Vec<Polygon> {
+    let mut rest: Vec<([usize; 2], Vec<Point>)> = Vec::new();
+    for Border { sides, ends: [from, to], line, .. } in borders {
+        match sides.map(&inside) {
+            [true, false] => rest.push(([*from, *to], line.clone())),
+            [false, true] => rest.push(([*to, *from], line.iter().rev().copied().collect())),
+            _ => {}
+        }
+    }
+    rest.reverse();
+    let mut loops = Vec::new();
+    while let Some(([start, mut end], mut polygon)) = rest.pop() {
+        while end != start {
+            let Some(next) = rest.iter().rposition(|(ends, _)| ends[0] == end) else { break };
+            let ([_, after], line) = rest.remove(next);
+            end = after;
+            polygon.extend(line);
+        }
+        polygon.dedup();
+        loops.push(polygon);
+    }
+    loops
+}
