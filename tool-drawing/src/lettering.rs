@@ -2,23 +2,24 @@
 //! PNG.
 //!
 //! All strokes are one line wide. Capitals and digits are 14 units high, lower-case letters 10; descenders reach 4 units
-//! below the baseline. Each stroke has a start point and continues as relative SVG path data. The y axis points downward,
-//! and the baseline is at 0.
+//! below the baseline. The y axis points downward, and the baseline is at 0.
 
 use std::fmt::Write;
 
+/// The glyphs without diacritics, one per line: the characters, the width, and the strokes, each with its start point and
+/// relative SVG path data. Fields are separated by tabs.
+const ALPHABET: &str = include_str!("alphabet.txt");
+/// The width and the strokes of an unknown character.
+const UNKNOWN: (f64, &str) = (8.0, "0 0v-14h8v14z");
 /// The height of capitals, in units of the alphabet.
 const CAPITAL_HEIGHT: f64 = 14.0;
 /// The space between two letters, in units of the alphabet.
-const LETTER_SPACING: f32 = 3.4;
-
-/// The strokes drawn for an unknown character.
-const UNKNOWN_GLYPH: &[Stroke] = &[(0.0, 0.0, "v-14h8v14z")];
+const LETTER_SPACING: f64 = 3.4;
 
 /// Returns the width of a line of text whose capitals are `size` high.
 pub fn width(text: &str, size: f64) -> f64 {
-    let letters = text.chars().map(|letter| advance(letter) + LETTER_SPACING).sum::<f32>();
-    f64::from((letters - LETTER_SPACING).max(0.0)) * size / CAPITAL_HEIGHT
+    let letters = text.chars().map(|letter| glyph(letter).0 + LETTER_SPACING).sum::<f64>();
+    (letters - LETTER_SPACING).max(0.0) * scale(size)
 }
 
 /// Returns the path data of a line of text in units of the alphabet, from (0, 0) to the right.
@@ -26,19 +27,29 @@ pub fn strokes(text: &str) -> String {
     let mut data = String::new();
     let mut pen = 0.0;
     for letter in text.chars() {
-        let (base, mark) = marked(letter).unwrap_or((letter, &[]));
-        let strokes = glyph(base).map_or(UNKNOWN_GLYPH, |(_, strokes)| strokes);
-        let raised = if base.is_uppercase() { -4.0 } else { 0.0 };
-        // Writing to a `String` cannot fail.
-        for (x, y, rest) in strokes {
-            let _ = write!(data, "M{} {}{rest}", short(pen + x), short(*y));
+        let (advance, strokes) = glyph(letter);
+        write_strokes(&mut data, strokes, [pen, 0.0]);
+        if let Some((base, mark)) = marked(letter) {
+            let raised = if base.is_uppercase() { -4.0 } else { 0.0 };
+            write_strokes(&mut data, mark, [pen, raised]);
         }
-        for (x, y, rest) in mark {
-            let _ = write!(data, "M{} {}{rest}", short(pen + x), short(y + raised));
-        }
-        pen += advance(letter) + LETTER_SPACING;
+        pen += advance + LETTER_SPACING;
     }
     data
+}
+
+/// Appends the path data of strokes, moved by an offset.
+fn write_strokes(data: &mut String, strokes: &str, offset: [f64; 2]) {
+    for stroke in strokes.split('\t') {
+        let (start, path) = stroke.split_at(stroke.find(char::is_alphabetic).unwrap_or(0));
+        let Some((x, y)) = start.split_once(' ') else { continue };
+        let moved = |text: &str, by: f64| {
+            let value: f64 = text.parse().unwrap_or(0.0);
+            ((value + by) * 10.0).round() / 10.0
+        };
+        // Writing to a `String` cannot fail.
+        let _ = write!(data, "M{} {}{path}", moved(x, offset[0]), moved(y, offset[1]));
+    }
 }
 
 /// Returns the scale factor from units of the alphabet to text whose capitals are `size` high.
@@ -61,334 +72,35 @@ pub(super) fn wrapped(text: &str, size: f64, room: f64) -> Vec<String> {
     lines
 }
 
-fn advance(letter: char) -> f32 {
+/// Returns the width and the strokes of a character, without its diacritic.
+fn glyph(letter: char) -> (f64, &'static str) {
     let base = marked(letter).map_or(letter, |(base, _)| base);
-    glyph(base).map_or(8.0, |(width, _)| width)
-}
-
-fn short(value: f32) -> f32 {
-    (value * 10.0).round() / 10.0
-}
-
-/// The start point of a stroke, and its path data.
-type Stroke = (f32, f32, &'static str);
-
-/// A glyph: its width, and its strokes.
-type Glyph = (f32, &'static [Stroke]);
-
-const BOWL: &str = "c0-2.4-1.6-4-4-4s-4 1.6-4 4v2c0 2.4 1.6 4 4 4s4-1.6 4-4";
-const BELLY: &str = "c0-2.4 1.6-4 4-4s4 1.6 4 4v2c0 2.4-1.6 4-4 4s-4-1.6-4-4";
-const RING: &str = "c3 0 5 2 5 5v4c0 3-2 5-5 5s-5-2-5-5v-4c0-3 2-5 5-5z";
-
-/// Returns the glyph of a character without diacritic; `None` if the alphabet does not have it.
-fn glyph(letter: char) -> Option<Glyph> {
-    capital(letter).or_else(|| small(letter)).or_else(|| figure(letter)).or_else(|| sign(letter))
-}
-
-fn capital(letter: char) -> Option<Glyph> {
-    Some(match letter {
-        'A' => (10., &[(0., 0., "l5-14 5 14"), (1.8, -5., "h6.4")]),
-        'B' => (9., &[(0., 0., "v-14h5a3.5 3.5 0 0 1 0 7h-5m5 0a3.5 3.5 0 0 1 0 7h-5")]),
-        'C' => (9., &[(9., -11., "c-.6-2-2-3-4-3c-3 0-5 2-5 5v4c0 3 2 5 5 5c2 0 3.4-1 4-3")]),
-        'D' => (10., &[(0., 0., "v-14h4c3.5 0 6 2.5 6 6v2c0 3.5-2.5 6-6 6z")]),
-        'E' => (8., &[(8., 0., "h-8v-14h8"), (0., -7., "h6")]),
-        'F' => (8., &[(0., 0., "v-14h8"), (0., -7., "h6")]),
-        'G' => (10., &[(9., -11., "c-.6-2-2-3-4-3c-3 0-5 2-5 5v4c0 3 2 5 5 5s5-2 5-5v-2h-4")]),
-        'H' => (9., &[(0., 0., "v-14"), (9., 0., "v-14"), (0., -7., "h9")]),
-        'I' => (1., &[(0.5, 0., "v-14")]),
-        'J' => (6., &[(6., -14., "v10c0 2.5-1.2 4-3 4s-3-1.2-3-3.5")]),
-        'K' => (9., &[(0., 0., "v-14"), (9., -14., "l-9 9"), (3., -8., "l6 8")]),
-        'L' => (7., &[(0., -14., "v14h7")]),
-        'M' => (12., &[(0., 0., "v-14l6 9 6-9v14")]),
-        'N' => (9., &[(0., 0., "v-14l9 14v-14")]),
-        'O' => (10., &[(5., -14., RING)]),
-        'P' => (9., &[(0., 0., "v-14h5a4 4 0 0 1 0 8h-5")]),
-        'Q' => (10., &[(5., -14., RING), (6., -3., "l4 4")]),
-        'R' => (9., &[(0., 0., "v-14h5a4 4 0 0 1 0 8h-5"), (4., -6., "l5 6")]),
-        'S' => (
-            8.5,
-            &[(
-                8.,
-                -12.,
-                "c-1-1.4-2.2-2-4-2c-2.5 0-4 1.4-4 3.5c0 4.5 8.5 2.5 8.5 7c0 2.2-1.8 3.5-4.5 3.5\
-                 c-2 0-3.4-.7-4.5-2.2",
-            )],
-        ),
-        'T' => (10., &[(0., -14., "h10"), (5., -14., "v14")]),
-        'U' => (10., &[(0., -14., "v9c0 3 2 5 5 5s5-2 5-5v-9")]),
-        'V' => (10., &[(0., -14., "l5 14 5-14")]),
-        'W' => (14., &[(0., -14., "l3.5 14 3.5-12 3.5 12 3.5-14")]),
-        'X' => (9., &[(0., -14., "l9 14"), (9., -14., "l-9 14")]),
-        'Y' => (10., &[(0., -14., "l5 7v7m0-7l5-7")]),
-        'Z' => (9., &[(0., -14., "h9l-9 14h9")]),
-        _ => return None,
-    })
-}
-
-fn small(letter: char) -> Option<Glyph> {
-    Some(match letter {
-        'a' => (8., &[(8., -10., "v10"), (8., -6., BOWL)]),
-        'b' => (8., &[(0., -14., "v14"), (0., -6., BELLY)]),
-        'c' => (
-            7.5,
-            &[(
-                7.5,
-                -8.,
-                "c-.7-1.3-2-2-3.5-2c-2.4 0-4 1.8-4 4v2c0 2.2 1.6 4 4 4c1.5 0 2.8-.7 3.5-2",
-            )],
-        ),
-        'd' => (8., &[(8., -14., "v14"), (8., -6., BOWL)]),
-        'e' => (
-            8.,
-            &[(0., -5., "h8v-1c0-2.4-1.6-4-4-4s-4 1.6-4 4v2c0 2.4 1.6 4 4 4c1.7 0 3-.7 3.7-2")],
-        ),
-        'f' => (5.5, &[(6., -14., "c-2.4-.4-4 .6-4 3v11"), (0., -10., "h5")]),
-        'g' => {
-            (8., &[(8., -10., "v10.5c0 2.2-1.5 3.5-4 3.5c-1.6 0-2.8-.5-3.6-1.6"), (8., -6., BOWL)])
+    for line in ALPHABET.lines() {
+        let mut fields = line.splitn(3, '\t');
+        if fields.next().is_some_and(|letters| letters.contains(base)) {
+            let width = fields.next().and_then(|width| width.parse().ok());
+            return (width.unwrap_or(UNKNOWN.0), fields.next().unwrap_or(""));
         }
-        'h' => (7.5, &[(0., -14., "v14"), (0., -6., "c0-2.4 1.5-4 3.8-4s3.7 1.5 3.7 4v6")]),
-        'i' => (1., &[(0.5, -10., "v10"), (0.5, -13.5, "v-.5")]),
-        'ı' => (1., &[(0.5, -10., "v10")]),
-        'j' => (2.5, &[(2., -10., "v11.5c0 1.6-.8 2.5-2.4 2.5"), (2., -13.5, "v-.5")]),
-        'k' => (7., &[(0., -14., "v14"), (7., -10., "l-7 6.5"), (3., -6., "l4.5 6")]),
-        'l' => (2.5, &[(0.5, -14., "v12c0 1.4.6 2 2 2")]),
-        'm' => (
-            12.,
-            &[
-                (0., -10., "v10"),
-                (
-                    0.,
-                    -6.,
-                    "c0-2.4 1.3-4 3.2-4s2.8 1.4 2.8 4v6m0-6c0-2.4 1.3-4 3.2-4s2.8 1.4 2.8 4v6",
-                ),
-            ],
-        ),
-        'n' => (7.5, &[(0., -10., "v10"), (0., -6., "c0-2.4 1.5-4 3.8-4s3.7 1.5 3.7 4v6")]),
-        'o' => {
-            (8., &[(4., -10., "c2.4 0 4 1.6 4 4v2c0 2.4-1.6 4-4 4s-4-1.6-4-4v-2c0-2.4 1.6-4 4-4z")])
-        }
-        'p' => (8., &[(0., -10., "v14"), (0., -6., BELLY)]),
-        'q' => (8., &[(8., -10., "v14"), (8., -6., BOWL)]),
-        'r' => (5., &[(0., -10., "v10"), (0., -6., "c0-2.6 1.8-4.2 5-4")]),
-        's' => (
-            7.,
-            &[(
-                7.,
-                -8.,
-                "c-.7-1.3-1.8-2-3.5-2c-2 0-3.3 1-3.3 2.6c0 3.4 7 1.6 7 4.9c0 1.6-1.4 2.5-3.6 2.5\
-                 c-1.7 0-3-.6-3.8-2",
-            )],
-        ),
-        't' => (5.5, &[(2., -13., "v10c0 2.2 1.2 3.2 3.8 3"), (0., -10., "h5")]),
-        'u' => (7.5, &[(0., -10., "v6c0 2.5 1.4 4 3.7 4s3.8-1.6 3.8-4m0-6v10")]),
-        'v' => (8., &[(0., -10., "l4 10 4-10")]),
-        'w' => (12., &[(0., -10., "l3 10 3-8 3 8 3-10")]),
-        'x' => (7., &[(0., -10., "l7 10"), (7., -10., "l-7 10")]),
-        'y' => (8., &[(0., -10., "l4 10"), (8., -10., "l-4.8 12c-.6 1.4-1.4 2-3 2")]),
-        'z' => (7., &[(0., -10., "h7l-7 10h7")]),
-        'ß' => (
-            7.5,
-            &[(
-                0.,
-                0.,
-                "v-10.5c0-2.2 1.4-3.5 3.5-3.5s3.5 1.2 3.5 3c0 2.6-3 2.2-3 4.4s4 2 4 4.6c0 1.4-1.2 2.2-3 2",
-            )],
-        ),
-        _ => return None,
-    })
+    }
+    UNKNOWN
 }
 
-fn figure(letter: char) -> Option<Glyph> {
-    Some(match letter {
-        '0' => (
-            8.,
-            &[(
-                4.,
-                -14.,
-                "c2.5 0 4 2 4 4.5v5c0 2.5-1.5 4.5-4 4.5s-4-2-4-4.5v-5c0-2.5 1.5-4.5 4-4.5z",
-            )],
-        ),
-        '1' => (6., &[(1., -11., "l4-3v14")]),
-        '2' => (8., &[(0., -10., "c0-2.5 1.6-4 4-4s4 1.6 4 3.8c0 1.8-1 3-2.5 4.6l-5.5 5.6h8")]),
-        '3' => (
-            8.,
-            &[(
-                0.,
-                -12.,
-                "c.8-1.3 2.2-2 4-2c2.3 0 3.8 1.3 3.8 3.4s-1.5 3.3-3.8 3.4h-1m1 0c2.6 0 4.2 1.3 4.2 3.6\
-                 s-1.7 3.6-4.2 3.6c-2 0-3.4-.8-4.2-2.2",
-            )],
-        ),
-        '4' => (9., &[(6., 0., "v-14l-6 10h9")]),
-        '5' => (
-            8.,
-            &[(
-                7.,
-                -14.,
-                "h-6l-.6 6.2c.9-.8 2-1.2 3.4-1.2c2.6 0 4.2 1.8 4.2 4.4s-1.7 4.6-4.4 4.6c-1.8 0-3.1-.6-3.9-1.8",
-            )],
-        ),
-        '6' => (
-            8.,
-            &[(
-                7.,
-                -12.,
-                "c-.6-1.3-1.7-2-3.2-2c-2.4 0-3.8 2-3.8 5.4v4.2c0-2.6 1.6-4.2 4-4.2s4 1.7 4 4.3\
-                 s-1.6 4.3-4 4.3s-4-1.7-4-4.4",
-            )],
-        ),
-        '7' => (8., &[(0., -14., "h8l-5 14")]),
-        '8' => (
-            8.,
-            &[(
-                4.,
-                -7.,
-                "c-2 0-3.5-1.4-3.5-3.5s1.5-3.5 3.5-3.5s3.5 1.4 3.5 3.5s-1.5 3.5-3.5 3.5c-2.4 0-4 1.4-4 3.5\
-                 s1.6 3.5 4 3.5s4-1.4 4-3.5s-1.6-3.5-4-3.5",
-            )],
-        ),
-        '9' => (
-            8.,
-            &[(
-                1.,
-                -2.,
-                "c.6 1.3 1.7 2 3.2 2c2.4 0 3.8-2 3.8-5.4v-4.2c0 2.6-1.6 4.2-4 4.2s-4-1.7-4-4.3\
-                 s1.6-4.3 4-4.3s4 1.7 4 4.4",
-            )],
-        ),
-        _ => return None,
-    })
-}
-
-fn sign(letter: char) -> Option<Glyph> {
-    Some(match letter {
-        ' ' | '\u{a0}' => (4., &[]),
-        '.' => (1., &[(0.5, 0., "v-.4")]),
-        ',' => (1.5, &[(1., -0.2, "v.6l-1 2.4")]),
-        ':' => (1., &[(0.5, 0., "v-.4"), (0.5, -8., "v-.4")]),
-        ';' => (1.5, &[(1., -0.2, "v.6l-1 2.4"), (1., -8., "v-.4")]),
-        '!' => (1., &[(0.5, 0., "v-.4"), (0.5, -4., "v-10")]),
-        '?' => (
-            7.,
-            &[
-                (0., -11., "c.3-1.9 1.6-3 3.5-3c2.1 0 3.5 1.3 3.5 3.2c0 3.3-3.5 3.2-3.5 6.8"),
-                (3.5, 0., "v-.4"),
-            ],
-        ),
-        '-' => (5., &[(0., -5., "h5")]),
-        '–' => (8., &[(0., -5., "h8")]),
-        '—' => (12., &[(0., -5., "h12")]),
-        '−' => (8., &[(0., -6., "h8")]),
-        '+' => (8., &[(0., -6., "h8m-4-4v8")]),
-        '±' => (8., &[(0., -7., "h8m-4-4v8"), (0., 0., "h8")]),
-        '×' => (7., &[(0., -9., "l7 7m-7 0l7-7")]),
-        '·' => (1., &[(0.5, -5., "v-.4")]),
-        '=' => (8., &[(0., -4., "h8"), (0., -8., "h8")]),
-        '<' => (8., &[(8., -11., "l-8 5 8 5")]),
-        '>' => (8., &[(0., -11., "l8 5-8 5")]),
-        '/' => (7., &[(0., 2., "l7-17")]),
-        '\\' => (7., &[(0., -15., "l7 17")]),
-        '|' => (1., &[(0.5, 3., "v-19")]),
-        '_' => (9., &[(0., 2., "h9")]),
-        '(' => (3.5, &[(3.5, -16., "c-4.5 5.5-4.5 13.5 0 19")]),
-        ')' => (3.5, &[(0., -16., "c4.5 5.5 4.5 13.5 0 19")]),
-        '[' => (3.5, &[(3.5, -16., "h-3.5v19h3.5")]),
-        ']' => (3.5, &[(0., -16., "h3.5v19h-3.5")]),
-        '{' => (
-            4.5,
-            &[(4.5, -16., "c-3.5 0-1.5 6-2.2 8s-2.3 1.5-2.3 1.5s1.6-.5 2.3 1.5s-1.3 8 2.2 8")],
-        ),
-        '}' => {
-            (4.5, &[(0., -16., "c3.5 0 1.5 6 2.2 8s2.3 1.5 2.3 1.5s-1.6-.5-2.3 1.5s1.3 8-2.2 8")])
-        }
-        '*' => (6., &[(3., -14., "v7"), (0., -12., "l6 3.5m0-3.5l-6 3.5")]),
-        '^' => (7., &[(0., -10., "l3.5-4 3.5 4")]),
-        '~' => (8., &[(0., -4.5, "c1.5-3 3-2.5 4-1.5s2.5 1.5 4-1.5")]),
-        '\'' | '’' | '‘' | '`' => (1., &[(0.5, -14., "v4")]),
-        '"' | '“' | '”' => (4., &[(0.5, -14., "v4m3-4v4")]),
-        '#' => (10., &[(3.5, -14., "l-2 14m7-14l-2 14"), (0., -9.5, "h10m-10 5h10")]),
-        '%' => (
-            13.,
-            &[
-                (3., -14., "a2.8 2.8 0 1 0 .01 0z"),
-                (10., -5.6, "a2.8 2.8 0 1 0 .01 0z"),
-                (11., -14., "l-9 14"),
-            ],
-        ),
-        '&' => (
-            10.,
-            &[(
-                10.,
-                0.,
-                "l-7.5-8.5c-1.6-1.9-1-5.5 1.7-5.5s3.3 3.8.6 5.4c-3 1.7-4.8 3-4.8 5.2s1.7 3.4 4 3.4c3 0 5-2.4 5.5-6",
-            )],
-        ),
-        '$' => (
-            8.5,
-            &[
-                (4.2, -16., "v18"),
-                (
-                    8.,
-                    -12.,
-                    "c-1-1.4-2.2-2-4-2c-2.5 0-4 1.4-4 3.5c0 4.5 8.5 2.5 8.5 7c0 2.2-1.8 3.5-4.5 3.5c-2 0-3.4-.7-4.5-2.2",
-                ),
-            ],
-        ),
-        '@' => (
-            13.,
-            &[(
-                9.,
-                -4.,
-                "c-1 1.5-5 1.5-5-2.5s5-4 5-1v3c0 2.5 4 2 4-3c0-3.5-2.5-6-6.3-6s-6.7 2.7-6.7 6.8s2.8 6.7 6.7 6.7c1.6 0 3-.4 4-1",
-            )],
-        ),
-        '°' => (5., &[(2.5, -14., "a2.3 2.3 0 1 0 .01 0z")]),
-        '²' => (4.5, &[(0., -12.5, "c.2-1 1-1.5 2-1.5c3 0 2.6 2.6 0 5l-2 2h4.5")]),
-        '³' => (
-            4.5,
-            &[(
-                0.,
-                -13.,
-                "c1-1.4 4-1.2 4 .9c0 1.3-1 1.7-2.2 1.7c1.4 0 2.6.5 2.6 1.8c0 2.2-3.5 2.3-4.4.6",
-            )],
-        ),
-        'µ' | 'μ' => {
-            (7.5, &[(0., -10., "v14"), (0., -4., "c0 2.5 1.4 4 3.7 4s3.8-1.6 3.8-4m0-6v10")])
-        }
-        '⌀' | 'Ø' | '∅' => (12., &[(6., -12., "a5.5 5.5 0 1 0 .01 0z"), (1., 0., "l10-13")]),
-        'ø' => (
-            8.,
-            &[
-                (4., -10., "c2.4 0 4 1.6 4 4v2c0 2.4-1.6 4-4 4s-4-1.6-4-4v-2c0-2.4 1.6-4 4-4z"),
-                (0., 1., "l8-12"),
-            ],
-        ),
-        _ => return None,
-    })
-}
-
-/// Splits a character into its base character and its diacritic, which is drawn above a lower-case letter.
-fn marked(letter: char) -> Option<(char, &'static [Stroke])> {
-    const DOTS: &[Stroke] = &[(2., -13.5, "v-.4m4 0v.4")];
-    const ACUTE: &[Stroke] = &[(3., -12., "l3-2.5")];
-    const GRAVE: &[Stroke] = &[(5., -12., "l-3-2.5")];
-    const HAT: &[Stroke] = &[(1.5, -12., "l2.5-2.5 2.5 2.5")];
-    const TILDE: &[Stroke] = &[(1., -12.8, "c1.5-2 3-1.4 3.4-.9s1.8 1 3.2-.9")];
-    const RING: &[Stroke] = &[(4., -15.5, "a1.6 1.6 0 1 0 .01 0z")];
-    const CARON: &[Stroke] = &[(1.5, -14.5, "l2.5 2.5 2.5-2.5")];
-    const TAIL: &[Stroke] = &[(4.5, 0., "v1.4c1.6 0 1.6 2.4-.8 2.4")];
-    let rows: [(&str, &str, &'static [Stroke]); 8] = [
-        ("äëïöüÄËÖÜ", "aeıouAEOU", DOTS),
-        ("áéíóúýÁÉÓÚ", "aeıouyAEOU", ACUTE),
-        ("àèìòùÀÈÒÙ", "aeıouAEOU", GRAVE),
-        ("âêîôûÂÊÔÛ", "aeıouAEOU", HAT),
-        ("ãñõÃÑÕ", "anoANO", TILDE),
-        ("åÅů", "aAu", RING),
-        ("čěřšžČŘŠŽ", "cerszCRSZ", CARON),
-        ("çÇ", "cC", TAIL),
+/// Splits a character into its base character and the strokes of its diacritic above a lower-case letter.
+fn marked(letter: char) -> Option<(char, &'static str)> {
+    let rows = [
+        ("äëïöüÄËÖÜ", "aeıouAEOU", "2 -13.5v-.4m4 0v.4"),
+        ("áéíóúýÁÉÓÚ", "aeıouyAEOU", "3 -12l3-2.5"),
+        ("àèìòùÀÈÒÙ", "aeıouAEOU", "5 -12l-3-2.5"),
+        ("âêîôûÂÊÔÛ", "aeıouAEOU", "1.5 -12l2.5-2.5 2.5 2.5"),
+        ("ãñõÃÑÕ", "anoANO", "1 -12.8c1.5-2 3-1.4 3.4-.9s1.8 1 3.2-.9"),
+        ("åÅů", "aAu", "4 -15.5a1.6 1.6 0 1 0 .01 0z"),
+        ("čěřšžČŘŠŽ", "cerszCRSZ", "1.5 -14.5l2.5 2.5 2.5-2.5"),
+        ("çÇ", "cC", "4.5 0v1.4c1.6 0 1.6 2.4-.8 2.4"),
     ];
-    rows.into_iter().find_map(|(with, without, mark)| {
-        let index = with.chars().position(|other| other == letter)?;
-        Some((without.chars().nth(index)?, mark))
-    })
+    for (with, without, mark) in rows {
+        if let Some(index) = with.chars().position(|other| other == letter) {
+            return Some((without.chars().nth(index)?, mark));
+        }
+    }
+    None
 }

@@ -101,7 +101,8 @@ impl Shape {
         for _ in 0..200 {
             for (p, half) in initial.drain(..) {
                 let clearance = self.clearance(p, across);
-                if clearance > best.1 {
+                // Of points with as much room, the middle is the first.
+                if clearance > best.1 + 0.01 {
                     best = (p, clearance);
                 }
                 queue.push((clearance + half * corner, p, half));

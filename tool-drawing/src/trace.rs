@@ -2,23 +2,28 @@
 //!
 //! The plan's tree has the owner of each lattice point. A side of a lattice cell whose ends have different owners is crossed
 //! by a border, and bisection has the point and the curve. The crossings of a cell are linked if they continue one curve
-//! between the same owners. Otherwise they meet in a joint, at the intersection of their curves.
+//! between the same owners. Otherwise they meet in a joint, at the intersection of their curves. From a cell the borders are
+//! followed into those beyond the crossed sides.
 
 use super::curves::Curves;
 use super::section::{Polygon, simplified};
 use super::stroke::{Stroke, circle};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::f64::consts::PI;
-use touchoff_dsl::formula::{CurveIndex, NEGATIVE, ZERO};
+use touchoff_dsl::formula::CurveIndex;
 use touchoff_dsl::plan::Tree;
 use touchoff_dsl::vector::{Point, minus, norm};
 
 /// The side of a lattice cell, in units of the sheet.
 const CELL: f64 = 0.5;
+/// The number of cells between the lines on which borders are looked for.
+const SEED_STRIDE: usize = 4;
 /// The greatest number of lattice cells along a side of the window, since a needle is long for its width.
 const MAX_CELLS: f64 = 4_000.0;
 /// Points are on a circle within this distance, relative to its radius.
 const ROUND_FRACTION: f64 = 1e-9;
+/// Points are on a line within this distance, in cells.
+const STRAIGHT_FRACTION: f64 = 1e-6;
 /// The greatest distance of chords from a curve that is no line, in cells.
 const FLATNESS: f64 = 0.1;
 
@@ -99,11 +104,12 @@ pub(super) fn trace(
     let (crossings, joints) = (Vec::new(), Vec::new());
     let mut tracer = Tracer { curves, tree, low, step, owners, known, crossings, joints };
     let counts = [0, 1].map(|k| ((high[k] - low[k]) / step[k]).ceil() as i64);
-    let side = (counts[0].max(counts[1]) as u64).next_power_of_two() as i64;
-    let mut cells = Vec::new();
-    tracer.find_cells([0, 0], side, counts, tree, &mut cells);
-    for cell in cells {
-        tracer.link(cell);
+    let mut pending = tracer.seeds(counts);
+    let mut linked = HashSet::new();
+    while let Some(cell) = pending.pop() {
+        if linked.insert(cell) {
+            tracer.link(cell, &mut pending);
+        }
     }
     tracer.borders()
 }
@@ -114,54 +120,33 @@ impl Tracer<'_, '_, '_> {
         [self.low[0] + i as f64 * self.step[0], self.low[1] + j as f64 * self.step[1]]
     }
 
-    /// Finds the cells of the lattice in a square of it that may have several owners.
-    fn find_cells(
-        &mut self,
-        corner @ [i, j]: [i64; 2],
-        side: i64,
-        counts: [i64; 2],
-        tree: &Tree,
-        cells: &mut Vec<[i64; 2]>,
-    ) {
-        if i >= counts[0] || j >= counts[1] {
-            return;
+    /// Returns cells that are crossed by borders, found on every few lines of the lattice.
+    fn seeds(&mut self, counts: [i64; 2]) -> Vec<[i64; 2]> {
+        let mut seeds = Vec::new();
+        for i in (0..counts[0]).step_by(SEED_STRIDE) {
+            for j in (0..counts[1]).step_by(SEED_STRIDE) {
+                for k in 0..2 {
+                    let mut low = [i, j];
+                    let mut high = low;
+                    high[k] += SEED_STRIDE as i64;
+                    let owner = self.lattice_owner(low);
+                    if owner == self.lattice_owner(high) {
+                        continue;
+                    }
+                    while high[k] - low[k] > 1 {
+                        let mut middle = low;
+                        middle[k] = (low[k] + high[k]) / 2;
+                        if self.lattice_owner(middle) == owner {
+                            low = middle
+                        } else {
+                            high = middle
+                        }
+                    }
+                    seeds.push(low);
+                }
+            }
         }
-        let [mut low, high] = [corner, [i + side, j + side]].map(|corner| self.at(corner));
-        let has_axis = self.curves.has_axis() && low[0] < 0.0;
-        if has_axis {
-            low[0] = 0.0;
-        }
-        let tree = self.pruned(tree, low, high);
-        if matches!(tree, Tree::Leaf(owner) if owner.is_none() || !has_axis) {
-            return;
-        }
-        if side == 1 {
-            return cells.push(corner);
-        }
-        let half = side / 2;
-        for [right, up] in [[0, 0], [1, 0], [0, 1], [1, 1]] {
-            self.find_cells([i + right * half, j + up * half], half, counts, &tree, cells);
-        }
-    }
-
-    /// Returns the part of a tree that is open in a box.
-    fn pruned(&mut self, tree: &Tree, low: Point, high: Point) -> Tree {
-        let Tree::Split { curve, strict, below, above } = tree else { return tree.clone() };
-        let signs = self.curves.signs(*curve, low, high);
-        let side = if *strict { NEGATIVE } else { NEGATIVE | ZERO };
-        if signs & !side == 0 {
-            return self.pruned(below, low, high);
-        }
-        if signs & side == 0 {
-            return self.pruned(above, low, high);
-        }
-        let (below, above) = (self.pruned(below, low, high), self.pruned(above, low, high));
-        // The curve separates owners elsewhere only.
-        if below == above {
-            return below;
-        }
-        let (below, above) = (Box::new(below), Box::new(above));
-        Tree::Split { curve: *curve, strict: *strict, below, above }
+        seeds
     }
 
     /// Returns the owner of a point.
@@ -211,7 +196,8 @@ impl Tracer<'_, '_, '_> {
         let ends = [[i, j], if upright { [i, j + 1] } else { [i + 1, j] }];
         let sides = ends.map(|end| self.lattice_owner(end));
         let mut crossing = None;
-        if sides[0] != sides[1] {
+        let is_region = |side: &Side| matches!(side, Side::Region(_));
+        if sides[0] != sides[1] && sides.iter().any(is_region) {
             let [mut p, mut q] = ends.map(|end| self.at(end));
             for _ in 0..48 {
                 let middle = [0, 1].map(|k| f64::midpoint(p[k], q[k]));
@@ -227,19 +213,26 @@ impl Tracer<'_, '_, '_> {
         crossing
     }
 
-    /// Links the crossings of a cell with each other, or with a joint.
-    fn link(&mut self, [i, j]: [i64; 2]) {
+    /// Links the crossings of a cell with each other, or with a joint, and adds the cells beyond the crossed sides.
+    fn link(&mut self, [i, j]: [i64; 2], beyond: &mut Vec<[i64; 2]>) {
+        // Each side with the cell beyond it, and the place of this cell beside it.
+        let sides = [
+            (([i, j], false), [i, j - 1], 1),
+            (([i, j], true), [i - 1, j], 1),
+            (([i, j + 1], false), [i, j + 1], 0),
+            (([i + 1, j], true), [i + 1, j], 0),
+        ];
         let mut found: Vec<(usize, usize)> = Vec::new();
-        // Of each side, whether the cell is the one above or right of it.
-        let sides =
-            [([i, j], false, 1), ([i, j], true, 1), ([i, j + 1], false, 0), ([i + 1, j], true, 0)];
-        for (corner, upright, place) in sides {
-            found.extend(self.crossing((corner, upright)).map(|crossing| (crossing, place)));
+        for (side, neighbour, place) in sides {
+            if let Some(crossing) = self.crossing(side) {
+                found.push((crossing, place));
+                beyond.push(neighbour);
+            }
         }
         if let [(a, place_a), (b, place_b)] = found[..] {
             let [first, second] = [&self.crossings[a], &self.crossings[b]];
-            let is_same =
-                first.sides == second.sides || first.sides == [second.sides[1], second.sides[0]];
+            let [low, high] = first.sides;
+            let is_same = second.sides == [low, high] || second.sides == [high, low];
             if is_same && first.curve == second.curve {
                 self.crossings[a].next[place_a] = Some(Next::Crossing(b));
                 self.crossings[b].next[place_b] = Some(Next::Crossing(a));
@@ -291,23 +284,16 @@ impl Tracer<'_, '_, '_> {
                     if taken[start] || begins == closed {
                         continue;
                     }
-                    if let Some((border, curve)) = self.border(start, place, &mut taken) {
-                        borders.push(self.shaped(border, curve));
-                    }
+                    borders.push(self.border(start, place, &mut taken));
                 }
             }
         }
         borders
     }
 
-    /// Returns the border that begins at a crossing and goes on in one of its cells, if it is one of a region, and its curve.
-    fn border(
-        &self,
-        start: usize,
-        place: usize,
-        taken: &mut [bool],
-    ) -> Option<(Border, Option<CurveIndex>)> {
-        let Crossing { sides, upright, curve, next, .. } = self.crossings[start];
+    /// Returns the border that begins at a crossing and goes on in one of its cells.
+    fn border(&self, start: usize, place: usize, taken: &mut [bool]) -> Border {
+        let Crossing { sides, upright, next, .. } = self.crossings[start];
         let mut line = Vec::new();
         // A closed line has a number beyond those of joints.
         let mut ends = [self.joints.len() + start; 2];
@@ -339,14 +325,11 @@ impl Tracer<'_, '_, '_> {
             (sides, ends) = ([sides[1], sides[0]], [ends[1], ends[0]]);
             line.reverse();
         }
-        let border = Border { sides, ends, line, strokes: Vec::new(), exact: true };
-        matches!(sides[0], Side::Region(_)).then_some((border, curve))
+        self.shaped(Border { sides, ends, line, strokes: Vec::new(), exact: true })
     }
-}
 
-impl Tracer<'_, '_, '_> {
     /// Returns a border with its lines and arcs.
-    fn shaped(&mut self, mut border: Border, curve: Option<CurveIndex>) -> Border {
+    fn shaped(&self, mut border: Border) -> Border {
         let cell = norm(self.step);
         let line = &border.line;
         let (first, last) = (line[0], line[line.len() - 1]);
@@ -355,8 +338,7 @@ impl Tracer<'_, '_, '_> {
             border.line = vec![first, last];
             return border;
         }
-        let is_straight = curve.is_none_or(|curve| self.curves.is_straight(curve));
-        if is_straight && border.ends[0] != border.ends[1] {
+        if simplified(line, STRAIGHT_FRACTION * cell).len() == 2 {
             border.line = vec![first, last];
             border.strokes = vec![Stroke::line(first, last)];
             return border;
