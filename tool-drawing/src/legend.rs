@@ -1,8 +1,8 @@
 //! The legend below the views, which explains their lines, areas and symbols.
 
 use super::lettering::width;
-use super::regions::{Marks, head};
-use super::sheet::{Anchor, DEFAULT_COLOUR, Look, Sheet, lines};
+use super::regions::{Marks, heads, singular_points};
+use super::sheet::{Anchor, Look, Sheet, lines};
 use super::{Content, paint};
 use touchoff_dsl::model::Model;
 use touchoff_dsl::vector::Point;
@@ -52,80 +52,59 @@ pub(super) fn draw(groups: &[Vec<Entry>], sheet: &mut Sheet) {
 
 /// Returns the entries of a model's surfaces.
 pub(super) fn surfaces(model: &Model) -> Vec<Entry> {
-    let surfaces = model.surfaces.iter().zip(paint::surface_colours(model));
-    surfaces
-        .map(|(surface, colour)| {
-            let cutting = surface.cutting;
-            let text =
-                if cutting { format!("{}, cutting", surface.name) } else { surface.name.clone() };
-            (Sign::Surface { colour, cutting }, text)
-        })
-        .collect()
+    let mut entries = Vec::new();
+    for (surface, colour) in model.surfaces.iter().zip(paint::surface_colours(model)) {
+        let cutting = surface.cutting;
+        let suffix = if cutting { ", cutting" } else { "" };
+        entries.push((Sign::Surface { colour, cutting }, format!("{}{suffix}", surface.name)));
+    }
+    entries
 }
 
 /// Returns the entries of the symbols in a tool's section.
 pub(super) fn signs(content: Content, marks: &Marks) -> Vec<Entry> {
-    let mut signs = Vec::new();
-    if content == Content::Regions {
-        signs.push((Sign::Arrow, "direction to the surface"));
-        if marks.splits {
-            signs.push((Sign::Split, "border of regions"));
-        }
-        if !marks.singular.is_empty() {
-            signs.push((Sign::Singular, "no direction here"));
-        }
-        let axis = if marks.axis { "axis: radial directions are +x on it" } else { "axis" };
-        signs.push((Sign::Axis, axis));
-    }
-    if marks.shortened {
-        signs.push((Sign::Break, "shortened"));
-    }
-    signs.into_iter().map(|(sign, text)| (sign, text.to_owned())).collect()
+    let has_regions = content == Content::Regions;
+    let axis = if marks.axis { "axis: radial directions are +x on it" } else { "axis" };
+    let signs = [
+        (has_regions, Sign::Arrow, "direction to the surface"),
+        (has_regions && marks.splits, Sign::Split, "border of regions"),
+        (!marks.singular.is_empty(), Sign::Singular, "no direction here"),
+        (has_regions, Sign::Axis, axis),
+        (marks.shortened, Sign::Break, "shortened"),
+    ];
+    let drawn = signs.into_iter().filter(|(is_drawn, ..)| *is_drawn);
+    drawn.map(|(_, sign, text)| (sign, text.to_owned())).collect()
 }
 
+/// Draws a symbol to the right of a point.
 fn sample(sign: &Sign, [x, y]: Point, sheet: &mut Sheet) {
     let row = [[x, y], [x + SAMPLE_LENGTH, y]];
-    let line = |sheet: &mut Sheet, look: &str| {
-        sheet.path(&format!("fill=\"none\" {look}"), &lines([&row]));
-    };
-    match sign {
-        Sign::Surface { colour, cutting } => {
-            let wide = if *cutting { 3.0 } else { 2.0 };
-            line(sheet, &format!("stroke=\"{colour}\" stroke-width=\"{wide}\""));
+    let look = match sign {
+        Sign::Surface { colour, cutting: true } => {
+            format!("stroke=\"{colour}\" stroke-width=\"{}\"", paint::CUTTING_WIDTH)
+        }
+        Sign::Surface { colour, cutting: false } => {
+            format!("stroke=\"{colour}\" stroke-width=\"{}\"", paint::SURFACE_WIDTH)
+        }
+        Sign::Split => paint::SPLIT.to_owned(),
+        Sign::Axis => paint::AXIS.to_owned(),
+        Sign::Arrow => {
+            sheet.path("fill=\"#2b3440\"", &heads(&[row], 5.0));
+            "stroke=\"#2b3440\"".to_owned()
         }
         Sign::Region { colour } => {
             let [low, high] = [[x, y - 4.5], [x + SAMPLE_LENGTH, y + 4.5]];
             let corners = [low, [high[0], low[1]], high, [low[0], high[1]], low];
             let look = "stroke=\"#3f4650\" stroke-width=\".6\" fill-opacity=\".62\"";
-            sheet.path(&format!("fill=\"{colour}\" {look}"), &lines([&corners]));
+            return sheet.path(&format!("fill=\"{colour}\" {look}"), &lines([&corners]));
         }
-        Sign::Split => {
-            line(sheet, "stroke=\"#3f4650\" stroke-width=\".9\" stroke-dasharray=\"5 3\"");
-        }
-        Sign::Axis => {
-            line(sheet, "stroke=\"#22272e\" stroke-width=\".8\" stroke-dasharray=\"12 3 2 3\"");
-        }
-        Sign::Singular => {
-            let middle = [x + SAMPLE_LENGTH / 2.0, y];
-            sheet.group(&format!("fill=\"#fff\" stroke=\"{DEFAULT_COLOUR}\""), |sheet| {
-                sheet.ring(middle, 4.0);
-            });
-            sheet.group(&format!("fill=\"{DEFAULT_COLOUR}\""), |sheet| sheet.ring(middle, 1.1));
-        }
-        Sign::Arrow => {
-            line(sheet, "stroke=\"#2b3440\"");
-            let [a, b, c] = head(row, 5.0);
-            sheet.path("fill=\"#2b3440\"", &lines([&[a, b, c, a]]));
-        }
+        Sign::Singular => return singular_points(&[[x + SAMPLE_LENGTH / 2.0, y]], sheet),
         Sign::Break => {
-            let wave = |shift: f64| -> Vec<Point> {
-                let points = (0..=8).map(|k| {
-                    let turn = (f64::from(k) / 4.0 * std::f64::consts::PI).sin();
-                    [x + f64::from(k) * 3.0, y + shift + 2.5 * turn]
-                });
-                points.collect()
-            };
-            sheet.path("fill=\"none\" stroke=\"#6b7280\"", &lines([wave(-2.5), wave(2.5)]));
+            let middle = x + SAMPLE_LENGTH / 2.0;
+            let waves =
+                [-2.5, 2.5].map(|shift| paint::wave(middle, SAMPLE_LENGTH / 2.0, y + shift));
+            return sheet.path("fill=\"none\" stroke=\"#6b7280\"", &lines(waves));
         }
-    }
+    };
+    sheet.path(&format!("fill=\"none\" {look}"), &lines([&row]));
 }

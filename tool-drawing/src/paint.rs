@@ -9,6 +9,7 @@ use super::shape::Shape;
 use super::sheet::{Sheet, data, lines};
 use super::stroke::Stroke;
 use super::{Content, Picture};
+use std::f64::consts::PI;
 use touchoff_dsl::model::Model;
 use touchoff_dsl::vector::Point;
 
@@ -18,6 +19,13 @@ const HATCH_STEP: f64 = 9.0;
 /// The look of hatched areas, and of areas without regions.
 const HATCHED_AREA: &str = "fill=\"#f4f5f7\" fill-rule=\"evenodd\"";
 const PLAIN_AREA: &str = "fill=\"#e3e9f1\" fill-rule=\"evenodd\"";
+/// The looks of borders between regions, and of the axis.
+pub(super) const SPLIT: &str = "stroke=\"#3f4650\" stroke-width=\".9\" stroke-dasharray=\"5 3\"";
+pub(super) const AXIS: &str =
+    "stroke=\"#22272e\" stroke-width=\".8\" stroke-dasharray=\"12 3 2 3\"";
+/// The widths of surfaces that cut, and of others, in sheet units.
+pub(super) const CUTTING_WIDTH: f64 = 3.0;
+pub(super) const SURFACE_WIDTH: f64 = 2.0;
 /// The height of a break line's waves, in sheet units.
 const WAVE_HEIGHT: f64 = 2.5;
 
@@ -81,8 +89,7 @@ pub(super) fn splits(picture: &Picture<'_>, sheet: &mut Sheet) -> bool {
     for Split { line, .. } in &picture.section.splits {
         rows.push(line.iter().map(|p| picture.view.to_sheet(*p)).collect());
     }
-    let look = "fill=\"none\" stroke=\"#3f4650\" stroke-width=\".9\" stroke-dasharray=\"5 3\"";
-    sheet.path(look, &lines(&rows));
+    sheet.path(&format!("fill=\"none\" {SPLIT}"), &lines(&rows));
     !rows.is_empty()
 }
 
@@ -101,7 +108,8 @@ pub(super) fn outline(picture: &Picture<'_>, both_halves: bool, sheet: &mut Shee
             if both_halves {
                 strokes.extend(strokes.clone().into_iter().map(Stroke::mirrored));
             }
-            let wide = if picture.model.surfaces[surface].cutting { 3.0 } else { 2.0 };
+            let is_cutting = picture.model.surfaces[surface].cutting;
+            let wide = if is_cutting { CUTTING_WIDTH } else { SURFACE_WIDTH };
             sheet.path(&format!("stroke=\"{colour}\" stroke-width=\"{wide}\""), &data(&strokes));
         }
     });
@@ -110,7 +118,7 @@ pub(super) fn outline(picture: &Picture<'_>, both_halves: bool, sheet: &mut Shee
 /// Draws the break lines where a long cylinder is shortened.
 pub(super) fn seams(picture: &Picture<'_>, sheet: &mut Sheet) {
     for y in picture.view.seams() {
-        let (above, below) = (wave(picture, y - 3.0), wave(picture, y + 3.0));
+        let [above, below] = [y - 3.0, y + 3.0].map(|y| wave(0.0, picture.view.half + 7.0, y));
         broken(&above, &below, &[&above, &below], sheet);
     }
 }
@@ -118,20 +126,19 @@ pub(super) fn seams(picture: &Picture<'_>, sheet: &mut Sheet) {
 /// Draws the break line at the upper edge of a detail.
 pub(super) fn upper_edge(picture: &Picture<'_>, sheet: &mut Sheet) {
     // The whole wave lies in the material.
-    let edge = wave(picture, WAVE_HEIGHT - picture.view.height);
-    let above = wave(picture, -2.0 * WAVE_HEIGHT - picture.view.height);
+    let [above, edge] = [-2.0 * WAVE_HEIGHT, WAVE_HEIGHT]
+        .map(|y| wave(0.0, picture.view.half + 7.0, y - picture.view.height));
     broken(&above, &edge, &[&edge], sheet);
 }
 
-/// Returns one wave across the section, somewhat wider than it.
-fn wave(picture: &Picture<'_>, y: f64) -> Vec<Point> {
-    let half = picture.view.half + 7.0;
-    (0..=24)
-        .map(|k| {
-            let share = f64::from(k) / 12.0 - 1.0;
-            [share * half, y + WAVE_HEIGHT * (share * std::f64::consts::PI).sin()]
-        })
-        .collect()
+/// Returns one wave about a point, to half its width on both sides.
+pub(super) fn wave(x: f64, half: f64, y: f64) -> Vec<Point> {
+    let mut points = Vec::new();
+    for k in 0..=24 {
+        let share = f64::from(k) / 12.0 - 1.0;
+        points.push([x + share * half, y + WAVE_HEIGHT * (share * PI).sin()]);
+    }
+    points
 }
 
 /// Clears the band between two waves, and draws break lines.
@@ -144,8 +151,7 @@ fn broken(above: &[Point], below: &[Point], visible: &[&[Point]], sheet: &mut Sh
 /// Draws the axis, slightly longer than the tool.
 pub(super) fn axis_line(picture: &Picture<'_>, sheet: &mut Sheet) {
     let row = [[0.0, 12.0], [0.0, -picture.view.height - 12.0]];
-    let look = "fill=\"none\" stroke=\"#22272e\" stroke-width=\".8\" stroke-dasharray=\"12 3 2 3\"";
-    sheet.path(look, &lines([&row]));
+    sheet.path(&format!("fill=\"none\" {AXIS}"), &lines([&row]));
     row.into_iter().for_each(|p| sheet.reach(p));
 }
 
@@ -189,13 +195,16 @@ pub(super) fn distinct_area_colours(regions: usize) -> Vec<&'static str> {
 
 /// Returns the colour of each surface.
 pub(super) fn surface_colours(model: &Model) -> Vec<&'static str> {
-    let (mut cutting, mut other) =
-        (CUTTING_STROKES.iter().cycle(), NON_CUTTING_STROKES.iter().cycle());
-    model
-        .surfaces
-        .iter()
-        .map(|s| s.cutting)
-        .map(|cuts| if cuts { cutting.next() } else { other.next() })
-        .map(|c| c.copied().unwrap_or("#000"))
-        .collect()
+    let (mut cutting, mut others) = (0, 0);
+    let mut colours = Vec::new();
+    for surface in &model.surfaces {
+        let (palette, used) = if surface.cutting {
+            (&CUTTING_STROKES[..], &mut cutting)
+        } else {
+            (&NON_CUTTING_STROKES[..], &mut others)
+        };
+        colours.push(palette[*used % palette.len()]);
+        *used += 1;
+    }
+    colours
 }

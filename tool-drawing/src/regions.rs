@@ -3,6 +3,7 @@
 use super::lettering::width;
 use super::shape::{Frame, Shape};
 use super::sheet::{Anchor, DEFAULT_COLOUR, Look, Sheet, lines};
+use super::stroke::Stroke;
 use super::view::View;
 use super::{Content, Part, Picture, paint};
 use touchoff_dsl::expr::value::{EvaluationPoint, Evaluator};
@@ -39,6 +40,9 @@ impl Marks {
 
 /// Text sizes to try for a region's name, largest first.
 const TEXT_SIZES: [f64; 3] = [8.5, 7.5, 6.5];
+/// The distance between candidate positions of arrows, and the minimum distance between arrows, in sheet units.
+const ARROW_STEP: f64 = 9.0;
+const MIN_ARROW_DISTANCE: f64 = 40.0;
 /// The radius of the circles around singular points.
 const SINGULAR_POINT_RADIUS: f64 = 4.0;
 
@@ -68,15 +72,7 @@ fn describe(picture: &Picture<'_>, sheet: &mut Sheet) -> Marks {
     let view = &picture.view;
     let mut directions = Directions::new(picture.model);
     let singular = singular(picture, &mut directions);
-    let rings: Vec<Frame> = singular
-        .iter()
-        .map(|[x, y]| {
-            [
-                [x - SINGULAR_POINT_RADIUS, y - SINGULAR_POINT_RADIUS],
-                [x + SINGULAR_POINT_RADIUS, y + SINGULAR_POINT_RADIUS],
-            ]
-        })
-        .collect();
+    let rings: Vec<Frame> = singular.iter().map(|p| around(*p, SINGULAR_POINT_RADIUS)).collect();
     let (mut arrows, mut unnamed) = (Vec::new(), Vec::new());
     for (region, shape) in picture.shapes.iter().enumerate() {
         if shape.is_empty() {
@@ -86,25 +82,21 @@ fn describe(picture: &Picture<'_>, sheet: &mut Sheet) -> Marks {
         if !picture.names(place) {
             continue;
         }
-        let mut draw = |around_frames: &[Frame]| {
-            let taken: Vec<Frame> = rings.iter().chain(around_frames).copied().collect();
-            directions.arrows(region, shape, view, &taken)
-        };
-        let dot = [[place[0] - 2.0, place[1] - 2.0], [place[0] + 2.0, place[1] + 2.0]];
+        let mut arrows_beside =
+            |taken: &[Frame]| directions.arrows(region, shape, view, &[&rings, taken].concat());
+        let dot = around(place, 2.0);
+        let mut name = name(picture, region, shape, &rings);
+        let mut own = arrows_beside(&[name.as_ref().map_or(dot, |name| name.frame)]);
         // A name that leaves no room for an arrow is written outside, if that helps.
-        let name = name(picture, region, shape, &rings);
-        let mut own = draw(&[name.as_ref().map_or(dot, |name| name.frame)]);
-        let mut outside = name.is_none();
-        if own.is_empty() && !outside {
-            own = draw(&[dot]);
-            outside = !own.is_empty();
-        }
-        if own.is_empty() && outside {
+        if own.is_empty() && name.is_some() {
+            own = arrows_beside(&[dot]);
+            name = name.filter(|_| own.is_empty());
+        } else if own.is_empty() {
             // The leader begins at the arrow's tail.
-            own = draw(&[]);
+            own = arrows_beside(&[]);
             place = own.first().map_or(place, |arrow| arrow[0]);
         }
-        match name.filter(|_| !outside) {
+        match name {
             Some(Name { size, at, .. }) => {
                 let text = &picture.model.regions[region].name;
                 sheet.text(text, at, Look::plain(size, Anchor::Middle));
@@ -113,15 +105,27 @@ fn describe(picture: &Picture<'_>, sheet: &mut Sheet) -> Marks {
         }
         arrows.extend(own);
     }
-    draw_arrows(&arrows, sheet);
-    sheet.group(&format!("fill=\"#fff\" stroke=\"{DEFAULT_COLOUR}\""), |sheet| {
-        singular.iter().for_each(|p| sheet.ring(*p, SINGULAR_POINT_RADIUS));
+    sheet.group("stroke=\"#2b3440\" stroke-width=\"1\" fill=\"#2b3440\"", |sheet| {
+        sheet.path("fill=\"none\"", &lines(&arrows));
+        sheet.path("stroke=\"none\"", &heads(&arrows, 5.0));
     });
-    sheet.group(&format!("fill=\"{DEFAULT_COLOUR}\""), |sheet| {
-        singular.iter().for_each(|p| sheet.ring(*p, 1.1));
-    });
+    singular_points(&singular, sheet);
     let axis = axis(picture, &mut directions);
     Marks { unnamed, singular, axis, ..Marks::default() }
+}
+
+/// Returns the box around a point with this half side.
+fn around([x, y]: Point, half: f64) -> Frame {
+    [[x - half, y - half], [x + half, y + half]]
+}
+
+/// Draws circles around singular points.
+pub(super) fn singular_points(points: &[Point], sheet: &mut Sheet) {
+    for (look, radius) in [("fill=\"#fff\" stroke", SINGULAR_POINT_RADIUS), ("fill", 1.1)] {
+        sheet.group(&format!("{look}=\"{DEFAULT_COLOUR}\""), |sheet| {
+            points.iter().for_each(|p| sheet.ring(*p, radius));
+        });
+    }
 }
 
 /// A region's name on the sheet: text size, position and bounding box.
@@ -157,35 +161,15 @@ pub(super) fn name(
         })
 }
 
-fn draw_arrows(arrows: &[Arrow], sheet: &mut Sheet) {
-    sheet.group("stroke=\"#2b3440\" stroke-width=\"1\" fill=\"#2b3440\"", |sheet| {
-        sheet.path("fill=\"none\"", &lines(arrows));
-        let heads: Vec<[Point; 4]> = arrows
-            .iter()
-            .map(|arrow| {
-                let [a, b, c] = head(*arrow, 5.0);
-                [a, b, c, a]
-            })
-            .collect();
-        sheet.path("stroke=\"none\"", &lines(&heads));
-    });
-}
-
 /// Returns the isolated points at which regions' directions are undefined, without duplicates. The axis is handled
 /// separately.
 fn singular(picture: &Picture<'_>, directions: &mut Directions<'_>) -> Vec<Point> {
     let mut found: Vec<Point> = Vec::new();
     for (region, shape) in picture.shapes.iter().enumerate() {
-        let Some(focus) =
-            (!shape.is_empty()).then(|| directions.focus(region, shape, &picture.view)).flatten()
-        else {
-            continue;
-        };
-        if !picture.describes(focus) {
-            continue;
-        }
+        let Some(focus) = directions.focus(region, shape, &picture.view) else { continue };
         let p = picture.view.to_sheet(focus);
-        if !found.iter().any(|q| (p[0] - q[0]).hypot(p[1] - q[1]) < 0.5) {
+        let is_new = !found.iter().any(|q| norm(minus(p, *q)) < 0.5);
+        if is_new && picture.describes(focus) {
             found.push(p);
         }
     }
@@ -202,7 +186,7 @@ fn axis(picture: &Picture<'_>, directions: &mut Directions<'_>) -> bool {
 }
 
 /// An arrow on the sheet, as tail and head.
-type Arrow = [Point; 2];
+pub(super) type Arrow = [Point; 2];
 
 /// Evaluates the directions of a tool's regions.
 struct Directions<'m> {
@@ -227,95 +211,76 @@ impl<'m> Directions<'m> {
     /// Returns the point toward or away from which all directions of a region point, if there is one; directions are
     /// undefined there. It is the common intersection of the lines along three directions.
     fn focus(&mut self, region: usize, shape: &Shape, view: &View) -> Option<Point> {
-        let [low, high] = shape.frame();
-        let (middle, _) = shape.pole(1.0);
-        let probe_offsets =
-            [[0.0, 0.0], [0.31, 0.17], [-0.23, 0.29], [0.19, -0.33], [-0.27, -0.21]];
-        let mut samples: Vec<(Point, Point)> = Vec::new();
-        // The sampled neighbourhood shrinks if the region is too small for it.
-        for near in [1.0, 0.4, 0.1] {
-            samples.clear();
-            for [u, v] in probe_offsets {
-                let [wide, tall] = [0, 1].map(|k| near * (high[k] - low[k]));
-                let at = [middle[0] + u * wide, middle[1] + v * tall];
-                let p = view.point(at);
-                if shape.clearance(at, 1.0) > 0.0
-                    && let Some(direction) = self.at(region, p)
-                {
-                    samples.push((p, direction));
-                }
-            }
-            if samples.len() >= 3 {
-                break;
-            }
+        if shape.is_empty() {
+            return None;
         }
-        let intersection = |a: (Point, Point), b: (Point, Point)| {
-            let sine = cross(a.1, b.1);
-            let share = cross(minus(b.0, a.0), b.1) / sine;
-            (sine.abs() > 1e-6).then(|| [0, 1].map(|k| a.0[k] + share * a.1[k]))
-        };
-        let [a, b, c, ..] = samples.as_slice() else { return None };
-        let (p, q) = (intersection(*a, *b)?, intersection(*a, *c)?);
-        let near = norm(minus(p, q)) < 1e-6 * norm(minus(a.0, b.0)).max(norm(p));
-        let on_sheet = view.to_sheet(p);
-        (near && shape.clearance(on_sheet, 1.0) > -0.05).then_some(p)
+        let (middle, room) = shape.pole(1.0);
+        let mut rays: Vec<(Point, Point)> = Vec::new();
+        for [x, y] in [[0.1, 0.5], [0.4, -0.3], [-0.4, -0.2]] {
+            let p = view.point([middle[0] + room * x, middle[1] + room * y]);
+            rays.push((p, self.at(region, p)?));
+        }
+        let (from, along) = rays[0];
+        let mut crossings = [[0.0; 2]; 2];
+        for (crossing, (other, direction)) in crossings.iter_mut().zip(&rays[1..]) {
+            let sine = cross(along, *direction);
+            if sine.abs() < 1e-6 {
+                return None;
+            }
+            let share = cross(minus(*other, from), *direction) / sine;
+            *crossing = [0, 1].map(|k| from[k] + share * along[k]);
+        }
+        let [p, q] = crossings;
+        let is_one = norm(minus(p, q)) < 1e-6 * norm(minus(p, from)).max(norm(p));
+        (is_one && shape.clearance(view.to_sheet(p), 1.0) > -0.05).then_some(p)
     }
 
     /// Returns a few arrows, placed where there is room for them.
     fn arrows(&mut self, region: usize, shape: &Shape, view: &View, taken: &[Frame]) -> Vec<Arrow> {
-        /// The distance between candidate positions, and the minimum distance between arrows, in sheet units.
-        const STEP: f64 = 9.0;
-        const MIN_ARROW_DISTANCE: f64 = 40.0;
         let [low, high] = shape.frame();
+        let counts = [0, 1].map(|k| ((high[k] - low[k]) / ARROW_STEP).floor() + 1.0);
         let mut candidates: Vec<(f64, Point)> = Vec::new();
-        let [columns, rows] = [0, 1].map(|k| ((high[k] - low[k]) / STEP).floor() as usize + 1);
-        for i in 0..columns {
-            for j in 0..rows {
-                let at = |k: usize, n: usize, of: usize| {
-                    low[k] + (high[k] - low[k]) * (n as f64 + 0.5) / of as f64
-                };
-                let p = [at(0, i, columns), at(1, j, rows)];
-                let free_distance = shape.clearance(p, 1.0).min(clear(p, taken));
-                if free_distance > 3.5 {
-                    candidates.push((free_distance, p));
+        for i in 0..counts[0] as usize {
+            for j in 0..counts[1] as usize {
+                let shares = [(i as f64 + 0.5) / counts[0], (j as f64 + 0.5) / counts[1]];
+                let p = [0, 1].map(|k| low[k] + shares[k] * (high[k] - low[k]));
+                let room = shape.clearance(p, 1.0).min(clear(p, taken));
+                if room > 3.5 {
+                    candidates.push((room, p));
                 }
             }
         }
         let max_arrows = (shape.area() / 2600.0).ceil().clamp(1.0, 5.0) as usize;
         let mut arrows: Vec<Arrow> = Vec::new();
-        let mut middles: Vec<Point> = Vec::new();
         while arrows.len() < max_arrows {
             // Prefers positions with room around them and far from the other arrows.
-            let score = |(free_distance, p): &(f64, Point)| {
-                let distance_to_chosen =
-                    middles.iter().map(|m| norm(minus(*m, *p))).fold(f64::INFINITY, f64::min);
-                if distance_to_chosen < MIN_ARROW_DISTANCE {
-                    -1.0
-                } else {
-                    free_distance.min(24.0) + 0.3 * distance_to_chosen.min(90.0)
+            let mut best = (0.0, 0);
+            for (index, (room, p)) in candidates.iter().enumerate() {
+                let mut distance = 90.0f64;
+                for [tail, head] in &arrows {
+                    distance = distance.min(norm(minus(*p, Stroke::line(*tail, *head).at(0.5))));
                 }
-            };
-            // `max_by` returns the last of equal candidates, and the first one counts.
-            let best = (0..candidates.len())
-                .rev()
-                .max_by(|a, b| score(&candidates[*a]).total_cmp(&score(&candidates[*b])));
-            let Some(best) = best.filter(|best| score(&candidates[*best]) > 0.0) else { break };
-            let (_, p) = candidates.swap_remove(best);
+                let score = room.min(24.0) + 0.3 * distance;
+                if distance > MIN_ARROW_DISTANCE && score > best.0 {
+                    best = (score, index);
+                }
+            }
+            if best.0 == 0.0 {
+                break;
+            }
+            let (_, p) = candidates.remove(best.1);
             let Some([d, z]) = self.at(region, view.point(p)) else { continue };
             // Short arrows are used only for a region without any other.
-            let lengths =
-                if arrows.is_empty() { &[18.0, 14.0, 10.0, 7.0][..] } else { &[18.0, 14.0] };
-            let fitting = lengths.iter().find_map(|length| {
+            let shortest = if arrows.is_empty() { 7.0 } else { 14.0 };
+            for length in [18.0, 14.0, 10.0, 7.0].into_iter().filter(|length| *length >= shortest) {
                 let half = [d * length / 2.0, -z * length / 2.0];
-                let ends = [[p[0] - half[0], p[1] - half[1]], [p[0] + half[0], p[1] + half[1]]];
-                let clear = ends
-                    .iter()
-                    .all(|end| shape.clearance(*end, 1.0) > 2.0 && clear(*end, taken) > 1.0);
-                clear.then_some(ends)
-            });
-            if let Some(arrow) = fitting {
-                arrows.push(arrow);
-                middles.push(p);
+                let arrow = [minus(p, half), [p[0] + half[0], p[1] + half[1]]];
+                let fits =
+                    |end: &Point| shape.clearance(*end, 1.0) > 2.0 && clear(*end, taken) > 1.0;
+                if arrow.iter().all(fits) {
+                    arrows.push(arrow);
+                    break;
+                }
             }
         }
         arrows
@@ -324,20 +289,24 @@ impl<'m> Directions<'m> {
 
 /// Returns the distance of a point from the nearest box; -1 inside one.
 fn clear(p: Point, taken: &[Frame]) -> f64 {
-    taken
-        .iter()
-        .map(|frame| {
-            let out = [0, 1].map(|k| (frame[0][k] - p[k]).max(p[k] - frame[1][k]));
-            if out[0].max(out[1]) < 0.0 { -1.0 } else { norm(out.map(|part| part.max(0.0))) }
-        })
-        .fold(f64::INFINITY, f64::min)
+    let mut nearest = f64::INFINITY;
+    for [low, high] in taken {
+        let out = [0, 1].map(|k| (low[k] - p[k]).max(p[k] - high[k]));
+        let is_inside = out[0].max(out[1]) < 0.0;
+        nearest = nearest.min(if is_inside { -1.0 } else { norm(out.map(|part| part.max(0.0))) });
+    }
+    nearest
 }
 
-/// Returns an arrow's head as a filled triangle.
-pub(super) fn head([tail, head]: Arrow, length: f64) -> [Point; 3] {
-    let direction = minus(head, tail);
-    let size = norm(direction);
-    let [x, y] = [direction[0] / size * length, direction[1] / size * length];
-    let foot = [head[0] - x, head[1] - y];
-    [[foot[0] - 0.36 * y, foot[1] + 0.36 * x], head, [foot[0] + 0.36 * y, foot[1] - 0.36 * x]]
+/// Returns the path data of arrows' heads, as filled triangles.
+pub(super) fn heads(arrows: &[Arrow], length: f64) -> String {
+    let mut triangles: Vec<[Point; 4]> = Vec::new();
+    for [tail, head] in arrows {
+        let direction = minus(*head, *tail);
+        let [x, y] = direction.map(|part| part / norm(direction) * length);
+        let foot = [head[0] - x, head[1] - y];
+        let corner = [foot[0] - 0.36 * y, foot[1] + 0.36 * x];
+        triangles.push([corner, *head, [foot[0] + 0.36 * y, foot[1] - 0.36 * x], corner]);
+    }
+    lines(&triangles)
 }

@@ -6,7 +6,7 @@
 use super::curves::Plane;
 use super::legend::{self, Entry, Sign};
 use super::notes::tidy;
-use super::regions::{head, name};
+use super::regions::{heads, name};
 use super::section::Section;
 use super::sheet::{Anchor, Look, SECONDARY_COLOUR, Sheet, lines};
 use super::view::View;
@@ -209,13 +209,10 @@ impl SectionView<'_> {
             let nearest = at_end.map(|p| p[1 - k] * outward).reduce(f64::max).unwrap_or(0.0);
             thin.push([point(end, (nearest + 3.0) * outward), point(end, line + 4.0 * outward)]);
         }
-        let heads = [ends, [ends[1], ends[0]]].map(|row| {
-            let [a, b, c] = head(row.map(|end| point(end, line)), 6.0);
-            [a, b, c, a]
-        });
+        let arrows = [ends, [ends[1], ends[0]]].map(|row| row.map(|end| point(end, line)));
         let look = format!("fill=\"none\" stroke=\"{SECONDARY_COLOUR}\" stroke-width=\".7\"");
         sheet.path(&look, &lines(thin));
-        sheet.path(&format!("fill=\"{SECONDARY_COLOUR}\""), &lines(heads));
+        sheet.path(&format!("fill=\"{SECONDARY_COLOUR}\""), &heads(&arrows, 6.0));
         line
     }
 

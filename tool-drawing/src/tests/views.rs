@@ -111,3 +111,12 @@ fn sections_of_solids_have_their_areas() {
         assert!((section.at - expected).abs() < 1e-12, "{}, not {expected}", section.at);
     }
 }
+
+#[test]
+fn notes_keep_their_spacing_and_stay_near_their_anchors() {
+    assert_eq!(notes::spread(&[0.0, 30.0, 60.0], 10.0), [0.0, 30.0, 60.0]);
+    assert_eq!(notes::spread(&[0.0, 0.0], 10.0), [-5.0, 5.0]);
+    let heights = notes::spread(&[0.0, 1.0, 2.0, 3.0, 50.0], 10.0);
+    assert!(heights.windows(2).all(|pair| pair[1] - pair[0] >= 10.0 - 1e-9));
+    assert_eq!(heights[4], 50.0);
+}
