@@ -1,5 +1,6 @@
 //! Evaluates the splitting curves in the plane of a section, each prepared when it is first used.
 
+use std::cell::RefCell;
 use touchoff_dsl::bound::Extent;
 use touchoff_dsl::expr::value::{EvaluationPoint, Evaluator};
 use touchoff_dsl::formula::CurveIndex;
@@ -31,14 +32,14 @@ impl Plane {
 pub(super) struct Curves<'m> {
     model: &'m Model,
     plane: Plane,
-    evaluators: Vec<Option<Evaluator<'m>>>,
+    evaluators: RefCell<Vec<Option<Evaluator<'m>>>>,
     /// The step of the finite differences, in the tool's unit.
     step: f64,
 }
 
 impl<'m> Curves<'m> {
     pub(super) fn new(model: &'m Model, extent: &Extent, plane: Plane) -> Curves<'m> {
-        let evaluators = model.curves.iter().map(|_| None).collect();
+        let evaluators = RefCell::new(model.curves.iter().map(|_| None).collect());
         let step = 1e-6 * (extent.high - extent.low).max(extent.radius);
         Curves { model, plane, evaluators, step }
     }
@@ -48,17 +49,12 @@ impl<'m> Curves<'m> {
         matches!(self.plane, Plane::Meridian)
     }
 
-    /// Returns whether a test of the plan's tree holds at a point.
-    pub(super) fn holds(&mut self, curve: CurveIndex, strict: bool, p: Point) -> bool {
-        let value = self.value(curve, p);
-        if strict { value < 0.0 } else { value <= 0.0 }
-    }
-
     /// Returns a curve's value at a point; +∞ where it is undefined.
-    fn value(&mut self, curve: CurveIndex, p: Point) -> f64 {
+    pub(super) fn value(&self, curve: CurveIndex, p: Point) -> f64 {
         let Model { graph, curves, .. } = self.model;
         let id = curves[curve].value;
-        let evaluator = self.evaluators[curve].get_or_insert_with(|| Evaluator::new(graph, [id]));
+        let mut evaluators = self.evaluators.borrow_mut();
+        let evaluator = evaluators[curve].get_or_insert_with(|| Evaluator::new(graph, [id]));
         evaluator.evaluate(self.plane.point(p));
         let value = evaluator.get(id);
         // As in the emitted code, where no test of NaN holds.
@@ -66,7 +62,7 @@ impl<'m> Curves<'m> {
     }
 
     /// Returns a curve's value and its gradient at a point, by finite differences. `None` stands for the axis.
-    fn value_and_slope(&mut self, curve: Option<CurveIndex>, p @ [u, v]: Point) -> (f64, Point) {
+    fn value_and_slope(&self, curve: Option<CurveIndex>, p @ [u, v]: Point) -> (f64, Point) {
         let Some(curve) = curve else { return (u, [1.0, 0.0]) };
         let h = self.step;
         // A difference across the axis would see the mirror image.
@@ -80,7 +76,7 @@ impl<'m> Curves<'m> {
     /// meet. `None` in `pair` stands for the axis. Returns `None` if they meet at too small an angle, or farther away than
     /// `reach`.
     pub(super) fn meet(
-        &mut self,
+        &self,
         [first, second]: [Option<CurveIndex>; 2],
         from: Point,
         reach: f64,

@@ -55,25 +55,24 @@ impl Section {
             let [low, high] = window;
             return Section::of_profile(&profile, norm(minus(high, low)), FLATNESS * unit);
         }
-        let mut curves = Curves::new(&tool.model, &tool.extent, plane);
-        let borders = trace(&mut curves, &tool.tree, window, unit);
+        let curves = Curves::new(&tool.model, &tool.extent, plane);
+        let borders = trace(&curves, &tool.tree, window, unit);
         let regions = tool.model.regions.len();
         let mut section = Section::default();
         for region in 0..regions {
             section.areas.push(loops(&borders, |side| side == Side::Region(region)));
         }
         section.material = loops(&borders, |side| matches!(side, Side::Region(_)));
-        for border in borders {
-            match border.sides {
+        for Border { sides, line, strokes, exact, .. } in borders {
+            match sides {
                 [Side::Region(a), Side::Region(b)] => {
-                    section.splits.push(Split { regions: [a, b], line: border.line });
+                    section.splits.push(Split { regions: [a, b], line });
                 }
                 [Side::Region(region), Side::Axis] => {
-                    section.axis.push((region, border.line[border.line.len() / 2]));
+                    section.axis.push((region, line[line.len() / 2]));
                 }
-                [Side::Region(region), _] if !border.strokes.is_empty() => {
+                [Side::Region(region), _] if !strokes.is_empty() => {
                     let surface = tool.model.regions[region].surface;
-                    let Border { strokes, exact, .. } = border;
                     section.edges.push(Edge { surface, strokes, exact });
                 }
                 _ => {}
@@ -81,9 +80,7 @@ impl Section {
         }
         section
     }
-}
 
-impl Section {
     /// Returns the section of a profile, whose chords deviate by at most `flat`.
     fn of_profile(profile: &[ProfileSegment], size: f64, flat: f64) -> Section {
         let Cells { areas, splits, axis } = cells(profile, size, flat);

@@ -77,7 +77,7 @@ enum Next {
 type LatticeSide = ([i64; 2], bool);
 
 struct Tracer<'c, 'm, 't> {
-    curves: &'c mut Curves<'m>,
+    curves: &'c Curves<'m>,
     tree: &'t Tree,
     low: Point,
     step: Point,
@@ -89,7 +89,7 @@ struct Tracer<'c, 'm, 't> {
 
 /// Traces the borders in a window around a section. `unit` is a lower bound on one unit of the sheet.
 pub(super) fn trace(
-    curves: &mut Curves<'_>,
+    curves: &Curves<'_>,
     tree: &Tree,
     [low, high]: [Point; 2],
     unit: f64,
@@ -150,35 +150,15 @@ impl Tracer<'_, '_, '_> {
     }
 
     /// Returns the owner of a point.
-    fn owner(&mut self, p: Point) -> Side {
+    fn owner(&self, p: Point) -> Side {
         if self.curves.has_axis() && p[0] < 0.0 {
             return Side::Axis;
         }
-        let mut tree = self.tree;
-        loop {
-            match tree {
-                Tree::Leaf(None) => return Side::Outside,
-                Tree::Leaf(Some(region)) => return Side::Region(*region),
-                Tree::Split { curve, strict, below, above } => {
-                    tree = if self.curves.holds(*curve, *strict, p) { below } else { above };
-                }
-            }
-        }
+        let owner = self.tree.owner_at(&|curve| self.curves.value(curve, p));
+        owner.map_or(Side::Outside, Side::Region)
     }
 
-    /// Returns the curve of the first test whose result differs at two points.
-    fn curve_between(&mut self, p: Point, q: Point) -> Option<CurveIndex> {
-        let mut tree = self.tree;
-        while let Tree::Split { curve, strict, below, above } = tree {
-            let holds = self.curves.holds(*curve, *strict, p);
-            if holds != self.curves.holds(*curve, *strict, q) {
-                return Some(*curve);
-            }
-            tree = if holds { below } else { above };
-        }
-        None
-    }
-
+    /// Returns the owner of a point of the lattice.
     fn lattice_owner(&mut self, corner: [i64; 2]) -> Side {
         if let Some(owner) = self.owners.get(&corner) {
             return *owner;
@@ -186,6 +166,22 @@ impl Tracer<'_, '_, '_> {
         let owner = self.owner(self.at(corner));
         self.owners.insert(corner, owner);
         owner
+    }
+
+    /// Returns the curve of the first test whose result differs at two points.
+    fn curve_between(&self, p: Point, q: Point) -> Option<CurveIndex> {
+        let mut tree = self.tree;
+        while let Tree::Split { curve, strict, below, above } = tree {
+            let holds = [p, q].map(|p| {
+                let value = self.curves.value(*curve, p);
+                value < 0.0 || (value == 0.0 && !strict)
+            });
+            if holds[0] != holds[1] {
+                return Some(*curve);
+            }
+            tree = if holds[0] { below } else { above };
+        }
+        None
     }
 
     /// Returns the crossing of a side of the lattice, if its ends have different owners.
@@ -250,19 +246,18 @@ impl Tracer<'_, '_, '_> {
     }
 
     /// Returns the intersection of the curves of a cell's crossings, of the two at the largest angle.
-    fn joint(&mut self, found: &[(usize, usize)]) -> Point {
-        let crossings: Vec<(Point, Option<CurveIndex>)> = found
-            .iter()
-            .map(|(index, _)| (self.crossings[*index].at, self.crossings[*index].curve))
-            .collect();
-        let count = crossings.len() as f64;
-        let middle = [0, 1].map(|k| crossings.iter().map(|(at, _)| at[k]).sum::<f64>() / count);
+    fn joint(&self, found: &[(usize, usize)]) -> Point {
+        let crossings: Vec<&Crossing> =
+            found.iter().map(|(index, _)| &self.crossings[*index]).collect();
+        let mut middle = [0.0; 2];
+        for Crossing { at, .. } in &crossings {
+            middle = [0, 1].map(|k| middle[k] + at[k] / crossings.len() as f64);
+        }
         let reach = 2.0 * norm(self.step);
         let (mut best, mut joint) = (0.0, middle);
-        for (k, (_, a)) in crossings.iter().enumerate() {
-            for (_, b) in &crossings[k + 1..] {
-                if a != b
-                    && let Some((sine, at)) = self.curves.meet([*a, *b], middle, reach)
+        for (k, a) in crossings.iter().enumerate() {
+            for b in crossings[k + 1..].iter().filter(|b| b.curve != a.curve) {
+                if let Some((sine, at)) = self.curves.meet([a.curve, b.curve], middle, reach)
                     && sine > best + 1e-9
                 {
                     (best, joint) = (sine, at);
@@ -273,18 +268,16 @@ impl Tracer<'_, '_, '_> {
     }
 
     /// Returns the borders along linked crossings, those between joints first.
-    fn borders(&mut self) -> Vec<Border> {
+    fn borders(&self) -> Vec<Border> {
         let mut borders = Vec::new();
         let mut taken = vec![false; self.crossings.len()];
         for closed in [false, true] {
-            for start in 0..self.crossings.len() {
+            for (start, crossing) in self.crossings.iter().enumerate() {
                 for place in [0, 1] {
-                    let begins =
-                        matches!(self.crossings[start].next[1 - place], Some(Next::Joint(_)));
-                    if taken[start] || begins == closed {
-                        continue;
+                    let is_end = matches!(crossing.next[1 - place], Some(Next::Joint(_)));
+                    if !taken[start] && is_end != closed {
+                        borders.push(self.border(start, place, &mut taken));
                     }
-                    borders.push(self.border(start, place, &mut taken));
                 }
             }
         }
