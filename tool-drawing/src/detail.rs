@@ -1,6 +1,7 @@
 //! The detail: the cutting part of a tool at a larger scale, beside the view of the whole tool.
 
 use super::regions::Marks;
+use super::section::clipped_stroke;
 use super::sheet::{Anchor, DEFAULT_COLOUR, Look, Sheet, lines};
 use super::view::View;
 use super::{Content, Part, Picture, meridian_section};
@@ -111,11 +112,10 @@ impl CuttingPart {
         let (mut low, mut high, mut radius) = (f64::INFINITY, f64::NEG_INFINITY, 0.0f64);
         for edge in &whole.section.edges {
             for stroke in &edge.strokes {
-                let span = stroke.span();
                 // From the tool's lowest point, even if that does not cut.
-                low = low.min(span[0]);
+                low = low.min(stroke.span()[0]);
                 if whole.model.surfaces[edge.surface].cutting {
-                    high = high.max(span[1]);
+                    high = high.max(stroke.span()[1]);
                     radius = radius.max(stroke.widest());
                 }
             }
@@ -140,7 +140,7 @@ fn radius_below(whole: &Picture<'_>, top: f64) -> f64 {
     let near = 1e-6 * whole.size;
     let mut radius = 0.0f64;
     for stroke in whole.section.surface().filter(|stroke| stroke.span()[0] < top - near) {
-        for part in stroke.clipped([f64::INFINITY, top + near]) {
+        for part in clipped_stroke(stroke, [f64::INFINITY, top + near]) {
             radius = radius.max(part.widest());
         }
     }

@@ -71,9 +71,14 @@ fn draw_faces(picture: &Picture<'_>, sheet: &mut Sheet) {
         notes.push(Note { text, look, height: bend[1], leader });
     }
     let leaders = draw_column(notes, -half - NOTES_DISTANCE, LINE_SPACING, sheet);
-    let look = format!("fill=\"none\" stroke=\"{SECONDARY_COLOUR}\" stroke-width=\".8\"");
-    sheet.path(&look, &lines(&leaders));
-    sheet.path(&format!("fill=\"{SECONDARY_COLOUR}\""), &heads(&arrows, 6.0));
+    draw_thin_lines(&leaders, &arrows, sheet);
+}
+
+/// Draws leaders or dimension lines, and the heads of arrows.
+pub(super) fn draw_thin_lines<R: AsRef<[Point]>>(rows: &[R], arrows: &[Arrow], sheet: &mut Sheet) {
+    let look = format!("fill=\"none\" stroke=\"{SECONDARY_COLOUR}\" stroke-width=\".7\"");
+    sheet.path(&look, &lines(rows));
+    sheet.path(&format!("fill=\"{SECONDARY_COLOUR}\""), &heads(arrows, 6.0));
 }
 
 /// All parts of a surface with one dimension.
@@ -261,9 +266,7 @@ fn draw_heights(picture: &Picture<'_>, steps: &[Point], edge: f64, sheet: &mut S
         notes.push(Note { text, look, height: y, leader });
     }
     thin.extend(draw_column(notes, x + 12.0, HEIGHT_SPACING, sheet));
-    let look = format!("fill=\"none\" stroke=\"{SECONDARY_COLOUR}\" stroke-width=\".7\"");
-    sheet.path(&look, &lines(&thin));
-    sheet.path(&format!("fill=\"{SECONDARY_COLOUR}\""), &heads(&arrows, 6.0));
+    draw_thin_lines(&thin, &arrows, sheet);
     let look = format!("fill=\"#fff\" stroke=\"{SECONDARY_COLOUR}\" stroke-width=\".9\"");
     sheet.group(&look, |sheet| sheet.ring([x, lowest], 2.4));
 }
@@ -344,19 +347,12 @@ pub(super) fn heights(
         }
     }
     // An arc may reach beyond its ends.
-    let mut ends: Option<[Point; 2]> = None;
-    let mut widest = 0.0f64;
+    let low = section.surface().map(|stroke| stroke.span()[0]).fold(f64::INFINITY, f64::min);
+    let high = section.surface().map(|stroke| stroke.span()[1]).fold(low, f64::max);
     for stroke in section.surface() {
-        let [low, high] = stroke.span();
-        let d = stroke.from[0].max(stroke.to[0]);
-        widest = widest.max(stroke.from[0]);
-        let [lowest, highest] = ends.unwrap_or([[d, low], [d, high]]);
-        ends = Some([
-            if low < lowest[1] { [d, low] } else { lowest },
-            if high > highest[1] { [d, high] } else { highest },
-        ]);
+        let ends = stroke.span().into_iter().filter(|z| *z == low || *z == high);
+        steps.extend(ends.map(|z| [stroke.from[0].max(stroke.to[0]), z]));
     }
-    steps.extend(ends.into_iter().flatten().map(|[d, z]| [d.min(widest), z]));
     steps.sort_by(|a, b| a[1].total_cmp(&b[1]));
     let mut levels: Vec<Point> = Vec::new();
     for step in steps {

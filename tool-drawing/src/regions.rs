@@ -142,6 +142,9 @@ pub(super) fn name(
     shape: &Shape,
     rings: &[Frame],
 ) -> Option<Name> {
+    if shape.is_empty() {
+        return None;
+    }
     let text = &picture.model.regions[region].name;
     let across = TEXT_SIZES[1] / width(text, TEXT_SIZES[1]).max(TEXT_SIZES[1]);
     let (pole, _) = shape.pole(across);

@@ -3,13 +3,12 @@
 //! For a profile all of it is computed from the segments (`cells`). For regions by hand, and for a plane through a solid,
 //! it is traced in the plan's tree (`trace`).
 
-use super::cells::{Cells, cells, strokes};
+use super::cells::cells;
 use super::curves::{Curves, Plane};
 use super::stroke::Stroke;
 use super::trace::{Border, Side, loops, trace};
-use touchoff_dsl::CheckedTool;
-use touchoff_dsl::model::ProfileSegment;
 use touchoff_dsl::vector::{Point, cross, minus, norm};
+use touchoff_dsl::{CheckedTool, Features};
 
 /// The vertices of an area's border, in order.
 pub(super) type Polygon = Vec<Point>;
@@ -45,15 +44,15 @@ pub(super) struct Section {
 
 /// The largest distance of a chord from its curve, in units of the sheet.
 const FLATNESS: f64 = 0.06;
+/// The same for an arc that is cut, relative to its length.
+const CUT_FLATNESS: f64 = 1e-4;
 
 impl Section {
     /// Returns the section of a tool in a plane, within a box. `unit` is a lower bound on one unit of the sheet, in the
     /// tool's unit.
     pub(super) fn new(tool: &CheckedTool, plane: Plane, window: [Point; 2], unit: f64) -> Section {
-        if tool.model.has_cells_of_features() {
-            let profile: Vec<ProfileSegment> = tool.model.outline().collect();
-            let [low, high] = window;
-            return Section::of_profile(&profile, norm(minus(high, low)), FLATNESS * unit);
+        if let Some(features) = Features::of(&tool.model) {
+            return cells(&tool.model, &features, FLATNESS * unit);
         }
         let curves = Curves::new(&tool.model, &tool.extent, plane);
         let borders = trace(&curves, &tool.tree, window, unit);
@@ -81,21 +80,6 @@ impl Section {
         section
     }
 
-    /// Returns the section of a profile, whose chords deviate by at most `flat`.
-    fn of_profile(profile: &[ProfileSegment], size: f64, flat: f64) -> Section {
-        let Cells { areas, splits, axis } = cells(profile, size, flat);
-        let mut edges = Vec::new();
-        let mut material = Vec::new();
-        for segment in profile {
-            let strokes = strokes(segment);
-            material.extend(strokes.iter().flat_map(|stroke| stroke.points(flat)));
-            edges.push(Edge { surface: segment.surface, strokes, exact: true });
-        }
-        material.extend(profile.last().map(|last| last.ends[1]));
-        let areas = areas.into_iter().map(|area| vec![area]).collect();
-        Section { edges, areas, material: vec![material], splits, axis }
-    }
-
     /// Returns all strokes of the surface.
     pub(super) fn surface(&self) -> impl Iterator<Item = &Stroke> {
         self.edges.iter().flat_map(|edge| &edge.strokes)
@@ -106,7 +90,7 @@ impl Section {
         let mut clipped = Section::default();
         for edge in &self.edges {
             let strokes: Vec<Stroke> =
-                edge.strokes.iter().flat_map(|stroke| stroke.clipped(corner)).collect();
+                edge.strokes.iter().flat_map(|stroke| clipped_stroke(stroke, corner)).collect();
             if !strokes.is_empty() {
                 clipped.edges.push(Edge { strokes, ..*edge });
             }
@@ -151,6 +135,20 @@ fn clipped_line(line: &[Point], corner: Point) -> Vec<Vec<Point>> {
         lines = parts;
     }
     lines
+}
+
+/// Returns the parts of a stroke whose coordinates are at most those of a corner. An arc that is cut is chords from there on.
+pub(super) fn clipped_stroke(stroke: &Stroke, corner: Point) -> Vec<Stroke> {
+    if stroke.breadth()[1] <= corner[0] && stroke.span()[1] <= corner[1] {
+        return vec![*stroke];
+    }
+    let mut points = stroke.points(CUT_FLATNESS * stroke.length());
+    points.push(stroke.to);
+    let mut parts = Vec::new();
+    for line in clipped_line(&points, corner) {
+        parts.extend(line.windows(2).map(|pair| Stroke::line(pair[0], pair[1])));
+    }
+    parts
 }
 
 /// Returns the parts of polygons whose coordinates are at most those of a corner.

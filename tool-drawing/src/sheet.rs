@@ -33,15 +33,14 @@ pub(super) struct Sheet {
     drawn: String,
     halos: String,
     texts: String,
-    low: Option<Point>,
-    high: Option<Point>,
+    frame: Option<[Point; 2]>,
 }
 
 impl Sheet {
     /// Returns an empty sheet.
     pub(super) fn new(lettering: TextRendering) -> Sheet {
         let empty = String::new;
-        Sheet { lettering, drawn: empty(), halos: empty(), texts: empty(), low: None, high: None }
+        Sheet { lettering, drawn: empty(), halos: empty(), texts: empty(), frame: None }
     }
 
     /// Returns an empty sheet for a part of this one.
@@ -105,66 +104,52 @@ impl Sheet {
         self.reach([left - 2.0, base - style.size - 3.0]);
         self.reach([left + wide + 2.0, base + 4.0]);
         if style.halo {
-            let _ = write!(
-                self.halos,
-                "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/>",
-                short(left - 2.5),
-                short(base - style.size - 2.5),
-                short(wide + 5.0),
-                short(style.size + 5.0),
-            );
+            let (x, y) = (short(left - 2.5), short(base - style.size - 2.5));
+            let (wide, tall) = (short(wide + 5.0), short(style.size + 5.0));
+            let size = format!("width=\"{wide}\" height=\"{tall}\"");
+            let _ = write!(self.halos, "<rect x=\"{x}\" y=\"{y}\" {size}/>");
         }
-        match self.lettering {
-            TextRendering::Strokes => self.strokes(text, [left, base], style),
-            TextRendering::Page => self.letters(text, [at[0], base], style),
-        }
-    }
-
-    fn strokes(&mut self, text: &str, [x, y]: Point, style: Look) {
-        let colour = coloured("stroke", style.colour);
-        let bold = if style.bold { " stroke-width=\"2.3\"" } else { "" };
-        let _ = write!(
-            self.texts,
-            "<path aria-label=\"{}\"{colour}{bold} transform=\"translate({} {})scale({})\" d=\"{}\"/>",
-            escaped(text),
-            short(x),
-            short(y),
-            short(scale(style.size)),
-            strokes(text),
-        );
-    }
-
-    /// Draws text in the page's font. Its width is unknown, so the text is anchored at the given end.
-    fn letters(&mut self, text: &str, [x, y]: Point, style: Look) {
-        let colour = coloured("fill", style.colour);
-        let bold = if style.bold { " font-weight=\"bold\"" } else { "" };
-        let anchor = match style.anchor {
-            Anchor::Left => "",
-            Anchor::Middle => " text-anchor=\"middle\"",
-            Anchor::Right => " text-anchor=\"end\"",
+        let label = escaped(text);
+        // Writing to a `String` cannot fail.
+        let _ = match self.lettering {
+            TextRendering::Strokes => {
+                let colour = coloured("stroke", style.colour);
+                let bold = if style.bold { " stroke-width=\"2.3\"" } else { "" };
+                let (x, y, scale) = (short(left), short(base), short(scale(style.size)));
+                let data = strokes(text);
+                let placed = format!("transform=\"translate({x} {y})scale({scale})\" d=\"{data}\"");
+                write!(self.texts, "<path aria-label=\"{label}\"{colour}{bold} {placed}/>")
+            }
+            // The width in the page's font is unknown, so the text is anchored at the given end.
+            TextRendering::Page => {
+                let colour = coloured("fill", style.colour);
+                let bold = if style.bold { " font-weight=\"bold\"" } else { "" };
+                let anchor = match style.anchor {
+                    Anchor::Left => "",
+                    Anchor::Middle => " text-anchor=\"middle\"",
+                    Anchor::Right => " text-anchor=\"end\"",
+                };
+                // Capitals are about 0.72 of the font size.
+                let (x, y, size) = (short(at[0]), short(base), short(style.size / 0.72));
+                let placed =
+                    format!("x=\"{x}\" y=\"{y}\" font-size=\"{size}\"{anchor}{colour}{bold}");
+                write!(self.texts, "<text {placed}>{label}</text>")
+            }
         };
-        // Capitals are about 0.72 of the font size.
-        let size = short(style.size / 0.72);
-        let _ = write!(
-            self.texts,
-            "<text x=\"{}\" y=\"{}\" font-size=\"{size}\"{anchor}{colour}{bold}>{}</text>",
-            short(x),
-            short(y),
-            escaped(text),
-        );
     }
 
     /// Extends the sheet to contain a point.
     pub(super) fn reach(&mut self, p: Point) {
-        let low = self.low.get_or_insert(p);
-        *low = [low[0].min(p[0]), low[1].min(p[1])];
-        let high = self.high.get_or_insert(p);
-        *high = [high[0].max(p[0]), high[1].max(p[1])];
+        let [low, high] = self.frame.get_or_insert([p, p]);
+        for k in 0..2 {
+            low[k] = low[k].min(p[k]);
+            high[k] = high[k].max(p[k]);
+        }
     }
 
     /// Returns the bounding box of the drawing.
     pub(super) fn frame(&self) -> [Point; 2] {
-        [self.low.unwrap_or_default(), self.high.unwrap_or_default()]
+        self.frame.unwrap_or_default()
     }
 
     /// Returns the SVG document, on a white background.

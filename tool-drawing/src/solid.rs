@@ -5,15 +5,14 @@
 
 use super::curves::Plane;
 use super::legend::{self, Entry, Sign};
-use super::notes::tidy;
-use super::regions::{heads, name};
+use super::notes::{draw_thin_lines, tidy};
+use super::regions::name;
 use super::section::Section;
-use super::sheet::{Anchor, Look, SECONDARY_COLOUR, Sheet, lines};
+use super::sheet::{Anchor, Look, Sheet, lines};
 use super::view::View;
 use super::{Content, Picture, paint};
 use touchoff_dsl::CheckedTool;
 use touchoff_dsl::expr::interval::Interval;
-use touchoff_dsl::vector::Point;
 
 /// The axes, and those perpendicular to the front view, the side view and the top view.
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -56,8 +55,8 @@ pub(super) struct SectionView<'m> {
     pub(super) picture: Picture<'m>,
 }
 
-/// The dimension of a section along an axis: the coordinates of its ends.
-type Dimension = (usize, [f64; 2]);
+/// The extent of a section along an axis.
+type Dimension = (usize, Interval);
 
 /// Returns the three sections through the middle, in the order of `NORMALS` and to one scale.
 pub(super) fn sections<'m>(tool: &'m CheckedTool, content: Content) -> [SectionView<'m>; 3] {
@@ -156,9 +155,7 @@ impl SectionView<'_> {
     /// Draws the names of regions that have room for them; the legend names all.
     fn draw_names(&self, sheet: &mut Sheet) {
         for (region, shape) in self.picture.shapes.iter().enumerate() {
-            let name =
-                if shape.is_empty() { None } else { name(&self.picture, region, shape, &[]) };
-            if let Some(name) = name {
+            if let Some(name) = name(&self.picture, region, shape, &[]) {
                 let text = &self.picture.model.regions[region].name;
                 sheet.text(text, name.at, Look::plain(name.size, Anchor::Middle));
             }
@@ -167,53 +164,54 @@ impl SectionView<'_> {
 
     /// Draws the dimensions of the section except those that are `known` from other views.
     fn draw_dimensions(&self, known: &mut Vec<Dimension>, sheet: &mut Sheet) {
-        let Picture { section, size, .. } = &self.picture;
+        let Picture { section, size, model, view, .. } = &self.picture;
         let Some(bounds) = bounds(section) else { return };
         for (k, (axis, side)) in axes(self.normal).into_iter().zip(bounds).enumerate() {
-            let ends = [side.low, side.high];
             let is_known = known.iter().any(|(other, known)| {
-                *other == axis && (0..2).all(|end| (known[end] - ends[end]).abs() < 1e-6 * size)
+                let difference = (known.low - side.low).abs() + (known.high - side.high).abs();
+                *other == axis && difference < 1e-6 * size
             });
             if is_known {
                 continue;
             }
-            known.push((axis, ends));
-            let on_sheet = ends.map(|end| self.picture.view.to_sheet([end, end])[k]);
-            let line = self.draw_dimension_line(k, on_sheet, sheet);
+            known.push((axis, side));
+            let ends = [side.low, side.high];
+            let on_sheet = ends.map(|end| view.to_sheet([end, end])[k]);
+            let middle = f64::midpoint(on_sheet[0], on_sheet[1]);
+            let line = [DIMENSION_DISTANCE, -view.half - DIMENSION_DISTANCE][k];
+            self.draw_dimension_line(k, on_sheet, line, sheet);
             let [from, to] = ends.map(|end| self.figure(end));
-            let length = tidy(ends[1] - ends[0], self.picture.model.unit);
+            let length = tidy(side.high - side.low, model.unit);
             let text = format!("{} {length} ({from} to {to})", AXES[axis]);
-            let middle = on_sheet[0] / 2.0 + on_sheet[1] / 2.0;
-            let (at, anchor) = if k == 0 {
-                ([middle, line + 13.0], Anchor::Middle)
-            } else {
-                ([line - 8.0, middle], Anchor::Right)
-            };
+            let (at, anchor) =
+                [([middle, line + 13.0], Anchor::Middle), ([line - 8.0, middle], Anchor::Right)][k];
             sheet.text(&text, at, Look::plain(DIMENSION_SIZE, anchor));
         }
     }
 
     /// Draws a dimension line between two coordinates of the sheet, below the section if they are horizontal, otherwise
-    /// on the left, and lines that extend to it from the contour. Returns the line's other coordinate.
-    fn draw_dimension_line(&self, k: usize, ends: [f64; 2], sheet: &mut Sheet) -> f64 {
-        let Picture { section, view, .. } = &self.picture;
-        let strokes = section.surface().map(|stroke| view.stroke(stroke));
-        let contour: Vec<Point> = strokes.flat_map(|stroke| stroke.points(0.05)).collect();
-        let line = [DIMENSION_DISTANCE, -view.half - DIMENSION_DISTANCE][k];
+    /// on the left, and lines that extend to it from the surface. `line` is its other coordinate.
+    fn draw_dimension_line(&self, k: usize, ends: [f64; 2], line: f64, sheet: &mut Sheet) {
         let outward = line.signum();
         let point =
             |along: f64, across: f64| if k == 0 { [along, across] } else { [across, along] };
         let mut thin = vec![ends.map(|end| point(end, line))];
         for end in ends {
-            let at_end = contour.iter().filter(|p| (p[k] - end).abs() < 0.5);
-            let nearest = at_end.map(|p| p[1 - k] * outward).reduce(f64::max).unwrap_or(0.0);
-            thin.push([point(end, (nearest + 3.0) * outward), point(end, line + 4.0 * outward)]);
+            let mut nearest = f64::NEG_INFINITY;
+            for stroke in self.picture.section.surface() {
+                for p in self.picture.view.stroke(stroke).points(0.05) {
+                    if (p[k] - end).abs() < 0.5 {
+                        nearest = nearest.max(p[1 - k] * outward);
+                    }
+                }
+            }
+            if nearest.is_finite() {
+                let from = point(end, (nearest + 3.0) * outward);
+                thin.push([from, point(end, line + 4.0 * outward)]);
+            }
         }
-        let arrows = [ends, [ends[1], ends[0]]].map(|row| row.map(|end| point(end, line)));
-        let look = format!("fill=\"none\" stroke=\"{SECONDARY_COLOUR}\" stroke-width=\".7\"");
-        sheet.path(&look, &lines(thin));
-        sheet.path(&format!("fill=\"{SECONDARY_COLOUR}\""), &heads(&arrows, 6.0));
-        line
+        let [from, to] = thin[0];
+        draw_thin_lines(&thin, &[[from, to], [to, from]], sheet);
     }
 
     /// Draws the name of the section above everything drawn so far.
@@ -232,12 +230,12 @@ impl SectionView<'_> {
 
 /// Returns the legend's entries of the regions that appear in a section.
 fn regions(sections: &[SectionView<'_>; 3]) -> Vec<Entry> {
-    let [SectionView { picture, .. }, ..] = sections;
-    (0..picture.shapes.len())
-        .filter(|region| sections.iter().any(|s| !s.picture.shapes[*region].is_empty()))
-        .map(|region| {
-            let colour = picture.fills[region];
-            (Sign::Region { colour }, picture.model.regions[region].name.clone())
-        })
-        .collect()
+    let Picture { model, fills, .. } = &sections[0].picture;
+    let mut entries = Vec::new();
+    for (index, (region, colour)) in model.regions.iter().zip(fills).enumerate() {
+        if sections.iter().any(|section| !section.picture.shapes[index].is_empty()) {
+            entries.push((Sign::Region { colour }, region.name.clone()));
+        }
+    }
+    entries
 }

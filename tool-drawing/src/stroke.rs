@@ -95,38 +95,6 @@ impl Stroke {
     pub(super) fn widest(&self) -> f64 {
         self.breadth()[1]
     }
-
-    /// Returns the parts whose coordinates are at most those of a corner.
-    pub(super) fn clipped(&self, corner: Point) -> Vec<Stroke> {
-        const STEPS: u32 = 32;
-        let is_inside = |share: f64| {
-            let p = self.at(share);
-            p[0] <= corner[0] && p[1] <= corner[1]
-        };
-        if self.breadth()[1] <= corner[0] && self.span()[1] <= corner[1] {
-            return vec![*self];
-        }
-        let mut parts = Vec::new();
-        let mut from = is_inside(0.0).then_some(self.from);
-        for step in 1..=STEPS {
-            let [mut low, mut high] =
-                [step - 1, step].map(|step| f64::from(step) / f64::from(STEPS));
-            let enters = from.is_none();
-            if is_inside(high) != enters {
-                continue;
-            }
-            for _ in 0..48 {
-                let middle = f64::midpoint(low, high);
-                if is_inside(middle) == enters { high = middle } else { low = middle }
-            }
-            match from.take() {
-                None => from = Some(self.at(low)),
-                Some(from) => parts.push(Stroke { from, to: self.at(high), ..*self }),
-            }
-        }
-        parts.extend(from.map(|from| Stroke { from, ..*self }));
-        parts
-    }
 }
 
 /// Returns the circle through three points, unless they are almost collinear.

@@ -39,3 +39,5 @@ pub mod vector;
 pub use checked::CheckedTool;
 pub use compile::{Accepted, Compiled, compile, compile_with_arguments};
 pub use digest::digest;
+#[doc(hidden)]
+pub use regionalise::normals::{Features, Normal, NormalEnd};

@@ -206,13 +206,6 @@ impl Model {
         self.section.is_some()
     }
 
-    /// Returns whether the regions are the cells of the profile's features, in their order: each segment, and the reflex
-    /// corner at its end.
-    #[doc(hidden)]
-    pub fn has_cells_of_features(&self) -> bool {
-        self.section.as_ref().is_some_and(|section| section.over.is_none())
-    }
-
     /// Returns the segments of the profile, in order, in doubles; none without a profile.
     pub fn outline(&self) -> impl Iterator<Item = ProfileSegment> + '_ {
         let segments = self.section.iter().flat_map(|section| &section.outline);

@@ -9,6 +9,7 @@ pub(crate) mod cells;
 pub(crate) mod check;
 mod curve;
 mod nearer;
+pub(crate) mod normals;
 pub(crate) mod overlay;
 mod section;
 mod slices;
