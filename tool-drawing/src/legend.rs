@@ -1,7 +1,7 @@
 //! The legend below the views, which explains their lines, areas and symbols.
 
 use super::lettering::width;
-use super::regions::{Marks, heads, singular_points};
+use super::regions::{Marks, draw_arrows, singular_points};
 use super::sheet::{Anchor, Look, Sheet, lines};
 use super::{Content, paint};
 use touchoff_dsl::model::Model;
@@ -15,12 +15,12 @@ const SAMPLE_LENGTH: f64 = 24.0;
 
 /// A symbol that the legend explains.
 pub(super) enum Sign {
-    Surface { colour: &'static str, cutting: bool },
-    Region { colour: &'static str },
-    Split,
+    /// A line of this look.
+    Line(String),
+    /// An area of this colour.
+    Area(&'static str),
     Singular,
     Arrow,
-    Axis,
     Break,
 }
 
@@ -39,11 +39,8 @@ pub(super) fn draw(groups: &[Vec<Entry>], sheet: &mut Sheet) {
                 at = [low[0], at[1] + LINE_HEIGHT];
             }
             sample(sign, at, sheet);
-            sheet.text(
-                text,
-                [at[0] + SAMPLE_LENGTH + 7.0, at[1]],
-                Look::plain(TEXT_SIZE, Anchor::Left),
-            );
+            let from = [at[0] + SAMPLE_LENGTH + 7.0, at[1]];
+            sheet.text(text, from, Look::plain(TEXT_SIZE, Anchor::Left));
             at[0] += wide + 18.0;
         }
         at = [low[0], at[1] + LINE_HEIGHT];
@@ -53,10 +50,9 @@ pub(super) fn draw(groups: &[Vec<Entry>], sheet: &mut Sheet) {
 /// Returns the entries of a model's surfaces.
 pub(super) fn surfaces(model: &Model) -> Vec<Entry> {
     let mut entries = Vec::new();
-    for (surface, colour) in model.surfaces.iter().zip(paint::surface_colours(model)) {
-        let cutting = surface.cutting;
-        let suffix = if cutting { ", cutting" } else { "" };
-        entries.push((Sign::Surface { colour, cutting }, format!("{}{suffix}", surface.name)));
+    for (surface, look) in model.surfaces.iter().zip(paint::surface_looks(model)) {
+        let suffix = if surface.cutting { ", cutting" } else { "" };
+        entries.push((Sign::Line(look), format!("{}{suffix}", surface.name)));
     }
     entries
 }
@@ -67,9 +63,9 @@ pub(super) fn signs(content: Content, marks: &Marks) -> Vec<Entry> {
     let axis = if marks.axis { "axis: radial directions are +x on it" } else { "axis" };
     let signs = [
         (has_regions, Sign::Arrow, "direction to the surface"),
-        (has_regions && marks.splits, Sign::Split, "border of regions"),
+        (has_regions && marks.splits, Sign::Line(paint::SPLIT.to_owned()), "border of regions"),
         (!marks.singular.is_empty(), Sign::Singular, "no direction here"),
-        (has_regions, Sign::Axis, axis),
+        (has_regions, Sign::Line(paint::AXIS.to_owned()), axis),
         (marks.shortened, Sign::Break, "shortened"),
     ];
     let drawn = signs.into_iter().filter(|(is_drawn, ..)| *is_drawn);
@@ -78,33 +74,21 @@ pub(super) fn signs(content: Content, marks: &Marks) -> Vec<Entry> {
 
 /// Draws a symbol to the right of a point.
 fn sample(sign: &Sign, [x, y]: Point, sheet: &mut Sheet) {
-    let row = [[x, y], [x + SAMPLE_LENGTH, y]];
-    let look = match sign {
-        Sign::Surface { colour, cutting: true } => {
-            format!("stroke=\"{colour}\" stroke-width=\"{}\"", paint::CUTTING_WIDTH)
-        }
-        Sign::Surface { colour, cutting: false } => {
-            format!("stroke=\"{colour}\" stroke-width=\"{}\"", paint::SURFACE_WIDTH)
-        }
-        Sign::Split => paint::SPLIT.to_owned(),
-        Sign::Axis => paint::AXIS.to_owned(),
-        Sign::Arrow => {
-            sheet.path("fill=\"#2b3440\"", &heads(&[row], 5.0));
-            "stroke=\"#2b3440\"".to_owned()
-        }
-        Sign::Region { colour } => {
-            let [low, high] = [[x, y - 4.5], [x + SAMPLE_LENGTH, y + 4.5]];
-            let corners = [low, [high[0], low[1]], high, [low[0], high[1]], low];
+    let (right, middle) = (x + SAMPLE_LENGTH, x + SAMPLE_LENGTH / 2.0);
+    let row = [[x, y], [right, y]];
+    match sign {
+        Sign::Line(look) => sheet.path(&format!("fill=\"none\" {look}"), &lines([&row])),
+        Sign::Arrow => draw_arrows(&[row], sheet),
+        Sign::Singular => singular_points(&[[middle, y]], sheet),
+        Sign::Area(colour) => {
+            let [low, high] = [y - 4.5, y + 4.5];
+            let corners = [[x, low], [right, low], [right, high], [x, high], [x, low]];
             let look = "stroke=\"#3f4650\" stroke-width=\".6\" fill-opacity=\".62\"";
-            return sheet.path(&format!("fill=\"{colour}\" {look}"), &lines([&corners]));
+            sheet.path(&format!("fill=\"{colour}\" {look}"), &lines([&corners]));
         }
-        Sign::Singular => return singular_points(&[[x + SAMPLE_LENGTH / 2.0, y]], sheet),
         Sign::Break => {
-            let middle = x + SAMPLE_LENGTH / 2.0;
-            let waves =
-                [-2.5, 2.5].map(|shift| paint::wave(middle, SAMPLE_LENGTH / 2.0, y + shift));
-            return sheet.path("fill=\"none\" stroke=\"#6b7280\"", &lines(waves));
+            let waves = [-2.5, 2.5].map(|away| paint::wave(middle, SAMPLE_LENGTH / 2.0, y + away));
+            sheet.path("fill=\"none\" stroke=\"#6b7280\"", &lines(waves));
         }
-    };
-    sheet.path(&format!("fill=\"none\" {look}"), &lines([&row]));
+    }
 }

@@ -85,7 +85,7 @@ fn revolved(tool: &CheckedTool, content: Content, sheet: &mut Sheet) {
     let mut marks = picture.draw(sheet);
     if let Some(detail) = detail {
         detail.mark(&picture, sheet);
-        marks = marks.joined(detail.draw(sheet));
+        marks.add(detail.draw(sheet));
     }
     legend::draw(&[legend::surfaces(&tool.model), legend::signs(content, &marks)], sheet);
 }

@@ -4,7 +4,7 @@
 use super::lettering::width;
 use super::regions::{Arrow, Marks, heads};
 use super::section::{Edge, Section};
-use super::sheet::{Anchor, Look, SECONDARY_COLOUR, Sheet, lines};
+use super::sheet::{Anchor, Look, SECONDARY_COLOUR, Sheet, lines, trimmed};
 use super::stroke::Stroke;
 use super::{Picture, paint};
 use touchoff_dsl::model::Unit;
@@ -124,24 +124,17 @@ fn faces(picture: &Picture<'_>) -> Vec<Face> {
                 Some((figure, is_telling)) if *exact => (Some(figure), is_telling),
                 _ => (None, false),
             };
-            let length = stroke.length();
-            let known =
-                faces.iter_mut().find(|face| face.surface == *surface && face.figure == figure);
-            match known {
+            let (surface, length, longest) = (*surface, stroke.length(), *stroke);
+            let mut known = faces.iter_mut();
+            match known.find(|face| face.surface == surface && face.figure == figure) {
                 Some(face) => {
                     face.length += length;
                     // The first of equal strokes stays, whatever the rounding of their lengths.
                     if length > face.longest.length() * (1.0 + LENGTH_TOLERANCE_FRACTION) {
-                        face.longest = *stroke;
+                        face.longest = longest;
                     }
                 }
-                None => faces.push(Face {
-                    surface: *surface,
-                    figure,
-                    is_telling,
-                    length,
-                    longest: *stroke,
-                }),
+                None => faces.push(Face { surface, figure, is_telling, length, longest }),
             }
         }
     }
@@ -180,13 +173,7 @@ fn pointed(picture: &Picture<'_>, stroke: &Stroke) -> (Point, Point) {
     let at = [-x, y];
     // The leader points away from the material. The material is on the left of a stroke in the tool's coordinates, and
     // on its right on the sheet, where y points downward.
-    let tangent = match stroke.circle {
-        None => minus(stroke.to, stroke.from),
-        Some((centre, _)) => {
-            let [u, v] = minus([x, y], centre);
-            if stroke.left() { [-v, u] } else { [v, -u] }
-        }
-    };
+    let tangent = minus(stroke.at(0.51), stroke.at(0.49));
     let length = norm(tangent);
     let [dx, dy] = [tangent[1] / length, tangent[0] / length];
     let [dx, dy] = if dx < -0.98 { [-1.0, 0.0] } else { [dx.min(-0.4), dy] };
@@ -312,12 +299,6 @@ pub(super) fn tidy(value: f64, unit: Unit) -> String {
     }
 }
 
-/// Removes trailing zeros of a decimal number.
-fn trimmed(text: &str) -> String {
-    let text = text.trim_end_matches('0').trim_end_matches('.');
-    if text == "-0" { "0".to_owned() } else { text.to_owned() }
-}
-
 /// Returns the heights at which the surface has a corner, a tangent joint of two faces, or an end, from bottom to top.
 /// Each is given with its outermost point. Except for the lowest, only points that are `described` count.
 pub(super) fn heights(
@@ -328,21 +309,19 @@ pub(super) fn heights(
     let near = LENGTH_TOLERANCE_FRACTION * size;
     let mut steps: Vec<Point> = Vec::new();
     for edge in &section.edges {
-        let (Some(first), Some(last)) = (edge.strokes.first(), edge.strokes.last()) else {
-            continue;
-        };
-        // A joint within one face is no height of its own.
-        let goes_on = section.edges.iter().any(|before| {
-            before.surface == edge.surface
-                && before.strokes.last().is_some_and(|before| {
-                    norm(minus(before.to, first.from)) < near && one(before, first, size)
-                })
-        });
+        let (first, last) = (edge.strokes[0], edge.strokes[edge.strokes.len() - 1]);
+        let (mut goes_on, mut is_end) = (false, true);
+        for other in &section.edges {
+            let [from, to] = [other.strokes[0], other.strokes[other.strokes.len() - 1]];
+            let is_before = norm(minus(to.to, first.from)) < near;
+            // A joint within one face is no height of its own.
+            goes_on |= is_before && other.surface == edge.surface && one(&to, &first, size);
+            is_end &= norm(minus(from.from, last.to)) >= near;
+        }
         if !goes_on {
             steps.push(first.from);
         }
-        let is_joint = |after: &Stroke| norm(minus(after.from, last.to)) < near;
-        if !section.edges.iter().any(|after| after.strokes.first().is_some_and(is_joint)) {
+        if is_end {
             steps.push(last.to);
         }
     }

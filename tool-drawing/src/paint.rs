@@ -23,38 +23,36 @@ const PLAIN_AREA: &str = "fill=\"#e3e9f1\" fill-rule=\"evenodd\"";
 pub(super) const SPLIT: &str = "stroke=\"#3f4650\" stroke-width=\".9\" stroke-dasharray=\"5 3\"";
 pub(super) const AXIS: &str =
     "stroke=\"#22272e\" stroke-width=\".8\" stroke-dasharray=\"12 3 2 3\"";
-/// The widths of surfaces that cut, and of others, in sheet units.
-pub(super) const CUTTING_WIDTH: f64 = 3.0;
-pub(super) const SURFACE_WIDTH: f64 = 2.0;
 /// The height of a break line's waves, in sheet units.
 const WAVE_HEIGHT: f64 = 2.5;
 
 /// Draws the areas of a tool: those of the regions on the right half, and the hatched section on the left half.
 pub(super) fn halves(picture: &Picture<'_>, sheet: &mut Sheet) {
-    let material = material(picture);
     match picture.content {
         Content::Regions => regions(picture, sheet),
-        Content::Outline => sheet.path(PLAIN_AREA, &areas(&material.polygons)),
+        Content::Outline => sheet.path(PLAIN_AREA, &areas(&material(picture).polygons)),
     }
-    let mirror = |[x, y]: &Point| [-x, *y];
-    let mirrored: Vec<Polygon> =
-        material.polygons.iter().map(|polygon| polygon.iter().map(mirror).collect()).collect();
-    sheet.path(HATCHED_AREA, &areas(&mirrored));
-    // The shape is the right half, so its hatch lines are mirrored for the left half.
-    let hatches = material.hatched(HATCH_STEP);
-    sheet.path(HATCH, &lines(hatches.iter().map(|[from, to]| [mirror(from), mirror(to)])));
+    hatched(picture, -1.0, sheet);
 }
 
 /// Draws the area of a solid's section: regions, or hatched.
 pub(super) fn whole(picture: &Picture<'_>, sheet: &mut Sheet) {
     match picture.content {
         Content::Regions => regions(picture, sheet),
-        Content::Outline => {
-            let material = material(picture);
-            sheet.path(HATCHED_AREA, &areas(&material.polygons));
-            sheet.path(HATCH, &lines(material.hatched(HATCH_STEP)));
-        }
+        Content::Outline => hatched(picture, 1.0, sheet),
     }
+}
+
+/// Draws the hatched material, on the left half if `side` is -1.
+fn hatched(picture: &Picture<'_>, side: f64, sheet: &mut Sheet) {
+    let material = material(picture);
+    let mut polygons = material.polygons.clone();
+    let mut hatches = material.hatched(HATCH_STEP);
+    for p in polygons.iter_mut().flatten().chain(hatches.as_flattened_mut()) {
+        p[0] *= side;
+    }
+    sheet.path(HATCHED_AREA, &areas(&polygons));
+    sheet.path(HATCH, &lines(hatches));
 }
 
 /// Returns the area of all regions.
@@ -95,12 +93,12 @@ pub(super) fn splits(picture: &Picture<'_>, sheet: &mut Sheet) -> bool {
 
 /// Draws the surfaces, cutting surfaces on top. Those of a tool are drawn on both halves.
 pub(super) fn outline(picture: &Picture<'_>, both_halves: bool, sheet: &mut Sheet) {
-    let mut surfaces: Vec<(usize, &str)> =
-        surface_colours(picture.model).into_iter().enumerate().collect();
+    let mut surfaces: Vec<(usize, String)> =
+        surface_looks(picture.model).into_iter().enumerate().collect();
     surfaces.sort_by_key(|(surface, _)| picture.model.surfaces[*surface].cutting);
     let look = "fill=\"none\" stroke-linecap=\"round\" stroke-linejoin=\"round\"";
     sheet.group(look, |sheet| {
-        for (surface, colour) in surfaces {
+        for (surface, look) in surfaces {
             let mut strokes: Vec<Stroke> = Vec::new();
             for edge in picture.section.edges.iter().filter(|edge| edge.surface == surface) {
                 strokes.extend(edge.strokes.iter().map(|stroke| picture.view.stroke(stroke)));
@@ -108,9 +106,7 @@ pub(super) fn outline(picture: &Picture<'_>, both_halves: bool, sheet: &mut Shee
             if both_halves {
                 strokes.extend(strokes.clone().into_iter().map(Stroke::mirrored));
             }
-            let is_cutting = picture.model.surfaces[surface].cutting;
-            let wide = if is_cutting { CUTTING_WIDTH } else { SURFACE_WIDTH };
-            sheet.path(&format!("stroke=\"{colour}\" stroke-width=\"{wide}\""), &data(&strokes));
+            sheet.path(&look, &data(&strokes));
         }
     });
 }
@@ -207,4 +203,14 @@ pub(super) fn surface_colours(model: &Model) -> Vec<&'static str> {
         *used += 1;
     }
     colours
+}
+
+/// Returns the look of each surface's lines.
+pub(super) fn surface_looks(model: &Model) -> Vec<String> {
+    let mut looks = Vec::new();
+    for (surface, colour) in model.surfaces.iter().zip(surface_colours(model)) {
+        let wide = if surface.cutting { 3 } else { 2 };
+        looks.push(format!("stroke=\"{colour}\" stroke-width=\"{wide}\""));
+    }
+    looks
 }

@@ -26,15 +26,12 @@ pub(super) struct Marks {
 }
 
 impl Marks {
-    /// Returns what the legend of two views explains.
-    pub(super) fn joined(mut self, other: Marks) -> Marks {
+    /// Adds what the legend explains of another view.
+    pub(super) fn add(&mut self, other: Marks) {
         self.singular.extend(other.singular);
-        Marks {
-            axis: self.axis || other.axis,
-            splits: self.splits || other.splits,
-            shortened: self.shortened || other.shortened,
-            ..self
-        }
+        self.axis |= other.axis;
+        self.splits |= other.splits;
+        self.shortened |= other.shortened;
     }
 }
 
@@ -105,10 +102,7 @@ fn describe(picture: &Picture<'_>, sheet: &mut Sheet) -> Marks {
         }
         arrows.extend(own);
     }
-    sheet.group("stroke=\"#2b3440\" stroke-width=\"1\" fill=\"#2b3440\"", |sheet| {
-        sheet.path("fill=\"none\"", &lines(&arrows));
-        sheet.path("stroke=\"none\"", &heads(&arrows, 5.0));
-    });
+    draw_arrows(&arrows, sheet);
     singular_points(&singular, sheet);
     let axis = axis(picture, &mut directions);
     Marks { unnamed, singular, axis, ..Marks::default() }
@@ -148,20 +142,19 @@ pub(super) fn name(
     let text = &picture.model.regions[region].name;
     let across = TEXT_SIZES[1] / width(text, TEXT_SIZES[1]).max(TEXT_SIZES[1]);
     let (pole, _) = shape.pole(across);
-    // Shifted positions are tried too, to avoid the circles of singular points.
-    let tries =
-        TEXT_SIZES.into_iter().flat_map(|size| [0.0, 9.0, -9.0, 16.0, -16.0].map(|s| (size, s)));
-    tries
-        .map(|(size, shift)| {
-            let (wide, tall) = (width(text, size) / 2.0 + 3.0, size / 2.0 + 3.0);
-            let [x, y] = [pole[0], pole[1] + shift];
-            Name { size, at: [x, y], frame: [[x - wide, y - tall], [x + wide, y + tall]] }
-        })
-        .find(|Name { frame, .. }| {
-            let meets =
-                |ring: &Frame| (0..2).all(|k| ring[0][k] < frame[1][k] && ring[1][k] > frame[0][k]);
-            shape.contains(*frame) && !rings.iter().any(meets)
-        })
+    for size in TEXT_SIZES {
+        let (wide, tall) = (width(text, size) / 2.0 + 3.0, size / 2.0 + 3.0);
+        // Shifted positions are tried too, to avoid the circles of singular points.
+        for shift in [0.0, 9.0, -9.0, 16.0, -16.0] {
+            let at @ [x, y] = [pole[0], pole[1] + shift];
+            let frame @ [low, high] = [[x - wide, y - tall], [x + wide, y + tall]];
+            let meets = |ring: &Frame| (0..2).all(|k| ring[0][k] < high[k] && ring[1][k] > low[k]);
+            if shape.contains(frame) && !rings.iter().any(meets) {
+                return Some(Name { size, at, frame });
+            }
+        }
+    }
+    None
 }
 
 /// Returns the isolated points at which regions' directions are undefined, without duplicates. The axis is handled
@@ -299,6 +292,12 @@ fn clear(p: Point, taken: &[Frame]) -> f64 {
         nearest = nearest.min(if is_inside { -1.0 } else { norm(out.map(|part| part.max(0.0))) });
     }
     nearest
+}
+
+/// Draws arrows of directions.
+pub(super) fn draw_arrows(arrows: &[Arrow], sheet: &mut Sheet) {
+    sheet.path("fill=\"none\" stroke=\"#2b3440\"", &lines(arrows));
+    sheet.path("fill=\"#2b3440\"", &heads(arrows, 5.0));
 }
 
 /// Returns the path data of arrows' heads, as filled triangles.

@@ -4,6 +4,9 @@ use super::section::Polygon;
 use super::view::View;
 use touchoff_dsl::vector::{Point, cross, dot, minus, norm};
 
+/// The number of squares that are divided in search of the point with most room.
+const MAX_SQUARES: usize = 300;
+
 /// An area of the sheet within polygons.
 pub(super) struct Shape {
     pub(super) polygons: Vec<Polygon>,
@@ -85,39 +88,30 @@ impl Shape {
     /// distances are multiplied by `across`. The method is Mapbox's pole of inaccessibility.
     pub(super) fn pole(&self, across: f64) -> (Point, f64) {
         let [low, high] = self.frame();
-        let size = (high[0] - low[0]).min(high[1] - low[1]).max(1e-3);
-        let half = (size / 2.0).max((high[0] - low[0]).max(high[1] - low[1]) / 40.0);
-        // The distance from a cell's centre to its corner, relative to half its side.
+        let middle = [0, 1].map(|k| f64::midpoint(low[k], high[k]));
+        // The distance from a square's centre to its corner, relative to half its side.
         let corner = (1.0 + across * across).sqrt();
-        let middle = [(low[0] + high[0]) / 2.0, (low[1] + high[1]) / 2.0];
         let mut best = (middle, self.clearance(middle, across));
-        let mut queue: Vec<(f64, Point, f64)> = Vec::new();
-        let [columns, rows] =
-            [0, 1].map(|k| ((high[k] - low[k]) / (2.0 * half)).ceil().max(1.0) as usize);
-        let cells = (0..columns * rows).map(|n| [n % columns, n / columns]);
-        let mut initial: Vec<(Point, f64)> = cells
-            .map(|cell| ([0, 1].map(|k| low[k] + half * (2 * cell[k] + 1) as f64), half))
-            .collect();
-        for _ in 0..200 {
-            for (p, half) in initial.drain(..) {
-                let clearance = self.clearance(p, across);
-                // Of points with as much room, the middle is the first.
-                if clearance > best.1 + 0.01 {
-                    best = (p, clearance);
-                }
-                queue.push((clearance + half * corner, p, half));
-            }
-            let Some(index) = (0..queue.len()).max_by(|a, b| queue[*a].0.total_cmp(&queue[*b].0))
-            else {
-                break;
-            };
-            let (upper_bound, p, half) = queue.swap_remove(index);
+        // Squares, each with an upper bound of the distance, its centre, and half its side.
+        let half = (high[0] - low[0]).max(high[1] - low[1]) / 2.0;
+        let mut squares: Vec<(f64, Point, f64)> = vec![(f64::INFINITY, middle, half)];
+        for _ in 0..MAX_SQUARES {
+            let most = (0..squares.len()).max_by(|a, b| squares[*a].0.total_cmp(&squares[*b].0));
+            let Some(index) = most else { break };
+            let (upper_bound, p, half) = squares.swap_remove(index);
             if upper_bound <= best.1 + 0.5 {
                 break;
             }
             let h = half / 2.0;
-            let offsets = [[-h, -h], [h, -h], [-h, h], [h, h]];
-            initial.extend(offsets.map(|[i, j]| ([p[0] + i, p[1] + j], h)));
+            for offset in [[-h, -h], [h, -h], [-h, h], [h, h]] {
+                let q = [p[0] + offset[0], p[1] + offset[1]];
+                let clearance = self.clearance(q, across);
+                // Of points with as much room, the middle is the first.
+                if clearance > best.1 + 0.01 {
+                    best = (q, clearance);
+                }
+                squares.push((clearance + h * corner, q, h));
+            }
         }
         best
     }

@@ -235,7 +235,11 @@ pub(super) fn lines<R: AsRef<[Point]>>(rows: impl IntoIterator<Item = R>) -> Str
 
 /// Formats a number with at most two decimals.
 fn short(value: f64) -> String {
-    let text = format!("{value:.2}");
+    trimmed(&format!("{value:.2}"))
+}
+
+/// Returns a decimal number without trailing zeros.
+pub(super) fn trimmed(text: &str) -> String {
     let text = text.trim_end_matches('0').trim_end_matches('.');
     if text == "-0" { "0".to_owned() } else { text.to_owned() }
 }

@@ -110,8 +110,7 @@ fn axes(normal: usize) -> [usize; 2] {
 fn extents(sections: &[Section; 3], proved: [Interval; 3]) -> [Interval; 3] {
     let mut sides: [Option<Interval>; 3] = [None; 3];
     for (normal, section) in NORMALS.into_iter().zip(sections) {
-        let Some(bounds) = bounds(section) else { continue };
-        for (axis, side) in axes(normal).into_iter().zip(bounds) {
+        for (axis, side) in axes(normal).into_iter().zip(bounds(section).into_iter().flatten()) {
             sides[axis] = Some(sides[axis].map_or(side, |known| known.hull(side)));
         }
     }
@@ -120,10 +119,13 @@ fn extents(sections: &[Section; 3], proved: [Interval; 3]) -> [Interval; 3] {
 
 /// Returns the extent of a section along its two coordinates, unless it is empty.
 fn bounds(section: &Section) -> Option<[Interval; 2]> {
-    let strokes = section.surface();
-    strokes
-        .map(|stroke| [stroke.breadth(), stroke.span()].map(|[low, high]| Interval::new(low, high)))
-        .reduce(|[a, b], [c, d]| [a.hull(c), b.hull(d)])
+    let mut bounds: Option<[Interval; 2]> = None;
+    for stroke in section.surface() {
+        let sides = [stroke.breadth(), stroke.span()].map(|[low, high]| Interval::new(low, high));
+        let [u, v] = bounds.unwrap_or(sides);
+        bounds = Some([u.hull(sides[0]), v.hull(sides[1])]);
+    }
+    bounds
 }
 
 impl SectionView<'_> {
@@ -234,7 +236,7 @@ fn regions(sections: &[SectionView<'_>; 3]) -> Vec<Entry> {
     let mut entries = Vec::new();
     for (index, (region, colour)) in model.regions.iter().zip(fills).enumerate() {
         if sections.iter().any(|section| !section.picture.shapes[index].is_empty()) {
-            entries.push((Sign::Region { colour }, region.name.clone()));
+            entries.push((Sign::Area(colour), region.name.clone()));
         }
     }
     entries

@@ -294,17 +294,18 @@ impl Tracer<'_, '_, '_> {
             ends[0] = joint;
             line.push(self.joints[joint]);
         }
-        let (mut at, mut after) = (start, next[place]);
-        taken[start] = true;
-        line.push(self.crossings[start].at);
+        let (mut at, mut after) = (start, Some(Next::Crossing(start)));
         while let Some(Next::Crossing(index)) = after {
             line.push(self.crossings[index].at);
-            if index == start {
+            if taken[index] {
                 break;
             }
             taken[index] = true;
             let [below, above] = self.crossings[index].next;
             after = if below == Some(Next::Crossing(at)) { above } else { below };
+            if index == start {
+                after = next[place];
+            }
             at = index;
         }
         if let Some(Next::Joint(joint)) = after {
@@ -315,7 +316,8 @@ impl Tracer<'_, '_, '_> {
         let is_first_left = (place == 1) != upright;
         let mut sides = if is_first_left { sides } else { [sides[1], sides[0]] };
         if sides[0] > sides[1] {
-            (sides, ends) = ([sides[1], sides[0]], [ends[1], ends[0]]);
+            sides.reverse();
+            ends.reverse();
             line.reverse();
         }
         self.shaped(Border { sides, ends, line, strokes: Vec::new(), exact: true })

@@ -34,20 +34,22 @@ impl View {
     /// Returns the view of a tool's section, as large as fits in a width and a height of the sheet.
     pub(super) fn new(section: &Section, [wide, tall]: [f64; 2]) -> View {
         let radius = section.surface().map(Stroke::widest).fold(0.0, f64::max);
-        let lines = level_lines(section, 1e-6 * radius);
-        let mut levels: Vec<f64> = lines.iter().flat_map(|line| line.span).collect();
+        let mut lines: Vec<Stroke> = section.surface().copied().collect();
+        for Split { line, .. } in &section.splits {
+            lines.extend(line.windows(2).map(|pair| Stroke::line(pair[0], pair[1])));
+        }
+        let mut levels: Vec<f64> = lines.iter().flat_map(Stroke::span).collect();
         levels.sort_by(f64::total_cmp);
         let low = levels.first().copied().unwrap_or(0.0);
         let length = levels.last().copied().unwrap_or(0.0) - low;
         // Levels that differ by rounding are one.
         levels.dedup_by(|a, b| *a - *b < 1e-6 * length);
+        lines.retain(|line| line.breadth()[1] - line.breadth()[0] >= 1e-6 * radius);
         let mut plain = Vec::new();
         for pair in levels.windows(2) {
             let middle = f64::midpoint(pair[0], pair[1]);
-            let is_bent = |line: &LevelLine| {
-                !line.is_upright && (line.span[0]..line.span[1]).contains(&middle)
-            };
-            if !lines.iter().any(is_bent) {
+            let is_passed = |line: &Stroke| line.span()[0] <= middle && middle < line.span()[1];
+            if !lines.iter().any(is_passed) {
                 plain.push([pair[0], pair[1]]);
             }
         }
@@ -101,30 +103,6 @@ impl View {
     pub(super) fn seams(&self) -> Vec<f64> {
         self.cuts.iter().map(|cut| self.to_sheet([0.0, cut.low])[1]).collect()
     }
-}
-
-/// The heights between which a line of a section runs, and whether it is upright.
-struct LevelLine {
-    span: [f64; 2],
-    is_upright: bool,
-}
-
-/// Returns the heights of a section's lines, of which those are upright that lean by less than `near`.
-fn level_lines(section: &Section, near: f64) -> Vec<LevelLine> {
-    let mut lines = Vec::new();
-    for stroke in section.surface() {
-        let [left, right] = stroke.breadth();
-        lines.push(LevelLine { span: stroke.span(), is_upright: right - left < near });
-    }
-    for Split { line, .. } in &section.splits {
-        let mut ends = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
-        for p in line {
-            ends = [[0, 1].map(|k| ends[0][k].min(p[k])), [0, 1].map(|k| ends[1][k].max(p[k]))];
-        }
-        let [low, high] = ends;
-        lines.push(LevelLine { span: [low[1], high[1]], is_upright: high[0] - low[0] < near });
-    }
-    lines
 }
 
 /// Returns the intervals to leave out of the plain cylinders, so that the whole is about `MAX_ASPECT_RATIO` widths long.
