@@ -143,17 +143,15 @@ impl Cell<'_> {
             let points: Vec<Point> = rest.iter().take(count + 1).map(|normal| normal.end).collect();
             let mut line = simplified(&points, self.flat / 2.0);
             borders.extend(&line);
-            match *at_end {
-                // Each border is drawn by the first of its two features.
-                NormalEnd::Feature(other) if other > self.index => {
-                    // Dashes begin at the surface.
-                    if length(&rest[count - 1]) < length(&rest[0]) {
-                        line.reverse();
-                    }
-                    section.splits.push(Split { regions: [self.index, other], line });
+            // Each border is drawn by the first of its two features.
+            if let NormalEnd::Feature(other) = *at_end
+                && other > self.index
+            {
+                // Dashes begin at the surface.
+                if length(&rest[count - 1]) < length(&rest[0]) {
+                    line.reverse();
                 }
-                NormalEnd::Axis => section.axis.push((self.index, rest[count / 2].end)),
-                _ => {}
+                section.splits.push(Split { regions: [self.index, other], line });
             }
             rest = &rest[count..];
         }

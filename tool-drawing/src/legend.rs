@@ -60,12 +60,11 @@ pub(super) fn surfaces(model: &Model) -> Vec<Entry> {
 /// Returns the entries of the symbols in a tool's section.
 pub(super) fn signs(content: Content, marks: &Marks) -> Vec<Entry> {
     let has_regions = content == Content::Regions;
-    let axis = if marks.axis { "axis: radial directions are +x on it" } else { "axis" };
     let signs = [
         (has_regions, Sign::Arrow, "direction to the surface"),
         (has_regions && marks.splits, Sign::Line(paint::SPLIT.to_owned()), "border of regions"),
         (!marks.singular.is_empty(), Sign::Singular, "no direction here"),
-        (has_regions, Sign::Line(paint::AXIS.to_owned()), axis),
+        (has_regions, Sign::Line(paint::AXIS.to_owned()), "axis: radial directions are +x on it"),
         (marks.shortened, Sign::Break, "shortened"),
     ];
     let drawn = signs.into_iter().filter(|(is_drawn, ..)| *is_drawn);

@@ -190,10 +190,6 @@ fn title(tool: &CheckedTool, sheet: &mut Sheet) {
     let [low, high] = sheet.frame();
     let available_width = (high[0] - low[0]).max(400.0);
     let unit = model.unit.symbol();
-    let mut lines = Vec::new();
-    if let Some(title) = &model.title {
-        lines = lettering::wrapped(title, 8.5, available_width);
-    }
     let mut y = low[1] - 22.0;
     let small = Look { colour: sheet::SECONDARY_COLOUR, ..Look::plain(7.5, Anchor::Left) };
     let origin = match model.domain {
@@ -202,7 +198,8 @@ fn title(tool: &CheckedTool, sheet: &mut Sheet) {
     };
     sheet.text(&format!("lengths in {unit}{origin}"), [low[0], y], small);
     y -= 17.0;
-    for line in lines.iter().rev() {
+    let title = model.title.as_deref().unwrap_or("");
+    for line in lettering::wrapped(title, 8.5, available_width).iter().rev() {
         sheet.text(line, [low[0], y], Look::plain(8.5, Anchor::Left));
         y -= 15.0;
     }

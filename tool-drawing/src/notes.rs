@@ -147,7 +147,8 @@ fn figure(stroke: &Stroke, near: f64, unit: Unit) -> Option<(String, bool)> {
         return Some((format!("R{}", tidy(radius, unit)), true));
     }
     let [d, z] = minus(stroke.to, stroke.from).map(f64::abs);
-    if d < near {
+    // A cone whose angle would be written as 0 is a cylinder on a drawing.
+    if d < near.max(z * 5e-5) {
         let diameter = stroke.from[0] + stroke.to[0];
         return Some((format!("⌀{}", tidy(diameter, unit)), true));
     }

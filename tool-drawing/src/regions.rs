@@ -17,8 +17,6 @@ pub(super) struct Marks {
     pub(super) unnamed: Vec<(usize, Point)>,
     /// Points on the sheet at which directions are undefined.
     pub(super) singular: Vec<Point>,
-    /// True if any region has a radial direction next to the axis; on the axis, there is none.
-    pub(super) axis: bool,
     /// True if there are borders between regions.
     pub(super) splits: bool,
     /// True if a long cylinder is shortened.
@@ -29,7 +27,6 @@ impl Marks {
     /// Adds what the legend explains of another view.
     pub(super) fn add(&mut self, other: Marks) {
         self.singular.extend(other.singular);
-        self.axis |= other.axis;
         self.splits |= other.splits;
         self.shortened |= other.shortened;
     }
@@ -104,8 +101,7 @@ fn describe(picture: &Picture<'_>, sheet: &mut Sheet) -> Marks {
     }
     draw_arrows(&arrows, sheet);
     singular_points(&singular, sheet);
-    let axis = axis(picture, &mut directions);
-    Marks { unnamed, singular, axis, ..Marks::default() }
+    Marks { unnamed, singular, ..Marks::default() }
 }
 
 /// Returns the box around a point with this half side.
@@ -170,15 +166,6 @@ fn singular(picture: &Picture<'_>, directions: &mut Directions<'_>) -> Vec<Point
         }
     }
     found
-}
-
-/// Returns whether directions next to the axis have a radial component.
-fn axis(picture: &Picture<'_>, directions: &mut Directions<'_>) -> bool {
-    picture.section.axis.iter().any(|(region, [_, z])| {
-        let direction = directions.at(*region, [1e-6 * picture.size, *z]);
-        // A direction toward a centre on the axis points along the axis, as seen from beside it.
-        direction.is_some_and(|direction| direction[0].abs() > 1e-3)
-    })
 }
 
 /// An arrow on the sheet, as tail and head.

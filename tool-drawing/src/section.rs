@@ -38,8 +38,6 @@ pub(super) struct Section {
     /// The polygons of all regions together.
     pub(super) material: Vec<Polygon>,
     pub(super) splits: Vec<Split>,
-    /// Points of the axis that are borders of regions.
-    pub(super) axis: Vec<(usize, Point)>,
 }
 
 /// The largest distance of a chord from its curve, in units of the sheet.
@@ -67,10 +65,7 @@ impl Section {
                 [Side::Region(a), Side::Region(b)] => {
                     section.splits.push(Split { regions: [a, b], line });
                 }
-                [Side::Region(region), Side::Axis] => {
-                    section.axis.push((region, line[line.len() / 2]));
-                }
-                [Side::Region(region), _] if !strokes.is_empty() => {
+                [Side::Region(region), Side::Outside] if !strokes.is_empty() => {
                     let surface = tool.model.regions[region].surface;
                     section.edges.push(Edge { surface, strokes, exact });
                 }
@@ -103,7 +98,6 @@ impl Section {
             let lines = clipped_line(line, corner).into_iter();
             clipped.splits.extend(lines.map(|line| Split { regions: *regions, line }));
         }
-        clipped.axis = self.axis.iter().filter(|(_, p)| p[1] < corner[1]).copied().collect();
         clipped
     }
 }

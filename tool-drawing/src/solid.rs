@@ -90,13 +90,10 @@ fn planes(tool: &CheckedTool, at: [f64; 3]) -> [Section; 3] {
     let [x, y, z] = sides.map(|side| side.high - side.low);
     let unit = (x + y).max(z + y) / (1.1 * MAX_EXTENT);
     NORMALS.map(|normal| {
+        let [u, v] = axes(normal).map(|axis| sides[axis]);
         // Odd shares, so that no side of the lattice runs along a curve.
-        let [low, high] = [(0, -0.0213), (1, 0.0197)].map(|(end, share)| {
-            axes(normal).map(|axis| {
-                let side = sides[axis];
-                [side.low, side.high][end] + share * (side.high - side.low)
-            })
-        });
+        let low = [u, v].map(|side| side.low - 0.0213 * (side.high - side.low));
+        let high = [u, v].map(|side| side.high + 0.0197 * (side.high - side.low));
         Section::new(tool, Plane::Across { axis: normal, at: at[normal] }, [low, high], unit)
     })
 }

@@ -43,9 +43,7 @@ pub(super) enum Side {
 pub(super) struct Border {
     /// The areas on its left and its right. A region is on the left; of two regions, the one listed first.
     pub(super) sides: [Side; 2],
-    /// The joints at its ends; a closed line has one of its own.
-    ends: [usize; 2],
-    /// Its points, ends included.
+    /// Its points, ends included. Lines that meet in a joint have the same end.
     pub(super) line: Vec<Point>,
     /// The same as lines and arcs; none if its ends coincide.
     pub(super) strokes: Vec<Stroke>,
@@ -70,7 +68,7 @@ struct Crossing {
 #[derive(Clone, Copy, PartialEq)]
 enum Next {
     Crossing(usize),
-    Joint(usize),
+    Joint(Point),
 }
 
 /// A side of the lattice: its lower or left end, and whether it is upright.
@@ -84,7 +82,6 @@ struct Tracer<'c, 'm, 't> {
     owners: HashMap<[i64; 2], Side>,
     known: HashMap<LatticeSide, Option<usize>>,
     crossings: Vec<Crossing>,
-    joints: Vec<Point>,
 }
 
 /// Traces the borders in a window around a section. `unit` is a lower bound on one unit of the sheet.
@@ -100,9 +97,8 @@ pub(super) fn trace(
     if curves.has_axis() {
         low[0] = -0.5 * step[0];
     }
-    let (owners, known) = (HashMap::new(), HashMap::new());
-    let (crossings, joints) = (Vec::new(), Vec::new());
-    let mut tracer = Tracer { curves, tree, low, step, owners, known, crossings, joints };
+    let (owners, known, crossings) = (HashMap::new(), HashMap::new(), Vec::new());
+    let mut tracer = Tracer { curves, tree, low, step, owners, known, crossings };
     let counts = [0, 1].map(|k| ((high[k] - low[k]) / step[k]).ceil() as i64);
     let mut pending = tracer.seeds(counts);
     let mut linked = HashSet::new();
@@ -238,10 +234,9 @@ impl Tracer<'_, '_, '_> {
         if found.is_empty() {
             return;
         }
-        let at = self.joint(&found);
-        self.joints.push(at);
+        let joint = self.joint(&found);
         for (crossing, place) in found {
-            self.crossings[crossing].next[place] = Some(Next::Joint(self.joints.len() - 1));
+            self.crossings[crossing].next[place] = Some(Next::Joint(joint));
         }
     }
 
@@ -288,11 +283,8 @@ impl Tracer<'_, '_, '_> {
     fn border(&self, start: usize, place: usize, taken: &mut [bool]) -> Border {
         let Crossing { sides, upright, next, .. } = self.crossings[start];
         let mut line = Vec::new();
-        // A closed line has a number beyond those of joints.
-        let mut ends = [self.joints.len() + start; 2];
         if let Some(Next::Joint(joint)) = next[1 - place] {
-            ends[0] = joint;
-            line.push(self.joints[joint]);
+            line.push(joint);
         }
         let (mut at, mut after) = (start, Some(Next::Crossing(start)));
         while let Some(Next::Crossing(index)) = after {
@@ -309,18 +301,16 @@ impl Tracer<'_, '_, '_> {
             at = index;
         }
         if let Some(Next::Joint(joint)) = after {
-            ends[1] = joint;
-            line.push(self.joints[joint]);
+            line.push(joint);
         }
         // Upward through a level side, its left end is on the left; to the right through an upright one, its upper end is.
         let is_first_left = (place == 1) != upright;
         let mut sides = if is_first_left { sides } else { [sides[1], sides[0]] };
         if sides[0] > sides[1] {
             sides.reverse();
-            ends.reverse();
             line.reverse();
         }
-        self.shaped(Border { sides, ends, line, strokes: Vec::new(), exact: true })
+        self.shaped(Border { sides, line, strokes: Vec::new(), exact: true })
     }
 
     /// Returns a border with its lines and arcs.
@@ -372,22 +362,20 @@ fn arcs(line: &[Point]) -> Option<Vec<Stroke>> {
 
 /// Returns the area bounded by those borders for which `inside` holds on exactly one side, as polygons.
 pub(super) fn loops(borders: &[Border], inside: impl Fn(Side) -> bool) -> Vec<Polygon> {
-    let mut rest: Vec<([usize; 2], Vec<Point>)> = Vec::new();
-    for Border { sides, ends: [from, to], line, .. } in borders {
-        match sides.map(&inside) {
-            [true, false] => rest.push(([*from, *to], line.clone())),
-            [false, true] => rest.push(([*to, *from], line.iter().rev().copied().collect())),
+    let mut rest: Vec<Vec<Point>> = Vec::new();
+    for border in borders {
+        match border.sides.map(&inside) {
+            [true, false] => rest.push(border.line.clone()),
+            [false, true] => rest.push(border.line.iter().rev().copied().collect()),
             _ => {}
         }
     }
-    rest.reverse();
     let mut loops = Vec::new();
-    while let Some(([start, mut end], mut polygon)) = rest.pop() {
-        while end != start {
-            let Some(next) = rest.iter().rposition(|(ends, _)| ends[0] == end) else { break };
-            let ([_, after], line) = rest.remove(next);
-            end = after;
-            polygon.extend(line);
+    while let Some(mut polygon) = rest.pop() {
+        while polygon[polygon.len() - 1] != polygon[0] {
+            let end = polygon[polygon.len() - 1];
+            let Some(next) = rest.iter().position(|line| line[0] == end) else { break };
+            polygon.extend(rest.swap_remove(next));
         }
         polygon.dedup();
         loops.push(polygon);
