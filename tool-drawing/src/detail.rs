@@ -89,7 +89,7 @@ impl<'m> Detail<'m> {
 
     /// Draws the detail to the right of everything drawn so far.
     pub(super) fn draw(&self, sheet: &mut Sheet) -> Marks {
-        let mut part = sheet.part();
+        let mut part = Sheet::new(sheet.lettering);
         let marks = self.picture.draw(&mut part);
         let title = format!("A ({} : 1)", self.factor);
         let [[left, upper], _] = part.frame();

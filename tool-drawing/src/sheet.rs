@@ -29,7 +29,7 @@ pub enum TextRendering {
 
 /// The drawing so far. Text lies above everything else.
 pub(super) struct Sheet {
-    lettering: TextRendering,
+    pub(super) lettering: TextRendering,
     drawn: String,
     halos: String,
     texts: String,
@@ -41,11 +41,6 @@ impl Sheet {
     pub(super) fn new(lettering: TextRendering) -> Sheet {
         let empty = String::new;
         Sheet { lettering, drawn: empty(), halos: empty(), texts: empty(), frame: None }
-    }
-
-    /// Returns an empty sheet for a part of this one.
-    pub(super) fn part(&self) -> Sheet {
-        Sheet::new(self.lettering)
     }
 
     /// Adds a part, whose origin is placed at a point of this sheet.

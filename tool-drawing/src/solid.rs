@@ -31,7 +31,7 @@ pub(super) fn draw(tool: &CheckedTool, content: Content, sheet: &mut Sheet) {
     let sections = sections(tool, content);
     let mut known = Vec::new();
     let [front, side, top] = sections.each_ref().map(|section| {
-        let mut part = sheet.part();
+        let mut part = Sheet::new(sheet.lettering);
         section.draw(&sections, &mut part);
         section.draw_dimensions(&mut known, &mut part);
         section.draw_name(&mut part);
@@ -61,16 +61,17 @@ type Dimension = (usize, Interval);
 /// Returns the three sections through the middle, in the order of `NORMALS` and to one scale.
 pub(super) fn sections<'m>(tool: &'m CheckedTool, content: Content) -> [SectionView<'m>; 3] {
     let proved = tool.extent.cell().sides;
-    let size = proved.iter().map(|side| side.high - side.low).fold(0.0, f64::max);
-    // Proved extents may be a few percent too wide, so the middle is that of the sections through their middle.
-    let rough = planes(tool, proved.map(Interval::middle));
+    let [x, y, z] = proved.map(|side| side.high - side.low);
+    let (size, unit) = (x.max(y).max(z), (x + y).max(z + y) / (1.1 * MAX_EXTENT));
+    // Proved extents may be a few percent too wide, so the middle is that of coarse sections through their middle.
+    let rough = planes(tool, proved.map(Interval::middle), 8.0 * unit);
     let mut middle = extents(&rough, proved).map(Interval::middle);
     for coordinate in &mut middle {
         if coordinate.abs() < 1e-6 * size {
             *coordinate = 0.0;
         }
     }
-    let sections = planes(tool, middle);
+    let sections = planes(tool, middle, unit);
     let sides = extents(&sections, proved);
     let [x, y, z] = sides.map(|side| side.high - side.low);
     let scale = MAX_EXTENT / (x + y).max(z + y);
@@ -85,10 +86,8 @@ pub(super) fn sections<'m>(tool: &'m CheckedTool, content: Content) -> [SectionV
 }
 
 /// Returns the sections in the planes at these coordinates along x, y and z, in the order of `NORMALS`.
-fn planes(tool: &CheckedTool, at: [f64; 3]) -> [Section; 3] {
+fn planes(tool: &CheckedTool, at: [f64; 3], unit: f64) -> [Section; 3] {
     let sides = tool.extent.cell().sides;
-    let [x, y, z] = sides.map(|side| side.high - side.low);
-    let unit = (x + y).max(z + y) / (1.1 * MAX_EXTENT);
     NORMALS.map(|normal| {
         let [u, v] = axes(normal).map(|axis| sides[axis]);
         // Odd shares, so that no side of the lattice runs along a curve.

@@ -20,6 +20,8 @@ const CELL: f64 = 0.5;
 const SEED_STRIDE: usize = 4;
 /// The greatest number of lattice cells along a side of the window, since a needle is long for its width.
 const MAX_CELLS: f64 = 4_000.0;
+/// The number of halvings by which a crossing is found, to rounding of a tool's size.
+const HALVINGS: usize = 40;
 /// Points are on a circle within this distance, relative to its radius.
 const ROUND_FRACTION: f64 = 1e-9;
 /// Points are on a line within this distance, in cells.
@@ -191,7 +193,7 @@ impl Tracer<'_, '_, '_> {
         let is_region = |side: &Side| matches!(side, Side::Region(_));
         if sides[0] != sides[1] && sides.iter().any(is_region) {
             let [mut p, mut q] = ends.map(|end| self.at(end));
-            for _ in 0..48 {
+            for _ in 0..HALVINGS {
                 let middle = [0, 1].map(|k| f64::midpoint(p[k], q[k]));
                 if self.owner(middle) == sides[0] { p = middle } else { q = middle }
             }

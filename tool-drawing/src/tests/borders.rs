@@ -51,8 +51,17 @@ fn regions_are_closed() {
          line to (12, 24), (12, 32), (0, 32) as c;",
         "start (0, 0); arc to (3, 3) center (0, 3) as a; arc to (1.8, 5.4) center (0, 3) as a;
          line to (1.8, 30), (0, 30) as b;",
+        // Kinks of 1e-6, to both sides.
+        "start (0, 0); line to (5, 0), (5.00001, 10), (5, 20), (5.00001, 30), (0, 30) as a;",
     ];
-    for segments in profiles {
+    // A ball of chords, as CAD polylines have it.
+    let mut chords = String::from("start (0, 0); line to ");
+    for k in 1..=12 {
+        let (sin, cos) = (f64::from(k) * std::f64::consts::PI / 24.0).sin_cos();
+        chords += &format!("({:.9}, {:.9}), ", 5.0 * sin, 5.0 - 5.0 * cos);
+    }
+    chords += "(5, 30), (0, 30) as a;";
+    for segments in profiles.into_iter().chain([&*chords]) {
         let text = format!("tool T {{ units mm; profile {{ {segments} }} }}");
         closed(&whole(&tool(&text)));
     }
