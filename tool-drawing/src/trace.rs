@@ -17,7 +17,7 @@ use touchoff_dsl::vector::{Point, minus, norm};
 /// The side of a lattice cell, in units of the sheet.
 const CELL: f64 = 0.5;
 /// The number of cells between the lines on which borders are looked for.
-const SEED_STRIDE: usize = 4;
+const SEED_STRIDE: i64 = 4;
 /// The greatest number of lattice cells along a side of the window, since a needle is long for its width.
 const MAX_CELLS: f64 = 4_000.0;
 /// The number of halvings by which a crossing is found, to rounding of a tool's size.
@@ -121,12 +121,12 @@ impl Tracer<'_, '_, '_> {
     /// Returns cells that are crossed by borders, found on every few lines of the lattice.
     fn seeds(&mut self, counts: [i64; 2]) -> Vec<[i64; 2]> {
         let mut seeds = Vec::new();
-        for i in (0..counts[0]).step_by(SEED_STRIDE) {
-            for j in (0..counts[1]).step_by(SEED_STRIDE) {
+        for i in (0..counts[0]).step_by(SEED_STRIDE as usize) {
+            for j in (0..counts[1]).step_by(SEED_STRIDE as usize) {
                 for k in 0..2 {
                     let mut low = [i, j];
                     let mut high = low;
-                    high[k] += SEED_STRIDE as i64;
+                    high[k] += SEED_STRIDE;
                     let owner = self.lattice_owner(low);
                     if owner == self.lattice_owner(high) {
                         continue;
@@ -135,9 +135,9 @@ impl Tracer<'_, '_, '_> {
                         let mut middle = low;
                         middle[k] = (low[k] + high[k]) / 2;
                         if self.lattice_owner(middle) == owner {
-                            low = middle
+                            low = middle;
                         } else {
-                            high = middle
+                            high = middle;
                         }
                     }
                     seeds.push(low);
