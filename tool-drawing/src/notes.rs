@@ -43,7 +43,8 @@ fn draw_column(mut notes: Vec<Note>, x: f64, spacing: f64, sheet: &mut Sheet) ->
     notes.sort_by(|a, b| a.leader[0][1].total_cmp(&b.leader[0][1]));
     let heights: Vec<f64> = notes.iter().map(|note| note.height).collect();
     let mut leaders = Vec::new();
-    for (mut note, y) in notes.into_iter().zip(spread(&heights, spacing)) {
+    // From the bottom to the top, as heights are read.
+    for (mut note, y) in notes.into_iter().zip(spread(&heights, spacing)).rev() {
         let away = if note.look.anchor == Anchor::Right { -4.0 } else { 4.0 };
         sheet.text(&note.text, [x + away, y], note.look);
         note.leader.push([x, y]);
