@@ -4,8 +4,7 @@
 //! ellipse or a hyperbola of two circles. A cell is the area between a feature and the ends of its normals.
 
 use super::section::{Edge, Section, Split, simplified};
-use super::stroke::Stroke;
-use std::f64::consts::PI;
+use super::stroke::{MAX_TURN, Stroke};
 use touchoff_dsl::model::Model;
 use touchoff_dsl::vector::{Point, cross, minus, norm};
 use touchoff_dsl::{Features, Normal, NormalEnd};
@@ -25,7 +24,7 @@ pub(super) fn cells(model: &Model, features: &Features<'_>, flat: f64) -> Sectio
     let mut material = Vec::new();
     for segment in model.outline() {
         let [from, to] = segment.ends;
-        let mut strokes = vec![Stroke { from, to, circle: None }];
+        let mut strokes = vec![Stroke::line(from, to)];
         if let Some((centre, radius, convex)) = segment.circle {
             strokes = arcs([from, to], (centre, radius), convex);
         }
@@ -48,7 +47,7 @@ fn arcs([from, to]: [Point; 2], circle: (Point, f64), convex: bool) -> Vec<Strok
     let arc = Stroke { from, to, circle: Some(circle) };
     let turn = arc.turn();
     // The material is on the left.
-    if (turn > 0.0) == convex && turn.abs() < 0.9 * PI {
+    if (turn > 0.0) == convex && turn.abs() < MAX_TURN {
         return vec![arc];
     }
     let (centre, radius) = circle;
@@ -100,13 +99,13 @@ impl Cell<'_> {
         normals: &mut Vec<Normal>,
     ) {
         let chord = minus(to.1.end, from.1.end);
-        let (length, is_one) = (norm(chord), from.1.at_end == to.1.at_end);
-        let near = if is_one { self.flat } else { JOINT_FRACTION * self.flat };
+        let (length, has_one_neighbour) = (norm(chord), from.1.at_end == to.1.at_end);
+        let near = if has_one_neighbour { self.flat } else { JOINT_FRACTION * self.flat };
         if halvings > 0 && length > near {
             let parameter = f64::midpoint(from.0, to.0);
             let middle = (parameter, self.features.normal(self.index, parameter));
             let off = cross(chord, minus(middle.1.end, from.1.end)).abs() / length;
-            if !is_one || middle.1.at_end != to.1.at_end || off > self.flat / 2.0 {
+            if !has_one_neighbour || middle.1.at_end != to.1.at_end || off > self.flat / 2.0 {
                 self.refine(from, middle, halvings - 1, normals);
                 return self.refine(middle, to, halvings - 1, normals);
             }

@@ -216,7 +216,7 @@ fn sheet_height(y: f64, levels: &[f64]) -> f64 {
 /// out.
 fn steps(picture: &Picture<'_>) -> Vec<Point> {
     let mut steps = heights(&picture.section, picture.size, |p| picture.describes(p));
-    let max_notes = ((picture.view.height + 80.0) / 11.5) as usize;
+    let max_notes = ((picture.view.height + 80.0) / HEIGHT_SPACING) as usize;
     while steps.len() > max_notes.max(3) {
         let crowded = |k: &usize| steps[k + 1][1] - steps[k - 1][1];
         let most_crowded =

@@ -1,6 +1,10 @@
 //! Strokes: the lines and arcs of a drawing.
 
+use std::f64::consts::PI;
 use touchoff_dsl::vector::{Point, cross, dot, minus, norm};
+
+/// The greatest angle of an arc that is made one stroke: less than half a circle, by more than rounding.
+pub(super) const MAX_TURN: f64 = 0.9 * PI;
 
 /// A line, or an arc of less than half a circle.
 #[derive(Clone, Copy, Debug, PartialEq)]

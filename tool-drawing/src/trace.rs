@@ -7,9 +7,8 @@
 
 use super::curves::Curves;
 use super::section::{Polygon, simplified};
-use super::stroke::{Stroke, circle};
+use super::stroke::{MAX_TURN, Stroke, circle};
 use std::collections::{HashMap, HashSet};
-use std::f64::consts::PI;
 use touchoff_dsl::formula::CurveIndex;
 use touchoff_dsl::plan::Tree;
 use touchoff_dsl::vector::{Point, minus, norm};
@@ -353,7 +352,7 @@ fn arcs(line: &[Point]) -> Option<Vec<Stroke>> {
         }
         swept += Stroke { from: pair[0], to: pair[1], circle: Some((centre, radius)) }.turn().abs();
     }
-    let parts = ((swept / (0.9 * PI)).ceil() as usize).clamp(1, last);
+    let parts = ((swept / MAX_TURN).ceil() as usize).clamp(1, last);
     let mut arcs = Vec::new();
     for k in 0..parts {
         let [from, to] = [k, k + 1].map(|k| line[k * last / parts]);
