@@ -108,6 +108,30 @@ impl Formula {
         }
     }
 
+    /// Returns the curves that the formula mentions.
+    pub(crate) fn curves(&self) -> Vec<CurveIndex> {
+        match self {
+            Formula::Const(_) => Vec::new(),
+            Formula::Atom { curve, .. } => vec![*curve],
+            Formula::All(parts) | Formula::Any(parts) => {
+                parts.iter().flat_map(Formula::curves).collect()
+            }
+        }
+    }
+
+    /// Returns the formula of the points that do not satisfy this one, with the same borders.
+    pub(crate) fn opposite(&self) -> Formula {
+        let opposites = |parts: &[Formula]| parts.iter().map(Formula::opposite).collect();
+        match self {
+            Formula::Const(constant) => Formula::Const(!constant),
+            Formula::Atom { curve, below, strict } => {
+                Formula::Atom { curve: *curve, below: !below, strict: *strict }
+            }
+            Formula::All(parts) => Formula::Any(opposites(parts)),
+            Formula::Any(parts) => Formula::All(opposites(parts)),
+        }
+    }
+
     /// Returns whether the formula holds; `None` if the known signs do not decide it.
     pub fn decide(&self, signs: &[Signs]) -> Option<bool> {
         self.decide_with(&mut |curve| signs[curve])

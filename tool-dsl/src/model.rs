@@ -48,12 +48,12 @@
 //! | | lengths are in one unit, `z` in the tool's frame: the tip is at 0, the spindle is toward `+z` | `lower` for expressions, `Frame::to_tool` for constants |
 //! | | indices of curves and surfaces are in range; `regions` is not empty | by construction: the lists only grow |
 //! | | each region has a depth, a direction, a niceness and a magnitude | `region::regions`, `law::Laws` |
-//! | | an outline runs counter-clockwise from the axis to the axis, touches itself nowhere else, and meets the axis only at its ends | `regionalise::check` in doubles; proved later by `prove::jordan` |
-//! | | the cells of `inner` and `outer` cover their sides, and each feature is the nearest in its cell | by the algorithm of `regionalise::slices`, in doubles; checked at points by `plan::section`, proved later by `prove` |
+//! | | an outline runs counter-clockwise from the axis to the axis, touches itself nowhere else, and meets the axis only at its ends | `regionalise::check` in doubles |
+//! | | the polygons of `inner` cover the cell of each feature, within rounding | `regionalise::cover`, in doubles |
 //! | `checked` (`finite`) | constants that code needs are finite doubles | `checked::finite` |
 //! | `bound` | [`Extent`](crate::bound::Extent): the solid lies in a box and a cylinder, is bounded, and is not empty. [`EnvelopeSlab`](crate::bound::EnvelopeSlab): its largest radius between two heights | interval branch and bound; a section's segments in closed form |
 //! | `lint` | nothing. It refutes overlapping owners, regions that own nothing, depths below 0 or above 0 on the surface, undefined values, and a misplaced tip, each with a counterexample | samples |
-//! | `plan` | `PlannedTool::tree` gives each point the owner that the list of regions gives it | `plan::empty` proves which sides need no test; a section's cells are cut exactly; tests that are left out cannot hold in real arithmetic |
+//! | `plan` | `PlannedTool::tree` gives each point the owner that the list of regions gives it | by signs: `plan::signs` proves which sides need no test; of a section: `plan::section` follows every piece to the leaves |
 //! | | trees have at most 20,000 tests | `plan::MAX_TESTS` |
 //! | `prove` | [`Bounds`](crate::prove::Bounds) of the depth by the distance: for a section 1 and 1 by construction, which `touchoff check` proves; for regions by hand the bounds that a few thousand boxes prove | `docs/proofs.md` |
 //! | | depth jumps at no point that was found | enclosures of both depths there |
@@ -72,6 +72,7 @@ use crate::geometry::outline::Segment;
 use crate::number::Number;
 use crate::regionalise::Partition;
 use crate::regionalise::overlay::ConditionedPart;
+use crate::regionalise::pieces::Separations;
 use crate::source::Span;
 
 /// A unit of length that a file may state.
@@ -144,15 +145,15 @@ pub struct Model {
     pub(crate) section: Option<Section>,
 }
 
-/// A profile and the exact partition of both its sides by nearest features.
+/// A profile and the partition of its inside by nearest features.
 #[derive(Clone, Debug)]
 pub(crate) struct Section {
     /// The segments, counter-clockwise in the tool's frame.
     pub(crate) outline: Vec<Segment>,
     /// The partition of the inside. Its parts are the regions, unless `over` divides them further.
     pub(crate) inner: Partition,
-    /// The partition of the outside, up to 64 sizes.
-    pub(crate) outer: Partition,
+    /// The tests that tell the parts of the inside apart.
+    pub(crate) separations: Separations,
     /// The further division of the inside, if there is one.
     pub(crate) over: Option<Over>,
 }

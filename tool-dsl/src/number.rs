@@ -123,12 +123,6 @@ impl Number {
         }
     }
 
-    /// Returns the sum of some terms, and the sum of their absolute values.
-    pub(crate) fn sum(terms: &[Number]) -> (Number, f64) {
-        let size = terms.iter().map(|term| term.to_f64().abs()).sum();
-        (terms.iter().fold(Number::int(0), |sum, term| &sum + term), size)
-    }
-
     /// Returns the quotient; `None` for division by zero.
     pub fn checked_div(&self, divisor: &Number) -> Option<Number> {
         (!divisor.is_zero()).then(|| self / divisor)

@@ -203,6 +203,9 @@ fn verdict(tool: &CheckedTool, certificate: &Certificate) -> String {
     let [least, most] =
         [certificate.lower_slope(), certificate.lipschitz()].map(|bound| bound.map(format_number));
     match (least, most) {
+        _ if certificate.is_exact() && tool.model.is_exact() => {
+            format!("proved by its partition: depth is the distance to the surface{slack}")
+        }
         _ if certificate.is_exact() => {
             format!("proved in {boxes} boxes: depth is the distance to the surface{slack}")
         }
@@ -213,9 +216,10 @@ fn verdict(tool: &CheckedTool, certificate: &Certificate) -> String {
             "proved in {boxes} boxes: depth is at most {most} times the distance to the surface and \
              changes by at most {most} per length{slack}; no lower bound is proved"
         ),
-        _ if tool.model.is_exact() => format!(
-            "by construction: depth is the distance to the surface; not proved in {boxes} boxes"
-        ),
+        _ if tool.model.is_exact() => {
+            "not proved by its partition: depth may differ from the distance to the surface"
+                .to_owned()
+        }
         // Compilation may decide hand-written regions in fewer boxes.
         _ if tool.bounds().lipschitz.is_some() => format!(
             "proved while compiling: depth is at most {} times the distance to the surface; not proved \

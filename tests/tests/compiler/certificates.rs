@@ -51,7 +51,7 @@ fn the_thesis_magnitudes_are_up_to_root_5_of_the_distance() {
     assert!(proved.is_continuous() && !proved.is_exact());
     let (least, most) = bounds(&proved);
     assert!((most - 5f64.sqrt()).abs() < 1e-12 && (least - 1.0).abs() < 1e-8, "{least} {most}");
-    assert!(proved.examined_boxes <= 2_500, "{}", proved.examined_boxes);
+    assert!(proved.examined_boxes <= 3_500, "{}", proved.examined_boxes);
     // Equation 7.1: regions whose magnitude is a distance.
     let distances: Vec<bool> = proved.regions.iter().map(|region| region.is_distance).collect();
     assert_eq!(distances, [true, true, true, false, true, false, false, true, true]);
@@ -88,7 +88,7 @@ fn info_has_the_proved_bounds() {
 fn the_exact_tool_is_exact() {
     let tool = library::checked("fig_7_3_exact");
     let proved = Certificate::prove(&tool);
-    assert!(proved.is_exact() && proved.examined_boxes <= 2_500, "{}", proved.examined_boxes);
+    assert!(proved.is_exact() && proved.examined_boxes <= 3_500, "{}", proved.examined_boxes);
     // The parabola: from 0.93 rad at the axis to a right angle, nowhere less than 2 deep.
     let ([low, high], depth) = border(&tool, &proved, ["spindle/housing.1", "housing.2"]);
     assert!(low < 53.13 && low > 45.0 && (90.0..91.0).contains(&high), "{low} {high}");

@@ -57,6 +57,23 @@ fn names() -> Vec<String> {
     library::files().into_iter().filter_map(stem).collect()
 }
 
+/// The page that follows a tool from its text to its code quotes both as they are.
+#[test]
+fn the_page_quotes_a_tool_and_its_code() {
+    let page = include_str!("../../../tool-dsl/README.md");
+    let text = include_str!("../../../tools-library/tools/d2_ball.tool");
+    let tool = page.split("```tool\n").nth(1).and_then(|block| block.split("```").next());
+    assert_eq!(tool, Some(text));
+    let trimmed = |text: &str| text.lines().map(str::trim).collect::<Vec<_>>().join("\n");
+    let code = trimmed(&generated("d2_ball"));
+    let quotes: Vec<&str> = page.split("```rust,ignore\n").skip(1).collect();
+    assert!(quotes.len() > 1);
+    for quote in quotes.iter().filter_map(|block| block.split("```").next()) {
+        assert!(code.contains(&trimmed(quote)), "{quote}");
+    }
+    assert!(page.contains(&format!("{} lines", generated("d2_ball").lines().count())));
+}
+
 /// Collects constructs that generated code must not have.
 #[derive(Default)]
 struct Refused(Vec<String>);

@@ -145,16 +145,15 @@ kinds! {
         help "report this with the file: it is a bug in the compiler"
         explain "The depth of a profile is the distance to its surface by construction, which `touchoff check` proves once more."
         without "it is a bug in the compiler";
-    warning T0624 Undecided { statement: Statement, location: String, more: usize, exact: bool, factor: Option<FormattedNumber> }
+    warning T0624 Undecided { statement: Statement, location: String, more: usize, factor: Option<FormattedNumber> }
         "undecided proof"
         message (more) {
             0 => "not decided: {statement} near {location}",
             _ => "not decided: {statement} near {location}, and {more} similar cases",
         }
-        help ((exact, factor)) {
-            (true, _) => "no action needed: a profile's depth is exact by construction, although this proof is incomplete",
-            (false, Some(factor)) => "the bound proved during compilation still holds: depth is at most {factor} times the distance",
-            (false, None) => "certified queries refuse this tool; write each depth as the distance to the nearest surface, or as a `min` of distances",
+        help (factor) {
+            Some(factor) => "the bound proved during compilation still holds: depth is at most {factor} times the distance",
+            None => "certified queries refuse this tool; write each depth as the distance to the nearest surface, or as a `min` of distances",
         }
         explain "The prover divides the tool into a limited number of boxes. It found nothing wrong in those that are left.";
     warning T0625 NicenessNowherePositive { region: String, value: FormattedNumber, location: String }

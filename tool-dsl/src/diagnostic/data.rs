@@ -231,8 +231,6 @@ impl fmt::Display for Subject {
 pub enum Statement {
     /// All points of the box belong to this owner.
     SingleOwner(Option<String>),
-    /// The features that are nearest to its points belong to this owner.
-    NearestFeatures(Option<String>),
     /// Depth is continuous from one owner to another.
     ContinuousDepth(Option<String>, Option<String>),
     /// The steepness of depth is bounded in this region.
@@ -241,8 +239,8 @@ pub enum Statement {
     NonNegativeDepth(Option<String>),
     /// The regions that meet; this is their number.
     MeetingRegions(usize),
-    /// The solid ends on its profile.
-    EndsOnProfile,
+    /// Depth is the distance from the profile.
+    DistanceFromProfile,
 }
 
 impl fmt::Display for Statement {
@@ -250,9 +248,6 @@ impl fmt::Display for Statement {
         match self {
             Statement::SingleOwner(owner) => {
                 write!(f, "whether all points belong to {}", shown(owner))
-            }
-            Statement::NearestFeatures(owner) => {
-                write!(f, "whether the nearest features belong to {}", shown(owner))
             }
             Statement::ContinuousDepth(from, to) => {
                 write!(f, "whether depth is continuous from {} to {}", shown(from), shown(to))
@@ -264,7 +259,9 @@ impl fmt::Display for Statement {
                 write!(f, "whether depth is at least 0 in {}", shown(owner))
             }
             Statement::MeetingRegions(count) => write!(f, "which of {count} regions meet"),
-            Statement::EndsOnProfile => f.write_str("whether the solid ends on the profile"),
+            Statement::DistanceFromProfile => {
+                f.write_str("whether depth is the distance from the profile")
+            }
         }
     }
 }

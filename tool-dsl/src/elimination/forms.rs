@@ -2,11 +2,10 @@
 //! separate variable; and the facts known about such variables.
 
 use crate::domain::Domain;
-use crate::expr::interval::{Cell, Encloser};
 use crate::expr::polynomial::{Monomial, Polynomial, Polynomials, monomial_of};
 use crate::expr::{Coord, Graph, Id, Node};
 use crate::model::Model;
-use crate::number::{Number, ROUNDING};
+use crate::number::Number;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The monomial of the distance from the axis.
@@ -19,8 +18,6 @@ pub(super) enum Variable {
     Monomial(Monomial),
     /// The value of a node that is a root or an absolute value.
     Root(Id),
-    /// The absolute value of a node.
-    Size(Id),
 }
 
 /// A linear form, `Σ factor · variable + constant`.
@@ -126,82 +123,6 @@ impl<'m> Variables<'m> {
         forms.remove(&root)
     }
 
-    /// Returns a comparison of squares as a comparison of absolute values. Where the sign of a squared node
-    /// is known in the box, the node itself replaces its absolute value.
-    pub(super) fn comparison_without_squares(&mut self, value: Id, cell: Cell) -> Option<Form> {
-        let [a, b] = squares_compared(self.graph, value)?;
-        let a = self.unsquared(&a, cell)?;
-        Some(a.signed(&self.unsquared(&b, cell)?, true))
-    }
-
-    fn unsquared(&mut self, squared: &Squared, cell: Cell) -> Option<Form> {
-        match *squared {
-            Squared::Of(a) => {
-                let mut encloser = Encloser::new(self.graph, [a]);
-                encloser.set(cell);
-                let value = encloser.get(a);
-                match (value.low >= 0.0, value.high <= 0.0) {
-                    (true, _) => self.form(a),
-                    (_, true) => Some(self.form(a)?.negated()),
-                    _ => Some(Form::variable(self.of(Variable::Size(a)))),
-                }
-            }
-            Squared::Root(root) => Some(Form::variable(self.of(Variable::Root(root)))),
-        }
-    }
-
-    /// Returns lower bounds of distances, as forms that are at most 0. The root of a sum of squared
-    /// coordinate differences is the distance from a point. It is at least any linear form with a gradient of
-    /// length 1 that vanishes at that point.
-    pub(super) fn projections<'f>(&mut self, forms: impl Iterator<Item = &'f Form>) -> Vec<Form> {
-        let forms: Vec<&Form> = forms.collect();
-        let mut facts = Vec::new();
-        for (root, index) in self.roots() {
-            let Some(point) = self.centre(root) else { continue };
-            let negative = Form::variable(index).negated();
-            for form in &forms {
-                let squares = form.factors.values().map(|factor| factor * factor);
-                let slope = squares.fold(Number::int(0), |sum, square| &sum + &square);
-                let terms = form.factors.iter().map(|(at, factor)| Some(factor * point.get(at)?));
-                let is_complete =
-                    terms.chain([Some(form.constant.clone())]).collect::<Option<Vec<_>>>();
-                let Some((value, size)) = is_complete.map(|terms| Number::sum(&terms)) else {
-                    continue;
-                };
-                let vanishes = value.to_f64().abs() <= ROUNDING * size;
-                if vanishes && slope.nearly_equals(&Number::int(1)) {
-                    facts.extend([false, true].map(|sign| negative.clone().signed(form, sign)));
-                }
-            }
-        }
-        facts
-    }
-
-    fn roots(&self) -> Vec<(Id, usize)> {
-        self.indices
-            .iter()
-            .filter_map(|(variable, index)| match variable {
-                Variable::Root(root) => Some((*root, *index)),
-                _ => None,
-            })
-            .collect()
-    }
-
-    /// Returns the point from which a root is the distance, by coordinate.
-    fn centre(&mut self, root: Id) -> Option<BTreeMap<usize, Number>> {
-        let (parts, is_complete) = squares(self.graph, root);
-        let mut point = BTreeMap::new();
-        for part in parts {
-            let form = self.form(part)?;
-            let mut factors = form.factors.iter();
-            let (variable, factor) = factors.next()?;
-            // A coordinate minus a number, with either sign.
-            let is_only = factors.next().is_none() && factor.abs() == Number::int(1);
-            point.insert(*variable, is_only.then(|| &-&form.constant * factor)?);
-        }
-        is_complete.then_some(point)
-    }
-
     fn of_polynomial(&mut self, polynomial: &Polynomial) -> Form {
         let mut form = Form::default();
         for (monomial, factor) in polynomial.terms() {
@@ -236,12 +157,8 @@ impl<'m> Variables<'m> {
                         continue;
                     }
                 }
-                Variable::Root(_) | Variable::Size(_) => {
-                    let (squares, is_complete) = match variable {
-                        Variable::Root(root) => squares(self.graph, root),
-                        Variable::Size(a) => (vec![a], true),
-                        Variable::Monomial(_) => (Vec::new(), false),
-                    };
+                Variable::Root(root) => {
+                    let (squares, is_complete) = squares(self.graph, root);
                     let count = squares.len();
                     // Facts cover the existing variables only; forms with new ones are dropped.
                     let variables = self.indices.len();
@@ -270,37 +187,6 @@ impl<'m> Variables<'m> {
         }
         (facts, choices)
     }
-}
-
-/// One side of a comparison of squares.
-enum Squared {
-    /// The square of a node.
-    Of(Id),
-    /// A sum of squares whose root is this node.
-    Root(Id),
-}
-
-/// Returns the two sides of a comparison of squares.
-fn squares_compared(graph: &Graph, value: Id) -> Option<[Squared; 2]> {
-    let Node::Sub(a, b) = *graph.node(graph.proof_form(value)) else { return None };
-    let side = |id: Id| match *graph.node(id) {
-        Node::Mul(a, b) if a == b => Some(Squared::Of(a)),
-        // The root of that side exists if a depth has it; without one, there is nothing to compare.
-        _ => Some(Squared::Root(graph.find(&Node::Sqrt(id))?)),
-    };
-    Some([side(a)?, side(b)?])
-}
-
-/// Returns whether a curve compares squares of expressions that contain roots.
-pub(super) fn compares_roots(graph: &Graph, value: Id) -> bool {
-    squares_compared(graph, value).is_some_and(|sides| {
-        sides.iter().any(|side| match side {
-            Squared::Of(a) => {
-                graph.dependencies([*a]).iter().any(|id| matches!(graph.node(*id), Node::Sqrt(_)))
-            }
-            Squared::Root(_) => false,
-        })
-    })
 }
 
 /// Returns the terms squared under a root of a sum of squares, and whether the sum has no others. An absolute

@@ -13,7 +13,7 @@ use crate::formula::{ANY_SIGN, NEGATIVE, POSITIVE, Signs, ZERO};
 use crate::model::Model;
 use crate::number::Number;
 use answers::{Addition, Answers};
-use forms::{Form, Variable, Variables, compares_roots};
+use forms::{Form, Variable, Variables};
 use fourier_motzkin::{
     Condition, Contradiction, Exact, ROUNDING, Source, rescaled, scaled, without,
 };
@@ -64,39 +64,19 @@ impl LinearForm {
 impl Linear {
     /// Collects the linear curves, without depths and choices.
     pub(crate) fn new(model: &Model) -> Linear {
-        Linear { choices: Vec::new(), ..Linear::of(model, [], None) }
+        Linear { choices: Vec::new(), ..Linear::with_depths(model, &[]) }
     }
 
     /// Collects the linear curves, depths that begin with those of [`Model::depths`], and the choices for roots.
-    ///
-    /// If some curve compares squares of expressions with roots, every comparison of squares becomes a
-    /// comparison of the squared expressions, where their signs are known in a box that contains the tool.
-    pub(crate) fn with_depths(model: &Model, depths: &[Id], cell: Cell) -> Linear {
-        let compares_roots = model.curve_values().any(|value| compares_roots(&model.graph, value));
-        let roots = compares_roots.then_some(cell);
-        Linear::of(model, depths.iter().copied(), roots)
-    }
-
-    fn of(model: &Model, depths: impl IntoIterator<Item = Id>, roots: Option<Cell>) -> Linear {
+    pub(crate) fn with_depths(model: &Model, depths: &[Id]) -> Linear {
         let mut variables = Variables::new(model);
         let mut axes = [None; 3];
         for (coord, axis, _) in model.domain.coordinates() {
             axes[*axis] = Some(variables.of(Variable::Monomial(monomial_of(*coord))));
         }
-        let mut forms: Vec<Option<Form>> =
-            model.curve_values().chain(depths).map(|value| variables.form(value)).collect();
-        if let Some(cell) = roots {
-            for (form, curve) in forms.iter_mut().zip(&model.curves) {
-                if let Some(compared) = variables.comparison_without_squares(curve.value, cell) {
-                    *form = Some(compared);
-                }
-            }
-        }
-        let (mut facts, choices) = variables.facts();
-        if roots.is_some() {
-            // With roots as variables, elimination needs to know how they bound one another.
-            facts.extend(variables.projections(forms[model.curves.len()..].iter().flatten()));
-        }
+        let values = model.curve_values().chain(depths.iter().copied());
+        let forms: Vec<Option<Form>> = values.map(|value| variables.form(value)).collect();
+        let (facts, choices) = variables.facts();
         let count = variables.count();
         let condition =
             |form: Form| Condition::from_exact(&dense(form, count), false, Source::Fact);
@@ -356,7 +336,7 @@ mod tests {
         for tool in library::tools_by_hand() {
             let model = &tool.model;
             let (curves, regions) = (model.curves.len(), model.regions.len());
-            let linear = Linear::with_depths(model, &model.depths(), tool.extent.cell());
+            let linear = Linear::with_depths(model, &model.depths());
             let mut counts = [0; 2];
             for number in 0..400u32 {
                 // The signs at a point, some of them forgotten, so that queries resemble one another; or opposite ones.

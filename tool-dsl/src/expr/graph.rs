@@ -41,8 +41,6 @@ pub struct Graph {
     /// The number of operations between each node and its farthest leaf.
     heights: Vec<u32>,
     known: HashMap<Node, Id>,
-    /// Alternative forms of expressions, for proofs.
-    proof_forms: HashMap<Id, Id>,
 }
 
 impl Graph {
@@ -125,25 +123,6 @@ impl Graph {
 
     fn is_int(&self, id: Id, value: i64) -> bool {
         self.constant(id).is_some_and(|c| *c == Number::int(value))
-    }
-
-    /// States that two expressions are the same function: one that is computed, since it rounds little, and
-    /// one whose form proofs can use.
-    pub(crate) fn add_proof_alias(&mut self, computed: Id, seen: Id) {
-        self.proof_forms.insert(computed, seen);
-        let opposite = [computed, seen].map(|id| self.neg(id));
-        self.proof_forms.insert(opposite[0], opposite[1]);
-    }
-
-    /// Returns the form of an expression that proofs use: the expression itself, unless
-    /// [another form](Graph::add_proof_alias) was stated.
-    pub(crate) fn proof_form(&self, id: Id) -> Id {
-        self.proof_forms.get(&id).copied().unwrap_or(id)
-    }
-
-    /// Returns the id of a node, if it is in the graph.
-    pub(crate) fn find(&self, node: &Node) -> Option<Id> {
-        self.known.get(node).copied()
     }
 
     fn put(&mut self, node: Node) -> Id {

@@ -25,20 +25,6 @@ pub(crate) fn monomial_of(coord: Coord) -> Monomial {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polynomial(BTreeMap<Monomial, Number>);
 
-const D: Monomial = [1, 0, 0, 0];
-const Z: Monomial = [0, 0, 0, 1];
-/// The monomials d², d z and z².
-const SQUARES: [Monomial; 3] = [[2, 0, 0, 0], [1, 0, 0, 1], [0, 0, 0, 2]];
-
-/// The side of a straight line on which a conic has one sign.
-#[derive(Clone, Copy, PartialEq)]
-pub(crate) struct ClearSide {
-    /// True if the line's polynomial is negative on that side.
-    pub(crate) is_below: bool,
-    /// True if the conic's polynomial is positive there.
-    pub(crate) is_positive: bool,
-}
-
 /// The highest degree that is recognised.
 const MAX_DEGREE: u8 = 8;
 
@@ -140,20 +126,6 @@ impl Polynomial {
         Polynomial(BTreeMap::from([(monomial_of(coord), Number::int(1))]))
     }
 
-    /// Returns the square of the distance from a point of the half plane.
-    pub(crate) fn squared_distance(point: &[Number; 2]) -> Polynomial {
-        let square = |(coord, value): (Coord, &Number)| {
-            let one = monomial_of(coord);
-            Polynomial(BTreeMap::from([
-                (one.map(|exponent| 2 * exponent), Number::int(1)),
-                (one, &Number::int(-2) * value),
-                ([0; 4], value * value),
-            ]))
-        };
-        let [d, z] = point;
-        Polynomial::zero().plus(&square((Coord::D, d))).plus(&square((Coord::Z, z)))
-    }
-
     /// Returns whether this provably vanishes on a straight line: after its equation is solved for a
     /// coordinate and substituted. False for a curve that is not straight.
     pub(crate) fn vanishes_on_line(&self, line: &Polynomial) -> bool {
@@ -230,80 +202,9 @@ impl Polynomial {
         enclosed_sum(terms, bases)
     }
 
-    /// Returns the polynomial with enclosed coefficients.
-    pub(crate) fn enclosed(&self) -> EnclosedPolynomial {
-        let term =
-            |(monomial, value): (&Monomial, &Number)| (*monomial, Interval::enclosing(value));
-        EnclosedPolynomial::new(self.0.iter().map(term).collect())
-    }
-
-    /// Returns the side of a straight line on which a conic that does not cross it, but may touch it, has one
-    /// sign. An ellipse or a parabola is convex where it has the other sign, and so lies on one side of each
-    /// of its tangents. Returns `None` for a hyperbola.
-    pub(crate) fn clear_side_of(&self, line: &Polynomial) -> Option<ClearSide> {
-        if !self.is_conic() || !line.is_conic() || !line.is_linear() {
-            return None;
-        }
-        let [dd, dz, zz] = SQUARES.map(|monomial| self.factor(monomial));
-        let [of_dd, of_dz, of_zz] = SQUARES.map(|monomial| self.exact_factor(monomial));
-        let discriminant = &(&Number::int(4) * &(&of_dd * &of_zz)) - &(&of_dz * &of_dz);
-        let sizes = dd * dd + dz * dz + zz * zz;
-        if dd + zz == 0.0 || discriminant.to_f64() < -ROUNDING * sizes || dd * zz < 0.0 {
-            return None;
-        }
-        // There the conic decreases toward the side of the other sign.
-        let gradient = self.gradient_at(self.point_nearest_to_0_on(line)?);
-        let normal = [D, Z].map(|monomial| line.factor(monomial));
-        let rise = gradient[0] * normal[0] + gradient[1] * normal[1];
-        let scale = (gradient[0].abs() + gradient[1].abs()) * (normal[0].abs() + normal[1].abs());
-        let is_positive = dd + zz > 0.0;
-        let is_below = (rise > 0.0) != is_positive;
-        (rise.abs() > 1e-6 * scale).then_some(ClearSide { is_below, is_positive })
-    }
-
-    /// Returns the point (d, z) of a straight line at which a conic's value is nearest to 0; `None` if the
-    /// conic crosses the line.
-    fn point_nearest_to_0_on(&self, line: &Polynomial) -> Option<[f64; 2]> {
-        let mut factors = [Number::int(0), Number::int(0), Number::int(0)];
-        for (monomial, value) in &self.on_line(line)?.0 {
-            factors[usize::from(monomial.iter().sum::<u8>())] = value.clone();
-        }
-        let [c, b, a] = factors;
-        // At most one root: b² ≤ 4 a c, up to the 256 bits of constants.
-        let (square, four) = (&b * &b, &Number::int(4) * &(&a * &c));
-        let difference = (&square - &four).to_f64();
-        if difference > 2f64.powi(-150) * (square.to_f64() + four.to_f64().abs()) {
-            return None;
-        }
-        let extreme = if a.is_zero() { 0.0 } else { -b.to_f64() / (2.0 * a.to_f64()) };
-        let [of_d, of_z, rest] = [D, Z, [0; 4]].map(|monomial| line.factor(monomial));
-        // The coordinate that is left, not the one of the leading term, is `extreme`.
-        Some(if line.leading_term()?.0 == D {
-            [-(rest + of_z * extreme) / of_d, extreme]
-        } else {
-            [extreme, -(rest + of_d * extreme) / of_z]
-        })
-    }
-
-    /// Returns a conic's gradient, in d and z, at a point of the half plane.
-    fn gradient_at(&self, [d, z]: [f64; 2]) -> [f64; 2] {
-        let [dd, dz, zz] = SQUARES.map(|monomial| self.factor(monomial));
-        [2.0 * dd * d + dz * z + self.factor(D), dz * d + 2.0 * zz * z + self.factor(Z)]
-    }
-
     /// Returns the coefficient of a monomial, rounded to a double.
     pub(crate) fn factor(&self, monomial: Monomial) -> f64 {
         self.0.get(&monomial).map_or(0.0, Number::to_f64)
-    }
-
-    /// Returns the coefficient of a monomial with 256 bits.
-    pub(crate) fn exact_factor(&self, monomial: Monomial) -> Number {
-        self.0.get(&monomial).cloned().unwrap_or(Number::int(0))
-    }
-
-    /// Returns whether this is a polynomial in d and z of degree 2 at most.
-    pub(crate) fn is_conic(&self) -> bool {
-        self.0.keys().all(|[d, x, y, z]| *x == 0 && *y == 0 && d + z <= 2)
     }
 
     /// Returns whether the degree is at most 1.
@@ -431,21 +332,6 @@ impl Polynomial {
     }
 }
 
-/// A polynomial whose coefficients are enclosed once, to enclose its values over many boxes.
-#[derive(Clone, Debug)]
-pub(crate) struct EnclosedPolynomial(Vec<(Monomial, Interval)>);
-
-impl EnclosedPolynomial {
-    fn new(terms: Vec<(Monomial, Interval)>) -> EnclosedPolynomial {
-        EnclosedPolynomial(terms)
-    }
-
-    /// Encloses the values over a box, as [`Polynomial::over`](Polynomial::over) does.
-    pub(crate) fn over(&self, cell: &Cell) -> Interval {
-        enclosed_sum(self.0.iter().map(|(monomial, value)| (monomial, *value)), bases(cell))
-    }
-}
-
 /// Returns the enclosures of d, x, y and z in a box.
 fn bases(cell: &Cell) -> [Interval; 4] {
     [cell.radius(), cell.sides[0], cell.sides[1], cell.sides[2]]
@@ -462,25 +348,4 @@ fn enclosed_sum<'t>(
             powers.fold(value, |product, (exponent, base)| product.times(base.power(*exponent)))
         })
         .fold(ZERO, Interval::plus)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn polynomial(terms: &[(Monomial, f64)]) -> Polynomial {
-        let number = |value: f64| Number::from_f64(value).expect("a finite number");
-        Polynomial(terms.iter().map(|(monomial, value)| (*monomial, number(*value))).collect())
-    }
-
-    /// The parabola z² - d + 1 is negative on one side of its tangent with these coefficients of d and z only.
-    #[test]
-    fn a_tangent_at_45_degrees_is_clear_below() {
-        let parabola = polynomial(&[([0, 0, 0, 2], 1.0), (D, -1.0), ([0; 4], 1.0)]);
-        for of_z in [1.0, -1.0] {
-            let tangent = polynomial(&[(D, 1.0), (Z, of_z), ([0; 4], -0.75)]);
-            let side = parabola.clear_side_of(&tangent).expect("it touches");
-            assert!(side.is_below && side.is_positive, "{of_z}");
-        }
-    }
 }

@@ -104,21 +104,6 @@ impl Segment {
         norm(minus(self.flat.to, self.flat.from))
     }
 
-    /// Returns the segment traversed in reverse, with the material on its other side.
-    pub(crate) fn reversed(&self) -> Segment {
-        let circle = self.circle.clone().map(|circle| Circle { convex: !circle.convex, ..circle });
-        Segment::new([self.to.clone(), self.from.clone()], circle, self.surface, self.span)
-    }
-
-    /// Returns the mirror image in the axis, traversed so that the material stays on the left.
-    pub(crate) fn mirrored(&self) -> Segment {
-        let circle = self.circle.clone();
-        let circle =
-            circle.map(|circle| Circle { centre: mirrored_point(&circle.centre), ..circle });
-        let ends = [mirrored_point(&self.to), mirrored_point(&self.from)];
-        Segment::new(ends, circle, self.surface, self.span)
-    }
-
     /// Returns the unit normal into the material at a point of the segment's line or circle.
     pub(crate) fn inward(&self, p: Point) -> Point {
         match self.flat.circle {
@@ -391,10 +376,6 @@ pub(crate) fn radius_between(outline: &[Segment], low: f64, high: f64) -> f64 {
         }
     }
     widest
-}
-
-fn mirrored_point([d, z]: &ExactPoint) -> ExactPoint {
-    [-d, z.clone()]
 }
 
 /// Returns the direction in which the mirror image of a path with a given direction is passed backward: that in which

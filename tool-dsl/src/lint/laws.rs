@@ -17,6 +17,8 @@ const AXIS_STEPS: i32 = 200;
 /// The distances inside the surface at which values are compared, in sizes of the tool.
 const NEAR_SURFACE_FRACTION: f64 = 1e-10;
 const INSIDE_FRACTION: f64 = 1e-5;
+/// The least depth of the samples with which these values are compared, in sizes of the tool.
+const SAMPLED_DEPTH_FRACTION: f64 = 1e-3;
 /// The ratio of the values near the surface and farther in from which a value is reported to grow without
 /// bound. For `1/sqrt(depth)` it is 316, and for a logarithm 2.
 const MIN_GROWTH_RATIO: f64 = 100.0;
@@ -105,10 +107,14 @@ impl Linter<'_> {
 
     /// Updates what is known of the laws' values and divisors by the current point.
     pub(super) fn measure(&mut self, owner: usize, point: [f64; 3]) {
+        // Beside the surface a value is as great as the one that it is compared with.
+        let depth = self.get(self.model.regions[owner].depth);
         for (law, (_, id, _)) in self.laws(owner).into_iter().enumerate() {
             let value = self.get(id).abs();
-            let largest = &mut self.largest[owner][law];
-            *largest = largest.max(if value.is_finite() { value } else { 0.0 });
+            if value.is_finite() && depth > SAMPLED_DEPTH_FRACTION * self.size {
+                let largest = &mut self.largest[owner][law];
+                *largest = largest.max(value);
+            }
         }
         let niceness = self.get(self.model.regions[owner].niceness);
         if self.nicest[owner].is_none_or(|(_, largest)| niceness > largest) {

@@ -56,9 +56,12 @@ pub(crate) fn lint(model: &Model, extent: &Extent) -> Vec<Diagnostic> {
     if let Some(section) = &model.section {
         // A profile's regions are known to be correct; only the quantities written in the file need checks.
         linter.check_tip(extent.low, extent);
-        for cell in section.inner.cells(1) {
-            for (p, _) in &cell.samples {
-                let point = [p[0], 0.0, p[1]];
+        let (shapes, _) =
+            section.inner.functions(&model.graph, &model.curves, &section.separations);
+        let geometry = section.inner.section();
+        for piece in section.inner.inner_pieces(&section.separations, &shapes, false) {
+            for ([d, z], _) in geometry.sample_points(&piece) {
+                let point = [d, 0.0, z];
                 if let Some(owner) = linter.owner(point) {
                     linter.check_evaluation(owner, point);
                 }
@@ -373,7 +376,7 @@ impl<'m> Linter<'m> {
         self.model
             .regions
             .iter()
-            .find(|region| mentions(&region.inside, curve))
+            .find(|region| region.inside.curves().contains(&curve))
             .map_or(self.model.name_span, |region| region.span)
     }
 
@@ -468,16 +471,6 @@ fn holds_with_margin(
         // A value near 0 is on no side.
         if value.abs() < ROUNDING * scales[curve] { f64::NAN } else { value }
     })
-}
-
-fn mentions(formula: &Formula, sought: CurveIndex) -> bool {
-    match formula {
-        Formula::Const(_) => false,
-        Formula::Atom { curve, .. } => *curve == sought,
-        Formula::All(parts) | Formula::Any(parts) => {
-            parts.iter().any(|part| mentions(part, sought))
-        }
-    }
 }
 
 /// The reason why a value is not a finite number.

@@ -2,7 +2,7 @@
 
 use super::{BITS_PER_ADDITION, bits};
 use crate::formula::CurveIndex;
-use crate::geometry::cut::CurveFunction;
+use crate::geometry::function::CurveFunction;
 use crate::geometry::outline::Point;
 
 /// The least cost, in additions, of a side on which several owners remain.
@@ -17,6 +17,13 @@ pub(super) struct Sample {
     pub(super) point: Point,
     pub(super) weight: f64,
     pub(super) owner: Option<usize>,
+}
+
+impl Sample {
+    /// Makes a sample of a point and its weight.
+    pub(super) fn new((point, weight): (Point, f64), owner: Option<usize>) -> Sample {
+        Sample { point, weight, owner }
+    }
 }
 
 /// All samples, in words of up to 64 with the same owner.

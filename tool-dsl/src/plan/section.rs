@@ -1,48 +1,28 @@
-//! The plan of a tool with a profile. Its partition is known as polygons, and splits cut them until one owner
-//! is left. Points on a splitting curve go to one side, or to a tree of their own if both sides need them. Leaves
-//! return points that rounding may bring astray near a corner to one of its owners.
+//! The plan of a tool with a profile. Convex pieces cover what each part owns, and the outside. Splits divide them until one
+//! owner is left. Points on a splitting curve go to one side, or to a tree of their own if both sides need them. At last
+//! every piece is followed to the leaves that it reaches, which bounds how far depth is from the distance.
 
 use super::samples::{ONE_SIDED_GAIN, Sample, SampleSubset, Samples};
 use super::{BITS_PER_ADDITION, MAX_TESTS, Tree, costs};
-use crate::diagnostic::{CheckKind, Diagnostic, Kind};
-use crate::formula::CurveIndex;
-use crate::geometry::cut::{
-    COINCIDENCE_FRACTION, CurveFunction, Cut, Cutter, Edge, Piece, Position, is_along,
-};
-use crate::geometry::outline::{self, Point, minus, norm};
+use crate::diagnostic::{CheckKind, Diagnostic};
+use crate::formula::{CurveIndex, NEGATIVE, POSITIVE, Signs};
+use crate::geometry::function::CurveFunction;
+use crate::geometry::outline::{self, Point, dot, minus, norm};
+use crate::geometry::polygon::{Polygon, centroid, width};
 use crate::model::{Model, Over, Section};
-use crate::regionalise::cells;
-use crate::regionalise::overlay::{self, ConditionedPart};
-use std::cell::Cell;
+use crate::regionalise;
+use crate::regionalise::overlay::{ConditionedPart, Conditions};
+use crate::regionalise::pieces::Piece;
+use crate::resolve::partitioned_anew;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use std::rc::Rc;
-
-/// The number of chords per curved edge: at first, and on retries after coarser polygons gave a wrong tree.
-const CHORDS_PER_EDGE: [u32; 3] = [8, 40, 200];
 
 /// The number of curves that may be passed over because their zeros belong to both sides.
 const MAX_SKIPPED_CURVES: usize = 6;
 
 /// The relative cost of a test that the tree also makes elsewhere: code for lanes computes it once.
 const REPEATED_TEST_COST_FACTOR: f64 = 0.3;
-
-/// Returns the tree of owners.
-pub(super) fn tree(model: &Model, section: &Section) -> Result<Tree, Diagnostic> {
-    let [few, more @ ..] = CHORDS_PER_EDGE;
-    let mut result = tree_with_chords(model, section, few);
-    // More chords cost time in every cut, and few tools need them. They separate features, but with no fewer tests.
-    for chords in more {
-        let is_inseparable = |failed: &Diagnostic| {
-            matches!(failed.kind, Kind::CheckKind(CheckKind::Inseparable { .. }))
-        };
-        if !result.as_ref().is_err_and(is_inseparable) {
-            break;
-        }
-        result = tree_with_chords(model, section, chords);
-    }
-    result
-}
 
 /// The distances of points far outside from the outline, in sizes: 8, 8², …, 8¹⁵.
 fn far_distances(size: f64) -> impl Iterator<Item = f64> {
@@ -79,7 +59,7 @@ fn strip_points(end: Point, direction: Point, size: f64) -> Vec<Point> {
 /// Returns whether a tree has an owner far outside, where there was no piece. The test uses points all
 /// around, and points in thin strips along the lines and normals of the outline.
 pub(super) fn has_owner_far_outside(model: &Model, section: &Section, tree: &Tree) -> bool {
-    let (shapes, size) = overlay::shapes(&model.graph, &model.curves, &section.outline);
+    let (shapes, size) = section.inner.functions(&model.graph, &model.curves, &section.separations);
     let [low, high] = outline::bounding_box(&section.outline).map(|end| end[1]);
     let mut points = ring_points(low / 2.0 + high / 2.0, size);
     for segment in &section.outline {
@@ -94,86 +74,57 @@ pub(super) fn has_owner_far_outside(model: &Model, section: &Section, tree: &Tre
     in_half_plane.any(|p| tree.owner_at(&|curve| shapes[curve].value(p)).is_some())
 }
 
-/// Returns the tree of a section whose curved edges are chords, `chords` per edge.
-fn tree_with_chords(model: &Model, section: &Section, chords: u32) -> Result<Tree, Diagnostic> {
-    let (shapes, size) = overlay::shapes(&model.graph, &model.curves, &section.outline);
-    let piece = |cell: &cells::Cell, owner| overlay::piece(cell, owner, &shapes, size);
-    let mut input = PlanInput::default();
-    for cell in section.inner.cells(chords) {
-        let Some(over) = &section.over else {
-            input.add_whole(&cell, piece(&cell, Some(cell.part)));
-            continue;
-        };
-        let whole = piece(&cell, None);
-        for (piece, holding) in overlay::divided(whole, &over.conditions, &shapes, size) {
-            let first = holding.first().copied();
-            let region = first.and_then(|condition| over.region(cell.part, condition));
-            // Only slivers beside a curved edge can be without a region.
-            if region.is_some() {
-                input.add_piece(Piece { owner: region, ..piece });
-            }
-        }
-        input.add_points(&cell, |p| over.owner_at(cell.part, p, &shapes, size));
+/// The differences of distances, in sizes, that a tree need not decide. The first is rounding. Where many segments meet in
+/// nearly one point, as chords of a circle do in its centre, the others spare hundreds of tests.
+const INDIFFERENCES: [f64; 3] = [1e-13, 1e-11, 1e-9];
+/// The greatest deviation of depth from the distance, in sizes. It is part of the stated error.
+const MAX_DEVIATION_FRACTION: f64 = 1e-8;
+/// The number of tests, per region, beyond which a greater indifference is tried.
+const TESTS_PER_REGION: usize = 16;
+
+/// Returns the tree of owners, and the greatest difference of its depths from the distance.
+pub(super) fn tree(model: &Model, section: &Section) -> Result<(Tree, f64), Diagnostic> {
+    let (shapes, size) = section.inner.functions(&model.graph, &model.curves, &section.separations);
+    let mut planner = Planner::new(model, section, &shapes, size);
+    // The curves of written regions may be any, and their regions differ by more than depth.
+    if section.over.is_none()
+        && let Ok(Planned { tree, deviation, .. }) = planner.tree_of(false)
+        && deviation <= max_deviation_without_points(section) * size
+    {
+        return Ok((tree, deviation));
     }
-    for cell in section.outer.cells(chords) {
-        input.add_whole(&cell, piece(&cell, None));
+    let Planned { tree, deviation, at } = planner.tree_of(true)?;
+    match deviation <= MAX_DEVIATION_FRACTION * size {
+        true => Ok((tree, deviation)),
+        false => Err(inseparable_owners(model, at)),
     }
-    let tree = plan(model, &shapes, size, input)?;
-    // A sliver between a curve and its chord may have been given to the wrong owner.
-    let wrong = section.inner.wrongly_assigned_point(|p| {
-        let region = tree.owner_at(&|curve| shapes[curve].value(p))?;
-        Some(section.over.as_ref().map_or(region, |over| over.regions[region].part))
+}
+
+/// Returns the deviation, in sizes, up to which the curves between features whose cells meet in about a point are left out.
+fn max_deviation_without_points(section: &Section) -> f64 {
+    let [good, .., greatest] = INDIFFERENCES;
+    if section.separations.meet_in_many_points() { greatest } else { good }
+}
+
+/// A tree, the greatest difference of its depths from the distance, and a point near which they differ by about that.
+struct Planned {
+    tree: Tree,
+    deviation: f64,
+    at: Point,
+}
+
+/// Returns the greatest difference of a tree's depths from the distance, from the partition of the outline alone: nothing that
+/// the model's other passes found is relied on. `None` without a profile, or if the difference is more than a plan may have.
+pub(crate) fn proved_deviation(model: &Model, tree: &Tree) -> Option<f64> {
+    let model = partitioned_anew(model)?;
+    let section = model.section.as_ref()?;
+    let (shapes, size) = section.inner.functions(&model.graph, &model.curves, &section.separations);
+    let planner = Planner::new(&model, section, &shapes, size);
+    let mut deviations = [false, true].into_iter().map(|with_points| {
+        let (pieces, _) = planner.pieces(with_points);
+        planner.deviation(tree, &pieces).0
     });
-    match wrong {
-        Some(p) => Err(inseparable_owners(model, p)),
-        None => Ok(tree),
-    }
-}
-
-/// The owner of a point.
-enum OwnerAt {
-    /// A region, or `None` outside the solid.
-    Known(Option<usize>),
-    /// The point is on a border within tolerance, or in no region of its part.
-    Undecided,
-}
-
-/// The input of a plan: pieces to separate, weighted sample points, and points to check the tree with.
-#[derive(Default)]
-struct PlanInput {
-    pieces: Vec<Rc<Piece>>,
-    samples: Vec<Sample>,
-    witnesses: Vec<(Point, Option<usize>)>,
-    corners: Vec<Point>,
-}
-
-impl PlanInput {
-    /// Adds a cell with one owner, that of its piece.
-    fn add_whole(&mut self, cell: &cells::Cell, piece: Piece) {
-        let owner = piece.owner;
-        self.add_piece(piece);
-        self.add_points(cell, |_| OwnerAt::Known(owner));
-    }
-
-    fn add_piece(&mut self, piece: Piece) {
-        let origin = self.pieces.len();
-        self.pieces.push(Rc::new(Piece { origin, ..piece }));
-    }
-
-    /// Adds a cell's corners, and its points where their owner is known.
-    fn add_points(&mut self, cell: &cells::Cell, owner_at: impl Fn(Point) -> OwnerAt) {
-        self.corners.extend(&cell.corners);
-        for &(point, weight) in &cell.samples {
-            if let OwnerAt::Known(owner) = owner_at(point) {
-                self.samples.push(Sample { point, weight, owner });
-            }
-        }
-        for &point in &cell.witnesses {
-            if let OwnerAt::Known(owner) = owner_at(point) {
-                self.witnesses.push((point, owner));
-            }
-        }
-    }
+    deviations.find(|deviation| *deviation <= MAX_DEVIATION_FRACTION * size)
 }
 
 impl Over {
@@ -181,90 +132,77 @@ impl Over {
     fn region(&self, part: usize, condition: usize) -> Option<usize> {
         self.regions.iter().position(|region| *region == ConditionedPart { part, condition })
     }
-
-    /// Returns the region of a point in a part, unless the point is on a border within tolerance.
-    fn owner_at(&self, part: usize, p: Point, shapes: &[CurveFunction<'_>], size: f64) -> OwnerAt {
-        let on_border = Cell::new(false);
-        let first_condition = |sign_on_border: f64| {
-            self.conditions.iter().position(|condition| {
-                condition.holds(&mut |curve: CurveIndex| match shapes[curve].side(p, size) {
-                    0 => {
-                        on_border.set(true);
-                        sign_on_border
-                    }
-                    _ => shapes[curve].value(p),
-                })
-            })
-        };
-        let low = first_condition(-1.0);
-        // Away from every curve that was evaluated, the sign does not matter.
-        let high = if on_border.get() { first_condition(1.0) } else { low };
-        // Whatever the sign on the border, the same condition is first, or the point is undecided.
-        let decided = low.filter(|_| low == high);
-        match decided.and_then(|condition| self.region(part, condition)) {
-            Some(region) => OwnerAt::Known(Some(region)),
-            None => OwnerAt::Undecided,
-        }
-    }
-}
-
-/// Plans the splits that separate the pieces of a ground.
-///
-/// Curved edges are chords here, so a cut may leave a sliver that belongs to no owner. The regions' conditions identify
-/// such slivers.
-fn plan<'m>(
-    model: &'m Model,
-    shapes: &'m [CurveFunction<'m>],
-    size: f64,
-    input: PlanInput,
-) -> Result<Tree, Diagnostic> {
-    let samples = Samples::new(&input.samples, shapes);
-    let all = samples.all();
-    let whole_pieces: Vec<WholePiece> = input.pieces.iter().map(WholePiece::new).collect();
-    let corners = corners(input.corners, &whole_pieces, shapes, size);
-    let all_corners: Vec<usize> = (0..corners.len()).collect();
-    let mut planner = Planner {
-        model,
-        shapes,
-        costs: costs(model),
-        samples,
-        corners,
-        used: vec![false; model.curves.len()],
-        whole_pieces,
-        sides: vec![Vec::new(); model.curves.len()],
-        size,
-        tests: 0,
-    };
-    let candidates = (0..model.curves.len()).map(Candidate::new).collect();
-    let tree = planner.tree(&input.pieces, &all, &all_corners, candidates)?;
-    for (p, owner) in input.witnesses {
-        if tree.owner_at(&|curve| shapes[curve].value(p)) != owner {
-            return Err(inseparable_owners(model, p));
-        }
-    }
-    Ok(tree)
 }
 
 struct Planner<'m> {
     model: &'m Model,
+    section: &'m Section,
+    geometry: regionalise::Section<'m>,
     shapes: &'m [CurveFunction<'m>],
     costs: Vec<f64>,
     samples: Samples,
-    corners: Vec<Corner>,
     used: Vec<bool>,
-    whole_pieces: Vec<WholePiece>,
-    /// For each curve that was tried, the side of each whole piece.
-    sides: Vec<Vec<Option<Side>>>,
     size: f64,
+    /// The distance from a curve within which a point may be on either side of it.
+    tolerance: f64,
+    /// The difference of distances that need not be decided.
+    indifference: f64,
     tests: usize,
 }
 
-/// The side of a whole piece, and therefore of everything cut from it.
-#[derive(Clone, Copy)]
-enum Side {
-    Below,
-    Above,
-    Torn,
+impl<'m> Planner<'m> {
+    fn new(
+        model: &'m Model,
+        section: &'m Section,
+        shapes: &'m [CurveFunction<'m>],
+        size: f64,
+    ) -> Planner<'m> {
+        Planner {
+            model,
+            section,
+            geometry: section.inner.section(),
+            shapes,
+            costs: costs(model),
+            samples: Samples::new(&[], shapes),
+            used: Vec::new(),
+            size,
+            tolerance: 16.0 * f64::EPSILON * size,
+            indifference: 0.0,
+            tests: 0,
+        }
+    }
+
+    /// Returns the pieces of the regions and the outside, and sample points of their owners.
+    fn pieces(&self, with_points: bool) -> (Vec<Rc<Piece>>, Vec<Sample>) {
+        let Planner { section, geometry, shapes, .. } = self;
+        let (mut pieces, mut samples) = (Vec::new(), Vec::new());
+        for piece in section.inner.inner_pieces(&section.separations, shapes, with_points) {
+            let points = geometry.sample_points(&piece);
+            let Some(over) = &section.over else {
+                samples.extend(points.into_iter().map(|point| Sample::new(point, piece.owner)));
+                pieces.push(Rc::new(piece));
+                continue;
+            };
+            let conditions = Conditions { formulas: &over.conditions, shapes, size: self.size };
+            let region = |condition| over.region(piece.owner?, condition);
+            samples.extend(points.into_iter().filter_map(|point| {
+                let region = region(conditions.first_at(point.0)?)?;
+                Some(Sample::new(point, Some(region)))
+            }));
+            for (divided, first) in conditions.divided(piece.clone(), geometry.tolerance()) {
+                // What no region claims, as far as samples show, has the depth of its part all the same.
+                let fallback = || over.regions.iter().position(|r| Some(r.part) == piece.owner);
+                let owner = first.and_then(region).or_else(fallback);
+                pieces.push(Rc::new(Piece { owner, ..divided }));
+            }
+        }
+        for piece in section.inner.outer_pieces(&section.separations) {
+            let points = geometry.sample_points(&piece);
+            samples.extend(points.into_iter().map(|point| Sample::new(point, None)));
+            pieces.push(Rc::new(piece));
+        }
+        (pieces, samples)
+    }
 }
 
 /// A curve that may separate the pieces that are left.
@@ -323,20 +261,53 @@ struct Choice {
 }
 
 impl Planner<'_> {
+    /// Returns a tree of few tests. `with_points` are also told apart the features whose cells meet in about a point.
+    fn tree_of(&mut self, with_points: bool) -> Result<Planned, Diagnostic> {
+        let (pieces, samples) = self.pieces(with_points);
+        self.samples = Samples::new(&samples, self.shapes);
+        let separations = &self.section.separations;
+        let is_left_out = |curve: &CurveIndex| separations.of_points.contains(curve);
+        let curves =
+            (0..self.model.curves.len()).filter(|curve| with_points || !is_left_out(curve));
+        let candidates: Vec<Candidate> = curves.map(Candidate::new).collect();
+        let mut result = Err(super::too_large(self.model));
+        for indifference in INDIFFERENCES {
+            self.indifference = indifference * self.size;
+            self.used = vec![false; self.model.curves.len()];
+            self.tests = 0;
+            result = self.tree(&pieces, &self.samples.all(), candidates.clone());
+            let few = TESTS_PER_REGION * self.model.regions.len();
+            if result.as_ref().is_ok_and(|tree| tree.test_count() <= few) {
+                break;
+            }
+        }
+        let tree = result?;
+        let (deviation, at) = self.deviation(&tree, &pieces);
+        Ok(Planned { tree, deviation, at })
+    }
+
     fn tree(
         &mut self,
         pieces: &[Rc<Piece>],
         samples: &SampleSubset,
-        corners: &[usize],
         mut candidates: Vec<Candidate>,
     ) -> Result<Tree, Diagnostic> {
-        let first = pieces.first().and_then(|piece| piece.owner);
-        if pieces.iter().all(|piece| piece.owner == first) {
-            return Ok(self.leaf(first, pieces, corners));
+        // What is narrow is separated only where its owner matters.
+        let is_wide = |piece: &&Rc<Piece>| width(&piece.vertices) > self.indifference;
+        let mut relevant: Vec<Rc<Piece>> = pieces.iter().filter(is_wide).map(Rc::clone).collect();
+        if owner_count(&relevant) <= 1 {
+            let owner = match relevant.first() {
+                Some(piece) => piece.owner,
+                None => self.least_wrong_owner(pieces),
+            };
+            if pieces.iter().all(|piece| self.loss(piece, owner) <= self.indifference) {
+                return Ok(Tree::Leaf(owner));
+            }
+            relevant = pieces.to_vec();
         }
-        let Some(choice) = self.choose(pieces, samples, &mut candidates) else {
-            // No curve separates these pieces: they differ by slivers along chords.
-            return Ok(self.leaf(self.largest_owner(pieces), pieces, corners));
+        let Some(choice) = self.choose(&relevant, samples, &mut candidates) else {
+            // What no curve separates is equally near, or is found by the deviation of the finished tree.
+            return Ok(Tree::Leaf(self.least_wrong_owner(pieces)));
         };
         let Choice { curve, halves, zeros } = choice;
         self.used[curve] = true;
@@ -346,20 +317,22 @@ impl Planner<'_> {
         }
         candidates.retain(|other| other.curve != curve);
         let [low, high] = self.samples.divided(samples, curve);
-        let on_curve = match zeros {
-            Zeros::Both => Some(self.zero_set_tree(curve, &halves, corners, &candidates)?),
-            _ => None,
-        };
-        let [corners_below, corners_above] =
-            [-1, 1].map(|side| self.corners_on(side, curve, corners));
-        let below = self.tree(&halves.below, &low, &corners_below, candidates.clone())?;
-        let above = self.tree(&halves.above, &high, &corners_above, candidates)?;
-        Ok(match on_curve {
-            // A test with `<` sends the zeros above; otherwise a second test singles them out.
-            Some(on_curve) if on_curve == above => Tree::split(curve, true, below, above),
-            Some(on_curve) if on_curve != below => {
-                let below = Tree::split(curve, true, below, on_curve);
-                Tree::split(curve, false, below, above)
+        let halves =
+            if relevant.len() < pieces.len() { self.halves(curve, pieces) } else { halves };
+        let below = self.tree(&halves.below, &low, candidates.clone())?;
+        let above = self.tree(&halves.above, &high, candidates)?;
+        Ok(match zeros {
+            // The points on the curve belong to the solid on either side.
+            Zeros::Both => {
+                let on_curve = first_of(&below, &above);
+                if on_curve == above {
+                    Tree::split(curve, true, below, above)
+                } else if on_curve == below {
+                    Tree::split(curve, false, below, above)
+                } else {
+                    let below = Tree::split(curve, true, below, on_curve);
+                    Tree::split(curve, false, below, above)
+                }
             }
             _ => Tree::split(curve, zeros == Zeros::Above, below, above),
         })
@@ -436,47 +409,67 @@ impl Planner<'_> {
         listed.unwrap_or(usize::MAX)
     }
 
-    /// Returns the owner of pieces that no curve separates. All but one owner's pieces are slivers between a
-    /// curve and its chord.
-    fn largest_owner(&self, pieces: &[Rc<Piece>]) -> Option<usize> {
-        let true_pieces: Vec<&Rc<Piece>> = pieces.iter().filter(|piece| self.owns(piece)).collect();
-        // If no centre tells, all pieces are slivers.
-        let candidates = if true_pieces.is_empty() { pieces.iter().collect() } else { true_pieces };
-        let largest = candidates.into_iter().max_by(|a, b| a.area().total_cmp(&b.area()));
-        largest.and_then(|piece| piece.owner)
+    /// Returns the owner, of those of some pieces, by which depth is least wrong in the others.
+    fn least_wrong_owner(&self, pieces: &[Rc<Piece>]) -> Option<usize> {
+        let mut owners: Vec<_> = pieces.iter().map(|piece| piece.owner).collect();
+        owners.sort_unstable();
+        owners.dedup();
+        let loss = |owner: &Option<usize>| {
+            pieces.iter().map(|piece| self.loss(piece, *owner)).fold(0.0, f64::max)
+        };
+        let least = owners.into_iter().min_by(|a, b| loss(a).total_cmp(&loss(b)));
+        least.flatten()
     }
 
-    /// Returns whether the centre of a piece satisfies its owner's condition.
-    fn owns(&self, piece: &Piece) -> bool {
-        let middle = piece.middle();
-        let mut value = |curve: CurveIndex| self.shapes[curve].value(middle);
-        let regions = &self.model.regions;
-        match piece.owner {
-            Some(owner) => regions[owner].inside.holds(&mut value),
-            None => !regions.iter().any(|region| region.inside.holds(&mut value)),
+    /// Returns an upper bound of the difference of the depth that a tree gives from the distance, and a point near which it is
+    /// about that. Every point is in a piece of the nearest feature, so it is enough to ask at the leaves which pieces have
+    /// another.
+    fn deviation(&self, tree: &Tree, pieces: &[Rc<Piece>]) -> (f64, Point) {
+        match tree {
+            Tree::Split { curve, below, above, .. } => {
+                let halves = self.halves(*curve, pieces);
+                let sides =
+                    [self.deviation(below, &halves.below), self.deviation(above, &halves.above)];
+                let [low, high] = sides;
+                if low.0 > high.0 { low } else { high }
+            }
+            Tree::Leaf(owner) => {
+                let feature = owner.map(|region| self.feature_of(region));
+                let losses = pieces.iter().map(|piece| {
+                    let may_own = |part: &Polygon| {
+                        let part = Piece { vertices: part.clone(), ..(**piece).clone() };
+                        part.may_own_a_point(self.shapes, self.tolerance)
+                    };
+                    let owners = [piece.feature, feature];
+                    let allowed = MAX_DEVIATION_FRACTION * self.size;
+                    let loss =
+                        self.geometry.greatest_loss(owners, &piece.vertices, allowed, may_own);
+                    (loss, centroid(&piece.vertices))
+                });
+                losses.fold((0.0, [0.0; 2]), |a, b| if a.0 >= b.0 { a } else { b })
+            }
         }
     }
 
-    fn halves(&mut self, curve: CurveIndex, pieces: &[Rc<Piece>]) -> Halves {
-        let cutter = Cutter { shapes: self.shapes, curve, size: self.size };
-        let whole_pieces = &self.whole_pieces;
-        let sides = &mut self.sides[curve];
-        sides.resize(whole_pieces.len(), None);
+    /// Returns the feature from which a region has its depth.
+    fn feature_of(&self, region: usize) -> usize {
+        self.section.over.as_ref().map_or(region, |over| over.regions[region].part)
+    }
+
+    /// Returns the greatest error at the vertices of a piece if its points are given to an owner.
+    fn loss(&self, piece: &Piece, owner: Option<usize>) -> f64 {
+        let feature = owner.map(|region| self.feature_of(region));
+        self.geometry.loss_at_vertices(piece.feature, feature, &piece.vertices)
+    }
+
+    fn halves(&self, curve: CurveIndex, pieces: &[Rc<Piece>]) -> Halves {
         let mut halves = Halves { below: Vec::new(), above: Vec::new() };
         for piece in pieces {
-            let origin = piece.origin;
-            // A piece cut from another lies on the same side, so the side is found once.
-            let side = sides[origin].get_or_insert_with(|| whole_pieces[origin].side(cutter));
-            let cut = match *side {
-                Side::Below => Cut::Below,
-                Side::Above => Cut::Above,
-                Side::Torn => piece.cut(cutter),
-            };
-            match cut {
-                Cut::Below => halves.below.push(Rc::clone(piece)),
-                Cut::Above => halves.above.push(Rc::clone(piece)),
-                Cut::Nothing => {}
-                Cut::Both(below, above) => {
+            match piece.signs_of(curve, &self.shapes[curve], self.tolerance) {
+                NEGATIVE => halves.below.push(Rc::clone(piece)),
+                POSITIVE => halves.above.push(Rc::clone(piece)),
+                _ => {
+                    let [below, above] = piece.halves(curve, self.shapes, self.tolerance);
                     halves.below.extend(below.map(Rc::new));
                     halves.above.extend(above.map(Rc::new));
                 }
@@ -502,123 +495,6 @@ fn inseparable_owners(model: &Model, [d, z]: Point) -> Diagnostic {
     Diagnostic::new(span, CheckKind::Inseparable { d, z })
 }
 
-/// A point where pieces meet, with the owners of these pieces.
-struct Corner {
-    at: Point,
-    owners: Vec<Option<usize>>,
-}
-
-/// A piece before any cut, with the centre and half the sides of a box that contains it.
-struct WholePiece {
-    piece: Rc<Piece>,
-    middle: Point,
-    half: Point,
-}
-
-impl WholePiece {
-    fn new(piece: &Rc<Piece>) -> WholePiece {
-        let [middle, half] = piece.bounding_box();
-        WholePiece { piece: Rc::clone(piece), middle, half }
-    }
-
-    fn side(&self, cutter: Cutter<'_, '_>) -> Side {
-        // A bound over the box decides most pieces without a cut.
-        match cutter.shapes[cutter.curve].side_of_box(self.middle, self.half) {
-            -1 => return Side::Below,
-            1 => return Side::Above,
-            _ => {}
-        }
-        match self.piece.position_to(cutter) {
-            Position::Below => Side::Below,
-            Position::Above => Side::Above,
-            // No side holds for everything that is cut from it.
-            Position::Degenerate | Position::Across => Side::Torn,
-        }
-    }
-}
-
-/// Returns the points where whole pieces meet.
-fn corners(
-    mut points: Vec<Point>,
-    whole: &[WholePiece],
-    shapes: &[CurveFunction<'_>],
-    size: f64,
-) -> Vec<Corner> {
-    let tolerance = COINCIDENCE_FRACTION * size;
-    // Every cell gives the corners that it shares, and these differ by rounding.
-    points.sort_by(|p, q| p[0].total_cmp(&q[0]).then(p[1].total_cmp(&q[1])));
-    points.dedup_by(|p, q| are_near(*p, *q, tolerance));
-    let mut corners = Vec::new();
-    for at in points {
-        let mut owners = Vec::new();
-        for WholePiece { piece, middle, half } in whole {
-            let [u, v] = minus(at, *middle);
-            // The box rules out most pieces before their vertices and edges are compared.
-            if u.abs() <= half[0] + tolerance
-                && v.abs() <= half[1] + tolerance
-                && !owners.contains(&piece.owner)
-                && (piece.vertices.iter().any(|p| are_near(*p, at, tolerance))
-                    || piece.has_on_edge(at, shapes, size))
-            {
-                owners.push(piece.owner);
-            }
-        }
-        corners.push(Corner { at, owners });
-    }
-    corners
-}
-
-/// Returns whether two points differ by less than a tolerance in each coordinate.
-fn are_near(p: Point, q: Point, tolerance: f64) -> bool {
-    (p[0] - q[0]).abs() < tolerance && (p[1] - q[1]).abs() < tolerance
-}
-
-impl Planner<'_> {
-    /// Returns the corners that rounding may place on a side of a curve.
-    fn corners_on(&self, side: i8, curve: CurveIndex, corners: &[usize]) -> Vec<usize> {
-        let is_on_side =
-            |at: &usize| self.shapes[curve].side(self.corners[*at].at, self.size) != -side;
-        corners.iter().copied().filter(is_on_side).collect()
-    }
-
-    /// Returns a leaf for an owner, with the corners split off at which only pieces of other owners meet.
-    /// Rounding may bring a point near such a corner here, where its owner has no piece.
-    fn leaf(&self, owner: Option<usize>, pieces: &[Rc<Piece>], corners: &[usize]) -> Tree {
-        let foreign = corners.iter().find(|at| !self.corners[**at].owners.contains(&owner));
-        let Some(corner) = foreign.map(|at| &self.corners[*at]) else {
-            return Tree::Leaf(owner);
-        };
-        let Some(first) = corner.owners.first() else { return Tree::Leaf(owner) };
-        // On the corner's own side of the splitting curve there is no piece to keep.
-        if pieces.is_empty() {
-            return Tree::Leaf(*first);
-        }
-        let mut curves: Vec<(CurveIndex, i8)> = (0..self.shapes.len())
-            .map(|curve| (curve, self.shapes[curve].side(corner.at, self.size)))
-            .filter(|(_, side)| *side != 0)
-            .collect();
-        // The cheapest curve that keeps the corner away from all pieces.
-        curves.sort_by(|a, b| self.costs[a.0].total_cmp(&self.costs[b.0]));
-        let separating = curves.into_iter().find(|(curve, side)| {
-            let cutter = Cutter { shapes: self.shapes, curve: *curve, size: self.size };
-            pieces.iter().all(|piece| match piece.position_to(cutter) {
-                Position::Below => *side > 0,
-                Position::Above => *side < 0,
-                Position::Degenerate => true,
-                Position::Across => false,
-            })
-        });
-        let Some((curve, side)) = separating else { return Tree::Leaf(owner) };
-        let [corners_here, corners_beyond] =
-            [side, -side].map(|side| self.corners_on(side, curve, corners));
-        let (corners_here, corners_beyond) =
-            (self.leaf(*first, &[], &corners_here), self.leaf(owner, pieces, &corners_beyond));
-        let (below, above) =
-            if side < 0 { (corners_here, corners_beyond) } else { (corners_beyond, corners_here) };
-        Tree::split(curve, side < 0, below, above)
-    }
-}
-
 /// The side to which a curve's own points go.
 #[derive(Clone, Copy, PartialEq)]
 enum Zeros {
@@ -629,131 +505,87 @@ enum Zeros {
 
 impl Planner<'_> {
     /// Returns the side to which the points on a curve go: the side of the solid, so that it includes its
-    /// surface. Where the solid is on both sides, it is the side of the owner listed first, if that is the
-    /// same side along the whole curve; otherwise the side below.
+    /// surface. Where the solid is on both sides, it is the side of the owner listed first.
     fn zeros(&self, curve: CurveIndex, halves: &Halves) -> Zeros {
         let [below, above] =
-            [&halves.below, &halves.above].map(|half| self.border_points(curve, half));
-        // For the sides below and above: a point that belongs to the solid on this side only; a point whose first
-        // listed owner is on this side.
+            [&halves.below, &halves.above].map(|pieces| self.touching(curve, pieces));
         let (mut is_required, mut is_preferred) = ([false; 2], [false; 2]);
-        let mut points: Vec<Point> =
-            below.points.iter().chain(&above.points).map(|(p, _)| *p).collect();
-        points.sort_by(|p, q| p[0].total_cmp(&q[0]).then(p[1].total_cmp(&q[1])));
-        // Vertices that pieces share agree except for their last bits.
-        let tolerance = 1e-12 * self.size;
-        points.dedup_by(|p, q| are_near(*p, *q, tolerance));
-        for p in points {
-            let [b, a] = [&below, &above]
-                .map(|border_points| border_points.first_at(p, COINCIDENCE_FRACTION * self.size));
-            let inside = [b, a].map(|rank| rank != usize::MAX);
-            match (inside, b.cmp(&a)) {
-                ([true, false], _) => is_required[0] = true,
-                ([false, true], _) => is_required[1] = true,
-                (_, Ordering::Less) => is_preferred[0] = true,
-                (_, Ordering::Greater) => is_preferred[1] = true,
-                _ => {}
-            }
-            if is_required == [true, true] {
-                // Some points belong to the solid below only, and others to the solid above only.
-                return Zeros::Both;
+        for (side, (own, others)) in [(&below, &above), (&above, &below)].into_iter().enumerate() {
+            for touching in own {
+                for p in touching.ends {
+                    let other = others.iter().filter(|other| other.contains(p, self.coincidence()));
+                    match other.map(|other| other.owner).min() {
+                        None => is_required[side] = true,
+                        Some(other) if touching.owner < other => is_preferred[side] = true,
+                        Some(_) => {}
+                    }
+                }
             }
         }
+        // The outside knows on which side of an arc it is.
+        if !self.shapes[curve].is_line() {
+            let is_outside = |piece: &&Rc<Piece>, signs: Signs| {
+                piece.owner.is_none() && piece.signs.contains(&(curve, signs))
+            };
+            let knows =
+                |pieces: &[Rc<Piece>], signs| pieces.iter().any(|piece| is_outside(&piece, signs));
+            is_required = [knows(&halves.above, POSITIVE), knows(&halves.below, NEGATIVE)];
+        }
         match (is_required, is_preferred) {
+            ([true, true], _) => Zeros::Both,
             ([false, true], _) | ([false, false], [false, true]) => Zeros::Above,
             _ => Zeros::Below,
         }
     }
 
-    /// Returns the points and edges of some pieces that lie on a curve.
-    fn border_points(&self, curve: CurveIndex, pieces: &[Rc<Piece>]) -> BorderPoints {
+    /// Returns the distance within which points of a border coincide.
+    fn coincidence(&self) -> f64 {
+        256.0 * f64::EPSILON * self.size
+    }
+
+    /// Returns where pieces of the solid reach a line.
+    fn touching(&self, curve: CurveIndex, pieces: &[Rc<Piece>]) -> Vec<Touching> {
         let shape = &self.shapes[curve];
-        let (mut points, mut edges) = (Vec::new(), Vec::new());
+        let mut all = Vec::new();
         for piece in pieces {
-            let rank = rank(piece.owner);
-            let is_on_curve: Vec<bool> =
-                piece.vertices.iter().map(|p| shape.side(*p, self.size) == 0).collect();
-            for (k, p) in piece.vertices.iter().enumerate().filter(|(k, _)| is_on_curve[*k]) {
-                points.push((*p, rank));
-                let next = (k + 1) % is_on_curve.len();
-                // The chord of a curved edge is on the curve only at its ends.
-                if is_on_curve[next] && piece.edges[k] == Edge::Straight {
-                    edges.push(([*p, piece.vertices[next]], rank));
-                }
+            let Some(owner) = piece.owner else { continue };
+            let near = self.coincidence() / 4.0;
+            let Some(values) = shape.linear_values(&piece.vertices, near) else { continue };
+            let on_line = values.iter().zip(&piece.vertices).filter(|(value, _)| **value == 0.0);
+            let mut ends: Option<[Point; 2]> = None;
+            for (_, p) in on_line {
+                let [from, to] = ends.unwrap_or([*p; 2]);
+                ends = Some(
+                    match (norm(minus(*p, from)), norm(minus(*p, to)), norm(minus(from, to))) {
+                        (a, b, c) if a >= b && a >= c => [from, *p],
+                        (_, b, c) if b >= c => [to, *p],
+                        _ => [from, to],
+                    },
+                );
             }
+            all.extend(ends.map(|ends| Touching { ends, owner }));
         }
-        BorderPoints::new(points, edges)
-    }
-
-    /// Returns the owners of the points on a curve: at each, the first listed of those on both sides.
-    fn zero_set_tree(
-        &mut self,
-        curve: CurveIndex,
-        halves: &Halves,
-        corners: &[usize],
-        open: &[Candidate],
-    ) -> Result<Tree, Diagnostic> {
-        let shape = &self.shapes[curve];
-        // Only pieces that reach the curve can own its points.
-        let touches =
-            |piece: &&Rc<Piece>| piece.vertices.iter().any(|p| shape.side(*p, self.size) == 0);
-        let [below, above] = [&halves.below, &halves.above]
-            .map(|pieces| pieces.iter().filter(touches).cloned().collect::<Vec<_>>());
-        let [corners_below, corners_above] =
-            [-1, 1].map(|side| self.corners_on(side, curve, corners));
-        // Samples lie beside curves, so they say nothing about points on this one.
-        let none = SampleSubset::default();
-        let below = self.tree(&below, &none, &corners_below, open.to_vec())?;
-        let above = self.tree(&above, &none, &corners_above, open.to_vec())?;
-        Ok(first(&below, &above))
+        all
     }
 }
 
-/// Points and straight edges on a curve, in order along an axis, with the rank of their owner: its index in the list of
-/// regions, or `usize::MAX` for the outside.
-struct BorderPoints {
-    axis: usize,
-    points: Vec<(Point, usize)>,
-    /// The edges by their lower ends.
-    edges: Vec<([Point; 2], usize)>,
-    /// The greatest upper end of each edge and those before it.
-    reaches: Vec<f64>,
+/// The part of a line that a piece reaches, by its ends.
+struct Touching {
+    ends: [Point; 2],
+    owner: usize,
 }
 
-impl BorderPoints {
-    /// Orders points and edges along the axis on which the points are farther apart.
-    fn new(mut points: Vec<(Point, usize)>, mut edges: Vec<([Point; 2], usize)>) -> BorderPoints {
-        let spread = |axis: usize| {
-            let ends = points.iter().map(|(p, _)| [p[axis], p[axis]]);
-            ends.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
-                .map_or(0.0, |[low, high]| high - low)
-        };
-        let axis = usize::from(spread(1) > spread(0));
-        let low = |[a, b]: &[Point; 2]| a[axis].min(b[axis]);
-        points.sort_by(|(p, _), (q, _)| p[axis].total_cmp(&q[axis]));
-        edges.sort_by(|(a, _), (b, _)| low(a).total_cmp(&low(b)));
-        let mut reach = f64::NEG_INFINITY;
-        let reaches = edges.iter().map(|([a, b], _)| {
-            reach = reach.max(a[axis]).max(b[axis]);
-            reach
-        });
-        BorderPoints { axis, reaches: reaches.collect(), points, edges }
-    }
-
-    /// Returns the rank of the first listed owner that touches a point.
-    fn first_at(&self, p: Point, tolerance: f64) -> usize {
-        let axis = self.axis;
-        let [low, high] = [p[axis] - tolerance, p[axis] + tolerance];
-        let begin = self.points.partition_point(|(q, _)| q[axis] < low);
-        let points = self.points[begin..].iter().take_while(|(q, _)| q[axis] <= high);
-        let points = points.filter(|(q, _)| are_near(p, *q, tolerance));
-        // From the last edge that begins before the point, as long as one before it may reach the point.
-        let end = self.edges.partition_point(|([a, b], _)| a[axis].min(b[axis]) <= high);
-        let edges = self.edges[..end].iter().zip(&self.reaches).rev();
-        let edges = edges.take_while(|(_, reach)| **reach >= low).map(|(edge, _)| edge);
-        let edges = edges.filter(|(edge, _)| is_along(p, *edge, tolerance));
-        let ranks = points.map(|(_, rank)| *rank).chain(edges.map(|(_, rank)| *rank));
-        ranks.min().unwrap_or(usize::MAX)
+impl Touching {
+    /// Returns whether a point of the line is between the ends.
+    fn contains(&self, p: Point, tolerance: f64) -> bool {
+        let [from, to] = self.ends;
+        let along = minus(to, from);
+        let (length, offset) = (norm(along), minus(p, from));
+        if length <= tolerance {
+            return norm(offset) <= 2.0 * tolerance;
+        }
+        let position = dot(along, offset) / length;
+        position >= -tolerance && position <= length + tolerance
     }
 }
 
@@ -763,17 +595,17 @@ fn rank(owner: Option<usize>) -> usize {
 }
 
 /// Returns a tree whose leaves are the first listed of the owners in two trees.
-fn first(a: &Tree, b: &Tree) -> Tree {
+fn first_of(a: &Tree, b: &Tree) -> Tree {
     match (a, b) {
         (Tree::Leaf(own), Tree::Leaf(other)) => {
             Tree::Leaf(if rank(*other) < rank(*own) { *other } else { *own })
         }
         (Tree::Leaf(_), Tree::Split { curve, strict, below, above }) => {
-            Tree::split(*curve, *strict, first(a, below), first(a, above))
+            Tree::split(*curve, *strict, first_of(a, below), first_of(a, above))
         }
         (Tree::Split { curve, strict, below, above }, _) => {
             let [low, high] = [true, false].map(|holds| b.simplified(*curve, *strict, holds));
-            Tree::split(*curve, *strict, first(below, &low), first(above, &high))
+            Tree::split(*curve, *strict, first_of(below, &low), first_of(above, &high))
         }
     }
 }

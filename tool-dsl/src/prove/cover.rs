@@ -11,9 +11,6 @@ use crate::plan::Tree;
 pub(super) struct Claim {
     pub(super) owner: Option<usize>,
     pub(super) signs: Vec<(CurveIndex, Signs)>,
-    /// The number of the path with its signs. Claims with the same number have the same leaf and signs, in any
-    /// box.
-    pub(super) path: usize,
 }
 
 /// Determines the leaves that a box may have points of.
@@ -21,20 +18,12 @@ pub(super) struct Cover<'m> {
     model: &'m Model,
     tree: &'m Tree,
     encloser: Encloser<'m>,
-    /// For each path found so far, of which the first is empty, the paths that continue it at the split where
-    /// it leads, by the side and the signs there; 0 for those not found yet.
-    paths: Vec<Continuations>,
 }
-
-/// The numbers of the paths that continue another, by the side of a split (above is true) and the signs on it.
-type Continuations = [[usize; ANY_SIGN as usize + 1]; 2];
-
-const NO_CONTINUATIONS: Continuations = [[0; ANY_SIGN as usize + 1]; 2];
 
 impl<'m> Cover<'m> {
     pub(super) fn new(model: &'m Model, tree: &'m Tree) -> Cover<'m> {
         let encloser = Encloser::new(&model.graph, model.curve_values());
-        Cover { model, tree, encloser, paths: vec![NO_CONTINUATIONS] }
+        Cover { model, tree, encloser }
     }
 
     /// Returns the signs that a curve can have in the current box.
@@ -53,7 +42,7 @@ impl<'m> Cover<'m> {
     pub(super) fn claims(&mut self, cell: Cell) -> Vec<Claim> {
         self.encloser.set(cell);
         let mut claims = Vec::new();
-        self.descend(self.tree, &mut Vec::new(), 0, &mut claims);
+        self.descend(self.tree, &mut Vec::new(), &mut claims);
         claims
     }
 
@@ -61,12 +50,11 @@ impl<'m> Cover<'m> {
         &mut self,
         tree: &Tree,
         path: &mut Vec<(CurveIndex, Signs)>,
-        path_number: usize,
         claims: &mut Vec<Claim>,
     ) {
         let Tree::Split { curve, strict, below, above } = tree else {
             if let Tree::Leaf(owner) = tree {
-                claims.push(Claim { owner: *owner, signs: path.clone(), path: path_number });
+                claims.push(Claim { owner: *owner, signs: path.clone() });
             }
             return;
         };
@@ -76,26 +64,13 @@ impl<'m> Cover<'m> {
         // The test is `c < 0` or `c ≤ 0`, and the curve itself belongs to one side only.
         let low = if *strict { NEGATIVE } else { NEGATIVE | ZERO };
         let sides = [(below, possible_signs & low), (above, possible_signs & !low & ANY_SIGN)];
-        for (is_above, (side, signs)) in sides.into_iter().enumerate() {
+        for (side, signs) in sides {
             if signs != 0 {
                 path.push((*curve, signs));
-                let number = self.continued(path_number, is_above, signs);
-                self.descend(side, path, number, claims);
+                self.descend(side, path, claims);
                 path.pop();
             }
         }
-    }
-
-    /// Returns the number of a path with one more split.
-    fn continued(&mut self, path: usize, side: usize, signs: Signs) -> usize {
-        let next = self.paths.len();
-        let number = &mut self.paths[path][side][usize::from(signs)];
-        if *number != 0 {
-            return *number;
-        }
-        *number = next;
-        self.paths.push(NO_CONTINUATIONS);
-        next
     }
 }
 

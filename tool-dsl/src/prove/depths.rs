@@ -24,13 +24,10 @@ pub(super) struct DepthCorner {
 }
 
 impl Depths {
-    /// Collects the depths of a model, whose graph receives the parts. The depths of a profile have none.
+    /// Collects the depths of a model, whose graph receives the parts.
     pub(super) fn of(model: &mut Model) -> Depths {
         let mut ids = model.depths();
         let mut corners = vec![None; ids.len()];
-        if model.is_exact() {
-            return Depths { ids, corners };
-        }
         for region in 0..ids.len() {
             let first = ids.len();
             let mut pending = vec![region];

@@ -1,84 +1,11 @@
-//! Bounds of the difference of two distances: everywhere, and on a straight border.
-//!
-//! *Everywhere*, over the plane or space, they follow from `|p - a| + |p - b| ≥ |a - b| ≥ |p - a| - |p - b|`.
-//! Along any path from a point, a linear function with a gradient of length 1 grows by at most the distance
-//! from that point.
-//!
-//! *On a straight border* where a profile is smooth, depths agree up to rounding: lines and arcs whose ends were
-//! written with the digits of a double are not exactly tangent. The difference is affine along the line, up to that.
+//! Bounds of the difference of two distances on a straight border. Depths there agree up to rounding: lines and arcs whose
+//! ends were written with the digits of a double are not exactly tangent. The difference is affine along the line, up to that.
 
 use super::root::{RootForm, RootTerm};
 use crate::expr::Coord;
 use crate::expr::interval::{Cell, Interval};
 use crate::expr::polynomial::{Monomial, Polynomial, monomial_of};
-use crate::number::{Number, ROUNDING};
-
-/// `sign · |p - centre| + rest`
-struct FromPoint {
-    sign: i64,
-    centre: [Number; 3],
-    rest: Number,
-}
-
-impl FromPoint {
-    fn of(depth: &RootForm) -> Option<FromPoint> {
-        let root = depth.root().filter(|_| depth.is_distance())?;
-        let half = |coord| &root.radicand.exact_factor(monomial_of(coord)) / &Number::int(-2);
-        // The half plane has D and Z, space has the other three; an absent coordinate is 0.
-        let radial = half(Coord::D);
-        let [x, y, z] = [Coord::X, Coord::Y, Coord::Z].map(half);
-        let first = if radial.is_zero() { x } else { radial };
-        Some(FromPoint {
-            sign: if root.factor.is_negative() { -1 } else { 1 },
-            centre: [first, y, z],
-            rest: depth.part().exact_factor([0; 4]),
-        })
-    }
-
-    fn distance(&self, other: &FromPoint) -> Option<Number> {
-        let squares = self.centre.iter().zip(&other.centre).map(|(a, b)| &(a - b) * &(a - b));
-        squares.fold(Number::int(0), |sum, square| &sum + &square).sqrt()
-    }
-}
-
-/// Returns the terms of a linear function's value at a point.
-fn linear_at(depth: &RootForm, [first, y, z]: &[Number; 3]) -> [Number; 5] {
-    let term = |coord, value: &Number| &depth.part().exact_factor(monomial_of(coord)) * value;
-    let rest = depth.part().exact_factor([0; 4]);
-    [rest, term(Coord::D, first), term(Coord::X, first), term(Coord::Y, y), term(Coord::Z, z)]
-}
-
-/// Returns an upper bound of `a - b` everywhere, if one can be proved; 0 if it is not positive.
-pub(super) fn excess(a: &RootForm, b: &RootForm) -> Option<f64> {
-    if !a.is_distance() || !b.is_distance() {
-        return None;
-    }
-    // A linear function minus a distance from a point is largest at that point. So is the negative of a
-    // distance minus a linear function.
-    let terms: Vec<Number> = match (FromPoint::of(a), FromPoint::of(b)) {
-        (None, Some(b)) if b.sign > 0 => {
-            linear_at(a, &b.centre).into_iter().chain([-&b.rest]).collect()
-        }
-        (Some(a), None) if a.sign < 0 => {
-            linear_at(b, &a.centre).map(|term| -&term).into_iter().chain([a.rest]).collect()
-        }
-        (Some(a), Some(b)) => {
-            let distance = a.distance(&b)?;
-            let signed = match (a.sign, b.sign) {
-                (-1, 1) => -&distance,
-                (1, 1) | (-1, -1) => distance,
-                // A sum of two distances grows without bound.
-                _ => return None,
-            };
-            vec![a.rest, -&b.rest, signed]
-        }
-        _ => return None,
-    };
-    // The terms may cancel, as for a circle within another that it touches. What then remains is rounding.
-    let (max_excess, size) = Number::sum(&terms);
-    let max_excess = max_excess.to_f64();
-    Some(if max_excess <= ROUNDING * size { 0.0 } else { max_excess.next_up() })
-}
+use crate::number::Number;
 
 /// The difference of two depths on a straight line, whose points are identified by one coordinate.
 #[derive(Clone, Debug)]
@@ -94,9 +21,6 @@ pub(super) struct Tangency {
     affine: Vec<[Interval; 2]>,
     /// The largest slope of a depth across the line, without roots.
     slope_across: f64,
-    /// The radicands of two roots with the same factor, if the difference consists of these alone, and their
-    /// difference.
-    radicands: Option<[Polynomial; 3]>,
 }
 
 /// `factor · √((t - foot)² + (distance/scale)²)`, which differs from `factor · |t - foot|` by at most
@@ -148,19 +72,9 @@ impl Tangency {
             roots: Vec::new(),
             affine: Vec::new(),
             slope_across: 0.0,
-            radicands: None,
         };
         tangency.add(a, false, line, only)?;
         tangency.add(b, true, line, only)?;
-        if let (Some(of_a), Some(of_b)) = (a.root(), b.root())
-            && of_a.factor.nearly_equals(&of_b.factor)
-            && tangency.rest.is_zero()
-        {
-            // The difference is then that of the roots alone, which `by_roots` bounds.
-            let [p, q] = [of_a.radicand.on_line(line)?, of_b.radicand.on_line(line)?];
-            let difference = p.clone().plus(&q.scaled(&Number::int(-1)));
-            tangency.radicands = Some([p, q, difference]);
-        }
         let combinations = 0..1 << tangency.roots.len();
         tangency.affine = combinations.map(|before| tangency.affine_before(before)).collect();
         Some(tangency)
@@ -214,30 +128,8 @@ impl Tangency {
         Some(())
     }
 
-    /// Returns the difference of the two depths on the line in a box; `None` if a root's foot may be there
-    /// and the radicands give no bound.
+    /// Returns the difference of the two depths on the line in a box; `None` if a root's foot may be there.
     pub(super) fn over_box(&self, cell: &Cell) -> Option<DepthDifference> {
-        let [by_feet, by_roots] = [self.by_feet(cell), self.by_roots(cell)];
-        match (by_feet, by_roots) {
-            (Some(a), Some(b)) => Some(if a.jump <= b.jump { a } else { b }),
-            (one, other) => one.or(other),
-        }
-    }
-
-    /// `|√P - √Q| = |P - Q| / (√P + √Q)`
-    fn by_roots(&self, cell: &Cell) -> Option<DepthDifference> {
-        let [p, q, difference] = self.radicands.as_ref()?;
-        let difference = difference.over(cell).abs();
-        let lengths = p.over(cell).sqrt().plus(q.over(cell).sqrt());
-        // At a common foot both roots are 0, and the quotient says nothing.
-        (lengths.low > 0.0).then(|| DepthDifference {
-            jump: difference.times(lengths.reciprocal()).high,
-            // No slope of a distance is more than 1.
-            slope_across: 1.0,
-        })
-    }
-
-    fn by_feet(&self, cell: &Cell) -> Option<DepthDifference> {
         let t = cell.sides[self.axis];
         let (mut error, mut slope_across) = (0.0f64, self.slope_across);
         let mut before_feet = 0;
@@ -292,77 +184,7 @@ fn coefficients(polynomial: &Polynomial, monomial_of_axis: Monomial) -> Option<[
 mod tests {
     use super::*;
     use crate::expr::Graph;
-    use crate::expr::polynomial::Polynomial;
     use crate::prove::root::Forms;
-
-    /// A distance in the half plane: from a point, with a sign and a constant, or along a unit vector.
-    #[derive(Clone, Copy)]
-    enum Distance {
-        Point(i64, [f64; 2], f64),
-        Line([f64; 2], f64),
-    }
-
-    impl Distance {
-        fn form(self) -> RootForm {
-            let number = |value: f64| Number::from_f64(value).expect("finite");
-            let [d, z] = [Coord::D, Coord::Z].map(Polynomial::coordinate);
-            match self {
-                Distance::Line([x, y], rest) => RootForm::from_polynomial(
-                    &d.scaled(&number(x))
-                        .plus(&z.scaled(&number(y)))
-                        .plus(&Polynomial::from_constant(&number(rest))),
-                ),
-                Distance::Point(sign, point, rest) => {
-                    let rest = Polynomial::from_constant(&number(rest));
-                    let under = Polynomial::squared_distance(&point.map(number));
-                    RootForm::new(rest, Number::int(sign), under)
-                }
-            }
-        }
-
-        fn value_at(self, [d, z]: [f64; 2]) -> f64 {
-            match self {
-                Distance::Line([x, y], rest) => x * d + y * z + rest,
-                Distance::Point(sign, point, rest) => {
-                    sign as f64 * (d - point[0]).hypot(z - point[1]) + rest
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn the_bound_holds_on_a_grid_and_is_nearly_attained() {
-        let [a, b] = [[1.0, 2.0], [4.0, -2.0]];
-        let distances = [
-            Distance::Point(1, a, -0.5),
-            Distance::Point(-1, a, 3.0),
-            Distance::Point(1, b, 1.0),
-            Distance::Point(-1, b, 2.0),
-            Distance::Line([0.0, 1.0], -1.0),
-            Distance::Line([-1.0, 0.0], 2.5),
-        ];
-        let mut bounded = 0;
-        for less in distances {
-            for more in distances {
-                let Some(max_excess) = excess(&less.form(), &more.form()) else { continue };
-                bounded += 1;
-                let mut largest = 0.0f64;
-                for k in 0..400 * 400 {
-                    let point = [k % 400, k / 400].map(|k| f64::from(k) * 0.05 - 10.0);
-                    largest = largest.max(less.value_at(point) - more.value_at(point));
-                }
-                // On the line through both points, far away, differences of distances are largest.
-                for t in [-1e6, -2.0, 0.0, 0.5, 1.0, 2.0, 1e6] {
-                    let point = [0, 1].map(|k| a[k] + t * (b[k] - a[k]));
-                    largest = largest.max(less.value_at(point) - more.value_at(point));
-                }
-                assert!(largest <= max_excess + 1e-9, "{largest} of {max_excess}");
-                assert!(largest >= max_excess - 0.1, "{largest} of {max_excess}");
-            }
-        }
-        // Twelve pairs of points, and pairs of a line and a point in both orders.
-        assert_eq!(bounded, 12 + 4 + 4);
-    }
 
     /// Returns the largest difference between an arc's depth and a line's, on the arc's normal at the line's
     /// end in a box on it, and its proved bound. The arc's centre is `distance` beside the normal.

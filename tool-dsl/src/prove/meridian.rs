@@ -57,7 +57,8 @@ impl Meridian {
         let radius = reach[0].min(reach[1]);
         let cell = Cell::half_plane(Interval::new(0.0, radius), sides[axis]);
         let extent = Extent::of(cell, radius);
-        let tool = PlannedTool { model, extent, tree: tool.tree.clone() };
+        let tool =
+            PlannedTool { model, extent, tree: tool.tree.clone(), deviation: tool.deviation };
         Some(Meridian { tool, axis, perpendicular })
     }
 

@@ -1,5 +1,6 @@
-//! Proofs about a tool, by interval branch and bound over its domain, on the expressions that are emitted.
-//! Identities of polynomials decide where a box cannot distinguish 0 from nearly 0.
+//! Proofs about a tool, on the expressions that are emitted. The depth of a profile is proved by its partition (`profile`). Regions
+//! by hand are proved by interval branch and bound over the domain; identities of polynomials decide where a box cannot
+//! distinguish 0 from nearly 0. Boxes also give the ranges and angles of both.
 //!
 //! A *claim* is a leaf of the emitted tree that a box may have points of, with the signs that the tests on
 //! the path to it demand. A *point box* is so small that it is not divided further. `docs/proofs.md` has the
@@ -7,7 +8,6 @@
 
 use crate::diagnostic::{CheckKind, Diagnostic, FormattedNumber, Statement};
 use crate::expr::interval::{Cell, Interval, ZERO};
-use crate::formula::CurveIndex;
 use crate::lint::deep_on_surface;
 use crate::model::{DirectionSource, Model, Region};
 use crate::plan::PlannedTool;
@@ -20,15 +20,13 @@ mod cover;
 mod depths;
 mod direction;
 mod distances;
-mod foot;
-mod jordan;
 mod meridian;
+mod profile;
 mod range;
 mod root;
 mod rounding;
 mod slope;
 mod survey;
-mod tangency;
 mod witness;
 
 /// At points where three or more regions meet, depths are proved to agree to this part of the tool's size,
@@ -36,8 +34,7 @@ mod witness;
 /// disagreement is also included in the slack.
 const TOLERANCE: f64 = 1e-6;
 
-/// The size of boxes, relative to the tool's size, in which the proof looks for points with different depths,
-/// and for a third depth that explains how two meet.
+/// The size of boxes, relative to the tool's size, in which the proof looks for points with different depths.
 const SMALL_BOX_FRACTION: f64 = 1.0 / 1024.0;
 
 /// The relative tolerance within which both bounds must be 1 for depth to count as the distance, see
@@ -46,15 +43,13 @@ const EXACT_TOLERANCE: f64 = 1e-8;
 
 /// The number of boxes that a proof may use.
 const MAX_BOXES: usize = 35_000;
-/// The number of boxes in which a compilation looks for errors of a tool whose construction gives the bounds of its depth.
-const MAX_BOXES_OF_EXACT: usize = 4_000;
 
 /// The facts proved about a tool.
 #[derive(Clone, Debug)]
 pub struct Certificate {
     /// The facts about each region.
     pub regions: Vec<RegionFacts>,
-    /// The facts about each pair of neighbours and each curve that separates them.
+    /// The facts about each pair of neighbours and, for regions by hand, each curve that separates them.
     pub borders: Vec<Border>,
     /// The boxes where a proof did not finish.
     pub undecided: Vec<OpenProof>,
@@ -67,9 +62,8 @@ pub struct Certificate {
     min_slope: f64,
     /// The slack of all bounds, in the file's unit: `c · distance - slack ≤ depth ≤ L · distance + slack`,
     /// and depth changes by at most L times the length of a path plus the slack. It includes jumps of depth
-    /// at points where regions meet that no curve joins. For a profile it also includes the distance of feet
-    /// past the ends of segments, and the difference of depths from the distances to the segments. A value
-    /// below 2^-95 of the tool's size counts as 0, since constants have 256 bits.
+    /// at points where regions meet that no curve joins. For a profile it is the greatest difference of depth
+    /// from the distance. A value below 2^-95 of the tool's size counts as 0, since constants have 256 bits.
     pub slack: f64,
 }
 
@@ -139,8 +133,6 @@ pub type JumpPoint = ([f64; 3], [f64; 2]);
 pub struct Border {
     /// A region and its neighbour, `None` for the outside.
     pub sides: (usize, Option<usize>),
-    /// A curve that separates them.
-    pub curve: CurveIndex,
     /// The difference of their depths on it, 0 if they agree exactly. The depth of the outside is 0.
     pub depth_jump: Interval,
     /// The difference of their magnitudes on it.
@@ -201,21 +193,21 @@ pub struct Bounds {
 impl Bounds {
     /// Returns the bounds that can be proved quickly, and diagnostics for the errors found.
     pub(crate) fn of(tool: &PlannedTool) -> (Bounds, Vec<Diagnostic>) {
-        let rounding_error = rounding::bound_over_tool(tool);
+        let rounding_error = rounding::bound_over_tool(tool) + tool.deviation;
         let exact = Bounds { lower_slope: Some(1.0), lipschitz: Some(1.0), rounding_error };
         let mut sources = tool.model.regions.iter().map(|region| region.source);
         // Depth and directions then follow from the construction, so no point can show an error.
         if tool.model.is_exact() && sources.all(|source| source != DirectionSource::Written) {
             return (exact, Vec::new());
         }
-        // Overlaps of regions are left to [`Certificate::prove`].
-        let boxes = if tool.model.is_exact() { MAX_BOXES_OF_EXACT } else { MAX_BOXES };
-        let certificate = prove_with_budget(tool, boxes, false);
-        let mut diagnostics = certificate.certain_diagnostics(tool);
-        // A proof that stays open does not weaken what the construction gives; only its errors count.
         if tool.model.is_exact() {
-            return (exact, diagnostics);
+            // The plan has just been proved; only directions and nicenesses can be wrong.
+            let certificate = survey::of_profile(tool, Some(tool.deviation), false);
+            return (exact, certificate.certain_diagnostics(tool));
         }
+        // Overlaps of regions are left to [`Certificate::prove`].
+        let certificate = by_hand(tool, false);
+        let mut diagnostics = certificate.certain_diagnostics(tool);
         let [lower_slope, lipschitz] = [certificate.lower_slope(), certificate.lipschitz()];
         if lipschitz.is_none() {
             // Slack without a bound would say nothing.
@@ -227,22 +219,25 @@ impl Bounds {
     }
 }
 
-/// Proves as much as possible with a number of boxes. For regions by hand this includes, if
-/// `check_overlaps` is set, that no two of them overlap.
-fn prove_with_budget(tool: &PlannedTool, boxes: usize, check_overlaps: bool) -> Certificate {
+/// Proves as much as possible about regions by hand. This includes, if `check_overlaps` is set, that no two of them overlap.
+fn by_hand(tool: &PlannedTool, check_overlaps: bool) -> Certificate {
     match Meridian::of(tool) {
         Some(mut meridian) => {
-            let certificate = survey::survey(&mut meridian.tool, boxes, check_overlaps);
+            let certificate = survey::by_hand(&mut meridian.tool, check_overlaps);
             meridian.revolved(certificate, tool)
         }
-        None => survey::survey(&mut tool.clone(), boxes, check_overlaps),
+        None => survey::by_hand(&mut tool.clone(), check_overlaps),
     }
 }
 
 impl Certificate {
     /// Proves as much as possible about a tool.
     pub fn prove(tool: &PlannedTool) -> Certificate {
-        prove_with_budget(tool, MAX_BOXES, true)
+        if tool.model.is_exact() {
+            survey::of_profile(tool, profile::proved_deviation(tool), true)
+        } else {
+            by_hand(tool, true)
+        }
     }
 
     /// Returns whether depth is continuous and 0 on the surface, within [`Certificate::tolerance`].
@@ -324,11 +319,15 @@ impl Certificate {
     /// steepness has no bound. `factor` is the Lipschitz constant that a build proves.
     fn undecided_diagnostics(&self, tool: &PlannedTool, factor: Option<f64>) -> Vec<Diagnostic> {
         let model = &tool.model;
+        if model.is_exact() {
+            let kind = CheckKind::DepthNotProvedExact;
+            let diagnostic = (!self.is_exact()).then(|| Diagnostic::new(model.name_span, kind));
+            return diagnostic.into_iter().collect();
+        }
         let mut diagnostics = Vec::new();
         let mut undecided = |span, statement, location, more| {
-            let (exact, factor) = (model.is_exact(), factor.map(FormattedNumber));
-            let location = model.format_point(location);
-            let kind = CheckKind::Undecided { statement, location, more, exact, factor };
+            let (factor, location) = (factor.map(FormattedNumber), model.format_point(location));
+            let kind = CheckKind::Undecided { statement, location, more, factor };
             diagnostics.push(Diagnostic::new(span, kind));
         };
         let steep = model.regions.iter().zip(&self.regions);
@@ -339,9 +338,6 @@ impl Certificate {
         } else if let Some((region, point)) = steep {
             let statement = Statement::BoundedSteepness(region.name.clone());
             undecided(region.law_spans.depth, statement, point, 0);
-        } else if model.is_exact() && self.is_continuous() && !self.is_exact() {
-            // Every proof is finished, and yet the depth is not proved to be the distance.
-            diagnostics.push(Diagnostic::new(model.name_span, CheckKind::DepthNotProvedExact));
         }
         diagnostics
     }

@@ -1,6 +1,5 @@
 //! Depths in their usual form, a polynomial and at most one root: `l + k √P`. Whether they vanish or agree on
-//! a curve can then be decided exactly, up to the 256 bits of constants. Curves that compare two depths with
-//! different roots are sums of a polynomial and several roots.
+//! a curve can then be decided exactly, up to the 256 bits of constants.
 
 use crate::expr::interval::{Cell, Interval};
 use crate::expr::polynomial::{Polynomial, Polynomials};
@@ -86,16 +85,11 @@ pub(super) struct Difference {
 }
 
 impl Difference {
-    /// Returns how the two forms agree wherever a curve's polynomial is zero, if they do. `square` is that
-    /// polynomial's square, if it has one.
-    pub(super) fn agreement_on(
-        &self,
-        curve: &Polynomial,
-        square: Option<&Polynomial>,
-    ) -> Option<Agreement> {
+    /// Returns how the two forms agree wherever a curve's polynomial is zero, if they do.
+    pub(super) fn agreement_on(&self, curve: &Polynomial) -> Option<Agreement> {
         let Difference { squared, branch, is_opposite, positive } = self;
         // A difference that is a multiple of the curve's square has a slope of 0 on the curve.
-        let is_square = square.is_some_and(|square| squared.ratio(square).is_some());
+        let is_square = curve.times(curve).is_some_and(|square| squared.ratio(&square).is_some());
         let (smooth, ratio) = (squared.is_zero() || is_square, squared.ratio(curve));
         let agrees = smooth || ratio.is_some() || squared.vanishes_on_line(curve);
         agrees.then(|| Agreement {
@@ -138,11 +132,6 @@ impl<'g> Forms<'g> {
         self.forms.get(&id).cloned().flatten()
     }
 
-    /// Returns a node as a polynomial, if it is one.
-    pub(super) fn polynomial(&mut self, id: Id) -> Option<Polynomial> {
-        self.polynomials.of(self.graph, id).cloned()
-    }
-
     fn node(&mut self, id: Id) -> Option<RootForm> {
         if let Some(polynomial) = self.polynomials.of(self.graph, id) {
             return Some(RootForm::from_polynomial(polynomial));
@@ -172,25 +161,6 @@ impl RootForm {
     /// Returns `polynomial + factor √radicand`.
     pub(super) fn new(polynomial: Polynomial, factor: Number, radicand: Polynomial) -> RootForm {
         RootForm { polynomial, root: Some(RootTerm { factor, radicand }) }
-    }
-
-    /// Returns an upper bound of the difference of two distances, with root factors of ±1, in a box; `None`
-    /// if only one has a root, or their signs differ.
-    pub(super) fn difference_bound(&self, other: &RootForm, cell: &Cell) -> Option<f64> {
-        let minus_one = Number::int(-1);
-        let polynomial =
-            self.polynomial.clone().plus(&other.polynomial.scaled(&minus_one)).over(cell).abs();
-        match (&self.root, &other.root) {
-            (None, None) => Some(polynomial.high),
-            (Some(a), Some(b)) => {
-                // |√P - √Q| is at most √|P - Q|.
-                let squares =
-                    a.radicand.clone().plus(&b.radicand.scaled(&minus_one)).over(cell).abs();
-                // Roots of opposite sign add up, whatever their radicands.
-                a.factor.nearly_equals(&b.factor).then(|| polynomial.plus(squares.sqrt()).high)
-            }
-            _ => None,
-        }
     }
 
     /// Returns the form 0.
@@ -352,103 +322,6 @@ impl RootForm {
                     && self.polynomial.constant().is_some()
                     && root.radicand.is_squared_distance()
             }
-        }
-    }
-}
-
-/// `l + k √P + m √Q + …`
-#[derive(Clone)]
-pub(super) struct RootSum {
-    polynomial: Polynomial,
-    roots: Vec<RootTerm>,
-}
-
-impl RootSum {
-    /// Returns a node as such a sum, if it is one.
-    pub(super) fn of(graph: &Graph, forms: &mut Forms<'_>, id: Id) -> Option<RootSum> {
-        if let Some(form) = forms.of(id) {
-            return Some(RootSum::from(&form));
-        }
-        let mut of = |id: Id| RootSum::of(graph, forms, id);
-        match *graph.node(id) {
-            Node::Neg(a) => Some(of(a)?.scaled(&Number::int(-1))),
-            Node::Add(a, b) => Some(of(a)?.plus(of(b)?)),
-            Node::Sub(a, b) => Some(of(a)?.plus(of(b)?.scaled(&Number::int(-1)))),
-            Node::Mul(a, b) => match (graph.constant(a), graph.constant(b)) {
-                (Some(factor), _) => Some(of(b)?.scaled(factor)),
-                (_, Some(factor)) => Some(of(a)?.scaled(factor)),
-                _ => None,
-            },
-            _ => None,
-        }
-    }
-
-    fn from(form: &RootForm) -> RootSum {
-        let roots = form.root().cloned().into_iter().collect();
-        RootSum { polynomial: form.part().clone(), roots }
-    }
-
-    /// Returns the factor by which this is a multiple of the first depth minus the second.
-    pub(super) fn ratio_to_difference(&self, a: &RootForm, b: &RootForm) -> Option<Number> {
-        let difference = RootSum::from(a).plus(RootSum::from(b).scaled(&Number::int(-1)));
-        let root = self.roots.first()?;
-        // The factors of one common root give the only possible ratio.
-        let other = difference.roots.iter().find(|other| other.has_radicand_of(root))?;
-        let ratio = root.factor.checked_div(&other.factor)?;
-        let rest = difference.scaled(&-&ratio).plus(self.clone());
-        (rest.polynomial.is_zero() && rest.roots.is_empty()).then_some(ratio)
-    }
-
-    fn scaled(self, by: &Number) -> RootSum {
-        let roots = self
-            .roots
-            .into_iter()
-            .map(|root| RootTerm { factor: &root.factor * by, ..root })
-            .collect();
-        RootSum { polynomial: self.polynomial.scaled(by), roots }
-    }
-
-    fn plus(mut self, other: RootSum) -> RootSum {
-        for root in other.roots {
-            match self.roots.iter_mut().find(|own| own.has_radicand_of(&root)) {
-                // A sum that cancels in 256 bits is 0.
-                Some(own) if own.factor.nearly_equals(&-&root.factor) => {
-                    own.factor = Number::int(0);
-                }
-                Some(own) => own.factor = &own.factor + &root.factor,
-                None => self.roots.push(root),
-            }
-        }
-        // So that a sum that cancels is recognised as 0.
-        self.roots.retain(|root| !root.factor.is_zero());
-        RootSum { polynomial: self.polynomial.plus(&other.polynomial), roots: self.roots }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::expr::Coord;
-
-    #[test]
-    fn the_opposite_of_a_sum_of_roots_has_the_opposite_ratio() {
-        let mut graph = Graph::default();
-        let [d, z] = [Coord::D, Coord::Z].map(|coord| graph.coord(coord));
-        let four = graph.int(4);
-        let up = graph.sub(z, four);
-        let [p, q] = [z, up].map(|z| {
-            let [d, z] = [d, z].map(|part| graph.mul(part, part));
-            let under = graph.add(d, z);
-            graph.sqrt(under).expect("a root")
-        });
-        let sum = graph.add(p, q);
-        let [opposite, minus_q] = [sum, q].map(|id| graph.neg(id));
-        let mut forms = Forms::new(&graph);
-        let [a, b] = [p, minus_q].map(|id| forms.of(id).expect("a form"));
-        for (id, expected) in [(sum, 1), (opposite, -1)] {
-            let sum = RootSum::of(&graph, &mut forms, id).expect("a sum of roots");
-            let ratio = sum.ratio_to_difference(&a, &b).expect("a multiple");
-            assert!(ratio.nearly_equals(&Number::int(expected)), "{expected}");
         }
     }
 }

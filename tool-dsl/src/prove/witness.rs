@@ -1,4 +1,4 @@
-//! Evidence from single points: jumps, shares, and points where a solid ends.
+//! Evidence from single points: jumps and shares.
 
 use super::borders::Pair;
 use super::{JumpPoint, TOLERANCE};
@@ -7,17 +7,11 @@ use crate::domain::Domain;
 use crate::expr::interval::Cell;
 use crate::expr::value::{EvaluationPoint, LazyEvaluator};
 use crate::formula::CurveIndex;
-use crate::geometry::outline::{Segment, points_with_normals};
 use crate::plan::PlannedTool;
 use std::cell::RefCell;
 
 /// The number of points from which shares are estimated.
 const SHARE_SAMPLES: usize = 10_000;
-/// The number of points on each segment of a profile, and the distance at which the test points lie beside
-/// them, relative to the tool's size.
-const POINTS_PER_SEGMENT: usize = 8;
-pub(super) const TEST_OFFSET_FRACTION: f64 = 1e-4;
-
 /// Evaluates depths and owners at points.
 pub(super) struct Witness<'t> {
     tool: &'t PlannedTool,
@@ -110,35 +104,5 @@ impl<'t> Witness<'t> {
         let curves = &self.tool.model.curves;
         let values = RefCell::new(&mut self.values);
         self.tool.tree.owner_at(&|curve: CurveIndex| values.borrow_mut().get(curves[curve].value))
-    }
-
-    /// Returns points of a profile beside which the solid does not end, from a few per segment, and whether
-    /// it ends beside any.
-    pub(super) fn points_off_profile(&mut self, outline: &[Segment]) -> (Vec<[f64; 3]>, bool) {
-        let test_offset = TEST_OFFSET_FRACTION * self.size;
-        let (mut off_points, mut ends) = (Vec::new(), false);
-        for (index, segment) in outline.iter().enumerate() {
-            for [at, inward] in points_with_normals(segment, POINTS_PER_SEGMENT) {
-                // Where another segment is as near, either side may belong to it.
-                if at[0] < 3.0 * test_offset
-                    || outline
-                        .iter()
-                        .enumerate()
-                        .any(|(k, other)| k != index && other.distance_to(at) < 3.0 * test_offset)
-                {
-                    continue;
-                }
-                let offset_point =
-                    |offset: f64| [at[0] + offset * inward[0], 0.0, at[1] + offset * inward[1]];
-                let [inside, outside] = [test_offset, -test_offset]
-                    .map(|signed_offset| self.owner(offset_point(signed_offset)));
-                if inside.is_none() || outside.is_some() {
-                    off_points.push(offset_point(0.0));
-                } else {
-                    ends = true;
-                }
-            }
-        }
-        (off_points, ends)
     }
 }

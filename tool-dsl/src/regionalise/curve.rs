@@ -147,7 +147,7 @@ impl Section<'_> {
     }
 
     /// Returns the expression of a feature's distance.
-    pub(super) fn depth(&self, graph: &mut Graph, feature: usize) -> Option<Id> {
+    pub(crate) fn depth(&self, graph: &mut Graph, feature: usize) -> Option<Id> {
         match self.features[feature] {
             Feature::Piece(piece) => self.piece_depth(graph, piece),
             Feature::Corner(previous) => outline::distance(graph, self.corner(previous)),

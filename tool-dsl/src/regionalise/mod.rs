@@ -1,30 +1,30 @@
 //! The nearest-feature partition of a profile: derives the regions of a tool from its outline.
 //!
 //! Features are the segments of the profile and its reflex corners. The axis is a mirror and not a feature, and a
-//! tangent joint has no cell of its own. The outside is the inside of the profile traversed in the opposite direction.
-//! `section` has the features, `slices` the exact partition, `curve` the expressions of borders, `nearer` those of
-//! borders between two features, and `cells` the partition as polygons. This module combines borders to conditions.
+//! tangent joint has no cell of its own. `section` has the features, `cover` convex polygons that provably cover their
+//! cells, `curve` the expressions of borders, `nearer` those of borders between two features. `pieces` and `outside` are
+//! what a plan separates. `slices` follows the cells along the profile, and this module combines borders to conditions.
 
-pub(crate) mod cells;
 pub(crate) mod check;
+mod cover;
 mod curve;
 mod nearer;
 pub(crate) mod normals;
+mod outside;
 pub(crate) mod overlay;
+pub(crate) mod pieces;
 mod section;
 mod slices;
 pub(crate) mod smooth;
 
 use crate::expr::{Graph, Id};
-use crate::geometry::outline::{Point, Segment, turn};
+use crate::geometry::outline::{Point, Segment, bounding_box, turn};
+use crate::geometry::polygon::Polygon;
 use curve::Border;
 pub(crate) use curve::{Test, direction_to_surface};
-pub(crate) use section::Feature;
-use section::{FootPoint, Obstacle, Section};
+pub(crate) use section::{Feature, Section};
+use section::{FootPoint, Obstacle};
 use slices::Slice;
-
-/// The error of depths computed from a partition, relative to the partition's size.
-pub(crate) const ROUNDING: f64 = 1e-10;
 
 /// The cell of a feature, in which its distance is the least: its condition and its distance.
 #[derive(Clone, Debug)]
@@ -32,73 +32,58 @@ pub(crate) struct Derived {
     pub(crate) feature: Feature,
     pub(crate) inside: Test,
     pub(crate) depth: Id,
+    /// False if rounding decides about the condition at a sampled point.
+    pub(crate) is_right_at_samples: bool,
 }
 
 /// A profile that could not be divided, with the point at which this was noticed.
 pub(crate) struct Undivided(pub(crate) Point);
 
-/// The exact partition of one side of an outline.
+/// The partition of the inside of an outline.
 #[derive(Clone, Debug)]
 pub(crate) struct Partition {
     outline: Vec<Segment>,
-    outer: bool,
-    slices: Vec<Vec<Slice>>,
+    /// For each feature, polygons that cover its cell.
+    covers: Vec<Vec<Polygon>>,
 }
 
 impl Partition {
-    /// Divides the left side of an outline. `outer` is true if that is the outside of the solid.
-    pub(crate) fn new(outline: Vec<Segment>, outer: bool) -> Partition {
-        let slices = slices::slices(&Section::new(&outline, outer));
-        Partition { outline, outer, slices }
+    /// Divides the inside of an outline.
+    pub(crate) fn new(outline: Vec<Segment>) -> Partition {
+        let section = Section::new(&outline);
+        let [low, high] = bounding_box(&outline);
+        let bounds = vec![[0.0, low[1]], [high[0], low[1]], high, [0.0, high[1]]];
+        let features = 0..section.features.len();
+        let covers = features.map(|feature| section.cover(feature, &bounds)).collect();
+        Partition { outline, covers }
+    }
+
+    /// Returns the polygons that cover the cell of a feature.
+    #[cfg(test)]
+    fn cover_of(&self, feature: usize) -> &[Polygon] {
+        &self.covers[feature]
+    }
+
+    /// Returns the features and their geometry.
+    pub(crate) fn section(&self) -> Section<'_> {
+        Section::new(&self.outline)
     }
 
     /// Returns the conditions and distances of the cells, feature by feature.
     ///
     /// # Errors
     ///
-    /// If the derived conditions are wrong at a sampled point, or a constant has no value.
+    /// If a constant has no value.
     pub(crate) fn parts(&self, graph: &mut Graph) -> Result<Vec<Derived>, Undivided> {
-        let section = Section::new(&self.outline, self.outer);
-        let slices = self.slices.iter().enumerate();
+        let section = self.section();
+        let slices = slices::slices(&section);
+        let slices = slices.iter().enumerate();
         slices.map(|(feature, slices)| section.derive_region(graph, feature, slices)).collect()
     }
 
     /// Returns the condition of the interior side of a segment's line or circle.
     pub(crate) fn inside(&self, graph: &mut Graph, piece: usize) -> Option<Test> {
-        Border::Inside { piece }.test(&Section::new(&self.outline, self.outer), graph)
-    }
-
-    /// Returns the feature of each part, which is the one nearest to its points.
-    pub(crate) fn features(&self) -> Vec<Feature> {
-        Section::new(&self.outline, self.outer).features
-    }
-
-    /// Returns a point whose distance from the outline, computed by brute force, differs from its distance from the
-    /// line, circle or corner of the part assigned to it by `part_at`.
-    /// The points are taken along the normals of all cells, most densely near the ends.
-    pub(crate) fn wrongly_assigned_point(
-        &self,
-        part_at: impl Fn(Point) -> Option<usize>,
-    ) -> Option<Point> {
-        let section = Section::new(&self.outline, self.outer);
-        for slice in self.slices.iter().flatten() {
-            let points = slice.sample_points(&section);
-            let distances = section.distances_to_outline(&points, slice.feature);
-            for (p, distance) in points.into_iter().zip(distances) {
-                let slack = ROUNDING * section.size.max(distance);
-                let is_right = part_at(p)
-                    .is_some_and(|part| (section.depth_at(part, p) - distance).abs() <= slack);
-                if !is_right {
-                    return Some(p);
-                }
-            }
-        }
-        None
-    }
-
-    /// Returns polygons that cover the partition up to its outer limit, with `chords` chords per curved edge.
-    pub(crate) fn cells(&self, chords: u32) -> Vec<cells::Cell> {
-        cells::cells(&Section::new(&self.outline, self.outer), &self.slices, chords)
+        Border::Inside { piece }.test(&self.section(), graph)
     }
 }
 
@@ -154,16 +139,14 @@ impl Section<'_> {
     ) -> Result<Derived, Undivided> {
         let undivided = || Undivided(self.foot_point(feature, 0.5).at(1e-3 * self.size));
         let by_neighbour_ends = self.neighbours(feature, slices, false);
-        let neighbours = match self.wrong_point(&by_neighbour_ends, slices) {
-            None => by_neighbour_ends,
-            Some(_) => {
-                let own_normals = self.neighbours(feature, slices, true);
-                if let Some(p) = self.wrong_point(&own_normals, slices) {
-                    return Err(Undivided(p));
-                }
-                own_normals
+        let mut is_right_at_samples = self.wrong_point(&by_neighbour_ends, slices).is_none();
+        let mut neighbours = by_neighbour_ends;
+        if !is_right_at_samples {
+            let own_normals = self.neighbours(feature, slices, true);
+            if self.wrong_point(&own_normals, slices).is_none() {
+                (neighbours, is_right_at_samples) = (own_normals, true);
             }
-        };
+        }
         let mut bounds = self.ends(feature, &neighbours);
         bounds.extend(neighbours);
         let tests = bounds
@@ -172,7 +155,12 @@ impl Section<'_> {
             .collect::<Option<Vec<Test>>>()
             .ok_or_else(undivided)?;
         let depth = self.depth(graph, feature).ok_or_else(undivided)?;
-        Ok(Derived { feature: self.features[feature], inside: Test::All(tests), depth })
+        Ok(Derived {
+            feature: self.features[feature],
+            inside: Test::All(tests),
+            depth,
+            is_right_at_samples,
+        })
     }
 
     /// Returns the borders to neighbours, each once. Exceptions are the normals at the neighbour's ends or, with

@@ -165,11 +165,8 @@ impl Section<'_> {
         let mut difference = graph.sub(squared_distance, square);
         // Near the common corner both squares are nearly equal, and their difference would be rounding.
         if let Some(joint) = joint {
-            let from_corner =
+            difference =
                 difference_from_common_corner(graph, arc, self.outline[line].direction()?, joint);
-            // The proof recognises the comparison of squares, which the emitted form hides.
-            graph.add_proof_alias(from_corner, difference);
-            difference = from_corner;
         }
         let opposite = graph.neg(difference);
         let (less, more) = if nearer { (difference, opposite) } else { (opposite, difference) };

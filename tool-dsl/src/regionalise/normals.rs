@@ -1,6 +1,6 @@
 //! The normals of a profile's features, which drawings follow to the borders of the cells.
 
-use super::section::{Feature, Obstacle, Section};
+use super::section::{Obstacle, Section};
 use crate::geometry::outline::Point;
 use crate::model::Model;
 
@@ -34,15 +34,12 @@ impl<'m> Features<'m> {
     /// Returns the features of a tool whose regions are their cells; `None` if regions are written by hand or smoothed.
     pub fn of(model: &'m Model) -> Option<Features<'m>> {
         let section = model.section.as_ref().filter(|section| section.over.is_none())?;
-        Some(Features(Section::new(&section.outline, false)))
+        Some(Features(section.inner.section()))
     }
 
     /// Returns the index of each feature's segment; `None` for a reflex corner.
     pub fn segments(&self) -> impl Iterator<Item = Option<usize>> {
-        self.0.features.iter().map(|feature| match feature {
-            Feature::Piece(piece) => Some(*piece),
-            Feature::Corner(_) => None,
-        })
+        self.0.features.iter().map(|feature| feature.piece())
     }
 
     /// Returns the parameter of a feature's normal through a point; outside [0, 1] if there is none.

@@ -1,4 +1,4 @@
-//! One side of an outline, as features to which points can be nearest, and the radius to which a ball that touches one
+//! The inside of an outline, as features to which points can be nearest, and the radius to which a ball that touches one
 //! feature grows before it touches another.
 
 use crate::geometry::outline::{
@@ -13,6 +13,16 @@ pub(crate) enum Feature {
     Piece(usize),
     /// The reflex corner at the end of a segment; for `None`, the one before the first segment.
     Corner(Option<usize>),
+}
+
+impl Feature {
+    /// Returns the index of a segment.
+    pub(super) fn piece(self) -> Option<usize> {
+        match self {
+            Feature::Piece(piece) => Some(piece),
+            Feature::Corner(_) => None,
+        }
+    }
 }
 
 /// A point of a feature, and the unit normal there, which points into the section.
@@ -39,7 +49,7 @@ pub(super) enum Obstacle {
     Axis,
     /// The centre of its own arc.
     Centre,
-    /// Nothing within the outer limit, outside the solid.
+    /// Nothing.
     Far,
 }
 
@@ -50,15 +60,13 @@ pub(super) struct Stop {
     pub(super) obstacle: Obstacle,
 }
 
-/// The outer limit of the partition of the outside, in sizes of the outline.
-const OUTER_DISTANCE_IN_SIZES: f64 = 64.0;
 /// Tolerance, in sizes, for a contact to count as on a segment near its end.
 const COINCIDENCE_FRACTION: f64 = 1e-13;
 /// Distance from a smooth joint, relative to the segments' chords, within which rounding decides between its segments.
 const JOINT_FRACTION: f64 = 1e-5;
 
-/// An outline whose left side is partitioned, with the features of that side.
-pub(super) struct Section<'o> {
+/// An outline with the features of its inside.
+pub(crate) struct Section<'o> {
     pub(super) outline: &'o [Segment],
     pub(super) features: Vec<Feature>,
     /// The fan of normals of each corner: the angle of the first normal, and the sweep to the last.
@@ -66,9 +74,7 @@ pub(super) struct Section<'o> {
     /// The diagonal of the outline's bounding box.
     pub(super) size: f64,
     /// The largest coordinate or radius of the outline, by which depths are rounded.
-    largest: f64,
-    /// True if the left side is the outside, which is unbounded.
-    pub(super) outer: bool,
+    pub(super) largest: f64,
     /// A box of each feature, by centre and half the sides, with a margin above the tolerances of contact.
     boxes: Vec<[Point; 2]>,
 }
@@ -77,14 +83,14 @@ pub(super) struct Section<'o> {
 const BOX_MARGIN_FRACTION: f64 = 10.0 * COINCIDENCE_FRACTION;
 
 impl<'o> Section<'o> {
-    pub(super) fn new(outline: &'o [Segment], outer: bool) -> Section<'o> {
+    pub(super) fn new(outline: &'o [Segment]) -> Section<'o> {
         let [low, high] = bounding_box(outline);
         let size = norm(minus(high, low));
         let radii = outline.iter().filter_map(|segment| Some(segment.round()?.1));
         let largest =
             [low, high].as_flattened().iter().map(|x| x.abs()).chain(radii).fold(0.0, f64::max);
         let (features, fans, boxes) = (Vec::new(), Vec::new(), Vec::new());
-        let mut section = Section { outline, features, fans, size, largest, outer, boxes };
+        let mut section = Section { outline, features, fans, size, largest, boxes };
         section.find_features();
         section.boxes =
             section.features.iter().map(|feature| section.feature_box(*feature)).collect();
@@ -145,7 +151,7 @@ impl<'o> Section<'o> {
     }
 
     /// Returns the position of a corner.
-    fn corner_at(&self, previous: Option<usize>) -> Point {
+    pub(super) fn corner_at(&self, previous: Option<usize>) -> Point {
         match previous {
             Some(piece) => self.outline[piece].ends()[1],
             None => self.outline[0].ends()[0],
@@ -163,19 +169,24 @@ impl<'o> Section<'o> {
         }
     }
 
-    /// Returns the features that meet a feature at its ends.
-    pub(super) fn adjacent_features(&self, feature: usize) -> Vec<usize> {
-        let meets = |other: &Feature| match (self.features[feature], *other) {
-            (Feature::Piece(a), Feature::Piece(b)) => a.abs_diff(b) == 1,
+    /// Returns the segments at a joint of two features without an angle between them, each with the end that is there (0 for
+    /// its start, 1 for its end): tangent segments, or a corner and one of its segments. Empty if there is no such joint.
+    pub(super) fn smooth_joint(&self, a: usize, b: usize) -> Vec<(usize, usize)> {
+        match (self.features[a], self.features[b]) {
+            (Feature::Piece(a), Feature::Piece(b)) => {
+                let (low, high) = (a.min(b), a.max(b));
+                let [before, after] = [low, high].map(|piece| &self.outline[piece]);
+                let is_smooth =
+                    high == low + 1 && turn(before.tangent(true), after.tangent(false)) == 0.0;
+                if is_smooth { vec![(low, 1), (high, 0)] } else { Vec::new() }
+            }
             (Feature::Piece(piece), Feature::Corner(previous))
-            | (Feature::Corner(previous), Feature::Piece(piece)) => self
-                .adjacent_segments(previous)
-                .into_iter()
-                .flatten()
-                .any(|(next, _)| next == piece),
-            (Feature::Corner(_), Feature::Corner(_)) => false,
-        };
-        (0..self.features.len()).filter(|other| meets(&self.features[*other])).collect()
+            | (Feature::Corner(previous), Feature::Piece(piece)) => {
+                let adjacent = self.adjacent_segments(previous).into_iter().flatten();
+                adjacent.filter(|(segment, _)| *segment == piece).collect()
+            }
+            (Feature::Corner(_), Feature::Corner(_)) => Vec::new(),
+        }
     }
 
     /// Returns the point and normal of a feature at a parameter from 0 to 1, which is linear along a line and in the
@@ -240,7 +251,7 @@ impl<'o> Section<'o> {
     }
 
     /// Returns a point's signed distance from a feature's whole line or circle, or its distance from a corner.
-    pub(super) fn depth_at(&self, feature: usize, p: Point) -> f64 {
+    pub(crate) fn depth_at(&self, feature: usize, p: Point) -> f64 {
         match self.features[feature] {
             Feature::Piece(piece) => self.outline[piece].signed(p),
             Feature::Corner(previous) => norm(minus(p, self.corner_at(previous))),
@@ -250,32 +261,6 @@ impl<'o> Section<'o> {
     /// Bounds the difference by which rounding alone may make one of two features the nearer at a point.
     pub(super) fn rounding(&self, [d, z]: Point) -> f64 {
         16.0 * f64::EPSILON * self.largest.max(d.abs()).max(z.abs())
-    }
-
-    /// Returns the distances of points from the outline, which is fastest if most of them are nearest to the given feature.
-    pub(super) fn distances_to_outline(&self, points: &[Point], nearest: usize) -> Vec<f64> {
-        let first = match self.features[nearest] {
-            Feature::Piece(piece) => &self.outline[piece],
-            Feature::Corner(previous) => &self.outline[previous.unwrap_or(0)],
-        };
-        let mut distances: Vec<f64> = points.iter().map(|p| first.distance_to(*p)).collect();
-        let farthest = distances.iter().copied().fold(0.0, f64::max);
-        let [low, high] = box_of(points);
-        let middle = [0, 1].map(|k| low[k] / 2.0 + high[k] / 2.0);
-        let half = norm(minus(high, low)) / 2.0;
-        for (index, feature) in self.features.iter().enumerate() {
-            let Feature::Piece(piece) = *feature else { continue };
-            // No segment is nearer than its box.
-            if !self.is_box_within(index, middle, half + farthest) {
-                continue;
-            }
-            for (p, distance) in points.iter().zip(&mut distances) {
-                if self.is_box_within(index, *p, *distance) {
-                    *distance = distance.min(self.outline[piece].distance_to(*p));
-                }
-            }
-        }
-        distances
     }
 
     /// Returns where the growth of a ball that touches a feature at `foot_point` stops.
@@ -310,7 +295,6 @@ impl<'o> Section<'o> {
         obstacle: Obstacle,
     ) -> f64 {
         match obstacle {
-            Obstacle::Far if self.outer => OUTER_DISTANCE_IN_SIZES * self.size,
             // The ball meets its mirror image when its centre reaches the axis.
             Obstacle::Axis if foot_point.normal[0] < 0.0 => {
                 -foot_point.foot[0] / foot_point.normal[0]
@@ -438,18 +422,6 @@ impl<'o> Section<'o> {
     }
 }
 
-/// Returns the corners of the smallest box around some points.
-fn box_of(points: &[Point]) -> [Point; 2] {
-    let mut corners = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
-    for p in points {
-        for k in 0..2 {
-            corners[0][k] = corners[0][k].min(p[k]);
-            corners[1][k] = corners[1][k].max(p[k]);
-        }
-    }
-    corners
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -460,16 +432,15 @@ mod tests {
     fn balls_and_distances_are_those_of_all_features() {
         for tool in library::tools() {
             let Some(profile) = &tool.model.section else { continue };
-            let mut section = Section::new(&profile.outline, false);
+            let mut section = Section::new(&profile.outline);
             for feature in 0..section.features.len() {
                 for k in 0..=20 {
                     let foot_point = section.foot_point(feature, f64::from(k) / 20.0);
                     let stop = section.grow_ball(feature, &foot_point);
-                    let points = [0.1, 0.5, 1.0].map(|part| foot_point.at(part * stop.radius));
-                    let found = section.distances_to_outline(&points, feature);
-                    for (p, found) in points.iter().zip(found) {
-                        let all = section.outline.iter().map(|segment| segment.distance_to(*p));
-                        assert_eq!(found, all.fold(f64::INFINITY, f64::min), "{p:?}");
+                    for p in [0.1, 0.5, 1.0].map(|part| foot_point.at(part * stop.radius)) {
+                        let all = section.outline.iter().map(|segment| segment.distance_to(p));
+                        let nearest = all.fold(f64::INFINITY, f64::min);
+                        assert_eq!(section.nearest(p).1, nearest, "{p:?}");
                     }
                     // With boxes that contain everything, no feature is passed over.
                     let boxes = vec![[[0.0; 2], [f64::INFINITY; 2]]; section.features.len()];

@@ -200,11 +200,6 @@ impl EnvelopeWalk<'_> {
 }
 
 impl Slice {
-    /// Returns points along the far end of the slice, from the first parameter to the last.
-    pub(super) fn far_end(&self, section: &Section<'_>, steps: u32) -> Vec<Point> {
-        (0..=steps).map(|k| self.far_end_at(section, f64::from(k) / f64::from(steps))).collect()
-    }
-
     /// Returns points along the slice's normals.
     pub(super) fn points_on_normals(&self, section: &Section<'_>, steps: u32) -> Vec<Point> {
         let fractions = (0..=steps).map(|k| f64::from(k) / f64::from(steps));
@@ -224,20 +219,6 @@ impl Slice {
         radius_fractions.map(|radius_fraction| foot_point.at(radius_fraction * radius))
     }
 
-    /// Returns points along the slice's normals, most densely near its ends.
-    pub(super) fn sample_points(&self, section: &Section<'_>) -> Vec<Point> {
-        const INNER_STEPS: u32 = 12;
-        let near_end = (2..10).map(|k| 0.25f64.powi(k));
-        let fractions = (1..INNER_STEPS).map(|k| f64::from(k) / f64::from(INNER_STEPS));
-        let fractions =
-            fractions.chain(near_end.clone()).chain(near_end.map(|fraction| 1.0 - fraction));
-        let depths = [0.1, 0.5, 0.9, 0.99, 1.0];
-        fractions
-            .flat_map(|fraction| self.points_along(section, fraction, depths))
-            .filter(|p| p[0] >= 0.0)
-            .collect()
-    }
-
     fn parameter_at(&self, fraction: f64) -> f64 {
         self.from + fraction * (self.to - self.from)
     }
@@ -245,11 +226,6 @@ impl Slice {
     /// Returns the foot of the normal at a fraction of the slice's width.
     pub(super) fn foot_at(&self, section: &Section<'_>, fraction: f64) -> FootPoint {
         section.foot_point(self.feature, self.parameter_at(fraction))
-    }
-
-    /// Returns the point of the far end at a fraction of the slice's width.
-    pub(super) fn far_end_at(&self, section: &Section<'_>, fraction: f64) -> Point {
-        self.foot_at(section, fraction).at(self.radius(section, fraction))
     }
 
     /// Returns the length of the normal at a fraction of the slice's width, by the slice's own obstacle even if another

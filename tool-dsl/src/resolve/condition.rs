@@ -19,6 +19,15 @@ pub(super) struct Curves {
 }
 
 impl Curves {
+    /// Returns the curves of a model, so that others can be added.
+    pub(super) fn of(list: Vec<Curve>, graph: &Graph) -> Curves {
+        let mut polynomials = Polynomials::default();
+        for curve in &list {
+            polynomials.of(graph, curve.value);
+        }
+        Curves { list, polynomials, ..Curves::default() }
+    }
+
     /// Records the file's name for a curve.
     pub(super) fn name(&mut self, name: &str, value: Id) {
         self.names.entry(value).or_insert_with(|| name.to_owned());

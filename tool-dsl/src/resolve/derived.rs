@@ -17,8 +17,9 @@ use crate::domain::Domain;
 use crate::expr::{Coord, Graph, Id};
 use crate::formula::Formula;
 use crate::geometry::outline::{Segment, nearest_span};
-use crate::model::{DirectionSource, Over, Region, Section, Surface};
+use crate::model::{DirectionSource, Model, Over, Region, Section, Surface};
 use crate::regionalise::overlay::{self, ConditionedPart, Overlay};
+use crate::regionalise::pieces::Separations;
 use crate::regionalise::smooth::{self, Origin, Rough};
 use crate::regionalise::{self, Derived, Feature, Partition, Test, Undivided};
 use crate::source::Span;
@@ -55,7 +56,7 @@ impl DerivedPart {
 struct Inside<'a> {
     outline: &'a Outline,
     inner: &'a Partition,
-    parts: &'a [DerivedPart],
+    separations: &'a Separations,
 }
 
 /// Derives the regions of an outline.
@@ -72,9 +73,7 @@ pub(super) fn derived(
         diagnostics.push(diagnostic);
         return FromProfile::default();
     }
-    let reversed: Vec<Segment> = outline.segments.iter().rev().map(Segment::reversed).collect();
-    let inner = Partition::new(outline.segments.clone(), false);
-    let outer = Partition::new(reversed, true);
+    let inner = Partition::new(outline.segments.clone());
     let graph = &mut lowering.graph;
     let derived = match inner.parts(graph) {
         Ok(derived) => derived,
@@ -88,7 +87,9 @@ pub(super) fn derived(
     };
     let parts = parts(&derived, &outline, lowering, curves);
     add_lines_through_corners(&outline.segments, curves, &mut lowering.graph);
-    let inside = Inside { outline: &outline, inner: &inner, parts: &parts };
+    let mut register = |graph: &mut Graph, test: &Test| formula(test, curves, graph);
+    let separations = inner.separations(&mut lowering.graph, &mut register);
+    let inside = Inside { outline: &outline, inner: &inner, separations: &separations };
     let mut regions = Vec::new();
     let before = diagnostics.len();
     let conditions = divider.conditions(&inside, lowering, curves, diagnostics);
@@ -124,8 +125,21 @@ pub(super) fn derived(
         Some(_) => {}
     }
     let Outline { segments, surfaces, .. } = outline;
-    let section = Section { outline: segments, inner, outer, over };
+    let section = Section { outline: segments, inner, separations, over };
     FromProfile { surfaces, regions, section: Some(section) }
+}
+
+/// Returns a model whose profile is divided again, from its outline alone. Curves of the partition that the model does not have
+/// follow those that it has.
+pub(crate) fn partitioned_anew(model: &Model) -> Option<Model> {
+    let mut model = model.clone();
+    let mut curves = Curves::of(std::mem::take(&mut model.curves), &model.graph);
+    let mut register = |graph: &mut Graph, test: &Test| formula(test, &mut curves, graph);
+    let section = model.section.as_mut()?;
+    section.inner = Partition::new(section.outline.clone());
+    section.separations = section.inner.separations(&mut model.graph, &mut register);
+    model.curves = curves.list;
+    Some(model)
 }
 
 /// Adds the normals at the ends of level and upright segments, which are level and upright too, as curves that a plan may split
@@ -412,11 +426,19 @@ fn fans<'t>(
     })?;
     let (rounded, origins): (Vec<Segment>, Vec<Origin>) = pieces.into_iter().unzip();
     let (graph, frame) = (&mut lowering.graph, &lowering.frame);
-    let parts = Partition::new(rounded.clone(), false).parts(graph);
+    let parts = Partition::new(rounded.clone()).parts(graph);
     let parts = parts.map_err(|Undivided([d, z])| {
         let location = Domain::HalfPlane.format_point([d, 0.0, frame.to_file(z)]);
         Diagnostic::new(span, RegionKind::SmoothDivisionFailed { location })
     })?;
+    if let Some(part) = parts.iter().find(|part| !part.is_right_at_samples) {
+        let [d, z] = match part.feature {
+            Feature::Piece(piece) | Feature::Corner(Some(piece)) => rounded[piece].ends()[1],
+            Feature::Corner(None) => rounded[0].ends()[0],
+        };
+        let location = Domain::HalfPlane.format_point([d, 0.0, frame.to_file(z)]);
+        return Err(Diagnostic::new(span, RegionKind::SmoothDivisionFailed { location }));
+    }
     let mut conditions = Conditions::NONE;
     for part in &parts {
         let Feature::Piece(piece) = part.feature else { continue };
@@ -445,15 +467,16 @@ impl Conditions<'_> {
     /// Returns the parts and conditions that have points in common, and reports gaps, overlaps and regions without points.
     fn conditioned_parts(
         &self,
-        Inside { outline, inner, parts }: &Inside<'_>,
+        Inside { outline, inner, separations, .. }: &Inside<'_>,
         curves: &Curves,
         lowering: &Lowering,
         diagnostics: &mut Vec<Diagnostic>,
     ) -> Vec<ConditionedPart> {
-        let (shapes, size) = overlay::shapes(&lowering.graph, &curves.list, &outline.segments);
-        let insides: Vec<&Formula> = parts.iter().map(|part| &part.inside).collect();
+        let (shapes, size) = inner.functions(&lowering.graph, &curves.list, separations);
+        let pieces = inner.inner_pieces(separations, &shapes, true);
+        let conditions = overlay::Conditions { formulas: &self.conditions, shapes: &shapes, size };
         let Overlay { parts, uncovered, doubly_covered } =
-            overlay::overlay(&inner.cells(8), &insides, &self.conditions, &shapes, size);
+            overlay::overlay(&inner.section(), pieces, &conditions);
         let formatted =
             |[d, z]: [f64; 2]| Domain::HalfPlane.format_point([d, 0.0, lowering.frame.to_file(z)]);
         if let Some(p) = uncovered {

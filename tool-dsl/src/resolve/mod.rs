@@ -9,7 +9,7 @@ mod profile;
 mod region;
 mod scope;
 
-pub(crate) use derived::{never_wins, overlapping};
+pub(crate) use derived::{never_wins, overlapping, partitioned_anew};
 pub(crate) use mount::off_tip;
 pub(crate) use outputs::SHORTEST_SQUARE;
 

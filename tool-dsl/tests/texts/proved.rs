@@ -244,3 +244,45 @@ fn a_tool_that_cannot_be_certified_is_warned_of_while_it_is_compiled() {
     let bounds = compiled.into_tool().expect("a tool").bounds();
     assert!(bounds.lipschitz.is_none() && bounds.rounding_error < 1e-9, "{bounds:?}");
 }
+
+/// Tapers so small that the features on both sides are nearly equally near, beside arcs and lines, and chords in place of an
+/// arc, whose normals meet in nearly one point.
+#[test]
+fn what_hardly_turns_is_proved() {
+    for exponent in 2..=7 {
+        for sign in ["", "-"] {
+            for corner in
+                ["arc to (5, 3) center (3, 3) as nose cutting;", "line to (5, 3) as nose cutting;"]
+            {
+                is_proved(&format!(
+                    "tool Tapered {{ units mm; let t = {sign}1e-{exponent};
+                       profile {{ start (0, 0); line to (3, 1) as face cutting; {corner}
+                         line to (5 + 20*t, 23) as flute cutting; line to (5 + 20*t, 40), (0, 40) as shank; }} }}"
+                ));
+            }
+        }
+    }
+    let chord = |k: u32| {
+        let (sine, cosine) = (f64::from(k) / 24.0 * std::f64::consts::FRAC_PI_2).sin_cos();
+        format!("({:.9}, {:.9})", 5.0 * sine, 5.0 - 5.0 * cosine)
+    };
+    let chords: Vec<String> = (1..=24).map(chord).collect();
+    is_proved(&format!(
+        "tool Chords {{ units mm; profile {{ start (0, 0); line to {} as ball cutting;
+           line to (5, 20) as flute cutting; line to (5, 40), (0, 40) as shank; }} }}",
+        chords.join(", ")
+    ));
+}
+
+/// A zig-zag whose boxes are too many rests on its partition.
+#[test]
+fn profiles_of_many_segments_are_proved() {
+    let points: String =
+        (1..238).map(|k| format!("({}, {k}), ", 10.0 + 0.5 * f64::from(k % 2))).collect();
+    let text = format!(
+        "tool T {{ units mm; profile {{ start (0, 0); line to (10, 0), {points}(0, 237) as a cutting; }} }}"
+    );
+    is_proved(&text);
+    let tool = tool(&text).expect("a tool");
+    assert_eq!(Certificate::prove(&tool).diagnostics(&tool).len(), 0);
+}

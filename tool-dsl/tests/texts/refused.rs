@@ -390,24 +390,6 @@ fn profiles_that_would_take_minutes_are_refused_at_once() {
     assert_eq!(smooth(24), Ok(()));
 }
 
-/// A proof that ends at its budget does not contradict the bounds of the compiler.
-#[test]
-fn a_proof_that_ends_early_takes_nothing_back() {
-    let points: String =
-        (1..238).map(|k| format!("({}, {k}), ", 10.0 + 0.5 * (k % 2) as f64)).collect();
-    let text = format!(
-        "tool T {{ units mm; profile {{ start (0, 0); line to (10, 0), {points}(0, 237) as a cutting; }} }}"
-    );
-    let compiled = compile(&Source::new("t.tool", text));
-    let tool = compiled.tool().expect("a tool");
-    let certificate = touchoff_dsl::prove::Certificate::prove(tool);
-    assert!(certificate.examined_boxes < 35_000, "{}", certificate.examined_boxes);
-    assert_eq!((certificate.lipschitz(), tool.bounds().lipschitz), (None, Some(1.0)));
-    let reports = certificate.diagnostics(tool);
-    let help = reports.first().map(|report| report.help());
-    assert!(help.as_ref().is_some_and(|help| help.contains("by construction")), "{help:?}");
-}
-
 /// A ring below the tip that no column of samples meets.
 #[test]
 fn a_tip_above_the_tools_end_is_refused() {

@@ -1,5 +1,4 @@
-//! Bounds of the rate at which depth falls toward the surface, for tools whose depth is not bounded by the
-//! feet of a profile.
+//! Bounds of the rate at which depth falls toward the surface, for regions by hand.
 
 use super::super::cover::half_diagonal;
 use super::super::slope::{SLOPE_MARGIN, SLOPE_TOLERANCE};
@@ -42,7 +41,8 @@ impl Survey<'_> {
     pub(super) fn fall_rate(&mut self, owner: usize, owners: &[Option<usize>], cell: Cell) -> f64 {
         let depth = self.slopes.get(self.tool.model.regions[owner].depth);
         // A length is not smooth where it is 0. On the surface depth need not fall.
-        let is_smooth_length = self.border_prover.is_length(owner)
+        let is_length = self.border_prover.as_ref().is_some_and(|prover| prover.is_length(owner));
+        let is_smooth_length = is_length
             && (depth.value.low > 0.0
                 || owners.contains(&None) && self.are_zero_on_surface_only(&[owner], cell));
         if is_smooth_length { depth.length.low } else { depth.fall() }
@@ -112,7 +112,7 @@ impl Survey<'_> {
         cell: Cell,
         box_size: BoxSize,
     ) {
-        if self.feet.is_some() {
+        if self.border_prover.is_none() {
             return;
         }
         if box_size != BoxSize::Point {
@@ -225,9 +225,6 @@ impl Survey<'_> {
     /// Returns a lower bound of the rate at which depth falls toward the surface, and the distance by which
     /// the descent may miss the surface.
     pub(super) fn min_slope(&self) -> (f64, f64) {
-        if self.feet.is_some() {
-            return (1.0, 0.0);
-        }
         // A depth that steps along a border may be least on the lower side of the step, where the slopes of
         // both sides lead on.
         if self.smooth_border_jumps.values().any(|jump| *jump > 0.0) {

@@ -9,6 +9,7 @@ use crate::diagnostic::Statement;
 use crate::domain::Domain;
 use crate::expr::Id;
 use crate::expr::interval::{Cell, Interval, ZERO as NOTHING};
+use crate::formula::CurveIndex;
 use crate::model::Region;
 
 /// The accuracy of turns of the direction on the surface, in radians, unless boxes are as small as points. It
@@ -77,7 +78,7 @@ impl Survey<'_> {
                 return false;
             }
             // In a point box other regions may lie between the two.
-            if box_size != BoxSize::Point && self.feet.is_none() {
+            if box_size != BoxSize::Point {
                 if meeting.separation.joint == Joint::Zero && !self.meet_on_surface(meeting, cell) {
                     // Inside, a depth of 0 is as deep as any distance from the surface.
                     if !box_size.is_last() {
@@ -109,10 +110,8 @@ impl Survey<'_> {
         // Small boxes resolve the turn of directions on the surface.
         let is_plane = self.tool.model.domain == Domain::HalfPlane;
         if is_plane && !box_size.is_last() {
-            let any_vague = meetings.iter().any(|meeting| {
-                let turn_angle = self.turn_angle(meeting.pair);
-                turn_angle.high - turn_angle.low > TURN_ACCURACY && self.is_on_surface(meeting.pair)
-            });
+            let any_vague =
+                meetings.iter().any(|meeting| self.turns_vaguely_on_surface(meeting.pair));
             if any_vague {
                 return false;
             }
@@ -144,7 +143,8 @@ impl Survey<'_> {
                 let Some(own) = a.owner else { continue };
                 let pair = Pair { own, other: b.owner };
                 let depths_differ = self.jump(pair).low > 0.0;
-                let (prover, cover) = (&mut self.border_prover, &mut self.cover);
+                let Some(prover) = &mut self.border_prover else { continue };
+                let cover = &mut self.cover;
                 let separation = prover.separation(pair, [a, b], cover, cell, depths_differ);
                 if let Some(separation) = separation {
                     meetings.push(Meeting { pair, separation, jump_point: None });
@@ -159,10 +159,7 @@ impl Survey<'_> {
         let mut largest_jump = 0.0f64;
         for meeting in meetings {
             if meeting.separation.joint == Joint::None && meeting.jump_point.is_none() {
-                let jump = self.jump(meeting.pair).high;
-                let known_jump = self.largest_jumps.entry(meeting.pair).or_insert(0.0);
-                *known_jump = known_jump.max(jump);
-                largest_jump = largest_jump.max(jump);
+                largest_jump = largest_jump.max(self.jump(meeting.pair).high);
             }
             let key = (meeting.pair, meeting.separation.curve);
             let known_jump = self.smooth_border_jumps.entry(key).or_insert(0.0);
@@ -197,7 +194,7 @@ impl Survey<'_> {
     }
 
     /// Returns the difference of two depths in the current box.
-    fn jump(&mut self, pair: Pair) -> Interval {
+    pub(super) fn jump(&mut self, pair: Pair) -> Interval {
         self.difference(pair, |region| region.depth)
     }
 
@@ -218,6 +215,12 @@ impl Survey<'_> {
         self.slopes.get(self.tool.model.regions[pair.own].depth).value.low <= 0.0
     }
 
+    /// Returns whether the direction turns on the surface in the current box by an angle that is not known well.
+    pub(super) fn turns_vaguely_on_surface(&mut self, pair: Pair) -> bool {
+        let angle = self.turn_angle(pair);
+        angle.high - angle.low > TURN_ACCURACY && self.is_on_surface(pair)
+    }
+
     /// Encloses the angle between the directions of two regions in the current box.
     fn turn_angle(&mut self, pair: Pair) -> Interval {
         let Pair { own, other: Some(other) } = pair else { return NOTHING };
@@ -228,7 +231,6 @@ impl Survey<'_> {
     }
 
     fn record_border(&mut self, meeting: &Meeting, cell: Cell, is_point: bool) {
-        let regions = &self.tool.model.regions;
         let Pair { own, other } = meeting.pair;
         let jump = match meeting.separation.joint {
             // At a point, the other depths there are no part of the border. The slack has the difference.
@@ -236,8 +238,6 @@ impl Survey<'_> {
             Joint::None => self.jump(meeting.pair),
             _ => Interval { low: 0.0, high: meeting.separation.difference },
         };
-        let depth = self.slopes.get(regions[own].depth);
-        let turn_angle = self.turn_angle(meeting.pair);
         // In a box that is not divided further, a jump that may be 0 is one at a corner.
         if meeting.separation.joint == Joint::None
             && meeting.jump_point.is_none()
@@ -247,26 +247,37 @@ impl Survey<'_> {
             let statement = Statement::ContinuousDepth(from, to);
             self.undecided.push(OpenProof { cell, statement });
         }
+        let key = (meeting.pair, meeting.separation.curve);
+        self.add_border(key, jump, meeting.jump_point);
+    }
+
+    /// Adds what the current box says about a border on which depths differ by `jump`.
+    pub(super) fn add_border(
+        &mut self,
+        key: (Pair, CurveIndex),
+        jump: Interval,
+        jump_point: Option<JumpPoint>,
+    ) {
+        let regions = &self.tool.model.regions;
+        let (pair @ Pair { own, other }, _) = key;
+        let depth = self.slopes.get(regions[own].depth);
+        let turn_angle = self.turn_angle(pair);
         // Where magnitude is depth, the two differ as exactly as depths do; enclosures would show a difference.
         let mut sides = [Some(own), other].into_iter().flatten();
         let magnitude_jump = if sides.all(|side| regions[side].magnitude == regions[side].depth) {
             jump
         } else {
-            self.difference(meeting.pair, |region| region.magnitude)
+            self.difference(pair, |region| region.magnitude)
         };
         let border = Border {
             sides: (own, other),
-            curve: meeting.separation.curve,
             depth_jump: jump,
             magnitude_jump,
             direction_angle: turn_angle,
-            direction_angle_on_surface: self.is_on_surface(meeting.pair).then_some(turn_angle),
-            jump_point: meeting.jump_point,
+            direction_angle_on_surface: self.is_on_surface(pair).then_some(turn_angle),
+            jump_point,
             depth: Interval { low: depth.value.low.max(0.0), ..depth.value },
         };
-        self.borders
-            .entry((meeting.pair, meeting.separation.curve))
-            .and_modify(|known| known.merge(&border))
-            .or_insert(border);
+        self.borders.entry(key).and_modify(|known| known.merge(&border)).or_insert(border);
     }
 }

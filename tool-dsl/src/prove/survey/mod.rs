@@ -5,15 +5,13 @@ use super::borders::{BorderProver, Pair};
 use super::cover::{Boxes, Claim, Cover, half_diagonal};
 use super::depths::Depths;
 use super::direction::{self, DirectionFacts, angle_to_descent};
-use super::foot::ProfileFeet;
-use super::jordan::Profile;
 use super::range::Ranges;
 use super::root::Forms;
 use super::rounding::RoundingErrors;
 use super::slope::{SLOPE_MARGIN, Slopes};
-use super::witness::{TEST_OFFSET_FRACTION, Witness};
+use super::witness::Witness;
 use super::{
-    Border, Certificate, JumpPoint, MAX_BOXES_OF_EXACT, OpenProof, RegionFacts, SMALL_BOX_FRACTION,
+    Border, Certificate, JumpPoint, MAX_BOXES, OpenProof, RegionFacts, SMALL_BOX_FRACTION,
     TOLERANCE,
 };
 use crate::diagnostic::Statement;
@@ -22,10 +20,11 @@ use crate::expr::interval::{Cell, Interval, dot};
 use crate::formula::CurveIndex;
 use crate::number;
 use crate::plan::PlannedTool;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 mod descent;
 mod meet;
+mod profile;
 
 /// The size to which boxes on a border are divided, relative to the tool's size, in the half plane and in
 /// space.
@@ -39,10 +38,6 @@ const POINT_BOX_FRACTIONS_AND_BUDGET_THIRDS: [(f64, usize); 3] =
     [(1e-12, 1), (1e-10, 3), (1e-8, 9)];
 /// The size for the last try, which always finishes.
 const LAST_POINT_BOX_FRACTION: f64 = 1e-7;
-/// The largest distance of feet past the ends of segments, relative to the tool's size, and in half diagonals
-/// of a point box. The actual distance is added to the slack, so these only decide whether a box is divided.
-const MAX_OVERSHOOT_FRACTION: f64 = 1e-11;
-const MAX_OVERSHOOT_IN_HALF_DIAGONALS: f64 = 4096.0;
 /// The largest number of claims to a box that are compared pairwise.
 const MAX_CLAIMS: usize = 48;
 /// The largest number of boxes times regions in a proof, since a box takes longer the more regions there are.
@@ -55,27 +50,44 @@ const STEEP_SLOPE: f64 = 0.9;
 /// The uncertainty of that slope above which boxes become still smaller.
 const MAX_SLOPE_UNCERTAINTY: f64 = 0.1;
 
-/// Proves as much as possible with a number of boxes. For regions by hand this includes, if
-/// `check_overlaps` is set, that no two of them overlap. The tool's graph receives the parts of depths.
-pub(super) fn survey(tool: &mut PlannedTool, boxes: usize, check_overlaps: bool) -> Certificate {
+/// Proves as much as possible about regions by hand. This includes, if `check_overlaps` is set, that no two of them overlap. The
+/// tool's graph receives the parts of depths.
+pub(super) fn by_hand(tool: &mut PlannedTool, check_overlaps: bool) -> Certificate {
     let depths = Depths::of(&mut tool.model);
-    let boxes = boxes.min(MAX_BOXES_TIMES_REGIONS / tool.model.regions.len().max(1));
-    // So few boxes are for one try only.
-    let single_try = [(POINT_BOX_FRACTIONS_AND_BUDGET_THIRDS[0].0, 3)];
-    for (point_box_fraction, thirds) in if boxes > MAX_BOXES_OF_EXACT {
-        &POINT_BOX_FRACTIONS_AND_BUDGET_THIRDS[..]
-    } else {
-        &single_try
-    } {
-        let mut survey = Survey::new(tool, &depths, *point_box_fraction, check_overlaps);
+    let boxes = budget(tool);
+    for (point_box_fraction, thirds) in POINT_BOX_FRACTIONS_AND_BUDGET_THIRDS {
+        let mut survey = Survey::by_hand(tool, &depths, point_box_fraction, check_overlaps);
         // With an open proof, larger point boxes may still finish it, at the price of more slack.
         if survey.run(thirds * boxes / 3, false) && survey.undecided.is_empty() {
             return survey.certificate();
         }
     }
-    let mut survey = Survey::new(tool, &depths, LAST_POINT_BOX_FRACTION, check_overlaps);
+    let mut survey = Survey::by_hand(tool, &depths, LAST_POINT_BOX_FRACTION, check_overlaps);
     survey.run(boxes, true);
     survey.certificate()
+}
+
+/// Describes a profile, whose depth is proved to differ from the distance by no more than `deviation`; if it is not proved,
+/// jumps of depth are looked for. Ranges of niceness are close if `is_complete` is set.
+pub(super) fn of_profile(
+    tool: &PlannedTool,
+    deviation: Option<f64>,
+    is_complete: bool,
+) -> Certificate {
+    let mut survey =
+        Survey::new(tool, None, POINT_BOX_FRACTIONS_AND_BUDGET_THIRDS[0].0, is_complete);
+    survey.deviation = deviation;
+    if deviation.is_none() {
+        let (cell, statement) = (tool.extent.cell(), Statement::DistanceFromProfile);
+        survey.undecided.push(OpenProof { cell, statement });
+    }
+    survey.run(budget(tool), true);
+    survey.certificate()
+}
+
+/// Returns the number of boxes for a try.
+fn budget(tool: &PlannedTool) -> usize {
+    MAX_BOXES.min(MAX_BOXES_TIMES_REGIONS / tool.model.regions.len().max(1))
 }
 
 /// Returns an upper bound of the sum of two lengths. Adding 0 is exact.
@@ -85,7 +97,7 @@ fn sum_rounded_up(a: f64, b: f64) -> f64 {
 
 /// Returns a length, or 0 if it is rounding of 256-bit constants. The limit is 2^-95 of the tool's size, the
 /// root of the residue of a cancelling sum of squares.
-fn unless_rounding(length: f64, size: f64) -> f64 {
+pub(super) fn unless_rounding(length: f64, size: f64) -> f64 {
     if length > size * number::ROUNDING.sqrt() { length } else { 0.0 }
 }
 
@@ -113,7 +125,8 @@ struct Survey<'t> {
     slopes: Slopes<'t>,
     witness: Witness<'t>,
     errors: RoundingErrors<'t>,
-    border_prover: BorderProver<'t>,
+    /// What proves the borders of regions by hand; `None` for a profile.
+    border_prover: Option<BorderProver<'t>>,
     size: f64,
     /// The size to which boxes on a border are divided, relative to the tool's size.
     border_box_fraction: f64,
@@ -125,11 +138,10 @@ struct Survey<'t> {
     borders: BTreeMap<(Pair, CurveIndex), Border>,
     /// A point where two owners are side by side, with a jump between.
     jump_points: BTreeMap<(Pair, CurveIndex), JumpPoint>,
-    /// The segments of a profile. They prove that depth is at least the distance to the surface. Without
-    /// them, descents of depth prove it.
-    feet: Option<ProfileFeet>,
-    /// The largest distance of a foot past the end of its segment.
-    overshoot: f64,
+    /// The greatest difference of a profile's depth from the distance, if it is proved.
+    deviation: Option<f64>,
+    /// The owners that meet in a box where no others do.
+    neighbours: BTreeSet<Pair>,
     /// The least slope toward the surface.
     min_slope: f64,
     /// The descents from point boxes.
@@ -140,8 +152,6 @@ struct Survey<'t> {
     /// The sum, over boxes where several regions meet that no curve joins, of the largest difference of two
     /// depths there.
     jumps: f64,
-    /// The largest difference of the depths of each pair of regions in such boxes.
-    largest_jumps: BTreeMap<Pair, f64>,
     /// The largest difference of depths on each border where the profile is nearly smooth.
     smooth_border_jumps: BTreeMap<(Pair, CurveIndex), f64>,
     undecided: Vec<OpenProof>,
@@ -151,33 +161,31 @@ struct Survey<'t> {
 }
 
 impl<'t> Survey<'t> {
-    fn new(
+    fn by_hand(
         tool: &'t PlannedTool,
         depths: &Depths,
         point_box_fraction: f64,
         check_overlaps: bool,
     ) -> Survey<'t> {
+        let prover =
+            BorderProver::new(&tool.model, depths.clone(), tool.extent.cell(), point_box_fraction);
+        Survey::new(tool, Some(prover), point_box_fraction, check_overlaps)
+    }
+
+    fn new(
+        tool: &'t PlannedTool,
+        border_prover: Option<BorderProver<'t>>,
+        point_box_fraction: f64,
+        check_overlaps: bool,
+    ) -> Survey<'t> {
         let model = &tool.model;
-        let whole = tool.extent.cell();
+        let size = half_diagonal(&tool.extent.cell());
         let mut forms = Forms::new(&model.graph);
-        let feet = ProfileFeet::of(tool, &mut forms, half_diagonal(&whole));
-        let border_prover = BorderProver::new(
-            model,
-            depths.clone(),
-            whole,
-            &mut forms,
-            feet.is_some(),
-            point_box_fraction,
-        );
-        let directions = model
-            .regions
-            .iter()
-            .enumerate()
-            .map(|(index, region)| {
-                let depth = border_prover.depth(index);
-                DirectionFacts::new(direction::is_parallel(model, region, depth))
-            })
-            .collect();
+        let directions = model.regions.iter().map(|region| {
+            let depth = forms.of(region.depth);
+            DirectionFacts::new(direction::is_parallel(model, region, depth.as_ref()))
+        });
+        let directions = directions.collect();
         Survey {
             tool,
             cover: Cover::new(model, &tool.tree),
@@ -187,11 +195,11 @@ impl<'t> Survey<'t> {
                 model.domain,
                 model.regions.iter().map(|region| region.depth),
             ),
-            witness: Witness::new(tool, half_diagonal(&whole)),
+            witness: Witness::new(tool, size),
             border_prover,
-            feet,
-            overshoot: 0.0,
-            size: half_diagonal(&whole),
+            deviation: None,
+            neighbours: BTreeSet::new(),
+            size,
             point_box_fraction,
             border_box_fraction: match model.domain {
                 Domain::HalfPlane => BORDER_BOX_FRACTION_IN_HALF_PLANE,
@@ -206,7 +214,6 @@ impl<'t> Survey<'t> {
             descents: Vec::new(),
             surface_distance: 0.0,
             jumps: 0.0,
-            largest_jumps: BTreeMap::new(),
             smooth_border_jumps: BTreeMap::new(),
             undecided: Vec::new(),
             check_overlaps,
@@ -260,17 +267,11 @@ impl<'t> Survey<'t> {
     /// Returns whether the owners of a box are proved to be those of the list of regions, as far as that is
     /// checked.
     fn check_owners(&mut self, cell: Cell, claims: &[Claim], box_size: BoxSize) -> bool {
-        if self.feet.is_some() {
-            return self.check_feet(cell, claims, box_size);
-        }
-        // If depth is the distance, the owner is the nearest.
         // In a point box, borders that touch cannot be told apart; its depths are compared instead.
-        if self.tool.model.is_exact() || box_size == BoxSize::Point {
-            return true;
-        }
+        let prover = self.border_prover.as_mut().filter(|_| box_size != BoxSize::Point);
+        let Some(prover) = prover else { return true };
         let wrong = claims.iter().find(|claim| {
-            let (prover, cover) = (&mut self.border_prover, &mut self.cover);
-            !prover.is_listed_owner(claim, cover, cell, self.check_overlaps)
+            !prover.is_listed_owner(claim, &mut self.cover, cell, self.check_overlaps)
         });
         if let (Some(claim), BoxSize::Last) = (wrong, box_size) {
             let statement = Statement::SingleOwner(self.region_name(claim.owner));
@@ -280,39 +281,16 @@ impl<'t> Survey<'t> {
         wrong.is_none()
     }
 
-    /// Returns whether the feet of a box's points on the profile lie on their owners' segments.
-    fn check_feet(&mut self, cell: Cell, claims: &[Claim], box_size: BoxSize) -> bool {
-        let Some(feet) = &mut self.feet else { return true };
-        let allowed = match box_size {
-            BoxSize::Point => {
-                (MAX_OVERSHOOT_IN_HALF_DIAGONALS * half_diagonal(&cell)).min(TOLERANCE * self.size)
-            }
-            _ => MAX_OVERSHOOT_FRACTION * self.size,
-        };
-        for claim in claims {
-            let overshoot = feet.overshoot(claim, &mut self.cover, cell);
-            if overshoot <= allowed {
-                self.overshoot = self.overshoot.max(unless_rounding(overshoot, self.size));
-            } else if box_size.is_last() {
-                let statement = Statement::NearestFeatures(self.region_name(claim.owner));
-                self.undecided.push(OpenProof { cell, statement });
-                return true;
-            } else {
-                return false;
-            }
-        }
-        true
-    }
-
     /// Returns whether enough is known about a box with one owner.
     fn examine_interior(&mut self, owner: usize, cell: Cell, box_size: BoxSize) -> bool {
         self.slopes.set(cell);
         let depth = self.slopes.get(self.tool.model.regions[owner].depth);
+        let is_profile = self.border_prover.is_none();
         // Wide slopes would make `L` too large and `c` too small.
-        let known = depth.length.high - depth.length.low <= SLOPE_ACCURACY * depth.length.high;
+        let known = is_profile
+            || depth.length.high - depth.length.low <= SLOPE_ACCURACY * depth.length.high;
         let is_positive = depth.value.low >= -TOLERANCE * self.size;
-        // The feet of a profile prove `c` without descents.
-        let falls = self.feet.is_some() || self.fall_rate(owner, &[Some(owner)], cell) > 0.0;
+        let falls = is_profile || self.fall_rate(owner, &[Some(owner)], cell) > 0.0;
         // In the half plane a direction vanishes at points, which small boxes locate well.
         let is_plane = self.tool.model.domain == Domain::HalfPlane;
         let is_large = box_size == BoxSize::Coarse
@@ -342,16 +320,22 @@ impl<'t> Survey<'t> {
         box_size: BoxSize,
     ) -> bool {
         self.slopes.set(cell);
-        let falls = self.feet.is_some()
-            || owners.iter().flatten().all(|owner| self.fall_rate(*owner, owners, cell) > 0.0);
-        if !box_size.is_last() && !falls {
-            return false;
-        }
-        if claims.len() > MAX_CLAIMS {
-            let statement = Statement::MeetingRegions(owners.len());
-            self.undecided.push(OpenProof { cell, statement });
-        } else if !self.examine_borders(cell, claims, box_size) {
-            return false;
+        if self.border_prover.is_none() {
+            if !self.describe_borders(cell, owners, box_size) {
+                return false;
+            }
+        } else {
+            let mut regions = owners.iter().flatten();
+            let falls = regions.all(|owner| self.fall_rate(*owner, owners, cell) > 0.0);
+            if !box_size.is_last() && !falls {
+                return false;
+            }
+            if claims.len() > MAX_CLAIMS {
+                let statement = Statement::MeetingRegions(owners.len());
+                self.undecided.push(OpenProof { cell, statement });
+            } else if !self.examine_borders(cell, claims, box_size) {
+                return false;
+            }
         }
         owners.iter().flatten().for_each(|owner| self.record_evaluation(*owner, cell));
         self.record_descent(owners, cell, box_size);
@@ -475,15 +459,14 @@ impl Survey<'_> {
     /// Returns the certificate that follows from all boxes.
     fn certificate(mut self) -> Certificate {
         let shares = self.witness.shares();
-        let (min_slope, missed_distance) = self.min_slope();
-        let slack = [
-            self.jump_bound(),
-            // Twice, by Theorem 2 of `docs/proofs.md`.
-            2.0 * self.overshoot,
-            sum_rounded_up(0.0, min_slope.max(0.0) * missed_distance),
-        ];
-        let slack = slack.into_iter().fold(0.0, sum_rounded_up);
-        let slack = sum_rounded_up(slack, self.distance_to_profile(slack));
+        let (min_slope, slack) = match self.border_prover {
+            Some(_) => {
+                let (min_slope, missed_distance) = self.min_slope();
+                let slack = sum_rounded_up(0.0, min_slope.max(0.0) * missed_distance);
+                (min_slope, sum_rounded_up(self.jump_bound(), slack))
+            }
+            None => (1.0, unless_rounding(self.deviation.unwrap_or(0.0), self.size)),
+        };
         let mut ranges = Ranges {
             cover: &mut self.cover,
             slopes: &mut self.slopes,
@@ -499,13 +482,17 @@ impl Survey<'_> {
         let mut regions = Vec::new();
         for (region, direction) in self.directions.into_iter().enumerate() {
             let facts = self.regions[region].take().unwrap_or(RegionFacts::NONE);
-            let is_distance = self.border_prover.is_distance(region);
+            let is_distance = match &self.border_prover {
+                Some(prover) => prover.is_distance(region),
+                None => self.deviation.is_some(),
+            };
             // The identity is exact, where enclosures of the slope have rounding.
             let exact_length = Interval::new(1.0, 1.0);
             regions.push(RegionFacts {
                 share: shares[region],
                 is_distance,
                 gradient_length: if is_distance { exact_length } else { facts.gradient_length },
+                steep_at: facts.steep_at.filter(|_| !is_distance),
                 direction_error: direction.angle_to_descent,
                 oblique_witness: self.certain_facts[region].oblique,
                 rising_witness: self.certain_facts[region].rises,
@@ -514,11 +501,15 @@ impl Survey<'_> {
                 ..facts
             });
         }
+        let mut borders = self.borders;
+        // Regions of a profile that meet in points only have no border.
+        borders
+            .retain(|(pair, _), _| self.border_prover.is_some() || self.neighbours.contains(pair));
         Certificate {
             min_slope,
             slack,
             regions,
-            borders: self.borders.into_values().collect(),
+            borders: borders.into_values().collect(),
             undecided: self.undecided,
             tolerance: TOLERANCE * self.size,
             examined_boxes: self.boxes,
@@ -529,51 +520,14 @@ impl Survey<'_> {
     /// differing from an exact distance.
     fn jump_bound(&self) -> f64 {
         let steps = self.smooth_border_jumps.values().copied().fold(0.0, sum_rounded_up);
-        let Some(feet) = &self.feet else {
-            // Depths of regions by hand may be steep outside their regions, so every jump counts. A straight path
-            // in space is a branch of a hyperbola in the half plane, on which `z` is linear and `d` convex. It
-            // passes a box at most twice, since `d` is below an upper end on one interval and above a lower end on
-            // two. It crosses a line at most twice, too.
-            let passes = match self.tool.model.domain {
-                Domain::HalfPlane => 2.0,
-                Domain::Space => 1.0,
-            };
-            return passes * sum_rounded_up(self.jumps, 2.0 * steps);
+        // Depths of regions by hand may be steep outside their regions, so every jump counts. A straight path
+        // in space is a branch of a hyperbola in the half plane, on which `z` is linear and `d` convex. It
+        // passes a box at most twice, since `d` is below an upper end on one interval and above a lower end on
+        // two. It crosses a line at most twice, too.
+        let passes = match self.tool.model.domain {
+            Domain::HalfPlane => 2.0,
+            Domain::Space => 1.0,
         };
-        let deviation = unless_rounding(feet.max_difference, self.size);
-        // Along a path, a distance grows by no more than the path's length, inside or outside its own region. When
-        // the path returns to a region, it has therefore gained nothing since it left, and such loops can be removed.
-        // Each pair of neighbours is crossed once after loops are removed, and each adds twice the deviation.
-        let pairs = (self.largest_jumps.len() + self.smooth_border_jumps.len()) as f64;
-        self.largest_jumps.values().copied().fold(
-            sum_rounded_up(steps, sum_rounded_up(deviation, 2.0 * pairs * deviation)),
-            sum_rounded_up,
-        )
-    }
-
-    /// Returns an upper bound of the distance from the solid's surface to its profile, given the slack of
-    /// depth.
-    fn distance_to_profile(&mut self, slack: f64) -> f64 {
-        let Some(section) = &self.tool.model.section else { return 0.0 };
-        let (deviation, ends) = self.witness.points_off_profile(&section.outline);
-        let open_proofs = deviation.into_iter().map(|point| OpenProof {
-            cell: Cell::point(point),
-            statement: Statement::EndsOnProfile,
-        });
-        self.undecided.extend(open_proofs);
-        // Nothing follows if a proof is open, or if depth is not the distance to the profile.
-        if self.feet.is_none() || !self.undecided.is_empty() {
-            return 0.0;
-        }
-        let max_distance = Profile::new(&section.outline)
-            .max_distance(slack, TEST_OFFSET_FRACTION * self.size)
-            .filter(|_| ends);
-        max_distance.unwrap_or_else(|| {
-            self.undecided.push(OpenProof {
-                cell: self.tool.extent.cell(),
-                statement: Statement::EndsOnProfile,
-            });
-            0.0
-        })
+        passes * sum_rounded_up(self.jumps, 2.0 * steps)
     }
 }

@@ -1,0 +1,130 @@
+//! Convex polygons in the section, cut by linear functions.
+
+use super::outline::{Point, cross, dot, minus, norm};
+
+/// A convex polygon, by its vertices in order.
+pub(crate) type Polygon = Vec<Point>;
+
+/// Returns the parts of a polygon where a linear function is negative and positive.
+pub(crate) fn divided(polygon: &Polygon, values: &[f64]) -> [Option<Polygon>; 2] {
+    let negated: Vec<f64> = values.iter().map(|value| -value).collect();
+    [clipped_by_values(polygon, &negated), clipped_by_values(polygon, values)]
+}
+
+/// Returns the halves of a polygon across its longest extent.
+pub(crate) fn halved(polygon: &Polygon) -> [Option<Polygon>; 2] {
+    let (mut from, mut to) = (polygon[0], polygon[0]);
+    for p in polygon {
+        for q in polygon {
+            if norm(minus(*p, *q)) > norm(minus(from, to)) {
+                (from, to) = (*p, *q);
+            }
+        }
+    }
+    let (along, middle) = (minus(to, from), [0, 1].map(|k| f64::midpoint(from[k], to[k])));
+    let values: Vec<f64> = polygon.iter().map(|p| dot(along, minus(*p, middle))).collect();
+    divided(polygon, &values)
+}
+
+/// Returns the part of a polygon where a linear function is not negative; `None` if that has no area.
+pub(crate) fn clipped(polygon: &Polygon, value: &impl Fn(Point) -> f64) -> Option<Polygon> {
+    let values: Vec<f64> = polygon.iter().map(|p| value(*p)).collect();
+    clipped_by_values(polygon, &values)
+}
+
+/// Returns the part of a polygon where the linear function with the given values at its vertices is not negative.
+pub(crate) fn clipped_by_values(polygon: &Polygon, values: &[f64]) -> Option<Polygon> {
+    let [low, high] = range(values);
+    if low >= 0.0 {
+        return Some(polygon.clone());
+    }
+    if high <= 0.0 {
+        return None;
+    }
+    let mut part = Vec::with_capacity(polygon.len() + 1);
+    for k in 0..polygon.len() {
+        let next = (k + 1) % polygon.len();
+        let (p, q, a, b) = (polygon[k], polygon[next], values[k], values[next]);
+        if a >= 0.0 {
+            part.push(p);
+        }
+        if (a < 0.0 && b > 0.0) || (a > 0.0 && b < 0.0) {
+            let t = a / (a - b);
+            part.push([0, 1].map(|k| p[k] + t * (q[k] - p[k])));
+        }
+    }
+    part.dedup();
+    (part.len() >= 3).then_some(part)
+}
+
+/// Returns the area of a polygon.
+pub(crate) fn area(polygon: &Polygon) -> f64 {
+    let fan = polygon.windows(2);
+    let twice: f64 =
+        fan.map(|pair| cross(minus(pair[0], polygon[0]), minus(pair[1], polygon[0]))).sum();
+    twice.abs() / 2.0
+}
+
+/// Returns the mean of the vertices.
+pub(crate) fn centroid(polygon: &Polygon) -> Point {
+    [0, 1].map(|k| polygon.iter().map(|p| p[k]).sum::<f64>() / polygon.len() as f64)
+}
+
+/// Returns the centre of a polygon's bounding box, and the larger half of its sides.
+pub(crate) fn centre_and_half(polygon: &Polygon) -> (Point, f64) {
+    let [d, z] = [0, 1].map(|k| range(&polygon.iter().map(|p| p[k]).collect::<Vec<f64>>()));
+    let half = (d[1] - d[0]).max(z[1] - z[0]) / 2.0;
+    ([f64::midpoint(d[0], d[1]), f64::midpoint(z[0], z[1])], half)
+}
+
+/// Returns about the width of a polygon across its longest extent.
+pub(crate) fn width(polygon: &Polygon) -> f64 {
+    area(polygon) / extent(polygon)
+}
+
+/// Returns whether two convex polygons have points within a distance of each other.
+pub(crate) fn do_touch(p: &Polygon, q: &Polygon, tolerance: f64) -> bool {
+    let separates = |a: &Polygon, b: &Polygon| {
+        (0..a.len()).any(|k| {
+            let (from, to) = (a[k], a[(k + 1) % a.len()]);
+            let along = minus(to, from);
+            let length = norm(along);
+            if length <= tolerance {
+                return false;
+            }
+            let orientation = cross(along, minus(centroid(a), from)).signum();
+            b.iter().all(|v| orientation * cross(along, minus(*v, from)) < -tolerance * length)
+        })
+    };
+    !separates(p, q) && !separates(q, p)
+}
+
+/// Returns the longest extent of what two convex polygons have in common within a distance; 0 if that has no area.
+pub(crate) fn common_length(p: &Polygon, q: &Polygon, tolerance: f64) -> f64 {
+    let middle = centroid(q);
+    let mut common = Some(p.clone());
+    for k in 0..q.len() {
+        let (from, to) = (q[k], q[(k + 1) % q.len()]);
+        let along = minus(to, from);
+        let length = norm(along);
+        if length <= tolerance {
+            continue;
+        }
+        let orientation = cross(along, minus(middle, from)).signum();
+        let depth = |v: Point| orientation * cross(along, minus(v, from)) / length + tolerance;
+        common = common.and_then(|polygon| clipped(&polygon, &depth));
+    }
+    common.map_or(0.0, |polygon| extent(&polygon))
+}
+
+/// Returns the greatest distance between vertices of a polygon.
+fn extent(polygon: &Polygon) -> f64 {
+    let distances = polygon.iter().flat_map(|p| polygon.iter().map(|q| norm(minus(*p, *q))));
+    distances.fold(0.0, f64::max)
+}
+
+/// Returns the least and the greatest of some values.
+pub(crate) fn range(values: &[f64]) -> [f64; 2] {
+    let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+    [low, values.iter().copied().fold(f64::NEG_INFINITY, f64::max)]
+}

@@ -1,0 +1,570 @@
+//! Convex polygons that cover the cells of a partition.
+//!
+//! A feature's cell lies within the normals at its ends, on the interior side of its line or circle, and where no other
+//! feature is nearer. Polygons that begin with the first two are cut wherever another feature is provably at least as
+//! near, and halved where that is not yet decided. They cover the cell whatever the heuristics of the halving: a point
+//! is left out only if another feature is at least as near to it within [`Section::tolerance`]. Neighbours may overlap
+//! along borders that are not straight, where the polygons know the side of the border instead.
+//!
+//! **Nearer, proved.** On a convex polygon the distance from a line, and from a convex circle, is at least a function
+//! that is linear or concave: itself. That from a point or a concave circle is at least its tangent plane at the
+//! middle. The distance from another segment is at most a convex function: that from its line, a concave circle or an
+//! end, and the tangent plane of that from a convex circle. The difference of the two is concave, so that its least
+//! value is at a vertex.
+
+use super::section::{Feature, Section};
+use crate::geometry::outline::{Point, Segment, dot, minus, norm};
+use crate::geometry::polygon::{
+    Polygon, area, centre_and_half, centroid, clipped, divided, halved, range,
+};
+use std::collections::VecDeque;
+
+/// The number of polygons of a feature that are halved.
+const MAX_HALVINGS: usize = 300;
+/// The part of a distance by which another feature may be nearer at a vertex of a polygon that is not halved.
+const LOOSE_FRACTION: f64 = 0.08;
+/// The least area that is halved, relative to the square of the section's size.
+const MIN_AREA: f64 = 1e-20;
+
+/// The error of a distance, in sizes, that need not be less.
+const LITTLE_LOSS_FRACTION: f64 = 1e-12;
+/// The number of times that a polygon is halved for a closer bound of a loss.
+const MAX_LOSS_HALVINGS: usize = 12;
+/// The part of a circle's radius that a polygon inside the circle may exceed it by.
+const LOOSE_RADIUS: f64 = 1.005;
+/// The difference of distances, in tolerances, above which a later feature is nearer than an earlier one.
+const TIE_TOLERANCES: f64 = 16.0;
+/// The number of vertices up to which a polygon is fitted to a circle.
+const MAX_VERTICES: usize = 16;
+
+impl Section<'_> {
+    /// Returns the difference of distances below which features count as equally near.
+    pub(crate) fn tolerance(&self) -> f64 {
+        4.0 * f64::EPSILON * self.largest
+    }
+
+    /// Returns a difference of distances, or 0 if rounding decides its sign: a cut along a side would only multiply vertices.
+    fn rounded(&self, difference: f64) -> f64 {
+        if difference.abs() <= self.tolerance() { 0.0 } else { difference }
+    }
+
+    /// Returns polygons that cover the cell of a feature within a polygon.
+    pub(super) fn cover(&self, feature: usize, bounds: &Polygon) -> Vec<Polygon> {
+        let mut covered = Vec::new();
+        let start = self
+            .sector_sides(feature)
+            .into_iter()
+            .try_fold(bounds.clone(), |polygon, side| clipped(&polygon, &|p| side.at(p)));
+        let Some(start) = start.and_then(|polygon| self.on_own_side(feature, polygon)) else {
+            return covered;
+        };
+        // Broad before deep, so that a limit leaves small polygons everywhere.
+        let mut pending = VecDeque::from([start]);
+        let mut halvings = 0;
+        while let Some(polygon) = pending.pop_front() {
+            let Some(polygon) = self.trimmed(feature, polygon) else { continue };
+            match self.halves(feature, &polygon).filter(|_| halvings < MAX_HALVINGS) {
+                Some(halves) => {
+                    halvings += 1;
+                    pending.extend(halves.into_iter().flatten());
+                }
+                None => covered.push(polygon),
+            }
+        }
+        covered
+    }
+
+    /// Returns the sides of the normals at a feature's ends toward the feature.
+    pub(super) fn sector_sides(&self, feature: usize) -> Vec<Side> {
+        match self.features[feature] {
+            Feature::Piece(piece) => {
+                let segment = &self.outline[piece];
+                let [from, to] = segment.ends();
+                match segment.round() {
+                    None => {
+                        let along = segment.tangent(false);
+                        vec![
+                            Side { from, toward: along },
+                            Side { from: to, toward: [-along[0], -along[1]] },
+                        ]
+                    }
+                    Some((centre, ..)) => {
+                        let [start, end] = [segment.tangent(false), segment.tangent(true)];
+                        vec![
+                            Side { from: centre, toward: start },
+                            Side { from: centre, toward: [-end[0], -end[1]] },
+                        ]
+                    }
+                }
+            }
+            Feature::Corner(previous) => {
+                let from = self.corner_at(previous);
+                let ends = self.adjacent_segments(previous).into_iter().flatten();
+                ends.map(|(piece, end)| {
+                    let along = self.outline[piece].tangent(end == 1);
+                    let toward = if end == 1 { along } else { [-along[0], -along[1]] };
+                    Side { from, toward }
+                })
+                .collect()
+            }
+        }
+    }
+
+    /// Cuts off what is provably beyond a feature's own line or circle.
+    fn on_own_side(&self, feature: usize, polygon: Polygon) -> Option<Polygon> {
+        let Feature::Piece(piece) = self.features[feature] else { return Some(polygon) };
+        let segment = &self.outline[piece];
+        match segment.round() {
+            None => clipped(&polygon, &|p| segment.signed(p)),
+            Some((centre, radius, true)) => {
+                // A tangent for each corner that is far outside.
+                let mut polygon = polygon;
+                while polygon.len() < MAX_VERTICES {
+                    let reach = |p: &Point| norm(minus(*p, centre));
+                    let farthest =
+                        polygon.iter().copied().max_by(|p, q| reach(p).total_cmp(&reach(q)));
+                    let Some(p) = farthest.filter(|p| reach(p) > LOOSE_RADIUS * radius) else {
+                        break;
+                    };
+                    let out = minus(p, centre).map(|part| part / reach(&p));
+                    polygon = clipped(&polygon, &|p| radius - dot(out, minus(p, centre)))?;
+                }
+                Some(polygon)
+            }
+            // The chord between the directions of the outermost vertices.
+            Some((centre, radius, false)) => {
+                let middle = minus(centroid(&polygon), centre);
+                let middle = middle.map(|part| part / norm(middle));
+                let cosine = polygon.iter().map(|p| {
+                    let offset = minus(*p, centre);
+                    dot(offset, middle) / norm(offset)
+                });
+                let cosine = cosine.fold(1.0, f64::min);
+                if cosine.is_nan() || cosine <= 0.0 {
+                    return Some(polygon);
+                }
+                clipped(&polygon, &|p| dot(middle, minus(p, centre)) - radius * cosine)
+            }
+        }
+    }
+
+    /// Returns a lower bound of the distance from a feature that is concave, exact at a point, and whether it is linear.
+    fn low(&self, feature: usize, at: Point) -> (Estimate<'_>, bool) {
+        match self.features[feature] {
+            Feature::Corner(previous) => {
+                (Estimate::tangent(self.corner_at(previous), 0.0, 1.0, at), true)
+            }
+            Feature::Piece(piece) => match self.outline[piece].round() {
+                None => (Estimate::Signed(&self.outline[piece]), true),
+                Some((_, _, true)) => (Estimate::Signed(&self.outline[piece]), false),
+                Some((centre, radius, false)) => (Estimate::tangent(centre, radius, 1.0, at), true),
+            },
+        }
+    }
+
+    /// Returns an upper bound of the distance from a feature, within its normals and on its own side, that is convex and exact
+    /// at a point, and whether it is linear.
+    fn high(&self, feature: usize, at: Point) -> (Estimate<'_>, bool) {
+        match self.features[feature] {
+            Feature::Corner(previous) => (Estimate::Point(self.corner_at(previous)), false),
+            Feature::Piece(piece) => match self.outline[piece].round() {
+                None => (Estimate::Signed(&self.outline[piece]), true),
+                Some((centre, radius, true)) => (Estimate::tangent(centre, radius, -1.0, at), true),
+                Some((_, _, false)) => (Estimate::Signed(&self.outline[piece]), false),
+            },
+        }
+    }
+
+    pub(super) fn all_within(&self, sides: &[Side], points: &[Point]) -> bool {
+        let slack = -self.tolerance();
+        sides.iter().all(|side| points.iter().all(|p| side.at(*p) >= slack))
+    }
+
+    /// Returns whether points are on the interior side of a feature's line or circle.
+    fn all_in_front(&self, feature: usize, points: &[Point]) -> bool {
+        let slack = -self.tolerance();
+        match self.features[feature] {
+            Feature::Corner(_) => true,
+            Feature::Piece(piece) => points.iter().all(|p| self.outline[piece].signed(*p) >= slack),
+        }
+    }
+
+    /// Returns whether a feature's points in a polygon, as far as they are behind another feature and within its normals, are
+    /// provably at least as near to it; trivially if there are none.
+    pub(super) fn is_behind_nearer(&self, feature: usize, other: usize, polygon: &Polygon) -> bool {
+        let Feature::Piece(piece) = self.features[other] else { return true };
+        if self.all_in_front(other, polygon) {
+            return true;
+        }
+        let slack = self.tolerance();
+        let segment = &self.outline[piece];
+        anchors(polygon).any(|at| {
+            let (low, _) = self.low(feature, at);
+            let (high, _) = self.high(feature, at);
+            let behind = |p: &Point| match segment.round() {
+                None => -segment.signed(*p),
+                Some((centre, radius, true)) => norm(minus(*p, centre)) - radius,
+                Some((centre, radius, false)) => Estimate::tangent(centre, radius, -1.0, at).at(*p),
+            };
+            // Where `behind + f · high ≤ 0` for a factor `f ≥ 0`, what is behind the other is behind the feature as well. The
+            // sum is convex, so that corners suffice. Two normals at a small angle meet in a corner that is well known only
+            // across them: it may be behind both.
+            let in_front = polygon.iter().filter(|p| high.at(**p) > slack);
+            let factor = in_front.map(|p| -behind(p) / high.at(*p)).fold(f64::MAX, f64::min);
+            polygon.iter().all(|p| low.at(*p) - behind(p) >= -slack)
+                || (factor >= 0.0
+                    && polygon.iter().all(|p| behind(p) + factor * high.at(*p) <= slack))
+        })
+    }
+
+    /// Cuts off what is provably at least as near to another feature.
+    fn trimmed(&self, feature: usize, polygon: Polygon) -> Option<Polygon> {
+        let mut polygon = self.on_own_side(feature, polygon)?;
+        for other in (0..self.features.len()).filter(|other| *other != feature) {
+            let (low, _) = self.low(feature, centroid(&polygon));
+            let farthest = polygon.iter().map(|p| low.at(*p)).fold(0.0, f64::max);
+            let (middle, half) = centre_and_half(&polygon);
+            if self.is_box_within(other, middle, farthest + half) {
+                polygon = self.trimmed_by(feature, other, polygon)?;
+            }
+        }
+        Some(polygon)
+    }
+
+    /// Returns the least difference of distances by which another feature counts as at least as near. Of two features that are
+    /// equally near, the first keeps the point, so that not both leave it out.
+    fn slack(&self, feature: usize, other: usize) -> f64 {
+        let tolerance = self.tolerance();
+        if other < feature { -tolerance } else { TIE_TOLERANCES * tolerance }
+    }
+
+    fn trimmed_by(&self, feature: usize, other: usize, mut polygon: Polygon) -> Option<Polygon> {
+        let slack = self.slack(feature, other);
+        let sides = self.sector_sides(other);
+        if let Feature::Piece(piece) = self.features[other] {
+            let segment = &self.outline[piece];
+            let (low, _) = self.low(feature, centroid(&polygon));
+            // One end of the segment is nearer everywhere.
+            let is_nearer =
+                |end: &Point| polygon.iter().all(|p| low.at(*p) - norm(minus(*p, *end)) >= slack);
+            // The feature's own points are no nearer than it.
+            let own_points = self.end_points(feature);
+            if segment.ends().iter().any(|end| !own_points.contains(end) && is_nearer(end)) {
+                return None;
+            }
+            // Two points have a straight border.
+            if let Feature::Corner(previous) = self.features[feature] {
+                let corner = self.corner_at(previous);
+                for end in segment.ends().into_iter().filter(|end| *end != corner) {
+                    let from = [0, 1].map(|k| f64::midpoint(corner[k], end[k]));
+                    let toward = minus(corner, end);
+                    let side = Side { from, toward: toward.map(|part| part / norm(toward)) };
+                    polygon = clipped(&polygon, &|p| self.rounded(side.at(p)))?;
+                }
+            }
+            // Behind a line, the line itself is nearer.
+            if segment.round().is_none() {
+                let values: Vec<f64> = polygon.iter().map(|p| segment.signed(*p)).collect();
+                if range(&values)[0] < -self.tolerance()
+                    && let [Some(back), front] = divided(&polygon, &values)
+                    && self.all_within(&sides, &back)
+                    && back.iter().all(|p| low.at(*p) + segment.signed(*p) >= slack)
+                {
+                    polygon = front?;
+                }
+            }
+        }
+        let is_corner = matches!(self.features[other], Feature::Corner(_));
+        for at in anchors(&polygon.clone()) {
+            let (low, is_linear) = self.low(feature, at);
+            let (high, other_is_linear) = self.high(other, at);
+            let above = |p: &Point| low.at(*p) - high.at(*p) - slack.max(0.0);
+            let difference = polygon.iter().map(|p| self.rounded(above(p)));
+            let difference: Vec<f64> = difference.collect();
+            let [least, most] = range(&difference);
+            // Both are exact at the first point, so that this one is far from the border.
+            if most <= 0.0 {
+                break;
+            }
+            if least >= 0.0
+                && (is_corner || self.all_within(&sides, &polygon))
+                && self.is_behind_nearer(feature, other, &polygon)
+            {
+                return None;
+            }
+            // What is cut off has to be within the other's normals, and in front of it.
+            if is_linear
+                && other_is_linear
+                && let [rest, Some(cut)] = divided(&polygon, &difference)
+                && self.all_within(&sides, &cut)
+                && self.is_behind_nearer(feature, other, &cut)
+            {
+                polygon = rest?;
+            }
+        }
+        Some(polygon)
+    }
+
+    /// Returns the nearest feature to a point and its distance; `None` if the nearest point is an end that is no feature.
+    pub(super) fn nearest(&self, p: Point) -> (Option<usize>, f64) {
+        let mut nearest = (None, f64::INFINITY);
+        for (index, feature) in self.features.iter().enumerate() {
+            if !self.is_box_within(index, p, nearest.1) {
+                continue;
+            }
+            let (distance, own) = match *feature {
+                Feature::Corner(previous) => (norm(minus(p, self.corner_at(previous))), true),
+                Feature::Piece(piece) => {
+                    let segment = &self.outline[piece];
+                    let is_within = segment.sector(p).iter().all(|side| *side >= 0.0);
+                    (segment.distance_to(p), is_within)
+                }
+            };
+            if distance < nearest.1 || (distance == nearest.1 && nearest.0.is_none()) {
+                nearest = (own.then_some(index), distance);
+            }
+        }
+        nearest
+    }
+
+    /// Returns two halves of a polygon that is too large for its cell.
+    fn halves(&self, feature: usize, polygon: &Polygon) -> Option<[Option<Polygon>; 2]> {
+        if area(polygon) < MIN_AREA * self.size * self.size {
+            return None;
+        }
+        let mut loosest: Option<(f64, Option<usize>)> = None;
+        for p in polygon {
+            let own = self.depth_at(feature, *p).abs();
+            let (nearest, distance) = self.nearest(*p);
+            if nearest == Some(feature) {
+                continue;
+            }
+            // Beyond the outline, a point has no owner however far it is from the other feature.
+            let is_beyond = self.depth_at(feature, *p) > 0.0 && !self.is_inside(*p);
+            let excess = own - if is_beyond { -distance } else { distance };
+            let loose = excess / own;
+            if excess > LITTLE_LOSS_FRACTION * self.size
+                && loose > LOOSE_FRACTION
+                && loosest.is_none_or(|(most, _)| loose > most)
+            {
+                loosest = Some((loose, nearest));
+            }
+        }
+        let (_, nearest) = loosest?;
+        // Between the normals of the nearest feature more can be proved than beyond them.
+        let sides = nearest.map(|nearest| self.sector_sides(nearest)).unwrap_or_default();
+        for side in sides {
+            let values: Vec<f64> = polygon.iter().map(|p| side.at(*p)).collect();
+            let [low, high] = range(&values);
+            if low < -0.02 * high.abs().max(1e-3 * self.size) && high > -0.02 * low {
+                return Some(divided(polygon, &values));
+            }
+        }
+        Some(halved(polygon))
+    }
+
+    /// Returns an upper bound of the error of depth, or of the distance outside, if the points of a polygon that a feature owns
+    /// are given to another; `None` is the outside. `may_own` tells of a part of the polygon whether it may have such points.
+    /// Beyond `allowed` the bound need not be close.
+    pub(crate) fn greatest_loss(
+        &self,
+        [own, other]: [Option<usize>; 2],
+        polygon: &Polygon,
+        allowed: f64,
+        may_own: impl Fn(&Polygon) -> bool,
+    ) -> f64 {
+        let mut greatest = 0.0f64;
+        let mut pending = vec![(polygon.clone(), 0)];
+        while let Some((polygon, halvings)) = pending.pop() {
+            let bound = self.bound_of_loss(own, other, &polygon);
+            // Only what is too much is worth the question whether there is any point.
+            if bound <= greatest || (bound > allowed && !may_own(&polygon)) {
+                continue;
+            }
+            let least = self.loss_at_vertices(own, other, &polygon);
+            let is_close = bound <= 2.0 * least + LITTLE_LOSS_FRACTION * self.size;
+            let is_known = bound <= allowed || greatest > allowed;
+            if (is_close && is_known) || halvings == MAX_LOSS_HALVINGS {
+                greatest = bound;
+            } else {
+                let halves = halved(&polygon).into_iter().flatten();
+                pending.extend(halves.map(|half| (half, halvings + 1)));
+            }
+        }
+        greatest
+    }
+
+    /// Returns the greatest error at the vertices of a polygon of depth, or of the distance outside, if they are given to another
+    /// feature than their own; `None` is the outside.
+    pub(crate) fn loss_at_vertices(
+        &self,
+        own: Option<usize>,
+        other: Option<usize>,
+        polygon: &Polygon,
+    ) -> f64 {
+        if own == other {
+            return 0.0;
+        }
+        let depth = |feature: Option<usize>, p: &Point| {
+            feature.map_or(0.0, |feature| self.depth_at(feature, *p).max(0.0))
+        };
+        let losses = polygon.iter().map(|p| {
+            let distance = if own.is_none() { self.nearest(*p).1 } else { 0.0 };
+            distance.max((depth(own, p) - depth(other, p)).abs())
+        });
+        losses.fold(0.0, f64::max)
+    }
+
+    fn bound_of_loss(&self, own: Option<usize>, other: Option<usize>, polygon: &Polygon) -> f64 {
+        if own == other {
+            return 0.0;
+        }
+        let middle = centroid(polygon);
+        let high = |feature: usize, p: &Point| self.high(feature, middle).0.at(*p);
+        let low = |feature: usize, p: &Point| self.low(feature, middle).0.at(*p);
+        let greatest =
+            |value: &dyn Fn(&Point) -> f64| polygon.iter().map(value).fold(0.0, f64::max);
+        // `high` and `high - low` are convex, so that their greatest value is at a vertex.
+        match (own, other) {
+            (Some(a), Some(b)) => {
+                greatest(&|p| (high(a, p) - low(b, p)).max(high(b, p) - low(a, p)))
+            }
+            (Some(feature), None) => greatest(&|p| high(feature, p)),
+            (None, Some(feature)) => greatest(&|p| high(feature, p)).max(self.farthest(polygon)),
+            (None, None) => 0.0,
+        }
+    }
+
+    /// Returns the point of a corner, or the ends of a segment.
+    fn end_points(&self, feature: usize) -> Vec<Point> {
+        match self.features[feature] {
+            Feature::Corner(previous) => vec![self.corner_at(previous)],
+            Feature::Piece(piece) => self.outline[piece].ends().to_vec(),
+        }
+    }
+
+    /// Returns an upper bound of the distance of a polygon's points from the outline.
+    fn farthest(&self, polygon: &Polygon) -> f64 {
+        let middle = centroid(polygon);
+        let greatest =
+            |distance: &dyn Fn(&Point) -> f64| polygon.iter().map(distance).fold(0.0, f64::max);
+        let features = (0..self.features.len()).map(|feature| {
+            let ends = self.end_points(feature);
+            let to_ends = ends.iter().map(|end| greatest(&|p| norm(minus(*p, *end))));
+            let to_end = to_ends.fold(f64::INFINITY, f64::min);
+            if !self.all_within(&self.sector_sides(feature), polygon) {
+                return to_end;
+            }
+            let [high, low] = [self.high(feature, middle).0, self.low(feature, middle).0];
+            to_end.min(greatest(&|p| high.at(*p).max(-low.at(*p))))
+        });
+        features.fold(f64::INFINITY, f64::min)
+    }
+}
+
+/// A bound of a distance on a convex polygon.
+enum Estimate<'o> {
+    /// The signed distance from a segment's line or circle.
+    Signed(&'o Segment),
+    /// The distance from a point.
+    Point(Point),
+    /// `sign (out · (p - centre) - radius)`: the tangent plane of a distance from a circle.
+    Tangent { centre: Point, radius: f64, out: Point, sign: f64 },
+}
+
+impl Estimate<'_> {
+    /// Returns the tangent plane at a point of a distance from a circle.
+    fn tangent(centre: Point, radius: f64, sign: f64, at: Point) -> Estimate<'static> {
+        let offset = minus(at, centre);
+        let length = norm(offset).max(f64::MIN_POSITIVE);
+        Estimate::Tangent { centre, radius, out: offset.map(|part| part / length), sign }
+    }
+
+    fn at(&self, p: Point) -> f64 {
+        match self {
+            Estimate::Signed(segment) => segment.signed(p),
+            Estimate::Point(point) => norm(minus(p, *point)),
+            Estimate::Tangent { centre, radius, out, sign } => {
+                sign * (dot(*out, minus(p, *centre)) - radius)
+            }
+        }
+    }
+}
+
+/// Returns the points of a polygon at which bounds are made exact.
+fn anchors(polygon: &Polygon) -> impl Iterator<Item = Point> {
+    [centroid(polygon)].into_iter().chain(polygon.iter().copied())
+}
+
+/// A half plane.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Side {
+    from: Point,
+    toward: Point,
+}
+
+impl Side {
+    /// Returns the distance of a point from the border, positive inside.
+    pub(super) fn at(&self, p: Point) -> f64 {
+        dot(self.toward, minus(p, self.from))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::geometry::outline::{cross, minus};
+    use crate::library;
+
+    /// Every point inside, found by the parity of crossings, is in a polygon of each feature to which it is nearest by the
+    /// distances from the segments.
+    #[test]
+    fn polygons_cover_what_is_nearest() {
+        for tool in library::tools() {
+            let Some(profile) = &tool.model.section else { continue };
+            let section = profile.inner.section();
+            let covers = (0..section.features.len()).map(|feature| profile.inner.cover_of(feature));
+            let covers: Vec<_> = covers.collect();
+            let (radius, low, high) = (tool.extent.radius, tool.extent.low, tool.extent.high);
+            let mut count = 0;
+            for k in 0..4000 {
+                // A lattice without rows.
+                let fraction = |step: f64| (f64::from(k) * step).fract();
+                let p = [
+                    radius * fraction(0.754_877_666),
+                    low + (high - low) * fraction(0.569_840_291),
+                ];
+                if !section.is_inside(p) {
+                    continue;
+                }
+                let distances = section.outline.iter().map(|segment| segment.distance_to(p));
+                let nearest = distances.fold(f64::INFINITY, f64::min);
+                for (feature, cover) in covers.iter().enumerate() {
+                    let is_within = |side: &super::Side| side.at(p) >= 0.0;
+                    let own = section.depth_at(feature, p);
+                    if (own - nearest).abs() > 1e-12
+                        || !section.sector_sides(feature).iter().all(is_within)
+                    {
+                        continue;
+                    }
+                    let is_in = |polygon: &super::Polygon| {
+                        let mut sides = (0..polygon.len()).map(|k| {
+                            let (a, b) = (polygon[k], polygon[(k + 1) % polygon.len()]);
+                            cross(minus(b, a), minus(p, a))
+                        });
+                        sides.all(|side| side >= -1e-9)
+                    };
+                    count += 1;
+                    let is_tie = covers.iter().enumerate().any(|(other, _)| {
+                        other != feature && (section.depth_at(other, p) - nearest).abs() <= 1e-12
+                    });
+                    assert!(
+                        is_tie || cover.iter().any(is_in),
+                        "{} {feature} {p:?}",
+                        tool.model.name
+                    );
+                }
+            }
+            assert!(count > 100, "{}: {count}", tool.model.name);
+        }
+    }
+}

@@ -1,0 +1,404 @@
+//! The section as convex pieces, each with the part or the outside that may own its points, and with what is known of
+//! these points: the sides of curves on which they lie.
+
+use super::Partition;
+use super::curve::{Border, Test};
+use super::section::{Feature, Section};
+use crate::expr::Graph;
+use crate::formula::{Curve, CurveIndex, Formula, NEGATIVE, POSITIVE, Signs};
+use crate::geometry::function::{CurveFunction, Distance, functions};
+use crate::geometry::outline::{Point, bounding_box};
+use crate::geometry::polygon::{
+    Polygon, area, centroid, clipped, common_length, divided, do_touch, halved, width,
+};
+
+/// A convex polygon and the owner of some of its points: those on the known sides of curves.
+#[derive(Clone, Debug)]
+pub(crate) struct Piece {
+    /// The nearest feature to the owned points; `None` for the outside.
+    pub(crate) feature: Option<usize>,
+    /// The feature's index, or that of the region; `None` for the outside.
+    pub(crate) owner: Option<usize>,
+    pub(crate) vertices: Polygon,
+    /// The sides of curves on which the owned points lie.
+    pub(crate) signs: Vec<(CurveIndex, Signs)>,
+    /// Conditions with alternatives that the owned points satisfy.
+    pub(crate) alternatives: Vec<Formula>,
+}
+
+impl Piece {
+    /// Returns a piece of the outside.
+    pub(super) fn outside(vertices: Polygon, signs: Vec<(CurveIndex, Signs)>) -> Piece {
+        Piece { feature: None, owner: None, vertices, signs, alternatives: Vec::new() }
+    }
+}
+
+/// The tests that tell features apart, as formulas over curves.
+#[derive(Clone, Debug)]
+pub(crate) struct Separations {
+    /// For each feature, the condition of its own side.
+    pub(super) own: Vec<Formula>,
+    /// The conditions between features whose cells touch.
+    nearer: Vec<Nearness>,
+    /// The curves that only separate features whose cells meet in about a point, as the chords of a circle do in its centre.
+    pub(crate) of_points: Vec<CurveIndex>,
+}
+
+/// The condition for a feature to be no farther than another.
+#[derive(Clone, Debug)]
+struct Nearness {
+    feature: usize,
+    other: usize,
+    formula: Formula,
+    /// True if their cells meet in about a point.
+    is_point: bool,
+}
+
+/// Two features whose polygons touch.
+struct Neighbours {
+    pair: [usize; 2],
+    is_point: bool,
+}
+
+/// The distance, in sizes, within which the polygons of neighbours touch.
+const TOUCHING_FRACTION: f64 = 1e-9;
+/// The length, in sizes, below which cells meet in about a point.
+const POINT_FRACTION: f64 = 1e-4;
+/// The distance from the outline's bounding box up to which the outside is sampled, in sizes.
+const SAMPLED_FRACTION: f64 = 0.25;
+/// The area that is sampled as one, relative to the square of the section's size.
+const MAX_SAMPLED_FRACTION: f64 = 1e-3;
+/// The number of times that a piece is halved for points all over it.
+const DENSE_HALVINGS: usize = 7;
+/// The thickness of the layer near the surface that is weighted most, in sizes.
+const SHELL_FRACTION: f64 = 0.05;
+
+impl Separations {
+    /// Returns whether many cells meet in about a point, as any two do of the chords of a circle in its centre.
+    pub(crate) fn meet_in_many_points(&self) -> bool {
+        // Each cell of `n` chords meets the others: some n² / 2 pairs.
+        self.of_points.len() > 4 * self.own.len()
+    }
+}
+
+impl Partition {
+    /// Returns the tests that separate the parts. `register` makes a formula of a test.
+    pub(crate) fn separations(
+        &self,
+        graph: &mut Graph,
+        register: &mut impl FnMut(&mut Graph, &Test) -> Formula,
+    ) -> Separations {
+        let section = self.section();
+        let own = section.features.iter().map(|feature| {
+            let own =
+                feature.piece().and_then(|piece| Border::Inside { piece }.test(&section, graph));
+            own.map_or(Formula::Const(true), |test| register(graph, &test))
+        });
+        let own: Vec<Formula> = own.collect();
+        let mut nearer = Vec::new();
+        // The curves of pairs that meet along more than a point, which need not be new.
+        let mut of_lines = Vec::new();
+        for Neighbours { pair: [a, b], is_point } in self.neighbours(&section) {
+            // Tangent segments, and a corner and its segments, are told apart by the normals between them alone.
+            let joint = section.smooth_joint(a, b);
+            if !joint.is_empty() {
+                for (piece, end) in joint {
+                    if let Some(test) = (Border::Before { piece, end }).test(&section, graph) {
+                        of_lines.extend(register(graph, &test).curves());
+                    }
+                }
+                continue;
+            }
+            if let Some(test) = section.nearer(graph, a, b) {
+                let formula = register(graph, &test);
+                let (feature, other) = (b, a);
+                nearer.push(Nearness { feature, other, formula: formula.opposite(), is_point });
+                nearer.push(Nearness { feature: a, other: b, formula, is_point });
+            }
+        }
+        let curves_of = |is_point: bool| {
+            let nearer = nearer.iter().filter(move |near: &&Nearness| near.is_point == is_point);
+            nearer.flat_map(|near| near.formula.curves())
+        };
+        of_lines.extend(own.iter().flat_map(Formula::curves).chain(curves_of(false)));
+        let of_points = curves_of(true).filter(|curve| !of_lines.contains(curve)).collect();
+        Separations { own, nearer, of_points }
+    }
+
+    /// Returns the curves of a model as functions, and the size of the section.
+    pub(crate) fn functions<'g>(
+        &self,
+        graph: &'g Graph,
+        curves: &[Curve],
+        separations: &Separations,
+    ) -> (Vec<CurveFunction<'g>>, f64) {
+        let (mut shapes, size) = functions(graph, curves, &self.outline);
+        let features = self.section().features;
+        let distance = |feature: usize| match features[feature] {
+            Feature::Piece(piece) => Distance::of(&self.outline[piece]),
+            Feature::Corner(previous) => {
+                let centre = self.section().corner_at(previous);
+                Distance::Circle { centre, radius: 0.0, sign: 1.0 }
+            }
+        };
+        let mut set = |formula: &Formula, [less, more]: [Distance; 2]| {
+            if let Formula::Atom { curve, below, .. } = formula {
+                let distances = if *below { [less, more] } else { [more, less] };
+                shapes[*curve].set_distances(distances);
+            }
+        };
+        for (feature, own) in separations.own.iter().enumerate() {
+            set(own, [Distance::None, distance(feature)]);
+        }
+        for near in &separations.nearer {
+            set(&near.formula, [distance(near.feature), distance(near.other)]);
+        }
+        (shapes, size)
+    }
+
+    /// Returns the features whose polygons touch.
+    fn neighbours(&self, section: &Section<'_>) -> Vec<Neighbours> {
+        let tolerance = TOUCHING_FRACTION * section.size;
+        let mut neighbours = Vec::new();
+        for (a, cover) in self.covers.iter().enumerate() {
+            for (b, other) in self.covers[..a].iter().enumerate() {
+                let pairs = cover.iter().flat_map(|p| other.iter().map(move |q| (p, q)));
+                let touching = pairs.filter(|(p, q)| do_touch(p, q, tolerance));
+                let lengths = touching.map(|(p, q)| common_length(p, q, tolerance));
+                let is_long = |length: f64| length > POINT_FRACTION * section.size;
+                let mut touches = false;
+                let is_line = lengths.inspect(|_| touches = true).any(is_long);
+                if touches {
+                    neighbours.push(Neighbours { pair: [a, b], is_point: !is_line });
+                }
+            }
+        }
+        neighbours
+    }
+
+    /// Returns pieces that cover the inside. `with_points` are also told apart the features whose cells meet in about a point.
+    pub(crate) fn inner_pieces(
+        &self,
+        separations: &Separations,
+        shapes: &[CurveFunction<'_>],
+        with_points: bool,
+    ) -> Vec<Piece> {
+        let section = self.section();
+        let mut pieces = Vec::new();
+        for (feature, cover) in self.covers.iter().enumerate() {
+            let rivals: Vec<Rival<'_>> = separations
+                .nearer
+                .iter()
+                .filter(|near| near.feature == feature && (with_points || !near.is_point))
+                .map(|near| Rival { feature: near.other, nearer: &near.formula })
+                .collect();
+            for polygon in cover {
+                for polygon in decided(&section, polygon.clone(), &rivals, shapes) {
+                    let mut piece = Piece {
+                        feature: Some(feature),
+                        owner: Some(feature),
+                        vertices: polygon,
+                        signs: Vec::new(),
+                        alternatives: Vec::new(),
+                    };
+                    let tolerance = section.tolerance();
+                    let mut is_possible = piece.know(&separations.own[feature], shapes, tolerance);
+                    for rival in &rivals {
+                        if rival.competes(&section, &piece) {
+                            is_possible &= piece.know(rival.nearer, shapes, tolerance)
+                                && piece.know(&separations.own[rival.feature], shapes, tolerance);
+                        }
+                    }
+                    if is_possible {
+                        pieces.push(piece);
+                    }
+                }
+            }
+        }
+        pieces
+    }
+}
+
+impl Section<'_> {
+    /// Returns points of a piece that belong to its owner, with weights: their share of its area, and most near the surface.
+    pub(crate) fn sample_points(&self, piece: &Piece) -> Vec<(Point, f64)> {
+        // The outside is sampled up to a distance.
+        let [low, high] = bounding_box(self.outline);
+        let margin = SAMPLED_FRACTION * self.size;
+        let near = clipped(&piece.vertices, &|p| high[0] + margin - p[0])
+            .and_then(|polygon| clipped(&polygon, &|p| high[1] + margin - p[1]))
+            .and_then(|polygon| clipped(&polygon, &|p| p[1] - low[1] + margin));
+        let mut polygons: Vec<Polygon> = near.into_iter().collect();
+        let max_area = MAX_SAMPLED_FRACTION * self.size * self.size;
+        while polygons.iter().any(|polygon| area(polygon) > max_area) {
+            polygons = polygons.iter().flat_map(halved).flatten().collect();
+        }
+        let layer = SHELL_FRACTION * self.size;
+        let mut weighted = Vec::new();
+        for polygon in polygons {
+            let middle = centroid(&polygon);
+            let toward = |p: &Point, t: f64| [0, 1].map(|k| middle[k] + t * (p[k] - middle[k]));
+            let mut points = vec![middle];
+            for t in [0.5, 0.9, 0.99] {
+                points.extend(polygon.iter().map(|p| toward(p, t)));
+            }
+            let share = area(&polygon) / points.len() as f64;
+            weighted.extend(points.into_iter().filter(|p| self.owns(piece, *p)).map(|p| {
+                let (_, distance) = self.nearest(p);
+                (p, share * ((-distance / layer).exp() + SHELL_FRACTION))
+            }));
+        }
+        weighted
+    }
+
+    /// Returns points all over a piece that belong to its owner.
+    pub(crate) fn owned_points(&self, piece: &Piece) -> Vec<Point> {
+        let mut polygons = vec![piece.vertices.clone()];
+        for _ in 0..DENSE_HALVINGS {
+            polygons = polygons.iter().flat_map(halved).flatten().collect();
+        }
+        polygons.iter().map(centroid).filter(|p| self.owns(piece, *p)).collect()
+    }
+
+    fn owns(&self, piece: &Piece, p: Point) -> bool {
+        match piece.feature {
+            Some(feature) => {
+                self.nearest(p).0 == Some(feature) && self.depth_at(feature, p) > self.tolerance()
+            }
+            None => !self.is_inside(p),
+        }
+    }
+}
+
+/// A feature that touches another's cell, and the condition for the other to be no farther.
+struct Rival<'t> {
+    feature: usize,
+    nearer: &'t Formula,
+}
+
+impl Rival<'_> {
+    /// Returns whether the condition holds for all points that a piece owns, since the rival itself is as near to them as its
+    /// line or circle. None of them is behind the rival.
+    fn competes(&self, section: &Section<'_>, piece: &Piece) -> bool {
+        let is_corner = matches!(section.features[self.feature], Feature::Corner(_));
+        let owner = piece.feature.unwrap_or(self.feature);
+        is_corner
+            || (section.all_within(&section.sector_sides(self.feature), &piece.vertices)
+                && section.is_behind_nearer(owner, self.feature, &piece.vertices))
+    }
+}
+
+/// Divides a polygon by the normals at the ends of rivals, beyond which their conditions say nothing, and by the lines in
+/// these conditions, so that each part knows the side of the curve.
+fn decided(
+    section: &Section<'_>,
+    polygon: Polygon,
+    rivals: &[Rival<'_>],
+    shapes: &[CurveFunction<'_>],
+) -> Vec<Polygon> {
+    let tolerance = section.tolerance();
+    let mut polygons = vec![polygon];
+    let mut divide = |values: &dyn Fn(&Polygon) -> Vec<f64>| {
+        let halves = polygons.iter().flat_map(|polygon| divided(polygon, &values(polygon)));
+        polygons = halves.flatten().collect();
+    };
+    for rival in rivals {
+        for side in section.sector_sides(rival.feature) {
+            let at = |p: &Point| Some(side.at(*p)).filter(|x| x.abs() > tolerance).unwrap_or(0.0);
+            divide(&|polygon| polygon.iter().map(at).collect());
+        }
+        let (Formula::All(parts) | Formula::Any(parts)) = rival.nearer else { continue };
+        for part in parts {
+            if let Formula::Atom { curve, .. } = part
+                && shapes[*curve].is_line()
+            {
+                let values = |polygon: &Polygon| shapes[*curve].linear_values(polygon, tolerance);
+                divide(&|polygon| values(polygon).unwrap_or_default());
+            }
+        }
+    }
+    polygons
+}
+
+impl Piece {
+    /// Returns the sides of a curve on which the owned points may lie.
+    pub(crate) fn signs_of(
+        &self,
+        curve: CurveIndex,
+        shape: &CurveFunction<'_>,
+        tolerance: f64,
+    ) -> Signs {
+        let known = self.signs.iter().find(|(known, _)| *known == curve);
+        known.map_or_else(|| shape.signs_over(&self.vertices, tolerance), |(_, signs)| *signs)
+    }
+
+    /// Returns what may lie below a curve and above it, where the polygon is on both sides.
+    pub(crate) fn halves(
+        &self,
+        curve: CurveIndex,
+        shapes: &[CurveFunction<'_>],
+        tolerance: f64,
+    ) -> [Option<Piece>; 2] {
+        let Some(values) = shapes[curve].linear_values(&self.vertices, tolerance) else {
+            return [NEGATIVE, POSITIVE].map(|side| {
+                let mut half = self.clone();
+                half.signs.push((curve, side));
+                half.is_possible(shapes, tolerance).then_some(half)
+            });
+        };
+        divided(&self.vertices, &values).map(|half| {
+            let half = Piece { vertices: half?, ..self.clone() };
+            half.is_possible(shapes, tolerance).then_some(half)
+        })
+    }
+
+    /// Returns whether the polygon is wider than rounding and may have an owned point.
+    fn is_possible(&self, shapes: &[CurveFunction<'_>], tolerance: f64) -> bool {
+        width(&self.vertices) > tolerance && self.may_own_a_point(shapes, tolerance)
+    }
+
+    /// Returns whether the polygon reaches the known sides of curves, and leaves an alternative of each condition.
+    pub(crate) fn may_own_a_point(&self, shapes: &[CurveFunction<'_>], tolerance: f64) -> bool {
+        let reaches = |(curve, signs): &(CurveIndex, Signs)| {
+            signs & shapes[*curve].signs_over(&self.vertices, tolerance) != 0
+        };
+        let may_hold = |formula: &Formula| self.decide(formula, shapes, tolerance) != Some(false);
+        self.signs.iter().all(reaches) && self.alternatives.iter().all(may_hold)
+    }
+
+    /// Returns whether a condition holds for all owned points, or for none.
+    fn decide(
+        &self,
+        formula: &Formula,
+        shapes: &[CurveFunction<'_>],
+        tolerance: f64,
+    ) -> Option<bool> {
+        formula.decide_with(&mut |curve| self.signs_of(curve, &shapes[curve], tolerance))
+    }
+
+    /// Adds a condition that all owned points satisfy, as far as it is the side of one curve that the polygon crosses.
+    /// Returns whether the piece can own a point.
+    fn know(&mut self, formula: &Formula, shapes: &[CurveFunction<'_>], tolerance: f64) -> bool {
+        if let Some(holds) = self.decide(formula, shapes, tolerance) {
+            return holds;
+        }
+        let (parts, any) = match formula {
+            Formula::All(parts) => (&parts[..], false),
+            Formula::Any(parts) => (&parts[..], true),
+            other => (std::slice::from_ref(other), false),
+        };
+        let is_undecided = |part: &&Formula| self.decide(part, shapes, tolerance).is_none();
+        let undecided: Vec<&Formula> = parts.iter().filter(is_undecided).collect();
+        // One of several alternatives holds, and which is not known.
+        if any && undecided.len() > 1 {
+            self.alternatives.push(formula.clone());
+            return true;
+        }
+        for atom in undecided {
+            if let Formula::Atom { curve, below, .. } = atom {
+                self.signs.push((*curve, if *below { NEGATIVE } else { POSITIVE }));
+            }
+        }
+        true
+    }
+}
