@@ -190,7 +190,7 @@ impl<'m> Planner<'m> {
                 Some(Sample::new(point, Some(region)))
             }));
             for (divided, first) in conditions.divided(piece.clone(), geometry.tolerance()) {
-                // What no region claims, as far as samples show, has the depth of its part all the same.
+                // A piece that no region claims, as far as samples show, has the depth of its part all the same.
                 let fallback = || over.regions.iter().position(|r| Some(r.part) == piece.owner);
                 let owner = first.and_then(region).or_else(fallback);
                 pieces.push(Rc::new(Piece { owner, ..divided }));
@@ -292,7 +292,7 @@ impl Planner<'_> {
         samples: &SampleSubset,
         mut candidates: Vec<Candidate>,
     ) -> Result<Tree, Diagnostic> {
-        // What is narrow is separated only where its owner matters.
+        // Narrow pieces are separated only where their owner matters.
         let is_wide = |piece: &&Rc<Piece>| width(&piece.vertices) > self.indifference;
         let mut relevant: Vec<Rc<Piece>> = pieces.iter().filter(is_wide).map(Rc::clone).collect();
         if owner_count(&relevant) <= 1 {
@@ -306,7 +306,7 @@ impl Planner<'_> {
             relevant = pieces.to_vec();
         }
         let Some(choice) = self.choose(&relevant, samples, &mut candidates) else {
-            // What no curve separates is equally near, or is found by the deviation of the finished tree.
+            // Pieces that no curve separates are equally near, or are found by the deviation of the finished tree.
             return Ok(Tree::Leaf(self.least_wrong_owner(pieces)));
         };
         let Choice { curve, halves, zeros } = choice;

@@ -140,7 +140,7 @@ impl Section<'_> {
                     dot(offset, middle) / norm(offset)
                 });
                 let cosine = cosine.fold(1.0, f64::min);
-                if cosine.is_nan() || cosine <= 0.0 {
+                if cosine <= 0.0 {
                     return Some(polygon);
                 }
                 clipped(&polygon, &|p| dot(middle, minus(p, centre)) - radius * cosine)
@@ -206,8 +206,8 @@ impl Section<'_> {
                 Some((centre, radius, true)) => norm(minus(*p, centre)) - radius,
                 Some((centre, radius, false)) => Estimate::tangent(centre, radius, -1.0, at).at(*p),
             };
-            // Where `behind + f · high ≤ 0` for a factor `f ≥ 0`, what is behind the other is behind the feature as well. The
-            // sum is convex, so that corners suffice. Two normals at a small angle meet in a corner that is well known only
+            // Points behind the other are behind the feature as well if `behind + f · high ≤ 0` for a factor `f ≥ 0`. The sum is
+            // convex, so that corners suffice. Two normals at a small angle meet in a corner that is well known only
             // across them: it may be behind both.
             let in_front = polygon.iter().filter(|p| high.at(**p) > slack);
             let factor = in_front.map(|p| -behind(p) / high.at(*p)).fold(f64::MAX, f64::min);
@@ -292,7 +292,7 @@ impl Section<'_> {
             {
                 return None;
             }
-            // What is cut off has to be within the other's normals, and in front of it.
+            // A part that is cut off has to be within the other's normals, and in front of it.
             if is_linear
                 && other_is_linear
                 && let [rest, Some(cut)] = divided(&polygon, &difference)

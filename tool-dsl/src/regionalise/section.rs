@@ -363,7 +363,11 @@ impl<'o> Section<'o> {
     ) -> bool {
         let middle = foot_point.at(ball_radius);
         let is_within_ends = match self.features[other] {
-            Feature::Corner(previous) => self.in_fan(previous, middle),
+            // Near the end normals a corner and its segments are equally near, so only the foot points decide.
+            Feature::Corner(_) => {
+                let slack = COINCIDENCE_FRACTION * self.size;
+                self.sector_sides(other).iter().all(|side| side.at(middle) >= -slack)
+            }
             Feature::Piece(piece) => {
                 let segment = &self.outline[piece];
                 let slack = COINCIDENCE_FRACTION * self.size;
@@ -382,42 +386,23 @@ impl<'o> Section<'o> {
         is_within_ends && !self.shares_end(feature, foot_point, other)
     }
 
-    /// Returns whether a point lies between the end normals of the segments at a corner. Near these normals a corner
-    /// and its segments are equally near, so only the foot points decide.
-    fn in_fan(&self, previous: Option<usize>, p: Point) -> bool {
-        let offset = minus(p, self.corner_at(previous));
-        self.adjacent_segments(previous).into_iter().flatten().all(|(piece, end)| {
-            let distance_past = dot(offset, self.outline[piece].tangent(end == 1));
-            let distance_past = if end == 1 { distance_past } else { -distance_past };
-            distance_past >= -COINCIDENCE_FRACTION * self.size
-        })
-    }
-
     /// Returns whether two features touch only where they join, as far as a ball at `foot_point` can tell.
     fn shares_end(&self, feature: usize, foot_point: &FootPoint, other: usize) -> bool {
-        match (self.features[feature], self.features[other]) {
-            (Feature::Piece(piece), Feature::Corner(previous))
-            | (Feature::Corner(previous), Feature::Piece(piece)) => self
-                .adjacent_segments(previous)
-                .into_iter()
-                .flatten()
-                .any(|(adjacent, _)| adjacent == piece),
-            (Feature::Piece(a), Feature::Piece(b)) if a.abs_diff(b) == 1 => {
-                let (low, high) = (&self.outline[a.min(b)], &self.outline[a.max(b)]);
-                // At a corner the two face each other, and a ball may touch both.
-                if turn(low.tangent(true), high.tangent(false)) != 0.0 {
-                    return false;
-                }
-                // Across a tangent joint, only a segment of smaller radius can stop a ball.
-                match (self.outline[a].round(), self.outline[b].round()) {
-                    (Some((_, own, true)), Some((_, radius, true))) if radius < own => {
-                        let joint = norm(minus(foot_point.foot, low.ends()[1]));
-                        joint < JOINT_FRACTION * low.chord().min(high.chord())
-                    }
-                    _ => true,
-                }
+        // At an angle the two face each other, and a ball may touch both.
+        if self.smooth_joint(feature, other).is_empty() {
+            return false;
+        }
+        let [Some(a), Some(b)] = [feature, other].map(|index| self.features[index].piece()) else {
+            return true;
+        };
+        let (low, high) = (&self.outline[a.min(b)], &self.outline[a.max(b)]);
+        // Across a tangent joint, only a segment of smaller radius can stop a ball.
+        match (self.outline[a].round(), self.outline[b].round()) {
+            (Some((_, own, true)), Some((_, radius, true))) if radius < own => {
+                let joint = norm(minus(foot_point.foot, low.ends()[1]));
+                joint < JOINT_FRACTION * low.chord().min(high.chord())
             }
-            _ => false,
+            _ => true,
         }
     }
 }

@@ -467,7 +467,7 @@ impl Conditions<'_> {
     /// Returns the parts and conditions that have points in common, and reports gaps, overlaps and regions without points.
     fn conditioned_parts(
         &self,
-        Inside { outline, inner, separations, .. }: &Inside<'_>,
+        Inside { outline, inner, separations }: &Inside<'_>,
         curves: &Curves,
         lowering: &Lowering,
         diagnostics: &mut Vec<Diagnostic>,

@@ -125,7 +125,7 @@ struct Survey<'t> {
     slopes: Slopes<'t>,
     witness: Witness<'t>,
     errors: RoundingErrors<'t>,
-    /// What proves the borders of regions by hand; `None` for a profile.
+    /// The proof of the borders of regions by hand; `None` for a profile.
     border_prover: Option<BorderProver<'t>>,
     size: f64,
     /// The size to which boxes on a border are divided, relative to the tool's size.
