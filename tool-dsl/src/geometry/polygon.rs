@@ -57,6 +57,28 @@ pub(crate) fn clipped_by_values(polygon: &Polygon, values: &[f64]) -> Option<Pol
     (part.len() >= 3).then_some(part)
 }
 
+/// Returns the least convex polygon about some points.
+pub(crate) fn hull(mut points: Vec<Point>) -> Polygon {
+    points.sort_by(|p, q| p[0].total_cmp(&q[0]).then(p[1].total_cmp(&q[1])));
+    points.dedup();
+    let chain = |points: &mut dyn Iterator<Item = Point>| {
+        let mut chain: Polygon = Vec::new();
+        for p in points {
+            while let [.., from, to] = chain[..]
+                && cross(minus(to, from), minus(p, from)) <= 0.0
+            {
+                chain.pop();
+            }
+            chain.push(p);
+        }
+        chain.pop();
+        chain
+    };
+    let mut hull = chain(&mut points.iter().copied());
+    hull.extend(chain(&mut points.into_iter().rev()));
+    hull
+}
+
 /// Returns the area of a polygon.
 pub(crate) fn area(polygon: &Polygon) -> f64 {
     let fan = polygon.windows(2);
@@ -99,24 +121,6 @@ pub(crate) fn do_touch(p: &Polygon, q: &Polygon, tolerance: f64) -> bool {
     !separates(p, q) && !separates(q, p)
 }
 
-/// Returns the longest extent of what two convex polygons have in common within a distance; 0 if that has no area.
-pub(crate) fn common_length(p: &Polygon, q: &Polygon, tolerance: f64) -> f64 {
-    let middle = centroid(q);
-    let mut common = Some(p.clone());
-    for k in 0..q.len() {
-        let (from, to) = (q[k], q[(k + 1) % q.len()]);
-        let along = minus(to, from);
-        let length = norm(along);
-        if length <= tolerance {
-            continue;
-        }
-        let orientation = cross(along, minus(middle, from)).signum();
-        let depth = |v: Point| orientation * cross(along, minus(v, from)) / length + tolerance;
-        common = common.and_then(|polygon| clipped(&polygon, &depth));
-    }
-    common.map_or(0.0, |polygon| extent(&polygon))
-}
-
 /// Returns the greatest distance between vertices of a polygon.
 fn extent(polygon: &Polygon) -> f64 {
     let distances = polygon.iter().flat_map(|p| polygon.iter().map(|q| norm(minus(*p, *q))));
@@ -127,4 +131,17 @@ fn extent(polygon: &Polygon) -> f64 {
 pub(crate) fn range(values: &[f64]) -> [f64; 2] {
     let low = values.iter().copied().fold(f64::INFINITY, f64::min);
     [low, values.iter().copied().fold(f64::NEG_INFINITY, f64::max)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_hull_has_the_outermost_points_alone() {
+        let square = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]];
+        // Points inside, on edges, and twice.
+        let more = [[1.0, 1.0], [1.0, 0.0], [2.0, 1.5], [0.0, 2.0]];
+        assert_eq!(hull([more, square].concat()), square);
+    }
 }

@@ -59,7 +59,7 @@ pub(crate) fn lint(model: &Model, extent: &Extent) -> Vec<Diagnostic> {
         let (shapes, _) =
             section.inner.functions(&model.graph, &model.curves, &section.separations);
         let geometry = section.inner.section();
-        for piece in section.inner.inner_pieces(&section.separations, &shapes, false) {
+        for piece in section.inner.inner_pieces(&section.separations, &shapes) {
             for ([d, z], _) in geometry.sample_points(&piece) {
                 let point = [d, 0.0, z];
                 if let Some(owner) = linter.owner(point) {

@@ -74,43 +74,23 @@ pub(super) fn has_owner_far_outside(model: &Model, section: &Section, tree: &Tre
     in_half_plane.any(|p| tree.owner_at(&|curve| shapes[curve].value(p)).is_some())
 }
 
-/// The differences of distances, in sizes, that a tree need not decide. The first is rounding. Where many segments meet in
-/// nearly one point, as chords of a circle do in its centre, the others spare hundreds of tests.
-const INDIFFERENCES: [f64; 3] = [1e-13, 1e-11, 1e-9];
+/// The difference of distances, in sizes, that a tree need not decide: rounding.
+const INDIFFERENCE: f64 = 1e-13;
 /// The greatest deviation of depth from the distance, in sizes. It is part of the stated error.
 const MAX_DEVIATION_FRACTION: f64 = 1e-8;
-/// The number of tests, per region, beyond which a greater indifference is tried.
-const TESTS_PER_REGION: usize = 16;
 
 /// Returns the tree of owners, and the greatest difference of its depths from the distance.
 pub(super) fn tree(model: &Model, section: &Section) -> Result<(Tree, f64), Diagnostic> {
     let (shapes, size) = section.inner.functions(&model.graph, &model.curves, &section.separations);
     let mut planner = Planner::new(model, section, &shapes, size);
-    // The curves of written regions may be any, and their regions differ by more than depth.
-    if section.over.is_none()
-        && let Ok(Planned { tree, deviation, .. }) = planner.tree_of(false)
-        && deviation <= max_deviation_without_points(section) * size
-    {
-        return Ok((tree, deviation));
+    let (pieces, samples) = planner.pieces();
+    planner.samples = Samples::new(&samples, &shapes);
+    let candidates = (0..model.curves.len()).map(Candidate::new).collect();
+    let tree = planner.tree(&pieces, &planner.samples.all(), candidates)?;
+    match planner.deviation(&tree, &pieces) {
+        (deviation, _) if deviation <= MAX_DEVIATION_FRACTION * size => Ok((tree, deviation)),
+        (_, at) => Err(inseparable_owners(model, at)),
     }
-    let Planned { tree, deviation, at } = planner.tree_of(true)?;
-    match deviation <= MAX_DEVIATION_FRACTION * size {
-        true => Ok((tree, deviation)),
-        false => Err(inseparable_owners(model, at)),
-    }
-}
-
-/// Returns the deviation, in sizes, up to which the curves between features whose cells meet in about a point are left out.
-fn max_deviation_without_points(section: &Section) -> f64 {
-    let [good, .., greatest] = INDIFFERENCES;
-    if section.separations.meet_in_many_points() { greatest } else { good }
-}
-
-/// A tree, the greatest difference of its depths from the distance, and a point near which they differ by about that.
-struct Planned {
-    tree: Tree,
-    deviation: f64,
-    at: Point,
 }
 
 /// Returns the greatest difference of a tree's depths from the distance, from the partition of the outline alone: nothing that
@@ -120,11 +100,9 @@ pub(crate) fn proved_deviation(model: &Model, tree: &Tree) -> Option<f64> {
     let section = model.section.as_ref()?;
     let (shapes, size) = section.inner.functions(&model.graph, &model.curves, &section.separations);
     let planner = Planner::new(&model, section, &shapes, size);
-    let mut deviations = [false, true].into_iter().map(|with_points| {
-        let (pieces, _) = planner.pieces(with_points);
-        planner.deviation(tree, &pieces).0
-    });
-    deviations.find(|deviation| *deviation <= MAX_DEVIATION_FRACTION * size)
+    let (pieces, _) = planner.pieces();
+    Some(planner.deviation(tree, &pieces).0)
+        .filter(|deviation| *deviation <= MAX_DEVIATION_FRACTION * size)
 }
 
 impl Over {
@@ -164,19 +142,19 @@ impl<'m> Planner<'m> {
             shapes,
             costs: costs(model),
             samples: Samples::new(&[], shapes),
-            used: Vec::new(),
+            used: vec![false; model.curves.len()],
             size,
             tolerance: 16.0 * f64::EPSILON * size,
-            indifference: 0.0,
+            indifference: INDIFFERENCE * size,
             tests: 0,
         }
     }
 
     /// Returns the pieces of the regions and the outside, and sample points of their owners.
-    fn pieces(&self, with_points: bool) -> (Vec<Rc<Piece>>, Vec<Sample>) {
+    fn pieces(&self) -> (Vec<Rc<Piece>>, Vec<Sample>) {
         let Planner { section, geometry, shapes, .. } = self;
         let (mut pieces, mut samples) = (Vec::new(), Vec::new());
-        for piece in section.inner.inner_pieces(&section.separations, shapes, with_points) {
+        for piece in section.inner.inner_pieces(&section.separations, shapes) {
             let points = geometry.sample_points(&piece);
             let Some(over) = &section.over else {
                 samples.extend(points.into_iter().map(|point| Sample::new(point, piece.owner)));
@@ -218,6 +196,8 @@ struct Ranked {
     listed: usize,
     gain: f64,
     curve: CurveIndex,
+    /// True if all samples are known to be on one side of it.
+    is_one_sided: bool,
 }
 
 impl Ord for Ranked {
@@ -261,31 +241,7 @@ struct Choice {
 }
 
 impl Planner<'_> {
-    /// Returns a tree of few tests. `with_points` are also told apart the features whose cells meet in about a point.
-    fn tree_of(&mut self, with_points: bool) -> Result<Planned, Diagnostic> {
-        let (pieces, samples) = self.pieces(with_points);
-        self.samples = Samples::new(&samples, self.shapes);
-        let separations = &self.section.separations;
-        let is_left_out = |curve: &CurveIndex| separations.of_points.contains(curve);
-        let curves =
-            (0..self.model.curves.len()).filter(|curve| with_points || !is_left_out(curve));
-        let candidates: Vec<Candidate> = curves.map(Candidate::new).collect();
-        let mut result = Err(super::too_large(self.model));
-        for indifference in INDIFFERENCES {
-            self.indifference = indifference * self.size;
-            self.used = vec![false; self.model.curves.len()];
-            self.tests = 0;
-            result = self.tree(&pieces, &self.samples.all(), candidates.clone());
-            let few = TESTS_PER_REGION * self.model.regions.len();
-            if result.as_ref().is_ok_and(|tree| tree.test_count() <= few) {
-                break;
-            }
-        }
-        let tree = result?;
-        let (deviation, at) = self.deviation(&tree, &pieces);
-        Ok(Planned { tree, deviation, at })
-    }
-
+    /// Returns a tree of few tests.
     fn tree(
         &mut self,
         pieces: &[Rc<Piece>],
@@ -305,7 +261,13 @@ impl Planner<'_> {
             }
             relevant = pieces.to_vec();
         }
-        let Some(choice) = self.choose(&relevant, samples, &mut candidates) else {
+        // What divides no wide piece may divide a narrow one.
+        let choice = if relevant.len() < pieces.len() {
+            self.choose(&relevant, samples, &mut candidates.clone())
+        } else {
+            self.choose(&relevant, samples, &mut candidates)
+        };
+        let Some(choice) = choice else {
             // Pieces that no curve separates are equally near, or are found by the deviation of the finished tree.
             return Ok(Tree::Leaf(self.least_wrong_owner(pieces)));
         };
@@ -355,7 +317,8 @@ impl Planner<'_> {
             *is_one_sided = gain.is_none();
             let cost = BITS_PER_ADDITION * cost_factor * self.costs[*curve];
             let gain = gain.unwrap_or(ONE_SIDED_GAIN) - cost;
-            ranked.push(Ranked { listed: self.listed_rank(*curve), gain, curve: *curve });
+            let (listed, is_one_sided) = (self.listed_rank(*curve), *is_one_sided);
+            ranked.push(Ranked { listed, gain, curve: *curve, is_one_sided });
         }
         let mut divides_nothing = vec![false; self.shapes.len()];
         let choice = self.first_separating(pieces, ranked.into(), &mut divides_nothing);
@@ -373,22 +336,38 @@ impl Planner<'_> {
     ) -> Option<Choice> {
         let count = owner_count(pieces);
         let (mut fallback, mut with_double_zeros, mut skipped_count) = (None, None, 0);
+        let mut best_one_sided: Option<([usize; 3], Choice)> = None;
         // One of the first few is mostly chosen, so they are not sorted.
-        while let Some(Ranked { curve, .. }) = ranked.pop() {
+        while let Some(Ranked { curve, listed, is_one_sided, .. }) = ranked.pop() {
+            let is_by_pieces = is_one_sided && listed == usize::MAX;
+            if !is_by_pieces && best_one_sided.is_some() {
+                break;
+            }
             let halves = self.halves(curve, pieces);
             if halves.below.is_empty() || halves.above.is_empty() {
                 divides_nothing[curve] = true;
                 continue;
             }
             // A curve that cuts through cells without separating owners is kept as a last resort.
-            if owner_count(&halves.below) == count && owner_count(&halves.above) == count {
+            let [below, above] = [&halves.below, &halves.above].map(|half| owner_count(half));
+            if below.min(above) == count {
                 fallback.get_or_insert((curve, halves));
                 continue;
             }
             // A curve whose points belong to both sides needs a tree of its own for them.
             let zeros = self.zeros(curve, &halves);
             if zeros != Zeros::Both {
-                return Some(Choice { curve, halves, zeros });
+                let remaining =
+                    [below.max(above), below + above, halves.below.len() + halves.above.len()];
+                let choice = Choice { curve, halves, zeros };
+                // Samples tell nothing about a curve that has all of them on one side, but pieces do.
+                if !is_by_pieces || remaining[0] == 1 {
+                    return Some(choice);
+                }
+                if best_one_sided.as_ref().is_none_or(|(least, _)| remaining < *least) {
+                    best_one_sided = Some((remaining, choice));
+                }
+                continue;
             }
             with_double_zeros.get_or_insert(Choice { curve, halves, zeros });
             skipped_count += 1;
@@ -396,7 +375,7 @@ impl Planner<'_> {
                 break;
             }
         }
-        with_double_zeros.or_else(|| {
+        best_one_sided.map(|(_, choice)| choice).or(with_double_zeros).or_else(|| {
             let (curve, halves) = fallback?;
             let zeros = self.zeros(curve, &halves);
             Some(Choice { curve, halves, zeros })
@@ -620,6 +599,7 @@ mod tests {
             listed: if curve.is_multiple_of(5) { curve % 3 } else { usize::MAX },
             gain: (curve * 7 % 11) as f64 - 4.0,
             curve,
+            is_one_sided: false,
         };
         let mut sorted: Vec<Ranked> = (0..60).map(candidate).collect();
         sorted.sort_by(|a, b| a.listed.cmp(&b.listed).then(b.gain.total_cmp(&a.gain)));

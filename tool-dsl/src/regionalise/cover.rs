@@ -15,7 +15,7 @@
 use super::section::{Feature, Section};
 use crate::geometry::outline::{Point, Segment, dot, minus, norm};
 use crate::geometry::polygon::{
-    Polygon, area, centre_and_half, centroid, clipped, divided, halved, range,
+    Polygon, area, centre_and_half, centroid, clipped, divided, halved, hull, range,
 };
 use std::collections::VecDeque;
 
@@ -36,6 +36,9 @@ const LOOSE_RADIUS: f64 = 1.005;
 const TIE_TOLERANCES: f64 = 16.0;
 /// The number of vertices up to which a polygon is fitted to a circle.
 const MAX_VERTICES: usize = 16;
+
+/// The number of times that all other features may trim a polygon.
+const MAX_TRIMMING_ROUNDS: usize = 4;
 
 impl Section<'_> {
     /// Returns the difference of distances below which features count as equally near.
@@ -217,18 +220,33 @@ impl Section<'_> {
         })
     }
 
-    /// Cuts off what is provably at least as near to another feature.
+    /// Cuts off what is provably at least as near to another feature. What one cuts off may bring the rest within the normals
+    /// of one before it, so that straight segments, whose cuts are exact, are asked again, in turns from both ends.
     fn trimmed(&self, feature: usize, polygon: Polygon) -> Option<Polygon> {
         let mut polygon = self.on_own_side(feature, polygon)?;
-        for other in (0..self.features.len()).filter(|other| *other != feature) {
-            let (low, _) = self.low(feature, centroid(&polygon));
-            let farthest = polygon.iter().map(|p| low.at(*p)).fold(0.0, f64::max);
-            let (middle, half) = centre_and_half(&polygon);
-            if self.is_box_within(other, middle, farthest + half) {
-                polygon = self.trimmed_by(feature, other, polygon)?;
+        let others = (0..self.features.len()).filter(|other| *other != feature);
+        let mut others: Vec<usize> = others.collect();
+        for _ in 0..MAX_TRIMMING_ROUNDS {
+            let before = polygon.clone();
+            for &other in &others {
+                let (low, _) = self.low(feature, centroid(&polygon));
+                let farthest = polygon.iter().map(|p| low.at(*p)).fold(0.0, f64::max);
+                let (middle, half) = centre_and_half(&polygon);
+                if self.is_box_within(other, middle, farthest + half) {
+                    polygon = self.trimmed_by(feature, other, polygon)?;
+                }
             }
+            if polygon == before || !self.is_straight(feature) {
+                break;
+            }
+            others.retain(|other| self.is_straight(*other));
+            others.reverse();
         }
         Some(polygon)
+    }
+
+    fn is_straight(&self, feature: usize) -> bool {
+        self.features[feature].piece().is_some_and(|piece| self.outline[piece].circle.is_none())
     }
 
     /// Returns the least difference of distances by which another feature counts as at least as near. Of two features that are
@@ -292,17 +310,46 @@ impl Section<'_> {
             {
                 return None;
             }
-            // A part that is cut off has to be within the other's normals, and in front of it.
-            if is_linear
-                && other_is_linear
-                && let [rest, Some(cut)] = divided(&polygon, &difference)
-                && self.all_within(&sides, &cut)
-                && self.is_behind_nearer(feature, other, &cut)
-            {
-                polygon = rest?;
+            if is_linear && other_is_linear {
+                let is_nearer = |p: Point| self.rounded(above(&p));
+                polygon = self.without(feature, other, polygon, &is_nearer)?;
             }
         }
         Some(polygon)
+    }
+
+    /// Cuts off where another feature is nearer, as a linear function tells, as far as it is within the other's normals and in
+    /// front of it, and as the rest can be convex.
+    fn without(
+        &self,
+        feature: usize,
+        other: usize,
+        polygon: Polygon,
+        is_nearer: &impl Fn(Point) -> f64,
+    ) -> Option<Polygon> {
+        let sides = self.sector_sides(other);
+        let within = |side: &Side, p: Point| side.at(p) + self.tolerance();
+        let is_cut_off =
+            |p: Point| is_nearer(p) > 0.0 && sides.iter().all(|side| within(side, p) > 0.0);
+        // The vertices that stay span the rest.
+        if !polygon.iter().any(|p| is_cut_off(*p)) {
+            return Some(polygon);
+        }
+        let cut = sides.iter().fold(clipped(&polygon, is_nearer), |cut, side| {
+            cut.and_then(|cut| clipped(&cut, &|p| within(side, p)))
+        });
+        if !cut.is_some_and(|cut| self.is_behind_nearer(feature, other, &cut)) {
+            return Some(polygon);
+        }
+        let beyond = sides.iter().map(|side| clipped(&polygon, &|p| -within(side, p)));
+        let rest = [clipped(&polygon, &|p| -is_nearer(p))].into_iter().chain(beyond).flatten();
+        let rest: Vec<Polygon> = rest.collect();
+        // Estimates would be fitted to a border that is curved, with twice as many vertices each time.
+        if rest.len() > 1 && !(self.is_straight(feature) && self.is_straight(other)) {
+            return Some(polygon);
+        }
+        let rest = rest.into_iter().reduce(|one, other| hull([one, other].concat()));
+        rest.filter(|rest| rest.len() > 2)
     }
 
     /// Returns the nearest feature to a point and its distance; `None` if the nearest point is an end that is no feature.
@@ -512,8 +559,35 @@ impl Side {
 
 #[cfg(test)]
 mod tests {
+    use crate::compile;
     use crate::geometry::outline::{cross, minus};
+    use crate::geometry::polygon::area;
     use crate::library;
+    use crate::source::Source;
+
+    /// Chords of a ball, with coordinates as CAD writes them, meet in many points near the centre. Their cells are polygons, whose
+    /// areas add up to that of the section.
+    #[test]
+    fn polygons_of_straight_segments_are_their_cells() {
+        let point = |k: u32| {
+            let (sine, cosine) = (f64::from(k) / 48.0 * std::f64::consts::FRAC_PI_2).sin_cos();
+            [3.0 * sine, 3.0 - 3.0 * cosine].map(|part| (part * 1e6).round() / 1e6)
+        };
+        let corners: Vec<_> = (0..=48).map(point).chain([[3.0, 30.0], [0.0, 30.0]]).collect();
+        let lines: Vec<String> = corners[1..].iter().map(|[d, z]| format!("({d}, {z})")).collect();
+        let text = format!(
+            "tool Chords {{ units mm; profile {{ start (0, 0); line to {} as ball; }} }}",
+            lines.join(", ")
+        );
+        let tool = compile(&Source::new("chords.tool", text)).into_tool().expect("a tool");
+        let profile = tool.model.section.as_ref().expect("a profile");
+        let covers = (0..profile.inner.section().features.len()).map(|k| profile.inner.cover_of(k));
+        let covers: Vec<_> = covers.collect();
+        assert!(covers.iter().all(|cover| cover.len() == 1));
+        let sum: f64 = covers.iter().map(|cover| area(&cover[0])).sum();
+        let excess = sum - area(&corners);
+        assert!(excess.abs() < 1e-8, "{excess}");
+    }
 
     /// Every point inside, found by the parity of crossings, is in a polygon of each feature to which it is nearest by the
     /// distances from the segments.

@@ -9,7 +9,7 @@ use crate::formula::{Curve, CurveIndex, Formula, NEGATIVE, POSITIVE, Signs};
 use crate::geometry::function::{CurveFunction, Distance, functions};
 use crate::geometry::outline::{Point, bounding_box};
 use crate::geometry::polygon::{
-    Polygon, area, centroid, clipped, common_length, divided, do_touch, halved, width,
+    Polygon, area, centroid, clipped, divided, do_touch, halved, width,
 };
 
 /// A convex polygon and the owner of some of its points: those on the known sides of curves.
@@ -40,8 +40,6 @@ pub(crate) struct Separations {
     pub(super) own: Vec<Formula>,
     /// The conditions between features whose cells touch.
     nearer: Vec<Nearness>,
-    /// The curves that only separate features whose cells meet in about a point, as the chords of a circle do in its centre.
-    pub(crate) of_points: Vec<CurveIndex>,
 }
 
 /// The condition for a feature to be no farther than another.
@@ -50,20 +48,10 @@ struct Nearness {
     feature: usize,
     other: usize,
     formula: Formula,
-    /// True if their cells meet in about a point.
-    is_point: bool,
-}
-
-/// Two features whose polygons touch.
-struct Neighbours {
-    pair: [usize; 2],
-    is_point: bool,
 }
 
 /// The distance, in sizes, within which the polygons of neighbours touch.
 const TOUCHING_FRACTION: f64 = 1e-9;
-/// The length, in sizes, below which cells meet in about a point.
-const POINT_FRACTION: f64 = 1e-4;
 /// The distance from the outline's bounding box up to which the outside is sampled, in sizes.
 const SAMPLED_FRACTION: f64 = 0.25;
 /// The area that is sampled as one, relative to the square of the section's size.
@@ -72,14 +60,6 @@ const MAX_SAMPLED_FRACTION: f64 = 1e-3;
 const DENSE_HALVINGS: usize = 7;
 /// The thickness of the layer near the surface that is weighted most, in sizes.
 const SHELL_FRACTION: f64 = 0.05;
-
-impl Separations {
-    /// Returns whether many cells meet in about a point, as any two do of the chords of a circle in its centre.
-    pub(crate) fn meet_in_many_points(&self) -> bool {
-        // Each cell of `n` chords meets the others: some n² / 2 pairs.
-        self.of_points.len() > 4 * self.own.len()
-    }
-}
 
 impl Partition {
     /// Returns the tests that separate the parts. `register` makes a formula of a test.
@@ -96,15 +76,13 @@ impl Partition {
         });
         let own: Vec<Formula> = own.collect();
         let mut nearer = Vec::new();
-        // The curves of pairs that meet along more than a point, which need not be new.
-        let mut of_lines = Vec::new();
-        for Neighbours { pair: [a, b], is_point } in self.neighbours(&section) {
+        for [a, b] in self.neighbours(&section) {
             // Tangent segments, and a corner and its segments, are told apart by the normals between them alone.
             let joint = section.smooth_joint(a, b);
             if !joint.is_empty() {
                 for (piece, end) in joint {
                     if let Some(test) = (Border::Before { piece, end }).test(&section, graph) {
-                        of_lines.extend(register(graph, &test).curves());
+                        register(graph, &test);
                     }
                 }
                 continue;
@@ -112,17 +90,11 @@ impl Partition {
             if let Some(test) = section.nearer(graph, a, b) {
                 let formula = register(graph, &test);
                 let (feature, other) = (b, a);
-                nearer.push(Nearness { feature, other, formula: formula.opposite(), is_point });
-                nearer.push(Nearness { feature: a, other: b, formula, is_point });
+                nearer.push(Nearness { feature, other, formula: formula.opposite() });
+                nearer.push(Nearness { feature: a, other: b, formula });
             }
         }
-        let curves_of = |is_point: bool| {
-            let nearer = nearer.iter().filter(move |near: &&Nearness| near.is_point == is_point);
-            nearer.flat_map(|near| near.formula.curves())
-        };
-        of_lines.extend(own.iter().flat_map(Formula::curves).chain(curves_of(false)));
-        let of_points = curves_of(true).filter(|curve| !of_lines.contains(curve)).collect();
-        Separations { own, nearer, of_points }
+        Separations { own, nearer }
     }
 
     /// Returns the curves of a model as functions, and the size of the section.
@@ -156,32 +128,26 @@ impl Partition {
         (shapes, size)
     }
 
-    /// Returns the features whose polygons touch.
-    fn neighbours(&self, section: &Section<'_>) -> Vec<Neighbours> {
+    /// Returns pairs of features whose polygons touch.
+    fn neighbours(&self, section: &Section<'_>) -> Vec<[usize; 2]> {
         let tolerance = TOUCHING_FRACTION * section.size;
         let mut neighbours = Vec::new();
         for (a, cover) in self.covers.iter().enumerate() {
             for (b, other) in self.covers[..a].iter().enumerate() {
-                let pairs = cover.iter().flat_map(|p| other.iter().map(move |q| (p, q)));
-                let touching = pairs.filter(|(p, q)| do_touch(p, q, tolerance));
-                let lengths = touching.map(|(p, q)| common_length(p, q, tolerance));
-                let is_long = |length: f64| length > POINT_FRACTION * section.size;
-                let mut touches = false;
-                let is_line = lengths.inspect(|_| touches = true).any(is_long);
-                if touches {
-                    neighbours.push(Neighbours { pair: [a, b], is_point: !is_line });
+                let mut pairs = cover.iter().flat_map(|p| other.iter().map(move |q| (p, q)));
+                if pairs.any(|(p, q)| do_touch(p, q, tolerance)) {
+                    neighbours.push([a, b]);
                 }
             }
         }
         neighbours
     }
 
-    /// Returns pieces that cover the inside. `with_points` are also told apart the features whose cells meet in about a point.
+    /// Returns pieces that cover the inside.
     pub(crate) fn inner_pieces(
         &self,
         separations: &Separations,
         shapes: &[CurveFunction<'_>],
-        with_points: bool,
     ) -> Vec<Piece> {
         let section = self.section();
         let mut pieces = Vec::new();
@@ -189,7 +155,7 @@ impl Partition {
             let rivals: Vec<Rival<'_>> = separations
                 .nearer
                 .iter()
-                .filter(|near| near.feature == feature && (with_points || !near.is_point))
+                .filter(|near| near.feature == feature)
                 .map(|near| Rival { feature: near.other, nearer: &near.formula })
                 .collect();
             for polygon in cover {
@@ -277,6 +243,18 @@ struct Rival<'t> {
 }
 
 impl Rival<'_> {
+    /// Returns whether a polygon is on the owner's side of a border that is one straight line.
+    fn is_beyond_line(
+        &self,
+        polygon: &Polygon,
+        shapes: &[CurveFunction<'_>],
+        tolerance: f64,
+    ) -> bool {
+        let Formula::Atom { curve, .. } = self.nearer else { return false };
+        let mut sides = |curve: CurveIndex| shapes[curve].signs_over(polygon, tolerance);
+        shapes[*curve].is_line() && self.nearer.decide_with(&mut sides) == Some(true)
+    }
+
     /// Returns whether the condition holds for all points that a piece owns, since the rival itself is as near to them as its
     /// line or circle. None of them is behind the rival.
     fn competes(&self, section: &Section<'_>, piece: &Piece) -> bool {
@@ -298,11 +276,16 @@ fn decided(
 ) -> Vec<Polygon> {
     let tolerance = section.tolerance();
     let mut polygons = vec![polygon];
-    let mut divide = |values: &dyn Fn(&Polygon) -> Vec<f64>| {
-        let halves = polygons.iter().flat_map(|polygon| divided(polygon, &values(polygon)));
-        polygons = halves.flatten().collect();
-    };
     for rival in rivals {
+        let mut divide = |values: &dyn Fn(&Polygon) -> Vec<f64>| {
+            let halves = polygons.iter().flat_map(|polygon| {
+                if rival.is_beyond_line(polygon, shapes, tolerance) {
+                    return [Some(polygon.clone()), None];
+                }
+                divided(polygon, &values(polygon))
+            });
+            polygons = halves.flatten().collect();
+        };
         for side in section.sector_sides(rival.feature) {
             let at = |p: &Point| Some(side.at(*p)).filter(|x| x.abs() > tolerance).unwrap_or(0.0);
             divide(&|polygon| polygon.iter().map(at).collect());

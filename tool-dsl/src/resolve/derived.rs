@@ -473,7 +473,7 @@ impl Conditions<'_> {
         diagnostics: &mut Vec<Diagnostic>,
     ) -> Vec<ConditionedPart> {
         let (shapes, size) = inner.functions(&lowering.graph, &curves.list, separations);
-        let pieces = inner.inner_pieces(separations, &shapes, true);
+        let pieces = inner.inner_pieces(separations, &shapes);
         let conditions = overlay::Conditions { formulas: &self.conditions, shapes: &shapes, size };
         let Overlay { parts, uncovered, doubly_covered } =
             overlay::overlay(&inner.section(), pieces, &conditions);

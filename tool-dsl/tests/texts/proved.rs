@@ -267,11 +267,15 @@ fn what_hardly_turns_is_proved() {
         format!("({:.9}, {:.9})", 5.0 * sine, 5.0 - 5.0 * cosine)
     };
     let chords: Vec<String> = (1..=24).map(chord).collect();
-    is_proved(&format!(
+    let text = format!(
         "tool Chords {{ units mm; profile {{ start (0, 0); line to {} as ball cutting;
            line to (5, 20) as flute cutting; line to (5, 40), (0, 40) as shank; }} }}",
         chords.join(", ")
-    ));
+    );
+    is_proved(&text);
+    // About three for each chord: two borders, and the side of the surface.
+    let tests = tool(&text).expect("a tool").tree.test_count();
+    assert!(tests < 4 * 24, "{tests}");
 }
 
 /// A zig-zag whose boxes are too many rests on its partition.
