@@ -65,9 +65,9 @@ impl<'m> Prover<'m> {
         let linear = Linear::new(model);
         let reaches = model.regions.iter().map(|region| {
             let mut signs = vec![ANY_SIGN; model.curves.len()];
-            region.inside.narrow_signs(&mut signs);
+            region.condition.narrow_signs(&mut signs);
             let mut reach = linear.bounding_box(&signs);
-            for choices in region.inside.disjunctions() {
+            for choices in region.condition.disjunctions() {
                 // A point of the region satisfies one of the choices.
                 let hull = choices
                     .iter()
@@ -115,7 +115,7 @@ impl<'m> Prover<'m> {
                 continue;
             }
             let mut signs = |curve| self.boxes.signs(index, curve);
-            match model.regions[region].inside.decide_with(&mut signs) {
+            match model.regions[region].condition.decide_with(&mut signs) {
                 Some(true) => return BoxPosition::Inside,
                 Some(false) => {}
                 // A later region may still contain the whole box.
@@ -617,7 +617,7 @@ mod tests {
             let decided: Vec<Option<bool>> = regions
                 .by_ref()
                 .filter(|(_, reach)| reach.meets(&cell))
-                .map(|(region, _)| region.inside.decide_with(&mut sign))
+                .map(|(region, _)| region.condition.decide_with(&mut sign))
                 .collect();
             if decided.contains(&Some(true)) || decided.contains(&None) && remaining == 0 {
                 return false;

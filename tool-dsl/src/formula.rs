@@ -53,8 +53,7 @@ impl Curve {
     }
 }
 
-/// A condition on the signs of curves. Except for strict atoms, both sides of a curve are closed: `below`
-/// means `c ≤ 0`, its opposite `c ≥ 0`.
+/// A condition on the signs of curves. Both sides of a curve are closed: `below` means `c ≤ 0`, its opposite `c ≥ 0`.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Formula {
     /// True everywhere or nowhere.
@@ -65,8 +64,6 @@ pub enum Formula {
         curve: CurveIndex,
         /// `c ≤ 0` rather than `c ≥ 0`.
         below: bool,
-        /// Excludes the curve itself, as the exceptions of derived regions do.
-        strict: bool,
     },
     /// A conjunction.
     All(Vec<Formula>),
@@ -99,10 +96,8 @@ impl Formula {
     pub fn holds(&self, value: &mut impl FnMut(CurveIndex) -> f64) -> bool {
         match self {
             Formula::Const(constant) => *constant,
-            Formula::Atom { curve, below: true, strict: false } => value(*curve) <= 0.0,
-            Formula::Atom { curve, below: false, strict: false } => value(*curve) >= 0.0,
-            Formula::Atom { curve, below: true, strict: true } => value(*curve) < 0.0,
-            Formula::Atom { curve, below: false, strict: true } => value(*curve) > 0.0,
+            Formula::Atom { curve, below: true } => value(*curve) <= 0.0,
+            Formula::Atom { curve, below: false } => value(*curve) >= 0.0,
             Formula::All(parts) => parts.iter().all(|part| part.holds(value)),
             Formula::Any(parts) => parts.iter().any(|part| part.holds(value)),
         }
@@ -124,9 +119,7 @@ impl Formula {
         let opposites = |parts: &[Formula]| parts.iter().map(Formula::opposite).collect();
         match self {
             Formula::Const(constant) => Formula::Const(!constant),
-            Formula::Atom { curve, below, strict } => {
-                Formula::Atom { curve: *curve, below: !below, strict: *strict }
-            }
+            Formula::Atom { curve, below } => Formula::Atom { curve: *curve, below: !below },
             Formula::All(parts) => Formula::Any(opposites(parts)),
             Formula::Any(parts) => Formula::All(opposites(parts)),
         }
@@ -142,8 +135,8 @@ impl Formula {
         let mut known = Some(true);
         let (parts, any) = match self {
             Formula::Const(constant) => return Some(*constant),
-            Formula::Atom { curve, below, strict } => {
-                let inside = side(*below, *strict);
+            Formula::Atom { curve, below } => {
+                let inside = side(*below);
                 return match sign(*curve) {
                     known if known & !inside == 0 => Some(true),
                     known if known & inside == 0 => Some(false),
@@ -167,9 +160,7 @@ impl Formula {
     /// used.
     pub fn narrow_signs(&self, signs: &mut [Signs]) {
         match self {
-            Formula::Atom { curve, below, strict } => {
-                signs[*curve] &= side(*below, *strict);
-            }
+            Formula::Atom { curve, below } => signs[*curve] &= side(*below),
             Formula::All(parts) => parts.iter().for_each(|part| part.narrow_signs(signs)),
             Formula::Any(parts) if parts.len() == 1 => parts[0].narrow_signs(signs),
             _ => {}
@@ -201,7 +192,7 @@ impl Formula {
     /// Lists the atoms whose curve is undecided, in order.
     pub fn undecided_atoms(&self, signs: &[Signs], atoms: &mut Vec<(CurveIndex, bool)>) {
         match self {
-            Formula::Atom { curve, below, .. } if self.decide(signs).is_none() => {
+            Formula::Atom { curve, below } if self.decide(signs).is_none() => {
                 atoms.push((*curve, *below));
             }
             Formula::All(parts) | Formula::Any(parts) if self.decide(signs).is_none() => {
@@ -230,7 +221,6 @@ pub(crate) fn possible(value: Interval) -> Signs {
 }
 
 /// Returns the signs that an atom allows.
-fn side(below: bool, strict: bool) -> Signs {
-    let open = if below { NEGATIVE } else { POSITIVE };
-    if strict { open } else { open | ZERO }
+fn side(below: bool) -> Signs {
+    if below { NEGATIVE | ZERO } else { POSITIVE | ZERO }
 }

@@ -1,13 +1,16 @@
-//! The reference interpreter: evaluation by the rule of the text, region by region in the order of the list.
+//! The reference interpreter: evaluation by the rule of the text. Regions by hand are asked in the order of the list; with a
+//! profile, the nearest of all features has the point.
 //!
 //! It shares nothing with generated code and with the runtime's evaluator of tools, which descend the plan's tree and are tested
-//! against it. All perform the same operations with one rounding each. The reference differs only at corners, within an ulp of
-//! the tool's size: there a test that the plan left out, because it cannot fail, would fail by rounding.
+//! against it. All perform the same operations with one rounding each, once the owner is known. The reference may have another
+//! owner within rounding of a border: there a test that the plan left out, because it cannot fail, would fail by rounding, and
+//! distances are compared in another form.
 
 use crate::checked::CheckedTool;
 use crate::expr::Id;
 use crate::expr::value::{EvaluationPoint, Evaluator};
 use crate::formula::CurveIndex;
+use crate::regionalise::owners::Owners;
 
 /// The evaluation at a point inside the tool.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,6 +34,8 @@ pub struct Evaluation {
 pub struct Interpreter<'t> {
     tool: &'t CheckedTool,
     evaluator: Evaluator<'t>,
+    /// The owners of a profile's points; `None` for regions by hand.
+    owners: Option<Owners<'t>>,
 }
 
 impl<'t> Interpreter<'t> {
@@ -42,7 +47,8 @@ impl<'t> Interpreter<'t> {
             .iter()
             .flat_map(|region| region.outputs.roots())
             .chain(model.curve_values());
-        Interpreter { tool, evaluator: Evaluator::new(&model.graph, roots) }
+        let owners = model.section.as_ref().map(Owners::new);
+        Interpreter { tool, evaluator: Evaluator::new(&model.graph, roots), owners }
     }
 
     /// Evaluates the tool at a point of its frame, in the file's unit; `None` outside. `length` is the length
@@ -50,11 +56,14 @@ impl<'t> Interpreter<'t> {
     pub fn evaluate(&mut self, [x, y, z]: [f64; 3], length: f64) -> Option<Evaluation> {
         self.evaluator.evaluate(EvaluationPoint { length, ..EvaluationPoint::new(x, y, z) });
         let model = &self.tool.model;
-        let region = model.regions.iter().position(|region| {
-            region
-                .inside
-                .holds(&mut |curve: CurveIndex| self.evaluator.get(model.curves[curve].value))
-        })?;
+        let mut value = |curve: CurveIndex| self.evaluator.get(model.curves[curve].value);
+        let region = match &self.owners {
+            Some(owners) => owners.region_at([(x * x + y * y).sqrt(), z], &mut value)?,
+            None => {
+                let mut regions = model.regions.iter();
+                regions.position(|region| region.condition.holds(&mut value))?
+            }
+        };
         let get = |id: Id| self.evaluator.get(id);
         let outputs = &model.regions[region].outputs;
         Some(Evaluation {

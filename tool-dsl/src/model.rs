@@ -20,10 +20,12 @@
 //!   [`RegionOutputs`] are functions of space in both domains, and only they read
 //!   [`Coord::Length`](crate::expr::Coord::Length).
 //! - **Sides.** A [`Curve`] `c` divides the domain by its sign. An atom is `c ≤ 0` or `c ≥ 0`, both closed,
-//!   so a curve belongs to both of its sides; a strict atom is `c < 0` or `c > 0`. A [`Formula`] combines
-//!   atoms by "and" and "or". Where a curve is undefined, none of its atoms holds.
-//! - **Ownership.** A point belongs to the first of [`Model::regions`] whose [`Region::inside`] holds. The
-//!   solid is the set of points that belong to a region.
+//!   so a curve belongs to both of its sides. A [`Formula`] combines atoms by "and" and "or". Where a curve is
+//!   undefined, none of its atoms holds.
+//! - **Ownership.** A point belongs to the first of [`Model::regions`] whose [`Region::condition`] holds. With a
+//!   `Section` it belongs to the nearest feature of the profile and, if that is divided further, to the first
+//!   condition that holds there: see [`crate::regionalise::owners`]. The solid is the set of points that belong to a
+//!   region.
 //! - **Depth.** [`RegionOutputs::depth`] of the owner is `max(0, depth)`. With a `Section` it is the distance
 //!   to the solid's surface. For regions written by hand it is the file's expression, and `prove` bounds it
 //!   by the distance.
@@ -68,10 +70,11 @@
 use crate::domain::Domain;
 use crate::expr::{Graph, Id};
 use crate::formula::{Curve, CurveIndex, Formula};
+use crate::geometry::function::{self, CurveFunction};
 use crate::geometry::outline::Segment;
 use crate::number::Number;
 use crate::regionalise::Partition;
-use crate::regionalise::overlay::ConditionedPart;
+use crate::regionalise::overlay::{ConditionedPart, Division};
 use crate::regionalise::pieces::Separations;
 use crate::source::Span;
 
@@ -158,15 +161,33 @@ pub(crate) struct Section {
     pub(crate) over: Option<Over>,
 }
 
-/// Conditions that divide the inside's parts further: regions by hand, or the fans of smoothed corners.
+/// The further division of the inside's parts: by regions by hand, or by the fans of smoothed corners.
 #[derive(Clone, Debug)]
 pub(crate) struct Over {
-    /// The conditions in order of precedence: a point belongs to the first that holds.
-    pub(crate) conditions: Vec<Formula>,
+    pub(crate) division: Division,
     /// The part and the condition of each region.
     pub(crate) regions: Vec<ConditionedPart>,
-    /// The distances to the segments of the outline with rounded corners, which conditions compare.
-    pub(crate) distances: Vec<Id>,
+}
+
+impl Section {
+    /// Returns the curves of a model as functions, and the size of the section.
+    pub(crate) fn functions<'g>(
+        &self,
+        graph: &'g Graph,
+        curves: &[Curve],
+    ) -> (Vec<CurveFunction<'g>>, f64) {
+        let (mut shapes, size) = function::functions(graph, curves, &self.outline);
+        self.inner.set_distances(&self.separations, &mut shapes);
+        if let Some(Over { division: Division::Rounded(rounded), .. }) = &self.over {
+            rounded.partition.set_distances(&rounded.separations, &mut shapes);
+        }
+        (shapes, size)
+    }
+
+    /// Returns the feature from which a region has its depth.
+    pub(crate) fn feature_of(&self, region: usize) -> usize {
+        self.over.as_ref().map_or(region, |over| over.regions[region].part)
+    }
 }
 
 impl Model {
@@ -187,19 +208,6 @@ impl Model {
             evaluation.into_iter().chain(region.direction).chain(region.raw_direction.0)
         });
         outputs.chain(self.curve_values())
-    }
-
-    /// Returns the depths of the regions in their order, followed by the distances of [`Over`] that no region
-    /// has.
-    pub(crate) fn depths(&self) -> Vec<Id> {
-        let mut depths: Vec<Id> = self.regions.iter().map(|region| region.depth).collect();
-        let over = self.section.iter().filter_map(|section| section.over.as_ref());
-        for distance in over.flat_map(|over| &over.distances) {
-            if !depths.contains(distance) {
-                depths.push(*distance);
-            }
-        }
-        depths
     }
 
     /// Returns whether depth is an exact distance.
@@ -303,8 +311,9 @@ pub struct Region {
     pub span: Span,
     /// The index of the surface it belongs to.
     pub surface: usize,
-    /// The condition of its points; those of regions listed earlier are excluded by precedence.
-    pub inside: Formula,
+    /// The condition of its points that the file states; those of regions listed earlier are excluded by precedence. A
+    /// region of a profile has, of the points that are nearest to its feature, those that satisfy it.
+    pub condition: Formula,
     /// The depth, as the file writes it.
     pub depth: Id,
     /// The locations that define its quantities.

@@ -8,7 +8,7 @@ use crate::expr::{Coord, Id, Node};
 use crate::formula::Formula;
 use crate::model::{Model, Section};
 use crate::plan::{MAX_TESTS, PlannedTool, Tree};
-use crate::regionalise::overlay::ConditionedPart;
+use crate::regionalise::overlay::{ConditionedPart, Division};
 
 /// A guarantee that does not hold: a fault of the compiler.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,7 +59,7 @@ pub(crate) fn model(model: &Model) -> Result<(), Broken> {
     }
     for region in &model.regions {
         surface(region.surface)?;
-        formula(model, &region.inside)?;
+        formula(model, &region.condition)?;
         let values = [region.depth, region.magnitude, region.niceness];
         function(model, "a depth, magnitude or niceness", values)?;
         function(model, "a direction", region.direction.into_iter().chain(region.raw_direction.0))?;
@@ -69,10 +69,11 @@ pub(crate) fn model(model: &Model) -> Result<(), Broken> {
     section.outline.iter().try_for_each(|segment| surface(segment.surface))?;
     outline(section)?;
     let Some(over) = &section.over else { return Ok(()) };
-    over.conditions.iter().try_for_each(|condition| formula(model, condition))?;
-    function(model, "a distance", over.distances.iter().copied())?;
+    if let Division::Conditions(formulas) = &over.division {
+        formulas.iter().try_for_each(|condition| formula(model, condition))?;
+    }
     for ConditionedPart { condition, .. } in &over.regions {
-        if *condition >= over.conditions.len() {
+        if *condition >= over.division.count() {
             return Err(Broken::Region { index: *condition });
         }
     }
@@ -244,8 +245,7 @@ mod tests {
             edit(&mut model);
             self::model(&model).err()
         };
-        let beyond =
-            |model: &Model| Formula::Atom { curve: model.curves.len(), below: true, strict: false };
+        let beyond = |model: &Model| Formula::Atom { curve: model.curves.len(), below: true };
         let found = broken(SPHERE, |model| model.regions.clear());
         assert_eq!(found, Some(Broken::NoRegion));
         let found = broken(SPHERE, |model| model.regions[1].surface = 7);
@@ -255,7 +255,7 @@ mod tests {
         let found = broken(SPHERE, |model| model.first_curves.push(9));
         assert_eq!(found, Some(Broken::Curve { index: 9 }));
         let mut model = resolved(SPHERE);
-        model.regions[0].inside = Formula::All(vec![beyond(&model)]);
+        model.regions[0].condition = Formula::All(vec![beyond(&model)]);
         assert_eq!(self::model(&model), Err(Broken::Curve { index: model.curves.len() }));
         let found = broken(MILL, |model| model.regions[0].depth = model.graph.coord(Coord::X));
         let what = "a depth, magnitude or niceness";

@@ -101,12 +101,12 @@ kinds! {
         }
         help "move a point so that the segments stay apart"
         explain "A profile bounds one solid. Where it meets itself, inside and outside are ambiguous.";
-    error T0319 DivisionFailed { d: f64, z: f64 }
-        "section that cannot be divided into regions"
-        message "the section cannot be divided into regions near ({d:.4}, {z:.4})"
-        help "change the profile there, or write its regions by hand (docs/language.md)"
-        explain "A region holds the points nearest to one segment or corner. Rounding can hide the point where three regions meet."
-        without "no outline is known for which the division fails";
+    error T0319 NoDistance
+        "segment without a distance"
+        message "the distance from this segment has a constant without a value"
+        help "change the segment's ends"
+        explain "A region of a profile holds the points nearest to one segment or corner, and its depth is the distance from there."
+        without "segments without a direction are refused before";
     note T0320 SegmentLeftOut { surface: String }
         "segment left out"
         message "this segment of `{surface}` has zero length with these params and is left out"

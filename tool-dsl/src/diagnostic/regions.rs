@@ -164,12 +164,6 @@ kinds! {
             None => "write the regions by hand",
         }
         explain "At each corner the direction turns in a fan of the tangent length on both sides. The fans at both ends of a segment must fit on it.";
-    error T0427 SmoothDivisionFailed { location: String }
-        "smoothed profile that cannot be divided"
-        message "the smoothed profile cannot be divided into regions near {location}"
-        help "write another tangent length"
-        explain "`regions smooth` takes its directions from the profile with rounded corners. Rounding the corners can hide a point where three of its regions meet."
-        without "no profile is known for which the division fails";
     error T0428 UncoveredPoint { location: String }
         "point of a profile without a region"
         message "no region covers the point {location} inside the profile"

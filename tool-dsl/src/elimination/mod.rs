@@ -336,7 +336,8 @@ mod tests {
         for tool in library::tools_by_hand() {
             let model = &tool.model;
             let (curves, regions) = (model.curves.len(), model.regions.len());
-            let linear = Linear::with_depths(model, &model.depths());
+            let depths: Vec<Id> = model.regions.iter().map(|region| region.depth).collect();
+            let linear = Linear::with_depths(model, &depths);
             let mut counts = [0; 2];
             for number in 0..400u32 {
                 // The signs at a point, some of them forgotten, so that queries resemble one another; or opposite ones.

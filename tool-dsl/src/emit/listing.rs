@@ -5,7 +5,10 @@ use crate::checked::CheckedTool;
 use crate::diagnostic::format_number;
 use crate::expr::{Coord, Graph, Id, Node};
 use crate::formula::{Curve, Formula};
+use crate::model::{Over, Section};
 use crate::plan::Tree;
+use crate::regionalise::Feature;
+use crate::regionalise::overlay::Division;
 use crate::source::Source;
 use crate::syntax;
 use std::collections::BTreeMap;
@@ -61,11 +64,15 @@ pub fn model(tool: &CheckedTool) -> String {
 pub fn regions(tool: &CheckedTool) -> String {
     let model = &tool.model;
     let mut text = String::new();
-    for region in &model.regions {
+    for (index, region) in model.regions.iter().enumerate() {
         // Writing to a String does not fail.
         let surface = &model.surfaces[region.surface].name;
         let _ = writeln!(text, "region {} as {surface}", region.name);
-        let _ = writeln!(text, "  where {}", condition(tool, &region.inside));
+        let nearest = model.section.as_ref().map(|section| nearest_features(section, index));
+        let stated =
+            (region.condition != Formula::Const(true)).then(|| condition(tool, &region.condition));
+        let conditions: Vec<String> = nearest.into_iter().chain(stated).collect();
+        let _ = writeln!(text, "  where {}", conditions.join(" and "));
         let evaluation = [
             ("depth", region.depth),
             ("magnitude", region.magnitude),
@@ -80,6 +87,26 @@ pub fn regions(tool: &CheckedTool) -> String {
     text
 }
 
+/// Says to what the points of a region of a profile are nearest.
+fn nearest_features(section: &Section, region: usize) -> String {
+    let nearest = match section.inner.section().features()[section.feature_of(region)] {
+        Feature::Piece(segment) => format!("nearest to segment {}", segment + 1),
+        Feature::Corner(Some(segment)) => {
+            format!("nearest to the corner after segment {}", segment + 1)
+        }
+        Feature::Corner(None) => "nearest to the corner before segment 1".to_owned(),
+    };
+    match &section.over {
+        Some(Over { division: Division::Rounded(_), regions }) => {
+            format!(
+                "{nearest} and to segment {} of the rounded outline",
+                regions[region].condition + 1
+            )
+        }
+        _ => nearest,
+    }
+}
+
 fn condition(tool: &CheckedTool, formula: &Formula) -> String {
     let joined = |parts: &[Formula], word: &str| {
         let parts: Vec<String> = parts.iter().map(|part| condition(tool, part)).collect();
@@ -87,11 +114,10 @@ fn condition(tool: &CheckedTool, formula: &Formula) -> String {
     };
     match formula {
         Formula::Const(value) => value.to_string(),
-        Formula::Atom { curve, below, strict } => {
+        Formula::Atom { curve, below } => {
             let Curve { name, value } = &tool.model.curves[*curve];
             let curve = name.clone().unwrap_or_else(|| expression(tool, *value));
-            let sign = if *below { "<" } else { ">" };
-            format!("{curve} {sign}{} 0", if *strict { "" } else { "=" })
+            format!("{curve} {} 0", if *below { "<=" } else { ">=" })
         }
         Formula::All(parts) => joined(parts, " and "),
         Formula::Any(parts) => joined(parts, " or "),

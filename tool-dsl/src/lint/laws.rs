@@ -8,6 +8,7 @@ use crate::expr::{Id, Node};
 use crate::geometry::outline::{Point, Segment, points_with_normals};
 use crate::model::{DirectionSource, Model};
 use crate::number::Number;
+use crate::regionalise::overlay::Division;
 use crate::source::Span;
 
 /// The number of points along a segment of a profile.
@@ -173,7 +174,7 @@ impl Linter<'_> {
         }
         // Directions of `regions smooth` are no mistake.
         let over = self.model.section.as_ref().and_then(|section| section.over.as_ref());
-        let is_smooth = over.is_some_and(|over| !over.distances.is_empty());
+        let is_smooth = over.is_some_and(|over| matches!(over.division, Division::Rounded(_)));
         for (index, slopes) in std::mem::take(&mut self.slopes).into_iter().enumerate() {
             let MagnitudeSlope { farthest, largest, oblique } = slopes;
             let region = &self.model.regions[index];

@@ -8,6 +8,7 @@ use crate::expr::value::{EvaluationPoint, LazyEvaluator};
 use crate::expr::{Id, Node};
 use crate::formula::{Curve, CurveIndex, Formula};
 use crate::model::{Model, Region};
+use crate::regionalise::owners::Owners;
 use crate::resolve::{never_wins, off_tip, overlapping};
 use crate::source::Span;
 use laws::{Divisor, MagnitudeSlope};
@@ -56,8 +57,7 @@ pub(crate) fn lint(model: &Model, extent: &Extent) -> Vec<Diagnostic> {
     if let Some(section) = &model.section {
         // A profile's regions are known to be correct; only the quantities written in the file need checks.
         linter.check_tip(extent.low, extent);
-        let (shapes, _) =
-            section.inner.functions(&model.graph, &model.curves, &section.separations);
+        let (shapes, _) = section.functions(&model.graph, &model.curves);
         let geometry = section.inner.section();
         for piece in section.inner.inner_pieces(&section.separations, &shapes) {
             for ([d, z], _) in geometry.sample_points(&piece) {
@@ -114,6 +114,8 @@ struct Linter<'m> {
     size: f64,
     /// Computes what is asked for at the current point; most points are asked for the signs of a few curves only.
     evaluator: RefCell<LazyEvaluator<'m>>,
+    /// The owners of a profile's points; `None` for regions by hand.
+    owners: Option<Owners<'m>>,
     /// The region that was last found by [`Linter::is_inside`].
     last_region: usize,
     found: Vec<Diagnostic>,
@@ -144,6 +146,7 @@ impl<'m> Linter<'m> {
                 &model.graph,
                 model.roots().chain(model.regions.iter().flat_map(|r| r.outputs.gradient)),
             )),
+            owners: model.section.as_ref().map(Owners::new),
             last_region: 0,
             found: Vec::new(),
             owned_points: vec![0; model.regions.len()],
@@ -208,12 +211,18 @@ impl<'m> Linter<'m> {
     fn is_in_region(&mut self, region: usize) -> bool {
         let (model, evaluator) = (self.model, self.evaluator.get_mut());
         let mut value = |curve: CurveIndex| evaluator.get(model.curves[curve].value);
-        model.regions[region].inside.holds(&mut value)
+        model.regions[region].condition.holds(&mut value)
     }
 
     fn owner(&mut self, point: [f64; 3]) -> Option<usize> {
         self.set_point(point);
-        (0..self.model.regions.len()).find(|region| self.is_in_region(*region))
+        let Some(owners) = &self.owners else {
+            return (0..self.model.regions.len()).find(|region| self.is_in_region(*region));
+        };
+        let [x, y, z] = point;
+        let (model, evaluator) = (self.model, self.evaluator.get_mut());
+        let mut value = |curve: CurveIndex| evaluator.get(model.curves[curve].value);
+        owners.region_at([x.hypot(y), z], &mut value)
     }
 
     /// Returns whether some region has a point.
@@ -289,7 +298,7 @@ impl<'m> Linter<'m> {
         let value = |curve: CurveIndex| self.value(curve);
         // Neighbours share their border, so only points clearly in both count as an overlap.
         let is_well_inside =
-            |r: usize| holds_with_margin(&self.model.regions[r].inside, &value, &self.scales);
+            |r: usize| holds_with_margin(&self.model.regions[r].condition, &value, &self.scales);
         let overlap = match claims.as_slice() {
             [first, second, ..] if is_well_inside(*first) && is_well_inside(*second) => {
                 Some((*first, *second))
@@ -376,7 +385,7 @@ impl<'m> Linter<'m> {
         self.model
             .regions
             .iter()
-            .find(|region| region.inside.curves().contains(&curve))
+            .find(|region| region.condition.curves().contains(&curve))
             .map_or(self.model.name_span, |region| region.span)
     }
 

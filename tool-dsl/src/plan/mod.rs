@@ -5,8 +5,10 @@
 //! therefore gives every point the owner that the list of regions gives it, in real arithmetic; a test that
 //! is left out can no longer fail by rounding. Only the order of the tests is free. It is chosen greedily by
 //! the information that tests give about samples of the domain, with cheap curves preferred and the curves of
-//! `bsp` first.
+//! `bsp` first. Where samples tell nothing about the cells of a profile, it is chosen by the cells that are left on both
+//! sides.
 
+mod cells;
 mod samples;
 mod section;
 mod signs;
@@ -17,7 +19,7 @@ use crate::expr::{Coord, Graph, Id, Node};
 use crate::formula::{Curve, CurveIndex};
 use crate::model::Model;
 use crate::number::Number;
-pub(crate) use section::proved_deviation;
+pub(crate) use cells::proved_deviation;
 use signs::by_signs;
 
 /// The information, in bits, that must justify one addition.
@@ -138,10 +140,10 @@ pub(crate) fn plan(mut model: Model, extent: Extent) -> Result<PlannedTool, Diag
     let (tree, deviation) = match &model.section {
         None => (by_signs(&model, &extent)?, 0.0),
         Some(section) => {
-            let (tree, deviation) = section::tree(&model, section)?;
-            match section::has_owner_far_outside(&model, section, &tree) {
-                true => (limited_to_box(&mut model, &extent, tree), deviation),
-                false => (tree, deviation),
+            let plan = section::plan(&model, section)?;
+            match plan.has_owner_far_outside {
+                true => (limited_to_box(&mut model, &extent, plan.tree), plan.deviation),
+                false => (plan.tree, plan.deviation),
             }
         }
     };

@@ -43,7 +43,7 @@ fn samples(model: &Model, extent: &Extent) -> Vec<Sample> {
         .map(|[x, y, z]| {
             evaluator.evaluate(EvaluationPoint::new(x, y, z));
             let mut value = |curve: CurveIndex| evaluator.get(model.curves[curve].value);
-            let owner = model.regions.iter().position(|region| region.inside.holds(&mut value));
+            let owner = model.regions.iter().position(|region| region.condition.holds(&mut value));
             let signs = (0..model.curves.len())
                 .map(|curve| match value(curve) {
                     v if v < 0.0 => NEGATIVE,
@@ -111,7 +111,7 @@ impl Planner<'_> {
     fn possible(&self, signs: &[Signs]) -> Vec<Option<usize>> {
         let mut possible = Vec::new();
         for (index, region) in self.model.regions.iter().enumerate() {
-            match region.inside.decide(signs) {
+            match region.condition.decide(signs) {
                 // Regions listed later do not matter: the first that contains a point owns it.
                 Some(true) => {
                     possible.push(Some(index));
@@ -134,7 +134,7 @@ impl Planner<'_> {
     ) -> (CurveIndex, bool) {
         let mut atoms = Vec::new();
         for region in possible.iter().flatten() {
-            self.model.regions[*region].inside.undecided_atoms(signs, &mut atoms);
+            self.model.regions[*region].condition.undecided_atoms(signs, &mut atoms);
         }
         let mut tried: Vec<CurveIndex> = Vec::new();
         let mut best: Option<(f64, CurveIndex)> = None;

@@ -159,7 +159,7 @@ impl<'m> BorderProver<'m> {
         let model = self.model;
         let mut sign = |curve: CurveIndex| self.sign_on(claim, curve, cover);
         let is_in_region =
-            |owner: usize| model.regions[owner].inside.decide_with(&mut sign) == Some(true);
+            |owner: usize| model.regions[owner].condition.decide_with(&mut sign) == Some(true);
         // A point outside needs no region; that none contains it is the question of overlaps below.
         if !claim.owner.is_none_or(is_in_region) {
             return false;
@@ -169,7 +169,7 @@ impl<'m> BorderProver<'m> {
                 let mut open_signs = |curve: CurveIndex| self.sign_on(claim, curve, cover) & !ZERO;
                 // Borders belong to both neighbours, so the other regions are tested without theirs.
                 Some(other) == claim.owner
-                    || model.regions[other].inside.decide_with(&mut open_signs) == Some(false)
+                    || model.regions[other].condition.decide_with(&mut open_signs) == Some(false)
                     || self.excluded(claim, other)
             })
     }
@@ -177,7 +177,7 @@ impl<'m> BorderProver<'m> {
     /// Returns whether linear curves prove that no point of a claim is in a region, except on borders.
     fn excluded(&self, claim: &Claim, region: usize) -> bool {
         let signs_on_path = self.signs(claim);
-        let inside = &self.model.regions[region].inside;
+        let inside = &self.model.regions[region].condition;
         // A region with alternatives has no point here if each alternative has none.
         self.contradict(&signs_on_path, &[inside])
             || inside.disjunctions().iter().any(|choices| {
@@ -393,7 +393,7 @@ impl BorderProver<'_> {
         let mut atoms = Vec::new();
         for owner in [Some(owners.own), owners.other].into_iter().flatten() {
             self.model.regions[owner]
-                .inside
+                .condition
                 .undecided_atoms(&vec![ANY_SIGN; self.curves.len()], &mut atoms);
         }
         let condition_curves: BTreeSet<CurveIndex> =
@@ -659,7 +659,7 @@ impl BorderProver<'_> {
         let mut signs = self.signs(claim);
         // Owners are checked against the list of regions, so its conditions hold too.
         if let Some(owner) = claim.owner {
-            self.model.regions[owner].inside.narrow_signs(&mut signs);
+            self.model.regions[owner].condition.narrow_signs(&mut signs);
         }
         signs
     }

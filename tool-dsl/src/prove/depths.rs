@@ -26,7 +26,7 @@ pub(super) struct DepthCorner {
 impl Depths {
     /// Collects the depths of a model, whose graph receives the parts.
     pub(super) fn of(model: &mut Model) -> Depths {
-        let mut ids = model.depths();
+        let mut ids: Vec<Id> = model.regions.iter().map(|region| region.depth).collect();
         let mut corners = vec![None; ids.len()];
         for region in 0..ids.len() {
             let first = ids.len();

@@ -8,10 +8,8 @@ pub(super) fn proved_deviation(tool: &PlannedTool) -> Option<f64> {
     let section = tool.model.section.as_ref()?;
     let (geometry, mut graph) = (section.inner.section(), tool.model.graph.clone());
     for (index, region) in tool.model.regions.iter().enumerate() {
-        // With regions from `over`, several may belong to one part of the profile.
-        let part = section.over.as_ref().map_or(index, |over| over.regions[index].part);
-        // Equal expressions are one node, so this is the distance from the feature of the part.
-        if geometry.depth(&mut graph, part) != Some(region.depth) {
+        // Equal expressions are one node, so this is the distance from the feature.
+        if geometry.depth(&mut graph, section.feature_of(index)) != Some(region.depth) {
             return None;
         }
     }

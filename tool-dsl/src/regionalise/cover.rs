@@ -314,6 +314,10 @@ impl Section<'_> {
                 let is_nearer = |p: Point| self.rounded(above(&p));
                 polygon = self.without(feature, other, polygon, &is_nearer)?;
             }
+            // The distances from straight segments are exact everywhere.
+            if self.is_straight(feature) && self.is_straight(other) {
+                break;
+            }
         }
         Some(polygon)
     }

@@ -1,8 +1,8 @@
-//! The borders of cells: their evaluation at a point, and the expressions whose signs give their sides.
+//! The expressions of distances from features, of their interior sides and of the directions to them.
 
-use super::section::{Feature, FootPoint, Section};
+use super::section::{Feature, Section};
 use crate::expr::{Coord, Graph, Id};
-use crate::geometry::outline::{self, Circle, ExactPoint, Point, dot, minus};
+use crate::geometry::outline::{self, Circle, ExactPoint};
 use crate::number::Number;
 
 /// A condition on the signs of expressions.
@@ -14,125 +14,10 @@ pub(crate) enum Test {
     All(Vec<Test>),
     /// At least one of these conditions holds.
     Any(Vec<Test>),
-    /// The condition holds with strict inequality.
-    Strictly(Box<Test>),
-}
-
-impl Test {
-    /// Returns the conditions of a cell, with `sides` in place of the condition of its own line or circle, which comes
-    /// first.
-    pub(crate) fn without_own(self, sides: Vec<Test>) -> Test {
-        match self {
-            Test::All(all) => Test::All(all.into_iter().skip(1).chain(sides).collect()),
-            other => other,
-        }
-    }
-}
-
-/// One side of a border, by its geometric meaning.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Border {
-    /// On the interior side of a segment's whole line or circle.
-    Inside { piece: usize },
-    /// Not beyond the normal at an end of a segment (0 for its start, 1 for its end).
-    Before { piece: usize, end: usize },
-    /// Beyond the normal at an end of a segment.
-    Past { piece: usize, end: usize },
-    /// No farther from `this` feature's line, circle or corner than from the other's.
-    Nearer { this: usize, other: usize },
-    /// Up to the normal of a feature at a parameter.
-    UpTo { feature: usize, parameter: f64 },
-    /// Beyond the normal of a feature at a parameter.
-    From { feature: usize, parameter: f64 },
 }
 
 /// The radius, in sizes of the outline, above which an arc's distance is computed from a point on the arc.
 const MAX_FLATNESS: f64 = 2.0;
-
-impl Border {
-    pub(super) fn holds(&self, section: &Section<'_>, p: Point) -> bool {
-        match *self {
-            Border::Inside { piece } => section.outline[piece].signed(p) >= 0.0,
-            Border::Before { piece, end } => section.outline[piece].sector(p)[end] >= 0.0,
-            Border::Past { piece, end } => section.outline[piece].sector(p)[end] <= 0.0,
-            Border::Nearer { this, other } => {
-                section.depth_at(this, p) <= section.depth_at(other, p)
-            }
-            Border::UpTo { feature, parameter } => {
-                section.distance_beyond_normal(feature, parameter, p) <= 0.0
-            }
-            Border::From { feature, parameter } => {
-                section.distance_beyond_normal(feature, parameter, p) >= 0.0
-            }
-        }
-    }
-
-    /// Returns whether a point is on this side for certain, or with a negative `margin` whether it may be: two features within
-    /// the margin are equally near, which they are for long where they hardly turn.
-    pub(super) fn holds_by(&self, section: &Section<'_>, p: Point, margin: f64) -> bool {
-        match *self {
-            Border::Nearer { this, other } => {
-                section.depth_at(this, p) + margin <= section.depth_at(other, p)
-            }
-            _ => self.holds(section, p),
-        }
-    }
-
-    /// Returns the distance along a normal at which a straight border is met; NaN for other borders.
-    pub(super) fn intersection_distance(
-        &self,
-        section: &Section<'_>,
-        foot_point: &FootPoint,
-    ) -> f64 {
-        let value = |p: Point| match *self {
-            Border::Before { piece, end } | Border::Past { piece, end } => {
-                section.outline[piece].sector(p)[end]
-            }
-            Border::UpTo { feature, parameter } | Border::From { feature, parameter } => {
-                section.distance_beyond_normal(feature, parameter, p)
-            }
-            Border::Inside { .. } | Border::Nearer { .. } => f64::NAN,
-        };
-        let (near, far) = (value(foot_point.at(0.0)), value(foot_point.at(section.size)));
-        section.size * near / (near - far)
-    }
-
-    /// Returns the condition of this side; `None` where a constant has no value.
-    pub(super) fn test(&self, section: &Section<'_>, graph: &mut Graph) -> Option<Test> {
-        match *self {
-            Border::Inside { piece } => match &section.outline[piece].circle {
-                Some(circle) if !section.is_flat(circle) => {
-                    let square = graph.number(&circle.radius * &circle.radius);
-                    let squared_distance = outline::squared_distance(graph, &circle.centre);
-                    Some(Test::AtMost(if circle.convex {
-                        graph.sub(squared_distance, square)
-                    } else {
-                        graph.sub(square, squared_distance)
-                    }))
-                }
-                _ => {
-                    let depth = section.piece_depth(graph, piece)?;
-                    Some(Test::AtMost(graph.neg(depth)))
-                }
-            },
-            Border::Before { piece, end } => {
-                let side = section.outline[piece].sides(graph)?[end];
-                Some(Test::AtMost(graph.neg(side)))
-            }
-            Border::Past { piece, end } => {
-                Some(Test::AtMost(section.outline[piece].sides(graph)?[end]))
-            }
-            Border::Nearer { this, other } => section.nearer(graph, this, other),
-            Border::UpTo { feature, parameter } => {
-                Some(Test::AtMost(section.normal_function(graph, feature, parameter)?))
-            }
-            Border::From { feature, parameter } => {
-                let side = section.normal_function(graph, feature, parameter)?;
-                Some(Test::AtMost(graph.neg(side)))
-            }
-        }
-    }
-}
 
 impl Section<'_> {
     pub(super) fn is_flat(&self, circle: &Circle) -> bool {
@@ -144,6 +29,31 @@ impl Section<'_> {
             Some(piece) => &self.outline[piece].to,
             None => &self.outline[0].from,
         }
+    }
+
+    /// Returns the condition of the interior side of a segment's line or circle; `None` where a constant has no value.
+    pub(super) fn inside(&self, graph: &mut Graph, piece: usize) -> Option<Test> {
+        Some(match &self.outline[piece].circle {
+            Some(circle) if !self.is_flat(circle) => {
+                let square = graph.number(&circle.radius * &circle.radius);
+                let squared_distance = outline::squared_distance(graph, &circle.centre);
+                Test::AtMost(if circle.convex {
+                    graph.sub(squared_distance, square)
+                } else {
+                    graph.sub(square, squared_distance)
+                })
+            }
+            _ => {
+                let depth = self.piece_depth(graph, piece)?;
+                Test::AtMost(graph.neg(depth))
+            }
+        })
+    }
+
+    /// Returns the condition of a point not to be beyond the normal at an end of a segment: 0 for its start, 1 for its end.
+    pub(super) fn before(&self, graph: &mut Graph, piece: usize, end: usize) -> Option<Test> {
+        let side = self.outline[piece].sides(graph)?[end];
+        Some(Test::AtMost(graph.neg(side)))
     }
 
     /// Returns the expression of a feature's distance.
@@ -181,40 +91,6 @@ impl Section<'_> {
         let denominator = graph.add(denominator, one);
         let out = graph.div(numerator, denominator)?;
         Some(if circle.convex { graph.neg(out) } else { out })
-    }
-
-    /// Returns the signed distance of a point beyond the normal of a feature at a parameter.
-    fn distance_beyond_normal(&self, feature: usize, parameter: f64, p: Point) -> f64 {
-        let (from, direction) = self.normal_line(feature, parameter);
-        dot(direction, minus(p, from))
-    }
-
-    /// Returns a point of a normal, and the direction across it toward larger parameters.
-    fn normal_line(&self, feature: usize, parameter: f64) -> (Point, Point) {
-        let foot_point = self.foot_point(feature, parameter);
-        let direction = match self.features[feature] {
-            Feature::Piece(piece) => match self.outline[piece].round() {
-                None => self.outline[piece].tangent(false),
-                Some((_, _, convex)) => {
-                    // Counter-clockwise about the centre of a convex arc, clockwise about that of a concave one.
-                    let out = if convex {
-                        [-foot_point.normal[0], -foot_point.normal[1]]
-                    } else {
-                        foot_point.normal
-                    };
-                    if convex { [-out[1], out[0]] } else { [out[1], -out[0]] }
-                }
-            },
-            Feature::Corner(_) => [foot_point.normal[1], -foot_point.normal[0]],
-        };
-        (foot_point.foot, direction)
-    }
-
-    fn normal_function(&self, graph: &mut Graph, feature: usize, parameter: f64) -> Option<Id> {
-        let (from, direction) = self.normal_line(feature, parameter);
-        let [from, direction] =
-            [from, direction].map(|[d, z]| Some([Number::from_f64(d)?, Number::from_f64(z)?]));
-        outline::linear(graph, direction?, &from?)
     }
 }
 

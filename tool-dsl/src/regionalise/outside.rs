@@ -4,7 +4,7 @@
 use super::Partition;
 use super::pieces::{Piece, Separations};
 use super::section::{Feature, Section};
-use crate::formula::{CurveIndex, Formula, NEGATIVE, POSITIVE, Signs};
+use crate::formula::{CurveIndex, Signs};
 use crate::geometry::outline::{Point, Segment, bounding_box, dot, minus, norm};
 use crate::geometry::polygon::{Polygon, clipped, divided};
 
@@ -202,11 +202,6 @@ impl Slab<'_> {
     fn outer_side(&self, border: &Crossing) -> Option<(CurveIndex, Signs)> {
         let feature = Feature::Piece(border.segment);
         let feature = self.section.features.iter().position(|other| *other == feature)?;
-        match &self.separations.own[feature] {
-            Formula::Atom { curve, below, .. } => {
-                Some((*curve, if *below { POSITIVE } else { NEGATIVE }))
-            }
-            _ => None,
-        }
+        self.separations.outer_side(feature)
     }
 }

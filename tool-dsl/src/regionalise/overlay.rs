@@ -1,10 +1,30 @@
-//! Divides the pieces of parts further, by conditions.
+//! Divides the pieces of parts further: by conditions, or by the nearest segments of the rounded outline.
 
 use super::pieces::Piece;
+use super::rounded::Rounded;
 use super::section::Section;
 use crate::formula::{Formula, Signs};
 use crate::geometry::function::CurveFunction;
 use crate::geometry::outline::Point;
+
+/// A further division of the parts of a profile's inside.
+#[derive(Clone, Debug)]
+pub(crate) enum Division {
+    /// By conditions in order of precedence: a point belongs to the first that holds.
+    Conditions(Vec<Formula>),
+    /// By the nearest segments of the outline with rounded corners, each of which counts as a condition.
+    Rounded(Rounded),
+}
+
+impl Division {
+    /// Returns the number of conditions.
+    pub(crate) fn count(&self) -> usize {
+        match self {
+            Division::Conditions(formulas) => formulas.len(),
+            Division::Rounded(rounded) => rounded.partition.outline.len(),
+        }
+    }
+}
 
 /// A part where a condition holds, both as indices.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,18 +33,72 @@ pub(crate) struct ConditionedPart {
     pub(crate) condition: usize,
 }
 
-/// Conditions in order of precedence, with their curves.
-pub(crate) struct Conditions<'a> {
-    pub(crate) formulas: &'a [Formula],
-    pub(crate) shapes: &'a [CurveFunction<'a>],
-    /// The size of the section.
-    pub(crate) size: f64,
+/// A division with the curves of the tool.
+pub(crate) enum Divider<'a> {
+    Conditions(Conditions<'a>),
+    Rounded(RoundedPieces<'a>),
 }
 
-impl Conditions<'_> {
+/// Conditions in order of precedence, with their curves.
+pub(crate) struct Conditions<'a> {
+    formulas: &'a [Formula],
+    shapes: &'a [CurveFunction<'a>],
+    /// The size of the section.
+    size: f64,
+}
+
+/// The pieces of a rounded outline, with the curves between them.
+pub(crate) struct RoundedPieces<'a> {
+    section: Section<'a>,
+    pieces: Vec<Piece>,
+    shapes: &'a [CurveFunction<'a>],
+}
+
+impl<'a> Divider<'a> {
+    /// Prepares a division; `size` is the size of the section.
+    pub(crate) fn new(
+        division: &'a Division,
+        shapes: &'a [CurveFunction<'a>],
+        size: f64,
+    ) -> Divider<'a> {
+        match division {
+            Division::Conditions(formulas) => {
+                Divider::Conditions(Conditions { formulas, shapes, size })
+            }
+            Division::Rounded(rounded) => Divider::Rounded(RoundedPieces {
+                section: rounded.partition.section(),
+                pieces: rounded.pieces(shapes),
+                shapes,
+            }),
+        }
+    }
+
     /// Divides a piece until one condition is known to be the first that holds. Returns each part of it with this condition;
     /// `None` where none holds.
     pub(crate) fn divided(&self, piece: Piece, tolerance: f64) -> Vec<(Piece, Option<usize>)> {
+        match self {
+            Divider::Conditions(conditions) => conditions.divided(piece, tolerance),
+            Divider::Rounded(rounded) => {
+                let common = rounded.pieces.iter().filter_map(|other| {
+                    let common = piece.common(other, rounded.shapes, tolerance)?;
+                    Some((common, other.owner))
+                });
+                common.collect()
+            }
+        }
+    }
+
+    /// Returns the first condition that holds at a point, if rounding does not decide about it.
+    pub(crate) fn first_at(&self, p: Point) -> Option<usize> {
+        match self {
+            Divider::Conditions(conditions) => conditions.first_at(p),
+            Divider::Rounded(rounded) => rounded.section.certainly_nearest_segment(p),
+        }
+    }
+}
+
+impl Conditions<'_> {
+    fn divided(&self, piece: Piece, tolerance: f64) -> Vec<(Piece, Option<usize>)> {
         let (mut pending, mut parts) = (vec![piece], Vec::new());
         while let Some(piece) = pending.pop() {
             let signs = |curve: usize| piece.signs_of(curve, &self.shapes[curve], tolerance);
@@ -60,8 +134,7 @@ impl Conditions<'_> {
         (low == with(1.0)).then_some(low)
     }
 
-    /// Returns the first condition that holds at a point, if rounding does not decide about it.
-    pub(crate) fn first_at(&self, p: Point) -> Option<usize> {
+    fn first_at(&self, p: Point) -> Option<usize> {
         for condition in 0..self.formulas.len() {
             if self.holds(condition, p)? {
                 return Some(condition);
@@ -81,43 +154,48 @@ pub(crate) struct Overlay {
     pub(crate) doubly_covered: Option<(usize, usize, Point)>,
 }
 
-/// Intersects conditions with the pieces of parts. What pieces have in common counts if a sampled point of it does.
-pub(crate) fn overlay(
-    section: &Section<'_>,
-    pieces: Vec<Piece>,
-    conditions: &Conditions<'_>,
-) -> Overlay {
-    let mut result = Overlay { parts: Vec::new(), uncovered: None, doubly_covered: None };
-    for piece in pieces {
-        let Some(part) = piece.owner else { continue };
-        for (piece, first) in conditions.divided(piece, section.tolerance()) {
-            let mut points: Vec<Point> =
-                section.sample_points(&piece).into_iter().map(|(p, _)| p).collect();
-            // A part of the piece may be small.
-            let is_known = |condition| result.parts.contains(&ConditionedPart { part, condition });
-            if first.is_none_or(|condition| !is_known(condition)) {
-                points.extend(section.owned_points(&piece));
-            }
-            for p in points {
-                let holding: Vec<Option<bool>> =
-                    (0..conditions.formulas.len()).map(|k| conditions.holds(k, p)).collect();
-                if holding.iter().all(|holds| *holds == Some(false)) {
-                    result.uncovered = result.uncovered.or(Some(p));
+impl Overlay {
+    /// Intersects conditions with the pieces of parts. What pieces have in common counts if a sampled point of it does.
+    pub(crate) fn new(section: &Section<'_>, pieces: Vec<Piece>, divider: &Divider<'_>) -> Overlay {
+        let mut overlay = Overlay { parts: Vec::new(), uncovered: None, doubly_covered: None };
+        for piece in pieces {
+            let Some(part) = piece.owner else { continue };
+            for (piece, first) in divider.divided(piece, section.tolerance()) {
+                let mut points: Vec<Point> =
+                    section.sample_points(&piece).into_iter().map(|(p, _)| p).collect();
+                // A part of the piece may be small.
+                let is_known =
+                    |condition| overlay.parts.contains(&ConditionedPart { part, condition });
+                if first.is_none_or(|condition| !is_known(condition)) {
+                    points.extend(section.owned_points(&piece));
                 }
-                let mut certain = (0..holding.len()).filter(|k| holding[*k] == Some(true));
-                let Some(condition) = certain.next() else { continue };
-                if let (Some(second), None) = (certain.next(), result.doubly_covered) {
-                    result.doubly_covered = Some((condition, second, p));
-                }
-                // A condition before it that rounding decides may own the point.
-                let part = ConditionedPart { part, condition };
-                if holding[..condition].iter().all(Option::is_some) && !result.parts.contains(&part)
-                {
-                    result.parts.push(part);
+                for p in points {
+                    if let Divider::Conditions(conditions) = divider {
+                        overlay.look_for_gaps_and_overlaps(conditions, p);
+                    }
+                    let condition = divider.first_at(p);
+                    overlay.add(condition.map(|condition| ConditionedPart { part, condition }));
                 }
             }
         }
+        overlay.parts.sort_by_key(|part| (part.condition, part.part));
+        overlay
     }
-    result.parts.sort_by_key(|part| (part.condition, part.part));
-    result
+
+    fn add(&mut self, part: Option<ConditionedPart>) {
+        self.parts.extend(part.filter(|part| !self.parts.contains(part)));
+    }
+
+    /// Notes a point that satisfies no condition or several.
+    fn look_for_gaps_and_overlaps(&mut self, conditions: &Conditions<'_>, p: Point) {
+        let count = conditions.formulas.len();
+        let holding: Vec<Option<bool>> = (0..count).map(|k| conditions.holds(k, p)).collect();
+        if holding.iter().all(|holds| *holds == Some(false)) {
+            self.uncovered = self.uncovered.or(Some(p));
+        }
+        let mut certain = (0..count).filter(|k| holding[*k] == Some(true));
+        if let (Some(first), Some(second)) = (certain.next(), certain.next()) {
+            self.doubly_covered = self.doubly_covered.or(Some((first, second, p)));
+        }
+    }
 }

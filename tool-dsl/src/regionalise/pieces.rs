@@ -2,12 +2,12 @@
 //! these points: the sides of curves on which they lie.
 
 use super::Partition;
-use super::curve::{Border, Test};
+use super::curve::Test;
 use super::section::{Feature, Section};
 use crate::expr::Graph;
-use crate::formula::{Curve, CurveIndex, Formula, NEGATIVE, POSITIVE, Signs};
-use crate::geometry::function::{CurveFunction, Distance, functions};
-use crate::geometry::outline::{Point, bounding_box};
+use crate::formula::{CurveIndex, Formula, NEGATIVE, POSITIVE, Signs};
+use crate::geometry::function::{CurveFunction, Distance};
+use crate::geometry::outline::{Point, bounding_box, cross, minus, turn};
 use crate::geometry::polygon::{
     Polygon, area, centroid, clipped, divided, do_touch, halved, width,
 };
@@ -42,6 +42,18 @@ pub(crate) struct Separations {
     nearer: Vec<Nearness>,
 }
 
+impl Separations {
+    /// Returns the side of a feature's line or circle on which the outside is.
+    pub(super) fn outer_side(&self, feature: usize) -> Option<(CurveIndex, Signs)> {
+        match &self.own[feature] {
+            Formula::Atom { curve, below } => {
+                Some((*curve, if *below { POSITIVE } else { NEGATIVE }))
+            }
+            _ => None,
+        }
+    }
+}
+
 /// The condition for a feature to be no farther than another.
 #[derive(Clone, Debug)]
 struct Nearness {
@@ -70,8 +82,7 @@ impl Partition {
     ) -> Separations {
         let section = self.section();
         let own = section.features.iter().map(|feature| {
-            let own =
-                feature.piece().and_then(|piece| Border::Inside { piece }.test(&section, graph));
+            let own = feature.piece().and_then(|piece| section.inside(graph, piece));
             own.map_or(Formula::Const(true), |test| register(graph, &test))
         });
         let own: Vec<Formula> = own.collect();
@@ -81,7 +92,7 @@ impl Partition {
             let joint = section.smooth_joint(a, b);
             if !joint.is_empty() {
                 for (piece, end) in joint {
-                    if let Some(test) = (Border::Before { piece, end }).test(&section, graph) {
+                    if let Some(test) = section.before(graph, piece, end) {
                         register(graph, &test);
                     }
                 }
@@ -94,27 +105,36 @@ impl Partition {
                 nearer.push(Nearness { feature: a, other: b, formula });
             }
         }
+        // Beyond the normals at a convex corner the border of an arc that ends there says nothing.
+        for (piece, pair) in self.outline.windows(2).enumerate() {
+            let turned = turn(pair[0].tangent(true), pair[1].tangent(false));
+            if turned > 0.0 && pair.iter().any(|segment| segment.circle.is_some()) {
+                for (piece, end) in [(piece, 1), (piece + 1, 0)] {
+                    if let Some(test) = section.before(graph, piece, end) {
+                        register(graph, &test);
+                    }
+                }
+            }
+        }
         Separations { own, nearer }
     }
 
-    /// Returns the curves of a model as functions, and the size of the section.
-    pub(crate) fn functions<'g>(
+    /// Says of the functions of curves that tell features apart which distances they compare.
+    pub(crate) fn set_distances(
         &self,
-        graph: &'g Graph,
-        curves: &[Curve],
         separations: &Separations,
-    ) -> (Vec<CurveFunction<'g>>, f64) {
-        let (mut shapes, size) = functions(graph, curves, &self.outline);
-        let features = self.section().features;
-        let distance = |feature: usize| match features[feature] {
+        shapes: &mut [CurveFunction<'_>],
+    ) {
+        let section = self.section();
+        let distance = |feature: usize| match section.features[feature] {
             Feature::Piece(piece) => Distance::of(&self.outline[piece]),
             Feature::Corner(previous) => {
-                let centre = self.section().corner_at(previous);
+                let centre = section.corner_at(previous);
                 Distance::Circle { centre, radius: 0.0, sign: 1.0 }
             }
         };
         let mut set = |formula: &Formula, [less, more]: [Distance; 2]| {
-            if let Formula::Atom { curve, below, .. } = formula {
+            if let Formula::Atom { curve, below } = formula {
                 let distances = if *below { [less, more] } else { [more, less] };
                 shapes[*curve].set_distances(distances);
             }
@@ -125,7 +145,6 @@ impl Partition {
         for near in &separations.nearer {
             set(&near.formula, [distance(near.feature), distance(near.other)]);
         }
-        (shapes, size)
     }
 
     /// Returns pairs of features whose polygons touch.
@@ -335,6 +354,32 @@ impl Piece {
         })
     }
 
+    /// Returns the points of this piece that another owns too; `None` if there are none.
+    pub(super) fn common(
+        &self,
+        other: &Piece,
+        shapes: &[CurveFunction<'_>],
+        tolerance: f64,
+    ) -> Option<Piece> {
+        let middle = centroid(&other.vertices);
+        let mut common = self.clone();
+        for k in 0..other.vertices.len() {
+            let (from, to) = (other.vertices[k], other.vertices[(k + 1) % other.vertices.len()]);
+            let along = minus(to, from);
+            let inward = cross(along, minus(middle, from)).signum();
+            common.vertices =
+                clipped(&common.vertices, &|p| inward * cross(along, minus(p, from)))?;
+        }
+        for (curve, signs) in &other.signs {
+            match common.signs.iter_mut().find(|(known, _)| known == curve) {
+                Some((_, known)) => *known &= signs,
+                None => common.signs.push((*curve, *signs)),
+            }
+        }
+        common.alternatives.extend_from_slice(&other.alternatives);
+        common.is_possible(shapes, tolerance).then_some(common)
+    }
+
     /// Returns whether the polygon is wider than rounding and may have an owned point.
     fn is_possible(&self, shapes: &[CurveFunction<'_>], tolerance: f64) -> bool {
         width(&self.vertices) > tolerance && self.may_own_a_point(shapes, tolerance)
@@ -378,7 +423,7 @@ impl Piece {
             return true;
         }
         for atom in undecided {
-            if let Formula::Atom { curve, below, .. } = atom {
+            if let Formula::Atom { curve, below } = atom {
                 self.signs.push((*curve, if *below { NEGATIVE } else { POSITIVE }));
             }
         }

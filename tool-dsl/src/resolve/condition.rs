@@ -73,7 +73,7 @@ impl Curves {
             self.list.push(Curve { name, value });
             (self.list.len() - 1, true)
         });
-        Formula::Atom { curve, below: below == same, strict: false }
+        Formula::Atom { curve, below: below == same }
     }
 
     /// Returns the formula of `low ≤ high`.

@@ -16,12 +16,12 @@ use crate::diagnostic::{
 use crate::domain::Domain;
 use crate::expr::{Coord, Graph, Id};
 use crate::formula::Formula;
-use crate::geometry::outline::{Segment, nearest_span};
+use crate::geometry::outline::Segment;
 use crate::model::{DirectionSource, Model, Over, Region, Section, Surface};
-use crate::regionalise::overlay::{self, ConditionedPart, Overlay};
-use crate::regionalise::pieces::Separations;
+use crate::regionalise::overlay::{self, ConditionedPart, Division, Overlay};
+use crate::regionalise::rounded::Rounded;
 use crate::regionalise::smooth::{self, Origin, Rough};
-use crate::regionalise::{self, Derived, Feature, Partition, Test, Undivided};
+use crate::regionalise::{self, Feature, Partition, Test};
 use crate::source::Span;
 use crate::syntax::tree::{self, Expr, Quantity};
 
@@ -36,7 +36,6 @@ pub(super) struct FromProfile {
 /// A part of the inside, in which one feature is nearest.
 struct DerivedPart {
     feature: Feature,
-    inside: Formula,
     depth: Id,
     direction: [Id; 3],
     name: String,
@@ -50,13 +49,6 @@ impl DerivedPart {
     fn own_direction(&self) -> RawDirection {
         RawDirection { parts: self.direction, span: self.span, source: DirectionSource::Derived }
     }
-}
-
-/// The inside of an outline, divided into the parts of its nearest features.
-struct Inside<'a> {
-    outline: &'a Outline,
-    inner: &'a Partition,
-    separations: &'a Separations,
 }
 
 /// Derives the regions of an outline.
@@ -74,59 +66,52 @@ pub(super) fn derived(
         return FromProfile::default();
     }
     let inner = Partition::new(outline.segments.clone());
-    let graph = &mut lowering.graph;
-    let derived = match inner.parts(graph) {
-        Ok(derived) => derived,
-        Err(Undivided([d, z])) => {
-            let at = nearest_span(&outline.segments, [d, z]).unwrap_or(outline.span);
-            let z = lowering.frame.to_file(z);
-            let diagnostic = Diagnostic::new(at, ProfileKind::DivisionFailed { d, z });
+    let parts = match parts(&inner, &outline, lowering) {
+        Ok(parts) => parts,
+        Err(diagnostic) => {
             diagnostics.push(diagnostic);
             return FromProfile::default();
         }
     };
-    let parts = parts(&derived, &outline, lowering, curves);
     add_lines_through_corners(&outline.segments, curves, &mut lowering.graph);
     let mut register = |graph: &mut Graph, test: &Test| formula(test, curves, graph);
     let separations = inner.separations(&mut lowering.graph, &mut register);
-    let inside = Inside { outline: &outline, inner: &inner, separations: &separations };
+    let mut section = Section { outline: outline.segments.clone(), inner, separations, over: None };
     let mut regions = Vec::new();
     let before = diagnostics.len();
-    let conditions = divider.conditions(&inside, lowering, curves, diagnostics);
-    let mut over = None;
+    let conditions = divider.conditions(&outline, lowering, curves, diagnostics);
     match conditions {
         None => {
             for part in &parts {
                 let evaluation =
                     RegionResolver { laws, lowering, surface: &outline.surfaces[part.owner] };
-                let (name, inside) = (part.name.clone(), part.inside.clone());
-                let head = RegionHead { name, span: part.span, owner: part.owner, inside };
+                let (name, condition) = (part.name.clone(), Formula::Const(true));
+                let head = RegionHead { name, span: part.span, owner: part.owner, condition };
                 let direction = part.own_direction();
                 regions.extend(or_report(evaluation.of_part(part, head, direction), diagnostics));
             }
         }
-        Some(conditions) if diagnostics.len() == before => {
-            let divided = conditions.conditioned_parts(&inside, curves, lowering, diagnostics);
+        Some(Conditions { division, kinds }) if diagnostics.len() == before => {
+            let over = section.over.insert(Over { division, regions: Vec::new() });
+            let formulas = match &over.division {
+                Division::Conditions(formulas) => formulas.clone(),
+                Division::Rounded(_) => vec![Formula::Const(true); kinds.len()],
+            };
+            let divided =
+                conditioned_parts(&kinds, (&section, outline.span), curves, lowering, diagnostics);
             for ConditionedPart { part, condition } in &divided {
-                let (part, condition) = (&parts[*part], *condition);
-                let region = conditions.region(
-                    part,
-                    condition,
-                    &outline.surfaces,
-                    laws,
-                    lowering,
-                    diagnostics,
-                );
-                regions.extend(region);
+                let (part, formula) = (&parts[*part], formulas[*condition].clone());
+                let surfaces = &outline.surfaces;
+                let kind = &kinds[*condition];
+                regions.extend(kind.region(part, formula, surfaces, laws, lowering, diagnostics));
             }
-            let Conditions { conditions, distances, .. } = conditions;
-            over = Some(Over { conditions, regions: divided, distances });
+            if let Some(over) = &mut section.over {
+                over.regions = divided;
+            }
         }
         Some(_) => {}
     }
-    let Outline { segments, surfaces, .. } = outline;
-    let section = Section { outline: segments, inner, separations, over };
-    FromProfile { surfaces, regions, section: Some(section) }
+    FromProfile { surfaces: outline.surfaces, regions, section: Some(section) }
 }
 
 /// Returns a model whose profile is divided again, from its outline alone. Curves of the partition that the model does not have
@@ -160,34 +145,23 @@ fn add_lines_through_corners(outline: &[Segment], curves: &mut Curves, graph: &m
 
 /// Returns the parts of the inside with their names and directions.
 fn parts(
-    derived: &[Derived],
+    inner: &Partition,
     outline: &Outline,
     lowering: &mut Lowering,
-    curves: &mut Curves,
-) -> Vec<DerivedPart> {
-    let names = names(outline, derived);
+) -> Result<Vec<DerivedPart>, Diagnostic> {
+    let section = inner.section();
     let graph = &mut lowering.graph;
     let zero = graph.int(0);
-    derived
-        .iter()
-        .zip(names)
-        .map(|(part, (name, owner, span))| {
-            let inside = formula(&part.inside, curves, graph);
-            let direction =
-                regionalise::direction_to_surface(graph, &outline.segments, part.feature)
-                    .unwrap_or([zero, zero]);
-            let direction = Domain::HalfPlane.vector(graph, &direction);
-            DerivedPart {
-                feature: part.feature,
-                inside,
-                depth: part.depth,
-                direction,
-                name,
-                owner,
-                span,
-            }
-        })
-        .collect()
+    let mut parts = Vec::new();
+    for (index, (name, owner, span)) in names(outline, section.features()).into_iter().enumerate() {
+        let depth = section.depth(graph, index);
+        let depth = depth.ok_or_else(|| Diagnostic::new(span, ProfileKind::NoDistance))?;
+        let feature = section.features()[index];
+        let direction = regionalise::direction_to_surface(graph, &outline.segments, feature);
+        let direction = Domain::HalfPlane.vector(graph, &direction.unwrap_or([zero, zero]));
+        parts.push(DerivedPart { feature, depth, direction, name, owner, span });
+    }
+    Ok(parts)
 }
 
 /// Converts a test to a formula over curves.
@@ -201,25 +175,20 @@ fn formula(test: &Test, curves: &mut Curves, graph: &mut Graph) -> Formula {
         Test::Any(tests) => {
             Formula::Any(tests.iter().map(|test| formula(test, curves, graph)).collect())
         }
-        Test::Strictly(test) => match formula(test, curves, graph) {
-            Formula::Atom { curve, below, .. } => Formula::Atom { curve, below, strict: true },
-            // A side that always or never holds has no border.
-            other => other,
-        },
     }
 }
 
-/// Returns the name, surface and span of each derived region. `nut.2` is the second segment of a surface that has
+/// Returns the name, surface and span of each feature's part. `nut.2` is the second segment of a surface that has
 /// several. `shank/nut.1` is the fan of a reflex corner, which belongs to the adjacent surface that does not cut,
 /// otherwise to the first one.
 fn names(
     Outline { segments: outline, surfaces, .. }: &Outline,
-    parts: &[Derived],
+    features: &[Feature],
 ) -> Vec<(String, usize, Span)> {
     let mut fans = std::collections::BTreeMap::new();
-    parts
+    features
         .iter()
-        .map(|part| match part.feature {
+        .map(|feature| match *feature {
             Feature::Piece(piece) => {
                 let Segment { surface, span, .. } = outline[piece];
                 let count = |segments: &[Segment]| {
@@ -271,17 +240,10 @@ pub(super) enum Divider<'t> {
     Smooth(&'t Expr),
 }
 
-/// Conditions over the parts of a partition, and their effects.
+/// A division of the parts of a partition, and what each of its conditions effects.
 struct Conditions<'t> {
-    conditions: Vec<Formula>,
-    /// The distances from the segments of the rounded outline.
-    distances: Vec<Id>,
+    division: Division,
     kinds: Vec<Kind<'t>>,
-}
-
-impl Conditions<'_> {
-    const NONE: Conditions<'static> =
-        Conditions { conditions: Vec::new(), distances: Vec::new(), kinds: Vec::new() };
 }
 
 enum Kind<'t> {
@@ -305,7 +267,7 @@ impl Divider<'_> {
     /// Returns the conditions, if there is a further division.
     fn conditions(
         &self,
-        inside: &Inside<'_>,
+        outline: &Outline,
         lowering: &mut Lowering,
         curves: &mut Curves,
         diagnostics: &mut Vec<Diagnostic>,
@@ -313,30 +275,24 @@ impl Divider<'_> {
         match self {
             Divider::Features => None,
             Divider::Hand(regions) => {
-                let mut conditions = Conditions::NONE;
+                let (mut formulas, mut kinds) = (Vec::new(), Vec::new());
                 for region in regions {
-                    let surface = or_report(
-                        written(region, &regions[..], &inside.outline.surfaces),
-                        diagnostics,
-                    );
-                    let condition = region::inside(region, lowering, curves, diagnostics);
+                    let surface =
+                        or_report(written(region, &regions[..], &outline.surfaces), diagnostics);
+                    let condition = region::all_conditions(region, lowering, curves, diagnostics);
                     if let (Some(surface), Some(condition)) = (surface, condition) {
-                        conditions.conditions.push(condition);
-                        conditions.kinds.push(Kind::Hand(region, surface));
+                        formulas.push(condition);
+                        kinds.push(Kind::Hand(region, surface));
                     }
                     if enough(diagnostics) {
                         break;
                     }
                 }
-                Some(conditions)
+                Some(Conditions { division: Division::Conditions(formulas), kinds })
             }
-            Divider::Smooth(length) => match fans(length, inside, lowering, curves) {
-                Ok(conditions) => Some(conditions),
-                Err(diagnostic) => {
-                    diagnostics.push(diagnostic);
-                    None
-                }
-            },
+            Divider::Smooth(length) => {
+                or_report(fans(length, &outline.segments, lowering, curves), diagnostics)
+            }
         }
     }
 }
@@ -382,10 +338,10 @@ fn written(
 /// those of each segment.
 const MAX_SMOOTH_SEGMENTS: usize = 128;
 
-/// Returns the cells of the outline with rounded corners, from which directions are taken.
+/// Returns the division by the outline with rounded corners, from which directions are taken.
 fn fans<'t>(
     length: &Expr,
-    Inside { outline: Outline { segments: outline, .. }, inner, .. }: &Inside<'_>,
+    outline: &[Segment],
     lowering: &mut Lowering,
     curves: &mut Curves,
 ) -> Result<Conditions<'t>, Diagnostic> {
@@ -424,105 +380,77 @@ fn fans<'t>(
             }
         }
     })?;
-    let (rounded, origins): (Vec<Segment>, Vec<Origin>) = pieces.into_iter().unzip();
-    let (graph, frame) = (&mut lowering.graph, &lowering.frame);
-    let parts = Partition::new(rounded.clone()).parts(graph);
-    let parts = parts.map_err(|Undivided([d, z])| {
-        let location = Domain::HalfPlane.format_point([d, 0.0, frame.to_file(z)]);
-        Diagnostic::new(span, RegionKind::SmoothDivisionFailed { location })
-    })?;
-    if let Some(part) = parts.iter().find(|part| !part.is_right_at_samples) {
-        let [d, z] = match part.feature {
-            Feature::Piece(piece) | Feature::Corner(Some(piece)) => rounded[piece].ends()[1],
-            Feature::Corner(None) => rounded[0].ends()[0],
-        };
-        let location = Domain::HalfPlane.format_point([d, 0.0, frame.to_file(z)]);
-        return Err(Diagnostic::new(span, RegionKind::SmoothDivisionFailed { location }));
+    let graph = &mut lowering.graph;
+    let (segments, origins): (Vec<Segment>, Vec<Origin>) = pieces.iter().cloned().unzip();
+    let zero = graph.int(0);
+    let mut kinds = Vec::new();
+    for (segment, origin) in origins.into_iter().enumerate() {
+        let direction =
+            regionalise::direction_to_surface(graph, &segments, Feature::Piece(segment));
+        let direction = Domain::HalfPlane.vector(graph, &direction.unwrap_or([zero, zero]));
+        kinds.push(Kind::Smooth(direction, origin));
     }
-    let mut conditions = Conditions::NONE;
-    for part in &parts {
-        let Feature::Piece(piece) = part.feature else { continue };
-        let mut inside = part.inside.clone();
-        if let Origin::Fan(behind) = origins[piece]
-            && rounded[piece].round().is_some_and(|(_, _, convex)| convex)
-        {
-            // A convex corner protrudes beyond its arc; there the corner's edges bound the fan.
-            let adjacent = [behind, Some(behind.map_or(0, |k| k + 1))];
-            let edges = adjacent.into_iter().flatten().filter(|k| *k < outline.len());
-            let edges = edges.filter_map(|k| inner.inside(graph, k)).collect();
-            inside = inside.without_own(edges);
-        }
-        conditions.conditions.push(formula(&inside, curves, graph));
-        conditions.distances.push(part.depth);
-        let zero = graph.int(0);
-        let direction = regionalise::direction_to_surface(graph, &rounded, part.feature)
-            .unwrap_or([zero, zero]);
-        let direction = Domain::HalfPlane.vector(graph, &direction);
-        conditions.kinds.push(Kind::Smooth(direction, origins[piece]));
-    }
-    Ok(conditions)
+    let mut register = |graph: &mut Graph, test: &Test| formula(test, curves, graph);
+    let rounded = Rounded::new(outline, &pieces, graph, &mut register);
+    Ok(Conditions { division: Division::Rounded(rounded), kinds })
 }
 
-impl Conditions<'_> {
-    /// Returns the parts and conditions that have points in common, and reports gaps, overlaps and regions without points.
-    fn conditioned_parts(
-        &self,
-        Inside { outline, inner, separations }: &Inside<'_>,
-        curves: &Curves,
-        lowering: &Lowering,
-        diagnostics: &mut Vec<Diagnostic>,
-    ) -> Vec<ConditionedPart> {
-        let (shapes, size) = inner.functions(&lowering.graph, &curves.list, separations);
-        let pieces = inner.inner_pieces(separations, &shapes);
-        let conditions = overlay::Conditions { formulas: &self.conditions, shapes: &shapes, size };
-        let Overlay { parts, uncovered, doubly_covered } =
-            overlay::overlay(&inner.section(), pieces, &conditions);
-        let formatted =
-            |[d, z]: [f64; 2]| Domain::HalfPlane.format_point([d, 0.0, lowering.frame.to_file(z)]);
-        if let Some(p) = uncovered {
-            diagnostics.push(Diagnostic::new(
-                outline.span,
-                RegionKind::UncoveredPoint { location: formatted(p) },
-            ));
-        }
-        if let Some((first, second, p)) = doubly_covered
-            && let (Kind::Hand(a, _), Kind::Hand(b, _)) = (&self.kinds[first], &self.kinds[second])
-        {
-            let (a, b) = (&a.name, &b.name);
-            let is_left = parts.iter().any(|part| part.condition == second);
-            diagnostics.push(match is_left {
-                true => overlapping(&a.text, &b.text, b.span, formatted(p), a.span),
-                false => never_wins(&b.text, b.span, &a.text, a.span, 0),
-            });
-        }
-        for (k, kind) in self.kinds.iter().enumerate() {
-            if let Kind::Hand(region, _) = kind
-                && !any_error(diagnostics)
-                && parts.iter().all(|part| part.condition != k)
-            {
-                let name = &region.name;
-                diagnostics.push(Diagnostic::new(
-                    name.span,
-                    RegionKind::RegionOutsideProfile { region: name.text.clone() },
-                ));
-            }
-        }
-        parts
+/// Returns the parts and conditions that have points in common, and reports gaps, overlaps and regions without points.
+fn conditioned_parts(
+    kinds: &[Kind<'_>],
+    (section, outline_span): (&Section, Span),
+    curves: &Curves,
+    lowering: &Lowering,
+    diagnostics: &mut Vec<Diagnostic>,
+) -> Vec<ConditionedPart> {
+    let Some(over) = &section.over else { return Vec::new() };
+    let (shapes, size) = section.functions(&lowering.graph, &curves.list);
+    let pieces = section.inner.inner_pieces(&section.separations, &shapes);
+    let divider = overlay::Divider::new(&over.division, &shapes, size);
+    let Overlay { parts, uncovered, doubly_covered } =
+        Overlay::new(&section.inner.section(), pieces, &divider);
+    let formatted =
+        |[d, z]: [f64; 2]| Domain::HalfPlane.format_point([d, 0.0, lowering.frame.to_file(z)]);
+    if let Some(p) = uncovered {
+        let location = formatted(p);
+        diagnostics.push(Diagnostic::new(outline_span, RegionKind::UncoveredPoint { location }));
     }
+    if let Some((first, second, p)) = doubly_covered
+        && let (Kind::Hand(a, _), Kind::Hand(b, _)) = (&kinds[first], &kinds[second])
+    {
+        let (a, b) = (&a.name, &b.name);
+        let is_left = parts.iter().any(|part| part.condition == second);
+        diagnostics.push(match is_left {
+            true => overlapping(&a.text, &b.text, b.span, formatted(p), a.span),
+            false => never_wins(&b.text, b.span, &a.text, a.span, 0),
+        });
+    }
+    for (k, kind) in kinds.iter().enumerate() {
+        if let Kind::Hand(region, _) = kind
+            && !any_error(diagnostics)
+            && parts.iter().all(|part| part.condition != k)
+        {
+            let name = &region.name;
+            let kind = RegionKind::RegionOutsideProfile { region: name.text.clone() };
+            diagnostics.push(Diagnostic::new(name.span, kind));
+        }
+    }
+    parts
+}
 
+impl Kind<'_> {
     /// Returns the region of a part in which a condition holds.
     fn region(
         &self,
         part: &DerivedPart,
-        condition: usize,
+        condition: Formula,
         surfaces: &[Surface],
         laws: &Laws<'_>,
         lowering: &mut Lowering,
         diagnostics: &mut Vec<Diagnostic>,
     ) -> Option<Region> {
-        let inside = Formula::All(vec![self.conditions[condition].clone(), part.inside.clone()]);
         let depth = part.depth;
-        match &self.kinds[condition] {
+        match self {
             Kind::Smooth(direction, origin) => {
                 let own = matches!((part.feature, origin), (Feature::Piece(a), Origin::Piece(b)) if a == *b);
                 let name = match origin {
@@ -533,7 +461,7 @@ impl Conditions<'_> {
                     }
                 };
                 let evaluation = RegionResolver { laws, lowering, surface: &surfaces[part.owner] };
-                let head = RegionHead { name, span: part.span, owner: part.owner, inside };
+                let head = RegionHead { name, span: part.span, owner: part.owner, condition };
                 let source = DirectionSource::Oblique;
                 let direction = RawDirection { parts: *direction, span: part.span, source };
                 or_report(evaluation.of_part(part, head, direction), diagnostics)
@@ -560,7 +488,7 @@ impl Conditions<'_> {
                     (None, ..) => part.own_direction(),
                 };
                 let (name, span) = (region.name.text.clone(), region.name.span);
-                let head = RegionHead { name, span, owner, inside };
+                let head = RegionHead { name, span, owner, condition };
                 let depth = Placed { value: depth, span };
                 or_report(evaluation.finish(head, depth, law_values, direction), diagnostics)
             }

@@ -119,7 +119,7 @@ pub(super) struct RegionHead {
     pub(super) name: String,
     pub(super) span: Span,
     pub(super) owner: usize,
-    pub(super) inside: Formula,
+    pub(super) condition: Formula,
 }
 
 /// A value and its span.
@@ -208,7 +208,7 @@ impl RegionResolver<'_> {
             name: head.name,
             span: head.span,
             surface: head.owner,
-            inside: head.inside,
+            condition: head.condition,
             depth: depth.value,
             law_spans,
             magnitude: magnitude.value,
@@ -229,7 +229,7 @@ impl RegionResolver<'_> {
         curves: &mut Curves,
         diagnostics: &mut Vec<Diagnostic>,
     ) -> Option<Region> {
-        let inside = inside(written, self.lowering, curves, diagnostics);
+        let condition = all_conditions(written, self.lowering, curves, diagnostics);
         let known = or_report(self.depth(written), diagnostics);
         // Without a depth, the other properties are still checked, with a stand-in for it.
         let any = self.lowering.domain.coordinates()[0].0;
@@ -240,7 +240,7 @@ impl RegionResolver<'_> {
         let law_values = self.law_values(written, depth.value, diagnostics);
         let direction = or_report(self.resolve_direction(written), diagnostics);
         let (name, span) = (written.name.text.clone(), written.name.span);
-        let head = RegionHead { name, span, owner, inside: inside? };
+        let head = RegionHead { name, span, owner, condition: condition? };
         let direction = direction?.unwrap_or_else(|| RawDirection {
             parts: self.steepest_descent(depth.value),
             span: depth.span,
@@ -355,7 +355,7 @@ impl RegionResolver<'_> {
 }
 
 /// Returns the points that satisfy all of a region's conditions, and reports each invalid condition.
-pub(super) fn inside(
+pub(super) fn all_conditions(
     written: &tree::Region,
     lowering: &mut Lowering,
     curves: &mut Curves,

@@ -5,9 +5,12 @@ use super::derived::FIG_7_3;
 use super::outline::{Outline, P2};
 use super::tool;
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
+use touchoff::Level;
+use touchoff::tool::Interpreted;
 use touchoff_dsl::CheckedTool;
 use touchoff_dsl::interpret::{Evaluation, Interpreter};
 use touchoff_tests::checks::assert_near;
+use touchoff_tests::evaluations::evaluate_points;
 use touchoff_tests::oracle::plane::{add, cross, dot, norm, sub};
 use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::segment::Segment;
@@ -16,6 +19,8 @@ use touchoff_tests::texts::{assert_each_refused, compiled};
 /// A smoothed tool, and the same tool by nearest features.
 struct Pair {
     smooth: Box<CheckedTool>,
+    /// The same, as the runtime evaluates it.
+    planned: Interpreted,
     nearest: Box<CheckedTool>,
     /// The rounded profile, in the file's frame.
     rounded: Vec<Segment<f64>>,
@@ -46,8 +51,10 @@ fn thesis(w: f64) -> Pair {
         Segment::line([1.0, 15.0 + w], [1.0, 19.0]),
         Segment::about([1.0, 19.0], [0.0, 20.0], [0.0, 19.0], true),
     ];
+    let smooth = smoothed(FIG_7_3, &w.to_string());
     Pair {
-        smooth: tool(&smoothed(FIG_7_3, &w.to_string())).expect("fits"),
+        smooth: tool(&smooth).expect("fits"),
+        planned: Interpreted::from_text("smooth.tool", &smooth).expect("fits"),
         nearest: tool(FIG_7_3).expect("good"),
         rounded: rounded.into_iter().filter(|piece| piece.length() > 1e-9).collect(),
         down: Some(20.0),
@@ -60,8 +67,10 @@ fn profile(outline: &Outline, w: f64) -> Pair {
     let rounded = rounded(outline, w);
     let [low, high] = outline.profile.extent();
     let nearest = outline.text();
+    let smooth = smoothed(&nearest, &w.to_string());
     Pair {
-        smooth: tool(&smoothed(&nearest, &w.to_string())).expect("fits"),
+        smooth: tool(&smooth).expect("fits"),
+        planned: Interpreted::from_text("smooth.tool", &smooth).expect("fits"),
         nearest: tool(&nearest).expect("good"),
         rounded: rounded.iter().map(|piece| lowered(piece, low[1])).collect(),
         down: None,
@@ -161,17 +170,19 @@ impl Pair {
         (normal, centre_distance, other.map_or(f64::INFINITY, |other| other.0 - min_distance))
     }
 
-    /// Asserts that depths are those of nearest features, bit by bit, and directions those of the rounded profile.
-    /// Returns the mean angle to the direction by nearest features.
+    /// Asserts that depths are those of nearest features, bit by bit, and directions those of the rounded profile, and that the
+    /// plan has both as the text has them. Returns the mean angle to the direction by nearest features.
     fn agrees(&self, count: u32) -> f64 {
         let (mut smooth, mut nearest) =
             (Interpreter::new(&self.smooth), Interpreter::new(&self.nearest));
         let mut rng = Rng::new(21);
+        let point = |_| [rng.between(0.0, self.extent[0]), rng.between(0.0, self.extent[1])];
+        let points: Vec<P2> = (0..count).map(point).collect();
+        let in_space = points.iter().map(|p| self.turned(*p)).map(|[d, z]| [d, 0.0, z]);
+        let in_space: Vec<[f64; 3]> = in_space.collect();
+        let planned = evaluate_points(&self.planned, Level::new(), &in_space);
         let (mut compared, mut inside, mut angles) = (0, 0u32, 0.0);
-        for _ in 0..count {
-            let p = [rng.between(0.0, self.extent[0]), rng.between(0.0, self.extent[1])];
-            let [d, z] = self.turned(p);
-            let at = [d, 0.0, z];
+        for ((p, at), planned) in points.into_iter().zip(in_space).zip(planned) {
             let (evaluation, plain) = (smooth.evaluate(at, 1.0), nearest.evaluate(at, 1.0));
             let (Some(evaluation), Some(plain)) = (evaluation, plain) else {
                 assert_eq!(evaluation.is_some(), plain.is_some(), "inside at {p:?}");
@@ -191,6 +202,10 @@ impl Pair {
             let (expected_normal, centre_distance, margin) = self.normal(p);
             if margin > 1e-9 && centre_distance > 1e-6 {
                 compared += 1;
+                let planned = planned.expect("inside");
+                assert_near(planned.depth, evaluation.depth, 1e-13 * self.extent[1], p);
+                let off = [0, 1, 2].map(|k| planned.direction[k] - evaluation.direction[k]);
+                assert_near(off.into_iter().fold(0.0, f64::hypot), 0.0, 1e-12, (p, planned));
                 let off = norm(&sub(&direction, &expected_normal));
                 assert_near(off, 0.0, 1e-12 + 1e-13 / centre_distance, (p, direction));
             }

@@ -1,0 +1,259 @@
+//! The section of a tool with a profile as convex pieces, which a plan separates, and how far the depths of a tree are from the
+//! distance.
+
+use super::Tree;
+use super::samples::Sample;
+use crate::diagnostic::{CheckKind, Diagnostic};
+use crate::formula::{CurveIndex, NEGATIVE, POSITIVE};
+use crate::geometry::function::CurveFunction;
+use crate::geometry::outline::{self, Point, minus, norm};
+use crate::geometry::polygon::{Polygon, centroid};
+use crate::model::{Model, Section};
+use crate::regionalise;
+use crate::regionalise::overlay::{ConditionedPart, Divider};
+use crate::regionalise::pieces::Piece;
+use crate::resolve::partitioned_anew;
+use std::rc::Rc;
+
+/// The distances of points far outside from the outline, in sizes: 8, 8², …, 8¹⁵.
+fn far_distances(size: f64) -> impl Iterator<Item = f64> {
+    (1..16).map(move |k| size * 8f64.powi(k))
+}
+
+/// The offsets of points in strips from the strips' middle line, in sizes.
+const STRIP_OFFSETS: [f64; 4] = [-0.01, -1e-5, 1e-5, 0.01];
+
+/// Returns points of the half plane far from the point of the axis at the height `middle`, all around.
+fn ring_points(middle: f64, size: f64) -> Vec<Point> {
+    let mut points = Vec::new();
+    for distance in far_distances(size) {
+        for k in 0..=128 {
+            let (sin, cos) = ((f64::from(k) / 128.0 - 0.5) * std::f64::consts::PI).sin_cos();
+            points.push([distance * cos, middle + distance * sin]);
+        }
+    }
+    points
+}
+
+/// Returns points far from the end of a segment, in a thin strip along a unit vector and its opposite.
+fn strip_points(end: Point, direction: Point, size: f64) -> Vec<Point> {
+    let mut points = Vec::new();
+    for distance in far_distances(size).flat_map(|distance| [distance, -distance]) {
+        for offset in STRIP_OFFSETS {
+            let across = [-direction[1] * offset * size, direction[0] * offset * size];
+            points.push([0, 1].map(|k| end[k] + distance * direction[k] + across[k]));
+        }
+    }
+    points
+}
+
+/// The greatest deviation of depth from the distance, in sizes. It is part of the stated error.
+const MAX_DEVIATION_FRACTION: f64 = 1e-8;
+
+/// Returns the greatest difference of a tree's depths from the distance, from the partition of the outline alone: nothing that
+/// the model's other passes found is relied on. `None` without a profile, or if the difference is more than a plan may have.
+pub(crate) fn proved_deviation(model: &Model, tree: &Tree) -> Option<f64> {
+    let model = partitioned_anew(model)?;
+    let section = model.section.as_ref()?;
+    let (shapes, size) = section.functions(&model.graph, &model.curves);
+    Cells::new(&model, section, &shapes, size).deviation(tree).ok()
+}
+
+/// The cells of a section's features, and the outside, as pieces.
+pub(super) struct Cells<'m> {
+    pub(super) model: &'m Model,
+    section: &'m Section,
+    geometry: regionalise::Section<'m>,
+    pub(super) shapes: &'m [CurveFunction<'m>],
+    pub(super) size: f64,
+    /// The distance from a curve within which a point may be on either side of it.
+    tolerance: f64,
+    pub(super) pieces: Vec<Rc<Piece>>,
+}
+
+/// The pieces on the two sides of a curve.
+pub(super) struct Halves {
+    pub(super) below: Vec<Rc<Piece>>,
+    pub(super) above: Vec<Rc<Piece>>,
+}
+
+impl<'m> Cells<'m> {
+    pub(super) fn new(
+        model: &'m Model,
+        section: &'m Section,
+        shapes: &'m [CurveFunction<'m>],
+        size: f64,
+    ) -> Cells<'m> {
+        let inside = section.inner.inner_pieces(&section.separations, shapes);
+        let pieces = inside.into_iter().chain(section.inner.outer_pieces(&section.separations));
+        Cells {
+            model,
+            section,
+            geometry: section.inner.section(),
+            shapes,
+            size,
+            tolerance: 16.0 * f64::EPSILON * size,
+            pieces: pieces.map(Rc::new).collect(),
+        }
+    }
+
+    /// Returns pieces whose owners are regions or the outside, and sample points of these.
+    pub(super) fn of_regions(&self) -> (Vec<Rc<Piece>>, Vec<Sample>) {
+        let Some(over) = &self.section.over else {
+            let samples = self.pieces.iter().flat_map(|piece| {
+                let points = self.geometry.sample_points(piece).into_iter();
+                points.map(|point| Sample::new(point, piece.owner))
+            });
+            return (self.pieces.clone(), samples.collect());
+        };
+        let divider = Divider::new(&over.division, self.shapes, self.size);
+        let (mut pieces, mut samples) = (Vec::new(), Vec::new());
+        for piece in &self.pieces {
+            let points = self.geometry.sample_points(piece).into_iter();
+            let Some(part) = piece.owner else {
+                samples.extend(points.map(|point| Sample::new(point, None)));
+                pieces.push(Rc::clone(piece));
+                continue;
+            };
+            let region = |condition| {
+                let own = ConditionedPart { part, condition };
+                over.regions.iter().position(|region| *region == own)
+            };
+            samples.extend(points.filter_map(|point| {
+                Some(Sample::new(point, Some(region(divider.first_at(point.0)?)?)))
+            }));
+            for (divided, first) in divider.divided((**piece).clone(), self.geometry.tolerance()) {
+                // A piece that no region claims, as far as samples show, has the depth of its part all the same.
+                let fallback = || over.regions.iter().position(|region| region.part == part);
+                let owner = first.and_then(region).or_else(fallback);
+                pieces.push(Rc::new(Piece { owner, ..divided }));
+            }
+        }
+        (pieces, samples)
+    }
+
+    /// Returns the greatest error at the vertices of a piece if its points are given to an owner.
+    pub(super) fn loss(&self, piece: &Piece, owner: Option<usize>) -> f64 {
+        let feature = owner.map(|region| self.section.feature_of(region));
+        self.geometry.loss_at_vertices(piece.feature, feature, &piece.vertices)
+    }
+
+    /// Returns a piece of a part as one of a region: of the given one if that belongs to the part, otherwise of the part's first.
+    pub(super) fn as_of_region(&self, piece: &Rc<Piece>, region: Option<usize>) -> Rc<Piece> {
+        let part_of = |region: usize| Some(self.section.feature_of(region));
+        if piece.feature == region.and_then(part_of) {
+            return Rc::new(Piece { owner: region, ..(**piece).clone() });
+        }
+        let owner = piece.feature.and_then(|_| {
+            (0..self.model.regions.len()).find(|region| part_of(*region) == piece.feature)
+        });
+        Rc::new(Piece { owner, ..(**piece).clone() })
+    }
+
+    /// Returns the parts of pieces on the two sides of a curve.
+    pub(super) fn halves(&self, curve: CurveIndex, pieces: &[Rc<Piece>]) -> Halves {
+        let mut halves = Halves { below: Vec::new(), above: Vec::new() };
+        for piece in pieces {
+            match piece.signs_of(curve, &self.shapes[curve], self.tolerance) {
+                NEGATIVE => halves.below.push(Rc::clone(piece)),
+                POSITIVE => halves.above.push(Rc::clone(piece)),
+                _ => {
+                    let [below, above] = piece.halves(curve, self.shapes, self.tolerance);
+                    halves.below.extend(below.map(Rc::new));
+                    halves.above.extend(above.map(Rc::new));
+                }
+            }
+        }
+        halves
+    }
+
+    /// Returns an upper bound of the difference of the depth that a tree gives from the distance.
+    ///
+    /// # Errors
+    ///
+    /// If it is more than a plan may have.
+    pub(super) fn deviation(&self, tree: &Tree) -> Result<f64, Diagnostic> {
+        match self.deviation_of(tree, &self.pieces) {
+            (deviation, _) if deviation <= MAX_DEVIATION_FRACTION * self.size => Ok(deviation),
+            (_, at) => Err(inseparable_owners(self.model, at)),
+        }
+    }
+
+    /// Returns an upper bound of the difference of the depth that a tree gives from the distance, and a point near which it is
+    /// about that. Every point is in a piece of the nearest feature, so it is enough to ask at the leaves which pieces have
+    /// another.
+    fn deviation_of(&self, tree: &Tree, pieces: &[Rc<Piece>]) -> (f64, Point) {
+        match tree {
+            Tree::Split { curve, below, above, .. } => {
+                let halves = self.halves(*curve, pieces);
+                let sides = [
+                    self.deviation_of(below, &halves.below),
+                    self.deviation_of(above, &halves.above),
+                ];
+                let [low, high] = sides;
+                if low.0 > high.0 { low } else { high }
+            }
+            Tree::Leaf(owner) => {
+                let feature = owner.map(|region| self.section.feature_of(region));
+                let losses = pieces.iter().map(|piece| {
+                    let may_own = |part: &Polygon| {
+                        let part = Piece { vertices: part.clone(), ..(**piece).clone() };
+                        part.may_own_a_point(self.shapes, self.tolerance)
+                    };
+                    let owners = [piece.feature, feature];
+                    let allowed = MAX_DEVIATION_FRACTION * self.size;
+                    let loss =
+                        self.geometry.greatest_loss(owners, &piece.vertices, allowed, may_own);
+                    (loss, centroid(&piece.vertices))
+                });
+                losses.fold((0.0, [0.0; 2]), |a, b| if a.0 >= b.0 { a } else { b })
+            }
+        }
+    }
+
+    /// Returns whether a tree has an owner far outside, where there is no piece. The test uses points all around, and points in
+    /// thin strips along the lines and normals of the outline.
+    pub(super) fn has_owner_far_outside(&self, tree: &Tree) -> bool {
+        let [low, high] = outline::bounding_box(&self.section.outline).map(|end| end[1]);
+        let mut points = ring_points(low / 2.0 + high / 2.0, self.size);
+        for segment in &self.section.outline {
+            let [from, to] = segment.ends();
+            let along = minus(to, from).map(|part| part / norm(minus(to, from)));
+            for end in [from, to] {
+                points.extend(strip_points(end, along, self.size));
+                points.extend(strip_points(end, [-along[1], along[0]], self.size));
+            }
+        }
+        let mut in_half_plane = points.into_iter().filter(|p| p[0] >= 0.0);
+        in_half_plane.any(|p| tree.owner_at(&|curve| self.shapes[curve].value(p)).is_some())
+    }
+}
+
+fn inseparable_owners(model: &Model, [d, z]: Point) -> Diagnostic {
+    let outline = model.section.iter().flat_map(|section| &section.outline);
+    let outline: Vec<_> = outline.cloned().collect();
+    let span = outline::nearest_span(&outline, [d, z]).unwrap_or(model.name_span);
+    let z = model.frame.to_file(z);
+    Diagnostic::new(span, CheckKind::Inseparable { d, z })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every direction of the half plane has a point at eight sizes.
+    #[test]
+    fn points_far_away_are_all_around() {
+        let points = ring_points(2.0, 3.0);
+        for degrees in -90..=90 {
+            let (sine, cosine) = f64::from(degrees).to_radians().sin_cos();
+            let is_near = |[d, z]: &Point| {
+                let length = d.hypot(z - 2.0);
+                let turned = (d * cosine + (z - 2.0) * sine) / length;
+                // Neighbours are 1.41 degrees apart.
+                (length - 24.0).abs() < 1e-9 && turned > 0.0125f64.cos()
+            };
+            assert!(points.iter().any(is_near), "{degrees}");
+        }
+    }
+}
