@@ -285,7 +285,7 @@ impl<'a> Certifier<'a> {
     /// by it. The interval is wider where triangles are thinner than the tolerance, or if the budget is spent.
     pub fn deepest(&mut self, pose: &Pose, tolerance: f64) -> Penetration {
         let Certifier { setting, whole_query, state, budget, .. } = self;
-        let goal = PenetrationGoal { tolerance, known: 0.0, budget: *budget };
+        let goal = PenetrationGoal { tolerance, threshold: 0.0, budget: *budget };
         penetration(setting, whole_query, state, pose, goal)
     }
 
@@ -305,7 +305,7 @@ impl<'a> Certifier<'a> {
         let Certifier { setting, surface_queries, state, budget, .. } = self;
         let query = surface_queries[surface]
             .get_or_insert_with(|| setting.depth_query(0.0, |other| other == surface));
-        let goal = PenetrationGoal { tolerance, known: 0.0, budget: *budget };
+        let goal = PenetrationGoal { tolerance, threshold: 0.0, budget: *budget };
         Ok(penetration(setting, query, state, pose, goal))
     }
 
@@ -611,7 +611,7 @@ fn distance(
     // A depth is certain to be above 0 if it is found to be more than two errors: its own, and that by which slabs
     // are widened.
     let touch = 2.0 * setting.error;
-    let goal = Goal { min_depth: -touch, tolerance: touch, stop_depth: touch, budget };
+    let goal = Goal { threshold: -touch, tolerance: touch, stop_depth: touch, budget };
     state.inside(setting, inside, pose, goal);
     if let Some(best) = &state.best {
         let (witness, on_tool) = (setting.witness(best, pose), setting.tool_point(best, pose));
@@ -625,8 +625,8 @@ fn distance(
     let error = setting.error + rounding::distance_error_bound(state.max_distance());
     // Written so that a NaN tolerance is replaced.
     let tolerance = (4.0 * error).max(tolerance / setting.length);
-    let [min_depth, stop_depth] = [f64::NEG_INFINITY, f64::INFINITY];
-    state.outside(setting, outside, pose, Goal { min_depth, tolerance, stop_depth, budget });
+    let [threshold, stop_depth] = [f64::NEG_INFINITY, f64::INFINITY];
+    state.outside(setting, outside, pose, Goal { threshold, tolerance, stop_depth, budget });
     let more = error + state.search.skew;
     let low = -state.search.threshold().max(state.search.open_bound) - more;
     let low = if unsure { 0.0 } else { low.max(0.0) };
@@ -662,9 +662,9 @@ fn touches(
     let touch = 2.0 * error;
     let mut undecided: Option<f64> = None;
     for query in allowance_queries {
-        let min_depth = query.limit - touch;
+        let threshold = query.limit - touch;
         let stop_depth = query.limit + touch;
-        let goal = Goal { min_depth, tolerance: touch, stop_depth, budget };
+        let goal = Goal { threshold, tolerance: touch, stop_depth, budget };
         if query.limit < 0.0 {
             setting.set_pose(state, pose);
             state.outside(setting, query, pose, goal);
@@ -691,7 +691,7 @@ struct PenetrationGoal {
     /// The tolerance of the depth, in the part's unit.
     tolerance: f64,
     /// A depth that is known already, in the tool's unit: only deeper points are searched for.
-    known: f64,
+    threshold: f64,
     budget: u32,
 }
 
@@ -703,17 +703,17 @@ fn penetration(
     pose: &Pose,
     goal: PenetrationGoal,
 ) -> Penetration {
-    let PenetrationGoal { tolerance, known, budget } = goal;
+    let PenetrationGoal { tolerance, threshold, budget } = goal;
     // Written so that a NaN tolerance is replaced.
     let tolerance = (4.0 * setting.error).max(tolerance / setting.length);
-    let min_depth = setting.error.max(known);
-    let goal = Goal { min_depth, tolerance, stop_depth: f64::INFINITY, budget };
+    let threshold = setting.error.max(threshold);
+    let goal = Goal { threshold, tolerance, stop_depth: f64::INFINITY, budget };
     state.inside(setting, query, pose, goal);
     let more = setting.error + state.search.skew;
     let (low, high) = match state.best {
         // Slabs are widened by the error, so a point outside may be measured as that deep.
         Some(_) => (state.search.best - more - setting.error, state.search.best + tolerance),
-        None => (0.0, min_depth),
+        None => (0.0, threshold),
     };
     let high = if state.descent.started() { high.max(state.search.open_bound) + more } else { 0.0 };
     Penetration {

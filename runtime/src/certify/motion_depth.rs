@@ -218,7 +218,7 @@ impl Certifier<'_> {
         let min_tolerance = MIN_DEPTH_TOLERANCE * errors.min_sweep_tolerance();
         // Written so that a NaN tolerance is replaced.
         let tolerance = min_tolerance.max(tolerance / setting.length);
-        let allowed = if allowed.is_nan() { 0.0 } else { allowed / setting.length };
+        let limit = if allowed.is_nan() { 0.0 } else { allowed / setting.length };
         let inside_query = self.surface_queries[surface]
             .get_or_insert_with(|| setting.depth_query(0.0, |other| other == surface));
         let max_depth = *self.surface_max_depths[surface].get_or_insert_with(|| {
@@ -227,13 +227,14 @@ impl Certifier<'_> {
                 + setting.tool_model.lipschitz() * setting.info().radius();
             max_possible_depth(setting, surface).map_or(steepest, |depth| depth.min(steepest))
         });
-        let depth = allowed.max(0.0);
+        let inside_limit = limit.max(0.0);
         let core_points = match &mut self.surface_core_points[surface] {
-            Some((known, core_points)) if *known == depth => core_points,
+            Some((known, core_points)) if *known == inside_limit => core_points,
             other => {
                 let surfaces = 0..setting.info().surfaces.len();
-                let limits = surfaces.map(|k| if k == surface { depth } else { f64::INFINITY });
-                &mut other.insert((depth, CorePoints::new(limits))).1
+                let limits =
+                    surfaces.map(|k| if k == surface { inside_limit } else { f64::INFINITY });
+                &mut other.insert((inside_limit, CorePoints::new(limits))).1
             }
         };
         let mut search = MotionSearch {
@@ -249,18 +250,18 @@ impl Certifier<'_> {
             budget: self.budget,
         };
         // With a margin, first whether the surface is in the part at all: that is the graver finding.
-        let found = search.deepest(depth);
-        if allowed >= 0.0 || !matches!(found, MotionDepth::Within) {
+        let found = search.deepest(inside_limit);
+        if limit >= 0.0 || !matches!(found, MotionDepth::Within) {
             return Ok(found);
         }
         // Without a profile the distance of a surface from outside points is unknown.
         if let ToolModel::Field(_) = &setting.tool_model {
             return Ok(MotionDepth::Undecided(0.0));
         }
-        let margin_query = setting.depth_query(allowed, |other| other == surface);
+        let margin_query = setting.depth_query(limit, |other| other == surface);
         search.query = &margin_query;
         search.max_depth = 0.0;
-        Ok(match search.deepest(allowed) {
+        Ok(match search.deepest(limit) {
             MotionDepth::Within => found,
             nearer => nearer,
         })
@@ -352,26 +353,26 @@ struct DepthPeak {
 }
 
 impl MotionSearch<'_, '_> {
-    fn deepest(&mut self, allowed: f64) -> MotionDepth {
+    fn deepest(&mut self, limit: f64) -> MotionDepth {
         let mut deepest: Option<DepthPeak> = None;
         for k in 0..=INITIAL_TIMES {
-            let known = deepest.map_or(allowed, |peak| peak.depth.low);
-            let probed = self.peak_at(f64::from(k) / f64::from(INITIAL_TIMES), known);
-            deepest = probed.filter(|peak| peak.depth.low > known).or(deepest);
+            let threshold = deepest.map_or(limit, |peak| peak.depth.low);
+            let probed = self.peak_at(f64::from(k) / f64::from(INITIAL_TIMES), threshold);
+            deepest = probed.filter(|peak| peak.depth.low > threshold).or(deepest);
         }
         let first = match deepest {
             Some(peak) => peak,
-            None => match self.sweep(allowed, self.tolerance, self.budget) {
+            None => match self.sweep(limit, self.tolerance, self.budget) {
                 None => return self.within(MotionDepth::Within),
                 Some(SweepEnd::Spent { at: 0.0 }) => return MotionDepth::Undecided(0.0),
                 Some(SweepEnd::Spent { at }) => return self.within(MotionDepth::Undecided(at)),
                 Some(SweepEnd::Deeper { at, pose, best }) => {
                     let witness = self.setting.witness(&best, &pose);
-                    let depth = Interval::new(allowed, allowed + self.tolerance);
-                    // A sweep proves no more than that the point exceeds the allowance; a probe at that time may tell
+                    let depth = Interval::new(limit, limit + self.tolerance);
+                    // A sweep proves no more than that the point exceeds the limit; a probe at that time may tell
                     // its depth.
                     let swept = DepthPeak { depth, at, witness };
-                    self.peak_at(at, allowed).map_or(swept, |probed| deeper(swept, probed))
+                    self.peak_at(at, limit).map_or(swept, |probed| deeper(swept, probed))
                 }
             },
         };
@@ -379,7 +380,7 @@ impl MotionSearch<'_, '_> {
             (first, self.max_depth.max(first.depth.high))
         } else {
             let top = self.climb(first);
-            self.bounded(top, allowed)
+            self.bounded(top, limit)
         };
         let length = self.setting.length;
         let depth = best.depth.scaled_by(length);
@@ -397,21 +398,21 @@ impl MotionSearch<'_, '_> {
     }
 
     /// Returns the deepest point found and an upper bound on the depth over the motion.
-    fn bounded(&mut self, mut best: DepthPeak, allowed: f64) -> (DepthPeak, f64) {
+    fn bounded(&mut self, mut best: DepthPeak, limit: f64) -> (DepthPeak, f64) {
         let mut gap_fraction = GAP_FRACTION;
         for _ in 0..MAX_ROUNDS {
             if self.is_through(&best) {
                 break;
             }
             let Interval { low, high } = best.depth;
-            let gap = self.tolerance.max(gap_fraction * (high - allowed));
+            let gap = self.tolerance.max(gap_fraction * (high - limit));
             // One half is for the tolerance of the sweep, the other for the gain of each round.
-            let limit = (low + 0.5 * gap).max(allowed);
-            if limit + 0.5 * gap >= self.max_depth {
+            let swept = (low + 0.5 * gap).max(limit);
+            if swept + 0.5 * gap >= self.max_depth {
                 break;
             }
-            match self.sweep(limit, 0.5 * gap, self.budget / BUDGET_DIVISOR) {
-                None => return (best, high.max(limit + 0.5 * gap)),
+            match self.sweep(swept, 0.5 * gap, self.budget / BUDGET_DIVISOR) {
+                None => return (best, high.max(swept + 0.5 * gap)),
                 // Near the limit a sweep is slow: a coarser limit needs less of the budget.
                 Some(SweepEnd::Spent { .. }) => gap_fraction *= 4.0,
                 Some(SweepEnd::Deeper { at, .. }) => match self.peak_at(at, low) {
@@ -460,8 +461,8 @@ impl MotionSearch<'_, '_> {
             let sides = [best.at - step, best.at + step].map(|at| at.clamp(0.0, 1.0));
             let sides = sides.into_iter().filter(|at| *at != best.at);
             // A gain of less is not worth the search among points that are nearly as deep.
-            let known = best.depth.low + self.climb_tolerance();
-            let found = sides.filter_map(|at| self.peak_at(at, known)).fold(best, deeper);
+            let threshold = best.depth.low + self.climb_tolerance();
+            let found = sides.filter_map(|at| self.peak_at(at, threshold)).fold(best, deeper);
             if found.depth.low > best.depth.low {
                 best = found;
             } else {
@@ -476,9 +477,9 @@ impl MotionSearch<'_, '_> {
         self.tolerance / CLIMB_DIVISOR
     }
 
-    /// Returns the depth at a fraction of the motion, if any point is deeper than `known`. Nothing else is searched, which is
+    /// Returns the depth at a fraction of the motion, if any point is deeper than `threshold`. Nothing else is searched, which is
     /// much less.
-    fn peak_at(&mut self, at: f64, known: f64) -> Option<DepthPeak> {
+    fn peak_at(&mut self, at: f64, threshold: f64) -> Option<DepthPeak> {
         let tolerance = self.climb_tolerance();
         let MotionSearch { setting, query, ref mut state, budget, .. } = *self;
         let pose = self.motion.pose(at);
@@ -487,7 +488,7 @@ impl MotionSearch<'_, '_> {
         if query.limit >= 0.0 {
             // `penetration` takes and returns lengths in the part's unit.
             let tolerance = tolerance * setting.length;
-            let goal = PenetrationGoal { tolerance, known, budget };
+            let goal = PenetrationGoal { tolerance, threshold, budget };
             let found = penetration(setting, query, state, &pose, goal);
             let Interval { low, high } = found.depth;
             let low = (low / setting.length - off).max(0.0);
@@ -495,8 +496,8 @@ impl MotionSearch<'_, '_> {
             return found.witness.map(|witness| DepthPeak { depth, at, witness });
         }
         setting.set_pose(state, &pose);
-        let min_depth = query.limit.max(known);
-        let goal = Goal { min_depth, tolerance, stop_depth: f64::INFINITY, budget };
+        let threshold = query.limit.max(threshold);
+        let goal = Goal { threshold, tolerance, stop_depth: f64::INFINITY, budget };
         state.outside(setting, query, &pose, goal);
         let best = state.best?;
         let found = state.search.best;

@@ -12,7 +12,7 @@ use crate::certify::space::Point;
 use crate::certify::tool_model::ToolModel;
 use crate::certify::tool_model::feature::MeridianPoint;
 use crate::certify::tool_model::field::{Field, Scratch};
-use crate::certify::tool_model::owners::Rectangle;
+use crate::certify::tool_model::rectangle::Rectangle;
 use crate::certify::tool_model::section::{Owners, Section};
 use crate::certify::triangle::line_search::{DeepestCandidate, DepthSearch, Goal, LineMaximum};
 use crate::certify::triangle::{LocalTriangle, SubTriangle, nearest};
@@ -99,10 +99,10 @@ impl DepthQuery {
 
     /// Returns the queries that check the allowances of all surfaces, given in the order of the tool's list: one query
     /// per allowance, for all surfaces that have it. The largest allowance comes first; infinite ones need no query.
-    pub(crate) fn all(setting: &QuerySetting<'_>, allowed: &[f64]) -> Vec<DepthQuery> {
+    pub(crate) fn all(setting: &QuerySetting<'_>, allowances: &[f64]) -> Vec<DepthQuery> {
         let depths =
-            allowed.iter().map(|allowed| allowed.max(0.0)).filter(|depth| depth.is_finite());
-        let gaps = allowed.iter().copied().filter(|allowed| *allowed < 0.0);
+            allowances.iter().map(|allowance| allowance.max(0.0)).filter(|depth| depth.is_finite());
+        let gaps = allowances.iter().copied().filter(|allowance| *allowance < 0.0);
         let mut limits: Vec<f64> = depths.chain(gaps).collect();
         limits.sort_by(f64::total_cmp);
         limits.dedup();
@@ -112,8 +112,8 @@ impl DepthQuery {
             .rev()
             .map(|limit| {
                 setting.depth_query(limit, |surface| {
-                    let allowed = allowed[surface];
-                    if limit < 0.0 { allowed == limit } else { allowed.max(0.0) == limit }
+                    let allowance = allowances[surface];
+                    if limit < 0.0 { allowance == limit } else { allowance.max(0.0) == limit }
                 })
             })
             .collect()
@@ -522,7 +522,8 @@ impl SearchState {
             }
         }
         if let Side::Inside = side {
-            section.leave_unresolved(owners, corners, of.error, &mut self.search);
+            let whole = SubTriangle::new(corners);
+            whole.leave_unresolved(section, owners, of.error, &mut self.search);
         }
         if before.is_some_and(|before| self.search.raise(before, triangle.skew)) {
             self.best = best;

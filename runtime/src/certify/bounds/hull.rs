@@ -9,7 +9,7 @@ use crate::certify::bounds::nearest::{
 use crate::certify::bounds::support::Support;
 use crate::certify::part::NodeRing;
 use crate::certify::tool_model::feature::{Feature, MeridianPoint};
-use crate::certify::tool_model::owners::Rectangle;
+use crate::certify::tool_model::rectangle::Rectangle;
 use crate::certify::tool_model::section::{Owners, Section};
 use crate::interval::Interval;
 use crate::tool::ToolInfo;
@@ -132,7 +132,7 @@ impl<R: Real> Hull<R> {
         let zones: Vec<_> = section
             .slabs
             .iter()
-            .map(|slab| owners.is_owned(slab.side).then_some(Rectangle::of(slab)))
+            .map(|slab| owners.is_owned(slab.side).then_some(slab.rectangle()))
             .collect();
         // Points outside are no nearer to a plane that touches the tool than to the tool.
         let mut hull = Hull { support: None, ..Hull::new(section, &zones, error) };
@@ -697,8 +697,7 @@ mod tests {
         let (mut inside, mut refined) = (0, 0);
         for info in tools() {
             let section = Section::new(info, ERROR).expect("a profile");
-            let zones: Vec<_> =
-                section.slabs.iter().map(|slab| Some(Rectangle::of(slab))).collect();
+            let zones: Vec<_> = section.slabs.iter().map(|slab| Some(slab.rectangle())).collect();
             let hull = Hull::<f64>::new(&section, &zones, ERROR);
             for _ in 0..3000 {
                 let triangle = numbers.triangle(&section);
@@ -725,7 +724,7 @@ mod tests {
     #[test]
     fn a_triangle_that_touches_an_arc_is_not_deep() {
         let section = Section::new(ROUNDED.info(), ERROR).expect("a profile");
-        let zones: Vec<_> = section.slabs.iter().map(|slab| Some(Rectangle::of(slab))).collect();
+        let zones: Vec<_> = section.slabs.iter().map(|slab| Some(slab.rectangle())).collect();
         let hull = Hull::<f64>::new(&section, &zones, ERROR);
         for (degrees, turn) in [(1, 0.0), (20, 1.0), (45, 2.0), (70, 3.0), (60, -2.0)] {
             // Outward from the centre of the edge: down at 0 degrees. Beyond 70 the shank, which is wider, reaches farther.
@@ -750,8 +749,7 @@ mod tests {
         let mut inside = 0;
         for info in tools() {
             let section = Section::new(info, ERROR).expect("a profile");
-            let zones: Vec<_> =
-                section.slabs.iter().map(|slab| Some(Rectangle::of(slab))).collect();
+            let zones: Vec<_> = section.slabs.iter().map(|slab| Some(slab.rectangle())).collect();
             for _ in 0..60 {
                 // A strip of triangles that is almost plane, in places flat.
                 let [at, across, up] = [(); 3].map(|()| {
@@ -806,7 +804,7 @@ mod tests {
     #[test]
     fn a_triangle_that_passes_below_a_step_is_not_deep() {
         let section = Section::new(NECKED.info(), ERROR).expect("a profile");
-        let zones: Vec<_> = section.slabs.iter().map(|slab| Some(Rectangle::of(slab))).collect();
+        let zones: Vec<_> = section.slabs.iter().map(|slab| Some(slab.rectangle())).collect();
         let hull = Hull::<f64>::new(&section, &zones, ERROR);
         let corners = [[3.5, 0.0, 8.9], [8.5, 0.0, 9.2], [8.5, 1.0, 9.2]];
         let [bound, _] = dispatch!(Level::new(), simd => both_bounds(simd, &hull, &corners));

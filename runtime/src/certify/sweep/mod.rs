@@ -368,9 +368,9 @@ impl Sweeper {
         let TrianglePart { triangle, heights } = part;
         let displacement = spread.displacement + triangle.skew + task.error;
         // A point less deep than that does not become too deep in what is left of the interval.
-        let min_depth = task.threshold() - displacement;
+        let threshold = task.threshold() - displacement;
         self.search.begin(Goal {
-            min_depth,
+            threshold,
             // A finer search would tell nothing that the displacement does not blur.
             tolerance: 0.25 * displacement,
             stop_depth: f64::INFINITY,
@@ -381,15 +381,16 @@ impl Sweeper {
         let levels = peaks.chain(heights).filter_map(|height| triangle.level(*height));
         for line in triangle.search_lines().chain(levels) {
             let Some(line) = line.between(*heights) else { continue };
-            let maximum = if min_depth < 0.0 {
+            let maximum = if threshold < 0.0 {
                 self.search.outside(section, owners, &line)
             } else {
                 self.search.inside(section, owners, triangle.skew, &line)
             };
             found = maximum.map(|maximum| line.point(maximum.t)).or(found);
         }
-        if min_depth >= 0.0 {
-            section.leave_unresolved(owners, triangle.corners, displacement, &mut self.search);
+        if threshold >= 0.0 {
+            let whole = SubTriangle::new(triangle.corners);
+            whole.leave_unresolved(section, owners, displacement, &mut self.search);
         }
         self.budget = self.search.remaining_budget();
         let Some(point) = found else {
@@ -402,7 +403,7 @@ impl Sweeper {
         let sample = task.depth(&mut self.scratch, point);
         if task.too_deep(&sample, spread.deviation) {
             TriangleVerdict::TooDeep(sample)
-        } else if sample.depth > min_depth {
+        } else if sample.depth > threshold {
             TriangleVerdict::Undecided
         } else {
             TriangleVerdict::OtherOwner(point)

@@ -762,7 +762,7 @@ mod tests {
         let field = Field { error: 0.01, ..field.expect("a Lipschitz constant") };
         let (mut search, mut scratch) = (DepthSearch::default(), Scratch::default());
         let stop_depth = f64::INFINITY;
-        search.begin(Goal { min_depth: 0.505, tolerance: 0.0, stop_depth, budget: 1000 });
+        search.begin(Goal { threshold: 0.505, tolerance: 0.0, stop_depth, budget: 1000 });
         scratch.hold([[0.5, 0.0, 1.0], [0.5, 1e-6, 1.0], [0.5, 0.0, 1.0 + 1e-6]], 0);
         let owners = Owners::of_regions(field.info(), |_, _| true);
         assert!(field.search_triangles(&mut search, &mut scratch, &owners, false).is_none());

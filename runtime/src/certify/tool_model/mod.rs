@@ -4,6 +4,8 @@ pub(crate) mod feature;
 pub(crate) mod field;
 pub(crate) mod interior;
 pub(crate) mod owners;
+mod peaks;
+pub(crate) mod rectangle;
 pub(crate) mod section;
 
 use crate::certify::space::Point;

@@ -8,7 +8,7 @@
 use crate::certify::tool_model::feature::{
     Feature, MeridianPoint, Triangle, cross, dot, mean, minus, norm, quarters,
 };
-use crate::certify::tool_model::owners::Rectangle;
+use crate::certify::tool_model::rectangle::Rectangle;
 use crate::tool::ToolInfo;
 use std::cell::LazyCell;
 
@@ -32,6 +32,13 @@ pub(crate) struct SectionSlab {
     /// The range along the line of its side in which a foot is on the surface or outside the tool, so that depth is
     /// at most the distance from that line.
     feet: [f64; 2],
+}
+
+impl SectionSlab {
+    /// Returns its bounding rectangle.
+    pub(crate) fn rectangle(&self) -> Rectangle {
+        Rectangle { low: [self.hole, self.low], high: [self.radius, self.high] }
+    }
 }
 
 /// The section of a tool with a profile.

@@ -151,11 +151,11 @@ pub(crate) struct LineMaximum {
     pub(crate) feature: usize,
 }
 
-/// The goal of a search. Depths up to `min_depth` are ignored. The search ends within `tolerance` of the greatest
+/// The goal of a search. Depths up to `threshold` are ignored. The search ends within `tolerance` of the greatest
 /// depth, at a depth that is above `stop_depth` for certain, or when the budget is spent.
 #[derive(Clone, Copy)]
 pub(crate) struct Goal {
-    pub(crate) min_depth: f64,
+    pub(crate) threshold: f64,
     pub(crate) tolerance: f64,
     pub(crate) stop_depth: f64,
     pub(crate) budget: u32,
@@ -191,8 +191,8 @@ pub(crate) struct DepthSearch {
 impl DepthSearch {
     /// Begins a search.
     pub(crate) fn begin(&mut self, goal: Goal) {
-        let Goal { min_depth, tolerance, stop_depth, budget } = goal;
-        self.best = min_depth;
+        let Goal { threshold, tolerance, stop_depth, budget } = goal;
+        self.best = threshold;
         self.tolerance = tolerance;
         self.stop_depth = stop_depth;
         self.skew = 0.0;

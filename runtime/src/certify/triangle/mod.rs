@@ -11,8 +11,9 @@ pub(crate) mod line_search;
 
 use crate::certify::rounding;
 use crate::certify::space::{Point, cross, dot, minus, norm};
-use crate::certify::tool_model::owners::Rectangle;
-use crate::certify::triangle::line_search::SearchLine;
+use crate::certify::tool_model::rectangle::Rectangle;
+use crate::certify::tool_model::section::{Owners, Section};
+use crate::certify::triangle::line_search::{DepthSearch, SearchLine};
 
 /// A triangle in the tool's frame and unit.
 pub(crate) struct LocalTriangle {
@@ -217,6 +218,29 @@ impl SubTriangle {
         Rectangle {
             low: [(self.distance_from_axis() - displacement).max(0.0), low - displacement],
             high: [far + displacement, high + displacement],
+        }
+    }
+
+    /// Leaves open in a search how deep it is within a distance of which a height at which depth can be greatest may not be known.
+    pub(crate) fn leave_unresolved(
+        &self,
+        section: &Section,
+        owners: &Owners,
+        distance: f64,
+        search: &mut DepthSearch,
+    ) {
+        // Hardly any profile has some.
+        if section.unresolved.is_empty() && owners.unresolved.is_empty() {
+            return;
+        }
+        let rectangle = self.rectangle(distance);
+        let unresolved = section.unresolved.iter().chain(&owners.unresolved);
+        for near in unresolved.filter(|unresolved| unresolved.meets(&rectangle)) {
+            let (middle, reach) = near.ball();
+            let bound = section.signed(middle) + reach + section.error;
+            if bound > search.threshold() {
+                search.leave(bound);
+            }
         }
     }
 
