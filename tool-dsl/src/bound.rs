@@ -298,8 +298,8 @@ pub(crate) fn spread(
 /// # Errors
 /// If no bound is found, or the solid provably has no points.
 pub fn extent(model: &Model) -> Result<Extent, Diagnostic> {
-    if let Some(section) = &model.section {
-        let [low, high] = outline::bounding_box(&section.outline);
+    if let Some(profile) = &model.profile {
+        let [low, high] = outline::bounding_box(&profile.outline);
         let (d, z) = (Interval::new(0.0, high[0]), Interval::new(low[1], high[1]));
         return Ok(Extent::of(Cell::half_plane(d, z), high[0]));
     }
@@ -459,8 +459,8 @@ impl EnvelopeSlab {
 /// Returns the envelope: at most `MAX_SLABS` slabs from the tip up, which together cover the solid. Each begins
 /// where the one before ends, or below by rounding, since all are rounded outward as in `ToolInfo`.
 pub fn envelope(model: &Model, extent: &Extent) -> Vec<EnvelopeSlab> {
-    let mut radii = match &model.section {
-        Some(section) => Radii::Outline(&section.outline),
+    let mut radii = match &model.profile {
+        Some(profile) => Radii::Outline(&profile.outline),
         None => Radii::Proved(Box::new(Prover::new(model)), extent.cell()),
     };
     let mut slabs: Vec<EnvelopeSlab> = first_ends(model, extent)
@@ -570,8 +570,8 @@ fn rounded_up(value: f64, steps: f64) -> f64 {
 
 /// Returns heights at which the radius may jump.
 fn levels(model: &Model) -> Vec<f64> {
-    match &model.section {
-        Some(section) => section.outline.iter().flat_map(|s| s.ends()).map(|end| end[1]).collect(),
+    match &model.profile {
+        Some(profile) => profile.outline.iter().flat_map(|s| s.ends()).map(|end| end[1]).collect(),
         None => model.curves.iter().filter_map(|curve| level(model, curve.value)).collect(),
     }
 }

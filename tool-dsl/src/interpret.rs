@@ -47,7 +47,7 @@ impl<'t> Interpreter<'t> {
             .iter()
             .flat_map(|region| region.outputs.roots())
             .chain(model.curve_values());
-        let owners = model.section.as_ref().map(Owners::new);
+        let owners = model.profile.as_ref().map(Owners::new);
         Interpreter { tool, evaluator: Evaluator::new(&model.graph, roots), owners }
     }
 

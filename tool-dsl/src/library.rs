@@ -21,5 +21,5 @@ pub(crate) fn tools() -> Vec<CheckedTool> {
 
 /// Compiles the tools of the library whose regions are written by hand.
 pub(crate) fn tools_by_hand() -> Vec<CheckedTool> {
-    tools().into_iter().filter(|tool| tool.model.section.is_none()).collect()
+    tools().into_iter().filter(|tool| tool.model.profile.is_none()).collect()
 }

@@ -23,10 +23,10 @@
 //!   so a curve belongs to both of its sides. A [`Formula`] combines atoms by "and" and "or". Where a curve is
 //!   undefined, none of its atoms holds.
 //! - **Ownership.** A point belongs to the first of [`Model::regions`] whose [`Region::condition`] holds. With a
-//!   `Section` it belongs to the nearest feature of the profile and, if that is divided further, to the first
+//!   `Profile` it belongs to the nearest feature of the profile and, if that is divided further, to the first
 //!   condition that holds there: see [`crate::regionalise::owners`]. The solid is the set of points that belong to a
 //!   region.
-//! - **Depth.** [`RegionOutputs::depth`] of the owner is `max(0, depth)`. With a `Section` it is the distance
+//! - **Depth.** [`RegionOutputs::depth`] of the owner is `max(0, depth)`. With a `Profile` it is the distance
 //!   to the solid's surface. For regions written by hand it is the file's expression, and `prove` bounds it
 //!   by the distance.
 //! - **Direction.** [`RegionOutputs::direction`] is a unit vector. It is the normalised *raw direction*, the vector
@@ -53,11 +53,11 @@
 //! | | an outline runs counter-clockwise from the axis to the axis, touches itself nowhere else, and meets the axis only at its ends | `regionalise::check` in doubles |
 //! | | the polygons of `inner` cover the cell of each feature, within rounding | `regionalise::cover`, in doubles |
 //! | `checked` (`finite`) | constants that code needs are finite doubles | `checked::finite` |
-//! | `bound` | [`Extent`](crate::bound::Extent): the solid lies in a box and a cylinder, is bounded, and is not empty. [`EnvelopeSlab`](crate::bound::EnvelopeSlab): its largest radius between two heights | interval branch and bound; a section's segments in closed form |
+//! | `bound` | [`Extent`](crate::bound::Extent): the solid lies in a box and a cylinder, is bounded, and is not empty. [`EnvelopeSlab`](crate::bound::EnvelopeSlab): its largest radius between two heights | interval branch and bound; a profile's segments in closed form |
 //! | `lint` | nothing. It refutes overlapping owners, regions that own nothing, depths below 0 or above 0 on the surface, undefined values, and a misplaced tip, each with a counterexample | samples |
-//! | `plan` | `PlannedTool::tree` gives each point the owner that the list of regions gives it | by signs: `plan::signs` proves which sides need no test; of a section: `plan::section` follows every piece to the leaves |
+//! | `plan` | `PlannedTool::tree` gives each point the owner that the list of regions gives it | by signs: `plan::signs` proves which sides need no test; of a profile: `plan::profile` follows every piece to the leaves |
 //! | | trees have at most 20,000 tests | `plan::MAX_TESTS` |
-//! | `prove` | [`Bounds`](crate::prove::Bounds) of the depth by the distance: for a section 1 and 1 by construction, which `touchoff check` proves; for regions by hand the bounds that a few thousand boxes prove | `docs/proofs.md` |
+//! | `prove` | [`Bounds`](crate::prove::Bounds) of the depth by the distance: for a profile 1 and 1 by construction, which `touchoff check` proves; for regions by hand the bounds that a few thousand boxes prove | `docs/proofs.md` |
 //! | | depth jumps at no point that was found | enclosures of both depths there |
 //!
 //! `plan` receives a complete model and appends curves to those of the file; indices `0..n` keep their
@@ -145,12 +145,12 @@ pub struct Model {
     /// The curves that the `bsp` item asks to be tried first.
     pub first_curves: Vec<CurveIndex>,
     /// The profile and its partition; `None` for a tool whose regions are written by hand.
-    pub(crate) section: Option<Section>,
+    pub(crate) profile: Option<Profile>,
 }
 
 /// A profile and the partition of its inside by nearest features.
 #[derive(Clone, Debug)]
-pub(crate) struct Section {
+pub(crate) struct Profile {
     /// The segments, counter-clockwise in the tool's frame.
     pub(crate) outline: Vec<Segment>,
     /// The partition of the inside. Its parts are the regions, unless `over` divides them further.
@@ -169,7 +169,7 @@ pub(crate) struct Over {
     pub(crate) regions: Vec<ConditionedPart>,
 }
 
-impl Section {
+impl Profile {
     /// Returns the curves of a model as functions, and the size of the section.
     pub(crate) fn functions<'g>(
         &self,
@@ -212,12 +212,12 @@ impl Model {
 
     /// Returns whether depth is an exact distance.
     pub fn is_exact(&self) -> bool {
-        self.section.is_some()
+        self.profile.is_some()
     }
 
     /// Returns the segments of the profile, in order, in doubles; none without a profile.
     pub fn outline(&self) -> impl Iterator<Item = ProfileSegment> + '_ {
-        let segments = self.section.iter().flat_map(|section| &section.outline);
+        let segments = self.profile.iter().flat_map(|profile| &profile.outline);
         segments.map(|segment| ProfileSegment {
             ends: segment.ends(),
             circle: segment.round(),

@@ -6,7 +6,7 @@
 use crate::domain::Domain;
 use crate::expr::{Coord, Id, Node};
 use crate::formula::Formula;
-use crate::model::{Model, Section};
+use crate::model::{Model, Profile};
 use crate::plan::{MAX_TESTS, PlannedTool, Tree};
 use crate::regionalise::overlay::{ConditionedPart, Division};
 
@@ -65,10 +65,10 @@ pub(crate) fn model(model: &Model) -> Result<(), Broken> {
         function(model, "a direction", region.direction.into_iter().chain(region.raw_direction.0))?;
         expressions(model, "an output", region.outputs.roots())?;
     }
-    let Some(section) = &model.section else { return Ok(()) };
-    section.outline.iter().try_for_each(|segment| surface(segment.surface))?;
-    outline(section)?;
-    let Some(over) = &section.over else { return Ok(()) };
+    let Some(profile) = &model.profile else { return Ok(()) };
+    profile.outline.iter().try_for_each(|segment| surface(segment.surface))?;
+    outline(profile)?;
+    let Some(over) = &profile.over else { return Ok(()) };
     if let Division::Conditions(formulas) = &over.division {
         formulas.iter().try_for_each(|condition| formula(model, condition))?;
     }
@@ -169,8 +169,8 @@ fn function(
 }
 
 /// Checks that an outline runs from the axis to the axis, without a gap and counter-clockwise.
-fn outline(section: &Section) -> Result<(), Broken> {
-    let segments = &section.outline;
+fn outline(profile: &Profile) -> Result<(), Broken> {
+    let segments = &profile.outline;
     let (Some(first), Some(last)) = (segments.first(), segments.last()) else {
         return Err(Broken::Outline);
     };
@@ -271,12 +271,12 @@ mod tests {
         assert!(other.graph.nodes().len() > model.graph.nodes().len());
         assert_eq!(self::model(&model), Err(Broken::Expression { what: "an output" }));
         for edit in [
-            |section: &mut Section| drop(section.outline.remove(1)),
-            |section: &mut Section| drop(section.outline.pop()),
-            |section: &mut Section| section.outline.clear(),
+            |profile: &mut Profile| drop(profile.outline.remove(1)),
+            |profile: &mut Profile| drop(profile.outline.pop()),
+            |profile: &mut Profile| profile.outline.clear(),
         ] {
             let mut model = resolved(MILL);
-            edit(model.section.as_mut().expect("a section"));
+            edit(model.profile.as_mut().expect("a profile"));
             assert_eq!(self::model(&model), Err(Broken::Outline));
         }
     }

@@ -104,7 +104,7 @@ impl Evaluator<'_> {
         for owner in owners {
             let known = groups
                 .iter_mut()
-                .find(|group| self.model.section.is_some() && place(group[0]) == place(*owner));
+                .find(|group| self.model.profile.is_some() && place(group[0]) == place(*owner));
             match known {
                 Some(group) => group.push(*owner),
                 None => groups.push(vec![*owner]),

@@ -5,7 +5,7 @@ use crate::checked::CheckedTool;
 use crate::diagnostic::format_number;
 use crate::expr::{Coord, Graph, Id, Node};
 use crate::formula::{Curve, Formula};
-use crate::model::{Over, Section};
+use crate::model::{Over, Profile};
 use crate::plan::Tree;
 use crate::regionalise::Feature;
 use crate::regionalise::overlay::Division;
@@ -68,7 +68,7 @@ pub fn regions(tool: &CheckedTool) -> String {
         // Writing to a String does not fail.
         let surface = &model.surfaces[region.surface].name;
         let _ = writeln!(text, "region {} as {surface}", region.name);
-        let nearest = model.section.as_ref().map(|section| nearest_features(section, index));
+        let nearest = model.profile.as_ref().map(|profile| nearest_features(profile, index));
         let stated =
             (region.condition != Formula::Const(true)).then(|| condition(tool, &region.condition));
         let conditions: Vec<String> = nearest.into_iter().chain(stated).collect();
@@ -88,15 +88,15 @@ pub fn regions(tool: &CheckedTool) -> String {
 }
 
 /// Says to what the points of a region of a profile are nearest.
-fn nearest_features(section: &Section, region: usize) -> String {
-    let nearest = match section.inner.section().features()[section.feature_of(region)] {
+fn nearest_features(profile: &Profile, region: usize) -> String {
+    let nearest = match profile.inner.section().features()[profile.feature_of(region)] {
         Feature::Piece(segment) => format!("nearest to segment {}", segment + 1),
         Feature::Corner(Some(segment)) => {
             format!("nearest to the corner after segment {}", segment + 1)
         }
         Feature::Corner(None) => "nearest to the corner before segment 1".to_owned(),
     };
-    match &section.over {
+    match &profile.over {
         Some(Over { division: Division::Rounded(_), regions }) => {
             format!(
                 "{nearest} and to segment {} of the rounded outline",

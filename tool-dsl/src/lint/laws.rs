@@ -173,7 +173,7 @@ impl Linter<'_> {
             return;
         }
         // Directions of `regions smooth` are no mistake.
-        let over = self.model.section.as_ref().and_then(|section| section.over.as_ref());
+        let over = self.model.profile.as_ref().and_then(|profile| profile.over.as_ref());
         let is_smooth = over.is_some_and(|over| matches!(over.division, Division::Rounded(_)));
         for (index, slopes) in std::mem::take(&mut self.slopes).into_iter().enumerate() {
             let MagnitudeSlope { farthest, largest, oblique } = slopes;

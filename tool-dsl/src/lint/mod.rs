@@ -54,12 +54,12 @@ pub(crate) fn undefined_curves(model: &Model) -> Vec<Diagnostic> {
 /// Returns all diagnostics of a tool, at most one per location and severity.
 pub(crate) fn lint(model: &Model, extent: &Extent) -> Vec<Diagnostic> {
     let mut linter = Linter::new(model, extent);
-    if let Some(section) = &model.section {
+    if let Some(profile) = &model.profile {
         // A profile's regions are known to be correct; only the quantities written in the file need checks.
         linter.check_tip(extent.low, extent);
-        let (shapes, _) = section.functions(&model.graph, &model.curves);
-        let geometry = section.inner.section();
-        for piece in section.inner.inner_pieces(&section.separations, &shapes) {
+        let (shapes, _) = profile.functions(&model.graph, &model.curves);
+        let geometry = profile.inner.section();
+        for piece in profile.inner.inner_pieces(&profile.separations, &shapes) {
             for ([d, z], _) in geometry.sample_points(&piece) {
                 let point = [d, 0.0, z];
                 if let Some(owner) = linter.owner(point) {
@@ -67,7 +67,7 @@ pub(crate) fn lint(model: &Model, extent: &Extent) -> Vec<Diagnostic> {
                 }
             }
         }
-        for inside_directions in laws::inward_directions(&section.outline) {
+        for inside_directions in laws::inward_directions(&profile.outline) {
             let [at, direction] = inside_directions.map(|[d, z]| [d, 0.0, z]);
             linter.check_toward_surface(at, direction);
         }
@@ -146,7 +146,7 @@ impl<'m> Linter<'m> {
                 &model.graph,
                 model.roots().chain(model.regions.iter().flat_map(|r| r.outputs.gradient)),
             )),
-            owners: model.section.as_ref().map(Owners::new),
+            owners: model.profile.as_ref().map(Owners::new),
             last_region: 0,
             found: Vec::new(),
             owned_points: vec![0; model.regions.len()],

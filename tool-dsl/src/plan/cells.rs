@@ -8,7 +8,7 @@ use crate::formula::{CurveIndex, NEGATIVE, POSITIVE};
 use crate::geometry::function::CurveFunction;
 use crate::geometry::outline::{self, Point, minus, norm};
 use crate::geometry::polygon::{Polygon, centroid};
-use crate::model::{Model, Section};
+use crate::model::{Model, Profile};
 use crate::regionalise;
 use crate::regionalise::overlay::{ConditionedPart, Divider};
 use crate::regionalise::pieces::Piece;
@@ -54,15 +54,15 @@ const MAX_DEVIATION_FRACTION: f64 = 1e-8;
 /// the model's other passes found is relied on. `None` without a profile, or if the difference is more than a plan may have.
 pub(crate) fn proved_deviation(model: &Model, tree: &Tree) -> Option<f64> {
     let model = partitioned_anew(model)?;
-    let section = model.section.as_ref()?;
-    let (shapes, size) = section.functions(&model.graph, &model.curves);
-    Cells::new(&model, section, &shapes, size).deviation(tree).ok()
+    let profile = model.profile.as_ref()?;
+    let (shapes, size) = profile.functions(&model.graph, &model.curves);
+    Cells::new(&model, profile, &shapes, size).deviation(tree).ok()
 }
 
-/// The cells of a section's features, and the outside, as pieces.
+/// The cells of a profile's features, and the outside, as pieces.
 pub(super) struct Cells<'m> {
     pub(super) model: &'m Model,
-    section: &'m Section,
+    profile: &'m Profile,
     geometry: regionalise::Section<'m>,
     pub(super) shapes: &'m [CurveFunction<'m>],
     pub(super) size: f64,
@@ -80,16 +80,16 @@ pub(super) struct Halves {
 impl<'m> Cells<'m> {
     pub(super) fn new(
         model: &'m Model,
-        section: &'m Section,
+        profile: &'m Profile,
         shapes: &'m [CurveFunction<'m>],
         size: f64,
     ) -> Cells<'m> {
-        let inside = section.inner.inner_pieces(&section.separations, shapes);
-        let pieces = inside.into_iter().chain(section.inner.outer_pieces(&section.separations));
+        let inside = profile.inner.inner_pieces(&profile.separations, shapes);
+        let pieces = inside.into_iter().chain(profile.inner.outer_pieces(&profile.separations));
         Cells {
             model,
-            section,
-            geometry: section.inner.section(),
+            profile,
+            geometry: profile.inner.section(),
             shapes,
             size,
             tolerance: 16.0 * f64::EPSILON * size,
@@ -99,7 +99,7 @@ impl<'m> Cells<'m> {
 
     /// Returns pieces whose owners are regions or the outside, and sample points of these.
     pub(super) fn of_regions(&self) -> (Vec<Rc<Piece>>, Vec<Sample>) {
-        let Some(over) = &self.section.over else {
+        let Some(over) = &self.profile.over else {
             let samples = self.pieces.iter().flat_map(|piece| {
                 let points = self.geometry.sample_points(piece).into_iter();
                 points.map(|point| Sample::new(point, piece.owner))
@@ -134,13 +134,13 @@ impl<'m> Cells<'m> {
 
     /// Returns the greatest error at the vertices of a piece if its points are given to an owner.
     pub(super) fn loss(&self, piece: &Piece, owner: Option<usize>) -> f64 {
-        let feature = owner.map(|region| self.section.feature_of(region));
+        let feature = owner.map(|region| self.profile.feature_of(region));
         self.geometry.loss_at_vertices(piece.feature, feature, &piece.vertices)
     }
 
     /// Returns a piece of a part as one of a region: of the given one if that belongs to the part, otherwise of the part's first.
     pub(super) fn as_of_region(&self, piece: &Rc<Piece>, region: Option<usize>) -> Rc<Piece> {
-        let part_of = |region: usize| Some(self.section.feature_of(region));
+        let part_of = |region: usize| Some(self.profile.feature_of(region));
         if piece.feature == region.and_then(part_of) {
             return Rc::new(Piece { owner: region, ..(**piece).clone() });
         }
@@ -194,7 +194,7 @@ impl<'m> Cells<'m> {
                 if low.0 > high.0 { low } else { high }
             }
             Tree::Leaf(owner) => {
-                let feature = owner.map(|region| self.section.feature_of(region));
+                let feature = owner.map(|region| self.profile.feature_of(region));
                 let losses = pieces.iter().map(|piece| {
                     let may_own = |part: &Polygon| {
                         let part = Piece { vertices: part.clone(), ..(**piece).clone() };
@@ -214,9 +214,9 @@ impl<'m> Cells<'m> {
     /// Returns whether a tree has an owner far outside, where there is no piece. The test uses points all around, and points in
     /// thin strips along the lines and normals of the outline.
     pub(super) fn has_owner_far_outside(&self, tree: &Tree) -> bool {
-        let [low, high] = outline::bounding_box(&self.section.outline).map(|end| end[1]);
+        let [low, high] = outline::bounding_box(&self.profile.outline).map(|end| end[1]);
         let mut points = ring_points(low / 2.0 + high / 2.0, self.size);
-        for segment in &self.section.outline {
+        for segment in &self.profile.outline {
             let [from, to] = segment.ends();
             let along = minus(to, from).map(|part| part / norm(minus(to, from)));
             for end in [from, to] {
@@ -230,7 +230,7 @@ impl<'m> Cells<'m> {
 }
 
 fn inseparable_owners(model: &Model, [d, z]: Point) -> Diagnostic {
-    let outline = model.section.iter().flat_map(|section| &section.outline);
+    let outline = model.profile.iter().flat_map(|profile| &profile.outline);
     let outline: Vec<_> = outline.cloned().collect();
     let span = outline::nearest_span(&outline, [d, z]).unwrap_or(model.name_span);
     let z = model.frame.to_file(z);

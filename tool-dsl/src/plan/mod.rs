@@ -9,8 +9,8 @@
 //! sides.
 
 mod cells;
+mod profile;
 mod samples;
-mod section;
 mod signs;
 
 use crate::bound::Extent;
@@ -137,10 +137,10 @@ pub struct PlannedTool {
 /// # Errors
 /// If a tree would have more than [`MAX_TESTS`] tests, or a profile's cells cannot be separated.
 pub(crate) fn plan(mut model: Model, extent: Extent) -> Result<PlannedTool, Diagnostic> {
-    let (tree, deviation) = match &model.section {
+    let (tree, deviation) = match &model.profile {
         None => (by_signs(&model, &extent)?, 0.0),
-        Some(section) => {
-            let plan = section::plan(&model, section)?;
+        Some(profile) => {
+            let plan = profile::plan(&model, profile)?;
             match plan.has_owner_far_outside {
                 true => (limited_to_box(&mut model, &extent, plan.tree), plan.deviation),
                 false => (plan.tree, plan.deviation),

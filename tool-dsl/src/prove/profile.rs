@@ -5,11 +5,11 @@ use crate::plan::{self, PlannedTool};
 /// Returns the greatest difference of a profile's depth from the distance, in the file's unit, if it is proved from the
 /// outline, the regions' depths and the tree alone.
 pub(super) fn proved_deviation(tool: &PlannedTool) -> Option<f64> {
-    let section = tool.model.section.as_ref()?;
-    let (geometry, mut graph) = (section.inner.section(), tool.model.graph.clone());
+    let profile = tool.model.profile.as_ref()?;
+    let (geometry, mut graph) = (profile.inner.section(), tool.model.graph.clone());
     for (index, region) in tool.model.regions.iter().enumerate() {
         // Equal expressions are one node, so this is the distance from the feature.
-        if geometry.depth(&mut graph, section.feature_of(index)) != Some(region.depth) {
+        if geometry.depth(&mut graph, profile.feature_of(index)) != Some(region.depth) {
             return None;
         }
     }

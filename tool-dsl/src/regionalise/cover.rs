@@ -78,7 +78,7 @@ impl Section<'_> {
     }
 
     /// Returns the sides of the normals at a feature's ends toward the feature.
-    pub(super) fn sector_sides(&self, feature: usize) -> Vec<Side> {
+    pub(super) fn sector_sides(&self, feature: usize) -> Vec<HalfPlane> {
         match self.features[feature] {
             Feature::Piece(piece) => {
                 let segment = &self.outline[piece];
@@ -87,15 +87,15 @@ impl Section<'_> {
                     None => {
                         let along = segment.tangent(false);
                         vec![
-                            Side { from, toward: along },
-                            Side { from: to, toward: [-along[0], -along[1]] },
+                            HalfPlane { from, toward: along },
+                            HalfPlane { from: to, toward: [-along[0], -along[1]] },
                         ]
                     }
                     Some((centre, ..)) => {
                         let [start, end] = [segment.tangent(false), segment.tangent(true)];
                         vec![
-                            Side { from: centre, toward: start },
-                            Side { from: centre, toward: [-end[0], -end[1]] },
+                            HalfPlane { from: centre, toward: start },
+                            HalfPlane { from: centre, toward: [-end[0], -end[1]] },
                         ]
                     }
                 }
@@ -106,7 +106,7 @@ impl Section<'_> {
                 ends.map(|(piece, end)| {
                     let along = self.outline[piece].tangent(end == 1);
                     let toward = if end == 1 { along } else { [-along[0], -along[1]] };
-                    Side { from, toward }
+                    HalfPlane { from, toward }
                 })
                 .collect()
             }
@@ -178,7 +178,7 @@ impl Section<'_> {
         }
     }
 
-    pub(super) fn all_within(&self, sides: &[Side], points: &[Point]) -> bool {
+    pub(super) fn all_within(&self, sides: &[HalfPlane], points: &[Point]) -> bool {
         let slack = -self.tolerance();
         sides.iter().all(|side| points.iter().all(|p| side.at(*p) >= slack))
     }
@@ -276,7 +276,7 @@ impl Section<'_> {
                 for end in segment.ends().into_iter().filter(|end| *end != corner) {
                     let from = [0, 1].map(|k| f64::midpoint(corner[k], end[k]));
                     let toward = minus(corner, end);
-                    let side = Side { from, toward: toward.map(|part| part / norm(toward)) };
+                    let side = HalfPlane { from, toward: toward.map(|part| part / norm(toward)) };
                     polygon = clipped(&polygon, &|p| self.rounded(side.at(p)))?;
                 }
             }
@@ -332,7 +332,7 @@ impl Section<'_> {
         is_nearer: &impl Fn(Point) -> f64,
     ) -> Option<Polygon> {
         let sides = self.sector_sides(other);
-        let within = |side: &Side, p: Point| side.at(p) + self.tolerance();
+        let within = |side: &HalfPlane, p: Point| side.at(p) + self.tolerance();
         let is_cut_off =
             |p: Point| is_nearer(p) > 0.0 && sides.iter().all(|side| within(side, p) > 0.0);
         // The vertices that stay span the rest.
@@ -549,12 +549,12 @@ fn anchors(polygon: &Polygon) -> impl Iterator<Item = Point> {
 
 /// A half plane.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Side {
+pub(super) struct HalfPlane {
     from: Point,
     toward: Point,
 }
 
-impl Side {
+impl HalfPlane {
     /// Returns the distance of a point from the border, positive inside.
     pub(super) fn at(&self, p: Point) -> f64 {
         dot(self.toward, minus(p, self.from))
@@ -584,7 +584,7 @@ mod tests {
             lines.join(", ")
         );
         let tool = compile(&Source::new("chords.tool", text)).into_tool().expect("a tool");
-        let profile = tool.model.section.as_ref().expect("a profile");
+        let profile = tool.model.profile.as_ref().expect("a profile");
         let covers = (0..profile.inner.section().features.len()).map(|k| profile.inner.cover_of(k));
         let covers: Vec<_> = covers.collect();
         assert!(covers.iter().all(|cover| cover.len() == 1));
@@ -598,7 +598,7 @@ mod tests {
     #[test]
     fn polygons_cover_what_is_nearest() {
         for tool in library::tools() {
-            let Some(profile) = &tool.model.section else { continue };
+            let Some(profile) = &tool.model.profile else { continue };
             let section = profile.inner.section();
             let covers = (0..section.features.len()).map(|feature| profile.inner.cover_of(feature));
             let covers: Vec<_> = covers.collect();
@@ -617,7 +617,7 @@ mod tests {
                 let distances = section.outline.iter().map(|segment| segment.distance_to(p));
                 let nearest = distances.fold(f64::INFINITY, f64::min);
                 for (feature, cover) in covers.iter().enumerate() {
-                    let is_within = |side: &super::Side| side.at(p) >= 0.0;
+                    let is_within = |side: &super::HalfPlane| side.at(p) >= 0.0;
                     let own = section.depth_at(feature, p);
                     if (own - nearest).abs() > 1e-12
                         || !section.sector_sides(feature).iter().all(is_within)

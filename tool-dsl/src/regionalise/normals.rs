@@ -52,8 +52,8 @@ pub struct Features<'m>(Section<'m>);
 impl<'m> Features<'m> {
     /// Returns the features of a tool whose regions are their cells; `None` if regions are written by hand or smoothed.
     pub fn of(model: &'m Model) -> Option<Features<'m>> {
-        let section = model.section.as_ref().filter(|section| section.over.is_none())?;
-        Some(Features(section.inner.section()))
+        let profile = model.profile.as_ref().filter(|profile| profile.over.is_none())?;
+        Some(Features(profile.inner.section()))
     }
 
     /// Returns the index of each feature's segment; `None` for a reflex corner.
@@ -267,7 +267,7 @@ mod tests {
     #[test]
     fn balls_and_distances_are_those_of_all_features() {
         for tool in library::tools() {
-            let Some(profile) = &tool.model.section else { continue };
+            let Some(profile) = &tool.model.profile else { continue };
             let mut section = Section::new(&profile.outline);
             for feature in 0..section.features.len() {
                 for k in 0..=20 {

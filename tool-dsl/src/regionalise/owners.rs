@@ -9,19 +9,19 @@ use crate::model;
 /// The owners of the points of a profile.
 #[derive(Clone, Debug)]
 pub(crate) struct Owners<'m> {
-    section: &'m model::Section,
+    profile: &'m model::Profile,
     inner: Section<'m>,
     /// The outline with rounded corners, if directions are taken from it.
     rounded: Option<Section<'m>>,
 }
 
 impl<'m> Owners<'m> {
-    pub(crate) fn new(section: &'m model::Section) -> Owners<'m> {
-        let rounded = section.over.as_ref().and_then(|over| match &over.division {
+    pub(crate) fn new(profile: &'m model::Profile) -> Owners<'m> {
+        let rounded = profile.over.as_ref().and_then(|over| match &over.division {
             Division::Rounded(rounded) => Some(rounded.partition.section()),
             Division::Conditions(_) => None,
         });
-        Owners { section, inner: section.inner.section(), rounded }
+        Owners { profile, inner: profile.inner.section(), rounded }
     }
 
     /// Returns the region of a point where the curves have these values; `None` outside. Of features that are equally near,
@@ -32,7 +32,7 @@ impl<'m> Owners<'m> {
         value: &mut impl FnMut(CurveIndex) -> f64,
     ) -> Option<usize> {
         let part = self.inner.owner_at(p)?;
-        let Some(over) = &self.section.over else { return Some(part) };
+        let Some(over) = &self.profile.over else { return Some(part) };
         let condition = match (&over.division, &self.rounded) {
             (Division::Conditions(conditions), _) => {
                 conditions.iter().position(|condition| condition.holds(value))

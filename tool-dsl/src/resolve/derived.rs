@@ -17,7 +17,7 @@ use crate::domain::Domain;
 use crate::expr::{Coord, Graph, Id};
 use crate::formula::Formula;
 use crate::geometry::outline::Segment;
-use crate::model::{DirectionSource, Model, Over, Region, Section, Surface};
+use crate::model::{DirectionSource, Model, Over, Profile, Region, Surface};
 use crate::regionalise::overlay::{self, ConditionedPart, Division, Overlay};
 use crate::regionalise::rounded::Rounded;
 use crate::regionalise::smooth::{self, Origin, Rough};
@@ -30,7 +30,7 @@ use crate::syntax::tree::{self, Expr, Quantity};
 pub(super) struct FromProfile {
     pub(super) surfaces: Vec<Surface>,
     pub(super) regions: Vec<Region>,
-    pub(super) section: Option<Section>,
+    pub(super) profile: Option<Profile>,
 }
 
 /// A part of the inside, in which one feature is nearest.
@@ -76,7 +76,7 @@ pub(super) fn derived(
     add_lines_through_corners(&outline.segments, curves, &mut lowering.graph);
     let mut register = |graph: &mut Graph, test: &Test| formula(test, curves, graph);
     let separations = inner.separations(&mut lowering.graph, &mut register);
-    let mut section = Section { outline: outline.segments.clone(), inner, separations, over: None };
+    let mut profile = Profile { outline: outline.segments.clone(), inner, separations, over: None };
     let mut regions = Vec::new();
     let before = diagnostics.len();
     let conditions = divider.conditions(&outline, lowering, curves, diagnostics);
@@ -92,26 +92,26 @@ pub(super) fn derived(
             }
         }
         Some(Conditions { division, kinds }) if diagnostics.len() == before => {
-            let over = section.over.insert(Over { division, regions: Vec::new() });
+            let over = profile.over.insert(Over { division, regions: Vec::new() });
             let formulas = match &over.division {
                 Division::Conditions(formulas) => formulas.clone(),
                 Division::Rounded(_) => vec![Formula::Const(true); kinds.len()],
             };
             let divided =
-                conditioned_parts(&kinds, (&section, outline.span), curves, lowering, diagnostics);
+                conditioned_parts(&kinds, (&profile, outline.span), curves, lowering, diagnostics);
             for ConditionedPart { part, condition } in &divided {
                 let (part, formula) = (&parts[*part], formulas[*condition].clone());
                 let surfaces = &outline.surfaces;
                 let kind = &kinds[*condition];
                 regions.extend(kind.region(part, formula, surfaces, laws, lowering, diagnostics));
             }
-            if let Some(over) = &mut section.over {
+            if let Some(over) = &mut profile.over {
                 over.regions = divided;
             }
         }
         Some(_) => {}
     }
-    FromProfile { surfaces: outline.surfaces, regions, section: Some(section) }
+    FromProfile { surfaces: outline.surfaces, regions, profile: Some(profile) }
 }
 
 /// Returns a model whose profile is divided again, from its outline alone. Curves of the partition that the model does not have
@@ -120,9 +120,9 @@ pub(crate) fn partitioned_anew(model: &Model) -> Option<Model> {
     let mut model = model.clone();
     let mut curves = Curves::of(std::mem::take(&mut model.curves), &model.graph);
     let mut register = |graph: &mut Graph, test: &Test| formula(test, &mut curves, graph);
-    let section = model.section.as_mut()?;
-    section.inner = Partition::new(section.outline.clone());
-    section.separations = section.inner.separations(&mut model.graph, &mut register);
+    let profile = model.profile.as_mut()?;
+    profile.inner = Partition::new(profile.outline.clone());
+    profile.separations = profile.inner.separations(&mut model.graph, &mut register);
     model.curves = curves.list;
     Some(model)
 }
@@ -398,17 +398,17 @@ fn fans<'t>(
 /// Returns the parts and conditions that have points in common, and reports gaps, overlaps and regions without points.
 fn conditioned_parts(
     kinds: &[Kind<'_>],
-    (section, outline_span): (&Section, Span),
+    (profile, outline_span): (&Profile, Span),
     curves: &Curves,
     lowering: &Lowering,
     diagnostics: &mut Vec<Diagnostic>,
 ) -> Vec<ConditionedPart> {
-    let Some(over) = &section.over else { return Vec::new() };
-    let (shapes, size) = section.functions(&lowering.graph, &curves.list);
-    let pieces = section.inner.inner_pieces(&section.separations, &shapes);
+    let Some(over) = &profile.over else { return Vec::new() };
+    let (shapes, size) = profile.functions(&lowering.graph, &curves.list);
+    let pieces = profile.inner.inner_pieces(&profile.separations, &shapes);
     let divider = overlay::Divider::new(&over.division, &shapes, size);
     let Overlay { parts, uncovered, doubly_covered } =
-        Overlay::new(&section.inner.section(), pieces, &divider);
+        Overlay::new(&profile.inner.section(), pieces, &divider);
     let formatted =
         |[d, z]: [f64; 2]| Domain::HalfPlane.format_point([d, 0.0, lowering.frame.to_file(z)]);
     if let Some(p) = uncovered {

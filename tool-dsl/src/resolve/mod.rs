@@ -79,7 +79,7 @@ pub fn resolve(
         }
     });
     let mut without_shape = misplaced_item;
-    let FromProfile { surfaces, regions, section } = match outlined {
+    let FromProfile { surfaces, regions, profile } = match outlined {
         Some(Ok(Outlined { outline, niceness_by_surface })) => {
             let laws = Laws::new(&laws, niceness_by_surface);
             let divider = divider(tool, diagnostics);
@@ -94,7 +94,7 @@ pub fn resolve(
             let laws = Laws::new(&laws, BTreeMap::new());
             let (surfaces, regions) =
                 region::regions(tool, &laws, &mut lowering, &mut curves, diagnostics);
-            FromProfile { surfaces, regions, section: None }
+            FromProfile { surfaces, regions, profile: None }
         }
     };
     let first = first_curves(tool, &mut lowering, &mut curves, diagnostics);
@@ -119,7 +119,7 @@ pub fn resolve(
         surfaces,
         regions,
         first_curves: first,
-        section,
+        profile,
     })
 }
 

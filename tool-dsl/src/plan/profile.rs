@@ -9,7 +9,7 @@ use crate::diagnostic::Diagnostic;
 use crate::formula::{CurveIndex, NEGATIVE, POSITIVE, Signs};
 use crate::geometry::outline::{Point, dot, minus, norm};
 use crate::geometry::polygon::width;
-use crate::model::{Model, Section};
+use crate::model::{Model, Profile};
 use crate::regionalise::pieces::Piece;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -24,18 +24,18 @@ const REPEATED_TEST_COST_FACTOR: f64 = 0.3;
 /// The difference of distances, in sizes, that a tree need not decide: rounding.
 const INDIFFERENCE: f64 = 1e-13;
 
-/// The plan of a section.
-pub(super) struct SectionPlan {
+/// The plan of a profile.
+pub(super) struct ProfilePlan {
     pub(super) tree: Tree,
     /// The greatest difference of the tree's depths from the distance.
     pub(super) deviation: f64,
     pub(super) has_owner_far_outside: bool,
 }
 
-/// Plans a section.
-pub(super) fn plan(model: &Model, section: &Section) -> Result<SectionPlan, Diagnostic> {
-    let (shapes, size) = section.functions(&model.graph, &model.curves);
-    let cells = Cells::new(model, section, &shapes, size);
+/// Plans a profile.
+pub(super) fn plan(model: &Model, profile: &Profile) -> Result<ProfilePlan, Diagnostic> {
+    let (shapes, size) = profile.functions(&model.graph, &model.curves);
+    let cells = Cells::new(model, profile, &shapes, size);
     let (pieces, samples) = cells.of_regions();
     let mut planner = Planner {
         cells: &cells,
@@ -46,13 +46,13 @@ pub(super) fn plan(model: &Model, section: &Section) -> Result<SectionPlan, Diag
     };
     let tree = planner.tree(&pieces, &planner.samples.all(), planner.candidates())?;
     // A part's regions may leave out points of it, whose region does not matter but whose depth does.
-    let tree = match section.over {
+    let tree = match profile.over {
         Some(_) => planner.mended(tree, &cells.pieces)?,
         None => tree,
     };
     let deviation = cells.deviation(&tree)?;
     let has_owner_far_outside = cells.has_owner_far_outside(&tree);
-    Ok(SectionPlan { tree, deviation, has_owner_far_outside })
+    Ok(ProfilePlan { tree, deviation, has_owner_far_outside })
 }
 
 /// The search for a tree of few tests.
