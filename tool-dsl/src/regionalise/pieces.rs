@@ -100,8 +100,7 @@ impl Partition {
             }
             if let Some(test) = section.nearer(graph, a, b) {
                 let formula = register(graph, &test);
-                let (feature, other) = (b, a);
-                nearer.push(Nearness { feature, other, formula: formula.opposite() });
+                nearer.push(Nearness { feature: b, other: a, formula: formula.opposite() });
                 nearer.push(Nearness { feature: a, other: b, formula });
             }
         }
@@ -147,7 +146,7 @@ impl Partition {
         }
     }
 
-    /// Returns pairs of features whose polygons touch.
+    /// Returns pairs of features whose polygons touch, the first listed first.
     fn neighbours(&self, section: &Section<'_>) -> Vec<[usize; 2]> {
         let tolerance = TOUCHING_FRACTION * section.size;
         let mut neighbours = Vec::new();
@@ -155,7 +154,7 @@ impl Partition {
             for (b, other) in self.covers[..a].iter().enumerate() {
                 let mut pairs = cover.iter().flat_map(|p| other.iter().map(move |q| (p, q)));
                 if pairs.any(|(p, q)| do_touch(p, q, tolerance)) {
-                    neighbours.push([a, b]);
+                    neighbours.push([b, a]);
                 }
             }
         }
