@@ -7,7 +7,7 @@ use super::section::{Feature, Section};
 use crate::expr::Graph;
 use crate::formula::{CurveIndex, Formula, NEGATIVE, POSITIVE, Signs};
 use crate::geometry::function::{CurveFunction, Distance};
-use crate::geometry::outline::{Point, bounding_box, cross, minus, turn};
+use crate::geometry::outline::{Point, bounding_box, cross, minus};
 use crate::geometry::polygon::{
     Polygon, area, centroid, clipped, divided, do_touch, halved, width,
 };
@@ -104,14 +104,15 @@ impl Partition {
                 nearer.push(Nearness { feature: a, other: b, formula });
             }
         }
-        // Beyond the normals at a convex corner the border of an arc that ends there says nothing.
-        for (piece, pair) in self.outline.windows(2).enumerate() {
-            let turned = turn(pair[0].tangent(true), pair[1].tangent(false));
-            if turned > 0.0 && pair.iter().any(|segment| segment.circle.is_some()) {
-                for (piece, end) in [(piece, 1), (piece + 1, 0)] {
-                    if let Some(test) = section.before(graph, piece, end) {
-                        register(graph, &test);
-                    }
+        // Beyond the normal at its end the border of an arc says nothing.
+        let is_arc =
+            |piece: usize| self.outline.get(piece).is_some_and(|segment| segment.circle.is_some());
+        for piece in 0..self.outline.len() {
+            for (end, next) in [(0, piece.checked_sub(1)), (1, Some(piece + 1))] {
+                if (is_arc(piece) || next.is_some_and(is_arc))
+                    && let Some(test) = section.before(graph, piece, end)
+                {
+                    register(graph, &test);
                 }
             }
         }
