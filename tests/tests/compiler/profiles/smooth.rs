@@ -323,6 +323,13 @@ fn fans_are_the_rounded_profiles() {
             0.3,
             of_arcs,
         ),
+        // A hollow tip at the top, where a border follows the normal at the arc's end on the axis.
+        (
+            "0 0, 3.101 0, 3.416 0.7, 3.445 2.827 radius 4.526, 3.345 5.698 hollow radius 6.598,
+             1.708 8.106 hollow radius 3.436, 0 9.106 hollow radius 4.232",
+            0.0384,
+            of_arcs,
+        ),
     ] {
         let outline = Outline::parse(vertices);
         let pair = profile(&outline, w);
