@@ -139,15 +139,11 @@ impl<'m> Cells<'m> {
     }
 
     /// Returns a piece of a part as one of a region: of the given one if that belongs to the part, otherwise of the part's first.
-    pub(super) fn as_of_region(&self, piece: &Rc<Piece>, region: Option<usize>) -> Rc<Piece> {
-        let part_of = |region: usize| Some(self.profile.feature_of(region));
-        if piece.feature == region.and_then(part_of) {
-            return Rc::new(Piece { owner: region, ..(**piece).clone() });
-        }
-        let owner = piece.feature.and_then(|_| {
-            (0..self.model.regions.len()).find(|region| part_of(*region) == piece.feature)
-        });
-        Rc::new(Piece { owner, ..(**piece).clone() })
+    pub(super) fn as_of_region(&self, piece: &Piece, region: Option<usize>) -> Rc<Piece> {
+        let is_of_part = |region: &usize| Some(self.profile.feature_of(*region)) == piece.feature;
+        let owner =
+            region.filter(is_of_part).or_else(|| (0..self.model.regions.len()).find(is_of_part));
+        Rc::new(Piece { owner, ..piece.clone() })
     }
 
     /// Returns the parts of pieces on the two sides of a curve.

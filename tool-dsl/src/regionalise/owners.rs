@@ -33,13 +33,11 @@ impl<'m> Owners<'m> {
     ) -> Option<usize> {
         let part = self.inner.owner_at(p)?;
         let Some(over) = &self.profile.over else { return Some(part) };
-        let condition = match (&over.division, &self.rounded) {
-            (Division::Conditions(conditions), _) => {
+        let condition = match &over.division {
+            Division::Conditions(conditions) => {
                 conditions.iter().position(|condition| condition.holds(value))
             }
-            (Division::Rounded(_), rounded) => {
-                rounded.as_ref().and_then(|rounded| rounded.nearest_segment(p))
-            }
+            Division::Rounded(_) => self.rounded.as_ref()?.nearest_segment(p),
         };
         let regions = &over.regions;
         let own = condition.and_then(|condition| {
