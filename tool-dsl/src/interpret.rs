@@ -1,8 +1,7 @@
 //! The reference interpreter: evaluation by the rule of the text. Regions by hand are asked in the order of the list; with a
 //! profile, the nearest of all features has the point.
 //!
-//! It shares nothing with generated code and with the runtime's evaluator of tools, which descend the plan's tree and are tested
-//! against it. All perform the same operations with one rounding each, once the owner is known. The reference may have another
+//! It has no tree. Generated code and the runtime's evaluator of tools, which descend the plan's tree, are tested against it. All perform the same operations with one rounding each, once the owner is known. The reference may have another
 //! owner within rounding of a border: there a test that the plan left out, because it cannot fail, would fail by rounding, and
 //! distances are compared in another form.
 

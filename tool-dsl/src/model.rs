@@ -24,7 +24,7 @@
 //!   undefined, none of its atoms holds.
 //! - **Ownership.** A point belongs to the first of [`Model::regions`] whose [`Region::condition`] holds. With a
 //!   `Profile` it belongs to the nearest feature of the profile and, if that is divided further, to the first
-//!   condition that holds there: see [`crate::regionalise::owners`]. The solid is the set of points that belong to a
+//!   condition that holds there or to the nearest segment of the rounded outline: see [`crate::regionalise::owners`]. The solid is the set of points that belong to a
 //!   region.
 //! - **Depth.** [`RegionOutputs::depth`] of the owner is `max(0, depth)`. With a `Profile` it is the distance
 //!   to the solid's surface. For regions written by hand it is the file's expression, and `prove` bounds it
@@ -55,7 +55,7 @@
 //! | `checked` (`finite`) | constants that code needs are finite doubles | `checked::finite` |
 //! | `bound` | [`Extent`](crate::bound::Extent): the solid lies in a box and a cylinder, is bounded, and is not empty. [`EnvelopeSlab`](crate::bound::EnvelopeSlab): its largest radius between two heights | interval branch and bound; a profile's segments in closed form |
 //! | `lint` | nothing. It refutes overlapping owners, regions that own nothing, depths below 0 or above 0 on the surface, undefined values, and a misplaced tip, each with a counterexample | samples |
-//! | `plan` | `PlannedTool::tree` gives each point the owner that the list of regions gives it | by signs: `plan::signs` proves which sides need no test; of a profile: `plan::profile` follows every piece to the leaves |
+//! | `plan` | `PlannedTool::tree` gives each point the owner that the rule of the text gives it | by signs: `plan::signs` proves which sides need no test; of a profile: `plan::profile` follows every piece to the leaves |
 //! | | trees have at most 20,000 tests | `plan::MAX_TESTS` |
 //! | `prove` | [`Bounds`](crate::prove::Bounds) of the depth by the distance: for a profile 1 and 1 by construction, which `touchoff check` proves; for regions by hand the bounds that a few thousand boxes prove | `docs/proofs.md` |
 //! | | depth jumps at no point that was found | enclosures of both depths there |
@@ -136,7 +136,7 @@ pub struct Model {
     pub graph: Graph,
     /// The position of the file's coordinates in the tool's frame.
     pub frame: Frame,
-    /// The splitting curves: every curve whose sign a region depends on.
+    /// The splitting curves: every curve whose sign a region depends on, and those that a plan may split a profile by.
     pub curves: Vec<Curve>,
     /// The surfaces.
     pub surfaces: Vec<Surface>,
@@ -164,6 +164,7 @@ pub(crate) struct Profile {
 /// The further division of the inside's parts: by regions by hand, or by the fans of smoothed corners.
 #[derive(Clone, Debug)]
 pub(crate) struct Over {
+    /// What divides them.
     pub(crate) division: Division,
     /// The part and the condition of each region.
     pub(crate) regions: Vec<ConditionedPart>,

@@ -68,12 +68,19 @@ pub(crate) fn model(model: &Model) -> Result<(), Broken> {
     let Some(profile) = &model.profile else { return Ok(()) };
     profile.outline.iter().try_for_each(|segment| surface(segment.surface))?;
     outline(profile)?;
-    let Some(over) = &profile.over else { return Ok(()) };
+    let count = model.regions.len();
+    let features = profile.inner.section().features().len();
+    let Some(over) = &profile.over else {
+        return if count == features { Ok(()) } else { Err(Broken::Region { index: count }) };
+    };
+    if over.regions.len() != count {
+        return Err(Broken::Region { index: count });
+    }
     if let Division::Conditions(formulas) = &over.division {
         formulas.iter().try_for_each(|condition| formula(model, condition))?;
     }
-    for ConditionedPart { condition, .. } in &over.regions {
-        if *condition >= over.division.count() {
+    for ConditionedPart { part, condition } in &over.regions {
+        if *condition >= over.division.count() || *part >= features {
             return Err(Broken::Region { index: *condition });
         }
     }

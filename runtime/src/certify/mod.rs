@@ -706,14 +706,14 @@ fn penetration(
     let PenetrationGoal { tolerance, threshold, budget } = goal;
     // Written so that a NaN tolerance is replaced.
     let tolerance = (4.0 * setting.error).max(tolerance / setting.length);
-    let threshold = setting.error.max(threshold);
-    let goal = Goal { threshold, tolerance, stop_depth: f64::INFINITY, budget };
+    let least = setting.error.max(threshold);
+    let goal = Goal { threshold: least, tolerance, stop_depth: f64::INFINITY, budget };
     state.inside(setting, query, pose, goal);
     let more = setting.error + state.search.skew;
     let (low, high) = match state.best {
         // Slabs are widened by the error, so a point outside may be measured as that deep.
         Some(_) => (state.search.best - more - setting.error, state.search.best + tolerance),
-        None => (0.0, threshold),
+        None => (0.0, least),
     };
     let high = if state.descent.started() { high.max(state.search.open_bound) + more } else { 0.0 };
     Penetration {

@@ -407,12 +407,12 @@ impl MotionSearch<'_, '_> {
             let Interval { low, high } = best.depth;
             let gap = self.tolerance.max(gap_fraction * (high - limit));
             // One half is for the tolerance of the sweep, the other for the gain of each round.
-            let swept = (low + 0.5 * gap).max(limit);
-            if swept + 0.5 * gap >= self.max_depth {
+            let swept_limit = (low + 0.5 * gap).max(limit);
+            if swept_limit + 0.5 * gap >= self.max_depth {
                 break;
             }
-            match self.sweep(swept, 0.5 * gap, self.budget / BUDGET_DIVISOR) {
-                None => return (best, high.max(swept + 0.5 * gap)),
+            match self.sweep(swept_limit, 0.5 * gap, self.budget / BUDGET_DIVISOR) {
+                None => return (best, high.max(swept_limit + 0.5 * gap)),
                 // Near the limit a sweep is slow: a coarser limit needs less of the budget.
                 Some(SweepEnd::Spent { .. }) => gap_fraction *= 4.0,
                 Some(SweepEnd::Deeper { at, .. }) => match self.peak_at(at, low) {
@@ -496,8 +496,12 @@ impl MotionSearch<'_, '_> {
             return found.witness.map(|witness| DepthPeak { depth, at, witness });
         }
         setting.set_pose(state, &pose);
-        let threshold = query.limit.max(threshold);
-        let goal = Goal { threshold, tolerance, stop_depth: f64::INFINITY, budget };
+        let goal = Goal {
+            threshold: query.limit.max(threshold),
+            tolerance,
+            stop_depth: f64::INFINITY,
+            budget,
+        };
         state.outside(setting, query, &pose, goal);
         let best = state.best?;
         let found = state.search.best;

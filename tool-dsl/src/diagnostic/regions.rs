@@ -128,7 +128,7 @@ kinds! {
         "too many segments for `regions smooth`"
         message "`regions smooth` with more than {limit} segments"
         help "write `regions nearest;`, or replace many short lines by arcs"
-        explain "The compiler intersects the cells of each corner with those of each segment, which would take minutes."
+        explain "The compiler intersects the cells of the rounded profile with those of the profile, which would take minutes."
         without "an example would have hundreds of segments";
     error T0422 DepthBesideProfile
         "depth beside a profile"

@@ -68,7 +68,7 @@ pub fn regions(tool: &CheckedTool) -> String {
         // Writing to a String does not fail.
         let surface = &model.surfaces[region.surface].name;
         let _ = writeln!(text, "region {} as {surface}", region.name);
-        let nearest = model.profile.as_ref().map(|profile| nearest_features(profile, index));
+        let nearest = model.profile.as_ref().map(|profile| nearest_feature(profile, index));
         let stated =
             (region.condition != Formula::Const(true)).then(|| condition(tool, &region.condition));
         let conditions: Vec<String> = nearest.into_iter().chain(stated).collect();
@@ -87,8 +87,8 @@ pub fn regions(tool: &CheckedTool) -> String {
     text
 }
 
-/// Says to what the points of a region of a profile are nearest.
-fn nearest_features(profile: &Profile, region: usize) -> String {
+/// Returns the words for what the points of a region of a profile are nearest to.
+fn nearest_feature(profile: &Profile, region: usize) -> String {
     let nearest = match profile.inner.section().features()[profile.feature_of(region)] {
         Feature::Piece(segment) => format!("nearest to segment {}", segment + 1),
         Feature::Corner(Some(segment)) => {

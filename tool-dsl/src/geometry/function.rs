@@ -1,7 +1,7 @@
 //! Curves of the section as functions in doubles.
 
-use super::outline::{Point, Segment, bounding_box, cross, dot, minus, norm};
-use super::polygon::{Polygon, range};
+use super::outline::{Point, Segment, bounding_box, dot, minus, norm};
+use super::polygon::{Polygon, contains, range};
 use crate::expr::polynomial::Polynomials;
 use crate::expr::value::{EvaluationPoint, Evaluator};
 use crate::expr::{Graph, Id};
@@ -202,7 +202,12 @@ impl<'g> CurveFunction<'g> {
         let (middle, c) = match self {
             CurveFunction::Conic { middle, factors } => (middle, factors),
             CurveFunction::Other { distances: Some(distances), .. } => {
-                let [first, second] = distances.map(|distance| distance.range_over(polygon));
+                let mut ranges = distances.map(|distance| distance.range_over(polygon));
+                // Two features may be compared by their squared distances, which have no sign.
+                if !distances.iter().any(|distance| matches!(distance, Distance::None)) {
+                    ranges = ranges.map(|[low, high]| [low, high.max(-low)]);
+                }
+                let [first, second] = ranges;
                 return [first[0] - second[1], first[1] - second[0]];
             }
             CurveFunction::Other { .. } => return [f64::NEG_INFINITY, f64::INFINITY],
@@ -257,16 +262,6 @@ impl<'g> CurveFunction<'g> {
     pub(crate) fn below(&self, p: Point) -> bool {
         self.value(p) <= 0.0
     }
-}
-
-/// Returns whether a point is in a convex polygon.
-fn contains(polygon: &[Point], p: Point) -> bool {
-    let sides = (0..polygon.len()).map(|k| {
-        let next = polygon[(k + 1) % polygon.len()];
-        cross(minus(next, polygon[k]), minus(p, polygon[k]))
-    });
-    let [low, high] = range(&sides.collect::<Vec<f64>>());
-    low >= 0.0 || high <= 0.0
 }
 
 fn between(a: Point, b: Point, t: f64) -> Point {

@@ -79,6 +79,16 @@ pub(crate) fn hull(mut points: Vec<Point>) -> Polygon {
     hull
 }
 
+/// Returns whether a point is in a convex polygon.
+pub(crate) fn contains(polygon: &[Point], p: Point) -> bool {
+    let sides = (0..polygon.len()).map(|k| {
+        let next = polygon[(k + 1) % polygon.len()];
+        cross(minus(next, polygon[k]), minus(p, polygon[k]))
+    });
+    let [low, high] = range(&sides.collect::<Vec<f64>>());
+    low >= 0.0 || high <= 0.0
+}
+
 /// Returns the area of a polygon.
 pub(crate) fn area(polygon: &Polygon) -> f64 {
     let fan = polygon.windows(2);

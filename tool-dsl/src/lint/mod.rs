@@ -222,7 +222,7 @@ impl<'m> Linter<'m> {
         let [x, y, z] = point;
         let (model, evaluator) = (self.model, self.evaluator.get_mut());
         let mut value = |curve: CurveIndex| evaluator.get(model.curves[curve].value);
-        owners.region_at([x.hypot(y), z], &mut value)
+        owners.region_at([(x * x + y * y).sqrt(), z], &mut value)
     }
 
     /// Returns whether some region has a point.

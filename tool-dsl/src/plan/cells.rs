@@ -10,7 +10,7 @@ use crate::geometry::outline::{self, Point, minus, norm};
 use crate::geometry::polygon::{Polygon, centroid};
 use crate::model::{Model, Profile};
 use crate::regionalise;
-use crate::regionalise::overlay::{ConditionedPart, Divider};
+use crate::regionalise::overlay::{ConditionedPart, PieceDivider};
 use crate::regionalise::pieces::Piece;
 use crate::resolve::partitioned_anew;
 use std::rc::Rc;
@@ -106,7 +106,7 @@ impl<'m> Cells<'m> {
             });
             return (self.pieces.clone(), samples.collect());
         };
-        let divider = Divider::new(&over.division, self.shapes, self.size);
+        let divider = PieceDivider::new(&over.division, self.shapes, self.size);
         let (mut pieces, mut samples) = (Vec::new(), Vec::new());
         for piece in &self.pieces {
             let points = self.geometry.sample_points(piece).into_iter();

@@ -2,7 +2,7 @@
 //!
 //! Every test sends the zeros of a curve to one side, that of the region listed earlier. If both sides need
 //! them, the curve is split once more. A side that provably has no point is not tested (`empty`). A tree
-//! therefore gives every point the owner that the list of regions gives it, in real arithmetic; a test that
+//! therefore gives every point the owner that the rule of the text gives it, in real arithmetic; a test that
 //! is left out can no longer fail by rounding. Only the order of the tests is free. It is chosen greedily by
 //! the information that tests give about samples of the domain, with cheap curves preferred and the curves of
 //! `bsp` first. Where samples tell nothing about the cells of a profile, it is chosen by the cells that are left on both

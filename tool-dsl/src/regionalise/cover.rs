@@ -47,7 +47,7 @@ impl Section<'_> {
     }
 
     /// Returns a difference of distances, or 0 if rounding decides its sign: a cut along a side would only multiply vertices.
-    fn rounded(&self, difference: f64) -> f64 {
+    fn without_rounding(&self, difference: f64) -> f64 {
         if difference.abs() <= self.tolerance() { 0.0 } else { difference }
     }
 
@@ -277,7 +277,7 @@ impl Section<'_> {
                     let from = [0, 1].map(|k| f64::midpoint(corner[k], end[k]));
                     let toward = minus(corner, end);
                     let side = HalfPlane { from, toward: toward.map(|part| part / norm(toward)) };
-                    polygon = clipped(&polygon, &|p| self.rounded(side.at(p)))?;
+                    polygon = clipped(&polygon, &|p| self.without_rounding(side.at(p)))?;
                 }
             }
             // Behind a line, the line itself is nearer.
@@ -297,7 +297,7 @@ impl Section<'_> {
             let (low, is_linear) = self.low(feature, at);
             let (high, other_is_linear) = self.high(other, at);
             let above = |p: &Point| low.at(*p) - high.at(*p) - slack.max(0.0);
-            let difference = polygon.iter().map(|p| self.rounded(above(p)));
+            let difference = polygon.iter().map(|p| self.without_rounding(above(p)));
             let difference: Vec<f64> = difference.collect();
             let [least, most] = range(&difference);
             // Both are exact at the first point, so that this one is far from the border.
@@ -311,7 +311,7 @@ impl Section<'_> {
                 return None;
             }
             if is_linear && other_is_linear {
-                let is_nearer = |p: Point| self.rounded(above(&p));
+                let is_nearer = |p: Point| self.without_rounding(above(&p));
                 polygon = self.without(feature, other, polygon, &is_nearer)?;
             }
             // The distances from straight segments are exact everywhere.

@@ -1,11 +1,13 @@
 //! Divides the pieces of parts further: by conditions, or by the nearest segments of the rounded outline.
 
 use super::pieces::Piece;
-use super::rounded::Rounded;
+use super::rounded::{Rounded, RoundedSection};
 use super::section::Section;
 use crate::formula::{Formula, Signs};
 use crate::geometry::function::CurveFunction;
 use crate::geometry::outline::Point;
+use crate::geometry::polygon::area;
+use std::collections::BTreeMap;
 
 /// A further division of the parts of a profile's inside.
 #[derive(Clone, Debug)]
@@ -34,7 +36,7 @@ pub(crate) struct ConditionedPart {
 }
 
 /// A division with the curves of the tool.
-pub(crate) enum Divider<'a> {
+pub(crate) enum PieceDivider<'a> {
     Conditions(Conditions<'a>),
     Rounded(RoundedPieces<'a>),
 }
@@ -49,24 +51,24 @@ pub(crate) struct Conditions<'a> {
 
 /// The pieces of a rounded outline, with the curves between them.
 pub(crate) struct RoundedPieces<'a> {
-    section: Section<'a>,
+    section: RoundedSection<'a>,
     pieces: Vec<Piece>,
     shapes: &'a [CurveFunction<'a>],
 }
 
-impl<'a> Divider<'a> {
+impl<'a> PieceDivider<'a> {
     /// Prepares a division; `size` is the size of the section.
     pub(crate) fn new(
         division: &'a Division,
         shapes: &'a [CurveFunction<'a>],
         size: f64,
-    ) -> Divider<'a> {
+    ) -> PieceDivider<'a> {
         match division {
             Division::Conditions(formulas) => {
-                Divider::Conditions(Conditions { formulas, shapes, size })
+                PieceDivider::Conditions(Conditions { formulas, shapes, size })
             }
-            Division::Rounded(rounded) => Divider::Rounded(RoundedPieces {
-                section: rounded.partition.section(),
+            Division::Rounded(rounded) => PieceDivider::Rounded(RoundedPieces {
+                section: RoundedSection::new(rounded),
                 pieces: rounded.pieces(shapes),
                 shapes,
             }),
@@ -77,8 +79,8 @@ impl<'a> Divider<'a> {
     /// `None` where none holds.
     pub(crate) fn divided(&self, piece: Piece, tolerance: f64) -> Vec<(Piece, Option<usize>)> {
         match self {
-            Divider::Conditions(conditions) => conditions.divided(piece, tolerance),
-            Divider::Rounded(rounded) => {
+            PieceDivider::Conditions(conditions) => conditions.divided(piece, tolerance),
+            PieceDivider::Rounded(rounded) => {
                 let common = rounded.pieces.iter().filter_map(|other| {
                     let common = piece.common(other, rounded.shapes, tolerance)?;
                     Some((common, other.owner))
@@ -91,8 +93,8 @@ impl<'a> Divider<'a> {
     /// Returns the first condition that holds at a point, if rounding does not decide about it.
     pub(crate) fn first_at(&self, p: Point) -> Option<usize> {
         match self {
-            Divider::Conditions(conditions) => conditions.first_at(p),
-            Divider::Rounded(rounded) => rounded.section.certainly_nearest_segment(p),
+            PieceDivider::Conditions(conditions) => conditions.first_at(p),
+            PieceDivider::Rounded(rounded) => rounded.section.certainly_nearest(p),
         }
     }
 }
@@ -155,27 +157,43 @@ pub(crate) struct Overlay {
 }
 
 impl Overlay {
-    /// Intersects conditions with the pieces of parts. What pieces have in common counts if a sampled point of it does.
-    pub(crate) fn new(section: &Section<'_>, pieces: Vec<Piece>, divider: &Divider<'_>) -> Overlay {
+    /// Intersects conditions with the pieces of parts. What pieces have in common counts if a sampled point of it does, and the
+    /// largest one of a part without sampled points.
+    pub(crate) fn new(
+        section: &Section<'_>,
+        pieces: Vec<Piece>,
+        divider: &PieceDivider<'_>,
+    ) -> Overlay {
         let mut overlay = Overlay { parts: Vec::new(), uncovered: None, doubly_covered: None };
-        for piece in pieces {
-            let Some(part) = piece.owner else { continue };
-            for (piece, first) in divider.divided(piece, section.tolerance()) {
+        let mut largest: BTreeMap<usize, (f64, ConditionedPart)> = BTreeMap::new();
+        for whole in pieces {
+            let Some(part) = whole.owner else { continue };
+            for (piece, first) in divider.divided(whole, section.tolerance()) {
+                let first = first.map(|condition| ConditionedPart { part, condition });
                 let mut points: Vec<Point> =
                     section.sample_points(&piece).into_iter().map(|(p, _)| p).collect();
                 // A part of the piece may be small.
-                let is_known =
-                    |condition| overlay.parts.contains(&ConditionedPart { part, condition });
-                if first.is_none_or(|condition| !is_known(condition)) {
+                if first.is_none_or(|first| !overlay.parts.contains(&first)) {
                     points.extend(section.owned_points(&piece));
                 }
                 for p in points {
-                    if let Divider::Conditions(conditions) = divider {
+                    if let PieceDivider::Conditions(conditions) = divider {
                         overlay.look_for_gaps_and_overlaps(conditions, p);
                     }
                     let condition = divider.first_at(p);
                     overlay.add(condition.map(|condition| ConditionedPart { part, condition }));
                 }
+                let size = area(&piece.vertices);
+                if let Some(first) = first
+                    && largest.get(&part).is_none_or(|(known, _)| size > *known)
+                {
+                    largest.insert(part, (size, first));
+                }
+            }
+        }
+        for (part, (_, first)) in largest {
+            if overlay.parts.iter().all(|known| known.part != part) {
+                overlay.parts.push(first);
             }
         }
         overlay.parts.sort_by_key(|part| (part.condition, part.part));

@@ -1,6 +1,8 @@
-//! The owner of a point by the rule of the text: the nearest feature of the profile, and what divides its cell further.
+//! The owner of a point by the rule of the text: the nearest feature of the profile, and in its cell the first condition that
+//! holds, or the nearest segment of the outline with rounded corners.
 
 use super::overlay::{ConditionedPart, Division};
+use super::rounded::RoundedSection;
 use super::section::{Feature, Section};
 use crate::formula::CurveIndex;
 use crate::geometry::outline::{Point, minus, norm, turn};
@@ -12,13 +14,14 @@ pub(crate) struct Owners<'m> {
     profile: &'m model::Profile,
     inner: Section<'m>,
     /// The outline with rounded corners, if directions are taken from it.
-    rounded: Option<Section<'m>>,
+    rounded: Option<RoundedSection<'m>>,
 }
 
 impl<'m> Owners<'m> {
+    /// Returns the owners of a profile's points.
     pub(crate) fn new(profile: &'m model::Profile) -> Owners<'m> {
         let rounded = profile.over.as_ref().and_then(|over| match &over.division {
-            Division::Rounded(rounded) => Some(rounded.partition.section()),
+            Division::Rounded(rounded) => Some(RoundedSection::new(rounded)),
             Division::Conditions(_) => None,
         });
         Owners { profile, inner: profile.inner.section(), rounded }
@@ -37,7 +40,7 @@ impl<'m> Owners<'m> {
             Division::Conditions(conditions) => {
                 conditions.iter().position(|condition| condition.holds(value))
             }
-            Division::Rounded(_) => self.rounded.as_ref()?.nearest_segment(p),
+            Division::Rounded(_) => self.rounded.as_ref()?.nearest(p).0,
         };
         let regions = &over.regions;
         let own = condition.and_then(|condition| {
@@ -82,6 +85,9 @@ impl Section<'_> {
     /// Returns the feature at an end of a segment at some distance from a point: the reflex corner there, or a segment that goes
     /// on smoothly; `None` at a convex corner.
     fn ending_at(&self, p: Point, distance: f64) -> Option<usize> {
+        if !distance.is_finite() {
+            return None;
+        }
         let is_there = |feature: &Feature| match *feature {
             Feature::Corner(previous) => norm(minus(p, self.corner_at(previous))) == distance,
             Feature::Piece(_) => false,
@@ -102,14 +108,5 @@ impl Section<'_> {
         let [incoming, outgoing] =
             self.directions_at(if to < from { Some(piece) } else { piece.checked_sub(1) });
         turn(incoming, outgoing) > 0.0
-    }
-
-    /// Returns the nearest segment to a point on either side of the outline.
-    pub(super) fn nearest_segment(&self, p: Point) -> Option<usize> {
-        let nearest = self.nearest(p).0.and_then(|feature| self.features[feature].piece());
-        nearest.or_else(|| {
-            let distance = |piece: &usize| self.outline[*piece].distance_to(p);
-            (0..self.outline.len()).min_by(|a, b| distance(a).total_cmp(&distance(b)))
-        })
     }
 }

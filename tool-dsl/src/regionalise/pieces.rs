@@ -7,7 +7,7 @@ use super::section::{Feature, Section};
 use crate::expr::Graph;
 use crate::formula::{CurveIndex, Formula, NEGATIVE, POSITIVE, Signs};
 use crate::geometry::function::{CurveFunction, Distance};
-use crate::geometry::outline::{Point, bounding_box, cross, minus};
+use crate::geometry::outline::{Point, bounding_box, cross, minus, norm};
 use crate::geometry::polygon::{
     Polygon, area, centroid, clipped, divided, do_touch, halved, width,
 };
@@ -17,7 +17,7 @@ use crate::geometry::polygon::{
 pub(crate) struct Piece {
     /// The nearest feature to the owned points; `None` for the outside.
     pub(crate) feature: Option<usize>,
-    /// The feature's index, or that of the region; `None` for the outside.
+    /// The index of the feature, of the region, or of the segment of a rounded outline; `None` for the outside.
     pub(crate) owner: Option<usize>,
     pub(crate) vertices: Polygon,
     /// The sides of curves on which the owned points lie.
@@ -119,7 +119,7 @@ impl Partition {
         Separations { own, nearer }
     }
 
-    /// Says of the functions of curves that tell features apart which distances they compare.
+    /// Sets the two distances that each curve between features compares.
     pub(crate) fn set_distances(
         &self,
         separations: &Separations,
@@ -366,6 +366,10 @@ impl Piece {
         for k in 0..other.vertices.len() {
             let (from, to) = (other.vertices[k], other.vertices[(k + 1) % other.vertices.len()]);
             let along = minus(to, from);
+            // Two vertices that coincide but for rounding have no direction.
+            if norm(along) <= tolerance {
+                continue;
+            }
             let inward = cross(along, minus(middle, from)).signum();
             common.vertices =
                 clipped(&common.vertices, &|p| inward * cross(along, minus(p, from)))?;

@@ -9,7 +9,7 @@ use crate::expr::Graph;
 use crate::formula::Formula;
 use crate::geometry::function::CurveFunction;
 use crate::geometry::outline::{Point, Segment, cross, minus};
-use crate::geometry::polygon::{Polygon, hull};
+use crate::geometry::polygon::{Polygon, contains, hull};
 
 /// The outline with rounded corners, and its partition.
 #[derive(Clone, Debug)]
@@ -47,6 +47,16 @@ impl Rounded {
         Rounded { partition, separations, tips }
     }
 
+    /// Divides the inside again, from the rounded outline alone.
+    pub(crate) fn divide_anew(
+        &mut self,
+        graph: &mut Graph,
+        register: &mut impl FnMut(&mut Graph, &Test) -> Formula,
+    ) {
+        self.partition = Partition::new(std::mem::take(&mut self.partition.outline));
+        self.separations = self.partition.separations(graph, register);
+    }
+
     /// Returns pieces that cover the inside of the outline, whose owners are the nearest segments of the rounded outline.
     pub(crate) fn pieces(&self, shapes: &[CurveFunction<'_>]) -> Vec<Piece> {
         let features = self.partition.section().features;
@@ -70,21 +80,49 @@ impl Rounded {
     }
 }
 
-impl Section<'_> {
-    /// Returns the nearest segment to a point, unless rounding decides which one that is.
-    pub(super) fn certainly_nearest_segment(&self, p: Point) -> Option<usize> {
-        let within = self.outline.iter().enumerate().filter(|(_, segment)| {
-            let slack = -self.tolerance();
-            segment.sector(p).iter().all(|side| *side >= slack)
-        });
-        let mut distances: Vec<(f64, usize)> =
-            within.map(|(index, segment)| (segment.signed(p).abs(), index)).collect();
-        distances.sort_by(|a, b| a.0.total_cmp(&b.0));
-        match distances[..] {
-            [(nearest, _), (next, _), ..] if next - nearest <= 4.0 * self.tolerance() => None,
-            [(_, segment), ..] => Some(segment),
-            [] => None,
+/// A rounded outline with the geometry of its segments.
+#[derive(Clone, Debug)]
+pub(crate) struct RoundedSection<'r> {
+    rounded: &'r Rounded,
+    section: Section<'r>,
+}
+
+impl<'r> RoundedSection<'r> {
+    /// Returns the geometry of a rounded outline.
+    pub(crate) fn new(rounded: &'r Rounded) -> RoundedSection<'r> {
+        RoundedSection { rounded, section: rounded.partition.section() }
+    }
+
+    /// Returns the nearest segment to a point, and by how much the next one is farther. A point between an arc and the corner
+    /// that it rounds belongs to the arc. Elsewhere, no segment is nearest from behind.
+    pub(crate) fn nearest(&self, p: Point) -> (Option<usize>, f64) {
+        let (outline, tolerance) = (self.section.outline, self.section.tolerance());
+        for Tip { segment, polygon } in &self.rounded.tips {
+            let beyond = -outline[*segment].signed(p);
+            if beyond > tolerance && contains(polygon, p) {
+                return (Some(*segment), beyond);
+            }
         }
+        let (mut nearest, mut least, mut next) = (None, f64::INFINITY, f64::INFINITY);
+        for (index, segment) in outline.iter().enumerate() {
+            let is_within = segment.sector(p).iter().all(|side| *side >= -tolerance);
+            let distance = segment.signed(p);
+            if !is_within || distance < -tolerance {
+                continue;
+            }
+            if distance < least {
+                (nearest, least, next) = (Some(index), distance, least);
+            } else {
+                next = next.min(distance);
+            }
+        }
+        (nearest, next - least)
+    }
+
+    /// Returns the nearest segment to a point, unless rounding decides which one that is.
+    pub(super) fn certainly_nearest(&self, p: Point) -> Option<usize> {
+        let (nearest, margin) = self.nearest(p);
+        nearest.filter(|_| margin > 4.0 * self.section.tolerance())
     }
 }
 

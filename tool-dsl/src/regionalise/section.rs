@@ -25,6 +25,7 @@ impl Feature {
 
 /// Tolerance, in sizes, for a contact to count as on a segment near its end.
 pub(super) const COINCIDENCE_FRACTION: f64 = 1e-13;
+
 /// An outline with the features of its inside.
 #[derive(Clone, Debug)]
 pub(crate) struct Section<'o> {

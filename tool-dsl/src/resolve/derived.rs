@@ -18,7 +18,7 @@ use crate::expr::{Coord, Graph, Id};
 use crate::formula::Formula;
 use crate::geometry::outline::Segment;
 use crate::model::{DirectionSource, Model, Over, Profile, Region, Surface};
-use crate::regionalise::overlay::{self, ConditionedPart, Division, Overlay};
+use crate::regionalise::overlay::{ConditionedPart, Division, Overlay, PieceDivider};
 use crate::regionalise::rounded::Rounded;
 use crate::regionalise::smooth::{self, Origin, Rough};
 use crate::regionalise::{self, Feature, Partition, Test};
@@ -66,7 +66,7 @@ pub(super) fn derived(
         return FromProfile::default();
     }
     let inner = Partition::new(outline.segments.clone());
-    let parts = match parts(&inner, &outline, lowering) {
+    let parts = match derived_parts(&inner, &outline, lowering) {
         Ok(parts) => parts,
         Err(diagnostic) => {
             diagnostics.push(diagnostic);
@@ -91,7 +91,7 @@ pub(super) fn derived(
                 regions.extend(or_report(evaluation.of_part(part, head, direction), diagnostics));
             }
         }
-        Some(Conditions { division, kinds }) if diagnostics.len() == before => {
+        Some(DividedInside { division, kinds }) if diagnostics.len() == before => {
             let over = profile.over.insert(Over { division, regions: Vec::new() });
             let formulas = match &over.division {
                 Division::Conditions(formulas) => formulas.clone(),
@@ -123,6 +123,9 @@ pub(crate) fn partitioned_anew(model: &Model) -> Option<Model> {
     let profile = model.profile.as_mut()?;
     profile.inner = Partition::new(profile.outline.clone());
     profile.separations = profile.inner.separations(&mut model.graph, &mut register);
+    if let Some(Over { division: Division::Rounded(rounded), .. }) = &mut profile.over {
+        rounded.divide_anew(&mut model.graph, &mut register);
+    }
     model.curves = curves.list;
     Some(model)
 }
@@ -144,7 +147,7 @@ fn add_lines_through_corners(outline: &[Segment], curves: &mut Curves, graph: &m
 }
 
 /// Returns the parts of the inside with their names and directions.
-fn parts(
+fn derived_parts(
     inner: &Partition,
     outline: &Outline,
     lowering: &mut Lowering,
@@ -241,7 +244,7 @@ pub(super) enum Divider<'t> {
 }
 
 /// A division of the parts of a partition, and what each of its conditions effects.
-struct Conditions<'t> {
+struct DividedInside<'t> {
     division: Division,
     kinds: Vec<Kind<'t>>,
 }
@@ -271,7 +274,7 @@ impl Divider<'_> {
         lowering: &mut Lowering,
         curves: &mut Curves,
         diagnostics: &mut Vec<Diagnostic>,
-    ) -> Option<Conditions<'_>> {
+    ) -> Option<DividedInside<'_>> {
         match self {
             Divider::Features => None,
             Divider::Hand(regions) => {
@@ -288,7 +291,7 @@ impl Divider<'_> {
                         break;
                     }
                 }
-                Some(Conditions { division: Division::Conditions(formulas), kinds })
+                Some(DividedInside { division: Division::Conditions(formulas), kinds })
             }
             Divider::Smooth(length) => {
                 or_report(fans(length, &outline.segments, lowering, curves), diagnostics)
@@ -334,8 +337,8 @@ fn written(
     }
 }
 
-/// The maximum number of segments of a profile with `regions smooth`: the cells of each corner are intersected with
-/// those of each segment.
+/// The maximum number of segments of a profile with `regions smooth`: the cells of the rounded outline are intersected with
+/// those of the outline.
 const MAX_SMOOTH_SEGMENTS: usize = 128;
 
 /// Returns the division by the outline with rounded corners, from which directions are taken.
@@ -344,7 +347,7 @@ fn fans<'t>(
     outline: &[Segment],
     lowering: &mut Lowering,
     curves: &mut Curves,
-) -> Result<Conditions<'t>, Diagnostic> {
+) -> Result<DividedInside<'t>, Diagnostic> {
     let span = length.span;
     let width = lowering.length(length, Role::Smooth)?;
     if width.to_f64() <= 0.0 {
@@ -392,7 +395,7 @@ fn fans<'t>(
     }
     let mut register = |graph: &mut Graph, test: &Test| formula(test, curves, graph);
     let rounded = Rounded::new(outline, &pieces, graph, &mut register);
-    Ok(Conditions { division: Division::Rounded(rounded), kinds })
+    Ok(DividedInside { division: Division::Rounded(rounded), kinds })
 }
 
 /// Returns the parts and conditions that have points in common, and reports gaps, overlaps and regions without points.
@@ -406,7 +409,7 @@ fn conditioned_parts(
     let Some(over) = &profile.over else { return Vec::new() };
     let (shapes, size) = profile.functions(&lowering.graph, &curves.list);
     let pieces = profile.inner.inner_pieces(&profile.separations, &shapes);
-    let divider = overlay::Divider::new(&over.division, &shapes, size);
+    let divider = PieceDivider::new(&over.division, &shapes, size);
     let Overlay { parts, uncovered, doubly_covered } =
         Overlay::new(&profile.inner.section(), pieces, &divider);
     let formatted =

@@ -368,9 +368,9 @@ impl Sweeper {
         let TrianglePart { triangle, heights } = part;
         let displacement = spread.displacement + triangle.skew + task.error;
         // A point less deep than that does not become too deep in what is left of the interval.
-        let threshold = task.threshold() - displacement;
+        let least = task.threshold() - displacement;
         self.search.begin(Goal {
-            threshold,
+            threshold: least,
             // A finer search would tell nothing that the displacement does not blur.
             tolerance: 0.25 * displacement,
             stop_depth: f64::INFINITY,
@@ -381,14 +381,14 @@ impl Sweeper {
         let levels = peaks.chain(heights).filter_map(|height| triangle.level(*height));
         for line in triangle.search_lines().chain(levels) {
             let Some(line) = line.between(*heights) else { continue };
-            let maximum = if threshold < 0.0 {
+            let maximum = if least < 0.0 {
                 self.search.outside(section, owners, &line)
             } else {
                 self.search.inside(section, owners, triangle.skew, &line)
             };
             found = maximum.map(|maximum| line.point(maximum.t)).or(found);
         }
-        if threshold >= 0.0 {
+        if least >= 0.0 {
             let whole = SubTriangle::new(triangle.corners);
             whole.leave_unresolved(section, owners, displacement, &mut self.search);
         }
@@ -403,7 +403,7 @@ impl Sweeper {
         let sample = task.depth(&mut self.scratch, point);
         if task.too_deep(&sample, spread.deviation) {
             TriangleVerdict::TooDeep(sample)
-        } else if sample.depth > threshold {
+        } else if sample.depth > least {
             TriangleVerdict::Undecided
         } else {
             TriangleVerdict::OtherOwner(point)

@@ -63,6 +63,7 @@ impl Rectangle {
         }
         (inner, strips)
     }
+
     /// Returns the least rectangle that contains it and another.
     pub(crate) fn widened(&self, other: &Rectangle) -> Rectangle {
         Rectangle {

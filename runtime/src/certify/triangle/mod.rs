@@ -221,7 +221,7 @@ impl SubTriangle {
         }
     }
 
-    /// Leaves open in a search how deep it is within a distance of which a height at which depth can be greatest may not be known.
+    /// Leaves its depth open in a search if a rectangle of unresolved peaks is within a distance of it.
     pub(crate) fn leave_unresolved(
         &self,
         section: &Section,

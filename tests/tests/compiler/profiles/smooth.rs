@@ -158,7 +158,11 @@ impl Pair {
     /// Returns the normal of the rounded profile, the distance to its piece's centre, and how much farther the next
     /// piece with another normal is.
     fn normal(&self, p: P2) -> (P2, f64, f64) {
-        let facing = self.rounded.iter().filter(|piece| piece.faces(&p));
+        // Beyond the arc of a convex corner the tool goes on to the corner; behind other pieces it ends.
+        let is_in_tool = |piece: &&Segment<f64>| {
+            piece.inward(&p) >= 0.0 || piece.circle.is_some_and(|round| round.convex)
+        };
+        let facing = self.rounded.iter().filter(|piece| piece.faces(&p)).filter(is_in_tool);
         let mut all: Vec<(f64, &Segment<f64>)> =
             facing.map(|piece| (piece.inward(&p).abs(), piece)).collect();
         all.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -304,6 +308,8 @@ fn fans_are_the_rounded_profiles() {
         ("0 0, 2 0, 2 3, 6 3, 6 4, 0 4", 0.5, of_lines),
         ("0 0, 6 0, 6 1, 2 1, 2 3, 0 3", 0.5, of_lines),
         ("0 0, 2 0, 2 3, 4 3, 4 -2, 9 -2, 9 8, 0 8", 0.5, of_lines),
+        // A tooth whose tip is nearer to the flange across a gap than to its own arc.
+        ("0 0, 5 0, 5 9.9, 3 8, 3 10, 8 10, 8 20, 0 20", 0.3, of_lines),
         // A ball under a step, and a dome.
         ("0 0, 3 3 about 0 3, 5 3, 5 9, 0 10 radius 7", 0.5, of_arcs),
         // A pointed tip of an arc, a groove between two beads, an edge between two hollows.

@@ -1,4 +1,4 @@
-//! All evaluators of a tool have the bits of the reference, which follows the text region by region.
+//! All evaluators of a tool have the bits of the reference, which follows the rule of the text.
 
 use super::points::{format_point, scale};
 use super::{LENGTHS, evaluate};
@@ -12,7 +12,7 @@ use touchoff_tests::evaluations::{at, batch, bits, is_inside, levels, of_referen
 /// The region, and the bits of depth, magnitude, niceness, direction and gradient; `None` outside.
 type Answer = Option<(usize, [u64; 9])>;
 
-/// The largest distance from a border, in ulp(S), at which the plan may differ from the list of regions. The plan
+/// The largest distance from a border, in ulp(S), at which the plan may differ from the rule of the text. The plan
 /// leaves out tests that cannot fail in real arithmetic, and where three borders meet rounding has points that
 /// geometry has not.
 const CORNER: f64 = 1.0;
