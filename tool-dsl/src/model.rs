@@ -24,7 +24,7 @@
 //!   undefined, none of its atoms holds.
 //! - **Ownership.** A point belongs to the first of [`Model::regions`] whose [`Region::condition`] holds. With a
 //!   `Profile` it belongs to the nearest feature of the profile and, if that is divided further, to the first
-//!   condition that holds there or to the nearest segment of the rounded outline: see [`crate::regionalise::owners`]. The solid is the set of points that belong to a
+//!   condition that holds there or to the nearest segment of the rounded outline: see `regionalise::owners`. The solid is the set of points that belong to a
 //!   region.
 //! - **Depth.** [`RegionOutputs::depth`] of the owner is `max(0, depth)`. With a `Profile` it is the distance
 //!   to the solid's surface. For regions written by hand it is the file's expression, and `prove` bounds it
