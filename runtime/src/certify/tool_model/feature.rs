@@ -320,29 +320,29 @@ impl Feature {
     }
 
     /// Returns whether this feature is farther than another from every point of a polygon, by more than a margin.
-    pub(crate) fn is_farther(
+    pub(crate) fn is_farther<const N: usize>(
         &self,
         other: &Feature,
-        corners: &[MeridianPoint],
+        corners: &[MeridianPoint; N],
         margin: f64,
     ) -> bool {
-        // Affine less convex is concave, and least at a corner.
-        let centre = mean(corners);
-        corners.iter().all(|p| {
-            self.distance_lower(centre, *p) - other.distance_upper(centre, corners, *p) > margin
-        })
+        exceed(self.lower_bounds(corners), other.upper_bounds(corners), margin)
     }
 
-    /// Returns a lower bound of the distance of a corner `p` of a polygon about `centre`, such that the affine function with
-    /// these values is one at every point of the polygon. It is exact for a line on one side of which the polygon lies.
-    fn distance_lower(&self, centre: MeridianPoint, p: MeridianPoint) -> f64 {
+    /// Returns lower bounds of the distance of the corners of a polygon, such that the affine function with these values is one
+    /// at every point of the polygon. They are exact for a line on one side of which the polygon lies.
+    pub(crate) fn lower_bounds<const N: usize>(&self, corners: &[MeridianPoint; N]) -> [f64; N] {
+        let centre = mean(corners);
         match &self.circle {
             // The distance from a convex set is at least that from a line which separates the two.
             None => {
                 let foot = self.foot(centre);
                 let away = minus(centre, foot);
                 let length = norm(away);
-                if length > 0.0 { dot(away, minus(p, foot)) / length } else { 0.0 }
+                if length == 0.0 {
+                    return [0.0; N];
+                }
+                corners.map(|p| dot(away, minus(p, foot)) / length)
             }
             // An arc is no nearer than its circle: of the two lower bounds inside and outside of it one is concave, and the
             // other is at least its tangent.
@@ -350,25 +350,21 @@ impl Feature {
                 let out = minus(centre, *middle);
                 let length = norm(out);
                 if length < *radius {
-                    radius - norm(minus(p, *middle))
+                    corners.map(|p| radius - norm(minus(p, *middle)))
                 } else {
-                    dot(out, minus(p, *middle)) / length - radius
+                    corners.map(|p| dot(out, minus(p, *middle)) / length - radius)
                 }
             }
         }
     }
 
-    /// Returns an upper bound of the distance of a corner `p` of a polygon about `centre`, such that a convex function with
-    /// these values is one at every point of the polygon. It is exact for a line.
-    fn distance_upper(
-        &self,
-        centre: MeridianPoint,
-        corners: &[MeridianPoint],
-        p: MeridianPoint,
-    ) -> f64 {
+    /// Returns upper bounds of the distance of the corners of a polygon, such that a convex function with these values is one at
+    /// every point of the polygon. They are exact for a line.
+    pub(crate) fn upper_bounds<const N: usize>(&self, corners: &[MeridianPoint; N]) -> [f64; N] {
         let Some(circle @ Circle { centre: middle, radius, .. }) = &self.circle else {
-            return self.distance(p);
+            return corners.map(|p| self.distance(p));
         };
+        let centre = mean(corners);
         if corners.iter().all(|corner| self.sector(circle, *corner)) {
             let out = minus(centre, *middle);
             let length = norm(out);
@@ -376,28 +372,29 @@ impl Feature {
                 if length > 0.0 { dot(out, minus(p, *middle)) / length } else { 0.0 }
             };
             if corners.iter().all(|corner| norm(minus(*corner, *middle)) <= *radius) {
-                return radius - along(p);
+                return corners.map(|p| radius - along(p));
             }
             if corners.iter().all(|corner| along(*corner) >= *radius) {
-                return norm(minus(p, *middle)) - radius;
+                return corners.map(|p| norm(minus(p, *middle)) - radius);
             }
         }
         let [from, to] = self.ends.map(|end| norm(minus(centre, end)));
-        norm(minus(p, self.ends[usize::from(to < from)]))
+        let nearer = self.ends[usize::from(to < from)];
+        corners.map(|p| norm(minus(p, nearer)))
     }
 
     /// Returns whether the distances of two features differ by at most `margin` at every point of a polygon.
-    pub(crate) fn is_as_far_as(
+    pub(crate) fn is_as_far_as<const N: usize>(
         &self,
         other: &Feature,
-        corners: &[MeridianPoint],
+        corners: &[MeridianPoint; N],
         margin: f64,
     ) -> bool {
-        let centre = mean(corners);
-        let is_within = |one: &Feature, other: &Feature, p: MeridianPoint| {
-            one.distance_upper(centre, corners, p) - other.distance_lower(centre, p) <= margin
+        let is_within = |one: &Feature, other: &Feature| {
+            let mut bounds = one.upper_bounds(corners).into_iter().zip(other.lower_bounds(corners));
+            bounds.all(|(upper, lower)| upper - lower <= margin)
         };
-        corners.iter().all(|p| is_within(self, other, *p) && is_within(other, self, *p))
+        is_within(self, other) && is_within(other, self)
     }
 
     /// Returns the signed distance of a triangle beyond the line that touches the feature on the side of `viewpoint`,
@@ -417,6 +414,12 @@ impl Feature {
         };
         (min3(triangle.map(|p| dot(vector, p))) - max_dot) / length
     }
+}
+
+/// Returns whether lower bounds of one feature's distance at the corners of a polygon are greater than upper bounds of another's
+/// by more than a margin: affine less convex is concave, and least at a corner.
+pub(crate) fn exceed<const N: usize>(lower: [f64; N], upper: [f64; N], margin: f64) -> bool {
+    lower.into_iter().zip(upper).all(|(lower, upper)| lower - upper > margin)
 }
 
 /// The angle, in radians, up to which features meet nearly in line.

@@ -1,5 +1,6 @@
 //! The model of a tool: its profile, or its depth function with a bound on the function's rate of change.
 
+mod cells;
 pub(crate) mod feature;
 pub(crate) mod field;
 pub(crate) mod interior;

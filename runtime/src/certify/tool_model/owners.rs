@@ -1,5 +1,6 @@
 //! The points that some features own, and how deep they are.
 
+use crate::certify::tool_model::cells::Cell;
 use crate::certify::tool_model::peaks::Peaks;
 use crate::certify::tool_model::rectangle::Rectangle;
 use crate::certify::tool_model::section::{Owners, Section, SectionSlab};
@@ -60,8 +61,8 @@ impl Owners {
         slabs.map(|slab| self.zone(section, slab, deeper)).collect()
     }
 
-    /// Computes the zone of a slab. Rectangles of it are halved until an owner is the nearest feature in all of one
-    /// or in none of it, or until the rectangle is too small to matter.
+    /// Computes the zone of a slab. Cells of it are halved until all candidates are owners or none is, or until the cell is too
+    /// small to matter.
     fn zone(&self, section: &Section, slab: &SectionSlab, deeper: f64) -> Option<Rectangle> {
         let min_size = section.size / f64::from(ZONE_DIVISIONS);
         let strip = 0.25 * section.error.min(slab.high - slab.low);
@@ -69,81 +70,79 @@ impl Owners {
         let widen = |zone: &mut Option<Rectangle>, rectangle: Rectangle| {
             *zone = Some(zone.map_or(rectangle, |zone| zone.widened(&rectangle)));
         };
-        let mut stack = vec![slab.rectangle()];
-        while let Some(rectangle) = stack.pop() {
-            if zone.is_some_and(|zone| zone.contains(&rectangle)) {
+        let mut stack = section.cells_of(slab);
+        while let Some(cell) = stack.pop() {
+            let Cell { rectangle, .. } = &cell;
+            if zone.is_some_and(|zone| zone.contains(rectangle)) {
                 continue;
             }
-            let is_owned = match self.own_rectangle(section, &rectangle, deeper) {
-                Some(false) => continue,
-                owned => owned.is_some(),
-            };
+            let ownership = self.ownership(section, &cell, deeper);
+            if ownership == Ownership::None {
+                continue;
+            }
             // The height of a seam at which features of equal direction meet is the border between their points, and only
             // a strip along it is not certain to belong to one of them.
             let (inner, strips) = rectangle.without_seams([slab.low, slab.high], strip);
-            if !strips.is_empty() && self.own_rectangle(section, &inner, deeper) == Some(false) {
+            let margin = section.owner_margin();
+            let part = |rectangle: Rectangle| section.cell(rectangle, &cell.candidates, margin);
+            let is_owned = |cell: &Cell| self.ownership(section, cell, deeper) != Ownership::None;
+            if !strips.is_empty() && !is_owned(&part(inner)) {
                 for strip in strips {
-                    if self.own_rectangle(section, &strip, deeper) != Some(false) {
+                    if is_owned(&part(strip)) {
                         widen(&mut zone, strip);
                     }
                 }
-            } else if is_owned || rectangle.ball().1 <= min_size {
-                widen(&mut zone, rectangle);
+            } else if ownership == Ownership::All || rectangle.ball().1 <= min_size {
+                widen(&mut zone, *rectangle);
             } else {
-                stack.extend(rectangle.halves());
+                stack.extend(section.halves(&cell, margin));
             }
         }
         zone
     }
 
-    /// Returns whether the owners own all points of a rectangle and these are deeper than `deeper`, or own none of them
-    /// that is; `None` if that is not certain.
-    fn own_rectangle(&self, section: &Section, rectangle: &Rectangle, deeper: f64) -> Option<bool> {
-        let (middle, reach) = rectangle.ball();
-        let (mut owner, mut other) = (f64::INFINITY, f64::INFINITY);
-        let corners = rectangle.corners();
-        for (index, feature) in section.features.iter().enumerate() {
-            if section.hidden_by_neighbours(index, &corners) {
-                continue;
-            }
-            let nearest = if self.is_owned(index) { &mut owner } else { &mut other };
-            *nearest = nearest.min(feature.distance(middle));
+    /// Returns which of a cell's points deeper than `deeper` the owners own.
+    fn ownership(&self, section: &Section, cell: &Cell, deeper: f64) -> Ownership {
+        let (middle, reach) = cell.rectangle.ball();
+        let candidates = cell.candidates.iter().copied();
+        // Depth has the Lipschitz constant 1.
+        let (depth, _) = section.nearest(candidates.clone(), middle);
+        let mut owned = candidates.map(|candidate| self.is_owned(candidate));
+        if depth + reach <= deeper || !owned.clone().any(|is_owned| is_owned) {
+            Ownership::None
+        } else if depth - reach > deeper && owned.all(|is_owned| is_owned) {
+            Ownership::All
+        } else {
+            Ownership::Some
         }
-        // A distance has the Lipschitz constant 1, and two of them are compared.
-        let uncertainty = 2.0 * reach + section.error;
-        if owner > other + uncertainty || owner.min(other) + reach <= deeper {
-            return Some(false);
-        }
-        if section.own_nothing(self, &corners, 2.0 * section.error, |_| false) {
-            return Some(false);
-        }
-        (owner + uncertainty < other && owner - reach > deeper).then_some(true)
     }
 
     /// Returns an upper bound on the depth of the points that the owners own, at most 1 % above the depth of one of
     /// them unless the budget is spent first.
     ///
-    /// Rectangles are halved, the one that may be deepest first: depth has the Lipschitz constant 1.
+    /// Cells are halved, the one that may be deepest first: depth has the Lipschitz constant 1.
     pub(crate) fn greatest_depth(&self, section: &Section) -> f64 {
         let mut max_depth = 0.0;
-        let mut rectangles: Vec<Rectangle> = Vec::new();
+        let mut cells: Vec<Cell> = Vec::new();
         // Non-negative floating point numbers are in the order of their bits.
         let mut queue: BinaryHeap<(u64, usize)> = BinaryHeap::new();
-        let mut halves: Vec<Rectangle> = section.slabs.iter().map(SectionSlab::rectangle).collect();
+        let mut halves: Vec<Cell> =
+            section.slabs.iter().flat_map(|slab| section.cells_of(slab)).collect();
         let mut bound = f64::INFINITY;
-        for _ in 0..MAX_RECTANGLES {
-            for rectangle in halves.drain(..) {
-                let (middle, reach) = rectangle.ball();
-                let depth = section.signed(middle);
-                let away =
-                    section.owned(self).map(|owner| section.features[owner].distance(middle));
-                let owner = away.fold(f64::INFINITY, f64::min);
-                if depth >= 0.0 && owner <= depth + section.error {
+        for _ in 0..MAX_CELLS {
+            for cell in halves.drain(..) {
+                let (middle, reach) = cell.rectangle.ball();
+                let candidates = cell.candidates.iter().copied();
+                let (depth, _) = section.nearest(candidates.clone(), middle);
+                let owned = candidates.filter(|candidate| self.is_owned(*candidate));
+                let (owner, _) = section.nearest(owned, middle);
+                let is_inside = section.contains(middle);
+                if is_inside && owner <= depth + section.error {
                     max_depth = depth.max(max_depth);
                 }
-                if owner <= depth.abs() + 2.0 * reach + section.error && depth + reach >= 0.0 {
-                    queue.push(((depth + reach).to_bits(), rectangles.len()));
-                    rectangles.push(rectangle);
+                if owner.is_finite() && (is_inside || depth <= reach) {
+                    queue.push(((depth + reach).to_bits(), cells.len()));
+                    cells.push(cell);
                 }
             }
             let Some((bits, index)) = queue.pop() else { return max_depth };
@@ -151,18 +150,26 @@ impl Owners {
             if bound <= 1.01 * max_depth + section.error {
                 break;
             }
-            halves.extend(rectangles[index].halves());
+            halves.extend(section.halves(&cells[index], section.owner_margin()));
         }
-        // The rectangle divided last had the largest bound, which holds for its halves too.
+        // The cell divided last had the largest bound, which holds for its halves too.
         bound + section.error
     }
+}
+
+/// The part of a cell's points that some features own.
+#[derive(Clone, Copy, PartialEq)]
+enum Ownership {
+    None,
+    Some,
+    All,
 }
 
 /// The resolution of zones: the tool's size divided by this.
 const ZONE_DIVISIONS: u32 = 1 << 11;
 
-/// The maximum number of rectangles examined for the deepest point. The bound proved until then is the answer.
-const MAX_RECTANGLES: u32 = 1 << 17;
+/// The maximum number of cells halved for the deepest point. The bound proved until then is the answer.
+const MAX_CELLS: u32 = 1 << 17;
 
 #[cfg(test)]
 mod tests {

@@ -12,16 +12,11 @@
 //! meridian (`docs/certified.md`). The others end on an edge, or at the height of an end of that line. At such an
 //! end a foot is an end of a feature, or a third feature is as near.
 
+use crate::certify::tool_model::cells::Cell;
 use crate::certify::tool_model::feature::{Feature, MeridianPoint, minus, norm};
 use crate::certify::tool_model::rectangle::Rectangle;
-use crate::certify::tool_model::section::{Owners, Section, SectionSlab};
+use crate::certify::tool_model::section::{Owners, Section};
 use crate::tool::Circle;
-
-/// A rectangle that is searched for peaks, and the features that may be the nearest to points of it.
-struct PeakCell {
-    rectangle: Rectangle,
-    nearest: Vec<usize>,
-}
 
 /// The heights at which depth can have a local maximum, and rectangles in which there may be more of them.
 pub(super) struct Peaks {
@@ -29,11 +24,8 @@ pub(super) struct Peaks {
     pub(super) unresolved: Vec<Rectangle>,
 }
 
-/// The maximum number of rectangles examined for peaks. What is left of them is a part of the answer.
+/// The maximum number of cells examined for peaks. What is left of them is a part of the answer.
 const MAX_CELLS: usize = 1 << 17;
-
-/// The number of the nearest features to which others are compared.
-const MAX_COMPARED: usize = 8;
 
 /// The least size of a rectangle, in error bounds of a point, in which two features may count as one.
 const MIN_MERGED: f64 = 8.0;
@@ -53,29 +45,23 @@ impl Owners {
         let centres = section.features.iter().filter_map(|feature| feature.circle);
         let mut peaks: Vec<f64> = centres.map(|circle| circle.centre[1]).collect();
         peaks.extend(section.border_ends());
-        let all: Vec<usize> = (0..section.features.len()).collect();
-        let whole = section.slabs.iter().map(SectionSlab::rectangle);
-        let mut cells: Vec<PeakCell> =
-            whole.map(|rectangle| PeakCell { rectangle, nearest: all.clone() }).collect();
+        let mut cells: Vec<Cell> =
+            section.slabs.iter().flat_map(|slab| section.cells_of(slab)).collect();
         let mut examined = 0;
         while !cells.is_empty() {
             examined += cells.len();
             if examined > MAX_CELLS {
                 break;
             }
-            for PeakCell { rectangle, nearest } in std::mem::take(&mut cells) {
-                let Some(nearest) = self.peak_features(section, &rectangle, &nearest, others)
-                else {
+            for cell in std::mem::take(&mut cells) {
+                if !self.may_have_peak(section, &cell, others) {
                     continue;
-                };
-                let (middle, reach) = rectangle.ball();
+                }
+                let (middle, reach) = cell.rectangle.ball();
                 if reach > min_size {
-                    let halves = rectangle.halves();
-                    cells.extend(
-                        halves.map(|half| PeakCell { rectangle: half, nearest: nearest.clone() }),
-                    );
+                    cells.extend(section.halves(&cell, section.error / 64.0));
                 } else if peaks.iter().all(|peak| (peak - middle[1]).abs() > 2.0 * min_size) {
-                    // Neighbouring rectangles at one point count once.
+                    // Neighbouring cells at one point count once.
                     peaks.push(middle[1]);
                 }
             }
@@ -83,37 +69,15 @@ impl Owners {
         Peaks { heights: peaks, unresolved: cells.into_iter().map(|cell| cell.rectangle).collect() }
     }
 
-    /// Returns those features of a list that may be the nearest to a point of a rectangle, if there may be a point equally
-    /// far from three. With `others`, some of these have to be owners and some not.
-    fn peak_features(
-        &self,
-        section: &Section,
-        rectangle: &Rectangle,
-        nearest: &[usize],
-        others: bool,
-    ) -> Option<Vec<usize>> {
-        let (middle, reach) = rectangle.ball();
-        let corners = rectangle.corners();
-        let margin = section.error / 64.0;
+    /// Returns whether a cell may hold a point equally far from three features. With `others`, some of these have to be owners
+    /// and some not.
+    fn may_have_peak(&self, section: &Section, cell: &Cell, others: bool) -> bool {
+        let (middle, reach) = cell.rectangle.ball();
+        let corners = cell.rectangle.corners();
         let feature = |index: usize| &section.features[index];
-        let mut distances: Vec<(f64, usize)> =
-            nearest.iter().map(|index| (feature(*index).distance(middle), *index)).collect();
-        distances.sort_by(|one, other| one.0.total_cmp(&other.0));
-        // Within the reach, a distance changes by at most the reach, and so does the least of all.
-        let max_distance = distances[0].0 + 2.0 * reach + margin;
-        distances.retain(|(distance, _)| *distance <= max_distance);
-        let mut nearest: Vec<usize> = Vec::new();
-        for (_, index) in distances {
-            let is_farther = nearest.iter().take(MAX_COMPARED).any(|nearer: &usize| {
-                feature(index).is_farther(feature(*nearer), &corners, margin)
-            });
-            if !is_farther && !section.hidden_by_neighbours(index, &corners) {
-                nearest.push(index);
-            }
-        }
         let mut owner_kinds = [false; 2];
         let mut sites: Vec<usize> = Vec::new();
-        for index in &nearest {
+        for index in &cell.candidates {
             owner_kinds[usize::from(self.is_owned(*index))] = true;
             let foot = feature(*index).foot(middle);
             let is_known = sites.iter().any(|site| {
@@ -140,7 +104,7 @@ impl Owners {
                 sites.push(*index);
             }
         }
-        (sites.len() > 2 && (owner_kinds == [true, true] || !others)).then_some(nearest)
+        sites.len() > 2 && (owner_kinds == [true, true] || !others)
     }
 }
 

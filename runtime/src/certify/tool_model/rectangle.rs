@@ -3,7 +3,7 @@
 use crate::certify::tool_model::feature::{MeridianPoint, minus};
 
 /// A rectangle of the half plane.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Rectangle {
     pub(crate) low: MeridianPoint,
     pub(crate) high: MeridianPoint,

@@ -5,6 +5,7 @@
 //! feature, its *side*. It extends to the axis, or to another feature, its *inner* side, where the profile
 //! overhangs. No feature ends between a slab's heights.
 
+use crate::certify::tool_model::cells::CellTree;
 use crate::certify::tool_model::feature::{
     Feature, MeridianPoint, Triangle, cross, dot, mean, minus, norm, quarters,
 };
@@ -26,7 +27,7 @@ pub(crate) struct SectionSlab {
     /// The radii of its side at both heights.
     radii: [f64; 2],
     /// The features that can be the nearest to a point in it.
-    near: Vec<usize>,
+    candidates: Vec<usize>,
     /// The largest radius.
     pub(crate) radius: f64,
     /// The range along the line of its side in which a foot is on the surface or outside the tool, so that depth is
@@ -45,6 +46,8 @@ impl SectionSlab {
 #[derive(Clone, Debug)]
 pub(crate) struct Section {
     pub(crate) features: Vec<Feature>,
+    /// The features that can be the nearest to a point.
+    pub(super) cells: CellTree,
     pub(crate) slabs: Vec<SectionSlab>,
     /// True if some heights have several slabs, or one that does not reach the axis.
     pub(super) overhangs: bool,
@@ -120,11 +123,19 @@ impl Section {
             return None;
         }
         let overhangs = slabs.iter().any(|slab| slab.inner.is_some());
-        let (circles, unresolved) = (Vec::new(), Vec::new());
-        let mut section = Section { features, slabs, overhangs, circles, unresolved, size, error };
+        let (cells, circles, unresolved) = (CellTree::default(), Vec::new(), Vec::new());
+        let mut section =
+            Section { features, cells, slabs, overhangs, circles, unresolved, size, error };
+        section.cells = CellTree::new(&section);
         for slab in 0..section.slabs.len() {
             let side = section.features[section.slabs[slab].side];
             section.slabs[slab].feet = section.feet(&side, slab);
+            let cells = section.cells_of(&section.slabs[slab]);
+            let mut candidates: Vec<usize> =
+                cells.into_iter().flat_map(|cell| cell.candidates).collect();
+            candidates.sort_unstable();
+            candidates.dedup();
+            section.slabs[slab].candidates = candidates;
         }
         Some(section)
     }
@@ -185,9 +196,9 @@ impl Section {
         let is_line = self.features[slab.side].circle.is_none();
         let radii = if is_line { slab.radii } else { [slab.radius; 2] };
         let corners = [[slab.hole, low], [slab.hole, high], [radii[0], low], [radii[1], high]];
-        let near = slab.near.iter().filter(|near| **near != slab.side);
-        near.copied().filter(move |near| {
-            let line = &self.features[*near];
+        let others = slab.candidates.iter().copied().filter(|other| *other != slab.side);
+        others.filter(move |other| {
+            let line = &self.features[*other];
             let positions = corners.map(|corner| line.position(corner));
             line.circle.is_none()
                 && line.along[1] > 0.0
@@ -227,9 +238,8 @@ impl Section {
 
     /// Returns whether a point is inside or on the surface.
     pub(crate) fn contains(&self, p: MeridianPoint) -> bool {
-        self.slabs.iter().any(|slab| {
-            (slab.low..=slab.high).contains(&p[1]) && self.inner_distance(slab, p).0 >= 0.0
-        })
+        let mut slabs = self.from(p[1]).iter().take_while(|slab| slab.low <= p[1]);
+        slabs.any(|slab| slab.high >= p[1] && self.inner_distance(slab, p).0 >= 0.0)
     }
 
     /// Returns the distance of a point on the tool's side of a slab's sides, and the side for which it is less.
@@ -264,7 +274,16 @@ impl Section {
 
     /// Returns the distance of a point from the profile.
     pub(crate) fn unsigned_distance(&self, p: MeridianPoint) -> f64 {
-        self.nearest(0..self.features.len(), p).0
+        self.nearest_of_all(p).0
+    }
+
+    /// Returns the distance of a point from the nearest feature, and that feature.
+    #[inline]
+    fn nearest_of_all(&self, p: MeridianPoint) -> (f64, usize) {
+        match self.cells.candidates(p) {
+            Some(candidates) => self.nearest(candidates.iter().copied(), p),
+            None => self.nearest(0..self.features.len(), p),
+        }
     }
 
     /// Returns the signed depth of a point: outside, the negative of its distance.
@@ -309,7 +328,7 @@ impl Section {
                 feature: side,
             };
         }
-        let (value, mut feature) = self.nearest(slab.near.iter().copied(), p);
+        let (value, mut feature) = self.nearest_of_all(p);
         let gradient = self.features[feature].distance_gradient(p);
         if !owners.is_owned(feature) {
             let owned = self.owned(owners).filter(|owner| !self.hidden_by_neighbours(*owner, &[p]));
@@ -358,11 +377,12 @@ impl Section {
         }
         // The signed distance from the side is a bound only where feet are on the surface or outside the tool.
         let mut bound = if side.projects_onto(triangle, slab.feet) { out } else { f64::INFINITY };
-        for near in &slab.near {
+        // Any feature bounds depth; those near the middle of the triangle bound it best.
+        for candidate in self.cells.candidates(mean(triangle)).unwrap_or_default() {
             if bound <= threshold {
                 return bound;
             }
-            bound = bound.min(self.features[*near].at_most(triangle));
+            bound = bound.min(self.features[*candidate].at_most(triangle));
         }
         if bound > threshold && !owners.all() {
             // Depth is the distance of the nearest feature. An owner that is farther by more than the errors of both
@@ -380,7 +400,8 @@ impl Section {
     /// Returns the distance of a point from the owners, as a negative depth.
     #[inline]
     pub(crate) fn distance(&self, owners: &Owners, p: MeridianPoint) -> Depth {
-        let (value, feature) = self.nearest(self.owned(owners), p);
+        let (value, feature) =
+            if owners.all() { self.nearest_of_all(p) } else { self.nearest(self.owned(owners), p) };
         let gradient = self.features[feature].distance_gradient(p).map(|part| -part);
         Depth { value: -value, gradient, feature }
     }
@@ -417,10 +438,10 @@ impl Section {
     /// Returns whether owners own no point of a polygon: each is known to be far away, or its neighbours are nearer to all
     /// points, or a feature that is no owner is, by more than a margin.
     #[inline]
-    pub(super) fn own_nothing(
+    pub(super) fn own_nothing<const N: usize>(
         &self,
         owners: &Owners,
-        corners: &[MeridianPoint],
+        corners: &[MeridianPoint; N],
         margin: f64,
         is_far: impl Fn(usize) -> bool,
     ) -> bool {
@@ -510,16 +531,7 @@ impl SectionSlab {
         let hole = inner.map_or(0.0, |inner| {
             features[inner].radius_at(low).min(features[inner].radius_at(high))
         });
-        // Depth is at most the radial distance to the side. With an inner side, the nearer of the two is at most half
-        // the gap away.
-        let deepest = if inner.is_some() { 0.5 * (radius - hole) } else { radius };
-        let reaching = (0..features.len()).filter(|k| {
-            let [z0, z1] = features[*k].ends.map(|end| end[1]);
-            z0.min(z1) <= high + deepest && z0.max(z1) >= low - deepest
-        });
-        let mut near: Vec<usize> = reaching.collect();
-        // The profile runs in order, so the features next to the side are likely to bound depth first.
-        near.sort_by_key(|k| k.abs_diff(side));
-        SectionSlab { low, high, side, inner, hole, radii, near, radius, feet: [0.0; 2] }
+        let (candidates, feet) = (Vec::new(), [0.0; 2]);
+        SectionSlab { low, high, side, inner, hole, radii, candidates, radius, feet }
     }
 }
