@@ -8,6 +8,7 @@ use crate::certify::bounds::nearest::{
 };
 use crate::certify::bounds::support::Support;
 use crate::certify::part::NodeRing;
+use crate::certify::tool_model::chains::Chain;
 use crate::certify::tool_model::feature::{Feature, MeridianPoint};
 use crate::certify::tool_model::rectangle::Rectangle;
 use crate::certify::tool_model::section::{Owners, Section};
@@ -56,55 +57,12 @@ impl<R: Real> Hull<R> {
     /// Creates a hull for points inside the tool. The slabs lie between the heights of their zones, and reach farther
     /// by the error bound of heights.
     pub(crate) fn new(section: &Section, zones: &[Option<Rectangle>], error: f64) -> Hull<R> {
-        let slabs =
-            section.slabs.iter().enumerate().zip(zones).filter_map(|((index, slab), zone)| {
-                let Rectangle { low: [_, from], high: [_, to] } = (*zone)?;
-                let side = &section.features[slab.side];
-                let [[d0, z0], [d1, z1]] = side.ends;
-                // The radial distance to the surface.
-                let mut planes = vec![plane([1.0, 0.0], [slab.radius, 0.0])];
-                let mut guarded = Vec::new();
-                let slope = (d1 - d0) / (z1 - z0);
-                let convex = side.circle.is_some_and(|circle| circle.convex);
-                let line = side.tangent();
-                let is_bound =
-                    line.as_ref().is_some_and(|line| section.tangent_bounds_slab(line, index));
-                if let Some(line) = &line {
-                    if is_bound {
-                        planes.push(under(line));
-                    } else {
-                        guarded.push(GuardedPlane::new(line, section.feet(line, index)));
-                    }
-                }
-                if !is_bound && slope != 0.0 && slope.abs() <= 2.0 && !convex {
-                    // Radially under the chord of the side, beyond which neither a line nor a concave arc reaches.
-                    // Steeper planes have larger errors than `margin` in `search` allows for.
-                    planes.push(plane([1.0, -slope], side.ends[0]));
-                }
-                for line in section.lines_beside(slab) {
-                    let feet = section.outside_feet(line);
-                    guarded.push(GuardedPlane::new(&section.features[line], feet));
-                }
-                // The tool's lower and upper end bound depth too, where they are as near as the side can be.
-                let [low, high] = section.reach();
-                if slab.low - low <= slab.radius {
-                    planes.push(plane([0.0, -1.0], [0.0, low]));
-                }
-                if high - slab.high <= slab.radius {
-                    planes.push(plane([0.0, 1.0], [0.0, high]));
-                }
-                // For an arc that does not reach the axis, the feet next to it are not on the surface.
-                let to_axis = d0.min(d1) == 0.0;
-                let ball = side.ball(section.size).filter(|_| to_axis).map(|ball| ball.map(R::of));
-                let rings = section.reflex(slab).map(|corner| Ring {
-                    radius: R::of(corner.point[0]),
-                    height: R::of(corner.point[1]),
-                    annulus: corner.ends_level,
-                });
-                let [low, high] = [from - error, to + error].map(R::of);
-                let hole = (slab.hole > 0.0).then(|| R::of(slab.hole));
-                Some(HullSlab { low, high, planes, guarded, hole, ball, rings: rings.collect() })
-            });
+        let slabs = section.chains.iter().filter_map(|chain| {
+            let zones = zones[chain.slabs.clone()].iter().flatten();
+            let heights = zones.map(|zone| [zone.low[1], zone.high[1]]);
+            let [low, high] = heights.reduce(|one, other| [one[0], other[1]])?;
+            Some(HullSlab::new(section, chain, [low - error, high + error]))
+        });
         Hull { slabs: slabs.collect(), margin: R::of(error), support: Support::new(section) }
     }
 
@@ -238,6 +196,77 @@ const MAX_BOUNDS: usize = 8;
 type Part<V, M> = Option<Clip<V, M>>;
 
 impl<R: Real> HullSlab<R> {
+    /// Creates the bounds of a chain of slabs, for points between two heights.
+    fn new(section: &Section, chain: &Chain, heights: [f64; 2]) -> HullSlab<R> {
+        let slabs = &section.slabs[chain.slabs.clone()];
+        let radius = slabs.iter().map(|slab| slab.radius).fold(0.0, f64::max);
+        let (chain_low, chain_high) = (slabs[0].low, slabs[slabs.len() - 1].high);
+        let [low, high] = heights.map(R::of);
+        let mut bounds = HullSlab {
+            low,
+            high,
+            // The radial distance to the surface.
+            planes: vec![plane([1.0, 0.0], [radius, 0.0])],
+            guarded: Vec::new(),
+            hole: (slabs[0].hole > 0.0).then(|| R::of(slabs[0].hole)),
+            ball: section.tip_ball_about(chain).map(|ball| ball.map(R::of)),
+            rings: Vec::new(),
+        };
+        match &chain.line {
+            Some(line) => bounds.planes.push(under(line)),
+            None => bounds.add_side(section, chain.slabs.start),
+        }
+        // The tool's lower and upper end bound depth too, where they are as near as the side can be.
+        let [bottom, top] = section.reach();
+        if chain_low - bottom <= radius {
+            bounds.planes.push(plane([0.0, -1.0], [0.0, bottom]));
+        }
+        if top - chain_high <= radius {
+            bounds.planes.push(plane([0.0, 1.0], [0.0, top]));
+        }
+        // No point is deeper than the radius.
+        let corners = section.reflex_corners([chain_low - radius, chain_high + radius]);
+        bounds.rings.extend(corners.map(|corner| Ring {
+            radius: R::of(corner.point[0]),
+            height: R::of(corner.point[1]),
+            annulus: corner.ends_level,
+        }));
+        bounds
+    }
+
+    /// Adds the bounds by the side of a single slab and by the lines beside it.
+    fn add_side(&mut self, section: &Section, index: usize) {
+        let slab = &section.slabs[index];
+        let side = &section.features[slab.side];
+        let [[d0, z0], [d1, z1]] = side.ends;
+        let slope = (d1 - d0) / (z1 - z0);
+        let convex = side.circle.is_some_and(|circle| circle.convex);
+        let line = side.tangent();
+        let is_bound = line.as_ref().is_some_and(|line| section.tangent_bounds_slab(line, index));
+        if let Some(line) = &line {
+            if is_bound {
+                self.planes.push(under(line));
+            } else {
+                self.guarded.push(GuardedPlane::new(line, section.feet(line, index)));
+            }
+        }
+        if !is_bound && slope != 0.0 && slope.abs() <= 2.0 && !convex {
+            // Radially under the chord of the side, beyond which neither a line nor a concave arc reaches.
+            // Steeper planes have larger errors than `margin` in `search` allows for.
+            self.planes.push(plane([1.0, -slope], side.ends[0]));
+        }
+        for line in section.lines_beside(slab) {
+            let feet = section.outside_feet(line);
+            self.guarded.push(GuardedPlane::new(&section.features[line], feet));
+        }
+        // For an arc that does not reach the axis, the feet next to it are not on the surface.
+        if d0.min(d1) == 0.0
+            && let Some(ball) = side.ball(section.size)
+        {
+            self.ball = Some(ball.map(R::of));
+        }
+    }
+
     /// Returns the least, over all planes, of the greatest distance under the plane in each triangle.
     #[inline(always)]
     fn under_planes<S: Simd, V: SimdFloat<S, Element = R>>(
@@ -569,6 +598,7 @@ mod tests {
     use crate::certify::bounds::descent::{BoundedTree, Node, of_children};
     use crate::certify::part::TriangleBvh;
     use crate::certify::space::Point;
+    use crate::certify::tool_model::chains::TipBall;
     use crate::mesh::Mesh;
     use crate::pose::Pose;
     use crate::tool::Interpreted;
@@ -576,6 +606,7 @@ mod tests {
     use crate::unit::Unit;
     use fearless_simd::{Level, dispatch, f64x8};
     use nalgebra::{Point3, Vector3};
+    use std::f64::consts::FRAC_PI_2;
     use std::sync::LazyLock;
 
     const ERROR: f64 = 1e-12;
@@ -643,9 +674,46 @@ mod tests {
         .expect("a tool")
     });
 
+    /// A ball and a rounded shoulder of 3 mm radius, as polylines of 24 chords.
+    static CHORDED: LazyLock<Interpreted> = LazyLock::new(|| {
+        let chords = |[d, z]: [f64; 2]| {
+            let points = (1..24).map(|k| {
+                let (sine, cosine) = (f64::from(k) / 24.0 * FRAC_PI_2).sin_cos();
+                format!("({:.5}, {:.5})", d + 3.0 * sine, z - 3.0 * cosine)
+            });
+            points.collect::<Vec<String>>().join(", ")
+        };
+        let [ball, shoulder] = [[0.0, 3.0], [3.5, 9.0]].map(chords);
+        let text = format!(
+            r#"tool Chorded "chords" {{
+                units mm;
+                profile {{
+                    start (0, 0);
+                    line to {ball}, (3, 3) as ball cutting;
+                    line to (3, 6) as flute cutting;
+                    line to (3.5, 6), {shoulder}, (6.5, 9), (6.5, 16), (0, 16) as shank;
+                }}
+                niceness cutting: 1;
+            }}"#
+        );
+        text.parse().expect("a tool")
+    });
+
     /// Returns the tools of these tests.
-    fn tools() -> [&'static ToolInfo; 4] {
-        [NECKED.info(), WAISTED.info(), ROUNDED.info(), HOLLOW.info()]
+    fn tools() -> [&'static ToolInfo; 5] {
+        [NECKED.info(), WAISTED.info(), ROUNDED.info(), HOLLOW.info(), CHORDED.info()]
+    }
+
+    #[test]
+    fn chords_of_a_ball_are_bounded_by_it_and_those_of_a_shoulder_together() {
+        let section = Section::new(CHORDED.info(), ERROR).expect("a profile");
+        let TipBall { slabs, ball: [centre, radius] } = section.tip_ball.expect("a ball");
+        assert!(slabs == 24 && (centre - 3.0).abs() < 1e-5 && (radius - 3.0).abs() < 1e-5);
+        let chains = section.chains.iter().map(|chain| chain.slabs.clone());
+        assert!(chains.clone().flatten().eq(0..section.slabs.len()));
+        // Below the flattest of them the tool continues.
+        let shoulder = chains.filter(|slabs| slabs.start > 24 && slabs.len() > 1);
+        assert!(shoulder.flatten().count() > 10);
     }
 
     /// A sequence of numbers from 0 to 1 that looks random.

@@ -1,6 +1,7 @@
 //! The model of a tool: its profile, or its depth function with a bound on the function's rate of change.
 
 mod cells;
+pub(crate) mod chains;
 pub(crate) mod feature;
 pub(crate) mod field;
 pub(crate) mod interior;

@@ -6,6 +6,7 @@
 //! overhangs. No feature ends between a slab's heights.
 
 use crate::certify::tool_model::cells::CellTree;
+use crate::certify::tool_model::chains::{Chain, TipBall};
 use crate::certify::tool_model::feature::{
     Feature, MeridianPoint, Triangle, cross, dot, mean, minus, norm, quarters,
 };
@@ -49,6 +50,9 @@ pub(crate) struct Section {
     /// The features that can be the nearest to a point.
     pub(super) cells: CellTree,
     pub(crate) slabs: Vec<SectionSlab>,
+    /// The slabs in chains, for bounds that need not be tight.
+    pub(crate) chains: Vec<Chain>,
+    pub(crate) tip_ball: Option<TipBall>,
     /// True if some heights have several slabs, or one that does not reach the axis.
     pub(super) overhangs: bool,
     /// The heights of circles about the axis on which depth can be greatest in a triangle: none before
@@ -123,9 +127,18 @@ impl Section {
             return None;
         }
         let overhangs = slabs.iter().any(|slab| slab.inner.is_some());
-        let (cells, circles, unresolved) = (CellTree::default(), Vec::new(), Vec::new());
-        let mut section =
-            Section { features, cells, slabs, overhangs, circles, unresolved, size, error };
+        let mut section = Section {
+            features,
+            cells: CellTree::default(),
+            slabs,
+            chains: Vec::new(),
+            tip_ball: None,
+            overhangs,
+            circles: Vec::new(),
+            unresolved: Vec::new(),
+            size,
+            error,
+        };
         section.cells = CellTree::new(&section);
         for slab in 0..section.slabs.len() {
             let side = section.features[section.slabs[slab].side];
@@ -137,6 +150,8 @@ impl Section {
             candidates.dedup();
             section.slabs[slab].candidates = candidates;
         }
+        section.tip_ball = section.tip_ball();
+        section.chains = section.chains();
         Some(section)
     }
 
@@ -213,10 +228,11 @@ impl Section {
         [self.slabs[0].low, self.slabs[self.slabs.len() - 1].high]
     }
 
-    /// Returns the reflex corners that can be the nearest to points of a slab.
-    pub(crate) fn reflex(&self, slab: &SectionSlab) -> impl Iterator<Item = ReflexCorner> {
-        // No point of the slab is deeper than its radius.
-        let [low, high] = [slab.low - slab.radius, slab.high + slab.radius];
+    /// Returns the reflex corners between two heights.
+    pub(crate) fn reflex_corners(
+        &self,
+        [low, high]: [f64; 2],
+    ) -> impl Iterator<Item = ReflexCorner> {
         self.features.windows(2).filter_map(move |pair| {
             let turn = cross(pair[0].tangent_at(1), pair[1].tangent_at(0));
             let point = pair[1].ends[0];

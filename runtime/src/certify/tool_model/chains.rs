@@ -1,0 +1,141 @@
+//! Chains: neighbouring slabs whose sides are short lines of a convex curve, as drawings have them for arcs. Bounds that need
+//! not be tight take a chain as one slab.
+
+use crate::certify::tool_model::feature::{Feature, MeridianPoint, cross, dot, minus, norm};
+use crate::certify::tool_model::section::Section;
+use std::ops::Range;
+
+/// Neighbouring slabs.
+#[derive(Clone, Debug)]
+pub(crate) struct Chain {
+    /// Their indices in the section's list.
+    pub(crate) slabs: Range<usize>,
+    /// If there are several, the line that touches their sides from outside, parallel to the chord of them. No point of them is
+    /// deeper than its distance under it.
+    pub(crate) line: Option<Feature>,
+}
+
+/// A ball about a point of the axis that contains the lowest slabs of a tool. It bounds their depth: the way from a point to its
+/// foot on the ball leads downward, out of the tool.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TipBall {
+    /// The number of slabs.
+    pub(crate) slabs: usize,
+    /// The height of its centre and its radius.
+    pub(crate) ball: [f64; 2],
+}
+
+/// The largest angle, in radians, by which the sides of a chain turn: the line is off them by an eighth of that, times the length
+/// of the chain.
+const MAX_TURN: f64 = 0.125;
+
+/// The least number of lines that a ball stands for, and their largest distance from it, as a fraction of its radius. Beyond
+/// that it bounds nothing better than the lines.
+const MIN_LINES: usize = 3;
+const MAX_DEVIATION: f64 = 1.0 / 256.0;
+
+impl Section {
+    /// Returns all slabs as chains, in upward order.
+    pub(super) fn chains(&self) -> Vec<Chain> {
+        let mut chains = Vec::new();
+        let mut next = 0;
+        while next < self.slabs.len() {
+            let first = next;
+            next += 1;
+            // A chain belongs to the ball as a whole or not at all.
+            let is_tip_end = |slab: usize| self.tip_ball.is_some_and(|tip| tip.slabs == slab);
+            while next < self.slabs.len()
+                && self.continues(next)
+                && self.turn(first, next) <= MAX_TURN
+                && !is_tip_end(next)
+            {
+                next += 1;
+            }
+            let line = self.line_outside(first..next);
+            if line.is_some() {
+                chains.push(Chain { slabs: first..next, line });
+            } else {
+                chains
+                    .extend((first..next).map(|slab| Chain { slabs: slab..slab + 1, line: None }));
+            }
+        }
+        chains
+    }
+
+    /// Returns whether the side of a slab continues that of the slab below it in a convex curve of lines.
+    fn continues(&self, slab: usize) -> bool {
+        let [below, above] = [&self.slabs[slab - 1], &self.slabs[slab]];
+        let [first, second] = [below, above].map(|slab| &self.features[slab.side]);
+        let reach_axis = below.hole == 0.0 && above.hole == 0.0;
+        reach_axis
+            && below.high == above.low
+            && first.circle.is_none()
+            && second.circle.is_none()
+            && first.ends[1] == second.ends[0]
+            && cross(first.along, second.along) >= 0.0
+    }
+
+    /// Returns the sine of the angle between the sides of two slabs.
+    fn turn(&self, first: usize, second: usize) -> f64 {
+        let [first, second] =
+            [first, second].map(|slab| self.features[self.slabs[slab].side].along);
+        cross(first, second)
+    }
+
+    /// Returns the ends of the sides of slabs that form a chain.
+    fn vertices(&self, slabs: Range<usize>) -> impl Iterator<Item = MeridianPoint> {
+        slabs.flat_map(|slab| self.features[self.slabs[slab].side].ends)
+    }
+
+    /// Returns the line that touches the sides of several slabs, if it bounds their depth: all feet are outside the tool.
+    fn line_outside(&self, slabs: Range<usize>) -> Option<Feature> {
+        let (first, last) = (slabs.start, slabs.end - 1);
+        if first == last {
+            return None;
+        }
+        let [from, to] = [first, last].map(|slab| self.features[self.slabs[slab].side]);
+        let (start, end) = (from.ends[0], to.ends[1]);
+        let chord = minus(end, start);
+        let along = chord.map(|part| part / norm(chord));
+        let outward = [along[1], -along[0]];
+        let touch = self
+            .vertices(slabs.clone())
+            .max_by(|one, other| dot(outward, *one).total_cmp(&dot(outward, *other)))?;
+        let line = Feature { ends: [touch; 2], along, length: 0.0, circle: None, ..from };
+        let [low, _] = self.feet(&line, first);
+        let [_, high] = self.feet(&line, last);
+        let axis = [start[1], end[1]].map(|height| [0.0, height]);
+        let is_outside = |p: MeridianPoint| (low..=high).contains(&line.position(p));
+        // Positions along the line are linear, so the vertices of the chain are the extremes.
+        self.vertices(slabs).chain(axis).all(is_outside).then_some(line)
+    }
+
+    /// Returns the ball about the most of the tool's lowest slabs whose sides are chords of it.
+    pub(super) fn tip_ball(&self) -> Option<TipBall> {
+        let first = self.slabs.first()?;
+        let tip = self.features[first.side].ends[0];
+        if self.overhangs || tip != [0.0, first.low] || self.features[first.side].circle.is_some() {
+            return None;
+        }
+        let count = 1 + (1..self.slabs.len()).take_while(|slab| self.continues(*slab)).count();
+        let balls = (MIN_LINES..=count).rev().filter_map(|slabs| {
+            let [across, height] = minus(self.features[self.slabs[slabs - 1].side].ends[1], tip);
+            // Above its centre the way to the foot would lead upward.
+            let radius = 0.5 * (across * across + height * height) / height;
+            let centre = tip[1] + radius;
+            let distances = self.vertices(0..slabs).map(|[d, z]| norm([d, z - centre]));
+            let [least, greatest] = distances.fold([radius; 2], |[least, greatest], distance| {
+                [least.min(distance), greatest.max(distance)]
+            });
+            let is_close = greatest - least <= MAX_DEVIATION * radius;
+            (height <= radius && is_close && radius <= 4.0 * self.size)
+                .then_some(TipBall { slabs, ball: [centre, greatest] })
+        });
+        { balls }.next()
+    }
+
+    /// Returns the ball about the tool's tip that bounds the depth of a chain, as its height and its radius.
+    pub(crate) fn tip_ball_about(&self, chain: &Chain) -> Option<[f64; 2]> {
+        self.tip_ball.filter(|tip| chain.slabs.end <= tip.slabs).map(|tip| tip.ball)
+    }
+}
