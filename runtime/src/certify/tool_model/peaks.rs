@@ -72,13 +72,15 @@ impl Owners {
     /// Returns whether a cell may hold a point equally far from three features. With `others`, some of these have to be owners
     /// and some not.
     fn may_have_peak(&self, section: &Section, cell: &Cell, others: bool) -> bool {
+        let owned = cell.candidates.iter().filter(|index| self.is_owned(**index)).count();
+        if others && (owned == 0 || owned == cell.candidates.len()) {
+            return false;
+        }
         let (middle, reach) = cell.rectangle.ball();
         let corners = cell.rectangle.corners();
         let feature = |index: usize| &section.features[index];
-        let mut owner_kinds = [false; 2];
         let mut sites: Vec<usize> = Vec::new();
         for index in &cell.candidates {
-            owner_kinds[usize::from(self.is_owned(*index))] = true;
             let foot = feature(*index).foot(middle);
             let is_known = sites.iter().any(|site| {
                 // Both sides of a reflex corner are equally far from a point nearest to that corner. Elsewhere one of
@@ -103,8 +105,11 @@ impl Owners {
             if !is_known {
                 sites.push(*index);
             }
+            if sites.len() > 2 {
+                return true;
+            }
         }
-        sites.len() > 2 && (owner_kinds == [true, true] || !others)
+        false
     }
 }
 
