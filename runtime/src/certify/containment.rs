@@ -3,6 +3,7 @@
 
 use crate::certify::nearest::NearestTriangle;
 use crate::certify::part::Location;
+use crate::certify::rounding;
 use crate::certify::search::QuerySetting;
 use crate::certify::space::Point;
 use crate::certify::tool_model::field::FieldCore;
@@ -160,7 +161,7 @@ impl QuerySetting<'_> {
             return 0.0;
         };
         let mut triangles = NearestTriangle::new(&self.bvh);
-        let error = 4.0 * self.error * self.length;
+        let error = rounding::APART * self.error * self.length;
         let radii = core_points.iter().filter_map(|Core { point, .. }| {
             let place = pose.tip() + pose.rotation() * Vector3::from(*point) * self.length;
             let in_tool = section.unsigned_distance([point[0], point[2]]) * self.length;
@@ -178,7 +179,7 @@ impl QuerySetting<'_> {
         place: impl Fn(Point) -> Point3<f64>,
     ) -> Location {
         let turns = if self.info().symmetry == Symmetry::Revolved { AZIMUTHS } else { 1 };
-        let needed = (radius + 4.0 * self.error) * self.length;
+        let needed = (radius + rounding::APART * self.error) * self.length;
         let mut triangles = NearestTriangle::new(&self.bvh);
         for turn in 0..turns {
             let (sin, cos) = (TAU * f64::from(turn) / f64::from(AZIMUTHS)).sin_cos();

@@ -320,7 +320,7 @@ impl<'a> Certifier<'a> {
             ContactVerdict::No => {}
         }
         // A tool inside the material is at some distance from its surface, too: margins come last.
-        let clear = match setting.containment(core_points, pose, 4.0 * setting.error) {
+        let clear = match setting.containment(core_points, pose, rounding::APART * setting.error) {
             Containment::Inside(surface) => return PoseVerdict::Inside(surface),
             Containment::Undecided => return PoseVerdict::Undecided(0.0),
             Containment::Outside => PoseVerdict::Clear,
@@ -336,7 +336,7 @@ impl<'a> Certifier<'a> {
     /// Locates the restricted interior of the tool relative to the part: the points deeper than is
     /// [allowed](Certifier::with_allowance). The answer holds only if [`Certifier::touches`] finds no triangle in contact.
     pub fn containment(&mut self, pose: &Pose) -> Containment {
-        let error = 4.0 * self.setting.error;
+        let error = rounding::APART * self.setting.error;
         self.setting.containment(&mut self.core_points, pose, error)
     }
 
@@ -348,7 +348,8 @@ impl<'a> Certifier<'a> {
             ContactVerdict::Yes(_) => Some(false),
             ContactVerdict::Undecided(_) => None,
             ContactVerdict::No => {
-                match setting.containment(whole_core_points, pose, 4.0 * setting.error) {
+                match setting.containment(whole_core_points, pose, rounding::APART * setting.error)
+                {
                     Containment::Inside(_) => Some(true),
                     Containment::Outside => Some(false),
                     Containment::Unknown | Containment::Undecided => None,
@@ -374,10 +375,10 @@ impl<'a> Certifier<'a> {
     /// material, in the part's unit, or 0 if none is known.
     fn located_piece(&mut self, pose: &Pose, depth: f64) -> (Containment, f64) {
         let Certifier { setting, whole_core_points, .. } = self;
-        let error = 4.0 * setting.error;
+        let error = rounding::APART * setting.error;
         let tolerance = error.max(depth / setting.length + error);
         // The points for each depth anew would be a search of its own for a tool without a profile.
-        let is_new = tolerance > 8.0 * setting.error;
+        let is_new = tolerance > 2.0 * error;
         if is_new && matches!(setting.tool_model, ToolModel::Field(_)) {
             return (Containment::Undecided, 0.0);
         }
@@ -469,7 +470,7 @@ impl<'a> Certifier<'a> {
         let d = (offset.norm_squared() - z * z).max(0.0).sqrt();
         let [depths, _] = allowances.queries(setting, whole_query);
         depths.iter().any(|query| {
-            state.depth(setting, query, [d, 0.0, z]) > query.limit + 2.0 * setting.error
+            state.depth(setting, query, [d, 0.0, z]) > query.limit + rounding::TOUCH * setting.error
         })
     }
 }
@@ -610,7 +611,7 @@ fn distance(
 ) -> Clearance {
     // A depth is certain to be above 0 if it is found to be more than two errors: its own, and that by which slabs
     // are widened.
-    let touch = 2.0 * setting.error;
+    let touch = rounding::TOUCH * setting.error;
     let goal = Goal { threshold: -touch, tolerance: touch, stop_depth: touch, budget };
     state.inside(setting, inside, pose, goal);
     if let Some(best) = &state.best {
@@ -624,7 +625,7 @@ fn distance(
     // The rounding error grows with the distance.
     let error = setting.error + rounding::distance_error_bound(state.max_distance());
     // Written so that a NaN tolerance is replaced.
-    let tolerance = (4.0 * error).max(tolerance / setting.length);
+    let tolerance = (rounding::APART * error).max(tolerance / setting.length);
     let [threshold, stop_depth] = [f64::NEG_INFINITY, f64::INFINITY];
     state.outside(setting, outside, pose, Goal { threshold, tolerance, stop_depth, budget });
     let more = error + state.search.skew;
@@ -659,7 +660,7 @@ fn touches(
     error: f64,
     budget: u32,
 ) -> ContactVerdict {
-    let touch = 2.0 * error;
+    let touch = rounding::TOUCH * error;
     let mut undecided: Option<f64> = None;
     for query in allowance_queries {
         let threshold = query.limit - touch;
@@ -705,7 +706,7 @@ fn penetration(
 ) -> Penetration {
     let PenetrationGoal { tolerance, threshold, budget } = goal;
     // Written so that a NaN tolerance is replaced.
-    let tolerance = (4.0 * setting.error).max(tolerance / setting.length);
+    let tolerance = (rounding::APART * setting.error).max(tolerance / setting.length);
     let least = setting.error.max(threshold);
     let goal = Goal { threshold: least, tolerance, stop_depth: f64::INFINITY, budget };
     state.inside(setting, query, pose, goal);

@@ -55,7 +55,27 @@
 //! height is less than the skew, no meridian is used. The computed height errs by `8u s`, less than the 18 uM that a
 //! meridian would have added.
 
+//!
+//! **One budget.** `e` is [`point_error_bound`], for a point and its depth. All comparisons are in multiples of it:
+//!
+//! | multiple | what it is for |
+//! |--:|---|
+//! | 2 e, [`TOUCH`] | a depth certainly above a limit: its own error, and that by which slabs reach farther |
+//! | 2 e, [`TIE`] | two features equally near: the errors of both distances |
+//! | 4 e, [`APART`] | what no search took for a touch: a touch on either side of the limit |
+//! | 8 e, [`ROOM`] | depths at which a zone has to be known: a touch below the limit, and as much for heights and for distances |
+//! | e/4, [`FRACTION`] | what rounding may add to a distance without being a depth: strips along seams, heights that count as one |
+//! | e/64, [`CELL_TIE`] | two features equally near in a cell as small as the error |
+
 use crate::tool::ToolInfo;
+
+/// Multiples of [`point_error_bound`]; the table above derives them.
+pub(super) const TOUCH: f64 = 2.0;
+pub(super) const TIE: f64 = 2.0;
+pub(super) const APART: f64 = 2.0 * TOUCH;
+pub(super) const ROOM: f64 = 4.0 * TOUCH;
+pub(super) const FRACTION: f64 = 0.25;
+pub(super) const CELL_TIE: f64 = 1.0 / 64.0;
 
 /// Returns the error bound of a point's coordinates in the tool's frame and of its depth, in the tool's unit.
 /// `part` is the largest extent of the part in that unit.

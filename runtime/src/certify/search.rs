@@ -8,6 +8,7 @@ use crate::certify::bounds::descent::{BoundedTree, Descent};
 use crate::certify::bounds::hull::Hull;
 use crate::certify::bounds::shell::Shell;
 use crate::certify::part::{TriangleBvh, flat};
+use crate::certify::rounding;
 use crate::certify::space::Point;
 use crate::certify::tool_model::ToolModel;
 use crate::certify::tool_model::feature::MeridianPoint;
@@ -57,8 +58,7 @@ impl DepthQuery {
             };
         }
         let owners = Owners::of(section, surfaces);
-        // The search begins two errors below the limit; the zones have room for the errors of heights and distances, too.
-        let zones = owners.zones(section, limit - 8.0 * section.error);
+        let zones = owners.zones(section, limit - rounding::ROOM * section.error);
         DepthQuery {
             hull: Hull::new(section, &zones, margin),
             exact: Hull::new(section, &zones, section.error),

@@ -11,6 +11,7 @@ use crate::bvh::{PoseTransform, WIDTH};
 use crate::cancellation;
 use crate::certify::bounds::descent::{BoundedTree, Node, of_children};
 use crate::certify::bounds::swept::{Moving, SweptBatch, of_leaf};
+use crate::certify::rounding;
 use crate::certify::search::{DepthQuery, MARGIN, QuerySetting};
 use crate::certify::space::{Point, minus};
 use crate::certify::sweep::interval::MotionInterval;
@@ -70,7 +71,7 @@ impl SweepTask<'_> {
     /// its deviation from the trajectory.
     fn too_deep(&self, found: &DeepPoint, deviation: f64) -> bool {
         let steep = self.setting.tool_model.lipschitz();
-        found.depth > self.limit + 2.0 * self.error + steep * deviation
+        found.depth > self.limit + rounding::TOUCH * self.error + steep * deviation
     }
 }
 
@@ -474,7 +475,7 @@ impl Sweeper {
         }
         if let ToolModel::Profile(section) = tool_model {
             let triangle = LocalTriangle::new(*piece.corners());
-            let near = displacement + triangle.skew + 4.0 * task.error;
+            let near = displacement + triangle.skew + rounding::APART * task.error;
             let Some(heights) = task.query.heights(&piece, near) else {
                 return TriangleVerdict::Clear;
             };

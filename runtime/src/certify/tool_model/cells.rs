@@ -4,6 +4,7 @@
 //! a cell is halved is a guess, so a poor cut costs candidates and never an answer. Features that nearly coincide stay together:
 //! no border between them is computed.
 
+use crate::certify::rounding;
 use crate::certify::tool_model::feature::{MeridianPoint, exceed};
 use crate::certify::tool_model::rectangle::Rectangle;
 use crate::certify::tool_model::section::{Section, SectionSlab};
@@ -115,7 +116,7 @@ impl CellTree {
 impl Section {
     /// Returns the difference of two distances up to which both features count as the nearest: the errors of both.
     pub(super) fn owner_margin(&self) -> f64 {
-        2.0 * self.error
+        rounding::TIE * self.error
     }
 
     /// Returns the cells of a slab.

@@ -21,6 +21,7 @@
 //! make one run. Nearer to the feature by half of the error bound the spans are connected, and no triangle is
 //! there. All pieces that are deeper than the limit by the tolerance and the error bound are therefore found.
 
+use crate::certify::rounding;
 use crate::certify::tool_model::feature::{Feature, MeridianPoint, cross, dot, minus, norm};
 use crate::certify::tool_model::section::Section;
 use std::f64::consts::{FRAC_PI_2, TAU};
@@ -104,7 +105,8 @@ impl Interior<'_> {
 
     /// Returns whether nothing of the profile is nearer to a point than its foot, `t` away, by more than rounding.
     fn is_free(&self, p: MeridianPoint, t: f64) -> bool {
-        p[0] >= 0.0 && self.section.unsigned_distance(p) >= t - ERROR_FRACTION * self.section.error
+        p[0] >= 0.0
+            && self.section.unsigned_distance(p) >= t - rounding::FRACTION * self.section.error
     }
 
     /// Returns the length of a normal, at least `least`: the distance at which another point of the profile is as
@@ -189,9 +191,6 @@ impl Interior<'_> {
 
 /// A witness stands at this fraction of the way from the limit to the end of the normal.
 const WITNESS_DEPTH_FRACTION: f64 = 0.75;
-
-/// The fraction of the error bound by which a distance may be less owing to rounding alone.
-const ERROR_FRACTION: f64 = 0.25;
 
 /// The number of bisections for the length of a normal: to 2^-48 of the tool's size.
 const MAX_HALVINGS: u32 = 50;

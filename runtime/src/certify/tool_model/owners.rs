@@ -1,5 +1,6 @@
 //! The points that some features own, and how deep they are.
 
+use crate::certify::rounding;
 use crate::certify::tool_model::cells::Cell;
 use crate::certify::tool_model::peaks::Peaks;
 use crate::certify::tool_model::rectangle::Rectangle;
@@ -17,7 +18,7 @@ impl Owners {
         if !owners.all() {
             let Peaks { heights, unresolved } = owners.find_peaks(section, true);
             // Just below and just above: at a seam each side owns only points on its side.
-            let beside = 0.25 * section.error;
+            let beside = rounding::FRACTION * section.error;
             owners.peaks = heights.iter().flat_map(|peak| [peak - beside, peak + beside]).collect();
             owners.unresolved = unresolved;
         }
@@ -65,7 +66,7 @@ impl Owners {
     /// small to matter.
     fn zone(&self, section: &Section, slab: &SectionSlab, deeper: f64) -> Option<Rectangle> {
         let min_size = section.size / f64::from(ZONE_DIVISIONS);
-        let strip = 0.25 * section.error.min(slab.high - slab.low);
+        let strip = rounding::FRACTION * section.error.min(slab.high - slab.low);
         let mut zone: Option<Rectangle> = None;
         let widen = |zone: &mut Option<Rectangle>, rectangle: Rectangle| {
             *zone = Some(zone.map_or(rectangle, |zone| zone.widened(&rectangle)));

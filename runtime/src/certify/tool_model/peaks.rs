@@ -12,6 +12,7 @@
 //! meridian (`docs/certified.md`). The others end on an edge, or at the height of an end of that line. At such an
 //! end a foot is an end of a feature, or a third feature is as near.
 
+use crate::certify::rounding;
 use crate::certify::tool_model::cells::Cell;
 use crate::certify::tool_model::feature::{Feature, MeridianPoint, minus, norm};
 use crate::certify::tool_model::rectangle::Rectangle;
@@ -59,7 +60,7 @@ impl Owners {
                 }
                 let (middle, reach) = cell.rectangle.ball();
                 if reach > min_size {
-                    cells.extend(section.halves(&cell, section.error / 64.0));
+                    cells.extend(section.halves(&cell, rounding::CELL_TIE * section.error));
                 } else if peaks.iter().all(|peak| (peak - middle[1]).abs() > 2.0 * min_size) {
                     // Neighbouring cells at one point count once.
                     peaks.push(middle[1]);
@@ -97,7 +98,7 @@ impl Owners {
                         && feature(*first).is_as_far_as(
                             feature(*second),
                             &corners,
-                            0.25 * section.error,
+                            rounding::FRACTION * section.error,
                         )
                 };
                 (same_foot && (same_kind || both_end())) || is_in_line()
@@ -126,7 +127,7 @@ impl Section {
                     .map(|(middle, _)| middle[1]),
             );
             heights.sort_by(f64::total_cmp);
-            heights.dedup_by(|upper, lower| *upper - *lower <= 0.25 * self.error);
+            heights.dedup_by(|upper, lower| *upper - *lower <= rounding::FRACTION * self.error);
             (self.circles, self.unresolved) = (heights, unresolved);
         }
         self

@@ -5,6 +5,7 @@
 //! feature, its *side*. It extends to the axis, or to another feature, its *inner* side, where the profile
 //! overhangs. No feature ends between a slab's heights.
 
+use crate::certify::rounding;
 use crate::certify::tool_model::cells::CellTree;
 use crate::certify::tool_model::chains::{Chain, TipBall};
 use crate::certify::tool_model::feature::{
@@ -318,7 +319,7 @@ impl Section {
         displacement: f64,
     ) -> bool {
         !owners.all()
-            && self.own_nothing(owners, rectangle, 2.0 * self.error, |owner| {
+            && self.own_nothing(owners, rectangle, self.owner_margin(), |owner| {
                 self.features[owner].distance(p) > depth + 2.0 * displacement
             })
     }
@@ -359,7 +360,7 @@ impl Section {
 
     /// Returns the distance outside up to which a point counts as touching.
     fn contact_tolerance(&self) -> f64 {
-        4.0 * self.error
+        rounding::APART * self.error
     }
 
     /// Returns whether all owners are farther away than that.
@@ -403,7 +404,7 @@ impl Section {
         if bound > threshold && !owners.all() {
             // Depth is the distance of the nearest feature. An owner that is farther by more than the errors of both
             // distances owns no point here.
-            let margin = 2.0 * (self.error + slack);
+            let margin = self.owner_margin() + 2.0 * slack;
             if self.own_nothing(owners, triangle, margin, |owner| {
                 self.features[owner].at_least(triangle) > bound + margin
             }) {
