@@ -6,7 +6,7 @@
 //! near points whose depth is close to its limit. It is therefore used last, and with no finer limit than pays off.
 
 use super::containment::{Containment, CorePoints};
-use super::search::{MARGIN, QuerySetting, SearchState};
+use super::search::{MAX_F32_MARGIN, QuerySetting, SearchState};
 use super::sweep::{SweepEnd, SweepTask, Sweeper};
 use super::tool_model::ToolModel;
 use super::trajectory::Trajectory;
@@ -126,7 +126,7 @@ impl Certifier<'_> {
     /// # Ok(()) }
     /// ```
     pub fn check_motion(&mut self, motion: &dyn Trajectory, tolerance: f64) -> MotionVerdict {
-        if !determines_pose(self.setting.info(), motion) || self.setting.margin() > MARGIN {
+        if !determines_pose(self.setting.info(), motion) || self.setting.margin() > MAX_F32_MARGIN {
             return MotionVerdict::Undecided(0.0);
         }
         let Certifier { setting, whole_query, allowances, core_points, state, sweeper, .. } = self;

@@ -54,18 +54,19 @@
 //! owned. No point of a triangle is farther than its height from its longest edge, which is searched too. Where the
 //! height is less than the skew, no meridian is used. The computed height errs by `8u s`, less than the 18 uM that a
 //! meridian would have added.
-
 //!
-//! **One budget.** `e` is [`point_error_bound`], for a point and its depth. All comparisons are in multiples of it:
+//! **One budget.** `e` is [`point_error_bound`], for a point and its depth. Comparisons that are not with `e` itself are with a multiple of it:
 //!
 //! | multiple | what it is for |
 //! |--:|---|
 //! | 2 e, [`TOUCH`] | a depth certainly above a limit: its own error, and that by which slabs reach farther |
 //! | 2 e, [`TIE`] | two features equally near: the errors of both distances |
 //! | 4 e, [`APART`] | what no search took for a touch: a touch on either side of the limit |
-//! | 8 e, [`ROOM`] | depths at which a zone has to be known: a touch below the limit, and as much for heights and for distances |
+//! | 8 e, [`ROOM`] | how far below a limit zones reach: two touches below it, and as much again for heights and distances |
 //! | e/4, [`FRACTION`] | what rounding may add to a distance without being a depth: strips along seams, heights that count as one |
-//! | e/64, [`CELL_TIE`] | two features equally near in a cell as small as the error |
+//! | 8 e, [`MERGED_CELL`] | the least cell in which two features that meet nearly in line may count as one |
+//! | e/32, [`PEAK_CELL`] | the size at which a cell counts as one point |
+//! | e/64, [`PEAK_TIE`] | two features equally near in cells as small as that |
 
 use crate::tool::ToolInfo;
 
@@ -75,7 +76,9 @@ pub(super) const TIE: f64 = 2.0;
 pub(super) const APART: f64 = 2.0 * TOUCH;
 pub(super) const ROOM: f64 = 4.0 * TOUCH;
 pub(super) const FRACTION: f64 = 0.25;
-pub(super) const CELL_TIE: f64 = 1.0 / 64.0;
+pub(super) const MERGED_CELL: f64 = 8.0;
+pub(super) const PEAK_CELL: f64 = 1.0 / 32.0;
+pub(super) const PEAK_TIE: f64 = 1.0 / 64.0;
 
 /// Returns the error bound of a point's coordinates in the tool's frame and of its depth, in the tool's unit.
 /// `part` is the largest extent of the part in that unit.

@@ -238,14 +238,14 @@ impl Faces {
     /// Returns an upper bound on the depth of some faces.
     fn depth(
         &mut self,
-        of: &QuerySetting<'_>,
+        setting: &QuerySetting<'_>,
         query: &DepthQuery,
         placed: PlacedTool<'_>,
         faces: &[u32],
     ) -> f64 {
         // A point of the face may be off the rectangle's plane by the tolerance, and deeper by as much.
-        let bvh = &*of.bvh;
-        let more = of.tool_model.lipschitz() * flat(&bvh.frame) / of.length;
+        let bvh = &*setting.bvh;
+        let more = setting.tool_model.lipschitz() * flat(&bvh.frame) / setting.length;
         let mut max_depth = f64::NEG_INFINITY;
         for indices in faces.chunks(LANES / 2) {
             self.batch.clear();
@@ -265,7 +265,7 @@ impl Faces {
                 continue;
             }
             self.batch.turn(placed.view);
-            self.batch.bound(of.level, &query.exact, f64::NEG_INFINITY);
+            self.batch.bound(setting.level, &query.exact, f64::NEG_INFINITY);
             // Two triangles per rectangle.
             for half in (0..self.batch.len()).step_by(2) {
                 let depth = self.batch.bounds[half].max(self.batch.bounds[half + 1]) + more;
@@ -288,7 +288,7 @@ impl SearchState {
     /// Searches for the deepest point.
     pub(crate) fn inside(
         &mut self,
-        of: &QuerySetting<'_>,
+        setting: &QuerySetting<'_>,
         query: &DepthQuery,
         pose: &Pose,
         goal: Goal,
@@ -296,34 +296,34 @@ impl SearchState {
         self.best = None;
         self.search.begin(goal);
         self.descent.clear();
-        if !of.set_pose(self, pose) {
+        if !setting.set_pose(self, pose) {
             return;
         }
         // The triangle that was deepest last time is likely to be deep again.
         if let Some(last) = self.last {
-            self.batch.begin(&of.bvh, pose, &[last]);
-            self.bound_batch(of, query);
+            self.batch.begin(&setting.bvh, pose, &[last]);
+            self.bound_batch(setting, query);
         }
-        self.descend(of, query, pose, Side::Inside, of.margin());
+        self.descend(setting, query, pose, Side::Inside, setting.margin());
     }
 
     /// Searches for the nearest point, if no point is inside. The pose must be set.
     pub(crate) fn outside(
         &mut self,
-        of: &QuerySetting<'_>,
+        setting: &QuerySetting<'_>,
         query: &DepthQuery,
         pose: &Pose,
         goal: Goal,
     ) {
         // Distances in `f32` err by a few units of roundoff, 2^-24, of their size.
-        let margin = of.margin() + self.max_distance() / f64::from(1 << 20);
+        let margin = setting.margin() + self.max_distance() / f64::from(1 << 20);
         self.best = None;
         self.search.begin(goal);
         if let Some(last) = self.last {
-            self.batch.begin(&of.bvh, pose, &[last]);
-            self.search_outside(of, query);
+            self.batch.begin(&setting.bvh, pose, &[last]);
+            self.search_outside(setting, query);
         }
-        self.descend(of, query, pose, Side::Outside, margin);
+        self.descend(setting, query, pose, Side::Outside, margin);
     }
 
     /// Resets the starting triangle, as if no query had been made.
@@ -332,8 +332,13 @@ impl SearchState {
     }
 
     /// Returns the depth of a point in the tool's frame if it is owned, or less than 0.
-    pub(crate) fn depth(&mut self, of: &QuerySetting<'_>, query: &DepthQuery, point: Point) -> f64 {
-        let depth = of.tool_model.depth(&mut self.scratch, &query.owners, point);
+    pub(crate) fn depth(
+        &mut self,
+        setting: &QuerySetting<'_>,
+        query: &DepthQuery,
+        point: Point,
+    ) -> f64 {
+        let depth = setting.tool_model.depth(&mut self.scratch, &query.owners, point);
         depth.map_or(f64::NEG_INFINITY, |depth| depth.value)
     }
 
@@ -348,14 +353,14 @@ impl SearchState {
     /// Traverses the tree. `margin` is the error bound of depths in `f32`.
     fn descend(
         &mut self,
-        of: &QuerySetting<'_>,
+        setting: &QuerySetting<'_>,
         query: &DepthQuery,
         pose: &Pose,
         side: Side,
         margin: f64,
     ) {
         // Once per query: a handle is a branch.
-        let bvh = &*of.bvh;
+        let bvh = &*setting.bvh;
         self.descent.begin();
         self.faces.begin(bvh);
         self.scratch.clear();
@@ -379,7 +384,8 @@ impl SearchState {
                     indices.retain(|index| {
                         bvh.coplanar_faces.of_triangle(*index).is_none_or(|face| {
                             let placed = PlacedTool { pose, view: &self.view };
-                            self.faces.depth(of, query, placed, &[face]) > self.search.threshold()
+                            self.faces.depth(setting, query, placed, &[face])
+                                > self.search.threshold()
                         })
                     });
                 }
@@ -389,19 +395,19 @@ impl SearchState {
                 cancellation::check();
                 self.batch.begin(bvh, pose, indices);
                 match side {
-                    Side::Inside => self.search_batch(of, query),
-                    Side::Outside => self.search_outside(of, query),
+                    Side::Inside => self.search_batch(setting, query),
+                    Side::Outside => self.search_outside(setting, query),
                 }
                 continue;
             }
-            let (level, view) = (of.level, &self.view);
+            let (level, view) = (setting.level, &self.view);
             let placed = PlacedTool { pose, view };
             opened += 1;
             if let Side::Inside = side
                 && let Some(faces) = node.faces(bvh)
                 && opened > nodes_per_face * faces.len()
             {
-                if self.faces.depth(of, query, placed, faces) <= self.search.threshold() {
+                if self.faces.depth(setting, query, placed, faces) <= self.search.threshold() {
                     nodes_per_face = (nodes_per_face - 1).max(1);
                     continue;
                 }
@@ -417,7 +423,7 @@ impl SearchState {
             }
             let descent = &mut self.descent;
             match side {
-                _ if margin > MARGIN => descent.open_all(bvh, node),
+                _ if margin > MAX_F32_MARGIN => descent.open_all(bvh, node),
                 Side::Inside => {
                     let tree = BoundedTree { bvh, bounds: &query.hull, view };
                     descent.open(level, &tree, node, threshold);
@@ -428,7 +434,7 @@ impl SearchState {
                 }
             }
         }
-        if let ToolModel::Field(field) = &of.tool_model {
+        if let ToolModel::Field(field) = &setting.tool_model {
             let outside = matches!(side, Side::Outside);
             let scratch = &mut self.scratch;
             // Only now, since all triangles share one queue: the deepest piece of any of them comes first.
@@ -440,29 +446,30 @@ impl SearchState {
     }
 
     /// Bounds the triangles of the batch and evaluates the points where they may be deepest.
-    fn bound_batch(&mut self, of: &QuerySetting<'_>, query: &DepthQuery) {
+    fn bound_batch(&mut self, setting: &QuerySetting<'_>, query: &DepthQuery) {
         self.batch.turn(&self.view);
-        self.batch.bound(of.level, &query.exact, self.search.threshold());
-        self.evaluate_candidates(of, query);
+        self.batch.bound(setting.level, &query.exact, self.search.threshold());
+        self.evaluate_candidates(setting, query);
     }
 
     /// Searches the triangles of the batch, which are outside the tool.
-    fn search_outside(&mut self, of: &QuerySetting<'_>, query: &DepthQuery) {
+    fn search_outside(&mut self, setting: &QuerySetting<'_>, query: &DepthQuery) {
         self.batch.turn(&self.view);
         for lane in 0..self.batch.len() {
             if self.search.spend(0.0) {
-                self.search_triangle(of, query, lane, Side::Outside);
+                self.search_triangle(setting, query, lane, Side::Outside);
             }
         }
     }
 
-    fn evaluate_candidates(&mut self, of: &QuerySetting<'_>, query: &DepthQuery) {
+    fn evaluate_candidates(&mut self, setting: &QuerySetting<'_>, query: &DepthQuery) {
         for lane in 0..self.batch.len() {
             if self.batch.bounds[lane] > self.search.threshold() {
                 // For a thin triangle the point may lie off the triangle.
                 let point = nearest(self.batch.point(lane), &self.batch.corners(lane));
                 let index = self.batch.index(lane);
-                if let Some(depth) = of.tool_model.depth(&mut self.scratch, &query.owners, point)
+                if let Some(depth) =
+                    setting.tool_model.depth(&mut self.scratch, &query.owners, point)
                     && self.search.take(&depth)
                 {
                     self.best = Some(DeepestCandidate { point, feature: depth.feature, index });
@@ -472,19 +479,19 @@ impl SearchState {
     }
 
     /// Searches the triangles of the batch until none can be deeper.
-    fn search_batch(&mut self, of: &QuerySetting<'_>, query: &DepthQuery) {
-        self.bound_batch(of, query);
+    fn search_batch(&mut self, setting: &QuerySetting<'_>, query: &DepthQuery) {
+        self.bound_batch(setting, query);
         for _ in 0..MAX_REFINEMENTS {
             if !self.batch.any_above(self.search.threshold()) {
                 return;
             }
-            self.batch.refine(of.level, &query.exact, self.search.threshold());
-            self.evaluate_candidates(of, query);
+            self.batch.refine(setting.level, &query.exact, self.search.threshold());
+            self.evaluate_candidates(setting, query);
         }
         for lane in 0..self.batch.len() {
             let bound = self.batch.bounds[lane];
             if bound > self.search.threshold() && self.search.spend(bound) {
-                self.search_triangle(of, query, lane, Side::Inside);
+                self.search_triangle(setting, query, lane, Side::Inside);
             }
         }
     }
@@ -492,13 +499,13 @@ impl SearchState {
     /// Searches one triangle of the batch. For a tool without a profile all triangles are searched together later.
     fn search_triangle(
         &mut self,
-        of: &QuerySetting<'_>,
+        setting: &QuerySetting<'_>,
         query: &DepthQuery,
         lane: usize,
         side: Side,
     ) {
         let (corners, index) = (self.batch.corners(lane), self.batch.index(lane));
-        let section = match &of.tool_model {
+        let section = match &setting.tool_model {
             ToolModel::Profile(section) => section,
             ToolModel::Field(_) => return self.scratch.hold(corners, index),
         };
@@ -510,7 +517,7 @@ impl SearchState {
         // Points beside the computed meridian may be deeper by the skew. Contact checks start lower by two errors,
         // which covers a skew up to one error; a larger skew lowers the threshold for this triangle.
         let best = self.best;
-        let is_covered = triangle.skew <= of.error;
+        let is_covered = triangle.skew <= setting.error;
         let before = if is_covered { None } else { self.search.lower(triangle.skew) };
         for line in triangle.search_lines().chain(levels) {
             let found = match side {
@@ -523,7 +530,7 @@ impl SearchState {
         }
         if let Side::Inside = side {
             let whole = SubTriangle::new(corners);
-            whole.leave_unresolved(section, owners, of.error, &mut self.search);
+            whole.leave_unresolved(section, owners, setting.error, &mut self.search);
         }
         if before.is_some_and(|before| self.search.raise(before, triangle.skew)) {
             self.best = best;
@@ -540,8 +547,8 @@ const MAX_NODES_PER_FACE: usize = 16;
 /// The number of opened nodes before each triangle's face is bounded.
 const NODES_BEFORE_FACES: usize = 32;
 
-/// With a larger margin `f32` decides nothing, and squares overflow in it.
-pub(crate) const MARGIN: f64 = 1e9;
+/// The largest margin at which `f32` decides anything; squares overflow beyond it.
+pub(crate) const MAX_F32_MARGIN: f64 = 1e9;
 
 /// The number of refined bounds before the edges of triangles are searched.
 const MAX_REFINEMENTS: usize = 2;

@@ -169,6 +169,9 @@ impl fmt::Display for PoseVerdict {
             PoseVerdict::Inside(surface) => {
                 write!(f, "inside the material, with surface {}", surface.0)
             }
+            PoseVerdict::Undecided(0.0) => {
+                f.write_str("undecided whether the tool is inside the material")
+            }
             PoseVerdict::Undecided(excess) => {
                 write!(f, "undecided: no more than {excess} deeper than allowed")
             }

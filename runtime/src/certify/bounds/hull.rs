@@ -341,33 +341,33 @@ impl<R: Real> HullSlab<R> {
                 direction = choose(within, &direction_from_axis(simd, point, centre), &direction);
             }
             let beyond = extents_from(simd, corners, &direction, z);
-            let in_slab = [radius - beyond[0], radius - beyond[1], radius - beyond[2]];
-            let beneath = max_over(simd, &part, in_slab);
+            let inside = [radius - beyond[0], radius - beyond[1], radius - beyond[2]];
+            let beneath = max_over(simd, &part, inside);
             let under = beneath.simd_lt(depth);
             depth = under.select(beneath, depth);
             deepest = choose(under, &foot, &deepest);
-            bounds[count] = in_slab;
+            bounds[count] = inside;
             count += 1;
         }
         if self.hole.is_some() || !self.rings.is_empty() {
             let far = distances(corners);
             if let Some(hole) = self.hole {
                 let hole = V::splat(simd, hole);
-                let in_slab = [far[0] - hole, far[1] - hole, far[2] - hole];
-                depth = depth.min(max_over(simd, &part, in_slab));
+                let beyond = [far[0] - hole, far[1] - hole, far[2] - hole];
+                depth = depth.min(max_over(simd, &part, beyond));
                 if refine_at.is_some() {
-                    bounds[count] = in_slab;
+                    bounds[count] = beyond;
                     count += 1;
                 }
             }
             for ring in &self.rings {
                 let from_axis = AxisDistances { least: &out, greatest: &far };
-                let in_slab = from_ring(simd, corners, &from_axis, *ring);
-                depth = depth.min(max_over(simd, &part, in_slab));
+                let distance = from_ring(simd, corners, &from_axis, *ring);
+                depth = depth.min(max_over(simd, &part, distance));
             }
         }
-        // Where one bound grows and another falls, the least of both is greatest between the corners: pairs of bounds are
-        // tighter than each by itself. That pays off only once the directions are those of a likely deepest point.
+        // Pairs of bounds are tighter than each by itself where one grows and the other falls. That pays off only once the
+        // directions are those of a likely deepest point.
         if refine_at.is_some() {
             for plane in &self.planes {
                 if count < MAX_BOUNDS {
@@ -435,13 +435,14 @@ fn under_plane<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
     simd: S,
     [a, b, c]: &[LaneVector<V>; 3],
     out: &[V; 3],
-    [nd, nz, max3]: [R; 3],
+    [nd, nz, offset]: [R; 3],
 ) -> [V; 3] {
-    let (nd, nz, max3) = (V::splat(simd, nd), V::splat(simd, nz), V::splat(simd, max3));
+    let (nd, nz) = (V::splat(simd, nd), V::splat(simd, nz));
+    let offset = V::splat(simd, offset);
     [
-        max3 - (out[0] * nd + a[2] * nz),
-        max3 - (out[1] * nd + b[2] * nz),
-        max3 - (out[2] * nd + c[2] * nz),
+        offset - (out[0] * nd + a[2] * nz),
+        offset - (out[1] * nd + b[2] * nz),
+        offset - (out[2] * nd + c[2] * nz),
     ]
 }
 
@@ -502,8 +503,8 @@ impl Hull<f32> {
                 None => near,
             };
             // The upright plane rules out most slabs for all rings.
-            let [nd, _, max3] = slab.planes[0];
-            let mut depth = f32x16::splat(simd, max3) - near * nd;
+            let [nd, _, radius] = slab.planes[0];
+            let mut depth = f32x16::splat(simd, radius) - near * nd;
             if !(in_slab & !depth.simd_le(threshold)).any_true() {
                 bound = in_slab.select(bound.max(depth), bound);
                 continue;

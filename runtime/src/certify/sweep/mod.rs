@@ -12,7 +12,7 @@ use crate::cancellation;
 use crate::certify::bounds::descent::{BoundedTree, Node, of_children};
 use crate::certify::bounds::swept::{Moving, SweptBatch, of_leaf};
 use crate::certify::rounding;
-use crate::certify::search::{DepthQuery, MARGIN, QuerySetting};
+use crate::certify::search::{DepthQuery, MAX_F32_MARGIN, QuerySetting};
 use crate::certify::space::{Point, minus};
 use crate::certify::sweep::interval::MotionInterval;
 use crate::certify::tool_model::field::Scratch;
@@ -44,8 +44,8 @@ impl SweepTask<'_> {
         self.limit + self.tolerance
     }
 
-    /// Returns the same threshold for bounds that are raised by the distance to be kept, less the rounding error bound.
-    fn above(&self) -> f64 {
+    /// Returns the bound above which a triangle has to be examined: the threshold and the distance to be kept, less the error.
+    fn bound_threshold(&self) -> f64 {
         self.threshold() + self.required_clearance() - self.error
     }
 
@@ -121,9 +121,9 @@ struct Spread {
 
 /// A candidate that may be in the way.
 #[derive(Clone, Copy)]
-enum Undecided {
+enum Candidate {
     Node(Node),
-    Part(TrianglePiece),
+    Piece(TrianglePiece),
 }
 
 /// The search along a motion, with its memory.
@@ -132,10 +132,10 @@ pub(crate) struct Sweeper {
     view: PoseTransform,
     ends: [PoseTransform; 2],
     /// The candidates of all intervals that are being examined, as a stack.
-    pending: Vec<Undecided>,
+    pending: Vec<Candidate>,
     stack: Vec<Node>,
     /// Triangles waiting for the next batch of eight.
-    some: Vec<TrianglePiece>,
+    waiting: Vec<TrianglePiece>,
     swept_batch: SweptBatch,
     search: DepthSearch,
     scratch: Scratch,
@@ -147,7 +147,7 @@ impl Sweeper {
     /// Examines a whole motion. Returns `None` if the limit is proved to hold.
     pub(crate) fn run(&mut self, task: &SweepTask<'_>, budget: u32) -> Option<SweepEnd> {
         self.pending.clear();
-        self.pending.push(Undecided::Node(Node { level: 0, index: 0, bound: f32::INFINITY }));
+        self.pending.push(Candidate::Node(Node { level: 0, index: 0, bound: f32::INFINITY }));
         self.budget = budget;
         // The root alone is the first candidate.
         self.check_interval(task, [0.0, 1.0], 0)
@@ -208,15 +208,15 @@ impl Sweeper {
         let margin = setting.margin()
             + (interval.displacement_bound(f64::INFINITY) + task.required_clearance())
                 / f64::from(1 << 18);
-        let threshold = (task.above() - margin) as f32;
+        let threshold = (task.bound_threshold() - margin) as f32;
         let shift = interval.shift(task.required_clearance());
         let small = MAX_NODE_FRACTION * interval.displacement_bound(f64::INFINITY);
         self.stack.clear();
-        self.some.clear();
+        self.waiting.clear();
         for at in list {
             match self.pending[at] {
-                Undecided::Node(node) => self.stack.push(node),
-                Undecided::Part(part) => {
+                Candidate::Node(node) => self.stack.push(node),
+                Candidate::Piece(part) => {
                     if let Some(stop) = self.add(task, interval, part) {
                         return Some(stop);
                     }
@@ -238,12 +238,12 @@ impl Sweeper {
                     }
                 } else if node.size(bvh) * setting.setup.unit < small {
                     // Its size adds little to the displacement: halving the interval gains more than opening the node.
-                    self.pending.push(Undecided::Node(node));
+                    self.pending.push(Candidate::Node(node));
                 } else {
                     let mut bounds = [node.bound; WIDTH];
                     let moving = Moving { hull: &query.hull, shift, ends: &self.ends };
                     let tree = BoundedTree { bvh, bounds: &moving, view: &self.view };
-                    let hits = if margin > MARGIN {
+                    let hits = if margin > MAX_F32_MARGIN {
                         u32::MAX
                     } else if node.is_leaf(bvh) {
                         of_leaf(setting.level, &tree, node, threshold)
@@ -254,7 +254,7 @@ impl Sweeper {
                 }
             }
         }
-        self.triangles(task, interval)
+        self.examine_batch(task, interval)
     }
 
     /// Adds a triangle or a piece of one to the batch. If the motion turns and the piece is large compared with the
@@ -282,20 +282,24 @@ impl Sweeper {
                 return None;
             }
         }
-        self.some.push(part);
-        if self.some.len() == LANES { self.triangles(task, interval) } else { None }
+        self.waiting.push(part);
+        if self.waiting.len() == LANES { self.examine_batch(task, interval) } else { None }
     }
 
     /// Appends the triangles of the batch that remain.
-    fn triangles(&mut self, task: &SweepTask<'_>, interval: &MotionInterval) -> Option<SweepEnd> {
+    fn examine_batch(
+        &mut self,
+        task: &SweepTask<'_>,
+        interval: &MotionInterval,
+    ) -> Option<SweepEnd> {
         let SweepTask { setting, query, .. } = *task;
         let level = task.setting.level;
-        let count = self.some.len();
-        self.swept_batch.begin(interval, task.required_clearance(), &self.some);
-        let above = task.above();
+        let count = self.waiting.len();
+        self.swept_batch.begin(interval, task.required_clearance(), &self.waiting);
+        let above = task.bound_threshold();
         self.swept_batch.bound(level, &query.exact, above);
         if !self.swept_batch.bounds[..count].iter().any(|bound| *bound > above || bound.is_nan()) {
-            self.some.clear();
+            self.waiting.clear();
             return None;
         }
         // Candidates are sampled where they are deepest in the middle of the interval.
@@ -320,14 +324,14 @@ impl Sweeper {
             // Another's point says nothing about the owners.
             let may_become_too_deep = query.owners.is_owned(sample.feature)
                 && sample.depth + steep * spread.displacement > task.threshold();
-            let part = self.some[lane];
+            let part = self.waiting[lane];
             if may_become_too_deep {
-                self.pending.push(Undecided::Part(part));
+                self.pending.push(Candidate::Piece(part));
             } else if let Some(deep) = self.check_part(task, interval, &part, spread) {
                 return Some(SweepEnd::Deeper { at, pose, best: deep.best(index) });
             }
         }
-        self.some.clear();
+        self.waiting.clear();
         None
     }
 
@@ -346,12 +350,12 @@ impl Sweeper {
             _ => return self.check_subdivided(task, interval, part, spread),
         };
         let corners = part.piece.corners().map(|corner| interval.in_the_middle(&corner));
-        match self.check_lines(task, section, &query.owners, &TrianglePart::whole(corners), spread)
+        match self.check_lines(task, section, &query.owners, &TriangleBand::whole(corners), spread)
         {
             TriangleVerdict::TooDeep(deep) => return Some(deep),
             TriangleVerdict::Clear => {}
             TriangleVerdict::Undecided | TriangleVerdict::OtherOwner(_) => {
-                self.pending.push(Undecided::Part(*part));
+                self.pending.push(Candidate::Piece(*part));
             }
         }
         None
@@ -363,10 +367,10 @@ impl Sweeper {
         task: &SweepTask<'_>,
         section: &Section,
         owners: &Owners,
-        part: &TrianglePart,
+        part: &TriangleBand,
         spread: Spread,
     ) -> TriangleVerdict {
-        let TrianglePart { triangle, heights } = part;
+        let TriangleBand { triangle, heights } = part;
         let displacement = spread.displacement + triangle.skew + task.error;
         // A point less deep than that does not become too deep in what is left of the interval.
         let least = task.threshold() - displacement;
@@ -441,14 +445,14 @@ impl Sweeper {
                     self.pieces.extend(piece.halves());
                     // A piece without halves is too small to be told apart.
                     if self.pieces.len() == before {
-                        self.pending.push(Undecided::Part(TrianglePiece { piece, ..*part }));
+                        self.pending.push(Candidate::Piece(TrianglePiece { piece, ..*part }));
                     }
                 }
                 TriangleVerdict::Undecided => {
                     self.pieces.push(piece);
                     let remaining = self.pieces.drain(..);
                     let remaining = remaining.map(|piece| TrianglePiece { piece, ..*part });
-                    self.pending.extend(remaining.map(Undecided::Part));
+                    self.pending.extend(remaining.map(Candidate::Piece));
                 }
             }
         }
@@ -480,7 +484,7 @@ impl Sweeper {
                 return TriangleVerdict::Clear;
             };
             // Owners need not be told apart where no surface at all is too deep.
-            let part = TrianglePart { triangle, heights };
+            let part = TriangleBand { triangle, heights };
             let other = match self.check_lines(task, section, &Owners::default(), &part, spread) {
                 TriangleVerdict::OtherOwner(other) => other,
                 decided => return decided,
@@ -520,15 +524,15 @@ enum TriangleVerdict {
 }
 
 /// The part of a triangle between two heights.
-struct TrianglePart {
+struct TriangleBand {
     triangle: LocalTriangle,
     heights: [f64; 2],
 }
 
-impl TrianglePart {
-    fn whole(corners: [Point; 3]) -> TrianglePart {
+impl TriangleBand {
+    fn whole(corners: [Point; 3]) -> TriangleBand {
         let heights = [f64::NEG_INFINITY, f64::INFINITY];
-        TrianglePart { triangle: LocalTriangle::new(corners), heights }
+        TriangleBand { triangle: LocalTriangle::new(corners), heights }
     }
 }
 

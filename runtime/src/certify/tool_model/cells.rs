@@ -1,8 +1,8 @@
 //! Cells: rectangles of the half plane, each with its *candidates*, the features that may be the nearest to its points.
 //!
-//! A feature is left out only if one that stays is proved to be nearer to every point of the cell, by more than rounding. Where
-//! a cell is halved is a guess, so a poor cut costs candidates and never an answer. Features that nearly coincide stay together:
-//! no border between them is computed.
+//! A feature is left out only if another is proved to be nearer to every point of the cell: by more than rounding, or because it
+//! comes nearer from an end that both share. A poor cut between cells costs candidates and never an answer. Features that nearly
+//! coincide stay together: no border between them is computed.
 
 use crate::certify::rounding;
 use crate::certify::tool_model::feature::{MeridianPoint, exceed};
@@ -77,14 +77,20 @@ impl CellTree {
     /// Returns the candidates of a point; `None` for a point outside the rectangle about the profile.
     #[inline]
     pub(crate) fn candidates(&self, p: MeridianPoint) -> Option<&[usize]> {
-        let is_within = self.whole.contains(&Rectangle { low: p, high: p });
+        let point = Rectangle { low: p, high: p };
+        self.whole.contains(&point).then(|| self.candidates_near(p))
+    }
+
+    /// Returns the candidates of a point, or of a cell near it if it is outside the rectangle about the profile.
+    #[inline]
+    pub(crate) fn candidates_near(&self, p: MeridianPoint) -> &[usize] {
         let mut index = 0;
         loop {
             match &self.nodes[index] {
                 CellNode::Halved { axis, at, upper } => {
                     index = if p[*axis] < *at { index + 1 } else { *upper };
                 }
-                CellNode::Undivided(candidates) => return is_within.then_some(candidates),
+                CellNode::Undivided(candidates) => return candidates,
             }
         }
     }
@@ -125,7 +131,7 @@ impl Section {
     }
 
     /// Returns the cell of a rectangle. `among` are the candidates of a rectangle about it. A feature stays if it is farther than
-    /// the nearest by at most `margin`.
+    /// the nearest by at most `margin`, unless a [neighbour](Section::hidden_by_neighbours) hides it.
     pub(super) fn cell(&self, rectangle: Rectangle, among: &[usize], margin: f64) -> Cell {
         let (middle, reach) = rectangle.ball();
         let corners = rectangle.corners();

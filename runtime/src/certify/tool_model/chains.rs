@@ -25,9 +25,9 @@ pub(crate) struct TipBall {
     pub(crate) ball: [f64; 2],
 }
 
-/// The largest angle, in radians, by which the sides of a chain turn: the line is off them by an eighth of that, times the length
-/// of the chain.
-const MAX_TURN: f64 = 0.125;
+/// The sine of the largest angle by which the sides of a chain turn: the line is off them by an eighth of that, times the length of
+/// the chain.
+const MAX_TURN_SINE: f64 = 0.125;
 
 /// The least number of lines that a ball stands for, and their largest distance from it, as a fraction of its radius. Beyond
 /// that it bounds nothing better than the lines.
@@ -37,17 +37,17 @@ const MAX_DEVIATION: f64 = 1.0 / 256.0;
 impl Section {
     /// Returns all slabs as chains, in upward order.
     pub(super) fn chains(&self) -> Vec<Chain> {
+        // A chain belongs to the ball as a whole or not at all.
+        let tip_end = self.tip_ball.map(|tip| tip.slabs);
         let mut chains = Vec::new();
         let mut next = 0;
         while next < self.slabs.len() {
             let first = next;
             next += 1;
-            // A chain belongs to the ball as a whole or not at all.
-            let is_tip_end = |slab: usize| self.tip_ball.is_some_and(|tip| tip.slabs == slab);
             while next < self.slabs.len()
                 && self.continues(next)
-                && self.turn(first, next) <= MAX_TURN
-                && !is_tip_end(next)
+                && self.turn_sine(first, next) <= MAX_TURN_SINE
+                && tip_end != Some(next)
             {
                 next += 1;
             }
@@ -66,17 +66,18 @@ impl Section {
     fn continues(&self, slab: usize) -> bool {
         let [below, above] = [&self.slabs[slab - 1], &self.slabs[slab]];
         let [first, second] = [below, above].map(|slab| &self.features[slab.side]);
-        let reach_axis = below.hole == 0.0 && above.hole == 0.0;
-        reach_axis
+        let has_hole = below.hole > 0.0 || above.hole > 0.0;
+        !has_hole
             && below.high == above.low
             && first.circle.is_none()
             && second.circle.is_none()
             && first.ends[1] == second.ends[0]
             && cross(first.along, second.along) >= 0.0
+            && dot(first.along, second.along) > 0.0
     }
 
     /// Returns the sine of the angle between the sides of two slabs.
-    fn turn(&self, first: usize, second: usize) -> f64 {
+    fn turn_sine(&self, first: usize, second: usize) -> f64 {
         let [first, second] =
             [first, second].map(|slab| self.features[self.slabs[slab].side].along);
         cross(first, second)
@@ -118,7 +119,7 @@ impl Section {
             return None;
         }
         let count = 1 + (1..self.slabs.len()).take_while(|slab| self.continues(*slab)).count();
-        let balls = (MIN_LINES..=count).rev().filter_map(|slabs| {
+        (MIN_LINES..=count).rev().find_map(|slabs| {
             let [across, height] = minus(self.features[self.slabs[slabs - 1].side].ends[1], tip);
             // Above its centre the way to the foot would lead upward.
             let radius = 0.5 * (across * across + height * height) / height;
@@ -128,10 +129,10 @@ impl Section {
                 [least.min(distance), greatest.max(distance)]
             });
             let is_close = greatest - least <= MAX_DEVIATION * radius;
-            (height <= radius && is_close && radius <= 4.0 * self.size)
+            let is_small = greatest.max(centre.abs()) <= 4.0 * self.size;
+            (height <= radius && is_close && is_small)
                 .then_some(TipBall { slabs, ball: [centre, greatest] })
-        });
-        { balls }.next()
+        })
     }
 
     /// Returns the ball about the tool's tip that bounds the depth of a chain, as its height and its radius.

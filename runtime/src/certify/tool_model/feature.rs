@@ -177,19 +177,11 @@ impl Feature {
     /// nearest point may be elsewhere.
     pub(crate) fn at_ends(&self, corners: &[MeridianPoint]) -> Option<[bool; 2]> {
         let [first, last] = self.ends;
-        // Beyond an end of a line or, as seen from the centre, of an arc, the nearest point is an end.
-        let is_beyond = match &self.circle {
-            None => {
-                corners.iter().all(|p| -dot(self.along, minus(*p, first)) > 0.0)
-                    || corners.iter().all(|p| dot(self.along, minus(*p, last)) > 0.0)
-            }
-            Some(Circle { centre, convex, .. }) => {
-                let sense = if *convex { 1.0 } else { -1.0 };
-                let [from, to] = self.ends.map(|end| minus(end, *centre));
-                corners.iter().all(|p| -sense * cross(from, minus(*p, *centre)) > 0.0)
-                    || corners.iter().all(|p| sense * cross(to, minus(*p, *centre)) > 0.0)
-            }
-        };
+        // Beyond an end of a line or, as seen from the centre, of an arc, the nearest point is an end. A neighbour that comes nearer
+        // from there is told by the same product.
+        let [backward, forward] = [self.tangent_at(0).map(|d| -d), self.tangent_at(1)];
+        let is_beyond = corners.iter().all(|p| dot(backward, minus(*p, first)) > 0.0)
+            || corners.iter().all(|p| dot(forward, minus(*p, last)) > 0.0);
         if !is_beyond {
             return None;
         }
@@ -334,15 +326,15 @@ impl Feature {
     pub(crate) fn lower_bounds<const N: usize>(&self, corners: &[MeridianPoint; N]) -> [f64; N] {
         let centre = mean(corners);
         match &self.circle {
-            // The distance from a convex set is at least that from a line which separates the two.
+            // The distance from a convex set is at least that from a line which separates the two, whatever its direction.
             None => {
-                let foot = self.foot(centre);
-                let away = minus(centre, foot);
+                let away = minus(centre, self.foot(centre));
                 let length = norm(away);
                 if length == 0.0 {
                     return [0.0; N];
                 }
-                corners.map(|p| dot(away, minus(p, foot)) / length)
+                let [from, to] = self.ends.map(|end| dot(away, end));
+                corners.map(|p| (dot(away, p) - from.max(to)) / length)
             }
             // An arc is no nearer than its circle: of the two lower bounds inside and outside of it one is concave, and the
             // other is at least its tangent.

@@ -71,10 +71,11 @@ impl Owners {
         let widen = |zone: &mut Option<Rectangle>, rectangle: Rectangle| {
             *zone = Some(zone.map_or(rectangle, |zone| zone.widened(&rectangle)));
         };
+        let margin = section.owner_margin();
         let mut stack = section.cells_of(slab);
         while let Some(cell) = stack.pop() {
-            let Cell { rectangle, .. } = &cell;
-            if zone.is_some_and(|zone| zone.contains(rectangle)) {
+            let rectangle = cell.rectangle;
+            if zone.is_some_and(|zone| zone.contains(&rectangle)) {
                 continue;
             }
             let ownership = self.ownership(section, &cell, deeper);
@@ -84,7 +85,6 @@ impl Owners {
             // The height of a seam at which features of equal direction meet is the border between their points, and only
             // a strip along it is not certain to belong to one of them.
             let (inner, strips) = rectangle.without_seams([slab.low, slab.high], strip);
-            let margin = section.owner_margin();
             let part = |rectangle: Rectangle| section.cell(rectangle, &cell.candidates, margin);
             let is_owned = |cell: &Cell| self.ownership(section, cell, deeper) != Ownership::None;
             if !strips.is_empty() && !is_owned(&part(inner)) {
@@ -94,7 +94,7 @@ impl Owners {
                     }
                 }
             } else if ownership == Ownership::All || rectangle.ball().1 <= min_size {
-                widen(&mut zone, *rectangle);
+                widen(&mut zone, rectangle);
             } else {
                 stack.extend(section.halves(&cell, margin));
             }
@@ -142,7 +142,8 @@ impl Owners {
                     max_depth = depth.max(max_depth);
                 }
                 if owner.is_finite() && (is_inside || depth <= reach) {
-                    queue.push(((depth + reach).to_bits(), cells.len()));
+                    let signed = if is_inside { depth } else { -depth };
+                    queue.push(((signed + reach).to_bits(), cells.len()));
                     cells.push(cell);
                 }
             }

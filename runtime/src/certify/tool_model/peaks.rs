@@ -28,20 +28,17 @@ pub(super) struct Peaks {
 /// The maximum number of cells examined for peaks. What is left of them is a part of the answer.
 const MAX_CELLS: usize = 1 << 17;
 
-/// The least size of a rectangle, in error bounds of a point, in which two features may count as one.
-const MIN_MERGED: f64 = 8.0;
-
 impl Owners {
     /// Returns the heights of points at which the depth of owned points can have a local maximum: points equally far
     /// from three features, of which there are few. Elsewhere depth grows in some direction in which the owners own
     /// points, or does not grow away from the axis. With `others`, only those are returned near which other features own
     /// points too.
     ///
-    /// The heights are found by halving rectangles, each with the features that may be the nearest there. Two features that
-    /// meet nearly in line are equally far to within a fraction of the error bound all over some rectangles. There they count
+    /// The heights are found by halving cells. Two features that
+    /// meet nearly in line are equally far to within a fraction of the error bound all over some cells. There they count
     /// as one, and the end of their border is [computed](Section::border_ends) by itself.
     pub(super) fn find_peaks(&self, section: &Section, others: bool) -> Peaks {
-        let min_size = section.error / 32.0;
+        let min_size = rounding::PEAK_CELL * section.error;
         // All points of an arc are equally far from its centre.
         let centres = section.features.iter().filter_map(|feature| feature.circle);
         let mut peaks: Vec<f64> = centres.map(|circle| circle.centre[1]).collect();
@@ -60,7 +57,7 @@ impl Owners {
                 }
                 let (middle, reach) = cell.rectangle.ball();
                 if reach > min_size {
-                    cells.extend(section.halves(&cell, rounding::CELL_TIE * section.error));
+                    cells.extend(section.halves(&cell, rounding::PEAK_TIE * section.error));
                 } else if peaks.iter().all(|peak| (peak - middle[1]).abs() > 2.0 * min_size) {
                     // Neighbouring cells at one point count once.
                     peaks.push(middle[1]);
@@ -92,7 +89,7 @@ impl Owners {
                     || [*index, *site].map(|f| feature(f).at_ends(&corners).is_some()) == [true; 2];
                 let is_in_line = || {
                     let (first, second) = (index.min(site), index.max(site));
-                    reach >= MIN_MERGED * section.error
+                    reach >= rounding::MERGED_CELL * section.error
                         && first + 1 == *second
                         && feature(*first).continues_in(feature(*second))
                         && feature(*first).is_as_far_as(

@@ -28,8 +28,6 @@ pub(crate) struct SectionSlab {
     pub(crate) hole: f64,
     /// The radii of its side at both heights.
     radii: [f64; 2],
-    /// The features that can be the nearest to a point in it.
-    candidates: Vec<usize>,
     /// The largest radius.
     pub(crate) radius: f64,
     /// The range along the line of its side in which a foot is on the surface or outside the tool, so that depth is
@@ -53,6 +51,7 @@ pub(crate) struct Section {
     pub(crate) slabs: Vec<SectionSlab>,
     /// The slabs in chains, for bounds that need not be tight.
     pub(crate) chains: Vec<Chain>,
+    /// The ball that bounds the depth of chords at the tip.
     pub(crate) tip_ball: Option<TipBall>,
     /// True if some heights have several slabs, or one that does not reach the axis.
     pub(super) overhangs: bool,
@@ -144,12 +143,6 @@ impl Section {
         for slab in 0..section.slabs.len() {
             let side = section.features[section.slabs[slab].side];
             section.slabs[slab].feet = section.feet(&side, slab);
-            let cells = section.cells_of(&section.slabs[slab]);
-            let mut candidates: Vec<usize> =
-                cells.into_iter().flat_map(|cell| cell.candidates).collect();
-            candidates.sort_unstable();
-            candidates.dedup();
-            section.slabs[slab].candidates = candidates;
         }
         section.tip_ball = section.tip_ball();
         section.chains = section.chains();
@@ -212,8 +205,12 @@ impl Section {
         let is_line = self.features[slab.side].circle.is_none();
         let radii = if is_line { slab.radii } else { [slab.radius; 2] };
         let corners = [[slab.hole, low], [slab.hole, high], [radii[0], low], [radii[1], high]];
-        let others = slab.candidates.iter().copied().filter(|other| *other != slab.side);
-        others.filter(move |other| {
+        let cells = self.cells_of(slab);
+        let mut others: Vec<usize> = cells.into_iter().flat_map(|cell| cell.candidates).collect();
+        // Those next to the side along the profile are likely to bound depth best.
+        others.sort_by_key(|other| (other.abs_diff(slab.side), *other));
+        others.dedup();
+        others.into_iter().skip_while(|other| *other == slab.side).filter(move |other| {
             let line = &self.features[*other];
             let positions = corners.map(|corner| line.position(corner));
             line.circle.is_none()
@@ -395,7 +392,7 @@ impl Section {
         // The signed distance from the side is a bound only where feet are on the surface or outside the tool.
         let mut bound = if side.projects_onto(triangle, slab.feet) { out } else { f64::INFINITY };
         // Any feature bounds depth; those near the middle of the triangle bound it best.
-        for candidate in self.cells.candidates(mean(triangle)).unwrap_or_default() {
+        for candidate in self.cells.candidates_near(mean(triangle)) {
             if bound <= threshold {
                 return bound;
             }
@@ -462,7 +459,7 @@ impl Section {
         margin: f64,
         is_far: impl Fn(usize) -> bool,
     ) -> bool {
-        // The same for all owners, and needed for few polygons.
+        // Computed once: it is the same for all owners, and few polygons need it.
         let nearest_other = LazyCell::new(|| {
             let others = (0..self.features.len()).filter(|feature| !owners.is_owned(*feature));
             &self.features[self.nearest(others, mean(corners)).1]
@@ -548,7 +545,6 @@ impl SectionSlab {
         let hole = inner.map_or(0.0, |inner| {
             features[inner].radius_at(low).min(features[inner].radius_at(high))
         });
-        let (candidates, feet) = (Vec::new(), [0.0; 2]);
-        SectionSlab { low, high, side, inner, hole, radii, candidates, radius, feet }
+        SectionSlab { low, high, side, inner, hole, radii, radius, feet: [0.0; 2] }
     }
 }

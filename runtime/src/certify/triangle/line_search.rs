@@ -8,7 +8,7 @@
 use crate::certify::tool_model::feature::{MeridianPoint, Triangle, dot};
 use crate::certify::tool_model::section::{Depth, Owners, Section};
 
-/// A line segment, `base + t way`, with `t` in `span`. At `t`, `d² = off² + (start + t slide)²`.
+/// A line segment, `base + t direction`, with `t` in `span`. At `t`, `d² = off² + (start + t slide)²`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SearchLine {
     base: [f64; 3],
@@ -112,7 +112,7 @@ impl LineInterval {
         let meet =
             (last.point[0] - first.point[0] - last.slope * length) / (first.slope - last.slope);
         let x = if meet.is_finite() { meet.clamp(0.0, length) } else { 0.5 * length };
-        // Below both tangents, whatever the rounding errors.
+        // Keeps the apex below both tangents, whatever the rounding errors.
         let d = (first.point[0] + first.slope * x).min(last.point[0] - last.slope * (length - x));
         let apex = [d.max(0.0), line.height(first.t + x)];
         [first.point, last.point, apex]
@@ -324,7 +324,7 @@ impl DepthSearch {
                 line.interval(from, to),
                 |triangle, threshold| {
                     let bound = section.negative_distance_bound(owners, triangle, threshold);
-                    // What meets no feature is inside as a whole or not at all.
+                    // A triangle that meets no feature is inside as a whole or not at all.
                     let is_inside = bound < 0.0 && owners.all() && section.contains(triangle[0]);
                     if is_inside { 0.0 } else { bound }
                 },

@@ -68,7 +68,7 @@ impl LocalTriangle {
         for k in 0..3 {
             let (a, b) = (self.corners[k], self.corners[(k + 1) % 3]);
             let inward = cross(self.normal, minus(b, a));
-            // inward · (base + t way - a) >= 0
+            // inward · (base + t direction - a) >= 0
             let (speed, min_value) =
                 (dot(inward, self.direction), dot(inward, minus(a, self.base)));
             if speed > 0.0 {
