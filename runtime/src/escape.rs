@@ -1,6 +1,6 @@
 //! Escaping of text from files and file names for display.
 
-use std::fmt::{self, Display, Formatter, Write};
+use std::fmt::{self, Display, Formatter};
 
 /// Text without the characters that a terminal interprets. Control characters (C0, C1, delete) and
 /// characters that change the direction of writing are shown as `\u001b`, with four hexadecimal digits
@@ -39,7 +39,7 @@ impl Display for EscapedLines<'_> {
         for piece in self.0.split_inclusive(['\n', '\t']) {
             let line = piece.trim_end_matches(['\n', '\t']);
             write!(f, "{}", Escaped(line))?;
-            piece[line.len()..].chars().try_for_each(|end| f.write_char(end))?;
+            f.write_str(&piece[line.len()..])?;
         }
         Ok(())
     }

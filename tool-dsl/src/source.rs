@@ -157,24 +157,14 @@ impl Source {
             match token {
                 // `///` comments reach a macro as `#[doc = "…"]`.
                 TokenTree::Punct(hash) if hash.as_char() == '#' => {
-                    let doc = |t: &TokenTree| matches!(t, TokenTree::Group(g) if g.delimiter() == Delimiter::Bracket && g.stream().to_string().starts_with("doc"));
-                    if matches!(tokens.peek(), Some(TokenTree::Punct(p)) if p.as_char() == '!') {
-                        let bang = tokens.next();
-                        if tokens.peek().is_some_and(doc) {
-                            tokens.next();
-                            continue;
-                        }
-                        self.push("#", hash.span(), true);
-                        if let Some(bang) = bang {
-                            self.push(&bang.to_string(), bang.span(), true);
-                        }
-                        continue;
-                    }
-                    if tokens.peek().is_some_and(doc) {
-                        tokens.next();
+                    let bang = tokens.next_if(is_bang);
+                    if tokens.next_if(is_doc_attribute).is_some() {
                         continue;
                     }
                     self.push("#", hash.span(), true);
+                    if let Some(bang) = bang {
+                        self.push("!", bang.span(), true);
+                    }
                 }
                 TokenTree::Group(group) => {
                     let (open, close) = match group.delimiter() {
@@ -230,6 +220,17 @@ impl Source {
         };
         Some(MentionedFile { shown, path: near(self.path.as_deref()?) })
     }
+}
+
+/// Returns whether a token is the `!` of an inner attribute.
+fn is_bang(token: &TokenTree) -> bool {
+    matches!(token, TokenTree::Punct(punct) if punct.as_char() == '!')
+}
+
+/// Returns whether a token is the bracket of a doc comment's attribute.
+fn is_doc_attribute(token: &TokenTree) -> bool {
+    matches!(token, TokenTree::Group(group)
+        if group.delimiter() == Delimiter::Bracket && group.stream().to_string().starts_with("doc"))
 }
 
 /// A file that a text mentions: its path to show, and the path to open.

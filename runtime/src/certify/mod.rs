@@ -58,7 +58,7 @@ use std::slice;
 use std::sync::Arc;
 use sweep::Sweeper;
 use tool_model::ToolModel;
-use tool_model::section::Owners;
+use tool_model::owners::Owners;
 use triangle::line_search::Goal;
 
 /// A tool at a part's triangles: it answers queries at one pose after another with proved bounds.
@@ -547,7 +547,8 @@ impl Certifier<'_> {
     }
 
     /// Computes the distance of the part's triangles from some surfaces of the tool. The interval is that of
-    /// [`Certifier::clearance`]. It is 0 if a point inside the tool is the nearest to one of these surfaces. For a point in a region of the tool that other surfaces own, it is the
+    /// [`Certifier::clearance`]. It is 0 if a point inside the tool is the nearest to one of these surfaces. For a point in a region
+    /// of the tool that other surfaces own, it is the
     /// distance from the nearest of these surfaces. Without any surfaces it is infinite. For a tool without a profile
     /// the nearest surface is unknown (see [`Certifier::with_allowance`]): the lower bound is that of the whole tool,
     /// the upper bound infinite.

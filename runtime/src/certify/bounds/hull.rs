@@ -10,8 +10,9 @@ use crate::certify::bounds::support::Support;
 use crate::certify::part::NodeRing;
 use crate::certify::tool_model::chains::Chain;
 use crate::certify::tool_model::feature::{Feature, MeridianPoint};
+use crate::certify::tool_model::owners::Owners;
 use crate::certify::tool_model::rectangle::Rectangle;
-use crate::certify::tool_model::section::{Owners, Section};
+use crate::certify::tool_model::section::Section;
 use crate::interval::Interval;
 use crate::tool::ToolInfo;
 use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask, f32x16};
@@ -113,7 +114,7 @@ impl<R: Real> Hull<R> {
         hull
     }
 
-    /// Returns at least the depth of every point of each triangle, up to rounding, and the point where depth may be
+    /// Returns an upper bound of the depth of each triangle, up to rounding, and the point where depth may be
     /// greatest. Absent triangles have NaN coordinates. A bound of at most `threshold` need not be tight. Given such
     /// points of an earlier call in `refine_at`, the bounds are taken in their directions.
     #[inline(always)]
@@ -447,7 +448,7 @@ fn under_plane<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
 }
 
 impl Hull<f64> {
-    /// Returns at least the depth of every point of a ring.
+    /// Returns an upper bound of the depth of a ring's points.
     pub(crate) fn of_ring(&self, ring: &NodeRing) -> f64 {
         let in_slab =
             self.slabs.iter().filter(|slab| ring.low <= slab.high && slab.low <= ring.high);
@@ -483,7 +484,7 @@ impl<S: Simd> BoxRings<f32x16<S>> {
 }
 
 impl Hull<f32> {
-    /// Returns at least the depth of every point of the rings. A bound of at most `threshold` need not be tight.
+    /// Returns an upper bound of the depth of each ring's points. A bound of at most `threshold` need not be tight.
     #[inline(always)]
     pub(crate) fn of_rings<S: Simd>(
         &self,
@@ -547,7 +548,7 @@ impl Hull<f32> {
 }
 
 impl BoxBounds for Hull<f32> {
-    /// Returns at least the depth of every point in each of 16 boxes, up to rounding. Absent boxes have NaN centres.
+    /// Returns an upper bound of the depth of each of 16 boxes, up to rounding. Absent boxes have NaN centres.
     #[inline(always)]
     fn of_boxes<S: Simd>(
         &self,

@@ -3,7 +3,8 @@
 use crate::bvh::{LaneVector, PoseTransform};
 use crate::certify::bounds::descent::{Bounds, BoxBounds, BoxRings, Children, rings};
 use crate::certify::bounds::nearest::{NearestPoint, max3, min3, radial_extents};
-use crate::certify::tool_model::section::{Owners, Section};
+use crate::certify::tool_model::owners::Owners;
+use crate::certify::tool_model::section::Section;
 use crate::tool::ToolInfo;
 use fearless_simd::{Simd, SimdBase, SimdFloat, f32x16};
 

@@ -16,13 +16,15 @@ use crate::certify::search::{DepthQuery, MAX_F32_MARGIN, QuerySetting};
 use crate::certify::space::{Point, minus};
 use crate::certify::sweep::interval::MotionInterval;
 use crate::certify::tool_model::field::Scratch;
-use crate::certify::tool_model::section::{Owners, Section};
+use crate::certify::tool_model::owners::Owners;
+use crate::certify::tool_model::section::Section;
 use crate::certify::tool_model::{Surroundings, ToolModel};
 use crate::certify::trajectory::Trajectory;
 use crate::certify::triangle::line_search::{DeepestCandidate, DepthSearch, Goal};
 use crate::certify::triangle::{LocalTriangle, SubTriangle, TrianglePiece};
 use crate::pose::Pose;
 use crate::tool::LANES;
+use std::ops::ControlFlow;
 
 /// The query, trajectory and limits of a sweep. Lengths are in the tool's unit.
 pub(crate) struct SweepTask<'a> {
@@ -150,7 +152,7 @@ impl Sweeper {
         self.pending.push(Candidate::Node(Node { level: 0, index: 0, bound: f32::INFINITY }));
         self.budget = budget;
         // The root alone is the first candidate.
-        self.check_interval(task, [0.0, 1.0], 0)
+        self.check_interval(task, [0.0, 1.0], 0).break_value()
     }
 
     /// Examines an interval, whose candidates start at index `first` of the list.
@@ -159,35 +161,31 @@ impl Sweeper {
         task: &SweepTask<'_>,
         [from, to]: [f64; 2],
         first: usize,
-    ) -> Option<SweepEnd> {
+    ) -> ControlFlow<SweepEnd> {
         cancellation::check();
         let last = self.pending.len();
         let (times, clearance) = ([from, to], task.required_clearance());
         match MotionInterval::new(task.setting, task.trajectory, times, clearance) {
             Some(interval) => {
-                if let Some(stop) = self.examine(task, &interval, first..last) {
-                    return Some(stop);
-                }
+                self.examine(task, &interval, first..last)?;
             }
             // Nothing is known on so long an interval.
             None => self.pending.extend_from_within(first..last),
         }
         // Nothing was left undecided.
         if self.pending.len() == last {
-            return None;
+            return ControlFlow::Continue(());
         }
         // An interval that cannot be halved any more counts as a spent budget: its candidates stay undecided.
         let middle = from / 2.0 + to / 2.0;
         if middle <= from || middle >= to || to - from < MIN_DURATION {
-            return Some(SweepEnd::Spent { at: from });
+            return ControlFlow::Break(SweepEnd::Spent { at: from });
         }
         for half in [[from, middle], [middle, to]] {
-            if let Some(stop) = self.check_interval(task, half, last) {
-                return Some(stop);
-            }
+            self.check_interval(task, half, last)?;
         }
         self.pending.truncate(last);
-        None
+        ControlFlow::Continue(())
     }
 
     /// Appends the candidates that remain of a range of the list.
@@ -196,7 +194,7 @@ impl Sweeper {
         task: &SweepTask<'_>,
         interval: &MotionInterval,
         list: std::ops::Range<usize>,
-    ) -> Option<SweepEnd> {
+    ) -> ControlFlow<SweepEnd> {
         let SweepTask { setting, query, .. } = *task;
         let bvh = &*setting.bvh;
         let frame = &bvh.frame;
@@ -217,14 +215,12 @@ impl Sweeper {
             match self.pending[at] {
                 Candidate::Node(node) => self.stack.push(node),
                 Candidate::Piece(part) => {
-                    if let Some(stop) = self.add(task, interval, part) {
-                        return Some(stop);
-                    }
+                    self.add(task, interval, part)?;
                 }
             }
             while let Some(node) = self.stack.pop() {
                 if self.budget == 0 {
-                    return Some(SweepEnd::Spent { at: interval.from });
+                    return ControlFlow::Break(SweepEnd::Spent { at: interval.from });
                 }
                 self.budget -= 1;
                 if node.is_triangle(bvh) {
@@ -233,9 +229,7 @@ impl Sweeper {
                     let piece =
                         SubTriangle::new([minus(a, origin), minus(b, origin), minus(c, origin)]);
                     let part = TrianglePiece { index: node.index, piece };
-                    if let Some(stop) = self.add(task, interval, part) {
-                        return Some(stop);
-                    }
+                    self.add(task, interval, part)?;
                 } else if node.size(bvh) * setting.setup.unit < small {
                     // Its size adds little to the displacement: halving the interval gains more than opening the node.
                     self.pending.push(Candidate::Node(node));
@@ -264,9 +258,9 @@ impl Sweeper {
         task: &SweepTask<'_>,
         interval: &MotionInterval,
         part: TrianglePiece,
-    ) -> Option<SweepEnd> {
+    ) -> ControlFlow<SweepEnd> {
         if self.budget == 0 {
-            return Some(SweepEnd::Spent { at: interval.from });
+            return ControlFlow::Break(SweepEnd::Spent { at: interval.from });
         }
         self.budget -= 1;
         if interval.rotates()
@@ -275,15 +269,17 @@ impl Sweeper {
             let mut halves = part.piece.halves().peekable();
             if halves.peek().is_some() {
                 for piece in halves.filter(|piece| interval.reaches(piece, task.setting.length)) {
-                    if let Some(stop) = self.add(task, interval, TrianglePiece { piece, ..part }) {
-                        return Some(stop);
-                    }
+                    self.add(task, interval, TrianglePiece { piece, ..part })?;
                 }
-                return None;
+                return ControlFlow::Continue(());
             }
         }
         self.waiting.push(part);
-        if self.waiting.len() == LANES { self.examine_batch(task, interval) } else { None }
+        if self.waiting.len() == LANES {
+            self.examine_batch(task, interval)
+        } else {
+            ControlFlow::Continue(())
+        }
     }
 
     /// Appends the triangles of the batch that remain.
@@ -291,7 +287,7 @@ impl Sweeper {
         &mut self,
         task: &SweepTask<'_>,
         interval: &MotionInterval,
-    ) -> Option<SweepEnd> {
+    ) -> ControlFlow<SweepEnd> {
         let SweepTask { setting, query, .. } = *task;
         let level = task.setting.level;
         let count = self.waiting.len();
@@ -300,7 +296,7 @@ impl Sweeper {
         self.swept_batch.bound(level, &query.exact, above);
         if !self.swept_batch.bounds[..count].iter().any(|bound| *bound > above || bound.is_nan()) {
             self.waiting.clear();
-            return None;
+            return ControlFlow::Continue(());
         }
         // Candidates are sampled where they are deepest in the middle of the interval.
         self.swept_batch.middle.bound(level, &query.exact, f64::NEG_INFINITY);
@@ -318,7 +314,7 @@ impl Sweeper {
             };
             let sample = task.depth(&mut self.scratch, point);
             if task.too_deep(&sample, spread.deviation) {
-                return Some(SweepEnd::Deeper { at, pose, best: sample.best(index) });
+                return ControlFlow::Break(SweepEnd::Deeper { at, pose, best: sample.best(index) });
             }
             let steep = setting.tool_model.lipschitz();
             // Another's point says nothing about the owners.
@@ -328,11 +324,11 @@ impl Sweeper {
             if may_become_too_deep {
                 self.pending.push(Candidate::Piece(part));
             } else if let Some(deep) = self.check_part(task, interval, &part, spread) {
-                return Some(SweepEnd::Deeper { at, pose, best: deep.best(index) });
+                return ControlFlow::Break(SweepEnd::Deeper { at, pose, best: deep.best(index) });
             }
         }
         self.waiting.clear();
-        None
+        ControlFlow::Continue(())
     }
 
     /// Examines a triangle or a piece of one: no point of it may be so deep, or so near, that its displacement could make it

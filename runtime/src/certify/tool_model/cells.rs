@@ -5,7 +5,7 @@
 //! coincide stay together: no border between them is computed.
 
 use crate::certify::rounding;
-use crate::certify::tool_model::feature::{MeridianPoint, exceed};
+use crate::certify::tool_model::feature::{MeridianPoint, is_above_everywhere};
 use crate::certify::tool_model::rectangle::Rectangle;
 use crate::certify::tool_model::section::{Section, SectionSlab};
 
@@ -141,17 +141,18 @@ impl Section {
         // Within the reach, a distance changes by at most the reach, and so does the least of all.
         let farthest = distances[0].0 + 2.0 * reach + margin;
         let mut candidates: Vec<usize> = Vec::new();
-        let mut nearest: Vec<[f64; 4]> = Vec::new();
+        let mut upper_bounds: Vec<[f64; 4]> = Vec::new();
         for (_, index) in distances.into_iter().take_while(|(distance, _)| *distance <= farthest) {
             let feature = &self.features[index];
-            let lower = feature.lower_bounds(&corners);
-            let is_farther = nearest.iter().any(|upper| exceed(lower, *upper, margin));
+            let lower = feature.affine_lower_bounds(&corners);
+            let is_farther =
+                upper_bounds.iter().any(|upper| is_above_everywhere(lower, *upper, margin));
             if is_farther || self.hidden_by_neighbours(index, &corners) {
                 continue;
             }
             candidates.push(index);
-            if nearest.len() < MAX_COMPARED {
-                nearest.push(feature.upper_bounds(&corners));
+            if upper_bounds.len() < MAX_COMPARED {
+                upper_bounds.push(feature.convex_upper_bounds(&corners));
             }
         }
         Cell { rectangle, candidates }

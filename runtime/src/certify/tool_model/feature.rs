@@ -150,9 +150,9 @@ impl Feature {
         [sense * d, z]
     }
 
-    /// Returns at least [`Feature::signed_distance`] at every point in a triangle.
+    /// Returns an upper bound of [`Feature::signed_distance`] over a triangle.
     #[inline]
-    pub(crate) fn signed_distance_upper(&self, triangle: &Triangle) -> f64 {
+    pub(crate) fn max_signed_distance_bound(&self, triangle: &Triangle) -> f64 {
         match &self.circle {
             // Tangents that touch on the tool's side bound nothing: the tool continues there.
             Some(circle) if circle.convex => {
@@ -273,9 +273,9 @@ impl Feature {
         if length > 0.0 { vector.map(|part| part / length) } else { self.signed_gradient(p) }
     }
 
-    /// Returns at least the distance of every point in a triangle.
+    /// Returns an upper bound of the distances of a triangle's points.
     #[inline]
-    pub(crate) fn at_most(&self, triangle: &Triangle) -> f64 {
+    pub(crate) fn max_distance_bound(&self, triangle: &Triangle) -> f64 {
         match &self.circle {
             // The distance from a convex set is convex.
             None => max3(triangle.map(|p| self.distance(p))),
@@ -290,9 +290,9 @@ impl Feature {
         }
     }
 
-    /// Returns at most the distance of every point in a triangle.
+    /// Returns a lower bound of the distances of a triangle's points.
     #[inline]
-    pub(crate) fn at_least(&self, triangle: &Triangle) -> f64 {
+    pub(crate) fn min_distance_bound(&self, triangle: &Triangle) -> f64 {
         let [first, second, middle] = *triangle;
         // A distance has the Lipschitz constant 1.
         let reach = norm(minus(first, middle)).max(norm(minus(second, middle)));
@@ -318,12 +318,19 @@ impl Feature {
         corners: &[MeridianPoint; N],
         margin: f64,
     ) -> bool {
-        exceed(self.lower_bounds(corners), other.upper_bounds(corners), margin)
+        is_above_everywhere(
+            self.affine_lower_bounds(corners),
+            other.convex_upper_bounds(corners),
+            margin,
+        )
     }
 
     /// Returns lower bounds of the distance of the corners of a polygon, such that the affine function with these values is one
     /// at every point of the polygon. They are exact for a line on one side of which the polygon lies.
-    pub(crate) fn lower_bounds<const N: usize>(&self, corners: &[MeridianPoint; N]) -> [f64; N] {
+    pub(crate) fn affine_lower_bounds<const N: usize>(
+        &self,
+        corners: &[MeridianPoint; N],
+    ) -> [f64; N] {
         let centre = mean(corners);
         match &self.circle {
             // The distance from a convex set is at least that from a line which separates the two, whatever its direction.
@@ -352,7 +359,10 @@ impl Feature {
 
     /// Returns upper bounds of the distance of the corners of a polygon, such that a convex function with these values is one at
     /// every point of the polygon. They are exact for a line.
-    pub(crate) fn upper_bounds<const N: usize>(&self, corners: &[MeridianPoint; N]) -> [f64; N] {
+    pub(crate) fn convex_upper_bounds<const N: usize>(
+        &self,
+        corners: &[MeridianPoint; N],
+    ) -> [f64; N] {
         let Some(circle @ Circle { centre: middle, radius, .. }) = &self.circle else {
             return corners.map(|p| self.distance(p));
         };
@@ -383,7 +393,10 @@ impl Feature {
         margin: f64,
     ) -> bool {
         let is_within = |one: &Feature, other: &Feature| {
-            let mut bounds = one.upper_bounds(corners).into_iter().zip(other.lower_bounds(corners));
+            let mut bounds = one
+                .convex_upper_bounds(corners)
+                .into_iter()
+                .zip(other.affine_lower_bounds(corners));
             bounds.all(|(upper, lower)| upper - lower <= margin)
         };
         is_within(self, other) && is_within(other, self)
@@ -410,7 +423,11 @@ impl Feature {
 
 /// Returns whether lower bounds of one feature's distance at the corners of a polygon are greater than upper bounds of another's
 /// by more than a margin: affine less convex is concave, and least at a corner.
-pub(crate) fn exceed<const N: usize>(lower: [f64; N], upper: [f64; N], margin: f64) -> bool {
+pub(crate) fn is_above_everywhere<const N: usize>(
+    lower: [f64; N],
+    upper: [f64; N],
+    margin: f64,
+) -> bool {
     lower.into_iter().zip(upper).all(|(lower, upper)| lower - upper > margin)
 }
 
@@ -422,7 +439,7 @@ pub(crate) fn mean(corners: &[MeridianPoint]) -> MeridianPoint {
     [0, 1].map(|k| corners.iter().map(|corner| corner[k]).sum::<f64>() / corners.len() as f64)
 }
 
-/// Returns at least the depth of every point of a triangle inside a circle. No point is deeper than under any
+/// Returns an upper bound of the depth of a triangle's points inside a circle. No point is deeper than under any
 /// tangent. The tangents taken are at the feet of the end that is farther inside and of the apex, in the
 /// directions that `touching` derives from theirs.
 #[inline]
@@ -517,12 +534,27 @@ mod tests {
         }
     }
 
+    /// Rounding moves the foot of the middle along the line. A line through both would be tilted, over so wide and thin a triangle by
+    /// more than the error of a distance.
+    #[test]
+    fn a_line_that_is_nearer_at_a_corner_is_not_farther() {
+        let bottom = Feature::new([[0.0, 0.0], [50.0, 0.0]], None, 0);
+        let top = Feature::new([[50.0, 0.01], [0.0, 0.01]], None, 0);
+        let corners = [
+            [1.229_026_647_031_889, 0.004_999_999_982_607_259],
+            [34.446_196_190_199_394, 0.005_000_000_003_054_599],
+            [17.837_611_418_615_64, 0.004_999_999_992_830_929],
+        ];
+        assert!(top.distance(corners[1]) < bottom.distance(corners[1]) - 6e-12);
+        assert!(!top.is_farther(&bottom, &corners, 4.26e-12));
+    }
+
     /// Both the nearer end of an edge and the apex are the arc's centre, whose depth is the radius.
     #[test]
     fn the_centre_of_an_arc_is_as_deep_as_its_radius() {
         let circle = Some(Circle { centre: [2.0, 2.0], radius: 2.0, convex: true });
         let [from, to] = [[2.0, 0.0], [4.0, 2.0]];
         let arc = quarters(&ProfileSegment { from, to, circle, surface: SurfaceId(0) })[0];
-        assert!(arc.at_most(&[[2.0, 2.0], [3.0, 2.0], [2.0, 2.0]]) >= 2.0);
+        assert!(arc.max_distance_bound(&[[2.0, 2.0], [3.0, 2.0], [2.0, 2.0]]) >= 2.0);
     }
 }

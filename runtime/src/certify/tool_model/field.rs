@@ -7,7 +7,8 @@
 
 use crate::cancellation;
 use crate::certify::space::{Point, dot, minus};
-use crate::certify::tool_model::section::{Depth, Owners};
+use crate::certify::tool_model::owners::Owners;
+use crate::certify::tool_model::section::Depth;
 use crate::certify::triangle::line_search::{DeepestCandidate, DepthSearch};
 use crate::certify::triangle::{SubTriangle, TrianglePiece};
 use crate::handle::ToolHandle;

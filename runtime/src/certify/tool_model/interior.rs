@@ -389,7 +389,7 @@ const AXIS: Level = Level::Line { normal: [1.0, 0.0], at: 0.0 };
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::certify::tool_model::section::Owners;
+    use crate::certify::tool_model::owners::Owners;
     use crate::id::SurfaceId;
     use crate::tool::Interpreted;
     use crate::tool::Tool;

@@ -4,9 +4,42 @@ use crate::certify::rounding;
 use crate::certify::tool_model::cells::Cell;
 use crate::certify::tool_model::peaks::Peaks;
 use crate::certify::tool_model::rectangle::Rectangle;
-use crate::certify::tool_model::section::{Owners, Section, SectionSlab};
+use crate::certify::tool_model::section::{Section, SectionSlab};
 use crate::tool::{Region, ToolInfo, bit};
 use std::collections::BinaryHeap;
+
+/// The features to which a query is restricted, by their indices in the section's list. A feature *owns* the points to
+/// which it is the nearest. For a tool known by its depth field the features are its regions.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Owners {
+    /// A flag per feature; `None` for all features.
+    owned_features: Option<Vec<bool>>,
+    /// The owning regions of a tool without a profile, one bit each as in [`crate::tool::EvaluationEnclosure`].
+    regions: u64,
+    /// Heights of local maxima of depth among the points that the features own.
+    pub(crate) peaks: Vec<f64>,
+    /// Rectangles in which there may be more of them.
+    pub(crate) unresolved: Vec<Rectangle>,
+}
+
+impl Owners {
+    /// Returns whether some of these regions, a bit each, are owners.
+    pub(crate) fn own_some(&self, regions: u64) -> bool {
+        self.all() || self.regions & regions != 0
+    }
+
+    /// Returns whether all features are owners.
+    #[inline]
+    pub(crate) fn all(&self) -> bool {
+        self.owned_features.is_none()
+    }
+
+    /// Returns whether a feature is an owner.
+    #[inline]
+    pub(crate) fn is_owned(&self, feature: usize) -> bool {
+        self.owned_features.as_ref().is_none_or(|owned_features| owned_features[feature])
+    }
+}
 
 impl Owners {
     /// Returns the features of some surfaces.

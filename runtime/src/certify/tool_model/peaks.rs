@@ -15,8 +15,9 @@
 use crate::certify::rounding;
 use crate::certify::tool_model::cells::Cell;
 use crate::certify::tool_model::feature::{Feature, MeridianPoint, minus, norm};
+use crate::certify::tool_model::owners::Owners;
 use crate::certify::tool_model::rectangle::Rectangle;
-use crate::certify::tool_model::section::{Owners, Section};
+use crate::certify::tool_model::section::Section;
 use crate::tool::Circle;
 
 /// The heights at which depth can have a local maximum, and rectangles in which there may be more of them.

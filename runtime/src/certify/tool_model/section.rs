@@ -11,6 +11,7 @@ use crate::certify::tool_model::chains::{Chain, TipBall};
 use crate::certify::tool_model::feature::{
     Feature, MeridianPoint, Triangle, cross, dot, mean, minus, norm, quarters,
 };
+use crate::certify::tool_model::owners::Owners;
 use crate::certify::tool_model::rectangle::Rectangle;
 use crate::tool::ToolInfo;
 use std::cell::LazyCell;
@@ -80,39 +81,6 @@ pub(crate) struct Depth {
     pub(crate) value: f64,
     pub(crate) gradient: MeridianPoint,
     pub(crate) feature: usize,
-}
-
-/// The features to which a query is restricted, by their indices in the section's list. A feature *owns* the points to
-/// which it is the nearest. For a tool known by its depth field the features are its regions.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Owners {
-    /// A flag per feature; `None` for all features.
-    pub(super) owned_features: Option<Vec<bool>>,
-    /// The owning regions of a tool without a profile, one bit each as in [`crate::tool::EvaluationEnclosure`].
-    pub(super) regions: u64,
-    /// Heights of local maxima of depth among the points that the features own.
-    pub(crate) peaks: Vec<f64>,
-    /// Rectangles in which there may be more of them.
-    pub(crate) unresolved: Vec<Rectangle>,
-}
-
-impl Owners {
-    /// Returns whether some of these regions, a bit each, are owners.
-    pub(crate) fn own_some(&self, regions: u64) -> bool {
-        self.all() || self.regions & regions != 0
-    }
-
-    /// Returns whether all features are owners.
-    #[inline]
-    pub(crate) fn all(&self) -> bool {
-        self.owned_features.is_none()
-    }
-
-    /// Returns whether a feature is an owner.
-    #[inline]
-    pub(crate) fn is_owned(&self, feature: usize) -> bool {
-        self.owned_features.as_ref().is_none_or(|owned_features| owned_features[feature])
-    }
 }
 
 impl Section {
@@ -246,13 +214,13 @@ impl Section {
     }
 
     /// Returns the slabs from the first that reaches a height.
-    pub(crate) fn from(&self, z: f64) -> &[SectionSlab] {
+    pub(crate) fn slabs_from(&self, z: f64) -> &[SectionSlab] {
         &self.slabs[self.slabs.partition_point(|slab| slab.high + self.error < z)..]
     }
 
     /// Returns whether a point is inside or on the surface.
     pub(crate) fn contains(&self, p: MeridianPoint) -> bool {
-        let mut slabs = self.from(p[1]).iter().take_while(|slab| slab.low <= p[1]);
+        let mut slabs = self.slabs_from(p[1]).iter().take_while(|slab| slab.low <= p[1]);
         slabs.any(|slab| slab.high >= p[1] && self.inner_distance(slab, p).0 >= 0.0)
     }
 
@@ -268,7 +236,7 @@ impl Section {
     /// Returns the depth of a point; for a point outside, a value below 0 or nothing.
     pub(crate) fn depth_at(&self, owners: &Owners, p: MeridianPoint) -> Option<Depth> {
         // Several slabs are at a height where the profile overhangs, or where slabs meet.
-        let slabs = self.from(p[1]).iter().take_while(|slab| slab.low - self.error <= p[1]);
+        let slabs = self.slabs_from(p[1]).iter().take_while(|slab| slab.low - self.error <= p[1]);
         let depths = slabs.map(|slab| self.depth(owners, 0.0, slab, p));
         depths.reduce(|one, other| if other.value > one.value { other } else { one })
     }
@@ -368,10 +336,10 @@ impl Section {
                 .all(|owner| distance(&self.features[owner]) > self.contact_tolerance())
     }
 
-    /// Returns at least the depth of every point of a slab in a triangle; below 0 if none is inside. A bound of at
+    /// Returns an upper bound of the depth of a slab's points in a triangle; below 0 if none is inside. A bound of at
     /// most `threshold` need not be tight.
     #[inline]
-    pub(crate) fn at_most(
+    pub(crate) fn depth_bound(
         &self,
         owners: &Owners,
         slack: f64,
@@ -380,13 +348,14 @@ impl Section {
         threshold: f64,
     ) -> f64 {
         let side = &self.features[slab.side];
-        let out = side.signed_distance_upper(triangle);
+        let out = side.max_signed_distance_bound(triangle);
         let over = slab
             .inner
-            .map_or(out, |inner| out.min(self.features[inner].signed_distance_upper(triangle)));
+            .map_or(out, |inner| out.min(self.features[inner].max_signed_distance_bound(triangle)));
         if over < 0.0 {
             // A point so little outside touches; whether an owner does is worth knowing only above the threshold.
-            let other = over > threshold && self.is_apart(owners, |f| f.at_least(triangle));
+            let other =
+                over > threshold && self.is_apart(owners, |f| f.min_distance_bound(triangle));
             return if other { f64::NEG_INFINITY } else { over };
         }
         // The signed distance from the side is a bound only where feet are on the surface or outside the tool.
@@ -396,14 +365,14 @@ impl Section {
             if bound <= threshold {
                 return bound;
             }
-            bound = bound.min(self.features[*candidate].at_most(triangle));
+            bound = bound.min(self.features[*candidate].max_distance_bound(triangle));
         }
         if bound > threshold && !owners.all() {
             // Depth is the distance of the nearest feature. An owner that is farther by more than the errors of both
             // distances owns no point here.
             let margin = self.owner_margin() + 2.0 * slack;
             if self.own_nothing(owners, triangle, margin, |owner| {
-                self.features[owner].at_least(triangle) > bound + margin
+                self.features[owner].min_distance_bound(triangle) > bound + margin
             }) {
                 return f64::NEG_INFINITY;
             }
@@ -420,7 +389,7 @@ impl Section {
         Depth { value: -value, gradient, feature }
     }
 
-    /// Returns at least the negative distance from the owners of every point in a triangle. A bound of at most `best`
+    /// Returns an upper bound of the negative distance of a triangle's points from the owners. A bound of at most `best`
     /// need not be tight.
     #[inline]
     pub(crate) fn negative_distance_bound(
@@ -437,7 +406,11 @@ impl Section {
             // A distance has the Lipschitz constant 1.
             let coarse = reach - feature.distance(middle);
             let near = coarse > best.max(bound);
-            bound = bound.max(if near { -feature.at_least(triangle).max(0.0) } else { coarse });
+            bound = bound.max(if near {
+                -feature.min_distance_bound(triangle).max(0.0)
+            } else {
+                coarse
+            });
         }
         bound
     }

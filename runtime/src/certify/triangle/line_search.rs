@@ -6,7 +6,8 @@
 //! greatest, until none is left.
 
 use crate::certify::tool_model::feature::{MeridianPoint, Triangle, dot};
-use crate::certify::tool_model::section::{Depth, Owners, Section};
+use crate::certify::tool_model::owners::Owners;
+use crate::certify::tool_model::section::{Depth, Section};
 
 /// A line segment, `base + t direction`, with `t` in `span`. At `t`, `d² = off² + (start + t slide)²`.
 #[derive(Clone, Copy, Debug)]
@@ -287,7 +288,7 @@ impl DepthSearch {
         let mut found = None;
         for half in line.halves() {
             let [low, high] = half.map(|t| line.height(t));
-            for slab in section.from(low.min(high)) {
+            for slab in section.slabs_from(low.min(high)) {
                 // Wider by the error, so that no point falls between two slabs.
                 let heights = [slab.low - section.error, slab.high + section.error];
                 if heights[0] > low.max(high) {
@@ -298,7 +299,7 @@ impl DepthSearch {
                         line,
                         line.interval(from, to),
                         |triangle, threshold| {
-                            section.at_most(owners, slack, slab, triangle, threshold)
+                            section.depth_bound(owners, slack, slab, triangle, threshold)
                         },
                         |point| section.depth(owners, slack, slab, point),
                         &mut found,

@@ -11,8 +11,9 @@ pub(crate) mod line_search;
 
 use crate::certify::rounding;
 use crate::certify::space::{Point, cross, dot, minus, norm};
+use crate::certify::tool_model::owners::Owners;
 use crate::certify::tool_model::rectangle::Rectangle;
-use crate::certify::tool_model::section::{Owners, Section};
+use crate::certify::tool_model::section::Section;
 use crate::certify::triangle::line_search::{DepthSearch, SearchLine};
 
 /// A triangle in the tool's frame and unit.
