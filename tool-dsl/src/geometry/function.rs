@@ -14,7 +14,9 @@ const ROUNDING: f64 = 2e-14;
 
 /// A curve as a function on the section.
 pub(crate) enum CurveFunction<'g> {
-    /// `Σ cᵢⱼ uⁱ vʲ` for `i + j ≤ 2`, with `u` and `v` relative to the section's centre.
+    /// `constant + slope · (u, v)`, with `u` and `v` relative to the section's centre.
+    Line { middle: Point, constant: f64, slope: Point },
+    /// `Σ cᵢⱼ uⁱ vʲ` for `i + j ≤ 2`, with the same `u` and `v`, where a term of degree 2 is not 0.
     Conic { middle: Point, factors: [f64; 6] },
     /// Any other curve.
     Other {
@@ -112,15 +114,28 @@ impl<'g> CurveFunction<'g> {
                 factors[*index] += value;
             }
         }
-        CurveFunction::Conic { middle, factors }
+        match factors {
+            [constant, slope_u, slope_v, 0.0, 0.0, 0.0] => {
+                CurveFunction::Line { middle, constant, slope: [slope_u, slope_v] }
+            }
+            _ => CurveFunction::Conic { middle, factors },
+        }
     }
 
     pub(crate) fn is_line(&self) -> bool {
-        matches!(self, CurveFunction::Conic { factors, .. } if factors[3..].iter().all(|c| *c == 0.0))
+        matches!(self, CurveFunction::Line { .. })
     }
 
     fn at(&self, p: Point) -> Value {
         match self {
+            CurveFunction::Line { middle, constant, slope } => {
+                let [a, b] = [0, 1].map(|k| slope[k] * (p[k] - middle[k]));
+                Value {
+                    value: constant + a + b,
+                    gradient: *slope,
+                    terms: constant.abs() + a.abs() + b.abs(),
+                }
+            }
             CurveFunction::Conic { middle, factors: c } => {
                 let (u, v) = (p[0] - middle[0], p[1] - middle[1]);
                 let (a, b) = (c[1] * u, c[2] * v);
@@ -165,6 +180,9 @@ impl<'g> CurveFunction<'g> {
 
     pub(crate) fn value(&self, p: Point) -> f64 {
         match self {
+            CurveFunction::Line { middle, constant, slope } => {
+                constant + slope[0] * (p[0] - middle[0]) + slope[1] * (p[1] - middle[1])
+            }
             CurveFunction::Conic { middle, factors: c } => {
                 let (u, v) = (p[0] - middle[0], p[1] - middle[1]);
                 c[0] + c[1] * u + c[2] * v + c[3] * u * u + c[4] * u * v + c[5] * v * v
@@ -199,7 +217,13 @@ impl<'g> CurveFunction<'g> {
     /// Returns the range of the values on a convex polygon; of the difference of distances for a curve that is none;
     /// infinite for any other.
     fn range_over(&self, polygon: &[Point]) -> [f64; 2] {
+        let [mut low, mut high] = [f64::INFINITY, f64::NEG_INFINITY];
+        let mut include = |value: f64| (low, high) = (low.min(value), high.max(value));
         let (middle, c) = match self {
+            CurveFunction::Line { .. } => {
+                polygon.iter().for_each(|p| include(self.value(*p)));
+                return [low, high];
+            }
             CurveFunction::Conic { middle, factors } => (middle, factors),
             CurveFunction::Other { distances: Some(distances), .. } => {
                 let mut ranges = distances.map(|distance| distance.range_over(polygon));
@@ -212,8 +236,6 @@ impl<'g> CurveFunction<'g> {
             }
             CurveFunction::Other { .. } => return [f64::NEG_INFINITY, f64::INFINITY],
         };
-        let [mut low, mut high] = [f64::INFINITY, f64::NEG_INFINITY];
-        let mut include = |value: f64| (low, high) = (low.min(value), high.max(value));
         for (k, p) in polygon.iter().enumerate() {
             include(self.value(*p));
             let q = polygon[(k + 1) % polygon.len()];
