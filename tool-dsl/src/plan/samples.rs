@@ -4,6 +4,7 @@ use super::{BITS_PER_ADDITION, bits};
 use crate::formula::CurveIndex;
 use crate::geometry::function::CurveFunction;
 use crate::geometry::outline::Point;
+use crate::geometry::polygon::range;
 
 /// The least cost, in additions, of a side on which several owners remain.
 const MIN_SIDE_COST: f64 = 8.0;
@@ -55,6 +56,7 @@ impl Samples {
             all.chunk_by(|a, b| a.owner == b.owner).flat_map(|run| run.chunks(64)).collect();
         let owners: Vec<usize> =
             runs.iter().map(|run| run[0].owner.map_or(0, |owner| owner + 1)).collect();
+        let words: Vec<Word<'_>> = runs.iter().map(|run| Word::new(run)).collect();
         Samples {
             count: owners.iter().max().map_or(1, |largest| largest + 1),
             weights: runs
@@ -63,7 +65,7 @@ impl Samples {
                 .collect(),
             below: shapes
                 .iter()
-                .map(|shape| runs.iter().map(|run| bits_below(run, shape)).collect())
+                .map(|shape| words.iter().map(|word| word.bits_below(shape)).collect())
                 .collect(),
             owners,
         }
@@ -185,11 +187,35 @@ impl Samples {
     }
 }
 
-/// Returns a bit for each sample of a word that is below a curve.
-fn bits_below(word: &[Sample], shape: &CurveFunction<'_>) -> u64 {
-    let mut bits = 0;
-    for (k, sample) in word.iter().enumerate() {
-        bits |= u64::from(shape.below(sample.point)) << k;
+/// Up to 64 samples, and the corners of their bounding box.
+struct Word<'s> {
+    samples: &'s [Sample],
+    corners: [Point; 4],
+}
+
+impl<'s> Word<'s> {
+    fn new(samples: &'s [Sample]) -> Word<'s> {
+        let ends = |axis: usize| {
+            let coordinates = samples.iter().map(|sample| sample.point[axis]);
+            range(&coordinates.collect::<Vec<f64>>())
+        };
+        let ([left, right], [low, high]) = (ends(0), ends(1));
+        Word { samples, corners: [[left, low], [right, low], [left, high], [right, high]] }
     }
-    bits
+
+    /// Returns a bit for each sample that is below a curve.
+    fn bits_below(&self, shape: &CurveFunction<'_>) -> u64 {
+        // In a box a line has its extreme values at corners, also when every operation is rounded.
+        if shape.is_line() {
+            let [first, others @ ..] = self.corners.map(|corner| shape.below(corner));
+            if others == [first; 3] {
+                return if first { u64::MAX >> (64 - self.samples.len()) } else { 0 };
+            }
+        }
+        let mut bits = 0;
+        for (k, sample) in self.samples.iter().enumerate() {
+            bits |= u64::from(shape.below(sample.point)) << k;
+        }
+        bits
+    }
 }
