@@ -359,8 +359,9 @@ impl Section<'_> {
     /// Returns the nearest feature to a point and its distance; `None` if the nearest point is an end that is no feature.
     pub(super) fn nearest(&self, p: Point) -> (Option<usize>, f64) {
         let mut nearest = (None, f64::INFINITY);
+        let reach = self.reach(p);
         for (index, feature) in self.features.iter().enumerate() {
-            if !self.is_box_within(index, p, nearest.1) {
+            if !self.is_box_within(index, p, nearest.1.min(reach)) {
                 continue;
             }
             let (distance, own) = match *feature {

@@ -228,10 +228,12 @@ impl Section<'_> {
                 points.extend(polygon.iter().map(|p| toward(p, t)));
             }
             let share = area(&polygon) / points.len() as f64;
-            weighted.extend(points.into_iter().filter(|p| self.owns(piece, *p)).map(|p| {
-                let (_, distance) = self.nearest(p);
-                (p, share * ((-distance / layer).exp() + SHELL_FRACTION))
-            }));
+            for p in points {
+                let (nearest, distance) = self.nearest(p);
+                if self.owns(piece, p, nearest) {
+                    weighted.push((p, share * ((-distance / layer).exp() + SHELL_FRACTION)));
+                }
+            }
         }
         weighted
     }
@@ -242,13 +244,15 @@ impl Section<'_> {
         for _ in 0..DENSE_HALVINGS {
             polygons = polygons.iter().flat_map(halved).flatten().collect();
         }
-        polygons.iter().map(centroid).filter(|p| self.owns(piece, *p)).collect()
+        let is_owned = |p: &Point| self.owns(piece, *p, self.nearest(*p).0);
+        polygons.iter().map(centroid).filter(is_owned).collect()
     }
 
-    fn owns(&self, piece: &Piece, p: Point) -> bool {
+    /// Returns whether a piece has a point with this nearest feature.
+    fn owns(&self, piece: &Piece, p: Point, nearest: Option<usize>) -> bool {
         match piece.feature {
             Some(feature) => {
-                self.nearest(p).0 == Some(feature) && self.depth_at(feature, p) > self.tolerance()
+                nearest == Some(feature) && self.depth_at(feature, p) > self.tolerance()
             }
             None => !self.is_inside(p),
         }

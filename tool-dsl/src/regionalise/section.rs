@@ -82,6 +82,14 @@ impl<'o> Section<'o> {
             && (p[1] - centre[1]).abs() - half[1] <= distance
     }
 
+    /// Returns an upper bound of a point's distance from the outline: beyond the far corner of the nearest box.
+    pub(super) fn reach(&self, p: Point) -> f64 {
+        let to_corners = self.boxes.iter().map(|[centre, half]| {
+            (p[0] - centre[0]).abs() + half[0] + (p[1] - centre[1]).abs() + half[1]
+        });
+        to_corners.fold(f64::INFINITY, f64::min) + self.tolerance()
+    }
+
     /// Returns the directions of the outline before and after the end of a segment; for `None`, before and after the first one.
     /// At the axis the outline meets its own mirror image.
     pub(super) fn directions_at(&self, previous: Option<usize>) -> [Point; 2] {
