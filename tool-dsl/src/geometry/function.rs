@@ -58,7 +58,7 @@ impl Distance {
             Distance::None => [0.0; 2],
             Distance::Line { from, normal } => {
                 let values = polygon.iter().map(|p| dot(normal, minus(*p, from)));
-                range(&values.collect::<Vec<f64>>())
+                range(values)
             }
             Distance::Circle { centre, radius, sign } => {
                 // The farthest point from the centre is a vertex. The nearest is on an edge, or the centre itself.
@@ -71,7 +71,7 @@ impl Distance {
                 let points = polygon.iter().copied().chain(feet);
                 let within = contains(polygon, centre).then_some(centre);
                 let values = points.chain(within).map(|p| sign * (norm(minus(p, centre)) - radius));
-                range(&values.collect::<Vec<f64>>())
+                range(values)
             }
         }
     }
@@ -178,6 +178,7 @@ impl<'g> CurveFunction<'g> {
         if value < 0.0 { -1 } else { 1 }
     }
 
+    #[inline]
     pub(crate) fn value(&self, p: Point) -> f64 {
         match self {
             CurveFunction::Line { middle, constant, slope } => {
@@ -217,13 +218,8 @@ impl<'g> CurveFunction<'g> {
     /// Returns the range of the values on a convex polygon; of the difference of distances for a curve that is none;
     /// infinite for any other.
     fn range_over(&self, polygon: &[Point]) -> [f64; 2] {
-        let [mut low, mut high] = [f64::INFINITY, f64::NEG_INFINITY];
-        let mut include = |value: f64| (low, high) = (low.min(value), high.max(value));
         let (middle, c) = match self {
-            CurveFunction::Line { .. } => {
-                polygon.iter().for_each(|p| include(self.value(*p)));
-                return [low, high];
-            }
+            CurveFunction::Line { .. } => return range(polygon.iter().map(|p| self.value(*p))),
             CurveFunction::Conic { middle, factors } => (middle, factors),
             CurveFunction::Other { distances: Some(distances), .. } => {
                 let mut ranges = distances.map(|distance| distance.range_over(polygon));
@@ -236,6 +232,8 @@ impl<'g> CurveFunction<'g> {
             }
             CurveFunction::Other { .. } => return [f64::NEG_INFINITY, f64::INFINITY],
         };
+        let [mut low, mut high] = [f64::INFINITY, f64::NEG_INFINITY];
+        let mut include = |value: f64| (low, high) = (low.min(value), high.max(value));
         for (k, p) in polygon.iter().enumerate() {
             include(self.value(*p));
             let q = polygon[(k + 1) % polygon.len()];
@@ -281,6 +279,7 @@ impl<'g> CurveFunction<'g> {
     }
 
     /// Returns whether the value is at most 0, without tolerance.
+    #[inline]
     pub(crate) fn below(&self, p: Point) -> bool {
         self.value(p) <= 0.0
     }

@@ -187,7 +187,7 @@ impl Samples {
     }
 }
 
-/// Up to 64 samples, and the corners of their bounding box.
+/// Up to 64 samples, and the corners of the rectangle about them.
 struct Word<'s> {
     samples: &'s [Sample],
     corners: [Point; 4],
@@ -195,17 +195,14 @@ struct Word<'s> {
 
 impl<'s> Word<'s> {
     fn new(samples: &'s [Sample]) -> Word<'s> {
-        let ends = |axis: usize| {
-            let coordinates = samples.iter().map(|sample| sample.point[axis]);
-            range(&coordinates.collect::<Vec<f64>>())
-        };
-        let ([left, right], [low, high]) = (ends(0), ends(1));
+        let [[left, right], [low, high]] =
+            [0, 1].map(|axis| range(samples.iter().map(|sample| sample.point[axis])));
         Word { samples, corners: [[left, low], [right, low], [left, high], [right, high]] }
     }
 
     /// Returns a bit for each sample that is below a curve.
     fn bits_below(&self, shape: &CurveFunction<'_>) -> u64 {
-        // In a box a line has its extreme values at corners, also when every operation is rounded.
+        // A line's values in a rectangle are extreme at corners, also when every operation is rounded.
         if shape.is_line() {
             let [first, others @ ..] = self.corners.map(|corner| shape.below(corner));
             if others == [first; 3] {

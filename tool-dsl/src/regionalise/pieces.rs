@@ -284,7 +284,7 @@ impl Rival<'_> {
         let is_corner = matches!(section.features[self.feature], Feature::Corner(_));
         let owner = piece.feature.unwrap_or(self.feature);
         is_corner
-            || (section.all_within(&section.sector_sides(self.feature), &piece.vertices)
+            || (section.all_within(section.sector_sides(self.feature), &piece.vertices)
                 && section.is_behind_nearer(owner, self.feature, &piece.vertices))
     }
 }

@@ -1,5 +1,6 @@
 //! The inside of an outline, as features to which points can be nearest.
 
+use super::cover::HalfPlane;
 use crate::geometry::outline::{
     Point, Segment, bounding_box, cross, dot, minus, mirrored_direction, norm, turn,
 };
@@ -39,6 +40,8 @@ pub(crate) struct Section<'o> {
     pub(super) largest: f64,
     /// A box of each feature, by centre and half the sides, with a margin above the tolerances of contact.
     pub(super) boxes: Vec<[Point; 2]>,
+    /// The sides of the normals at each feature's ends toward the feature.
+    sides: Vec<Vec<HalfPlane>>,
 }
 
 /// The margin of a feature's box, relative to the section's size.
@@ -51,11 +54,12 @@ impl<'o> Section<'o> {
         let radii = outline.iter().filter_map(|segment| Some(segment.round()?.1));
         let largest =
             [low, high].as_flattened().iter().map(|x| x.abs()).chain(radii).fold(0.0, f64::max);
-        let (features, fans, boxes) = (Vec::new(), Vec::new(), Vec::new());
-        let mut section = Section { outline, features, fans, size, largest, boxes };
+        let (features, fans, boxes, sides) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        let mut section = Section { outline, features, fans, size, largest, boxes, sides };
         section.find_features();
-        section.boxes =
-            section.features.iter().map(|feature| section.feature_box(*feature)).collect();
+        let features = section.features.iter();
+        section.boxes = features.clone().map(|feature| section.feature_box(*feature)).collect();
+        section.sides = features.map(|feature| section.sides_of(*feature)).collect();
         section
     }
 
@@ -73,6 +77,11 @@ impl<'o> Section<'o> {
         let centre = [0, 1].map(|k| low[k] / 2.0 + high[k] / 2.0);
         let half = [0, 1].map(|k| (high[k] - low[k]) / 2.0 + BOX_MARGIN_FRACTION * self.size);
         [centre, half]
+    }
+
+    /// Returns the sides of the normals at a feature's ends toward the feature.
+    pub(super) fn sector_sides(&self, feature: usize) -> &[HalfPlane] {
+        &self.sides[feature]
     }
 
     /// Returns whether the box of a feature reaches into a square about a point, given half the square's side.
