@@ -200,12 +200,19 @@ impl<'g> CurveFunction<'g> {
     /// the curve crosses it.
     pub(crate) fn signs_over(&self, polygon: &Polygon, tolerance: f64) -> Signs {
         let [low, high] = self.range_over(polygon);
-        let slack = polygon.iter().map(|p| self.slack(*p, tolerance)).fold(0.0, f64::max);
+        let slack = self.slack_over(polygon, tolerance);
         match (low >= -slack, high <= slack) {
             (true, false) => POSITIVE,
             (false, true) => NEGATIVE,
             _ => ANY_SIGN,
         }
+    }
+
+    /// Returns whether all points of a convex polygon are on the same side, farther than `tolerance` from the curve.
+    pub(crate) fn is_beside(&self, polygon: &Polygon, tolerance: f64) -> bool {
+        let [low, high] = self.range_over(polygon);
+        let slack = self.slack_over(polygon, tolerance);
+        low > slack || high < -slack
     }
 
     /// Notes that the value has the sign of the difference of two distances, where it is no conic.
@@ -262,6 +269,10 @@ impl<'g> CurveFunction<'g> {
             let values = polygon.iter().map(|p| self.value(*p));
             values.map(|value| if value.abs() <= slack { 0.0 } else { value }).collect()
         })
+    }
+
+    fn slack_over(&self, polygon: &Polygon, tolerance: f64) -> f64 {
+        polygon.iter().map(|p| self.slack(*p, tolerance)).fold(0.0, f64::max)
     }
 
     /// Returns the least value at a point that says on which side it is: that of points at a distance of `tolerance`, or of

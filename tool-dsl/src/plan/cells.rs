@@ -146,6 +146,11 @@ impl<'m> Cells<'m> {
         Rc::new(Piece { owner, ..piece.clone() })
     }
 
+    /// Returns whether all points of a polygon are on the same side of a curve.
+    pub(super) fn is_beside(&self, curve: CurveIndex, polygon: &Polygon) -> bool {
+        self.shapes[curve].is_beside(polygon, self.tolerance)
+    }
+
     /// Returns the parts of pieces on the two sides of a curve.
     pub(super) fn halves(&self, curve: CurveIndex, pieces: &[Rc<Piece>]) -> Halves {
         let mut halves = Halves { below: Vec::new(), above: Vec::new() };

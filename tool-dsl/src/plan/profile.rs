@@ -8,7 +8,7 @@ use super::{BITS_PER_ADDITION, MAX_TESTS, Tree, costs};
 use crate::diagnostic::Diagnostic;
 use crate::formula::{CurveIndex, NEGATIVE, POSITIVE, Signs};
 use crate::geometry::outline::{Point, dot, minus, norm};
-use crate::geometry::polygon::width;
+use crate::geometry::polygon::{hull, width};
 use crate::model::{Model, Profile};
 use crate::regionalise::pieces::Piece;
 use std::cmp::Ordering;
@@ -233,6 +233,7 @@ impl Planner<'_> {
         divides_nothing: &mut [bool],
     ) -> Option<Choice> {
         let count = owner_count(pieces);
+        let around = hull(pieces.iter().flat_map(|piece| piece.vertices.iter().copied()).collect());
         let (mut fallback, mut with_double_zeros, mut skipped_count) = (None, None, 0);
         let mut best_one_sided: Option<([usize; 3], Choice)> = None;
         // Where samples tell something, one of the first few is mostly chosen, so they are not sorted.
@@ -240,6 +241,10 @@ impl Planner<'_> {
             let is_by_pieces = is_one_sided && listed == usize::MAX;
             if !is_by_pieces && best_one_sided.is_some() {
                 break;
+            }
+            if self.cells.is_beside(curve, &around) {
+                divides_nothing[curve] = true;
+                continue;
             }
             let halves = self.cells.halves(curve, pieces);
             if halves.below.is_empty() || halves.above.is_empty() {
