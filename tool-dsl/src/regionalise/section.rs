@@ -68,6 +68,12 @@ impl<'o> Section<'o> {
         &self.features
     }
 
+    /// Returns the features that are segments, each with the segment's index.
+    pub(super) fn pieces(&self) -> impl Iterator<Item = (usize, usize)> {
+        let pieces = self.features.iter().enumerate();
+        pieces.filter_map(|(feature, kind)| Some((feature, kind.piece()?)))
+    }
+
     /// Returns the box of a feature by its centre and half its sides.
     fn feature_box(&self, feature: Feature) -> [Point; 2] {
         let [low, high] = match feature {
