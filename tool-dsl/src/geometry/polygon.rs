@@ -114,18 +114,38 @@ pub(crate) fn width(polygon: &Polygon) -> f64 {
     area(polygon) / extent(polygon)
 }
 
+/// A side of a convex polygon: a vertex, and the vector between this and the next one that has the polygon on its left.
+pub(crate) struct Side {
+    from: Point,
+    along: Point,
+}
+
+impl Side {
+    /// Returns the distance of a point from the side's line, times the side's length; positive toward the polygon.
+    pub(crate) fn inward(&self, p: Point) -> f64 {
+        cross(self.along, minus(p, self.from))
+    }
+}
+
+/// Returns the sides of a convex polygon that are longer than `tolerance`. Two vertices that coincide but for rounding have no
+/// direction.
+pub(crate) fn sides(polygon: &Polygon, tolerance: f64) -> impl Iterator<Item = Side> {
+    let middle = centroid(polygon);
+    (0..polygon.len()).filter_map(move |k| {
+        let from = polygon[k];
+        let along = minus(polygon[(k + 1) % polygon.len()], from);
+        let orientation = cross(along, minus(middle, from)).signum();
+        let along = along.map(|part| orientation * part);
+        (norm(along) > tolerance).then_some(Side { from, along })
+    })
+}
+
 /// Returns whether two convex polygons have points within a distance of each other.
 pub(crate) fn do_touch(p: &Polygon, q: &Polygon, tolerance: f64) -> bool {
     let separates = |a: &Polygon, b: &Polygon| {
-        (0..a.len()).any(|k| {
-            let (from, to) = (a[k], a[(k + 1) % a.len()]);
-            let along = minus(to, from);
-            let length = norm(along);
-            if length <= tolerance {
-                return false;
-            }
-            let orientation = cross(along, minus(centroid(a), from)).signum();
-            b.iter().all(|v| orientation * cross(along, minus(*v, from)) < -tolerance * length)
+        sides(a, tolerance).any(|side| {
+            let far = -tolerance * norm(side.along);
+            b.iter().all(|v| side.inward(*v) < far)
         })
     };
     !separates(p, q) && !separates(q, p)

@@ -7,9 +7,9 @@ use super::section::{Feature, Section};
 use crate::expr::Graph;
 use crate::formula::{CurveIndex, Formula, NEGATIVE, POSITIVE, Signs};
 use crate::geometry::function::{CurveFunction, Distance};
-use crate::geometry::outline::{Point, bounding_box, cross, minus, norm};
+use crate::geometry::outline::{Point, bounding_box};
 use crate::geometry::polygon::{
-    Polygon, area, centroid, clipped, divided, do_touch, halved, width,
+    Polygon, area, centroid, clipped, divided, do_touch, halved, sides, width,
 };
 
 /// A convex polygon and the owner of some of its points: those on the known sides of curves.
@@ -365,18 +365,9 @@ impl Piece {
         shapes: &[CurveFunction<'_>],
         tolerance: f64,
     ) -> Option<Piece> {
-        let middle = centroid(&other.vertices);
         let mut common = self.clone();
-        for k in 0..other.vertices.len() {
-            let (from, to) = (other.vertices[k], other.vertices[(k + 1) % other.vertices.len()]);
-            let along = minus(to, from);
-            // Two vertices that coincide but for rounding have no direction.
-            if norm(along) <= tolerance {
-                continue;
-            }
-            let inward = cross(along, minus(middle, from)).signum();
-            common.vertices =
-                clipped(&common.vertices, &|p| inward * cross(along, minus(p, from)))?;
+        for side in sides(&other.vertices, tolerance) {
+            common.vertices = clipped(&common.vertices, &|p| side.inward(p))?;
         }
         for (curve, signs) in &other.signs {
             match common.signs.iter_mut().find(|(known, _)| known == curve) {
