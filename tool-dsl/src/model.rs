@@ -179,8 +179,8 @@ impl Profile {
     ) -> (Vec<CurveFunction<'g>>, f64) {
         let (mut shapes, size) = function::functions(graph, curves, &self.outline);
         self.inner.set_distances(&self.separations, &mut shapes);
-        if let Some(Over { division: Division::Rounded(rounded), .. }) = &self.over {
-            rounded.partition.set_distances(&rounded.separations, &mut shapes);
+        if let Some(over) = &self.over {
+            over.division.set_distances(&mut shapes);
         }
         (shapes, size)
     }

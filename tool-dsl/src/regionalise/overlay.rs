@@ -19,6 +19,21 @@ pub(crate) enum Division {
 }
 
 impl Division {
+    /// Returns a condition by its index; true for a rounded outline, whose segments are told apart by their distances.
+    pub(crate) fn condition(&self, index: usize) -> Formula {
+        match self {
+            Division::Conditions(formulas) => formulas[index].clone(),
+            Division::Rounded(_) => Formula::Const(true),
+        }
+    }
+
+    /// Sets the two distances that each curve between segments of a rounded outline compares.
+    pub(crate) fn set_distances(&self, shapes: &mut [CurveFunction<'_>]) {
+        if let Division::Rounded(rounded) = self {
+            rounded.partition.set_distances(&rounded.separations, shapes);
+        }
+    }
+
     /// Returns the number of conditions.
     pub(crate) fn count(&self) -> usize {
         match self {
