@@ -327,7 +327,8 @@ impl<'m> Linter<'m> {
     fn check_evaluation(&mut self, owner: usize, point: [f64; 3]) {
         let region = &self.model.regions[owner];
         self.measure(owner, point);
-        let (name, location) = (&region.name, self.format_point(point));
+        let name = &region.name;
+        let location = || self.format_point(point);
         let get = |id: Id| self.get(id);
         let spans = region.law_spans;
         let laws = [
@@ -338,9 +339,9 @@ impl<'m> Linter<'m> {
         for (quantity, id, span, slack) in laws {
             let value = get(id);
             let diagnostic = if !value.is_finite() {
-                self.not_finite(owner, quantity, id, span, location)
+                self.not_finite(owner, quantity, id, span, location())
             } else if value < -slack {
-                let (region, value) = (name.clone(), FormattedNumber(value));
+                let (region, value, location) = (name.clone(), FormattedNumber(value), location());
                 Diagnostic::new(
                     span,
                     CheckKind::NegativeQuantity { quantity, region, value, location },
@@ -352,13 +353,14 @@ impl<'m> Linter<'m> {
         }
         let direction = region.raw_direction.0.map(get);
         if !direction.into_iter().all(f64::is_finite) || direction == [0.0; 3] {
-            let kind = CheckKind::ZeroDirectionAtPoint { region: name.clone(), location };
+            let kind =
+                CheckKind::ZeroDirectionAtPoint { region: name.clone(), location: location() };
             return self.report(Diagnostic::new(region.raw_direction.1, kind));
         }
         let [x, y, z] = region.direction.map(get);
         let length_error = (x.hypot(y).hypot(z) - 1.0).abs();
         if length_error.is_nan() || length_error > 1e-9 {
-            let kind = CheckKind::DirectionTooLong { region: name.clone(), location };
+            let kind = CheckKind::DirectionTooLong { region: name.clone(), location: location() };
             self.report(Diagnostic::new(region.raw_direction.1, kind));
         }
     }
