@@ -9,6 +9,7 @@ use crate::expr::{Id, Node};
 use crate::formula::{Curve, CurveIndex, Formula};
 use crate::model::{Model, Region};
 use crate::regionalise::owners::Owners;
+use crate::regionalise::pieces::SampledPiece;
 use crate::resolve::{never_wins, off_tip, overlapping};
 use crate::source::Span;
 use laws::{Divisor, MagnitudeSlope};
@@ -52,19 +53,16 @@ pub(crate) fn undefined_curves(model: &Model) -> Vec<Diagnostic> {
 }
 
 /// Returns all diagnostics of a tool, at most one per location and severity.
-pub(crate) fn lint(model: &Model, extent: &Extent) -> Vec<Diagnostic> {
+pub(crate) fn lint(model: &Model, extent: &Extent, sampled: &[SampledPiece]) -> Vec<Diagnostic> {
     let mut linter = Linter::new(model, extent);
     if let Some(profile) = &model.profile {
         // A profile's regions are known to be correct; only the quantities written in the file need checks.
         linter.check_tip(extent.low, extent);
-        let (shapes, _) = profile.functions(&model.graph, &model.curves);
-        let geometry = profile.inner.section();
-        for piece in profile.inner.inner_pieces(&profile.separations, &shapes) {
-            for ([d, z], _) in geometry.sample_points(&piece) {
-                let point = [d, 0.0, z];
-                if let Some(owner) = linter.owner(point) {
-                    linter.check_evaluation(owner, point);
-                }
+        let inside = sampled.iter().filter(|sampled| sampled.piece.owner.is_some());
+        for ([d, z], _) in inside.flat_map(|sampled| &sampled.points) {
+            let point = [*d, 0.0, *z];
+            if let Some(owner) = linter.owner(point) {
+                linter.check_evaluation(owner, point);
             }
         }
         for inside_directions in laws::inward_directions(&profile.outline) {

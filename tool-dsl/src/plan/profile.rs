@@ -10,7 +10,7 @@ use crate::formula::{CurveIndex, NEGATIVE, POSITIVE, Signs};
 use crate::geometry::outline::{Point, dot, minus, norm};
 use crate::geometry::polygon::{hull, width};
 use crate::model::{Model, Profile};
-use crate::regionalise::pieces::Piece;
+use crate::regionalise::pieces::{Piece, SampledPiece};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use std::rc::Rc;
@@ -33,10 +33,15 @@ pub(super) struct ProfilePlan {
 }
 
 /// Plans a profile.
-pub(super) fn plan(model: &Model, profile: &Profile) -> Result<ProfilePlan, Diagnostic> {
+pub(super) fn plan(
+    model: &Model,
+    profile: &Profile,
+    sampled: &[SampledPiece],
+) -> Result<ProfilePlan, Diagnostic> {
     let (shapes, size) = profile.functions(&model.graph, &model.curves);
-    let cells = Cells::new(model, profile, &shapes, size);
-    let (pieces, samples) = cells.of_regions();
+    let pieces = sampled.iter().map(|sampled| Rc::clone(&sampled.piece)).collect();
+    let cells = Cells::new(model, profile, &shapes, size, pieces);
+    let (pieces, samples) = cells.of_regions(sampled);
     let mut planner = Planner {
         cells: &cells,
         costs: costs(model),

@@ -11,6 +11,7 @@ use crate::geometry::outline::{Point, bounding_box};
 use crate::geometry::polygon::{
     Polygon, area, centroid, clipped, divided, do_touch, halved, sides, width,
 };
+use std::rc::Rc;
 
 /// A convex polygon and the owner of some of its points: those on the known sides of curves.
 #[derive(Clone, Debug)]
@@ -31,6 +32,13 @@ impl Piece {
     pub(super) fn outside(vertices: Polygon, signs: Vec<(CurveIndex, Signs)>) -> Piece {
         Piece { feature: None, owner: None, vertices, signs, alternatives: Vec::new() }
     }
+}
+
+/// A piece with points that belong to its owner, and their weights.
+#[derive(Clone, Debug)]
+pub(crate) struct SampledPiece {
+    pub(crate) piece: Rc<Piece>,
+    pub(crate) points: Vec<(Point, f64)>,
 }
 
 /// The tests that tell features apart, as formulas over curves.
