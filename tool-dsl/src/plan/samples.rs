@@ -216,3 +216,34 @@ impl<'s> Word<'s> {
         bits
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Lines beside a word, across it, and through its samples, which are on a circle.
+    #[test]
+    fn corners_tell_the_side_of_a_line_as_samples_do() {
+        let turned = |k: u32| f64::from(k).sin_cos();
+        let sample = |k: u32| {
+            let (sine, cosine) = turned(k);
+            Sample::new(([7.3 + 0.1 * cosine, 0.1 * sine], 1.0), None)
+        };
+        let samples: Vec<Sample> = (0..50).map(sample).collect();
+        let word = Word::new(&samples);
+        let (mut undivided, mut divided) = (0, 0);
+        for k in 0..3000 {
+            let (sine, cosine) = turned(k * 7);
+            let Sample { point, .. } = samples[k as usize % samples.len()];
+            let shift = [0.0, 1e-17, 0.05, 0.3][k as usize % 4];
+            let middle = [point[0] + shift * cosine, point[1] + shift * sine];
+            let shape = CurveFunction::Line { middle, constant: 0.0, slope: [cosine, sine] };
+            let below = samples.iter().map(|sample| u64::from(shape.below(sample.point)));
+            let expected = below.enumerate().fold(0, |bits, (k, bit)| bits | bit << k);
+            assert_eq!(word.bits_below(&shape), expected, "{k}");
+            let all = u64::MAX >> (64 - samples.len());
+            *(if [0, all].contains(&expected) { &mut undivided } else { &mut divided }) += 1;
+        }
+        assert!(undivided > 500 && divided > 500, "{undivided} {divided}");
+    }
+}
