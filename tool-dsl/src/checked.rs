@@ -63,13 +63,14 @@ pub(crate) fn check(
             return Err(undefined.unwrap_or_else(|| Reported::push(diagnostics, diagnostic)));
         }
     };
-    diagnostics.extend(lint::lint(&model, &extent));
+    let sampled = model.sampled_pieces();
+    diagnostics.extend(lint::lint(&model, &extent, &sampled));
     // The plan would only repeat these errors.
     without_error(diagnostics)?;
     let envelope = bound::envelope(&model, &extent);
     let file_curves: Vec<Id> = model.curve_values().collect();
-    let planned =
-        plan::plan(model, extent).map_err(|diagnostic| Reported::push(diagnostics, diagnostic))?;
+    let planned = plan::plan(model, extent, &sampled)
+        .map_err(|diagnostic| Reported::push(diagnostics, diagnostic))?;
     debug_assert_eq!(
         validate::planned(&file_curves, &planned),
         Ok(()),

@@ -75,8 +75,9 @@ use crate::geometry::outline::Segment;
 use crate::number::Number;
 use crate::regionalise::Partition;
 use crate::regionalise::overlay::{ConditionedPart, Division};
-use crate::regionalise::pieces::Separations;
+use crate::regionalise::pieces::{Piece, SampledPiece, Separations};
 use crate::source::Span;
+use std::rc::Rc;
 
 /// A unit of length that a file may state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -179,10 +180,17 @@ impl Profile {
     ) -> (Vec<CurveFunction<'g>>, f64) {
         let (mut shapes, size) = function::functions(graph, curves, &self.outline);
         self.inner.set_distances(&self.separations, &mut shapes);
-        if let Some(Over { division: Division::Rounded(rounded), .. }) = &self.over {
-            rounded.partition.set_distances(&rounded.separations, &mut shapes);
+        if let Some(over) = &self.over {
+            over.division.set_distances(&mut shapes);
         }
         (shapes, size)
+    }
+
+    /// Returns pieces that cover the inside and, after these, the outside.
+    pub(crate) fn pieces(&self, shapes: &[CurveFunction<'_>]) -> Vec<Rc<Piece>> {
+        let inside = self.inner.inner_pieces(&self.separations, shapes);
+        let outside = self.inner.outer_pieces(&self.separations);
+        inside.into_iter().chain(outside).map(Rc::new).collect()
     }
 
     /// Returns the feature from which a region has its depth.
@@ -192,6 +200,18 @@ impl Profile {
 }
 
 impl Model {
+    /// Returns the pieces of a profile's section with sample points; none for regions by hand.
+    pub(crate) fn sampled_pieces(&self) -> Vec<SampledPiece> {
+        let Some(profile) = &self.profile else { return Vec::new() };
+        let (shapes, _) = profile.functions(&self.graph, &self.curves);
+        let section = profile.inner.section();
+        let sampled = |piece: Rc<Piece>| {
+            let points = section.sample_points(&piece);
+            SampledPiece { piece, points }
+        };
+        profile.pieces(&shapes).into_iter().map(sampled).collect()
+    }
+
     /// Formats a point of the tool's frame in the file's coordinates.
     pub fn format_point(&self, [x, y, z]: [f64; 3]) -> String {
         self.domain.format_point([x, y, self.frame.to_file(z)])

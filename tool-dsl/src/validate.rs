@@ -227,7 +227,8 @@ mod tests {
     fn planned(text: &str) -> (Model, PlannedTool) {
         let model = resolved(text);
         let extent = bound::extent(&model).unwrap_or_else(|found| panic!("{found:?}"));
-        let tool = plan::plan(model.clone(), extent).unwrap_or_else(|found| panic!("{found:?}"));
+        let tool = plan::plan(model.clone(), extent, &model.sampled_pieces())
+            .unwrap_or_else(|found| panic!("{found:?}"));
         (model, tool)
     }
 

@@ -35,7 +35,8 @@ pub(crate) struct Polynomials(HashMap<Id, Option<Polynomial>>);
 impl Polynomials {
     /// Returns the polynomial of a node, if it is one.
     pub(crate) fn of(&mut self, graph: &Graph, id: Id) -> Option<&Polynomial> {
-        let mut pending = vec![id];
+        let mut pending: Vec<Id> =
+            Some(id).filter(|id| !self.0.contains_key(id)).into_iter().collect();
         while let Some(id) = pending.last().copied() {
             let before = pending.len();
             pending
@@ -280,6 +281,12 @@ impl Polynomial {
             sum = graph.add(sum, term);
         }
         sum
+    }
+
+    /// Returns the ratio of the last coefficient to the first, which multiples have too; `None` for 0.
+    pub(crate) fn proportion(&self) -> Option<f64> {
+        let (first, last) = (self.0.first_key_value()?.1, self.0.last_key_value()?.1);
+        Some(last.to_f64() / first.to_f64())
     }
 
     /// Returns the factor `f` of `self = f · other`, if `self` is a multiple of `other`.

@@ -14,7 +14,9 @@ const ROUNDING: f64 = 2e-14;
 
 /// A curve as a function on the section.
 pub(crate) enum CurveFunction<'g> {
-    /// `Σ cᵢⱼ uⁱ vʲ` for `i + j ≤ 2`, with `u` and `v` relative to the section's centre.
+    /// `constant + slope · (u, v)`, with `u` and `v` relative to the section's centre.
+    Line { middle: Point, constant: f64, slope: Point },
+    /// `Σ cᵢⱼ uⁱ vʲ` for `i + j ≤ 2`, with the same `u` and `v`, where a term of degree 2 is not 0.
     Conic { middle: Point, factors: [f64; 6] },
     /// Any other curve.
     Other {
@@ -56,7 +58,7 @@ impl Distance {
             Distance::None => [0.0; 2],
             Distance::Line { from, normal } => {
                 let values = polygon.iter().map(|p| dot(normal, minus(*p, from)));
-                range(&values.collect::<Vec<f64>>())
+                range(values)
             }
             Distance::Circle { centre, radius, sign } => {
                 // The farthest point from the centre is a vertex. The nearest is on an edge, or the centre itself.
@@ -69,7 +71,7 @@ impl Distance {
                 let points = polygon.iter().copied().chain(feet);
                 let within = contains(polygon, centre).then_some(centre);
                 let values = points.chain(within).map(|p| sign * (norm(minus(p, centre)) - radius));
-                range(&values.collect::<Vec<f64>>())
+                range(values)
             }
         }
     }
@@ -112,15 +114,28 @@ impl<'g> CurveFunction<'g> {
                 factors[*index] += value;
             }
         }
-        CurveFunction::Conic { middle, factors }
+        match factors {
+            [constant, slope_u, slope_v, 0.0, 0.0, 0.0] => {
+                CurveFunction::Line { middle, constant, slope: [slope_u, slope_v] }
+            }
+            _ => CurveFunction::Conic { middle, factors },
+        }
     }
 
     pub(crate) fn is_line(&self) -> bool {
-        matches!(self, CurveFunction::Conic { factors, .. } if factors[3..].iter().all(|c| *c == 0.0))
+        matches!(self, CurveFunction::Line { .. })
     }
 
     fn at(&self, p: Point) -> Value {
         match self {
+            CurveFunction::Line { middle, constant, slope } => {
+                let [a, b] = [0, 1].map(|k| slope[k] * (p[k] - middle[k]));
+                Value {
+                    value: constant + a + b,
+                    gradient: *slope,
+                    terms: constant.abs() + a.abs() + b.abs(),
+                }
+            }
             CurveFunction::Conic { middle, factors: c } => {
                 let (u, v) = (p[0] - middle[0], p[1] - middle[1]);
                 let (a, b) = (c[1] * u, c[2] * v);
@@ -163,8 +178,12 @@ impl<'g> CurveFunction<'g> {
         if value < 0.0 { -1 } else { 1 }
     }
 
+    #[inline]
     pub(crate) fn value(&self, p: Point) -> f64 {
         match self {
+            CurveFunction::Line { middle, constant, slope } => {
+                constant + slope[0] * (p[0] - middle[0]) + slope[1] * (p[1] - middle[1])
+            }
             CurveFunction::Conic { middle, factors: c } => {
                 let (u, v) = (p[0] - middle[0], p[1] - middle[1]);
                 c[0] + c[1] * u + c[2] * v + c[3] * u * u + c[4] * u * v + c[5] * v * v
@@ -181,12 +200,19 @@ impl<'g> CurveFunction<'g> {
     /// the curve crosses it.
     pub(crate) fn signs_over(&self, polygon: &Polygon, tolerance: f64) -> Signs {
         let [low, high] = self.range_over(polygon);
-        let slack = polygon.iter().map(|p| self.slack(*p, tolerance)).fold(0.0, f64::max);
+        let slack = self.slack_over(polygon, tolerance);
         match (low >= -slack, high <= slack) {
             (true, false) => POSITIVE,
             (false, true) => NEGATIVE,
             _ => ANY_SIGN,
         }
+    }
+
+    /// Returns whether all points of a convex polygon are on the same side, farther than `tolerance` from the curve.
+    pub(crate) fn is_beside(&self, polygon: &Polygon, tolerance: f64) -> bool {
+        let [low, high] = self.range_over(polygon);
+        let slack = self.slack_over(polygon, tolerance);
+        low > slack || high < -slack
     }
 
     /// Notes that the value has the sign of the difference of two distances, where it is no conic.
@@ -200,6 +226,7 @@ impl<'g> CurveFunction<'g> {
     /// infinite for any other.
     fn range_over(&self, polygon: &[Point]) -> [f64; 2] {
         let (middle, c) = match self {
+            CurveFunction::Line { .. } => return range(polygon.iter().map(|p| self.value(*p))),
             CurveFunction::Conic { middle, factors } => (middle, factors),
             CurveFunction::Other { distances: Some(distances), .. } => {
                 let mut ranges = distances.map(|distance| distance.range_over(polygon));
@@ -244,6 +271,10 @@ impl<'g> CurveFunction<'g> {
         })
     }
 
+    fn slack_over(&self, polygon: &Polygon, tolerance: f64) -> f64 {
+        polygon.iter().map(|p| self.slack(*p, tolerance)).fold(0.0, f64::max)
+    }
+
     /// Returns the least value at a point that says on which side it is: that of points at a distance of `tolerance`, or of
     /// rounding.
     pub(crate) fn slack(&self, p: Point, tolerance: f64) -> f64 {
@@ -259,6 +290,7 @@ impl<'g> CurveFunction<'g> {
     }
 
     /// Returns whether the value is at most 0, without tolerance.
+    #[inline]
     pub(crate) fn below(&self, p: Point) -> bool {
         self.value(p) <= 0.0
     }

@@ -34,7 +34,7 @@ pub(crate) fn clipped(polygon: &Polygon, value: &impl Fn(Point) -> f64) -> Optio
 
 /// Returns the part of a polygon where the linear function with the given values at its vertices is not negative.
 pub(crate) fn clipped_by_values(polygon: &Polygon, values: &[f64]) -> Option<Polygon> {
-    let [low, high] = range(values);
+    let [low, high] = range(values.iter().copied());
     if low >= 0.0 {
         return Some(polygon.clone());
     }
@@ -85,7 +85,7 @@ pub(crate) fn contains(polygon: &[Point], p: Point) -> bool {
         let next = polygon[(k + 1) % polygon.len()];
         cross(minus(next, polygon[k]), minus(p, polygon[k]))
     });
-    let [low, high] = range(&sides.collect::<Vec<f64>>());
+    let [low, high] = range(sides);
     low >= 0.0 || high <= 0.0
 }
 
@@ -104,7 +104,7 @@ pub(crate) fn centroid(polygon: &Polygon) -> Point {
 
 /// Returns the centre of a polygon's bounding box, and the larger half of its sides.
 pub(crate) fn centre_and_half(polygon: &Polygon) -> (Point, f64) {
-    let [d, z] = [0, 1].map(|k| range(&polygon.iter().map(|p| p[k]).collect::<Vec<f64>>()));
+    let [d, z] = [0, 1].map(|k| range(polygon.iter().map(|p| p[k])));
     let half = (d[1] - d[0]).max(z[1] - z[0]) / 2.0;
     ([f64::midpoint(d[0], d[1]), f64::midpoint(z[0], z[1])], half)
 }
@@ -114,18 +114,38 @@ pub(crate) fn width(polygon: &Polygon) -> f64 {
     area(polygon) / extent(polygon)
 }
 
+/// A side of a convex polygon: a vertex, and the vector between this and the next one that has the polygon on its left.
+pub(crate) struct Side {
+    from: Point,
+    along: Point,
+}
+
+impl Side {
+    /// Returns the distance of a point from the side's line, times the side's length; positive toward the polygon.
+    pub(crate) fn inward(&self, p: Point) -> f64 {
+        cross(self.along, minus(p, self.from))
+    }
+}
+
+/// Returns the sides of a convex polygon that are longer than `tolerance`. Two vertices that coincide but for rounding have no
+/// direction.
+pub(crate) fn sides(polygon: &Polygon, tolerance: f64) -> impl Iterator<Item = Side> {
+    let middle = centroid(polygon);
+    (0..polygon.len()).filter_map(move |k| {
+        let from = polygon[k];
+        let along = minus(polygon[(k + 1) % polygon.len()], from);
+        let orientation = cross(along, minus(middle, from)).signum();
+        let along = along.map(|part| orientation * part);
+        (norm(along) > tolerance).then_some(Side { from, along })
+    })
+}
+
 /// Returns whether two convex polygons have points within a distance of each other.
 pub(crate) fn do_touch(p: &Polygon, q: &Polygon, tolerance: f64) -> bool {
     let separates = |a: &Polygon, b: &Polygon| {
-        (0..a.len()).any(|k| {
-            let (from, to) = (a[k], a[(k + 1) % a.len()]);
-            let along = minus(to, from);
-            let length = norm(along);
-            if length <= tolerance {
-                return false;
-            }
-            let orientation = cross(along, minus(centroid(a), from)).signum();
-            b.iter().all(|v| orientation * cross(along, minus(*v, from)) < -tolerance * length)
+        sides(a, tolerance).any(|side| {
+            let far = -tolerance * norm(side.along);
+            b.iter().all(|v| side.inward(*v) < far)
         })
     };
     !separates(p, q) && !separates(q, p)
@@ -138,9 +158,9 @@ fn extent(polygon: &Polygon) -> f64 {
 }
 
 /// Returns the least and the greatest of some values.
-pub(crate) fn range(values: &[f64]) -> [f64; 2] {
-    let low = values.iter().copied().fold(f64::INFINITY, f64::min);
-    [low, values.iter().copied().fold(f64::NEG_INFINITY, f64::max)]
+pub(crate) fn range(values: impl IntoIterator<Item = f64>) -> [f64; 2] {
+    let none = [f64::INFINITY, f64::NEG_INFINITY];
+    values.into_iter().fold(none, |[low, high], value| [low.min(value), high.max(value)])
 }
 
 #[cfg(test)]

@@ -9,6 +9,7 @@ use crate::expr::{Id, Node};
 use crate::formula::{Curve, CurveIndex, Formula};
 use crate::model::{Model, Region};
 use crate::regionalise::owners::Owners;
+use crate::regionalise::pieces::SampledPiece;
 use crate::resolve::{never_wins, off_tip, overlapping};
 use crate::source::Span;
 use laws::{Divisor, MagnitudeSlope};
@@ -52,19 +53,16 @@ pub(crate) fn undefined_curves(model: &Model) -> Vec<Diagnostic> {
 }
 
 /// Returns all diagnostics of a tool, at most one per location and severity.
-pub(crate) fn lint(model: &Model, extent: &Extent) -> Vec<Diagnostic> {
+pub(crate) fn lint(model: &Model, extent: &Extent, sampled: &[SampledPiece]) -> Vec<Diagnostic> {
     let mut linter = Linter::new(model, extent);
     if let Some(profile) = &model.profile {
         // A profile's regions are known to be correct; only the quantities written in the file need checks.
         linter.check_tip(extent.low, extent);
-        let (shapes, _) = profile.functions(&model.graph, &model.curves);
-        let geometry = profile.inner.section();
-        for piece in profile.inner.inner_pieces(&profile.separations, &shapes) {
-            for ([d, z], _) in geometry.sample_points(&piece) {
-                let point = [d, 0.0, z];
-                if let Some(owner) = linter.owner(point) {
-                    linter.check_evaluation(owner, point);
-                }
+        let inside = sampled.iter().filter(|sampled| sampled.piece.owner.is_some());
+        for ([d, z], _) in inside.flat_map(|sampled| &sampled.points) {
+            let point = [*d, 0.0, *z];
+            if let Some(owner) = linter.owner(point) {
+                linter.check_evaluation(owner, point);
             }
         }
         for inside_directions in laws::inward_directions(&profile.outline) {
@@ -327,7 +325,8 @@ impl<'m> Linter<'m> {
     fn check_evaluation(&mut self, owner: usize, point: [f64; 3]) {
         let region = &self.model.regions[owner];
         self.measure(owner, point);
-        let (name, location) = (&region.name, self.format_point(point));
+        let name = &region.name;
+        let location = || self.format_point(point);
         let get = |id: Id| self.get(id);
         let spans = region.law_spans;
         let laws = [
@@ -338,9 +337,9 @@ impl<'m> Linter<'m> {
         for (quantity, id, span, slack) in laws {
             let value = get(id);
             let diagnostic = if !value.is_finite() {
-                self.not_finite(owner, quantity, id, span, location)
+                self.not_finite(owner, quantity, id, span, location())
             } else if value < -slack {
-                let (region, value) = (name.clone(), FormattedNumber(value));
+                let (region, value, location) = (name.clone(), FormattedNumber(value), location());
                 Diagnostic::new(
                     span,
                     CheckKind::NegativeQuantity { quantity, region, value, location },
@@ -352,13 +351,14 @@ impl<'m> Linter<'m> {
         }
         let direction = region.raw_direction.0.map(get);
         if !direction.into_iter().all(f64::is_finite) || direction == [0.0; 3] {
-            let kind = CheckKind::ZeroDirectionAtPoint { region: name.clone(), location };
+            let kind =
+                CheckKind::ZeroDirectionAtPoint { region: name.clone(), location: location() };
             return self.report(Diagnostic::new(region.raw_direction.1, kind));
         }
         let [x, y, z] = region.direction.map(get);
         let length_error = (x.hypot(y).hypot(z) - 1.0).abs();
         if length_error.is_nan() || length_error > 1e-9 {
-            let kind = CheckKind::DirectionTooLong { region: name.clone(), location };
+            let kind = CheckKind::DirectionTooLong { region: name.clone(), location: location() };
             self.report(Diagnostic::new(region.raw_direction.1, kind));
         }
     }

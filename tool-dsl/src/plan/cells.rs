@@ -11,7 +11,7 @@ use crate::geometry::polygon::{Polygon, centroid};
 use crate::model::{Model, Profile};
 use crate::regionalise;
 use crate::regionalise::overlay::{ConditionedPart, PieceDivider};
-use crate::regionalise::pieces::Piece;
+use crate::regionalise::pieces::{Piece, SampledPiece};
 use crate::resolve::partitioned_anew;
 use std::rc::Rc;
 
@@ -56,7 +56,7 @@ pub(crate) fn proved_deviation(model: &Model, tree: &Tree) -> Option<f64> {
     let model = partitioned_anew(model)?;
     let profile = model.profile.as_ref()?;
     let (shapes, size) = profile.functions(&model.graph, &model.curves);
-    Cells::new(&model, profile, &shapes, size).deviation(tree).ok()
+    Cells::new(&model, profile, &shapes, size, profile.pieces(&shapes)).deviation(tree).ok()
 }
 
 /// The cells of a profile's features, and the outside, as pieces.
@@ -83,9 +83,8 @@ impl<'m> Cells<'m> {
         profile: &'m Profile,
         shapes: &'m [CurveFunction<'m>],
         size: f64,
+        pieces: Vec<Rc<Piece>>,
     ) -> Cells<'m> {
-        let inside = profile.inner.inner_pieces(&profile.separations, shapes);
-        let pieces = inside.into_iter().chain(profile.inner.outer_pieces(&profile.separations));
         Cells {
             model,
             profile,
@@ -93,23 +92,22 @@ impl<'m> Cells<'m> {
             shapes,
             size,
             tolerance: 16.0 * f64::EPSILON * size,
-            pieces: pieces.map(Rc::new).collect(),
+            pieces,
         }
     }
 
     /// Returns pieces whose owners are regions or the outside, and sample points of these.
-    pub(super) fn of_regions(&self) -> (Vec<Rc<Piece>>, Vec<Sample>) {
+    pub(super) fn of_regions(&self, sampled: &[SampledPiece]) -> (Vec<Rc<Piece>>, Vec<Sample>) {
         let Some(over) = &self.profile.over else {
-            let samples = self.pieces.iter().flat_map(|piece| {
-                let points = self.geometry.sample_points(piece).into_iter();
-                points.map(|point| Sample::new(point, piece.owner))
+            let samples = sampled.iter().flat_map(|SampledPiece { piece, points }| {
+                points.iter().map(|point| Sample::new(*point, piece.owner))
             });
             return (self.pieces.clone(), samples.collect());
         };
         let divider = PieceDivider::new(&over.division, self.shapes, self.size);
         let (mut pieces, mut samples) = (Vec::new(), Vec::new());
-        for piece in &self.pieces {
-            let points = self.geometry.sample_points(piece).into_iter();
+        for SampledPiece { piece, points } in sampled {
+            let points = points.iter().copied();
             let Some(part) = piece.owner else {
                 samples.extend(points.map(|point| Sample::new(point, None)));
                 pieces.push(Rc::clone(piece));
@@ -144,6 +142,11 @@ impl<'m> Cells<'m> {
         let owner =
             region.filter(is_of_part).or_else(|| (0..self.model.regions.len()).find(is_of_part));
         Rc::new(Piece { owner, ..piece.clone() })
+    }
+
+    /// Returns whether all points of a polygon are on the same side of a curve.
+    pub(super) fn is_beside(&self, curve: CurveIndex, polygon: &Polygon) -> bool {
+        self.shapes[curve].is_beside(polygon, self.tolerance)
     }
 
     /// Returns the parts of pieces on the two sides of a curve.

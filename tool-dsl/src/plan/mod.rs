@@ -19,6 +19,7 @@ use crate::expr::{Coord, Graph, Id, Node};
 use crate::formula::{Curve, CurveIndex};
 use crate::model::Model;
 use crate::number::Number;
+use crate::regionalise::pieces::SampledPiece;
 pub(crate) use cells::proved_deviation;
 use signs::by_signs;
 
@@ -132,15 +133,19 @@ pub struct PlannedTool {
     pub deviation: f64,
 }
 
-/// Plans the splits of a tool.
+/// Plans the splits of a tool, of whose profile these are the pieces.
 ///
 /// # Errors
 /// If a tree would have more than [`MAX_TESTS`] tests, or a profile's cells cannot be separated.
-pub(crate) fn plan(mut model: Model, extent: Extent) -> Result<PlannedTool, Diagnostic> {
+pub(crate) fn plan(
+    mut model: Model,
+    extent: Extent,
+    sampled: &[SampledPiece],
+) -> Result<PlannedTool, Diagnostic> {
     let (tree, deviation) = match &model.profile {
         None => (by_signs(&model, &extent)?, 0.0),
         Some(profile) => {
-            let plan = profile::plan(&model, profile)?;
+            let plan = profile::plan(&model, profile, sampled)?;
             match plan.has_owner_far_outside {
                 true => (limited_to_box(&mut model, &extent, plan.tree), plan.deviation),
                 false => (plan.tree, plan.deviation),

@@ -8,9 +8,9 @@ use super::{BITS_PER_ADDITION, MAX_TESTS, Tree, costs};
 use crate::diagnostic::Diagnostic;
 use crate::formula::{CurveIndex, NEGATIVE, POSITIVE, Signs};
 use crate::geometry::outline::{Point, dot, minus, norm};
-use crate::geometry::polygon::width;
+use crate::geometry::polygon::{hull, width};
 use crate::model::{Model, Profile};
-use crate::regionalise::pieces::Piece;
+use crate::regionalise::pieces::{Piece, SampledPiece};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use std::rc::Rc;
@@ -33,10 +33,15 @@ pub(super) struct ProfilePlan {
 }
 
 /// Plans a profile.
-pub(super) fn plan(model: &Model, profile: &Profile) -> Result<ProfilePlan, Diagnostic> {
+pub(super) fn plan(
+    model: &Model,
+    profile: &Profile,
+    sampled: &[SampledPiece],
+) -> Result<ProfilePlan, Diagnostic> {
     let (shapes, size) = profile.functions(&model.graph, &model.curves);
-    let cells = Cells::new(model, profile, &shapes, size);
-    let (pieces, samples) = cells.of_regions();
+    let pieces = sampled.iter().map(|sampled| Rc::clone(&sampled.piece)).collect();
+    let cells = Cells::new(model, profile, &shapes, size, pieces);
+    let (pieces, samples) = cells.of_regions(sampled);
     let mut planner = Planner {
         cells: &cells,
         costs: costs(model),
@@ -233,6 +238,7 @@ impl Planner<'_> {
         divides_nothing: &mut [bool],
     ) -> Option<Choice> {
         let count = owner_count(pieces);
+        let around = hull(pieces.iter().flat_map(|piece| piece.vertices.iter().copied()).collect());
         let (mut fallback, mut with_double_zeros, mut skipped_count) = (None, None, 0);
         let mut best_one_sided: Option<([usize; 3], Choice)> = None;
         // Where samples tell something, one of the first few is mostly chosen, so they are not sorted.
@@ -240,6 +246,10 @@ impl Planner<'_> {
             let is_by_pieces = is_one_sided && listed == usize::MAX;
             if !is_by_pieces && best_one_sided.is_some() {
                 break;
+            }
+            if self.cells.is_beside(curve, &around) {
+                divides_nothing[curve] = true;
+                continue;
             }
             let halves = self.cells.halves(curve, pieces);
             if halves.below.is_empty() || halves.above.is_empty() {

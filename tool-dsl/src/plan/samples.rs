@@ -4,6 +4,7 @@ use super::{BITS_PER_ADDITION, bits};
 use crate::formula::CurveIndex;
 use crate::geometry::function::CurveFunction;
 use crate::geometry::outline::Point;
+use crate::geometry::polygon::range;
 
 /// The least cost, in additions, of a side on which several owners remain.
 const MIN_SIDE_COST: f64 = 8.0;
@@ -55,6 +56,7 @@ impl Samples {
             all.chunk_by(|a, b| a.owner == b.owner).flat_map(|run| run.chunks(64)).collect();
         let owners: Vec<usize> =
             runs.iter().map(|run| run[0].owner.map_or(0, |owner| owner + 1)).collect();
+        let words: Vec<Word<'_>> = runs.iter().map(|run| Word::new(run)).collect();
         Samples {
             count: owners.iter().max().map_or(1, |largest| largest + 1),
             weights: runs
@@ -63,7 +65,7 @@ impl Samples {
                 .collect(),
             below: shapes
                 .iter()
-                .map(|shape| runs.iter().map(|run| bits_below(run, shape)).collect())
+                .map(|shape| words.iter().map(|word| word.bits_below(shape)).collect())
                 .collect(),
             owners,
         }
@@ -185,11 +187,63 @@ impl Samples {
     }
 }
 
-/// Returns a bit for each sample of a word that is below a curve.
-fn bits_below(word: &[Sample], shape: &CurveFunction<'_>) -> u64 {
-    let mut bits = 0;
-    for (k, sample) in word.iter().enumerate() {
-        bits |= u64::from(shape.below(sample.point)) << k;
+/// Up to 64 samples, and the corners of the rectangle about them.
+struct Word<'s> {
+    samples: &'s [Sample],
+    corners: [Point; 4],
+}
+
+impl<'s> Word<'s> {
+    fn new(samples: &'s [Sample]) -> Word<'s> {
+        let [[left, right], [low, high]] =
+            [0, 1].map(|axis| range(samples.iter().map(|sample| sample.point[axis])));
+        Word { samples, corners: [[left, low], [right, low], [left, high], [right, high]] }
     }
-    bits
+
+    /// Returns a bit for each sample that is below a curve.
+    fn bits_below(&self, shape: &CurveFunction<'_>) -> u64 {
+        // A line's values in a rectangle are extreme at corners, also when every operation is rounded.
+        if shape.is_line() {
+            let [first, others @ ..] = self.corners.map(|corner| shape.below(corner));
+            if others == [first; 3] {
+                return if first { u64::MAX >> (64 - self.samples.len()) } else { 0 };
+            }
+        }
+        let mut bits = 0;
+        for (k, sample) in self.samples.iter().enumerate() {
+            bits |= u64::from(shape.below(sample.point)) << k;
+        }
+        bits
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Lines beside a word, across it, and through its samples, which are on a circle.
+    #[test]
+    fn corners_tell_the_side_of_a_line_as_samples_do() {
+        let turned = |k: u32| f64::from(k).sin_cos();
+        let sample = |k: u32| {
+            let (sine, cosine) = turned(k);
+            Sample::new(([7.3 + 0.1 * cosine, 0.1 * sine], 1.0), None)
+        };
+        let samples: Vec<Sample> = (0..50).map(sample).collect();
+        let word = Word::new(&samples);
+        let (mut undivided, mut divided) = (0, 0);
+        for k in 0..3000 {
+            let (sine, cosine) = turned(k * 7);
+            let Sample { point, .. } = samples[k as usize % samples.len()];
+            let shift = [0.0, 1e-17, 0.05, 0.3][k as usize % 4];
+            let middle = [point[0] + shift * cosine, point[1] + shift * sine];
+            let shape = CurveFunction::Line { middle, constant: 0.0, slope: [cosine, sine] };
+            let below = samples.iter().map(|sample| u64::from(shape.below(sample.point)));
+            let expected = below.enumerate().fold(0, |bits, (k, bit)| bits | bit << k);
+            assert_eq!(word.bits_below(&shape), expected, "{k}");
+            let all = u64::MAX >> (64 - samples.len());
+            *(if [0, all].contains(&expected) { &mut undivided } else { &mut divided }) += 1;
+        }
+        assert!(undivided > 500 && divided > 500, "{undivided} {divided}");
+    }
 }

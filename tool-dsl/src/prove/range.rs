@@ -53,6 +53,10 @@ pub(super) struct Ranges<'s, 't> {
 impl Ranges<'_, '_> {
     /// Encloses the niceness of a region that is known to lie within `known`.
     pub(super) fn niceness(&mut self, index: usize, region: &Region, known: Interval) -> Interval {
+        // A constant is known as well as can be.
+        if known.low == known.high {
+            return known;
+        }
         let high = self.upper_bound(index, region, 1.0, known.high);
         let low = -self.upper_bound(index, region, -1.0, -known.low);
         Interval { low, high }

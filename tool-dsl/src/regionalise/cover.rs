@@ -56,7 +56,7 @@ impl Section<'_> {
         let mut covered = Vec::new();
         let start = self
             .sector_sides(feature)
-            .into_iter()
+            .iter()
             .try_fold(bounds.clone(), |polygon, side| clipped(&polygon, &|p| side.at(p)));
         let Some(start) = start.and_then(|polygon| self.on_own_side(feature, polygon)) else {
             return covered;
@@ -77,9 +77,8 @@ impl Section<'_> {
         covered
     }
 
-    /// Returns the sides of the normals at a feature's ends toward the feature.
-    pub(super) fn sector_sides(&self, feature: usize) -> Vec<HalfPlane> {
-        match self.features[feature] {
+    pub(super) fn sides_of(&self, feature: Feature) -> Vec<HalfPlane> {
+        match feature {
             Feature::Piece(piece) => {
                 let segment = &self.outline[piece];
                 let [from, to] = segment.ends();
@@ -228,12 +227,12 @@ impl Section<'_> {
         let mut others: Vec<usize> = others.collect();
         for _ in 0..MAX_TRIMMING_ROUNDS {
             let before = polygon.clone();
+            let mut square = self.square_of_nearer(feature, &polygon);
             for &other in &others {
-                let (low, _) = self.low(feature, centroid(&polygon));
-                let farthest = polygon.iter().map(|p| low.at(*p)).fold(0.0, f64::max);
-                let (middle, half) = centre_and_half(&polygon);
-                if self.is_box_within(other, middle, farthest + half) {
+                let (middle, half) = square;
+                if self.is_box_within(other, middle, half) {
                     polygon = self.trimmed_by(feature, other, polygon)?;
+                    square = self.square_of_nearer(feature, &polygon);
                 }
             }
             if polygon == before || !self.is_straight(feature) {
@@ -243,6 +242,14 @@ impl Section<'_> {
             others.reverse();
         }
         Some(polygon)
+    }
+
+    /// Returns the centre and half the side of a square that has all points as near to a polygon's as a feature is.
+    fn square_of_nearer(&self, feature: usize, polygon: &Polygon) -> (Point, f64) {
+        let (low, _) = self.low(feature, centroid(polygon));
+        let farthest = polygon.iter().map(|p| low.at(*p)).fold(0.0, f64::max);
+        let (middle, half) = centre_and_half(polygon);
+        (middle, farthest + half)
     }
 
     fn is_straight(&self, feature: usize) -> bool {
@@ -283,9 +290,9 @@ impl Section<'_> {
             // Behind a line, the line itself is nearer.
             if segment.round().is_none() {
                 let values: Vec<f64> = polygon.iter().map(|p| segment.signed(*p)).collect();
-                if range(&values)[0] < -self.tolerance()
+                if values.iter().any(|value| *value < -self.tolerance())
                     && let [Some(back), front] = divided(&polygon, &values)
-                    && self.all_within(&sides, &back)
+                    && self.all_within(sides, &back)
                     && back.iter().all(|p| low.at(*p) + segment.signed(*p) >= slack)
                 {
                     polygon = front?;
@@ -297,15 +304,13 @@ impl Section<'_> {
             let (low, is_linear) = self.low(feature, at);
             let (high, other_is_linear) = self.high(other, at);
             let above = |p: &Point| low.at(*p) - high.at(*p) - slack.max(0.0);
-            let difference = polygon.iter().map(|p| self.without_rounding(above(p)));
-            let difference: Vec<f64> = difference.collect();
-            let [least, most] = range(&difference);
+            let [least, most] = range(polygon.iter().map(|p| self.without_rounding(above(p))));
             // Both are exact at the first point, so that this one is far from the border.
             if most <= 0.0 {
                 break;
             }
             if least >= 0.0
-                && (is_corner || self.all_within(&sides, &polygon))
+                && (is_corner || self.all_within(sides, &polygon))
                 && self.is_behind_nearer(feature, other, &polygon)
             {
                 return None;
@@ -359,8 +364,9 @@ impl Section<'_> {
     /// Returns the nearest feature to a point and its distance; `None` if the nearest point is an end that is no feature.
     pub(super) fn nearest(&self, p: Point) -> (Option<usize>, f64) {
         let mut nearest = (None, f64::INFINITY);
+        let reach = self.reach(p);
         for (index, feature) in self.features.iter().enumerate() {
-            if !self.is_box_within(index, p, nearest.1) {
+            if !self.is_box_within(index, p, nearest.1.min(reach)) {
                 continue;
             }
             let (distance, own) = match *feature {
@@ -406,7 +412,7 @@ impl Section<'_> {
         let sides = nearest.map(|nearest| self.sector_sides(nearest)).unwrap_or_default();
         for side in sides {
             let values: Vec<f64> = polygon.iter().map(|p| side.at(*p)).collect();
-            let [low, high] = range(&values);
+            let [low, high] = range(values.iter().copied());
             if low < -0.02 * high.abs().max(1e-3 * self.size) && high > -0.02 * low {
                 return Some(divided(polygon, &values));
             }
@@ -503,7 +509,7 @@ impl Section<'_> {
             let ends = self.end_points(feature);
             let to_ends = ends.iter().map(|end| greatest(&|p| norm(minus(*p, *end))));
             let to_end = to_ends.fold(f64::INFINITY, f64::min);
-            if !self.all_within(&self.sector_sides(feature), polygon) {
+            if !self.all_within(self.sector_sides(feature), polygon) {
                 return to_end;
             }
             let [high, low] = [self.high(feature, middle).0, self.low(feature, middle).0];

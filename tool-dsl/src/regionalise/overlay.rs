@@ -19,6 +19,21 @@ pub(crate) enum Division {
 }
 
 impl Division {
+    /// Returns a condition by its index; true for a rounded outline, whose segments are told apart by their distances.
+    pub(crate) fn condition(&self, index: usize) -> Formula {
+        match self {
+            Division::Conditions(formulas) => formulas[index].clone(),
+            Division::Rounded(_) => Formula::Const(true),
+        }
+    }
+
+    /// Sets the two distances that each curve between segments of a rounded outline compares.
+    pub(crate) fn set_distances(&self, shapes: &mut [CurveFunction<'_>]) {
+        if let Division::Rounded(rounded) = self {
+            rounded.partition.set_distances(&rounded.separations, shapes);
+        }
+    }
+
     /// Returns the number of conditions.
     pub(crate) fn count(&self) -> usize {
         match self {
@@ -93,7 +108,7 @@ impl<'a> PieceDivider<'a> {
     /// Returns the first condition that holds at a point, if rounding does not decide about it.
     pub(crate) fn first_at(&self, p: Point) -> Option<usize> {
         match self {
-            PieceDivider::Conditions(conditions) => conditions.first_at(p),
+            PieceDivider::Conditions(conditions) => first_holding(conditions.holding(p)),
             PieceDivider::Rounded(rounded) => rounded.section.certainly_nearest(p),
         }
     }
@@ -136,14 +151,20 @@ impl Conditions<'_> {
         (low == with(1.0)).then_some(low)
     }
 
-    fn first_at(&self, p: Point) -> Option<usize> {
-        for condition in 0..self.formulas.len() {
-            if self.holds(condition, p)? {
-                return Some(condition);
-            }
-        }
-        None
+    /// Returns for each condition whether it holds at a point.
+    fn holding(&self, p: Point) -> impl Iterator<Item = Option<bool>> {
+        (0..self.formulas.len()).map(move |condition| self.holds(condition, p))
     }
+}
+
+/// Returns the first condition that holds, unless rounding decides about it.
+fn first_holding(holding: impl IntoIterator<Item = Option<bool>>) -> Option<usize> {
+    for (condition, holds) in holding.into_iter().enumerate() {
+        if holds? {
+            return Some(condition);
+        }
+    }
+    None
 }
 
 /// The parts and conditions that have points in common.
@@ -177,10 +198,14 @@ impl Overlay {
                     points.extend(section.owned_points(&piece));
                 }
                 for p in points {
-                    if let PieceDivider::Conditions(conditions) = divider {
-                        overlay.look_for_gaps_and_overlaps(conditions, p);
-                    }
-                    let condition = divider.first_at(p);
+                    let condition = match divider {
+                        PieceDivider::Conditions(conditions) => {
+                            let holding: Vec<Option<bool>> = conditions.holding(p).collect();
+                            overlay.look_for_gaps_and_overlaps(&holding, p);
+                            first_holding(holding)
+                        }
+                        PieceDivider::Rounded(_) => divider.first_at(p),
+                    };
                     overlay.add(condition.map(|condition| ConditionedPart { part, condition }));
                 }
                 let size = area(&piece.vertices);
@@ -205,13 +230,11 @@ impl Overlay {
     }
 
     /// Notes a point that satisfies no condition or several.
-    fn look_for_gaps_and_overlaps(&mut self, conditions: &Conditions<'_>, p: Point) {
-        let count = conditions.formulas.len();
-        let holding: Vec<Option<bool>> = (0..count).map(|k| conditions.holds(k, p)).collect();
+    fn look_for_gaps_and_overlaps(&mut self, holding: &[Option<bool>], p: Point) {
         if holding.iter().all(|holds| *holds == Some(false)) {
             self.uncovered = self.uncovered.or(Some(p));
         }
-        let mut certain = (0..count).filter(|k| holding[*k] == Some(true));
+        let mut certain = (0..holding.len()).filter(|k| holding[*k] == Some(true));
         if let (Some(first), Some(second)) = (certain.next(), certain.next()) {
             self.doubly_covered = self.doubly_covered.or(Some((first, second, p)));
         }

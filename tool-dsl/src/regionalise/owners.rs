@@ -56,8 +56,9 @@ impl Section<'_> {
     fn owner_at(&self, p: Point) -> Option<usize> {
         let mut nearest = (None, f64::INFINITY);
         let mut nearest_end = f64::INFINITY;
+        let reach = self.reach(p);
         for (index, feature) in self.features.iter().enumerate() {
-            if !self.is_box_within(index, p, nearest.1) {
+            if !self.is_box_within(index, p, nearest.1.min(reach)) {
                 continue;
             }
             let distance = self.depth_at(index, p).abs();

@@ -7,10 +7,11 @@ use super::section::{Feature, Section};
 use crate::expr::Graph;
 use crate::formula::{CurveIndex, Formula, NEGATIVE, POSITIVE, Signs};
 use crate::geometry::function::{CurveFunction, Distance};
-use crate::geometry::outline::{Point, bounding_box, cross, minus, norm};
+use crate::geometry::outline::{Point, bounding_box};
 use crate::geometry::polygon::{
-    Polygon, area, centroid, clipped, divided, do_touch, halved, width,
+    Polygon, area, centroid, clipped, divided, do_touch, halved, sides, width,
 };
+use std::rc::Rc;
 
 /// A convex polygon and the owner of some of its points: those on the known sides of curves.
 #[derive(Clone, Debug)]
@@ -31,6 +32,13 @@ impl Piece {
     pub(super) fn outside(vertices: Polygon, signs: Vec<(CurveIndex, Signs)>) -> Piece {
         Piece { feature: None, owner: None, vertices, signs, alternatives: Vec::new() }
     }
+}
+
+/// A piece with points that belong to its owner, and their weights.
+#[derive(Clone, Debug)]
+pub(crate) struct SampledPiece {
+    pub(crate) piece: Rc<Piece>,
+    pub(crate) points: Vec<(Point, f64)>,
 }
 
 /// The tests that tell features apart, as formulas over curves.
@@ -228,10 +236,12 @@ impl Section<'_> {
                 points.extend(polygon.iter().map(|p| toward(p, t)));
             }
             let share = area(&polygon) / points.len() as f64;
-            weighted.extend(points.into_iter().filter(|p| self.owns(piece, *p)).map(|p| {
-                let (_, distance) = self.nearest(p);
-                (p, share * ((-distance / layer).exp() + SHELL_FRACTION))
-            }));
+            for p in points {
+                let (nearest, distance) = self.nearest(p);
+                if self.owns(piece, p, nearest) {
+                    weighted.push((p, share * ((-distance / layer).exp() + SHELL_FRACTION)));
+                }
+            }
         }
         weighted
     }
@@ -242,13 +252,15 @@ impl Section<'_> {
         for _ in 0..DENSE_HALVINGS {
             polygons = polygons.iter().flat_map(halved).flatten().collect();
         }
-        polygons.iter().map(centroid).filter(|p| self.owns(piece, *p)).collect()
+        let is_owned = |p: &Point| self.owns(piece, *p, self.nearest(*p).0);
+        polygons.iter().map(centroid).filter(is_owned).collect()
     }
 
-    fn owns(&self, piece: &Piece, p: Point) -> bool {
+    /// Returns whether a piece has a point with this nearest feature.
+    fn owns(&self, piece: &Piece, p: Point, nearest: Option<usize>) -> bool {
         match piece.feature {
             Some(feature) => {
-                self.nearest(p).0 == Some(feature) && self.depth_at(feature, p) > self.tolerance()
+                nearest == Some(feature) && self.depth_at(feature, p) > self.tolerance()
             }
             None => !self.is_inside(p),
         }
@@ -280,7 +292,7 @@ impl Rival<'_> {
         let is_corner = matches!(section.features[self.feature], Feature::Corner(_));
         let owner = piece.feature.unwrap_or(self.feature);
         is_corner
-            || (section.all_within(&section.sector_sides(self.feature), &piece.vertices)
+            || (section.all_within(section.sector_sides(self.feature), &piece.vertices)
                 && section.is_behind_nearer(owner, self.feature, &piece.vertices))
     }
 }
@@ -361,18 +373,9 @@ impl Piece {
         shapes: &[CurveFunction<'_>],
         tolerance: f64,
     ) -> Option<Piece> {
-        let middle = centroid(&other.vertices);
         let mut common = self.clone();
-        for k in 0..other.vertices.len() {
-            let (from, to) = (other.vertices[k], other.vertices[(k + 1) % other.vertices.len()]);
-            let along = minus(to, from);
-            // Two vertices that coincide but for rounding have no direction.
-            if norm(along) <= tolerance {
-                continue;
-            }
-            let inward = cross(along, minus(middle, from)).signum();
-            common.vertices =
-                clipped(&common.vertices, &|p| inward * cross(along, minus(p, from)))?;
+        for side in sides(&other.vertices, tolerance) {
+            common.vertices = clipped(&common.vertices, &|p| side.inward(p))?;
         }
         for (curve, signs) in &other.signs {
             match common.signs.iter_mut().find(|(known, _)| known == curve) {

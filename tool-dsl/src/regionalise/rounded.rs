@@ -93,8 +93,8 @@ impl<'r> RoundedSection<'r> {
         RoundedSection { rounded, section: rounded.partition.section() }
     }
 
-    /// Returns the nearest segment to a point, and by how much the next one is farther. A point between an arc and the corner
-    /// that it rounds belongs to the arc. Elsewhere, no segment is nearest from behind.
+    /// Returns the nearest segment to a point, and by how much the next one is farther, infinite if that is more than rounding.
+    /// A point between an arc and the corner that it rounds belongs to the arc. Elsewhere, no segment is nearest from behind.
     pub(crate) fn nearest(&self, p: Point) -> (Option<usize>, f64) {
         let (outline, tolerance) = (self.section.outline, self.section.tolerance());
         for Tip { segment, polygon } in &self.rounded.tips {
@@ -104,7 +104,11 @@ impl<'r> RoundedSection<'r> {
             }
         }
         let (mut nearest, mut least, mut next) = (None, f64::INFINITY, f64::INFINITY);
-        for (index, segment) in outline.iter().enumerate() {
+        for (feature, index) in self.section.pieces() {
+            if !self.section.is_box_within(feature, p, least + 2.0 * self.margin()) {
+                continue;
+            }
+            let segment = &outline[index];
             let is_within = segment.sector(p).iter().all(|side| *side >= -tolerance);
             let distance = segment.signed(p);
             if !is_within || distance < -tolerance {
@@ -122,7 +126,12 @@ impl<'r> RoundedSection<'r> {
     /// Returns the nearest segment to a point, unless rounding decides which one that is.
     pub(super) fn certainly_nearest(&self, p: Point) -> Option<usize> {
         let (nearest, margin) = self.nearest(p);
-        nearest.filter(|_| margin > 4.0 * self.section.tolerance())
+        nearest.filter(|_| margin > self.margin())
+    }
+
+    /// Returns the difference of distances within which rounding decides which segment is nearest.
+    fn margin(&self) -> f64 {
+        4.0 * self.section.tolerance()
     }
 }
 

@@ -1,5 +1,6 @@
 //! The inside of an outline, as features to which points can be nearest.
 
+use super::cover::HalfPlane;
 use crate::geometry::outline::{
     Point, Segment, bounding_box, cross, dot, minus, mirrored_direction, norm, turn,
 };
@@ -39,6 +40,8 @@ pub(crate) struct Section<'o> {
     pub(super) largest: f64,
     /// A box of each feature, by centre and half the sides, with a margin above the tolerances of contact.
     pub(super) boxes: Vec<[Point; 2]>,
+    /// The sides of the normals at each feature's ends toward the feature.
+    sides: Vec<Vec<HalfPlane>>,
 }
 
 /// The margin of a feature's box, relative to the section's size.
@@ -51,17 +54,24 @@ impl<'o> Section<'o> {
         let radii = outline.iter().filter_map(|segment| Some(segment.round()?.1));
         let largest =
             [low, high].as_flattened().iter().map(|x| x.abs()).chain(radii).fold(0.0, f64::max);
-        let (features, fans, boxes) = (Vec::new(), Vec::new(), Vec::new());
-        let mut section = Section { outline, features, fans, size, largest, boxes };
+        let (features, fans, boxes, sides) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        let mut section = Section { outline, features, fans, size, largest, boxes, sides };
         section.find_features();
-        section.boxes =
-            section.features.iter().map(|feature| section.feature_box(*feature)).collect();
+        let features = section.features.iter();
+        section.boxes = features.clone().map(|feature| section.feature_box(*feature)).collect();
+        section.sides = features.map(|feature| section.sides_of(*feature)).collect();
         section
     }
 
     /// Returns the features, in the order of the outline.
     pub(crate) fn features(&self) -> &[Feature] {
         &self.features
+    }
+
+    /// Returns the features that are segments, each with the segment's index.
+    pub(super) fn pieces(&self) -> impl Iterator<Item = (usize, usize)> {
+        let pieces = self.features.iter().enumerate();
+        pieces.filter_map(|(feature, kind)| Some((feature, kind.piece()?)))
     }
 
     /// Returns the box of a feature by its centre and half its sides.
@@ -75,11 +85,24 @@ impl<'o> Section<'o> {
         [centre, half]
     }
 
+    /// Returns the sides of the normals at a feature's ends toward the feature.
+    pub(super) fn sector_sides(&self, feature: usize) -> &[HalfPlane] {
+        &self.sides[feature]
+    }
+
     /// Returns whether the box of a feature reaches into a square about a point, given half the square's side.
     pub(super) fn is_box_within(&self, feature: usize, p: Point, distance: f64) -> bool {
         let [centre, half] = self.boxes[feature];
         (p[0] - centre[0]).abs() - half[0] <= distance
             && (p[1] - centre[1]).abs() - half[1] <= distance
+    }
+
+    /// Returns an upper bound of a point's distance from the outline: beyond the far corner of the nearest box.
+    pub(super) fn reach(&self, p: Point) -> f64 {
+        let to_corners = self.boxes.iter().map(|[centre, half]| {
+            (p[0] - centre[0]).abs() + half[0] + (p[1] - centre[1]).abs() + half[1]
+        });
+        to_corners.fold(f64::INFINITY, f64::min) + self.tolerance()
     }
 
     /// Returns the directions of the outline before and after the end of a segment; for `None`, before and after the first one.

@@ -1,7 +1,7 @@
 //! Converts conditions to formulas over splitting curves.
 
 use crate::expr::corner::Corner;
-use crate::expr::polynomial::Polynomials;
+use crate::expr::polynomial::{Polynomial, Polynomials};
 use crate::expr::{Graph, Id};
 use crate::formula::{Curve, CurveIndex, Formula};
 use std::collections::BTreeMap;
@@ -13,6 +13,8 @@ const MAX_SPLITS: usize = 64;
 #[derive(Default)]
 pub(super) struct Curves {
     pub(super) list: Vec<Curve>,
+    /// The proportion of each curve's polynomial.
+    proportions: Vec<Option<f64>>,
     polynomials: Polynomials,
     found: BTreeMap<Id, (CurveIndex, bool)>,
     names: BTreeMap<Id, String>,
@@ -21,11 +23,17 @@ pub(super) struct Curves {
 impl Curves {
     /// Returns the curves of a model, so that others can be added.
     pub(super) fn of(list: Vec<Curve>, graph: &Graph) -> Curves {
-        let mut polynomials = Polynomials::default();
-        for curve in &list {
-            polynomials.of(graph, curve.value);
+        let mut curves = Curves::default();
+        for curve in list {
+            curves.add(graph, curve);
         }
-        Curves { list, polynomials, ..Curves::default() }
+        curves
+    }
+
+    fn add(&mut self, graph: &Graph, curve: Curve) {
+        let polynomial = self.polynomials.of(graph, curve.value);
+        self.proportions.push(polynomial.and_then(Polynomial::proportion));
+        self.list.push(curve);
     }
 
     /// Records the file's name for a curve.
@@ -40,6 +48,7 @@ impl Curves {
         }
         self.polynomials.of(graph, value);
         let own = self.polynomials.known(value);
+        let proportion = own.and_then(Polynomial::proportion);
         let opposite = graph.neg(value);
         let found = self.list.iter().enumerate().find_map(|(index, curve)| {
             if curve.value == value {
@@ -47,6 +56,11 @@ impl Curves {
             }
             if curve.value == opposite {
                 return Some((index, false));
+            }
+            // Most curves are told apart by one number.
+            let (a, b) = (proportion?, self.proportions[index]?);
+            if (a - b).abs() > 1e-8 * (a.abs() + b.abs()) {
+                return None;
             }
             let factor = own?.ratio(self.polynomials.known(curve.value)?)?;
             Some((index, !factor.is_negative()))
@@ -70,7 +84,7 @@ impl Curves {
         let (curve, same) = self.find(graph, value).unwrap_or_else(|| {
             let opposite = graph.neg(value);
             let name = self.names.get(&value).or_else(|| self.names.get(&opposite)).cloned();
-            self.list.push(Curve { name, value });
+            self.add(graph, Curve { name, value });
             (self.list.len() - 1, true)
         });
         Formula::Atom { curve, below: below == same }

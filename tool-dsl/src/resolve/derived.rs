@@ -91,23 +91,16 @@ pub(super) fn derived(
                 regions.extend(or_report(evaluation.of_part(part, head, direction), diagnostics));
             }
         }
-        Some(DividedInside { division, kinds }) if diagnostics.len() == before => {
-            let over = profile.over.insert(Over { division, regions: Vec::new() });
-            let formulas = match &over.division {
-                Division::Conditions(formulas) => formulas.clone(),
-                Division::Rounded(_) => vec![Formula::Const(true); kinds.len()],
-            };
-            let divided =
-                conditioned_parts(&kinds, (&profile, outline.span), curves, lowering, diagnostics);
+        Some(inside) if diagnostics.len() == before => {
+            let divided = inside.parts(&profile, outline.span, curves, lowering, diagnostics);
+            let DividedInside { division, kinds } = inside;
             for ConditionedPart { part, condition } in &divided {
-                let (part, formula) = (&parts[*part], formulas[*condition].clone());
+                let (part, formula) = (&parts[*part], division.condition(*condition));
                 let surfaces = &outline.surfaces;
                 let kind = &kinds[*condition];
                 regions.extend(kind.region(part, formula, surfaces, laws, lowering, diagnostics));
             }
-            if let Some(over) = &mut profile.over {
-                over.regions = divided;
-            }
+            profile.over = Some(Over { division, regions: divided });
         }
         Some(_) => {}
     }
@@ -398,47 +391,51 @@ fn fans<'t>(
     Ok(DividedInside { division: Division::Rounded(rounded), kinds })
 }
 
-/// Returns the parts and conditions that have points in common, and reports gaps, overlaps and regions without points.
-fn conditioned_parts(
-    kinds: &[Kind<'_>],
-    (profile, outline_span): (&Profile, Span),
-    curves: &Curves,
-    lowering: &Lowering,
-    diagnostics: &mut Vec<Diagnostic>,
-) -> Vec<ConditionedPart> {
-    let Some(over) = &profile.over else { return Vec::new() };
-    let (shapes, size) = profile.functions(&lowering.graph, &curves.list);
-    let pieces = profile.inner.inner_pieces(&profile.separations, &shapes);
-    let divider = PieceDivider::new(&over.division, &shapes, size);
-    let Overlay { parts, uncovered, doubly_covered } =
-        Overlay::new(&profile.inner.section(), pieces, &divider);
-    let formatted =
-        |[d, z]: [f64; 2]| Domain::HalfPlane.format_point([d, 0.0, lowering.frame.to_file(z)]);
-    if let Some(p) = uncovered {
-        let location = formatted(p);
-        diagnostics.push(Diagnostic::new(outline_span, RegionKind::UncoveredPoint { location }));
-    }
-    if let Some((first, second, p)) = doubly_covered
-        && let (Kind::Hand(a, _), Kind::Hand(b, _)) = (&kinds[first], &kinds[second])
-    {
-        let (a, b) = (&a.name, &b.name);
-        let is_left = parts.iter().any(|part| part.condition == second);
-        diagnostics.push(match is_left {
-            true => overlapping(&a.text, &b.text, b.span, formatted(p), a.span),
-            false => never_wins(&b.text, b.span, &a.text, a.span, 0),
-        });
-    }
-    for (k, kind) in kinds.iter().enumerate() {
-        if let Kind::Hand(region, _) = kind
-            && !any_error(diagnostics)
-            && parts.iter().all(|part| part.condition != k)
-        {
-            let name = &region.name;
-            let kind = RegionKind::RegionOutsideProfile { region: name.text.clone() };
-            diagnostics.push(Diagnostic::new(name.span, kind));
+impl DividedInside<'_> {
+    /// Returns the parts and conditions that have points in common, and reports gaps, overlaps and regions without points.
+    fn parts(
+        &self,
+        profile: &Profile,
+        outline_span: Span,
+        curves: &Curves,
+        lowering: &Lowering,
+        diagnostics: &mut Vec<Diagnostic>,
+    ) -> Vec<ConditionedPart> {
+        let (mut shapes, size) = profile.functions(&lowering.graph, &curves.list);
+        self.division.set_distances(&mut shapes);
+        let pieces = profile.inner.inner_pieces(&profile.separations, &shapes);
+        let divider = PieceDivider::new(&self.division, &shapes, size);
+        let Overlay { parts, uncovered, doubly_covered } =
+            Overlay::new(&profile.inner.section(), pieces, &divider);
+        let formatted =
+            |[d, z]: [f64; 2]| Domain::HalfPlane.format_point([d, 0.0, lowering.frame.to_file(z)]);
+        if let Some(p) = uncovered {
+            let location = formatted(p);
+            diagnostics
+                .push(Diagnostic::new(outline_span, RegionKind::UncoveredPoint { location }));
         }
+        if let Some((first, second, p)) = doubly_covered
+            && let (Kind::Hand(a, _), Kind::Hand(b, _)) = (&self.kinds[first], &self.kinds[second])
+        {
+            let (a, b) = (&a.name, &b.name);
+            let is_left = parts.iter().any(|part| part.condition == second);
+            diagnostics.push(match is_left {
+                true => overlapping(&a.text, &b.text, b.span, formatted(p), a.span),
+                false => never_wins(&b.text, b.span, &a.text, a.span, 0),
+            });
+        }
+        for (k, kind) in self.kinds.iter().enumerate() {
+            if let Kind::Hand(region, _) = kind
+                && !any_error(diagnostics)
+                && parts.iter().all(|part| part.condition != k)
+            {
+                let name = &region.name;
+                let kind = RegionKind::RegionOutsideProfile { region: name.text.clone() };
+                diagnostics.push(Diagnostic::new(name.span, kind));
+            }
+        }
+        parts
     }
-    parts
 }
 
 impl Kind<'_> {
