@@ -13,6 +13,7 @@ use crate::certify::tool_model::section::{Section, SectionSlab};
 #[derive(Clone, Debug)]
 pub(crate) struct Cell {
     pub(crate) rectangle: Rectangle,
+    /// The features' indices, in the order of the profile.
     pub(crate) candidates: Vec<usize>,
 }
 
@@ -155,6 +156,7 @@ impl Section {
                 upper_bounds.push(feature.convex_upper_bounds(&corners));
             }
         }
+        candidates.sort_unstable();
         Cell { rectangle, candidates }
     }
 

@@ -310,7 +310,12 @@ impl Section {
                 feature: side,
             };
         }
-        let (value, mut feature) = self.nearest_of_all(p);
+        // The side of the slab is the first, so that it owns points of the slab that another feature is as near to.
+        let side_distance = (self.features[slab.side].distance(p), slab.side);
+        let (mut value, mut feature) = self.nearest_of_all(p);
+        if side_distance.0 <= value {
+            (value, feature) = side_distance;
+        }
         let gradient = self.features[feature].distance_gradient(p);
         if !owners.is_owned(feature) {
             let owned = self.owned(owners).filter(|owner| !self.hidden_by_neighbours(*owner, &[p]));
