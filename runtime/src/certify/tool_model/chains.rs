@@ -25,13 +25,15 @@ pub(crate) struct TipBall {
     pub(crate) ball: [f64; 2],
 }
 
-/// The sine of the largest angle by which the sides of a chain turn: the line is off them by an eighth of that, times the length of
-/// the chain.
-const MAX_TURN_SINE: f64 = 0.125;
-
-/// The least number of lines that a ball stands for, and their largest distance from it, as a fraction of its radius. Beyond
-/// that it bounds nothing better than the lines.
+/// The least number of lines that are taken together.
 const MIN_LINES: usize = 3;
+
+/// The sine of the largest angle by which the sides of a chain turn, and the largest distance of an end from its line, as a
+/// fraction of the tool's size. Beyond that the lines bound depth much better.
+const MAX_TURN_SINE: f64 = 0.125;
+const MAX_GAP: f64 = 1.0 / 1024.0;
+
+/// The largest distance of the lines from the ball about the tip, as a fraction of its radius.
 const MAX_DEVIATION: f64 = 1.0 / 256.0;
 
 impl Section {
@@ -91,7 +93,7 @@ impl Section {
     /// Returns the line that touches the sides of several slabs, if it bounds their depth: all feet are outside the tool.
     fn line_outside(&self, slabs: Range<usize>) -> Option<Feature> {
         let (first, last) = (slabs.start, slabs.end - 1);
-        if first == last {
+        if slabs.len() < MIN_LINES {
             return None;
         }
         let [from, to] = [first, last].map(|slab| self.features[self.slabs[slab].side]);
@@ -99,9 +101,14 @@ impl Section {
         let chord = minus(end, start);
         let along = chord.map(|part| part / norm(chord));
         let outward = [along[1], -along[0]];
+        let along_outward = |p: MeridianPoint| dot(outward, p);
         let touch = self
             .vertices(slabs.clone())
-            .max_by(|one, other| dot(outward, *one).total_cmp(&dot(outward, *other)))?;
+            .max_by(|one, other| along_outward(*one).total_cmp(&along_outward(*other)))?;
+        // The ends of the chord are the farthest from the line.
+        if along_outward(touch) - along_outward(start) > MAX_GAP * self.size {
+            return None;
+        }
         let line = Feature { ends: [touch; 2], along, length: 0.0, circle: None, ..from };
         let [low, _] = self.feet(&line, first);
         let [_, high] = self.feet(&line, last);

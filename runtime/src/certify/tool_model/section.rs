@@ -175,6 +175,8 @@ impl Section {
         let corners = [[slab.hole, low], [slab.hole, high], [radii[0], low], [radii[1], high]];
         let cells = self.cells_of(slab);
         let mut others: Vec<usize> = cells.into_iter().flat_map(|cell| cell.candidates).collect();
+        // Neighbours bound depth near their common end, though they may be the nearest to no point of the slab.
+        others.extend([slab.side.saturating_sub(1), (slab.side + 1).min(self.features.len() - 1)]);
         // Those next to the side along the profile are likely to bound depth best.
         others.sort_by_key(|other| (other.abs_diff(slab.side), *other));
         others.dedup();
