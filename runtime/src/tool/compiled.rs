@@ -156,7 +156,11 @@ impl<T: Evaluators> Tool for T {
         evaluations: &mut Evaluations,
     ) {
         evaluations.reserve(points, outputs);
-        on_vectors!(level, simd => evaluate_blocks(simd, outputs, points, length, evaluations, T::evaluate_lanes));
+        on_vectors!(level, simd => evaluate_blocks(
+            simd, outputs, points, length, evaluations,
+            #[inline(always)]
+            |point, length, present, outputs| T::evaluate_lanes(point, length, present, outputs),
+        ));
         evaluate_points(outputs, points, length, evaluations, T::evaluate_lanes);
     }
 
@@ -187,7 +191,11 @@ impl<T: Evaluators> BatchEvaluator for T {
         evaluations: &mut Evaluations,
     ) {
         evaluations.reserve(points, O::OUTPUTS);
-        on_vectors!(level, simd => evaluate_blocks(simd, O::OUTPUTS, points, length, evaluations, T::evaluate_lanes));
+        on_vectors!(level, simd => evaluate_blocks(
+            simd, O::OUTPUTS, points, length, evaluations,
+            #[inline(always)]
+            |point, length, present, outputs| T::evaluate_lanes(point, length, present, outputs),
+        ));
         evaluate_points(O::OUTPUTS, points, length, evaluations, T::evaluate_lanes);
     }
 }
@@ -199,8 +207,9 @@ fn store_vector<S: Simd>(lists: &mut [Vec<f64>; 3], block: Range<usize>, values:
     values[2].store_slice(&mut lists[2][block]);
 }
 
-/// Evaluates the points in blocks of eight. Vector code is kept in functions that are always inlined: a closure would
-/// be compiled without the vector instructions of its surroundings, and so would `evaluate` unless it is always inlined.
+/// Evaluates the points in blocks of eight. Vector code is kept in functions that are always inlined: others are compiled without
+/// the vector instructions of their surroundings, each operation as a call. So must `evaluate` be: a closure that is always
+/// inlined, and not the name of a function, since the call through a name is never forced inline.
 #[inline(always)]
 pub(super) fn evaluate_blocks<S: Simd>(
     simd: S,
