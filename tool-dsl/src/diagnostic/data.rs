@@ -241,6 +241,8 @@ pub enum Statement {
     MeetingRegions(usize),
     /// Depth is the distance from the profile.
     DistanceFromProfile,
+    /// The roots in all conditions exist.
+    RealRoots,
 }
 
 impl fmt::Display for Statement {
@@ -261,6 +263,9 @@ impl fmt::Display for Statement {
             Statement::MeetingRegions(count) => write!(f, "which of {count} regions meet"),
             Statement::DistanceFromProfile => {
                 f.write_str("whether depth is the distance from the profile")
+            }
+            Statement::RealRoots => {
+                f.write_str("whether each number under a root of a condition is at least 0")
             }
         }
     }

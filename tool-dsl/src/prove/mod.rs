@@ -20,6 +20,7 @@ mod cover;
 mod depths;
 mod direction;
 mod distances;
+mod existence;
 mod meridian;
 mod profile;
 mod range;

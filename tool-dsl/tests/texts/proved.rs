@@ -245,6 +245,31 @@ fn a_tool_that_cannot_be_certified_is_warned_of_while_it_is_compiled() {
     assert!(bounds.lipschitz.is_none() && bounds.rounding_error < 1e-9, "{bounds:?}");
 }
 
+/// A condition has no sign where a number under its root is negative, be it in a disc of a micrometre, so that nothing can
+/// be concluded from it.
+#[test]
+fn a_root_that_does_not_exist_somewhere_is_found() {
+    let rod = |root: &str| {
+        format!(
+            "tool T {{ units mm; curve root = sqrt({root});
+               region rod where d <= 3, 0 <= z <= 20, root >= 0 {{ depth: min(3 - d, z, 20 - z); }} }}"
+        )
+    };
+    for root in
+        ["3 + d*z/4", "(d - 1)^2 + (z - 5)^2 + 0.000001", "d^2 + z^2 - d*z", "d^2 + z^2 - d*z + 1"]
+    {
+        is_proved(&rod(root));
+    }
+    for missing in ["(d - 1)^2 + (z - 5)^2 - 0.000001", "abs(d - 1.00001) + abs(z - 5) - 0.001"] {
+        let tool = tool(&rod(missing)).unwrap_or_else(|| panic!("refused: {missing}"));
+        let proved = Certificate::prove(&tool);
+        assert_eq!([proved.lipschitz(), proved.lower_slope()], [None; 2], "{missing}");
+        assert_eq!(tool.bounds().lipschitz, None, "{missing}");
+        let [warning] = &proved.diagnostics(&tool)[..] else { panic!("no warning: {missing}") };
+        assert!(warning.message().contains("under a root of a condition"), "{warning:?}");
+    }
+}
+
 /// Tapers so small that the features on both sides are nearly equally near, beside arcs and lines, and chords in place of an
 /// arc, whose normals meet in nearly one point.
 #[test]

@@ -5,6 +5,7 @@ use super::borders::{BorderProver, Pair};
 use super::cover::{Boxes, Claim, Cover, half_diagonal};
 use super::depths::Depths;
 use super::direction::{self, DirectionFacts, angle_to_descent};
+use super::existence::box_without_root;
 use super::range::Ranges;
 use super::root::Forms;
 use super::rounding::RoundingErrors;
@@ -53,6 +54,16 @@ const MAX_SLOPE_UNCERTAINTY: f64 = 0.1;
 /// Proves as much as possible about regions by hand. This includes, if `check_overlaps` is set, that no two of them overlap. The
 /// tool's graph receives the parts of depths.
 pub(super) fn by_hand(tool: &mut PlannedTool, check_overlaps: bool) -> Certificate {
+    let without_root = box_without_root(tool);
+    let mut certificate = by_boxes(tool, check_overlaps);
+    // First, because all else rests on it.
+    let open = without_root.map(|cell| OpenProof { cell, statement: Statement::RealRoots });
+    certificate.undecided.splice(0..0, open);
+    certificate
+}
+
+/// Proves as much as possible about regions by hand whose conditions have a sign everywhere.
+fn by_boxes(tool: &mut PlannedTool, check_overlaps: bool) -> Certificate {
     let depths = Depths::of(&mut tool.model);
     let boxes = budget(tool);
     for (point_box_fraction, thirds) in POINT_BOX_FRACTIONS_AND_BUDGET_THIRDS {
