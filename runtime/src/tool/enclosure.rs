@@ -9,7 +9,7 @@
 use crate::interval::Interval;
 use crate::tool::compiled::LaneEvaluation;
 use crate::tool::{Evaluators, Lane, Outputs};
-use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
+use std::ops::{Add, BitAnd, BitOr, BitOrAssign, Div, Mul, Neg, Not, Sub};
 
 /// The form of an expression, where it allows a tighter enclosure than its interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -461,6 +461,12 @@ impl BitOr for Ternary {
     type Output = Ternary;
     fn bitor(self, other: Ternary) -> Ternary {
         !(!self & !other)
+    }
+}
+
+impl BitOrAssign for Ternary {
+    fn bitor_assign(&mut self, other: Ternary) {
+        *self = *self | other;
     }
 }
 

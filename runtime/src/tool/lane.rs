@@ -5,7 +5,7 @@
 //! section 3.1).
 
 use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask, f64x8, mask64x8};
-use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
+use std::ops::{Add, BitAnd, BitOr, BitOrAssign, Div, Mul, Neg, Not, Sub};
 
 /// The square of the length below which a vector has no direction, 2^-960: smaller squares lose digits.
 const SHORTEST_SQUARE: f64 = f64::from_bits((1023 - 960) << 52);
@@ -29,6 +29,7 @@ pub trait Lane:
     type Mask: Copy
         + BitAnd<Output = Self::Mask>
         + BitOr<Output = Self::Mask>
+        + BitOrAssign
         + Not<Output = Self::Mask>;
 
     /// Returns a constant in as many lanes as `self` has.
@@ -50,6 +51,12 @@ pub trait Lane:
     fn any(mask: Self::Mask) -> bool;
     /// Returns `yes` where the mask is set, `no` elsewhere.
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
+
+    /// Returns a constant where the mask is set, `self` elsewhere.
+    #[inline(always)]
+    fn or(self, mask: Self::Mask, value: f64) -> Self {
+        Self::select(mask, self.of(value), self)
+    }
 
     /// Returns the smaller number; `b` where they are equal.
     #[inline(always)]

@@ -41,6 +41,27 @@ touchoff::tool! {
     }
 }
 
+/// Tools with names of types that their code uses, one with a profile and one by hand.
+mod names {
+    touchoff::tool! {
+        tool Circle {
+            units mm;
+            profile { start (0, 0); arc to (0, 6) center (0, 3) as ball cutting; }
+        }
+    }
+    touchoff::tool! {
+        tool Lane {
+            units mm;
+            region rod where d <= 3, 0 <= z <= 20 { depth: min(3 - d, z, 20 - z); }
+        }
+    }
+}
+
+#[test]
+fn a_tool_may_have_the_name_of_a_type_that_its_code_uses() {
+    assert!(names::Circle::contains([0.0, 0.0, 1.0]) && names::Lane::contains([0.0, 0.0, 1.0]));
+}
+
 /// Evaluates a tool at one point; `None` outside.
 fn at(tool: &dyn Tool, point: [f64; 3], length: f64) -> Option<(usize, Evaluations)> {
     let (mut points, mut evaluation) = (PointBatch::default(), Evaluations::default());

@@ -58,7 +58,7 @@ kinds! {
         "reserved name of a tool"
         message "the tool's name `{name}` is reserved"
         help "choose another name"
-        explain "A tool's name becomes a Rust type. Some names belong to Rust or to the code that is generated with the type.";
+        explain "A tool's name becomes a Rust type. Some names belong to Rust.";
     error T0111 NotTypeName { name: String }
         "tool's name not in `UpperCamelCase`"
         message "the tool's name `{name}` is not in `UpperCamelCase`"

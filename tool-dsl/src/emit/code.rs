@@ -1,6 +1,7 @@
 //! Expressions and the tree of splits as Rust: each test gives a mask of lanes, and each leaf adds lanes to the mask of its
 //! region.
 
+use super::alike::{Choices, Groups};
 use super::names::Names;
 use super::tokens::Tokens;
 use crate::expr::{Coord, Graph, Id, Node};
@@ -17,20 +18,21 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 pub(super) struct Writer<'m> {
     graph: &'m Graph,
     curves: &'m [Curve],
+    parameters: &'m BTreeMap<Id, Choices>,
     names: Names,
     /// The number of uses of each node. A node that is used once is written inline.
     use_counts: BTreeMap<Id, usize>,
 }
 
 impl<'m> Writer<'m> {
-    /// Makes a writer of code that descends a tree and computes some roots.
-    pub(super) fn new(model: &'m Model, tree: &Tree, roots: &[Id]) -> Writer<'m> {
-        let (graph, curves) = (&model.graph, &model.curves);
-        let names = Names::new(model);
-        let mut writer = Writer { graph, curves, names, use_counts: BTreeMap::new() };
+    /// Makes a writer of code that descends a tree and computes the outputs of groups of regions.
+    pub(super) fn new(model: &'m Model, tree: &Tree, groups: &'m Groups) -> Writer<'m> {
+        let Groups { graph, parameters, .. } = groups;
+        let (curves, names) = (&model.curves, Names::new(model, groups));
+        let mut writer = Writer { graph, curves, parameters, names, use_counts: BTreeMap::new() };
         let mut tests = BTreeSet::new();
         tested(tree, &mut tests);
-        let mut all: Vec<Id> = roots.to_vec();
+        let mut all: Vec<Id> = groups.groups.iter().flat_map(|group| group.roots()).collect();
         for (curve, _) in tests {
             all.extend(writer.compared(curve));
         }
@@ -58,7 +60,7 @@ impl<'m> Writer<'m> {
     /// `d` and `q`.
     pub(super) fn given(&self) -> TokenStream {
         let per_length = self.mentions(Coord::PerLength).then(|| {
-            quote! { let per_length = Lane::of(length, 1.0) / length; }
+            quote! { let per_length = length.of(1.0) / length; }
         });
         let across = match (self.mentions(Coord::D), self.mentions(Coord::Q)) {
             (true, true) => quote! { let q = x * x + y * y; let d = q.sqrt(); },
@@ -108,10 +110,19 @@ impl<'m> Writer<'m> {
         }
     }
 
+    /// Returns whether a node is a parameter of a group of regions.
+    pub(super) fn is_parameter(&self, id: Id) -> bool {
+        self.parameters.contains_key(&id)
+    }
+
     /// Returns whether a node has its own `let`.
     fn named(&self, id: Id) -> bool {
-        let free = matches!(self.graph.node(id), Node::Const(_) | Node::Coord(_));
-        !free && self.use_counts.get(&id).is_some_and(|count| *count > 1)
+        let free = match *self.graph.node(id) {
+            Node::Const(_) | Node::Coord(_) => true,
+            Node::Neg(operand) => self.is_parameter(operand),
+            _ => false,
+        };
+        self.is_parameter(id) || !free && self.use_counts.get(&id).is_some_and(|count| *count > 1)
     }
 
     /// Returns whether a node is the square of the length below which a vector has no direction.
@@ -120,7 +131,8 @@ impl<'m> Writer<'m> {
     }
 
     fn known(&self, id: &Id) -> Option<f64> {
-        self.graph.constant(*id).map(Number::to_f64)
+        let constant = self.graph.constant(*id).filter(|_| !self.is_parameter(*id));
+        constant.map(Number::to_f64)
     }
 
     /// Writes two operands with a sign between them.
@@ -161,7 +173,11 @@ impl<'m> Writer<'m> {
                     self.value(code, *a);
                     code.sign(if shift < 0.0 { "-" } else { "+" }).number(shift.abs());
                 }
-                None => self.two(code, a, "+", b),
+                None => match self.graph.node(*b) {
+                    // Only parameters have opposites in sums.
+                    Node::Neg(parameter) => self.two(code, a, "-", parameter),
+                    _ => self.two(code, a, "+", b),
+                },
             },
             Node::Sub(a, b) => self.two(code, a, "-", b),
             // A product's constant is written on the right, since the trait `Lane` has `Self * f64` but not `f64 * Self`.
@@ -218,7 +234,8 @@ impl<'m> Writer<'m> {
     ) {
         // Operands come first, so every name is defined before its use.
         for id in self.graph.dependencies(roots) {
-            if self.named(id) && scope.insert(id) {
+            // A group writes its parameters itself.
+            if self.named(id) && !self.is_parameter(id) && scope.insert(id) {
                 code.word("let").word(&self.names.value(id)).sign("=");
                 self.operation(code, id);
                 code.sign(";");
@@ -270,13 +287,6 @@ struct Descent<'w, 'm> {
     masks: usize,
 }
 
-/// The lanes of a mask on one side of a test, by the names of both; `not` is `!` where the test fails.
-struct LanesOfSide<'n> {
-    mask: &'n str,
-    not: &'n str,
-    test: &'n str,
-}
-
 impl Descent<'_, '_> {
     /// Writes the code for the lanes of a mask, and returns the nodes named in it.
     fn below(
@@ -292,49 +302,42 @@ impl Descent<'_, '_> {
         match tree {
             Tree::Leaf(None) => {}
             Tree::Leaf(Some(region)) => {
-                code.word(self.writer.mask(*region)).sign("=").word(mask).sign(";");
+                code.word(self.writer.mask(*region)).sign("|=").word(mask).sign(";");
             }
             Tree::Split { curve, strict, below, above } => {
-                self.masks += 1;
-                let test = format!("test{}", self.masks);
-                code.word("let").word(&test).sign("=");
+                code.word("let").word("test").sign("=");
                 self.writer.test(code, *curve, *strict);
                 code.sign(";");
-                self.side(code, below, LanesOfSide { mask, not: "", test: &test }, &scope);
-                self.side(code, above, LanesOfSide { mask, not: "!", test: &test }, &scope);
+                self.side(code, below, [mask, ""], &scope);
+                self.side(code, above, [mask, "!"], &scope);
             }
         }
         scope
     }
 
-    /// Writes one side of a split, unless it is outside.
+    /// Writes one side of a split, for the lanes of a mask in which the test holds, or, after `!`, does not.
     fn side(
         &mut self,
         code: &mut Tokens,
         tree: &Tree,
-        LanesOfSide { mask, not, test }: LanesOfSide<'_>,
+        [mask, not]: [&str; 2],
         scope: &BTreeSet<Id>,
     ) {
         match tree {
             Tree::Leaf(None) => {}
             Tree::Leaf(Some(region)) => {
                 let own = self.writer.mask(*region);
-                code.word(own).sign("=").word(own).sign("|").paren(|code| {
-                    code.word(mask).sign("&").sign(not).word(test);
-                });
-                code.sign(";");
+                code.word(own).sign("|=").word(mask).sign("&").sign(not).word("test").sign(";");
             }
             Tree::Split { .. } => {
                 self.masks += 1;
                 let lanes = format!("lanes{}", self.masks);
-                code.word("let").word(&lanes).sign("=").word(mask).sign("&").sign(not).word(test);
+                code.word("let").word(&lanes).sign("=").word(mask).sign("&").sign(not).word("test");
                 code.sign(";").word("if").any(|code| {
                     code.word(&lanes);
                 });
-                let mut inner = Tokens::default();
-                self.below(&mut inner, tree, &lanes, scope);
                 code.brace(|code| {
-                    code.add(inner);
+                    self.below(code, tree, &lanes, scope);
                 });
             }
         }

@@ -4,16 +4,14 @@
 //! therefore skips sides of a split that no lane takes, and regions that contain no lane. The remaining work
 //! is little more than for a single point.
 //!
-//! Regions that differ in little, such as flute and shank of a mill, are computed together: each output once for the
-//! lanes of all regions in which it is the same.
+//! Regions that differ in little are computed together, see [`alike`](super::alike).
 
+use super::OUTPUTS;
+use super::alike::{Group, Groups, Values};
 use super::code::Writer;
 use super::tokens::Tokens;
-use super::{OUTPUTS, Output};
 use crate::checked::CheckedTool;
-use crate::expr::{Coord, Graph, Id, Node};
-use crate::model::{Model, RegionOutputs};
-use crate::number::Number;
+use crate::expr::{Id, Node};
 use proc_macro2::TokenStream;
 use quote::quote;
 use std::collections::{BTreeMap, BTreeSet};
@@ -22,11 +20,8 @@ use std::collections::{BTreeMap, BTreeSet};
 pub(super) fn evaluator(tool: &CheckedTool) -> TokenStream {
     let model = &tool.model;
     let owners: BTreeSet<usize> = tool.tree.owners().into_iter().flatten().collect();
-    let magnitude_is_depth =
-        owners.iter().all(|owner| is_depth(&model.graph, &model.regions[*owner].outputs));
-    let evaluator = Evaluator { model, magnitude_is_depth };
-    let roots: Vec<Id> = owners.iter().flat_map(|owner| evaluator.roots(*owner)).collect();
-    let writer = Writer::new(model, &tool.tree, &roots);
+    let groups = Groups::new(model, &owners);
+    let writer = Writer::new(model, &tool.tree, &groups);
     let mut code = Tokens::default();
     for owner in &owners {
         code.word("let").word("mut").word(writer.mask(*owner)).sign("=").word("none").sign(";");
@@ -38,10 +33,10 @@ pub(super) fn evaluator(tool: &CheckedTool) -> TokenStream {
         });
         code.sign(";");
     }
-    for group in evaluator.groups(&owners) {
-        GroupWriter { evaluator: &evaluator, writer: &writer, group }.write(&mut code, &scope);
+    for group in &groups.groups {
+        GroupWriter { groups: &groups, writer: &writer, group }.write(&mut code, &scope);
     }
-    if magnitude_is_depth {
+    if groups.magnitude_is_depth {
         code.word("if").word("outputs").sign(".").word("magnitude").brace(|code| {
             code.word("result").sign(".").word("magnitude").sign("=");
             code.word("result").sign(".").word("depth").sign("*").word("length").sign(";");
@@ -50,67 +45,16 @@ pub(super) fn evaluator(tool: &CheckedTool) -> TokenStream {
     let (given, code) = (writer.given(), code.done());
     quote! {
         #[inline(always)]
-        fn evaluate_lanes<L: Lane>(
-            point: [L; 3], length: L, present: L::Mask, outputs: Outputs,
-        ) -> LaneEvaluation<L> {
+        fn evaluate_lanes<L: ::touchoff::tool::Lane>(
+            point: [L; 3], length: L, present: L::Mask, outputs: ::touchoff::tool::Outputs,
+        ) -> ::touchoff::tool::LaneEvaluation<L> {
             let [x, y, z] = point;
             #given
             let none = present & !present;
-            let mut result = LaneEvaluation::none(z, none);
+            let mut result = ::touchoff::tool::LaneEvaluation::none(z, none);
             #code
             result
         }
-    }
-}
-
-/// Returns whether the magnitude of a region is its depth, in the part's unit.
-fn is_depth(graph: &Graph, outputs: &RegionOutputs) -> bool {
-    let is_length = |id: Id| *graph.node(id) == Node::Coord(Coord::Length);
-    match *graph.node(outputs.magnitude) {
-        Node::Mul(a, b) => [a, b].contains(&outputs.depth) && (is_length(a) || is_length(b)),
-        _ => false,
-    }
-}
-
-struct Evaluator<'m> {
-    model: &'m Model,
-    /// True if the magnitude is the depth in all regions, so that it is computed once for all of them.
-    magnitude_is_depth: bool,
-}
-
-impl Evaluator<'_> {
-    /// Returns the values of an output in a region that are computed there. There are none where the output is 0, as it is
-    /// before anything is computed, or follows from another one.
-    fn values(&self, output: &Output, region: usize) -> Vec<Id> {
-        let values = (output.of)(&self.model.regions[region].outputs);
-        let is_zero = |id: &Id| self.model.graph.constant(*id).is_some_and(Number::is_zero);
-        let follows = self.magnitude_is_depth && output.name == "magnitude";
-        if follows || values.iter().all(is_zero) { Vec::new() } else { values }
-    }
-
-    /// Returns the values of all outputs of a region that are computed there.
-    fn roots(&self, region: usize) -> Vec<Id> {
-        OUTPUTS.iter().flat_map(|output| self.values(output, region)).collect()
-    }
-
-    /// Returns the regions in groups that are computed together. Enclosures tell regions written by hand apart by the mask of
-    /// each, so that these are groups of their own.
-    fn groups(&self, owners: &BTreeSet<usize>) -> Vec<Vec<usize>> {
-        let mut groups: Vec<Vec<usize>> = Vec::new();
-        let place = |region: usize| {
-            let RegionOutputs { depth, direction, .. } = &self.model.regions[region].outputs;
-            (*depth, *direction)
-        };
-        for owner in owners {
-            let known = groups
-                .iter_mut()
-                .find(|group| self.model.profile.is_some() && place(group[0]) == place(*owner));
-            match known {
-                Some(group) => group.push(*owner),
-                None => groups.push(vec![*owner]),
-            }
-        }
-        groups
     }
 }
 
@@ -122,65 +66,69 @@ const LANES: &str = "lanes";
 
 /// A writer of the outputs of regions that are computed together.
 struct GroupWriter<'a> {
-    evaluator: &'a Evaluator<'a>,
+    groups: &'a Groups,
     writer: &'a Writer<'a>,
-    group: Vec<usize>,
+    group: &'a Group,
 }
 
 impl GroupWriter<'_> {
     fn write(&self, code: &mut Tokens, scope: &BTreeSet<Id>) {
         let mut scope = scope.clone();
         let shared = self.shared();
-        if self.group.len() > 1 {
+        if self.group.regions.len() > 1 {
             code.word("let").word(LANES).sign("=");
-            self.any_of(code, &self.group);
+            self.any_of(code, &self.group.regions);
             code.sign(";");
         }
         code.word("if").any(|code| {
             code.word(self.mask());
         });
         code.brace(|code| {
+            for parameter in &self.group.parameters {
+                self.parameter(code, *parameter);
+            }
             self.writer.lets(code, shared, &mut scope);
-            for output in &OUTPUTS {
-                for (values, regions) in self.distinct(output) {
+            for (output, values) in OUTPUTS.iter().zip(&self.group.outputs) {
+                for values in values {
                     code.word("if");
-                    self.condition(code, output);
-                    code.brace(|code| self.output(code, output, &values, &regions, &scope));
+                    self.condition(code, output.name);
+                    code.brace(|code| self.output(code, output.name, values, &scope));
                 }
             }
         });
     }
 
-    /// Writes the condition under which an output is computed.
-    fn condition(&self, code: &mut Tokens, output: &Output) {
-        code.word("outputs").sign(".").word(output.name);
-        if self.evaluator.magnitude_is_depth && output.name == "depth" {
-            code.sign("|").word("outputs").sign(".").word("magnitude");
-        }
-    }
-
-    /// Returns the distinct values of an output, each with the regions in which it has them.
-    fn distinct(&self, output: &Output) -> Vec<(Vec<Id>, Vec<usize>)> {
-        let mut distinct: Vec<(Vec<Id>, Vec<usize>)> = Vec::new();
-        for region in &self.group {
-            let values = self.evaluator.values(output, *region);
-            match distinct.iter_mut().find(|(known, _)| *known == values) {
-                Some((_, regions)) => regions.push(*region),
-                None if values.is_empty() => {}
-                None => distinct.push((values, vec![*region])),
+    /// Writes the selection of a parameter: the constant of the first regions, or that of others in their lanes.
+    fn parameter(&self, code: &mut Tokens, id: Id) {
+        self.writer.value(code.word("let"), id);
+        code.sign("=");
+        for (k, choice) in self.groups.parameters[&id].iter().enumerate() {
+            if k == 0 {
+                code.of_lanes(choice.value());
+            } else {
+                code.sign(".").word("or").paren(|code| {
+                    self.any_of(code, &choice.regions);
+                    code.sign(",").number(choice.value());
+                });
             }
         }
-        distinct
+        code.sign(";");
+    }
+
+    /// Writes the condition under which an output is computed.
+    fn condition(&self, code: &mut Tokens, output: &str) {
+        code.word("outputs").sign(".").word(output);
+        if self.groups.magnitude_is_depth && output == "depth" {
+            code.sign("|").word("outputs").sign(".").word("magnitude");
+        }
     }
 
     /// Returns the nodes that several outputs need.
     fn shared(&self) -> Vec<Id> {
         let mut users: BTreeMap<Id, usize> = BTreeMap::new();
-        for output in &OUTPUTS {
-            for (values, _) in self.distinct(output) {
-                for id in self.evaluator.model.graph.dependencies(values) {
-                    *users.entry(id).or_default() += 1;
-                }
+        for values in self.group.outputs.iter().flatten() {
+            for id in self.groups.graph.dependencies(values.ids.iter().copied()) {
+                *users.entry(id).or_default() += 1;
             }
         }
         users.into_iter().filter(|(_, users)| *users > 1).map(|(id, _)| id).collect()
@@ -188,7 +136,7 @@ impl GroupWriter<'_> {
 
     /// Returns the name of the mask of the group's lanes.
     fn mask(&self) -> &str {
-        match self.group[..] {
+        match self.group.regions[..] {
             [only] => self.writer.mask(only),
             _ => LANES,
         }
@@ -196,7 +144,7 @@ impl GroupWriter<'_> {
 
     /// Writes the mask of the lanes in some regions of the group.
     fn mask_of(&self, code: &mut Tokens, regions: &[usize]) {
-        if regions.len() == self.group.len() {
+        if regions.len() == self.group.regions.len() {
             code.word(self.mask());
         } else {
             self.any_of(code, regions);
@@ -213,40 +161,34 @@ impl GroupWriter<'_> {
         }
     }
 
-    fn output(
-        &self,
-        code: &mut Tokens,
-        output: &Output,
-        values: &[Id],
-        regions: &[usize],
-        scope: &BTreeSet<Id>,
-    ) {
+    fn output(&self, code: &mut Tokens, output: &str, values: &Values, scope: &BTreeSet<Id>) {
         let mut scope = scope.clone();
-        let graph = &self.evaluator.model.graph;
-        let operands = values.iter().flat_map(|value| graph.node(*value).operands());
+        let (graph, ids) = (&self.groups.graph, &values.ids);
+        let operands = ids.iter().flat_map(|id| graph.node(*id).operands());
         self.writer.lets(code, operands, &mut scope);
-        let names: &[&str] = if values.len() == 1 { &[output.name] } else { &ALONG_AXES };
+        let names: &[&str] = if ids.len() == 1 { &[output] } else { &ALONG_AXES };
         let is_short = |id: Id| match graph.node(id) {
+            Node::Const(_) if self.writer.is_parameter(id) => true,
             Node::Const(value) => [-1.0, 0.0, 1.0].contains(&value.to_f64()),
             Node::Coord(_) => true,
             _ => scope.contains(&id),
         };
-        for (value, name) in values.iter().zip(names).filter(|(value, _)| !is_short(**value)) {
+        for (id, name) in ids.iter().zip(names).filter(|(id, _)| !is_short(**id)) {
             code.word("let").word(name).sign("=");
-            self.writer.operation(code, *value);
+            self.writer.operation(code, *id);
             code.sign(";");
         }
         let value = |code: &mut Tokens, k: usize| {
-            if is_short(values[k]) {
-                self.writer.value(code, values[k]);
+            if is_short(ids[k]) {
+                self.writer.value(code, ids[k]);
             } else {
                 code.word(names[k]);
             }
         };
-        code.word("result").sign(".").word(&format!("set_{}", output.name)).paren(|code| {
-            self.mask_of(code, regions);
+        code.word("result").sign(".").word(&format!("set_{output}")).paren(|code| {
+            self.mask_of(code, &values.regions);
             code.sign(",");
-            match values.len() {
+            match ids.len() {
                 1 => value(code, 0),
                 count => {
                     code.bracket(|code| {

@@ -2,6 +2,7 @@
 //! of numbers, duals and enclosures. It branches only where no lane takes a side of a split or is in a region; everything
 //! between two branches is straight-line code. Emission cannot fail, since all errors are found earlier.
 
+mod alike;
 mod code;
 mod lanes;
 mod listing;
@@ -44,8 +45,10 @@ fn code(tool: &CheckedTool, drawing: &TokenStream) -> TokenStream {
     // A profile needs no enclosure by interval evaluation: its geometry is known.
     let enclose = tool.model.outline().next().is_none().then(|| {
         quote! {
-            fn enclose(sides: [::touchoff::Interval; 3], at: [f64; 3]) -> Option<EvaluationEnclosure> {
-                Some(EvaluationEnclosure::of::<Self>(sides, at))
+            fn enclose(
+                sides: [::touchoff::Interval; 3], at: [f64; 3],
+            ) -> Option<::touchoff::tool::EvaluationEnclosure> {
+                Some(::touchoff::tool::EvaluationEnclosure::of::<Self>(sides, at))
             }
         }
     });
@@ -56,19 +59,11 @@ fn code(tool: &CheckedTool, drawing: &TokenStream) -> TokenStream {
         pub struct #name;
 
         #[allow(clippy::all, clippy::pedantic, unused_imports, unused_variables, unused_parens)]
-        const _: () = {
-            use ::std::borrow::Cow;
-            use ::touchoff::tool::{
-                Circle, DepthBounds, EnvelopeSlab, EvaluationEnclosure, Evaluators, Lane, LaneEvaluation, Outputs, ProfileSegment, Region,
-                Surface, Symmetry, ToolInfo,
-            };
-
-            impl Evaluators for #name {
-                #info
-                #enclose
-                #lanes
-            }
-        };
+        impl ::touchoff::tool::Evaluators for #name {
+            #info
+            #enclose
+            #lanes
+        }
     }
 }
 
@@ -82,15 +77,12 @@ pub fn placeholder(name: &str) -> TokenStream {
         pub struct #name;
 
         #[allow(unused)]
-        const _: () = {
-            use ::touchoff::tool::{Outputs, ToolInfo, Evaluators, LaneEvaluation, Lane};
-            impl Evaluators for #name {
-                fn info() -> &'static ToolInfo { ::core::unreachable!() }
-                fn evaluate_lanes<L: Lane>(
-                    point: [L; 3], length: L, present: L::Mask, outputs: Outputs,
-                ) -> LaneEvaluation<L> { ::core::unreachable!() }
-            }
-        };
+        impl ::touchoff::tool::Evaluators for #name {
+            fn info() -> &'static ::touchoff::tool::ToolInfo { ::core::unreachable!() }
+            fn evaluate_lanes<L: ::touchoff::tool::Lane>(
+                point: [L; 3], length: L, present: L::Mask, outputs: ::touchoff::tool::Outputs,
+            ) -> ::touchoff::tool::LaneEvaluation<L> { ::core::unreachable!() }
+        }
     }
 }
 
@@ -181,7 +173,11 @@ fn info(tool: &CheckedTool) -> TokenStream {
         }
     };
     quote! {
-        fn info() -> &'static ToolInfo {
+        fn info() -> &'static ::touchoff::tool::ToolInfo {
+            use ::std::borrow::Cow;
+            use ::touchoff::tool::{
+                Circle, DepthBounds, EnvelopeSlab, ProfileSegment, Region, Surface, Symmetry, ToolInfo,
+            };
             static INFO: ToolInfo = ToolInfo {
                 name: Cow::Borrowed(#name),
                 title: Cow::Borrowed(#title),

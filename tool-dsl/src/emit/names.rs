@@ -1,5 +1,7 @@
 //! Names for the values and masks of generated code, which say what they are.
 
+use super::OUTPUTS;
+use super::alike::{Group, Groups};
 use crate::expr::{Coord, Graph, Id, Node};
 use crate::model::{Model, Region};
 use std::collections::{BTreeMap, BTreeSet};
@@ -28,9 +30,9 @@ const RESERVED: [&str; 12] = [
 ];
 
 impl Names {
-    pub(super) fn new(model: &Model) -> Names {
+    pub(super) fn new(model: &Model, groups: &Groups) -> Names {
         let mut choice = Choice {
-            graph: &model.graph,
+            graph: &groups.graph,
             taken: RESERVED.iter().map(|name| (*name).to_owned()).collect(),
             values: BTreeMap::new(),
         };
@@ -40,12 +42,15 @@ impl Names {
             .map(|region| choice.free(&format!("in_{}", identifier(&region.name))))
             .collect();
         for region in &model.regions {
-            choice.name_outputs(region);
+            choice.name_region(region);
         }
         for curve in &model.curves {
             if let Some(name) = &curve.name {
                 choice.name(curve.value, &format!("{}_value", identifier(name)));
             }
+        }
+        for group in groups.groups.iter().filter(|group| !group.parameters.is_empty()) {
+            choice.name_group(group);
         }
         Names { values: choice.values, masks }
     }
@@ -91,24 +96,74 @@ impl Choice<'_> {
         }
     }
 
-    fn name_outputs(&mut self, region: &Region) {
-        let label = identifier(&region.name);
-        self.name(region.outputs.depth, &format!("{label}_depth"));
-        self.name_distance(region.depth, &label);
-        for (id, axis) in region.outputs.direction.into_iter().zip(['x', 'y', 'z']) {
-            self.name_radial(id);
-            self.name(id, &format!("{label}_direction_{axis}"));
-        }
-        for (id, axis) in region.outputs.gradient.into_iter().zip(['x', 'y', 'z']) {
-            if let Node::Neg(opposite) = *self.graph.node(id)
-                && self.values.get(&opposite).is_some_and(|name| name.starts_with("radial"))
-            {
-                self.name(id, &format!("inward_{axis}"));
+    fn name_region(&mut self, region: &Region) {
+        let outputs = OUTPUTS.each_ref().map(|output| (output.name, (output.of)(&region.outputs)));
+        self.name_outputs(&identifier(&region.name), region.depth, &outputs);
+    }
+
+    /// Names the values of a group of regions that differ in constants: after the feature of the profile, which differs too.
+    fn name_group(&mut self, group: &Group) {
+        let outputs = OUTPUTS.iter().zip(&group.outputs);
+        let outputs =
+            outputs.filter_map(|(output, values)| Some((output.name, values.first()?.ids.clone())));
+        let outputs: Vec<_> = outputs.collect();
+        let depth = outputs.first().map(|(_, ids)| ids[0]);
+        // Without the larger of it and 0.
+        let signed = depth.map(|depth| match *self.graph.node(depth) {
+            Node::Max(a, b) => {
+                if self.graph.height(a) > 0 {
+                    a
+                } else {
+                    b
+                }
             }
-            self.name(id, &format!("{label}_gradient_{axis}"));
+            _ => depth,
+        });
+        for parameter in &group.parameters {
+            let name = self.free(self.role(group, *parameter));
+            self.values.insert(*parameter, name);
         }
-        self.name(region.outputs.magnitude, &format!("{label}_magnitude"));
-        self.name(region.outputs.niceness, &format!("{label}_niceness"));
+        if let Some(signed) = signed {
+            self.name_outputs("feature", signed, &outputs);
+        }
+    }
+
+    /// Returns what a parameter is, by the first operation that uses it: a coordinate of the feature, or a component of its normal.
+    fn role(&self, group: &Group, parameter: Id) -> &'static str {
+        let is_own = |id: Id| id == parameter || *self.graph.node(id) == Node::Neg(parameter);
+        let reads = |id: Id, coord: Coord| {
+            self.graph
+                .dependencies([id])
+                .iter()
+                .any(|id| *self.graph.node(*id) == Node::Coord(coord))
+        };
+        let users = self.graph.dependencies(group.roots()).into_iter().filter_map(|id| {
+            let (a, b, [along, across]) = match *self.graph.node(id) {
+                Node::Add(a, b) | Node::Sub(a, b) => (a, b, ["feature_z", "feature_d"]),
+                Node::Mul(a, b) => (a, b, ["normal_z", "normal_d"]),
+                _ => return None,
+            };
+            let other = [(a, b), (b, a)].into_iter().find(|(own, _)| is_own(*own))?.1;
+            Some(if reads(other, Coord::Z) { along } else { across })
+        });
+        users.into_iter().next().unwrap_or("feature_value")
+    }
+
+    fn name_outputs(&mut self, label: &str, signed_depth: Id, outputs: &[(&str, Vec<Id>)]) {
+        for (output, ids) in outputs {
+            match ids[..] {
+                [x, y, z] => {
+                    for (id, axis) in [(x, 'x'), (y, 'y'), (z, 'z')] {
+                        self.name_radial(id);
+                        self.name(id, &format!("{label}_{output}_{axis}"));
+                    }
+                }
+                _ => ids.iter().for_each(|id| self.name(*id, &format!("{label}_{output}"))),
+            }
+            if *output == "depth" {
+                self.name_distance(signed_depth, label);
+            }
+        }
     }
 
     /// Names the parts of a depth: the distance from the centre of an arc or from a corner, and what it is the root of.
@@ -144,8 +199,14 @@ impl Choice<'_> {
         matches!(self.graph.node(id), Node::Sqrt(_))
     }
 
-    /// Names the components of the unit vector away from the axis in a direction.
+    /// Names the components of the unit vector away from the axis in a component of a direction, and their opposites.
     fn name_radial(&mut self, direction: Id) {
+        if let Node::Neg(opposite) = *self.graph.node(direction)
+            && let Some(axis) =
+                self.values.get(&opposite).and_then(|name| name.strip_prefix("radial"))
+        {
+            self.name(direction, &format!("inward{axis}"));
+        }
         for id in self.graph.dependencies([direction]) {
             let Node::Select { other, .. } = *self.graph.node(id) else { continue };
             let Node::Div(part, whole) = *self.graph.node(other) else { continue };

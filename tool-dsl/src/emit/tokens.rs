@@ -12,11 +12,6 @@ impl Tokens {
         self.0
     }
 
-    pub(super) fn add(&mut self, more: Tokens) -> &mut Tokens {
-        self.0.extend(more.0);
-        self
-    }
-
     /// Appends a name or a keyword.
     pub(super) fn word(&mut self, word: &str) -> &mut Tokens {
         self.0.append(Ident::new(word, Span::call_site()));

@@ -137,6 +137,40 @@ impl Graph {
         id
     }
 
+    /// Adds the operation of a node on other operands, as it is.
+    pub(crate) fn with_operands(&mut self, id: Id, operands: &[Id]) -> Id {
+        let node = match (self.node(id), operands) {
+            (Node::Neg(_), [a]) => Node::Neg(*a),
+            (Node::Abs(_), [a]) => Node::Abs(*a),
+            (Node::Sqrt(_), [a]) => Node::Sqrt(*a),
+            (Node::Add(..), [a, b]) => Node::Add(*a, *b),
+            (Node::Sub(..), [a, b]) => Node::Sub(*a, *b),
+            (Node::Mul(..), [a, b]) => Node::Mul(*a, *b),
+            (Node::Div(..), [a, b]) => Node::Div(*a, *b),
+            (Node::Quotient(..), [a, b]) => Node::Quotient(*a, *b),
+            (Node::Min(..), [a, b]) => Node::Min(*a, *b),
+            (Node::Max(..), [a, b]) => Node::Max(*a, *b),
+            (Node::Select { .. }, [low, high, then, other]) => {
+                Node::Select { low: *low, high: *high, then: *then, other: *other }
+            }
+            _ => return id,
+        };
+        self.put(node)
+    }
+
+    /// Adds a node that stands for one of several constants, of which this is an example. It is no other node's equal.
+    pub(crate) fn parameter(&mut self, example: f64) -> Id {
+        let id = Id(self.nodes.len() as u32);
+        self.nodes.push(Node::Const(Number::from_f64(example).unwrap_or(Number::int(0))));
+        self.heights.push(0);
+        id
+    }
+
+    /// Adds the opposite of a node, as it is.
+    pub(crate) fn opposite(&mut self, id: Id) -> Id {
+        self.put(Node::Neg(id))
+    }
+
     /// Adds a constant.
     pub fn number(&mut self, value: Number) -> Id {
         self.put(Node::Const(value))

@@ -12,30 +12,8 @@ use pest::Parser;
 use pest::iterators::{Pair, Pairs};
 use std::str::FromStr;
 
-/// Names that generated code or Rust itself uses.
-const RESERVED_NAMES: [&str; 21] = [
-    "Box",
-    "Circle",
-    "DepthBounds",
-    "EnvelopeSlab",
-    "Err",
-    "EvaluationEnclosure",
-    "Evaluators",
-    "Lane",
-    "LaneEvaluation",
-    "None",
-    "Ok",
-    "Option",
-    "Outputs",
-    "ProfileSegment",
-    "Region",
-    "Result",
-    "Self",
-    "Some",
-    "Surface",
-    "Symmetry",
-    "ToolInfo",
-];
+/// Names that Rust itself uses.
+const RESERVED_NAMES: [&str; 8] = ["Box", "Err", "None", "Ok", "Option", "Result", "Self", "Some"];
 
 /// Parses a tool. Returns the items that could be read even if others have errors, so that later passes can report
 /// theirs.
