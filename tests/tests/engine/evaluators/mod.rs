@@ -83,3 +83,20 @@ fn the_card_agrees() {
 fn the_oracle_agrees() {
     for_each_tool(|tool, oracle, _| accuracy::of(tool, oracle, &points::all(oracle, 2)));
 }
+
+/// A vector operation that is called and not inlined takes many times as long as its instruction. It leaves a symbol in the
+/// program, which has the evaluators of all tools. At AVX2 tests are optimised too little for all to be inlined.
+#[cfg(all(target_arch = "x86_64", target_os = "linux"))]
+#[test]
+fn vector_operations_are_inlined() {
+    let program = std::env::current_exe().expect("this program");
+    let program = std::fs::read(program).expect("its bytes");
+    let symbols = |operation: &str| {
+        let has =
+            |name: &&[u8], part: &str| name.windows(part.len()).any(|at| at == part.as_bytes());
+        let names = program.split(|byte| *byte == 0).filter(|name| name.starts_with(b"_"));
+        names.filter(|name| has(name, "Avx512") && has(name, operation)).count()
+    };
+    assert_ne!(symbols("vectorize_avx512"), 0, "no symbols");
+    assert_eq!(symbols("__fearless_simd_kernel"), 0);
+}
