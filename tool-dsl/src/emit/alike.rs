@@ -9,6 +9,9 @@ use crate::number::Number;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::mem::discriminant;
 
+/// The number of groups, the latest ones, with which another one may be merged: the time grows with their number.
+const MAX_CANDIDATES: usize = 32;
+
 /// Regions that are computed together.
 #[derive(Default)]
 pub(super) struct Group {
@@ -125,7 +128,8 @@ impl Groups {
     fn merge(&mut self) {
         let mut merged: Vec<Group> = Vec::new();
         for next in std::mem::take(&mut self.groups) {
-            let candidates = merged.iter().enumerate().filter_map(|(index, group)| {
+            let latest = merged.iter().enumerate().rev().take(MAX_CANDIDATES);
+            let candidates = latest.filter_map(|(index, group)| {
                 let both = Merger { groups: self, own: group, other: &next, known: HashMap::new() }
                     .merge()?;
                 let selections: usize =
