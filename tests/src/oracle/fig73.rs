@@ -3,8 +3,8 @@
 //! The thesis measures z from the back of the housing, with the tip at 20. The magnitudes of IV, VI and VII are not
 //! distances. The splits are where the thesis's magnitudes meet without a jump.
 
-use super::plane::{Point, norm, opposite, unit};
 use super::real::Real;
+use super::vector::{Point, norm, opposite, unit};
 use super::{Meridian, Nearest, Oracle, OracleEvaluation, fig_7_3_exact, sample_line};
 
 /// The thesis's names of the regions, in its order.

@@ -18,7 +18,6 @@ pub mod fig73;
 #[cfg(test)]
 mod fig73_table;
 pub mod nearest;
-pub mod plane;
 pub mod profile;
 pub mod real;
 pub mod reference;
@@ -28,12 +27,13 @@ pub mod segment;
 pub mod space;
 pub mod sum;
 pub mod triangle;
+pub mod vector;
 
 pub use bodies::Body;
 pub use fig73::Fig73;
 pub use nearest::{Nearest, cylinder, d2_ball, fig_7_3_exact, half_sphere_cylinder};
-use plane::{Point, unit};
 use real::Real;
+use vector::{Point, unit};
 
 /// The evaluation of a tool at a point inside.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,9 +1,9 @@
 //! Tools whose owner is the nearest feature of the profile: nothing but [`Profile`] decides.
 
-use super::plane::Point;
 use super::profile::{Feature, Profile};
 use super::restated::{self, Niceness, Restated};
 use super::rng::Rng;
+use super::vector::Point;
 use super::{Meridian, Oracle, OracleEvaluation, sample_curve, sample_line};
 
 /// Points along a curve.

@@ -6,9 +6,9 @@
 //! lies on it, each reflex corner for those of its fan. The smallest distance wins, and among equals the feature listed
 //! first. Inside is decided by crossings (even-odd), not by the nearest feature.
 
-use super::plane::{Point, cross, dot, norm, sub, unit};
 use super::real::Real;
 use super::segment::Segment;
+use super::vector::{Point, cross, dot, norm, sub, unit};
 
 /// Sine of a turn, below which a vertex is smooth.
 const SMOOTH: f64 = 1e-12;
@@ -313,9 +313,9 @@ impl Profile<f64> {
 #[cfg(test)]
 mod tests {
     use super::super::big::Big;
-    use super::super::plane::add;
     use super::super::restated;
     use super::super::rng::Rng;
+    use super::super::vector::add;
     use super::*;
 
     /// A body with a neck: convex and concave arcs, a taper, both kinds of corner.

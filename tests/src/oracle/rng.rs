@@ -1,6 +1,6 @@
 //! Random numbers for oracles and tests: the same on every machine, from nothing but integers.
 
-use super::triangle::{advance, dot, norm, unit};
+use super::vector::{add, dot, norm, unit};
 
 /// A stream of pseudo-random numbers (splitmix64: Steele, Lea, Flood 2014).
 #[derive(Clone, Debug)]
@@ -57,9 +57,9 @@ impl Rng {
     pub fn across(&mut self, direction: [f64; 3]) -> [f64; 3] {
         loop {
             let candidate = self.direction();
-            let across = advance(candidate, -dot(direction, candidate), direction);
-            if norm(across) > 0.1 {
-                return unit(across);
+            let across = add(&candidate, &direction, &-dot(&direction, &candidate));
+            if norm(&across) > 0.1 {
+                return unit(&across);
             }
         }
     }

@@ -1,8 +1,8 @@
 //! One line or arc of a profile.
 
-use super::plane::{Point, add, cross, dot, left, norm, opposite, right, sub, turned, unit};
 use super::real::Real;
 use super::sample_curve;
+use super::vector::{Point, add, cross, dot, left, norm, opposite, right, sub, turned, unit};
 
 /// A line, or an arc of at most 180°, with the material on its left.
 #[derive(Clone, Copy, Debug)]

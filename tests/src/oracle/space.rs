@@ -3,6 +3,7 @@
 //! The doubles of parts and poses are exact numbers.
 
 use super::big::Big;
+use super::vector::{dot, norm, sub, vector_product};
 use nalgebra::{Matrix3, Point3};
 
 /// A point or vector in space.
@@ -16,41 +17,6 @@ pub fn exactly(v: impl Into<[f64; 3]>) -> Triple {
 /// Returns the nearest doubles.
 pub fn to_f64([x, y, z]: &Triple) -> [f64; 3] {
     [x.to_f64(), y.to_f64(), z.to_f64()]
-}
-
-/// Returns the sum of two vectors.
-pub fn add(a: &Triple, b: &Triple) -> Triple {
-    [0, 1, 2].map(|k| &a[k] + &b[k])
-}
-
-/// Returns the difference of two vectors.
-pub fn sub(a: &Triple, b: &Triple) -> Triple {
-    [0, 1, 2].map(|k| &a[k] - &b[k])
-}
-
-/// Returns a multiple of a vector.
-pub fn times(a: &Triple, factor: &Big) -> Triple {
-    a.each_ref().map(|component| component * factor)
-}
-
-/// Returns `a + t direction`.
-pub fn advance(a: &Triple, t: &Big, direction: &Triple) -> Triple {
-    add(a, &times(direction, t))
-}
-
-/// Returns the scalar product.
-pub fn dot(a: &Triple, b: &Triple) -> Big {
-    &(&(&a[0] * &b[0]) + &(&a[1] * &b[1])) + &(&a[2] * &b[2])
-}
-
-/// Returns the vector product.
-pub fn cross(a: &Triple, b: &Triple) -> Triple {
-    [[1, 2], [2, 0], [0, 1]].map(|[i, j]| &(&a[i] * &b[j]) - &(&a[j] * &b[i]))
-}
-
-/// Returns the length.
-pub fn norm(a: &Triple) -> Big {
-    dot(a, a).sqrt()
 }
 
 /// Returns the distance between a vector and one of doubles.
@@ -69,7 +35,7 @@ impl Frame {
     /// Creates the frame of a pose, given by its rotation and its tip.
     pub fn new(rotation: &Matrix3<f64>, tip: Point3<f64>) -> Frame {
         let [x, y, z] = [0, 1, 2].map(|k| exactly(rotation.column(k).into_owned()));
-        let rows = [cross(&y, &z), cross(&z, &x), cross(&x, &y)];
+        let rows = [vector_product(&y, &z), vector_product(&z, &x), vector_product(&x, &y)];
         let determinant = dot(&rows[0], &x);
         Frame {
             tip: exactly(tip),

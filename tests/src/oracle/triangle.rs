@@ -1,43 +1,9 @@
 //! Points of triangles in space.
 
-/// A point or vector in space.
+use super::vector::{add, dot, norm, sub, vector_product};
+
+/// A point in space.
 pub type Point = [f64; 3];
-
-/// Returns the difference of two vectors.
-pub fn sub(a: Point, b: Point) -> Point {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-/// Returns the scalar product.
-pub fn dot(a: Point, b: Point) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-/// Returns the vector product.
-pub fn cross(a: Point, b: Point) -> Point {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-/// Returns the length.
-pub fn norm(a: Point) -> f64 {
-    dot(a, a).sqrt()
-}
-
-/// Returns a vector as a unit vector.
-pub fn unit(a: Point) -> Point {
-    let length = norm(a);
-    a.map(|component| component / length)
-}
-
-/// Returns `a + t direction`.
-pub fn advance(a: Point, t: f64, direction: Point) -> Point {
-    [a[0] + t * direction[0], a[1] + t * direction[1], a[2] + t * direction[2]]
-}
-
-/// Returns the distance between two points.
-pub fn distance(a: Point, b: Point) -> f64 {
-    norm(sub(a, b))
-}
 
 /// Returns the weighted mean of a triangle's corners.
 pub fn mean([a, b, c]: &[Point; 3], [u, v, w]: Point) -> Point {
@@ -46,7 +12,7 @@ pub fn mean([a, b, c]: &[Point; 3], [u, v, w]: Point) -> Point {
 
 /// Returns the point of a triangle with two barycentric weights.
 pub fn point([a, b, c]: &[Point; 3], [v, w]: [f64; 2]) -> Point {
-    advance(advance(*a, v, sub(*b, *a)), w, sub(*c, *a))
+    add(&add(a, &sub(b, a), &v), &sub(c, a), &w)
 }
 
 /// Returns the point of a triangle nearest to `p`.
@@ -58,12 +24,12 @@ pub fn nearest(p: Point, corners: &[Point; 3]) -> Point {
 /// plane, if it is inside, and the feet on the edges, since the plane of a sliver is poorly conditioned.
 pub fn nearest_weights(p: Point, corners: &[Point; 3]) -> Point {
     let squared_distance = |weights: &Point| {
-        let difference = sub(p, mean(corners, *weights));
-        dot(difference, difference)
+        let difference = sub(&p, &mean(corners, *weights));
+        dot(&difference, &difference)
     };
     let edges = [[0, 1], [1, 2], [2, 0]].map(|[from, to]| {
-        let edge = sub(corners[to], corners[from]);
-        let fraction = dot(sub(p, corners[from]), edge) / dot(edge, edge);
+        let edge = sub(&corners[to], &corners[from]);
+        let fraction = dot(&sub(&p, &corners[from]), &edge) / dot(&edge, &edge);
         // This form maps NaN to 0, so an edge without length gives its first end.
         let fraction = if fraction > 0.0 { fraction.min(1.0) } else { 0.0 };
         let mut weights = [0.0; 3];
@@ -73,22 +39,22 @@ pub fn nearest_weights(p: Point, corners: &[Point; 3]) -> Point {
     });
     // The edges at the corner opposite the longest one determine the plane of a sliver best.
     let squared_opposite_edge = |k: &usize| {
-        let edge = sub(corners[(k + 1) % 3], corners[(k + 2) % 3]);
-        dot(edge, edge)
+        let edge = sub(&corners[(k + 1) % 3], &corners[(k + 2) % 3]);
+        dot(&edge, &edge)
     };
     let origin = (0..3)
         .max_by(|j, k| squared_opposite_edge(j).total_cmp(&squared_opposite_edge(k)))
         .unwrap_or(0);
     let others = [(origin + 1) % 3, (origin + 2) % 3];
-    let [e, f] = others.map(|k| sub(corners[k], corners[origin]));
-    let (ee, ef, ff) = (dot(e, e), dot(e, f), dot(f, f));
+    let [e, f] = others.map(|k| sub(&corners[k], &corners[origin]));
+    let (ee, ef, ff) = (dot(&e, &e), dot(&e, &f), dot(&f, &f));
     let area = ee * ff - ef * ef;
     // Iterative refinement: the first weights of a sliver have few correct digits.
     let mut weights = [0.0; 3];
     weights[origin] = 1.0;
     for _ in 0..3 {
-        let residual = sub(p, mean(corners, weights));
-        let (of_e, of_f) = (dot(e, residual), dot(f, residual));
+        let residual = sub(&p, &mean(corners, weights));
+        let (of_e, of_f) = (dot(&e, &residual), dot(&f, &residual));
         weights[others[0]] += (ff * of_e - ef * of_f) / area;
         weights[others[1]] += (ee * of_f - ef * of_e) / area;
         weights[origin] = 1.0 - weights[others[0]] - weights[others[1]];
@@ -117,10 +83,10 @@ pub fn bisected<P: Copy>(
 /// Strackee 1983) over 4π.
 pub fn winding_number(triangles: impl Iterator<Item = [Point; 3]>, point: Point) -> f64 {
     let angle = |corners: [Point; 3]| {
-        let [a, b, c] = corners.map(|corner| sub(corner, point));
-        let [x, y, z] = [a, b, c].map(norm);
-        let denominator = x * y * z + dot(a, b) * z + dot(b, c) * x + dot(c, a) * y;
-        2.0 * dot(a, cross(b, c)).atan2(denominator)
+        let [a, b, c] = corners.map(|corner| sub(&corner, &point));
+        let [x, y, z] = [&a, &b, &c].map(norm);
+        let denominator = x * y * z + dot(&a, &b) * z + dot(&b, &c) * x + dot(&c, &a) * y;
+        2.0 * dot(&a, &vector_product(&b, &c)).atan2(denominator)
     };
     triangles.map(angle).sum::<f64>() / (4.0 * std::f64::consts::PI)
 }
@@ -128,6 +94,7 @@ pub fn winding_number(triangles: impl Iterator<Item = [Point; 3]>, point: Point)
 #[cfg(test)]
 mod tests {
     use super::super::rng::Rng;
+    use super::super::vector::distance;
     use super::*;
 
     /// No other point of the triangle is nearer, of slivers and degenerate triangles too.
@@ -137,11 +104,11 @@ mod tests {
         for height in [1.0, 1e-6, 1e-12, 0.0] {
             for _ in 0..300 {
                 let [a, b, p] = [0; 3].map(|_| [0; 3].map(|_| rng.between(-1.0, 1.0)));
-                let c =
-                    advance(advance(a, rng.between(-0.5, 1.5), sub(b, a)), height, rng.direction());
-                let least = distance(p, nearest(p, &[a, b, c]));
+                let beside = add(&a, &sub(&b, &a), &rng.between(-0.5, 1.5));
+                let c = add(&beside, &rng.direction(), &height);
+                let least = distance(&p, &nearest(p, &[a, b, c]));
                 for _ in 0..200 {
-                    let other = distance(p, point(&[a, b, c], rng.weights()));
+                    let other = distance(&p, &point(&[a, b, c], rng.weights()));
                     assert!(least <= other + 1e-14, "{a:?} {b:?} {c:?} {p:?}: {least} {other}");
                 }
             }

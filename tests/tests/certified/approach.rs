@@ -6,7 +6,8 @@
 
 use crate::brute::{Ball, TRIANGLES_PER_GROUP};
 use crate::prelude::*;
-use touchoff_tests::oracle::triangle::{Point, advance, nearest};
+use touchoff_tests::oracle::triangle::{Point, nearest};
+use touchoff_tests::oracle::vector::add;
 
 /// Maximum number of triangles sampled per pose, and number of samples of each kind per triangle.
 const MAX_TRIANGLES: usize = 40;
@@ -166,7 +167,7 @@ impl BruteForce<'_> {
             let t = (best.t + time_change).clamp(0.0, 1.0);
             let offset = if k % 3 == 1 { 0.0 } else { distance };
             let direction = rng.direction();
-            let p = nearest(advance(best.point, offset, direction), &corners);
+            let p = nearest(add(&best.point, &direction, &offset), &corners);
             let depth = self.depth(self.point_in_tool_frame(&motion.pose(t), Point3::from(p)));
             if depth > best.depth {
                 best = MotionSample { t, point: p, depth, ..best };

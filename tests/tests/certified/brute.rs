@@ -7,7 +7,8 @@
 use crate::prelude::*;
 use std::cell::Cell;
 use touchoff_tests::oracle::Meridian;
-use touchoff_tests::oracle::triangle::{Point, advance, distance, dot, nearest, point, sub, unit};
+use touchoff_tests::oracle::triangle::{Point, nearest, point};
+use touchoff_tests::oracle::vector::{add, distance, dot, sub, unit};
 
 /// Minimum and maximum number of samples of each kind per triangle. Fewer triangles nearby get more samples each.
 const SAMPLE_LIMITS: [usize; 2] = [8, 150];
@@ -99,7 +100,7 @@ impl<'a> BruteForce<'a> {
 
     pub(crate) fn to_tool_frame(&self, frame: &ToolFrame, point: Point3<f64>) -> Point {
         let offset = point - frame.tip;
-        frame.axes.map(|axis| dot(axis, [offset.x, offset.y, offset.z]) / self.length)
+        frame.axes.map(|axis| dot(&axis, &offset.into()) / self.length)
     }
 
     /// Returns a point of the world in the tool's frame and unit.
@@ -112,7 +113,7 @@ impl<'a> BruteForce<'a> {
         let frame = self.tool_frame(pose);
         let point = self.to_tool_frame(&frame, witness.point);
         let triangle = self.triangle(&frame, witness.triangle.index());
-        let off = distance(point, nearest(point, &triangle));
+        let off = distance(&point, &nearest(point, &triangle));
         (self.depth(point), off * self.length)
     }
 
@@ -201,7 +202,7 @@ impl<'a> BruteForce<'a> {
         rng: &mut Rng,
     ) -> Sample {
         let triangle = self.triangle(frame, start.triangle);
-        let [a, b, c] = triangle;
+        let [a, b, c] = &triangle;
         let mut current = nearest(start.point, &triangle);
         let mut best = value(current);
         let mut last_direction = [0.0; 3];
@@ -218,10 +219,10 @@ impl<'a> BruteForce<'a> {
             } else {
                 rng.direction()
             };
-            let next = nearest(advance(current, step, direction), &triangle);
+            let next = nearest(add(&current, &direction, &step), &triangle);
             let new_value = value(next);
             if new_value > best {
-                last_direction = unit(sub(next, current));
+                last_direction = unit(&sub(&next, &current));
                 (best, current, failed) = (new_value, next, 0);
                 step *= 1.5;
             } else {

@@ -7,18 +7,19 @@ use crate::verdicts::assert_verdict;
 use touchoff::certify::NearestTriangle;
 use touchoff_tests::fixtures::{BALL, ball};
 use touchoff_tests::oracle::big::Big;
-use touchoff_tests::oracle::space::{Triple, advance, cross, exactly, norm, sub, to_f64};
+use touchoff_tests::oracle::space::{Triple, exactly, to_f64};
 use touchoff_tests::oracle::triangle::mean;
+use touchoff_tests::oracle::vector::{add, norm, sub, vector_product};
 
 /// Returns the centre of the ball.
 fn centre(pose: &Pose) -> Triple {
-    advance(&exactly(pose.tip()), &Big::exactly(BALL), &exactly(pose.axis()))
+    add(&exactly(pose.tip()), &exactly(pose.axis()), &Big::exactly(BALL))
 }
 
 /// Returns the centre of the ball at a fraction of a motion, where a pose would round the tip.
 fn centre_at(path: &Motion, at: f64) -> Triple {
-    let tip = advance(&exactly(path.start()), &Big::exactly(at), &exactly(path.displacement()));
-    advance(&tip, &Big::exactly(BALL), &exactly(path.pose(at).axis()))
+    let tip = add(&exactly(path.start()), &exactly(path.displacement()), &Big::exactly(at));
+    add(&tip, &exactly(path.pose(at).axis()), &Big::exactly(BALL))
 }
 
 /// Returns the depth of a point in the ball.
@@ -29,7 +30,7 @@ fn depth(centre: &Triple, point: [f64; 3]) -> Big {
 /// Returns the depth of the line through two points.
 fn depth_of_line(centre: &Triple, [from, to]: [[f64; 3]; 2]) -> Big {
     let along = sub(&exactly(to), &exactly(from));
-    let off = cross(&sub(centre, &exactly(from)), &along);
+    let off = vector_product(&sub(centre, &exactly(from)), &along);
     &Big::exactly(BALL) - &(&norm(&off) / &norm(&along))
 }
 
@@ -253,7 +254,7 @@ fn check_passages(passage: &Passage, rounds: usize, rng: &mut Rng) {
         let triangle = narrow(corner, out, size, rng);
         let along = exactly(path.displacement());
         let arm = sub(&exactly(triangle[0]), &centre(&path.pose(0.0)));
-        let off = &norm(&cross(&arm, &along)) / &norm(&along);
+        let off = &norm(&vector_product(&arm, &along)) / &norm(&along);
         let exact = &Big::exactly(BALL) - &off;
         let text = format!("{:e} deep: {path:?}, {triangle:?}", exact.to_f64());
         match verdict(&tool, triangle, &path, tolerance) {

@@ -12,7 +12,8 @@ use crate::pair::{
 use crate::prelude::*;
 use crate::to_tool;
 use std::collections::BTreeMap;
-use touchoff_tests::oracle::triangle::{Point, bisected, distance, norm, point, sub};
+use touchoff_tests::oracle::triangle::{Point, bisected, point};
+use touchoff_tests::oracle::vector::distance;
 
 /// Number of points that are zoomed in on, at first and at last.
 const POINT_COUNTS: [usize; 2] = [48, 6];
@@ -161,7 +162,7 @@ impl Pair<'_, DepthOracle> {
             && piece.bound > search.best[0].depth
         {
             let at = |weights| point(&triangles[piece.triangle], weights);
-            let length = |a, b| distance(at(a), at(b));
+            let length = |a, b| distance(&at(a), &at(b));
             let middle = |a: [f64; 2], b: [f64; 2]| [0, 1].map(|k| 0.5 * (a[k] + b[k]));
             for half in bisected(piece.corners, length, middle) {
                 let half = self.piece(triangles, piece.triangle, half, search);
@@ -188,7 +189,7 @@ impl Pair<'_, DepthOracle> {
         let centroid = point(&triangles[triangle], weights);
         let depth = self.oracle.depth(centroid);
         search.insert(Sample { depth, triangle, weights });
-        let radii = corners.map(|corner| distance(centroid, point(&triangles[triangle], corner)));
+        let radii = corners.map(|corner| distance(&centroid, &point(&triangles[triangle], corner)));
         let radius = radii[0].max(radii[1]).max(radii[2]);
         let lipschitz = self.oracle.lipschitz_bound;
         // Outside, the depth is minus the distance, which is 1-Lipschitz; it can be steeper only inside.
@@ -219,7 +220,7 @@ impl Pair<'_, DepthOracle> {
     fn sample_nearby(&self, corners: &[Point; 3], reach: f64, best: &mut Sample, rng: &mut Rng) {
         let [a, b, c] = corners;
         let step = |to: &Point| {
-            let length = norm(sub(*to, *a));
+            let length = distance(to, a);
             if length > reach { reach / length } else { 1.0 }
         };
         let [v, w] = best.weights;

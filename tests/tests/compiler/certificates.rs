@@ -14,7 +14,7 @@ use touchoff_tests::oracle::profile::Profile;
 use touchoff_tests::oracle::reference::Reference;
 use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::space::exactly;
-use touchoff_tests::oracle::triangle::{advance, distance, sub};
+use touchoff_tests::oracle::vector::{add, distance, sub};
 use touchoff_tests::oracle::{Meridian, Nearest};
 use touchoff_tests::points::to_space;
 use touchoff_tests::profiles::{owners, tools};
@@ -142,7 +142,7 @@ fn sampled_values_keep_the_proved_bounds() {
             let p = cell.sides.map(|side| rng.between(side.low, side.high));
             // Every second point lies close to the one before.
             let last = before.filter(|_| k % 2 == 1);
-            let p = last.map_or(p, |(last, _)| advance(last, 0.001, sub(p, last)));
+            let p = last.map_or(p, |(last, _)| add(&last, &sub(&p, &last), &0.001));
             let Some(evaluation) = interpreter.evaluate(p, 1.0) else { continue };
             let facts = &proved.regions[evaluation.region];
             let depth = evaluation.depth;
@@ -152,7 +152,7 @@ fn sampled_values_keep_the_proved_bounds() {
             assert!(low <= depth && depth <= high, "{name}");
             assert!(evaluation.niceness <= facts.niceness.high.max(0.0) + 1e-12, "{name}");
             if let (Some(most), Some((last, last_depth))) = (proved.lipschitz(), before) {
-                let step = distance(p, last);
+                let step = distance(&p, &last);
                 // Regions that no border joins may lie between two points of different parts.
                 assert!((depth - last_depth).abs() <= most * step + slack, "{name} after {step}");
             }

@@ -17,7 +17,7 @@ use touchoff_dsl::{CheckedTool, compile};
 use touchoff_tests::count::case_count;
 use touchoff_tests::library::{self, library};
 use touchoff_tests::oracle::rng::Rng;
-use touchoff_tests::oracle::triangle::{dot, norm};
+use touchoff_tests::oracle::vector::{dot, norm};
 
 /// Number of points at which a mutant is compared with the original tool.
 const COMPARED_POINTS: usize = 20_000;
@@ -182,7 +182,7 @@ fn differs(original: &PlannedTool, mutant: &PlannedTool, seed: u64) -> bool {
         match (first, evaluation(mutant, &mut mutant_values, p)) {
             (None, None) => false,
             (Some((a, u)), Some((b, v))) => {
-                (a - b).abs() > slack || dot(u, v) < 0.999 * norm(u) * norm(v)
+                (a - b).abs() > slack || dot(&u, &v) < 0.999 * norm(&u) * norm(&v)
             }
             // Within rounding of the surface, inside and outside may differ.
             (first, second) => first.or(second).is_some_and(|(depth, _)| depth.abs() > slack),

@@ -8,7 +8,7 @@ use touchoff_dsl::{Compiled, compile_with_arguments};
 use touchoff_tests::checks::assert_near;
 use touchoff_tests::library;
 use touchoff_tests::oracle::rng::Rng;
-use touchoff_tests::oracle::triangle::distance;
+use touchoff_tests::oracle::vector::distance;
 use touchoff_tests::oracle::{Body, Oracle};
 use touchoff_tests::texts::{
     accepted, assert_each_refused, assert_refused, compiled, said, with_one_error,
@@ -87,7 +87,7 @@ fn a_bracket_at_its_hole_and_edges() {
     assert_eq!(toward, [-1.0, 0.0, 0.0]);
     let half = 0.5f64.sqrt();
     let toward = inside::<LBracket>([-5.0, 0.0, 5.0], 1.0).direction;
-    assert!(distance(toward, [half, 0.0, half]) < 1e-15, "{toward:?}");
+    assert!(distance(&toward, &[half, 0.0, half]) < 1e-15, "{toward:?}");
 }
 
 /// Outside, clearance is the distance to the solid's box: the true distance for a block, else a bound.

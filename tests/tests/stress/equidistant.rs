@@ -11,8 +11,8 @@
 use crate::border_points::{compare_neighbours, owners_at};
 use crate::prelude::*;
 use crate::run;
-use touchoff_tests::oracle::plane::{Point, add, cross, dot, opposite, sub, unit};
 use touchoff_tests::oracle::profile::{Feature, Profile};
+use touchoff_tests::oracle::vector::{Point, add, cross, dot, opposite, sub, unit};
 use touchoff_tests::points::{add_turned, neighbourhood};
 
 #[test]

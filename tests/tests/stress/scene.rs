@@ -6,7 +6,8 @@ use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use touchoff::{Cloud, CloudError, Contact, Law, Part, Probe, TriangleId, Unit, Wrench};
 use touchoff_tests::oracle::displaced;
-use touchoff_tests::oracle::space::{add, cross, distance, dot, exactly, sub, times};
+use touchoff_tests::oracle::space::{distance, exactly};
+use touchoff_tests::oracle::vector::{add, dot, sub, vector_product};
 
 const SENSELESS_NUMBER: &str = "senseless number";
 
@@ -192,10 +193,9 @@ impl<'a> Scene<'a> {
         for contact in contacts {
             let magnitude = &Big::exactly(contact.weight) * &Big::exactly(contact.magnitude);
             let push = sub(&exactly(contact.normal), &exactly(contact.direction));
-            let push = times(&push, &magnitude);
             let arm = sub(&exactly(contact.point), &exactly(tip));
-            torque = add(&torque, &cross(&arm, &push));
-            force = add(&force, &push);
+            torque = add(&torque, &vector_product(&arm, &push), &magnitude);
+            force = add(&force, &push, &magnitude);
             integral = &integral + &magnitude;
             let max_push = 2.0 * magnitude.to_f64();
             force_bound += max_push;

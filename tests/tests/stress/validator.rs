@@ -5,7 +5,8 @@ use crate::truth::{RegionValues, Truth};
 use touchoff::tool::PointEvaluation;
 use touchoff::{Level, Tool};
 use touchoff_tests::evaluations::{bits, evaluate_points, numbers};
-use touchoff_tests::oracle::space::{distance, exactly, norm};
+use touchoff_tests::oracle::space::{distance, exactly};
+use touchoff_tests::oracle::vector::norm;
 
 /// Distance in ulp(S) from a border within which both sides, or both owners, are accepted.
 const AMBIGUITY_ULPS: f64 = 2.0;

@@ -1,8 +1,8 @@
 //! Postures of a tool at a triangle, derived from the tool's restatement alone.
 
 use nalgebra::{Point3, Vector3};
-use touchoff_tests::oracle::plane::{Point, add, cross, dot, left, opposite, sub, unit};
 use touchoff_tests::oracle::profile::Feature;
+use touchoff_tests::oracle::vector::{Point, add, cross, dot, left, opposite, sub, unit};
 use touchoff_tests::oracle::{Nearest, Oracle};
 
 pub(super) struct ToolModel {

@@ -3,10 +3,9 @@
 use super::cutters::Cutter;
 use super::truth::Point;
 use crate::prelude::*;
-use touchoff_tests::oracle::plane::{self, add, unit};
-use touchoff_tests::oracle::triangle::{advance, cross};
+use touchoff_tests::oracle::vector::{self, add, sub, unit, vector_product};
 
-type MeridianPoint = plane::Point<f64>;
+type MeridianPoint = vector::Point<f64>;
 
 /// Returns the triangles of a case, which are about as large as a number, in the tool's frame.
 type Triangles = fn(&Sketch<'_>, f64, &mut Rng) -> Vec<[Point; 3]>;
@@ -63,7 +62,7 @@ pub(crate) struct Case {
 /// Returns a random triangle of about this size and with this normal. `point` is a corner, on an edge or inside.
 fn triangle_at(point: Point, normal: Point, size: f64, rng: &mut Rng) -> [Point; 3] {
     let first = rng.across(normal);
-    let second = cross(normal, first);
+    let second = vector_product(&normal, &first);
     let (width, height) = (size * rng.between(0.2, 1.0), size * rng.between(0.2, 1.0));
     let shift = size * rng.between(-0.5, 1.0);
     let fraction = rng.between(0.0, 1.0);
@@ -74,7 +73,7 @@ fn triangle_at(point: Point, normal: Point, size: f64, rng: &mut Rng) -> [Point;
     };
     let corners = [[0.0, 0.0], [width, 0.0], [shift, height]];
     let base = [0, 1].map(|k| weights.iter().zip(&corners).map(|(w, p)| w * p[k]).sum::<f64>());
-    corners.map(|p| advance(advance(point, p[0] - base[0], first), p[1] - base[1], second))
+    corners.map(|p| add(&add(&point, &first, &(p[0] - base[0])), &second, &(p[1] - base[1])))
 }
 
 /// A tool for which cases are generated, and its largest radius.
@@ -115,13 +114,10 @@ impl Sketch<'_> {
     fn sliver(&self, height: f64, rng: &mut Rng) -> [Point; 3] {
         let (point, direction) = (self.random_point(rng), rng.direction());
         let (length, fraction) = (self.size(rng), rng.between(-0.5, 1.5));
-        let start = advance(point, -length * rng.between(0.0, 1.0), direction);
-        let third = advance(
-            advance(start, fraction * length, direction),
-            height * length,
-            rng.across(direction),
-        );
-        [start, advance(start, length, direction), third]
+        let start = add(&point, &direction, &(-length * rng.between(0.0, 1.0)));
+        let below = add(&start, &direction, &(fraction * length));
+        let third = add(&below, &rng.across(direction), &(height * length));
+        [start, add(&start, &direction, &length), third]
     }
 
     fn degenerate(&self, rng: &mut Rng) -> [Point; 3] {
@@ -140,7 +136,7 @@ impl Sketch<'_> {
         let joint = profile.vertex(k);
         let [a, b] = [k - 1, k].map(|k| profile.segments()[k].outward(joint));
         let share = [0.0, 1.0, 0.5, rng.between(0.0, 1.0)][rng.index(4)];
-        let direction = unit(&add(&a, &plane::sub(&b, &a), &share));
+        let direction = unit(&add(&a, &sub(&b, &a), &share));
         let depth = self.radius * [0.0, rng.power(-12.0, 0.0)][rng.index(2)];
         let [d, z] = add(joint, &direction, &-depth);
         Self::revolve([d.max(0.0), z], direction, rng)
@@ -193,8 +189,9 @@ impl Sketch<'_> {
         let count = 2 + rng.index(4);
         let size = self.size(rng);
         let rim = |rng: &mut Rng| {
-            let base = advance(apex, size * rng.between(0.1, 1.0), rng.across(direction));
-            advance(base, size * rng.between(-0.5, 0.1), direction)
+            let reach = size * rng.between(0.1, 1.0);
+            let base = add(&apex, &rng.across(direction), &reach);
+            add(&base, &direction, &(size * rng.between(-0.5, 0.1)))
         };
         let first = rim(rng);
         let mut last = first;

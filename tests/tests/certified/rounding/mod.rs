@@ -18,7 +18,7 @@ use cases::{Case, FAMILIES};
 use cutters::Cutter;
 use rayon::prelude::*;
 use touchoff_tests::oracle::big::Big;
-use touchoff_tests::oracle::triangle::{cross, distance, norm, sub};
+use touchoff_tests::oracle::vector::{distance, norm, sub, vector_product};
 use truth::{Point, Scene, TrianglePoint};
 
 /// Number of cases of all families together, unless `CASES` is set.
@@ -177,7 +177,7 @@ impl Validation<'_> {
             tool_point.iter().fold(0.0f64, |max, coordinate| max.max(coordinate.abs()));
         NearestPoint {
             point_on_triangle,
-            distance: distance(tool_point, point),
+            distance: distance(&tool_point, &point),
             rounding_distance: 8.0 * f64::EPSILON * (tip.coords.amax() + max_coordinate),
         }
     }
@@ -201,13 +201,13 @@ struct NearestPoint {
 /// Returns the promised error bound of the line of greatest depth in a triangle: `12 ε r s/h`, at most `h`. `r` is the
 /// distance of the farthest corner from the tip, `s` the shortest edge and `h` the height over the longest edge.
 fn skew(corners: &[Point; 3]) -> f64 {
-    let [a, b, c] = *corners;
+    let [a, b, c] = corners;
     let edges = [sub(b, a), sub(c, b), sub(a, c)];
-    let longest = edges.iter().copied().map(norm).fold(0.0, f64::max);
-    let shortest = edges.iter().copied().map(norm).fold(f64::INFINITY, f64::min);
-    let area = norm(cross(edges[0], edges[1]));
+    let longest = edges.iter().map(norm).fold(0.0, f64::max);
+    let shortest = edges.iter().map(norm).fold(f64::INFINITY, f64::min);
+    let area = norm(&vector_product(&edges[0], &edges[1]));
     let height = if longest > 0.0 { area / longest } else { 0.0 };
-    let max_distance = corners.iter().copied().map(norm).fold(0.0, f64::max);
+    let max_distance = corners.iter().map(norm).fold(0.0, f64::max);
     // Rounded corners determine the height to within this.
     let rounding = 8.0 * f64::EPSILON * max_distance;
     let least = (height - rounding).max(0.0);

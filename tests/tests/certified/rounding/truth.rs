@@ -7,9 +7,10 @@ use super::cutters::Cutter;
 use crate::prelude::*;
 use touchoff_tests::oracle::Meridian;
 use touchoff_tests::oracle::big::Big;
-use touchoff_tests::oracle::space::{Frame, Triple, dot, exactly, to_f64};
+use touchoff_tests::oracle::space::{Frame, Triple, exactly, to_f64};
 pub(crate) use touchoff_tests::oracle::triangle::Point;
 use touchoff_tests::oracle::triangle::{mean, nearest_weights};
+use touchoff_tests::oracle::vector::dot;
 
 /// Number of starting points of the search, steps per start, and additional steps for the best of them.
 const CLIMBS: usize = 3;

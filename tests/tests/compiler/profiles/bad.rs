@@ -7,10 +7,10 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use touchoff::tool::{Interpreted, Tool};
 use touchoff_dsl::source::Source;
 use touchoff_tests::checks::assert_near;
-use touchoff_tests::oracle::plane::{norm, sub};
 use touchoff_tests::oracle::profile::Profile;
 use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::segment::Segment;
+use touchoff_tests::oracle::vector::{norm, sub};
 use touchoff_tests::texts::{assert_mistakes, said};
 
 fn text(profile: &str) -> String {

@@ -6,9 +6,9 @@ use touchoff::tool::{Interpreted, PointEvaluation, Tool};
 use touchoff_dsl::CheckedTool;
 use touchoff_dsl::interpret::Interpreter;
 use touchoff_tests::evaluations::{evaluate_points, of_reference};
-use touchoff_tests::oracle::plane::{add, norm, sub};
 use touchoff_tests::oracle::profile::Feature;
 use touchoff_tests::oracle::rng::Rng;
+use touchoff_tests::oracle::vector::{add, norm, sub};
 
 pub(crate) type Flaw = (&'static str, String);
 

@@ -2,9 +2,9 @@
 
 use super::outline::{Outline, P2};
 use proptest::prelude::*;
-use touchoff_tests::oracle::plane::{add, cross, dot, left, norm, right, sub, turned};
 use touchoff_tests::oracle::profile::Profile;
 use touchoff_tests::oracle::segment::Segment;
+use touchoff_tests::oracle::vector::{add, cross, dot, left, norm, right, sub, turned};
 
 const MAX_SEGMENTS: usize = 12;
 /// Number of grid steps per unit of length in a recipe.

@@ -8,8 +8,8 @@ use touchoff_dsl::interpret::Interpreter;
 use touchoff_dsl::source::Source;
 use touchoff_tests::checks::assert_near;
 use touchoff_tests::evaluations::{evaluate_points, of_reference};
-use touchoff_tests::oracle::plane::{sub, unit};
 use touchoff_tests::oracle::rng::Rng;
+use touchoff_tests::oracle::vector::{sub, unit};
 use touchoff_tests::texts::{self, assert_mistakes};
 
 const PROFILE: &str = "profile {

@@ -1,8 +1,8 @@
 //! Profiles as the tests draw them, in their files' frames.
 
-use touchoff_tests::oracle::plane::Point;
 use touchoff_tests::oracle::profile::{Feature, Profile};
 use touchoff_tests::oracle::segment::Segment;
+use touchoff_tests::oracle::vector::Point;
 
 pub(crate) type P2 = Point<f64>;
 

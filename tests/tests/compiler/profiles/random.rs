@@ -14,9 +14,9 @@ use touchoff::tool::Interpreted;
 use touchoff_dsl::emit;
 use touchoff_dsl::prove::Certificate;
 use touchoff_dsl::source::Source;
-use touchoff_tests::oracle::plane::{cross, dot, norm, sub};
 use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::segment::Segment;
+use touchoff_tests::oracle::vector::{cross, dot, norm, sub};
 use touchoff_tests::texts::compiled;
 
 const POINTS: usize = 320;

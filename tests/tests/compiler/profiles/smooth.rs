@@ -11,9 +11,9 @@ use touchoff_dsl::CheckedTool;
 use touchoff_dsl::interpret::{Evaluation, Interpreter};
 use touchoff_tests::checks::assert_near;
 use touchoff_tests::evaluations::evaluate_points;
-use touchoff_tests::oracle::plane::{add, cross, dot, norm, sub};
 use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::segment::Segment;
+use touchoff_tests::oracle::vector::{add, cross, dot, norm, sub};
 use touchoff_tests::texts::{assert_each_refused, compiled};
 
 /// A smoothed tool, and the same tool by nearest features.

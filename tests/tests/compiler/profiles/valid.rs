@@ -1,8 +1,8 @@
 //! Validity of a drawn profile, with room to spare, from points along it.
 
 use super::outline::{Outline, P2};
-use touchoff_tests::oracle::plane::{cross, dot, norm, sub};
 use touchoff_tests::oracle::segment::Segment;
+use touchoff_tests::oracle::vector::{cross, dot, norm, sub};
 
 /// Least distance of a profile from itself, as a fraction of its size.
 const MIN_DISTANCE_FRACTION: f64 = 3e-4;

@@ -10,7 +10,7 @@ use touchoff_tests::checks::{Checks, assert_no_misses};
 use touchoff_tests::evaluations::{at, batch};
 use touchoff_tests::oracle::reference::Reference;
 use touchoff_tests::oracle::space::exactly;
-use touchoff_tests::oracle::triangle::{distance, norm};
+use touchoff_tests::oracle::vector::{distance, norm};
 use touchoff_tests::oracle::{Meridian, OracleEvaluation, restated};
 
 /// Distance from a border, as a fraction of S, within which either neighbour may own a point.
@@ -84,7 +84,7 @@ fn evaluation(
         checks.within("magnitude [ulp(S)]", error, 1.0, compared);
         assert!(gradient.into_iter().all(f64::is_finite), "{gradient:?} at {}", format_point(p));
     }
-    let size = norm(direction);
+    let size = norm(&direction);
     let error = (size - 1.0).abs() / f64::EPSILON;
     checks.within("||u| - 1| [ε]", error, 4.0, || place(format!("{direction:?}")));
     // On a border each of the two neighbours has its own direction.
@@ -98,7 +98,7 @@ fn evaluation(
         rho => (ulp / f64::EPSILON / rho.max(ulp)).max(1.0),
     };
     let doubt = closeness * f64::EPSILON;
-    let error = distance(direction, expected.direction) / doubt;
+    let error = distance(&direction, &expected.direction) / doubt;
     let compared = || place(format!("{direction:?}, not {expected:?}, rho {rho:e}"));
     checks.within("direction [ε max(1, S/ρ)]", error, 8.0, compared);
     let error = (niceness - expected.niceness).abs() / ulp;
@@ -112,7 +112,7 @@ fn evaluation(
     for (length, evaluated) in LENGTHS.into_iter().zip(by_length) {
         let per = if is_depth { 1.0 } else { length };
         let gradient = evaluated.gradient.map(|part| part * per);
-        let error = distance(gradient, slope) / norm(slope).max(1.0) / doubt;
+        let error = distance(&gradient, &slope) / norm(&slope).max(1.0) / doubt;
         let compared = || place(format!("{gradient:?}, not {slope:?}"));
         checks.within("gradient [ε max(1, S/ρ)]", error, 8.0, compared);
     }

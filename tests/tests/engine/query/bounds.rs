@@ -11,7 +11,8 @@ use touchoff::{Scene, Weights, Wrench};
 use touchoff_tests::evaluations::evaluate_points;
 use touchoff_tests::fixtures::ball;
 use touchoff_tests::oracle::big::Big;
-use touchoff_tests::oracle::space::{Triple, add, cross, distance, dot, exactly, sub};
+use touchoff_tests::oracle::space::{Triple, distance, exactly};
+use touchoff_tests::oracle::vector::{add, dot, sub, vector_product};
 
 /// A point in a tool whose tip is at the world's origin, where the difference of both is exact.
 struct ExactContact {
@@ -63,7 +64,7 @@ impl ExactContact {
     fn torque(&self, count: usize, centre: Point3<f64>) -> Triple {
         let arm = sub(&exactly(self.position), &exactly(centre));
         let arm = self.rows().map(|row| dot(&row, &arm));
-        cross(&arm, &self.force(count))
+        vector_product(&arm, &self.force(count))
     }
 
     fn wrench(&self, tool: &dyn Tool, part: &Part, centre: Point3<f64>) -> Wrench {
@@ -185,7 +186,8 @@ fn the_bounds_of_a_scene_cover_the_part_that_is_added_last() {
             let order = if is_reversed { [&heavy.0, &light.0] } else { [&light.0, &heavy.0] };
             let wrench = scene_wrench(tool, pose, order);
             assert_eq!(wrench.colliding, 41);
-            let [force, torque] = [0, 1].map(|k| add(&light.1[k], &heavy.1[k]));
+            let one = Big::exactly(1.0);
+            let [force, torque] = [0, 1].map(|k| add(&light.1[k], &heavy.1[k], &one));
             let [force, torque] =
                 [distance(&force, wrench.force), distance(&torque, wrench.torque)];
             assert!(force <= wrench.rounding.force, "{force:e} of {:?}", wrench.rounding);

@@ -4,7 +4,8 @@ use crate::prelude::*;
 use nalgebra::{Matrix3, Unit};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, TAU};
 use touchoff_tests::oracle::big::Big;
-use touchoff_tests::oracle::space::{dot, exactly};
+use touchoff_tests::oracle::space::exactly;
+use touchoff_tests::oracle::vector::dot;
 
 /// Largest entry of `RᵀR - I` of a composed rotation, in ε.
 const MAX_ORTHOGONALITY_ERROR: f64 = 4.0;

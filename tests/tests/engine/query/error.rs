@@ -7,7 +7,8 @@ use touchoff_tests::fixtures::{drawn, part_in};
 use touchoff_tests::oracle::Meridian;
 use touchoff_tests::oracle::big::Big;
 use touchoff_tests::oracle::reference::Reference;
-use touchoff_tests::oracle::space::{Frame, Triple, exactly, norm};
+use touchoff_tests::oracle::space::{Frame, Triple, exactly};
+use touchoff_tests::oracle::vector::norm;
 use touchoff_tests::profiles::tools;
 
 #[test]

@@ -5,7 +5,8 @@ use super::parts;
 use crate::prelude::*;
 use touchoff::Contact;
 use touchoff_tests::oracle::big::Big;
-use touchoff_tests::oracle::space::{Triple, add, cross, distance, exactly, sub, times};
+use touchoff_tests::oracle::space::{Triple, distance, exactly};
+use touchoff_tests::oracle::vector::{add, sub, vector_product};
 
 /// Returns force and torque about the tip, the sum of weights times magnitudes, and that times the arm.
 fn sums(contacts: &[Contact], law: Law, tip: Point3<f64>) -> ([Triple; 2], [f64; 2]) {
@@ -18,9 +19,10 @@ fn sums(contacts: &[Contact], law: Law, tip: Point3<f64>) -> ([Triple; 2], [f64;
             _ => sub(&exactly(contact.normal), &exactly(contact.direction)),
         };
         let force_magnitude = &Big::exactly(contact.weight) * &Big::exactly(contact.magnitude);
-        let force = times(&direction, &force_magnitude);
         let arm = contact.point - tip;
-        sums = [add(&sums[0], &force), add(&sums[1], &cross(&exactly(arm), &force))];
+        let moment = vector_product(&exactly(arm), &direction);
+        sums =
+            [add(&sums[0], &direction, &force_magnitude), add(&sums[1], &moment, &force_magnitude)];
         let size = force_magnitude.to_f64() * contact.gradient.norm().max(1.0);
         sizes[0] += size;
         sizes[1] += size * (arm.norm() + contact.point.coords.norm());
