@@ -5,7 +5,7 @@
 
 use super::real::Real;
 use super::vector::{Point, norm, opposite, unit};
-use super::{Meridian, Nearest, Oracle, OracleEvaluation, fig_7_3_exact, sample_line};
+use super::{Meridian, Nearest, Oracle, OracleEvaluation, fig_7_3_exact, in_space, sample_line};
 
 /// The thesis's names of the regions, in its order.
 pub const REGIONS: [&str; 9] = ["I", "II", "III", "IV", "V", "VI", "VII", "VIII", "IX"];
@@ -185,7 +185,7 @@ impl Oracle for Fig73 {
         false
     }
 
-    fn corners(&self) -> Vec<[f64; 2]> {
+    fn corner_points(&self) -> Vec<[f64; 3]> {
         let thesis = [
             [0.0, 0.0],
             [5.0, 0.0],
@@ -204,10 +204,10 @@ impl Oracle for Fig73 {
             [0.0, 14.0],
             [0.0, 16.0],
         ];
-        thesis.map(|[d, z]| [d, 20.0 - z]).to_vec()
+        thesis.map(|[d, z]| [d, 0.0, 20.0 - z]).to_vec()
     }
 
-    fn curves(&self) -> Vec<Vec<[f64; 2]>> {
+    fn curve_points(&self) -> Vec<Vec<[f64; 3]>> {
         let thesis = [
             ([5.0, 0.0], [0.0, 5.0]),   // I | II
             ([5.0, 11.0], [3.0, 9.0]),  // II | III
@@ -220,9 +220,12 @@ impl Oracle for Fig73 {
             ([1.0, 15.0], [0.0, 16.0]), // VII | VIII
             ([1.0, 19.0], [0.0, 19.0]), // VIII | IX
         ];
-        let mut all: Vec<_> = self.exact.curves().into_iter().take(7).collect(); // the seven pieces of the surface
-        all.extend(thesis.map(|(a, b)| sample_line([a[0], 20.0 - a[1]], [b[0], 20.0 - b[1]])));
-        all
+        let splits = thesis.map(|ends| {
+            let [a, b] = <[[f64; 2]; 2]>::from(ends).map(|[d, z]| [d, 20.0 - z]);
+            sample_line(a, b).into_iter().map(in_space).collect()
+        });
+        // The first seven are the pieces of the surface.
+        self.exact.curve_points().into_iter().take(7).chain(splits).collect()
     }
 
     fn extent(&self) -> [f64; 2] {

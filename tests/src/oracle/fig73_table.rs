@@ -56,10 +56,10 @@ fn the_thesis_overestimates_by_at_most_root_five() {
 #[test]
 fn the_thesis_magnitudes_meet_without_a_jump() {
     let tool = Fig73::default();
-    for curve in tool.curves().iter().skip(7) {
+    for curve in tool.curve_points().iter().skip(7) {
         for c in curve {
             let m =
-                |dd: f64, dz: f64| tool.evaluate([c[0] + dd, 0.0, c[1] + dz]).map(|s| s.magnitude);
+                |dd: f64, dz: f64| tool.evaluate([c[0] + dd, 0.0, c[2] + dz]).map(|s| s.magnitude);
             let neighbourhood = [m(1e-9, 0.0), m(-1e-9, 0.0), m(0.0, 1e-9), m(0.0, -1e-9)];
             let found = neighbourhood.into_iter().flatten();
             let (low, high) = found.fold((f64::INFINITY, 0.0f64), |(l, h), m| (l.min(m), h.max(m)));

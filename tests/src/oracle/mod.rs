@@ -91,28 +91,13 @@ pub trait Oracle: Send + Sync {
         true
     }
 
-    /// Returns points `[d, z]`: vertices of the profile, ends of splitting curves, centres of arcs. Only for a
-    /// solid of revolution.
-    fn corners(&self) -> Vec<[f64; 2]> {
-        Vec::new()
-    }
+    /// Returns vertices, ends of splitting curves and centres of arcs; of a solid of revolution those in the half plane
+    /// y = 0.
+    fn corner_points(&self) -> Vec<[f64; 3]>;
 
-    /// Returns points `[d, z]` along every splitting curve and every piece of the surface, a list for each, ends
-    /// included. Only for a solid of revolution.
-    fn curves(&self) -> Vec<Vec<[f64; 2]>> {
-        Vec::new()
-    }
-
-    /// Returns [`Oracle::corners`] in space; for a solid of revolution in the half plane y = 0.
-    fn corner_points(&self) -> Vec<[f64; 3]> {
-        self.corners().into_iter().map(|[d, z]| [d, 0.0, z]).collect()
-    }
-
-    /// Returns [`Oracle::curves`] in space; for a solid of revolution in the half plane y = 0.
-    fn curve_points(&self) -> Vec<Vec<[f64; 3]>> {
-        let lift = |curve: Vec<[f64; 2]>| curve.into_iter().map(|[d, z]| [d, 0.0, z]).collect();
-        self.curves().into_iter().map(lift).collect()
-    }
+    /// Returns points along every splitting curve and every piece of the surface, a list for each, ends included; of a
+    /// solid of revolution those in the half plane y = 0.
+    fn curve_points(&self) -> Vec<Vec<[f64; 3]>>;
 
     /// Returns the largest distance from the axis, and the largest z. The smallest z is 0.
     fn extent(&self) -> [f64; 2];
@@ -181,6 +166,11 @@ impl<T: Real> Meridian<T> {
     pub fn lift(&self, [e_d, e_z]: &Point<T>) -> [T; 3] {
         [e_d.times(&self.radial[0]), e_d.times(&self.radial[1]), e_z.clone()]
     }
+}
+
+/// Returns a point of the half plane y = 0 in space.
+fn in_space([d, z]: [f64; 2]) -> [f64; 3] {
+    [d, 0.0, z]
 }
 
 /// Returns points evenly spaced from `a` to `b`, both included.
@@ -283,7 +273,7 @@ mod tests {
         // Every change of owner that random short steps find has a listed curve nearby.
         for o in thesis().into_iter().filter(|o| o.is_revolved()) {
             let [width, height] = o.extent();
-            let all: Vec<_> = o.curves().into_iter().flatten().collect();
+            let all: Vec<_> = o.curve_points().into_iter().flatten().collect();
             let step = 0.05;
             let mut rng = Rng::new(3);
             for _ in 0..2_000 {
@@ -293,7 +283,7 @@ mod tests {
                 if owner(a) == owner(b) {
                     continue;
                 }
-                let distances = all.iter().map(|c| (c[0] - a[0]).hypot(c[1] - a[1]));
+                let distances = all.iter().map(|c| (c[0] - a[0]).hypot(c[2] - a[1]));
                 let near = distances.fold(f64::INFINITY, f64::min);
                 let spacing = height / 64.0;
                 assert!(near < 2.0 * step + spacing, "{} {a:?} {near}", o.name());

@@ -4,7 +4,7 @@ use super::profile::{Feature, Profile};
 use super::restated::{self, Niceness, Restated};
 use super::rng::Rng;
 use super::vector::Point;
-use super::{Meridian, Oracle, OracleEvaluation, sample_curve, sample_line};
+use super::{Meridian, Oracle, OracleEvaluation, in_space, sample_curve, sample_line};
 
 /// Points along a curve.
 type Points = Vec<Point<f64>>;
@@ -200,18 +200,18 @@ impl Oracle for Nearest {
         if is_inside { singularity() } else { f64::INFINITY }
     }
 
-    fn corners(&self) -> Vec<[f64; 2]> {
+    fn corner_points(&self) -> Vec<[f64; 3]> {
         let known = self.splits.iter().flatten().flat_map(|c| [c[0], c[c.len() - 1]]);
         let mut all: Vec<[f64; 2]> = self.profile.corners().into_iter().chain(known).collect();
         all.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
         all.dedup();
-        all
+        all.into_iter().map(in_space).collect()
     }
 
-    fn curves(&self) -> Vec<Points> {
+    fn curve_points(&self) -> Vec<Vec<[f64; 3]>> {
         let mut all = self.profile.surface();
         all.extend(self.splits.clone().unwrap_or_else(|| self.sample_splits()));
-        all
+        all.into_iter().map(|curve| curve.into_iter().map(in_space).collect()).collect()
     }
 
     fn extent(&self) -> [f64; 2] {

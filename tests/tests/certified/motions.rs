@@ -77,8 +77,7 @@ impl BruteForce<'_> {
         let axis_index = rng.index(3);
         axis[axis_index] = if rng.once_in(2) { 1.0 } else { -1.0 };
         let [low, high] = self.mesh.bounds();
-        let corners = self.oracle.corners();
-        let [d, z] = corners[rng.index(corners.len())];
+        let [d, _, z] = rng.pick(&self.oracle.corner_points());
         let mut tip = Point3::origin();
         for k in 0..3 {
             let side = if rng.once_in(2) { low[k] } else { high[k] };

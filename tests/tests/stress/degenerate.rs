@@ -69,7 +69,7 @@ fn points(oracle: &Nearest, rng: &mut Rng) -> Vec<[f64; 3]> {
     let surface: Vec<[f64; 2]> = oracle.profile().surface().into_iter().flatten().collect();
     let [radius, height] = oracle.extent();
     let mut points = Vec::new();
-    for [d, z] in oracle.corners() {
+    for [d, _, z] in oracle.corner_points() {
         for z in [z, z.next_up(), z.next_down()] {
             points.extend([[d, 0.0, z], [0.0, -d.next_up(), z], [d.next_down().max(0.0), 0.0, z]]);
         }
