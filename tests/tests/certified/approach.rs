@@ -4,14 +4,14 @@
 //! triangle's radius is skipped; the others are sampled. From the best samples a search climbs in time and position at
 //! once.
 
-use crate::brute::{Ball, TRIANGLES_PER_GROUP};
+use crate::brute::Sample;
 use crate::prelude::*;
 use touchoff_tests::oracle::triangle::{Point, nearest};
 use touchoff_tests::oracle::vector::add;
 
-/// Maximum number of triangles sampled per pose, and number of samples of each kind per triangle.
-const MAX_TRIANGLES: usize = 40;
-const SAMPLES_PER_TRIANGLE: usize = 4;
+/// Maximum number of triangles that are sampled at a time, and number of samples of each kind over all of them and at least
+/// per triangle.
+const EFFORT: [usize; 3] = [40, 160, 4];
 /// Number of times that are refined, number of refinements of each, number of searches, and number of steps per
 /// search.
 const REFINED_TIMES: usize = 5;
@@ -60,6 +60,7 @@ pub(crate) struct MotionSample {
 }
 
 impl BruteForce<'_> {
+    /// Returns the deepest sample at a time.
     pub(crate) fn deepest_at(
         &self,
         motion: &ReferenceMotion,
@@ -67,51 +68,10 @@ impl BruteForce<'_> {
         rng: &mut Rng,
     ) -> MotionSample {
         let pose = motion.pose(t);
-        let frame = self.tool_frame(&pose);
-        let [radius, height] = self.oracle.extent();
-        let mut best =
-            MotionSample { t, triangle: 0, point: [f64::NAN; 3], depth: f64::NEG_INFINITY };
-        // Upper bound of the depth in a ball, from its distance to the tool's bounding cylinder.
-        let depth_bound = |ball: &Ball| {
-            let p = self.to_tool_frame(&frame, ball.centre);
-            let radial_gap = (p[0].hypot(p[1]) - radius).max(0.0);
-            let axial_gap = (p[2] - height).max(-p[2]).max(0.0);
-            ball.radius - (radial_gap * radial_gap + axial_gap * axial_gap).sqrt() * self.length
-        };
-        let bounds = self.group_balls.iter().map(depth_bound).enumerate();
-        let mut groups: Vec<(usize, f64)> = bounds.collect();
-        groups.sort_by(|a, b| b.1.total_cmp(&a.1));
-        let mut candidates = Vec::new();
-        for (group, bound) in groups {
-            if bound < best.depth {
-                break;
-            }
-            let first = TRIANGLES_PER_GROUP * group;
-            let members = self.bounding_balls.iter().enumerate().skip(first);
-            for (id, ball) in members.take(TRIANGLES_PER_GROUP) {
-                if depth_bound(ball) < best.depth {
-                    continue;
-                }
-                let depth = self.depth(self.to_tool_frame(&frame, ball.centre));
-                candidates.push((depth + ball.radius, id));
-                if depth > best.depth {
-                    best = MotionSample { t, triangle: id, point: ball.centre.into(), depth };
-                }
-            }
-        }
-        candidates.sort_by(|a, b| b.0.total_cmp(&a.0));
-        for (bound, id) in candidates.into_iter().take(MAX_TRIANGLES) {
-            if bound < best.depth {
-                break;
-            }
-            let sample = self.sample(&frame, id, SAMPLES_PER_TRIANGLE, |p| self.depth(p), rng)[0];
-            if sample.value > best.depth {
-                let offset = pose.rotation() * Vector3::from(sample.point) * self.length;
-                let point = (pose.tip() + offset).into();
-                best = MotionSample { t, triangle: id, point, depth: sample.value };
-            }
-        }
-        best
+        let samples = self.deepest_samples(&self.tool_frame(&pose), EFFORT, rng);
+        let Sample { triangle, point, value: depth } = samples[0];
+        let offset = pose.rotation() * Vector3::from(point) * self.length;
+        MotionSample { t, triangle, point: (pose.tip() + offset).into(), depth }
     }
 
     /// Returns the deepest sample of a whole motion, at `times` random times and at both ends. If `closely`, also

@@ -10,12 +10,10 @@ use touchoff_tests::oracle::Meridian;
 use touchoff_tests::oracle::triangle::{Point, nearest, point};
 use touchoff_tests::oracle::vector::{add, distance, dot, sub, unit};
 
-/// Minimum and maximum number of samples of each kind per triangle. Fewer triangles nearby get more samples each.
-const SAMPLE_LIMITS: [usize; 2] = [8, 150];
-/// Number of samples of each kind over all triangles nearby, within the limits per triangle.
-const TOTAL_SAMPLES: usize = 600;
-/// Maximum number of triangles that are sampled.
-const MAX_TRIANGLES: usize = 1000;
+/// Maximum number of triangles that are sampled at a pose, and number of samples of each kind over all of them and at least
+/// per triangle. Fewer triangles nearby get more samples each, up to a maximum.
+const EFFORT: [usize; 3] = [1000, 600, 8];
+const MAX_SAMPLES_PER_TRIANGLE: usize = 150;
 /// Number of samples from which the search climbs, maximum number of them per triangle, and number of steps.
 const CLIMBS: usize = 6;
 const MAX_CLIMBS_PER_TRIANGLE: usize = 3;
@@ -47,11 +45,11 @@ pub(crate) struct BruteForce<'a> {
     /// Bounding ball of each triangle, about its centroid.
     pub(crate) bounding_balls: Vec<Ball>,
     /// Bounding balls of groups of consecutive triangles.
-    pub(crate) group_balls: Vec<Ball>,
+    group_balls: Vec<Ball>,
     pub(crate) evaluations: Cell<u64>,
 }
 
-pub(crate) const TRIANGLES_PER_GROUP: usize = 32;
+const TRIANGLES_PER_GROUP: usize = 32;
 
 /// A pose: its tip, and the tool's axes in the world frame.
 pub(crate) struct ToolFrame {
@@ -128,34 +126,63 @@ impl<'a> BruteForce<'a> {
         self.oracle.profile().depth(&Meridian::of(p).dz) * self.length
     }
 
-    /// Returns the greatest depth found, in the part's unit. It is negative if no sample is inside, and negative
-    /// infinity if no triangle is near.
+    /// Returns the greatest depth found, in the part's unit; it is minus the least distance found if no sample is inside.
     pub(crate) fn deepest(&self, frame: &ToolFrame, rng: &mut Rng) -> f64 {
-        let mut candidates = Vec::new();
-        for (id, ball) in self.bounding_balls.iter().enumerate() {
-            let p = self.to_tool_frame(frame, ball.centre);
-            let radius = ball.radius * (1.0 + 1e-9);
-            if self.is_near(p, radius / self.length) {
-                candidates.push((self.depth(p) + radius, id));
+        let starts = self.deepest_samples(frame, EFFORT, rng).into_iter().take(CLIMBS);
+        let depth = |p| self.depth(p);
+        let climb = |start| self.climb(frame, start, STEPS_PER_CLIMB, depth, rng).value;
+        starts.map(climb).fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// Returns samples of the triangles that may be deepest, the deepest first. The effort is the maximum number of these
+    /// triangles, and the number of samples of each kind over all of them and at least per triangle.
+    pub(crate) fn deepest_samples(
+        &self,
+        frame: &ToolFrame,
+        [max_triangles, total, least]: [usize; 3],
+        rng: &mut Rng,
+    ) -> Vec<Sample> {
+        let [radius, height] = self.oracle.extent();
+        // No point of a ball beside the tool's bounding cylinder is nearer than that.
+        let depth_bound = |ball: &Ball| {
+            let [x, y, z] = self.to_tool_frame(frame, ball.centre);
+            let gap = (x.hypot(y) - radius).max(0.0).hypot((z - height).max(-z).max(0.0));
+            if gap > 0.0 { ball.radius - gap * self.length } else { f64::INFINITY }
+        };
+        let bounds = self.group_balls.iter().map(depth_bound).enumerate();
+        let mut groups: Vec<(usize, f64)> = bounds.collect();
+        groups.sort_by(|a, b| b.1.total_cmp(&a.1));
+        let (mut best, mut samples, mut candidates) = (f64::NEG_INFINITY, Vec::new(), Vec::new());
+        for (group, bound) in groups {
+            if bound < best {
+                break;
+            }
+            let members = self.bounding_balls.iter().enumerate().skip(TRIANGLES_PER_GROUP * group);
+            for (triangle, ball) in members.take(TRIANGLES_PER_GROUP) {
+                if depth_bound(ball) < best {
+                    continue;
+                }
+                let point = self.to_tool_frame(frame, ball.centre);
+                let value = self.depth(point);
+                candidates.push((value + ball.radius * (1.0 + 1e-9), triangle));
+                if value > best {
+                    best = value;
+                    samples = vec![Sample { triangle, point, value }];
+                }
             }
         }
         candidates.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let count =
-            (TOTAL_SAMPLES / candidates.len().max(1)).clamp(SAMPLE_LIMITS[0], SAMPLE_LIMITS[1]);
-        let depth = |p| self.depth(p);
-        let mut best = f64::NEG_INFINITY;
-        let mut starts: Vec<Sample> = Vec::new();
-        for (bound, id) in candidates.into_iter().take(MAX_TRIANGLES) {
+        let count = (total / candidates.len()).clamp(least, MAX_SAMPLES_PER_TRIANGLE);
+        for (bound, triangle) in candidates.into_iter().take(max_triangles) {
             if bound <= best {
                 break;
             }
-            let samples = self.sample(frame, id, count, depth, rng);
-            best = best.max(samples[0].value);
-            starts.extend(samples.into_iter().take(MAX_CLIMBS_PER_TRIANGLE));
+            let sampled = self.sample(frame, triangle, count, |p| self.depth(p), rng);
+            best = best.max(sampled[0].value);
+            samples.extend(sampled.into_iter().take(MAX_CLIMBS_PER_TRIANGLE));
         }
-        starts.sort_by(|a, b| b.value.total_cmp(&a.value));
-        let climb = |start| self.climb(frame, start, STEPS_PER_CLIMB, depth, rng).value;
-        starts.into_iter().take(CLIMBS).map(climb).fold(f64::NEG_INFINITY, f64::max)
+        samples.sort_by(|a, b| b.value.total_cmp(&a.value));
+        samples
     }
 
     /// Returns whether a ball of the tool's frame overlaps the tool's bounding cylinder.

@@ -38,7 +38,7 @@ const NEAR: &str = "of them near";
 const UNDECIDED: &str = "undecided";
 
 impl Pair<'_> {
-    /// Compares random motions with samples until `count` of them are proved clear.
+    /// Compares random motions with samples until at least `count` of them are proved clear, and one touches.
     fn compare_motions(&self, count: usize) -> Tally {
         let mut rng = Rng::new(self.seed);
         let brute = BruteForce::new(&self.part.mesh, &self.oracle, self.length());
@@ -46,7 +46,7 @@ impl Pair<'_> {
             Certifier::new(&self.part.bvh, self.tool).expect("a tool with a profile");
         let mut tally = Tally::default();
         for k in 0..MAX_DRAWS_PER_PROVED * count {
-            if tally.count(PROVED) == count as u64 {
+            if tally.count(PROVED) >= count as u64 && tally.count(IN_CONTACT) > 0 {
                 break;
             }
             let kind = MotionKind::ALL[k % MotionKind::ALL.len()];
@@ -189,7 +189,7 @@ fn no_sample_of_a_clear_motion_is_inside() {
     let tools: &[&str] = if is_full_run("MOTIONS") { &ALL_TOOLS } else { &ALL_TOOLS[..4] };
     let tallies = Pairs { parts: &parts, tools, seed: 11 }.compare(oracle, |pair| {
         let tally = pair.compare_motions(count);
-        let is_enough = tally.count(PROVED) == count as u64 && tally.count(IN_CONTACT) > 0;
+        let is_enough = tally.count(PROVED) >= count as u64 && tally.count(IN_CONTACT) > 0;
         assert!(is_enough, "{pair}: {tally:#?}");
         tally
     });
