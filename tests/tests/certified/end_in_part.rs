@@ -25,9 +25,8 @@ fn an_end_within_its_allowance_is_not_inside() {
 fn a_tool_entirely_inside_is_inside_with_any_allowance() {
     let pose = pose([0.0; 3], UP);
     let at_rest = motion(&pose, &pose);
-    let all = tool("Flat").info().surfaces.iter().map(|surface| (&*surface.name, 3.0));
     let certifier = certifier(&block([-100.0; 3], [100.0; 3]), "Flat");
-    let mut certifier = certifier.with_allowances(all).expect("surfaces");
+    let mut certifier = allowing(certifier, tool("Flat"), [3.0; 3]);
     assert!(matches!(certifier.check_pose(&pose), PoseVerdict::Inside(_)));
     assert!(matches!(certifier.check_motion(&at_rest, 0.2), MotionVerdict::Inside(_)));
 }

@@ -140,7 +140,8 @@ fn allowances_apply_to_each_surface_of_a_field() {
     assert_eq!(side.check_pose(&at(0.0, 0.0)), PoseVerdict::Clear);
     let slide = motion(&at(-1.0, 0.0), &at(1.0, 0.0));
     assert_eq!(side.check_motion(&slide, 1e-6), MotionVerdict::Clear);
-    let (_, depth, max_depth) = deeper(certifier().motion_depth(SurfaceId(0), &slide, 0.4, 1e-6));
+    let (_, depth, max_depth, _) =
+        deeper(certifier().motion_depth(SurfaceId(0), &slide, 0.4, 1e-6));
     assert!(depth.low <= 0.5 && 0.5 <= depth.high + 1e-9 && max_depth < 0.52, "{depth}");
     let bottom = certifier().motion_depth(SurfaceId(1), &slide, 0.0, 1e-6);
     assert_eq!(bottom, Ok(MotionDepth::Within));
@@ -151,14 +152,6 @@ fn allowances_apply_to_each_surface_of_a_field() {
     assert_eq!(witness.surface, SurfaceId(1));
     let rise = motion(&at(0.0, 0.0), &at(0.0, 0.8));
     assert!(touching(side.check_motion(&rise, 1e-6)).0 > 0.6);
-}
-
-#[test]
-fn every_tool_of_the_library_is_certified() {
-    let bvh = TriangleBvh::new(&plate());
-    for tool in touchoff_tools::TOOLS {
-        assert!(Certifier::new(&bvh, *tool).is_ok(), "{}", tool.info().name);
-    }
 }
 
 #[test]
@@ -252,7 +245,7 @@ fn the_bound_of_a_motion_is_not_below_a_steep_depth() {
     let tool: Interpreted = text.parse().expect("a tool");
     let mut certifier = certifier_of(&block([-0.1, -20.0, -5.0], [0.1, 20.0, 40.0]), &tool);
     let path = motion(&pose([-4.5, 0.0, 0.0], UP), &pose([3.5, 0.0, 0.0], UP));
-    let (.., max_depth) = deeper(certifier.motion_depth(SurfaceId(0), &path, 0.0, 1e-3));
+    let (_, _, max_depth, _) = deeper(certifier.motion_depth(SurfaceId(0), &path, 0.0, 1e-3));
     assert!((9.0..9.5).contains(&max_depth), "{max_depth}");
 }
 

@@ -193,7 +193,7 @@ fn depths_along_very_long_motions_contain_the_exact_depth() {
         let below = rng.between(0.2, 0.8);
         let ends = [-from, to].map(|x| pose([x, 0.3, -below], UP));
         let motion = motion(&ends[0], &ends[1]);
-        let (at, depth, _) = deeper(certifier.motion_depth(SurfaceId(0), &motion, 0.0, 1e-9));
+        let (at, depth, ..) = deeper(certifier.motion_depth(SurfaceId(0), &motion, 0.0, 1e-9));
         let beside = at.mul_add(from + to, -from).abs();
         let exact = (below - beside) * std::f64::consts::FRAC_1_SQRT_2;
         assert!(depth.low <= exact && exact <= depth.high, "{exact} and {depth:?}");

@@ -150,7 +150,7 @@ fn a_margin_that_a_point_violates_is_known_to_rounding() {
         let beside = narrow(point + 20.0 * out, out, 1.0, &mut rng);
         let mut certifier = certifier_of(&soup(&[[point.into(); 3], beside]), &tool);
         let found = certifier.motion_depth(SurfaceId(0), &motion(&pose, &pose), -1.0, 0.0);
-        let (_, found, _) = deeper(found);
+        let (_, found, ..) = deeper(found);
         assert_contains(found, &depth(&centre(&pose), point.into()), &format!("{pose:?}"));
     }
 }

@@ -209,12 +209,8 @@ impl Case {
     }
 
     fn certifier<'a>(&self, bvh: &'a TriangleBvh, tool: &'a Interpreted) -> Certifier<'a> {
-        let allowed = self.allowed.iter().enumerate();
-        let mut certifier = Certifier::new(bvh, tool).unwrap_or_else(|e| panic!("{e}: {self:?}"));
-        for (index, allowed) in allowed {
-            certifier = certifier.with_allowance(&format!("s{index}"), *allowed).expect("it");
-        }
-        certifier
+        let certifier = Certifier::new(bvh, tool).unwrap_or_else(|e| panic!("{e}: {self:?}"));
+        allowing(certifier, tool, self.allowed.iter().copied())
     }
 
     /// Returns samples of the block's faces, most of them nearest to points of the tool.

@@ -1,7 +1,9 @@
 //! Imports of most modules of these tests.
 
 pub(crate) use crate::brute::BruteForce;
-pub(crate) use crate::verdicts::{certifier, certifier_of, deeper, moved, touching, triangles};
+pub(crate) use crate::verdicts::{
+    allowing, certifier, certifier_of, deeper, moved, touching, triangles,
+};
 pub(crate) use crate::{UP, block, motion, plate, pose, soup, tool};
 pub(crate) use nalgebra::{Point3, Vector3};
 pub(crate) use touchoff::certify::{

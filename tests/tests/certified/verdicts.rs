@@ -14,6 +14,16 @@ pub(crate) fn certifier_of<'a>(mesh: &Mesh, tool: &'a dyn Tool) -> Certifier<'a>
     Certifier::new(bvh, tool).expect("a tool that is proved")
 }
 
+/// Returns a certifier with the allowances of a tool's surfaces, in their order.
+pub(crate) fn allowing<'a>(
+    certifier: Certifier<'a>,
+    tool: &dyn Tool,
+    allowed: impl IntoIterator<Item = f64>,
+) -> Certifier<'a> {
+    let names = tool.info().surfaces.iter().map(|surface| &*surface.name);
+    certifier.with_allowances(names.zip(allowed)).expect("surfaces")
+}
+
 /// Returns the time and the witness of a motion that touches.
 #[track_caller]
 pub(crate) fn touching(verdict: MotionVerdict) -> (f64, Witness) {
@@ -21,11 +31,13 @@ pub(crate) fn touching(verdict: MotionVerdict) -> (f64, Witness) {
     (at, witness)
 }
 
-/// Returns the time, the depth and its bound on the whole motion, where it is deeper than was asked.
+/// Returns the time, the depth, its bound on the whole motion and the witness, where it is deeper than was asked.
 #[track_caller]
-pub(crate) fn deeper(found: Result<MotionDepth, impl Debug>) -> (f64, Interval, f64) {
+pub(crate) fn deeper(found: Result<MotionDepth, impl Debug>) -> (f64, Interval, f64, Witness) {
     match found {
-        Ok(MotionDepth::Deeper { at, depth, max_depth, .. }) => (at, depth, max_depth),
+        Ok(MotionDepth::Deeper { at, depth, max_depth, witness }) => {
+            (at, depth, max_depth, witness)
+        }
         other => panic!("{other:?}"),
     }
 }

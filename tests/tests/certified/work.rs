@@ -63,12 +63,10 @@ fn work(certifier: &Certifier<'_>, query: Query, poses: &[Pose; 2]) -> u32 {
 }
 
 /// Returns a certifier with an allowance, a margin and no limit, in turns, on the surfaces of a tool.
-fn allowing<'a>(certifier: &Certifier<'a>, tool: &dyn Tool) -> Certifier<'a> {
+fn restricted<'a>(certifier: &Certifier<'a>, tool: &dyn Tool) -> Certifier<'a> {
     let is_profile = tool.info().is_exact();
     let allowed = [0.3, if is_profile { -0.2 } else { 0.1 }, f64::INFINITY];
-    let names = tool.info().surfaces.iter().map(|surface| surface.name.as_ref());
-    let allowances = names.zip(allowed.into_iter().cycle());
-    certifier.clone().with_allowances(allowances).expect("allowances")
+    allowing(certifier.clone(), tool, allowed.into_iter().cycle())
 }
 
 /// Bounds of triangles exist in vectors only; without them their boxes are all that rules them out.
@@ -107,9 +105,9 @@ fn works(level: Level) -> String {
             for (label, query) in queries {
                 write(label, &certifier, *query);
             }
-            let allowing = allowing(&certifier, tool(name));
+            let restricted = restricted(&certifier, tool(name));
             for (label, query) in queries.iter().filter(|(label, _)| label.starts_with("check")) {
-                write(&format!("{label} with allowances"), &allowing, *query);
+                write(&format!("{label} with allowances"), &restricted, *query);
             }
         }
     }

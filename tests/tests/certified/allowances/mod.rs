@@ -86,7 +86,7 @@ fn a_margin_that_a_thorn_breaks_in_passing_is_found() {
         let verdict = certifier.check_motion(&path, 1e-6);
         assert!(matches!(verdict, MotionVerdict::Near(time, _) if (time - at).abs() < 0.03));
         let flute = surface("Flat", "flute");
-        let (_, depth, max_depth) = deeper(certifier.motion_depth(flute, &path, -2.0, 1e-6));
+        let (_, depth, max_depth, _) = deeper(certifier.motion_depth(flute, &path, -2.0, 1e-6));
         assert!(depth.contains(-1.0) && (-1.0..-0.8).contains(&max_depth), "{depth} {max_depth}");
     }
 }
