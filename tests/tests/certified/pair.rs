@@ -17,11 +17,15 @@ const FILES: [(&str, Unit); 4] = [
 ];
 
 /// Names of counts: what is queried, a sample inside the tool, samples near the lower bound, an interval wider than tolerance
-/// and rounding together, a wrong answer.
+/// and rounding together, kinds of verdicts, a wrong answer.
 pub(crate) const QUERIED: &str = "queried";
 pub(crate) const IN_CONTACT: &str = "in contact";
 pub(crate) const REACHED: &str = "reached";
 pub(crate) const WIDER: &str = "wider";
+pub(crate) const CLEAR: &str = "clear";
+pub(crate) const NEAR: &str = "near";
+pub(crate) const TOUCHING: &str = "touching";
+pub(crate) const UNDECIDED: &str = "undecided";
 pub(crate) const VIOLATIONS: &str = "violations";
 
 pub(crate) struct Part {

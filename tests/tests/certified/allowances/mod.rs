@@ -1,13 +1,9 @@
 //! Allowances of surfaces and depths per surface, checked against known geometry and against the oracle's owners.
 
-mod sampled;
+pub(crate) mod sampled;
 
 use crate::prelude::*;
 use touchoff::certify::AllowanceError;
-
-fn names(tool: &dyn Tool) -> Vec<String> {
-    tool.info().surfaces.iter().map(|surface| surface.name.to_string()).collect()
-}
 
 fn surface(name: &str, surface: &str) -> SurfaceId {
     tool(name).info().surface_named(surface).expect("a surface")

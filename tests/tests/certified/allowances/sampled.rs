@@ -4,13 +4,16 @@
 //! It samples triangles and climbs from the best samples, toward greater depth below one surface or toward a greater excess
 //! over the allowances.
 
-use super::names;
 use crate::brute::Sample;
 use crate::motions::MotionKind;
-use crate::pair::{Part, generated_parts};
+use crate::pair::{
+    CLEAR, IN_CONTACT, NEAR, Pair, Pairs, QUERIED, TOUCHING, UNDECIDED, WIDER, generated_parts,
+};
 use crate::prelude::*;
 use crate::{oracle, overhang};
 use std::fmt::{Display, Formatter};
+use touchoff_tests::oracle::Meridian;
+use touchoff_tests::oracle::profile::Feature;
 use touchoff_tests::oracle::triangle::Point;
 
 const TOOLS: [&str; 10] = [
@@ -38,40 +41,42 @@ const CLIMBS: usize = 3;
 const STEPS_PER_CLIMB: usize = 250;
 
 /// A tool's surfaces with their allowances, and a part.
-struct SurfaceAllowances<'a> {
-    tool: &'a str,
-    part: &'a Part,
+pub(crate) struct SurfaceAllowances<'a> {
+    pub(crate) tool: &'a dyn Tool,
+    pub(crate) bvh: &'a TriangleBvh,
     /// The part's triangles and the tool's oracle.
-    brute: &'a BruteForce<'a>,
-    /// The surfaces' names, in the tool's order.
-    surface_names: Vec<String>,
+    pub(crate) brute: BruteForce<'a>,
     /// The allowances of the surfaces, in the part's unit. A negative one is a distance to keep.
-    allowances: Vec<f64>,
+    pub(crate) allowances: Vec<f64>,
+    /// Error bound of a depth.
+    pub(crate) rounding: f64,
+    /// Where few triangles are near, each gets at most so many times as many samples.
+    pub(crate) max_share: usize,
 }
 
 impl<'a> SurfaceAllowances<'a> {
-    /// Sets random allowances of the order of the depths that occur.
-    fn set_random_allowances(&mut self, rng: &mut Rng) {
+    /// Allows no depth of any surface.
+    pub(crate) fn new(
+        tool: &'a dyn Tool,
+        bvh: &'a TriangleBvh,
+        brute: BruteForce<'a>,
+    ) -> SurfaceAllowances<'a> {
+        let allowances = vec![0.0; tool.info().surfaces.len()];
+        let rounding = 64.0 * f64::EPSILON * brute.size;
+        SurfaceAllowances { tool, bvh, brute, allowances, rounding, max_share: 8 }
+    }
+
+    /// Sets random allowances, at most as large as `size` unless they are infinite.
+    pub(crate) fn set_random_allowances(&mut self, size: f64, rng: &mut Rng) {
         for allowed in &mut self.allowances {
-            let size = rng.power(-3.0, 0.7);
-            *allowed = match rng.bits() % 5 {
-                0 => 0.0,
-                1 => f64::INFINITY,
-                2 => -size,
-                _ => size,
-            };
+            let depth = size * rng.power(-4.0, 0.0);
+            *allowed = rng.pick(&[0.0, f64::INFINITY, -depth, depth]);
         }
     }
 
-    fn certifier(&self) -> Certifier<'a> {
-        let certifier = Certifier::new(&self.part.bvh, tool(self.tool)).expect("a profile");
-        let allowed = self.surface_names.iter().map(String::as_str).zip(self.allowances.clone());
-        certifier.with_allowances(allowed).expect("surfaces")
-    }
-
-    /// Returns the error bound of a depth.
-    fn rounding(&self) -> f64 {
-        64.0 * f64::EPSILON * self.brute.size
+    pub(crate) fn certifier(&self) -> Certifier<'a> {
+        let certifier = Certifier::new(self.bvh, self.tool).expect("a profile");
+        allowing(certifier, self.tool, self.allowances.iter().copied())
     }
 
     /// Forgets the margins: nothing is said of them where a tool is inside the part, or undecided.
@@ -92,18 +97,25 @@ impl<'a> SurfaceAllowances<'a> {
 
     /// Returns the distance of a point from a surface, in the part's unit.
     fn distance_to_surface(&self, surface: usize, p: Point) -> f64 {
-        self.brute.oracle.distance_to_surface(&self.surface_names[surface], p) * self.brute.length
+        let name = &self.tool.info().surfaces[surface].name;
+        self.brute.oracle.distance_to_surface(name, p) * self.brute.length
     }
 
     /// Returns the depth of a point, in the part's unit, if the point is inside and the surface is the nearest by more
-    /// than rounding. Returns negative infinity otherwise. At 2e-9 from a tangent joint, two distances differ by only
-    /// 1e-18.
+    /// than rounding, or meets another one at the corner that is the nearest. Returns negative infinity otherwise. At 2e-9
+    /// from a tangent joint, two distances differ by only 1e-18.
     fn depth(&self, surface: usize, p: Point) -> f64 {
         let depth = self.brute.depth(p);
-        let own_distance =
-            self.distance_to_surface(surface, p) + 8.0 * f64::EPSILON * self.brute.size;
-        let mut others = (0..self.surface_names.len()).filter(|other| *other != surface);
-        let is_nearest = others.all(|other| own_distance <= self.distance_to_surface(other, p));
+        let own_distance = self.distance_to_surface(surface, p);
+        let margin = 8.0 * f64::EPSILON * self.brute.size;
+        let nearest = self.brute.oracle.profile().nearest(&Meridian::of(p).dz);
+        let is_nearest = match nearest.feature {
+            Feature::Corner(_) => own_distance <= depth + margin,
+            Feature::Segment(_) => {
+                let mut others = (0..self.allowances.len()).filter(|other| *other != surface);
+                others.all(|other| own_distance + margin <= self.distance_to_surface(other, p))
+            }
+        };
         if depth >= 0.0 && is_nearest { depth } else { f64::NEG_INFINITY }
     }
 
@@ -116,23 +128,88 @@ impl<'a> SurfaceAllowances<'a> {
             let lack = || -self.distance_to_surface(surface, p) - allowed;
             if allowed < 0.0 { excess_depth.max(lack()) } else { excess_depth }
         };
-        let excesses = (0..self.surface_names.len()).map(excess).filter(|over| !over.is_nan());
+        let excesses = (0..self.allowances.len()).map(excess).filter(|over| !over.is_nan());
         excesses.fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// Checks that a witness is deeper than its surface's allowance, or nearer than the distance to keep.
-    fn assert_violates_allowance(&self, witness: &Witness, pose: &Pose, text: &str) {
+    /// Checks that a witness is below its surface by at least a depth or, if that is negative, no farther from it.
+    fn assert_shown(&self, allowed: f64, witness: &Witness, pose: &Pose, text: &str) {
         let p = self.brute.point_in_tool_frame(pose, witness.point);
-        let (slack, allowed) = (4.0 * self.rounding(), self.allowances[witness.surface.0]);
+        let slack = 4.0 * self.rounding;
         let depth = self.brute.depth(p);
         let distance = self.distance_to_surface(witness.surface.0, p);
-        let is_deeper = distance <= depth + slack && depth >= allowed.max(0.0) - slack;
-        assert!(is_deeper || distance <= -allowed + slack, "{text}: {depth} deep, {distance} away");
+        let is_deep = distance <= depth + slack && depth >= allowed.max(0.0) - slack;
+        assert!(is_deep || distance <= -allowed + slack, "{text}: {depth} deep, {distance} away");
+    }
+
+    /// Checks the certified depth of each surface at a pose.
+    pub(crate) fn check_depths(
+        &self,
+        certifier: &mut Certifier<'_>,
+        pose: &Pose,
+        tolerance: f64,
+        tally: &mut Tally,
+        rng: &mut Rng,
+    ) {
+        let samples = self.samples(pose, rng);
+        let mut max_depths = [0.0f64; 2];
+        for surface in 0..self.allowances.len() {
+            let penetration =
+                certifier.deepest_on(SurfaceId(surface), pose, tolerance).expect("a surface");
+            let text = format!("{self}, {surface} at {pose:?}, {tolerance}: {penetration:?}");
+            let Interval { low, high } = penetration.depth;
+            assert!(0.0 <= low && low <= high, "{text}");
+            let best = self.max_sample(pose, &samples, |p| self.depth(surface, p), rng);
+            let sampled = best.map_or(f64::NEG_INFINITY, |best| best.value);
+            assert!(sampled <= high + self.rounding, "{text}, {best:?}");
+            tally.add(QUERIED, 1);
+            tally.see(IN_CONTACT, sampled > 0.0);
+            tally.see(WIDER, high - low > 1.01 * tolerance + 1e-9);
+            if let Some(witness) = penetration.witness {
+                self.assert_shown(low, &witness, pose, &text);
+                assert_eq!(witness.surface, SurfaceId(surface), "{text}");
+            } else {
+                assert_eq!(low, 0.0, "{text}");
+            }
+            max_depths = [max_depths[0].max(low), max_depths[1].max(high)];
+        }
+        let tool_depth = certifier.deepest(pose, tolerance).depth;
+        let consistent = max_depths[0] <= tool_depth.high + self.rounding
+            && tool_depth.low <= max_depths[1] + self.rounding;
+        let text = format!("{max_depths:?} of each, {tool_depth:?} of all");
+        assert!(consistent, "{self} at {pose:?}: {text}");
+    }
+
+    /// Checks the verdict at a pose.
+    pub(crate) fn check_pose(&mut self, pose: &Pose, tally: &mut Tally, rng: &mut Rng) {
+        let verdict = self.certifier().check_pose(pose);
+        let text = format!("{self} at {pose:?}: {verdict:?}");
+        let is_clear = matches!(verdict, PoseVerdict::Clear | PoseVerdict::SurfaceOnly);
+        tally.add(QUERIED, 1);
+        tally.see(CLEAR, is_clear);
+        tally.see(NEAR, matches!(verdict, PoseVerdict::Near(_)));
+        tally.see(TOUCHING, matches!(verdict, PoseVerdict::Touching(_)));
+        tally.see(UNDECIDED, matches!(verdict, PoseVerdict::Undecided(_)));
+        let is_inside = matches!(verdict, PoseVerdict::Inside(_));
+        assert!(!is_inside || self.bvh.has_inside(), "{text}");
+        let most = match verdict {
+            PoseVerdict::Touching(witness) | PoseVerdict::Near(witness) => {
+                let allowed = self.allowances[witness.surface.0];
+                return self.assert_shown(allowed, &witness, pose, &text);
+            }
+            PoseVerdict::Undecided(high) => high,
+            _ => 0.0,
+        };
+        if !is_clear {
+            self.forget_margins();
+        }
+        let excess = self.max_excess_at(pose, rng);
+        assert!(excess <= most + 4.0 * self.rounding, "{text}: {excess}");
     }
 
     /// Returns samples of the triangles near a pose, with the value NaN.
     fn samples(&self, pose: &Pose, rng: &mut Rng) -> Vec<Sample> {
-        let (brute, frame) = (self.brute, self.brute.tool_frame(pose));
+        let (brute, frame) = (&self.brute, self.brute.tool_frame(pose));
         let max_margin =
             self.allowances.iter().fold(0.0, |max_margin: f64, allowed| max_margin.max(-allowed));
         let near = |id: &usize| {
@@ -144,7 +221,8 @@ impl<'a> SurfaceAllowances<'a> {
         while near.len() > MAX_TRIANGLES {
             near.swap_remove(rng.index(near.len()));
         }
-        let count = SAMPLES_PER_TRIANGLE * (MAX_TRIANGLES / near.len().max(1)).clamp(1, 8);
+        let count =
+            SAMPLES_PER_TRIANGLE * (MAX_TRIANGLES / near.len().max(1)).clamp(1, self.max_share);
         let samples = |id| brute.sample(&frame, id, count, |_| f64::NAN, rng);
         near.into_iter().flat_map(samples).collect()
     }
@@ -170,37 +248,31 @@ impl<'a> SurfaceAllowances<'a> {
 
 impl Display for SurfaceAllowances<'_> {
     fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
-        let allowed: Vec<_> = self.surface_names.iter().zip(&self.allowances).collect();
-        write!(f, "{} in {} with {allowed:?}", self.tool, self.part.name)
+        write!(f, "{} with {:?}", self.tool.info().name, self.allowances)?;
+        let vertices = self.brute.mesh.vertices();
+        if vertices.len() < 9 { write!(f, " at {vertices:?}") } else { Ok(()) }
     }
 }
 
-/// Runs a check for all parts and tools; the allowances are 0.
-fn for_all_parts_and_tools(
+/// Runs a check for all generated parts and some tools; the allowances are 0. Returns its counts.
+fn for_all_parts(
     tools: &[&str],
-    mut check: impl FnMut(&mut SurfaceAllowances<'_>, &mut Rng),
-) {
-    let mut rng = Rng::new(5);
-    for part in generated_parts() {
-        for name in tools {
-            let oracle = oracle(name);
-            let length = tool(name).info().unit.factor_to(part.mesh.unit());
-            let surface_names = names(tool(name));
-            let mut owned = SurfaceAllowances {
-                tool: name,
-                part: &part,
-                brute: &BruteForce::new(&part.mesh, &oracle, length),
-                allowances: vec![0.0; surface_names.len()],
-                surface_names,
-            };
-            check(&mut owned, &mut rng);
-        }
-    }
+    check: impl Fn(&mut SurfaceAllowances<'_>, &mut Tally, &mut Rng) + Sync,
+) -> Tally {
+    let pairs = Pairs { parts: &generated_parts(), tools, seed: 5 };
+    let tallies = pairs.compare(oracle, |pair: &Pair<'_>| {
+        let brute = BruteForce::new(&pair.part.mesh, &pair.oracle, pair.length());
+        let mut owned = SurfaceAllowances::new(pair.tool, &pair.part.bvh, brute);
+        let mut tally = Tally::default();
+        check(&mut owned, &mut tally, &mut Rng::new(pair.seed));
+        tally
+    });
+    tallies.into_iter().sum()
 }
 
 #[test]
 fn samples_are_within_the_certified_depth_of_their_surface() {
-    check_surface_depths(&["Fig73Exact", "TSlot", "BallEr16", "Lollipop"], 80);
+    check_surface_depths(&["Fig73Exact", "TSlot", "BallEr16", "Lollipop"], 70);
 }
 
 #[test]
@@ -215,87 +287,36 @@ fn samples_are_within_the_certified_depth_of_overhanging_profiles() {
 
 /// Checks the certified depth of each surface against samples; fails unless there are samples of more than `least` surfaces
 /// and poses.
-fn check_surface_depths(tools: &[&str], least: usize) {
-    let mut owners = 0;
-    for_all_parts_and_tools(tools, |owned, rng| {
-        let mut certifier = Certifier::new(&owned.part.bvh, tool(owned.tool)).expect("a profile");
-        let rounding = owned.rounding();
+fn check_surface_depths(tools: &[&str], least: u64) {
+    let tally = for_all_parts(tools, |owned, tally, rng| {
+        let mut certifier = owned.certifier();
         for k in 0..POSES {
-            let (pose, tolerance) = (owned.random_pose(rng), [0.0, 1e-6, 1e-3][k % 3]);
-            let samples = owned.samples(&pose, rng);
-            let mut max_depths = [0.0f64; 2];
-            for surface in 0..owned.surface_names.len() {
-                let penetration =
-                    certifier.deepest_on(SurfaceId(surface), &pose, tolerance).expect("a surface");
-                let text = format!("{owned}, {surface} at {pose:?}, {tolerance}: {penetration:?}");
-                let Interval { low, high } = penetration.depth;
-                assert!(0.0 <= low && low <= high, "{text}");
-                let best = owned.max_sample(&pose, &samples, |p| owned.depth(surface, p), rng);
-                if let Some(best) = best {
-                    assert!(best.value <= high + rounding, "{text}, {best:?}");
-                    owners += 1;
-                }
-                if let Some(witness) = penetration.witness {
-                    let p = owned.brute.point_in_tool_frame(&pose, witness.point);
-                    let depth = owned.brute.depth(p);
-                    assert!(depth >= low - rounding, "{text}: {depth}");
-                    let distance = owned.distance_to_surface(surface, p);
-                    assert!(distance <= depth.abs() + 4.0 * rounding, "{text}");
-                    assert_eq!(witness.surface, SurfaceId(surface), "{text}");
-                } else {
-                    assert_eq!(low, 0.0, "{text}");
-                }
-                max_depths = [max_depths[0].max(low), max_depths[1].max(high)];
-            }
-            let tool_depth = certifier.deepest(&pose, tolerance).depth;
-            let consistent = max_depths[0] <= tool_depth.high + rounding
-                && tool_depth.low <= max_depths[1] + rounding;
-            let text = format!("{max_depths:?} of each, {tool_depth:?} of all");
-            assert!(consistent, "{owned} at {pose:?}: {text}");
+            let pose = owned.random_pose(rng);
+            owned.check_depths(&mut certifier, &pose, [0.0, 1e-6, 1e-3][k % 3], tally, rng);
         }
     });
-    eprintln!("depths of surfaces: {owners} surfaces and poses with samples");
-    assert!(owners > least, "{owners}");
+    eprintln!("depths of surfaces: {tally}");
+    assert!(tally.count(IN_CONTACT) > least, "{tally}");
 }
 
 #[test]
 fn pose_verdicts_respect_allowances() {
-    let (mut clear, mut touching, mut undecided) = (0, 0, 0);
-    for_all_parts_and_tools(&TOOLS, |owned, rng| {
+    let tally = for_all_parts(&TOOLS, |owned, tally, rng| {
         for _ in 0..POSES {
-            owned.set_random_allowances(rng);
+            owned.set_random_allowances(5.0, rng);
             let pose = owned.random_pose(rng);
-            let verdict = owned.certifier().check_pose(&pose);
-            let text = format!("{owned} at {pose:?}: {verdict:?}");
-            let max_excess = match verdict {
-                PoseVerdict::Touching(witness) | PoseVerdict::Near(witness) => {
-                    touching += 1;
-                    owned.assert_violates_allowance(&witness, &pose, &text);
-                    continue;
-                }
-                PoseVerdict::Undecided(high) => high,
-                _ => 0.0,
-            };
-            let is_clear = matches!(verdict, PoseVerdict::Clear | PoseVerdict::SurfaceOnly);
-            clear += usize::from(is_clear);
-            undecided += usize::from(matches!(verdict, PoseVerdict::Undecided(_)));
-            if !is_clear {
-                owned.forget_margins();
-            }
-            let excess = owned.max_excess_at(&pose, rng);
-            assert!(excess <= max_excess + 4.0 * owned.rounding(), "{text}: {excess}");
+            owned.check_pose(&pose, tally, rng);
         }
     });
-    eprintln!("poses with allowances: {clear} clear, {touching} in contact, {undecided} undecided");
-    assert!(clear > 20 && touching > 20, "{clear} clear, {touching} in contact");
+    eprintln!("poses with allowances: {tally}");
+    assert!(tally.count(CLEAR) > 20 && tally.count(TOUCHING) + tally.count(NEAR) > 20, "{tally}");
 }
 
 #[test]
 fn motion_verdicts_respect_allowances() {
-    let (mut clear, mut touching, mut undecided) = (0, 0, 0);
-    for_all_parts_and_tools(&TOOLS, |owned, rng| {
+    let tally = for_all_parts(&TOOLS, |owned, tally, rng| {
         for k in 0..MOTIONS {
-            owned.set_random_allowances(rng);
+            owned.set_random_allowances(5.0, rng);
             let mut certifier = owned.certifier().with_budget(1 << 17);
             let kind = MotionKind::ALL[(5 * k) % MotionKind::ALL.len()];
             let path = owned.brute.random_motion(kind, rng);
@@ -303,22 +324,23 @@ fn motion_verdicts_respect_allowances() {
             let tolerance = [0.0, 1e-3][k % 2];
             let verdict = certifier.check_motion(&motion, tolerance);
             let text = format!("{owned} on {path:?}, {tolerance:e}: {verdict:?}");
+            let is_clear = matches!(verdict, MotionVerdict::Clear | MotionVerdict::SurfaceOnly);
+            tally.see(CLEAR, is_clear);
+            tally.see(UNDECIDED, matches!(verdict, MotionVerdict::Undecided(_)));
             let end = match verdict {
                 MotionVerdict::Touching(at, witness) | MotionVerdict::Near(at, witness) => {
-                    touching += 1;
-                    owned.assert_violates_allowance(&witness, &motion.pose(at), &text);
+                    tally.add(TOUCHING, 1);
+                    let allowed = owned.allowances[witness.surface.0];
+                    owned.assert_shown(allowed, &witness, &motion.pose(at), &text);
                     continue;
                 }
                 MotionVerdict::Undecided(at) => at,
                 _ => 1.0,
             };
-            let is_clear = matches!(verdict, MotionVerdict::Clear | MotionVerdict::SurfaceOnly);
-            clear += usize::from(is_clear);
-            undecided += usize::from(matches!(verdict, MotionVerdict::Undecided(_)));
             if !is_clear {
                 owned.forget_margins();
             }
-            let rounding = owned.rounding() + 64.0 * f64::EPSILON * motion.displacement().norm();
+            let rounding = owned.rounding + 64.0 * f64::EPSILON * motion.displacement().norm();
             for time in 0..TIME_SAMPLES {
                 let t = end * f64::from(time) / f64::from(TIME_SAMPLES - 1);
                 let excess = owned.max_excess_at(&path.pose(t), rng);
@@ -327,7 +349,6 @@ fn motion_verdicts_respect_allowances() {
             }
         }
     });
-    let text = format!("{clear} clear, {touching} in contact, {undecided} undecided");
-    eprintln!("motions with allowances: {text}");
-    assert!(clear > 10 && touching > 20, "{text}");
+    eprintln!("motions with allowances: {tally}");
+    assert!(tally.count(CLEAR) > 10 && tally.count(TOUCHING) > 20, "{tally}");
 }
