@@ -6,7 +6,6 @@
 
 use crate::prelude::*;
 use std::cell::Cell;
-use touchoff_tests::oracle::Meridian;
 use touchoff_tests::oracle::triangle::{Point, nearest, point};
 use touchoff_tests::oracle::vector::{add, distance, dot, sub, unit};
 
@@ -37,7 +36,9 @@ pub(crate) struct Ball {
 
 pub(crate) struct BruteForce<'a> {
     pub(crate) mesh: &'a Mesh,
-    pub(crate) oracle: &'a Nearest,
+    pub(crate) oracle: &'a dyn Oracle,
+    /// The tool by its profile, if its depth is the distance to that.
+    pub(crate) profile: Option<&'a Nearest>,
     /// The tool's unit of length, in the part's unit.
     pub(crate) length: f64,
     /// The sum of the tool's size, the part's size and the part's distance from the origin, in the part's unit.
@@ -67,6 +68,11 @@ fn bounding_ball(balls: &[Ball]) -> Ball {
 impl<'a> BruteForce<'a> {
     /// Prepares the triangles of a mesh. `length` is the tool's unit of length in the mesh's unit.
     pub(crate) fn new(mesh: &'a Mesh, oracle: &'a Nearest, length: f64) -> BruteForce<'a> {
+        BruteForce { profile: Some(oracle), ..BruteForce::of_field(mesh, oracle, length) }
+    }
+
+    /// The same for a tool that is known by its depth alone.
+    pub(crate) fn of_field(mesh: &'a Mesh, oracle: &'a dyn Oracle, length: f64) -> BruteForce<'a> {
         let [low, high] = mesh.bounds();
         let [radius, height] = oracle.extent();
         let max_coordinate = low.coords.amax().max(high.coords.amax());
@@ -83,6 +89,7 @@ impl<'a> BruteForce<'a> {
             size: (high - low).norm() + max_coordinate + (radius + height) * length,
             bounding_balls: balls,
             evaluations: Cell::new(0),
+            profile: None,
             mesh,
             oracle,
         }
@@ -123,7 +130,9 @@ impl<'a> BruteForce<'a> {
     /// Returns the depth of a point of the tool's frame, in the part's unit; it is negative outside.
     pub(crate) fn depth(&self, p: Point) -> f64 {
         self.evaluations.set(self.evaluations.get() + 1);
-        self.oracle.profile().depth(&Meridian::of(p).dz) * self.length
+        let field = if self.profile.is_some() { None } else { self.oracle.evaluate(p) };
+        let depth = field.map_or_else(|| -self.oracle.signed_distance(p), |inside| inside.depth);
+        depth * self.length
     }
 
     /// Returns the greatest depth found, in the part's unit; it is minus the least distance found if no sample is inside.

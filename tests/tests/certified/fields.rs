@@ -1,118 +1,46 @@
 //! Tools known only by their depth field and its Lipschitz bound.
 
+use crate::allowances::sampled::SurfaceAllowances;
+use crate::pair::{IN_CONTACT, TOUCHING, WIDER};
 use crate::prelude::*;
-use crate::to_tool;
 use touchoff::certify::AllowanceError;
 use touchoff_tests::oracle;
 
 /// The library's tools without a profile.
 const TOOLS: [&str; 5] = ["Fig73", "Cylinder", "UnitSphere", "Block", "LBracket"];
 
-/// A sphere half as large as a tool without a profile, of which the tool may touch the surface.
-struct Sphere {
-    name: &'static str,
-    oracle: Box<dyn Oracle>,
-    tool: &'static dyn Tool,
-    /// The tool's unit of length, and its size, in mm.
-    length: f64,
-    size: f64,
-    mesh: Mesh,
-}
-
-impl Sphere {
-    fn new(name: &'static str) -> Sphere {
-        let (tool, oracle) = (tool(name), oracle::of(name));
-        let info = tool.info();
-        let length = info.unit.factor_to(Unit::Millimetre);
-        let size = length * info.radius().max(info.reach().high);
-        let mesh = shapes::sphere(0.5 * size, 3, Unit::Millimetre).expect("a sphere");
-        Sphere { name, oracle, tool, length, size, mesh }
-    }
-
-    /// Returns a random pose near the surface, in any orientation.
-    fn random_pose(&self, rng: &mut Rng) -> Pose {
-        let quaternion = rng.quaternion();
-        let tip = Vector3::from(rng.direction()) * 0.5 * self.size * rng.between(0.7, 1.3);
-        Pose::from_quaternion(Point3::from(tip), quaternion).expect("a quaternion")
-    }
-
-    /// Returns eight random points of each triangle.
-    fn random_points(&self, rng: &mut Rng) -> Vec<Point3<f64>> {
-        let random_point = |[a, b, c]: [Point3<f64>; 3]| {
-            let [v, w] = rng.weights();
-            a + v * (b - a) + w * (c - a)
-        };
-        triangles(&self.mesh).flat_map(|corners| [corners; 8]).map(random_point).collect()
-    }
-
-    /// Returns the depth of a point in the tool, in mm, and the surface that owns it; `None` outside.
-    fn depth_and_owner(&self, pose: &Pose, point: Point3<f64>) -> Option<(f64, SurfaceId)> {
-        let evaluation = self.oracle.evaluate(to_tool(pose, self.length, point))?;
-        let surface = self.tool.info().regions[evaluation.owner].surface;
-        Some((evaluation.depth * self.length, surface))
-    }
-}
-
-/// A surface owns the points of its regions. No sample is deeper than the certified depth, nor one of a surface deeper than
-/// that of the surface, and a witness is at least as deep as the lower bound.
+/// Tools in any orientation at spheres half as large as they are, of which they may touch the surface. No sample is deeper
+/// than the certified depth, nor one of a surface deeper than that of the surface.
 #[test]
 fn samples_of_fields_are_within_the_certified_depths() {
-    const TOLERANCE: f64 = 1e-6;
     let mut rng = Rng::new(5);
-    for sphere in TOOLS.map(Sphere::new) {
-        let (name, coarse) = (sphere.name, 2e-2 * sphere.size);
-        let mut certifier = certifier_of(&sphere.mesh, sphere.tool);
-        let ([mut touching, mut touching_surfaces], [mut decided, mut wide]) = ([0; 2], [0; 2]);
+    for name in TOOLS {
+        let (tool, oracle) = (tool(name), oracle::of(name));
+        let length = tool.info().unit.factor_to(Unit::Millimetre);
+        let size = length * tool.info().radius().max(tool.info().reach().high);
+        let mesh = shapes::sphere(0.5 * size, 3, Unit::Millimetre).expect("a sphere");
+        let bvh = TriangleBvh::new(&mesh);
+        let brute = BruteForce::of_field(&mesh, &*oracle, length);
+        let mut field =
+            SurfaceAllowances { rounding: 1e-9, ..SurfaceAllowances::new(tool, &bvh, brute) };
+        let mut certifier = field.certifier();
+        let (coarse, mut decided, mut tally) = (2e-2 * size, 0, Tally::default());
         for _ in 0..24 {
-            let pose = sphere.random_pose(&mut rng);
-            let at = |point| sphere.depth_and_owner(&pose, point);
-            let witness_depth = |witness: &Witness| at(witness.point).expect("inside").0;
-            let penetration = certifier.deepest(&pose, coarse);
-            let Interval { low, high } = penetration.depth;
-            let samples = sphere.random_points(&mut rng).into_iter().filter_map(at);
-            let sampled = samples.map(|(depth, _)| depth).fold(0.0, f64::max);
-            let text = format!("{name} {pose:?}: {sampled} in {penetration:?}");
-            assert!(sampled <= high + 1e-9, "{text}");
-            if let Some(witness) = penetration.witness {
-                touching += 1;
-                assert!(low <= witness_depth(&witness) + 1e-9, "{text}");
-            }
-            decided += usize::from(high - low <= 1.01 * coarse);
-            let verdict = certifier.check_pose(&pose);
-            match verdict {
-                PoseVerdict::Touching(_) => assert!(high > 0.0, "{text}"),
-                PoseVerdict::Undecided(max_depth) => assert!(sampled <= max_depth + 1e-9, "{text}"),
-                _ => assert!(sampled == 0.0, "{text}: {verdict:?}"),
-            }
+            let tip = Vector3::from(rng.direction()) * 0.5 * size * rng.between(0.7, 1.3);
+            let pose = Pose::from_quaternion(tip.into(), rng.quaternion()).expect("a quaternion");
+            field.check_depths(&mut certifier, &pose, 1e-6, &mut tally, &mut rng);
+            field.check_pose(&pose, &mut tally, &mut rng);
+            let sampled = field.brute.deepest(&field.brute.tool_frame(&pose), &mut rng);
+            let depth = certifier.deepest(&pose, coarse).depth;
             let clearance = certifier.clearance(&pose, coarse).distance;
-            let is_consistent = sampled == 0.0 || clearance.low == 0.0;
-            assert!(clearance.low <= clearance.high && is_consistent, "{text}: {clearance}");
-
-            let tool_depth = certifier.deepest(&pose, TOLERANCE).depth;
-            let mut max_depths = [0.0f64; 2];
-            for surface in (0..sphere.tool.info().surfaces.len()).map(SurfaceId) {
-                let found = certifier.deepest_on(surface, &pose, TOLERANCE).expect("a surface");
-                let text = format!("{name} {surface:?} at {pose:?}: {found:?}");
-                let Interval { low, high } = found.depth;
-                max_depths = [max_depths[0].max(low), max_depths[1].max(high)];
-                wide += usize::from(high - low > 1.01 * TOLERANCE);
-                let own = sphere.random_points(&mut rng).into_iter().filter_map(at);
-                let own = own.filter(|(_, owner)| *owner == surface);
-                let deeper: Vec<_> = own.filter(|(depth, _)| *depth > high + 1e-9).collect();
-                assert!(deeper.is_empty(), "{text}: {deeper:?}");
-                if let Some(witness) = found.witness {
-                    touching_surfaces += 1;
-                    assert_eq!(witness.surface, surface, "{text}");
-                    assert!(low <= witness_depth(&witness) + 1e-9, "{text}");
-                }
-            }
-            let is_consistent =
-                max_depths[0] <= tool_depth.high + 1e-9 && tool_depth.low <= max_depths[1] + 1e-9;
-            assert!(is_consistent, "{name} at {pose:?}: {max_depths:?}, {tool_depth:?} of all");
+            let text = format!("{name} {pose:?}: {sampled} in {depth}, {clearance} away");
+            assert!(sampled <= depth.high + 1e-9, "{text}");
+            assert!(clearance.low <= clearance.high, "{text}");
+            assert!(sampled <= 0.0 || clearance.low == 0.0, "{text}");
+            decided += usize::from(depth.width() <= 1.01 * coarse);
         }
-        assert!(touching > 6 && decided > 16, "{name}: {touching} and {decided} of 24");
-        let counts = (touching_surfaces, wide);
-        assert!(touching_surfaces > 10 && wide == 0, "{name}: {counts:?} touch and are wide");
+        assert!(decided > 16 && tally.count(TOUCHING) > 6, "{name}: {decided} of 24, {tally}");
+        assert!(tally.count(IN_CONTACT) > 10 && tally.count(WIDER) == 0, "{name}: {tally}");
     }
 }
 

@@ -17,7 +17,7 @@ pub(crate) fn bumpy(half: f64, divisions: u32) -> Mesh {
     moved(&flat, raise)
 }
 
-/// Returns a random point of the tool's surface and the outward direction there, both as `[d, z]`.
+/// Returns a random point of a profile and the outward direction there, both as `[d, z]`.
 fn random_surface_point(oracle: &Nearest, rng: &mut Rng) -> ([f64; 2], [f64; 2]) {
     let segments = oracle.profile().segments();
     let segment = &segments[rng.index(segments.len())];
@@ -55,7 +55,8 @@ impl BruteForce<'_> {
         let [a, b, c] = mesh.triangle(TriangleId(id));
         let [v, w] = rng.weights();
         let target = a + v * (b - a) + w * (c - a);
-        let ([d, z], [radial_part, axial_part]) = random_surface_point(self.oracle, rng);
+        let profile = self.profile.expect("a profile");
+        let ([d, z], [radial_part, axial_part]) = random_surface_point(profile, rng);
         let inward = -self.normal(id as usize, rng);
         let (axis, radial) = if is_facing {
             let orthogonal = Vector3::from(rng.across(inward.into()));
