@@ -1,11 +1,9 @@
-//! Clearance of a tool, checked against known geometry and against the points of a fine raster.
+//! Clearance of a tool, checked against known geometry and against samples.
 
+use crate::depth_oracle::PROFILES;
 use crate::prelude::*;
 use crate::to_tool;
 use std::sync::Arc;
-
-/// Number of divisions of the triangles' sides.
-const DIVISIONS: u32 = 20;
 
 #[test]
 fn clearance_of_a_ball_above_a_plate_is_its_height() {
@@ -36,72 +34,34 @@ fn random_pose(half: f64, rng: &mut Rng) -> Pose {
     pose([0; 3].map(|_| rng.between(-half, half)), axis.into())
 }
 
-/// Returns the distance of a raster of a part's points, which is at least that of the part, and a bound on the excess.
-fn raster_distance(mesh: &Mesh, oracle: &Nearest, pose: &Pose) -> [f64; 2] {
-    let (mut min_distance, mut spacing) = (f64::INFINITY, 0f64);
-    for [a, b, c] in triangles(mesh) {
-        let (u, v) = ((b - a) / f64::from(DIVISIONS), (c - a) / f64::from(DIVISIONS));
-        spacing = spacing.max(u.norm()).max(v.norm()).max((v - u).norm());
-        for i in 0..=DIVISIONS {
-            for j in 0..=DIVISIONS - i {
-                let p = to_tool(pose, 1.0, a + u * f64::from(i) + v * f64::from(j));
-                min_distance = min_distance.min(oracle.signed_distance(p));
-            }
-        }
-    }
-    [min_distance, spacing]
-}
-
-#[test]
-fn raster_points_are_within_the_certified_clearance() {
-    let sphere = shapes::sphere(8.0, 2, Unit::Millimetre).expect("a sphere");
-    let mut rng = Rng::new(7);
-    for mesh in [&sphere, &tube()] {
-        for name in ["Fig73Exact", "BullNose", "Lollipop", "TSlot", "BallEr16", "TaperedBall"] {
-            let oracle = Nearest::of(name);
-            let mut certifier = certifier(mesh, name);
-            let mut count = 0;
-            while count < 8 {
-                let pose = random_pose(25.0, &mut rng);
-                let [nearest, spacing] = raster_distance(mesh, &oracle, &pose);
-                let Interval { low, high } = certifier.clearance(&pose, 1e-6).distance;
-                let text = format!("{name} at {pose:?}: {nearest} by points, {low} to {high}");
-                if nearest <= 0.0 {
-                    assert_eq!(low, 0.0, "{text}");
-                    continue;
-                }
-                count += 1;
-                assert!(low <= nearest + 1e-9, "{text}");
-                // Every point of the mesh is within one raster side of a raster point.
-                assert!(nearest - spacing <= high, "{text}");
-                assert!(high - low < 2e-6, "{text}");
-            }
-        }
-    }
-}
-
 /// The oracle locates the tool's point: on the surface, as far from the witness as is said, and with the normal along which
-/// the distance grows.
+/// the distance grows. No sample of the part is nearer than that.
 #[test]
 fn the_nearest_points_are_on_both_surfaces() {
+    let sphere = shapes::sphere(8.0, 2, Unit::Millimetre).expect("a sphere");
     let mut rng = Rng::new(11);
     let (mut apart, mut contacts) = (0, 0);
-    for name in ["Fig73Exact", "BullNose", "Lollipop", "TSlot", "BallEr16", "TaperedBall"] {
+    for (mesh, name) in [sphere, tube()].iter().flat_map(|mesh| PROFILES.map(|name| (mesh, name))) {
         let oracle = Nearest::of(name);
-        let mut certifier = certifier(&tube(), name);
-        for _ in 0..200 {
-            let pose = random_pose(12.0, &mut rng);
+        let brute = BruteForce::new(mesh, &oracle, 1.0);
+        let mut certifier = certifier(mesh, name);
+        for k in 0..100 {
+            let pose = random_pose([12.0, 25.0][k % 2], &mut rng);
             let nearest = certifier.clearance(&pose, 1e-9);
-            let (on_tool, witness) = (nearest.on_tool.expect("a point"), nearest.witness);
+            let on_tool = nearest.on_tool.expect("a point");
+            let witness = nearest.witness.expect("a point");
             let text = format!("{name} at {pose:?}: {nearest:?}");
             // Both are known to the rounding error of the certifier, far below this.
             let off = oracle.signed_distance(to_tool(&pose, 1.0, on_tool.point));
-            assert!(off.abs() < 1e-9, "{text}");
+            assert!(off.abs() < 1e-9 && brute.witness(&pose, &witness).1 < 1e-9, "{text}");
             assert!((on_tool.normal.norm() - 1.0).abs() < 1e-12, "{text}");
-            let between = witness.expect("a point").point - on_tool.point;
+            let between = witness.point - on_tool.point;
             let signed = certifier.signed_distance(&pose, 1e-9);
+            assert!(nearest.distance.width() < 1e-8, "{text}");
             if nearest.distance.low > 0.0 {
                 apart += 1;
+                let sampled = -brute.deepest(&brute.tool_frame(&pose), &mut rng);
+                assert!(nearest.distance.low <= sampled + 1e-9, "{text}: {sampled} by samples");
                 assert!((between.norm() - nearest.distance.low).abs() < 1e-8, "{text}");
                 assert!((between / between.norm() - on_tool.normal).norm() < 1e-6, "{text}");
                 // The search before decides which triangle comes first, and so the bits.

@@ -2,7 +2,6 @@
 //! worked out by hand.
 
 use crate::prelude::*;
-use crate::supports::REGIONS;
 use touchoff::certify::Trajectory;
 
 /// Returns the depth of a part in a tool that stands upright at the origin.
@@ -43,17 +42,6 @@ fn a_piece_beside_the_middle_of_an_arc_is_found_inside() {
     let mut certifier = certifier.with_allowances(all).expect("surfaces");
     let verdict = certifier.check_pose(&pose([0.0; 3], UP));
     assert_eq!(verdict, PoseVerdict::Inside(SurfaceId(1)));
-}
-
-/// A rod of 2 µm about the axis has all of the shank in it that is restricted, and is thinner than the boxes in which points of
-/// that are sought.
-#[test]
-fn a_tool_about_a_thin_rod_is_not_taken_for_clear() {
-    let tool: Interpreted = REGIONS.parse().expect("a tool");
-    let all = [("ball", f64::INFINITY), ("shank", 1.0 - 1e-9)];
-    let certifier = certifier_of(&block([-1e-3, -1e-3, -50.0], [1e-3, 1e-3, 50.0]), &tool);
-    let mut certifier = certifier.with_allowances(all).expect("surfaces");
-    assert_eq!(certifier.check_pose(&pose([0.0; 3], UP)), PoseVerdict::Undecided(0.0));
 }
 
 /// A flat end and a ball that just touch: rounding would decide on the direction from a point to itself.
