@@ -1,7 +1,7 @@
-//! Item 14: equivalent scenes. The whole is rotated; the part is mirrored; the tool is spun; two clouds are merged, whose
-//! contacts come together and whose forces add; the scene is given in mm, inch and m, and converted by
-//! `Part::converted_to`. What loses no bit has the same bits, otherwise depths differ by no more than both clouds'
-//! `Probe::rounding_error_bound` and the rounding of coordinates.
+//! Items 6 and 14: equivalent scenes. The whole is rotated or translated; the part is mirrored; the tool is spun; two
+//! clouds are merged, whose contacts come together and whose forces add; the scene is given in mm, inch and m, and
+//! converted by `Part::converted_to`. What loses no bit has the same bits, otherwise depths differ by no more than both
+//! clouds' `Probe::rounding_error_bound` and the rounding of coordinates.
 
 use crate::leaves::by_triangle;
 use crate::prelude::*;
@@ -10,7 +10,8 @@ use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
 use std::f64::consts::TAU;
 use touchoff::{Contact, Unit};
 
-/// Spacing of the coordinates' grid. Near the tool, its multiples are stored without rounding in any tree.
+/// Spacing of the coordinates' grid. Near the tool, its multiples are stored without rounding in any tree, and sums with
+/// 2^40 are exact.
 const GRID: f64 = 1.0 / 1024.0;
 
 const MIRRORED: &str = "mirrored: other bits";
@@ -24,6 +25,7 @@ fn equivalent_scenes_have_equal_contacts() {
             let placed = Scene::new(subject, points.transformed(&pose, GRID), pose);
             let upright = Scene::new(subject, points, Pose::default());
             rotate(&placed, rng, checks);
+            translate(&placed, rng, checks);
             mirror(&upright, checks);
             if subject.oracle.is_revolved() {
                 spin(upright, rng, checks);
@@ -53,6 +55,49 @@ fn rotate(scene: &Scene<'_>, rng: &mut Rng, checks: &mut Checks) {
     let contacts = [scene.query().contacts, rotated.check(checks).contacts];
     let place = || format!("rotated to {}", format_pose(&rotated_pose));
     compare_depths([&contacts[0], &contacts[1]], bound(scene, &rotated), place, checks);
+}
+
+/// Translates part and tool together: by powers of two, where no coordinate loses a bit, and by distances at which each
+/// coordinate of a point and of the tip is rounded to half an ulp.
+fn translate(scene: &Scene<'_>, rng: &mut Rng, checks: &mut Checks) {
+    // All poses are made from one, since a rotation taken from a pose and given again is rounded.
+    let translated = |points: &PointSet, offset: Vector3<f64>| {
+        let pose = with_tip(&scene.pose, scene.pose.tip() + offset);
+        Scene::new(scene.subject, points.map(|p| p + offset), pose)
+    };
+    // Enough for a tree of two levels.
+    let many = PointSet::near_tool(scene.subject, 300, GRID, rng).transformed(&scene.pose, GRID);
+    let expected = without_points(&translated(&many, Vector3::zeros()));
+    for power in [10, 20, 30, 40] {
+        let moved = translated(&many, 2f64.powi(power) * Vector3::new(1.0, -1.0, 0.5));
+        let place = || format_pose(&moved.pose);
+        checks.never("translated: other bits", without_points(&moved) != expected, place);
+    }
+    let subject = scene.subject;
+    let lipschitz = subject.tool.info().depth.lipschitz.expect("proved of every tool");
+    let original = translated(&scene.points, Vector3::zeros());
+    for distance in [1e3, 1e6, 1e9, 1e12] {
+        let offset = distance * Vector3::new(1.0, -0.7, 0.3);
+        let moved = translated(&scene.points, offset);
+        let contacts = [&original, &moved].map(|scene| scene.check(checks).contacts);
+        let rounding = lipschitz * 3f64.sqrt() * f64::EPSILON * (offset.amax() + subject.scale());
+        let bound = original.error_bound() + moved.error_bound() + rounding;
+        let place = || format!("translated to {}", format_pose(&moved.pose));
+        compare_depths([&contacts[0], &contacts[1]], bound, place, checks);
+    }
+}
+
+/// Returns contacts and wrench without their points, as text of all numbers, so that different numbers give different
+/// text.
+fn without_points(scene: &Scene<'_>) -> String {
+    let mut answers = scene.query();
+    for contact in &mut answers.contacts {
+        contact.point = Point3::origin();
+    }
+    if let Some(deepest) = &mut answers.wrench.deepest {
+        deepest.point = Point3::origin();
+    }
+    format!("{:?} {:?}", answers.contacts, answers.wrench)
 }
 
 /// Returns the values of contacts that do not change with the frame, in a canonical order.

@@ -35,7 +35,6 @@ mod scaled;
 mod scene;
 mod tangent;
 mod text;
-mod translated;
 mod truth;
 mod validator;
 

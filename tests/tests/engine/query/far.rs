@@ -1,59 +1,9 @@
 //! Parts far from the world's origin, tiny and huge: the tree keeps its points relative to the centres of its leaves.
 
 use super::anywhere::all_tools;
-use super::compare::{check_tools, tools};
+use super::compare::check_tools;
 use super::parts;
 use crate::prelude::*;
-
-/// Rounds coordinates to multiples of 2^-10, so that sums with 2^40 are exact.
-fn on_a_grid(p: Point3<f64>) -> Point3<f64> {
-    p.map(|c| (c * 1024.0).round() / 1024.0)
-}
-
-fn moved(part: &Part, by: Vector3<f64>) -> Part {
-    let tree = part.tree();
-    let indices = 0..tree.len();
-    parts::of(
-        indices.clone().map(|i| on_a_grid(tree.point(i)) + by).collect(),
-        indices.clone().map(|i| tree.normal(i).into()).collect(),
-        indices.map(|i| tree.weight(i)).collect(),
-    )
-}
-
-/// Part and pose that are moved together, by an amount that loses no bit, give the same results to the last bit.
-#[test]
-fn exact_translations_do_not_change_the_result() {
-    let part = parts::tube(2_000);
-    let original = moved(&part, Vector3::zeros());
-    for power in [10, 20, 30, 40] {
-        let by = 2f64.powi(power) * Vector3::new(1.0, -1.0, 0.5);
-        let translated = moved(&part, by);
-        for (tool, oracle) in tools() {
-            let mut rng = Rng::new(21);
-            let mut compared = 0;
-            for k in 0..30 {
-                let pose = parts::about(&original, &*oracle, k, &mut rng);
-                let tip = on_a_grid(pose.tip());
-                // Larger tips would lose bits in the sum with `by`.
-                if tip.coords.amax() > 1024.0 {
-                    continue;
-                }
-                compared += 1;
-                let axis = pose.axis();
-                let at = |tip| Pose::from_axis(tip, axis).expect("a pose");
-                let a = Probe::new(&original, tool).wrench(&at(tip));
-                let mut b = Probe::new(&translated, tool).wrench(&at(tip + by));
-                if let Some(deepest) = &mut b.deepest {
-                    let point = a.deepest.expect("as deep").point;
-                    assert!((deepest.point - by - point).amax() <= 2f64.powi(power - 51));
-                    deepest.point = point;
-                }
-                assert_eq!(a, b, "{} 2^{power}", oracle.name());
-            }
-            assert!(compared > 15, "{}: {compared} poses compared", oracle.name());
-        }
-    }
-}
 
 /// After a translation that rounds the points, results agree with brute force on the rounded points.
 #[test]
