@@ -10,7 +10,7 @@ use touchoff_bench::haptics::roughness::{Case, ForceStats, HandPath, force_stats
 use touchoff_bench::haptics::wall;
 use touchoff_bench::page::{Page, Section};
 use touchoff_haptics::{EnergyBalance, Rendering};
-use touchoff_tests::haptics::{energy, sheet};
+use touchoff_tests::haptics::{block, energy, sheet};
 
 /// Measures the haptic loop: stable wall stiffness, force roughness, energy, a thin sheet and latencies.
 #[derive(Args)]
@@ -94,12 +94,12 @@ fn roughness_rows(quick: bool) -> Result<Vec<RoughnessRow>, Box<dyn Error>> {
 }
 
 fn tapping_rows() -> Vec<(&'static str, Vec<EnergyBalance>)> {
-    let part = energy::plane_part();
+    let part = block(20_000);
     let direct = Some(Rendering::Direct { scaled: false, damping: 0.0 });
     vec![
-        ("direct", energy::tapping_energy(&part, direct, false)),
-        ("direct, controlled", energy::tapping_energy(&part, direct, true)),
-        ("coupled, controlled", energy::tapping_energy(&part, None, true)),
+        ("direct", energy::tapping_energy(&part, 2.0, direct, false)),
+        ("direct, controlled", energy::tapping_energy(&part, 2.0, direct, true)),
+        ("coupled, controlled", energy::tapping_energy(&part, 2.0, None, true)),
     ]
 }
 

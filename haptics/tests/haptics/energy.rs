@@ -6,11 +6,9 @@ use touchoff::{Law, Part, Probe, Sampling};
 use touchoff_haptics::{
     Coupling, DeviceLimits, EnergyBalance, Rendering, ScriptedDevice, Session, SessionSettings,
 };
-use touchoff_tests::haptics::energy::{
-    height, plane_part, tapping_energy, tapping_energy_at_stiffness,
-};
-use touchoff_tests::haptics::tool;
+use touchoff_tests::haptics::energy::{height, tapping_energy};
 use touchoff_tests::haptics::wall::LIMITS;
+use touchoff_tests::haptics::{block, tool};
 
 const STRONG: DeviceLimits = DeviceLimits { force: 40.0, torque: 2000.0, ..LIMITS };
 
@@ -99,14 +97,14 @@ fn gradient_coupling_generates_at_most_the_lag_of_held_wrenches() {
 /// the displacements, `½ k Σ d²`, 0.125 N·mm in these taps.
 #[test]
 fn generated_energy_is_dissipated_up_to_the_damper_limit() {
-    let part = plane_part();
+    let part = block(20_000);
     let direct = Some(Rendering::Direct { scaled: false, damping: 0.0 });
     let steps = (1..5_000).map(|cycle| height(cycle) - height(cycle - 1));
     let limit = 0.5 * LIMITS.stiffness * steps.map(|step| step * step).sum::<f64>();
     let mut reached = [false; 2];
     for stiffness in [0.25, 0.5, 1.0, 2.0, 4.0] {
         let [free, passive] = [false, true].map(|passive| {
-            *tapping_energy_at_stiffness(&part, stiffness, direct, passive).last().expect("states")
+            *tapping_energy(&part, stiffness, direct, passive).last().expect("states")
         });
         assert!(free.input < 0.0 && free.dissipated == 0.0, "{free:?}");
         let exceeds_limit = free.generated > limit;
@@ -124,6 +122,6 @@ fn generated_energy_is_dissipated_up_to_the_damper_limit() {
         }
     }
     assert_eq!(reached, [true; 2]);
-    let coupled = *tapping_energy(&part, None, true).last().expect("states");
+    let coupled = *tapping_energy(&part, 2.0, None, true).last().expect("states");
     assert!(coupled.input > coupled.stored && coupled.generated < 2e-6, "{coupled:?}");
 }

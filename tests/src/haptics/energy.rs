@@ -1,30 +1,13 @@
 //! The energy balance of a hand that taps a plane.
 
 use super::wall::LIMITS;
-use super::{block, tool, upright};
+use super::{tool, upright};
 use touchoff::{Law, Part, Probe};
 use touchoff_haptics::{EnergyBalance, Rendering, ScriptedDevice, Session, SessionSettings};
 
-/// Returns the block whose top is the plane.
-pub fn plane_part() -> Part {
-    block(20_000)
-}
-
-/// Stiffness of the contact, N/mm³.
-const STIFFNESS: f64 = 2.0;
-
-/// Moves a ball up and down on a plane eight times per second for five seconds, whatever force it renders. Returns
-/// the energy balance after each cycle.
+/// Moves a ball up and down on a plane eight times per second for five seconds, whatever force it renders; the contact's
+/// stiffness is in N/mm³. Returns the energy balance after each cycle.
 pub fn tapping_energy(
-    part: &Part,
-    rendering: Option<Rendering>,
-    passive: bool,
-) -> Vec<EnergyBalance> {
-    tapping_energy_at_stiffness(part, STIFFNESS, rendering, passive)
-}
-
-/// The same for a contact of another stiffness, N/mm³.
-pub fn tapping_energy_at_stiffness(
     part: &Part,
     stiffness: f64,
     rendering: Option<Rendering>,
