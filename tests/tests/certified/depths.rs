@@ -5,7 +5,7 @@
 //! exceed the upper bound. The lower bound is proved by the witness, whose depth is evaluated by the same oracle.
 
 use crate::brute::{STEPS_PER_CLIMB, Sample, ToolFrame};
-use crate::pair::{IN_CONTACT, Pair, Pairs, QUERIED, REACHED, VIOLATIONS, WIDER, parts};
+use crate::pair::{IN_CONTACT, Pair, Pairs, QUERIED, REACHED, UNDECIDED, VIOLATIONS, WIDER, parts};
 use crate::prelude::*;
 use crate::{oracle, overhang};
 use touchoff::certify::Penetration;
@@ -108,7 +108,7 @@ impl Validation<'_> {
             }
             PoseVerdict::Near(_) => self.never(true, "a margin that nobody asked for"),
             PoseVerdict::Undecided(high) => {
-                self.tally.add("undecided", 1);
+                self.tally.add(UNDECIDED, 1);
                 let is_deeper = max_depth > high + self.rounding;
                 self.never(is_deeper, "deeper than what is undecided");
             }

@@ -5,13 +5,9 @@
 //! of them are there is known from samples of the tool's section, whose depth and nearest surface the oracle evaluates.
 
 use crate::depth_oracle::{DepthOracle, FIELDS, PROFILES};
-use crate::pair::{QUERIED, VIOLATIONS};
+use crate::pair::{INSIDE, QUERIED, TOUCHING, VIOLATIONS};
 use crate::prelude::*;
 use touchoff_tools::TOOLS;
-
-/// Names of counts: the correct verdict on a tool that is entirely inside, and on one that a face cuts.
-const INSIDE: &str = "found inside";
-const CUT: &str = "found cut";
 
 /// Checks the verdicts on random blocks around a tool. One face of each is a small distance inside or outside the tool's
 /// extent, and the others are farther away.
@@ -48,7 +44,7 @@ fn check_blocks(name: &str, blocks: usize) -> Tally {
         tally.add(QUERIED, 1);
         match (inside, verdict) {
             (true, PoseVerdict::Inside(_)) => tally.add(INSIDE, 1),
-            (false, PoseVerdict::Touching(_)) => tally.add(CUT, 1),
+            (false, PoseVerdict::Touching(_)) => tally.add(TOUCHING, 1),
             (_, PoseVerdict::Undecided(_)) => {}
             _ => {
                 let case = format!("{name} in {faces:?}, inside {inside}: {verdict:?} at {pose:?}");
@@ -69,7 +65,7 @@ fn a_tool_in_a_block_is_inside_unless_a_face_cuts_it() {
         for name in tools {
             let tally = check_blocks(name, blocks);
             let is_enough = |kind: &str| 4 * tally.count(kind) > blocks as u64;
-            assert!(is_enough(INSIDE) && is_enough(CUT), "{name}: {tally}");
+            assert!(is_enough(INSIDE) && is_enough(TOUCHING), "{name}: {tally}");
             tallies.push(tally);
         }
     }

@@ -25,6 +25,7 @@ pub(crate) const WIDER: &str = "wider";
 pub(crate) const CLEAR: &str = "clear";
 pub(crate) const NEAR: &str = "near";
 pub(crate) const TOUCHING: &str = "touching";
+pub(crate) const INSIDE: &str = "inside";
 pub(crate) const UNDECIDED: &str = "undecided";
 pub(crate) const VIOLATIONS: &str = "violations";
 

@@ -3,18 +3,12 @@
 //!
 //! `PIECES=10000 cargo test --release -p touchoff-tests --test certified pieces -- --nocapture` examines 10,000 tools.
 
+use crate::pair::{CLEAR, INSIDE, QUERIED, TOUCHING, UNDECIDED, VIOLATIONS, WIDER};
 use crate::prelude::*;
 use crate::to_tool;
 use std::fmt::Write;
 
-const QUERIES: &str = "queries";
-const CLEAR: &str = "clear";
-const TOUCHING: &str = "touching";
-const INSIDE: &str = "inside";
-const UNDECIDED: &str = "undecided";
-const WIDE: &str = "wide";
 const REFUSED: &str = "refused";
-const VIOLATIONS: &str = "violations";
 
 /// A solid of revolution, by the cross section right of the axis.
 #[derive(Clone, Copy, Debug)]
@@ -306,8 +300,8 @@ fn examine(case: &Case, rng: &mut Rng, tally: &mut Tally) {
             let Interval { low, high } = found.depth;
             let depth = |p: Point3<f64>| case.depths(&pose, p).nth(surface).expect("it");
             let sampled = faces.iter().map(|p| depth(*p)).fold(0.0, f64::max);
-            tally.add(QUERIES, 1);
-            tally.see(WIDE, high - low > 1.01 * tolerance);
+            tally.add(QUERIED, 1);
+            tally.see(WIDER, high - low > 1.01 * tolerance);
             let is_shown = low == 0.0
                 || found.witness.as_ref().is_some_and(|w| depth(w.point) >= low - rounding);
             let is_false = sampled > high + rounding || !is_shown;
@@ -319,7 +313,7 @@ fn examine(case: &Case, rng: &mut Rng, tally: &mut Tally) {
         tally.never(VIOLATIONS, is_false, || format!("{least} to {most}: {}", told(&clearance)));
 
         let verdict = case.certifier(&bvh, &tool).check_pose(&pose);
-        tally.add(QUERIES, 1);
+        tally.add(QUERIED, 1);
         let excess = case.excess(&pose, &case.samples(&pose, rng));
         let is_false = match &verdict {
             PoseVerdict::Touching(witness) => !case.is_witness(&pose, witness),
@@ -339,7 +333,7 @@ fn examine(case: &Case, rng: &mut Rng, tally: &mut Tally) {
         let at = |time: f64| pose.translated(way * time).expect("finite");
         let path = motion(&pose, &at(1.0));
         let verdict = case.certifier(&bvh, &tool).check_motion(&path, tolerance);
-        tally.add(QUERIES, 1);
+        tally.add(QUERIED, 1);
         tally.see(CLEAR, verdict == MotionVerdict::Clear);
         tally.see(TOUCHING, matches!(verdict, MotionVerdict::Touching(..)));
         tally.see(INSIDE, matches!(verdict, MotionVerdict::Inside(_)));
@@ -373,7 +367,10 @@ fn tools_of_pieces_without_a_profile_agree_with_samples() {
     eprintln!("{tally}");
     tally.assert_none(REFUSED);
     tally.assert_none(VIOLATIONS);
-    let is_seen = |kind| 200 * tally.count(kind) > tally.count(QUERIES);
+    let is_seen = |kind| 200 * tally.count(kind) > tally.count(QUERIED);
     assert!([CLEAR, TOUCHING, INSIDE].into_iter().all(is_seen), "{tally}");
-    assert!(1000 * (tally.count(UNDECIDED) + tally.count(WIDE)) <= tally.count(QUERIES), "{tally}");
+    assert!(
+        1000 * (tally.count(UNDECIDED) + tally.count(WIDER)) <= tally.count(QUERIED),
+        "{tally}"
+    );
 }

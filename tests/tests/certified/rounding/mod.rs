@@ -13,6 +13,7 @@ mod cases;
 mod cutters;
 mod truth;
 
+use crate::pair::{IN_CONTACT, QUERIED, REACHED, WIDER};
 use crate::prelude::*;
 use cases::{Case, FAMILIES};
 use cutters::Cutter;
@@ -25,14 +26,8 @@ use truth::{Point, Scene, TrianglePoint};
 const CASES: usize = 33_000;
 const SEED: u64 = 7;
 
-/// Names of counts: a point of the triangles is inside the tool; the search without the witness comes within 1e-9 of the
-/// tool's size of the lower bound; an interval wider than the tolerance plus the promised widening at both ends; an upper
-/// bound below a depth in 256 bits, or an interval that is negative or not finite; a witness off its triangle, or not as
-/// deep as the lower bound. A text has the tool, the triangles, the pose and the answer.
-const QUERIED: &str = "cases";
-const IN_CONTACT: &str = "in contact";
-const REACHED: &str = "reached";
-const WIDER: &str = "wider";
+/// Names of further counts: an upper bound below a depth in 256 bits, or an interval that is negative or not finite; a witness
+/// off its triangle, or not as deep as the lower bound. A text has the tool, the triangles, the pose and the answer.
 const UPPER: &str = "violations of upper bounds";
 const LOWER: &str = "violations of lower bounds";
 

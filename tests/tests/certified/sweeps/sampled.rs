@@ -6,7 +6,7 @@
 use crate::approach::{MotionSample, ReferenceMotion};
 use crate::motions::MotionKind;
 use crate::oracle;
-use crate::pair::{IN_CONTACT, Pair, Pairs, QUERIED, VIOLATIONS, is_full_run, parts};
+use crate::pair::{IN_CONTACT, Pair, Pairs, QUERIED, UNDECIDED, VIOLATIONS, is_full_run, parts};
 use crate::prelude::*;
 use touchoff_tests::oracle::triangle::winding_number;
 
@@ -32,10 +32,9 @@ const TIME_SAMPLES: u32 = 64;
 /// Maximum number of motions drawn per motion that is proved clear.
 const MAX_DRAWS_PER_PROVED: usize = 20;
 
-/// Names of counts: a motion proved clear, one of these that comes nearer than 0.001, an undecided motion.
+/// Names of further counts: a motion proved clear, and one of these that comes nearer than 0.001.
 const PROVED: &str = "proved";
 const NEAR: &str = "of them near";
-const UNDECIDED: &str = "undecided";
 
 impl Pair<'_> {
     /// Compares random motions with samples until at least `count` of them are proved clear, and one touches.
