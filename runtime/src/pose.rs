@@ -307,7 +307,9 @@ mod tests {
                 assert_eq!(Pose::default().translated(axis), Err(PoseError::NotFinite));
             }
         }
-        for norm in [0.0, 0.5, 1.0 - 1.1e-3, 1.0 + 1.1e-3, 1e200] {
+        let far = Point3::new(0.0, 0.0, -1.7e308);
+        assert_eq!(Pose::from_axis(far, Vector3::z()), Err(PoseError::NotFinite));
+        for norm in [0.0, 1e-160, 0.5, 1.0 - 1.1e-3, 1.0 + 1.1e-3, 1e200] {
             let axis = Pose::from_axis(origin, Vector3::new(0.0, 0.6, 0.8) * norm);
             assert!(matches!(axis, Err(PoseError::NotUnit { what: "axis", .. })), "{axis:?}");
             let quaternion = Pose::from_quaternion(origin, [0.0, 0.6, 0.0, 0.8].map(|c| c * norm));

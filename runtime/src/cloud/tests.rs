@@ -111,7 +111,10 @@ fn clouds_from_elsewhere_are_checked() {
     );
     let coordinate = CloudError::Coordinate { point: 1, coordinate: f64::INFINITY };
     assert_eq!(of(f64::INFINITY, 1.0, 1.0), Err(coordinate));
-    for z in [1.01, 0.0, f64::NAN, f64::INFINITY] {
+    for x in [f64::NAN, f64::NEG_INFINITY, 1e61] {
+        assert!(matches!(of(x, 1.0, 1.0), Err(CloudError::Coordinate { point: 1, .. })));
+    }
+    for z in [1.01, 0.0, 1e-320, f64::NAN, f64::INFINITY] {
         assert!(matches!(of(1.0, z, 1.0), Err(CloudError::Normal { point: 1, .. })));
     }
     for w in [-1.0, f64::NAN, f64::INFINITY] {
@@ -122,6 +125,28 @@ fn clouds_from_elsewhere_are_checked() {
     assert_eq!(short, Err(lengths));
     let none = Cloud::new(vec![], vec![], vec![], vec![], UNIT);
     assert_eq!(none, Err(CloudError::Empty));
+    assert!(of(1e60, 1.0, 1.0).is_ok());
+    for weight in [0.0, 1e308] {
+        let ids = vec![TriangleId(0), TriangleId(9)];
+        assert!(Cloud::new(at(1.0), up(1.0), ids, vec![weight; 2], UNIT).is_ok());
+    }
+}
+
+#[test]
+fn slivers_and_triangles_without_area_are_sampled() {
+    let tetrahedron = |height: f64| {
+        [[0.0; 3], [1.0, 0.0, 0.0], [0.0, height, 0.0], [0.0, 0.0, 1.0]].map(Point3::from)
+    };
+    let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3], [0, 1, 1]];
+    for (height, count) in [(1.0, 4), (1.0, 5), (1e-300, 4)] {
+        let mesh = Mesh::new(tetrahedron(height), faces[..count].to_vec(), UNIT).expect("a mesh");
+        for sampling in [Sampling::monte_carlo(50), Sampling::new(50)] {
+            let cloud = Cloud::sample(&mesh, sampling).expect("a cloud");
+            assert!(cloud.points().iter().all(|p| p.iter().all(|c| c.is_finite())), "{cloud:?}");
+            assert!(cloud.normals().iter().all(|n| (n.norm() - 1.0).abs() < 1e-12), "{cloud:?}");
+            assert!(cloud.weights().iter().all(|w| w.is_finite() && *w >= 0.0), "{cloud:?}");
+        }
+    }
 }
 
 fn random(mesh: &Mesh, count: usize) -> Cloud {

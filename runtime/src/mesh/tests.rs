@@ -34,6 +34,9 @@ fn rejects_invalid_meshes() {
         Mesh::new(vertices.to_vec(), triangles.to_vec(), UNIT)
     };
     assert_eq!(mesh(&[a, b, c], &[]), Err(MeshError::NoTriangle));
+    assert_eq!(mesh(&[], &[]), Err(MeshError::NoTriangle));
+    let line = [0.0, 1.0, 2.0, 3.0].map(|x| Point3::new(x, 0.0, 0.0));
+    assert_eq!(mesh(&line, &[[0, 1, 2], [1, 2, 3]]), Err(MeshError::NoArea { triangles: 2 }));
     assert_eq!(mesh(&[a, b, c], &[[0, 1, 1]]), Err(MeshError::NoArea { triangles: 1 }));
     let index = MeshError::Index { triangle: 1, index: 3, vertices: 3 };
     assert_eq!(mesh(&[a, b, c], &[[0, 1, 2], [0, 3, 1]]), Err(index));

@@ -4,7 +4,7 @@ use crate::prelude::*;
 use crate::truth::ExactPoint;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
-use touchoff::{Cloud, CloudError, Contact, Law, Part, Probe, TriangleId, Unit, Wrench};
+use touchoff::{Cloud, Contact, Law, Part, Probe, TriangleId, Unit, Wrench};
 use touchoff_tests::oracle::displaced;
 use touchoff_tests::oracle::space::{distance, exactly};
 use touchoff_tests::oracle::vector::{add, dot, sub, vector_product};
@@ -49,23 +49,16 @@ impl PointSet {
         self.map(|p| (pose.tip() + pose.rotation() * p.coords).map(|c| (c / grid).round() * grid))
     }
 
-    /// Makes the cloud of these points, in this order. The triangle of each point is its index.
-    pub(crate) fn cloud(
-        &self,
-        indices: impl Iterator<Item = usize> + Clone,
-    ) -> Result<Cloud, CloudError> {
-        Cloud::new(
+    /// Builds the part of these points, in this order. The triangle of each point is its index.
+    pub(crate) fn part_of(&self, indices: impl Iterator<Item = usize> + Clone) -> Part {
+        let cloud = Cloud::new(
             indices.clone().map(|k| self.points[k]).collect(),
             indices.clone().map(|k| self.normals[k]).collect(),
             indices.clone().map(|k| TriangleId(k as u32)).collect(),
             indices.map(|k| self.weights[k]).collect(),
             self.unit,
-        )
-    }
-
-    /// Builds the part of these points, in this order.
-    pub(crate) fn part_of(&self, indices: impl Iterator<Item = usize> + Clone) -> Part {
-        Part::from_cloud(&self.cloud(indices).expect("points that make a cloud"))
+        );
+        Part::from_cloud(&cloud.expect("points that make a cloud"))
     }
 
     pub(crate) fn part(&self) -> Part {
