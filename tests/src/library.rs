@@ -1,7 +1,7 @@
 //! The texts of the library's tools.
 
 use std::path::{Path, PathBuf};
-use touchoff::tool::{Interpreted, Tool};
+use touchoff::tool::Tool;
 use touchoff_dsl::CheckedTool;
 use touchoff_dsl::source::Source;
 
@@ -39,10 +39,4 @@ pub fn source(name: &str) -> Source {
 pub fn checked(name: &str) -> Box<CheckedTool> {
     let compiled = touchoff_dsl::compile(&source(name));
     compiled.outcome.unwrap_or_else(|refusal| panic!("{name}: {refusal:?}")).tool
-}
-
-/// Reads a tool of the library at run time.
-pub fn interpreted(name: &str) -> Interpreted {
-    let mut read = files().into_iter().map(|file| Interpreted::load(file).expect("a tool"));
-    read.find(|tool| tool.info().name == name).expect("a tool of the library")
 }

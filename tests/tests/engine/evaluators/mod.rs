@@ -65,6 +65,7 @@ fn all_evaluators_agree() {
     for_each_tool(|tool, oracle, source| {
         let points = points::all(oracle, 1);
         let loaded = interpreted(source);
+        assert_eq!(loaded.info(), tool.info());
         agreement::of(tool, oracle, &checked(source), &loaded, &points);
         let size = points::scale(oracle);
         agreement::of_slopes_and_boxes(tool, size, &loaded, &points[..points.len().min(4_000)]);

@@ -1,10 +1,9 @@
-//! The same bits at every SIMD level, from a fresh probe and a used one, compiled or interpreted.
+//! The same bits at every SIMD level, from a fresh probe and a used one.
 
 use super::compare::{LAWS_AND_WEIGHTS, tools};
 use super::parts;
 use crate::prelude::*;
 use touchoff_tests::evaluations::levels;
-use touchoff_tests::oracle;
 
 /// Formats all results of a probe at a pose. No two different numbers have the same text, the sign of zeros
 /// included.
@@ -65,27 +64,4 @@ fn fresh_and_reused_probes_give_the_same_bits() {
             }
         }
     }
-}
-
-#[test]
-fn compiled_and_interpreted_tools_give_the_same_bits() {
-    let mut count = 0;
-    for file in library::files() {
-        let interpreted = Interpreted::load(file).expect("a tool");
-        let name = &interpreted.info().name;
-        let (tool, oracle) = (library::tool(name), oracle::of(name));
-        assert_eq!(interpreted.info(), tool.info());
-        count += 1;
-        for part in parts() {
-            for (k, pose) in random_poses(&part, &*oracle, 24, 6).iter().enumerate() {
-                let (law, weights) = LAWS_AND_WEIGHTS[k % 6];
-                let by = |tool| {
-                    let probe = Probe::new(&part, tool).with_law(law);
-                    formatted_results(&mut probe.with_weights(weights), pose)
-                };
-                assert_eq!(by(tool), by(&interpreted), "{name}");
-            }
-        }
-    }
-    assert_eq!(count, touchoff_tools::TOOLS.len());
 }

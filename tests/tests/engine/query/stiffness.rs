@@ -77,23 +77,6 @@ fn stiffness_agrees_with_finite_differences() {
     }
 }
 
-#[test]
-fn an_interpreted_tool_has_the_same_stiffness() {
-    let part = parts::soup(6.0, 1_500, 6);
-    for (tool, oracle) in tools() {
-        let interpreted = library::interpreted(oracle.name());
-        let mut rng = Rng::new(32);
-        let mut compiled = Probe::new(&part, tool).with_law(Law::Gradient);
-        let mut read = Probe::new(&part, &interpreted as &dyn Tool).with_law(Law::Gradient);
-        for k in 0..30 {
-            let pose = parts::about(&part, &*oracle, k, &mut rng);
-            let [one, other] = [compiled.stiffness(&pose), read.stiffness(&pose)];
-            let difference = (one.matrix - other.matrix).norm();
-            assert!(difference <= 1e-12 * one.matrix.norm(), "{}: {difference:e}", oracle.name());
-        }
-    }
-}
-
 /// A flat end in a plane: a spring by the area.
 #[test]
 fn a_flat_face_is_a_spring() {
