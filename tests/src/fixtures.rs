@@ -21,7 +21,7 @@ pub fn interpreted(tool: &Restated, niceness: &str) -> Interpreted {
 
 /// Returns the tool of a [drawing][Restated::drawn] and the surfaces that cut, with a niceness of 1.
 pub fn drawn(drawing: &'static str, cutting: &'static str) -> Interpreted {
-    let tool = Restated::drawn("Drawn", drawing, &[]).cuts(cutting, |_, _, _| 1.0);
+    let tool = Restated::drawn("Drawn", drawing, &[]).cuts(cutting);
     interpreted(&tool, "1")
 }
 

@@ -44,9 +44,7 @@ const DRAWN: [(&str, &str, &str); 7] = [
 pub(crate) const ALL: [&str; 6] = ["HoleSaw", "Dished", "Bell", "Skirt", "Torus", "Wheel"];
 
 fn restated() -> [Restated; 7] {
-    DRAWN.map(|(name, drawing, cutting)| {
-        Restated::drawn(name, drawing, &[]).cuts(cutting, |_, _, _| 1.0)
-    })
+    DRAWN.map(|(name, drawing, cutting)| Restated::drawn(name, drawing, &[]).cuts(cutting))
 }
 
 /// The tools, compiled from texts with the same numbers.

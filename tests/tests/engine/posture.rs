@@ -17,7 +17,7 @@ const POINTS: [Known; 5] = [
 
 fn mill() -> Interpreted {
     let mill = Restated::drawn("Mill", "0 0; ball 3 3 about 0 3; shank 3 20, 0 20", &[]);
-    interpreted(&mill.cuts("ball", |_, _, _| 1.0), "1 - z/10 allow rising")
+    interpreted(&mill.cuts("ball"), "1 - z/10 allow rising")
 }
 
 fn near(found: Option<f64>, expected: Option<f64>, what: &str) {

@@ -9,7 +9,7 @@ use touchoff_tests::oracle::restated::Restated;
 /// Returns a ball of 3 mm radius about (0, 0, 3). Its niceness falls with the height, so that a deeper point may be nicer.
 fn ball() -> Interpreted {
     let ball = Restated::drawn("Ball", "0 0; ball 0 6 about 0 3", &[]);
-    interpreted(&ball.cuts("ball", |_, _, _| 1.0), "1 - z/10 allow rising")
+    interpreted(&ball.cuts("ball"), "1 - z/10 allow rising")
 }
 
 /// Returns the depth and the niceness of the point of the tool's axis at a height.

@@ -71,14 +71,10 @@ impl Restated {
         Restated { surfaces, ..Restated::of_profile(name, profile) }
     }
 
-    /// Sets the surfaces that cut, separated by spaces, and their niceness.
-    pub fn cuts(
-        mut self,
-        surfaces: &'static str,
-        niceness: fn(&str, f64, [f64; 2]) -> f64,
-    ) -> Restated {
+    /// Sets the surfaces that cut, separated by spaces, with a niceness of 1.
+    pub fn cuts(mut self, surfaces: &'static str) -> Restated {
         self.cutting = surfaces.split_whitespace().collect();
-        self.niceness = Niceness::Formula(niceness);
+        self.niceness = Niceness::Formula(|_, _, _| 1.0);
         self
     }
 
@@ -120,7 +116,9 @@ fn thesis() -> Vec<Restated> {
         _ => 2.0 * d * d + (z - 1.0) * (z - 1.0),
     };
     let fig_7_3 = |tool: Restated| match tool.name {
-        "Fig73Exact" => tool.cuts("nose flute", formula),
+        "Fig73Exact" => {
+            Restated { niceness: Niceness::Formula(formula), ..tool.cuts("nose flute") }
+        }
         _ => tool,
     };
     catalogue::read(catalogue::THESIS).into_iter().map(fig_7_3).collect()

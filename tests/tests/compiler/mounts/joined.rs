@@ -7,7 +7,7 @@ use touchoff_tests::oracle::restated::Restated;
 
 /// Returns the tool of one profile, by its [drawing][Restated::drawn], the surfaces that cut and the laws.
 fn written(drawing: &'static str, cutting: &'static str, laws: &str) -> Box<CheckedTool> {
-    let drawn = Restated::drawn("T", drawing, &[]).cuts(cutting, |_, _, _| 1.0);
+    let drawn = Restated::drawn("T", drawing, &[]).cuts(cutting);
     let profile = drawn.text(|number| number.to_f64().to_string());
     tool(&mounts(&format!("{profile} {laws}")))
 }
