@@ -319,8 +319,7 @@ impl<'a> Case<'a> {
     }
 }
 
-/// Asserts that wrench and contacts of one probe agree to the rounding of their sums, and exactly where nothing is
-/// added.
+/// Asserts that wrench and contacts of one probe agree, exactly where nothing is added. `sums` compares forces and torques.
 fn assert_consistent(compared: &Compared<'_>, bounds: &Bounds) {
     let (wrench, contacts) = (&compared.wrench, &compared.contacts[..]);
     assert_eq!(contacts.len(), wrench.colliding);
@@ -337,20 +336,4 @@ fn assert_consistent(compared: &Compared<'_>, bounds: &Bounds) {
     let (sum, mean) = push.map_or((0.0, 0.0), |push| (push.sum, push.mean));
     assert!((sum - wrench.integral).abs() <= bounds.integral, "{sum} {}", wrench.integral);
     assert_eq!(mean, if contacts.is_empty() { 0.0 } else { sum / contacts.len() as f64 });
-    let energy: f64 = contacts.iter().map(|c| 0.5 * c.weight * c.magnitude * c.magnitude).sum();
-    assert!((energy - wrench.energy).abs() <= bounds.energy);
-    let centre = compared.query.centre;
-    let (mut force, mut torque) = (Vector3::zeros(), Vector3::zeros());
-    for c in contacts {
-        let direction = match wrench.law {
-            Law::Facing if c.direction.dot(&c.normal) > 0.0 => continue,
-            Law::Thesis | Law::Facing => c.normal - c.direction,
-            Law::Gradient => c.gradient,
-        };
-        let f = c.weight * c.magnitude * direction;
-        force += f;
-        torque += (c.point - centre).cross(&f);
-    }
-    assert!((force - wrench.force).norm() <= bounds.force, "{force} {}", wrench.force);
-    assert!((torque - wrench.torque).norm() <= bounds.torque, "{torque} {}", wrench.torque);
 }

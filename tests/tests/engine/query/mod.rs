@@ -14,6 +14,5 @@ mod far;
 mod law;
 mod margins;
 mod parts;
-mod solids;
 mod stiffness;
 mod sums;
