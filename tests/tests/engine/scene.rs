@@ -43,14 +43,14 @@ fn moving_tool_and_part_together_keeps_the_wrench() {
         UnitQuaternion::from_euler_angles(0.4, -1.1, 2.3),
     );
     let mut scene = Scene::new(Unit::Millimetre);
-    let tube = scene.add_part(&part, moved.try_into().expect("finite")).expect("millimetres");
+    scene.add_part(&part, moved.try_into().expect("finite")).expect("millimetres");
     let tool = scene.add_tool(fig73());
     let mut probe = Probe::new(&part, fig73());
     let mut contacts = 0;
     for pose in poses(ScenePath::Hold, 100) {
         let expected = probe.wrench(&pose);
         scene.move_tool(tool, Pose::try_from(moved * pose.to_isometry()).expect("finite"));
-        let found = scene.pair_wrench(tool, tube);
+        let found = scene.wrench(tool);
         // A point within rounding of the surface may change sides.
         assert!(found.colliding.abs_diff(expected.colliding) <= 1);
         near("force", found.force, moved * expected.force);

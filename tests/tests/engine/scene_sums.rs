@@ -51,28 +51,3 @@ fn parts_together_have_the_greatest_depth_and_the_least_niceness() {
         }
     }
 }
-
-/// A part and its tool are turned together: force and torque turn as vectors do.
-#[test]
-fn force_and_torque_of_a_turned_part_are_in_the_frame_of_the_world() {
-    let tool = ball();
-    let points = [Point3::new(0.5, 1.0, 2.0), Point3::new(-1.5, 0.2, 4.0)];
-    let part = part_at(&points);
-    let measure = |frame: Isometry3<f64>| {
-        let mut scene = Scene::new(Unit::Millimetre);
-        let pose = Pose::try_from(frame).expect("a pose");
-        scene.add_part(&part, pose).expect("millimetres");
-        let id = scene.add_tool(&tool);
-        scene.move_tool(id, pose);
-        scene.wrench(id)
-    };
-    let still = measure(Isometry3::identity());
-    assert!(still.force.norm() > 1.0 && still.torque.norm() > 1.0);
-    for angles in [[0.3, 0.0, 0.0], [0.0, -0.8, 0.0], [0.1, 1.2, -2.0]] {
-        let turn = UnitQuaternion::from_euler_angles(angles[0], angles[1], angles[2]);
-        let frame = Isometry3::from_parts(Vector3::new(50.0, 60.0, -70.0).into(), turn);
-        let moved = measure(frame);
-        near("force", (moved.force - turn * still.force).norm(), 0.0);
-        near("torque", (moved.torque - turn * still.torque).norm(), 0.0);
-    }
-}
