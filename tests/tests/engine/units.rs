@@ -2,40 +2,22 @@
 
 use crate::prelude::*;
 use crate::query::compare::Case;
-use touchoff::mesh::shapes;
-use touchoff::scenes::{HEIGHT, ScenePath};
-use touchoff::{Cloud, Sampling};
+use crate::query::parts;
+use touchoff::scenes::ScenePath;
 use touchoff_tests::fixtures::part_in;
 use touchoff_tests::library::tool;
 use touchoff_tests::oracle::{Fig73, cylinder, d2_ball, fig_7_3_exact};
 
-/// D2Ball's 2 mm ball, flute and shank, in inches: 1 mm is 1/25.4 inch.
+/// D2Ball's 2 mm ball, flute and shank, in inches.
 const INCH_BALL: &str = r#"tool InchBall "2 mm ball end mill, written in inches" {
     units inch;
-    let mm = 1/25.4;
-    let r = mm;
-
-    curve nose = hypot(d, z - r) - r;
-    curve side = r - d;
-    curve end  = 40*mm - z;
-
-    region ball as ball cutting where z <= r, nose <= 0 {
-        depth:     -nose;
-        direction: away from (0, r);
+    profile {
+        start (0, 0);
+        arc to (1mm, 1mm) center (0, 1mm) as ball cutting;
+        line to (1mm, 5mm) as flute cutting;
+        line to (1mm, 40mm), (0, 40mm) as shank;
     }
-    region flute as flute cutting where r <= z <= 5*mm, side >= 0 {
-        depth:     side;
-        direction: (1, 0);
-    }
-    region shank where z >= 5*mm, 0 <= side <= end {
-        depth:     side;
-        direction: (1, 0);
-    }
-    region end as shank where 0 <= end <= side {
-        depth:     end;
-        direction: (0, 1);
-    }
-    niceness cutting: 1 - depth/r;
+    niceness cutting: 1 - depth/1mm;
 }"#;
 
 /// The unit sphere with a magnitude of its own formula, a plain number of the file's unit.
@@ -52,16 +34,6 @@ fn parsed(text: &str) -> Interpreted {
 }
 
 const UNITS: [Unit; 3] = [Unit::Millimetre, Unit::Inch, Unit::Metre];
-
-/// Returns the scenes' tube, given in mm and scaled to a unit.
-fn tube(unit: Unit, count: usize) -> Part {
-    let length_unit = Unit::Millimetre.factor_to(unit);
-    let mesh = shapes::tube(3.0, 5.0, HEIGHT, 256, 4, Unit::Millimetre).expect("a tube");
-    let cloud = Cloud::sample(&mesh, Sampling::monte_carlo(count).with_seed(3)).expect("a cloud");
-    let points = cloud.points().iter().map(|p| p * length_unit).collect();
-    let weights = cloud.weights().iter().map(|w| w * length_unit * length_unit).collect();
-    part_in(unit, points, cloud.normals().to_vec(), weights)
-}
 
 /// Scales a pose given in mm to a unit.
 fn scaled(pose: &Pose, unit: Unit) -> Pose {
@@ -113,7 +85,7 @@ fn every_unit_agrees_with_the_oracle() {
         (&inch_ball, &d2_ball()),
     ];
     for unit in UNITS {
-        let part = tube(unit, 6_000);
+        let part = parts::tube(6_000).converted_to(unit);
         for (tool, oracle) in tools {
             let mut case = Case::new(&part, tool, oracle);
             // Laws and weights take turns.

@@ -13,6 +13,6 @@ mod error;
 mod far;
 mod law;
 mod margins;
-mod parts;
+pub(crate) mod parts;
 mod stiffness;
 mod sums;
