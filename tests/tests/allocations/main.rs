@@ -19,36 +19,8 @@ use touchoff_tests::library;
 #[global_allocator]
 static COUNTED: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
-fn everything(probe: &mut Probe<'_>, poses: &[Pose]) -> usize {
-    poses
-        .iter()
-        .map(|pose| {
-            let posture = probe.posture(pose);
-            let deepest = probe.deepest(pose).map_or(0, |deepest| deepest.triangle.index() % 2);
-            usize::from(probe.detect(pose))
-                + posture.colliding
-                + deepest
-                + probe.wrench(pose).colliding
-                + probe.contacts(pose).len()
-        })
-        .sum()
-}
-
 // Without a test harness: the counts are those of the process.
 fn main() {
-    let part = part(20_000);
-    for law in [Law::Thesis, Law::Gradient] {
-        for path in ScenePath::ALL {
-            let poses = poses(path, 200);
-            let mut probe = Probe::new(&part, library::tool("Fig73")).with_law(law);
-            let first = everything(&mut probe, &poses);
-            assert!(first > 0);
-            let region = Region::new(COUNTED);
-            let second = everything(&mut probe, &poses);
-            let change = region.change();
-            assert_eq!((second, change.allocations, change.reallocations), (first, 0, 0));
-        }
-    }
     a_certifier();
     a_haptic_loop();
     growing::no_cycle_allocates();
