@@ -54,34 +54,6 @@ fn the_gradient_law_is_the_slope_of_the_energy() {
     }
 }
 
-const LAWS: [Law; 3] = [Law::Thesis, Law::Gradient, Law::Facing];
-
-/// Returns the upper face of a plate, z = 0, and nothing else.
-fn plate() -> Part {
-    let mut rng = Rng::new(13);
-    let points =
-        (0..4_000).map(|_| Point3::new(rng.between(-1.0, 1.0), rng.between(-1.0, 1.0), 0.0));
-    parts::of(points.collect(), vec![Vector3::z(); 4_000], vec![1e-3; 4_000])
-}
-
-/// A ball pressed into a plate from above is pushed up, and pushed harder the deeper it is.
-#[test]
-fn the_force_points_out_of_a_plate() {
-    let part = plate();
-    for tool in ["UnitSphere", "Fig73", "Fig73Exact", "D2Ball"] {
-        let tool = library::tool(tool);
-        for law in LAWS {
-            let mut last = 0.0;
-            for depth in [0.01, 0.1, 0.2, 0.4] {
-                let force = Probe::new(&part, tool).with_law(law).wrench(&upright(-depth)).force;
-                assert!(force.z > last, "{law} {depth} {force}");
-                assert!(force.x.hypot(force.y) < 0.1 * force.z);
-                last = force.z;
-            }
-        }
-    }
-}
-
 /// One point, worked out on paper. The ball (radius 1) enters the plate by 0.25 below its middle: `m = 0.25`, `u
 /// = -z`, `n = +z`.
 #[test]
@@ -105,22 +77,6 @@ fn one_contact_agrees_with_a_hand_calculation() {
         let deepest = wrench.deepest.expect("a contact").point;
         assert_eq!(deepest, Point3::new(10.0, 20.0, 30.0));
     }
-}
-
-/// The compliance centre turns with the tool: the ball comes from the side, +x, into a wall that faces +x.
-#[test]
-fn the_compliance_centre_turns_with_the_tool() {
-    let part = parts::of(vec![Point3::origin()], vec![Vector3::x()], vec![1.0]);
-    let tool = library::tool("UnitSphere");
-    let pose = Pose::from_axis(Point3::new(-0.25, 0.0, 0.0), Vector3::x()).expect("a pose");
-    let up = pose.rotation() * Vector3::x();
-    let centre = Point3::new(2.0, 0.0, 0.0);
-    let mut probe = Probe::new(&part, tool).with_law(Law::Thesis).with_centre(centre);
-    let wrench = probe.wrench(&pose);
-    assert_eq!(wrench.force, Vector3::new(0.5, 0.0, 0.0));
-    // From the centre, 2 along the tool's x, to the contact.
-    let want = (Vector3::new(0.25, 0.0, 0.0) - 2.0 * up).cross(&wrench.force);
-    assert!((wrench.torque - want).norm() < 1e-15 && want.norm() > 0.9);
 }
 
 /// Two faces of a thin sheet in one ball: under `facing` the far one exerts no force, and still counts.
