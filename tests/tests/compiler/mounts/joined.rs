@@ -44,7 +44,9 @@ fn a_cutter_in_a_nut_is_one_profile() {
 /// - equal radii leave no ring, and a seam that is no corner;
 /// - the plane cuts a cone;
 /// - the cone ends at z = 12 and the collar begins there: the collar's lower face is dropped with it;
-/// - the ball of radius 5 about z = 9 is cut below its middle and above it.
+/// - the ball of radius 5 about z = 9 is cut below its middle and above it;
+/// - the ring between the radii is a top face of the wider part below, and nothing of the pin's foot is left;
+/// - a concave arc is cut, which rises on the other side of its centre.
 const JOINED: &str = "\
 ball + er16 at 50 => 0 0; ball 3 3 about 0 3; flute 3 20; shank 3 50; nut 12.9 50, 14 51.1, 14 67.5, 0 67.5 \
     => ball flute => niceness cutting: 1 - depth/3;
@@ -58,7 +60,9 @@ cone + er16 at 6 => 0 0; face 2 0; cone 5 6; nut 12.9 6, 14 7.1, 14 23.5, 0 23.5
 cone + pin with d0 = 10 at 12 => 0 0; face 2 0; cone 8 12, 5 12; pin 5 22, 0 22 => face cone => niceness cone: 0.25;
 bulb + er16 at 6 => 0 0; face 3 0; neck 3 5; ball 4 6 about 0 9; nut 12.9 6, 14 7.1, 14 23.5, 0 23.5 => ball =>
 bulb + er16 at 12 => 0 0; face 3 0; neck 3 5; ball 5 9 about 0 9, 4 12 about 0 9; \
-    nut 12.9 12, 14 13.1, 14 29.5, 0 29.5 => ball =>";
+    nut 12.9 12, 14 13.1, 14 29.5, 0 29.5 => ball =>
+er16 + pin with d0 = 2 at 10 => 0 0; nut 12.9 0, 14 1.1, 14 10, 1 10; pin 1 20, 0 20 => =>
+neck + er16 at 2 => 0 0; face 5 0, 5 1; neck 4 2 about 8 5; nut 12.9 2, 14 3.1, 14 19.5, 0 19.5 => =>";
 
 #[test]
 fn mounted_files_are_the_same_tool_as_one_profile() {
@@ -72,18 +76,11 @@ fn mounted_files_are_the_same_tool_as_one_profile() {
         let parts: Vec<&str> = row.split("=>").map(str::trim).collect();
         let [files, drawing, cutting, laws] = parts[..] else { panic!("not a row") };
         let files: String = files.split(" + ").map(mounted).collect();
-        same(&tool(&mounts(&files)), &written(drawing, cutting, laws));
+        let (joined, written) = (tool(&mounts(&files)), written(drawing, cutting, laws));
+        same(&joined, &written);
+        let own = surfaces(&joined).into_iter().map(|name| name.rsplit('.').next().unwrap_or(name));
+        assert_eq!(own.collect::<Vec<_>>(), surfaces(&written));
     }
-}
-
-/// The ring between the radii is a top face of the wider one below. Nothing of the pin's foot is left.
-#[test]
-fn a_wide_part_below_keeps_the_ring() {
-    let joined = tool(&mounts(
-        "mount \"er16.tool\" as nut; mount \"pin.tool\" as pin with d0 = 2 at z = 10;",
-    ));
-    same(&joined, &written("0 0; nut 12.9 0, 14 1.1, 14 10, 1 10; pin 1 20, 0 20", "", ""));
-    assert_eq!(surfaces(&joined)[1], "pin.pin");
 }
 
 #[test]
@@ -115,23 +112,6 @@ fn an_inch_cutter_in_a_metric_nut() {
             (a, b) => assert_eq!(a.is_some(), b.is_some(), "{p:?}"),
         }
     }
-}
-
-/// A concave arc rises on the other side of its centre.
-#[test]
-fn the_plane_cuts_a_concave_arc() {
-    let neck = "tool Neck { units mm; profile { start (0, 0); line to (5, 0), (5, 1) as face;
-        arc to (3, 5) center (8, 5) concave as neck; line to (3, 9), (0, 9) as stem; } }";
-    let folder = tempfile::tempdir().expect("a folder");
-    std::fs::write(folder.path().join("neck.tool"), neck).expect("a writable folder");
-    let nut = include_str!("tools/er16.tool");
-    std::fs::write(folder.path().join("er16.tool"), nut).expect("a writable folder");
-    let text = mounts("mount \"neck.tool\" as neck; mount \"er16.tool\" as nut at z = 2;");
-    let source = touchoff_dsl::source::Source::new("own.tool", text);
-    let compiled = touchoff_dsl::compile(&source.with_path(folder.path().join("own.tool")));
-    let joined = compiled.into_tool().expect("a tool without errors");
-    let drawing = "0 0; face 5 0, 5 1; neck 4 2 about 8 5; nut 12.9 2, 14 3.1, 14 19.5, 0 19.5";
-    same(&joined, &written(drawing, "", ""));
 }
 
 /// A holder of two files, in another unit, is mounted as one.
