@@ -1,7 +1,7 @@
 //! Tools in a program: written in place and from a file, with all features of the language.
 
-use touchoff::tool::{Evaluations, Evaluators, Outputs, PointBatch, Tool};
-use touchoff::{Level, Unit};
+use touchoff::Unit;
+use touchoff::tool::{Evaluators, Tool};
 
 touchoff::include_tool!("../tools-library/tools/d2_ball.tool");
 
@@ -62,14 +62,6 @@ fn a_tool_may_have_the_name_of_a_type_that_its_code_uses() {
     assert!(names::Circle::contains([0.0, 0.0, 1.0]) && names::Lane::contains([0.0, 0.0, 1.0]));
 }
 
-/// Evaluates a tool at one point; `None` outside.
-fn at(tool: &dyn Tool, point: [f64; 3], length: f64) -> Option<(usize, Evaluations)> {
-    let (mut points, mut evaluation) = (PointBatch::default(), Evaluations::default());
-    points.push(point);
-    tool.evaluate(Level::new(), Outputs::EVERYTHING, &points, length, &mut evaluation);
-    (evaluation.inside[0] == 1).then(|| (evaluation.region[0] as usize, evaluation))
-}
-
 #[test]
 fn a_tool_from_a_file_equals_the_library_tool() {
     assert_eq!(D2Ball.info(), touchoff_tools::D2Ball.info());
@@ -97,19 +89,19 @@ fn an_inline_tool_has_the_written_values() {
 fn laws_and_units_do_not_mix() {
     // Above the middle of the floor, 0.02 inch deep, and the part in mm: a magnitude that the file writes stays the
     // file's number, and its gradient is per millimetre of the part.
-    let (region, evaluation) = at(&Bull, [0.01, 0.0, 0.02], 25.4).expect("inside");
-    assert_eq!(region, 1);
+    let evaluation = Bull::evaluate_point([0.01, 0.0, 0.02], 25.4).expect("inside");
+    assert_eq!(evaluation.region, 1);
     let is_close = |a: f64, b: f64| (a - b).abs() < 1e-14;
-    assert!(is_close(evaluation.depth[0], 0.02));
-    assert!(is_close(evaluation.magnitude[0], 3.0 * 0.02f64.powf(1.5)));
-    assert!(is_close(evaluation.niceness[0], 0.98));
-    assert!(is_close(evaluation.direction[2][0], -1.0));
-    assert!(is_close(evaluation.gradient[2][0], 4.5 * 0.02f64.sqrt() / 25.4));
+    assert!(is_close(evaluation.depth, 0.02));
+    assert!(is_close(evaluation.magnitude, 3.0 * 0.02f64.powf(1.5)));
+    assert!(is_close(evaluation.niceness, 0.98));
+    assert!(is_close(evaluation.direction[2], -1.0));
+    assert!(is_close(evaluation.gradient[2], 4.5 * 0.02f64.sqrt() / 25.4));
     // The shank has the law for all, and does not cut.
-    let (region, evaluation) = at(&Bull, [0.0, 0.23, 1.0], 25.4).expect("inside");
-    assert_eq!(region, 2);
+    let evaluation = Bull::evaluate_point([0.0, 0.23, 1.0], 25.4).expect("inside");
+    assert_eq!(evaluation.region, 2);
     let depth = 6.0 / 25.4 - 0.23;
-    assert!(is_close(evaluation.magnitude[0], 2.0 * depth));
-    assert_eq!(evaluation.niceness[0], 0.0);
-    assert!(at(&Bull, [0.24, 0.0, 1.0], 25.4).is_none());
+    assert!(is_close(evaluation.magnitude, 2.0 * depth));
+    assert_eq!(evaluation.niceness, 0.0);
+    assert!(Bull::evaluate_point([0.24, 0.0, 1.0], 25.4).is_none());
 }
