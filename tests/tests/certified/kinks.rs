@@ -95,6 +95,20 @@ fn chords(rng: &mut Rng) -> Restated {
     restated(format!("{}; shank {radius:.4} {top}, 0 {top}", &drawing[..drawing.len() - 2]))
 }
 
+/// The corner of a bull nose, or a ball, that meets its flute and its face nearly in line.
+fn rounded(rng: &mut Rng) -> Restated {
+    let (radius, flat) = (rng.power(-0.3, 1.0), rng.pick(&[0.0, 0.3, 2.0, 10.0]));
+    let height = rng.between(0.2, 3.0) * radius;
+    let mut turn = || rng.power(-5.0, -2.0) * rng.pick(&[1.0, -1.0]);
+    let (shift, rise) = (height * turn(), flat * turn());
+    let face = if flat > 0.0 { format!("face {flat} 0; ") } else { String::new() };
+    let (d, top) = (flat + radius, radius + height);
+    restated(format!(
+        "0 {rise}; {face}corner {d} {radius} about {flat} {radius}; flute {} {top}; top 0 {top}",
+        d + shift
+    ))
+}
+
 /// A tip of some hundredths below a shank of 20.
 fn tiny(rng: &mut Rng) -> Restated {
     let (tip, out) = (rng.power(-3.0, -1.0), rng.power(-6.0, -2.0));
@@ -135,7 +149,7 @@ fn compare(tool: &Restated, rng: &mut Rng, tally: &mut Tally) {
 fn samples_are_within_the_depth_of_surfaces_nearly_in_line() {
     let mut rng = Rng::new(70);
     let mut tally = Tally::default();
-    for kind in [tapered, grooved, chords, tiny] {
+    for kind in [tapered, grooved, chords, rounded, tiny] {
         for _ in 0..case_count("KINKS", 8) {
             compare(&kind(&mut rng), &mut rng, &mut tally);
         }
@@ -200,5 +214,27 @@ fn a_normal_at_an_acute_edge_leads_to_the_nearest_point() {
         let normal = found.on_tool.expect("a point").normal;
         let toward = (point - on_tool).normalize();
         assert!((normal - toward).norm() < 1e-6, "{near:?}: {normal:?} {toward:?}");
+    }
+}
+
+/// Face, flute and a body that leans in by 0.007 are equally far from the deepest point of the flute: by 40 digits, 2.3597058363740087.
+#[test]
+fn the_end_of_a_border_between_surfaces_nearly_in_line_is_found() {
+    let (corner, top) = ([30.817795231848585, 2.368075659712592], 17.86171960321537);
+    let tool = restated(format!(
+        "0 0; face {} 0; flute {} {}; body 30.707882638339523 {top}, 0 {top}",
+        corner[0], corner[0], corner[1]
+    ));
+    let outlined = Outlined::new(&tool);
+    let mesh = soup(&[[
+        [21.42478669762714, 21.897397303809065, -6.055441337304873],
+        [14.030211187872261, 18.811988592927168, 0.07516972074849951],
+        [15.147346530050466, 25.066581440050808, 5.067254492190802],
+    ]]);
+    let mut certifier = certifier_of(&mesh, &outlined);
+    for tolerance in [0.0, 1e-6] {
+        let flute = certifier.deepest_on(SurfaceId(1), &Pose::default(), tolerance);
+        let depth = flute.expect("a surface").depth;
+        assert_contains(depth, 2.3597058363740087, tolerance + 1e-11, tolerance);
     }
 }

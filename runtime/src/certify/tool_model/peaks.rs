@@ -133,26 +133,25 @@ impl Section {
 
     /// Returns the heights of the ends of borders between features that meet nearly in line: where another feature is as near.
     ///
-    /// The border is a ray from the point where they meet, normal to one of them or between both normals. Along it their
-    /// distance grows as the parameter does, and that of no other feature grows faster, so that halving finds the end.
+    /// A border begins where they meet, along the normal of one of them or between both normals. The distance of the pair grows
+    /// along it as the distance from that point does, but for the turn between the normals, and no other distance grows faster,
+    /// so that halving finds the end.
     fn border_ends(&self) -> Vec<f64> {
         let mut heights = Vec::new();
         for (index, pair) in self.features.windows(2).enumerate() {
             if !pair[0].continues_in(&pair[1]) {
                 continue;
             }
-            let [one, other] = [pair[0].tangent_at(1), pair[1].tangent_at(0)];
-            let mean = [0, 1].map(|k| one[k] + other[k]);
-            for [d, z] in [one, other, mean] {
-                let length = d.hypot(z);
-                let (normal, from) = ([-z / length, d / length], pair[1].ends[0]);
-                let point = |t: f64| [0, 1].map(|k| from[k] + t * normal[k]);
+            let border = Border::new(&pair[0], &pair[1]);
+            let others = || (0..self.features.len()).filter(|k| *k != index && *k != index + 1);
+            for course in [Course::FirstNormal, Course::SecondNormal, Course::Between] {
                 let is_other_nearer = |t: f64| {
-                    let others =
-                        (0..self.features.len()).filter(|k| *k != index && *k != index + 1);
-                    self.nearest(others, point(t)).0 <= t
+                    let p = border.point(course, t);
+                    self.nearest(others(), p).0 <= pair[0].distance(p).min(pair[1].distance(p))
                 };
-                let to_axis = if normal[0] < 0.0 { from[0] / -normal[0] } else { f64::INFINITY };
+                let [inward, _] = border.direction(course);
+                let from = border.from[0];
+                let to_axis = if inward < 0.0 { from / -inward } else { f64::INFINITY };
                 let [mut low, mut high] = [0.0, to_axis.min(2.0 * self.size)];
                 // Otherwise the border ends at the axis.
                 if !is_other_nearer(high) {
@@ -166,7 +165,7 @@ impl Section {
                         low = middle;
                     }
                 }
-                heights.push(point(high)[1]);
+                heights.push(border.point(course, high)[1]);
             }
         }
         heights
@@ -177,6 +176,66 @@ impl Section {
     fn is_critical(&self, middle: MeridianPoint, half: f64) -> bool {
         let is_nearest = (self.unsigned_distance(middle) - half).abs() <= self.error;
         middle[0] > 0.0 && half > self.error && is_nearest && self.contains(middle)
+    }
+}
+
+/// The border between two features that meet, from the point where they do.
+struct Border<'f> {
+    features: [&'f Feature; 2],
+    from: MeridianPoint,
+    /// The unit normals of both at that point, into the tool.
+    normals: [MeridianPoint; 2],
+}
+
+/// The course of a border: along the normal of one feature, where the tool's angle is more than half a turn, so that the point
+/// where they meet is nearest between the normals; or between the normals, where it is less.
+#[derive(Clone, Copy, PartialEq)]
+enum Course {
+    FirstNormal,
+    SecondNormal,
+    Between,
+}
+
+impl Border<'_> {
+    fn new<'f>(first: &'f Feature, second: &'f Feature) -> Border<'f> {
+        let normals = [first.tangent_at(1), second.tangent_at(0)].map(|[d, z]| {
+            let length = d.hypot(z);
+            [-z / length, d / length]
+        });
+        Border { features: [first, second], from: second.ends[0], normals }
+    }
+
+    /// Returns the direction in which the border begins.
+    fn direction(&self, course: Course) -> MeridianPoint {
+        match course {
+            Course::FirstNormal => self.normals[0],
+            Course::SecondNormal => self.normals[1],
+            Course::Between => self.mix(0.5),
+        }
+    }
+
+    /// Returns a direction between both normals, 0 for the first and 1 for the second.
+    fn mix(&self, part: f64) -> MeridianPoint {
+        let [first, second] = self.normals;
+        [0, 1].map(|k| first[k] + part * (second[k] - first[k]))
+    }
+
+    /// Returns the point of the border at `t` from its beginning, nearly.
+    fn point(&self, course: Course, t: f64) -> MeridianPoint {
+        let at = |direction: MeridianPoint| [0, 1].map(|k| self.from[k] + t * direction[k]);
+        let have_arc = self.features.iter().any(|feature| feature.circle.is_some());
+        if course != Course::Between || !have_arc {
+            return at(self.direction(course));
+        }
+        // Beside an arc the border is no line. On the normal of either feature the other one is nearer.
+        let [mut low, mut high] = [0.0, 1.0];
+        while low < f64::midpoint(low, high) && f64::midpoint(low, high) < high {
+            let middle = f64::midpoint(low, high);
+            let p = at(self.mix(middle));
+            let [first, second] = self.features.map(|feature| feature.distance(p));
+            if first > second { low = middle } else { high = middle }
+        }
+        at(self.mix(high))
     }
 }
 
