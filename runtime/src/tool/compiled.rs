@@ -101,7 +101,7 @@ impl<L: Lane> LaneEvaluation<L> {
     /// Marks some lanes as inside a region.
     #[inline(always)]
     pub fn assign(&mut self, lanes: L::Mask, region: L) {
-        self.inside = self.inside | lanes;
+        self.inside |= lanes;
         self.region = L::pick(lanes, region, self.region);
     }
 

@@ -7,7 +7,6 @@
 use std::path::PathBuf;
 use syn::visit::{self, Visit};
 use touchoff_dsl::prove::Certificate;
-use touchoff_dsl::source::Source;
 use touchoff_dsl::{compile, emit};
 use touchoff_tests::library::{self, checked, library};
 

@@ -184,8 +184,8 @@ impl Merger<'_> {
         if !self.own.is_uniform() || !self.other.is_uniform() {
             return None;
         }
-        let mut group = Group::default();
-        group.regions = [&self.own.regions[..], &self.other.regions].concat();
+        let regions = [&self.own.regions[..], &self.other.regions].concat();
+        let mut group = Group { regions, ..Group::default() };
         for (index, pair) in self.own.outputs.iter().zip(&self.other.outputs).enumerate() {
             match (&pair.0[..], &pair.1[..]) {
                 ([], []) => {}
