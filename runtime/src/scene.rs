@@ -3,6 +3,7 @@
 //! If neither member of a pair has moved since its last query, the stored answer is returned. A pair
 //! that is far apart is rejected by the distance of the tool's tip from the part's middle.
 
+use crate::bvh::STORED_BOX_MARGIN;
 use crate::debug::debug;
 use crate::part::Part;
 use crate::pose::Pose;
@@ -197,8 +198,7 @@ impl<'a> Pair<'a> {
         Pair {
             probe: Probe::new(part, tool).with_law(law).with_weights(weights),
             middle: frame.origin,
-            // Larger than by the rounding of the stored boxes.
-            reach: (1.0 + 1e-6) * (size + radius),
+            reach: (1.0 + STORED_BOX_MARGIN) * (size + radius),
             last_query: None,
         }
     }

@@ -7,6 +7,12 @@ use touchoff_dsl::formula::CurveIndex;
 use touchoff_dsl::model::Model;
 use touchoff_dsl::vector::{Point, cross, minus, norm};
 
+/// The step of central differences, in the tool's size.
+const DIFFERENCE_STEP: f64 = 1e-6;
+
+/// The sine of the angle between two curves below which they would meet far away, or anywhere.
+const NEARLY_PARALLEL_SINE: f64 = 1e-3;
+
 /// The plane of a section, which has two coordinates.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Plane {
@@ -40,7 +46,7 @@ pub(super) struct Curves<'m> {
 impl<'m> Curves<'m> {
     pub(super) fn new(model: &'m Model, extent: &Extent, plane: Plane) -> Curves<'m> {
         let evaluators = RefCell::new(model.curves.iter().map(|_| None).collect());
-        let step = 1e-6 * (extent.high - extent.low).max(extent.radius);
+        let step = DIFFERENCE_STEP * (extent.high - extent.low).max(extent.radius);
         Curves { model, plane, evaluators, step }
     }
 
@@ -87,8 +93,7 @@ impl<'m> Curves<'m> {
             let (b, slope_b) = self.value_and_slope(second, p);
             let determinant = cross(slope_a, slope_b);
             sine = determinant.abs() / (norm(slope_a) * norm(slope_b));
-            // Nearly parallel curves would meet far away, or anywhere.
-            if sine.is_nan() || sine < 1e-3 {
+            if sine.is_nan() || sine < NEARLY_PARALLEL_SINE {
                 return None;
             }
             for k in 0..2 {

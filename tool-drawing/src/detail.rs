@@ -4,7 +4,7 @@ use super::regions::Marks;
 use super::section::clipped_stroke;
 use super::sheet::{Anchor, DEFAULT_COLOUR, Look, Sheet, lines};
 use super::view::View;
-use super::{Content, Part, Picture, meridian_section};
+use super::{Content, Part, Picture, ROUNDING_FRACTION, meridian_section};
 use touchoff_dsl::CheckedTool;
 use touchoff_dsl::model::Model;
 use touchoff_dsl::vector::Point;
@@ -137,7 +137,7 @@ impl CuttingPart {
 
 /// Returns the largest radius of the tool below a height.
 fn radius_below(whole: &Picture<'_>, top: f64) -> f64 {
-    let near = 1e-6 * whole.size;
+    let near = ROUNDING_FRACTION * whole.size;
     let mut radius = 0.0f64;
     for stroke in whole.section.surface().filter(|stroke| stroke.span()[0] < top - near) {
         for part in clipped_stroke(stroke, [f64::INFINITY, top + near]) {

@@ -50,6 +50,9 @@ use view::View;
 /// The largest extent of a tool on the sheet: full width and height, in sheet units.
 const MAX_TOOL_EXTENT: [f64; 2] = [330.0, 500.0];
 
+/// Lengths below this part of the size, and sines below it, are rounding.
+const ROUNDING_FRACTION: f64 = 1e-6;
+
 /// The content of a drawing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Content {
@@ -159,7 +162,7 @@ impl<'m> Picture<'m> {
 
     /// Returns whether something is named and measured in this view, by its largest coordinates.
     fn describes(&self, [d, z]: Point) -> bool {
-        let near = 1e-6 * self.size;
+        let near = ROUNDING_FRACTION * self.size;
         match self.part {
             Part::Whole => true,
             Part::OutsideDetail([radius, top]) => d > radius + near || z > top + near,

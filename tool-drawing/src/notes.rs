@@ -6,9 +6,15 @@ use super::regions::{Arrow, Marks, heads};
 use super::section::{Edge, Section};
 use super::sheet::{Anchor, Look, SECONDARY_COLOUR, Sheet, lines, trimmed};
 use super::stroke::Stroke;
-use super::{Picture, paint};
+use super::{Picture, ROUNDING_FRACTION, paint};
 use touchoff_dsl::model::Unit;
 use touchoff_dsl::vector::{Point, cross, dot, minus, norm};
+
+/// The slope up to which a cone is a cylinder on a drawing: its angle would be written as 0.
+const MIN_CONE_SLOPE: f64 = 5e-5;
+
+/// A length up to this is 0; a longer one has as many digits as it needs.
+const SHOWN_AS_0: f64 = 1e-12;
 
 /// The height of capitals, in sheet units.
 const TEXT_SIZE: f64 = 7.5;
@@ -148,8 +154,7 @@ fn figure(stroke: &Stroke, near: f64, unit: Unit) -> Option<(String, bool)> {
         return Some((format!("R{}", tidy(radius, unit)), true));
     }
     let [d, z] = minus(stroke.to, stroke.from).map(f64::abs);
-    // A cone whose angle would be written as 0 is a cylinder on a drawing.
-    if d < near.max(z * 5e-5) {
+    if d < near.max(z * MIN_CONE_SLOPE) {
         let diameter = stroke.from[0] + stroke.to[0];
         return Some((format!("⌀{}", tidy(diameter, unit)), true));
     }
@@ -294,7 +299,7 @@ pub(super) fn tidy(value: f64, unit: Unit) -> String {
     };
     match trimmed(&format!("{value:.decimals$}")) {
         // A length too small for that gets as many digits as it needs.
-        text if text == "0" && value.abs() > 1e-12 => {
+        text if text == "0" && value.abs() > SHOWN_AS_0 => {
             touchoff_dsl::diagnostic::format_number(value)
         }
         text => text,
@@ -354,7 +359,7 @@ fn one(a: &Stroke, b: &Stroke, size: f64) -> bool {
         (None, None) => {
             let (u, v) = (minus(a.to, a.from), minus(b.to, b.from));
             let lengths = norm(u) * norm(v);
-            cross(u, v).abs() < 1e-6 * lengths && dot(u, v) > 0.0
+            cross(u, v).abs() < ROUNDING_FRACTION * lengths && dot(u, v) > 0.0
         }
         (Some((p, r)), Some((q, s))) => {
             norm(minus(p, q)) + (r - s).abs() < LENGTH_TOLERANCE_FRACTION * size

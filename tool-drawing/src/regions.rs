@@ -5,10 +5,13 @@ use super::shape::{Frame, Shape};
 use super::sheet::{Anchor, DEFAULT_COLOUR, Look, Sheet, lines};
 use super::stroke::Stroke;
 use super::view::View;
-use super::{Content, Part, Picture, paint};
+use super::{Content, Part, Picture, ROUNDING_FRACTION, paint};
 use touchoff_dsl::expr::value::{EvaluationPoint, Evaluator};
 use touchoff_dsl::model::Model;
 use touchoff_dsl::vector::{Point, cross, minus, norm};
+
+/// The error of a direction's length beyond which it is undefined, as at a centre.
+const MAX_LENGTH_ERROR: f64 = 1e-3;
 
 /// Results of drawing the section that the notes and the legend need.
 #[derive(Default)]
@@ -188,7 +191,7 @@ impl<'m> Directions<'m> {
         self.evaluator.evaluate(EvaluationPoint::on_meridian(d, z));
         let [across, _, along] = self.model.regions[region].direction;
         let direction = [across, along].map(|id| self.evaluator.get(id));
-        ((norm(direction) - 1.0).abs() < 1e-3).then_some(direction)
+        ((norm(direction) - 1.0).abs() < MAX_LENGTH_ERROR).then_some(direction)
     }
 
     /// Returns the point toward or away from which all directions of a region point, if there is one; directions are
@@ -207,14 +210,14 @@ impl<'m> Directions<'m> {
         let mut crossings = [[0.0; 2]; 2];
         for (crossing, (other, direction)) in crossings.iter_mut().zip(&rays[1..]) {
             let sine = cross(along, *direction);
-            if sine.abs() < 1e-6 {
+            if sine.abs() < ROUNDING_FRACTION {
                 return None;
             }
             let share = cross(minus(*other, from), *direction) / sine;
             *crossing = [0, 1].map(|k| from[k] + share * along[k]);
         }
         let [p, q] = crossings;
-        let is_one = norm(minus(p, q)) < 1e-6 * norm(minus(p, from)).max(norm(p));
+        let is_one = norm(minus(p, q)) < ROUNDING_FRACTION * norm(minus(p, from)).max(norm(p));
         (is_one && shape.clearance(view.to_sheet(p), 1.0) > -0.05).then_some(p)
     }
 

@@ -10,9 +10,12 @@ use super::regions::name;
 use super::section::Section;
 use super::sheet::{Anchor, Look, Sheet, lines};
 use super::view::View;
-use super::{Content, Picture, paint};
+use super::{Content, Picture, ROUNDING_FRACTION, paint};
 use touchoff_dsl::CheckedTool;
 use touchoff_dsl::expr::interval::Interval;
+
+/// The part of the size below which a coordinate is written as 0.
+const SHOWN_AS_0: f64 = 1e-9;
 
 /// The axes, and those perpendicular to the front view, the side view and the top view.
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -67,7 +70,7 @@ pub(super) fn sections<'m>(tool: &'m CheckedTool, content: Content) -> [SectionV
     let rough = planes(tool, proved.map(Interval::middle), 8.0 * unit);
     let mut middle = extents(&rough, proved).map(Interval::middle);
     for coordinate in &mut middle {
-        if coordinate.abs() < 1e-6 * size {
+        if coordinate.abs() < ROUNDING_FRACTION * size {
             *coordinate = 0.0;
         }
     }
@@ -167,7 +170,7 @@ impl SectionView<'_> {
         for (k, (axis, side)) in axes(self.normal).into_iter().zip(bounds).enumerate() {
             let is_known = known.iter().any(|(other, known)| {
                 let difference = (known.low - side.low).abs() + (known.high - side.high).abs();
-                *other == axis && difference < 1e-6 * size
+                *other == axis && difference < ROUNDING_FRACTION * size
             });
             if is_known {
                 continue;
@@ -221,7 +224,7 @@ impl SectionView<'_> {
 
     /// Formats a coordinate. Values that are 0 except for rounding are 0.
     fn figure(&self, value: f64) -> String {
-        let value = if value.abs() < 1e-9 * self.picture.size { 0.0 } else { value };
+        let value = if value.abs() < SHOWN_AS_0 * self.picture.size { 0.0 } else { value };
         tidy(value, self.picture.model.unit)
     }
 }

@@ -5,6 +5,7 @@
 //! between the same owners. Otherwise they meet in a joint, at the intersection of their curves. From a cell the borders are
 //! followed into those beyond the crossed sides.
 
+use super::ROUNDING_FRACTION;
 use super::curves::Curves;
 use super::section::{Polygon, simplified};
 use super::stroke::{MAX_TURN, Stroke, circle};
@@ -12,6 +13,9 @@ use std::collections::{HashMap, HashSet};
 use touchoff_dsl::formula::CurveIndex;
 use touchoff_dsl::plan::Tree;
 use touchoff_dsl::vector::{Point, minus, norm};
+
+/// The gain of the sine of an angle for which another pair of curves is taken for a joint, so that equal ones keep their order.
+const MIN_GAIN: f64 = 1e-9;
 
 /// The side of a lattice cell, in units of the sheet.
 const CELL: f64 = 0.5;
@@ -254,7 +258,7 @@ impl Tracer<'_, '_, '_> {
         for (k, a) in crossings.iter().enumerate() {
             for b in crossings[k + 1..].iter().filter(|b| b.curve != a.curve) {
                 if let Some((sine, at)) = self.curves.meet([a.curve, b.curve], middle, reach)
-                    && sine > best + 1e-9
+                    && sine > best + MIN_GAIN
                 {
                     (best, joint) = (sine, at);
                 }
@@ -320,7 +324,7 @@ impl Tracer<'_, '_, '_> {
         let line = &border.line;
         let (first, last) = (line[0], line[line.len() - 1]);
         // Joints of neighbouring cells may be one.
-        if line.len() == 3 && norm(minus(last, first)) < 1e-6 * cell {
+        if line.len() == 3 && norm(minus(last, first)) < ROUNDING_FRACTION * cell {
             border.line = vec![first, last];
             return border;
         }

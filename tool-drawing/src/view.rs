@@ -1,6 +1,7 @@
 //! The map from a section to the sheet. On the sheet the axis is x = 0, the lowest point is at y = 0, and the spindle
 //! is above. Long plain cylinders are shortened, as in technical drawings, so that thin tools stay readable.
 
+use super::ROUNDING_FRACTION;
 use super::section::{Section, Split};
 use super::stroke::Stroke;
 use touchoff_dsl::vector::Point;
@@ -42,9 +43,8 @@ impl View {
         levels.sort_by(f64::total_cmp);
         let low = levels.first().copied().unwrap_or(0.0);
         let length = levels.last().copied().unwrap_or(0.0) - low;
-        // Levels that differ by rounding are one.
-        levels.dedup_by(|a, b| *a - *b < 1e-6 * length);
-        lines.retain(|line| line.breadth()[1] - line.breadth()[0] >= 1e-6 * radius);
+        levels.dedup_by(|a, b| *a - *b < ROUNDING_FRACTION * length);
+        lines.retain(|line| line.breadth()[1] - line.breadth()[0] >= ROUNDING_FRACTION * radius);
         let mut plain = Vec::new();
         for pair in levels.windows(2) {
             let middle = f64::midpoint(pair[0], pair[1]);

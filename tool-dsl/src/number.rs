@@ -9,6 +9,13 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 use std::str::FromStr;
 use std::sync::OnceLock;
 
+/// The sizes that numbers of a file other than 0 may have.
+const SIZES_IN_FILES: std::ops::RangeInclusive<f64> = 1e-90..=1e90;
+
+/// The relative difference of doubles beyond which the constants that they were rounded from are not equal: far above a
+/// double's rounding.
+pub(crate) const NEAR_IN_DOUBLES: f64 = 1e-9;
+
 /// The precision of every constant, in bits.
 const PRECISION_BITS: usize = 256;
 
@@ -90,7 +97,7 @@ impl Number {
     /// Returns whether a file may contain this number: zero, or a magnitude from 1e-90 to 1e90, so that sums
     /// of its powers do not overflow a double.
     pub(crate) fn is_in_range(&self) -> bool {
-        self.is_zero() || (1e-90..=1e90).contains(&self.to_f64().abs())
+        self.is_zero() || SIZES_IN_FILES.contains(&self.to_f64().abs())
     }
 
     /// Returns whether this is exactly zero.
@@ -151,7 +158,8 @@ impl Number {
         let (a, b) = (self.to_f64(), other.to_f64());
         let scale = a.abs().max(b.abs());
         // A comparison of doubles rejects most pairs cheaply.
-        (a - b).abs() <= 1e-9 * scale && (self - other).to_f64().abs() <= scale * 2f64.powi(-200)
+        (a - b).abs() <= NEAR_IN_DOUBLES * scale
+            && (self - other).to_f64().abs() <= scale * 2f64.powi(-200)
     }
 }
 

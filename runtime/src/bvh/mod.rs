@@ -15,6 +15,9 @@ pub(crate) use view::{
     transform,
 };
 
+/// The part by which a size is enlarged, since boxes that are stored in `f32` around other boxes are slightly larger than their contents.
+pub(crate) const STORED_BOX_MARGIN: f64 = 1e-6;
+
 /// The number of children of a node and of items in a leaf.
 pub(crate) const WIDTH: usize = 16;
 
@@ -97,8 +100,7 @@ impl Frame {
         let bounds = Bounds::of(points);
         let scale = power_of_two(bounds.size());
         let origin = Point3::from([0, 1, 2].map(|axis| bounds.middle(axis)));
-        // A box around boxes is slightly larger than their contents.
-        let size = outward(bounds.size() / scale * (1.0 + 1e-6));
+        let size = outward(bounds.size() / scale * (1.0 + STORED_BOX_MARGIN));
         Frame { origin, scale, size }
     }
 

@@ -7,6 +7,9 @@ use crate::pose::Pose;
 use crate::tool::{Symmetry, ToolInfo};
 use fearless_simd::{Simd, SimdBase, f32x16};
 
+/// The part by which lengths are enlarged for rounding in `f64`, which is far smaller.
+const F64_MARGIN: f64 = 1e-9;
+
 /// The unit roundoff of `f32`.
 const ROUNDOFF: f64 = 1.0 / 16_777_216.0;
 /// The range of the tool's size and of the tree's unit, in the tool's unit, in which coordinates and their
@@ -63,8 +66,7 @@ impl QuerySetup {
         let reach = ReachBounds::new(info, margin);
         let fits =
             [size, unit].iter().all(|v| (SIZES[0]..=SIZES[1]).contains(v)) && reach.is_finite();
-        // The rounding errors of `f64` are far smaller than this.
-        let part = part * (1.0 + 1e-9) + 1e-9 * size;
+        let part = part * (1.0 + F64_MARGIN) + F64_MARGIN * size;
         QuerySetup {
             length,
             scale: frame.scale,

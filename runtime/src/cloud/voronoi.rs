@@ -35,6 +35,9 @@ use crate::parallel;
 use nalgebra::{Point3, Vector3};
 use std::collections::HashSet;
 
+/// The part by which the reach of a cell is enlarged for rounding.
+const REACH_MARGIN: f64 = 1e-12;
+
 /// Radius, in spacings, that contains most of the points that cut a cell.
 const NEIGHBOUR_RADIUS: f64 = 2.5;
 /// Maximum number of these points that are kept. Where a part's extent agrees with its area, there are some twenty.
@@ -267,10 +270,10 @@ fn add_visited(visited: &mut Vec<u32>, visited_set: &mut HashSet<u32>, other: u3
 }
 
 /// Returns an upper bound on the distance from a cell's point to other points that cut the cell. Each length errs by 3u
-/// below its root and two more, and a corner by 2.5u per line that cut the cell; 1e-12 is 9000u.
+/// below its root and two more, and a corner by 2.5u per line that cut the cell; [`REACH_MARGIN`] is 9000u.
 fn reach_of(cell: &[Corner], own_weight: f64) -> f64 {
     let max_squared = cell.iter().map(|corner| corner.at.norm_squared()).fold(0.0, f64::max);
-    (max_squared.sqrt() + (max_squared + own_weight).sqrt()) * (1.0 + 1e-12)
+    (max_squared.sqrt() + (max_squared + own_weight).sqrt()) * (1.0 + REACH_MARGIN)
 }
 
 /// Returns the smallest and the largest value of `v · toward - half` over the corners of a cell.

@@ -1,7 +1,9 @@
 //! Construction of the tree from a cloud. Points are removed and moved without a new tree: leaves keep their points, and
 //! boxes are refitted.
 
-use crate::bvh::{Bounds, BuildItem, Frame, WIDTH, around, levels, order, outward};
+use crate::bvh::{
+    Bounds, BuildItem, Frame, STORED_BOX_MARGIN, WIDTH, around, levels, order, outward,
+};
 use crate::cloud::Cloud;
 use crate::point_bvh::{Leaf, LeafAttributes, PointBvh};
 use nalgebra::{Point3, Vector3};
@@ -170,7 +172,8 @@ impl PointBvh {
         self.fit_above(touched);
         // The frame's size is measured from its origin.
         let whole = around(&self.levels[0][0]);
-        self.frame.size = self.frame.size.max(outward(2.0 * whole.farthest() * (1.0 + 1e-6)));
+        self.frame.size =
+            self.frame.size.max(outward(2.0 * whole.farthest() * (1.0 + STORED_BOX_MARGIN)));
         farthest * self.frame.scale
     }
 

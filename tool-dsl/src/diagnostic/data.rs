@@ -2,6 +2,9 @@
 
 use std::fmt;
 
+/// The sizes of numbers that people read without an exponent.
+const SIZES_WITHOUT_EXPONENT: std::ops::Range<f64> = 1e-4..1e15;
+
 /// A number, shown with six significant digits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FormattedNumber(pub f64);
@@ -15,7 +18,7 @@ impl fmt::Display for FormattedNumber {
 /// Returns a number for people: six significant digits.
 pub fn format_number(value: f64) -> String {
     let size = value.abs();
-    if size == 0.0 || !(1e-4..1e15).contains(&size) {
+    if size == 0.0 || !SIZES_WITHOUT_EXPONENT.contains(&size) {
         return if size == 0.0 { "0".to_owned() } else { format!("{value:.5e}") };
     }
     let decimals = (5 - size.log10().floor() as i32).max(0) as usize;

@@ -24,6 +24,9 @@ use quote::quote;
 use std::fmt::Write;
 use tokens::literal;
 
+/// The part of a tool's size below which a coordinate is shown as 0.
+const ROUNDING_FRACTION: f64 = 1e-9;
+
 /// Emits the type and its evaluators. The documentation of the type has no drawing, since an editor would
 /// show it as text; see [`with_drawing`].
 pub fn emit(tool: &CheckedTool) -> TokenStream {
@@ -107,7 +110,8 @@ fn documentation(tool: &CheckedTool) -> String {
 /// Describes the extent of a tool along its axis and around it, or of a solid along x, y and z.
 fn reach(tool: &CheckedTool) -> String {
     let extent = &tool.extent;
-    let tidy = |v: f64| format_number(if v.abs() < 1e-9 * extent.scale() { 0.0 } else { v });
+    let tidy =
+        |v: f64| format_number(if v.abs() < ROUNDING_FRACTION * extent.scale() { 0.0 } else { v });
     match tool.model.domain {
         Domain::HalfPlane => format!(
             "Reaches from z = {} to {}, and {} from the axis",

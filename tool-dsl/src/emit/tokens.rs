@@ -3,6 +3,9 @@
 use proc_macro2::{Delimiter, Group, Ident, Literal, Punct, Spacing, Span, TokenStream};
 use quote::{TokenStreamExt, quote};
 
+/// The sizes of literals that need no exponent to be short.
+const SIZES_WITHOUT_EXPONENT: std::ops::Range<f64> = 1e-5..1e16;
+
 /// Code under construction.
 #[derive(Default)]
 pub(super) struct Tokens(TokenStream);
@@ -34,7 +37,7 @@ impl Tokens {
         if value.is_sign_negative() && size != 0.0 {
             self.sign("-");
         }
-        let plain = size == 0.0 || (1e-5..1e16).contains(&size);
+        let plain = size == 0.0 || SIZES_WITHOUT_EXPONENT.contains(&size);
         let literal = if plain { None } else { format!("{size:e}").parse().ok() };
         self.0.append(literal.unwrap_or_else(|| Literal::f64_unsuffixed(size)));
         self

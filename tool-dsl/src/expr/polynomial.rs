@@ -3,7 +3,7 @@
 
 use super::interval::{Cell, Interval, ZERO};
 use super::{Coord, Graph, Id, Node};
-use crate::number::{Number, ROUNDING};
+use crate::number::{NEAR_IN_DOUBLES, Number, ROUNDING};
 use std::collections::{BTreeMap, HashMap};
 
 /// The exponents of (d, x, y, z). Within this module d² and x² + y² are different polynomials.
@@ -299,7 +299,7 @@ impl Polynomial {
         // A comparison of doubles rejects most curves cheaply.
         let are_near = self.0.values().zip(other.0.values()).all(|(a, b)| {
             let (a, b) = (a.to_f64(), b.to_f64() * ratio);
-            (a - b).abs() <= 1e-9 * (a.abs() + b.abs())
+            (a - b).abs() <= NEAR_IN_DOUBLES * (a.abs() + b.abs())
         });
         if !are_near {
             return None;

@@ -7,6 +7,9 @@ use crate::expr::value::{EvaluationPoint, Evaluator};
 use crate::expr::{Graph, Id};
 use crate::formula::{ANY_SIGN, Curve, NEGATIVE, POSITIVE, Signs};
 
+/// The step of central differences: the root of the rounding of values is some 1e-8, and their curvature errs by its square.
+const DIFFERENCE_STEP: f64 = 1e-6;
+
 /// The distance below which a point lies on a curve, relative to the section's size.
 const ON_CURVE_FRACTION: f64 = 1e-10;
 /// The rounding error of a polynomial's value, relative to the sum of the absolute values of its terms.
@@ -154,7 +157,7 @@ impl<'g> CurveFunction<'g> {
                 };
                 // Without a polynomial, the gradient is that of central differences.
                 let value_here = value(p[0], p[1]);
-                let step = 1e-6 * (norm(p) + 1e-3);
+                let step = DIFFERENCE_STEP * (norm(p) + 1e-3);
                 let gradient = [0, 1].map(|k| {
                     let (mut a, mut b) = (p, p);
                     a[k] -= step;

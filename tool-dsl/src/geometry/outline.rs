@@ -7,6 +7,12 @@ use crate::number::Number;
 use crate::source::Span;
 pub(crate) use crate::vector::{Point, cross, dot, minus, norm};
 
+/// The size below which a component of a unit vector has cancelled in 256 bits.
+pub(crate) const CANCELLED: f64 = 1e-60;
+
+/// The way out of the sector of its arc, in radii, by which rounding may move a point. A point that is not on the arc only widens the bound.
+const SECTOR_ROUNDING: f64 = 1e-12;
+
 /// A point with exact coordinates.
 pub(crate) type ExactPoint = [Number; 2];
 
@@ -234,7 +240,7 @@ pub(crate) fn linear(graph: &mut Graph, direction: [Number; 2], from: &ExactPoin
     let constant = -&(&(&direction[0] * &from[0]) + &(&direction[1] * &from[1]));
     // A value that cancels in 256 bits is 0.
     let without_residue =
-        |value: Number| if value.to_f64().abs() < 1e-60 { Number::int(0) } else { value };
+        |value: Number| if value.to_f64().abs() < CANCELLED { Number::int(0) } else { value };
     let [wd, wz] = direction.map(without_residue);
     let (d, z) = (graph.coord(Coord::D), graph.coord(Coord::Z));
     let (wd, wz, constant) = (graph.number(wd), graph.number(wz), graph.number(constant));
@@ -359,7 +365,8 @@ pub(crate) fn radius_between(outline: &[Segment], low: f64, high: f64) -> f64 {
                 let half_chord =
                     |z: f64| (radius * radius - (z - centre[1]).powi(2)).max(0.0).sqrt();
                 let mut include_point = |z: f64, d: f64| {
-                    if segment.sector([d, z]).iter().all(|side| *side >= -1e-12 * radius) {
+                    if segment.sector([d, z]).iter().all(|side| *side >= -SECTOR_ROUNDING * radius)
+                    {
                         widest = widest.max(rounded_up(d));
                     }
                 };

@@ -30,6 +30,11 @@ const REFINEMENT_PASSES: usize = 4;
 const STRIP_FRACTION: f64 = 0.01;
 /// The relative size below which lengths are rounding.
 const ROUNDING: f64 = 1e-9;
+/// The relative size up to which a depth on the surface, or the distance of a tool's end from its tip, is not reported: bisection
+/// finds the surface to less.
+const TOLERANCE: f64 = 1e-6;
+/// A step from the surface that is so much shorter that the slope of a root grows a hundredfold.
+const NEAR_SURFACE: f64 = 1e-10;
 
 /// Returns diagnostics for curves that are undefined somewhere around the origin, for a tool whose extent is
 /// not known yet.
@@ -281,7 +286,7 @@ impl<'m> Linter<'m> {
 
     /// Reports a tool whose end is not its tip, at z = 0.
     fn check_tip(&mut self, end: f64, extent: &Extent) {
-        if end.is_finite() && end.abs() > 1e-6 * self.size {
+        if end.is_finite() && end.abs() > TOLERANCE * self.size {
             self.found.push(off_tip(&self.model.frame, [end, extent.high]));
         }
     }
@@ -357,7 +362,7 @@ impl<'m> Linter<'m> {
         }
         let [x, y, z] = region.direction.map(get);
         let length_error = (x.hypot(y).hypot(z) - 1.0).abs();
-        if length_error.is_nan() || length_error > 1e-9 {
+        if length_error.is_nan() || length_error > ROUNDING {
             let kind = CheckKind::DirectionTooLong { region: name.clone(), location: location() };
             self.report(Diagnostic::new(region.raw_direction.1, kind));
         }
@@ -430,7 +435,7 @@ impl<'m> Linter<'m> {
         let Some(owner) = self.owner(point) else { return };
         let region = &self.model.regions[owner];
         let depth = self.get(region.depth);
-        if depth.abs() > 1e-6 * self.size {
+        if depth.abs() > TOLERANCE * self.size {
             let diagnostic = deep_on_surface(region, depth, self.format_point(point));
             self.report(diagnostic);
             return;
@@ -443,7 +448,7 @@ impl<'m> Linter<'m> {
             is_same_owner.then(|| self.get(region.depth) / (step * self.size))
         };
         // The slope of a root grows a hundredfold here; a finite one does not.
-        if let (Some(near), Some(far)) = (slope(1e-10), slope(1e-6))
+        if let (Some(near), Some(far)) = (slope(NEAR_SURFACE), slope(TOLERANCE))
             && near > 10.0 * far.max(100.0)
         {
             let kind = CheckKind::SteepDepth {

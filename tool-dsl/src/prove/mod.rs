@@ -45,6 +45,9 @@ const EXACT_TOLERANCE: f64 = 1e-8;
 /// The number of boxes that a proof may use.
 const MAX_BOXES: usize = 35_000;
 
+/// A bound of the rounding of an angle that is shown, a few units in the last place.
+const ANGLE_ROUNDING: f64 = 1e-6;
+
 /// The facts proved about a tool.
 #[derive(Clone, Debug)]
 pub struct Certificate {
@@ -390,8 +393,7 @@ fn oblique_direction(region: &Region, angle: f64, location: String) -> Diagnosti
     let kind = CheckKind::ObliqueDirection {
         region: region.name.clone(),
         degrees: FormattedNumber(angle.to_degrees()),
-        // The tolerance covers the rounding of the angle, a few units in the last place.
-        inward: angle > PI - 1e-6,
+        inward: angle > PI - ANGLE_ROUNDING,
         derived: region.source == DirectionSource::Derived,
         location,
     };

@@ -2,8 +2,15 @@
 
 use crate::diagnostic::{Diagnostic, ProfileKind, enough};
 use crate::geometry::outline::{
-    Point, Segment, TANGENT_SINE, bounding_box, cross, dot, doubles, minus, norm, sample_points,
+    CANCELLED, Point, Segment, TANGENT_SINE, bounding_box, cross, dot, doubles, minus, norm,
+    sample_points,
 };
+
+/// The part of the largest radius by which an arc may pass the axis, or stay away from it, and end on it.
+const AXIS_ROUNDING: f64 = 1e-12;
+
+/// The part of the size within which two segments have a point in common.
+const COMMON_POINT_ROUNDING: f64 = 1e-9;
 
 /// Checks a profile that runs from the axis to the axis: contact with the axis, orientation, turns between neighbours,
 /// self-intersections. Returns the diagnostics.
@@ -20,11 +27,11 @@ pub(crate) fn check(outline: &[Segment], show: impl Fn(Point) -> String) -> Vec<
         });
         let lowest = arc_near_axis.map_or(f64::INFINITY, |(centre, radius, _)| centre[0] - radius);
         // Only the last segment may end on the axis.
-        let touches =
-            lowest <= 1e-12 * high[0] || (to <= 1e-12 * high[0] && index + 1 < outline.len());
+        let touches = lowest <= AXIS_ROUNDING * high[0]
+            || (to <= AXIS_ROUNDING * high[0] && index + 1 < outline.len());
         if lies_on_axis(segment) {
             diagnostics.push(Diagnostic::new(segment.span, ProfileKind::OnAxis));
-        } else if lowest < -1e-12 * high[0] || to < 0.0 {
+        } else if lowest < -AXIS_ROUNDING * high[0] || to < 0.0 {
             diagnostics.push(Diagnostic::new(segment.span, ProfileKind::CrossesAxis));
         } else if touches && !outline.get(index + 1).is_some_and(lies_on_axis) {
             diagnostics.push(Diagnostic::new(segment.span, ProfileKind::TouchesAxis));
@@ -82,7 +89,8 @@ pub(crate) fn check(outline: &[Segment], show: impl Fn(Point) -> String) -> Vec<
                 continue;
             }
             if let Some(point) = common_point(a, b, j == i + 1) {
-                let slack = 1e-9 * high.iter().fold(0.0, |size: f64, part| size.max(part.abs()));
+                let slack = COMMON_POINT_ROUNDING
+                    * high.iter().fold(0.0, |size: f64, part| size.max(part.abs()));
                 let is_end = |segment: &Segment| {
                     segment.ends().iter().any(|end| norm(minus(*end, point)) <= slack)
                 };
@@ -122,7 +130,7 @@ fn hardly_turns(before: &Segment, after: &Segment) -> bool {
     };
     // The rounding error in 256 bits is far below the lower limit.
     let sine = (&(&ad * &bz) - &(&az * &bd)).to_f64().abs();
-    (1e-60..TANGENT_SINE).contains(&sine)
+    (CANCELLED..TANGENT_SINE).contains(&sine)
 }
 
 /// Returns a common point of two segments. For neighbours, the start of `b` that they share does not count.
@@ -137,7 +145,7 @@ fn common_point(a: &Segment, b: &Segment, neighbours: bool) -> Option<Point> {
         .into_iter()
         .map(|point| norm(doubles(point)))
         .fold(0.0, f64::max);
-    let slack = 1e-9 * size;
+    let slack = COMMON_POINT_ROUNDING * size;
     let is_on = |s: &Segment, p: Point| {
         s.signed(p).abs() <= slack && s.sector(p).iter().all(|side| *side >= -slack)
     };

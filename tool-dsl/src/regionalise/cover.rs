@@ -19,6 +19,11 @@ use crate::geometry::polygon::{
 };
 use std::collections::VecDeque;
 
+/// The least part of a polygon's breadth that a cut along a normal leaves on either side: thinner pieces prove little more.
+const MIN_CUT: f64 = 0.02;
+/// The breadth, in the tool's size, below which a polygon is not cut so.
+const MIN_CUT_FRACTION: f64 = 1e-3;
+
 /// The number of polygons of a feature that are halved.
 const MAX_HALVINGS: usize = 300;
 /// The part of a distance by which another feature may be nearer at a vertex of a polygon that is not halved.
@@ -413,7 +418,9 @@ impl Section<'_> {
         for side in sides {
             let values: Vec<f64> = polygon.iter().map(|p| side.at(*p)).collect();
             let [low, high] = range(values.iter().copied());
-            if low < -0.02 * high.abs().max(1e-3 * self.size) && high > -0.02 * low {
+            if low < -MIN_CUT * high.abs().max(MIN_CUT_FRACTION * self.size)
+                && high > -MIN_CUT * low
+            {
                 return Some(divided(polygon, &values));
             }
         }

@@ -7,6 +7,9 @@ use crate::expr::{Coord, Graph, Id};
 use crate::geometry::outline::{self, Circle, ExactPoint, minus};
 use crate::number::Number;
 
+/// The sine below which two lines are compared by their distances: where they meet is too far away to be divided at.
+const NEARLY_PARALLEL_SINE: f64 = 1e-3;
+
 /// The kind of a feature, in a comparison of distances.
 enum Kind<'o> {
     Line(usize),
@@ -90,7 +93,7 @@ impl Section<'_> {
             (true, false) => Some(second.to.clone()),
             _ => None,
         };
-        let is_nearly_parallel = joint.is_none() && sine.to_f64().abs() < 1e-3;
+        let is_nearly_parallel = joint.is_none() && sine.to_f64().abs() < NEARLY_PARALLEL_SINE;
         if is_axis_parallel || is_nearly_parallel {
             let (a, b) = (first.depth(graph)?, second.depth(graph)?);
             let difference = graph.sub(a, b);

@@ -13,6 +13,12 @@ use crate::geometry::outline::{
 use crate::number::Number;
 use std::f64::consts::PI;
 
+/// The relative accuracy with which the longest length of `smooth` is found: finer than what is shown of it.
+const LENGTH_ACCURACY: f64 = 1e-9;
+
+/// The relative rounding of the six digits that are shown.
+const SHOWN_ROUNDING: f64 = 1e-5;
+
 /// The relative difference below which two lengths count as equal.
 const ROUNDING: f64 = 1e-12;
 
@@ -86,12 +92,12 @@ pub(crate) fn largest_fitting_length(outline: &[Segment], length: &Number) -> Op
     let halves = (1..64).map(|k| length.to_f64() / f64::from(k).exp2());
     let mut low = halves.into_iter().find(|length| is_roundable(*length))?;
     let mut high = 2.0 * low;
-    while high - low > 1e-9 * high {
+    while high - low > LENGTH_ACCURACY * high {
         let middle = f64::midpoint(low, high);
         if is_roundable(middle) { low = middle } else { high = middle }
     }
     // The six digits that are shown may be rounded up beyond the limit.
-    let shown = [low, low * (1.0 - 1e-5)].map(format_number);
+    let shown = [low, low * (1.0 - SHOWN_ROUNDING)].map(format_number);
     shown.into_iter().find(|text| text.parse().is_ok_and(is_roundable))
 }
 

@@ -6,6 +6,10 @@ use crate::expr::{Graph, Id};
 use crate::formula::{Curve, CurveIndex, Formula};
 use std::collections::BTreeMap;
 
+/// The relative difference beyond which two curves' numbers are not those of multiples of one another: above the rounding of the
+/// sums that they come from.
+const NEAR_PROPORTION: f64 = 1e-8;
+
 /// The maximum number of times that one condition may be split at `min`, `max` and `abs`.
 const MAX_SPLITS: usize = 64;
 
@@ -59,7 +63,7 @@ impl Curves {
             }
             // Most curves are told apart by one number.
             let (a, b) = (proportion?, self.proportions[index]?);
-            if (a - b).abs() > 1e-8 * (a.abs() + b.abs()) {
+            if (a - b).abs() > NEAR_PROPORTION * (a.abs() + b.abs()) {
                 return None;
             }
             let factor = own?.ratio(self.polynomials.known(curve.value)?)?;

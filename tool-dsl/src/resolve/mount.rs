@@ -19,6 +19,9 @@ use crate::syntax;
 use crate::syntax::tree::{Definition, Expr, Item, Law, Mount, Quantity, Tool};
 use std::collections::{BTreeMap, BTreeSet};
 
+/// The part of a tool's length within which its other end is taken for the tip, in a remedy.
+const AT_TIP_FRACTION: f64 = 1e-6;
+
 /// The maximum number of files that a tool mounts, including those that mounted files mount.
 const MAX_MOUNTS: usize = 64;
 
@@ -455,7 +458,7 @@ impl MountedPart {
 pub(crate) fn off_tip(frame: &Frame, [end, other]: [f64; 2]) -> Diagnostic {
     let size = other - end;
     let tip = FormattedNumber(frame.tip.to_f64());
-    let is_upside_down = other.abs() <= 1e-6 * size;
+    let is_upside_down = other.abs() <= AT_TIP_FRACTION * size;
     let spindle = is_upside_down.then_some(if frame.spindle_down { '+' } else { '-' });
     Diagnostic::new(
         frame.tip_span,

@@ -11,6 +11,19 @@ use crate::regionalise::check::check;
 use crate::source::Span;
 use crate::syntax::tree::{Arc, ArcCircle, Expr, PathSegment, Profile, Tuple};
 
+/// A coordinate below this is shown as 0: what cancels in constants of a file.
+const SHOWN_AS_0: f64 = 1e-12;
+
+/// The sine of an arc's turn up to which it counts as half a turn, for which convex and concave differ by what the file says.
+const HALF_TURN_SINE: f64 = 1e-12;
+
+/// The slope of a chord up to which it is level: the centre on the axis that is as far from both its ends is then too far away.
+const LEVEL_SINE: f64 = 1e-6;
+
+/// The square of the distance of a centre from a chord's middle, in the square of the chord, that counts as 0: the square of the
+/// rounding of numbers in a file.
+const CHORD_ROUNDING: f64 = 1e-18;
+
 /// The maximum number of segments of a profile. Dividing more would take minutes.
 const MAX_SEGMENTS: usize = 256;
 /// The largest radius of an arc, in chords.
@@ -93,7 +106,8 @@ pub(super) fn outline(
 }
 
 fn shown([d, z]: [f64; 2]) -> String {
-    let [d, z] = [d, z].map(|v| if v.abs() < 1e-12 { "0".to_owned() } else { format_number(v) });
+    let [d, z] =
+        [d, z].map(|v| if v.abs() < SHOWN_AS_0 { "0".to_owned() } else { format_number(v) });
     format!("({d}, {z})")
 }
 
@@ -191,7 +205,7 @@ fn circle(
     }
     let [a, b] = ends.map(|end| [0, 1].map(|k| &end[k] - &centre[k]));
     let turn = (&(&a[0] * &b[1]) - &(&a[1] * &b[0])).to_f64();
-    let half = turn.abs() <= 1e-12 * radius.to_f64().powi(2);
+    let half = turn.abs() <= HALF_TURN_SINE * radius.to_f64().powi(2);
     let convex = if half { arc.concave.is_none() } else { turn > 0.0 };
     match (convex, arc.concave) {
         (true, Some(said)) => Err(Diagnostic::new(said, ProfileKind::NotConcave)),
@@ -218,7 +232,7 @@ fn midway([from, to]: [&ExactPoint; 2], centre: &ExactPoint) -> (ExactPoint, Num
     let chord = [0, 1].map(|k| &to[k] - &from[k]);
     let middle = [0, 1].map(|k| &(&from[k] + &to[k]) / &Number::int(2));
     let offset = dot(&chord, &[0, 1].map(|k| &middle[k] - &centre[k]));
-    let rises = chord[1].to_f64().abs() > 1e-6 * norm(doubles(&chord));
+    let rises = chord[1].to_f64().abs() > LEVEL_SINE * norm(doubles(&chord));
     let direction =
         if centre[0].is_zero() && rises { [Number::int(0), Number::int(1)] } else { chord.clone() };
     let share = &offset / &dot(&chord, &direction);
@@ -240,7 +254,7 @@ fn by_radius(
     let short = &(radius * radius) - &(&(&chord * &chord) / &Number::int(4));
     let (r, c) = (radius.to_f64(), norm(minus(doubles(to), doubles(from))));
     // The centre of a half circle is on its chord, within the tolerance of its ends.
-    let rounding = if short.is_negative() { MAX_CIRCLE_DEVIATION_IN_RADII } else { 1e-18 };
+    let rounding = if short.is_negative() { MAX_CIRCLE_DEVIATION_IN_RADII } else { CHORD_ROUNDING };
     let near = short.to_f64().abs() <= rounding * c * c;
     let offset = if near { Some(Number::int(0)) } else { short.sqrt() };
     let (Some(offset), true) = (offset, r > 0.0) else {

@@ -168,7 +168,10 @@ impl MotionInterval {
     }
 }
 
-/// Returns a length or an angle in `f32`, larger in magnitude by 16 units of roundoff: a coordinate errs by less than 8.
+/// The part by which a length is enlarged before it is rounded to `f32`: 16 units of roundoff. A coordinate errs by less than 8.
+const F32_MARGIN: f64 = 1e-6;
+
+/// Returns a length or an angle in `f32`, larger in magnitude by [`F32_MARGIN`].
 fn rounded_up(value: f64) -> f32 {
-    (value * (1.0 + 1e-6)) as f32
+    (value * (1.0 + F32_MARGIN)) as f32
 }

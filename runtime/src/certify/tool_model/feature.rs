@@ -4,6 +4,12 @@ pub(crate) use crate::tool::distance::{MeridianPoint, cross, dot, minus};
 use crate::tool::{Circle, ProfileSegment};
 use std::f64::consts::TAU;
 
+/// The distance from the axis, in the tool's size, up to which an arc's centre is that of a ball about the axis.
+const MAX_BALL_OFFSET: f64 = 1e-9;
+
+/// The angle up to which an arc's ends, or an end and a quarter of the circle, are one: rounding may have exchanged their angles.
+const ANGLE_ROUNDING: f64 = 1e-9;
+
 /// Three points. In a triangle that encloses a curve between two ends, the third is the apex.
 pub(crate) type Triangle = [MeridianPoint; 3];
 
@@ -83,12 +89,12 @@ impl Feature {
 
     /// Returns a ball about a point of the axis that contains the circle of a convex arc whose centre is near the
     /// axis, as height and radius. `size` is the tool's size. The ball contains the circle whatever the distance of
-    /// its centre from the axis. Returns `None` beyond 1e-9 of the size, where it is not tight enough to be useful,
+    /// its centre from the axis. Returns `None` beyond [`MAX_BALL_OFFSET`], where it is not tight enough to be useful,
     /// and for balls so large that `f32` loses all precision.
     pub(crate) fn ball(&self, size: f64) -> Option<[f64; 2]> {
         let Circle { centre: [d, z], radius, convex } = self.circle?;
         let small = radius.max(z.abs()) <= 4.0 * size;
-        (convex && small && d.abs() <= 1e-9 * size).then_some([z, radius + d.abs()])
+        (convex && small && d.abs() <= MAX_BALL_OFFSET * size).then_some([z, radius + d.abs()])
     }
 
     /// Returns 1 if the tool is toward the axis, -1 if it is away from it.
@@ -470,8 +476,7 @@ pub(crate) fn quarters(piece: &ProfileSegment) -> Vec<Feature> {
     };
     let Circle { centre, radius, .. } = circle;
     let turn = turn_between(&circle, piece.from, piece.to);
-    // Ends this close are those of a short arc, whose angles rounding may have exchanged.
-    let turn = if turn < TAU - 1e-9 { turn } else { 0.0 };
+    let turn = if turn < TAU - ANGLE_ROUNDING { turn } else { 0.0 };
     let mut cuts: Vec<(f64, MeridianPoint)> =
         [[radius, 0.0], [0.0, radius], [-radius, 0.0], [0.0, -radius]]
             .into_iter()
@@ -480,7 +485,7 @@ pub(crate) fn quarters(piece: &ProfileSegment) -> Vec<Feature> {
             // Cuts at the ends do not count. An arc that exceeds a quarter by so little reaches beyond its end by
             // `radius (1 - cos 1e-9)`, 5e-19 of the radius, which is less than the rounding error of its centre and
             // radius.
-            .filter(|(at, _)| *at >= 1e-9 && *at < turn - 1e-9)
+            .filter(|(at, _)| *at >= ANGLE_ROUNDING && *at < turn - ANGLE_ROUNDING)
             .collect();
     cuts.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut from = piece.from;

@@ -26,6 +26,10 @@ use crate::certify::tool_model::feature::{Feature, MeridianPoint, cross, dot, mi
 use crate::certify::tool_model::section::Section;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
+/// The sine up to which headings are opposite, for which rounding decides the sense of the turn. A cusp gets a fan whether it points
+/// into the tool or out of it. The threshold does not matter: a fan that points out yields no witness.
+const CUSP_SINE: f64 = 1e-9;
+
 /// A point of a tool's half plane that stands for a connected piece of its restricted interior.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct CorePoint {
@@ -252,9 +256,7 @@ impl Normals {
     fn fan(before: &Feature, after: &Feature) -> Option<Normals> {
         let [arrives, leaves] = [before.tangent_at(1), after.tangent_at(0)];
         let turn = cross(arrives, leaves);
-        // For opposite headings rounding decides the sense of the turn. A cusp therefore gets a fan whether it points
-        // into the tool or out of it. The threshold does not matter: a fan that points out yields no witness.
-        if turn >= 0.0 && !(turn < 1e-9 && dot(arrives, leaves) < 0.0) {
+        if turn >= 0.0 && !(turn < CUSP_SINE && dot(arrives, leaves) < 0.0) {
             return None;
         }
         let [from, to] = [leaves, arrives].map(|tangent| angle([-tangent[1], tangent[0]]));

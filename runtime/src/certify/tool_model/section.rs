@@ -16,6 +16,10 @@ use crate::certify::tool_model::rectangle::Rectangle;
 use crate::tool::ToolInfo;
 use std::cell::LazyCell;
 
+/// The sine of a reflex corner's turn up to which it is left out. A corner only lowers bounds, so that no result is wrong. No point
+/// is nearer to such a corner than to the lines that meet there by more than 5e-19 of its distance.
+const MIN_REFLEX_TURN: f64 = 1e-9;
+
 /// A region between two heights.
 #[derive(Clone, Debug)]
 pub(crate) struct SectionSlab {
@@ -204,9 +208,7 @@ impl Section {
         self.features.windows(2).filter_map(move |pair| {
             let turn = cross(pair[0].tangent_at(1), pair[1].tangent_at(0));
             let point = pair[1].ends[0];
-            // A corner only lowers bounds, so leaving out those flatter than 1e-9 makes no result wrong. No point is
-            // nearer to such a corner than to the lines that meet there by more than 5e-19 of its distance.
-            (turn < -1e-9 && low <= point[1] && point[1] <= high).then(|| ReflexCorner {
+            (turn < -MIN_REFLEX_TURN && low <= point[1] && point[1] <= high).then(|| ReflexCorner {
                 point,
                 // Where the profile overhangs, the tool may be on either side of a level feature.
                 ends_level: !self.overhangs

@@ -9,6 +9,10 @@ use crate::certify::tool_model::feature::{MeridianPoint, Triangle, dot};
 use crate::certify::tool_model::owners::Owners;
 use crate::certify::tool_model::section::{Depth, Section};
 
+/// The least part of an interval that a cut where two bounds meet leaves: one nearer to an end would leave almost the whole interval
+/// to be bounded again.
+const MIN_PART: f64 = 1e-3;
+
 /// A line segment, `base + t direction`, with `t` in `span`. At `t`, `d² = off² + (start + t slide)²`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SearchLine {
@@ -136,9 +140,8 @@ fn cut(LineInterval(first, last): &LineInterval, depths: [&Depth; 2], line: &Sea
     } else {
         (depths[1].value - depths[0].value - down * length) / (up - down)
     };
-    // A cut near an end would leave almost the whole interval to be bounded again.
     let part = x / length;
-    if part > 1e-3 && part < 1.0 - 1e-3 {
+    if part > MIN_PART && part < 1.0 - MIN_PART {
         first.t + length * part.clamp(0.05, 0.95)
     } else {
         first.t + 0.5 * length
