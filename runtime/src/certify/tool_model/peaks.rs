@@ -149,9 +149,8 @@ impl Section {
                     let p = border.point(course, t);
                     self.nearest(others(), p).0 <= pair[0].distance(p).min(pair[1].distance(p))
                 };
-                let [inward, _] = border.direction(course);
-                let from = border.from[0];
-                let to_axis = if inward < 0.0 { from / -inward } else { f64::INFINITY };
+                let (from, away) = (border.from[0], border.max_away(course));
+                let to_axis = if away < 0.0 { from / -away } else { f64::INFINITY };
                 let [mut low, mut high] = [0.0, to_axis.min(2.0 * self.size)];
                 // Otherwise the border ends at the axis.
                 if !is_other_nearer(high) {
@@ -205,6 +204,17 @@ impl Border<'_> {
         Border { features: [first, second], from: second.ends[0], normals }
     }
 
+    /// Returns whether the border may be no line.
+    fn is_curve(&self, course: Course) -> bool {
+        course == Course::Between && self.features.iter().any(|feature| feature.circle.is_some())
+    }
+
+    /// Returns an upper bound of the components, away from the axis, of the directions to its points.
+    fn max_away(&self, course: Course) -> f64 {
+        let [first, second] = self.normals.map(|normal| normal[0]);
+        if self.is_curve(course) { first.max(second) } else { self.direction(course)[0] }
+    }
+
     /// Returns the direction in which the border begins.
     fn direction(&self, course: Course) -> MeridianPoint {
         match course {
@@ -223,8 +233,7 @@ impl Border<'_> {
     /// Returns the point of the border at `t` from its beginning, nearly.
     fn point(&self, course: Course, t: f64) -> MeridianPoint {
         let at = |direction: MeridianPoint| [0, 1].map(|k| self.from[k] + t * direction[k]);
-        let have_arc = self.features.iter().any(|feature| feature.circle.is_some());
-        if course != Course::Between || !have_arc {
+        if !self.is_curve(course) {
             return at(self.direction(course));
         }
         // Beside an arc the border is no line. On the normal of either feature the other one is nearer.
