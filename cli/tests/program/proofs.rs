@@ -44,7 +44,7 @@ fn stages_of_a_tool() {
         ("model", "unit mm"),
         ("regions", "region ball as ball"),
         ("plan", "digraph"),
-        ("rust", "impl Evaluators for Ball"),
+        ("rust", "Evaluators for Ball"),
     ] {
         let output = touchoff(&["expand", "--stage", stage], &ball);
         let text = String::from_utf8_lossy(&output.stdout);
