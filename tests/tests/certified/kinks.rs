@@ -1,7 +1,7 @@
 //! Profiles of which some segments are nearly in line, as CAD draws balls by chords and as tapers are: the depth of each surface,
 //! and verdicts with allowances and margins, against samples of the triangles.
 //!
-//! `KINKS=2500 cargo test --release -p touchoff-tests --test certified kinks -- --nocapture` examines 10,000 tools.
+//! `KINKS=2500 cargo test --release -p touchoff-tests --test certified kinks -- --nocapture` examines 12,500 tools.
 
 use crate::allowances::sampled::SurfaceAllowances;
 use crate::pair::{CLEAR, IN_CONTACT, NEAR, QUERIED, UNDECIDED, WIDER};
@@ -145,21 +145,32 @@ fn compare(tool: &Restated, rng: &mut Rng, tally: &mut Tally) {
     }
 }
 
-#[test]
-fn samples_are_within_the_depth_of_surfaces_nearly_in_line() {
+/// Compares random tools of some kinds with samples; fails unless more than one query of 100 has each of some verdicts.
+fn compare_all(kinds: &[fn(&mut Rng) -> Restated], verdicts: &[&'static str]) {
     let mut rng = Rng::new(70);
     let mut tally = Tally::default();
-    for kind in [tapered, grooved, chords, rounded, tiny] {
+    for kind in kinds {
         for _ in 0..case_count("KINKS", 8) {
             compare(&kind(&mut rng), &mut rng, &mut tally);
         }
     }
     eprintln!("{tally}");
     assert!(5 * tally.count(IN_CONTACT) > tally.count(QUERIED), "{tally}");
-    let is_seen = |kind| 300 * tally.count(kind) > tally.count(QUERIED);
-    assert!([CLEAR, NEAR].into_iter().all(is_seen), "{tally}");
+    let is_seen = |kind: &&'static str| 100 * tally.count(kind) > tally.count(QUERIED);
+    assert!(verdicts.iter().all(is_seen), "{tally}");
     let undecided = tally.count(WIDER) + tally.count(UNDECIDED);
     assert!(1000 * undecided <= tally.count(QUERIED), "{tally}");
+}
+
+#[test]
+fn samples_are_within_the_depth_of_surfaces_nearly_in_line() {
+    compare_all(&[tapered, grooved, chords, tiny], &[CLEAR, NEAR]);
+}
+
+/// Triangles near such a corner are seldom beside it, so that few margins are broken without contact.
+#[test]
+fn samples_are_within_the_depth_of_corners_nearly_in_line() {
+    compare_all(&[rounded], &[CLEAR]);
 }
 
 /// The tool point (16, 3) is 3 mm from the face, on a tube's edge: the part is in the way wherever the rim tapers.
