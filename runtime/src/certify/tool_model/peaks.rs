@@ -142,7 +142,7 @@ impl Section {
             if !pair[0].continues_in(&pair[1]) {
                 continue;
             }
-            let border = Border::new(&pair[0], &pair[1]);
+            let border = Border::new(self, &pair[0], &pair[1]);
             let others = || (0..self.features.len()).filter(|k| *k != index && *k != index + 1);
             for course in [Course::FirstNormal, Course::SecondNormal, Course::Between] {
                 let is_other_nearer = |t: f64| {
@@ -184,6 +184,8 @@ struct Border<'f> {
     from: MeridianPoint,
     /// The unit normals of both at that point, into the tool.
     normals: [MeridianPoint; 2],
+    /// True if between the normals it is a curve that strays from a line by more than rounding.
+    is_curved: bool,
 }
 
 /// The course of a border: along the normal of one feature, where the tool's angle is more than half a turn, so that the point
@@ -196,17 +198,22 @@ enum Course {
 }
 
 impl Border<'_> {
-    fn new<'f>(first: &'f Feature, second: &'f Feature) -> Border<'f> {
+    fn new<'f>(section: &Section, first: &'f Feature, second: &'f Feature) -> Border<'f> {
         let normals = [first.tangent_at(1), second.tangent_at(0)].map(|[d, z]| {
             let length = d.hypot(z);
             [-z / length, d / length]
         });
-        Border { features: [first, second], from: second.ends[0], normals }
+        // Beside an arc that bulges the border ends at its centre at the latest, beside another one anywhere.
+        let reach = |circle: Circle| if circle.convex { circle.radius } else { 2.0 * section.size };
+        let reaches = [first, second].into_iter().filter_map(|feature| feature.circle.map(reach));
+        let stray = norm(minus(normals[0], normals[1])) * reaches.fold(0.0, f64::max);
+        let is_curved = stray > rounding::FRACTION * section.error;
+        Border { features: [first, second], from: second.ends[0], normals, is_curved }
     }
 
-    /// Returns whether the border may be no line.
+    /// Returns whether a course is no line.
     fn is_curve(&self, course: Course) -> bool {
-        course == Course::Between && self.features.iter().any(|feature| feature.circle.is_some())
+        course == Course::Between && self.is_curved
     }
 
     /// Returns an upper bound of the components, away from the axis, of the directions to its points.
