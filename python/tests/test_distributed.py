@@ -174,10 +174,28 @@ def test_jobs_are_checked_and_none_is_lost(cluster, tmp_path):
     assert set(deep["job"].to_pylist()) == {str(jobs[1]), str(jobs[3])}
 
 
+def test_a_job_that_takes_too_long_is_a_failure(cluster, tmp_path):
+    block = touchoff.Part.cuboid((-20, -20, -10), (20, 20, 0), unit="mm")
+    trimesh = pytest.importorskip("trimesh")
+    trimesh.Trimesh(block.vertices, block.faces).export(tmp_path / "block.stl")
+    # Some minutes of motions, each of which is checked.
+    lines = "".join(f"X{i % 7} Y{i % 5} Z{1 + i % 3}\n" for i in range(2_000_000))
+    (tmp_path / "long.nc").write_text(f"G21 G90 G94 G54\nT1 M6\nS900 M3\nG0 X0 Y0 Z50\nG1 F100\n{lines}M30\n")
+    job = tmp_path / "long.toml"
+    job.write_text(
+        'part = "block.stl"\nunit = "mm"\nprogram = "long.nc"\ncontrol = "linuxcnc"\nmachine = "3-axis"\n[tool.1]\ntool = "D2Ball"\n'
+    )
+    [(name, failure)] = touchoff.distributed.verify_many([job], max_time=1.5)
+    assert isinstance(failure, TimeoutError) and "not checked within 1.5 s" in str(failure), (name, failure)
+    for seconds in [0, -1, float("nan"), float("inf")]:
+        with pytest.raises(ValueError, match="max_time"):
+            next(touchoff.distributed.verify_many([job], max_time=seconds))
+
+
 def test_a_job_that_loses_its_process_is_a_failure(cluster, tmp_path, monkeypatch):
     attempts = tmp_path / "attempts"
 
-    def check(path):
+    def check(path, max_time):
         if path.endswith("other.toml"):
             return ValueError("no job")
         with attempts.open("a") as file:

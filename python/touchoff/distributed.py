@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import functools
 import os
+import signal
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -192,11 +193,21 @@ def _name(name: str) -> str:
     return name
 
 
-def _check(path: str) -> Report | Exception:
+def _check(path: str, max_time: float | None) -> Report | Exception:
+    def end(*_: Any) -> None:
+        raise TimeoutError(f"{path}: not checked within {max_time:g} s: verify it alone, or raise `max_time`")
+
     try:
+        # A task of Ray runs in the main thread of its process, where the alarm interrupts a check as Ctrl-C does.
+        if max_time is not None:
+            signal.signal(signal.SIGALRM, end)
+            signal.setitimer(signal.ITIMER_REAL, max_time)
         return Job.load(path).check()
     except (ValueError, OSError) as error:
         return error
+    finally:
+        if max_time is not None:
+            signal.setitimer(signal.ITIMER_REAL, 0)
 
 
 def verify_many(
@@ -204,6 +215,7 @@ def verify_many(
     *,
     num_cpus: int = 1,
     max_retries: int = 2,
+    max_time: float | None = None,
     in_flight: int = 64,
 ) -> Iterator[tuple[str, Report | Exception]]:
     """Check jobs as tasks of Ray, each as :meth:`touchoff.Job.check` does, in the order in which they end.
@@ -219,6 +231,8 @@ def verify_many(
         As in :func:`sweep`.
     max_retries
         How often a job is tried again whose process or machine is lost. A job that takes more memory than there is loses each.
+    max_time
+        Seconds after which a job yields a :class:`TimeoutError`.
     """
     import ray
 
@@ -226,7 +240,10 @@ def verify_many(
     task = ray.remote(num_cpus=_arrays.count("num_cpus", num_cpus), max_retries=0)(_check)
     paths = [os.path.abspath(_arrays.path("jobs", job)) for job in jobs]
     limit, retries = _arrays.count("in_flight", in_flight), _arrays.count("max_retries", max_retries, least=0)
-    yield from _results(((path, functools.partial(task.remote, path)) for path in paths), limit, retries)
+    seconds = None if max_time is None else _arrays.real("max_time", max_time)
+    if seconds is not None and not 0.0 < seconds < float("inf"):
+        raise ValueError(f"max_time: {seconds:g} is no positive number of seconds")
+    yield from _results(((path, functools.partial(task.remote, path, seconds)) for path in paths), limit, retries)
 
 
 def write_reports(

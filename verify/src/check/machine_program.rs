@@ -551,9 +551,7 @@ impl MachineProgram {
             {
                 return Err(self.error(error));
             }
-            let mut obstacles = execution.obstacles(&error);
-            let count = obstacles.remove(0).count;
-            summary.stop = Some(ProgramStop { error, count, obstacles });
+            summary.stop = Some(execution.stop_at(error));
         }
         for (number, dwells) in execution.interpreter.dwells() {
             summary.time_of(*number, &self.machine).add_dwells(dwells);
@@ -632,11 +630,12 @@ struct Execution<'a> {
 }
 
 impl Execution<'_> {
-    /// Returns what stands in the way from the block on that has stopped it, whose error is the first.
-    fn obstacles(&mut self, stop: &BlockError) -> Vec<Obstacle> {
-        let BlockError { block, fault } = stop.clone();
+    /// Returns the stop at the block that has stopped it, with the obstacles behind it.
+    fn stop_at(&mut self, error: BlockError) -> ProgramStop {
+        let BlockError { block, fault } = error.clone();
         let mut found = vec![Obstacle { block, count: 1, fault }];
         let mut known = HashSet::from([(0, block)]);
+        let mut unlisted = HashSet::new();
         let mut survey = self.interpreter.survey();
         let mut errors = Vec::new();
         while let Some(step) = survey.next() {
@@ -663,14 +662,18 @@ impl Execution<'_> {
                         found.push(Obstacle { block, count: 0, fault });
                         found.len() - 1
                     }
-                    None => continue,
+                    None => {
+                        unlisted.insert(block);
+                        continue;
+                    }
                 };
                 if known.insert((index, block)) {
                     found[index].count += 1;
                 }
             }
         }
-        found
+        let count = found.remove(0).count;
+        ProgramStop { error, count, obstacles: found, unlisted: unlisted.len() }
     }
 }
 

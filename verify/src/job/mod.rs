@@ -259,7 +259,7 @@ faults! {
         /// A number of a tool in the program for which no tool is given.
         #[code = J0103]
         #[error(
-            "no tool is given for T{number}{}: state `tools = \"LIBRARY\"` or `[tool.{number}]` with `tool = \"FILE.tool\"` in the job",
+            "line {line}: no tool is given for T{number}{}: state `tools = \"LIBRARY\"` or `[tool.{number}]` with `tool = \"FILE.tool\"` in the job",
             further_tools(others)
         )]
         NoTool {

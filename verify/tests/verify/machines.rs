@@ -146,6 +146,21 @@ fn all_that_stands_in_the_way_is_listed() {
     }
 }
 
+/// Beyond the hundred that are listed, lines with other obstacles are counted.
+#[test]
+fn obstacles_that_are_not_listed_are_counted() {
+    let words: String = (0..150).map(|number| format!("M{}\n", 1000 + number)).collect();
+    let text = format!("G21 G90 G94 F100.\nG54 G0 X0. Y0. Z50.\n{words}{words}M30\n");
+    let machine = Machine::named("3-axis").expect("a machine of the library");
+    let program = MachineProgram::new("part.nc", text, machine, ControlSetup::default());
+    let program = program.expect("a program");
+    let stop = program.summary().stop.as_ref().expect("a stop");
+    assert_eq!((stop.count, stop.obstacles.len(), stop.unlisted), (2, 100, 98));
+    let gaps = MachineProgram::gaps(std::slice::from_ref(&program));
+    let said = gaps.iter().find(|gap| gap.code() == "V0311").expect("a gap");
+    assert!(said.reason.starts_with("98 more lines"), "{said}");
+}
+
 /// With rates, each axis moves at its own: the slower ones go on alone.
 #[test]
 fn rapid_rates_bend_the_path() {

@@ -80,8 +80,10 @@ pub struct ProgramStop {
     pub error: BlockError,
     /// The number of blocks that have this fault.
     pub count: usize,
-    /// What else stands in the way behind it, the first hundred.
+    /// The first hundred obstacles behind it.
     pub obstacles: Vec<Obstacle>,
+    /// The number of blocks with obstacles that are not among these.
+    pub unlisted: usize,
 }
 
 /// Motions that are not checked for one cause.
@@ -326,6 +328,16 @@ faults! {
              `rotary_direction` for LinuxCNC, or a machine's file"
         )]
         RotaryDirection,
+        /// Blocks that cannot be read, beyond those that are listed.
+        ///
+        /// Prose and files of another kind have one in each line.
+        #[code = V0311]
+        #[error(
+            "{count} more line{} cannot be read for other reasons, which are not listed: mend those above first, or check that the file \
+             is a program of this control",
+            if *count == 1 { "" } else { "s" }
+        )]
+        Unlisted { count: usize },
     }
 }
 
@@ -511,7 +523,7 @@ impl MachineSummary {
     /// Returns what this reading leaves open.
     fn gaps(&self) -> Vec<Gap> {
         let mut gaps = Vec::new();
-        if let Some(ProgramStop { error, count, obstacles }) = &self.stop {
+        if let Some(ProgramStop { error, count, obstacles, unlisted }) = &self.stop {
             let weight = GapWeight::Stops;
             let times = |count| if count > 1 { format!(" ({count} times)") } else { String::new() };
             let BlockError { block, fault } = error;
@@ -520,6 +532,10 @@ impl MachineSummary {
             gaps.extend(obstacles.iter().map(|Obstacle { block, count, fault }| {
                 Gap::new(*block, weight, fault.code(), format!("{fault}{}", times(*count)))
             }));
+            if *unlisted > 0 {
+                let gap = CheckGap::Unlisted { count: *unlisted };
+                gaps.push(Gap::new(*block, weight, gap.code(), gap.to_string()));
+            }
         }
         for UnknownMotions { cause, count, first, first_open } in &self.unknown {
             let plural = if *count == 1 { "" } else { "s" };
