@@ -104,6 +104,33 @@ fn long_blocks_of_loops_share_the_budget() {
     }
 }
 
+/// The blocks of the main program that are executed once are limited by its text alone, after a loop too.
+#[test]
+fn a_long_program_takes_nothing_of_the_budget() {
+    let blocks: String = (0..900).map(|k| format!("X+{} Y+{}\n", k % 7, k % 5)).collect();
+    let klartext: String = blocks.lines().map(|block| format!("L {block} FMAX\n")).collect();
+    for (language, text) in [
+        (Choice::Iso, format!("G54 G0 X0\n#1=0\nN1 #1=#1+1\nIF [#1 LT 10] GOTO 1\n{blocks}M30\n")),
+        (
+            Choice::Heidenhain,
+            format!(
+                "BEGIN PGM A MM\nLBL 1\nL X+0 FMAX\nCALL LBL 1 REP 9\n{klartext}M30\nEND PGM A MM\n"
+            ),
+        ),
+        (
+            Choice::Sinumerik,
+            format!(
+                "G54 G0 X0\nR1=0\nAGAIN:\nR1=R1+1\nIF R1<10 GOTOB AGAIN\n{}M30\n",
+                blocks.replace('+', "")
+            ),
+        ),
+    ] {
+        let setup = ControlSetup { max_repeated: 100, ..setup(language) };
+        let steps = read(&text, &setup).unwrap_or_else(|error| panic!("{error}")).0;
+        assert!(steps.len() >= 900, "{language:?}: {}", steps.len());
+    }
+}
+
 #[test]
 fn a_bolt_circle_is_the_same_in_every_form() {
     let expected = circle(7, 40.0, [10.0, -5.0], 15.0);

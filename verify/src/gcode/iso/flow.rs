@@ -276,10 +276,10 @@ pub(super) struct Flow<'a> {
     titled: bool,
     /// Set once a block of the main program was executed.
     started: bool,
-    /// The last line of the main program that was executed.
-    furthest: usize,
-    /// The place after it.
+    /// The place after the last line of the main program that was executed.
     past: Place,
+    /// Set if the present line was executed before, or is of a subprogram.
+    is_repeated: bool,
     pub(super) repeated: Repeated,
 }
 
@@ -297,8 +297,8 @@ impl<'a> Flow<'a> {
             modal: None,
             titled: false,
             started: false,
-            furthest: 0,
             past: sources[0].extent.start,
+            is_repeated: false,
             sources,
             repeated,
         }
@@ -369,10 +369,11 @@ impl<'a> Flow<'a> {
         };
         let number = self.place.line;
         self.place = after;
-        self.count(work(line), number).map_err(|fault| GcodeError { line: number, fault })?;
-        if self.is_main() && number > self.furthest {
-            (self.furthest, self.past) = (number, after);
+        self.is_repeated = !self.is_main() || number < self.past.line;
+        if !self.is_repeated {
+            self.past = after;
         }
+        self.count(work(line)).map_err(|fault| GcodeError { line: number, fault })?;
         Ok(Some((number, line)))
     }
 
@@ -404,11 +405,9 @@ impl<'a> Flow<'a> {
         self.depth() == 0
     }
 
-    /// Counts blocks or steps of a line that were executed before, of a subprogram or of a long cycle. The others are limited by the
-    /// text.
-    pub(super) fn count(&mut self, number: usize, line: usize) -> Result<(), GcodeFault> {
-        let is_repeated = !self.is_main() || line <= self.furthest;
-        let is_counted = is_repeated || number > FREE_STEPS;
+    /// Counts the block of the present line or its steps if it is repeated, or a long cycle. The others are limited by the text.
+    pub(super) fn count(&mut self, number: usize) -> Result<(), GcodeFault> {
+        let is_counted = self.is_repeated || number > FREE_STEPS;
         if is_counted { self.repeated.add(number) } else { Ok(()) }
     }
 
@@ -692,7 +691,7 @@ impl<'a> Flow<'a> {
 
     /// Repeats the subprogram, or returns to its caller.
     fn leave(&mut self, variables: &mut Variables) -> Result<(), GcodeFault> {
-        self.count(1, 0)?;
+        self.repeated.add(1)?;
         match self.calls.last_mut() {
             Some(call) if call.repeats > 0 => {
                 call.repeats -= 1;

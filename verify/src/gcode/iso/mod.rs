@@ -345,7 +345,7 @@ impl<'a> Program<'a> {
         // The centre of a full circle moves without an end.
         let moves = !owns && (has_end || has_centre && control.pending.len() > before);
         // A canned cycle in a repeated subprogram has many steps per block.
-        self.flow.count(control.pending.len(), number)?;
+        self.flow.count(control.pending.len())?;
         match subprogram.map(|code| code.tenths) {
             Some(tenths @ (970 | 980 | 1980)) => {
                 let call = self.called(block, tenths, line.file.take(), control)?;

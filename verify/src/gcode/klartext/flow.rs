@@ -101,8 +101,8 @@ pub(super) struct Flow<'a> {
     ends: Arc<[usize]>,
     calls: Vec<Call>,
     repeats: Vec<Repeat>,
-    /// Set once a block was called, repeated or jumped to.
-    jumped: bool,
+    /// Set if the present block was executed before, or is of a subprogram.
+    is_repeated: bool,
     pub(super) repeated: Repeated,
 }
 
@@ -156,7 +156,7 @@ impl<'a> Flow<'a> {
             ends: ends.into(),
             calls: Vec::new(),
             repeats: Vec::new(),
-            jumped: false,
+            is_repeated: false,
             repeated,
         })
     }
@@ -169,14 +169,14 @@ impl<'a> Flow<'a> {
         // One for the call itself, which has no place here.
         let below = caller.below + caller.calls.len() + 1;
         match below <= MAX_CALLS {
-            true => Ok(Flow { below, jumped: true, repeated: caller.repeated, ..self }),
+            true => Ok(Flow { below, repeated: caller.repeated, ..self }),
             false => Err(GcodeFault::TooDeep),
         }
     }
 
     /// Goes on after the call of a program.
     pub(super) fn go_on_after(&mut self, called: &Flow) {
-        (self.jumped, self.repeated) = (true, called.repeated);
+        self.repeated = called.repeated;
     }
 
     /// Returns the next block and its line.
@@ -191,7 +191,9 @@ impl<'a> Flow<'a> {
         self.present = self.place;
         self.place = after;
         let line = self.present.line;
-        if self.below == 0 && self.calls.is_empty() && self.past.offset < after.offset {
+        let is_called = self.below + self.calls.len() > 0;
+        self.is_repeated = is_called || self.present.offset < self.past.offset;
+        if !self.is_repeated {
             self.past = after;
         }
         self.count(work(found)).map_err(|fault| GcodeError { line, fault })?;
@@ -207,9 +209,9 @@ impl<'a> Flow<'a> {
         is_behind
     }
 
-    /// Counts blocks or steps that are executed after a jump, or those of a long cycle. Those before are limited by the text.
+    /// Counts the present block or its steps if it is repeated, or a long cycle. The others are limited by the text.
     pub(super) fn count(&mut self, number: usize) -> Result<(), GcodeFault> {
-        let is_counted = self.jumped || number > FREE_STEPS;
+        let is_counted = self.is_repeated || number > FREE_STEPS;
         if is_counted { self.repeated.add(number) } else { Ok(()) }
     }
 
@@ -247,7 +249,7 @@ impl<'a> Flow<'a> {
             return Err(GcodeFault::TooDeep);
         }
         self.calls.push(Call { return_to: self.place, repeats: self.repeats.len() });
-        (self.place, self.jumped) = (place, true);
+        self.place = place;
         Ok(())
     }
 
@@ -284,7 +286,7 @@ impl<'a> Flow<'a> {
             0 => self.repeats.truncate(index),
             left => {
                 self.repeats[index].left = left - 1;
-                (self.place, self.jumped) = (place, true);
+                self.place = place;
             }
         }
         Ok(())
@@ -300,7 +302,7 @@ impl<'a> Flow<'a> {
             index += 1;
             index <= own || (repeat.section[0]..=repeat.section[1]).contains(&place.offset)
         });
-        (self.place, self.jumped) = (place, true);
+        self.place = place;
         Ok(())
     }
 
