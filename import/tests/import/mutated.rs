@@ -284,7 +284,8 @@ fn params(tool: &ImportedTool) -> Vec<(String, f64)> {
         .collect()
 }
 
-/// Returns true for a number of the file, its half or its double, and for the sum of two.
+/// Returns true for a number of the file, its half or its double, the sum of two, and half of one less another: the centre of a
+/// corner that only a note states.
 fn follows(value: f64, numbers: &[f64]) -> bool {
     let near = |a: f64, b: f64| (a - b).abs() <= 1e-9 * a.abs().max(b.abs()).max(1.0);
     let is_number = |wanted: f64| {
@@ -293,7 +294,9 @@ fn follows(value: f64, numbers: &[f64]) -> bool {
         numbers[beside].iter().any(|number| near(*number, wanted))
     };
     [value, 2.0 * value, value / 2.0].into_iter().any(is_number)
-        || numbers.iter().any(|number| is_number(value - number))
+        || numbers
+            .iter()
+            .any(|number| is_number(value - number) || is_number(2.0 * (value + number)))
 }
 
 /// Returns true if a note says that the file does not state the value.

@@ -69,6 +69,11 @@ impl Choice {
 /// The values of a parameter, which differ.
 pub(super) type Choices = Vec<Choice>;
 
+/// Takes the opposite of each value.
+fn negate(choices: &mut [Choice]) {
+    choices.iter_mut().for_each(|choice| choice.bits = (-choice.value()).to_bits());
+}
+
 /// The groups of a tool.
 pub(super) struct Groups {
     /// The tool's graph, and the values of groups.
@@ -149,7 +154,7 @@ impl Groups {
     fn parameter(&mut self, mut choices: Choices) -> Id {
         let is_opposite = choices[0].value() < 0.0;
         if is_opposite {
-            choices.iter_mut().for_each(|choice| choice.bits = (-choice.value()).to_bits());
+            negate(&mut choices);
         }
         let graph = &mut self.graph;
         let id = *self.known.entry(choices).or_insert_with_key(|choices| {
@@ -249,7 +254,7 @@ impl Merger<'_> {
         let mut choices = match *graph.node(own) {
             Node::Neg(opposite) => {
                 let mut choices = parameters.get(&opposite)?.clone();
-                choices.iter_mut().for_each(|choice| choice.bits = (-choice.value()).to_bits());
+                negate(&mut choices);
                 choices
             }
             _ => match parameters.get(&own) {

@@ -151,20 +151,12 @@ impl Section {
                 };
                 let (from, away) = (border.from[0], border.max_away(course));
                 let to_axis = if away < 0.0 { from / -away } else { f64::INFINITY };
-                let [mut low, mut high] = [0.0, to_axis.min(2.0 * self.size)];
+                let end = to_axis.min(2.0 * self.size);
                 // Otherwise the border ends at the axis.
-                if !is_other_nearer(high) {
-                    continue;
+                if is_other_nearer(end) {
+                    let end = bisect([0.0, end], is_other_nearer);
+                    heights.push(border.point(course, end)[1]);
                 }
-                while low < f64::midpoint(low, high) && f64::midpoint(low, high) < high {
-                    let middle = f64::midpoint(low, high);
-                    if is_other_nearer(middle) {
-                        high = middle;
-                    } else {
-                        low = middle;
-                    }
-                }
-                heights.push(border.point(course, high)[1]);
             }
         }
         heights
@@ -244,14 +236,22 @@ impl Border<'_> {
             return at(self.direction(course));
         }
         // Beside an arc the border is no line. On the normal of either feature the other one is nearer.
-        let [mut low, mut high] = [0.0, 1.0];
-        while low < f64::midpoint(low, high) && f64::midpoint(low, high) < high {
-            let middle = f64::midpoint(low, high);
-            let p = at(self.mix(middle));
-            let [first, second] = self.features.map(|feature| feature.distance(p));
-            if first > second { low = middle } else { high = middle }
+        let is_first_nearer = |part: f64| {
+            let p = at(self.mix(part));
+            self.features[0].distance(p) <= self.features[1].distance(p)
+        };
+        at(self.mix(bisect([0.0, 1.0], is_first_nearer)))
+    }
+}
+
+/// Returns the number from which on a condition holds, which holds at the upper end of a range.
+fn bisect([mut low, mut high]: [f64; 2], holds: impl Fn(f64) -> bool) -> f64 {
+    loop {
+        let middle = f64::midpoint(low, high);
+        if !(low < middle && middle < high) {
+            return high;
         }
-        at(self.mix(high))
+        if holds(middle) { high = middle } else { low = middle }
     }
 }
 
