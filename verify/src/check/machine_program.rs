@@ -29,7 +29,7 @@ mod summary;
 pub use fault::{BlockError, BlockFault, MachineProgramError, Obstacle, StepFault};
 pub(crate) use summary::CheckGap;
 pub use summary::{
-    Gap, GapWeight, MachineSummary, ProgramStop, ToolUse, UnknownCause, UnknownMotions,
+    Gap, GapWeight, Level, MachineSummary, ProgramStop, ToolUse, UnknownCause, UnknownMotions,
 };
 
 /// Largest number of obstacles that are listed. Prose has one in each line.
@@ -237,7 +237,7 @@ impl MachineProgram {
             setup.home = Some(machine.home().map(Option::unwrap_or_default));
         }
         let travel = machine.axis(Letter::Z).and_then(|axis| axis.limits);
-        setup.top = travel.filter(|_| is_placed).map(|[_, top]| top);
+        setup.top = travel.map(|[_, top]| top);
         let mut program = MachineProgram {
             file: name.to_owned(),
             text,
@@ -501,12 +501,12 @@ impl MachineProgram {
                 | Resolved::Arrival(_, cause)
                 | Resolved::Departure(_, cause) => {
                     if let Some(level) = execution.resolver.home_level {
-                        summary.add_way_home(&step, level);
+                        MachineSummary::add_low_way(&mut summary.ways_home, step.block(), level);
                     }
-                    if let (UnknownCause::Start, Some(level)) =
+                    if let (UnknownCause::Start | UnknownCause::ToolChange, Some(level)) =
                         (cause, execution.resolver.blind_level)
                     {
-                        summary.add_blind(&step, level);
+                        MachineSummary::add_low_way(&mut summary.blind_ways, step.block(), level);
                     }
                     let leaves_change = execution.resolver.leaves_change(&step);
                     summary.add_unknown(&step, cause, leaves_change);

@@ -25,7 +25,7 @@ use super::block::{Block, Code, Group};
 use super::error::{combination, not_read};
 use super::note::{NoteKind, Notes};
 use super::rules::{Choice, ControlRules, Rule};
-use super::state::{ControlState, LengthOffset, Position, Rotation, Tcp, WorkOffset};
+use super::state::{ControlState, LengthOffset, Position, RotaryAxes, Rotation, Tcp, WorkOffset};
 use super::{
     BlockLine, ControlSetup, Dwells, Feed, GcodeFault, Plane, Step, StepPath, SubprogramLine,
 };
@@ -100,7 +100,7 @@ pub(super) struct Control {
     /// The rules that the program depends on, each with the first line.
     pub(super) asked: BTreeMap<Rule, BlockLine>,
     axes: [bool; 6],
-    carries_tool: [bool; 6],
+    rotary_axes: RotaryAxes,
     /// Position in which M6 leaves the axes, if the machine states it.
     change_position: Option<Position>,
     /// Set once a work offset was selected.
@@ -311,7 +311,10 @@ impl Control {
             settled: ControlRules::default(),
             asked: BTreeMap::new(),
             axes: setup.axes,
-            carries_tool: setup.carries_tool,
+            rotary_axes: RotaryAxes {
+                carries_tool: setup.carries_tool,
+                part: setup.work_offsets[0].map_or([None; 6], |origin| origin.map(Some)),
+            },
             change_position: setup.tool_change,
             offset_stated: false,
             returned: None,
@@ -776,7 +779,7 @@ impl Control {
             commanded,
             path,
             tool_vector,
-            master_is_positive: None,
+            alignment: None,
             spindle,
             absolute: !self.modal.incremental,
             is_homeward: false,

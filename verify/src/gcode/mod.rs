@@ -246,9 +246,8 @@ pub struct Step {
     pub is_return: bool,
     /// Rotary axes that turn the shorter way to their end (DC of Sinumerik), whatever the [rule](Rule::Rotary).
     pub shortest: [bool; 6],
-    /// The sign of the master axis at the end of an alignment with a tilted plane, if the program states it (SEQ of Heidenhain): set
-    /// for angles from 0. It is the rotary axis next to the tool, or else the one next to the base.
-    pub master_is_positive: Option<bool>,
+    /// The position at the end of an alignment with a tilted plane, if the program selects one of two; otherwise it is the nearest.
+    pub alignment: Option<Alignment>,
     /// The spindle during the motion.
     pub spindle: Spindle,
     /// State of the control, shared by steps until it changes.
@@ -260,6 +259,22 @@ impl Step {
     pub fn block(&self) -> BlockLine {
         BlockLine { line: self.line, within: self.within }
     }
+}
+
+/// One of two positions of the rotary axes that align the tool with a tilted plane.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Alignment {
+    /// SEQ of Heidenhain: by the sign of the master axis, which is the rotary axis next to the tool, or else the one next to the base.
+    Master {
+        /// Set for angles from 0.
+        is_positive: bool,
+    },
+    /// The direction of CYCLE800: by the value of the axis that [`Rule::SwivelAxis`] names. If one of them is out of its limits, it is the
+    /// other.
+    Value {
+        /// Set for the higher value.
+        is_higher: bool,
+    },
 }
 
 /// The programmed feed of a motion.
@@ -320,6 +335,9 @@ pub enum StepPath {
     },
     /// An arc whose start is unknown in its plane.
     Undetermined,
+    /// The motion of the [commanded](Step::commanded) axes alone to a position in machine coordinates, while positions [turn with the
+    /// workpiece](ControlState::turns_with_workpiece) and rotary axes are turned.
+    Machine(Position),
     /// The motion of a tool change to a position in machine coordinates, on a path that only the machine knows.
     /// [Commanded](Step::commanded) axes move.
     ToolChange(Position),

@@ -69,6 +69,8 @@ pub enum Rule {
     RotaryDirection,
     /// The length of a tool that a rotary axis of the head tilts, under M428.
     HeadLength,
+    /// The rotary axis whose lower or higher value the direction of CYCLE800 selects.
+    SwivelAxis,
     /// Blocks that begin with `/`: the operator's switch, which no control states.
     OptionalBlocks,
 }
@@ -140,6 +142,8 @@ pub enum Choice {
     ReversedC,
     Compensated,
     AlongZ,
+    FirstAxis,
+    SecondAxis,
     Executed,
     LeftOut,
 }
@@ -153,7 +157,7 @@ struct Entry {
 }
 
 /// All rules. Without a statement the interpreter makes the first choice of each.
-const RULES: [Entry; 28] = [
+const RULES: [Entry; 29] = [
     Entry {
         rule: Rule::ToolChange,
         key: "tool_change",
@@ -474,6 +478,15 @@ const RULES: [Entry; 28] = [
         ],
     },
     Entry {
+        rule: Rule::SwivelAxis,
+        key: "swivel_axis",
+        about: "the rotary axis of two positions of which CYCLE800 takes the lower or the higher one, by its direction",
+        choices: &[
+            (Choice::FirstAxis, "first", "is the first of the machine's rotary axes A, B, C"),
+            (Choice::SecondAxis, "second", "is the second of them"),
+        ],
+    },
+    Entry {
         rule: Rule::OptionalBlocks,
         key: "optional_blocks",
         about: "blocks that begin with `/`",
@@ -490,7 +503,7 @@ const CONTROLS: [&str; 5] = ["fanuc", "haas", "linuxcnc", "siemens", "heidenhain
 /// Their choices, a column per control, in the order of [`RULES`] without the operator's switch. Each is the control as
 /// delivered: a builder can set most of them otherwise.
 #[rustfmt::skip]
-const CONTROL_CHOICES: [[Choice; 5]; 27] = {
+const CONTROL_CHOICES: [[Choice; 5]; 28] = {
     use Choice::*;
     [
         [Moves,           Retracts,      Stays,         Moves,         Moves],
@@ -520,11 +533,12 @@ const CONTROL_CHOICES: [[Choice; 5]; 27] = {
         [NextMotion,      NextMotion,    EntryMotion,   NextMotion,    NextMotion],
         [Iso841,          Iso841,        Iso841,        Iso841,        Iso841],
         [Compensated,     Compensated,   Compensated,   Compensated,   Compensated],
+        [FirstAxis,       FirstAxis,     FirstAxis,     FirstAxis,     FirstAxis],
     ]
 };
 
 /// Rules that a control leaves to a parameter without a usual value: every choice is a reading.
-const OPEN: [(&str, Rule); 12] = [
+const OPEN: [(&str, Rule); 13] = [
     ("fanuc", Rule::ReferenceReturn),
     ("fanuc", Rule::LengthChange),
     // K, and L on the Series 15 and in its format.
@@ -542,6 +556,8 @@ const OPEN: [(&str, Rule); 12] = [
     ("siemens", Rule::ToolOrientation),
     // MD10602, by which the machine's builder clears the frame with the change of the axes.
     ("siemens", Rule::TransformationOffset),
+    // The swivel data record of the machine.
+    ("siemens", Rule::SwivelAxis),
     // The display of the axis below 360 degrees, and M126.
     ("heidenhain", Rule::Rotary),
 ];
@@ -577,12 +593,17 @@ impl Rule {
 
     /// Returns whether each choice is a reading, and decides what the interpreter does.
     pub(super) fn is_of_interpreter(self) -> bool {
-        self.is_branched() && !matches!(self, Rule::RotaryDirection | Rule::HeadLength)
+        self.is_branched() && !self.is_of_machine()
+    }
+
+    /// Returns whether the choice depends on the machine.
+    fn is_of_machine(self) -> bool {
+        matches!(self, Rule::RotaryDirection | Rule::HeadLength | Rule::SwivelAxis)
     }
 
     /// Returns whether a control's file need not state the rule: the operator's switch, and what depends on the machine.
     fn is_optional(self) -> bool {
-        matches!(self, Rule::RotaryDirection | Rule::HeadLength | Rule::OptionalBlocks)
+        self.is_of_machine() || self == Rule::OptionalBlocks
     }
 
     /// Returns the choices, of which the first is made where none is stated.

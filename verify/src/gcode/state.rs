@@ -166,6 +166,15 @@ impl LengthOffset {
     }
 }
 
+/// The rotary axes of a machine, with the angles of its table at which the part is set up.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct RotaryAxes {
+    /// Set for the axes that carry the tool.
+    pub(super) carries_tool: [bool; 6],
+    /// Origin of G54, which is the frame of the part, in machine coordinates.
+    pub(super) part: Position,
+}
+
 impl ControlState {
     /// Converts a position from program coordinates to the workpiece's frame.
     pub fn to_workpiece(&self, position: Position) -> Position {
@@ -226,14 +235,16 @@ impl ControlState {
     }
 
     /// Returns for each of A, B and C whether it is certain that it turns nothing at a position in program coordinates: an
-    /// axis of the table at 0 of the work offset, with which the part is turned, and an axis that carries the tool at 0 of
-    /// the machine. An axis of such an offset that is not known has none.
-    pub(super) fn turns_nothing(&self, position: Position, carries_tool: [bool; 6]) -> [bool; 3] {
+    /// axis of the table at 0 of G54, with which the part is turned, and an axis that carries the tool at 0 of the machine.
+    /// An axis of such an offset that is not known has none.
+    pub(super) fn turns_nothing(&self, position: Position, axes: &RotaryAxes) -> [bool; 3] {
         let workpiece = self.to_workpiece(position);
         [3, 4, 5].map(|axis| {
-            let origin =
-                if carries_tool[axis] { self.origin[axis].unwrap_or_default() } else { 0.0 };
-            workpiece[axis].is_some_and(|angle| angle + origin == 0.0)
+            let origin = match axes.carries_tool[axis] {
+                true => self.origin[axis],
+                false => self.origin[axis].zip(axes.part[axis]).map(|(own, part)| own - part),
+            };
+            workpiece[axis].is_some_and(|angle| angle + origin.unwrap_or_default() == 0.0)
         })
     }
 
@@ -247,7 +258,7 @@ impl ControlState {
         &self,
         new: &ControlState,
         mut position: Position,
-        carries_tool: [bool; 6],
+        axes: &RotaryAxes,
     ) -> Position {
         let turns = [self, new].map(ControlState::turns_with_workpiece);
         let lengths = self.length.length().zip(new.length.length());
@@ -272,7 +283,7 @@ impl ControlState {
             return position;
         }
         let mut workpiece = self.to_workpiece(position);
-        let at_zero = self.turns_nothing(position, carries_tool) == [true; 3];
+        let at_zero = self.turns_nothing(position, axes) == [true; 3];
         // The kinematics of the machine have no part in it only while the rotary axes stand at 0.
         if (turns[0] != turns[1] || turns[0] && changes_machine) && !at_zero {
             workpiece[..3].fill(None);

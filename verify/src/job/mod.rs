@@ -729,11 +729,12 @@ faults! {
         ToolChange { count: usize, line: usize },
         /// The way to the first position at a height at which something stands.
         ///
-        /// The program states Z before X and Y, so that the tool comes from wherever it stands, at that height.
+        /// The program states Z before X, Y or rotary axes, so that the tool comes from wherever it stands, at that height. A body of the
+        /// machine that does not move with the part can be anywhere.
         #[code = V0607]
         #[error(
-            "the way to the first position in X and Y is not checked, and at Z it is lower than {name}: state X and Y before this Z, or a \
-             Z above it"
+            "the way to the first position in X, Y or rotary axes is not checked, and at Z it is lower than {name}: state them before this \
+             Z, or a Z above it"
         )]
         LowWay { name: String },
         /// A comment of the program that describes another tool than the job has.

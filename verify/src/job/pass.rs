@@ -10,7 +10,8 @@ use super::{Body, BodyFrame, BodyRole, Job, JobError, JobGap, JobTool, StockShap
 use crate::check::{ApproachSearch, MoveCheck, MoveRequest};
 use crate::gcode::{BlockLine, WorkOffset};
 use crate::machine::{Link, Machine, Side};
-use crate::{FindingGroup, MachineSummary, Move, Verifier};
+use crate::{FindingGroup, Level, MachineSummary, Move, Verifier};
+use nalgebra::{Point3, Vector3};
 use std::sync::Arc;
 use touchoff::tool::Symmetry;
 
@@ -128,39 +129,59 @@ impl<'a> Job<'a> {
         Ok(report)
     }
 
-    /// Returns the ways of each reading to the first position, and to a reference position that is not known, that are lower than the
-    /// highest place of a body or of the stock: X and Y are not known at one of their ends, and so what is between.
+    /// Returns the ways of each reading to the first position, and to a reference position that is not known, that are lower than a
+    /// body or the stock: X and Y are not known at one of their ends, and so what is between.
     fn low_ways(&self) -> impl Iterator<Item = (BlockLine, JobGap)> + '_ {
+        self.program.readings().iter().flat_map(|reading| {
+            let MachineSummary { blind_ways, ways_home, .. } = reading.summary();
+            let to_first = blind_ways.iter().map(|way| (way, false));
+            let ways = to_first.chain(ways_home.iter().map(|way| (way, true)));
+            ways.filter_map(|((block, level), leads_home)| {
+                let name = self.highest_above(level)?.to_owned();
+                let gap =
+                    if leads_home { JobGap::LowWayHome { name } } else { JobGap::LowWay { name } };
+                Some((*block, gap))
+            })
+        })
+    }
+
+    /// Returns the name of the highest body, or of the stock, if it is higher than a level.
+    fn highest_above(&self, level: &Level) -> Option<&str> {
         let unit = self.unit();
-        // The frame of another link has other heights.
-        let bodies = self.bodies.iter().filter(|body| !matches!(body.frame, BodyFrame::Machine(_)));
-        let bodies = bodies.map(|body| {
+        let top = |[low, high]: [Point3<f64>; 2]| -> f64 {
+            (0..3).map(|k| (level.up[k] * low[k]).max(level.up[k] * high[k])).sum()
+        };
+        let bodies = self.bodies.iter().filter(|body| body.meets_tools()).map(|body| {
             let margin = match body.role {
                 BodyRole::Part => 0.0,
                 BodyRole::Fixture { margin } | BodyRole::Machine { margin, .. } => margin,
             };
-            (&*body.name, body.bvh.bounds()[1].z + margin)
+            (&*body.name, self.bounds_at_part(body).map_or(f64::INFINITY, top) + margin)
         });
-        let stock = self.stock.iter().filter_map(|stock| match &stock.shape {
-            StockShape::Box([_, high]) => Some(("the stock", high.z)),
-            StockShape::Mesh(mesh) => Some(("the stock", mesh.bounds()[1].z)),
-            // The stock that an earlier set-up leaves is no higher than its own.
-            StockShape::Points(_) => None,
+        let stock = self.stock.iter().map(|stock| {
+            let bounds = match &stock.shape {
+                StockShape::Box(corners) => *corners,
+                StockShape::Mesh(mesh) => mesh.bounds(),
+                StockShape::Points(points) => points.bounds(),
+            };
+            ("the stock", top(bounds))
         });
         let highest = bodies.chain(stock).max_by(|one, other| one.1.total_cmp(&other.1));
-        let ways = self.program.readings().iter().flat_map(|reading| {
-            let MachineSummary { blind_way, way_home, .. } = reading.summary();
-            let to_first = blind_way.map(|way| (way, false));
-            to_first.into_iter().chain(way_home.map(|way| (way, true)))
-        });
-        ways.filter_map(move |((block, level), leads_home)| {
-            let (name, top) = highest?;
-            let is_low = level / unit.millimetres() + LEVEL_ROUNDING < top;
-            let name = name.to_owned();
-            let gap =
-                if leads_home { JobGap::LowWayHome { name } } else { JobGap::LowWay { name } };
-            is_low.then_some((block, gap))
-        })
+        highest
+            .filter(|(_, top)| level.height / unit.millimetres() + LEVEL_ROUNDING < *top)
+            .map(|(name, _)| name)
+    }
+
+    /// Returns the corners of a body's box in the part's frame. `None` for a body of the machine that does not move with the part, which is
+    /// at another place for each position.
+    fn bounds_at_part(&self, body: &Body<'_>) -> Option<[Point3<f64>; 2]> {
+        let bounds = body.bvh.bounds();
+        let BodyFrame::Machine(link) = body.frame else { return Some(bounds) };
+        let machine = self.program.machine()?;
+        let [x, y, z, rotary @ ..] = self.program.readings().first()?.part_origin()?;
+        let moves_along = link == machine.last_link(Side::Table) && rotary == [0.0; 3];
+        let origin = Vector3::new(x, y, z) / self.unit().millimetres();
+        moves_along.then(|| bounds.map(|corner| corner - origin))
     }
 
     /// Returns the number of checks of motions at bodies, those of all readings together.

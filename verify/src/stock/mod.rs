@@ -143,6 +143,16 @@ impl RemainingPoints {
         self.lattice.spacing()
     }
 
+    /// Returns the corners of the box of what remains: half a spacing beyond the points.
+    pub(crate) fn bounds(&self) -> [Point3<f64>; 2] {
+        let half = Vector3::repeat(0.5 * self.spacing());
+        let none = [f64::INFINITY, f64::NEG_INFINITY].map(|value| Point3::from([value; 3]));
+        self.nodes.iter().fold(none, |[low, high], node| {
+            let point = Point3::from(self.lattice.position(node));
+            [low.inf(&(point - half)), high.sup(&(point + half))]
+        })
+    }
+
     /// Returns the points in the frame of another set-up, in which the frame of this one has its origin and the directions of its
     /// axes x and z. The points stay those of a lattice, and so nothing is sampled again, if these are directions of coordinate
     /// axes.

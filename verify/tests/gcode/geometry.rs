@@ -318,8 +318,8 @@ fn changes_of_coordinates_do_not_move_the_machine() {
     // Work offset, length and reference position: 500 - 30 - 100.
     let steps = steps_of("G43 H4 G0 X0 Y0 Z0\nG91 G28 Z0\nG90 G53 X3 Z450", &setup);
     assert_eq!(steps[0].state.to_machine(steps[0].end)[..3], [Some(10.0), Some(20.0), Some(130.0)]);
-    assert_eq!(linear(steps[2].end), [Some(0.0), Some(0.0), Some(370.0)]);
-    assert_eq!(linear(steps[3].end), [Some(-7.0), Some(0.0), Some(320.0)]);
+    assert_eq!(linear(steps[1].end), [Some(0.0), Some(0.0), Some(370.0)]);
+    assert_eq!(linear(steps[2].end), [Some(-7.0), Some(0.0), Some(320.0)]);
     // A coordinate whose origin does not change stays known, whatever the origin is.
     let unknown = ControlSetup { rules: setup.rules, ..ControlSetup::default() };
     let steps = steps_of("G0 X1 Y2 Z3\nG10 L2 P1 X9\nA0", &unknown);

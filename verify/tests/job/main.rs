@@ -10,6 +10,7 @@ mod holes_and_arcs;
 mod in_the_way;
 mod jobs;
 mod left_open;
+mod machine_coordinates;
 mod motions;
 mod posts;
 mod scene;

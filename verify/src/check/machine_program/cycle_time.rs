@@ -102,6 +102,9 @@ fn path_length(step: &Step) -> Option<f64> {
             let [x, y, z] = [way(0)?, way(1)?, way(2)?];
             Some(x.hypot(y).hypot(z))
         }
-        StepPath::Pivot { .. } | StepPath::Undetermined | StepPath::ToolChange(_) => None,
+        StepPath::Pivot { .. }
+        | StepPath::Undetermined
+        | StepPath::Machine(_)
+        | StepPath::ToolChange(_) => None,
     }
 }

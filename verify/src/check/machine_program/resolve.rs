@@ -1,10 +1,10 @@
 //! Steps in program coordinates, resolved to joint motions.
 
 use super::path::{self, Map};
-use super::{StepFault, UnknownCause};
+use super::{Level, StepFault, UnknownCause};
 use crate::gcode::{
-    self, BlockLine, Choice, ControlSetup, ControlState, LengthOffset, Position, Rotation, Rule,
-    Step, StepPath, Tcp, WorkOffset,
+    self, Alignment, BlockLine, Choice, ControlSetup, ControlState, LengthOffset, Position,
+    Rotation, Rule, Step, StepPath, Tcp, WorkOffset,
 };
 use crate::machine::{Chain, InverseSolution, JointMotion, Joints, Letter, Machine, Setup, Side};
 use nalgebra::{Matrix3, Point3, Vector3};
@@ -91,8 +91,8 @@ pub(super) struct Resolver<'a> {
     endless: [bool; 3],
     /// The start of tool centre point control and of a tilted plane that are in force.
     turning: Turning,
-    /// Set while they are, if they began on a turned table and the coordinates are not followed.
-    is_turned_table: bool,
+    /// The cause for which coordinates are not followed while they are.
+    unfollowed: Option<UnknownCause>,
     /// The tool in the spindle before the program names one, if it is known.
     unnamed_tool: Option<u32>,
     /// The rules of the control on which the steps depend, each with the first line.
@@ -109,11 +109,10 @@ pub(super) struct Resolver<'a> {
     chain: Option<(f64, Chain)>,
     /// Set while Z is at the top of its travel, to which the program has moved it.
     is_at_top: bool,
-    /// The height of the tip over the part during the last step, in mm, if X or Y are not known at its start and it moves them.
-    pub(super) blind_level: Option<f64>,
-    /// The height of the tip over the part, in mm, where the last step leaves for a reference position that is not known, in more axes
-    /// than Z; below all for a tilted tool.
-    pub(super) home_level: Option<f64>,
+    /// The least level of the tip during the last step, if X, Y or rotary axes are not known at its start and it moves them.
+    pub(super) blind_level: Option<Level>,
+    /// The level of the tip where the last step leaves for a reference position that is not known, in more axes than Z.
+    pub(super) home_level: Option<Level>,
     /// The joint values after the last step, as far as they are known.
     joints: Position,
     /// The reason for which others are not.
@@ -193,7 +192,7 @@ impl<'a> Resolver<'a> {
             endless: [Letter::A, Letter::B, Letter::C]
                 .map(|letter| machine.axis(letter).is_some_and(|axis| axis.limits.is_none())),
             turning: Turning::default(),
-            is_turned_table: false,
+            unfollowed: None,
             unnamed_tool,
             asked: BTreeMap::new(),
             has_head: machine.has_rotary(Side::Tool),
@@ -232,10 +231,15 @@ impl<'a> Resolver<'a> {
                 // Without a head, Z alone depends on the length.
                 self.is_length_known |= k == 2 && self.joints[k].is_some() && !self.has_head;
             }
+            if step.state.turns_with_workpiece() && step.commanded[3..].contains(&true) {
+                self.unfollowed = Some(UnknownCause::LeftPlane);
+            }
             return Ok(Resolved::ToolChange);
         }
-        if self.begins_on_turned_table(step) {
-            return Ok(self.lose(UnknownCause::TurnedTable));
+        // Machine coordinates are those of the axes, wherever the table stands.
+        let unfollowed = self.unfollowed(step);
+        if let Some(cause) = unfollowed.filter(|_| !matches!(step.path, StepPath::Machine(_))) {
+            return Ok(self.lose(cause));
         }
         let frame = match self.frame(step)? {
             Located::Known(frame) => frame,
@@ -251,6 +255,7 @@ impl<'a> Resolver<'a> {
             }
         };
         match step.path {
+            StepPath::Machine(target) => return self.move_axes(&frame, step, &target),
             StepPath::Align => return self.align(&frame, step),
             StepPath::Pivot { distance } => return self.pivot(&frame, step, distance),
             _ => {}
@@ -263,7 +268,7 @@ impl<'a> Resolver<'a> {
         if self.is_length_along_z(step, &frame, [&ends[0], &ends[1]]) {
             return Ok(self.lose(UnknownCause::HeadLength));
         }
-        self.blind_level = blind_level(&frame, step, &ends);
+        self.blind_level = self.blind_level(&frame, step, &ends);
         let mut unknown_path = self.turn_endless(step, &frame, &mut ends);
         if step.tool_vector.is_some() {
             let angles = [3, 4, 5].map(|k| ends[1][k].map(|angle| angle + frame.rotary[k - 3]));
@@ -274,7 +279,7 @@ impl<'a> Resolver<'a> {
             self.forget(&frame, &ends[1]);
             let cause = self.unknown_end(step, &current);
             return match start.filter(|_| cause == UnknownCause::Home) {
-                Some(start) => self.leave(step, &frame, start),
+                Some(start) => self.leave(step, &frame, frame.joints(start)),
                 None => Ok(Resolved::Unknown(cause)),
             };
         };
@@ -302,22 +307,57 @@ impl<'a> Resolver<'a> {
         Ok(resolved)
     }
 
-    /// Resolves the way from a known position to a reference position that is not known. Z alone goes straight up, and is followed as
-    /// far as its travel is long. With other axes the way goes in any direction; where it begins is noted.
-    fn leave(
+    /// Resolves a motion of axes to machine coordinates, while positions turn with the workpiece: the others rest.
+    fn move_axes(
         &mut self,
-        step: &Step,
         frame: &Frame,
-        start: [f64; 6],
+        step: &Step,
+        target: &Position,
     ) -> Result<Resolved, StepFault> {
+        if frame.has_unknown_lever {
+            return Ok(self.lose(UnknownCause::NoLever));
+        }
+        let (current, before) = (self.current_position(frame), known(&self.joints));
+        let mut ends = [self.joints; 2];
+        for k in (0..6).filter(|k| step.commanded[*k]) {
+            // Without the place of the part, machine coordinates lead nowhere that is known.
+            ends[1][k] = target[k].filter(|_| self.is_placed);
+        }
+        if ends[0][3..] != ends[1][3..] {
+            self.unfollowed = Some(UnknownCause::LeftPlane);
+        }
+        let shifted = |position: Position, sign: f64| {
+            let origins = [0.0, 0.0, 0.0, frame.rotary[0], frame.rotary[1], frame.rotary[2]];
+            [0, 1, 2, 3, 4, 5].map(|k| position[k].map(|value| value + sign * origins[k]))
+        };
+        let mut programmed = ends.map(|position| shifted(position, -1.0));
+        let unknown_path = self.turn_endless(step, frame, &mut programmed);
+        let start = known(&shifted(programmed[0], 1.0));
+        self.joints = ends[1];
+        let Some(end) = known(&self.joints) else {
+            let cause = self.unknown_end(step, &current);
+            return match before.filter(|_| cause == UnknownCause::Home) {
+                Some(start) => self.leave(step, frame, start),
+                None => Ok(Resolved::Unknown(cause)),
+            };
+        };
+        match start.filter(|_| unknown_path.is_none()) {
+            Some(start) => self.rapid(step, &frame.chain, [start, end]),
+            None => {
+                let rest = path::line(&frame.chain, [end, end])?;
+                Ok(Resolved::Arrival(Box::new(rest), unknown_path.unwrap_or(self.cause)))
+            }
+        }
+    }
+
+    /// Resolves the way from known joints to a reference position that is not known. Z alone goes straight up, and is followed as
+    /// far as its travel is long. With other axes the way goes in any direction; where it begins is noted.
+    fn leave(&mut self, step: &Step, frame: &Frame, joints: Joints) -> Result<Resolved, StepFault> {
         /// The travel of Z where it is not stated, in mm.
         const TRAVEL: f64 = 1000.0;
-        let joints = frame.joints(start);
         let chain = frame.chain.without_linear_limits();
         if step.commanded != [false, false, true, false, false, false] {
-            let pose = chain.pose(&joints)?;
-            let is_upright = (pose.axis() - Vector3::z()).norm() <= UPRIGHT;
-            self.home_level = Some(if is_upright { pose.tip().z } else { f64::NEG_INFINITY });
+            self.home_level = Some(level(&chain, &joints)?);
             return Ok(Resolved::Unknown(UnknownCause::Home));
         }
         let limits = self.machine.axis(Letter::Z).and_then(|axis| axis.limits);
@@ -325,6 +365,25 @@ impl<'a> Resolver<'a> {
         end[2] += limits.map_or(TRAVEL, |[low, high]| high - low);
         let rise = path::line(&chain, [joints, end])?;
         Ok(Resolved::Departure(Box::new(rise), UnknownCause::Home))
+    }
+
+    /// Returns the lower level of the tip at the ends of a step that moves X, Y or rotary axes from where they are not known: the way
+    /// is at this level, wherever it begins. `None` if Z is not known, too, or the angles at its end are not.
+    fn blind_level(&self, frame: &Frame, step: &Step, ends: &[Position; 2]) -> Option<Level> {
+        let is_blind = |k: usize| ends[0][k].is_none() && self.has_axis(k);
+        let moves_blind = step.commanded[..2].contains(&true) && (0..2).any(is_blind)
+            || (3..6).any(|k| step.commanded[k] && is_blind(k));
+        let [Some(_), Some(_)] = ends.map(|end| end[2]) else { return None };
+        if !moves_blind {
+            return None;
+        }
+        let levels = ends.iter().filter_map(|[.., z, a, b, c]| {
+            let position = known(&[Some(0.0), Some(0.0), *z, *a, *b, *c])?;
+            frame.level(&position).ok()
+        });
+        // Angles at the start that are not known leave the level at the end.
+        let angles = known(&[Some(0.0), Some(0.0), Some(0.0), ends[1][3], ends[1][4], ends[1][5]]);
+        levels.min_by(|one, other| one.height.total_cmp(&other.height)).filter(|_| angles.is_some())
     }
 
     /// Returns whether an unknown motion is on the way from a tool change: that of Z to the top of its travel, or of other axes while it is
@@ -485,7 +544,8 @@ impl<'a> Resolver<'a> {
         } else if is_start {
             // The block states its own axes: the unknown one is another axis of the machine.
             let mut commanded = (0..6).filter(|k| step.commanded[*k]).peekable();
-            if commanded.peek().is_some() && commanded.all(|k| current[k].is_some()) {
+            let is_known = commanded.peek().is_some() && commanded.all(|k| current[k].is_some());
+            if is_known && !step.is_homeward {
                 return UnknownCause::Axis;
             }
         }
@@ -570,9 +630,9 @@ impl<'a> Resolver<'a> {
         Resolved::Unknown(cause)
     }
 
-    /// Returns whether a step is under tool centre point control, or in a tilted plane, that began while the table was turned, if
-    /// the control takes its coordinates as those of the part as it stood then.
-    fn begins_on_turned_table(&mut self, step: &Step) -> bool {
+    /// Returns the cause for which the coordinates of a step are not followed: under tool centre point control, or in a tilted plane, that
+    /// began while the table was turned, if the control takes them as those of the part as it stood then.
+    fn unfollowed(&mut self, step: &Step) -> Option<UnknownCause> {
         let state = &*step.state;
         let turning = Turning {
             tcp: (state.tcp != Tcp::Off).then_some(state.tcp_starts),
@@ -582,7 +642,7 @@ impl<'a> Resolver<'a> {
             },
         };
         if turning == Turning::default() {
-            self.is_turned_table = false;
+            self.unfollowed = None;
         } else if turning != self.turning {
             // A table that turns in the block counts at its end, but for the alignment with a plane.
             let aligns = matches!(step.path, StepPath::Align | StepPath::Pivot { .. });
@@ -590,11 +650,12 @@ impl<'a> Resolver<'a> {
                 self.joints[k] != Some(self.origin[k])
                     || !aligns && step.commanded[k] && step.end[k] != Some(0.0)
             });
-            self.is_turned_table =
+            let stands =
                 is_turned && self.ask(Rule::TcpStart, step) == Some(Choice::TableAsItStands);
+            self.unfollowed = stands.then_some(UnknownCause::TurnedTable);
         }
         self.turning = turning;
-        self.is_turned_table
+        self.unfollowed
     }
 
     /// Returns the cause for which the way to rotary joints is not known: if one of them is half a turn away, and the limits of its axis
@@ -793,7 +854,7 @@ impl<'a> Resolver<'a> {
 
     /// Returns the rotary joints that align the tool with z of a tilted plane, in degrees.
     fn aligned_angles(
-        &self,
+        &mut self,
         frame: &Frame,
         step: &Step,
     ) -> Result<Located<[Option<f64>; 3]>, StepFault> {
@@ -801,9 +862,15 @@ impl<'a> Resolver<'a> {
         // The angles do not depend on the tip, whose linear joints are not those of the machine at rest.
         let chain = frame.chain.without_linear_limits();
         let mut found = chain.solutions(&Point3::origin(), &plane_axis(step), &near)?;
-        if let Some((master, is_positive)) = self.master().zip(step.master_is_positive) {
-            let sign = if is_positive { 1.0 } else { -1.0 };
-            found.retain(|solution| sign * solution.joints[master] >= -ANGLE_INCREMENT);
+        match step.alignment {
+            Some(Alignment::Master { is_positive }) => {
+                if let Some(master) = self.master() {
+                    let sign = if is_positive { 1.0 } else { -1.0 };
+                    found.retain(|solution| sign * solution.joints[master] >= -ANGLE_INCREMENT);
+                }
+            }
+            Some(Alignment::Value { is_higher }) => self.take_side(step, &mut found, is_higher),
+            None => {}
         }
         if found.is_empty() || !self.is_one_choice(&found) {
             let is_known = (3..6).all(|k| self.joints[k].is_some());
@@ -841,6 +908,31 @@ impl<'a> Resolver<'a> {
             return Err(StepFault::NotAligned { degrees });
         }
         Ok(Resolved::Motions(Vec::new()))
+    }
+
+    /// Keeps the solutions with the lower or the higher value of the reference axis of CYCLE800, of those that are within limits. An axis
+    /// without limits counts from 0 to 360 degrees.
+    fn take_side(&mut self, step: &Step, found: &mut Vec<InverseSolution>, is_higher: bool) {
+        let is_other = |one: &InverseSolution, other: &InverseSolution| {
+            (3..6).any(|k| (one.joints[k] - other.joints[k]).abs() > ANGLE_INCREMENT)
+        };
+        if !found.iter().any(|solution| is_other(solution, &found[0])) {
+            return;
+        }
+        let choice = self.ask(Rule::SwivelAxis, step);
+        let mut axes = (3..6).filter(|k| self.has_axis(*k));
+        let axis = match choice {
+            Some(Choice::SecondAxis) => axes.nth(1),
+            _ => axes.next(),
+        };
+        let Some(axis) = axis else { return };
+        let value = |solution: &InverseSolution| {
+            let angle = solution.joints[axis];
+            let angle = if self.endless[axis - 3] { angle.rem_euclid(360.0) } else { angle };
+            if is_higher { angle } else { -angle }
+        };
+        let greatest = found.iter().map(value).fold(f64::NEG_INFINITY, f64::max);
+        found.retain(|solution| value(solution) >= greatest - ANGLE_INCREMENT);
     }
 
     /// Returns the index of the master axis of Heidenhain: the first rotary axis from the tool, or the last one from the table.
@@ -1054,6 +1146,25 @@ impl Frame {
         [x, y, z, a, b, c]
     }
 
+    /// Returns the level of the tip at a position in program coordinates of which X and Y do not count; below all if they decide it.
+    fn level(&self, position: &Joints) -> Result<Level, StepFault> {
+        let chain = self.chain.without_linear_limits();
+        if self.map.rotation[(2, 2)] != 1.0 {
+            return Ok(Level { up: Vector3::z(), height: f64::NEG_INFINITY });
+        }
+        let mut level = level(&chain, &self.joints(*position))?;
+        // Z of the tip is Z of the machine only while the table does not tilt it.
+        if self.is_tip && level.height > f64::NEG_INFINITY {
+            let is_upright = (level.up - Vector3::z()).norm() <= UPRIGHT;
+            level.height = if is_upright {
+                self.map.apply([0.0, 0.0, position[2]])[2]
+            } else {
+                f64::NEG_INFINITY
+            };
+        }
+        Ok(level)
+    }
+
     /// Returns the motions between two positions in program coordinates.
     fn motions(
         &self,
@@ -1106,21 +1217,14 @@ fn linear_only(position: &Position) -> Option<[f64; 6]> {
     known(&[position[0], position[1], position[2], Some(0.0), Some(0.0), Some(0.0)])
 }
 
-/// Returns the lowest height of the tip over the part at the ends of a step that moves X or Y from where they are not known, in mm:
-/// the way is at this level, wherever it begins. `None` if Z or a rotary axis is not known, too, or the tool is not along z.
-fn blind_level(frame: &Frame, step: &Step, ends: &[Position; 2]) -> Option<f64> {
-    let is_blind = (0..2).any(|k| ends[0][k].is_none()) && step.commanded[..2].contains(&true);
-    if !is_blind || !frame.is_plain() {
-        return None;
-    }
-    let mut level = f64::INFINITY;
-    for [_, _, z, a, b, c] in ends {
-        let position = known(&[Some(0.0), Some(0.0), *z, *a, *b, *c])?;
-        let pose = frame.chain.without_linear_limits().pose(&frame.joints(position)).ok()?;
-        if (pose.axis() - Vector3::z()).norm() > UPRIGHT {
-            return None;
-        }
-        level = level.min(pose.tip().z);
-    }
-    Some(level)
+/// Returns the level of the tip at joint values.
+fn level(chain: &Chain, joints: &Joints) -> Result<Level, StepFault> {
+    let mut above = *joints;
+    above[2] += 1.0;
+    let [pose, above] = [chain.pose(joints)?, chain.pose(&above)?];
+    let up = (above.tip() - pose.tip()).normalize();
+    // X and Y leave the level of a tool along Z of the machine, and any part of the tool is beyond its tip.
+    let is_along = (pose.axis() - up).norm() <= UPRIGHT;
+    let height = if is_along { pose.tip().coords.dot(&up) } else { f64::NEG_INFINITY };
+    Ok(Level { up, height })
 }

@@ -8,6 +8,7 @@ use crate::gcode::{
     StatedTool, Step, SubprogramLine, WorkOffset,
 };
 use crate::machine::{LimitViolation, Machine, SingularPass};
+use nalgebra::Vector3;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
@@ -33,12 +34,12 @@ pub struct MachineSummary {
     pub no_offset: Option<BlockLine>,
     /// The same for the first motion in rapid traverse that is checked.
     pub no_rapid_offset: Option<BlockLine>,
-    /// The block of the lowest way to the first position on which X or Y are not known at the start and Z is, with the height of the
-    /// tip over the origin of the part, in mm.
-    pub blind_way: Option<(BlockLine, f64)>,
-    /// The block of the lowest way to a reference position that is not known, in more axes than Z, with the height of the tip over the
-    /// origin of the part where it begins, in mm.
-    pub way_home: Option<(BlockLine, f64)>,
+    /// The blocks of ways to the first position on which X, Y or rotary axes are not known at the start and Z is, with the level of the
+    /// tip: the lowest of each direction.
+    pub blind_ways: Vec<(BlockLine, Level)>,
+    /// The blocks of ways to a reference position that is not known, in more axes than Z, with the level at which they begin: the lowest
+    /// of each direction.
+    pub ways_home: Vec<(BlockLine, Level)>,
     /// The block of the first motion under tool centre point control, or in an aligned plane, without a tool length offset, and with
     /// a tool whose length is not stated.
     pub tcp_without_length: Option<BlockLine>,
@@ -70,6 +71,15 @@ pub struct MachineSummary {
     pub notes: Vec<ProgramNote>,
     /// The line at which the program stops being read, if it does.
     pub stop: Option<ProgramStop>,
+}
+
+/// A level of the tip over the part: the tool is beyond it, wherever X and Y are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Level {
+    /// The direction of Z of the machine, a unit vector in the part's frame.
+    pub up: Vector3<f64>,
+    /// The tip along it, in mm; below all for a tool that is tilted against it.
+    pub height: f64,
 }
 
 /// The end of what is read of a program. The motions before it are checked.
@@ -134,7 +144,8 @@ faults! {
         /// A verdict is possible if Z moves to the top of its travel first, and the other axes while it is there.
         #[code = V0403]
         #[error(
-            "only the machine knows where the tool change leaves its axes: state `tool_change` in the machine's file, or the control"
+            "only the machine knows where the tool change leaves its axes: state `tool_change` in the machine's file, or the control, and \
+             the origin of G54 in `work_offsets`"
         )]
         ToolChange,
         /// A motion to machine coordinates that are not known.
@@ -254,6 +265,15 @@ faults! {
              the control"
         )]
         HeadLength,
+        /// A rotary axis that moves in machine coordinates in an aligned plane or under tool centre point control.
+        ///
+        /// The tool no longer stands along the plane, and controls take the positions after it in different ways.
+        #[code = V0420]
+        #[error(
+            "a rotary axis has moved in machine coordinates while an aligned plane or tool centre point control is in force: end it \
+             before, or begin it anew"
+        )]
+        LeftPlane,
     }
 }
 
@@ -456,17 +476,12 @@ impl MachineSummary {
         }
     }
 
-    /// Notes a way to the first position that is at a level whose X and Y are not known.
-    pub(super) fn add_blind(&mut self, step: &Step, level: f64) {
-        if self.blind_way.is_none_or(|(_, lowest)| level < lowest) {
-            self.blind_way = Some((step.block(), level));
-        }
-    }
-
-    /// Notes a way from a level to a reference position that is not known, in more axes than Z.
-    pub(super) fn add_way_home(&mut self, step: &Step, level: f64) {
-        if self.way_home.is_none_or(|(_, lowest)| level < lowest) {
-            self.way_home = Some((step.block(), level));
+    /// Notes a way to the first position at a level, or from one to a reference position that is not known.
+    pub(super) fn add_low_way(ways: &mut Vec<(BlockLine, Level)>, block: BlockLine, level: Level) {
+        match ways.iter_mut().find(|(_, known)| known.up == level.up) {
+            None => ways.push((block, level)),
+            Some(lowest) if level.height < lowest.1.height => *lowest = (block, level),
+            Some(_) => {}
         }
     }
 

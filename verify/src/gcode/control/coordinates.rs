@@ -33,14 +33,14 @@ impl Control {
                 *changed |= new.origin[axis] != self.state.origin[axis]
                     || new.shift[axis] != self.state.shift[axis];
             }
-            self.position = self.state.carry_over(&new, self.position, self.carries_tool);
+            self.position = self.state.carry_over(&new, self.position, &self.rotary_axes);
             self.state = Arc::new(new);
         }
     }
 
     /// Returns whether it is certain that no rotary axis turns the tool or the part.
     pub(in crate::gcode) fn turns_nothing(&self) -> bool {
-        self.state.turns_nothing(self.position, self.carries_tool) == [true; 3]
+        self.state.turns_nothing(self.position, &self.rotary_axes) == [true; 3]
     }
 
     /// Counts a tilted plane that begins, also where its frame is that of the plane before.

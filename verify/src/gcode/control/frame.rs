@@ -12,7 +12,7 @@ use crate::gcode::block::{Block, Group};
 use crate::gcode::error::combination;
 use crate::gcode::rules::Choice;
 use crate::gcode::state::{Frame, LengthOffset, Rotation, Tcp, WorkOffset, about};
-use crate::gcode::{GcodeFault, StepPath};
+use crate::gcode::{Alignment, GcodeFault, StepPath};
 use nalgebra::{Matrix3, Vector3};
 
 /// The frames in force besides the settable one.
@@ -55,8 +55,8 @@ pub(in crate::gcode) struct Swivel {
     pub(in crate::gcode) rotation: Matrix3<f64>,
     /// The origin in the rotated plane.
     pub(in crate::gcode) after: Vector3<f64>,
-    /// Set where the rotary axes turn to the plane.
-    pub(in crate::gcode) turns: bool,
+    /// The position to which the rotary axes turn, if they do.
+    pub(in crate::gcode) alignment: Option<Alignment>,
     /// Set where the tip keeps its place while they turn.
     pub(in crate::gcode) follows_tip: bool,
     pub(in crate::gcode) retract: Retract,
@@ -92,7 +92,7 @@ impl Swivel {
             before: Vector3::zeros(),
             rotation: Matrix3::identity(),
             after: Vector3::zeros(),
-            turns: false,
+            alignment: None,
             follows_tip: false,
             retract: Retract::None,
         }
@@ -218,11 +218,12 @@ impl Control {
         frames.swivel = Some(SwivelFrame { frame, aligned: false });
         self.set_frames(frames);
         self.begin_plane();
-        if swivel.turns {
+        if swivel.alignment.is_some() {
             let mut end = self.position;
             end[3..].fill(None);
             let commanded = [false, false, false, true, true, true];
             self.push(true, end, commanded, StepPath::Align);
+            self.pending.back_mut().expect("the step that was added").alignment = swivel.alignment;
             frames.swivel = Some(SwivelFrame { frame, aligned: true });
             self.set_frames(frames);
         }

@@ -5,7 +5,7 @@ use super::{AXES, Control, Motion};
 use crate::gcode::block::Block;
 use crate::gcode::error::{CompensationFault, combination, missing};
 use crate::gcode::state::{LengthOffset, Position, Rotation, Tcp, WorkOffset};
-use crate::gcode::{GcodeFault, Plane, StepPath};
+use crate::gcode::{Alignment, GcodeFault, Plane, StepPath};
 use std::sync::Arc;
 use touchoff::Unit;
 
@@ -71,6 +71,7 @@ impl Control {
         if !rapid {
             self.check_feed(word)?;
         }
+        self.check_tilted(block)?;
         self.check_position(block)?;
         self.check_offset(block)?;
         let (end, _, commanded) = self.take_end(block);
@@ -124,19 +125,20 @@ impl Control {
         match (is_from_point, self.builder_point) {
             (false, _) => self.move_to_machine(axes),
             (true, Some(point)) => {
+                // A stated point is where the builder lets tools be changed, as the top of Z's travel is.
+                let is_at_point = axes[2] == Some(0.0) && self.state.origin[2].is_some();
                 let mut target = axes;
                 for (value, point) in target.iter_mut().zip(point) {
                     *value = value.map(|value| value + point);
                 }
+                let is_homeward = is_at_point || self.leads_home(target);
                 self.move_to_machine(target);
+                self.set_homeward(is_homeward);
             }
             // The place of an unstated point is the machine's alone.
             (true, None) => {
                 self.move_machine(axes.map(|value| value.is_some()), [None; 6], StepPath::Line);
             }
-        }
-        if is_from_point {
-            self.set_homeward(self.leads_home(axes));
         }
         let spindle = self.spindle(rapid);
         let step = self.pending.back_mut().expect("the step that was added");
@@ -146,10 +148,12 @@ impl Control {
 
     /// Moves along the tool axis (M140) by a distance in millimetres, or to the end of the travel.
     pub(in crate::gcode) fn retract(&mut self, distance: Option<f64>, rapid: bool) {
-        // A table or head that is turned about z leaves the tool along z.
-        let [is_upright_in_a, is_upright_in_b, _] =
-            self.state.turns_nothing(self.position, self.carries_tool);
-        let is_upright = is_upright_in_a && is_upright_in_b;
+        let at_zero = self.state.turns_nothing(self.position, &self.rotary_axes);
+        // A head that is turned about z leaves the tool along z, and so does a table, unless positions turn with it.
+        let turns_with_table = self.state.turns_with_workpiece();
+        let is_upright = [0, 1]
+            .into_iter()
+            .all(|k| at_zero[k] || !self.rotary_axes.carries_tool[k + 3] && !turns_with_table);
         let is_along_z = match self.state.rotation {
             Rotation::Tilted { aligned, .. } => aligned,
             Rotation::Off | Rotation::Plane { .. } => is_upright,
@@ -284,7 +288,7 @@ impl Control {
         let commanded = [false, false, false, true, true, true];
         self.turn(end, commanded, StepPath::Align, pivot);
         let step = self.pending.back_mut().expect("the step that was added");
-        step.master_is_positive = master_is_positive;
+        step.alignment = master_is_positive.map(|is_positive| Alignment::Master { is_positive });
         self.change(|state| state.rotation = Rotation::Tilted { frame, aligned: true });
     }
 

@@ -276,9 +276,15 @@ impl Control {
         self.set_homeward(is_homeward);
     }
 
-    /// Returns whether axes move to the top of Z's travel, which is at 0, or from there, where they are free.
+    /// Returns whether axes move to the top of Z's travel, or from there, where they are free.
     pub(super) fn leads_home(&self, axes: Position) -> bool {
-        axes[2].map_or(self.position[2].is_none(), |z| z == 0.0)
+        axes[2].map_or(self.position[2].is_none(), |z| self.is_top(z))
+    }
+
+    /// Returns whether Z is at the top of its travel or its reference position, in machine coordinates. Where the machine does not state
+    /// its limits, the top is at 0.
+    fn is_top(&self, z: f64) -> bool {
+        self.top.unwrap_or_default() == z || self.home.is_some_and(|home| home[2] == z)
     }
 
     /// Notes whether the last step is the way home.
@@ -307,14 +313,16 @@ impl Control {
         self.check_tilted(block)?;
         self.check_shifted(block)?;
         let (end, mut named, commanded) = self.take_end(block);
-        if named.contains(&true) {
-            self.push(true, end, commanded, StepPath::Line);
-        } else if self.stated(Rule::Dialect) == Some(Choice::Rs274Ngc) {
+        // Without axes all return on LinuxCNC and Haas, and none on Fanuc.
+        if !named.contains(&true) {
+            if self.stated(Rule::Dialect) != Some(Choice::Rs274Ngc) {
+                return Err(missing(word, "the axes that return"));
+            }
             named = self.axes;
-        } else {
-            // All axes on LinuxCNC and Haas, none on Fanuc.
-            let needed = "the axes that return";
-            return Err(missing(word, needed));
+        }
+        // By increments of 0 the intermediate position is where the machine stands.
+        if commanded.contains(&true) {
+            self.push(true, end, commanded, StepPath::Line);
         }
         // LinuxCNC returns along the axis that is rotated.
         if self.state.origin_rotation != 0.0 && named[0] != named[1] {
@@ -324,8 +332,8 @@ impl Control {
         }
         // The other axes are free where Z returns, too, or stands at its home or where nobody knows.
         let machine = self.state.to_machine(self.position)[2];
-        let is_home = |z: f64| z == 0.0 || self.home.is_some_and(|home| home[2] == z);
-        let is_homeward = named[2] || self.position[2].is_none() || machine.is_some_and(is_home);
+        let is_at_top = machine.is_some_and(|z| self.is_top(z));
+        let is_homeward = named[2] || self.position[2].is_none() || is_at_top;
         let home = if word == "G28" { self.home } else { self.second_home };
         let target = home.map_or([None; 6], |home| home.map(Some));
         self.move_machine(named, target, StepPath::Line);
@@ -357,11 +365,9 @@ impl Control {
             }
         }
         let mut end = state.from_machine(machine);
-        // A target that turns an axis moves the part.
+        // A target that turns an axis moves the part, and positions with it. Those of turned axes are the machine's alone.
         let turned = (3..6).any(|axis| commanded[axis] && end[axis] != self.position[axis]);
-        if turned && self.state.turns_with_workpiece() {
-            end[..3].fill(None);
-        }
+        let follows = self.state.turns_with_workpiece() && (turned || !self.turns_nothing());
         // A rotation makes program axes depend on several machine axes.
         let is_coupled = match (self.state.rotation, self.state.origin_rotation == 0.0) {
             (Rotation::Off, true) => [false; 6],
@@ -377,9 +383,16 @@ impl Control {
                 end[axis] = self.position[axis];
             }
         }
-        // A tool change states which axes of the machine it moves: the others stay, also in a rotated plane.
-        let commanded = if matches!(path, StepPath::ToolChange(_)) { moved } else { commanded };
-        self.push(true, end, commanded, path);
+        let mut path = path;
+        if follows {
+            end[..3].fill(None);
+            if path == StepPath::Line {
+                path = StepPath::Machine(target);
+            }
+        }
+        // These state which axes of the machine move: the others stay, also in a rotated plane.
+        let is_of_machine = matches!(path, StepPath::ToolChange(_) | StepPath::Machine(_));
+        self.push(true, end, if is_of_machine { moved } else { commanded }, path);
         // Machine coordinates are stated in G91, too.
         self.pending.back_mut().expect("the step that was added").absolute = true;
     }

@@ -290,7 +290,7 @@ impl Control {
     fn stand_as(&mut self, left: &Control) {
         let mut state = (*self.state).clone();
         state.tool = left.state.tool;
-        self.position = left.state.carry_over(&state, left.position, self.carries_tool);
+        self.position = left.state.carry_over(&state, left.position, &self.rotary_axes);
         self.state = Arc::new(state);
     }
 
@@ -338,7 +338,7 @@ impl Control {
             }
         }
         (state.origin, state.origin_rotation) = self.origin_of(state.work_offset);
-        self.position = left.state.carry_over(&state, left.position, self.carries_tool);
+        self.position = left.state.carry_over(&state, left.position, &self.rotary_axes);
         self.state = Arc::new(state);
     }
 

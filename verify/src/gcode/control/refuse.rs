@@ -322,9 +322,15 @@ impl Control {
         for letter in moved {
             let is_rotary = AXES[3..].contains(&letter);
             let (condition, remedy) = match (aligned, is_rotary) {
-                (true, true) => {
-                    ("a tilted plane is aligned (G53.1)", "end the plane with G69 before")
-                }
+                (true, true) => match self.stated(Rule::Dialect) {
+                    Some(Choice::Heidenhain) => {
+                        ("a tilted plane is in force", "write PLANE RESET before")
+                    }
+                    Some(Choice::Sinumerik) => {
+                        ("a plane is swivelled (CYCLE800)", "write CYCLE800() before")
+                    }
+                    _ => ("a tilted plane is aligned (G53.1)", "end the plane with G69 before"),
+                },
                 (false, false) if !at_zero && self.state.tcp == Tcp::Off => {
                     ("a tilted plane is not aligned", "write G53.1 after G68.2")
                 }

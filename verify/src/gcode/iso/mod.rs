@@ -23,7 +23,7 @@ use super::files::{self, in_file};
 use super::interpreter::{End, Progress};
 use super::note::NoteKind;
 use super::rules::{Choice, Rule};
-use super::{ControlSetup, GcodeError, GcodeFault, Repeated, SubprogramFile, shown};
+use super::{ControlSetup, GcodeError, GcodeFault, Repeated, SubprogramFile, shown, work};
 use blank::{BlankLine, blank_line};
 use expression::{Cursor, Language, Value, condition, value};
 use flow::{Callee, Flow, Source, before_semicolon};
@@ -723,8 +723,11 @@ impl<'a> Program<'a> {
             clause = next_clause;
             match clause.role {
                 Role::ElseIf => {
+                    let text = self.flow.text_at(place);
+                    // Its condition is as much work as that of a block.
+                    self.flow.count(work(text))?;
                     let scope = Scope::new(&self.variables, control);
-                    let mut cursor = begin(self.flow.text_at(place));
+                    let mut cursor = begin(text);
                     next(&mut cursor)?;
                     o_word(&mut cursor, &scope)?;
                     let holds = condition(&mut cursor, &scope)?;

@@ -636,6 +636,9 @@ impl<'a> Program<'a> {
             let shown = format!("{word} {tool}");
             return Err(GcodeFault::Sentence { shown, expected: "the whole number of a tool" });
         }
+        if is_call && tool.is_some() && control.is_tcp() {
+            return Err(combination(word, "M128 is in force", "write M129 before"));
+        }
         self.block.clear();
         let (mut length, mut allowance) = (None, None);
         let (mut radius, mut radius_allowance) = (None, None);

@@ -10,7 +10,7 @@ use super::variables::Variables;
 use crate::gcode::control::{Hole, Retract, Swivel};
 use crate::gcode::error::{combination, missing, not_read};
 use crate::gcode::state::about;
-use crate::gcode::{ExpressionFault, GcodeFault};
+use crate::gcode::{Alignment, ExpressionFault, GcodeFault};
 use nalgebra::{Matrix3, Vector3};
 
 /// Reads arguments in brackets, if there are any. One that is left out is `None`.
@@ -265,7 +265,7 @@ pub(super) fn swivel(cursor: &mut Cursor, known: &Variables) -> Result<Swivel, G
         before: point(4)?,
         rotation,
         after: point(10)?,
-        turns: direction != 0.0,
+        alignment: (direction != 0.0).then_some(Alignment::Value { is_higher: direction > 0.0 }),
         follows_tip: state / 10 % 10 == 1,
         retract,
     })

@@ -1,0 +1,199 @@
+//! Machine coordinates, tool changes and work offsets while the table is turned, and the ways from and to places that only the machine
+//! knows: each with a body that the true motion meets.
+
+use crate::in_the_way::{TRUNNION, named, scene};
+use crate::scene::{
+    CLEAN, Control, FANUC, FINDINGS, HAAS, HEIDENHAIN, NONE, SIEMENS, Scene, native,
+};
+use touchoff_verify::Verdict;
+use touchoff_verify::gcode::{Choice, Rule};
+
+/// The origin of G54 on the trunnion, 40 mm above the axis of A.
+const G54: &str = "[0, 0, -440]";
+
+fn klartext(blocks: &str) -> String {
+    format!("BEGIN PGM A MM\nTOOL CALL 1 Z S1000\n{blocks}\nM30\nEND PGM A MM\n")
+}
+
+fn iso(blocks: &str) -> String {
+    format!("G21 G90 G17 G94 G54 G0\nT1 M6\nS1000 M3\n{blocks}\nM30\n")
+}
+
+fn sinumerik(blocks: &str) -> String {
+    format!("G17 G90 G54 G71 G94\nT1 M6\nD1\nS1000 M3\n{blocks}\nM30\n")
+}
+
+/// Machine coordinates turn the table alone, while X, Y and Z rest: the tool does not follow the part, as it does under tool centre point
+/// control.
+#[test]
+fn an_axis_turns_alone_in_an_aligned_plane() {
+    for (file, text, control) in [
+        (
+            "a.h",
+            klartext(
+                "L A+0 C+0 R0 FMAX M3\nL X+40 Y+0 Z+100 R0 FMAX\nPLANE SPATIAL SPA+0 SPB+0 SPC+0 TURN FMAX\nL X+40 Y+0 R0 FMAX\n\
+                 L Z+5 R0 FMAX\nL C+90 R0 FMAX M91\nPLANE RESET STAY\nL Z+0 R0 FMAX M91",
+            ),
+            HEIDENHAIN,
+        ),
+        (
+            "a.mpf",
+            sinumerik(
+                "G0 A0 C0\nG0 X40 Y0 Z100\nCYCLE800(0,\"TC\",100000,57,0,0,0,0,0,0,0,0,0,1,0)\nG0 X40 Y0\nG0 Z5\nSUPA G0 C90\n\
+                 CYCLE800()\nSUPA G0 Z-100",
+            ),
+            SIEMENS,
+        ),
+        (
+            "a.nc",
+            iso(
+                "G0 A0. C0.\nG0 X40. Y0.\nG43 H1 Z100.\nG68.2 X0. Y0. Z0. I0. J0. K0.\nG53.1\nG0 X40. Y0.\nG0 Z5.\nG53 C90.\n\
+                 G53 Z0.\nG69",
+            ),
+            FANUC,
+        ),
+    ] {
+        let scene = scene(file, &text, TRUNNION, G54).with("anyway = true");
+        let scene = scene.obstacle([26.0, -32.0, 0.0], [31.0, 32.0, 60.0]);
+        scene.gives(control, FINDINGS, &["V01 the clamp"]);
+    }
+    // The positions of the plane are not followed on the table that has left it.
+    let text = klartext(
+        "L A+0 C+0 R0 FMAX M3\nL X+40 Y+0 Z+100 R0 FMAX\nPLANE SPATIAL SPA+0 SPB+0 SPC+0 TURN FMAX\nL C+90 R0 FMAX M91\nL X+50 R0 F500",
+    );
+    scene("a.h", &text, TRUNNION, G54).gives(HEIDENHAIN, NONE, &["V0420 7"]);
+}
+
+/// A tool change under tool centre point control moves Z of the machine: the tip is beside the place that the program has stated.
+#[test]
+fn a_tool_change_under_tool_centre_point_control_moves_axes() {
+    let change = "G1 X0. Y0. Z60. A-30. F1000\nT1 M6\nM3\nG0 Z20.\nG0 X0. Y0. Z150.\nG0 A0.\n";
+    for (file, text, control) in [
+        (
+            "a.nc",
+            iso(&format!(
+                "G0 A0. C0.\nG0 X0. Y0.\nG43.4 H1\nG0 X0. Y0. Z5.\nG0 Z100.\n{change}G49\nG53 Z0."
+            )),
+            FANUC,
+        ),
+        (
+            "a.mpf",
+            sinumerik(&format!(
+                "G0 A0 C0\nG0 X0 Y0 Z100\nTRAORI\nORIAXES\nG54\nG0 X0 Y0 Z5\nG0 Z100\n{change}TRAFOOF\nG54\nSUPA G0 Z0"
+            )),
+            SIEMENS,
+        ),
+    ] {
+        let scene = scene(file, &text, TRUNNION, G54).with("anyway = true");
+        let scene = scene.obstacle([-6.0, 150.0, -60.0], [6.0, 163.0, 60.0]);
+        scene.gives(control, FINDINGS, &["V01 the clamp"]);
+    }
+    let text =
+        klartext("L A+0 C+0 R0 FMAX M3\nL X+0 Y+0 Z+100 R0 FMAX\nM128\nTOOL CALL 1 Z S900\nM129");
+    scene("a.h", &text, TRUNNION, G54).gives(HEIDENHAIN, NONE, &["P0120 6 M129"]);
+}
+
+/// The part is turned with the table by G54: an axis at 0 of another work offset, whose origin is turned, turns it.
+#[test]
+fn an_axis_at_zero_of_a_turned_work_offset_is_turned() {
+    let traori = sinumerik(
+        "G55\nG0 A0 C0\nG0 X30 Y0 Z100\nTRAORI\nORIAXES\nG54\nG1 Z5 F500\nG1 Z100\nTRAFOOF\nG54\nSUPA G0 Z-100",
+    );
+    let m128 = klartext(
+        "CYCL DEF 247 DATUM SETTING ~\n  Q339=+2 ;DATUM NUMBER\nL A+0 C+0 R0 FMAX M3\nL X+30 Y+0 Z+100 R0 FMAX\nM128\n\
+         CYCL DEF 247 DATUM SETTING ~\n  Q339=+1 ;DATUM NUMBER\nL Z+5 R0 F500\nL Z+100 R0 FMAX\nM129\nL Z+0 R0 FMAX M91",
+    );
+    for (file, text, control) in [("a.mpf", traori, SIEMENS), ("a.h", m128, HEIDENHAIN)] {
+        let mut scene = scene(file, &text, TRUNNION, G54).with("anyway = true");
+        scene.job += "G55 = [0, 0, -440, 0, 0, 90]\n[presets]\n1 = \"G54\"\n2 = \"G55\"\n";
+        let scene = scene.obstacle([-6.0, 24.0, 0.0], [6.0, 36.0, 60.0]);
+        scene.gives(control, FINDINGS, &["V01 the clamp"]);
+    }
+}
+
+/// The first way in X and Y, or of rotary axes, at a known Z below the part's top, wherever it begins.
+#[test]
+fn a_first_way_below_the_top_is_not_checked() {
+    let upright = "G0 A0. C0.\n";
+    let first = "G0 X4.5 Y0.\nG1 X4.4 F500\nG0 Z100.";
+    for blocks in [
+        format!("G43 H1 ZLEVEL\nG0 X4.5 Y0.\n{upright}{first}"),
+        format!("G0 X4.5 Y0.\nG43 H1 ZLEVEL\n{upright}{first}"),
+        format!("{upright}G43 H1 ZLEVEL\nG68 X0. Y0. R90.\nG0 X0. Y-4.5\nG69\n{first}"),
+        format!("{upright}G43.4 H1 ZLEVEL\nG0 X4.5 Y0.\nG49\nG43 H1 ZLEVEL\n{first}"),
+        // The level is along the tool.
+        format!("G0 A-30. C0.\nG43 H1 ZLEVEL\nG0 X4.5 Y0.\nG0 A0.\n{first}"),
+    ] {
+        for (level, verdict) in [("-10.", NONE), ("1.", CLEAN)] {
+            let text = iso(&blocks.replace("LEVEL", level));
+            let machine = TRUNNION.replace("tool_change = { Z = 0 }", "");
+            let mut rules = crate::scene::rules("fanuc").with(Rule::ToolChange, Choice::Stays);
+            for (rule, choice) in [
+                (Rule::ReferenceReturn, Choice::KeepsLength),
+                (Rule::LengthChange, Choice::MovesZ),
+                (Rule::TcpStart, Choice::TableAtZero),
+            ] {
+                rules = rules.with(rule, choice);
+            }
+            let gap: &[&str] = if verdict == NONE { &["V0607"] } else { &[] };
+            scene("a.nc", &text, &machine, G54).gives_by(rules, verdict, gap);
+        }
+    }
+}
+
+/// The direction of CYCLE800 selects one of two positions of the rotary axes: on the way to one of them the table turns a post into the tool.
+#[test]
+fn the_direction_of_a_swivel_selects_the_position() {
+    let scene = |direction: i32| {
+        let text = sinumerik(&format!(
+            "G0 A0 C10\nG0 X40 Y0 Z100\nG0 Z5\nCYCLE800(0,\"TC\",100000,57,0,0,0,-20,0,0,0,0,0,{direction},0)\nSUPA G0 Z-100\n\
+             CYCLE800()\nG0 A0 C0\nG0 X0 Y0\nG0 Z1\nSUPA G0 Z-100"
+        ));
+        let scene = scene("a.mpf", &text, TRUNNION, G54);
+        scene.obstacle([-32.0, -32.0, -40.0], [-26.0, 32.0, 60.0])
+    };
+    let by = |choice| native(Choice::DeselectsOffset).with(Rule::SwivelAxis, choice);
+    let verdicts = |choice| [-1, 1].map(|direction| scene(direction).check_by(by(choice)).verdict);
+    assert_eq!(verdicts(Choice::SecondAxis), [CLEAN, FINDINGS]);
+    assert_eq!(verdicts(Choice::FirstAxis), [FINDINGS, CLEAN]);
+    // Without the axis both are checked.
+    for direction in [-1, 1] {
+        scene(direction).gives_natively(FINDINGS, &["V01 under swivel_axis"]);
+    }
+}
+
+/// Retracts and ends of programs as posts write them, and the blocks beside them of which only the machine knows the way.
+#[test]
+fn retracts_are_followed_as_far_as_the_machine_states_them() {
+    let aligned = "L A+0 C+0 R0 FMAX M3\nL X+0 Y+0 R0 FMAX\nL Z+1 R0 FMAX\nL Z+100 R0 FMAX\nPLANE SPATIAL SPA-20 SPB+0 SPC+0 TURN FMAX\n\
+                   L X+0 Y+0 R0 FMAX\nL Z+50 R0 FMAX\nL Z+0 R0 FMAX M91\nPLANE RESET TURN FMAX";
+    let tilted = "L A+0 C+0 R0 FMAX M3\nL X+0 Y+0 Z+100 R0 FMAX\nL Z+1 R0 FMAX\nL Z+100 R0 FMAX\nL A-30 R0 FMAX\nL M140 MB50 FMAX\n\
+                  L Z+0 R0 FMAX M91";
+    let builder = "L A+0 C+0 R0 FMAX M3\nL X+0 Y+0 Z+100 R0 FMAX\nL Z+1 R0 FMAX\nL Z+100 R0 FMAX\nL Z+0 R0 FMAX M92";
+    let rotary = "L A+0 C+0 R0 FMAX M3\nL X+40 Y+0 Z+100 R0 FMAX\nPLANE SPATIAL SPA+0 SPB+0 SPC+0 TURN FMAX\nL X+40 Y+0 R0 FMAX\n\
+                  L Z+1 R0 FMAX\nCC X+0 Y+0\nC X+0 Y+40 C+90 DR+ F500";
+    let rows: [(&str, Verdict, &[&str]); 4] = [
+        (aligned, CLEAN, &[]),
+        (tilted, CLEAN, &[]),
+        (builder, NONE, &["V0404 7"]),
+        (rotary, NONE, &["P0120 9 PLANE RESET"]),
+    ];
+    for (blocks, verdict, gaps) in rows {
+        let scene = scene("a.h", &klartext(blocks), TRUNNION, G54);
+        scene.gives(HEIDENHAIN, verdict, gaps);
+    }
+    let steps = "G0 X4.5 Y0.\nG43 H1 Z100.\nG0 Z-1.\nG1 X4.4 F500\nG0 Z100.\n";
+    let three_axes =
+        |blocks: &str, control: Control, machine: [&str; 2], verdict, gaps: &[&str]| {
+            let text = iso(&format!("{steps}{blocks}"));
+            let scene: Scene = named("a.nc", &text).on("3-axis", machine[0], machine[1]);
+            let mut scene = scene;
+            scene.job = scene.job.replace("LENGTH", "length = 50");
+            scene.gives(control, verdict, gaps);
+        };
+    let same = ["letter = \"Z\"", "letter = \"Z\""];
+    three_axes("G91 G28 Z0.\nG28 X0. Y0.", HAAS, same, CLEAN, &[]);
+    three_axes("G53 G0 Z0.", HAAS, same, CLEAN, &[]);
+    // Z rises to 500 on this machine.
+    three_axes("G53 G0 Z0.", HAAS, ["limits = [-500, 0]", "limits = [0, 500]"], NONE, &["V0404"]);
+}
