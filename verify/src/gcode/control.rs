@@ -53,13 +53,14 @@ pub(super) struct Control {
     position: Position,
     /// Origin and rotation of the work offsets.
     origins: BTreeMap<WorkOffset, (Position, f64)>,
-    lengths: BTreeMap<u32, f64>,
-    radius_offsets: BTreeMap<u32, f64>,
+    /// These are shared, since a survey keeps the control before each block.
+    lengths: Arc<BTreeMap<u32, f64>>,
+    radius_offsets: Arc<BTreeMap<u32, f64>>,
     /// The numbers of work offsets, by those of presets (Heidenhain).
-    presets: BTreeMap<u32, u8>,
+    presets: Arc<BTreeMap<u32, u8>>,
     /// The sum that a program of Heidenhain adds to the radius offset of its tool.
     radius_allowance: f64,
-    tool_names: BTreeMap<String, u32>,
+    tool_names: Arc<BTreeMap<String, u32>>,
     home: Option<[f64; 6]>,
     second_home: Option<[f64; 6]>,
     /// Upper end of the travel of Z.
@@ -283,11 +284,11 @@ impl Control {
             state: Arc::new(state),
             position: setup.start,
             origins,
-            lengths: setup.lengths.clone(),
-            radius_offsets: setup.radius_offsets.clone(),
-            presets: setup.presets.clone(),
+            lengths: Arc::new(setup.lengths.clone()),
+            radius_offsets: Arc::new(setup.radius_offsets.clone()),
+            presets: Arc::new(setup.presets.clone()),
             radius_allowance: 0.0,
-            tool_names: setup.tool_names.clone(),
+            tool_names: Arc::new(setup.tool_names.clone()),
             home: setup.home,
             second_home: setup.second_home,
             top: setup.top,

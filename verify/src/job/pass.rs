@@ -9,9 +9,9 @@ use super::stock::{CutStock, StockCut};
 use super::{Body, BodyFrame, BodyRole, Job, JobError, JobGap, JobTool, StockShape};
 use crate::check::{ApproachSearch, MoveCheck, MoveRequest};
 use crate::gcode::{BlockLine, WorkOffset};
-use crate::machine::{Link, Machine, Side};
+use crate::machine::{Axis, Link, Machine, Side};
 use crate::{FindingGroup, Level, MachineSummary, Move, Verifier};
-use nalgebra::{Point3, Vector3};
+use nalgebra::{Point3, Vector2, Vector3};
 use std::sync::Arc;
 use touchoff::tool::Symmetry;
 
@@ -148,15 +148,12 @@ impl<'a> Job<'a> {
     /// Returns the name of the highest body, or of the stock, if it is higher than a level.
     fn highest_above(&self, level: &Level) -> Option<&str> {
         let unit = self.unit();
-        let top = |[low, high]: [Point3<f64>; 2]| -> f64 {
-            (0..3).map(|k| (level.up[k] * low[k]).max(level.up[k] * high[k])).sum()
-        };
-        let bodies = self.bodies.iter().filter(|body| body.meets_tools()).map(|body| {
+        let bodies = self.bodies.iter().filter(|body| body.meets_tools()).filter_map(|body| {
             let margin = match body.role {
                 BodyRole::Part => 0.0,
                 BodyRole::Fixture { margin } | BodyRole::Machine { margin, .. } => margin,
             };
-            (&*body.name, self.bounds_at_part(body).map_or(f64::INFINITY, top) + margin)
+            Some((&*body.name, self.height(body, level)? + margin))
         });
         let stock = self.stock.iter().map(|stock| {
             let bounds = match &stock.shape {
@@ -164,7 +161,7 @@ impl<'a> Job<'a> {
                 StockShape::Mesh(mesh) => mesh.bounds(),
                 StockShape::Points(points) => points.bounds(),
             };
-            ("the stock", top(bounds))
+            ("the stock", top(level, bounds))
         });
         let highest = bodies.chain(stock).max_by(|one, other| one.1.total_cmp(&other.1));
         highest
@@ -172,16 +169,40 @@ impl<'a> Job<'a> {
             .map(|(name, _)| name)
     }
 
-    /// Returns the corners of a body's box in the part's frame. `None` for a body of the machine that does not move with the part, which is
-    /// at another place for each position.
-    fn bounds_at_part(&self, body: &Body<'_>) -> Option<[Point3<f64>; 2]> {
-        let bounds = body.bvh.bounds();
-        let BodyFrame::Machine(link) = body.frame else { return Some(bounds) };
-        let machine = self.program.machine()?;
-        let [x, y, z, rotary @ ..] = self.program.readings().first()?.part_origin()?;
-        let moves_along = link == machine.last_link(Side::Table) && rotary == [0.0; 3];
-        let origin = Vector3::new(x, y, z) / self.unit().millimetres();
-        moves_along.then(|| bounds.map(|corner| corner - origin))
+    /// Returns the height of a body along a level's direction in the part's frame. It is infinite for one that moves against the part
+    /// so that the height is another for each position, and none for one that the tool's side carries.
+    fn height(&self, body: &Body<'_>, level: &Level) -> Option<f64> {
+        let [low, high] = body.bvh.bounds();
+        let height = top(level, [low, high]);
+        let Some(machine) = self.program.machine().filter(|_| body.frame != BodyFrame::Part) else {
+            return Some(height);
+        };
+        let link = body.frame.link(machine);
+        let mut table = machine.axes().iter().filter(|axis| axis.side == Side::Table).peekable();
+        match link {
+            Link::Base => {}
+            Link::Axis(letter) => {
+                table.find(|axis| axis.letter == letter)?;
+            }
+        }
+        // From the link to the part. X, Y and a turn about Z change no height, and one axis that tilts is at 0 while Z of the machine is
+        // z of the part.
+        let (rotary, linear): (Vec<&Axis>, Vec<&Axis>) =
+            table.partition(|axis| axis.letter.is_rotary());
+        let tilting = rotary.iter().filter(|axis| axis.direction.xy() != Vector2::zeros()).count();
+        let is_level = linear.iter().all(|axis| axis.direction.z == 0.0);
+        let is_upright = level.up == Vector3::z();
+        let moves_along = rotary.is_empty() && linear.is_empty();
+        if !(moves_along || is_upright && is_level && tilting < 2) {
+            return Some(f64::INFINITY);
+        }
+        let BodyFrame::Machine(_) = body.frame else { return Some(height) };
+        // In machine coordinates, while the part is where G54 is.
+        let origin = self.program.readings().first()?.part_origin();
+        let is_placed = |[.., a, b, c]: &[f64; 6]| [*a, *b, *c] == [0.0; 3];
+        Some(origin.filter(is_placed).map_or(f64::INFINITY, |[x, y, z, ..]| {
+            height - level.up.dot(&Vector3::new(x, y, z)) / self.unit().millimetres()
+        }))
     }
 
     /// Returns the number of checks of motions at bodies, those of all readings together.
@@ -358,4 +379,9 @@ impl<'a> Job<'a> {
     fn tool_index(&self, number: Option<u32>) -> Option<usize> {
         self.tools.iter().position(|tool| tool.motions.contains(number))
     }
+}
+
+/// Returns the height of a box along a level's direction.
+fn top(level: &Level, [low, high]: [Point3<f64>; 2]) -> f64 {
+    (0..3).map(|k| (level.up[k] * low[k]).max(level.up[k] * high[k])).sum()
 }

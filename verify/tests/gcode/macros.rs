@@ -104,6 +104,16 @@ fn long_blocks_of_loops_share_the_budget() {
     }
 }
 
+/// The conditions of branches that are not taken are as much work as blocks.
+#[test]
+fn branches_that_are_not_taken_share_the_budget() {
+    let branches = "o1 elseif [0]\n".repeat(200);
+    let text =
+        format!("g21 g90 g0\no9 repeat [60]\no1 if [0]\n{branches}o1 endif\no9 endrepeat\nm30\n");
+    let setup = ControlSetup { max_repeated: 10_000, ..setup(Choice::Rs274Ngc) };
+    assert_eq!(read(&text, &setup).err().map(|error| error.code()), Some("P0144"));
+}
+
 /// The blocks of the main program that are executed once are limited by its text alone, after a loop too.
 #[test]
 fn a_long_program_takes_nothing_of_the_budget() {

@@ -6,10 +6,23 @@ use crate::scene::{
     CLEAN, Control, FANUC, FINDINGS, HAAS, HEIDENHAIN, NONE, SIEMENS, Scene, native,
 };
 use touchoff_verify::Verdict;
-use touchoff_verify::gcode::{Choice, Rule};
+use touchoff_verify::gcode::{Choice, ControlRules, Rule};
+use touchoff_verify::machine::{Letter, Link};
 
 /// The origin of G54 on the trunnion, 40 mm above the axis of A.
 const G54: &str = "[0, 0, -440]";
+
+/// The line of the machine's file that states where a tool change leaves the axes.
+const CHANGE: &str = "tool_change = { Z = 0 }";
+
+/// Returns the rules of a Fanuc whose tool change leaves the axes where they are.
+fn stays() -> ControlRules {
+    crate::scene::rules("fanuc")
+        .with(Rule::ToolChange, Choice::Stays)
+        .with(Rule::ReferenceReturn, Choice::KeepsLength)
+        .with(Rule::LengthChange, Choice::MovesZ)
+        .with(Rule::TcpStart, Choice::TableAtZero)
+}
 
 fn klartext(blocks: &str) -> String {
     format!("BEGIN PGM A MM\nTOOL CALL 1 Z S1000\n{blocks}\nM30\nEND PGM A MM\n")
@@ -126,18 +139,37 @@ fn a_first_way_below_the_top_is_not_checked() {
     ] {
         for (level, verdict) in [("-10.", NONE), ("1.", CLEAN)] {
             let text = iso(&blocks.replace("LEVEL", level));
-            let machine = TRUNNION.replace("tool_change = { Z = 0 }", "");
-            let mut rules = crate::scene::rules("fanuc").with(Rule::ToolChange, Choice::Stays);
-            for (rule, choice) in [
-                (Rule::ReferenceReturn, Choice::KeepsLength),
-                (Rule::LengthChange, Choice::MovesZ),
-                (Rule::TcpStart, Choice::TableAtZero),
-            ] {
-                rules = rules.with(rule, choice);
-            }
+            let machine = &TRUNNION.replace(CHANGE, "");
             let gap: &[&str] = if verdict == NONE { &["V0607"] } else { &[] };
-            scene("a.nc", &text, &machine, G54).gives_by(rules, verdict, gap);
+            scene("a.nc", &text, machine, G54).gives_by(stays(), verdict, gap);
         }
+    }
+}
+
+/// Bodies of the machine have a height over the part, too, unless axes between raise them or tilt the part.
+#[test]
+fn a_first_way_is_above_the_bodies_of_the_machine() {
+    let text = |level: &str| {
+        let blocks = "G0 A0. C0.\nG43 H1 ZLEVEL\nG0 X0. Y0.\nG1 Z1. F500\nG0 Z100.";
+        iso(&blocks.replace("LEVEL", level))
+    };
+    let low = ([40.0, -5.0, -460.0], [50.0, 5.0, -420.0]);
+    let z = "{ letter = \"Z\", kind = \"linear\", carries = \"tool\", rapid = 10000 },";
+    let raised = TRUNNION
+        .replace(z, "")
+        .replace("axis = [", &format!("axis = [\n{}", z.replace("tool", "table")));
+    for (machine, link, level, verdict) in [
+        (TRUNNION, Link::Axis(Letter::C), "30.", CLEAN),
+        (TRUNNION, Link::Axis(Letter::C), "10.", NONE),
+        (TRUNNION, Link::Base, "30.", CLEAN),
+        (TRUNNION, Link::Base, "10.", NONE),
+        // Z of the table is at another height for each position.
+        (&raised, Link::Base, "30.", NONE),
+    ] {
+        let scene =
+            scene("a.nc", &text(level), &machine.replace(CHANGE, ""), G54).body(low.0, low.1, link);
+        let gaps: &[&str] = if verdict == NONE { &["V0607 6 the clamp"] } else { &[] };
+        scene.gives_by(stays(), verdict, gaps);
     }
 }
 

@@ -11,7 +11,7 @@ use touchoff::tool::Interpreted;
 use touchoff::{Tool, Unit};
 use touchoff_verify::gcode::{Choice, ControlRules, Rule, SubprogramFile, SubprogramLine};
 use touchoff_verify::job::{Body, NoVerdict};
-use touchoff_verify::machine::Machine;
+use touchoff_verify::machine::{Link, Machine};
 use touchoff_verify::{
     CycleTime, Job, JobError, JobFile, JobReport, JobTool, MachineProgramError, Program, Verdict,
 };
@@ -71,6 +71,8 @@ pub(crate) struct Scene {
     /// Files that the job names: machines, tools and subprograms.
     pub(crate) files: BTreeMap<&'static str, String>,
     obstacle: Option<TriangleBvh>,
+    /// The link of the machine with which the obstacle moves; otherwise it is a fixture.
+    link: Option<Link>,
 }
 
 /// A finding, a gap, a reason against a verdict, or an error.
@@ -166,6 +168,7 @@ impl Scene {
             job: job.to_owned(),
             files: BTreeMap::new(),
             obstacle: None,
+            link: None,
         }
     }
 
@@ -210,6 +213,12 @@ impl Scene {
     pub(crate) fn obstacle(mut self, low: [f64; 3], high: [f64; 3]) -> Scene {
         self.obstacle = Some(cuboid(low, high));
         self
+    }
+
+    /// Adds a mesh of the machine, in machine coordinates.
+    pub(crate) fn body(mut self, low: [f64; 3], high: [f64; 3], link: Link) -> Scene {
+        self.link = Some(link);
+        self.obstacle(low, high)
     }
 
     /// Asserts the verdict, and what is found, left open or refused.
@@ -290,7 +299,10 @@ impl Scene {
             job.tools.push(tool);
         }
         if let Some(obstacle) = &self.obstacle {
-            job.bodies.push(Body::fixture("the clamp", obstacle));
+            job.bodies.push(match self.link {
+                None => Body::fixture("the clamp", obstacle),
+                Some(link) => Body::machine("the clamp", obstacle, link),
+            });
         }
         if let Some(stock) = &file.stock {
             job.stock = Some(stock.stock(None, &program, file.unit)?);

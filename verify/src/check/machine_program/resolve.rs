@@ -1222,7 +1222,10 @@ fn level(chain: &Chain, joints: &Joints) -> Result<Level, StepFault> {
     let mut above = *joints;
     above[2] += 1.0;
     let [pose, above] = [chain.pose(joints)?, chain.pose(&above)?];
-    let up = (above.tip() - pose.tip()).normalize();
+    let mut up = (above.tip() - pose.tip()).normalize();
+    if (up - Vector3::z()).norm() <= UPRIGHT {
+        up = Vector3::z();
+    }
     // X and Y leave the level of a tool along Z of the machine, and any part of the tool is beyond its tip.
     let is_along = (pose.axis() - up).norm() <= UPRIGHT;
     let height = if is_along { pose.tip().coords.dot(&up) } else { f64::NEG_INFINITY };

@@ -355,12 +355,12 @@ impl Control {
 
     /// Sets the length of a tool, in millimetres, which the program states.
     pub(in crate::gcode) fn define_length(&mut self, tool: u32, length: f64) {
-        self.lengths.insert(tool, length);
+        Arc::make_mut(&mut self.lengths).insert(tool, length);
     }
 
     /// Sets the radius offset of a tool, in millimetres, which the program states.
     pub(in crate::gcode) fn define_radius(&mut self, tool: u32, radius: f64) {
-        self.radius_offsets.insert(tool, radius);
+        Arc::make_mut(&mut self.radius_offsets).insert(tool, radius);
     }
 
     /// Returns the length of a tool that is stated, in millimetres.

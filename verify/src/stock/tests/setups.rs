@@ -26,6 +26,12 @@ fn points_of_a_set_up_move_with_its_frame() {
     stock.advance(&Mill, &cut, travel, MotionMode::Feed, 0.1).expect("contacts");
     let left = stock.remaining_points();
     assert!(stock.len() < whole && !stock.is_empty());
+    // Its box is half a spacing larger than the points.
+    let points = positions(&stock, |point| point);
+    let (lowest, highest) =
+        (points.iter().map(|point| point[2]).min(), points.iter().map(|point| point[2]).max());
+    let [low, high] = left.bounds().map(|corner| (1000.0 * corner.z).round() as i64);
+    assert_eq!((Some(low + 250), Some(high - 250)), (lowest, highest));
     let origin = Point3::new(3.0, -200.0, 17.25);
     let units = [0, 1, 2].map(|axis| Vector3::ith(axis, 1.0));
     let directions: Vec<Vector3<f64>> = units.into_iter().flat_map(|unit| [unit, -unit]).collect();
