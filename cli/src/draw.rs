@@ -3,7 +3,7 @@
 use crate::arguments::Draw;
 use crate::failure::Failure;
 use crate::loaded_tool::compile_file;
-use crate::output::{Output, extension, refuse_inputs, write_file};
+use crate::output::{Output, extension, files_of, refuse_inputs, write_file};
 use crate::picture::pixels;
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::{Options, Tree};
@@ -36,9 +36,14 @@ pub(crate) fn draw(arguments: &Draw) -> Result<(), Failure> {
 }
 
 /// Returns the drawing of a file's tool as SVG.
+///
+/// # Errors
+/// If the file has no tool, or if the output is a file that it is read from.
 fn drawing(arguments: &Draw) -> Result<String, Failure> {
-    let tool = compile_file(&arguments.file, &arguments.params)?.into_tool();
-    let tool = tool.ok_or(Failure::Files { wrong: 1, all: 1 })?;
+    let compiled = compile_file(&arguments.file, &arguments.params)?;
+    // A file without the ending `.tool` mounts others, too.
+    refuse_inputs(arguments.output.as_deref(), files_of(&compiled.sources))?;
+    let tool = compiled.into_tool().ok_or(Failure::Files { wrong: 1, all: 1 })?;
     let content = if arguments.regions { Content::Regions } else { Content::Outline };
     Ok(svg(&tool, content, TextRendering::Strokes))
 }

@@ -3,7 +3,7 @@
 use crate::arguments::{Expand, Stage};
 use crate::failure::Failure;
 use crate::loaded_tool::compile_file;
-use crate::output::{Output, refuse_inputs, write_file};
+use crate::output::{Output, files_of, refuse_inputs, write_file};
 use std::fmt::Write as _;
 use std::io::Write as _;
 use touchoff_dsl::emit;
@@ -11,10 +11,11 @@ use touchoff_dsl::emit;
 /// Prints a stage of the compilation of files, or writes it to a file.
 pub(crate) fn expand(arguments: &Expand) -> Result<(), Failure> {
     let Expand { files, stage, params, output } = arguments;
-    refuse_inputs(output.as_deref(), files.iter().map(|file| &**file))?;
     let mut text = String::new();
     for file in files {
         let compiled = compile_file(file, params)?;
+        // Before anything is written: a file without the ending `.tool` mounts others, too.
+        refuse_inputs(output.as_deref(), files_of(&compiled.sources))?;
         let Some(tool) = compiled.tool() else {
             return Err(Failure::Files { wrong: 1, all: 1 });
         };

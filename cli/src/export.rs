@@ -3,7 +3,7 @@
 use crate::arguments::Export;
 use crate::failure::Failure;
 use crate::import::LEFT_OUT;
-use crate::loaded_tool::LoadedTool;
+use crate::loaded_tool::{Libraries, LoadedTool};
 use crate::output::{Output, extension, refuse_inputs, write_file};
 use serde::Serialize;
 use std::io::Write;
@@ -37,8 +37,11 @@ pub(crate) fn export(arguments: &Export, json: bool) -> Result<ExitCode, Failure
         }
     };
     refuse_inputs([&**output], names.iter().map(Path::new).chain(tool.library.as_deref()))?;
-    let tools: Vec<LoadedTool> =
-        names.iter().map(|name| LoadedTool::load(name, tool)).collect::<Result<_, _>>()?;
+    let mut libraries = Libraries::default();
+    let tools: Vec<LoadedTool> = names
+        .iter()
+        .map(|name| LoadedTool::load_from(name, tool, &mut libraries))
+        .collect::<Result<_, _>>()?;
     let infos: Vec<&ToolInfo> = tools.iter().map(|tool| tool.tool().info()).collect();
     let exported = export_tools(&infos, format);
     let mut out = Output::lines();

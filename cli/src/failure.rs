@@ -43,9 +43,12 @@ impl Failure {
             Failure::Usage(_)
             | Failure::IsInput { .. }
             | Failure::SameOutput { .. }
+            | Failure::NoFolder { .. }
             | Failure::Refused { .. }
             | Failure::MeshForJob { .. }
-            | Failure::Find(FindError::Several { .. } | FindError::Numbers { .. })
+            | Failure::Find(
+                FindError::Several { .. } | FindError::Numbers { .. } | FindError::NoName { .. },
+            )
             | Failure::NoInside { .. } => 2,
             Failure::Interrupted => INTERRUPTED,
             _ => 1,
@@ -78,6 +81,9 @@ pub(crate) enum Failure {
     /// The options do not go together, or this system lacks the device.
     #[error("{0}")]
     Usage(&'static str),
+    /// No folder can be named after a library.
+    #[error("no folder can be named after {file}: name the one for its tools by `-o`")]
+    NoFolder { file: String },
     /// Nothing has such a code.
     #[error("no error, warning, finding or gap has the code `{code}`: {}", near_codes(near))]
     Code {

@@ -2,11 +2,11 @@
 
 use crate::arguments::Import;
 use crate::failure::Failure;
-use crate::output::Output;
+use crate::output::{Output, refuse_inputs};
 use crate::progress::Progress;
 use serde::Serialize;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
@@ -57,13 +57,27 @@ pub(crate) fn import(arguments: &Import, json: bool) -> Result<ExitCode, Failure
         let target = if arguments.list {
             Target::List { prove: false }
         } else {
-            let output = arguments.output.clone();
-            Target::Folder(output.unwrap_or_else(|| file.file_stem().unwrap_or_default().into()))
+            Target::Folder(match &arguments.output {
+                Some(output) => output.clone(),
+                None => folder_named_after(file)?,
+            })
         };
         left_out += Run { file, only, target, json }.library(&mut out)?;
     }
     out.flush()?;
     Ok(if left_out == 0 { ExitCode::SUCCESS } else { ExitCode::from(LEFT_OUT) })
+}
+
+/// Returns the folder with the name of a library, in the current folder.
+///
+/// # Errors
+/// If its name without the ending is none of a folder there, as `..` of `...json`.
+fn folder_named_after(file: &Path) -> Result<PathBuf, Failure> {
+    let stem = Path::new(file.file_stem().unwrap_or_default());
+    match stem.components().next() {
+        Some(Component::Normal(name)) if name == stem => Ok(stem.to_owned()),
+        _ => Err(Failure::NoFolder { file: file.display().to_string() }),
+    }
 }
 
 /// Prints the tools of a library with their proofs, and writes nothing.
@@ -89,6 +103,10 @@ enum Target {
 impl Run<'_> {
     /// Imports the library, and returns the number of tools left out.
     fn library(&self, out: &mut Output) -> Result<usize, Failure> {
+        if let Target::Folder(folder) = &self.target {
+            // Of what an import writes, the list of numbers alone replaces a file.
+            refuse_inputs([&*folder.join("tools.toml")], [self.file])?;
+        }
         let library = Library::read(self.file)?;
         let tools = self.wanted(&library)?;
         let mut left_out = 0;

@@ -3,8 +3,10 @@
 use crate::arguments::{ParamArguments, ToolArguments};
 use crate::failure::Failure;
 use crate::output::{show, show_lines};
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::ffi::OsStr;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use touchoff::tool::Interpreted;
 use touchoff::{Escaped, Tool, is_within};
@@ -13,6 +15,22 @@ use touchoff_dsl::source::Source;
 use touchoff_dsl::{Compiled, compile_with_arguments};
 use touchoff_import::{Library, find_in_folder};
 use touchoff_tools::{SOURCES, TOOLS};
+
+/// Libraries that were read, by their files and the folders within which they read others. Each is read once for all its tools.
+#[derive(Default)]
+pub(crate) struct Libraries(BTreeMap<(PathBuf, Option<PathBuf>), Library>);
+
+impl Libraries {
+    fn read(&mut self, file: &Path, root: Option<&Path>) -> Result<&Library, Failure> {
+        match self.0.entry((file.to_owned(), root.map(Path::to_owned))) {
+            Entry::Occupied(known) => Ok(known.into_mut()),
+            Entry::Vacant(entry) => Ok(entry.insert(match root {
+                Some(root) => Library::read_within(file, root)?,
+                None => Library::read(file)?,
+            })),
+        }
+    }
+}
 
 /// A built-in tool, or one from a `.tool` file.
 pub(crate) enum LoadedTool {
@@ -26,9 +44,21 @@ impl LoadedTool {
     /// # Errors
     /// If there is no such tool, its file cannot be loaded, or a built-in tool is given values.
     pub(crate) fn load(name: &OsStr, arguments: &ToolArguments) -> Result<LoadedTool, Failure> {
+        LoadedTool::load_from(name, arguments, &mut Libraries::default())
+    }
+
+    /// Loads one of several tools, whose libraries are read once.
+    ///
+    /// # Errors
+    /// As [`LoadedTool::load`].
+    pub(crate) fn load_from(
+        name: &OsStr,
+        arguments: &ToolArguments,
+        libraries: &mut Libraries,
+    ) -> Result<LoadedTool, Failure> {
         let params = &arguments.params;
         if let Some(library) = &arguments.library {
-            let tool = load(&in_library(name, library, params, true)?, params)?;
+            let tool = load(&in_library(name, library, params, libraries, true)?, params)?;
             return Ok(LoadedTool::File(Box::new(tool)));
         }
         if Path::new(name).extension().is_some_and(|extension| extension == "tool") {
@@ -60,10 +90,15 @@ impl AsRef<dyn Tool> for LoadedTool {
 ///
 /// # Errors
 /// As [`LoadedTool::load`].
-pub(crate) fn compile_named(name: &OsStr, arguments: &ToolArguments) -> Result<Compiled, Failure> {
+pub(crate) fn compile_named(
+    name: &OsStr,
+    arguments: &ToolArguments,
+    libraries: &mut Libraries,
+) -> Result<Compiled, Failure> {
     let params = &arguments.params;
     if let Some(library) = &arguments.library {
-        return Ok(compile_source(&in_library(name, library, params, false)?, params));
+        let source = in_library(name, library, params, libraries, false)?;
+        return Ok(compile_source(&source, params));
     }
     if Path::new(name).extension().is_some_and(|extension| extension == "tool") {
         return Ok(compile_source(&read_source(Path::new(name), params)?, params));
@@ -107,16 +142,13 @@ fn in_library(
     name: &OsStr,
     library: &Path,
     params: &ParamArguments,
+    libraries: &mut Libraries,
     notes: bool,
 ) -> Result<Source, Failure> {
     if library.is_dir() {
         return read_source(&find_in_folder(library, name)?, params);
     }
-    let imported = match params.root() {
-        Some(root) => Library::read_within(library, root)?,
-        None => Library::read(library)?,
-    };
-    let tool = imported.select(&name.to_string_lossy())?;
+    let tool = libraries.read(library, params.root())?.select(&name.to_string_lossy())?;
     if notes {
         for note in &tool.entry.notes {
             message!("warning: {}: {note}", Escaped(tool.entry.label()));
@@ -194,4 +226,32 @@ pub(crate) fn compile_file(file: &Path, params: &ParamArguments) -> Result<Compi
         show(diagnostic, &compiled.sources);
     }
     Ok(compiled)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A library of n tools would be read n times.
+    #[test]
+    fn a_library_is_read_once_for_all_its_tools() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let library = folder.path().join("library.json");
+        let tool = |number: u32| {
+            format!(
+                "{{ \"type\": \"ball end mill\", \"unit\": \"millimeters\", \"post-process\": {{ \"number\": {number} }}, \
+                 \"geometry\": {{ \"DC\": 4, \"RE\": 2, \"LCF\": 10, \"OAL\": 50, \"SFDM\": 4 }} }}"
+            )
+        };
+        let text = format!("{{ \"data\": [{}, {}] }}", tool(1), tool(2));
+        std::fs::write(&library, text).expect("written");
+        let params = ParamArguments::new(Vec::new(), None);
+        let arguments = ToolArguments { library: Some(library.clone()), params };
+        let mut libraries = Libraries::default();
+        let mut load =
+            |name: &str| LoadedTool::load_from(name.as_ref(), &arguments, &mut libraries).is_ok();
+        assert!(load("T1"));
+        std::fs::remove_file(&library).expect("removed");
+        assert!(load("T2") && !load("T3"));
+    }
 }

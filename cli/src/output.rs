@@ -251,12 +251,7 @@ fn listed(input: &Path, root: &Path) -> Vec<PathBuf> {
             let Ok(source) = Source::read(input) else { return Vec::new() };
             // The loader of the tool decides which files within the root it may mount.
             let compiled = touchoff_dsl::compile(&source.with_root(root));
-            compiled
-                .sources
-                .all()
-                .iter()
-                .filter_map(|source| source.path().map(Path::to_owned))
-                .collect()
+            files_of(&compiled.sources).map(Path::to_owned).collect()
         }
         Some("fctl") => {
             let library = Library::read_within(input, root);
@@ -264,6 +259,11 @@ fn listed(input: &Path, root: &Path) -> Vec<PathBuf> {
         }
         _ => Vec::new(),
     }
+}
+
+/// Returns the files of a tool's texts: its own, and those that it mounts.
+pub(crate) fn files_of(sources: &Sources) -> impl Iterator<Item = &Path> {
+    sources.all().iter().filter_map(Source::path)
 }
 
 /// Returns the place to which a file is written, which need not exist yet, with links followed.

@@ -2,7 +2,7 @@
 
 use crate::arguments::{CheckArguments, ParamArguments, ToolArguments, Verify};
 use crate::failure::Failure;
-use crate::loaded_tool::{LoadedTool, compile_named};
+use crate::loaded_tool::{Libraries, LoadedTool, compile_named};
 use crate::output::{Output, extension, refuse_inputs_within, write_file};
 use crate::part;
 use crate::program::{print_approach, print_ignored, warn_of_cutter};
@@ -45,8 +45,10 @@ pub(crate) fn read(
         refuse_inputs_within(root, outputs, other_inputs.iter().copied().chain(inputs))
     };
     refuse(&file, file.files())?;
-    let inputs =
-        JobInputs::read::<Failure>(file, |named| LoadedTool::load(&named.name, &arguments(named)))?;
+    let mut libraries = Libraries::default();
+    let inputs = JobInputs::read::<Failure>(file, |named| {
+        LoadedTool::load_from(&named.name, &arguments(named), &mut libraries)
+    })?;
     // Those that a machine and earlier set-ups name are known by now.
     refuse(&inputs.file, inputs.further_files())?;
     for (named, loaded) in &inputs.tools {
@@ -69,12 +71,12 @@ pub(crate) fn read(
     Ok(inputs)
 }
 
-/// Compiles a tool of a job again, for its drawing and its proof.
+/// Compiles a tool of a job again, for its drawing and its proof. Libraries of several tools are read once.
 ///
 /// # Errors
 /// If its file cannot be read any more.
-pub(crate) fn compile(named: &NamedTool) -> Result<Compiled, Failure> {
-    compile_named(&named.name, &arguments(named))
+pub(crate) fn compile(named: &NamedTool, libraries: &mut Libraries) -> Result<Compiled, Failure> {
+    compile_named(&named.name, &arguments(named), libraries)
 }
 
 /// Returns the arguments with which a named tool is loaded.

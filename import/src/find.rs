@@ -4,7 +4,7 @@ use super::{ImportedTool, Library};
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 use touchoff::{AtomicFile, FileKind, is_within, read_text_file};
 
 /// A reason for which no tool is selected, or no number is listed.
@@ -30,6 +30,16 @@ pub enum FindError {
         file: String,
         /// The tools, each in backquotes.
         tools: Vec<String>,
+    },
+    /// A name that is that of no file directly in the folder of tools.
+    #[error(
+        "`{name}` is no name of a tool in {folder}: its tools are the files in it that end in `.tool`; name another as a file"
+    )]
+    NoName {
+        /// The name.
+        name: String,
+        /// The folder.
+        folder: String,
     },
     /// The file of a tool lies outside the folder of tools.
     #[error("{file} is outside the folder of tools {folder}: name it as a file, or copy it there")]
@@ -93,37 +103,50 @@ impl Library {
     }
 }
 
-/// Returns the file of a tool in a folder of `.tool` files, by its name or by its number in the folder's list. The file may
-/// not exist.
+/// Returns the file of a tool in a folder of `.tool` files, by its name, with or without its ending, or by its number in the folder's
+/// list. The file may not exist. Its name ends in `.tool`, so that [`files_in_folder`] has it.
 ///
 /// # Errors
-/// If several tools have the number, or the list cannot be read.
+/// If the name leads to another folder, if several tools have the number, or if the list cannot be read or names another kind of file.
 pub fn find_in_folder(folder: &Path, name: &OsStr) -> Result<PathBuf, FindError> {
-    let file = folder.join(name);
-    if file.is_file() {
-        return within(folder, file);
+    let shown = || folder.display().to_string();
+    let name_of = |name: &OsStr| name.to_string_lossy().into_owned();
+    if !Path::new(name).components().eq([Component::Normal(name)]) {
+        return Err(FindError::NoName { name: name_of(name), folder: shown() });
+    }
+    let mut file = folder.join(name);
+    if !is_tool(&file) {
+        file.as_mut_os_string().push(".tool");
     }
     // A file with the tool's name goes before a number of the list.
-    let file = file.with_extension("tool");
-    within(folder, folder.join(NUMBERS))?;
-    let name = name.to_string_lossy().to_ascii_uppercase();
+    let list = within(folder, folder.join(NUMBERS))?;
+    let name = name_of(name).to_ascii_uppercase();
     match read_numbers(folder)?.get(&name).map(Vec::as_slice) {
+        Some([listed]) if !file.is_file() && !is_tool(Path::new(listed)) => {
+            let message =
+                format!("{name} is `{listed}`, whose name does not end in `.tool`: rename it");
+            Err(FindError::Numbers { file: list.display().to_string(), message })
+        }
         Some([listed]) if !file.is_file() => within(folder, folder.join(listed)),
         Some(several) if !file.is_file() => Err(FindError::Several {
             name,
-            file: folder.display().to_string(),
+            file: shown(),
             tools: several.iter().map(|tool| format!("`{tool}`")).collect(),
         }),
         _ => within(folder, file),
     }
 }
 
+fn is_tool(file: &Path) -> bool {
+    file.extension().is_some_and(|ending| ending == "tool")
+}
+
 /// Returns the files that tools of a folder are read from, as far as they can be read: those that end in `.tool`, those that its list
 /// of numbers names, and the list.
 pub fn files_in_folder(folder: &Path) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
-    let is_tool = |file: &PathBuf| file.extension().is_some_and(|ending| ending == "tool");
-    let mut files: Vec<PathBuf> = entries.map(|entry| entry.path()).filter(is_tool).collect();
+    let files = entries.map(|entry| entry.path()).filter(|file| is_tool(file));
+    let mut files: Vec<PathBuf> = files.collect();
     let is_own = is_within(folder.join(NUMBERS), folder);
     let numbers = if is_own { read_numbers(folder).unwrap_or_default() } else { Numbers::new() };
     let listed = numbers.into_values().flatten();

@@ -45,13 +45,17 @@ pub(super) fn library(
     let found = tools.iter().map(|tool| {
         let bit = find_bit(tool, folder, root)?;
         let problem = |reason: String| Problem::new(listed_name(tool), &reason);
+        let too_long = || {
+            problem(format!("the bits before it and this one are longer than {max_bytes} bytes"))
+        };
+        if read_bytes > max_bytes {
+            return Err(too_long());
+        }
         let content = bytes(&bit).map_err(|error| problem(error.to_string()))?;
         files.push(bit);
         read_bytes += content.len() as u64;
         if read_bytes > max_bytes {
-            let reason =
-                format!("the bits before it and this one are longer than {max_bytes} bytes");
-            return Err(problem(reason));
+            return Err(too_long());
         }
         let bit = text(&content).and_then(|text| object(&text)).map_err(problem)?;
         read_bit(&bit, tool.get("nr").and_then(tool_number))

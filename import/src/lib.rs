@@ -52,7 +52,7 @@ use std::io::{self, Read as _};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use touchoff::tool::Interpreted;
-use touchoff::{FileKind, is_within, read_regular_file};
+use touchoff::{AtomicFile, FileKind, is_within, read_regular_file};
 use touchoff_dsl::source::Source;
 
 /// The largest number of tools in a library.
@@ -262,7 +262,8 @@ impl ImportedTool {
             if let Some(parent) = file.parent() {
                 fs::create_dir_all(parent).map_err(unwritable)?;
             }
-            fs::write(&file, text).map_err(unwritable)?;
+            // A part of it, on a full disk, would be other content at the next import.
+            AtomicFile::write(&file, text).map_err(unwritable)?;
         }
         Ok(folder.join(self.path()))
     }

@@ -233,6 +233,37 @@ fn a_folder_of_tools_leads_nowhere_else() {
     assert_eq!(std::fs::read_dir(&outside).expect("a folder").count(), 1);
 }
 
+/// Outputs are compared with the files of a folder that a tool can be read from.
+#[test]
+fn tools_of_a_folder_end_in_tool_and_stand_in_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let place = |name: &str| folder.path().join(name);
+    std::fs::create_dir(place("sub")).expect("a folder");
+    let tools = ["d6.35.tool", "sub/x.tool", "sub/listed.tool"];
+    for name in tools.iter().chain(&["T1", "holder.txt", "T3"]) {
+        std::fs::write(place(name), "").expect("written");
+    }
+    std::fs::write(place("tools.toml"), "T2 = [\"sub/listed.tool\"]\nT3 = [\"T3\"]")
+        .expect("written");
+    let find = |name: &str| crate::find_in_folder(folder.path(), name.as_ref());
+    for name in ["sub/x.tool", "./d6.35.tool", "..", "", "d6.35.tool/"] {
+        assert!(matches!(find(name), Err(crate::FindError::NoName { .. })), "{name}");
+    }
+    for (name, file) in [
+        ("d6.35", "d6.35.tool"),
+        ("d6.35.tool", "d6.35.tool"),
+        ("t2", "sub/listed.tool"),
+        ("T1", "T1.tool"),
+        ("holder.txt", "holder.txt.tool"),
+    ] {
+        let found = find(name).expect("a file");
+        assert_eq!(found, place(file), "{name}");
+        assert_eq!(crate::files_in_folder(folder.path()).contains(&found), found.is_file());
+    }
+    let listed = find("T3").expect_err("no tool").to_string();
+    assert!(listed.contains("tools.toml: T3 is `T3`") && listed.ends_with("rename it"), "{listed}");
+}
+
 /// Values of few bytes take much memory.
 #[test]
 fn a_text_whose_values_do_not_fit_into_memory_is_refused() {

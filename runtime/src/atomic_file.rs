@@ -1,5 +1,6 @@
 //! Files that are written completely or not at all.
 
+use std::ffi::OsStr;
 use std::fs::{self, File, Metadata, OpenOptions, TryLockError};
 use std::hash::{BuildHasher, RandomState};
 use std::io::{self, BufWriter, Write};
@@ -17,7 +18,7 @@ use std::path::{Path, PathBuf};
 /// - Targets that are not regular files, such as devices or pipes, are written directly. The same holds
 ///   for standard output and standard error by their names in `/dev` and `/proc`.
 /// - Temporary files are named `.touchoff-….tmp` and are locked while their writer lives. Temporary
-///   files left in the folder by killed processes are removed.
+///   files left in the folder by killed processes are removed; no file of such a name is read as an input.
 ///
 /// ```
 /// # use std::io::Write;
@@ -281,12 +282,8 @@ fn create_temporary(target: &Path) -> io::Result<Temporary> {
 fn remove_abandoned(folder: &Path) {
     let Ok(entries) = fs::read_dir(folder) else { return };
     for entry in entries.flatten() {
-        let name = entry.file_name();
-        let random = name.to_str().and_then(|n| n.strip_prefix(PREFIX)?.strip_suffix(SUFFIX));
-        let is_ours = random.is_some_and(|digits| {
-            digits.len() == 16 && digits.bytes().all(|b| b.is_ascii_hexdigit())
-        });
-        if is_ours && entry.file_type().is_ok_and(|kind| kind.is_file()) {
+        let is_file = entry.file_type().is_ok_and(|kind| kind.is_file());
+        if is_file && is_temporary(&entry.file_name()) {
             let path = entry.path();
             let open = OpenOptions::new().write(true).open(&path);
             if open.is_ok_and(|file| file.try_lock().is_ok()) {
@@ -294,6 +291,12 @@ fn remove_abandoned(folder: &Path) {
             }
         }
     }
+}
+
+/// Returns whether a name is one of those of temporary files.
+pub(crate) fn is_temporary(name: &OsStr) -> bool {
+    let random = name.to_str().and_then(|name| name.strip_prefix(PREFIX)?.strip_suffix(SUFFIX));
+    random.is_some_and(|digits| digits.len() == 16 && digits.bytes().all(|b| b.is_ascii_hexdigit()))
 }
 
 /// Copies the permissions of an old file to a new one and, where the system allows it, the owner.

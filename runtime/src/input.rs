@@ -1,5 +1,6 @@
 //! Reading input files: regular files, up to the length that their kind may have.
 
+use crate::atomic_file::is_temporary;
 use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::{Component, Path};
@@ -10,6 +11,8 @@ use std::path::{Component, Path};
 pub enum FileKind {
     /// Triangles or points, a saved part, a shard of a sweep: 16 GiB, some 300 million triangles of binary STL.
     Geometry,
+    /// A posture map, which is copied into memory: 4 GiB.
+    PostureMap,
     /// A program, or a table of poses or postures: 1 GiB.
     Program,
     /// A tool library: 64 MiB.
@@ -23,6 +26,7 @@ impl FileKind {
     pub const fn max_bytes(self) -> u64 {
         match self {
             FileKind::Geometry => 1 << 34,
+            FileKind::PostureMap => 1 << 32,
             FileKind::Program => 1 << 30,
             FileKind::Library => 1 << 26,
             FileKind::Settings => 1 << 22,
@@ -33,11 +37,17 @@ impl FileKind {
 /// Opens a regular file and returns it with its length.
 ///
 /// # Errors
-/// Returns the errors of the operating system. Refuses a file longer than its kind may be, and a directory, a pipe, a socket
-/// or a device, whose content may be endless.
-pub(crate) fn open(path: impl AsRef<Path>, kind: FileKind) -> io::Result<(File, u64)> {
+/// Returns the errors of the operating system. Refuses a file longer than its [kind](FileKind::max_bytes) may be, a directory, a
+/// pipe, a socket or a device, whose content may be endless, and a temporary file of [`AtomicFile`](crate::AtomicFile), which the
+/// next output in its folder removes.
+pub fn open_regular_file(path: impl AsRef<Path>, kind: FileKind) -> io::Result<(File, u64)> {
     let refuse = |reason: String| Err(io::Error::new(io::ErrorKind::InvalidInput, reason));
     let irregular = || refuse("it is no regular file".to_owned());
+    let place = path.as_ref().canonicalize();
+    if place.is_ok_and(|place| place.file_name().is_some_and(is_temporary)) {
+        let reason = "its name is that of a temporary file, which the next output in its folder removes: rename it";
+        return refuse(reason.to_owned());
+    }
     // Check before opening: opening a pipe waits for its writer.
     if !fs::metadata(&path)?.is_file() {
         return irregular();
@@ -57,10 +67,9 @@ pub(crate) fn open(path: impl AsRef<Path>, kind: FileKind) -> io::Result<(File, 
 /// Reads a regular file, up to the length that it had when it was opened.
 ///
 /// # Errors
-/// Returns the errors of the operating system, and `OutOfMemory` if the file does not fit into memory. Refuses a file longer
-/// than its [kind](FileKind::max_bytes) may be, and a directory, a pipe, a socket or a device, whose content may be endless.
+/// As for [`open_regular_file`], and `OutOfMemory` if the file does not fit into memory.
 pub fn read_regular_file(path: impl AsRef<Path>, kind: FileKind) -> io::Result<Vec<u8>> {
-    let (file, length) = open(path, kind)?;
+    let (file, length) = open_regular_file(path, kind)?;
     let mut bytes = Vec::new();
     let capacity =
         usize::try_from(length).ok().filter(|capacity| bytes.try_reserve_exact(*capacity).is_ok());
@@ -131,6 +140,16 @@ mod tests {
             for path in [&socket, &pipe, Path::new("/dev/zero")] {
                 assert_eq!(refused(path), "it is no regular file");
             }
+        }
+        // An output in the folder would remove it, whatever its content and the link that leads to it.
+        let temporary = folder.path().join(".touchoff-0123456789abcdef.tmp");
+        fs::write(&temporary, b"some").expect("written");
+        assert!(refused(&temporary).ends_with("removes: rename it"));
+        #[cfg(unix)]
+        {
+            let link = folder.path().join("link");
+            std::os::unix::fs::symlink(&temporary, &link).expect("a link");
+            assert!(refused(&link).ends_with("removes: rename it"));
         }
         fs::write(&path, b"a\nb\xff").expect("written");
         let garbled = read_text_file(&path, SETTINGS).expect_err("no text").to_string();

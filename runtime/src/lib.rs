@@ -145,7 +145,7 @@ pub use cloud::{Cloud, CloudError, CoveringRadius, Sampling, SamplingMethod};
 pub use escape::{Escaped, EscapedLines};
 pub use fearless_simd::Level;
 pub use id::{SurfaceId, TriangleId};
-pub use input::{FileKind, is_within, read_regular_file, read_text_file};
+pub use input::{FileKind, is_within, open_regular_file, read_regular_file, read_text_file};
 pub use interval::Interval;
 pub use keywords::ParseEnumError;
 pub use mesh::{Mesh, MeshDiagnostics, MeshError, StlError};

@@ -2,6 +2,7 @@
 
 use proc_macro2::{Delimiter, Spacing, TokenStream, TokenTree};
 use std::collections::BTreeMap;
+use std::ffi::OsStr;
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Component, Path, PathBuf};
@@ -13,10 +14,15 @@ pub const MAX_SOURCE_BYTES: usize = 1 << 20;
 /// Reads the text of a file.
 ///
 /// # Errors
-/// If the path is not a regular file, the text is longer than [`MAX_SOURCE_BYTES`] or not UTF-8, or reading fails.
+/// If the path is not a regular file or is a temporary one, the text is longer than [`MAX_SOURCE_BYTES`] or not UTF-8, or reading
+/// fails.
 fn text(path: &Path) -> io::Result<String> {
     let wrong = |why: String| io::Error::new(io::ErrorKind::InvalidData, why);
     let kind = std::fs::metadata(path)?;
+    if path.canonicalize()?.file_name().is_some_and(is_temporary) {
+        let why = "its name is that of a temporary file, which the next output in its folder removes: rename it";
+        return Err(wrong(why.to_owned()));
+    }
     // Checked before opening: opening a pipe blocks until there is a writer.
     if !kind.is_file() && !kind.is_dir() {
         return Err(wrong("it is no regular file: save the text as a file first".to_owned()));
@@ -25,15 +31,20 @@ fn text(path: &Path) -> io::Result<String> {
         return Err(wrong(format!("it is longer than {MAX_SOURCE_BYTES} bytes")));
     }
     let mut bytes = Vec::new();
-    File::open(path)?.take(MAX_SOURCE_BYTES as u64 + 1).read_to_end(&mut bytes)?;
-    if bytes.len() > MAX_SOURCE_BYTES {
-        return Err(wrong(format!("it is longer than {MAX_SOURCE_BYTES} bytes")));
-    }
+    // A file of the system may have no length and no end.
+    File::open(path)?.take(kind.len()).read_to_end(&mut bytes)?;
     String::from_utf8(bytes).map_err(|error| {
         let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
         let line = 1 + good.iter().filter(|byte| **byte == b'\n').count();
         wrong(format!("line {line} is no UTF-8 text: save it as UTF-8"))
     })
+}
+
+/// Returns whether a name is one of those of temporary files, as `touchoff::AtomicFile` gives them.
+fn is_temporary(name: &OsStr) -> bool {
+    let digits =
+        name.to_str().and_then(|name| name.strip_prefix(".touchoff-")?.strip_suffix(".tmp"));
+    digits.is_some_and(|digits| digits.len() == 16 && digits.bytes().all(|b| b.is_ascii_hexdigit()))
 }
 
 /// Returns the folder of a file.
@@ -388,4 +399,28 @@ fn without_steps_up(path: &Path) -> Option<PathBuf> {
         }
     }
     Some(normal)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Reading ends where the file ended when it was looked at: this one has no length, and its reads give bytes.
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn a_file_without_a_length_is_empty() {
+        assert_eq!(text(Path::new("/proc/self/status")).expect("read"), "");
+    }
+
+    #[test]
+    fn temporary_files_are_not_read() {
+        let name = format!("touchoff-source-{}", std::process::id());
+        let place = std::env::temp_dir().join(name);
+        std::fs::create_dir_all(&place).expect("a folder");
+        let file = place.join(".touchoff-0123456789abcdef.tmp");
+        std::fs::write(&file, "tool").expect("written");
+        let refused = text(&file).expect_err("a temporary file").to_string();
+        std::fs::remove_dir_all(&place).expect("removed");
+        assert!(refused.ends_with("removes: rename it"), "{refused}");
+    }
 }

@@ -76,6 +76,48 @@ fn importing_again_changes_nothing() {
     assert_eq!(std::fs::read_to_string(&file).expect("the file"), "mine");
 }
 
+/// A part of a file would be other content, and the import be refused for ever.
+#[cfg(target_os = "linux")]
+#[test]
+fn an_import_without_room_can_be_made_again() {
+    let bench = Bench::new();
+    let library = bench.write("library.json", LIBRARY);
+    let import = |limit: &str| {
+        let script = format!("trap '' XFSZ; ulimit -f {limit}; exec \"$@\"");
+        let mut shell = std::process::Command::new("sh");
+        shell.args(["-c", &script, "sh", env!("CARGO_BIN_EXE_touchoff"), "import", &library]);
+        shell.current_dir(&bench.folder).output().expect("a shell")
+    };
+    let full = import("0");
+    assert_eq!(full.status.code(), Some(1));
+    assert!(stderr(&full).contains("File too large"), "{}", stderr(&full));
+    let again = import("unlimited");
+    assert!(again.status.success(), "{}", stderr(&again));
+}
+
+/// The tools of a library go into a folder with its name, unless that is the folder around.
+#[test]
+fn an_import_stays_in_its_folder() {
+    let bench = Bench::new();
+    let work = bench.folder.path().join("work");
+    std::fs::create_dir(&work).expect("a folder");
+    for name in ["...json", "..json"] {
+        bench.write(name, LIBRARY);
+        let mut import = bench.command(&format!("import ../{name}"));
+        let output = import.current_dir(&work).output().expect("the program runs");
+        assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+        assert!(stderr(&output).contains("by `-o`"), "{}", stderr(&output));
+        assert!(!bench.folder.path().join("d4_ball.tool").exists());
+        assert_eq!(std::fs::read_dir(&work).expect("a folder").count(), 0);
+    }
+    // The list of numbers is no library, but a link can make it one.
+    let library = bench.write("library.json", LIBRARY);
+    std::fs::hard_link(&library, work.join("tools.toml")).expect("a link");
+    let refused = bench.touchoff("import library.json -o work");
+    assert_eq!(refused.status.code(), Some(2), "{}", stderr(&refused));
+    assert!(stderr(&refused).contains("is also an input"), "{}", stderr(&refused));
+}
+
 /// A tool of a library is read without files, which a command that is ended would leave.
 #[test]
 fn a_tool_of_a_library_needs_no_temporary_folder() {

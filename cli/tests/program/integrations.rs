@@ -129,6 +129,19 @@ fn names_and_links_of_jobs_are_no_commands() {
     assert!(!place("broken").exists());
     let count = std::fs::read_dir(place("out")).expect("the findings").count();
     assert_eq!(count, jobs.len());
+    // Two jobs whose names differ by `./` alone, of which one has no name of its own.
+    let [absolute, other] =
+        ["clean.toml", "shank.toml"].map(|name| place(name).display().to_string());
+    let below = place(&format!(".{absolute}"));
+    std::fs::create_dir_all(below.parent().expect("a folder")).expect("folders");
+    std::fs::write(&below, "").expect("written");
+    let twice = [absolute.clone(), format!("./{absolute}"), "./a-b.toml".to_owned(), other];
+    script("integrations/verify-jobs both", folder.path(), &twice);
+    let count = std::fs::read_dir(place("both")).expect("the findings").count();
+    assert_eq!(count, 3, "the empty job has no findings, and overwrites none");
+    let dash = script("integrations/verify-jobs -", folder.path(), &["clean.toml".to_owned()]);
+    assert_eq!(dash.status.code(), Some(0), "{}", stderr(&dash));
+    assert!(place("-/clean.toml.sarif").exists());
     // A link where findings go is replaced, and one instead of the folder is refused.
     std::fs::write(place("victim"), "kept").expect("written");
     let findings = place("out/a-b.toml.sarif");

@@ -180,10 +180,14 @@ fn an_output_that_is_an_input_is_refused() {
     ] {
         fs::hard_link(bench.place(file), bench.place(link)).expect("a link");
     }
-    bench.write("mounting.tool", "tool Mounting { units mm; mount \"tool.svg\" as c; }");
+    let mounting = "tool Mounting { units mm; mount \"tool.svg\" as c; }";
+    bench.write("mounting.tool", mounting);
+    bench.write("mounting", mounting);
     let kept = content(bench.folder.path());
     for line in [
         "draw mounting.tool -o tool.svg",
+        "draw mounting -o tool.svg",
+        "expand good.tool mounting -o tool.svg",
         "map block.postures -o y.csv",
         "map block.postures --part block.stl -o part.csv",
         "path block.postures --part block.stl --tool D2Ball --stepover 1 -o y.csv",
@@ -288,6 +292,38 @@ fn outputs_of_a_job_are_no_inputs() {
     assert!(stderr(&output).contains("not verified: "), "{}", stderr(&output));
     assert!(stderr(&output).contains("not written: rest.stl"), "{}", stderr(&output));
     assert!(!Path::new(&bench.place("rest.stl")).exists(), "{}", stderr(&output));
+}
+
+/// Tools of a folder end in `.tool`, so that what they mount is known before anything is written.
+#[test]
+fn outputs_are_no_inputs_of_a_folder_of_tools() {
+    let bench = Bench::new();
+    for folder in ["tools", "tools/sub"] {
+        fs::create_dir(bench.place(folder)).expect("a folder");
+    }
+    bench.write("holder.stl", TOOL);
+    let mounting = "tool Mounting { units mm; mount \"../holder.stl\" as c; }";
+    for file in ["tools/T1", "tools/holder.txt", "tools/sub/x.tool"] {
+        bench.write(file, mounting);
+    }
+    bench.write("a.csv", "UNITS/MM\nLOADTL/1\nGOTO/0,0,3,0,0,1\nGOTO/1,0,3,0,0,1\nFINI\n");
+    bench.write(
+        "job.toml",
+        "part = \"block.stl\"\nunit = \"mm\"\nprogram = \"a.csv\"\ntools = \"tools\"\n[stock]\n\
+         box = [[-3, -3, -2], [3, 3, 1]]\nspacing = 1\noutput = \"holder.stl\"\n",
+    );
+    let inputs = "verify --part block.stl --unit mm --program a.csv --tools tools";
+    for (line, written) in [
+        ("verify job.toml", "holder.stl"),
+        (&*format!("{inputs} --tool T1 --sarif tools/T1"), "tools/T1"),
+        (&format!("{inputs} --tool holder.txt --sarif tools/holder.txt"), "tools/holder.txt"),
+        (&format!("{inputs} --tool sub/x.tool --sarif tools/sub/x.tool"), "tools/sub/x.tool"),
+    ] {
+        let kept = fs::read(bench.place(written)).expect("a file");
+        let output = bench.touchoff(line);
+        assert!(!output.status.success(), "{line}: {}", stderr(&output));
+        assert!(fs::read(bench.place(written)).expect("a file") == kept, "{line}");
+    }
 }
 
 /// A command ends in time, and when there is no memory, with a status of its own.

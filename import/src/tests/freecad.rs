@@ -284,3 +284,19 @@ fn chamfer_mills_of_an_add_on_are_cones() {
     ];
     assert_outline(&mill, &expected);
 }
+
+/// A library can list one file many times.
+#[test]
+fn no_bit_is_read_beyond_the_limit_of_their_lengths() {
+    let folder = tempfile::tempdir().expect("a folder");
+    // A sparse file takes no space on the disk.
+    let long = fs::File::create(folder.path().join("long.fctb"));
+    long.and_then(|file| file.set_len(40 << 20)).expect("a long file");
+    let tools = vec![json!({ "nr": 1, "path": "long.fctb" }); 6];
+    let list = folder.path().join("l.fctl");
+    fs::write(&list, json!({ "tools": tools }).to_string()).expect("written");
+    let library = Library::read(&list).expect("a library");
+    assert_eq!((library.listed_files().len(), library.skipped().len()), (2, 6));
+    let last = &library.skipped()[5].reason;
+    assert!(last.contains("longer than 67108864 bytes"), "{last}");
+}

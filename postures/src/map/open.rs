@@ -7,13 +7,13 @@ use super::{
 use crate::MapRow;
 use redb::backends::InMemoryBackend;
 use redb::{Builder, Database, ReadableDatabase, StorageBackend};
-use std::fs::{self, File, TryLockError};
+use std::fs::{File, TryLockError};
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicI64, Ordering};
 use std::time::Duration;
-use touchoff::{AtomicFile, TriangleId};
+use touchoff::{AtomicFile, FileKind, TriangleId, open_regular_file};
 
 /// Number of attempts to copy a map that another process writes to.
 const MAX_COPY_ATTEMPTS: u32 = 200;
@@ -74,6 +74,13 @@ impl PostureMap {
             // A commit is short, so the first copies follow at once.
             if attempt > 2 {
                 std::thread::sleep(RETRY_INTERVAL);
+            }
+            // A closed file has the length that its header implies; a crafted one may be sparse, and its copy is not.
+            let header = Header::read(&mut bytes).map_err(|source| unreadable(&file, source))?;
+            let length = bytes.metadata().map_err(|source| unreadable(&file, source))?.len();
+            if header.is_closed() && length > header.length() {
+                let what = format!("it has {length} bytes, not {}", header.length());
+                return Err(MapError::Damaged { file, what });
             }
             let copied = copy(&mut bytes).map_err(|source| unreadable(&file, source))?;
             let Some((header, memory)) = copied else { continue };
@@ -228,19 +235,12 @@ fn create(path: &Path, identity: &MapIdentity) -> Result<(), MapError> {
 /// Opens a store's file for reading.
 fn open_store(path: &Path) -> Result<File, MapError> {
     let file = path.display().to_string();
-    match open_regular(path).and_then(|mut bytes| Ok((Header::read(&mut bytes)?, bytes))) {
+    let opened = open_regular_file(path, FileKind::PostureMap);
+    match opened.and_then(|(mut bytes, _)| Ok((Header::read(&mut bytes)?, bytes))) {
         Ok((header, bytes)) if header.is_store() => Ok(bytes),
         Ok(_) => Err(MapError::Foreign { file }),
         Err(source) => Err(MapError::Unreadable { file, source }),
     }
-}
-
-fn open_regular(path: &Path) -> io::Result<File> {
-    // Check before opening: opening a pipe would block.
-    if !fs::metadata(path)?.is_file() {
-        return Err(io::Error::new(io::ErrorKind::InvalidInput, "it is no regular file"));
-    }
-    File::open(path)
 }
 
 /// Returns an error, or [`MapError::Truncated`] instead of damage if the file is too short.

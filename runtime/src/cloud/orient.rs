@@ -5,13 +5,32 @@
 use crate::cloud::neighbours::NeighbourBvh;
 use nalgebra::{Matrix3, Point3, SymmetricEigen, Vector3};
 use std::cmp::Reverse;
-use std::collections::BinaryHeap;
+use std::collections::{BinaryHeap, HashMap};
 
 /// Number of neighbours that a plane is fitted to, the point itself included.
 const NEIGHBOURS: usize = 12;
 
-/// Returns a unit normal for each of one or more points.
+/// Returns a unit normal for each of one or more points; coincident points have the same.
 pub(super) fn estimate(points: &[Point3<f64>]) -> Vec<Vector3<f64>> {
+    // All coincident points are equally near to one another, and say nothing about a plane.
+    let (mut positions, mut known) = (Vec::new(), HashMap::new());
+    let position_of: Vec<usize> = points
+        .iter()
+        .map(|point| {
+            // Zero has two bit patterns.
+            let key: [u64; 3] = [point.x, point.y, point.z].map(|part| (part + 0.0).to_bits());
+            *known.entry(key).or_insert_with(|| {
+                positions.push(*point);
+                positions.len() - 1
+            })
+        })
+        .collect();
+    let normals = estimate_distinct(&positions);
+    position_of.into_iter().map(|position| normals[position]).collect()
+}
+
+/// Returns a unit normal for each of one or more distinct positions.
+fn estimate_distinct(points: &[Point3<f64>]) -> Vec<Vector3<f64>> {
     let tree = NeighbourBvh::new(points);
     let mut found = Vec::new();
     let mut neighbours: Vec<Vec<u32>> = Vec::with_capacity(points.len());
@@ -84,6 +103,12 @@ mod tests {
         let sign = normals[0].dot(&points[0].coords).signum();
         for (point, normal) in points.iter().zip(&normals) {
             assert!((normal - sign * point.coords).norm() < 0.1, "{point} {normal}");
+        }
+        // Points that coincide change nothing: a plane is fitted to distinct ones.
+        let copies: Vec<Point3<f64>> = points.iter().flat_map(|point| vec![*point; 20]).collect();
+        let of_copies = estimate(&copies);
+        for (copies, normal) in of_copies.chunks(20).zip(&normals) {
+            assert!(copies.iter().all(|copy| copy == normal), "{copies:?} {normal}");
         }
     }
 }

@@ -92,7 +92,8 @@ fn is_filled(triangles: &[[u32; 3]], vertices: &[Point3<f64>]) -> bool {
 }
 
 /// Cuts a polygon into triangles, each an ear of what is left: its corner is convex, and no other corner lies in it (Meisters 1975).
-/// `None` if there is no ear: the polygon crosses itself, seen along its area vector.
+/// `None` if there is no ear: the polygon crosses itself, seen along its area vector. Takes a time of the square of the number of
+/// corners, for a corner that is no ear rarely becomes one before a corner beside it is cut off.
 fn ears(corners: &[u32], vertices: &[Point3<f64>]) -> Option<Vec<[u32; 3]>> {
     let first = vertices[corners[0] as usize];
     let arms: Vec<Vector3<f64>> =
@@ -105,22 +106,67 @@ fn ears(corners: &[u32], vertices: &[Point3<f64>]) -> Option<Vec<[u32; 3]>> {
         let [a, b, c] = [flat[a], flat[b], flat[c]];
         (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
     };
-    let mut left: Vec<usize> = (0..corners.len()).collect();
-    let mut ears = Vec::with_capacity(corners.len() - 2);
-    while left.len() > 3 {
-        cancellation::check();
-        let count = left.len();
-        let ear = (0..count).find(|k| {
-            let [a, b, c] = [left[(k + count - 1) % count], left[*k], left[(k + 1) % count]];
-            let is_inside = |p: usize| {
-                [a, b, c].iter().all(|corner| flat[*corner] != flat[p])
-                    && [[a, b, p], [b, c, p], [c, a, p]].into_iter().all(|turn| side(turn) >= 0.0)
-            };
-            side([a, b, c]) > 0.0 && !left.iter().any(|p| is_inside(*p))
-        })?;
-        let [a, c] = [left[(ear + count - 1) % count], left[(ear + 1) % count]];
-        ears.push([a, left.remove(ear), c].map(|corner| corners[corner]));
+    // The corners that are left, as a ring.
+    let count = corners.len();
+    let mut next: Vec<usize> = (1..count).chain([0]).collect();
+    let mut previous: Vec<usize> = [count - 1].into_iter().chain(0..count - 1).collect();
+    let is_ear = |next: &[usize], [a, b, c]: [usize; 3]| {
+        let is_inside = |p: usize| {
+            [a, b, c].iter().all(|corner| flat[*corner] != flat[p])
+                && [[a, b, p], [b, c, p], [c, a, p]].into_iter().all(|turn| side(turn) >= 0.0)
+        };
+        let mut others = std::iter::successors(Some(next[c]), |p| Some(next[*p]));
+        side([a, b, c]) > 0.0 && !others.by_ref().take_while(|p| *p != a).any(is_inside)
+    };
+    let mut is_none = vec![false; count];
+    let mut ears = Vec::with_capacity(count - 2);
+    // The corner to look at, and the number of those since the last ear, none of which is one.
+    let (mut corner, mut passed, mut is_second_round) = (0, 0, false);
+    while ears.len() < count - 3 {
+        let ear = [previous[corner], corner, next[corner]];
+        let [a, _, c] = ear;
+        if !is_none[corner] {
+            cancellation::check();
+            if is_ear(&next, ear) {
+                ears.push(ear.map(|corner| corners[corner]));
+                (next[a], previous[c]) = (c, a);
+                (is_none[a], is_none[c]) = (false, false);
+                (corner, passed, is_second_round) = (c, 0, false);
+                continue;
+            }
+            is_none[corner] = true;
+        }
+        (corner, passed) = (c, passed + 1);
+        if passed == count - ears.len() {
+            if is_second_round {
+                return None;
+            }
+            // A corner that touched the triangle of another may be cut off.
+            is_none.fill(false);
+            (passed, is_second_round) = (0, true);
+        }
     }
-    ears.push([left[0], left[1], left[2]].map(|corner| corners[corner]));
+    ears.push([previous[corner], corner, next[corner]].map(|corner| corners[corner]));
     Some(ears)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A band that winds about a point: a search that begins at its first corner for each ear takes minutes.
+    #[test]
+    fn a_spiral_of_many_corners_is_cut() {
+        let turn = |k: u32, width: f64| {
+            let angle = f64::from(k) * 0.1;
+            let radius = 1.0 + 0.1 * angle + width;
+            Point3::new(radius * angle.cos(), radius * angle.sin(), 0.0)
+        };
+        let half = 1000;
+        let outer = (0..half).map(|k| turn(k, 0.2));
+        let vertices: Vec<_> = outer.chain((0..half).rev().map(|k| turn(k, 0.0))).collect();
+        let corners: Vec<u32> = (0..2 * half).collect();
+        let ears = ears(&corners, &vertices).expect("ears");
+        assert!(ears.len() == corners.len() - 2 && is_filled(&ears, &vertices));
+    }
 }

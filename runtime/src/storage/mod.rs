@@ -174,7 +174,7 @@ impl Part {
         let path = path.as_ref();
         refuse_big_endian(path)?;
         let file = path.display().to_string();
-        match input::open(path, FileKind::Geometry) {
+        match input::open_regular_file(path, FileKind::Geometry) {
             Ok((source, length)) => read::part(source, length, &file),
             Err(source) => Err(SavedError::Unreadable { file, source }),
         }

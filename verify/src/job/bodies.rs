@@ -6,6 +6,7 @@ use crate::ToolSelection;
 use crate::machine::{BodyShape, Link, Machine, MachineBody, Opponent, Side};
 use nalgebra::{Point3, Vector3};
 use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
 use touchoff::certify::TriangleBvh;
 use touchoff::mesh::{MeshError, shapes};
 use touchoff::tool::Symmetry;
@@ -135,8 +136,8 @@ pub(super) fn meshes(machine: &Machine, unit: Unit) -> Result<Vec<JobBody>, JobE
         meshes.push(JobBody {
             name: body.name.clone(),
             file,
-            bvh: TriangleBvh::new(&mesh),
-            mesh,
+            bvh: Arc::new(TriangleBvh::new(&mesh)),
+            mesh: Arc::new(mesh),
             frame: BodyFrame::Machine(body.link),
             work_offset: None,
             role: BodyRole::Machine { margin: body.margin * scale, meets_tools },

@@ -13,7 +13,9 @@ use crate::gcode::WorkOffset;
 use crate::machine::{BodyShape, Machine};
 use crate::stock::RemainingPoints;
 use nalgebra::{Point3, Vector3};
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use touchoff::certify::TriangleBvh;
 use touchoff::mesh::Geometry;
 use touchoff::{Mesh, Tool, Unit};
@@ -63,10 +65,10 @@ pub struct JobBody {
     pub name: String,
     /// The file of its mesh; `None` for one that is made of numbers.
     pub file: Option<PathBuf>,
-    /// Its mesh.
-    pub mesh: Mesh,
+    /// Its mesh. Bodies with one mesh at one place share it.
+    pub mesh: Arc<Mesh>,
     /// Its triangles.
-    pub bvh: TriangleBvh,
+    pub bvh: Arc<TriangleBvh>,
     /// The frame of its triangles.
     pub frame: BodyFrame,
     /// Role, which decides how near the surfaces of a tool may come.
@@ -75,11 +77,45 @@ pub struct JobBody {
     pub work_offset: Option<WorkOffset>,
 }
 
+/// The meshes of a job's files that were read, in its unit, by file and by how far they were moved.
+struct Meshes {
+    unit: Unit,
+    known: HashMap<(PathBuf, [u64; 3]), Shared>,
+}
+
+/// A mesh and its triangles.
+type Shared = (Arc<Mesh>, Arc<TriangleBvh>);
+
+impl Meshes {
+    /// Returns the mesh of a file, moved by a vector. `name` is that of its body.
+    fn read(&mut self, name: &str, file: &Path, by: Vector3<f64>) -> Result<Shared, JobError> {
+        let key = (file.to_owned(), [by.x, by.y, by.z].map(f64::to_bits));
+        if let Some(shared) = self.known.get(&key) {
+            return Ok(shared.clone());
+        }
+        let mut mesh = mesh(file, self.unit)?;
+        if by != Vector3::zeros() {
+            let moved = bodies::moved(&mesh, |vertex| vertex + by, self.unit);
+            let name = name.to_owned();
+            mesh = moved.map_err(|source| JobError::MachineMesh { name, source })?;
+        }
+        let bvh = TriangleBvh::new(&mesh);
+        let shared: Shared = (Arc::new(mesh), Arc::new(bvh));
+        self.known.insert(key, shared.clone());
+        Ok(shared)
+    }
+}
+
 impl JobBody {
     /// Reads a body that moves with the workpiece.
-    fn read(name: &str, file: &Path, unit: Unit, role: BodyRole) -> Result<JobBody, JobError> {
-        let mesh = mesh(file, unit)?;
-        let bvh = TriangleBvh::new(&mesh);
+    fn read(
+        name: &str,
+        file: &Path,
+        by: Vector3<f64>,
+        role: BodyRole,
+        meshes: &mut Meshes,
+    ) -> Result<JobBody, JobError> {
+        let (mesh, bvh) = meshes.read(name, file, by)?;
         let (name, file) = (name.to_owned(), Some(file.to_owned()));
         let (frame, work_offset) = (BodyFrame::Part, None);
         Ok(JobBody { name, file, mesh, bvh, frame, role, work_offset })
@@ -93,6 +129,7 @@ impl JobBody {
         entry: &PartEntry,
         job: &JobFile,
         program: &Program,
+        meshes: &mut Meshes,
     ) -> Result<JobBody, JobError> {
         let index = entry.offset_index()?;
         let name = entry.name();
@@ -107,12 +144,9 @@ impl JobBody {
             return Err(JobError::OtherPartTurned { name });
         }
         let file = entry.mesh.as_deref().unwrap_or(&job.part);
-        let mut body = JobBody::read(&entry.name(), file, job.unit, BodyRole::Part)?;
         let by = Vector3::from([0, 1, 2].map(|k| other[k] - part[k]));
         let by = by * Unit::Millimetre.factor_to(job.unit);
-        let moved = bodies::moved(&body.mesh, |vertex| vertex + by, job.unit);
-        body.mesh = moved.map_err(|source| JobError::MachineMesh { name: entry.name(), source })?;
-        body.bvh = TriangleBvh::new(&body.mesh);
+        let mut body = JobBody::read(&name, file, by, BodyRole::Part, meshes)?;
         body.work_offset = Some(WorkOffset::Standard(index as u8 + 1));
         Ok(body)
     }
@@ -165,9 +199,11 @@ impl<T: AsRef<dyn Tool>> JobInputs<T> {
             let tool = load(&named)?;
             tools.push((named, tool));
         }
-        let mut bodies = vec![JobBody::read(PART, &file.part, file.unit, BodyRole::Part)?];
+        let meshes = &mut Meshes { unit: file.unit, known: HashMap::new() };
+        let (role, still) = (BodyRole::Part, Vector3::zeros());
+        let mut bodies = vec![JobBody::read(PART, &file.part, still, role, meshes)?];
         for entry in &file.other_parts {
-            bodies.push(JobBody::read_other(entry, &file, &program)?);
+            bodies.push(JobBody::read_other(entry, &file, &program, meshes)?);
         }
         for fixture in &file.fixtures {
             let link = match &fixture.moves_with {
@@ -175,7 +211,7 @@ impl<T: AsRef<dyn Tool>> JobInputs<T> {
                 Some(axis) => program.link(axis)?,
             };
             let role = BodyRole::Fixture { margin: fixture.margin };
-            let body = JobBody::read(&fixture.name, &fixture.mesh, file.unit, role)?;
+            let body = JobBody::read(&fixture.name, &fixture.mesh, still, role, meshes)?;
             let frame = link.map_or(BodyFrame::Part, BodyFrame::Table);
             bodies.push(JobBody { frame, ..body });
         }

@@ -504,6 +504,22 @@ faults! {
             /// The folder.
             root: String,
         },
+        /// Too many things that move, each checked against too many bodies.
+        #[code = J0133]
+        #[error(
+            "{moving} tools and bodies of the machine are checked against {bodies} bodies, in {pairs} pairs of at most {limit}: join \
+             the meshes of fixtures, state fewer bodies in the machine's `against`, or divide the program by its tools"
+        )]
+        Pairs {
+            /// Number of tools and of bodies of the machine that are solids of revolution.
+            moving: usize,
+            /// Number of the bodies that they are checked against.
+            bodies: usize,
+            /// Number of pairs.
+            pairs: usize,
+            /// The largest number of pairs.
+            limit: usize,
+        },
     }
 }
 

@@ -18,6 +18,9 @@ use touchoff::tool::Symmetry;
 /// Rounding of heights, in the part's unit.
 const LEVEL_ROUNDING: f64 = 1e-6;
 
+/// Largest number of pairs of something that moves and a body. Each has a verifier and its findings in memory.
+const MAX_PAIRS: usize = 10_000;
+
 /// The results of one reading.
 struct ReadingResult {
     /// Each tool at each body.
@@ -77,6 +80,16 @@ impl<'a> Job<'a> {
         let against = self.revolved.iter().flat_map(|body| &body.against);
         if against.into_iter().any(|body| *body >= self.bodies.len()) {
             return Err(JobError::NoSuchBody);
+        }
+        let (at_bodies, between) = self.pairs_of_each();
+        let pairs_of_tools = self.tools.len().saturating_mul(at_bodies);
+        if pairs_of_tools.saturating_add(between) > MAX_PAIRS {
+            return Err(JobError::Pairs {
+                moving: self.tools.len() + self.revolved.len(),
+                bodies: self.bodies.len(),
+                pairs: pairs_of_tools.saturating_add(between),
+                limit: MAX_PAIRS,
+            });
         }
         for (offset, line) in
             self.program.readings().iter().flat_map(|reading| &reading.summary().moved_offsets)
@@ -207,9 +220,14 @@ impl<'a> Job<'a> {
 
     /// Returns the number of checks of motions at bodies, those of all readings together.
     pub fn motion_checks(&self) -> usize {
-        let at_bodies = self.bodies.iter().filter(|body| body.meets_tools()).count();
-        let between = self.revolved.iter().map(|body| body.against.len()).sum::<usize>();
+        let (at_bodies, between) = self.pairs_of_each();
         self.program.motions() * (at_bodies + between)
+    }
+
+    /// Returns the number of bodies that a tool is checked against, and that of the pairs of all bodies of the machine.
+    fn pairs_of_each(&self) -> (usize, usize) {
+        let at_bodies = self.bodies.iter().filter(|body| body.meets_tools()).count();
+        (at_bodies, self.revolved.iter().map(|body| body.against.len()).sum())
     }
 
     /// Returns what moves against which bodies: each tool, then each body of the machine.

@@ -6,6 +6,7 @@ use crate::gcode::{ControlRules, ControlSetup, SubprogramFile, SubprogramLine};
 use crate::machine::{Machine, Mover, Reference, Relation, Side};
 use crate::program::{ProgramFile, read_text};
 use crate::{ClData, CycleTime, Gap, MachineProgram, Move, ProgramError, ToolSelection, ToolUse};
+use std::collections::HashMap;
 use std::iter;
 use std::path::{Path, PathBuf};
 use touchoff::tool::{Symmetry, ToolInfo};
@@ -189,24 +190,30 @@ impl Program {
     /// no motion can be checked has none.
     pub fn tools(&self) -> Vec<ToolUse> {
         let mut tools: Vec<ToolUse> = Vec::new();
+        // Where the tool of a number is in the list.
+        let mut places: HashMap<Option<u32>, usize> = HashMap::new();
+        let mut place_of = |used: ToolUse, tools: &mut Vec<ToolUse>| {
+            *places.entry(used.number).or_insert_with(|| {
+                tools.push(used);
+                tools.len() - 1
+            })
+        };
         let summaries = || self.readings().iter().map(MachineProgram::summary);
         for used in summaries().flat_map(|summary| &summary.tools) {
-            if tools.iter().all(|tool| tool.number != used.number) {
-                tools.push(*used);
-            }
+            place_of(*used, &mut tools);
         }
         for (number, block) in summaries().flat_map(|summary| &summary.unchecked_tools) {
             // An empty spindle has no tool that could be missing.
-            if *number != 0 && tools.iter().all(|tool| tool.number != Some(*number)) {
-                tools.push(ToolUse { number: Some(*number), line: block.line, motions: 0 });
+            if *number != 0 {
+                let used = ToolUse { number: Some(*number), line: block.line, motions: 0 };
+                place_of(used, &mut tools);
             }
         }
         for program in self.locations(ToolSelection::All) {
-            let (number, motions) = (program.tool, program.locations.len());
-            match tools.iter_mut().find(|tool| tool.number == number) {
-                Some(tool) => tool.motions += motions,
-                None => tools.push(ToolUse { number, line: program.locations[0].line, motions }),
-            }
+            let (line, motions) = (program.locations[0].line, program.locations.len());
+            let used = ToolUse { number: program.tool, line, motions: 0 };
+            let place = place_of(used, &mut tools);
+            tools[place].motions += motions;
         }
         tools
     }

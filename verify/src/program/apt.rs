@@ -35,6 +35,9 @@ use std::collections::{BTreeMap, HashSet};
 use std::mem;
 use touchoff::{Pose, Unit, cancellation};
 
+/// Largest number of chords of all arcs of a program.
+pub(super) const MAX_ALL_CHORDS: usize = 2_000_000;
+
 /// The axis of a tool along +Z.
 const UPRIGHT: [f64; 3] = [0.0, 0.0, 1.0];
 
@@ -172,6 +175,8 @@ struct Reader {
     is_creo: bool,
     /// The arc that the last statement ended.
     ended_arc: Option<Arc>,
+    /// Number of chords of all arcs.
+    chords: usize,
     /// The direction in which CATIA's next arc begins.
     direction: Option<Vector3<f64>>,
     /// Set where Creo's positions are those of the contour.
@@ -332,7 +337,8 @@ impl Reader {
                 let further = || ended_arc?.continued(&before?, &pose, unit);
                 let stops = match (self.arc.take().or_else(further), &self.cycle) {
                     (Some(arc), None) => {
-                        let (poses, arc) = arc.stops(before.as_ref(), &pose, unit)?;
+                        let (poses, arc) = arc.stops(before.as_ref(), &pose, unit, self.chords)?;
+                        self.chords += poses.len();
                         self.ended_arc = Some(arc);
                         poses.into_iter().map(|pose| Stop { pose, rapid }).collect()
                     }
@@ -367,7 +373,8 @@ impl Reader {
         };
         let (arc, end) = Arc::catia(rest, &before, direction)?;
         let unit = self.tape.unit.map(|(unit, _)| unit);
-        let (poses, _) = arc.stops(Some(&before), &end, unit)?;
+        let (poses, _) = arc.stops(Some(&before), &end, unit, self.chords)?;
+        self.chords += poses.len();
         self.add(line, poses.into_iter().map(|pose| Stop { pose, rapid }).collect());
         Ok(())
     }

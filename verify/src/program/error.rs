@@ -347,6 +347,25 @@ faults! {
             /// The reason.
             what: &'static str,
         },
+        /// An arc with too many chords.
+        #[code = P0533]
+        #[error(
+            "the arc turns by {degrees:.3} degrees, more than the {limit:.3} that can be divided into chords at its radius: check its \
+             centre, divide it into several arcs, or post it as GOTO points"
+        )]
+        LongArc {
+            /// The angle, in degrees.
+            degrees: f64,
+            /// The greatest angle at this radius, in degrees.
+            limit: f64,
+        },
+        /// Too many chords in all arcs of a program.
+        #[code = P0534]
+        #[error(
+            "the arcs up to this one take more than {} chords: divide the program",
+            super::apt::MAX_ALL_CHORDS
+        )]
+        ManyChords,
     }
 }
 

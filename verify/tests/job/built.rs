@@ -132,6 +132,27 @@ fn one_pass_gives_what_each_check_gives_by_itself() {
     assert!(found > 200 && most_readings > 1);
 }
 
+/// Each pair takes memory, and a small file states very many.
+#[test]
+fn too_many_pairs_are_refused() {
+    let [mill, _] = tools();
+    let part = cuboid([-20.0, -20.0, -10.0], [20.0, 20.0, 0.0]);
+    let program = Program::parse(
+        "G21 G90 G54\nT1 M6\nG0 X0 Y0\nG0 Z20\nM30\n",
+        "short.nc",
+        Machine::named("3-axis").expect("a machine"),
+        &setup(),
+    );
+    let program = program.expect("a program");
+    let mut job = Job::new(&program, &part);
+    job.tools.extend((1..=101).map(|number| JobTool::numbered(number, &mill)));
+    job.bodies.extend((1..100).map(|_| Body::fixture("the clamp", &part)));
+    let error = job.check(&|_| ()).expect_err("too many pairs");
+    let start = "101 tools and bodies of the machine are checked against 100 bodies, in 10100 pairs of at most 10000: ";
+    assert!(error.to_string().starts_with(start), "{error}");
+    assert_eq!(error.code(), "J0133");
+}
+
 /// One order over surfaces, stock and machine: by what a finding means, then by depth. What goes right through the part is one
 /// finding.
 #[test]

@@ -3,6 +3,7 @@
 use crate::scene::{CLEAN, Checked, FINDINGS, NONE, rules};
 use nalgebra::Point3;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use tempfile::TempDir;
 use touchoff::mesh::shapes;
 use touchoff::tool::{Interpreted, ToolError};
@@ -107,6 +108,39 @@ impl Folder {
 
 const MILL: &str = "tool Mill10 \"10 mm end mill\" { units mm; profile { start (0, 0); line to (5, 0) as face cutting; \
                     line to (5, 22) as flute cutting; line to (5, 60), (0, 60) as shank; } niceness cutting: 1; }";
+
+/// A job of few bytes can name one large mesh many times.
+#[test]
+fn bodies_share_the_mesh_of_a_file() {
+    let folder = Folder::new();
+    folder.cuboid("plate.stl", [-20.0, -20.0, -10.0], [20.0, 20.0, 0.0]);
+    folder.write("mill10.tool", MILL);
+    folder.write("one.nc", "G21 G90 G54\nT1 M6\nG0 X0. Y0.\nG43 H1 Z20.\nM30\n");
+    let fixture = |name: &str| format!("[[fixture]]\nname = \"{name}\"\nmesh = \"plate.stl\"\n");
+    let other = |offset: &str| format!("[[other_part]]\nwork_offset = \"{offset}\"\n");
+    folder.write(
+        "job.toml",
+        format!(
+            "part = \"plate.stl\"\nunit = \"mm\"\nprogram = \"one.nc\"\ncontrol = \"linuxcnc\"\n\
+             [work_offsets]\nG54 = [0, 0, -300]\nG55 = [100, 0, -300]\nG56 = [100, 0, -300]\n\
+             [tool.1]\ntool = \"mill10.tool\"\nlength = 60\n{}{}{}{}",
+            other("G55"),
+            other("G56"),
+            fixture("one"),
+            fixture("two")
+        ),
+    );
+    let file = JobFile::read(&folder.place("job.toml"), None).expect("a job");
+    let inputs =
+        JobInputs::read::<ReadError>(file, |named| Ok(Loaded(Interpreted::load(&named.name)?)));
+    let bodies = inputs.expect("inputs").bodies;
+    let is_shared = |one: usize, other: usize| {
+        Arc::ptr_eq(&bodies[one].mesh, &bodies[other].mesh)
+            && Arc::ptr_eq(&bodies[one].bvh, &bodies[other].bvh)
+    };
+    assert!(bodies.len() == 5 && is_shared(0, 3) && is_shared(0, 4) && is_shared(1, 2));
+    assert!(!is_shared(0, 1));
+}
 
 /// Two parts on one table: each is checked where it stands, with the motions of the whole program.
 #[test]

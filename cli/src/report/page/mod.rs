@@ -9,6 +9,7 @@ use super::scene::{base64, json};
 use super::{Content, Picture, prefix};
 use crate::check::{Proved, prove};
 use crate::failure::Failure;
+use crate::loaded_tool::Libraries;
 use crate::output::file_name;
 use crate::timing::Timing;
 use crate::verify;
@@ -307,11 +308,11 @@ fn duration(seconds: f64) -> String {
 /// # Errors
 /// If a tool cannot be compiled any more.
 fn tools(content: &Content<'_>) -> Result<Markup, Failure> {
-    let mut shown = Vec::new();
+    let (mut shown, mut libraries) = (Vec::new(), Libraries::default());
     let tools_of_job = content.inputs.tools.iter().zip(&content.checked.job.tools);
     for (((named, _), tool), shape) in tools_of_job.zip(&content.shapes) {
         let info = tool.tool.info();
-        let compiled = verify::compile(named)?;
+        let compiled = verify::compile(named, &mut libraries)?;
         let drawing = compiled.tool().map(|tool| svg(tool, Drawn::Outline, TextRendering::Strokes));
         let proof = prove(compiled)?;
         let number = prefix(tool.number());

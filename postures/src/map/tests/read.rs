@@ -83,6 +83,29 @@ fn a_map_is_read_while_another_records_into_it() {
     });
 }
 
+/// A sparse file takes no space on the disk, but its copy takes memory.
+#[test]
+fn a_map_that_is_longer_than_it_says_is_not_copied() {
+    let (place, mut random) = (Place::new(), Pcg64Mcg::seed_from_u64(10));
+    place.open().record(&some_rows(&mut random, 0..12)).expect("recorded");
+    let file = fs::OpenOptions::new().write(true).open(place.path()).expect("a map");
+    let length = file.metadata().expect("a map").len();
+    for (longer, reason) in
+        [(length + 1, format!("not {length}")), ((4 << 30) + 1, "that are read".to_owned())]
+    {
+        file.set_len(longer).expect("a sparse file");
+        for error in [PostureMap::read(place.path()), PostureMap::resume(place.path())] {
+            let error = error.expect_err("it is too long").to_string();
+            assert!(
+                error.contains(&format!("it has {longer} bytes")) && error.contains(&reason),
+                "{error}"
+            );
+        }
+    }
+    file.set_len(length).expect("a file");
+    assert_eq!(rows(&PostureMap::read(place.path()).expect("whole")).len(), 12);
+}
+
 #[test]
 fn a_map_without_its_end_is_called_truncated() {
     let (place, mut random) = (Place::new(), Pcg64Mcg::seed_from_u64(10));

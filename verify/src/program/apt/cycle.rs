@@ -18,8 +18,8 @@ use touchoff::{Pose, Unit};
 /// Distance between an arc and its chords, in mm.
 const CHORD_TOLERANCE: f64 = 2e-5;
 
-/// Largest number of chords of an arc. Of larger arcs, chords are at a larger distance.
-const MAX_CHORDS: f64 = 20_000.0;
+/// Largest number of chords of an arc, as in G-code.
+const MAX_CHORDS: f64 = 100_000.0;
 
 /// Largest difference of the radii at the ends of an arc: as a fraction, and in mm.
 const RADII: [f64; 2] = [1e-3, 0.01];
@@ -266,12 +266,17 @@ impl Arc {
         (radii[0] > 0.0 && (radii[0] - radii[1]).abs() <= allowed).then_some(radii)
     }
 
-    /// Returns the positions along the arc, the last of which is its end, and the arc on from there.
+    /// Returns the positions along the arc, the last of which is its end, and the arc on from there. `chords` is the number of chords of
+    /// the arcs before it.
+    ///
+    /// # Errors
+    /// If the ends and the arc contradict each other, or if there are too many chords.
     pub(super) fn stops(
         mut self,
         before: Option<&Pose>,
         end: &Pose,
         unit: Option<Unit>,
+        chords: usize,
     ) -> Result<(Vec<Pose>, Arc), ProgramFault> {
         let Some(before) = before else {
             return Err(arc("begins at no position"));
@@ -297,7 +302,14 @@ impl Arc {
         let [(from, low), (_, high)] = [before, end].map(|pose| self.arm(pose));
         let angle =
             (8.0 * CHORD_TOLERANCE / scale(unit) / start_radius.max(end_radius)).sqrt().min(0.1);
-        let count = (sweep / angle).ceil().clamp(1.0, MAX_CHORDS);
+        let count = (sweep / angle).ceil().max(1.0);
+        if count > MAX_CHORDS {
+            let [degrees, limit] = [sweep, MAX_CHORDS * angle].map(f64::to_degrees);
+            return Err(ProgramFault::LongArc { degrees, limit });
+        }
+        if chords + count as usize > super::MAX_ALL_CHORDS {
+            return Err(ProgramFault::ManyChords);
+        }
         let (along, across) = (from / start_radius, self.normal.cross(&from) / start_radius);
         let poses = (1..count as u32).map(|k| {
             let at = f64::from(k) / count;

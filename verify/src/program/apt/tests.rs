@@ -1,6 +1,8 @@
 use super::super::tests::{flank, line_of, refusal, shared};
-use crate::program::{ClData, ProgramError};
+use super::{MAX_ALL_CHORDS, Reader, statements};
+use crate::program::{ClData, Located, ProgramError};
 use nalgebra::{Point3, Vector3};
+use std::f64::consts::TAU;
 use std::path::Path;
 use touchoff::tool::Interpreted;
 use touchoff::{Tool, Unit};
@@ -461,6 +463,26 @@ fn arcs_of_several_systems_are_read() {
         "GOTO/10,0,0\nCIRCLE/0,0,0,0,0,1,10,1\nGOTO/0,10,0\nFINI".to_owned(),
     ] {
         assert_eq!(refusal(&text).1, "P0532", "{text}");
+    }
+}
+
+/// Fewer chords would be farther from the arc than the tolerance, and a program of few bytes may have very many.
+#[test]
+fn arcs_with_too_many_chords_are_refused() {
+    let quarter = |r: f64| format!("GOTO/{r},0,0\nCIRCLE/0,0,0,0,0,1\nGOTO/0,{r},0\nFINI");
+    assert_eq!(refusal(quarter(1e8)), (3, "P0533"));
+    let count = program(&quarter(1e4)).locations.len() - 1;
+    assert!(count as f64 > 0.99 * TAU / 4.0 / (8.0 * 2e-5 / 1e4_f64).sqrt(), "{count}");
+    // Each chord is within the limit of an arc, and one more than those of the program is too many.
+    for (left, is_read) in [(count, true), (count - 1, false)] {
+        let mut reader = Reader { chords: MAX_ALL_CHORDS - left, ..Reader::default() };
+        let statements = statements(&quarter(1e4)).0;
+        let read: Result<(), Located> =
+            statements.iter().try_for_each(|(line, text)| reader.statement(*line, text, false));
+        match read {
+            Ok(()) => assert!(is_read),
+            Err((line, fault)) => assert!(!is_read && (line, fault.code()) == (3, "P0534")),
+        }
     }
 }
 
