@@ -30,8 +30,8 @@ pub mod program;
 pub mod stock;
 
 pub use check::{
-    Approach, Assumption, BlockError, BlockFault, CYCLE_TIME_ASSUMPTIONS, CycleTime, Finding,
-    FindingGroup, FindingKind, Gap, GapWeight, JointPath, Level, MAX_READINGS, MAX_VALUES,
+    Approach, Assumption, BlindWay, BlockError, BlockFault, CYCLE_TIME_ASSUMPTIONS, CycleTime,
+    Finding, FindingGroup, FindingKind, Gap, GapWeight, JointPath, Level, MAX_READINGS, MAX_VALUES,
     MachineProgram, MachineProgramError, MachineSummary, Move, MovePath, Obstacle, ProgramStop,
     RapidBox, StepFault, Tilt, ToolSelection, ToolUse, UnknownCause, UnknownMotions, Verifier,
     VerifyError, VerifyReport,

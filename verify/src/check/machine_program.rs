@@ -29,7 +29,8 @@ mod summary;
 pub use fault::{BlockError, BlockFault, MachineProgramError, Obstacle, StepFault};
 pub(crate) use summary::CheckGap;
 pub use summary::{
-    Gap, GapWeight, Level, MachineSummary, ProgramStop, ToolUse, UnknownCause, UnknownMotions,
+    BlindWay, Gap, GapWeight, Level, MachineSummary, ProgramStop, ToolUse, UnknownCause,
+    UnknownMotions,
 };
 
 /// Largest number of obstacles that are listed. Prose has one in each line.
@@ -500,13 +501,12 @@ impl MachineProgram {
                 Resolved::Unknown(cause)
                 | Resolved::Arrival(_, cause)
                 | Resolved::Departure(_, cause) => {
-                    if let Some(level) = execution.resolver.home_level {
-                        MachineSummary::add_low_way(&mut summary.ways_home, step.block(), level);
+                    let Resolver { way_home, blind_way, .. } = &mut execution.resolver;
+                    if let Some(way) = way_home.take() {
+                        MachineSummary::add_blind_way(&mut summary.ways_home, step.block(), way);
                     }
-                    if let (UnknownCause::Start | UnknownCause::ToolChange, Some(level)) =
-                        (cause, execution.resolver.blind_level)
-                    {
-                        MachineSummary::add_low_way(&mut summary.blind_ways, step.block(), level);
+                    if let Some(way) = blind_way.take() {
+                        MachineSummary::add_blind_way(&mut summary.blind_ways, step.block(), way);
                     }
                     let leaves_change = execution.resolver.leaves_change(&step);
                     summary.add_unknown(&step, cause, leaves_change);

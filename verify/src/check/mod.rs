@@ -35,7 +35,7 @@ pub use cycle_time::{CYCLE_TIME_ASSUMPTIONS, CycleTime};
 pub(crate) use finding::Rank;
 pub use finding::{Finding, FindingGroup, FindingKind, VerifyError, VerifyReport};
 pub use machine_program::{
-    Assumption, BlockError, BlockFault, Gap, GapWeight, Level, MAX_READINGS, MAX_VALUES,
+    Assumption, BlindWay, BlockError, BlockFault, Gap, GapWeight, Level, MAX_READINGS, MAX_VALUES,
     MachineProgram, MachineProgramError, MachineSummary, Obstacle, ProgramStop, StepFault,
     ToolSelection, ToolUse, UnknownCause, UnknownMotions,
 };

@@ -10,8 +10,8 @@ use super::{Body, BodyFrame, BodyRole, Job, JobError, JobGap, JobTool, StockShap
 use crate::check::{ApproachSearch, MoveCheck, MoveRequest};
 use crate::gcode::{BlockLine, WorkOffset};
 use crate::machine::{Axis, Link, Machine, Side};
-use crate::{FindingGroup, Level, MachineSummary, Move, Verifier};
-use nalgebra::{Point3, Vector2, Vector3};
+use crate::{BlindWay, FindingGroup, Level, MachineSummary, Move, Verifier};
+use nalgebra::{Point3, Vector3};
 use std::sync::Arc;
 use touchoff::tool::Symmetry;
 
@@ -149,8 +149,8 @@ impl<'a> Job<'a> {
             let MachineSummary { blind_ways, ways_home, .. } = reading.summary();
             let to_first = blind_ways.iter().map(|way| (way, false));
             let ways = to_first.chain(ways_home.iter().map(|way| (way, true)));
-            ways.filter_map(|((block, level), leads_home)| {
-                let name = self.highest_above(level)?.to_owned();
+            ways.filter_map(|((block, way), leads_home)| {
+                let name = self.highest_above(way)?.to_owned();
                 let gap =
                     if leads_home { JobGap::LowWayHome { name } } else { JobGap::LowWay { name } };
                 Some((*block, gap))
@@ -158,15 +158,16 @@ impl<'a> Job<'a> {
         })
     }
 
-    /// Returns the name of the highest body, or of the stock, if it is higher than a level.
-    fn highest_above(&self, level: &Level) -> Option<&str> {
+    /// Returns the name of a body, or of the stock, that is higher than a way.
+    fn highest_above(&self, way: &BlindWay) -> Option<&str> {
         let unit = self.unit();
+        let part = way.levels.last()?;
         let bodies = self.bodies.iter().filter(|body| body.meets_tools()).filter_map(|body| {
             let margin = match body.role {
                 BodyRole::Part => 0.0,
                 BodyRole::Fixture { margin } | BodyRole::Machine { margin, .. } => margin,
             };
-            Some((&*body.name, self.height(body, level)? + margin))
+            Some((&*body.name, self.height_above(body, way)? + margin))
         });
         let stock = self.stock.iter().map(|stock| {
             let bounds = match &stock.shape {
@@ -174,48 +175,60 @@ impl<'a> Job<'a> {
                 StockShape::Mesh(mesh) => mesh.bounds(),
                 StockShape::Points(points) => points.bounds(),
             };
-            ("the stock", top(level, bounds))
+            ("the stock", top(part, bounds) - part.height / unit.millimetres())
         });
         let highest = bodies.chain(stock).max_by(|one, other| one.1.total_cmp(&other.1));
-        highest
-            .filter(|(_, top)| level.height / unit.millimetres() + LEVEL_ROUNDING < *top)
-            .map(|(name, _)| name)
+        highest.filter(|(_, height)| *height > LEVEL_ROUNDING).map(|(name, _)| name)
     }
 
-    /// Returns the height of a body along a level's direction in the part's frame. It is infinite for one that moves against the part
-    /// so that the height is another for each position, and none for one that the tool's side carries.
-    fn height(&self, body: &Body<'_>, level: &Level) -> Option<f64> {
-        let [low, high] = body.bvh.bounds();
-        let height = top(level, [low, high]);
-        let Some(machine) = self.program.machine().filter(|_| body.frame != BodyFrame::Part) else {
-            return Some(height);
-        };
+    /// Returns the height of a body above a way; `None` for one that is not in it. What does not move with the part is out of the way at the
+    /// top of Z's travel, and what moves with the tool anywhere.
+    fn height_above(&self, body: &Body<'_>, way: &BlindWay) -> Option<f64> {
+        let unit = self.unit().millimetres();
+        let above = |level: &Level, bounds| top(level, bounds) - level.height / unit;
+        let (part, links) = way.levels.split_last()?;
+        let bounds = body.bvh.bounds();
+        let Some(machine) = self.program.machine() else { return Some(above(part, bounds)) };
         let link = body.frame.link(machine);
-        let mut table = machine.axes().iter().filter(|axis| axis.side == Side::Table).peekable();
-        match link {
-            Link::Base => {}
-            Link::Axis(letter) => {
-                table.find(|axis| axis.letter == letter)?;
-            }
+        let is_at_part = link == machine.last_link(Side::Table);
+        let is_at_tool = !is_at_part && link == machine.last_link(Side::Tool);
+        if is_at_tool || way.is_at_top && !is_at_part {
+            return None;
         }
-        // From the link to the part. X, Y and a turn about Z change no height, and one axis that tilts is at 0 while Z of the machine is
-        // z of the part.
-        let (rotary, linear): (Vec<&Axis>, Vec<&Axis>) =
-            table.partition(|axis| axis.letter.is_rotary());
-        let tilting = rotary.iter().filter(|axis| axis.direction.xy() != Vector2::zeros()).count();
-        let is_level = linear.iter().all(|axis| axis.direction.z == 0.0);
-        let is_upright = level.up == Vector3::z();
-        let moves_along = rotary.is_empty() && linear.is_empty();
-        if !(moves_along || is_upright && is_level && tilting < 2) {
-            return Some(f64::INFINITY);
-        }
-        let BodyFrame::Machine(_) = body.frame else { return Some(height) };
-        // In machine coordinates, while the part is where G54 is.
+        let table = || machine.axes().iter().filter(|axis| axis.side == Side::Table);
+        let index = match link {
+            Link::Base => 0,
+            // X and Y of a head can be anywhere beside what another link of it carries.
+            Link::Axis(letter) => match table().position(|axis| axis.letter == letter) {
+                Some(index) => index + 1,
+                None => return Some(f64::INFINITY),
+            },
+        };
+        // In machine coordinates with all axes at 0, unless G54 has angles.
         let origin = self.program.readings().first()?.part_origin();
-        let is_placed = |[.., a, b, c]: &[f64; 6]| [*a, *b, *c] == [0.0; 3];
-        Some(origin.filter(is_placed).map_or(f64::INFINITY, |[x, y, z, ..]| {
-            height - level.up.dot(&Vector3::new(x, y, z)) / self.unit().millimetres()
-        }))
+        let [x, y, z, rotary @ ..] = origin.unwrap_or_default();
+        let moved = |by: Vector3<f64>| bounds.map(|corner| corner + by / unit);
+        let is_of_machine = matches!(body.frame, BodyFrame::Machine(_));
+        let on_machine =
+            moved(if is_of_machine { Vector3::zeros() } else { Vector3::new(x, y, z) });
+        let level = links.get(index).unwrap_or(part);
+        if level.height > f64::NEG_INFINITY {
+            return Some(match (index < links.len(), is_of_machine) {
+                (true, _) => above(level, on_machine),
+                (false, false) => above(part, bounds),
+                // The frame of the part is turned with the axes of G54: about Z it keeps the height.
+                (false, true) if part.up == Vector3::z() || rotary == [0.0; 3] => {
+                    above(part, moved(-Vector3::new(x, y, z)))
+                }
+                (false, true) => f64::INFINITY,
+            });
+        }
+        // Tilted by unknown angles, it swings.
+        let carriers: Vec<&Axis> = table().take(index).collect();
+        match way.levels.first().filter(|_| rotary == [0.0; 3] && origin.is_some()) {
+            Some(base) => Some(swing(&carriers, on_machine, unit) - base.height / unit),
+            None => Some(f64::INFINITY),
+        }
     }
 
     /// Returns the number of checks of motions at bodies, those of all readings together.
@@ -402,4 +415,21 @@ impl<'a> Job<'a> {
 /// Returns the height of a box along a level's direction.
 fn top(level: &Level, [low, high]: [Point3<f64>; 2]) -> f64 {
     (0..3).map(|k| (level.up[k] * low[k]).max(level.up[k] * high[k])).sum()
+}
+
+/// Returns the greatest Z of the machine that a box reaches at any angles of the rotary axes that carry it: that of the innermost axis and
+/// the distance of the box's farthest point from it, by way of the other axes. `carriers` are in order from the base, `unit` is in mm.
+fn swing(carriers: &[&Axis], [low, high]: [Point3<f64>; 2], unit: f64) -> f64 {
+    let (rotary, linear): (Vec<&Axis>, Vec<&Axis>) =
+        carriers.iter().partition(|axis| axis.letter.is_rotary());
+    let points: Vec<Point3<f64>> = rotary.iter().map(|axis| axis.point / unit).collect();
+    let (Some(innermost), Some(outermost)) = (points.first(), points.last()) else {
+        return f64::INFINITY;
+    };
+    if linear.iter().any(|axis| axis.direction.z != 0.0) {
+        return f64::INFINITY;
+    }
+    let between: f64 = points.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum();
+    let farthest = (outermost - low).abs().sup(&(high - outermost).abs()).norm();
+    innermost.z + between + farthest
 }

@@ -201,6 +201,11 @@ impl Chain {
         Ok(chain)
     }
 
+    /// Returns the link of the table whose frame is that of poses.
+    pub(crate) fn link(&self) -> usize {
+        self.link
+    }
+
     /// Returns the chain without the limits of its linear axes. Without a work offset, linear joints are known up to a
     /// displacement only.
     #[must_use]

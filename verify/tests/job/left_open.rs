@@ -167,9 +167,9 @@ fn an_alignment_depends_on_the_path_of_rapid_traverse() {
 #[test]
 fn a_way_to_the_first_position_below_the_top_of_a_body_is_open() {
     for (z, clamp, verdict, gap) in [
-        (-1.0, -2.0, NONE, "V0607 5 the part"),
+        (-1.0, -2.0, NONE, "V0607 4 the part"),
         (0.0, 0.0, CLEAN, "V0401 4"),
-        (5.0, 8.0, NONE, "V0607 5 the clamp"),
+        (5.0, 8.0, NONE, "V0607 4 the clamp"),
         (8.0, 8.0, CLEAN, "V0401 4"),
     ] {
         let text = format!("{START}G0 G43 H1 Z{z}\nG0 X20 Y0\nG0 Z50\nG0 X0\nG1 Z1 F100.\nM30\n");

@@ -3,7 +3,7 @@
 
 use crate::in_the_way::{TRUNNION, named, scene};
 use crate::scene::{
-    CLEAN, Control, FANUC, FINDINGS, HAAS, HEIDENHAIN, NONE, SIEMENS, Scene, native,
+    CLEAN, Control, FANUC, FINDINGS, HAAS, HEIDENHAIN, LINUXCNC, NONE, SIEMENS, Scene, native,
 };
 use touchoff_verify::Verdict;
 use touchoff_verify::gcode::{Choice, ControlRules, Rule};
@@ -75,6 +75,28 @@ fn an_axis_turns_alone_in_an_aligned_plane() {
         "L A+0 C+0 R0 FMAX M3\nL X+40 Y+0 Z+100 R0 FMAX\nPLANE SPATIAL SPA+0 SPB+0 SPC+0 TURN FMAX\nL C+90 R0 FMAX M91\nL X+50 R0 F500",
     );
     scene("a.h", &text, TRUNNION, G54).gives(HEIDENHAIN, NONE, &["V0420 7"]);
+    // Neither a shift nor tool centre point control aligns it anew.
+    let text = sinumerik(
+        "G0 A0 C0\nG0 X40 Y0 Z100\nCYCLE800(0,\"TC\",100000,57,0,0,0,0,0,0,0,0,0,1,0)\nG0 X40 Y0\nG0 Z50\nSUPA G0 C90\nATRANS Z0\n\
+         G0 X40 Y0\nG1 Z5 F500",
+    );
+    scene("a.mpf", &text, TRUNNION, G54).gives(SIEMENS, NONE, &["V0420 12"]);
+    let text = iso(
+        "G0 A0. C0.\nG43 H1\nG0 X40. Y0. Z50.\nG68.2 X0. Y0. Z0. I0. J0. K0.\nG53.1\nG53 C90.\nG43.4 H1\nG0 X40. Y0. Z50.\nG49",
+    );
+    scene("a.nc", &text, TRUNNION, G54).gives_by(stays(), NONE, &["V0420 11"]);
+    // In feed the axes move straight, whatever rapid traverse does.
+    let text = klartext(
+        "L A+0 C+90 R0 FMAX M3\nL X+0 Y+0 R0 FMAX\nL Z+1 R0 FMAX\nPLANE SPATIAL SPA+0 SPB+0 SPC+0 TURN FMAX\nL X+0 Y+0 R0 FMAX\n\
+         L X-100 Y-100 R0 FMAX M91\nL X+100 Y+0 R0 F1000 M91\nL Z+0 R0 FMAX M91\nPLANE RESET STAY",
+    );
+    let rules = crate::scene::rules("heidenhain").with(Rule::Rapid, Choice::EachAxis);
+    let length = |rules: &ControlRules| {
+        let scene = scene("a.h", &text, TRUNNION, G54);
+        scene.with_report(rules.clone(), |report| report.cycle_times()[0].feed).expect("a report")
+    };
+    let straight = crate::scene::rules("heidenhain");
+    assert_eq!(length(&rules), length(&straight));
 }
 
 /// A tool change under tool centre point control moves Z of the machine: the tip is beside the place that the program has stated.
@@ -129,21 +151,44 @@ fn an_axis_at_zero_of_a_turned_work_offset_is_turned() {
 fn a_first_way_below_the_top_is_not_checked() {
     let upright = "G0 A0. C0.\n";
     let first = "G0 X4.5 Y0.\nG1 X4.4 F500\nG0 Z100.";
-    for blocks in [
-        format!("G43 H1 ZLEVEL\nG0 X4.5 Y0.\n{upright}{first}"),
-        format!("G0 X4.5 Y0.\nG43 H1 ZLEVEL\n{upright}{first}"),
-        format!("{upright}G43 H1 ZLEVEL\nG68 X0. Y0. R90.\nG0 X0. Y-4.5\nG69\n{first}"),
-        format!("{upright}G43.4 H1 ZLEVEL\nG0 X4.5 Y0.\nG49\nG43 H1 ZLEVEL\n{first}"),
+    for (blocks, high) in [
+        (format!("{upright}G43 H1 ZLEVEL\n{first}"), CLEAN),
+        (format!("{upright}G43 H1 ZLEVEL\nG68 X0. Y0. R90.\nG0 X0. Y-4.5\nG69\n{first}"), CLEAN),
+        (format!("{upright}G43.4 H1 ZLEVEL\nG0 X4.5 Y0.\nG49\nG43 H1 ZLEVEL\n{first}"), CLEAN),
         // The level is along the tool.
-        format!("G0 A-30. C0.\nG43 H1 ZLEVEL\nG0 X4.5 Y0.\nG0 A0.\n{first}"),
+        (format!("G0 A-30. C0.\nG43 H1 ZLEVEL\nG0 X4.5 Y0.\nG0 A0.\n{first}"), CLEAN),
+        // It goes home before it moves sideways.
+        (format!("{upright}G43 H1 ZLEVEL\nG53 G0 Z0.\nG0 X4.5 Y0.\nG0 Z1.\n{first}"), CLEAN),
+        // In a plane, in which Z is that of the plane.
+        (
+            format!(
+                "{upright}G43 H1 ZLEVEL\nG68.2 X0. Y0. Z0. I0. J0. K0.\nG53.1\nG53 X20. Y0.\nG53 Z0.\nG69\nG0 X4.5 Y0.\nG0 Z1.\n{first}"
+            ),
+            CLEAN,
+        ),
+        // A table that tilts from an angle that is not known swings the part against the tool.
+        (format!("G43 H1 ZLEVEL\nG0 X4.5 Y0.\n{upright}{first}"), NONE),
+        (format!("G0 X4.5 Y0.\nG43 H1 ZLEVEL\n{upright}{first}"), NONE),
+        (format!("G43 H1 ZLEVEL\nG0 X-60. Y0.\nG53 G0 Z0.\n{upright}{first}"), NONE),
+        (format!("G0 A-90. C0.\nG43 H1 ZLEVEL\nG0 X0. Y60. A0.\n{first}"), NONE),
+        (format!("G43.4 H1\nG0 X4.5 Y0. ZLEVEL\n{upright}G49\nG43 H1 ZLEVEL\n{first}"), NONE),
     ] {
-        for (level, verdict) in [("-10.", NONE), ("1.", CLEAN)] {
+        for (level, verdict) in [("-10.", NONE), ("1.", high)] {
             let text = iso(&blocks.replace("LEVEL", level));
             let machine = &TRUNNION.replace(CHANGE, "");
             let gap: &[&str] = if verdict == NONE { &["V0607"] } else { &[] };
             scene("a.nc", &text, machine, G54).gives_by(stays(), verdict, gap);
         }
     }
+    // Above all that it swings, and at the top of Z, the table may tilt from anywhere.
+    let text = iso(&format!("G43 H1 Z100.\nG0 X4.5 Y0.\n{upright}G0 Z1.\n{first}"));
+    scene("a.nc", &text, &TRUNNION.replace(CHANGE, ""), G54).gives_by(stays(), CLEAN, &[]);
+    let text = iso(&format!("G53 G0 Z0.\n{upright}G0 X4.5 Y0.\nG43 H1 Z1.\n{first}"));
+    scene("a.nc", &text, TRUNNION, G54).gives(HAAS, CLEAN, &[]);
+    // G49 leaves the height to the machine, and X and Y go home from there.
+    let text =
+        iso("G0 X4.5 Y0.\nG43 H1 Z100.\nG0 Z-1.\nG1 X4.4 F500\nG49\nG53 G0 X-60. Y0.\nG53 G0 Z0.");
+    named("a.nc", &text).gives(LINUXCNC, NONE, &["V0407 9"]);
 }
 
 /// Bodies of the machine have a height over the part, too, unless axes between raise them or tilt the part.
@@ -163,14 +208,20 @@ fn a_first_way_is_above_the_bodies_of_the_machine() {
         (TRUNNION, Link::Axis(Letter::C), "10.", NONE),
         (TRUNNION, Link::Base, "30.", CLEAN),
         (TRUNNION, Link::Base, "10.", NONE),
-        // Z of the table is at another height for each position.
-        (&raised, Link::Base, "30.", NONE),
+        // Z of the table moves the part alone: the tool stays 340 mm above the body.
+        (&raised, Link::Base, "10.", CLEAN),
+        // What the head carries is beside the tool, wherever the others are.
+        (TRUNNION, Link::Axis(Letter::X), "30.", NONE),
     ] {
         let scene =
             scene("a.nc", &text(level), &machine.replace(CHANGE, ""), G54).body(low.0, low.1, link);
-        let gaps: &[&str] = if verdict == NONE { &["V0607 6 the clamp"] } else { &[] };
+        let gaps: &[&str] = if verdict == NONE { &["V0607 5 the clamp"] } else { &[] };
         scene.gives_by(stays(), verdict, gaps);
     }
+    // A column is out of the way at the top of Z's travel.
+    let text = iso("G0 A0. C0.\nG0 X0. Y0.\nG43 H1 Z1.\nG1 Z1. F500\nG0 Z100.");
+    let column = scene("a.nc", &text, TRUNNION, G54);
+    column.body([-5.0, 300.0, -900.0], [5.0, 310.0, 400.0], Link::Base).gives(HAAS, CLEAN, &[]);
 }
 
 /// The direction of CYCLE800 selects one of two positions of the rotary axes: on the way to one of them the table turns a post into the tool.

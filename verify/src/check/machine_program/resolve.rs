@@ -1,13 +1,15 @@
 //! Steps in program coordinates, resolved to joint motions.
 
 use super::path::{self, Map};
-use super::{Level, StepFault, UnknownCause};
+use super::{BlindWay, Level, StepFault, UnknownCause};
 use crate::gcode::{
     self, Alignment, BlockLine, Choice, ControlSetup, ControlState, LengthOffset, Position,
     Rotation, Rule, Step, StepPath, Tcp, WorkOffset,
 };
-use crate::machine::{Chain, InverseSolution, JointMotion, Joints, Letter, Machine, Setup, Side};
-use nalgebra::{Matrix3, Point3, Vector3};
+use crate::machine::{
+    Axis, Chain, InverseSolution, JointMotion, Joints, Letter, Machine, Setup, Side,
+};
+use nalgebra::{Matrix3, Point3, Vector2, Vector3};
 use std::collections::BTreeMap;
 
 /// The increment of angles, in degrees: nearer to half a turn a control may take either way.
@@ -22,6 +24,9 @@ const UPRIGHT: f64 = 1e-9;
 
 /// Tolerance of tool lengths, in mm: registers are set to 0.001 mm.
 const LENGTH_TOLERANCE: f64 = 1e-3;
+
+/// A step that commands Z and no other axis.
+const Z_ALONE: [bool; 6] = [false, false, true, false, false, false];
 
 /// The motions of a step.
 pub(super) enum Resolved {
@@ -109,10 +114,10 @@ pub(super) struct Resolver<'a> {
     chain: Option<(f64, Chain)>,
     /// Set while Z is at the top of its travel, to which the program has moved it.
     is_at_top: bool,
-    /// The least level of the tip during the last step, if X, Y or rotary axes are not known at its start and it moves them.
-    pub(super) blind_level: Option<Level>,
-    /// The level of the tip where the last step leaves for a reference position that is not known, in more axes than Z.
-    pub(super) home_level: Option<Level>,
+    /// The last step, if X, Y or rotary axes are not known on it, and Z is.
+    pub(super) blind_way: Option<BlindWay>,
+    /// The last step, if it leaves for a reference position that is not known, in more axes than Z.
+    pub(super) way_home: Option<BlindWay>,
     /// The joint values after the last step, as far as they are known.
     joints: Position,
     /// The reason for which others are not.
@@ -201,8 +206,8 @@ impl<'a> Resolver<'a> {
                 && machine.has_rotary(Side::Table),
             is_length_known: true,
             is_at_top: false,
-            blind_level: None,
-            home_level: None,
+            blind_way: None,
+            way_home: None,
             chain: None,
             joints,
             cause: UnknownCause::Start,
@@ -214,7 +219,17 @@ impl<'a> Resolver<'a> {
     /// # Errors
     /// If the motion is not possible on the machine, or a length or an origin is missing.
     pub(super) fn resolve(&mut self, step: &Step) -> Result<Resolved, StepFault> {
-        (self.blind_level, self.home_level) = (None, None);
+        (self.blind_way, self.way_home) = (None, None);
+        let before = self.joints;
+        let resolved = self.resolve_step(step)?;
+        if !matches!(resolved, Resolved::ToolChange | Resolved::Loaded(_)) {
+            self.blind_way = self.blind_way(step, [before, self.joints]);
+        }
+        Ok(resolved)
+    }
+
+    fn resolve_step(&mut self, step: &Step) -> Result<Resolved, StepFault> {
+        let was_at_top = self.is_at_top;
         if step.commanded[2] {
             self.is_at_top = step.is_homeward;
         }
@@ -222,6 +237,7 @@ impl<'a> Resolver<'a> {
             if !step.commanded.contains(&true) {
                 return self.load(step);
             }
+            let before = self.joints;
             for k in (0..6).filter(|k| step.commanded[*k]) {
                 // Without the place of the part, machine coordinates lead nowhere that is known.
                 self.joints[k] = target[k].filter(|_| self.is_placed);
@@ -231,9 +247,8 @@ impl<'a> Resolver<'a> {
                 // Without a head, Z alone depends on the length.
                 self.is_length_known |= k == 2 && self.joints[k].is_some() && !self.has_head;
             }
-            if step.state.turns_with_workpiece() && step.commanded[3..].contains(&true) {
-                self.unfollowed = Some(UnknownCause::LeftPlane);
-            }
+            self.is_at_top |= step.commanded[2] && self.joints[2].is_some_and(|z| self.is_top(z));
+            self.leave_plane(step, &before);
             return Ok(Resolved::ToolChange);
         }
         // Machine coordinates are those of the axes, wherever the table stands.
@@ -245,9 +260,10 @@ impl<'a> Resolver<'a> {
             Located::Known(frame) => frame,
             Located::Unknown(cause) => {
                 let lost = self.lose_linear(step, cause);
-                // The way home of machine coordinates is the same with and without the length offset.
+                // The way home of machine coordinates is the same with and without the length offset: of Z alone, and of others at its top.
+                let is_free = was_at_top || step.commanded == Z_ALONE;
                 return Ok(match cause {
-                    UnknownCause::NoOffset { .. } if step.is_homeward => {
+                    UnknownCause::NoOffset { .. } if step.is_homeward && is_free => {
                         Resolved::Unknown(UnknownCause::Home)
                     }
                     _ => lost,
@@ -268,7 +284,6 @@ impl<'a> Resolver<'a> {
         if self.is_length_along_z(step, &frame, [&ends[0], &ends[1]]) {
             return Ok(self.lose(UnknownCause::HeadLength));
         }
-        self.blind_level = self.blind_level(&frame, step, &ends);
         let mut unknown_path = self.turn_endless(step, &frame, &mut ends);
         if step.tool_vector.is_some() {
             let angles = [3, 4, 5].map(|k| ends[1][k].map(|angle| angle + frame.rotary[k - 3]));
@@ -323,9 +338,6 @@ impl<'a> Resolver<'a> {
             // Without the place of the part, machine coordinates lead nowhere that is known.
             ends[1][k] = target[k].filter(|_| self.is_placed);
         }
-        if ends[0][3..] != ends[1][3..] {
-            self.unfollowed = Some(UnknownCause::LeftPlane);
-        }
         let shifted = |position: Position, sign: f64| {
             let origins = [0.0, 0.0, 0.0, frame.rotary[0], frame.rotary[1], frame.rotary[2]];
             [0, 1, 2, 3, 4, 5].map(|k| position[k].map(|value| value + sign * origins[k]))
@@ -334,6 +346,7 @@ impl<'a> Resolver<'a> {
         let unknown_path = self.turn_endless(step, frame, &mut programmed);
         let start = known(&shifted(programmed[0], 1.0));
         self.joints = ends[1];
+        self.leave_plane(step, &ends[0]);
         let Some(end) = known(&self.joints) else {
             let cause = self.unknown_end(step, &current);
             return match before.filter(|_| cause == UnknownCause::Home) {
@@ -342,7 +355,10 @@ impl<'a> Resolver<'a> {
             };
         };
         match start.filter(|_| unknown_path.is_none()) {
-            Some(start) => self.rapid(step, &frame.chain, [start, end]),
+            Some(start) if step.rapid => self.rapid(step, &frame.chain, [start, end]),
+            Some(start) => {
+                Ok(Resolved::Motions(vec![(path::line(&frame.chain, [start, end])?, 0.0)]))
+            }
             None => {
                 let rest = path::line(&frame.chain, [end, end])?;
                 Ok(Resolved::Arrival(Box::new(rest), unknown_path.unwrap_or(self.cause)))
@@ -356,8 +372,11 @@ impl<'a> Resolver<'a> {
         /// The travel of Z where it is not stated, in mm.
         const TRAVEL: f64 = 1000.0;
         let chain = frame.chain.without_linear_limits();
-        if step.commanded != [false, false, true, false, false, false] {
-            self.home_level = Some(level(&chain, &joints)?);
+        if step.commanded != Z_ALONE {
+            self.way_home = Some(BlindWay {
+                levels: self.levels(&chain, &joints),
+                is_at_top: self.is_top(joints[2]),
+            });
             return Ok(Resolved::Unknown(UnknownCause::Home));
         }
         let limits = self.machine.axis(Letter::Z).and_then(|axis| axis.limits);
@@ -367,23 +386,81 @@ impl<'a> Resolver<'a> {
         Ok(Resolved::Departure(Box::new(rise), UnknownCause::Home))
     }
 
-    /// Returns the lower level of the tip at the ends of a step that moves X, Y or rotary axes from where they are not known: the way
-    /// is at this level, wherever it begins. `None` if Z is not known, too, or the angles at its end are not.
-    fn blind_level(&self, frame: &Frame, step: &Step, ends: &[Position; 2]) -> Option<Level> {
-        let is_blind = |k: usize| ends[0][k].is_none() && self.has_axis(k);
-        let moves_blind = step.commanded[..2].contains(&true) && (0..2).any(is_blind)
-            || (3..6).any(|k| step.commanded[k] && is_blind(k));
-        let [Some(_), Some(_)] = ends.map(|end| end[2]) else { return None };
-        if !moves_blind {
+    /// Notes that a rotary axis has left an aligned plane, if it has moved.
+    fn leave_plane(&mut self, step: &Step, before: &Position) {
+        let is_aligned = matches!(step.state.rotation, Rotation::Tilted { aligned: true, .. });
+        if is_aligned && before[3..] != self.joints[3..] {
+            self.unfollowed = Some(UnknownCause::LeftPlane);
+        }
+    }
+
+    /// Returns a step with joints at its ends on which Z is known, and X, Y or rotary axes are not. The tool is nowhere below its levels,
+    /// wherever these are: below all at a link or part that tilts. At the top of Z's travel a table may.
+    fn blind_way(&self, step: &Step, ends: [Position; 2]) -> Option<BlindWay> {
+        let is_unknown = |k: usize, end: &Position| end[k].is_none() && self.has_axis(k);
+        let [starts_blind, ends_blind] =
+            ends.each_ref().map(|end| [0, 1, 3, 4, 5].into_iter().any(|k| is_unknown(k, end)));
+        if !step.commanded.contains(&true) || !(starts_blind || ends_blind) {
             return None;
         }
-        let levels = ends.iter().filter_map(|[.., z, a, b, c]| {
-            let position = known(&[Some(0.0), Some(0.0), *z, *a, *b, *c])?;
-            frame.level(&position).ok()
+        // From where nothing is known, the operator moves to the first position. Under tool centre point control Z of the tip can be
+        // stated before the axes are known.
+        let [starts_at_level, ends_at_level] = ends.map(|end| end[2].is_some());
+        let states_z = step.state.turns_with_workpiece() && step.start[2].is_some();
+        if !(starts_at_level || ends_at_level && ends_blind || states_z) {
+            return None;
+        }
+        let is_at_top = ends.iter().all(|end| end[2].is_some_and(|z| self.is_top(z)));
+        let chain = self.chain.as_ref()?.1.without_linear_limits();
+        let turns =
+            |k: usize| ends.iter().any(|end| is_unknown(k, end)) || ends[0][k] != ends[1][k];
+        let rotary = self.machine.axes().iter().filter(|axis| axis.letter.is_rotary());
+        let (about_z, tilting): (Vec<&Axis>, Vec<&Axis>) =
+            rotary.partition(|axis| axis.direction.xy() == Vector2::zeros());
+        let below = Level { up: Vector3::z(), height: f64::NEG_INFINITY };
+        let mut tilting = tilting.into_iter().filter(|axis| turns(axis.letter.index())).peekable();
+        if is_at_top && tilting.peek().is_some() {
+            return None;
+        }
+        // The links before the first axis of the table that tilts keep their levels, if the head tilts no tool.
+        let table = || self.machine.axes().iter().filter(|axis| axis.side == Side::Table);
+        let level_links = tilting.map(|axis| match axis.side {
+            Side::Table => table().take_while(|other| other.letter != axis.letter).count() + 1,
+            Side::Tool => 0,
         });
-        // Angles at the start that are not known leave the level at the end.
-        let angles = known(&[Some(0.0), Some(0.0), Some(0.0), ends[1][3], ends[1][4], ends[1][5]]);
-        levels.min_by(|one, other| one.height.total_cmp(&other.height)).filter(|_| angles.is_some())
+        let level_links = level_links.min().unwrap_or(usize::MAX);
+        // Axes about Z turn the part, and change no height while it is not tilted.
+        let is_turning = about_z.iter().any(|axis| turns(axis.letter.index()));
+        let known = ends.iter().filter(|end| end[2].is_some()).map(|end| {
+            let mut levels = self.levels(&chain, &end.map(Option::unwrap_or_default));
+            for (link, level) in levels.iter_mut().enumerate() {
+                if link >= level_links || is_turning && level.up != Vector3::z() {
+                    *level = below;
+                }
+            }
+            levels
+        });
+        let levels = known.reduce(|one, other| {
+            one.iter().zip(&other).map(|(one, other)| one.lower(other)).collect()
+        });
+        // Otherwise only Z of the tip is known, about which the tool or the part swings.
+        let swings = level_links < usize::MAX;
+        let levels = levels.or_else(|| swings.then(|| vec![below; chain.link() + 1]))?;
+        Some(BlindWay { levels, is_at_top })
+    }
+
+    /// Returns the levels of the tip at joint values, relative to each link of the table and to the part.
+    fn levels(&self, chain: &Chain, joints: &Joints) -> Vec<Level> {
+        let links = (0..chain.link()).map(|link| chain.relative_to(link));
+        let below = Level { up: Vector3::z(), height: f64::NEG_INFINITY };
+        let level = |chain: Chain| level(&chain.without_linear_limits(), joints).ok();
+        let levels = links.chain([Ok(*chain)]).map(|chain| chain.ok().and_then(level));
+        levels.map(|level| level.unwrap_or(below)).collect()
+    }
+
+    /// Returns whether Z is at the top of its travel, which is at 0 where the machine does not state it.
+    fn is_top(&self, z: f64) -> bool {
+        self.is_placed && z >= self.setup.top.unwrap_or_default()
     }
 
     /// Returns whether an unknown motion is on the way from a tool change: that of Z to the top of its travel, or of other axes while it is
@@ -641,8 +718,16 @@ impl<'a> Resolver<'a> {
                 Rotation::Off | Rotation::Plane { .. } => None,
             },
         };
+        // An axis that has left a plane is out of it until the axes are aligned anew, or positions turn no longer.
+        let aligns = matches!(step.path, StepPath::Align | StepPath::Pivot { .. })
+            && step.commanded[3..].contains(&true);
+        let has_left = self.unfollowed == Some(UnknownCause::LeftPlane)
+            && step.state.turns_with_workpiece()
+            && !aligns;
         if turning == Turning::default() {
             self.unfollowed = None;
+        } else if has_left {
+            // Until then.
         } else if turning != self.turning {
             // A table that turns in the block counts at its end, but for the alignment with a plane.
             let aligns = matches!(step.path, StepPath::Align | StepPath::Pivot { .. });
@@ -1146,25 +1231,6 @@ impl Frame {
         [x, y, z, a, b, c]
     }
 
-    /// Returns the level of the tip at a position in program coordinates of which X and Y do not count; below all if they decide it.
-    fn level(&self, position: &Joints) -> Result<Level, StepFault> {
-        let chain = self.chain.without_linear_limits();
-        if self.map.rotation[(2, 2)] != 1.0 {
-            return Ok(Level { up: Vector3::z(), height: f64::NEG_INFINITY });
-        }
-        let mut level = level(&chain, &self.joints(*position))?;
-        // Z of the tip is Z of the machine only while the table does not tilt it.
-        if self.is_tip && level.height > f64::NEG_INFINITY {
-            let is_upright = (level.up - Vector3::z()).norm() <= UPRIGHT;
-            level.height = if is_upright {
-                self.map.apply([0.0, 0.0, position[2]])[2]
-            } else {
-                f64::NEG_INFINITY
-            };
-        }
-        Ok(level)
-    }
-
     /// Returns the motions between two positions in program coordinates.
     fn motions(
         &self,
@@ -1222,7 +1288,8 @@ fn level(chain: &Chain, joints: &Joints) -> Result<Level, StepFault> {
     let mut above = *joints;
     above[2] += 1.0;
     let [pose, above] = [chain.pose(joints)?, chain.pose(&above)?];
-    let mut up = (above.tip() - pose.tip()).normalize();
+    // A link that Z of the table does not carry stands still while that moves.
+    let mut up = (above.tip() - pose.tip()).try_normalize(UPRIGHT).unwrap_or_else(Vector3::z);
     if (up - Vector3::z()).norm() <= UPRIGHT {
         up = Vector3::z();
     }

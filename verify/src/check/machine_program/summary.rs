@@ -36,10 +36,10 @@ pub struct MachineSummary {
     pub no_rapid_offset: Option<BlockLine>,
     /// The blocks of ways to the first position on which X, Y or rotary axes are not known at the start and Z is, with the level of the
     /// tip: the lowest of each direction.
-    pub blind_ways: Vec<(BlockLine, Level)>,
+    pub blind_ways: Vec<(BlockLine, BlindWay)>,
     /// The blocks of ways to a reference position that is not known, in more axes than Z, with the level at which they begin: the lowest
     /// of each direction.
-    pub ways_home: Vec<(BlockLine, Level)>,
+    pub ways_home: Vec<(BlockLine, BlindWay)>,
     /// The block of the first motion under tool centre point control, or in an aligned plane, without a tool length offset, and with
     /// a tool whose length is not stated.
     pub tcp_without_length: Option<BlockLine>,
@@ -73,13 +73,34 @@ pub struct MachineSummary {
     pub stop: Option<ProgramStop>,
 }
 
-/// A level of the tip over the part: the tool is beyond it, wherever X and Y are.
+/// A way on which some axes are not known, and Z is.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct BlindWay {
+    /// The lowest level of the tip, relative to each link of the table, from the base on, in machine coordinates with all axes at 0; the
+    /// last is relative to the part, in its frame.
+    pub levels: Vec<Level>,
+    /// Set if Z stays at the top of its travel.
+    pub is_at_top: bool,
+}
+
+/// A level that the tool is beyond, wherever X and Y are.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Level {
-    /// The direction of Z of the machine, a unit vector in the part's frame.
+    /// The direction of Z of the machine, a unit vector.
     pub up: Vector3<f64>,
     /// The tip along it, in mm; below all for a tool that is tilted against it.
     pub height: f64,
+}
+
+impl Level {
+    /// Returns the lower of two levels; below all if their directions differ.
+    pub(super) fn lower(&self, other: &Level) -> Level {
+        let height =
+            if self.up == other.up { self.height.min(other.height) } else { f64::NEG_INFINITY };
+        Level { up: self.up, height }
+    }
 }
 
 /// The end of what is read of a program. The motions before it are checked.
@@ -144,8 +165,8 @@ faults! {
         /// A verdict is possible if Z moves to the top of its travel first, and the other axes while it is there.
         #[code = V0403]
         #[error(
-            "only the machine knows where the tool change leaves its axes: state `tool_change` in the machine's file, or the control, and \
-             the origin of G54 in `work_offsets`"
+            "only the machine knows where the tool change leaves its axes: state `tool_change` in the machine's file, or the control (a \
+             place in machine coordinates needs the origin of G54 in `work_offsets`)"
         )]
         ToolChange,
         /// A motion to machine coordinates that are not known.
@@ -476,12 +497,32 @@ impl MachineSummary {
         }
     }
 
-    /// Notes a way to the first position at a level, or from one to a reference position that is not known.
-    pub(super) fn add_low_way(ways: &mut Vec<(BlockLine, Level)>, block: BlockLine, level: Level) {
-        match ways.iter_mut().find(|(_, known)| known.up == level.up) {
-            None => ways.push((block, level)),
-            Some(lowest) if level.height < lowest.1.height => *lowest = (block, level),
-            Some(_) => {}
+    /// Notes a way to the first position, or to a reference position that is not known. Of those with the same directions the lowest is
+    /// kept.
+    pub(super) fn add_blind_way(
+        ways: &mut Vec<(BlockLine, BlindWay)>,
+        block: BlockLine,
+        way: BlindWay,
+    ) {
+        /// Largest number of ways that are kept. Further ones are below all.
+        const MAX_WAYS: usize = 64;
+        let is_along = |known: &BlindWay| {
+            let mut pairs = known.levels.iter().zip(&way.levels);
+            known.is_at_top == way.is_at_top && pairs.all(|(one, other)| one.up == other.up)
+        };
+        let Some(index) = ways.iter().position(|(_, known)| is_along(known)) else {
+            if ways.len() < MAX_WAYS {
+                ways.push((block, way));
+            } else {
+                ways[0].1.levels.iter_mut().for_each(|level| level.height = f64::NEG_INFINITY);
+            }
+            return;
+        };
+        let mut pairs = ways[index].1.levels.iter().zip(&way.levels);
+        if pairs.any(|(known, level)| level.height < known.height) {
+            let levels = ways[index].1.levels.iter().zip(&way.levels);
+            let levels = levels.map(|(known, level)| known.lower(level)).collect();
+            ways[index] = (block, BlindWay { levels, ..way });
         }
     }
 

@@ -157,7 +157,10 @@ pub(super) const M_WORDS: [Entry; 57] = [
     read("M19", "the orientation of the spindle, which stands then"),
     read("M30", "the end of the program"),
     read("M89", "the cycle after each motion, until M99"),
-    read("M91", "machine coordinates"),
+    read(
+        "M91",
+        "machine coordinates; a rotary axis turns alone, also in an aligned plane, whose positions are not followed after it",
+    ),
     read("M92", "coordinates from a point of the builder, which the machine's file states (`m92`)"),
     read("M99", "the cycle after the motion"),
     read("M126", "the shorter way of rotary axes"),
