@@ -189,7 +189,7 @@ fn controls_and_machines_are_listed() {
         let open = match row["name"].as_str() {
             Some("fanuc") => 3,
             Some("haas" | "linuxcnc") => 2,
-            Some("siemens") => 4,
+            Some("siemens") => 5,
             Some("heidenhain") => 1,
             _ => 0,
         };
