@@ -542,6 +542,21 @@ fn mutants_end_with_steps_or_with_a_line() {
     read_mutants(&seeds, &PIECES, 1_500, 11);
 }
 
+/// A survey comes out of calls that are too deep, with the variables of the main program alone.
+#[test]
+fn a_survey_leaves_calls_that_are_too_deep() {
+    let text = "DEF REAL AA=1\nSUB1\nG1 X=AA F100\nM30\nPROC SUB1\nDEF REAL BB=2\nDEF REAL CC=BB\nM777\nSUB2\nX=DD\nX=CC\nM17\nPROC SUB2\n\
+                DEF REAL DD=3\nSUB1\nX=CC\nX=DD\nSUB2\nM17\n";
+    for ends in ["M17", "M30", "WAITM(1)"] {
+        let text = text.replace("X=DD\nSUB2", &format!("X=DD\n{ends}\nSUB2"));
+        let setup = setup();
+        let mut interpreter = Interpreter::new(&text, &setup).expect("a program");
+        assert!(interpreter.by_ref().any(|step| step.is_err()));
+        // Without a panic, and not without end.
+        assert!(interpreter.survey().count() < 1_000, "{text}");
+    }
+}
+
 /// A loop has the steps of its text written out.
 #[test]
 fn a_loop_of_a_hundred_thousand_blocks_moves_as_text() {

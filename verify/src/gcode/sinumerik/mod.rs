@@ -213,7 +213,7 @@ impl<'a> Program<'a> {
             (self.flow, self.file, self.stepping, self.ends) = (flow, file, stepping, ends);
             self.waiting.clear();
         }
-        self.variables.leave(0);
+        self.variables.leave_all();
         self.flow.go_past() || is_called
     }
 
@@ -555,12 +555,15 @@ impl<'a> Program<'a> {
         if times == Some(0) {
             return Ok(());
         }
-        let (base, times) = (self.variables.enter(), times.unwrap_or(1));
+        let times = times.unwrap_or(1);
+        // A call that is too deep leaves the variables those of the caller.
         if callee.file == self.file {
-            self.flow.call(callee.section, times, base)?;
+            self.flow.call(callee.section, times, self.variables.base())?;
+            self.variables.enter();
         } else {
             let source = Arc::clone(&self.sources[callee.file]);
             let called = self.flow.inside(source, callee.section)?;
+            let base = self.variables.enter();
             let flow = mem::replace(&mut self.flow, called.clone());
             self.waiting.push(Waiting {
                 flow,

@@ -105,6 +105,11 @@ impl Variables {
         self.r[index] = Some(value);
     }
 
+    /// Returns where the variables of the present program begin.
+    pub(super) fn base(&self) -> usize {
+        self.base
+    }
+
     /// Begins the variables of a subprogram, and returns where those of the caller begin.
     pub(super) fn enter(&mut self) -> usize {
         self.callers.push(std::mem::take(&mut self.own));
@@ -116,6 +121,20 @@ impl Variables {
         self.clear();
         self.own = self.callers.pop().unwrap_or_default();
         self.base = base;
+    }
+
+    /// Ends the variables of all subprograms, or those of the main program if there is none.
+    pub(super) fn leave_all(&mut self) {
+        let main = self.callers.drain(..).next();
+        if let Some(main) = main {
+            // The variables of the main program stand before all others.
+            self.base = main.values().max().map_or(0, |last| last + 1);
+            self.clear();
+            self.own = main;
+        } else {
+            self.clear();
+        }
+        self.base = 0;
     }
 
     /// Removes the variables of the present program.
