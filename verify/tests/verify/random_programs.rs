@@ -219,6 +219,7 @@ impl Case {
             rules = rules
                 .with(Rule::ToolLength, Choice::Always)
                 .with(Rule::Rotary, Choice::WithinTurn)
+                .with(Rule::SwivelAxis, Choice::FirstAxis)
                 .with(Rule::TransformationOffset, Choice::DeselectsOffset);
         }
         let setup = ControlSetup {

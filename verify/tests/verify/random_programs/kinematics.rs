@@ -186,8 +186,14 @@ impl Machine {
     }
 
     /// Returns the joints nearest to the present ones, linear ones at rest, at which the tool stands along a direction of the link that
-    /// carries the part. The tool is along Rz(c) Rx(a) z or Rz(c) Ry(b) z there, wherever A, B and C are.
-    pub(crate) fn align(&self, joints: &Axes, direction: Vector3<f64>) -> Option<Axes> {
+    /// carries the part. The tool is along Rz(c) Rx(a) z or Rz(c) Ry(b) z there, wherever A, B and C are. With `is_lower`, the tilting axis
+    /// has the lower of its two values.
+    pub(crate) fn align(
+        &self,
+        joints: &Axes,
+        direction: Vector3<f64>,
+        is_lower: bool,
+    ) -> Option<Axes> {
         let tilting = self.tilting?;
         let tilt = direction.z.clamp(-1.0, 1.0).acos().to_degrees();
         let heading = match tilting {
@@ -208,7 +214,9 @@ impl Machine {
                         .is_none_or(|[low, high]| (low..=high).contains(&found[index]))
                 };
                 let turn = |found: &Axes| {
-                    (found[tilting] - joints[tilting]).abs() + (found[5] - joints[5]).abs()
+                    // The value comes before the way to it.
+                    let value = if is_lower { 1e6 * found[tilting] } else { 0.0 };
+                    value + (found[tilting] - joints[tilting]).abs() + (found[5] - joints[5]).abs()
                 };
                 if is_allowed(tilting)
                     && is_allowed(5)

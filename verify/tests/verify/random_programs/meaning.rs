@@ -561,7 +561,8 @@ impl Control {
                 let start = self.position();
                 let direction = self.plane * self.inner * Vector3::from(*axis);
                 let along = self.tip_frame() * direction;
-                let aligned = self.machine.align(&self.joints, along).unwrap_or(self.joints);
+                let aligned = self.machine.align(&self.joints, along, false);
+                let aligned = aligned.unwrap_or(self.joints);
                 let mut end = start;
                 end[..3].copy_from_slice(place);
                 for k in 3..6 {
@@ -705,7 +706,9 @@ impl Control {
             return;
         }
         let along = self.tip_frame() * (self.plane * Vector3::z());
-        if let Some(end) = self.machine.align(&self.joints, along) {
+        // The direction of CYCLE800 is that of the lower value.
+        let is_lower = self.language == Language::Sinumerik;
+        if let Some(end) = self.machine.align(&self.joints, along, is_lower) {
             self.turn_to(end, tilt.align);
         }
         self.is_aligned = true;
