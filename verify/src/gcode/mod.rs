@@ -214,6 +214,9 @@ impl Repeated {
     }
 }
 
+/// The axes of a step that commands Z and no other.
+pub(crate) const Z_ALONE: [bool; 6] = [false, false, true, false, false, false];
+
 /// A motion, in the program coordinates of its [state](Step::state).
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]

@@ -145,12 +145,17 @@ impl<'a> Job<'a> {
     /// Returns the ways of each reading to the first position, and to a reference position that is not known, that are lower than a
     /// body or the stock: X and Y are not known at one of their ends, and so what is between.
     fn low_ways(&self) -> impl Iterator<Item = (BlockLine, JobGap)> + '_ {
-        self.program.readings().iter().flat_map(|reading| {
+        let stock = self.stock.as_ref().map(|stock| match &stock.shape {
+            StockShape::Box(corners) => *corners,
+            StockShape::Mesh(mesh) => mesh.bounds(),
+            StockShape::Points(points) => points.bounds(),
+        });
+        self.program.readings().iter().flat_map(move |reading| {
             let MachineSummary { blind_ways, ways_home, .. } = reading.summary();
             let to_first = blind_ways.iter().map(|way| (way, false));
             let ways = to_first.chain(ways_home.iter().map(|way| (way, true)));
-            ways.filter_map(|((block, way), leads_home)| {
-                let name = self.highest_above(way)?.to_owned();
+            ways.filter_map(move |((block, way), leads_home)| {
+                let name = self.highest_above(way, stock)?.to_owned();
                 let gap =
                     if leads_home { JobGap::LowWayHome { name } } else { JobGap::LowWay { name } };
                 Some((*block, gap))
@@ -158,8 +163,8 @@ impl<'a> Job<'a> {
         })
     }
 
-    /// Returns the name of a body, or of the stock, that is higher than a way.
-    fn highest_above(&self, way: &BlindWay) -> Option<&str> {
+    /// Returns the name of a body, or of the stock by its box, that is higher than a way.
+    fn highest_above(&self, way: &BlindWay, stock: Option<[Point3<f64>; 2]>) -> Option<&str> {
         let unit = self.unit();
         let part = way.levels.last()?;
         let bodies = self.bodies.iter().filter(|body| body.meets_tools()).filter_map(|body| {
@@ -169,14 +174,8 @@ impl<'a> Job<'a> {
             };
             Some((&*body.name, self.height_above(body, way)? + margin))
         });
-        let stock = self.stock.iter().map(|stock| {
-            let bounds = match &stock.shape {
-                StockShape::Box(corners) => *corners,
-                StockShape::Mesh(mesh) => mesh.bounds(),
-                StockShape::Points(points) => points.bounds(),
-            };
-            ("the stock", top(part, bounds) - part.height / unit.millimetres())
-        });
+        let stock =
+            stock.map(|bounds| ("the stock", top(part, bounds) - part.height / unit.millimetres()));
         let highest = bodies.chain(stock).max_by(|one, other| one.1.total_cmp(&other.1));
         highest.filter(|(_, height)| *height > LEVEL_ROUNDING).map(|(name, _)| name)
     }

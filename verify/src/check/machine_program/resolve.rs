@@ -4,7 +4,7 @@ use super::path::{self, Map};
 use super::{BlindWay, Level, StepFault, UnknownCause};
 use crate::gcode::{
     self, Alignment, BlockLine, Choice, ControlSetup, ControlState, LengthOffset, Position,
-    Rotation, Rule, Step, StepPath, Tcp, WorkOffset,
+    Rotation, Rule, Step, StepPath, Tcp, WorkOffset, Z_ALONE,
 };
 use crate::machine::{
     Axis, Chain, InverseSolution, JointMotion, Joints, Letter, Machine, Setup, Side,
@@ -24,9 +24,6 @@ const UPRIGHT: f64 = 1e-9;
 
 /// Tolerance of tool lengths, in mm: registers are set to 0.001 mm.
 const LENGTH_TOLERANCE: f64 = 1e-3;
-
-/// A step that commands Z and no other axis.
-const Z_ALONE: [bool; 6] = [false, false, true, false, false, false];
 
 /// The motions of a step.
 pub(super) enum Resolved {
@@ -417,7 +414,6 @@ impl<'a> Resolver<'a> {
         let rotary = self.machine.axes().iter().filter(|axis| axis.letter.is_rotary());
         let (about_z, tilting): (Vec<&Axis>, Vec<&Axis>) =
             rotary.partition(|axis| axis.direction.xy() == Vector2::zeros());
-        let below = Level { up: Vector3::z(), height: f64::NEG_INFINITY };
         let mut tilting = tilting.into_iter().filter(|axis| turns(axis.letter.index())).peekable();
         if is_at_top && tilting.peek().is_some() {
             return None;
@@ -435,27 +431,24 @@ impl<'a> Resolver<'a> {
             let mut levels = self.levels(&chain, &end.map(Option::unwrap_or_default));
             for (link, level) in levels.iter_mut().enumerate() {
                 if link >= level_links || is_turning && level.up != Vector3::z() {
-                    *level = below;
+                    *level = Level::BELOW;
                 }
             }
             levels
         });
-        let levels = known.reduce(|one, other| {
-            one.iter().zip(&other).map(|(one, other)| one.lower(other)).collect()
-        });
+        let levels = known.reduce(|one, other| Level::lower(&one, &other));
         // Otherwise only Z of the tip is known, about which the tool or the part swings.
         let swings = level_links < usize::MAX;
-        let levels = levels.or_else(|| swings.then(|| vec![below; chain.link() + 1]))?;
+        let levels = levels.or_else(|| swings.then(|| vec![Level::BELOW; chain.link() + 1]))?;
         Some(BlindWay { levels, is_at_top })
     }
 
     /// Returns the levels of the tip at joint values, relative to each link of the table and to the part.
     fn levels(&self, chain: &Chain, joints: &Joints) -> Vec<Level> {
         let links = (0..chain.link()).map(|link| chain.relative_to(link));
-        let below = Level { up: Vector3::z(), height: f64::NEG_INFINITY };
         let level = |chain: Chain| level(&chain.without_linear_limits(), joints).ok();
         let levels = links.chain([Ok(*chain)]).map(|chain| chain.ok().and_then(level));
-        levels.map(|level| level.unwrap_or(below)).collect()
+        levels.map(|level| level.unwrap_or(Level::BELOW)).collect()
     }
 
     /// Returns whether Z is at the top of its travel, which is at 0 where the machine does not state it.
@@ -708,7 +701,8 @@ impl<'a> Resolver<'a> {
     }
 
     /// Returns the cause for which the coordinates of a step are not followed: under tool centre point control, or in a tilted plane, that
-    /// began while the table was turned, if the control takes them as those of the part as it stood then.
+    /// began while the table was turned, if the control takes them as those of the part as it stood then; in a plane that a rotary axis has
+    /// left, until the axes are aligned anew or positions turn no longer.
     fn unfollowed(&mut self, step: &Step) -> Option<UnknownCause> {
         let state = &*step.state;
         let turning = Turning {
@@ -718,19 +712,14 @@ impl<'a> Resolver<'a> {
                 Rotation::Off | Rotation::Plane { .. } => None,
             },
         };
-        // An axis that has left a plane is out of it until the axes are aligned anew, or positions turn no longer.
-        let aligns = matches!(step.path, StepPath::Align | StepPath::Pivot { .. })
-            && step.commanded[3..].contains(&true);
-        let has_left = self.unfollowed == Some(UnknownCause::LeftPlane)
-            && step.state.turns_with_workpiece()
-            && !aligns;
+        let aligns = matches!(step.path, StepPath::Align | StepPath::Pivot { .. });
+        let stays_out = self.unfollowed == Some(UnknownCause::LeftPlane)
+            && state.turns_with_workpiece()
+            && !(aligns && step.commanded[3..].contains(&true));
         if turning == Turning::default() {
             self.unfollowed = None;
-        } else if has_left {
-            // Until then.
-        } else if turning != self.turning {
+        } else if turning != self.turning && !stays_out {
             // A table that turns in the block counts at its end, but for the alignment with a plane.
-            let aligns = matches!(step.path, StepPath::Align | StepPath::Pivot { .. });
             let is_turned = self.rotary(Side::Table).any(|k| {
                 self.joints[k] != Some(self.origin[k])
                     || !aligns && step.commanded[k] && step.end[k] != Some(0.0)

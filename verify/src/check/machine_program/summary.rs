@@ -95,11 +95,18 @@ pub struct Level {
 }
 
 impl Level {
-    /// Returns the lower of two levels; below all if their directions differ.
-    pub(super) fn lower(&self, other: &Level) -> Level {
-        let height =
-            if self.up == other.up { self.height.min(other.height) } else { f64::NEG_INFINITY };
-        Level { up: self.up, height }
+    /// The level below all.
+    pub(super) const BELOW: Level =
+        Level { up: Vector3::new(0.0, 0.0, 1.0), height: f64::NEG_INFINITY };
+
+    /// Returns the lower of two levels of each link; below all where their directions differ.
+    pub(super) fn lower(levels: &[Level], others: &[Level]) -> Vec<Level> {
+        let pairs = levels.iter().zip(others);
+        let lower = pairs.map(|(one, other)| match one.up == other.up {
+            true => Level { up: one.up, height: one.height.min(other.height) },
+            false => Level { up: one.up, ..Level::BELOW },
+        });
+        lower.collect()
     }
 }
 
@@ -286,13 +293,12 @@ faults! {
              the control"
         )]
         HeadLength,
-        /// A rotary axis that moves in machine coordinates in an aligned plane or under tool centre point control.
+        /// A rotary axis that moves in machine coordinates, or by a tool change, in an aligned plane.
         ///
         /// The tool no longer stands along the plane, and controls take the positions after it in different ways.
         #[code = V0420]
         #[error(
-            "a rotary axis has moved in machine coordinates while an aligned plane or tool centre point control is in force: end it \
-             before, or begin it anew"
+            "a rotary axis has moved in machine coordinates while an aligned plane is in force: end the plane before, or begin it anew"
         )]
         LeftPlane,
     }
@@ -518,10 +524,8 @@ impl MachineSummary {
             }
             return;
         };
-        let mut pairs = ways[index].1.levels.iter().zip(&way.levels);
-        if pairs.any(|(known, level)| level.height < known.height) {
-            let levels = ways[index].1.levels.iter().zip(&way.levels);
-            let levels = levels.map(|(known, level)| known.lower(level)).collect();
+        let levels = Level::lower(&ways[index].1.levels, &way.levels);
+        if levels != ways[index].1.levels {
             ways[index] = (block, BlindWay { levels, ..way });
         }
     }

@@ -9,7 +9,7 @@ use crate::gcode::rules::{Choice, Rule};
 use crate::gcode::state::{
     ControlState, Frame, LengthOffset, Position, Rotation, Tcp, WorkOffset, about,
 };
-use crate::gcode::{GcodeFault, Plane, StepPath};
+use crate::gcode::{GcodeFault, Plane, StepPath, Z_ALONE};
 use nalgebra::{Matrix3, Vector3};
 use std::sync::Arc;
 
@@ -209,8 +209,7 @@ impl Control {
                     }
                     let stays = is_same && present != height;
                     let height = height.filter(|_| !stays);
-                    let z_alone = [false, false, true, false, false, false];
-                    (z_alone, [None, None, height, None, None, None])
+                    (Z_ALONE, [None, None, height, None, None, None])
                 }
                 Choice::Moves => (self.axes, [None; 6]),
                 _ => return,
@@ -411,10 +410,9 @@ impl Control {
     fn move_along_z(&mut self, height: Option<f64>) {
         let mut end = self.position;
         end[2] = height;
-        let commanded = [false, false, true, false, false, false];
         let rapid = matches!(self.modal.motion, None | Some(Motion::Rapid));
         self.length_changed = false;
-        self.push(rapid, end, commanded, StepPath::Line);
+        self.push(rapid, end, Z_ALONE, StepPath::Line);
     }
 
     fn registered(&self, register: u32) -> LengthOffset {

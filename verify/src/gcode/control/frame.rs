@@ -12,7 +12,7 @@ use crate::gcode::block::{Block, Group};
 use crate::gcode::error::combination;
 use crate::gcode::rules::Choice;
 use crate::gcode::state::{Frame, LengthOffset, Rotation, Tcp, WorkOffset, about};
-use crate::gcode::{Alignment, GcodeFault, StepPath};
+use crate::gcode::{Alignment, GcodeFault, StepPath, Z_ALONE};
 use nalgebra::{Matrix3, Vector3};
 
 /// The frames in force besides the settable one.
@@ -236,8 +236,7 @@ impl Control {
         match retract {
             Retract::None => return,
             Retract::Z | Retract::All => {
-                let z_alone = [false, false, true, false, false, false];
-                self.move_machine(z_alone, home, StepPath::Line);
+                self.move_machine(Z_ALONE, home, StepPath::Line);
                 if retract == Retract::All {
                     self.mark_homeward();
                     let others = [true, true, false, false, false, false];
@@ -251,7 +250,7 @@ impl Control {
                 let is_plain =
                     matches!(self.state.rotation, Rotation::Off | Rotation::Plane { .. });
                 let mut end = self.position;
-                let mut commanded = [false, false, true, false, false, false];
+                let mut commanded = Z_ALONE;
                 // Along z of the plane, where the tool stands along it; else in a direction that only the machine knows.
                 if is_aligned || is_plain && stands {
                     let distance = distance.map(|distance| self.modal.millimetres(distance));

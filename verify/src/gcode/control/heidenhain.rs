@@ -5,7 +5,7 @@ use super::{AXES, Control, Motion};
 use crate::gcode::block::Block;
 use crate::gcode::error::{CompensationFault, combination, missing};
 use crate::gcode::state::{LengthOffset, Position, Rotation, Tcp, WorkOffset};
-use crate::gcode::{Alignment, GcodeFault, Plane, StepPath};
+use crate::gcode::{Alignment, GcodeFault, Plane, StepPath, Z_ALONE};
 use std::sync::Arc;
 use touchoff::Unit;
 
@@ -158,17 +158,16 @@ impl Control {
             Rotation::Tilted { aligned, .. } => aligned,
             Rotation::Off | Rotation::Plane { .. } => is_upright,
         };
-        let along_z = [false, false, true, false, false, false];
         let end = self.position;
         match distance {
             Some(distance) if is_along_z => {
                 let mut end = end;
                 end[2] = end[2].map(|z| z + distance);
-                self.push(rapid, end, along_z, StepPath::Line);
+                self.push(rapid, end, Z_ALONE, StepPath::Line);
             }
             None if is_upright && is_along_z => {
                 let target = [None, None, self.top, None, None, None];
-                self.move_machine(along_z, target, StepPath::Line);
+                self.move_machine(Z_ALONE, target, StepPath::Line);
             }
             _ => {
                 let mut end = end;
@@ -197,8 +196,7 @@ impl Control {
         if is_tap {
             self.modal.motion = Some(Motion::Cycle(84));
         }
-        let commanded = [false, false, true, false, false, false];
-        self.push(rapid, end, commanded, StepPath::Line);
+        self.push(rapid, end, Z_ALONE, StepPath::Line);
         self.modal.motion = before;
     }
 
