@@ -228,6 +228,9 @@ impl<'g> CurveFunction<'g> {
     /// Returns the range of the values on a convex polygon; of the difference of distances for a curve that is none;
     /// infinite for any other.
     fn range_over(&self, polygon: &[Point]) -> [f64; 2] {
+        if let [p] = polygon {
+            return [self.value(*p); 2];
+        }
         let (middle, c) = match self {
             CurveFunction::Line { .. } => return range(polygon.iter().map(|p| self.value(*p))),
             CurveFunction::Conic { middle, factors } => (middle, factors),

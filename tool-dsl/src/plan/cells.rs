@@ -68,6 +68,7 @@ pub(super) struct Cells<'m> {
     pub(super) size: f64,
     /// The distance from a curve within which a point may be on either side of it.
     tolerance: f64,
+    /// The pieces of the section, and the vertices of the outline.
     pub(super) pieces: Vec<Rc<Piece>>,
 }
 
@@ -83,12 +84,14 @@ impl<'m> Cells<'m> {
         profile: &'m Profile,
         shapes: &'m [CurveFunction<'m>],
         size: f64,
-        pieces: Vec<Rc<Piece>>,
+        mut pieces: Vec<Rc<Piece>>,
     ) -> Cells<'m> {
+        let geometry = profile.inner.section();
+        pieces.extend(geometry.vertices().map(Rc::new));
         Cells {
             model,
             profile,
-            geometry: profile.inner.section(),
+            geometry,
             shapes,
             size,
             tolerance: 16.0 * f64::EPSILON * size,
@@ -156,6 +159,11 @@ impl<'m> Cells<'m> {
             match piece.signs_of(curve, &self.shapes[curve], self.tolerance) {
                 NEGATIVE => halves.below.push(Rc::clone(piece)),
                 POSITIVE => halves.above.push(Rc::clone(piece)),
+                // Rounding decides on which side of a curve a vertex on it is.
+                _ if piece.is_vertex() => {
+                    halves.below.push(Rc::clone(piece));
+                    halves.above.push(Rc::clone(piece));
+                }
                 _ => {
                     let [below, above] = piece.halves(curve, self.shapes, self.tolerance);
                     halves.below.extend(below.map(Rc::new));
@@ -195,6 +203,11 @@ impl<'m> Cells<'m> {
             Tree::Leaf(owner) => {
                 let feature = owner.map(|region| self.profile.feature_of(region));
                 let losses = pieces.iter().map(|piece| {
+                    if piece.is_vertex() {
+                        // Rounding of depths is no deviation.
+                        let loss = self.geometry.without_rounding(self.loss(piece, *owner));
+                        return (loss, piece.vertices[0]);
+                    }
                     let may_own = |part: &Polygon| {
                         let part = Piece { vertices: part.clone(), ..(**piece).clone() };
                         part.may_own_a_point(self.shapes, self.tolerance)

@@ -1,6 +1,7 @@
 //! The tree of a tool with a profile. Splits divide the pieces of its regions and the outside until one owner is left. Points on
-//! a splitting curve go to one side, or to a tree of their own if both sides need them. At last every piece is followed to
-//! the leaves that it reaches, which bounds how far depth is from the distance.
+//! a splitting curve go to one side, or to a tree of their own if both sides need them. A vertex of the outline, where several
+//! curves meet, is on both sides of each, since rounding decides. At last every piece is followed to the leaves that it
+//! reaches, which bounds how far depth is from the distance.
 
 use super::cells::{Cells, Halves};
 use super::samples::{ONE_SIDED_GAIN, SampleSubset, Samples};

@@ -52,7 +52,7 @@ impl Section<'_> {
     }
 
     /// Returns a difference of distances, or 0 if rounding decides its sign: a cut along a side would only multiply vertices.
-    fn without_rounding(&self, difference: f64) -> f64 {
+    pub(crate) fn without_rounding(&self, difference: f64) -> f64 {
         if difference.abs() <= self.tolerance() { 0.0 } else { difference }
     }
 

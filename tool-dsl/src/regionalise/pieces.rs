@@ -13,7 +13,8 @@ use crate::geometry::polygon::{
 };
 use std::rc::Rc;
 
-/// A convex polygon and the owner of some of its points: those on the known sides of curves.
+/// A convex polygon and the owner of some of its points: those on the known sides of curves. With one vertex it is one of the
+/// outline's.
 #[derive(Clone, Debug)]
 pub(crate) struct Piece {
     /// The nearest feature to the owned points; `None` for the outside.
@@ -213,6 +214,25 @@ impl Partition {
 }
 
 impl Section<'_> {
+    /// Returns the vertices of the outline, each as a piece of one point.
+    pub(crate) fn vertices(&self) -> impl Iterator<Item = Piece> {
+        let mut vertices: Vec<Piece> = Vec::new();
+        for (feature, index) in self.pieces() {
+            for end in self.outline[index].ends() {
+                if vertices.iter().all(|vertex| vertex.vertices != [end]) {
+                    vertices.push(Piece {
+                        feature: Some(feature),
+                        owner: Some(feature),
+                        vertices: vec![end],
+                        signs: Vec::new(),
+                        alternatives: Vec::new(),
+                    });
+                }
+            }
+        }
+        vertices.into_iter()
+    }
+
     /// Returns points of a piece that belong to its owner, with weights: their share of its area, and most near the surface.
     pub(crate) fn sample_points(&self, piece: &Piece) -> Vec<(Point, f64)> {
         // The outside is sampled up to a distance.
@@ -335,6 +355,11 @@ fn decided(
 }
 
 impl Piece {
+    /// Returns whether this is a vertex of the outline.
+    pub(crate) fn is_vertex(&self) -> bool {
+        self.vertices.len() == 1
+    }
+
     /// Returns the sides of a curve on which the owned points may lie.
     pub(crate) fn signs_of(
         &self,

@@ -60,7 +60,8 @@ fn each_mistake_is_shown_at_its_segment() {
     assert_mistakes(MISTAKES, text);
 }
 
-/// Dishes at the axis, and collinear and tangent joints, are exact; a sphere is one arc.
+/// Dishes at the axis, and collinear and tangent joints, are exact; a sphere is one arc. So is a vertex where three curves meet
+/// of which rounding makes what no point has: outside of the half turn that ends there, and not beyond its chord.
 #[test]
 fn odd_profiles_are_exact() {
     let sphere = Segment::about([0.0, 0.0], [0.0, 6.0], [0.0, 3.0], true);
@@ -70,6 +71,8 @@ fn odd_profiles_are_exact() {
         "0 0, 1 0, 1 5, 0 4.5 about 0 5.75",
         "0 0, 1 0, 2 0, 2 1, 2 3, 1 3, 0 3",
         "0 0, 3 1 about 0 5, 4 2 about 0 5, 5 5 about 0 5, 5 8, 0 8",
+        "0 0, 18.785 0, 18.785 23.48125, 9.11625 28.45375, 9.11625 54.6975 about -15.412883374927862 41.575625,
+        9.11625 71.825 about 9.11625 63.26125, 3.8675000000000006 56.355000000000004, 0 56.355000000000004",
     ];
     for outline in others.map(Outline::parse).into_iter().chain([Outline::up(vec![sphere])]) {
         let text = outline.text();
