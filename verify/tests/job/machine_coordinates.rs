@@ -146,6 +146,24 @@ fn an_axis_at_zero_of_a_turned_work_offset_is_turned() {
     }
 }
 
+/// Controls differ in how a plane of a work offset that is turned against G54 stands to the part, from its alignment on.
+#[test]
+fn a_plane_of_a_turned_work_offset_is_not_aligned() {
+    let refused: &[&str] = &["K0808"];
+    for (angles, verdict, gaps) in
+        [("0, 0, 0", CLEAN, &[][..]), ("0, 0, 90", NONE, refused), ("30, 0, 0", NONE, refused)]
+    {
+        let text = klartext(
+            "CYCL DEF 247 DATUM SETTING ~\n  Q339=+2 ;DATUM NUMBER\nL A+0 C+0 R0 FMAX M3\nL X+0 Y+0 R0 FMAX\nL Z+1 R0 FMAX\n\
+             L Z+0 R0 FMAX M91\nPLANE SPATIAL SPA-20 SPB+0 SPC+0 TURN FMAX\nPLANE RESET TURN FMAX",
+        );
+        let mut scene = scene("a.h", &text, TRUNNION, G54);
+        scene.job +=
+            &format!("G55 = [0, 0, -440, {angles}]\n[presets]\n1 = \"G54\"\n2 = \"G55\"\n");
+        scene.gives(HEIDENHAIN, verdict, gaps);
+    }
+}
+
 /// The first way in X and Y, or of rotary axes, at a known Z below the part's top, wherever it begins.
 #[test]
 fn a_first_way_below_the_top_is_not_checked() {

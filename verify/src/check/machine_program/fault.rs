@@ -198,11 +198,11 @@ faults! {
             /// The work offset.
             offset: WorkOffset,
         },
-        /// A work offset, or a rotary axis by G52 or G92, is turned against the part while the program states tips.
+        /// A work offset, or a rotary axis by G52 or G92, is turned against the part while the program states tips, or where a plane is aligned.
         #[code = K0808]
         #[error(
-            "{offset} turns the table, or is turned against G54, while tool centre point control is on: controls take the part at \
-             different angles then, so state offsets of rotary axes as 0, and turn the part in the CAM system"
+            "{offset} turns the table, or is turned against G54, under tool centre point control or in an aligned plane: controls take the \
+             part at different angles then, so state offsets of rotary axes as 0, and turn the part in the CAM system"
         )]
         TurnedOffset {
             /// The work offset.

@@ -1082,14 +1082,18 @@ impl<'a> Resolver<'a> {
         };
         let about = about + Vector3::new(shift[0], shift[1], shift[2]);
         let mut linear = Vector3::new(origin[0], origin[1], origin[2]);
+        // A plane is aligned with the axes of the part, as positions of the tip are counted along them.
+        let aligns = matches!(step.path, StepPath::Align | StepPath::Pivot { .. });
+        let is_of_part = is_tip || aligns && matches!(state.rotation, Rotation::Tilted { .. });
+        let has_rotary_offset = origin[3..] != self.origin[3..] || shift[3..] != [0.0; 3];
+        // The part stands at the offset, if it is taken with the table as it stands.
+        let is_table_turned = is_tip
+            && self.rotary(Side::Table).any(|k| origin[k] != 0.0)
+            && self.ask(Rule::TcpStart, step) != Some(Choice::TableAsItStands);
+        if is_table_turned || is_of_part && (has_rotary_offset || state.origin_rotation != 0.0) {
+            return Err(StepFault::TurnedOffset { offset: state.work_offset });
+        }
         if is_tip {
-            let has_rotary_offset = origin[3..] != self.origin[3..] || shift[3..] != [0.0; 3];
-            // The part stands at the offset, if it is taken with the table as it stands.
-            let is_table_turned = self.rotary(Side::Table).any(|k| origin[k] != 0.0)
-                && self.ask(Rule::TcpStart, step) != Some(Choice::TableAsItStands);
-            if state.origin_rotation != 0.0 || has_rotary_offset || is_table_turned {
-                return Err(StepFault::TurnedOffset { offset: state.work_offset });
-            }
             // The origin of the part's frame is that of G54.
             linear -= Vector3::new(self.origin[0], self.origin[1], self.origin[2]);
         } else {
