@@ -133,10 +133,14 @@ impl<'m> Cells<'m> {
         (pieces, samples)
     }
 
-    /// Returns the greatest error at the vertices of a piece if its points are given to an owner.
+    /// Returns the greatest error at the vertices of a piece if its points are given to an owner: of depth, but at a vertex of the
+    /// outline the distance of the owner itself, whose line may end elsewhere and yet have the right depth.
     pub(super) fn loss(&self, piece: &Piece, owner: Option<usize>) -> f64 {
         let feature = owner.map(|region| self.profile.feature_of(region));
-        self.geometry.loss_at_vertices(piece.feature, feature, &piece.vertices)
+        match (piece.is_vertex(), feature) {
+            (true, Some(feature)) => self.geometry.distance_of(feature, piece.vertices[0]),
+            _ => self.geometry.loss_at_vertices([piece.feature, feature], &piece.vertices),
+        }
     }
 
     /// Returns a piece of a part as one of a region: of the given one if that belongs to the part, otherwise of the part's first.
@@ -203,16 +207,16 @@ impl<'m> Cells<'m> {
             Tree::Leaf(owner) => {
                 let feature = owner.map(|region| self.profile.feature_of(region));
                 let losses = pieces.iter().map(|piece| {
+                    let owners = [piece.feature, feature];
                     if piece.is_vertex() {
+                        let loss = self.geometry.loss_at_vertices(owners, &piece.vertices);
                         // Rounding of depths is no deviation.
-                        let loss = self.geometry.without_rounding(self.loss(piece, *owner));
-                        return (loss, piece.vertices[0]);
+                        return (self.geometry.without_rounding(loss), piece.vertices[0]);
                     }
                     let may_own = |part: &Polygon| {
                         let part = Piece { vertices: part.clone(), ..(**piece).clone() };
                         part.may_own_a_point(self.shapes, self.tolerance)
                     };
-                    let owners = [piece.feature, feature];
                     let allowed = MAX_DEVIATION_FRACTION * self.size;
                     let loss =
                         self.geometry.greatest_loss(owners, &piece.vertices, allowed, may_own);

@@ -366,6 +366,14 @@ impl Section<'_> {
         rest.filter(|rest| rest.len() > 2)
     }
 
+    /// Returns the distance of a feature from a point.
+    pub(crate) fn distance_of(&self, feature: usize, p: Point) -> f64 {
+        match self.features[feature] {
+            Feature::Piece(piece) => self.outline[piece].distance_to(p),
+            Feature::Corner(previous) => norm(minus(p, self.corner_at(previous))),
+        }
+    }
+
     /// Returns the nearest feature to a point and its distance; `None` if the nearest point is an end that is no feature.
     pub(super) fn nearest(&self, p: Point) -> (Option<usize>, f64) {
         let mut nearest = (None, f64::INFINITY);
@@ -374,14 +382,10 @@ impl Section<'_> {
             if !self.is_box_within(index, p, nearest.1.min(reach)) {
                 continue;
             }
-            let (distance, own) = match *feature {
-                Feature::Corner(previous) => (norm(minus(p, self.corner_at(previous))), true),
-                Feature::Piece(piece) => {
-                    let segment = &self.outline[piece];
-                    let is_within = segment.sector(p).iter().all(|side| *side >= 0.0);
-                    (segment.distance_to(p), is_within)
-                }
-            };
+            let distance = self.distance_of(index, p);
+            let own = feature
+                .piece()
+                .is_none_or(|piece| self.outline[piece].sector(p).iter().all(|side| *side >= 0.0));
             if distance < nearest.1 || (distance == nearest.1 && nearest.0.is_none()) {
                 nearest = (own.then_some(index), distance);
             }
@@ -445,7 +449,7 @@ impl Section<'_> {
             if bound <= greatest || (bound > allowed && !may_own(&polygon)) {
                 continue;
             }
-            let least = self.loss_at_vertices(own, other, &polygon);
+            let least = self.loss_at_vertices([own, other], &polygon);
             let is_close = bound <= 2.0 * least + LITTLE_LOSS_FRACTION * self.size;
             let is_known = bound <= allowed || greatest > allowed;
             if (is_close && is_known) || halvings == MAX_LOSS_HALVINGS {
@@ -462,8 +466,7 @@ impl Section<'_> {
     /// feature than their own; `None` is the outside.
     pub(crate) fn loss_at_vertices(
         &self,
-        own: Option<usize>,
-        other: Option<usize>,
+        [own, other]: [Option<usize>; 2],
         polygon: &Polygon,
     ) -> f64 {
         if own == other {
