@@ -143,7 +143,16 @@ fn solids_of_revolution_are_judged_in_space() {
             // The errors for a depth that is not 0 on the surface, and for one that jumps between regions.
             let is_jump = |code: &str| matches!(code, "T0617" | "T0620");
             let errors = compiled.diagnostics();
-            assert!(errors.iter().any(|error| is_jump(error.code())), "{wrong}: {errors:?}");
+            let jump = errors.iter().find(|error| is_jump(error.code()));
+            let message = jump.unwrap_or_else(|| panic!("{wrong}: {errors:?}")).message();
+            // It is where the stem meets the half ball, all around it.
+            let place = message.split(['(', ')']).nth(1).expect("a place");
+            let place: Vec<f64> =
+                place.split(", ").map(|word| word.parse().expect("a number")).collect();
+            assert!(
+                place[0].abs() < 1e-3 && (place[1].hypot(place[2]) - 1.0).abs() < 1e-3,
+                "{message}"
+            );
         }
     }
 }

@@ -4,9 +4,11 @@ use super::compare::compare;
 use super::outline::Outline;
 use super::tool;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use touchoff::Level;
 use touchoff::tool::{Interpreted, Tool};
 use touchoff_dsl::source::Source;
 use touchoff_tests::checks::assert_near;
+use touchoff_tests::evaluations::evaluate_points;
 use touchoff_tests::oracle::profile::Profile;
 use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::segment::Segment;
@@ -83,6 +85,44 @@ fn odd_profiles_are_exact() {
         let planned = Interpreted::parse(&Source::new("t.tool", &text)).expect("as before");
         let compared = compare(&outline, (&tool, &planned), 2_000, &mut Rng::new(41));
         compared.unwrap_or_else(|flaw| panic!("{flaw:?}\n{text}"));
+    }
+}
+
+/// The line of a nearly straight arc comes back far away, where nothing is.
+#[test]
+fn nothing_is_inside_far_away() {
+    let vertices = [
+        "0 0, 4 -1, 3 0 hollow radius 707107.4882933288, 0 2 radius 5.4083269131959835",
+        "0 0, 4.000000000000025 2, 0 3 about 500002.49999974994 2000004.4999990126",
+        "0 0, 2 1 hollow radius 1118035.1067838836, 0 3.000000000000039 radius 2.1213203435596633",
+    ];
+    for outline in vertices.map(Outline::parse) {
+        let text = outline.text();
+        assert_eq!(refused_or_exact(&outline), None, "{text}");
+        let mut points = Vec::new();
+        for segment in outline.segments() {
+            let along = sub(&segment.to, &segment.from);
+            let along = along.map(|part| part / norm(&along));
+            for (direction, end) in [along, [-along[1], along[0]]]
+                .into_iter()
+                .flat_map(|direction| [(direction, segment.from), (direction, segment.to)])
+            {
+                points.extend((3..48).flat_map(|power| {
+                    let distance = 2f64.powi(power);
+                    [distance, -distance].map(|distance| {
+                        let [d, z] = [0, 1].map(|k| end[k] + distance * direction[k]);
+                        [d.abs(), 0.0, z - outline.tip()]
+                    })
+                }));
+            }
+        }
+        // All other points are beyond the solid.
+        points.retain(|[d, _, z]| *d > 5.0 || z.abs() > 5.0);
+        let planned = Interpreted::parse(&Source::new("t.tool", &text)).expect("nothing was said");
+        let found = evaluate_points(&planned, Level::new(), &points);
+        for (point, found) in points.iter().zip(found) {
+            assert!(found.is_none(), "{point:?} is in {found:?}\n{text}");
+        }
     }
 }
 
