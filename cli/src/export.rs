@@ -3,7 +3,7 @@
 use crate::arguments::Export;
 use crate::failure::Failure;
 use crate::import::LEFT_OUT;
-use crate::loaded_tool::{Libraries, LoadedTool};
+use crate::loaded_tool::LoadedTool;
 use crate::output::{Output, extension, refuse_inputs, write_file};
 use serde::Serialize;
 use std::io::Write;
@@ -11,6 +11,7 @@ use std::path::Path;
 use std::process::ExitCode;
 use touchoff::Escaped;
 use touchoff::tool::ToolInfo;
+use touchoff_import::Libraries;
 use touchoff_import::export::{Format, export as export_tools};
 
 /// One line of `export --json`.

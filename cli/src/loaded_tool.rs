@@ -3,34 +3,16 @@
 use crate::arguments::{ParamArguments, ToolArguments};
 use crate::failure::Failure;
 use crate::output::{show, show_lines};
-use std::collections::BTreeMap;
-use std::collections::btree_map::Entry;
 use std::ffi::OsStr;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 use touchoff::tool::Interpreted;
 use touchoff::{Escaped, Tool, is_within};
 use touchoff_dsl::diagnostic::escaped;
 use touchoff_dsl::source::Source;
 use touchoff_dsl::{Compiled, compile_with_arguments};
-use touchoff_import::{Library, find_in_folder};
+use touchoff_import::{Libraries, find_in_folder};
 use touchoff_tools::{SOURCES, TOOLS};
-
-/// Libraries that were read, by their files and the folders within which they read others. Each is read once for all its tools.
-#[derive(Default)]
-pub(crate) struct Libraries(BTreeMap<(PathBuf, Option<PathBuf>), Library>);
-
-impl Libraries {
-    fn read(&mut self, file: &Path, root: Option<&Path>) -> Result<&Library, Failure> {
-        match self.0.entry((file.to_owned(), root.map(Path::to_owned))) {
-            Entry::Occupied(known) => Ok(known.into_mut()),
-            Entry::Vacant(entry) => Ok(entry.insert(match root {
-                Some(root) => Library::read_within(file, root)?,
-                None => Library::read(file)?,
-            })),
-        }
-    }
-}
 
 /// A built-in tool, or one from a `.tool` file.
 pub(crate) enum LoadedTool {

@@ -2,7 +2,7 @@
 
 use crate::arguments::{CheckArguments, ParamArguments, ToolArguments, Verify};
 use crate::failure::Failure;
-use crate::loaded_tool::{Libraries, LoadedTool, compile_named};
+use crate::loaded_tool::{LoadedTool, compile_named};
 use crate::output::{Output, extension, refuse_inputs_within, write_file};
 use crate::part;
 use crate::program::{print_approach, print_ignored, warn_of_cutter};
@@ -15,6 +15,7 @@ use std::process::ExitCode;
 use touchoff::Escaped;
 use touchoff::certify::TriangleBvh;
 use touchoff_dsl::Compiled;
+use touchoff_import::Libraries;
 use touchoff_verify::job::{
     CutStock, Hand, JobInputs, JobStock, JobTools, NO_INSIDE, NamedTool, Severity, StockEntry,
     StockShape,

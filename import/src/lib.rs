@@ -32,6 +32,7 @@ mod fusion;
 mod hsm;
 mod json;
 mod kiri;
+mod libraries;
 mod linuxcnc;
 mod outline;
 mod shape;
@@ -42,6 +43,7 @@ pub use entry::{Entry, Note, Skipped, Stated};
 pub use error::ImportError;
 pub use files::ToolFile;
 pub use find::{FindError, files_in_folder, find_in_folder, write_numbers};
+pub use libraries::Libraries;
 
 use entry::reason;
 use files::Writer;

@@ -8,6 +8,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyInt, PyList};
 use serde::Serialize;
 use std::path::PathBuf;
+use touchoff_import::Libraries;
 use touchoff_verify::job::{JobError, JobInputs};
 use touchoff_verify::{JobFile, Verdict};
 
@@ -117,9 +118,10 @@ pub(crate) fn check_job(
                 JobFile::parse(&text, &path).map_err(without_line)?
             }
         };
+        let mut libraries = Libraries::default();
         let inputs = JobInputs::read::<CheckError>(file, |named| {
             let (library, root) = (named.library.as_deref(), named.root.as_deref());
-            Ok(LoadedTool::named(&named.name, library, &named.params, root)?)
+            Ok(LoadedTool::named(&named.name, library, &named.params, root, &mut libraries)?)
         })?;
         let job = inputs.job();
         let report = job.check(&|_| ())?;

@@ -11,7 +11,7 @@ use touchoff::tool::{Circle, Interpreted, ProfileSegment, ToolError, ToolInfo};
 use touchoff_drawing::{Content, TextRendering, svg};
 use touchoff_dsl::compile_with_arguments;
 use touchoff_dsl::source::Source;
-use touchoff_import::{ImportError, ImportedTool, Library, find_in_folder};
+use touchoff_import::{ImportError, ImportedTool, Libraries, Library, find_in_folder};
 use touchoff_tools::{SOURCES, TOOLS};
 
 /// A cutting tool.
@@ -100,6 +100,7 @@ impl LoadedTool {
         library: Option<&Path>,
         params: &[String],
         root: Option<&Path>,
+        libraries: &mut Libraries,
     ) -> Result<LoadedTool, LoadError> {
         let read = |file: &Path| {
             let text = ToolText::File { path: file.to_owned(), root: root.map(Path::to_owned) };
@@ -109,12 +110,8 @@ impl LoadedTool {
             if library.is_dir() {
                 return read(&find_in_folder(library, name)?);
             }
-            let imported = match root {
-                Some(root) => Library::read_within(library, root)?,
-                None => Library::read(library)?,
-            };
-            let tool = imported.select(&name.to_string_lossy())?;
-            return Ok(LoadedTool::imported(tool)?);
+            let tool = libraries.read(library, root)?.select(&name.to_string_lossy())?;
+            return Ok(LoadedTool::imported(tool, params)?);
         }
         if Path::new(name).extension().is_some_and(|extension| extension == "tool") {
             return read(Path::new(name));
@@ -127,10 +124,9 @@ impl LoadedTool {
         }
     }
 
-    fn imported(imported: &ImportedTool) -> Result<LoadedTool, ImportError> {
+    fn imported(imported: &ImportedTool, params: &[String]) -> Result<LoadedTool, ToolError> {
         let texts = imported.files.iter().map(|file| (file.path.clone().into(), file.text.clone()));
-        let text = ToolText::files(imported.path(), texts);
-        Ok(LoadedTool::Interpreted { tool: Box::new(imported.load()?), text, params: Vec::new() })
+        LoadedTool::compile(ToolText::files(imported.path(), texts), params)
     }
 
     fn info(&self) -> &ToolInfo {
@@ -177,7 +173,7 @@ impl Tool {
     fn library(py: Python<'_>, name: String, params: Vec<String>) -> PyResult<Tool> {
         let load = move || match (source_files(&name), params.is_empty()) {
             (Some(text), false) => Ok(LoadedTool::compile(text, &params)?),
-            _ => LoadedTool::named(name.as_ref(), None, &params, None),
+            _ => LoadedTool::named(name.as_ref(), None, &params, None, &mut Libraries::default()),
         };
         Ok(Tool { loaded: in_own_thread(py, load)?? })
     }
@@ -310,7 +306,7 @@ pub(crate) fn import_library(py: Python<'_>, path: PathBuf) -> PyResult<Imported
             library.skipped().iter().map(|one| (one.name.clone(), one.reason.clone())).collect();
         let mut tools = Vec::new();
         for imported in library.tools() {
-            match LoadedTool::imported(imported) {
+            match LoadedTool::imported(imported, &[]) {
                 Ok(loaded) => {
                     let entry = &imported.entry;
                     let notes = entry.notes.iter().map(ToString::to_string).collect();

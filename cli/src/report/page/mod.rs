@@ -9,7 +9,6 @@ use super::scene::{base64, json};
 use super::{Content, Picture, prefix};
 use crate::check::{Proved, prove};
 use crate::failure::Failure;
-use crate::loaded_tool::Libraries;
 use crate::output::file_name;
 use crate::timing::Timing;
 use crate::verify;
@@ -19,6 +18,7 @@ use sha2::{Digest, Sha256};
 use summary::summary;
 use touchoff::Escaped;
 use touchoff_drawing::{Content as Drawn, TextRendering, svg};
+use touchoff_import::Libraries;
 use touchoff_verify::job::Severity;
 use touchoff_verify::{CYCLE_TIME_ASSUMPTIONS, CycleTime};
 
