@@ -1,29 +1,25 @@
 //! Steps in program coordinates, resolved to joint motions.
 
-use super::path::{self, Map};
-use super::{BlindWay, Level, StepFault, UnknownCause};
+mod align;
+mod blind_way;
+mod frame;
+
+use super::path;
+use super::{BlindWay, StepFault, UnknownCause};
 use crate::gcode::{
-    self, Alignment, BlockLine, Choice, ControlSetup, ControlState, LengthOffset, Position,
-    Rotation, Rule, Step, StepPath, Tcp, WorkOffset, Z_ALONE,
+    self, BlockLine, Choice, ControlSetup, ControlState, Position, Rotation, Rule, Step, StepPath,
+    Tcp, WorkOffset, Z_ALONE,
 };
-use crate::machine::{
-    Axis, Chain, InverseSolution, JointMotion, Joints, Letter, Machine, Setup, Side,
-};
-use nalgebra::{Matrix3, Point3, Vector2, Vector3};
+use crate::machine::{Chain, JointMotion, Joints, Letter, Machine, Side};
+use frame::Frame;
+use nalgebra::{Point3, Vector3};
 use std::collections::BTreeMap;
 
 /// The increment of angles, in degrees: nearer to half a turn a control may take either way.
 const ANGLE_INCREMENT: f64 = 1e-3;
 
-/// Greatest angle between the tool and z of its plane, in degrees, where the program has turned the axes: angles are written to 0.001
-/// degrees.
-const ALIGNED: f64 = 2e-3;
-
 /// Greatest distance between the tool axis and z, as unit vectors, at which the tool is along z.
 const UPRIGHT: f64 = 1e-9;
-
-/// Tolerance of tool lengths, in mm: registers are set to 0.001 mm.
-const LENGTH_TOLERANCE: f64 = 1e-3;
 
 /// The motions of a step.
 pub(super) enum Resolved {
@@ -139,33 +135,10 @@ struct Turning {
     plane: Option<(usize, gcode::Frame)>,
 }
 
-/// The mapping of a step's coordinates.
-struct Frame {
-    chain: Chain,
-    /// From program coordinates to linear joints, or to the tip in the part's frame.
-    map: Map,
-    /// From program coordinates to rotary joints.
-    rotary: [f64; 3],
-    /// Set if the map leads to the tip.
-    is_tip: bool,
-    /// Set if a rotary axis carries the tool, whose length is unknown.
-    has_unknown_lever: bool,
-    /// The chain of a tool as long as the length offset, whose tip is where the program says under tool centre point control. The
-    /// offset may differ from the length by the rounding of registers.
-    guide: Chain,
-}
-
 /// A value that follows from the program, unless only the machine knows it.
 enum Located<T> {
     Known(T),
     Unknown(UnknownCause),
-}
-
-/// The length of the tool in the spindle and the length offset, in mm.
-struct Lengths {
-    length: f64,
-    offset: f64,
-    is_known: bool,
 }
 
 impl<'a> Resolver<'a> {
@@ -389,66 +362,6 @@ impl<'a> Resolver<'a> {
         if is_aligned && before[3..] != self.joints[3..] {
             self.unfollowed = Some(UnknownCause::LeftPlane);
         }
-    }
-
-    /// Returns a step with joints at its ends on which Z is known, and X, Y or rotary axes are not. The tool is nowhere below its levels,
-    /// wherever these are: below all at a link or part that tilts. At the top of Z's travel a table may.
-    fn blind_way(&self, step: &Step, ends: [Position; 2]) -> Option<BlindWay> {
-        let is_unknown = |k: usize, end: &Position| end[k].is_none() && self.has_axis(k);
-        let [starts_blind, ends_blind] =
-            ends.each_ref().map(|end| [0, 1, 3, 4, 5].into_iter().any(|k| is_unknown(k, end)));
-        if !step.commanded.contains(&true) || !(starts_blind || ends_blind) {
-            return None;
-        }
-        // From where nothing is known, the operator moves to the first position. Under tool centre point control Z of the tip can be
-        // stated before the axes are known.
-        let [starts_at_level, ends_at_level] = ends.map(|end| end[2].is_some());
-        let states_z = step.state.turns_with_workpiece() && step.start[2].is_some();
-        if !(starts_at_level || ends_at_level && ends_blind || states_z) {
-            return None;
-        }
-        let is_at_top = ends.iter().all(|end| end[2].is_some_and(|z| self.is_top(z)));
-        let chain = self.chain.as_ref()?.1.without_linear_limits();
-        let turns =
-            |k: usize| ends.iter().any(|end| is_unknown(k, end)) || ends[0][k] != ends[1][k];
-        let rotary = self.machine.axes().iter().filter(|axis| axis.letter.is_rotary());
-        let (about_z, tilting): (Vec<&Axis>, Vec<&Axis>) =
-            rotary.partition(|axis| axis.direction.xy() == Vector2::zeros());
-        let mut tilting = tilting.into_iter().filter(|axis| turns(axis.letter.index())).peekable();
-        if is_at_top && tilting.peek().is_some() {
-            return None;
-        }
-        // The links before the first axis of the table that tilts keep their levels, if the head tilts no tool.
-        let table = || self.machine.axes().iter().filter(|axis| axis.side == Side::Table);
-        let level_links = tilting.map(|axis| match axis.side {
-            Side::Table => table().take_while(|other| other.letter != axis.letter).count() + 1,
-            Side::Tool => 0,
-        });
-        let level_links = level_links.min().unwrap_or(usize::MAX);
-        // Axes about Z turn the part, and change no height while it is not tilted.
-        let is_turning = about_z.iter().any(|axis| turns(axis.letter.index()));
-        let known = ends.iter().filter(|end| end[2].is_some()).map(|end| {
-            let mut levels = self.levels(&chain, &end.map(Option::unwrap_or_default));
-            for (link, level) in levels.iter_mut().enumerate() {
-                if link >= level_links || is_turning && level.up != Vector3::z() {
-                    *level = Level::BELOW;
-                }
-            }
-            levels
-        });
-        let levels = known.reduce(|one, other| Level::lower(&one, &other));
-        // Otherwise only Z of the tip is known, about which the tool or the part swings.
-        let swings = level_links < usize::MAX;
-        let levels = levels.or_else(|| swings.then(|| vec![Level::BELOW; chain.link() + 1]))?;
-        Some(BlindWay { levels, is_at_top })
-    }
-
-    /// Returns the levels of the tip at joint values, relative to each link of the table and to the part.
-    fn levels(&self, chain: &Chain, joints: &Joints) -> Vec<Level> {
-        let links = (0..chain.link()).map(|link| chain.relative_to(link));
-        let level = |chain: Chain| level(&chain.without_linear_limits(), joints).ok();
-        let levels = links.chain([Ok(*chain)]).map(|chain| chain.ok().and_then(level));
-        levels.map(|level| level.unwrap_or(Level::BELOW)).collect()
     }
 
     /// Returns whether Z is at the top of its travel, which is at 0 where the machine does not state it.
@@ -732,47 +645,6 @@ impl<'a> Resolver<'a> {
         self.unfollowed
     }
 
-    /// Returns the cause for which the way to rotary joints is not known: if one of them is half a turn away, and the limits of its axis
-    /// allow both ways.
-    fn half_turn(&self, rotary: &[Option<f64>]) -> Option<UnknownCause> {
-        let mut axes = self.machine.axes().iter().filter(|axis| axis.letter.is_rotary());
-        let is_half = axes.any(|axis| {
-            let k = axis.letter.index();
-            let Some((from, to)) = self.joints[k].zip(rotary[k - 3]) else { return false };
-            let other = to - 360.0_f64.copysign(to - from);
-            let is_allowed = axis.limits.is_none_or(|[low, high]| {
-                (low - ANGLE_INCREMENT..=high + ANGLE_INCREMENT).contains(&other)
-            });
-            ((to - from).abs() - 180.0).abs() <= ANGLE_INCREMENT && is_allowed
-        });
-        is_half.then_some(UnknownCause::HalfTurn)
-    }
-
-    /// Returns whether all controls take the first of some solutions: where no other one turns a rotary axis by less, and the
-    /// axes are known.
-    fn is_one_choice(&self, solutions: &[InverseSolution]) -> bool {
-        let [first, others @ ..] = solutions else { return true };
-        let turn = |of: &InverseSolution, k: usize| Some((of.joints[k] - self.joints[k]?).abs());
-        let mut others = others.iter().filter(|other| {
-            (3..6).any(|k| (first.joints[k] - other.joints[k]).abs() > ANGLE_INCREMENT)
-        });
-        // Controls take the least sum of turns, or the least turn of the first axis. Both are the first solution if it turns no axis
-        // by more than another does.
-        others.all(|other| {
-            let mut is_less = false;
-            for turns in (3..6).map(|k| turn(first, k).zip(turn(other, k))) {
-                match turns {
-                    Some((first, other)) if first <= other + ANGLE_INCREMENT => {
-                        is_less |= first < other - ANGLE_INCREMENT;
-                    }
-                    _ => return false,
-                }
-            }
-            // By equal turns Fanuc takes the axes nearer to 0.
-            is_less
-        })
-    }
-
     /// Counts the angles at the start so that the ways of endless axes to stated angles are those of the control. Returns
     /// the cause for which one is not known.
     fn turn_endless(
@@ -834,185 +706,9 @@ impl<'a> Resolver<'a> {
         cause
     }
 
-    /// Resolves the rotation that aligns the tool with z of a tilted plane, with the linear joints at rest.
-    fn align(&mut self, frame: &Frame, step: &Step) -> Result<Resolved, StepFault> {
-        if !step.commanded[3..].contains(&true) {
-            return self.check_aligned(frame, &plane_axis(step));
-        }
-        let before = known(&self.joints);
-        let found = match self.aligned_angles(frame, step)? {
-            Located::Known(found) => found,
-            Located::Unknown(cause) => return Ok(self.lose(cause)),
-        };
-        // The angles are known also where the way to them is not.
-        let way = self.half_turn(&found);
-        self.joints[3..].copy_from_slice(&found);
-        let Some(found) = self.all_angles(found) else {
-            return Ok(Resolved::Unknown(UnknownCause::Axis));
-        };
-        let Some(joints) = before else {
-            return Ok(Resolved::Unknown(way.unwrap_or(self.cause)));
-        };
-        if self.part_position_unknown {
-            return Ok(Resolved::Unknown(UnknownCause::NoPartPosition));
-        }
-        if frame.has_unknown_lever {
-            return Ok(Resolved::Unknown(UnknownCause::NoLever));
-        }
-        let mut end = joints;
-        end[3..].copy_from_slice(&found);
-        match way {
-            Some(cause) => {
-                Ok(Resolved::Arrival(Box::new(path::line(&frame.chain, [end, end])?), cause))
-            }
-            None => self.rapid(step, &frame.chain, [joints, end]),
-        }
-    }
-
-    /// Resolves a rotation about a point of the tool axis, below the tip by a distance in mm: to the angles that are stated, or to
-    /// those that align the tool with z of a tilted plane.
-    fn pivot(&mut self, frame: &Frame, step: &Step, distance: f64) -> Result<Resolved, StepFault> {
-        let before = known(&self.joints);
-        let mut ends = [self.current_position(frame), step.end];
-        let is_stated = (3..6).any(|k| step.end[k].is_some() && self.has_axis(k));
-        let (found, way) = if is_stated {
-            // Angles that are stated have the way of any other motion to them.
-            let way = self.turn_endless(step, frame, &mut ends);
-            let found = [3, 4, 5].map(|k| match ends[1][k].filter(|_| self.has_axis(k)) {
-                Some(angle) => Some(angle + frame.rotary[k - 3]),
-                None => Some(0.0),
-            });
-            (found, way)
-        } else {
-            match self.aligned_angles(frame, step)? {
-                Located::Known(found) => (found, self.half_turn(&found)),
-                Located::Unknown(cause) => return Ok(self.lose(cause)),
-            }
-        };
-        let [a, b, c] = found;
-        self.joints = [None, None, None, a, b, c];
-        let Some(found) = self.all_angles(found) else {
-            return Ok(Resolved::Unknown(UnknownCause::Axis));
-        };
-        let Some(joints) = before else {
-            return Ok(Resolved::Unknown(way.unwrap_or(self.cause)));
-        };
-        if self.part_position_unknown {
-            self.cause = UnknownCause::NoPartPosition;
-            return Ok(Resolved::Unknown(self.cause));
-        }
-        if frame.has_unknown_lever {
-            self.cause = UnknownCause::NoLever;
-            return Ok(Resolved::Unknown(self.cause));
-        }
-        let pose = frame.chain.pose(&joints)?;
-        let point = pose.tip() - distance * pose.axis();
-        // The start counts so that the way to the end is that of the control.
-        let start = [3, 4, 5].map(|k| match ends[0][k].filter(|_| is_stated && self.has_axis(k)) {
-            Some(angle) => angle + frame.rotary[k - 3],
-            None => joints[k],
-        });
-        let from = if way.is_some() { found } else { start };
-        let motion = JointMotion::about(&frame.chain, distance, [from, found], &point)?;
-        self.joints = motion.joints(1.0).map(Some);
-        Ok(match way {
-            Some(cause) => Resolved::Arrival(Box::new(motion), cause),
-            None => Resolved::Motions(vec![(motion, 0.0)]),
-        })
-    }
-
     /// Returns whether the machine has an axis, by its index.
     fn has_axis(&self, axis: usize) -> bool {
         self.machine.axis(Letter::ALL[axis]).is_some()
-    }
-
-    /// Returns the rotary joints that align the tool with z of a tilted plane, in degrees.
-    fn aligned_angles(
-        &mut self,
-        frame: &Frame,
-        step: &Step,
-    ) -> Result<Located<[Option<f64>; 3]>, StepFault> {
-        let near = self.joints.map(Option::unwrap_or_default);
-        // The angles do not depend on the tip, whose linear joints are not those of the machine at rest.
-        let chain = frame.chain.without_linear_limits();
-        let mut found = chain.solutions(&Point3::origin(), &plane_axis(step), &near)?;
-        match step.alignment {
-            Some(Alignment::Master { is_positive }) => {
-                if let Some(master) = self.master() {
-                    let sign = if is_positive { 1.0 } else { -1.0 };
-                    found.retain(|solution| sign * solution.joints[master] >= -ANGLE_INCREMENT);
-                }
-            }
-            Some(Alignment::Value { is_higher }) => self.take_side(step, &mut found, is_higher),
-            None => {}
-        }
-        if found.is_empty() || !self.is_one_choice(&found) {
-            let is_known = (3..6).all(|k| self.joints[k].is_some());
-            let cause = if is_known { UnknownCause::TwoPositions } else { self.cause };
-            return Ok(Located::Unknown(cause));
-        }
-        Ok(Located::Known(self.angles(&found[0])))
-    }
-
-    /// Returns the rotary joints of a solution. One that any value solves keeps its own, also if that is unknown.
-    fn angles(&self, solution: &InverseSolution) -> [Option<f64>; 3] {
-        [0, 1, 2].map(|k| match solution.kept[k] && self.has_axis(k + 3) {
-            true => self.joints[k + 3],
-            false => Some(solution.joints[k + 3]),
-        })
-    }
-
-    /// Returns the angles, if all are known. If not, later motions are unknown for this cause.
-    fn all_angles(&mut self, angles: [Option<f64>; 3]) -> Option<[f64; 3]> {
-        if angles.contains(&None) {
-            self.cause = UnknownCause::Axis;
-        }
-        let [a, b, c] = angles;
-        Some([a?, b?, c?])
-    }
-
-    /// Refuses angles of the rotary axes at which the tool does not stand along z of a plane.
-    fn check_aligned(&self, frame: &Frame, axis: &Vector3<f64>) -> Result<Resolved, StepFault> {
-        let mut joints = self.joints;
-        joints[..3].fill(Some(0.0));
-        let Some(joints) = known(&joints) else { return Ok(Resolved::Unknown(self.cause)) };
-        let pose = frame.chain.without_linear_limits().pose(&joints)?;
-        let degrees = 2.0 * (0.5 * (pose.axis() - axis).norm()).asin().to_degrees();
-        if degrees > ALIGNED {
-            return Err(StepFault::NotAligned { degrees });
-        }
-        Ok(Resolved::Motions(Vec::new()))
-    }
-
-    /// Keeps the solutions with the lower or the higher value of the reference axis of CYCLE800, of those that are within limits. An axis
-    /// without limits counts from 0 to 360 degrees.
-    fn take_side(&mut self, step: &Step, found: &mut Vec<InverseSolution>, is_higher: bool) {
-        let is_other = |one: &InverseSolution, other: &InverseSolution| {
-            (3..6).any(|k| (one.joints[k] - other.joints[k]).abs() > ANGLE_INCREMENT)
-        };
-        if !found.iter().any(|solution| is_other(solution, &found[0])) {
-            return;
-        }
-        let choice = self.ask(Rule::SwivelAxis, step);
-        let mut axes = (3..6).filter(|k| self.has_axis(*k));
-        let axis = match choice {
-            Some(Choice::SecondAxis) => axes.nth(1),
-            _ => axes.next(),
-        };
-        let Some(axis) = axis else { return };
-        let value = |solution: &InverseSolution| {
-            let angle = solution.joints[axis];
-            let angle = if self.endless[axis - 3] { angle.rem_euclid(360.0) } else { angle };
-            if is_higher { angle } else { -angle }
-        };
-        let greatest = found.iter().map(value).fold(f64::NEG_INFINITY, f64::max);
-        found.retain(|solution| value(solution) >= greatest - ANGLE_INCREMENT);
-    }
-
-    /// Returns the index of the master axis of Heidenhain: the first rotary axis from the tool, or the last one from the table.
-    fn master(&self) -> Option<usize> {
-        // Axes are in order from the base outwards.
-        self.rotary(Side::Tool).last().or_else(|| self.rotary(Side::Table).next())
     }
 
     /// Returns the indices of the rotary joints of a side.
@@ -1029,237 +725,6 @@ impl<'a> Resolver<'a> {
             false => state.origin[axis],
         }
     }
-
-    /// Returns the chain of a tool by its length, in mm.
-    fn chain(&mut self, length: f64) -> Result<Chain, StepFault> {
-        if let Some((known, chain)) = &self.chain
-            && *known == length
-        {
-            return Ok(*chain);
-        }
-        let setup = Setup { work_offset: self.origin, tool_length: length };
-        let chain = self.machine.chain(&setup)?;
-        // Without a work offset, linear joints are known up to a displacement only.
-        let chain = if self.is_placed { chain } else { chain.without_linear_limits() };
-        self.chain = Some((length, chain));
-        Ok(chain)
-    }
-
-    /// Returns the mapping of a state's coordinates; the cause if only the machine knows it.
-    fn frame(&mut self, step: &Step) -> Result<Located<Frame>, StepFault> {
-        let state = &*step.state;
-        let is_tip = state.turns_with_workpiece();
-        let Lengths { length, offset, is_known } = match self.lengths(state)? {
-            Located::Known(lengths) => lengths,
-            Located::Unknown(cause) => return Ok(Located::Unknown(cause)),
-        };
-        let Some(shift) = self.known_in_machine(&state.shift) else {
-            return Ok(Located::Unknown(UnknownCause::Shift));
-        };
-        let guide = if is_tip { Some(self.chain(offset)?) } else { None };
-        let chain = self.chain(length)?;
-        let guide = guide.unwrap_or(chain);
-        let origin = if state.work_offset == WorkOffset::Standard(1) {
-            // G54 is the frame of the part: the program may set it to the same values, and to no others.
-            let mut origin = state.origin.iter().zip(&self.origin);
-            let is_moved = origin
-                .any(|(set, stated)| set.is_some_and(|value| !self.is_placed || value != *stated));
-            if state.origin_rotation != 0.0 || is_moved {
-                return Err(StepFault::MovedPart);
-            }
-            self.origin
-        } else {
-            match self.known_in_machine(&state.origin).filter(|_| self.is_placed) {
-                Some(origin) => origin,
-                None => {
-                    return Err(StepFault::NoOrigin { offset: state.work_offset });
-                }
-            }
-        };
-        let (turn, about) = match state.rotation.frame() {
-            Some(frame) => (frame.rotation, frame.origin),
-            None => (Matrix3::identity(), Vector3::zeros()),
-        };
-        let about = about + Vector3::new(shift[0], shift[1], shift[2]);
-        let mut linear = Vector3::new(origin[0], origin[1], origin[2]);
-        // A plane is aligned with the axes of the part, as positions of the tip are counted along them.
-        let aligns = matches!(step.path, StepPath::Align | StepPath::Pivot { .. });
-        let is_of_part = is_tip || aligns && matches!(state.rotation, Rotation::Tilted { .. });
-        let has_rotary_offset = origin[3..] != self.origin[3..] || shift[3..] != [0.0; 3];
-        // The part stands at the offset, if it is taken with the table as it stands.
-        let is_table_turned = is_tip
-            && self.rotary(Side::Table).any(|k| origin[k] != 0.0)
-            && self.ask(Rule::TcpStart, step) != Some(Choice::TableAsItStands);
-        if is_table_turned || is_of_part && (has_rotary_offset || state.origin_rotation != 0.0) {
-            return Err(StepFault::TurnedOffset { offset: state.work_offset });
-        }
-        if is_tip {
-            // The origin of the part's frame is that of G54.
-            linear -= Vector3::new(self.origin[0], self.origin[1], self.origin[2]);
-        } else {
-            linear.z += offset;
-        }
-        let map = if state.origin_rotation == 0.0 {
-            Map { rotation: turn, origin: about + linear }
-        } else {
-            let origin_turn = gcode::about(2, state.origin_rotation);
-            Map { rotation: origin_turn * turn, origin: origin_turn * about + linear }
-        };
-        self.is_length_known = is_known;
-        let rotary = [3, 4, 5].map(|k| origin[k] + shift[k]);
-        let has_unknown_lever = self.has_head && !is_known;
-        Ok(Located::Known(Frame { chain, guide, map, rotary, is_tip, has_unknown_lever }))
-    }
-
-    /// Returns the coordinates, if those of all axes of the machine are known. Others are 0.
-    fn known_in_machine(&self, position: &Position) -> Option<[f64; 6]> {
-        let mut values = *position;
-        for (value, letter) in values.iter_mut().zip(Letter::ALL) {
-            if self.machine.axis(letter).is_none() {
-                *value = value.or(Some(0.0));
-            }
-        }
-        known(&values)
-    }
-
-    /// Returns the length of the tool in the spindle and the length offset; the cause if only the machine knows where the
-    /// tip is. If neither is known, both count as 0: the tip is then where the program says. Without an offset this holds
-    /// for a program that names no tool: Z of the work offset is then that of the tip.
-    fn lengths(&self, state: &ControlState) -> Result<Located<Lengths>, StepFault> {
-        let tool = state.tool.or(self.unnamed_tool);
-        let known = tool.and_then(|tool| self.setup.lengths.get(&tool).copied());
-        let lengths = match (state.length, known) {
-            // The tip would be that of a tool without length.
-            (LengthOffset::Off, Some(length)) if state.turns_with_workpiece() && length != 0.0 => {
-                return Ok(Located::Unknown(UnknownCause::TcpWithoutLength));
-            }
-            (LengthOffset::Off, Some(length)) => Lengths { length, offset: 0.0, is_known: true },
-            (LengthOffset::Off, None) => match tool {
-                Some(tool) if !self.off_is_tip => {
-                    return Ok(Located::Unknown(UnknownCause::NoOffset { tool }));
-                }
-                _ => Lengths { length: 0.0, offset: 0.0, is_known: false },
-            },
-            (LengthOffset::On { length: Some(offset), .. }, Some(length)) => {
-                Lengths { length, offset, is_known: true }
-            }
-            (LengthOffset::On { register, length: offset }, length) => {
-                if let Some(tool) = tool.filter(|tool| *tool != register) {
-                    return Ok(Located::Unknown(UnknownCause::OtherOffset { tool, register }));
-                }
-                // The offset in the tool's own register is its length, so that one of them tells both.
-                let known = offset.or(length);
-                let length = known.unwrap_or(0.0);
-                Lengths { length, offset: length, is_known: known.is_some() }
-            }
-        };
-        let Lengths { length, offset, .. } = lengths;
-        if let (LengthOffset::On { register, .. }, Some(tool)) = (state.length, state.tool)
-            && state.turns_with_workpiece()
-            && (length - offset).abs() > LENGTH_TOLERANCE
-        {
-            return Err(StepFault::Length { register, offset, tool, length });
-        }
-        Ok(Located::Known(lengths))
-    }
-
-    /// Returns the register of a length offset that is not that of the tool in the spindle, if both lengths are known.
-    pub(super) fn other_length(&self, state: &ControlState) -> Option<(u32, u32)> {
-        let (LengthOffset::On { register, length: Some(offset) }, Some(tool)) =
-            (state.length, state.tool.or(self.unnamed_tool))
-        else {
-            return None;
-        };
-        let length = self.setup.lengths.get(&tool)?;
-        ((length - offset).abs() > LENGTH_TOLERANCE).then_some((register, tool))
-    }
-
-    /// Returns the position of the machine in program coordinates, as far as it is known.
-    fn current_position(&self, frame: &Frame) -> Position {
-        let mut position = self.joints;
-        for (k, angle) in position.iter_mut().enumerate().skip(3) {
-            *angle = angle.map(|angle| angle - frame.rotary[k - 3]);
-        }
-        if frame.is_plain() {
-            // Each axis is known by itself.
-            for (k, value) in position.iter_mut().enumerate().take(3) {
-                *value = value.map(|value| value - frame.map.origin[k]);
-            }
-            return position;
-        }
-        let mapped = if frame.is_tip {
-            let joints = known(&self.joints).filter(|_| !frame.has_unknown_lever);
-            let pose = joints.and_then(|joints| frame.guide.pose(&joints).ok());
-            pose.map(|pose| pose.tip().coords)
-        } else {
-            linear_only(&self.joints).map(|[x, y, z, ..]| Vector3::new(x, y, z))
-        };
-        let linear =
-            mapped.map(|mapped| frame.map.rotation.transpose() * (mapped - frame.map.origin));
-        for k in 0..3 {
-            position[k] = linear.map(|linear| linear[k]);
-        }
-        position
-    }
-
-    /// Keeps the joints that are known at an end that is not known in all axes.
-    fn forget(&mut self, frame: &Frame, end: &Position) {
-        self.joints = [0, 1, 2, 3, 4, 5].map(|k| match k {
-            0..3 => end[k].filter(|_| frame.is_plain()).map(|value| value + frame.map.origin[k]),
-            _ => end[k].map(|angle| angle + frame.rotary[k - 3]),
-        });
-    }
-}
-
-impl Frame {
-    /// Returns whether each linear joint depends on one coordinate alone.
-    fn is_plain(&self) -> bool {
-        !self.is_tip && self.map.rotation == Matrix3::identity()
-    }
-
-    /// Returns the joints at a position in program coordinates.
-    fn joints(&self, position: Joints) -> Joints {
-        let [x, y, z] = self.map.apply([position[0], position[1], position[2]]);
-        let [a, b, c] = [3, 4, 5].map(|k| position[k] + self.rotary[k - 3]);
-        [x, y, z, a, b, c]
-    }
-
-    /// Returns the motions between two positions in program coordinates.
-    fn motions(
-        &self,
-        path: &StepPath,
-        [start, end]: [Joints; 2],
-    ) -> Result<Vec<(JointMotion, f64)>, StepFault> {
-        let linear = [start, end].map(|position| [position[0], position[1], position[2]]);
-        let segments = path::map(path, linear, &self.map)?.into_iter();
-        let motions = segments.map(|segment| {
-            let rotary = segment.fractions.map(|at| {
-                [3, 4, 5].map(|k| {
-                    // The end is exactly the one that is stated.
-                    let value =
-                        if at == 1.0 { end[k] } else { start[k] + at * (end[k] - start[k]) };
-                    value + self.rotary[k - 3]
-                })
-            });
-            let motion = match self.is_tip {
-                true => {
-                    let motion = JointMotion::with_tcp(&self.guide, rotary, &segment.path)?;
-                    if self.guide == self.chain { motion } else { motion.with_tool(&self.chain) }
-                }
-                false => JointMotion::new(&self.chain, rotary, &segment.path)?,
-            };
-            Ok((motion, segment.error))
-        });
-        motions.collect()
-    }
-}
-
-/// Returns z of the tilted plane of a step, in the frame of the part; z itself without one.
-fn plane_axis(step: &Step) -> Vector3<f64> {
-    match &step.state.rotation {
-        Rotation::Tilted { frame, .. } => frame.rotation.column(2).into_owned(),
-        Rotation::Off | Rotation::Plane { .. } => Vector3::z(),
-    }
 }
 
 /// Returns the coordinates if all are known.
@@ -1274,20 +739,4 @@ fn known(position: &Position) -> Option<[f64; 6]> {
 /// Returns the position with rotary coordinates of 0, if X, Y and Z are known.
 fn linear_only(position: &Position) -> Option<[f64; 6]> {
     known(&[position[0], position[1], position[2], Some(0.0), Some(0.0), Some(0.0)])
-}
-
-/// Returns the level of the tip at joint values.
-fn level(chain: &Chain, joints: &Joints) -> Result<Level, StepFault> {
-    let mut above = *joints;
-    above[2] += 1.0;
-    let [pose, above] = [chain.pose(joints)?, chain.pose(&above)?];
-    // A link that Z of the table does not carry stands still while that moves.
-    let mut up = (above.tip() - pose.tip()).try_normalize(UPRIGHT).unwrap_or_else(Vector3::z);
-    if (up - Vector3::z()).norm() <= UPRIGHT {
-        up = Vector3::z();
-    }
-    // X and Y leave the level of a tool along Z of the machine, and any part of the tool is beyond its tip.
-    let is_along = (pose.axis() - up).norm() <= UPRIGHT;
-    let height = if is_along { pose.tip().coords.dot(&up) } else { f64::NEG_INFINITY };
-    Ok(Level { up, height })
 }

@@ -1,0 +1,85 @@
+//! Ways on which some axes are not known, judged by what they pass over.
+
+use super::super::{BlindWay, Level, StepFault};
+use super::{Resolver, UPRIGHT};
+use crate::gcode::{Position, Step};
+use crate::machine::{Axis, Chain, Joints, Side};
+use nalgebra::{Vector2, Vector3};
+
+impl Resolver<'_> {
+    /// Returns a step with joints at its ends on which Z is known, and X, Y or rotary axes are not. The tool is nowhere below its levels,
+    /// wherever these are: below all at a link or part that tilts. At the top of Z's travel a table may.
+    pub(super) fn blind_way(&self, step: &Step, ends: [Position; 2]) -> Option<BlindWay> {
+        let is_unknown = |k: usize, end: &Position| end[k].is_none() && self.has_axis(k);
+        let [starts_blind, ends_blind] =
+            ends.each_ref().map(|end| [0, 1, 3, 4, 5].into_iter().any(|k| is_unknown(k, end)));
+        if !step.commanded.contains(&true) || !(starts_blind || ends_blind) {
+            return None;
+        }
+        // From where nothing is known, the operator moves to the first position. Under tool centre point control Z of the tip can be
+        // stated before the axes are known.
+        let [starts_at_level, ends_at_level] = ends.map(|end| end[2].is_some());
+        let states_z = step.state.turns_with_workpiece() && step.start[2].is_some();
+        if !(starts_at_level || ends_at_level && ends_blind || states_z) {
+            return None;
+        }
+        let is_at_top = ends.iter().all(|end| end[2].is_some_and(|z| self.is_top(z)));
+        let chain = self.chain.as_ref()?.1.without_linear_limits();
+        let turns =
+            |k: usize| ends.iter().any(|end| is_unknown(k, end)) || ends[0][k] != ends[1][k];
+        let rotary = self.machine.axes().iter().filter(|axis| axis.letter.is_rotary());
+        let (about_z, tilting): (Vec<&Axis>, Vec<&Axis>) =
+            rotary.partition(|axis| axis.direction.xy() == Vector2::zeros());
+        let mut tilting = tilting.into_iter().filter(|axis| turns(axis.letter.index())).peekable();
+        if is_at_top && tilting.peek().is_some() {
+            return None;
+        }
+        // The links before the first axis of the table that tilts keep their levels, if the head tilts no tool.
+        let table = || self.machine.axes().iter().filter(|axis| axis.side == Side::Table);
+        let level_links = tilting.map(|axis| match axis.side {
+            Side::Table => table().take_while(|other| other.letter != axis.letter).count() + 1,
+            Side::Tool => 0,
+        });
+        let level_links = level_links.min().unwrap_or(usize::MAX);
+        // Axes about Z turn the part, and change no height while it is not tilted.
+        let is_turning = about_z.iter().any(|axis| turns(axis.letter.index()));
+        let known = ends.iter().filter(|end| end[2].is_some()).map(|end| {
+            let mut levels = self.levels(&chain, &end.map(Option::unwrap_or_default));
+            for (link, level) in levels.iter_mut().enumerate() {
+                if link >= level_links || is_turning && level.up != Vector3::z() {
+                    *level = Level::BELOW;
+                }
+            }
+            levels
+        });
+        let levels = known.reduce(|one, other| Level::lower(&one, &other));
+        // Otherwise only Z of the tip is known, about which the tool or the part swings.
+        let swings = level_links < usize::MAX;
+        let levels = levels.or_else(|| swings.then(|| vec![Level::BELOW; chain.link() + 1]))?;
+        Some(BlindWay { levels, is_at_top })
+    }
+
+    /// Returns the levels of the tip at joint values, relative to each link of the table and to the part.
+    pub(super) fn levels(&self, chain: &Chain, joints: &Joints) -> Vec<Level> {
+        let links = (0..chain.link()).map(|link| chain.relative_to(link));
+        let level = |chain: Chain| level(&chain.without_linear_limits(), joints).ok();
+        let levels = links.chain([Ok(*chain)]).map(|chain| chain.ok().and_then(level));
+        levels.map(|level| level.unwrap_or(Level::BELOW)).collect()
+    }
+}
+
+/// Returns the level of the tip at joint values.
+fn level(chain: &Chain, joints: &Joints) -> Result<Level, StepFault> {
+    let mut above = *joints;
+    above[2] += 1.0;
+    let [pose, above] = [chain.pose(joints)?, chain.pose(&above)?];
+    // A link that Z of the table does not carry stands still while that moves.
+    let mut up = (above.tip() - pose.tip()).try_normalize(UPRIGHT).unwrap_or_else(Vector3::z);
+    if (up - Vector3::z()).norm() <= UPRIGHT {
+        up = Vector3::z();
+    }
+    // X and Y leave the level of a tool along Z of the machine, and any part of the tool is beyond its tip.
+    let is_along = (pose.axis() - up).norm() <= UPRIGHT;
+    let height = if is_along { pose.tip().coords.dot(&up) } else { f64::NEG_INFINITY };
+    Ok(Level { up, height })
+}
