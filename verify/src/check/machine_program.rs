@@ -505,11 +505,14 @@ impl MachineProgram {
                     if let Some(way) = way_home.take() {
                         MachineSummary::add_blind_way(&mut summary.ways_home, step.block(), way);
                     }
-                    if let Some(way) = blind_way.take() {
+                    let way = blind_way.take();
+                    // Of a way with unknown axes at a known Z, its level is compared with all bodies.
+                    let is_judged = cause == UnknownCause::Axis && way.is_some();
+                    if let Some(way) = way {
                         MachineSummary::add_blind_way(&mut summary.blind_ways, step.block(), way);
                     }
-                    let leaves_change = execution.resolver.leaves_change(&step);
-                    summary.add_unknown(&step, cause, leaves_change);
+                    let is_judged = is_judged || execution.resolver.leaves_change(&step, cause);
+                    summary.add_unknown(&step, cause, is_judged);
                     continue;
                 }
                 Resolved::Motions(motions) | Resolved::Band(Band { motions, .. }) => motions,

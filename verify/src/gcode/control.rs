@@ -147,8 +147,10 @@ pub(super) struct Control {
 /// Modal settings.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Modal {
-    /// `None` at the start and after G80.
+    /// `None` at the start and after G80, but where that goes back to `path`.
     motion: Option<Motion>,
+    /// The last of G0 to G3, which cycles do not end on Fanuc and Haas.
+    path: Option<Motion>,
     plane: Plane,
     pub(super) unit: Unit,
     /// Set by G20 and G21.
@@ -688,16 +690,23 @@ impl Control {
     /// Reads the motion mode.
     fn motion_mode(&mut self, block: &Block) {
         if block.code_of(Group::CycleOff).is_some() {
-            self.modal.motion = None;
+            // Cycles and G80 are a group of their own on Fanuc and Haas. After an arc the next block is mostly not meant as one.
+            let has_groups = self.stated(Rule::Dialect) == Some(Choice::Iso);
+            let is_straight = |motion: &Motion| matches!(motion, Motion::Rapid | Motion::Feed);
+            self.modal.motion = self.modal.path.filter(|path| has_groups && is_straight(path));
         }
         if let Some(code) = block.code_of(Group::Motion) {
-            self.modal.motion = Some(match code.tenths {
+            let motion = match code.tenths {
                 0 => Motion::Rapid,
                 10 => Motion::Feed,
                 20 => Motion::Arc { clockwise: true },
                 30 => Motion::Arc { clockwise: false },
                 tenths => Motion::Cycle(tenths / 10),
-            });
+            };
+            self.modal.motion = Some(motion);
+            if !matches!(motion, Motion::Cycle(_)) {
+                self.modal.path = Some(motion);
+            }
         }
         // Another motion word, or G80, ends the series with its initial level.
         if self.modal.cycle().is_none() {
@@ -800,6 +809,7 @@ impl Modal {
     fn new() -> Modal {
         Modal {
             motion: None,
+            path: None,
             plane: Plane::Xy,
             unit: Unit::Millimetre,
             unit_stated: false,

@@ -202,6 +202,53 @@ fn a_cycle_of_g90_keeps_its_levels_under_g91() {
     }
 }
 
+/// Fanuc and Haas have cycles and G80 in a group of their own: the motion before a series holds after it, and for the variables of the
+/// control during it. LinuxCNC, and whoever states no control, needs a motion word.
+#[test]
+fn a_series_leaves_the_motion_before_it() {
+    let setup = |control: &str| ControlSetup {
+        rules: ControlRules::named(control).expect("a control"),
+        ..at_zero()
+    };
+    let executed = |text: &str, control: &str| {
+        let text = format!("M3 S900\nG90 G17 G94 G54 {text}\nM30\n");
+        let (steps, _) = read(&text, &setup(control)).unwrap_or_else(|e| panic!("{text}{e}"));
+        steps.into_iter().map(|step| (step.rapid, step.end)).collect::<Vec<_>>()
+    };
+    let series = "G81 G99 X1. Z-3. R2. F100.\nX2.";
+    for control in ["fanuc", "haas"] {
+        for (short, long) in [
+            (format!("G0 Z9.\n{series}\nG80\nZ15."), format!("G0 Z9.\n{series}\nG0 Z15.")),
+            (format!("G1 Z9. F9.\n{series}\nG80\nZ15."), format!("G1 Z9. F9.\n{series}\nG1 Z15.")),
+            // Jumps on #4001, during the series and after it.
+            (
+                format!(
+                    "G0 Z9.\n{series}\nIF [#4001 EQ 0] GOTO 5\nX7.\nN5 G80\nIF [#4001 EQ 0] GOTO 6\nG0 Z50.\nN6 X3."
+                ),
+                format!("G0 Z9.\n{series}\nG0 X3."),
+            ),
+            // A full circle, once more.
+            ("G1 F9.\nG3 X0 Y0 I-2.\nI-2.".to_owned(), "G1 F9.\nG3 X0 Y0 I-2.\nG3 I-2.".to_owned()),
+        ] {
+            assert_eq!(executed(&short, control), executed(&long, control), "{control}: {short}");
+        }
+    }
+    for (control, text) in [
+        ("linuxcnc", format!("G0 Z9.\n{series}\nG80\nZ15.")),
+        ("fanuc", format!("{series}\nG80\nZ15.")),
+        ("fanuc", format!("G1 F9.\nG3 X0 Y0 I-2.\n{series}\nG80\nZ15.")),
+        ("haas", format!("G0 Z9.\n{series}\nG80 Z15.")),
+    ] {
+        let text = format!("M3 S900\nG90 G17 G94 G54 {text}\nM30\n");
+        let error = read(&text, &setup(control)).expect_err("no motion word");
+        assert!(is_fault(&error, "P0121"), "{text}{error}");
+    }
+    let tolerance = "G21 G90 G54 G17 G64 P0.01\nG0 X1\nM2\n";
+    assert!(read(tolerance, &setup("linuxcnc")).is_ok());
+    let error = read(tolerance, &setup("haas")).expect_err("P beside G54");
+    assert!(is_fault(&error, "P0120 P beside G54"), "{error}");
+}
+
 #[test]
 fn canned_cycles_stop_at_their_levels() {
     let levels = |program: &str| -> Vec<(f64, bool)> {

@@ -7,7 +7,7 @@ use crate::scene::{
 };
 use touchoff_verify::Verdict;
 use touchoff_verify::gcode::{Choice, ControlRules, Rule};
-use touchoff_verify::machine::{Letter, Link};
+use touchoff_verify::machine::{Letter, Link, Machine};
 
 /// The origin of G54 on the trunnion, 40 mm above the axis of A.
 const G54: &str = "[0, 0, -440]";
@@ -240,6 +240,17 @@ fn a_first_way_is_above_the_bodies_of_the_machine() {
     let text = iso("G0 A0. C0.\nG0 X0. Y0.\nG43 H1 Z1.\nG1 Z1. F500\nG0 Z100.");
     let column = scene("a.nc", &text, TRUNNION, G54);
     column.body([-5.0, 300.0, -900.0], [5.0, 310.0, 400.0], Link::Base).gives(HAAS, CLEAN, &[]);
+}
+
+/// A tool change at a stated Z leaves X and Y where they are: from there the first way is judged by its level.
+#[test]
+fn the_first_way_after_a_change_at_a_stated_height_has_a_level() {
+    for (level, verdict, gaps) in [("Z100.", CLEAN, &[][..]), ("Z-1.", NONE, &["V0607"])] {
+        let text = iso(&format!("G0 G43 H1 {level}\nG0 X4.5 Y0.\nG0 Z-1.\nG1 X4.4 F500\nG0 Z100."));
+        let (name, machine) = ("name = \"3-axis\"", Machine::file("3-axis").expect("a machine"));
+        let scene = scene("a.nc", &text, &machine.replace(name, &format!("{name}\n{CHANGE}")), G54);
+        scene.gives(HAAS, verdict, gaps);
+    }
 }
 
 /// The direction of CYCLE800 selects one of two positions of the rotary axes: on the way to one of them the table turns a post into the tool.

@@ -549,8 +549,8 @@ impl MachineSummary {
         }
     }
 
-    /// Notes a motion that is not checked. `leaves_change` is set on the way from a tool change at the top of the travel of Z.
-    pub(super) fn add_unknown(&mut self, step: &Step, cause: UnknownCause, leaves_change: bool) {
+    /// Notes a motion that is not checked. `is_judged` is set if it hits nothing all the same, or that is said elsewhere.
+    pub(super) fn add_unknown(&mut self, step: &Step, cause: UnknownCause, is_judged: bool) {
         let position = self.unknown.iter().position(|known| known.cause == cause);
         let position = position.unwrap_or_else(|| {
             let motions = UnknownMotions { cause, count: 0, first: step.block(), first_open: None };
@@ -560,8 +560,7 @@ impl MachineSummary {
         let unknown = &mut self.unknown[position];
         unknown.count += 1;
         // The way to the first position is the operator's, and that to the reference position the machine's.
-        let is_said = matches!(cause, UnknownCause::Start | UnknownCause::Home)
-            || cause == UnknownCause::ToolChange && leaves_change;
+        let is_said = is_judged || matches!(cause, UnknownCause::Start | UnknownCause::Home);
         if !step.rapid || !is_said {
             unknown.first_open.get_or_insert(step.block());
         }

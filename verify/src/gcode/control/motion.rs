@@ -25,9 +25,19 @@ impl Control {
             self.state.tcp == Tcp::Vector && block.has_any("IJK") || block.vector.is_some();
         let has_axes = block.has_any("XYZABC") || has_vector;
         match self.modal.motion {
-            // A full circle has no end: its word and a centre are enough.
-            Some(Motion::Arc { clockwise }) if has_axes || explicit && block.has_any("IJKR") => {
+            // A full circle has no end: its word and a centre are enough, and on Fanuc and Haas the centre alone.
+            Some(Motion::Arc { clockwise })
+                if has_axes
+                    || explicit && block.has_any("IJKR")
+                    || self.stated(Rule::Dialect) == Some(Choice::Iso) && block.has_any("IJK") =>
+            {
                 self.arc(block, clockwise)
+            }
+            // Only the words of later blocks are known to obey the motion before the series.
+            Some(Motion::Rapid | Motion::Feed)
+                if has_axes && !explicit && block.code_of(Group::CycleOff).is_some() =>
+            {
+                Err(GcodeFault::NoMotionMode)
             }
             Some(Motion::Cycle(number)) if has_axes => self.canned_cycle(block, number),
             Some(Motion::Rapid | Motion::Feed) if has_axes => self.straight(block),

@@ -146,8 +146,11 @@ impl Control {
             let expected = "a number from 0";
             return Err(GcodeFault::NotAllowed { word: 'S', value, expected });
         }
-        // G54.1 has its own P.
+        // G54.1 has its own P, and on LinuxCNC G64 takes it.
+        let is_tolerance = dialect == Some(Choice::Rs274Ngc)
+            && block.code_of(Group::PathControl).is_some_and(|code| code.tenths == 640);
         if block.has('P')
+            && !is_tolerance
             && let Some(code) =
                 block.code_of(Group::WorkOffset).filter(|code| !matches!(code.tenths, 541 | 1540))
         {

@@ -36,6 +36,8 @@ pub(in crate::gcode) enum Report {
     Line,
     /// G0 to G3, a canned cycle, or G80.
     Motion,
+    /// G0 to G3 alone.
+    Path,
     /// G17 to G19.
     Plane,
     /// G90 or G91.
@@ -60,6 +62,13 @@ impl Control {
             false => Some(value),
         };
         let on = |axis: usize, value: Option<f64>| value.and_then(|value| length(axis, value));
+        let number = |motion| match motion {
+            Motion::Rapid => 0.0,
+            Motion::Feed => 1.0,
+            Motion::Arc { clockwise: true } => 2.0,
+            Motion::Arc { clockwise: false } => 3.0,
+            Motion::Cycle(number) => f64::from(number),
+        };
         match report {
             Report::Position(axis) => on(axis, self.position[axis]),
             Report::Machine(axis) => on(axis, self.state.to_machine(self.position)[axis]),
@@ -77,19 +86,8 @@ impl Control {
             Report::Register => self.last_register.map(f64::from),
             Report::Feed => modal.feed,
             Report::Line => Some(self.line as f64),
-            Report::Motion => Some(match modal.motion {
-                None => 80.0,
-                Some(Motion::Rapid) => 0.0,
-                Some(Motion::Feed) => 1.0,
-                Some(Motion::Arc { clockwise }) => {
-                    if clockwise {
-                        2.0
-                    } else {
-                        3.0
-                    }
-                }
-                Some(Motion::Cycle(number)) => f64::from(number),
-            }),
+            Report::Motion => Some(modal.motion.map_or(80.0, number)),
+            Report::Path => modal.path.map(number),
             Report::Plane => Some(match modal.plane {
                 Plane::Xy => 17.0,
                 Plane::Zx => 18.0,

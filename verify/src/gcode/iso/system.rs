@@ -104,7 +104,7 @@ pub(super) fn numbered(number: u32, language: Language, control: &Control) -> Op
                 return report(Report::Machine(axis));
             }
             match number {
-                4001 => report(Report::Motion),
+                4001 => report(Report::Path),
                 4002 => report(Report::Plane),
                 4003 => report(Report::Distance),
                 4005 => report(Report::FeedMode),

@@ -371,8 +371,11 @@ impl<'a> Resolver<'a> {
 
     /// Returns whether an unknown motion is on the way from a tool change: that of Z to the top of its travel, or of other axes while it is
     /// there.
-    pub(super) fn leaves_change(&self, step: &Step) -> bool {
-        step.rapid && self.is_at_top && (step.is_homeward || !step.commanded[2])
+    pub(super) fn leaves_change(&self, step: &Step, cause: UnknownCause) -> bool {
+        cause == UnknownCause::ToolChange
+            && step.rapid
+            && self.is_at_top
+            && (step.is_homeward || !step.commanded[2])
     }
 
     /// Resolves the rest of a new tool where its change has left the axes. Without their joints, or the lengths on which these depend,
