@@ -218,6 +218,29 @@ impl<'g> CurveFunction<'g> {
         low > slack || high < -slack
     }
 
+    /// Returns whether points of a convex polygon may be below the curve, and above it. Within `tolerance` of it they may be either.
+    pub(crate) fn sides_over(&self, polygon: &Polygon, tolerance: f64) -> [bool; 2] {
+        let [low, high] = self.range_over(polygon);
+        let slack = self.slack_over(polygon, tolerance);
+        [low <= slack, high >= -slack]
+    }
+
+    /// Returns the value at a point and its gradient.
+    pub(crate) fn value_and_gradient(&self, p: Point) -> (f64, Point) {
+        let Value { value, gradient, .. } = self.at(p);
+        (value, gradient)
+    }
+
+    /// Returns the point of a convex polygon where a conic has no gradient.
+    pub(crate) fn stationary_point(&self, polygon: &[Point]) -> Option<Point> {
+        let CurveFunction::Conic { middle, factors: c } = self else { return None };
+        let determinant = 4.0 * c[3] * c[5] - c[4] * c[4];
+        let u = (c[4] * c[2] - 2.0 * c[5] * c[1]) / determinant;
+        let v = (c[4] * c[1] - 2.0 * c[3] * c[2]) / determinant;
+        let p = [middle[0] + u, middle[1] + v];
+        (p.iter().all(|part| part.is_finite()) && contains(polygon, p)).then_some(p)
+    }
+
     /// Notes that the value has the sign of the difference of two distances, where it is no conic.
     pub(crate) fn set_distances(&mut self, of_value: [Distance; 2]) {
         if let CurveFunction::Other { distances, .. } = self {
@@ -231,9 +254,9 @@ impl<'g> CurveFunction<'g> {
         if let [p] = polygon {
             return [self.value(*p); 2];
         }
-        let (middle, c) = match self {
+        match self {
             CurveFunction::Line { .. } => return range(polygon.iter().map(|p| self.value(*p))),
-            CurveFunction::Conic { middle, factors } => (middle, factors),
+            CurveFunction::Conic { .. } => {}
             CurveFunction::Other { distances: Some(distances), .. } => {
                 let mut ranges = distances.map(|distance| distance.range_over(polygon));
                 // Two features may be compared by their squared distances, which have no sign.
@@ -244,7 +267,7 @@ impl<'g> CurveFunction<'g> {
                 return [first[0] - second[1], first[1] - second[0]];
             }
             CurveFunction::Other { .. } => return [f64::NEG_INFINITY, f64::INFINITY],
-        };
+        }
         let [mut low, mut high] = [f64::INFINITY, f64::NEG_INFINITY];
         let mut include = |value: f64| (low, high) = (low.min(value), high.max(value));
         for (k, p) in polygon.iter().enumerate() {
@@ -257,12 +280,7 @@ impl<'g> CurveFunction<'g> {
                 include(start + t * (slope + t * bend));
             }
         }
-        // The point where the gradient is 0.
-        let determinant = 4.0 * c[3] * c[5] - c[4] * c[4];
-        let u = (c[4] * c[2] - 2.0 * c[5] * c[1]) / determinant;
-        let v = (c[4] * c[1] - 2.0 * c[3] * c[2]) / determinant;
-        let p = [middle[0] + u, middle[1] + v];
-        if contains(polygon, p) {
+        if let Some(p) = self.stationary_point(polygon) {
             include(self.value(p));
         }
         [low, high]

@@ -2,6 +2,7 @@
 //! distance.
 
 use super::Tree;
+use super::meetings::WrongPoint;
 use super::samples::Sample;
 use crate::diagnostic::{CheckKind, Diagnostic};
 use crate::formula::{CurveIndex, NEGATIVE, POSITIVE};
@@ -48,7 +49,10 @@ fn strip_points(end: Point, direction: Point, size: f64) -> Vec<Point> {
 }
 
 /// The greatest deviation of depth from the distance, in sizes. It is part of the stated error.
-const MAX_DEVIATION_FRACTION: f64 = 1e-8;
+pub(super) const MAX_DEVIATION_FRACTION: f64 = 1e-8;
+
+/// The difference of distances, in sizes, that a tree need not decide: rounding.
+pub(super) const INDIFFERENCE: f64 = 1e-13;
 
 /// Returns the greatest difference of a tree's depths from the distance, from the partition of the outline alone: nothing that
 /// the model's other passes found is relied on. `None` without a profile, or if the difference is more than a plan may have.
@@ -56,19 +60,22 @@ pub(crate) fn proved_deviation(model: &Model, tree: &Tree) -> Option<f64> {
     let model = partitioned_anew(model)?;
     let profile = model.profile.as_ref()?;
     let (shapes, size) = profile.functions(&model.graph, &model.curves);
-    Cells::new(&model, profile, &shapes, size, profile.pieces(&shapes)).deviation(tree).ok()
+    let pieces = profile.pieces(&shapes);
+    let cells = Cells::new(&model, profile, shapes, size, pieces);
+    cells.deviation(tree, &cells.wrong_meetings(tree)).ok()
 }
 
 /// The cells of a profile's features, and the outside, as pieces.
 pub(super) struct Cells<'m> {
     pub(super) model: &'m Model,
     profile: &'m Profile,
-    geometry: regionalise::Section<'m>,
-    pub(super) shapes: &'m [CurveFunction<'m>],
+    pub(super) geometry: regionalise::Section<'m>,
+    /// The tool's curves, and lines that its plan adds.
+    pub(super) shapes: Vec<CurveFunction<'m>>,
     pub(super) size: f64,
     /// The distance from a curve within which a point may be on either side of it.
-    tolerance: f64,
-    /// The pieces of the section, and the vertices of the outline.
+    pub(super) tolerance: f64,
+    /// The pieces of the section.
     pub(super) pieces: Vec<Rc<Piece>>,
 }
 
@@ -82,21 +89,13 @@ impl<'m> Cells<'m> {
     pub(super) fn new(
         model: &'m Model,
         profile: &'m Profile,
-        shapes: &'m [CurveFunction<'m>],
+        shapes: Vec<CurveFunction<'m>>,
         size: f64,
-        mut pieces: Vec<Rc<Piece>>,
+        pieces: Vec<Rc<Piece>>,
     ) -> Cells<'m> {
         let geometry = profile.inner.section();
-        pieces.extend(geometry.vertices().map(Rc::new));
-        Cells {
-            model,
-            profile,
-            geometry,
-            shapes,
-            size,
-            tolerance: 16.0 * f64::EPSILON * size,
-            pieces,
-        }
+        let tolerance = 16.0 * f64::EPSILON * size;
+        Cells { model, profile, geometry, shapes, size, tolerance, pieces }
     }
 
     /// Returns pieces whose owners are regions or the outside, and sample points of these.
@@ -107,7 +106,7 @@ impl<'m> Cells<'m> {
             });
             return (self.pieces.clone(), samples.collect());
         };
-        let divider = PieceDivider::new(&over.division, self.shapes, self.size);
+        let divider = PieceDivider::new(&over.division, &self.shapes, self.size);
         let (mut pieces, mut samples) = (Vec::new(), Vec::new());
         for SampledPiece { piece, points } in sampled {
             let points = points.iter().copied();
@@ -133,14 +132,25 @@ impl<'m> Cells<'m> {
         (pieces, samples)
     }
 
-    /// Returns the greatest error at the vertices of a piece if its points are given to an owner: of depth, but at a vertex of the
-    /// outline the distance of the owner itself, whose line may end elsewhere and yet have the right depth.
+    /// Returns the greatest error of depth at the vertices of a piece if its points are given to an owner. At a point the owner's own
+    /// distance counts too, since its line may end elsewhere and yet have the right depth.
     pub(super) fn loss(&self, piece: &Piece, owner: Option<usize>) -> f64 {
         let feature = owner.map(|region| self.profile.feature_of(region));
-        match (piece.is_vertex(), feature) {
-            (true, Some(feature)) => self.geometry.distance_of(feature, piece.vertices[0]),
-            _ => self.geometry.loss_at_vertices([piece.feature, feature], &piece.vertices),
-        }
+        let Some(own) = piece.feature.filter(|_| piece.is_point()) else {
+            return self.geometry.loss_at_vertices([piece.feature, feature], &piece.vertices);
+        };
+        let p = piece.vertices[0];
+        let distance = self.geometry.distance_of(own, p);
+        feature.map_or(distance, |feature| {
+            let depth = self.geometry.depth_at(feature, p);
+            (self.geometry.distance_of(feature, p) - distance).max((depth - distance).abs())
+        })
+    }
+
+    /// Returns the middle of the outline's box.
+    pub(super) fn middle(&self) -> Point {
+        let [low, high] = outline::bounding_box(&self.profile.outline);
+        [0, 1].map(|k| f64::midpoint(low[k], high[k]))
     }
 
     /// Returns a piece of a part as one of a region: of the given one if that belongs to the part, otherwise of the part's first.
@@ -163,13 +173,13 @@ impl<'m> Cells<'m> {
             match piece.signs_of(curve, &self.shapes[curve], self.tolerance) {
                 NEGATIVE => halves.below.push(Rc::clone(piece)),
                 POSITIVE => halves.above.push(Rc::clone(piece)),
-                // Rounding decides on which side of a curve a vertex on it is.
-                _ if piece.is_vertex() => {
+                // Rounding decides on which side of a curve a point on it is.
+                _ if piece.is_point() => {
                     halves.below.push(Rc::clone(piece));
                     halves.above.push(Rc::clone(piece));
                 }
                 _ => {
-                    let [below, above] = piece.halves(curve, self.shapes, self.tolerance);
+                    let [below, above] = piece.halves(curve, &self.shapes, self.tolerance);
                     halves.below.extend(below.map(Rc::new));
                     halves.above.extend(above.map(Rc::new));
                 }
@@ -178,13 +188,17 @@ impl<'m> Cells<'m> {
         halves
     }
 
-    /// Returns an upper bound of the difference of the depth that a tree gives from the distance.
+    /// Returns an upper bound of the difference of the depth that a tree gives from the distance: on the pieces, and at the
+    /// points where its curves meet.
     ///
     /// # Errors
     ///
     /// If it is more than a plan may have.
-    pub(super) fn deviation(&self, tree: &Tree) -> Result<f64, Diagnostic> {
-        match self.deviation_of(tree, &self.pieces) {
+    pub(super) fn deviation(&self, tree: &Tree, wrong: &[WrongPoint]) -> Result<f64, Diagnostic> {
+        let points = wrong.iter().map(|wrong| (wrong.error, wrong.piece.vertices[0]));
+        let greatest = points
+            .fold(self.deviation_of(tree, &self.pieces), |a, b| if a.0 >= b.0 { a } else { b });
+        match greatest {
             (deviation, _) if deviation <= MAX_DEVIATION_FRACTION * self.size => Ok(deviation),
             (_, at) => Err(inseparable_owners(self.model, at)),
         }
@@ -208,14 +222,9 @@ impl<'m> Cells<'m> {
                 let feature = owner.map(|region| self.profile.feature_of(region));
                 let losses = pieces.iter().map(|piece| {
                     let owners = [piece.feature, feature];
-                    if piece.is_vertex() {
-                        let loss = self.geometry.loss_at_vertices(owners, &piece.vertices);
-                        // Rounding of depths is no deviation.
-                        return (self.geometry.without_rounding(loss), piece.vertices[0]);
-                    }
                     let may_own = |part: &Polygon| {
                         let part = Piece { vertices: part.clone(), ..(**piece).clone() };
-                        part.may_own_a_point(self.shapes, self.tolerance)
+                        part.may_own_a_point(&self.shapes, self.tolerance)
                     };
                     let allowed = MAX_DEVIATION_FRACTION * self.size;
                     let loss =

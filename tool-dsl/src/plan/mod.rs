@@ -9,6 +9,7 @@
 //! sides.
 
 mod cells;
+mod meetings;
 mod profile;
 mod samples;
 mod signs;
@@ -146,6 +147,10 @@ pub(crate) fn plan(
         None => (by_signs(&model, &extent)?, 0.0),
         Some(profile) => {
             let plan = profile::plan(&model, profile, sampled)?;
+            for line in plan.lines {
+                let value = line.expression(&mut model.graph);
+                model.curves.push(Curve { name: None, value });
+            }
             match plan.has_owner_far_outside {
                 true => (limited_to_box(&mut model, &extent, plan.tree), plan.deviation),
                 false => (plan.tree, plan.deviation),

@@ -1,9 +1,10 @@
 //! The tree of a tool with a profile. Splits divide the pieces of its regions and the outside until one owner is left. Points on
-//! a splitting curve go to one side, or to a tree of their own if both sides need them. A vertex of the outline, where several
-//! curves meet, is on both sides of each, since rounding decides. At last every piece is followed to the leaves that it
-//! reaches, which bounds how far depth is from the distance.
+//! a splitting curve go to one side, or to a tree of their own if both sides need them. A point where several curves meet is on both
+//! sides of each, since rounding decides: leaves that are wrong about such points are divided. At last every piece is followed to
+//! the leaves that it reaches, which bounds how far depth is from the distance.
 
-use super::cells::{Cells, Halves};
+use super::cells::{Cells, Halves, INDIFFERENCE, MAX_DEVIATION_FRACTION};
+use super::meetings::{Line, WrongPoint};
 use super::samples::{ONE_SIDED_GAIN, SampleSubset, Samples};
 use super::{BITS_PER_ADDITION, MAX_TESTS, Tree, costs};
 use crate::diagnostic::Diagnostic;
@@ -22,8 +23,11 @@ const MAX_SKIPPED_CURVES: usize = 6;
 /// The relative cost of a test that the tree also makes elsewhere: code for lanes computes it once.
 const REPEATED_TEST_COST_FACTOR: f64 = 0.3;
 
-/// The difference of distances, in sizes, that a tree need not decide: rounding.
-const INDIFFERENCE: f64 = 1e-13;
+/// The cost of a line that the plan adds, in additions.
+const LINE_COST: f64 = 3.0;
+
+/// The number of times that a tree is mended where its curves meet.
+const MAX_MENDS: usize = 6;
 
 /// The plan of a profile.
 pub(super) struct ProfilePlan {
@@ -31,6 +35,8 @@ pub(super) struct ProfilePlan {
     /// The greatest difference of the tree's depths from the distance.
     pub(super) deviation: f64,
     pub(super) has_owner_far_outside: bool,
+    /// The lines that it tests after the model's curves.
+    pub(super) lines: Vec<Line>,
 }
 
 /// Plans a profile.
@@ -41,35 +47,54 @@ pub(super) fn plan(
 ) -> Result<ProfilePlan, Diagnostic> {
     let (shapes, size) = profile.functions(&model.graph, &model.curves);
     let pieces = sampled.iter().map(|sampled| Rc::clone(&sampled.piece)).collect();
-    let cells = Cells::new(model, profile, &shapes, size, pieces);
-    let (pieces, samples) = cells.of_regions(sampled);
+    let cells = Cells::new(model, profile, shapes, size, pieces);
+    let (mut pieces, samples) = cells.of_regions(sampled);
     let mut planner = Planner {
-        cells: &cells,
         costs: costs(model),
-        samples: Samples::new(&samples, &shapes),
+        samples: Samples::new(&samples, &cells.shapes),
         used: vec![false; model.curves.len()],
         tests: 0,
+        missing: Vec::new(),
+        cells,
     };
-    let tree = planner.tree(&pieces, &planner.samples.all(), planner.candidates())?;
+    let candidates = planner.candidates(false);
+    let mut tree = planner.tree(&pieces, &planner.samples.all(), candidates)?;
+    pieces.clone_from(&planner.cells.pieces);
     // A part's regions may leave out points of it, whose region does not matter but whose depth does.
-    let tree = match profile.over {
-        Some(_) => planner.mended(tree, &cells.pieces)?,
-        None => tree,
-    };
-    let deviation = cells.deviation(&tree)?;
-    let has_owner_far_outside = cells.has_owner_far_outside(&tree);
-    Ok(ProfilePlan { tree, deviation, has_owner_far_outside })
+    if profile.over.is_some() {
+        tree = planner.mended(tree, &pieces)?;
+    }
+    // Smaller errors are part of the deviation.
+    let is_mended = |wrong: &WrongPoint| wrong.error > MAX_DEVIATION_FRACTION * size;
+    let (mut lines, mut wrong) = (Vec::new(), planner.cells.wrong_meetings(&tree));
+    for _ in 0..MAX_MENDS {
+        if !wrong.iter().any(is_mended) {
+            break;
+        }
+        pieces.extend(wrong.into_iter().filter(is_mended).map(|wrong| wrong.piece));
+        tree = planner.mended(tree, &pieces)?;
+        for line in std::mem::take(&mut planner.missing) {
+            planner.add(&line);
+            lines.push(line);
+        }
+        wrong = planner.cells.wrong_meetings(&tree);
+    }
+    let deviation = planner.cells.deviation(&tree, &wrong)?;
+    let has_owner_far_outside = planner.cells.has_owner_far_outside(&tree);
+    Ok(ProfilePlan { tree, deviation, has_owner_far_outside, lines })
 }
 
 /// The search for a tree of few tests.
 struct Planner<'m> {
-    cells: &'m Cells<'m>,
+    cells: Cells<'m>,
     /// The cost of each curve, in additions.
     costs: Vec<f64>,
     samples: Samples,
     /// The curves that the tree tests already.
     used: Vec<bool>,
     tests: usize,
+    /// Lines that would separate points from other pieces of a leaf, where no curve does.
+    missing: Vec<Line>,
 }
 
 /// A curve that may separate the pieces that are left.
@@ -110,12 +135,6 @@ impl PartialEq for Ranked {
 
 impl Eq for Ranked {}
 
-impl Candidate {
-    fn new(curve: CurveIndex) -> Candidate {
-        Candidate { curve, is_one_sided: false }
-    }
-}
-
 /// A curve to split by, its division of the pieces, and the side to which its own points go.
 struct Choice {
     curve: CurveIndex,
@@ -124,8 +143,15 @@ struct Choice {
 }
 
 impl Planner<'_> {
-    fn candidates(&self) -> Vec<Candidate> {
-        (0..self.costs.len()).map(Candidate::new).collect()
+    fn candidates(&self, is_one_sided: bool) -> Vec<Candidate> {
+        (0..self.costs.len()).map(|curve| Candidate { curve, is_one_sided }).collect()
+    }
+
+    /// Adds a line to the curves.
+    fn add(&mut self, line: &Line) {
+        self.cells.shapes.push(line.shape());
+        self.costs.push(LINE_COST);
+        self.used.push(false);
     }
 
     /// Divides the leaves of a tree to which pieces of other features come.
@@ -138,7 +164,8 @@ impl Planner<'_> {
                 }
                 let pieces = pieces.iter().map(|piece| self.cells.as_of_region(piece, owner));
                 let pieces: Vec<Rc<Piece>> = pieces.collect();
-                self.tree(&pieces, &SampleSubset::default(), self.candidates())
+                // Without samples, all are on one side.
+                self.tree(&pieces, &SampleSubset::default(), self.candidates(true))
             }
             Tree::Split { curve, strict, below, above } => {
                 let halves = self.cells.halves(curve, pieces);
@@ -173,7 +200,15 @@ impl Planner<'_> {
         let (choice, divides_nothing) = self.choose(&relevant, samples, &mut candidates);
         let Some(Choice { curve, halves, zeros }) = choice else {
             // Pieces that no curve separates are equally near, or are found by the deviation of the finished tree.
-            return Ok(Tree::Leaf(self.least_wrong_owner(pieces)));
+            let owner = self.least_wrong_owner(pieces);
+            let wrong = |piece: &&Rc<Piece>| {
+                piece.is_point() && self.cells.loss(piece, owner) > indifference
+            };
+            for point in pieces.iter().filter(wrong) {
+                let line = Line::between(point, pieces).filter(|line| !self.missing.contains(line));
+                self.missing.extend(line);
+            }
+            return Ok(Tree::Leaf(owner));
         };
         // What divides no wide piece may divide a narrow one.
         let are_all = relevant.len() == pieces.len();
@@ -299,6 +334,10 @@ impl Planner<'_> {
 
     /// Returns the owner, of those of some pieces, by which depth is least wrong in the others.
     fn least_wrong_owner(&self, pieces: &[Rc<Piece>]) -> Option<usize> {
+        // A point counts only where there is nothing else.
+        let areas: Vec<_> =
+            pieces.iter().filter(|piece| !piece.is_point()).map(Rc::clone).collect();
+        let pieces = if areas.is_empty() { pieces } else { &areas };
         let mut owners: Vec<_> = pieces.iter().map(|piece| piece.owner).collect();
         owners.sort_unstable();
         owners.dedup();

@@ -35,6 +35,8 @@ const MIN_AREA: f64 = 1e-20;
 const LITTLE_LOSS_FRACTION: f64 = 1e-12;
 /// The number of times that a polygon is halved for a closer bound of a loss.
 const MAX_LOSS_HALVINGS: usize = 12;
+/// The same where the bound is more than is allowed. Near a vertex where few points are owned, all but one of the halves have none.
+const MAX_SEARCH_HALVINGS: usize = 64;
 /// The part of a circle's radius that a polygon inside the circle may exceed it by.
 const LOOSE_RADIUS: f64 = 1.005;
 /// The difference of distances, in tolerances, above which a later feature is nearer than an earlier one.
@@ -452,7 +454,8 @@ impl Section<'_> {
             let least = self.loss_at_vertices([own, other], &polygon);
             let is_close = bound <= 2.0 * least + LITTLE_LOSS_FRACTION * self.size;
             let is_known = bound <= allowed || greatest > allowed;
-            if (is_close && is_known) || halvings == MAX_LOSS_HALVINGS {
+            let most = if bound <= allowed { MAX_LOSS_HALVINGS } else { MAX_SEARCH_HALVINGS };
+            if (is_close && is_known) || halvings >= most {
                 greatest = bound;
             } else {
                 let halves = halved(&polygon).into_iter().flatten();

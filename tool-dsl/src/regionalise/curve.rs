@@ -8,6 +8,8 @@ use crate::number::Number;
 /// A condition on the signs of expressions.
 #[derive(Clone, Debug)]
 pub(crate) enum Test {
+    /// The same for all points.
+    Const(bool),
     /// The expression is at most 0.
     AtMost(Id),
     /// All of these conditions hold.

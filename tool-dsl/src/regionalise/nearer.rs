@@ -10,6 +10,9 @@ use crate::number::Number;
 /// The sine below which two lines are compared by their distances: where they meet is too far away to be divided at.
 const NEARLY_PARALLEL_SINE: f64 = 1e-3;
 
+/// The distance, in sizes, within which lines and circles touch. Depth errs by no more if they are taken to do so.
+const TOUCHING: f64 = 1e-13;
+
 /// The kind of a feature, in a comparison of distances.
 enum Kind<'o> {
     Line(usize),
@@ -37,6 +40,9 @@ impl Section<'_> {
     /// Below, `A = |p - c|²` for the first corner or centre, `B` is the same for the other, `l` the distance to a line,
     /// and `r` a radius.
     pub(super) fn nearer(&self, graph: &mut Graph, this: usize, other: usize) -> Option<Test> {
+        if let Some(nearer) = self.always_nearer(this, other) {
+            return Some(Test::Const(nearer == this));
+        }
         Some(match (self.kind(this), self.kind(other)) {
             (Kind::Line(a), Kind::Line(b)) => Test::AtMost(self.bisector(graph, a, b)?),
             (Kind::Point(p), Kind::Point(q)) => {
@@ -77,6 +83,46 @@ impl Section<'_> {
                 Test::AtMost(graph.sub(a, b))
             }
         })
+    }
+
+    /// Returns which of two features is nearer everywhere, if their lines or circles touch so that one is: the border is a line on
+    /// which both are equally near, and the difference of squares would be a square, the sign of which is rounding.
+    fn always_nearer(&self, a: usize, b: usize) -> Option<usize> {
+        // A corner is a concave arc without a radius.
+        let circle = |feature: usize| match self.kind(feature) {
+            Kind::Line(_) | Kind::Flat => None,
+            Kind::Point(p) => Some((outline::doubles(p), 0.0, false)),
+            Kind::Arc(arc) => {
+                Some((outline::doubles(&arc.centre), arc.radius.to_f64(), arc.convex))
+            }
+        };
+        let is_rounding = |difference: f64| difference.abs() <= TOUCHING * self.size;
+        if self.joint(a, b).is_some() {
+            return None;
+        }
+        match (circle(a), circle(b)) {
+            (Some((p, radius, convex)), Some((q, other_radius, other_convex))) => {
+                let between = outline::norm(minus(p, q));
+                // A circle touches the other from inside, or two from outside.
+                let (touching, is_first) = match (convex, other_convex) {
+                    (true, true) => ((radius - other_radius).abs(), radius < other_radius),
+                    (false, false) => ((radius - other_radius).abs(), radius > other_radius),
+                    _ => (radius + other_radius, convex),
+                };
+                let touch = is_rounding(between - touching) && !is_rounding(between);
+                touch.then_some(if is_first { a } else { b })
+            }
+            (Some((centre, radius, convex)), None) | (None, Some((centre, radius, convex))) => {
+                let (round, line) = if circle(a).is_some() { (a, b) } else { (b, a) };
+                if !matches!(self.kind(line), Kind::Line(_)) {
+                    return None;
+                }
+                let height = self.depth_at(line, centre);
+                let touch = is_rounding(height - if convex { radius } else { -radius });
+                touch.then_some(if convex { round } else { line })
+            }
+            (None, None) => None,
+        }
     }
 
     /// Returns the difference of two lines' distances. If neither line is oblique, its terms are exact. Otherwise it is

@@ -51,33 +51,33 @@ pub(crate) struct ConditionedPart {
 }
 
 /// A division with the curves of the tool.
-pub(crate) enum PieceDivider<'a> {
-    Conditions(Conditions<'a>),
-    Rounded(RoundedPieces<'a>),
+pub(crate) enum PieceDivider<'a, 'g> {
+    Conditions(Conditions<'a, 'g>),
+    Rounded(RoundedPieces<'a, 'g>),
 }
 
 /// Conditions in order of precedence, with their curves.
-pub(crate) struct Conditions<'a> {
+pub(crate) struct Conditions<'a, 'g> {
     formulas: &'a [Formula],
-    shapes: &'a [CurveFunction<'a>],
+    shapes: &'a [CurveFunction<'g>],
     /// The size of the section.
     size: f64,
 }
 
 /// The pieces of a rounded outline, with the curves between them.
-pub(crate) struct RoundedPieces<'a> {
+pub(crate) struct RoundedPieces<'a, 'g> {
     section: RoundedSection<'a>,
     pieces: Vec<Piece>,
-    shapes: &'a [CurveFunction<'a>],
+    shapes: &'a [CurveFunction<'g>],
 }
 
-impl<'a> PieceDivider<'a> {
+impl<'a, 'g> PieceDivider<'a, 'g> {
     /// Prepares a division; `size` is the size of the section.
     pub(crate) fn new(
         division: &'a Division,
-        shapes: &'a [CurveFunction<'a>],
+        shapes: &'a [CurveFunction<'g>],
         size: f64,
-    ) -> PieceDivider<'a> {
+    ) -> PieceDivider<'a, 'g> {
         match division {
             Division::Conditions(formulas) => {
                 PieceDivider::Conditions(Conditions { formulas, shapes, size })
@@ -114,7 +114,7 @@ impl<'a> PieceDivider<'a> {
     }
 }
 
-impl Conditions<'_> {
+impl Conditions<'_, '_> {
     fn divided(&self, piece: Piece, tolerance: f64) -> Vec<(Piece, Option<usize>)> {
         let (mut pending, mut parts) = (vec![piece], Vec::new());
         while let Some(piece) = pending.pop() {
@@ -183,7 +183,7 @@ impl Overlay {
     pub(crate) fn new(
         section: &Section<'_>,
         pieces: Vec<Piece>,
-        divider: &PieceDivider<'_>,
+        divider: &PieceDivider<'_, '_>,
     ) -> Overlay {
         let mut overlay = Overlay { parts: Vec::new(), uncovered: None, doubly_covered: None };
         let mut largest: BTreeMap<usize, (f64, ConditionedPart)> = BTreeMap::new();

@@ -13,8 +13,8 @@ use crate::geometry::polygon::{
 };
 use std::rc::Rc;
 
-/// A convex polygon and the owner of some of its points: those on the known sides of curves. With one vertex it is one of the
-/// outline's.
+/// A convex polygon and the owner of some of its points: those on the known sides of curves. With one vertex it is a
+/// point, which rounding may put on either side of a curve through it.
 #[derive(Clone, Debug)]
 pub(crate) struct Piece {
     /// The nearest feature to the owned points; `None` for the outside.
@@ -29,9 +29,15 @@ pub(crate) struct Piece {
 }
 
 impl Piece {
+    /// Returns a piece of a feature, or of the outside, all of whose points are owned.
+    fn new(feature: Option<usize>, vertices: Polygon) -> Piece {
+        let (signs, alternatives) = (Vec::new(), Vec::new());
+        Piece { feature, owner: feature, vertices, signs, alternatives }
+    }
+
     /// Returns a piece of the outside.
     pub(super) fn outside(vertices: Polygon, signs: Vec<(CurveIndex, Signs)>) -> Piece {
-        Piece { feature: None, owner: None, vertices, signs, alternatives: Vec::new() }
+        Piece { signs, ..Piece::new(None, vertices) }
     }
 }
 
@@ -188,13 +194,7 @@ impl Partition {
                 .collect();
             for polygon in cover {
                 for polygon in decided(&section, polygon.clone(), &rivals, shapes) {
-                    let mut piece = Piece {
-                        feature: Some(feature),
-                        owner: Some(feature),
-                        vertices: polygon,
-                        signs: Vec::new(),
-                        alternatives: Vec::new(),
-                    };
+                    let mut piece = Piece::new(Some(feature), polygon);
                     let tolerance = section.tolerance();
                     let mut is_possible = piece.know(&separations.own[feature], shapes, tolerance);
                     for rival in &rivals {
@@ -214,23 +214,22 @@ impl Partition {
 }
 
 impl Section<'_> {
-    /// Returns the vertices of the outline, each as a piece of one point.
-    pub(crate) fn vertices(&self) -> impl Iterator<Item = Piece> {
-        let mut vertices: Vec<Piece> = Vec::new();
-        for (feature, index) in self.pieces() {
-            for end in self.outline[index].ends() {
-                if vertices.iter().all(|vertex| vertex.vertices != [end]) {
-                    vertices.push(Piece {
-                        feature: Some(feature),
-                        owner: Some(feature),
-                        vertices: vec![end],
-                        signs: Vec::new(),
-                        alternatives: Vec::new(),
-                    });
-                }
-            }
+    /// Returns a point with the nearest feature as its owner, or the outside; `None` if rounding decides about that.
+    pub(crate) fn point(&self, p: Point) -> Option<Piece> {
+        let distances: Vec<f64> =
+            (0..self.features.len()).map(|feature| self.distance_of(feature, p)).collect();
+        let distance = distances.iter().copied().fold(f64::INFINITY, f64::min);
+        // Where a corner is nearest, its segments end, whose lines and circles may be nearer.
+        let excess = |feature: &usize| (self.depth_at(*feature, p) - distance).abs();
+        let nearest = (0..distances.len())
+            .filter(|feature| distances[*feature] <= distance + self.tolerance())
+            .min_by(|one, other| excess(one).total_cmp(&excess(other)))?;
+        if distance <= self.tolerance() {
+            return Some(Piece::new(Some(nearest), vec![p]));
         }
-        vertices.into_iter()
+        let step = 0.25 * distance.min(1e-6 * self.size);
+        let [low, high] = [-step, step].map(|by| self.is_inside([p[0], p[1] + by]));
+        (low == high).then(|| Piece::new(low.then_some(nearest), vec![p]))
     }
 
     /// Returns points of a piece that belong to its owner, with weights: their share of its area, and most near the surface.
@@ -355,8 +354,8 @@ fn decided(
 }
 
 impl Piece {
-    /// Returns whether this is a vertex of the outline.
-    pub(crate) fn is_vertex(&self) -> bool {
+    /// Returns whether this is one point.
+    pub(crate) fn is_point(&self) -> bool {
         self.vertices.len() == 1
     }
 

@@ -164,6 +164,7 @@ fn derived_parts(
 fn formula(test: &Test, curves: &mut Curves, graph: &mut Graph) -> Formula {
     let zero = graph.int(0);
     match test {
+        Test::Const(holds) => Formula::Const(*holds),
         Test::AtMost(value) => curves.at_most(graph, *value, zero),
         Test::All(tests) => {
             Formula::All(tests.iter().map(|test| formula(test, curves, graph)).collect())

@@ -62,8 +62,10 @@ fn each_mistake_is_shown_at_its_segment() {
     assert_mistakes(MISTAKES, text);
 }
 
-/// Dishes at the axis, and collinear and tangent joints, are exact; a sphere is one arc. So are vertices where three curves meet
-/// of which rounding makes what no point has, be it that another segment's line leads through them.
+/// Dishes at the axis, and collinear and tangent joints, are exact; a sphere is one arc. So are points where three curves meet of
+/// which rounding makes what no point has: vertices, also on another segment's line, centres of arcs, where circles and lines come
+/// back, on the axis and outside, and where three features are equally near. So are lines on which the circle of an arc touches the
+/// line of another segment, and two points that no border separates.
 #[test]
 fn odd_profiles_are_exact() {
     let sphere = Segment::about([0.0, 0.0], [0.0, 6.0], [0.0, 3.0], true);
@@ -77,6 +79,15 @@ fn odd_profiles_are_exact() {
         9.11625 71.825 about 9.11625 63.26125, 3.8675000000000006 56.355000000000004, 0 56.355000000000004",
         "0 0, 0.00050625 0.009365624999999999, 0.00050625 0.015946875 radius 0.0161240625, 0.00050625 0.01879453125,
         0 0.01930078125 about 0 0.01879453125",
+        "0 0, 4 3, 7 3, 5 5, 4 7 about 2.5 5, 4 9, 0 10",
+        "0 0, 3 1 about 0 5, 3 7, 4 8, 4 9, 0 9",
+        "0 0, 1 5, 2 6, 5 9 about 2 9, 1 9 about 3 3, 4 12, 0 16 about 0 12",
+        "0 0, 0.7 1.4, 0.7 4.2 about 4.9 2.8, 3.5 7 about 0.7 7, 2.1 8.4 about 2.1 7, 4.9 11.2, 0 11.9",
+        "0 0, 1.4 0.7, 2.8 2.1, 2.8 2.8 about 2.8 2.45, 2.8 4.2, 2.1 8.4 about 2.45 6.3, 0 8.4",
+        "0 0, 4 2, 4 4.5, 5 5.5, 4 6.5 about 5 6.5, 4 14.5, 0 14.5",
+        "0 0, 0.5 0, 0.5 0.5, 0.5 1 about 1 0.75, 2.5 3, 0.5 5, 2 5, 0.5 6, 1.5 7 about 0.5 7, 0 8",
+        "0 0, 1.5 1.5, 1.5 1.75, 11 11.25 about 1.5 11.25, 11 13.5, 10.25 13.5, 10.25 17.5, 1.5 26.25, 0 26.75",
+        "0 0, 4 10, 1 13 about 4 13, 6 15 about 3.5 14, 0 16",
     ];
     let up = others.map(Outline::parse).into_iter().chain([Outline::up(vec![sphere])]);
     for outline in up.flat_map(|up| [Outline { down: true, ..up.clone() }, up]) {

@@ -8,11 +8,12 @@ use touchoff_dsl::interpret::Interpreter;
 use touchoff_tests::evaluations::{evaluate_points, of_reference};
 use touchoff_tests::oracle::profile::Feature;
 use touchoff_tests::oracle::rng::Rng;
-use touchoff_tests::oracle::vector::{add, norm, sub};
+use touchoff_tests::oracle::segment::Segment;
+use touchoff_tests::oracle::vector::{add, cross, norm, sub};
 
 pub(crate) type Flaw = (&'static str, String);
 
-/// Returns points anywhere, beside the surface, beside borders, on the axis and at the corners.
+/// Returns points anywhere, beside the surface, beside borders, on the axis, at the corners, and where borders meet.
 pub(crate) fn points(outline: &Outline, count: usize, rng: &mut Rng) -> Vec<P2> {
     let size = outline.size();
     let [low, high] = outline.profile.extent();
@@ -50,8 +51,68 @@ pub(crate) fn points(outline: &Outline, count: usize, rng: &mut Rng) -> Vec<P2> 
             }
         });
     }
+    all.extend(points_of_ties(outline, count / 16, rng));
     all.iter_mut().for_each(|p| p[0] = p[0].abs());
     all
+}
+
+/// Returns points where borders meet, and the doubles beside them, of which rounding says on which side of each they are: centres of
+/// arcs, meetings of the lines and circles of two segments, and points, found from `count` others, with three nearest features.
+fn points_of_ties(outline: &Outline, count: usize, rng: &mut Rng) -> Vec<P2> {
+    let segments = outline.segments();
+    let mut all: Vec<P2> = segments.iter().filter_map(Segment::centre).copied().collect();
+    for (k, one) in segments.iter().enumerate() {
+        for other in &segments[..k] {
+            let values =
+                |p: P2| [one, other].map(|segment| (segment.inward(&p), segment.outward(&p)));
+            all.extend([one.from, one.to, other.from, other.to].map(|start| root(start, values)));
+        }
+    }
+    let [low, high] = outline.profile.extent();
+    for _ in 0..count {
+        let start = [rng.between(0.0, high[0]), rng.between(low[1], high[1])];
+        let mut owners = outline.profile.owners().to_vec();
+        let distance = |feature: &Feature, p: &P2| outline.profile.distance(*feature, p);
+        all.push(root(start, |p| {
+            owners.sort_by(|a, b| distance(a, &p).total_cmp(&distance(b, &p)));
+            let [first, others @ ..] = [0, 1, 2].map(|k| {
+                let feature = owners[k.min(owners.len() - 1)];
+                (distance(&feature, &p), outline.profile.direction(feature, &p))
+            });
+            others.map(|(value, outward)| (value - first.0, sub(&outward, &first.1)))
+        }));
+    }
+    let reach = 2.0 * outline.size();
+    all.retain(|p| p.iter().all(|part| part.abs() <= reach));
+    let beside = |p: P2| {
+        let ulps = [[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1]];
+        ulps.map(|by| {
+            [0, 1].map(|k| {
+                if by[k] < 0 {
+                    p[k].next_down()
+                } else if by[k] > 0 {
+                    p[k].next_up()
+                } else {
+                    p[k]
+                }
+            })
+        })
+    };
+    all.into_iter().flat_map(beside).collect()
+}
+
+/// Returns where two values are 0, by Newton's method; each comes with the direction in which it falls as fast as the point moves.
+fn root(mut p: P2, mut values: impl FnMut(P2) -> [(f64, P2); 2]) -> P2 {
+    for _ in 0..50 {
+        let [(one, a), (other, b)] = values(p);
+        let step = [one * b[1] - other * a[1], other * a[0] - one * b[0]];
+        let moved = add(&p, &step, &(1.0 / cross(&a, &b)));
+        if !moved.iter().all(|part| part.is_finite()) {
+            break;
+        }
+        p = moved;
+    }
+    p
 }
 
 /// Compares the reference and the planned tool with brute force at `count` points.
