@@ -232,6 +232,10 @@ impl MachineProgram {
             _ => machine,
         };
         let is_placed = setup.work_offsets[0].is_some();
+        // The gauge point has a place where G54 or the tools have theirs.
+        if setup.t0_is_empty && (is_placed || !setup.lengths.is_empty()) {
+            setup.lengths.insert(0, 0.0);
+        }
         // The position of the machine before the program is unknown; axes that it lacks are at 0.
         setup.start = Letter::ALL.map(|letter| machine.axis(letter).is_none().then_some(0.0));
         if is_placed && machine.axes().iter().all(|axis| axis.home.is_some()) {
@@ -257,7 +261,8 @@ impl MachineProgram {
                 !offsets.any && causes.any(|cause| matches!(cause, UnknownCause::NoOffset { .. }));
             // In a program that names tools, the only tool of the job is in the spindle before: its body is checked there.
             let is_unnamed = summary.tools.iter().any(|tool| tool.number.is_none());
-            let mut lengths = program.setup.lengths.keys();
+            let is_tool = |tool: &&u32| !program.setup.is_spindle_empty(Some(**tool));
+            let mut lengths = program.setup.lengths.keys().filter(is_tool);
             let only = match (lengths.next(), lengths.next()) {
                 (Some(tool), None) if is_unnamed && offsets.names_tool => Some(*tool),
                 _ => None,
@@ -459,6 +464,7 @@ impl MachineProgram {
             && execution.interpreter.is_iso();
         while let Some((step, resolved)) = execution.next() {
             let number = step.state.tool;
+            let is_empty = self.setup.is_spindle_empty(number);
             let is_plain = step.state.tcp == Tcp::Off
                 && !matches!(step.state.rotation, Rotation::Tilted { .. });
             if assumes_direction && is_plain && resolved.is_turned() {
@@ -470,9 +476,15 @@ impl MachineProgram {
             // A tool change is no motion of the program, and its time is not counted.
             if !matches!(step.path, StepPath::ToolChange(_)) {
                 summary.time_of(number, &self.machine).add(&step, &resolved, &self.machine);
-                if !seen.iter().any(|(tool, _)| *tool == number) {
+                if is_empty {
+                    summary.first_empty.get_or_insert(step.block());
+                    summary.empty_blocks.insert(step.block());
+                } else if !seen.iter().any(|(tool, _)| *tool == number) {
                     seen.push((number, step.block()));
                 }
+            }
+            if let Some(way) = execution.resolver.empty_way.take() {
+                MachineSummary::add_blind_way(&mut summary.empty_ways, step.block(), way);
             }
             offsets.names_tool |= number.is_some();
             if let LengthOffset::On { register, .. } = step.state.length {
@@ -485,15 +497,18 @@ impl MachineProgram {
             if step.state.length == LengthOffset::Off
                 && step.state.turns_with_workpiece()
                 && !is_known
+                && !is_empty
             {
                 summary.tcp_without_length.get_or_insert(step.block());
             }
             summary.add_offset(&step, &self.setup);
-            if !step.rapid {
+            if !step.rapid && !is_empty {
                 summary.add_feed(&step, self.off_is_tip);
             }
+            let arrives = matches!(resolved, Resolved::Arrival(..));
             let motions = match resolved {
                 Resolved::ToolChange => continue,
+                Resolved::Loaded(_) if is_empty => continue,
                 Resolved::Loaded(_) => {
                     summary.use_of(&step);
                     continue;
@@ -502,35 +517,49 @@ impl MachineProgram {
                 | Resolved::Arrival(_, cause)
                 | Resolved::Departure(_, cause) => {
                     let Resolver { way_home, blind_way, .. } = &mut execution.resolver;
+                    let MachineSummary { blind_ways, ways_home, empty_ways, .. } = &mut summary;
                     if let Some(way) = way_home.take() {
-                        MachineSummary::add_blind_way(&mut summary.ways_home, step.block(), way);
+                        let ways = if is_empty { &mut *empty_ways } else { ways_home };
+                        MachineSummary::add_blind_way(ways, step.block(), way);
                     }
                     let way = blind_way.take();
                     // Of a way with unknown axes at a known Z, its level is compared with all bodies.
                     let is_judged = cause == UnknownCause::Axis && way.is_some();
                     if let Some(way) = way {
-                        MachineSummary::add_blind_way(&mut summary.blind_ways, step.block(), way);
+                        let ways = if is_empty { empty_ways } else { blind_ways };
+                        MachineSummary::add_blind_way(ways, step.block(), way);
                     }
-                    let is_judged = is_judged || execution.resolver.leaves_change(&step, cause);
+                    let is_judged =
+                        is_judged || execution.resolver.leaves_change(&step, cause, arrives);
                     summary.add_unknown(&step, cause, is_judged);
                     continue;
                 }
                 Resolved::Motions(motions) | Resolved::Band(Band { motions, .. }) => motions,
                 Resolved::AnyRapid(any) => {
                     let AnyRapid { straight, edges } = *any;
-                    let found = match edges {
-                        Some(_) => &mut summary.any_rapid,
-                        None => &mut summary.any_rotary_rapid,
-                    };
-                    found.get_or_insert(step.block());
+                    // The level of an empty spindle is the same at all rates, and it meets no stock.
+                    match edges {
+                        Some(_) if is_empty => {}
+                        Some(_) => {
+                            summary.any_rapid.get_or_insert(step.block());
+                        }
+                        None => {
+                            summary.any_rotary_rapid.get_or_insert(step.block());
+                        }
+                    }
                     vec![(straight, 0.0)]
                 }
             };
-            summary.use_of(&step).motions += 1;
-            if step.rapid {
-                summary.add_rapid(&step, self.off_is_tip, self.unnamed_tool);
+            if is_empty {
+                summary.empty_motions += 1;
+            } else {
+                summary.use_of(&step).motions += 1;
+                if step.rapid {
+                    summary.add_rapid(&step, self.off_is_tip, self.unnamed_tool);
+                }
             }
-            let other = execution.resolver.other_length(&step.state).filter(|_| !step.rapid);
+            let other = execution.resolver.other_length(&step.state);
+            let other = other.filter(|_| !step.rapid && !is_empty);
             if let Some((register, tool)) = other
                 && !summary.other_lengths.iter().any(|known| (known.1, known.2) == (register, tool))
             {

@@ -129,6 +129,8 @@ pub struct ControlSetup {
     pub additional_offsets: BTreeMap<u16, [f64; 6]>,
     /// Tool lengths in millimetres, by H or tool number.
     pub lengths: BTreeMap<u32, f64>,
+    /// Set if T0 leaves the spindle empty. Otherwise 0 is the number of a tool.
+    pub t0_is_empty: bool,
     /// Radius offsets of cutter compensation in millimetres, by D or tool number: the radius of the tool, or what it differs from the
     /// radius with which the program was made. A negative one exchanges G41 and G42.
     pub radius_offsets: BTreeMap<u32, f64>,
@@ -173,6 +175,7 @@ impl Default for ControlSetup {
             work_offsets: [None; 9],
             additional_offsets: BTreeMap::new(),
             lengths: BTreeMap::new(),
+            t0_is_empty: false,
             radius_offsets: BTreeMap::new(),
             presets: BTreeMap::new(),
             tool_names: BTreeMap::new(),
@@ -188,6 +191,13 @@ impl Default for ControlSetup {
             tool_change: None,
             max_repeated: MAX_REPEATED,
         }
+    }
+}
+
+impl ControlSetup {
+    /// Returns whether no tool is in the spindle after the call of a number.
+    pub(crate) fn is_spindle_empty(&self, tool: Option<u32>) -> bool {
+        self.t0_is_empty && tool == Some(0)
     }
 }
 

@@ -477,6 +477,7 @@ impl JobFile {
             work_offsets: self.work_offsets,
             additional_offsets: self.additional_offsets.clone(),
             lengths: self.tools.lengths(),
+            t0_is_empty: self.tools.lacks_zero(),
             variables: self.variables.clone(),
             subprograms,
             radius_offsets: self.radius_offsets.clone(),
@@ -569,6 +570,11 @@ impl JobTools {
                 .filter_map(|(number, entry)| Some((*number, entry.length?)))
                 .collect(),
         }
+    }
+
+    /// Returns whether the tools have numbers, and none has 0.
+    fn lacks_zero(&self) -> bool {
+        matches!(self, JobTools::Numbered { entries, .. } if !entries.contains_key(&0))
     }
 
     /// Returns the numbers of the tools that have names, by these.

@@ -772,6 +772,17 @@ faults! {
              origin of G54 in `work_offsets`, and `home` of the axes"
         )]
         LowWayHome { name: String },
+        /// A motion of an empty spindle (T0) at a height at which something stands.
+        ///
+        /// The job has no tool 0, and the shape of the spindle's nose is not known. Its gauge point has to stay above part, stock, fixtures
+        /// and bodies of the machine, wherever X and Y are. Under tool centre point control, and where a head tilts the spindle, it is taken
+        /// to be below all.
+        #[code = V0610]
+        #[error(
+            "the gauge point of the empty spindle (T0) is not known to stay above {name}: move Z above it before, with a spindle that is not \
+             tilted, or state `[tool.0]` with the shape of the spindle's nose and `length = 0`"
+        )]
+        LowSpindle { name: String },
     }
 }
 

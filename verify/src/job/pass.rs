@@ -10,13 +10,16 @@ use super::{Body, BodyFrame, BodyRole, Job, JobError, JobGap, JobTool, StockShap
 use crate::check::{ApproachSearch, MoveCheck, MoveRequest};
 use crate::gcode::{BlockLine, WorkOffset};
 use crate::machine::{Axis, Link, Machine, Side};
-use crate::{BlindWay, FindingGroup, Level, MachineSummary, Move, Verifier};
+use crate::{BlindWay, FindingGroup, Level, MachineProgram, MachineSummary, Move, Verifier};
 use nalgebra::{Point3, Vector3};
 use std::sync::Arc;
 use touchoff::tool::Symmetry;
 
 /// Rounding of heights, in the part's unit.
 const LEVEL_ROUNDING: f64 = 1e-6;
+
+/// A gap of a way by the name of what is higher.
+type NamedGap = fn(String) -> JobGap;
 
 /// Largest number of pairs of something that moves and a body. Each has a verifier and its findings in memory.
 const MAX_PAIRS: usize = 10_000;
@@ -142,8 +145,8 @@ impl<'a> Job<'a> {
         Ok(report)
     }
 
-    /// Returns the ways of each reading to the first position, and to a reference position that is not known, that are lower than a
-    /// body or the stock: X and Y are not known at one of their ends, and so what is between.
+    /// Returns the ways of each reading that are lower than a body or the stock: those to the first position and to a reference position
+    /// that is not known, of which X and Y are not known at one of their ends, and so what is between, and those of an empty spindle.
     fn low_ways(&self) -> impl Iterator<Item = (BlockLine, JobGap)> + '_ {
         let stock = self.stock.as_ref().map(|stock| match &stock.shape {
             StockShape::Box(corners) => *corners,
@@ -151,20 +154,29 @@ impl<'a> Job<'a> {
             StockShape::Points(points) => points.bounds(),
         });
         self.program.readings().iter().flat_map(move |reading| {
-            let MachineSummary { blind_ways, ways_home, .. } = reading.summary();
-            let to_first = blind_ways.iter().map(|way| (way, false));
-            let ways = to_first.chain(ways_home.iter().map(|way| (way, true)));
-            ways.filter_map(move |((block, way), leads_home)| {
-                let name = self.highest_above(way, stock)?.to_owned();
-                let gap =
-                    if leads_home { JobGap::LowWayHome { name } } else { JobGap::LowWay { name } };
-                Some((*block, gap))
+            let MachineSummary { blind_ways, ways_home, empty_ways, .. } = reading.summary();
+            // A tool may touch what it passes over, and the nose of a spindle may not.
+            let kinds: [(_, NamedGap, _); 3] = [
+                (blind_ways, |name| JobGap::LowWay { name }, LEVEL_ROUNDING),
+                (ways_home, |name| JobGap::LowWayHome { name }, LEVEL_ROUNDING),
+                (empty_ways, |name| JobGap::LowSpindle { name }, -LEVEL_ROUNDING),
+            ];
+            let ways = kinds.into_iter().flat_map(|(ways, gap, least)| {
+                ways.iter().map(move |(block, way)| (*block, way, gap, least))
+            });
+            ways.filter_map(move |(block, way, gap, least)| {
+                Some((block, gap(self.highest_above(way, stock, least)?.to_owned())))
             })
         })
     }
 
-    /// Returns the name of a body, or of the stock by its box, that is higher than a way.
-    fn highest_above(&self, way: &BlindWay, stock: Option<[Point3<f64>; 2]>) -> Option<&str> {
+    /// Returns the name of a body, or of the stock by its box, that is higher than a way by more than a length.
+    fn highest_above(
+        &self,
+        way: &BlindWay,
+        stock: Option<[Point3<f64>; 2]>,
+        least: f64,
+    ) -> Option<&str> {
         let unit = self.unit();
         let part = way.levels.last()?;
         let bodies = self.bodies.iter().filter(|body| body.meets_tools()).filter_map(|body| {
@@ -177,10 +189,10 @@ impl<'a> Job<'a> {
         let stock =
             stock.map(|bounds| ("the stock", top(part, bounds) - part.height / unit.millimetres()));
         let highest = bodies.chain(stock).max_by(|one, other| one.1.total_cmp(&other.1));
-        highest.filter(|(_, height)| *height > LEVEL_ROUNDING).map(|(name, _)| name)
+        highest.filter(|(_, height)| *height > least).map(|(name, _)| name)
     }
 
-    /// Returns the height of a body above a way; `None` for one that is not in it. What does not move with the part is out of the way at the
+    /// Returns the height of a body above a way; `None` for one that is not in it. What stands still on the machine is out of the way at the
     /// top of Z's travel, and what moves with the tool anywhere.
     fn height_above(&self, body: &Body<'_>, way: &BlindWay) -> Option<f64> {
         let unit = self.unit().millimetres();
@@ -191,10 +203,13 @@ impl<'a> Job<'a> {
         let link = body.frame.link(machine);
         let is_at_part = link == machine.last_link(Side::Table);
         let is_at_tool = !is_at_part && link == machine.last_link(Side::Tool);
-        if is_at_tool || way.is_at_top && !is_at_part {
+        let table = || machine.axes().iter().filter(|axis| axis.side == Side::Table);
+        let is_of_table = is_at_part
+            || table().any(|axis| link == Link::Axis(axis.letter))
+            || matches!(body.role, BodyRole::Fixture { .. });
+        if is_at_tool || way.is_at_top && !is_of_table {
             return None;
         }
-        let table = || machine.axes().iter().filter(|axis| axis.side == Side::Table);
         let index = match link {
             Link::Base => 0,
             // X and Y of a head can be anywhere beside what another link of it carries.
@@ -233,7 +248,9 @@ impl<'a> Job<'a> {
     /// Returns the number of checks of motions at bodies, those of all readings together.
     pub fn motion_checks(&self) -> usize {
         let (at_bodies, between) = self.pairs_of_each();
-        self.program.motions() * (at_bodies + between)
+        let summaries = self.program.readings().iter().map(MachineProgram::summary);
+        let empty: usize = summaries.map(|summary| summary.empty_motions).sum();
+        self.program.motions() * (at_bodies + between) + empty * between
     }
 
     /// Returns the number of bodies that a tool is checked against, and that of the pairs of all bodies of the machine.
@@ -356,7 +373,8 @@ impl<'a> Job<'a> {
         {
             let report = check.finish(progress)?;
             let groups = FindingGroup::join(&report.findings);
-            let remedies = groups.iter().map(|group| self.remedy(verifier, moving, body, group));
+            let remedies =
+                groups.iter().map(|group| self.remedy(verifier, moving, body, reading, group));
             let remedies = remedies.collect();
             pairs.push(PairReport { moving, body, reading, report, groups, remedies });
         }
@@ -375,6 +393,7 @@ impl<'a> Job<'a> {
         verifier: &Verifier<'_>,
         moving: Moving,
         body: usize,
+        reading: usize,
         group: &FindingGroup,
     ) -> Remedy {
         let machine = self.program.machine();
@@ -393,8 +412,13 @@ impl<'a> Job<'a> {
             },
             Moving::Revolved(index) => {
                 let revolved = &self.revolved[index];
-                let is_lifted =
-                    machine.is_some_and(|machine| revolved.is_lifted_by_length(machine));
+                // In an empty spindle no tool could be longer.
+                let reading = self.program.readings().get(reading);
+                let is_empty = reading.is_some_and(|reading| {
+                    reading.summary().empty_blocks.contains(&group.worst.block())
+                });
+                let is_lifted = !is_empty
+                    && machine.is_some_and(|machine| revolved.is_lifted_by_length(machine));
                 let lift = if is_lifted { verifier.lift(&group.worst) } else { None };
                 Remedy { lift, tilt: None }
             }

@@ -195,6 +195,20 @@ impl JointMotion {
         joints
     }
 
+    /// Returns a lower bound of the joint value of Z, in mm; `None` for a path of the tip that bends or on which axes turn.
+    pub(crate) fn lowest_z(&self) -> Option<f64> {
+        match &self.path.arc {
+            arc if self.tcp && (arc.is_some() || self.ends[0] != self.ends[1]) => None,
+            None => Some(self.joints(0.0)[2].min(self.joints(1.0)[2])),
+            Some(arc) => {
+                // The centre is at both ends of the prepared path.
+                let [_, _, normal] = arc.indices;
+                let radius = if normal == 2 { 0.0 } else { arc.radius() };
+                Some(self.path.start.z.min(self.path.end.z) - radius)
+            }
+        }
+    }
+
     /// Returns the values of a rotary axis at t = 0 and 1, in degrees.
     pub(super) fn rotary_ends(&self, letter: Letter) -> [f64; 2] {
         self.ends.map(|values| values[letter.index() - 3])

@@ -10,11 +10,11 @@ use touchoff_verify::{Gap, JobReport};
 #[test]
 fn a_tool_without_a_checked_motion_is_named() {
     let start = "T1 M6\nS9000 M3\nG43 H1 G0 X-6. Y0. Z20.\nG1 X4. Z1.\nG0 Z20.\n";
-    for (tool, words) in [("T2", "V0301 9 T2"), ("T0", "V0301 9 T0")] {
+    for (tool, number) in [("T2", 2), ("T0", 0)] {
         let scene = Scene::new(&format!("{start}G49\n{tool} M6\nG0 X0. Y0.\nZ-5."));
         let mut scene = scene.placed();
-        scene.job += "[tool.2]\ntool = \"D2Ball\"\n";
-        scene.gives(LINUXCNC, NONE, &[words, "V0407 9"]);
+        scene.job += &format!("[tool.{number}]\ntool = \"D2Ball\"\n");
+        scene.gives(LINUXCNC, NONE, &[&format!("V0301 9 {tool}"), "V0407 9"]);
     }
 }
 

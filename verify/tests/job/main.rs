@@ -4,6 +4,7 @@
 
 mod built;
 mod codes;
+mod empty_spindle;
 mod five_axes;
 mod folder;
 mod holes_and_arcs;

@@ -9,7 +9,7 @@ use crate::gcode::{
 };
 use crate::machine::{LimitViolation, Machine, SingularPass};
 use nalgebra::Vector3;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::fmt;
 
 /// Summary of a program on its machine.
@@ -40,6 +40,14 @@ pub struct MachineSummary {
     /// The blocks of ways to a reference position that is not known, in more axes than Z, with the level at which they begin: the lowest
     /// of each direction.
     pub ways_home: Vec<(BlockLine, BlindWay)>,
+    /// The blocks of motions of an empty spindle, with the level of its gauge point: the lowest of each direction.
+    pub empty_ways: Vec<(BlockLine, BlindWay)>,
+    /// The block of the first motion of an empty spindle.
+    pub first_empty: Option<BlockLine>,
+    /// The number of motions of an empty spindle whose ends are known.
+    pub empty_motions: usize,
+    /// The blocks of all its motions.
+    pub(crate) empty_blocks: HashSet<BlockLine>,
     /// The block of the first motion under tool centre point control, or in an aligned plane, without a tool length offset, and with
     /// a tool whose length is not stated.
     pub tcp_without_length: Option<BlockLine>,
@@ -301,6 +309,42 @@ faults! {
             "a rotary axis has moved in machine coordinates while an aligned plane is in force: end the plane before, or begin it anew"
         )]
         LeftPlane,
+        /// A motion of an empty spindle (T0) at a height that is not known.
+        ///
+        /// A verdict is possible if Z moves to the top of its travel first, and the other axes while it is there.
+        #[code = V0421]
+        #[error(
+            "the empty spindle (T0) moves at a height that is not known: state the origin of G54 in `work_offsets`, or move Z to its \
+             reference position first, and the other axes while it is there"
+        )]
+        EmptySpindle,
+        /// A motion of an empty spindle (T0) with a length offset that is not known.
+        #[code = V0422]
+        #[error(
+            "the empty spindle (T0) moves with the length offset H{register}, whose length is not stated: write G49 before, or state the \
+             length of tool {register} in the job"
+        )]
+        EmptyOffset {
+            /// The register.
+            register: u32,
+        },
+        /// A motion of a tool from where an empty spindle (T0) has left the axes.
+        ///
+        /// The length of the tool is not stated, or the place of the empty spindle is not known. A verdict is possible if Z moves to the top
+        /// of its travel before the change.
+        #[code = V0423]
+        #[error(
+            "only the machine knows where the empty spindle (T0) has left the tip: state the origin of G54 in `work_offsets`, and the lengths \
+             of the tools"
+        )]
+        AfterEmpty,
+    }
+}
+
+impl UnknownCause {
+    /// Returns whether the height of an empty spindle is not known.
+    pub(super) fn is_of_empty(self) -> bool {
+        matches!(self, UnknownCause::EmptySpindle | UnknownCause::EmptyOffset { .. })
     }
 }
 
@@ -385,6 +429,17 @@ faults! {
             if *count == 1 { "" } else { "s" }
         )]
         Unlisted { count: usize },
+        /// Motions after T0, which leaves the spindle empty.
+        ///
+        /// The job states no tool 0. A verdict is possible if the gauge point of the spindle stays above part, stock, fixtures and bodies of
+        /// the machine; what of the spindle is lower than its gauge point, such as drive keys, is not known. A changer of LinuxCNC that is
+        /// `RANDOM_TOOLCHANGER` has a tool 0.
+        #[code = V0312]
+        #[error(
+            "T0 is taken to leave the spindle empty, and its motions are checked by the height of the gauge point alone: state `[tool.0]` if a \
+             tool has this number"
+        )]
+        EmptySpindle,
     }
 }
 
@@ -637,6 +692,9 @@ impl MachineSummary {
             let cause = UnknownCause::TcpWithoutLength;
             let reason = format!("tips are taken as programmed, but {cause}");
             gaps.push(Gap::open(block, cause.code(), reason));
+        }
+        if let Some(block) = self.first_empty {
+            gaps.push(said(block, CheckGap::EmptySpindle));
         }
         if let Some(block) = self.direction_assumed {
             gaps.push(said(block, CheckGap::RotaryDirection));

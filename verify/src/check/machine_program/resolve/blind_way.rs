@@ -1,9 +1,9 @@
-//! Ways on which some axes are not known, judged by what they pass over.
+//! Ways on which some axes are not known, and those of an empty spindle, judged by what they pass over.
 
 use super::super::{BlindWay, Level, StepFault};
-use super::{Resolver, UPRIGHT};
+use super::{Band, Resolved, Resolver, UPRIGHT};
 use crate::gcode::{Position, Step};
-use crate::machine::{Axis, Chain, Joints, Side};
+use crate::machine::{Axis, Chain, JointMotion, Joints, Side};
 use nalgebra::{Vector2, Vector3};
 
 impl Resolver<'_> {
@@ -27,36 +27,96 @@ impl Resolver<'_> {
         let chain = self.chain.as_ref()?.1.without_linear_limits();
         let turns =
             |k: usize| ends.iter().any(|end| is_unknown(k, end)) || ends[0][k] != ends[1][k];
-        let rotary = self.machine.axes().iter().filter(|axis| axis.letter.is_rotary());
-        let (about_z, tilting): (Vec<&Axis>, Vec<&Axis>) =
-            rotary.partition(|axis| axis.direction.xy() == Vector2::zeros());
-        let mut tilting = tilting.into_iter().filter(|axis| turns(axis.letter.index())).peekable();
-        if is_at_top && tilting.peek().is_some() {
+        if is_at_top && self.tilting(&turns).next().is_some() {
             return None;
         }
+        let known = ends.iter().filter(|end| end[2].is_some());
+        let levels = known
+            .map(|end| self.levels_while(&chain, &end.map(Option::unwrap_or_default), &turns))
+            .reduce(|one, other| Level::lower(&one, &other));
+        // Otherwise only Z of the tip is known, about which the tool or the part swings.
+        let swings = self.tilting(&turns).next().is_some();
+        let levels = levels.or_else(|| swings.then(|| vec![Level::BELOW; chain.link() + 1]))?;
+        Some(BlindWay { levels, is_at_top })
+    }
+
+    /// Returns the known motions of a step without a tool, with the levels of the spindle's gauge point.
+    ///
+    /// # Errors
+    /// If the machine has no chain to it.
+    pub(super) fn empty_way(&mut self, resolved: &Resolved) -> Result<Option<BlindWay>, StepFault> {
+        let motions: Vec<(&JointMotion, f64)> = match resolved {
+            Resolved::Motions(motions) => {
+                motions.iter().map(|(motion, error)| (motion, *error)).collect()
+            }
+            Resolved::Band(Band { motions, curves }) => {
+                motions.iter().chain(curves).map(|(motion, error)| (motion, *error)).collect()
+            }
+            // At any rates Z is between its ends.
+            Resolved::AnyRapid(any) => vec![(&any.straight, 0.0)],
+            Resolved::Arrival(motion, _)
+            | Resolved::Departure(motion, _)
+            | Resolved::Loaded(motion) => vec![(motion, 0.0)],
+            Resolved::Unknown(_) | Resolved::ToolChange => return Ok(None),
+        };
+        let chain = self.chain(0.0)?.without_linear_limits();
+        let ways = motions.into_iter().map(|(motion, error)| {
+            let ends = [0.0, 1.0].map(|at| motion.joints(at));
+            // Under tool centre point control Z follows the axes that turn.
+            let Some(lowest) = motion.lowest_z().map(|z| z - error) else {
+                return BlindWay { levels: vec![Level::BELOW; chain.link() + 1], is_at_top: false };
+            };
+            let turns = |k: usize| ends[0][k] != ends[1][k];
+            let [one, other] = ends.map(|mut joints| {
+                joints[2] = lowest;
+                self.levels_while(&chain, &joints, &turns)
+            });
+            BlindWay { levels: Level::lower(&one, &other), is_at_top: self.is_top(lowest) }
+        });
+        Ok(ways.reduce(|one, other| BlindWay {
+            levels: Level::lower(&one.levels, &other.levels),
+            is_at_top: one.is_at_top && other.is_at_top,
+        }))
+    }
+
+    /// Returns the levels of the tip at joint values while rotary axes turn by angles that are not known: below all at a link or part
+    /// that tilts.
+    fn levels_while(
+        &self,
+        chain: &Chain,
+        joints: &Joints,
+        turns: &dyn Fn(usize) -> bool,
+    ) -> Vec<Level> {
         // The links before the first axis of the table that tilts keep their levels, if the head tilts no tool.
         let table = || self.machine.axes().iter().filter(|axis| axis.side == Side::Table);
-        let level_links = tilting.map(|axis| match axis.side {
+        let level_links = self.tilting(turns).map(|axis| match axis.side {
             Side::Table => table().take_while(|other| other.letter != axis.letter).count() + 1,
             Side::Tool => 0,
         });
         let level_links = level_links.min().unwrap_or(usize::MAX);
         // Axes about Z turn the part, and change no height while it is not tilted.
-        let is_turning = about_z.iter().any(|axis| turns(axis.letter.index()));
-        let known = ends.iter().filter(|end| end[2].is_some()).map(|end| {
-            let mut levels = self.levels(&chain, &end.map(Option::unwrap_or_default));
-            for (link, level) in levels.iter_mut().enumerate() {
-                if link >= level_links || is_turning && level.up != Vector3::z() {
-                    *level = Level::BELOW;
-                }
+        let is_turning = self.rotary_axes(turns).any(|axis| !is_tilting(axis));
+        let mut levels = self.levels(chain, joints);
+        for (link, level) in levels.iter_mut().enumerate() {
+            if link >= level_links || is_turning && level.up != Vector3::z() {
+                *level = Level::BELOW;
             }
-            levels
-        });
-        let levels = known.reduce(|one, other| Level::lower(&one, &other));
-        // Otherwise only Z of the tip is known, about which the tool or the part swings.
-        let swings = level_links < usize::MAX;
-        let levels = levels.or_else(|| swings.then(|| vec![Level::BELOW; chain.link() + 1]))?;
-        Some(BlindWay { levels, is_at_top })
+        }
+        levels
+    }
+
+    /// Returns the rotary axes that turn.
+    fn rotary_axes<'s>(
+        &'s self,
+        turns: &'s dyn Fn(usize) -> bool,
+    ) -> impl Iterator<Item = &'s Axis> {
+        let rotary = self.machine.axes().iter().filter(|axis| axis.letter.is_rotary());
+        rotary.filter(|axis| turns(axis.letter.index()))
+    }
+
+    /// Returns the axes that turn, and tilt the part or the tool.
+    fn tilting<'s>(&'s self, turns: &'s dyn Fn(usize) -> bool) -> impl Iterator<Item = &'s Axis> {
+        self.rotary_axes(turns).filter(|axis| is_tilting(axis))
     }
 
     /// Returns the levels of the tip at joint values, relative to each link of the table and to the part.
@@ -66,6 +126,11 @@ impl Resolver<'_> {
         let levels = links.chain([Ok(*chain)]).map(|chain| chain.ok().and_then(level));
         levels.map(|level| level.unwrap_or(Level::BELOW)).collect()
     }
+}
+
+/// Returns whether an axis tilts what it carries.
+fn is_tilting(axis: &Axis) -> bool {
+    axis.direction.xy() != Vector2::zeros()
 }
 
 /// Returns the level of the tip at joint values.
@@ -78,8 +143,18 @@ fn level(chain: &Chain, joints: &Joints) -> Result<Level, StepFault> {
     if (up - Vector3::z()).norm() <= UPRIGHT {
         up = Vector3::z();
     }
-    // X and Y leave the level of a tool along Z of the machine, and any part of the tool is beyond its tip.
+    // X and Y leave the level of a tool along Z of the machine, unless a tilted table carries them, and any part of the tool is beyond
+    // its tip.
     let is_along = (pose.axis() - up).norm() <= UPRIGHT;
-    let height = if is_along { pose.tip().coords.dot(&up) } else { f64::NEG_INFINITY };
+    let height = pose.tip().coords.dot(&up);
+    for k in [0, 1] {
+        let mut beside = *joints;
+        beside[k] += 1.0;
+        let change = chain.pose(&beside)?.tip().coords.dot(&up) - height;
+        if change.abs() > UPRIGHT {
+            return Ok(Level { up, ..Level::BELOW });
+        }
+    }
+    let height = if is_along { height } else { f64::NEG_INFINITY };
     Ok(Level { up, height })
 }

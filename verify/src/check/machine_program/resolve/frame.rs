@@ -119,6 +119,16 @@ impl Resolver<'_> {
     fn lengths(&self, state: &ControlState) -> Result<Located<Lengths>, StepFault> {
         let tool = state.tool.or(self.unnamed_tool);
         let known = tool.and_then(|tool| self.setup.lengths.get(&tool).copied());
+        // Without a tool, Z is that of the gauge point, if that has a place and the offset is known.
+        if self.setup.is_spindle_empty(state.tool) {
+            match state.length {
+                _ if known.is_none() => return Ok(Located::Unknown(UnknownCause::EmptySpindle)),
+                LengthOffset::On { register, length: None } => {
+                    return Ok(Located::Unknown(UnknownCause::EmptyOffset { register }));
+                }
+                LengthOffset::Off | LengthOffset::On { .. } => {}
+            }
+        }
         let lengths = match (state.length, known) {
             // The tip would be that of a tool without length.
             (LengthOffset::Off, Some(length)) if state.turns_with_workpiece() && length != 0.0 => {

@@ -107,10 +107,16 @@ pub(super) struct Resolver<'a> {
     chain: Option<(f64, Chain)>,
     /// Set while Z is at the top of its travel, to which the program has moved it.
     is_at_top: bool,
+    /// Set if it was before the last step.
+    was_at_top: bool,
     /// The last step, if X, Y or rotary axes are not known on it, and Z is.
     pub(super) blind_way: Option<BlindWay>,
     /// The last step, if it leaves for a reference position that is not known, in more axes than Z.
     pub(super) way_home: Option<BlindWay>,
+    /// Set if Z stands where the empty spindle has left it.
+    follows_empty: bool,
+    /// The known motions of the last step, if the spindle is empty.
+    pub(super) empty_way: Option<BlindWay>,
     /// The joint values after the last step, as far as they are known.
     joints: Position,
     /// The reason for which others are not.
@@ -176,8 +182,11 @@ impl<'a> Resolver<'a> {
                 && machine.has_rotary(Side::Table),
             is_length_known: true,
             is_at_top: false,
+            was_at_top: false,
             blind_way: None,
             way_home: None,
+            follows_empty: false,
+            empty_way: None,
             chain: None,
             joints,
             cause: UnknownCause::Start,
@@ -189,17 +198,41 @@ impl<'a> Resolver<'a> {
     /// # Errors
     /// If the motion is not possible on the machine, or a length or an origin is missing.
     pub(super) fn resolve(&mut self, step: &Step) -> Result<Resolved, StepFault> {
-        (self.blind_way, self.way_home) = (None, None);
+        (self.blind_way, self.way_home, self.empty_way) = (None, None, None);
+        let is_empty = self.setup.is_spindle_empty(step.state.tool);
+        if !is_empty {
+            self.follow_empty(step);
+        } else {
+            // A change to a stated height leaves Z there, whatever was in the spindle.
+            let is_change = matches!(step.path, StepPath::ToolChange(_));
+            self.follows_empty = !(is_change && step.commanded[2]);
+        }
+        self.was_at_top = self.is_at_top;
         let before = self.joints;
         let resolved = self.resolve_step(step)?;
         if !matches!(resolved, Resolved::ToolChange | Resolved::Loaded(_)) {
             self.blind_way = self.blind_way(step, [before, self.joints]);
         }
+        if is_empty {
+            self.empty_way = self.empty_way(&resolved)?;
+        }
         Ok(resolved)
     }
 
+    /// Forgets the height of a tool whose length is not stated, where the empty spindle has left the axes: only at the top of Z's travel it is
+    /// out of the way.
+    fn follow_empty(&mut self, step: &Step) {
+        let follows = std::mem::take(&mut self.follows_empty);
+        let is_known = step.state.tool.is_some_and(|tool| self.setup.lengths.contains_key(&tool));
+        if self.cause.is_of_empty()
+            || follows && !is_known && self.joints[2].is_some_and(|z| !self.is_top(z))
+        {
+            self.joints[2] = self.joints[2].filter(|z| self.is_top(*z));
+            self.cause = UnknownCause::AfterEmpty;
+        }
+    }
+
     fn resolve_step(&mut self, step: &Step) -> Result<Resolved, StepFault> {
-        let was_at_top = self.is_at_top;
         if step.commanded[2] {
             self.is_at_top = step.is_homeward;
         }
@@ -231,8 +264,11 @@ impl<'a> Resolver<'a> {
             Located::Unknown(cause) => {
                 let lost = self.lose_linear(step, cause);
                 // The way home of machine coordinates is the same with and without the length offset: of Z alone, and of others at its top.
-                let is_free = was_at_top || step.commanded == Z_ALONE;
+                let is_free = self.was_at_top || step.commanded == Z_ALONE;
                 return Ok(match cause {
+                    _ if cause.is_of_empty() && step.is_homeward && is_free => {
+                        Resolved::Unknown(UnknownCause::Home)
+                    }
                     UnknownCause::NoOffset { .. } if step.is_homeward && is_free => {
                         Resolved::Unknown(UnknownCause::Home)
                     }
@@ -370,12 +406,17 @@ impl<'a> Resolver<'a> {
     }
 
     /// Returns whether an unknown motion is on the way from a tool change: that of Z to the top of its travel, or of other axes while it is
-    /// there.
-    pub(super) fn leaves_change(&self, step: &Step, cause: UnknownCause) -> bool {
-        cause == UnknownCause::ToolChange
-            && step.rapid
-            && self.is_at_top
-            && (step.is_homeward || !step.commanded[2])
+    /// there. That of an empty spindle from there to a known position (`arrives`) is judged by its end.
+    pub(super) fn leaves_change(&self, step: &Step, cause: UnknownCause, arrives: bool) -> bool {
+        let is_of_change = matches!(cause, UnknownCause::ToolChange | UnknownCause::AfterEmpty);
+        // Without a tool the height matters alone, while nothing turns.
+        let is_empty = self.setup.is_spindle_empty(step.state.tool)
+            && !step.commanded[3..].contains(&true)
+            && (is_of_change || cause == UnknownCause::Return || cause.is_of_empty());
+        let stays_at_top = self.is_at_top && (step.is_homeward || !step.commanded[2]);
+        step.rapid
+            && ((is_of_change || is_empty) && stays_at_top
+                || is_empty && arrives && self.was_at_top)
     }
 
     /// Resolves the rest of a new tool where its change has left the axes. Without their joints, or the lengths on which these depend,
