@@ -9,20 +9,20 @@ use touchoff_verify::gcode::{Choice, Rule};
 use touchoff_verify::machine::{Letter, Link};
 
 /// A program of a control whose T1 passes over the part, and ends at the top of Z.
-struct Post {
-    control: &'static str,
-    file: &'static str,
+pub(crate) struct Post {
+    pub(crate) control: &'static str,
+    pub(crate) file: &'static str,
     /// Blocks up to the pass, which ends at the top of Z.
-    start: &'static str,
+    pub(crate) start: &'static str,
     /// The change to an empty spindle.
     empty: &'static str,
     /// The change to T1, above X-6 Y0.
     change: &'static str,
     /// The end.
-    end: &'static str,
+    pub(crate) end: &'static str,
 }
 
-const POSTS: [Post; 5] = [
+pub(crate) const POSTS: [Post; 5] = [
     Post {
         control: "fanuc",
         file: "a.nc",
@@ -67,7 +67,7 @@ const POSTS: [Post; 5] = [
 
 impl Post {
     /// Returns a block that moves to a coordinate, in rapid traverse or at feed rate.
-    fn to(&self, letter: char, value: f64, rapid: bool) -> String {
+    pub(crate) fn to(&self, letter: char, value: f64, rapid: bool) -> String {
         match (self.control, rapid) {
             ("heidenhain", true) => format!("L {letter}{value:+} R0 FMAX\n"),
             ("heidenhain", false) => format!("L {letter}{value:+} R0 F500\n"),
@@ -79,7 +79,7 @@ impl Post {
     }
 
     /// Returns a block that moves to a coordinate of the machine.
-    fn to_machine(&self, letter: char, value: f64) -> String {
+    pub(crate) fn to_machine(&self, letter: char, value: f64) -> String {
         match self.control {
             "heidenhain" => format!("L {letter}{value:+} R0 FMAX M91\n"),
             "siemens" => format!("SUPA G0 {letter}{value}\n"),
@@ -107,7 +107,7 @@ impl Post {
 }
 
 /// Returns the line of the first block of a text.
-fn line_of(text: &str, block: &str) -> usize {
+pub(crate) fn line_of(text: &str, block: &str) -> usize {
     1 + text.lines().position(|line| line == block.trim_end()).expect("the block")
 }
 

@@ -11,6 +11,7 @@ mod holes_and_arcs;
 mod in_the_way;
 mod jobs;
 mod left_open;
+mod lengths;
 mod machine_coordinates;
 mod motions;
 mod posts;

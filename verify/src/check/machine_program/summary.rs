@@ -328,16 +328,16 @@ faults! {
             /// The register.
             register: u32,
         },
-        /// A motion of a tool from where an empty spindle (T0) has left the axes.
+        /// A motion from where another tool, an empty spindle (T0) or machine coordinates have left Z.
         ///
-        /// The length of the tool is not stated, or the place of the empty spindle is not known. A verdict is possible if Z moves to the top
-        /// of its travel before the change.
+        /// Between the axis and the tip is a length that is not stated. A verdict is possible if Z is at the top of its travel, and leaves it
+        /// alone.
         #[code = V0423]
         #[error(
-            "only the machine knows where the empty spindle (T0) has left the tip: state the origin of G54 in `work_offsets`, and the lengths \
-             of the tools"
+            "only the machine knows where the tip is: another tool, an empty spindle (T0) or machine coordinates have left Z there, and a \
+             length is not stated: state the lengths of all tools in the job"
         )]
-        AfterEmpty,
+        TipHeight,
     }
 }
 

@@ -29,10 +29,10 @@ pub(super) struct Frame {
 }
 
 /// The length of the tool in the spindle and the length offset, in mm.
-struct Lengths {
+pub(super) struct Lengths {
     length: f64,
     offset: f64,
-    is_known: bool,
+    pub(super) is_known: bool,
 }
 
 impl Resolver<'_> {
@@ -96,7 +96,6 @@ impl Resolver<'_> {
             let origin_turn = gcode::about(2, state.origin_rotation);
             Map { rotation: origin_turn * turn, origin: origin_turn * about + linear }
         };
-        self.is_length_known = is_known;
         let rotary = [3, 4, 5].map(|k| origin[k] + shift[k]);
         let has_unknown_lever = self.has_head && !is_known;
         Ok(Located::Known(Frame { chain, guide, map, rotary, is_tip, has_unknown_lever }))
@@ -116,7 +115,7 @@ impl Resolver<'_> {
     /// Returns the length of the tool in the spindle and the length offset; the cause if only the machine knows where the
     /// tip is. If neither is known, both count as 0: the tip is then where the program says. Without an offset this holds
     /// for a program that names no tool: Z of the work offset is then that of the tip.
-    fn lengths(&self, state: &ControlState) -> Result<Located<Lengths>, StepFault> {
+    pub(super) fn lengths(&self, state: &ControlState) -> Result<Located<Lengths>, StepFault> {
         let tool = state.tool.or(self.unnamed_tool);
         let known = tool.and_then(|tool| self.setup.lengths.get(&tool).copied());
         // Without a tool, Z is that of the gauge point, if that has a place and the offset is known.

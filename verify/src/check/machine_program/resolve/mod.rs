@@ -101,8 +101,8 @@ pub(super) struct Resolver<'a> {
     is_placed: bool,
     /// Set if it is not, and a rotary axis turns the part.
     part_position_unknown: bool,
-    /// Set if the length of the tool is known by which the joints were computed.
-    is_length_known: bool,
+    /// The meaning of the height at which the joints are.
+    height: Height,
     /// The chain for the last tool length.
     chain: Option<(f64, Chain)>,
     /// Set while Z is at the top of its travel, to which the program has moved it.
@@ -113,14 +113,21 @@ pub(super) struct Resolver<'a> {
     pub(super) blind_way: Option<BlindWay>,
     /// The last step, if it leaves for a reference position that is not known, in more axes than Z.
     pub(super) way_home: Option<BlindWay>,
-    /// Set if Z stands where the empty spindle has left it.
-    follows_empty: bool,
     /// The known motions of the last step, if the spindle is empty.
     pub(super) empty_way: Option<BlindWay>,
     /// The joint values after the last step, as far as they are known.
     joints: Position,
     /// The reason for which others are not.
     cause: UnknownCause,
+}
+
+/// The meaning of Z of the joints.
+#[derive(Clone, Copy, PartialEq)]
+enum Height {
+    /// The axis, by a length that is stated or by machine coordinates.
+    OfAxis,
+    /// The tip of a tool: the axis is higher by its length, which is not stated.
+    OfTip(Option<u32>),
 }
 
 /// The path of several axes in rapid traverse.
@@ -180,12 +187,11 @@ impl<'a> Resolver<'a> {
             is_placed: setup.work_offsets[0].is_some(),
             part_position_unknown: setup.work_offsets[0].is_none()
                 && machine.has_rotary(Side::Table),
-            is_length_known: true,
+            height: Height::OfAxis,
             is_at_top: false,
             was_at_top: false,
             blind_way: None,
             way_home: None,
-            follows_empty: false,
             empty_way: None,
             chain: None,
             joints,
@@ -200,12 +206,11 @@ impl<'a> Resolver<'a> {
     pub(super) fn resolve(&mut self, step: &Step) -> Result<Resolved, StepFault> {
         (self.blind_way, self.way_home, self.empty_way) = (None, None, None);
         let is_empty = self.setup.is_spindle_empty(step.state.tool);
-        if !is_empty {
-            self.follow_empty(step);
-        } else {
-            // A change to a stated height leaves Z there, whatever was in the spindle.
-            let is_change = matches!(step.path, StepPath::ToolChange(_));
-            self.follows_empty = !(is_change && step.commanded[2]);
+        if !is_empty && self.cause.is_of_empty() {
+            self.cause = UnknownCause::TipHeight;
+        }
+        if !matches!(step.path, StepPath::ToolChange(_)) {
+            self.follow_height(step);
         }
         self.was_at_top = self.is_at_top;
         let before = self.joints;
@@ -219,17 +224,40 @@ impl<'a> Resolver<'a> {
         Ok(resolved)
     }
 
-    /// Forgets the height of a tool whose length is not stated, where the empty spindle has left the axes: only at the top of Z's travel it is
-    /// out of the way.
-    fn follow_empty(&mut self, step: &Step) {
-        let follows = std::mem::take(&mut self.follows_empty);
-        let is_known = step.state.tool.is_some_and(|tool| self.setup.lengths.contains_key(&tool));
-        if self.cause.is_of_empty()
-            || follows && !is_known && self.joints[2].is_some_and(|z| !self.is_top(z))
-        {
-            self.joints[2] = self.joints[2].filter(|z| self.is_top(*z));
-            self.cause = UnknownCause::AfterEmpty;
+    /// Forgets a height that has another meaning for the length of a step: between the axis and the tip of a tool, or the tips of two, is a
+    /// length that is not stated. At the top of Z's travel all tools are out of the way, and straight down from it.
+    fn follow_height(&mut self, step: &Step) {
+        let state = &step.state;
+        // Without a meaning the frame says why.
+        let Ok(Located::Known(lengths)) = self.lengths(state) else { return };
+        let height = match lengths.is_known {
+            true => Height::OfAxis,
+            false => Height::OfTip(state.tool.or(self.unnamed_tool)),
+        };
+        if self.height == height {
+            return;
         }
+        if let Some(z) = self.joints[2] {
+            // Positions of a part that turns move Z, those of the axes do not. In a tilted plane no length offset is read.
+            let is_upright = !state.turns_with_workpiece()
+                || matches!(step.path, StepPath::Machine(_) | StepPath::Align);
+            let is_top = self.is_top(z) && is_upright;
+            if is_top && !step.commanded[2] {
+                return;
+            }
+            // At any rates the axes are anywhere between their ends.
+            let is_any = step.rapid && matches!(self.rapid, RapidPath::Any);
+            let is_box = is_any && matches!(step.path, StepPath::Line);
+            if !(is_top && (step.commanded == Z_ALONE || is_box)) {
+                (self.joints[2], self.is_at_top) = (None, false);
+                // The height before a tool is named is the operator's.
+                self.cause = match self.height {
+                    Height::OfTip(None) => UnknownCause::Start,
+                    _ => UnknownCause::TipHeight,
+                };
+            }
+        }
+        self.height = height;
     }
 
     fn resolve_step(&mut self, step: &Step) -> Result<Resolved, StepFault> {
@@ -247,8 +275,9 @@ impl<'a> Resolver<'a> {
                 if self.joints[k].is_none() {
                     self.cause = UnknownCause::ToolChange;
                 }
-                // Without a head, Z alone depends on the length.
-                self.is_length_known |= k == 2 && self.joints[k].is_some() && !self.has_head;
+                if k == 2 {
+                    self.height = Height::OfAxis;
+                }
             }
             self.is_at_top |= step.commanded[2] && self.joints[2].is_some_and(|z| self.is_top(z));
             self.leave_plane(step, &before);
@@ -344,6 +373,14 @@ impl<'a> Resolver<'a> {
             // Without the place of the part, machine coordinates lead nowhere that is known.
             ends[1][k] = target[k].filter(|_| self.is_placed);
         }
+        if step.commanded[2] {
+            // A place of the axis is none of a tip, but straight up at the top.
+            if self.height != Height::OfAxis {
+                let is_free = step.commanded == Z_ALONE;
+                ends[1][2] = ends[1][2].filter(|z| is_free && self.is_top(*z));
+            }
+            self.height = Height::OfAxis;
+        }
         let shifted = |position: Position, sign: f64| {
             let origins = [0.0, 0.0, 0.0, frame.rotary[0], frame.rotary[1], frame.rotary[2]];
             [0, 1, 2, 3, 4, 5].map(|k| position[k].map(|value| value + sign * origins[k]))
@@ -408,7 +445,7 @@ impl<'a> Resolver<'a> {
     /// Returns whether an unknown motion is on the way from a tool change: that of Z to the top of its travel, or of other axes while it is
     /// there. That of an empty spindle from there to a known position (`arrives`) is judged by its end.
     pub(super) fn leaves_change(&self, step: &Step, cause: UnknownCause, arrives: bool) -> bool {
-        let is_of_change = matches!(cause, UnknownCause::ToolChange | UnknownCause::AfterEmpty);
+        let is_of_change = matches!(cause, UnknownCause::ToolChange | UnknownCause::TipHeight);
         // Without a tool the height matters alone, while nothing turns.
         let is_empty = self.setup.is_spindle_empty(step.state.tool)
             && !step.commanded[3..].contains(&true)
@@ -423,7 +460,7 @@ impl<'a> Resolver<'a> {
     /// only the machine knows the place.
     fn load(&mut self, step: &Step) -> Result<Resolved, StepFault> {
         let length = step.state.tool.and_then(|tool| self.setup.lengths.get(&tool).copied());
-        let joints = known(&self.joints).filter(|_| self.is_length_known);
+        let joints = known(&self.joints).filter(|_| self.height == Height::OfAxis);
         let (Some(joints), Some(length)) = (joints, length) else {
             return Ok(Resolved::ToolChange);
         };
@@ -565,6 +602,8 @@ impl<'a> Resolver<'a> {
         let mut known = (0..6).filter(|k| current[*k].is_some());
         let knows_axis = known.any(|k| self.machine.axis(Letter::ALL[k]).is_some());
         let is_start = self.cause == UnknownCause::Start;
+        // A height that is forgotten is none at which other axes go home.
+        let is_low = self.cause == UnknownCause::TipHeight && !step.commanded[2];
         // The way to a reference position before the first position is the operator's, too.
         if lost().next().is_some() && (!is_start || knows_axis) {
             self.cause = UnknownCause::Return;
@@ -576,7 +615,7 @@ impl<'a> Resolver<'a> {
                 return UnknownCause::Axis;
             }
         }
-        match step.is_homeward && lost().all(|k| current[k].is_some()) {
+        match step.is_homeward && !is_low && lost().all(|k| current[k].is_some()) {
             true => UnknownCause::Home,
             false => self.cause,
         }
