@@ -136,15 +136,27 @@ impl<'m> Cells<'m> {
     /// distance counts too, since its line may end elsewhere and yet have the right depth.
     pub(super) fn loss(&self, piece: &Piece, owner: Option<usize>) -> f64 {
         let feature = owner.map(|region| self.profile.feature_of(region));
+        let loss = self.depth_error(piece, owner);
+        match (piece.is_point(), piece.feature, feature) {
+            (true, Some(own), Some(other)) => {
+                let [own, other] =
+                    [own, other].map(|of| self.geometry.distance_of(of, piece.vertices[0]));
+                loss.max(other - own)
+            }
+            _ => loss,
+        }
+    }
+
+    /// Returns the greatest error of depth at the vertices of a piece if its points are given to an owner.
+    pub(super) fn depth_error(&self, piece: &Piece, owner: Option<usize>) -> f64 {
+        let feature = owner.map(|region| self.profile.feature_of(region));
         let Some(own) = piece.feature.filter(|_| piece.is_point()) else {
             return self.geometry.loss_at_vertices([piece.feature, feature], &piece.vertices);
         };
-        let p = piece.vertices[0];
-        let distance = self.geometry.distance_of(own, p);
-        feature.map_or(distance, |feature| {
-            let depth = self.geometry.depth_at(feature, p);
-            (self.geometry.distance_of(feature, p) - distance).max((depth - distance).abs())
-        })
+        // At the end of a feature its line or circle may be nearer.
+        let distance = self.geometry.distance_of(own, piece.vertices[0]);
+        let depth = feature.map_or(0.0, |of| self.geometry.depth_at(of, piece.vertices[0]));
+        (depth - distance).abs()
     }
 
     /// Returns the middle of the outline's box.

@@ -25,7 +25,9 @@ const MAX_STEPS: usize = 60;
 /// A point to which a tree may give a wrong depth.
 pub(super) struct WrongPoint {
     pub(super) piece: Rc<Piece>,
-    /// The greatest difference from its distance.
+    /// The greatest loss at a leaf that it may reach.
+    pub(super) loss: f64,
+    /// The greatest error of depth there.
     pub(super) error: f64,
 }
 
@@ -43,9 +45,11 @@ impl Cells<'_> {
                 continue;
             }
             let Some(piece) = self.geometry.point(p) else { continue };
-            let [d, z] = p.map(|x| Interval::new(x - self.tolerance, x + self.tolerance));
+            // Within what the point's pieces take for both sides of a curve.
+            let [d, z] = p.map(|x| [-0.5, 0.5].map(|by| x + by * self.tolerance));
+            let [d, z] = [d, z].map(|[low, high]| Interval::new(low, high));
             encloser.set(Cell::half_plane(Interval::new(d.low.max(0.0), d.high), z));
-            let mut error = 0.0f64;
+            let (mut loss, mut error) = (0.0f64, 0.0f64);
             let mut sides = |curve: CurveIndex| match self.model.curves.get(curve) {
                 Some(curve) => {
                     let values = encloser.get(curve.value);
@@ -53,9 +57,12 @@ impl Cells<'_> {
                 }
                 None => self.shapes[curve].sides_over(&piece.vertices, self.tolerance),
             };
-            tree.visit_leaves(&mut sides, &mut |owner| error = error.max(self.loss(&piece, owner)));
-            if error > INDIFFERENCE * self.size {
-                wrong.push(WrongPoint { piece: Rc::new(piece), error });
+            tree.visit_leaves(&mut sides, &mut |owner| {
+                loss = loss.max(self.loss(&piece, owner));
+                error = error.max(self.depth_error(&piece, owner));
+            });
+            if loss > INDIFFERENCE * self.size {
+                wrong.push(WrongPoint { piece: Rc::new(piece), loss, error });
             }
         }
         wrong

@@ -65,7 +65,7 @@ pub(super) fn plan(
         tree = planner.mended(tree, &pieces)?;
     }
     // Smaller errors are part of the deviation.
-    let is_mended = |wrong: &WrongPoint| wrong.error > MAX_DEVIATION_FRACTION * size;
+    let is_mended = |wrong: &WrongPoint| wrong.loss > MAX_DEVIATION_FRACTION * size;
     let (mut lines, mut wrong) = (Vec::new(), planner.cells.wrong_meetings(&tree));
     for _ in 0..MAX_MENDS {
         if !wrong.iter().any(is_mended) {

@@ -37,6 +37,8 @@ const LITTLE_LOSS_FRACTION: f64 = 1e-12;
 const MAX_LOSS_HALVINGS: usize = 12;
 /// The same where the bound is more than is allowed. Near a vertex where few points are owned, all but one of the halves have none.
 const MAX_SEARCH_HALVINGS: usize = 64;
+/// The number of polygons that are searched so. Along a curve there would be too many.
+const MAX_SEARCHED: usize = 1000;
 /// The part of a circle's radius that a polygon inside the circle may exceed it by.
 const LOOSE_RADIUS: f64 = 1.005;
 /// The difference of distances, in tolerances, above which a later feature is nearer than an earlier one.
@@ -444,7 +446,7 @@ impl Section<'_> {
         may_own: impl Fn(&Polygon) -> bool,
     ) -> f64 {
         let mut greatest = 0.0f64;
-        let mut pending = vec![(polygon.clone(), 0)];
+        let (mut pending, mut searched) = (vec![(polygon.clone(), 0)], 0);
         while let Some((polygon, halvings)) = pending.pop() {
             let bound = self.bound_of_loss(own, other, &polygon);
             // Only what is too much is worth the question whether there is any point.
@@ -454,7 +456,9 @@ impl Section<'_> {
             let least = self.loss_at_vertices([own, other], &polygon);
             let is_close = bound <= 2.0 * least + LITTLE_LOSS_FRACTION * self.size;
             let is_known = bound <= allowed || greatest > allowed;
-            let most = if bound <= allowed { MAX_LOSS_HALVINGS } else { MAX_SEARCH_HALVINGS };
+            let is_searched = bound > allowed && searched < MAX_SEARCHED;
+            searched += usize::from(is_searched && halvings >= MAX_LOSS_HALVINGS);
+            let most = if is_searched { MAX_SEARCH_HALVINGS } else { MAX_LOSS_HALVINGS };
             if (is_close && is_known) || halvings >= most {
                 greatest = bound;
             } else {
