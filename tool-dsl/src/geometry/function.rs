@@ -213,9 +213,7 @@ impl<'g> CurveFunction<'g> {
 
     /// Returns whether all points of a convex polygon are on the same side, farther than `tolerance` from the curve.
     pub(crate) fn is_beside(&self, polygon: &Polygon, tolerance: f64) -> bool {
-        let [low, high] = self.range_over(polygon);
-        let slack = self.slack_over(polygon, tolerance);
-        low > slack || high < -slack
+        self.sides_over(polygon, tolerance) != [true; 2]
     }
 
     /// Returns whether points of a convex polygon may be below the curve, and above it. Within `tolerance` of it they may be either.

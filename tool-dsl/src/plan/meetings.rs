@@ -46,8 +46,8 @@ impl Cells<'_> {
             }
             let Some(piece) = self.geometry.point(p) else { continue };
             // Within what the point's pieces take for both sides of a curve.
-            let [d, z] = p.map(|x| [-0.5, 0.5].map(|by| x + by * self.tolerance));
-            let [d, z] = [d, z].map(|[low, high]| Interval::new(low, high));
+            let half = 0.5 * self.tolerance;
+            let [d, z] = p.map(|x| Interval::new(x - half, x + half));
             encloser.set(Cell::half_plane(Interval::new(d.low.max(0.0), d.high), z));
             let (mut loss, mut error) = (0.0f64, 0.0f64);
             let mut sides = |curve: CurveIndex| match self.model.curves.get(curve) {

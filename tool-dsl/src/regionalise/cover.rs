@@ -56,7 +56,7 @@ impl Section<'_> {
     }
 
     /// Returns a difference of distances, or 0 if rounding decides its sign: a cut along a side would only multiply vertices.
-    pub(crate) fn without_rounding(&self, difference: f64) -> f64 {
+    fn without_rounding(&self, difference: f64) -> f64 {
         if difference.abs() <= self.tolerance() { 0.0 } else { difference }
     }
 

@@ -22,23 +22,18 @@ pub(crate) struct Post {
     pub(crate) end: &'static str,
 }
 
+const FANUC_POST: Post = Post {
+    control: "fanuc",
+    file: "a.nc",
+    start: "G17 G21 G40 G49 G80 G90 G94 G61\nG53 G0 Z0.\nT1 M6\nG54\nS9000 M3\nG0 X-6. Y0.\nG43 H1 Z20.\nG1 Z0.2 F500.\nX6.\nG0 Z20.\nG53 Z0.\n",
+    empty: "G49\nT0 M6\n",
+    change: "T1 M6\nM3\nG0 X-6. Y0.\nG43 H1 Z20.\n",
+    end: "G0 Z20.\nG53 Z0.\nG49\nM30\n",
+};
+
 pub(crate) const POSTS: [Post; 5] = [
-    Post {
-        control: "fanuc",
-        file: "a.nc",
-        start: "G17 G21 G40 G49 G80 G90 G94 G61\nG53 G0 Z0.\nT1 M6\nG54\nS9000 M3\nG0 X-6. Y0.\nG43 H1 Z20.\nG1 Z0.2 F500.\nX6.\nG0 Z20.\nG53 Z0.\n",
-        empty: "G49\nT0 M6\n",
-        change: "T1 M6\nM3\nG0 X-6. Y0.\nG43 H1 Z20.\n",
-        end: "G0 Z20.\nG53 Z0.\nG49\nM30\n",
-    },
-    Post {
-        control: "haas",
-        file: "a.nc",
-        start: "G17 G21 G40 G49 G80 G90 G94 G61\nG53 G0 Z0.\nT1 M6\nG54\nS9000 M3\nG0 X-6. Y0.\nG43 H1 Z20.\nG1 Z0.2 F500.\nX6.\nG0 Z20.\nG53 Z0.\n",
-        empty: "G49\nT0 M6\n",
-        change: "T1 M6\nM3\nG0 X-6. Y0.\nG43 H1 Z20.\n",
-        end: "G0 Z20.\nG53 Z0.\nG49\nM30\n",
-    },
+    FANUC_POST,
+    Post { control: "haas", ..FANUC_POST },
     Post {
         control: "linuxcnc",
         file: "a.ngc",

@@ -85,18 +85,8 @@ fn points_of_ties(outline: &Outline, count: usize, rng: &mut Rng) -> Vec<P2> {
     let reach = 2.0 * outline.size();
     all.retain(|p| p.iter().all(|part| part.abs() <= reach));
     let beside = |p: P2| {
-        let ulps = [[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1]];
-        ulps.map(|by| {
-            [0, 1].map(|k| {
-                if by[k] < 0 {
-                    p[k].next_down()
-                } else if by[k] > 0 {
-                    p[k].next_up()
-                } else {
-                    p[k]
-                }
-            })
-        })
+        let around = p.map(|x| [x, x.next_up(), x.next_down()]);
+        [[0, 0], [1, 0], [2, 0], [0, 1], [0, 2]].map(|by| [0, 1].map(|k| around[k][by[k]]))
     };
     all.into_iter().flat_map(beside).collect()
 }
