@@ -26,6 +26,9 @@ const REPEATED_TEST_COST_FACTOR: f64 = 0.3;
 /// The cost of a line that the plan adds, in additions.
 const LINE_COST: f64 = 3.0;
 
+/// The greatest number of tests that are tried for trees of points on a curve.
+const MAX_MERGED_TESTS: usize = 10 * MAX_TESTS;
+
 /// The number of times that a tree is mended where its curves meet.
 const MAX_MENDS: usize = 6;
 
@@ -54,6 +57,7 @@ pub(super) fn plan(
         samples: Samples::new(&samples, &cells.shapes),
         used: vec![false; model.curves.len()],
         tests: 0,
+        merged_tests: 0,
         missing: Vec::new(),
         cells,
     };
@@ -93,6 +97,8 @@ struct Planner<'m> {
     /// The curves that the tree tests already.
     used: Vec<bool>,
     tests: usize,
+    /// The number of tests in trees of points on a curve, before they are simplified.
+    merged_tests: usize,
     /// Lines that would separate points from other pieces of a leaf, where no curve does.
     missing: Vec<Line>,
 }
@@ -226,7 +232,7 @@ impl Planner<'_> {
         Ok(match zeros {
             // The points on the curve belong to the solid on either side.
             Zeros::Both => {
-                let on_curve = first_of(&below, &above);
+                let on_curve = self.first_of(&below, &above)?;
                 if on_curve == above {
                     Tree::split(curve, true, below, above)
                 } else if on_curve == below {
@@ -400,6 +406,35 @@ impl Planner<'_> {
         }
     }
 
+    /// Returns a tree whose leaves are the first listed of the owners in two trees.
+    fn first_of(&mut self, a: &Tree, b: &Tree) -> Result<Tree, Diagnostic> {
+        Ok(match (a, b) {
+            (Tree::Leaf(own), Tree::Leaf(other)) => {
+                Tree::Leaf(if rank(*other) < rank(*own) { *other } else { *own })
+            }
+            (Tree::Leaf(_), Tree::Split { curve, strict, below, above }) => {
+                self.count_merged()?;
+                let (below, above) = (self.first_of(a, below)?, self.first_of(a, above)?);
+                Tree::split(*curve, *strict, below, above)
+            }
+            (Tree::Split { curve, strict, below, above }, _) => {
+                self.count_merged()?;
+                let [low, high] = [true, false].map(|holds| b.simplified(*curve, *strict, holds));
+                let (below, above) = (self.first_of(below, &low)?, self.first_of(above, &high)?);
+                Tree::split(*curve, *strict, below, above)
+            }
+        })
+    }
+
+    /// Counts one more test of a tree of points on a curve.
+    fn count_merged(&mut self) -> Result<(), Diagnostic> {
+        self.merged_tests += 1;
+        if self.merged_tests > MAX_MERGED_TESTS {
+            return Err(super::too_large(self.cells.model));
+        }
+        Ok(())
+    }
+
     /// Returns the distance within which points of a border coincide.
     fn coincidence(&self) -> f64 {
         256.0 * f64::EPSILON * self.cells.size
@@ -454,22 +489,6 @@ impl Touching {
 /// Returns an owner's index in the list of regions, or `usize::MAX` for the outside.
 fn rank(owner: Option<usize>) -> usize {
     owner.unwrap_or(usize::MAX)
-}
-
-/// Returns a tree whose leaves are the first listed of the owners in two trees.
-fn first_of(a: &Tree, b: &Tree) -> Tree {
-    match (a, b) {
-        (Tree::Leaf(own), Tree::Leaf(other)) => {
-            Tree::Leaf(if rank(*other) < rank(*own) { *other } else { *own })
-        }
-        (Tree::Leaf(_), Tree::Split { curve, strict, below, above }) => {
-            Tree::split(*curve, *strict, first_of(a, below), first_of(a, above))
-        }
-        (Tree::Split { curve, strict, below, above }, _) => {
-            let [low, high] = [true, false].map(|holds| b.simplified(*curve, *strict, holds));
-            Tree::split(*curve, *strict, first_of(below, &low), first_of(above, &high))
-        }
-    }
 }
 
 #[cfg(test)]

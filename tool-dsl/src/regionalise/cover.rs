@@ -89,24 +89,12 @@ impl Section<'_> {
     pub(super) fn sides_of(&self, feature: Feature) -> Vec<HalfPlane> {
         match feature {
             Feature::Piece(piece) => {
-                let segment = &self.outline[piece];
-                let [from, to] = segment.ends();
-                match segment.round() {
-                    None => {
-                        let along = segment.tangent(false);
-                        vec![
-                            HalfPlane { from, toward: along },
-                            HalfPlane { from: to, toward: [-along[0], -along[1]] },
-                        ]
-                    }
-                    Some((centre, ..)) => {
-                        let [start, end] = [segment.tangent(false), segment.tangent(true)];
-                        vec![
-                            HalfPlane { from: centre, toward: start },
-                            HalfPlane { from: centre, toward: [-end[0], -end[1]] },
-                        ]
-                    }
+                let [mut start, end] = self.normal_sides(piece);
+                // One normal divides two segments without an angle, however their normals are rounded.
+                if self.is_smooth_start(piece) {
+                    start = self.normal_sides(piece - 1)[1].opposite();
                 }
+                vec![start, end]
             }
             Feature::Corner(previous) => {
                 let from = self.corner_at(previous);
@@ -119,6 +107,15 @@ impl Section<'_> {
                 .collect()
             }
         }
+    }
+
+    /// Returns the sides of the normals at a segment's ends toward it.
+    fn normal_sides(&self, piece: usize) -> [HalfPlane; 2] {
+        let segment = &self.outline[piece];
+        // The normals of an arc meet in its centre.
+        let [from, to] = segment.round().map_or(segment.ends(), |(centre, ..)| [centre; 2]);
+        let start = HalfPlane { from, toward: segment.tangent(false) };
+        [start, HalfPlane { from: to, toward: segment.tangent(true) }.opposite()]
     }
 
     /// Cuts off what is provably beyond a feature's own line or circle.
@@ -578,6 +575,10 @@ pub(super) struct HalfPlane {
 }
 
 impl HalfPlane {
+    fn opposite(self) -> HalfPlane {
+        HalfPlane { toward: self.toward.map(|part| -part), ..self }
+    }
+
     /// Returns the distance of a point from the border, positive inside.
     pub(super) fn at(&self, p: Point) -> f64 {
         dot(self.toward, minus(p, self.from))

@@ -240,7 +240,7 @@ impl Section<'_> {
     /// Returns whether two features touch only where they join, as far as a ball at `foot_point` can tell.
     fn shares_end(&self, feature: usize, foot_point: &FootPoint, other: usize) -> bool {
         // At an angle the two face each other, and a ball may touch both.
-        if self.smooth_joint(feature, other).is_empty() {
+        if self.smooth_joint(feature, other).is_none() {
             return false;
         }
         let [Some(a), Some(b)] = [feature, other].map(|index| self.features[index].piece()) else {

@@ -9,8 +9,9 @@ use crate::formula::{CurveIndex, Formula, NEGATIVE, POSITIVE, Signs};
 use crate::geometry::function::{CurveFunction, Distance};
 use crate::geometry::outline::{Point, bounding_box};
 use crate::geometry::polygon::{
-    Polygon, area, centroid, clipped, divided, do_touch, halved, sides, width,
+    Polygon, area, centroid, clipped, divided, do_touch, halved, range, sides, width,
 };
+use std::collections::VecDeque;
 use std::rc::Rc;
 
 /// A convex polygon and the owner of some of its points: those on the known sides of curves. With one vertex it is a
@@ -83,6 +84,8 @@ const TOUCHING_FRACTION: f64 = 1e-9;
 const SAMPLED_FRACTION: f64 = 0.25;
 /// The area that is sampled as one, relative to the square of the section's size.
 const MAX_SAMPLED_FRACTION: f64 = 1e-3;
+/// The number of times that a piece is halved because it is too large for what a rival's condition says.
+const MAX_PIECE_HALVINGS: usize = 6;
 /// The number of times that a piece is halved for points all over it.
 const DENSE_HALVINGS: usize = 7;
 /// The thickness of the layer near the surface that is weighted most, in sizes.
@@ -104,12 +107,9 @@ impl Partition {
         let mut nearer = Vec::new();
         for [a, b] in self.neighbours(&section) {
             // Tangent segments, and a corner and its segments, are told apart by the normals between them alone.
-            let joint = section.smooth_joint(a, b);
-            if !joint.is_empty() {
-                for (piece, end) in joint {
-                    if let Some(test) = section.before(graph, piece, end) {
-                        register(graph, &test);
-                    }
+            if let Some((piece, end)) = section.smooth_joint(a, b) {
+                if let Some(test) = section.before(graph, piece, end) {
+                    register(graph, &test);
                 }
                 continue;
             }
@@ -124,7 +124,9 @@ impl Partition {
             |piece: usize| self.outline.get(piece).is_some_and(|segment| segment.circle.is_some());
         for piece in 0..self.outline.len() {
             for (end, next) in [(0, piece.checked_sub(1)), (1, Some(piece + 1))] {
-                if (is_arc(piece) || next.is_some_and(is_arc))
+                let is_known = end == 0 && section.is_smooth_start(piece);
+                if !is_known
+                    && (is_arc(piece) || next.is_some_and(is_arc))
                     && let Some(test) = section.before(graph, piece, end)
                 {
                     register(graph, &test);
@@ -184,6 +186,7 @@ impl Partition {
         shapes: &[CurveFunction<'_>],
     ) -> Vec<Piece> {
         let section = self.section();
+        let tolerance = section.tolerance();
         let mut pieces = Vec::new();
         for (feature, cover) in self.covers.iter().enumerate() {
             let rivals: Vec<Rival<'_>> = separations
@@ -192,20 +195,29 @@ impl Partition {
                 .filter(|near| near.feature == feature)
                 .map(|near| Rival { feature: near.other, nearer: &near.formula })
                 .collect();
-            for polygon in cover {
-                for polygon in decided(&section, polygon.clone(), &rivals, shapes) {
-                    let mut piece = Piece::new(Some(feature), polygon);
-                    let tolerance = section.tolerance();
-                    let mut is_possible = piece.know(&separations.own[feature], shapes, tolerance);
-                    for rival in &rivals {
-                        if rival.competes(&section, &piece) {
+            let polygons = cover
+                .iter()
+                .flat_map(|polygon| decided(&section, polygon.clone(), &rivals, shapes));
+            let mut pending: VecDeque<_> = polygons.map(|polygon| (polygon, 0)).collect();
+            while let Some((polygon, halvings)) = pending.pop_front() {
+                let mut piece = Piece::new(Some(feature), polygon);
+                let mut is_possible = piece.know(&separations.own[feature], shapes, tolerance);
+                let mut is_vague = false;
+                for rival in &rivals {
+                    match rival.competes(&section, &piece) {
+                        Some(true) => {
                             is_possible &= piece.know(rival.nearer, shapes, tolerance)
                                 && piece.know(&separations.own[rival.feature], shapes, tolerance);
                         }
+                        Some(false) => {}
+                        None => is_vague |= piece.decide(rival.nearer, shapes, tolerance).is_none(),
                     }
-                    if is_possible {
-                        pieces.push(piece);
-                    }
+                }
+                if is_possible && is_vague && halvings < MAX_PIECE_HALVINGS {
+                    let halves = halved(&piece.vertices).into_iter().flatten();
+                    pending.extend(halves.map(|half| (half, halvings + 1)));
+                } else if is_possible {
+                    pieces.push(piece);
                 }
             }
         }
@@ -306,13 +318,16 @@ impl Rival<'_> {
     }
 
     /// Returns whether the condition holds for all points that a piece owns, since the rival itself is as near to them as its
-    /// line or circle. None of them is behind the rival.
-    fn competes(&self, section: &Section<'_>, piece: &Piece) -> bool {
-        let is_corner = matches!(section.features[self.feature], Feature::Corner(_));
+    /// line or circle. None of them is behind the rival. `None` if that is not known of so large a piece.
+    fn competes(&self, section: &Section<'_>, piece: &Piece) -> Option<bool> {
+        if matches!(section.features[self.feature], Feature::Corner(_)) {
+            return Some(true);
+        }
+        if !section.all_within(section.sector_sides(self.feature), &piece.vertices) {
+            return Some(false);
+        }
         let owner = piece.feature.unwrap_or(self.feature);
-        is_corner
-            || (section.all_within(section.sector_sides(self.feature), &piece.vertices)
-                && section.is_behind_nearer(owner, self.feature, &piece.vertices))
+        section.is_behind_nearer(owner, self.feature, &piece.vertices).then_some(true)
     }
 }
 
@@ -397,6 +412,14 @@ impl Piece {
         shapes: &[CurveFunction<'_>],
         tolerance: f64,
     ) -> Option<Piece> {
+        let is_apart = |axis: usize| {
+            let along = |piece: &Piece| range(piece.vertices.iter().map(|p| p[axis]));
+            let ([low, high], [other_low, other_high]) = (along(self), along(other));
+            high < other_low || other_high < low
+        };
+        if is_apart(0) || is_apart(1) {
+            return None;
+        }
         let mut common = self.clone();
         for side in sides(&other.vertices, tolerance) {
             common.vertices = clipped(&common.vertices, &|p| side.inward(p))?;

@@ -164,23 +164,28 @@ impl<'o> Section<'o> {
         }
     }
 
-    /// Returns the segments at a joint of two features without an angle between them, each with the end that is there (0 for
-    /// its start, 1 for its end): tangent segments, or a corner and one of its segments. Empty if there is no such joint.
-    pub(super) fn smooth_joint(&self, a: usize, b: usize) -> Vec<(usize, usize)> {
+    /// Returns whether a segment goes on from the one before it without an angle.
+    pub(super) fn is_smooth_start(&self, piece: usize) -> bool {
+        let (Some(before), Some(after)) = (piece.checked_sub(1), self.outline.get(piece)) else {
+            return false;
+        };
+        turn(self.outline[before].tangent(true), after.tangent(false)) == 0.0
+    }
+
+    /// Returns the segment at a joint of two features without an angle between them, with the end that is there (0 for
+    /// its start, 1 for its end): of tangent segments the first, of a corner and a segment that. `None` without such a joint.
+    pub(super) fn smooth_joint(&self, a: usize, b: usize) -> Option<(usize, usize)> {
         match (self.features[a], self.features[b]) {
             (Feature::Piece(a), Feature::Piece(b)) => {
                 let (low, high) = (a.min(b), a.max(b));
-                let [before, after] = [low, high].map(|piece| &self.outline[piece]);
-                let is_smooth =
-                    high == low + 1 && turn(before.tangent(true), after.tangent(false)) == 0.0;
-                if is_smooth { vec![(low, 1), (high, 0)] } else { Vec::new() }
+                (high == low + 1 && self.is_smooth_start(high)).then_some((low, 1))
             }
             (Feature::Piece(piece), Feature::Corner(previous))
             | (Feature::Corner(previous), Feature::Piece(piece)) => {
-                let adjacent = self.adjacent_segments(previous).into_iter().flatten();
-                adjacent.filter(|(segment, _)| *segment == piece).collect()
+                let mut adjacent = self.adjacent_segments(previous).into_iter().flatten();
+                adjacent.find(|(segment, _)| *segment == piece)
             }
-            (Feature::Corner(_), Feature::Corner(_)) => Vec::new(),
+            (Feature::Corner(_), Feature::Corner(_)) => None,
         }
     }
 

@@ -88,6 +88,9 @@ fn odd_profiles_are_exact() {
         "0 0, 0.5 0, 0.5 0.5, 0.5 1 about 1 0.75, 2.5 3, 0.5 5, 2 5, 0.5 6, 1.5 7 about 0.5 7, 0 8",
         "0 0, 1.5 1.5, 1.5 1.75, 11 11.25 about 1.5 11.25, 11 13.5, 10.25 13.5, 10.25 17.5, 1.5 26.25, 0 26.75",
         "0 0, 4 10, 1 13 about 4 13, 6 15 about 3.5 14, 0 16",
+        "0 0, 2 12, 5 16 about 3.5 14, 5 14 about 4 15, 0 14",
+        "0 0, 5 0, 5 11, 8 11 hollow radius 1.5, 5 13 about 6.5 12, 0 13",
+        "0 0, 0.8 0.4 radius 1, 1.000000000001 1 radius 1, 0 2",
     ];
     let up = others.map(Outline::parse).into_iter().chain([Outline::up(vec![sphere])]);
     for outline in up.flat_map(|up| [Outline { down: true, ..up.clone() }, up]) {
