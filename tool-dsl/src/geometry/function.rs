@@ -6,6 +6,7 @@ use crate::expr::polynomial::Polynomials;
 use crate::expr::value::{EvaluationPoint, Evaluator};
 use crate::expr::{Graph, Id};
 use crate::formula::{ANY_SIGN, Curve, NEGATIVE, POSITIVE, Signs};
+use crate::number::Number;
 
 /// The step of central differences: the root of the rounding of values is some 1e-8, and their curvature errs by its square.
 const DIFFERENCE_STEP: f64 = 1e-6;
@@ -99,24 +100,29 @@ impl<'g> CurveFunction<'g> {
             CurveFunction::Other { evaluator, id, distances: None }
         };
         let Some(polynomial) = polynomials.of(graph, id) else { return other() };
-        let mut factors = [0.0; 6];
-        let [m, n] = middle;
-        for (monomial, factor) in polynomial.terms() {
-            let c = factor.to_f64();
+        let [Some(m), Some(n)] = middle.map(Number::from_f64) else { return other() };
+        // In doubles, terms as large as the square of a coordinate would cancel.
+        let mut factors = [(); 6].map(|()| Number::int(0));
+        for (monomial, c) in polynomial.terms() {
             // The monomial in u = d - m and v = z - n, as terms that are added to the factors.
-            let terms: &[(usize, f64)] = match monomial {
-                [0, 0, 0, 0] => &[(0, c)],
-                [1, 0, 0, 0] => &[(0, c * m), (1, c)],
-                [0, 0, 0, 1] => &[(0, c * n), (2, c)],
-                [2, 0, 0, 0] => &[(0, c * m * m), (1, 2.0 * c * m), (3, c)],
-                [0, 0, 0, 2] => &[(0, c * n * n), (2, 2.0 * c * n), (5, c)],
-                [1, 0, 0, 1] => &[(0, c * m * n), (1, c * n), (2, c * m), (4, c)],
+            let of = |k: usize, by: &[&Number]| (k, by.iter().fold(c.clone(), |c, x| &c * *x));
+            let two = Number::int(2);
+            let terms = match monomial {
+                [0, 0, 0, 0] => vec![of(0, &[])],
+                [1, 0, 0, 0] => vec![of(0, &[&m]), of(1, &[])],
+                [0, 0, 0, 1] => vec![of(0, &[&n]), of(2, &[])],
+                [2, 0, 0, 0] => vec![of(0, &[&m, &m]), of(1, &[&two, &m]), of(3, &[])],
+                [0, 0, 0, 2] => vec![of(0, &[&n, &n]), of(2, &[&two, &n]), of(5, &[])],
+                [1, 0, 0, 1] => {
+                    vec![of(0, &[&m, &n]), of(1, &[&n]), of(2, &[&m]), of(4, &[])]
+                }
                 _ => return other(),
             };
             for (index, value) in terms {
-                factors[*index] += value;
+                factors[index] = &factors[index] + &value;
             }
         }
+        let factors = factors.map(|factor| factor.to_f64());
         match factors {
             [constant, slope_u, slope_v, 0.0, 0.0, 0.0] => {
                 CurveFunction::Line { middle, constant, slope: [slope_u, slope_v] }

@@ -174,9 +174,9 @@ pub(super) struct Line {
 }
 
 impl Line {
-    /// Returns the line in the middle of the widest gap between a point and the pieces of other owners, parallel to an axis or to a
-    /// side of their hull; `None` if there is no gap.
-    pub(super) fn between(point: &Piece, pieces: &[Rc<Piece>]) -> Option<Line> {
+    /// Returns a line in the widest gap between a point and the pieces of other owners, parallel to an axis or to a side of their
+    /// hull; `None` if there is no gap. It is near the pieces, since these have all points of their owners.
+    pub(super) fn between(point: &Piece, pieces: &[Rc<Piece>], tolerance: f64) -> Option<Line> {
         let p = point.vertices[0];
         let others = pieces.iter().filter(|piece| piece.owner != point.owner);
         let others: Vec<Point> = others.flat_map(|piece| piece.vertices.iter().copied()).collect();
@@ -191,7 +191,8 @@ impl Line {
             (normal, gap, low.max(-high))
         });
         let (normal, gap, width) = gaps.max_by(|one, other| one.2.total_cmp(&other.2))?;
-        let from = [0, 1].map(|k| p[k] + gap / 2.0 * normal[k]);
+        let offset = gap - gap.signum() * (gap.abs() / 2.0).min(tolerance);
+        let from = [0, 1].map(|k| p[k] + offset * normal[k]);
         (width > 0.0).then_some(Line { normal, from })
     }
 

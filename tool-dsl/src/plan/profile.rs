@@ -211,7 +211,8 @@ impl Planner<'_> {
                 piece.is_point() && self.cells.loss(piece, owner) > indifference
             };
             for point in pieces.iter().filter(wrong) {
-                let line = Line::between(point, pieces).filter(|line| !self.missing.contains(line));
+                let line = Line::between(point, pieces, self.coincidence());
+                let line = line.filter(|line| !self.missing.contains(line));
                 self.missing.extend(line);
             }
             return Ok(Tree::Leaf(owner));
