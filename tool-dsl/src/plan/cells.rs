@@ -232,20 +232,35 @@ impl<'m> Cells<'m> {
             }
             Tree::Leaf(owner) => {
                 let feature = owner.map(|region| self.profile.feature_of(region));
-                let losses = pieces.iter().map(|piece| {
-                    let owners = [piece.feature, feature];
-                    let may_own = |part: &Polygon| {
-                        let part = Piece { vertices: part.clone(), ..(**piece).clone() };
-                        part.may_own_a_point(&self.shapes, self.tolerance)
-                    };
-                    let allowed = MAX_DEVIATION_FRACTION * self.size;
-                    let loss =
-                        self.geometry.greatest_loss(owners, &piece.vertices, allowed, may_own);
-                    (loss, centroid(&piece.vertices))
-                });
+                let losses = pieces
+                    .iter()
+                    .map(|piece| (self.greatest_loss(piece, feature), centroid(&piece.vertices)));
                 losses.fold((0.0, [0.0; 2]), |a, b| if a.0 >= b.0 { a } else { b })
             }
         }
+    }
+
+    /// Returns an upper bound of the error of depth if the points that a piece owns are given to a feature, or to the outside.
+    fn greatest_loss(&self, piece: &Piece, feature: Option<usize>) -> f64 {
+        let may_own = |part: &Polygon| {
+            let part = Piece { vertices: part.clone(), ..piece.clone() };
+            part.may_own_a_point(&self.shapes, self.tolerance)
+        };
+        let allowed = MAX_DEVIATION_FRACTION * self.size;
+        let owners = [piece.feature, feature];
+        self.geometry.greatest_loss(owners, &piece.vertices, allowed, may_own)
+    }
+
+    /// Returns whether the points of a piece may not be given to an owner: since depth would err by more than a plan may, or at a point
+    /// by more than rounding.
+    pub(super) fn is_wrong(&self, piece: &Piece, owner: Option<usize>) -> bool {
+        let loss = self.loss(piece, owner);
+        if piece.is_point() {
+            return loss > INDIFFERENCE * self.size;
+        }
+        let feature = owner.map(|region| self.profile.feature_of(region));
+        let allowed = MAX_DEVIATION_FRACTION * self.size;
+        loss > allowed && self.greatest_loss(piece, feature) > allowed
     }
 
     /// Returns whether a tree has an owner far outside, where there is no piece. The test uses points all around, and points in

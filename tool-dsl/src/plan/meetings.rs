@@ -173,27 +173,51 @@ pub(super) struct Line {
     from: Point,
 }
 
+/// A strip along a direction between a piece and others.
+struct Gap {
+    normal: Point,
+    width: f64,
+    /// Where it meets the others, along the normal.
+    end: f64,
+    /// The sign of the way from there to the piece.
+    inward: f64,
+}
+
 impl Line {
-    /// Returns a line in the widest gap between a point and the pieces of other owners, parallel to an axis or to a side of their
-    /// hull; `None` if there is no gap. It is near the pieces, since these have all points of their owners.
-    pub(super) fn between(point: &Piece, pieces: &[Rc<Piece>], tolerance: f64) -> Option<Line> {
-        let p = point.vertices[0];
-        let others = pieces.iter().filter(|piece| piece.owner != point.owner);
-        let others: Vec<Point> = others.flat_map(|piece| piece.vertices.iter().copied()).collect();
+    /// Returns a line in the widest gap between a piece and those of other owners, parallel to an axis or to a side of either's hull;
+    /// `None` if they overlap, or there is none. It is near the others, since these have all points of their owners.
+    pub(super) fn between(piece: &Piece, pieces: &[Rc<Piece>], tolerance: f64) -> Option<Line> {
+        let at = piece.vertices[0];
+        let others = pieces.iter().filter(|other| other.owner != piece.owner);
+        let others: Vec<Point> = others.flat_map(|other| other.vertices.iter().copied()).collect();
         let around = hull(others.clone());
-        let sides = (0..around.len()).map(|k| {
-            let along = minus(around[(k + 1) % around.len()], around[k]);
-            [-along[1], along[0]].map(|part| part / norm(along))
+        let sides = [&around, &piece.vertices].into_iter().flat_map(|polygon| {
+            (0..polygon.len()).map(|k| {
+                let along = minus(polygon[(k + 1) % polygon.len()], polygon[k]);
+                [-along[1], along[0]].map(|part| part / norm(along))
+            })
         });
-        let gaps = [[1.0, 0.0], [0.0, 1.0]].into_iter().chain(sides).map(|normal| {
-            let [low, high] = range(others.iter().map(|q| dot(normal, minus(*q, p))));
-            let gap = if low > -high { low } else { high };
-            (normal, gap, low.max(-high))
+        let normals = [[1.0, 0.0], [0.0, 1.0]].into_iter().chain(sides);
+        let gaps = normals.filter(|normal| normal[0].is_finite()).map(|normal| {
+            let [own, other] = [&piece.vertices, &others]
+                .map(|points| range(points.iter().map(|q| dot(normal, minus(*q, at)))));
+            let (beyond, before) = (other[0] - own[1], own[0] - other[1]);
+            if beyond > before {
+                Gap { normal, width: beyond, end: other[0], inward: -1.0 }
+            } else {
+                Gap { normal, width: before, end: other[1], inward: 1.0 }
+            }
         });
-        let (normal, gap, width) = gaps.max_by(|one, other| one.2.total_cmp(&other.2))?;
-        let offset = gap - gap.signum() * (gap.abs() / 2.0).min(tolerance);
-        let from = [0, 1].map(|k| p[k] + offset * normal[k]);
-        (width > 0.0).then_some(Line { normal, from })
+        let gap = gaps
+            .filter(|gap| gap.width.is_finite())
+            .max_by(|one, other| one.width.total_cmp(&other.width))?;
+        // Neighbours have an edge in common.
+        if gap.width < -tolerance || (piece.is_point() && gap.width <= 0.0) {
+            return None;
+        }
+        let offset = gap.end + gap.inward * (gap.width / 2.0).min(tolerance);
+        let from = [0, 1].map(|k| at[k] + offset * gap.normal[k]);
+        Some(Line { normal: gap.normal, from })
     }
 
     pub(super) fn shape<'g>(&self) -> CurveFunction<'g> {

@@ -1,7 +1,8 @@
 //! The tree of a tool with a profile. Splits divide the pieces of its regions and the outside until one owner is left. Points on
 //! a splitting curve go to one side, or to a tree of their own if both sides need them. A point where several curves meet is on both
-//! sides of each, since rounding decides: leaves that are wrong about such points are divided. At last every piece is followed to
-//! the leaves that it reaches, which bounds how far depth is from the distance.
+//! sides of each, since rounding decides: leaves that are wrong about such points are divided. Where no curve separates pieces, a
+//! straight line does. At last every piece is followed to the leaves that it reaches, which bounds how far depth is from the
+//! distance.
 
 use super::cells::{Cells, Halves, INDIFFERENCE, MAX_DEVIATION_FRACTION};
 use super::meetings::{Line, WrongPoint};
@@ -29,7 +30,7 @@ const LINE_COST: f64 = 3.0;
 /// The greatest number of tests that are tried for trees of points on a curve.
 const MAX_MERGED_TESTS: usize = 10 * MAX_TESTS;
 
-/// The number of times that a tree is mended where its curves meet.
+/// The number of times that a tree is mended where its curves meet, and where none separates pieces.
 const MAX_MENDS: usize = 6;
 
 /// The plan of a profile.
@@ -70,20 +71,23 @@ pub(super) fn plan(
     }
     // Smaller errors are part of the deviation.
     let is_mended = |wrong: &WrongPoint| wrong.loss > MAX_DEVIATION_FRACTION * size;
-    let (mut lines, mut wrong) = (Vec::new(), planner.cells.wrong_meetings(&tree));
-    for _ in 0..MAX_MENDS {
-        if !wrong.iter().any(is_mended) {
-            break;
+    let (mut lines, mut attempts) = (Vec::new(), 0);
+    let deviation = loop {
+        let wrong = planner.cells.wrong_meetings(&tree);
+        let deviation = planner.cells.deviation(&tree, &wrong);
+        let is_right = deviation.is_ok() && !wrong.iter().any(is_mended);
+        if is_right || attempts == MAX_MENDS {
+            break deviation?;
         }
+        attempts += 1;
         pieces.extend(wrong.into_iter().filter(is_mended).map(|wrong| wrong.piece));
+        planner.missing.clear();
         tree = planner.mended(tree, &pieces)?;
         for line in std::mem::take(&mut planner.missing) {
             planner.add(&line);
             lines.push(line);
         }
-        wrong = planner.cells.wrong_meetings(&tree);
-    }
-    let deviation = planner.cells.deviation(&tree, &wrong)?;
+    };
     let has_owner_far_outside = planner.cells.has_owner_far_outside(&tree);
     Ok(ProfilePlan { tree, deviation, has_owner_far_outside, lines })
 }
@@ -99,7 +103,7 @@ struct Planner<'m> {
     tests: usize,
     /// The number of tests in trees of points on a curve, before they are simplified.
     merged_tests: usize,
-    /// Lines that would separate points from other pieces of a leaf, where no curve does.
+    /// Lines that would separate the pieces of a leaf, where no curve does.
     missing: Vec<Line>,
 }
 
@@ -207,11 +211,8 @@ impl Planner<'_> {
         let Some(Choice { curve, halves, zeros }) = choice else {
             // Pieces that no curve separates are equally near, or are found by the deviation of the finished tree.
             let owner = self.least_wrong_owner(pieces);
-            let wrong = |piece: &&Rc<Piece>| {
-                piece.is_point() && self.cells.loss(piece, owner) > indifference
-            };
-            for point in pieces.iter().filter(wrong) {
-                let line = Line::between(point, pieces, self.coincidence());
+            for piece in pieces.iter().filter(|piece| self.cells.is_wrong(piece, owner)) {
+                let line = Line::between(piece, pieces, self.cells.tolerance);
                 let line = line.filter(|line| !self.missing.contains(line));
                 self.missing.extend(line);
             }

@@ -91,6 +91,9 @@ fn odd_profiles_are_exact() {
         "0 0, 2 12, 5 16 about 3.5 14, 5 14 about 4 15, 0 14",
         "0 0, 5 0, 5 11, 8 11 hollow radius 1.5, 5 13 about 6.5 12, 0 13",
         "0 0, 0.8 0.4 radius 1, 1.000000000001 1 radius 1, 0 2",
+        "0 0, 1 0, 1.0005 50, 1.500499999975 50.499995 about 1.500499999975 49.999995, 2.000499999975 50.499995,
+        2.000999999975 100.499995, 0 100.499995",
+        "0 0, 4 6, 4 7, 9 12 about 4 12, 9 13, 4 19.666667, 4 23.666667, 0 23.666667",
     ];
     let up = others.map(Outline::parse).into_iter().chain([Outline::up(vec![sphere])]);
     for outline in up.flat_map(|up| [Outline { down: true, ..up.clone() }, up]) {
