@@ -26,6 +26,9 @@ use touchoff_verify::{GapWeight, Job, JobFile, JobReport, Program, ToolSelection
 /// The exit status if there is no verdict, even with findings; the same as for wrong options.
 pub(crate) const NOT_CHECKED: u8 = 2;
 
+/// The number of findings that are printed as lines: nobody reads a million.
+const MAX_LINES: usize = 1_000;
+
 /// A job and the files that it names, read.
 pub(crate) type Inputs = JobInputs<LoadedTool>;
 
@@ -183,10 +186,10 @@ pub(crate) fn verify(arguments: Verify, json: bool) -> Result<ExitCode, Failure>
     let job = inputs.job();
     let report = check(&job, json)?;
     let mut out = Output::rows();
-    for finding in report.findings() {
+    for (count, finding) in report.findings().iter().enumerate() {
         if json {
             out.json(&report.row(finding))?;
-        } else {
+        } else if count < MAX_LINES {
             let place = format!("{}:{}:", Escaped(inputs.program.name()), finding.line);
             out.styled(style(finding.severity), &place)?;
             writeln!(out, " {} [{}]", Escaped(&finding.text), finding.rule.code())?;
@@ -201,6 +204,9 @@ pub(crate) fn verify(arguments: Verify, json: bool) -> Result<ExitCode, Failure>
         }
     }
     out.flush()?;
+    if let Some(more) = report.findings().len().checked_sub(MAX_LINES + 1).filter(|_| !json) {
+        message!("{} more findings are left out: `--json` and `--sarif` list all", more + 1);
+    }
     print(&inputs, &report)?;
     if let Some(file) = sarif {
         write_file(&file, serde_json::to_vec_pretty(&report.sarif())?)?;

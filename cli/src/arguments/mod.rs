@@ -56,8 +56,8 @@ pub(crate) enum Command {
     Run(Box<Run>),
     /// Check a program against the finished part, fixtures and stock: find where the tool is deeper than allowed.
     ///
-    /// Every motion is proved, not only its end points. Prints one line per finding, the worst first. The exit status is 1 if there
-    /// are findings, and 2 if the program could not be checked.
+    /// Every motion is proved, not only its end points. Prints one line per finding, the worst first, up to 1,000. The exit
+    /// status is 1 if there are findings, and 2 if the program could not be checked.
     #[command(after_help = examples::VERIFY)]
     Verify(Box<Verify>),
     /// Write one HTML file about a program or a posture map, to send around: verdict, findings, the part in 3-D, tools, forces.

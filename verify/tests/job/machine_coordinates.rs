@@ -284,8 +284,10 @@ fn retracts_are_followed_as_far_as_the_machine_states_them() {
     let builder = "L A+0 C+0 R0 FMAX M3\nL X+0 Y+0 Z+100 R0 FMAX\nL Z+1 R0 FMAX\nL Z+100 R0 FMAX\nL Z+0 R0 FMAX M92";
     let rotary = "L A+0 C+0 R0 FMAX M3\nL X+40 Y+0 Z+100 R0 FMAX\nPLANE SPATIAL SPA+0 SPB+0 SPC+0 TURN FMAX\nL X+40 Y+0 R0 FMAX\n\
                   L Z+1 R0 FMAX\nCC X+0 Y+0\nC X+0 Y+40 C+90 DR+ F500";
-    let rows: [(&str, Verdict, &[&str]); 4] = [
+    let to_top = aligned.replace("L Z+0 R0 FMAX M91", "L M140 MB MAX FMAX");
+    let rows: [(&str, Verdict, &[&str]); 5] = [
         (aligned, CLEAN, &[]),
+        (&to_top, NONE, &["V0404 11"]),
         (tilted, CLEAN, &[]),
         (builder, NONE, &["V0404 7"]),
         (rotary, NONE, &["P0120 9 PLANE RESET"]),
@@ -294,6 +296,9 @@ fn retracts_are_followed_as_far_as_the_machine_states_them() {
         let scene = scene("a.h", &klartext(blocks), TRUNNION, G54);
         scene.gives(HEIDENHAIN, verdict, gaps);
     }
+    // A table tilts, and the tool stays along Z.
+    let limited = TRUNNION.replace(r#"letter = "Z","#, r#"letter = "Z", limits = [-600, 0],"#);
+    scene("a.h", &klartext(&to_top), &limited, G54).gives(HEIDENHAIN, CLEAN, &[]);
     let steps = "G0 X4.5 Y0.\nG43 H1 Z100.\nG0 Z-1.\nG1 X4.4 F500\nG0 Z100.\n";
     let three_axes =
         |blocks: &str, control: Control, machine: [&str; 2], verdict, gaps: &[&str]| {

@@ -149,14 +149,16 @@ impl Control {
     /// Moves along the tool axis (M140) by a distance in millimetres, or to the end of the travel.
     pub(in crate::gcode) fn retract(&mut self, distance: Option<f64>, rapid: bool) {
         let at_zero = self.state.turns_nothing(self.position, &self.rotary_axes);
-        // A head that is turned about z leaves the tool along z, and so does a table, unless positions turn with it.
-        let turns_with_table = self.state.turns_with_workpiece();
-        let is_upright = [0, 1]
-            .into_iter()
-            .all(|k| at_zero[k] || !self.rotary_axes.carries_tool[k + 3] && !turns_with_table);
+        // The axis of a table, or of a head that is turned about z, leaves the tool along z of the machine.
+        let is_upright =
+            [0, 1].into_iter().all(|k| at_zero[k] || !self.rotary_axes.carries_tool[k + 3]);
+        // Positions that turn with the table have another z, but for that of a plane to which the tool is aligned.
         let is_along_z = match self.state.rotation {
             Rotation::Tilted { aligned, .. } => aligned,
-            Rotation::Off | Rotation::Plane { .. } => is_upright,
+            Rotation::Off | Rotation::Plane { .. } => {
+                let turns_with_table = self.state.turns_with_workpiece();
+                is_upright && (!turns_with_table || at_zero[..2] == [true; 2])
+            }
         };
         let end = self.position;
         match distance {
@@ -165,7 +167,7 @@ impl Control {
                 end[2] = end[2].map(|z| z + distance);
                 self.push(rapid, end, Z_ALONE, StepPath::Line);
             }
-            None if is_upright && is_along_z => {
+            None if is_upright => {
                 let target = [None, None, self.top, None, None, None];
                 self.move_machine(Z_ALONE, target, StepPath::Line);
             }
@@ -179,7 +181,7 @@ impl Control {
         let step = self.pending.back_mut().expect("the step that was added");
         // The way of Z to the end of its travel leads away from the part, as that to a home does. One along a tilted tool also leads
         // sideways.
-        let is_homeward = distance.is_none() && is_upright && is_along_z;
+        let is_homeward = distance.is_none() && is_upright;
         (step.rapid, step.spindle, step.is_homeward) = (rapid, spindle, is_homeward);
         // Its feed is that of MB, which is not kept.
         step.feed = None;

@@ -221,7 +221,7 @@ impl Variables {
                     }
                     let value = number(cursor, self)?;
                     if value.fract() != 0.0 || !(1.0..=MAX_ELEMENTS).contains(&value) {
-                        return Err(no_element(name));
+                        return Err(no_array(name));
                     }
                     *length = value as usize;
                     dimensions += 1;
@@ -231,7 +231,7 @@ impl Variables {
                 }
             }
             if (lengths[0] * lengths[1]) as f64 > MAX_ELEMENTS {
-                return Err(no_element(name));
+                return Err(no_array(name));
             }
             let value = match cursor.take_assignment() {
                 true if dimensions > 0 => {
@@ -286,7 +286,7 @@ impl Variables {
         }
         let elements = lengths[0] * lengths[1];
         if self.elements + elements > MAX_ALL_ELEMENTS {
-            return Err(no_element(name));
+            return Err(no_array(name));
         }
         self.elements += elements;
         self.own.insert(name.to_ascii_uppercase(), self.named.len());
@@ -337,6 +337,11 @@ impl Kind {
             }
         })
     }
+}
+
+fn no_array(name: &str) -> GcodeFault {
+    let condition = "an array has 1 to 10,000 elements, and all of a program 200,000";
+    combination(format!("an array of {}", shown(name)), condition, "define fewer or shorter arrays")
 }
 
 fn no_element(name: &str) -> GcodeFault {
