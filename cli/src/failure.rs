@@ -249,6 +249,11 @@ pub(crate) enum Failure {
     /// A file could not be written.
     #[error("cannot write `{file}`: {}", cause(source))]
     Unwritable { file: String, source: std::io::Error },
+    /// The system allows no thread for `--max-time`.
+    #[error(
+        "the system refuses a thread for `--max-time`: {0}: allow more threads or memory, or leave the option out"
+    )]
+    NoTimer(std::io::Error),
     /// Standard output could not be written.
     #[error("standard output could not be written: {}", cause(.0))]
     Output(#[from] std::io::Error),

@@ -29,6 +29,7 @@ mod verify;
 
 use arguments::{Arguments, Command};
 use std::process::ExitCode;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 fn main() -> ExitCode {
@@ -40,7 +41,10 @@ fn main() -> ExitCode {
         report(panic);
         end_at_once();
     }));
-    let Arguments { command, json, max_time } = Arguments::read();
+    let Arguments { command, json, max_time } = match Arguments::read() {
+        Ok(arguments) => arguments,
+        Err(failure) => return fail(&failure, 1),
+    };
     if let Some(Err(failure)) = max_time.map(end_after) {
         return fail(&failure, verify::NOT_CHECKED);
     }
@@ -74,8 +78,18 @@ fn main() -> ExitCode {
         Command::Expand(arguments) => expand::expand(&arguments).map(success),
         Command::Draw(arguments) => draw::draw(&arguments).map(success),
     };
-    result.unwrap_or_else(|failure| fail(&failure, min_status))
+    let status = result.unwrap_or_else(|failure| fail(&failure, min_status));
+    if IS_ENDING.swap(true, Ordering::Relaxed) {
+        // The timer ends the program, with its message and its status.
+        loop {
+            std::thread::park();
+        }
+    }
+    status
 }
+
+/// Whether the main thread or the timer of `--max-time` ends the program: the first of them does.
+static IS_ENDING: AtomicBool = AtomicBool::new(false);
 
 /// The exit status of a command that had no time or no memory left, or has a fault itself.
 const OUT_OF_RESOURCES: i32 = 2;
@@ -88,6 +102,9 @@ fn end_after(seconds: f64) -> Result<(), failure::Failure> {
     let timer = move || {
         // A time too long for a duration does not pass.
         std::thread::sleep(Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX));
+        if IS_ENDING.swap(true, Ordering::Relaxed) {
+            return;
+        }
         // The reader of standard error may have stopped: the message has a moment.
         let say = move || {
             message!(
@@ -102,8 +119,8 @@ fn end_after(seconds: f64) -> Result<(), failure::Failure> {
         }
         end_at_once();
     };
-    std::thread::Builder::new().spawn(timer)?;
-    Ok(())
+    let spawned = std::thread::Builder::new().spawn(timer);
+    spawned.map(drop).map_err(failure::Failure::NoTimer)
 }
 
 /// Ends the program without anything that could wait.

@@ -136,7 +136,7 @@ pub(crate) fn shortened(text: &str) -> Cow<'_, str> {
 }
 
 /// Returns the outcome of writing, or `gone` if the reader has closed the pipe.
-fn open_or<T>(written: io::Result<T>, gone: T) -> io::Result<T> {
+pub(crate) fn open_or<T>(written: io::Result<T>, gone: T) -> io::Result<T> {
     match written {
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(gone),
         other => other,

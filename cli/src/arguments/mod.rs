@@ -13,7 +13,10 @@ pub(crate) use tools::{
     Check, Draw, Expand, Explain, Export, Fmt, Import, Stage, Tools, ToolsCommand,
 };
 
+use crate::failure::Failure;
+use crate::output::open_or;
 use clap::{Parser, Subcommand};
+use std::io::{self, Write as _};
 
 /// The end of the program's help text: examples, and the exit statuses of all commands.
 const AFTER_HELP: &str = "\
@@ -148,8 +151,20 @@ pub(crate) enum Command {
 }
 
 impl Arguments {
-    /// Parses the program's arguments; ends the program with a message if they are wrong.
-    pub(crate) fn read() -> Arguments {
-        Arguments::parse_from(values::join_negative_numbers(std::env::args_os()))
+    /// Parses the program's arguments; ends the program with a message if they are wrong, and with the text that `--help` asks for.
+    ///
+    /// # Errors
+    /// If that text cannot be written.
+    pub(crate) fn read() -> Result<Arguments, Failure> {
+        let arguments = values::join_negative_numbers(std::env::args_os());
+        let refusal = match Arguments::try_parse_from(arguments) {
+            Ok(arguments) => return Ok(arguments),
+            Err(refusal) => refusal,
+        };
+        let printed = refusal.print().and_then(|()| io::stdout().flush());
+        if !refusal.use_stderr() {
+            open_or(printed, ())?;
+        }
+        std::process::exit(refusal.exit_code());
     }
 }

@@ -5,6 +5,7 @@ use std::fs;
 use std::io;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
+use std::time::Instant;
 
 /// A program that cuts 0.5 deep through the block, and one that stays clear of it.
 const GOUGES: &str =
@@ -31,7 +32,7 @@ fn closed() -> io::PipeWriter {
 }
 
 /// Returns commands that write to standard output, and their exit statuses.
-fn commands(bench: &Bench) -> [(&'static str, i32); 16] {
+fn commands(bench: &Bench) -> [(&'static str, i32); 18] {
     bench.write("gouges.apt", GOUGES);
     bench.write("clear.apt", CLEAR);
     bench.write("good.tool", GOOD);
@@ -48,6 +49,8 @@ fn commands(bench: &Bench) -> [(&'static str, i32); 16] {
         ("check --json good.tool", 0),
         ("fmt --check loose.tool", 1),
         ("tools", 0),
+        ("--help", 0),
+        ("--version", 0),
         ("tools list --json good.tool", 0),
         ("expand good.tool", 0),
         ("expand --stage plan good.tool", 0),
@@ -336,8 +339,26 @@ fn a_command_ends_when_time_or_memory_is_used_up() {
     assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
     assert!(stderr(&output).contains("--max-time"), "{}", stderr(&output));
     assert!(!Path::new(&bench.place("points.touchoff")).exists());
+    // A command that is done when its time is up ends in one way or the other.
+    let begin = Instant::now();
+    let line_of_run = "run --part block.stl --unit mm --tool D2Ball --program path.csv";
+    assert!(bench.touchoff(line_of_run).status.success());
+    let all = begin.elapsed();
+    for fortieth in 20..60 {
+        let time = (all * fortieth / 40).as_secs_f64();
+        let output = bench.touchoff(&format!("{line_of_run} --max-time {time}"));
+        let is_late = stderr(&output).contains("--max-time");
+        let status = if is_late { 2 } else { 0 };
+        assert_eq!(output.status.code(), Some(status), "{}", stderr(&output));
+    }
     #[cfg(target_os = "linux")]
     {
+        // No memory holds such a stack.
+        let mut refused = bench.command("tools list --max-time 9");
+        let output = refused.env("RUST_MIN_STACK", (1u64 << 50).to_string()).output();
+        let output = output.expect("the program runs");
+        assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+        assert!(stderr(&output).contains("refuses a thread"), "{}", stderr(&output));
         let limited = format!("ulimit -v 1000000; exec \"$0\" {line}");
         let mut shell = std::process::Command::new("bash");
         shell.args(["-c", &limited, env!("CARGO_BIN_EXE_touchoff")]).current_dir(&bench.folder);
