@@ -37,6 +37,24 @@ pub enum PointsError {
         /// The content found instead.
         found: String,
     },
+    /// A row of a table has other columns than the heading names, or than the first row has.
+    #[error(
+        "{file}, line {line}: found {found} columns, expected {expected}, as in {like}: {remedy}"
+    )]
+    Columns {
+        /// The file name.
+        file: String,
+        /// The line number, from 1.
+        line: usize,
+        /// The number of columns of the row.
+        found: usize,
+        /// The expected number.
+        expected: usize,
+        /// What has the expected number.
+        like: &'static str,
+        /// The remedy.
+        remedy: &'static str,
+    },
     /// The data of a PCD file is in a form that is not read.
     #[error(
         "{file}: the data is `{data}`: save the cloud as `ascii`, `binary` or `binary_compressed`"
@@ -247,6 +265,7 @@ impl OrientedPoints {
 
     /// Reads a table of points; errors name the file as `name`. The columns are separated by blanks, commas or semicolons; between blanks or
     /// semicolons, a comma is a decimal point. Lines that begin with `#` or `//` are comments, and a first line of words or of one number is a heading.
+    /// A whole number there is the number of points. All rows have the same number of columns, which is that of a first line of names.
     /// A heading, or a comment that begins with `x`, can name the columns: `x y z`, and `nx ny nz` for a normal or `r g b`. Without names the first three
     /// are the coordinates, and the next three a normal if they are unit vectors in all rows, one of which has a number below 0. Other columns are skipped.
     ///
@@ -256,7 +275,8 @@ impl OrientedPoints {
         let text = String::from_utf8_lossy(bytes);
         let mut columns = Columns::default();
         let mut rows: Vec<[f64; 6]> = Vec::new();
-        let (mut first, mut heading) = (0, None);
+        let (mut first, mut heading, mut declared) = (0, None, None);
+        let mut expected = None;
         let (mut are_units, mut has_negative) = (true, false);
         for (index, line) in text.lines().enumerate() {
             let line = line.trim();
@@ -274,13 +294,28 @@ impl OrientedPoints {
             let is_heading =
                 rows.is_empty() && (numbers.len() == 1 || numbers.iter().all(Option::is_none));
             if is_heading {
-                heading = Heading::of(&cells).or(heading);
+                declared = declared.or_else(|| line.parse::<usize>().ok());
+                if let Some(named) = Heading::of(&cells) {
+                    expected = Some((named.count, "the heading"));
+                    heading = Some(named);
+                }
                 continue;
             }
             if rows.is_empty() {
                 first = 1 + index;
                 let named = heading.take().filter(|heading: &Heading| heading.count == cells.len());
                 columns = named.map_or(columns, |heading| heading.columns);
+            }
+            let (count, like) = *expected.get_or_insert((cells.len(), "the first row"));
+            if cells.len() != count {
+                return Err(PointsError::Columns {
+                    file: name.to_owned(),
+                    line: 1 + index,
+                    found: cells.len(),
+                    expected: count,
+                    like,
+                    remedy: columns_remedy(line, cells.len() > count),
+                });
             }
             let number = |column: usize| numbers.get(column).copied().flatten();
             let [Some(x), Some(y), Some(z)] = columns.coordinates.map(number) else {
@@ -295,6 +330,10 @@ impl OrientedPoints {
             are_units &= (Vector3::from(normal).norm() - 1.0).abs() < UNIT_TOLERANCE;
             has_negative |= normal.iter().any(|value| value.is_sign_negative());
             rows.push([x, y, z, normal[0], normal[1], normal[2]]);
+        }
+        if let Some(declared) = declared.filter(|declared| *declared != rows.len()) {
+            let (file, found) = (name.to_owned(), rows.len());
+            return Err(PointsError::Count { file, found, declared });
         }
         let has_normals = match columns.has_normals {
             Some(named) => named,
@@ -421,6 +460,15 @@ fn cells(row: &str) -> Vec<String> {
             let cells = pieces.into_iter().flat_map(|piece| piece.split(','));
             cells.filter(|cell| !cell.is_empty()).map(str::to_owned).collect()
         }
+    }
+}
+
+/// Returns the remedy for a row with a wrong number of columns.
+fn columns_remedy(row: &str, has_too_many: bool) -> &'static str {
+    if has_too_many && row.contains(',') && !row.contains('.') {
+        "if these are decimal commas (`0,5`), write points (`0.5`), or separate the columns by semicolons"
+    } else {
+        "correct the row, or export the points again"
     }
 }
 
@@ -565,7 +613,6 @@ mod tests {
             ("1 2 3 255 0 0\n4 5 6 0 0 1\n", Some(0)),
             ("1 2 3 1 0 0\n4 5 6 0 0 1\n", None),
             ("1 2 3 0.6 0.8 0\n", None),
-            ("x y z\n1 2 3 1 0 0\n", None),
             ("# a scan in mm\n1 2 3 1 0 0\n", None),
             ("1 2 3 -1 0 0\n4 5 6 0 0 1\n", Some(2)),
             ("x y z r g b\n1 2 3 1 0 0\n", Some(0)),
@@ -594,7 +641,28 @@ mod tests {
                 (found, _) => panic!("{text}: {found:?}"),
             }
         }
-        assert!(matches!(read("1 2 3\n1 2\n"), Err(PointsError::Expected { line: 2, .. })));
+        assert!(matches!(read("x y\n1 2\n"), Err(PointsError::Expected { line: 2, .. })));
+        for (text, said) in [
+            (
+                "x,y,z\n0,1,0,1,-0,3\n",
+                "line 2: found 6 columns, expected 3, as in the heading: if these are decimal commas",
+            ),
+            (
+                "x,y,z\n0,0,0,25\n0,0,0,75\n",
+                "write points (`0.5`), or separate the columns by semicolons",
+            ),
+            (
+                "x y z\n1 2 3 1 0 0\n",
+                "found 6 columns, expected 3, as in the heading: correct the row",
+            ),
+            ("1 2 3\n1 2\n", "line 2: found 2 columns, expected 3, as in the first row"),
+            ("1,2,3\n1,2,3,5\n", "line 2: found 4 columns"),
+            ("5\n1 2 3\n", "has 1 points, and its header declares 5"),
+            ("1\n1 2 3\n4 5 6\n", "has 2 points, and its header declares 1"),
+        ] {
+            let error = read(text).expect_err(text).to_string();
+            assert!(error.contains(said), "{text}: {error}");
+        }
         assert!(matches!(read("# none\n"), Err(PointsError::NoPoints { .. })));
     }
 }
