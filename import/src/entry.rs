@@ -1,7 +1,9 @@
 //! The tools of a library, in one form for all formats.
 
+use super::json::tool_number;
 use super::outline::decimal;
 use super::shape::{Cutter, Shape, ShapeError};
+use serde_json::Value;
 use std::fmt;
 use touchoff::Unit;
 
@@ -194,6 +196,17 @@ impl Entry {
             cutter: None,
             shaft: Vec::new(),
             holder: None,
+        }
+    }
+
+    /// Sets the tool number, with a note if what the library states is none.
+    pub(super) fn set_number(&mut self, stated: Option<&Value>) {
+        let Some(stated) = stated.filter(|stated| !stated.is_null()) else { return };
+        self.number = tool_number(stated);
+        if self.number.is_none() {
+            let taken =
+                format!("{stated} is no whole number from 0, so no program can call the tool");
+            self.notes.push(Note::Unstated("tool number", taken));
         }
     }
 

@@ -6,7 +6,7 @@
 //! user cannot be told from one of FreeCAD's own.
 
 use super::entry::{Entry, Holder, Note, Section, Stated};
-use super::json::{self, Object, pair, string, tool_number};
+use super::json::{self, Object, pair, string};
 use super::shape::{Cutter, Shape};
 use super::{Found, MAX_TOOLS, Problem, bytes, text};
 use serde_json::Value;
@@ -58,7 +58,7 @@ pub(super) fn library(
             return Err(too_long());
         }
         let bit = text(&content).and_then(|text| object(&text)).map_err(problem)?;
-        read_bit(&bit, tool.get("nr").and_then(tool_number))
+        read_bit(&bit, tool.get("nr"))
     });
     let found = found.collect();
     Ok(ListedBits { found, files })
@@ -130,17 +130,17 @@ fn read_holder(holder: &Object, title: &str) -> Result<Entry, String> {
     Ok(entry)
 }
 
-fn read_bit(bit: &Object, number: Option<u32>) -> Found {
+fn read_bit(bit: &Object, number: Option<&Value>) -> Found {
     let title = string(bit, "name");
     read_shape(bit, title, number).map_err(|error| Problem::new(title, &error))
 }
 
-fn read_shape(bit: &Object, title: &str, number: Option<u32>) -> Result<Entry, String> {
+fn read_shape(bit: &Object, title: &str, number: Option<&Value>) -> Result<Entry, String> {
     // The shape is named by a path, of either kind of system.
     let shape = string(bit, "shape").rsplit(['/', '\\']).next().unwrap_or("").to_lowercase();
     let shape = shape.trim_end_matches(".fcstd");
     let mut entry = entry(Unit::Millimetre, shape, title, bit);
-    entry.number = number;
+    entry.set_number(number);
     let empty = Object::new();
     let values = |key| bit.get(key).and_then(Value::as_object).unwrap_or(&empty);
     let parameters = Parameters::new(values("parameter"), values("attribute"));

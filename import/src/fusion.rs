@@ -5,7 +5,7 @@
 //! the shank, `SIG` a whole angle, `TA` the angle between the axis and a side.
 
 use super::entry::{Entry, Holder, Note, Section, Stated};
-use super::json::{Object, number, number_of, object, pair, string, tool_number};
+use super::json::{Object, number, number_of, object, pair, string};
 use super::shape::{Crest, Cutter, FormSegment, Shape, ShapeError};
 use super::{Found, Problem};
 use serde_json::Value;
@@ -26,8 +26,7 @@ fn read_tool(tool: &Object, kind: &str, title: &str) -> Result<Entry, String> {
     let unit = unit(tool)?;
     let origin = origin(tool);
     let mut entry = Entry::new(unit, kind, title, origin);
-    entry.number =
-        tool.get("post-process").and_then(|post| post.get("number")).and_then(tool_number);
+    entry.set_number(tool.get("post-process").and_then(|post| post.get("number")));
     if kind == "holder" {
         entry.holder = Some(holder(tool)?.ok_or("its holder has no segments")?);
         return Ok(entry);
@@ -262,9 +261,9 @@ fn cutter(
         other => return Err(format!("the type `{other}` cannot be read yet")),
     };
     let diameter = geometry.require("DC", "diameter")?;
-    let shoulder_diameter = geometry.get("shoulder-diameter")?.filter(|diameter| *diameter > 0.0);
+    let shoulder_diameter = geometry.get("shoulder-diameter")?.filter(|diameter| *diameter != 0.0);
     let shoulder = geometry.get("shoulder-length")?.map(|length| (length, shoulder_diameter));
-    let shank_diameter = geometry.get("SFDM")?;
+    let shank_diameter = geometry.get("SFDM")?.filter(|shank| *shank != 0.0);
     if shank_diameter.is_none() {
         notes.push(Note::no_shank_diameter());
     }
@@ -285,6 +284,10 @@ fn cutter(
         }
         _ => (geometry.require("LCF", "flute length")?, geometry.require("OAL", "overall length")?),
     };
+    if flute_length == 0.0 && !matches!(shape, Shape::Form(_)) {
+        let drawn = "no flutes are drawn above the end".to_owned();
+        notes.push(Note::Unstated("flute length", drawn));
+    }
     Ok(Cutter {
         shape,
         diameter,
@@ -292,7 +295,7 @@ fn cutter(
         length,
         shoulder,
         cutting_neck: 0.0,
-        shank_diameter: shank_diameter.filter(|shank| *shank > 0.0),
+        shank_diameter,
     })
 }
 

@@ -1,6 +1,9 @@
 //! Values of JSON libraries: objects, numbers and texts by their keys.
 
+use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use serde_json::{Map, Value};
+use std::collections::HashSet;
+use std::fmt;
 
 pub(super) type Object = Map<String, Value>;
 
@@ -10,7 +13,7 @@ const MAX_MEMORY: usize = 640 << 20;
 /// Returns the value of a text.
 ///
 /// # Errors
-/// If it is no JSON, or its values would take much memory, which few bytes can ask for.
+/// If it is no JSON, if an object has a key twice, or if its values would take much memory, which few bytes can ask for.
 pub(super) fn parse(text: &str) -> Result<Value, String> {
     // An object takes at least a node of a tree, and a value 32 bytes in a list that may have grown to twice its length.
     let count = |wanted: &[u8]| text.bytes().filter(|byte| wanted.contains(byte)).count();
@@ -18,7 +21,66 @@ pub(super) fn parse(text: &str) -> Result<Value, String> {
     if memory > MAX_MEMORY {
         return Err(format!("its values may take {} MiB of memory: split it", memory >> 20));
     }
-    serde_json::from_str(text).map_err(|error| error.to_string())
+    let value = serde_json::from_str(text).map_err(|error| error.to_string())?;
+    serde_json::from_str::<Distinct>(text).map_err(|error| error.to_string())?;
+    Ok(value)
+}
+
+/// A value in which no object has a key twice. [`Value`] keeps the last of them.
+struct Distinct;
+
+impl<'de> Deserialize<'de> for Distinct {
+    fn deserialize<D: Deserializer<'de>>(value: D) -> Result<Distinct, D::Error> {
+        value.deserialize_any(Distinct)
+    }
+}
+
+impl<'de> Visitor<'de> for Distinct {
+    type Value = Distinct;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a value")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut object: A) -> Result<Distinct, A::Error> {
+        let mut keys = HashSet::new();
+        while let Some(key) = object.next_key::<String>()? {
+            object.next_value::<Distinct>()?;
+            if let Some(second) = keys.replace(key) {
+                return Err(A::Error::custom(format!("an object has the key `{second}` twice")));
+            }
+        }
+        Ok(self)
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Distinct, A::Error> {
+        while list.next_element::<Distinct>()?.is_some() {}
+        Ok(self)
+    }
+
+    fn visit_bool<E>(self, _: bool) -> Result<Distinct, E> {
+        Ok(self)
+    }
+
+    fn visit_i64<E>(self, _: i64) -> Result<Distinct, E> {
+        Ok(self)
+    }
+
+    fn visit_u64<E>(self, _: u64) -> Result<Distinct, E> {
+        Ok(self)
+    }
+
+    fn visit_f64<E>(self, _: f64) -> Result<Distinct, E> {
+        Ok(self)
+    }
+
+    fn visit_str<E>(self, _: &str) -> Result<Distinct, E> {
+        Ok(self)
+    }
+
+    fn visit_unit<E>(self) -> Result<Distinct, E> {
+        Ok(self)
+    }
 }
 
 /// Returns the object of a key, if there is one.

@@ -4,7 +4,7 @@
 //! above them. `taper_tip` is the diameter of a tapered mill's tip.
 
 use super::entry::{Entry, Note};
-use super::json::{Object, number_of, string, tool_number};
+use super::json::{Object, number_of, string};
 use super::shape::{Cutter, Shape};
 use super::{Found, Problem};
 use serde_json::Value;
@@ -34,7 +34,7 @@ fn read_tool(tool: &Object) -> Result<Entry, String> {
     let shaft_length = length("shaft_len")?;
     let kind = string(tool, "type");
     let mut entry = Entry::new(unit, kind, string(tool, "name"), Vec::new());
-    entry.number = tool.get("number").and_then(tool_number);
+    entry.set_number(tool.get("number"));
     let shape = match kind {
         "endmill" => Shape::Flat { corner: 0.0 },
         "ballmill" => Shape::Ball,
@@ -54,7 +54,7 @@ fn read_tool(tool: &Object) -> Result<Entry, String> {
         length: super::outline::rounded(flute_length + shaft_length),
         shoulder: None,
         cutting_neck: 0.0,
-        shank_diameter: Some(shank).filter(|shank| *shank > 0.0),
+        shank_diameter: Some(shank).filter(|shank| *shank != 0.0),
     });
     Ok(entry)
 }

@@ -164,6 +164,12 @@ fn contradictions_and_gaps_are_noted() {
     let thin = json!({ "shoulder-length": 30, "shoulder-diameter": 0.2, "SFDM": 6 });
     let thin = notes(&fusion("flat end mill", &thin));
     assert_eq!(thin, [Note::ThinNeck { neck: 0.2, diameter: 10.0 }]);
+    let zero = notes(&fusion("reamer", &json!({ "SIG": 0, "RE": 0, "LCF": 0, "SFDM": 0 })));
+    let unstated = zero.iter().map(|note| match note {
+        Note::Unstated(what, _) => what,
+        other => panic!("{other}"),
+    });
+    assert_eq!(unstated.collect::<Vec<_>>(), [&"shank diameter", &"flute length"]);
 }
 
 #[test]
@@ -281,6 +287,14 @@ fn entries_without_a_solid_are_left_out_with_the_reason() {
     assert!(reason(&fusion("laser cutter", &json!({}))).contains("no solid"));
     assert!(reason(&fusion("bull nose end mill", &json!({}))).contains("corner radius"));
     assert!(reason(&fusion("flat end mill", &json!({ "DC": -1 }))).contains("diameter is -1"));
+    for (dimension, name) in [
+        ("LCF", "flute length"),
+        ("SFDM", "shank diameter"),
+        ("shoulder-length", "shoulder length"),
+    ] {
+        let tool = fusion("reamer", &json!({ "SIG": 0, dimension: -1 }));
+        assert!(reason(&tool).contains(&format!("the {name} is -1: correct it")), "{dimension}");
+    }
     assert!(
         reason(&fusion("bull nose end mill", &json!({ "RE": 6 }))).contains("corner radius, 6")
     );
@@ -299,6 +313,8 @@ fn files_that_are_no_libraries_are_refused() {
     };
     assert!(malformed("l.json", b"{").contains("EOF"));
     assert!(malformed("l.json", b"{}").contains("`data`"));
+    let twice = malformed("l.json", br#"{"data": [{"geometry": {"DC": 2, "LCF": 9, "DC": 20}}]}"#);
+    assert!(twice.contains("has the key `DC` twice at line 1"), "{twice}");
     assert!(malformed("l.json", b"\xff\xfe\x00").contains("UTF-16"));
     assert!(malformed("l.tools", b"PK").contains("zip") || !malformed("l.tools", b"PK").is_empty());
     assert!(malformed("l.hsmlib", b"<tool-library><tool>").contains("tool-library"));

@@ -189,6 +189,18 @@ impl Cutter {
     pub(super) fn outline(&self) -> Result<Outline, ShapeError> {
         positive("diameter", self.diameter)?;
         positive("overall length", self.length)?;
+        // A dimension of 0 is not stated.
+        let (shoulder, shoulder_diameter) = self.shoulder.unwrap_or((0.0, None));
+        for (name, value) in [
+            ("flute length", self.flute_length),
+            ("shoulder length", shoulder),
+            ("shoulder diameter", shoulder_diameter.unwrap_or(0.0)),
+            ("shank diameter", self.shank_diameter.unwrap_or(0.0)),
+        ] {
+            if !(value >= 0.0 && value.is_finite()) {
+                return Err(OutOfRange(name, value));
+            }
+        }
         let mut outline = Outline::new();
         let diameter = outline.param("diameter", self.diameter);
         let radius = outline.define("R", diameter.half());

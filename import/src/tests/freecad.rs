@@ -235,6 +235,16 @@ fn folders_of_vendors_have_names_in_lower_case() {
         };
         assert_eq!((entry.number, entry.diameter()), (Some(4), Some(3.0)));
     }
+    for number in [json!(-1), json!(1.5), json!(1e30), json!("first")] {
+        let library = read(json!({ "nr": number, "path": "Mill_3.fctb" }));
+        let entry = &library.tools()[0].entry;
+        let notes: Vec<String> = entry.notes.iter().map(Note::to_string).collect();
+        assert_eq!(entry.number, None);
+        assert!(
+            notes[0].contains(&format!("tool number: {number} is no whole number")),
+            "{notes:?}"
+        );
+    }
     let elsewhere = read(json!({ "nr": 4, "path": "../bit/Mill_3.fctb" }));
     assert!(elsewhere.skipped()[0].reason.contains(": copy the bit"), "{:?}", elsewhere.skipped());
 }
