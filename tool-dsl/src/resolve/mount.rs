@@ -239,7 +239,10 @@ impl Mounting<'_> {
             .resolve_path(by, written)
             .ok_or_else(|| Diagnostic::new(by, MountKind::NoFolder { file: written.to_owned() }))?;
         if !self.sources.may_mount(&location.path) {
-            let root = self.sources.given_root().map(|root| root.display().to_string());
+            let root = self.sources.given_root().map(|root| match root.as_os_str().is_empty() {
+                true => ".".to_owned(),
+                false => root.display().to_string(),
+            });
             return Err(Diagnostic::new(
                 by,
                 MountKind::OutsideRoot { file: written.to_owned(), root },

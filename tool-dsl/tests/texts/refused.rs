@@ -301,6 +301,8 @@ fn mounts_stay_below_the_tools_folder() {
     assert!(compile(&held("../other/part.tool").with_root(above)).tool().is_some());
     let said = error(&compile(&held("/etc/passwd").with_root(above)));
     assert_eq!(said, format!("`/etc/passwd` is outside the folder `{}`", above.display()));
+    let here = error(&compile(&held("/etc/passwd").with_root("")));
+    assert_eq!(here, "`/etc/passwd` is outside the folder `.`");
     assert!(error(&compile(&held("none.tool"))).starts_with("cannot read"));
 }
 
