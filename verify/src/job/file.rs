@@ -126,7 +126,7 @@ pub struct ToolEntry {
 /// expression of the language.
 fn assignments<'de, D: Deserializer<'de>>(table: D) -> Result<Vec<String>, D::Error> {
     #[derive(Deserialize)]
-    #[serde(untagged)]
+    #[serde(untagged, expecting = "expected a number, or an expression as a text")]
     enum ParamValue {
         Number(f64),
         Expression(String),
@@ -141,7 +141,7 @@ fn assignments<'de, D: Deserializer<'de>>(table: D) -> Result<Vec<String>, D::Er
 
 /// The value of a variable, or all values that it can have.
 #[derive(Deserialize)]
-#[serde(untagged)]
+#[serde(untagged, expecting = "expected a number, or a list of numbers")]
 enum VariableValues {
     One(f64),
     Several(Vec<f64>),
@@ -401,7 +401,8 @@ impl JobFile {
         let radius_offsets = radius_offsets(&job.radius_offsets, &entries).map_err(refused)?;
         let presets = presets(&job.presets).map_err(refused)?;
         let named = |name: String| -> OsString {
-            if name.ends_with(".toml") { folder.join(name).into() } else { name.into() }
+            let is_file = has_ending(Path::new(&name), "toml");
+            if is_file { folder.join(name).into() } else { name.into() }
         };
         if let Some(stock) = &job.stock {
             let kinds =
@@ -511,7 +512,7 @@ impl JobFile {
     /// Returns the tools that the program uses, in the order of their first motions.
     ///
     /// # Errors
-    /// If no tool is given for a number, or one for several.
+    /// If no tool is given for a number, or one for several, or if the length of one is below 0.
     pub fn used_tools(&self, program: &Program) -> Result<Vec<NamedTool>, JobError> {
         let uses = program.tools();
         let (library, entries) = match &self.tools {
@@ -534,6 +535,9 @@ impl JobFile {
                 (None, _) => return Err(JobError::UnnamedTool { line }),
             };
             let entry = entries.get(&known).cloned().unwrap_or_default();
+            if let Some(length) = entry.length.filter(|length| *length < 0.0) {
+                return Err(JobError::ToolLength { number: known, length });
+            }
             let (name, library) = match (entry.tool, library) {
                 (Some(name), _) => (OsString::from(name), None),
                 (None, Some(library)) => (format!("T{known}").into(), Some(library.clone())),

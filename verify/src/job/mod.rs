@@ -520,6 +520,17 @@ faults! {
             /// The largest number of pairs.
             limit: usize,
         },
+        /// A tool of the program whose gauge point is below its tip.
+        #[code = J0134]
+        #[error(
+            "tool {number} has the length {length} mm: state the distance from its tip to the gauge point of the spindle, 0 or more"
+        )]
+        ToolLength {
+            /// The number.
+            number: u32,
+            /// The length, in mm.
+            length: f64,
+        },
     }
 }
 

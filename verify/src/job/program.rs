@@ -1,5 +1,6 @@
 //! A program of any kind: CL data, or G-code on a machine.
 
+use super::file::has_ending;
 use super::{BodyFrame, JobError, JobGap, RevolvedBody};
 use crate::check::MoveRequest;
 use crate::gcode::{ControlRules, ControlSetup, SubprogramFile, SubprogramLine};
@@ -450,7 +451,7 @@ pub fn read_machine(name: &Path) -> Result<Machine, JobError> {
 /// # Errors
 /// If the file cannot be read.
 fn toml_text(name: &Path) -> Result<Option<(String, String)>, JobError> {
-    if name.extension().is_none_or(|extension| extension != "toml") {
+    if !has_ending(name, "toml") {
         return Ok(None);
     }
     let file = name.display().to_string();

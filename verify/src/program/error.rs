@@ -23,8 +23,8 @@ faults! {
         /// The file has no position.
         #[code = P0602]
         #[error(
-            "{file}: holds no position: give rows of x,y,z,i,j,k or an APT-CL program of GOTO points \
-             (G-code is not read)"
+            "{file}: holds no position: give rows of x,y,z,i,j,k or an APT-CL program of GOTO points; \
+             `verify` reads G-code, too"
         )]
         NoPosition {
             /// The file.
@@ -113,7 +113,7 @@ faults! {
     pub enum ProgramFault {
         /// A byte that is no part of a UTF-8 text, or is NUL.
         #[code = P0501]
-        #[error("byte {byte} of the file is not UTF-8 text: save it as UTF-8 (not UTF-16 or Latin-1)")]
+        #[error("byte {byte} of the file is NUL or not UTF-8 text: save it as UTF-8 (not UTF-16 or Latin-1)")]
         NotText {
             /// Its offset in the file, from 0.
             byte: usize,

@@ -11,7 +11,7 @@ use touchoff::{Tool, Unit};
 use touchoff_verify::gcode::{ControlRules, ControlSetup, WorkOffset};
 use touchoff_verify::job::{
     Body, BodyRole, FindingDetail, FindingRule, JobFinding, JobStock, Moving, NoVerdict,
-    PairReport, StockShape,
+    PairReport, StockShape, read_control,
 };
 use touchoff_verify::machine::Machine;
 use touchoff_verify::{
@@ -376,6 +376,11 @@ fn job_files_are_read_with_their_paths_beside_them() {
     let expected =
         ["part: jobs/a.stl", "program: jobs/a.nc", "tool T3: jobs/m.tool", "vise: jobs/v.stl"];
     assert_eq!(files, expected);
+    let shouted = text.replace("haas", "H.TOML");
+    let shouted = JobFile::parse(&shouted, Path::new("jobs/a.toml")).expect("a job");
+    assert_eq!(shouted.control, Some("jobs/H.TOML".into()));
+    let unreadable = read_control("none.TOML".as_ref()).expect_err("no file");
+    assert!(matches!(unreadable, JobError::Unreadable { .. }), "{unreadable}");
     assert_eq!(job.work_offsets[1], Some([1.0, 2.0, 3.0, 0.0, 0.0, 0.0]));
 
     let tables = format!(
@@ -397,6 +402,9 @@ fn job_files_are_read_with_their_paths_beside_them() {
     let used = job.used_tools(&of("G21 T3 M6\nG0 X1.\nX2.\nM30\n")).expect("its tool");
     assert_eq!(used[0].motions, ToolSelection::Number(Some(3)));
     assert_eq!(used[0].params, ["D=6"]);
+    let low = JobFile::parse(&text.replace("= 40", "= -40"), Path::new("a.toml")).expect("a job");
+    let low = low.used_tools(&of("G21 T3 M6\nG0 X1.\nX2.\nM30\n")).expect_err("a tip above");
+    assert_eq!(low.code(), "J0134", "{low}");
     let missing = job.used_tools(&of("G21 T4 M6\nG0 X1.\nX2.\nM30\n")).err();
     assert!(matches!(missing, Some(JobError::NoTool { number: 4, line: 2, .. })), "{missing:?}");
     let two = text.replace("[work_offsets]", "[tool.5]\ntool = \"n.tool\"\n[work_offsets]");
