@@ -837,7 +837,7 @@ impl Modal {
     }
 
     /// Returns the least increment of a length, in the unit of the program.
-    fn increment(&self) -> f64 {
+    pub(super) fn increment(&self) -> f64 {
         if self.unit == Unit::Inch { 1e-4 } else { 1e-3 }
     }
 

@@ -622,6 +622,11 @@ fn what_is_not_read_is_named_with_its_line() {
         ("FUNCTION TCPM F TCP AXIS SPAT PATHCTRL AXIS", 2, "P0115 AXIS"),
         ("FUNCTION TCPM F TCP AXIS POS PATHCTRL VECTOR", 2, "P0115 PATHCTRL"),
         ("FUNCTION PARAXCOMP", 2, "P0115 FUNCTION"),
+        (
+            "CYCL DEF 19.0 P\nCYCL DEF 19.1 A-30 C+40\nCYCL DEF 19.0 P\nCYCL DEF 19.1 A-60",
+            5,
+            "P0119 CYCL DEF 19",
+        ),
         ("X+10 R0 F100", 2, "P0114 X"),
         ("ERROR = L X+1", 2, "P0114 `ERROR = L X+1`"),
         ("L X+99999999999 FMAX", 2, "P0216 a number"),

@@ -179,11 +179,10 @@ fn modal_macros_are_called_after_each_motion() {
         O9200\nG91 Y#1\nG90\nM99\n";
     let expected = [[1.0, 0.0], [2.0, 0.0], [2.0, 0.5], [3.0, 1.0], [3.0, 1.5], [4.0, 1.5]];
     assert_ends(program, Choice::Iso, &expected);
-    // In a subprogram, too, but not in another macro; and after a full circle.
-    let calls = "G21 G90 G0 F100\nG66 P9200 A0.5\nM98 P9300\nG65 P9300\nG2 I9.\nX4.\nM30\n\
+    // In a subprogram, too, and after a full circle.
+    let calls = "G21 G90 G0 F100\nG66 P9200 A0.5\nM98 P9300\nG2 I9.\nX4.\nM30\n\
         O9200\nG91 G0 Y#1\nG90\nM99\nO9300\nG0 X2.\nM99\n";
-    let expected =
-        [[2.0, 0.0], [2.0, 0.5], [2.0, 0.5], [2.0, 0.5], [2.0, 1.0], [4.0, 1.0], [4.0, 1.5]];
+    let expected = [[2.0, 0.0], [2.0, 0.5], [2.0, 0.5], [2.0, 1.0], [4.0, 1.0], [4.0, 1.5]];
     assert_ends(calls, Choice::Iso, &expected);
     // G66 of a subprogram holds after it.
     let inner =
@@ -192,8 +191,38 @@ fn modal_macros_are_called_after_each_motion() {
     for word in ["G28 X0.", "G91 G30 X0.", "G53 G0 X0."] {
         let program = calls.replace("X4.", word);
         let error = read(&program, &setup(Choice::Iso)).expect_err(word);
-        assert_fault(&program, &error, 6, "P0120 G66 is in force");
+        assert_fault(&program, &error, 5, "P0120 G66 is in force");
     }
+    // Its variables go on from one call to the next.
+    let counts =
+        "G21 G90 G0\nG66 P9200 A1.\nX1.\nX2.\nG67\nM30\nO9200\nG91 Y#1\nG90\n#1=#1+10.\nM99\n";
+    let expected = [[1.0, 0.0], [1.0, 1.0], [2.0, 1.0], [2.0, 12.0]];
+    assert_ends(counts, Choice::Iso, &expected);
+    // Another call would nest, as each control does in its own way.
+    for (within, at) in [("X4.", 5), ("#1=0", 9)] {
+        for call in ["G66 P9300", "G65 P9300"] {
+            let program = calls.replace("#1\n", "#1\n#1=0\n").replace(within, call);
+            let error = read(&program, &setup(Choice::Iso)).expect_err(call);
+            assert_fault(&program, &error, at, "P0120 G66 is in force");
+        }
+    }
+    let left = inner.replace("M98 P9300", "G65 P9300");
+    let error = read(&left, &setup(Choice::Iso)).expect_err("a macro that leaves G66");
+    assert_fault(&left, &error, 11, "P0120 G66 of the macro is in force");
+}
+
+/// In the value of a word ROUND of Fanuc leaves the least increment, on LinuxCNC whole numbers.
+#[test]
+fn round_in_a_word_rounds_to_its_increment() {
+    let program = "G21 G90 G0\n#1=25.4\nX[ROUND[#1]] Y[ROUND[1.00333]+ROUND[1.00333]]\n#2=ROUND[#1]\nX#2 Y0.\nM30\n";
+    assert_ends(program, Choice::Iso, &[[25.4, 2.006], [25.0, 0.0]]);
+    assert_ends(program, Choice::Rs274Ngc, &[[25.0, 2.0], [25.0, 0.0]]);
+    let unstated = ControlSetup { start: [Some(0.0); 6], ..ControlSetup::default() };
+    let error = read(program, &unstated).expect_err("two values");
+    assert_fault(program, &error, 3, "P0205 ROUND");
+    let argument = "G21 G90 G0\nG65 P9200 A[ROUND[1.5]]\nM30\nO9200\nX#1\nM99\n";
+    let error = read(argument, &setup(Choice::Iso)).expect_err("an argument");
+    assert_fault(argument, &error, 2, "P0203 ROUND in an argument");
 }
 
 #[test]
@@ -261,8 +290,8 @@ fn expressions_have_the_value_of_their_control() {
         ("FIX[-2.5]", Some(-2.0), Some(-3.0)),
         ("FUP[-2.5]", Some(-3.0), Some(-2.0)),
         ("FUP[2.1]", Some(3.0), Some(3.0)),
-        ("ROUND[2.5]", Some(3.0), Some(3.0)),
-        ("ROUND[-2.5]", Some(-3.0), Some(-3.0)),
+        ("ROUND[2.5]", Some(2.5), Some(3.0)),
+        ("ROUND[-2.5]", Some(-2.5), Some(-3.0)),
         ("[0-7] MOD 3", Some(-1.0), Some(2.0)),
         ("7 MOD 3", Some(1.0), Some(1.0)),
         ("6 AND 3", Some(2.0), Some(1.0)),
@@ -282,6 +311,9 @@ fn expressions_have_the_value_of_their_control() {
         // Precedence: AND is a product on Fanuc, and the last on LinuxCNC.
         ("4 + 2 AND 2", Some(6.0), Some(1.0)),
         ("5 - 3 - 1", Some(1.0), Some(1.0)),
+        // Equal on LinuxCNC, or not, by its release.
+        ("1 EQ 1.00005", Some(0.0), None),
+        ("1.00005 GE 1", Some(1.0), Some(1.0)),
         ("SQRT[16] / 2", Some(2.0), Some(2.0)),
     ] {
         for (dialect, expected) in [(Choice::Iso, fanuc), (Choice::Rs274Ngc, linuxcnc)] {

@@ -18,6 +18,8 @@ const MAX_DEPTH: usize = 30;
 const LARGEST_RESULT: f64 = 1e18;
 /// LinuxCNC's numbers are equal if they differ by less (`TOLERANCE_EQUAL`).
 const LINUXCNC_EQUAL: f64 = 1e-6;
+/// The same of its earlier releases.
+const LINUXCNC_EQUAL_BEFORE: f64 = 1e-4;
 /// Numbers that differ by less, relatively (and absolutely below 1), may be equal on a control that computes with 8 digits.
 const TIE: f64 = 1e-6;
 
@@ -377,7 +379,11 @@ pub(super) fn begins_value(cursor: &mut Cursor) -> bool {
 }
 
 /// Reads a value: a number, a variable, a bracket or a function, with one sign at most.
-pub(super) fn value(cursor: &mut Cursor, scope: &Scope) -> Result<Value, ExpressionFault> {
+pub(super) fn value(
+    cursor: &mut Cursor,
+    scope: &Scope,
+    rounding: Rounding,
+) -> Result<Value, ExpressionFault> {
     let mut literal = *cursor;
     let negative = literal.peek() == Some(b'-');
     if negative || literal.peek() == Some(b'+') {
@@ -388,13 +394,13 @@ pub(super) fn value(cursor: &mut Cursor, scope: &Scope) -> Result<Value, Express
         *cursor = literal;
         return Ok(Some(if negative { -number } else { number }));
     }
-    agreed(cursor, scope, |reader, cursor| reader.unary(cursor, 0))
+    agreed(cursor, scope, rounding, |reader, cursor| reader.unary(cursor, 0))
 }
 
 /// Reads an expression, as after `=`. LinuxCNC reads one value there. Fanuc's table of operations has sums, products and quotients
 /// without brackets (`#i=#j/#k`): `/` is a division there, and begins no optional block.
 pub(super) fn expression(cursor: &mut Cursor, scope: &Scope) -> Result<Value, ExpressionFault> {
-    agreed(cursor, scope, |reader, cursor| match reader.language {
+    agreed(cursor, scope, Rounding::Whole, |reader, cursor| match reader.language {
         Language::Fanuc => reader.binary(cursor, 0, 1),
         Language::LinuxCnc => {
             let value = reader.unary(cursor, 0)?;
@@ -414,7 +420,7 @@ pub(super) fn condition(cursor: &mut Cursor, scope: &Scope) -> Result<bool, Expr
     if cursor.peek() != Some(b'[') {
         return Err(ExpressionFault::Value { shown: rest(cursor) });
     }
-    let value = agreed(cursor, scope, |reader, cursor| reader.bracket(cursor, 0))?;
+    let value = agreed(cursor, scope, Rounding::Whole, |reader, cursor| reader.bracket(cursor, 0))?;
     Ok(value.is_some_and(|value| value != 0.0))
 }
 
@@ -422,15 +428,16 @@ pub(super) fn condition(cursor: &mut Cursor, scope: &Scope) -> Result<bool, Expr
 fn agreed(
     cursor: &mut Cursor,
     scope: &Scope,
+    rounding: Rounding,
     read: impl Fn(&Reader, &mut Cursor) -> Result<Value, ExpressionFault>,
 ) -> Result<Value, ExpressionFault> {
     if let Some(language) = scope.language {
-        return read(&Reader { scope, language }, cursor);
+        return read(&Reader { scope, language, rounding }, cursor);
     }
     let start = *cursor;
     let [mut fanuc, mut linuxcnc] = [start; 2];
-    let first = read(&Reader { scope, language: Language::Fanuc }, &mut fanuc);
-    let second = read(&Reader { scope, language: Language::LinuxCnc }, &mut linuxcnc);
+    let first = read(&Reader { scope, language: Language::Fanuc, rounding }, &mut fanuc);
+    let second = read(&Reader { scope, language: Language::LinuxCnc, rounding }, &mut linuxcnc);
     // One of both may have passed over blanks.
     fanuc.peek();
     linuxcnc.peek();
@@ -462,6 +469,18 @@ fn number(cursor: &mut Cursor) -> Result<f64, ExpressionFault> {
 pub(super) struct Reader<'a> {
     pub(super) scope: &'a Scope<'a>,
     pub(super) language: Language,
+    pub(super) rounding: Rounding,
+}
+
+/// To what ROUND of Fanuc rounds: to whole numbers, but in the value of a word to the increment of its address (B-63944EN, table of
+/// arithmetic and logic operations).
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Rounding {
+    Whole,
+    /// To multiples of an increment.
+    Increment(f64),
+    /// Of what is to become of an argument, only the macro knows.
+    Argument,
 }
 
 impl Reader<'_> {
@@ -641,7 +660,18 @@ impl Reader<'_> {
                 self.rounded(x, if x < 0.0 { x.floor() } else { x.ceil() }, 0.0, "FUP")
             }
             Function::Fup => Ok(x.ceil()),
-            Function::Round if is_fanuc => self.rounded(x, x.round(), 0.5, "ROUND"),
+            Function::Round if is_fanuc => match self.rounding {
+                Rounding::Whole => self.rounded(x, x.round(), 0.5, "ROUND"),
+                Rounding::Increment(step) => {
+                    let per_unit = (1.0 / step).round();
+                    let steps = x * per_unit;
+                    Ok(self.rounded(steps, steps.round(), 0.5, "ROUND")? / per_unit)
+                }
+                Rounding::Argument if x.fract() == 0.0 => Ok(x),
+                Rounding::Argument => {
+                    Err(ExpressionFault::Operation { name: "ROUND in an argument".to_owned() })
+                }
+            },
             Function::Round => Ok(x.round()),
             Function::Atan | Function::Exists | Function::Pow => {
                 unreachable!("read with its arguments")
@@ -709,7 +739,7 @@ impl Reader<'_> {
         value.map(Some)
     }
 
-    /// Returns the result of a comparison, unless rounding errors decide it on a control with fewer digits.
+    /// Returns the result of a comparison, unless rounding errors decide it on a control with fewer digits, or the release of LinuxCNC.
     fn compared(
         &self,
         x: f64,
@@ -718,8 +748,21 @@ impl Reader<'_> {
         holds: bool,
     ) -> Result<f64, ExpressionFault> {
         let difference = x - y;
-        let is_tie = difference != 0.0 && difference.abs() <= TIE * x.abs().max(y.abs()).max(1.0);
-        match self.language == Language::Fanuc && is_tie {
+        let is_tie = match self.language {
+            Language::Fanuc => {
+                difference != 0.0 && difference.abs() <= TIE * x.abs().max(y.abs()).max(1.0)
+            }
+            Language::LinuxCnc => {
+                let is_decided = match operation {
+                    "GT" | "LT" => true,
+                    "GE" => difference > 0.0,
+                    "LE" => difference < 0.0,
+                    _ => false,
+                };
+                !is_decided && (LINUXCNC_EQUAL..LINUXCNC_EQUAL_BEFORE).contains(&difference.abs())
+            }
+        };
+        match is_tie {
             true => Err(ExpressionFault::Tie { operation, value: difference }),
             false => Ok(f64::from(u8::from(holds))),
         }

@@ -338,6 +338,12 @@ impl<'a> Flow<'a> {
         self.modal.clone_from(&called.modal);
     }
 
+    /// Returns whether a macro that a motion called (G66) is being executed.
+    pub(super) fn is_in_modal_call(&self) -> bool {
+        let is_modal = |call: &Call| matches!(call.hidden, Hidden::Macro { modal: Some(_), .. });
+        self.calls.iter().any(is_modal)
+    }
+
     /// Returns the number of calls that are being executed.
     fn depth(&self) -> usize {
         self.below + self.calls.len()
@@ -697,6 +703,10 @@ impl<'a> Flow<'a> {
                 call.repeats -= 1;
                 self.place = call.body;
             }
+            Some(Call { hidden: Hidden::Macro { .. }, .. }) if self.modal.is_some() => {
+                let condition = "G66 of the macro is in force, and stays so in the caller";
+                return Err(combination("M99", condition, "write G67 before"));
+            }
             _ => {
                 if let Some(call) = self.calls.pop() {
                     self.end_call(call, variables);
@@ -710,7 +720,11 @@ impl<'a> Flow<'a> {
     fn end_call(&mut self, call: Call, variables: &mut Variables) {
         self.place = call.return_to;
         match call.hidden {
-            Hidden::Macro { locals, modal } => (variables.locals, self.modal) = (locals, modal),
+            Hidden::Macro { locals, modal } => {
+                let own = mem::replace(&mut variables.locals, locals);
+                // A modal call does not set the arguments anew (B-63944EN, restrictions of G66).
+                self.modal = modal.map(|call| MacroCall { arguments: own.numbered, ..call });
+            }
             Hidden::Names(names) => variables.locals.named = names,
         }
     }

@@ -2,7 +2,9 @@
 //! Comments are `( … )` and `; …`. Case does not matter, and blanks may stand between words and between a letter and its value. A
 //! character that belongs to none of these stops the interpreter.
 
-use super::expression::{Cursor, ExpressionFault, Language, Value, begins_value, condition, value};
+use super::expression::{
+    Cursor, ExpressionFault, Language, Rounding, Value, begins_value, condition, value,
+};
 use super::flow::before_semicolon;
 use super::variables::{Parameter, Scope, assignment};
 use crate::gcode::block::{Block, Code, Group, Keyword, Number};
@@ -145,7 +147,14 @@ impl Line {
             return self.name(start, cursor, letter, scope);
         }
         let text = cursor.rest();
-        let value = value(cursor, scope)?;
+        let rounding = match letter {
+            'A' | 'B' | 'C' => Rounding::Increment(1e-3),
+            'X' | 'Y' | 'Z' | 'I' | 'J' | 'K' | 'R' | 'Q' | 'F' => {
+                Rounding::Increment(scope.control.modal.increment())
+            }
+            _ => Rounding::Whole,
+        };
+        let value = value(cursor, scope, rounding)?;
         let written = &text[..text.len() - cursor.rest().len()];
         // A word with a vacant variable is as if it were not written (Fanuc).
         let Some(value) = value else { return Ok(()) };
@@ -183,7 +192,8 @@ impl Line {
             return Err(GcodeFault::NoNumber { word: letter });
         }
         let start = *cursor;
-        let Some(length) = value(cursor, scope)? else { return Ok(()) };
+        let rounding = Rounding::Increment(scope.control.modal.increment());
+        let Some(length) = value(cursor, scope, rounding)? else { return Ok(()) };
         if length.abs() > LARGEST_NUMBER {
             return Err(GcodeFault::TooLarge { word: letter });
         }
@@ -437,7 +447,7 @@ pub(super) fn loop_number(cursor: &mut Cursor, word: &str) -> Result<u32, GcodeF
 
 /// Reads the sequence number after GOTO, which can be computed.
 fn sequence_number(cursor: &mut Cursor, scope: &Scope) -> Result<u32, GcodeFault> {
-    let value = value(cursor, scope)?.unwrap_or(0.0);
+    let value = value(cursor, scope, Rounding::Whole)?.unwrap_or(0.0);
     match value.fract() == 0.0 && (1.0..=99_999_999.0).contains(&value) {
         true => Ok(value as u32),
         false => {
@@ -491,7 +501,7 @@ fn macro_call(code: Code, cursor: &mut Cursor, scope: &Scope) -> Result<MacroCal
             return Err(GcodeFault::NoNumber { word: letter });
         }
         let start = *cursor;
-        let value = value(cursor, scope)?;
+        let value = value(cursor, scope, Rounding::Argument)?;
         let written = start.text_to(cursor);
         let is_whole = !written.contains(['.', '[', '#']);
         let whole = |least: f64, expected: &'static str| {
@@ -722,7 +732,7 @@ pub(super) fn o_word(cursor: &mut Cursor, scope: &Scope) -> Result<OWord, GcodeF
             let name: String = name.chars().filter(|c| !c.is_whitespace()).collect();
             Label::Name(name.to_lowercase())
         }
-        false => match value(cursor, scope)?.unwrap_or(-1.0) {
+        false => match value(cursor, scope, Rounding::Whole)?.unwrap_or(-1.0) {
             number if number.fract() == 0.0 && (0.0..=1e8).contains(&number) => {
                 Label::Number(number as u32)
             }

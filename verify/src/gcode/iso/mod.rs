@@ -25,7 +25,7 @@ use super::note::NoteKind;
 use super::rules::{Choice, Rule};
 use super::{ControlSetup, GcodeError, GcodeFault, Repeated, SubprogramFile, shown, work};
 use blank::{BlankLine, blank_line};
-use expression::{Cursor, Language, Value, condition, value};
+use expression::{Cursor, Language, Rounding, Value, condition, value};
 use flow::{Callee, Flow, Source, before_semicolon};
 use line::{Label, Line, MacroCall, OWord, Role, Statement, begin, check_end, next, o_word};
 use std::mem;
@@ -295,6 +295,15 @@ impl<'a> Program<'a> {
             return Ok(Progress::GoesOn);
         }
         if let Some(call) = line.call.take() {
+            let is_within = self.waiting.iter().chain([&self.flow]).any(Flow::is_in_modal_call);
+            if is_within || self.flow.modal.is_some() {
+                let (condition, remedy) = ("G66 is in force", "write G67 before");
+                return Err(combination(
+                    if call.is_modal { "G66" } else { "G65" },
+                    condition,
+                    remedy,
+                ));
+            }
             match call.is_modal {
                 true => self.flow.modal = Some(call),
                 false => self.call_macro(&call, control)?,
@@ -610,7 +619,7 @@ impl<'a> Program<'a> {
                     if number > 30 {
                         return Err(GcodeFault::TooManyArguments);
                     }
-                    locals.numbered.insert(number, value(cursor, &scope)?);
+                    locals.numbered.insert(number, value(cursor, &scope, Rounding::Whole)?);
                 }
                 check_end(cursor)?;
                 self.check_order(&label, control)?;
@@ -620,7 +629,7 @@ impl<'a> Program<'a> {
             }
             Role::EndSub | Role::Return => {
                 let returned = match next(cursor)? {
-                    Some(b'[') => value(cursor, &scope)?,
+                    Some(b'[') => value(cursor, &scope, Rounding::Whole)?,
                     _ => None,
                 };
                 check_end(cursor)?;
@@ -673,7 +682,7 @@ impl<'a> Program<'a> {
                 Ok(())
             }
             Role::Repeat => {
-                let times = value(cursor, &scope)?.unwrap_or(0.0).round();
+                let times = value(cursor, &scope, Rounding::Whole)?.unwrap_or(0.0).round();
                 check_end(cursor)?;
                 // Refused before the first of too many.
                 let mut ahead = self.flow.repeated;

@@ -9,7 +9,7 @@
 //! A common variable keeps the value that an earlier program or the operator has left in it. It is known only where the program has
 //! assigned it, or the setup declares it.
 
-use super::expression::{Cursor, ExpressionFault, Language, Reader, Value, expression};
+use super::expression::{Cursor, ExpressionFault, Language, Reader, Rounding, Value, expression};
 use super::{language, system};
 use crate::gcode::control::Control;
 use std::collections::BTreeMap;
@@ -275,7 +275,7 @@ pub(super) fn assignment(
     scope: &Scope,
 ) -> Result<(Parameter, Value), ExpressionFault> {
     let language = scope.language.unwrap_or(Language::LinuxCnc);
-    let target = parameter(&Reader { scope, language }, cursor, 0)?;
+    let target = parameter(&Reader { scope, language, rounding: Rounding::Whole }, cursor, 0)?;
     match cursor.take(b'=') {
         true => Ok((target, expression(cursor, scope)?)),
         false => Err(ExpressionFault::NoAssignment { parameter: target.shown() }),

@@ -34,6 +34,8 @@ pub(super) struct Frame {
     /// Signs of X, Y and Z.
     pub(super) mirror: [f64; 3],
     tilt: Option<Matrix3<f64>>,
+    /// The angles of the last cycle 19; `None` if PLANE has come after it.
+    cycle_angles: Option<[f64; 3]>,
     /// Set if the rotary axes stand as the plane needs them.
     aligned: bool,
     /// Set if they are all at 0 then.
@@ -56,6 +58,7 @@ impl Frame {
             turn: 0.0,
             mirror: [1.0; 3],
             tilt: None,
+            cycle_angles: Some([0.0; 3]),
             aligned: false,
             is_at_zero: false,
             master_is_positive: None,
@@ -279,14 +282,18 @@ impl Program<'_> {
             "the angles A, B and C without F and ABST, by which the control turns the axes";
         let words = self.coordinates(cursor, wanted)?;
         let mut angles = [0.0; 3];
-        for (angle, coordinate) in angles.iter_mut().zip(&words.axes[3..]) {
+        for (axis, (angle, coordinate)) in angles.iter_mut().zip(&words.axes[3..]).enumerate() {
             match coordinate {
                 Some(Coordinate::Absolute(value)) => *angle = *value,
-                None => {}
+                // An angle that is not written is that of the plane before (TNC 640, cycle 19).
+                None if self.frame.cycle_angles.is_some_and(|before| before[axis] == 0.0) => {}
+                None => return Err(missing("CYCL DEF 19", "all of A, B and C after a plane")),
                 Some(_) => return Err(expected("CYCL DEF 19", wanted)),
             }
         }
-        self.tilt("CYCL DEF 19", spatial(angles), control)
+        self.tilt("CYCL DEF 19", spatial(angles), control)?;
+        self.frame.cycle_angles = Some(angles);
+        Ok(())
     }
 
     /// Tilts the plane. The axes rest.
@@ -306,6 +313,7 @@ impl Program<'_> {
             return Err(combination(word, condition, "write PLANE RESET before"));
         }
         (self.frame.tilt, self.frame.aligned) = (Some(rotation), false);
+        self.frame.cycle_angles = None;
         (self.frame.master_is_positive, self.frame.is_at_zero) = (None, false);
         self.change_frame(control);
         control.begin_plane();
