@@ -140,8 +140,20 @@ pub(crate) fn sides(polygon: &Polygon, tolerance: f64) -> impl Iterator<Item = S
     })
 }
 
+/// Returns whether the boxes of two polygons are farther apart than a distance along one of the axes.
+pub(crate) fn are_boxes_apart(p: &Polygon, q: &Polygon, distance: f64) -> bool {
+    [0, 1].into_iter().any(|axis| {
+        let [[low, high], [other_low, other_high]] =
+            [p, q].map(|polygon| range(polygon.iter().map(|v| v[axis])));
+        high + distance < other_low || other_high + distance < low
+    })
+}
+
 /// Returns whether two convex polygons have points within a distance of each other.
 pub(crate) fn do_touch(p: &Polygon, q: &Polygon, tolerance: f64) -> bool {
+    if are_boxes_apart(p, q, tolerance) {
+        return false;
+    }
     let separates = |a: &Polygon, b: &Polygon| {
         sides(a, tolerance).any(|side| {
             let far = -tolerance * norm(side.along);

@@ -9,7 +9,7 @@ use crate::formula::{CurveIndex, Formula, NEGATIVE, POSITIVE, Signs};
 use crate::geometry::function::{CurveFunction, Distance};
 use crate::geometry::outline::{Point, bounding_box};
 use crate::geometry::polygon::{
-    Polygon, area, centroid, clipped, divided, do_touch, halved, range, sides, width,
+    Polygon, are_boxes_apart, area, centroid, clipped, divided, do_touch, halved, sides, width,
 };
 use std::collections::VecDeque;
 use std::rc::Rc;
@@ -412,12 +412,7 @@ impl Piece {
         shapes: &[CurveFunction<'_>],
         tolerance: f64,
     ) -> Option<Piece> {
-        let is_apart = |axis: usize| {
-            let along = |piece: &Piece| range(piece.vertices.iter().map(|p| p[axis]));
-            let ([low, high], [other_low, other_high]) = (along(self), along(other));
-            high < other_low || other_high < low
-        };
-        if is_apart(0) || is_apart(1) {
+        if are_boxes_apart(&self.vertices, &other.vertices, 0.0) {
             return None;
         }
         let mut common = self.clone();
