@@ -2,9 +2,9 @@
 
 use std::fmt::{self, Display, Formatter};
 
-/// Text without the characters that a terminal interprets. Control characters (C0, C1, delete) and
-/// characters that change the direction of writing are shown as `\u001b`, with four hexadecimal digits
-/// of their code as in JSON. Line breaks are escaped too, so the text stays on one line.
+/// Text without the characters that a terminal interprets. Control characters (C0, C1, delete),
+/// characters that change the direction of writing, separators of lines and characters without a width are shown
+/// as `\u001b`, with four hexadecimal digits of their code as in JSON. Line breaks are escaped too, so the text stays on one line.
 ///
 /// All text from a file, and every file name, is escaped before it is shown.
 ///
@@ -45,11 +45,14 @@ impl Display for EscapedLines<'_> {
     }
 }
 
-/// Returns whether a terminal interprets a character instead of showing it. These are control characters, and the
-/// marks, embeddings, overrides and isolates of Unicode's bidirectional algorithm (UAX 9, section 2).
+/// Returns whether a terminal interprets a character instead of showing it. These are control characters, the marks, embeddings,
+/// overrides and isolates of Unicode's bidirectional algorithm (UAX 9, section 2), separators of lines, and characters that nobody
+/// sees. The joiners of scripts (U+200C, U+200D) are text.
 fn is_terminal_control(c: char) -> bool {
-    c.is_control()
-        || matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+    let is_of_direction = matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    let is_unseen =
+        matches!(c, '\u{ad}' | '\u{200b}' | '\u{2028}' | '\u{2029}' | '\u{2060}' | '\u{feff}');
+    c.is_control() || is_of_direction || is_unseen
 }
 
 #[cfg(test)]
@@ -58,7 +61,10 @@ mod tests {
 
     #[test]
     fn escapes_every_terminal_control() {
-        for code in (0..0x20).chain(0x7f..0xa0).chain([0x61c, 0x200e, 0x202e, 0x2066]) {
+        for code in (0..0x20)
+            .chain(0x7f..0xa0)
+            .chain([0x61c, 0x200b, 0x200e, 0x2028, 0x202e, 0x2066, 0xfeff])
+        {
             let text = format!("a{}é", char::from_u32(code).expect("a character"));
             assert_eq!(Escaped(&text).to_string(), format!("a\\u{code:04x}é"));
         }
