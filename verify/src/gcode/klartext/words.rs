@@ -296,7 +296,10 @@ pub(super) const CYCLES: [Entry; 71] = [
     read("7", "the datum shift"),
     read("8", "mirrored axes, without a rotation"),
     read("10", "a rotation about the datum"),
-    read("19", "a tilted plane, as PLANE SPATIAL STAY, without F and ABST"),
+    read(
+        "19",
+        "a tilted plane, as PLANE SPATIAL STAY, without F and ABST, with all of A, B and C after a plane",
+    ),
     read("200", "drilling"),
     read("201", "reaming"),
     read("202", "boring"),
