@@ -88,7 +88,7 @@ fn main() -> ExitCode {
     status
 }
 
-/// Whether the main thread or the timer of `--max-time` ends the program: the first of them does.
+/// The choice between the main thread and the timer of `--max-time`: the first of them to set it ends the program.
 static IS_ENDING: AtomicBool = AtomicBool::new(false);
 
 /// The exit status of a command that had no time or no memory left, or has a fault itself.

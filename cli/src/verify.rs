@@ -204,8 +204,9 @@ pub(crate) fn verify(arguments: Verify, json: bool) -> Result<ExitCode, Failure>
         }
     }
     out.flush()?;
-    if let Some(more) = report.findings().len().checked_sub(MAX_LINES + 1).filter(|_| !json) {
-        message!("{} more findings are left out: `--json` and `--sarif` list all", more + 1);
+    let left_out = report.findings().len().saturating_sub(MAX_LINES);
+    if !json && left_out > 0 {
+        message!("{left_out} more findings are left out: `--json` and `--sarif` list all");
     }
     print(&inputs, &report)?;
     if let Some(file) = sarif {

@@ -50,7 +50,7 @@ pub enum PointsError {
         found: usize,
         /// The expected number.
         expected: usize,
-        /// What has the expected number.
+        /// The line or heading that has the expected number.
         like: &'static str,
         /// The remedy.
         remedy: &'static str,

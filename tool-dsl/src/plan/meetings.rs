@@ -177,7 +177,7 @@ pub(super) struct Line {
 struct Gap {
     normal: Point,
     width: f64,
-    /// Where it meets the others, along the normal.
+    /// The place along the normal where it meets the others.
     end: f64,
     /// The sign of the way from there to the piece.
     inward: f64,

@@ -479,7 +479,7 @@ pub(super) enum Rounding {
     Whole,
     /// To multiples of an increment.
     Increment(f64),
-    /// Of what is to become of an argument, only the macro knows.
+    /// To what only the macro knows, of which the value is an argument.
     Argument,
 }
 
