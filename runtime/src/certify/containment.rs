@@ -11,7 +11,6 @@ use crate::certify::tool_model::{ToolModel, interior};
 use crate::id::SurfaceId;
 use crate::pose::Pose;
 use crate::tool::{Symmetry, ToolInfo};
-use nalgebra::{Point3, Vector3};
 use std::f64::consts::TAU;
 
 /// The number of azimuths at which a ball of a tool with an axis is tried.
@@ -29,6 +28,17 @@ pub enum Containment {
     Unknown,
     /// A point lies on the part's surface in `f64`, or no point was found within the budget.
     Undecided,
+}
+
+impl Containment {
+    /// Returns whether a piece is inside; `None` if that is not known.
+    pub(super) fn is_inside(self) -> Option<bool> {
+        match self {
+            Containment::Inside(_) => Some(true),
+            Containment::Outside => Some(false),
+            Containment::Unknown | Containment::Undecided => None,
+        }
+    }
 }
 
 /// A point of each connected piece of the restricted interior of a tool, with its nearest surface. The points for
@@ -65,7 +75,7 @@ impl CorePoints {
     }
 
     /// Returns the points of pieces that are deeper than their limits by more than a tolerance.
-    fn deeper_than(
+    fn pieces_deeper_than(
         &mut self,
         tool_model: &ToolModel<'_>,
         info: &ToolInfo,
@@ -121,18 +131,14 @@ impl QuerySetting<'_> {
         pose: &Pose,
         tolerance: f64,
     ) -> Containment {
-        let Some(core_points) = core_points.deeper_than(&self.tool_model, self.info(), tolerance)
-        else {
-            return Containment::Undecided;
-        };
-        let place =
-            |point: Point| pose.tip() + pose.rotation() * Vector3::from(point) * self.length;
+        let pieces = core_points.pieces_deeper_than(&self.tool_model, self.info(), tolerance);
+        let Some(pieces) = pieces else { return Containment::Undecided };
         let mut found = Containment::Outside;
-        for Core { point, radius, surface } in core_points {
+        for Core { point, radius, surface } in pieces {
             let location = if *radius > 0.0 {
-                self.locate_ball(*point, *radius, place)
+                self.locate_ball(*point, *radius, pose)
             } else {
-                self.bvh.locate(place(*point))
+                self.bvh.locate(self.to_world(pose, *point))
             };
             match location {
                 // A ball inside need not have a piece.
@@ -156,14 +162,11 @@ impl QuerySetting<'_> {
         tolerance: f64,
     ) -> f64 {
         let ToolModel::Profile(section) = &self.tool_model else { return 0.0 };
-        let Some(core_points) = core_points.deeper_than(&self.tool_model, self.info(), tolerance)
-        else {
-            return 0.0;
-        };
+        let pieces = core_points.pieces_deeper_than(&self.tool_model, self.info(), tolerance);
         let mut triangles = NearestTriangle::new(&self.bvh);
         let error = rounding::APART * self.error * self.length;
-        let radii = core_points.iter().filter_map(|Core { point, .. }| {
-            let place = pose.tip() + pose.rotation() * Vector3::from(*point) * self.length;
+        let radii = pieces.into_iter().flatten().filter_map(|Core { point, .. }| {
+            let place = self.to_world(pose, *point);
             let in_tool = section.unsigned_distance([point[0], point[2]]) * self.length;
             let is_inside = self.bvh.locate(place) == Location::Inside;
             is_inside.then(|| in_tool.min(triangles.distance(place)) - error)
@@ -172,18 +175,13 @@ impl QuerySetting<'_> {
     }
 
     /// Locates a ball that no triangle meets. Of a tool with an axis it may be turned about the axis: a piece there is a ring.
-    fn locate_ball(
-        &self,
-        [d, y, z]: Point,
-        radius: f64,
-        place: impl Fn(Point) -> Point3<f64>,
-    ) -> Location {
+    fn locate_ball(&self, [d, y, z]: Point, radius: f64, pose: &Pose) -> Location {
         let turns = if self.info().symmetry == Symmetry::Revolved { AZIMUTHS } else { 1 };
         let needed = (radius + rounding::APART * self.error) * self.length;
         let mut triangles = NearestTriangle::new(&self.bvh);
         for turn in 0..turns {
             let (sin, cos) = (TAU * f64::from(turn) / f64::from(AZIMUTHS)).sin_cos();
-            let point = place([d * cos - y * sin, d * sin + y * cos, z]);
+            let point = self.to_world(pose, [d * cos - y * sin, d * sin + y * cos, z]);
             if triangles.distance(point) > needed {
                 return self.bvh.locate(point);
             }
@@ -193,7 +191,7 @@ impl QuerySetting<'_> {
 
     /// Returns whether the restricted interior is one connected piece.
     pub(crate) fn is_one_piece(&self, core_points: &mut CorePoints, tolerance: f64) -> bool {
-        let known = core_points.deeper_than(&self.tool_model, self.info(), tolerance);
+        let known = core_points.pieces_deeper_than(&self.tool_model, self.info(), tolerance);
         matches!(known, Some([core]) if core.radius == 0.0)
     }
 }

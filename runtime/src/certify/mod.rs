@@ -348,12 +348,8 @@ impl<'a> Certifier<'a> {
             ContactVerdict::Yes(_) => Some(false),
             ContactVerdict::Undecided(_) => None,
             ContactVerdict::No => {
-                match setting.containment(whole_core_points, pose, rounding::APART * setting.error)
-                {
-                    Containment::Inside(_) => Some(true),
-                    Containment::Outside => Some(false),
-                    Containment::Unknown | Containment::Undecided => None,
-                }
+                let error = rounding::APART * setting.error;
+                setting.containment(whole_core_points, pose, error).is_inside()
             }
         }
     }
@@ -363,12 +359,7 @@ impl<'a> Certifier<'a> {
     /// meets it. A tool whose surface coincides with the part's has no depth, and is in the material all the same.
     /// Returns `None` if that is unknown: the part has no inside, rounding decides, or the tool has no profile and touches.
     pub fn is_inside(&mut self, pose: &Pose, depth: f64) -> Option<bool> {
-        let (location, _) = self.located_piece(pose, depth);
-        match location {
-            Containment::Inside(_) => Some(true),
-            Containment::Outside => Some(false),
-            Containment::Unknown | Containment::Undecided => None,
-        }
+        self.located_piece(pose, depth).0.is_inside()
     }
 
     /// Locates the pieces of the tool that are deeper than the triangles. Returns also the radius of a ball in both the tool and the

@@ -95,7 +95,7 @@ impl<'a> CertifiedScene<'a> {
         known
     }
 
-    /// Returns the answer of each body, in the world; `ask` takes the body's frame.
+    /// Asks each body; `ask` takes the body's frame, and converts the answer to the world.
     fn answers<'s, T>(
         &'s mut self,
         ask: impl Fn(&mut Certifier<'a>, &Pose) -> T,
@@ -115,14 +115,7 @@ impl<'a> CertifiedScene<'a> {
                 PoseVerdict::Near(witness) => PoseVerdict::Near(witness.in_world(frame)),
                 other => other,
             });
-        answers.min_by_key(|answer| match answer.answer {
-            PoseVerdict::Touching(_) => 0,
-            PoseVerdict::Inside(_) => 1,
-            PoseVerdict::Undecided(_) => 2,
-            PoseVerdict::Near(_) => 3,
-            PoseVerdict::SurfaceOnly => 4,
-            PoseVerdict::Clear => 5,
-        })
+        answers.min_by_key(|answer| answer.answer.rank())
     }
 
     /// Checks the tool along a motion as [`Certifier::check_motion`] does, and returns the gravest verdict, in the order of
@@ -143,14 +136,7 @@ impl<'a> CertifiedScene<'a> {
                 other => other,
             }
         });
-        answers.min_by_key(|answer| match answer.answer {
-            MotionVerdict::Touching(..) => 0,
-            MotionVerdict::Inside(_) => 1,
-            MotionVerdict::Undecided(_) => 2,
-            MotionVerdict::Near(..) => 3,
-            MotionVerdict::SurfaceOnly => 4,
-            MotionVerdict::Clear => 5,
-        })
+        answers.min_by_key(|answer| answer.answer.rank())
     }
 
     /// Computes the deepest penetration of any body into the tool, as [`Certifier::deepest`] does. `None` without a body.
@@ -327,11 +313,11 @@ mod tests {
             }
             let to = Pose::from_axis(tip + Vector3::new(2.0, -1.0, 3.0), axis)?;
             let motion = Motion::new(&pose, &to)?;
-            let gravest =
+            let all_clear =
                 others.iter_mut().all(|other| other.check_motion(&motion, 1e-6).is_clear());
             let checked = scene.check_motion(&motion, 1e-6).expect("three bodies");
-            assert_eq!(checked.answer.is_clear(), gravest, "{k}");
-            clear += usize::from(gravest);
+            assert_eq!(checked.answer.is_clear(), all_clear, "{k}");
+            clear += usize::from(all_clear);
         }
         println!("{contacts} contacts, {apart} apart, {clear} clear motions");
         assert!(contacts > 50 && apart > 50 && clear > 20);

@@ -23,7 +23,7 @@ use crate::handle::{Handle, ToolHandle};
 use crate::pose::Pose;
 use crate::tool::{LANES, ToolInfo};
 use fearless_simd::Level;
-use nalgebra::Vector3;
+use nalgebra::{Point3, Vector3};
 
 /// A set of surfaces and the structures that bound their depth. Lengths are in the tool's unit.
 #[derive(Clone)]
@@ -161,10 +161,15 @@ impl QuerySetting<'_> {
         self.setup.set_pose(&self.bvh.frame, pose, &mut state.view)
     }
 
+    /// Returns a point of the tool's frame in world coordinates.
+    pub(crate) fn to_world(&self, pose: &Pose, point: Point) -> Point3<f64> {
+        pose.tip() + pose.rotation() * Vector3::from(point) * self.length
+    }
+
     /// Returns a candidate as a point of the part in world coordinates, with its triangle and the tool's surface.
     pub(crate) fn witness(&self, best: &DeepestCandidate, pose: &Pose) -> Witness {
         Witness {
-            point: pose.tip() + pose.rotation() * Vector3::from(best.point) * self.length,
+            point: self.to_world(pose, best.point),
             triangle: self.bvh.ids[best.index as usize],
             surface: self.tool_model.surface(best.feature),
         }
@@ -179,7 +184,7 @@ impl QuerySetting<'_> {
         let to_tool = |[d, z]: MeridianPoint| Vector3::new(cosine * d, sine * d, z);
         let foot = to_tool(section.features[best.feature].foot([d, z]));
         Some(ToolPoint {
-            point: pose.tip() + pose.rotation() * foot * self.length,
+            point: self.to_world(pose, foot.into()),
             normal: pose.rotation() * to_tool(section.normal(best.feature, [d, z])),
         })
     }

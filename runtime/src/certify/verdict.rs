@@ -147,6 +147,9 @@ pub enum PoseVerdict {
     Undecided(f64),
 }
 
+/// The sentence of a verdict on the surface alone.
+const NO_INSIDE: &str = "no triangle is too deep, and the part has no inside: repair its mesh";
+
 /// The point with its triangle, and the surface by its number.
 impl fmt::Display for Witness {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -161,9 +164,7 @@ impl fmt::Display for PoseVerdict {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             PoseVerdict::Clear => f.write_str("clear"),
-            PoseVerdict::SurfaceOnly => {
-                f.write_str("no triangle is too deep, and the part has no inside: repair its mesh")
-            }
+            PoseVerdict::SurfaceOnly => f.write_str(NO_INSIDE),
             PoseVerdict::Touching(witness) => write!(f, "too deep: {witness}"),
             PoseVerdict::Near(witness) => write!(f, "nearer than a margin: {witness}"),
             PoseVerdict::Inside(surface) => {
@@ -184,6 +185,18 @@ impl PoseVerdict {
     /// part. It is not if only the part's surface could be checked ([`PoseVerdict::SurfaceOnly`]).
     pub fn is_clear(&self) -> bool {
         matches!(self, PoseVerdict::Clear)
+    }
+
+    /// Returns the place of the verdict among all, the gravest first.
+    pub(super) fn rank(&self) -> u8 {
+        match self {
+            PoseVerdict::Touching(_) => 0,
+            PoseVerdict::Inside(_) => 1,
+            PoseVerdict::Undecided(_) => 2,
+            PoseVerdict::Near(_) => 3,
+            PoseVerdict::SurfaceOnly => 4,
+            PoseVerdict::Clear => 5,
+        }
     }
 }
 
@@ -214,9 +227,7 @@ impl fmt::Display for MotionVerdict {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             MotionVerdict::Clear => f.write_str("clear"),
-            MotionVerdict::SurfaceOnly => {
-                f.write_str("no triangle is too deep, and the part has no inside: repair its mesh")
-            }
+            MotionVerdict::SurfaceOnly => f.write_str(NO_INSIDE),
             MotionVerdict::Touching(at, witness) => {
                 write!(f, "too deep at {:.1} % of the motion: {witness}", 100.0 * at)
             }
@@ -237,6 +248,18 @@ impl MotionVerdict {
     /// Returns whether it is proved that the tool is clear during the whole motion, as in [`PoseVerdict::is_clear`].
     pub fn is_clear(&self) -> bool {
         matches!(self, MotionVerdict::Clear)
+    }
+
+    /// Returns the place of the verdict among all, in the order of [`PoseVerdict::rank`].
+    pub(super) fn rank(&self) -> u8 {
+        match self {
+            MotionVerdict::Touching(..) => 0,
+            MotionVerdict::Inside(_) => 1,
+            MotionVerdict::Undecided(_) => 2,
+            MotionVerdict::Near(..) => 3,
+            MotionVerdict::SurfaceOnly => 4,
+            MotionVerdict::Clear => 5,
+        }
     }
 }
 

@@ -15,7 +15,7 @@ use crate::cloud::sampling::AreaSampler;
 use crate::cloud::voronoi::{Hole, VoronoiSites};
 use crate::cloud::{Cloud, SAME_SIDE};
 use crate::id::TriangleId;
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, position_bits};
 use crate::parallel;
 use nalgebra::{Point3, Vector3};
 use std::collections::HashMap;
@@ -139,7 +139,7 @@ const CELLS_PER_AXIS: u64 = 1 << 20;
 /// there are some fifty.
 const MAX_MEAN_NEIGHBOURS: u64 = 512;
 /// Maximum number of halvings of the neighbourhood radius if there are more.
-const MAX_HALVINGS: usize = 32;
+const MAX_HALVINGS: i32 = 32;
 /// Points per parallel task.
 const POINTS_PER_TASK: usize = 1 << 14;
 
@@ -155,14 +155,10 @@ pub(super) fn decimate(
         return (0..points.len() as u32).collect();
     }
     // The radius of `count` discs that would cover that area in the densest packing.
-    let mut radius = (area / (2.0 * 3f64.sqrt() * count as f64)).sqrt();
-    let mut crowded_points = CrowdedPoints::new(points, normals, radius, count);
-    for _ in 0..MAX_HALVINGS {
-        if crowded_points.is_none() {
-            radius /= 2.0;
-            crowded_points = CrowdedPoints::new(points, normals, radius, count);
-        }
-    }
+    let radius = (area / (2.0 * 3f64.sqrt() * count as f64)).sqrt();
+    let mut radii = (0..=MAX_HALVINGS).map(|halvings| radius * 0.5f64.powi(halvings));
+    let crowded_points =
+        radii.find_map(|radius| CrowdedPoints::new(points, normals, radius, count));
     let Some(mut crowded_points) = crowded_points else { return distinct(points, count) };
     let mut removed = crowded_points.remove_crowded();
     // The most crowded first; among equals the last.
@@ -185,7 +181,7 @@ fn distinct(points: &[Point3<f64>], count: usize) -> Vec<u32> {
     let mut keyed: Vec<([u64; 3], u32)> = points
         .iter()
         .zip(0u32..)
-        .map(|(point, index)| (<[f64; 3]>::from(*point).map(f64::to_bits), index))
+        .map(|(point, index)| (position_bits((*point).into()), index))
         .collect();
     keyed.sort_unstable();
     let (mut kept, mut repeated) = (vec![], vec![]);
@@ -281,9 +277,9 @@ impl CrowdedPoints {
                 let mut crowding = 1;
                 for [first, last] in &rows[cell[slot] as usize] {
                     for other in *first..*last {
-                        if let Some(share) = crowded_points.share(slot as u32, other) {
+                        if let Some(mutual) = crowded_points.mutual_crowding(slot as u32, other) {
                             neighbours.push(other);
-                            crowding += share;
+                            crowding += mutual;
                         }
                     }
                 }
@@ -300,7 +296,7 @@ impl CrowdedPoints {
 
     /// Returns the crowding that two points cause each other, or `None` if they are not neighbours.
     #[inline(always)]
-    fn share(&self, one: u32, other: u32) -> Option<u64> {
+    fn mutual_crowding(&self, one: u32, other: u32) -> Option<u64> {
         let (i, j) = (one as usize, other as usize);
         let [dx, dy, dz] = self.positions.each_ref().map(|list| list[j] - list[i]);
         let squared = dx * dx + dy * dy + dz * dz;
@@ -321,7 +317,7 @@ impl CrowdedPoints {
     }
 
     /// Removes all points that have neighbours, those first that are more crowded than all their
-    /// neighbours. Returns the crowding of each at its removal, with its index.
+    /// neighbours. Returns the crowding of each at its removal, with its slot.
     fn remove_crowded(&mut self) -> Vec<(u64, u32)> {
         let mut removed = Vec::with_capacity(self.index.len());
         // Points that wait, each with a neighbour that was more crowded when last examined.
@@ -366,7 +362,8 @@ impl CrowdedPoints {
                         // Points removed in the same round are not neighbours, so no other thread sets
                         // this value to 0 meanwhile.
                         if crowding.load(Relaxed) != 0 {
-                            crowding.fetch_sub(self.share(*slot, *other).unwrap_or(0), Relaxed);
+                            let mutual = self.mutual_crowding(*slot, *other);
+                            crowding.fetch_sub(mutual.unwrap_or(0), Relaxed);
                         }
                     }
                 }

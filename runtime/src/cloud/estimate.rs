@@ -4,6 +4,7 @@
 use super::SAME_SIDE;
 use super::pieces::{Corner, EDGE, area, clip};
 use crate::cloud::neighbours::{Neighbour, NeighbourBvh};
+use crate::mesh::position_bits;
 use crate::parallel;
 use nalgebra::{Point3, Vector3};
 use std::f64::consts::{PI, TAU};
@@ -39,9 +40,10 @@ pub(super) fn estimate(
         let (mut areas, mut max_radius) = (Vec::with_capacity(range.len()), Some(0f64));
         for index in range {
             let (position, site) = (positions[index], index as u32);
-            let neighbour_count = (distinct.weight(site) * (1 + NEIGHBOURS)).min(points.len());
+            let neighbour_count =
+                (distinct.capped_count(site) * (1 + NEIGHBOURS)).min(points.len());
             let squared = tree.distance_to_weight(position.into(), neighbour_count, |index| {
-                distinct.weight(index)
+                distinct.capped_count(index)
             });
             // The area per point of a disc that holds so many neighbours.
             let spacing = (PI * squared / NEIGHBOURS as f64).sqrt();
@@ -63,12 +65,12 @@ pub(super) fn estimate(
         }
         (areas, max_radius)
     });
-    let radius = lists.iter().map(|(_, radius)| *radius).reduce(|a, b| Some(a?.max(b?)));
+    let radius = lists.iter().try_fold(0.0, |max: f64, (_, radius)| Some(max.max((*radius)?)));
     let mut areas = vec![0.0; points.len()];
     for (area, side) in lists.into_iter().flat_map(|(areas, _)| areas).zip(&distinct.sides) {
         distinct.points[side.points.clone()].iter().for_each(|point| areas[*point as usize] = area);
     }
-    (areas, radius.flatten())
+    (areas, radius)
 }
 
 /// The distinct positions of points, in the order of the first point of each.
@@ -143,9 +145,9 @@ impl DistinctPoints {
             .zip(normals)
             .zip(0u32..)
             .map(|((position, normal), index)| {
-                let parts = [position.x, position.y, position.z, normal.x, normal.y, normal.z];
-                // Zero has two bit patterns.
-                (parts.map(|part| (part + 0.0).to_bits()), index)
+                let [[x, y, z], [i, j, k]] =
+                    [(*position).into(), (*normal).into()].map(position_bits);
+                ([x, y, z, i, j, k], index)
             })
             .collect();
         parallel::sort(&mut keyed);
@@ -193,7 +195,7 @@ impl DistinctPoints {
     }
 
     /// Returns the number of points at a position, as it counts in the estimate of the spacing.
-    fn weight(&self, index: u32) -> usize {
+    fn capped_count(&self, index: u32) -> usize {
         self.count(index).min(MAX_SHARED)
     }
 

@@ -3,6 +3,7 @@
 //! cannot be known.
 
 use crate::cloud::neighbours::NeighbourBvh;
+use crate::mesh::position_bits;
 use nalgebra::{Matrix3, Point3, SymmetricEigen, Vector3};
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, HashMap};
@@ -17,9 +18,7 @@ pub(super) fn estimate(points: &[Point3<f64>]) -> Vec<Vector3<f64>> {
     let position_of: Vec<usize> = points
         .iter()
         .map(|point| {
-            // Zero has two bit patterns.
-            let key: [u64; 3] = [point.x, point.y, point.z].map(|part| (part + 0.0).to_bits());
-            *known.entry(key).or_insert_with(|| {
+            *known.entry(position_bits((*point).into())).or_insert_with(|| {
                 positions.push(*point);
                 positions.len() - 1
             })

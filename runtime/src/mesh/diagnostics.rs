@@ -1,9 +1,8 @@
 //! Diagnostics of a mesh as numbers and sentences: closed or open, orientation, shells, and irregularities.
 
-use crate::cancellation;
-use crate::mesh::{CompensatedSum, Mesh, area_and_normal, bounds};
+use crate::mesh::topology::{Edges, cone_volume, shells};
+use crate::mesh::{CompensatedSum, Mesh, area_and_normal};
 use crate::unit::Unit;
-use nalgebra::Point3;
 use std::fmt;
 
 /// The result of [`Mesh::diagnostics`].
@@ -68,20 +67,20 @@ impl MeshDiagnostics {
                 degenerate += 1;
                 continue;
             };
-            let cone_volume = normal.dot(&(corners[0] - origin)) * triangle_area / 3.0;
+            let cone = cone_volume(&corners, triangle_area, &normal, &origin);
             area.add(triangle_area);
-            volume.add(cone_volume);
+            volume.add(cone);
             let shell = shell_of[triangle[0] as usize] as usize;
             shell_areas[shell] += triangle_area;
-            shell_volumes[shell] += cone_volume;
+            shell_volumes[shell] += cone;
         }
 
         // Each cone's rounding error is a few epsilon times its area times its height. A volume below
         // this bound is indistinguishable from zero, and its sign is meaningless.
         let rounding = 16.0 * f64::EPSILON * nalgebra::distance(&low, &high);
         let area = area.value();
-        let volume =
-            Some(volume.value()).filter(|volume| volume.abs() > rounding * area).unwrap_or(0.0);
+        let volume = volume.value();
+        let volume = if volume.abs() > rounding * area { volume } else { 0.0 };
         let sums = shell_volumes.iter().zip(&shell_areas);
         let inverted = sums.filter(|&(volume, a)| *volume < -rounding * a).count();
         let has_sides = edges.open == 0 && edges.crossed == 0;
@@ -233,165 +232,11 @@ fn format_number(value: f64) -> String {
     }
 }
 
-/// Numbers of edges by their uses.
-struct Edges {
-    /// Edges with an odd number of uses.
-    open: usize,
-    /// Edges with an even number of uses that are not equally many in both directions.
-    crossed: usize,
-    /// Edges used by more than two triangles.
-    shared: usize,
-}
-
-impl Edges {
-    /// Counts edges by their uses.
-    fn of(mesh: &Mesh) -> Edges {
-        let uses = edge_uses(mesh).map(|[from, to]| ([from, to], from < to));
-        let mut edges = Edges { open: 0, crossed: 0, shared: 0 };
-        for_each_edge(uses, mesh.vertices().len(), |uses| {
-            let upward = uses.iter().filter(|(_, upward)| *upward).count();
-            edges.open += usize::from(uses.len() % 2 == 1);
-            edges.crossed += usize::from(uses.len() % 2 == 0 && 2 * upward != uses.len());
-            edges.shared += usize::from(uses.len() > 2);
-        });
-        edges
-    }
-}
-
-/// Passes the uses of each edge to a function: those of an edge together, each with its higher vertex and what it was given.
-/// Vertices are less than `vertices`.
-///
-/// All uses of an edge go into the bucket of its lower vertex; each bucket, with a handful of entries, is sorted by the higher
-/// vertex.
-fn for_each_edge<T: Copy + Default + Ord>(
-    uses: impl Iterator<Item = ([u32; 2], T)> + Clone,
-    vertices: usize,
-    mut each: impl FnMut(&[(u32, T)]),
-) {
-    let mut starts = vec![0usize; vertices + 1];
-    for ([from, to], _) in uses.clone() {
-        starts[from.min(to) as usize + 1] += 1;
-    }
-    for vertex in 1..starts.len() {
-        starts[vertex] += starts[vertex - 1];
-    }
-    let mut sorted = vec![(0, T::default()); starts[vertices]];
-    // Counting sort: the starts themselves stay, as the bounds of the buckets.
-    let mut next_slots = starts.clone();
-    for ([from, to], given) in uses {
-        let slot = &mut next_slots[from.min(to) as usize];
-        sorted[*slot] = (from.max(to), given);
-        *slot += 1;
-    }
-    for bucket in starts.windows(2) {
-        let bucket = &mut sorted[bucket[0]..bucket[1]];
-        bucket.sort_unstable();
-        bucket.chunk_by(|a, b| a.0 == b.0).for_each(&mut each);
-    }
-}
-
-/// Iterates over the directed edges of all triangles, except triangles that name a vertex twice. These
-/// have collapsed into an edge or a point, and their contributions would cancel.
-fn edge_uses(mesh: &Mesh) -> impl Iterator<Item = [u32; 2]> + Clone {
-    mesh.triangles()
-        .iter()
-        .filter(|[a, b, c]| a != b && b != c && c != a)
-        .flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]])
-}
-
-/// The number that stands for no triangle.
-pub(crate) const NO_TRIANGLE: u32 = u32::MAX;
-
-/// Returns the neighbours of each triangle across its sides, from its first corner on, where exactly two triangles share the
-/// edge; elsewhere [`NO_TRIANGLE`]. Triangles are given by their vertices, which are fewer than `vertices`.
-pub(crate) fn neighbours(triangles: &[[u32; 3]], vertices: usize) -> Vec<[u32; 3]> {
-    let uses = (0u32..).zip(triangles).flat_map(|(index, &[a, b, c])| {
-        [([a, b], (index, 0u8)), ([b, c], (index, 1)), ([c, a], (index, 2))]
-    });
-    let mut neighbours = vec![[NO_TRIANGLE; 3]; triangles.len()];
-    for_each_edge(uses, vertices, |uses| {
-        if let [(_, (first, side)), (_, (second, other))] = *uses {
-            neighbours[first as usize][usize::from(side)] = second;
-            neighbours[second as usize][usize::from(other)] = first;
-        }
-    });
-    neighbours
-}
-
-/// Returns the triangles of pieces with a negative volume: voids, or pieces that are inside out. Triangles are given by
-/// their corners and their [`neighbours`]. A piece continues only to neighbours, so pieces that touch in a vertex or along
-/// an edge of more triangles are separate.
-pub(crate) fn inverted(corners: &[[Point3<f64>; 3]], neighbours: &[[u32; 3]]) -> Vec<u32> {
-    let [low, high] = bounds(corners.iter().flatten().copied());
-    let origin = nalgebra::center(&low, &high);
-    let mut parent: Vec<u32> = (0..corners.len() as u32).collect();
-    for (index, others) in (0..).zip(neighbours) {
-        for other in others.iter().copied().filter(|other| *other < index) {
-            let [first, second] = [index, other].map(|triangle| root(&mut parent, triangle));
-            // Toward the lower number, so that a root is the lowest of its piece.
-            parent[first.max(second) as usize] = first.min(second);
-        }
-    }
-    let mut volumes = vec![0.0; parent.len()];
-    for (index, corners) in (0..).zip(corners) {
-        if let Some((area, normal)) = area_and_normal(corners) {
-            let piece = root(&mut parent, index) as usize;
-            volumes[piece] += normal.dot(&(corners[0] - origin)) * area / 3.0;
-        }
-    }
-    (0..parent.len() as u32).filter(|id| volumes[root(&mut parent, *id) as usize] < 0.0).collect()
-}
-
-/// Returns the shell index of each vertex and the number of shells, by union-find. The entry of a vertex
-/// that no triangle uses is meaningless.
-fn shells(mesh: &Mesh) -> (Vec<u32>, usize) {
-    const UNUSED: u32 = u32::MAX;
-    let mut parent = vec![UNUSED; mesh.vertices().len()];
-    for triangle in mesh.triangles() {
-        cancellation::check();
-        for &vertex in triangle {
-            if parent[vertex as usize] == UNUSED {
-                parent[vertex as usize] = vertex;
-            }
-        }
-        let [a, b, c] = triangle.map(|vertex| root(&mut parent, vertex));
-        let lowest = a.min(b).min(c);
-        for vertex in [a, b, c] {
-            parent[vertex as usize] = lowest;
-        }
-    }
-    // The root is the lowest vertex of its shell, so it is numbered before the others.
-    let mut count = 0;
-    let mut shell_of = vec![0; parent.len()];
-    for vertex in 0..parent.len() {
-        if parent[vertex] == UNUSED {
-            continue;
-        }
-        let root_vertex = root(&mut parent, vertex as u32) as usize;
-        if root_vertex == vertex {
-            shell_of[vertex] = count;
-            count += 1;
-        } else {
-            shell_of[vertex] = shell_of[root_vertex];
-        }
-    }
-    (shell_of, count as usize)
-}
-
-fn root(parent: &mut [u32], mut vertex: u32) -> u32 {
-    while parent[vertex as usize] != vertex {
-        let next = parent[vertex as usize];
-        // Halves the path on the way, which keeps all paths short.
-        parent[vertex as usize] = parent[next as usize];
-        vertex = next;
-    }
-    vertex
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::shapes;
     use super::*;
+    use nalgebra::Point3;
 
     fn cube(low: f64, high: f64) -> Mesh {
         let [low, high] = [low, high].map(|c| Point3::new(c, c, c));
@@ -466,38 +311,6 @@ mod tests {
             "{text}"
         );
         assert!(text.contains("1 inward-facing shell: a void"), "{text}");
-    }
-
-    #[test]
-    fn neighbours_share_an_edge_with_no_third_triangle() {
-        let cube = cube(0.0, 1.0);
-        let mut triangles = cube.triangles().to_vec();
-        // A fin on the edge from 0 to 4, and a triangle that names a vertex twice.
-        triangles.extend([[0, 4, 7], [5, 5, 6]]);
-        let found = neighbours(&triangles, cube.vertices().len());
-        let uses = |from: u32, to: u32| {
-            let has = |[a, b, c]: &[u32; 3]| {
-                let sides = [[*a, *b], [*b, *c], [*c, *a]];
-                sides
-                    .into_iter()
-                    .filter(|[x, y]| [*x, *y] == [from, to] || [*y, *x] == [from, to])
-                    .count()
-            };
-            let users = (0..).zip(&triangles).flat_map(|(id, triangle)| vec![id; has(triangle)]);
-            users.collect::<Vec<u32>>()
-        };
-        let mut alone = 0;
-        for (id, [a, b, c]) in (0..).zip(&triangles) {
-            for (side, [from, to]) in [[*a, *b], [*b, *c], [*c, *a]].into_iter().enumerate() {
-                let expected = match uses(from, to)[..] {
-                    [first, second] => first + second - id,
-                    _ => NO_TRIANGLE,
-                };
-                alone += usize::from(expected == NO_TRIANGLE);
-                assert_eq!(found[id as usize][side], expected, "triangle {id}, side {side}");
-            }
-        }
-        assert!(alone > 3 && alone < 15, "{alone}");
     }
 
     #[test]

@@ -15,6 +15,7 @@ mod points;
 mod read;
 pub mod shapes;
 mod stl;
+mod topology;
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -26,7 +27,6 @@ use crate::input::{self, FileKind};
 use crate::unit::Unit;
 
 pub use diagnostics::MeshDiagnostics;
-pub(crate) use diagnostics::{NO_TRIANGLE, inverted, neighbours};
 pub use location::SourceLocation;
 pub use obj::ObjError;
 pub use outlier::Outlier;
@@ -34,6 +34,7 @@ pub use ply::{OrientedPoints, PlyError};
 pub use points::PointsError;
 pub use read::{Geometry, GeometryError};
 pub use stl::StlError;
+pub(crate) use topology::{NO_TRIANGLE, inverted, neighbours};
 
 /// Largest magnitude allowed for a coordinate of a mesh. Up to this value, areas and volumes, which are products of
 /// coordinates, stay far from overflow. Every number of a binary STL file (`f32`, up to 3.4e38) is within it.
@@ -303,6 +304,11 @@ pub(crate) fn bounds(points: impl IntoIterator<Item = Point3<f64>>) -> [Point3<f
 /// Returns whether a number is a valid coordinate; NaN is not.
 pub(crate) fn is_valid_coordinate(coordinate: f64) -> bool {
     coordinate.abs() <= LARGEST_COORDINATE
+}
+
+/// Returns the bits of a position, equal for equal positions: the sum turns -0 into +0.
+pub(crate) fn position_bits(position: [f64; 3]) -> [u64; 3] {
+    position.map(|part| (part + 0.0).to_bits())
 }
 
 /// Returns the area and unit normal of a triangle, or `None` if it is degenerate.

@@ -11,8 +11,8 @@ pub(super) fn with_help(kind: &Kind) -> String {
 }
 
 /// Returns a tool's errors, each at its location.
-pub(super) fn errors(refusal: &Refusal, sources: &Sources, call_site: Span) -> TokenStream {
-    located(refusal.errors(), sources, call_site)
+pub(super) fn errors(refusal: &Refusal, sources: &Sources, fallback_span: Span) -> TokenStream {
+    located(refusal.errors(), sources, fallback_span)
         .map(|(message, [first, last])| {
             let mut tokens = quote_spanned! { first => ::core::compile_error! };
             let mut message_group =
@@ -28,10 +28,10 @@ pub(super) fn errors(refusal: &Refusal, sources: &Sources, call_site: Span) -> T
 pub(super) fn warnings(
     diagnostics: &[Diagnostic],
     sources: &Sources,
-    call_site: Span,
+    fallback_span: Span,
 ) -> TokenStream {
     let warnings = diagnostics.iter().filter(|diagnostic| diagnostic.severity == Severity::Warning);
-    located(warnings, sources, call_site)
+    located(warnings, sources, fallback_span)
         .map(|(message, [first, _])| {
             // On stable Rust a macro cannot emit warnings. But rustc warns about the use of a deprecated item, and shows
             // the text of its deprecation note.
@@ -48,23 +48,23 @@ pub(super) fn warnings(
 
 /// Returns texts, each with the first and last tokens at which rustc shows it. A diagnostic of the program's
 /// own text is shown at its tokens. One of a mounted file is shown at the mount, with the line of its file.
-/// All others are shown together at the macro's call.
+/// All others are shown together at `fallback_span`.
 fn located<'r>(
     diagnostics: impl Iterator<Item = &'r Diagnostic>,
     sources: &Sources,
-    call_site: Span,
+    fallback_span: Span,
 ) -> impl Iterator<Item = (String, [Span; 2])> {
     let (mut texts, mut rest) = (Vec::new(), Vec::new());
     for diagnostic in diagnostics {
         let (source, inside) = sources.locate(diagnostic.span);
         match (source.tokens_at(inside), sources.tokens_at(diagnostic.span)) {
-            (Some(call_site), _) => texts.push((plain_message(diagnostic, sources), call_site)),
+            (Some(tokens), _) => texts.push((plain_message(diagnostic, sources), tokens)),
             (None, Some(mount)) => texts.push((excerpt(diagnostic, sources), mount)),
             (None, None) => rest.push(excerpt(diagnostic, sources)),
         }
     }
     if !rest.is_empty() {
-        texts.push((rest.join("\n\n"), [call_site, call_site]));
+        texts.push((rest.join("\n\n"), [fallback_span, fallback_span]));
     }
     texts.into_iter()
 }
@@ -82,8 +82,8 @@ fn plain_message(diagnostic: &Diagnostic, sources: &Sources) -> String {
     let mut text = format!("{} [{}]", diagnostic.message(), diagnostic.code());
     if let Some((span, label)) = &diagnostic.secondary {
         let (source, inside) = sources.locate(*span);
-        let call_site = sources.text(*span);
-        text.push_str(&format!("\nnote: {label}: `{call_site}`"));
+        let quoted = sources.text(*span);
+        text.push_str(&format!("\nnote: {label}: `{quoted}`"));
         text.push_str(&match source.tokens_at(inside) {
             Some([token, _]) => format!(", line {}", token.start().line),
             None => {

@@ -119,19 +119,22 @@ impl Expander {
     }
 
     /// Expands a compiled tool: its code and warnings, or its errors and a placeholder type, and a dependency on each file.
-    /// `call_site` is the position of messages about other files.
-    fn expand(&self, compiled: &Compiled, call_site: proc_macro2::Span) -> TokenStream {
-        let mut tokens = match (&compiled.outcome, &compiled.name) {
-            (Ok(accepted), _) => (self.emit)(&accepted.tool),
-            (Err(_), Some(name)) if syn::parse_str::<Ident>(name).is_ok() => {
-                emit::placeholder(name)
+    /// `fallback_span` is the position of messages about other files.
+    fn expand(&self, compiled: &Compiled, fallback_span: proc_macro2::Span) -> TokenStream {
+        let sources = &compiled.sources;
+        let (mut tokens, messages) = match &compiled.outcome {
+            Ok(accepted) => (
+                (self.emit)(&accepted.tool),
+                messages::warnings(&accepted.warnings, sources, fallback_span),
+            ),
+            Err(refusal) => {
+                let name =
+                    compiled.name.as_deref().filter(|name| syn::parse_str::<Ident>(name).is_ok());
+                let placeholder = name.map(emit::placeholder).unwrap_or_default();
+                (placeholder, messages::errors(refusal, sources, fallback_span))
             }
-            _ => quote! {},
         };
-        tokens.extend(match &compiled.outcome {
-            Ok(accepted) => messages::warnings(&accepted.warnings, &compiled.sources, call_site),
-            Err(refusal) => messages::errors(refusal, &compiled.sources, call_site),
-        });
+        tokens.extend(messages);
         // Cargo rebuilds when an included file changes.
         for file in compiled.sources.files() {
             let file = file.display().to_string();

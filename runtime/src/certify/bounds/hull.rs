@@ -210,7 +210,7 @@ impl<R: Real> HullSlab<R> {
         // The first plane is the radial distance to the surface.
         let mut bounds = HullSlab::under(heights, vec![plane([1.0, 0.0], [radius, 0.0])]);
         bounds.hole = (slabs[0].hole > 0.0).then(|| R::of(slabs[0].hole));
-        bounds.ball = section.tip_ball_about(chain).map(|ball| ball.map(R::of));
+        bounds.ball = section.tip_ball_of(chain).map(|ball| ball.map(R::of));
         match &chain.line {
             Some(line) => bounds.planes.push(under(line)),
             None => bounds.add_side(section, chain.slabs.start),

@@ -126,7 +126,7 @@ fn on_edge<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
         dot_from_axis(&direction, &direction, from_axis).max(V::splat(simd, R::MIN_POSITIVE_VALUE));
     let at = (-dot_from_axis(a, &direction, from_axis) / length).max(V::splat(simd, R::of(0.0)));
     let at = at.min(V::splat(simd, R::of(1.0)));
-    let p = [a[0] + at * direction[0], a[1] + at * direction[1], a[2] + at * direction[2]];
+    let p = between(a, b, at);
     (p, dot_from_axis(&p, &p, from_axis))
 }
 
@@ -192,8 +192,7 @@ impl<V: Copy> NearestPoint<V> {
     where
         V: SimdFloat<S, Element = R>,
     {
-        let (zero, negligible) =
-            (V::splat(simd, R::of(0.0)), V::splat(simd, R::NEGLIGIBLE_DISTANCE));
+        let zero = V::splat(simd, R::of(0.0));
         let centre = V::splat(simd, z);
         let a = [a[0], a[1], a[2] - centre];
         let b = [b[0], b[1], b[2] - centre];
@@ -214,11 +213,9 @@ impl<V: Copy> NearestPoint<V> {
             a[2] + v * ab[2] + w * ac[2],
         ];
         let point = choose(within, &foot, &edge);
-        let distance = dot(&point, &point).sqrt();
-        let scale = distance.simd_gt(negligible).select(V::splat(simd, R::SHRINK) / distance, zero);
         NearestPoint {
             point: [point[0], point[1], point[2] + centre],
-            direction: [point[0] * scale, point[1] * scale, point[2] * scale],
+            direction: direction_from_axis(simd, &point, zero),
         }
     }
 }
@@ -324,11 +321,16 @@ fn cut_at<S: Simd, V: SimdBase<S>>(
     (point, (upper & high.exists) | (!upper & low.exists))
 }
 
+/// Returns the lanes in which a level is strictly between two values, in either order.
+#[inline(always)]
+pub(crate) fn is_between<S: Simd, V: SimdFloat<S>>(from: V, level: V, to: V) -> V::Mask {
+    (from.simd_lt(level) & to.simd_gt(level)) | (from.simd_gt(level) & to.simd_lt(level))
+}
+
 /// Returns where a linear function, `from` at parameter 0 and `to` at 1, takes the value `level` strictly between.
 #[inline(always)]
 fn crossing<S: Simd, V: SimdFloat<S>>(zero: V, from: V, to: V, level: V) -> Crossing<V, V::Mask> {
-    let exists =
-        (from.simd_lt(level) & to.simd_gt(level)) | (from.simd_gt(level) & to.simd_lt(level));
+    let exists = is_between(from, level, to);
     Crossing { at: exists.select((level - from) / (to - from), zero), exists }
 }
 
@@ -504,8 +506,7 @@ pub(crate) fn under_both_of_ring<S: Simd, R: Real, V: SimdFloat<S, Element = R>>
     for k in 0..3 {
         let next = (k + 1) % 3;
         let (first, last) = (distance[k] - linear[k], distance[next] - linear[next]);
-        let crosses =
-            (first.simd_lt(zero) & last.simd_gt(zero)) | (first.simd_gt(zero) & last.simd_lt(zero));
+        let crosses = is_between(first, zero, last);
         if !crosses.any_true() {
             continue;
         }

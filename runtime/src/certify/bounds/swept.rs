@@ -8,7 +8,8 @@ use crate::certify::bounds::descent::{
 };
 use crate::certify::bounds::hull::{Hull, HullSlab};
 use crate::certify::bounds::nearest::{
-    Clip, NearestPoint, Real, choose, direction_from_axis, max3, min3, radial_extents, to_ring,
+    Clip, NearestPoint, Real, choose, direction_from_axis, is_between, max3, min3, radial_extents,
+    to_ring,
 };
 use crate::certify::sweep::interval::MotionInterval;
 use crate::certify::triangle::TrianglePiece;
@@ -269,8 +270,7 @@ fn min_at<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
     for i in 0..6 {
         for j in i + 1..6 {
             let (low, high) = (heights[i] - at, heights[j] - at);
-            let across =
-                (low.simd_lt(zero) & high.simd_gt(zero)) | (low.simd_gt(zero) & high.simd_lt(zero));
+            let across = is_between(low, zero, high);
             // All pairs of corners are taken, not only the edges of the hull: a chord inside it changes no minimum.
             let value = values[i] - low * ((values[j] - values[i]) / (high - low));
             min_extent = across.select(min_extent.min(value), min_extent);

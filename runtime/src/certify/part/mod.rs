@@ -10,7 +10,7 @@ use crate::bvh::{Bounds, Boxes, BuildItem, Frame, PoseTransform, WIDTH, levels, 
 use crate::certify::part::coplanar_faces::CoplanarFaces;
 use crate::certify::space::{Point, dot};
 use crate::id::TriangleId;
-use crate::mesh::{self, Mesh, area_and_normal, inverted, neighbours};
+use crate::mesh::{self, Mesh, area_and_normal, inverted, neighbours, position_bits};
 use crate::parallel;
 use crate::unit::Unit;
 use nalgebra::{Point3, Vector3};
@@ -166,7 +166,7 @@ impl TriangleBvh {
             sorted
                 .sort_by(|a, b| triangle[*a].partial_cmp(&triangle[*b]).unwrap_or(Ordering::Equal));
             let is_turned = matches!(sorted, [0, 2, 1] | [1, 0, 2] | [2, 1, 0]);
-            (sorted.map(|k| triangle[k].map(|part| (part + 0.0).to_bits())), is_turned)
+            (sorted.map(|k| position_bits(triangle[k])), is_turned)
         };
         let mut first_by_corners = HashMap::new();
         (0..self.corners.len()).all(|index| {

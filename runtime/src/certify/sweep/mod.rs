@@ -86,7 +86,7 @@ struct DeepPoint {
 }
 
 impl DeepPoint {
-    fn best(&self, index: u32) -> DeepestCandidate {
+    fn candidate(&self, index: u32) -> DeepestCandidate {
         DeepestCandidate { point: self.point, feature: self.feature, index }
     }
 }
@@ -149,9 +149,9 @@ impl Sweeper {
     /// Examines a whole motion. Returns `None` if the limit is proved to hold.
     pub(crate) fn run(&mut self, task: &SweepTask<'_>, budget: u32) -> Option<SweepEnd> {
         self.pending.clear();
+        // The root alone is the first candidate.
         self.pending.push(Candidate::Node(Node { level: 0, index: 0, bound: f32::INFINITY }));
         self.budget = budget;
-        // The root alone is the first candidate.
         self.check_interval(task, [0.0, 1.0], 0).break_value()
     }
 
@@ -214,9 +214,7 @@ impl Sweeper {
         for at in list {
             match self.pending[at] {
                 Candidate::Node(node) => self.stack.push(node),
-                Candidate::Piece(part) => {
-                    self.add(task, interval, part)?;
-                }
+                Candidate::Piece(piece) => self.add(task, interval, piece)?,
             }
             while let Some(node) = self.stack.pop() {
                 if self.budget == 0 {
@@ -228,8 +226,7 @@ impl Sweeper {
                     let [a, b, c] = bvh.corners[node.index as usize];
                     let piece =
                         SubTriangle::new([minus(a, origin), minus(b, origin), minus(c, origin)]);
-                    let part = TrianglePiece { index: node.index, piece };
-                    self.add(task, interval, part)?;
+                    self.add(task, interval, TrianglePiece { index: node.index, piece })?;
                 } else if node.size(bvh) * setting.setup.unit < small {
                     // Its size adds little to the displacement: halving the interval gains more than opening the node.
                     self.pending.push(Candidate::Node(node));
@@ -257,24 +254,24 @@ impl Sweeper {
         &mut self,
         task: &SweepTask<'_>,
         interval: &MotionInterval,
-        part: TrianglePiece,
+        triangle: TrianglePiece,
     ) -> ControlFlow<SweepEnd> {
         if self.budget == 0 {
             return ControlFlow::Break(SweepEnd::Spent { at: interval.from });
         }
         self.budget -= 1;
         if interval.rotates()
-            && part.piece.longest() > 4.0 * task.setting.size * task.setting.length
+            && triangle.piece.longest() > 4.0 * task.setting.size * task.setting.length
         {
-            let mut halves = part.piece.halves().peekable();
+            let mut halves = triangle.piece.halves().peekable();
             if halves.peek().is_some() {
                 for piece in halves.filter(|piece| interval.reaches(piece, task.setting.length)) {
-                    self.add(task, interval, TrianglePiece { piece, ..part })?;
+                    self.add(task, interval, TrianglePiece { piece, ..triangle })?;
                 }
                 return ControlFlow::Continue(());
             }
         }
-        self.waiting.push(part);
+        self.waiting.push(triangle);
         if self.waiting.len() == LANES {
             self.examine_batch(task, interval)
         } else {
@@ -292,39 +289,48 @@ impl Sweeper {
         let level = task.setting.level;
         let count = self.waiting.len();
         self.swept_batch.begin(interval, task.required_clearance(), &self.waiting);
-        let above = task.bound_threshold();
-        self.swept_batch.bound(level, &query.exact, above);
-        if !self.swept_batch.bounds[..count].iter().any(|bound| *bound > above || bound.is_nan()) {
+        let threshold = task.bound_threshold();
+        self.swept_batch.bound(level, &query.exact, threshold);
+        let is_open = |bound: &f64| *bound > threshold || bound.is_nan();
+        if !self.swept_batch.bounds[..count].iter().any(is_open) {
             self.waiting.clear();
             return ControlFlow::Continue(());
         }
         // Candidates are sampled where they are deepest in the middle of the interval.
         self.swept_batch.middle.bound(level, &query.exact, f64::NEG_INFINITY);
+        let (at, pose) = (interval.middle(), interval.poses[1]);
         for lane in 0..count {
             let index = self.swept_batch.middle.index(lane);
-            if self.swept_batch.bounds[lane] <= above {
+            if self.swept_batch.bounds[lane] <= threshold {
                 continue;
             }
             let corners = self.swept_batch.middle.corners(lane);
             let point = self.swept_batch.middle.point(lane);
-            let (at, pose) = (interval.middle(), interval.poses[1]);
             let spread = Spread {
                 displacement: interval.displacement_bound(interval.rotation_radius(&corners)),
                 deviation: interval.deviation(),
             };
             let sample = task.depth(&mut self.scratch, point);
             if task.too_deep(&sample, spread.deviation) {
-                return ControlFlow::Break(SweepEnd::Deeper { at, pose, best: sample.best(index) });
+                return ControlFlow::Break(SweepEnd::Deeper {
+                    at,
+                    pose,
+                    best: sample.candidate(index),
+                });
             }
             let steep = setting.tool_model.lipschitz();
             // Another's point says nothing about the owners.
             let may_become_too_deep = query.owners.is_owned(sample.feature)
                 && sample.depth + steep * spread.displacement > task.threshold();
-            let part = self.waiting[lane];
+            let piece = self.waiting[lane];
             if may_become_too_deep {
-                self.pending.push(Candidate::Piece(part));
-            } else if let Some(deep) = self.check_part(task, interval, &part, spread) {
-                return ControlFlow::Break(SweepEnd::Deeper { at, pose, best: deep.best(index) });
+                self.pending.push(Candidate::Piece(piece));
+            } else if let Some(deep) = self.check_triangle(task, interval, &piece, spread) {
+                return ControlFlow::Break(SweepEnd::Deeper {
+                    at,
+                    pose,
+                    best: deep.candidate(index),
+                });
             }
         }
         self.waiting.clear();
@@ -333,40 +339,40 @@ impl Sweeper {
 
     /// Examines a triangle or a piece of one: no point of it may be so deep, or so near, that its displacement could make it
     /// too deep. Appends what remains of it, or returns a point that is too deep.
-    fn check_part(
+    fn check_triangle(
         &mut self,
         task: &SweepTask<'_>,
         interval: &MotionInterval,
-        part: &TrianglePiece,
+        triangle: &TrianglePiece,
         spread: Spread,
     ) -> Option<DeepPoint> {
         let SweepTask { setting, query, .. } = *task;
         let section = match &setting.tool_model {
             ToolModel::Profile(section) if query.owners.all() || task.limit < 0.0 => section,
-            _ => return self.check_subdivided(task, interval, part, spread),
+            _ => return self.check_subdivided(task, interval, triangle, spread),
         };
-        let corners = part.piece.corners().map(|corner| interval.in_the_middle(&corner));
+        let corners = triangle.piece.corners().map(|corner| interval.in_the_middle(&corner));
         match self.check_lines(task, section, &query.owners, &TriangleBand::whole(corners), spread)
         {
             TriangleVerdict::TooDeep(deep) => return Some(deep),
             TriangleVerdict::Clear => {}
-            TriangleVerdict::Undecided | TriangleVerdict::OtherOwner(_) => {
-                self.pending.push(Candidate::Piece(*part));
+            TriangleVerdict::Undecided | TriangleVerdict::Halve(_) => {
+                self.pending.push(Candidate::Piece(*triangle));
             }
         }
         None
     }
 
-    /// Examines a part of a triangle by searching its lines on which the depth is greatest or the distance least.
+    /// Examines a band of a triangle by searching its lines on which the depth is greatest or the distance least.
     fn check_lines(
         &mut self,
         task: &SweepTask<'_>,
         section: &Section,
         owners: &Owners,
-        part: &TriangleBand,
+        band: &TriangleBand,
         spread: Spread,
     ) -> TriangleVerdict {
-        let TriangleBand { triangle, heights } = part;
+        let TriangleBand { triangle, heights } = band;
         let displacement = spread.displacement + triangle.skew + task.error;
         // A point less deep than that does not become too deep in what is left of the interval.
         let least = task.threshold() - displacement;
@@ -407,22 +413,22 @@ impl Sweeper {
         } else if sample.depth > least {
             TriangleVerdict::Undecided
         } else {
-            TriangleVerdict::OtherOwner(point)
+            TriangleVerdict::Halve(point)
         }
     }
 
-    /// Examines a part by subdivision: it is halved until all pieces pass, or one does not that is small compared with the
+    /// Examines a triangle by subdivision: it is halved until all pieces pass, or one does not that is small compared with the
     /// displacement. That piece remains, with those that were not examined: pieces that pass do so in both halves of the
     /// interval, too.
     fn check_subdivided(
         &mut self,
         task: &SweepTask<'_>,
         interval: &MotionInterval,
-        part: &TrianglePiece,
+        triangle: &TrianglePiece,
         spread: Spread,
     ) -> Option<DeepPoint> {
         self.pieces.clear();
-        self.pieces.push(part.piece);
+        self.pieces.push(triangle.piece);
         let mut count = 0;
         while let Some(piece) = self.pieces.pop() {
             count += 1;
@@ -436,18 +442,18 @@ impl Sweeper {
             match verdict {
                 TriangleVerdict::TooDeep(deep) => return Some(deep),
                 TriangleVerdict::Clear => {}
-                TriangleVerdict::OtherOwner(_) => {
+                TriangleVerdict::Halve(_) => {
                     let before = self.pieces.len();
                     self.pieces.extend(piece.halves());
                     // A piece without halves is too small to be told apart.
                     if self.pieces.len() == before {
-                        self.pending.push(Candidate::Piece(TrianglePiece { piece, ..*part }));
+                        self.pending.push(Candidate::Piece(TrianglePiece { piece, ..*triangle }));
                     }
                 }
                 TriangleVerdict::Undecided => {
                     self.pieces.push(piece);
                     let remaining = self.pieces.drain(..);
-                    let remaining = remaining.map(|piece| TrianglePiece { piece, ..*part });
+                    let remaining = remaining.map(|piece| TrianglePiece { piece, ..*triangle });
                     self.pending.extend(remaining.map(Candidate::Piece));
                 }
             }
@@ -480,19 +486,19 @@ impl Sweeper {
                 return TriangleVerdict::Clear;
             };
             // Owners need not be told apart where no surface at all is too deep.
-            let part = TriangleBand { triangle, heights };
-            let other = match self.check_lines(task, section, &Owners::default(), &part, spread) {
-                TriangleVerdict::OtherOwner(other) => other,
+            let band = TriangleBand { triangle, heights };
+            let other = match self.check_lines(task, section, &Owners::default(), &band, spread) {
+                TriangleVerdict::Halve(other) => other,
                 decided => return decided,
             };
-            // Halving tells nothing about a point as near to the border of another's region as the part's ends are.
+            // Halving tells nothing about a point as near to the border of another's region as the piece's ends are.
             let points = Surroundings {
                 centre: other,
                 displacement: near,
                 rectangle: SubTriangle::new([other; 3]).rectangle(near).corners(),
             };
             if !tool_model.clears(&mut self.scratch, owners, &points, task.threshold()) {
-                return match self.check_lines(task, section, owners, &part, spread) {
+                return match self.check_lines(task, section, owners, &band, spread) {
                     TriangleVerdict::TooDeep(deep) => TriangleVerdict::TooDeep(deep),
                     _ => TriangleVerdict::Undecided,
                 };
@@ -504,7 +510,7 @@ impl Sweeper {
         } else if reach < MIN_PIECE_FRACTION * displacement {
             TriangleVerdict::Undecided
         } else {
-            TriangleVerdict::OtherOwner(centre)
+            TriangleVerdict::Halve(centre)
         }
     }
 }
@@ -515,8 +521,9 @@ enum TriangleVerdict {
     /// The triangle is too deep at this point.
     TooDeep(DeepPoint),
     Undecided,
-    /// A point that may be too deep is nearer to other features than to the owners: that point.
-    OtherOwner(Point),
+    /// Halves may tell: this point may be too deep, and is nearer to other features than to the owners, or is only the middle of a piece
+    /// that is not small.
+    Halve(Point),
 }
 
 /// The part of a triangle between two heights.

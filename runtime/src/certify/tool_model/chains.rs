@@ -19,8 +19,7 @@ pub(crate) struct Chain {
 /// foot on the ball leads downward, out of the tool.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TipBall {
-    /// The number of slabs.
-    pub(crate) slabs: usize,
+    pub(crate) slab_count: usize,
     /// The height of its centre and its radius.
     pub(crate) ball: [f64; 2],
 }
@@ -28,9 +27,9 @@ pub(crate) struct TipBall {
 /// The least number of lines that are taken together.
 const MIN_LINES: usize = 3;
 
-/// The sine of the largest angle by which the sides of a chain turn, and the largest distance of an end from its line, as a
-/// fraction of the tool's size. Beyond that the lines bound depth much better.
+/// The sine of the largest angle by which the sides of a chain turn. Beyond that the lines bound depth much better.
 const MAX_TURN_SINE: f64 = 0.125;
+/// The largest distance of an end of a chain from its line, as a fraction of the tool's size, for the same reason.
 const MAX_GAP: f64 = 1.0 / 1024.0;
 
 /// The largest distance of the lines from the ball about the tip, as a fraction of its radius.
@@ -40,7 +39,7 @@ impl Section {
     /// Returns all slabs as chains, in upward order.
     pub(super) fn chains(&self) -> Vec<Chain> {
         // A chain belongs to the ball as a whole or not at all.
-        let tip_end = self.tip_ball.map(|tip| tip.slabs);
+        let tip_end = self.tip_ball.map(|tip| tip.slab_count);
         let mut chains = Vec::new();
         let mut next = 0;
         while next < self.slabs.len() {
@@ -67,7 +66,7 @@ impl Section {
     /// Returns whether the side of a slab continues that of the slab below it in a convex curve of lines.
     fn continues(&self, slab: usize) -> bool {
         let [below, above] = [&self.slabs[slab - 1], &self.slabs[slab]];
-        let [first, second] = [below, above].map(|slab| &self.features[slab.side]);
+        let [first, second] = [below, above].map(|slab| self.side(slab));
         let has_hole = below.hole > 0.0 || above.hole > 0.0;
         !has_hole
             && below.high == above.low
@@ -80,14 +79,13 @@ impl Section {
 
     /// Returns the sine of the angle between the sides of two slabs.
     fn turn_sine(&self, first: usize, second: usize) -> f64 {
-        let [first, second] =
-            [first, second].map(|slab| self.features[self.slabs[slab].side].along);
+        let [first, second] = [first, second].map(|slab| self.side(&self.slabs[slab]).along);
         cross(first, second)
     }
 
     /// Returns the ends of the sides of slabs that form a chain.
     fn vertices(&self, slabs: Range<usize>) -> impl Iterator<Item = MeridianPoint> {
-        slabs.flat_map(|slab| self.features[self.slabs[slab].side].ends)
+        slabs.flat_map(|slab| self.side(&self.slabs[slab]).ends)
     }
 
     /// Returns the line that touches the sides of several slabs, if it bounds their depth: all feet are outside the tool.
@@ -96,7 +94,7 @@ impl Section {
         if slabs.len() < MIN_LINES {
             return None;
         }
-        let [from, to] = [first, last].map(|slab| self.features[self.slabs[slab].side]);
+        let [from, to] = [first, last].map(|slab| *self.side(&self.slabs[slab]));
         let (start, end) = (from.ends[0], to.ends[1]);
         let chord = minus(end, start);
         let along = chord.map(|part| part / norm(chord));
@@ -119,31 +117,32 @@ impl Section {
     }
 
     /// Returns the ball about the most of the tool's lowest slabs whose sides are chords of it.
-    pub(super) fn tip_ball(&self) -> Option<TipBall> {
+    pub(super) fn find_tip_ball(&self) -> Option<TipBall> {
         let first = self.slabs.first()?;
-        let tip = self.features[first.side].ends[0];
-        if self.overhangs || tip != [0.0, first.low] || self.features[first.side].circle.is_some() {
+        let side = self.side(first);
+        let tip = side.ends[0];
+        if self.overhangs || tip != [0.0, first.low] || side.circle.is_some() {
             return None;
         }
         let count = 1 + (1..self.slabs.len()).take_while(|slab| self.continues(*slab)).count();
-        (MIN_LINES..=count).rev().find_map(|slabs| {
-            let [across, height] = minus(self.features[self.slabs[slabs - 1].side].ends[1], tip);
+        (MIN_LINES..=count).rev().find_map(|slab_count| {
+            let [across, height] = minus(self.side(&self.slabs[slab_count - 1]).ends[1], tip);
             // Above its centre the way to the foot would lead upward.
             let radius = 0.5 * (across * across + height * height) / height;
             let centre = tip[1] + radius;
-            let distances = self.vertices(0..slabs).map(|[d, z]| norm([d, z - centre]));
+            let distances = self.vertices(0..slab_count).map(|[d, z]| norm([d, z - centre]));
             let [least, greatest] = distances.fold([radius; 2], |[least, greatest], distance| {
                 [least.min(distance), greatest.max(distance)]
             });
             let is_close = greatest - least <= MAX_DEVIATION * radius;
             let is_small = greatest.max(centre.abs()) <= 4.0 * self.size;
             (height <= radius && is_close && is_small)
-                .then_some(TipBall { slabs, ball: [centre, greatest] })
+                .then_some(TipBall { slab_count, ball: [centre, greatest] })
         })
     }
 
     /// Returns the ball about the tool's tip that bounds the depth of a chain, as its height and its radius.
-    pub(crate) fn tip_ball_about(&self, chain: &Chain) -> Option<[f64; 2]> {
-        self.tip_ball.filter(|tip| chain.slabs.end <= tip.slabs).map(|tip| tip.ball)
+    pub(crate) fn tip_ball_of(&self, chain: &Chain) -> Option<[f64; 2]> {
+        self.tip_ball.filter(|tip| chain.slabs.end <= tip.slab_count).map(|tip| tip.ball)
     }
 }

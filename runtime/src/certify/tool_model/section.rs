@@ -113,10 +113,10 @@ impl Section {
         };
         section.cells = CellTree::new(&section);
         for slab in 0..section.slabs.len() {
-            let side = section.features[section.slabs[slab].side];
+            let side = *section.side(&section.slabs[slab]);
             section.slabs[slab].feet = section.feet(&side, slab);
         }
-        section.tip_ball = section.tip_ball();
+        section.tip_ball = section.find_tip_ball();
         section.chains = section.chains();
         Some(section)
     }
@@ -139,6 +139,11 @@ impl Section {
         ]
     }
 
+    /// Returns the feature that is the outer side of a slab.
+    pub(crate) fn side(&self, slab: &SectionSlab) -> &Feature {
+        &self.features[slab.side]
+    }
+
     /// Returns the range along a line of the profile, other than a level one, in which its feet are on the surface or outside
     /// the tool.
     pub(crate) fn outside_feet(&self, index: usize) -> [f64; 2] {
@@ -152,7 +157,7 @@ impl Section {
     /// Returns whether a line stays outside the tool between a slab's heights.
     fn outside(&self, line: &Feature, slab: &SectionSlab) -> bool {
         let [low, high] = [slab.low, slab.high].map(|z| line.line_radius_at(z));
-        match self.features[slab.side].circle {
+        match self.side(slab).circle {
             None => low >= slab.radii[0] && high >= slab.radii[1],
             // An arc may bulge between its ends, so the line has to clear the slab's largest radius.
             Some(_) => low.min(high) >= slab.radius,
@@ -174,7 +179,7 @@ impl Section {
     pub(crate) fn lines_beside(&self, slab: &SectionSlab) -> impl Iterator<Item = usize> {
         let [low, high] = [slab.low, slab.high];
         // An arc may bulge beyond the line between its ends.
-        let is_line = self.features[slab.side].circle.is_none();
+        let is_line = self.side(slab).circle.is_none();
         let radii = if is_line { slab.radii } else { [slab.radius; 2] };
         let corners = [[slab.hole, low], [slab.hole, high], [radii[0], low], [radii[1], high]];
         let cells = self.cells_of(slab);
@@ -231,7 +236,7 @@ impl Section {
     /// Returns the distance of a point on the tool's side of a slab's sides, and the side for which it is less.
     #[inline]
     fn inner_distance(&self, slab: &SectionSlab, p: MeridianPoint) -> (f64, usize) {
-        let outer = (self.features[slab.side].signed_distance(p), slab.side);
+        let outer = (self.side(slab).signed_distance(p), slab.side);
         let Some(side) = slab.inner else { return outer };
         let inner = (self.features[side].signed_distance(p), side);
         if inner.0 < outer.0 { inner } else { outer }
@@ -315,7 +320,7 @@ impl Section {
             };
         }
         // The side of the slab is the first, so that it owns points of the slab that another feature is as near to.
-        let side_distance = (self.features[slab.side].distance(p), slab.side);
+        let side_distance = (self.side(slab).distance(p), slab.side);
         let (mut value, mut feature) = self.nearest_of_all(p);
         if side_distance.0 <= value {
             (value, feature) = side_distance;
@@ -356,7 +361,7 @@ impl Section {
         triangle: &Triangle,
         threshold: f64,
     ) -> f64 {
-        let side = &self.features[slab.side];
+        let side = self.side(slab);
         let out = side.max_signed_distance_bound(triangle);
         let over = slab
             .inner

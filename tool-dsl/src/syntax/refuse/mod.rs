@@ -56,6 +56,11 @@ impl<'t> StopPosition<'t> {
         self.text[..self.at].trim_end_matches(BLANK_CHARACTERS)
     }
 
+    /// Returns whether no blank stands before the position.
+    fn is_glued(&self) -> bool {
+        self.before().len() == self.at
+    }
+
     /// Returns the span between two positions of the text.
     fn span(&self, start: usize, end: usize) -> Span {
         Span { start, end }.offset_by(self.offset)

@@ -1,7 +1,8 @@
 //! Spelling mistakes: foreign characters, and constructs of other languages.
 
 use super::{BLANK_CHARACTERS, StopPosition, ends_a_value, word};
-use crate::diagnostic::{Diagnostic, NameStart, SpellingKind, SyntaxKind};
+use crate::diagnostic::{Diagnostic, Kind, NameStart, SpellingKind, SyntaxKind};
+use crate::source::Span;
 use crate::syntax::lexeme::{FILE_KEYWORDS, in_name};
 
 /// Typographic characters, each with the ASCII that replaces it.
@@ -24,21 +25,28 @@ const REPLACEMENTS: [(char, &str); 13] = [
 /// Words after which a name follows.
 const NAMING_KEYWORDS: [&str; 7] = ["tool", "solid", "let", "param", "curve", "region", "as"];
 
+/// Returns the error of a kind at a place.
+fn error(span: Span, kind: impl Into<Kind>) -> Option<Diagnostic> {
+    Some(Diagnostic::new(span, kind))
+}
+
+/// Returns the digits with which a text begins.
+fn digits(text: &str) -> &str {
+    &text[..text.find(|c: char| !c.is_ascii_digit()).unwrap_or(text.len())]
+}
+
 /// Returns the error that the next character identifies, or a number before it that ends in a decimal point.
 pub(super) fn character_error(stop: &StopPosition<'_>) -> Option<Diagnostic> {
     let (rest, before) = (stop.rest(), stop.before());
     let next = rest.chars().next()?;
     let next_character = stop.next(0);
-    let diagnostic = |kind: SpellingKind| Some(Diagnostic::new(next_character, kind));
-    let digits = |s: &str| s.chars().take_while(char::is_ascii_digit).collect::<String>();
+    let at_character = |kind: SpellingKind| Some(Diagnostic::new(next_character, kind));
     let number = number_before(before);
     if let Some(digits) = number.strip_suffix('.') {
         let span = stop.span(before.len() - number.len(), before.len());
-        let diagnostic =
-            Diagnostic::new(span, SpellingKind::TrailingPoint { digits: digits.to_owned() });
-        return Some(diagnostic);
+        return error(span, SpellingKind::TrailingPoint { digits: digits.to_owned() });
     }
-    let glued = before.len() == stop.at;
+    let glued = stop.is_glued();
     // The span of `begun` and this character, or of this character alone if blanks separate them.
     let joined_span = |begun: &str| {
         let end = stop.at + next.len_utf8();
@@ -46,45 +54,38 @@ pub(super) fn character_error(stop: &StopPosition<'_>) -> Option<Diagnostic> {
     };
     match next {
         '.' if rest[1..].starts_with(|c: char| c.is_ascii_digit()) => {
-            diagnostic(SpellingKind::LeadingPoint { fraction: digits(&rest[1..]) })
+            at_character(SpellingKind::LeadingPoint { fraction: digits(&rest[1..]).to_owned() })
         }
         '°' if !number.is_empty() => {
-            let diagnostic = Diagnostic::new(
-                joined_span(number),
-                SpellingKind::DegreeSign { number: number.to_owned() },
-            );
-            Some(diagnostic)
+            error(joined_span(number), SpellingKind::DegreeSign { number: number.to_owned() })
         }
         '²' | '³' => {
             let power = if next == '²' { 2 } else { 3 };
             let base = stop.last_word();
-            let diagnostic = Diagnostic::new(
-                joined_span(base),
-                SpellingKind::Superscript { base: base.to_owned(), sign: next, power },
-            );
-            Some(diagnostic)
+            let kind = SpellingKind::Superscript { base: base.to_owned(), sign: next, power };
+            error(joined_span(base), kind)
         }
-        '⌀' | 'ø' | 'Ø' => diagnostic(SpellingKind::DiameterSign { sign: next }),
-        '\'' => diagnostic(SpellingKind::SingleQuote),
-        '[' => diagnostic(SpellingKind::SquareBracket { written: '[', suggestion: '(' }),
-        ']' => diagnostic(SpellingKind::SquareBracket { written: ']', suggestion: ')' }),
+        '⌀' | 'ø' | 'Ø' => at_character(SpellingKind::DiameterSign { sign: next }),
+        '\'' => at_character(SpellingKind::SingleQuote),
+        '[' => at_character(SpellingKind::SquareBracket { written: '[', suggestion: '(' }),
+        ']' => at_character(SpellingKind::SquareBracket { written: ']', suggestion: ')' }),
         // Elsewhere `^` is an unexpected token like any other.
         '^' if ends_a_value(before) && before.contains('^') => {
-            diagnostic(SpellingKind::ChainedPower)
+            at_character(SpellingKind::ChainedPower)
         }
-        '\u{feff}' if stop.offset + stop.at == 0 => diagnostic(SpellingKind::ByteOrderMark),
+        '\u{feff}' if stop.offset + stop.at == 0 => at_character(SpellingKind::ByteOrderMark),
         '"' if glued && !number.is_empty() => {
-            diagnostic(SpellingKind::InchSign { number: number.to_owned() })
+            at_character(SpellingKind::InchSign { number: number.to_owned() })
         }
         '"' if stop.text.matches('"').count() % 2 == 1 => unclosed_error(stop),
-        '"' => diagnostic(SpellingKind::MisplacedText),
-        '_' if glued && !number.is_empty() => diagnostic(SpellingKind::UnderscoreInNumber),
-        '_' => diagnostic(SpellingKind::InvalidNameStart { start: NameStart::Underscore }),
+        '"' => at_character(SpellingKind::MisplacedText),
+        '_' if glued && !number.is_empty() => at_character(SpellingKind::UnderscoreInNumber),
+        '_' => at_character(SpellingKind::InvalidNameStart { start: NameStart::Underscore }),
         _ => match REPLACEMENTS.iter().find(|(wrong, _)| *wrong == next) {
             Some((_, suggestion)) => {
-                diagnostic(SpellingKind::Lookalike { written: next, suggestion })
+                at_character(SpellingKind::Lookalike { written: next, suggestion })
             }
-            None => foreign_character_error(next).and_then(diagnostic),
+            None => foreign_character_error(next).and_then(at_character),
         },
     }
 }
@@ -110,19 +111,19 @@ pub(super) fn notation_error(stop: &StopPosition<'_>) -> Option<Diagnostic> {
     let number = number_before(before);
     if ["mm", "inch", "m", "deg", "rad", "in"].contains(&next) && !number.is_empty() {
         let unit = if next == "in" { "inch" } else { next }.to_owned();
-        return Some(Diagnostic::new(
+        return error(
             stop.next(next.len()),
             SpellingKind::SpaceBeforeUnit {
                 written: next.to_owned(),
                 number: number.to_owned(),
                 unit,
             },
-        ));
+        );
     }
     if ["and", "or"].contains(&next) || rest.starts_with("&&") || rest.starts_with("||") {
         // `&&` and `||` are no words and have two bytes.
         let length = next.len().max(2);
-        return Some(Diagnostic::new(stop.next(length), SpellingKind::LogicalOperator));
+        return error(stop.next(length), SpellingKind::LogicalOperator);
     }
     if let Some(diagnostic) = name_error(stop).or_else(|| operator_error(stop)) {
         return Some(diagnostic);
@@ -131,20 +132,17 @@ pub(super) fn notation_error(stop: &StopPosition<'_>) -> Option<Diagnostic> {
     let is_integer = !number.is_empty() && !number.contains('.');
     let after_comma = rest.strip_prefix(',').unwrap_or_default();
     if is_integer && after_comma.starts_with(|c: char| c.is_ascii_digit()) {
-        let fraction: String = after_comma.chars().take_while(char::is_ascii_digit).collect();
-        return Some(Diagnostic::new(
+        let fraction = digits(after_comma).to_owned();
+        return error(
             stop.next(1),
             SpellingKind::DecimalComma { number: number.to_owned(), fraction },
-        ));
+        );
     }
     if rest.starts_with(';') && before.is_empty() {
-        return Some(Diagnostic::new(stop.next(1), SpellingKind::ExtraSemicolon));
+        return error(stop.next(1), SpellingKind::ExtraSemicolon);
     }
     if FILE_KEYWORDS.contains(&next) {
-        return Some(Diagnostic::new(
-            stop.next(next.len()),
-            SpellingKind::SecondTool { keyword: next.to_owned() },
-        ));
+        return error(stop.next(next.len()), SpellingKind::SecondTool { keyword: next.to_owned() });
     }
     None
 }
@@ -165,7 +163,7 @@ pub(super) fn unclosed_error(stop: &StopPosition<'_>) -> Option<Diagnostic> {
         let code = line.split("//").next().unwrap_or_default();
         if let (1, Some(at)) = (code.matches('"').count() % 2, code.rfind('"')) {
             let span = stop.span(start + at, start + at + 1);
-            return Some(Diagnostic::new(span, SpellingKind::UnclosedText));
+            return error(span, SpellingKind::UnclosedText);
         }
         start += line.len();
     }
@@ -191,7 +189,7 @@ fn name_error(stop: &StopPosition<'_>) -> Option<Diagnostic> {
             true => NameStart::DigitOfTool,
             false => NameStart::Digit,
         };
-        return Some(Diagnostic::new(stop.next(length), SpellingKind::InvalidNameStart { start }));
+        return error(stop.next(length), SpellingKind::InvalidNameStart { start });
     }
     let begun = stop.last_word();
     let naming = before[..before.len() - begun.len()].trim_end_matches(BLANK_CHARACTERS);
@@ -208,10 +206,7 @@ fn name_error(stop: &StopPosition<'_>) -> Option<Diagnostic> {
         } else {
             whole_name.replace('-', "_")
         };
-        return Some(Diagnostic::new(
-            span,
-            SpellingKind::DashInName { written: whole_name, suggestion },
-        ));
+        return error(span, SpellingKind::DashInName { written: whole_name, suggestion });
     }
     None
 }
@@ -220,17 +215,17 @@ fn name_error(stop: &StopPosition<'_>) -> Option<Diagnostic> {
 fn operator_error(stop: &StopPosition<'_>) -> Option<Diagnostic> {
     let (rest, before) = (stop.rest(), stop.before());
     let with_previous = || stop.span(stop.at - 1, stop.at + 1);
-    let glued = before.len() == stop.at;
+    let glued = stop.is_glued();
     if rest.starts_with('*') && glued && before.ends_with('*') {
-        return Some(Diagnostic::new(with_previous(), SpellingKind::DoubleStar));
+        return error(with_previous(), SpellingKind::DoubleStar);
     }
     if rest.starts_with(['<', '>']) {
         let sign = &rest[..1];
         if glued && before.ends_with('=') {
-            return Some(Diagnostic::new(
+            return error(
                 with_previous(),
                 SpellingKind::ReversedComparison { sign: sign.to_owned() },
-            ));
+            );
         }
         if ends_a_value(before) {
             let item = word(stop.text.trim_start_matches(BLANK_CHARACTERS));
@@ -240,7 +235,7 @@ fn operator_error(stop: &StopPosition<'_>) -> Option<Diagnostic> {
             } else {
                 SpellingKind::ComparisonOutside
             };
-            return Some(Diagnostic::new(stop.next(1), kind));
+            return error(stop.next(1), kind);
         }
     }
     None

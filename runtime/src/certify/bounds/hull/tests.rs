@@ -114,7 +114,7 @@ fn tools() -> [&'static ToolInfo; 5] {
 #[test]
 fn chords_of_a_ball_are_bounded_by_it_and_those_of_a_shoulder_together() {
     let section = Section::new(CHORDED.info(), ERROR).expect("a profile");
-    let TipBall { slabs, ball: [centre, radius] } = section.tip_ball.expect("a ball");
+    let TipBall { slab_count: slabs, ball: [centre, radius] } = section.tip_ball.expect("a ball");
     assert!(slabs == 48 && (centre - 3.0).abs() < 1e-5 && (radius - 3.0).abs() < 1e-5);
     let chains = section.chains.iter().map(|chain| chain.slabs.clone());
     assert!(chains.clone().flatten().eq(0..section.slabs.len()));
